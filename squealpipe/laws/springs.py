@@ -1,0 +1,92 @@
+"""The two inclined springs: exact geometry, and its linearization at x = y = 0."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+Scalar = Any
+"""A float, array, SymPy symbol or heyoka expression."""
+
+
+class Geometry(NamedTuple):
+    """Direction cosines c_i = cos α_i, s_i = sin α_i."""
+
+    c1: Scalar
+    s1: Scalar
+    c2: Scalar
+    s2: Scalar
+
+
+class Stiffness(NamedTuple):
+    """The linearized spring stiffness matrix [[K11, K12], [K12, K22]], N/m."""
+
+    k11: Scalar
+    k12: Scalar
+    k22: Scalar
+
+
+def geometry(alpha1: Any, alpha2: Any) -> Geometry:
+    """Direction cosines of angles in rad (floats or arrays, broadcast against each other)."""
+    return Geometry(np.cos(alpha1), np.sin(alpha1), np.cos(alpha2), np.sin(alpha2))
+
+
+def fixed_ends(p: Any, g: Geometry) -> tuple[Scalar, Scalar, Scalar, Scalar]:
+    """Eqs. (1a), (1b): fixed ends (x_f1, y_f1, x_f2, y_f2) of the springs, m."""
+    return p.length1 * g.c1, p.length1 * g.s1, -(p.length2 * g.c2), p.length2 * g.s2
+
+
+def squared_distance(x: Scalar, y: Scalar, x_fixed: Scalar, y_fixed: Scalar) -> Scalar:
+    """Eq. (2): |r − r_f|², m²."""
+    return (x - x_fixed) * (x - x_fixed) + (y - y_fixed) * (y - y_fixed)
+
+
+def spring_force(
+    k: Scalar, length: Scalar, x: Scalar, y: Scalar, x_fixed: Scalar, y_fixed: Scalar
+) -> tuple[Scalar, Scalar]:
+    """Eq. (3): force −k (d − L)(r − r_f)/d of one spring on the mass, N; singular at d = 0."""
+    d2 = squared_distance(x, y, x_fixed, y_fixed)
+    stretch = k * (1.0 - length * d2**-0.5)
+    return -(stretch * (x - x_fixed)), -(stretch * (y - y_fixed))
+
+
+def elastic_force(x: Scalar, y: Scalar, p: Any, g: Geometry) -> tuple[Scalar, Scalar]:
+    """Spring terms of Eqs. (4) and (5): total force of both springs on the mass, N."""
+    x1, y1, x2, y2 = fixed_ends(p, g)
+    f1x, f1y = spring_force(p.k1, p.length1, x, y, x1, y1)
+    f2x, f2y = spring_force(p.k2, p.length2, x, y, x2, y2)
+    return f1x + f2x, f1y + f2y
+
+
+def elastic_energy(x: Scalar, y: Scalar, p: Any, g: Geometry) -> Scalar:
+    """½ Σ k_i (d_i − L_i)², J: the potential of :func:`elastic_force`."""
+    x1, y1, x2, y2 = fixed_ends(p, g)
+    d1 = squared_distance(x, y, x1, y1) ** 0.5
+    d2 = squared_distance(x, y, x2, y2) ** 0.5
+    e1, e2 = d1 - p.length1, d2 - p.length2
+    return 0.5 * (p.k1 * e1 * e1 + p.k2 * e2 * e2)
+
+
+def linear_stiffness(p: Any, g: Geometry) -> Stiffness:
+    """Eqs. (8a)–(8c): K11, K12, K22, N/m."""
+    return Stiffness(
+        p.k1 * g.c1 * g.c1 + p.k2 * g.c2 * g.c2,
+        p.k1 * g.c1 * g.s1 - p.k2 * g.c2 * g.s2,
+        p.k1 * g.s1 * g.s1 + p.k2 * g.s2 * g.s2,
+    )
+
+
+def linear_elastic_force(x: Scalar, y: Scalar, stiffness: Stiffness) -> tuple[Scalar, Scalar]:
+    """Spring terms of Eqs. (18) and (19): −K r, N."""
+    return (
+        -(stiffness.k11 * x + stiffness.k12 * y),
+        -(stiffness.k12 * x + stiffness.k22 * y),
+    )
+
+
+def linear_elastic_energy(x: Scalar, y: Scalar, stiffness: Stiffness) -> Scalar:
+    """½ r'K r, J: the potential of :func:`linear_elastic_force`."""
+    return (
+        0.5 * stiffness.k11 * x * x + stiffness.k12 * x * y + 0.5 * stiffness.k22 * y * y
+    )

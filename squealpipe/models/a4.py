@@ -1,0 +1,59 @@
+"""A4: linear springs with contact loss, sliding friction only (paper, section 7).
+
+Drops from A1 the exact spring geometry and the reversal of friction. Valid while displacements
+are small against the spring lengths and ẋ < V. Piecewise linear and, being autonomous and
+undamped with forces that depend on position alone, time-reversible.
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from squealpipe.laws.contact import contact_force
+from squealpipe.laws.friction import slip_force
+from squealpipe.laws.springs import Geometry, Stiffness, linear_elastic_force, linear_stiffness
+
+
+def acceleration(x: Any, y: Any, p: Any, g: Geometry, *, contact: Any) -> tuple[Any, Any]:
+    """Eqs. (18), (19): (ẍ, ÿ), m/s²; Eqs. (20), (21) in contact, (23), (24) separated."""
+    fx, fy = linear_elastic_force(x, y, linear_stiffness(p, g))
+    normal = contact * contact_force(y, p)
+    inverse_mass = p.mass**-1.0
+    return inverse_mass * (fx + slip_force(normal, 1.0, p)), inverse_mass * (fy + normal)
+
+
+def contact_matrix(stiffness: Stiffness, k3: Any, mu: Any) -> tuple[Any, Any, Any, Any]:
+    """Stiffness (a11, a12, a21, a22) of Eqs. (20), (21), N/m; not symmetric: friction follows y."""
+    return stiffness.k11, stiffness.k12 + mu * k3, stiffness.k12, stiffness.k22 + k3
+
+
+class FirstIntegral(NamedTuple):
+    """H = ½ m v'S v + ½ u'S K u + ½ g N²/k3, conserved by A4 in both states."""
+
+    s11: Any
+    s12: Any
+    s22: Any
+    g: Any
+
+
+def first_integral(stiffness: Stiffness, mu: Any) -> FirstIntegral:
+    """Coefficients of the conserved quantity; identically zero if K12 = 0 and K11 = K22."""
+    k11, k12, k22 = stiffness
+    return FirstIntegral(
+        k12, -mu * k12, k12 + mu * (k11 - k22), k12 * (1.0 - mu * mu) + mu * (k11 - k22)
+    )
+
+
+def first_integral_value(
+    x: Any, y: Any, vx: Any, vy: Any, p: Any, stiffness: Stiffness
+) -> Any:
+    """H at a state, N J/m."""
+    s11, s12, s22, g = first_integral(stiffness, p.mu)
+    k11, k12, k22 = stiffness
+    sk11, sk12 = s11 * k11 + s12 * k12, s11 * k12 + s12 * k22
+    sk21, sk22 = s12 * k11 + s22 * k12, s12 * k12 + s22 * k22
+    kinetic = 0.5 * p.mass * (s11 * vx * vx + 2.0 * s12 * vx * vy + s22 * vy * vy)
+    elastic = 0.5 * (sk11 * x * x + (sk12 + sk21) * x * y + sk22 * y * y)
+    return kinetic + elastic + 0.5 * g * p.k3 * np.maximum(p.preload - y, 0.0) ** 2
