@@ -184,5 +184,7 @@ def parameters_from(mapping: dict[str, Any]) -> Parameters:
     known = {item.name for item in fields(Parameters)}
     unknown = sorted(set(mapping) - known)
     if unknown:
-        raise ValueError(f"unknown parameter {', '.join(unknown)}; known: {', '.join(sorted(known))}")
+        raise ValueError(
+            f"unknown parameter {', '.join(unknown)}; known: {', '.join(sorted(known))}"
+        )
     return Parameters(**mapping)

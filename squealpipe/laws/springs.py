@@ -87,6 +87,4 @@ def linear_elastic_force(x: Scalar, y: Scalar, stiffness: Stiffness) -> tuple[Sc
 
 def linear_elastic_energy(x: Scalar, y: Scalar, stiffness: Stiffness) -> Scalar:
     """½ r'K r, J: the potential of :func:`linear_elastic_force`."""
-    return (
-        0.5 * stiffness.k11 * x * x + stiffness.k12 * x * y + 0.5 * stiffness.k22 * y * y
-    )
+    return 0.5 * stiffness.k11 * x * x + stiffness.k12 * x * y + 0.5 * stiffness.k22 * y * y

@@ -46,9 +46,7 @@ def first_integral(stiffness: Stiffness, mu: Any) -> FirstIntegral:
     )
 
 
-def first_integral_value(
-    x: Any, y: Any, vx: Any, vy: Any, p: Any, stiffness: Stiffness
-) -> Any:
+def first_integral_value(x: Any, y: Any, vx: Any, vy: Any, p: Any, stiffness: Stiffness) -> Any:
     """H at a state, N J/m."""
     s11, s12, s22, g = first_integral(stiffness, p.mu)
     k11, k12, k22 = stiffness

@@ -1,0 +1,43 @@
+# Each target sets up what it needs: the environment is made when it is missing or stale.
+PYTHON ?= python3
+VENV := .venv
+BIN := $(VENV)/bin
+STAMP := $(VENV)/.made-from-lock
+
+.PHONY: reproduce quick test bench env lint lock docs clean
+
+reproduce: env  ## the whole study: datasets, figures, report
+	$(BIN)/snakemake
+
+quick: env  ## the same study, coarse, into results/quick
+	$(BIN)/snakemake --configfile workflow/config/quick.yaml
+
+test: env  ## all tests but the slow sweeps
+	$(BIN)/python -m pytest -q
+
+bench: env  ## speed and accuracy beside other tools, as ratios
+	$(BIN)/python -m pip install -q --require-hashes -r requirements-peers.lock
+	for script in tests/benchmarks/bench_*.py; do $(BIN)/python $$script || exit 1; done
+
+lint: env
+	$(BIN)/ruff check . && $(BIN)/ruff format --check .
+	$(BIN)/mypy && $(BIN)/lint-imports
+
+env: $(STAMP)
+
+$(STAMP): requirements.lock pyproject.toml
+	test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
+	$(BIN)/python -m pip install -q --disable-pip-version-check --require-hashes -r requirements.lock
+	$(BIN)/python -m pip install -q --disable-pip-version-check --no-deps --no-build-isolation -e .
+	touch $@
+
+lock: env
+	$(BIN)/uv pip compile pyproject.toml --universal --python-version 3.11 --generate-hashes \
+	  --no-emit-index-url --extra dev --extra notebook --extra slurm \
+	  --custom-compile-command "make lock" -q -o requirements.lock
+	$(BIN)/uv pip compile pyproject.toml --universal --python-version 3.11 --generate-hashes \
+	  --no-emit-index-url --extra peers -c requirements.lock \
+	  --custom-compile-command "make lock" -q -o requirements-peers.lock
+
+clean:  ## results of the study; archives and the environment stay
+	rm -rf results/data results/figures results/report results/quick .snakemake

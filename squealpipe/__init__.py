@@ -1,0 +1,40 @@
+"""Reproducible computation on friction-induced vibration with contact loss.
+
+Everything public is loaded on first use, so importing one part never costs, nor makes a
+workflow depend on, the others.
+"""
+
+from __future__ import annotations
+
+import importlib
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from squealpipe.parameters import SCENES, Parameters, Scene
+    from squealpipe.store.netcdf import load, save
+    from squealpipe.tasks.linear import stability_map
+
+_HOME = {
+    "SCENES": "squealpipe.parameters",
+    "Parameters": "squealpipe.parameters",
+    "Scene": "squealpipe.parameters",
+    "load": "squealpipe.store.netcdf",
+    "save": "squealpipe.store.netcdf",
+    "stability_map": "squealpipe.tasks.linear",
+}
+
+__all__ = ["SCENES", "Parameters", "Scene", "load", "save", "stability_map"]
+
+
+def __getattr__(name: str) -> Any:
+    if name == "__version__":
+        from importlib.metadata import version
+
+        return version("squealpipe")
+    if name not in _HOME:
+        raise AttributeError(f"squealpipe has no {name!r}; it offers {', '.join(sorted(_HOME))}")
+    return getattr(importlib.import_module(_HOME[name]), name)
+
+
+def __dir__() -> list[str]:
+    return sorted([*_HOME, "__version__"])

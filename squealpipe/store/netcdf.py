@@ -1,0 +1,109 @@
+"""NetCDF files that are either whole and valid or absent."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+
+from squealpipe.schema import SchemaError, find, validate
+
+
+class StoreError(ValueError):
+    """A file cannot be read or written as a dataset; the message names it and the remedy."""
+
+
+def save(dataset: xr.Dataset, path: str | os.PathLike[str]) -> Path:
+    """Write a dataset atomically: temporary name, validation, fsync, rename.
+
+    Raises:
+        SchemaError: the dataset does not fit its schema; nothing is written.
+        StoreError: the folder cannot be written; an earlier file of that name is untouched.
+    """
+    target = Path(path)
+    validate(dataset, find(str(dataset.attrs.get("schema"))))
+    encoding = {
+        str(name): {"zlib": True, "complevel": 4, "shuffle": True}
+        for name, variable in dataset.variables.items()
+        if variable.ndim and variable.dtype.kind in "fiub"
+    }
+    for name, variable in dataset.variables.items():
+        # Xarray would declare NaN a fill value, though ours are data with a reason beside them.
+        encoding.setdefault(str(name), {})
+        if variable.dtype.kind in "fiu":
+            encoding[str(name)]["_FillValue"] = None
+    temporary = None
+    try:
+        target.parent.mkdir(parents=True, exist_ok=True)
+        handle, name_ = tempfile.mkstemp(
+            dir=target.parent, prefix=f".{target.name}.", suffix=".tmp"
+        )
+        os.close(handle)
+        temporary = Path(name_)
+        dataset.to_netcdf(temporary, engine="netcdf4", format="NETCDF4", encoding=encoding)
+        _read(temporary)
+        umask = os.umask(0)
+        os.umask(umask)
+        temporary.chmod(0o666 & ~umask)
+        _sync(temporary)
+        temporary.replace(target)
+        _sync(target.parent)
+    except OSError as error:
+        raise StoreError(
+            f"cannot write {target}: {error.strerror or error}; free space or mend permissions, "
+            "then run the same command again"
+        ) from error
+    finally:
+        if temporary is not None:
+            temporary.unlink(missing_ok=True)
+    return target
+
+
+def load(path: str | os.PathLike[str], *, schema: str | None = None) -> xr.Dataset:
+    """Read a dataset into memory and validate it.
+
+    Args:
+        path: a file written by :func:`save`.
+        schema: the schema that the caller needs; any known one by default.
+
+    Raises:
+        FileNotFoundError: no such file.
+        StoreError: the file is not whole, or not a dataset of this package.
+        SchemaError: it does not fit its schema, or not the one asked for.
+    """
+    source = Path(path)
+    if not source.is_file():
+        raise FileNotFoundError(f"no dataset {source}; make it with snakemake, or check the path")
+    dataset = _read(source)
+    found = dataset.attrs.get("schema")
+    if found is None:
+        raise StoreError(f"{source} was not written by squealpipe: it has no `schema` attribute")
+    if schema is not None and found != schema:
+        raise SchemaError(f"{source} holds {found!r}, {schema!r} was expected; pass the right file")
+    validate(dataset, find(str(found)))
+    return dataset
+
+
+def _read(source: Path) -> xr.Dataset:
+    try:
+        with xr.open_dataset(source, engine="netcdf4", decode_times=False) as opened:
+            dataset = opened.load()
+    except (OSError, RuntimeError, ValueError, KeyError) as error:
+        raise StoreError(
+            f"{source} is truncated or not NetCDF-4 ({error}); delete it and run snakemake again"
+        ) from error
+    for variable in dataset.variables.values():
+        if variable.dtype == np.dtype("O"):
+            variable.values = variable.values.astype(str)
+    return dataset
+
+
+def _sync(path: Path) -> None:
+    handle = os.open(path, os.O_RDONLY)
+    try:
+        os.fsync(handle)
+    finally:
+        os.close(handle)
