@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import asdict, dataclass, fields, replace
-from numbers import Real
 from typing import Any
 
 _POSITIVE = ("mass", "k1", "k2", "k3", "preload", "length1", "length2", "sigma")
@@ -20,6 +19,13 @@ _UNITS = {
     "length2": "m",
     "sigma": "m-1",
 }
+
+
+def is_finite_number(value: object) -> bool:
+    """Whether a value is a finite real number; truth values and text are not."""
+    if isinstance(value, bool | str | bytes) or not hasattr(value, "__float__"):
+        return False
+    return math.isfinite(float(value))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -57,7 +63,7 @@ class Parameters:
     def __post_init__(self) -> None:
         for item in fields(self):
             value = getattr(self, item.name)
-            if isinstance(value, bool) or not isinstance(value, Real) or not math.isfinite(value):
+            if not is_finite_number(value):
                 raise ValueError(f"{item.name} = {value!r}: a finite number is needed")
             if item.name in _POSITIVE and not value > 0:
                 raise ValueError(f"{item.name} = {value!r}: must be greater than 0")
@@ -130,7 +136,7 @@ class Scene:
     def __post_init__(self) -> None:
         checked = {"alpha1": self.alpha1, "alpha2": self.alpha2, "t_end": self.t_end}
         for key, value in checked.items():
-            if isinstance(value, bool) or not isinstance(value, Real) or not math.isfinite(value):
+            if not is_finite_number(value):
                 raise ValueError(f"scene {self.name}: {key} = {value!r}: a finite number is needed")
         if not self.t_end > 0:
             raise ValueError(f"scene {self.name}: t_end = {self.t_end!r}: must be greater than 0")

@@ -32,7 +32,7 @@ def closure(script: str | Path) -> list[Path]:
 @cache
 def imported_modules(source: Path) -> frozenset[Path]:
     """Package files that one file imports by name."""
-    names = set()
+    names: set[str] = set()
     for node in _nodes(ast.parse(source.read_text(encoding="utf-8"))):
         if isinstance(node, ast.Import):
             names.update(alias.name for alias in node.names)

@@ -1,0 +1,1 @@
+"""Methods: they know dynamical systems, not squeal."""

@@ -1,0 +1,1 @@
+"""The report: datasets, figures and claims on one page."""

@@ -1,0 +1,1 @@
+"""Tasks: a model and a method make a labelled dataset."""
