@@ -8,6 +8,7 @@ STUDY = parse_study(config)
 RESULTS = STUDY.results
 
 include: "workflow/rules/common.smk"
+include: "workflow/rules/model.smk"
 include: "workflow/rules/linear.smk"
 include: "workflow/rules/report.smk"
 

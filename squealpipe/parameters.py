@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import asdict, dataclass, fields, replace
+from numbers import Real
 from typing import Any
 
 _POSITIVE = ("mass", "k1", "k2", "k3", "preload", "length1", "length2", "sigma")
@@ -23,9 +24,7 @@ _UNITS = {
 
 def is_finite_number(value: object) -> bool:
     """Whether a value is a finite real number; truth values and text are not."""
-    if isinstance(value, bool | str | bytes) or not hasattr(value, "__float__"):
-        return False
-    return math.isfinite(float(value))
+    return isinstance(value, Real) and not isinstance(value, bool) and math.isfinite(float(value))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -97,7 +96,7 @@ class Parameters:
 
     @property
     def speed_ratio(self) -> float:
-        """v = V/(l_pre √(k1/m))."""
+        """Belt speed v = V/(l_pre √(k1/m))."""
         return self.belt_speed * self.time_unit / self.preload
 
     def with_(self, **changes: float) -> Parameters:

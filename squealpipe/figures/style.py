@@ -143,7 +143,7 @@ def panel_letter(axes: Axes, letter: str, text: str = "") -> None:
 
 
 def save_figure(figure: Figure, paths: Sequence[str | os.PathLike[str]]) -> None:
-    """Write a figure to every path, atomically and without a date, so equal inputs give equal files."""
+    """Write a figure to every path, atomically and without a date: equal inputs, equal files."""
     for path in map(Path, paths):
         path.parent.mkdir(parents=True, exist_ok=True)
         temporary = path.with_name(f".{path.stem}.{os.getpid()}{path.suffix}")
