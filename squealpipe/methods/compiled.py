@@ -1,0 +1,49 @@
+"""Compilation of the numeric kernels, kept on disk between runs.
+
+numba decides by a function's own file whether its stored machine code is current, but that code
+contains the kernels it calls from other files. The store is therefore keyed by a digest of every
+kernel source: an edit of any of them compiles all again, and none is ever stale.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+from typing import Any, TypeVar
+
+import numba
+from numba.core import config as numba_config
+
+_Kernel = TypeVar("_Kernel", bound=Callable[..., Any])
+_KERNEL_SOURCES = ("compiled.py", "modal_flow.py", "shooting.py", "branch_tracing.py")
+
+
+@cache
+def _store() -> str:
+    """Directory of the compiled code: the user's numba directory or the package's, by digest."""
+    here = Path(__file__).parent
+    digest = hashlib.sha256()
+    for name in _KERNEL_SOURCES:
+        digest.update((here / name).read_bytes())
+    root = Path(numba_config.CACHE_DIR) if numba_config.CACHE_DIR else here / "__pycache__"
+    return str(root / f"kernels-{digest.hexdigest()[:16]}")
+
+
+def compiled(function: _Kernel) -> _Kernel:
+    """Compile on first call, without the interpreter lock; keep the result where one can write.
+
+    Where the package's directory is read-only numba's own choice (the user's cache) is taken, and
+    where nothing can be written the kernel is compiled anew in each process.
+    """
+    previous = numba_config.CACHE_DIR
+    for directory in (_store(), previous):
+        numba_config.CACHE_DIR = directory
+        try:
+            return numba.njit(cache=True, nogil=True, error_model="numpy")(function)  # type: ignore[no-any-return]
+        except (RuntimeError, OSError):
+            continue
+        finally:
+            numba_config.CACHE_DIR = previous
+    return numba.njit(nogil=True, error_model="numpy")(function)  # type: ignore[no-any-return]
