@@ -10,14 +10,23 @@ import difflib
 import json
 import math
 from collections.abc import Iterator, Mapping
-from dataclasses import fields
 from pathlib import Path
 from typing import Annotated, Any
 
 import yaml
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
-from squealpipe.parameters import Parameters
+from squealpipe.parameters import Parameters, parameters_of
+
+__all__ = [
+    "ConfigError",
+    "Section",
+    "Study",
+    "json_schema",
+    "parameters_of",
+    "parse_study",
+    "read_study",
+]
 
 
 class ConfigError(ValueError):
@@ -154,11 +163,6 @@ def _known_keys(location: tuple[int | str, ...]) -> list[str]:
             return []
         model = annotation
     return sorted(model.model_fields) if hasattr(model, "model_fields") else []
-
-
-def parameters_of(part: Mapping[str, Any]) -> Parameters:
-    """``Parameters`` from a slice that holds the section ``parameters``."""
-    return Parameters(**part["parameters"])
 
 
 def json_schema() -> str:

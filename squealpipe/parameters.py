@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass, fields, replace
 from numbers import Real
 from typing import Any
@@ -193,3 +194,8 @@ def parameters_from(mapping: dict[str, Any]) -> Parameters:
             f"unknown parameter {', '.join(unknown)}; known: {', '.join(sorted(known))}"
         )
     return Parameters(**mapping)
+
+
+def parameters_of(part: Mapping[str, Any]) -> Parameters:
+    """``Parameters`` from a slice of the configuration that holds the section ``parameters``."""
+    return Parameters(**part["parameters"])
