@@ -1,1 +1,24 @@
-"""The report: datasets, figures and claims on one page."""
+"""The report: datasets, figures and claims on one page. Included last: it reads all other rules."""
+
+from squealpipe.report.lineage import lineage
+
+MADE = lineage(workflow.rules, f"{RESULTS}/data/", f"{RESULTS}/figures/")
+
+
+rule write_report:
+    input:
+        datasets=[made["path"] for made in MADE["datasets"].values()],
+        figures=[made["path"] for made in MADE["figures"].values()],
+        templates=sorted(str(path.relative_to(ROOT)) for path in ROOT.glob("squealpipe/report/templates/**/*.*")),
+        sources=sources("write_report"),
+    output:
+        page=f"{RESULTS}/report/index.html",
+        pdf=f"{RESULTS}/report/report.pdf",
+    params:
+        part=part("parameters"),
+        made=MADE,
+    script:
+        "../scripts/write_report.py"
+
+
+TARGETS += rules.write_report.output

@@ -1,0 +1,142 @@
+"""Everything the report says, gathered from the files of one run as plain data."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+import xarray as xr
+from PIL import Image
+
+from squealpipe.parameters import Parameters
+from squealpipe.report.pictures import MODULES
+from squealpipe.store import load
+
+TITLE = "Hammering and brake squeal: a paper computed again, statement by statement"
+PICTURE_DPI = 200
+
+SYMBOLS = {
+    "mass": ("m", "mass of the particle"),
+    "k1": ("k_1", "stiffness of spring 1"),
+    "k2": ("k_2", "stiffness of spring 2"),
+    "k3": ("k_3", "stiffness of the contact spring"),
+    "mu": ("mu", "Coulomb friction coefficient"),
+    "belt_speed": ("V", "speed of the belt"),
+    "preload": ('l_"pre"', "precompression of the contact spring"),
+    "length1": ("L_1", "free length of spring 1"),
+    "length2": ("L_2", "free length of spring 2"),
+    "sigma": ("sigma", "regularizing factor of the paper's tanh"),
+}
+"""Parameter → (symbol as Typst mathematics, meaning)."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Made:
+    """How one file of the run came to be.
+
+    Attributes:
+        path: the file.
+        rule: name of the workflow rule.
+        datasets: names of the datasets that the rule reads.
+    """
+
+    path: Path
+    rule: str
+    datasets: tuple[str, ...] = ()
+
+
+def gather(
+    datasets: Mapping[str, Made], figures: Mapping[str, Made], parameters: Parameters
+) -> dict[str, Any]:
+    """The report's content; see ``templates/`` for how it is used.
+
+    Args:
+        datasets: name (path below ``data/`` without suffix) → NetCDF file.
+        figures: name → PNG file.
+        parameters: those of the study.
+    """
+    loaded = {name: load(made.path) for name, made in datasets.items()}
+    return {
+        "title": TITLE,
+        "shipped": parameters == Parameters(),
+        "parameters": _parameters(parameters),
+        "environment": _environment(loaded),
+        "datasets": {name: _run(datasets[name], loaded[name]) for name in sorted(datasets)},
+        "figures": {name: _picture(name, figures[name]) for name in MODULES if name in figures},
+        "claims": [],
+        "facts": {},
+    }
+
+
+def picture_files(content: Mapping[str, Any], figures: Mapping[str, Made]) -> dict[str, Path]:
+    """Path inside the report's source → PNG file, for each picture of the content."""
+    return {item["path"]: figures[name].path for name, item in content["figures"].items()}
+
+
+def slug(name: str) -> str:
+    """A name as an identifier in a page."""
+    return re.sub(r"[^a-z0-9]+", "-", name.lower()).strip("-")
+
+
+def _parameters(parameters: Parameters) -> list[dict[str, Any]]:
+    return [
+        {
+            "symbol": SYMBOLS[name][0],
+            "meaning": SYMBOLS[name][1],
+            "value": value,
+            "unit": Parameters.units(name),
+        }
+        for name, value in parameters.as_dict().items()
+    ]
+
+
+def _run(made: Made, dataset: xr.Dataset) -> dict[str, Any]:
+    return {
+        "slug": slug(str(made.path)),
+        "rule": made.rule,
+        "datasets": list(made.datasets),
+        "title": dataset.attrs["title"],
+        "dataset_id": dataset.attrs["dataset_id"],
+        "config_hash": dataset.attrs["config_hash"],
+        "wall_time_s": float(dataset.attrs["wall_time_s"]),
+        "sha256": hashlib.sha256(made.path.read_bytes()).hexdigest(),
+        "bytes": made.path.stat().st_size,
+    }
+
+
+def _picture(name: str, made: Made) -> dict[str, Any]:
+    title, module = MODULES[name]
+    with Image.open(made.path) as image:
+        width = image.width / PICTURE_DPI
+    return {
+        "path": f"pictures/{name}.png",
+        "title": title,
+        "caption": module.CAPTION,
+        "alt": module.ALT,
+        "width_inches": width,
+        "rule": made.rule,
+        "datasets": list(made.datasets),
+    }
+
+
+def _environment(loaded: Mapping[str, xr.Dataset]) -> list[dict[str, str]]:
+    rows = {"squealpipe": version("squealpipe")}
+    for dataset in loaded.values():
+        rows["commit"] = dataset.attrs["commit"]
+        rows["platform"] = dataset.attrs["platform"]
+        rows.update(json.loads(dataset.attrs["libraries"]))
+    return [{"what": what, "value": value} for what, value in rows.items()]
+
+
+def made_files(table: Mapping[str, Mapping[str, Any]]) -> dict[str, Made]:
+    """``Made`` records from the plain table that :mod:`squealpipe.report.lineage` gives."""
+    return {
+        name: Made(path=Path(row["path"]), rule=row["rule"], datasets=tuple(row["datasets"]))
+        for name, row in table.items()
+    }
