@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from squealpipe.parameters import SCENES, Parameters, Scene
     from squealpipe.store.netcdf import load, save
-    from squealpipe.tasks.linear import stability_map
+    from squealpipe.tasks.linear import natural_frequencies, quasi_static_map, stability_map
 
 _HOME = {
     "SCENES": "squealpipe.parameters",
@@ -20,10 +20,21 @@ _HOME = {
     "Scene": "squealpipe.parameters",
     "load": "squealpipe.store.netcdf",
     "save": "squealpipe.store.netcdf",
+    "natural_frequencies": "squealpipe.tasks.linear",
+    "quasi_static_map": "squealpipe.tasks.linear",
     "stability_map": "squealpipe.tasks.linear",
 }
 
-__all__ = ["SCENES", "Parameters", "Scene", "load", "save", "stability_map"]
+__all__ = [
+    "SCENES",
+    "Parameters",
+    "Scene",
+    "load",
+    "natural_frequencies",
+    "quasi_static_map",
+    "save",
+    "stability_map",
+]
 
 
 def __getattr__(name: str) -> Any:

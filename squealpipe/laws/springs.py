@@ -77,6 +77,25 @@ def linear_stiffness(p: Any, g: Geometry) -> Stiffness:
     )
 
 
+def sine_of_sum(alpha1: Any, alpha2: Any) -> Any:
+    """sin(α1 + α2) to full relative precision (floats and arrays), also next to nπ.
+
+    The rounding error of the sum is recovered (Knuth's two-sum) and carried to first order.
+    """
+    total = alpha1 + alpha2
+    part = total - alpha1
+    lost = (alpha1 - (total - part)) + (alpha2 - part)
+    return np.sin(total) + lost * np.cos(total)
+
+
+def stiffness_determinant(p: Any, sine: Scalar) -> Scalar:
+    """K11 K22 − K12² of Eqs. (8a)–(8c) as k1 k2 sin²(α1 + α2), which does not cancel, N²/m².
+
+    ``sine`` is sin(α1 + α2); see :func:`sine_of_sum`.
+    """
+    return p.k1 * p.k2 * sine * sine
+
+
 def linear_elastic_force(x: Scalar, y: Scalar, stiffness: Stiffness) -> tuple[Scalar, Scalar]:
     """Spring terms of Eqs. (18) and (19): −K r, N."""
     return (

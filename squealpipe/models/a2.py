@@ -10,28 +10,70 @@ from typing import Any
 
 import numpy as np
 
-from squealpipe.laws.springs import Stiffness
+from squealpipe.laws.contact import linearized_contact_stiffness, regularized_force
+from squealpipe.laws.friction import slip_force
+from squealpipe.laws.springs import Stiffness, linear_elastic_force
+
+ROUND_OFF = 4.0 * np.finfo(float).eps
+"""Below this share of the stiffness, K11 and K12 count as zero."""
+
+
+def acceleration(
+    x: Any, y: Any, p: Any, stiffness: Stiffness, sigma: Any = None
+) -> tuple[Any, Any]:
+    """Eqs. (6), (7): (ẍ, ÿ) of the model linearized about x = y = 0, m/s².
+
+    ``sigma`` regularizes the contact law, 1/m; None means the sharp law.
+    """
+    stiffness3 = contact_stiffness(p, sigma)
+    normal = actuation(p, sigma) - stiffness3 * y
+    fx, fy = linear_elastic_force(x, y, stiffness)
+    inverse_mass = p.mass**-1.0
+    return inverse_mass * (fx + slip_force(normal, 1.0, p)), inverse_mass * (fy + normal)
+
+
+def contact_stiffness(p: Any, sigma: Any = None) -> Any:
+    """K3 of Eq. (8d), N/m; its sharp limit k3 without ``sigma``."""
+    return p.k3 if sigma is None else linearized_contact_stiffness(p, sigma)
+
+
+def actuation(p: Any, sigma: Any = None) -> Any:
+    """F_n, the contact force at y = 0 and right-hand side of Eq. (7), N; k3 l_pre if sharp."""
+    return p.k3 * p.preload if sigma is None else regularized_force(0.0, p, sigma)
 
 
 def coupling_is_zero(stiffness: Stiffness) -> Any:
-    """Whether K12 vanishes to round-off: |K12| below 4 ulp of the stiffness (E3)."""
-    scale = np.maximum(stiffness.k11, stiffness.k22)
-    return np.abs(stiffness.k12) <= 4.0 * np.finfo(float).eps * scale
+    """Whether K12 vanishes to round-off (E3)."""
+    return np.abs(stiffness.k12) <= ROUND_OFF * (stiffness.k11 + stiffness.k22)
+
+
+def _without_round_off(stiffness: Stiffness) -> tuple[Any, Any]:
+    """K11 and K12, exactly 0 where they vanish to round-off."""
+    k11_is_zero = stiffness.k11 <= ROUND_OFF * stiffness.k22
+    return (
+        np.where(k11_is_zero, 0.0, stiffness.k11),
+        np.where(coupling_is_zero(stiffness), 0.0, stiffness.k12),
+    )
 
 
 def possible_as_printed(stiffness: Stiffness, mu: Any) -> Any:
-    """Eq. (11) as printed: μ < K11/K12. True where K12 = 0; False where K12 < 0 (E3)."""
-    zero = coupling_is_zero(stiffness)
-    k12 = np.where(zero, 1.0, stiffness.k12)
-    return zero | (mu < stiffness.k11 / k12)
+    """Eq. (11) as printed: μ < K11/K12.
 
-
-def reaction_force(stiffness: Stiffness, mu: Any, actuation: Any) -> Any:
-    """R_n = F_n/(1 − μK12/K11) from Eq. (10) with y = 0, N; F_n = k3 l_pre.
-
-    NaN where K11 = 0 as well as K12 = 0 (0/0 at α1 = α2 = π/2).
+    True where K12 = 0 (no bound on μ), False where K12 < 0 (E3) and where K11 = 0 as well as
+    K12 = 0, at α1 = α2 = π/2, for nothing balances friction there.
     """
-    k12 = np.where(coupling_is_zero(stiffness), 0.0, stiffness.k12)
-    k11 = np.where(stiffness.k11 <= 4.0 * np.finfo(float).eps * stiffness.k22, 0.0, stiffness.k11)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        return actuation * k11 / (k11 - mu * k12)
+    k11, k12 = _without_round_off(stiffness)
+    coupled = k12 != 0
+    return np.where(coupled, mu < k11 / np.where(coupled, k12, 1.0), k11 > 0)
+
+
+def reaction_force(stiffness: Stiffness, mu: Any, load: Any) -> Any:
+    """R_n = F_n/(1 − μK12/K11): Eqs. (9), (10) without acceleration and with y = 0, N.
+
+    Sliding is possible where it is positive, that is, μ K12 < K11. NaN where there is no such
+    state: K11 = μ K12, of which α1 = α2 = π/2 is the case 0/0.
+    """
+    k11, k12 = _without_round_off(stiffness)
+    rest = k11 - mu * k12
+    singular = rest == 0
+    return np.where(singular, np.nan, load * k11 / np.where(singular, 1.0, rest))

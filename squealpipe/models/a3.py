@@ -2,6 +2,11 @@
 
 Drops from A1 the exact geometry, contact loss and the reversal of friction: the contact spring
 pulls as well as pushes. Valid for small motion about a static state in contact with ẋ < V.
+
+The angles enter through one complex number only, Z = k1 exp(2iα1) + k2 exp(−2iα2): with
+S = k1 + k2, K11 = ½(S + Re Z), K22 = ½(S − Re Z), K12 = ½ Im Z. In the plane of Z all of Fig. 6
+is two circles about c = k3 (1 − iμ) and a line: flutter inside |Z − c| = μ k3, divergence
+outside |Z − c|² = (S + k3)² + μ²k3², and Eq. (11) at Re(Z (1 + iμ)) = −S.
 """
 
 from __future__ import annotations
@@ -12,7 +17,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from squealpipe.laws.springs import Stiffness
-from squealpipe.models.a4 import contact_matrix
+from squealpipe.models.a4 import Spectrum, natural_frequencies_squared
 
 
 class LinearRegime(IntEnum):
@@ -23,41 +28,130 @@ class LinearRegime(IntEnum):
     divergence = 2
 
 
-class Spectrum(NamedTuple):
-    """Invariants of the matrix A = K_contact/m whose eigenvalues are ω² = −s²."""
+class Groups(NamedTuple):
+    """Squared ratios of Eqs. (12a)–(12d) to ω11²; ω12² may be negative, so ω12 is not formed."""
 
-    half_trace: Any
-    determinant: Any
-    discriminant: Any
+    coupling: Any
+    vertical: Any
+    contact: Any
 
 
-def spectrum(stiffness: Stiffness, k3: Any, mu: Any, mass: Any) -> Spectrum:
-    """Trace/2, determinant and discriminant (trace/2)² − det of Eqs. (6), (7) per unit mass.
+def groups(stiffness: Stiffness, k3: Any) -> Groups:
+    """Eqs. (12a)–(12d): ω12²/ω11², ω22²/ω11², ω3²/ω11².
 
-    The discriminant is formed without cancellation,
-    ¼(K11 − K22 − K3)² + K12 (K12 + μ K3), so it is exact at flutter onset, where numeric
-    eigenvalues of the defective matrix lose half their digits.
+    Singular where K11 = 0, at α1 = α2 = π/2, for there τ = ω11 t stands still (E12).
     """
-    a11, a12, a21, a22 = contact_matrix(stiffness, k3, mu)
-    half_trace = 0.5 * (a11 + a22) / mass
-    determinant = (a11 * a22 - a12 * a21) / (mass * mass)
-    half_difference = 0.5 * (a11 - a22)
-    discriminant = (half_difference * half_difference + a12 * a21) / (mass * mass)
-    return Spectrum(half_trace, determinant, discriminant)
+    return Groups(stiffness.k12 / stiffness.k11, stiffness.k22 / stiffness.k11, k3 / stiffness.k11)
 
 
-def static_state(stiffness: Stiffness, k3: Any, mu: Any, preload: Any) -> tuple[Any, Any, Any]:
-    """Eq. (15): the equilibrium (x*, y*), m, and its contact force N* = k3 (l_pre − y*), N.
+def acceleration(x: Any, y: Any, ratios: Groups, mu: Any, load: Any) -> tuple[Any, Any]:
+    """Eqs. (13), (14): (X'', Y'') with respect to τ = ω11 t; Eqs. (16), (17) with ``load`` 0.
 
-    Infinite where the contact stiffness is singular. ``k3`` is K3 of Eq. (8d) or its sharp limit.
+    Args:
+        x, y: X = x/l_pre, Y = y/l_pre of Eqs. (12e), (12f), about the unloaded state, or about
+            the static state where ``load`` is 0: the change of variable is X − X* (E4).
+        ratios: see :func:`groups`.
+        mu: friction coefficient.
+        load: ½ (k3/K11)(1 + tanh σ l_pre), which tends to k3/K11.
+    """
+    return (
+        mu * load - x - (ratios.coupling + mu * ratios.contact) * y,
+        load - ratios.coupling * x - (ratios.vertical + ratios.contact) * y,
+    )
+
+
+def jacobian(ratios: Groups, mu: Any) -> tuple[tuple[Any, Any], tuple[Any, Any]]:
+    """Derivative of the accelerations of Eqs. (16), (17) by (X, Y)."""
+    return (
+        (-1.0, -(ratios.coupling + mu * ratios.contact)),
+        (-ratios.coupling, -(ratios.vertical + ratios.contact)),
+    )
+
+
+def eigenvalues(invariants: Spectrum) -> tuple[Any, Any]:
+    """The s of largest real part of either mode, complex, 1/s; the others are −s.
+
+    Flutter gives both modes the same growth and frequency; divergence gives mode 1 s > 0.
+    """
+    first, second = natural_frequencies_squared(invariants)
+    return tuple(_right_half(np.sqrt(-squared)) for squared in (first, second))  # type: ignore[return-value]
+
+
+def _right_half(s: Any) -> Any:
+    return np.abs(s.real) + 1j * np.abs(s.imag)
+
+
+def regime(invariants: Spectrum) -> Any:
+    """:class:`LinearRegime` of each cell: flutter where ω² is complex, divergence where ω1² < 0."""
+    flutter = invariants.discriminant < 0
+    divergence = ~flutter & (invariants.determinant < 0)
+    return np.where(
+        flutter,
+        LinearRegime.flutter,
+        np.where(divergence, LinearRegime.divergence, LinearRegime.stable),
+    )
+
+
+def static_state(
+    stiffness: Stiffness, spring_determinant: Any, *, k3: Any, mu: Any, actuation: Any
+) -> tuple[Any, Any, Any]:
+    """Eqs. (15a), (15b): the equilibrium (x*, y*) of Eqs. (6), (7), m, and its contact force, N.
+
+    The contact force F_n − K3 y* is returned as F_n det K/(det K + K3 (K11 − μK12)), which
+    keeps its sign where it almost vanishes.
+
+    Args:
+        stiffness, spring_determinant: K11, K12, K22, N/m, and det K.
+        k3: K3 of Eq. (8d), or its sharp limit k3, N/m.
+        mu: friction coefficient.
+        actuation: right-hand side of Eq. (7), k3 l_pre in the sharp limit, N.
+
+    Not finite where the contact stiffness is singular.
     """
     k11, k12, k22 = stiffness
-    spring_determinant = k11 * k22 - k12 * k12
     contact_determinant = spring_determinant + k3 * (k11 - mu * k12)
     with np.errstate(divide="ignore", invalid="ignore"):
-        scale = k3 * preload / contact_determinant
+        scale = actuation / contact_determinant
         return (
             scale * (mu * k22 - k12),
             scale * (k11 - mu * k12),
             scale * spring_determinant,
         )
+
+
+class BoundaryCircle(NamedTuple):
+    """A stability boundary in the plane of Z."""
+
+    centre: complex
+    radius: float
+
+
+def boundary_circles(p: Any, k3: float) -> dict[LinearRegime, BoundaryCircle]:
+    """Boundaries of flutter and divergence in the plane of Z, N/m (module docstring)."""
+    centre = k3 * (1.0 - 1j * p.mu)
+    outer = np.hypot(p.k1 + p.k2 + k3, p.mu * k3)
+    return {
+        LinearRegime.flutter: BoundaryCircle(centre, p.mu * k3),
+        LinearRegime.divergence: BoundaryCircle(centre, float(outer)),
+    }
+
+
+def angles_from_plane(z: Any, p: Any) -> tuple[np.ndarray, np.ndarray]:
+    """Both pairs (α1, α2) in [0, π) with k1 exp(2iα1) + k2 exp(−2iα2) = z, rad.
+
+    Args:
+        z: complex array, N/m.
+        p: parameters.
+
+    Returns:
+        Two arrays of shape (2, *z.shape); NaN where |z| is out of the springs' reach
+        |k1 − k2| … k1 + k2.
+    """
+    z = np.asarray(z, dtype=complex)
+    length = np.abs(z)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        cosine = (length * length + p.k1 * p.k1 - p.k2 * p.k2) / (2.0 * p.k1 * length)
+        spread = np.arccos(cosine)
+    doubled = np.angle(z) + np.stack([spread, -spread])
+    rest = z - p.k1 * np.exp(1j * doubled)
+    return np.mod(0.5 * doubled, np.pi), np.mod(-0.5 * np.angle(rest), np.pi)

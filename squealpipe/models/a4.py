@@ -29,6 +29,48 @@ def contact_matrix(stiffness: Stiffness, k3: Any, mu: Any) -> tuple[Any, Any, An
     return stiffness.k11, stiffness.k12 + mu * k3, stiffness.k12, stiffness.k22 + k3
 
 
+class Spectrum(NamedTuple):
+    """Trace/2, determinant and discriminant (trace/2)² − determinant of stiffness/mass."""
+
+    half_trace: Any
+    determinant: Any
+    discriminant: Any
+
+
+def spectrum(
+    stiffness: Stiffness, spring_determinant: Any, *, k3: Any, mu: Any, mass: Any
+) -> Spectrum:
+    """Invariants of the matrix whose eigenvalues are ω²: in contact, or separated with k3 = 0.
+
+    Both are formed without avoidable cancellation: the determinant as
+    det K + k3 (K11 − μK12), the discriminant as ¼(K11 − K22 − k3)² + K12 (K12 + μk3), so that
+    neither goes through the difference of the two eigenvalues. Numbers of any precision will do.
+
+    Args:
+        stiffness: K11, K12, K22, N/m.
+        spring_determinant: det K, from :func:`squealpipe.laws.springs.stiffness_determinant`.
+        k3, mu, mass: contact stiffness (0 when separated), friction coefficient, mass.
+    """
+    a11, a12, a21, a22 = contact_matrix(stiffness, k3, mu)
+    half_difference = 0.5 * (a11 - a22)
+    return Spectrum(
+        0.5 * (a11 + a22) / mass,
+        (spring_determinant + k3 * (stiffness.k11 - mu * stiffness.k12)) / (mass * mass),
+        (half_difference * half_difference + a12 * a21) / (mass * mass),
+    )
+
+
+def natural_frequencies_squared(invariants: Spectrum) -> tuple[Any, Any]:
+    """Eqs. (22a), (22b) in contact, (25a), (25b) separated: (ω1², ω2²), complex, (rad/s)².
+
+    ω2² is a sum of terms of one sign and ω1² follows from the product, so a small ω1 keeps its
+    digits. The pair is complex conjugate in flutter; ω1² is negative in divergence.
+    """
+    root = np.sqrt(np.asarray(invariants.discriminant, dtype=complex))
+    larger = invariants.half_trace + root
+    return invariants.determinant / larger, larger
+
+
 class FirstIntegral(NamedTuple):
     """H = ½ m v'S v + ½ u'S K u + ½ g N²/k3, conserved by A4 in both states."""
 

@@ -15,6 +15,9 @@ ANGLES = {
 MODES = {"mode": Variable(dims=("mode",), dtype="i4", long_name="mode, by ascending frequency")}
 
 
+YES_NO = {0: "no", 1: "yes"}
+
+
 class LinearRegimeFlag(IntEnum):
     """Meaning of regime_linear."""
 
@@ -40,5 +43,53 @@ STABILITY_MAP = DatasetSchema(
         ),
         "regime_linear": REGIME_LINEAR,
         "outcome": outcome(*MAP),
+    },
+)
+
+STATIC_LENGTH = {"dims": MAP, "units": "m", "nan_allowed": True}
+
+QUASI_STATIC_MAP = DatasetSchema(
+    name="quasi_static_map",
+    title="Quasi-static sliding (model A2) and the linear static state over both spring angles",
+    coordinates=ANGLES,
+    variables={
+        "possible_as_printed": Variable(
+            dims=MAP, dtype="i1", flags=YES_NO, long_name="Eq. (11) as printed holds"
+        ),
+        "possible": Variable(
+            dims=MAP, dtype="i1", flags=YES_NO, long_name="reaction force of model A2 is positive"
+        ),
+        "reaction_force": Variable(
+            dims=MAP, units="N", nan_allowed=True, long_name="reaction force of model A2, y = 0"
+        ),
+        "x_static": Variable(**STATIC_LENGTH, long_name="x of the static state of Eq. (15)"),
+        "y_static": Variable(**STATIC_LENGTH, long_name="y of the static state of Eq. (15)"),
+        "contact_force_static": Variable(
+            dims=MAP,
+            units="N",
+            nan_allowed=True,
+            long_name="contact force of the static state of Eq. (15), negative where k3 pulls",
+        ),
+        "outcome": outcome(*MAP),
+    },
+)
+
+NATURAL_FREQUENCIES = DatasetSchema(
+    name="natural_frequencies",
+    title="Natural frequencies of model A4, in contact and separated",
+    coordinates={
+        **ANGLES,
+        **MODES,
+        "contact_state": Variable(
+            dims=("contact_state",), dtype="U", long_name="state of the contact"
+        ),
+    },
+    variables={
+        "omega": Variable(
+            dims=(*MAP, "mode", "contact_state"),
+            units="rad s-1",
+            long_name="natural frequency",
+        ),
+        "outcome": outcome(*MAP, "mode", "contact_state"),
     },
 )

@@ -1,45 +1,201 @@
-"""Linear maps over both spring angles."""
+"""Linear maps over both spring angles: quasi-static sliding, stability, natural frequencies."""
 
 from __future__ import annotations
 
+from typing import Any
+
+import mpmath
 import numpy as np
 import xarray as xr
 
-from squealpipe.laws.springs import geometry, linear_stiffness
-from squealpipe.models import a3
+from squealpipe.laws.springs import (
+    Geometry,
+    geometry,
+    linear_stiffness,
+    sine_of_sum,
+    stiffness_determinant,
+)
+from squealpipe.models import a2, a3
+from squealpipe.models.a4 import Spectrum, natural_frequencies_squared, spectrum
 from squealpipe.parameters import Parameters
 from squealpipe.schema import Outcome, build
-from squealpipe.schema.linear import STABILITY_MAP
+from squealpipe.schema.linear import NATURAL_FREQUENCIES, QUASI_STATIC_MAP, STABILITY_MAP
+
+CANCELLATION = 1e-3
+"""A discriminant or determinant below this share of (trace/2)² is formed in more digits."""
+
+DIGITS = 40
 
 
-def stability_map(params: Parameters, alpha1: np.ndarray, alpha2: np.ndarray) -> xr.Dataset:
+def quasi_static_map(
+    params: Parameters, alpha1: np.ndarray, alpha2: np.ndarray, *, sigma: float | None = None
+) -> xr.Dataset:
+    """Where quasi-static sliding exists (A2), in both readings, and the state of Eq. (15).
+
+    Args:
+        params: physical parameters.
+        alpha1, alpha2: 1-D arrays of angles, rad.
+        sigma: regularizing factor of the contact law, 1/m; None means the sharp law.
+
+    Returns:
+        Dataset over (alpha1, alpha2): possible_as_printed (Eq. 11), possible (reaction_force
+        > 0), reaction_force (N, model A2: y = 0); x_static, y_static (m) and
+        contact_force_static (N) of the equilibrium of Eq. (15), which has y ≠ 0 (E11); outcome.
+        NaN with outcome singular_static_state where there is no such state.
+    """
+    alpha1, alpha2 = _angles(alpha1, alpha2)
+    g = geometry(alpha1[:, None], alpha2[None, :])
+    stiffness = linear_stiffness(params, g)
+    k3, load = a2.contact_stiffness(params, sigma), a2.actuation(params, sigma)
+    reaction = a2.reaction_force(stiffness, params.mu, load)
+    state = a3.static_state(
+        stiffness, _spring_determinant(params, alpha1, alpha2), k3=k3, mu=params.mu, actuation=load
+    )
+    # Farther out than this, the state is the quotient of two round-off errors.
+    farthest = load / (a2.ROUND_OFF * (params.k1 + params.k2))
+    singular = ~(np.hypot(state[0], state[1]) < farthest)
+    x, y, force = (np.where(singular, np.nan, value) for value in state)
+    return build(
+        QUASI_STATIC_MAP,
+        {
+            "possible_as_printed": a2.possible_as_printed(stiffness, params.mu),
+            "possible": reaction > 0,
+            "reaction_force": reaction,
+            "x_static": x,
+            "y_static": y,
+            "contact_force_static": force,
+            "outcome": np.where(
+                singular | np.isnan(reaction), Outcome.singular_static_state, Outcome.converged
+            ),
+        },
+        {"alpha1": alpha1, "alpha2": alpha2},
+    )
+
+
+def stability_map(
+    params: Parameters, alpha1: np.ndarray, alpha2: np.ndarray, *, sigma: float | None = None
+) -> xr.Dataset:
     """Growth rate and frequencies of model A3, from closed forms.
 
     Args:
-        params: physical parameters; the sharp contact stiffness k3 is used.
+        params: physical parameters.
         alpha1, alpha2: 1-D arrays of angles, rad.
+        sigma: regularizing factor in K3 of Eq. (8d), 1/m; None means the sharp law, K3 = k3.
 
     Returns:
-        Dataset over (alpha1, alpha2, mode): growth_rate (1/s), frequency (rad/s),
-        regime_linear, outcome.
+        Dataset over (alpha1, alpha2, mode): growth_rate (largest real part, 1/s), frequency
+        (rad/s; common to both modes in flutter, 0 for a divergent mode), regime_linear,
+        outcome. Relative error below 1e-13, also next to the boundaries, where the eigenvalues
+        of the rounded matrix are good to half of the digits only.
     """
-    alpha1, alpha2 = np.asarray(alpha1, float), np.asarray(alpha2, float)
-    stiffness = linear_stiffness(params, geometry(alpha1[:, None], alpha2[None, :]))
-    spectrum = a3.spectrum(stiffness, params.k3, params.mu, params.mass)
-    root = np.sqrt(spectrum.discriminant.astype(complex))
-    squared = np.stack([spectrum.half_trace - root, spectrum.half_trace + root], axis=-1)
-    s = np.sqrt(-squared)
-    flutter = spectrum.discriminant < 0
-    divergent = ~flutter & (spectrum.determinant < 0)
+    alpha1, alpha2 = _angles(alpha1, alpha2)
+    invariants = _spectrum(params, alpha1, alpha2, a2.contact_stiffness(params, sigma))
+    s = np.stack(a3.eigenvalues(invariants), axis=-1)
+    regime = a3.regime(invariants)
+    outcomes = np.array([Outcome.converged, Outcome.complex_pair, Outcome.divergence])
     return build(
         STABILITY_MAP,
         {
-            "growth_rate": np.abs(s.real).max(axis=-1),
-            "frequency": np.abs(s.imag),
-            "regime_linear": np.where(flutter, 1, np.where(divergent, 2, 0)),
-            "outcome": np.where(
-                flutter, Outcome.complex_pair, np.where(divergent, Outcome.divergence, 0)
-            ),
+            "growth_rate": s.real.max(axis=-1),
+            "frequency": s.imag,
+            "regime_linear": regime,
+            "outcome": outcomes[regime],
         },
         {"alpha1": alpha1, "alpha2": alpha2, "mode": [1, 2]},
     )
+
+
+def natural_frequencies(params: Parameters, alpha1: np.ndarray, alpha2: np.ndarray) -> xr.Dataset:
+    """Natural frequencies of model A4 in both of its states, Eqs. (22) and (25).
+
+    Args:
+        params: physical parameters.
+        alpha1, alpha2: 1-D arrays of angles, rad.
+
+    Returns:
+        Dataset over (alpha1, alpha2, mode, contact_state): omega (rad/s) and outcome.
+        Where a pair is complex (flutter), omega holds the common |Im s|; where ω² < 0
+        (divergence) and where the springs leave a direction free it is 0; the outcome says so.
+    """
+    alpha1, alpha2 = _angles(alpha1, alpha2)
+    omega, outcomes = [], []
+    for k3 in (params.k3, 0.0):
+        invariants = _spectrum(params, alpha1, alpha2, k3)
+        squared = np.stack(natural_frequencies_squared(invariants), axis=-1)
+        omega.append(np.stack([s.imag for s in a3.eigenvalues(invariants)], axis=-1))
+        outcomes.append(
+            np.select(
+                [squared.imag != 0, squared.real < 0, squared.real == 0],
+                [Outcome.complex_pair, Outcome.divergence, Outcome.rigid_mode],
+                Outcome.converged,
+            )
+        )
+    return build(
+        NATURAL_FREQUENCIES,
+        {"omega": np.stack(omega, axis=-1), "outcome": np.stack(outcomes, axis=-1)},
+        {
+            "alpha1": alpha1,
+            "alpha2": alpha2,
+            "mode": [1, 2],
+            "contact_state": ["contact", "separated"],
+        },
+    )
+
+
+def _angles(alpha1: Any, alpha2: Any) -> tuple[np.ndarray, np.ndarray]:
+    """Both angle arrays, 1-D and finite.
+
+    Raises:
+        ValueError: names the argument and what is allowed.
+    """
+    checked = []
+    for name, values in (("alpha1", alpha1), ("alpha2", alpha2)):
+        array = np.atleast_1d(np.asarray(values, dtype=float))
+        if array.ndim != 1 or not array.size or not np.isfinite(array).all():
+            raise ValueError(
+                f"{name} has shape {array.shape}: a 1-D array of finite angles in rad is needed"
+            )
+        checked.append(array)
+    return checked[0], checked[1]
+
+
+def _spring_determinant(params: Parameters, alpha1: np.ndarray, alpha2: np.ndarray) -> np.ndarray:
+    """det K over the map; 0 where α1 + α2 is a multiple of π but for the rounding of π."""
+    sine = sine_of_sum(alpha1[:, None], alpha2[None, :])
+    sine = np.where(np.abs(sine) <= a2.ROUND_OFF, 0.0, sine)
+    return np.asarray(stiffness_determinant(params, sine))
+
+
+def _spectrum(params: Parameters, alpha1: np.ndarray, alpha2: np.ndarray, k3: float) -> Spectrum:
+    """Invariants over the map, each to full relative precision for the angles as given.
+
+    Next to a boundary the discriminant or the determinant is a small difference of rounded
+    numbers. The few cells concerned go through the same formulas in more digits. Separated,
+    both are sums of squares and nothing is lost.
+    """
+    stiffness = linear_stiffness(params, geometry(alpha1[:, None], alpha2[None, :]))
+    spring_determinant = _spring_determinant(params, alpha1, alpha2)
+    physical = {"k3": k3, "mu": params.mu, "mass": params.mass}
+    invariants = spectrum(stiffness, spring_determinant, **physical)
+    small = CANCELLATION * invariants.half_trace**2
+    close = (np.abs(invariants.discriminant) < small) | (np.abs(invariants.determinant) < small)
+    if k3 == 0 or not close.any():
+        return invariants
+    rows, columns = np.nonzero(close)
+    with mpmath.workdps(DIGITS):
+        g = Geometry(*_precise_geometry(alpha1, rows), *_precise_geometry(alpha2, columns))
+        sine = np.where(spring_determinant[close] == 0, 0.0, g.s1 * g.c2 + g.c1 * g.s2)
+        precise = spectrum(
+            linear_stiffness(params, g), stiffness_determinant(params, sine), **physical
+        )
+    for values, exact in zip(invariants, precise, strict=True):
+        values[close] = exact.astype(float)
+    return invariants
+
+
+def _precise_geometry(angles: np.ndarray, index: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Cosines and sines of some of the angles as arrays of high-precision numbers."""
+    needed, inverse = np.unique(index, return_inverse=True)
+    pairs = [mpmath.cos_sin(mpmath.mpf(value)) for value in angles[needed].tolist()]
+    table = np.array(pairs, dtype=object).reshape(-1, 2)
+    return table[inverse, 0], table[inverse, 1]
