@@ -1,0 +1,157 @@
+"""A1 as a hybrid automaton: fields, guards and switching rules in plain floats.
+
+Written from the definition of A1 (see :mod:`squealpipe.models.a1`) and nothing else, so that
+public integrators can run it and our own engine has an independent counterpart.
+
+Regimes are those of :class:`squealpipe.models.a1.Regime`.
+"""
+
+from __future__ import annotations
+
+from enum import IntEnum
+from typing import Any
+
+import numpy as np
+
+from squealpipe.laws.contact import contact_force, regularized_force
+from squealpipe.laws.friction import regularized_slip_force, slip_force
+from squealpipe.laws.springs import Geometry, geometry
+from squealpipe.models.a1 import Regime, acceleration, spring_force
+from squealpipe.parameters import Parameters
+
+
+class EventKind(IntEnum):
+    """What ends a regime."""
+
+    separation = 0
+    contact = 1
+    belt_speed = 2
+    release = 3
+
+
+_DIRECTION = {Regime.slip_slower: 1.0, Regime.slip_faster: -1.0, Regime.stick: 0.0}
+
+
+class A1Automaton:
+    """A1 at given parameters and angles; states are (x, y, ẋ, ẏ)."""
+
+    def __init__(
+        self,
+        params: Parameters,
+        alpha1: float,
+        alpha2: float,
+        *,
+        linear_springs: bool = False,
+        stick: bool = True,
+    ) -> None:
+        self.params = params
+        self.geometry = Geometry(*map(float, geometry(alpha1, alpha2)))
+        self.linear_springs = linear_springs
+        self.stick = stick
+
+    def field(self, regime: int) -> Any:
+        """The field f(t, z) of a regime."""
+        p, g = self.params, self.geometry
+        contact = 0.0 if regime == Regime.separated else 1.0
+        stick = 1.0 if regime == Regime.stick else 0.0
+        direction = _DIRECTION.get(Regime(regime), 0.0)
+
+        def f(_: float, z: np.ndarray) -> tuple[float, float, float, float]:
+            x, y, vx, vy = z.tolist()
+            ax, ay = acceleration(
+                x, y, p, g, contact=contact, direction=direction, stick=stick,
+                linear_springs=self.linear_springs,
+            )  # fmt: skip
+            return vx, vy, ax, ay
+
+        return f
+
+    def guards(self, regime: int) -> list[tuple[EventKind, Any, int]]:
+        """(kind, function of the state, direction of the crossing) of a regime's guards."""
+        if regime == Regime.separated:
+            return [(EventKind.contact, self.gap, 1)]
+        leave = (EventKind.separation, self.gap, -1)
+        if regime == Regime.stick:
+            return [
+                leave,
+                (EventKind.release, lambda z: self.grip(z) - self.pull(z), -1),
+                (EventKind.release, lambda z: self.grip(z) + self.pull(z), -1),
+            ]
+        direction = -1 if regime == Regime.slip_slower else 1
+        return [leave, (EventKind.belt_speed, self.lag, direction)]
+
+    def gap(self, z: np.ndarray) -> float:
+        """l_pre − y, m: positive in contact."""
+        return float(self.params.preload - z[1])
+
+    def lag(self, z: np.ndarray) -> float:
+        """V − ẋ, m/s."""
+        return float(self.params.belt_speed - z[2])
+
+    def grip(self, z: np.ndarray) -> float:
+        """μN, N: what friction can hold."""
+        return float(slip_force(contact_force(float(z[1]), self.params), 1.0, self.params))
+
+    def pull(self, z: np.ndarray) -> float:
+        """Elastic x-force, N."""
+        return float(self._elastic(z)[0])
+
+    def start(self, z: np.ndarray) -> int:
+        """The regime of a state, also of one that lies on guards."""
+        if self._in_contact(z):
+            return self._sliding(z)
+        return Regime.separated
+
+    def switch(self, kind: int, regime: int, z: np.ndarray) -> tuple[int, np.ndarray]:
+        """The next regime, and the state put exactly onto the guard that it met."""
+        z = z.copy()
+        if kind in (EventKind.separation, EventKind.contact):
+            z[1] = self.params.preload
+            if kind == EventKind.separation:
+                return Regime.separated, z
+            return self._sliding(z), z
+        z[2] = self.params.belt_speed
+        if kind == EventKind.release:
+            return (Regime.slip_faster if self.pull(z) > 0 else Regime.slip_slower), z
+        if not self.stick:
+            slower = regime == Regime.slip_slower
+            return (Regime.slip_faster if slower else Regime.slip_slower), z
+        return self._sliding(z), z
+
+    def _in_contact(self, z: np.ndarray) -> bool:
+        """On the threshold the velocity decides, then the elastic force."""
+        if self.gap(z) != 0.0:
+            return self.gap(z) > 0.0
+        if z[3] != 0.0:
+            return bool(z[3] < 0.0)
+        return bool(self._elastic(z)[1] <= 0.0)
+
+    def _sliding(self, z: np.ndarray) -> int:
+        """Slip or stick in contact; at belt speed the force decides."""
+        lag = self.lag(z)
+        if lag != 0.0:
+            return Regime.slip_slower if lag > 0.0 else Regime.slip_faster
+        if self.stick and abs(self.pull(z)) <= self.grip(z):
+            return Regime.stick
+        return Regime.slip_faster if self.pull(z) > 0.0 else Regime.slip_slower
+
+    def _elastic(self, z: np.ndarray) -> tuple[float, float]:
+        x, y = z[:2].tolist()
+        return spring_force(x, y, self.params, self.geometry, linear_springs=self.linear_springs)
+
+
+def regularized_field(
+    params: Parameters, alpha1: float, alpha2: float, sigma: float, sigma_v: float
+) -> Any:
+    """A1 without regimes: contact and friction as tanh of widths 1/σ (m) and 1/σ_v (m/s)."""
+    g = Geometry(*map(float, geometry(alpha1, alpha2)))
+    inverse_mass = 1.0 / params.mass
+
+    def f(_: float, z: np.ndarray) -> tuple[float, float, float, float]:
+        x, y, vx, vy = z.tolist()
+        fx, fy = spring_force(x, y, params, g, linear_springs=False)
+        normal = regularized_force(y, params, sigma)
+        friction = regularized_slip_force(normal, vx, params, sigma_v)
+        return vx, vy, inverse_mass * (fx + friction), inverse_mass * (fy + normal)
+
+    return f

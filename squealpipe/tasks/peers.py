@@ -1,0 +1,48 @@
+"""A1 by public methods: scipy with events, tanh-regularized, and Moreau–Jean time stepping."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from squealpipe.methods.hybrid import Guard, HybridRun, HybridSystem, integrate_hybrid
+from squealpipe.models.a1_automaton import A1Automaton
+from squealpipe.parameters import Parameters
+
+AT_REST = (0.0, 0.0, 0.0, 0.0)
+
+
+def simulate_scipy(
+    params: Parameters,
+    alpha1: float,
+    alpha2: float,
+    *,
+    t_end: float,
+    method: str = "DOP853",
+    tol: float = 1e-10,
+    times: Sequence[float] | np.ndarray = (),
+    initial_state: Sequence[float] = AT_REST,
+    stop_at: int | None = None,
+    stick: bool = True,
+    linear_springs: bool = False,
+) -> HybridRun:
+    """A1 by scipy's ``solve_ivp`` with terminal events, restarted at each.
+
+    Args:
+        params: physical parameters; alpha1, alpha2: angles, rad.
+        t_end: horizon, s.
+        method: RK45, DOP853, LSODA, Radau or BDF.
+        tol: relative and absolute tolerance.
+        times: instants at which the state is wanted (``samples`` of the result).
+        initial_state: (x, y, ẋ, ẏ) at t = 0.
+        stop_at: an :class:`squealpipe.models.a1_automaton.EventKind` to stop at.
+        stick, linear_springs: the variants of A1.
+    """
+    a1 = A1Automaton(params, alpha1, alpha2, stick=stick, linear_springs=linear_springs)
+    system = HybridSystem(
+        a1.field, lambda regime: [Guard(*guard) for guard in a1.guards(regime)], a1.start, a1.switch
+    )
+    return integrate_hybrid(
+        system, initial_state, t_end, method=method, tol=tol, times=times, stop_at=stop_at
+    )
