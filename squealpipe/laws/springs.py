@@ -88,12 +88,14 @@ def sine_of_sum(alpha1: Any, alpha2: Any) -> Any:
     return np.sin(total) + lost * np.cos(total)
 
 
-def stiffness_determinant(p: Any, sine: Scalar) -> Scalar:
-    """K11 K22 − K12² of Eqs. (8a)–(8c) as k1 k2 sin²(α1 + α2), which does not cancel, N²/m².
-
-    ``sine`` is sin(α1 + α2); see :func:`sine_of_sum`.
-    """
+def determinant_from_sine(p: Any, sine: Scalar) -> Scalar:
+    """K11 K22 − K12² of Eqs. (8a)–(8c) as k1 k2 sin²(α1 + α2), which does not cancel, N²/m²."""
     return p.k1 * p.k2 * sine * sine
+
+
+def stiffness_determinant(p: Any, g: Geometry) -> Scalar:
+    """:func:`determinant_from_sine` from direction cosines, N²/m²."""
+    return determinant_from_sine(p, g.s1 * g.c2 + g.c1 * g.s2)
 
 
 def linear_elastic_force(x: Scalar, y: Scalar, stiffness: Stiffness) -> tuple[Scalar, Scalar]:

@@ -46,8 +46,6 @@ STABILITY_MAP = DatasetSchema(
     },
 )
 
-STATIC_LENGTH = {"dims": MAP, "units": "m", "nan_allowed": True}
-
 QUASI_STATIC_MAP = DatasetSchema(
     name="quasi_static_map",
     title="Quasi-static sliding (model A2) and the linear static state over both spring angles",
@@ -62,8 +60,12 @@ QUASI_STATIC_MAP = DatasetSchema(
         "reaction_force": Variable(
             dims=MAP, units="N", nan_allowed=True, long_name="reaction force of model A2, y = 0"
         ),
-        "x_static": Variable(**STATIC_LENGTH, long_name="x of the static state of Eq. (15)"),
-        "y_static": Variable(**STATIC_LENGTH, long_name="y of the static state of Eq. (15)"),
+        "x_static": Variable(
+            dims=MAP, units="m", nan_allowed=True, long_name="x of the static state of Eq. (15)"
+        ),
+        "y_static": Variable(
+            dims=MAP, units="m", nan_allowed=True, long_name="y of the static state of Eq. (15)"
+        ),
         "contact_force_static": Variable(
             dims=MAP,
             units="N",

@@ -10,10 +10,10 @@ import xarray as xr
 
 from squealpipe.laws.springs import (
     Geometry,
+    determinant_from_sine,
     geometry,
     linear_stiffness,
     sine_of_sum,
-    stiffness_determinant,
 )
 from squealpipe.models import a2, a3
 from squealpipe.models.a4 import Spectrum, natural_frequencies_squared, spectrum
@@ -163,7 +163,7 @@ def _spring_determinant(params: Parameters, alpha1: np.ndarray, alpha2: np.ndarr
     """det K over the map; 0 where α1 + α2 is a multiple of π but for the rounding of π."""
     sine = sine_of_sum(alpha1[:, None], alpha2[None, :])
     sine = np.where(np.abs(sine) <= a2.ROUND_OFF, 0.0, sine)
-    return np.asarray(stiffness_determinant(params, sine))
+    return np.asarray(determinant_from_sine(params, sine))
 
 
 def _spectrum(params: Parameters, alpha1: np.ndarray, alpha2: np.ndarray, k3: float) -> Spectrum:
@@ -186,7 +186,7 @@ def _spectrum(params: Parameters, alpha1: np.ndarray, alpha2: np.ndarray, k3: fl
         g = Geometry(*_precise_geometry(alpha1, rows), *_precise_geometry(alpha2, columns))
         sine = np.where(spring_determinant[close] == 0, 0.0, g.s1 * g.c2 + g.c1 * g.s2)
         precise = spectrum(
-            linear_stiffness(params, g), stiffness_determinant(params, sine), **physical
+            linear_stiffness(params, g), determinant_from_sine(params, sine), **physical
         )
     for values, exact in zip(invariants, precise, strict=True):
         values[close] = exact.astype(float)
