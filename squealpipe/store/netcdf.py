@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import tempfile
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -25,7 +26,7 @@ def save(dataset: xr.Dataset, path: str | os.PathLike[str]) -> Path:
     """
     target = Path(path)
     validate(dataset, find(str(dataset.attrs.get("schema"))))
-    encoding = {
+    encoding: dict[str, dict[str, Any]] = {
         str(name): {"zlib": True, "complevel": 4, "shuffle": True}
         for name, variable in dataset.variables.items()
         if variable.ndim and variable.dtype.kind in "fiub"
@@ -48,9 +49,9 @@ def save(dataset: xr.Dataset, path: str | os.PathLike[str]) -> Path:
         umask = os.umask(0)
         os.umask(umask)
         temporary.chmod(0o666 & ~umask)
-        _sync(temporary)
+        sync(temporary)
         temporary.replace(target)
-        _sync(target.parent)
+        sync(target.parent)
     except OSError as error:
         raise StoreError(
             f"cannot write {target}: {error.strerror or error}; free space or mend permissions, "
@@ -101,7 +102,8 @@ def _read(source: Path) -> xr.Dataset:
     return dataset
 
 
-def _sync(path: Path) -> None:
+def sync(path: Path) -> None:
+    """Have a file or folder on disk before going on."""
     handle = os.open(path, os.O_RDONLY)
     try:
         os.fsync(handle)

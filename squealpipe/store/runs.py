@@ -1,0 +1,90 @@
+"""What a name on the command line stands for: an archive, a run, a folder or one file."""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+ARCHIVES = Path("results/archive")
+MANIFEST = "manifest.json"
+NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,79}")
+MOST_FILES = 100_000
+"""A folder with more files is not one of ours."""
+
+
+def archive_folder(name: str, root: str | os.PathLike[str] = ".") -> Path:
+    """Folder of an archive of that name.
+
+    Raises:
+        ValueError: the name could lead out of the folder of archives, or is no name.
+    """
+    if not NAME.fullmatch(name):
+        raise ValueError(
+            f"archive name {name!r}: use up to 80 letters, digits, '.', '_' and '-', "
+            "beginning with a letter or digit"
+        )
+    return Path(root) / ARCHIVES / name
+
+
+def locate(what: str | os.PathLike[str], root: str | os.PathLike[str] = ".") -> Path:
+    """The folder or file that is meant: a path that exists, or the name of an archive.
+
+    Raises:
+        FileNotFoundError: neither exists.
+    """
+    path = Path(what)
+    if path.exists():
+        return path
+    if NAME.fullmatch(str(what)):
+        archive = archive_folder(str(what), root)
+        if archive.is_dir():
+            return archive
+    folder = Path(root) / ARCHIVES
+    known = sorted(item.name for item in folder.iterdir()) if folder.is_dir() else []
+    raise FileNotFoundError(
+        f"no archive, folder or file {str(what)!r}; "
+        + (f"archives: {', '.join(known)}" if known else "there are no archives yet")
+    )
+
+
+def dataset_files(place: Path) -> dict[str, Path]:
+    """Dataset name (path below the data folder, without suffix) → file.
+
+    Args:
+        place: an archive or a run (both have ``data/``), a folder of datasets, or one file.
+
+    Raises:
+        ValueError: the place holds no dataset.
+    """
+    if place.is_file():
+        return {place.stem: place}
+    base = place / "data" if (place / "data").is_dir() else place
+    found = {
+        path.relative_to(base).with_suffix("").as_posix(): path
+        for path in regular_files(base)
+        if path.suffix == ".nc"
+    }
+    if not found:
+        raise ValueError(f"{place} holds no dataset (*.nc); run snakemake first, or check the path")
+    return found
+
+
+def regular_files(base: Path) -> Iterator[Path]:
+    """Files below a folder, sorted, without hidden ones; links are not followed.
+
+    Raises:
+        ValueError: there are too many files.
+    """
+    count = 0
+    for folder, subfolders, names in os.walk(base, followlinks=False):
+        subfolders[:] = sorted(name for name in subfolders if not name.startswith("."))
+        for name in sorted(names):
+            path = Path(folder, name)
+            if name.startswith(".") or path.is_symlink():
+                continue
+            count += 1
+            if count > MOST_FILES:
+                raise ValueError(f"{base} holds more than {MOST_FILES} files; is it a run?")
+            yield path

@@ -1,0 +1,36 @@
+"""A small run to freeze, verify and compare."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+import yaml
+
+from squealpipe.config import Study
+from squealpipe.parameters import Parameters
+from squealpipe.store import produce
+from squealpipe.tasks.linear import stability_map
+
+
+def write_run(root: Path, *, points: int = 13, mu: float = 0.3, results: str = "results") -> Path:
+    """A checkout with a configuration and one dataset and figure made with it."""
+    config = root / "workflow/config/paper.yaml"
+    config.parent.mkdir(parents=True, exist_ok=True)
+    given = {"results": results, "parameters": {"mu": mu}, "linear": {"points": points}}
+    config.write_text(yaml.safe_dump(given))
+    part = Study.model_validate(given).slice("parameters", "linear.points")
+    angles = np.linspace(0, np.pi, points)
+    produce(
+        lambda: stability_map(Parameters(mu=mu), angles, angles),
+        config=part,
+        output=root / results / "data/stability_map.nc",
+    )
+    figure = root / results / "figures/fig06.png"
+    figure.parent.mkdir(parents=True, exist_ok=True)
+    figure.write_bytes(b"a picture")
+    return root
+
+
+@pytest.fixture
+def run(tmp_path):
+    return write_run(tmp_path / "checkout")
