@@ -36,7 +36,7 @@ class Guard(NamedTuple):
 
 
 @dataclass(frozen=True)
-class HybridSystem:
+class HybridAutomaton:
     """A system of several regimes.
 
     Attributes:
@@ -77,7 +77,7 @@ class HybridRun:
 
 
 def integrate_hybrid(
-    system: HybridSystem,
+    system: HybridAutomaton,
     initial_state: Sequence[float],
     t_end: float,
     *,

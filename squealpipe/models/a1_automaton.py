@@ -9,13 +9,13 @@ Regimes are those of :class:`squealpipe.models.a1.Regime`.
 from __future__ import annotations
 
 from enum import IntEnum
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from squealpipe.laws.contact import contact_force, regularized_force
+from squealpipe.laws.contact import contact_force, regularized_force, unilateral_force
 from squealpipe.laws.friction import regularized_slip_force, slip_force
-from squealpipe.laws.springs import Geometry, geometry
+from squealpipe.laws.springs import Geometry, elastic_force, geometry
 from squealpipe.models.a1 import Regime, acceleration, spring_force
 from squealpipe.parameters import Parameters
 
@@ -155,3 +155,26 @@ def regularized_field(
         return vx, vy, inverse_mass * (fx + friction), inverse_mass * (fy + normal)
 
     return f
+
+
+class PlainParameters(NamedTuple):
+    """The parameters of :class:`squealpipe.parameters.Parameters` as compiled code takes them."""
+
+    mass: float
+    k1: float
+    k2: float
+    k3: float
+    mu: float
+    belt_speed: float
+    preload: float
+    length1: float
+    length2: float
+    sigma: float
+
+
+def smooth_forces(x: Any, y: Any, data: tuple[PlainParameters, Geometry]) -> tuple[Any, Any, Any]:
+    """(x-force of the springs, y-force of springs and contact, friction bound μN), N."""
+    p, g = data
+    fx, fy = elastic_force(x, y, p, g)
+    normal = unilateral_force(y, p)
+    return fx, fy + normal, slip_force(normal, 1.0, p)

@@ -2,12 +2,21 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
 
-from squealpipe.methods.hybrid import Guard, HybridRun, HybridSystem, integrate_hybrid
-from squealpipe.models.a1_automaton import A1Automaton
+from squealpipe.laws.springs import Geometry, geometry
+from squealpipe.methods.hybrid import Guard, HybridAutomaton, HybridRun, integrate_hybrid
+from squealpipe.methods.time_stepping import jitted, step_through
+from squealpipe.models.a1_automaton import (
+    A1Automaton,
+    EventKind,
+    PlainParameters,
+    regularized_field,
+    smooth_forces,
+)
 from squealpipe.parameters import Parameters
 
 AT_REST = (0.0, 0.0, 0.0, 0.0)
@@ -40,9 +49,67 @@ def simulate_scipy(
         stick, linear_springs: the variants of A1.
     """
     a1 = A1Automaton(params, alpha1, alpha2, stick=stick, linear_springs=linear_springs)
-    system = HybridSystem(
+    system = HybridAutomaton(
         a1.field, lambda regime: [Guard(*guard) for guard in a1.guards(regime)], a1.start, a1.switch
     )
     return integrate_hybrid(
         system, initial_state, t_end, method=method, tol=tol, times=times, stop_at=stop_at
+    )
+
+
+def simulate_regularized(
+    params: Parameters,
+    alpha1: float,
+    alpha2: float,
+    *,
+    t_end: float,
+    sigma: float,
+    method: str = "LSODA",
+    tol: float = 1e-8,
+    initial_state: Sequence[float] = AT_REST,
+) -> HybridRun:
+    """A1 without events: contact tanh σ(l_pre − y), friction tanh σ(V − ẋ)/ω0, ω0 = √(k1/m).
+
+    Args:
+        sigma: 1/m; the friction's width in velocity is ω0/σ.
+        method, tol: of ``solve_ivp``.
+    """
+    field = regularized_field(params, alpha1, alpha2, sigma, sigma * params.time_unit)
+    system = HybridAutomaton(
+        lambda _: field, lambda _: [], lambda _: 0, lambda _, regime, z: (regime, z)
+    )
+    return integrate_hybrid(system, initial_state, t_end, method=method, tol=tol)
+
+
+def simulate_moreau_jean(
+    params: Parameters,
+    alpha1: float,
+    alpha2: float,
+    *,
+    t_end: float,
+    step: float,
+    initial_state: Sequence[float] = AT_REST,
+) -> HybridRun:
+    """A1 by Moreau–Jean time stepping; ``event_kinds`` only counts contact changes.
+
+    Args:
+        step: s; shortened so that a whole number of steps ends at ``t_end``.
+    """
+    n_steps = max(1, math.ceil(t_end / step - 1e-9))
+    state = np.array(initial_state, dtype=float)
+    data = (
+        PlainParameters(**params.as_dict()),
+        Geometry(*map(float, geometry(alpha1, alpha2))),
+    )
+    switches = step_through(
+        jitted(smooth_forces), data, params.mass, params.belt_speed, state, t_end / n_steps,
+        n_steps,
+    )  # fmt: skip
+    message = "" if np.isfinite(state).all() else "the state overflowed"
+    return HybridRun(
+        state,
+        time=t_end,
+        event_kinds=[int(EventKind.separation)] * switches,
+        evaluations=n_steps,
+        message=message,
     )
