@@ -12,13 +12,17 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from squealpipe.parameters import SCENES, Parameters, Scene
     from squealpipe.store.netcdf import load, save
+    from squealpipe.tasks.backbones import backbone
     from squealpipe.tasks.linear import natural_frequencies, quasi_static_map, stability_map
+    from squealpipe.tasks.orbits import periodic_orbit
 
 _HOME = {
     "SCENES": "squealpipe.parameters",
     "Parameters": "squealpipe.parameters",
     "Scene": "squealpipe.parameters",
+    "backbone": "squealpipe.tasks.backbones",
     "load": "squealpipe.store.netcdf",
+    "periodic_orbit": "squealpipe.tasks.orbits",
     "save": "squealpipe.store.netcdf",
     "natural_frequencies": "squealpipe.tasks.linear",
     "quasi_static_map": "squealpipe.tasks.linear",
@@ -29,8 +33,10 @@ __all__ = [
     "SCENES",
     "Parameters",
     "Scene",
+    "backbone",
     "load",
     "natural_frequencies",
+    "periodic_orbit",
     "quasi_static_map",
     "save",
     "stability_map",

@@ -42,7 +42,8 @@ def orbit_at(rows: Any, start: Any, out: Any, switches: Any) -> bool:
     """The orbit at the y0 of ``start``, by Newton from its x0 and T/2; False if not found."""
     point = start.copy()
     segments, final, tangent = np.empty((MAX_SEGMENTS, 9)), np.empty(4), np.empty(3)
-    keep_peak = np.array([0.0, 1.0, 0.0])
+    keep_peak = np.zeros(3)
+    keep_peak[1] = 1.0
     count, _, residual = solve_constrained(
         rows, point, keep_peak, segments, switches, final, tangent
     )

@@ -17,7 +17,13 @@ import numba
 from numba.core import config as numba_config
 
 _Kernel = TypeVar("_Kernel", bound=Callable[..., Any])
-_KERNEL_SOURCES = ("compiled.py", "modal_flow.py", "shooting.py", "branch_tracing.py")
+_KERNEL_SOURCES = (
+    "compiled.py",
+    "modal_flow.py",
+    "shooting.py",
+    "branch_tracing.py",
+    "orbit_shape.py",
+)
 
 
 @cache

@@ -1,0 +1,125 @@
+"""Exact symmetric periodic orbits and their branches, from compiled kernels."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from enum import IntEnum
+
+import numpy as np
+from numpy.typing import NDArray
+
+from squealpipe.methods import branch_tracing
+from squealpipe.methods.orbit_shape import extremes
+from squealpipe.methods.piecewise_linear import PiecewiseLinearSystem
+from squealpipe.methods.shooting import MAX_SEGMENTS
+
+
+class TraceEnd(IntEnum):
+    """Why a trace ended (:mod:`squealpipe.methods.branch_tracing`)."""
+
+    reached = branch_tracing.REACHED
+    returned = branch_tracing.RETURNED
+    tongue_end = branch_tracing.TONGUE_END
+    lost = branch_tracing.BRANCH_LOST
+    step_limit = branch_tracing.STEP_LIMIT
+
+
+@dataclass(frozen=True)
+class TraceSettings:
+    """Step control of a trace, in arclength over 1 + |z| of z = (x0, y0, T/2).
+
+    Attributes:
+        first_step, longest_step: steps.
+        least_cosine: of the angle between branch directions before and after a step.
+        max_points: points after which the trace gives up.
+    """
+
+    first_step: float = 0.01
+    longest_step: float = 0.1
+    least_cosine: float = 0.98
+    max_points: int = 4000
+
+    def __post_init__(self) -> None:
+        if not (0.0 < self.first_step <= self.longest_step < 1.0):
+            raise ValueError(
+                f"first_step = {self.first_step!r}, longest_step = {self.longest_step!r}: "
+                "0 < first_step <= longest_step < 1 is needed"
+            )
+        if not (0.0 < self.least_cosine < 1.0 and self.max_points > 0):
+            raise ValueError(
+                f"least_cosine = {self.least_cosine!r}, max_points = {self.max_points!r}: "
+                "a cosine between 0 and 1 and at least one point are needed"
+            )
+
+
+@dataclass(frozen=True)
+class Orbit:
+    """A symmetric periodic orbit in the units of its system.
+
+    Attributes:
+        point: (3,) x0, y0, T/2, the orbit's state at rest with the larger y.
+        switches: times of the switches within the half period.
+        stability_index: trace of the monodromy matrix − 2.
+        residual: largest velocity after the half period.
+    """
+
+    point: NDArray[np.float64]
+    switches: NDArray[np.float64]
+    stability_index: float
+    residual: float
+
+    @property
+    def omega(self) -> float:
+        """Angular frequency 2π/T."""
+        return float(math.pi / self.point[2])
+
+
+def solve_orbit(system: PiecewiseLinearSystem, guess: NDArray[np.float64]) -> Orbit | None:
+    """The orbit with the y0 of a guess (x0, y0, T/2), or None where Newton's method fails."""
+    row, switches = np.empty(len(branch_tracing.COLUMNS)), np.empty(MAX_SEGMENTS)
+    start = np.ascontiguousarray(guess[:3], dtype=float)
+    if not branch_tracing.orbit_at(system.rows, start, row, switches):
+        return None
+    return Orbit(row[:3].copy(), switches[: int(row[7])].copy(), float(row[5]), float(row[6]))
+
+
+def trace_branch(
+    system: PiecewiseLinearSystem,
+    start: NDArray[np.float64],
+    direction: NDArray[np.float64],
+    y_stop: float,
+    settings: TraceSettings,
+) -> tuple[NDArray[np.float64], TraceEnd]:
+    """Points (n, 8) of a branch (columns: ``branch_tracing.COLUMNS``) and why it ended."""
+    table = np.empty((settings.max_points, len(branch_tracing.COLUMNS)))
+    count, end = branch_tracing.trace(
+        system.rows,
+        np.asarray(start, dtype=float),
+        np.asarray(direction / np.linalg.norm(direction), dtype=float),
+        y_stop,
+        settings.first_step,
+        settings.longest_step,
+        settings.least_cosine,
+        table,
+    )
+    return table[:count], TraceEnd(end)
+
+
+def decoupled_half_period(system: PiecewiseLinearSystem, y_peak: float) -> float:
+    """T/2 of a y motion that does not feel x: one spring above the threshold, another below."""
+    above, below = system.above, system.below
+    frequency = math.sqrt(above.matrix[1][1])
+    centre = above.load[1] / above.matrix[1][1]
+    fall = math.acos((system.threshold - centre) / (y_peak - centre))
+    speed = (y_peak - centre) * frequency * math.sin(fall)
+    stiff = math.sqrt(below.matrix[1][1])
+    offset = system.threshold - below.load[1] / below.matrix[1][1]
+    return fall / frequency + (math.pi - math.atan2(speed / stiff, offset)) / stiff
+
+
+def shape(system: PiecewiseLinearSystem, point: NDArray[np.float64]) -> tuple[float, float, float]:
+    """(x amplitude, y amplitude, largest |vx|) over a period; amplitudes are half peak-to-peak."""
+    out = np.empty(6)
+    extremes(system.rows, np.ascontiguousarray(point[:3], dtype=float), out)
+    return 0.5 * (out[1] - out[0]), 0.5 * (out[3] - out[2]), float(np.abs(out[4:]).max())
