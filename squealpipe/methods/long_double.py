@@ -8,7 +8,6 @@ the others by: its error is thousands of times below that of any double-precisio
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import heyoka
@@ -17,66 +16,66 @@ import numpy as np
 from squealpipe.methods.hybrid import HybridRun
 
 TOLERANCE = 1e-19
+ROUND_OFF = 2.0**-62
+"""A state on a surface is moved by this (times its scale), so that its root is not found again."""
 
 
-@dataclass(frozen=True, eq=False)
-class SymbolicAutomaton:
-    """A hybrid automaton whose regimes are parameter values of one symbolic field.
-
-    Attributes:
-        equations: (variable, right-hand side) pairs of heyoka expressions.
-        surfaces: event functions; each is a constant in regimes that do not watch it.
-    """
-
-    equations: Sequence[tuple[Any, Any]]
-    surfaces: Sequence[Any]
-
-    def compile(self) -> Any:
-        """The integrator in long double."""
-        heyoka.set_logger_level_error()
-        return heyoka.taylor_adaptive(
-            list(self.equations),
-            np.zeros(len(self.equations), dtype=np.longdouble),
-            fp_type=np.longdouble,
-            tol=np.longdouble(TOLERANCE),
-            t_events=[
-                heyoka.t_event(surface, fp_type=np.longdouble, cooldown=np.longdouble(0))
-                for surface in self.surfaces
-            ],
-        )
+def compile_long_double(equations: Sequence[tuple[Any, Any]], surfaces: Sequence[Any]) -> Any:
+    """heyoka's integrator in long double, stopping at the roots of the surfaces."""
+    heyoka.set_logger_level_error()
+    return heyoka.taylor_adaptive(
+        list(equations),
+        np.zeros(len(equations), dtype=np.longdouble),
+        fp_type=np.longdouble,
+        tol=np.longdouble(TOLERANCE),
+        t_events=[
+            heyoka.t_event(surface, fp_type=np.longdouble, cooldown=np.longdouble(0))
+            for surface in surfaces
+        ],
+    )
 
 
 def integrate_long_double(
     integrator: Any,
     parameters: Callable[[int], Sequence[float]],
-    start: int,
-    switch: Callable[[int, int, np.ndarray], tuple[int, int, np.ndarray] | None],
-    initial_state: Sequence[float],
+    start: tuple[int, np.ndarray],
+    switch: Callable[[int, int, np.ndarray], tuple[int, int, np.ndarray]],
     t_end: float,
     *,
+    stop_at: int | None = None,
     max_events: int = 100_000,
 ) -> HybridRun:
     """Integrate from 0 to ``t_end`` through all events.
 
     Args:
-        integrator: of :meth:`SymbolicAutomaton.compile`.
+        integrator: of :func:`compile_long_double`.
         parameters: regime → values of the symbolic parameters.
-        start: the regime at the start.
-        switch: (surface, regime, state) → (kind, next regime, state), or None where the root
-            does not end the regime.
-        initial_state: at t = 0.
+        start: the regime and the state at the start.
+        switch: (surface, regime, state) → (kind, next regime, state off the surface).
         t_end: end of the run.
+        stop_at: kind of event at which to stop.
         max_events: events after which the run is given up, with a message.
     """
-    regime = start
+    regime, state = start
     integrator.time = np.longdouble(0)
-    integrator.state[:] = np.asarray(initial_state, dtype=np.longdouble)
-    integrator.pars[:] = np.asarray(parameters(regime), dtype=np.longdouble)
-    integrator.reset_cooldowns()
-    run = HybridRun(integrator.state.copy(), regimes=[regime])
-    while True:
-        outcome = integrator.propagate_until(np.longdouble(t_end))[0]
-        if int(outcome.value if hasattr(outcome, "value") else outcome) >= 0:
-            raise RuntimeError(outcome)
+    run = HybridRun(state, regimes=[regime])
+    last = np.longdouble(t_end)
+    while run.time < last:
+        integrator.pars[:] = np.asarray(parameters(regime), dtype=np.longdouble)
+        integrator.state[:] = run.state
+        integrator.reset_cooldowns()
+        outcome = integrator.propagate_until(last)[0]
         run.time, run.state = integrator.time, integrator.state.copy()
-        return run
+        if outcome == heyoka.taylor_outcome.time_limit:
+            break
+        surface = -outcome.value - 1
+        if surface < 0 or len(run.event_times) >= max_events:
+            run.message = f"{outcome} after {len(run.event_times)} events at t = {run.time}"
+            break
+        kind, regime, run.state = switch(surface, regime, run.state)
+        run.event_times.append(run.time)
+        run.event_kinds.append(kind)
+        run.regimes.append(regime)
+        if kind == stop_at:
+            break
+    return run
