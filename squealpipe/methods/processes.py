@@ -1,0 +1,95 @@
+"""Work spread over processes that write into shared arrays.
+
+Processes are forked, so nothing is pickled, compiled code is shared and a script needs no main
+guard. Where forking is not possible (other systems, or inside a daemonic worker) the work runs in
+this process.
+"""
+
+from __future__ import annotations
+
+import mmap
+import multiprocessing
+import os
+from collections.abc import Callable, Mapping
+from math import prod
+from typing import Any
+
+import numpy as np
+
+Work = Callable[[dict[str, np.ndarray], int, int], None]
+MINIMUM_JOBS = 64
+"""Below this many jobs a process a fork costs more than it saves."""
+
+
+def available_cores() -> int:
+    """Cores that this process may use."""
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
+
+
+def run_shared(
+    work: Work,
+    shapes: Mapping[str, tuple[tuple[int, ...], Any]],
+    *,
+    jobs: int,
+    workers: int | None = None,
+) -> dict[str, np.ndarray]:
+    """Call ``work(arrays, first, stride)`` in several processes for interleaved jobs.
+
+    Args:
+        work: handles the jobs first, first + stride, … and writes their rows of the arrays.
+        shapes: name → (shape, dtype) of the arrays, zero at the start.
+        jobs: number of jobs.
+        workers: processes; None takes all cores, at most one a ``MINIMUM_JOBS`` jobs.
+
+    Returns:
+        The arrays.
+
+    Raises:
+        ValueError: ``workers`` is not a positive integer.
+        RuntimeError: a worker process died.
+    """
+    if workers is None:
+        workers = max(1, min(available_cores(), jobs // MINIMUM_JOBS))
+    elif isinstance(workers, bool) or not isinstance(workers, int) or workers < 1:
+        raise ValueError(f"workers = {workers!r}: a positive integer or None is needed")
+    workers = min(workers, max(1, jobs))
+    if workers == 1 or not _can_fork():
+        arrays = {name: np.zeros(shape, dtype) for name, (shape, dtype) in shapes.items()}
+        work(arrays, 0, 1)
+        return arrays
+    arrays = {name: _shared_array(shape, dtype) for name, (shape, dtype) in shapes.items()}
+    context = multiprocessing.get_context("fork")
+    processes = [
+        context.Process(target=work, args=(arrays, first, workers), daemon=True)
+        for first in range(1, workers)
+    ]
+    for process in processes:
+        process.start()
+    try:
+        work(arrays, 0, workers)
+    except BaseException:
+        for process in processes:
+            process.terminate()
+        raise
+    for process in processes:
+        process.join()
+        if process.exitcode != 0:
+            raise RuntimeError(
+                f"a worker process ended with exit code {process.exitcode}; "
+                "run again with workers=1 to see why"
+            )
+    return arrays
+
+
+def _can_fork() -> bool:
+    return (
+        "fork" in multiprocessing.get_all_start_methods()
+        and not multiprocessing.current_process().daemon
+    )
+
+
+def _shared_array(shape: tuple[int, ...], dtype: Any) -> np.ndarray:
+    size = prod(shape) * np.dtype(dtype).itemsize
+    return np.frombuffer(mmap.mmap(-1, max(1, size)), dtype, count=prod(shape)).reshape(shape)
