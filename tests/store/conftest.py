@@ -31,6 +31,11 @@ def write_run(root: Path, *, points: int = 13, mu: float = 0.3, results: str = "
     return root
 
 
+@pytest.fixture(name="write_run")
+def _write_run():
+    return write_run
+
+
 @pytest.fixture
 def run(tmp_path):
     return write_run(tmp_path / "checkout")

@@ -1,0 +1,231 @@
+"""Two archives, runs, folders or files: what is equal, within tolerance or different; where."""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import xarray as xr
+
+from squealpipe.schema import DatasetSchema, find
+from squealpipe.store.differences import VariableDifference, Verdict, align, difference
+from squealpipe.store.netcdf import load
+from squealpipe.store.provenance import VOLATILE_ATTRIBUTES
+from squealpipe.store.runs import dataset_files, locate
+
+
+@dataclass(frozen=True, kw_only=True)
+class DatasetDifference:
+    """Comparison of one dataset; ``reason`` says why where it could not be compared."""
+
+    name: str
+    verdict: Verdict
+    variables: list[VariableDifference] = field(default_factory=list)
+    notes: list[str] = field(default_factory=list)
+    reason: str = ""
+    files: tuple[Path | None, Path | None] = (None, None)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Comparison:
+    """Comparison of two places.
+
+    Attributes:
+        a, b: what was compared, as named.
+        parameters: changed configuration key → values in a and b (None: the key is absent).
+        environment: what else differs in how they were made: commit, versions, platform.
+        datasets: one entry for each name found on either side.
+        reason: why nothing could be compared, if so.
+    """
+
+    a: str
+    b: str
+    parameters: dict[str, tuple[Any, Any]] = field(default_factory=dict)
+    environment: dict[str, tuple[Any, Any]] = field(default_factory=dict)
+    datasets: list[DatasetDifference] = field(default_factory=list)
+    reason: str = ""
+
+    @property
+    def verdict(self) -> Verdict:
+        """The worst of the datasets' verdicts."""
+        if self.reason or not self.datasets:
+            return Verdict.not_comparable
+        return max(item.verdict for item in self.datasets)
+
+    @property
+    def exit_code(self) -> int:
+        """0 equal or within tolerance, 1 different, 2 not comparable."""
+        return {Verdict.different: 1, Verdict.not_comparable: 2}.get(self.verdict, 0)
+
+    def as_dict(self) -> dict[str, Any]:
+        """Plain values for JSON: no NaN, no infinity."""
+        return {
+            "a": self.a,
+            "b": self.b,
+            "verdict": self.verdict.name,
+            "exit_code": self.exit_code,
+            "reason": self.reason,
+            "parameters": {key: list(pair) for key, pair in self.parameters.items()},
+            "environment": {key: list(pair) for key, pair in self.environment.items()},
+            "datasets": [
+                {
+                    "name": item.name,
+                    "verdict": item.verdict.name,
+                    "reason": item.reason,
+                    "notes": item.notes,
+                    "variables": [_plain(vars(entry)) for entry in item.variables],
+                }
+                for item in self.datasets
+            ],
+        }
+
+
+def compare(
+    a: str | os.PathLike[str], b: str | os.PathLike[str], *, root: str | os.PathLike[str] = "."
+) -> Comparison:
+    """Compare two archives, runs, folders or files, dataset by dataset.
+
+    Bad input is no exception here but a verdict, ``not_comparable``, with its reason.
+
+    Args:
+        a, b: a path, or the name of an archive.
+        root: the checkout, where archives are looked up by name.
+    """
+    try:
+        left, right = dataset_files(locate(a, root)), dataset_files(locate(b, root))
+    except (FileNotFoundError, ValueError) as error:
+        return Comparison(a=str(a), b=str(b), reason=str(error))
+    if len(left) == len(right) == 1 and (Path(a).is_file() or Path(b).is_file()):
+        right = {next(iter(left)): next(iter(right.values()))}
+    parameters: dict[str, tuple[Any, Any]] = {}
+    environment: dict[str, tuple[Any, Any]] = {}
+    datasets = []
+    for name in sorted(set(left) | set(right)):
+        if name not in left or name not in right:
+            side = a if name in left else b
+            reason = f"only in {side}"
+            datasets.append(DatasetDifference(name=name, verdict=Verdict.different, reason=reason))
+            continue
+        files = (left[name], right[name])
+        try:
+            pair = (load(files[0]), load(files[1]))
+        except ValueError as error:
+            datasets.append(_refused(name, files, str(error)))
+            continue
+        parameters.update(changed_configuration(*pair))
+        environment.update(changed_environment(*pair))
+        datasets.append(compare_datasets(name, *pair, files=files))
+    return Comparison(
+        a=str(a),
+        b=str(b),
+        parameters=dict(sorted(parameters.items())),
+        environment=dict(sorted(environment.items())),
+        datasets=datasets,
+    )
+
+
+def compare_datasets(
+    name: str,
+    a: xr.Dataset,
+    b: xr.Dataset,
+    *,
+    files: tuple[Path | None, Path | None] = (None, None),
+) -> DatasetDifference:
+    """Compare two datasets of one schema, variable by variable, on the grid that they share."""
+    kinds = (a.attrs["schema"], b.attrs["schema"])
+    if kinds[0] != kinds[1]:
+        return _refused(name, files, f"the schemas are {kinds[0]!r} and {kinds[1]!r}")
+    schema = find(str(kinds[0]))
+    try:
+        a, b, notes = align(a, b)
+    except ValueError as error:
+        return _refused(name, files, str(error))
+    variables = [
+        _variable(variable, a, b, schema)
+        for variable in [*schema.coordinates, *schema.variables]
+        if variable in a.variables or variable in b.variables
+    ]
+    judged = [entry.verdict for entry in variables if not entry.volatile]
+    return DatasetDifference(
+        name=name,
+        verdict=max(judged, default=Verdict.equal),
+        variables=variables,
+        notes=notes,
+        files=files,
+    )
+
+
+def _variable(name: str, a: xr.Dataset, b: xr.Dataset, schema: DatasetSchema) -> VariableDifference:
+    entry = schema.lookup(name)
+    if entry is None or name not in a.variables or name not in b.variables:
+        side = "first" if name in a.variables else "second"
+        reason = f"only in the {side}"
+        return VariableDifference(name=name, verdict=Verdict.different, reason=reason)
+    return difference(name, a[name], b[name], entry)
+
+
+def _refused(name: str, files: tuple[Path | None, Path | None], reason: str) -> DatasetDifference:
+    return DatasetDifference(name=name, verdict=Verdict.not_comparable, reason=reason, files=files)
+
+
+def changed_configuration(a: xr.Dataset, b: xr.Dataset) -> dict[str, tuple[Any, Any]]:
+    """Configuration keys whose values differ between the makers of two datasets."""
+    return _changes(_configuration(a), _configuration(b))
+
+
+def changed_environment(a: xr.Dataset, b: xr.Dataset) -> dict[str, tuple[Any, Any]]:
+    """Commit, versions and platform where they differ."""
+    told = VOLATILE_ATTRIBUTES - {"history", "wall_time_s", "inputs"}
+    left = {key: a.attrs[key] for key in told if key in a.attrs}
+    right = {key: b.attrs[key] for key in told if key in b.attrs}
+    return _changes(_opened(left), _opened(right))
+
+
+def _configuration(dataset: xr.Dataset) -> dict[str, Any]:
+    try:
+        return _flat(json.loads(dataset.attrs.get("config", "{}")))
+    except ValueError:
+        return {"config": dataset.attrs["config"]}
+
+
+def _opened(attributes: dict[str, Any]) -> dict[str, Any]:
+    """Attributes with the versions of libraries one by one."""
+    text = attributes.pop("libraries", "{}")
+    try:
+        return {**attributes, **_flat({"libraries": json.loads(text)})}
+    except ValueError:
+        return {**attributes, "libraries": text}
+
+
+def _flat(tree: Mapping[str, Any], stem: str = "") -> dict[str, Any]:
+    flat: dict[str, Any] = {}
+    for key, value in tree.items():
+        path = f"{stem}.{key}" if stem else str(key)
+        if isinstance(value, Mapping):
+            flat.update(_flat(value, path))
+        else:
+            flat[path] = value
+    return flat
+
+
+def _changes(a: dict[str, Any], b: dict[str, Any]) -> dict[str, tuple[Any, Any]]:
+    return {
+        key: (a.get(key), b.get(key)) for key in sorted(set(a) | set(b)) if a.get(key) != b.get(key)
+    }
+
+
+def _plain(entry: Mapping[str, Any]) -> dict[str, Any]:
+    plain: dict[str, Any] = {}
+    for key, value in entry.items():
+        if isinstance(value, Verdict):
+            plain[key] = value.name
+        elif isinstance(value, dict):
+            plain[key] = _plain(value)
+        else:
+            plain[key] = None if isinstance(value, float) and not math.isfinite(value) else value
+    return plain
