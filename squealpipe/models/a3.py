@@ -119,39 +119,74 @@ def static_state(
         )
 
 
-class BoundaryCircle(NamedTuple):
-    """A stability boundary in the plane of Z."""
-
-    centre: complex
-    radius: float
-
-
-def boundary_circles(p: Any, k3: float) -> dict[LinearRegime, BoundaryCircle]:
-    """Boundaries of flutter and divergence in the plane of Z, N/m (module docstring)."""
-    centre = k3 * (1.0 - 1j * p.mu)
-    outer = np.hypot(p.k1 + p.k2 + k3, p.mu * k3)
-    return {
-        LinearRegime.flutter: BoundaryCircle(centre, p.mu * k3),
-        LinearRegime.divergence: BoundaryCircle(centre, float(outer)),
-    }
+def plane(p: Any, alpha1: Any, alpha2: Any) -> Any:
+    """Z = k1 exp(2iα1) + k2 exp(−2iα2), N/m (module docstring)."""
+    return p.k1 * np.exp(2j * alpha1) + p.k2 * np.exp(-2j * alpha2)
 
 
 def angles_from_plane(z: Any, p: Any) -> tuple[np.ndarray, np.ndarray]:
-    """Both pairs (α1, α2) in [0, π) with k1 exp(2iα1) + k2 exp(−2iα2) = z, rad.
+    """Both pairs (α1, α2) in [0, π) with :func:`plane` = z, rad.
 
     Args:
-        z: complex array, N/m.
+        z: complex array, N/m, within the reach |k1 − k2| ≤ |z| ≤ k1 + k2 and not 0.
         p: parameters.
 
     Returns:
-        Two arrays of shape (2, *z.shape); NaN where |z| is out of the springs' reach
-        |k1 − k2| … k1 + k2.
+        Two arrays of shape (2, *z.shape).
     """
-    z = np.asarray(z, dtype=complex)
     length = np.abs(z)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        cosine = (length * length + p.k1 * p.k1 - p.k2 * p.k2) / (2.0 * p.k1 * length)
-        spread = np.arccos(cosine)
+    cosine = (length * length + p.k1 * p.k1 - p.k2 * p.k2) / (2.0 * p.k1 * length)
+    spread = np.arccos(np.clip(cosine, -1.0, 1.0))
     doubled = np.angle(z) + np.stack([spread, -spread])
     rest = z - p.k1 * np.exp(1j * doubled)
     return np.mod(0.5 * doubled, np.pi), np.mod(-0.5 * np.angle(rest), np.pi)
+
+
+def circle_arcs(p: Any, centre: complex, radius: float, points: int) -> list[np.ndarray]:
+    """The parts of a circle in the plane of Z that the springs reach, each as points of Z.
+
+    Points crowd towards the ends, where the angles vary like a square root.
+    """
+    nearest, farthest = abs(p.k1 - p.k2), p.k1 + p.k2
+    offset = abs(centre)
+    if radius * offset == 0:
+        return []
+    low, high = (
+        np.clip((reach**2 - offset**2 - radius**2) / (2 * offset * radius), -1.0, 1.0)
+        for reach in (nearest, farthest)
+    )
+    if low == high:
+        return []
+    turn = _crowded(np.arccos(high), np.arccos(low), points)
+    direction = centre / offset
+    return [centre + radius * direction * np.exp(1j * sign * turn) for sign in (1, -1)]
+
+
+def line_parts(p: Any, normal: complex, level: float, points: int) -> list[np.ndarray]:
+    """The parts of the line Re(Z conj(normal)) = level that the springs reach, as points of Z."""
+    unit = normal / abs(normal)
+    distance = level / abs(normal)
+    nearest, farthest = abs(p.k1 - p.k2), p.k1 + p.k2
+    if abs(distance) >= farthest:
+        return []
+    # Z = 0, which equal springs reach, belongs to a whole line of angles: stay clear of it.
+    nearest = max(nearest, 1e-9 * farthest)
+    inner = np.sqrt(max(nearest**2 - distance**2, 0.0))
+    outer = np.sqrt(farthest**2 - distance**2)
+    along = _crowded(inner, outer, points)
+    return [unit * (distance + 1j * sign * along) for sign in (1, -1)]
+
+
+def _crowded(start: float, stop: float, points: int) -> np.ndarray:
+    share = 0.5 - 0.5 * np.cos(np.linspace(0.0, np.pi, points))
+    return np.asarray(start + (stop - start) * share)
+
+
+def flutter_circle(p: Any, k3: float) -> tuple[complex, float]:
+    """Centre and radius of the circle in the plane of Z inside which there is flutter, N/m."""
+    return k3 * (1.0 - 1j * p.mu), p.mu * k3
+
+
+def divergence_circle(p: Any, k3: float) -> tuple[complex, float]:
+    """Centre and radius of the circle in the plane of Z outside which there is divergence, N/m."""
+    return k3 * (1.0 - 1j * p.mu), float(np.hypot(p.k1 + p.k2 + k3, p.mu * k3))

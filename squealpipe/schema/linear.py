@@ -95,3 +95,66 @@ NATURAL_FREQUENCIES = DatasetSchema(
         "outcome": outcome(*MAP, "mode", "contact_state"),
     },
 )
+
+
+class Boundary(IntEnum):
+    """Which curve a boundary point belongs to."""
+
+    flutter = 0
+    divergence = 1
+    reaction_changes_sign = 2
+    no_coupling = 3
+
+
+STABILITY_BOUNDARIES = DatasetSchema(
+    name="stability_boundaries",
+    title="Exact boundaries of flutter, divergence and quasi-static sliding",
+    coordinates={
+        "point": Variable(dims=("point",), dtype="i4", long_name="number of the point"),
+    },
+    variables={
+        "alpha1": Variable(
+            dims=("point",), units="rad", long_name="angle of spring 1, continuous along a segment"
+        ),
+        "alpha2": Variable(
+            dims=("point",), units="rad", long_name="angle of spring 2, continuous along a segment"
+        ),
+        "boundary": Variable(
+            dims=("point",), dtype="i1", flags=Boundary, long_name="which boundary"
+        ),
+        "segment": Variable(
+            dims=("point",), dtype="i4", long_name="points of one number are joined by a line"
+        ),
+    },
+)
+
+PAIR = ("mu", "kappa")
+
+
+def _share(dims: tuple[str, ...], long_name: str) -> Variable:
+    return Variable(dims=dims, long_name=f"share of the angle map: {long_name}")
+
+
+LINEAR_SHARES = DatasetSchema(
+    name="linear_shares",
+    title="How much of the angle map the linear models forbid or find unstable",
+    coordinates={
+        "mu": Variable(dims=("mu",), long_name="friction coefficient"),
+        "kappa": Variable(dims=("kappa",), long_name="k3/k1"),
+        "sharpness": Variable(dims=("sharpness",), long_name="sigma times l_pre"),
+    },
+    variables={
+        "impossible_as_printed": _share(("mu",), "Eq. (11) as printed fails"),
+        "impossible": _share(("mu",), "reaction force of model A2 is not positive"),
+        "flutter": _share(PAIR, "flutter"),
+        "divergence": _share(PAIR, "divergence"),
+        "pulled": _share(PAIR, "k3 pulls in the static state of Eq. (15)"),
+        "impossible_but_pressed": _share(
+            PAIR, "not possible by model A2, contact force of Eq. (15) positive"
+        ),
+        "unstable_where_possible": _share(PAIR, "unstable where sliding is possible"),
+        "stiffness_ratio": Variable(dims=("sharpness",), long_name="K3 of Eq. (8d) over k3"),
+        "flutter_regularized": _share(("sharpness",), "flutter with K3 of Eq. (8d)"),
+        "divergence_regularized": _share(("sharpness",), "divergence with K3 of Eq. (8d)"),
+    },
+)

@@ -4,4 +4,7 @@ from squealpipe.figures.fig06 import draw
 from squealpipe.figures.style import save_figure
 from squealpipe.store import load
 
-save_figure(draw(load(snakemake.input.stability)), snakemake.output)
+given = snakemake.input
+save_figure(
+    draw(load(given.stability), load(given.quasi_static), load(given.boundaries)), snakemake.output
+)

@@ -1,0 +1,82 @@
+"""Maps of one natural frequency in both contact states: the paper's Figs. 8 and 9."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from squealpipe.figures.style import PAGE, RED, draw_map, new_figure, panel_letter
+from squealpipe.schema import Outcome
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+STATES = ("contact", "separated")
+FREQUENCY_COLOURS = "cividis"
+
+
+def draw_mode(frequencies: xr.Dataset, mode: int) -> Figure:
+    """Two panels, in contact and separated, with one colour scale.
+
+    Args:
+        frequencies: dataset ``natural_frequencies``.
+        mode: 1 or 2.
+    """
+    figure, axes = new_figure(PAGE, 3.3, ncols=2)
+    omega = frequencies.omega.sel(mode=mode)
+    upper = float(omega.max())
+    lower = 0.0 if mode == 1 else float(omega.min())
+    for panel, letter, state in zip(axes[0], "ab", STATES, strict=True):
+        values = omega.sel(contact_state=state).values
+        mesh = draw_map(
+            panel,
+            frequencies.alpha1.values,
+            frequencies.alpha2.values,
+            values,
+            cmap=FREQUENCY_COLOURS,
+            vmin=lower,
+            vmax=upper,
+        )
+        draw_isolines(panel, frequencies, values, 0.2 if mode == 1 else 0.1)
+        outcome = frequencies.outcome.sel(mode=mode, contact_state=state).values
+        outline(panel, frequencies, outcome == Outcome.complex_pair)
+        panel_letter(panel, letter, "in contact" if state == "contact" else state)
+    figure.colorbar(mesh, ax=axes, label=f"ω{'₁₂'[mode - 1]} (rad/s)", shrink=0.8)  # type: ignore[arg-type]
+    return figure
+
+
+def draw_isolines(axes: Axes, frequencies: xr.Dataset, values: np.ndarray, step: float) -> None:
+    """Thin labelled isolines, for reading in greyscale."""
+    lines = axes.contour(
+        frequencies.alpha1.values,
+        frequencies.alpha2.values,
+        values.T,
+        levels=np.arange(step, float(values.max()), step),
+        colors="white",
+        linewidths=0.5,
+    )
+    axes.clabel(lines, fontsize=5.5, fmt="%.1f")
+
+
+def outline(axes: Axes, frequencies: xr.Dataset, mask: np.ndarray) -> None:
+    """Hatch the cells of a mask."""
+    if mask.any():
+        axes.contourf(
+            frequencies.alpha1.values,
+            frequencies.alpha2.values,
+            mask.T.astype(float),
+            levels=[0.5, 1.5],
+            colors="none",
+            hatches=["//////"],
+        )
+        axes.contour(
+            frequencies.alpha1.values,
+            frequencies.alpha2.values,
+            mask.T.astype(float),
+            levels=[0.5],
+            colors=RED,
+            linewidths=0.8,
+        )
