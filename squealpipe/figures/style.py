@@ -115,7 +115,7 @@ def angle_map_axes(axes: Axes, upper: float = np.pi) -> None:
 
 def draw_map(
     axes: Axes, alpha1: np.ndarray, alpha2: np.ndarray, values: np.ndarray, **kwargs: object
-) -> object:
+) -> Any:
     """``pcolormesh`` of values over (alpha1, alpha2): α1 on x, α2 on y; rasterized in SVG."""
     mesh = axes.pcolormesh(
         alpha1,
@@ -131,7 +131,7 @@ def draw_map(
     return mesh
 
 
-def category_colours(colours: Sequence[str]) -> dict[str, object]:
+def category_colours(colours: Sequence[Any]) -> dict[str, Any]:
     """``cmap`` and ``norm`` that paint the integers 0, 1, … with the given colours."""
     bounds = np.arange(len(colours) + 1) - 0.5
     return {"cmap": ListedColormap(list(colours)), "norm": BoundaryNorm(bounds, len(colours))}
