@@ -10,6 +10,7 @@ RESULTS = STUDY.results
 include: "workflow/rules/common.smk"
 include: "workflow/rules/model.smk"
 include: "workflow/rules/linear.smk"
+include: "workflow/rules/claims.smk"
 include: "workflow/rules/report.smk"
 
 

@@ -18,6 +18,9 @@ from jinja2 import Environment, StrictUndefined
 
 TEMPLATES = Path(str(files("squealpipe.report"))) / "templates"
 
+SPACING_ACCENTS = {0x0307: "\u02d9", 0x0308: "\u00a8"}
+"""Dots over a symbol: as combining characters they land beside it where no mathematics font is."""
+
 
 def write_report(
     content: Mapping[str, Any], pictures: Mapping[str, Path], page: Path, pdf: Path
@@ -31,11 +34,11 @@ def write_report(
         pdf: ``report.pdf``.
     """
     with _source(content, pictures) as main:
-        body = _body(typst.compile(main, format="html", sys_inputs={"target": "html"}).decode())
+        made = typst.compile(main, format="html", sys_inputs={"target": "html"}).decode()
         document = typst.compile(
             main, format="pdf", sys_inputs={"target": "pdf"}, ignore_system_fonts=True
         )
-    _write(page, _page(content, body).encode())
+    _write(page, _page(content, made).encode())
     _write(pdf, document)
 
 
@@ -53,21 +56,22 @@ def _source(content: Mapping[str, Any], pictures: Mapping[str, Path]) -> Iterato
         yield root / "main.typ"
 
 
-def _body(document: str) -> str:
-    """What is between the body tags of Typst's page; our own shell replaces the rest."""
-    return document[document.index("<body>") + len("<body>") : document.rindex("</body>")]
-
-
-def _page(content: Mapping[str, Any], body: str) -> str:
+def _page(content: Mapping[str, Any], made: str) -> str:
+    """Our own shell around the body and the mathematics style of Typst's page."""
     environment = Environment(undefined=StrictUndefined, autoescape=True)
     shell = environment.from_string((TEMPLATES / "page.html.j2").read_text(encoding="utf-8"))
-    sections = re.findall(r'<h2 id="([^"]+)">(.*?)</h2>', body)
+    body = _between(made, "<body>", "</body>").translate(SPACING_ACCENTS)
     return shell.render(
         title=content["title"],
+        mathematics_style=_between(made, "<style>", "</style>"),
         style=(TEMPLATES / "style.css").read_text(encoding="utf-8"),
-        sections=sections,
+        sections=re.findall(r'<h2 id="([^"]+)">(.*?)</h2>', body),
         body=body,
     )
+
+
+def _between(text: str, start: str, end: str) -> str:
+    return text[text.index(start) + len(start) : text.rindex(end)]
 
 
 def _write(path: Path, text: bytes) -> None:

@@ -14,6 +14,7 @@ from typing import Any
 import xarray as xr
 from PIL import Image
 
+from squealpipe.claims.table import rows
 from squealpipe.parameters import Parameters
 from squealpipe.report.pictures import MODULES
 from squealpipe.store import load
@@ -69,7 +70,7 @@ def gather(
         "environment": _environment(loaded),
         "datasets": {name: _run(datasets[name], loaded[name]) for name in sorted(datasets)},
         "figures": {name: _picture(name, figures[name]) for name in MODULES if name in figures},
-        "claims": [],
+        "claims": rows(loaded["claims"]) if "claims" in loaded else [],
         "facts": {},
     }
 

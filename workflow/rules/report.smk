@@ -4,12 +4,18 @@ from squealpipe.report.lineage import lineage
 
 MADE = lineage(workflow.rules, f"{RESULTS}/data/", f"{RESULTS}/figures/")
 
+TEMPLATES = sorted(
+    str(path.relative_to(ROOT))
+    for path in (ROOT / "squealpipe/report/templates").rglob("*.*")
+    if path.suffix in (".typ", ".css") or path.name == "page.html.j2"
+)
+
 
 rule write_report:
     input:
         datasets=[made["path"] for made in MADE["datasets"].values()],
         figures=[made["path"] for made in MADE["figures"].values()],
-        templates=sorted(str(path.relative_to(ROOT)) for path in ROOT.glob("squealpipe/report/templates/**/*.*")),
+        templates=TEMPLATES,
         sources=sources("write_report"),
     output:
         page=f"{RESULTS}/report/index.html",

@@ -1,0 +1,9 @@
+"""The paper's statements as data, checks that read datasets only, and their verdicts.
+
+A row of the table is a :class:`~squealpipe.claims.statement.Statement`; its check looks at the
+datasets of one run and returns a :class:`~squealpipe.claims.evidence.Finding`.
+"""
+
+from squealpipe.claims.table import table
+
+__all__ = ["table"]

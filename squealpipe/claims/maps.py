@@ -1,0 +1,63 @@
+"""Looking things up in maps over both spring angles."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+
+from squealpipe.claims.evidence import MissingDataError
+
+
+def cell(dataset: xr.Dataset, alpha1_over_pi: float, alpha2_over_pi: float) -> xr.Dataset:
+    """The cell of a map at a pair of angles.
+
+    Raises:
+        MissingDataError: the grid has no point within a millionth of π.
+    """
+    wanted = {"alpha1": alpha1_over_pi * np.pi, "alpha2": alpha2_over_pi * np.pi}
+    try:
+        return dataset.sel(wanted, method="nearest", tolerance=1e-6 * np.pi)
+    except KeyError as error:
+        raise MissingDataError(
+            f"the grid of {dataset.attrs['schema']} has no cell "
+            f"({alpha1_over_pi:g}π, {alpha2_over_pi:g}π)"
+        ) from error
+
+
+def on_grid_of(dataset: xr.Dataset, other: xr.Dataset) -> xr.Dataset:
+    """The cells of a map that are also cells of another one.
+
+    Raises:
+        MissingDataError: the other grid has points that this one lacks.
+    """
+    try:
+        return dataset.sel(
+            alpha1=other.alpha1, alpha2=other.alpha2, method="nearest", tolerance=1e-6 * np.pi
+        )
+    except KeyError as error:
+        raise MissingDataError(
+            f"the grids of {dataset.attrs['schema']} and {other.attrs['schema']} do not meet"
+        ) from error
+
+
+def angle_sum_over_pi(dataset: xr.Dataset) -> xr.DataArray:
+    """(α1 + α2)/π over a map."""
+    return (dataset.alpha1 + dataset.alpha2) / np.pi
+
+
+def is_multiple(values: xr.DataArray, of: float = 1.0, *, odd: bool = False) -> xr.DataArray:
+    """Where values are a whole (or odd) multiple, to a millionth."""
+    ratio = values / of
+    whole = np.abs(ratio - ratio.round()) < 1e-6
+    return whole & (ratio.round() % 2 == 1) if odd else whole
+
+
+def share(condition: xr.DataArray) -> float:
+    """Share of cells in which a condition is true."""
+    return float(condition.mean())
+
+
+def place(dataset: xr.Dataset, values: xr.DataArray) -> tuple[float, float]:
+    """(α1/π, α2/π) where values are largest."""
+    row, column = np.unravel_index(int(values.values.argmax()), values.shape)
+    return float(dataset.alpha1[row] / np.pi), float(dataset.alpha2[column] / np.pi)

@@ -1,0 +1,163 @@
+"""Statements on the time histories of model A1 (Figs. 2–5)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import xarray as xr
+
+from squealpipe.claims.evidence import Finding, MissingDataError, Run, finding
+from squealpipe.claims.maps import cell, share
+
+ROUND_OFF = 1e-10
+"""Difference of normalized contact forces that two identical runs may show."""
+
+LITTLE = 0.05
+"""Difference of normalized forces that no one would see in the paper's Fig. 2."""
+
+GROWTH = 2.0
+"""Ratio of late to early amplitude from which a response is called growing."""
+
+
+def scene(run: Run, name: str) -> xr.Dataset:
+    """The A1 motion of a scene of the paper."""
+    return run[f"simulate/{name}"]
+
+
+def events(motion: xr.Dataset, kind: str) -> np.ndarray:
+    """Times of the events of a kind, in the run's unit of time."""
+    meanings = motion.event_kind.attrs["flag_meanings"].split()
+    value = motion.event_kind.attrs["flag_values"][meanings.index(kind)]
+    return motion.event_time.values[motion.event_kind.values == value]
+
+
+def contact_is_kept(name: str) -> Callable[[Run], Finding]:
+    """F2a–F2c: the lowest contact force of the run, and no separation event."""
+
+    def check(run: Run) -> Finding:
+        motion = scene(run, name)
+        lowest = float(motion.normalized_contact_force.min())
+        lost = events(motion, "separation").size
+        return finding(
+            lowest,
+            ">",
+            0,
+            f"The lowest contact force is {lowest:.4g} of the preload; {lost} separations up to "
+            f"t = {float(motion.time[-1]):g}.",
+            also=lost == 0,
+        )
+
+    return check
+
+
+def contact_is_lost(name: str) -> Callable[[Run], Finding]:
+    """F2d: number of separations."""
+
+    def check(run: Run) -> Finding:
+        motion = scene(run, name)
+        lost = events(motion, "separation")
+        if not lost.size:
+            return finding(0, ">", 0, "Contact is never lost.")
+        return finding(
+            lost.size,
+            ">",
+            0,
+            f"{lost.size} separations up to t = {float(motion.time[-1]):g}, the first at "
+            f"{lost[0]:.4g}; the contact force then peaks at "
+            f"{float(motion.normalized_contact_force.max()):.3g} of the preload.",
+        )
+
+    return check
+
+
+def responses_differ_little(run: Run) -> Finding:
+    """F2e: extremes of the contact force of the three scenes that keep contact."""
+    motions = [scene(run, name).normalized_contact_force for name in ("F2a", "F2b", "F2c")]
+    lowest = [float(force.min()) for force in motions]
+    highest = [float(force.max()) for force in motions]
+    spread = max(np.ptp(lowest), np.ptp(highest))
+    return finding(
+        spread,
+        "≤",
+        LITTLE,
+        f"The lowest forces are {_listed(lowest)} and the highest {_listed(highest)} of the preload.",
+    )
+
+
+def unstable_response_grows(run: Run) -> Finding:
+    """F3: largest |x| early and late, and where it ends in the long run."""
+    motion = scene(run, "F3")
+    early, late = _early_and_late(motion)
+    evidence = f"|x| grows from {early:.3g} to {late:.3g} l_pre by t = {float(motion.time[-1]):g}."
+    return finding(late / early, ">", GROWTH, evidence)
+
+
+def runs_are_identical(run: Run) -> Finding:
+    """F5a: largest difference of the normalized contact forces at (π, π) and (0, 0)."""
+    first, second = (scene(run, name).normalized_contact_force for name in ("F5a", "F5b"))
+    difference = float(np.abs(first.values - second.values).max())
+    return finding(
+        difference,
+        "≤",
+        ROUND_OFF,
+        f"The contact forces differ by at most {difference:.1g} of the preload.",
+    )
+
+
+def mass_jumps(run: Run) -> Finding:
+    """F5b: repeated flights at (π, π), and their height."""
+    motion = scene(run, "F5a")
+    flights = events(motion, "separation").size
+    height = float(motion.y.max() / run.parameters.preload)
+    return finding(
+        flights,
+        "≥",
+        2,
+        f"{flights} flights up to t = {float(motion.time[-1]):g}, as high as y = {height:.3g} l_pre; "
+        "the springs lie along x and have no vertical stiffness to first order.",
+    )
+
+
+def hammering_occurs(run: Run) -> Finding:
+    """S1: separations, returns and the impact force that follows them."""
+    motion = scene(run, "F2d")
+    lost, found = events(motion, "separation").size, events(motion, "contact").size
+    peak = float(motion.normalized_contact_force.max())
+    lost_cells = run["validity_map"].separates == 1
+    return finding(
+        peak,
+        ">",
+        1.0,
+        f"At (0.83π, 0.83π) contact is lost {lost} times and regained {found} times, with forces up "
+        f"to {peak:.3g} of the preload; over all angles contact is lost in "
+        f"{100 * share(lost_cells):.3g} % of the cells.",
+        also=lost > 0 and found > 0,
+    )
+
+
+def linearly_stable_but_not(run: Run) -> Finding:
+    """F6d: growth rate of A3 at (0.4π, 0.6π) against the growth of A1's response there."""
+    rate = float(cell(run["stability_map"], 0.4, 0.6).growth_rate) * run.parameters.time_unit
+    early, late = _early_and_late(scene(run, "F3"))
+    return finding(
+        rate,
+        "≤",
+        1e-9,
+        f"A3's largest growth rate there is {rate:.1g}; in A1 |x| grows from {early:.3g} to "
+        f"{late:.3g} l_pre.",
+        also=late > GROWTH * early,
+    )
+
+
+def _early_and_late(motion: xr.Dataset) -> tuple[float, float]:
+    """Largest |x| in the first and in the last fifth of a run, in units of l_pre."""
+    if motion.sizes["time"] < 10:
+        raise MissingDataError("the run holds fewer than ten instants")
+    fifth = motion.sizes["time"] // 5
+    size = np.abs(motion.x.values)
+    return float(size[:fifth].max()), float(size[-fifth:].max())
+
+
+def _listed(values: list[float]) -> str:
+    return ", ".join(f"{value:.3g}" for value in values)
