@@ -10,9 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from squealpipe.methods import branch_tracing
+from squealpipe.methods.modal_flow import propagator
 from squealpipe.methods.orbit_shape import extremes
 from squealpipe.methods.piecewise_linear import PiecewiseLinearSystem
-from squealpipe.methods.shooting import MAX_SEGMENTS
+from squealpipe.methods.shooting import MAX_SEGMENTS, stability_index
 
 
 class TraceEnd(IntEnum):
@@ -123,3 +124,21 @@ def shape(system: PiecewiseLinearSystem, point: NDArray[np.float64]) -> tuple[fl
     out = np.empty(6)
     extremes(system.rows, np.ascontiguousarray(point[:3], dtype=float), out)
     return 0.5 * (out[1] - out[0]), 0.5 * (out[3] - out[2]), float(np.abs(out[4:]).max())
+
+
+def index_from_switches(
+    system: PiecewiseLinearSystem, switches: NDArray[np.float64], half_period: float, y0: float
+) -> float:
+    """Stability index of a motion that switches at given times of its half period.
+
+    The tangent flow depends on the motion through these times alone, so this serves a series
+    as well as an exact orbit: it is the exact trace − 2 of the approximate orbit.
+    """
+    times = np.concatenate([[0.0], switches, [half_period]])
+    segments = np.empty((len(times) - 1, 9))
+    side = int(y0 > system.threshold)
+    for leg, duration in enumerate(np.diff(times)):
+        propagator(system.rows[side], float(duration), segments[leg])
+        segments[leg, 8] = side
+        side = 1 - side
+    return float(stability_index(system.rows, segments, len(segments)))

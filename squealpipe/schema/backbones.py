@@ -52,7 +52,7 @@ PERIODIC_ORBIT = DatasetSchema(
         ),
         "residual": Variable(
             units="1",
-            long_name="largest velocity after half a period over l_pre times the reference frequency",
+            long_name="largest velocity after half a period, over l_pre and the frequency unit",
             nan_allowed=True,
             atol=1e-13,
         ),
@@ -111,11 +111,11 @@ BACKBONE = DatasetSchema(
             optional=True,
             rtol=1e-4,
         ),
-        "closure_error": Variable(
+        "integration_error": Variable(
             dims=("point",),
             units="m",
-            long_name="distance in (x, y) after integrating A4 in time over one period of the "
-            "series, from its peak",
+            long_name="largest distance in (x, y) from A4 integrated in time over one period from "
+            "the peak of the series",
             nan_allowed=True,
             optional=True,
             rtol=1e-4,

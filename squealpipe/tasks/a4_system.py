@@ -103,11 +103,11 @@ def scaled_system(params: Parameters, alpha1: float, alpha2: float) -> ScaledSys
         frequency=math.sqrt(unit),
         rest=contact.equilibrium if contact_determinant else np.full(2, np.nan),
         squared=(complex(smaller), complex(larger)),
-        obstacle=_obstacle(system, invariants, gap),
+        obstacle=_obstacle(invariants, gap),
     )
 
 
-def _obstacle(system: PiecewiseLinearSystem, invariants: a4.Spectrum, gap: float) -> Outcome:
+def _obstacle(invariants: a4.Spectrum, gap: float) -> Outcome:
     """``gap`` is (l_pre − y*)/l_pre, det K over det K_contact."""
     if invariants.discriminant < 0.0:
         return Outcome.complex_pair

@@ -9,37 +9,15 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from squealpipe.methods.orbits import (
-    Orbit,
-    TraceEnd,
-    decoupled_half_period,
-    solve_orbit,
-    trace_branch,
-)
+from squealpipe.methods.harmonic_balance import CosineBalance, series_extremes, series_speed
+from squealpipe.methods.orbits import Orbit
 from squealpipe.parameters import Parameters
 from squealpipe.schema import Outcome, build
 from squealpipe.schema.backbones import BACKBONE
 from squealpipe.tasks.a4_system import ScaledSystem, scaled_system
-from squealpipe.tasks.orbits import (
-    check_length,
-    check_mode,
-    grazing_start,
-    linear_orbit,
-    orbit_values,
-)
-
-BRANCH_ENDS = {
-    TraceEnd.reached: Outcome.amplitude_reached,
-    TraceEnd.returned: Outcome.retraced,
-    TraceEnd.tongue_end: Outcome.tongue_end,
-    TraceEnd.lost: Outcome.branch_lost,
-    TraceEnd.step_limit: Outcome.step_limit,
-}
-"""Outcome of a branch that was followed upwards."""
-
-LINEAR_POINTS = 6
-"""Points on the linear mode, from rest to grazing, with which a backbone begins."""
-_LONGEST_STEP = 0.04
+from squealpipe.tasks.exact_branches import exact_branch
+from squealpipe.tasks.harmonic_branches import HarmonicPoint, harmonic_branch
+from squealpipe.tasks.orbits import check_length, check_mode, orbit_values
 
 
 def backbone(
@@ -92,70 +70,31 @@ def backbone(
             scene, mode, y_max / scene.length, x_max / scene.length, cross_poles=cross_poles
         )
         return _exact_dataset(scene, params, orbits, outcomes, end, attrs)
+    if method == "hbm":
+        check_series(n_harmonics, n_time, sigma)
+        balance, points, end = harmonic_branch(
+            scene,
+            mode,
+            y_max / scene.length,
+            x_max / scene.length,
+            n_harmonics=n_harmonics,
+            n_time=n_time,
+            sigma=None if sigma is None else sigma * scene.length,
+            cross_poles=cross_poles,
+        )
+        return _harmonic_dataset(scene, params, balance, points, end, attrs)
     raise ValueError(f"method = {method!r}: 'exact' or 'hbm' is needed")
 
 
-def exact_branch(
-    scene: ScaledSystem, mode: int, y_max: float, x_max: float, *, cross_poles: bool = False
-) -> tuple[list[Orbit], list[Outcome], Outcome]:
-    """Orbits of a branch in scaled units, their outcomes, and why it ends."""
-    if scene.obstacle != Outcome.converged:
-        return [], [], scene.obstacle
-    if scene.isolated_mode == mode:
-        orbits = isolated_orbits(scene, mode, x_max)
-        return orbits, [Outcome.isolated_mode] * len(orbits), Outcome.amplitude_reached
-    if not math.isfinite(scene.slope(mode)):
-        return [], [], Outcome.pole
-    peaks = np.linspace(scene.rest[1], min(1.0, y_max), LINEAR_POINTS + 1)[1:]
-    orbits = [linear_orbit(scene, mode, float(peak)) for peak in peaks]
-    outcomes = [Outcome.linear_mode] * len(orbits)
-    if y_max <= 1.0:
-        return orbits, outcomes, Outcome.amplitude_reached
-    if scene.system.decoupled:
-        beyond, end = _decoupled_branch(scene, y_max, cross_poles=cross_poles)
-    else:
-        seed = grazing_start(scene, mode)
-        table, why = trace_branch(
-            scene.system, seed.point, seed.direction, y_max, seed.settings(_LONGEST_STEP)
-        )
-        beyond = [Orbit(row[:3], np.empty(int(row[7])), row[5], row[6]) for row in table]
-        end = BRANCH_ENDS[why]
-    return orbits + beyond, outcomes + [Outcome.converged] * len(beyond), end
-
-
-def isolated_orbits(scene: ScaledSystem, mode: int, x_max: float) -> list[Orbit]:
-    """The vertical branch of a decoupled x mode: y rests, x swings at its own frequency."""
-    half_period = math.pi / scene.omega(mode)
-    index = 2.0 * math.cos(2.0 * half_period * scene.omega(3 - mode))
-    x_rest, y_rest = scene.rest
-    return [
-        Orbit(np.array([x_rest + float(a), y_rest, half_period]), np.empty(0), index, 0.0)
-        for a in np.linspace(0.0, x_max, 25)[1:]
-    ]
-
-
-def pole_number(scene: ScaledSystem, half_period: float) -> int:
-    """How many internal resonances ω = ω_x/n lie above this motion's ω, where K12 = 0."""
-    return int(half_period * math.sqrt(scene.system.below.matrix[0][0]) / math.pi)
-
-
-def _decoupled_branch(
-    scene: ScaledSystem, y_max: float, *, cross_poles: bool
-) -> tuple[list[Orbit], Outcome]:
-    """The y mode where K12 = 0: y is known in closed form and drives x, up to a pole."""
-    count = max(8, math.ceil((y_max - 1.0) / _LONGEST_STEP))
-    peaks = 1.0 + (y_max - 1.0) * np.linspace(0.0, 1.0, count + 1)[1:] ** 1.5
-    orbits: list[Orbit] = []
-    first = pole_number(scene, math.pi / math.sqrt(scene.system.below.matrix[1][1]))
-    for peak in map(float, peaks):
-        half_period = decoupled_half_period(scene.system, peak)
-        if pole_number(scene, half_period) != first and not cross_poles:
-            return orbits, Outcome.pole
-        guess = np.array([scene.rest[0], peak, half_period])
-        found = solve_orbit(scene.system, guess)
-        if found is not None:
-            orbits.append(found)
-    return orbits, Outcome.amplitude_reached
+def check_series(n_harmonics: int, n_time: int | None, sigma: float | None) -> None:
+    """Raise a ValueError unless the settings of a series make sense."""
+    if not 1 <= n_harmonics <= 512:
+        raise ValueError(f"n_harmonics = {n_harmonics!r}: 1 to 512 are needed")
+    least = 2 * n_harmonics + 1
+    if n_time is not None and n_time < least:
+        raise ValueError(f"n_time = {n_time!r}: at least 2 n_harmonics + 1 = {least} are needed")
+    if sigma is not None and not (math.isfinite(sigma) and sigma > 0):
+        raise ValueError(f"sigma = {sigma!r}: a finite number above 0 is needed, 1/m")
 
 
 def _exact_dataset(
@@ -180,6 +119,50 @@ def _exact_dataset(
         },
         {"point": np.arange(len(orbits))},
         attrs,
+    )
+
+
+def _harmonic_dataset(
+    scene: ScaledSystem,
+    params: Parameters,
+    balance: CosineBalance,
+    points: list[HarmonicPoint],
+    end: Outcome,
+    attrs: dict[str, Any],
+) -> xr.Dataset:
+    series = [balance.split(point.z) for point in points]
+    order = np.arange(balance.contact.n_harmonics + 1)
+    x = np.array([entry[0] for entry in series]).reshape(-1, len(order)) * scene.length
+    y = np.array([entry[1] for entry in series]).reshape(-1, len(order)) * scene.length
+    omega = np.array([entry[2] for entry in series]) * scene.frequency
+    x_wave, y_wave, x_speed = series_extremes(x), series_extremes(y), series_speed(x) * omega
+    return build(
+        BACKBONE,
+        {
+            "omega": omega,
+            "x_at_peak": x.sum(axis=1),
+            "x_amplitude": x_wave,
+            "y_amplitude": y_wave,
+            "largest_speed": x_speed,
+            "sliding_assumption": (x_speed < params.belt_speed).astype(int),
+            "y_peak": y.sum(axis=1),
+            "stability_index": np.array([point.stability_index for point in points]),
+            "switches": [len(point.switches) for point in points],
+            "residual": np.array([point.residual for point in points]),
+            "outcome": [point.outcome for point in points],
+            "x_cosine": x,
+            "y_cosine": y,
+            "omega_exact": np.array([point.omega_exact for point in points]) * scene.frequency,
+            "waveform_error": np.array([point.waveform_error for point in points]) * scene.length,
+            "integration_error": np.array([point.integration_error for point in points]) * scene.length,
+            "end": end,
+        },
+        {"point": np.arange(len(points)), "harmonic": order},
+        {
+            **attrs,
+            "n_harmonics": balance.contact.n_harmonics,
+            "contact": type(balance.contact).__name__,
+        },
     )
 
 

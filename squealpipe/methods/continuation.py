@@ -1,0 +1,199 @@
+"""Pseudo-arclength continuation of F(z) = 0 with one unknown more than equations.
+
+Settings, algorithm, state and result are separate; a :class:`Continuation` is iterated and
+yields one state after the other, so the caller decides when to stop.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from enum import IntEnum
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+Vector = NDArray[np.float64]
+
+
+class Problem(Protocol):
+    """F: R^(n+1) → R^n with its Jacobian."""
+
+    def evaluate(self, z: Vector) -> tuple[Vector, Vector]:
+        """F(z), (n,), and its Jacobian, (n, n + 1)."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class ContinuationSettings:
+    """Step control; lengths are relative to 1 + |z|.
+
+    Attributes:
+        first_step, shortest_step, longest_step: arclength.
+        tolerance: of the largest component of F.
+        max_iterations: Newton iterations of a step; with more, the step is halved.
+        easy_iterations: with no more than these, the next step grows.
+        least_cosine: of the angle between tangents before and after a step.
+        max_points: states after which the iteration stops.
+    """
+
+    first_step: float = 0.01
+    shortest_step: float = 1e-7
+    longest_step: float = 0.05
+    tolerance: float = 1e-11
+    max_iterations: int = 6
+    easy_iterations: int = 3
+    least_cosine: float = 0.97
+    max_points: int = 2000
+
+    def __post_init__(self) -> None:
+        if not (0.0 < self.shortest_step <= self.first_step <= self.longest_step):
+            raise ValueError(
+                f"shortest_step = {self.shortest_step!r}, first_step = {self.first_step!r}, "
+                f"longest_step = {self.longest_step!r}: they must be positive and ascend"
+            )
+        if not (self.tolerance > 0.0 and 0.0 < self.least_cosine < 1.0):
+            raise ValueError(
+                f"tolerance = {self.tolerance!r}, least_cosine = {self.least_cosine!r}: "
+                "a positive tolerance and a cosine between 0 and 1 are needed"
+            )
+        if not (0 < self.easy_iterations <= self.max_iterations and self.max_points > 0):
+            raise ValueError(
+                f"easy_iterations = {self.easy_iterations!r}, max_iterations = "
+                f"{self.max_iterations!r}, max_points = {self.max_points!r}: "
+                "0 < easy_iterations <= max_iterations and at least one point are needed"
+            )
+
+
+@dataclass(frozen=True)
+class ContinuationState:
+    """A point of the branch.
+
+    Attributes:
+        point: z with F(z) = 0.
+        tangent: unit direction of the branch.
+        step: length of the next step.
+        iterations: Newton iterations spent on this point.
+        residual: largest component of F.
+    """
+
+    point: Vector
+    tangent: Vector
+    step: float
+    iterations: int
+    residual: float
+
+
+class ContinuationEnd(IntEnum):
+    """Why a continuation ended."""
+
+    stopped = 0
+    branch_lost = 1
+    point_limit = 2
+
+
+@dataclass(frozen=True)
+class ContinuationResult:
+    """States of a branch and why it ended; the state that stopped it is the last one."""
+
+    states: tuple[ContinuationState, ...]
+    end: ContinuationEnd
+
+
+@dataclass(frozen=True)
+class PseudoArclength:
+    """The algorithm: predict along the tangent, correct in the plane normal to it."""
+
+    settings: ContinuationSettings
+
+    def correct(
+        self, problem: Problem, guess: Vector, normal: Vector
+    ) -> tuple[Vector, Vector, int, float] | None:
+        """Newton's method with normal · dz = 0.
+
+        Returns:
+            (point, tangent, iterations, residual), or None where it does not converge. The
+            tangent is that of the last Jacobian, oriented along ``normal``.
+        """
+        z = guess.copy()
+        size = len(z)
+        system = np.empty((size, size))
+        right = np.zeros((size, 2))
+        system[-1], right[-1, 1] = normal, 1.0
+        tangent, previous = normal, np.inf
+        for iteration in range(self.settings.max_iterations + 1):
+            values, jacobian = problem.evaluate(z)
+            residual = float(np.abs(values).max())
+            if residual <= self.settings.tolerance and iteration > 0:
+                return z, tangent / np.linalg.norm(tangent), iteration, residual
+            if not residual < 10.0 * previous:
+                return None
+            previous = residual
+            system[:-1], right[:-1, 0] = jacobian, -values
+            try:
+                solution = np.linalg.solve(system, right)
+            except np.linalg.LinAlgError:
+                return None
+            z = z + solution[:, 0]
+            tangent = solution[:, 1]
+        return None
+
+    def advance(self, problem: Problem, state: ContinuationState) -> ContinuationState | None:
+        """The next state; None where no step down to the shortest one is accepted."""
+        settings = self.settings
+        step = state.step
+        while step >= settings.shortest_step:
+            length = step * (1.0 + float(np.linalg.norm(state.point)))
+            guess = state.point + length * state.tangent
+            corrected = self.correct(problem, guess, state.tangent)
+            if corrected is not None:
+                point, tangent, iterations, residual = corrected
+                near = float(np.linalg.norm(point - guess)) < 0.3 * length
+                if near and float(tangent @ state.tangent) > settings.least_cosine:
+                    easy = iterations <= settings.easy_iterations
+                    following = min(step * (1.5 if easy else 1.0), settings.longest_step)
+                    return ContinuationState(point, tangent, following, iterations, residual)
+            step *= 0.5
+        return None
+
+
+@dataclass(frozen=True)
+class Continuation:
+    """A branch to be iterated over, from a solution and a direction.
+
+    Attributes:
+        problem: the equations.
+        start: a solution (n + 1,).
+        direction: where to go from it (n + 1,).
+        settings: step control.
+        adapt: applied to each new state before it is yielded (to describe it otherwise).
+    """
+
+    problem: Problem
+    start: Vector
+    direction: Vector
+    settings: ContinuationSettings = ContinuationSettings()
+    adapt: Callable[[ContinuationState], ContinuationState] = lambda state: state
+
+    def __iter__(self) -> Iterator[ContinuationState]:
+        algorithm = PseudoArclength(self.settings)
+        unit = self.direction / np.linalg.norm(self.direction)
+        state: ContinuationState | None = ContinuationState(
+            self.start, unit, self.settings.first_step, 0, 0.0
+        )
+        while state is not None:
+            state = algorithm.advance(self.problem, state)
+            if state is not None:
+                state = self.adapt(state)
+                yield state
+
+    def run(self, stop: Callable[[ContinuationState], bool]) -> ContinuationResult:
+        """States up to and including the first that ``stop`` accepts."""
+        states: list[ContinuationState] = []
+        for state in self:
+            states.append(state)
+            if stop(state):
+                return ContinuationResult(tuple(states), ContinuationEnd.stopped)
+            if len(states) >= self.settings.max_points:
+                return ContinuationResult(tuple(states), ContinuationEnd.point_limit)
+        return ContinuationResult(tuple(states), ContinuationEnd.branch_lost)
