@@ -127,8 +127,10 @@ def contact_regime(
         return FASTER, vx
     fx, _ = spring_forces(x, y, p, g, rules.linear_springs)
     limit = p.mu * contact_force(y, p)
-    if rules.sticks and limit > 0.0 and (
-        fx == 0.0 or abs(fx) < limit - friction_slack(x, y, fx, p)
+    if (
+        rules.sticks
+        and limit > 0.0
+        and (fx == 0.0 or abs(fx) < limit - friction_slack(x, y, fx, p))
     ):
         return STICK, vx
     if fx > 0.0:
@@ -228,3 +230,16 @@ def _reach_belt_speed(
     saltation = after / before if before != 0.0 else 1.0
     vx = p.belt_speed + direction * max(speed_nudge(p), -gap)
     return Switch(REVERSAL, FASTER if regime == SLOWER else SLOWER, y, vx, saltation, late)
+
+
+COMPILED = (
+    spring_forces,
+    friction_slack,
+    speed_nudge,
+    contact_regime,
+    start,
+    switch,
+    _release,
+    _reach_belt_speed,
+)
+"""Functions that a compiled loop calls, directly or not."""

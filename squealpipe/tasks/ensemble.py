@@ -15,15 +15,8 @@ from squealpipe.methods.processes import run_shared
 from squealpipe.models.switching import VARIANT_RULES
 from squealpipe.parameters import Parameters
 from squealpipe.tasks.a1_system import lane_integrator
-from squealpipe.tasks.lane_kernel import (
-    N_COLUMNS,
-    N_COUNTS,
-    N_ORDERS,
-    Column,
-    Count,
-    Order,
-    lane_kernel,
-)
+from squealpipe.tasks import lane_kernel as kernel
+from squealpipe.tasks.lane_kernel import lane_kernel
 
 PARAMETER_NAMES = tuple(name for name in Parameters.__dataclass_fields__ if name != "sigma")
 
@@ -141,8 +134,8 @@ def run_ensemble(
     )
     size = len(jobs.orders)
     shapes = {
-        "results": ((size, N_COLUMNS), np.float64),
-        "counts": ((size, N_COUNTS), np.int64),
+        "results": ((size, kernel.N_RESULTS), np.float64),
+        "counts": ((size, kernel.N_COUNTS), np.int64),
         "samples": ((size, jobs.times.shape[1], 4), np.float64),
         "sample_regimes": ((size, jobs.times.shape[1]), np.int64),
         "event_times": ((size, log_events), np.float64),
@@ -170,7 +163,8 @@ def _run_lanes(
         arrays[name][first::stride] = fill
     for name in ("sample_regimes", "event_kinds"):
         arrays[name][first::stride] = -1
-    lane_times, lane_jobs = np.zeros((LANES, 2)), np.full((LANES, 2), -2, np.int64)
+    memory = np.zeros((LANES, kernel.N_MEMORY))
+    integers = np.full((LANES, kernel.N_INTEGERS), kernel.EMPTY, np.int64)
     queue = np.array([first, len(jobs.orders), stride], np.int64)
     workspace = Workspace(
         [
@@ -178,8 +172,8 @@ def _run_lanes(
             integrator.pars,
             integrator.tc,
             integrator.last_h,
-            lane_times,
-            lane_jobs,
+            memory,
+            integers,
             jobs.orders,
             jobs.initial,
             arrays["results"],
@@ -249,14 +243,12 @@ class _Jobs:
             raise ValueError(f"initial_state has shape {state.shape}: x, y, vx, vy are needed last")
         if not (inputs["t_end"] >= 0).all():
             raise ValueError(f"t_end = {inputs['t_end'].min()!r}: must be 0 or greater")
-        shape = np.broadcast_shapes(
-            *(array.shape for array in inputs.values()), state.shape[:-1]
-        )
+        shape = np.broadcast_shapes(*(array.shape for array in inputs.values()), state.shape[:-1])
         flat = {name: np.broadcast_to(array, shape).ravel() for name, array in inputs.items()}
         time_unit = np.sqrt(flat["mass"] / flat["k1"])
         length = flat["preload"].copy()
         speed_unit = length / time_unit
-        orders = np.zeros((time_unit.size, N_ORDERS))
+        orders = np.zeros((time_unit.size, kernel.N_ORDERS))
         cosines = [
             function(flat[angle]) for angle in ("alpha1", "alpha2") for function in (np.cos, np.sin)
         ]
@@ -276,13 +268,13 @@ class _Jobs:
             orders[:, column] = values
         k2, k3, _, speed, length1, length2 = (orders[:, i] for i in range(6))
         rate = np.sqrt(1 + k2 + k3) + np.abs(speed) / np.minimum(length1, length2)
-        orders[:, Order.stop_at_separation] = stop_at_first_separation
-        orders[:, Order.max_steps] = 1e4 + 200 * rate * orders[:, Order.t_end]
-        orders[:, Order.max_events] = 1e3 + 20 * rate * orders[:, Order.t_end]
-        orders[:, Order.separates] = rules.separates
-        orders[:, Order.reverses] = rules.reverses
-        orders[:, Order.sticks] = rules.sticks
-        orders[:, Order.linear_springs] = rules.linear_springs
+        orders[:, kernel.STOP_AT_SEPARATION] = stop_at_first_separation
+        orders[:, kernel.MAX_STEPS] = 1e4 + 200 * rate * orders[:, kernel.T_END]
+        orders[:, kernel.MAX_EVENTS] = 1e3 + 20 * rate * orders[:, kernel.T_END]
+        orders[:, kernel.SEPARATES] = rules.separates
+        orders[:, kernel.REVERSES] = rules.reverses
+        orders[:, kernel.STICKS] = rules.sticks
+        orders[:, kernel.LINEAR_SPRINGS] = rules.linear_springs
         initial = np.broadcast_to(state, (*shape, 4)).reshape(-1, 4)
         scale = np.stack([length, length, speed_unit, speed_unit], axis=-1)
         return cls(
@@ -296,35 +288,34 @@ class _Jobs:
 
     def results(self, arrays: dict[str, np.ndarray]) -> Ensemble:
         """Results in the caller's units and shape."""
-        column = {item.name: arrays["results"][:, item] for item in Column}
-        count = {item.name: arrays["counts"][:, item] for item in Count}
+        result, count = arrays["results"].T, arrays["counts"].T
         t, length = self.time_unit, self.length
         speed = length / t
         scale = np.stack([length, length, speed, speed], axis=-1)[:, None, :]
-        separated = column["lowest_y"] == np.inf
+        separated = result[kernel.LOWEST_Y] == np.inf
         flat = {
-            "outcome": count["outcome"].astype(np.int8),
-            "time": column["time"] * t,
-            "first_separation_time": column["first_separation"] * t,
-            "separated_time": column["separated_time"] * t,
-            "stick_time": column["stick_time"] * t,
-            "peak_contact_force": np.where(separated, 0.0, 1.0 - column["lowest_y"]),
-            "max_displacement": np.sqrt(column["largest_r2"]) * length,
-            "max_x": column["largest_x"] * length,
-            "late_max_x": column["late_largest_x"] * length,
-            "max_vx": column["largest_speed"] * speed,
-            "nearest_pivot": np.sqrt(column["nearest_pivot2"]),
-            "turns": 0.5 * column["half_turns"],
-            "separations": count["separation"],
-            "contacts": count["contact"],
-            "sticks": count["stick"],
-            "slips": count["slip"],
-            "reversals": count["reversal"],
-            "steps": count["steps"],
-            "final_state": arrays["results"][:, Column.x : Column.vy + 1] * scale[:, 0],
-            "final_regime": count["regime"].astype(np.int8),
-            "log_growth": column["log_growth"],
-            "predictability_horizon": column["horizon"] * t,
+            "outcome": count[kernel.OUTCOME].astype(np.int8),
+            "time": result[kernel.TIME] * t,
+            "first_separation_time": result[kernel.FIRST_SEPARATION] * t,
+            "separated_time": result[kernel.SEPARATED_TIME] * t,
+            "stick_time": result[kernel.STICK_TIME] * t,
+            "peak_contact_force": np.where(separated, 0.0, 1.0 - result[kernel.LOWEST_Y]),
+            "max_displacement": np.sqrt(result[kernel.LARGEST_R2]) * length,
+            "max_x": result[kernel.LARGEST_X] * length,
+            "late_max_x": result[kernel.LATE_LARGEST_X] * length,
+            "max_vx": result[kernel.LARGEST_SPEED] * speed,
+            "nearest_pivot": np.sqrt(result[kernel.NEAREST_PIVOT2]),
+            "turns": 0.5 * result[kernel.HALF_TURNS],
+            "separations": count[kernel.FIRST_KIND],
+            "contacts": count[kernel.FIRST_KIND + 1],
+            "sticks": count[kernel.FIRST_KIND + 2],
+            "slips": count[kernel.FIRST_KIND + 3],
+            "reversals": count[kernel.FIRST_KIND + 4],
+            "steps": count[kernel.STEPS],
+            "final_state": result[kernel.FINAL_STATE :].T * scale[:, 0],
+            "final_regime": count[kernel.REGIME].astype(np.int8),
+            "log_growth": result[kernel.LOG_GROWTH],
+            "predictability_horizon": result[kernel.HORIZON] * t,
             "samples": arrays["samples"] * scale,
             "sample_regimes": arrays["sample_regimes"].astype(np.int8),
             "event_times": arrays["event_times"] * t[:, None],

@@ -1,0 +1,93 @@
+"""Datasets of the nonlinear models A1 and A4 in time."""
+
+from __future__ import annotations
+
+from enum import IntEnum
+
+from squealpipe.schema import DatasetSchema, Variable, outcome
+from squealpipe.schema.linear import ANGLES, MAP, REGIME_LINEAR
+
+
+class RegimeFlag(IntEnum):
+    """Meaning of regime."""
+
+    slip_slower = 0
+    slip_faster = 1
+    stick = 2
+    separated = 3
+    not_reached = -1
+
+
+class EventFlag(IntEnum):
+    """Meaning of event_kind."""
+
+    separation = 0
+    contact = 1
+    stick = 2
+    slip = 3
+    reversal = 4
+
+
+class MotionFlag(IntEnum):
+    """Meaning of motion."""
+
+    perpetual_contact = 0
+    stick_slip_in_contact = 1
+    periodic_hammering = 2
+    irregular_hammering = 3
+    whirl = 4
+    undecided = 5
+
+
+def _series(units: str, long_name: str, **more: object) -> Variable:
+    return Variable(dims=("time",), units=units, long_name=long_name, nan_allowed=True, **more)  # type: ignore[arg-type]
+
+
+TIME = Variable(dims=("time",), units="s", long_name="time")
+
+SIMULATION = DatasetSchema(
+    name="simulation",
+    title="One nonlinear run from given initial conditions, events located",
+    coordinates={"time": TIME},
+    variables={
+        "x": _series("m", "displacement along the belt"),
+        "y": _series("m", "displacement away from the belt"),
+        "vx": _series("m s-1", "velocity along the belt"),
+        "vy": _series("m s-1", "velocity away from the belt"),
+        "normal_force": _series("N", "contact force"),
+        "normalized_contact_force": _series("1", "contact force over k3 l_pre"),
+        "regime": Variable(dims=("time",), dtype="i1", flags=RegimeFlag, long_name="regime"),
+        "event_time": Variable(dims=("event",), units="s", long_name="instant of a regime change"),
+        "event_kind": Variable(
+            dims=("event",), dtype="i1", flags=EventFlag, long_name="kind of regime change"
+        ),
+        "alpha1": Variable(units="rad", long_name="angle of spring 1"),
+        "alpha2": Variable(units="rad", long_name="angle of spring 2"),
+        "preload": Variable(units="m", long_name="precompression l_pre of the contact spring"),
+        "length1": Variable(units="m", long_name="free length L1 of spring 1"),
+        "length2": Variable(units="m", long_name="free length L2 of spring 2"),
+        "time_reached": Variable(units="s", long_name="time at which the run ended"),
+        "n_steps": Variable(dtype="i8", long_name="Taylor steps of the run"),
+        "outcome": outcome(),
+    },
+)
+
+VALIDITY_MAP = DatasetSchema(
+    name="validity_map",
+    title="Where model A1 keeps contact, and the regime of the linear model A3",
+    coordinates=ANGLES,
+    variables={
+        "first_separation_time": Variable(
+            dims=MAP,
+            units="s",
+            long_name="first loss of contact from rest (NaN: none before t_end)",
+            nan_allowed=True,
+        ),
+        "separates": Variable(
+            dims=MAP, dtype="bool", long_name="whether contact is lost before t_end"
+        ),
+        "regime_linear": REGIME_LINEAR,
+        "t_end": Variable(units="s", long_name="end of each run"),
+        "outcome": outcome(*MAP),
+    },
+)
