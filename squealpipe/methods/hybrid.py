@@ -64,6 +64,7 @@ class HybridRun:
         samples: states at the asked times, shape (times, states); NaN beyond the time reached.
         evaluations: of the field, those for Jacobians by differences included.
         message: empty where it ran to the end.
+        reports_events: whether the method knows of events at all.
     """
 
     state: np.ndarray
@@ -74,6 +75,7 @@ class HybridRun:
     samples: np.ndarray = field(default_factory=lambda: np.empty((0, 0)))
     evaluations: int = 0
     message: str = ""
+    reports_events: bool = True
 
 
 def integrate_hybrid(

@@ -38,6 +38,7 @@ def jitted(function: Callable[..., Any]) -> Any:
 @numba.njit
 def step_through(
     forces: Any, data: Any, mass: float, speed: float, state: np.ndarray, step: float, n_steps: int,
+    stop_at_switch: bool,
 ) -> int:  # fmt: skip
     """Advance ``state`` in place by ``n_steps`` steps.
 
@@ -46,7 +47,8 @@ def step_through(
         data: what ``forces`` needs, passed through.
         mass: kg; speed: that of the surface, m/s.
         state: (x, y, ẋ, ẏ).
-        step: s.
+        step: s; n_steps: how many of them.
+        stop_at_switch: end after the first change of contact.
 
     Returns:
         How often the friction bound went from or to zero: separations and contacts.
@@ -67,5 +69,7 @@ def step_through(
         if (bound > 0.0) != touching:
             touching = not touching
             switches += 1
+            if stop_at_switch:
+                break
     state[0], state[1], state[2], state[3] = x, y, vx, vy
     return switches

@@ -78,7 +78,9 @@ def simulate_regularized(
     system = HybridAutomaton(
         lambda _: field, lambda _: [], lambda _: 0, lambda _, regime, z: (regime, z)
     )
-    return integrate_hybrid(system, initial_state, t_end, method=method, tol=tol)
+    run = integrate_hybrid(system, initial_state, t_end, method=method, tol=tol)
+    run.reports_events = False
+    return run
 
 
 def simulate_moreau_jean(
@@ -89,11 +91,13 @@ def simulate_moreau_jean(
     t_end: float,
     step: float,
     initial_state: Sequence[float] = AT_REST,
+    stop_at_switch: bool = False,
 ) -> HybridRun:
     """A1 by Moreau–Jean time stepping; ``event_kinds`` only counts contact changes.
 
     Args:
         step: s; shortened so that a whole number of steps ends at ``t_end``.
+        stop_at_switch: end at the first contact change.
     """
     n_steps = max(1, math.ceil(t_end / step - 1e-9))
     state = np.array(initial_state, dtype=float)
@@ -103,7 +107,7 @@ def simulate_moreau_jean(
     )
     switches = step_through(
         jitted(smooth_forces), data, params.mass, params.belt_speed, state, t_end / n_steps,
-        n_steps,
+        n_steps, stop_at_switch,
     )  # fmt: skip
     message = "" if np.isfinite(state).all() else "the state overflowed"
     return HybridRun(

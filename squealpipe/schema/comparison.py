@@ -1,0 +1,108 @@
+"""Datasets that compare methods and models: speed against accuracy, failures, the model ladder."""
+
+from __future__ import annotations
+
+from enum import IntEnum
+
+from squealpipe.schema import DatasetSchema, Variable, outcome
+from squealpipe.schema.linear import ANGLES, MAP
+
+RUN = ("run",)
+
+
+class Role(IntEnum):
+    """Whether a method is ours or a public one."""
+
+    public = 0
+    ours = 1
+    our_setting = 2
+
+
+def _text(long_name: str, *dims: str) -> Variable:
+    return Variable(dims=dims, dtype="U64", long_name=long_name)
+
+
+WORK_PRECISION = DatasetSchema(
+    name="work_precision",
+    title="Error of a method against its cost, one run a row",
+    coordinates={"run": Variable(dims=RUN, dtype="i4", long_name="one method at one setting")},
+    variables={
+        "task": _text("kind of task", *RUN),
+        "scene": _text("what is computed", *RUN),
+        "method": _text("method", *RUN),
+        "setting": _text("its setting", *RUN),
+        "role": Variable(
+            dims=RUN, dtype="i1", flags=Role, long_name="public method, ours, or our default"
+        ),
+        "error": Variable(
+            dims=RUN,
+            long_name="error against the reference, scaled to order one",
+            nan_allowed=True,
+            rtol=1e-3,
+            atol=1e-12,
+        ),
+        "reference_error": Variable(
+            dims=RUN, long_name="bound on the error of the reference", rtol=1.0
+        ),
+        "wrong_events": Variable(
+            dims=RUN,
+            dtype="i4",
+            long_name="contact changes too many or too few, or cells decided wrongly; "
+            "-1 where the method reports none",
+        ),
+        "boundary_distance": Variable(
+            dims=RUN,
+            units="rad",
+            long_name="mean distance of a map's boundary from the reference's",
+            nan_allowed=True,
+            rtol=1e-3,
+        ),
+        "evaluations": Variable(
+            dims=RUN,
+            long_name="evaluations of the right-hand side (a Taylor step of order p counts p + 1)",
+        ),
+        "wall_time": Variable(
+            dims=RUN, units="s", long_name="median wall time of one solution", volatile=True
+        ),
+        "outcome": outcome(*RUN),
+    },
+)
+
+
+class Verdict(IntEnum):
+    """What a method's answer to a hard scene is worth."""
+
+    not_applicable = 0
+    right = 1
+    flagged = 2
+    silently_wrong = 3
+
+
+SCENE_METHOD = ("scene", "method")
+
+FAILURE_ATLAS = DatasetSchema(
+    name="failure_atlas",
+    title="Every method on every hard scene, judged by its error against a reference",
+    coordinates={
+        "scene": _text("hard scene", "scene"),
+        "method": _text("method", "method"),
+    },
+    variables={
+        "verdict": Variable(
+            dims=SCENE_METHOD, dtype="i1", flags=Verdict, long_name="verdict on the answer"
+        ),
+        "error": Variable(
+            dims=SCENE_METHOD,
+            long_name="error over the scene's tolerance scale",
+            nan_allowed=True,
+            rtol=1e-2,
+            atol=1e-9,
+        ),
+        "flagged": Variable(
+            dims=SCENE_METHOD, dtype="i1", flags={0: "no", 1: "yes"}, long_name="method warned"
+        ),
+        "message": _text("what the method said", *SCENE_METHOD),
+        "tolerance": Variable(dims=("scene",), long_name="largest error that counts as right"),
+        "role": Variable(dims=("method",), dtype="i1", flags=Role, long_name="whose method it is"),
+    },
+)

@@ -1,0 +1,63 @@
+"""Error against cost: how one solution is timed, and the table that holds all of them."""
+
+from __future__ import annotations
+
+import math
+import statistics
+import time
+from collections.abc import Callable, Iterable
+from typing import NamedTuple, TypeVar
+
+import numpy as np
+import xarray as xr
+
+from squealpipe.schema import Outcome, build
+from squealpipe.schema.comparison import WORK_PRECISION, Role
+
+_Result = TypeVar("_Result")
+
+_LONG = 0.2
+"""A run that takes longer than this, s, is timed once more only: the clock is exact enough."""
+_SHORT = 2e-3
+"""A run shorter than this, s, is called several times between two readings of the clock."""
+
+
+class Solution(NamedTuple):
+    """One method at one setting on one scene; the fields are those of the dataset."""
+
+    task: str
+    scene: str
+    method: str
+    setting: str
+    role: Role
+    error: float
+    wall_time: float
+    evaluations: float
+    reference_error: float
+    wrong_events: int = 0
+    boundary_distance: float = math.nan
+    outcome: Outcome = Outcome.converged
+
+
+def timed(run: Callable[[], _Result], repeats: int) -> tuple[_Result, float]:
+    """The result of a run and the median wall time of further ones, s; the first compiles."""
+    result = run()
+    once = _clocked(run, 1)
+    if once > _LONG:
+        return result, once
+    calls = 1 if once > _SHORT else 5
+    return result, statistics.median([_clocked(run, calls) for _ in range(repeats)])
+
+
+def _clocked(run: Callable[[], object], calls: int) -> float:
+    started = time.perf_counter()
+    for _ in range(calls):
+        run()
+    return (time.perf_counter() - started) / calls
+
+
+def work_precision(solutions: Iterable[Solution]) -> xr.Dataset:
+    """The dataset ``work_precision`` of some solutions."""
+    rows = list(solutions)
+    columns = {name: [getattr(row, name) for row in rows] for name in Solution._fields}
+    return build(WORK_PRECISION, columns, {"run": np.arange(len(rows))})
