@@ -5,7 +5,6 @@ from __future__ import annotations
 from enum import IntEnum
 
 from squealpipe.schema import DatasetSchema, Variable, outcome
-from squealpipe.schema.linear import ANGLES, MAP
 
 RUN = ("run",)
 
