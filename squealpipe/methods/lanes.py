@@ -12,8 +12,10 @@ neighbours, the order of the jobs or the number of processes.
 from __future__ import annotations
 
 import ctypes
-from collections.abc import Callable, Sequence
+import hashlib
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import heyoka
@@ -21,6 +23,7 @@ import numba
 import numpy as np
 from numba import types
 from numba.core import cgutils
+from numba.core import config as numba_config
 from numba.extending import intrinsic
 
 LANES = 8
@@ -65,19 +68,19 @@ def _address(typing_context: Any, value: Any) -> Any:  # noqa: ARG001
     return types.voidptr(types.intp), generate
 
 
-@numba.njit
+@numba.njit(error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True)
 def float_view(address: int, shape: Any) -> Any:
     """The float64 array at an address."""
     return numba.carray(_address(address), shape, np.float64)
 
 
-@numba.njit
+@numba.njit(error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True)
 def integer_view(address: int, shape: Any) -> Any:
     """The int64 array at an address."""
     return numba.carray(_address(address), shape, np.int64)
 
 
-@numba.njit
+@numba.njit(error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True)
 def evaluate(coefficients: np.ndarray, variable: int, lane: int, step: float) -> float:
     """A variable's Taylor polynomial at ``step`` from the start of the last step."""
     order = coefficients.shape[1] - 1
@@ -87,7 +90,7 @@ def evaluate(coefficients: np.ndarray, variable: int, lane: int, step: float) ->
     return value
 
 
-@numba.njit
+@numba.njit(error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True)
 def root_of(
     coefficients: np.ndarray, variable: int, lane: int, step: float, first: float, last: float
 ) -> float:
@@ -127,12 +130,30 @@ class Workspace:
         return ctypes.c_void_p(self.table.ctypes.data)
 
 
-def compile_advance(advance: Callable[..., Any]) -> Any:
-    """A C function from ``advance(table) -> busy lanes``; called at 0.2 µs from Python."""
+def compile_advance(advance: Callable[..., Any], sources: Iterable[Path]) -> Any:
+    """A C function from ``advance(table) -> busy lanes``; Python calls it in 0.2 µs.
+
+    Compiling takes seconds, so the machine code is kept beside the package's byte code, under a
+    digest of all ``sources`` that it is made from: an edit of any of them compiles anew.
+    """
+    digest = hashlib.sha256()
+    for source in sorted(sources):
+        digest.update(source.read_bytes())
     signature = types.intp(types.CPointer(types.intp))
-    compiled = numba.cfunc(signature, error_model="numpy")(advance)
-    wrapper = ctypes.CFUNCTYPE(ctypes.c_ssize_t, ctypes.c_void_p)(compiled.address)
-    return wrapper, compiled
+    previous = numba_config.CACHE_DIR
+    root = Path(previous) if previous else Path(__file__).parent / "__pycache__"
+    numba_config.CACHE_DIR = str(root / f"lanes-{digest.hexdigest()[:16]}")
+    try:
+        compiled = numba.cfunc(signature, error_model="numpy", cache=True)(advance)
+    except (RuntimeError, OSError):
+        # Nothing can be written there: compile in each process.
+        compiled = numba.cfunc(signature, error_model="numpy")(advance)
+    finally:
+        numba_config.CACHE_DIR = previous
+    function = ctypes.CFUNCTYPE(ctypes.c_ssize_t, ctypes.c_void_p)(compiled.address)
+    # The wrapper does not own the machine code.
+    function.code = compiled
+    return function
 
 
 def drive(integrator: Any, advance: Any, workspace: Workspace) -> None:

@@ -196,7 +196,7 @@ def _run_lanes(
         ],
     )
     integrator.set_time(0.0)
-    drive(integrator, lane_kernel()[0], workspace)
+    drive(integrator, lane_kernel(), workspace)
 
 
 @dataclass(frozen=True)

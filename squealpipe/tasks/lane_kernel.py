@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from functools import cache
+from pathlib import Path
 from typing import Any
 
 import numba
@@ -26,6 +27,7 @@ from squealpipe.methods.lanes import (
 from squealpipe.models import switching
 from squealpipe.models.switching import Rules, ScaledParameters
 from squealpipe.schema import Outcome
+from squealpipe.sources import closure
 
 # A job's order: its physical parameters (tasks.a1_system.PHYSICAL), then what is asked for.
 N_PHYSICAL = 10
@@ -72,9 +74,9 @@ for law in (
     contact.contact_force,
     *switching.COMPILED,
 ):
-    register_jitable(law)
+    register_jitable(no_cpython_wrapper=True, no_cfunc_wrapper=True)(law)
 
-_njit = numba.njit(error_model="numpy")
+_njit = numba.njit(error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True)
 
 
 @_njit
@@ -394,4 +396,4 @@ def _advance(table: Any) -> int:
 @cache
 def lane_kernel() -> Any:
     """The compiled round, built once a process."""
-    return compile_advance(_advance)
+    return compile_advance(_advance, [Path(__file__), *closure(__file__)])
