@@ -6,19 +6,28 @@ Snakemake; :func:`read_study` does the same for the command line.
 
 from __future__ import annotations
 
-import difflib
 import json
-import math
-from collections.abc import Iterator, Mapping
+import re
+from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, get_args
 
-import yaml
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    ConfigDict,
+    Field,
+    ValidationError,
+    ValidationInfo,
+    field_validator,
+)
 
+from squealpipe.mistakes import ConfigError, mistakes
 from squealpipe.parameters import Parameters, parameters_of
+from squealpipe.yaml_files import overlay, read_yaml
 
 __all__ = [
+    "PAPER",
     "ConfigError",
     "Section",
     "Study",
@@ -26,17 +35,27 @@ __all__ = [
     "parameters_of",
     "parse_study",
     "read_study",
+    "refuse_faulty",
 ]
 
 
-class ConfigError(ValueError):
-    """The configuration has mistakes; the message lists all of them."""
+PAPER = "workflow/config/paper.yaml"
+"""The paper's study, over which other configurations are laid."""
+
+SCIENTIFIC = re.compile(r"[-+]?\d+(\.\d*)?[eE][-+]?\d+")
 
 
 class Section(BaseModel):
     """A part of the configuration: unknown keys and text for numbers are mistakes."""
 
     model_config = ConfigDict(extra="forbid", strict=True, frozen=True, allow_inf_nan=False)
+
+    @field_validator("*", mode="before")
+    @classmethod
+    def _whole_numbers(cls, value: Any, info: ValidationInfo) -> Any:
+        """181.0 is 181 where a whole number is asked for, so that rewriting it changes nothing."""
+        kinds = _plain_types(cls.model_fields[str(info.field_name)].annotation)
+        return _as_integers(value) if int in kinds and float not in kinds else value
 
 
 Number = Annotated[float, Field(strict=True)]
@@ -60,9 +79,32 @@ class ParametersSection(Section):
 
 
 class LinearSection(Section):
-    """Linear maps over both spring angles from 0 to π."""
+    """Linear maps over both spring angles from 0 to π, and their areas over μ and κ."""
 
     points: Points = 181
+    share_points: Annotated[int, Field(ge=2, le=201)] = 25
+    mu_max: Positive = 1.0
+    kappa_max: Positive = 2.0
+
+
+def _ascending(limits: tuple[float, float]) -> tuple[float, float]:
+    if not limits[0] < limits[1]:
+        raise ValueError(f"the lower limit {limits[0]} must be below the upper one {limits[1]}")
+    return limits
+
+
+Range = Annotated[tuple[Positive, Positive], AfterValidator(_ascending)]
+
+
+class InferenceSection(Section):
+    """Quasi-random parameter sets that are judged by the paper's statements."""
+
+    samples: Annotated[int, Field(ge=16, le=1_000_000)] = 20_480
+    seed: Annotated[int, Field(ge=0)] = 2021
+    kappa: Range = (0.3, 1.3)
+    mu: Range = (0.02, 0.8)
+    length_ratio: Range = (2.0, 100.0)
+    speed_ratio: Range = (0.1, 316.0)
 
 
 class Study(Section):
@@ -71,6 +113,7 @@ class Study(Section):
     results: Annotated[str, Field(pattern=r"^[\w./-]+$")] = "results"
     parameters: ParametersSection = ParametersSection()
     linear: LinearSection = LinearSection()
+    inference: InferenceSection = InferenceSection()
 
     def slice(self, *paths: str) -> dict[str, Any]:
         """Canonical part of the configuration: numbers cast, keys in a fixed order.
@@ -88,6 +131,18 @@ class Study(Section):
         return json.loads(json.dumps(part, sort_keys=True))  # type: ignore[no-any-return]
 
 
+def _plain_types(annotation: Any) -> set[type]:
+    """The types that occur in an annotation, at any depth."""
+    inner = [kind for part in get_args(annotation) for kind in _plain_types(part)]
+    return {annotation, *inner} if isinstance(annotation, type) else set(inner)
+
+
+def _as_integers(value: Any) -> Any:
+    if isinstance(value, tuple):
+        return tuple(map(_as_integers, value))
+    return int(value) if isinstance(value, float) and value.is_integer() else value
+
+
 def read_study(*paths: str | Path) -> Study:
     """A validated study from one or several YAML files, later ones laid over earlier ones.
 
@@ -96,75 +151,60 @@ def read_study(*paths: str | Path) -> Study:
         ConfigError: every mistake found, with its key, value and what is allowed.
     """
     merged: dict[str, Any] = {}
+    faults: list[str] = []
     for path in map(Path, paths):
-        if not path.is_file():
-            raise FileNotFoundError(f"no configuration {path}; give a YAML file that exists")
-        try:
-            content = yaml.safe_load(path.read_text(encoding="utf-8"))
-        except yaml.YAMLError as error:
-            raise ConfigError(f"{path} is not YAML: {error}") from error
-        if not isinstance(content or {}, dict):
-            raise ConfigError(f"{path} must hold keys and values, not {type(content).__name__}")
-        _overlay(merged, content or {})
-    return parse_study(merged)
+        content, found = read_yaml(path)
+        faults.extend(found)
+        overlay(merged, content)
+    return parse_study(merged, faults)
 
 
-def parse_study(content: Mapping[str, Any]) -> Study:
+def parse_study(content: Mapping[str, Any], faults: Sequence[str] = ()) -> Study:
     """Validate a configuration mapping.
+
+    Args:
+        content: keys and values.
+        faults: mistakes found before, in the text; told together with those of the values.
 
     Raises:
         ConfigError: as :func:`read_study`.
     """
     try:
-        return Study.model_validate(_lists_to_tuples(dict(content)))
+        study = Study.model_validate(_plain(dict(content)))
     except ValidationError as error:
-        raise ConfigError(
-            "the configuration has mistakes:\n" + "\n".join(_messages(error))
-        ) from error
+        raise ConfigError([*faults, *mistakes(error, Study)]) from error
+    if faults:
+        raise ConfigError(faults)
+    return study
 
 
-def _overlay(base: dict[str, Any], top: Mapping[str, Any]) -> None:
-    for key, value in top.items():
-        if isinstance(value, Mapping) and isinstance(base.get(key), dict):
-            _overlay(base[key], value)
-        else:
-            base[key] = value
+def refuse_faulty(*paths: str | Path) -> None:
+    """Check the text of configuration files before another program reads them.
+
+    Raises:
+        FileNotFoundError: a file is missing.
+        ConfigError: a key stands twice, there are aliases, tags or code, or it is not YAML.
+    """
+    faults = [fault for path in paths for fault in read_yaml(Path(path))[1]]
+    if faults:
+        raise ConfigError(faults)
 
 
-def _lists_to_tuples(value: Any) -> Any:
+def _plain(value: Any) -> Any:
+    """Lists as tuples, and numbers like 1e-9, which YAML 1.1 takes for text, as numbers."""
     if isinstance(value, Mapping):
-        return {key: _lists_to_tuples(item) for key, item in value.items()}
-    return tuple(map(_lists_to_tuples, value)) if isinstance(value, list) else value
-
-
-def _messages(error: ValidationError) -> Iterator[str]:
-    for fault in error.errors():
-        path = ".".join(map(str, fault["loc"]))
-        if fault["type"] == "extra_forbidden":
-            known = _known_keys(fault["loc"][:-1])
-            near = difflib.get_close_matches(str(fault["loc"][-1]), known, n=1)
-            hint = f"did you mean {near[0]!r}?" if near else f"known: {', '.join(known)}"
-            yield f"  {path}: unknown key; {hint}"
-            continue
-        value = fault["input"]
-        remedy = ""
-        if isinstance(value, str) and "pi" in value.replace("π", "pi"):
-            remedy = "; write angles as plain numbers, in multiples of π"
-        if isinstance(value, float) and not math.isfinite(value):
-            remedy = "; a finite number is needed"
-        yield f"  {path} = {value!r}: {fault['msg'][0].lower()}{fault['msg'][1:]}{remedy}"
-
-
-def _known_keys(location: tuple[int | str, ...]) -> list[str]:
-    model: Any = Study
-    for key in location:
-        annotation = model.model_fields[key].annotation if str(key) in model.model_fields else None
-        if annotation is None or not isinstance(annotation, type):
-            return []
-        model = annotation
-    return sorted(model.model_fields) if hasattr(model, "model_fields") else []
+        return {key: _plain(item) for key, item in value.items()}
+    if isinstance(value, list):
+        return tuple(map(_plain, value))
+    if isinstance(value, str) and SCIENTIFIC.fullmatch(value):
+        return float(value)
+    return value
 
 
 def json_schema() -> str:
     """The text of ``workflow/config/schema.json``."""
     return json.dumps(Study.model_json_schema(), indent=2, sort_keys=True) + "\n"
+
+
+if __name__ == "__main__":
+    Path("workflow/config/schema.json").write_text(json_schema(), encoding="utf-8")

@@ -17,6 +17,7 @@ from squealpipe.store.differences import VariableDifference, Verdict, align, dif
 from squealpipe.store.netcdf import load
 from squealpipe.store.provenance import VOLATILE_ATTRIBUTES
 from squealpipe.store.runs import dataset_files, locate
+from squealpipe.yaml_files import flat
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -188,7 +189,7 @@ def changed_environment(a: xr.Dataset, b: xr.Dataset) -> dict[str, tuple[Any, An
 
 def _configuration(dataset: xr.Dataset) -> dict[str, Any]:
     try:
-        return _flat(json.loads(dataset.attrs.get("config", "{}")))
+        return flat(json.loads(dataset.attrs.get("config", "{}")))
     except ValueError:
         return {"config": dataset.attrs["config"]}
 
@@ -197,20 +198,9 @@ def _opened(attributes: dict[str, Any]) -> dict[str, Any]:
     """Attributes with the versions of libraries one by one."""
     text = attributes.pop("libraries", "{}")
     try:
-        return {**attributes, **_flat({"libraries": json.loads(text)})}
+        return {**attributes, **flat({"libraries": json.loads(text)})}
     except ValueError:
         return {**attributes, "libraries": text}
-
-
-def _flat(tree: Mapping[str, Any], stem: str = "") -> dict[str, Any]:
-    flat: dict[str, Any] = {}
-    for key, value in tree.items():
-        path = f"{stem}.{key}" if stem else str(key)
-        if isinstance(value, Mapping):
-            flat.update(_flat(value, path))
-        else:
-            flat[path] = value
-    return flat
 
 
 def _changes(a: dict[str, Any], b: dict[str, Any]) -> dict[str, tuple[Any, Any]]:

@@ -1,0 +1,104 @@
+"""YAML files as plain data: bounded, without code, aliases or a key written twice."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+import yaml
+
+LARGEST = 2**20
+DEEPEST = 20
+CODE = "__use_yte__"
+"""The key by which a file would ask Snakemake to evaluate its text as Python."""
+
+PLAIN_TAGS = frozenset(f"tag:yaml.org,2002:{kind}" for kind in ("str", "int", "float", "bool"))
+
+
+def read_yaml(path: Path) -> tuple[dict[str, Any], list[str]]:
+    """Content of a file and its faults; with faults the content may be incomplete.
+
+    Raises:
+        FileNotFoundError: no such file.
+    """
+    if not path.is_file():
+        raise FileNotFoundError(f"no configuration {path}; give a YAML file that exists")
+    size = path.stat().st_size
+    if size > LARGEST:
+        return {}, [f"{path} has {size} bytes; a configuration has at most {LARGEST}"]
+    try:
+        text = path.read_text(encoding="utf-8")
+        faults = [f"{path}, line {line}: {what}" for line, what in _faults(text)]
+        fatal = any("deep" in fault or "alias" in fault or "tag" in fault for fault in faults)
+        content = {} if fatal else yaml.safe_load(text)
+    except UnicodeDecodeError as error:
+        return {}, [f"{path} is not UTF-8 text: {error}"]
+    except (yaml.YAMLError, ValueError) as error:
+        return {}, [f"{path} is not YAML: {' '.join(str(error).split())}"]
+    if content is None:
+        return {}, faults
+    if not isinstance(content, dict):
+        return {}, [*faults, f"{path} must hold keys and values, not {type(content).__name__}"]
+    content.pop(CODE, None)
+    return content, faults
+
+
+def overlay(base: dict[str, Any], top: Mapping[str, Any]) -> None:
+    """Lay one configuration over another, key by key, in place."""
+    for key, value in top.items():
+        if isinstance(value, Mapping) and isinstance(base.get(key), dict):
+            overlay(base[key], value)
+        else:
+            base[key] = value
+
+
+def flat(tree: Mapping[str, Any], stem: str = "") -> dict[str, Any]:
+    """Dotted key → value, for all that is not a mapping."""
+    found: dict[str, Any] = {}
+    for key, value in tree.items():
+        path = f"{stem}.{key}" if stem else str(key)
+        if isinstance(value, Mapping):
+            found.update(flat(value, path))
+        else:
+            found[path] = value
+    return found
+
+
+def _faults(text: str) -> Iterator[tuple[int, str]]:
+    """Line and fault, from the events of the text, before anything is built from it."""
+    stack: list[set[str] | None] = []
+    at_key: list[bool] = []
+    for event in yaml.parse(text, Loader=yaml.SafeLoader):
+        line = event.start_mark.line + 1 if event.start_mark else 0
+        if isinstance(event, yaml.MappingEndEvent | yaml.SequenceEndEvent):
+            stack.pop()
+            at_key.pop()
+            continue
+        if not isinstance(event, yaml.NodeEvent):
+            continue
+        if isinstance(event, yaml.AliasEvent):
+            yield line, f"alias *{event.anchor}: write the value out"
+        elif getattr(event, "tag", None) not in {None, "!", *PLAIN_TAGS}:
+            yield (
+                line,
+                f"tag {getattr(event, 'tag', None)}: a configuration holds plain values only",
+            )
+        if isinstance(event, yaml.ScalarEvent) and stack and stack[-1] is not None and at_key[-1]:
+            yield from ((line, what) for what in _key_faults(event.value, stack[-1]))
+            stack[-1].add(event.value)
+        if stack:
+            at_key[-1] = not at_key[-1]
+        if isinstance(event, yaml.CollectionStartEvent):
+            stack.append(set() if isinstance(event, yaml.MappingStartEvent) else None)
+            at_key.append(True)
+            if len(stack) > DEEPEST:
+                yield line, f"more than {DEEPEST} levels deep"
+                return
+
+
+def _key_faults(key: str, seen: set[str]) -> Iterator[str]:
+    if key in seen:
+        yield f"key {key!r} stands twice; keep one"
+    if key == CODE:
+        yield f"key {CODE!r} would run code; a configuration is data"

@@ -1,0 +1,204 @@
+"""A configuration: every mistake at once, in words; one meaning, one canonical slice."""
+
+import difflib
+import os
+import textwrap
+from pathlib import Path
+
+import pytest
+
+from squealpipe.config import (
+    ConfigError,
+    Study,
+    json_schema,
+    parse_study,
+    read_study,
+    refuse_faulty,
+)
+from squealpipe.mistakes import known_keys
+from squealpipe.parameters import Parameters, parameters_of
+from squealpipe.yaml_files import flat
+
+ROOT = Path(__file__).resolve().parents[1]
+PAPER = ROOT / "workflow/config/paper.yaml"
+
+
+@pytest.fixture
+def written(tmp_path):
+    def write(text):
+        path = tmp_path / "mine.yaml"
+        path.write_text(textwrap.dedent(text), encoding="utf-8")
+        return path
+
+    return write
+
+
+def complaint(path):
+    with pytest.raises(ConfigError) as caught:
+        read_study(path)
+    return str(caught.value)
+
+
+def test_every_mistake_is_told_at_once(written):
+    text = complaint(
+        written(
+            """
+            parameters:
+              mass: -1
+              mu: heavy
+              k3: .nan
+              belt_speed: .inf
+              preload: true
+              lenght1: 5
+            linear:
+              points: 2
+              points: 61.5
+            mu: 0.4
+            colour: red
+            """
+        )
+    )
+    for expected in (
+        "parameters.mass = -1: input should be greater than 0",
+        "parameters.mu = 'heavy': input should be a valid number",
+        "parameters.k3 = nan: ",
+        "parameters.belt_speed = inf: ",
+        "parameters.preload = True: input should be a valid number",
+        "parameters.lenght1: unknown key; did you mean 'length1'?",
+        "line 11: key 'points' stands twice",
+        "linear.points = 61.5: ",
+        "mu: unknown key; did you mean parameters.mu?",
+        "colour: unknown key; known: ",
+    ):
+        assert expected in text
+
+
+def test_angles_as_text_are_told_how_to_write_them(written):
+    assert "multiples of π" in complaint(written("parameters: {mu: 0.4π}"))
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("- 1\n- 2", "must hold keys and values, not list"),
+        ("just text", "must hold keys and values, not str"),
+        ("a: [1, 2", "is not YAML"),
+        ("a: b: c", "is not YAML"),
+        ("a:\n\t- b", "is not YAML"),
+        ("parameters: 5", "parameters = 5: input should be a valid dictionary"),
+        ("parameters: {mass: [1, 2]}", "parameters.mass = (1, 2)"),
+        ("parameters: {mass: null}", "parameters.mass = None"),
+        ("parameters: {mass: {a: 1}}", "parameters.mass = {'a': 1}"),
+        ("parameters: {mass: 2020-01-01}", "parameters.mass = datetime.date"),
+        ("1: 2", "1 = 1: keys should be strings"),
+        ("results: a b; rm -rf x", "results = "),
+    ],
+)
+def test_text_that_is_no_configuration(written, text, expected):
+    assert expected in complaint(written(text))
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        '!!python/object/apply:os.system ["touch ran"]',
+        'parameters: {mass: !!python/object/apply:os.system ["touch ran"]}',
+        "parameters: {mass: !!python/name:os.system }",
+        '__use_yte__: true\nparameters:\n  mass: ?__import__("os").system("touch ran")',
+    ],
+)
+def test_no_code_runs(written, text, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    path = written(text)
+    complaint(path)
+    with pytest.raises(ConfigError):
+        refuse_faulty(path)
+    assert not Path("ran").exists()
+
+
+def test_files_cannot_explode(written, tmp_path):
+    bomb = "a: &a [1, 2]\n" + "".join(
+        f"{new}: &{new} [*{old}, *{old}, *{old}]\n"
+        for old, new in zip("abcdefghijklmn", "bcdefghijklmno", strict=True)
+    )
+    assert "alias *a: write the value out" in complaint(written(bomb))
+    assert "levels deep" in complaint(written("a: " + "[" * 5000 + "]" * 5000))
+    assert "at most" in complaint(written("# " + "x" * 2**21))
+    assert "more than 4000 digits" in complaint(
+        written("linear: {points: " + "9" * 5000 + "}")
+    ) or ("linear.points" in complaint(written("linear: {points: " + "9" * 4000 + "}")))
+    assert "parameters.mass" in complaint(written("parameters: {mass: " + "9" * 400 + "}"))
+    path = tmp_path / "binary.yaml"
+    path.write_bytes(os.urandom(64) + b"\xff\xfe")
+    complaint(path)
+
+
+def test_missing_file_and_folder(tmp_path):
+    for path in (tmp_path / "none.yaml", tmp_path):
+        with pytest.raises(FileNotFoundError, match="give a YAML file that exists"):
+            read_study(path)
+
+
+def test_empty_file_is_the_paper_study(written):
+    assert read_study(PAPER, written("")) == read_study(PAPER) == Study()
+
+
+def test_quick_study_differs_in_grids_and_horizons_only():
+    quick = flat(read_study(PAPER, ROOT / "workflow/config/quick.yaml").model_dump(mode="json"))
+    paper = flat(Study().model_dump(mode="json"))
+    assert not [key for key in paper if key.startswith("parameters.") and quick[key] != paper[key]]
+
+
+def test_overlay_keeps_what_it_does_not_name(written):
+    study = read_study(PAPER, written("parameters: {mu: 0.4}"))
+    assert parameters_of(study.slice("parameters")) == Parameters(mu=0.4)
+
+
+@pytest.mark.parametrize(
+    ("first", "second"),
+    [
+        ("parameters: {mass: 1}", "parameters: {mass: 1.0}"),
+        ("parameters: {sigma: 1000}", "parameters: {sigma: 1e3}"),
+        ("parameters: {sigma: 1000}", "parameters: {sigma: 1.0e+3}"),
+        ("linear: {points: 61}", "linear: {points: 61.0}"),
+        ("linear: {points: 61}", "# a comment\nlinear:\n    'points' :   61  # more"),
+        ("parameters: {mass: 2, mu: 0.1}", '{"parameters": {"mu": 0.1, "mass": 2.0}}'),
+    ],
+)
+def test_one_meaning_has_one_slice(written, first, second):
+    slices = [
+        repr(read_study(written(text)).slice("linear", "parameters")) for text in (first, second)
+    ]
+    assert slices[0] == slices[1]
+
+
+def test_slice_holds_only_what_is_asked_for():
+    assert Study().slice("linear.points") == {"linear.points": Study().linear.points}
+    with pytest.raises(KeyError):
+        Study().slice("linear.nothing")
+
+
+def test_mapping_from_the_command_line_is_checked_too():
+    with pytest.raises(ConfigError, match="parameters = 'mu=-1'"):
+        parse_study({"parameters": "mu=-1"})
+
+
+def test_default_values_are_those_of_the_paper_file():
+    assert read_study(PAPER) == Study()
+    written = set(flat(__import__("yaml").safe_load(PAPER.read_text())))
+    keys = set(flat(Study().model_dump(mode="json")))
+    assert written == keys, f"paper.yaml and the types differ in {sorted(written ^ keys)}"
+
+
+def test_json_schema_is_generated_from_the_types():
+    path = ROOT / "workflow/config/schema.json"
+    stored = path.read_text(encoding="utf-8") if path.is_file() else ""
+    difference = "\n".join(
+        difflib.unified_diff(stored.splitlines(), json_schema().splitlines(), "stored", "types")
+    )
+    assert stored == json_schema(), f"{difference}\n\nmend with: python -m squealpipe.config"
+
+
+def test_known_keys_reach_every_value():
+    leaves = set(flat(Study().model_dump(mode="json")))
+    assert leaves <= set(known_keys(Study))
