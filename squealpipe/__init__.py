@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from squealpipe.parameters import SCENES, Parameters, Scene
     from squealpipe.store.netcdf import load, save
     from squealpipe.tasks.backbones import backbone
+    from squealpipe.tasks.inference import infer_parameters
     from squealpipe.tasks.linear import natural_frequencies, quasi_static_map, stability_map
     from squealpipe.tasks.orbits import periodic_orbit
 
@@ -24,6 +25,7 @@ _HOME = {
     "load": "squealpipe.store.netcdf",
     "periodic_orbit": "squealpipe.tasks.orbits",
     "save": "squealpipe.store.netcdf",
+    "infer_parameters": "squealpipe.tasks.inference",
     "natural_frequencies": "squealpipe.tasks.linear",
     "quasi_static_map": "squealpipe.tasks.linear",
     "stability_map": "squealpipe.tasks.linear",
@@ -35,6 +37,7 @@ __all__ = [
     "Scene",
     "backbone",
     "load",
+    "infer_parameters",
     "natural_frequencies",
     "periodic_orbit",
     "quasi_static_map",
