@@ -1,8 +1,10 @@
 """The study: every dataset, figure and the report, from one configuration."""
 
-from squealpipe.config import parse_study
+from squealpipe.config import PAPER, parse_study, read_study
 
-configfile: "workflow/config/paper.yaml"
+read_study(PAPER, *workflow.configfiles)  # every mistake in the files, with its line, at once
+
+configfile: PAPER
 
 STUDY = parse_study(config)
 RESULTS = STUDY.results
@@ -10,6 +12,8 @@ RESULTS = STUDY.results
 include: "workflow/rules/common.smk"
 include: "workflow/rules/model.smk"
 include: "workflow/rules/linear.smk"
+include: "workflow/rules/comparison.smk"
+include: "workflow/rules/assumptions.smk"
 include: "workflow/rules/claims.smk"
 include: "workflow/rules/report.smk"
 

@@ -35,7 +35,6 @@ __all__ = [
     "parameters_of",
     "parse_study",
     "read_study",
-    "refuse_faulty",
 ]
 
 
@@ -107,6 +106,70 @@ class InferenceSection(Section):
     speed_ratio: Range = (0.1, 316.0)
 
 
+Settings = Annotated[tuple[Positive, ...], Field(min_length=1)]
+Repeats = Annotated[int, Field(ge=1, le=100)]
+
+
+class IntegrationComparison(Section):
+    """Time integration of A1 by all methods: horizon and steps in √(m/k1), σ times l_pre."""
+
+    horizon: Positive = 30.0
+    tolerances: Settings = (1e-4, 1e-6, 1e-8, 1e-10, 1e-14)
+    steps: Settings = (0.1, 0.01, 1e-3, 1e-4)
+    sigmas: Settings = (10.0, 100.0, 1e3, 1e4)
+    repeats: Repeats = 3
+
+
+class ValidityComparison(Section):
+    """The validity map at several tolerances, horizons and grids."""
+
+    points: Points = 91
+    fine_points: Points = 361
+    tolerances: Settings = (1e-3, 1e-6, 1e-12)
+    horizons: Settings = (25.0, 50.0, 100.0, 200.0, 400.0)
+    steps: Settings = (0.1, 0.03)
+
+
+class HarmonicComparison(Section):
+    """Harmonic balance over N_h, N/(2 N_h) and σ l_pre."""
+
+    harmonics: Annotated[tuple[Annotated[int, Field(ge=1, le=512)], ...], Field(min_length=1)] = (
+        4,
+        8,
+        16,
+        32,
+        64,
+    )
+    oversampling: Annotated[
+        tuple[Annotated[int, Field(ge=1, le=256)], ...], Field(min_length=1)
+    ] = (1, 4, 16)
+    sigmas: Settings = (10.0, 100.0, 1e3)
+    repeats: Repeats = 3
+
+
+class OnsetComparison(Section):
+    """Eigenvalues at distances 1 − μ/μ_c = 2⁻ⁿ from flutter onset."""
+
+    halvings: Annotated[tuple[Annotated[int, Field(ge=1, le=50)], ...], Field(min_length=1)] = (
+        4,
+        10,
+        20,
+        30,
+        40,
+        50,
+    )
+    repeats: Repeats = 3
+
+
+class ComparisonSection(Section):
+    """Speed against accuracy."""
+
+    integration: IntegrationComparison = IntegrationComparison()
+    validity: ValidityComparison = ValidityComparison()
+    harmonic: HarmonicComparison = HarmonicComparison()
+    onset: OnsetComparison = OnsetComparison()
+
+
 class Study(Section):
     """A whole study."""
 
@@ -114,6 +177,7 @@ class Study(Section):
     parameters: ParametersSection = ParametersSection()
     linear: LinearSection = LinearSection()
     inference: InferenceSection = InferenceSection()
+    comparison: ComparisonSection = ComparisonSection()
 
     def slice(self, *paths: str) -> dict[str, Any]:
         """Canonical part of the configuration: numbers cast, keys in a fixed order.
@@ -176,18 +240,6 @@ def parse_study(content: Mapping[str, Any], faults: Sequence[str] = ()) -> Study
     if faults:
         raise ConfigError(faults)
     return study
-
-
-def refuse_faulty(*paths: str | Path) -> None:
-    """Check the text of configuration files before another program reads them.
-
-    Raises:
-        FileNotFoundError: a file is missing.
-        ConfigError: a key stands twice, there are aliases, tags or code, or it is not YAML.
-    """
-    faults = [fault for path in paths for fault in read_yaml(Path(path))[1]]
-    if faults:
-        raise ConfigError(faults)
 
 
 def _plain(value: Any) -> Any:

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import difflib
 import math
+import re
 import typing
 from collections.abc import Iterator, Sequence
 from typing import Any
 
 from pydantic import BaseModel, ValidationError
+
+NUMBER_AS_TEXT = re.compile(r"\s*[-+]?[\d.]+([eE][-+]?\d+)?\s*")
 
 LONGEST = 80
 """Characters of a value that a message quotes."""
@@ -80,6 +83,8 @@ def _remedy(value: object) -> str:
         return "; write angles as plain numbers, in multiples of π"
     if isinstance(value, float) and not math.isfinite(value):
         return "; a finite number is needed"
-    if isinstance(value, str):
-        return "; write numbers without quotes"
-    return ""
+    return "; write numbers without quotes" if _is_number_as_text(value) else ""
+
+
+def _is_number_as_text(value: object) -> bool:
+    return isinstance(value, str) and NUMBER_AS_TEXT.fullmatch(value) is not None

@@ -23,9 +23,13 @@ def figure(name):
 
 
 def sources(script):
-    """Package modules whose edit makes the script's result stale."""
-    found = closure(ROOT / f"workflow/scripts/{script}.py")
-    return [str(path.relative_to(ROOT)) for path in found]
+    """The script and the package modules whose edit makes its result stale.
+
+    As inputs they are judged by checksum; Snakemake's own trigger for scripts goes by date and
+    would take a fresh checkout for an edit (so the profiles leave it out).
+    """
+    path = ROOT / f"workflow/scripts/{script}.py"
+    return [str(found.relative_to(ROOT)) for found in [path, *closure(path)]]
 
 
 def part(*paths):
