@@ -101,8 +101,8 @@ def modes_are_switched(run: Run) -> Finding:
         "≤",
         ALONE,
         f"Mode 1 (ω = {_linear_omega(first):.4g}) reaches y = {reached:.3g} l_pre and so loses "
-        f"contact; in mode 2 (ω = {_linear_omega(second):.4g}) y takes {y_amplitude / x_amplitude:.1g} "
-        "of the amplitude of x.",
+        f"contact; in mode 2 (ω = {_linear_omega(second):.4g}) the y amplitude is "
+        f"{y_amplitude / x_amplitude:.1g} of that of x.",
         also=reached > 1,
     )
 

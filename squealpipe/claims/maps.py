@@ -42,13 +42,14 @@ def on_grid_of(dataset: xr.Dataset, other: xr.Dataset) -> xr.Dataset:
 
 def angle_sum_over_pi(dataset: xr.Dataset) -> xr.DataArray:
     """(α1 + α2)/π over a map."""
-    return (dataset.alpha1 + dataset.alpha2) / np.pi
+    total: xr.DataArray = (dataset.alpha1 + dataset.alpha2) / np.pi
+    return total
 
 
 def is_multiple(values: xr.DataArray, of: float = 1.0, *, odd: bool = False) -> xr.DataArray:
     """Where values are a whole (or odd) multiple, to a millionth."""
     ratio = values / of
-    whole = np.abs(ratio - ratio.round()) < 1e-6
+    whole: xr.DataArray = abs(ratio - ratio.round()) < 1e-6
     return whole & (ratio.round() % 2 == 1) if odd else whole
 
 

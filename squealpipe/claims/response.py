@@ -29,7 +29,7 @@ def events(motion: xr.Dataset, kind: str) -> np.ndarray:
     """Times of the events of a kind, in the run's unit of time."""
     meanings = motion.event_kind.attrs["flag_meanings"].split()
     value = motion.event_kind.attrs["flag_values"][meanings.index(kind)]
-    return motion.event_time.values[motion.event_kind.values == value]
+    return np.asarray(motion.event_time.values[motion.event_kind.values == value])
 
 
 def contact_is_kept(name: str) -> Callable[[Run], Finding]:
@@ -81,7 +81,7 @@ def responses_differ_little(run: Run) -> Finding:
         spread,
         "≤",
         LITTLE,
-        f"The lowest forces are {_listed(lowest)} and the highest {_listed(highest)} of the preload.",
+        f"The lowest forces are {_listed(lowest)} of the preload, the highest {_listed(highest)}.",
     )
 
 
@@ -114,7 +114,7 @@ def mass_jumps(run: Run) -> Finding:
         flights,
         "≥",
         2,
-        f"{flights} flights up to t = {float(motion.time[-1]):g}, as high as y = {height:.3g} l_pre; "
+        f"{flights} flights up to t = {float(motion.time[-1]):g}, up to y = {height:.3g} l_pre; "
         "the springs lie along x and have no vertical stiffness to first order.",
     )
 
@@ -129,8 +129,8 @@ def hammering_occurs(run: Run) -> Finding:
         peak,
         ">",
         1.0,
-        f"At (0.83π, 0.83π) contact is lost {lost} times and regained {found} times, with forces up "
-        f"to {peak:.3g} of the preload; over all angles contact is lost in "
+        f"At (0.83π, 0.83π) contact is lost {lost} times and regained {found} times, with forces "
+        f"up to {peak:.3g} of the preload; over all angles contact is lost in "
         f"{100 * share(lost_cells):.3g} % of the cells.",
         also=lost > 0 and found > 0,
     )

@@ -86,7 +86,8 @@ def invalid_where_separated(run: Run) -> Finding:
         share(lost),
         ">",
         LARGE_REGION,
-        f"A1 loses contact in {int(lost.sum())} of {lost.size} cells; {int((~lost).sum())} keep it.",
+        f"A1 loses contact in {int(lost.sum())} of {lost.size} cells and keeps it in "
+        f"{int((~lost).sum())}.",
     )
 
 
@@ -151,7 +152,8 @@ def reaction_is_that_of_equilibrium(run: Run) -> Finding:
         0,
         f"{refused} cells are not possible by A2 though the equilibrium of Eq. (15) presses on "
         f"the belt; {allowed} are possible though it does not, among them (0.4π, 0.6π): "
-        f"R_n = {float(scene.reaction_force):.3g}, N* = {abs(float(scene.contact_force_static)):.2g}.",
+        f"R_n = {float(scene.reaction_force):.3g}, "
+        f"N* = {abs(float(scene.contact_force_static)):.2g}.",
     )
 
 
@@ -182,11 +184,13 @@ def nondimensional_time_exists(run: Run) -> Finding:
 
 
 def _unstable(run: Run) -> xr.DataArray:
-    return run["stability_map"].regime_linear > 0
+    unstable: xr.DataArray = run["stability_map"].regime_linear > 0
+    return unstable
 
 
 def _negative_coupling(run: Run, sliding: xr.Dataset) -> xr.DataArray:
     """K12 < 0, told from A2's reaction force, which is then below the actuation k3·l_pre."""
     actuation = run.parameters.k3 * run.parameters.preload
     ratio = sliding.reaction_force / actuation
-    return (ratio >= 0) & (ratio < 1 - 1e-12)
+    negative: xr.DataArray = (ratio >= 0) & (ratio < 1 - 1e-12)
+    return negative

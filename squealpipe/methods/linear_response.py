@@ -1,0 +1,62 @@
+"""Motion of an undamped linear system from rest under a constant load, by an exact recurrence.
+
+r̈ = b − A r with r(0) = ṙ(0) = 0 has r(t) = (I − cos(√A t)) A⁻¹ b, so samples at equal steps obey
+r(t + h) = 2 cos(√A h) r(t) − r(t − h) + 2 (I − cos(√A h)) A⁻¹ b. Both matrices are entire functions
+of A: no eigenvalues are needed, and singular, defective and unstable matrices are no exception.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+TERMS = 14
+"""Terms of the power series; below ``LARGEST_STEP`` the rest is under round-off."""
+
+LARGEST_STEP = 0.5
+"""Largest h √‖A‖."""
+
+
+def response_from_rest(
+    matrix: np.ndarray, load: np.ndarray, step: float, steps: int
+) -> Iterator[np.ndarray]:
+    """r at t = 0, h, 2h, …
+
+    Args:
+        matrix: (…, n, n), A in 1/s².
+        load: (…, n), b in m/s².
+        step: h, s.
+        steps: number of steps after t = 0.
+
+    Yields:
+        Arrays (…, n), m.
+
+    Raises:
+        ValueError: the step is too long for the stiffest of the systems.
+    """
+    norm = float(np.abs(matrix).sum(axis=-1).max())
+    if step * np.sqrt(norm) > LARGEST_STEP:
+        raise ValueError(
+            f"step = {step!r}: must be at most {LARGEST_STEP / np.sqrt(norm):.3g} here"
+        )
+    cosine, half_push = _series(matrix * (step * step), step)
+    push = 2.0 * np.einsum("...ij,...j->...i", half_push, load)
+    earlier = np.zeros(push.shape)
+    now = 0.5 * push
+    yield earlier
+    for _ in range(steps):
+        yield now
+        earlier, now = now, 2.0 * np.einsum("...ij,...j->...i", cosine, now) - earlier + push
+
+
+def _series(scaled: np.ndarray, step: float) -> tuple[np.ndarray, np.ndarray]:
+    """cos(√A h) and (I − cos(√A h)) A⁻¹ from their power series in A h²."""
+    identity = np.broadcast_to(np.eye(scaled.shape[-1]), scaled.shape)
+    cosine, push, power, factor = identity.copy(), np.zeros(scaled.shape), identity, 1.0
+    for term in range(1, TERMS):
+        factor /= -(2 * term - 1) * (2 * term)
+        push = push - factor * power
+        power = power @ scaled
+        cosine = cosine + factor * power
+    return cosine, step * step * push
