@@ -32,11 +32,10 @@ class MotionFlag(IntEnum):
     """Meaning of motion."""
 
     perpetual_contact = 0
-    stick_slip_in_contact = 1
+    stick_slip = 1
     periodic_hammering = 2
     irregular_hammering = 3
     whirl = 4
-    undecided = 5
 
 
 def _series(units: str, long_name: str, **more: object) -> Variable:
@@ -87,6 +86,37 @@ VALIDITY_MAP = DatasetSchema(
             dims=MAP, dtype="bool", long_name="whether contact is lost before t_end"
         ),
         "regime_linear": REGIME_LINEAR,
+        "t_end": Variable(units="s", long_name="end of each run"),
+        "outcome": outcome(*MAP),
+    },
+)
+
+HAMMERING_MAP = DatasetSchema(
+    name="hammering_map",
+    title="Impacts, forces and kind of motion of model A1 over both spring angles",
+    coordinates=ANGLES,
+    variables={
+        "impact_rate": Variable(
+            dims=MAP, units="s-1", long_name="returns to the belt per unit of time"
+        ),
+        "separated_fraction": Variable(dims=MAP, long_name="share of the time off the belt"),
+        "peak_contact_force": Variable(
+            dims=MAP, long_name="largest contact force over the preload k3 l_pre"
+        ),
+        "stick_fraction": Variable(dims=MAP, long_name="share of the time sticking to the belt"),
+        "max_displacement": Variable(
+            dims=MAP, units="m", long_name="largest distance from the start position"
+        ),
+        "turns": Variable(dims=MAP, long_name="net turns around the middle of the fixed ends"),
+        "lyapunov_exponent": Variable(
+            dims=MAP, units="s-1", long_name="finite-time growth rate of a small perturbation"
+        ),
+        "predictability_horizon": Variable(
+            dims=MAP,
+            units="s",
+            long_name="time at which round-off has grown to l_pre/1000 (t_end: not before)",
+        ),
+        "motion": Variable(dims=MAP, dtype="i1", flags=MotionFlag, long_name="kind of motion"),
         "t_end": Variable(units="s", long_name="end of each run"),
         "outcome": outcome(*MAP),
     },
