@@ -158,3 +158,36 @@ LINEAR_SHARES = DatasetSchema(
         "divergence_regularized": _share(("sharpness",), "divergence with K3 of Eq. (8d)"),
     },
 )
+
+MODE_COUPLING = DatasetSchema(
+    name="mode_coupling",
+    title="Minimal mode-coupling model of Hoffmann, Fischer, Allgaier and Gaul (2002) by model A3",
+    coordinates={
+        "mu": Variable(dims=("mu",), long_name="friction coefficient"),
+        **MODES,
+        "distance": Variable(
+            dims=("distance",), long_name="relative distance of mu from the onset of flutter"
+        ),
+        "side": Variable(dims=("side",), dtype="U", long_name="side of the onset"),
+    },
+    variables={
+        "growth_rate": Variable(dims=("mu",), units="s-1", long_name="largest real part by A3"),
+        "frequency": Variable(dims=("mu", "mode"), units="rad s-1", long_name="frequency by A3"),
+        "published_growth_rate": Variable(
+            dims=("mu",), units="s-1", long_name="largest real part by the published model"
+        ),
+        "published_frequency": Variable(
+            dims=("mu", "mode"), units="rad s-1", long_name="frequency by the published model"
+        ),
+        "closed_form_error": Variable(
+            dims=("side", "distance"),
+            atol=1e-11,
+            long_name="relative error of the eigenvalues by A3, against 60 digits",
+        ),
+        "numeric_error": Variable(
+            dims=("side", "distance"),
+            atol=1e-6,
+            long_name="relative error of numeric eigenvalues, against 60 digits",
+        ),
+    },
+)

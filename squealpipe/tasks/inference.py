@@ -107,7 +107,7 @@ def _sample(
     points = qmc.Halton(5, seed=seed).random(samples)
 
     def spread(column: int, limits: Range) -> np.ndarray:
-        return np.interp(points[:, column], (0.0, 1.0), limits)
+        return np.asarray(np.interp(points[:, column], (0.0, 1.0), limits))
 
     def spread_log(column: int, limits: Range) -> np.ndarray:
         return np.asarray(np.exp(spread(column, (np.log(limits[0]), np.log(limits[1])))))

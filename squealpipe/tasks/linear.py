@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
 from typing import Any
 
 import mpmath
@@ -175,18 +176,22 @@ def _spectrum(params: Parameters, alpha1: np.ndarray, alpha2: np.ndarray, k3: fl
     """
     stiffness = linear_stiffness(params, geometry(alpha1[:, None], alpha2[None, :]))
     spring_determinant = _spring_determinant(params, alpha1, alpha2)
-    physical = {"k3": k3, "mu": params.mu, "mass": params.mass}
-    invariants = spectrum(stiffness, spring_determinant, **physical)
+    invariants = spectrum(stiffness, spring_determinant, k3=k3, mu=params.mu, mass=params.mass)
     small = CANCELLATION * invariants.half_trace**2
     close = (np.abs(invariants.discriminant) < small) | (np.abs(invariants.determinant) < small)
     if k3 == 0 or not close.any():
         return invariants
     rows, columns = np.nonzero(close)
     with mpmath.workdps(DIGITS):
+        p = SimpleNamespace(**{name: mpmath.mpf(value) for name, value in params.as_dict().items()})
         g = Geometry(*_precise_geometry(alpha1, rows), *_precise_geometry(alpha2, columns))
-        sine = np.where(spring_determinant[close] == 0, 0.0, g.s1 * g.c2 + g.c1 * g.s2)
+        sine = np.where(spring_determinant[close] == 0, mpmath.mpf(0), g.s1 * g.c2 + g.c1 * g.s2)
         precise = spectrum(
-            linear_stiffness(params, g), determinant_from_sine(params, sine), **physical
+            linear_stiffness(p, g),
+            determinant_from_sine(p, sine),
+            k3=mpmath.mpf(k3),
+            mu=p.mu,
+            mass=p.mass,
         )
     for values, exact in zip(invariants, precise, strict=True):
         values[close] = exact.astype(float)
