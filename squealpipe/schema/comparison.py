@@ -58,7 +58,8 @@ WORK_PRECISION = DatasetSchema(
         ),
         "evaluations": Variable(
             dims=RUN,
-            long_name="evaluations of the right-hand side (a Taylor step of order p counts p + 1)",
+            long_name="evaluations of the right-hand side (a Taylor step of order p counts p + 1), "
+            "of the balance's equations, or eigenvalue problems",
         ),
         "wall_time": Variable(
             dims=RUN, units="s", long_name="median wall time of one solution", volatile=True

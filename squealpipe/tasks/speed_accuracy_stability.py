@@ -48,15 +48,15 @@ class OnsetCase:
             return [complex(mpmath.sqrt(mean - root)), complex(mpmath.sqrt(mean + root))]
 
 
-def solutions(*, distances: Sequence[float], repeats: int) -> Iterator[Solution]:
-    """Closed form and numeric eigenvalues at distances 1 − μ from onset.
+def solutions(*, halvings: Sequence[int], repeats: int) -> Iterator[Solution]:
+    """Closed form and numeric eigenvalues at distances 1 − μ = 2⁻ⁿ from onset.
 
     Args:
-        distances: powers of two are exact.
+        halvings: n of the distances 2⁻ⁿ, which binary holds exactly.
         repeats: runs of which the median time is taken.
     """
     case = OnsetCase()
-    for distance in distances:
+    for distance in (2.0**-n for n in halvings):
         for side, mu in (("stable", 1.0 - distance), ("flutter", 1.0 + distance)):
             reference = _sorted(case.reference(mu))
             for method, role, run in _methods(case, mu):
@@ -65,7 +65,7 @@ def solutions(*, distances: Sequence[float], repeats: int) -> Iterator[Solution]
                     task=TASK,
                     scene=side,
                     method=method,
-                    setting=f"1 − mu = {distance:.1e}",
+                    setting=f"1 - mu {distance:.1e}",
                     role=role,
                     error=float(np.max(np.abs(_sorted(found) - reference) / np.abs(reference))),
                     wall_time=seconds,

@@ -1,0 +1,70 @@
+"""Work–precision of the validity map."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from squealpipe.figures.style import BLACK, BLUE, GREEN, GREY, PAGE, RED, new_figure, panel_letter
+from squealpipe.figures.work_precision import foot
+from squealpipe.schema.comparison import Role
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+CAPTION = (
+    "Cells of the validity map that are decided wrongly (a) and the mean distance of its boundary"
+    " from the reference's (b), against the wall time of the map: over tolerance and step "
+    "(reference: tolerance 1e-15), over the horizon (reference: the longest), and over the grid "
+    "(reference: the fine grid, each coarse cell standing for its neighbourhood). Settings "
+    "without any wrong cell are drawn at the lower edge. Red ring: the setting that our maps use."
+)
+ALT = "Two charts: share of wrong cells, and boundary distance, against wall time of the map."
+
+_MARKS = {
+    ("tolerance", Role.ours): (BLUE, "o", "over tolerance"),
+    ("horizon", Role.ours): (GREEN, "^", "over horizon"),
+    ("grid", Role.ours): (BLACK, "s", "over grid"),
+    ("tolerance", Role.public): (GREY, "*", "Moreau–Jean, over step"),
+}
+
+
+def draw(integration: xr.Dataset) -> Figure:
+    """Both charts, from the task ``validity`` of dataset ``work_precision_integration``."""
+    rows = integration.isel(run=integration.task.values == "validity")
+    figure, axes = new_figure(PAGE, 3.2, ncols=2)
+    _draw(axes[0, 0], rows, "error", "share of wrong cells")
+    _draw(axes[0, 1], rows, "boundary_distance", "distance of the boundary (rad)")
+    for letter, panel in zip("ab", axes.flat, strict=True):
+        panel_letter(panel, letter)
+    axes[0, 0].legend(loc="upper right")
+    foot(figure, integration)
+    return figure
+
+
+def _draw(axes: Axes, rows: xr.Dataset, name: str, label: str) -> None:
+    values, seconds = rows[name].values, rows.wall_time.values
+    positive = values[values > 0]
+    floor = 0.3 * positive.min() if positive.size else 1e-6
+    shown = np.maximum(values, floor)
+    public = rows.role.values == Role.public
+    for (scene, role), (colour, marker, text) in _MARKS.items():
+        mine = (rows.scene.values == scene) & (public == (role == Role.public))
+        order = np.argsort(seconds[mine])
+        axes.plot(
+            seconds[mine][order], shown[mine][order], "-", color=colour, marker=marker, ms=4,
+            lw=0.8, label=text,
+        )  # fmt: skip
+        for index in np.flatnonzero(mine):
+            axes.annotate(
+                rows.setting.values[index], (seconds[index], shown[index]), fontsize=5.5,
+                xytext=(2, 3), textcoords="offset points", color=colour,
+            )  # fmt: skip
+    ours = rows.role.values == Role.our_setting
+    axes.plot(seconds[ours], shown[ours], "o", ms=9, mfc="none", mec=RED, mew=1.0)
+    axes.set(xscale="log", yscale="log", xlabel="wall time of the map (s)", ylabel=label)
+    axes.margins(x=0.15)
+    axes.grid(visible=True, lw=0.3, color="#DDDDDD")

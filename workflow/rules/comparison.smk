@@ -1,0 +1,39 @@
+"""Speed against accuracy, failures, and the model ladder."""
+
+
+rule measure_integration:
+    input:
+        sources=sources("measure_integration"),
+    output:
+        data("work_precision_integration"),
+    params:
+        part=part("parameters", "comparison.integration", "comparison.validity"),
+    threads: workflow.cores
+    script:
+        "../scripts/measure_integration.py"
+
+
+rule measure_frequencies:
+    input:
+        sources=sources("measure_frequencies"),
+    output:
+        data("work_precision_frequencies"),
+    params:
+        part=part("parameters", "comparison.harmonic", "comparison.onset"),
+    threads: workflow.cores
+    script:
+        "../scripts/measure_frequencies.py"
+
+
+rule draw_work_precision:
+    input:
+        integration=data("work_precision_integration"),
+        frequencies=data("work_precision_frequencies"),
+        sources=sources("draw_work_precision"),
+    output:
+        time=figure("work_precision_time"),
+        evaluations=figure("work_precision_evaluations"),
+        validity=figure("work_precision_validity"),
+        frequencies=figure("work_precision_frequencies"),
+    script:
+        "../scripts/draw_work_precision.py"

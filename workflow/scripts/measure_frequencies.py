@@ -1,0 +1,19 @@
+"""Work–precision of harmonic balance on A4 and of eigenvalues near flutter onset."""
+
+from squealpipe.config import parameters_of
+from squealpipe.store import produce
+from squealpipe.tasks import speed_accuracy_harmonic, speed_accuracy_stability
+from squealpipe.tasks.work_precision import work_precision
+
+part = snakemake.params.part
+params = parameters_of(part)
+produce(
+    lambda: work_precision(
+        [
+            *speed_accuracy_harmonic.solutions(params, **part["comparison.harmonic"]),
+            *speed_accuracy_stability.solutions(**part["comparison.onset"]),
+        ]
+    ),
+    config=part,
+    output=snakemake.output[0],
+)
