@@ -81,10 +81,16 @@ class Explanation:
 
     @property
     def seconds(self) -> float:
-        """Estimated duration on all cores; jobs that never ran count nothing."""
-        alone = sum(job.seconds or 0 for job in self.jobs if job.threads >= self.cores)
-        shared = [job.seconds or 0 for job in self.jobs if job.threads < self.cores]
-        return alone + max(sum(shared) / self.cores, max(shared, default=0))
+        """Estimated duration: the work shared by all cores, or the longest chain of jobs.
+
+        Jobs that never ran count nothing.
+        """
+        work = sum((job.seconds or 0) * min(job.threads, self.cores) for job in self.jobs)
+        finish: dict[str, float] = {}
+        for job in self.jobs:
+            start = max((finish.get(rule, 0.0) for rule in job.follows), default=0.0)
+            finish[job.rule] = max(start + (job.seconds or 0), finish.get(job.rule, 0.0))
+        return max(work / self.cores, *finish.values(), 0.0)
 
     @property
     def unknown(self) -> list[str]:
