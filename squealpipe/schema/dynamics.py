@@ -107,14 +107,14 @@ HAMMERING_MAP = DatasetSchema(
         "max_displacement": Variable(
             dims=MAP, units="m", long_name="largest distance from the start position"
         ),
-        "turns": Variable(dims=MAP, long_name="net turns around the middle of the fixed ends"),
+        "turns": Variable(dims=MAP, long_name="net turns around both fixed ends"),
         "lyapunov_exponent": Variable(
             dims=MAP, units="s-1", long_name="finite-time growth rate of a small perturbation"
         ),
         "predictability_horizon": Variable(
             dims=MAP,
             units="s",
-            long_name="time at which round-off has grown to l_pre/1000 (t_end: not before)",
+            long_name="time at which an error of tol has grown to l_pre/1000 (t_end: not before)",
         ),
         "motion": Variable(dims=MAP, dtype="i1", flags=MotionFlag, long_name="kind of motion"),
         "t_end": Variable(units="s", long_name="end of each run"),

@@ -20,6 +20,9 @@ from squealpipe.tasks.lane_kernel import lane_kernel
 
 PARAMETER_NAMES = tuple(name for name in Parameters.__dataclass_fields__ if name != "sigma")
 
+LOST_ERROR = 1e-3
+"""Error, in l_pre, from which a state says nothing about its run."""
+
 
 @dataclass(frozen=True)
 class Ensemble:
@@ -35,12 +38,13 @@ class Ensemble:
         max_x: largest |x|, m; late_max_x: the same after ``t_late``.
         max_vx: largest ẋ at the ends of integration steps, m/s.
         nearest_pivot: smallest distance to a fixed end at step ends, in free lengths.
-        turns: signed turns around the middle of the fixed ends.
+        turns: net turns around both fixed ends, counterclockwise positive.
         separations, contacts, sticks, slips, reversals: event counts.
         steps: integration steps.
         final_state: (…, 4) x, y, vx, vy at ``time``, m and m/s; final_regime its regime.
         log_growth: ln of the growth of a perturbation (0 without ``tangent``).
-        predictability_horizon: time at which round-off has grown to l_pre/1000, s; NaN: not yet.
+        predictability_horizon: time at which an error of ``tol`` has grown to l_pre/1000, s;
+            NaN: not before the end.
         samples, sample_regimes: states (…, n, 4) at ``times``; NaN and −1 past ``time``.
         event_times, event_kinds, event_states: the first ``log_events`` events; NaN and −1 after
             the last one.
@@ -271,6 +275,7 @@ class _Jobs:
         orders[:, kernel.STOP_AT_SEPARATION] = stop_at_first_separation
         orders[:, kernel.MAX_STEPS] = 1e4 + 200 * rate * orders[:, kernel.T_END]
         orders[:, kernel.MAX_EVENTS] = 1e3 + 20 * rate * orders[:, kernel.T_END]
+        orders[:, kernel.LOST_GROWTH] = math.log(LOST_ERROR / tol)
         orders[:, kernel.SEPARATES] = rules.separates
         orders[:, kernel.REVERSES] = rules.reverses
         orders[:, kernel.STICKS] = rules.sticks
@@ -305,7 +310,7 @@ class _Jobs:
             "late_max_x": result[kernel.LATE_LARGEST_X] * length,
             "max_vx": result[kernel.LARGEST_SPEED] * speed,
             "nearest_pivot": np.sqrt(result[kernel.NEAREST_PIVOT2]),
-            "turns": 0.5 * result[kernel.HALF_TURNS],
+            "turns": _common_turns(result[kernel.HALF_TURNS1], result[kernel.HALF_TURNS2]),
             "separations": count[kernel.FIRST_KIND],
             "contacts": count[kernel.FIRST_KIND + 1],
             "sticks": count[kernel.FIRST_KIND + 2],
@@ -325,6 +330,12 @@ class _Jobs:
         return Ensemble(
             **{name: values.reshape(self.shape + values.shape[1:]) for name, values in flat.items()}
         )
+
+
+def _common_turns(first: np.ndarray, second: np.ndarray) -> np.ndarray:
+    """Turns around both points from half turns around each; 0 where they turn against another."""
+    least = np.minimum(np.abs(first), np.abs(second))
+    return np.where(first * second > 0, 0.5 * np.sign(first) * least, 0.0)
 
 
 def known_model(model: str) -> str:

@@ -34,7 +34,7 @@ def hammering_map(
     """Impacts, forces, extremes, kind of motion and predictability of A1 started at rest.
 
     ``motion`` is perpetual contact; stick–slip in contact; whirl (at least three net turns around
-    the middle of the fixed ends, and one for two returns to the belt); otherwise hammering,
+    both fixed ends, and one for two returns to the belt); otherwise hammering,
     irregular where a perturbation has grown faster than (1 + t)², t in units of √(m/k1), and
     else periodic or quasi-periodic.
 
@@ -47,8 +47,8 @@ def hammering_map(
 
     Returns:
         Dataset over (alpha1, alpha2); see ``schema.dynamics.HAMMERING_MAP``. ``outcome`` is
-        ``beyond_horizon`` where round-off decides the state before t_end: there only event
-        counts, shares and extremes mean something.
+        ``beyond_horizon`` where an error of ``tol`` decides the state before t_end: there only
+        statistics mean something.
 
     Raises:
         ValueError: an argument is not a finite number, or t_end is not positive.

@@ -32,13 +32,13 @@ from squealpipe.sources import closure
 # A job's order: its physical parameters (tasks.a1_system.PHYSICAL), then what is asked for.
 N_PHYSICAL = 10
 T_END, T_LATE, STOP_AT_X, STOP_AT_SEPARATION, MAX_STEPS, MAX_EVENTS = range(10, 16)
-SEPARATES, REVERSES, STICKS, LINEAR_SPRINGS = range(16, 20)
-N_ORDERS = 20
+SEPARATES, REVERSES, STICKS, LINEAR_SPRINGS, LOST_GROWTH = range(16, 21)
+N_ORDERS = 21
 # A job's floating-point results.
 TIME, FIRST_SEPARATION, SEPARATED_TIME, STICK_TIME, LOWEST_Y, LARGEST_R2 = range(6)
-LARGEST_X, LATE_LARGEST_X, LARGEST_SPEED, NEAREST_PIVOT2, HALF_TURNS = range(6, 11)
-LOG_GROWTH, HORIZON, FINAL_STATE = 11, 12, 13
-N_RESULTS = 17
+LARGEST_X, LATE_LARGEST_X, LARGEST_SPEED, NEAREST_PIVOT2 = range(6, 10)
+HALF_TURNS1, HALF_TURNS2, LOG_GROWTH, HORIZON, FINAL_STATE = range(10, 15)
+N_RESULTS = FINAL_STATE + 4
 # A job's integer results; the counts of the five kinds of events come last.
 OUTCOME, REGIME, STEPS, LATE_EVENTS, EVENTS, FIRST_KIND = range(6)
 N_COUNTS = 11
@@ -52,8 +52,6 @@ N_INTEGERS = COUNT + N_COUNTS
 
 TANGENT_NORM = 1e-4
 """Norm that a tangent vector is scaled back to: small, so that it does not set the step size."""
-LOG_HORIZON = math.log(1e-3 / 2.0**-52)
-"""Growth that turns round-off into an error of a thousandth of l_pre."""
 PIVOT_REACH2 = 1e-14
 """Squared distance from a pivot, in free lengths, below which the force's direction is lost."""
 
@@ -168,10 +166,11 @@ def _observe(c: Any, end: Any, memory: Any, lane: int, regime: int, step: float)
     d1 = ((x1 - pivot[0]) ** 2 + (y1 - pivot[1]) ** 2) / memory[lane, ORDER + 4] ** 2
     d2 = ((x1 - pivot[2]) ** 2 + (y1 - pivot[3]) ** 2) / memory[lane, ORDER + 5] ** 2
     m[NEAREST_PIVOT2] = min(m[NEAREST_PIVOT2], d1, d2)
-    middle = 0.5 * (pivot[0] + pivot[2])
-    if (x0 < middle) != (x1 < middle):
-        above = y1 > 0.5 * (pivot[1] + pivot[3])
-        m[HALF_TURNS] += 1.0 if above == (x1 < middle) else -1.0
+    for number in range(2):
+        x_pivot, y_pivot = pivot[2 * number], pivot[2 * number + 1]
+        if (x0 < x_pivot) != (x1 < x_pivot):
+            turn = 1.0 if (y1 > y_pivot) == (x1 < x_pivot) else -1.0
+            m[HALF_TURNS1 + number] += turn
 
 
 @_njit
@@ -219,7 +218,7 @@ def _sample(
 
 
 @_njit
-def _grow(state: Any, m: Any, lane: int, time: float, saltation: float) -> None:
+def _grow(state: Any, m: Any, lane: int, time: float, saltation: float, lost: float) -> None:
     """Growth of the tangent vector, with the jump of the field at belt speed."""
     state[6, lane] *= saltation
     norm = math.sqrt(
@@ -228,7 +227,7 @@ def _grow(state: Any, m: Any, lane: int, time: float, saltation: float) -> None:
     if norm == 0.0:
         return
     growth = m[LOG_GROWTH] + math.log(norm / TANGENT_NORM)
-    if math.isnan(m[HORIZON]) and growth > LOG_HORIZON:
+    if math.isnan(m[HORIZON]) and growth > lost:
         m[HORIZON] = time
     if not 1e-3 < norm / TANGENT_NORM < 1e2:
         for variable in range(4, 8):
@@ -296,7 +295,7 @@ def _advance_lane(
             if change.kind == switching.SEPARATION and math.isnan(result[FIRST_SEPARATION]):
                 result[FIRST_SEPARATION] = time
     if state.shape[0] > 4:
-        _grow(state, result, lane, time, saltation)
+        _grow(state, result, lane, time, saltation, m[LOST_GROWTH])
     if m[STOP_AT_SEPARATION] > 0.0 and not math.isnan(result[FIRST_SEPARATION]):
         return SEPARATION_FOUND
     if result[LARGEST_X] > m[STOP_AT_X]:
