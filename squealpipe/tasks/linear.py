@@ -22,7 +22,7 @@ from squealpipe.parameters import Parameters
 from squealpipe.schema import Outcome, build
 from squealpipe.schema.linear import NATURAL_FREQUENCIES, QUASI_STATIC_MAP, STABILITY_MAP
 
-CANCELLATION = 1e-3
+CANCELLATION = 1e-4
 """A discriminant or determinant below this share of (trace/2)² is formed in more digits."""
 
 DIGITS = 40
@@ -119,21 +119,20 @@ def natural_frequencies(params: Parameters, alpha1: np.ndarray, alpha2: np.ndarr
         (divergence) and where the springs leave a direction free it is 0; the outcome says so.
     """
     alpha1, alpha2 = _angles(alpha1, alpha2)
-    omega, outcomes = [], []
-    for k3 in (params.k3, 0.0):
-        invariants = _spectrum(params, alpha1, alpha2, k3)
-        squared = np.stack(natural_frequencies_squared(invariants), axis=-1)
-        omega.append(np.stack([s.imag for s in a3.eigenvalues(invariants)], axis=-1))
-        outcomes.append(
-            np.select(
-                [squared.imag != 0, squared.real < 0, squared.real == 0],
+    shape = (alpha1.size, alpha2.size, 2, 2)
+    omega, outcomes = np.empty(shape), np.empty(shape, np.int8)
+    for state, k3 in enumerate((params.k3, 0.0)):
+        squares = natural_frequencies_squared(_spectrum(params, alpha1, alpha2, k3))
+        for mode, square in enumerate(squares):
+            omega[..., mode, state] = np.abs(np.sqrt(-square).imag)
+            outcomes[..., mode, state] = np.select(
+                [square.imag != 0, square.real < 0, square.real == 0],
                 [Outcome.complex_pair, Outcome.divergence, Outcome.rigid_mode],
                 Outcome.converged,
             )
-        )
     return build(
         NATURAL_FREQUENCIES,
-        {"omega": np.stack(omega, axis=-1), "outcome": np.stack(outcomes, axis=-1)},
+        {"omega": omega, "outcome": outcomes},
         {
             "alpha1": alpha1,
             "alpha2": alpha2,
@@ -183,19 +182,24 @@ def _spectrum(params: Parameters, alpha1: np.ndarray, alpha2: np.ndarray, k3: fl
         return invariants
     rows, columns = np.nonzero(close)
     with mpmath.workdps(DIGITS):
-        p = SimpleNamespace(**{name: mpmath.mpf(value) for name, value in params.as_dict().items()})
+        p = SimpleNamespace(**{name: _precise(v) for name, v in params.as_dict().items()})
         g = Geometry(*_precise_geometry(alpha1, rows), *_precise_geometry(alpha2, columns))
         sine = np.where(spring_determinant[close] == 0, mpmath.mpf(0), g.s1 * g.c2 + g.c1 * g.s2)
         precise = spectrum(
             linear_stiffness(p, g),
             determinant_from_sine(p, sine),
-            k3=mpmath.mpf(k3),
+            k3=_precise(k3),
             mu=p.mu,
             mass=p.mass,
         )
     for values, exact in zip(invariants, precise, strict=True):
         values[close] = exact.astype(float)
     return invariants
+
+
+def _precise(value: float) -> np.ndarray:
+    """One high-precision number that multiplies arrays of them."""
+    return np.array([mpmath.mpf(value)], dtype=object)
 
 
 def _precise_geometry(angles: np.ndarray, index: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
