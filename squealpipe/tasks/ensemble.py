@@ -33,7 +33,7 @@ class Ensemble:
         time: time reached, s.
         first_separation_time: s, NaN where contact was never lost.
         separated_time, stick_time: total time in those regimes, s.
-        peak_contact_force: N_max/(k3 l_pre).
+        peak_contact_force, lowest_contact_force: extremes of N/(k3 l_pre) while in contact.
         max_displacement: largest √(x² + y²), m.
         max_x: largest |x|, m; late_max_x: the same after ``t_late``.
         max_vx: largest ẋ at the ends of integration steps, m/s.
@@ -56,6 +56,7 @@ class Ensemble:
     separated_time: np.ndarray
     stick_time: np.ndarray
     peak_contact_force: np.ndarray
+    lowest_contact_force: np.ndarray
     max_displacement: np.ndarray
     max_x: np.ndarray
     late_max_x: np.ndarray
@@ -305,6 +306,7 @@ class _Jobs:
             "separated_time": result[kernel.SEPARATED_TIME] * t,
             "stick_time": result[kernel.STICK_TIME] * t,
             "peak_contact_force": np.where(separated, 0.0, 1.0 - result[kernel.LOWEST_Y]),
+            "lowest_contact_force": np.where(separated, 0.0, 1.0 - result[kernel.HIGHEST_Y]),
             "max_displacement": np.sqrt(result[kernel.LARGEST_R2]) * length,
             "max_x": result[kernel.LARGEST_X] * length,
             "late_max_x": result[kernel.LATE_LARGEST_X] * length,

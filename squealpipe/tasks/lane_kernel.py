@@ -37,7 +37,7 @@ N_ORDERS = 21
 # A job's floating-point results.
 TIME, FIRST_SEPARATION, SEPARATED_TIME, STICK_TIME, LOWEST_Y, LARGEST_R2 = range(6)
 LARGEST_X, LATE_LARGEST_X, LARGEST_SPEED, NEAREST_PIVOT2 = range(6, 10)
-HALF_TURNS1, HALF_TURNS2, LOG_GROWTH, HORIZON, FINAL_STATE = range(10, 15)
+HIGHEST_Y, HALF_TURNS1, HALF_TURNS2, LOG_GROWTH, HORIZON, FINAL_STATE = range(10, 16)
 N_RESULTS = FINAL_STATE + 4
 # A job's integer results; the counts of the five kinds of events come last.
 OUTCOME, REGIME, STEPS, LATE_EVENTS, EVENTS, FIRST_KIND = range(6)
@@ -118,7 +118,7 @@ def _load(state: Any, pars: Any, memory: Any, integers: Any, initial: Any, lane:
     m = memory[lane, RESULT:]
     m[FIRST_SEPARATION] = 0.0 if regime == SEPARATED else np.nan
     m[HORIZON] = np.nan
-    m[LOWEST_Y] = np.inf if regime == SEPARATED else y
+    m[LOWEST_Y], m[HIGHEST_Y] = (np.inf, -np.inf) if regime == SEPARATED else (y, y)
     m[LARGEST_R2] = x * x + y * y
     m[LARGEST_X] = abs(x)
     m[LARGEST_SPEED] = vx
@@ -152,6 +152,10 @@ def _observe(c: Any, end: Any, memory: Any, lane: int, regime: int, step: float)
         if vy0 < 0.0 < vy1 and low + step * vy0 < m[LOWEST_Y]:
             low = min(low, evaluate(c, 1, lane, root_of(c, 3, lane, step, vy0, vy1)))
         m[LOWEST_Y] = min(m[LOWEST_Y], low)
+        high = max(y0, y1)
+        if vy0 > 0.0 > vy1 and high + step * vy0 > m[HIGHEST_Y]:
+            high = max(high, evaluate(c, 1, lane, root_of(c, 3, lane, step, vy0, vy1)))
+        m[HIGHEST_Y] = max(m[HIGHEST_Y], high)
     large = max(abs(x0), abs(x1))
     late = memory[lane, CLOCK] >= memory[lane, ORDER + T_LATE]
     record = m[LATE_LARGEST_X] if late else m[LARGEST_X]
