@@ -21,7 +21,7 @@ LARGEST_STEP = 0.5
 def response_from_rest(
     matrix: np.ndarray, load: np.ndarray, step: float, steps: int
 ) -> Iterator[np.ndarray]:
-    """r at t = 0, h, 2h, …
+    """Samples of r at t = 0, h, 2h and so on.
 
     Args:
         matrix: (…, n, n), A in 1/s².

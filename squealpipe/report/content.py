@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 import re
+from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass
 from importlib.metadata import version
@@ -63,6 +64,7 @@ def gather(
         parameters: those of the study.
     """
     loaded = {name: load(made.path) for name, made in datasets.items()}
+    claims = rows(loaded["claims"]) if "claims" in loaded else []
     return {
         "title": TITLE,
         "shipped": parameters == Parameters(),
@@ -70,7 +72,11 @@ def gather(
         "environment": _environment(loaded),
         "datasets": {name: _run(datasets[name], loaded[name]) for name in sorted(datasets)},
         "figures": {name: _picture(name, figures[name]) for name in MODULES if name in figures},
-        "claims": rows(loaded["claims"]) if "claims" in loaded else [],
+        "claims": claims,
+        "tally": [
+            {"verdict": verdict, "number": number}
+            for verdict, number in Counter(row["verdict"] for row in claims).most_common()
+        ],
         "facts": {},
     }
 
