@@ -52,7 +52,7 @@ def draw(stability: xr.Dataset, quasi_static: xr.Dataset, boundaries: xr.Dataset
         ("reaction force positive", quasi_static.possible, None),
     )
     for panel, letter, (title, possible, extra) in zip(axes[0], "ab", readings, strict=True):
-        tones = np.where(possible.values == 1, 0, 1)
+        tones = np.where(possible.values, 0, 1)
         tones[stability.regime_linear.values > 0] = 2
         draw_map(
             panel,

@@ -26,7 +26,7 @@ def draw_scenes(dataset: xr.Dataset, cost: str, scale: float, label: str) -> Fig
         draw_methods(panel, rows.isel(run=rows.scene.values == scene), cost, scale)
         panel_letter(panel, letter, scene)
     for panel in axes[-1]:
-        panel.set_xlabel("error of the final state (l_pre, l_pre √(k₁/m))")
+        panel.set_xlabel("error of the final state")
     for panel in axes[:, 0]:
         panel.set_ylabel(label)
     legend_above(figure, axes[0, 0], 4)

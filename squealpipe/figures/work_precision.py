@@ -32,7 +32,7 @@ MARKS = {
     "LSODA + events": Mark(RED, "D"),
     "Radau + events": Mark(PURPLE, "P"),
     "RK45, tanh": Mark(ORANGE, "x", ":"),
-    "Radau, tanh": Mark(PURPLE, "+", ":"),
+    "LSODA, tanh": Mark(RED, "+", ":"),
     "Moreau–Jean": Mark(GREY, "*", "--"),
 }
 FALLBACK = [Mark(colour, "o") for colour in (BLACK, BLUE, GREEN, ORANGE, RED, PURPLE, GREY)]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -26,17 +26,18 @@ ALT = (
     "error of eigenvalues against the distance from flutter onset."
 )
 _LEAST = 1e-17
+_ABOVE: dict[str, Any] = {"loc": "lower center", "bbox_to_anchor": (0.5, 1.06), "ncols": 2}
 
 
 def draw(frequencies: xr.Dataset) -> Figure:
     """Both charts, from dataset ``work_precision_frequencies``."""
-    figure, axes = new_figure(PAGE, 3.4, ncols=2)
+    figure, axes = new_figure(PAGE, 3.7, ncols=2)
     rows = frequencies.isel(run=frequencies.task.values == "harmonic balance")
     methods = list(dict.fromkeys(rows.method.values.tolist()))
     marks = {method: FALLBACK[i % len(FALLBACK)] for i, method in enumerate(methods)}
     draw_methods(axes[0, 0], rows, "wall_time", 1e3, marks)
     axes[0, 0].set(xlabel="error of ω, relative", ylabel="wall time of a point (ms)")
-    axes[0, 0].legend(fontsize=5.5, loc="upper center")
+    axes[0, 0].legend(fontsize=6, **_ABOVE)
     _draw_onset(axes[0, 1], frequencies.isel(run=frequencies.task.values == "stability"))
     for letter, panel in zip("ab", axes.flat, strict=True):
         panel_letter(panel, letter)
@@ -55,8 +56,8 @@ def _draw_onset(axes: Axes, rows: xr.Dataset) -> None:
                 marker=marker, ms=3.5, lw=0.8, label=method if side == "stable" else None,
             )  # fmt: skip
     axes.set(
-        xscale="log", yscale="log", xlabel="distance from onset, 1 − μ/μ_c",
+        xscale="log", yscale="log", xlabel="distance from onset, 1 − μ/μ$_c$",
         ylabel="error of ω, relative",
     )  # fmt: skip
     axes.grid(visible=True, lw=0.3, color="#DDDDDD")
-    axes.legend(fontsize=6)
+    axes.legend(fontsize=6, **_ABOVE)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from squealpipe.figures.style import BLACK, BLUE, GREEN, GREY, PAGE, RED, new_figure, panel_letter
-from squealpipe.figures.work_precision import foot
+from squealpipe.figures.work_precision import foot, legend_above
 from squealpipe.schema.comparison import Role
 
 if TYPE_CHECKING:
@@ -40,7 +40,7 @@ def draw(integration: xr.Dataset) -> Figure:
     _draw(axes[0, 1], rows, "boundary_distance", "distance of the boundary (rad)")
     for letter, panel in zip("ab", axes.flat, strict=True):
         panel_letter(panel, letter)
-    axes[0, 0].legend(loc="upper right")
+    legend_above(figure, axes[0, 0], 5)
     foot(figure, integration)
     return figure
 
@@ -58,13 +58,20 @@ def _draw(axes: Axes, rows: xr.Dataset, name: str, label: str) -> None:
             seconds[mine][order], shown[mine][order], "-", color=colour, marker=marker, ms=4,
             lw=0.8, label=text,
         )  # fmt: skip
-        for index in np.flatnonzero(mine):
+        for index in np.flatnonzero(mine & (values > 0)):
             axes.annotate(
                 rows.setting.values[index], (seconds[index], shown[index]), fontsize=5.5,
                 xytext=(2, 3), textcoords="offset points", color=colour,
             )  # fmt: skip
     ours = rows.role.values == Role.our_setting
-    axes.plot(seconds[ours], shown[ours], "o", ms=9, mfc="none", mec=RED, mew=1.0)
+    axes.plot(
+        seconds[ours], shown[ours], "o", ms=9, mfc="none", mec=RED, mew=1.0, label="our setting"
+    )
+    axes.axhline(floor, color=GREY, lw=0.6, ls=":")
+    axes.annotate(
+        "no wrong cell", (0.02, floor), xycoords=("axes fraction", "data"), fontsize=6, color=GREY,
+        xytext=(0, 2), textcoords="offset points",
+    )  # fmt: skip
     axes.set(xscale="log", yscale="log", xlabel="wall time of the map (s)", ylabel=label)
     axes.margins(x=0.15)
     axes.grid(visible=True, lw=0.3, color="#DDDDDD")

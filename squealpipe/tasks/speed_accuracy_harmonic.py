@@ -74,7 +74,7 @@ def discretizations(
         yield Discretization("cosines, closed-form contact", count, None, None, role)
         for factor in oversampling:
             samples = 2 * count + 2 if factor == 1 else 2 * count * factor
-            name = f"cosines, N = {'2N_h + 2' if factor == 1 else f'{2 * factor}N_h'}"
+            name = f"cosines, {'2 N_h + 2' if factor == 1 else f'{2 * factor} N_h'} samples"
             yield Discretization(name, count, samples, None, Role.ours)
     most = max(harmonics)
     for sigma in sigmas:

@@ -171,7 +171,7 @@ def _public(
                 ),
                 1,
             )
-    for method in ("RK45", "Radau"):
+    for method in ("RK45", "LSODA"):
         for sigma in sigmas:
             runs[f"{method}, tanh", f"sigma {sigma:g}", public] = (
                 lambda method=method, sigma=sigma: simulate_regularized(  # type: ignore[misc]

@@ -146,7 +146,7 @@ def _solution(
 def on_grid(coarse: np.ndarray, points: int) -> np.ndarray:
     """A square map shown on a finer grid by its nearest cell."""
     nearest = np.rint(np.linspace(0, len(coarse) - 1, points)).astype(int)
-    return coarse[np.ix_(nearest, nearest)]
+    return np.asarray(coarse[np.ix_(nearest, nearest)])
 
 
 def boundary_distance(found: np.ndarray, reference: np.ndarray) -> float:

@@ -16,8 +16,6 @@ from squealpipe.schema.comparison import WORK_PRECISION, Role
 
 _Result = TypeVar("_Result")
 
-_LONG = 0.2
-"""A run that takes longer than this, s, is timed once more only: the clock is exact enough."""
 _SHORT = 2e-3
 """A run shorter than this, s, is called several times between two readings of the clock."""
 
@@ -40,20 +38,22 @@ class Solution(NamedTuple):
 
 
 def timed(run: Callable[[], _Result], repeats: int) -> tuple[_Result, float]:
-    """The result of a run and the median wall time of further ones, s; the first compiles."""
-    result = run()
-    once = _clocked(run, 1)
-    if once > _LONG:
-        return result, once
-    calls = 1 if once > _SHORT else 5
-    return result, statistics.median([_clocked(run, calls) for _ in range(repeats)])
+    """The result of a run and the median wall time of ``repeats`` runs, s.
+
+    The median drops what the first run compiles or allocates, from three repeats on.
+    """
+    result, first = _clocked(run, 1)
+    calls = 1 if first > _SHORT else 5
+    samples = [first, *(_clocked(run, calls)[1] for _ in range(repeats - 1))]
+    return result, statistics.median(samples)
 
 
-def _clocked(run: Callable[[], object], calls: int) -> float:
+def _clocked(run: Callable[[], _Result], calls: int) -> tuple[_Result, float]:
     started = time.perf_counter()
-    for _ in range(calls):
+    result = run()
+    for _ in range(calls - 1):
         run()
-    return (time.perf_counter() - started) / calls
+    return result, (time.perf_counter() - started) / calls
 
 
 def work_precision(solutions: Iterable[Solution]) -> xr.Dataset:
