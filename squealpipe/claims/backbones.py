@@ -76,7 +76,7 @@ def bends_down(scene: str, mode: int = 2) -> Callable[[Run], Finding]:
         preload = run.parameters.preload
         reached = float(points.y_peak.max() / preload)
         linear = _linear_omega(points)
-        drop = 1 - float(points.omega[int(points.y_peak.argmax())]) / linear
+        drop = 1 - float(points.omega[int(points.y_peak.values.argmax())]) / linear
         below = points.omega.where(points.y_peak < preload)
         flat = float(abs(below / linear - 1).max())
         return finding(

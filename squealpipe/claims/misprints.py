@@ -2,11 +2,20 @@
 
 from __future__ import annotations
 
-from squealpipe.claims import frequencies, sliding
+from squealpipe.claims import frequencies, misprint_checks, sliding
 from squealpipe.claims.statement import Statement
 from squealpipe.schema.claims import Verdict
 
 MISPRINTS = (
+    Statement(
+        id="E1",
+        section="4, Eq. (4)",
+        text="friction with μ(V_r) = μ sgn(V_r), V_r = ẋ − V, drags the mass along, as Eqs. (6), (9), (18), (20) have it",
+        measure="mean x with the printed sign, in the direction of the static state, over l_pre",
+        figure="",
+        recorded=Verdict.fails,
+        check=misprint_checks.friction_drags_along,
+    ),
     Statement(
         id="E3",
         section="5, Eq. (11)",
@@ -15,6 +24,15 @@ MISPRINTS = (
         figure="fig06",
         recorded=Verdict.holds_only_as_printed,
         check=sliding.printed_bound_is_physical,
+    ),
+    Statement(
+        id="E4",
+        section="6, before Eq. (16)",
+        text="X + X* moves the origin to the static state",
+        measure="distance of the mean y from −y*, against its distance from y*",
+        figure="",
+        recorded=Verdict.fails,
+        check=misprint_checks.shift_is_added,
     ),
     Statement(
         id="E5",
@@ -33,6 +51,15 @@ MISPRINTS = (
         figure="fig08",
         recorded=Verdict.holds_only_as_printed,
         check=frequencies.first_is_largest_on_lines,
+    ),
+    Statement(
+        id="E9",
+        section="all",
+        text="the paper prints the parameters that its results need",
+        measure="parameter sets that agree with all statements",
+        figure="",
+        recorded=Verdict.fails,
+        check=misprint_checks.parameters_are_printed,
     ),
     Statement(
         id="E10",

@@ -7,6 +7,7 @@ rule check_assumptions:
     output:
         assumptions=data("assumptions"),
         pull=data("linear_pull"),
+        reversed=data("simulate/F2a_reversed"),
     params:
         part=part("parameters", "linear.points"),
     script:
