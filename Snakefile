@@ -12,6 +12,7 @@ RESULTS = STUDY.results
 include: "workflow/rules/common.smk"
 include: "workflow/rules/model.smk"
 include: "workflow/rules/linear.smk"
+include: "workflow/rules/dynamics.smk"
 include: "workflow/rules/comparison.smk"
 include: "workflow/rules/assumptions.smk"
 include: "workflow/rules/claims.smk"

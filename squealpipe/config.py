@@ -170,6 +170,22 @@ class ComparisonSection(Section):
     onset: OnsetComparison = OnsetComparison()
 
 
+class DynamicsSection(Section):
+    """Nonlinear runs; times in √(m/k1), amplitudes in l_pre, speeds in l_pre √(k1/m)."""
+
+    tol: Annotated[float, Field(gt=1e-18, lt=1e-2)] = 1e-12
+    horizon: Positive = 200.0
+    validity_points: Points = 181
+    hammering_points: Points = 91
+    refined_points: Points = 1441
+    refined_coarse: Points = 91
+    whirl_speeds: Annotated[int, Field(ge=2, le=200)] = 19
+    whirl_horizon: Positive = 6000.0
+    escape_speeds: Annotated[int, Field(ge=2, le=200)] = 13
+    escape_samples: Annotated[int, Field(ge=2, le=10_000)] = 64
+    escape_horizon: Positive = 20_000.0
+
+
 class Study(Section):
     """A whole study."""
 
@@ -178,6 +194,7 @@ class Study(Section):
     linear: LinearSection = LinearSection()
     inference: InferenceSection = InferenceSection()
     comparison: ComparisonSection = ComparisonSection()
+    dynamics: DynamicsSection = DynamicsSection()
 
     def slice(self, *paths: str) -> dict[str, Any]:
         """Canonical part of the configuration: numbers cast, keys in a fixed order.

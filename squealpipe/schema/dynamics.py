@@ -86,6 +86,12 @@ VALIDITY_MAP = DatasetSchema(
             dims=MAP, dtype="bool", long_name="whether contact is lost before t_end"
         ),
         "regime_linear": REGIME_LINEAR,
+        "response_growth": Variable(
+            dims=MAP,
+            long_name="largest |x| of the second half of a run over that of the first "
+            "(NaN: separated)",
+            nan_allowed=True,
+        ),
         "t_end": Variable(units="s", long_name="end of each run"),
         "outcome": outcome(*MAP),
     },

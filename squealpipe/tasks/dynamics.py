@@ -140,7 +140,8 @@ def validity_map(
 
     Returns:
         Dataset over (alpha1, alpha2): first_separation_time (s; NaN: none), separates,
-        regime_linear (A3), outcome (``separated`` or ``converged`` where the run was decided).
+        regime_linear (A3), response_growth (late over early |x|, for the stability that A1 itself
+        shows), outcome (``separated`` or ``converged`` where the run was decided).
 
     Raises:
         ValueError: an argument is not a finite number or is negative.
@@ -153,13 +154,18 @@ def validity_map(
         t_end=t_end,
         tol=tol,
         stop_at_first_separation=True,
+        t_late=0.5 * t_end,
         workers=workers,
     )
+    lost = run.outcome == Outcome.separated
+    moves = run.early_max_x > 0
+    growth = np.where(moves, run.late_max_x, 1.0) / np.where(moves, run.early_max_x, 1.0)
     return build(
         VALIDITY_MAP,
         {
             "first_separation_time": run.first_separation_time,
-            "separates": run.outcome == Outcome.separated,
+            "separates": lost,
+            "response_growth": np.where(lost, np.nan, growth),
             "regime_linear": stability_map(params, first, second)["regime_linear"],
             "t_end": t_end,
             "outcome": run.outcome,

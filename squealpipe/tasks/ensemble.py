@@ -35,7 +35,7 @@ class Ensemble:
         separated_time, stick_time: total time in those regimes, s.
         peak_contact_force, lowest_contact_force: extremes of N/(k3 l_pre) while in contact.
         max_displacement: largest √(x² + y²), m.
-        max_x: largest |x|, m; late_max_x: the same after ``t_late``.
+        early_max_x, late_max_x: largest |x| before and after ``t_late``, m.
         max_vx: largest ẋ at the ends of integration steps, m/s.
         nearest_pivot: smallest distance to a fixed end at step ends, in free lengths.
         turns: net turns around both fixed ends, counterclockwise positive.
@@ -58,7 +58,7 @@ class Ensemble:
     peak_contact_force: np.ndarray
     lowest_contact_force: np.ndarray
     max_displacement: np.ndarray
-    max_x: np.ndarray
+    early_max_x: np.ndarray
     late_max_x: np.ndarray
     max_vx: np.ndarray
     nearest_pivot: np.ndarray
@@ -92,7 +92,7 @@ def run_ensemble(
     times: Any = None,
     stop_at_first_separation: bool = False,
     stop_at_x: Any = math.inf,
-    t_late: Any = 0.0,
+    t_late: Any = math.inf,
     tangent: bool = False,
     log_events: int = 0,
     workers: int | None = None,
@@ -115,7 +115,7 @@ def run_ensemble(
         times: instants (last axis), the same for all runs or one row a run, s, ascending.
         stop_at_first_separation: end a run there with outcome ``separated``.
         stop_at_x: end a run when |x| exceeds this, m, with outcome ``amplitude_reached``.
-        t_late: start of the window of ``late_max_x``, s.
+        t_late: where ``early_max_x`` ends and ``late_max_x`` starts, s.
         tangent: carry one perturbation along (for the predictability horizon).
         log_events: number of events a run to keep.
         workers: processes; None takes all cores. The results are the same bit for bit.
@@ -241,7 +241,7 @@ class _Jobs:
             "alpha2": real_array("alpha2", alpha2),
             "t_end": real_array("t_end", t_end),
             "stop_at_x": real_array("stop_at_x", stop_at_x, infinite=True),
-            "t_late": real_array("t_late", t_late),
+            "t_late": real_array("t_late", t_late, infinite=True),
         }
         state = real_array("initial_state", initial_state)
         if state.shape[-1:] != (4,):
@@ -308,7 +308,7 @@ class _Jobs:
             "peak_contact_force": np.where(separated, 0.0, 1.0 - result[kernel.LOWEST_Y]),
             "lowest_contact_force": np.where(separated, 0.0, 1.0 - result[kernel.HIGHEST_Y]),
             "max_displacement": np.sqrt(result[kernel.LARGEST_R2]) * length,
-            "max_x": result[kernel.LARGEST_X] * length,
+            "early_max_x": result[kernel.EARLY_LARGEST_X] * length,
             "late_max_x": result[kernel.LATE_LARGEST_X] * length,
             "max_vx": result[kernel.LARGEST_SPEED] * speed,
             "nearest_pivot": np.sqrt(result[kernel.NEAREST_PIVOT2]),

@@ -36,7 +36,7 @@ SEPARATES, REVERSES, STICKS, LINEAR_SPRINGS, LOST_GROWTH = range(16, 21)
 N_ORDERS = 21
 # A job's floating-point results.
 TIME, FIRST_SEPARATION, SEPARATED_TIME, STICK_TIME, LOWEST_Y, LARGEST_R2 = range(6)
-LARGEST_X, LATE_LARGEST_X, LARGEST_SPEED, NEAREST_PIVOT2 = range(6, 10)
+EARLY_LARGEST_X, LATE_LARGEST_X, LARGEST_SPEED, NEAREST_PIVOT2 = range(6, 10)
 HIGHEST_Y, HALF_TURNS1, HALF_TURNS2, LOG_GROWTH, HORIZON, FINAL_STATE = range(10, 16)
 N_RESULTS = FINAL_STATE + 4
 # A job's integer results; the counts of the five kinds of events come last.
@@ -120,7 +120,7 @@ def _load(state: Any, pars: Any, memory: Any, integers: Any, initial: Any, lane:
     m[HORIZON] = np.nan
     m[LOWEST_Y], m[HIGHEST_Y] = (np.inf, -np.inf) if regime == SEPARATED else (y, y)
     m[LARGEST_R2] = x * x + y * y
-    m[LARGEST_X] = abs(x)
+    m[EARLY_LARGEST_X] = abs(x)
     m[LARGEST_SPEED] = vx
     m[NEAREST_PIVOT2] = np.inf
     for index in range(NEXT_SAMPLE, N_INTEGERS):
@@ -157,13 +157,12 @@ def _observe(c: Any, end: Any, memory: Any, lane: int, regime: int, step: float)
             high = max(high, evaluate(c, 1, lane, root_of(c, 3, lane, step, vy0, vy1)))
         m[HIGHEST_Y] = max(m[HIGHEST_Y], high)
     large = max(abs(x0), abs(x1))
-    late = memory[lane, CLOCK] >= memory[lane, ORDER + T_LATE]
-    record = m[LATE_LARGEST_X] if late else m[LARGEST_X]
-    if vx0 * vx1 < 0.0 and large + step * abs(vx0) > record:
+    window = EARLY_LARGEST_X
+    if memory[lane, CLOCK] >= memory[lane, ORDER + T_LATE]:
+        window = LATE_LARGEST_X
+    if vx0 * vx1 < 0.0 and large + step * abs(vx0) > m[window]:
         large = max(large, abs(evaluate(c, 0, lane, root_of(c, 2, lane, step, vx0, vx1))))
-    m[LARGEST_X] = max(m[LARGEST_X], large)
-    if late:
-        m[LATE_LARGEST_X] = max(m[LATE_LARGEST_X], large)
+    m[window] = max(m[window], large)
     m[LARGEST_SPEED] = max(m[LARGEST_SPEED], vx1)
     _observe_distance(c, m, lane, step, x0 * vx0 + y0 * vy0, x1 * vx1 + y1 * vy1, end)
     pivot = memory[lane, PIVOTS : PIVOTS + 4]
@@ -302,7 +301,7 @@ def _advance_lane(
         _grow(state, result, lane, time, saltation, m[LOST_GROWTH])
     if m[STOP_AT_SEPARATION] > 0.0 and not math.isnan(result[FIRST_SEPARATION]):
         return SEPARATION_FOUND
-    if result[LARGEST_X] > m[STOP_AT_X]:
+    if max(result[EARLY_LARGEST_X], result[LATE_LARGEST_X]) > m[STOP_AT_X]:
         return REACHED
     if integers[lane, COUNT + EVENTS] >= m[MAX_EVENTS]:
         return EVENT_LIMIT

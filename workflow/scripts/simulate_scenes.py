@@ -1,0 +1,21 @@
+"""Model A1 in the scenes of Figs. 2 to 5."""
+
+from squealpipe.parameters import SCENES, parameters_of
+from squealpipe.store import produce
+from squealpipe.tasks.dynamics import simulate
+
+part = snakemake.params.part
+params = parameters_of(part)
+for name, path in snakemake.output.items():
+    scene = SCENES[name]
+    produce(
+        lambda: simulate(
+            params,
+            scene.alpha1,
+            scene.alpha2,
+            t_end=scene.t_end * params.time_unit,
+            tol=part["dynamics.tol"],
+        ),
+        config={**part, "scene": name},
+        output=path,
+    )
