@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from squealpipe.config import parameters_of
+from squealpipe.parameters import parameters_of
 from squealpipe.store import produce
 from squealpipe.tasks.linear import natural_frequencies, quasi_static_map, stability_map
 from squealpipe.tasks.linear_boundaries import stability_boundaries

@@ -1,6 +1,6 @@
 """Work–precision of harmonic balance on A4 and of eigenvalues near flutter onset."""
 
-from squealpipe.config import parameters_of
+from squealpipe.parameters import parameters_of
 from squealpipe.store import produce
 from squealpipe.tasks import speed_accuracy_harmonic, speed_accuracy_stability
 from squealpipe.tasks.work_precision import work_precision

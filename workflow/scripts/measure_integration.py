@@ -1,6 +1,6 @@
 """Work–precision of the time integration of A1 and of the validity map."""
 
-from squealpipe.config import parameters_of
+from squealpipe.parameters import parameters_of
 from squealpipe.store import produce
 from squealpipe.tasks import speed_accuracy_integration, speed_accuracy_validity
 from squealpipe.tasks.work_precision import work_precision
