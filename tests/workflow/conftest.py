@@ -1,0 +1,72 @@
+"""Dry runs of a finished quick study, many at a time."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import subprocess
+import sys
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import pytest
+
+QUICK = "workflow/config/quick.yaml"
+
+
+@dataclass(frozen=True)
+class Plan:
+    """What a dry run said: rule → reason, and the files of each job."""
+
+    reasons: dict[str, str]
+    files: list[tuple[str, list[str], list[str]]] = field(default_factory=list)
+    text: str = ""
+
+    @property
+    def rules(self) -> set[str]:
+        return set(self.reasons) - {"all"}
+
+
+def read(text: str) -> Plan:
+    """Rules, reasons, inputs and outputs from the text of a dry run."""
+    blocks = re.split(r"^(?:local)?rule (\w+):$", text, flags=re.MULTILINE)[1:]
+    reasons, files = {}, []
+    for rule, block in zip(blocks[::2], blocks[1::2], strict=True):
+        entries = dict(re.findall(r"^    (\w+): (.*)$", block, flags=re.MULTILINE))
+        reasons[rule] = f"{reasons.get(rule, '')} {entries.get('reason', '')}".strip()
+        files.append(
+            (rule, entries.get("input", "").split(", "), entries.get("output", "").split(", "))
+        )
+    return Plan(reasons, files, text)
+
+
+@pytest.fixture(scope="session")
+def dry_runs() -> Callable[[Path, Sequence[Sequence[str]]], list[Plan]]:
+    """Plans of several dry runs in one checkout, each with its own arguments."""
+
+    def run(checkout: Path, arguments: Sequence[Sequence[str]]) -> list[Plan]:
+        process = subprocess.run(
+            [sys.executable, str(Path(__file__).with_name("dry_runs.py"))],
+            input=json.dumps([list(map(str, words)) for words in arguments]),
+            cwd=checkout,
+            env={**os.environ, "PYTHONPATH": str(checkout)},
+            capture_output=True,
+            text=True,
+            check=True,
+        )
+        answers = json.loads(process.stdout)
+        for code, text in answers:
+            assert code == 0, text
+        return [read(text) for _, text in answers]
+
+    return run
+
+
+@pytest.fixture(scope="session")
+def study_copy(quick_study, tmp_path_factory) -> Path:
+    """A finished quick study whose files may be edited; dates are kept."""
+    copy = tmp_path_factory.mktemp("edited") / "squealpipe"
+    subprocess.run(["cp", "-a", quick_study.checkout, copy], check=True)
+    return copy

@@ -1,0 +1,36 @@
+"""Many dry runs of one workflow: Snakemake is imported once, each dry run is a fork.
+
+Reads a JSON list of argument lists from standard input, prints a JSON list of [code, output].
+"""
+
+import json
+import os
+import sys
+import tempfile
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+import snakemake.cli
+
+import squealpipe.config  # noqa: F401  imported before the forks, so that none has to
+
+
+def dry_run(arguments: list[str]) -> tuple[int, str]:
+    with tempfile.NamedTemporaryFile() as file:
+        child = os.fork()
+        if child == 0:
+            for stream in (1, 2):
+                os.dup2(file.fileno(), stream)
+            try:
+                snakemake.cli.main(["--dry-run", "--nocolor", *arguments])
+            except SystemExit as end:
+                os._exit(int(end.code or 0))
+            finally:
+                os._exit(3)
+        _, status = os.waitpid(child, 0)
+        return os.waitstatus_to_exitcode(status), Path(file.name).read_text()
+
+
+if __name__ == "__main__":
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        json.dump(list(pool.map(dry_run, json.load(sys.stdin))), sys.stdout)

@@ -1,0 +1,229 @@
+"""An edit makes exactly those rules stale that read it, and what they feed; a rewording nothing.
+
+`direct_readers.yaml` states for every key of the configuration which rules read it; whatever
+those rules feed follows from the files that they exchange. Snakemake is asked by dry runs.
+"""
+
+from __future__ import annotations
+
+import itertools
+import os
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+import yaml
+
+from squealpipe.config import ConfigError, Study, parse_study, read_study
+from squealpipe.sources import closure
+from squealpipe.yaml_files import flat, overlay
+
+ROOT = Path(__file__).resolve().parents[2]
+QUICK = "workflow/config/quick.yaml"
+STATED = Path(__file__).with_name("direct_readers.yaml")
+MEND = "SQUEALPIPE_MEND=1 python -m pytest tests/workflow/test_reruns.py"
+KEYS = sorted(set(flat(Study().model_dump(mode="json"))) - {"results"})
+
+
+def nested(key: str, value: Any) -> dict[str, Any]:
+    for name in reversed(key.split(".")):
+        value = {name: value}
+    return value
+
+
+def candidates(value: Any) -> list[Any]:
+    """Other values near one; the first that the types allow is used."""
+    if isinstance(value, bool):
+        return [not value]
+    if isinstance(value, int):
+        return [value + 1, value + 2, value - 1, value * 2]
+    if isinstance(value, float):
+        return [value * 1.01, value + 0.01, value / 2, value - 0.01]
+    if isinstance(value, list) and value:
+        inner = [[*value[:-1], other] for other in candidates(value[-1])]
+        return [value[:-1], *inner, value[::-1]]
+    return [
+        other
+        for other in itertools.chain(("A1", "A4", "exact", "hbm", "png", "x"), (f"{value}x",))
+        if other != value
+    ]
+
+
+def another_value(key: str) -> dict[str, Any]:
+    """An overlay that changes one key of the quick study to another allowed value."""
+    current = read_study(ROOT / "workflow/config/paper.yaml", ROOT / QUICK).model_dump(mode="json")
+    for value in candidates(flat(current)[key]):
+        changed = nested(key, value)
+        trial = yaml.safe_load(yaml.safe_dump(current))
+        overlay(trial, changed)
+        try:
+            parse_study(trial)
+        except ConfigError:
+            continue
+        return changed
+    raise AssertionError(f"no other value of {key} is allowed; extend `candidates`")
+
+
+def feeds(plan) -> dict[str, set[str]]:
+    """Rule → rules that read its output, from a dry run of everything."""
+    maker = {path: rule for rule, _, outputs in plan.files for path in outputs}
+    table: dict[str, set[str]] = {}
+    for rule, inputs, _ in plan.files:
+        for path in inputs:
+            if path in maker and rule != "all":
+                table.setdefault(maker[path], set()).add(rule)
+    return table
+
+
+def downstream(rules: set[str], table: dict[str, set[str]]) -> set[str]:
+    reached, waiting = set(), set(rules)
+    while waiting:
+        rule = waiting.pop()
+        reached.add(rule)
+        waiting |= table.get(rule, set()) - reached
+    return reached
+
+
+@pytest.fixture(scope="module")
+def everything(study_copy, dry_runs):
+    return dry_runs(study_copy, [["--configfile", QUICK, "--forceall"]])[0]
+
+
+@pytest.fixture(scope="module")
+def stated(study_copy, dry_runs, tmp_path_factory):
+    """Key → rules stale by themselves and all stale rules, by Snakemake."""
+    folder = tmp_path_factory.mktemp("overlays")
+    arguments = []
+    for key in KEYS:
+        path = folder / f"{key}.yaml"
+        path.write_text(yaml.safe_dump(another_value(key)))
+        arguments.append(["--configfile", QUICK, path])
+    return dict(zip(KEYS, dry_runs(study_copy, arguments), strict=True))
+
+
+def test_each_key_makes_stale_exactly_what_reads_it(stated, everything):
+    found = {
+        key: sorted(rule for rule in plan.rules if "Params have changed" in plan.reasons[rule])
+        for key, plan in stated.items()
+    }
+    if os.environ.get("SQUEALPIPE_MEND"):
+        STATED.write_text(
+            "# Which rules read a key; what they feed is not listed. Checked, and rewritten by\n"
+            f"# {MEND}\n" + yaml.safe_dump(found, width=100)
+        )
+    expected = yaml.safe_load(STATED.read_text())
+    wrong = {
+        key: f"stated {expected.get(key)}, found {found.get(key)}"
+        for key in sorted(set(expected) | set(found))
+        if expected.get(key) != found.get(key)
+    }
+    assert not wrong, f"{wrong}\nif that is meant, mend with: {MEND}"
+    table = feeds(everything)
+    for key, plan in stated.items():
+        assert plan.rules == downstream(set(expected[key]), table), key
+
+
+def test_no_key_is_idle(stated):
+    assert not [key for key, plan in stated.items() if not plan.rules]
+
+
+def test_parameters_do_not_reach_drawing_without_a_dataset(stated):
+    """A number of the physics acts through datasets: no figure is drawn from it directly."""
+    for key, plan in stated.items():
+        if key.startswith("parameters."):
+            drawn = {rule for rule in plan.rules if rule.startswith("draw_")}
+            direct = {rule for rule in drawn if "Params have changed" in plan.reasons[rule]}
+            assert not direct, (key, direct)
+
+
+REWORDINGS = {
+    "comments": lambda text: "# a comment\n" + text.replace("\n", "  # more\n", 3),
+    "blank lines": lambda text: text.replace("\n", "\n\n"),
+    "1.0 as 1": lambda text: text.replace("mass: 1.0", "mass: 1"),
+    "exponent": lambda text: text.replace("sigma: 1000.0", "sigma: 1e3"),
+    "order": lambda text: yaml.safe_dump(yaml.safe_load(text), sort_keys=True),
+    "flow style": lambda text: yaml.safe_dump(yaml.safe_load(text), default_flow_style=True),
+}
+
+
+@pytest.mark.parametrize("rewording", REWORDINGS)
+def test_rewording_the_configuration_reruns_nothing(rewording, study_copy, dry_runs):
+    path = study_copy / "workflow/config/paper.yaml"
+    before = path.read_text()
+    path.write_text(REWORDINGS[rewording](before))
+    try:
+        assert path.read_text() != before
+        assert dry_runs(study_copy, [["--configfile", QUICK]])[0].rules == set()
+    finally:
+        path.write_text(before)
+
+
+def test_new_dates_rerun_nothing_and_neither_does_an_edit_taken_back(study_copy, dry_runs):
+    for path in [*study_copy.glob("squealpipe/**/*.py"), *study_copy.glob("workflow/**/*.*")]:
+        path.touch()
+    edited = study_copy / "squealpipe/laws/springs.py"
+    text = edited.read_text()
+    edited.write_text(text + "# edited\n")
+    assert dry_runs(study_copy, [["--configfile", QUICK]])[0].rules
+    edited.write_text(text)
+    assert dry_runs(study_copy, [["--configfile", QUICK]])[0].rules == set()
+
+
+LAYERS = {
+    "laws/springs.py": ({"map_linear"}, {"draw_fig01"}),
+    "models/a3.py": ({"map_linear", "draw_fig06"}, {"draw_fig01"}),
+    "tasks/linear.py": ({"map_linear"}, {"draw_fig01"}),
+    "schema/linear.py": ({"map_linear"}, {"draw_fig01"}),
+    "store/netcdf.py": ({"map_linear", "draw_fig06"}, {"draw_fig01"}),
+    "figures/fig06.py": ({"draw_fig06", "write_report"}, {"map_linear", "draw_fig01"}),
+    "figures/style.py": ({"draw_fig06", "draw_fig01"}, {"map_linear"}),
+    "report/build.py": ({"write_report"}, {"map_linear", "draw_fig06"}),
+    "store/archive.py": (set(), None),
+    "store/compare.py": (set(), None),
+    "config.py": (set(), None),
+    "explain.py": (set(), None),
+    "cli/__init__.py": (set(), None),
+}
+"""Module → rules that its edit must reach, and rules that it must not (None: no rule at all)."""
+
+
+@pytest.mark.parametrize("module", LAYERS)
+def test_source_edits_reach_what_imports_them(module, study_copy, dry_runs, everything):
+    stale, fresh = LAYERS[module]
+    path = study_copy / "squealpipe" / module
+    text = path.read_text()
+    path.write_text(text + "# edited\n")
+    try:
+        found = dry_runs(study_copy, [["--configfile", QUICK]])[0].rules
+    finally:
+        path.write_text(text)
+    reads = {rule for rule, inputs, _ in everything.files if f"squealpipe/{module}" in inputs}
+    assert found == downstream(reads, feeds(everything))
+    assert stale <= found
+    assert not found & fresh if fresh is not None else not found
+
+
+SCRIPTS = sorted((ROOT / "workflow/scripts").glob("*.py"))
+LOADED = """
+import ast, sys
+tree = ast.parse(open(sys.argv[1]).read())
+imports = [node for node in tree.body if isinstance(node, (ast.Import, ast.ImportFrom))]
+exec(compile(ast.Module(imports, []), sys.argv[1], "exec"))
+print(*(m.__file__ for n, m in sys.modules.items() if n.split(".")[0] == "squealpipe"))
+"""
+
+
+@pytest.mark.parametrize("script", SCRIPTS, ids=lambda path: path.stem)
+def test_sources_hold_every_module_that_python_really_loads(script):
+    run = subprocess.run(
+        [sys.executable, "-c", LOADED, str(script)],
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    loaded = {Path(name).resolve() for name in run.stdout.split()}
+    missing = loaded - set(closure(script))
+    assert not missing, f"{script.name} loads {missing}, which its rule does not list"
