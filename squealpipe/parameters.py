@@ -37,12 +37,14 @@ class Parameters:
 
     Attributes:
         mass: m, kg.
-        k1, k2: spring stiffnesses, N/m.
+        k1: stiffness of spring 1, N/m.
+        k2: stiffness of spring 2, N/m.
         k3: contact stiffness, N/m.
         mu: Coulomb friction coefficient.
         belt_speed: V, m/s; its sign is the direction.
         preload: precompression l_pre of the contact spring, m.
-        length1, length2: free lengths L1, L2, m.
+        length1: free length of spring 1, m.
+        length2: free length of spring 2, m.
         sigma: regularizing factor of tanh(sigma z), 1/m (paper, section 5).
 
     Raises:

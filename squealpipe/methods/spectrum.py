@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 
 def amplitude_spectrum(
-    signal: NDArray[np.float64], step: float
+    signal: NDArray[np.float64], step: float, *, padding: int = 1
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """One-sided amplitude spectrum with a Hann window, the mean removed.
 
@@ -16,16 +16,18 @@ def amplitude_spectrum(
     Args:
         signal: samples, (..., n).
         step: time between samples.
+        padding: zeros are added up to ``padding`` n samples, for a finer grid.
 
     Returns:
-        Angular frequency (n//2 + 1,), rad per unit of ``step``, and amplitude
-        (..., n//2 + 1), in the signal's unit.
+        Angular frequency (m,), rad per unit of ``step``, and amplitude (..., m), in the
+        signal's unit, with m = padding n // 2 + 1.
     """
     count = signal.shape[-1]
     window = 0.5 - 0.5 * np.cos(2.0 * np.pi * np.arange(count) / count)
     centred = signal - (signal * window).sum(-1, keepdims=True) / window.sum()
-    amplitude = np.abs(np.fft.rfft(centred * window)) * 2.0 / window.sum()
-    return 2.0 * np.pi * np.fft.rfftfreq(count, step), amplitude
+    amplitude = np.abs(np.fft.rfft(centred * window, n=padding * count)) * 2.0 / window.sum()
+    frequency = 2.0 * np.pi * np.fft.rfftfreq(padding * count, step)
+    return frequency.astype(np.float64), amplitude.astype(np.float64)
 
 
 def highest_peaks(
@@ -33,9 +35,9 @@ def highest_peaks(
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Frequency and height of the highest local maxima, highest first; fewer if there are fewer.
 
-    Each is refined by the parabola through the logarithms of its three highest lines, which
-    for a Hann window leaves an error below a thirtieth of a line. Maxima below a thousandth
-    of the highest are taken for noise.
+    Each is refined by the parabola through its three highest lines, so the spectrum should be
+    padded (by 4 or more). Maxima below a twentieth of the highest are left out: the window's
+    own side lobes reach a thirty-fifth.
 
     Args:
         frequency: uniform grid (n,).
@@ -44,10 +46,9 @@ def highest_peaks(
     """
     middle = amplitude[1:-1]
     places = 1 + np.flatnonzero((middle > amplitude[:-2]) & (middle >= amplitude[2:]))
-    places = places[amplitude[places] > 1e-3 * amplitude.max(initial=0.0)]
+    places = places[amplitude[places] > 0.05 * amplitude.max(initial=0.0)]
     places = places[np.argsort(-amplitude[places], kind="stable")][:count]
-    tiny = np.finfo(float).tiny
-    left, centre, right = (np.log(amplitude[places + k] + tiny) for k in (-1, 0, 1))
+    left, centre, right = (amplitude[places + k] for k in (-1, 0, 1))
     shift = 0.5 * (left - right) / (left - 2.0 * centre + right)
-    height = np.exp(centre - 0.25 * (left - right) * shift)
+    height = centre - 0.25 * (left - right) * shift
     return frequency[places] + shift * (frequency[1] - frequency[0]), height

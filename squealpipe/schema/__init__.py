@@ -247,9 +247,11 @@ def find(name: str) -> DatasetSchema:
         SchemaError: no table has it.
     """
     schemas = all_schemas()
-    if name not in schemas:
-        raise SchemaError(f"no schema {name!r}; known: {', '.join(sorted(schemas))}")
-    return schemas[name]
+    if name in schemas:
+        return schemas[name]
+    if (swept := importlib.import_module(f"{__name__}.sweep").derived(name)) is not None:
+        return swept  # type: ignore[no-any-return]
+    raise SchemaError(f"no schema {name!r}; known: {', '.join(sorted(schemas))}")
 
 
 def all_schemas() -> dict[str, DatasetSchema]:

@@ -1,0 +1,103 @@
+"""What the explorer's map can show: one quantity over both angles, from a stored dataset."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+import xarray as xr
+
+from squealpipe.figures.style import REGIME_COLOURS
+
+
+@dataclass(frozen=True, kw_only=True)
+class Layer:
+    """A quantity over both angles.
+
+    Attributes:
+        label: its name in the chooser.
+        unit: its unit, empty where dimensionless or a category.
+        alpha1, alpha2: angles, rad.
+        values: (alpha1, alpha2); NaN where there is none.
+        note: what NaN means, or what else to know.
+        meanings: code → name, for categories.
+        colours: code → colour, for categories.
+    """
+
+    label: str
+    unit: str
+    alpha1: np.ndarray
+    alpha2: np.ndarray
+    values: np.ndarray
+    note: str = ""
+    meanings: Mapping[int, str] = field(default_factory=dict)
+    colours: Mapping[int, str] = field(default_factory=dict)
+
+
+def quantity(variable: xr.DataArray, label: str, *, note: str = "") -> Layer:
+    """A layer of numbers."""
+    unit = str(variable.attrs["units"])
+    return Layer(
+        label=label,
+        unit="" if unit == "1" else unit.replace(" s-1", "/s").replace("s-1", "1/s"),
+        alpha1=variable.alpha1.values,
+        alpha2=variable.alpha2.values,
+        values=variable.values.astype(float),
+        note=note,
+    )
+
+
+def category(variable: xr.DataArray, label: str, *, colours: Mapping[str, str]) -> Layer:
+    """A layer of categories: a flag variable, in the colours that figures use.
+
+    Raises:
+        KeyError: a meaning that occurs has no colour.
+    """
+    names = str(variable.attrs["flag_meanings"]).split()
+    table = dict(zip(map(int, variable.attrs["flag_values"]), names, strict=True))
+    present = np.unique(variable.values).tolist()
+    return Layer(
+        label=label,
+        unit="",
+        alpha1=variable.alpha1.values,
+        alpha2=variable.alpha2.values,
+        values=variable.values.astype(float),
+        meanings={code: table[code].replace("_", " ") for code in present},
+        colours={code: colours[table[code]] for code in present},
+    )
+
+
+def layers(
+    *,
+    stability: xr.Dataset,
+    frequencies: xr.Dataset,
+    validity: xr.Dataset,
+    hammering: xr.Dataset,
+) -> dict[str, Layer]:
+    """All layers, in the order of the chooser.
+
+    Args:
+        stability: dataset ``stability_map``.
+        frequencies: dataset ``natural_frequencies``.
+        validity: dataset ``validity_map``.
+        hammering: dataset ``hammering_map``.
+    """
+    found = {
+        "motion": category(hammering.motion, "motion (A1)", colours=REGIME_COLOURS),
+        "stability": category(
+            stability.regime_linear, "linear stability (A3)", colours=REGIME_COLOURS
+        ),
+        "first_separation": quantity(
+            validity.first_separation_time,
+            "first separation",
+            note="blank: contact is kept to the end of the run",
+        ),
+        "peak_force": quantity(hammering.peak_contact_force, "peak contact force / (k₃ l_pre)"),
+        "growth_rate": quantity(stability.growth_rate, "growth rate (A3)"),
+    }
+    for state, words in (("contact", "in contact"), ("separated", "separated")):
+        for mode in (1, 2):
+            chosen = frequencies.omega.sel(mode=mode, contact_state=state)
+            found[f"omega{mode}_{state}"] = quantity(chosen, f"ω{'₁₂'[mode - 1]} {words}")
+    return found

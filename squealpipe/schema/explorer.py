@@ -1,0 +1,66 @@
+"""The dataset behind the explorer page: motions, spectra and backbones on a grid of angles."""
+
+from __future__ import annotations
+
+from squealpipe.schema import DatasetSchema, Variable, outcome
+from squealpipe.schema.dynamics import TIME
+from squealpipe.schema.linear import ANGLES, MAP, MODES
+
+FREQUENCY = Variable(dims=("frequency",), units="rad s-1", long_name="angular frequency")
+RUN = (*MAP, "time")
+BRANCH = (*MAP, "mode", "point")
+
+
+def _motion(units: str, long_name: str) -> Variable:
+    """A history, kept in single precision: it is drawn, not computed with."""
+    return Variable(dims=RUN, units=units, long_name=long_name, dtype="f4", rtol=1e-5, atol=1e-6)
+
+
+def _branch(units: str, long_name: str) -> Variable:
+    return Variable(
+        dims=BRANCH,
+        units=units,
+        long_name=long_name,
+        dtype="f4",
+        nan_allowed=True,
+        rtol=1e-5,
+        atol=1e-6,
+    )
+
+
+EXPLORER = DatasetSchema(
+    name="explorer",
+    title="Motions from rest (A1), their spectra, and exact backbones (A4) over both angles",
+    coordinates={
+        **ANGLES,
+        **MODES,
+        "time": TIME,
+        "frequency": FREQUENCY,
+        "point": Variable(dims=("point",), dtype="i4", long_name="point along the branch"),
+    },
+    variables={
+        "x": _motion("m", "displacement along the belt"),
+        "y": _motion("m", "displacement away from the belt"),
+        "normalized_contact_force": _motion("1", "contact force over k3 l_pre"),
+        "force_spectrum": Variable(
+            dims=(*MAP, "frequency"),
+            dtype="f4",
+            long_name="amplitude spectrum of the normalized contact force",
+            rtol=1e-4,
+            atol=1e-5,
+        ),
+        "outcome": outcome(*MAP),
+        "omega": _branch("rad s-1", "angular frequency of the periodic motion"),
+        "x_amplitude": _branch("m", "half of the peak-to-peak of x over a period"),
+        "y_amplitude": _branch("m", "half of the peak-to-peak of y over a period"),
+        "y_peak": _branch("m", "y at the symmetric instant with the larger y"),
+        "stability_index": _branch("1", "trace of the monodromy matrix minus 2"),
+        "end": Variable(
+            dims=(*MAP, "mode"), dtype="i1", flags=outcome().flags, long_name="why the branch ends"
+        ),
+        "preload": Variable(units="m", long_name="precompression l_pre of the contact spring"),
+        "length1": Variable(units="m", long_name="free length of spring 1"),
+        "length2": Variable(units="m", long_name="free length of spring 2"),
+        "belt_speed": Variable(units="m s-1", long_name="belt speed V"),
+    },
+)

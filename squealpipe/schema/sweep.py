@@ -1,0 +1,109 @@
+"""Datasets of sweeps: the dataset of one task with the swept names as leading dimensions.
+
+Their schema follows from that of the task, so it is derived from its name, for instance
+``sweep of stability_map over mu, k3``, instead of being listed.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import replace
+
+from squealpipe.parameters import Parameters
+from squealpipe.schema import DatasetSchema, SchemaError, Variable, find, flag_table
+
+ABSENT = -1
+"""Flag of places beyond the end of a run that is shorter than the longest one."""
+
+RAGGED = ("event", "point", "switch", "harmonic")
+"""Dimensions whose length may differ from run to run of a sweep."""
+
+OPTIONS = {
+    "t_end": Variable(units="s", long_name="horizon"),
+    "tol": Variable(units="1", long_name="tolerance of the integration"),
+    "mode": Variable(dtype="i4", units="1", long_name="mode, by ascending frequency"),
+    "y_peak": Variable(units="m", long_name="y at the symmetric instant"),
+}
+"""Options of tasks that can be swept besides parameters and angles."""
+
+_NAME = re.compile(r"^sweep of (?P<task>\w+) over (?P<names>\w+(?:, \w+)*)$")
+
+
+def sweep_name(task: str, names: Sequence[str]) -> str:
+    """Name of the schema of a sweep."""
+    return f"sweep of {task} over {', '.join(names)}"
+
+
+def swept_coordinate(name: str) -> Variable:
+    """Table entry of a swept name.
+
+    Raises:
+        SchemaError: nothing of that name can be swept.
+    """
+    if name in {"alpha1", "alpha2"}:
+        return Variable(dims=(name,), units="rad", long_name=f"angle of spring {name[-1]}")
+    if name in OPTIONS:
+        return replace(OPTIONS[name], dims=(name,))
+    if name in Parameters.__dataclass_fields__:
+        return Variable(dims=(name,), units=Parameters.units(name), long_name=name)
+    known = ["alpha1", "alpha2", *Parameters.__dataclass_fields__, *OPTIONS]
+    raise SchemaError(f"{name!r} cannot be swept; known: {', '.join(known)}")
+
+
+def derived(name: str) -> DatasetSchema | None:
+    """The schema of that name if it is the name of a sweep."""
+    match = _NAME.match(name)
+    if match is None:
+        return None
+    names = match["names"].split(", ")
+    base = find(match["task"])
+    kept = {key: entry for key, entry in base.coordinates.items() if key not in names}
+    sizes = {
+        f"{dim}_count": Variable(
+            dims=tuple(names), dtype="i4", long_name=f"entries that this run has along {dim}"
+        )
+        for dim in ragged_dims(base)
+    }
+    return DatasetSchema(
+        name=name,
+        title=f"{base.title}, over {', '.join(names)}",
+        version=base.version,
+        coordinates={
+            **{swept: swept_coordinate(swept) for swept in names},
+            **{key: entry for key, entry in kept.items() if not is_ragged(entry)},
+        },
+        variables={
+            **{
+                key: _with_leading(entry, names)
+                for key, entry in {**base.variables, **kept}.items()
+                if key not in names and (key in base.variables or is_ragged(entry))
+            },
+            **sizes,
+        },
+    )
+
+
+def ragged_dims(base: DatasetSchema) -> list[str]:
+    """Dimensions of a task's dataset that may differ in length from run to run."""
+    used = {
+        dim
+        for entry in [*base.variables.values(), *base.coordinates.values()]
+        for dim in entry.dims
+    }
+    return [dim for dim in RAGGED if dim in used]
+
+
+def is_ragged(entry: Variable) -> bool:
+    """Whether a variable has such a dimension."""
+    return any(dim in RAGGED for dim in entry.dims)
+
+
+def _with_leading(entry: Variable, names: Sequence[str]) -> Variable:
+    own = tuple(dim for dim in entry.dims if dim not in names)
+    swept = replace(entry, dims=(*names, *own))
+    if not is_ragged(entry):
+        return swept
+    if entry.flags is not None:
+        return replace(swept, flags={**flag_table(entry.flags), ABSENT: "absent"})
+    return replace(swept, nan_allowed=True)

@@ -1,0 +1,205 @@
+"""Any task over ranges of parameters, angles and options, as one labelled dataset."""
+
+from __future__ import annotations
+
+import itertools
+import os
+from collections.abc import Iterator, Mapping, Sequence
+from concurrent.futures import Executor, ProcessPoolExecutor
+from contextlib import contextmanager
+from dataclasses import dataclass, fields
+from multiprocessing import get_context
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from squealpipe.parameters import Parameters
+from squealpipe.schema import DatasetSchema, Variable, build, find
+from squealpipe.schema.sweep import ABSENT, OPTIONS, is_ragged, ragged_dims, sweep_name
+from squealpipe.store.chunks import Arrays, Checkpoint, run_chunks
+from squealpipe.tasks.catalogue import TASKS, run_task
+
+CHUNKS = 256
+"""A sweep is kept in at most so many part files: enough to resume finely, cheap to write."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Sweep:
+    """What to run: a task, what stays fixed, and what is varied over which values.
+
+    Attributes:
+        task: name of the task, for instance ``"periodic_orbit"``.
+        params: parameters where they are not varied.
+        vary: name → values; names are parameters, ``alpha1``, ``alpha2`` or options of the task.
+        fixed: angles and options that stay the same.
+
+    Raises:
+        ValueError: an unknown task or name, no values, or an angle that is missing.
+    """
+
+    task: str
+    params: Parameters
+    vary: Mapping[str, Sequence[float]]
+    fixed: Mapping[str, Any]
+
+    def __post_init__(self) -> None:
+        if self.task not in TASKS:
+            raise ValueError(f"no task {self.task!r}; choose from {', '.join(TASKS)}")
+        self._check_varied()
+        self._check_fixed()
+        if not self.names:
+            raise ValueError(
+                f"nothing to sweep: {self.task} maps both angles by itself; vary a parameter too"
+            )
+
+    def _check_varied(self) -> None:
+        allowed = [*(item.name for item in fields(Parameters)), "alpha1", "alpha2"]
+        allowed += [name for name in TASKS[self.task].options if name in OPTIONS]
+        for name, values in self.vary.items():
+            if name not in allowed:
+                raise ValueError(
+                    f"{name!r} cannot be varied for {self.task}; choose from {', '.join(allowed)}"
+                )
+            if not len(values) or len(set(values)) != len(values):
+                raise ValueError(f"{name} needs one or more values, each once, not {values!r}")
+
+    def _check_fixed(self) -> None:
+        options = TASKS[self.task].options
+        for name in set(self.fixed) - {"alpha1", "alpha2"} - set(options):
+            raise ValueError(
+                f"{self.task} has no option {name!r}; it has {', '.join(options) or 'none'}"
+            )
+        needed = {"alpha1", "alpha2", *(name for name in options if options[name])}
+        for name in sorted(needed):
+            if (name in self.vary) == (name in self.fixed):
+                raise ValueError(f"{self.task} needs {name} once, fixed or varied")
+
+    @property
+    def names(self) -> list[str]:
+        """Swept names in the order given; angles that the task itself maps are not among them."""
+        inner = ("alpha1", "alpha2") if TASKS[self.task].maps_angles else ()
+        return [name for name in self.vary if name not in inner]
+
+    @property
+    def points(self) -> list[tuple[float, ...]]:
+        """Values of the swept names at every point, last name fastest."""
+        return list(itertools.product(*(self.vary[name] for name in self.names)))
+
+    @property
+    def schema(self) -> DatasetSchema:
+        """Schema of the result."""
+        return find(sweep_name(TASKS[self.task].schema, self.names))
+
+    def run(self, point: Sequence[float]) -> xr.Dataset:
+        """The task at one point."""
+        given = {**self.fixed, **self.vary, **dict(zip(self.names, point, strict=True))}
+        physical = {item.name for item in fields(Parameters)} & set(given)
+        params = self.params.with_(**{name: given.pop(name) for name in sorted(physical)})
+        return run_task(self.task, params, given.pop("alpha1"), given.pop("alpha2"), **given)
+
+
+@dataclass(frozen=True)
+class _Chunk:
+    """Consecutive points of a sweep; picklable, so that a worker process can compute it."""
+
+    sweep: Sweep
+    start: int
+    stop: int
+
+
+def _compute(chunk: _Chunk) -> Arrays:
+    """Arrays of all points of a chunk, named ``<index>/<variable>``."""
+    arrays = {}
+    for index in range(chunk.start, chunk.stop):
+        dataset = chunk.sweep.run(chunk.sweep.points[index])
+        arrays.update({f"{index}/{name}": dataset[name].values for name in dataset.variables})
+    return arrays
+
+
+@contextmanager
+def executor(workers: int | None = None) -> Iterator[Executor | None]:
+    """Processes to share a sweep; None where one process is asked for.
+
+    Args:
+        workers: number of processes; all cores by default.
+    """
+    number = (os.cpu_count() or 1) if workers is None else workers
+    if number < 1:
+        raise ValueError(f"workers = {number}: must be 1 or greater")
+    if number == 1:
+        yield None
+        return
+    with ProcessPoolExecutor(number, mp_context=get_context("forkserver")) as pool:
+        yield pool
+
+
+def run_sweep(
+    sweep: Sweep, *, executor: Executor | None = None, checkpoint: Checkpoint | None = None
+) -> xr.Dataset:
+    """Run a sweep.
+
+    Args:
+        sweep: what to run.
+        executor: processes that share the work; None computes here.
+        checkpoint: where finished chunks are kept until all are done.
+
+    Returns:
+        The task's variables with the swept names as leading dimensions. Runs that are shorter
+        than the longest along a dimension such as ``point`` are filled up with NaN, or the
+        flag "absent", and ``<dimension>_count`` tells their lengths.
+    """
+    count = len(sweep.points)
+    size = -(-count // CHUNKS)
+    chunks = [_Chunk(sweep, at, min(at + size, count)) for at in range(0, count, size)]
+    parts = run_chunks(
+        _compute,
+        chunks,
+        checkpoint=checkpoint,
+        executor=executor,
+        sizes=[chunk.stop - chunk.start for chunk in chunks],
+        label=f"sweep of {sweep.task}",
+        unit="runs",
+    )
+    runs: list[Arrays] = [{} for _ in range(count)]
+    for part in parts:
+        for key, array in part.items():
+            index, name = key.split("/")
+            runs[int(index)][name] = array
+    return _merge(sweep, runs)
+
+
+def _merge(sweep: Sweep, runs: Sequence[Arrays]) -> xr.Dataset:
+    schema, base = sweep.schema, find(TASKS[sweep.task].schema)
+    shape = tuple(len(sweep.vary[name]) for name in sweep.names)
+    data, coords = {}, {name: np.asarray(sweep.vary[name]) for name in sweep.names}
+    for name, entry in {**base.coordinates, **base.variables}.items():
+        if name in sweep.names or name not in runs[0]:
+            continue
+        if name in schema.coordinates:
+            coords[name] = runs[0][name]
+            continue
+        stacked = _stack([run[name] for run in runs], entry)
+        data[name] = stacked.reshape(shape + stacked.shape[1:])
+    for dim in ragged_dims(base):
+        data[f"{dim}_count"] = np.reshape([_length(run, dim, base) for run in runs], shape)
+    return build(schema, data, coords)
+
+
+def _stack(arrays: Sequence[np.ndarray], entry: Variable) -> np.ndarray:
+    """All runs in one array, shorter ones filled up."""
+    if not is_ragged(entry):
+        return np.stack(arrays)
+    longest = np.max([array.shape for array in arrays], axis=0)
+    fill = np.nan if np.dtype(entry.dtype).kind == "f" else ABSENT
+    stacked = np.full((len(arrays), *longest), fill, dtype=entry.dtype)
+    for place, array in enumerate(arrays):
+        stacked[place][tuple(slice(length) for length in array.shape)] = array
+    return stacked
+
+
+def _length(run: Arrays, dim: str, base: DatasetSchema) -> int:
+    for name, entry in {**base.variables, **base.coordinates}.items():
+        if name in run and dim in entry.dims:
+            return int(run[name].shape[entry.dims.index(dim)])
+    return 0
