@@ -2,6 +2,7 @@
 
 The unknowns are z = (x0, y0, T/2), in scaled units of order one. Three unknowns allow closed
 forms for tangent and corrector; :mod:`squealpipe.methods.continuation` is the general method.
+Arrays are handled element by element: whole-array expressions triple the time to compile.
 """
 
 from __future__ import annotations
@@ -18,130 +19,158 @@ from squealpipe.methods.shooting import (
     stability_index,
 )
 
-REACHED, RETURNED, TONGUE_END, BRANCH_LOST, STEP_LIMIT = range(5)
-"""Why a trace ended: y_peak reached, back at the threshold, the orbit's period halved and the
-branch would be retraced, no step small enough converged, or too many points."""
+REACHED, RETURNED, TONGUE_END, BRANCH_LOST, STEP_LIMIT, DIVERGED = range(6)
+"""Why a trace ended: y_peak reached, back on the linear mode, the orbit's period halved and the
+branch would be retraced, no step small enough converged, too many points, or x0 grew without
+bound beside y (an internal resonance)."""
 
 COLUMNS = ("x0", "y0", "half_period", "end_x", "end_y", "index", "residual", "switches")
 """Columns of a traced point."""
 
-
-@compiled
-def record(
-    rows: Any, point: Any, segments: Any, count: int, final: Any, residual: float, out: Any
-) -> None:
-    """Fill one row of the table of points."""
-    out[0], out[1], out[2] = point[0], point[1], point[2]
-    out[3], out[4] = final[0], final[1]
-    out[5] = stability_index(rows, segments, count)
-    out[6], out[7] = residual, count - 1
+_TRACE_TOLERANCE = 1e-9
+_SHORTEST_STEP = 1e-12
+_EASY_ITERATIONS = 3
 
 
 @compiled
-def orbit_at(rows: Any, start: Any, out: Any, switches: Any) -> bool:
-    """The orbit at the y0 of ``start``, by Newton from its x0 and T/2; False if not found."""
-    point = start.copy()
+def _norm(vector: Any) -> float:
+    return float(np.sqrt(vector[0] * vector[0] + vector[1] * vector[1] + vector[2] * vector[2]))
+
+
+@compiled
+def _dot(left: Any, right: Any) -> float:
+    return float(left[0] * right[0] + left[1] * right[1] + left[2] * right[2])
+
+
+@compiled
+def orbit_at(rows: Any, point: Any, out: Any, switches: Any) -> bool:
+    """The orbit at the y0 of ``point``, by Newton from its x0 and T/2, polished to round-off.
+
+    Fills ``point`` (3,), ``out`` (8,) with :data:`COLUMNS` and ``switches``; False if not found.
+    """
     segments, final, tangent = np.empty((MAX_SEGMENTS, 9)), np.empty(4), np.empty(3)
     keep_peak = np.zeros(3)
     keep_peak[1] = 1.0
     count, _, residual = solve_constrained(
-        rows, point, keep_peak, segments, switches, final, tangent
+        rows, point, keep_peak, 0.0, segments, switches, final, tangent
     )
     if count == 0:
         return False
-    record(rows, point, segments, count, final, residual, out)
+    out[0], out[1], out[2] = point[0], point[1], point[2]
+    out[3], out[4] = final[0], final[1]
+    out[5] = stability_index(rows, segments, count)
+    out[6], out[7] = residual, count - 1
     return True
 
 
 @compiled
-def trace(
+def _change_end(rows: Any, here: Any, ahead: Any, final: Any, length: float) -> None:
+    """Describe point and direction from the other instant of rest (by a short difference)."""
+    small = 1e-6 * length
+    segments, switches, moved = np.empty((MAX_SEGMENTS, 9)), np.empty(MAX_SEGMENTS), np.empty(4)
+    shoot(
+        rows,
+        here[0] + small * ahead[0],
+        here[1] + small * ahead[1],
+        here[2] + small * ahead[2],
+        segments,
+        switches,
+        moved,
+    )
+    ahead[0], ahead[1], ahead[2] = moved[0] - final[0], moved[1] - final[1], small * ahead[2]
+    here[0], here[1] = final[0], final[1]
+    norm = _norm(ahead)
+    for index in range(3):
+        ahead[index] /= norm
+
+
+@compiled
+def _step(
     rows: Any,
-    start: Any,
-    direction: Any,
-    y_stop: float,
-    first_step: float,
-    longest_step: float,
-    least_cosine: float,
-    table: Any,
+    here: Any,
+    ahead: Any,
+    control: Any,
+    work: Any,
+    segments: Any,
+    switches: Any,
+) -> tuple[float, int]:
+    """One accepted step: ``here`` and ``ahead`` move on.
+
+    Returns its length, or 0 if no step is accepted, and the orbit's number of segments.
+
+    A step is accepted only if Newton's method converges close to the prediction and the branch
+    has turned by little, so the branch is not left for another one. ``control`` holds the step
+    (relative to 1 + |z|, adapted in place), the longest step and the least cosine of the turn;
+    ``work`` (3, 4) receives the trial point, its tangent and the state after half a period.
+    """
+    trial, tangent, final = work[0], work[1], work[2]
+    while control[0] >= _SHORTEST_STEP:
+        length = control[0] * (1.0 + _norm(here))
+        for index in range(3):
+            trial[index] = here[index] + length * ahead[index]
+        legs, iterations, _ = solve_constrained(
+            rows, trial, ahead, _TRACE_TOLERANCE, segments, switches, final, tangent
+        )
+        if legs > 0:
+            cosine = _dot(tangent, ahead)
+            sign = 1.0 if cosine > 0.0 else -1.0
+            off = 0.0
+            for index in range(3):
+                off += (trial[index] - here[index] - length * ahead[index]) ** 2
+            if sign * cosine > control[2] and off < 0.09 * length * length:
+                for index in range(3):
+                    here[index], ahead[index] = trial[index], sign * tangent[index]
+                if iterations <= _EASY_ITERATIONS:
+                    control[0] = min(1.6 * control[0], control[1])
+                return length, legs
+        control[0] *= 0.5
+    return 0.0, 0
+
+
+@compiled
+def trace(
+    rows: Any, start: Any, direction: Any, y_stop: float, control: Any, record: bool, table: Any
 ) -> tuple[int, int]:
     """Follow the branch from ``start`` along ``direction`` until y0 reaches ``y_stop``.
 
-    A step is accepted only if Newton's method converges fast, close to the prediction, and the
-    branch has turned by little (``least_cosine``), so the branch is not left for another one.
-
     Args:
         rows: state rows. start: (3,) a solution on the branch. direction: (3,) its tangent.
-        first_step, longest_step: arclength, relative to 1 + |z|.
-        table: (n, 8) filled with points (:data:`COLUMNS`); its length bounds the trace.
+        control: (5,) step, longest step, least cosine of a turn, most steps, largest |x0|.
+        record: whether every point is polished and kept, or the one at ``y_stop`` alone.
+        table: (n, 8) filled with points (:data:`COLUMNS`).
 
     Returns:
-        (number of points, why it ended).
+        (number of points kept, why it ended).
     """
     threshold = rows[0, 11]
-    segments, switches, final = np.empty((MAX_SEGMENTS, 9)), np.empty(MAX_SEGMENTS), np.empty(4)
-    here, ahead, trial, tangent = start.copy(), direction.copy(), np.empty(3), np.empty(3)
-    step = first_step
+    segments, switches = np.empty((MAX_SEGMENTS, 9)), np.empty(MAX_SEGMENTS)
+    here, ahead, before, work = start.copy(), direction.copy(), start.copy(), np.empty((3, 4))
+    final = work[2]
     count = 0
-    while count < table.shape[0]:
-        scale = 1.0 + np.sqrt(here[0] ** 2 + here[1] ** 2 + here[2] ** 2)
-        length = step * scale
-        trial[:] = here + length * ahead
-        legs, iterations, residual = solve_constrained(
-            rows, trial, ahead, segments, switches, final, tangent
-        )
-        accepted = legs > 0
-        if accepted:
-            cosine = tangent[0] * ahead[0] + tangent[1] * ahead[1] + tangent[2] * ahead[2]
-            if cosine < 0.0:
-                tangent *= -1.0
-                cosine = -cosine
-            off = np.sqrt(np.sum((trial - here - length * ahead) ** 2))
-            accepted = cosine > least_cosine and off < 0.3 * length
-        if not accepted:
-            step *= 0.5
-            if step < 1e-9:
+    for _ in range(int(control[3])):
+        for index in range(3):
+            before[index] = here[index]
+        length, legs = _step(rows, here, ahead, control, work, segments, switches)
+        if length == 0.0:
+            return count, BRANCH_LOST
+        if here[1] >= y_stop:
+            weight = (y_stop - before[1]) / (here[1] - before[1])
+            for index in range(3):
+                before[index] += weight * (here[index] - before[index])
+            before[1] = y_stop
+            found = orbit_at(rows, before, table[count], switches)
+            return (count + 1, REACHED) if found else (count, BRANCH_LOST)
+        if record:
+            if not orbit_at(rows, here, table[count], switches):
                 return count, BRANCH_LOST
-            continue
-        if trial[1] >= y_stop:
-            return _stop_at(rows, here, trial, y_stop, table, count)
-        record(rows, trial, segments, legs, final, residual, table[count])
-        count += 1
-        if trial[1] <= threshold:
+            count += 1
+        if here[1] <= threshold and legs == 1:
             return count, RETURNED
-        if final[1] > trial[1]:
-            if abs(final[0] - trial[0]) < 3.0 * length:
+        if abs(here[0]) > control[4]:
+            return count, DIVERGED
+        if final[1] > here[1]:
+            if abs(final[0] - here[0]) < 3.0 * length:
                 return count, TONGUE_END
             # the other instant of rest is the higher one from here on: count from there
-            here[0], here[1], here[2] = trial[0], trial[1], trial[2]
-            _change_end(rows, here, tangent, final, length)
-        else:
-            here[:] = trial
-        ahead[:] = tangent
-        if iterations <= 5:
-            step = min(1.6 * step, longest_step)
+            _change_end(rows, here, ahead, final, length)
     return count, STEP_LIMIT
-
-
-@compiled
-def _stop_at(
-    rows: Any, here: Any, trial: Any, y_stop: float, table: Any, count: int
-) -> tuple[int, int]:
-    """Interpolate between two accepted points to y_stop and solve there."""
-    weight = (y_stop - here[1]) / (trial[1] - here[1])
-    start = here + weight * (trial - here)
-    start[1] = y_stop
-    if not orbit_at(rows, start, table[count], np.empty(MAX_SEGMENTS)):
-        return count, BRANCH_LOST
-    return count + 1, REACHED
-
-
-@compiled
-def _change_end(rows: Any, here: Any, tangent: Any, final: Any, length: float) -> None:
-    """Describe point and tangent from the other instant of rest (by a short difference)."""
-    small = 1e-6 * length
-    segments, switches, moved = np.empty((MAX_SEGMENTS, 9)), np.empty(MAX_SEGMENTS), np.empty(4)
-    near = here + small * tangent
-    shoot(rows, near[0], near[1], near[2], segments, switches, moved)
-    change = np.array([moved[0] - final[0], moved[1] - final[1], small * tangent[2]])
-    here[0], here[1] = final[0], final[1]
-    tangent[:] = change / np.sqrt(np.sum(change**2))

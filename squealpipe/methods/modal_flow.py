@@ -38,8 +38,8 @@ def modal_coefficients(omega1: Any, omega2: Any, time: Any) -> Any:
     cos_mean, cos_half = np.cos(mean * time), np.cos(half * time)
     sine_mean, sine_half = _sine_over(mean, time), _sine_over(half, time)
     sine1, sine2 = _sine_over(omega1, time), _sine_over(omega2, time)
-    rise1 = 2.0 * _sine_over(omega1, 0.5 * time) ** 2
-    rise2 = 2.0 * _sine_over(omega2, 0.5 * time) ** 2
+    sine1_half, sine2_half = _sine_over(omega1, 0.5 * time), _sine_over(omega2, 0.5 * time)
+    rise1, rise2 = 2.0 * sine1_half * sine1_half, 2.0 * sine2_half * sine2_half
 
     cosine_beta = -0.5 * sine_mean * sine_half
     if abs(half) < 0.5 * abs(mean):
@@ -78,7 +78,8 @@ def apply(row: Any, coefficients: Any, state: Any) -> None:
     x, y, vx, vy = state[0], state[1], state[2], state[3]
     bux, buy = row[1] * x + row[2] * y, row[3] * x - row[1] * y
     bvx, bvy = row[1] * vx + row[2] * vy, row[3] * vx - row[1] * vy
-    ca, cb, sa, sb, da, db = coefficients[:6]
+    ca, cb, sa, sb = coefficients[0], coefficients[1], coefficients[2], coefficients[3]
+    da, db = coefficients[4], coefficients[5]
     state[0] = ca * x + cb * bux + sa * vx + sb * bvx
     state[1] = ca * y + cb * buy + sa * vy + sb * bvy
     state[2] = da * x + db * bux + ca * vx + cb * bvx
@@ -96,6 +97,13 @@ def advance(row: Any, coefficients: Any, state: Any) -> None:
     state[1] += ga * by + gb * bby
     state[2] += sa * bx + sb * bbx
     state[3] += sa * by + sb * bby
+
+
+@compiled
+def copy_state(source: Any, target: Any) -> None:
+    """Copy (x, y, vx, vy)."""
+    for index in range(4):
+        target[index] = source[index]
 
 
 @compiled
@@ -138,7 +146,7 @@ def _refine_crossing(
     time = 0.5 * (start + end)
     for _ in range(100):
         propagator(row, time, scratch)
-        state[:] = origin
+        copy_state(origin, state)
         advance(row, scratch, state)
         distance = sign * (state[1] - row[11])
         if distance > 0.0:
@@ -164,7 +172,7 @@ def next_crossing(row: Any, origin: Any, sign: float, horizon: float, scratch: A
     threshold.
     """
     state = origin.copy()
-    longest = _LONGEST_LOOK_AHEAD / max(np.sqrt(row[7] ** 2 + row[8] ** 2), 1e-300)
+    longest = _LONGEST_LOOK_AHEAD / max(np.sqrt(row[7] * row[7] + row[8] * row[8]), 1e-300)
     time = 0.0
     while time < horizon:
         distance = max(sign * (state[1] - row[11]), 0.0)
@@ -183,7 +191,7 @@ def next_crossing(row: Any, origin: Any, sign: float, horizon: float, scratch: A
             step *= 0.5
         ahead = time + step
         propagator(row, ahead, scratch)
-        state[:] = origin
+        copy_state(origin, state)
         advance(row, scratch, state)
         if falls and sign * (state[1] - row[11]) <= 0.0:
             return _refine_crossing(row, origin, time, ahead, sign, scratch, state)

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from squealpipe.methods.compiled import compiled
-from squealpipe.methods.modal_flow import acceleration, advance, propagator
+from squealpipe.methods.modal_flow import acceleration, advance, copy_state, propagator
 from squealpipe.methods.shooting import MAX_SEGMENTS, shoot
 
 _LOOKS = 12
@@ -32,7 +32,7 @@ def waveform(rows: Any, point: Any, phases: Any, out: Any) -> None:
             leg += 1
         row = rows[int(segments[leg, 8])]
         propagator(row, time - begin, scratch)
-        out[index] = start
+        copy_state(start, out[index])
         advance(row, scratch, out[index])
 
 
@@ -67,7 +67,7 @@ def extremes(rows: Any, point: Any, out: Any) -> None:
             for look in range(_LOOKS + 1):
                 time = (end - begin) * look / _LOOKS
                 propagator(row, time, scratch)
-                state[:] = start
+                copy_state(start, state)
                 advance(row, scratch, state)
                 value, slope, _ = _rates(row, state, kind)
                 out[2 * kind] = min(out[2 * kind], value)
@@ -92,7 +92,7 @@ def _turn(row: Any, start: Any, kind: int, before: float, after: float, scratch:
     time = 0.5 * (before + after)
     for _ in range(8):
         propagator(row, time, scratch)
-        state[:] = start
+        copy_state(start, state)
         advance(row, scratch, state)
         value, slope, curvature = _rates(row, state, kind)
         if slope * first > 0.0:

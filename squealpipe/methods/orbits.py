@@ -24,6 +24,7 @@ class TraceEnd(IntEnum):
     tongue_end = branch_tracing.TONGUE_END
     lost = branch_tracing.BRANCH_LOST
     step_limit = branch_tracing.STEP_LIMIT
+    diverged = branch_tracing.DIVERGED
 
 
 @dataclass(frozen=True)
@@ -34,12 +35,14 @@ class TraceSettings:
         first_step, longest_step: steps.
         least_cosine: of the angle between branch directions before and after a step.
         max_points: points after which the trace gives up.
+        largest_x: |x0| beyond which the branch follows an internal resonance to infinity.
     """
 
     first_step: float = 0.01
     longest_step: float = 0.1
     least_cosine: float = 0.98
     max_points: int = 4000
+    largest_x: float = 1e3
 
     def __post_init__(self) -> None:
         if not (0.0 < self.first_step <= self.longest_step < 1.0):
@@ -52,6 +55,19 @@ class TraceSettings:
                 f"least_cosine = {self.least_cosine!r}, max_points = {self.max_points!r}: "
                 "a cosine between 0 and 1 and at least one point are needed"
             )
+
+
+    def control(self) -> NDArray[np.float64]:
+        """The array that the compiled kernels adapt."""
+        return np.array(
+            [
+                self.first_step,
+                self.longest_step,
+                self.least_cosine,
+                float(self.max_points),
+                self.largest_x,
+            ]
+        )
 
 
 @dataclass(frozen=True)
@@ -79,7 +95,7 @@ class Orbit:
 def solve_orbit(system: PiecewiseLinearSystem, guess: NDArray[np.float64]) -> Orbit | None:
     """The orbit with the y0 of a guess (x0, y0, T/2), or None where Newton's method fails."""
     row, switches = np.empty(len(branch_tracing.COLUMNS)), np.empty(MAX_SEGMENTS)
-    start = np.ascontiguousarray(guess[:3], dtype=float)
+    start = np.array(guess[:3], dtype=float)
     if not branch_tracing.orbit_at(system.rows, start, row, switches):
         return None
     return Orbit(row[:3].copy(), switches[: int(row[7])].copy(), float(row[5]), float(row[6]))
@@ -94,17 +110,43 @@ def trace_branch(
 ) -> tuple[NDArray[np.float64], TraceEnd]:
     """Points (n, 8) of a branch (columns: ``branch_tracing.COLUMNS``) and why it ended."""
     table = np.empty((settings.max_points, len(branch_tracing.COLUMNS)))
+    count, end = _trace(system, start, direction, y_stop, settings, table, record=True)
+    return table[:count], end
+
+
+def orbit_on_branch(
+    system: PiecewiseLinearSystem,
+    start: NDArray[np.float64],
+    direction: NDArray[np.float64],
+    y_stop: float,
+    settings: TraceSettings,
+) -> tuple[NDArray[np.float64] | None, TraceEnd]:
+    """The branch's point (8,) at y0 = y_stop, and why the trace ended; None where it is not met."""
+    table = np.empty((1, len(branch_tracing.COLUMNS)))
+    count, end = _trace(system, start, direction, y_stop, settings, table, record=False)
+    return (table[0] if count else None), end
+
+
+def _trace(
+    system: PiecewiseLinearSystem,
+    start: NDArray[np.float64],
+    direction: NDArray[np.float64],
+    y_stop: float,
+    settings: TraceSettings,
+    table: NDArray[np.float64],
+    *,
+    record: bool,
+) -> tuple[int, TraceEnd]:
     count, end = branch_tracing.trace(
         system.rows,
         np.asarray(start, dtype=float),
         np.asarray(direction / np.linalg.norm(direction), dtype=float),
         y_stop,
-        settings.first_step,
-        settings.longest_step,
-        settings.least_cosine,
+        settings.control(),
+        record,
         table,
     )
-    return table[:count], TraceEnd(end)
+    return count, TraceEnd(end)
 
 
 def decoupled_half_period(system: PiecewiseLinearSystem, y_peak: float) -> float:

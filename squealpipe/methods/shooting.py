@@ -68,8 +68,8 @@ def stability_index(rows: Any, segments: Any, count: int) -> float:
     trace = 0.0
     vector = np.empty(4)
     for column in range(4):
-        vector[:] = 0.0
-        vector[column] = 1.0
+        for index in range(4):
+            vector[index] = 1.0 if index == column else 0.0
         push(rows, segments, count, vector)
         for index in range(count - 1, -1, -1):
             apply(rows[int(segments[index, _COEFFICIENTS])], segments[index], vector)
@@ -91,8 +91,8 @@ def rest_conditions(
     residual[0], residual[1] = final[2], final[3]
     vector = np.empty(4)
     for column in range(2):
-        vector[:] = 0.0
-        vector[column] = 1.0
+        for index in range(4):
+            vector[index] = 1.0 if index == column else 0.0
         push(rows, segments, count, vector)
         jacobian[0, column], jacobian[1, column] = vector[2], vector[3]
     last = rows[int(segments[count - 1, _COEFFICIENTS])]
@@ -102,13 +102,21 @@ def rest_conditions(
 
 @compiled
 def solve_constrained(
-    rows: Any, point: Any, constraint: Any, segments: Any, switches: Any, final: Any, tangent: Any
+    rows: Any,
+    point: Any,
+    constraint: Any,
+    tolerance: float,
+    segments: Any,
+    switches: Any,
+    final: Any,
+    tangent: Any,
 ) -> tuple[int, int, float]:
     """Newton's method for rest at both ends together with constraint · (z − z_start) = 0.
 
     Args:
         point: (3,) x0, y0, T/2; start values in, solution out.
         constraint: (3,) fixes the third unknown; (0, 1, 0) keeps y0.
+        tolerance: of the end velocities; 0 goes on until round-off stops the progress.
         tangent: (3,) filled with the branch direction at the solution, unit length.
 
     Returns:
@@ -117,26 +125,27 @@ def solve_constrained(
     """
     residual, jacobian = np.empty(2), np.empty((2, 3))
     previous = np.inf
-    best = point.copy()
+    best0, best1, best2 = point[0], point[1], point[2]
     for iteration in range(_MAX_NEWTON):
         count = rest_conditions(rows, point, segments, switches, residual, jacobian, final)
         if count == 0:
-            return 0, iteration, np.inf
+            break
         error = max(abs(residual[0]), abs(residual[1]))
         scale = 1.0 + abs(point[0]) + abs(point[1])
-        tangent[0] = jacobian[0, 1] * jacobian[1, 2] - jacobian[0, 2] * jacobian[1, 1]
-        tangent[1] = jacobian[0, 2] * jacobian[1, 0] - jacobian[0, 0] * jacobian[1, 2]
-        tangent[2] = jacobian[0, 0] * jacobian[1, 1] - jacobian[0, 1] * jacobian[1, 0]
-        stagnant = error >= 0.25 * previous
-        if error < previous:
-            best[:] = point
-        if error <= 1e-12 * scale and (stagnant or error == 0.0):
-            point[:] = best
-            count = rest_conditions(rows, point, segments, switches, residual, jacobian, final)
-            tangent /= np.sqrt(tangent[0] ** 2 + tangent[1] ** 2 + tangent[2] ** 2)
-            return count, iteration, max(abs(residual[0]), abs(residual[1]))
-        if not error < 1e6 * scale or (iteration > 3 and error > previous):
+        if not error < 1e6 * scale or (iteration > 3 and error > previous > 1e-12 * scale):
             break
+        _cross(jacobian[0], jacobian[1], tangent)
+        stagnant = error <= 1e-12 * scale and (error >= 0.25 * previous or error == 0.0)
+        if error < previous:
+            best0, best1, best2 = point[0], point[1], point[2]
+        if stagnant or error <= tolerance:
+            norm = np.sqrt(tangent[0] ** 2 + tangent[1] ** 2 + tangent[2] ** 2)
+            for index in range(3):
+                tangent[index] /= norm
+            if error > previous:
+                point[0], point[1], point[2] = best0, best1, best2
+                count = shoot(rows, best0, best1, best2, segments, switches, final)
+            return count, iteration, max(abs(final[2]), abs(final[3]))
         previous = error
         determinant = (
             constraint[0] * tangent[0] + constraint[1] * tangent[1] + constraint[2] * tangent[2]
@@ -153,3 +162,10 @@ def solve_constrained(
         if not point[2] > 0.0:
             break
     return 0, _MAX_NEWTON, np.inf
+
+
+@compiled
+def _cross(left: Any, right: Any, out: Any) -> None:
+    out[0] = left[1] * right[2] - left[2] * right[1]
+    out[1] = left[2] * right[0] - left[0] * right[2]
+    out[2] = left[0] * right[1] - left[1] * right[0]

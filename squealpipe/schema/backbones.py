@@ -15,6 +15,14 @@ class Assumption(IntEnum):
     holds = 1
 
 
+class Route(IntEnum):
+    """How the orbit of an atlas cell was reached."""
+
+    none = 0
+    linear_mode = 1
+    neighbour = 2
+
+
 def _orbit_variables(*dims: str) -> dict[str, Variable]:
     """What one periodic orbit carries, over some dimensions."""
 
@@ -142,6 +150,12 @@ ORBIT_ATLAS = DatasetSchema(
             atol=1e-7,
         ),
         "outcome": outcome(*MAP, "mode"),
+        "route": Variable(
+            dims=(*MAP, "mode"),
+            dtype="i1",
+            flags=Route,
+            long_name="whether the branch leads here or a neighbouring cell's orbit",
+        ),
         "y_peak": Variable(units="m", long_name="y at the symmetric instant"),
     },
 )

@@ -24,6 +24,7 @@ BRANCH_ENDS = {
     TraceEnd.tongue_end: Outcome.tongue_end,
     TraceEnd.lost: Outcome.branch_lost,
     TraceEnd.step_limit: Outcome.step_limit,
+    TraceEnd.diverged: Outcome.pole,
 }
 """Outcome of a branch that was followed upwards."""
 
@@ -55,7 +56,7 @@ def exact_branch(
     else:
         seed = grazing_start(scene, mode)
         table, why = trace_branch(
-            scene.system, seed.point, seed.direction, y_max, seed.settings(_LONGEST_STEP)
+            scene.system, seed.point, seed.direction, y_max, seed.settings(_LONGEST_STEP, y_max)
         )
         beyond = [Orbit(row[:3], np.empty(int(row[7])), row[5], row[6]) for row in table]
         end = BRANCH_ENDS[why]

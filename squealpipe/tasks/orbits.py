@@ -15,14 +15,17 @@ from squealpipe.methods.orbits import (
     TraceEnd,
     TraceSettings,
     decoupled_half_period,
+    orbit_on_branch,
     shape,
     solve_orbit,
-    trace_branch,
 )
 from squealpipe.parameters import Parameters
 from squealpipe.schema import Outcome, build
 from squealpipe.schema.backbones import PERIODIC_ORBIT, Assumption
 from squealpipe.tasks.a4_system import ScaledSystem, scaled_system
+
+_LONGEST_STEP = 0.1
+_UNBOUNDED = 20.0
 
 TRACE_OUTCOMES = {
     TraceEnd.reached: Outcome.converged,
@@ -30,6 +33,7 @@ TRACE_OUTCOMES = {
     TraceEnd.tongue_end: Outcome.tongue_end,
     TraceEnd.lost: Outcome.branch_lost,
     TraceEnd.step_limit: Outcome.step_limit,
+    TraceEnd.diverged: Outcome.pole,
 }
 """Outcome of a trace that was to reach a given y_peak."""
 
@@ -112,10 +116,16 @@ def find_orbit(scene: ScaledSystem, mode: int, y_peak: float) -> tuple[Orbit | N
         found = solve_orbit(scene.system, guess)
         return found, Outcome.converged if found else Outcome.pole
     seed = grazing_start(scene, mode)
-    table, end = trace_branch(scene.system, seed.point, seed.direction, y_peak, seed.settings())
-    if end != TraceEnd.reached:
+    point, end = orbit_on_branch(
+        scene.system,
+        seed.point,
+        seed.direction,
+        y_peak,
+        seed.settings(_LONGEST_STEP, y_peak),
+    )
+    if point is None:
         return None, TRACE_OUTCOMES[end]
-    found = solve_orbit(scene.system, table[-1])
+    found = solve_orbit(scene.system, point)
     return found, Outcome.converged if found else Outcome.no_convergence
 
 
@@ -138,11 +148,20 @@ class GrazingStart:
     direction: NDArray[np.float64]
     room: float
 
-    def settings(self, longest_step: float = 0.1) -> TraceSettings:
-        """Step control whose first step is small against the linear mode itself."""
+    def settings(self, longest_step: float, y_stop: float) -> TraceSettings:
+        """Step control whose first step is small against the linear mode itself.
+
+        A branch whose x exceeds many times both y_stop and the linear mode's x at that peak
+        follows an internal resonance.
+        """
         reach = 1.0 + float(np.linalg.norm(self.point))
         first = min(0.1 * longest_step, 0.1 * self.room / reach)
-        return TraceSettings(first_step=first, longest_step=longest_step)
+        linear_x = abs(self.point[0]) + abs(self.direction[0]) * (y_stop - 1.0)
+        return TraceSettings(
+            first_step=first,
+            longest_step=longest_step,
+            largest_x=_UNBOUNDED * (y_stop + float(linear_x)),
+        )
 
 
 def grazing_start(scene: ScaledSystem, mode: int) -> GrazingStart:

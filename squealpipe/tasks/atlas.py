@@ -1,0 +1,175 @@
+"""Atlas of periodic motions of model A4: both modes at one peak over both spring angles."""
+
+from __future__ import annotations
+
+import os
+from concurrent.futures import ThreadPoolExecutor
+
+import numpy as np
+import xarray as xr
+from numpy.typing import ArrayLike, NDArray
+
+from squealpipe.methods.orbits import Orbit, solve_orbit
+from squealpipe.parameters import Parameters
+from squealpipe.schema import Outcome, build
+from squealpipe.schema.backbones import ORBIT_ATLAS, Route
+from squealpipe.tasks.a4_system import ScaledSystem, scaled_system
+from squealpipe.tasks.orbits import check_length, find_orbit
+
+
+_RESUMABLE = (
+    Outcome.tongue_end,
+    Outcome.retraced,
+    Outcome.pole,
+    Outcome.branch_lost,
+    Outcome.step_limit,
+    Outcome.no_convergence,
+)
+_SMALL_CHANGE = 0.05
+_SMALLEST_STEP = 0.05
+
+
+def orbit_atlas(
+    params: Parameters,
+    alpha1: ArrayLike,
+    alpha2: ArrayLike,
+    *,
+    y_peak: float | None = None,
+    workers: int | None = None,
+) -> xr.Dataset:
+    """ω and stability index of the exact periodic motion of each mode, each found from cold.
+
+    Args:
+        params: physical parameters; the belt moves along +x.
+        alpha1, alpha2: 1-D arrays of angles, rad.
+        y_peak: y at the symmetric instant, m; 2 l_pre by default.
+        workers: threads (the kernels release the interpreter); None: all cores.
+
+    Returns:
+        Dataset over (alpha1, alpha2, mode): omega (rad/s), stability_index, outcome.
+
+    Raises:
+        ValueError: y_peak is not a finite length above 0, or an angle is not finite.
+    """
+    rows, columns = np.atleast_1d(np.asarray(alpha1, float)), np.atleast_1d(np.asarray(alpha2, float))
+    peak = 2.0 * params.preload if y_peak is None else y_peak
+    check_length("y_peak", peak)
+
+    found = _Cells(params, rows, columns, peak / params.preload)
+    with ThreadPoolExecutor(workers or os.cpu_count()) as pool:
+        list(pool.map(found.fill_line, range(len(rows))))
+    found.fill_from_neighbours()
+    return build(
+        ORBIT_ATLAS,
+        {
+            "omega": found.values[..., 0],
+            "stability_index": found.values[..., 1],
+            "outcome": found.outcome,
+            "route": found.route,
+            "y_peak": peak,
+        },
+        {"alpha1": rows, "alpha2": columns, "mode": [1, 2]},
+    )
+
+
+class _Cells:
+    """The cells of an atlas while it is being made.
+
+    Where an internal resonance lies between the linear mode and the peak, the branch turns into
+    the resonance's tongue. The orbit beyond the tongue is then reached from a neighbouring cell,
+    at constant peak, by small steps of the angles; where that meets the resonance too, x grows
+    and the steps are refused.
+    """
+
+    def __init__(
+        self, params: Parameters, rows: NDArray[np.float64], columns: NDArray[np.float64], peak: float
+    ) -> None:
+        self.params, self.peak = params, peak
+        self.angles = rows, columns
+        shape = (len(rows), len(columns), 2)
+        self.values = np.full((*shape, 2), np.nan)
+        self.points = np.full((*shape, 3), np.nan)
+        self.outcome = np.full(shape, Outcome.not_computed, dtype=int)
+        self.route = np.full(shape, Route.none, dtype=int)
+
+    def fill_line(self, row: int) -> None:
+        """Find the orbits of one row of cells from their linear modes."""
+        for column in range(self.outcome.shape[1]):
+            scene = self._scene(row, column, row, column, 1.0)
+            for mode in (1, 2):
+                self._fill_cold(scene, (row, column, mode - 1), mode)
+
+    def _fill_cold(self, scene: ScaledSystem, cell: tuple[int, int, int], mode: int) -> None:
+        if scene.obstacle == Outcome.converged and self.peak <= scene.rest[1]:
+            self.outcome[cell] = Outcome.separated
+            return
+        orbit, self.outcome[cell] = find_orbit(scene, mode, self.peak)
+        if orbit is not None:
+            self._keep(cell, scene, orbit, Route.linear_mode)
+        elif self.outcome[cell] == Outcome.isolated_mode:
+            self.values[cell] = scene.omega(mode) * scene.frequency, np.nan
+
+    def _keep(
+        self, cell: tuple[int, int, int], scene: ScaledSystem, orbit: Orbit, route: Route
+    ) -> None:
+        self.points[cell] = orbit.point
+        self.values[cell] = orbit.omega * scene.frequency, orbit.stability_index
+        self.route[cell] = route
+
+    def fill_from_neighbours(self) -> None:
+        """Sweep over the cells that hold no orbit until no neighbour helps any more."""
+        waiting = {
+            (int(i), int(j), int(k)) for i, j, k in np.argwhere(np.isin(self.outcome, _RESUMABLE))
+        }
+        tried: set[tuple[tuple[int, int, int], tuple[int, int, int]]] = set()
+        progress = True
+        while progress:
+            progress = False
+            for cell in sorted(waiting):
+                for near in self._neighbours(cell):
+                    if (cell, near) not in tried:
+                        tried.add((cell, near))
+                        if self._step_over(near, cell):
+                            waiting.discard(cell)
+                            progress = True
+                            break
+
+    def _neighbours(self, cell: tuple[int, int, int]) -> list[tuple[int, int, int]]:
+        row, column, mode = cell
+        around = [(row + 1, column), (row - 1, column), (row, column + 1), (row, column - 1)]
+        return [
+            (i, j, mode)
+            for i, j in around
+            if 0 <= i < self.outcome.shape[0]
+            and 0 <= j < self.outcome.shape[1]
+            and self.outcome[i, j, mode] == Outcome.converged
+        ]
+
+    def _step_over(self, near: tuple[int, int, int], cell: tuple[int, int, int]) -> bool:
+        """Carry the orbit of one cell to another at constant peak; whether it arrived."""
+        point, share, step = self.points[near], 0.0, 1.0
+        while share < 1.0:
+            ahead = min(share + step, 1.0)
+            scene = self._scene(*near[:2], *cell[:2], ahead)
+            orbit = None
+            if scene.obstacle == Outcome.converged and not scene.system.decoupled:
+                orbit = solve_orbit(scene.system, point)
+            if orbit is not None and np.linalg.norm(orbit.point - point) < _SMALL_CHANGE * (
+                1.0 + np.linalg.norm(point)
+            ):
+                point, share = orbit.point, ahead
+                if share == 1.0:
+                    self.outcome[cell] = Outcome.converged
+                    self._keep(cell, scene, orbit, Route.neighbour)
+            elif step < _SMALLEST_STEP:
+                return False
+            else:
+                step *= 0.5
+        return True
+
+    def _scene(self, row: int, column: int, row2: int, column2: int, share: float) -> ScaledSystem:
+        """The system at a share of the way from one cell to another."""
+        rows, columns = self.angles
+        alpha1 = rows[row] + share * (rows[row2] - rows[row])
+        alpha2 = columns[column] + share * (columns[column2] - columns[column])
+        return scaled_system(self.params, float(alpha1), float(alpha2))
