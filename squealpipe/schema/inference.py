@@ -7,7 +7,6 @@ from squealpipe.schema import DatasetSchema, Variable, outcome
 SAMPLE = ("sample",)
 STATEMENT = ("statement",)
 BOTH = ("sample", "statement")
-YES_NO = {0: "no", 1: "yes"}
 
 
 def _group(long_name: str, units: str = "1") -> Variable:
@@ -15,7 +14,7 @@ def _group(long_name: str, units: str = "1") -> Variable:
 
 
 def _yes_no(dims: tuple[str, ...], long_name: str) -> Variable:
-    return Variable(dims=dims, dtype="i1", flags=YES_NO, long_name=long_name)
+    return Variable(dims=dims, dtype="bool", long_name=long_name)
 
 
 PARAMETER_INFERENCE = DatasetSchema(

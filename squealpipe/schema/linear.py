@@ -15,9 +15,6 @@ ANGLES = {
 MODES = {"mode": Variable(dims=("mode",), dtype="i4", long_name="mode, by ascending frequency")}
 
 
-YES_NO = {0: "no", 1: "yes"}
-
-
 class LinearRegimeFlag(IntEnum):
     """Meaning of regime_linear."""
 
@@ -52,10 +49,10 @@ QUASI_STATIC_MAP = DatasetSchema(
     coordinates=ANGLES,
     variables={
         "possible_as_printed": Variable(
-            dims=MAP, dtype="i1", flags=YES_NO, long_name="Eq. (11) as printed holds"
+            dims=MAP, dtype="bool", long_name="Eq. (11) as printed holds"
         ),
         "possible": Variable(
-            dims=MAP, dtype="i1", flags=YES_NO, long_name="reaction force of model A2 is positive"
+            dims=MAP, dtype="bool", long_name="reaction force of model A2 is positive"
         ),
         "reaction_force": Variable(
             dims=MAP, units="N", nan_allowed=True, long_name="reaction force of model A2, y = 0"
@@ -118,6 +115,12 @@ STABILITY_BOUNDARIES = DatasetSchema(
         ),
         "alpha2": Variable(
             dims=("point",), units="rad", long_name="angle of spring 2, continuous along a segment"
+        ),
+        "z_real": Variable(
+            dims=("point",), units="N m-1", long_name="Re(k1 exp(2i alpha1) + k2 exp(-2i alpha2))"
+        ),
+        "z_imag": Variable(
+            dims=("point",), units="N m-1", long_name="Im(k1 exp(2i alpha1) + k2 exp(-2i alpha2))"
         ),
         "boundary": Variable(
             dims=("point",), dtype="i1", flags=Boundary, long_name="which boundary"

@@ -25,7 +25,7 @@ def stability_boundaries(params: Parameters, *, points: int = 400) -> xr.Dataset
 
     Returns:
         Dataset over point: alpha1, alpha2 (rad, continuous along a segment, hence not confined
-        to 0 … π; the map has period π in either angle), boundary, segment.
+        to 0 … π; the map has period π in either angle), z_real, z_imag (N/m), boundary, segment.
     """
     total = params.k1 + params.k2
     arcs = {
@@ -49,11 +49,15 @@ def stability_boundaries(params: Parameters, *, points: int = 400) -> xr.Dataset
             (Boundary.no_coupling, along, turn - along) for turn in (np.pi / 2, 1.5 * np.pi)
         ]
     count = points * len(segments)
+    alpha1, alpha2 = (np.concatenate([segment[i] for segment in segments]) for i in (1, 2))
+    z = a3.plane(params, alpha1, alpha2)
     return build(
         STABILITY_BOUNDARIES,
         {
-            "alpha1": np.concatenate([segment[1] for segment in segments]),
-            "alpha2": np.concatenate([segment[2] for segment in segments]),
+            "alpha1": alpha1,
+            "alpha2": alpha2,
+            "z_real": z.real,
+            "z_imag": z.imag,
             "boundary": np.repeat([segment[0] for segment in segments], points),
             "segment": np.repeat(np.arange(len(segments)), points),
         },

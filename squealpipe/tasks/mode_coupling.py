@@ -37,7 +37,7 @@ def published_eigenvalues(mu: np.ndarray) -> np.ndarray:
     """s with s² = −2 ± √(1 − 4μ/3), upper half plane, shape (mu, mode), 1/s."""
     root = np.sqrt(1 - 4 / 3 * mu + 0j)
     s = np.sqrt(np.stack([-2 + root, -2 - root], axis=-1))
-    return np.abs(s.real) + 1j * np.abs(s.imag)
+    return np.asarray(np.abs(s.real) + 1j * np.abs(s.imag))
 
 
 def mode_coupling(*, points: int = 151, mu_max: float = 1.5) -> xr.Dataset:
@@ -73,7 +73,9 @@ def mode_coupling(*, points: int = 151, mu_max: float = 1.5) -> xr.Dataset:
 
 def _own_eigenvalues(mu: float) -> np.ndarray:
     """The two s of A3 in the upper right quarter plane."""
-    cell = stability_map(published_parameters(mu), [ANGLE], [ANGLE]).isel(alpha1=0, alpha2=0)
+    cell = stability_map(published_parameters(mu), np.array([ANGLE]), np.array([ANGLE])).isel(
+        alpha1=0, alpha2=0
+    )
     return np.asarray(cell.growth_rate.values + 1j * cell.frequency.values)
 
 

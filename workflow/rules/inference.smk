@@ -1,0 +1,23 @@
+"""The parameters that the paper never printed."""
+
+
+rule infer_parameters:
+    input:
+        sources=sources("infer_parameters"),
+    output:
+        data("parameter_inference"),
+    params:
+        part=part("parameters", "inference"),
+    threads: workflow.cores
+    script:
+        "../scripts/infer_parameters.py"
+
+
+rule draw_parameter_inference:
+    input:
+        inference=data("parameter_inference"),
+        sources=sources("draw_parameter_inference"),
+    output:
+        figure("parameter_inference"),
+    script:
+        "../scripts/draw_parameter_inference.py"

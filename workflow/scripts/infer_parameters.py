@@ -1,0 +1,12 @@
+"""Which parameters agree with the paper's statements."""
+
+from squealpipe.parameters import parameters_of
+from squealpipe.store import produce
+from squealpipe.tasks.inference import infer_parameters
+
+part = snakemake.params.part
+produce(
+    lambda: infer_parameters(parameters_of(part), **part["inference"]),
+    config=part,
+    output=snakemake.output[0],
+)
