@@ -16,6 +16,8 @@ from squealpipe.schema import Outcome
 
 # The gap left to the contact at rest, over l_pre, below which the linear mode has no room.
 _LEAST_GAP = 1e-9
+_LEAST_DETERMINANT = 1e-14
+"""Of the squared half trace: below it ω1 is zero to round-off and its period without end."""
 
 
 @dataclass(frozen=True)
@@ -113,6 +115,8 @@ def _obstacle(invariants: a4.Spectrum, gap: float) -> Outcome:
         return Outcome.complex_pair
     if invariants.determinant < 0.0:
         return Outcome.divergence
+    if invariants.determinant <= _LEAST_DETERMINANT * invariants.half_trace**2:
+        return Outcome.rigid_mode
     if not gap > _LEAST_GAP:
         return Outcome.singular_static_state
     return Outcome.converged
