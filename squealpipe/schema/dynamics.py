@@ -127,3 +127,52 @@ HAMMERING_MAP = DatasetSchema(
         "outcome": outcome(*MAP),
     },
 )
+
+REFINED_VALIDITY_MAP = DatasetSchema(
+    name="refined_validity_map",
+    title="Where model A1 keeps contact, computed only where the answer changes",
+    coordinates=ANGLES,
+    variables={
+        "separates": Variable(
+            dims=MAP, dtype="bool", long_name="whether contact is lost before t_end"
+        ),
+        "first_separation_time": Variable(
+            dims=MAP,
+            units="s",
+            long_name="first loss of contact from rest (NaN: none before t_end, or not computed)",
+            nan_allowed=True,
+        ),
+        "computed": Variable(
+            dims=MAP, dtype="bool", long_name="whether the cell was run, not inherited"
+        ),
+        "t_end": Variable(units="s", long_name="end of each run"),
+        "outcome": outcome(*MAP),
+    },
+)
+
+REFINEMENT_CHECK = DatasetSchema(
+    name="refinement_check",
+    title="The refined map against uniform ones: runs and cells",
+    coordinates={
+        "points": Variable(dims=("points",), dtype="i4", long_name="points a side, uniform map")
+    },
+    variables={
+        "runs": Variable(dims=("points",), dtype="i8", long_name="runs of the uniform map"),
+        "different_cells": Variable(
+            dims=("points",),
+            dtype="i8",
+            long_name="cells of the uniform map that the refined one labels otherwise",
+        ),
+        "missed_regions": Variable(
+            dims=("points",),
+            dtype="i8",
+            long_name="connected regions of the uniform map that the refined one lacks",
+        ),
+        "wrong_share": Variable(
+            dims=("points",),
+            long_name="share of the refined cells that the nearest uniform cell labels otherwise",
+        ),
+        "refined_runs": Variable(dtype="i8", long_name="runs of the refined map"),
+        "refined_points": Variable(dtype="i4", long_name="points a side, refined map"),
+    },
+)
