@@ -10,9 +10,11 @@ STUDY = parse_study(config)
 RESULTS = STUDY.results
 
 include: "workflow/rules/common.smk"
+include: "workflow/rules/scatter.smk"
 include: "workflow/rules/model.smk"
 include: "workflow/rules/linear.smk"
 include: "workflow/rules/dynamics.smk"
+include: "workflow/rules/gather.smk"
 include: "workflow/rules/inference.smk"
 include: "workflow/rules/comparison.smk"
 include: "workflow/rules/assumptions.smk"

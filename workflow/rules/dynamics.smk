@@ -16,25 +16,35 @@ rule simulate_scenes:
         "../scripts/simulate_scenes.py"
 
 
+VALIDITY = part("parameters", "dynamics.tol", "dynamics.horizon", "dynamics.validity_points")
+
+
 rule map_validity:
     input:
         sources=sources("map_validity"),
     output:
-        data("validity_map"),
+        map_output("validity_map", VALIDITY),
+    log:
+        map_log("validity_map"),
     params:
-        part=part("parameters", "dynamics.tol", "dynamics.horizon", "dynamics.validity_points"),
+        part=VALIDITY,
     threads: workflow.cores
     script:
         "../scripts/map_validity.py"
+
+
+HAMMERING = part("parameters", "dynamics.tol", "dynamics.horizon", "dynamics.hammering_points")
 
 
 rule map_hammering:
     input:
         sources=sources("map_hammering"),
     output:
-        data("hammering_map"),
+        map_output("hammering_map", HAMMERING),
+    log:
+        map_log("hammering_map"),
     params:
-        part=part("parameters", "dynamics.tol", "dynamics.horizon", "dynamics.hammering_points"),
+        part=HAMMERING,
     threads: workflow.cores
     script:
         "../scripts/map_hammering.py"

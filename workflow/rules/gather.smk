@@ -1,0 +1,16 @@
+"""Maps from their parts; included after every rule that may be scattered."""
+
+for name, slice_of_study in SCATTERED.items():
+
+    rule:
+        name:
+            f"join_{name}"
+        input:
+            parts=gather.maps(f"{RESULTS}/parts/{name}/{{scatteritem}}.nc"),
+            sources=sources("join_map"),
+        output:
+            data(name),
+        params:
+            part=slice_of_study,
+        script:
+            "../scripts/join_map.py"
