@@ -92,6 +92,7 @@ def run_ensemble(
     times: Any = None,
     stop_at_first_separation: bool = False,
     stop_at_x: Any = math.inf,
+    stop_at_turns: float = math.inf,
     t_late: Any = math.inf,
     tangent: bool = False,
     log_events: int = 0,
@@ -115,6 +116,7 @@ def run_ensemble(
         times: instants (last axis), the same for all runs or one row a run, s, ascending.
         stop_at_first_separation: end a run there with outcome ``separated``.
         stop_at_x: end a run when |x| exceeds this, m, with outcome ``amplitude_reached``.
+        stop_at_turns: end a run at this many net turns around both fixed ends, likewise.
         t_late: where ``early_max_x`` ends and ``late_max_x`` starts, s.
         tangent: carry one perturbation along (for the predictability horizon).
         log_events: number of events a run to keep.
@@ -135,6 +137,7 @@ def run_ensemble(
         times=times,
         stop_at_first_separation=stop_at_first_separation,
         stop_at_x=stop_at_x,
+        stop_at_turns=stop_at_turns,
         t_late=t_late,
     )
     size = len(jobs.orders)
@@ -229,6 +232,7 @@ class _Jobs:
         times: Any,
         stop_at_first_separation: bool,
         stop_at_x: Any,
+        stop_at_turns: float,
         t_late: Any,
     ) -> _Jobs:
         rules = VARIANT_RULES[known_model(model)]
@@ -274,6 +278,7 @@ class _Jobs:
         k2, k3, _, speed, length1, length2 = (orders[:, i] for i in range(6))
         rate = np.sqrt(1 + k2 + k3) + np.abs(speed) / np.minimum(length1, length2)
         orders[:, kernel.STOP_AT_SEPARATION] = stop_at_first_separation
+        orders[:, kernel.STOP_AT_TURNS] = stop_at_turns
         orders[:, kernel.MAX_STEPS] = 1e4 + 200 * rate * orders[:, kernel.T_END]
         orders[:, kernel.MAX_EVENTS] = 1e3 + 20 * rate * orders[:, kernel.T_END]
         orders[:, kernel.LOST_GROWTH] = math.log(LOST_ERROR / tol)

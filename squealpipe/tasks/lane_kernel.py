@@ -32,8 +32,8 @@ from squealpipe.sources import closure
 # A job's order: its physical parameters (tasks.a1_system.PHYSICAL), then what is asked for.
 N_PHYSICAL = 10
 T_END, T_LATE, STOP_AT_X, STOP_AT_SEPARATION, MAX_STEPS, MAX_EVENTS = range(10, 16)
-SEPARATES, REVERSES, STICKS, LINEAR_SPRINGS, LOST_GROWTH = range(16, 21)
-N_ORDERS = 21
+SEPARATES, REVERSES, STICKS, LINEAR_SPRINGS, LOST_GROWTH, STOP_AT_TURNS = range(16, 22)
+N_ORDERS = 22
 # A job's floating-point results.
 TIME, FIRST_SEPARATION, SEPARATED_TIME, STICK_TIME, LOWEST_Y, LARGEST_R2 = range(6)
 EARLY_LARGEST_X, LATE_LARGEST_X, LARGEST_SPEED, NEAREST_PIVOT2 = range(6, 10)
@@ -302,6 +302,8 @@ def _advance_lane(
     if m[STOP_AT_SEPARATION] > 0.0 and not math.isnan(result[FIRST_SEPARATION]):
         return SEPARATION_FOUND
     if max(result[EARLY_LARGEST_X], result[LATE_LARGEST_X]) > m[STOP_AT_X]:
+        return REACHED
+    if min(abs(result[HALF_TURNS1]), abs(result[HALF_TURNS2])) >= 2.0 * m[STOP_AT_TURNS]:
         return REACHED
     if integers[lane, COUNT + EVENTS] >= m[MAX_EVENTS]:
         return EVENT_LIMIT
