@@ -26,10 +26,10 @@ if TYPE_CHECKING:
 
 CAPTION = (
     "Parameters inferred from the paper's own statements. (a)–(c) Samples in which all statements "
-    "hold, for either direction of the belt, over the sampled ranges; the dashed line in (a) is "
-    "the bound of F6d, μ = cot 0.4π. (d) Share of the samples in which each statement holds, and "
-    "the share that it alone excludes. (e) Margins of the study's own parameters: positive where "
-    "the statement holds."
+    "hold, for either direction of the belt, over the sampled ranges; star: this study; the "
+    "dashed line in (a) is the bound of F6d, μ = cot 0.4π. (d) Share of the samples in which each "
+    "statement holds, and the share that it alone excludes. (e) Margins of the study's own "
+    "parameters: positive where the statement holds."
 )
 ALT = "Three scatter plots of feasible parameters and two bar charts over the paper's statements."
 PANELS = (
@@ -90,6 +90,17 @@ def _scatter(
             ls="none",
             label=label,
         )
+    panel.plot(
+        abs(float(inference[f"baseline_{x}"])),
+        abs(float(inference[f"baseline_{y}"])),
+        "*",
+        ms=9,
+        mew=0.8,
+        mfc="white",
+        color=BLACK,
+        ls="none",
+        label="this study",
+    )
     for name, axis, scale, limits in (
         (x, panel.xaxis, panel.set_xscale, panel.set_xlim),
         (y, panel.yaxis, panel.set_yscale, panel.set_ylim),

@@ -44,6 +44,10 @@ PARAMETER_INFERENCE = DatasetSchema(
         "holds": _yes_no(BOTH, "the statement holds"),
         "feasible": _yes_no(SAMPLE, "all statements hold"),
         "outcome": outcome(*SAMPLE),
+        "baseline_kappa": Variable(long_name="k3/k1 of the study"),
+        "baseline_mu": Variable(long_name="friction coefficient of the study"),
+        "baseline_length_ratio": Variable(long_name="L1/l_pre of the study"),
+        "baseline_speed_ratio": Variable(long_name="V/(l_pre √(k1/m)) of the study, signed"),
         "baseline_margin": Variable(
             dims=STATEMENT,
             rtol=1e-6,

@@ -86,6 +86,10 @@ def infer_parameters(
             "outcome": np.select(
                 [feasible, refuted], [Outcome.converged, Outcome.infeasible], Outcome.unresolved
             ),
+            "baseline_kappa": params.kappa,
+            "baseline_mu": params.mu,
+            "baseline_length_ratio": params.length_ratio,
+            "baseline_speed_ratio": params.speed_ratio,
             "baseline_margin": own_margin,
             "baseline_holds": (own_margin > 0) & (own_outcome == Outcome.converged),
             "baseline_outcome": own_outcome,
