@@ -54,15 +54,16 @@ def same_as_first(scene: str) -> Callable[[Run], Finding]:
 
     def check(run: Run) -> Finding:
         reference, other = branch(run, "F10", 2), branch(run, scene, 2)
-        difference = _largest_difference(reference, other, "omega")
-        amplitude = _largest_difference(reference, other, "x_amplitude")
+        linear = _linear_omega(reference)
+        difference = _largest_difference(reference, other, "omega") / linear
+        amplitude = _largest_difference(reference, other, "x_amplitude") / run.parameters.preload
         first = abs(_linear_omega(branch(run, scene, 1)) / _linear_omega(branch(run, "F10", 1)) - 1)
         return finding(
             max(difference, first),
             "≤",
             NEARLY_THE_SAME,
             f"Against (0.5π, π), ω1 differs by {first:.1g}, ω2 along the branch by at most "
-            f"{difference:.1g} and the x amplitude by at most {amplitude:.1g} of itself.",
+            f"{difference:.1g} and the x amplitude by at most {amplitude:.1g} l_pre.",
         )
 
     return check
@@ -139,8 +140,8 @@ def _participation(points: xr.Dataset) -> tuple[float, float]:
 
 
 def _largest_difference(reference: xr.Dataset, other: xr.Dataset, name: str) -> float:
-    """Largest relative difference at equal y_peak over the range that both branches reach."""
+    """Largest difference at equal y_peak over the range that both branches reach."""
     top = min(float(reference.y_peak.max()), float(other.y_peak.max()))
     peaks = np.linspace(float(reference.y_peak[0]), top, 50)
     curves = [np.interp(peaks, points.y_peak, points[name]) for points in (reference, other)]
-    return float(np.max(np.abs(curves[1] / curves[0] - 1)))
+    return float(np.max(np.abs(curves[1] - curves[0])))

@@ -37,8 +37,8 @@ def shift_is_added(run: Run) -> Finding:
         abs(mean + static),
         "<",
         abs(mean - static),
-        f"With X + X* the motion would rest at y = {-static:.3g}, with X − X* at {static:.3g}; in A1 "
-        f"at (0.5π, π) y oscillates about {mean:.3g}.",
+        f"With X + X* the motion would rest at y = {-static:.3g}, with X − X* at {static:.3g}; in "
+        f"A1 at (0.5π, π) y oscillates about {mean:.3g}.",
     )
 
 

@@ -10,7 +10,8 @@ MISPRINTS = (
     Statement(
         id="E1",
         section="4, Eq. (4)",
-        text="friction with μ(V_r) = μ sgn(V_r), V_r = ẋ − V, drags the mass along, as Eqs. (6), (9), (18), (20) have it",
+        text="friction with μ(V_r) = μ sgn(V_r), V_r = ẋ − V, drags the mass along, as in "
+        "Eqs. (6), (9), (18), (20)",
         measure="mean x with the printed sign, in the direction of the static state, over l_pre",
         figure="",
         recorded=Verdict.fails,

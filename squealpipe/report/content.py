@@ -9,6 +9,7 @@ from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass
 from importlib.metadata import version
+from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
@@ -17,11 +18,13 @@ from PIL import Image
 
 from squealpipe.claims.table import rows
 from squealpipe.parameters import Parameters
-from squealpipe.report.pictures import MODULES
+from squealpipe.report.captions import read_caption, title
+from squealpipe.report.facts import gather_facts
 from squealpipe.store import load
 
 TITLE = "Hammering and brake squeal: a paper computed again, statement by statement"
 PICTURE_DPI = 200
+FIGURES = Path(str(files("squealpipe"))) / "figures"
 
 SYMBOLS = {
     "mass": ("m", "mass of the particle"),
@@ -71,13 +74,13 @@ def gather(
         "parameters": _parameters(parameters),
         "environment": _environment(loaded),
         "datasets": {name: _run(datasets[name], loaded[name]) for name in sorted(datasets)},
-        "figures": {name: _picture(name, figures[name]) for name in MODULES if name in figures},
+        "figures": {name: _picture(name, figures[name]) for name in sorted(figures)},
         "claims": claims,
         "tally": [
             {"verdict": verdict, "number": number}
             for verdict, number in Counter(row["verdict"] for row in claims).most_common()
         ],
-        "facts": {},
+        "facts": gather_facts(loaded),
     }
 
 
@@ -118,14 +121,14 @@ def _run(made: Made, dataset: xr.Dataset) -> dict[str, Any]:
 
 
 def _picture(name: str, made: Made) -> dict[str, Any]:
-    title, module = MODULES[name]
+    caption, alt = read_caption(FIGURES / f"{name}.py")
     with Image.open(made.path) as image:
         width = image.width / PICTURE_DPI
     return {
         "path": f"pictures/{name}.png",
-        "title": title,
-        "caption": module.CAPTION,
-        "alt": module.ALT,
+        "title": title(name),
+        "caption": caption,
+        "alt": alt,
         "width_inches": width,
         "rule": made.rule,
         "datasets": list(made.datasets),

@@ -15,6 +15,7 @@ rule write_report:
     input:
         datasets=[made["path"] for made in MADE["datasets"].values()],
         figures=[made["path"] for made in MADE["figures"].values()],
+        captions=[f"squealpipe/figures/{name}.py" for name in MADE["figures"]],
         templates=TEMPLATES,
         sources=sources("write_report"),
     output:
