@@ -93,7 +93,7 @@ FAILURE_ATLAS = DatasetSchema(
         ),
         "error": Variable(
             dims=SCENE_METHOD,
-            long_name="error over the scene's tolerance scale",
+            long_name="largest error of the answer; infinite where there is none",
             nan_allowed=True,
             rtol=1e-2,
             atol=1e-9,

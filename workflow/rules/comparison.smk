@@ -37,3 +37,22 @@ rule draw_work_precision:
         frequencies=figure("work_precision_frequencies"),
     script:
         "../scripts/draw_work_precision.py"
+
+
+rule judge_methods:
+    input:
+        sources=sources("judge_methods"),
+    output:
+        data("failure_atlas"),
+    script:
+        "../scripts/judge_methods.py"
+
+
+rule draw_failure_atlas:
+    input:
+        atlas=data("failure_atlas"),
+        sources=sources("draw_failure_atlas"),
+    output:
+        figure("failure_atlas"),
+    script:
+        "../scripts/draw_failure_atlas.py"
