@@ -16,10 +16,13 @@ include: "workflow/rules/linear.smk"
 include: "workflow/rules/dynamics.smk"
 include: "workflow/rules/gather.smk"
 include: "workflow/rules/inference.smk"
+include: "workflow/rules/backbones.smk"
 include: "workflow/rules/comparison.smk"
 include: "workflow/rules/assumptions.smk"
+include: "workflow/rules/explorer.smk"
 include: "workflow/rules/claims.smk"
 include: "workflow/rules/report.smk"
+include: "workflow/rules/local.smk"
 
 
 rule all:
