@@ -174,16 +174,72 @@ class DynamicsSection(Section):
     """Nonlinear runs; times in √(m/k1), amplitudes in l_pre, speeds in l_pre √(k1/m)."""
 
     tol: Annotated[float, Field(gt=1e-18, lt=1e-2)] = 1e-12
-    horizon: Positive = 200.0
+    validity_horizon: Positive = 200.0
     validity_points: Points = 181
-    hammering_points: Points = 91
     refined_points: Points = 1441
     refined_coarse: Points = 91
-    whirl_speeds: Annotated[int, Field(ge=2, le=200)] = 19
-    whirl_horizon: Positive = 6000.0
-    escape_speeds: Annotated[int, Field(ge=2, le=200)] = 13
-    escape_samples: Annotated[int, Field(ge=2, le=10_000)] = 64
-    escape_horizon: Positive = 20_000.0
+    uniform_points: Annotated[tuple[Points, ...], Field(min_length=1)] = (91, 181, 361)
+    hammering_horizon: Positive = 500.0
+    hammering_points: Points = 91
+    whirl_speeds: Range = (0.3, 300.0)
+    whirl_count: Annotated[int, Field(ge=2, le=1000)] = 31
+    whirl_horizon: Positive = 10_000.0
+    transient_speeds: Range = (0.3, 30.0)
+    transient_count: Annotated[int, Field(ge=2, le=1000)] = 21
+    transient_samples: Annotated[int, Field(ge=2, le=100_000)] = 24
+    transient_shown: Annotated[int, Field(ge=2, le=100_000)] = 400
+    transient_horizon: Positive = 20_000.0
+
+
+class SeriesSweep(Section):
+    """Harmonic balance against exact orbits; peaks over l_pre, sigmas times l_pre."""
+
+    peaks: Settings = (1.25, 2.0, 3.0)
+    harmonics: Annotated[tuple[Annotated[int, Field(ge=1, le=512)], ...], Field(min_length=1)] = (
+        4,
+        8,
+        16,
+        32,
+        64,
+    )
+    samples: Annotated[tuple[Annotated[int, Field(ge=65, le=2**15)], ...], Field(min_length=1)] = (
+        66,
+        128,
+        256,
+        512,
+        1024,
+        4096,
+    )
+    sigmas: Settings = (10.0, 30.0, 100.0, 300.0, 1000.0)
+
+
+Angle = Annotated[float, Field(ge=-2.0, le=2.0)]
+
+
+class BackbonesSection(Section):
+    """Periodic motions of A4; angles over π, lengths over l_pre."""
+
+    coupled: dict[Annotated[str, Field(pattern=r"^[a-z]\w*$")], tuple[Angle, Angle]] = {
+        "coupled": (0.3, 0.9),
+        "slow": (0.2, 0.7),
+    }
+    y_peak_max: Positive = 6.0
+    x_amplitude_max: Positive = 3.0
+    n_harmonics: Annotated[int, Field(ge=1, le=512)] = 32
+    sweep: SeriesSweep = SeriesSweep()
+    length_ratios: Settings = (5.0, 20.0, 100.0)
+    atlas_points: Points = 181
+    atlas_peak: Positive = 2.0
+
+
+class ExplorerSection(Section):
+    """The click grid of the explorer page; times in √(m/k1)."""
+
+    points: Annotated[int, Field(ge=3, le=61)] = 31
+    history_time: Positive = 60.0
+    spectrum_time: Positive = 180.0
+    samples: Annotated[int, Field(ge=16, le=2000)] = 400
+    branch_points: Annotated[int, Field(ge=2, le=200)] = 24
 
 
 class Study(Section):
@@ -195,6 +251,8 @@ class Study(Section):
     inference: InferenceSection = InferenceSection()
     comparison: ComparisonSection = ComparisonSection()
     dynamics: DynamicsSection = DynamicsSection()
+    backbones: BackbonesSection = BackbonesSection()
+    explorer: ExplorerSection = ExplorerSection()
 
     def slice(self, *paths: str) -> dict[str, Any]:
         """Canonical part of the configuration: numbers cast, keys in a fixed order.

@@ -38,6 +38,8 @@ class Record:
     rule: str
     seconds: float
     params: str
+    ended: float = field(default=0.0, compare=False)
+    """When its job ended, s since 1970: the same for all files of one job."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -213,6 +215,7 @@ def records(base: Path) -> dict[str, Record]:
                 rule=str(entry["rule"]),
                 seconds=float(entry["endtime"]) - float(entry["starttime"]),
                 params=str(entry["params"]),
+                ended=float(entry["endtime"]),
             )
         except (OSError, ValueError, KeyError, TypeError, binascii.Error):
             continue  # a record that cannot be read means: duration unknown

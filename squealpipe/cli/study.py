@@ -42,14 +42,14 @@ def explain(*, config: Configs = None, times: bool = False, json_: AsJson = Fals
 def _print_times() -> None:
     from squealpipe.explain import records
 
-    jobs = sorted({(record.rule, record.seconds) for record in records(Path()).values()})
+    jobs = {(record.rule, record.ended): record.seconds for record in records(Path()).values()}
     if not jobs:
         raise FileNotFoundError("no run is recorded here; run snakemake in this folder first")
     print("| rule | jobs | seconds |\n|---|---:|---:|")
-    for rule in dict.fromkeys(rule for rule, _ in jobs):
-        seconds = [taken for name, taken in jobs if name == rule]
+    for rule in sorted({rule for rule, _ in jobs}):
+        seconds = [taken for (name, _), taken in jobs.items() if name == rule]
         print(f"| {rule} | {len(seconds)} | {sum(seconds):.1f} |")
-    print(f"| all | {len(jobs)} | {sum(taken for _, taken in jobs):.1f} |")
+    print(f"| all | {len(jobs)} | {sum(jobs.values()):.1f} |")
 
 
 def claims(file: Path = Path("results/data/claims.nc"), /, *, json_: AsJson = False) -> int:

@@ -45,7 +45,17 @@
     const [i, j] = [0, 1].map((axis) => nearest(layer.angles[axis], angles[axis][pair[axis]]));
     return layer.values[i * layer.angles[1].length + j];
   };
-  const overPi = (angle) => String(+(angle / Math.PI).toFixed(4));
+  // An angle as a fraction of π, for instance 5π/6; the grid's angles all have a small one.
+  const fraction = (angle, pi) => {
+    const part = angle / Math.PI;
+    for (let below = 1; below <= 60; below += 1) {
+      const above = Math.round(part * below);
+      if (Math.abs(part * below - above) > 1e-5) continue;
+      if (above === 0) return "0";
+      return `${above === 1 ? "" : above}${pi}${below === 1 ? "" : `/${below}`}`;
+    }
+    return `${+part.toFixed(4)}${pi}`;
+  };
   const written = (layer, value) => {
     if (Number.isNaN(value)) return "none";
     if (layer.categories.length) return layer.meanings[value];
@@ -122,7 +132,7 @@
   function drawForce(cell) {
     const force = history("normalized_contact_force", cell);
     Plotly.react("force", [line(time, force, BLUE), dot(RED)],
-      frame("t", "N / (k₃ l_pre)", { yaxis: { rangemode: "tozero" } }), config);
+      frame("t (s)", "N / (k₃ l_pre)", { yaxis: { rangemode: "tozero" } }), config);
   }
 
   function drawSpectrum(cell) {
@@ -149,9 +159,9 @@
       traces.push({ ...shared, mode: "lines", y: branch("x_amplitude", cell, mode), name: `mode ${mode + 1}: x amplitude`, line: { color, dash: "dash" } });
     });
     const shapes = [{ type: "line", xref: "paper", x0: 0, x1: 1, y0: preload, y1: preload, line: { color: GREY, width: 1.5 } }];
-    Plotly.react("backbones", traces, frame("ω (rad/s)", "m", {
+    Plotly.react("backbones", traces, frame("ω (rad/s)", "displacement (m)", {
       yaxis: { rangemode: "tozero" },
-      layout: { shapes, showlegend: true, legend: { orientation: "h", y: -0.24, yanchor: "top" }, margin: { l: 52, r: 12, t: 8, b: 90 } },
+      layout: { shapes, showlegend: true, legend: { orientation: "h", y: 1.02, yanchor: "bottom" }, margin: { l: 52, r: 12, t: 50, b: 42 } },
     }), config);
     element("ends").textContent = reasons.join("; ");
   }
@@ -218,10 +228,10 @@
     const cell = cellOf(chosen);
     ["alpha1", "alpha2"].forEach((id, axis) => {
       element(id).value = chosen[axis];
-      element(`${id}-text`).textContent = `= ${overPi(angles[axis][chosen[axis]])}π`;
+      element(`${id}-text`).textContent = `= ${fraction(angles[axis][chosen[axis]], "π")}`;
     });
-    const [a1, a2] = [0, 1].map((axis) => overPi(angles[axis][chosen[axis]]));
-    element("command").textContent = `squealpipe simulate ${a1}pi ${a2}pi`;
+    const picked = [0, 1].map((axis) => angles[axis][chosen[axis]]);
+    element("command").textContent = `squealpipe simulate ${picked.map((a) => fraction(a, "pi")).join(" ")}`;
     const facts = Object.values(layers).map((layer) => [layer.label, written(layer, layerValue(layer, chosen))]);
     facts.push(["run shown", payload.outcome.meanings[outcomes[cell]]]);
     element("facts").replaceChildren(...facts.map(([label, value]) => {
@@ -230,7 +240,7 @@
       row.append(head, item);
       return row;
     }));
-    window.history.replaceState(null, "", `#${a1},${a2}`);
+    window.history.replaceState(null, "", `#${picked.map((a) => +(a / Math.PI).toFixed(4)).join(",")}`);
     element("instant").value = 0;
     drawForce(cell); drawSpectrum(cell); drawBackbones(cell); drawOrbit(cell);
     return markMap();
@@ -276,7 +286,7 @@
   for (const scene of payload.scenes) {
     const button = document.createElement("button");
     button.type = "button";
-    button.textContent = `Fig ${scene.figure}: ${scene.angles.map((a) => `${overPi(a)}π`).join(", ")}`;
+    button.textContent = `Fig ${scene.figure}: ${scene.angles.map((a) => fraction(a, "π")).join(", ")}`;
     button.addEventListener("click", () => choose(pairAt(scene.angles)));
     if (pairAt(scene.angles).every((place, axis) => Math.abs(angles[axis][place] - scene.angles[axis]) < 0.03)) element("scenes").append(button);
   }

@@ -1,0 +1,36 @@
+"""The explorer: motions, spectra and backbones on a grid of angles, and the page that shows them."""
+
+
+rule compute_explorer:
+    input:
+        sources=sources("compute_explorer"),
+    output:
+        data("explorer"),
+    params:
+        part=part("parameters", "explorer"),
+    threads: workflow.cores
+    script:
+        "../scripts/compute_explorer.py"
+
+
+EXPLORER_PAGE = [
+    f"squealpipe/report/explorer/{name}" for name in ("page.html.j2", "explorer.css", "explorer.js")
+]
+
+
+rule write_explorer:
+    input:
+        explorer=data("explorer"),
+        stability=data("stability_map"),
+        frequencies=data("natural_frequencies"),
+        validity=data("validity_map"),
+        hammering=data("hammering_map"),
+        page=EXPLORER_PAGE,
+        sources=sources("write_explorer"),
+    output:
+        f"{RESULTS}/report/explorer.html",
+    script:
+        "../scripts/write_explorer.py"
+
+
+TARGETS += rules.write_explorer.output

@@ -1,0 +1,12 @@
+"""The explorer page."""
+
+from squealpipe.report.explorer import write_explorer
+from squealpipe.report.explorer.layers import layers
+from squealpipe.store import load
+
+maps = ("stability", "frequencies", "validity", "hammering")
+write_explorer(
+    load(snakemake.input.explorer),
+    layers(**{name: load(snakemake.input[name]) for name in maps}),
+    snakemake.output[0],
+)
