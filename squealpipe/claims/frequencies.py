@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
-from squealpipe.claims.evidence import Finding, Run, finding
+from squealpipe.claims.evidence import Finding, MissingDataError, Run, finding
 from squealpipe.claims.maps import angle_sum_over_pi, cell, is_multiple, place, share
 from squealpipe.schema import Outcome
 from squealpipe.schema.claims import Verdict
@@ -128,6 +128,8 @@ def shifts_are_opposite(run: Run) -> Finding:
             [(step.sel(mode=1) * step.sel(mode=2)).values.ravel() for step in steps]
         )
         moving = np.isfinite(products) & (np.abs(products) > 1e-18)
+        if not moving.any():
+            raise MissingDataError(f"the natural frequencies do not vary ({name})")
         shares[name] = float((products[moving] < 0).mean())
     return finding(
         min(shares.values()),

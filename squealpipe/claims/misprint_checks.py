@@ -4,10 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 
-from squealpipe.claims.evidence import Finding, Run, finding
+from squealpipe.claims.evidence import Finding, MissingDataError, Run, finding
 from squealpipe.claims.maps import cell
 from squealpipe.claims.response import scene
+from squealpipe.schema import Outcome
 from squealpipe.schema.claims import Verdict
+
+WRONG_FREQUENCY = 1e-3
+"""Relative error of ω that truncation and smoothing do not explain."""
 
 REVERSED = "F2a_reversed"
 """The scene (π/2, π) with the belt running the other way: the friction of Eq. (4) as printed."""
@@ -63,4 +67,63 @@ def parameters_are_printed(run: Run) -> Finding:
         f"parameter sets tried ({100 * number / feasible.size:.2g} %) agree with every statement "
         f"on Figs. 2–5, with {ranges}.",
         otherwise=Verdict.fails if number else Verdict.cannot_be_decided,
+    )
+
+
+def printed_residual_converges_right(run: Run) -> Finding:
+    """E2: ω found with Eq. (34) as printed and mended, against the exact orbit."""
+    forms = run["harmonic_forms"]
+    error = abs(forms.omega / forms.omega_exact - 1)
+    names = forms.form.attrs["flag_meanings"].split()
+    printed, mended = names.index("as_printed"), names.index("mended")
+    converged = forms.outcome.isel(form=printed) == Outcome.converged
+    pairs = ", ".join(
+        f"{float(found):.4f} for {float(exact):.4f}"
+        for found, exact in zip(
+            forms.omega.isel(form=printed).values, forms.omega_exact.values, strict=True
+        )
+    )
+    return finding(
+        float(error.isel(form=printed).max()),
+        "≤",
+        WRONG_FREQUENCY,
+        f"As printed, ω converges in {int(converged.sum())} of {converged.size} scenes, to "
+        f"{pairs}; with K12·a + K22·b it is right to {float(error.isel(form=mended).max()):.1g}.",
+    )
+
+
+def samples_suffice(run: Run) -> Finding:
+    """E6: rank of Γ at N = 2N_h, and how far the answer still depends on the phase."""
+    forms = run["harmonic_forms"]
+    columns, harmonics = int(forms.fourier_columns), int(forms.n_harmonics)
+    ranks = {int(row.samples): int(row) for row in forms.fourier_rank}
+    if 2 * harmonics not in ranks:
+        raise MissingDataError(f"harmonic_forms has no row N = {2 * harmonics}")
+    enough = min(samples for samples, rank in ranks.items() if rank == columns)
+    spreads = forms.phase_spread_y.dropna("samples")
+    spread = " and still ".join(
+        f"{float(spreads.sel(samples=number)):.1g} at N = {number}"
+        for number in (enough, int(spreads.samples.max()))
+    )
+    return finding(
+        columns - ranks[2 * harmonics],
+        "≤",
+        0,
+        f"At N_h = {harmonics}, Γ has {columns} columns but rank {ranks[2 * harmonics]} at "
+        f"N = {2 * harmonics}; the rank is full at N = {enough}. Aliasing stays: shifting the "
+        f"start's phase changes the largest y by {spread}.",
+    )
+
+
+def jacobian_is_regular(run: Run) -> Finding:
+    """E7: columns of the Jacobian of Eq. (36) minus its rank at the solutions."""
+    deficits = run["harmonic_forms"].rank_deficit
+    mended = deficits.isel(form=deficits.form.attrs["flag_meanings"].split().index("mended"))
+    return finding(
+        int(mended.min()),
+        "≤",
+        0,
+        f"At the solutions the Jacobian of Eq. (36) has {int(mended.min())} to {int(mended.max())} "
+        "more columns than its rank: ω is one unknown too many, and any shift in time solves the "
+        "equations too. A condition on phase and amplitude, and continuation, are needed.",
     )

@@ -1,0 +1,218 @@
+"""Checks are strict enough to fail: each statement flips when the data say something else."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from squealpipe.claims.judge import judge
+from squealpipe.claims.statements import STATEMENTS
+from squealpipe.parameters import Parameters
+from squealpipe.schema.claims import Verdict
+
+HOLDS, PRINTED, FAILS = Verdict.holds, Verdict.holds_only_as_printed, Verdict.fails
+
+Change = Callable[[xr.Dataset], xr.Dataset]
+
+
+class Flip(NamedTuple):
+    claim: str
+    dataset: str
+    change: Change
+    verdict: Verdict
+
+
+def put(name: str, value: Callable[[xr.Dataset], object]) -> Change:
+    """Replace a variable, keeping its attributes."""
+
+    def change(dataset: xr.Dataset) -> xr.Dataset:
+        old = dataset[name]
+        new = xr.broadcast(xr.DataArray(value(dataset)), old)[0].transpose(*old.dims)
+        return dataset.assign({name: new.astype(old.dtype).assign_attrs(old.attrs)})
+
+    return change
+
+
+def scaled(name: str, factor: float) -> Change:
+    return put(name, lambda dataset: dataset[name] * factor)
+
+
+def without_events(dataset: xr.Dataset) -> xr.Dataset:
+    return dataset.isel(event=slice(0, 0))
+
+
+def touching(dataset: xr.Dataset) -> xr.Dataset:
+    """The contact force dips to zero once."""
+    return put(
+        "normalized_contact_force",
+        lambda d: d.normalized_contact_force.where(np.arange(d.sizes["time"]) != 5, 0.0),
+    )(dataset)
+
+
+def no_growth(dataset: xr.Dataset) -> xr.Dataset:
+    return put("x", lambda d: np.cos(d.time) + 0 * d.x)(dataset)
+
+
+def growing(dataset: xr.Dataset) -> xr.Dataset:
+    return put("x", lambda d: d.x * d.time / d.time[-1])(dataset)
+
+
+def mode_values(dataset: xr.Dataset, mode: int, state: str, value: float) -> xr.DataArray:
+    """omega with one mode and state replaced."""
+    here = (dataset.mode == mode) & (dataset.contact_state == state)
+    return dataset.omega.where(~here, value)
+
+
+def other_second_mode(dataset: xr.Dataset) -> xr.DataArray:
+    return dataset.omega.where(dataset.mode == 1, dataset.omega.sel(mode=1))
+
+
+def crossing(dataset: xr.Dataset) -> xr.DataArray:
+    """The frequency falls below that of the isolated x mode on the way."""
+    return dataset.omega.where(dataset.point < 3, 0.5)
+
+
+def saturated(dataset: xr.Dataset, *, later: float) -> xr.DataArray:
+    return dataset.amplitude_before * later
+
+
+def as_mended(dataset: xr.Dataset) -> xr.DataArray:
+    return dataset.omega.isel(form=0)
+
+
+def only_first(dataset: xr.Dataset) -> xr.DataArray:
+    return (dataset.sample == dataset.sample[0]).astype(int)
+
+
+REGIME = put("regime_linear", lambda d: 0 * d.regime_linear)
+EVERYWHERE_PRINTED = put("possible_as_printed", lambda d: 0 * d.possible + 1)
+AS_PHYSICAL = put("possible_as_printed", lambda d: d.possible)
+NEVER = put("possible", lambda d: 0 * d.possible)
+
+FLIPS = [
+    Flip("T1", "assumptions", put("held", lambda d: 0 * d.held + 1), HOLDS),
+    Flip("T1", "assumptions", put("held", lambda d: 0 * d.held), FAILS),
+    Flip("S1", "simulate/F2d", without_events, FAILS),
+    Flip("S2", "assumptions", put("held", lambda d: 0 * d.held + 1), FAILS),
+    Flip("S2", "assumptions", scaled("measure", 1e-3), FAILS),
+    Flip("S3", "stability_map", REGIME, FAILS),
+    Flip("F2a", "simulate/F2a", touching, FAILS),
+    Flip("F2b", "simulate/F2b", touching, FAILS),
+    Flip("F2c", "simulate/F2c", touching, FAILS),
+    Flip("F2d", "simulate/F2d", without_events, FAILS),
+    Flip("F2e", "simulate/F2b", scaled("normalized_contact_force", 0.5), FAILS),
+    Flip("F3", "simulate/F3", no_growth, FAILS),
+    Flip("F3", "whirl", put("amplitude", lambda d: saturated(d, later=1.2)), HOLDS),
+    Flip("F4", "simulate/F4", growing, FAILS),
+    Flip("F4", "transient", put("shown_lifetime", lambda _: np.nan), HOLDS),
+    Flip("F4", "simulate/F4", scaled("x", 1.1), FAILS),
+    Flip("F5a", "simulate/F5b", scaled("normalized_contact_force", 1 + 1e-8), FAILS),
+    Flip("F5b", "simulate/F5a", without_events, FAILS),
+    Flip("F6a", "quasi_static_map", AS_PHYSICAL, HOLDS),
+    Flip("F6a", "quasi_static_map", EVERYWHERE_PRINTED, FAILS),
+    Flip("F6b", "quasi_static_map", EVERYWHERE_PRINTED, FAILS),
+    Flip("F6b", "quasi_static_map", NEVER, HOLDS),
+    Flip("F6c", "stability_map", REGIME, HOLDS),
+    Flip("F6c", "quasi_static_map", EVERYWHERE_PRINTED, FAILS),
+    Flip("F6d", "stability_map", put("growth_rate", lambda d: 0 * d.growth_rate + 1e-3), FAILS),
+    Flip("F6d", "simulate/F3", no_growth, FAILS),
+    Flip("F6e", "linear_pull", put("lowest_contact_force", lambda _: 0.1), FAILS),
+    Flip("F7a", "validity_map", put("separates", lambda d: d.separates & False), FAILS),
+    Flip("F7b", "validity_map", put("separates", lambda d: d.separates & False), FAILS),
+    Flip("F8a", "natural_frequencies", put("omega", lambda d: d.omega + 0.1), FAILS),
+    Flip("F8b", "natural_frequencies", put("omega", lambda d: d.omega + 0.1), FAILS),
+    Flip(
+        "F8b",
+        "natural_frequencies",
+        put("omega", lambda d: mode_values(d, 1, "separated", 0.5)),
+        FAILS,
+    ),
+    Flip(
+        "F8c",
+        "natural_frequencies",
+        put("omega", lambda d: 0 * d.omega + d.omega.sel(contact_state="separated")),
+        HOLDS,
+    ),
+    Flip(
+        "F8d",
+        "natural_frequencies",
+        put("omega", lambda d: 0 * d.omega + d.omega.sel(contact_state="separated")),
+        FAILS,
+    ),
+    Flip(
+        "F9a",
+        "natural_frequencies",
+        put("omega", other_second_mode),
+        FAILS,
+    ),
+    Flip("F9b", "natural_frequencies", put("omega", other_second_mode), FAILS),
+    Flip(
+        "F9c",
+        "natural_frequencies",
+        put("omega", lambda d: 0 * d.omega + d.omega.sel(contact_state="separated")),
+        FAILS,
+    ),
+    Flip("F10", "backbone/F10_mode1", put("y_amplitude", lambda _: 0.1), FAILS),
+    Flip("F10", "backbone/F10_mode2", put("x_amplitude", lambda _: 0.0), FAILS),
+    Flip("F11", "backbone/F11_mode2", scaled("omega", 1.1), FAILS),
+    Flip("F11", "backbone/F11_mode1", scaled("omega", 1.1), FAILS),
+    Flip("F12", "backbone/F12_mode2", scaled("omega", 0.9), FAILS),
+    Flip("F10b", "backbone/F10_mode2", put("omega", lambda d: d.omega[0]), FAILS),
+    Flip("F11b", "backbone/F11_mode2", scaled("y_peak", 0.1), FAILS),
+    Flip("F12b", "backbone/F12_mode2", put("omega", lambda d: 2 - d.omega), FAILS),
+    Flip("F13", "backbone/F13_mode2", put("y_amplitude", lambda _: 0.1), FAILS),
+    Flip("F13", "backbone/F13_mode1", scaled("y_peak", 0.1), FAILS),
+    Flip("C1", "backbone/F10_mode2", put("omega", crossing), HOLDS),
+    Flip("C2", "quasi_static_map", NEVER, HOLDS),
+    Flip("C3", "backbone/F10_mode2", scaled("omega", 1.2), FAILS),
+    Flip("C3", "simulate/F2d", without_events, FAILS),
+    Flip("C4", "assumptions", put("held", lambda d: 0 * d.held + 1), FAILS),
+    Flip("C5", "validity_map", put("separates", lambda d: d.separates | True), FAILS),
+    Flip("E1", "simulate/F2a_reversed", scaled("x", -1.0), HOLDS),
+    Flip("E2", "harmonic_forms", put("omega", as_mended), HOLDS),
+    Flip("E3", "quasi_static_map", AS_PHYSICAL, HOLDS),
+    Flip("E4", "quasi_static_map", scaled("y_static", -1.0), HOLDS),
+    Flip(
+        "E5",
+        "quasi_static_map",
+        put("reaction_force", lambda d: np.abs(d.reaction_force) + 10.0),
+        HOLDS,
+    ),
+    Flip(
+        "E8",
+        "natural_frequencies",
+        put("omega", lambda d: 0 * d.omega + d.omega.sel(contact_state="separated")),
+        HOLDS,
+    ),
+    Flip("E6", "harmonic_forms", put("fourier_rank", lambda d: d.fourier_columns), HOLDS),
+    Flip("E7", "harmonic_forms", put("rank_deficit", lambda _: 0), HOLDS),
+    Flip("E9", "parameter_inference", put("feasible", only_first), HOLDS),
+    Flip("E10", "stability_map", put("regime_linear", lambda d: 0 * d.regime_linear + 1), HOLDS),
+    Flip("E10", "validity_map", put("response_growth", lambda _: 5.0), HOLDS),
+    Flip(
+        "E11",
+        "quasi_static_map",
+        put("contact_force_static", lambda d: 2.0 * d.possible - 1.0),
+        HOLDS,
+    ),
+    Flip("E12", "quasi_static_map", put("reaction_force", lambda _: 1.0), HOLDS),
+]
+
+
+@pytest.mark.parametrize("flip", FLIPS, ids=[f"{flip.claim}-{flip.dataset}" for flip in FLIPS])
+def test_the_verdict_flips(
+    flip: Flip, evidence: dict[str, xr.Dataset], baseline: Parameters
+) -> None:
+    recorded = {statement.id: statement.recorded for statement in STATEMENTS}
+    assert flip.verdict != recorded[flip.claim]
+    changed = {**evidence, flip.dataset: flip.change(evidence[flip.dataset])}
+    found = judge(baseline, changed).sel(claim=flip.claim)
+    assert Verdict(int(found.verdict)) == flip.verdict, str(found.evidence.item())
+
+
+def test_every_statement_is_flipped_by_some_change() -> None:
+    assert {flip.claim for flip in FLIPS} == {statement.id for statement in STATEMENTS}
