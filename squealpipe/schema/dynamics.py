@@ -176,3 +176,82 @@ REFINEMENT_CHECK = DatasetSchema(
         "refined_points": Variable(dtype="i4", long_name="points a side, refined map"),
     },
 )
+
+WHIRL = DatasetSchema(
+    name="whirl",
+    title="Where the growth at (0.4 pi, 0.6 pi) ends, over belt speed",
+    coordinates={
+        "belt_speed": Variable(dims=("belt_speed",), units="m s-1", long_name="belt speed V")
+    },
+    variables={
+        "amplitude": Variable(
+            dims=("belt_speed",), units="m", long_name="largest |x| in the last fifth of the run"
+        ),
+        "amplitude_before": Variable(
+            dims=("belt_speed",), units="m", long_name="largest |x| before the last fifth"
+        ),
+        "max_vx": Variable(
+            dims=("belt_speed",), units="m s-1", long_name="largest velocity along the belt"
+        ),
+        "turn_rate": Variable(
+            dims=("belt_speed",), units="s-1", long_name="net turns around both fixed ends a time"
+        ),
+        "stick_fraction": Variable(
+            dims=("belt_speed",), long_name="share of the time sticking to the belt"
+        ),
+        "motion": Variable(
+            dims=("belt_speed",), dtype="i1", flags=MotionFlag, long_name="kind of motion"
+        ),
+        "fitted": Variable(
+            dims=("belt_speed",), dtype="bool", long_name="whether the speed is in the fit"
+        ),
+        "slope": Variable(
+            units="s", long_name="fitted growth of the amplitude with V", nan_allowed=True
+        ),
+        "offset": Variable(units="m", long_name="fitted amplitude at V = 0", nan_allowed=True),
+        "fit_outcome": outcome(),
+        "energy_slope": Variable(
+            units="s", long_name="sqrt(m/(k1 + k2)): the slope if the top speed were V"
+        ),
+        "energy_offset": Variable(
+            units="m", long_name="far end of the unstretched springs: the offset if so"
+        ),
+        "t_end": Variable(units="s", long_name="end of each run"),
+        "outcome": outcome("belt_speed"),
+    },
+)
+
+_ESCAPE = ("belt_speed", "sample")
+TRANSIENT = DatasetSchema(
+    name="transient",
+    title="How long the bounded motion at (0.2 pi, 0.8 pi) lasts",
+    coordinates={
+        "belt_speed": Variable(dims=("belt_speed",), units="m s-1", long_name="belt speed V"),
+        "sample": Variable(dims=("sample",), dtype="i4", long_name="number of the perturbation"),
+    },
+    variables={
+        "start_x": Variable(dims=("sample",), units="m", long_name="x at the start"),
+        "lifetime": Variable(
+            dims=_ESCAPE,
+            units="s",
+            long_name="time of the tenth net turn around both fixed ends (NaN: not before t_end)",
+            nan_allowed=True,
+        ),
+        "max_displacement": Variable(
+            dims=_ESCAPE, units="m", long_name="largest distance from the start position until then"
+        ),
+        "shown_start_x": Variable(
+            dims=("shown_sample",), units="m", long_name="x at the start, at the speed shown"
+        ),
+        "shown_lifetime": Variable(
+            dims=("shown_sample",),
+            units="s",
+            long_name="lifetimes at the study's own belt speed (NaN: not before t_end)",
+            nan_allowed=True,
+        ),
+        "shown_belt_speed": Variable(units="m s-1", long_name="the study's own belt speed"),
+        "t_end": Variable(units="s", long_name="end of each run"),
+        "outcome": outcome(*_ESCAPE),
+        "shown_outcome": outcome("shown_sample"),
+    },
+)

@@ -86,20 +86,25 @@ def hammering_map(
             "outcome": np.where(chaotic, Outcome.beyond_horizon, run.outcome),
         },
         {"alpha1": first, "alpha2": second},
+        {"regular_growth": float(regular_growth(t_end / params.time_unit))},
     )
+
+
+def regular_growth(time: Any) -> Any:
+    """Most that ln of a perturbation grows in a regular motion; time in √(m/k1)."""
+    return REGULAR_GROWTH_POWER * np.log1p(time)
 
 
 def classify_motion(run: Ensemble, time_unit: float) -> np.ndarray:
     """``MotionFlag`` of each run of an ensemble with ``tangent=True``."""
     turns = np.abs(run.turns)
     whirls = (turns >= LEAST_TURNS) & (turns > TURNS_PER_RETURN * run.contacts)
-    regular_growth = REGULAR_GROWTH_POWER * np.log1p(run.time / time_unit)
     return np.select(
         [
             (run.separations == 0) & (run.separated_time == 0) & (run.stick_time == 0),
             (run.separations == 0) & (run.separated_time == 0),
             whirls,
-            run.log_growth > regular_growth,
+            run.log_growth > regular_growth(run.time / time_unit),
         ],
         [
             MotionFlag.perpetual_contact,

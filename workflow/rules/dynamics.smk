@@ -16,7 +16,9 @@ rule simulate_scenes:
         "../scripts/simulate_scenes.py"
 
 
-VALIDITY = part("parameters", "dynamics.tol", "dynamics.horizon", "dynamics.validity_points")
+VALIDITY = part(
+    "parameters", "dynamics.tol", "dynamics.validity_horizon", "dynamics.validity_points"
+)
 
 
 rule map_validity:
@@ -33,7 +35,9 @@ rule map_validity:
         "../scripts/map_validity.py"
 
 
-HAMMERING = part("parameters", "dynamics.tol", "dynamics.horizon", "dynamics.hammering_points")
+HAMMERING = part(
+    "parameters", "dynamics.tol", "dynamics.hammering_horizon", "dynamics.hammering_points"
+)
 
 
 rule map_hammering:
@@ -48,6 +52,51 @@ rule map_hammering:
     threads: workflow.cores
     script:
         "../scripts/map_hammering.py"
+
+
+rule refine_validity:
+    input:
+        sources=sources("refine_validity"),
+    output:
+        refined=data("refined_validity_map"),
+        check=data("refinement_check"),
+    params:
+        part=part(
+            "parameters",
+            "dynamics.tol",
+            "dynamics.validity_horizon",
+            "dynamics.refined_points",
+            "dynamics.refined_coarse",
+            "dynamics.uniform_points",
+        ),
+    threads: workflow.cores
+    script:
+        "../scripts/refine_validity.py"
+
+
+rule follow_whirl:
+    input:
+        sources=sources("follow_whirl"),
+    output:
+        run=data("simulate/whirl"),
+        whirl=data("whirl"),
+        transient=data("transient"),
+    params:
+        part=part(
+            "parameters",
+            "dynamics.tol",
+            "dynamics.whirl_speeds",
+            "dynamics.whirl_count",
+            "dynamics.whirl_horizon",
+            "dynamics.transient_speeds",
+            "dynamics.transient_count",
+            "dynamics.transient_samples",
+            "dynamics.transient_shown",
+            "dynamics.transient_horizon",
+        ),
+    threads: workflow.cores
+    script:
+        "../scripts/follow_whirl.py"
 
 
 rule draw_scenes:
@@ -71,3 +120,22 @@ rule draw_fig07:
         figure("fig07"),
     script:
         "../scripts/draw_fig07.py"
+
+
+rule draw_long_runs:
+    input:
+        hammering=data("hammering_map"),
+        refined=data("refined_validity_map"),
+        check=data("refinement_check"),
+        run=data("simulate/whirl"),
+        whirl=data("whirl"),
+        transient=data("transient"),
+        sources=sources("draw_long_runs"),
+    output:
+        hammering=figure("hammering_map"),
+        predictability=figure("predictability"),
+        refined=figure("refined_boundary"),
+        whirl=figure("whirl"),
+        transient=figure("transient"),
+    script:
+        "../scripts/draw_long_runs.py"

@@ -12,7 +12,7 @@ part = snakemake.params.part
 params = parameters_of(part)
 angles = np.linspace(0.0, np.pi, part["dynamics.hammering_points"])
 rows = angles[scattered_rows(len(angles), snakemake.wildcards.get("scatteritem", "1-of-1"))]
-options = {"t_end": part["dynamics.horizon"] * params.time_unit, "tol": part["dynamics.tol"]}
+options = {"t_end": part["dynamics.hammering_horizon"] * params.time_unit, "tol": part["dynamics.tol"]}
 output, sources, log = snakemake.output[0], snakemake.input.sources, snakemake.log[0]
 
 with Checkpoint.beside(output, config=part, sources=sources, log=log) as checkpoint:

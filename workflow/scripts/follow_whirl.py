@@ -1,0 +1,45 @@
+"""What becomes of the responses of Figs. 3 and 4 in the long run."""
+
+import numpy as np
+
+from squealpipe.parameters import SCENES, parameters_of
+from squealpipe.store import produce
+from squealpipe.tasks.dynamics import simulate
+from squealpipe.tasks.whirl import transient_lifetimes, whirl_sizes
+
+part, out = snakemake.params.part, snakemake.output
+params, scene = parameters_of(part), SCENES["F3"]
+tol, second = part["dynamics.tol"], params.time_unit
+speed = params.preload / second
+
+
+def speeds(topic):
+    """Evenly spaced on a logarithmic scale, m/s."""
+    return speed * np.geomspace(*part[f"dynamics.{topic}_speeds"], part[f"dynamics.{topic}_count"])
+
+
+t_end = 0.1 * part["dynamics.whirl_horizon"] * second
+produce(
+    lambda: simulate(params, scene.alpha1, scene.alpha2, t_end=t_end, tol=tol),
+    config=part,
+    output=out.run,
+)
+produce(
+    lambda: whirl_sizes(
+        params, speeds("whirl"), t_end=part["dynamics.whirl_horizon"] * second, tol=tol
+    ),
+    config=part,
+    output=out.whirl,
+)
+produce(
+    lambda: transient_lifetimes(
+        params,
+        speeds("transient"),
+        samples=part["dynamics.transient_samples"],
+        shown_samples=part["dynamics.transient_shown"],
+        t_end=part["dynamics.transient_horizon"] * second,
+        tol=tol,
+    ),
+    config=part,
+    output=out.transient,
+)

@@ -1,0 +1,27 @@
+"""Where model A1 keeps contact, at full resolution, and the check against uniform maps."""
+
+from squealpipe.parameters import parameters_of
+from squealpipe.store import load, produce
+from squealpipe.tasks.refinement import check_refinement, refine_validity_map
+
+part, out = snakemake.params.part, snakemake.output
+params = parameters_of(part)
+produce(
+    lambda: refine_validity_map(
+        params,
+        resolution=part["dynamics.refined_points"],
+        coarse=part["dynamics.refined_coarse"],
+        t_end=part["dynamics.validity_horizon"] * params.time_unit,
+        tol=part["dynamics.tol"],
+    ),
+    config=part,
+    output=out.refined,
+)
+produce(
+    lambda: check_refinement(
+        params, load(out.refined), points=part["dynamics.uniform_points"], tol=part["dynamics.tol"]
+    ),
+    config=part,
+    output=out.check,
+    inputs=[out.refined],
+)
