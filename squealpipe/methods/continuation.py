@@ -126,7 +126,7 @@ class PseudoArclength:
             residual = float(np.abs(values).max())
             if residual <= self.settings.tolerance and iteration > 0:
                 return z, tangent / np.linalg.norm(tangent), iteration, residual
-            if not residual < 10.0 * previous:
+            if not residual < max(10.0 * previous, self.settings.tolerance):
                 return None
             previous = residual
             system[:-1], right[:-1, 0] = jacobian, -values
@@ -135,7 +135,7 @@ class PseudoArclength:
             except np.linalg.LinAlgError:
                 return None
             z = z + solution[:, 0]
-            tangent = solution[:, 1]
+            tangent = np.asarray(solution[:, 1], dtype=np.float64)
         return None
 
     def advance(self, problem: Problem, state: ContinuationState) -> ContinuationState | None:

@@ -16,7 +16,6 @@ from squealpipe.schema.backbones import ORBIT_ATLAS, Route
 from squealpipe.tasks.a4_system import ScaledSystem, scaled_system
 from squealpipe.tasks.orbits import check_length, find_orbit
 
-
 _RESUMABLE = (
     Outcome.tongue_end,
     Outcome.retraced,
@@ -51,7 +50,10 @@ def orbit_atlas(
     Raises:
         ValueError: y_peak is not a finite length above 0, or an angle is not finite.
     """
-    rows, columns = np.atleast_1d(np.asarray(alpha1, float)), np.atleast_1d(np.asarray(alpha2, float))
+    rows, columns = (
+        np.atleast_1d(np.asarray(alpha1, float)),
+        np.atleast_1d(np.asarray(alpha2, float)),
+    )
     peak = 2.0 * params.preload if y_peak is None else y_peak
     check_length("y_peak", peak)
 
@@ -82,7 +84,11 @@ class _Cells:
     """
 
     def __init__(
-        self, params: Parameters, rows: NDArray[np.float64], columns: NDArray[np.float64], peak: float
+        self,
+        params: Parameters,
+        rows: NDArray[np.float64],
+        columns: NDArray[np.float64],
+        peak: float,
     ) -> None:
         self.params, self.peak = params, peak
         self.angles = rows, columns

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping, Sequence
 from typing import Any, Literal
 
 import numpy as np
@@ -11,7 +12,7 @@ from numpy.typing import NDArray
 
 from squealpipe.methods.harmonic_balance import CosineBalance, series_extremes, series_speed
 from squealpipe.methods.orbits import Orbit
-from squealpipe.parameters import Parameters
+from squealpipe.parameters import SCENES, Parameters
 from squealpipe.schema import Outcome, build
 from squealpipe.schema.backbones import BACKBONE
 from squealpipe.tasks.a4_system import ScaledSystem, scaled_system
@@ -86,6 +87,27 @@ def backbone(
     raise ValueError(f"method = {method!r}: 'exact' or 'hbm' is needed")
 
 
+def named_scenes(coupled: Mapping[str, Sequence[float]]) -> dict[str, tuple[float, float]]:
+    """Angles, rad, of the paper's Figs. 10–13 and of further scenes given over π."""
+    paper = {
+        name: (scene.alpha1, scene.alpha2) for name, scene in SCENES.items() if scene.figure >= 10
+    }
+    return {**paper, **{name: (a * math.pi, b * math.pi) for name, (a, b) in coupled.items()}}
+
+
+def contact_losing_branches(
+    coupled: Mapping[str, Sequence[float]],
+) -> dict[str, tuple[float, float, int]]:
+    """Branches that lose contact, one of each kind: name → (alpha1, alpha2, mode)."""
+    scenes = named_scenes(coupled)
+    modes = {"F10": (2,), "F13": (1,), **dict.fromkeys(coupled, (1, 2))}
+    return {
+        f"{name} mode {mode}": (*scenes[name], mode)
+        for name, among in modes.items()
+        for mode in among
+    }
+
+
 def check_series(n_harmonics: int, n_time: int | None, sigma: float | None) -> None:
     """Raise a ValueError unless the settings of a series make sense."""
     if not 1 <= n_harmonics <= 512:
@@ -154,7 +176,8 @@ def _harmonic_dataset(
             "y_cosine": y,
             "omega_exact": np.array([point.omega_exact for point in points]) * scene.frequency,
             "waveform_error": np.array([point.waveform_error for point in points]) * scene.length,
-            "integration_error": np.array([point.integration_error for point in points]) * scene.length,
+            "integration_error": np.array([point.integration_error for point in points])
+            * scene.length,
             "end": end,
         },
         {"point": np.arange(len(points)), "harmonic": order},

@@ -1,0 +1,19 @@
+"""Model A1 started on periodic motions of A4."""
+
+from squealpipe.parameters import parameters_of
+from squealpipe.store import produce
+from squealpipe.tasks.a1_beside_a4 import a1_beside_a4
+from squealpipe.tasks.backbones import contact_losing_branches
+
+part = snakemake.params.part
+branches = contact_losing_branches(part["backbones.coupled"])
+produce(
+    lambda: a1_beside_a4(
+        parameters_of(part),
+        branches,
+        peak=part["backbones.atlas_peak"],
+        length_ratios=part["backbones.length_ratios"],
+    ),
+    config=part,
+    output=snakemake.output[0],
+)
