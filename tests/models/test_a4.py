@@ -1,0 +1,122 @@
+"""A4: both linear states against the symbolic model, natural frequencies, the first integral."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import scipy.integrate
+import sympy as sp
+
+from squealpipe.laws.springs import Stiffness, geometry, linear_stiffness, stiffness_determinant
+from squealpipe.models import a4
+from squealpipe.parameters import Parameters
+from tests import symbols
+
+DRAWS = symbols.draws(30)
+LINEAR_FORCE = symbols.function(symbols.LINEAR_FORCE)
+CONTACT_FORCE = symbols.function(symbols.CONTACT_FORCE)
+K11, K12, K22, K3, MU, M = sp.symbols("k11 k12 k22 k3 mu m")
+PRINTED_ROOT = (
+    K11**2 - 2 * K11 * K22 + K22**2 + 4 * K12**2 - 2 * K11 * K3 + 4 * MU * K12 * K3
+    + 2 * K22 * K3 + K3**2
+)  # fmt: skip
+
+
+@pytest.mark.parametrize(("params", "state"), DRAWS)
+@pytest.mark.parametrize("contact", [0.0, 1.0])
+def test_accelerations(params: Parameters, state: dict[str, float], contact: float) -> None:
+    g = geometry(state["alpha1"], state["alpha2"])
+    found = a4.acceleration(state["x"], state["y"], params, g, contact=contact)
+    normal = contact * CONTACT_FORCE(params, **state)
+    expected = (LINEAR_FORCE(params, **state) + normal * np.array([params.mu, 1.0])) / params.mass
+    np.testing.assert_allclose(found, expected, rtol=1e-12, atol=1e-12)
+
+
+def test_spectrum_is_the_printed_one() -> None:
+    """Half trace and discriminant of Eqs. (22a), (22b), identically."""
+    determinant = K11 * K22 - K12**2
+    invariants = a4.spectrum(Stiffness(K11, K12, K22), determinant, k3=K3, mu=MU, mass=M)
+    assert sp.simplify(invariants.half_trace - (K11 + K22 + K3) / (2 * M)) == 0
+    assert sp.simplify(invariants.discriminant - PRINTED_ROOT / (4 * M**2)) == 0
+    consistent = invariants.half_trace**2 - invariants.discriminant - invariants.determinant
+    assert sp.simplify(consistent) == 0
+
+
+@pytest.mark.parametrize(("params", "state"), DRAWS)
+@pytest.mark.parametrize("in_contact", [False, True])
+def test_frequencies_are_eigenvalues_of_the_stiffness(
+    params: Parameters, state: dict[str, float], in_contact: bool
+) -> None:
+    g = geometry(state["alpha1"], state["alpha2"])
+    stiffness = linear_stiffness(params, g)
+    k3 = params.k3 if in_contact else 0.0
+    invariants = a4.spectrum(
+        stiffness, stiffness_determinant(params, g), k3=k3, mu=params.mu, mass=params.mass
+    )
+    a11, a12, a21, a22 = a4.contact_matrix(stiffness, k3, params.mu)
+    numeric = np.linalg.eigvals([[a11, a12], [a21, a22]]) / params.mass
+    own = np.array(a4.natural_frequencies_squared(invariants))
+    order = np.argsort(numeric.real + 1e-9 * numeric.imag)
+    own_order = np.argsort(own.real + 1e-9 * own.imag)
+    np.testing.assert_allclose(own[own_order], numeric[order], rtol=1e-7, atol=1e-9)
+
+
+@pytest.mark.parametrize("total", np.linspace(0.05, 1.95, 9))
+def test_separated_frequencies_of_equal_springs(total: float) -> None:
+    """ω² = (k/m)(1 ∓ |cos(α1 + α2)|), whatever the difference of the angles."""
+    params = Parameters(mass=2.0, k1=3.0, k2=3.0)
+    for first in (0.1, 0.9, 2.5):
+        g = geometry(first, total * np.pi - first)
+        invariants = a4.spectrum(
+            linear_stiffness(params, g),
+            stiffness_determinant(params, g),
+            k3=0.0,
+            mu=params.mu,
+            mass=params.mass,
+        )
+        squares = np.real(a4.natural_frequencies_squared(invariants))
+        cosine = abs(np.cos(total * np.pi))
+        np.testing.assert_allclose(
+            squares, [1.5 * (1 - cosine), 1.5 * (1 + cosine)], rtol=1e-12, atol=1e-15
+        )
+
+
+@pytest.mark.parametrize(("params", "state"), DRAWS[:8])
+def test_first_integral_is_kept_across_contact_loss(
+    params: Parameters, state: dict[str, float]
+) -> None:
+    """Integrated by an independent code over several switches."""
+    g = geometry(state["alpha1"], state["alpha2"])
+    stiffness = linear_stiffness(params, g)
+
+    def field(_: float, u: np.ndarray) -> list[float]:
+        contact = float(u[1] < params.preload)
+        return [u[2], u[3], *a4.acceleration(u[0], u[1], params, g, contact=contact)]
+
+    start = [state["x"], 3 * params.preload, 0.3, -0.2]
+    run = scipy.integrate.solve_ivp(field, (0, 20), start, rtol=1e-10, atol=1e-12, max_step=0.02)
+    values = a4.first_integral_value(*run.y, params, stiffness)
+    scale = np.abs(a4.first_integral(stiffness, params.mu)).max() * np.abs(run.y).max() ** 2
+    assert np.ptp(values) < 1e-6 * scale * max(params.k1, params.k2, params.k3, params.mass, 1.0)
+
+
+def test_first_integral_changes_by_nothing_symbolically() -> None:
+    """dH/dt = 0 in both states, identically in all symbols."""
+    x, y, vx, vy = sp.symbols("x y vx vy")
+    s11, s12, s22, weight = a4.first_integral(Stiffness(K11, K12, K22), MU)
+    S, K = sp.Matrix([[s11, s12], [s12, s22]]), sp.Matrix([[K11, K12], [K12, K22]])
+    u, v = sp.Matrix([x, y]), sp.Matrix([vx, vy])
+    length = sp.Symbol("l")
+    for contact in (0, 1):
+        normal = contact * K3 * (length - y)
+        energy = (
+            M * (v.T * S * v)[0] / 2
+            + (u.T * S * K * u)[0] / 2
+            + contact * weight * K3 * (length - y) ** 2 / 2
+        )
+        force = -K * u + normal * sp.Matrix([MU, 1])
+        rate = sum(
+            sp.diff(energy, variable) * speed
+            for variable, speed in zip((x, y, vx, vy), (vx, vy, *(force / M)), strict=True)
+        )
+        assert sp.simplify(rate) == 0

@@ -1,0 +1,101 @@
+"""Parameters and scenes: what is allowed, and the dimensionless groups."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from squealpipe.parameters import SCENES, Parameters, Scene, parameters_of
+
+POSITIVE = ("mass", "k1", "k2", "k3", "preload", "length1", "length2", "sigma")
+positive = st.floats(1e-3, 1e3)
+
+
+@pytest.mark.parametrize("field", POSITIVE)
+@pytest.mark.parametrize("value", [0.0, -1.0])
+def test_sizes_must_be_positive(field: str, value: float) -> None:
+    with pytest.raises(ValueError, match=rf"{field} = -?{abs(value)}: must be greater than 0"):
+        Parameters(**{field: value})
+
+
+@pytest.mark.parametrize("field", [item.name for item in dataclasses.fields(Parameters)])
+@pytest.mark.parametrize("value", [math.nan, math.inf, "1", None, True, 1j, [1.0]])
+def test_only_finite_numbers_are_taken(field: str, value: object) -> None:
+    with pytest.raises(ValueError, match=f"{field} = .*: a finite number is needed"):
+        Parameters(**{field: value})
+
+
+def test_friction_may_vanish_but_not_be_negative() -> None:
+    assert Parameters(mu=0).mu == 0.0
+    with pytest.raises(ValueError, match=r"mu = -0\.1: must be 0 or greater"):
+        Parameters(mu=-0.1)
+
+
+def test_whole_and_numpy_numbers_become_floats() -> None:
+    params = Parameters(mass=2, k3=np.float32(0.5), belt_speed=np.int64(-3))
+    assert [type(value) for value in params.as_dict().values()] == [float] * 10
+    assert params.belt_speed == -3.0
+
+
+def test_parameters_cannot_be_changed_in_place() -> None:
+    params = Parameters()
+    with pytest.raises(dataclasses.FrozenInstanceError):
+        params.mu = 0.1  # type: ignore[misc]
+    assert params.with_(mu=0.1).mu == 0.1
+    with pytest.raises(ValueError, match="mass"):
+        params.with_(mass=-1.0)
+
+
+@given(mass=positive, stiffness=positive, length=positive)
+def test_groups_do_not_depend_on_the_units(mass: float, stiffness: float, length: float) -> None:
+    plain = Parameters()
+    speed = length * math.sqrt(stiffness / mass)
+    scaled = Parameters(
+        mass=mass,
+        k1=stiffness,
+        k2=stiffness,
+        k3=plain.k3 * stiffness,
+        preload=length,
+        length1=plain.length1 * length,
+        length2=plain.length2 * length,
+        belt_speed=plain.belt_speed * speed,
+    )
+    for group in ("kappa", "length_ratio", "speed_ratio"):
+        assert math.isclose(getattr(scaled, group), getattr(plain, group), rel_tol=1e-14)
+
+
+def test_from_groups_inverts_the_groups() -> None:
+    params = Parameters.from_groups(kappa=0.6, mu=0.2, length_ratio=4.0, speed_ratio=-7.0)
+    groups = (params.kappa, params.mu, params.length_ratio, params.speed_ratio)
+    assert groups == (0.6, 0.2, 4.0, -7.0)
+
+
+def test_parameters_of_a_slice() -> None:
+    assert parameters_of({"parameters": {"mu": 0.1}}) == Parameters(mu=0.1)
+
+
+def test_scenes_are_those_of_the_paper() -> None:
+    printed = {
+        "F2a": (0.5, 1), "F2b": (1, 0.5), "F2c": (0.75, 0.75), "F2d": (0.83, 0.83),
+        "F3": (0.4, 0.6), "F4": (0.2, 0.8), "F5a": (1, 1), "F5b": (0, 0),
+        "F10": (0.5, 1), "F11": (1, 0.5), "F12": (0.75, 0.75), "F13": (5 / 6, 5 / 6),
+    }  # fmt: skip
+    assert set(SCENES) == set(printed)
+    for name, over_pi in printed.items():
+        scene = SCENES[name]
+        assert (scene.alpha1 / math.pi, scene.alpha2 / math.pi) == pytest.approx(over_pi, rel=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [({"alpha1": math.nan}, "alpha1 = nan"), ({"t_end": 0.0}, "t_end = 0.0: must be greater")],
+)
+def test_a_scene_refuses_what_is_no_scene(change: dict[str, float], message: str) -> None:
+    fields = {"alpha1": 0.0, "alpha2": 0.0, "t_end": 1.0, **change}
+    with pytest.raises(ValueError, match=f"scene X: {message}"):
+        Scene(name="X", figure=1, statement="", **fields)
