@@ -13,14 +13,14 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
-import xarray as xr
+import netCDF4
 from PIL import Image
 
+from squealpipe.claims.evidence import Run
 from squealpipe.claims.table import rows
 from squealpipe.parameters import Parameters
 from squealpipe.report.captions import read_caption, title
 from squealpipe.report.facts import gather_facts
-from squealpipe.store import load
 
 TITLE = "Hammering and brake squeal: a paper computed again, statement by statement"
 PICTURE_DPI = 200
@@ -66,21 +66,22 @@ def gather(
         figures: name → PNG file.
         parameters: those of the study.
     """
-    loaded = {name: load(made.path) for name, made in datasets.items()}
-    claims = rows(loaded["claims"]) if "claims" in loaded else []
+    run = Run(parameters, {name: made.path for name, made in datasets.items()})
+    claims = rows(run["claims"]) if "claims" in run else []
+    records = {name: _record(datasets[name]) for name in sorted(datasets)}
     return {
         "title": TITLE,
         "shipped": parameters == Parameters(),
         "parameters": _parameters(parameters),
-        "environment": _environment(loaded),
-        "datasets": {name: _run(datasets[name], loaded[name]) for name in sorted(datasets)},
+        "environment": _environment(datasets),
+        "datasets": records,
         "figures": {name: _picture(name, figures[name]) for name in sorted(figures)},
         "claims": claims,
         "tally": [
             {"verdict": verdict, "number": number}
             for verdict, number in Counter(row["verdict"] for row in claims).most_common()
         ],
-        "facts": gather_facts(loaded),
+        "facts": gather_facts(run),
     }
 
 
@@ -106,15 +107,23 @@ def _parameters(parameters: Parameters) -> list[dict[str, Any]]:
     ]
 
 
-def _run(made: Made, dataset: xr.Dataset) -> dict[str, Any]:
+def _attributes(path: Path) -> dict[str, Any]:
+    """Global attributes of a NetCDF file, without its data."""
+    with netCDF4.Dataset(path) as file:
+        return {name: file.getncattr(name) for name in file.ncattrs()}
+
+
+def _record(made: Made) -> dict[str, Any]:
+    """One row of the provenance."""
+    attributes = _attributes(made.path)
     return {
         "slug": slug(str(made.path)),
         "rule": made.rule,
         "datasets": list(made.datasets),
-        "title": dataset.attrs["title"],
-        "dataset_id": dataset.attrs["dataset_id"],
-        "config_hash": dataset.attrs["config_hash"],
-        "wall_time_s": float(dataset.attrs["wall_time_s"]),
+        "title": attributes["title"],
+        "dataset_id": attributes["dataset_id"],
+        "config_hash": attributes["config_hash"],
+        "wall_time_s": float(attributes["wall_time_s"]),
         "sha256": hashlib.sha256(made.path.read_bytes()).hexdigest(),
         "bytes": made.path.stat().st_size,
     }
@@ -135,13 +144,15 @@ def _picture(name: str, made: Made) -> dict[str, Any]:
     }
 
 
-def _environment(loaded: Mapping[str, xr.Dataset]) -> list[dict[str, str]]:
-    rows = {"squealpipe": version("squealpipe")}
-    for dataset in loaded.values():
-        rows["commit"] = dataset.attrs["commit"]
-        rows["platform"] = dataset.attrs["platform"]
-        rows.update(json.loads(dataset.attrs["libraries"]))
-    return [{"what": what, "value": value} for what, value in rows.items()]
+def _environment(datasets: Mapping[str, Made]) -> list[dict[str, str]]:
+    """Version, commit, platform and libraries; several values where the datasets differ."""
+    found: dict[str, set[str]] = {"squealpipe": {version("squealpipe")}}
+    for made in datasets.values():
+        attributes = _attributes(made.path)
+        stated = {key: attributes[key] for key in ("commit", "platform")}
+        for what, value in {**stated, **json.loads(attributes["libraries"])}.items():
+            found.setdefault(what, set()).add(value)
+    return [{"what": what, "value": ", ".join(sorted(values))} for what, values in found.items()]
 
 
 def made_files(table: Mapping[str, Mapping[str, Any]]) -> dict[str, Made]:

@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from math import isnan
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
-Datasets = Mapping[str, xr.Dataset]
+from squealpipe.claims.evidence import Run
 
 
-def gather_facts(datasets: Datasets) -> dict[str, Any]:
+def gather_facts(datasets: Run) -> dict[str, Any]:
     """Topic → its numbers, for the topics whose datasets the run has."""
     return {
         topic: make(datasets)
@@ -21,7 +21,7 @@ def gather_facts(datasets: Datasets) -> dict[str, Any]:
     }
 
 
-def linear(datasets: Datasets) -> dict[str, Any]:
+def linear(datasets: Run) -> dict[str, Any]:
     """Counts of cells on the linear maps."""
     stability, sliding = datasets["stability_map"], datasets["quasi_static_map"]
     regime, possible = stability.regime_linear, sliding.possible == 1
@@ -35,7 +35,7 @@ def linear(datasets: Datasets) -> dict[str, Any]:
     }
 
 
-def coupling(datasets: Datasets) -> dict[str, Any]:
+def coupling(datasets: Run) -> dict[str, Any]:
     """Where the modes of the published mode-coupling model merge, by our A3."""
     model = datasets["mode_coupling"]
     onset = int(np.argmax(model.growth_rate.values > 1e-9))
@@ -47,7 +47,7 @@ def coupling(datasets: Datasets) -> dict[str, Any]:
     }
 
 
-def inference(datasets: Datasets) -> dict[str, Any]:
+def inference(datasets: Run) -> dict[str, Any]:
     """The feasible set, what cuts it, and the margins of the study's own parameters."""
     samples = datasets["parameter_inference"]
     feasible = samples.feasible == 1
@@ -79,7 +79,7 @@ def _constraint(row: xr.Dataset) -> dict[str, Any]:
     }
 
 
-TOPICS: dict[str, tuple[tuple[str, ...], Callable[[Datasets], dict[str, Any]]]] = {
+TOPICS: dict[str, tuple[tuple[str, ...], Callable[[Run], dict[str, Any]]]] = {
     "linear": (("stability_map", "quasi_static_map"), linear),
     "coupling": (("mode_coupling",), coupling),
     "inference": (("parameter_inference",), inference),

@@ -8,66 +8,18 @@ import xarray as xr
 
 from squealpipe.claims import table
 from squealpipe.claims.judge import judge
-from squealpipe.claims.statements import STATEMENTS
+from squealpipe.claims.statements import READ, STATEMENTS
 from squealpipe.claims.table import rows
 from squealpipe.parameters import Parameters
 from squealpipe.schema.claims import Verdict
 from squealpipe.store.netcdf import save
 from squealpipe.store.provenance import stamp
 
-CLAIMS = [
-    "T1",
-    "S1",
-    "S2",
-    "S3",
-    "F2a",
-    "F2b",
-    "F2c",
-    "F2d",
-    "F2e",
-    "F3",
-    "F4",
-    "F5a",
-    "F5b",
-    "F6a",
-    "F6b",
-    "F6c",
-    "F6d",
-    "F6e",
-    "F7a",
-    "F7b",
-    "F8a",
-    "F8b",
-    "F8c",
-    "F8d",
-    "F9a",
-    "F9b",
-    "F9c",
-    "F10",
-    "F11",
-    "F12",
-    "F10b",
-    "F11b",
-    "F12b",
-    "F13",
-    "C1",
-    "C2",
-    "C3",
-    "C4",
-    "C5",
-    "E1",
-    "E2",
-    "E3",
-    "E4",
-    "E5",
-    "E6",
-    "E7",
-    "E8",
-    "E9",
-    "E10",
-    "E11",
-    "E12",
-]
+ROWS = """
+T1 S1 S2 S3 F2a F2b F2c F2d F2e F3 F4 F5a F5b F6a F6b F6c F6d F6e F7a F7b F8a F8b F8c F8d
+F9a F9b F9c F10 F11 F12 F10b F11b F12b F13 C1 C2 C3 C4 C5 E1 E2 E3 E4 E5 E6 E7 E8 E9 E10 E11 E12
+"""
+CLAIMS = ROWS.split()
 
 
 def verdicts(claims: xr.Dataset) -> dict[str, Verdict]:
@@ -97,6 +49,17 @@ def test_without_datasets_nothing_is_decided_and_the_reason_names_what_is_missin
     assert (claims.verdict == Verdict.cannot_be_decided).all()
     for text in claims.evidence.values:
         assert "the run has no dataset" in str(text)
+
+
+def test_the_list_of_datasets_read_is_complete(
+    evidence: dict[str, xr.Dataset], baseline: Parameters
+) -> None:
+    used = {
+        name.split(" (")[0]
+        for row in rows(judge(baseline, evidence))
+        for name in row["dataset"].split("; ")
+    }
+    assert used == set(READ)
 
 
 def test_a_grid_without_the_cell_gives_a_reason(

@@ -1,21 +1,20 @@
 """The paper's statements, judged on the datasets of the run. Included after all that make data."""
 
+from squealpipe.claims.statements import READ
 from squealpipe.report.lineage import lineage
 
-EVIDENCE = {
-    name: made["path"]
-    for name, made in lineage(workflow.rules, f"{RESULTS}/data/", f"{RESULTS}/figures/")["datasets"].items()
-}
+FOUND = lineage(workflow.rules, f"{RESULTS}/data/", f"{RESULTS}/figures/")["datasets"]
+EVIDENCE = [name for name in READ if name in FOUND]
 
 
 rule judge_claims:
     input:
-        datasets=list(EVIDENCE.values()),
+        datasets=[FOUND[name]["path"] for name in EVIDENCE],
         sources=sources("judge_claims"),
     output:
         data("claims"),
     params:
         part=part("parameters"),
-        names=list(EVIDENCE),
+        names=EVIDENCE,
     script:
         "../scripts/judge_claims.py"
