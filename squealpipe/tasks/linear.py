@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from types import SimpleNamespace
-from typing import Any
 
 import mpmath
 import numpy as np
 import xarray as xr
+from numpy.typing import ArrayLike
 
 from squealpipe.laws.springs import (
     Geometry,
@@ -29,7 +29,7 @@ DIGITS = 40
 
 
 def quasi_static_map(
-    params: Parameters, alpha1: np.ndarray, alpha2: np.ndarray, *, sigma: float | None = None
+    params: Parameters, alpha1: ArrayLike, alpha2: ArrayLike, *, sigma: float | None = None
 ) -> xr.Dataset:
     """Where quasi-static sliding exists (A2), in both readings, and the state of Eq. (15).
 
@@ -74,7 +74,7 @@ def quasi_static_map(
 
 
 def stability_map(
-    params: Parameters, alpha1: np.ndarray, alpha2: np.ndarray, *, sigma: float | None = None
+    params: Parameters, alpha1: ArrayLike, alpha2: ArrayLike, *, sigma: float | None = None
 ) -> xr.Dataset:
     """Growth rate and frequencies of model A3, from closed forms.
 
@@ -106,7 +106,7 @@ def stability_map(
     )
 
 
-def natural_frequencies(params: Parameters, alpha1: np.ndarray, alpha2: np.ndarray) -> xr.Dataset:
+def natural_frequencies(params: Parameters, alpha1: ArrayLike, alpha2: ArrayLike) -> xr.Dataset:
     """Natural frequencies of model A4 in both of its states, Eqs. (22) and (25).
 
     Args:
@@ -142,7 +142,7 @@ def natural_frequencies(params: Parameters, alpha1: np.ndarray, alpha2: np.ndarr
     )
 
 
-def _angles(alpha1: Any, alpha2: Any) -> tuple[np.ndarray, np.ndarray]:
+def _angles(alpha1: ArrayLike, alpha2: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
     """Both angle arrays, 1-D and finite.
 
     Raises:
