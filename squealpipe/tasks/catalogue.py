@@ -13,6 +13,7 @@ import xarray as xr
 from squealpipe.parameters import Parameters
 from squealpipe.tasks.backbones import backbone
 from squealpipe.tasks.dynamics import simulate, validity_map
+from squealpipe.tasks.hammering import hammering_map
 from squealpipe.tasks.linear import natural_frequencies, quasi_static_map, stability_map
 from squealpipe.tasks.orbits import periodic_orbit
 
@@ -45,6 +46,7 @@ class Task:
 TASKS: dict[str, Task] = {
     "simulate": Task(simulate, "simulation", maps_angles=False),
     "validity_map": Task(validity_map, "validity_map", maps_angles=True),
+    "hammering_map": Task(hammering_map, "hammering_map", maps_angles=True),
     "quasi_static_map": Task(quasi_static_map, "quasi_static_map", maps_angles=True),
     "stability_map": Task(stability_map, "stability_map", maps_angles=True),
     "natural_frequencies": Task(natural_frequencies, "natural_frequencies", maps_angles=True),

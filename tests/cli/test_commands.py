@@ -1,0 +1,135 @@
+"""The command line as a user meets it: help, errors in a sentence, exit codes, files."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+import time
+
+import numpy as np
+import pytest
+
+from squealpipe import __version__, load
+from squealpipe.cli import COMMANDS, run
+
+HEAVY = ("heyoka", "numba", "xarray", "numpy", "matplotlib", "plotly")
+
+
+@pytest.fixture(autouse=True)
+def elsewhere(tmp_path, monkeypatch):
+    """Commands run in an empty folder."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("COLUMNS", "200")
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_help_explains_with_an_example(command, capsys):
+    assert run([command, "--help"]) == 0
+    assert f"Example: squealpipe {command}" in capsys.readouterr().out
+
+
+def test_overview_names_every_command_and_the_exit_codes(capsys):
+    assert run(["--help"]) == 0
+    out = capsys.readouterr().out
+    assert all(command in out for command in COMMANDS)
+    assert "Exit codes" in out
+
+
+def test_version(capsys):
+    assert run(["--version"]) == 0
+    assert capsys.readouterr().out.strip() == __version__
+
+
+def test_help_loads_no_numerics():
+    code = (
+        "import sys; from squealpipe.cli import run; run(['simulate', '--help']);"
+        f"sys.exit(bool(set({HEAVY}) & set(sys.modules)))"
+    )
+    started = time.perf_counter()
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, check=False)
+    assert done.returncode == 0
+    assert time.perf_counter() - started < 3
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["simulat"], 'Did you mean "simulate"'),
+        (["simulate", "0.4pi"], "ALPHA2 requires an argument"),
+        (["simulate", "0.4pi", "sixty"], "write 0.4pi, 2pi/5, 72deg or radians"),
+        (["simulate", "1", "2", "--mu", "-3"], "mu = -3.0: must be 0 or greater"),
+        (["simulate", "1", "2", "--mass", "nan"], "a finite number is needed"),
+        (["simulate", "1", "2", "--muu", "3"], "Did you mean --mu"),
+        (["simulate", "1", "2", "--t-end", "0"], "--t-end 0.0 must be greater than 0"),
+        (["simulate", "1", "2", "--points", "3"], "give 16 or more"),
+        (["map", "sound"], "validity"),
+        (["sweep", "stability_map", "--vary", "mu"], "write for instance mu=0:0.6:13"),
+        (["sweep", "anything", "--vary", "mu=1,2"], "choose from simulate"),
+        (["verify", "nothing"], "no archive, folder or file 'nothing'"),
+        (["claims", "nothing.nc"], "make it with snakemake"),
+        (["explain", "--times"], "run snakemake in this folder first"),
+    ],
+)
+def test_wrong_input_is_one_message_with_its_remedy(arguments, message, capsys, tmp_path):
+    assert run(arguments) == 2
+    told = capsys.readouterr().err
+    assert told.startswith("squealpipe: ")
+    assert message in told
+    assert "Traceback" not in told
+    assert not list(tmp_path.iterdir())
+
+
+def test_simulate_writes_a_run_and_a_picture_and_sums_it_up(capsys, tmp_path):
+    assert run(["simulate", "5pi/6", "150deg", "--t-end", "30", "-o", "a/hammering.nc"]) == 0
+    out = capsys.readouterr().out
+    dataset = load("a/hammering.nc")
+    first = float(dataset.event_time[0])
+    assert f"t = {first:.6g}" in out
+    for word in ("separated", "impacts", "peak contact force", "dominant", "rad/s"):
+        assert word in out
+    assert (tmp_path / "a/hammering.png").read_bytes().startswith(b"\x89PNG")
+    assert json.loads(dataset.attrs["config"])["parameters"]["mu"] == 0.3
+
+
+@pytest.mark.parametrize("kind", ["validity", "hammering", "quasi-static", "stability"])
+def test_map_writes_dataset_and_picture(kind, capsys, tmp_path):
+    angles = ["--alpha1", "0:pi:5", "--alpha2", "0.1,2.0"]
+    horizon = ["--t-end", "20"] if kind in {"validity", "hammering"} else []
+    assert run(["map", kind, *angles, *horizon]) == 0
+    assert "cells" in capsys.readouterr().out
+    assert load("map.nc").sizes["alpha1"] == 5
+    assert (tmp_path / "map.png").is_file()
+
+
+def test_map_of_natural_frequencies_obeys_the_parameters():
+    assert run(["map", "frequencies", "--alpha1", "pi/2", "--alpha2", "pi", "--k3", "3"]) == 0
+    omega = load("map.nc").omega.sel(contact_state="contact").values.ravel()
+    np.testing.assert_allclose(omega, [1.0, 2.0], rtol=1e-14)
+
+
+def test_backbone_follows_the_linear_mode_first(capsys):
+    assert run(["backbone", "0.3pi", "0.9pi", "--y-peak-max", "1.5", "-o", "b.nc"]) == 0
+    assert "amplitude_reached" in capsys.readouterr().out
+    branch = load("b.nc")
+    assert float(branch.y_peak.max()) == pytest.approx(1.5)
+
+
+def test_sweep_writes_one_dataset(capsys):
+    assert run([
+        "sweep", "stability_map", "--vary", "mu=0:0.6:3", "--vary", "alpha1=0:pi:5",
+        "--alpha2", "72deg", "--workers", "1", "-o", "s.nc",
+    ]) == 0  # fmt: skip
+    assert "3 runs" in capsys.readouterr().out
+    assert dict(load("s.nc").growth_rate.sizes) == {"mu": 3, "alpha1": 5, "alpha2": 1}
+
+
+def test_compare_tells_equal_from_different_by_its_exit_code(capsys):
+    for name, friction in (("a", "0.2"), ("b", "0.2"), ("c", "0.4")):
+        run(["map", "stability", "--alpha1", "0:pi:7", "--mu", friction, "-o", f"{name}.nc"])
+    assert run(["compare", "a.nc", "b.nc"]) == 0
+    assert run(["compare", "a.nc", "c.nc"]) == 1
+    out = capsys.readouterr().out
+    assert "parameters.mu: 0.2 → 0.4" in out
+    assert run(["compare", "a.nc", "nowhere.nc"]) == 2
+    assert run(["compare", "a.nc", "c.nc", "--json"]) == 1

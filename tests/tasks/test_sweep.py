@@ -1,0 +1,132 @@
+"""Sweeps against the task run point by point; ragged runs; resuming after a stop."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from squealpipe.parameters import Parameters
+from squealpipe.schema import find
+from squealpipe.store import load, save
+from squealpipe.store.chunks import Checkpoint
+from squealpipe.tasks import sweep as sweeping
+from squealpipe.tasks.backbones import backbone
+from squealpipe.tasks.dynamics import simulate
+from squealpipe.tasks.linear import stability_map
+from squealpipe.tasks.sweep import Sweep, executor, run_sweep
+
+ANGLES = [0.0, 1.0, 2.0]
+
+
+def linear_sweep(**changes):
+    plan = {
+        "task": "stability_map",
+        "params": Parameters(),
+        "vary": {"mu": [0.0, 0.4], "k3": [0.5, 0.75, 1.0], "alpha1": ANGLES},
+        "fixed": {"alpha2": 0.6},
+    }
+    return Sweep(**{**plan, **changes})
+
+
+def test_map_task_gets_swept_names_as_leading_dimensions():
+    found = run_sweep(linear_sweep())
+    assert found.growth_rate.dims == ("mu", "k3", "alpha1", "alpha2")
+    for mu in (0.0, 0.4):
+        for k3 in (0.5, 0.75, 1.0):
+            alone = stability_map(Parameters(mu=mu, k3=k3), ANGLES, [0.6])
+            np.testing.assert_array_equal(found.frequency.sel(mu=mu, k3=k3), alone.frequency)
+    assert found.mu.attrs["units"] == "1"
+    assert found.k3.attrs["units"] == "N m-1"
+
+
+def test_processes_give_the_same_bits():
+    with executor(2) as pool:
+        shared = run_sweep(linear_sweep(), executor=pool)
+    assert shared.identical(run_sweep(linear_sweep()))
+
+
+def test_angles_and_options_can_be_swept_and_ragged_runs_are_filled_up(tmp_path):
+    plan = Sweep(
+        task="simulate",
+        params=Parameters(),
+        vary={"alpha1": [0.5 * np.pi, 5 * np.pi / 6], "t_end": [20.0]},
+        fixed={"alpha2": 5 * np.pi / 6, "times": np.linspace(0, 20, 50)},
+    )
+    found = load(save(run_sweep(plan), tmp_path / "sweep.nc"))
+    assert found.x.dims == ("alpha1", "t_end", "time")
+    for k, alpha1 in enumerate(plan.vary["alpha1"]):
+        alone = simulate(
+            Parameters(), alpha1, 5 * np.pi / 6, t_end=20.0, times=np.linspace(0, 20, 50)
+        )
+        count = int(found.event_count[k, 0])
+        assert count == alone.sizes["event"]
+        np.testing.assert_array_equal(found.event_time[k, 0, :count], alone.event_time)
+        assert np.isnan(found.event_time[k, 0, count:]).all()
+        assert (found.event_kind[k, 0, count:] == -1).all()
+
+
+def test_backbones_of_both_modes():
+    plan = Sweep(
+        task="backbone",
+        params=Parameters(),
+        vary={"mode": [1, 2]},
+        fixed={"alpha1": 0.3 * np.pi, "alpha2": 0.9 * np.pi, "y_peak_max": 1.5},
+    )
+    found = run_sweep(plan)
+    for mode in (1, 2):
+        alone = backbone(Parameters(), 0.3 * np.pi, 0.9 * np.pi, mode=mode, y_peak_max=1.5)
+        one = found.sel(mode=mode).isel(point=slice(int(found.point_count.sel(mode=mode))))
+        np.testing.assert_array_equal(one.omega, alone.omega)
+
+
+def test_a_stopped_sweep_goes_on_where_it_was(tmp_path, monkeypatch):
+    kept = Checkpoint.beside(tmp_path / "s.nc", config={"a": 1})
+    calls = []
+    original = sweeping.run_task
+
+    def counted(*arguments, **options):
+        calls.append(1)
+        if len(calls) == 4:
+            raise KeyboardInterrupt
+        return original(*arguments, **options)
+
+    monkeypatch.setattr(sweeping, "run_task", counted)
+    with pytest.raises(KeyboardInterrupt), kept:
+        run_sweep(linear_sweep(), checkpoint=kept)
+    with kept:
+        found = run_sweep(linear_sweep(), checkpoint=kept)
+    assert len(calls) == 4 + 3
+    assert found.identical(run_sweep(linear_sweep()))
+    assert not kept.directory.exists()
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"task": "sing"}, "no task 'sing'; choose from simulate"),
+        ({"vary": {"nu": [1]}}, "'nu' cannot be varied"),
+        ({"vary": {"mu": []}}, "one or more values"),
+        ({"vary": {"mu": [1, 1], "alpha1": [0]}}, "each once"),
+        ({"vary": {"mu": [1]}}, "needs alpha1 once"),
+        ({"vary": {"mu": [1], "alpha1": [1]}, "fixed": {"alpha1": 0, "alpha2": 0}}, "alpha1 once"),
+        ({"fixed": {"alpha2": 0, "depth": 3}}, "no option 'depth'"),
+        ({"vary": {"alpha1": ANGLES}}, "vary a parameter too"),
+        ({"task": "simulate"}, "simulate needs t_end once"),
+    ],
+)
+def test_plans_that_cannot_work_are_refused(changes, message):
+    with pytest.raises(ValueError, match=message):
+        linear_sweep(**changes)
+
+
+def test_bad_parameter_value_is_refused_by_the_parameters():
+    with pytest.raises(ValueError, match="mu = -1.0: must be 0 or greater"):
+        run_sweep(linear_sweep(vary={"mu": [-1.0], "alpha1": ANGLES}))
+
+
+def test_schema_of_a_sweep_follows_from_its_name():
+    schema = find("sweep of natural_frequencies over mu, belt_speed")
+    assert schema.variables["omega"].dims[:2] == ("mu", "belt_speed")
+    assert schema.coordinates["belt_speed"].units == "m s-1"
+    with pytest.raises(ValueError, match="'colour' cannot be swept"):
+        find("sweep of stability_map over colour")
