@@ -24,8 +24,8 @@ if TYPE_CHECKING:
 
 CAPTION = (
     "How long the bounded motion of Fig. 4 lasts. (a) Share of runs that still swing to and "
-    "fro after a time, over perturbations of the start below 1e-9 l_pre: past an initial delay they "
-    "decay exponentially, as chaotic transients do; the band is the time of Fig. 4. (b) Share of "
+    "fro after a time, over perturbations of the start below 1e-9 l_pre: past an initial delay "
+    "they decay exponentially, as chaotic transients do; the band is the time of Fig. 4. (b) Share of "
     "runs that end in the whirl within the time run, and their median lifetime, over belt speed: "
     "below about V = 1 none leaves. Where the mass never reaches belt speed before it leaves, V "
     "does not matter at all."
@@ -84,9 +84,9 @@ def _speeds(axes: Axes, transient: xr.Dataset) -> None:
     axes.set_ylabel(f"share that left by t = {float(transient.t_end):g} s", color=GREEN)
     axes.axhline(0, color=GREY, linewidth=0.5)
     twin = axes.twinx()
-    half = left >= 0.5
     ordered = np.sort(np.where(np.isfinite(lifetime), lifetime, np.inf), axis=1)
     median = ordered[:, lifetime.shape[1] // 2]
+    half = np.isfinite(median)
     twin.plot(transient.belt_speed.values[half], median[half], "s--", color=BLUE, markersize=4)
     twin.set_ylabel("median lifetime (s)", color=BLUE)
     twin.set_ylim(0, 1.4 * max(median[half], default=1.0))

@@ -14,8 +14,8 @@ from squealpipe.methods.lanes import LANES, Workspace, drive
 from squealpipe.methods.processes import run_shared
 from squealpipe.models.switching import VARIANT_RULES
 from squealpipe.parameters import Parameters
-from squealpipe.tasks.a1_system import lane_integrator
 from squealpipe.tasks import lane_kernel as kernel
+from squealpipe.tasks.a1_system import lane_integrator
 from squealpipe.tasks.lane_kernel import lane_kernel
 
 PARAMETER_NAMES = tuple(name for name in Parameters.__dataclass_fields__ if name != "sigma")
