@@ -120,7 +120,7 @@ def test_plans_that_cannot_work_are_refused(changes, message):
 
 
 def test_bad_parameter_value_is_refused_by_the_parameters():
-    with pytest.raises(ValueError, match="mu = -1.0: must be 0 or greater"):
+    with pytest.raises(ValueError, match=r"mu = -1\.0: must be 0 or greater"):
         run_sweep(linear_sweep(vary={"mu": [-1.0], "alpha1": ANGLES}))
 
 

@@ -1,0 +1,46 @@
+"""Headless Chromium for tests of pages, without access to a network."""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any
+
+FLAGS = [
+    "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run",
+    "--disable-background-networking", "--disable-component-update", "--disable-sync",
+]  # fmt: skip
+
+
+def chromium_path() -> str | None:
+    """Chromium on this machine, if there is one."""
+    return shutil.which("chromium") or shutil.which("chromium-browser")
+
+
+@contextmanager
+def open_page(address: str, *, width: int = 1280, height: int = 900) -> Iterator[tuple[Any, Any]]:
+    """A page in a new browser, and the list of what went wrong on it: errors, other addresses."""
+    from playwright.sync_api import sync_playwright
+
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=chromium_path(), args=FLAGS)
+        page = browser.new_page(
+            viewport={"width": width, "height": height}, reduced_motion="reduce"
+        )
+        faults: list[str] = []
+        page.on("pageerror", lambda error: faults.append(f"error: {error}"))
+        page.on("console", lambda message: message.type == "error" and faults.append(message.text))
+        page.on(
+            "request",
+            lambda request: (
+                request.url.split("#")[0] != address.split("#", maxsplit=1)[0]
+                and not request.url.startswith(("data:", "blob:"))
+                and faults.append(f"asks for {request.url}")
+            ),
+        )
+        page.goto(address)
+        try:
+            yield page, faults
+        finally:
+            browser.close()

@@ -1,0 +1,159 @@
+"""The explorer page: what it holds, and that it works in a real browser."""
+
+from __future__ import annotations
+
+import base64
+
+import numpy as np
+import pytest
+
+from squealpipe.parameters import Parameters
+from squealpipe.report.explorer import payload, write_explorer
+from squealpipe.report.explorer.layers import layers
+from squealpipe.tasks.dynamics import validity_map
+from squealpipe.tasks.explorer import explorer_data
+from squealpipe.tasks.hammering import hammering_map
+from squealpipe.tasks.linear import natural_frequencies, stability_map
+from tests.browser import chromium_path, open_page
+
+ANGLES = np.linspace(0, np.pi, 7)
+FINE = np.linspace(0, np.pi, 13)
+HISTORY = "document.getElementById('{}').data[0]"
+
+in_browser = [
+    pytest.mark.browser,
+    pytest.mark.skipif(chromium_path() is None, reason="no chromium on this machine"),
+]
+
+
+@pytest.fixture(scope="module")
+def explorer():
+    return explorer_data(
+        Parameters(), ANGLES, history_time=30.0, spectrum_time=60.0, samples=151, branch_points=8
+    )
+
+
+@pytest.fixture(scope="module")
+def shown():
+    params = Parameters()
+    return layers(
+        stability=stability_map(params, FINE, FINE),
+        frequencies=natural_frequencies(params, FINE, FINE),
+        validity=validity_map(params, FINE, FINE, t_end=50.0),
+        hammering=hammering_map(params, FINE, FINE, t_end=50.0),
+    )
+
+
+@pytest.fixture(scope="module")
+def page_file(explorer, shown, tmp_path_factory):
+    path = tmp_path_factory.mktemp("explorer") / "explorer.html"
+    write_explorer(explorer, shown, path)
+    return path
+
+
+@pytest.fixture
+def opened(page_file):
+    with open_page(page_file.as_uri()) as (page, faults):
+        page.wait_for_function("document.body.dataset.ready === 'true'")
+        yield page
+        assert faults == []
+
+
+def test_curves_survive_packing(explorer, shown):
+    packed = payload(explorer, shown)["histories"]["x"]
+    numbers, low, scale = (
+        np.frombuffer(base64.b64decode(packed[key]), kind)
+        for key, kind in (("values", "<u2"), ("low", "<f4"), ("scale", "<f4"))
+    )
+    count = explorer.sizes["time"]
+    curves = numbers.reshape(-1, count) * scale[:, None] + low[:, None]
+    x = explorer.x.values.reshape(-1, count)
+    error = np.abs(curves - x).max(axis=1)
+    assert (error <= np.ptp(x, axis=1) / 65535 + 1e-6).all()
+
+
+def test_page_is_one_file_within_its_size(page_file):
+    assert page_file.stat().st_size < 15e6
+    head = page_file.read_text(encoding="utf-8")[:4000]
+    assert 'name="viewport"' in head
+    assert '<link rel="icon" href="data:,">' in head
+
+
+def cell(explorer, name, i, j):
+    return explorer[name].values[i, j]
+
+
+@pytest.mark.usefixtures("page_file")
+class TestInBrowser:
+    pytestmark = in_browser
+
+    def curve(self, page, panel, axis="y"):
+        return np.array(page.evaluate(f"Array.from({HISTORY.format(panel)}.{axis})"), float)
+
+    def test_first_pair_is_shown_and_matches_the_dataset(self, opened, explorer):
+        np.testing.assert_allclose(
+            self.curve(opened, "force"),
+            cell(explorer, "normalized_contact_force", 5, 5),
+            atol=5e-5,
+        )
+        assert opened.inner_text("#command") == "squealpipe simulate 5pi/6 5pi/6"
+
+    def test_click_changes_every_panel_to_the_dataset(self, opened, explorer):
+        box = opened.evaluate(
+            """(() => { const gd = document.getElementById('map'), a = gd._fullLayout;
+            const r = gd.getBoundingClientRect();
+            return [r.x + a.xaxis._offset + a.xaxis.d2p(Math.PI / 3),
+                    r.y + a.yaxis._offset + a.yaxis.d2p(Math.PI / 2)]; })()"""
+        )
+        opened.mouse.click(*box)
+        opened.wait_for_function("document.getElementById('alpha1-text').value === '= π/3'")
+        for panel, name in (("force", "normalized_contact_force"), ("orbit", "y")):
+            reference = cell(explorer, name, 2, 3)
+            np.testing.assert_allclose(
+                self.curve(opened, panel), reference, atol=1e-4 * max(1, np.ptp(reference))
+            )
+        reference = cell(explorer, "force_spectrum", 2, 3)
+        np.testing.assert_allclose(self.curve(opened, "spectrum"), reference, atol=1e-4)
+        np.testing.assert_allclose(
+            self.curve(opened, "backbones", "x"), cell(explorer, "omega", 2, 3)[0], rtol=1e-6
+        )
+
+    def test_arrow_keys_move_the_pair(self, opened):
+        opened.focus("#map")
+        opened.keyboard.press("ArrowLeft")
+        opened.keyboard.press("ArrowDown")
+        opened.keyboard.press("ArrowDown")
+        assert opened.inner_text("#alpha1-text") == "= 2π/3"
+        assert opened.inner_text("#alpha2-text") == "= π/2"
+
+    def test_every_layer_can_be_chosen_and_tells_its_value(self, opened, shown):
+        for key, layer in shown.items():
+            opened.select_option("#layer", key)
+            z = np.array(opened.evaluate(f"{HISTORY.format('map')}.z"), float)
+            assert z.shape == (13, 13)
+            if not layer.meanings:
+                np.testing.assert_allclose(z, layer.values.T, rtol=1e-6)
+        rows = opened.locator("#facts tr").all_inner_texts()
+        assert [row.split("\t")[0] for row in rows][:-1] == [one.label for one in shown.values()]
+
+    def test_play_moves_the_springs(self, opened):
+        before = opened.evaluate("document.getElementById('orbit').data[6].y[0]")
+        opened.click("#play")
+        opened.wait_for_function(
+            f"document.getElementById('orbit').data[6].y[0] !== {before}", timeout=5000
+        )
+        assert opened.inner_text("#play") == "Pause"
+
+    def test_phone_width_needs_no_sideways_scroll(self, page_file):
+        with open_page(page_file.as_uri(), width=390, height=844) as (page, faults):
+            page.wait_for_function("document.body.dataset.ready === 'true'")
+            assert page.evaluate("document.documentElement.scrollWidth") <= 390
+            for panel in ("map", "force", "orbit", "spectrum", "backbones"):
+                assert page.locator(f"#{panel}").bounding_box()["width"] > 300
+            assert faults == []
+
+    def test_address_chooses_the_pair(self, page_file):
+        with open_page(f"{page_file.as_uri()}#0.5,1") as (page, faults):
+            page.wait_for_function("document.body.dataset.ready === 'true'")
+            assert page.inner_text("#command") == "squealpipe simulate pi/2 pi"
+            assert faults == []
