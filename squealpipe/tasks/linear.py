@@ -50,7 +50,11 @@ def quasi_static_map(
     k3, load = a2.contact_stiffness(params, sigma), a2.actuation(params, sigma)
     reaction = a2.reaction_force(stiffness, params.mu, load)
     state = a3.static_state(
-        stiffness, _spring_determinant(params, alpha1, alpha2), k3=k3, mu=params.mu, actuation=load
+        stiffness,
+        spring_determinant_map(params, alpha1, alpha2),
+        k3=k3,
+        mu=params.mu,
+        actuation=load,
     )
     # Farther out than this, the state is the quotient of two round-off errors.
     farthest = load / (a2.ROUND_OFF * (params.k1 + params.k2))
@@ -159,7 +163,9 @@ def _angles(alpha1: ArrayLike, alpha2: ArrayLike) -> tuple[np.ndarray, np.ndarra
     return checked[0], checked[1]
 
 
-def _spring_determinant(params: Parameters, alpha1: np.ndarray, alpha2: np.ndarray) -> np.ndarray:
+def spring_determinant_map(
+    params: Parameters, alpha1: np.ndarray, alpha2: np.ndarray
+) -> np.ndarray:
     """det K over the map; 0 where α1 + α2 is a multiple of π but for the rounding of π."""
     sine = sine_of_sum(alpha1[:, None], alpha2[None, :])
     sine = np.where(np.abs(sine) <= a2.ROUND_OFF, 0.0, sine)
@@ -174,7 +180,7 @@ def _spectrum(params: Parameters, alpha1: np.ndarray, alpha2: np.ndarray, k3: fl
     both are sums of squares and nothing is lost.
     """
     stiffness = linear_stiffness(params, geometry(alpha1[:, None], alpha2[None, :]))
-    spring_determinant = _spring_determinant(params, alpha1, alpha2)
+    spring_determinant = spring_determinant_map(params, alpha1, alpha2)
     invariants = spectrum(stiffness, spring_determinant, k3=k3, mu=params.mu, mass=params.mass)
     small = CANCELLATION * invariants.half_trace**2
     close = (np.abs(invariants.discriminant) < small) | (np.abs(invariants.determinant) < small)

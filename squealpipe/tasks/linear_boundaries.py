@@ -5,12 +5,13 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
-from squealpipe.laws.springs import geometry, linear_stiffness, stiffness_determinant
+from squealpipe.laws.springs import geometry, linear_stiffness
 from squealpipe.models import a2, a3
 from squealpipe.models.a4 import spectrum
 from squealpipe.parameters import Parameters
 from squealpipe.schema import build
 from squealpipe.schema.linear import LINEAR_SHARES, STABILITY_BOUNDARIES, Boundary
+from squealpipe.tasks.linear import spring_determinant_map
 
 
 def stability_boundaries(params: Parameters, *, points: int = 400) -> xr.Dataset:
@@ -85,8 +86,8 @@ def linear_shares(
         Dataset of shares between 0 and 1; see the schema ``linear_shares``.
     """
     angles = (np.arange(points) + 0.5) * (np.pi / points)
-    g = geometry(angles[:, None], angles[None, :])
-    stiffness, determinant = linear_stiffness(params, g), stiffness_determinant(params, g)
+    stiffness = linear_stiffness(params, geometry(angles[:, None], angles[None, :]))
+    determinant = spring_determinant_map(params, angles, angles)
 
     def regime(k3: float, friction: float) -> np.ndarray:
         invariants = spectrum(stiffness, determinant, k3=k3, mu=friction, mass=params.mass)

@@ -1,0 +1,175 @@
+"""Statements as constraints: closed forms, independent integration, the shipped baseline."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+import scipy.integrate
+
+from squealpipe.config import read_study
+from squealpipe.parameters import SCENES, Parameters
+from squealpipe.schema import Outcome
+from squealpipe.store import load, save
+from squealpipe.tasks.ensemble import run_ensemble
+from squealpipe.tasks.inference import infer_parameters
+from squealpipe.tasks.statements import GROWTH, STATEMENTS, Candidates, candidate_of, measure
+from tests import symbols
+
+ROOT = Path(__file__).resolve().parents[2]
+BASELINE = Parameters()
+FORCE = symbols.function(symbols.SPRING_FORCE)
+
+
+@pytest.fixture(scope="module")
+def inference() -> object:
+    return infer_parameters(BASELINE, samples=256)
+
+
+def long_springs(**arrays: object) -> Candidates:
+    """Candidates in the limit of linear springs, with the given fields."""
+    count = max(np.size(values) for values in arrays.values())
+    fields = {
+        name: np.broadcast_to(np.asarray(arrays.get(name, value), float), count)
+        for name, value in BASELINE.with_(length1=1e6, length2=1e6).as_dict().items()
+    }
+    return Candidates(fields, 1e-9)
+
+
+def test_the_shipped_baseline_is_feasible() -> None:
+    study = read_study(ROOT / "workflow/config/paper.yaml")
+    params = Parameters(**study.parameters.model_dump())
+    verdicts = measure(candidate_of(params, tol=1e-12))
+    assert {
+        name: float(verdict.margin[0]) > 0 for name, verdict in verdicts.items()
+    } == dict.fromkeys((statement.name for statement in STATEMENTS), True)
+    assert all(verdict.outcome[0] == Outcome.converged for verdict in verdicts.values())
+
+
+def test_contact_with_long_springs_as_the_closed_form_says() -> None:
+    """(π/2, π) and its like: y = κ/(1+κ)(1 − cos √(1+κ) t), lowest force (1 − κ)/(1 + κ)."""
+    kappa = np.array([0.3, 0.7, 0.99, 1.01, 1.3])
+    verdicts = measure(long_springs(k3=kappa))
+    for name in ("F2a", "F2b", "F2c"):
+        np.testing.assert_allclose(verdicts[name].margin, (1 - kappa) / (1 + kappa), atol=1e-4)
+
+
+def test_contact_is_lost_beyond_the_known_stiffness() -> None:
+    """F2d with long springs: lost if and only if κ > 0.518 at 0.83π."""
+    verdicts = measure(long_springs(k3=[0.51, 0.526], mu=0.3))
+    assert verdicts["F2d"].margin[0] < 0 < verdicts["F2d"].margin[1]
+
+
+@pytest.mark.parametrize("mu", [0.1, 0.32, 0.33, 0.7])
+def test_linear_stability_of_the_scene_of_fig_3(mu: float) -> None:
+    margin = measure(long_springs(mu=[mu]))["F6d"].margin[0]
+    assert margin == pytest.approx(1 - mu * math.tan(0.4 * math.pi), abs=1e-12)
+
+
+@pytest.mark.parametrize("kappa", [0.4, 1.2])
+def test_the_modes_are_switched_while_the_contact_is_softer(kappa: float) -> None:
+    """(5π/6, 5π/6): K11 = 1.5 against K22 + k3 = 0.5 + κ."""
+    margin = measure(long_springs(k3=[kappa]))["F13"].margin[0]
+    assert margin == pytest.approx(min(1 - kappa, kappa), abs=1e-12)
+
+
+def test_margins_do_not_depend_on_units() -> None:
+    plain = measure(candidate_of(BASELINE, tol=1e-12))
+    speed = 3.0 * math.sqrt(7.0 / 2.0)
+    scaled = BASELINE.with_(
+        mass=2.0,
+        k1=7.0,
+        k2=7.0,
+        k3=7.0 * BASELINE.k3,
+        preload=3.0,
+        length1=15.0,
+        length2=15.0,
+        belt_speed=speed * BASELINE.belt_speed,
+    )
+    for name, verdict in measure(candidate_of(scaled, tol=1e-12)).items():
+        # F3 and F4 are chaotic: only the other margins keep their digits.
+        tolerance = 0.5 if name in {"F3", "F4"} else 1e-9
+        assert float(verdict.margin[0]) == pytest.approx(
+            float(plain[name].margin[0]), abs=tolerance
+        )
+
+
+def test_the_pulling_contact_loses_exactly_what_a1_loses() -> None:
+    """A margin of Fig. 2 is negative if and only if A1 itself separates."""
+    generator = np.random.default_rng(8)
+    fields = {
+        "k3": generator.uniform(0.3, 1.3, 200),
+        "mu": generator.uniform(0.02, 0.8, 200),
+        "belt_speed": generator.choice([-1, 1], 200) * np.exp(generator.uniform(-2, 5, 200)),
+    }
+    length = np.exp(generator.uniform(0.7, 4.6, 200))
+    whole = {name: np.full(200, value) for name, value in BASELINE.as_dict().items()}
+    whole |= {**fields, "length1": length, "length2": length}
+    contact = Candidates(whole, 1e-9).contact
+    for name in ("F2a", "F2d"):
+        scene = SCENES[name]
+        run = run_ensemble(whole, scene.alpha1, scene.alpha2, t_end=scene.t_end, tol=1e-9)
+        np.testing.assert_array_equal(contact[name].margin < 0, run.separations > 0)
+
+
+def test_lowest_force_agrees_with_an_independent_integration() -> None:
+    """Scipy on the symbolic forces, while the mass slips behind the belt in contact."""
+    scene = SCENES["F2a"]
+    angles = {"alpha1": scene.alpha1, "alpha2": scene.alpha2}
+
+    def field(_: float, u: np.ndarray) -> list[float]:
+        fx, fy = FORCE(BASELINE, x=u[0], y=u[1], **angles)
+        normal = BASELINE.k3 * (BASELINE.preload - u[1])
+        return [u[2], u[3], fx + BASELINE.mu * normal, fy + normal]
+
+    run = scipy.integrate.solve_ivp(
+        field, (0, scene.t_end), np.zeros(4), method="DOP853", rtol=1e-10, atol=1e-12, max_step=0.01
+    )
+    lowest = 1.0 - run.y[1].max()
+    found = candidate_of(BASELINE, tol=1e-12).contact["F2a"].margin[0]
+    assert found == pytest.approx(lowest, abs=2e-5)
+
+
+def test_growth_of_fig_3_and_bound_of_fig_4() -> None:
+    """The criteria, measured again from sampled motions."""
+    verdicts = measure(candidate_of(BASELINE, tol=1e-12))
+    for name, sign in (("F3", 1), ("F4", -1)):
+        scene = SCENES[name]
+        times = np.linspace(0, scene.t_end, 20_001)
+        run = run_ensemble(BASELINE, scene.alpha1, scene.alpha2, t_end=scene.t_end, times=times)
+        x = np.abs(run.samples[:, 0])
+        growth = math.log(x[10_000:].max() / x[:10_000].max() / GROWTH)
+        size = math.log(x.max() / (2 * BASELINE.length1))
+        expected = min(sign * growth, sign * size)
+        assert float(verdicts[name].margin[0]) == pytest.approx(expected, abs=1e-4)
+
+
+def test_samples_cover_the_ranges_evenly(inference: object) -> None:
+    ranges = {"kappa": (0.3, 1.3), "mu": (0.02, 0.8)}
+    logarithmic = {"length_ratio": (2, 100), "speed_ratio": (0.1, 316)}
+    for name, (low, high) in ranges.items():
+        share = (inference[name].values - low) / (high - low)
+        assert abs(np.histogram(share, 8, (0, 1))[0] - 32).max() <= 3
+    for name, (low, high) in logarithmic.items():
+        share = np.log(inference[name].values / low) / np.log(high / low)
+        assert abs(np.histogram(share, 8, (0, 1))[0] - 32).max() <= 3
+    assert abs((inference.direction.values == 1).sum() - 128) <= 3
+
+
+def test_verdicts_follow_from_margins(inference: object, tmp_path: Path) -> None:
+    holds = inference.holds.values
+    np.testing.assert_array_equal(holds, inference.margin.values > 0)
+    np.testing.assert_array_equal(inference.feasible, holds.all(axis=1))
+    np.testing.assert_allclose(inference.share_holding, holds.mean(axis=0))
+    single = (~holds).sum(axis=1) == 1
+    np.testing.assert_allclose(
+        inference.share_cut_alone, [(~holds[single, i]).sum() / 256 for i in range(holds.shape[1])]
+    )
+    assert inference.baseline_holds.all()
+    assert load(save(inference, tmp_path / "inference.nc")).identical(inference)
+
+
+def test_the_number_of_processes_changes_nothing(inference: object) -> None:
+    assert infer_parameters(BASELINE, samples=256, workers=1).identical(inference)
