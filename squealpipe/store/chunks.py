@@ -16,7 +16,7 @@ from typing import Any, Self, TypeVar
 import numpy as np
 
 from squealpipe.progress import Progress
-from squealpipe.store.provenance import canonical
+from squealpipe.store.identity import canonical
 
 Chunk = TypeVar("Chunk")
 Arrays = dict[str, np.ndarray]

@@ -11,6 +11,7 @@ import numpy as np
 import xarray as xr
 
 from squealpipe.schema import SchemaError, find, validate
+from squealpipe.store.identity import dataset_id
 
 
 class StoreError(ValueError):
@@ -18,7 +19,7 @@ class StoreError(ValueError):
 
 
 def save(dataset: xr.Dataset, path: str | os.PathLike[str]) -> Path:
-    """Write a dataset atomically: temporary name, validation, fsync, rename.
+    """Write a dataset atomically, with its id: temporary name, validation, fsync, rename.
 
     Raises:
         SchemaError: the dataset does not fit its schema; nothing is written.
@@ -26,6 +27,7 @@ def save(dataset: xr.Dataset, path: str | os.PathLike[str]) -> Path:
     """
     target = Path(path)
     validate(dataset, find(str(dataset.attrs.get("schema"))))
+    dataset = dataset.assign_attrs(dataset_id=dataset_id(dataset))
     encoding: dict[str, dict[str, Any]] = {
         str(name): {"zlib": True, "complevel": 4, "shuffle": True}
         for name, variable in dataset.variables.items()
@@ -45,16 +47,17 @@ def save(dataset: xr.Dataset, path: str | os.PathLike[str]) -> Path:
         os.close(handle)
         temporary = Path(name_)
         dataset.to_netcdf(temporary, engine="netcdf4", format="NETCDF4", encoding=encoding)
-        _read(temporary)
+        _check_content(_read(temporary), temporary)
         umask = os.umask(0)
         os.umask(umask)
         temporary.chmod(0o666 & ~umask)
         sync(temporary)
         temporary.replace(target)
         sync(target.parent)
-    except OSError as error:
+    except (OSError, RuntimeError, StoreError) as error:  # netCDF-4 reports a full disk as any
+        reason = getattr(error, "strerror", None) or error
         raise StoreError(
-            f"cannot write {target}: {error.strerror or error}; free space or mend permissions, "
+            f"cannot write {target}: {reason}; free space or mend permissions, "
             "then run the same command again"
         ) from error
     finally:
@@ -72,7 +75,7 @@ def load(path: str | os.PathLike[str], *, schema: str | None = None) -> xr.Datas
 
     Raises:
         FileNotFoundError: no such file.
-        StoreError: the file is not whole, or not a dataset of this package.
+        StoreError: the file is not whole, was changed, or is no dataset of this package.
         SchemaError: it does not fit its schema, or not the one asked for.
     """
     source = Path(path)
@@ -85,7 +88,16 @@ def load(path: str | os.PathLike[str], *, schema: str | None = None) -> xr.Datas
     if schema is not None and found != schema:
         raise SchemaError(f"{source} holds {found!r}, {schema!r} was expected; pass the right file")
     validate(dataset, find(str(found)))
+    _check_content(dataset, source)
     return dataset
+
+
+def _check_content(dataset: xr.Dataset, source: Path) -> None:
+    """Raise if the values are not those that were saved."""
+    if dataset.attrs.get("dataset_id", "") not in {"", dataset_id(dataset)}:
+        raise StoreError(
+            f"{source} was changed or damaged since it was made; delete it and run snakemake again"
+        )
 
 
 def _read(source: Path) -> xr.Dataset:

@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import datetime
-import hashlib
 import importlib.metadata
-import json
 import os
 import platform
 import subprocess
@@ -15,10 +13,9 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import xarray as xr
 
-from squealpipe.schema import find
+from squealpipe.store.identity import canonical, digest
 from squealpipe.store.netcdf import load, save
 
 LIBRARIES = ("numpy", "scipy", "xarray", "netCDF4", "heyoka", "numba")
@@ -26,33 +23,6 @@ VOLATILE_ATTRIBUTES = frozenset(
     {"history", "wall_time_s", "platform", "libraries", "package_version", "commit", "inputs"}
 )
 """Global attributes that tell of the run, not of the result."""
-
-
-def canonical(config: Any) -> str:
-    """One text for one meaning: sorted keys, no white space."""
-    return json.dumps(config, sort_keys=True, separators=(",", ":"), allow_nan=False)
-
-
-def digest(text: str | bytes) -> str:
-    """Sixteen hexadecimal digits of SHA-256."""
-    return hashlib.sha256(text.encode() if isinstance(text, str) else text).hexdigest()[:16]
-
-
-def dataset_id(dataset: xr.Dataset) -> str:
-    """Hash of what was computed: schema, configuration and all values that are not volatile."""
-    schema = find(str(dataset.attrs["schema"]))
-    total = hashlib.sha256()
-    total.update(canonical([schema.name, schema.version, dataset.attrs.get("config", "")]).encode())
-    for name in sorted(map(str, dataset.variables)):
-        entry = schema.lookup(name)
-        if entry is not None and entry.volatile:
-            continue
-        values = np.ascontiguousarray(dataset[name].values)
-        total.update(f"{name}{values.shape}{values.dtype.kind}".encode())
-        total.update(
-            repr(values.tolist()).encode() if values.dtype.kind in "UO" else values.tobytes()
-        )
-    return total.hexdigest()[:16]
 
 
 def produce(
@@ -85,7 +55,7 @@ def stamp(
 ) -> xr.Dataset:
     """The dataset with provenance attributes."""
     text = canonical(config)
-    stamped = dataset.assign_attrs(
+    return dataset.assign_attrs(
         config=text,
         config_hash=digest(text),
         package_version=importlib.metadata.version("squealpipe"),
@@ -96,7 +66,6 @@ def stamp(
         wall_time_s=wall_time,
         history=f"{datetime.datetime.now(datetime.UTC):%Y-%m-%dT%H:%M:%SZ} squealpipe",
     )
-    return stamped.assign_attrs(dataset_id=dataset_id(stamped))
 
 
 @cache

@@ -1,0 +1,39 @@
+"""What makes two datasets the same: one hash of schema, configuration and values."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from squealpipe.schema import find
+
+
+def canonical(config: Any) -> str:
+    """One text for one meaning: sorted keys, no white space."""
+    return json.dumps(config, sort_keys=True, separators=(",", ":"), allow_nan=False)
+
+
+def digest(text: str | bytes) -> str:
+    """Sixteen hexadecimal digits of SHA-256."""
+    return hashlib.sha256(text.encode() if isinstance(text, str) else text).hexdigest()[:16]
+
+
+def dataset_id(dataset: xr.Dataset) -> str:
+    """Hash of what was computed: schema, configuration and all values that are not volatile."""
+    schema = find(str(dataset.attrs["schema"]))
+    total = hashlib.sha256()
+    total.update(canonical([schema.name, schema.version, dataset.attrs.get("config", "")]).encode())
+    for name in sorted(map(str, dataset.variables)):
+        entry = schema.lookup(name)
+        if entry is not None and entry.volatile:
+            continue
+        values = np.ascontiguousarray(dataset[name].values)
+        total.update(f"{name}{values.shape}{values.dtype.kind}".encode())
+        total.update(
+            repr(values.tolist()).encode() if values.dtype.kind in "UO" else values.tobytes()
+        )
+    return total.hexdigest()[:16]

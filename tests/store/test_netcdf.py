@@ -1,0 +1,301 @@
+"""A dataset file is whole and valid or absent; whatever is read was judged first."""
+
+import errno
+import os
+import resource
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import netCDF4
+import numpy as np
+import pytest
+import xarray as xr
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from squealpipe.parameters import Parameters
+from squealpipe.schema import SchemaError, all_schemas
+from squealpipe.store import StoreError, load, produce, save
+from squealpipe.tasks.linear import stability_map
+
+ANGLES = np.linspace(0, np.pi, 31)
+
+
+@pytest.fixture
+def dataset():
+    return stability_map(Parameters(), ANGLES, ANGLES)
+
+
+@pytest.fixture
+def path(tmp_path, dataset):
+    return save(dataset, tmp_path / "map.nc")
+
+
+def leftovers(folder):
+    return [entry.name for entry in folder.iterdir() if entry.name.startswith(".")]
+
+
+def test_what_is_saved_is_loaded(dataset, path):
+    back = load(path)
+    xr.testing.assert_identical(back, dataset.assign_attrs(dataset_id=back.attrs["dataset_id"]))
+    assert back.growth_rate.dtype == np.float64
+    assert leftovers(path.parent) == []
+
+
+def test_file_is_cf_and_compressed(path):
+    with netCDF4.Dataset(path) as file:
+        assert file.Conventions == "CF-1.11"
+        regime = file["regime_linear"]
+        assert regime.flag_meanings == "stable flutter divergence"
+        assert regime.filters()["zlib"]
+        assert "_FillValue" not in regime.ncattrs()
+        assert file["growth_rate"].units == "s-1"
+
+
+def test_equal_datasets_give_equal_content(dataset, tmp_path):
+    a, b = (
+        produce(lambda: dataset, config={"a": 1}, output=tmp_path / f"{name}.nc") for name in "ab"
+    )
+    assert load(a).attrs["dataset_id"] == load(b).attrs["dataset_id"]
+
+
+@pytest.mark.parametrize("share", [0.0, 0.01, 0.3, 0.7, 0.95, 0.999])
+def test_truncated_files_are_refused(path, share):
+    whole = path.read_bytes()
+    path.write_bytes(whole[: int(len(whole) * share)])
+    with pytest.raises(StoreError, match="delete it and run snakemake again"):
+        load(path)
+
+
+@settings(max_examples=40, deadline=None)
+@given(place=st.floats(0, 0.9999), flip=st.integers(1, 255))
+def test_corrupted_bytes_never_pass_as_another_result(tmp_path_factory, place, flip):
+    folder = tmp_path_factory.mktemp("corrupt")
+    made = stability_map(Parameters(), ANGLES, ANGLES)
+    path = produce(lambda: made, config={}, output=folder / "map.nc")
+    original = load(path)
+    content = bytearray(path.read_bytes())
+    content[int(len(content) * place)] ^= flip
+    path.write_bytes(content)
+    try:
+        found = load(path)
+    except (StoreError, SchemaError):
+        return
+    for name in original.variables:
+        np.testing.assert_array_equal(found[name].values, original[name].values)
+
+
+def test_foreign_and_unknown_files_are_refused(tmp_path, dataset):
+    foreign = tmp_path / "foreign.nc"
+    xr.Dataset({"x": ("t", [1.0])}).to_netcdf(foreign)
+    with pytest.raises(StoreError, match="not written by squealpipe"):
+        load(foreign)
+    text = tmp_path / "text.nc"
+    text.write_text("no dataset")
+    with pytest.raises(StoreError, match="not NetCDF-4"):
+        load(text)
+    unknown = tmp_path / "unknown.nc"
+    dataset.assign_attrs(schema="colour_map").to_netcdf(unknown)
+    with pytest.raises(SchemaError, match="no schema 'colour_map'"):
+        load(unknown)
+    with pytest.raises(FileNotFoundError, match="make it with snakemake"):
+        load(tmp_path / "none.nc")
+    with pytest.raises(FileNotFoundError, match="make it with snakemake"):
+        load(tmp_path)
+
+
+def test_values_changed_by_another_program_are_noticed(path):
+    with netCDF4.Dataset(path, "a") as file:
+        file["growth_rate"][2, 3] += 1e-9
+    with pytest.raises(StoreError, match="was changed or damaged since it was made"):
+        load(path)
+
+
+def test_another_schema_than_asked_for_is_refused(path):
+    with pytest.raises(SchemaError, match="'validity_map' was expected"):
+        load(path, schema="validity_map")
+
+
+def test_files_with_damaged_values_are_refused(dataset, tmp_path):
+    damaged = dataset.copy(deep=True)
+    damaged["regime_linear"][0, 0] = 9
+    damaged.to_netcdf(tmp_path / "damaged.nc")
+    with pytest.raises(SchemaError, match="flags \\[9\\] that have no meaning"):
+        load(tmp_path / "damaged.nc")
+
+
+def test_links_to_elsewhere_and_pickles_do_not_run(tmp_path):
+    """NetCDF holds numbers and text; an attribute that looks like code stays text."""
+    made = stability_map(Parameters(), ANGLES, ANGLES)
+    hostile = made.assign_attrs(config="__import__('os').system('touch ran')")
+    path = save(hostile, tmp_path / "map.nc")
+    assert load(path).attrs["config"].startswith("__import__")
+    assert not Path("ran").exists()
+
+
+@pytest.mark.parametrize(
+    "break_it",
+    [
+        lambda d: d.drop_vars("outcome"),
+        lambda d: d.assign(extra=1.0),
+        lambda d: d.assign(growth_rate=d.growth_rate.astype(int)),
+        lambda d: d.assign(growth_rate=d.growth_rate.T),
+        lambda d: d.assign(growth_rate=d.growth_rate * np.nan),
+        lambda d: d.assign_attrs(schema_version=99),
+        lambda d: d.assign_attrs(schema=None),
+    ],
+)
+def test_invalid_datasets_leave_the_earlier_file(path, dataset, break_it):
+    before = path.read_bytes()
+    with pytest.raises(SchemaError):
+        save(break_it(dataset), path)
+    assert path.read_bytes() == before
+    assert leftovers(path.parent) == []
+
+
+@pytest.fixture
+def no_space(monkeypatch):
+    """Files cannot grow past a few kilobytes, as on a full disk."""
+    soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
+    handler = signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (6000, hard))
+    yield
+    resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
+    signal.signal(signal.SIGXFSZ, handler)
+
+
+def test_full_disk_leaves_the_earlier_file(path, dataset, no_space):
+    before = path.read_bytes()
+    larger = stability_map(Parameters(), *[np.linspace(0, np.pi, 201)] * 2)
+    with pytest.raises(StoreError, match="free space or mend permissions"):
+        save(larger, path)
+    assert path.read_bytes() == before
+    assert leftovers(path.parent) == []
+
+
+def test_full_file_system_leaves_the_earlier_file(tmp_path, dataset):
+    disk = tmp_path / "disk"
+    disk.mkdir()
+    mounted = subprocess.run(
+        ["mount", "-t", "tmpfs", "-o", "size=128k", "tmpfs", disk], capture_output=True, check=False
+    )
+    if mounted.returncode:
+        pytest.skip("a small file system cannot be mounted here (needs root)")
+    try:
+        path = save(dataset, disk / "map.nc")
+        before = path.read_bytes()
+        (disk / "filler").write_bytes(b"x" * (os.statvfs(disk).f_bavail * 4096))
+        with pytest.raises(StoreError, match="free space or mend permissions"):
+            save(dataset, path)
+        assert path.read_bytes() == before
+        assert leftovers(disk) == []
+        (disk / "filler").unlink()
+        save(dataset, path)
+    finally:
+        subprocess.run(["umount", disk], check=True)
+
+
+READ_ONLY = """
+import sys
+import numpy as np
+from squealpipe.parameters import Parameters
+from squealpipe.store import StoreError, save
+from squealpipe.tasks.linear import stability_map
+try:
+    save(stability_map(Parameters(), np.linspace(0, 1, 5), np.linspace(0, 1, 5)), sys.argv[1])
+except StoreError as error:
+    print(error)
+"""
+
+
+def test_no_write_permission_is_told(path):
+    """Root may write everywhere, so root's tests become nobody first."""
+    before = path.read_bytes()
+    path.parent.chmod(0o555)
+    for folder in path.parents:
+        if folder.stat().st_mode & 0o005 != 0o005 and folder != path.parent:
+            pytest.skip("temporary folders are closed to other users") if os.geteuid() else None
+            folder.chmod(folder.stat().st_mode | 0o005)
+    nobody = ["setpriv", "--reuid=65534", "--regid=65534", "--clear-groups"]
+    prefix = nobody if os.geteuid() == 0 else []
+    if prefix and shutil.which("setpriv") is None:
+        pytest.skip("setpriv is needed to give up root's permissions")
+    run = subprocess.run(
+        [*prefix, sys.executable, "-c", READ_ONLY, str(path)],
+        env={**os.environ, "HOME": "/nonexistent"},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    path.parent.chmod(0o755)
+    assert "free space or mend permissions" in run.stdout, run.stderr
+    assert path.read_bytes() == before
+
+
+def test_input_output_errors_while_renaming_leave_the_earlier_file(path, dataset, monkeypatch):
+    before = path.read_bytes()
+
+    def fail(self, target):
+        raise OSError(errno.EIO, "Input/output error")
+
+    monkeypatch.setattr(Path, "replace", fail)
+    with pytest.raises(StoreError, match="Input/output error"):
+        save(dataset, path)
+    assert path.read_bytes() == before
+    assert leftovers(path.parent) == []
+
+
+WRITER = """
+import itertools, sys
+import numpy as np
+from squealpipe.parameters import Parameters
+from squealpipe.store import save
+from squealpipe.tasks.linear import stability_map
+maps = [stability_map(Parameters(mu=mu), *[np.linspace(0, np.pi, 91)] * 2) for mu in (0.2, 0.4)]
+save(maps[0], sys.argv[1])
+print("ready", flush=True)
+for made in itertools.cycle(maps):
+    save(made, sys.argv[1])
+"""
+
+
+def kill_writers(folder: Path, kills: int) -> None:
+    """SIGKILL a process that keeps saving, at random moments; every file read must be whole."""
+    path = folder / "map.nc"
+    random = np.random.default_rng(7)
+    for _ in range(kills):
+        writer = subprocess.Popen(
+            [sys.executable, "-c", WRITER, str(path)], stdout=subprocess.PIPE, text=True
+        )
+        assert writer.stdout.readline() == "ready\n"
+        time.sleep(random.uniform(0.0, 0.15))
+        writer.kill()
+        writer.wait()
+        writer.stdout.close()
+        found = load(path)
+        mu = 0.2 if found.regime_linear.values[0, 0] >= 0 else 0.4
+        whole = [
+            stability_map(Parameters(mu=mu), *[np.linspace(0, np.pi, 91)] * 2) for mu in (0.2, 0.4)
+        ]
+        assert any(found.equals(one) for one in whole), mu
+
+
+def test_killed_writers_never_leave_half_a_file(tmp_path):
+    kill_writers(tmp_path, 6)
+
+
+@pytest.mark.slow
+def test_many_killed_writers_never_leave_half_a_file(tmp_path):
+    kill_writers(tmp_path, 60)
+
+
+def test_every_schema_has_a_unique_name_and_units():
+    for name, schema in all_schemas().items():
+        assert schema.name == name
+        for variable, entry in {**schema.variables, **schema.coordinates}.items():
+            assert entry.long_name, f"{name}.{variable} has no long_name"
+            assert not set(schema.variables) & set(schema.coordinates), name
