@@ -8,7 +8,7 @@ import numpy as np
 
 
 def contact_force(y: Any, p: Any) -> Any:
-    """N = k3 (l_pre − y) while in contact, N: the contact term of Eqs. (4) and (5).
+    """Eq. (1c): N = k3 (l_pre − y) while in contact, N: the foot of k3 follows the mass in x.
 
     The caller owns the state of contact; this law is linear, so it may be integrated across
     the switch without a kink. See :func:`unilateral_force` for the law with its switch.
@@ -27,7 +27,7 @@ def contact_energy(y: Any, p: Any) -> Any:
 
 
 def regularized_force(y: Any, p: Any, sigma: Any) -> Any:
-    """Contact term of Eqs. (26), (27): ½ k3 (l_pre − y)(1 + tanh σ(l_pre − y)), N."""
+    """Eqs. (26), (27): their contact term ½ k3 (l_pre − y)(1 + tanh σ(l_pre − y)), N."""
     gap = p.preload - y
     return 0.5 * p.k3 * gap * (1.0 + np.tanh(sigma * gap))
 

@@ -22,7 +22,10 @@ _RANK_TOLERANCE = 1e-10
 
 
 def fourier_matrix(n_harmonics: int, n_time: int) -> Vector:
-    """Eq. (29): Γ, (N, 2 N_h + 1), columns 1, sin θ, cos θ, … at θ_j = 2π j/N."""
+    """Eqs. (28a), (28b), (29): Γ, with x = Γa and y = Γb, (N, 2 N_h + 1).
+
+    Its columns are 1, sin θ, cos θ, … at θ_j = 2π j/N.
+    """
     theta = 2.0 * math.pi * np.arange(n_time) / n_time
     columns = [np.ones(n_time)]
     for order in range(1, n_harmonics + 1):
@@ -97,7 +100,7 @@ class SampledBalance:
         return first, (first if self.as_printed else second)
 
     def evaluate(self, eta: Vector) -> tuple[Vector, Vector]:
-        """Eqs. (33), (34): R, (4 N_h + 2,), and Eq. (36): J, (4 N_h + 2, 4 N_h + 3)."""
+        """Eqs. (31)–(34): R, (4 N_h + 2,), and Eq. (36): J, (4 N_h + 2, 4 N_h + 3)."""
         count = 2 * self.n_harmonics + 1
         a, b, omega = eta[:count], eta[count:-1], eta[-1]
         below, above = self.system.below.matrix, self.system.above.matrix

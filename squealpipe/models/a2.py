@@ -68,7 +68,7 @@ def possible_as_printed(stiffness: Stiffness, mu: Any) -> Any:
 
 
 def reaction_force(stiffness: Stiffness, mu: Any, load: Any) -> Any:
-    """R_n = F_n/(1 − μK12/K11): Eqs. (9), (10) without acceleration and with y = 0, N.
+    """Eqs. (9), (10) without acceleration and with y = 0: R_n = F_n/(1 − μK12/K11), N.
 
     Sliding is possible where it is positive, that is, μ K12 < K11. NaN where there is no such
     state: K11 = μ K12, of which α1 = α2 = π/2 is the case 0/0.

@@ -37,7 +37,7 @@ class Groups(NamedTuple):
 
 
 def groups(stiffness: Stiffness, k3: Any) -> Groups:
-    """Eqs. (12a)–(12d): ω12²/ω11², ω22²/ω11², ω3²/ω11².
+    """Eqs. (12a)–(12g): ω12²/ω11², ω22²/ω11², ω3²/ω11².
 
     Singular where K11 = 0, at α1 = α2 = π/2, for there τ = ω11 t stands still (E12).
     """

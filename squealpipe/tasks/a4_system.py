@@ -62,7 +62,7 @@ class ScaledSystem:
 
 
 def scaled_system(params: Parameters, alpha1: float, alpha2: float) -> ScaledSystem:
-    """Eqs. (18), (19) as two linear states joined at y = l_pre.
+    """Model A4 as two linear states joined at y = l_pre.
 
     K12 counts as zero where only round-off keeps it from it, so that decoupled scenes such as
     (π/2, π) are decoupled.

@@ -189,7 +189,7 @@ def compare_harmonic_forms(
     n_harmonics: int = 8,
     n_time: int = 34,
 ) -> xr.Dataset:
-    """Eqs. (31)–(36), mended and with Eq. (34) as printed, started at the exact orbit.
+    """The paper's balance, mended and with Eq. (34) as printed, started at the exact orbit.
 
     Args:
         params: physical parameters; σ is ``params.sigma``.

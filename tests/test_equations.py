@@ -1,0 +1,80 @@
+"""Every equation of the paper has exactly one home, and the README's table says where.
+
+A home is a function or class below laws, models, methods or tasks whose docstring begins with
+``Eq. (n)`` or ``Eqs. (m), (n)``. References, ``of Eq. (n)``, and words before it do not count.
+"""
+
+from __future__ import annotations
+
+import ast
+import re
+from collections import defaultdict
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[1]
+LETTERS = {1: "abc", 8: "abcd", 12: "abcdefg", 15: "ab", 22: "ab", 25: "ab", 28: "ab"}
+PAPER = {
+    f"{number}{letter}"
+    for number in range(1, 37)
+    for letter in (LETTERS[number] if number in LETTERS else [""])
+}
+NUMBER = re.compile(r"\((\d+)([a-g]?)\)(?:–\((\d+)([a-g]?)\))?")
+
+
+def numbers(text: str) -> set[str]:
+    """Equation numbers in a text, ranges such as (8a)–(8c) and (31)–(34) spelled out."""
+    found = set()
+    for first, letter, last, last_letter in NUMBER.findall(text):
+        if not last:
+            found.add(first + letter)
+        elif first == last:
+            found |= {first + chr(code) for code in range(ord(letter), ord(last_letter) + 1)}
+        else:
+            found |= {str(number) for number in range(int(first), int(last) + 1)}
+    return found
+
+
+def homes() -> dict[str, set[str]]:
+    """Equation → ``path: name`` of its homes."""
+    found = defaultdict(set)
+    for layer in ("laws", "models", "methods", "tasks"):
+        for path in sorted((ROOT / "squealpipe" / layer).glob("*.py")):
+            for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+                if not isinstance(node, ast.FunctionDef | ast.ClassDef):
+                    continue
+                summary = (ast.get_docstring(node) or "").split("\n\n")[0]
+                if not summary.startswith("Eq"):
+                    continue
+                own = re.sub(
+                    r"\bof Eqs?\. \(\d+[a-g]?\)(?:(?:, |–| and )\(\d+[a-g]?\))*", "", summary
+                )
+                for number in numbers(own):
+                    found[number].add(f"{path.relative_to(ROOT).as_posix()}: {node.name}")
+    return found
+
+
+def readme_table() -> dict[str, set[str]]:
+    """Equation → ``path: name`` as the README has it."""
+    found = defaultdict(set)
+    for line in (ROOT / "README.md").read_text(encoding="utf-8").splitlines():
+        match = re.match(r"\| (\(.*?\)) \| .* \| `(squealpipe/\S+\.py)` `(\w+)` \|$", line)
+        if match:
+            for number in numbers(match[1]):
+                found[number].add(f"{match[2]}: {match[3]}")
+    return found
+
+
+def test_every_equation_has_exactly_one_home():
+    found = homes()
+    assert set(found) <= PAPER, f"no such equation: {sorted(set(found) - PAPER)}"
+    assert PAPER <= set(found), f"no home: {sorted(PAPER - set(found))}"
+    several = {number: sorted(places) for number, places in found.items() if len(places) > 1}
+    assert not several
+
+
+def test_readme_says_where_each_one_lives():
+    assert readme_table() == dict(homes())
+
+
+def test_ranges_are_spelled_out():
+    assert numbers("(8a)–(8c), (31)–(33) and (4)") == {"8a", "8b", "8c", "31", "32", "33", "4"}
