@@ -18,6 +18,10 @@ class StoreError(ValueError):
     """A file cannot be read or written as a dataset; the message names it and the remedy."""
 
 
+DAMAGED = (OSError, RuntimeError, ValueError, LookupError, AttributeError, TypeError, MemoryError)
+"""What netCDF-4 and Xarray raise on files with damaged bytes."""
+
+
 def save(dataset: xr.Dataset, path: str | os.PathLike[str]) -> Path:
     """Write a dataset atomically, with its id: temporary name, validation, fsync, rename.
 
@@ -103,8 +107,9 @@ def _check_content(dataset: xr.Dataset, source: Path) -> None:
 def _read(source: Path) -> xr.Dataset:
     try:
         with xr.open_dataset(source, engine="netcdf4", decode_times=False) as opened:
+            _refuse_too_large(opened)
             dataset = opened.load()
-    except (OSError, RuntimeError, ValueError, KeyError) as error:
+    except DAMAGED as error:
         raise StoreError(
             f"{source} is truncated or not NetCDF-4 ({error}); delete it and run snakemake again"
         ) from error
@@ -112,6 +117,12 @@ def _read(source: Path) -> xr.Dataset:
         if variable.dtype == np.dtype("O"):
             variable.values = variable.values.astype(str)
     return dataset
+
+
+def _refuse_too_large(opened: xr.Dataset) -> None:
+    memory = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
+    if opened.nbytes > memory:
+        raise ValueError(f"it claims {opened.nbytes} bytes, more than this machine's memory")
 
 
 def sync(path: Path) -> None:

@@ -115,6 +115,14 @@ def test_values_changed_by_another_program_are_noticed(path):
         load(path)
 
 
+def test_claimed_sizes_beyond_memory_are_refused(tmp_path):
+    with netCDF4.Dataset(tmp_path / "bomb.nc", "w") as file:
+        file.createDimension("t", 2**45)
+        file.createVariable("x", "f8", ("t",), chunksizes=(1024,), zlib=True)
+    with pytest.raises(StoreError, match="more than this machine's memory"):
+        load(tmp_path / "bomb.nc")
+
+
 def test_another_schema_than_asked_for_is_refused(path):
     with pytest.raises(SchemaError, match="'validity_map' was expected"):
         load(path, schema="validity_map")
