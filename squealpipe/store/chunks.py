@@ -17,6 +17,7 @@ import numpy as np
 
 from squealpipe.progress import Progress
 from squealpipe.store.identity import canonical
+from squealpipe.store.netcdf import StoreError
 
 Chunk = TypeVar("Chunk")
 Arrays = dict[str, np.ndarray]
@@ -90,14 +91,26 @@ class Checkpoint:
         return self.directory / f"{index:06d}.npz"
 
     def write(self, index: int, arrays: Mapping[str, np.ndarray]) -> None:
-        """Keep one chunk; it is whole or absent."""
+        """Keep one chunk; it is whole or absent.
+
+        The folder is made again if it went missing: a process that outlived its killed parent may
+        have finished the same job and cleaned up.
+        """
         temporary = self.path(index).with_suffix(f".{os.getpid()}.tmp")
         try:
+            self.directory.mkdir(parents=True, exist_ok=True)
             with temporary.open("wb") as file:
                 np.savez(file, **arrays)  # type: ignore[arg-type]
                 file.flush()
                 os.fsync(file.fileno())
             temporary.replace(self.path(index))
+        except FileNotFoundError:
+            return  # cleaned up just now: the chunk is in memory, and only a restart would miss it
+        except OSError as error:
+            raise StoreError(
+                f"cannot write {self.path(index)}: {error.strerror}; free space or mend "
+                "permissions, then run the same command again"
+            ) from error
         finally:
             temporary.unlink(missing_ok=True)
 
