@@ -75,3 +75,9 @@ def quick_study(tmp_path_factory: pytest.TempPathFactory) -> QuickStudy:
 def snakemake() -> Callable[..., subprocess.CompletedProcess[str]]:
     """:func:`run_snakemake`, for tests in other folders."""
     return run_snakemake
+
+
+@pytest.fixture(scope="session")
+def new_checkout() -> Callable[[Path], Path]:
+    """:func:`copy_checkout`, for fixtures of other folders that outlive one test."""
+    return copy_checkout
