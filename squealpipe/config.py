@@ -242,6 +242,12 @@ class ExplorerSection(Section):
     branch_points: Annotated[int, Field(ge=2, le=200)] = 24
 
 
+class AnimationSection(Section):
+    """Short animations of hammering and of the whirl."""
+
+    frames: Annotated[int, Field(ge=2, le=500)] = 60
+
+
 class Study(Section):
     """A whole study."""
 
@@ -253,6 +259,7 @@ class Study(Section):
     dynamics: DynamicsSection = DynamicsSection()
     backbones: BackbonesSection = BackbonesSection()
     explorer: ExplorerSection = ExplorerSection()
+    animation: AnimationSection = AnimationSection()
 
     def slice(self, *paths: str) -> dict[str, Any]:
         """Canonical part of the configuration: numbers cast, keys in a fixed order.

@@ -185,7 +185,8 @@
     const [a1, a2] = [0, 1].map((axis) => angles[axis][chosen[axis]]);
     const [l1, l2] = payload.lengths;
     const ends = [[l1 * Math.cos(a1), l1 * Math.sin(a1)], [-l2 * Math.cos(a2), l2 * Math.sin(a2)]];
-    const foot = 2.2 * preload, belt = preload - foot;
+    // L3 is not part of the model; the drawn spring is longer than it is ever compressed.
+    const foot = Math.max(2.2 * preload, 1.2 * (preload - Math.min(...y))), belt = preload - foot;
     const reach = (values, fixed) => {
       const all = [...values, ...fixed, 0];
       const low = Math.min(...all), high = Math.max(...all), pad = 0.06 * (high - low) + 0.4 * preload;
