@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from squealpipe.figures.style import PAGE, RED, draw_map, new_figure, panel_letter
+from squealpipe.figures.style import BLACK, ORANGE, PAGE, RED, draw_map, new_figure, panel_letter
 from squealpipe.schema import Outcome
 
 if TYPE_CHECKING:
@@ -25,7 +25,7 @@ def draw_mode(frequencies: xr.Dataset, mode: int) -> Figure:
         frequencies: dataset ``natural_frequencies``.
         mode: 1 or 2.
     """
-    figure, axes = new_figure(PAGE, 3.3, ncols=2)
+    figure, axes = new_figure(PAGE, 3.45, ncols=2)
     omega = frequencies.omega.sel(mode=mode)
     upper = float(omega.max())
     lower = 0.0 if mode == 1 else float(omega.min())
@@ -44,8 +44,24 @@ def draw_mode(frequencies: xr.Dataset, mode: int) -> Figure:
         outcome = frequencies.outcome.sel(mode=mode, contact_state=state).values
         outline(panel, frequencies, outcome == Outcome.complex_pair)
         panel_letter(panel, letter, "in contact" if state == "contact" else state)
+    draw_sums(axes[0, 1])
+    axes[0, 1].legend(loc="upper center", bbox_to_anchor=(0.5, -0.16), ncols=2)
     figure.colorbar(mesh, ax=axes, label=f"ω{'₁₂'[mode - 1]} (rad/s)", shrink=0.8)  # type: ignore[arg-type]
     return figure
+
+
+def draw_sums(axes: Axes) -> None:
+    """The exact lines of the separated state: det K = 0, and smallest |Z| for any stiffnesses."""
+    along = np.array([-np.pi, 2 * np.pi])
+    limits = axes.get_xlim(), axes.get_ylim()
+    for odd, label, colour, dash in (
+        (0, "α₁ + α₂ = nπ", ORANGE, "--"),
+        (1, "α₁ + α₂ = nπ/2, n odd", BLACK, ":"),
+    ):
+        for number in range(odd, 5, 2):
+            axes.plot(along, number * np.pi / 2 - along, color=colour, ls=dash, lw=0.9, label=label)
+            label = ""
+    axes.set(xlim=limits[0], ylim=limits[1])
 
 
 def draw_isolines(axes: Axes, frequencies: xr.Dataset, values: np.ndarray, step: float) -> None:

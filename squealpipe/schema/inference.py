@@ -7,6 +7,7 @@ from squealpipe.schema import DatasetSchema, Variable, outcome
 SAMPLE = ("sample",)
 STATEMENT = ("statement",)
 BOTH = ("sample", "statement")
+CONSEQUENCE = ("consequence",)
 
 
 def _group(long_name: str, units: str = "1") -> Variable:
@@ -23,6 +24,9 @@ PARAMETER_INFERENCE = DatasetSchema(
     coordinates={
         "sample": Variable(dims=SAMPLE, dtype="i4", long_name="number of the sample"),
         "statement": Variable(dims=STATEMENT, dtype="U", long_name="id of the statement"),
+        "consequence": Variable(
+            dims=CONSEQUENCE, dtype="U", long_name="id of a statement that was not a constraint"
+        ),
     },
     variables={
         "kappa": _group("contact stiffness k3/k"),
@@ -69,6 +73,16 @@ PARAMETER_INFERENCE = DatasetSchema(
         ),
         "share_cut_alone": Variable(
             dims=STATEMENT, long_name="share of the samples that this statement alone excludes"
+        ),
+        "consequence_check": Variable(
+            dims=CONSEQUENCE, dtype="U", long_name="what was checked of the consequence"
+        ),
+        "feasible_count": Variable(dtype="i4", long_name="number of feasible samples"),
+        "feasible_share": Variable(
+            dims=CONSEQUENCE,
+            nan_allowed=True,
+            long_name="share of the feasible samples in which the consequence holds; NaN where "
+            "feasible_count is 0",
         ),
     },
 )

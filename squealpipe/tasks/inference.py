@@ -16,6 +16,7 @@ from scipy.stats import qmc
 from squealpipe.parameters import Parameters
 from squealpipe.schema import Outcome, build
 from squealpipe.schema.inference import PARAMETER_INFERENCE
+from squealpipe.tasks.consequences import CONSEQUENCES, judge_consequences
 from squealpipe.tasks.statements import STATEMENTS, Candidates, candidate_of, measure
 
 Range = tuple[float, float]
@@ -46,7 +47,8 @@ def infer_parameters(
         workers: processes; None takes all cores. The result is the same bit for bit.
 
     Returns:
-        Dataset over (sample, statement), see the schema ``parameter_inference``.
+        Dataset over (sample, statement), see the schema ``parameter_inference``; and over
+        consequence, the shares of the feasible samples in which further statements hold.
     """
     groups = _sample(samples, seed, kappa, mu, length_ratio, speed_ratio)
     ones = np.ones(samples)
@@ -73,6 +75,8 @@ def infer_parameters(
     feasible = holds.all(axis=1)
     alone = (~holds).sum(axis=1, keepdims=True) == 1
     refuted = (decided & (margin <= 0)).any(axis=1)
+    inferred = {name: values[feasible] for name, values in candidates.fields.items()}
+    consequences = judge_consequences(inferred, tol=tol, workers=workers)
     own = measure(candidate_of(params, tol=tol))
     own_margin = np.array([float(own[statement.name].margin[0]) for statement in STATEMENTS])
     own_outcome = np.array([int(own[statement.name].outcome[0]) for statement in STATEMENTS])
@@ -97,10 +101,16 @@ def infer_parameters(
             "horizon": [statement.horizon for statement in STATEMENTS],
             "share_holding": holds.mean(axis=0),
             "share_cut_alone": (~holds & alone).mean(axis=0),
+            "consequence_check": list(CONSEQUENCES.values()),
+            "feasible_count": int(feasible.sum()),
+            "feasible_share": [
+                held.mean() if held.size else np.nan for held in consequences.values()
+            ],
         },
         {
             "sample": np.arange(samples),
             "statement": [statement.name for statement in STATEMENTS],
+            "consequence": list(CONSEQUENCES),
         },
     )
 

@@ -13,6 +13,7 @@ from squealpipe.config import read_study
 from squealpipe.parameters import SCENES, Parameters
 from squealpipe.schema import Outcome
 from squealpipe.store import load, save
+from squealpipe.tasks.consequences import judge_consequences
 from squealpipe.tasks.ensemble import run_ensemble
 from squealpipe.tasks.inference import infer_parameters
 from squealpipe.tasks.statements import GROWTH, STATEMENTS, Candidates, candidate_of, measure
@@ -173,3 +174,37 @@ def test_verdicts_follow_from_margins(inference: object, tmp_path: Path) -> None
 
 def test_the_number_of_processes_changes_nothing(inference: object) -> None:
     assert infer_parameters(BASELINE, samples=256, workers=1).identical(inference)
+
+
+def test_consequences_at_the_baseline() -> None:
+    """What the brief states of the baseline: F6b as printed only, Fig. 7 without black cells."""
+    fields = {name: np.array([value]) for name, value in BASELINE.as_dict().items()}
+    held = {key: bool(values[0]) for key, values in judge_consequences(fields, tol=1e-9).items()}
+    assert held == {
+        "S3": True,
+        "F6b": False,
+        "F6b_printed": True,
+        "F7a": True,
+        "F7_black": True,
+        "F8c": False,
+        "F8c_separated": True,
+    }
+
+
+def test_consequences_can_come_out_otherwise() -> None:
+    """Without friction nothing is unstable; a soft contact on short springs is hardly left."""
+    fields = {
+        name: np.array([value]) for name, value in BASELINE.with_(mu=0.0, k3=0.05).as_dict().items()
+    }
+    held = {key: bool(values[0]) for key, values in judge_consequences(fields, tol=1e-9).items()}
+    assert not held["S3"]
+    assert held["F6b"]
+    assert not held["F7a"]
+
+
+def test_shares_of_the_feasible_samples(inference: object) -> None:
+    feasible = inference.feasible.values
+    assert int(inference.feasible_count) == feasible.sum() > 0
+    counts = inference.feasible_share.values * feasible.sum()
+    np.testing.assert_allclose(counts, np.round(counts), atol=1e-9)
+    assert float(inference.feasible_share.sel(consequence="F6b_printed")) == 1.0

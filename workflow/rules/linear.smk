@@ -35,6 +35,7 @@ rule draw_stability:
         sources=sources("draw_stability"),
     output:
         fig06=figure("fig06"),
+        static=figure("static_state"),
         plane=figure("stability_plane"),
         shares=figure("linear_shares"),
         coupling=figure("mode_coupling"),
