@@ -32,10 +32,10 @@ PROFILE = [
 MAP = "results/data/validity_map.nc"
 FIGURE = "results/figures/fig07.png"
 SMALL = """
-dynamics: {validity_points: 31, horizon: 20.0}
+dynamics: {validity_points: 31, validity_horizon: 20.0}
 """
 LONG = """
-dynamics: {validity_points: 301, horizon: 200.0}
+dynamics: {validity_points: 301, validity_horizon: 200.0}
 """
 
 
