@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from squealpipe.tasks.backbones import backbone
     from squealpipe.tasks.inference import infer_parameters
     from squealpipe.tasks.linear import natural_frequencies, quasi_static_map, stability_map
+    from squealpipe.tasks.model_choice import choose_model
     from squealpipe.tasks.orbits import periodic_orbit
 
 _HOME = {
@@ -22,6 +23,7 @@ _HOME = {
     "Parameters": "squealpipe.parameters",
     "Scene": "squealpipe.parameters",
     "backbone": "squealpipe.tasks.backbones",
+    "choose_model": "squealpipe.tasks.model_choice",
     "load": "squealpipe.store.netcdf",
     "periodic_orbit": "squealpipe.tasks.orbits",
     "save": "squealpipe.store.netcdf",
@@ -36,6 +38,7 @@ __all__ = [
     "Parameters",
     "Scene",
     "backbone",
+    "choose_model",
     "infer_parameters",
     "load",
     "natural_frequencies",

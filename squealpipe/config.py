@@ -161,13 +161,22 @@ class OnsetComparison(Section):
     repeats: Repeats = 3
 
 
+class LadderComparison(Section):
+    """The cheapest adequate model over both angles; horizon in √(m/k1)."""
+
+    points: Annotated[int, Field(ge=3, le=361)] = 46
+    tolerance: Annotated[float, Field(gt=0, lt=1)] = 0.05
+    horizon: Positive = 200.0
+
+
 class ComparisonSection(Section):
-    """Speed against accuracy."""
+    """Speed against accuracy, and the model ladder."""
 
     integration: IntegrationComparison = IntegrationComparison()
     validity: ValidityComparison = ValidityComparison()
     harmonic: HarmonicComparison = HarmonicComparison()
     onset: OnsetComparison = OnsetComparison()
+    ladder: LadderComparison = LadderComparison()
 
 
 class DynamicsSection(Section):

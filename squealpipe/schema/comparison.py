@@ -5,6 +5,7 @@ from __future__ import annotations
 from enum import IntEnum
 
 from squealpipe.schema import DatasetSchema, Variable, outcome
+from squealpipe.schema.linear import ANGLES, MAP
 
 RUN = ("run",)
 
@@ -104,5 +105,84 @@ FAILURE_ATLAS = DatasetSchema(
         "message": _text("what the method said", *SCENE_METHOD),
         "tolerance": Variable(dims=("scene",), long_name="largest error that counts as right"),
         "role": Variable(dims=("method",), dtype="i1", flags=Role, long_name="whose method it is"),
+    },
+)
+
+
+class Level(IntEnum):
+    """Levels of the model ladder, cheapest first."""
+
+    closed_form = 0
+    a3_in_contact = 1
+    a4_exact = 2
+    a4_in_time = 3
+    a1_linear_springs = 4
+    a1_no_stick = 5
+    a1_short = 6
+    a1 = 7
+
+
+QUESTIONS = ("contact_lost", "frequency", "peak_contact_force", "max_displacement")
+"""What can be asked of a scene."""
+
+_CELL = ("question", *MAP)
+
+MODEL_LADDER = DatasetSchema(
+    name="model_ladder",
+    title="The cheapest adequate model over both spring angles",
+    coordinates={
+        **ANGLES,
+        "question": _text("question asked of a cell", "question"),
+        "level": _text("level of the ladder", "level"),
+    },
+    variables={
+        "error": Variable(
+            dims=("question", "level", *MAP),
+            long_name="error of a level against A1, relative (0 or 1 for contact lost)",
+            nan_allowed=True,
+            rtol=1e-3,
+            atol=1e-9,
+        ),
+        "cheapest": Variable(
+            dims=_CELL, dtype="i1", flags=Level, long_name="cheapest level within the tolerance"
+        ),
+        "chosen": Variable(
+            dims=_CELL, dtype="i1", flags=Level, long_name="level that choose_model takes"
+        ),
+        "chosen_error": Variable(
+            dims=_CELL,
+            long_name="error of the chosen answer against A1",
+            nan_allowed=True,
+            rtol=1e-3,
+            atol=1e-9,
+        ),
+        "chosen_time": Variable(
+            dims=("question",), units="s", long_name="time integrated by choose_model, all cells"
+        ),
+        "always_time": Variable(
+            dims=("question",),
+            units="s",
+            long_name="time integrated by always A1 until the question is answered, all cells",
+        ),
+        "level_wall_time": Variable(
+            dims=("level",),
+            units="s",
+            long_name="wall time of a level over the whole map",
+            volatile=True,
+        ),
+        "always_wall_time": Variable(
+            dims=("question",),
+            units="s",
+            long_name="wall time of always A1 over the whole map, stopped at the answer",
+            volatile=True,
+        ),
+        "chosen_wall_time": Variable(
+            dims=("question",),
+            units="s",
+            long_name="wall time of choose_model over the whole map",
+            volatile=True,
+        ),
+        "tolerance": Variable(long_name="error that is allowed"),
+        "outcome": outcome(*MAP),
     },
 )

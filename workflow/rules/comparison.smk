@@ -56,3 +56,26 @@ rule draw_failure_atlas:
         figure("failure_atlas"),
     script:
         "../scripts/draw_failure_atlas.py"
+
+
+rule map_model_ladder:
+    input:
+        sources=sources("map_model_ladder"),
+    output:
+        data("model_ladder"),
+    params:
+        part=part("parameters", "comparison.ladder"),
+    threads: workflow.cores
+    script:
+        "../scripts/map_model_ladder.py"
+
+
+rule draw_model_ladder:
+    input:
+        ladder=data("model_ladder"),
+        sources=sources("draw_model_ladder"),
+    output:
+        maps=figure("model_ladder"),
+        cost=figure("model_ladder_cost"),
+    script:
+        "../scripts/draw_model_ladder.py"

@@ -1,0 +1,19 @@
+"""The cheapest adequate model over both spring angles."""
+
+from squealpipe.config import parameters_of
+from squealpipe.store import produce
+from squealpipe.tasks.model_ladder import model_ladder
+
+part = snakemake.params.part
+params, ladder = parameters_of(part), part["comparison.ladder"]
+produce(
+    lambda: model_ladder(
+        params,
+        ladder["points"],
+        ladder["tolerance"],
+        t_end=ladder["horizon"] * params.time_unit,
+        workers=snakemake.threads,
+    ),
+    config=part,
+    output=snakemake.output[0],
+)
