@@ -53,6 +53,6 @@ def _draw(panel: Axes, part: xr.Dataset, axis: str) -> None:
             color=COLOURS[index % len(COLOURS)],
             linestyle=DASHES[index % len(DASHES)],
             linewidth=0.9,
-            label=f"A1, L = {ratio:g} l_pre",
+            label=f"A1, L = {ratio:g} $l_\\mathrm{{pre}}$",
         )
     panel.set_xlim(0, float(np.ceil(part[axis].values[-1])))

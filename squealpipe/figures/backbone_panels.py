@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-CROSSES = 22
+CROSSES = 24
 """Points of the harmonic balance that are drawn, evenly spaced along the branch."""
 QUANTITIES = (("x_amplitude", ORANGE, "x"), ("y_amplitude", BLUE, "y"))
 KEY = (
@@ -46,7 +46,7 @@ def draw_scene(branches: Sequence[Sequence[xr.Dataset]], preload: float) -> Figu
 
 def draw_branch(panel: Axes, exact: xr.Dataset, series: xr.Dataset, preload: float) -> None:
     """One mode: lines for exact orbits beneath crosses for harmonic balance."""
-    panel.axhline(preload, color=GREY, linewidth=1.0, label="l_pre")
+    panel.axhline(preload, color=GREY, linewidth=1.0, label=r"$l_\mathrm{pre}$")
     if not exact.sizes["point"]:
         meanings = str(exact.end.attrs["flag_meanings"]).split()
         reason = meanings[list(exact.end.attrs["flag_values"]).index(int(exact.end))]
@@ -57,7 +57,8 @@ def draw_branch(panel: Axes, exact: xr.Dataset, series: xr.Dataset, preload: flo
     shown = _evenly(series)
     for name, colour, label in QUANTITIES:
         values = exact[name].values
-        panel.plot(omega, np.where(unstable, np.nan, values), color=colour, linewidth=1.4)
+        stable = np.where(unstable, np.nan, values)
+        panel.plot(omega, stable, color=colour, linewidth=1.4, label=f"{label}, exact")
         # both ends of each unstable stretch are shared with the stable line, so that none gapes
         near = unstable | np.roll(unstable, 1) | np.roll(unstable, -1)
         dotted = np.where(near & unstable.any(), values, np.nan)

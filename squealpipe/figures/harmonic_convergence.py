@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from squealpipe.figures.style import (
+    BLACK,
     BLUE,
     GREEN,
     GREY,
@@ -31,8 +32,8 @@ CAPTION = (
     "thin line falls like σ⁻²."
 )
 ALT = "Four log-log panels of falling errors over harmonics, samples and smoothing."
-COLOURS = (BLUE, ORANGE, GREEN, RED, PURPLE)
-MARKERS = "osv^D"
+COLOURS = (BLUE, ORANGE, GREEN, RED, PURPLE, BLACK)
+MARKERS = "osv^DP"
 
 
 def draw(sweep: xr.Dataset) -> Figure:
@@ -40,10 +41,20 @@ def draw(sweep: xr.Dataset) -> Figure:
     figure, axes = new_figure(PAGE, 5.2, nrows=2, ncols=2)
     panels = axes.ravel()
     _lines(
-        panels[0], sweep.omega_error.median("peak"), "harmonics", "N_h", "error of ω (rad/s)", -4
+        panels[0],
+        sweep.omega_error.median("peak"),
+        "harmonics",
+        r"$N_\mathrm{h}$",
+        "error of ω (rad/s)",
+        -4,
     )
     _lines(
-        panels[1], sweep.waveform_error.median("peak"), "harmonics", "N_h", "waveform error (m)", -3
+        panels[1],
+        sweep.waveform_error.median("peak"),
+        "harmonics",
+        r"$N_\mathrm{h}$",
+        "waveform error (m)",
+        -3,
     )
     _lines(
         panels[2],
@@ -57,7 +68,7 @@ def draw(sweep: xr.Dataset) -> Figure:
         panels[3],
         sweep.omega_error_sigma.median("peak"),
         "sigma",
-        "σ l_pre",
+        r"$\sigma\,l_\mathrm{pre}$",
         "shift of ω (rad/s)",
         -2,
     )

@@ -36,7 +36,7 @@ def draw(forms: xr.Dataset) -> Figure:
 def _frequencies(panel: Axes, forms: xr.Dataset) -> None:
     places = np.arange(forms.sizes["scene"])
     panel.plot(
-        places, forms.omega_exact, "_", color=GREY, markersize=26, markeredgewidth=2, label="exact"
+        places, forms.omega_exact, "_", color=GREY, markersize=22, markeredgewidth=2, label="exact"
     )
     for form, colour, marker, name in ((0, BLUE, "x", "mended"), (1, RED, "o", "as printed")):
         panel.plot(
@@ -54,7 +54,7 @@ def _frequencies(panel: Axes, forms: xr.Dataset) -> None:
     panel.set(ylabel="ω (rad/s)")
     panel.set_ylim(bottom=-0.05)
     panel.margins(x=0.12)
-    panel.legend(loc="upper center", bbox_to_anchor=(0.5, -0.2), ncols=3)
+    panel.legend(loc="upper center", bbox_to_anchor=(0.5, -0.2), ncols=3, handlelength=3.2)
 
 
 def _spread(panel: Axes, forms: xr.Dataset) -> None:

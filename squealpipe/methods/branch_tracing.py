@@ -20,9 +20,9 @@ from squealpipe.methods.shooting import (
 )
 
 REACHED, RETURNED, TONGUE_END, BRANCH_LOST, STEP_LIMIT, DIVERGED = range(6)
-"""Why a trace ended: y_peak reached, back on the linear mode, the orbit's period halved and the
-branch would be retraced, no step small enough converged, too many points, or x0 grew without
-bound beside y (an internal resonance)."""
+"""Why a trace ended: y_peak reached; back on the linear mode; the orbit is another mode's, run
+through several times (at twice, the branch would be retraced from here on); no step small enough
+converged; too many points; or x0 grew without bound beside y (an internal resonance)."""
 
 COLUMNS = ("x0", "y0", "half_period", "end_x", "end_y", "index", "residual", "switches")
 """Columns of a traced point."""
@@ -85,6 +85,29 @@ def _change_end(rows: Any, here: Any, ahead: Any, final: Any, length: float) -> 
 
 
 @compiled
+def _covers_shorter_orbit(rows: Any, here: Any, apart: Any, segments: Any, switches: Any) -> bool:
+    """Whether the last step went through an orbit of a third or a fifth of the period.
+
+    There the state after T/n is the initial one; ``apart`` (2, 4) holds their difference for
+    n = 3, 5, which turns round when the branch passes through such an orbit.
+    """
+    passed = False
+    state = np.empty(4)
+    for index in range(2):
+        shoot(rows, here[0], here[1], 2.0 * here[2] / (3 + 2 * index), segments, switches, state)
+        state[0] -= here[0]
+        state[1] -= here[1]
+        product, size, size_before = 0.0, 0.0, 0.0
+        for entry in range(4):
+            product += state[entry] * apart[index, entry]
+            size += state[entry] * state[entry]
+            size_before += apart[index, entry] * apart[index, entry]
+            apart[index, entry] = state[entry]
+        passed = passed or product < -0.7 * np.sqrt(size * size_before)
+    return passed
+
+
+@compiled
 def _step(
     rows: Any,
     here: Any,
@@ -144,6 +167,7 @@ def trace(
     """
     threshold = rows[0, 11]
     segments, switches = np.empty((MAX_SEGMENTS, 9)), np.empty(MAX_SEGMENTS)
+    apart = np.zeros((2, 4))
     here, ahead, before, work = start.copy(), direction.copy(), start.copy(), np.empty((3, 4))
     final = work[2]
     count = 0
@@ -168,9 +192,13 @@ def trace(
             return count, RETURNED
         if abs(here[0]) > control[4]:
             return count, DIVERGED
+        if _covers_shorter_orbit(rows, here, apart, segments, switches):
+            return count, TONGUE_END
         if final[1] > here[1]:
             if abs(final[0] - here[0]) < 3.0 * length:
                 return count, TONGUE_END
             # the other instant of rest is the higher one from here on: count from there
             _change_end(rows, here, ahead, final, length)
+            for index in range(4):
+                apart[0, index] = apart[1, index] = 0.0
     return count, STEP_LIMIT

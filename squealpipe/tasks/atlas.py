@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import os
+from collections import deque
 from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
+from squealpipe.methods.harmonic_balance import cosines_of
+from squealpipe.methods.orbit_shape import sample
 from squealpipe.methods.orbits import Orbit, solve_orbit
 from squealpipe.parameters import Parameters
 from squealpipe.schema import Outcome, build
@@ -25,6 +28,9 @@ _RESUMABLE = (
     Outcome.no_convergence,
 )
 _SMALL_CHANGE = 0.05
+_CLEARLY_PURER = 0.01
+_PHASES = np.linspace(0.0, np.pi, 33)
+Cell = tuple[int, int, int]
 _SMALLEST_STEP = 0.05
 
 
@@ -79,8 +85,9 @@ class _Cells:
 
     Where an internal resonance lies between the linear mode and the peak, the branch turns into
     the resonance's tongue. The orbit beyond the tongue is then reached from a neighbouring cell,
-    at constant peak, by small steps of the angles; where that meets the resonance too, x grows
-    and the steps are refused.
+    at constant peak, by small steps of the angles. Several may be reached; an orbit that is
+    locked to a resonance has strong higher harmonics, so the one with the largest share of the
+    first harmonic is kept.
     """
 
     def __init__(
@@ -97,6 +104,7 @@ class _Cells:
         self.points = np.full((*shape, 3), np.nan)
         self.outcome = np.full(shape, Outcome.not_computed, dtype=int)
         self.route = np.full(shape, Route.none, dtype=int)
+        self.purity = np.full(shape, np.nan)
 
     def fill_line(self, row: int) -> None:
         """Find the orbits of one row of cells from their linear modes."""
@@ -105,7 +113,7 @@ class _Cells:
             for mode in (1, 2):
                 self._fill_cold(scene, (row, column, mode - 1), mode)
 
-    def _fill_cold(self, scene: ScaledSystem, cell: tuple[int, int, int], mode: int) -> None:
+    def _fill_cold(self, scene: ScaledSystem, cell: Cell, mode: int) -> None:
         if scene.obstacle == Outcome.converged and self.peak <= scene.rest[1]:
             self.outcome[cell] = Outcome.separated
             return
@@ -115,63 +123,62 @@ class _Cells:
         elif self.outcome[cell] == Outcome.isolated_mode:
             self.values[cell] = scene.omega(mode) * scene.frequency, np.nan
 
-    def _keep(
-        self, cell: tuple[int, int, int], scene: ScaledSystem, orbit: Orbit, route: Route
-    ) -> None:
+    def _keep(self, cell: Cell, scene: ScaledSystem, orbit: Orbit, route: Route) -> None:
         self.points[cell] = orbit.point
         self.values[cell] = orbit.omega * scene.frequency, orbit.stability_index
         self.route[cell] = route
 
     def fill_from_neighbours(self) -> None:
-        """Sweep over the cells that hold no orbit until no neighbour helps any more."""
-        waiting = {
-            (int(i), int(j), int(k)) for i, j, k in np.argwhere(np.isin(self.outcome, _RESUMABLE))
-        }
-        tried: set[tuple[tuple[int, int, int], tuple[int, int, int]]] = set()
-        progress = True
-        while progress:
-            progress = False
-            for cell in sorted(waiting):
-                for near in self._neighbours(cell):
-                    if (cell, near) not in tried:
-                        tried.add((cell, near))
-                        if self._step_over(near, cell):
-                            waiting.discard(cell)
-                            progress = True
-                            break
+        """Let orbits spread into the cells that hold none, the purest one of several winning."""
+        open_cells = np.isin(self.outcome, _RESUMABLE)
+        border = [cell for cell in self._cells(~open_cells) if any(self._around(cell, open_cells))]
+        spreading = deque(border)
+        while spreading:
+            near = spreading.popleft()
+            for cell in self._around(near, open_cells):
+                found = self._carry(near, cell)
+                if found is None:
+                    continue
+                scene, orbit = found
+                purity = _purity(scene, orbit)
+                if not purity <= self.purity[cell] + _CLEARLY_PURER:
+                    self.purity[cell] = purity
+                    self.outcome[cell] = Outcome.converged
+                    self._keep(cell, scene, orbit, Route.neighbour)
+                    spreading.append(cell)
 
-    def _neighbours(self, cell: tuple[int, int, int]) -> list[tuple[int, int, int]]:
+    def _cells(self, mask: NDArray[np.bool_]) -> list[Cell]:
+        """Cells of a mask that hold an orbit."""
+        held = mask & (self.outcome == Outcome.converged)
+        return [(int(i), int(j), int(k)) for i, j, k in np.argwhere(held)]
+
+    def _around(self, cell: Cell, mask: NDArray[np.bool_]) -> list[Cell]:
+        """The four neighbours of a cell that are in a mask."""
         row, column, mode = cell
         around = [(row + 1, column), (row - 1, column), (row, column + 1), (row, column - 1)]
         return [
             (i, j, mode)
             for i, j in around
-            if 0 <= i < self.outcome.shape[0]
-            and 0 <= j < self.outcome.shape[1]
-            and self.outcome[i, j, mode] == Outcome.converged
+            if 0 <= i < mask.shape[0] and 0 <= j < mask.shape[1] and mask[i, j, mode]
         ]
 
-    def _step_over(self, near: tuple[int, int, int], cell: tuple[int, int, int]) -> bool:
-        """Carry the orbit of one cell to another at constant peak; whether it arrived."""
+    def _carry(self, near: Cell, cell: Cell) -> tuple[ScaledSystem, Orbit] | None:
+        """One cell's orbit carried to another cell at constant peak; None if it does not arrive."""
         point, share, step = self.points[near], 0.0, 1.0
-        while share < 1.0:
+        while step >= _SMALLEST_STEP:
             ahead = min(share + step, 1.0)
             scene = self._scene(*near[:2], *cell[:2], ahead)
             orbit = None
             if scene.obstacle == Outcome.converged and not scene.system.decoupled:
                 orbit = solve_orbit(scene.system, point)
-            if orbit is not None and np.linalg.norm(orbit.point - point) < _SMALL_CHANGE * (
-                1.0 + np.linalg.norm(point)
-            ):
-                point, share = orbit.point, ahead
-                if share == 1.0:
-                    self.outcome[cell] = Outcome.converged
-                    self._keep(cell, scene, orbit, Route.neighbour)
-            elif step < _SMALLEST_STEP:
-                return False
-            else:
+            reach = _SMALL_CHANGE * (1.0 + np.linalg.norm(point))
+            if orbit is None or np.linalg.norm(orbit.point - point) > reach:
                 step *= 0.5
-        return True
+                continue
+            if ahead == 1.0:
+                return scene, orbit
+            point, share = orbit.point, ahead
+        return None
 
     def _scene(self, row: int, column: int, row2: int, column2: int, share: float) -> ScaledSystem:
         """The system at a share of the way from one cell to another."""
@@ -179,3 +186,9 @@ class _Cells:
         alpha1 = rows[row] + share * (rows[row2] - rows[row])
         alpha2 = columns[column] + share * (columns[column2] - columns[column])
         return scaled_system(self.params, float(alpha1), float(alpha2))
+
+
+def _purity(scene: ScaledSystem, orbit: Orbit) -> float:
+    """Share of the first harmonic in the motion of y."""
+    y = cosines_of(sample(scene.system.rows, orbit.point, _PHASES)[:, 1])
+    return float(y[1] ** 2 / np.sum(y[1:] ** 2))

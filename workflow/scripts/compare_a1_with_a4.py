@@ -6,7 +6,8 @@ from squealpipe.tasks.a1_beside_a4 import a1_beside_a4
 from squealpipe.tasks.backbones import contact_losing_branches
 
 part = snakemake.params.part
-branches = contact_losing_branches(part["backbones.coupled"])
+found = contact_losing_branches(part["backbones.coupled"])
+branches = {name: found[name] for name in found if not name.endswith("mode 2") or "F10" in name}
 produce(
     lambda: a1_beside_a4(
         parameters_of(part),
