@@ -1,8 +1,13 @@
 """What every rule needs: where results go, which sources a script uses, its slice of the study."""
 
+import os
 from pathlib import Path
 
 from squealpipe.sources import closure
+
+# Our matrices are small: several threads of linear algebra in a job only wait for one another,
+# and for the jobs beside it.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 ROOT = Path(workflow.basedir)
 TARGETS = []
