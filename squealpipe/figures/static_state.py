@@ -24,7 +24,11 @@ LIMIT = 2.0
 
 
 def draw(quasi_static: xr.Dataset) -> Figure:
-    """Both forces over the preload, from dataset ``quasi_static_map``."""
+    """Both forces over the preload.
+
+    Args:
+        quasi_static: dataset ``quasi_static_map`` whose first angles are 0.
+    """
     figure, axes = new_figure(PAGE, 3.3, ncols=2)
     # R_n = F_n/(1 − μK12/K11) is F_n itself where K12 = 0, as in the corner α1 = α2 = 0.
     load = float(quasi_static.reaction_force[0, 0])
