@@ -7,11 +7,13 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from squealpipe.laws.springs import geometry, linear_stiffness
 from squealpipe.methods.continuation import Continuation, ContinuationSettings
 from squealpipe.methods.harmonic_balance import CosineBalance, contact_of
 from squealpipe.methods.hill import hill_multipliers, sampled_share_above
+from squealpipe.methods.sampled_balance import SampledBalance
 from squealpipe.models import a3, a4
 from squealpipe.parameters import Parameters
 from squealpipe.schema import REMEDIES, Outcome
@@ -27,6 +29,7 @@ from squealpipe.tasks.speed_accuracy_stability import OnsetCase
 
 EXACT, BALANCE = "closed form, exact orbit", "closed-form balance"
 COLD, ARC, TANH = "cold Newton, sampled", "arc length, unchecked", "tanh balance, sampled"
+PAPER, PRINTED = "paper's balance", "paper's, Eq. (34) as printed"
 HILL, NUMERIC = "Hill's method, sampled", "numpy.linalg"
 FREQUENCY_METHODS = (
     Method(EXACT, Role.ours),
@@ -34,12 +37,15 @@ FREQUENCY_METHODS = (
     Method(COLD),
     Method(ARC),
     Method(TANH),
+    Method(PAPER),
+    Method(PRINTED),
     Method(HILL),
     Method(NUMERIC),
 )
 TOLERANCE = 1e-5
 """Largest error of ω that counts as right, in √(k1/m)."""
 N_HARMONICS = 16
+PAPER_SIGMA = 1e3
 TRUTH_HARMONICS = 128
 """Their ω is good to 1e-9, ten thousand times better than the tolerance."""
 HILL_HARMONICS, HILL_SAMPLES = 16, 80
@@ -92,6 +98,8 @@ def _branch(case: BranchCase) -> HardScene:
         EXACT: lambda: _exact_orbit(params, case),
         BALANCE: lambda: _our_balance(params, case),
     }
+    answers[PAPER] = lambda: _paper(scene, case, as_printed=False)
+    answers[PRINTED] = lambda: _paper(scene, case, as_printed=True)
     if case.sigma is not None:
         answers[TANH] = lambda: _newton(scene, case)
     else:
@@ -135,16 +143,44 @@ def _sampled_balance(scene: ScaledSystem, case: BranchCase) -> CosineBalance:
 def _newton(scene: ScaledSystem, case: BranchCase) -> Answer:
     """Newton on a sampled balance, from the linear mode of that peak (or a good start)."""
     balance = _sampled_balance(scene, case)
-    start = linear_orbit(scene, case.mode, case.y_peak)
-    guess = linear_series(scene, case.mode, N_HARMONICS, start.point)
-    exact, _ = find_orbit(scene, case.mode, case.y_peak)
-    if exact is not None and (case.warm or case.sigma is not None):
-        guess = orbit_series(scene, exact, N_HARMONICS)
     with np.errstate(all="ignore"):
-        found = balance.solve(guess, balance.peak_row, case.y_peak)
+        found = balance.solve(_start(scene, case), balance.peak_row, case.y_peak)
     if found is None:
         return Answer(math.nan, "Newton did not converge")
     return Answer(abs(float(found[0][-1])) * scene.frequency)
+
+
+def _start(scene: ScaledSystem, case: BranchCase) -> NDArray[np.float64]:
+    """Cosines to start from: the exact orbit where the form is on trial, else the linear mode."""
+    exact, _ = find_orbit(scene, case.mode, case.y_peak)
+    if exact is not None and (case.warm or case.sigma is not None):
+        return orbit_series(scene, exact, N_HARMONICS)
+    linear = linear_orbit(scene, case.mode, case.y_peak)
+    return linear_series(scene, case.mode, N_HARMONICS, linear.point)
+
+
+def _paper(scene: ScaledSystem, case: BranchCase, *, as_printed: bool) -> Answer:
+    """Newton on Eqs. (31)–(36), whose peak and phase nobody prescribes.
+
+    What is found is therefore compared with the exact orbit of its own peak, where there is one.
+    """
+    balance = SampledBalance(
+        scene.system, N_HARMONICS, case.n_time, case.sigma or PAPER_SIGMA, as_printed=as_printed
+    )
+    exact, _ = find_orbit(scene, case.mode, case.y_peak)
+    z = _start(scene, case)
+    count = N_HARMONICS + 1
+    with np.errstate(all="ignore"):
+        found = balance.solve(
+            balance.start_from_cosines(z[:count], z[count:-1], float(z[-1])), max_iterations=40
+        )
+    if not found.converged:
+        return Answer(math.nan, "Newton did not converge")
+    omega, peak = abs(found.omega), balance.peak(found)
+    own = find_orbit(scene, case.mode, peak)[0] if peak > 1.0 else None
+    if exact is None or own is None:
+        return Answer(omega * scene.frequency)
+    return Answer((omega - own.omega + exact.omega) * scene.frequency)
 
 
 def _arc_length(scene: ScaledSystem, case: BranchCase) -> Answer:

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from squealpipe.methods.harmonic_balance import CosineBalance, contact_of, cosines_of
 from squealpipe.methods.orbit_shape import sample
 from squealpipe.methods.orbits import Orbit, solve_orbit
+from squealpipe.methods.sampled_balance import SampledBalance
 from squealpipe.parameters import Parameters
 from squealpipe.schema import Outcome
 from squealpipe.schema.comparison import Role
@@ -28,6 +29,9 @@ COUPLED_SCENE = (0.3 * math.pi, 0.9 * math.pi)
 """Angles at which mode 1 moves in x and y and loses contact, rad."""
 PEAKS = (1.25, 1.75, 2.25, 2.75, 3.5)
 """y_peak over l_pre; none close to the period doubling at 3.9."""
+PAPER_SIGMA = 1e3
+PAPER_HARMONICS = 16
+"""Most harmonics of the paper's form here: its pseudo-inverse costs the cube of their number."""
 _GUESS_SAMPLES = 512
 _STEP = 0.02
 """The start of a solution is the orbit at a peak lower by this, as along a backbone."""
@@ -63,6 +67,17 @@ class _CountedBalance(CosineBalance):
     def evaluate(self, z: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         self.calls.append(1)
         return super().evaluate(z)
+
+
+@dataclass(frozen=True)
+class _CountedPaper(SampledBalance):
+    """The paper's balance, counting likewise."""
+
+    calls: list[int] = field(default_factory=list)
+
+    def evaluate(self, eta: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        self.calls.append(1)
+        return super().evaluate(eta)
 
 
 def discretizations(
@@ -106,6 +121,10 @@ def solutions(
     for form in discretizations(harmonics, sigmas, oversampling):
         yield _judged(scene, form, pairs, repeats)
     yield _shooting(scene, pairs, repeats)
+    for count in harmonics:
+        if count <= PAPER_HARMONICS:
+            yield _paper(scene, count, pairs, repeats, as_printed=False)
+            yield _paper(scene, count, pairs, repeats, as_printed=True)
 
 
 def _judged(
@@ -138,6 +157,42 @@ def _judged(
         error=float(np.median(errors)) if errors else math.nan,
         wall_time=float(np.median(seconds)) if seconds else 0.0,
         evaluations=len(counted.calls) / max(len(pairs), 1),
+        reference_error=REFERENCE_ERROR,
+        outcome=Outcome.no_convergence if failed else Outcome.converged,
+    )
+
+
+def _paper(
+    scene: ScaledSystem,
+    n_harmonics: int,
+    pairs: Sequence[tuple[Orbit, Orbit]],
+    repeats: int,
+    *,
+    as_printed: bool,
+) -> Solution:
+    """Eqs. (31)–(36); the peak is not prescribed, so ω is judged by the exact orbit of its own."""
+    n_time = 4 * n_harmonics + 2
+    balance = _CountedPaper(scene.system, n_harmonics, n_time, PAPER_SIGMA, as_printed=as_printed)
+    count = n_harmonics + 1
+    errors, seconds = [], []
+    for _, start in pairs:
+        z = orbit_series(scene, start, n_harmonics)
+        eta = balance.start_from_cosines(z[:count], z[count:-1], float(z[-1]))
+        found, time = timed(lambda eta=eta: balance.solve(eta, max_iterations=25), repeats)  # type: ignore[misc]
+        seconds.append(time)
+        own, _ = find_orbit(scene, MODE, max(balance.peak(found), 1.0 + 1e-6))
+        failed = not found.converged or own is None
+        errors.append(math.nan if failed or own is None else abs(found.omega / own.omega - 1.0))
+    failed = not errors or bool(np.isnan(errors).any())
+    return Solution(
+        task=TASK,
+        scene="coupled",
+        method="paper, Eq. (34) as printed" if as_printed else "paper's form, Eq. (34) mended",
+        setting=f"N_h {n_harmonics}, N {n_time}, sigma {PAPER_SIGMA:g}",
+        role=Role.public,
+        error=float(np.nanmedian(errors)) if not np.isnan(errors).all() else math.nan,
+        wall_time=float(np.median(seconds)) if seconds else 0.0,
+        evaluations=len(balance.calls) / max(repeats * len(pairs), 1),
         reference_error=REFERENCE_ERROR,
         outcome=Outcome.no_convergence if failed else Outcome.converged,
     )

@@ -1,5 +1,10 @@
 """Work–precision of harmonic balance on A4 and of eigenvalues near flutter onset."""
 
+import os
+
+# threads cost small matrices more than they save, and make their times uncertain
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
 from squealpipe.parameters import parameters_of
 from squealpipe.store import produce
 from squealpipe.tasks import speed_accuracy_harmonic, speed_accuracy_stability
