@@ -1,0 +1,108 @@
+"""The README's commands and Python are run, in its order, in a copy with a finished quick study.
+
+There the quick study stands for the paper's: its configuration takes the place of paper.yaml.
+`make` and `snakemake`, which other tests run in earnest, are asked for their plan.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+import yaml
+
+from squealpipe.store.archive import archive
+from squealpipe.yaml_files import overlay
+
+ROOT = Path(__file__).resolve().parents[1]
+README = (ROOT / "README.md").read_text(encoding="utf-8")
+BLOCKS = re.findall(r"^```(bash|python)\n(.*?)^```", README, flags=re.MULTILINE | re.DOTALL)
+STEPS = [
+    (language, step)
+    for language, block in BLOCKS
+    for step in (block.splitlines() if language == "bash" else [block])
+]
+ANSWERS = {"claims": {0, 1}, "compare": {0, 1}}
+"""Exit codes that are an answer; the coarse grids of the quick study may change one."""
+
+
+@pytest.fixture(scope="module")
+def study(quick_study, tmp_path_factory) -> Path:
+    """A checkout in which the quick study is the study."""
+    copy = tmp_path_factory.mktemp("readme") / "squealpipe"
+    shutil.copytree(quick_study.checkout, copy, symlinks=True)
+    config = copy / "workflow/config"
+    merged = yaml.safe_load((config / "paper.yaml").read_text(encoding="utf-8"))
+    overlay(merged, yaml.safe_load((config / "quick.yaml").read_text(encoding="utf-8")))
+    merged["results"] = "results"
+    (config / "paper.yaml").write_text(yaml.safe_dump(merged), encoding="utf-8")
+    for part in (copy / "results/quick").iterdir():
+        part.rename(copy / "results" / part.name)
+    archive("reference", root=copy, leave_out=[".svg", ".html", ".gif"])
+    return copy
+
+
+def planned(command: str) -> str:
+    """The command, with make and snakemake asked for their plan only."""
+    if command.startswith("make "):
+        return command.replace("make ", "make --dry-run ", 1)
+    if command.startswith("snakemake"):
+        return f"{command} --dry-run --quiet"
+    return command
+
+
+def run(step: str, language: str, place: Path) -> subprocess.CompletedProcess[str]:
+    environment = {
+        **os.environ,
+        "PATH": f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}",
+        "PYTHONPATH": str(place),
+        "MPLBACKEND": "agg",
+    }
+    command = [sys.executable, "-c", step] if language == "python" else ["bash", "-c", step]
+    return subprocess.run(
+        command,
+        cwd=place,
+        env=environment,
+        capture_output=True,
+        text=True,
+        check=False,
+        timeout=300,
+    )
+
+
+@pytest.mark.study
+@pytest.mark.parametrize(("language", "step"), STEPS, ids=[step[:60] for _, step in STEPS])
+def test_step_works(study, language, step):
+    command = step.partition("#")[0].strip() if language == "bash" else step
+    done = run(planned(command) if language == "bash" else command, language, study)
+    allowed = ANSWERS.get(command.split()[1], {0}) if command.startswith("squealpipe") else {0}
+    assert done.returncode in allowed, done.stdout[-2000:] + done.stderr[-2000:]
+    assert "Traceback" not in done.stderr
+
+
+def test_first_commands_are_reproduce_and_test():
+    assert [step.split("#")[0].strip() for _, step in STEPS[:2]] == ["make reproduce", "make test"]
+
+
+def test_the_printed_summary_is_what_the_command_prints(tmp_path):
+    printed = re.search(r"```text\n(.*?)```", README, flags=re.DOTALL)
+    assert printed is not None
+    command = next(step for _, step in STEPS if step.startswith("squealpipe simulate"))
+    assert run(command, "bash", tmp_path).stdout == printed[1]
+
+
+def test_links_lead_somewhere():
+    for target in re.findall(r"\]\(([^)#]+)\)", README):
+        assert (ROOT / target).exists(), target
+
+
+def test_top_fits_a_first_look():
+    picture, *sentences = README.split("```")[0].split("\n\n")[1:]
+    assert picture.startswith("![")
+    assert (ROOT / "docs/first-run.png").stat().st_size < 200_000
+    assert len(re.findall(r"[.:] ", " ".join(sentences))) <= 6
