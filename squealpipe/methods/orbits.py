@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import IntEnum
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.optimize import brentq
 
 from squealpipe.methods import branch_tracing
 from squealpipe.methods.modal_flow import propagator
 from squealpipe.methods.orbit_shape import extremes
 from squealpipe.methods.piecewise_linear import PiecewiseLinearSystem
-from squealpipe.methods.shooting import MAX_SEGMENTS, stability_index
+from squealpipe.methods.shooting import MAX_SEGMENTS, solve_constrained, stability_index
 
 
 class TraceEnd(IntEnum):
@@ -55,7 +58,6 @@ class TraceSettings:
                 f"least_cosine = {self.least_cosine!r}, max_points = {self.max_points!r}: "
                 "a cosine between 0 and 1 and at least one point are needed"
             )
-
 
     def control(self) -> NDArray[np.float64]:
         """The array that the compiled kernels adapt."""
@@ -147,6 +149,80 @@ def _trace(
         table,
     )
     return count, TraceEnd(end)
+
+
+class SpecialPoint(IntEnum):
+    """What happens at a special point of a branch."""
+
+    period_doubling = 0
+    index_two = 1
+    fold = 2
+
+
+def special_points(
+    system: PiecewiseLinearSystem, orbits: Sequence[Orbit]
+) -> list[tuple[SpecialPoint, Orbit]]:
+    """Period doublings (index −2), other crossings of index 2, and folds of the peak, located.
+
+    Args:
+        orbits: consecutive orbits of one branch; each change of sign between two is followed
+            down to round-off by solving for orbits on the plane across their chord.
+    """
+    found = []
+    for first, second in pairwise(orbits):
+        chord = second.point - first.point
+        ends = [_on_chord(system, first.point, chord, share) for share in (0.0, 1.0)]
+        if ends[0] is None or ends[1] is None:
+            continue
+        before, after = (_measures(*end) for end in ends if end is not None)
+        for kind in SpecialPoint:
+            if before[kind] * after[kind] < 0.0:
+                located = _locate(system, first.point, chord, kind)
+                if located is not None:
+                    found.append((kind, located))
+    return found
+
+
+def _measures(orbit: Orbit, tangent: NDArray[np.float64]) -> tuple[float, float, float]:
+    """What changes its sign at each kind of special point."""
+    return orbit.stability_index + 2.0, orbit.stability_index - 2.0, float(tangent[1])
+
+
+def _on_chord(
+    system: PiecewiseLinearSystem,
+    start: NDArray[np.float64],
+    chord: NDArray[np.float64],
+    share: float,
+) -> tuple[Orbit, NDArray[np.float64]] | None:
+    """The orbit on the plane across a chord, and the branch's direction along the chord there."""
+    point, segments = start + share * chord, np.empty((MAX_SEGMENTS, 9))
+    switches, final, tangent = np.empty(MAX_SEGMENTS), np.empty(4), np.empty(3)
+    normal = chord / np.linalg.norm(chord)
+    count, _, residual = solve_constrained(
+        system.rows, point, normal, 0.0, segments, switches, final, tangent
+    )
+    if count == 0:
+        return None
+    index = float(stability_index(system.rows, segments, count))
+    sign = 1.0 if float(tangent @ normal) > 0.0 else -1.0
+    return Orbit(point, switches[: count - 1].copy(), index, float(residual)), sign * tangent
+
+
+def _locate(
+    system: PiecewiseLinearSystem,
+    start: NDArray[np.float64],
+    chord: NDArray[np.float64],
+    kind: SpecialPoint,
+) -> Orbit | None:
+    def measure(share: float) -> float:
+        found = _on_chord(system, start, chord, share)
+        return math.nan if found is None else _measures(*found)[kind]
+
+    if not measure(0.0) * measure(1.0) < 0.0:
+        return None
+    share = brentq(measure, 0.0, 1.0, xtol=1e-15, rtol=1e-14)
+    found = _on_chord(system, start, chord, float(share))
+    return None if found is None else found[0]
 
 
 def decoupled_half_period(system: PiecewiseLinearSystem, y_peak: float) -> float:

@@ -23,6 +23,14 @@ class Route(IntEnum):
     neighbour = 2
 
 
+class Special(IntEnum):
+    """What happens at a special point of a branch."""
+
+    period_doubling = 0
+    index_two = 1
+    fold = 2
+
+
 def _orbit_variables(*dims: str) -> dict[str, Variable]:
     """What one periodic orbit carries, over some dimensions."""
 
@@ -72,6 +80,9 @@ BACKBONE = DatasetSchema(
     title="A backbone of model A4: a family of free periodic motions",
     coordinates={
         "point": Variable(dims=("point",), dtype="i4", long_name="point along the branch"),
+        "special": Variable(
+            dims=("special",), dtype="i4", long_name="located special point (exact branches)"
+        ),
         "harmonic": Variable(
             dims=("harmonic",), dtype="i4", long_name="harmonic of the motion", optional=True
         ),
@@ -127,6 +138,15 @@ BACKBONE = DatasetSchema(
             nan_allowed=True,
             optional=True,
             rtol=1e-4,
+        ),
+        "special_kind": Variable(
+            dims=("special",), dtype="i1", flags=Special, long_name="kind of special point"
+        ),
+        "special_y_peak": Variable(
+            dims=("special",), units="m", long_name="y_peak at which it lies", rtol=1e-8
+        ),
+        "special_omega": Variable(
+            dims=("special",), units="rad s-1", long_name="angular frequency there", rtol=1e-8
         ),
         "end": Variable(dtype="i1", flags=outcome().flags, long_name="why the branch ends"),
     },

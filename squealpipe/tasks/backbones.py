@@ -11,7 +11,7 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from squealpipe.methods.harmonic_balance import CosineBalance, series_extremes, series_speed
-from squealpipe.methods.orbits import Orbit
+from squealpipe.methods.orbits import Orbit, SpecialPoint, special_points
 from squealpipe.parameters import SCENES, Parameters
 from squealpipe.schema import Outcome, build
 from squealpipe.schema.backbones import BACKBONE
@@ -52,7 +52,8 @@ def backbone(
 
     Returns:
         Dataset over ``point``: omega (rad/s), x_amplitude, y_amplitude, y_peak, x_at_peak (m),
-        stability_index, switches, residual, outcome; ``end`` says why the branch ends. For
+        stability_index, switches, residual, outcome; ``end`` says why the branch ends. An exact
+        branch also has its period doublings and folds, located (``special_…``). For
         ``"hbm"`` also the cosine coefficients and each point's distance from the exact orbit
         of equal y_peak and from a time integration over one period.
 
@@ -127,6 +128,12 @@ def _exact_dataset(
     end: Outcome,
     attrs: dict[str, Any],
 ) -> xr.Dataset:
+    flying = [
+        orbit
+        for orbit, outcome in zip(orbits, outcomes, strict=True)
+        if outcome == Outcome.converged
+    ]
+    beyond = special_points(scene.system, flying)
     columns = columns_of([orbit_values(scene, params, orbit.point) for orbit in orbits])
     return build(
         BACKBONE,
@@ -138,8 +145,9 @@ def _exact_dataset(
             "residual": np.array([orbit.residual for orbit in orbits]),
             "outcome": outcomes,
             "end": end,
+            **_special(scene, beyond),
         },
-        {"point": np.arange(len(orbits))},
+        {"point": np.arange(len(orbits)), "special": np.arange(len(beyond))},
         attrs,
     )
 
@@ -179,14 +187,23 @@ def _harmonic_dataset(
             "integration_error": np.array([point.integration_error for point in points])
             * scene.length,
             "end": end,
+            **_special(scene, []),
         },
-        {"point": np.arange(len(points)), "harmonic": order},
+        {"point": np.arange(len(points)), "harmonic": order, "special": []},
         {
             **attrs,
             "n_harmonics": balance.contact.n_harmonics,
             "contact": type(balance.contact).__name__,
         },
     )
+
+
+def _special(scene: ScaledSystem, found: Sequence[tuple[SpecialPoint, Orbit]]) -> dict[str, Any]:
+    return {
+        "special_kind": [int(kind) for kind, _ in found],
+        "special_y_peak": np.array([orbit.point[1] for _, orbit in found]) * scene.length,
+        "special_omega": np.array([orbit.omega for _, orbit in found]) * scene.frequency,
+    }
 
 
 def columns_of(rows: list[dict[str, Any]]) -> dict[str, NDArray[Any]]:
