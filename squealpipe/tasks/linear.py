@@ -22,7 +22,7 @@ from squealpipe.parameters import Parameters
 from squealpipe.schema import Outcome, build
 from squealpipe.schema.linear import NATURAL_FREQUENCIES, QUASI_STATIC_MAP, STABILITY_MAP
 
-CANCELLATION = 1e-4
+CANCELLATION = 3e-4
 """A discriminant or determinant below this share of (trace/2)² is formed in more digits."""
 
 DIGITS = 40
