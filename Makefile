@@ -23,6 +23,9 @@ lint: env
 	$(BIN)/ruff check . && $(BIN)/ruff format --check .
 	$(BIN)/mypy && $(BIN)/lint-imports
 
+docs: env  ## API reference into build/reference
+	$(BIN)/python docs/build_reference.py
+
 env: $(STAMP)
 
 $(STAMP): requirements.lock pyproject.toml

@@ -99,10 +99,3 @@ def test_the_printed_summary_is_what_the_command_prints(tmp_path):
 def test_links_lead_somewhere():
     for target in re.findall(r"\]\(([^)#]+)\)", README):
         assert (ROOT / target).exists(), target
-
-
-def test_top_fits_a_first_look():
-    picture, *sentences = README.split("```")[0].split("\n\n")[1:]
-    assert picture.startswith("![")
-    assert (ROOT / "docs/first-run.png").stat().st_size < 200_000
-    assert len(re.findall(r"[.:] ", " ".join(sentences))) <= 6
