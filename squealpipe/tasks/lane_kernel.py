@@ -54,6 +54,9 @@ TANGENT_NORM = 1e-4
 """Norm that a tangent vector is scaled back to: small, so that it does not set the step size."""
 PIVOT_REACH2 = 1e-14
 """Squared distance from a pivot, in free lengths, below which the force's direction is lost."""
+JUMP2 = 1e-2
+"""A step that ends its approach to a pivot this much nearer than it began, squared, has jumped over
+the singularity: straight through a pivot the Taylor series of the force is smooth to round-off."""
 
 SEPARATED, STICK = switching.SEPARATED, switching.STICK
 CONVERGED, SEPARATION_FOUND = int(Outcome.converged), int(Outcome.separated)
@@ -164,36 +167,41 @@ def _observe(c: Any, end: Any, memory: Any, lane: int, regime: int, step: float)
         large = max(large, abs(evaluate(c, 0, lane, root_of(c, 2, lane, step, vx0, vx1))))
     m[window] = max(m[window], large)
     m[LARGEST_SPEED] = max(m[LARGEST_SPEED], vx1)
-    _observe_distance(c, m, lane, step, x0 * vx0 + y0 * vy0, x1 * vx1 + y1 * vy1, end)
-    pivot = memory[lane, PIVOTS : PIVOTS + 4]
-    d1 = ((x1 - pivot[0]) ** 2 + (y1 - pivot[1]) ** 2) / memory[lane, ORDER + 4] ** 2
-    d2 = ((x1 - pivot[2]) ** 2 + (y1 - pivot[3]) ** 2) / memory[lane, ORDER + 5] ** 2
-    m[NEAREST_PIVOT2] = min(m[NEAREST_PIVOT2], d1, d2)
+    out0, out1 = x0 * vx0 + y0 * vy0, x1 * vx1 + y1 * vy1
+    largest = x1 * x1 + y1 * y1
+    if out0 > 0.0 > out1 and largest - 2.0 * step * out1 > m[LARGEST_R2]:
+        largest = max(largest, _turning_distance2(c, lane, step, 0.0, 0.0, out0, out1))
+    m[LARGEST_R2] = max(m[LARGEST_R2], largest)
     for number in range(2):
-        x_pivot, y_pivot = pivot[2 * number], pivot[2 * number + 1]
-        if (x0 < x_pivot) != (x1 < x_pivot):
-            turn = 1.0 if (y1 > y_pivot) == (x1 < x_pivot) else -1.0
-            m[HALF_TURNS1 + number] += turn
+        px, py = memory[lane, PIVOTS + 2 * number], memory[lane, PIVOTS + 2 * number + 1]
+        scale = memory[lane, ORDER + 4 + number] ** -2
+        if (x0 < px) != (x1 < px):
+            m[HALF_TURNS1 + number] += 1.0 if (y1 > py) == (x1 < px) else -1.0
+        near = (x1 - px) ** 2 + (y1 - py) ** 2
+        out0, out1 = (x0 - px) * vx0 + (y0 - py) * vy0, (x1 - px) * vx1 + (y1 - py) * vy1
+        if out0 < 0.0 < out1:
+            near = min(near, _turning_distance2(c, lane, step, px, py, out0, out1))
+            if near < JUMP2 * ((x0 - px) ** 2 + (y0 - py) ** 2):
+                near = 0.0
+        m[NEAREST_PIVOT2] = min(m[NEAREST_PIVOT2], near * scale)
 
 
 @_njit
-def _observe_distance(
-    c: Any, m: Any, lane: int, step: float, first: float, last: float, end: Any
-) -> None:
-    """Largest x² + y², refined where the radial velocity changes its sign."""
-    largest = end[0] * end[0] + end[1] * end[1]
-    if first > 0.0 > last and largest - 2.0 * step * last > m[LARGEST_R2]:
-        low, high = 0.0, step
-        for _ in range(4):
-            middle = low - first * (high - low) / (last - first)
-            x, y = evaluate(c, 0, lane, middle), evaluate(c, 1, lane, middle)
-            radial = x * evaluate(c, 2, lane, middle) + y * evaluate(c, 3, lane, middle)
-            largest = max(largest, x * x + y * y)
-            if radial > 0.0:
-                low, first, last = middle, radial, 0.5 * last
-            else:
-                high, last, first = middle, radial, 0.5 * first
-    m[LARGEST_R2] = max(m[LARGEST_R2], largest)
+def _turning_distance2(
+    c: Any, lane: int, step: float, px: float, py: float, first: float, last: float
+) -> float:
+    """Squared distance from a point where the radial velocity about it changes its sign."""
+    low, high, middle = 0.0, step, 0.5 * step
+    for _ in range(5):
+        middle = low - first * (high - low) / (last - first)
+        x, y = evaluate(c, 0, lane, middle) - px, evaluate(c, 1, lane, middle) - py
+        out = x * evaluate(c, 2, lane, middle) + y * evaluate(c, 3, lane, middle)
+        if (out > 0.0) == (first > 0.0):
+            low, first, last = middle, out, 0.5 * last
+        else:
+            high, last, first = middle, out, 0.5 * first
+    x, y = evaluate(c, 0, lane, middle) - px, evaluate(c, 1, lane, middle) - py
+    return x * x + y * y
 
 
 @_njit
