@@ -11,6 +11,7 @@ import numpy as np
 import xarray as xr
 
 from squealpipe.claims.evidence import MissingDataError, Run
+from squealpipe.claims.feasible import feasible_shares, undecided_by_paper
 from squealpipe.claims.statement import Statement
 from squealpipe.claims.statements import STATEMENTS
 from squealpipe.parameters import Parameters
@@ -30,26 +31,28 @@ def judge(parameters: Parameters, sources: Mapping[str, Path | xr.Dataset]) -> x
         threshold, margin, feasible_share, evidence, dataset, figure.
     """
     run = Run(parameters, sources)
-    rows = [_row(statement, run) for statement in STATEMENTS]
+    shares = feasible_shares(run)
+    rows = [_row(statement, run, shares) for statement in STATEMENTS]
     names = [statement.id for statement in STATEMENTS]
     data = {key: np.array([row[key] for row in rows]) for key in rows[0]}
     return build(CLAIMS, data, {"claim": names}, {"shipped": int(parameters == Parameters())})
 
 
-def _row(statement: Statement, run: Run) -> dict[str, Any]:
+def _row(statement: Statement, run: Run, shares: Mapping[str, float]) -> dict[str, Any]:
     row: dict[str, Any] = {
         "statement": statement.text,
         "section": statement.section,
         "check": statement.measure,
         "recorded": statement.recorded,
         "figure": statement.figure,
-        "feasible_share": nan,
+        "feasible_share": shares.get(statement.id, nan),
     }
     try:
         found = statement.check(run)
     except MissingDataError as error:
         row |= {
             "verdict": Verdict.cannot_be_decided,
+            "verdict_here": Verdict.cannot_be_decided,
             "value": nan,
             "relation": "",
             "threshold": nan,
@@ -58,7 +61,10 @@ def _row(statement: Statement, run: Run) -> dict[str, Any]:
         }
     else:
         row |= {
-            "verdict": found.verdict,
+            "verdict": Verdict.depends_on_the_parameters
+            if undecided_by_paper(row["feasible_share"])
+            else found.verdict,
+            "verdict_here": found.verdict,
             "value": found.value,
             "relation": found.relation,
             "threshold": found.threshold,

@@ -19,7 +19,7 @@ class Statement:
         text: the statement in our own words.
         measure: what the check measures, in words.
         figure: picture that shows it; empty where none does.
-        recorded: verdict at the shipped baseline. A differing verdict there is a regression.
+        recorded: what its check finds at the shipped baseline; anything else is a regression.
         check: reads datasets only.
     """
 

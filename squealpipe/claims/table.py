@@ -12,6 +12,7 @@ from squealpipe.schema.claims import Verdict
 from squealpipe.store import load
 
 TEXT = ("statement", "section", "check", "relation", "evidence", "dataset", "figure")
+VERDICTS = ("verdict", "verdict_here", "recorded")
 NUMBERS = ("value", "threshold", "margin", "feasible_share")
 
 
@@ -24,15 +25,14 @@ def rows(claims: xr.Dataset) -> list[dict[str, Any]]:
     table_ = []
     for index, name in enumerate(claims.claim.values):
         row = claims.isel(claim=index)
-        verdict, recorded = Verdict(int(row.verdict)), Verdict(int(row.recorded))
+        verdicts = {key: Verdict(int(row[key])).words for key in VERDICTS}
         table_.append(
             {
                 "id": str(name),
                 **{key: str(row[key].item()) for key in TEXT},
                 **{key: _number(row[key].item()) for key in NUMBERS},
-                "verdict": verdict.words,
-                "recorded": recorded.words,
-                "as_recorded": verdict == recorded,
+                **verdicts,
+                "as_recorded": verdicts["verdict_here"] == verdicts["recorded"],
             }
         )
     return table_

@@ -1,40 +1,23 @@
-"""Captions and alt texts, read from the figure modules without running them.
-
-A figure ``<name>`` is drawn by ``squealpipe/figures/<name>.py``, whose constants CAPTION and ALT
-speak for it. Reading the source keeps the report free of the plotting library.
-"""
+"""Captions and alt texts: the constants CAPTION and ALT of the module that draws a figure."""
 
 from __future__ import annotations
 
-import ast
-import os
 import re
-from pathlib import Path
+from importlib import import_module
 
 
-def read_caption(module: str | os.PathLike[str]) -> tuple[str, str]:
-    """CAPTION and ALT of a figure module.
+def read_caption(name: str) -> tuple[str, str]:
+    """CAPTION and ALT of the figure ``name``, drawn by ``squealpipe.figures.<name>``.
 
     Raises:
-        ValueError: one of them is missing, empty or computed.
+        ValueError: one of them is missing or empty.
     """
-    constants = {}
-    for node in ast.parse(Path(module).read_text(encoding="utf-8")).body:
-        if isinstance(node, ast.Assign) and isinstance(node.value, ast.Constant):
-            constants.update(
-                {
-                    target.id: node.value.value
-                    for target in node.targets
-                    if isinstance(target, ast.Name)
-                }
-            )
-    texts = []
-    for name in ("CAPTION", "ALT"):
-        text = constants.get(name)
+    module = import_module(f"squealpipe.figures.{name}")
+    texts = {constant: getattr(module, constant, "") for constant in ("CAPTION", "ALT")}
+    for constant, text in texts.items():
         if not isinstance(text, str) or not text.strip():
-            raise ValueError(f"{module} has no {name}; give it as a plain text constant")
-        texts.append(text.strip())
-    return texts[0], texts[1]
+            raise ValueError(f"{module.__name__} has no {constant}; give it as text")
+    return texts["CAPTION"].strip(), texts["ALT"].strip()
 
 
 def title(name: str) -> str:

@@ -9,7 +9,6 @@ from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass
 from importlib.metadata import version
-from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
@@ -24,7 +23,6 @@ from squealpipe.report.facts import gather_facts
 
 TITLE = "Hammering and brake squeal: a paper computed again, statement by statement"
 PICTURE_DPI = 200
-FIGURES = Path(str(files("squealpipe"))) / "figures"
 
 SYMBOLS = {
     "mass": ("m", "mass of the particle"),
@@ -130,7 +128,7 @@ def _record(made: Made) -> dict[str, Any]:
 
 
 def _picture(name: str, made: Made) -> dict[str, Any]:
-    caption, alt = read_caption(FIGURES / f"{name}.py")
+    caption, alt = read_caption(name)
     with Image.open(made.path) as image:
         width = image.width / PICTURE_DPI
     return {

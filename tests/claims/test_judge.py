@@ -37,9 +37,9 @@ def test_verdicts_at_the_baseline_are_those_recorded(
     evidence: dict[str, xr.Dataset], baseline: Parameters
 ) -> None:
     claims = judge(baseline, evidence)
-    decided = claims.verdict != Verdict.cannot_be_decided
-    assert (claims.verdict == claims.recorded).where(decided, True).all()
-    assert np.isfinite(claims.value.where(decided, 0.0)).all()
+    differing = claims.claim.values[(claims.verdict_here != claims.recorded).values]
+    assert list(differing) == []
+    assert np.isfinite(claims.value).all()
 
 
 def test_without_datasets_nothing_is_decided_and_the_reason_names_what_is_missing(
@@ -101,9 +101,9 @@ def test_exit_code(
     code: int,
 ) -> None:
     claims = judge(parameters, evidence)
-    claims["verdict"] = claims.recorded.copy().assign_attrs(claims.verdict.attrs)
+    claims["verdict_here"] = claims.recorded.copy().assign_attrs(claims.verdict.attrs)
     if change:
-        claims.verdict[0] = Verdict.fails
+        claims.verdict_here[0] = Verdict.fails
     path = save(stamp(claims, config={}, wall_time=0.0), tmp_path / "claims.nc")
     found, exit_code = table(path)
     assert exit_code == code
@@ -118,3 +118,22 @@ def test_exit_code(
         "dataset",
         "figure",
     }
+
+
+def test_a_statement_that_divides_the_feasible_set_depends_on_the_parameters(
+    evidence: dict[str, xr.Dataset], baseline: Parameters
+) -> None:
+    inference = evidence["parameter_inference"].copy(deep=True)
+    inference.feasible_share[list(inference.consequence.values).index("F7_black")] = 0.7
+    claims = judge(baseline, {**evidence, "parameter_inference": inference}).sel(claim="E10")
+    assert int(claims.verdict) == Verdict.depends_on_the_parameters
+    assert int(claims.verdict_here) == Verdict.fails
+    assert float(claims.feasible_share) == pytest.approx(0.3)
+
+
+def test_constraints_of_the_inference_hold_in_all_of_the_feasible_set(
+    evidence: dict[str, xr.Dataset], baseline: Parameters
+) -> None:
+    claims = judge(baseline, evidence)
+    constraints = [str(name) for name in evidence["parameter_inference"].statement.values]
+    assert (claims.feasible_share.sel(claim=constraints) == 1.0).all()

@@ -211,7 +211,7 @@ def test_the_verdict_flips(
     assert flip.verdict != recorded[flip.claim]
     changed = {**evidence, flip.dataset: flip.change(evidence[flip.dataset])}
     found = judge(baseline, changed).sel(claim=flip.claim)
-    assert Verdict(int(found.verdict)) == flip.verdict, str(found.evidence.item())
+    assert Verdict(int(found.verdict_here)) == flip.verdict, str(found.evidence.item())
 
 
 def test_every_statement_is_flipped_by_some_change() -> None:

@@ -2,6 +2,14 @@
 
 from squealpipe.report.lineage import lineage
 
+
+def caption_sources(names):
+    """Modules that draw the figures, which hold their captions, and all that these import."""
+    modules = [ROOT / f"squealpipe/figures/{name}.py" for name in names]
+    found = {path for module in modules for path in (module, *closure(module))}
+    return sorted(str(path.relative_to(ROOT)) for path in found)
+
+
 MADE = lineage(workflow.rules, f"{RESULTS}/data/", f"{RESULTS}/figures/")
 
 TEMPLATES = sorted(
@@ -15,7 +23,7 @@ rule write_report:
     input:
         datasets=[made["path"] for made in MADE["datasets"].values()],
         figures=[made["path"] for made in MADE["figures"].values()],
-        captions=[f"squealpipe/figures/{name}.py" for name in MADE["figures"]],
+        captions=caption_sources(MADE["figures"]),
         templates=TEMPLATES,
         sources=sources("write_report"),
     output:

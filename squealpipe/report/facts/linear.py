@@ -1,8 +1,7 @@
-"""Numbers of the report's prose, each computed from the datasets of the run."""
+"""Numbers about the linear models, their validation, and the parameters."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from math import isnan
 from typing import Any
 
@@ -10,15 +9,6 @@ import numpy as np
 import xarray as xr
 
 from squealpipe.claims.evidence import Run
-
-
-def gather_facts(datasets: Run) -> dict[str, Any]:
-    """Topic → its numbers, for the topics whose datasets the run has."""
-    return {
-        topic: make(datasets)
-        for topic, (needed, make) in TOPICS.items()
-        if all(name in datasets for name in needed)
-    }
 
 
 def linear(datasets: Run) -> dict[str, Any]:
@@ -38,12 +28,15 @@ def linear(datasets: Run) -> dict[str, Any]:
 def coupling(datasets: Run) -> dict[str, Any]:
     """Where the modes of the published mode-coupling model merge, by our A3."""
     model = datasets["mode_coupling"]
-    onset = int(np.argmax(model.growth_rate.values > 1e-9))
-    published = model.published_frequency
+    first = int(np.argmax(model.growth_rate.values > 1e-9))
+    difference = abs(model.frequency - model.published_frequency)
     return {
-        "onset": float(model.mu[onset - 1]),
-        "frequency": float(model.frequency[onset].mean()),
-        "largest_difference": float(abs(model.frequency - published).max()),
+        "below": float(model.mu[first - 1]),
+        "above": float(model.mu[first]),
+        "frequency": float(model.frequency[first].mean()),
+        "largest_difference": float(difference.max()),
+        "closed_form_error": float(model.closed_form_error.max()),
+        "numeric_error": float(model.numeric_error.max()),
     }
 
 
@@ -77,14 +70,6 @@ def _constraint(row: xr.Dataset) -> dict[str, Any]:
         "share": float(row.share_holding),
         "margin": float(row.baseline_margin),
     }
-
-
-TOPICS: dict[str, tuple[tuple[str, ...], Callable[[Run], dict[str, Any]]]] = {
-    "linear": (("stability_map", "quasi_static_map"), linear),
-    "coupling": (("mode_coupling",), coupling),
-    "inference": (("parameter_inference",), inference),
-}
-"""Topic → the datasets that it needs and the function that reads them."""
 
 
 def _or_none(value: xr.DataArray) -> float | None:
