@@ -43,10 +43,10 @@ def draw(atlas: xr.Dataset) -> Figure:
     """Both tables, from dataset ``failure_atlas``: rows that share scenes stand together."""
     asked = atlas.verdict.values > 0
     last = int(np.flatnonzero(asked[0]).max())
-    in_time = np.arange(atlas.sizes["method"]) <= last
+    in_time = np.arange(atlas.sizes["solver"]) <= last
     figure, axes = new_figure(PAGE, 6.6, nrows=2)
     for letter, panel, columns in zip("ab", axes[:, 0], (in_time, ~in_time), strict=True):
-        part = atlas.isel(method=columns)
+        part = atlas.isel(solver=columns)
         _draw(panel, part.isel(scene=(part.verdict.values > 0).any(axis=1)))
         panel_letter(panel, letter)
     return figure
@@ -75,7 +75,7 @@ def _draw(axes: Axes, part: xr.Dataset) -> None:
     axes.axvline(columns - 0.5, color=GREY, lw=0.8)
     names = [*part.scene.values.tolist(), *totals]
     axes.set_xticks(range(len(names)), names, rotation=40, ha="right", rotation_mode="anchor")
-    axes.set_yticks(range(rows), part.method.values.tolist())
+    axes.set_yticks(range(rows), part.solver.values.tolist())
     for label, role in zip(axes.get_yticklabels(), part.role.values, strict=True):
         label.set_fontweight("bold" if role != Role.public else "normal")
     axes.set_xlim(-0.5, columns + 1.5)

@@ -79,32 +79,32 @@ class Verdict(IntEnum):
     silently_wrong = 3
 
 
-SCENE_METHOD = ("scene", "method")
+SCENE_SOLVER = ("scene", "solver")
 
 FAILURE_ATLAS = DatasetSchema(
     name="failure_atlas",
     title="Every method on every hard scene, judged by its error against a reference",
     coordinates={
         "scene": _text("hard scene", "scene"),
-        "method": _text("method", "method"),
+        "solver": _text("method (the name xarray keeps for itself)", "solver"),
     },
     variables={
         "verdict": Variable(
-            dims=SCENE_METHOD, dtype="i1", flags=Verdict, long_name="verdict on the answer"
+            dims=SCENE_SOLVER, dtype="i1", flags=Verdict, long_name="verdict on the answer"
         ),
         "error": Variable(
-            dims=SCENE_METHOD,
+            dims=SCENE_SOLVER,
             long_name="largest error of the answer; infinite where there is none",
             nan_allowed=True,
             rtol=1e-2,
             atol=1e-9,
         ),
         "flagged": Variable(
-            dims=SCENE_METHOD, dtype="i1", flags={0: "no", 1: "yes"}, long_name="method warned"
+            dims=SCENE_SOLVER, dtype="i1", flags={0: "no", 1: "yes"}, long_name="method warned"
         ),
-        "message": _text("what the method said", *SCENE_METHOD),
+        "message": _text("what the method said", *SCENE_SOLVER),
         "tolerance": Variable(dims=("scene",), long_name="largest error that counts as right"),
-        "role": Variable(dims=("method",), dtype="i1", flags=Role, long_name="whose method it is"),
+        "role": Variable(dims=("solver",), dtype="i1", flags=Role, long_name="whose method it is"),
     },
 )
 

@@ -106,6 +106,6 @@ def failure_atlas(scenes: Sequence[HardScene], methods: Sequence[Method]) -> xr.
         },
         {
             "scene": [scene.name for scene in scenes],
-            "method": [method.name for method in methods],
+            "solver": [method.name for method in methods],
         },
     )
