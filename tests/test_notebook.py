@@ -1,0 +1,39 @@
+"""The example notebook runs, and shows what was stored in it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import nbformat
+from nbclient import NotebookClient
+
+NOTEBOOK = Path(__file__).resolve().parents[1] / "docs/example.ipynb"
+
+
+def printed(notebook) -> list[str]:
+    """Text that each cell printed."""
+    return [
+        "".join(one.text for one in cell.get("outputs", []) if one.output_type == "stream")
+        for cell in notebook.cells
+    ]
+
+
+def test_notebook_runs_and_prints_what_is_stored(tmp_path):
+    stored = nbformat.read(NOTEBOOK, as_version=4)
+    fresh = nbformat.read(NOTEBOOK, as_version=4)
+    resources = {"metadata": {"path": str(tmp_path)}}
+    NotebookClient(fresh, timeout=300, kernel_name="python3", resources=resources).execute()
+    assert printed(fresh) == printed(stored)
+    assert any(printed(stored))
+
+
+def test_stored_notebook_holds_its_pictures():
+    notebook = nbformat.read(NOTEBOOK, as_version=4)
+    pictures = [
+        one
+        for cell in notebook.cells
+        for one in cell.get("outputs", [])
+        if "image/png" in one.get("data", {})
+    ]
+    assert len(pictures) == 3
+    assert NOTEBOOK.stat().st_size < 300_000
