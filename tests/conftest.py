@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import shutil
 import subprocess
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -81,3 +82,26 @@ def snakemake() -> Callable[..., subprocess.CompletedProcess[str]]:
 def new_checkout() -> Callable[[Path], Path]:
     """:func:`copy_checkout`, for fixtures of other folders that outlive one test."""
     return copy_checkout
+
+
+@contextlib.contextmanager
+def read_only_folder(folder: Path) -> Iterator[None]:
+    """A folder that nobody may write to; root is stopped by a read-only mount only."""
+    if os.geteuid():
+        folder.chmod(0o555)
+        yield
+        folder.chmod(0o755)
+        return
+    if subprocess.run(["mount", "--bind", folder, folder], check=False).returncode:
+        pytest.skip("root can write everywhere, and nothing can be mounted here")
+    try:
+        subprocess.run(["mount", "-o", "remount,ro,bind", folder], check=True)
+        yield
+    finally:
+        subprocess.run(["umount", folder], check=True)
+
+
+@pytest.fixture(scope="session")
+def read_only() -> Callable[[Path], contextlib.AbstractContextManager[None]]:
+    """:func:`read_only_folder`, for tests in other folders."""
+    return read_only_folder

@@ -1,0 +1,200 @@
+"""Kills, full disks, damaged files, two runs at once, missing permissions: nothing is lost.
+
+After each fault the next plain `snakemake`, or the one command that its message names, completes;
+the results equal an undisturbed run, and no half-written file was ever read as whole.
+"""
+
+from __future__ import annotations
+
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import psutil
+import pytest
+
+from squealpipe.store import StoreError, load
+
+SMALL = """
+dynamics: {validity_points: 91, validity_horizon: 100.0}
+"""
+DATASETS = ("validity_map",)
+TARGETS = ["results/data/validity_map.nc", "results/figures/fig07.png"]
+RUN = [sys.executable, "-m", "snakemake", *TARGETS, "--configfile", "small.yaml"]
+
+
+def environment(checkout: Path) -> dict[str, str]:
+    return {**os.environ, "PYTHONPATH": str(checkout)}
+
+
+def start(checkout: Path) -> subprocess.Popen[str]:
+    return subprocess.Popen(
+        RUN,
+        cwd=checkout,
+        env=environment(checkout),
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
+    )
+
+
+def run(checkout: Path, *words: str, **options) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        [*RUN, *words],
+        cwd=checkout,
+        env=environment(checkout),
+        capture_output=True,
+        text=True,
+        timeout=300,
+        check=False,
+        **options,
+    )
+
+
+def complete(checkout: Path) -> None:
+    """Plain `snakemake`, or first the command that its message names."""
+    again = run(checkout)
+    if again.returncode and "--unlock" in again.stderr:
+        assert run(checkout, "--unlock").returncode == 0
+        again = run(checkout)
+    assert again.returncode == 0, again.stderr[-4000:]
+
+
+def ids(checkout: Path) -> dict[str, str]:
+    return {
+        name: load(checkout / f"results/data/{name}.nc").attrs["dataset_id"] for name in DATASETS
+    }
+
+
+def check_files(checkout: Path) -> None:
+    """Every dataset that has its final name is whole."""
+    for path in (checkout / "results/data").glob("*.nc"):
+        load(path)
+
+
+def discard_results(checkout: Path) -> None:
+    for folder in ("results", ".snakemake"):
+        shutil.rmtree(checkout / folder, ignore_errors=True)
+
+
+@pytest.fixture
+def small(checkout):
+    (checkout / "small.yaml").write_text(SMALL)
+    return checkout
+
+
+@pytest.fixture(scope="module")
+def undisturbed(new_checkout, tmp_path_factory):
+    """Ids of the datasets of a run without faults, and how long it took."""
+    checkout = new_checkout(tmp_path_factory.mktemp("undisturbed") / "squealpipe")
+    (checkout / "small.yaml").write_text(SMALL)
+    started = time.monotonic()
+    first = run(checkout)
+    assert first.returncode == 0, first.stderr[-4000:]
+    return ids(checkout), time.monotonic() - started
+
+
+def kill(head: subprocess.Popen[str], what: str) -> None:
+    """SIGKILL the jobs, the head, or both."""
+    try:
+        children = psutil.Process(head.pid).children(recursive=True)
+    except psutil.NoSuchProcess:
+        children = []
+    if what in ("head", "both"):
+        head.kill()
+    if what in ("job", "both"):
+        for child in children:
+            try:
+                child.send_signal(signal.SIGKILL)
+            except psutil.NoSuchProcess:
+                continue
+    head.communicate()
+
+
+def kill_at_random(checkout: Path, undisturbed, kills: int, seed: int) -> None:
+    expected, seconds = undisturbed
+    random = np.random.default_rng(seed)
+    for index in range(kills):
+        discard_results(checkout)
+        head = start(checkout)
+        time.sleep(random.uniform(0.1, 0.9) * seconds)
+        kill(head, ("job", "head", "both")[index % 3])
+        check_files(checkout)
+        complete(checkout)
+        assert ids(checkout) == expected
+        assert not list((checkout / "results").rglob("*.tmp*"))
+
+
+def test_killed_jobs_and_heads_lose_nothing(small, undisturbed):
+    kill_at_random(small, undisturbed, kills=3, seed=11)
+
+
+@pytest.mark.slow
+@pytest.mark.timeout(3600)
+def test_many_kills_lose_nothing(small, undisturbed):
+    kill_at_random(small, undisturbed, kills=51, seed=12)
+
+
+def test_second_snakemake_waits_for_none_and_harms_none(small, undisturbed):
+    first = start(small)
+    limit = time.monotonic() + 60
+    while not list((small / ".snakemake/locks").glob("*")) and time.monotonic() < limit:
+        time.sleep(0.02)
+    second = run(small)
+    _, errors = first.communicate(timeout=300)
+    assert second.returncode != 0
+    assert "lock" in second.stderr.lower()
+    assert first.returncode == 0, errors
+    assert ids(small) == undisturbed[0]
+
+
+def test_damaged_dataset_is_named_with_its_remedy(small, undisturbed):
+    assert run(small).returncode == 0
+    path = small / "results/data/validity_map.nc"
+    whole = path.read_bytes()
+    damaged = bytearray(whole)
+    damaged[len(whole) // 2] ^= 255
+    for content in (whole[: len(whole) // 2], bytes(damaged)):
+        path.write_bytes(content)
+        with pytest.raises(StoreError, match="delete it and run snakemake again"):
+            load(path)
+        failed = run(small)
+        assert failed.returncode != 0
+        assert "delete it and run snakemake again" in failed.stdout + failed.stderr
+        path.unlink()
+        complete(small)
+        assert ids(small) == undisturbed[0]
+
+
+def test_full_disk_is_told_and_the_next_run_completes(small, undisturbed):
+    results = small / "results"
+    mount = ["mount", "-t", "tmpfs", "-o", "size=64k", "tmpfs", results]
+    if subprocess.run(mount, capture_output=True, check=False).returncode:
+        pytest.skip("a small file system cannot be mounted here (needs root)")
+    try:
+        full = run(small)
+        assert full.returncode != 0
+        assert "free space or mend permissions" in full.stdout + full.stderr
+        check_files(small)
+        subprocess.run(["mount", "-o", "remount,size=64m", results], check=True)
+        complete(small)
+        assert ids(small) == undisturbed[0]
+    finally:
+        subprocess.run(["umount", "-l", results], check=True)
+
+
+def test_missing_permission_is_told_and_the_next_run_completes(small, undisturbed, read_only):
+    (small / "results").mkdir(exist_ok=True)
+    with read_only(small / "results"):
+        refused = run(small)
+    assert refused.returncode != 0
+    told = refused.stdout + refused.stderr
+    assert "Read-only file system" in told or "Permission denied" in told
+    complete(small)
+    assert ids(small) == undisturbed[0]
