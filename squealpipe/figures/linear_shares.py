@@ -10,52 +10,55 @@ from squealpipe.figures.style import BLUE, GREEN, ORANGE, PAGE, RED, new_figure,
 
 if TYPE_CHECKING:
     import xarray as xr
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 CAPTION = (
     "Shares of the angle map. (a) Where quasi-static sliding is not possible: by Eq. (11) as "
     "printed about half of the map even without friction, by the reaction force none of it. "
-    "(b) Linearly unstable and yet possible to slide, against μ for several κ. (c) What the "
-    "regularizing factor σ of Eq. (8d) does to K₃ and to the unstable area at the study's "
-    "parameters: nothing beyond σ l_pre ≈ 5."
+    "(b) Not possible by A2, though the static state of Eq. (15) is pressed against the belt. "
+    "(c) Linearly unstable where sliding is possible. (d) What the regularizing factor σ of "
+    "Eq. (8d) does to K₃ and to the unstable area at the study's parameters: nothing beyond "
+    "σ l_pre ≈ 5."
 )
-ALT = "Three line plots of map shares against friction, and of K3 over k3 against sigma."
+ALT = "Four line plots of map shares against friction, and of K3 over k3 against sigma."
 
 
 def draw(shares: xr.Dataset) -> Figure:
-    """Three panels, from dataset ``linear_shares``."""
-    figure, axes = new_figure(PAGE, 2.7, ncols=3)
-    sliding, unstable, smooth = axes[0]
+    """Four panels, from dataset ``linear_shares``."""
+    figure, axes = new_figure(PAGE, 4.8, nrows=2, ncols=2)
+    sliding, pressed, unstable, smooth = axes.ravel()
     mu = shares.mu.values
     sliding.plot(mu, shares.impossible_as_printed, color=ORANGE, ls="--", label="as printed")
     sliding.plot(mu, shares.impossible, color=BLUE, label="reaction not positive")
-    sliding.set(xlabel="μ", ylabel="share where sliding is not possible", ylim=(0, None))
+    sliding.set(xlabel="μ", ylabel="sliding not possible", ylim=(0, None))
     sliding.legend(loc="center right")
+    _lines_for_stiffnesses(pressed, shares, "impossible_but_pressed")
+    pressed.set(xlabel="μ", ylabel="not possible, yet pressed", ylim=(0, None))
+    _lines_for_stiffnesses(unstable, shares, "unstable_where_possible")
+    unstable.set(xlabel="μ", ylabel="possible, yet unstable", ylim=(0, None))
+    unstable.legend(loc="upper left")
+    _regularization(smooth, shares)
+    for panel, letter in zip(axes.ravel(), "abcd", strict=True):
+        panel_letter(panel, letter)
+    return figure
+
+
+def _lines_for_stiffnesses(panel: Axes, shares: xr.Dataset, name: str) -> None:
     columns = np.unique(np.linspace(0, shares.kappa.size - 1, 5).round().astype(int))[1:]
     looks = zip(columns, (BLUE, GREEN, ORANGE, RED), ("-", "--", "-.", ":"), strict=False)
     for column, colour, dash in looks:
-        unstable.plot(
-            mu,
-            shares.unstable_where_possible[:, column],
-            color=colour,
-            ls=dash,
-            label=f"κ = {float(shares.kappa[column]):.3g}",
-        )
-    unstable.set(xlabel="μ", ylabel="share unstable where sliding is possible", ylim=(0, None))
-    unstable.legend(loc="upper left")
-    smooth.semilogx(shares.sharpness, shares.stiffness_ratio, color=BLUE, label="K₃/k₃")
-    smooth.set(xlabel="σ l_pre", ylabel="K₃/k₃", ylim=(0, None))
-    beside = smooth.twinx()
-    beside.plot(
-        shares.sharpness, shares.flutter_regularized, color=ORANGE, ls="--", label="flutter"
-    )
-    beside.plot(
-        shares.sharpness, shares.divergence_regularized, color=GREEN, ls=":", label="divergence"
-    )
-    beside.set(ylabel="share unstable", ylim=(0, None))
+        label = f"κ = {float(shares.kappa[column]):.3g}"
+        panel.plot(shares.mu, shares[name][:, column], color=colour, ls=dash, label=label)
+
+
+def _regularization(panel: Axes, shares: xr.Dataset) -> None:
+    panel.semilogx(shares.sharpness, shares.stiffness_ratio, color=BLUE, label="K₃/k₃")
+    panel.set(xlabel="σ l_pre", ylabel="K₃/k₃", ylim=(0, None))
+    beside = panel.twinx()
+    for name, colour, dash in (("flutter", ORANGE, "--"), ("divergence", GREEN, ":")):
+        share = shares[f"{name}_regularized"]
+        beside.plot(shares.sharpness, share, color=colour, ls=dash, label=name)
+    beside.set(ylabel="unstable", ylim=(0, None))
     beside.spines["right"].set_visible(True)
-    lines = [*smooth.get_lines(), *beside.get_lines()]
-    smooth.legend(handles=lines, loc="lower right")
-    for panel, letter in zip(axes[0], "abc", strict=True):
-        panel_letter(panel, letter)
-    return figure
+    panel.legend(handles=[*panel.get_lines(), *beside.get_lines()], loc="lower right")
