@@ -39,7 +39,7 @@ REGIME_COLOURS = {
     "stick": ORANGE,
     "separated": RED,
     "perpetual_contact": BLUE,
-    "stick_slip_in_contact": ORANGE,
+    "stick_slip": ORANGE,
     "periodic_hammering": GREEN,
     "irregular_hammering": RED,
     "whirl": PURPLE,
