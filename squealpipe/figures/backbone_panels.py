@@ -9,9 +9,10 @@ import numpy as np
 from squealpipe.figures.style import BLUE, GREY, ORANGE, PAGE, RED, new_figure, panel_letter
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterable, Sequence
 
     import xarray as xr
+    from matplotlib.artist import Artist
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
@@ -124,9 +125,9 @@ def _evenly(series: xr.Dataset) -> np.ndarray:
     return np.unique(np.searchsorted(length, wanted).clip(0, len(length) - 1))
 
 
-def key_entries(panels: Sequence[Axes]) -> tuple[list[object], list[str]]:
+def key_entries(panels: Iterable[Axes]) -> tuple[list[Artist], list[str]]:
     """Each label once, over both panels."""
-    found: dict[str, object] = {}
+    found: dict[str, Artist] = {}
     for panel in panels:
         for handle, label in zip(*panel.get_legend_handles_labels(), strict=True):
             found.setdefault(label, handle)

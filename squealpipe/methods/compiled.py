@@ -11,12 +11,14 @@ import hashlib
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, TypeVar, cast
 
 import numba
-from numba.core import config as numba_config
+from numba.core import config
 
+_settings: Any = config  # numba's untyped settings, the home of CACHE_DIR
 _Kernel = TypeVar("_Kernel", bound=Callable[..., Any])
+_OPTIONS: dict[str, Any] = {"nogil": True, "error_model": "numpy"}
 _KERNEL_SOURCES = (
     "compiled.py",
     "modal_flow.py",
@@ -33,7 +35,7 @@ def _store() -> str:
     digest = hashlib.sha256()
     for name in _KERNEL_SOURCES:
         digest.update((here / name).read_bytes())
-    root = Path(numba_config.CACHE_DIR) if numba_config.CACHE_DIR else here / "__pycache__"
+    root = Path(_settings.CACHE_DIR) if _settings.CACHE_DIR else here / "__pycache__"
     return str(root / f"kernels-{digest.hexdigest()[:16]}")
 
 
@@ -43,13 +45,13 @@ def compiled(function: _Kernel) -> _Kernel:
     Where the package's directory is read-only numba's own choice (the user's cache) is taken, and
     where nothing can be written the kernel is compiled anew in each process.
     """
-    previous = numba_config.CACHE_DIR
+    previous = _settings.CACHE_DIR
     for directory in (_store(), previous):
-        numba_config.CACHE_DIR = directory
+        _settings.CACHE_DIR = directory
         try:
-            return numba.njit(cache=True, nogil=True, error_model="numpy")(function)  # type: ignore[no-any-return]
+            return cast("_Kernel", numba.njit(cache=True, **_OPTIONS)(function))
         except (RuntimeError, OSError):
             continue
         finally:
-            numba_config.CACHE_DIR = previous
-    return numba.njit(nogil=True, error_model="numpy")(function)  # type: ignore[no-any-return]
+            _settings.CACHE_DIR = previous
+    return cast("_Kernel", numba.njit(**_OPTIONS)(function))

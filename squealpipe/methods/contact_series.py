@@ -66,7 +66,8 @@ def _hidden_dips(gap: Vector, above: NDArray[np.bool_], grid: Vector) -> Vector:
     )
     lowest = here - 0.25 * (before - after) * shift
     crossing = (lowest * here <= 0.0) & (shift != 0.0)
-    return np.asarray(grid[inner + 1] + shift * (grid[1] - grid[0]))[crossing]
+    turns: Vector = grid[inner + 1] + shift * (grid[1] - grid[0])
+    return np.asarray(turns[crossing])
 
 
 def _refine(cosine: Vector, threshold: float, left: Vector, right: Vector) -> Vector:
@@ -113,7 +114,7 @@ class ClosedFormContact:
 
     @cached_property
     def _table(self) -> Vector:
-        return np.cos(np.outer(self.grid, np.arange(self.n_harmonics + 1)))
+        return np.asarray(np.cos(np.outer(self.grid, np.arange(self.n_harmonics + 1))))
 
     @cached_property
     def _sums(self) -> tuple[NDArray[np.intp], NDArray[np.intp], Vector]:

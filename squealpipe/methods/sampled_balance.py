@@ -87,7 +87,7 @@ class SampledBalance:
     @cached_property
     def _projection(self) -> Vector:
         """Γ⁺; the pseudo-inverse also exists where N = 2 N_h makes ΓᵀΓ singular."""
-        return np.linalg.pinv(self.fourier)
+        return np.asarray(np.linalg.pinv(self.fourier), dtype=np.float64)
 
     @cached_property
     def _curvature(self) -> Vector:

@@ -1,0 +1,109 @@
+"""General continuation on curves known in closed form, and against the compiled trace."""
+
+import math
+
+import numpy as np
+import pytest
+
+from squealpipe.methods.branch_tracing import COLUMNS
+from squealpipe.methods.continuation import (
+    Continuation,
+    ContinuationEnd,
+    ContinuationSettings,
+)
+from squealpipe.methods.orbits import trace_branch
+from squealpipe.methods.shooting import MAX_SEGMENTS, rest_conditions
+from squealpipe.parameters import Parameters
+from squealpipe.tasks.a4_system import scaled_system
+from squealpipe.tasks.orbits import grazing_start
+
+
+class Circle:
+    """x² + y² = 1: two folds, and back to the start."""
+
+    def evaluate(self, z):
+        return np.array([z @ z - 1.0]), 2.0 * z[None, :]
+
+
+class Ended:
+    """A parabola whose equation has no value beyond x = 1."""
+
+    def evaluate(self, z):
+        value = z[1] - math.sqrt(1.0 - z[0]) if z[0] <= 1.0 else math.nan
+        return np.array([value]), np.array([[0.5 / math.sqrt(max(1.0 - z[0], 1e-12)), 1.0]])
+
+
+class Shooting:
+    """Symmetric orbits as a general problem, for the comparison with the compiled trace."""
+
+    def __init__(self, system):
+        self.rows = system.rows
+
+    def evaluate(self, z):
+        values, jacobian = np.empty(2), np.empty((2, 3))
+        work = np.empty((MAX_SEGMENTS, 9)), np.empty(MAX_SEGMENTS)
+        rest_conditions(self.rows, z.copy(), *work, values, jacobian, np.empty(4))
+        return values, jacobian
+
+
+def test_a_circle_is_followed_through_its_folds():
+    branch = Continuation(Circle(), np.array([1.0, 0.0]), np.array([0.0, 1.0]))
+    result = branch.run(lambda state: state.point[0] > 0.0 > state.point[1])
+    points = np.array([state.point for state in result.states])
+    np.testing.assert_allclose(np.hypot(*points.T), 1.0, atol=1e-11)
+    assert result.end == ContinuationEnd.stopped
+    assert points[:, 0].min() < -0.99
+    assert np.all(np.diff(np.unwrap(np.arctan2(points[:, 1], points[:, 0]))) > 0)
+
+
+def test_tangents_are_unit_vectors_along_the_circle():
+    states = Continuation(Circle(), np.array([1.0, 0.0]), np.array([0.0, 1.0]))
+    for _, state in zip(range(20), states, strict=False):
+        assert np.linalg.norm(state.tangent) == pytest.approx(1.0, abs=1e-14)
+        # the tangent belongs to the last Jacobian, one Newton step before the point
+        assert abs(state.tangent @ state.point) < 1e-3
+
+
+def test_the_end_of_a_curve_is_reported():
+    result = Continuation(Ended(), np.array([0.0, 1.0]), np.array([1.0, -0.5])).run(lambda _: False)
+    assert result.end == ContinuationEnd.branch_lost
+
+
+def test_the_number_of_points_is_bounded():
+    settings = ContinuationSettings(max_points=7)
+    branch = Continuation(Circle(), np.array([1.0, 0.0]), np.array([0.0, 1.0]), settings)
+    result = branch.run(lambda _: False)
+    assert result.end == ContinuationEnd.point_limit
+    assert len(result.states) == 7
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [
+        {"first_step": 0.2, "longest_step": 0.1},
+        {"shortest_step": 0.0},
+        {"tolerance": -1.0},
+        {"least_cosine": 1.5},
+        {"max_points": 0},
+    ],
+)
+def test_settings_that_contradict_each_other_are_named(wrong):
+    with pytest.raises(ValueError, match=next(iter(wrong))):
+        ContinuationSettings(**wrong)
+
+
+def test_the_compiled_trace_follows_the_same_branch():
+    scene = scaled_system(Parameters(), 0.2 * math.pi, 0.7 * math.pi)
+    seed = grazing_start(scene, 1)
+    control = seed.settings(0.05, 3.0)
+    table, _ = trace_branch(scene.system, seed.point, seed.direction, 3.0, control)
+    settings = ContinuationSettings(first_step=control.first_step, longest_step=0.05)
+    general = Continuation(Shooting(scene.system), seed.point, seed.direction, settings)
+    result = general.run(lambda state: bool(state.point[1] > 3.0))
+    points = np.array([state.point for state in result.states])
+    place = COLUMNS.index("half_period")
+    inside = (points[:, 1] > table[0, 1]) & (points[:, 1] < table[-1, 1])
+    # linear interpolation between traced points bounds the agreement, not either method
+    between = np.interp(points[inside, 1], table[:, 1], table[:, place])
+    np.testing.assert_allclose(points[inside, 2], between, rtol=2e-3)
+    assert inside.sum() > 10
