@@ -28,7 +28,7 @@ def is_finite_number(value: object) -> bool:
     return isinstance(value, Real) and not isinstance(value, bool) and math.isfinite(float(value))
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, repr=False)
 class Parameters:
     """Physical parameters of the mass on two inclined springs above a belt.
 
@@ -72,6 +72,14 @@ class Parameters:
             object.__setattr__(self, item.name, float(value))
         if self.mu < 0:
             raise ValueError(f"mu = {self.mu!r}: must be 0 or greater")
+
+    def __repr__(self) -> str:
+        """The call that makes it, and as a comment its dimensionless groups."""
+        given = ", ".join(f"{name}={value!r}" for name, value in self.as_dict().items())
+        return (
+            f"Parameters({given})  # κ = {self.kappa:.4g}, μ = {self.mu:.4g}, "
+            f"λ = {self.length_ratio:.4g}, v = {self.speed_ratio:.4g}"
+        )
 
     @classmethod
     def from_groups(

@@ -99,3 +99,14 @@ def test_a_scene_refuses_what_is_no_scene(change: dict[str, float], message: str
     fields = {"alpha1": 0.0, "alpha2": 0.0, "t_end": 1.0, **change}
     with pytest.raises(ValueError, match=f"scene X: {message}"):
         Scene(name="X", figure=1, statement="", **fields)
+
+
+def test_repr_can_be_read_back_and_tells_the_groups():
+    params = Parameters(k3=0.5, mu=0.25, length1=4.0, belt_speed=-0.3)
+    text = repr(params)
+    assert eval(text) == params  # noqa: S307
+    assert text.endswith("# κ = 0.5, μ = 0.25, λ = 4, v = -0.3")
+
+
+def test_repr_of_a_scene_tells_angles_in_pi_and_figure():
+    assert repr(SCENES["F3"]) == "Scene(F3: alpha = (0.4π, 0.6π), t_end = 500, Fig. 3)"

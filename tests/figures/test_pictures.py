@@ -1,0 +1,77 @@
+"""Pictures against stored ones, with a tolerance that fonts' hinting stays within.
+
+When a change is meant, look at it and renew the baselines:
+python -m pytest tests/figures --mpl-generate-path=tests/figures/baseline
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from squealpipe.figures import angle_map, branch, fig01, run
+from squealpipe.figures.animation import animate
+from squealpipe.figures.mechanism import draw_mechanism
+from squealpipe.figures.style import new_figure
+from squealpipe.parameters import Parameters
+from squealpipe.tasks.backbones import backbone
+from squealpipe.tasks.dynamics import simulate
+from squealpipe.tasks.linear import stability_map
+from squealpipe.tasks.summary import summarize
+
+PARAMS = Parameters()
+compared = pytest.mark.mpl_image_compare(
+    baseline_dir="baseline", style="default", tolerance=2, savefig_kwargs={"dpi": 60}
+)
+
+
+@compared
+def test_fig01():
+    return fig01.draw()
+
+
+@compared
+def test_schematics_of_the_papers_arrangements():
+    figure, axes = new_figure(7.0, 1.6, ncols=4)
+    for axis, pair in zip(axes[0], ((0.5, 1), (1, 0.5), (0.75, 0.75), (0.4, 0.6)), strict=True):
+        draw_mechanism(axis, pair[0] * np.pi, pair[1] * np.pi)
+    return figure
+
+
+@compared
+def test_run():
+    times = np.linspace(0, 40, 801)
+    motion = simulate(PARAMS, 5 * np.pi / 6, 5 * np.pi / 6, t_end=40.0, times=times)
+    return run.draw(motion, summarize(motion))
+
+
+@compared
+def test_angle_map_of_categories():
+    angles = np.linspace(0, np.pi, 61)
+    return angle_map.draw(stability_map(PARAMS, angles, angles))
+
+
+@compared
+def test_branch_with_unstable_part():
+    orbits = backbone(PARAMS, 0.3 * np.pi, 0.9 * np.pi, mode=1, y_peak_max=6.0)
+    return branch.draw(orbits, preload=1.0)
+
+
+def test_animation_moves_and_stays_small(tmp_path):
+    motion = simulate(PARAMS, 5 * np.pi / 6, 5 * np.pi / 6, t_end=20.0)
+    path = tmp_path / "hammering.gif"
+    animate(motion, path, start=0.0, end=20.0, frames=10)
+    with Image.open(path) as picture:
+        assert picture.n_frames == 10
+        first = np.asarray(picture.convert("RGB"), int)
+        picture.seek(5)
+        moved = np.abs(np.asarray(picture.convert("RGB"), int) - first).max(axis=2) > 50
+    assert 0.001 < moved.mean() < 0.2
+    assert path.stat().st_size < 100_000
+
+
+def test_animation_refuses_more_frames_than_samples(tmp_path):
+    motion = simulate(PARAMS, 1.0, 2.0, t_end=1.0, times=np.linspace(0, 1, 5))
+    with pytest.raises(ValueError, match="at most so many frames"):
+        animate(motion, tmp_path / "no.gif", start=0.0, end=1.0, frames=50)
