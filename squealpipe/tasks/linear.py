@@ -127,11 +127,14 @@ def natural_frequencies(params: Parameters, alpha1: ArrayLike, alpha2: ArrayLike
     omega, outcomes = np.empty(shape), np.empty(shape, np.int8)
     for state, k3 in enumerate((params.k3, 0.0)):
         squares = natural_frequencies_squared(_spectrum(params, alpha1, alpha2, k3))
+        # Below this ω1 is the round-off of a free direction, as at α1 = α2 = π/2 in contact.
+        smallest = a2.ROUND_OFF**2 * np.abs(squares[1])
         for mode, square in enumerate(squares):
-            omega[..., mode, state] = np.abs(np.sqrt(-square).imag)
+            rigid = np.abs(square) <= smallest
+            omega[..., mode, state] = np.where(rigid, 0.0, np.abs(np.sqrt(-square).imag))
             outcomes[..., mode, state] = np.select(
-                [square.imag != 0, square.real < 0, square.real == 0],
-                [Outcome.complex_pair, Outcome.divergence, Outcome.rigid_mode],
+                [rigid, square.imag != 0, square.real < 0],
+                [Outcome.rigid_mode, Outcome.complex_pair, Outcome.divergence],
                 Outcome.converged,
             )
     return build(

@@ -206,6 +206,9 @@ def test_frequencies_in_both_states() -> None:
     half = np.isin(first + second, (90, 270))
     np.testing.assert_allclose(separated.omega.values[half], 1.0, rtol=1e-7)
     contact = result.sel(contact_state="contact")
+    free = contact.isel(alpha1=90, alpha2=90).sel(mode=1)
+    assert int(free.outcome) == Outcome.rigid_mode
+    assert float(free.omega) == 0.0
     assert (contact.outcome.sel(mode=1) == Outcome.complex_pair).sum() == 366
     assert (contact.outcome.sel(mode=1) == Outcome.divergence).sum() == 230
     assert (contact.outcome.sel(mode=2) == Outcome.divergence).sum() == 0
