@@ -21,6 +21,7 @@ TOPICS: dict[str, tuple[tuple[str, ...], Callable[[Run], dict[str, Any]]]] = {
     "harmonic": (("harmonic_sweep",), orbits.harmonic),
     "series": (("backbone/F10_mode2_hbm",), orbits.series),
     "failures": (("failure_atlas",), comparison.failures),
+    "ladder": (("model_ladder",), comparison.ladder),
     "integration": (("work_precision_integration",), comparison.integration),
 }
 """Topic → the datasets that it needs and the function that reads them."""

@@ -37,6 +37,33 @@ def failures(run: Run) -> dict[str, Any]:
     }
 
 
+def ladder(run: Run) -> dict[str, Any]:
+    """What the cheapest adequate model answers and saves, question by question."""
+    dataset = run["model_ladder"]
+    tolerance = float(dataset.tolerance)
+    meanings = dataset.cheapest.attrs["flag_meanings"].split()
+    complete = dataset.cheapest.attrs["flag_values"][meanings.index("a1")]
+    questions = []
+    for name in dataset.question.values:
+        row = dataset.sel(question=name)
+        errors = row.chosen_error.values
+        asked = np.isfinite(errors)
+        questions.append(
+            {
+                "question": str(name).replace("_", " "),
+                "within": float((errors[asked] <= tolerance).mean()),
+                "simpler": float((row.cheapest != complete).mean()),
+                "work": float(row.chosen_time / row.always_time),
+                "wall": float(row.chosen_wall_time / row.always_wall_time),
+            }
+        )
+    return {
+        "tolerance": tolerance,
+        "points": dataset.sizes["alpha1"],
+        "questions": questions,
+    }
+
+
 def integration(run: Run) -> dict[str, Any]:
     """Our default setting beside the most accurate public method, scene by scene."""
     dataset = run["work_precision_integration"]

@@ -1,0 +1,69 @@
+"""A small run: a few datasets, figures, and the report made of them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from squealpipe.claims.judge import judge
+from squealpipe.figures import fig01, fig06
+from squealpipe.figures.style import save_figure
+from squealpipe.parameters import Parameters
+from squealpipe.report.build import write_report
+from squealpipe.report.content import Made, gather, picture_files
+from squealpipe.store.netcdf import save
+from squealpipe.store.provenance import stamp
+from squealpipe.tasks.assumptions import linear_pull_map
+from squealpipe.tasks.linear import natural_frequencies, quasi_static_map, stability_map
+from squealpipe.tasks.linear_boundaries import stability_boundaries
+
+POINTS = 21
+
+
+@dataclass(frozen=True)
+class SmallReport:
+    """A report and what it was made of."""
+
+    page: Path
+    pdf: Path
+    content: dict
+    datasets: dict
+    figures: dict[str, Made]
+
+
+@pytest.fixture(scope="session")
+def small_report(tmp_path_factory: pytest.TempPathFactory) -> SmallReport:
+    folder = tmp_path_factory.mktemp("run")
+    parameters, angles = Parameters(), np.linspace(0.0, np.pi, POINTS)
+    datasets = {
+        "quasi_static_map": quasi_static_map(parameters, angles, angles),
+        "stability_map": stability_map(parameters, angles, angles),
+        "natural_frequencies": natural_frequencies(parameters, angles, angles),
+        "stability_boundaries": stability_boundaries(parameters),
+        "linear_pull": linear_pull_map(parameters, angles, angles),
+    }
+    datasets["claims"] = judge(parameters, datasets)
+    made = {}
+    for name, dataset in datasets.items():
+        path = save(stamp(dataset, config={}, wall_time=0.1), folder / f"data/{name}.nc")
+        made[name] = Made(path=path, rule=f"make_{name}")
+    drawn = {
+        "fig01": fig01.draw(),
+        "fig06": fig06.draw(
+            datasets["stability_map"],
+            datasets["quasi_static_map"],
+            datasets["stability_boundaries"],
+        ),
+    }
+    figures = {}
+    for name, figure in drawn.items():
+        path = folder / f"figures/{name}.png"
+        save_figure(figure, [path])
+        figures[name] = Made(path=path, rule=f"draw_{name}", datasets=("stability_map",))
+    content = gather(made, figures, parameters)
+    page, pdf = folder / "report/index.html", folder / "report/report.pdf"
+    write_report(content, picture_files(content, figures), page, pdf)
+    return SmallReport(page, pdf, content, datasets, figures)

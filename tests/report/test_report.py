@@ -1,0 +1,188 @@
+"""The report: self-contained, complete, with links that lead somewhere and texts for pictures."""
+
+from __future__ import annotations
+
+import hashlib
+import math
+import re
+from collections import Counter
+from html.parser import HTMLParser
+from pathlib import Path
+
+import pytest
+
+from squealpipe.claims.statements import STATEMENTS
+from squealpipe.report.build import TEMPLATES
+from squealpipe.report.captions import read_caption, title
+from squealpipe.report.lineage import lineage
+
+VOID = {"meta", "img", "br", "link", "hr", "input"}
+FETCHING = {
+    "src",
+    "srcset",
+    "poster",
+    "data",
+    "action",
+}
+"""Attributes from which a browser fetches on its own."""
+
+
+class Page(HTMLParser):
+    """What the tests ask of a page."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__()
+        self.ids: Counter[str] = Counter()
+        self.links: list[str] = []
+        self.fetched: list[str] = []
+        self.images: list[dict[str, str]] = []
+        self.tags: Counter[str] = Counter()
+        self.open: list[str] = []
+        self.headings: list[int] = []
+        self.feed(text)
+
+    def handle_starttag(self, tag, attrs):
+        values = {key: value or "" for key, value in attrs}
+        self.tags[tag] += 1
+        if "id" in values:
+            self.ids[values["id"]] += 1
+        if tag == "a":
+            self.links.append(values["href"])
+        self.fetched += [value for key, value in values.items() if key in FETCHING]
+        if tag == "link":
+            self.fetched.append(values.get("href", ""))
+        if tag == "img":
+            self.images.append(values)
+        if re.fullmatch("h[1-6]", tag):
+            self.headings.append(int(tag[1]))
+        if tag not in VOID:
+            self.open.append(tag)
+
+    def handle_startendtag(self, tag, attrs):
+        self.handle_starttag(tag, attrs)
+        if tag not in VOID:
+            self.handle_endtag(tag)
+
+    def handle_endtag(self, tag):
+        assert self.open, tag
+        assert self.open.pop() == tag
+
+
+@pytest.fixture(scope="module")
+def text(small_report) -> str:
+    return small_report.page.read_text(encoding="utf-8")
+
+
+@pytest.fixture(scope="module")
+def page(text: str) -> Page:
+    return Page(text)
+
+
+def test_every_tag_is_closed(page: Page) -> None:
+    assert page.open == []
+
+
+def test_links_lead_to_places_in_the_page(page: Page) -> None:
+    assert page.links
+    lost = [link for link in page.links if not link.startswith("#") or link[1:] not in page.ids]
+    assert lost == []
+
+
+def test_ids_are_unique(page: Page) -> None:
+    assert [name for name, times in page.ids.items() if times > 1] == []
+
+
+def test_nothing_is_fetched_from_elsewhere(page: Page, text: str) -> None:
+    assert all(source.startswith("data:image/png;base64,") for source in page.fetched)
+    assert "@import" not in text
+    assert not re.search(r"url\((?!data:)", text)
+    assert page.tags["script"] == page.tags["iframe"] == page.tags["link"] == 0
+
+
+def test_every_picture_has_an_alt_text_and_stands_once(page: Page, small_report) -> None:
+    expected = [item["alt"] for item in small_report.content["figures"].values()]
+    assert sorted(image["alt"] for image in page.images) == sorted(expected)
+    assert all(len(alt) > 20 for alt in expected)
+
+
+def test_every_statement_has_its_place(page: Page) -> None:
+    assert {f"claim-{statement.id}" for statement in STATEMENTS} <= set(page.ids)
+
+
+def test_heading_levels_are_never_skipped(page: Page) -> None:
+    assert page.headings[0] == 1
+    steps = [
+        later - earlier for earlier, later in zip(page.headings, page.headings[1:], strict=False)
+    ]
+    assert max(steps) <= 1
+
+
+def test_formulas_are_mathml(page: Page, text: str) -> None:
+    assert page.tags["math"] > 20
+    assert "$" not in re.sub(r"<style>.*?</style>|data:image[^\"]*", "", text, flags=re.DOTALL)
+
+
+def test_both_colour_schemes_print_and_narrow_screens_are_provided_for(text: str) -> None:
+    for query in ("prefers-color-scheme: dark", "@media print", "max-width: 40rem"):
+        assert query in text
+
+
+def test_prose_takes_its_numbers_from_the_datasets(small_report) -> None:
+    facts = small_report.content["facts"]["linear"]
+    regime = small_report.datasets["stability_map"].regime_linear
+    assert facts["flutter"] == int((regime == 1).sum())
+    assert facts["divergence"] == int((regime == 2).sum())
+    prose = re.sub(r"<[^>]+>", "", small_report.page.read_text(encoding="utf-8"))
+    assert f"there are {facts['flutter']} cells with flutter" in " ".join(prose.split())
+
+
+def test_pdf_is_whole_and_dated_by_nothing(small_report) -> None:
+    document = small_report.pdf.read_bytes()
+    assert document.startswith(b"%PDF-")
+    assert document.rstrip().endswith(b"%%EOF")
+
+
+def test_provenance_names_rule_id_and_checksum_of_every_dataset(small_report) -> None:
+    for name in small_report.datasets:
+        row = small_report.content["datasets"][name]
+        path = small_report.page.parents[1] / f"data/{name}.nc"
+        assert row["rule"] == f"make_{name}"
+        assert row["sha256"] == hashlib.sha256(path.read_bytes()).hexdigest()
+        assert re.fullmatch("[0-9a-f]{16}", row["dataset_id"])
+
+
+def test_every_figure_module_speaks_for_its_figure() -> None:
+    caption, alt = read_caption("fig01")
+    assert len(caption) > 40
+    assert len(alt) > 20
+    assert title("fig01") == "Fig. 1."
+    assert title("orbit_atlas") == "Orbit atlas."
+    with pytest.raises(ValueError, match="no CAPTION"):
+        read_caption("style")
+
+
+def test_lineage_follows_files_from_rule_to_rule() -> None:
+    class Rule:
+        def __init__(self, name, inputs, outputs):
+            self.name, self.input, self.output = name, inputs, outputs
+
+    found = lineage(
+        [
+            Rule("make", ["code.py"], ["r/data/a/b.nc"]),
+            Rule("draw", ["r/data/a/b.nc", "code.py"], ["r/figures/f.png", "r/figures/f.svg"]),
+        ],
+        "r/data/",
+        "r/figures/",
+    )
+    assert found["datasets"]["a/b"] == {"path": "r/data/a/b.nc", "rule": "make", "datasets": []}
+    assert found["figures"] == {
+        "f": {"path": "r/figures/f.png", "rule": "draw", "datasets": ["a/b"]}
+    }
+
+
+@pytest.mark.parametrize("template", sorted((TEMPLATES / "sections").iterdir()))
+def test_no_measured_number_is_typed_into_a_template(template: Path) -> None:
+    """Decimals belong to datasets; the angles of scenes and two published constants may stand."""
+    prose = re.sub(r"\$[^$]*\$", "", template.read_text(encoding="utf-8"))
+    numbers = [float(number) for number in re.findall(r"(?<![\w.-])\d+\.\d+(?![\w.]|fr|em)", prose)]
+    assert [number for number in numbers if not math.isclose(number, round(number, 1))] == []
