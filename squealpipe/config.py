@@ -10,7 +10,7 @@ import json
 import re
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Annotated, Any, get_args
+from typing import Annotated, Any, Literal, get_args
 
 from pydantic import (
     AfterValidator,
@@ -110,10 +110,16 @@ Settings = Annotated[tuple[Positive, ...], Field(min_length=1)]
 Repeats = Annotated[int, Field(ge=1, le=100)]
 
 
+Solvers = Annotated[
+    tuple[Literal["RK45", "DOP853", "LSODA", "Radau", "BDF"], ...], Field(min_length=1)
+]
+
+
 class IntegrationComparison(Section):
     """Time integration of A1 by all methods: horizon and steps in √(m/k1), σ times l_pre."""
 
     horizon: Positive = 30.0
+    solvers: Solvers = ("RK45", "DOP853", "LSODA", "Radau")
     tolerances: Settings = (1e-4, 1e-6, 1e-8, 1e-10, 1e-14)
     steps: Settings = (0.1, 0.01, 1e-3, 1e-4)
     sigmas: Settings = (10.0, 100.0, 1e3, 1e4)
@@ -161,6 +167,14 @@ class OnsetComparison(Section):
     repeats: Repeats = 3
 
 
+class AtlasComparison(Section):
+    """Hard scenes that scipy's solvers are put on as well; horizons in √(m/k1)."""
+
+    solvers: Solvers = ("DOP853", "RK45", "LSODA", "Radau")
+    chaotic_horizon: Positive = 200.0
+    beyond_horizon: Positive = 600.0
+
+
 class LadderComparison(Section):
     """The cheapest adequate model over both angles; horizon in √(m/k1)."""
 
@@ -176,6 +190,7 @@ class ComparisonSection(Section):
     validity: ValidityComparison = ValidityComparison()
     harmonic: HarmonicComparison = HarmonicComparison()
     onset: OnsetComparison = OnsetComparison()
+    atlas: AtlasComparison = AtlasComparison()
     ladder: LadderComparison = LadderComparison()
 
 

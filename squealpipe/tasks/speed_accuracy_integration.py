@@ -61,6 +61,7 @@ def solutions(
     params: Parameters,
     *,
     horizon: float,
+    solvers: Sequence[str],
     tolerances: Sequence[float],
     steps: Sequence[float],
     sigmas: Sequence[float],
@@ -71,6 +72,7 @@ def solutions(
     Args:
         params: physical parameters; each scene sets its own belt speed.
         horizon: end of the runs, in units of √(m/k1).
+        solvers: methods of ``solve_ivp`` to compare with.
         tolerances: of the adaptive methods.
         steps: of Moreau–Jean stepping, in units of √(m/k1).
         sigmas: of the regularized laws, times l_pre.
@@ -82,7 +84,7 @@ def solutions(
         reference = simulate_reference(**arguments, t_end=t_end)
         runs = {
             **_ours(arguments, t_end, tolerances),
-            **_public(arguments, t_end, params, tolerances, steps, sigmas),
+            **_public(arguments, t_end, params, solvers, tolerances, steps, sigmas),
         }
         for (method, setting, role), (run, divisor) in runs.items():
             found, seconds = timed(run, repeats)
@@ -155,13 +157,14 @@ def _public(
     arguments: Mapping[str, Any],
     t_end: float,
     params: Parameters,
+    solvers: Sequence[str],
     tolerances: Sequence[float],
     steps: Sequence[float],
     sigmas: Sequence[float],
 ) -> _Runs:
     runs: _Runs = {}
     public = Role.public
-    for method in ("RK45", "DOP853", "LSODA", "Radau"):
+    for method in solvers:
         for tol in tolerances:
             if method == "Radau" and tol < _STIFF_LIMIT:
                 continue

@@ -25,37 +25,15 @@ rule measure_frequencies:
         "../scripts/measure_frequencies.py"
 
 
-rule draw_work_precision:
-    input:
-        integration=data("work_precision_integration"),
-        frequencies=data("work_precision_frequencies"),
-        sources=sources("draw_work_precision"),
-    output:
-        time=figure("work_precision_time"),
-        evaluations=figure("work_precision_evaluations"),
-        validity=figure("work_precision_validity"),
-        frequencies=figure("work_precision_frequencies"),
-    script:
-        "../scripts/draw_work_precision.py"
-
-
 rule judge_methods:
     input:
         sources=sources("judge_methods"),
     output:
         data("failure_atlas"),
+    params:
+        part=part("comparison.atlas"),
     script:
         "../scripts/judge_methods.py"
-
-
-rule draw_failure_atlas:
-    input:
-        atlas=data("failure_atlas"),
-        sources=sources("draw_failure_atlas"),
-    output:
-        figure("failure_atlas"),
-    script:
-        "../scripts/draw_failure_atlas.py"
 
 
 rule map_model_ladder:
@@ -70,12 +48,20 @@ rule map_model_ladder:
         "../scripts/map_model_ladder.py"
 
 
-rule draw_model_ladder:
+rule draw_comparison:
     input:
+        integration=data("work_precision_integration"),
+        frequencies=data("work_precision_frequencies"),
+        atlas=data("failure_atlas"),
         ladder=data("model_ladder"),
-        sources=sources("draw_model_ladder"),
+        sources=sources("draw_comparison"),
     output:
-        maps=figure("model_ladder"),
-        cost=figure("model_ladder_cost"),
+        work_precision_time=figure("work_precision_time"),
+        work_precision_evaluations=figure("work_precision_evaluations"),
+        work_precision_validity=figure("work_precision_validity"),
+        work_precision_frequencies=figure("work_precision_frequencies"),
+        failure_atlas=figure("failure_atlas"),
+        model_ladder=figure("model_ladder"),
+        model_ladder_cost=figure("model_ladder_cost"),
     script:
-        "../scripts/draw_model_ladder.py"
+        "../scripts/draw_comparison.py"

@@ -2,10 +2,13 @@
 
 import os
 
-# threads cost small matrices more than they save, and make their times uncertain
+# threads cost small matrices more than they save
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 from squealpipe.store import produce
 from squealpipe.tasks.failures import judge_methods
 
-produce(judge_methods, config={}, output=snakemake.output[0])
+part = snakemake.params.part
+produce(
+    lambda: judge_methods(**part["comparison.atlas"]), config=part, output=snakemake.output[0]
+)
