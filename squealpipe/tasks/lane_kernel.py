@@ -125,7 +125,11 @@ def _load(state: Any, pars: Any, memory: Any, integers: Any, initial: Any, lane:
     m[LARGEST_R2] = x * x + y * y
     m[EARLY_LARGEST_X] = abs(x)
     m[LARGEST_SPEED] = vx
-    m[NEAREST_PIVOT2] = np.inf
+    nearest = min(
+        ((x - p.length1 * g.c1) ** 2 + (y - p.length1 * g.s1) ** 2) / p.length1**2,
+        ((x + p.length2 * g.c2) ** 2 + (y - p.length2 * g.s2) ** 2) / p.length2**2,
+    )
+    m[NEAREST_PIVOT2] = nearest
     for index in range(NEXT_SAMPLE, N_INTEGERS):
         integers[lane, index] = 0
     integers[lane, COUNT + REGIME] = regime

@@ -1,0 +1,267 @@
+"""The hard cases of set-valued friction and unilateral contact, against closed forms.
+
+At (π/2, π) with equal springs the linearized stiffness is k times the identity: x and y are
+harmonic within each regime and every event time has a closed form (units of m = k = l_pre = 1).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from squealpipe.parameters import Parameters
+from squealpipe.schema import Outcome
+from squealpipe.schema.dynamics import EventFlag, RegimeFlag
+from squealpipe.tasks.dynamics import simulate
+from squealpipe.tasks.ensemble import run_ensemble
+
+IDENTITY = {"alpha1": 0.5 * np.pi, "alpha2": np.pi, "model": "A1-linear-springs"}
+VERTICAL = {"alpha1": 0.5 * np.pi, "alpha2": 0.5 * np.pi, "model": "A1-linear-springs"}
+SEPARATION, CONTACT, STICK, SLIP, REVERSAL = (
+    EventFlag.separation,
+    EventFlag.contact,
+    EventFlag.stick,
+    EventFlag.slip,
+    EventFlag.reversal,
+)
+KAPPA, MU, SPEED = 0.75, 0.4, 0.1
+REST = KAPPA / (1 + KAPPA)  # y at rest, and the contact force there
+GRIP = MU * REST  # the largest elastic x-force that friction holds
+FRICTION = Parameters(k3=KAPPA, mu=MU, belt_speed=SPEED)
+
+
+def events(run):
+    return list(zip(run.event_kind.values.tolist(), run.event_time.values.tolist(), strict=True))
+
+
+def assert_events(run, expected, *, error=1e-12):
+    found = events(run)[: len(expected)]
+    assert [kind for kind, _ in found] == [kind for kind, _ in expected]
+    np.testing.assert_allclose([t for _, t in found], [t for _, t in expected], atol=error)
+
+
+@pytest.mark.parametrize("kappa", [1.5, 3.0, 50.0, 1e4, 1e6])
+def test_separation_and_contact(kappa):
+    rate, rest = np.sqrt(1 + kappa), kappa / (1 + kappa)
+    leaves = np.arccos(-1 / kappa) / rate
+    flight = 2 * np.arctan(rest * rate * np.sin(rate * leaves))
+    params = Parameters(k3=kappa, belt_speed=1e6)
+    run = simulate(params, t_end=1.5 * (leaves + flight), **IDENTITY)
+    assert run.outcome == Outcome.converged
+    assert_events(run, [(SEPARATION, leaves), (CONTACT, leaves + flight)])
+
+
+def test_stick_then_slip():
+    """Reaches belt speed where friction can hold it; is released where it no longer can."""
+    amplitude = 0.2
+    reach = np.sqrt(amplitude**2 - SPEED**2)
+    assert reach < 2 * GRIP
+    sticks = np.arcsin(SPEED / amplitude)
+    run = simulate(FRICTION, t_end=8.0, initial_state=(GRIP - amplitude, REST, 0, 0), **IDENTITY)
+    assert_events(run, [(STICK, sticks), (SLIP, sticks + reach / SPEED)])
+
+
+def test_reversal_there_and_back():
+    """Passes belt speed where friction cannot hold it, comes back, and then sticks."""
+    amplitude = 0.45
+    beyond = np.sqrt(amplitude**2 - SPEED**2) - 2 * GRIP  # −(x + grip) at the crossing
+    assert 0 < beyond < 2 * GRIP
+    first = np.arcsin(SPEED / amplitude)
+    second = first + 2 * np.arctan(beyond / SPEED)
+    run = simulate(FRICTION, t_end=4.0, initial_state=(GRIP - amplitude, REST, 0, 0), **IDENTITY)
+    assert_events(run, [(REVERSAL, first), (STICK, second)])
+
+
+def test_released_mass_does_not_stick_again_without_end():
+    """After the release ẋ returns to V tangentially once a period: no chatter, and it goes on."""
+    run = simulate(FRICTION, t_end=200.0, initial_state=(0, REST, SPEED, 0), **IDENTITY)
+    assert run.outcome == Outcome.converged
+    assert_events(run, [(SLIP, GRIP / SPEED)])
+    assert run.event_time.size < 4 * 200 / (2 * np.pi) + 2
+    orbit = np.hypot(run.x - GRIP, run.vx)[run.time.values > GRIP / SPEED]
+    np.testing.assert_allclose(orbit, SPEED, rtol=1e-9)
+
+
+def test_negative_belt_speed_mirrors_the_stick():
+    amplitude = 0.2
+    sticks = np.arcsin(SPEED / amplitude)
+    run = simulate(
+        FRICTION.with_(belt_speed=-SPEED),
+        t_end=8.0,
+        initial_state=(amplitude - GRIP, REST, 0, 0),
+        **IDENTITY,
+    )
+    reach = np.sqrt(amplitude**2 - SPEED**2)
+    assert_events(run, [(STICK, sticks), (SLIP, sticks + reach / SPEED)])
+
+
+def test_separation_during_stick():
+    """K11 = 0 and no x-force: the mass sticks from start to separation, and again at contact."""
+    params = Parameters(k3=4.0, belt_speed=0.5)
+    rate, rest = np.sqrt(6.0), 4.0 / 6.0
+    leaves = np.arccos(1 - 1 / rest) / rate
+    upward = rest * rate * np.sin(rate * leaves)
+    flight = 2 * np.arctan(upward / np.sqrt(2)) / np.sqrt(2)
+    run = simulate(params, t_end=5.0, initial_state=(0, 0, 0.5, 0), **VERTICAL)
+    assert run.outcome == Outcome.converged
+    assert run.regime[0] == RegimeFlag.stick
+    assert_events(run, [(SEPARATION, leaves), (CONTACT, leaves + flight)])
+    after = run.regime.values[np.searchsorted(run.time, leaves + flight) + 1]
+    assert after == RegimeFlag.stick
+    np.testing.assert_array_equal(run.vx, 0.5)
+
+
+def test_contact_at_exactly_belt_speed_slips_where_springs_pull():
+    """ẋ = V at contact, where N = 0 holds nothing: it slips to the side that the springs pull."""
+    params = Parameters(k3=KAPPA, mu=MU, belt_speed=0.0)
+    fall = np.arccos(1 / 1.5)
+    for x in (-0.3, 0.3):
+        # ẋ at contact is −x sin t; start so that it is exactly zero there.
+        start = (x * np.cos(fall), 1.5, x * np.sin(fall), 0.0)
+        run = simulate(params, t_end=fall + 1e-3, initial_state=start, **IDENTITY)
+        assert events(run)[0][0] == CONTACT
+        np.testing.assert_allclose(events(run)[0][1], fall, atol=1e-14)
+        assert np.sign(run.vx[-1]) == -np.sign(x)
+
+
+def test_belt_at_rest_holds_the_mass():
+    """V = 0 from rest with an x-force below the grip: sticks until the grip has faded."""
+    run = run_ensemble(Parameters(belt_speed=0.0), 1.0, 1.4, t_end=20.0, log_events=4, times=[0.0])
+    assert run.outcome == Outcome.converged
+    assert run.sample_regimes[0] == RegimeFlag.stick
+    assert run.event_kinds[0] in {SLIP, SEPARATION}
+
+
+def test_start_in_the_air():
+    fall = np.arccos(1 / 1.5)
+    run = simulate(Parameters(), t_end=2.0, initial_state=(0, 1.5, 0, 0), **IDENTITY)
+    assert run.regime[0] == RegimeFlag.separated
+    assert run.normal_force[0] == 0.0
+    assert_events(run, [(CONTACT, fall)])
+
+
+@pytest.mark.parametrize(
+    ("vy", "regime", "first"), [(0.5, RegimeFlag.separated, CONTACT), (-0.5, 0, SEPARATION)]
+)
+def test_start_exactly_at_the_threshold_moving(vy, regime, first):
+    run = simulate(Parameters(), t_end=6.0, initial_state=(0, 1.0, 0, vy), **IDENTITY)
+    assert run.regime[0] == regime
+    assert run.y[0] == 1.0
+    assert events(run)[0][0] == first
+    assert events(run)[0][1] > 0.5
+
+
+def test_start_exactly_at_the_threshold_at_rest():
+    """The springs pull down there: it is in contact, and comes back to the threshold."""
+    run = simulate(Parameters(k3=KAPPA), t_end=4.0, initial_state=(0, 1.0, 0, 0), **IDENTITY)
+    assert run.regime[0] == RegimeFlag.slip_slower
+    # N = 0 is grazed at the top of the free oscillation about y = κ/(1 + κ).
+    np.testing.assert_allclose(
+        run.y, REST + (1 - REST) * np.cos(np.sqrt(1.75) * run.time), atol=1e-9
+    )
+
+
+@pytest.mark.parametrize("height", [1e-3, 1e-6, 1e-9, 1e-11])
+def test_grazing_pairs_are_found(height):
+    """A flight of height h above the threshold lasts about 2√(2h/|ÿ|): both ends are found."""
+    rate = np.sqrt(1 + KAPPA)
+    amplitude = 1 - REST + height
+    leaves = np.arccos(-(1 - REST) / amplitude) / rate
+    upward = amplitude * rate * np.sin(rate * leaves)
+    flight = 2 * np.arctan(upward)
+    run = simulate(
+        FRICTION.with_(belt_speed=100.0),
+        t_end=1.2 * leaves + flight,
+        initial_state=(0, REST - amplitude, 0, 0),
+        **IDENTITY,
+    )
+    # A grazing time is as ill-conditioned as the square root of its height.
+    assert_events(
+        run, [(SEPARATION, leaves), (CONTACT, leaves + flight)], error=1e-14 / np.sqrt(height)
+    )
+
+
+def test_below_the_threshold_by_as_little_there_is_no_event():
+    amplitude = 1 - REST - 1e-12
+    run = simulate(
+        FRICTION.with_(belt_speed=100.0),
+        t_end=20.0,
+        initial_state=(0, REST - amplitude, 0, 0),
+        **IDENTITY,
+    )
+    assert run.event_time.size == 0
+
+
+def test_no_friction_never_sticks():
+    run = run_ensemble(
+        Parameters(mu=0.0, belt_speed=0.2), 0.3, np.linspace(0, np.pi, 40), t_end=50.0
+    )
+    assert (run.outcome == Outcome.converged).all()
+    assert (run.sticks == 0).all()
+    assert (run.stick_time == 0).all()
+
+
+def test_two_springs_on_one_side_and_a_belt_at_rest():
+    """x-force and contact force vanish at one time: separation comes before friction."""
+    params = Parameters(k3=4.0, belt_speed=0.0)
+    run = simulate(params, t_end=3.0, **VERTICAL)
+    assert run.outcome == Outcome.converged
+    assert events(run)[0][0] == SEPARATION
+    np.testing.assert_array_equal(run.x, 0.0)
+
+
+def test_without_stick_the_sliding_mode_has_no_solution():
+    run = simulate(
+        FRICTION,
+        0.5 * np.pi,
+        np.pi,
+        t_end=8.0,
+        model="A1-no-stick",
+        initial_state=(-0.1, REST, 0, 0),
+    )
+    sticks = simulate(FRICTION, 0.5 * np.pi, np.pi, t_end=8.0, initial_state=(-0.1, REST, 0, 0))
+    assert run.outcome == Outcome.event_limit
+    first = sticks.event_time.values[sticks.event_kind.values == STICK][0]
+    np.testing.assert_allclose(run.time_reached, first, atol=1e-12)
+    assert np.isnan(run.x.values[run.time.values > first]).all()
+
+
+def test_without_separation_the_contact_spring_pulls():
+    run = simulate(Parameters(k3=3.0), t_end=20.0, **{**IDENTITY, "model": "A1-no-separation"})
+    assert run.normal_force.min() < 0
+    assert not (run.event_kind.values == SEPARATION).any()
+
+
+@pytest.mark.parametrize("offset", [0.0, 1e-12, 1e-9, 1e-5])
+def test_a_mass_that_meets_a_pivot_says_so(offset):
+    """Springs of half the preload's length, straight above: the mass is thrown at their end."""
+    params = Parameters(k3=5.0, length1=0.5, length2=5.0, belt_speed=0.0)
+    run = run_ensemble(
+        params, 0.5 * np.pi, 0.5 * np.pi, t_end=10.0, initial_state=(offset, 0, 0, 0)
+    )
+    assert run.outcome == (Outcome.singular_geometry if offset < 1e-7 else Outcome.converged)
+    if offset < 1e-7:
+        assert run.time < 2.0
+    else:
+        assert run.nearest_pivot < 1e-3
+
+
+def test_start_on_a_pivot():
+    params = Parameters()
+    state = (5 * np.cos(0.7), 5 * np.sin(0.7), 0.0, 0.0)
+    run = run_ensemble(params, 0.7, 1.0, t_end=10.0, initial_state=state)
+    assert run.outcome == Outcome.singular_geometry
+    assert run.time < 1e-6
+
+
+def test_an_overflow_is_not_silent():
+    run = run_ensemble(Parameters(), 0.7, 1.0, t_end=1.0, initial_state=(0, 0, 1e200, 0))
+    assert run.outcome != Outcome.converged
+
+
+def test_an_exact_equilibrium_stays():
+    """No derivative bounds the step of a mass at rest."""
+    params = Parameters(mu=0.0, k3=1.0)
+    run = simulate(params, t_end=30.0, initial_state=(0.0, 0.5, 0.0, 0.0), **IDENTITY)
+    assert run.outcome == Outcome.converged
+    np.testing.assert_allclose(run.y, 0.5, atol=1e-15)

@@ -1,0 +1,91 @@
+"""Worker processes: same results, clear ends, no hang."""
+
+from __future__ import annotations
+
+import multiprocessing
+import os
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+from squealpipe.methods.processes import available_cores, run_shared
+
+
+def _squares(arrays, first, stride):
+    index = np.arange(first, arrays["out"].size, stride)
+    arrays["out"][index] = index**2
+
+
+SHAPES = {"out": ((1000,), np.float64)}
+
+
+@pytest.mark.parametrize("workers", [1, 2, 3, 7, None])
+def test_every_job_is_done_once_for_any_number_of_workers(workers):
+    out = run_shared(_squares, SHAPES, jobs=1000, workers=workers)["out"]
+    np.testing.assert_array_equal(out, np.arange(1000) ** 2)
+
+
+def test_more_workers_than_jobs():
+    shapes = {"out": ((2,), np.float64)}
+    np.testing.assert_array_equal(run_shared(_squares, shapes, jobs=2, workers=5)["out"], [0, 1])
+
+
+def test_no_jobs():
+    assert run_shared(_squares, {"out": ((0,), np.float64)}, jobs=0)["out"].size == 0
+
+
+@pytest.mark.parametrize("workers", [0, -1, 1.5, True, "2"])
+def test_a_wrong_number_of_workers_is_named(workers):
+    with pytest.raises(ValueError, match="workers"):
+        run_shared(_squares, SHAPES, jobs=10, workers=workers)
+
+
+def test_a_dead_worker_is_an_error():
+    def die(arrays, first, stride):
+        if first == 1:
+            os._exit(9)
+
+    with pytest.raises(RuntimeError, match="exit code 9"):
+        run_shared(die, SHAPES, jobs=1000, workers=2)
+
+
+def test_an_error_in_the_parent_ends_the_children():
+    def fail(arrays, first, stride):
+        if first == 0:
+            raise ArithmeticError("on purpose")
+        multiprocessing.Event().wait(60)
+
+    with pytest.raises(ArithmeticError):
+        run_shared(fail, SHAPES, jobs=1000, workers=2)
+
+
+def test_inside_a_daemonic_worker_the_work_runs_there():
+    def nested(queue):
+        queue.put(run_shared(_squares, SHAPES, jobs=1000, workers=2)["out"].sum())
+
+    context = multiprocessing.get_context("fork")
+    queue = context.Queue()
+    process = context.Process(target=nested, args=(queue,), daemon=True)
+    process.start()
+    assert queue.get(timeout=60) == np.sum(np.arange(1000.0) ** 2)
+    process.join()
+
+
+def test_a_script_without_main_guard_ends():
+    script = (
+        "import numpy as np\n"
+        "from squealpipe.parameters import Parameters\n"
+        "from squealpipe.tasks.dynamics import validity_map\n"
+        "a = np.linspace(0, np.pi, 15)\n"
+        "print(int((validity_map(Parameters(), a, a, t_end=20.0, workers=2).separates).sum()))\n"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", script], capture_output=True, text=True, timeout=120, check=True
+    )
+    assert int(done.stdout) > 0
+
+
+def test_cores():
+    assert 1 <= available_cores() <= (os.cpu_count() or 1)

@@ -1,0 +1,123 @@
+"""What was computed of the baseline independently of this project."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from squealpipe.parameters import SCENES, Parameters
+from squealpipe.schema import Outcome
+from squealpipe.tasks.dynamics import simulate, validity_map
+from squealpipe.tasks.ensemble import run_ensemble
+from squealpipe.tasks.whirl import transient_lifetimes, whirl_sizes
+
+BASELINE = Parameters()
+
+
+def _map(points, **options):
+    angles = np.linspace(0, np.pi, points)
+    return validity_map(BASELINE, angles, angles, **options)
+
+
+def test_2694_of_91_by_91_cells_keep_contact():
+    result = _map(91)
+    assert int((~result.separates).sum()) == 2694
+    first = result.first_separation_time.values
+    assert np.nanmedian(first) == pytest.approx(2.2, abs=0.05)
+    assert np.nanmax(first) == pytest.approx(197.6, abs=0.05)
+
+
+def test_tighter_tolerance_keeps_the_same_cells():
+    assert int((~_map(91, tol=1e-15).separates).sum()) == 2694
+
+
+def test_shorter_horizon_keeps_2706():
+    assert int((~_map(91, t_end=100.0).separates).sum()) == 2706
+
+
+@pytest.mark.slow
+def test_longer_horizons_keep_the_same_cells():
+    for t_end in (400.0, 1600.0):
+        assert int((~_map(91, t_end=t_end).separates).sum()) == 2694
+
+
+def test_10710_of_181_by_181_cells_keep_contact():
+    assert int((~_map(181).separates).sum()) == 10_710
+
+
+def test_no_separation_free_cell_is_linearly_unstable():
+    result = _map(61)
+    assert not (result.regime_linear.values[~result.separates.values] > 0).any()
+
+
+def test_growth_of_the_paper_saturates():
+    scene = SCENES["F3"]
+    run = run_ensemble(BASELINE, scene.alpha1, scene.alpha2, t_end=3000.0, t_late=500.0)
+    assert run.early_max_x == pytest.approx(32.2, abs=0.5)
+    assert run.late_max_x == pytest.approx(80.7, abs=0.05)
+
+
+@pytest.mark.parametrize(
+    ("speed", "late", "sticks"), [(100, 80.7, False), (10, 12.5, False), (1, 7.8, True)]
+)
+def test_size_of_the_whirl(speed, late, sticks):
+    result = whirl_sizes(BASELINE, [speed, 150.0, 200.0, 300.0], t_end=6000.0)
+    assert float(result.amplitude[0]) == pytest.approx(late, abs=0.05)
+    assert (float(result.stick_fraction[0]) > 0.01) == sticks
+    assert float(result.slope) == pytest.approx(float(result.energy_slope), rel=0.08)
+
+
+def test_transient_after_the_start_of_the_whirl_at_low_speed():
+    scene = SCENES["F3"]
+    run = run_ensemble(BASELINE.with_(belt_speed=10.0), scene.alpha1, scene.alpha2, t_end=500.0)
+    assert run.early_max_x == pytest.approx(13.1, abs=0.05)
+
+
+def test_bounded_to_500_and_a_transient_beyond():
+    scene = SCENES["F4"]
+    short = run_ensemble(BASELINE, scene.alpha1, scene.alpha2, t_end=500.0, t_late=200.0)
+    assert 9.4 < short.early_max_x <= 9.55
+    assert 9.4 < short.late_max_x <= 9.75
+    starts = np.zeros((24, 4))
+    starts[:, 0] = np.linspace(-1e-9, 1e-9, 24)
+    long = run_ensemble(
+        BASELINE, scene.alpha1, scene.alpha2, t_end=9000.0, initial_state=starts, stop_at_x=80.0
+    )
+    left = long.outcome == Outcome.amplitude_reached
+    assert left.mean() > 0.5
+    assert long.time.min() > 1000
+
+
+def test_slow_belt_never_lets_the_transient_end():
+    result = transient_lifetimes(BASELINE, [0.5, 3.0], samples=6, shown_samples=2, t_end=20_000.0)
+    left = np.isfinite(result.lifetime.values)
+    assert not left[0].any()
+    assert left[1].any()
+    assert (result.max_displacement.values[0] < 12).all()
+
+
+def test_springs_along_the_belt():
+    runs = [simulate(BASELINE, angle, angle, t_end=50.0) for angle in (0.0, np.pi)]
+    force = [run.normalized_contact_force.values for run in runs]
+    assert np.abs(force[0] - force[1]).max() < 1e-10
+    long = simulate(BASELINE, 0.0, 0.0, t_end=200.0)
+    assert float(long.y.max()) == pytest.approx(3.46, abs=0.01)
+
+
+def test_a4_from_rest_where_the_springs_act_as_one():
+    """K = diag(k, k): y = κ/(1 + κ)(1 − cos √(1 + κ)t), x = μy, lowest force (1 − κ)/(1 + κ)."""
+    times = np.linspace(0, 50, 501)
+    for scene in ("F2a", "F2b", "F2c"):
+        run = simulate(
+            BASELINE,
+            SCENES[scene].alpha1,
+            SCENES[scene].alpha2,
+            t_end=50.0,
+            model="A4",
+            times=times,
+        )
+        y = 0.75 / 1.75 * (1 - np.cos(np.sqrt(1.75) * times))
+        np.testing.assert_allclose(run.y, y, atol=1e-12)
+        np.testing.assert_allclose(run.x, 0.3 * y, atol=1e-12)
+        assert run.normalized_contact_force.min() > (1 - 0.75) / 1.75 - 1e-12
+        np.testing.assert_array_equal(run.time, times)

@@ -1,0 +1,92 @@
+"""Symmetries of A1 and A4 that no code can have by accident."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from squealpipe.parameters import Parameters
+from squealpipe.tasks.ensemble import run_ensemble
+
+RNG = np.random.default_rng(5)
+ALPHA1, ALPHA2 = RNG.uniform(0, np.pi, (2, 60))
+TIMES = np.linspace(0, 12, 25)
+MODELS = ("A1", "A1-no-separation", "A1-linear-springs", "A4")
+
+
+def run(params, alpha1, alpha2, model="A1", **options):
+    return run_ensemble(
+        params, alpha1, alpha2, t_end=12.0, model=model, times=TIMES, log_events=30, **options
+    )
+
+
+def assert_mirrored(first, second, signs):
+    np.testing.assert_array_equal(first.event_kinds, second.event_kinds)
+    np.testing.assert_allclose(second.samples, first.samples * signs, atol=1e-9)
+
+
+@pytest.mark.parametrize("speed", [100.0, 0.3, 0.05])
+@pytest.mark.parametrize("model", MODELS)
+def test_equal_springs_can_be_exchanged(model, speed):
+    """(α1, α2) and (π − α2, π − α1) are the same system."""
+    params = Parameters(belt_speed=speed)
+    first = run(params, ALPHA1, ALPHA2, model)
+    assert_mirrored(first, run(params, np.pi - ALPHA2, np.pi - ALPHA1, model), [1, 1, 1, 1])
+
+
+@pytest.mark.parametrize("speed", [100.0, 0.3, 0.05])
+@pytest.mark.parametrize("model", MODELS)
+def test_mirror_image_runs_on_a_reversed_belt(model, speed):
+    """x → −x gives (α2, α1, −V) for equal springs, and (π − α1, π − α2, −V) for any."""
+    first = run(Parameters(belt_speed=speed), ALPHA1, ALPHA2, model)
+    reversed_belt = Parameters(belt_speed=-speed)
+    mirrored = [-1, 1, -1, 1]
+    assert_mirrored(first, run(reversed_belt, ALPHA2, ALPHA1, model), mirrored)
+    assert_mirrored(first, run(reversed_belt, np.pi - ALPHA1, np.pi - ALPHA2, model), mirrored)
+
+
+def test_swapping_the_angles_on_one_belt_is_no_symmetry():
+    first = run(Parameters(), ALPHA1, ALPHA2)
+    second = run(Parameters(), ALPHA2, ALPHA1)
+    assert np.abs(first.samples - second.samples).max() > 0.1
+
+
+@pytest.mark.parametrize("model", MODELS)
+def test_scales_drop_out(model):
+    """Equal dimensionless groups give equal runs in units of √(m/k1) and l_pre."""
+    mass, stiffness, length = 3.7e-3, 8.1e5, 2.3e-5
+    base = Parameters(belt_speed=0.3)
+    unit = np.sqrt(mass / stiffness)
+    scaled = Parameters(
+        mass=mass,
+        k1=stiffness,
+        k2=stiffness,
+        k3=0.75 * stiffness,
+        belt_speed=0.3 * length / unit,
+        preload=length,
+        length1=5 * length,
+        length2=5 * length,
+    )
+    first = run(base, ALPHA1, ALPHA2, model)
+    second = run_ensemble(
+        scaled,
+        ALPHA1,
+        ALPHA2,
+        t_end=12 * unit,
+        model=model,
+        times=TIMES * unit * (1 - 1e-15),
+        log_events=30,
+    )
+    units = np.array([length, length, length / unit, length / unit])
+    np.testing.assert_array_equal(first.event_kinds, second.event_kinds)
+    np.testing.assert_allclose(second.samples / units, first.samples, atol=1e-9)
+    np.testing.assert_allclose(second.peak_contact_force, first.peak_contact_force, rtol=1e-10)
+
+
+def test_powers_of_two_scale_to_the_bit():
+    first = run(Parameters(belt_speed=0.5), ALPHA1, ALPHA2)
+    scaled = Parameters(
+        mass=4.0, k1=16.0, k2=16.0, k3=12.0, belt_speed=2.0, preload=2.0, length1=10.0, length2=10.0
+    )
+    second = run_ensemble(scaled, ALPHA1, ALPHA2, t_end=6.0, times=TIMES / 2, log_events=30)
+    assert (second.samples / [2, 2, 4, 4]).tobytes() == first.samples.tobytes()
