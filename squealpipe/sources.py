@@ -8,6 +8,7 @@ its result.
 from __future__ import annotations
 
 import ast
+from collections.abc import Iterator, Sequence
 from functools import cache
 from pathlib import Path
 
@@ -33,7 +34,7 @@ def closure(script: str | Path) -> list[Path]:
 def imported_modules(source: Path) -> frozenset[Path]:
     """Package files that one file imports by name."""
     names: set[str] = set()
-    for node in _nodes(ast.parse(source.read_text(encoding="utf-8"))):
+    for node in _statements(ast.parse(source.read_bytes()).body):
         if isinstance(node, ast.Import):
             names.update(alias.name for alias in node.names)
         elif isinstance(node, ast.ImportFrom) and node.module and not node.level:
@@ -42,16 +43,20 @@ def imported_modules(source: Path) -> frozenset[Path]:
     return frozenset(path for name in names for path in _files(name))
 
 
-def _nodes(tree: ast.AST) -> list[ast.AST]:
-    nodes = []
-    for child in ast.iter_child_nodes(tree):
-        if isinstance(child, ast.If) and getattr(child.test, "id", "") == "TYPE_CHECKING":
+def _statements(body: Sequence[ast.AST]) -> Iterator[ast.AST]:
+    """Statements at any depth; expressions, which hold no imports, are not entered."""
+    for node in body:
+        if isinstance(node, ast.If) and getattr(node.test, "id", "") == "TYPE_CHECKING":
+            yield from _statements(node.orelse)
             continue
-        nodes.append(child)
-        nodes.extend(_nodes(child))
-    return nodes
+        yield node
+        for part in ("body", "orelse", "finalbody", "handlers", "cases"):
+            inner = getattr(node, part, None)
+            if isinstance(inner, list):
+                yield from _statements(inner)
 
 
+@cache
 def _files(name: str) -> list[Path]:
     """The module's file and the ``__init__`` of each package above it."""
     parts = name.split(".")
