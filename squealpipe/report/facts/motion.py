@@ -33,7 +33,9 @@ def assumptions(run: Run) -> dict[str, Any]:
     return {
         "levels": levels,
         "scenes": scenes,
-        "limits": {str(name): float(table.limit.sel(assumption=name)) for name in table.assumption},
+        "limits": {
+            str(name): float(table.limit.sel(assumption=name)) for name in table.assumption.values
+        },
     }
 
 
