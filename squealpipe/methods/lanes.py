@@ -22,9 +22,13 @@ import heyoka
 import numba
 import numpy as np
 from numba import types
-from numba.core import cgutils
-from numba.core import config as numba_config
+from numba.core import cgutils, config
 from numba.extending import intrinsic
+
+_numba: Any = numba
+PART_OPTIONS: dict[str, Any] = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+"""Options of functions that compiled code alone calls: no wrappers to compile."""
+part = _numba.njit(error_model="numpy", **PART_OPTIONS)
 
 LANES = 8
 """Lanes of a batch: the width of AVX-512; other numbers are no faster and change last digits."""
@@ -58,8 +62,7 @@ def batch_integrator(system: HybridSystem, tol: float) -> Any:
     )
 
 
-@intrinsic
-def _address(typing_context: Any, value: Any) -> Any:  # noqa: ARG001
+def _to_pointer(typing_context: Any, value: Any) -> Any:  # noqa: ARG001
     """An integer as a pointer."""
 
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:  # noqa: ARG001
@@ -68,20 +71,23 @@ def _address(typing_context: Any, value: Any) -> Any:  # noqa: ARG001
     return types.voidptr(types.intp), generate
 
 
-@numba.njit(error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True)
+_address: Any = intrinsic(_to_pointer)
+
+
+@part
 def float_view(address: int, shape: Any) -> Any:
     """The float64 array at an address."""
-    return numba.carray(_address(address), shape, np.float64)
+    return _numba.carray(_address(address), shape, np.float64)
 
 
-@numba.njit(error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True)
+@part
 def integer_view(address: int, shape: Any) -> Any:
     """The int64 array at an address."""
-    return numba.carray(_address(address), shape, np.int64)
+    return _numba.carray(_address(address), shape, np.int64)
 
 
-@numba.njit(error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True)
-def evaluate(coefficients: np.ndarray, variable: int, lane: int, step: float) -> float:
+@part
+def evaluate(coefficients: Any, variable: int, lane: int, step: float) -> Any:
     """A variable's Taylor polynomial at ``step`` from the start of the last step."""
     order = coefficients.shape[1] - 1
     value = coefficients[variable, order, lane]
@@ -90,9 +96,9 @@ def evaluate(coefficients: np.ndarray, variable: int, lane: int, step: float) ->
     return value
 
 
-@numba.njit(error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True)
+@part
 def root_of(
-    coefficients: np.ndarray, variable: int, lane: int, step: float, first: float, last: float
+    coefficients: Any, variable: int, lane: int, step: float, first: float, last: float
 ) -> float:
     """A root of a polynomial that is ``first`` at 0 and, of other sign, ``last`` at ``step``.
 
@@ -139,18 +145,19 @@ def compile_advance(advance: Callable[..., Any], sources: Iterable[Path]) -> Any
     digest = hashlib.sha256()
     for source in sorted(sources):
         digest.update(source.read_bytes())
-    signature = types.intp(types.CPointer(types.intp))
+    signature = types.intp(_numba.types.CPointer(types.intp))
+    numba_config: Any = config
     previous = numba_config.CACHE_DIR
     root = Path(previous) if previous else Path(__file__).parent / "__pycache__"
     numba_config.CACHE_DIR = str(root / f"lanes-{digest.hexdigest()[:16]}")
     try:
-        compiled = numba.cfunc(signature, error_model="numpy", cache=True)(advance)
+        compiled = _numba.cfunc(signature, error_model="numpy", cache=True)(advance)
     except (RuntimeError, OSError):
         # Nothing can be written there: compile in each process.
-        compiled = numba.cfunc(signature, error_model="numpy")(advance)
+        compiled = _numba.cfunc(signature, error_model="numpy")(advance)
     finally:
         numba_config.CACHE_DIR = previous
-    function = ctypes.CFUNCTYPE(ctypes.c_ssize_t, ctypes.c_void_p)(compiled.address)
+    function: Any = ctypes.CFUNCTYPE(ctypes.c_ssize_t, ctypes.c_void_p)(compiled.address)
     # The wrapper does not own the machine code.
     function.code = compiled
     return function

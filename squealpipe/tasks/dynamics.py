@@ -13,7 +13,8 @@ from squealpipe.models.switching import VARIANT_RULES
 from squealpipe.parameters import Parameters
 from squealpipe.schema import Outcome, build
 from squealpipe.schema.dynamics import SIMULATION, VALIDITY_MAP, RegimeFlag
-from squealpipe.tasks.ensemble import known_model, real_array, run_ensemble
+from squealpipe.tasks.ensemble import run_ensemble
+from squealpipe.tasks.ensemble_jobs import known_model, real_array
 from squealpipe.tasks.linear import stability_map
 
 SAMPLES_PER_TIME_UNIT = 20

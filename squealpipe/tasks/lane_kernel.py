@@ -1,7 +1,6 @@
-"""What happens to a lane after each Taylor step: observation, events, refilling; compiled.
+"""What happens to a lane after each Taylor step: events, ends, refilling; compiled.
 
-All quantities are in units of m = k1 = l_pre = 1. The functions see one step through its Taylor
-coefficients ``c[variable, order, lane]``, so extrema and samples inside it need no integration.
+All quantities are in units of m = k1 = l_pre = 1.
 """
 
 from __future__ import annotations
@@ -11,59 +10,86 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-import numba
 import numpy as np
 from numba.extending import register_jitable
 
 from squealpipe.laws import contact, springs
 from squealpipe.methods.lanes import (
     LANES,
+    PART_OPTIONS,
     compile_advance,
     evaluate,
     float_view,
     integer_view,
-    root_of,
+    part,
 )
 from squealpipe.models import switching
 from squealpipe.models.switching import Rules, ScaledParameters
-from squealpipe.schema import Outcome
 from squealpipe.sources import closure
-
-# A job's order: its physical parameters (tasks.a1_system.PHYSICAL), then what is asked for.
-N_PHYSICAL = 10
-T_END, T_LATE, STOP_AT_X, STOP_AT_SEPARATION, MAX_STEPS, MAX_EVENTS = range(10, 16)
-SEPARATES, REVERSES, STICKS, LINEAR_SPRINGS, LOST_GROWTH, STOP_AT_TURNS = range(16, 22)
-N_ORDERS = 22
-# A job's floating-point results.
-TIME, FIRST_SEPARATION, SEPARATED_TIME, STICK_TIME, LOWEST_Y, LARGEST_R2 = range(6)
-EARLY_LARGEST_X, LATE_LARGEST_X, LARGEST_SPEED, NEAREST_PIVOT2 = range(6, 10)
-HIGHEST_Y, HALF_TURNS1, HALF_TURNS2, LOG_GROWTH, HORIZON, FINAL_STATE = range(10, 16)
-N_RESULTS = FINAL_STATE + 4
-# A job's integer results; the counts of the five kinds of events come last.
-OUTCOME, REGIME, STEPS, LATE_EVENTS, EVENTS, FIRST_KIND = range(6)
-N_COUNTS = 11
-# A lane's memory: its compensated time, the pivots, then the job's order and results so far.
-CLOCK, CORRECTION, PIVOTS, ORDER = 0, 1, 2, 6
-RESULT = ORDER + N_ORDERS
-N_MEMORY = RESULT + N_RESULTS
-# A lane's integer memory: job, next sample, then the counts.
-JOB, NEXT_SAMPLE, COUNT = 0, 1, 2
-N_INTEGERS = COUNT + N_COUNTS
-
-TANGENT_NORM = 1e-4
-"""Norm that a tangent vector is scaled back to: small, so that it does not set the step size."""
-PIVOT_REACH2 = 1e-14
-"""Squared distance from a pivot, in free lengths, below which the force's direction is lost."""
-JUMP2 = 1e-2
-"""A step that ends its approach to a pivot this much nearer than it began, squared, has jumped over
-the singularity: straight through a pivot the Taylor series of the force is smooth to round-off."""
-
-SEPARATED, STICK = switching.SEPARATED, switching.STICK
-CONVERGED, SEPARATION_FOUND = int(Outcome.converged), int(Outcome.separated)
-STEP_LIMIT, EVENT_LIMIT = int(Outcome.step_limit), int(Outcome.event_limit)
-SINGULAR, NOT_FINITE = int(Outcome.singular_geometry), int(Outcome.not_finite)
-REACHED, UNRESOLVED = int(Outcome.amplitude_reached), int(Outcome.unresolved)
-RUNNING, IDLE, EMPTY = -1, -1, -2
+from squealpipe.tasks.lane_layout import (
+    CLOCK,
+    CONVERGED,
+    CORRECTION,
+    COUNT,
+    EARLY_LARGEST_X,
+    EVENT_LIMIT,
+    EVENTS,
+    FINAL_STATE,
+    FIRST_KIND,
+    FIRST_SEPARATION,
+    FIRST_TANGENT,
+    HALF_TURNS1,
+    HALF_TURNS2,
+    HIGHEST_Y,
+    HORIZON,
+    IDLE,
+    JOB,
+    LARGEST_R2,
+    LARGEST_SPEED,
+    LATE_EVENTS,
+    LATE_LARGEST_X,
+    LINEAR_SPRINGS,
+    LOG_GROWTH,
+    LOST_GROWTH,
+    LOWEST_Y,
+    MAX_EVENTS,
+    MAX_STEPS,
+    N_COUNTS,
+    N_INTEGERS,
+    N_MEMORY,
+    N_ORDERS,
+    N_PHYSICAL,
+    N_RESULTS,
+    NEAREST_PIVOT2,
+    NEXT_SAMPLE,
+    NOT_FINITE,
+    ORDER,
+    OUTCOME,
+    PIVOT_REACH2,
+    PIVOTS,
+    REACHED,
+    REGIME,
+    RESULT,
+    REVERSES,
+    RUNNING,
+    SEPARATED,
+    SEPARATES,
+    SEPARATION_FOUND,
+    SINGULAR,
+    STEP_LIMIT,
+    STEPS,
+    STICK,
+    STICKS,
+    STOP_AT_SEPARATION,
+    STOP_AT_TURNS,
+    STOP_AT_X,
+    SUSPECT_PIVOT2,
+    T_END,
+    TANGENT_NORM,
+    TIME,
+    UNRESOLVED,
+)
+from squealpipe.tasks.lane_observers import grow, observe, sample
 
 for law in (
     springs.fixed_ends,
@@ -75,12 +101,10 @@ for law in (
     contact.contact_force,
     *switching.COMPILED,
 ):
-    register_jitable(no_cpython_wrapper=True, no_cfunc_wrapper=True)(law)
-
-_njit = numba.njit(error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True)
+    register_jitable(**PART_OPTIONS)(law)
 
 
-@_njit
+@part
 def _parameters(memory: Any, lane: int) -> Any:
     m = memory[lane, ORDER:]
     p = ScaledParameters(1.0, 1.0, m[0], m[1], m[2], m[3], 1.0, m[4], m[5])
@@ -88,7 +112,7 @@ def _parameters(memory: Any, lane: int) -> Any:
     return p, springs.Geometry(m[6], m[7], m[8], m[9]), rules
 
 
-@_njit
+@part
 def _set_regime(pars: Any, memory: Any, lane: int, regime: int) -> None:
     """Write a regime into the lane's parameters (see ``tasks.a1_system.REGIME``)."""
     slipping = regime not in (SEPARATED, STICK)
@@ -100,7 +124,7 @@ def _set_regime(pars: Any, memory: Any, lane: int, regime: int) -> None:
     pars[15, lane] = 1.0 / (1.0 + abs(memory[lane, ORDER + 3]))
 
 
-@_njit
+@part
 def _load(state: Any, pars: Any, memory: Any, integers: Any, initial: Any, lane: int) -> None:
     """Start the job whose order is in the lane's memory."""
     p, g, rules = _parameters(memory, lane)
@@ -135,7 +159,7 @@ def _load(state: Any, pars: Any, memory: Any, integers: Any, initial: Any, lane:
     integers[lane, COUNT + REGIME] = regime
 
 
-@_njit
+@part
 def _idle(state: Any, pars: Any, lane: int) -> None:
     """The state of rest in contact, again after each step: a finite step without events."""
     for variable in range(state.shape[0]):
@@ -144,114 +168,8 @@ def _idle(state: Any, pars: Any, lane: int) -> None:
     pars[13, lane], pars[14, lane] = 0.0, 0.0
 
 
-@_njit
-def _observe(c: Any, end: Any, memory: Any, lane: int, regime: int, step: float) -> None:
-    """Times in each regime and the extrema over one step that ends in the state ``end``."""
-    m = memory[lane, RESULT:]
-    x0, y0, vx0, vy0 = c[0, 0, lane], c[1, 0, lane], c[2, 0, lane], c[3, 0, lane]
-    x1, y1, vx1, vy1 = end
-    if regime == SEPARATED:
-        m[SEPARATED_TIME] += step
-    else:
-        if regime == STICK:
-            m[STICK_TIME] += step
-        low = min(y0, y1)
-        if vy0 < 0.0 < vy1 and low + step * vy0 < m[LOWEST_Y]:
-            low = min(low, evaluate(c, 1, lane, root_of(c, 3, lane, step, vy0, vy1)))
-        m[LOWEST_Y] = min(m[LOWEST_Y], low)
-        high = max(y0, y1)
-        if vy0 > 0.0 > vy1 and high + step * vy0 > m[HIGHEST_Y]:
-            high = max(high, evaluate(c, 1, lane, root_of(c, 3, lane, step, vy0, vy1)))
-        m[HIGHEST_Y] = max(m[HIGHEST_Y], high)
-    large = max(abs(x0), abs(x1))
-    window = EARLY_LARGEST_X
-    if memory[lane, CLOCK] >= memory[lane, ORDER + T_LATE]:
-        window = LATE_LARGEST_X
-    if vx0 * vx1 < 0.0 and large + step * abs(vx0) > m[window]:
-        large = max(large, abs(evaluate(c, 0, lane, root_of(c, 2, lane, step, vx0, vx1))))
-    m[window] = max(m[window], large)
-    m[LARGEST_SPEED] = max(m[LARGEST_SPEED], vx1)
-    out0, out1 = x0 * vx0 + y0 * vy0, x1 * vx1 + y1 * vy1
-    largest = x1 * x1 + y1 * y1
-    if out0 > 0.0 > out1 and largest - 2.0 * step * out1 > m[LARGEST_R2]:
-        largest = max(largest, _turning_distance2(c, lane, step, 0.0, 0.0, out0, out1))
-    m[LARGEST_R2] = max(m[LARGEST_R2], largest)
-    for number in range(2):
-        px, py = memory[lane, PIVOTS + 2 * number], memory[lane, PIVOTS + 2 * number + 1]
-        scale = memory[lane, ORDER + 4 + number] ** -2
-        if (x0 < px) != (x1 < px):
-            m[HALF_TURNS1 + number] += 1.0 if (y1 > py) == (x1 < px) else -1.0
-        near = (x1 - px) ** 2 + (y1 - py) ** 2
-        out0, out1 = (x0 - px) * vx0 + (y0 - py) * vy0, (x1 - px) * vx1 + (y1 - py) * vy1
-        if out0 < 0.0 < out1:
-            near = min(near, _turning_distance2(c, lane, step, px, py, out0, out1))
-            if near < JUMP2 * ((x0 - px) ** 2 + (y0 - py) ** 2):
-                near = 0.0
-        m[NEAREST_PIVOT2] = min(m[NEAREST_PIVOT2], near * scale)
-
-
-@_njit
-def _turning_distance2(
-    c: Any, lane: int, step: float, px: float, py: float, first: float, last: float
-) -> float:
-    """Squared distance from a point where the radial velocity about it changes its sign."""
-    low, high, middle = 0.0, step, 0.5 * step
-    for _ in range(5):
-        middle = low - first * (high - low) / (last - first)
-        x, y = evaluate(c, 0, lane, middle) - px, evaluate(c, 1, lane, middle) - py
-        out = x * evaluate(c, 2, lane, middle) + y * evaluate(c, 3, lane, middle)
-        if (out > 0.0) == (first > 0.0):
-            low, first, last = middle, out, 0.5 * last
-        else:
-            high, last, first = middle, out, 0.5 * first
-    x, y = evaluate(c, 0, lane, middle) - px, evaluate(c, 1, lane, middle) - py
-    return x * x + y * y
-
-
-@_njit
-def _sample(
-    c: Any,
-    memory: Any,
-    integers: Any,
-    lane: int,
-    times: Any,
-    samples: Any,
-    regimes: Any,
-    step: float,
-) -> None:
-    """States at the asked instants of one job that fall into this step."""
-    following = integers[lane, NEXT_SAMPLE]
-    while following < times.size:
-        offset = (times[following] - memory[lane, CLOCK]) - memory[lane, CORRECTION]
-        if offset > step:
-            break
-        for variable in range(4):
-            samples[following, variable] = evaluate(c, variable, lane, offset)
-        regimes[following] = integers[lane, COUNT + REGIME]
-        following += 1
-    integers[lane, NEXT_SAMPLE] = following
-
-
-@_njit
-def _grow(state: Any, m: Any, lane: int, time: float, saltation: float, lost: float) -> None:
-    """Growth of the tangent vector, with the jump of the field at belt speed."""
-    state[6, lane] *= saltation
-    norm = math.sqrt(
-        state[4, lane] ** 2 + state[5, lane] ** 2 + state[6, lane] ** 2 + state[7, lane] ** 2
-    )
-    if norm == 0.0:
-        return
-    growth = m[LOG_GROWTH] + math.log(norm / TANGENT_NORM)
-    if math.isnan(m[HORIZON]) and growth > lost:
-        m[HORIZON] = time
-    if not 1e-3 < norm / TANGENT_NORM < 1e2:
-        for variable in range(4, 8):
-            state[variable, lane] *= TANGENT_NORM / norm
-        m[LOG_GROWTH] = growth
-
-
-@_njit
-def _near_surface(state: Any, m: Any, lane: int, regime: int, step: float) -> bool:
+@part
+def _near_surface(state: Any, m: Any, lane: int, regime: int, step: float) -> Any:
     """Whether ``switching.switch`` must look at the state; cheap and on the safe side."""
     y, reach = state[1, lane], 1e-12 * (1.0 + abs(state[1, lane]) + step * abs(state[3, lane]))
     if regime == SEPARATED:
@@ -262,20 +180,25 @@ def _near_surface(state: Any, m: Any, lane: int, regime: int, step: float) -> bo
     return m[REVERSES] > 0.0 and gap <= 1e-12 * (1.0 + abs(m[3]))
 
 
-@_njit
-def _advance_lane(
-    state: Any, pars: Any, c: Any, step: float, memory: Any, integers: Any, lane: int, events: Any
-) -> int:
-    """Observe one lane's step and handle its event; returns the outcome, or RUNNING."""
-    regime = integers[lane, COUNT + REGIME]
-    m, result = memory[lane, ORDER:], memory[lane, RESULT:]
+@part
+def _finite(state: Any, step: float, lane: int) -> bool:
     total = step
     for variable in range(state.shape[0]):
         total += 0.0 * state[variable, lane]
-    if not math.isfinite(total):
+    return math.isfinite(total)
+
+
+@part
+def _advance_lane(
+    state: Any, pars: Any, c: Any, step: float, memory: Any, integers: Any, lane: int, events: Any
+) -> Any:
+    """Observe one lane's step and handle its event; returns the outcome, or RUNNING."""
+    regime = integers[lane, COUNT + REGIME]
+    m, result = memory[lane, ORDER:], memory[lane, RESULT:]
+    if not _finite(state, step, lane):
         for variable in range(state.shape[0]):
             state[variable, lane] = c[variable, 0, lane]
-        return SINGULAR if result[NEAREST_PIVOT2] < 1e-6 else NOT_FINITE
+        return SINGULAR if result[NEAREST_PIVOT2] < SUSPECT_PIVOT2 else NOT_FINITE
     integers[lane, COUNT + STEPS] += 1
     remaining = (m[T_END] - memory[lane, CLOCK]) - memory[lane, CORRECTION]
     if remaining <= step:
@@ -285,7 +208,7 @@ def _advance_lane(
         step = remaining
     end = (state[0, lane], state[1, lane], state[2, lane], state[3, lane])
     if step > 0.0:
-        _observe(c, end, memory, lane, regime, step)
+        observe(c, end, memory, lane, regime, step)
     increment = step + memory[lane, CORRECTION]
     time = memory[lane, CLOCK] + increment
     memory[lane, CORRECTION] = (memory[lane, CLOCK] - time) + increment
@@ -296,33 +219,60 @@ def _advance_lane(
         return SINGULAR
     saltation = 1.0
     if _near_surface(state, m, lane, regime, step):
-        p, g, rules = _parameters(memory, lane)
-        change = switching.switch(end[0], end[1], end[2], end[3], regime, step, p, g, rules)
-        state[1, lane], state[2, lane] = change.y, change.vx
-        if change.kind == switching.CHATTER:
-            return EVENT_LIMIT
-        if change.kind >= 0:
-            saltation = change.saltation
-            _record(state, integers, lane, change.kind, time, events)
-            integers[lane, COUNT + LATE_EVENTS] += change.late
-            integers[lane, COUNT + REGIME] = change.regime
-            _set_regime(pars, memory, lane, change.regime)
-            if change.kind == switching.SEPARATION and math.isnan(result[FIRST_SEPARATION]):
-                result[FIRST_SEPARATION] = time
-    if state.shape[0] > 4:
-        _grow(state, result, lane, time, saltation, m[LOST_GROWTH])
+        saltation = _switch(state, pars, memory, integers, lane, step, time, events)
+    if state.shape[0] > FIRST_TANGENT:
+        grow(state, result, lane, time, saltation, m[LOST_GROWTH])
+    return _stop_reason(m, result, integers, lane, saltation)
+
+
+@part
+def _switch(
+    state: Any,
+    pars: Any,
+    memory: Any,
+    integers: Any,
+    lane: int,
+    step: float,
+    time: float,
+    events: Any,
+) -> float:
+    """Change the regime if it is due; returns the saltation factor, NaN where none exists."""
+    regime = integers[lane, COUNT + REGIME]
+    x, y, vx, vy = state[0, lane], state[1, lane], state[2, lane], state[3, lane]
+    p, g, rules = _parameters(memory, lane)
+    change = switching.switch(x, y, vx, vy, regime, step, p, g, rules)
+    state[1, lane], state[2, lane] = change.y, change.vx
+    if change.kind == switching.CHATTER:
+        return np.nan
+    if change.kind >= 0:
+        _record(state, integers, lane, change.kind, time, events)
+        integers[lane, COUNT + LATE_EVENTS] += change.late
+        integers[lane, COUNT + REGIME] = change.regime
+        _set_regime(pars, memory, lane, change.regime)
+        never = math.isnan(memory[lane, RESULT + FIRST_SEPARATION])
+        if change.kind == switching.SEPARATION and never:
+            memory[lane, RESULT + FIRST_SEPARATION] = time
+    return change.saltation
+
+
+@part
+def _stop_reason(m: Any, result: Any, integers: Any, lane: int, saltation: float) -> int:
+    """The outcome if the run is to end here, or RUNNING."""
+    outcome = RUNNING
+    if integers[lane, COUNT + STEPS] >= m[MAX_STEPS]:
+        outcome = STEP_LIMIT
+    if integers[lane, COUNT + EVENTS] >= m[MAX_EVENTS] or math.isnan(saltation):
+        outcome = EVENT_LIMIT
+    far = max(result[EARLY_LARGEST_X], result[LATE_LARGEST_X]) > m[STOP_AT_X]
+    turns = 0.5 * min(abs(result[HALF_TURNS1]), abs(result[HALF_TURNS2]))
+    if far or turns >= m[STOP_AT_TURNS]:
+        outcome = REACHED
     if m[STOP_AT_SEPARATION] > 0.0 and not math.isnan(result[FIRST_SEPARATION]):
-        return SEPARATION_FOUND
-    if max(result[EARLY_LARGEST_X], result[LATE_LARGEST_X]) > m[STOP_AT_X]:
-        return REACHED
-    if min(abs(result[HALF_TURNS1]), abs(result[HALF_TURNS2])) >= 2.0 * m[STOP_AT_TURNS]:
-        return REACHED
-    if integers[lane, COUNT + EVENTS] >= m[MAX_EVENTS]:
-        return EVENT_LIMIT
-    return STEP_LIMIT if integers[lane, COUNT + STEPS] >= m[MAX_STEPS] else RUNNING
+        outcome = SEPARATION_FOUND
+    return outcome
 
 
-@_njit
+@part
 def _record(
     state: Any, integers: Any, lane: int, kind: int, time: float, events: tuple[Any, Any, Any]
 ) -> None:
@@ -337,7 +287,7 @@ def _record(
             states[job, total, variable] = state[variable, lane]
 
 
-@_njit
+@part
 def _finish(state: Any, memory: Any, integers: Any, lane: int, result: Any, counts: Any) -> None:
     """Write a job's results."""
     memory[lane, RESULT + TIME] = memory[lane, CLOCK]
@@ -347,7 +297,7 @@ def _finish(state: Any, memory: Any, integers: Any, lane: int, result: Any, coun
         result[index] = memory[lane, RESULT + index]
     for index in range(N_COUNTS):
         counts[index] = integers[lane, COUNT + index]
-    if state.shape[0] > 4:
+    if state.shape[0] > FIRST_TANGENT:
         square = 0.0
         for variable in range(4, 8):
             square += state[variable, lane] ** 2
@@ -384,7 +334,7 @@ def _advance(table: Any) -> int:
                     lane, CORRECTION
                 ]
                 used = min(step, remaining)
-                _sample(c, memory, integers, lane, times[job], states[job], regimes[job], used)
+                sample(c, memory, integers, lane, times[job], states[job], regimes[job], used)
             outcome = _advance_lane(state, pars, c, step, memory, integers, lane, events)
             if outcome == RUNNING:
                 busy += 1
