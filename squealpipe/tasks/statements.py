@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from squealpipe.laws.springs import Stiffness, geometry, linear_stiffness, stiffness_determinant
+from squealpipe.models.a2 import ROUND_OFF
 from squealpipe.models.a4 import spectrum
 from squealpipe.parameters import SCENES, Parameters, Scene
 from squealpipe.schema import Outcome
@@ -24,6 +25,8 @@ GROWTH = 1.5
 """F3 and F4: |x| grows if the second half of the horizon exceeds the first by this factor."""
 SPREAD = 0.1
 """F2e: how far the lowest contact forces of the first three scenes may differ."""
+SAMENESS = 1e-10
+"""F5a: how far the two motions may differ, over k3 l_pre and over the horizon."""
 JUMPS = 3
 """F5b: how many separations count as "again and again"."""
 
@@ -74,6 +77,11 @@ class Candidates:
         }
         return {name: Verdict(run.lowest_contact_force, run.outcome) for name, run in runs.items()}
 
+    @cached_property
+    def level(self) -> Ensemble:
+        """The motion at (π, π), both springs along the belt."""
+        return self.run(SCENES["F5a"])
+
     def stiffness(self, scene: Scene) -> tuple[Stiffness, Any]:
         """K11, K12, K22 and det K at a scene."""
         p, g = SimpleNamespace(**self.fields), geometry(scene.alpha1, scene.alpha2)
@@ -120,8 +128,17 @@ def _alike(candidates: Candidates) -> Verdict:
     return Verdict(SPREAD - np.ptp(lowest, axis=0), np.max([run.outcome for run in runs], axis=0))
 
 
+def _same_levels(candidates: Candidates) -> Verdict:
+    first, second = candidates.level, candidates.run(SCENES["F5b"])
+    force = np.abs(first.peak_contact_force - second.peak_contact_force)
+    share = np.abs(first.separated_time - second.separated_time) / first.time
+    difference = np.maximum(force, share)
+    margin = (SAMENESS - difference) / (SAMENESS + difference)
+    return Verdict(margin, np.maximum(first.outcome, second.outcome))
+
+
 def _jumps(candidates: Candidates) -> Verdict:
-    run = candidates.run(SCENES["F5a"])
+    run = candidates.level
     return Verdict((run.separations - (JUMPS - 0.5)) / JUMPS, run.outcome)
 
 
@@ -160,7 +177,10 @@ def _modes_switched(candidates: Candidates) -> Verdict:
     after, _ = candidates.stiffness(SCENES["F13"])
     first = before.k22 + fields["k3"] - before.k11
     second = after.k11 - after.k22 - fields["k3"]
-    return _closed(np.minimum(first, second) / fields["k1"])
+    coupling = np.maximum(np.abs(before.k12), np.abs(after.k12))
+    isolated = coupling <= ROUND_OFF * fields["k1"]
+    margin = np.where(isolated, np.minimum(first, second), -coupling)
+    return _closed(margin / fields["k1"])
 
 
 def _closed(margin: np.ndarray) -> Verdict:
@@ -204,6 +224,12 @@ STATEMENTS: tuple[Statement, ...] = (
         _stays_bounded,
     ),
     _in_scene(
+        "F5a",
+        f"peak force and time off the belt at (π, π) and (0, 0) differ by d < {SAMENESS}; "
+        f"margin ({SAMENESS} − d)/({SAMENESS} + d)",
+        _same_levels,
+    ),
+    _in_scene(
         "F5b",
         f"at least {JUMPS} separations at (π, π); margin (separations − {JUMPS - 0.5})/{JUMPS}",
         _jumps,
@@ -217,8 +243,8 @@ STATEMENTS: tuple[Statement, ...] = (
     ),
     Statement(
         name="F13",
-        criterion="x mode first at (3π/4, 3π/4) and second at (5π/6, 5π/6); margin of the "
-        "stiffnesses K11 and K22 + k3 over k1, 1 − κ at the latter",
+        criterion="isolated x mode first at (3π/4, 3π/4) and second at (5π/6, 5π/6); margin of "
+        "K11 against K22 + k3, over k1: 1 − κ at the latter; −|K12|/k1 if coupled",
         horizon=np.nan,
         check=_modes_switched,
     ),

@@ -76,6 +76,13 @@ def test_the_modes_are_switched_while_the_contact_is_softer(kappa: float) -> Non
     assert margin == pytest.approx(min(1 - kappa, kappa), abs=1e-12)
 
 
+def test_unequal_springs_break_what_needs_equal_ones() -> None:
+    """A user's k2 ≠ k1: (π, π) differs from (0, 0), and no x mode is isolated."""
+    verdicts = measure(candidate_of(BASELINE.with_(k2=1.1, length2=6.0), tol=1e-12))
+    assert verdicts["F5a"].margin[0] < 0
+    assert verdicts["F13"].margin[0] == pytest.approx(-0.5 * 0.1, rel=1e-12)
+
+
 def test_margins_do_not_depend_on_units() -> None:
     plain = measure(candidate_of(BASELINE, tol=1e-12))
     speed = 3.0 * math.sqrt(7.0 / 2.0)
