@@ -24,7 +24,8 @@ from squealpipe.progress import duration
 from squealpipe.yaml_files import flat
 
 FIGURE = re.compile(r"figures/([\w-]+)\.\w+$")
-MISSING, SOURCE, KEY, FOLLOWS = "made for the first time", "source", "key", "follows"
+MOST_REASONS = 4
+"""Reasons of one job that are printed; JSON has all."""
 
 
 class WorkflowError(RuntimeError):
@@ -136,9 +137,11 @@ class Explanation:
 
 
 def why(job: Job) -> list[str]:
-    """Reasons of a job as phrases."""
+    """Reasons of a job as phrases, the first few of many."""
+    more = len(job.reasons) - MOST_REASONS
+    told = [*job.reasons[:MOST_REASONS], *([f"and {more} more"] if more > 0 else [])]
     followed = [f"follows {', '.join(job.follows)}"] if job.follows else []
-    return [*job.reasons, *followed] or ["asked for"]
+    return [*told, *followed] or ["asked for"]
 
 
 def explain(
@@ -232,16 +235,21 @@ def _reasons(text: str) -> tuple[list[str], list[str]]:
         if head == "Input files updated by another job":
             updated = files
         elif head == "Missing output files":
-            told.append(f"missing: {', '.join(files)}")
+            told.append(f"missing: {_some(files)}")
         elif head == "Incomplete output files":
-            told.append(f"interrupted: {', '.join(files)}")
-        elif head == "Updated input files":
-            told.extend(f"{name} changed" for name in files)
+            told.append(f"interrupted: {_some(files)}")
+        elif head == "Updated input files" and not told:  # of a missing file nothing is older
+            told.extend(f"{name} changed" for name in sorted(files))
         elif head == "Params have changed since last execution":
             told.extend(changed_keys(rest))
-        elif phrase:
+        elif phrase and head != "Updated input files":
             told.append(phrase[0].lower() + phrase[1:])
     return told, updated
+
+
+def _some(files: list[str]) -> str:
+    more = f" and {len(files) - 2} more" if len(files) > 2 else ""
+    return ", ".join(sorted(files)[:2]) + more
 
 
 def changed_keys(text: str) -> list[str]:

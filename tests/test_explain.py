@@ -16,6 +16,7 @@ from squealpipe.explain import (
     explain,
     read_plan,
     records,
+    why,
 )
 from squealpipe.report.explanation import table
 
@@ -113,6 +114,16 @@ def test_damaged_records_mean_an_unknown_duration(tmp_path):
     (folder / base64.b64encode(b"results/b.nc").decode()).write_text("{")
     (folder / "not base64!").write_text("{}")
     assert records(tmp_path) == {"results/a.nc": Record(rule="r", seconds=2.5, params="['{}']")}
+
+
+def test_many_reasons_are_told_in_short():
+    many = ", ".join(f"squealpipe/m{i}.py" for i in range(9))
+    text = f"rule r:\n    output: a.nc\n    reason: Updated input files: {many}\n"
+    job = read_plan(text, {})[0]
+    assert len(job.reasons) == 9
+    assert why(job)[3:] == ["squealpipe/m3.py changed", "and 5 more"]
+    missing = text.replace("Updated", "Missing output files: a.nc; Updated")
+    assert read_plan(missing, {})[0].reasons == ("missing: a.nc",)
 
 
 def test_nothing_to_do_is_said():
