@@ -26,7 +26,10 @@ produce(
 )
 produce(
     lambda: whirl_sizes(
-        params, speeds("whirl"), t_end=part["dynamics.whirl_horizon"] * second, tol=tol
+        params,
+        np.union1d(speeds("whirl"), [abs(params.belt_speed)] if params.belt_speed else []),
+        t_end=part["dynamics.whirl_horizon"] * second,
+        tol=tol,
     ),
     config=part,
     output=out.whirl,
