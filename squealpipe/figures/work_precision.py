@@ -75,6 +75,7 @@ def draw_methods(
         zorder=3,
     )  # fmt: skip
     axes.set(xscale="log", yscale="log")
+    axes.minorticks_off()
     axes.grid(visible=True, lw=0.3, color="#DDDDDD")
 
 

@@ -59,5 +59,6 @@ def _draw_onset(axes: Axes, rows: xr.Dataset) -> None:
         xscale="log", yscale="log", xlabel="distance from onset, 1 − μ/μ$_c$",
         ylabel="error of ω, relative",
     )  # fmt: skip
+    axes.minorticks_off()
     axes.grid(visible=True, lw=0.3, color="#DDDDDD")
     axes.legend(fontsize=6, **_ABOVE)

@@ -74,4 +74,5 @@ def _draw(axes: Axes, rows: xr.Dataset, name: str, label: str) -> None:
     )  # fmt: skip
     axes.set(xscale="log", yscale="log", xlabel="wall time of the map (s)", ylabel=label)
     axes.margins(x=0.15)
+    axes.minorticks_off()
     axes.grid(visible=True, lw=0.3, color="#DDDDDD")

@@ -64,7 +64,7 @@ def dominant_frequency(samples: np.ndarray, times: np.ndarray) -> np.ndarray:
         for step in (-1, 0, 1)
     )
     curvature = before - 2.0 * here + after
-    offset = np.where(curvature < 0.0, 0.5 * (before - after) / np.minimum(curvature, -1e-300), 0.0)
+    offset = _over_curvature(0.5 * (before - after), curvature)
     bin_width = 2.0 * math.pi / (samples.shape[-1] * (times[1] - times[0]))
     found = (top + np.clip(offset, -0.5, 0.5)) * bin_width
     return np.asarray(np.where(np.isfinite(samples).all(axis=-1), found, np.nan))
@@ -76,8 +76,12 @@ def _highest(values: np.ndarray) -> np.ndarray:
     before, here, after = (
         np.take_along_axis(values, (top + step)[..., None], axis=-1)[..., 0] for step in (-1, 0, 1)
     )
-    curvature = before - 2.0 * here + after
-    rise = np.where(
-        curvature < 0.0, 0.125 * (after - before) ** 2 / np.minimum(curvature, -1e-300), 0.0
-    )
+    rise = _over_curvature(0.125 * (after - before) ** 2, before - 2.0 * here + after)
     return np.asarray(np.maximum(values.max(axis=-1), here - rise))
+
+
+def _over_curvature(share: np.ndarray, curvature: np.ndarray) -> np.ndarray:
+    """share/curvature at a maximum, 0 where there is none."""
+    return np.asarray(
+        np.divide(share, curvature, out=np.zeros(np.shape(share)), where=curvature < 0.0)
+    )
