@@ -14,7 +14,9 @@ from numpy.typing import NDArray
 
 Vector = NDArray[np.float64]
 
-_NEWTON = 12
+_NEWTON = 60
+_NEWTON_LAST_STEP = 1e-9
+"""Its square, the error that quadratic convergence leaves, is below round-off."""
 _SAMPLES_PER_HARMONIC = 8
 
 
@@ -34,18 +36,22 @@ def contact_angles(cosine: Vector, threshold: float, grid: Vector, table: Vector
     above = gap > 0.0
     edges = np.flatnonzero(above[1:] != above[:-1])
     left, right = grid[edges], grid[edges + 1]
+    ends = gap[edges], gap[edges + 1]
     dips = _hidden_dips(gap, above, grid)
     if dips.size:
-        order = np.arange(len(cosine))
-        deep = (threshold - np.cos(np.outer(dips, order)) @ cosine > 0.0) != above[
-            np.searchsorted(grid, dips) - 1
-        ]
-        for dip in dips[deep]:
-            at = int(np.searchsorted(grid, dip))
-            left, right = np.append(left, [grid[at - 1], dip]), np.append(right, [dip, grid[at]])
+        bottom = threshold - np.cos(np.outer(dips, np.arange(len(cosine)))) @ cosine
+        after = np.searchsorted(grid, dips)
+        deep = (bottom > 0.0) != above[after - 1]
+        dips, bottom, after = dips[deep], bottom[deep], after[deep]
+        left = np.concatenate([left, grid[after - 1], dips])
+        right = np.concatenate([right, dips, grid[after]])
+        ends = (
+            np.concatenate([ends[0], gap[after - 1], bottom]),
+            np.concatenate([ends[1], bottom, gap[after]]),
+        )
         sort = np.argsort(left)
-        left, right = left[sort], right[sort]
-    return _refine(cosine, threshold, left, right)
+        left, right, ends = left[sort], right[sort], (ends[0][sort], ends[1][sort])
+    return _refine(cosine, threshold, (left, right), ends)
 
 
 def _hidden_dips(gap: Vector, above: NDArray[np.bool_], grid: Vector) -> Vector:
@@ -70,26 +76,30 @@ def _hidden_dips(gap: Vector, above: NDArray[np.bool_], grid: Vector) -> Vector:
     return np.asarray(turns[crossing])
 
 
-def _refine(cosine: Vector, threshold: float, left: Vector, right: Vector) -> Vector:
-    """Safeguarded Newton for one zero in each bracket, all together."""
+def _refine(
+    cosine: Vector,
+    threshold: float,
+    bracket: tuple[Vector, Vector],
+    ends: tuple[Vector, Vector],
+) -> Vector:
+    """Safeguarded Newton for one zero in each bracket, all together, from the secant's zero."""
+    left, right = bracket
     if not left.size:
         return left
     order = np.arange(len(cosine))
     rate = order * cosine
-    left, right = left.copy(), right.copy()
-    rising = threshold - np.cos(np.outer(left, order)) @ cosine <= 0.0
-    theta = 0.5 * (left + right)
+    rising = ends[0] <= 0.0
+    theta = left + (right - left) * ends[0] / (ends[0] - ends[1])
     for _ in range(_NEWTON):
         phase = np.outer(theta, order)
         gap = threshold - np.cos(phase) @ cosine
         slope = np.sin(phase) @ rate
         before = (gap <= 0.0) == rising
         left, right = np.where(before, theta, left), np.where(before, right, theta)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            newton = theta - gap / slope
+        newton = theta - gap / np.where(slope == 0.0, np.inf, slope)
         inside = (newton >= left) & (newton <= right)
         following = np.where(inside, newton, 0.5 * (left + right))
-        if np.abs(following - theta).max() <= 4e-16 * math.pi:
+        if np.abs(following - theta).max() <= _NEWTON_LAST_STEP:
             return following
         theta = following
     return theta

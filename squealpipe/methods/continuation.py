@@ -72,6 +72,7 @@ class ContinuationState:
     Attributes:
         point: z with F(z) = 0.
         tangent: unit direction of the branch.
+        curvature: its change per arclength, by differences.
         step: length of the next step.
         iterations: Newton iterations spent on this point.
         residual: largest component of F.
@@ -79,6 +80,7 @@ class ContinuationState:
 
     point: Vector
     tangent: Vector
+    curvature: Vector
     step: float
     iterations: int
     residual: float
@@ -102,7 +104,7 @@ class ContinuationResult:
 
 @dataclass(frozen=True)
 class PseudoArclength:
-    """The algorithm: predict along the tangent, correct in the plane normal to it."""
+    """The algorithm: predict along the bending tangent, correct in the plane normal to it."""
 
     settings: ContinuationSettings
 
@@ -144,7 +146,8 @@ class PseudoArclength:
         step = state.step
         while step >= settings.shortest_step:
             length = step * (1.0 + float(np.linalg.norm(state.point)))
-            guess = state.point + length * state.tangent
+            ahead = length * state.tangent + 0.5 * length * length * state.curvature
+            guess = state.point + ahead
             corrected = self.correct(problem, guess, state.tangent)
             if corrected is not None:
                 point, tangent, iterations, residual = corrected
@@ -152,7 +155,10 @@ class PseudoArclength:
                 if near and float(tangent @ state.tangent) > settings.least_cosine:
                     easy = iterations <= settings.easy_iterations
                     following = min(step * (1.5 if easy else 1.0), settings.longest_step)
-                    return ContinuationState(point, tangent, following, iterations, residual)
+                    curvature = (tangent - state.tangent) / length
+                    return ContinuationState(
+                        point, tangent, curvature, following, iterations, residual
+                    )
             step *= 0.5
         return None
 
@@ -179,7 +185,7 @@ class Continuation:
         algorithm = PseudoArclength(self.settings)
         unit = self.direction / np.linalg.norm(self.direction)
         state: ContinuationState | None = ContinuationState(
-            self.start, unit, self.settings.first_step, 0, 0.0
+            self.start, unit, np.zeros_like(unit), self.settings.first_step, 0, 0.0
         )
         while state is not None:
             state = algorithm.advance(self.problem, state)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -130,20 +130,18 @@ def _coupled_branch(
     direction = np.zeros_like(start)
     direction[1], direction[balance.contact.n_harmonics + 2] = seed.direction[:2]
     first = min(settings.first_step, 0.1 * seed.room / (1.0 + float(np.linalg.norm(start))))
-    control = ContinuationSettings(
-        **{
-            **vars(settings),
-            "first_step": max(first, settings.shortest_step),
-        }
-    )
+    control = replace(settings, first_step=max(first, settings.shortest_step))
     ended = Outcome.converged
 
     def from_higher_end(state: ContinuationState) -> ContinuationState:
         if _other_end(balance, state.point) <= _peak(balance, state.point):
             return state
         signs = balance.shift_signs
-        return ContinuationState(
-            signs * state.point, signs * state.tangent, state.step, state.iterations, state.residual
+        return replace(
+            state,
+            point=signs * state.point,
+            tangent=signs * state.tangent,
+            curvature=signs * state.curvature,
         )
 
     def stop(state: ContinuationState) -> bool:
