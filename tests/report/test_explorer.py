@@ -14,6 +14,7 @@ from squealpipe.tasks.dynamics import validity_map
 from squealpipe.tasks.explorer import explorer_data
 from squealpipe.tasks.hammering import hammering_map
 from squealpipe.tasks.linear import natural_frequencies, stability_map
+from squealpipe.tasks.model_ladder import model_ladder
 from tests.browser import chromium_path, open_page
 
 ANGLES = np.linspace(0, np.pi, 7)
@@ -41,6 +42,7 @@ def shown():
         frequencies=natural_frequencies(params, FINE, FINE),
         validity=validity_map(params, FINE, FINE, t_end=50.0),
         hammering=hammering_map(params, FINE, FINE, t_end=50.0),
+        ladder=model_ladder(params, 7, 0.05, t_end=50.0),
     )
 
 
@@ -130,7 +132,7 @@ class TestInBrowser:
         for key, layer in shown.items():
             opened.select_option("#layer", key)
             z = np.array(opened.evaluate(f"{HISTORY.format('map')}.z"), float)
-            assert z.shape == (13, 13)
+            assert z.shape == layer.values.T.shape
             if not layer.meanings:
                 np.testing.assert_allclose(z, layer.values.T, rtol=1e-6)
         rows = opened.locator("#facts tr").all_inner_texts()

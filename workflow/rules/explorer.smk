@@ -25,6 +25,7 @@ rule write_explorer:
         frequencies=data("natural_frequencies"),
         validity=data("validity_map"),
         hammering=data("hammering_map"),
+        ladder=data("model_ladder"),
         page=EXPLORER_PAGE,
         sources=sources("write_explorer"),
     output:

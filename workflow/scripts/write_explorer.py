@@ -4,7 +4,7 @@ from squealpipe.report.explorer import write_explorer
 from squealpipe.report.explorer.layers import layers
 from squealpipe.store import load
 
-maps = ("stability", "frequencies", "validity", "hammering")
+maps = ("stability", "frequencies", "validity", "hammering", "ladder")
 write_explorer(
     load(snakemake.input.explorer),
     layers(**{name: load(snakemake.input[name]) for name in maps}),

@@ -8,7 +8,9 @@ from dataclasses import dataclass, field
 import numpy as np
 import xarray as xr
 
+from squealpipe.figures.model_ladder import NAMES
 from squealpipe.figures.style import REGIME_COLOURS
+from squealpipe.schema.comparison import Level
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -68,12 +70,28 @@ def category(variable: xr.DataArray, label: str, *, colours: Mapping[str, str]) 
     )
 
 
+def cheapest(ladder: xr.Dataset, question: str) -> Layer:
+    """The cheapest adequate model for a question, named and coloured as in the ladder's figure."""
+    levels = ladder.cheapest.sel(question=question)
+    present = [Level(code) for code in np.unique(levels.values).tolist()]
+    return Layer(
+        label=f"cheapest model: {question.replace('_', ' ')}",
+        unit="",
+        alpha1=levels.alpha1.values,
+        alpha2=levels.alpha2.values,
+        values=levels.values.astype(float),
+        meanings={int(level): NAMES[level][0] for level in present},
+        colours={int(level): NAMES[level][1] for level in present},
+    )
+
+
 def layers(
     *,
     stability: xr.Dataset,
     frequencies: xr.Dataset,
     validity: xr.Dataset,
     hammering: xr.Dataset,
+    ladder: xr.Dataset,
 ) -> dict[str, Layer]:
     """All layers, in the order of the chooser.
 
@@ -82,6 +100,7 @@ def layers(
         frequencies: dataset ``natural_frequencies``.
         validity: dataset ``validity_map``.
         hammering: dataset ``hammering_map``.
+        ladder: dataset ``model_ladder``.
     """
     found = {
         "motion": category(hammering.motion, "motion (A1)", colours=REGIME_COLOURS),
@@ -100,4 +119,6 @@ def layers(
         for mode in (1, 2):
             chosen = frequencies.omega.sel(mode=mode, contact_state=state)
             found[f"omega{mode}_{state}"] = quantity(chosen, f"ω{'₁₂'[mode - 1]} {words}")
+    for question in ladder.question.values:
+        found[f"cheapest_{question}"] = cheapest(ladder, str(question))
     return found
