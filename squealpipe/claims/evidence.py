@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -12,6 +13,11 @@ import xarray as xr
 from squealpipe.parameters import Parameters
 from squealpipe.schema.claims import Verdict
 from squealpipe.store import load
+
+LONGEST_PLAIN = 6
+"""Digits before the point up to which a number is written out."""
+
+SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
 class MissingDataError(LookupError):
@@ -122,5 +128,17 @@ def finding(
         value=float(value),
         relation=relation,
         threshold=float(threshold),
-        evidence=evidence,
+        evidence=without_exponents(evidence),
     )
+
+
+def without_exponents(text: str) -> str:
+    """Numbers as people write them: 4.42e+03 becomes 4420, 3e-15 becomes 3·10⁻¹⁵."""
+
+    def written(match: re.Match[str]) -> str:
+        exponent = int(match[2])
+        if 0 <= exponent < LONGEST_PLAIN:
+            return f"{float(match[0]):.0f}"
+        return f"{match[1]}·10{str(exponent).translate(SUPERSCRIPTS)}"
+
+    return re.sub(r"(\d+(?:\.\d+)?)e([+-]\d+)", written, text)

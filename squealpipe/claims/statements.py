@@ -6,7 +6,6 @@ from collections.abc import Callable
 
 from squealpipe.claims import assumptions, backbones, frequencies, response, sliding
 from squealpipe.claims.evidence import Finding, Run
-from squealpipe.claims.misprint_checks import REVERSED
 from squealpipe.claims.misprints import MISPRINTS
 from squealpipe.claims.statement import Statement
 from squealpipe.schema.claims import Verdict
@@ -395,21 +394,3 @@ PAPER = (
 
 STATEMENTS = PAPER + MISPRINTS
 """Every row of the claims table."""
-
-READ = (
-    "assumptions",
-    "hammering_map",
-    "harmonic_forms",
-    "linear_pull",
-    "natural_frequencies",
-    "parameter_inference",
-    "quasi_static_map",
-    "stability_map",
-    "transient",
-    "validity_map",
-    "whirl",
-    *(f"simulate/{name}" for name in ("F2a", "F2b", "F2c", "F2d", "F3", "F4", "F5a", "F5b")),
-    f"simulate/{REVERSED}",
-    *(f"backbone/{name}_mode{mode}" for name in ("F10", "F11", "F12", "F13") for mode in (1, 2)),
-)
-"""Datasets that the checks read."""

@@ -5,8 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 import re
-from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from importlib.metadata import version
 from pathlib import Path
@@ -20,6 +19,7 @@ from squealpipe.claims.table import rows
 from squealpipe.parameters import Parameters
 from squealpipe.report.captions import read_caption, title
 from squealpipe.report.facts import gather_facts
+from squealpipe.schema.claims import Verdict
 
 TITLE = "Hammering and brake squeal: a paper computed again, statement by statement"
 PICTURE_DPI = 200
@@ -55,7 +55,11 @@ class Made:
 
 
 def gather(
-    datasets: Mapping[str, Made], figures: Mapping[str, Made], parameters: Parameters
+    datasets: Mapping[str, Made],
+    figures: Mapping[str, Made],
+    parameters: Parameters,
+    *,
+    explorer: str | None = None,
 ) -> dict[str, Any]:
     """The report's content; see ``templates/`` for how it is used.
 
@@ -63,6 +67,7 @@ def gather(
         datasets: name (path below ``data/`` without suffix) → NetCDF file.
         figures: name → PNG file.
         parameters: those of the study.
+        explorer: link to the explorer page, if the run makes one.
     """
     run = Run(parameters, {name: made.path for name, made in datasets.items()})
     claims = rows(run["claims"]) if "claims" in run else []
@@ -73,11 +78,18 @@ def gather(
         "parameters": _parameters(parameters),
         "environment": _environment(datasets),
         "datasets": records,
-        "figures": {name: _picture(name, figures[name]) for name in sorted(figures)},
+        "rules": _rules(records),
+        "configuration": _configuration(datasets),
+        "figures": {name: _picture(name, figures[name], records) for name in sorted(figures)},
+        "explorer": explorer,
         "claims": claims,
         "tally": [
-            {"verdict": verdict, "number": number}
-            for verdict, number in Counter(row["verdict"] for row in claims).most_common()
+            {
+                "verdict": verdict.words,
+                "ids": [row["id"] for row in claims if row["verdict"] == verdict.words],
+            }
+            for verdict in Verdict
+            if any(row["verdict"] == verdict.words for row in claims)
         ],
         "facts": gather_facts(run),
     }
@@ -127,7 +139,41 @@ def _record(made: Made) -> dict[str, Any]:
     }
 
 
-def _picture(name: str, made: Made) -> dict[str, Any]:
+def _rules(records: Mapping[str, Mapping[str, Any]]) -> list[dict[str, Any]]:
+    """Rule → its datasets and the time that making them took, longest first."""
+    found: dict[str, dict[str, Any]] = {}
+    for name, record in records.items():
+        row = found.setdefault(
+            record["rule"], {"rule": record["rule"], "datasets": [], "seconds": 0.0}
+        )
+        row["datasets"].append({"name": name, "slug": record["slug"]})
+        row["seconds"] += record["wall_time_s"]
+    return sorted(found.values(), key=lambda row: -row["seconds"])
+
+
+def _configuration(datasets: Mapping[str, Made]) -> list[dict[str, str]]:
+    """Every configuration value that the datasets were made with, by dotted key."""
+    found: dict[str, set[str]] = {}
+    for made in datasets.values():
+        for key, value in json.loads(_attributes(made.path)["config"]).items():
+            for path, leaf in _leaves(key, value):
+                found.setdefault(path, set()).add(json.dumps(leaf, ensure_ascii=False))
+    return [
+        {"key": key, "value": " or ".join(sorted(values))}
+        for key, values in sorted(found.items())
+        if key != "scene"
+    ]
+
+
+def _leaves(key: str, value: Any) -> Iterator[tuple[str, Any]]:
+    if isinstance(value, dict):
+        for name, inner in value.items():
+            yield from _leaves(f"{key}.{name}", inner)
+    else:
+        yield key, value
+
+
+def _picture(name: str, made: Made, records: Mapping[str, Mapping[str, Any]]) -> dict[str, Any]:
     caption, alt = read_caption(name)
     with Image.open(made.path) as image:
         width = image.width / PICTURE_DPI
@@ -138,7 +184,7 @@ def _picture(name: str, made: Made) -> dict[str, Any]:
         "alt": alt,
         "width_inches": width,
         "rule": made.rule,
-        "datasets": list(made.datasets),
+        "sources": _rules({key: records[key] for key in made.datasets if key in records}),
     }
 
 

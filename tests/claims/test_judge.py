@@ -7,8 +7,9 @@ import pytest
 import xarray as xr
 
 from squealpipe.claims import table
+from squealpipe.claims.datasets import READ
 from squealpipe.claims.judge import judge
-from squealpipe.claims.statements import READ, STATEMENTS
+from squealpipe.claims.statements import STATEMENTS
 from squealpipe.claims.table import rows
 from squealpipe.parameters import Parameters
 from squealpipe.schema.claims import Verdict

@@ -1,6 +1,6 @@
 """The paper's statements, judged on the datasets of the run. Included after all that make data."""
 
-from squealpipe.claims.statements import READ
+from squealpipe.claims.datasets import READ
 from squealpipe.report.lineage import lineage
 
 FOUND = lineage(workflow.rules, f"{RESULTS}/data/", f"{RESULTS}/figures/")["datasets"]

@@ -32,6 +32,7 @@ rule write_report:
     params:
         part=part("parameters"),
         made=MADE,
+        explorer="explorer.html" if f"{RESULTS}/report/explorer.html" in TARGETS else None,
     script:
         "../scripts/write_report.py"
 

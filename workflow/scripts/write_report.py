@@ -8,7 +8,12 @@ from squealpipe.report.content import gather, made_files, picture_files
 
 made = snakemake.params.made
 datasets, figures = made_files(made["datasets"]), made_files(made["figures"])
-content = gather(datasets, figures, parameters_of(snakemake.params.part))
+content = gather(
+    datasets,
+    figures,
+    parameters_of(snakemake.params.part),
+    explorer=snakemake.params.explorer,
+)
 write_report(
     content,
     picture_files(content, figures),

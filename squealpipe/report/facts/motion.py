@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
 from typing import Any
 
 import numpy as np
@@ -28,7 +29,7 @@ def assumptions(run: Run) -> dict[str, Any]:
                 ]
             )
         scene = SCENES[name]
-        angles = [scene.alpha1 / np.pi, scene.alpha2 / np.pi]
+        angles = f"({_over_pi(scene.alpha1)}, {_over_pi(scene.alpha2)})"
         scenes.append({"name": name, "angles": angles, "cells": cells})
     return {
         "levels": levels,
@@ -111,6 +112,15 @@ def refinement(run: Run) -> dict[str, Any]:
         "different": int(finest.different_cells),
         "missed": int(finest.missed_regions),
     }
+
+
+def _over_pi(angle: float) -> str:
+    """An angle as people write it: 0, π, 0.83π, 5π/6."""
+    multiple = angle / np.pi
+    if abs(multiple - round(multiple, 2)) < 1e-12:
+        return {0.0: "0", 1.0: "π"}.get(round(multiple, 2), f"{multiple:.4g}π")
+    ratio = Fraction(multiple).limit_denominator(100)
+    return f"{ratio.numerator}π/{ratio.denominator}"
 
 
 def _flag(variable: Any, name: str) -> int:

@@ -1,0 +1,52 @@
+"""Findings: comparisons, margins and how numbers are written."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from squealpipe.claims.evidence import MissingDataError, finding, without_exponents
+from squealpipe.schema.claims import Verdict
+
+
+@pytest.mark.parametrize(
+    ("value", "relation", "threshold", "verdict", "margin"),
+    [
+        (1.0, "<", 2.0, Verdict.holds, 1.0),
+        (2.0, "<", 2.0, Verdict.fails, 0.0),
+        (2.0, "≤", 2.0, Verdict.holds, 0.0),
+        (3.0, "≤", 2.0, Verdict.fails, -1.0),
+        (3.0, ">", 2.0, Verdict.holds, 1.0),
+        (2.0, ">", 2.0, Verdict.fails, 0.0),
+        (2.0, "≥", 2.0, Verdict.holds, 0.0),
+    ],
+)
+def test_comparison_and_margin(
+    value: float, relation: str, threshold: float, verdict: Verdict, margin: float
+) -> None:
+    found = finding(value, relation, threshold, "")
+    assert found.verdict == verdict
+    assert found.margin == margin
+
+
+def test_a_further_condition_can_only_turn_a_verdict_down() -> None:
+    assert finding(1, "<", 2, "", also=False).verdict == Verdict.fails
+    assert finding(3, "<", 2, "", also=True).verdict == Verdict.fails
+
+
+def test_no_number_no_verdict() -> None:
+    with pytest.raises(MissingDataError, match="nothing to compare"):
+        finding(np.nan, "<", 2, "an empty map")
+
+
+@pytest.mark.parametrize(
+    ("text", "written"),
+    [
+        ("after 4.42e+03 s", "after 4420 s"),
+        ("off by 3e-15.", "off by 3·10⁻¹⁵."),
+        ("1.2e+09 cells", "1.2·10⁹ cells"),
+        ("K12 at 0.25 and -2.5e-07", "K12 at 0.25 and -2.5·10⁻⁷"),
+    ],
+)
+def test_numbers_are_written_without_exponents(text: str, written: str) -> None:
+    assert without_exponents(text) == written
