@@ -42,6 +42,11 @@ class Task:
             if item.kind is item.KEYWORD_ONLY and item.name != "workers"
         }
 
+    @property
+    def uses_workers(self) -> bool:
+        """Whether it can use several processes by itself."""
+        return "workers" in inspect.signature(self.run).parameters
+
 
 TASKS: dict[str, Task] = {
     "simulate": Task(simulate, "simulation", maps_angles=False),
@@ -66,5 +71,5 @@ def run_task(name: str, params: Parameters, alpha1: Any, alpha2: Any, **options:
     """
     task = TASKS[name]
     if task.maps_angles:
-        return task.run(params, np.atleast_1d(alpha1), np.atleast_1d(alpha2), **options)
+        alpha1, alpha2 = np.atleast_1d(alpha1), np.atleast_1d(alpha2)
     return task.run(params, alpha1, alpha2, **options)

@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 import itertools
-import os
 from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import Executor, ProcessPoolExecutor
 from contextlib import contextmanager
 from dataclasses import dataclass, fields
-from multiprocessing import get_context
+from multiprocessing import get_all_start_methods, get_context
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
+from squealpipe.methods.processes import available_cores
 from squealpipe.parameters import Parameters
 from squealpipe.schema import DatasetSchema, Variable, build, find
 from squealpipe.schema.sweep import ABSENT, OPTIONS, is_ragged, ragged_dims, sweep_name
@@ -91,11 +91,13 @@ class Sweep:
         """Schema of the result."""
         return find(sweep_name(TASKS[self.task].schema, self.names))
 
-    def run(self, point: Sequence[float]) -> xr.Dataset:
-        """The task at one point."""
+    def run(self, point: Sequence[float], workers: int | None = None) -> xr.Dataset:
+        """The task at one point, in so many processes where it can use several."""
         given = {**self.fixed, **self.vary, **dict(zip(self.names, point, strict=True))}
         physical = {item.name for item in fields(Parameters)} & set(given)
         params = self.params.with_(**{name: given.pop(name) for name in sorted(physical)})
+        if TASKS[self.task].uses_workers:
+            given["workers"] = workers
         return run_task(self.task, params, given.pop("alpha1"), given.pop("alpha2"), **given)
 
 
@@ -106,31 +108,37 @@ class _Chunk:
     sweep: Sweep
     start: int
     stop: int
+    workers: int | None
 
 
 def _compute(chunk: _Chunk) -> Arrays:
     """Arrays of all points of a chunk, named ``<index>/<variable>``."""
     arrays = {}
     for index in range(chunk.start, chunk.stop):
-        dataset = chunk.sweep.run(chunk.sweep.points[index])
+        dataset = chunk.sweep.run(chunk.sweep.points[index], chunk.workers)
         arrays.update({f"{index}/{name}": dataset[name].values for name in dataset.variables})
     return arrays
 
 
 @contextmanager
 def executor(workers: int | None = None) -> Iterator[Executor | None]:
-    """Processes to share a sweep; None where one process is asked for.
+    """Processes to share a sweep; None where one is asked for or the system cannot fork.
+
+    They are forked, so a script that sweeps needs no main guard.
 
     Args:
         workers: number of processes; all cores by default.
+
+    Raises:
+        ValueError: fewer than one worker.
     """
-    number = (os.cpu_count() or 1) if workers is None else workers
+    number = available_cores() if workers is None else workers
     if number < 1:
         raise ValueError(f"workers = {number}: must be 1 or greater")
-    if number == 1:
+    if number == 1 or "fork" not in get_all_start_methods():
         yield None
         return
-    with ProcessPoolExecutor(number, mp_context=get_context("forkserver")) as pool:
+    with ProcessPoolExecutor(number, mp_context=get_context("fork")) as pool:
         yield pool
 
 
@@ -151,7 +159,8 @@ def run_sweep(
     """
     count = len(sweep.points)
     size = -(-count // CHUNKS)
-    chunks = [_Chunk(sweep, at, min(at + size, count)) for at in range(0, count, size)]
+    workers = None if executor is None else 1
+    chunks = [_Chunk(sweep, at, min(at + size, count), workers) for at in range(0, count, size)]
     parts = run_chunks(
         _compute,
         chunks,

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
+
 import numpy as np
 import pytest
 
@@ -130,3 +133,20 @@ def test_schema_of_a_sweep_follows_from_its_name():
     assert schema.coordinates["belt_speed"].units == "m s-1"
     with pytest.raises(ValueError, match="'colour' cannot be swept"):
         find("sweep of stability_map over colour")
+
+
+def test_a_script_without_a_main_guard_can_sweep(tmp_path):
+    script = tmp_path / "script.py"
+    script.write_text(
+        "from squealpipe import Parameters, Sweep, run_sweep\n"
+        "from squealpipe.tasks.sweep import executor\n"
+        "plan = Sweep(task='stability_map', params=Parameters(),\n"
+        "             vary={'mu': [0.1, 0.2, 0.3]}, fixed={'alpha1': 1.0, 'alpha2': 2.0})\n"
+        "with executor(2) as pool:\n"
+        "    print(run_sweep(plan, executor=pool).sizes['mu'])\n",
+        encoding="utf-8",
+    )
+    done = subprocess.run(
+        [sys.executable, str(script)], capture_output=True, text=True, timeout=120, check=False
+    )
+    assert done.stdout == "3\n", done.stderr
