@@ -126,7 +126,7 @@ def cluster_checkout(checkout, slurm):
 def test_scattered_study_equals_one_machine_bit_for_bit(cluster_checkout, snakemake):
     run = on_slurm(cluster_checkout, MAP, FIGURE)
     assert run.returncode == 0, run.stderr[-4000:]
-    assert run.stderr.count("has been submitted with SLURM jobid") == 3
+    assert run.stderr.count("has been submitted with SLURM jobid") == 4
     assert (cluster_checkout / FIGURE).is_file()
     expected = undisturbed(cluster_checkout, snakemake)
     found = cluster_checkout / MAP

@@ -3,6 +3,6 @@
 Included last, when all rules are known.
 """
 
-QUICK = ("draw_", "join_", "judge_", "write_")
+QUICK = ("draw_", "judge_", "write_")
 
 workflow.localrules(*[known.name for known in workflow.rules if known.name.startswith(QUICK)])
