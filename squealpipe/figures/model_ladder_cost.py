@@ -60,7 +60,7 @@ def _draw_levels(axes: Axes, ladder: xr.Dataset) -> None:
     seconds = ladder.level_wall_time.values / (ladder.sizes["alpha1"] * ladder.sizes["alpha2"])
     axes.set_yticks(
         rows,
-        [f"{label}\n{1e6 * t:.0f} µs a cell" for label, t in zip(labels, seconds, strict=True)],
+        [f"{label}\n{1e6 * t:.2g} µs a cell" for label, t in zip(labels, seconds, strict=True)],
     )
     axes.tick_params(axis="y", labelsize=6)
     axes.invert_yaxis()

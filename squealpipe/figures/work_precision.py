@@ -35,7 +35,11 @@ MARKS = {
     "LSODA, tanh": Mark(RED, "+", ":"),
     "Moreau–Jean": Mark(GREY, "*", "--"),
 }
-FALLBACK = [Mark(colour, "o") for colour in (BLACK, BLUE, GREEN, ORANGE, RED, PURPLE, GREY)]
+FALLBACK = [
+    Mark(colour, marker, dash)
+    for marker, dash in (("o", "-"), ("x", ":"))
+    for colour in (BLACK, BLUE, GREEN, ORANGE, RED, PURPLE, GREY)
+]
 _SMALLEST = 1e-17
 """Errors below are drawn here: they are zero to the reference's last digit."""
 

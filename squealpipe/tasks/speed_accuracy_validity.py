@@ -88,7 +88,7 @@ def _judged(
     started = time.perf_counter()
     found, steps = _separates(params, points, horizon, tol)
     seconds = time.perf_counter() - started
-    default = tol == DEFAULT_TOLERANCE and horizon == HORIZON
+    default = tol == DEFAULT_TOLERANCE and horizon == HORIZON and scene != "grid"
     return _solution(
         found, reference, scene, "Taylor + events, ensemble", setting,
         Role.our_setting if default else Role.ours, seconds, taylor_evaluations(steps, tol),
