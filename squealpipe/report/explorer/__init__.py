@@ -85,10 +85,17 @@ def _layer(layer: Layer) -> dict[str, Any]:
         "unit": layer.unit,
         "angles": [_single(layer.alpha1), _single(layer.alpha2)],
         "values": _single(layer.values),
+        "range": _colour_range(layer.values),
         "meanings": layer.meanings,
         "colours": layer.colours,
         "note": layer.note,
     }
+
+
+def _colour_range(values: np.ndarray) -> list[float]:
+    """All but the outermost hundredths: a few late cells must not take the colours of the rest."""
+    finite = values[np.isfinite(values)]
+    return [float(limit) for limit in np.percentile(finite, [1, 99])] if finite.size else [0.0, 1.0]
 
 
 def _meanings(flag: xr.DataArray) -> dict[str, Any]:

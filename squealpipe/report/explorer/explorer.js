@@ -59,7 +59,8 @@
   const written = (layer, value) => {
     if (Number.isNaN(value)) return "none";
     if (layer.categories.length) return layer.meanings[value];
-    return `${value.toPrecision(4)} ${layer.unit}`.trim();
+    const rounded = Math.abs(value) < 1e-9 ? "0" : value.toPrecision(4);
+    return `${rounded} ${layer.unit}`.trim();
   };
 
   // ---- plots ------------------------------------------------------------------------------
@@ -97,10 +98,10 @@
     const heat = {
       type: "heatmap", x: Array.from(a1), y: Array.from(a2), z: rows, text,
       hovertemplate: category ? "%{text}<extra></extra>" : `%{z:.4g} ${layer.unit}<extra></extra>`,
-      colorbar: { thickness: 12, orientation: "h", y: -0.16, yanchor: "top", x: 0.5, len: 1, title: { text: category ? "" : layer.unit } },
+      colorbar: { thickness: 12, orientation: "h", y: -0.22, yanchor: "top", x: 0.5, len: 1, title: { text: category ? "" : layer.unit } },
       ...(category
         ? { colorscale: steps, zmin: -0.5, zmax: count - 0.5, showscale: false }
-        : { colorscale: "Viridis" }),
+        : { colorscale: "Viridis", zmin: layer.range[0], zmax: layer.range[1] }),
     };
     const cross = {
       type: "scatter", mode: "markers", x: [0], y: [0], hoverinfo: "skip",
@@ -109,7 +110,7 @@
     const ring = { ...cross, marker: { symbol: "circle-open", size: 15, color: RED, line: { width: 2.5 } } };
     const layout = frame("α₁ (rad)", "α₂ (rad)", {
       xaxis: axis, yaxis: { ...axis, scaleanchor: "x" },
-      layout: { dragmode: false, margin: { l: 52, r: 10, t: 6, b: category ? 42 : 90 } },
+      layout: { dragmode: false, margin: { l: 52, r: 10, t: 6, b: category ? 42 : 112 } },
     });
     element("note").replaceChildren(...legend(layer));
     return Plotly.react("map", [heat, cross, ring], layout, { ...config, displayModeBar: false }).then(markMap);
@@ -197,7 +198,7 @@
     const pivots = { type: "scatter", mode: "markers", hoverinfo: "skip", x: ends.map((e) => e[0]), y: ends.map((e) => e[1]), marker: { color: "#1a1a1a", size: 8, symbol: "square" } };
     const traces = [
       line(x, y, "#9a9a9a", { line: { color: "#9a9a9a", width: 1 } }),
-      line([xRange[0], xRange[1]], [belt, belt], "#1a1a1a", { hoverinfo: "skip", line: { color: "#1a1a1a", width: 3 } }),
+      line([-1e4, 1e4], [belt, belt], "#1a1a1a", { hoverinfo: "skip", line: { color: "#1a1a1a", width: 3 } }),
       pivots,
       line([], [], BLUE, { hoverinfo: "skip" }), line([], [], ORANGE, { hoverinfo: "skip" }), line([], [], GREY, { hoverinfo: "skip" }),
       dot("#1a1a1a", 13),
