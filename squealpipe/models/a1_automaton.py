@@ -118,6 +118,20 @@ class A1Automaton:
             return (Regime.slip_faster if slower else Regime.slip_slower), z
         return self._sliding(z), z
 
+    def leave(self, regime: int, z: np.ndarray, round_off: float) -> np.ndarray:
+        """A state that lies on a surface, moved off it into its regime by a unit of round-off.
+
+        A guard that starts at exactly zero is found again at once, or hides the next crossing.
+        """
+        z = z.copy()
+        if self.gap(z) == 0.0:
+            shift = round_off * max(1.0, self.params.preload)
+            z[1] += shift if regime == Regime.separated else -shift
+        if self.lag(z) == 0.0 and regime in {Regime.slip_slower, Regime.slip_faster}:
+            shift = round_off * max(1.0, abs(self.params.belt_speed))
+            z[2] += shift if regime == Regime.slip_faster else -shift
+        return z
+
     def _in_contact(self, z: np.ndarray) -> bool:
         """On the threshold the velocity decides, then the elastic force."""
         if self.gap(z) != 0.0:

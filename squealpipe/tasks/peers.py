@@ -49,8 +49,13 @@ def simulate_scipy(
         stick, linear_springs: the variants of A1.
     """
     a1 = A1Automaton(params, alpha1, alpha2, stick=stick, linear_springs=linear_springs)
+
+    def switch(kind: int, regime: int, z: np.ndarray) -> tuple[int, np.ndarray]:
+        after, z = a1.switch(kind, regime, z)
+        return after, a1.leave(after, z, float(np.finfo(float).eps))
+
     system = HybridAutomaton(
-        a1.field, lambda regime: [Guard(*guard) for guard in a1.guards(regime)], a1.start, a1.switch
+        a1.field, lambda regime: [Guard(*guard) for guard in a1.guards(regime)], a1.start, switch
     )
     return integrate_hybrid(
         system, initial_state, t_end, method=method, tol=tol, times=times, stop_at=stop_at

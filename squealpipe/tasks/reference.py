@@ -71,28 +71,18 @@ def simulate_reference(
         direction = {Regime.slip_slower: 1.0, Regime.slip_faster: -1.0}.get(Regime(regime), 0.0)
         return [*physical, *a1.geometry, contact, direction, stick, direction * direction]
 
-    def leave(regime: int, z: np.ndarray) -> np.ndarray:
-        """Off the surfaces that the regime watches, to its own side."""
-        shift = ROUND_OFF * max(1.0, params.preload)
-        if a1.gap(z) == 0.0:
-            z[1] += shift if regime == Regime.separated else -shift
-        shift = ROUND_OFF * max(1.0, abs(params.belt_speed))
-        if a1.lag(z) == 0.0 and regime in (Regime.slip_slower, Regime.slip_faster):
-            z[2] += shift if regime == Regime.slip_faster else -shift
-        return z
-
     def switch(surface: int, regime: int, z: np.ndarray) -> tuple[int, int, np.ndarray]:
         kind = _SURFACES[surface]
         if kind == EventKind.separation and regime == Regime.separated:
             kind = EventKind.contact
         after, z = a1.switch(kind, regime, z)
-        return kind, after, leave(after, z)
+        return kind, after, a1.leave(after, z, ROUND_OFF)
 
     state = np.asarray(initial_state, dtype=np.longdouble)
     regime = a1.start(state)
     if regime == Regime.stick:
         state[2] = params.belt_speed
     return integrate_long_double(
-        _integrator(), parameters, (regime, leave(regime, state.copy())), switch, t_end,
+        _integrator(), parameters, (regime, a1.leave(regime, state, ROUND_OFF)), switch, t_end,
         stop_at=stop_at,
     )  # fmt: skip
