@@ -19,7 +19,7 @@ from squealpipe.methods.shooting import (
     stability_index,
 )
 
-REACHED, RETURNED, TONGUE_END, BRANCH_LOST, STEP_LIMIT, DIVERGED = range(6)
+REACHED, RETURNED, TONGUE_END, BRANCH_LOST, STEP_LIMIT, DIVERGED, GOES_ON = range(7)
 """Why a trace ended: y_peak reached; back on the linear mode; the orbit is another mode's, run
 through several times (at twice, the branch would be retraced from here on); no step small enough
 converged; too many points; or x0 grew without bound beside y (an internal resonance)."""
@@ -144,7 +144,7 @@ def _step(
                 for index in range(3):
                     here[index], ahead[index] = trial[index], sign * tangent[index]
                 if iterations <= _EASY_ITERATIONS:
-                    control[0] = min(1.6 * control[0], control[1])
+                    control[0] = min(2.0 * control[0], control[1])
                 return length, legs
         control[0] *= 0.5
     return 0.0, 0
@@ -152,7 +152,14 @@ def _step(
 
 @compiled
 def trace(
-    rows: Any, start: Any, direction: Any, y_stop: float, control: Any, record: bool, table: Any
+    rows: Any,
+    start: Any,
+    direction: Any,
+    y_stop: float,
+    control: Any,
+    record: bool,
+    table: Any,
+    switches: Any,
 ) -> tuple[int, int]:
     """Follow the branch from ``start`` along ``direction`` until y0 reaches ``y_stop``.
 
@@ -161,13 +168,12 @@ def trace(
         control: (5,) step, longest step, least cosine of a turn, most steps, largest |x0|.
         record: whether every point is polished and kept, or the one at ``y_stop`` alone.
         table: (n, 8) filled with points (:data:`COLUMNS`).
+        switches: (MAX_SEGMENTS,) filled with the switching times of the last point.
 
     Returns:
         (number of points kept, why it ended).
     """
-    threshold = rows[0, 11]
-    segments, switches = np.empty((MAX_SEGMENTS, 9)), np.empty(MAX_SEGMENTS)
-    apart = np.zeros((2, 4))
+    segments, apart = np.empty((MAX_SEGMENTS, 9)), np.zeros((2, 4))
     here, ahead, before, work = start.copy(), direction.copy(), start.copy(), np.empty((3, 4))
     final = work[2]
     count = 0
@@ -178,27 +184,51 @@ def trace(
         if length == 0.0:
             return count, BRANCH_LOST
         if here[1] >= y_stop:
-            weight = (y_stop - before[1]) / (here[1] - before[1])
-            for index in range(3):
-                before[index] += weight * (here[index] - before[index])
-            before[1] = y_stop
-            found = orbit_at(rows, before, table[count], switches)
+            found = _arrive(rows, before, here, y_stop, table[count], switches)
             return (count + 1, REACHED) if found else (count, BRANCH_LOST)
         if record:
             if not orbit_at(rows, here, table[count], switches):
                 return count, BRANCH_LOST
             count += 1
-        if here[1] <= threshold and legs == 1:
-            return count, RETURNED
-        if abs(here[0]) > control[4]:
-            return count, DIVERGED
-        if _covers_shorter_orbit(rows, here, apart, segments, switches):
-            return count, TONGUE_END
+        end = _end_met(rows, here, control, final, length, legs, apart, segments)
+        if end != GOES_ON:
+            return count, end
         if final[1] > here[1]:
-            if abs(final[0] - here[0]) < 3.0 * length:
-                return count, TONGUE_END
             # the other instant of rest is the higher one from here on: count from there
             _change_end(rows, here, ahead, final, length)
             for index in range(4):
                 apart[0, index] = apart[1, index] = 0.0
     return count, STEP_LIMIT
+
+
+@compiled
+def _arrive(rows: Any, before: Any, here: Any, y_stop: float, out: Any, switches: Any) -> bool:
+    """The orbit at y_stop, from the points on both sides of it."""
+    weight = (y_stop - before[1]) / (here[1] - before[1])
+    for index in range(3):
+        before[index] += weight * (here[index] - before[index])
+    before[1] = y_stop
+    return orbit_at(rows, before, out, switches)
+
+
+@compiled
+def _end_met(
+    rows: Any,
+    here: Any,
+    control: Any,
+    final: Any,
+    length: float,
+    legs: int,
+    apart: Any,
+    segments: Any,
+) -> int:
+    """Why the branch ends at this point, or ``GOES_ON``."""
+    if here[1] <= rows[0, 11] and legs == 1:
+        return RETURNED
+    if abs(here[0]) > control[4]:
+        return DIVERGED
+    if _covers_shorter_orbit(rows, here, apart, segments, np.empty(MAX_SEGMENTS)):
+        return TONGUE_END
+    if final[1] > here[1] and abs(final[0] - here[0]) < 3.0 * length:
+        return TONGUE_END
+    return GOES_ON

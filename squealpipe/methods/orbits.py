@@ -100,7 +100,7 @@ def solve_orbit(system: PiecewiseLinearSystem, guess: NDArray[np.float64]) -> Or
     start = np.array(guess[:3], dtype=float)
     if not branch_tracing.orbit_at(system.rows, start, row, switches):
         return None
-    return Orbit(row[:3].copy(), switches[: int(row[7])].copy(), float(row[5]), float(row[6]))
+    return _orbit(row, switches)
 
 
 def trace_branch(
@@ -112,8 +112,18 @@ def trace_branch(
 ) -> tuple[NDArray[np.float64], TraceEnd]:
     """Points (n, 8) of a branch (columns: ``branch_tracing.COLUMNS``) and why it ended."""
     table = np.empty((settings.max_points, len(branch_tracing.COLUMNS)))
-    count, end = _trace(system, start, direction, y_stop, settings, table, record=True)
-    return table[:count], end
+    unit = np.asarray(direction / np.linalg.norm(direction), dtype=float)
+    count, end = branch_tracing.trace(
+        system.rows,
+        np.asarray(start, dtype=float),
+        unit,
+        y_stop,
+        settings.control(),
+        True,
+        table,
+        np.empty(MAX_SEGMENTS),
+    )
+    return table[:count], TraceEnd(end)
 
 
 def orbit_on_branch(
@@ -122,33 +132,25 @@ def orbit_on_branch(
     direction: NDArray[np.float64],
     y_stop: float,
     settings: TraceSettings,
-) -> tuple[NDArray[np.float64] | None, TraceEnd]:
-    """The branch's point (8,) at y0 = y_stop, and why the trace ended; None where it is not met."""
-    table = np.empty((1, len(branch_tracing.COLUMNS)))
-    count, end = _trace(system, start, direction, y_stop, settings, table, record=False)
-    return (table[0] if count else None), end
-
-
-def _trace(
-    system: PiecewiseLinearSystem,
-    start: NDArray[np.float64],
-    direction: NDArray[np.float64],
-    y_stop: float,
-    settings: TraceSettings,
-    table: NDArray[np.float64],
-    *,
-    record: bool,
-) -> tuple[int, TraceEnd]:
+) -> tuple[Orbit | None, TraceEnd]:
+    """The branch's orbit at y0 = y_stop, and why the trace ended; None where it is not met."""
+    table, switches = np.empty((1, len(branch_tracing.COLUMNS))), np.empty(MAX_SEGMENTS)
+    unit = np.asarray(direction / np.linalg.norm(direction), dtype=float)
     count, end = branch_tracing.trace(
         system.rows,
         np.asarray(start, dtype=float),
-        np.asarray(direction / np.linalg.norm(direction), dtype=float),
+        unit,
         y_stop,
         settings.control(),
-        record,
+        False,
         table,
+        switches,
     )
-    return count, TraceEnd(end)
+    return (_orbit(table[0], switches) if count else None), TraceEnd(end)
+
+
+def _orbit(row: NDArray[np.float64], switches: NDArray[np.float64]) -> Orbit:
+    return Orbit(row[:3].copy(), switches[: int(row[7])].copy(), float(row[5]), float(row[6]))
 
 
 class SpecialPoint(IntEnum):

@@ -116,17 +116,14 @@ def find_orbit(scene: ScaledSystem, mode: int, y_peak: float) -> tuple[Orbit | N
         found = solve_orbit(scene.system, guess)
         return found, Outcome.converged if found else Outcome.pole
     seed = grazing_start(scene, mode)
-    point, end = orbit_on_branch(
+    found, end = orbit_on_branch(
         scene.system,
         seed.point,
         seed.direction,
         y_peak,
         seed.settings(_LONGEST_STEP, y_peak),
     )
-    if point is None:
-        return None, TRACE_OUTCOMES[end]
-    found = solve_orbit(scene.system, point)
-    return found, Outcome.converged if found else Outcome.no_convergence
+    return found, TRACE_OUTCOMES[end]
 
 
 def linear_orbit(scene: ScaledSystem, mode: int, y_peak: float) -> Orbit:
