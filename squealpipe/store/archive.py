@@ -169,6 +169,8 @@ def _refuse_stale(run: Path, study: Study) -> None:
     for name, path in dataset_files(run).items():
         dataset = load(path)
         part = json.loads(dataset.attrs.get("config", "{}"))
+        # Plain keys that are no section tell one file of a rule from another: scene, mode.
+        part = {key: part[key] for key in part if "." in key or key in Study.model_fields}
         try:
             current = study.slice(*part)
         except (KeyError, TypeError):

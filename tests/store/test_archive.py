@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from rocrate.rocrate import ROCrate
 
-from squealpipe.store import StoreError, load
+from squealpipe.store import StoreError, load, save
 from squealpipe.store.archive import archive, checksum, verify
 
 
@@ -144,3 +144,11 @@ def test_suffixes_can_be_left_out(run):
     frozen = archive("small", root=run, leave_out=[".png"])
     assert not (frozen / "figures/fig06.png").exists()
     assert verify(frozen).intact
+
+
+def test_files_that_say_which_of_a_rules_outputs_they_are_can_be_frozen(run):
+    path = run / "results/data/stability_map.nc"
+    dataset = load(path)
+    config = json.loads(dataset.attrs["config"])
+    save(dataset.assign_attrs(config=json.dumps({**config, "scene": "F3", "mode": 1})), path)
+    assert verify(archive("second", root=run)).intact
