@@ -23,4 +23,7 @@ def read_caption(name: str) -> tuple[str, str]:
 def title(name: str) -> str:
     """Heading of a picture: the paper's number, or the name in words."""
     paper = re.fullmatch(r"fig(\d+)", name)
-    return f"Fig. {int(paper[1])}." if paper else name.replace("_", " ").capitalize() + "."
+    if paper:
+        return f"Fig. {int(paper[1])}."
+    words = name.replace("_", " ").capitalize()
+    return re.sub(r"\ba\d\b", lambda level: level[0].upper(), words) + "."

@@ -161,7 +161,7 @@ def _configuration(datasets: Mapping[str, Made]) -> list[dict[str, str]]:
     return [
         {"key": key, "value": " or ".join(sorted(values))}
         for key, values in sorted(found.items())
-        if key != "scene"
+        if "." in key
     ]
 
 

@@ -15,6 +15,7 @@ from squealpipe.claims.statements import STATEMENTS
 from squealpipe.report.build import TEMPLATES
 from squealpipe.report.captions import read_caption, title
 from squealpipe.report.lineage import lineage
+from tests.browser import chromium_path, open_page
 
 VOID = {"meta", "img", "br", "link", "hr", "input"}
 FETCHING = {
@@ -157,6 +158,7 @@ def test_every_figure_module_speaks_for_its_figure() -> None:
     assert len(alt) > 20
     assert title("fig01") == "Fig. 1."
     assert title("orbit_atlas") == "Orbit atlas."
+    assert title("a1_beside_a4") == "A1 beside A4."
     with pytest.raises(ValueError, match="no CAPTION"):
         read_caption("style")
 
@@ -186,3 +188,14 @@ def test_no_measured_number_is_typed_into_a_template(template: Path) -> None:
     prose = re.sub(r"\$[^$]*\$", "", template.read_text(encoding="utf-8"))
     numbers = [float(number) for number in re.findall(r"(?<![\w.-])\d+\.\d+(?![\w.]|fr|em)", prose)]
     assert [number for number in numbers if not math.isclose(number, round(number, 1))] == []
+
+
+@pytest.mark.parametrize("width", [1100, 390])
+@pytest.mark.browser
+@pytest.mark.skipif(chromium_path() is None, reason="no chromium on this machine")
+def test_page_in_a_browser(small_report, width: int) -> None:
+    with open_page(small_report.page.as_uri(), width=width) as (page, faults):
+        assert page.evaluate("document.documentElement.scrollWidth") <= width
+        assert page.evaluate("[...document.images].every(image => image.naturalWidth > 0)")
+        assert page.evaluate("document.querySelector('math').getBoundingClientRect().width") > 5
+        assert faults == []
