@@ -1,12 +1,10 @@
 """Speed and accuracy of the event-driven engine beside other integrators, in one run.
 
-Prints medians and ratios; the ratios are what to compare between machines. scikit-sundae is used
-where it is installed (the ``peers`` extra).
+Prints medians and ratios; the ratios are what to compare between machines.
 """
 
 from __future__ import annotations
 
-import importlib.util
 import resource
 import statistics
 import subprocess
@@ -148,8 +146,6 @@ def compare_integrators() -> None:
                 f"  {name:26} {1e3 * seconds:9.3f} ms a run  {seconds / rows[0][1]:8.1f} × ours"
                 f"  error: median {np.median(errors):.1e}, largest {max(errors):.1e}"
             )
-    if importlib.util.find_spec("sksundae") is None:
-        print("scikit-sundae is not installed: pip install squealpipe[peers]")
 
 
 def main() -> None:
