@@ -1,6 +1,11 @@
 """Speed against accuracy, failures, and the model ladder."""
 
 
+def alone(repeats):
+    """All cores for a job whose times are to be quoted; a single repeat is a mere trial."""
+    return workflow.cores if repeats > 1 else 1
+
+
 rule measure_integration:
     input:
         sources=sources("measure_integration"),
@@ -8,7 +13,7 @@ rule measure_integration:
         data("work_precision_integration"),
     params:
         part=part("parameters", "comparison.integration", "comparison.validity"),
-    threads: workflow.cores
+    threads: alone(STUDY.comparison.integration.repeats)
     script:
         "../scripts/measure_integration.py"
 
@@ -20,7 +25,7 @@ rule measure_frequencies:
         data("work_precision_frequencies"),
     params:
         part=part("parameters", "comparison.harmonic", "comparison.onset"),
-    threads: workflow.cores
+    threads: alone(STUDY.comparison.harmonic.repeats)
     script:
         "../scripts/measure_frequencies.py"
 
