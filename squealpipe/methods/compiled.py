@@ -19,13 +19,14 @@ from numba.core import config
 _settings: Any = config  # numba's untyped settings, the home of CACHE_DIR
 _Kernel = TypeVar("_Kernel", bound=Callable[..., Any])
 _OPTIONS: dict[str, Any] = {"nogil": True, "error_model": "numpy"}
-_KERNEL_SOURCES = (
-    "compiled.py",
-    "modal_flow.py",
-    "shooting.py",
-    "branch_tracing.py",
-    "orbit_shape.py",
-)
+_MARK = b"from squealpipe.methods.compiled import compiled"
+
+
+def kernel_sources() -> list[Path]:
+    """This file and every module beside it that compiles kernels."""
+    here = Path(__file__)
+    users = [path for path in sorted(here.parent.glob("*.py")) if _MARK in path.read_bytes()]
+    return [here, *(path for path in users if path != here)]
 
 
 @cache
@@ -33,8 +34,8 @@ def _store() -> str:
     """Directory of the compiled code: the user's numba directory or the package's, by digest."""
     here = Path(__file__).parent
     digest = hashlib.sha256()
-    for name in _KERNEL_SOURCES:
-        digest.update((here / name).read_bytes())
+    for source in kernel_sources():
+        digest.update(source.read_bytes())
     root = Path(_settings.CACHE_DIR) if _settings.CACHE_DIR else here / "__pycache__"
     return str(root / f"kernels-{digest.hexdigest()[:16]}")
 
