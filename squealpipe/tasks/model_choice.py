@@ -35,6 +35,8 @@ LEAST_MARGIN = 0.02
 LEAST_FORCE = 0.03
 STAGES = ((0.1, 0.10), (0.2, 0.04), (0.4, 0.01))
 """(share of the horizon, contact force over k3 l_pre that must be left) to trust in contact."""
+SLOW_PERIODS = 1.5
+"""Periods of the slow mode that a run must have seen before it is trusted."""
 SHORT_RUN = {"frequency": 0.25, "peak_contact_force": 0.25, "max_displacement": 0.5}
 """Share of the horizon that answers, where at least LEAST_FORCE is left; the largest displacement
 needs the longest, for both modes must come to meet."""
@@ -196,7 +198,8 @@ def _run_until_decided(choices: Choices, open_: np.ndarray, stays: np.ndarray, r
         state[open_] = run.final_state
         choices.integrated[open_] += run.time
         choices.margin[open_] = np.fmin(choices.margin[open_], run.lowest_contact_force)
-        safe = (choices.margin[open_] >= least) & (stays[open_] | (share == 1.0))
+        seen = elapsed * choices.motion.omega[open_, 0] >= 2.0 * math.pi * SLOW_PERIODS
+        safe = (choices.margin[open_] >= least) & (stays[open_] & seen | (share == 1.0))
         cells = np.flatnonzero(open_)[lost | safe]
         choices.value.flat[cells] = lost[lost | safe]
         choices.level.flat[cells] = Level.a1 if share == 1.0 else Level.a1_short
