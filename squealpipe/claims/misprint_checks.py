@@ -117,13 +117,16 @@ def samples_suffice(run: Run) -> Finding:
 
 def jacobian_is_regular(run: Run) -> Finding:
     """E7: columns of the Jacobian of Eq. (36) minus its rank at the solutions."""
-    deficits = run["harmonic_forms"].rank_deficit
+    forms = run["harmonic_forms"]
+    deficits = forms.rank_deficit
     mended = deficits.isel(form=deficits.form.attrs["flag_meanings"].split().index("mended"))
     return finding(
         int(mended.min()),
         "≤",
         0,
-        f"At the solutions the Jacobian of Eq. (36) has {int(mended.min())} to {int(mended.max())} "
-        "more columns than its rank: ω is one unknown too many, and any shift in time solves the "
-        "equations too. A condition on phase and amplitude, and continuation, are needed.",
+        f"At the solutions the Jacobian of Eq. (36) has more columns than its rank, by "
+        f"{int(mended.min())} or more in all {mended.size} scenes: ω is one unknown too many and "
+        "J has no inverse. Nor is the phase fixed: starts shifted in time end in solutions whose "
+        f"ω differs by up to {float(forms.phase_spread_omega.max()):.1g}. Conditions on amplitude "
+        "and phase, and continuation, are needed.",
     )
