@@ -13,7 +13,7 @@ from squealpipe.models.switching import VARIANT_RULES
 from squealpipe.parameters import Parameters
 from squealpipe.schema import Outcome, build
 from squealpipe.schema.dynamics import SIMULATION, VALIDITY_MAP, RegimeFlag
-from squealpipe.tasks.ensemble import run_ensemble
+from squealpipe.tasks.ensemble import run_ensemble, run_map
 from squealpipe.tasks.ensemble_jobs import known_model, real_array
 from squealpipe.tasks.linear import stability_map
 
@@ -148,10 +148,11 @@ def validity_map(
         ValueError: an argument is not a finite number or is negative.
     """
     first, second = angle_axis("alpha1", alpha1), angle_axis("alpha2", alpha2)
-    run = run_ensemble(
+    run = run_map(
         params,
-        first[:, None],
-        second[None, :],
+        first,
+        second,
+        ("outcome", "first_separation_time", "early_max_x", "late_max_x"),
         t_end=t_end,
         tol=tol,
         stop_at_first_separation=True,

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -17,6 +18,9 @@ from squealpipe.tasks import lane_layout as layout
 from squealpipe.tasks.a1_system import lane_integrator
 from squealpipe.tasks.ensemble_jobs import Jobs
 from squealpipe.tasks.lane_kernel import lane_kernel
+
+BLOCK = 2**17
+"""Runs of a map that are held in memory at once, about 1 kB each."""
 
 
 @dataclass(frozen=True)
@@ -156,6 +160,33 @@ def run_ensemble(
 
     arrays = run_shared(work, shapes, jobs=size, workers=workers)
     return _results(jobs, arrays)
+
+
+def run_map(
+    parameters: Parameters,
+    alpha1: np.ndarray,
+    alpha2: np.ndarray,
+    wanted: Sequence[str],
+    **options: Any,
+) -> SimpleNamespace:
+    """Some results of an ensemble over both angles, in blocks of rows, so that memory stays small.
+
+    Args:
+        parameters: physical parameters.
+        alpha1, alpha2: 1-D arrays of angles, rad.
+        wanted: attributes of :class:`Ensemble` to keep.
+        options: further arguments of :func:`run_ensemble`.
+
+    Returns:
+        The wanted arrays, each (alpha1, alpha2).
+    """
+    rows = max(1, BLOCK // alpha2.size)
+    parts: dict[str, list[np.ndarray]] = {name: [] for name in wanted}
+    for first in range(0, alpha1.size, rows):
+        run = run_ensemble(parameters, alpha1[first : first + rows, None], alpha2, **options)
+        for name in wanted:
+            parts[name].append(getattr(run, name))
+    return SimpleNamespace(**{name: np.concatenate(arrays) for name, arrays in parts.items()})
 
 
 def _run_lanes(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -11,7 +12,7 @@ from squealpipe.parameters import Parameters
 from squealpipe.schema import Outcome, build
 from squealpipe.schema.dynamics import HAMMERING_MAP, MotionFlag
 from squealpipe.tasks.dynamics import angle_axis
-from squealpipe.tasks.ensemble import Ensemble, run_ensemble
+from squealpipe.tasks.ensemble import Ensemble, run_map
 
 LEAST_TURNS = 3
 """Net turns from which a motion can be a whirl."""
@@ -20,6 +21,21 @@ TURNS_PER_RETURN = 0.5
 and back makes none, however long it lasts."""
 REGULAR_GROWTH_POWER = 2.0
 """A perturbation of a regular motion grows like a power of time, of a chaotic one exponentially."""
+
+USED = (
+    "outcome",
+    "time",
+    "contacts",
+    "separations",
+    "separated_time",
+    "stick_time",
+    "peak_contact_force",
+    "max_displacement",
+    "turns",
+    "log_growth",
+    "predictability_horizon",
+)
+"""Results of the runs that the map is made from."""
 
 
 def hammering_map(
@@ -56,10 +72,11 @@ def hammering_map(
     first, second = angle_axis("alpha1", alpha1), angle_axis("alpha2", alpha2)
     if not t_end > 0:
         raise ValueError(f"t_end = {t_end!r}: must be greater than 0")
-    run = run_ensemble(
+    run = run_map(
         params,
-        first[:, None],
-        second[None, :],
+        first,
+        second,
+        USED,
         t_end=t_end,
         tol=tol,
         tangent=True,
@@ -95,7 +112,7 @@ def regular_growth(time: Any) -> Any:
     return REGULAR_GROWTH_POWER * np.log1p(time)
 
 
-def classify_motion(run: Ensemble, time_unit: float) -> np.ndarray:
+def classify_motion(run: Ensemble | SimpleNamespace, time_unit: float) -> np.ndarray:
     """``MotionFlag`` of each run of an ensemble with ``tangent=True``."""
     turns = np.abs(run.turns)
     whirls = (turns >= LEAST_TURNS) & (turns > TURNS_PER_RETURN * run.contacts)

@@ -9,6 +9,7 @@ import pytest
 
 from squealpipe.parameters import Parameters
 from squealpipe.schema import Outcome
+from squealpipe.tasks import ensemble
 from squealpipe.tasks.ensemble import Ensemble, run_ensemble
 
 RNG = np.random.default_rng(3)
@@ -151,3 +152,12 @@ def test_refusals_name_the_argument(changes, message):
     arguments = {"parameters": Parameters(), "alpha1": 1.0, "alpha2": 1.0, "t_end": 10.0, **changes}
     with pytest.raises(ValueError, match=message):
         run_ensemble(**arguments)
+
+
+def test_maps_in_blocks_are_the_same(monkeypatch):
+    alpha1, alpha2 = np.linspace(0, np.pi, 9), np.linspace(0, np.pi, 7)
+    whole = ensemble.run_map(Parameters(), alpha1, alpha2, ("max_displacement",), t_end=20.0)
+    monkeypatch.setattr(ensemble, "BLOCK", 10)
+    parts = ensemble.run_map(Parameters(), alpha1, alpha2, ("max_displacement",), t_end=20.0)
+    assert whole.max_displacement.shape == (9, 7)
+    assert whole.max_displacement.tobytes() == parts.max_displacement.tobytes()
