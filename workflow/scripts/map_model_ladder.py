@@ -1,6 +1,6 @@
 """The cheapest adequate model over both spring angles."""
 
-from squealpipe.config import parameters_of
+from squealpipe.parameters import parameters_of
 from squealpipe.store import produce
 from squealpipe.tasks.model_ladder import model_ladder
 
