@@ -18,6 +18,8 @@ rule trace_backbones:
             "backbones.x_amplitude_max",
             "backbones.n_harmonics",
         ),
+    # early, so that it compiles the kernels in a fresh checkout and the jobs below find them
+    priority: 1
     script:
         "../scripts/trace_backbones.py"
 
