@@ -65,7 +65,7 @@ def parameters_are_printed(run: Run) -> Finding:
         1,
         f"No number is printed, and the pictures do not fix them: {number} of {feasible.size} "
         f"parameter sets tried ({100 * number / feasible.size:.2g} %) agree with every statement "
-        f"on Figs. 2–5, with {ranges}.",
+        f"that was tried, for either direction of the belt, with {ranges}.",
         otherwise=Verdict.fails if number else Verdict.cannot_be_decided,
     )
 

@@ -16,6 +16,7 @@ from squealpipe.report.build import TEMPLATES
 from squealpipe.report.captions import read_caption, title
 from squealpipe.report.lineage import lineage
 from tests.browser import chromium_path, open_page
+from tests.conftest import ROOT
 
 VOID = {"meta", "img", "br", "link", "hr", "input"}
 FETCHING = {
@@ -199,3 +200,17 @@ def test_page_in_a_browser(small_report, width: int) -> None:
         assert page.evaluate("[...document.images].every(image => image.naturalWidth > 0)")
         assert page.evaluate("document.querySelector('math').getBoundingClientRect().width") > 5
         assert faults == []
+
+
+def test_every_figure_of_the_workflow_has_its_place_in_the_report() -> None:
+    rules = "".join(path.read_text("utf-8") for path in (ROOT / "workflow/rules").glob("*.smk"))
+    drawn = set(re.findall(r'figure\("(\w+)"\)', rules))
+    sections = "".join(path.read_text("utf-8") for path in (TEMPLATES / "sections").iterdir())
+    placed = re.findall(r'picture\("(\w+)"\)', sections)
+    assert drawn == set(placed)
+    assert len(placed) == len(set(placed))
+
+
+def test_statements_point_to_figures_that_are_drawn() -> None:
+    modules = {path.stem for path in (ROOT / "squealpipe/figures").glob("*.py")}
+    assert {statement.figure for statement in STATEMENTS} - {""} <= modules
