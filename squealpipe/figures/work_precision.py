@@ -60,6 +60,10 @@ def draw_methods(
     error = np.maximum(rows.error.values, _SMALLEST)
     values = rows[cost].values * scale
     fine = np.isfinite(error) & (values > 0)
+    if not fine.any():
+        axes.text(0.5, 0.5, "no such motion\nat these parameters", ha="center", va="center")
+        axes.set(xticks=[], yticks=[])
+        return
     front = _pareto(error[fine], values[fine])
     axes.step(
         error[fine][front], values[fine][front], where="post", color=BLACK, lw=3.0, alpha=0.15,

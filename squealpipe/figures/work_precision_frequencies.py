@@ -37,7 +37,8 @@ def draw(frequencies: xr.Dataset) -> Figure:
     marks = {method: FALLBACK[i % len(FALLBACK)] for i, method in enumerate(methods)}
     draw_methods(axes[0, 0], rows, "wall_time", 1e3, marks)
     axes[0, 0].set(xlabel="error of ω, relative", ylabel="wall time of a point (ms)")
-    axes[0, 0].legend(fontsize=6, **_ABOVE)
+    if axes[0, 0].get_legend_handles_labels()[0]:
+        axes[0, 0].legend(fontsize=6, **_ABOVE)
     _draw_onset(axes[0, 1], frequencies.isel(run=frequencies.task.values == "stability"))
     for letter, panel in zip("ab", axes.flat, strict=True):
         panel_letter(panel, letter)

@@ -50,6 +50,7 @@ def _draw(axes: Axes, rows: xr.Dataset, name: str, label: str) -> None:
     positive = values[values > 0]
     floor = 0.3 * positive.min() if positive.size else 1e-6
     shown = np.maximum(values, floor)
+    axes.set_ylim(0.5 * floor, 2.0 * shown.max())
     public = rows.role.values == Role.public
     for (scene, role), (colour, marker, text) in _MARKS.items():
         mine = (rows.scene.values == scene) & (public == (role == Role.public))
