@@ -214,7 +214,7 @@ def _advance_lane(
     memory[lane, CORRECTION] = (memory[lane, CLOCK] - time) + increment
     memory[lane, CLOCK] = time
     if remaining <= step:
-        return UNRESOLVED if integers[lane, COUNT + LATE_EVENTS] > 0 else CONVERGED
+        return CONVERGED
     if result[NEAREST_PIVOT2] < PIVOT_REACH2 and m[LINEAR_SPRINGS] == 0.0:
         return SINGULAR
     saltation = 1.0
@@ -339,6 +339,9 @@ def _advance(table: Any) -> int:
             if outcome == RUNNING:
                 busy += 1
                 continue
+            answered = outcome in (CONVERGED, SEPARATION_FOUND, REACHED)
+            if answered and integers[lane, COUNT + LATE_EVENTS] > 0:
+                outcome = UNRESOLVED
             integers[lane, COUNT + OUTCOME] = outcome
             result = float_view(table[8], (jobs, N_RESULTS))[job]
             counts = integer_view(table[9], (jobs, N_COUNTS))[job]
