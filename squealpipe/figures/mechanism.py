@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from matplotlib.patches import Arc, Circle, FancyArrowPatch, Rectangle
@@ -27,7 +27,8 @@ def coil(
     position = np.concatenate([[0.0], np.linspace(0.2, 0.8, 2 * turns + 1), [1.0]])
     offset = np.zeros(position.size)
     offset[2:-2] = width * np.where(np.arange(position.size - 4) % 2, -1.0, 1.0)
-    return np.asarray(start) + position[:, None] * along + offset[:, None] * across
+    points: np.ndarray = np.asarray(start) + position[:, None] * along + offset[:, None] * across
+    return points
 
 
 def draw_mechanism(
@@ -100,12 +101,12 @@ def _label(
     length: float,
     belt_top: float,
 ) -> None:
-    text = {"fontsize": 10, "ha": "center", "va": "center"}
+    text: dict[str, Any] = {"fontsize": 10, "ha": "center", "va": "center"}
     axes.text(0, 0, "m", zorder=5, **text)
     for index, direction in enumerate(directions, start=1):
         side = np.array([-direction[1], direction[0]]) * (1 if index == 1 else -1)
         place = 0.58 * length * direction + 0.27 * length * side
-        axes.text(*place, f"$k_{index},\\ L_{index}$", color=SPRING_COLOURS[index - 1], **text)
+        axes.text(place[0], place[1], f"$k_{index},\\ L_{index}$", color=SPRING_COLOURS[index - 1], **text)
     span = 0.42 * length
     axes.plot([-0.62 * length, 0.62 * length], [0, 0], color=GREY, linewidth=0.6, linestyle=":")
     degrees = np.degrees(angles)
@@ -115,7 +116,7 @@ def _label(
     )
     for index, mid in ((1, angles[0] / 2), (2, np.pi - angles[1] / 2)):
         place = 1.3 * span * np.array([np.cos(mid), np.sin(mid)])
-        axes.text(*place, f"$\\alpha_{index}$", **text)
+        axes.text(place[0], place[1], f"$\\alpha_{index}$", **text)
     axes.text(0.26 * length, 0.5 * belt_top - 0.06 * length, "$k_3$", color=GREY, **text)
     axes.text(-0.75 * length, belt_top + 0.1 * length, "friction $\\mu$", **text)
     axes.text(1.14 * length, belt_top - 0.27 * length, "V", color=RED, **text)
@@ -127,7 +128,8 @@ def _label(
                 tuple(origin), tuple(tip), arrowstyle="-|>", mutation_scale=8, color="black"
             )
         )
-        axes.text(*(tip + 0.3 * np.subtract(tip, origin)), f"${name}$", **text)
+        label = tip + 0.3 * np.subtract(tip, origin)
+        axes.text(label[0], label[1], f"${name}$", **text)
 
 
 def displaced_springs(
