@@ -2,8 +2,6 @@
 
 A row of the table is a :class:`~squealpipe.claims.statement.Statement`; its check looks at the
 datasets of one run and returns a :class:`~squealpipe.claims.evidence.Finding`.
+:func:`squealpipe.claims.judge.judge` runs all checks, :mod:`squealpipe.claims.table` reads the
+verdicts back.
 """
-
-from squealpipe.claims.table import table
-
-__all__ = ["table"]

@@ -6,11 +6,10 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from squealpipe.claims import table
 from squealpipe.claims.datasets import READ
 from squealpipe.claims.judge import judge
 from squealpipe.claims.statements import STATEMENTS
-from squealpipe.claims.table import rows
+from squealpipe.claims.table import rows, table
 from squealpipe.parameters import Parameters
 from squealpipe.schema.claims import Verdict
 from squealpipe.store.netcdf import save
