@@ -10,13 +10,14 @@ from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import brentq
 
 from squealpipe.methods import branch_tracing
 from squealpipe.methods.modal_flow import propagator
 from squealpipe.methods.orbit_shape import extremes
 from squealpipe.methods.piecewise_linear import PiecewiseLinearSystem
 from squealpipe.methods.shooting import MAX_SEGMENTS, solve_constrained, stability_index
+
+_MOST_HALVINGS = 100
 
 
 class TraceEnd(IntEnum):
@@ -216,15 +217,30 @@ def _locate(
     chord: NDArray[np.float64],
     kind: SpecialPoint,
 ) -> Orbit | None:
-    def measure(share: float) -> float:
-        found = _on_chord(system, start, chord, share)
-        return math.nan if found is None else _measures(*found)[kind]
-
-    if not measure(0.0) * measure(1.0) < 0.0:
+    """Regula falsi (Illinois) along the chord; None where an orbit in between is not found."""
+    left, right = 0.0, 1.0
+    ends = [_on_chord(system, start, chord, share) for share in (left, right)]
+    if ends[0] is None or ends[1] is None:
         return None
-    share = brentq(measure, 0.0, 1.0, xtol=1e-15, rtol=1e-14)
-    found = _on_chord(system, start, chord, float(share))
-    return None if found is None else found[0]
+    low, high = (_measures(*end)[kind] for end in ends if end is not None)
+    if not low * high < 0.0:
+        return None
+    kept, orbit = 0, ends[1][0]
+    for _ in range(_MOST_HALVINGS):
+        share = right - high * (right - left) / (high - low)
+        found = _on_chord(system, start, chord, share)
+        if found is None:
+            return None
+        orbit, value = found[0], _measures(*found)[kind]
+        if value == 0.0 or right - left <= 4e-16:
+            break
+        if value * low > 0.0:
+            left, low, high, kept = share, value, high * (0.5 if kept == 1 else 1.0), 1
+        else:
+            right, high, low, kept = share, value, low * (0.5 if kept == 2 else 1.0), 2
+        if abs(value) <= 1e-13:
+            break
+    return orbit
 
 
 def decoupled_half_period(system: PiecewiseLinearSystem, y_peak: float) -> float:

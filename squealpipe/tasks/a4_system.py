@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from numbers import Real
 
 import numpy as np
 from numpy.typing import NDArray
@@ -71,7 +72,7 @@ def scaled_system(params: Parameters, alpha1: float, alpha2: float) -> ScaledSys
         ValueError: an angle is not a finite number.
     """
     for name, angle in (("alpha1", alpha1), ("alpha2", alpha2)):
-        if not math.isfinite(angle):
+        if not isinstance(angle, Real) or not math.isfinite(angle):
             raise ValueError(f"{name} = {angle!r}: a finite angle in radians is needed")
     g = geometry(float(alpha1), float(alpha2))
     stiffness = linear_stiffness(params, g)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from numbers import Real
 from typing import Any
 
 import numpy as np
@@ -88,7 +89,7 @@ def check_mode(mode: int) -> None:
 
 def check_length(name: str, value: float) -> None:
     """Raise a ValueError unless a length is finite and positive."""
-    if not (math.isfinite(value) and value > 0):
+    if not (isinstance(value, Real) and math.isfinite(value) and value > 0):
         raise ValueError(f"{name} = {value!r}: a finite length above 0 is needed, m")
 
 
