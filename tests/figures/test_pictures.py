@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+import xarray as xr
 from PIL import Image
 
 from squealpipe.figures import angle_map, branch, fig01, run
@@ -15,7 +16,6 @@ from squealpipe.figures.animation import animate
 from squealpipe.figures.mechanism import draw_mechanism
 from squealpipe.figures.style import new_figure
 from squealpipe.parameters import Parameters
-from squealpipe.tasks.backbones import backbone
 from squealpipe.tasks.dynamics import simulate
 from squealpipe.tasks.linear import stability_map
 from squealpipe.tasks.summary import summarize
@@ -54,7 +54,14 @@ def test_angle_map_of_categories():
 
 @compared
 def test_branch_with_unstable_part():
-    orbits = backbone(PARAMS, 0.3 * np.pi, 0.9 * np.pi, mode=1, y_peak_max=6.0)
+    peak = np.linspace(0.7, 6, 40)
+    points = {
+        "omega": 0.55 + 0.15 / np.maximum(peak, 1.0),
+        "y_peak": peak,
+        "x_amplitude": 0.55 * peak - 0.35,
+        "stability_index": np.where((peak > 3.9) & (peak < 5.8), -2.1, 1.0),
+    }
+    orbits = xr.Dataset({name: ("point", values) for name, values in points.items()})
     return branch.draw(orbits, preload=1.0)
 
 
