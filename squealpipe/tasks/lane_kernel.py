@@ -11,12 +11,9 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numba.extending import register_jitable
 
-from squealpipe.laws import contact, springs
 from squealpipe.methods.lanes import (
     LANES,
-    PART_OPTIONS,
     compile_advance,
     evaluate,
     float_view,
@@ -24,15 +21,20 @@ from squealpipe.methods.lanes import (
     part,
 )
 from squealpipe.models import switching
-from squealpipe.models.switching import Rules, ScaledParameters
 from squealpipe.sources import closure
 from squealpipe.tasks.lane_layout import (
+    BELT_SPEED,
     CLOCK,
+    COEFFICIENTS,
     CONVERGED,
     CORRECTION,
     COUNT,
+    COUNTS,
     EARLY_LARGEST_X,
+    EVENT_KINDS,
     EVENT_LIMIT,
+    EVENT_STATES,
+    EVENT_TIMES,
     EVENTS,
     FINAL_STATE,
     FIRST_KIND,
@@ -40,46 +42,55 @@ from squealpipe.tasks.lane_layout import (
     FIRST_TANGENT,
     HALF_TURNS1,
     HALF_TURNS2,
-    HIGHEST_Y,
-    HORIZON,
     IDLE,
+    INITIAL,
+    INTEGERS,
     JOB,
-    LARGEST_R2,
-    LARGEST_SPEED,
+    LAST_STEP,
     LATE_EVENTS,
     LATE_LARGEST_X,
     LINEAR_SPRINGS,
     LOG_GROWTH,
     LOST_GROWTH,
-    LOWEST_Y,
     MAX_EVENTS,
     MAX_STEPS,
+    MEMORY,
     N_COUNTS,
     N_INTEGERS,
+    N_JOBS,
+    N_LOGGED,
     N_MEMORY,
     N_ORDERS,
-    N_PHYSICAL,
+    N_PARS,
     N_RESULTS,
+    N_SAMPLES,
+    N_TERMS,
+    N_VARIABLES,
     NEAREST_PIVOT2,
-    NEXT_SAMPLE,
     NOT_FINITE,
     ORDER,
+    ORDERS,
     OUTCOME,
+    PARS,
     PIVOT_REACH2,
-    PIVOTS,
+    QUEUE,
     REACHED,
     REGIME,
     RESULT,
+    RESULTS,
     REVERSES,
     RUNNING,
+    SAMPLE_REGIMES,
+    SAMPLE_TIMES,
+    SAMPLES,
     SEPARATED,
     SEPARATES,
     SEPARATION_FOUND,
     SINGULAR,
+    STATE,
     STEP_LIMIT,
     STEPS,
     STICK,
-    STICKS,
     STOP_AT_SEPARATION,
     STOP_AT_TURNS,
     STOP_AT_X,
@@ -90,82 +101,7 @@ from squealpipe.tasks.lane_layout import (
     UNRESOLVED,
 )
 from squealpipe.tasks.lane_observers import grow, observe, sample
-
-for law in (
-    springs.fixed_ends,
-    springs.squared_distance,
-    springs.spring_force,
-    springs.elastic_force,
-    springs.linear_stiffness,
-    springs.linear_elastic_force,
-    contact.contact_force,
-    *switching.COMPILED,
-):
-    register_jitable(**PART_OPTIONS)(law)
-
-
-@part
-def _parameters(memory: Any, lane: int) -> Any:
-    m = memory[lane, ORDER:]
-    p = ScaledParameters(1.0, 1.0, m[0], m[1], m[2], m[3], 1.0, m[4], m[5])
-    rules = Rules(m[SEPARATES] > 0.0, m[REVERSES] > 0.0, m[STICKS] > 0.0, m[LINEAR_SPRINGS] > 0.0)
-    return p, springs.Geometry(m[6], m[7], m[8], m[9]), rules
-
-
-@part
-def _set_regime(pars: Any, memory: Any, lane: int, regime: int) -> None:
-    """Write a regime into the lane's parameters (see ``tasks.a1_system.REGIME``)."""
-    slipping = regime not in (SEPARATED, STICK)
-    pars[10, lane] = 0.0 if regime == SEPARATED else 1.0
-    pars[11, lane] = 0.0 if not slipping else (1.0 if regime == 0 else -1.0)
-    pars[12, lane] = 1.0 if regime == STICK else 0.0
-    pars[13, lane] = memory[lane, ORDER + REVERSES] if slipping else 0.0
-    pars[14, lane] = memory[lane, ORDER + SEPARATES]
-    pars[15, lane] = 1.0 / (1.0 + abs(memory[lane, ORDER + 3]))
-
-
-@part
-def _load(state: Any, pars: Any, memory: Any, integers: Any, initial: Any, lane: int) -> None:
-    """Start the job whose order is in the lane's memory."""
-    p, g, rules = _parameters(memory, lane)
-    x, vy = initial[0], initial[3]
-    regime, y, vx = switching.start(x, initial[1], initial[2], vy, p, g, rules)
-    for index in range(N_PHYSICAL):
-        pars[index, lane] = memory[lane, ORDER + index]
-    _set_regime(pars, memory, lane, regime)
-    state[0, lane], state[1, lane], state[2, lane], state[3, lane] = x, y, vx, vy
-    for index in range(4, state.shape[0]):
-        state[index, lane] = 0.5 * TANGENT_NORM
-    m = memory[lane]
-    m[CLOCK] = m[CORRECTION] = 0.0
-    m[PIVOTS], m[PIVOTS + 1] = p.length1 * g.c1, p.length1 * g.s1
-    m[PIVOTS + 2], m[PIVOTS + 3] = -p.length2 * g.c2, p.length2 * g.s2
-    for index in range(RESULT, N_MEMORY):
-        memory[lane, index] = 0.0
-    m = memory[lane, RESULT:]
-    m[FIRST_SEPARATION] = 0.0 if regime == SEPARATED else np.nan
-    m[HORIZON] = np.nan
-    m[LOWEST_Y], m[HIGHEST_Y] = (np.inf, -np.inf) if regime == SEPARATED else (y, y)
-    m[LARGEST_R2] = x * x + y * y
-    m[EARLY_LARGEST_X] = abs(x)
-    m[LARGEST_SPEED] = vx
-    nearest = min(
-        ((x - p.length1 * g.c1) ** 2 + (y - p.length1 * g.s1) ** 2) / p.length1**2,
-        ((x + p.length2 * g.c2) ** 2 + (y - p.length2 * g.s2) ** 2) / p.length2**2,
-    )
-    m[NEAREST_PIVOT2] = nearest
-    for index in range(NEXT_SAMPLE, N_INTEGERS):
-        integers[lane, index] = 0
-    integers[lane, COUNT + REGIME] = regime
-
-
-@part
-def _idle(state: Any, pars: Any, lane: int) -> None:
-    """The state of rest in contact, again after each step: a finite step without events."""
-    for variable in range(state.shape[0]):
-        state[variable, lane] = 0.0
-    pars[10, lane], pars[12, lane] = 1.0, 0.0
-    pars[13, lane], pars[14, lane] = 0.0, 0.0
+from squealpipe.tasks.lane_start import idle, lane_parameters, load, set_regime
 
 
 @part
@@ -176,8 +112,8 @@ def _near_surface(state: Any, m: Any, lane: int, regime: int, step: float) -> An
         return y <= 1.0 + reach
     if regime == STICK or (y >= 1.0 - reach and m[SEPARATES] > 0.0):
         return True
-    gap = m[3] - state[2, lane] if regime == 0 else state[2, lane] - m[3]
-    return m[REVERSES] > 0.0 and gap <= 1e-12 * (1.0 + abs(m[3]))
+    gap = m[BELT_SPEED] - state[2, lane] if regime == 0 else state[2, lane] - m[BELT_SPEED]
+    return m[REVERSES] > 0.0 and gap <= 1e-12 * (1.0 + abs(m[BELT_SPEED]))
 
 
 @part
@@ -239,7 +175,7 @@ def _switch(
     """Change the regime if it is due; returns the saltation factor, NaN where none exists."""
     regime = integers[lane, COUNT + REGIME]
     x, y, vx, vy = state[0, lane], state[1, lane], state[2, lane], state[3, lane]
-    p, g, rules = _parameters(memory, lane)
+    p, g, rules = lane_parameters(memory, lane)
     change = switching.switch(x, y, vx, vy, regime, step, p, g, rules)
     state[1, lane], state[2, lane] = change.y, change.vx
     if change.kind == switching.CHATTER:
@@ -248,7 +184,7 @@ def _switch(
         _record(state, integers, lane, change.kind, time, events)
         integers[lane, COUNT + LATE_EVENTS] += change.late
         integers[lane, COUNT + REGIME] = change.regime
-        _set_regime(pars, memory, lane, change.regime)
+        set_regime(pars, memory, lane, change.regime)
         never = math.isnan(memory[lane, RESULT + FIRST_SEPARATION])
         if change.kind == switching.SEPARATION and never:
             memory[lane, RESULT + FIRST_SEPARATION] = time
@@ -307,22 +243,23 @@ def _finish(state: Any, memory: Any, integers: Any, lane: int, result: Any, coun
 
 def _advance(table: Any) -> int:
     """One round over all lanes; returns how many are busy. See ``tasks.ensemble`` for the table."""
-    dim, terms, jobs, samples, logged = table[17], table[19], table[20], table[21], table[22]
-    state = float_view(table[0], (dim, LANES))
-    pars = float_view(table[1], (table[18], LANES))
-    c = float_view(table[2], (dim, terms, LANES))
-    last_step = float_view(table[3], (1, LANES))
-    memory = float_view(table[4], (LANES, N_MEMORY))
-    integers = integer_view(table[5], (LANES, N_INTEGERS))
-    times = float_view(table[10], (jobs, samples))
-    states = float_view(table[11], (jobs, samples, 4))
-    regimes = integer_view(table[12], (jobs, samples))
+    dim, terms, jobs = table[N_VARIABLES], table[N_TERMS], table[N_JOBS]
+    samples, logged = table[N_SAMPLES], table[N_LOGGED]
+    state = float_view(table[STATE], (dim, LANES))
+    pars = float_view(table[PARS], (table[N_PARS], LANES))
+    c = float_view(table[COEFFICIENTS], (dim, terms, LANES))
+    last_step = float_view(table[LAST_STEP], (1, LANES))
+    memory = float_view(table[MEMORY], (LANES, N_MEMORY))
+    integers = integer_view(table[INTEGERS], (LANES, N_INTEGERS))
+    times = float_view(table[SAMPLE_TIMES], (jobs, samples))
+    states = float_view(table[SAMPLES], (jobs, samples, 4))
+    regimes = integer_view(table[SAMPLE_REGIMES], (jobs, samples))
     events = (
-        float_view(table[13], (jobs, logged)),
-        integer_view(table[14], (jobs, logged)),
-        float_view(table[15], (jobs, logged, 4)),
+        float_view(table[EVENT_TIMES], (jobs, logged)),
+        integer_view(table[EVENT_KINDS], (jobs, logged)),
+        float_view(table[EVENT_STATES], (jobs, logged, 4)),
     )
-    queue = integer_view(table[16], (1, 3))
+    queue = integer_view(table[QUEUE], (1, 3))
     busy = 0
     for lane in range(LANES):
         job = integers[lane, JOB]
@@ -343,21 +280,21 @@ def _advance(table: Any) -> int:
             if answered and integers[lane, COUNT + LATE_EVENTS] > 0:
                 outcome = UNRESOLVED
             integers[lane, COUNT + OUTCOME] = outcome
-            result = float_view(table[8], (jobs, N_RESULTS))[job]
-            counts = integer_view(table[9], (jobs, N_COUNTS))[job]
+            result = float_view(table[RESULTS], (jobs, N_RESULTS))[job]
+            counts = integer_view(table[COUNTS], (jobs, N_COUNTS))[job]
             _finish(state, memory, integers, lane, result, counts)
         if job == IDLE or queue[0, 0] >= queue[0, 1]:
             integers[lane, JOB] = IDLE
-            _idle(state, pars, lane)
+            idle(state, pars, lane)
         else:
             job = queue[0, 0]
             queue[0, 0] += queue[0, 2]
             integers[lane, JOB] = job
-            orders = float_view(table[6], (jobs, N_ORDERS))
+            orders = float_view(table[ORDERS], (jobs, N_ORDERS))
             for index in range(N_ORDERS):
                 memory[lane, ORDER + index] = orders[job, index]
-            initial = float_view(table[7], (jobs, 4))[job]
-            _load(state, pars, memory, integers, initial, lane)
+            initial = float_view(table[INITIAL], (jobs, 4))[job]
+            load(state, pars, memory, integers, initial, lane)
             busy += 1
     return busy
 

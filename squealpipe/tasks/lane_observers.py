@@ -22,6 +22,7 @@ from squealpipe.tasks.lane_layout import (
     LARGEST_R2,
     LARGEST_SPEED,
     LATE_LARGEST_X,
+    LENGTH1,
     LOG_GROWTH,
     LOWEST_Y,
     NEAREST_PIVOT2,
@@ -82,7 +83,7 @@ def _observe_distances(c: Any, end: Any, memory: Any, lane: int, step: float) ->
     m[LARGEST_R2] = max(m[LARGEST_R2], largest)
     for number in range(2):
         px, py = memory[lane, PIVOTS + 2 * number], memory[lane, PIVOTS + 2 * number + 1]
-        scale = memory[lane, ORDER + 4 + number] ** -2
+        scale = memory[lane, ORDER + LENGTH1 + number] ** -2
         if (x0 < px) != (x1 < px):
             m[HALF_TURNS1 + number] += 1.0 if (y1 > py) == (x1 < px) else -1.0
         near = (x1 - px) ** 2 + (y1 - py) ** 2

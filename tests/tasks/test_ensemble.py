@@ -9,7 +9,8 @@ import pytest
 
 from squealpipe.parameters import Parameters
 from squealpipe.schema import Outcome
-from squealpipe.tasks import ensemble
+from squealpipe.tasks import ensemble, lane_layout
+from squealpipe.tasks.a1_system import PARAMETER_INDEX
 from squealpipe.tasks.ensemble import Ensemble, run_ensemble
 
 RNG = np.random.default_rng(3)
@@ -161,3 +162,13 @@ def test_maps_in_blocks_are_the_same(monkeypatch):
     parts = ensemble.run_map(Parameters(), alpha1, alpha2, ("max_displacement",), t_end=20.0)
     assert whole.max_displacement.shape == (9, 7)
     assert whole.max_displacement.tobytes() == parts.max_displacement.tobytes()
+
+
+def test_lanes_and_integrator_agree_on_the_order_of_parameters():
+    names = {"STICKS_NOW": "stick"}
+    for name in (
+        "K2", "K3", "MU", "BELT_SPEED", "LENGTH1", "LENGTH2", "C1", "S1", "C2", "S2",
+        "CONTACT", "DIRECTION", "STICKS_NOW", "WATCHES_SPEED", "WATCHES_GAP", "SPEED_SCALE",
+    ):  # fmt: skip
+        index = PARAMETER_INDEX[names.get(name, name.lower())]
+        assert getattr(lane_layout, name) == index
