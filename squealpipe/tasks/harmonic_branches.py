@@ -101,7 +101,7 @@ def harmonic_branch(
         beyond, end = _decoupled_branch(scene, balance, series[-1], y_max, cross_poles=cross_poles)
     else:
         control = settings or ContinuationSettings()
-        beyond, end = _coupled_branch(scene, balance, mode, series[-1], y_max, control)
+        beyond, end = coupled_branch(scene, balance, mode, series[-1], y_max, control)
     return balance, points + [_judged(scene, balance, z, Outcome.converged) for z in beyond], end
 
 
@@ -118,7 +118,7 @@ def _isolated(scene: ScaledSystem, mode: int, x_max: float) -> list[Vector]:
     return [orbit.point for orbit in isolated_orbits(scene, mode, x_max)]
 
 
-def _coupled_branch(
+def coupled_branch(
     scene: ScaledSystem,
     balance: CosineBalance,
     mode: int,
@@ -126,6 +126,7 @@ def _coupled_branch(
     y_max: float,
     settings: ContinuationSettings,
 ) -> tuple[list[Vector], Outcome]:
+    """Solutions beyond grazing, followed by pseudo-arclength, and why the branch ends."""
     seed = grazing_start(scene, mode)
     direction = np.zeros_like(start)
     direction[1], direction[balance.contact.n_harmonics + 2] = seed.direction[:2]

@@ -25,7 +25,7 @@ from squealpipe.parameters import Parameters
 from squealpipe.tasks.a4_system import scaled_system
 from squealpipe.tasks.atlas import orbit_atlas
 from squealpipe.tasks.exact_branches import exact_branch
-from squealpipe.tasks.harmonic_branches import _coupled_branch, linear_series
+from squealpipe.tasks.harmonic_branches import coupled_branch, linear_series
 from squealpipe.tasks.orbits import find_orbit, linear_orbit
 
 PARAMS = Parameters()
@@ -61,7 +61,7 @@ def harmonic_balance(scene, n_harmonics):
     balance = CosineBalance(scene.system, contact_of(n_harmonics, 1.0, None, None))
     start = linear_series(scene, MODE, n_harmonics, linear_orbit(scene, MODE, 1.0).point)
     settings = ContinuationSettings()
-    work = lambda: _coupled_branch(  # noqa: E731
+    work = lambda: coupled_branch(  # noqa: E731
         scene, balance, MODE, start, LARGEST_PEAK, settings
     )
     seconds, (found, _) = best(work)
