@@ -22,7 +22,6 @@ from squealpipe.report.facts import gather_facts
 from squealpipe.schema.claims import Verdict
 
 TITLE = "Hammering and brake squeal: a paper computed again, statement by statement"
-PICTURE_DPI = 200
 
 SYMBOLS = {
     "mass": ("m", "mass of the particle"),
@@ -71,7 +70,7 @@ def gather(
     """
     run = Run(parameters, {name: made.path for name, made in datasets.items()})
     claims = rows(run["claims"]) if "claims" in run else []
-    records = {name: _record(datasets[name]) for name in sorted(datasets)}
+    records = {name: _record(name, datasets[name]) for name in sorted(datasets)}
     return {
         "title": TITLE,
         "shipped": parameters == Parameters(),
@@ -123,11 +122,11 @@ def _attributes(path: Path) -> dict[str, Any]:
         return {name: file.getncattr(name) for name in file.ncattrs()}
 
 
-def _record(made: Made) -> dict[str, Any]:
+def _record(name: str, made: Made) -> dict[str, Any]:
     """One row of the provenance."""
     attributes = _attributes(made.path)
     return {
-        "slug": slug(str(made.path)),
+        "slug": slug(name),
         "rule": made.rule,
         "datasets": list(made.datasets),
         "title": attributes["title"],
@@ -176,7 +175,7 @@ def _leaves(key: str, value: Any) -> Iterator[tuple[str, Any]]:
 def _picture(name: str, made: Made, records: Mapping[str, Mapping[str, Any]]) -> dict[str, Any]:
     caption, alt = read_caption(name)
     with Image.open(made.path) as image:
-        width = image.width / PICTURE_DPI
+        width = image.width / image.info["dpi"][0]
     return {
         "path": f"pictures/{name}.png",
         "title": title(name),
