@@ -23,16 +23,16 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 CAPTION = (
-    "How long the bounded motion of Fig. 4 lasts. (a) Share of runs that still swing to and "
-    "fro after a time, over perturbations of the start below 1e-9 l_pre: past an initial delay "
-    "they decay exponentially, as chaotic transients do; the band is the time of Fig. 4. (b) Share of "
+    "How long the bounded motion of Fig. 4 lasts. (a) Share of runs that still swing to and fro "
+    "after a time, over perturbations of the start below 1e-9 l_pre: past an initial delay they "
+    "decay exponentially, as chaotic transients do; the band is the time of Fig. 4. (b) Share of "
     "runs that end in the whirl within the time run, and their median lifetime, over belt speed: "
-    "below about V = 1 none leaves. Where the mass never reaches belt speed before it leaves, V "
-    "does not matter at all."
+    "at the baseline none leaves below about V = 1. Where the mass never reaches belt speed before "
+    "it leaves, V does not matter at all."
 )
 ALT = (
     "Left, a survival curve on a logarithmic axis, flat at first and then straight. Right, a share "
-    "rising from 0 to 1 between belt speeds 1 and 2, and median lifetimes near 5000."
+    "rising from 0 to 1 between belt speeds 1 and 2, and median lifetimes near 6000."
 )
 PAPER_TIME = 500.0
 """Horizon of the paper's scene, in √(m/k1)."""
