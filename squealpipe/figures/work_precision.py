@@ -6,6 +6,7 @@ import json
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
+from matplotlib.ticker import FormatStrFormatter, LogLocator
 
 from squealpipe.figures.style import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, RED
 from squealpipe.schema.comparison import Role
@@ -40,6 +41,8 @@ FALLBACK = [
     for marker, dash in (("o", "-"), ("x", ":"))
     for colour in (BLACK, BLUE, GREEN, ORANGE, RED, PURPLE, GREY)
 ]
+_FEW_DECADES = 100.0
+"""Ratio of costs below which decades alone would leave an axis with hardly a number."""
 _SMALLEST = 1e-17
 """Errors below are drawn here: they are zero to the reference's last digit."""
 
@@ -84,6 +87,9 @@ def draw_methods(
     )  # fmt: skip
     axes.set(xscale="log", yscale="log")
     axes.minorticks_off()
+    if values[fine].max() < _FEW_DECADES * values[fine].min():
+        axes.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+        axes.yaxis.set_major_formatter(FormatStrFormatter("%g"))
     axes.grid(visible=True, lw=0.3, color="#DDDDDD")
 
 

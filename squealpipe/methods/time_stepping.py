@@ -39,7 +39,7 @@ def jitted(function: Callable[..., Any]) -> Any:
 def step_through(
     forces: Any, data: Any, mass: float, speed: float, state: np.ndarray, step: float, n_steps: int,
     stop_at_switch: bool,
-) -> int:  # fmt: skip
+) -> tuple[int, int]:  # fmt: skip
     """Advance ``state`` in place by ``n_steps`` steps.
 
     Args:
@@ -51,12 +51,14 @@ def step_through(
         stop_at_switch: end after the first change of contact.
 
     Returns:
-        How often the friction bound went from or to zero: separations and contacts.
+        How often the friction bound went from or to zero (separations and contacts), and the
+        steps that were made.
     """
     x, y, vx, vy = state[0], state[1], state[2], state[3]
     touching = forces(x, y, data)[2] > 0.0
-    switches = 0
+    switches, made = 0, 0
     for _ in range(n_steps):
+        made += 1
         x += 0.5 * step * vx
         y += 0.5 * step * vy
         fx, fy, bound = forces(x, y, data)
@@ -72,4 +74,4 @@ def step_through(
             if stop_at_switch:
                 break
     state[0], state[1], state[2], state[3] = x, y, vx, vy
-    return switches
+    return switches, made

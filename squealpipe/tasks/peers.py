@@ -110,15 +110,15 @@ def simulate_moreau_jean(
         PlainParameters(**params.as_dict()),
         Geometry(*map(float, geometry(alpha1, alpha2))),
     )
-    switches = step_through(
+    switches, made = step_through(
         jitted(smooth_forces), data, params.mass, params.belt_speed, state, t_end / n_steps,
         n_steps, stop_at_switch,
     )  # fmt: skip
     message = "" if np.isfinite(state).all() else "the state overflowed"
     return HybridRun(
         state,
-        time=t_end,
+        time=made * t_end / n_steps,
         event_kinds=[int(EventKind.separation)] * switches,
-        evaluations=n_steps,
+        evaluations=made,
         message=message,
     )
