@@ -48,6 +48,8 @@ def map_angles(
     from squealpipe.store import load, produce
     from squealpipe.tasks.catalogue import run_task
 
+    if min(len(alpha1), len(alpha2)) < 2:
+        raise ValueError("a map needs 2 or more angles of each spring; write for instance 0:pi:61")
     name = {"frequencies": "natural_frequencies"}.get(kind, f"{kind.replace('-', '_')}_map")
     options = {"t_end": t_end, "tol": tol} if kind in {"validity", "hammering"} else {}
     config = {"parameters": params.as_dict(), "alpha1": alpha1, "alpha2": alpha2, **options}

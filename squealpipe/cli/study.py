@@ -4,15 +4,11 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 from cyclopts import Parameter
 
 from squealpipe.cli.exit_codes import ANSWER_IS_NO, DONE
-
-if TYPE_CHECKING:
-    from squealpipe.store.compare import Comparison
-    from squealpipe.store.differences import VariableDifference
 
 AsJson = Annotated[bool, Parameter(name="--json", negative="")]
 Configs = Annotated[list[Path] | None, Parameter(name=["--config", "-c"], negative="")]
@@ -35,7 +31,14 @@ def explain(*, config: Configs = None, times: bool = False, json_: AsJson = Fals
         _print_times()
         return DONE
     plan = plan_of(config or [])
-    print(json.dumps(plan.as_dict(), indent=1) if json_ else "\n".join(plan.lines()))
+    if json_:
+        print(json.dumps(plan.as_dict(), indent=1))
+        return DONE
+    from rich.console import Console
+
+    from squealpipe.report.explanation import table
+
+    Console().print(table(plan))
     return DONE
 
 
@@ -127,7 +130,15 @@ def verify(name: str, /) -> int:
     return DONE if found.intact else ANSWER_IS_NO
 
 
-def compare(a: str, b: str, /, *, json_: AsJson = False) -> int:
+def compare(
+    a: str,
+    b: str,
+    /,
+    *,
+    every: Annotated[bool, Parameter(negative="")] = False,
+    html: Path | None = None,
+    json_: AsJson = False,
+) -> int:
     """Compare two archives, runs, folders or files, variable by variable.
 
     Exit code 0: equal or within tolerance; 1: different; 2: not comparable.
@@ -137,61 +148,23 @@ def compare(a: str, b: str, /, *, json_: AsJson = False) -> int:
     Args:
         a: archive name or path.
         b: archive name or path.
+        every: also list variables that are equal.
+        html: write a page with pictures of the maps that differ.
         json_: print JSON.
     """
     from squealpipe.store.compare import compare as difference_of
 
     comparison = difference_of(a, b)
+    if html is not None:
+        from squealpipe.report.comparison import page
+
+        html.write_text(page(comparison), encoding="utf-8")
     if json_:
         print(json.dumps(comparison.as_dict(), indent=1, allow_nan=False))
     else:
-        _show(comparison)
+        from rich.console import Console
+
+        from squealpipe.report.comparison import table
+
+        Console().print(table(comparison, every=every))
     return comparison.exit_code
-
-
-def _show(comparison: Comparison) -> None:
-    from rich import box
-    from rich.console import Console
-    from rich.table import Table
-
-    console = Console()
-    for heading, changes in (
-        ("changed parameters", comparison.parameters),
-        ("changed environment", comparison.environment),
-    ):
-        for key, (left, right) in changes.items():
-            console.print(f"{heading}: {key}: {left} → {right}", markup=False)
-    shown = Table(box=box.SIMPLE_HEAD, pad_edge=False)
-    for name in ("dataset", "variable", "verdict", "largest difference", "where"):
-        shown.add_column(name, overflow="fold")
-    for dataset in comparison.datasets:
-        shown.add_row(dataset.name, "", dataset.verdict.name, dataset.reason, "")
-        for entry in dataset.variables:
-            if entry.verdict:
-                shown.add_row("", entry.name, entry.verdict.name, *_difference(entry))
-    console.print(shown)
-    console.print(
-        f"{comparison.a} and {comparison.b}: {comparison.verdict.name.replace('_', ' ')}"
-        + (f": {comparison.reason}" if comparison.reason else ""),
-        markup=False,
-    )
-
-
-def _difference(entry: VariableDifference) -> tuple[str, str]:
-    """How much and where, in words."""
-    if entry.reason or entry.flips:
-        flips = (f"{change}: {count} times" for change, count in entry.flips.items())
-        return "; ".join(filter(None, (entry.reason, *flips))), _place(entry)
-    amount = (
-        f"{entry.largest_absolute:.3g} ({entry.largest_relative:.2g} relative), "
-        f"{entry.differing} of {entry.compared} beyond tolerance"
-    )
-    return amount, _place(entry)
-
-
-def _place(entry: VariableDifference) -> str:
-    parts = (
-        f"{name} = {value:.6g}" if isinstance(value, float) else f"{name} = {value}"
-        for name, value in entry.where.items()
-    )
-    return ", ".join(parts)

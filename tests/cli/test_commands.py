@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import subprocess
 import sys
 import time
@@ -64,6 +65,7 @@ def test_help_loads_no_numerics():
         (["simulate", "1", "2", "--t-end", "0"], "--t-end 0.0 must be greater than 0"),
         (["simulate", "1", "2", "--points", "3"], "give 16 or more"),
         (["map", "sound"], "validity"),
+        (["map", "stability", "--alpha1", "1"], "2 or more angles of each spring"),
         (["sweep", "stability_map", "--vary", "mu"], "write for instance mu=0:0.6:13"),
         (["sweep", "anything", "--vary", "mu=1,2"], "choose from simulate"),
         (["verify", "nothing"], "no archive, folder or file 'nothing'"),
@@ -103,8 +105,8 @@ def test_map_writes_dataset_and_picture(kind, capsys, tmp_path):
 
 
 def test_map_of_natural_frequencies_obeys_the_parameters():
-    assert run(["map", "frequencies", "--alpha1", "pi/2", "--alpha2", "pi", "--k3", "3"]) == 0
-    omega = load("map.nc").omega.sel(contact_state="contact").values.ravel()
+    assert run(["map", "frequencies", "--alpha1", "pi/2,1", "--alpha2", "2,pi", "--k3", "3"]) == 0
+    omega = load("map.nc").omega.sel(contact_state="contact")[0, 1]
     np.testing.assert_allclose(omega, [1.0, 2.0], rtol=1e-14)
 
 
@@ -124,12 +126,15 @@ def test_sweep_writes_one_dataset(capsys):
     assert dict(load("s.nc").growth_rate.sizes) == {"mu": 3, "alpha1": 5, "alpha2": 1}
 
 
-def test_compare_tells_equal_from_different_by_its_exit_code(capsys):
+def test_compare_tells_equal_from_different_by_its_exit_code(capsys, tmp_path):
     for name, friction in (("a", "0.2"), ("b", "0.2"), ("c", "0.4")):
         run(["map", "stability", "--alpha1", "0:pi:7", "--mu", friction, "-o", f"{name}.nc"])
     assert run(["compare", "a.nc", "b.nc"]) == 0
     assert run(["compare", "a.nc", "c.nc"]) == 1
     out = capsys.readouterr().out
-    assert "parameters.mu: 0.2 → 0.4" in out
+    assert re.search(r"parameters\.mu\W+0\.2\W+0\.4", out)
     assert run(["compare", "a.nc", "nowhere.nc"]) == 2
-    assert run(["compare", "a.nc", "c.nc", "--json"]) == 1
+    capsys.readouterr()
+    assert run(["compare", "a.nc", "c.nc", "--json", "--html", "difference.html"]) == 1
+    assert json.loads(capsys.readouterr().out)["verdict"] == "different"
+    assert "</html>" in (tmp_path / "difference.html").read_text(encoding="utf-8")
