@@ -11,6 +11,7 @@ import pkgutil
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import IntEnum
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -254,6 +255,7 @@ def find(name: str) -> DatasetSchema:
     raise SchemaError(f"no schema {name!r}; known: {', '.join(sorted(schemas))}")
 
 
+@cache
 def all_schemas() -> dict[str, DatasetSchema]:
     """Every schema of the package by name."""
     found = {}

@@ -17,7 +17,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from squealpipe.parameters import Parameters
-from squealpipe.schema import SchemaError, all_schemas
+from squealpipe.schema import SchemaError
 from squealpipe.store import StoreError, load, produce, save
 from squealpipe.tasks.linear import stability_map
 
@@ -269,11 +269,3 @@ def test_killed_writers_never_leave_half_a_file(tmp_path):
 @pytest.mark.slow
 def test_many_killed_writers_never_leave_half_a_file(tmp_path):
     kill_writers(tmp_path, 60)
-
-
-def test_every_schema_has_a_unique_name_and_units():
-    for name, schema in all_schemas().items():
-        assert schema.name == name
-        for variable, entry in {**schema.variables, **schema.coordinates}.items():
-            assert entry.long_name, f"{name}.{variable} has no long_name"
-            assert not set(schema.variables) & set(schema.coordinates), name

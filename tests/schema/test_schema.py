@@ -1,0 +1,146 @@
+"""The tables of datasets: complete, consistent, and every fault of a dataset told at once."""
+
+import subprocess
+import sys
+from enum import IntEnum
+
+import numpy as np
+import pytest
+
+from squealpipe.schema import (
+    REMEDIES,
+    DatasetSchema,
+    Outcome,
+    SchemaError,
+    Variable,
+    all_schemas,
+    build,
+    find,
+    flag_table,
+    outcome,
+    validate,
+)
+
+SCHEMAS = all_schemas()
+
+
+class Colour(IntEnum):
+    red = 0
+    green = 1
+
+
+TABLE = DatasetSchema(
+    name="probe",
+    title="Probe",
+    coordinates={"t": Variable(dims=("t",), units="s", long_name="time")},
+    variables={
+        "x": Variable(dims=("t",), units="m", long_name="place"),
+        "gap": Variable(dims=("t",), units="m", long_name="gap", nan_allowed=True),
+        "colour": Variable(dims=("t",), dtype="i1", flags=Colour, long_name="colour"),
+        "label": Variable(dims=("t",), dtype="U8", long_name="label", optional=True),
+        "outcome": outcome("t"),
+    },
+)
+GOOD = {"x": [1.0, 2.0], "gap": [np.nan, 0.0], "colour": [0, 1], "outcome": [0, 1]}
+T = {"t": [0.0, 1.0]}
+
+
+def test_built_dataset_is_labelled():
+    made = build(TABLE, GOOD, T, {"model": "A1"})
+    assert made.x.attrs == {"long_name": "place", "units": "m"}
+    assert made.colour.attrs["flag_meanings"] == "red green"
+    assert made.colour.attrs["flag_values"].dtype == made.colour.dtype == np.int8
+    assert made.attrs["schema"] == "probe"
+    assert made.attrs["model"] == "A1"
+    validate(made, TABLE)
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"colour": [0, 7]}, "colour holds flags \\[7\\] that have no meaning"),
+        ({"x": [np.nan, 0.0]}, "x holds NaN; give the reason in an outcome variable"),
+        ({"speed": [1.0, 2.0]}, "unknown variable speed"),
+        ({"x": None}, "x is missing"),
+    ],
+)
+def test_faulty_data_are_refused(change, message):
+    data = {name: values for name, values in {**GOOD, **change}.items() if values is not None}
+    with pytest.raises(SchemaError, match=message):
+        build(TABLE, data, T)
+
+
+def test_shapes_that_do_not_fit_are_refused():
+    with pytest.raises(ValueError, match="dimension"):
+        build(TABLE, {**GOOD, "x": [[1.0, 2.0]]}, T)
+    with pytest.raises(ValueError, match="conflicting sizes"):
+        build(TABLE, {**GOOD, "x": [1.0]}, T)
+
+
+def test_all_faults_are_told_at_once():
+    made = build(TABLE, GOOD, T).drop_vars("gap").assign(extra=1.0)
+    made["x"] = made.x.astype(int)
+    with pytest.raises(SchemaError) as caught:
+        validate(made.assign_attrs(schema_version=7), TABLE)
+    for part in ("version is 7", "gap is missing", "x has dtype int", "extra is not part of"):
+        assert part in str(caught.value)
+
+
+def test_unknown_schema_names_the_known_ones():
+    with pytest.raises(SchemaError, match=r"known: .*stability_map"):
+        find("stabilty_map")
+
+
+def test_every_outcome_says_what_to_do():
+    assert set(REMEDIES) == set(Outcome)
+    assert sorted(Outcome) == list(range(len(Outcome)))
+
+
+@pytest.mark.parametrize("name", sorted(SCHEMAS))
+def test_schema_is_complete(name):
+    schema = SCHEMAS[name]
+    assert schema.name == name
+    assert schema.title
+    assert not set(schema.variables) & set(schema.coordinates)
+    for variable, entry in {**schema.variables, **schema.coordinates}.items():
+        where = f"{name}.{variable}"
+        assert entry.long_name, f"{where} has no long_name"
+        assert entry.rtol >= 0, where
+        assert entry.atol >= 0, where
+        np.dtype(entry.dtype)
+        if entry.flags is not None:
+            table = flag_table(entry.flags)
+            assert len(set(table.values())) == len(table), where
+            assert all(" " not in meaning for meaning in table.values()), where
+            assert np.dtype(entry.dtype).kind == "i", where
+        if entry.nan_allowed:
+            assert np.dtype(entry.dtype).kind == "f", where
+
+
+@pytest.mark.parametrize("name", sorted(SCHEMAS))
+def test_a_dataset_of_zeros_can_be_made_from_the_table(name):
+    schema = SCHEMAS[name]
+
+    def zeros(entry):
+        kind = np.dtype(entry.dtype).kind
+        shape = tuple(2 for _ in entry.dims)
+        if kind in "US":
+            return np.full(shape, "a")
+        fill = 0 if entry.flags is None else min(flag_table(entry.flags))
+        return np.full(shape, fill, entry.dtype)
+
+    made = build(
+        schema,
+        {variable: zeros(entry) for variable, entry in schema.variables.items()},
+        {variable: zeros(entry) for variable, entry in schema.coordinates.items()},
+    )
+    assert made.attrs["schema"] == name
+
+
+def test_importing_one_table_does_not_import_the_others():
+    code = (
+        "import sys, squealpipe.schema.linear as _; "
+        "print(*sorted(n for n in sys.modules if n.startswith('squealpipe.schema.')))"
+    )
+    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert run.stdout.split() == ["squealpipe.schema.linear"]
