@@ -23,7 +23,7 @@ from pydantic import (
 )
 
 from squealpipe.mistakes import ConfigError, mistakes
-from squealpipe.parameters import Parameters, parameters_of
+from squealpipe.parameters import Parameters
 from squealpipe.yaml_files import overlay, read_yaml
 
 __all__ = [
@@ -32,7 +32,6 @@ __all__ = [
     "Section",
     "Study",
     "json_schema",
-    "parameters_of",
     "parse_study",
     "read_study",
 ]

@@ -197,5 +197,7 @@ def test_json_schema_is_generated_from_the_types():
 
 
 def test_known_keys_reach_every_value():
-    leaves = set(flat(Study().model_dump(mode="json")))
-    assert leaves <= set(known_keys(Study))
+    known = set(known_keys(Study))
+    leaves = flat(Study().model_dump(mode="json"))
+    unreached = {key for key in leaves if not {key, key.rpartition(".")[0]} & known}
+    assert not unreached  # keys of a mapping, like names of scenes, are reached by its own key
