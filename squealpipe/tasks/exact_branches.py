@@ -48,7 +48,7 @@ def exact_branch(
         return [], [], Outcome.pole
     peaks = np.linspace(scene.rest[1], min(1.0, y_max), LINEAR_POINTS + 1)[1:]
     orbits = [linear_orbit(scene, mode, float(peak)) for peak in peaks]
-    outcomes = [Outcome.linear_mode] * len(orbits)
+    outcomes = [linear_outcome(float(peak)) for peak in peaks]
     if y_max <= 1.0:
         return orbits, outcomes, Outcome.amplitude_reached
     if scene.system.decoupled:
@@ -61,6 +61,11 @@ def exact_branch(
         beyond = [Orbit(row[:3], np.empty(int(row[7])), row[5], row[6]) for row in table]
         end = BRANCH_ENDS[why]
     return orbits + beyond, outcomes + [Outcome.converged] * len(beyond), end
+
+
+def linear_outcome(peak: float) -> Outcome:
+    """Outcome of a point on the linear mode, with its scaled peak."""
+    return Outcome.grazing if peak == 1.0 else Outcome.linear_mode
 
 
 def isolated_orbits(scene: ScaledSystem, mode: int, x_max: float) -> list[Orbit]:

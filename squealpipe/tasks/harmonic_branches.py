@@ -23,6 +23,7 @@ from squealpipe.tasks.exact_branches import (
     LINEAR_POINTS,
     decoupled_peaks,
     isolated_orbits,
+    linear_outcome,
     pole_number,
 )
 from squealpipe.tasks.orbits import grazing_start, linear_orbit
@@ -94,7 +95,10 @@ def harmonic_branch(
         linear_series(scene, mode, n_harmonics, linear_orbit(scene, mode, float(peak)).point)
         for peak in peaks
     ]
-    points = [_judged(scene, balance, z, Outcome.linear_mode) for z in series]
+    points = [
+        _judged(scene, balance, z, linear_outcome(float(peak)))
+        for z, peak in zip(series, peaks, strict=True)
+    ]
     if y_max <= 1.0:
         return balance, points, Outcome.amplitude_reached
     if scene.system.decoupled:

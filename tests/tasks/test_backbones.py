@@ -84,6 +84,13 @@ def test_branches_of_the_figures_bend_to_lower_frequencies(scene):
     assert (np.diff(found.omega[~below]) < 0).all()
 
 
+def test_the_point_that_just_touches_the_end_of_contact_is_flagged():
+    for method in ("exact", "hbm"):
+        found = _branch(0.3, 0.9, 1, method=method)
+        grazing = found.y_peak[found.outcome == Outcome.grazing]
+        np.testing.assert_allclose(grazing, [BASE.preload], rtol=1e-14)
+
+
 @pytest.mark.parametrize("method", ["exact", "hbm"])
 def test_a_pole_ends_the_branch_unless_its_other_side_is_asked_for(method):
     """At (0.95π, 0.95π) the y mode passes ω_x/2: x is driven at resonance."""
