@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from squealpipe.figures.backbone_panels import KEY, key_entries, draw_branch
+from squealpipe.figures.backbone_panels import KEY, draw_branch, key_entries
 from squealpipe.figures.style import PAGE, new_figure, panel_letter, pi_label
 
 if TYPE_CHECKING:
