@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from functools import cache
+import threading
 from types import SimpleNamespace
 from typing import Any
 
@@ -74,7 +74,17 @@ def _variational(x: Any, y: Any, ax: Any, ay: Any) -> list[tuple[Any, Any]]:
     ]
 
 
-@cache
+_OF_THREAD = threading.local()
+
+
 def lane_integrator(*, linear_springs: bool, tangent: bool, tol: float) -> Any:
-    """The compiled batch integrator, built once a process for each combination."""
-    return batch_integrator(lane_system(linear_springs=linear_springs, tangent=tangent), tol)
+    """The compiled batch integrator, built once a thread for each combination.
+
+    An integrator holds the states of its lanes, so threads must not share one.
+    """
+    built = _OF_THREAD.__dict__.setdefault("integrators", {})
+    key = (linear_springs, tangent, tol)
+    if key not in built:
+        system = lane_system(linear_springs=linear_springs, tangent=tangent)
+        built[key] = batch_integrator(system, tol)
+    return built[key]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import fields
 
 import numpy as np
@@ -172,3 +173,9 @@ def test_lanes_and_integrator_agree_on_the_order_of_parameters():
     ):  # fmt: skip
         index = PARAMETER_INDEX[names.get(name, name.lower())]
         assert getattr(lane_layout, name) == index
+
+
+def test_threads_do_not_disturb_each_other(reference):
+    with ThreadPoolExecutor(2) as pool:
+        for run in pool.map(lambda _: _run(workers=1), range(4)):
+            assert_identical(run, reference)
