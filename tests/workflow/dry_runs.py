@@ -10,9 +10,13 @@ import tempfile
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
+import smart_open  # noqa: F401  imported before the forks, as are the next, so that none has to
 import snakemake.cli
 
-import squealpipe.config  # noqa: F401  imported before the forks, so that none has to
+import squealpipe.claims.statements
+import squealpipe.config
+import squealpipe.report.lineage  # noqa: F401
+from squealpipe.sources import closure
 
 
 def dry_run(arguments: list[str]) -> tuple[int, str]:
@@ -32,5 +36,8 @@ def dry_run(arguments: list[str]) -> tuple[int, str]:
 
 
 if __name__ == "__main__":
+    snakemake.cli.get_argument_parser()  # finds the plugins
+    for script in Path("workflow/scripts").glob("*.py"):
+        closure(script)
     with ThreadPoolExecutor(os.cpu_count()) as pool:
         json.dump(list(pool.map(dry_run, json.load(sys.stdin))), sys.stdout)
