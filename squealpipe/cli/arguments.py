@@ -110,6 +110,23 @@ Physical = Annotated[
 Output = Annotated[Path, Parameter(name=["--output", "-o"])]
 Picture = Annotated[Path | None, Parameter(name=["--picture", "-p"])]
 
+PICTURES = (".png", ".svg", ".pdf")
+
+
+def picture_beside(output: Path, picture: Path | None) -> Path:
+    """Where the picture goes: as asked, or beside the output.
+
+    Raises:
+        ValueError: the two would be one file, or the picture is of no kind that can be written.
+    """
+    chosen = output.with_suffix(".png") if picture is None else picture
+    if chosen.suffix not in PICTURES:
+        raise ValueError(f"--picture {chosen}: end the name in {', '.join(PICTURES)}")
+    if chosen == output:
+        raise ValueError(f"--output {output}: the dataset needs another name than the picture")
+    return chosen
+
+
 BASELINE = Parameters()
 FULL_RANGE = parse_range("0:pi:61", parse_angle)
 """Both spring angles from 0 to π."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any, Literal
 
-from squealpipe.cli.arguments import BASELINE, Angle, Output, Physical, Picture
+from squealpipe.cli.arguments import BASELINE, Angle, Output, Physical, Picture, picture_beside
 from squealpipe.cli.exit_codes import DONE
 
 
@@ -51,10 +51,10 @@ def backbone(
         "x_amplitude_max": 3 * params.preload if x_amplitude_max is None else x_amplitude_max,
         **({"n_harmonics": n_harmonics} if method == "hbm" else {}),
     }
+    picture = picture_beside(output, picture)
     config = {"parameters": params.as_dict(), "alpha1": alpha1, "alpha2": alpha2, **options}
     produce(lambda: task(params, alpha1, alpha2, **options), config=config, output=output)
     branch = load(output)
-    picture = output.with_suffix(".png") if picture is None else picture
     save_figure(draw(branch, preload=params.preload), [picture])
     end = Outcome(int(branch.end))
     print(

@@ -12,6 +12,7 @@ from squealpipe.cli.arguments import (
     Output,
     Physical,
     Picture,
+    picture_beside,
 )
 from squealpipe.cli.exit_codes import DONE
 
@@ -52,10 +53,10 @@ def map_angles(
         raise ValueError("a map needs 2 or more angles of each spring; write for instance 0:pi:61")
     name = {"frequencies": "natural_frequencies"}.get(kind, f"{kind.replace('-', '_')}_map")
     options = {"t_end": t_end, "tol": tol} if kind in {"validity", "hammering"} else {}
+    picture = picture_beside(output, picture)
     config = {"parameters": params.as_dict(), "alpha1": alpha1, "alpha2": alpha2, **options}
     produce(lambda: run_task(name, params, alpha1, alpha2, **options), config=config, output=output)
     dataset = load(output)
-    picture = output.with_suffix(".png") if picture is None else picture
     save_figure(draw(dataset), [picture])
     for line in SHOWN[str(dataset.attrs["schema"])].counts(dataset):
         print(line)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any, Literal
 
-from squealpipe.cli.arguments import BASELINE, Angle, Output, Physical, Picture
+from squealpipe.cli.arguments import BASELINE, Angle, Output, Physical, Picture, picture_beside
 from squealpipe.cli.exit_codes import ANSWER_IS_NO, DONE
 
 Model = Literal["A1", "A1-no-stick", "A1-no-separation", "A1-linear-springs", "A4"]
@@ -53,6 +53,7 @@ def simulate(
     if not t_end > 0:
         raise ValueError(f"--t-end {t_end!r} must be greater than 0")
     times = np.linspace(0.0, t_end, points)
+    picture = picture_beside(output, picture)
     config = {"parameters": params.as_dict(), "alpha1": alpha1, "alpha2": alpha2}
     options: dict[str, Any] = {"t_end": t_end, "model": model, "tol": tol}
     produce(
@@ -64,7 +65,6 @@ def simulate(
     summary = summarize(run)
     for line in summary_lines(run, summary):
         print(line)
-    picture = output.with_suffix(".png") if picture is None else picture
     save_figure(draw(run, summary), [picture])
     print(f"wrote {output} and {picture}")
     outcome = Outcome(int(run.outcome))

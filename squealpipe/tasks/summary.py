@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from squealpipe.methods.spectrum import amplitude_spectrum, highest_peaks
 from squealpipe.schema import build
-from squealpipe.schema.dynamics import EventFlag
+from squealpipe.schema.dynamics import EventFlag, RegimeFlag
 from squealpipe.schema.run_summary import RUN_SUMMARY
 
 PEAKS = 3
@@ -20,7 +20,7 @@ PADDING = 8
 
 
 def summarize(run: xr.Dataset) -> xr.Dataset:
-    """Summarize a run that was sampled uniformly.
+    """Summarize a run that was sampled uniformly from its start.
 
     Times of events are exact; forces, displacements and the spectrum come from the samples.
 
@@ -54,8 +54,8 @@ def summarize(run: xr.Dataset) -> xr.Dataset:
         {
             "first_separation_time": separations[0] if separations.size else np.nan,
             "impact_rate": np.count_nonzero(kinds == EventFlag.contact) / end,
-            "separated_fraction": _share(run, EventFlag.separation, end),
-            "stick_fraction": _share(run, EventFlag.stick, end),
+            "separated_fraction": _share(run, EventFlag.separation, RegimeFlag.separated, end),
+            "stick_fraction": _share(run, EventFlag.stick, RegimeFlag.stick, end),
             "peak_contact_force": force.max(),
             "largest_x": np.abs(run.x.values[: time.size]).max(),
             "largest_y": np.abs(run.y.values[: time.size]).max(),
@@ -68,11 +68,11 @@ def summarize(run: xr.Dataset) -> xr.Dataset:
     )
 
 
-def _share(run: xr.Dataset, begins: EventFlag, end: float) -> float:
-    """Share of the time in the regime that an event of this kind begins and the next one ends."""
-    times = np.append(run.event_time.values, end)
-    begun = np.flatnonzero(run.event_kind.values == begins)
-    return float((times[begun + 1] - times[begun]).sum() / end)
+def _share(run: xr.Dataset, begins: EventFlag, regime: RegimeFlag, end: float) -> float:
+    """Share of the time in a regime, which an event of this kind begins and the next one ends."""
+    lengths = np.diff(run.event_time.values, prepend=0.0, append=end)
+    within = [int(run.regime[0]) == regime, *(run.event_kind.values == begins)]
+    return float(lengths[within].sum() / end)
 
 
 def summary_lines(run: xr.Dataset, summary: xr.Dataset) -> Iterator[str]:

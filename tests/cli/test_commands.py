@@ -64,6 +64,8 @@ def test_help_loads_no_numerics():
         (["simulate", "1", "2", "--muu", "3"], "Did you mean --mu"),
         (["simulate", "1", "2", "--t-end", "0"], "--t-end 0.0 must be greater than 0"),
         (["simulate", "1", "2", "--points", "3"], "give 16 or more"),
+        (["simulate", "1", "2", "-o", "run.png"], "another name than the picture"),
+        (["map", "stability", "-p", "map.txt"], "end the name in .png, .svg, .pdf"),
         (["map", "sound"], "validity"),
         (["map", "stability", "--alpha1", "1"], "2 or more angles of each spring"),
         (["sweep", "stability_map", "--vary", "mu"], "write for instance mu=0:0.6:13"),

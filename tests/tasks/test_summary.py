@@ -61,3 +61,12 @@ def test_too_few_or_uneven_samples_are_refused():
     uneven = simulate(Parameters(), 1.0, 2.0, t_end=9.0, times=np.linspace(0, 3, 40) ** 2)
     with pytest.raises(ValueError, match="not uniform"):
         summarize(uneven)
+
+
+def test_a_run_that_starts_in_the_air_is_separated_from_its_start():
+    motion = run(np.pi / 2, np.pi, t_end=3.0, initial_state=(0.0, 2.0, 0.0, 0.0))
+    landing = float(motion.event_time[0])
+    assert int(motion.event_kind[0]) == EventFlag.contact
+    sampled = float((motion.normalized_contact_force.values <= 0).mean())
+    assert float(summarize(motion).separated_fraction) == pytest.approx(sampled, abs=2e-3)
+    assert float(summarize(motion).separated_fraction) >= landing / 3.0
