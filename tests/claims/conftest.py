@@ -25,18 +25,20 @@ def baseline() -> Parameters:
     return Parameters()
 
 
-@pytest.fixture(scope="session")
-def evidence(baseline: Parameters) -> dict[str, xr.Dataset]:
+def compute_evidence(params: Parameters) -> dict[str, xr.Dataset]:
+    """All datasets that the checks read, at any parameters; times and speeds scale with them."""
+    unit = params.time_unit
+    speed = params.preload / unit
     angles = np.linspace(0.0, np.pi, POINTS)
     found = {
-        "quasi_static_map": quasi_static_map(baseline, angles, angles),
-        "stability_map": stability_map(baseline, angles, angles),
-        "natural_frequencies": natural_frequencies(baseline, angles, angles),
-        "assumptions": check_assumptions(baseline),
-        "linear_pull": linear_pull_map(baseline, angles, angles),
-        "validity_map": validity_map(baseline, angles, angles, workers=1),
+        "quasi_static_map": quasi_static_map(params, angles, angles),
+        "stability_map": stability_map(params, angles, angles),
+        "natural_frequencies": natural_frequencies(params, angles, angles),
+        "assumptions": check_assumptions(params),
+        "linear_pull": linear_pull_map(params, angles, angles, t_end=50.0 * unit),
+        "validity_map": validity_map(params, angles, angles, t_end=200.0 * unit, workers=1),
         "parameter_inference": infer_parameters(
-            baseline,
+            params,
             samples=24,
             kappa=(0.6, 0.8),
             mu=(0.2, 0.3),
@@ -44,32 +46,39 @@ def evidence(baseline: Parameters) -> dict[str, xr.Dataset]:
             speed_ratio=(90.0, 110.0),
             workers=1,
         ),
-        "whirl": whirl_sizes(baseline, [50.0, 100.0], t_end=2000.0, workers=1),
+        "whirl": whirl_sizes(params, [50.0 * speed, 100.0 * speed], t_end=2000.0 * unit, workers=1),
         "transient": transient_lifetimes(
-            baseline, [10.0], samples=2, shown_samples=8, t_end=4000.0, workers=1
+            params, [10.0 * speed], samples=2, shown_samples=8, t_end=4000.0 * unit, workers=1
         ),
         "harmonic_forms": compare_harmonic_forms(
-            baseline,
+            params,
             {
                 "F10": (0.5 * np.pi, np.pi, 2),
                 "coupled": (0.3 * np.pi, 0.9 * np.pi, 2),
             },
         ),
-        "hammering_map": hammering_map(baseline, angles[::4], angles[::4], t_end=50.0, workers=1),
+        "hammering_map": hammering_map(
+            params, angles[::4], angles[::4], t_end=50.0 * unit, workers=1
+        ),
     }
     for name, scene in SCENES.items():
         if scene.figure <= 5:
             found[f"simulate/{name}"] = simulate(
-                baseline, scene.alpha1, scene.alpha2, t_end=scene.t_end
+                params, scene.alpha1, scene.alpha2, t_end=scene.t_end * unit
             )
         else:
             for mode in (1, 2):
                 found[f"backbone/{name}_mode{mode}"] = backbone(
-                    baseline, scene.alpha1, scene.alpha2, mode=mode
+                    params, scene.alpha1, scene.alpha2, mode=mode
                 )
     first = SCENES["F2a"]
-    printed = baseline.with_(belt_speed=-baseline.belt_speed)
+    printed = params.with_(belt_speed=-params.belt_speed)
     found["simulate/F2a_reversed"] = simulate(
-        printed, first.alpha1, first.alpha2, t_end=first.t_end
+        printed, first.alpha1, first.alpha2, t_end=first.t_end * unit
     )
     return found
+
+
+@pytest.fixture(scope="session")
+def evidence(baseline: Parameters) -> dict[str, xr.Dataset]:
+    return compute_evidence(baseline)
