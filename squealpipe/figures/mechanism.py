@@ -106,7 +106,8 @@ def _label(
     for index, direction in enumerate(directions, start=1):
         side = np.array([-direction[1], direction[0]]) * (1 if index == 1 else -1)
         place = 0.58 * length * direction + 0.27 * length * side
-        axes.text(place[0], place[1], f"$k_{index},\\ L_{index}$", color=SPRING_COLOURS[index - 1], **text)
+        name = f"$k_{index},\\ L_{index}$"
+        axes.text(place[0], place[1], name, color=SPRING_COLOURS[index - 1], **text)
     span = 0.42 * length
     axes.plot([-0.62 * length, 0.62 * length], [0, 0], color=GREY, linewidth=0.6, linestyle=":")
     degrees = np.degrees(angles)

@@ -170,7 +170,7 @@ def _paper(
     *,
     as_printed: bool,
 ) -> Solution:
-    """Eqs. (31)–(36); the peak is not prescribed, so ω is judged by the exact orbit of its own."""
+    """The paper's balance; its peak is not prescribed: ω is judged by its own exact orbit."""
     n_time = 4 * n_harmonics + 2
     balance = _CountedPaper(scene.system, n_harmonics, n_time, PAPER_SIGMA, as_printed=as_printed)
     count = n_harmonics + 1
