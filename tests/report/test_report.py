@@ -12,8 +12,9 @@ from pathlib import Path
 import pytest
 
 from squealpipe.claims.statements import STATEMENTS
-from squealpipe.report.build import TEMPLATES
+from squealpipe.report.build import TEMPLATES, write_report
 from squealpipe.report.captions import read_caption, title
+from squealpipe.report.content import picture_files
 from squealpipe.report.lineage import lineage
 from tests.browser import chromium_path, open_page
 from tests.conftest import ROOT
@@ -138,10 +139,13 @@ def test_prose_takes_its_numbers_from_the_datasets(small_report) -> None:
     assert f"there are {facts['flutter']} cells with flutter" in " ".join(prose.split())
 
 
-def test_pdf_is_whole_and_dated_by_nothing(small_report) -> None:
-    document = small_report.pdf.read_bytes()
-    assert document.startswith(b"%PDF-")
-    assert document.rstrip().endswith(b"%%EOF")
+def test_equal_content_gives_equal_files(small_report, tmp_path: Path) -> None:
+    page, pdf = tmp_path / "index.html", tmp_path / "report.pdf"
+    pictures = picture_files(small_report.content, small_report.figures)
+    write_report(small_report.content, pictures, page, pdf)
+    assert page.read_bytes() == small_report.page.read_bytes()
+    assert pdf.read_bytes() == small_report.pdf.read_bytes()
+    assert pdf.read_bytes().startswith(b"%PDF-")
 
 
 def test_provenance_names_rule_id_and_checksum_of_every_dataset(small_report) -> None:
