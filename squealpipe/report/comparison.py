@@ -33,7 +33,7 @@ def table(comparison: Comparison, *, every: bool = False) -> RenderableType:
 
     Args:
         comparison: of two places.
-        every: also list variables that are equal.
+        every: also list what is equal.
     """
     parts: list[RenderableType] = []
     for title, changes in (
@@ -42,8 +42,9 @@ def table(comparison: Comparison, *, every: bool = False) -> RenderableType:
     ):
         if changes:
             parts.append(_changes(title, comparison, changes))
-    if comparison.datasets:
-        parts.append(_datasets(comparison, every=every))
+    listed = [item for item in comparison.datasets if every or _says_something(item)]
+    if listed:
+        parts.append(_datasets(listed, every=every))
     parts.append(
         Text(f"{verdict_line(comparison)}", style=STYLES[comparison.verdict], overflow="fold")
     )
@@ -117,11 +118,16 @@ def _changes(title: str, comparison: Comparison, changes: dict[str, tuple[Any, A
     return grid
 
 
-def _datasets(comparison: Comparison, *, every: bool) -> Table:
+def _says_something(item: DatasetDifference) -> bool:
+    equal = all(entry.verdict == Verdict.equal for entry in item.variables)
+    return not equal or bool(item.notes) or item.verdict != Verdict.equal
+
+
+def _datasets(datasets: list[DatasetDifference], *, every: bool) -> Table:
     grid = Table(title="variables", title_justify="left", title_style="bold")
     for column in ("dataset", "variable", "verdict", "difference", "where"):
         grid.add_column(column, overflow="fold")
-    for item in comparison.datasets:
+    for item in datasets:
         style = STYLES[item.verdict]
         note = "; ".join([item.reason, *item.notes] if item.reason else item.notes)
         grid.add_row(escape(item.name), "", Text(words(item.verdict), style=style), escape(note))

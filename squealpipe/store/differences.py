@@ -15,6 +15,10 @@ ALIGNED = 1e-9
 """Grid points that differ by less, relative to the extent of the grid, are the same point."""
 
 
+LONGEST = 60
+"""Characters of a text that an account of flips quotes."""
+
+
 class Verdict(IntEnum):
     """Ordered: the verdict on a whole is the largest of its parts."""
 
@@ -144,7 +148,7 @@ def _discrete(name: str, a: xr.DataArray, b: xr.DataArray, entry: Variable) -> V
     count = int(differing.sum())
     meanings = {} if entry.flags is None else flag_table(entry.flags)
     flips = Counter(
-        f"{meanings.get(old, old)} → {meanings.get(new, new)}"
+        f"{_short(meanings.get(old, old))} → {_short(meanings.get(new, new))}"
         for old, new in zip(left[differing].tolist(), right[differing].tolist(), strict=True)
     )
     return VariableDifference(
@@ -156,6 +160,11 @@ def _discrete(name: str, a: xr.DataArray, b: xr.DataArray, entry: Variable) -> V
         flips=dict(flips.most_common(12)),
         volatile=entry.volatile,
     )
+
+
+def _short(value: object) -> str:
+    text = str(value)
+    return text if len(text) <= LONGEST else f"{text[: LONGEST - 1]}…"
 
 
 def _continuous(name: str, a: xr.DataArray, b: xr.DataArray, entry: Variable) -> VariableDifference:

@@ -40,6 +40,10 @@ def test_table_lists_changed_parameters_first_and_the_verdict_last(pair):
     assert text.rstrip().endswith("different: 1 dataset (different 1)")
 
 
+def test_equal_datasets_are_counted_but_not_listed(pair):
+    assert printed(compare(pair[0], pair[0])) == "equal: 1 dataset (equal 1)\n"
+
+
 def test_table_of_what_cannot_be_compared_tells_why(pair, tmp_path):
     found = compare(pair[0], tmp_path / "nowhere")
     assert "no archive, folder or file" in printed(found)
