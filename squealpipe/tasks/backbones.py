@@ -18,7 +18,7 @@ from squealpipe.schema.backbones import BACKBONE
 from squealpipe.tasks.a4_system import ScaledSystem, scaled_system
 from squealpipe.tasks.exact_branches import exact_branch
 from squealpipe.tasks.harmonic_branches import HarmonicPoint, harmonic_branch
-from squealpipe.tasks.orbits import check_length, check_mode, orbit_values
+from squealpipe.tasks.orbits import check_length, check_mode, find_orbit, orbit_values
 
 
 def backbone(
@@ -107,6 +107,42 @@ def contact_losing_branches(
         for name, among in modes.items()
         for mode in among
     }
+
+
+def with_orbits(
+    params: Parameters, branches: Mapping[str, tuple[float, float, int]], peaks: Sequence[float]
+) -> tuple[dict[str, tuple[float, float, int]], str]:
+    """Those branches that have an exact orbit at every peak, and why the others have none.
+
+    Which mode loses contact depends on the parameters, so a study with other ones may keep fewer
+    branches; the reasons go into the dataset's attribute ``left_out``.
+
+    Args:
+        params: physical parameters.
+        branches: name → (alpha1, alpha2, mode).
+        peaks: y_peak over l_pre.
+
+    Raises:
+        ValueError: none is left.
+    """
+    kept, reasons = {}, []
+    for name, (alpha1, alpha2, mode) in branches.items():
+        scene = scaled_system(params, alpha1, alpha2)
+        if scene.rest[1] >= min(peaks):
+            reasons.append(f"{name}: equilibrium above the peak")
+            continue
+        found = [find_orbit(scene, mode, peak) for peak in peaks]
+        missing = [outcome.name for orbit, outcome in found if orbit is None]
+        if missing:
+            reasons.append(f"{name}: {missing[0]}")
+        else:
+            kept[name] = (alpha1, alpha2, mode)
+    if not kept:
+        raise ValueError(
+            f"no branch has orbits at y_peak = {list(peaks)} l_pre ({'; '.join(reasons)}); "
+            "change the parameters or backbones.coupled"
+        )
+    return kept, "; ".join(reasons)
 
 
 def check_series(n_harmonics: int, n_time: int | None, sigma: float | None) -> None:

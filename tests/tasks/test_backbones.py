@@ -8,7 +8,7 @@ import pytest
 from squealpipe.parameters import Parameters
 from squealpipe.schema import Outcome
 from squealpipe.schema.backbones import Special
-from squealpipe.tasks.backbones import backbone
+from squealpipe.tasks.backbones import backbone, contact_losing_branches, with_orbits
 from squealpipe.tasks.orbits import periodic_orbit
 
 PI = math.pi
@@ -149,3 +149,16 @@ def test_arguments_out_of_range_are_named(wrong):
     name = "n_harmonics" if wrong.get("n_harmonics") == 0 else name
     with pytest.raises(ValueError, match=name):
         backbone(BASE, 1.0, 2.0, **{"mode": 1, **wrong})
+
+
+def test_branches_without_orbits_are_left_out_with_their_reason():
+    # With unequal springs the x mode of F10 comes second: it is isolated and never separates.
+    found = contact_losing_branches({"coupled": (0.3, 0.9)})
+    kept, left_out = with_orbits(Parameters(k2=2.0), found, [2.0])
+    assert "F10 mode 2" not in kept
+    assert "F10 mode 2: isolated_mode" in left_out
+    everything, nothing = with_orbits(Parameters(), found, [2.0])
+    assert everything == found
+    assert nothing == ""
+    with pytest.raises(ValueError, match="no branch has orbits"):
+        with_orbits(Parameters(k2=2.0), {"F10 mode 2": found["F10 mode 2"]}, [2.0])

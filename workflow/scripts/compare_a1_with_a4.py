@@ -3,18 +3,19 @@
 from squealpipe.parameters import parameters_of
 from squealpipe.store import produce
 from squealpipe.tasks.a1_beside_a4 import a1_beside_a4
-from squealpipe.tasks.backbones import contact_losing_branches
+from squealpipe.tasks.backbones import contact_losing_branches, with_orbits
 
 part = snakemake.params.part
 found = contact_losing_branches(part["backbones.coupled"])
-branches = {name: found[name] for name in found if not name.endswith("mode 2") or "F10" in name}
+chosen = {name: found[name] for name in found if not name.endswith("mode 2") or "F10" in name}
+branches, left_out = with_orbits(parameters_of(part), chosen, [part["backbones.atlas_peak"]])
 produce(
     lambda: a1_beside_a4(
         parameters_of(part),
         branches,
         peak=part["backbones.atlas_peak"],
         length_ratios=part["backbones.length_ratios"],
-    ),
+    ).assign_attrs(left_out=left_out),
     config=part,
     output=snakemake.output[0],
 )

@@ -2,21 +2,23 @@
 
 from squealpipe.parameters import parameters_of
 from squealpipe.store import produce
-from squealpipe.tasks.backbones import contact_losing_branches
+from squealpipe.tasks.backbones import contact_losing_branches, with_orbits
 from squealpipe.tasks.harmonic_sweeps import compare_harmonic_forms, sweep_harmonic_balance
 
 part = snakemake.params.part
 params = parameters_of(part)
-branches = contact_losing_branches(part["backbones.coupled"])
+sweep = part["backbones.sweep"]
+found = contact_losing_branches(part["backbones.coupled"])
+branches, left_out = with_orbits(params, found, [2.0, *sweep["peaks"]])
 produce(
     lambda: sweep_harmonic_balance(
-        params, branches, n_harmonics=part["backbones.n_harmonics"], **part["backbones.sweep"]
-    ),
+        params, branches, n_harmonics=part["backbones.n_harmonics"], **sweep
+    ).assign_attrs(left_out=left_out),
     config=part,
     output=snakemake.output.sweep,
 )
 produce(
-    lambda: compare_harmonic_forms(params, branches),
+    lambda: compare_harmonic_forms(params, branches).assign_attrs(left_out=left_out),
     config=part,
     output=snakemake.output.forms,
 )
