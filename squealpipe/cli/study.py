@@ -102,7 +102,7 @@ def archive(
         name: of the archive, which goes to results/archive/NAME.
         results: folder of the run; by default the one that the configuration names.
         config: the run's configuration files, later ones laid over earlier ones; repeatable.
-        leave_out: suffix of files that are not frozen, for instance .svg; repeatable.
+        leave_out: suffix (.svg) or path pattern (data/simulate/*) that is not frozen; repeatable.
     """
     from squealpipe.store.archive import archive as freeze
 

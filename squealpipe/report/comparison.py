@@ -60,7 +60,9 @@ def verdict_line(comparison: Comparison) -> str:
     }
     told = ", ".join(f"{words(verdict)} {count}" for verdict, count in counts.items() if count)
     total = len(comparison.datasets)
-    return f"{words(comparison.verdict)}: {total} dataset{'s' * (total != 1)} ({told})"
+    skipped = f"; left out of the archive: {', '.join(comparison.skipped)}"
+    line = f"{words(comparison.verdict)}: {total} dataset{'s' * (total != 1)} ({told})"
+    return line + skipped if comparison.skipped else line
 
 
 def words(verdict: Verdict) -> str:

@@ -21,15 +21,22 @@ from squealpipe.config import Study, read_study
 from squealpipe.store.crate import METADATA, describe
 from squealpipe.store.netcdf import StoreError, load, sync
 from squealpipe.store.provenance import commit
-from squealpipe.store.runs import MANIFEST, archive_folder, dataset_files, locate, regular_files
+from squealpipe.store.runs import (
+    LEFT_OUT,
+    MANIFEST,
+    archive_folder,
+    dataset_files,
+    locate,
+    matches_any,
+    read_manifest,
+    regular_files,
+)
 
 PARTS = ("data", "figures", "report")
 """Folders of a run that are frozen."""
 
 SEAL = "manifest.sha256"
 """Holds the checksum of the manifest, so that an edited manifest is noticed too."""
-
-LARGEST_MANIFEST = 64 * 2**20
 
 
 @dataclass(frozen=True)
@@ -75,7 +82,8 @@ def archive(
         results: folder of the run; the one that the configuration names by default.
         configs: the configuration files of the run, later ones laid over earlier ones.
         root: the checkout.
-        leave_out: file suffixes that are not frozen, for instance ``".svg"``.
+        leave_out: what is not frozen: suffixes (``".svg"``) or patterns of paths in the archive
+            (``"data/simulate/*"``); the manifest lists them, and a comparison skips them.
 
     Returns:
         The folder of the archive.
@@ -99,11 +107,12 @@ def archive(
     draft = Path(tempfile.mkdtemp(dir=target.parent, prefix=f".{name}.", suffix=".tmp"))
     try:
         draft.chmod(0o755)
-        _copy_run(run, draft, tuple(leave_out))
+        patterns = [f"*{entry}" if entry.startswith(".") else entry for entry in leave_out]
+        _copy_run(run, draft, patterns)
         _copy_setting(config_files, study, base, draft)
         frozen_at = datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds")
         (draft / METADATA).write_text(describe(draft, name, frozen_at), encoding="utf-8")
-        _seal(draft, name, frozen_at)
+        _seal(draft, {"name": name, "frozen": frozen_at, LEFT_OUT: patterns})
         draft.rename(target)
         sync(target.parent)
     except OSError as error:
@@ -130,7 +139,7 @@ def verify(what: str | os.PathLike[str], root: str | os.PathLike[str] = ".") -> 
     folder = locate(what, root)
     if not (folder / MANIFEST).is_file():
         raise FileNotFoundError(f"{folder} has no {MANIFEST}; it is not an archive")
-    listed = _read_manifest(folder)
+    listed = _listed_files(folder)
     if listed is None:
         return Verification(folder=folder, files=0, changed=[f"{MANIFEST} (damaged)"])
     unsafe = sorted(path for path in listed if not _stays_inside(path))
@@ -184,12 +193,13 @@ def _refuse_stale(run: Path, study: Study) -> None:
         )
 
 
-def _copy_run(run: Path, draft: Path, leave_out: tuple[str, ...]) -> None:
+def _copy_run(run: Path, draft: Path, patterns: list[str]) -> None:
     for part in PARTS:
         for path in regular_files(run / part):
-            if path.suffix in leave_out:
+            name = path.relative_to(run)
+            if matches_any(name.as_posix(), patterns):
                 continue
-            copy = draft / part / path.relative_to(run / part)
+            copy = draft / name
             copy.parent.mkdir(parents=True, exist_ok=True)
             shutil.copyfile(path, copy)
 
@@ -218,7 +228,7 @@ def _copy_setting(configs: list[Path], study: Study, base: Path, draft: Path) ->
     (draft / "environment.json").write_text(text + "\n", encoding="utf-8")
 
 
-def _seal(draft: Path, name: str, frozen_at: str) -> None:
+def _seal(draft: Path, about: dict[str, Any]) -> None:
     files = {
         path.relative_to(draft).as_posix(): {
             "bytes": path.stat().st_size,
@@ -226,7 +236,7 @@ def _seal(draft: Path, name: str, frozen_at: str) -> None:
         }
         for path in regular_files(draft)
     }
-    manifest = {"format": 1, "name": name, "frozen": frozen_at, "files": files}
+    manifest = {"format": 1, **about, "files": files}
     (draft / MANIFEST).write_text(json.dumps(manifest, indent=1) + "\n", encoding="utf-8")
     (draft / SEAL).write_text(_seal_text(draft), encoding="utf-8")
     for path in regular_files(draft):
@@ -242,15 +252,13 @@ def _seal_fits(folder: Path) -> bool:
     return seal.is_file() and seal.read_bytes() == _seal_text(folder).encode()
 
 
-def _read_manifest(folder: Path) -> dict[str, dict[str, Any]] | None:
+def _listed_files(folder: Path) -> dict[str, dict[str, Any]] | None:
     """File name → entry; None if the manifest is damaged."""
-    path = folder / MANIFEST
-    if path.stat().st_size > LARGEST_MANIFEST:
-        raise ValueError(f"{path} is larger than {LARGEST_MANIFEST} bytes; it is not one of ours")
+    manifest = read_manifest(folder)
     try:
-        files = json.loads(path.read_text(encoding="utf-8"))["files"]
+        files = manifest["files"]
         return {str(name): dict(entry) for name, entry in files.items()}
-    except (ValueError, KeyError, TypeError, AttributeError):
+    except (KeyError, TypeError, AttributeError, ValueError):
         return None
 
 

@@ -16,7 +16,7 @@ from squealpipe.schema import DatasetSchema, find
 from squealpipe.store.differences import VariableDifference, Verdict, align, difference
 from squealpipe.store.netcdf import load
 from squealpipe.store.provenance import VOLATILE_ATTRIBUTES
-from squealpipe.store.runs import dataset_files, locate
+from squealpipe.store.runs import dataset_files, left_out, locate, matches_any
 from squealpipe.yaml_files import flat
 
 
@@ -41,6 +41,7 @@ class Comparison:
         parameters: changed configuration key → values in a and b (None: the key is absent).
         environment: what else differs in how they were made: commit, versions, platform.
         datasets: one entry for each name found on either side.
+        skipped: datasets that one side, an archive, deliberately left out.
         reason: why nothing could be compared, if so.
     """
 
@@ -49,6 +50,7 @@ class Comparison:
     parameters: dict[str, tuple[Any, Any]] = field(default_factory=dict)
     environment: dict[str, tuple[Any, Any]] = field(default_factory=dict)
     datasets: list[DatasetDifference] = field(default_factory=list)
+    skipped: list[str] = field(default_factory=list)
     reason: str = ""
 
     @property
@@ -71,6 +73,7 @@ class Comparison:
             "verdict": self.verdict.name,
             "exit_code": self.exit_code,
             "reason": self.reason,
+            "skipped": self.skipped,
             "parameters": {key: list(pair) for key, pair in self.parameters.items()},
             "environment": {key: list(pair) for key, pair in self.environment.items()},
             "datasets": [
@@ -98,7 +101,9 @@ def compare(
         root: the checkout, where archives are looked up by name.
     """
     try:
-        left, right = dataset_files(locate(a, root)), dataset_files(locate(b, root))
+        places = locate(a, root), locate(b, root)
+        left, right = (dataset_files(place) for place in places)
+        absent = [pattern for place in places for pattern in left_out(place)]
     except (FileNotFoundError, ValueError) as error:
         return Comparison(a=str(a), b=str(b), reason=str(error))
     if len(left) == len(right) == 1 and (Path(a).is_file() or Path(b).is_file()):
@@ -106,7 +111,8 @@ def compare(
     parameters: dict[str, tuple[Any, Any]] = {}
     environment: dict[str, tuple[Any, Any]] = {}
     datasets = []
-    for name in sorted(set(left) | set(right)):
+    skipped = [name for name in set(left) ^ set(right) if matches_any(f"data/{name}.nc", absent)]
+    for name in sorted((set(left) | set(right)) - set(skipped)):
         if name not in left or name not in right:
             side = a if name in left else b
             reason = f"only in {side}"
@@ -127,6 +133,7 @@ def compare(
         parameters=dict(sorted(parameters.items())),
         environment=dict(sorted(environment.items())),
         datasets=datasets,
+        skipped=sorted(skipped),
     )
 
 

@@ -2,16 +2,52 @@
 
 from __future__ import annotations
 
+import fnmatch
+import json
 import os
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
+from typing import Any
 
 ARCHIVES = Path("results/archive")
 MANIFEST = "manifest.json"
 NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,79}")
 MOST_FILES = 100_000
 """A folder with more files is not one of ours."""
+
+
+LEFT_OUT = "left_out"
+LARGEST_MANIFEST = 64 * 2**20
+
+
+def matches_any(name: str, patterns: Iterable[str]) -> bool:
+    """Whether a path in an archive, like ``data/whirl.nc``, fits one of some patterns."""
+    return any(fnmatch.fnmatchcase(name, pattern) for pattern in patterns)
+
+
+def read_manifest(folder: Path) -> dict[str, Any]:
+    """Manifest of an archive; empty where it is damaged or the folder is no archive.
+
+    Raises:
+        ValueError: it is too large to be one.
+    """
+    path = folder / MANIFEST
+    if not path.is_file():
+        return {}
+    if path.stat().st_size > LARGEST_MANIFEST:
+        raise ValueError(f"{path} is larger than {LARGEST_MANIFEST} bytes; it is not one of ours")
+    try:
+        manifest = json.loads(path.read_text(encoding="utf-8"))
+    except ValueError:
+        return {}
+    return manifest if isinstance(manifest, dict) else {}
+
+
+def left_out(place: Path) -> list[str]:
+    """Patterns of what an archive deliberately does not hold."""
+    patterns = read_manifest(place).get(LEFT_OUT, []) if place.is_dir() else []
+    return [str(item) for item in patterns] if isinstance(patterns, list) else []
 
 
 def archive_folder(name: str, root: str | os.PathLike[str] = ".") -> Path:

@@ -9,6 +9,7 @@ from rocrate.rocrate import ROCrate
 
 from squealpipe.store import StoreError, load, save
 from squealpipe.store.archive import archive, checksum, verify
+from squealpipe.store.compare import compare
 
 
 @pytest.fixture
@@ -135,9 +136,23 @@ def test_no_run_is_told(tmp_path, run):
 def test_oversized_or_damaged_manifest_is_refused(frozen, monkeypatch):
     (frozen / "manifest.json").write_text('{"files": [1, 2]}')
     assert verify(frozen).changed == ["manifest.json (damaged)"]
-    monkeypatch.setattr("squealpipe.store.archive.LARGEST_MANIFEST", 3)
+    monkeypatch.setattr("squealpipe.store.runs.LARGEST_MANIFEST", 3)
     with pytest.raises(ValueError, match="not one of ours"):
         verify(frozen)
+
+
+def test_left_out_datasets_are_no_difference(run):
+    path = run / "results/data/stability_map.nc"
+    (run / "results/data/simulate").mkdir()
+    shutil.copy(path, run / "results/data/simulate/F3.nc")
+    frozen = archive("small", root=run, leave_out=["data/simulate/*"])
+    assert not (frozen / "data/simulate").exists()
+    assert verify(frozen).intact
+    found = compare(frozen, run / "results")
+    assert found.exit_code == 0
+    assert found.skipped == ["simulate/F3"]
+    path.rename(path.with_name("another.nc"))
+    assert compare(frozen, run / "results").exit_code == 1
 
 
 def test_suffixes_can_be_left_out(run):
