@@ -50,6 +50,7 @@ class Outcome(IntEnum):
     unresolved = 22
     free_flight = 23
     amplitude_reached = 24
+    unconfirmed = 25
 
 
 REMEDIES: dict[Outcome, str] = {
@@ -78,6 +79,7 @@ REMEDIES: dict[Outcome, str] = {
     Outcome.unresolved: "the check could not decide; refine the grid or the horizon",
     Outcome.free_flight: "the mass left the belt and does not come back within t_end",
     Outcome.amplitude_reached: "the asked amplitude was reached",
+    Outcome.unconfirmed: "no exact orbit is close to the series; more harmonics or method=exact",
 }
 
 

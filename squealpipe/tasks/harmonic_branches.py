@@ -33,6 +33,8 @@ Vector = NDArray[np.float64]
 _PHASES = np.linspace(0.0, math.pi, 257)
 _NEAR_EXACT = 0.05
 """Share of ω by which an exact orbit may differ and still be the same motion."""
+_FAR = 0.05
+"""Waveform distance over l_pre beyond which a series does not stand for the exact orbit."""
 
 
 @dataclass(frozen=True)
@@ -212,6 +214,8 @@ def _judged(
     switches = balance.contact.angles(y) / omega
     values, _ = balance.evaluate(z)
     omega_exact, waveform_error = _distance(scene, balance, z, start, outcome)
+    if outcome == Outcome.converged and not waveform_error <= _FAR:
+        outcome = Outcome.unconfirmed
     return HarmonicPoint(
         z=z,
         residual=float(np.abs(values).max()),

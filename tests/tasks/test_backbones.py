@@ -162,3 +162,14 @@ def test_branches_without_orbits_are_left_out_with_their_reason():
     assert nothing == ""
     with pytest.raises(ValueError, match="no branch has orbits"):
         with_orbits(Parameters(k2=2.0), {"F10 mode 2": found["F10 mode 2"]}, [2.0])
+
+
+@pytest.mark.parametrize(("alpha1", "alpha2"), [(0.4, 0.55), (0.3, 0.9), (0.2, 0.7)])
+@pytest.mark.parametrize("n_harmonics", [4, 16])
+def test_no_series_far_from_every_exact_orbit_is_called_converged(alpha1, alpha2, n_harmonics):
+    branch = _branch(alpha1, alpha2, 1, method="hbm", n_harmonics=n_harmonics)
+    converged = branch.where(branch.outcome == Outcome.converged, drop=True)
+    assert float(converged.waveform_error.max()) <= 0.05
+    far = branch.where(branch.waveform_error > 0.05, drop=True)
+    assert (far.outcome == Outcome.unconfirmed).all()
+    assert ((alpha1, alpha2) == (0.3, 0.9)) <= (far.sizes["point"] == 0)
