@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from squealpipe.parameters import SCENES, Parameters
+from squealpipe.schema.dynamics import EventFlag
 from squealpipe.store import load
 
 
@@ -37,7 +38,8 @@ def test_the_two_horizontal_arrangements_are_identical(scene):
     first, second = scene("F5a"), scene("F5b")
     np.testing.assert_allclose(first.x, second.x, atol=1e-10)
     np.testing.assert_allclose(first.y, second.y, atol=1e-10)
-    assert float(first.y.max()) == pytest.approx(3.46, abs=0.01)
+    assert float(first.y.max()) > 2 * Parameters().preload
+    assert (first.event_kind == EventFlag.separation).sum() >= 4
 
 
 def test_the_pendulum_is_pumped_past_thirty(scene):
@@ -63,7 +65,7 @@ def test_friction_drags_the_mass_along_the_belt(scene):
 @pytest.mark.parametrize("figure", ["F10", "F11", "F12", "F13"])
 def test_branches_bend_to_lower_frequency_past_contact_loss(quick_study, figure):
     mode = 1 if figure == "F13" else 2
-    branch = load(quick_study.results / f"data/backbone/{figure}_mode{mode}_exact.nc")
+    branch = load(quick_study.results / f"data/backbone/{figure}_mode{mode}.nc")
     separated = branch.where(branch.y_peak > 1.001 * Parameters().preload, drop=True)
     assert separated.sizes["point"] > 5
     by_amplitude = separated.sortby("y_peak")

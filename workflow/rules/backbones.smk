@@ -58,7 +58,7 @@ rule map_orbits:
         data("orbit_atlas"),
     params:
         part=part("parameters", "backbones.atlas_points", "backbones.atlas_peak"),
-    threads: workflow.cores
+    threads: cores_for(STUDY.backbones.atlas_points**2, enough=4000)
     script:
         "../scripts/map_orbits.py"
 

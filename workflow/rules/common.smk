@@ -40,3 +40,8 @@ def sources(script):
 def part(*paths):
     """Canonical slice of the study, the only configuration that a script sees."""
     return STUDY.slice(*paths)
+
+
+def cores_for(size, enough):
+    """All cores for a job of ``enough`` cells or more; smaller jobs run beside one another."""
+    return workflow.cores if size >= enough else 1

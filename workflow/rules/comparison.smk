@@ -48,7 +48,7 @@ rule map_model_ladder:
         data("model_ladder"),
     params:
         part=part("parameters", "comparison.ladder"),
-    threads: workflow.cores
+    threads: cores_for(STUDY.comparison.ladder.points**2, enough=1000)
     script:
         "../scripts/map_model_ladder.py"
 

@@ -30,7 +30,7 @@ rule map_validity:
         map_log("validity_map"),
     params:
         part=VALIDITY,
-    threads: workflow.cores
+    threads: cores_for(STUDY.dynamics.validity_points**2, enough=10_000)
     script:
         "../scripts/map_validity.py"
 
@@ -49,7 +49,7 @@ rule map_hammering:
         map_log("hammering_map"),
     params:
         part=HAMMERING,
-    threads: workflow.cores
+    threads: cores_for(STUDY.dynamics.hammering_points**2, enough=4000)
     script:
         "../scripts/map_hammering.py"
 
@@ -69,7 +69,7 @@ rule refine_validity:
             "dynamics.refined_coarse",
             "dynamics.uniform_points",
         ),
-    threads: workflow.cores
+    threads: cores_for(STUDY.dynamics.refined_points**2, enough=1_000_000)
     script:
         "../scripts/refine_validity.py"
 
@@ -94,7 +94,7 @@ rule follow_whirl:
             "dynamics.transient_shown",
             "dynamics.transient_horizon",
         ),
-    threads: workflow.cores
+    threads: cores_for(STUDY.dynamics.transient_shown, enough=100)
     script:
         "../scripts/follow_whirl.py"
 

@@ -8,7 +8,7 @@ rule compute_explorer:
         data("explorer"),
     params:
         part=part("parameters", "explorer"),
-    threads: workflow.cores
+    threads: cores_for(STUDY.explorer.points**2, enough=200)
     script:
         "../scripts/compute_explorer.py"
 

@@ -8,7 +8,7 @@ rule infer_parameters:
         data("parameter_inference"),
     params:
         part=part("parameters", "inference"),
-    threads: workflow.cores
+    threads: cores_for(STUDY.inference.samples, enough=4000)
     script:
         "../scripts/infer_parameters.py"
 
