@@ -1,5 +1,6 @@
 """A dataset file is whole and valid or absent; whatever is read was judged first."""
 
+import contextlib
 import errno
 import os
 import resource
@@ -164,21 +165,23 @@ def test_invalid_datasets_leave_the_earlier_file(path, dataset, break_it):
     assert leftovers(path.parent) == []
 
 
-@pytest.fixture
-def no_space(monkeypatch):
-    """Files cannot grow past a few kilobytes, as on a full disk."""
+@contextlib.contextmanager
+def no_space():
+    """Files cannot grow past a few kilobytes, as on a full disk; pytest's own log neither."""
     soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
     handler = signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
     resource.setrlimit(resource.RLIMIT_FSIZE, (6000, hard))
-    yield
-    resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
-    signal.signal(signal.SIGXFSZ, handler)
+    try:
+        yield
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
+        signal.signal(signal.SIGXFSZ, handler)
 
 
-def test_full_disk_leaves_the_earlier_file(path, dataset, no_space):
+def test_full_disk_leaves_the_earlier_file(path, dataset):
     before = path.read_bytes()
     larger = stability_map(Parameters(), *[np.linspace(0, np.pi, 201)] * 2)
-    with pytest.raises(StoreError, match="free space or mend permissions"):
+    with no_space(), pytest.raises(StoreError, match="free space or mend permissions"):
         save(larger, path)
     assert path.read_bytes() == before
     assert leftovers(path.parent) == []
