@@ -15,8 +15,16 @@ from squealpipe.models import a1
 
 PHYSICAL = ("k2", "k3", "mu", "belt_speed", "length1", "length2", "c1", "s1", "c2", "s2")
 """Parameters of a lane, in units of m = k1 = l_pre = 1."""
-REGIME = ("contact", "direction", "stick", "watches_speed", "watches_gap", "speed_scale")
-"""What a regime sets: the terms of A1 and which switching surfaces are watched."""
+REGIME = (
+    "contact",
+    "direction",
+    "stick",
+    "gap_weight",
+    "gap_offset",
+    "speed_weight",
+    "speed_offset",
+)
+"""What a regime sets: the terms of A1, and its switching surfaces as weights and offsets."""
 PARAMETER_INDEX = {name: index for index, name in enumerate((*PHYSICAL, *REGIME))}
 STATE = ("x", "y", "vx", "vy")
 TANGENT = ("dx", "dy", "dvx", "dvy")
@@ -49,16 +57,13 @@ def lane_system(*, linear_springs: bool, tangent: bool) -> HybridSystem:
         equations += _variational(x, y, ax, ay)
     fx, _ = a1.spring_force(x, y, p, g, linear_springs=linear_springs)
     limit = p.mu * contact_force(y, p)
-    gap, speed = lane["watches_gap"], lane["watches_speed"]
-    # A surface that a regime does not watch becomes the constant 1, which has no root. Speeds are
-    # scaled because the integrator's error norm includes its event functions.
+    # A surface that a regime does not watch becomes the constant 1, which has no root. Offsets are
+    # parameters because each operation of an event function costs as much as one of the field.
     return HybridSystem(
         equations=tuple(equations),
         events=(
-            gap * (y - 1.0) + (1.0 - gap),
-            speed * lane["speed_scale"] * (vx - p.belt_speed)
-            + stick * (limit - fx)
-            + (1.0 - speed - stick),
+            lane["gap_weight"] * y + lane["gap_offset"],
+            lane["speed_weight"] * vx + stick * (limit - fx) + lane["speed_offset"],
             stick * (limit + fx) + (1.0 - stick),
         ),
     )

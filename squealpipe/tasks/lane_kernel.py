@@ -18,6 +18,7 @@ from squealpipe.methods.lanes import (
     evaluate,
     float_view,
     integer_view,
+    inline,
     part,
 )
 from squealpipe.models import switching
@@ -104,7 +105,7 @@ from squealpipe.tasks.lane_observers import grow, observe, sample
 from squealpipe.tasks.lane_start import idle, lane_parameters, load, set_regime
 
 
-@part
+@inline
 def _near_surface(state: Any, m: Any, lane: int, regime: int, step: float) -> Any:
     """Whether ``switching.switch`` must look at the state; cheap and on the safe side."""
     y, reach = state[1, lane], 1e-12 * (1.0 + abs(state[1, lane]) + step * abs(state[3, lane]))
@@ -116,7 +117,7 @@ def _near_surface(state: Any, m: Any, lane: int, regime: int, step: float) -> An
     return m[REVERSES] > 0.0 and gap <= 1e-12 * (1.0 + abs(m[BELT_SPEED]))
 
 
-@part
+@inline
 def _finite(state: Any, step: float, lane: int) -> bool:
     total = step
     for variable in range(state.shape[0]):
@@ -124,7 +125,7 @@ def _finite(state: Any, step: float, lane: int) -> bool:
     return math.isfinite(total)
 
 
-@part
+@inline
 def _advance_lane(
     state: Any, pars: Any, c: Any, step: float, memory: Any, integers: Any, lane: int, events: Any
 ) -> Any:
@@ -191,7 +192,7 @@ def _switch(
     return change.saltation
 
 
-@part
+@inline
 def _stop_reason(m: Any, result: Any, integers: Any, lane: int, saltation: float) -> int:
     """The outcome if the run is to end here, or RUNNING."""
     outcome = RUNNING

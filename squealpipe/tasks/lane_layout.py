@@ -12,7 +12,8 @@ EVENT_TIMES, EVENT_KINDS, EVENT_STATES, QUEUE = range(13, 17)
 N_VARIABLES, N_PARS, N_TERMS, N_JOBS, N_SAMPLES, N_LOGGED = range(17, 23)
 # The integrator's parameters, in the order of ``tasks.a1_system``: physical ones, then regime.
 K2, K3, MU, BELT_SPEED, LENGTH1, LENGTH2, C1, S1, C2, S2 = range(10)
-CONTACT, DIRECTION, STICKS_NOW, WATCHES_SPEED, WATCHES_GAP, SPEED_SCALE = range(10, 16)
+CONTACT, DIRECTION, STICKS_NOW = range(10, 13)
+GAP_WEIGHT, GAP_OFFSET, SPEED_WEIGHT, SPEED_OFFSET = range(13, 17)
 # A job's order: its physical parameters, as above, then what is asked for.
 N_PHYSICAL = 10
 T_END, T_LATE, STOP_AT_X, STOP_AT_SEPARATION, MAX_STEPS, MAX_EVENTS = range(10, 16)

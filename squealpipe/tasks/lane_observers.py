@@ -9,7 +9,15 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from squealpipe.methods.lanes import evaluate, part, root_of
+from squealpipe.methods.lanes import (
+    evaluate_motion,
+    evaluate_state,
+    extremum,
+    first_guess,
+    inline,
+    part,
+    tangents_meet,
+)
 from squealpipe.tasks.lane_layout import (
     CLOCK,
     CORRECTION,
@@ -40,7 +48,7 @@ from squealpipe.tasks.lane_layout import (
 )
 
 
-@part
+@inline
 def observe(c: Any, end: Any, memory: Any, lane: int, regime: int, step: float) -> None:
     """Times in each regime and the extrema over one step that ends in the state ``end``."""
     m = memory[lane, RESULT:]
@@ -52,33 +60,36 @@ def observe(c: Any, end: Any, memory: Any, lane: int, regime: int, step: float) 
         if regime == STICK:
             m[STICK_TIME] += step
         low = min(y0, y1)
-        if vy0 < 0.0 < vy1 and low + step * vy0 < m[LOWEST_Y]:
-            low = min(low, evaluate(c, 1, lane, root_of(c, 3, lane, step, vy0, vy1)))
+        if vy0 < 0.0 < vy1 and tangents_meet(y0, y1, vy0, vy1, step) < m[LOWEST_Y]:
+            low = min(low, extremum(c, 1, 3, lane, step, vy0, vy1))
         m[LOWEST_Y] = min(m[LOWEST_Y], low)
         high = max(y0, y1)
-        if vy0 > 0.0 > vy1 and high + step * vy0 > m[HIGHEST_Y]:
-            high = max(high, evaluate(c, 1, lane, root_of(c, 3, lane, step, vy0, vy1)))
+        if vy0 > 0.0 > vy1 and tangents_meet(y0, y1, vy0, vy1, step) > m[HIGHEST_Y]:
+            high = max(high, extremum(c, 1, 3, lane, step, vy0, vy1))
         m[HIGHEST_Y] = max(m[HIGHEST_Y], high)
     large = max(abs(x0), abs(x1))
     window = EARLY_LARGEST_X
     if memory[lane, CLOCK] >= memory[lane, ORDER + T_LATE]:
         window = LATE_LARGEST_X
-    if vx0 * vx1 < 0.0 and large + step * abs(vx0) > m[window]:
-        large = max(large, abs(evaluate(c, 0, lane, root_of(c, 2, lane, step, vx0, vx1))))
+    if vx0 * vx1 < 0.0 and abs(tangents_meet(x0, x1, vx0, vx1, step)) > m[window]:
+        large = max(large, abs(extremum(c, 0, 2, lane, step, vx0, vx1)))
     m[window] = max(m[window], large)
     m[LARGEST_SPEED] = max(m[LARGEST_SPEED], vx1)
     _observe_distances(c, end, memory, lane, step)
 
 
-@part
+@inline
 def _observe_distances(c: Any, end: Any, memory: Any, lane: int, step: float) -> None:
     """Distances from the start and from the pivots, and the half turns around these."""
     m = memory[lane, RESULT:]
     x0, y0, vx0, vy0 = c[0, 0, lane], c[1, 0, lane], c[2, 0, lane], c[3, 0, lane]
     x1, y1, vx1, vy1 = end
     out0, out1 = x0 * vx0 + y0 * vy0, x1 * vx1 + y1 * vy1
-    largest = x1 * x1 + y1 * y1
-    if out0 > 0.0 > out1 and largest - 2.0 * step * out1 > m[LARGEST_R2]:
+    first, largest = x0 * x0 + y0 * y0, x1 * x1 + y1 * y1
+    if (
+        out0 > 0.0 > out1
+        and tangents_meet(first, largest, 2.0 * out0, 2.0 * out1, step) > m[LARGEST_R2]
+    ):
         largest = max(largest, _turning_distance2(c, lane, step, 0.0, 0.0, out0, out1))
     m[LARGEST_R2] = max(m[LARGEST_R2], largest)
     for number in range(2):
@@ -86,12 +97,14 @@ def _observe_distances(c: Any, end: Any, memory: Any, lane: int, step: float) ->
         scale = memory[lane, ORDER + LENGTH1 + number] ** -2
         if (x0 < px) != (x1 < px):
             m[HALF_TURNS1 + number] += 1.0 if (y1 > py) == (x1 < px) else -1.0
-        near = (x1 - px) ** 2 + (y1 - py) ** 2
+        far, near = (x0 - px) ** 2 + (y0 - py) ** 2, (x1 - px) ** 2 + (y1 - py) ** 2
         out0, out1 = (x0 - px) * vx0 + (y0 - py) * vy0, (x1 - px) * vx1 + (y1 - py) * vy1
         if out0 < 0.0 < out1:
-            near = min(near, _turning_distance2(c, lane, step, px, py, out0, out1))
-            if near < JUMP2 * ((x0 - px) ** 2 + (y0 - py) ** 2):
-                near = 0.0
+            least = tangents_meet(far, near, 2.0 * out0, 2.0 * out1, step)
+            if least * scale < m[NEAREST_PIVOT2] or least < JUMP2 * far:
+                near = min(near, _turning_distance2(c, lane, step, px, py, out0, out1))
+                if near < JUMP2 * far:
+                    near = 0.0
         m[NEAREST_PIVOT2] = min(m[NEAREST_PIVOT2], near * scale)
 
 
@@ -100,20 +113,19 @@ def _turning_distance2(
     c: Any, lane: int, step: float, px: float, py: float, first: float, last: float
 ) -> Any:
     """Squared distance from a point where the radial velocity about it changes its sign."""
-    low, high, middle = 0.0, step, 0.5 * step
-    for _ in range(5):
-        middle = low - first * (high - low) / (last - first)
-        x, y = evaluate(c, 0, lane, middle) - px, evaluate(c, 1, lane, middle) - py
-        out = x * evaluate(c, 2, lane, middle) + y * evaluate(c, 3, lane, middle)
-        if (out > 0.0) == (first > 0.0):
-            low, first, last = middle, out, 0.5 * last
-        else:
-            high, last, first = middle, out, 0.5 * first
-    x, y = evaluate(c, 0, lane, middle) - px, evaluate(c, 1, lane, middle) - py
-    return x * x + y * y
+    x, y, vx, vy = c[0, 0, lane] - px, c[1, 0, lane] - py, c[2, 0, lane], c[3, 0, lane]
+    slope = vx * vx + vy * vy + x * c[2, 1, lane] + y * c[3, 1, lane]
+    time = first_guess(first, last, slope, step)
+    for _ in range(2):
+        x, y, vx, vy, ax, ay = evaluate_motion(c, lane, time)
+        x, y = x - px, y - py
+        slope = vx * vx + vy * vy + x * ax + y * ay
+        time = min(max(time - (x * vx + y * vy) / slope, 0.0), step)
+    x, y, vx, vy = evaluate_state(c, lane, time)
+    return (x - px) ** 2 + (y - py) ** 2
 
 
-@part
+@inline
 def sample(
     c: Any,
     memory: Any,
@@ -130,14 +142,15 @@ def sample(
         offset = (times[following] - memory[lane, CLOCK]) - memory[lane, CORRECTION]
         if offset > step:
             break
+        state = evaluate_state(c, lane, offset)
         for variable in range(4):
-            samples[following, variable] = evaluate(c, variable, lane, offset)
+            samples[following, variable] = state[variable]
         regimes[following] = integers[lane, COUNT + REGIME]
         following += 1
     integers[lane, NEXT_SAMPLE] = following
 
 
-@part
+@inline
 def grow(state: Any, m: Any, lane: int, time: float, saltation: float, lost: float) -> None:
     """Growth of the tangent vector, with the jump of the field at belt speed."""
     state[6, lane] *= saltation

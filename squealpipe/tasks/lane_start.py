@@ -5,6 +5,7 @@ All quantities are in units of m = k1 = l_pre = 1.
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
@@ -25,6 +26,8 @@ from squealpipe.tasks.lane_layout import (
     DIRECTION,
     EARLY_LARGEST_X,
     FIRST_SEPARATION,
+    GAP_OFFSET,
+    GAP_WEIGHT,
     HIGHEST_Y,
     HORIZON,
     K2,
@@ -50,13 +53,12 @@ from squealpipe.tasks.lane_layout import (
     S2,
     SEPARATED,
     SEPARATES,
-    SPEED_SCALE,
+    SPEED_OFFSET,
+    SPEED_WEIGHT,
     STICK,
     STICKS,
     STICKS_NOW,
     TANGENT_NORM,
-    WATCHES_GAP,
-    WATCHES_SPEED,
 )
 
 for law in (
@@ -88,9 +90,18 @@ def set_regime(pars: Any, memory: Any, lane: int, regime: int) -> None:
     pars[CONTACT, lane] = 0.0 if regime == SEPARATED else 1.0
     pars[DIRECTION, lane] = 0.0 if not slipping else (1.0 if regime == 0 else -1.0)
     pars[STICKS_NOW, lane] = 1.0 if regime == STICK else 0.0
-    pars[WATCHES_SPEED, lane] = memory[lane, ORDER + REVERSES] if slipping else 0.0
-    pars[WATCHES_GAP, lane] = memory[lane, ORDER + SEPARATES]
-    pars[SPEED_SCALE, lane] = 1.0 / (1.0 + abs(memory[lane, ORDER + BELT_SPEED]))
+    # The surface y = 1, or none.
+    separates = memory[lane, ORDER + SEPARATES]
+    pars[GAP_WEIGHT, lane], pars[GAP_OFFSET, lane] = separates, 1.0 - 2.0 * separates
+    # The surface ẋ = V, scaled because the integrator's error norm includes it, and by a power of
+    # two, so that a state one unit of round-off beside it stays beside it; none in the air; in
+    # stick the surfaces of release alone.
+    weight, offset = 0.0, 0.0 if regime == STICK else 1.0
+    if slipping and memory[lane, ORDER + REVERSES] > 0.0:
+        speed = memory[lane, ORDER + BELT_SPEED]
+        weight = math.ldexp(1.0, -math.frexp(1.0 + abs(speed))[1])
+        offset = -weight * speed
+    pars[SPEED_WEIGHT, lane], pars[SPEED_OFFSET, lane] = weight, offset
 
 
 @part
@@ -134,4 +145,5 @@ def idle(state: Any, pars: Any, lane: int) -> None:
     for variable in range(state.shape[0]):
         state[variable, lane] = 0.0
     pars[CONTACT, lane], pars[STICKS_NOW, lane] = 1.0, 0.0
-    pars[WATCHES_SPEED, lane], pars[WATCHES_GAP, lane] = 0.0, 0.0
+    pars[GAP_WEIGHT, lane], pars[GAP_OFFSET, lane] = 0.0, 1.0
+    pars[SPEED_WEIGHT, lane], pars[SPEED_OFFSET, lane] = 0.0, 1.0

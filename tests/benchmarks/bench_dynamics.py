@@ -84,9 +84,10 @@ class ScalarLoop:
                 regime != switching.SEPARATED,
                 (1.0 if regime == switching.SLOWER else -1.0) if slips else 0.0,
                 regime == switching.STICK,
-                slips,
                 1.0,
-                1.0 / (1.0 + abs(p.belt_speed)),
+                -1.0,
+                1.0 * slips,
+                -p.belt_speed if slips else 1.0 * (regime != switching.STICK),
             )
             ta.propagate_until(t_end)
             if ta.time >= t_end:

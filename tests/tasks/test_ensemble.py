@@ -169,7 +169,8 @@ def test_lanes_and_integrator_agree_on_the_order_of_parameters():
     names = {"STICKS_NOW": "stick"}
     for name in (
         "K2", "K3", "MU", "BELT_SPEED", "LENGTH1", "LENGTH2", "C1", "S1", "C2", "S2",
-        "CONTACT", "DIRECTION", "STICKS_NOW", "WATCHES_SPEED", "WATCHES_GAP", "SPEED_SCALE",
+        "CONTACT", "DIRECTION", "STICKS_NOW",
+        "GAP_WEIGHT", "GAP_OFFSET", "SPEED_WEIGHT", "SPEED_OFFSET",
     ):  # fmt: skip
         index = PARAMETER_INDEX[names.get(name, name.lower())]
         assert getattr(lane_layout, name) == index
