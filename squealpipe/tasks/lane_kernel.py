@@ -17,8 +17,8 @@ from squealpipe.methods.lanes import (
     compile_advance,
     evaluate,
     float_view,
-    integer_view,
     inline,
+    integer_view,
     part,
 )
 from squealpipe.models import switching
