@@ -5,19 +5,23 @@ Prints medians and ratios; the ratios are what to compare between machines.
 
 from __future__ import annotations
 
+import importlib.util
 import resource
 import statistics
 import subprocess
 import sys
 import time
 from collections.abc import Callable
+from typing import Any
 
 import heyoka
 import numpy as np
 import xarray as xr
 
 from squealpipe.laws.springs import Geometry
+from squealpipe.methods.hybrid import Guard
 from squealpipe.models import switching
+from squealpipe.models.a1_automaton import A1Automaton
 from squealpipe.parameters import Parameters
 from squealpipe.tasks.a1_system import PARAMETER_INDEX, lane_system
 from squealpipe.tasks.dynamics import simulate, validity_map
@@ -29,6 +33,8 @@ from squealpipe.tasks.refinement import refine_validity_map
 PAIRS = 8
 T_END = 50.0
 BASELINE = Parameters()
+SUNDIALS = ("Adams", "BDF") if importlib.util.find_spec("sksundae") else ()
+"""Methods of the optional peer scikit-sundae; ``make bench`` installs it."""
 COLD = """
 import time; started = time.perf_counter()
 import numpy as np
@@ -97,6 +103,45 @@ class ScalarLoop:
             ta.state[1], ta.state[2] = change.y, change.vx
 
 
+def cvode(field: Any, guards: list[Guard], *, method: str, tol: float) -> Any:
+    """SUNDIALS CVODE for one regime, stopping at its guards; needs scikit-sundae."""
+    from sksundae.cvode import CVODE
+
+    def rhs(t: float, z: np.ndarray, rate: np.ndarray) -> None:
+        rate[:] = field(t, z)
+
+    def events(_: float, z: np.ndarray, values: np.ndarray) -> None:
+        values[:] = [guard.value(z) for guard in guards]
+
+    events.terminal = [True] * len(guards)  # type: ignore[attr-defined]
+    events.direction = [guard.direction for guard in guards]  # type: ignore[attr-defined]
+    return CVODE(
+        rhs, method=method, rtol=tol, atol=tol, eventsfn=events, num_events=len(guards),
+        max_num_steps=100_000,
+    )  # fmt: skip
+
+
+def simulate_sundials(
+    params: Parameters, alpha1: float, alpha2: float, *, method: str, tol: float
+) -> np.ndarray:
+    """The state at T_END by CVODE, restarted at each event."""
+    a1 = A1Automaton(params, alpha1, alpha2)
+    reached, state = 0.0, np.zeros(4)
+    regime = a1.start(state)
+    while reached < T_END:
+        guards = [Guard(*guard) for guard in a1.guards(regime)]
+        solver = cvode(a1.field(regime), guards, method=method, tol=tol)
+        solution = solver.solve(np.array([reached, T_END]), state)
+        if not solution.success:
+            raise RuntimeError(solution.message)
+        reached, state = float(solution.t[-1]), np.array(solution.y[-1])
+        if solution.i_events is not None and len(solution.i_events):
+            hit = int(np.flatnonzero(solution.i_events[-1])[0])
+            regime, state = a1.switch(guards[hit].kind, regime, state)
+            state = a1.leave(regime, state, float(np.finfo(float).eps))
+    return state
+
+
 def one_by_one(params: Parameters, angles: np.ndarray) -> list[xr.Dataset]:
     """Single runs, each with its own dataset."""
     return [simulate(params, *pair, t_end=T_END, times=[T_END]) for pair in angles]
@@ -140,6 +185,11 @@ def compare_integrators() -> None:
             ]
             seconds = (time.perf_counter() - started) / PAIRS
             rows.append((f"scipy {method} {tol:g}", seconds, states))
+        for method in SUNDIALS:
+            started = time.perf_counter()
+            states = [simulate_sundials(params, *a, method=method, tol=1e-10) for a in angles]
+            seconds = (time.perf_counter() - started) / PAIRS
+            rows.append((f"CVODE {method} 1e-10", seconds, states))
         print(f"\nA1, V = {speed:g}, t = {T_END:g}, {PAIRS} random angle pairs, one core")
         for name, seconds, states in rows:
             errors = [np.abs(s - e).max() for s, e in zip(states, exact, strict=True)]
