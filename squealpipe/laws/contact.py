@@ -26,17 +26,25 @@ def contact_energy(y: Any, p: Any) -> Any:
     return 0.5 * p.k3 * (p.preload - y) * (p.preload - y)
 
 
+def smoothed_compression(compression: Any, sigma: Any) -> Any:
+    """½ c (1 + tanh σc), m: the smooth form of max(c, 0) in Eqs. (26) and (27)."""
+    return 0.5 * compression * (1.0 + np.tanh(sigma * compression))
+
+
+def smoothed_compression_slope(compression: Any, sigma: Any) -> Any:
+    """d/dc of :func:`smoothed_compression`."""
+    t = np.tanh(sigma * compression)
+    return 0.5 * (1.0 + t + sigma * compression * (1.0 - t * t))
+
+
 def regularized_force(y: Any, p: Any, sigma: Any) -> Any:
     """Eqs. (26), (27): their contact term ½ k3 (l_pre − y)(1 + tanh σ(l_pre − y)), N."""
-    gap = p.preload - y
-    return 0.5 * p.k3 * gap * (1.0 + np.tanh(sigma * gap))
+    return p.k3 * smoothed_compression(p.preload - y, sigma)
 
 
 def regularized_stiffness(y: Any, p: Any, sigma: Any) -> Any:
     """−d/dy of :func:`regularized_force`, N/m."""
-    gap = p.preload - y
-    t = np.tanh(sigma * gap)
-    return 0.5 * p.k3 * (1.0 + t + sigma * gap * (1.0 - t * t))
+    return p.k3 * smoothed_compression_slope(p.preload - y, sigma)
 
 
 def linearized_contact_stiffness(p: Any, sigma: Any) -> Any:

@@ -12,6 +12,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from squealpipe.laws.contact import smoothed_compression, smoothed_compression_slope
+
 Vector = NDArray[np.float64]
 
 _NEWTON = 60
@@ -201,10 +203,8 @@ class SampledContact:
         table, weights = self._tables
         distance = self.threshold - table @ cosine
         if self.sigma is None:
-            share = (distance > 0.0).astype(float)
-            slope = share
+            compression, slope = np.maximum(distance, 0.0), (distance > 0.0).astype(float)
         else:
-            bend = np.tanh(self.sigma * distance)
-            share = 0.5 * (1.0 + bend)
-            slope = share + 0.5 * self.sigma * distance * (1.0 - bend * bend)
-        return weights @ (share * distance), -(weights * slope) @ table
+            compression = smoothed_compression(distance, self.sigma)
+            slope = smoothed_compression_slope(distance, self.sigma)
+        return weights @ compression, -(weights * slope) @ table

@@ -15,6 +15,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from squealpipe.laws.contact import smoothed_compression, smoothed_compression_slope
 from squealpipe.methods.piecewise_linear import PiecewiseLinearSystem
 
 Vector = NDArray[np.float64]
@@ -106,9 +107,8 @@ class SampledBalance:
         below, above = self.system.below.matrix, self.system.above.matrix
         push = below[0][1] - above[0][1], below[1][1] - above[1][1]
         distance = self.system.threshold - self.fourier @ b
-        bend = np.tanh(self.sigma * distance)
-        gap = self._projection @ (0.5 * distance * (1.0 + bend))
-        slope = 0.5 * (1.0 + bend + self.sigma * distance * (1.0 - bend * bend))
+        gap = self._projection @ smoothed_compression(distance, self.sigma)
+        slope = smoothed_compression_slope(distance, self.sigma)
         gap_by_b = -(self._projection * slope) @ self.fourier
         identity = np.eye(count)
         values, blocks = [], []
