@@ -1,85 +1,15 @@
-"""What people type: angles, ranges, and the option types that every command shares."""
+"""The option types that every command shares."""
 
 from __future__ import annotations
 
-import math
-import re
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated, Any
 
 from cyclopts import Group, Parameter
 
 from squealpipe.parameters import Parameters
-
-_NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
-_PI = re.compile(
-    rf"^(?P<sign>[+-])?(?P<head>{_NUMBER})?\s*\*?\s*(?:pi|π)(?:/(?P<below>{_NUMBER}))?$"
-)
-_DEGREES = re.compile(rf"^(?P<value>{_NUMBER})\s*(?:deg|°)$")
-_RADIANS = re.compile(rf"^(?P<value>{_NUMBER})\s*(?:rad)?$")
-ANGLE_FORMS = "write 0.4pi, 2pi/5, 72deg or radians"
-
-
-def parse_angle(text: str) -> float:
-    """An angle in rad from ``0.4pi``, ``2pi/5``, ``72deg`` or plain radians.
-
-    Raises:
-        ValueError: the text is none of these; the message lists them.
-    """
-    stripped = text.strip().lower()
-    if match := _PI.match(stripped):
-        head = float(match["head"] or 1) * (-1 if match["sign"] == "-" else 1)
-        below = float(match["below"] or 1)
-        if below:
-            return head * math.pi / below
-    elif match := _DEGREES.match(stripped):
-        return math.radians(float(match["value"]))
-    elif (match := _RADIANS.match(stripped)) and math.isfinite(float(match["value"])):
-        return float(match["value"])
-    raise ValueError(f"{text!r} is no angle; {ANGLE_FORMS}")
-
-
-def parse_number(text: str) -> float:
-    """A finite number.
-
-    Raises:
-        ValueError: it is something else.
-    """
-    try:
-        value = float(text)
-    except ValueError:
-        value = math.nan
-    if not math.isfinite(value):
-        raise ValueError(f"{text!r} is no number; write for instance 0.3 or 1e-3")
-    return value
-
-
-def parse_range(text: str, one: Callable[[str], float] = parse_number) -> list[float]:
-    """Values from a list ``0.1,0.2,0.4``, a range ``0:pi:31`` or ``1:100:7:log`` (ends included).
-
-    Args:
-        text: what was typed.
-        one: reads a single value, for instance :func:`parse_angle`.
-
-    Raises:
-        ValueError: the text is neither, with the form to use.
-    """
-    if ":" not in text:
-        return [one(part) for part in text.split(",")]
-    parts = text.split(":")
-    spacing = parts.pop() if len(parts) == 4 else "linear"
-    if len(parts) != 3 or spacing not in {"linear", "log"} or not parts[2].isdigit():
-        raise ValueError(f"{text!r} is no range; write first:last:count or first:last:count:log")
-    first, last, count = one(parts[0]), one(parts[1]), int(parts[2])
-    if count < 2:
-        raise ValueError(f"{text!r} asks for {count} values; ask for 2 or more, or give one value")
-    steps = [index / (count - 1) for index in range(count)]
-    if spacing == "linear":
-        return [first + (last - first) * step for step in steps[:-1]] + [last]
-    if not first * last > 0:
-        raise ValueError(f"{text!r}: a log range needs two ends of one sign, neither 0")
-    return [first * (last / first) ** step for step in steps[:-1]] + [last]
+from squealpipe.ranges import parse_angle, parse_range
 
 
 def _angle(_: Any, tokens: Sequence[Any]) -> float:

@@ -2,22 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from pathlib import Path
 from typing import Annotated
 
 from cyclopts import Parameter
 
-from squealpipe.cli.arguments import (
-    BASELINE,
-    Angle,
-    Output,
-    Physical,
-    parse_angle,
-    parse_number,
-    parse_range,
-)
+from squealpipe.cli.arguments import BASELINE, Angle, Output, Physical
 from squealpipe.cli.exit_codes import DONE
+from squealpipe.ranges import read_fixed, read_values, sweep_config
 
 
 def sweep(
@@ -55,22 +47,17 @@ def sweep(
     from squealpipe.store.chunks import Checkpoint
     from squealpipe.tasks import sweep as sweeping
 
-    fixed = {name: _option(value) for name, value in map(_pair, option or [])}
+    fixed = {name: read_fixed(name, value) for name, value in map(_pair, option or [])}
     fixed |= {
         name: value for name, value in (("alpha1", alpha1), ("alpha2", alpha2)) if value is not None
     }
-    plan = sweeping.Sweep(
+    config = sweep_config(
         task=task,
-        params=params,
-        vary={name: _values(name, text) for name, text in map(_pair, vary)},
+        vary={name: read_values(name, text) for name, text in map(_pair, vary)},
         fixed=fixed,
+        parameters=params.as_dict(),
     )
-    config = {
-        "task": task,
-        "parameters": params.as_dict(),
-        "vary": dict(plan.vary),
-        "fixed": fixed,
-    }
+    plan = sweeping.planned(config)
     print(f"{len(plan.points)} runs of {task} over {', '.join(plan.names)}")
     kept = Checkpoint.beside(output, config=config, sources=closure(sweeping.__file__))
     with kept, sweeping.executor(workers) as pool:
@@ -88,20 +75,3 @@ def _pair(text: str) -> tuple[str, str]:
     if not (name and equals and value):
         raise ValueError(f"{text!r} is no NAME=VALUE; write for instance mu=0:0.6:13")
     return name.strip().replace("-", "_"), value
-
-
-def _values(name: str, text: str) -> list[float]:
-    one: Callable[[str], float] = parse_angle if name in {"alpha1", "alpha2"} else parse_number
-    values = parse_range(text, one)
-    return [int(value) for value in values] if name == "mode" else values
-
-
-def _option(text: str) -> object:
-    try:
-        return int(text)
-    except ValueError:
-        pass
-    try:
-        return parse_number(text)
-    except ValueError:
-        return text

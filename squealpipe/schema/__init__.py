@@ -146,6 +146,9 @@ def flag_table(flags: Any) -> dict[int, str]:
     return {int(value): str(meaning) for value, meaning in flags.items()}
 
 
+ABSENT = -1
+"""Flag of places beyond the end of a run that is shorter than the longest of its sweep."""
+
 OUTCOME = Variable(dtype="i1", flags=Outcome, long_name="why the values are what they are")
 
 

@@ -11,10 +11,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from squealpipe.parameters import Parameters
-from squealpipe.schema import DatasetSchema, SchemaError, Variable, find, flag_table
-
-ABSENT = -1
-"""Flag of places beyond the end of a run that is shorter than the longest one."""
+from squealpipe.schema import ABSENT, DatasetSchema, SchemaError, Variable, find, flag_table
 
 RAGGED = ("event", "point", "switch", "harmonic")
 """Dimensions whose length may differ from run to run of a sweep."""

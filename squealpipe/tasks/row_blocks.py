@@ -1,8 +1,8 @@
 """Big maps in blocks of rows: each block is a map of its own, and together they are the map.
 
-A cell of a map does not know its neighbours, so the joined map equals the map made at once bit
-for bit, whether the blocks ran one after the other, were resumed after a kill, or came from
-several machines.
+A cell of a map does not know its neighbours, nor does a run of a sweep, so what is joined equals
+what is made at once bit for bit, whether the blocks ran one after the other, were resumed after a
+kill, or came from several machines.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 import xarray as xr
 
-from squealpipe.schema import build, find
+from squealpipe.schema import ABSENT, build, find
 from squealpipe.store.chunks import Arrays, Checkpoint, run_chunks
 
 BLOCK = 16_384
@@ -78,8 +78,14 @@ def map_in_blocks(
     return join([_as_dataset(part) for part in parts])
 
 
-def join(parts: Sequence[xr.Dataset]) -> xr.Dataset:
-    """One map from its blocks of rows, in order.
+def join(parts: Sequence[xr.Dataset], along: str = "alpha1") -> xr.Dataset:
+    """One map or sweep from its parts, in order.
+
+    Runs of a sweep that are shorter than the longest of all parts are filled up.
+
+    Args:
+        parts: datasets that differ in ``along`` alone.
+        along: the dimension that was cut.
 
     Raises:
         ValueError: there are none, or they are not of one kind and grid.
@@ -88,21 +94,38 @@ def join(parts: Sequence[xr.Dataset]) -> xr.Dataset:
         raise ValueError("no parts to join")
     first = parts[0]
     schema = find(str(first.attrs["schema"]))
+    shared = [name for name in first.coords if along not in first[name].dims]
     for part in parts[1:]:
         same_kind = part.attrs["schema"] == first.attrs["schema"]
-        if not same_kind or not np.array_equal(part.alpha2, first.alpha2):
-            raise ValueError("the parts are not blocks of rows of one map")
-    arrays = {}
-    for name, variable in first.variables.items():
-        if "alpha1" in variable.dims:
-            axis = variable.dims.index("alpha1")
-            arrays[str(name)] = np.concatenate([part[name].values for part in parts], axis=axis)
-        else:
-            arrays[str(name)] = variable.values
+        if not same_kind or any(not np.array_equal(part[name], first[name]) for name in shared):
+            raise ValueError(f"the parts are not blocks of rows of one map, cut along {along}")
+    arrays = {
+        str(name): _joined([part[name] for part in parts], along)
+        if along in variable.dims
+        else variable.values
+        for name, variable in first.variables.items()
+    }
     attributes = {key: first.attrs[key] for key in first.attrs if key not in OWN_ATTRIBUTES}
     data = {name: arrays[name] for name in arrays if name in schema.variables}
     coordinates = {name: arrays[name] for name in arrays if name in schema.coordinates}
     return build(schema, data, coordinates, attributes)
+
+
+def _joined(arrays: Sequence[xr.DataArray], along: str) -> np.ndarray:
+    axis = arrays[0].dims.index(along)
+    longest = np.max([array.shape for array in arrays], axis=0)
+    full = [(*longest[:axis], array.shape[axis], *longest[axis + 1 :]) for array in arrays]
+    filled = [fill_up(array.values, shape) for array, shape in zip(arrays, full, strict=True)]
+    return np.concatenate(filled, axis=axis)
+
+
+def fill_up(array: np.ndarray, shape: tuple[int, ...]) -> np.ndarray:
+    """A shorter run in the shape of the longest: beyond its end is NaN or the flag "absent"."""
+    if array.shape == shape:
+        return array
+    filled = np.full(shape, np.nan if array.dtype.kind == "f" else ABSENT, dtype=array.dtype)
+    filled[tuple(map(slice, array.shape))] = array
+    return filled
 
 
 def _as_arrays(dataset: xr.Dataset) -> Arrays:

@@ -6,7 +6,7 @@ import itertools
 from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import Executor, ProcessPoolExecutor
 from contextlib import contextmanager
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, replace
 from multiprocessing import get_all_start_methods, get_context
 from typing import Any
 
@@ -14,11 +14,13 @@ import numpy as np
 import xarray as xr
 
 from squealpipe.methods.processes import available_cores
-from squealpipe.parameters import Parameters
+from squealpipe.parameters import Parameters, parameters_of
+from squealpipe.ranges import PHYSICAL, longest
 from squealpipe.schema import DatasetSchema, Variable, build, find
-from squealpipe.schema.sweep import ABSENT, OPTIONS, is_ragged, ragged_dims, sweep_name
+from squealpipe.schema.sweep import OPTIONS, is_ragged, ragged_dims, sweep_name
 from squealpipe.store.chunks import Arrays, Checkpoint, run_chunks
 from squealpipe.tasks.catalogue import TASKS, run_task
+from squealpipe.tasks.row_blocks import fill_up, scattered_rows
 
 CHUNKS = 256
 """A sweep is kept in at most so many part files: enough to resume finely, cheap to write."""
@@ -30,12 +32,14 @@ class Sweep:
 
     Attributes:
         task: name of the task, for instance ``"periodic_orbit"``.
-        params: parameters where they are not varied.
+        params: parameters where they are neither varied nor fixed.
         vary: name → values; names are parameters, ``alpha1``, ``alpha2`` or options of the task.
-        fixed: angles and options that stay the same.
+        fixed: angles, parameters and options that stay the same. Where a task has an option of a
+            parameter's name (``sigma`` of ``backbone``), the option is meant.
 
     Raises:
-        ValueError: an unknown task or name, no values, or an angle that is missing.
+        ValueError: an unknown task or name, no values, a parameter that is not allowed, or an
+            angle that is missing.
     """
 
     task: str
@@ -54,7 +58,7 @@ class Sweep:
             )
 
     def _check_varied(self) -> None:
-        allowed = [*(item.name for item in fields(Parameters)), "alpha1", "alpha2"]
+        allowed = [*PHYSICAL, "alpha1", "alpha2"]
         allowed += [name for name in TASKS[self.task].options if name in OPTIONS]
         for name, values in self.vary.items():
             if name not in allowed:
@@ -63,15 +67,24 @@ class Sweep:
                 )
             if not len(values) or len(set(values)) != len(values):
                 raise ValueError(f"{name} needs one or more values, each once, not {values!r}")
+            for value in values if name in self._physical else ():
+                self.params.with_(**{name: value})
+
+    @property
+    def _physical(self) -> list[str]:
+        """Names that mean a parameter, not an option of the task."""
+        return [name for name in PHYSICAL if name not in TASKS[self.task].options]
 
     def _check_fixed(self) -> None:
         options = TASKS[self.task].options
-        for name in set(self.fixed) - {"alpha1", "alpha2"} - set(options):
+        for name in set(self.fixed) - {"alpha1", "alpha2", *options, *self._physical}:
             raise ValueError(
                 f"{self.task} has no option {name!r}; it has {', '.join(options) or 'none'}"
             )
+        for name in set(self.fixed) & set(self._physical):
+            self.params.with_(**{name: self.fixed[name]})
         needed = {"alpha1", "alpha2", *(name for name in options if options[name])}
-        for name in sorted(needed):
+        for name in sorted(needed | (set(self.vary) & set(self.fixed))):
             if (name in self.vary) == (name in self.fixed):
                 raise ValueError(f"{self.task} needs {name} once, fixed or varied")
 
@@ -94,11 +107,39 @@ class Sweep:
     def run(self, point: Sequence[float], workers: int | None = None) -> xr.Dataset:
         """The task at one point, in so many processes where it can use several."""
         given = {**self.fixed, **self.vary, **dict(zip(self.names, point, strict=True))}
-        physical = {item.name for item in fields(Parameters)} & set(given)
-        params = self.params.with_(**{name: given.pop(name) for name in sorted(physical)})
+        params = self.params.with_(
+            **{name: given.pop(name) for name in self._physical if name in given}
+        )
         if TASKS[self.task].uses_workers:
             given["workers"] = workers
         return run_task(self.task, params, given.pop("alpha1"), given.pop("alpha2"), **given)
+
+    def part(self, item: str) -> Sweep:
+        """One part of a scattered sweep: some of the values of the longest name.
+
+        Args:
+            item: "i-of-n", Snakemake's name of a part.
+
+        Raises:
+            ValueError: another form, or there are more parts than values.
+        """
+        cut = longest(self.vary)
+        values = self.vary[cut]
+        return replace(self, vary={**self.vary, cut: values[scattered_rows(len(values), item)]})
+
+
+def planned(config: Mapping[str, Any]) -> Sweep:
+    """The sweep of a configuration as :func:`squealpipe.ranges.sweep_config` makes it.
+
+    Raises:
+        ValueError: as :class:`Sweep`.
+    """
+    return Sweep(
+        task=config["task"],
+        params=parameters_of(config),
+        vary=config["vary"],
+        fixed=config["fixed"],
+    )
 
 
 @dataclass(frozen=True)
@@ -186,7 +227,7 @@ def _merge(sweep: Sweep, runs: Sequence[Arrays]) -> xr.Dataset:
         if name in sweep.names or name not in runs[0]:
             continue
         if name in schema.coordinates:
-            coords[name] = runs[0][name]
+            coords[name] = _common(name, [run[name] for run in runs])
             continue
         stacked = _stack([run[name] for run in runs], entry)
         data[name] = stacked.reshape(shape + stacked.shape[1:])
@@ -195,16 +236,20 @@ def _merge(sweep: Sweep, runs: Sequence[Arrays]) -> xr.Dataset:
     return build(schema, data, coords)
 
 
+def _common(name: str, arrays: Sequence[np.ndarray]) -> np.ndarray:
+    """A coordinate that all runs share."""
+    if any(not np.array_equal(array, arrays[0]) for array in arrays):
+        remedy = "; fix the option 'times', for instance 0:50:1001" if name == "time" else ""
+        raise ValueError(f"{name} differs from run to run{remedy}")
+    return arrays[0]
+
+
 def _stack(arrays: Sequence[np.ndarray], entry: Variable) -> np.ndarray:
     """All runs in one array, shorter ones filled up."""
     if not is_ragged(entry):
         return np.stack(arrays)
-    longest = np.max([array.shape for array in arrays], axis=0)
-    fill = np.nan if np.dtype(entry.dtype).kind == "f" else ABSENT
-    stacked = np.full((len(arrays), *longest), fill, dtype=entry.dtype)
-    for place, array in enumerate(arrays):
-        stacked[place][tuple(slice(length) for length in array.shape)] = array
-    return stacked
+    longest_run = tuple(np.max([array.shape for array in arrays], axis=0))
+    return np.stack([fill_up(array.astype(entry.dtype), longest_run) for array in arrays])
 
 
 def _length(run: Arrays, dim: str, base: DatasetSchema) -> int:

@@ -9,13 +9,16 @@ import numpy as np
 import pytest
 
 from squealpipe.parameters import Parameters
+from squealpipe.ranges import longest, parse_range
 from squealpipe.schema import find
 from squealpipe.store import load, save
 from squealpipe.store.chunks import Checkpoint
+from squealpipe.store.identity import dataset_id
 from squealpipe.tasks import sweep as sweeping
 from squealpipe.tasks.backbones import backbone
 from squealpipe.tasks.dynamics import simulate
 from squealpipe.tasks.linear import stability_map
+from squealpipe.tasks.row_blocks import join
 from squealpipe.tasks.sweep import Sweep, executor, run_sweep
 
 ANGLES = [0.0, 1.0, 2.0]
@@ -115,6 +118,8 @@ def test_a_stopped_sweep_goes_on_where_it_was(tmp_path, monkeypatch):
         ({"fixed": {"alpha2": 0, "depth": 3}}, "no option 'depth'"),
         ({"vary": {"alpha1": ANGLES}}, "vary a parameter too"),
         ({"task": "simulate"}, "simulate needs t_end once"),
+        ({"fixed": {"alpha2": 0, "mu": 0.1}}, "needs mu once"),
+        ({"fixed": {"alpha2": 0, "mass": -1.0}}, "mass = -1.0: must be greater than 0"),
     ],
 )
 def test_plans_that_cannot_work_are_refused(changes, message):
@@ -125,6 +130,23 @@ def test_plans_that_cannot_work_are_refused(changes, message):
 def test_bad_parameter_value_is_refused_by_the_parameters():
     with pytest.raises(ValueError, match=r"mu = -1\.0: must be 0 or greater"):
         run_sweep(linear_sweep(vary={"mu": [-1.0], "alpha1": ANGLES}))
+
+
+def test_parameters_may_be_fixed_for_a_sweep():
+    found = run_sweep(linear_sweep(fixed={"alpha2": 0.6, "mass": 2.0}))
+    assert found.identical(run_sweep(linear_sweep(params=Parameters(mass=2.0))))
+
+
+def test_an_option_with_a_parameters_name_is_the_option():
+    plan = {
+        "task": "backbone",
+        "params": Parameters(),
+        "fixed": {"alpha1": 0.94, "alpha2": 2.83, "mode": 1, "method": "hbm", "n_harmonics": 4,
+                  "y_peak_max": 1.2},
+        "vary": {"sigma": [3.0, 1000.0]},
+    }  # fmt: skip
+    found = run_sweep(Sweep(**plan))
+    assert not np.array_equal(found.omega[0], found.omega[1])
 
 
 def test_schema_of_a_sweep_follows_from_its_name():
@@ -150,3 +172,78 @@ def test_a_script_without_a_main_guard_can_sweep(tmp_path):
         [sys.executable, str(script)], capture_output=True, text=True, timeout=120, check=False
     )
     assert done.stdout == "3\n", done.stderr
+
+
+SCATTERED = {
+    "ragged events": {
+        "task": "simulate",
+        "vary": {"mu": [0.1, 0.6], "alpha1": [1.6, 2.0, 5 * np.pi / 6, 2.7]},
+        "fixed": {"alpha2": 5 * np.pi / 6, "t_end": 20.0},
+    },
+    "ragged branches": {
+        "task": "backbone",
+        "vary": {"k3": [0.5, 0.75, 1.0]},
+        "fixed": {"alpha1": 0.3 * np.pi, "alpha2": 0.9 * np.pi, "mode": 1, "y_peak_max": 1.5},
+    },
+    "log range": {
+        "task": "periodic_orbit",
+        "vary": {"mode": [1, 2], "y_peak": parse_range("1.1:4:7:log")},
+        "fixed": {"alpha1": 0.3 * np.pi, "alpha2": 0.9 * np.pi},
+    },
+    "maps over a parameter": {
+        "task": "validity_map",
+        "vary": {"mu": [0.2, 0.4], "alpha1": np.linspace(0, np.pi, 5).tolist(), "alpha2": [0.5, 2]},
+        "fixed": {"t_end": 20.0},
+    },
+    "one number a run": {
+        "task": "stability_map",
+        "vary": {"mu": parse_range("0:0.6:5")},
+        "fixed": {"alpha1": 1.0, "alpha2": 2.0},
+    },
+}
+
+
+@pytest.mark.parametrize("name", SCATTERED)
+def test_parts_joined_are_the_whole_bit_for_bit(name, tmp_path):
+    plan = Sweep(params=Parameters(), **SCATTERED[name])
+    whole = run_sweep(plan)
+    cut = longest(plan.vary)
+    parts = []
+    for k in range(3):
+        path = save(run_sweep(plan.part(f"{k + 1}-of-3")), tmp_path / f"{k}.nc")
+        parts.append(load(path))
+    assert sum(part.sizes[cut] for part in parts) == whole.sizes[cut]
+    joined = join(parts, cut)
+    assert joined.attrs.pop("dataset_id") == parts[0].attrs["dataset_id"]
+    assert joined.identical(whole)
+    assert dataset_id(joined) == dataset_id(whole)
+    if "ragged" in name:
+        dim = "event" if plan.task == "simulate" else "point"
+        assert len({part.sizes[dim] for part in parts}) > 1
+
+
+def test_parts_are_the_values_once_each_and_no_more_than_there_are():
+    plan = linear_sweep()
+    parts = [plan.part(f"{k}-of-2").vary for k in (1, 2)]
+    assert [value for part in parts for value in part["k3"]] == [0.5, 0.75, 1.0]
+    assert all(part["mu"] == plan.vary["mu"] for part in parts)
+    with pytest.raises(ValueError, match="at most 3 parts"):
+        plan.part("1-of-4")
+
+
+def test_foreign_parts_are_not_joined():
+    a = run_sweep(linear_sweep(vary={"mu": [0.1], "alpha1": ANGLES}))
+    b = run_sweep(linear_sweep(vary={"mu": [0.2], "alpha1": ANGLES[:2]}))
+    with pytest.raises(ValueError, match="not blocks of rows of one map, cut along mu"):
+        join([a, b], "mu")
+
+
+def test_runs_at_other_instants_are_not_put_on_one_axis():
+    plan = {
+        "task": "simulate",
+        "params": Parameters(),
+        "vary": {"t_end": [5.0, 10.0]},
+        "fixed": {"alpha1": 1.6, "alpha2": 2.6},
+    }
+    with pytest.raises(ValueError, match="time differs from run to run; fix the option 'times'"):
+        run_sweep(Sweep(**plan))

@@ -1,0 +1,181 @@
+"""What people write for angles, numbers, ranges and whole sweeps, on the command line and in YAML.
+
+Both are read into one canonical form, so a sweep has one meaning wherever it stands.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import fields
+from typing import Any
+
+from squealpipe.parameters import Parameters
+
+_NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
+_PI = re.compile(
+    rf"^(?P<sign>[+-])?(?P<head>{_NUMBER})?\s*\*?\s*(?:pi|π)(?:/(?P<below>{_NUMBER}))?$"
+)
+_DEGREES = re.compile(rf"^(?P<value>{_NUMBER})\s*(?:deg|°)$")
+_RADIANS = re.compile(rf"^(?P<value>{_NUMBER})\s*(?:rad)?$")
+ANGLE_FORMS = "write 0.4pi, 2pi/5, 72deg or radians"
+ANGLES = ("alpha1", "alpha2")
+PHYSICAL = tuple(item.name for item in fields(Parameters))
+WHOLE = ("mode",)
+"""Options that are swept over whole numbers."""
+
+MOST_VALUES = 100_000
+"""A range of more values is a slip of the pen."""
+
+
+def parse_angle(text: str) -> float:
+    """An angle in rad from ``0.4pi``, ``2pi/5``, ``72deg`` or plain radians.
+
+    Raises:
+        ValueError: the text is none of these; the message lists them.
+    """
+    stripped = text.strip().lower()
+    if match := _PI.match(stripped):
+        head = float(match["head"] or 1) * (-1 if match["sign"] == "-" else 1)
+        below = float(match["below"] or 1)
+        if below:
+            return head * math.pi / below
+    elif match := _DEGREES.match(stripped):
+        return math.radians(float(match["value"]))
+    elif (match := _RADIANS.match(stripped)) and math.isfinite(float(match["value"])):
+        return float(match["value"])
+    raise ValueError(f"{text!r} is no angle; {ANGLE_FORMS}")
+
+
+def parse_number(text: str) -> float:
+    """A finite number.
+
+    Raises:
+        ValueError: it is something else.
+    """
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not math.isfinite(value):
+        raise ValueError(f"{text!r} is no number; write for instance 0.3 or 1e-3")
+    return value
+
+
+def parse_range(text: str, one: Callable[[str], float] = parse_number) -> list[float]:
+    """Values from a list ``0.1,0.2,0.4``, a range ``0:pi:31`` or ``1:100:7:log`` (ends included).
+
+    Args:
+        text: what was typed.
+        one: reads a single value, for instance :func:`parse_angle`.
+
+    Raises:
+        ValueError: the text is neither, with the form to use.
+    """
+    if ":" not in text:
+        return [one(part) for part in text.split(",")]
+    parts = text.split(":")
+    spacing = parts.pop() if len(parts) == 4 else "linear"
+    if len(parts) != 3 or spacing not in {"linear", "log"} or not parts[2].isdigit():
+        raise ValueError(f"{text!r} is no range; write first:last:count or first:last:count:log")
+    first, last, count = one(parts[0]), one(parts[1]), int(parts[2])
+    if not 2 <= count <= MOST_VALUES:
+        raise ValueError(
+            f"{text!r} asks for {count} values; ask for 2 to {MOST_VALUES}, or give one value"
+        )
+    steps = [index / (count - 1) for index in range(count)]
+    if spacing == "linear":
+        return [first + (last - first) * step for step in steps[:-1]] + [last]
+    if not first * last > 0:
+        raise ValueError(f"{text!r}: a log range needs two ends of one sign, neither 0")
+    return [first * (last / first) ** step for step in steps[:-1]] + [last]
+
+
+def read_values(name: str, given: object) -> list[float]:
+    """Values over which a name is swept.
+
+    Args:
+        name: an angle, which may be written like ``0.3pi``, a parameter or an option.
+        given: text as :func:`parse_range` reads it, a number, or a list of such.
+
+    Raises:
+        ValueError: a value is none of these, or no whole number where one is needed.
+    """
+    one = parse_angle if name in ANGLES else parse_number
+    if isinstance(given, str):
+        values = parse_range(given, one)
+    elif isinstance(given, Sequence):
+        values = [one(_as_text(item)) for item in given]
+    else:
+        values = [one(_as_text(given))]
+    if name not in WHOLE:
+        return values
+    broken = [value for value in values if not value.is_integer()]
+    if broken:
+        raise ValueError(f"{broken[0]!r} is no whole number; {name} needs 1, 2, …")
+    return [int(value) for value in values]
+
+
+def read_fixed(name: str, given: object) -> Any:
+    """A value that stays the same: an angle, a parameter, or an option of a task.
+
+    Args:
+        name: what is fixed.
+        given: a value or text; an option may also be a range like ``0:20:50``, a list, a word or
+            None.
+
+    Raises:
+        ValueError: an angle or parameter that is none.
+    """
+    if name in (*ANGLES, *PHYSICAL) and given is not None:
+        return (parse_angle if name in ANGLES else parse_number)(_as_text(given))
+    if isinstance(given, str):
+        try:
+            values = parse_range(given)
+        except ValueError:
+            return given
+        given = values if len(values) > 1 else values[0]
+    if isinstance(given, Sequence) and not isinstance(given, str):
+        return [parse_number(_as_text(item)) for item in given]
+    whole = isinstance(given, float) and given.is_integer() and abs(given) < 2**53
+    return int(given) if whole else given  # type: ignore[call-overload]
+
+
+def sweep_config(
+    *,
+    task: str,
+    vary: Mapping[str, Sequence[float]],
+    fixed: Mapping[str, Any],
+    parameters: Mapping[str, float],
+) -> dict[str, Any]:
+    """The configuration of a sweep in its one form; no parameter that it names stands twice.
+
+    Args:
+        task: name of the task.
+        vary: name → values.
+        fixed: angles, options and parameters that stay the same.
+        parameters: physical parameters where the sweep names none.
+
+    Raises:
+        ValueError: a name is both fixed and varied.
+    """
+    for name in sorted(set(vary) & set(fixed)):
+        raise ValueError(f"{name} is both fixed and varied; keep one")
+    named = {*vary, *fixed}
+    return {
+        "task": task,
+        "parameters": {name: value for name, value in parameters.items() if name not in named},
+        "vary": {name: list(values) for name, values in vary.items()},
+        "fixed": dict(fixed),
+    }
+
+
+def longest(vary: Mapping[str, Sequence[float]]) -> str:
+    """The varied name with the most values, the first of several."""
+    return max(vary, key=lambda name: len(vary[name]))
+
+
+def _as_text(given: object) -> str:
+    """Numbers as text that reads as exactly them; true and false are no numbers."""
+    return given if isinstance(given, str) else repr(given)

@@ -1,0 +1,173 @@
+"""Angles, numbers, ranges and sweeps as people write them."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from squealpipe.ranges import (
+    longest,
+    parse_angle,
+    parse_number,
+    parse_range,
+    read_fixed,
+    read_values,
+    sweep_config,
+)
+
+
+@pytest.mark.parametrize(
+    ("text", "angle"),
+    [
+        ("0.4pi", 0.4 * math.pi),
+        ("2pi/5", 2 * math.pi / 5),
+        ("72deg", 2 * math.pi / 5),
+        ("1.25", 1.25),
+        ("1.25rad", 1.25),
+        ("pi", math.pi),
+        ("-pi/2", -math.pi / 2),
+        ("-0.5pi", -math.pi / 2),
+        ("5*pi/6", 5 * math.pi / 6),
+        ("0.83π", 0.83 * math.pi),
+        ("90°", math.pi / 2),
+        (" 1e-3 ", 1e-3),
+        ("0", 0.0),
+    ],
+)
+def test_angle_forms(text, angle):
+    assert parse_angle(text) == pytest.approx(angle, rel=1e-15)
+
+
+@pytest.mark.parametrize("text", ["", "abc", "pi/0", "1,2", "0.4pie", "nan", "inf", "1e999", "4 5"])
+def test_what_is_no_angle_is_refused_with_the_forms(text):
+    with pytest.raises(ValueError, match=r"write 0\.4pi, 2pi/5, 72deg or radians"):
+        parse_angle(text)
+
+
+@given(st.floats(-1e6, 1e6))
+def test_radians_are_read_exactly(value):
+    assert parse_angle(repr(value)) == value
+
+
+@pytest.mark.parametrize("text", ["", "x", "nan", "inf"])
+def test_what_is_no_number_is_refused(text):
+    with pytest.raises(ValueError, match="is no number"):
+        parse_number(text)
+
+
+def test_linear_range_has_both_ends():
+    values = parse_range("0:pi:31", parse_angle)
+    assert (values[0], values[-1], len(values)) == (0.0, math.pi, 31)
+    assert values[10] == pytest.approx(math.pi / 3)
+
+
+def test_log_range_has_constant_ratio():
+    values = parse_range("0.1:100:4:log")
+    assert values == pytest.approx([0.1, 1, 10, 100])
+    assert parse_range("-1:-100:3:log") == pytest.approx([-1, -10, -100])
+
+
+def test_list():
+    assert parse_range("0.1,0.2,4") == [0.1, 0.2, 4.0]
+
+
+@pytest.mark.parametrize(
+    ("text", "part"),
+    [
+        ("0:1", "no range"),
+        ("0:1:2:cube", "no range"),
+        ("0:1:x", "no range"),
+        ("0:1:1", "ask for 2 to 100000"),
+        ("0:1:1000000", "ask for 2 to 100000"),
+        ("0:1:3:log", "neither 0"),
+        ("1,,2", "no number"),
+    ],
+)
+def test_bad_ranges_name_the_form(text, part):
+    with pytest.raises(ValueError, match=part):
+        parse_range(text)
+
+
+@pytest.mark.parametrize(
+    ("name", "given_", "values"),
+    [
+        ("mu", "0:0.6:3", [0.0, 0.3, 0.6]),
+        ("mu", 1, [1.0]),
+        ("mu", (0, 0.5, "0.6"), [0.0, 0.5, 0.6]),
+        ("belt_speed", "1:100:3:log", [1.0, 10.0, 100.0]),
+        ("alpha1", "0:pi:3", [0.0, math.pi / 2, math.pi]),
+        ("alpha1", ["0.5pi", 2], [math.pi / 2, 2.0]),
+        ("mode", "1,2", [1, 2]),
+        ("mode", [1.0, 2], [1, 2]),
+    ],
+)
+def test_values_of_a_sweep_may_be_text_numbers_or_lists(name, given_, values):
+    found = read_values(name, given_)
+    assert found == pytest.approx(values, rel=1e-15)
+    assert list(map(type, found)) == list(map(type, values))
+
+
+@pytest.mark.parametrize(
+    ("name", "given_", "part"),
+    [
+        ("mu", "0.3pi", "no number"),
+        ("mu", True, "'True' is no number"),
+        ("mu", None, "no number"),
+        ("mu", [math.inf], "no number"),
+        ("mu", [[1]], "no number"),
+        ("alpha1", "north", "write 0.4pi"),
+        ("mode", "1:2:3", "1.5 is no whole number"),
+    ],
+)
+def test_what_is_no_value_is_refused(name, given_, part):
+    with pytest.raises(ValueError, match=part):
+        read_values(name, given_)
+
+
+@pytest.mark.parametrize(
+    ("name", "given_", "value"),
+    [
+        ("alpha1", "0.3pi", 0.3 * math.pi),
+        ("alpha2", 1, 1.0),
+        ("k3", "1", 1.0),
+        ("mode", "1", 1),
+        ("t_end", 100.0, 100),
+        ("tol", "1e-9", 1e-9),
+        ("method", "hbm", "hbm"),
+        ("times", "0:1:3", [0.0, 0.5, 1.0]),
+        ("times", (0, 0.5), [0.0, 0.5]),
+        ("sigma", None, None),
+    ],
+)
+def test_fixed_values_keep_their_kind(name, given_, value):
+    found = read_fixed(name, given_)
+    assert found == value
+    assert type(found) is type(value)
+
+
+def test_a_sweep_has_one_form_and_no_parameter_stands_twice_in_it():
+    def form(**changes):
+        plan = {
+            "task": "stability_map",
+            "vary": {"mu": [0.1, 0.2]},
+            "fixed": {"alpha1": 1.0, "alpha2": 2.0, "k3": 0.5},
+            "parameters": {"mu": 0.3, "k3": 0.75, "mass": 1.0},
+        }
+        return sweep_config(**{**plan, **changes})
+
+    assert form() == {
+        "task": "stability_map",
+        "parameters": {"mass": 1.0},
+        "vary": {"mu": [0.1, 0.2]},
+        "fixed": {"alpha1": 1.0, "alpha2": 2.0, "k3": 0.5},
+    }
+    assert form(parameters={"mu": 0.9, "k3": 2.0, "mass": 1.0}) == form()
+    with pytest.raises(ValueError, match="mu is both fixed and varied"):
+        form(fixed={"mu": 0.1})
+
+
+def test_the_longest_is_the_first_of_the_longest():
+    assert longest({"mu": [1], "k3": [1, 2], "alpha1": [0, 1]}) == "k3"
