@@ -96,6 +96,19 @@ class Parameters:
         return math.sqrt(self.mass / self.k1)
 
     @property
+    def belt_direction(self) -> float:
+        """sgn V, with +1 for a belt at rest."""
+        return 1.0 if self.belt_speed >= 0.0 else -1.0
+
+    @property
+    def drag(self) -> float:
+        """μ sgn V: friction over normal force along +x on a mass that the belt drags along.
+
+        The linear models and A4, which never slide faster than the belt, know V by this alone.
+        """
+        return self.belt_direction * self.mu
+
+    @property
     def kappa(self) -> float:
         """κ = k3/k1."""
         return self.k3 / self.k1

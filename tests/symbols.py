@@ -18,6 +18,7 @@ from squealpipe.parameters import Parameters
 X, Y, ALPHA1, ALPHA2 = sp.symbols("x y alpha1 alpha2", real=True)
 NAMES = ("mass", "k1", "k2", "k3", "mu", "belt_speed", "preload", "length1", "length2", "sigma")
 P = SimpleNamespace(**{name: sp.Symbol(name, positive=True) for name in NAMES})
+P.belt_speed = sp.Symbol("belt_speed", real=True)
 
 FIXED1 = (P.length1 * sp.cos(ALPHA1), P.length1 * sp.sin(ALPHA1))
 FIXED2 = (-P.length2 * sp.cos(ALPHA2), P.length2 * sp.sin(ALPHA2))

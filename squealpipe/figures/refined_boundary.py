@@ -98,7 +98,10 @@ def _map(axes: Axes, refined: xr.Dataset) -> None:
 
 
 def _comparison(axes: Axes, check: xr.Dataset) -> None:
-    axes.loglog(check.runs, check.wrong_share, "o-", color=ORANGE, label="uniform maps")
+    axes.plot(check.runs, check.wrong_share, "o-", color=ORANGE, label="uniform maps")
+    axes.set_xscale("log")
+    if (check.wrong_share > 0).any():
+        axes.set_yscale("log")
     for count, runs, wrong in zip(
         check.points.values, check.runs.values, check.wrong_share.values, strict=True
     ):

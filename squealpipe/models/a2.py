@@ -29,7 +29,9 @@ def acceleration(
     normal = actuation(p, sigma) - stiffness3 * y
     fx, fy = linear_elastic_force(x, y, stiffness)
     inverse_mass = p.mass**-1.0
-    return inverse_mass * (fx + slip_force(normal, 1.0, p)), inverse_mass * (fy + normal)
+    return inverse_mass * (fx + slip_force(normal, p.belt_direction, p)), inverse_mass * (
+        fy + normal
+    )
 
 
 def contact_stiffness(p: Any, sigma: Any = None) -> Any:
@@ -60,9 +62,11 @@ def possible_as_printed(stiffness: Stiffness, mu: Any) -> Any:
     """Eq. (11) as printed: μ < K11/K12.
 
     True where K12 = 0 (no bound on μ), False where K12 < 0 (E3) and where K11 = 0 as well as
-    K12 = 0, at α1 = α2 = π/2, for nothing balances friction there.
+    K12 = 0, at α1 = α2 = π/2, for nothing balances friction there. A negative μ, of a belt along
+    −x, is judged by the mirror image.
     """
     k11, k12 = _without_round_off(stiffness)
+    k12, mu = np.where(np.less(mu, 0), -k12, k12), np.abs(mu)
     coupled = k12 != 0
     return np.where(coupled, mu < k11 / np.where(coupled, k12, 1.0), k11 > 0)
 

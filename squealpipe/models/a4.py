@@ -21,7 +21,9 @@ def acceleration(x: Any, y: Any, p: Any, g: Geometry, *, contact: Any) -> tuple[
     fx, fy = linear_elastic_force(x, y, linear_stiffness(p, g))
     normal = contact * contact_force(y, p)
     inverse_mass = p.mass**-1.0
-    return inverse_mass * (fx + slip_force(normal, 1.0, p)), inverse_mass * (fy + normal)
+    return inverse_mass * (fx + slip_force(normal, p.belt_direction, p)), inverse_mass * (
+        fy + normal
+    )
 
 
 def contact_matrix(stiffness: Stiffness, k3: Any, mu: Any) -> tuple[Any, Any, Any, Any]:
@@ -90,7 +92,7 @@ def first_integral(stiffness: Stiffness, mu: Any) -> FirstIntegral:
 
 def first_integral_value(x: Any, y: Any, vx: Any, vy: Any, p: Any, stiffness: Stiffness) -> Any:
     """H at a state, N J/m."""
-    s11, s12, s22, g = first_integral(stiffness, p.mu)
+    s11, s12, s22, g = first_integral(stiffness, p.drag)
     k11, k12, k22 = stiffness
     sk11, sk12 = s11 * k11 + s12 * k12, s11 * k12 + s12 * k22
     sk21, sk22 = s12 * k11 + s22 * k12, s12 * k12 + s22 * k22

@@ -79,18 +79,18 @@ def scaled_system(params: Parameters, alpha1: float, alpha2: float) -> ScaledSys
     if a2.coupling_is_zero(stiffness):
         stiffness = Stiffness(stiffness.k11, 0.0, stiffness.k22)
     determinant = float(stiffness_determinant(params, g))
-    invariants = a4.spectrum(stiffness, determinant, k3=params.k3, mu=params.mu, mass=params.mass)
+    invariants = a4.spectrum(stiffness, determinant, k3=params.k3, mu=params.drag, mass=params.mass)
     unit = float(invariants.half_trace)
     larger, smaller = (value / unit for value in a4.natural_frequencies_squared(invariants)[::-1])
 
     a11, a12, a21, a22 = (
         float(value) / (params.mass * unit)
-        for value in a4.contact_matrix(stiffness, params.k3, params.mu)
+        for value in a4.contact_matrix(stiffness, params.k3, params.drag)
     )
     push = params.k3 / (params.mass * unit)
-    contact = LinearState(((a11, a12), (a21, a22)), (params.mu * push, push))
+    contact = LinearState(((a11, a12), (a21, a22)), (params.drag * push, push))
     separated = LinearState(
-        ((a11, a12 - params.mu * push), (a21, float(stiffness.k22) / (params.mass * unit))),
+        ((a11, a12 - params.drag * push), (a21, float(stiffness.k22) / (params.mass * unit))),
         (0.0, 0.0),
     )
     system = PiecewiseLinearSystem(contact, separated, 1.0)

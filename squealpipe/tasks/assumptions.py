@@ -165,12 +165,12 @@ def _motion(params: Parameters, scene: Scene, level: str) -> Motion:
 def _sliding_state(params: Parameters, scene: Scene) -> Motion:
     """A2: one state, at y = 0, with the friction of its reaction force."""
     stiffness = linear_stiffness(params, geometry(scene.alpha1, scene.alpha2))
-    reaction = float(a2.reaction_force(stiffness, params.mu, a2.actuation(params)))
+    reaction = float(a2.reaction_force(stiffness, params.drag, a2.actuation(params)))
     if np.isnan(reaction) or stiffness.k11 == 0:
         nothing = np.array([])
         return Motion(nothing, nothing, nothing, nothing, Outcome.singular_static_state)
     still = np.zeros(1)
-    x = np.array([params.mu * reaction / stiffness.k11])
+    x = np.array([params.drag * reaction / stiffness.k11])
     return Motion(x, still, still, np.array([reaction]), Outcome.converged)
 
 
@@ -184,10 +184,10 @@ def _linear_motion(params: Parameters, scene: Scene, t_end: float) -> Motion:
 
 
 def _linear_response(params: Parameters, stiffness: Stiffness, step: float, steps: int) -> Any:
-    a11, a12, a21, a22 = contact_matrix(stiffness, params.k3, params.mu)
+    a11, a12, a21, a22 = contact_matrix(stiffness, params.k3, params.drag)
     matrix = np.stack([np.stack([a11, a12], -1), np.stack([a21, a22], -1)], -2) / params.mass
     actuation = a2.actuation(params) / params.mass
-    load = np.broadcast_to([params.mu * actuation, actuation], matrix.shape[:-1])
+    load = np.broadcast_to([params.drag * actuation, actuation], matrix.shape[:-1])
     return response_from_rest(matrix, load, step, steps)
 
 

@@ -45,7 +45,7 @@ def orbit_atlas(
     """ω and stability index of the exact periodic motion of each mode, each found from cold.
 
     Args:
-        params: physical parameters; the belt moves along +x.
+        params: physical parameters.
         alpha1, alpha2: 1-D arrays of angles, rad.
         y_peak: y at the symmetric instant, m; 2 l_pre by default.
         workers: threads (the kernels release the interpreter); None: all cores.

@@ -48,12 +48,12 @@ def quasi_static_map(
     g = geometry(alpha1[:, None], alpha2[None, :])
     stiffness = linear_stiffness(params, g)
     k3, load = a2.contact_stiffness(params, sigma), a2.actuation(params, sigma)
-    reaction = a2.reaction_force(stiffness, params.mu, load)
+    reaction = a2.reaction_force(stiffness, params.drag, load)
     state = a3.static_state(
         stiffness,
         spring_determinant_map(params, alpha1, alpha2),
         k3=k3,
-        mu=params.mu,
+        mu=params.drag,
         actuation=load,
     )
     # Farther out than this, the state is the quotient of two round-off errors.
@@ -63,7 +63,7 @@ def quasi_static_map(
     return build(
         QUASI_STATIC_MAP,
         {
-            "possible_as_printed": a2.possible_as_printed(stiffness, params.mu),
+            "possible_as_printed": a2.possible_as_printed(stiffness, params.drag),
             "possible": reaction > 0,
             "reaction_force": reaction,
             "x_static": x,
@@ -184,7 +184,7 @@ def _spectrum(params: Parameters, alpha1: np.ndarray, alpha2: np.ndarray, k3: fl
     """
     stiffness = linear_stiffness(params, geometry(alpha1[:, None], alpha2[None, :]))
     spring_determinant = spring_determinant_map(params, alpha1, alpha2)
-    invariants = spectrum(stiffness, spring_determinant, k3=k3, mu=params.mu, mass=params.mass)
+    invariants = spectrum(stiffness, spring_determinant, k3=k3, mu=params.drag, mass=params.mass)
     small = CANCELLATION * invariants.half_trace**2
     close = (np.abs(invariants.discriminant) < small) | (np.abs(invariants.determinant) < small)
     if k3 == 0 or not close.any():
@@ -198,7 +198,7 @@ def _spectrum(params: Parameters, alpha1: np.ndarray, alpha2: np.ndarray, k3: fl
             linear_stiffness(p, g),
             determinant_from_sine(p, sine),
             k3=_precise(k3),
-            mu=p.mu,
+            mu=_precise(params.drag),
             mass=p.mass,
         )
     for values, exact in zip(invariants, precise, strict=True):

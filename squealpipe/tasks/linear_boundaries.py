@@ -34,7 +34,7 @@ def stability_boundaries(params: Parameters, *, points: int = 400) -> xr.Dataset
         Boundary.divergence: a3.circle_arcs(
             params, *a3.divergence_circle(params, params.k3), points
         ),
-        Boundary.reaction_changes_sign: a3.line_parts(params, 1 - 1j * params.mu, -total, points),
+        Boundary.reaction_changes_sign: a3.line_parts(params, 1 - 1j * params.drag, -total, points),
         Boundary.no_coupling: a3.line_parts(params, 1j, 0.0, points),
     }
     segments = [
@@ -114,7 +114,7 @@ def linear_shares(
     stiffnesses = [
         a2.contact_stiffness(params, value / params.preload) for value in np.asarray(sharpness)
     ]
-    regularized = [regime(k3, params.mu) for k3 in stiffnesses]
+    regularized = [regime(k3, params.drag) for k3 in stiffnesses]
     return build(
         LINEAR_SHARES,
         {

@@ -236,12 +236,12 @@ def contact_motion(params: Parameters, alpha1: Any, alpha2: Any) -> ModalMotion:
     g = geometry(np.asarray(alpha1, float), np.asarray(alpha2, float))
     stiffness = linear_stiffness(params, g)
     determinant = stiffness_determinant(params, g)
-    invariants = a4.spectrum(stiffness, determinant, k3=params.k3, mu=params.mu, mass=params.mass)
+    invariants = a4.spectrum(stiffness, determinant, k3=params.k3, mu=params.drag, mass=params.mass)
     x, y, _ = a3.static_state(
-        stiffness, determinant, k3=params.k3, mu=params.mu, actuation=params.k3 * params.preload
+        stiffness, determinant, k3=params.k3, mu=params.drag, actuation=params.k3 * params.preload
     )
     a11, a12, a21, a22 = (
-        value / params.mass for value in a4.contact_matrix(stiffness, params.k3, params.mu)
+        value / params.mass for value in a4.contact_matrix(stiffness, params.k3, params.drag)
     )
     first, second = a4.natural_frequencies_squared(invariants)
     return modal_motion((a11, a12, a21, a22), (first, second), (x, y))

@@ -49,7 +49,7 @@ def periodic_orbit(
     linear mode itself.
 
     Args:
-        params: physical parameters; the belt moves along +x.
+        params: physical parameters.
         alpha1, alpha2: angles, rad.
         mode: 1 or 2, by ascending ω of the contact state.
         y_peak: larger y of the two instants of rest, m. An isolated x mode (K12 = 0) has
@@ -181,7 +181,7 @@ def orbit_values(
         "x_amplitude": x_amplitude * scene.length,
         "y_amplitude": y_amplitude * scene.length,
         "largest_speed": largest_speed,
-        "sliding_assumption": Assumption(int(largest_speed < params.belt_speed)),
+        "sliding_assumption": Assumption(int(largest_speed < abs(params.belt_speed))),
     }
 
 

@@ -8,12 +8,15 @@ kill, or came from several machines.
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
 
 import numpy as np
 import xarray as xr
 
+from squealpipe.parameters import parameters_of
 from squealpipe.schema import ABSENT, build, find
+from squealpipe.store import produce
 from squealpipe.store.chunks import Arrays, Checkpoint, run_chunks
 
 BLOCK = 16_384
@@ -46,6 +49,44 @@ def scattered_rows(rows: int, item: str) -> slice:
         raise ValueError(f"{count} parts of {rows} rows: scatter into at most {rows} parts")
     edges = [rows * k // int(count) for k in range(int(count) + 1)]
     return slice(edges[int(index) - 1], edges[int(index)])
+
+
+def make_map(
+    task: Callable[..., xr.Dataset],
+    name: str,
+    part: Mapping[str, Any],
+    *,
+    output: str,
+    sources: Sequence[str],
+    log: str,
+    item: str = "1-of-1",
+) -> None:
+    """Make and save a map of model A1 over both angles from 0 to π, or the rows of one part.
+
+    Args:
+        task: makes the map from parameters, angles, ``t_end`` and ``tol``.
+        name: of the map; its keys are ``dynamics.<name>_points`` and ``dynamics.<name>_horizon``.
+        part: slice of the configuration.
+        output: dataset to write.
+        sources: files whose text decides the result.
+        log: file for progress lines.
+        item: part of a scattered map, "i-of-n".
+    """
+    params = parameters_of(part)
+    angles = np.linspace(0.0, np.pi, part[f"dynamics.{name}_points"])
+    horizon, tol = part[f"dynamics.{name}_horizon"] * params.time_unit, part["dynamics.tol"]
+    with Checkpoint.beside(output, config=part, sources=sources, log=log) as checkpoint:
+        produce(
+            lambda: map_in_blocks(
+                lambda rows: task(params, rows, angles, t_end=horizon, tol=tol),
+                angles[scattered_rows(len(angles), item)],
+                len(angles),
+                label=f"{name} map",
+                checkpoint=checkpoint,
+            ),
+            config=part,
+            output=output,
+        )
 
 
 def map_in_blocks(

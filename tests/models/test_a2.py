@@ -28,9 +28,10 @@ def first_order(force: sp.Expr) -> sp.Expr:
     return force.subs(at_start) + slopes[0] * symbols.X + slopes[1] * symbols.Y
 
 
+DRAG = symbols.P.mu * sp.Piecewise((1, symbols.P.belt_speed >= 0), (-1, True))
 LINEARIZED = symbols.function(
     [
-        first_order(symbols.SPRING_FORCE[0] + symbols.P.mu * REGULARIZED) / symbols.P.mass,
+        first_order(symbols.SPRING_FORCE[0] + DRAG * REGULARIZED) / symbols.P.mass,
         first_order(symbols.SPRING_FORCE[1] + REGULARIZED) / symbols.P.mass,
     ]
 )

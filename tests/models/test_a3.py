@@ -33,7 +33,7 @@ def test_nondimensional_form_is_the_linear_model_in_other_units(
         state["x"] / params.preload,
         state["y"] / params.preload,
         a3.groups(stiffness, params.k3),
-        params.mu,
+        params.drag,
         params.k3 / stiffness.k11,
     )
     np.testing.assert_allclose(np.array(found) * unit, expected, rtol=1e-12, atol=1e-12)
@@ -53,7 +53,7 @@ def test_static_state_is_at_rest(params: Parameters, state: dict[str, float]) ->
     stiffness, determinant = stiffness_of(params, state)
     for sigma in (None, params.sigma):
         k3, load = a2.contact_stiffness(params, sigma), a2.actuation(params, sigma)
-        x, y, force = a3.static_state(stiffness, determinant, k3=k3, mu=params.mu, actuation=load)
+        x, y, force = a3.static_state(stiffness, determinant, k3=k3, mu=params.drag, actuation=load)
         np.testing.assert_allclose(
             a2.acceleration(x, y, params, stiffness, sigma),
             0.0,
@@ -126,7 +126,7 @@ def test_circles_in_the_plane_decide_as_the_invariants_do(
     params: Parameters, state: dict[str, float]
 ) -> None:
     stiffness, determinant = stiffness_of(params, state)
-    invariants = spectrum(stiffness, determinant, k3=params.k3, mu=params.mu, mass=params.mass)
+    invariants = spectrum(stiffness, determinant, k3=params.k3, mu=params.drag, mass=params.mass)
     z = a3.plane(params, state["alpha1"], state["alpha2"])
     centre, radius = a3.flutter_circle(params, params.k3)
     assert (abs(z - centre) < radius) == (invariants.discriminant < 0)

@@ -28,7 +28,7 @@ def test_accelerations(params: Parameters, state: dict[str, float], contact: flo
     g = geometry(state["alpha1"], state["alpha2"])
     found = a4.acceleration(state["x"], state["y"], params, g, contact=contact)
     normal = contact * CONTACT_FORCE(params, **state)
-    expected = (LINEAR_FORCE(params, **state) + normal * np.array([params.mu, 1.0])) / params.mass
+    expected = (LINEAR_FORCE(params, **state) + normal * np.array([params.drag, 1.0])) / params.mass
     np.testing.assert_allclose(found, expected, rtol=1e-12, atol=1e-12)
 
 
@@ -96,7 +96,7 @@ def test_first_integral_is_kept_across_contact_loss(
     start = [state["x"], 3 * params.preload, 0.3, -0.2]
     run = scipy.integrate.solve_ivp(field, (0, 20), start, rtol=1e-10, atol=1e-12, max_step=0.02)
     values = a4.first_integral_value(*run.y, params, stiffness)
-    scale = np.abs(a4.first_integral(stiffness, params.mu)).max() * np.abs(run.y).max() ** 2
+    scale = np.abs(a4.first_integral(stiffness, params.drag)).max() * np.abs(run.y).max() ** 2
     assert np.ptp(values) < 1e-6 * scale * max(params.k1, params.k2, params.k3, params.mass, 1.0)
 
 

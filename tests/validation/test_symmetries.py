@@ -7,6 +7,8 @@ import pytest
 
 from squealpipe.parameters import Parameters
 from squealpipe.tasks.ensemble import run_ensemble
+from squealpipe.tasks.linear import natural_frequencies, quasi_static_map, stability_map
+from squealpipe.tasks.orbits import periodic_orbit
 
 RNG = np.random.default_rng(5)
 ALPHA1, ALPHA2 = RNG.uniform(0, np.pi, (2, 60))
@@ -90,3 +92,29 @@ def test_powers_of_two_scale_to_the_bit():
     )
     second = run_ensemble(scaled, ALPHA1, ALPHA2, t_end=6.0, times=TIMES / 2, log_events=30)
     assert (second.samples / [2, 2, 4, 4]).tobytes() == first.samples.tobytes()
+
+
+def test_linear_maps_mirror_with_the_belt():
+    # No special angles: there a unit of round-off decides.
+    angles = np.sort(RNG.uniform(0.0, np.pi, 13))
+    params = Parameters(k2=1.7, belt_speed=2.0)
+    mirrored = params.with_(belt_speed=-2.0)
+    for make in (stability_map, quasi_static_map, natural_frequencies):
+        first = make(params, angles, angles)
+        # The map of a reversed belt, its rows and columns from π down to 0.
+        second = make(mirrored, np.pi - angles, np.pi - angles)
+        for name, values in first.data_vars.items():
+            other = second[name].values
+            if name == "x_static":
+                other = -other
+            np.testing.assert_allclose(other, values.values, rtol=1e-9, atol=1e-9, err_msg=name)
+
+
+@pytest.mark.parametrize("mode", [1, 2])
+def test_orbits_mirror_with_the_belt(mode):
+    first = periodic_orbit(Parameters(), 0.3 * np.pi, 0.9 * np.pi, mode=mode, y_peak=1.5)
+    reversed_belt = Parameters(belt_speed=-100.0)
+    second = periodic_orbit(reversed_belt, 0.7 * np.pi, 0.1 * np.pi, mode=mode, y_peak=1.5)
+    assert float(second.omega) == pytest.approx(float(first.omega), rel=1e-12)
+    assert int(second.sliding_assumption) == int(first.sliding_assumption)
+    np.testing.assert_allclose(second.x_at_peak, -first.x_at_peak, rtol=1e-9)
