@@ -28,10 +28,12 @@ docs: env  ## API reference into build/reference
 
 env: $(STAMP)
 
+# The last step compiles the event loop (6 s), which several first jobs would otherwise do at once.
 $(STAMP): requirements.lock pyproject.toml
 	test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
 	$(BIN)/python -m pip install -q --disable-pip-version-check --require-hashes -r requirements.lock
 	$(BIN)/python -m pip install -q --disable-pip-version-check --no-deps --no-build-isolation -e .
+	$(BIN)/python -c "from squealpipe.tasks.lane_kernel import lane_kernel; lane_kernel()"
 	touch $@
 
 lock: env
