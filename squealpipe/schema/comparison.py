@@ -164,6 +164,11 @@ MODEL_LADDER = DatasetSchema(
             units="s",
             long_name="time integrated by always A1 until the question is answered, all cells",
         ),
+        "hindsight_time": Variable(
+            dims=("question",),
+            units="s",
+            long_name="time integrated if the cheapest adequate level were known, all cells",
+        ),
         "level_wall_time": Variable(
             dims=("level",),
             units="s",

@@ -21,6 +21,8 @@ from squealpipe.tasks.model_choice import SHORT_RUN, choose_models, contact_moti
 
 LEVELS = tuple(level.name for level in Level)
 _SHORT = max(SHORT_RUN.values())
+_SHARES = np.array([0.0, 0.0, 0.0, 1.0, 1.0, 1.0, _SHORT, 1.0])
+"""Share of the horizon that each level integrates in time."""
 
 
 class _Answers(NamedTuple):
@@ -58,21 +60,22 @@ def model_ladder(
     truth = found[Level.a1].values
     error = np.stack([_errors(found[level].values, truth) for level in Level], axis=1)
     valid = np.stack([found[level].valid for level in Level], axis=1)
-    adequate = valid & (error <= tol)
+    cheapest = (valid & (error <= tol)).argmax(axis=1)
     chosen = [
-        _chosen(params, alpha1, alpha2, question, tol, horizon, workers, found[Level.a1])
-        for question in QUESTIONS
+        _chosen(params, alpha1, alpha2, question, tol, horizon, workers, found[Level.a1], best)
+        for question, best in zip(QUESTIONS, cheapest, strict=True)
     ]
     shape = (points, points)
     return build(
         MODEL_LADDER,
         {
             "error": error.reshape(len(QUESTIONS), len(LEVELS), *shape),
-            "cheapest": adequate.argmax(axis=1).reshape(-1, *shape),
+            "cheapest": cheapest.reshape(-1, *shape),
             "chosen": np.stack([entry.level for entry in chosen]).reshape(-1, *shape),
             "chosen_error": np.stack([entry.error for entry in chosen]).reshape(-1, *shape),
             "chosen_time": [entry.time for entry in chosen],
             "always_time": [entry.always_time for entry in chosen],
+            "hindsight_time": [entry.hindsight_time for entry in chosen],
             "level_wall_time": [found[level].seconds for level in Level],
             "always_wall_time": [entry.always_seconds for entry in chosen],
             "chosen_wall_time": [entry.seconds for entry in chosen],
@@ -96,6 +99,7 @@ class _Chosen(NamedTuple):
     error: np.ndarray
     time: float
     always_time: float
+    hindsight_time: float
     seconds: float
     always_seconds: float
 
@@ -109,8 +113,10 @@ def _chosen(
     horizon: float,
     workers: int | None,
     always: _Answers,
+    cheapest: np.ndarray,
 ) -> _Chosen:
     """What choose_model takes, its error, and its cost beside that of always A1."""
+    needed = np.full(cheapest.shape, horizon)
     truth = always.values[QUESTIONS.index(question)]
     always_time, always_seconds = always.time, always.seconds
     if question == "contact_lost":
@@ -118,7 +124,8 @@ def _chosen(
         stopped = run_ensemble(
             params, alpha1, alpha2, t_end=horizon, stop_at_first_separation=True, workers=workers
         )
-        always_time = float(stopped.time.sum())
+        needed = stopped.time
+        always_time = float(needed.sum())
         always_seconds = time.perf_counter() - started
     started = time.perf_counter()
     choices = choose_models(params, alpha1, alpha2, question, tol, t_end=horizon, workers=workers)
@@ -130,6 +137,7 @@ def _chosen(
         error=error,
         time=float(choices.integrated.sum()),
         always_time=always_time,
+        hindsight_time=float((needed * _SHARES[cheapest]).sum()),
         seconds=seconds,
         always_seconds=always_seconds,
     )

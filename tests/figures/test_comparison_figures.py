@@ -150,6 +150,7 @@ def ladder():
             "chosen_error": np.zeros(cells),
             "chosen_time": [10.0, 50.0, 50.0, 80.0],
             "always_time": np.full(4, 100.0),
+            "hindsight_time": [8.0, 40.0, 20.0, 60.0],
             "level_wall_time": np.full(len(Level), 1e-3),
             "always_wall_time": np.ones(4),
             "chosen_wall_time": np.ones(4),

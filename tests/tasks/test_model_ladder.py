@@ -41,3 +41,10 @@ def test_chosen_answers_are_within_the_tolerance(ladder, question: str) -> None:
 def test_choosing_saves_most_where_contact_is_asked(ladder) -> None:
     share = (ladder.chosen_time / ladder.always_time).sel(question="contact_lost")
     assert float(share) < 0.25
+
+
+def test_knowing_the_cheapest_level_in_advance_costs_least(ladder) -> None:
+    assert (ladder.hindsight_time <= 1.01 * ladder.chosen_time).all()
+    runs = ladder.cheapest.sel(question="frequency") >= Level.a4_in_time
+    least = ladder.hindsight_time / ladder.always_time
+    assert float(least.sel(question="frequency")) == pytest.approx(float(runs.mean()), rel=1e-2)

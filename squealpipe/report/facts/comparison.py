@@ -53,6 +53,7 @@ def ladder(run: Run) -> dict[str, Any]:
                 "question": str(name).replace("_", " "),
                 "within": float((errors[asked] <= tolerance).mean()),
                 "simpler": float((row.cheapest != complete).mean()),
+                "hindsight": float(row.hindsight_time / row.always_time),
                 "work": float(row.chosen_time / row.always_time),
                 "wall": float(row.chosen_wall_time / row.always_wall_time),
             }
