@@ -23,6 +23,7 @@ include: "workflow/rules/explorer.smk"
 include: "workflow/rules/animation.smk"
 include: "workflow/rules/claims.smk"
 include: "workflow/rules/report.smk"
+include: "workflow/rules/sweeps.smk"
 include: "workflow/rules/local.smk"
 
 

@@ -19,11 +19,13 @@ from pydantic import (
     Field,
     ValidationError,
     ValidationInfo,
+    WithJsonSchema,
     field_validator,
 )
 
 from squealpipe.mistakes import ConfigError, mistakes
 from squealpipe.parameters import Parameters
+from squealpipe.ranges import read_fixed, read_values, sweep_config
 from squealpipe.yaml_files import overlay, read_yaml
 
 __all__ = [
@@ -271,6 +273,39 @@ class AnimationSection(Section):
     frames: Annotated[int, Field(ge=2, le=500)] = 60
 
 
+Name = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]*$")]
+VALUES = {"type": ["string", "number", "array"], "items": {"type": ["string", "number"]}}
+
+
+class SweepSection(Section):
+    """A task over ranges, written as for ``squealpipe sweep``; results in data/sweeps/<name>.nc."""
+
+    task: str
+    vary: Annotated[
+        dict[Name, list[float | int]],
+        Field(min_length=1),
+        WithJsonSchema({"type": "object", "minProperties": 1, "additionalProperties": VALUES}),
+    ]
+    fixed: dict[Name, float | int | str | bool | list[float | int] | None] = {}
+
+    @field_validator("vary", "fixed", mode="before")
+    @classmethod
+    def _written_forms(cls, given: Any, info: ValidationInfo) -> Any:
+        """Ranges and angles as numbers, so that each way to write them is the same."""
+        if not isinstance(given, Mapping):
+            return given
+        read = read_values if info.field_name == "vary" else read_fixed
+        found, faults = {}, []
+        for name, value in given.items():
+            try:
+                found[name] = read(name, value)
+            except ValueError as error:
+                faults.append(f"{name}: {error}")
+        if faults:
+            raise ValueError("; ".join(faults))
+        return found
+
+
 class Study(Section):
     """A whole study."""
 
@@ -283,6 +318,7 @@ class Study(Section):
     backbones: BackbonesSection = BackbonesSection()
     explorer: ExplorerSection = ExplorerSection()
     animation: AnimationSection = AnimationSection()
+    sweeps: dict[Name, SweepSection] = {}
 
     def slice(self, *paths: str) -> dict[str, Any]:
         """Canonical part of the configuration: numbers cast, keys in a fixed order.
@@ -298,6 +334,11 @@ class Study(Section):
                 value = value[key]
             part[path] = value
         return json.loads(json.dumps(part, sort_keys=True))  # type: ignore[no-any-return]
+
+    def sweep(self, name: str) -> dict[str, Any]:
+        """Configuration of one of the sweeps, with the parameters that it does not name itself."""
+        parameters = self.parameters.model_dump(mode="json")
+        return sweep_config(**self.sweeps[name].model_dump(mode="json"), parameters=parameters)
 
 
 def _plain_types(annotation: Any) -> set[type]:

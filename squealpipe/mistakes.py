@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+import fnmatch
 import math
 import re
 import typing
@@ -35,25 +36,29 @@ def mistakes(error: ValidationError, model: type[BaseModel]) -> Iterator[str]:
             yield f"{path}: unknown key; {_nearest(fault['loc'], model)}"
             continue
         message = fault["msg"].removeprefix("Value error, ")
+        if fault["type"] == "value_error":  # one of ours, which says what to do
+            yield f"{path} = {_quoted(fault['input'])}: {message}"
+            continue
         message = message[0].lower() + message[1:]
         yield f"{path} = {_quoted(fault['input'])}: {message}{_remedy(fault['input'])}"
 
 
 def known_keys(model: type[BaseModel], stem: str = "") -> Iterator[str]:
-    """Dotted paths of all keys of a model."""
+    """Dotted paths of all keys of a model; ``*`` stands for a name that is free."""
     for name, entry in model.model_fields.items():
         path = f"{stem}.{name}" if stem else name
         yield path
         section = _section(entry.annotation)
         if section is not None:
-            yield from known_keys(section, path)
+            free = typing.get_origin(entry.annotation) is dict
+            yield from known_keys(section, f"{path}.*" if free else path)
 
 
 def _nearest(location: tuple[int | str, ...], model: type[BaseModel]) -> str:
     *above, wrong = [str(key) for key in location if not isinstance(key, int)]
     stem = ".".join(above)
     every = list(known_keys(model))
-    siblings = [path for path in every if path.rpartition(".")[0] == stem]
+    siblings = [path for path in every if fnmatch.fnmatchcase(stem, path.rpartition(".")[0])]
     near = difflib.get_close_matches(wrong, [path.rpartition(".")[2] for path in siblings], n=1)
     if near:
         return f"did you mean {near[0]!r}?"

@@ -126,8 +126,10 @@ def read_fixed(name: str, given: object) -> Any:
             None.
 
     Raises:
-        ValueError: an angle or parameter that is none.
+        ValueError: an angle or parameter that is none, or no value at all.
     """
+    if not isinstance(given, str | int | float | Sequence | None):
+        raise ValueError(f"{given!r} is no value; write a number, a word or a list of numbers")  # noqa: TRY004
     if name in (*ANGLES, *PHYSICAL) and given is not None:
         return (parse_angle if name in ANGLES else parse_number)(_as_text(given))
     if isinstance(given, str):
@@ -138,8 +140,9 @@ def read_fixed(name: str, given: object) -> Any:
         given = values if len(values) > 1 else values[0]
     if isinstance(given, Sequence) and not isinstance(given, str):
         return [parse_number(_as_text(item)) for item in given]
-    whole = isinstance(given, float) and given.is_integer() and abs(given) < 2**53
-    return int(given) if whole else given  # type: ignore[call-overload]
+    if isinstance(given, float) and given.is_integer() and abs(given) < 2**53:
+        return int(given)
+    return given
 
 
 def sweep_config(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
@@ -12,6 +13,9 @@ LARGEST = 2**20
 DEEPEST = 20
 CODE = "__use_yte__"
 """The key by which a file would ask Snakemake to evaluate its text as Python."""
+
+BASE_60 = re.compile(r"[-+]?\d[\d_]*(?::[0-5]?\d)+(?:\.[\d_]*)?")
+"""Text like 1:3:20, which YAML 1.1 takes for a single number to base 60."""
 
 PLAIN_TAGS = frozenset(f"tag:yaml.org,2002:{kind}" for kind in ("str", "int", "float", "bool"))
 
@@ -77,13 +81,7 @@ def _faults(text: str) -> Iterator[tuple[int, str]]:
             continue
         if not isinstance(event, yaml.NodeEvent):
             continue
-        if isinstance(event, yaml.AliasEvent):
-            yield line, f"alias *{event.anchor}: write the value out"
-        elif getattr(event, "tag", None) not in {None, "!", *PLAIN_TAGS}:
-            yield (
-                line,
-                f"tag {getattr(event, 'tag', None)}: a configuration holds plain values only",
-            )
+        yield from ((line, what) for what in _node_faults(event))
         if isinstance(event, yaml.ScalarEvent) and stack and stack[-1] is not None and at_key[-1]:
             yield from ((line, what) for what in _key_faults(event.value, stack[-1]))
             stack[-1].add(event.value)
@@ -95,6 +93,18 @@ def _faults(text: str) -> Iterator[tuple[int, str]]:
             if len(stack) > DEEPEST:
                 yield line, f"more than {DEEPEST} levels deep"
                 return
+
+
+def _node_faults(event: yaml.NodeEvent) -> Iterator[str]:
+    tag = getattr(event, "tag", None)
+    if isinstance(event, yaml.AliasEvent):
+        yield f"alias *{event.anchor}: write the value out"
+    elif tag not in {None, "!", *PLAIN_TAGS}:
+        yield f"tag {tag}: a configuration holds plain values only"
+    elif (
+        isinstance(event, yaml.ScalarEvent) and event.implicit[0] and BASE_60.fullmatch(event.value)
+    ):
+        yield f"{event.value} is one number to YAML; write '{event.value}' in quotes"
 
 
 def _key_faults(key: str, seen: set[str]) -> Iterator[str]:

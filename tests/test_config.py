@@ -1,6 +1,7 @@
 """A configuration: every mistake at once, in words; one meaning, one canonical slice."""
 
 import difflib
+import math
 import os
 import textwrap
 from pathlib import Path
@@ -201,3 +202,58 @@ def test_known_keys_reach_every_value():
     leaves = flat(Study().model_dump(mode="json"))
     unreached = {key for key in leaves if not {key, key.rpartition(".")[0]} & known}
     assert not unreached  # keys of a mapping, like names of scenes, are reached by its own key
+
+
+SWEEP = """
+sweeps:
+  orbits:
+    task: periodic_orbit
+    vary: {mu: %s, y_peak: %s}
+    fixed: {alpha1: %s, alpha2: 0.9pi, mode: %s}
+"""
+
+
+def test_ways_to_write_a_sweep_have_one_meaning(written):
+    texts = [
+        SWEEP % ('"0:0.6:3"', '"1.5,2"', "0.3pi", "1"),
+        SWEEP % ("[0, 0.3, 0.6]", "[1.5, 2]", "54deg", "1.0"),
+        SWEEP % ('[0, 3e-1, "0.6"]', '"1.5:2:2"', repr(0.3 * math.pi), '"1"'),
+    ]
+    forms = [read_study(PAPER, written(text)).sweep("orbits") for text in texts]
+    assert forms[0] == forms[1] == forms[2]
+    assert forms[0]["vary"] == {"mu": [0.0, 0.3, 0.6], "y_peak": [1.5, 2.0]}
+    assert forms[0]["fixed"]["alpha1"] == 0.3 * math.pi
+    assert "mu" not in forms[0]["parameters"]
+
+
+def test_a_sweep_follows_the_parameters_that_it_does_not_name(written):
+    text = SWEEP % ("[0.1]", "[2]", "0.3pi", "1")
+    before = read_study(PAPER, written(text)).sweep("orbits")
+    after = read_study(PAPER, written(text + "parameters: {mu: 0.5, k3: 0.5}")).sweep("orbits")
+    assert after["parameters"].pop("k3") == 0.5
+    assert before["parameters"].pop("k3") == 0.75
+    assert before == after
+
+
+@pytest.mark.parametrize(
+    ("section", "expected"),
+    [
+        ("{vary: {mu: '0:0.6'}}", "vary = {'mu': '0:0.6'}: mu: '0:0.6' is no range; write first"),
+        ("{vary: {mu: heavy}}", "mu: 'heavy' is no number; write for instance"),
+        ("{vary: {mu: [1, x]}}", "mu: 'x' is no number"),
+        ("{vary: {}}", "sweeps.mine.vary = {}: dictionary should have at least 1 item"),
+        ("{vary: [1]}", "sweeps.mine.vary = (1,): input should be a valid dictionary"),
+        ("{fixed: {alpha1: north}}", "'north' is no angle; write 0.4pi"),
+        ("{fixed: {k3: {a: 1}}}", "k3: {'a': 1} is no value; write a number"),
+        ("{fixd: {}}", "sweeps.mine.fixd: unknown key; did you mean 'fixed'?"),
+        ("{vary: {mu: 1:3:20}}", "line 2: 1:3:20 is one number to YAML; write '1:3:20' in quotes"),
+    ],
+)
+def test_mistakes_in_a_sweep_are_named_with_their_remedy(written, section, expected):
+    text = complaint(written(f"\nsweeps: {{mine: {section}}}"))
+    assert expected in text
+    assert "sweeps.mine.task" in text
+
+
+def test_names_of_sweeps_are_plain(written):
+    assert "'a b'" in complaint(written("sweeps: {a b: {task: simulate, vary: {mu: 1}}}"))

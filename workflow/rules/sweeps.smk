@@ -1,0 +1,74 @@
+"""The study's own sweeps: any task over ranges, one dataset each.
+
+Included after the report, which shows the paper's study and must not wait for them.
+"""
+
+from math import prod
+
+from squealpipe.mistakes import ConfigError
+from squealpipe.ranges import longest
+
+SWEEPS = {name: STUDY.sweep(name) for name in STUDY.sweeps}
+
+if SWEEPS and workflow.is_main_process:  # jobs need not check again: the import takes a second
+    from squealpipe.tasks.sweep import planned
+
+    faults = []
+    for name, sweep in SWEEPS.items():
+        try:
+            planned(sweep)
+        except ValueError as fault:
+            faults.append(f"sweeps.{name}: {fault}")
+    if faults:
+        raise ConfigError(faults)
+
+
+def sweep_parts(sweep):
+    """Parts of a sweep: as many as a map has, but no more than it has values to cut."""
+    return min(PARTS, len(sweep["vary"][longest(sweep["vary"])]))
+
+
+for name, sweep in SWEEPS.items():
+    whole = sweep_parts(sweep) == 1
+    parts = f"{RESULTS}/parts/sweeps/{name}/{{scatteritem}}.nc"
+
+    scattergather:
+        **{f"sweep_{name}": sweep_parts(sweep)},
+
+    rule:
+        name:
+            f"run_sweep_{name}"
+        input:
+            sources=sources("run_sweep"),
+        output:
+            data(f"sweeps/{name}") if whole else temp(parts),
+        log:
+            f"{RESULTS}/logs/sweeps/{name}{'' if whole else '.{scatteritem}'}.log",
+        params:
+            part=sweep,
+        threads: cores_for(prod(map(len, sweep["vary"].values())), enough=16)
+        script:
+            "../scripts/run_sweep.py"
+
+    if not whole:
+
+        rule:
+            name:
+                f"join_sweep_{name}"
+            input:
+                parts=getattr(gather, f"sweep_{name}")(parts),
+                sources=sources("join_parts"),
+            output:
+                data(f"sweeps/{name}"),
+            params:
+                part=sweep,
+            script:
+                "../scripts/join_parts.py"
+
+
+rule sweeps:
+    input:
+        [data(f"sweeps/{name}") for name in SWEEPS],
+
+
+TARGETS += rules.sweeps.input

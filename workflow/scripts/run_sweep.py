@@ -1,0 +1,19 @@
+"""A task over ranges; of a scattered sweep some of the values of its longest dimension."""
+
+from squealpipe.store import produce
+from squealpipe.store.chunks import Checkpoint
+from squealpipe.tasks.sweep import executor, planned, run_sweep
+
+part = snakemake.params.part
+sweep = planned(part).part(snakemake.wildcards.get("scatteritem", "1-of-1"))
+output, sources, log = snakemake.output[0], snakemake.input.sources, snakemake.log[0]
+
+with (
+    Checkpoint.beside(output, config=part, sources=sources, log=log) as checkpoint,
+    executor(snakemake.threads) as pool,
+):
+    produce(
+        lambda: run_sweep(sweep, executor=pool, checkpoint=checkpoint),
+        config=part,
+        output=output,
+    )
