@@ -30,8 +30,9 @@ CAPTION = (
     " not its assumptions hold. (b) What choose_model costs: time integrated, over that of always"
     " running A1 until the question is answered, and (above the bars) the share of its answers "
     "within the tolerance; the strokes are what one would pay who knew the cheapest adequate level "
-    "of every cell in advance, the dashed line is 20 %. Contact is mostly decided by bounds and short runs; what a mass does "
-    "after it has lost contact only A1 tells."
+    "of every cell in advance, the dashed line is 20 %. Contact is mostly decided by bounds and "
+    "short runs, on long springs the peak force too; how far and how fast a mass moves after it "
+    "has lost contact only A1 tells."
 )
 ALT = "Dots: share of cells right by level and question. Bars: cost of the chosen models."
 _COLOURS = dict(zip(QUESTION_NAMES, (BLACK, BLUE, GREEN, ORANGE), strict=True))

@@ -99,3 +99,42 @@ def first_integral_value(x: Any, y: Any, vx: Any, vy: Any, p: Any, stiffness: St
     kinetic = 0.5 * p.mass * (s11 * vx * vx + 2.0 * s12 * vx * vy + s22 * vy * vy)
     elastic = 0.5 * (sk11 * x * x + (sk12 + sk21) * x * y + sk22 * y * y)
     return kinetic + elastic + 0.5 * g * p.k3 * np.maximum(p.preload - y, 0.0) ** 2
+
+
+class ReachFromRest(NamedTuple):
+    """Largest √(x² + y²), m, and speed, m/s, of any motion from rest; ∞ where H bounds none."""
+
+    distance: Any
+    speed: Any
+
+
+def reach_from_rest(stiffness: Stiffness, mu: Any, p: Any) -> ReachFromRest:
+    """Bounds from the first integral where its quadratic forms S and SK are definite.
+
+    From rest at x = y = 0 it is H = ½ g k3 l_pre², so that with g > 0 and S and SK positive
+    definite (or all negative) v'Sv ≤ g k3 l_pre²/m, u'SKu ≤ g k3 l_pre² and N ≤ k3 l_pre for all
+    times, whether contact is lost or not: such a mass never presses harder than at the start.
+    """
+    s11, s12, s22, g = first_integral(stiffness, mu)
+    k11, k12, k22 = stiffness
+    sign = np.sign(g)
+    least_s = _smaller_eigenvalue(sign * s11, sign * s12, sign * s22)
+    # SK is symmetric, for s11 k12 + s12 k22 = s12 k11 + s22 k12.
+    least_sk = _smaller_eigenvalue(
+        sign * (s11 * k11 + s12 * k12),
+        sign * (s11 * k12 + s12 * k22),
+        sign * (s12 * k12 + s22 * k22),
+    )
+    definite = (least_s > 0.0) & (least_sk > 0.0)
+    level = np.where(definite, np.abs(g) * p.k3 * p.preload**2, np.inf)
+    return ReachFromRest(
+        np.sqrt(level / np.where(definite, least_sk, 1.0)),
+        np.sqrt(level / np.where(definite, least_s * p.mass, 1.0)),
+    )
+
+
+def _smaller_eigenvalue(a: Any, b: Any, c: Any) -> Any:
+    """Of the symmetric matrix [[a, b], [b, c]], from its determinant: no cancellation."""
+    half_trace = 0.5 * (a + c)
+    larger = half_trace + np.hypot(0.5 * (a - c), b)
+    return np.where(larger > 0.0, (a * c - b * b) / np.where(larger > 0.0, larger, 1.0), -np.inf)

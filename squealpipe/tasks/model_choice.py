@@ -2,7 +2,8 @@
 
 Three ways to an answer, cheapest first. Closed form: the linear motion in contact is bounded for
 all times by its two modes; if the bound keeps clear of l_pre by more than the springs' geometry
-can shift it, contact is never lost (or surely lost), without a run. Short run: A1 over a part of
+can shift it, contact is never lost (or surely lost), without a run. Where the first integral of
+A4 is definite, it bounds the contact force, contact lost or not. Short run: A1 over a part of
 the horizon; a mass that has kept its distance from separation that long keeps contact. Else A1.
 """
 
@@ -84,6 +85,7 @@ class Choices:
         motion: the linear motion that was looked at.
         shift: by how much geometry may move it, over l_pre.
         margin: least contact force left in the longest short run, over k3 l_pre; NaN without.
+        reach: how far and fast the first integral of A4 lets the mass go; ∞ where it does not say.
     """
 
     level: np.ndarray
@@ -92,6 +94,7 @@ class Choices:
     motion: ModalMotion
     shift: np.ndarray
     margin: np.ndarray
+    reach: a4.ReachFromRest
 
 
 def choose_model(
@@ -157,6 +160,7 @@ def choose_models(
         motion=motion,
         shift=shift,
         margin=np.full(alpha1.shape, np.nan),
+        reach=first_integral_reach(params, alpha1, alpha2),
     )
     stays = motion.oscillates & (motion.highest() / params.preload - 1.0 <= shift)
     runs = _Runs(params, alpha1, alpha2, t_end, workers)
@@ -165,6 +169,8 @@ def choose_models(
         choices.level[settled], choices.value[settled] = Level.closed_form, loses[settled]
         _run_until_decided(choices, ~settled, stays, runs)
     else:
+        if question == "peak_contact_force":
+            _answer_by_first_integral(choices, tol, runs)
         _answer_in_contact(choices, keeps & (shift <= GEOMETRY_SHARE * tol), question, runs)
         # what a mass does after it has lost contact, no part of the horizon tells
         _run_once(choices, stays & ~loses, question, SHORT_RUN[question], runs)
@@ -286,9 +292,29 @@ def _answer_in_contact(choices: Choices, cells: np.ndarray, question: str, runs:
     choices.level[cells] = Level.a3_in_contact
 
 
+def _answer_by_first_integral(choices: Choices, tol: float, runs: _Runs) -> None:
+    """The force of the start, where the first integral of A4 lets none be larger.
+
+    The springs' geometry changes their force by the share r/L, which must be within the
+    tolerance for the largest r.
+    """
+    params = runs.params
+    within = choices.reach.distance <= tol * min(params.length1, params.length2)
+    cells = within & (choices.reach.speed < abs(params.belt_speed))
+    choices.value[cells], choices.level[cells] = 1.0, Level.closed_form
+
+
+def first_integral_reach(params: Parameters, alpha1: Any, alpha2: Any) -> a4.ReachFromRest:
+    """Bounds of A4 from rest over arrays of angles."""
+    stiffness = linear_stiffness(params, geometry(np.asarray(alpha1), np.asarray(alpha2)))
+    return a4.reach_from_rest(stiffness, params.drag, params)
+
+
 def _reason(level: Level, question: str) -> str:
     if level == Level.closed_form and question == "contact_lost":
         return "the modal bound is clear of l_pre by more than the springs' geometry can shift it"
+    if level == Level.closed_form and question == "peak_contact_force":
+        return "the first integral of A4 allows no larger force than that of the start"
     if level == Level.closed_form:
         return "contact is kept for all times and one linear mode dominates"
     if level == Level.a3_in_contact:
@@ -319,6 +345,18 @@ def _checks(found: Choices, params: Parameters, question: str, tol: float) -> tu
         allowed = GEOMETRY_SHARE * tol
         checks.append(
             Check("geometry within tolerance", shift <= allowed, f"{shift:.2g} ≤ {allowed:.2g}?")
+        )
+    if question == "peak_contact_force":
+        distance, allowed = (
+            float(found.reach.distance[0]),
+            tol * min(params.length1, params.length2),
+        )
+        checks.append(
+            Check(
+                "first integral bounds the motion",
+                distance <= allowed,
+                f"√(x² + y²) ≤ {distance:.3g}, {allowed:.3g} allowed",
+            )
         )
     if math.isfinite(margin):
         checks.append(

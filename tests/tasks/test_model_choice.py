@@ -57,6 +57,23 @@ def test_every_question_is_answered_within_the_tolerance(question: str, length: 
     assert cost < 0.95
 
 
+@pytest.mark.parametrize("changes", [{}, {"k2": 1.7, "mu": 0.5}])
+def test_peak_force_on_long_springs_mostly_follows_from_the_first_integral(changes) -> None:
+    right, cost = judged(
+        Parameters(length1=300.0, length2=300.0, **changes), "peak_contact_force", 12
+    )
+    assert right.mean() >= 0.99
+    assert cost <= 0.35
+
+
+def test_first_integral_is_named_where_it_answers() -> None:
+    long = Parameters(length1=300.0, length2=300.0)
+    found = choose_model(long, 0.2 * np.pi, 0.6 * np.pi, "peak_contact_force", TOLERANCE)
+    assert found.model == "closed_form"
+    assert found.value == 1.0
+    assert "first integral" in found.reason
+
+
 def test_bounds_decide_no_cell_wrongly() -> None:
     """A regression test of GEOMETRY_FACTOR, on cells other than those it was set by."""
     params, cells = Parameters(), random_cells(99, 5000)
