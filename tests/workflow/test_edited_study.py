@@ -1,0 +1,74 @@
+"""An edit really run and taken back: what depends on it changes, the rest stays as it is."""
+
+from __future__ import annotations
+
+import hashlib
+import re
+from pathlib import Path
+
+from squealpipe.store import load
+
+QUICK = "workflow/config/quick.yaml"
+EDIT = "inference: {samples: 600}\n"
+STALE = {"infer_parameters", "draw_parameter_inference", "judge_claims", "write_report"}
+DATASETS = {"parameter_inference", "claims"}
+"""What those rules make; the verdicts read the inference, though none may turn over."""
+
+
+def files(results: Path) -> dict[str, tuple[str, int]]:
+    """Path → digest and date of every file."""
+    return {
+        str(path.relative_to(results)): (
+            hashlib.sha256(path.read_bytes()).hexdigest(),
+            path.stat().st_mtime_ns,
+        )
+        for path in results.rglob("*")
+        if path.is_file()
+    }
+
+
+def ids(results: Path) -> dict[str, str]:
+    """Dataset → its id."""
+    base = results / "data"
+    return {
+        str(path.relative_to(base).with_suffix("")): load(path).attrs["dataset_id"]
+        for path in base.rglob("*.nc")
+    }
+
+
+def test_an_edit_is_run_and_taken_back(study_copy, snakemake):
+    results = study_copy / "results/quick"
+
+    def run(*configs: str) -> tuple[set[str], set[str]]:
+        """Rules that ran, and files whose bytes or date changed."""
+        before = files(results)
+        done = snakemake(study_copy, "--configfile", QUICK, *configs)
+        assert done.returncode == 0, done.stderr[-4000:]
+        rules = set(re.findall(r"^(?:local)?rule (\w+):$", done.stderr, flags=re.MULTILINE))
+        after = files(results)
+        assert set(after) == set(before)
+        return rules - {"all"}, {path for path in after if after[path] != before[path]}
+
+    original, pictures = ids(results), files(results / "figures")
+    (study_copy / "edit.yaml").write_text(EDIT)
+    rules, changed = run("edit.yaml")
+    assert rules == STALE
+    assert {path for path in changed if path.startswith("data/")} == {
+        f"data/{name}.nc" for name in DATASETS
+    }
+    assert {path for path in changed if path.startswith("figures/")} == {
+        f"figures/parameter_inference.{suffix}" for suffix in ("png", "svg")
+    }
+    edited = ids(results)
+    assert edited["parameter_inference"] != original["parameter_inference"]
+    assert {name for name in original if edited[name] != original[name]} <= DATASETS
+    assert load(results / "data/parameter_inference.nc").sizes["sample"] == 600
+
+    rules, _ = run()
+    assert rules == STALE
+    assert ids(results) == original
+    back = files(results / "figures")
+    assert {path: digest for path, (digest, _) in back.items()} == {
+        path: digest for path, (digest, _) in pictures.items()
+    }
+    assert run() == (set(), set())
