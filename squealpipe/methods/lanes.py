@@ -157,6 +157,12 @@ def tangents_meet(start: float, end: float, first: float, last: float, step: flo
 
 
 @part
+def inside(time: float, step: float) -> float:
+    """A time within the step; its middle for one that is not, or is no number."""
+    return time if 0.0 <= time <= step else 0.5 * step
+
+
+@part
 def first_guess(first: float, last: float, slope: float, step: float) -> float:
     """The root in the step of the parabola from ``first`` with ``slope`` to ``last``.
 
@@ -164,7 +170,7 @@ def first_guess(first: float, last: float, slope: float, step: float) -> float:
     """
     curvature = (last - first) / step - slope
     discriminant = math.sqrt(slope * slope - 4.0 * first * curvature / step)
-    return -2.0 * first / (slope + math.copysign(discriminant, last - first))
+    return inside(-2.0 * first / (slope + math.copysign(discriminant, last - first)), step)
 
 
 @part
@@ -178,7 +184,7 @@ def extremum(
     time = first_guess(first, last, coefficients[rate, 1, lane], step)
     for _ in range(2):
         value, slope = evaluate_with_slope(coefficients, rate, lane, time)
-        time = min(max(time - value / slope, 0.0), step)
+        time = inside(time - value / slope, step)
     return evaluate(coefficients, variable, lane, time)
 
 

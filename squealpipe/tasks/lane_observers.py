@@ -14,6 +14,7 @@ from squealpipe.methods.lanes import (
     evaluate_state,
     extremum,
     first_guess,
+    inside,
     inline,
     part,
     tangents_meet,
@@ -120,7 +121,7 @@ def _turning_distance2(
         x, y, vx, vy, ax, ay = evaluate_motion(c, lane, time)
         x, y = x - px, y - py
         slope = vx * vx + vy * vy + x * ax + y * ay
-        time = min(max(time - (x * vx + y * vy) / slope, 0.0), step)
+        time = inside(time - (x * vx + y * vy) / slope, step)
     x, y, vx, vy = evaluate_state(c, lane, time)
     return (x - px) ** 2 + (y - py) ** 2
 
