@@ -12,15 +12,8 @@ from typing import Any
 
 import numpy as np
 
-from squealpipe.methods.lanes import (
-    LANES,
-    compile_advance,
-    evaluate,
-    float_view,
-    inline,
-    integer_view,
-    part,
-)
+from squealpipe.methods.lanes import LANES, compile_advance, float_view, inline, integer_view, part
+from squealpipe.methods.taylor_polynomial import evaluate
 from squealpipe.models import switching
 from squealpipe.sources import closure
 from squealpipe.tasks.lane_layout import (

@@ -9,14 +9,13 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from squealpipe.methods.lanes import (
+from squealpipe.methods.lanes import inline, part
+from squealpipe.methods.taylor_polynomial import (
     evaluate_motion,
     evaluate_state,
     extremum,
     first_guess,
     inside,
-    inline,
-    part,
     tangents_meet,
 )
 from squealpipe.tasks.lane_layout import (
