@@ -80,7 +80,7 @@ def _draw_saving(axes: Axes, ladder: xr.Dataset) -> None:
     for index, (share, good) in enumerate(zip(shares, right, strict=True)):
         axes.text(
             index, share + 1.5, f"{share:.0f} %\n{good:.1f} % right", ha="center",
-            fontsize=6,
+            fontsize=6, zorder=4, bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.5},
         )  # fmt: skip
     least = 100 * ladder.hindsight_time.values / ladder.always_time.values
     axes.plot(

@@ -98,7 +98,8 @@ def _map(axes: Axes, refined: xr.Dataset) -> None:
 
 
 def _comparison(axes: Axes, check: xr.Dataset) -> None:
-    axes.plot(check.runs, check.wrong_share, "o-", color=ORANGE, label="uniform maps")
+    axes.plot(check.runs, check.wrong_share, "o-", color=ORANGE)
+    axes.margins(x=0.2, y=0.15)
     axes.set_xscale("log")
     if (check.wrong_share > 0).any():
         axes.set_yscale("log")
@@ -106,9 +107,14 @@ def _comparison(axes: Axes, check: xr.Dataset) -> None:
         check.points.values, check.runs.values, check.wrong_share.values, strict=True
     ):
         axes.annotate(
-            f"{count}²", (runs, wrong), xytext=(4, 3), textcoords="offset points", fontsize=7
-        )
-    axes.axvline(float(check.refined_runs), color=BLUE, linestyle="--", label="refined map")
-    axes.set(xlabel="runs", ylabel="share of wrong cells")
-    axes.legend(loc="lower left")
+            f"{count}²", (runs, wrong), xytext=(0, 6), textcoords="offset points", ha="center",
+            fontsize=7,
+        )  # fmt: skip
+    refined = float(check.refined_runs)
+    axes.axvline(refined, color=BLUE, linestyle="--")
+    axes.annotate(
+        "refined map", (refined, 0.96), xycoords=axes.get_xaxis_transform(), xytext=(3, 0),
+        textcoords="offset points", rotation=90, va="top", fontsize=7, color=BLUE,
+    )  # fmt: skip
+    axes.set(xlabel="runs", ylabel="wrong cells of uniform maps (share)")
     panel_letter(axes, "c", f"{int(check.missed_regions.sum())} regions missed")
