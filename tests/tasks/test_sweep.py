@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import re
 import subprocess
 import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
+import yaml
 
+from squealpipe.config import parse_study
 from squealpipe.parameters import Parameters
 from squealpipe.ranges import longest, parse_range
 from squealpipe.schema import find
@@ -19,7 +23,7 @@ from squealpipe.tasks.backbones import backbone
 from squealpipe.tasks.dynamics import simulate
 from squealpipe.tasks.linear import stability_map
 from squealpipe.tasks.row_blocks import join
-from squealpipe.tasks.sweep import Sweep, executor, run_sweep
+from squealpipe.tasks.sweep import Sweep, executor, planned, run_sweep
 
 ANGLES = [0.0, 1.0, 2.0]
 
@@ -247,3 +251,13 @@ def test_runs_at_other_instants_are_not_put_on_one_axis():
     }
     with pytest.raises(ValueError, match="time differs from run to run; fix the option 'times'"):
         run_sweep(Sweep(**plan))
+
+
+def test_the_sweeps_in_the_page_on_clusters_can_be_planned():
+    page = Path(__file__).parents[2] / "docs/cluster.md"
+    (block,) = re.findall(r"```yaml\n(.*?)```", page.read_text(encoding="utf-8"), flags=re.DOTALL)
+    study = parse_study(yaml.safe_load(block))
+    plans = {name: planned(study.sweep(name)) for name in study.sweeps}
+    assert len(plans["orbits_over_friction"].points) == 52
+    assert plans["contact_over_stiffness"].names == ["k3"]
+    assert longest(plans["contact_over_stiffness"].vary) == "alpha1"

@@ -7,18 +7,25 @@ are root's, a cluster of one node is started on loopback for the session.
 from __future__ import annotations
 
 import os
+import re
 import shutil
 import signal
 import subprocess
 import sys
 import tempfile
 import time
+from collections import Counter
+from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 import pytest
+import yaml
 
 from squealpipe.store import load
 from squealpipe.store.compare import compare
+from squealpipe.store.differences import Verdict
+from squealpipe.yaml_files import overlay
 
 pytestmark = pytest.mark.slurm
 
@@ -30,13 +37,62 @@ PROFILE = [
     *("--max-threads", "1", "--default-resources", "runtime=10", "mem_mb_per_cpu=500"),
 ]
 MAP = "results/data/validity_map.nc"
-FIGURE = "results/figures/fig07.png"
 SMALL = """
 dynamics: {validity_points: 31, validity_horizon: 20.0}
 """
 LONG = """
 dynamics: {validity_points: 301, validity_horizon: 200.0}
 """
+TINY = """
+linear: {points: 21, share_points: 3}
+inference: {samples: 64}
+comparison:
+  integration: {horizon: 5.0, tolerances: [1.0e-4], steps: [0.1], sigmas: [10.0]}
+  validity: {points: 7, fine_points: 9, horizons: [10.0], tolerances: [1.0e-3]}
+  harmonic: {harmonics: [4], oversampling: [1]}
+  onset: {halvings: [10]}
+  atlas: {chaotic_horizon: 20.0, beyond_horizon: 100.0}
+  ladder: {points: 5, horizon: 20.0}
+dynamics:
+  validity_points: 31
+  validity_horizon: 20.0
+  refined_points: 41
+  refined_coarse: 11
+  uniform_points: [11, 21]
+  hammering_points: 9
+  hammering_horizon: 50.0
+  whirl_count: 3
+  whirl_horizon: 1000.0
+  transient_count: 2
+  transient_samples: 2
+  transient_shown: 4
+  transient_horizon: 1000.0
+explorer: {points: 3, history_time: 20.0, spectrum_time: 20.0, samples: 50, branch_points: 4}
+backbones:
+  y_peak_max: 2.0
+  n_harmonics: 4
+  sweep: {harmonics: [4, 8], samples: [66], sigmas: [10.0]}
+  atlas_points: 7
+animation: {frames: 3}
+sweeps:
+  orbits:
+    task: periodic_orbit
+    vary: {mu: "0.1,0.3", y_peak: "1.1:3:5"}
+    fixed: {alpha1: 0.3pi, alpha2: 0.9pi, mode: 1}
+"""
+"""Laid over the quick study: everything that it has, and a sweep."""
+TWO_PARTS = [
+    *PROFILE,
+    *("--set-scatter", "maps=2"),
+    *("--slurm-init-seconds-before-status-checks", "4", "--seconds-between-status-checks", "4"),
+]
+"""A job takes about 8 CPU s to start here, so few parts; looked at seldom, as 25 jobs share it.
+
+Where nothing ended between two looks the plugin waits 10 s longer for the next.
+"""
+SCATTERED = {"map_validity", "map_hammering", "run_sweep_orbits"}
+JOINS = {"join_validity_map", "join_hammering_map", "join_sweep_orbits"}
+COMPILE = "from squealpipe.tasks.lane_kernel import lane_kernel; lane_kernel()"
 
 
 def ready() -> bool:
@@ -67,17 +123,19 @@ def slurm():
     shutil.rmtree(base, ignore_errors=True)
 
 
-def command(*arguments: str) -> list[str]:
-    return [sys.executable, "-m", "snakemake", *arguments, *PROFILE, "--configfile", "mine.yaml"]
+def command(*arguments: str, profile: Sequence[str] = PROFILE) -> list[str]:
+    return [sys.executable, "-m", "snakemake", *arguments, *profile, "--configfile", "mine.yaml"]
 
 
 def environment(checkout: Path) -> dict[str, str]:
     return {**os.environ, "PYTHONPATH": str(checkout)}
 
 
-def on_slurm(checkout: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
+def on_slurm(
+    checkout: Path, *arguments: str, profile: Sequence[str] = PROFILE
+) -> subprocess.CompletedProcess[str]:
     return subprocess.run(
-        command(*arguments),
+        command(*arguments, profile=profile),
         cwd=checkout,
         env=environment(checkout),
         capture_output=True,
@@ -123,16 +181,46 @@ def cluster_checkout(checkout, slurm):
     return checkout
 
 
-def test_scattered_study_equals_one_machine_bit_for_bit(cluster_checkout, snakemake):
-    run = on_slurm(cluster_checkout, MAP, FIGURE)
+def study_laid_over_quick(checkout: Path, text: str) -> dict[str, Any]:
+    """The quick study with other numbers."""
+    content = yaml.safe_load((checkout / "workflow/config/quick.yaml").read_text())
+    overlay(content, yaml.safe_load(text))
+    return content
+
+
+@pytest.mark.timeout(900)
+def test_whole_study_equals_one_machine_bit_for_bit(cluster_checkout, snakemake):
+    """Datasets, figures, report and explorer of a tiny study, maps and sweep in parts."""
+    study = study_laid_over_quick(cluster_checkout, TINY)
+    for place, name in (("slurm", "mine.yaml"), ("local", "local.yaml")):
+        study["results"] = f"results/{place}"
+        (cluster_checkout / name).write_text(yaml.safe_dump(study, sort_keys=False))
+    subprocess.run(
+        [sys.executable, "-c", COMPILE],
+        cwd=cluster_checkout,
+        env=environment(cluster_checkout),
+        check=True,
+    )
+    run = on_slurm(cluster_checkout, profile=TWO_PARTS)
     assert run.returncode == 0, run.stderr[-4000:]
-    assert run.stderr.count("has been submitted with SLURM jobid") == 4
-    assert (cluster_checkout / FIGURE).is_file()
-    expected = undisturbed(cluster_checkout, snakemake)
-    found = cluster_checkout / MAP
-    assert compare(expected, found).as_dict()["verdict"] == "equal"
-    assert load(found).attrs["dataset_id"] == load(expected).attrs["dataset_id"]
-    assert "Nothing to be done" in on_slurm(cluster_checkout, MAP, FIGURE).stderr
+    sent = Counter(re.findall(r"has been submitted .*/rule_(\w+)/", run.stderr))
+    assert {rule for rule, count in sent.items() if count == 2} == SCATTERED
+    assert set(sent) >= JOINS
+    assert not [rule for rule in sent if rule.startswith(("draw_", "write_", "judge_"))]
+    results = cluster_checkout / "results/slurm"
+    for name in ("report/index.html", "report/report.pdf", "report/explorer.html"):
+        assert (results / name).stat().st_size > 10_000
+    assert len(list((results / "figures").glob("*.svg"))) >= 30
+    assert "Nothing to be done" in on_slurm(cluster_checkout, profile=TWO_PARTS).stderr
+
+    datasets = [path.relative_to(results) for path in (results / "data").rglob("*.nc")]
+    targets = [f"results/local/{path}" for path in datasets]
+    alone = snakemake(cluster_checkout, *targets, "--configfile", "local.yaml")
+    assert alone.returncode == 0, alone.stderr[-4000:]
+    here = cluster_checkout / "results/local"
+    assert compare(here, results).verdict == Verdict.equal
+    for path in datasets:
+        assert load(results / path).dataset_id == load(here / path).dataset_id, path
 
 
 def test_cancelled_job_fails_and_the_next_run_completes(cluster_checkout, snakemake):
