@@ -81,12 +81,30 @@ sweeps:
     fixed: {alpha1: 0.3pi, alpha2: 0.9pi, mode: 1}
 """
 """Laid over the quick study: everything that it has, and a sweep."""
+SMALL_RULES = [
+    "simulate_scenes",
+    "map_linear",
+    "validate_mode_coupling",
+    "refine_validity",
+    "follow_whirl",
+    "infer_parameters",
+    "sweep_harmonic_balance",
+    "compare_a1_with_a4",
+    "map_orbits",
+    "measure_integration",
+    "measure_frequencies",
+    "check_assumptions",
+    "compute_explorer",
+    "map_model_ladder",
+    "trace_backbones",
+]
 TWO_PARTS = [
     *PROFILE,
     *("--set-scatter", "maps=2"),
+    *("--groups", *(f"{rule}=small" for rule in SMALL_RULES), "--group-components", "small=3"),
     *("--slurm-init-seconds-before-status-checks", "4", "--seconds-between-status-checks", "4"),
 ]
-"""A job takes about 8 CPU s to start here, so few parts; looked at seldom, as 25 jobs share it.
+"""A job takes about 8 CPU s to start here, so few parts, and three small rules to a job.
 
 Where nothing ended between two looks the plugin waits 10 s longer for the next.
 """
