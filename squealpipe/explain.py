@@ -28,6 +28,10 @@ MOST_REASONS = 4
 """Reasons of one job that are printed; JSON has all."""
 
 
+SAME_JOB = 0.05
+"""Files of a rule that were begun and ended within so many seconds come from one job."""
+
+
 class WorkflowError(RuntimeError):
     """Snakemake could not plan; the message is its own."""
 
@@ -40,7 +44,7 @@ class Record:
     seconds: float
     params: str
     ended: float = field(default=0.0, compare=False)
-    """When its job ended, s since 1970: the same for all files of one job."""
+    """When its job ended, s since 1970; for the files of one job the same but for milliseconds."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -223,6 +227,22 @@ def records(base: Path) -> dict[str, Record]:
         except (OSError, ValueError, KeyError, TypeError, binascii.Error):
             continue  # a record that cannot be read means: duration unknown
     return found
+
+
+def job_times(known: Mapping[str, Record]) -> dict[str, list[float]]:
+    """Rule → what each of its jobs took, s; files that one job made together count once."""
+    times: dict[str, list[float]] = {}
+    latest: dict[str, Record] = {}
+    for record in sorted(known.values(), key=lambda record: (record.rule, record.ended)):
+        last = latest.get(record.rule)
+        latest[record.rule] = record
+        together = last is not None and (
+            abs(record.ended - last.ended) < SAME_JOB
+            and abs(record.seconds - last.seconds) < SAME_JOB
+        )
+        if not together:
+            times.setdefault(record.rule, []).append(record.seconds)
+    return times
 
 
 def _reasons(text: str) -> tuple[list[str], list[str]]:

@@ -14,6 +14,7 @@ from squealpipe.explain import (
     WorkflowError,
     changed_keys,
     explain,
+    job_times,
     read_plan,
     records,
     why,
@@ -150,3 +151,17 @@ def test_outside_of_a_checkout_or_with_a_broken_workflow(tmp_path):
     config.write_text("")
     with pytest.raises(WorkflowError, match="nothing-makes-this"):
         explain(root=tmp_path)
+
+
+def test_files_of_one_job_count_once():
+    written_by = [
+        ("draw", 7.0, 50.001),
+        ("draw", 7.004, 50.005),
+        ("draw", 3.0, 90.0),
+        ("map", 7.0, 50.0),
+    ]
+    known = {
+        str(index): Record(rule=rule, seconds=seconds, params="", ended=ended)
+        for index, (rule, seconds, ended) in enumerate(written_by)
+    }
+    assert job_times(known) == {"draw": [7.0, 3.0], "map": [7.0]}

@@ -43,16 +43,16 @@ def explain(*, config: Configs = None, times: bool = False, json_: AsJson = Fals
 
 
 def _print_times() -> None:
-    from squealpipe.explain import records
+    from squealpipe.explain import job_times, records
 
-    jobs = {(record.rule, record.ended): record.seconds for record in records(Path()).values()}
-    if not jobs:
+    times = job_times(records(Path()))
+    if not times:
         raise FileNotFoundError("no run is recorded here; run snakemake in this folder first")
     print("| rule | jobs | seconds |\n|---|---:|---:|")
-    for rule in sorted({rule for rule, _ in jobs}):
-        seconds = [taken for (name, _), taken in jobs.items() if name == rule]
+    for rule, seconds in sorted(times.items()):
         print(f"| {rule} | {len(seconds)} | {sum(seconds):.1f} |")
-    print(f"| all | {len(jobs)} | {sum(jobs.values()):.1f} |")
+    every = [taken for seconds in times.values() for taken in seconds]
+    print(f"| all | {len(every)} | {sum(every):.1f} |")
 
 
 def claims(file: Path = Path("results/data/claims.nc"), /, *, json_: AsJson = False) -> int:
