@@ -27,6 +27,8 @@ from numba import types
 from numba.core import cgutils, config
 from numba.extending import intrinsic
 
+from squealpipe.methods import taylor_compiler
+
 _numba: Any = numba
 PART_OPTIONS: dict[str, Any] = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
 """Options of functions that compiled code alone calls: no wrappers to compile."""
@@ -58,7 +60,7 @@ def batch_integrator(system: HybridSystem, tol: float) -> Any:
     Cooldowns are zero: after an event the state is moved off the event's surface instead, which
     also finds the second root of a grazing pair.
     """
-    heyoka.set_logger_level_error()
+    taylor_compiler.set_up()
     return heyoka.taylor_adaptive_batch(
         list(system.equations),
         np.zeros((len(system.equations), LANES)),

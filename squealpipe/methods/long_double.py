@@ -13,6 +13,7 @@ from typing import Any
 import heyoka
 import numpy as np
 
+from squealpipe.methods import taylor_compiler
 from squealpipe.methods.hybrid import HybridRun
 
 TOLERANCE = 1e-19
@@ -22,7 +23,7 @@ ROUND_OFF = 2.0**-62
 
 def compile_long_double(equations: Sequence[tuple[Any, Any]], surfaces: Sequence[Any]) -> Any:
     """heyoka's integrator in long double, stopping at the roots of the surfaces."""
-    heyoka.set_logger_level_error()
+    taylor_compiler.set_up()
     return heyoka.taylor_adaptive(
         list(equations),
         np.zeros(len(equations), dtype=np.longdouble),

@@ -19,6 +19,7 @@ import numpy as np
 import xarray as xr
 
 from squealpipe.laws.springs import Geometry
+from squealpipe.methods import taylor_compiler
 from squealpipe.methods.hybrid import Guard
 from squealpipe.models import switching
 from squealpipe.models.a1_automaton import A1Automaton
@@ -60,6 +61,7 @@ class ScalarLoop:
     """heyoka's scalar integrator, one run after another, events handled in Python."""
 
     def __init__(self, tol: float) -> None:
+        taylor_compiler.set_up()
         system = lane_system(linear_springs=False, tangent=False)
         self.integrator = heyoka.taylor_adaptive(
             list(system.equations),
