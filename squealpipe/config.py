@@ -10,22 +10,25 @@ import json
 import re
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Annotated, Any, Literal, get_args
+from typing import Annotated, Any
 
-from pydantic import (
-    AfterValidator,
-    BaseModel,
-    ConfigDict,
-    Field,
-    ValidationError,
-    ValidationInfo,
-    WithJsonSchema,
-    field_validator,
+from pydantic import Field, ValidationError
+
+from squealpipe.config_sections import (
+    AnimationSection,
+    BackbonesSection,
+    ComparisonSection,
+    DynamicsSection,
+    ExplorerSection,
+    InferenceSection,
+    LinearSection,
+    Name,
+    ParametersSection,
+    Section,
+    SweepSection,
 )
-
 from squealpipe.mistakes import ConfigError, mistakes
-from squealpipe.parameters import Parameters
-from squealpipe.ranges import read_fixed, read_values, sweep_config
+from squealpipe.ranges import sweep_config
 from squealpipe.yaml_files import overlay, read_yaml
 
 __all__ = [
@@ -45,267 +48,6 @@ PAPER = "workflow/config/paper.yaml"
 SCIENTIFIC = re.compile(r"[-+]?\d+(\.\d*)?[eE][-+]?\d+")
 
 
-class Section(BaseModel):
-    """A part of the configuration: unknown keys and text for numbers are mistakes."""
-
-    model_config = ConfigDict(extra="forbid", strict=True, frozen=True, allow_inf_nan=False)
-
-    @field_validator("*", mode="before")
-    @classmethod
-    def _whole_numbers(cls, value: Any, info: ValidationInfo) -> Any:
-        """181.0 is 181 where a whole number is asked for, so that rewriting it changes nothing."""
-        kinds = _plain_types(cls.model_fields[str(info.field_name)].annotation)
-        return _as_integers(value) if int in kinds and float not in kinds else value
-
-
-Number = Annotated[float, Field(strict=True)]
-Positive = Annotated[float, Field(gt=0)]
-Points = Annotated[int, Field(ge=3, le=4001)]
-
-
-class ParametersSection(Section):
-    """Physical parameters, in consistent units."""
-
-    mass: Positive = Parameters.mass
-    k1: Positive = Parameters.k1
-    k2: Positive = Parameters.k2
-    k3: Positive = Parameters.k3
-    mu: Annotated[float, Field(ge=0)] = Parameters.mu
-    belt_speed: Number = Parameters.belt_speed
-    preload: Positive = Parameters.preload
-    length1: Positive = Parameters.length1
-    length2: Positive = Parameters.length2
-    sigma: Positive = Parameters.sigma
-
-
-class LinearSection(Section):
-    """Linear maps over both spring angles from 0 to π, and their areas over μ and κ."""
-
-    points: Points = 181
-    share_points: Annotated[int, Field(ge=2, le=201)] = 25
-    mu_max: Positive = 1.0
-    kappa_max: Positive = 2.0
-
-
-def _ascending(limits: tuple[float, float]) -> tuple[float, float]:
-    if not limits[0] < limits[1]:
-        raise ValueError(f"the lower limit {limits[0]} must be below the upper one {limits[1]}")
-    return limits
-
-
-Range = Annotated[tuple[Positive, Positive], AfterValidator(_ascending)]
-
-
-class InferenceSection(Section):
-    """Quasi-random parameter sets that are judged by the paper's statements."""
-
-    samples: Annotated[int, Field(ge=16, le=1_000_000)] = 20_480
-    seed: Annotated[int, Field(ge=0)] = 2021
-    kappa: Range = (0.3, 1.3)
-    mu: Range = (0.02, 0.8)
-    length_ratio: Range = (2.0, 100.0)
-    speed_ratio: Range = (0.1, 316.0)
-
-
-Settings = Annotated[tuple[Positive, ...], Field(min_length=1)]
-Repeats = Annotated[int, Field(ge=1, le=100)]
-
-
-Solvers = Annotated[
-    tuple[Literal["RK45", "DOP853", "LSODA", "Radau", "BDF"], ...], Field(min_length=1)
-]
-
-
-class IntegrationComparison(Section):
-    """Time integration of A1 by all methods: horizon and steps in √(m/k1), σ times l_pre."""
-
-    horizon: Positive = 30.0
-    solvers: Solvers = ("RK45", "DOP853", "LSODA", "Radau")
-    tolerances: Settings = (1e-4, 1e-6, 1e-8, 1e-10, 1e-14)
-    steps: Settings = (0.1, 0.01, 1e-3, 1e-4)
-    sigmas: Settings = (10.0, 100.0, 1e3, 1e4)
-    repeats: Repeats = 3
-
-
-class ValidityComparison(Section):
-    """The validity map at several tolerances, horizons and grids."""
-
-    points: Points = 91
-    fine_points: Points = 361
-    tolerances: Settings = (1e-3, 1e-6, 1e-12)
-    horizons: Settings = (25.0, 50.0, 100.0, 200.0, 400.0)
-    steps: Settings = (0.1, 0.03)
-
-
-class HarmonicComparison(Section):
-    """Harmonic balance over N_h, N/(2 N_h) and σ l_pre."""
-
-    harmonics: Annotated[tuple[Annotated[int, Field(ge=1, le=512)], ...], Field(min_length=1)] = (
-        4,
-        8,
-        16,
-        32,
-        64,
-    )
-    oversampling: Annotated[
-        tuple[Annotated[int, Field(ge=1, le=256)], ...], Field(min_length=1)
-    ] = (1, 4, 16)
-    sigmas: Settings = (10.0, 100.0, 1e3)
-    repeats: Repeats = 3
-
-
-class OnsetComparison(Section):
-    """Eigenvalues at distances 1 − μ/μ_c = 2⁻ⁿ from flutter onset."""
-
-    halvings: Annotated[tuple[Annotated[int, Field(ge=1, le=50)], ...], Field(min_length=1)] = (
-        4,
-        10,
-        20,
-        30,
-        40,
-        50,
-    )
-    repeats: Repeats = 3
-
-
-class AtlasComparison(Section):
-    """Hard scenes that scipy's solvers are put on as well; horizons in √(m/k1)."""
-
-    solvers: Solvers = ("DOP853", "RK45", "LSODA", "Radau")
-    chaotic_horizon: Positive = 200.0
-    beyond_horizon: Positive = 600.0
-
-
-class LadderComparison(Section):
-    """The cheapest adequate model over both angles; horizon in √(m/k1)."""
-
-    points: Annotated[int, Field(ge=3, le=361)] = 46
-    tolerance: Annotated[float, Field(gt=0, lt=1)] = 0.05
-    horizon: Positive = 200.0
-
-
-class ComparisonSection(Section):
-    """Speed against accuracy, and the model ladder."""
-
-    integration: IntegrationComparison = IntegrationComparison()
-    validity: ValidityComparison = ValidityComparison()
-    harmonic: HarmonicComparison = HarmonicComparison()
-    onset: OnsetComparison = OnsetComparison()
-    atlas: AtlasComparison = AtlasComparison()
-    ladder: LadderComparison = LadderComparison()
-
-
-class DynamicsSection(Section):
-    """Nonlinear runs; times in √(m/k1), amplitudes in l_pre, speeds in l_pre √(k1/m)."""
-
-    tol: Annotated[float, Field(gt=1e-18, lt=1e-2)] = 1e-12
-    validity_horizon: Positive = 200.0
-    validity_points: Points = 181
-    refined_points: Points = 1441
-    refined_coarse: Points = 91
-    uniform_points: Annotated[tuple[Points, ...], Field(min_length=1)] = (91, 181, 361)
-    hammering_horizon: Positive = 500.0
-    hammering_points: Points = 91
-    whirl_speeds: Range = (0.3, 300.0)
-    whirl_count: Annotated[int, Field(ge=2, le=1000)] = 31
-    whirl_horizon: Positive = 10_000.0
-    transient_speeds: Range = (0.3, 30.0)
-    transient_count: Annotated[int, Field(ge=2, le=1000)] = 21
-    transient_samples: Annotated[int, Field(ge=2, le=100_000)] = 24
-    transient_shown: Annotated[int, Field(ge=2, le=100_000)] = 400
-    transient_horizon: Positive = 20_000.0
-
-
-class SeriesSweep(Section):
-    """Harmonic balance against exact orbits; peaks over l_pre, sigmas times l_pre."""
-
-    peaks: Settings = (1.25, 2.0, 3.0)
-    harmonics: Annotated[tuple[Annotated[int, Field(ge=1, le=512)], ...], Field(min_length=1)] = (
-        4,
-        8,
-        16,
-        32,
-        64,
-    )
-    samples: Annotated[tuple[Annotated[int, Field(ge=65, le=2**15)], ...], Field(min_length=1)] = (
-        66,
-        128,
-        256,
-        512,
-        1024,
-        4096,
-    )
-    sigmas: Settings = (10.0, 30.0, 100.0, 300.0, 1000.0)
-
-
-Angle = Annotated[float, Field(ge=-2.0, le=2.0)]
-
-
-class BackbonesSection(Section):
-    """Periodic motions of A4; angles over π, lengths over l_pre."""
-
-    coupled: dict[Annotated[str, Field(pattern=r"^[a-z]\w*$")], tuple[Angle, Angle]] = {
-        "coupled": (0.3, 0.9),
-        "slow": (0.2, 0.7),
-    }
-    y_peak_max: Positive = 6.0
-    x_amplitude_max: Positive = 3.0
-    n_harmonics: Annotated[int, Field(ge=1, le=512)] = 32
-    sweep: SeriesSweep = SeriesSweep()
-    length_ratios: Settings = (5.0, 20.0, 100.0)
-    atlas_points: Points = 181
-    atlas_peak: Positive = 2.0
-
-
-class ExplorerSection(Section):
-    """The click grid of the explorer page; times in √(m/k1)."""
-
-    points: Annotated[int, Field(ge=3, le=61)] = 31
-    history_time: Positive = 60.0
-    spectrum_time: Positive = 180.0
-    samples: Annotated[int, Field(ge=16, le=2000)] = 400
-    branch_points: Annotated[int, Field(ge=2, le=200)] = 24
-
-
-class AnimationSection(Section):
-    """Short animations of hammering and of the whirl."""
-
-    frames: Annotated[int, Field(ge=2, le=500)] = 60
-
-
-Name = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]*$")]
-VALUES = {"type": ["string", "number", "array"], "items": {"type": ["string", "number"]}}
-
-
-class SweepSection(Section):
-    """A task over ranges, written as for ``squealpipe sweep``; results in data/sweeps/<name>.nc."""
-
-    task: str
-    vary: Annotated[
-        dict[Name, list[float | int]],
-        Field(min_length=1),
-        WithJsonSchema({"type": "object", "minProperties": 1, "additionalProperties": VALUES}),
-    ]
-    fixed: dict[Name, float | int | str | bool | list[float | int] | None] = {}
-
-    @field_validator("vary", "fixed", mode="before")
-    @classmethod
-    def _written_forms(cls, given: Any, info: ValidationInfo) -> Any:
-        """Ranges and angles as numbers, so that each way to write them is the same."""
-        if not isinstance(given, Mapping):
-            return given
-        read = read_values if info.field_name == "vary" else read_fixed
-        found, faults = {}, []
-        for name, value in given.items():
-            try:
-                found[name] = read(name, value)
-            except ValueError as error:
-                faults.append(f"{name}: {error}")
-        if faults:
-            raise ValueError("; ".join(faults))
-        return found
-
-
 class Study(Section):
     """A whole study."""
 
@@ -318,7 +60,7 @@ class Study(Section):
     backbones: BackbonesSection = BackbonesSection()
     explorer: ExplorerSection = ExplorerSection()
     animation: AnimationSection = AnimationSection()
-    sweeps: dict[Name, SweepSection] = {}
+    sweeps: dict[Name, SweepSection] = Field(default={})
 
     def slice(self, *paths: str) -> dict[str, Any]:
         """Canonical part of the configuration: numbers cast, keys in a fixed order.
@@ -339,18 +81,6 @@ class Study(Section):
         """Configuration of one of the sweeps, with the parameters that it does not name itself."""
         parameters = self.parameters.model_dump(mode="json")
         return sweep_config(**self.sweeps[name].model_dump(mode="json"), parameters=parameters)
-
-
-def _plain_types(annotation: Any) -> set[type]:
-    """The types that occur in an annotation, at any depth."""
-    inner = [kind for part in get_args(annotation) for kind in _plain_types(part)]
-    return {annotation, *inner} if isinstance(annotation, type) else set(inner)
-
-
-def _as_integers(value: Any) -> Any:
-    if isinstance(value, tuple):
-        return tuple(map(_as_integers, value))
-    return int(value) if isinstance(value, float) and value.is_integer() else value
 
 
 def read_study(*paths: str | Path) -> Study:

@@ -28,10 +28,9 @@ def acceleration(
     stiffness3 = contact_stiffness(p, sigma)
     normal = actuation(p, sigma) - stiffness3 * y
     fx, fy = linear_elastic_force(x, y, stiffness)
+    friction = slip_force(normal, p.belt_direction, p)
     inverse_mass = p.mass**-1.0
-    return inverse_mass * (fx + slip_force(normal, p.belt_direction, p)), inverse_mass * (
-        fy + normal
-    )
+    return inverse_mass * (fx + friction), inverse_mass * (fy + normal)
 
 
 def contact_stiffness(p: Any, sigma: Any = None) -> Any:

@@ -20,10 +20,9 @@ def acceleration(x: Any, y: Any, p: Any, g: Geometry, *, contact: Any) -> tuple[
     """Eqs. (18), (19): (ẍ, ÿ), m/s²; Eqs. (20), (21) in contact, (23), (24) separated."""
     fx, fy = linear_elastic_force(x, y, linear_stiffness(p, g))
     normal = contact * contact_force(y, p)
+    friction = slip_force(normal, p.belt_direction, p)
     inverse_mass = p.mass**-1.0
-    return inverse_mass * (fx + slip_force(normal, p.belt_direction, p)), inverse_mass * (
-        fy + normal
-    )
+    return inverse_mass * (fx + friction), inverse_mass * (fy + normal)
 
 
 def contact_matrix(stiffness: Stiffness, k3: Any, mu: Any) -> tuple[Any, Any, Any, Any]:
