@@ -61,6 +61,8 @@ WORK_PRECISION = DatasetSchema(
             dims=RUN,
             long_name="evaluations of the right-hand side (a Taylor step of order p counts p + 1), "
             "of the balance's equations, or eigenvalue problems",
+            # Where Newton's method ends at its tolerance, round-off decides of the last steps.
+            rtol=0.2,
         ),
         "wall_time": Variable(
             dims=RUN, units="s", long_name="median wall time of one solution", volatile=True
