@@ -61,8 +61,9 @@ WORK_PRECISION = DatasetSchema(
             dims=RUN,
             long_name="evaluations of the right-hand side (a Taylor step of order p counts p + 1), "
             "of the balance's equations, or eigenvalue problems",
-            # Where Newton's method ends at its tolerance, round-off decides of the last steps.
-            rtol=0.2,
+            # The paper's Newton method has a Jacobian without full rank: from run to run round-off
+            # alone changes its number of steps by a quarter.
+            rtol=0.5,
         ),
         "wall_time": Variable(
             dims=RUN, units="s", long_name="median wall time of one solution", volatile=True
