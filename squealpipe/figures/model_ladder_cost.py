@@ -83,10 +83,7 @@ def _draw_saving(axes: Axes, ladder: xr.Dataset) -> None:
             fontsize=6, zorder=4, bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.5},
         )  # fmt: skip
     least = 100 * ladder.hindsight_time.values / ladder.always_time.values
-    axes.plot(
-        range(len(questions)), least, "_", color=BLACK, ms=26, mew=1.6,
-        label="least, with hindsight", zorder=3,
-    )  # fmt: skip
+    axes.plot(range(len(questions)), least, "_", color=BLACK, ms=26, mew=1.6, zorder=3)
     axes.axhline(20.0, color=GREY, lw=0.8, ls="--")
     axes.set_xticks(
         range(len(questions)), [QUESTION_NAMES[q].replace(" ", "\n") for q in questions]
