@@ -21,7 +21,13 @@ from squealpipe.tasks.model_choice import SHORT_RUN, choose_models, contact_moti
 
 LEVELS = tuple(level.name for level in Level)
 _SHORT = max(SHORT_RUN.values())
-_SHARES = np.array([0.0, 0.0, 0.0, 1.0, 1.0, 1.0, _SHORT, 1.0])
+_PARTIAL = {
+    Level.closed_form: 0.0,
+    Level.a3_in_contact: 0.0,
+    Level.a4_exact: 0.0,
+    Level.a1_short: _SHORT,
+}
+_SHARES = np.array([_PARTIAL.get(level, 1.0) for level in Level])
 """Share of the horizon that each level integrates in time."""
 
 
