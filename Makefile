@@ -4,7 +4,13 @@ VENV := .venv
 BIN := $(VENV)/bin
 STAMP := $(VENV)/.made-from-lock
 
-.PHONY: reproduce quick test bench env lint lock docs clean
+# Snakemake and Matplotlib keep caches in the home folder; without one that can be written, here.
+ifneq ($(shell test -w "$$HOME" && echo yes),yes)
+export XDG_CACHE_HOME := $(CURDIR)/.snakemake/cache
+export MPLCONFIGDIR := $(CURDIR)/.snakemake/cache/matplotlib
+endif
+
+.PHONY: reproduce quick test bench env lint lock docs dictionary clean
 
 reproduce: env  ## the whole study: datasets, figures, report
 	$(BIN)/snakemake
@@ -13,7 +19,7 @@ quick: env  ## the same study, coarse, into results/quick
 	$(BIN)/snakemake --configfile workflow/config/quick.yaml
 
 test: env  ## all tests but the slow sweeps
-	$(BIN)/python -m pytest -q
+	$(BIN)/python -m pytest -q -n 2 --dist loadgroup
 
 bench: env  ## speed and accuracy beside other tools, as ratios
 	$(BIN)/python -m pip install -q --require-hashes -r requirements-peers.lock
@@ -28,12 +34,15 @@ docs: env  ## API reference into build/reference
 
 env: $(STAMP)
 
-# The last step compiles the event loop (6 s), which several first jobs would otherwise do at once.
+# The last two steps compile the event loop (6 s) and the tracer of orbits (9 s), which several first
+# jobs would otherwise do at once.
 $(STAMP): requirements.lock pyproject.toml
+	@case "$(CURDIR)" in *[[:space:]]*) echo "make env: the path '$(CURDIR)' has a space, which the first lines of installed scripts cannot hold; move the checkout" >&2; exit 1;; esac
 	test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
 	$(BIN)/python -m pip install -q --disable-pip-version-check --require-hashes -r requirements.lock
 	$(BIN)/python -m pip install -q --disable-pip-version-check --no-deps --no-build-isolation -e .
-	$(BIN)/python -c "from squealpipe.tasks.lane_kernel import lane_kernel; lane_kernel()"
+	$(BIN)/python -c "from squealpipe.solvers.a1.kernel import lane_kernel; lane_kernel()"
+	$(BIN)/python -c "import squealpipe as s; s.periodic_orbit(s.Parameters(), 0.9, 2.8, mode=1, y_peak=2)"
 	touch $@
 
 lock: env
@@ -43,6 +52,9 @@ lock: env
 	$(BIN)/uv pip compile pyproject.toml --universal --python-version 3.11 --generate-hashes \
 	  --no-emit-index-url --extra peers -c requirements.lock \
 	  --custom-compile-command "make lock" -q -o requirements-peers.lock
+
+dictionary: env  ## docs/datasets.md from the schemas
+	$(BIN)/python docs/build_dictionary.py
 
 clean:  ## results of the study; archives and the environment stay
 	rm -rf results/data results/figures results/report results/quick .snakemake

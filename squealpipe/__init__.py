@@ -10,39 +10,53 @@ import importlib
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from squealpipe.execution.sweep import Sweep, run_sweep
     from squealpipe.parameters import SCENES, Parameters, Scene
+    from squealpipe.store.memory.results import open_results
     from squealpipe.store.netcdf import load, save
-    from squealpipe.tasks.backbones import backbone
-    from squealpipe.tasks.dynamics import simulate, validity_map
-    from squealpipe.tasks.hammering import hammering_map
-    from squealpipe.tasks.inference import infer_parameters
-    from squealpipe.tasks.linear import natural_frequencies, quasi_static_map, stability_map
-    from squealpipe.tasks.model_choice import choose_model
-    from squealpipe.tasks.orbits import periodic_orbit
-    from squealpipe.tasks.refinement import refine_validity_map
-    from squealpipe.tasks.summary import summarize
-    from squealpipe.tasks.sweep import Sweep, run_sweep
+    from squealpipe.tasks.backbones.backbone import backbone
+    from squealpipe.tasks.backbones.orbit import periodic_orbit
+    from squealpipe.tasks.cycles.branch import cycle_branch
+    from squealpipe.tasks.cycles.cycle import limit_cycle
+    from squealpipe.tasks.dynamics.hammering import hammering_map
+    from squealpipe.tasks.dynamics.refinement import refine_validity_map
+    from squealpipe.tasks.dynamics.runs import simulate, validity_map
+    from squealpipe.tasks.dynamics.summary import summarize
+    from squealpipe.tasks.inference.inference import infer_parameters
+    from squealpipe.tasks.ladder.choice import choose_model
+    from squealpipe.tasks.linear.critical import critical_friction_map
+    from squealpipe.tasks.linear.maps import natural_frequencies, quasi_static_map, stability_map
+    from squealpipe.tasks.spread.propensity import propensity
+    from squealpipe.tasks.starts.basin import basin_map
+    from squealpipe.tasks.starts.disturbance import smallest_disturbance
 
 _HOME = {
     "SCENES": "squealpipe.parameters",
     "Parameters": "squealpipe.parameters",
     "Scene": "squealpipe.parameters",
-    "Sweep": "squealpipe.tasks.sweep",
-    "backbone": "squealpipe.tasks.backbones",
-    "choose_model": "squealpipe.tasks.model_choice",
-    "hammering_map": "squealpipe.tasks.hammering",
-    "infer_parameters": "squealpipe.tasks.inference",
+    "Sweep": "squealpipe.execution.sweep",
+    "backbone": "squealpipe.tasks.backbones.backbone",
+    "basin_map": "squealpipe.tasks.starts.basin",
+    "choose_model": "squealpipe.tasks.ladder.choice",
+    "critical_friction_map": "squealpipe.tasks.linear.critical",
+    "cycle_branch": "squealpipe.tasks.cycles.branch",
+    "hammering_map": "squealpipe.tasks.dynamics.hammering",
+    "infer_parameters": "squealpipe.tasks.inference.inference",
+    "limit_cycle": "squealpipe.tasks.cycles.cycle",
     "load": "squealpipe.store.netcdf",
-    "natural_frequencies": "squealpipe.tasks.linear",
-    "periodic_orbit": "squealpipe.tasks.orbits",
-    "quasi_static_map": "squealpipe.tasks.linear",
-    "refine_validity_map": "squealpipe.tasks.refinement",
-    "run_sweep": "squealpipe.tasks.sweep",
+    "open_results": "squealpipe.store.memory.results",
+    "natural_frequencies": "squealpipe.tasks.linear.maps",
+    "periodic_orbit": "squealpipe.tasks.backbones.orbit",
+    "propensity": "squealpipe.tasks.spread.propensity",
+    "quasi_static_map": "squealpipe.tasks.linear.maps",
+    "refine_validity_map": "squealpipe.tasks.dynamics.refinement",
+    "run_sweep": "squealpipe.execution.sweep",
     "save": "squealpipe.store.netcdf",
-    "simulate": "squealpipe.tasks.dynamics",
-    "stability_map": "squealpipe.tasks.linear",
-    "summarize": "squealpipe.tasks.summary",
-    "validity_map": "squealpipe.tasks.dynamics",
+    "simulate": "squealpipe.tasks.dynamics.runs",
+    "smallest_disturbance": "squealpipe.tasks.starts.disturbance",
+    "stability_map": "squealpipe.tasks.linear.maps",
+    "summarize": "squealpipe.tasks.dynamics.summary",
+    "validity_map": "squealpipe.tasks.dynamics.runs",
 }
 
 __all__ = [
@@ -51,17 +65,24 @@ __all__ = [
     "Scene",
     "Sweep",
     "backbone",
+    "basin_map",
     "choose_model",
+    "critical_friction_map",
+    "cycle_branch",
     "hammering_map",
     "infer_parameters",
+    "limit_cycle",
     "load",
     "natural_frequencies",
+    "open_results",
     "periodic_orbit",
+    "propensity",
     "quasi_static_map",
     "refine_validity_map",
     "run_sweep",
     "save",
     "simulate",
+    "smallest_disturbance",
     "stability_map",
     "summarize",
     "validity_map",

@@ -8,16 +8,17 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Mapping, Sequence
-from pathlib import Path
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path, PurePosixPath
 from typing import Annotated, Any
 
-from pydantic import Field, ValidationError
+from pydantic import Field, ValidationError, field_validator
 
 from squealpipe.config_sections import (
     AnimationSection,
     BackbonesSection,
     ComparisonSection,
+    CyclesSection,
     DynamicsSection,
     ExplorerSection,
     InferenceSection,
@@ -25,11 +26,12 @@ from squealpipe.config_sections import (
     Name,
     ParametersSection,
     Section,
+    SpreadSection,
     SweepSection,
 )
 from squealpipe.mistakes import ConfigError, mistakes
 from squealpipe.ranges import sweep_config
-from squealpipe.yaml_files import overlay, read_yaml
+from squealpipe.yaml_files import key_lines, overlay, read_yaml
 
 __all__ = [
     "PAPER",
@@ -58,9 +60,23 @@ class Study(Section):
     comparison: ComparisonSection = ComparisonSection()
     dynamics: DynamicsSection = DynamicsSection()
     backbones: BackbonesSection = BackbonesSection()
+    cycles: CyclesSection = CyclesSection()
+    spread: SpreadSection = SpreadSection()
     explorer: ExplorerSection = ExplorerSection()
     animation: AnimationSection = AnimationSection()
     sweeps: dict[Name, SweepSection] = Field(default={})
+
+    @field_validator("results")
+    @classmethod
+    def _is_a_folder_of_its_own(cls, value: str) -> str:
+        path = PurePosixPath(value)
+        frozen = "/results/archive/" in f"/{path}/"
+        if ".." in path.parts or path.parts in {(), ("/",)} or frozen:
+            raise ValueError(
+                "a run needs a folder of its own, outside results/archive; write for instance "
+                "results/mine"
+            )
+        return value
 
     def slice(self, *paths: str) -> dict[str, Any]:
         """Canonical part of the configuration: numbers cast, keys in a fixed order.
@@ -83,12 +99,16 @@ class Study(Section):
         return sweep_config(**self.sweeps[name].model_dump(mode="json"), parameters=parameters)
 
 
-def read_study(*paths: str | Path) -> Study:
+def read_study(*paths: str | Path, changes: Mapping[str, Any] | None = None) -> Study:
     """A validated study from one or several YAML files, later ones laid over earlier ones.
+
+    Args:
+        paths: YAML files.
+        changes: keys and values laid over all of them.
 
     Raises:
         FileNotFoundError: a file is missing.
-        ConfigError: every mistake found, with its key, value and what is allowed.
+        ConfigError: every mistake found, with its file and line, key, value and what is allowed.
     """
     merged: dict[str, Any] = {}
     faults: list[str] = []
@@ -96,32 +116,63 @@ def read_study(*paths: str | Path) -> Study:
         content, found = read_yaml(path)
         faults.extend(found)
         overlay(merged, content)
-    return parse_study(merged, faults)
+    overlay(merged, changes or {})
+    return parse_study(merged, faults, place=lambda keys: _place(keys, paths, changes or {}))
 
 
-def parse_study(content: Mapping[str, Any], faults: Sequence[str] = ()) -> Study:
+def _place(keys: tuple[str, ...], paths: Sequence[str | Path], changes: Mapping[str, Any]) -> str:
+    """File and line of a key, or of the nearest one above it: of the last file that has it."""
+    if keys and keys[0] in changes:
+        return ""
+    tables = {str(path): key_lines(Path(path)) for path in paths}
+    for length in range(len(keys), 0, -1):
+        for path in reversed(tables):
+            if line := tables[path].get(keys[:length]):
+                return f"{path}, line {line}: "
+    return ""
+
+
+def parse_study(
+    content: Mapping[str, Any],
+    faults: Sequence[str] = (),
+    *,
+    place: Callable[[tuple[str, ...]], str] = lambda _: "",
+) -> Study:
     """Validate a configuration mapping.
 
     Args:
         content: keys and values.
         faults: mistakes found before, in the text; told together with those of the values.
+        place: keys from the outermost on → the words that say where that is.
 
     Raises:
         ConfigError: as :func:`read_study`.
     """
     try:
-        study = Study.model_validate(_plain(dict(content)))
+        study = Study.model_validate(_plain(_without_empty_sections(content)))
     except ValidationError as error:
-        raise ConfigError([*faults, *mistakes(error, Study)]) from error
+        raise ConfigError([*faults, *mistakes(error, Study, place)]) from error
     if faults:
         raise ConfigError(faults)
     return study
 
 
+def _without_empty_sections(content: Mapping[str, Any]) -> dict[str, Any]:
+    """A section without keys is the default one."""
+    return {
+        key: value
+        for key, value in content.items()
+        if value is not None or key not in Study.model_fields
+    }
+
+
 def _plain(value: Any) -> Any:
-    """Lists as tuples, and numbers like 1e-9, which YAML 1.1 takes for text, as numbers."""
+    """Lists as tuples, and numbers like 1e-9, which YAML 1.1 takes for text, as numbers.
+
+    Keys that are numbers to YAML become text, so that they are found as unknown.
+    """
     if isinstance(value, Mapping):
-        return {key: _plain(item) for key, item in value.items()}
+        return {str(key): _plain(item) for key, item in value.items()}
     if isinstance(value, list):
         return tuple(map(_plain, value))
     if isinstance(value, str) and SCIENTIFIC.fullmatch(value):

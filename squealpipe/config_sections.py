@@ -3,20 +3,36 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Annotated, Any, Literal, get_args
+from typing import TYPE_CHECKING, Annotated, Any, Literal, get_args
 
 from pydantic import (
     AfterValidator,
     BaseModel,
     ConfigDict,
     Field,
+    SerializerFunctionWrapHandler,
     ValidationInfo,
     WithJsonSchema,
+    create_model,
     field_validator,
+    model_serializer,
+    model_validator,
 )
 
-from squealpipe.parameters import Parameters
+from squealpipe.parameters import DEFAULTS, LAW_NAMES, TABLE, Parameters, Row, without_defaults
 from squealpipe.ranges import read_fixed, read_values
+
+
+def _plain_types(annotation: Any) -> set[type]:
+    """The types that occur in an annotation, at any depth."""
+    inner = [kind for part in get_args(annotation) for kind in _plain_types(part)]
+    return {annotation, *inner} if isinstance(annotation, type) else set(inner)
+
+
+def _as_integers(value: Any) -> Any:
+    if isinstance(value, tuple):
+        return tuple(map(_as_integers, value))
+    return int(value) if isinstance(value, float) and value.is_integer() else value
 
 
 class Section(BaseModel):
@@ -34,22 +50,48 @@ class Section(BaseModel):
 
 Number = Annotated[float, Field(strict=True)]
 Positive = Annotated[float, Field(gt=0)]
+NotNegative = Annotated[float, Field(ge=0)]
 Points = Annotated[int, Field(ge=3, le=4001)]
 
 
-class ParametersSection(Section):
+class _ParametersBase(Section):
     """Physical parameters, in consistent units."""
 
-    mass: Positive = Parameters.mass
-    k1: Positive = Parameters.k1
-    k2: Positive = Parameters.k2
-    k3: Positive = Parameters.k3
-    mu: Annotated[float, Field(ge=0)] = Parameters.mu
-    belt_speed: Number = Parameters.belt_speed
-    preload: Positive = Parameters.preload
-    length1: Positive = Parameters.length1
-    length2: Positive = Parameters.length2
-    sigma: Positive = Parameters.sigma
+    @model_validator(mode="after")
+    def _together(self) -> _ParametersBase:
+        """What the parameters demand of one another."""
+        Parameters(**{name: getattr(self, name) for name in TABLE})
+        return self
+
+    @model_serializer(mode="wrap")
+    def _written(self, write: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        """Extensions of the paper's model enter slices and ids only where they are used."""
+        return without_defaults(write(self))
+
+
+def _field_type(row: Row) -> Any:
+    kinds: dict[str, Any] = {
+        "finite": Number,
+        "positive": Positive,
+        "not negative": Annotated[float, Field(ge=0)],
+        "law": Literal[LAW_NAMES],
+    }
+    return kinds[row.allowed] | None if row.optional else kinds[row.allowed]
+
+
+if TYPE_CHECKING:
+
+    class ParametersSection(_ParametersBase):
+        """Made from the table of parameters below."""
+
+else:
+    ParametersSection = create_model(
+        "ParametersSection",
+        __base__=_ParametersBase,
+        __doc__=_ParametersBase.__doc__,
+        **{name: (_field_type(row), DEFAULTS[name]) for name, row in TABLE.items()},
+    )
+    ParametersSection.__annotations__ = {}  # the reference looks for them in the source
 
 
 class LinearSection(Section):
@@ -146,6 +188,9 @@ class AtlasComparison(Section):
     """Hard scenes that scipy's solvers are put on as well; horizons in √(m/k1)."""
 
     solvers: Solvers = ("DOP853", "RK45", "LSODA", "Radau")
+    tolerances: Annotated[
+        tuple[Annotated[float, Field(ge=1e-13, lt=1e-2)], ...], Field(min_length=1)
+    ] = (1e-8, 1e-10, 1e-12)
     chaotic_horizon: Positive = 200.0
     beyond_horizon: Positive = 600.0
 
@@ -231,6 +276,64 @@ class BackbonesSection(Section):
     atlas_peak: Positive = 2.0
 
 
+class CyclesSection(Section):
+    """Limit cycles of the damped full model; angles over π, times in √(m/k1).
+
+    ``damping`` is that of each dashpot over √(k1 m): twice the damping ratio of one spring.
+    """
+
+    damping: Positive = 0.02
+    mu: Range = (0.01, 1.0)
+    flutter: tuple[Angle, Angle] = (0.07, 0.305)
+    points: Annotated[int, Field(ge=2, le=5000)] = 150
+    settle: Positive = 6000.0
+    extremes_mu: Annotated[int, Field(ge=2, le=1000)] = 17
+    extremes_starts: Annotated[int, Field(ge=1, le=1000)] = 6
+    extremes_horizon: Positive = 2000.0
+
+
+class Distribution(Section):
+    """One uncertain parameter; which two numbers are needed depends on the distribution."""
+
+    distribution: Literal["uniform", "normal", "lognormal"]
+    low: Number | None = None
+    high: Number | None = None
+    mean: Number | None = None
+    std: Number | None = None
+    median: Number | None = None
+    log_std: Number | None = None
+
+    @model_serializer(mode="wrap")
+    def _written(self, write: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        return {name: value for name, value in write(self).items() if value is not None}
+
+
+class SpreadSection(Section):
+    """How far verdicts carry, and propensities over uncertain parameters; angles over π."""
+
+    starts: Annotated[int, Field(ge=2, le=100_000)] = 200
+    basin_points: Annotated[int, Field(ge=2, le=2001)] = 41
+    basin_extent: Positive = 12.0
+    basin_horizon: Positive = 300.0
+    disturbance_directions: Annotated[int, Field(ge=8, le=100_000)] = 64
+    disturbance_horizon: Positive = 100.0
+    critical_damping: tuple[NotNegative, NotNegative] = (0.02, 0.01)
+    critical_points: Points = 61
+    critical_extent: Positive = 0.1
+    scene: tuple[Angle, Angle] = (0.07, 0.305)
+    samples: Annotated[int, Field(ge=64, le=2**20)] = 4096
+    horizon: Positive = 200.0
+    spring_correlation: Annotated[float, Field(gt=-1, lt=1)] = 0.0
+    distributions: dict[str, Distribution] = {
+        "k1": Distribution(distribution="normal", mean=1.0, std=0.05),
+        "k2": Distribution(distribution="normal", mean=1.0, std=0.05),
+        "k3": Distribution(distribution="lognormal", median=0.75, log_std=0.1),
+        "mu": Distribution(distribution="uniform", low=0.1, high=0.9),
+        "alpha1": Distribution(distribution="normal", mean=0.22, std=0.05),
+        "alpha2": Distribution(distribution="normal", mean=0.96, std=0.05),
+    }
+
+
 class ExplorerSection(Section):
     """The click grid of the explorer page; times in √(m/k1)."""
 
@@ -278,15 +381,3 @@ class SweepSection(Section):
         if faults:
             raise ValueError("; ".join(faults))
         return found
-
-
-def _plain_types(annotation: Any) -> set[type]:
-    """The types that occur in an annotation, at any depth."""
-    inner = [kind for part in get_args(annotation) for kind in _plain_types(part)]
-    return {annotation, *inner} if isinstance(annotation, type) else set(inner)
-
-
-def _as_integers(value: Any) -> Any:
-    if isinstance(value, tuple):
-        return tuple(map(_as_integers, value))
-    return int(value) if isinstance(value, float) and value.is_integer() else value

@@ -21,9 +21,10 @@ from typing import Any
 
 from squealpipe.config import PAPER, read_study
 from squealpipe.progress import duration
-from squealpipe.yaml_files import flat
+from squealpipe.yaml_files import flat, read_yaml
 
 FIGURE = re.compile(r"figures/([\w-]+)\.\w+$")
+STALE = re.compile(r"^stale (\S+): (.*)$", flags=re.MULTILINE)
 MOST_REASONS = 4
 """Reasons of one job that are printed; JSON has all."""
 
@@ -167,21 +168,30 @@ def explain(
         raise FileNotFoundError(f"no Snakefile in {base.resolve()}; run this in the checkout")
     overlays = [str(path) for path in configs]
     read_study(base / PAPER, *overlays)
+    overlays = [path for path in overlays if read_yaml(Path(path))[0]]  # Snakemake takes no empty
     command = [sys.executable, "-m", "snakemake", "--dry-run", "--nocolor"]
     if overlays:
         command += ["--configfile", *overlays]
     run = subprocess.run(command, cwd=base, capture_output=True, text=True, check=False)
     if run.returncode:
         raise WorkflowError(f"snakemake could not plan:\n{(run.stdout + run.stderr).strip()}")
-    return Explanation(jobs=tuple(read_plan(run.stdout, records(base))))
+    return Explanation(jobs=tuple(read_plan(run.stdout, records(base), told_stale(run.stderr))))
 
 
-def read_plan(text: str, known: Mapping[str, Record]) -> list[Job]:
+def told_stale(text: str) -> dict[str, list[str]]:
+    """File → why it is out of date, from the lines that the Snakefile prints about such files."""
+    return {match[1]: match[2].split("; ") for match in STALE.finditer(text)}
+
+
+def read_plan(
+    text: str, known: Mapping[str, Record], stale: Mapping[str, list[str]] | None = None
+) -> list[Job]:
     """Jobs of a dry run's output.
 
     Args:
         text: standard output of ``snakemake --dry-run``.
         known: file → record of the run that made it.
+        stale: file → why it is out of date, where Snakemake itself does not see it.
     """
     blocks = re.split(r"^(?:local)?(?:rule|checkpoint) (\w+):$", text, flags=re.MULTILINE)[1:]
     planned = {}
@@ -198,6 +208,8 @@ def read_plan(text: str, known: Mapping[str, Record]) -> list[Job]:
     for outputs, (rule, entries) in planned.items():
         own = known.get(outputs[0])
         reasons, updated = _reasons(entries.get("reason", ""))
+        own_reasons = [phrase for path in outputs for phrase in (stale or {}).get(path, [])]
+        reasons = list(dict.fromkeys(own_reasons)) or reasons
         jobs.append(
             Job(
                 rule=rule,

@@ -4,15 +4,34 @@ from __future__ import annotations
 
 import difflib
 import fnmatch
-import math
 import re
 import typing
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
 from pydantic import BaseModel, ValidationError
 
 NUMBER_AS_TEXT = re.compile(r"\s*[-+]?[\d.]+([eE][-+]?\d+)?\s*")
+
+WORDS = {
+    "model_type": "keys and values are needed, like `points: 31`",
+    "dict_type": "names and values are needed, like `name: [0.3, 0.9]`",
+    "tuple_type": "a list is needed, like [0.3, 0.9]",
+    "list_type": "a list is needed, like [0.3, 0.9]",
+    "float_type": "a number is needed",
+    "int_type": "a whole number is needed",
+    "string_type": "text is needed",
+    "string_pattern_mismatch": "only letters, digits and . _ / - are allowed",
+    "finite_number": "a finite number is needed",
+    "greater_than": "it must be greater than {gt:g}",
+    "greater_than_equal": "it must be {ge:g} or greater",
+    "less_than_equal": "it must be {le:g} or less",
+    "literal_error": "choose from {expected}",
+    "too_short": "{min_length} or more items are needed",
+    "too_long": "at most {max_length} items are allowed",
+    "missing": "this key is needed",
+}
+"""What is allowed, by the kind of fault that pydantic names."""
 
 LONGEST = 80
 """Characters of a value that a message quotes."""
@@ -28,10 +47,25 @@ class ConfigError(ValueError):
         )
 
 
-def mistakes(error: ValidationError, model: type[BaseModel]) -> Iterator[str]:
-    """One line for each fault that validation of ``model`` found."""
-    for fault in error.errors(include_url=False):
-        path = ".".join(map(str, fault["loc"])) or "the configuration"
+def mistakes(
+    error: ValidationError,
+    model: type[BaseModel],
+    place: Callable[[tuple[str, ...]], str] = lambda _: "",
+) -> Iterator[str]:
+    """One line for each fault that validation of ``model`` found.
+
+    Args:
+        error: what validation raised.
+        model: what was validated.
+        place: keys from the outermost on → the words that say where that is.
+    """
+    faults = error.errors(include_url=False)
+    inner = {fault["loc"][:-1] for fault in faults}
+    for fault in faults:
+        if fault["type"] == "too_short" and fault["loc"] in inner:
+            continue  # its items were refused one by one
+        keys = tuple(map(str, fault["loc"]))
+        path = place(keys) + (".".join(keys) or "the configuration")
         if fault["type"] == "extra_forbidden":
             yield f"{path}: unknown key; {_nearest(fault['loc'], model)}"
             continue
@@ -39,7 +73,11 @@ def mistakes(error: ValidationError, model: type[BaseModel]) -> Iterator[str]:
         if fault["type"] == "value_error":  # one of ours, which says what to do
             yield f"{path} = {_quoted(fault['input'])}: {message}"
             continue
-        message = message[0].lower() + message[1:]
+        message = WORDS.get(fault["type"], message[0].lower() + message[1:])
+        message = message.format(**fault.get("ctx", {}))
+        if fault["type"] == "missing":
+            yield f"{path}: {message}"
+            continue
         yield f"{path} = {_quoted(fault['input'])}: {message}{_remedy(fault['input'])}"
 
 
@@ -59,7 +97,10 @@ def _nearest(location: tuple[int | str, ...], model: type[BaseModel]) -> str:
     stem = ".".join(above)
     every = list(known_keys(model))
     siblings = [path for path in every if fnmatch.fnmatchcase(stem, path.rpartition(".")[0])]
-    near = difflib.get_close_matches(wrong, [path.rpartition(".")[2] for path in siblings], n=1)
+    names = [path.rpartition(".")[2] for path in siblings]
+    near = difflib.get_close_matches(wrong, names, n=1) or difflib.get_close_matches(
+        wrong, [name for name in names if len(name) == len(wrong)], n=1, cutoff=0.5
+    )
     if near:
         return f"did you mean {near[0]!r}?"
     elsewhere = [path for path in every if path.rpartition(".")[2] == wrong]
@@ -86,8 +127,6 @@ def _quoted(value: object) -> str:
 def _remedy(value: object) -> str:
     if isinstance(value, str) and ("pi" in value or "π" in value):
         return "; write angles as plain numbers, in multiples of π"
-    if isinstance(value, float) and not math.isfinite(value):
-        return "; a finite number is needed"
     return "; write numbers without quotes" if _is_number_as_text(value) else ""
 
 

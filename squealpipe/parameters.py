@@ -2,30 +2,100 @@
 
 from __future__ import annotations
 
+import difflib
 import math
+import reprlib
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, fields, replace
-from numbers import Real
-from typing import Any
+from dataclasses import dataclass, field, fields, replace
+from numbers import Integral, Real
+from typing import Any, Literal
 
-_POSITIVE = ("mass", "k1", "k2", "k3", "preload", "length1", "length2", "sigma")
-_UNITS = {
-    "mass": "kg",
-    "k1": "N m-1",
-    "k2": "N m-1",
-    "k3": "N m-1",
-    "mu": "1",
-    "belt_speed": "m s-1",
-    "preload": "m",
-    "length1": "m",
-    "length2": "m",
-    "sigma": "m-1",
-}
+from squealpipe.laws.friction_laws import COULOMB, LAWS, coefficient
+
+LAW_NAMES = tuple(LAWS)
+"""Names of the friction laws."""
+
+Allowed = Literal["finite", "positive", "not negative", "law"]
+
+
+@dataclass(frozen=True)
+class Row:
+    """What the project knows about one parameter; everything else derives from it.
+
+    Attributes:
+        units: CF unit.
+        symbol: symbol as Typst mathematics.
+        meaning: in words, for tables.
+        allowed: which values make sense; "law" is one of :data:`LAW_NAMES`.
+        enters_a1: it enters the integration of A1 and its variants.
+        extension: it goes beyond the paper; at its default it is not written down, so that
+            configurations and the ids of datasets stay what they were without it.
+        optional: None is allowed too.
+    """
+
+    units: str
+    symbol: str
+    meaning: str
+    allowed: Allowed = "positive"
+    enters_a1: bool = True
+    extension: bool = False
+    optional: bool = False
+
+    def check(self, name: str, value: object) -> Any:
+        """The value as it is stored.
+
+        Raises:
+            ValueError: it is not allowed; names the parameter, the value and what is allowed.
+        """
+        if value is None and self.optional:
+            return None
+        if self.allowed == "law":
+            if not isinstance(value, str) or value not in LAWS:
+                near = difflib.get_close_matches(str(value), LAWS, n=1, cutoff=0.0)
+                raise ValueError(
+                    f"{name} = {brief(value)}: unknown; did you mean {near[0]!r}? "
+                    f"known: {', '.join(LAWS)}"
+                )
+            return value
+        if not is_finite_number(value):
+            raise ValueError(f"{name} = {brief(value)}: a finite number is needed")
+        number = float(value)  # type: ignore[arg-type]
+        if self.allowed == "positive" and not number > 0:
+            raise ValueError(f"{name} = {value!r}: must be greater than 0")
+        if self.allowed == "not negative" and not number >= 0:
+            raise ValueError(f"{name} = {value!r}: must be 0 or greater")
+        return number
+
+
+def direction_of(belt_speed: Any) -> Any:
+    """sgn V of a number or of each entry of an array, with +1 for a belt at rest."""
+    return 1.0 - 2.0 * (belt_speed < 0.0)
 
 
 def is_finite_number(value: object) -> bool:
-    """Whether a value is a finite real number; truth values and text are not."""
-    return isinstance(value, Real) and not isinstance(value, bool) and math.isfinite(float(value))
+    """Whether a value is a real number that a double holds; truth values and text are not."""
+    if not isinstance(value, Real) or isinstance(value, bool):
+        return False
+    try:
+        return math.isfinite(float(value))
+    except (OverflowError, TypeError):  # NumPy takes a duration for an integer
+        return False
+
+
+def is_whole_number(value: object) -> bool:
+    """Whether a value is an integer; truth values and floats are not."""
+    return isinstance(value, Integral) and is_finite_number(value)
+
+
+def brief(value: object) -> str:
+    """A value as an error message shows it: long ones are cut."""
+    if isinstance(value, int) and value.bit_length() > 64:
+        return f"an integer of {value.bit_length()} bits"
+    return reprlib.repr(value)
+
+
+def _row(default: Any, units: str, symbol: str, meaning: str, **further: Any) -> Any:
+    return field(default=default, metadata={"row": Row(units, symbol, meaning, **further)})
 
 
 @dataclass(frozen=True, kw_only=True, repr=False)
@@ -35,43 +105,64 @@ class Parameters:
     The defaults are the baseline inferred from the paper's own statements; the
     paper prints no numbers. Consistent units of any system work.
 
-    Attributes:
-        mass: m, kg.
-        k1: stiffness of spring 1, N/m.
-        k2: stiffness of spring 2, N/m.
-        k3: contact stiffness, N/m.
-        mu: Coulomb friction coefficient.
-        belt_speed: V, m/s; its sign is the direction.
-        preload: precompression l_pre of the contact spring, m.
-        length1: free length of spring 1, m.
-        length2: free length of spring 2, m.
-        sigma: regularizing factor of tanh(sigma z), 1/m (paper, section 5).
+    This class is the table of parameters, one row each. :data:`TABLE` holds the rows; units,
+    configuration, sweeps, command line, integrators and the report's table derive from it.
+    Dashpots and friction laws (``damping1`` to ``friction_speed``) extend the paper; see
+    :mod:`squealpipe.laws` for the forces.
 
     Raises:
         ValueError: names the field, its value and what is allowed.
-    """
+    """  # the attributes are added below, from the table
 
-    mass: float = 1.0
-    k1: float = 1.0
-    k2: float = 1.0
-    k3: float = 0.75
-    mu: float = 0.3
-    belt_speed: float = 100.0
-    preload: float = 1.0
-    length1: float = 5.0
-    length2: float = 5.0
-    sigma: float = 1e3
+    mass: float = _row(1.0, "kg", "m", "mass of the particle")
+    k1: float = _row(1.0, "N m-1", "k_1", "stiffness of spring 1")
+    k2: float = _row(1.0, "N m-1", "k_2", "stiffness of spring 2")
+    k3: float = _row(0.75, "N m-1", "k_3", "stiffness of the contact spring")
+    mu: float = _row(0.3, "1", "mu", "sliding friction coefficient", allowed="not negative")
+    belt_speed: float = _row(
+        100.0, "m s-1", "V", "speed of the belt, its sign the direction", allowed="finite"
+    )
+    preload: float = _row(1.0, "m", 'l_"pre"', "precompression of the contact spring")
+    length1: float = _row(5.0, "m", "L_1", "free length of spring 1")
+    length2: float = _row(5.0, "m", "L_2", "free length of spring 2")
+    sigma: float = _row(
+        1e3, "m-1", "sigma", "regularizing factor of the paper's tanh", enters_a1=False
+    )
+    damping1: float = _row(
+        0.0, "N s m-1", "c_1", "dashpot along spring 1", allowed="not negative", extension=True
+    )
+    damping2: float = _row(
+        0.0, "N s m-1", "c_2", "dashpot along spring 2", allowed="not negative", extension=True
+    )
+    friction_law: str = _row(
+        COULOMB, "1", '"law"', "friction coefficient over speed", allowed="law", extension=True
+    )
+    mu_static: float | None = _row(
+        None,
+        "1",
+        "mu_s",
+        "static friction coefficient; none given: that of sliding",
+        allowed="not negative",
+        extension=True,
+        optional=True,
+    )
+    friction_speed: float = _row(
+        1.0, "m s-1", "v_0", "speed over which friction falls to that of sliding", extension=True
+    )
 
     def __post_init__(self) -> None:
-        for item in fields(self):
-            value = getattr(self, item.name)
-            if not is_finite_number(value):
-                raise ValueError(f"{item.name} = {value!r}: a finite number is needed")
-            if item.name in _POSITIVE and not value > 0:
-                raise ValueError(f"{item.name} = {value!r}: must be greater than 0")
-            object.__setattr__(self, item.name, float(value))
-        if self.mu < 0:
-            raise ValueError(f"mu = {self.mu!r}: must be 0 or greater")
+        for name, row in TABLE.items():
+            object.__setattr__(self, name, row.check(name, getattr(self, name)))
+        if self.friction_speed < 1e-300:
+            raise ValueError(
+                f"friction_speed = {self.friction_speed!r}: must be 1e-300 or greater, for the "
+                "laws divide by it"
+            )
+        if self.friction_law == COULOMB and self.static_mu < self.mu:
+            raise ValueError(
+                f"mu_static = {self.mu_static!r}: with the Coulomb law it must be mu = {self.mu!r} "
+                "or greater, for below that a mass at belt speed could neither stick nor slip"
+            )
 
     def __repr__(self) -> str:
         """The call that makes it, and as a comment its dimensionless groups."""
@@ -98,15 +189,21 @@ class Parameters:
     @property
     def belt_direction(self) -> float:
         """sgn V, with +1 for a belt at rest."""
-        return 1.0 if self.belt_speed >= 0.0 else -1.0
+        return float(direction_of(self.belt_speed))
+
+    @property
+    def static_mu(self) -> float:
+        """The static friction coefficient: ``mu_static``, or ``mu`` where that is None."""
+        return self.mu if self.mu_static is None else self.mu_static
 
     @property
     def drag(self) -> float:
-        """μ sgn V: friction over normal force along +x on a mass that the belt drags along.
+        """μ(|V|) sgn V: friction over normal force along +x on a mass that the belt drags along.
 
-        The linear models and A4, which never slide faster than the belt, know V by this alone.
+        The linear models and A4, which never slide faster than the belt, know V by this and, where
+        μ depends on speed, by its slope.
         """
-        return self.belt_direction * self.mu
+        return float(self.belt_direction * coefficient(abs(self.belt_speed), self))
 
     @property
     def kappa(self) -> float:
@@ -123,18 +220,44 @@ class Parameters:
         """Belt speed v = V/(l_pre √(k1/m))."""
         return self.belt_speed * self.time_unit / self.preload
 
-    def with_(self, **changes: float) -> Parameters:
+    def with_(self, **changes: Any) -> Parameters:
         """A copy with some fields changed, validated again."""
         return replace(self, **changes)
 
-    def as_dict(self) -> dict[str, float]:
-        """Field name → value."""
-        return asdict(self)
+    def as_dict(self) -> dict[str, Any]:
+        """Field name → value; extensions of the paper's model only where they differ from none."""
+        return without_defaults({name: getattr(self, name) for name in TABLE})
 
     @staticmethod
     def units(name: str) -> str:
         """CF unit of a field."""
-        return _UNITS[name]
+        return TABLE[name].units
+
+
+TABLE: dict[str, Row] = {item.name: item.metadata["row"] for item in fields(Parameters)}
+"""Name → row of each parameter, in order."""
+
+NUMBERS_OF_A1: dict[str, str] = {
+    "static_mu" if name == "mu_static" else name: name
+    for name, row in TABLE.items()
+    if row.enters_a1 and row.allowed != "law"
+}
+"""What laws and engine read → the parameter that it is, for all numbers that enter A1."""
+
+DEFAULTS: dict[str, Any] = {item.name: item.default for item in fields(Parameters)}
+
+Parameters.__doc__ = f"{Parameters.__doc__}\n    Attributes:\n" + "\n".join(
+    f"        {name}: {row.meaning}, {row.units}." for name, row in TABLE.items()
+)
+
+
+def without_defaults(values: Mapping[str, Any]) -> dict[str, Any]:
+    """A mapping of parameters without the extensions that have their default value."""
+    return {
+        name: value
+        for name, value in values.items()
+        if not (name in TABLE and TABLE[name].extension and value == DEFAULTS[name])
+    }
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -163,6 +286,12 @@ class Scene:
                 raise ValueError(f"scene {self.name}: {key} = {value!r}: a finite number is needed")
         if not self.t_end > 0:
             raise ValueError(f"scene {self.name}: t_end = {self.t_end!r}: must be greater than 0")
+
+    @property
+    def panel(self) -> str:
+        """Figure and panel of the paper, like ``Fig. 2(a)``."""
+        letter = self.name.lstrip("F0123456789")
+        return f"Fig. {self.figure}({letter})" if letter else f"Fig. {self.figure}"
 
     def __repr__(self) -> str:
         return (
@@ -202,21 +331,6 @@ SCENES: dict[str, Scene] = {
     )
 }
 """The paper's named scenes (its figures 2–5 and 10–13)."""
-
-
-def parameters_from(mapping: dict[str, Any]) -> Parameters:
-    """``Parameters`` from a plain mapping, with unknown keys named.
-
-    Raises:
-        ValueError: an unknown key or a value that is not allowed.
-    """
-    known = {item.name for item in fields(Parameters)}
-    unknown = sorted(set(mapping) - known)
-    if unknown:
-        raise ValueError(
-            f"unknown parameter {', '.join(unknown)}; known: {', '.join(sorted(known))}"
-        )
-    return Parameters(**mapping)
 
 
 def parameters_of(part: Mapping[str, Any]) -> Parameters:

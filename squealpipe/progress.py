@@ -3,13 +3,45 @@
 from __future__ import annotations
 
 import sys
+import threading
 import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
 from pathlib import Path
 from types import TracebackType
 from typing import Self, TextIO
 
 QUIET = 2.0
 """Seconds in which a job may end without a word."""
+
+_silent: ContextVar[bool] = ContextVar("silent", default=False)
+_observer: ContextVar[Callable[[float], None] | None] = ContextVar("observer", default=None)
+
+
+@contextmanager
+def silenced(silent: bool = True) -> Iterator[None]:
+    """Nothing is reported to the terminal inside; logs still are written."""
+    token = _silent.set(silent)
+    try:
+        yield
+    finally:
+        _silent.reset(token)
+
+
+@contextmanager
+def observed(observer: Callable[[float], None]) -> Iterator[None]:
+    """Have a single long integration inside tell the time that it has reached, now and then."""
+    token = _observer.set(observer)
+    try:
+        yield
+    finally:
+        _observer.reset(token)
+
+
+def observer() -> Callable[[float], None] | None:
+    """Who wants to know, if anybody."""
+    return _observer.get()
 
 
 class Progress:
@@ -72,6 +104,11 @@ class Progress:
         """Count work as done, and report if it is time."""
         self.done += amount
         elapsed = time.perf_counter() - self.started
+        if _silent.get():
+            if elapsed >= self._next_line:
+                self._next_line = elapsed + self.interval
+                self._append(self.line())
+            return
         if self._terminal() and elapsed >= self._next_rewrite:
             self._next_rewrite = elapsed + 0.2
             self._speak("\r\x1b[K" + self.line())
@@ -109,8 +146,29 @@ class Progress:
                 file.write(f"{time.strftime('%Y-%m-%dT%H:%M:%S')} {text}\n")
 
 
+@contextmanager
+def elapsing(label: str, interval: float = 5.0) -> Iterator[None]:
+    """Tell every ``interval`` seconds for how long a job of unknown length has worked."""
+    if _silent.get():
+        yield
+        return
+    ended, started = threading.Event(), time.perf_counter()
+
+    def tell() -> None:
+        while not ended.wait(interval):
+            sys.stderr.write(f"{label}: {duration(time.perf_counter() - started)} so far\n")
+
+    thread = threading.Thread(target=tell, daemon=True)
+    thread.start()
+    try:
+        yield
+    finally:
+        ended.set()
+        thread.join()
+
+
 def duration(seconds: float) -> str:
-    """Seconds for people: 0.4 s, 17 s, 3 min 20 s, 2 h 5 min."""
+    """Seconds for people: 0.4 s, 17 s, 3 min 20 s, 2 h 5 min, 12 days."""
     if seconds < 10:
         return f"{seconds:.1f} s"
     whole = round(seconds)
@@ -118,4 +176,6 @@ def duration(seconds: float) -> str:
         return f"{whole} s"
     if whole < 7200:
         return f"{whole // 60} min {whole % 60} s"
-    return f"{whole // 3600} h {whole % 3600 // 60} min"
+    if whole < 172_800:
+        return f"{whole // 3600} h {whole % 3600 // 60} min"
+    return f"{whole // 86_400} days"

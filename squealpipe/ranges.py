@@ -8,20 +8,23 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import fields
 from typing import Any
 
-from squealpipe.parameters import Parameters
+from squealpipe.parameters import TABLE
 
 _NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
 _PI = re.compile(
     rf"^(?P<sign>[+-])?(?P<head>{_NUMBER})?\s*\*?\s*(?:pi|π)(?:/(?P<below>{_NUMBER}))?$"
 )
 _DEGREES = re.compile(rf"^(?P<value>{_NUMBER})\s*(?:deg|°)$")
-_RADIANS = re.compile(rf"^(?P<value>{_NUMBER})\s*(?:rad)?$")
+_RADIANS = re.compile(rf"^(?P<value>{_NUMBER})\s*(?P<unit>rad)?$")
 ANGLE_FORMS = "write 0.4pi, 2pi/5, 72deg or radians"
+FULL_TURN = 2 * math.pi * (1 + 1e-9)
+"""Plain numbers beyond it are rather degrees than radians, so they need a unit."""
 ANGLES = ("alpha1", "alpha2")
-PHYSICAL = tuple(item.name for item in fields(Parameters))
+PHYSICAL = tuple(TABLE)
+NUMBERS = tuple(name for name, row in TABLE.items() if row.allowed != "law")
+"""Parameters that are numbers, so that they can be swept."""
 WHOLE = ("mode",)
 """Options that are swept over whole numbers."""
 
@@ -44,7 +47,13 @@ def parse_angle(text: str) -> float:
     elif match := _DEGREES.match(stripped):
         return math.radians(float(match["value"]))
     elif (match := _RADIANS.match(stripped)) and math.isfinite(float(match["value"])):
-        return float(match["value"])
+        value = float(match["value"])
+        if abs(value) > FULL_TURN and not match["unit"]:
+            raise ValueError(
+                f"{text.strip()} without a unit is more than a full turn in rad; "
+                f"write {text.strip()}deg or {text.strip()}rad"
+            )
+        return value
     raise ValueError(f"{text!r} is no angle; {ANGLE_FORMS}")
 
 
@@ -102,6 +111,11 @@ def read_values(name: str, given: object) -> list[float]:
     Raises:
         ValueError: a value is none of these, or no whole number where one is needed.
     """
+    if name in TABLE and name not in NUMBERS:
+        raise ValueError(
+            f"{name} cannot be varied, for its values are words; sweep once for each, with {name} "
+            "fixed, over mu_static or friction_speed"
+        )
     one = parse_angle if name in ANGLES else parse_number
     if isinstance(given, str):
         values = parse_range(given, one)
@@ -130,7 +144,7 @@ def read_fixed(name: str, given: object) -> Any:
     """
     if not isinstance(given, str | int | float | Sequence | None):
         raise ValueError(f"{given!r} is no value; write a number, a word or a list of numbers")  # noqa: TRY004
-    if name in (*ANGLES, *PHYSICAL) and given is not None:
+    if name in (*ANGLES, *NUMBERS) and given is not None:
         return (parse_angle if name in ANGLES else parse_number)(_as_text(given))
     if isinstance(given, str):
         try:

@@ -49,12 +49,34 @@ def read_yaml(path: Path) -> tuple[dict[str, Any], list[str]]:
 
 
 def overlay(base: dict[str, Any], top: Mapping[str, Any]) -> None:
-    """Lay one configuration over another, key by key, in place."""
+    """Lay one configuration over another, key by key, in place; an empty section adds none."""
     for key, value in top.items():
-        if isinstance(value, Mapping) and isinstance(base.get(key), dict):
-            overlay(base[key], value)
+        if isinstance(base.get(key), dict) and (value is None or isinstance(value, Mapping)):
+            overlay(base[key], value or {})
         else:
             base[key] = value
+
+
+def key_lines(path: Path) -> dict[tuple[str, ...], int]:
+    """Key, with those above it, → line of a file in which it stands; list items by their place."""
+    found: dict[tuple[str, ...], int] = {}
+
+    def walk(node: yaml.Node, above: tuple[str, ...]) -> None:
+        if isinstance(node, yaml.MappingNode):
+            for key, value in node.value:
+                here = (*above, str(key.value))
+                found[here] = key.start_mark.line + 1
+                walk(value, here)
+        elif isinstance(node, yaml.SequenceNode):
+            for place, item in enumerate(node.value):
+                here = (*above, str(place))
+                found[here] = item.start_mark.line + 1
+                walk(item, here)
+
+    root = yaml.compose(path.read_text(encoding="utf-8"), Loader=yaml.SafeLoader)
+    if root is not None:
+        walk(root, ())
+    return found
 
 
 def flat(tree: Mapping[str, Any], stem: str = "") -> dict[str, Any]:

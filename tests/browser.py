@@ -19,14 +19,18 @@ def chromium_path() -> str | None:
 
 
 @contextmanager
-def open_page(address: str, *, width: int = 1280, height: int = 900) -> Iterator[tuple[Any, Any]]:
+def open_page(
+    address: str, *, width: int = 1280, height: int = 900, scheme: Any = "light"
+) -> Iterator[tuple[Any, Any]]:
     """A page in a new browser, and the list of what went wrong on it: errors, other addresses."""
     from playwright.sync_api import sync_playwright
 
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=chromium_path(), args=FLAGS)
         page = browser.new_page(
-            viewport={"width": width, "height": height}, reduced_motion="reduce"
+            viewport={"width": width, "height": height},
+            reduced_motion="reduce",
+            color_scheme=scheme,
         )
         faults: list[str] = []
         page.on("pageerror", lambda error: faults.append(f"error: {error}"))

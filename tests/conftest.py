@@ -42,6 +42,14 @@ def run_snakemake(
     )
 
 
+@pytest.hookimpl(tryfirst=True)  # before xdist reads the groups
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """One process for all that reads the quick study, so that it is run once; else one a file."""
+    for item in items:
+        shared = "quick_study" in getattr(item, "fixturenames", ())
+        item.add_marker(pytest.mark.xdist_group("study" if shared else str(item.path)))
+
+
 @dataclass(frozen=True)
 class QuickStudy:
     """A finished quick study: its checkout, its results, and what snakemake printed."""

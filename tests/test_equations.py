@@ -1,7 +1,7 @@
 """Every equation of the paper has exactly one home, and the README's table says where.
 
-A home is a function or class below laws, models, methods or tasks whose docstring begins with
-``Eq. (n)`` or ``Eqs. (m), (n)``. References, ``of Eq. (n)``, and words before it do not count.
+A home is a function or class below laws, models, methods, solvers or tasks whose docstring begins
+with ``Eq. (n)`` or ``Eqs. (m), (n)``. References, ``of Eq. (n)``, and words before it do not count.
 """
 
 from __future__ import annotations
@@ -42,8 +42,8 @@ def numbers(text: str) -> set[str]:
 def homes() -> dict[str, set[str]]:
     """Equation → ``path: name`` of its homes."""
     found = defaultdict(set)
-    for layer in ("laws", "models", "methods", "tasks"):
-        for path in sorted((ROOT / "squealpipe" / layer).glob("*.py")):
+    for layer in ("laws", "models", "methods", "solvers", "tasks"):
+        for path in sorted((ROOT / "squealpipe" / layer).rglob("*.py")):
             for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
                 if not isinstance(node, ast.FunctionDef | ast.ClassDef):
                     continue

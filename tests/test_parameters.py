@@ -10,7 +10,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from squealpipe.parameters import SCENES, Parameters, Scene, parameters_of
+from squealpipe.config import ConfigError, parse_study
+from squealpipe.parameters import DEFAULTS, SCENES, TABLE, Parameters, Scene, parameters_of
 
 POSITIVE = ("mass", "k1", "k2", "k3", "preload", "length1", "length2", "sigma")
 positive = st.floats(1e-3, 1e3)
@@ -23,9 +24,11 @@ def test_sizes_must_be_positive(field: str, value: float) -> None:
         Parameters(**{field: value})
 
 
-@pytest.mark.parametrize("field", [item.name for item in dataclasses.fields(Parameters)])
+@pytest.mark.parametrize("field", [name for name in TABLE if name != "friction_law"])
 @pytest.mark.parametrize("value", [math.nan, math.inf, "1", None, True, 1j, [1.0]])
 def test_only_finite_numbers_are_taken(field: str, value: object) -> None:
+    if value is None and TABLE[field].optional:
+        return
     with pytest.raises(ValueError, match=f"{field} = .*: a finite number is needed"):
         Parameters(**{field: value})
 
@@ -110,3 +113,64 @@ def test_repr_can_be_read_back_and_tells_the_groups():
 
 def test_repr_of_a_scene_tells_angles_in_pi_and_figure():
     assert repr(SCENES["F3"]) == "Scene(F3: alpha = (0.4π, 0.6π), t_end = 500, Fig. 3)"
+
+
+EXTENSIONS = {
+    "damping1": 0.1,
+    "damping2": 0.2,
+    "friction_law": "exponential",
+    "mu_static": 0.5,
+    "friction_speed": 2.0,
+}
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"damping1": -0.1}, r"damping1 = -0\.1: must be 0 or greater"),
+        ({"damping2": -1e-9}, r"damping2 = -1e-09: must be 0 or greater"),
+        ({"mu_static": -0.1}, r"mu_static = -0\.1: must be 0 or greater"),
+        ({"mu_static": 0.1}, r"mu_static = 0\.1: with the Coulomb law it must be mu = 0\.3"),
+        ({"friction_speed": 0.0}, r"friction_speed = 0\.0: must be greater than 0"),
+        ({"friction_speed": 5e-324}, r"friction_speed = 5e-324: must be 1e-300 or greater"),
+        ({"friction_law": "exponentail"}, r"did you mean 'exponential'\?"),
+        ({"friction_law": 3}, "friction_law = 3: unknown"),
+    ],
+)
+def test_extensions_refuse_what_makes_no_sense(change: dict[str, object], message: str) -> None:
+    with pytest.raises(ValueError, match=message):
+        Parameters(**change)
+    with pytest.raises(ConfigError, match=next(iter(change))):
+        parse_study({"parameters": change})
+
+
+def test_extensions_are_written_down_only_where_they_are_used() -> None:
+    """Ids of datasets are made of these mappings, so those of the paper's model stay."""
+    known = [name for name, row in TABLE.items() if not row.extension]
+    assert list(Parameters().as_dict()) == known
+    assert set(TABLE) - set(known) >= set(EXTENSIONS)
+    params = Parameters(**EXTENSIONS)
+    assert Parameters(**params.as_dict()) == params
+    assert set(params.as_dict()) == {*known, *EXTENSIONS}
+    plain = parse_study({"parameters": {"mu": 0.25}})
+    spelled = parse_study({"parameters": {"mu": 0.25, **{n: DEFAULTS[n] for n in EXTENSIONS}}})
+    assert plain.slice("parameters") == spelled.slice("parameters")
+    assert sorted(plain.slice("parameters")["parameters"]) == sorted(known)
+    full = parse_study({"parameters": EXTENSIONS}).slice("parameters")
+    assert parameters_of(full) == params
+
+
+def test_drag_follows_the_law_at_the_speed_of_the_belt() -> None:
+    for law, factor in (("exponential", math.exp(-1.5)), ("hyperbolic", 1 / 2.5)):
+        params = Parameters(
+            mu=0.2, mu_static=0.5, friction_law=law, friction_speed=2.0, belt_speed=-3.0
+        )
+        assert params.drag == pytest.approx(-(0.2 + 0.3 * factor), rel=1e-15)
+        assert params.with_(mu_static=0.2).drag == -0.2
+
+
+def test_every_row_says_what_tables_and_help_need() -> None:
+    for name, row in TABLE.items():
+        assert row.meaning
+        assert row.symbol
+        assert f"{name}: {row.meaning}, {row.units}." in (Parameters.__doc__ or "")

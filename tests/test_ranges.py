@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 
 import pytest
 from hypothesis import given
@@ -49,6 +50,11 @@ def test_what_is_no_angle_is_refused_with_the_forms(text):
 
 @given(st.floats(-1e6, 1e6))
 def test_radians_are_read_exactly(value):
+    assert parse_angle(f"{value!r}rad") == value
+    if abs(value) > 6.2832:
+        with pytest.raises(ValueError, match=f"write {re.escape(repr(value))}deg or"):
+            parse_angle(repr(value))
+        return
     assert parse_angle(repr(value)) == value
 
 

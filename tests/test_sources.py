@@ -57,9 +57,9 @@ def test_what_is_not_imported_does_not_count(imports, text):
 
 def test_closure_is_transitive(tmp_path):
     script = tmp_path / "script.py"
-    script.write_text("from squealpipe.tasks.linear import stability_map\n")
+    script.write_text("from squealpipe.tasks.linear.maps import stability_map\n")
     found = {path.relative_to(PACKAGE).as_posix() for path in closure(script)}
-    assert {"tasks/linear.py", "models/a3.py", "laws/springs.py", "parameters.py"} <= found
+    assert {"tasks/linear/maps.py", "models/a3.py", "laws/springs.py", "parameters.py"} <= found
     assert not any(name.startswith(("figures", "report", "cli", "methods")) for name in found)
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from squealpipe.claims.misprint_checks import REVERSED
+from squealpipe.claims.misprints import REVERSED
 
 READ = (
     "assumptions",

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -25,7 +25,7 @@ class MissingDataError(LookupError):
 
 
 @dataclass
-class Run:
+class Run(Mapping[str, xr.Dataset]):
     """The datasets of one run by name; each that is looked at is noted in ``used``.
 
     Attributes:
@@ -49,8 +49,14 @@ class Run:
             self._loaded[name] = source if isinstance(source, xr.Dataset) else load(source)
         return self._loaded[name]
 
-    def __contains__(self, name: str) -> bool:
+    def __contains__(self, name: object) -> bool:
         return name in self.sources
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.sources)
+
+    def __len__(self) -> int:
+        return len(self.sources)
 
     def forget(self) -> list[str]:
         """Names used, each with its id; starts a new note."""

@@ -1,49 +1,57 @@
-"""In how much of the inferred feasible set a statement holds."""
+"""In how much of the inferred feasible set a statement that was not fitted holds."""
 
 from __future__ import annotations
 
-import numpy as np
+from dataclasses import dataclass
+from math import nan
 
 from squealpipe.claims.evidence import Run
-
-SAME_AS = {"F6b": ("F6c", "C2"), "F8c": ("E8",)}
-"""Consequence of the inference → further statements that hold exactly where it does."""
-
-OPPOSITE = {"F7_black": "E10"}
-"""Consequence of the inference → statement that holds exactly where it does not."""
+from squealpipe.claims.statement import Statement
+from squealpipe.schema.claims import Basis
+from squealpipe.schema.inference import wilson_interval
 
 DECIDED = 0.1
 """Share of the feasible set, or of its rest, below which exceptions are at the set's margin."""
 
 
-def undecided_by_paper(share: float) -> bool:
-    """Whether a statement holds in one part of the feasible set and fails in another.
+@dataclass(frozen=True, kw_only=True)
+class Standing:
+    """How a statement stands to the inference.
 
-    The paper prints no parameters, so what it says then depends on those one takes.
+    Attributes:
+        basis: whether it was fitted or is predicted.
+        share: of the feasible parameter sets in which it holds; NaN where it was fitted, where
+            the inference does not judge it, and without feasible sets.
+        count: number of those sets; 0 where there is no share.
+        low, high: Wilson's interval of the share.
     """
-    return DECIDED < share < 1.0 - DECIDED
+
+    basis: Basis
+    share: float = nan
+    count: int = 0
+    low: float = nan
+    high: float = nan
+
+    @property
+    def divides(self) -> bool:
+        """Whether the statement holds in one part of the feasible set and fails in another.
+
+        The paper prints no parameters, so what it says then depends on those one takes.
+        """
+        return DECIDED < self.share < 1.0 - DECIDED
 
 
-def feasible_shares(run: Run) -> dict[str, float]:
-    """Id of a statement → share of the feasible parameter sets in which it holds.
-
-    Statements that were constraints of the inference hold in all of them. Empty where the run
-    has no inference or found no feasible set.
-    """
+def standing(statement: Statement, run: Run) -> Standing:
+    """How a statement stands to the inference of a run; ``unknown`` where the run has none."""
     if "parameter_inference" not in run:
-        return {}
+        return Standing(basis=Basis.unknown)
     inference = run["parameter_inference"]
-    run.forget()
-    feasible = inference.feasible.values == 1
-    if not feasible.any():
-        return {}
-    held = inference.holds.values[feasible].mean(axis=0)
-    shares = dict(zip(map(str, inference.statement.values), map(float, held), strict=True))
-    for name, share in zip(
-        map(str, inference.consequence.values), inference.feasible_share.values, strict=True
-    ):
-        if not np.isnan(share):
-            shares |= dict.fromkeys((name, *SAME_AS.get(name, ())), float(share))
-            if name in OPPOSITE:
-                shares[OPPOSITE[name]] = 1.0 - float(share)
-    return shares
+    if statement.id in inference.statement.values:
+        return Standing(basis=Basis.fitted)
+    count = int(inference.feasible_count)
+    if not count or statement.consequence not in inference.consequence.values:
+        return Standing(basis=Basis.predicted)
+    share = float(inference.feasible_share.sel(consequence=statement.consequence))
+    share = 1.0 - share if statement.opposite else share
+    low, high = wilson_interval(round(share * count), count)
+    return Standing(basis=Basis.predicted, share=share, count=count, low=low, high=high)

@@ -7,8 +7,11 @@ import xarray as xr
 
 from squealpipe.claims.evidence import Finding, MissingDataError, Run, finding
 from squealpipe.claims.maps import angle_sum_over_pi, cell, is_multiple, place, share
+from squealpipe.claims.statement import Rows
 from squealpipe.schema import Outcome
 from squealpipe.schema.claims import Verdict
+
+rows = Rows()
 
 VANISHING = 1e-6
 """ω1 below this share of its largest value is zero."""
@@ -20,6 +23,14 @@ SMALL, LARGE = 0.1, 0.98
 """Shares of the largest value that bound "the region where ω1 vanishes" and "ω2 is largest"."""
 
 
+@rows.add(
+    "F8a",
+    "7",
+    "in contact ω1 → 0 near α1 = α2 = π/2",
+    "ω1 at (0.5π, 0.5π), as a share of its largest value",
+    "fig08",
+    Verdict.holds,
+)
 def first_vanishes_in_contact(run: Run) -> Finding:
     """F8a: ω1 in contact at and around (π/2, π/2)."""
     contact = _state(run, "contact")
@@ -36,6 +47,14 @@ def first_vanishes_in_contact(run: Run) -> Finding:
     )
 
 
+@rows.add(
+    "F8b",
+    "7",
+    "separated, ω1 = 0 along α1 + α2 = nπ",
+    "largest ω1 on those lines, as a share of its largest value",
+    "fig08",
+    Verdict.holds,
+)
 def first_vanishes_on_lines(run: Run) -> Finding:
     """F8b: ω1 separated, along α1 + α2 = nπ."""
     separated = _state(run, "separated")
@@ -53,6 +72,15 @@ def first_vanishes_on_lines(run: Run) -> Finding:
     )
 
 
+@rows.add(
+    "F8c",
+    "7",
+    "ω1 is largest at α1 + α2 = nπ/2 (n odd)",
+    "excess of the largest ω1² over that on the lines, the larger of both contact states",
+    "fig08",
+    Verdict.holds_only_as_printed,
+    consequence="F8c",
+)
 def first_is_largest_on_lines(run: Run) -> Finding:
     """F8c, E8: where ω1 is largest, in both contact states, against α1 + α2 = nπ/2, n odd."""
     found = {}
@@ -77,13 +105,21 @@ def first_is_largest_on_lines(run: Run) -> Finding:
         + ("lies" if excess["separated"] <= ROUND_OFF else "does not lie")
         + " on α1 + α2 = π/2 or 3π/2. "
         f"In contact it is {largest / unit:.4g} k/m at ({first_angle:.3g}π, {second_angle:.3g}π), "
-        f"against {line / unit:.4g} k/m on those lines. For even n the line is where ω1 = 0.",
+        f"against {line / unit:.4g} k/m on those lines. For even n ω1 = 0 there when separated.",
         otherwise=Verdict.holds_only_as_printed
         if excess["separated"] <= ROUND_OFF
         else Verdict.fails,
     )
 
 
+@rows.add(
+    "F8d",
+    "9",
+    "the region where ω1 vanishes is larger when separated",
+    "ratio of the areas where ω1 is small, separated to contact",
+    "fig08",
+    Verdict.holds,
+)
 def vanishing_region_grows(run: Run) -> Finding:
     """F8d: area where ω1 is small, separated against contact."""
     areas = {name: _area_of_small_first(run, name) for name in ("contact", "separated")}
@@ -96,6 +132,14 @@ def vanishing_region_grows(run: Run) -> Finding:
     )
 
 
+@rows.add(
+    "F9a",
+    "7",
+    "where ω1 = 0, ω2 is largest",
+    "ω2 there, as a share of its largest value",
+    "fig09",
+    Verdict.holds,
+)
 def second_is_largest_where_first_vanishes(run: Run) -> Finding:
     """F9a: ω2 where ω1 = 0, against its largest value, in both contact states."""
     separated = _state(run, "separated")
@@ -116,6 +160,14 @@ def second_is_largest_where_first_vanishes(run: Run) -> Finding:
     )
 
 
+@rows.add(
+    "F9b",
+    "7",
+    "ω1 and ω2 shift in opposite directions",
+    "share of steps between cells with opposite signs",
+    "fig09",
+    Verdict.holds,
+)
 def shifts_are_opposite(run: Run) -> Finding:
     """F9b: signs of the change of ω1 and ω2 from cell to cell."""
     shares = {}
@@ -141,6 +193,14 @@ def shifts_are_opposite(run: Run) -> Finding:
     )
 
 
+@rows.add(
+    "F9c",
+    "9",
+    "the region where ω2 is largest is larger when separated",
+    "ratio of the areas where ω2 is near its largest value, separated to contact",
+    "fig09",
+    Verdict.holds,
+)
 def largest_region_grows(run: Run) -> Finding:
     """F9c: area where ω2 is close to its largest value, separated against contact."""
     areas = {}

@@ -11,12 +11,12 @@ import numpy as np
 import xarray as xr
 
 from squealpipe.claims.evidence import MissingDataError, Run
-from squealpipe.claims.feasible import feasible_shares, undecided_by_paper
+from squealpipe.claims.feasible import standing
 from squealpipe.claims.statement import Statement
-from squealpipe.claims.statements import STATEMENTS
+from squealpipe.claims.statements import PAPER, STATEMENTS
 from squealpipe.parameters import Parameters
 from squealpipe.schema import build
-from squealpipe.schema.claims import CLAIMS, Verdict
+from squealpipe.schema.claims import CLAIMS, Origin, Verdict
 
 
 def judge(parameters: Parameters, sources: Mapping[str, Path | xr.Dataset]) -> xr.Dataset:
@@ -28,24 +28,32 @@ def judge(parameters: Parameters, sources: Mapping[str, Path | xr.Dataset]) -> x
 
     Returns:
         Dataset over claim: statement, section, check, verdict, recorded, value, relation,
-        threshold, margin, feasible_share, evidence, dataset, figure.
+        threshold, margin, evidence, dataset, figure; origin (the paper's statement or our list
+        of misprints), basis (fitted or predicted) and, for predictions that the inference
+        judges, feasible_share with its sample feasible_count and its interval.
     """
     run = Run(parameters, sources)
-    shares = feasible_shares(run)
-    rows = [_row(statement, run, shares) for statement in STATEMENTS]
+    rows = [_row(statement, run) for statement in STATEMENTS]
     names = [statement.id for statement in STATEMENTS]
     data = {key: np.array([row[key] for row in rows]) for key in rows[0]}
     return build(CLAIMS, data, {"claim": names}, {"shipped": int(parameters == Parameters())})
 
 
-def _row(statement: Statement, run: Run, shares: Mapping[str, float]) -> dict[str, Any]:
+def _row(statement: Statement, run: Run) -> dict[str, Any]:
+    stands = standing(statement, run)
+    run.forget()
     row: dict[str, Any] = {
         "statement": statement.text,
         "section": statement.section,
         "check": statement.measure,
         "recorded": statement.recorded,
         "figure": statement.figure,
-        "feasible_share": shares.get(statement.id, nan),
+        "feasible_share": stands.share,
+        "feasible_count": stands.count,
+        "feasible_share_low": stands.low,
+        "feasible_share_high": stands.high,
+        "basis": stands.basis,
+        "origin": Origin.paper if statement in PAPER else Origin.misprints,
     }
     try:
         found = statement.check(run)
@@ -61,9 +69,7 @@ def _row(statement: Statement, run: Run, shares: Mapping[str, float]) -> dict[st
         }
     else:
         row |= {
-            "verdict": Verdict.depends_on_the_parameters
-            if undecided_by_paper(row["feasible_share"])
-            else found.verdict,
+            "verdict": Verdict.depends_on_the_parameters if stands.divides else found.verdict,
             "verdict_here": found.verdict,
             "value": found.value,
             "relation": found.relation,

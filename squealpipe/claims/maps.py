@@ -5,7 +5,10 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
-from squealpipe.claims.evidence import MissingDataError
+from squealpipe.claims.evidence import MissingDataError, Run
+
+ROUND_OFF = 1e-12
+"""Share of a stiffness below which a difference of stiffnesses counts as none."""
 
 
 def cell(dataset: xr.Dataset, alpha1_over_pi: float, alpha2_over_pi: float) -> xr.Dataset:
@@ -62,3 +65,42 @@ def place(dataset: xr.Dataset, values: xr.DataArray) -> tuple[float, float]:
     """(α1/π, α2/π) where values are largest."""
     row, column = np.unravel_index(int(values.values.argmax()), values.shape)
     return float(dataset.alpha1[row] / np.pi), float(dataset.alpha2[column] / np.pi)
+
+
+def unstable_cells(run: Run) -> xr.DataArray:
+    """Cells of the stability map in which A3 is unstable."""
+    cells: xr.DataArray = run["stability_map"].regime_linear > 0
+    return cells
+
+
+def unstable_yet_sliding(run: Run) -> tuple[xr.DataArray, xr.DataArray]:
+    """Unstable cells where sliding is possible: by Eq. (11) as printed, and by R_n > 0."""
+    unstable, sliding = unstable_cells(run), run["quasi_static_map"]
+    return unstable & (sliding.possible_as_printed == 1), unstable & (sliding.possible == 1)
+
+
+def coupling_is_negative(run: Run) -> xr.DataArray:
+    """Cells with K12 < 0."""
+    return stiffness(run, "stiffness_xy") < -ROUND_OFF * (run.parameters.k1 + run.parameters.k2)
+
+
+def order_turns_over(run: Run) -> xr.DataArray:
+    """Cells in which x is the softer direction in contact and y when separated.
+
+    In contact x is the softer direction while K11 < K22 + k3, separated while K11 < K22.
+    """
+    difference = stiffness(run, "stiffness_x") - stiffness(run, "stiffness_y")
+    k3 = run.parameters.k3
+    return (difference > ROUND_OFF * k3) & (difference < (1 - ROUND_OFF) * k3)
+
+
+def stiffness(run: Run, name: str) -> xr.DataArray:
+    """K11 (``stiffness_x``), K12 (``stiffness_xy``) or K22 (``stiffness_y``) over the map, N/m.
+
+    Raises:
+        MissingDataError: the dataset was made by a version that did not store it.
+    """
+    sliding = run["quasi_static_map"]
+    if name not in sliding:
+        raise MissingDataError(f"this quasi_static_map holds no {name}; compute it again")
+    return sliding[name]

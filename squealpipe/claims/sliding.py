@@ -2,14 +2,21 @@
 
 from __future__ import annotations
 
-import xarray as xr
-
 from squealpipe.claims.evidence import Finding, Run, finding
-from squealpipe.claims.maps import cell, on_grid_of, share
+from squealpipe.claims.maps import (
+    cell,
+    on_grid_of,
+    share,
+    stiffness,
+    unstable_cells,
+    unstable_yet_sliding,
+)
+from squealpipe.claims.motions import halves, scene
+from squealpipe.claims.statement import Rows
 from squealpipe.schema.claims import Verdict
+from squealpipe.schema.dynamics import GROWTH_THRESHOLD
 
-GROWTH_OF_STABLE_CELL = 1e-9
-"""Growth rates below this, times the time unit, are round-off of zero."""
+rows = Rows()
 
 LARGE_REGION = 0.5
 """Share of the angle map from which a region is called large."""
@@ -18,60 +25,70 @@ ADEQUATE_AGREEMENT = 0.95
 """Share of cells in which A3 would have to agree with A1 to be of use."""
 
 
-GROWTH = 2.0
-"""Ratio of |x| in the second half of a run to that in the first from which it is growing."""
-
-
-def modes_couple(run: Run) -> Finding:
-    """S3: eigenvalues merge (flutter) somewhere on the map."""
-    flutter = run["stability_map"].regime_linear == 1
-    return finding(
-        int(flutter.sum()),
-        ">",
-        0,
-        f"The two eigenvalues merge into a complex pair in {int(flutter.sum())} of "
-        f"{flutter.size} cells ({100 * share(flutter):.2g} %).",
-    )
-
-
+@rows.add(
+    "F6a",
+    "5",
+    "Eq. (11) bounds where quasi-static sliding exists",
+    "cells in which Eq. (11) as printed and the sign of the reaction force differ",
+    "fig06",
+    Verdict.holds_only_as_printed,
+)
 def printed_bound_is_physical(run: Run) -> Finding:
     """F6a, E3: Eq. (11) as printed against a positive reaction force."""
     sliding = run["quasi_static_map"]
     differ = sliding.possible_as_printed != sliding.possible
-    negative_coupling = _negative_coupling(run, sliding)
-    outside = int((differ & ~negative_coupling).sum())
+    pushes = run.parameters.belt_direction * stiffness(run, "stiffness_xy")
+    outside = int((differ & (pushes >= 0)).sum())
     return finding(
         int(differ.sum()),
         "≤",
         0,
         f"As printed, sliding is possible in {100 * share(sliding.possible_as_printed == 1):.3g} % "
         f"of the cells; the reaction force is positive in {100 * share(sliding.possible == 1):.3g} "
-        f"%. The two differ in {int(differ.sum())} cells, {outside} of them with K12 ≥ 0.",
+        f"%. The two differ in {int(differ.sum())} cells, {outside} of them with K12 sgn V ≥ 0.",
         otherwise=Verdict.fails if outside else Verdict.holds_only_as_printed,
     )
 
 
+@rows.add(
+    "F6b",
+    "6",
+    "every linearly unstable cell lies where quasi-static sliding is impossible",
+    "unstable cells with a positive reaction force",
+    "fig06",
+    Verdict.holds_only_as_printed,
+    consequence="F6b",
+)
 def unstable_only_without_sliding(run: Run) -> Finding:
     """F6b, C2: unstable cells that lie where sliding is possible, in both readings."""
-    unstable, sliding = _unstable(run), run["quasi_static_map"]
-    printed = int((unstable & (sliding.possible_as_printed == 1)).sum())
-    physical = int((unstable & (sliding.possible == 1)).sum())
+    printed, physical = (int(cells.sum()) for cells in unstable_yet_sliding(run))
     return finding(
         physical,
         "≤",
         0,
-        f"Of {int(unstable.sum())} unstable cells, {printed} lie where Eq. (11) as printed allows "
-        f"sliding, but {physical} where the reaction force is positive.",
+        f"Of {int(unstable_cells(run).sum())} unstable cells, {printed} lie where Eq. (11) as "
+        f"printed allows sliding, but {physical} where the reaction force is positive.",
         otherwise=Verdict.fails if printed else Verdict.holds_only_as_printed,
     )
 
 
+@rows.add(
+    "F6c",
+    "6",
+    "the system is stable wherever quasi-static sliding persists",
+    "share of cells with a positive reaction force that are unstable",
+    "fig06",
+    Verdict.holds_only_as_printed,
+    consequence="F6b",
+)
 def stable_where_sliding(run: Run) -> Finding:
     """F6c: share of the cells with sliding that are unstable, in both readings."""
-    unstable, sliding = _unstable(run), run["quasi_static_map"]
+    sliding = run["quasi_static_map"]
     printed, physical = (
-        float(unstable.where(allowed == 1).mean())
-        for allowed in (sliding.possible_as_printed, sliding.possible)
+        float(cells.sum() / max(int(allowed.sum()), 1))
+        for cells, allowed in zip(
+            unstable_yet_sliding(run), (sliding.possible_as_printed, sliding.possible), strict=True
+        )
     )
     return finding(
         physical,
@@ -83,6 +100,64 @@ def stable_where_sliding(run: Run) -> Finding:
     )
 
 
+@rows.add(
+    "F6d",
+    "6",
+    "(0.4π, 0.6π) is linearly stable although A1 is not",
+    "growth rate of A3 there, times the time unit",
+    "fig06",
+    Verdict.holds,
+)
+def linearly_stable_but_not(run: Run) -> Finding:
+    """F6d: growth rate of A3 at (0.4π, 0.6π) against the growth of A1's response there."""
+    rate = float(cell(run["stability_map"], 0.4, 0.6).growth_rate) * run.parameters.time_unit
+    early, late = halves(scene(run, "F3"))
+    return finding(
+        rate,
+        "≤",
+        1e-9,
+        f"A3's largest growth rate there is {rate:.1g}; in A1 |x| reaches {early:.3g} l_pre in "
+        f"the first half of the run and {late:.3g} l_pre in the second.",
+        also=late > GROWTH_THRESHOLD * early,
+    )
+
+
+@rows.add(
+    "F6e",
+    "6",
+    "the linear model lets k3 pull as well as push, which the contact cannot: by how much, where",
+    "share of cells in which the linear model's k3 pulls",
+    "fig06",
+    Verdict.holds,
+)
+def spring_pulls(run: Run) -> Finding:
+    """F6e: where the linear model's contact spring pulls, and how much."""
+    pull = run["linear_pull"]
+    stable = on_grid_of(run["stability_map"], pull).regime_linear == 0
+    pulls = pull.lowest_contact_force < 0
+    if not pulls.any():
+        return finding(0, ">", 0, "From rest the linear model's k3 pulls in none of the cells.")
+    strongest = max(0.0, -float(pull.lowest_contact_force.where(stable).min()))
+    fraction = float(pull.pulling_fraction.where(pulls).median())
+    return finding(
+        share(pulls),
+        ">",
+        0,
+        f"From rest the linear model's k3 pulls in {100 * share(pulls):.3g} % of the cells, there "
+        f"for {100 * fraction:.2g} % of the time (median), with up to {strongest:.3g} times the "
+        "preload in linearly stable cells.",
+    )
+
+
+@rows.add(
+    "F7a",
+    "6",
+    "A3 is invalid wherever A1 separates; the region is large",
+    "share of cells in which A1 separates",
+    "fig07",
+    Verdict.holds,
+    consequence="F7a",
+)
 def invalid_where_separated(run: Run) -> Finding:
     """F7a: share of the map on which A1 loses contact."""
     lost = run["validity_map"].separates == 1
@@ -95,6 +170,14 @@ def invalid_where_separated(run: Run) -> Finding:
     )
 
 
+@rows.add(
+    "F7b",
+    "6",
+    "the linear analysis cannot be used to decide the stability of this system",
+    "share of cells in which A3's stability and A1's contact agree",
+    "fig07",
+    Verdict.holds,
+)
 def linear_analysis_misleads(run: Run) -> Finding:
     """F7b: how often A3's "stable" comes with kept contact in A1, and the reverse."""
     validity = run["validity_map"]
@@ -109,93 +192,3 @@ def linear_analysis_misleads(run: Run) -> Finding:
         f"{int((~unstable & lost).sum())} cells stable that lose contact in A1, and "
         f"{int((unstable & ~lost).sum())} unstable that keep it.",
     )
-
-
-def black_region_is_there(run: Run) -> Finding:
-    """E10: cells of Fig. 7 that keep contact and are unstable, in both readings."""
-    validity = run["validity_map"]
-    unstable = on_grid_of(run["stability_map"], validity).regime_linear > 0
-    black = unstable & (validity.separates == 0)
-    growing = int((validity.response_growth > GROWTH).sum())
-    return finding(
-        max(int(black.sum()), growing),
-        ">",
-        0,
-        f"Of the {int((validity.separates == 0).sum())} cells that keep contact in A1, "
-        f"{int(black.sum())} are unstable by A3 (the text's reading) and {growing} have a growing "
-        "response in A1 (the caption's reading).",
-    )
-
-
-def directions_decide(run: Run) -> Finding:
-    """C5: both outcomes occur, by the angles alone."""
-    lost = run["validity_map"].separates == 1
-    unstable = _unstable(run)
-    smaller = min(share(lost), 1 - share(lost))
-    return finding(
-        smaller,
-        ">",
-        0.05,
-        f"At equal parameters the angles alone decide: contact is kept in "
-        f"{100 * (1 - share(lost)):.3g} % of the cells and lost in the rest; A3 is unstable in "
-        f"{100 * share(unstable):.2g} %.",
-        also=bool(unstable.any()),
-    )
-
-
-def reaction_is_that_of_equilibrium(run: Run) -> Finding:
-    """E11: A2's verdict (y = 0) against the contact force of the equilibrium of Eq. (15)."""
-    sliding = run["quasi_static_map"]
-    pushes = sliding.contact_force_static > 1e-12 * sliding.contact_force_static.max()
-    known = sliding.outcome == 0
-    refused = int((known & (sliding.possible == 0) & pushes).sum())
-    allowed = int((known & (sliding.possible == 1) & ~pushes).sum())
-    scene = cell(sliding, 0.4, 0.6)
-    return finding(
-        refused + allowed,
-        "≤",
-        0,
-        f"{refused} cells are not possible by A2 though the equilibrium of Eq. (15) presses on "
-        f"the belt; {allowed} are possible though it does not, among them (0.4π, 0.6π): "
-        f"R_n = {float(scene.reaction_force):.3g}, "
-        f"N* = {abs(float(scene.contact_force_static)):.2g}.",
-    )
-
-
-def coupling_frequency_is_real(run: Run) -> Finding:
-    """E5: where K12 < 0, ω12 of Eq. (12b) is imaginary."""
-    negative = _negative_coupling(run, run["quasi_static_map"])
-    return finding(
-        share(negative),
-        "≤",
-        0,
-        f"K12 is negative in {100 * share(negative):.3g} % of the cells, so ω12 is imaginary "
-        "there; only its square enters Eqs. (13)–(17).",
-    )
-
-
-def nondimensional_time_exists(run: Run) -> Finding:
-    """E12: cells where K11 = 0, so that τ = ω11·t and Eqs. (13)–(17) do not exist."""
-    sliding = run["quasi_static_map"]
-    undefined = sliding.reaction_force.isnull()
-    here = bool(cell(sliding, 0.5, 0.5).reaction_force.isnull())
-    return finding(
-        int(undefined.sum()),
-        "≤",
-        0,
-        f"K11 = 0 in {int(undefined.sum())} cell of the map"
-        + (", (0.5π, 0.5π): ω11 = 0 divides in Eqs. (12)–(17)." if here else "."),
-    )
-
-
-def _unstable(run: Run) -> xr.DataArray:
-    unstable: xr.DataArray = run["stability_map"].regime_linear > 0
-    return unstable
-
-
-def _negative_coupling(run: Run, sliding: xr.Dataset) -> xr.DataArray:
-    """K12 < 0, told from A2's reaction force, which is then below the actuation k3·l_pre."""
-    actuation = run.parameters.k3 * run.parameters.preload
-    ratio = sliding.reaction_force / actuation
-    negative: xr.DataArray = (ratio >= 0) & (ratio < 1 - 1e-12)
-    return negative

@@ -1,4 +1,4 @@
-"""A statement of the paper as data."""
+"""A statement of the paper as data: one row, beside the check that judges it."""
 
 from __future__ import annotations
 
@@ -7,6 +7,9 @@ from dataclasses import dataclass
 
 from squealpipe.claims.evidence import Finding, Run
 from squealpipe.schema.claims import Verdict
+
+Check = Callable[[Run], Finding]
+"""Reads datasets only."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -21,6 +24,9 @@ class Statement:
         figure: picture that shows it; empty where none does.
         recorded: what its check finds at the shipped baseline; anything else is a regression.
         check: reads datasets only.
+        consequence: what the inference judges at each feasible parameter set and what decides
+            about this statement there; empty where it judges nothing of the kind.
+        opposite: the statement holds exactly where that consequence does not.
     """
 
     id: str
@@ -29,4 +35,42 @@ class Statement:
     measure: str
     figure: str
     recorded: Verdict
-    check: Callable[[Run], Finding]
+    check: Check
+    consequence: str = ""
+    opposite: bool = False
+
+
+class Rows(list[Statement]):
+    """The statements of one module, in the paper's order: each is added where its check stands."""
+
+    def add(
+        self,
+        name: str,
+        section: str,
+        text: str,
+        measure: str,
+        figure: str,
+        recorded: Verdict,
+        *,
+        consequence: str = "",
+        opposite: bool = False,
+    ) -> Callable[[Check], Check]:
+        """Decorator of a check; the arguments are those of :class:`Statement`."""
+
+        def keep(check: Check) -> Check:
+            self.append(
+                Statement(
+                    id=name,
+                    section=section,
+                    text=text,
+                    measure=measure,
+                    figure=figure,
+                    recorded=recorded,
+                    check=check,
+                    consequence=consequence,
+                    opposite=opposite,
+                )
+            )
+            return check
+
+        return keep

@@ -4,16 +4,20 @@ from __future__ import annotations
 
 import math
 import os
+from collections import Counter
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import xarray as xr
 
-from squealpipe.schema.claims import Verdict
+from squealpipe.schema.claims import Basis, Origin, Verdict
 from squealpipe.store import load
 
 TEXT = ("statement", "section", "check", "relation", "evidence", "dataset", "figure")
 VERDICTS = ("verdict", "verdict_here", "recorded")
 NUMBERS = ("value", "threshold", "margin", "feasible_share")
+INTERVAL = ("feasible_share_low", "feasible_share_high")
+FLAGS = {"basis": Basis, "origin": Origin}
 
 
 def rows(claims: xr.Dataset) -> list[dict[str, Any]]:
@@ -33,9 +37,22 @@ def rows(claims: xr.Dataset) -> list[dict[str, Any]]:
                 **{key: _number(row[key].item()) for key in NUMBERS},
                 **verdicts,
                 "as_recorded": verdicts["verdict_here"] == verdicts["recorded"],
+                **_standing(row),
             }
         )
     return table_
+
+
+def totals(table_: Sequence[Mapping[str, Any]]) -> dict[str, dict[str, int]]:
+    """Origin of a row → verdict → number of rows: the paper's statements and our misprints apart.
+
+    Args:
+        table_: what :func:`rows` gives.
+    """
+    return {
+        origin.name: dict(Counter(row["verdict"] for row in table_ if row["origin"] == origin.name))
+        for origin in Origin
+    }
 
 
 def table(path: str | os.PathLike[str]) -> tuple[list[dict[str, Any]], int]:
@@ -52,6 +69,15 @@ def table(path: str | os.PathLike[str]) -> tuple[list[dict[str, Any]], int]:
     found = rows(claims)
     shipped = bool(claims.attrs["shipped"])
     return found, int(shipped and not all(row["as_recorded"] for row in found))
+
+
+def _standing(row: xr.Dataset) -> dict[str, Any]:
+    """How the statement stands to the inference; None where an older file does not say."""
+    return {
+        "feasible_count": int(row.feasible_count) if "feasible_count" in row else None,
+        **{key: _number(row[key].item()) if key in row else None for key in INTERVAL},
+        **{key: flags(int(row[key])).name if key in row else None for key, flags in FLAGS.items()},
+    }
 
 
 def _number(value: float) -> float | None:

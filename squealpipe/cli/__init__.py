@@ -2,34 +2,56 @@
 
 from __future__ import annotations
 
+import os
 import sys
+import traceback
 from collections.abc import Callable, Sequence
 
 from cyclopts import App, CycloptsError
+from cyclopts.exceptions import UnusedCliTokensError
 
+from squealpipe.cli.arguments import parameters_from_study
 from squealpipe.cli.backbone import backbone
-from squealpipe.cli.exit_codes import INTERRUPTED, NOT_DONE
+from squealpipe.cli.claims import claims
+from squealpipe.cli.console import SESSION, TRACEBACK, session
+from squealpipe.cli.exit_codes import DONE, INTERRUPTED, NOT_DONE
+from squealpipe.cli.interrupts import interrupted, watched
 from squealpipe.cli.maps import map_angles
+from squealpipe.cli.memory import collect_garbage, deposit, find, list_runs
+from squealpipe.cli.project import init
+from squealpipe.cli.project import run as run_study
+from squealpipe.cli.propensity import propensity
 from squealpipe.cli.simulate import simulate
-from squealpipe.cli.study import archive, claims, compare, explain, verify
+from squealpipe.cli.study import archive, compare, explain, verify
 from squealpipe.cli.sweep import sweep
 
 HELP = """Friction-induced vibration with contact loss: from one run to the whole study.
 
 Exit codes: 0 done; 1 done, and the answer is no (different, changed, another verdict, not
 converged); 2 not done (wrong input, missing file, cannot compare); 130 interrupted.
+
+Every command takes -q (print answers and errors alone) and -v (tracebacks and warnings).
 """
 COMMANDS: dict[str, Callable[..., int]] = {
     "simulate": simulate,
     "map": map_angles,
     "backbone": backbone,
     "sweep": sweep,
+    "propensity": propensity,
+    "init": init,
+    "run": run_study,
     "explain": explain,
     "claims": claims,
     "archive": archive,
     "verify": verify,
     "compare": compare,
+    "list": list_runs,
+    "find": find,
+    "gc": collect_garbage,
+    "deposit": deposit,
 }
+FORESEEN = (CycloptsError, ValueError, OSError, RuntimeError)
+"""Errors whose message says what to do."""
 
 
 def application() -> App:
@@ -38,15 +60,18 @@ def application() -> App:
         name="squealpipe",
         help=HELP,
         help_epilogue="`squealpipe simulate 5pi/6 5pi/6` is a good first command; the whole "
-        "study is `snakemake`.",
+        "study is `squealpipe run`.",
         help_format="markdown",
         version=_version,
+        config=[parameters_from_study],
         exit_on_error=False,
         print_error=False,
+        suppress_keyboard_interrupt=False,
         result_action="return_int_as_exit_code_else_zero",
     )
     for place, (name, command) in enumerate(COMMANDS.items()):
         app.command(command, name=name, sort_key=place, help_epilogue="")
+    app.register_install_completion_command()
     return app
 
 
@@ -58,14 +83,37 @@ def _version() -> str:
 
 def run(arguments: Sequence[str]) -> int:
     """Run a command and return its exit code; errors become one message on standard error."""
-    try:
-        return int(application()(list(arguments)))
-    except (CycloptsError, ValueError, OSError, RuntimeError) as error:
-        print(f"squealpipe: {error}", file=sys.stderr)
-        return NOT_DONE
-    except KeyboardInterrupt:
-        print("squealpipe: interrupted; a sweep run again goes on where it was", file=sys.stderr)
-        return INTERRUPTED
+    with session(arguments) as left, watched():
+        try:
+            code = int(application()(left))
+            sys.stdout.flush()
+        except BrokenPipeError:  # the reader, for instance `head`, has enough
+            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+            return DONE
+        except SystemExit as left_by_rich:
+            if isinstance(left_by_rich.__context__, BrokenPipeError):
+                return DONE
+            raise
+        except (KeyboardInterrupt, Exception) as error:  # noqa: BLE001 (one line, not a trace)
+            # Libraries may turn an interrupt into an error of their own.
+            if SESSION.interrupted or isinstance(error, KeyboardInterrupt):
+                print(interrupted(), file=sys.stderr)
+                return INTERRUPTED
+            if SESSION.verbose:
+                traceback.print_exc()
+            print(f"squealpipe: {_told(error)}", file=sys.stderr)
+            return NOT_DONE
+        return code
+
+
+def _told(error: Exception) -> str:
+    """An error in a sentence."""
+    if isinstance(error, UnusedCliTokensError):
+        return f"too many arguments: {' '.join(error.unused_tokens or [])}"
+    if isinstance(error, FORESEEN):
+        return str(error)
+    what = " ".join(f"{type(error).__name__}: {error}".split())
+    return f"unexpected error ({what}); -v or {TRACEBACK}=1 shows where"
 
 
 def main() -> None:

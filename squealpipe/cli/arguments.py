@@ -1,13 +1,15 @@
-"""The option types that every command shares."""
+"""The option types that every command shares, and parameters taken from a study."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import fields
 from pathlib import Path
 from typing import Annotated, Any
 
-from cyclopts import Group, Parameter
+from cyclopts import App, ArgumentCollection, Group, Parameter, Token
 
+from squealpipe.cli.console import SESSION
 from squealpipe.parameters import Parameters
 from squealpipe.ranges import parse_angle, parse_range
 
@@ -34,29 +36,38 @@ AngleRange = Annotated[
         show_default="0:pi:61",
     ),
 ]
-Physical = Annotated[
-    Parameters, Parameter(name="*", group=Group("Physical parameters", sort_key=10))
-]
-Output = Annotated[Path, Parameter(name=["--output", "-o"])]
+PHYSICAL_GROUP = Group("Physical parameters", sort_key=10)
+Physical = Annotated[Parameters, Parameter(name="*", group=PHYSICAL_GROUP)]
+Configs = Annotated[list[Path] | None, Parameter(name=["--config", "-c"], negative="")]
+Output = Annotated[Path, Parameter(name=["--output", "-o"], allow_leading_hyphen=True)]
 Picture = Annotated[Path | None, Parameter(name=["--picture", "-p"])]
-
-PICTURES = (".png", ".svg", ".pdf")
-
-
-def picture_beside(output: Path, picture: Path | None) -> Path:
-    """Where the picture goes: as asked, or beside the output.
-
-    Raises:
-        ValueError: the two would be one file, or the picture is of no kind that can be written.
-    """
-    chosen = output.with_suffix(".png") if picture is None else picture
-    if chosen.suffix not in PICTURES:
-        raise ValueError(f"--picture {chosen}: end the name in {', '.join(PICTURES)}")
-    if chosen == output:
-        raise ValueError(f"--output {output}: the dataset needs another name than the picture")
-    return chosen
-
+Switch = Annotated[bool, Parameter(negative="")]
 
 BASELINE = Parameters()
 FULL_RANGE = parse_range("0:pi:61", parse_angle)
 """Both spring angles from 0 to π."""
+
+
+def parameters_from_study(_: App, __: tuple[str, ...], arguments: ArgumentCollection) -> None:
+    """Give the parameters that were not typed the values of the study in ``--config``.
+
+    Raises:
+        FileNotFoundError, ConfigError: as :func:`squealpipe.config.read_study`.
+    """
+    found = {argument.name: argument for argument in arguments}
+    physical = {
+        item.name: found[f"--{item.name.replace('_', '-')}"]
+        for item in fields(Parameters)
+        if f"--{item.name.replace('_', '-')}" in found
+    }
+    SESSION.typed = {name for name, argument in physical.items() if argument.tokens}
+    if not physical or "--config" not in found or not found["--config"].tokens:
+        return
+    from squealpipe.config import read_study
+
+    paths = [token.value for token in found["--config"].tokens]
+    study = read_study(*paths).parameters
+    for name, argument in physical.items():
+        value = getattr(study, name)
+        if name not in SESSION.typed and value is not None:
+            argument.append(Token(keyword=argument.name, value=str(value), source=", ".join(paths)))

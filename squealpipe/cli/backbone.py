@@ -1,12 +1,24 @@
-"""``squealpipe backbone``: a family of free periodic motions, as NetCDF and a picture."""
+"""``squealpipe backbone``: a family of free periodic motions, as a dataset and a picture."""
 
 from __future__ import annotations
 
 from pathlib import Path
 from typing import Any, Literal
 
-from squealpipe.cli.arguments import BASELINE, Angle, Output, Physical, Picture, picture_beside
-from squealpipe.cli.exit_codes import DONE
+from squealpipe.cli.arguments import (
+    BASELINE,
+    Angle,
+    Configs,
+    Output,
+    Physical,
+    Picture,
+    Switch,
+)
+from squealpipe.cli.console import say
+from squealpipe.cli.cost import estimate
+from squealpipe.cli.exit_codes import ANSWER_IS_NO, DONE
+from squealpipe.cli.output import check_outputs, write
+from squealpipe.progress import elapsing
 
 
 def backbone(
@@ -21,9 +33,12 @@ def backbone(
     n_harmonics: int = 16,
     output: Output = Path("backbone.nc"),
     picture: Picture = None,
+    force: Switch = False,
+    yes: Switch = False,
+    config: Configs = None,  # noqa: ARG001 (read by `parameters_from_study`)
     params: Physical = BASELINE,
 ) -> int:
-    """Follow a family of free periodic motions of model A4; write NetCDF and a picture.
+    """Follow a family of free periodic motions of model A4; write a dataset and a picture.
 
     Example: `squealpipe backbone 0.3pi 0.9pi --mode 1 --method hbm --n-harmonics 32`
 
@@ -35,15 +50,12 @@ def backbone(
         y_peak_max: largest y at the symmetric instant; 3 preload lengths by default.
         x_amplitude_max: largest x amplitude of an isolated x mode; 3 preload lengths by default.
         n_harmonics: harmonics kept by harmonic balance.
-        output: NetCDF file to write.
+        output: dataset to write: NetCDF (.nc) or CSV (.csv).
         picture: picture to write; by default beside the output.
+        force: overwrite files that exist.
+        yes: go on though it takes long or much memory.
+        config: study whose parameters are used where none are typed; repeatable.
     """
-    from squealpipe.figures.branch import draw
-    from squealpipe.figures.style import save_figure
-    from squealpipe.schema import REMEDIES, Outcome
-    from squealpipe.store import load, produce
-    from squealpipe.tasks.backbones import backbone as task
-
     options: dict[str, Any] = {
         "mode": mode,
         "method": method,
@@ -51,16 +63,29 @@ def backbone(
         "x_amplitude_max": 3 * params.preload if x_amplitude_max is None else x_amplitude_max,
         **({"n_harmonics": n_harmonics} if method == "hbm" else {}),
     }
-    picture = picture_beside(output, picture)
-    config = {"parameters": params.as_dict(), "alpha1": alpha1, "alpha2": alpha2, **options}
-    produce(lambda: task(params, alpha1, alpha2, **options), config=config, output=output)
-    branch = load(output)
+    picture = check_outputs(output, picture, force=force)
+    estimate("backbone", params, options).check(yes=yes)
+
+    from squealpipe.figures.cli.branch import draw
+    from squealpipe.figures.parts.style import save_figure
+    from squealpipe.schema import REMEDIES, Outcome
+    from squealpipe.tasks.backbones.backbone import backbone as task
+
+    settings = {"parameters": params.as_dict(), "alpha1": alpha1, "alpha2": alpha2, **options}
+    with elapsing("backbone"):
+        branch = write(lambda: task(params, alpha1, alpha2, **options), output, config=settings)
     save_figure(draw(branch, preload=params.preload), [picture])
     end = Outcome(int(branch.end))
-    print(
+    if not branch.sizes["point"]:
+        say(
+            f"mode {mode} has no periodic motions here: {end.name} ({REMEDIES[end]}); "
+            f"try other angles or parameters; wrote {output} and {picture}"
+        )
+        return ANSWER_IS_NO
+    say(
         f"mode {mode}: {branch.sizes['point']} points, ω from {float(branch.omega[0]):.6g} "
-        f"to {float(branch.omega[-1]):.6g} rad/s"
+        f"to {float(branch.omega[-1]):.6g} rad/s",
+        f"the branch ends: {end.name} ({REMEDIES[end]})",
+        f"wrote {output} and {picture}",
     )
-    print(f"the branch ends: {end.name} ({REMEDIES[end]})")
-    print(f"wrote {output} and {picture}")
     return DONE

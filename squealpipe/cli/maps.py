@@ -1,4 +1,4 @@
-"""``squealpipe map``: one quantity over both spring angles, as NetCDF and a picture."""
+"""``squealpipe map``: one quantity over both spring angles, as a dataset and a picture."""
 
 from __future__ import annotations
 
@@ -9,14 +9,22 @@ from squealpipe.cli.arguments import (
     BASELINE,
     FULL_RANGE,
     AngleRange,
+    Configs,
     Output,
     Physical,
     Picture,
-    picture_beside,
+    Switch,
 )
+from squealpipe.cli.console import say
+from squealpipe.cli.cost import SECONDS, TIMED, estimate
 from squealpipe.cli.exit_codes import DONE
+from squealpipe.cli.output import check_outputs, write
 
-Kind = Literal["validity", "hammering", "quasi-static", "stability", "frequencies"]
+Kind = Literal[
+    "validity", "hammering", "quasi-static", "stability", "critical-friction", "frequencies"
+]
+SECONDS_PER_PART = 3.0
+"""Work of one core between two words of progress, and what an interrupt loses."""
 
 
 def map_angles(
@@ -29,9 +37,14 @@ def map_angles(
     tol: float = 1e-12,
     output: Output = Path("map.nc"),
     picture: Picture = None,
+    force: Switch = False,
+    yes: Switch = False,
+    config: Configs = None,  # noqa: ARG001 (read by `parameters_from_study`)
     params: Physical = BASELINE,
 ) -> int:
-    """Compute a map over both spring angles; write NetCDF and a picture.
+    """Compute a map over both spring angles; write a dataset and a picture.
+
+    A map that was stopped goes on where it was when the same command is run again.
 
     Example: `squealpipe map validity --alpha1 0:pi:91 --alpha2 0:pi:91 --mu 0.2 -o validity.nc`
 
@@ -41,24 +54,46 @@ def map_angles(
         alpha2: angles of spring 2.
         t_end: horizon of validity and hammering maps.
         tol: tolerance of their integration.
-        output: NetCDF file to write.
+        output: dataset to write: NetCDF (.nc) or CSV (.csv).
         picture: picture to write; by default beside the output.
+        force: overwrite files that exist.
+        yes: go on though it takes long or much memory.
+        config: study whose parameters are used where none are typed; repeatable.
     """
-    from squealpipe.figures.angle_map import SHOWN, draw
-    from squealpipe.figures.style import save_figure
-    from squealpipe.store import load, produce
-    from squealpipe.tasks.catalogue import run_task
-
     if min(len(alpha1), len(alpha2)) < 2:
-        raise ValueError("a map needs 2 or more angles of each spring; write for instance 0:pi:61")
+        raise ValueError("a map needs 2 or more angles of each spring; write for instance 0:pi:31")
     name = {"frequencies": "natural_frequencies"}.get(kind, f"{kind.replace('-', '_')}_map")
-    options = {"t_end": t_end, "tol": tol} if kind in {"validity", "hammering"} else {}
-    picture = picture_beside(output, picture)
-    config = {"parameters": params.as_dict(), "alpha1": alpha1, "alpha2": alpha2, **options}
-    produce(lambda: run_task(name, params, alpha1, alpha2, **options), config=config, output=output)
-    dataset = load(output)
+    options = {"t_end": t_end, "tol": tol} if name in TIMED else {}
+    picture = check_outputs(output, picture, force=force)
+    estimate(name, params, options, runs=len(alpha1) * len(alpha2)).check(yes=yes)
+
+    import numpy as np
+
+    from squealpipe.execution import catalogue
+    from squealpipe.execution.row_blocks import BLOCK, map_in_blocks
+    from squealpipe.figures.parts.angle_map import SHOWN, draw
+    from squealpipe.figures.parts.style import save_figure
+    from squealpipe.sources import closure
+    from squealpipe.store.chunks import Checkpoint
+
+    settings = {"parameters": params.as_dict(), "alpha1": alpha1, "alpha2": alpha2, **options}
+    each = SECONDS[name] * (t_end / params.time_unit if name in TIMED else 1.0)
+    kept = Checkpoint.beside(
+        output, config={"task": name, **settings}, sources=closure(catalogue.__file__)
+    )
+    dataset = write(
+        lambda: map_in_blocks(
+            lambda rows: catalogue.run_task(name, params, rows, alpha2, **options),
+            np.array(alpha1),
+            len(alpha2),
+            label=f"{kind} map",
+            checkpoint=kept,
+            block=int(min(BLOCK, max(SECONDS_PER_PART / each, 1.0))),
+        ),
+        output,
+        config=settings,
+        checkpoint=kept,
+    )
     save_figure(draw(dataset), [picture])
-    for line in SHOWN[str(dataset.attrs["schema"])].counts(dataset):
-        print(line)
-    print(f"wrote {output} and {picture}")
+    say(*SHOWN[str(dataset.attrs["schema"])].counts(dataset), f"wrote {output} and {picture}")
     return DONE

@@ -1,12 +1,25 @@
-"""``squealpipe simulate``: one configuration, as text, NetCDF and a picture."""
+"""``squealpipe simulate``: one configuration, as text, a dataset and a picture."""
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 from typing import Any, Literal
 
-from squealpipe.cli.arguments import BASELINE, Angle, Output, Physical, Picture, picture_beside
+from squealpipe.cli.arguments import (
+    BASELINE,
+    Angle,
+    Configs,
+    Output,
+    Physical,
+    Picture,
+    Switch,
+)
+from squealpipe.cli.console import say
+from squealpipe.cli.cost import estimate
 from squealpipe.cli.exit_codes import ANSWER_IS_NO, DONE
+from squealpipe.cli.output import check_outputs, write
+from squealpipe.progress import Progress, observed
 
 Model = Literal["A1", "A1-no-stick", "A1-no-separation", "A1-linear-springs", "A4"]
 
@@ -20,11 +33,18 @@ def simulate(
     model: Model = "A1",
     tol: float = 1e-12,
     points: int = 2001,
+    x0: float = 0.0,
+    y0: float = 0.0,
+    vx0: float = 0.0,
+    vy0: float = 0.0,
     output: Output = Path("run.nc"),
     picture: Picture = None,
+    force: Switch = False,
+    yes: Switch = False,
+    config: Configs = None,  # noqa: ARG001 (read by `parameters_from_study`)
     params: Physical = BASELINE,
 ) -> int:
-    """Integrate one configuration from rest; print a summary, write NetCDF and a picture.
+    """Integrate one configuration, from rest unless told otherwise; write a dataset and a picture.
 
     Example: `squealpipe simulate 5pi/6 5pi/6 --t-end 100 --mu 0.2 -o hammering.nc`
 
@@ -35,40 +55,55 @@ def simulate(
         model: level of the model.
         tol: tolerance of the integration.
         points: instants at which the state is kept.
-        output: NetCDF file to write.
+        x0: displacement along the belt at the start.
+        y0: displacement away from the belt at the start.
+        vx0: speed along the belt at the start.
+        vy0: speed away from the belt at the start.
+        output: dataset to write: NetCDF (.nc) or CSV (.csv).
         picture: picture to write (png, svg or pdf); by default beside the output.
+        force: overwrite files that exist.
+        yes: go on though it takes long or much memory.
+        config: study whose parameters are used where none are typed; repeatable.
     """
-    import numpy as np
-
-    from squealpipe.figures.run import draw
-    from squealpipe.figures.style import save_figure
-    from squealpipe.schema import REMEDIES, Outcome
-    from squealpipe.store import produce
-    from squealpipe.store.netcdf import load
-    from squealpipe.tasks.dynamics import simulate as task
-    from squealpipe.tasks.summary import summarize, summary_lines
-
     if points < 16:
         raise ValueError(f"--points {points} is too few to show a motion; give 16 or more")
-    if not t_end > 0:
-        raise ValueError(f"--t-end {t_end!r} must be greater than 0")
-    times = np.linspace(0.0, t_end, points)
-    picture = picture_beside(output, picture)
-    config = {"parameters": params.as_dict(), "alpha1": alpha1, "alpha2": alpha2}
+    if not (t_end > 0 and math.isfinite(t_end)):
+        raise ValueError(f"--t-end {t_end!r} must be greater than 0 and finite")
+    picture = check_outputs(output, picture, force=force)
+    estimate("simulate", params, {"t_end": t_end}, samples=points).check(yes=yes)
+
+    import numpy as np
+
+    from squealpipe.figures.cli.run import draw
+    from squealpipe.figures.parts.style import save_figure
+    from squealpipe.schema import REMEDIES, Outcome
+    from squealpipe.tasks.dynamics.runs import simulate as task
+    from squealpipe.tasks.dynamics.summary import summarize, summary_lines
+
     options: dict[str, Any] = {"t_end": t_end, "model": model, "tol": tol}
-    produce(
-        lambda: task(params, alpha1, alpha2, times=times, **options),
-        config={**config, **options, "points": points},
-        output=output,
-    )
-    run = load(output)
+    if any((x0, y0, vx0, vy0)):
+        options["initial_state"] = [x0, y0, vx0, vy0]
+    settings = {"parameters": params.as_dict(), "alpha1": alpha1, "alpha2": alpha2, **options}
+    times = np.linspace(0.0, t_end, points)
+    with Progress(t_end, "simulation", unit="s of motion") as progress:
+
+        def tell(scaled_time: float) -> None:
+            progress.done = min(scaled_time * params.time_unit, t_end)
+            progress.advance(0)
+
+        with observed(tell):
+            run = write(
+                lambda: task(params, alpha1, alpha2, times=times, **options),
+                output,
+                config={**settings, "points": points},
+            )
+        progress.done = t_end
     summary = summarize(run)
-    for line in summary_lines(run, summary):
-        print(line)
+    say(*summary_lines(run, summary))
     save_figure(draw(run, summary), [picture])
-    print(f"wrote {output} and {picture}")
+    say(f"wrote {output} and {picture}")
     outcome = Outcome(int(run.outcome))
     if outcome is Outcome.converged:
         return DONE
-    print(f"the run ended early: {outcome.name} ({REMEDIES[outcome]})")
+    say(f"the run ended early: {outcome.name} ({REMEDIES[outcome]})")
     return ANSWER_IS_NO

@@ -8,10 +8,11 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
+from squealpipe.cli.arguments import Configs
+from squealpipe.cli.console import console
 from squealpipe.cli.exit_codes import ANSWER_IS_NO, DONE
 
 AsJson = Annotated[bool, Parameter(name="--json", negative="")]
-Configs = Annotated[list[Path] | None, Parameter(name=["--config", "-c"], negative="")]
 BASE_CONFIG = Path("workflow/config/paper.yaml")
 
 
@@ -34,11 +35,9 @@ def explain(*, config: Configs = None, times: bool = False, json_: AsJson = Fals
     if json_:
         print(json.dumps(plan.as_dict(), indent=1))
         return DONE
-    from rich.console import Console
-
     from squealpipe.report.explanation import table
 
-    Console().print(table(plan))
+    console().print(table(plan))
     return DONE
 
 
@@ -53,37 +52,6 @@ def _print_times() -> None:
         print(f"| {rule} | {len(seconds)} | {sum(seconds):.1f} |")
     every = [taken for seconds in times.values() for taken in seconds]
     print(f"| all | {len(every)} | {sum(every):.1f} |")
-
-
-def claims(file: Path = Path("results/data/claims.nc"), /, *, json_: AsJson = False) -> int:
-    """Print the paper's statements with their measured values and verdicts.
-
-    With the shipped parameters, exit code 1 tells that a verdict differs from the recorded one.
-
-    Example: `squealpipe claims --json`
-
-    Args:
-        file: dataset of verdicts, made by `snakemake`.
-        json_: print a JSON list of objects.
-    """
-    from rich import box
-    from rich.console import Console
-    from rich.table import Table
-
-    from squealpipe.claims.table import table as verdicts
-
-    rows, code = verdicts(file)
-    if json_:
-        print(json.dumps(rows, indent=1, allow_nan=False))
-        return code
-    shown = Table(box=box.SIMPLE_HEAD, pad_edge=False)
-    for name in ("id", "statement", "verdict", "value", "evidence"):
-        shown.add_column(name, overflow="fold")
-    for row in rows:
-        value = "" if row["value"] is None else f"{row['value']:.4g}"
-        shown.add_row(row["id"], row["statement"], row["verdict"], value, row["evidence"])
-    Console().print(shown)
-    return code
 
 
 def archive(
@@ -123,8 +91,10 @@ def verify(name: str, /) -> int:
         name: name or folder of the archive.
     """
     from squealpipe.store.archive import verify as check
+    from squealpipe.store.memory.catalogue import note_verified
 
     found = check(name)
+    note_verified(found.folder, "intact" if found.intact else "changed")
     for line in found.lines():
         print(line)
     return DONE if found.intact else ANSWER_IS_NO
@@ -135,7 +105,7 @@ def compare(
     b: str,
     /,
     *,
-    every: Annotated[bool, Parameter(negative="")] = False,
+    every: Annotated[bool, Parameter(name=["--all", "--every"], negative="")] = False,
     html: Path | None = None,
     json_: AsJson = False,
 ) -> int:
@@ -148,8 +118,8 @@ def compare(
     Args:
         a: archive name or path.
         b: archive name or path.
-        every: also list variables that are equal.
-        html: write a page with pictures of the maps that differ.
+        every: tell all of it: also what is equal, and where each side was made.
+        html: write a page with pictures: maps that differ, and figures of changed statements.
         json_: print JSON.
     """
     from squealpipe.store.compare import compare as difference_of
@@ -162,9 +132,7 @@ def compare(
     if json_:
         print(json.dumps(comparison.as_dict(), indent=1, allow_nan=False))
     else:
-        from rich.console import Console
+        from squealpipe.report.comparison import lines
 
-        from squealpipe.report.comparison import table
-
-        Console().print(table(comparison, every=every))
+        print("\n".join(lines(comparison, every=every)))
     return comparison.exit_code

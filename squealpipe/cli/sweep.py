@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated
 
 from cyclopts import Parameter
 
-from squealpipe.cli.arguments import BASELINE, Angle, Output, Physical
+from squealpipe.cli.arguments import BASELINE, Angle, Configs, Output, Physical, Switch
+from squealpipe.cli.console import SESSION, say
+from squealpipe.cli.cost import of_sweep
 from squealpipe.cli.exit_codes import DONE
+from squealpipe.cli.output import check_output, write
 from squealpipe.ranges import read_fixed, read_values, sweep_config
 
 
@@ -22,6 +26,9 @@ def sweep(
     option: Annotated[list[str] | None, Parameter(metavar="NAME=VALUE", negative="")] = None,
     workers: int | None = None,
     output: Output = Path("sweep.nc"),
+    force: Switch = False,
+    yes: Switch = False,
+    config: Configs = None,  # noqa: ARG001 (read by `parameters_from_study`)
     params: Physical = BASELINE,
 ) -> int:
     """Run a task at every combination of values; write one dataset with the names as dimensions.
@@ -33,45 +40,67 @@ def sweep(
 
     Args:
         task: simulate, validity_map, hammering_map, quasi_static_map, stability_map,
-            natural_frequencies, periodic_orbit or backbone.
+            critical_friction_map, natural_frequencies, periodic_orbit, backbone or
+            smallest_disturbance.
         vary: a parameter, angle or option with its values: mu=0:0.6:13, alpha1=0:pi:31,
             belt_speed=0.1:100:7:log or k3=0.5,0.75; repeat for further dimensions.
         alpha1: angle of spring 1 where it is not varied.
         alpha2: angle of spring 2 where it is not varied.
         option: a further keyword of the task, for instance t_end=100; repeat for more.
         workers: processes; all cores by default.
-        output: NetCDF file to write.
+        output: dataset to write: NetCDF (.nc) or CSV (.csv).
+        force: overwrite a file that exists.
+        yes: go on though it takes long or much memory.
+        config: study whose parameters are used where none are typed; repeatable.
     """
+    from squealpipe.execution import sweep as sweeping
+    from squealpipe.execution.tally import lines
     from squealpipe.sources import closure
-    from squealpipe.store import produce
     from squealpipe.store.chunks import Checkpoint
-    from squealpipe.tasks import sweep as sweeping
 
-    fixed = {name: read_fixed(name, value) for name, value in map(_pair, option or [])}
-    fixed |= {
-        name: value for name, value in (("alpha1", alpha1), ("alpha2", alpha2)) if value is not None
-    }
-    config = sweep_config(
+    varied = _pairs("--vary", vary)
+    options = _pairs("--option", option or [])
+    angles = {name: v for name, v in (("alpha1", alpha1), ("alpha2", alpha2)) if v is not None}
+    typed = SESSION.typed if params is not BASELINE else set()
+    for name in sorted(set(varied) & (set(options) | set(angles) | typed)):
+        raise ValueError(f"{name} is both fixed and varied; keep one")
+    settings = sweep_config(
         task=task,
-        vary={name: read_values(name, text) for name, text in map(_pair, vary)},
-        fixed=fixed,
+        vary={name: read_values(name, text) for name, text in varied.items()},
+        fixed={**{name: read_fixed(name, value) for name, value in options.items()}, **angles},
         parameters=params.as_dict(),
     )
-    plan = sweeping.planned(config)
-    print(f"{len(plan.points)} runs of {task} over {', '.join(plan.names)}")
-    kept = Checkpoint.beside(output, config=config, sources=closure(sweeping.__file__))
-    with kept, sweeping.executor(workers) as pool:
-        produce(
+    plan = sweeping.planned(settings)
+    check_output(output, force=force)
+    cost = of_sweep(settings, params, workers)
+    cost.check(yes=yes)
+    say(f"{len(plan.points)} runs of {task} over {', '.join(plan.names)}{cost.told}")
+    kept = Checkpoint.beside(output, config=settings, sources=closure(sweeping.__file__))
+
+    with sweeping.executor(workers) as pool:
+        dataset = write(
             lambda: sweeping.run_sweep(plan, executor=pool, checkpoint=kept),
-            config=config,
-            output=output,
+            output,
+            config=settings,
+            checkpoint=kept,
         )
-    print(f"wrote {output}")
+    say(*lines(dataset, plan.names), f"wrote {output}")
     return DONE
 
 
-def _pair(text: str) -> tuple[str, str]:
-    name, equals, value = text.partition("=")
-    if not (name and equals and value):
-        raise ValueError(f"{text!r} is no NAME=VALUE; write for instance mu=0:0.6:13")
-    return name.strip().replace("-", "_"), value
+def _pairs(flag: str, texts: Sequence[str]) -> dict[str, str]:
+    """Name → value of each NAME=VALUE.
+
+    Raises:
+        ValueError: a text is none, or a name stands twice.
+    """
+    found: dict[str, str] = {}
+    for text in texts:
+        name, equals, value = text.partition("=")
+        if not (name and equals and value):
+            raise ValueError(f"{text!r} is no NAME=VALUE; write for instance mu=0:0.6:13")
+        key = name.strip().replace("-", "_")
+        if key in found:
+            raise ValueError(f"{flag} {key} stands twice; keep one, with all its values")
+        found[key] = value
+    return found

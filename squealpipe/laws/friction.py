@@ -1,4 +1,8 @@
-"""Coulomb friction against the moving belt, set-valued and regularized."""
+"""Friction against the moving belt: slip, stick, and the regularized form.
+
+How the coefficient depends on the sliding speed is a law of its own
+(:mod:`squealpipe.laws.friction_laws`); the limit of stick and the sign of slip are common to all.
+"""
 
 from __future__ import annotations
 
@@ -6,21 +10,50 @@ from typing import Any
 
 import numpy as np
 
+from squealpipe.laws.friction_laws import coefficient
 
-def slip_force(normal_force: Any, direction: Any, p: Any) -> Any:
+
+def slip_force(normal_force: Any, direction: Any, mu: Any) -> Any:
     """Friction μ N sgn(V − ẋ) on the slipping mass, N.
 
     The paper prints μ(V_r) = μ sgn(V_r) below Eq. (5), which pushes the mass against the belt;
-    Eqs. (6), (9), (18), (20) drag it along, as here (E1). ``direction`` is sgn(V − ẋ).
+    Eqs. (6), (9), (18), (20) drag it along, as here (E1).
+
+    Args:
+        normal_force: N, N.
+        direction: sgn(V − ẋ).
+        mu: :func:`coefficient` at the sliding speed.
     """
-    return p.mu * normal_force * direction
+    return mu * normal_force * direction
 
 
-def stick_possible(elastic_x: Any, normal_force: Any, p: Any) -> Any:
-    """Whether friction can hold the mass: |elastic x-force| ≤ μ N."""
-    return np.abs(elastic_x) <= p.mu * normal_force
+def dragging_force(normal_force: Any, p: Any) -> Any:
+    """μ(|V|) N sgn V, N: friction on a mass that never moves as fast as the belt."""
+    return p.drag * normal_force
+
+
+def stick_limit(normal_force: Any, p: Any) -> Any:
+    """μs N, N: the largest friction force on a mass that sticks."""
+    return p.static_mu * normal_force
 
 
 def regularized_slip_force(normal_force: Any, vx: Any, p: Any, sigma_v: Any) -> Any:
-    """μ N tanh(σ_v (V − ẋ)), N: the smooth form used by codes without events."""
-    return p.mu * normal_force * np.tanh(sigma_v * (p.belt_speed - vx))
+    """μ(|V − ẋ|) N tanh(σ_v (V − ẋ)), N: the smooth form used by codes without events."""
+    lag = p.belt_speed - vx
+    return coefficient(np.abs(lag), p) * normal_force * np.tanh(sigma_v * lag)
+
+
+def speed_along_belt(vx: Any, p: Any) -> Any:
+    """sgn(V) ẋ, m/s: how fast the mass moves in the direction of the belt."""
+    return p.belt_direction * vx
+
+
+def slides(speed: Any, p: Any) -> Any:
+    """Whether the mass keeps sliding in one sense: its speed along the belt stays below |V|.
+
+    Args:
+        speed: largest :func:`speed_along_belt` of a motion, m/s; of a motion that is symmetric
+            in time the largest |ẋ|, which for any other one is a bound.
+        p: parameters; the belt may run either way.
+    """
+    return np.less(speed, np.abs(p.belt_speed))

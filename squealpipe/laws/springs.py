@@ -27,6 +27,11 @@ class Stiffness(NamedTuple):
     k22: Scalar
 
 
+LONG = 1e3
+"""Springs longer than so many l_pre take :func:`long_spring_force`, whose round-off does not grow
+with the length; below, that of :func:`spring_force` is less than a tolerance of 1e-12."""
+
+
 def geometry(alpha1: Any, alpha2: Any) -> Geometry:
     """Direction cosines of angles in rad (floats or arrays, broadcast against each other)."""
     return Geometry(np.cos(alpha1), np.sin(alpha1), np.cos(alpha2), np.sin(alpha2))
@@ -51,12 +56,51 @@ def spring_force(
     return -(stretch * (x - x_fixed)), -(stretch * (y - y_fixed))
 
 
-def elastic_force(x: Scalar, y: Scalar, p: Any, g: Geometry) -> tuple[Scalar, Scalar]:
-    """Spring terms of Eqs. (4) and (5): total force of both springs on the mass, N."""
+def long_spring_force(
+    k: Scalar, length: Scalar, x: Scalar, y: Scalar, x_fixed: Scalar, y_fixed: Scalar
+) -> tuple[Scalar, Scalar]:
+    """The same force from q = d² − L² expanded in r, so that d − L = q/(d + L) does not cancel.
+
+    Exact to round-off far from the fixed end, next to which d² = L² + q cancels instead.
+    """
+    q = x * (x - 2.0 * x_fixed) + y * (y - 2.0 * y_fixed)
+    d2 = length * length + q
+    stretch = k * q * (d2 + length * d2**0.5) ** -1.0
+    return -(stretch * (x - x_fixed)), -(stretch * (y - y_fixed))
+
+
+def elastic_force(
+    x: Scalar, y: Scalar, p: Any, g: Geometry, long1: bool = False, long2: bool = False
+) -> tuple[Scalar, Scalar]:
+    """Spring terms of Eqs. (4) and (5): total force of both springs on the mass, N.
+
+    ``long1`` and ``long2`` choose :func:`long_spring_force` for a spring.
+    """
     x1, y1, x2, y2 = fixed_ends(p, g)
-    f1x, f1y = spring_force(p.k1, p.length1, x, y, x1, y1)
-    f2x, f2y = spring_force(p.k2, p.length2, x, y, x2, y2)
+    if long1:
+        f1x, f1y = long_spring_force(p.k1, p.length1, x, y, x1, y1)
+    else:
+        f1x, f1y = spring_force(p.k1, p.length1, x, y, x1, y1)
+    if long2:
+        f2x, f2y = long_spring_force(p.k2, p.length2, x, y, x2, y2)
+    else:
+        f2x, f2y = spring_force(p.k2, p.length2, x, y, x2, y2)
     return f1x + f2x, f1y + f2y
+
+
+def elastic_x_slopes(x: Scalar, y: Scalar, p: Any, g: Geometry) -> tuple[Scalar, Scalar]:
+    """Derivatives by x and y of the x-force of :func:`elastic_force`, N/m."""
+    x1, y1, x2, y2 = fixed_ends(p, g)
+    first_x, first_y = spring_x_slopes(p.k1, p.length1, x - x1, y - y1)
+    second_x, second_y = spring_x_slopes(p.k2, p.length2, x - x2, y - y2)
+    return first_x + second_x, first_y + second_y
+
+
+def spring_x_slopes(k: Scalar, length: Scalar, rx: Scalar, ry: Scalar) -> tuple[Scalar, Scalar]:
+    """Derivatives by x and y of the x-force of one spring, r − r_f away from its fixed end, N/m."""
+    d2 = rx * rx + ry * ry
+    ratio = length * d2**-0.5
+    return -(k * (1.0 - ratio * ry * ry * d2**-1.0)), -(k * ratio * rx * ry * d2**-1.0)
 
 
 def elastic_energy(x: Scalar, y: Scalar, p: Any, g: Geometry) -> Scalar:
@@ -70,10 +114,15 @@ def elastic_energy(x: Scalar, y: Scalar, p: Any, g: Geometry) -> Scalar:
 
 def linear_stiffness(p: Any, g: Geometry) -> Stiffness:
     """Eqs. (8a)–(8c): K11, K12, K22, N/m."""
+    return inclined_pair(p.k1, p.k2, g)
+
+
+def inclined_pair(first: Scalar, second: Scalar, g: Geometry) -> Stiffness:
+    """Σ q_i e_i e_i' of two elements along the springs, with q_i their stiffness or damping."""
     return Stiffness(
-        p.k1 * g.c1 * g.c1 + p.k2 * g.c2 * g.c2,
-        p.k1 * g.c1 * g.s1 - p.k2 * g.c2 * g.s2,
-        p.k1 * g.s1 * g.s1 + p.k2 * g.s2 * g.s2,
+        first * g.c1 * g.c1 + second * g.c2 * g.c2,
+        first * g.c1 * g.s1 - second * g.c2 * g.s2,
+        first * g.s1 * g.s1 + second * g.s2 * g.s2,
     )
 
 
@@ -104,8 +153,3 @@ def linear_elastic_force(x: Scalar, y: Scalar, stiffness: Stiffness) -> tuple[Sc
         -(stiffness.k11 * x + stiffness.k12 * y),
         -(stiffness.k12 * x + stiffness.k22 * y),
     )
-
-
-def linear_elastic_energy(x: Scalar, y: Scalar, stiffness: Stiffness) -> Scalar:
-    """½ r'K r, J: the potential of :func:`linear_elastic_force`."""
-    return 0.5 * stiffness.k11 * x * x + stiffness.k12 * x * y + 0.5 * stiffness.k22 * y * y

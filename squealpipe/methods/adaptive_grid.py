@@ -4,7 +4,9 @@ Level by level the spacing is halved. A point takes the label of its nearest coa
 unless the labels around it differ; then it is computed, and so is everything around it until no
 computed label meets a different one that is not. The boundary is thus followed wherever it leads,
 into horns far thinner than the first grid. Islands that no coarse point hits are found only next
-to *suspects*: points whose answer was almost another one.
+to *suspects*: points whose answer was almost another one, and points whose *reserve*, the distance
+of their answer from the other one, is less than half of what it changes by between neighbours, so
+that it may be used up before the next point.
 """
 
 from __future__ import annotations
@@ -15,7 +17,10 @@ from typing import NamedTuple
 import numpy as np
 from scipy.ndimage import binary_dilation, maximum_filter, minimum_filter
 
-Evaluate = Callable[[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]
+Evaluate = Callable[[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray, np.ndarray]]
+
+RESERVE_OF_CHANGE = 0.5
+"""Reserve over its change between neighbours below which it may be used up between them."""
 
 
 class RefinedGrid(NamedTuple):
@@ -29,9 +34,10 @@ def refine_grid(evaluate: Evaluate, resolution: int, coarse: int) -> RefinedGrid
     """Labels on ``resolution`` × ``resolution`` points.
 
     Args:
-        evaluate: (rows, columns) of points → (labels, whether each is a suspect).
-        resolution: points a side.
-        coarse: points a side of the first grid; (resolution − 1)/(coarse − 1) must be a power
+        evaluate: (rows, columns) of points → (labels, whether each is a suspect, reserve); the
+            reserve is NaN where none is known.
+        resolution: points per side.
+        coarse: points per side of the first grid; (resolution − 1)/(coarse − 1) must be a power
             of two.
 
     Raises:
@@ -44,23 +50,37 @@ def refine_grid(evaluate: Evaluate, resolution: int, coarse: int) -> RefinedGrid
             f"times a power of two, for instance resolution = {16 * (coarse - 1) + 1}"
         )
     rows, columns = (index.ravel() for index in np.indices((coarse, coarse)) * spacing)
-    found, suspected = evaluate(rows, columns)
-    labels, suspects = found.reshape(coarse, coarse), suspected.reshape(coarse, coarse)
+    labels, suspects, reserve = (found.reshape(coarse, coarse) for found in evaluate(rows, columns))
     computed = np.ones_like(suspects)
     while spacing > 1:
         spacing //= 2
-        labels, computed, suspects = _halve(labels), _spread(computed), _spread(suspects)
-        suspected_here = binary_dilation(suspects, np.ones((3, 3)))
+        doubtful = _spread(suspects | _nearly_used_up(reserve), False)
+        labels, computed = _halve(labels), _spread(computed, False)
+        suspects, reserve = _spread(suspects, False), _spread(reserve, np.nan)
+        suspected_here = binary_dilation(doubtful, np.ones((3, 3)))
         while True:
-            changes = maximum_filter(labels, 3) != minimum_filter(labels, 3)
-            rows, columns = np.nonzero((changes | suspected_here) & ~computed)
+            rows, columns = np.nonzero((_changes(labels) | suspected_here) & ~computed)
             if not rows.size:
                 break
-            found, suspected = evaluate(rows * spacing, columns * spacing)
-            labels[rows, columns] = found
-            suspects[rows, columns] = suspected
+            found = evaluate(rows * spacing, columns * spacing)
+            labels[rows, columns], suspects[rows, columns], reserve[rows, columns] = found
             computed[rows, columns] = True
     return RefinedGrid(labels, computed)
+
+
+def follow_boundaries(evaluate: Evaluate, grid: RefinedGrid) -> None:
+    """Compute all points of the finest grid where labels change, after some were put right."""
+    while True:
+        rows, columns = np.nonzero(_changes(grid.labels) & ~grid.computed)
+        if not rows.size:
+            return
+        grid.labels[rows, columns] = evaluate(rows, columns)[0]
+        grid.computed[rows, columns] = True
+
+
+def _changes(labels: np.ndarray) -> np.ndarray:
+    """Points with another label next to them."""
+    return np.asarray(maximum_filter(labels, 3) != minimum_filter(labels, 3))
 
 
 def _halve(labels: np.ndarray) -> np.ndarray:
@@ -69,8 +89,17 @@ def _halve(labels: np.ndarray) -> np.ndarray:
     return labels[np.ix_(parent, parent)]
 
 
-def _spread(flags: np.ndarray) -> np.ndarray:
-    """The same flags at half the spacing, False at new points."""
-    spread = np.zeros((2 * flags.shape[0] - 1,) * 2, bool)
-    spread[::2, ::2] = flags
+def _spread(values: np.ndarray, between: object) -> np.ndarray:
+    """The same values at half the spacing, another one at new points."""
+    spread = np.full((2 * values.shape[0] - 1,) * 2, between, values.dtype)
+    spread[::2, ::2] = values
     return spread
+
+
+def _nearly_used_up(reserve: np.ndarray) -> np.ndarray:
+    """Points whose reserve is small against its range among the points around."""
+    known = np.isfinite(reserve)
+    most = maximum_filter(np.where(known, reserve, -np.inf), 3)
+    least = minimum_filter(np.where(known, reserve, np.inf), 3)
+    with np.errstate(invalid="ignore"):
+        return np.asarray(known & (reserve < RESERVE_OF_CHANGE * (most - least)))

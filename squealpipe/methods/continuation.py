@@ -7,7 +7,7 @@ yields one state after the other, so the caller decides when to stop.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import IntEnum
 from typing import Protocol
 
@@ -31,6 +31,7 @@ class ContinuationSettings:
     Attributes:
         first_step, shortest_step, longest_step: arclength.
         tolerance: of the largest component of F.
+        stagnant: the same where Newton's method gets no further, as by round-off; 0 for never.
         max_iterations: Newton iterations of a step; with more, the step is halved.
         easy_iterations: with no more than these, the next step grows.
         least_cosine: of the angle between tangents before and after a step.
@@ -41,6 +42,7 @@ class ContinuationSettings:
     shortest_step: float = 1e-7
     longest_step: float = 0.05
     tolerance: float = 1e-11
+    stagnant: float = 0.0
     max_iterations: int = 6
     easy_iterations: int = 3
     least_cosine: float = 0.97
@@ -126,7 +128,8 @@ class PseudoArclength:
         for iteration in range(self.settings.max_iterations + 1):
             values, jacobian = problem.evaluate(z)
             residual = float(np.abs(values).max())
-            if residual <= self.settings.tolerance and iteration > 0:
+            stagnates = 0.2 * previous < residual <= self.settings.stagnant
+            if (residual <= self.settings.tolerance or stagnates) and iteration > 0:
                 return z, tangent / np.linalg.norm(tangent), iteration, residual
             if not residual < max(10.0 * previous, self.settings.tolerance):
                 return None
@@ -140,25 +143,39 @@ class PseudoArclength:
             tangent = np.asarray(solution[:, 1], dtype=np.float64)
         return None
 
+    def attempt(
+        self, problem: Problem, state: ContinuationState, *, least_cosine: float | None = None
+    ) -> ContinuationState | None:
+        """One step of the state's own length; None where it is not accepted.
+
+        Args:
+            problem: the equations.
+            state: where it starts.
+            least_cosine: instead of that of the settings.
+        """
+        settings = self.settings
+        turn = settings.least_cosine if least_cosine is None else least_cosine
+        length = state.step * (1.0 + float(np.linalg.norm(state.point)))
+        guess = state.point + length * state.tangent + 0.5 * length * length * state.curvature
+        corrected = self.correct(problem, guess, state.tangent)
+        if corrected is None:
+            return None
+        point, tangent, iterations, residual = corrected
+        near = float(np.linalg.norm(point - guess)) < 0.3 * length
+        if not (near and float(tangent @ state.tangent) > turn):
+            return None
+        easy = iterations <= settings.easy_iterations
+        following = min(state.step * (1.5 if easy else 1.0), settings.longest_step)
+        curvature = (tangent - state.tangent) / length
+        return ContinuationState(point, tangent, curvature, following, iterations, residual)
+
     def advance(self, problem: Problem, state: ContinuationState) -> ContinuationState | None:
         """The next state; None where no step down to the shortest one is accepted."""
-        settings = self.settings
         step = state.step
-        while step >= settings.shortest_step:
-            length = step * (1.0 + float(np.linalg.norm(state.point)))
-            ahead = length * state.tangent + 0.5 * length * length * state.curvature
-            guess = state.point + ahead
-            corrected = self.correct(problem, guess, state.tangent)
-            if corrected is not None:
-                point, tangent, iterations, residual = corrected
-                near = float(np.linalg.norm(point - guess)) < 0.3 * length
-                if near and float(tangent @ state.tangent) > settings.least_cosine:
-                    easy = iterations <= settings.easy_iterations
-                    following = min(step * (1.5 if easy else 1.0), settings.longest_step)
-                    curvature = (tangent - state.tangent) / length
-                    return ContinuationState(
-                        point, tangent, curvature, following, iterations, residual
-                    )
+        while step >= self.settings.shortest_step:
+            following = self.attempt(problem, replace(state, step=step))
+            if following is not None:
+                return following
             step *= 0.5
         return None
 

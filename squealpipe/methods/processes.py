@@ -10,6 +10,7 @@ from __future__ import annotations
 import mmap
 import multiprocessing
 import os
+import signal
 from collections.abc import Callable, Mapping
 from math import prod
 from typing import Any
@@ -62,25 +63,35 @@ def run_shared(
     arrays = {name: _shared_array(shape, dtype) for name, (shape, dtype) in shapes.items()}
     context = multiprocessing.get_context("fork")
     processes = [
-        context.Process(target=work, args=(arrays, first, workers), daemon=True)
+        context.Process(target=_in_child, args=(work, arrays, first, workers), daemon=True)
         for first in range(1, workers)
     ]
     for process in processes:
         process.start()
     try:
         work(arrays, 0, workers)
+        for process in processes:
+            process.join()
     except BaseException:
         for process in processes:
             process.terminate()
         raise
-    for process in processes:
-        process.join()
-        if process.exitcode != 0:
-            raise RuntimeError(
-                f"a worker process ended with exit code {process.exitcode}; "
-                "run again with workers=1 to see why"
-            )
+    failed = next((process.exitcode for process in processes if process.exitcode), 0)
+    if failed:
+        raise RuntimeError(
+            f"a worker process ended with exit code {failed}; run again with workers=1 to see why"
+        )
     return arrays
+
+
+def leave_interrupts_to_the_parent() -> None:
+    """In a worker process: Ctrl-C reaches the whole group, and the parent ends its workers."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+
+
+def _in_child(work: Work, arrays: dict[str, np.ndarray], first: int, stride: int) -> None:
+    leave_interrupts_to_the_parent()
+    work(arrays, first, stride)
 
 
 def _can_fork() -> bool:

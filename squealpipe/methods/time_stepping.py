@@ -32,7 +32,8 @@ def jitted(function: Callable[..., Any]) -> Any:
         if isinstance(value, types.FunctionType) and value.__module__.startswith("squealpipe.")
     }
     scope = {**function.__globals__, **replaced}
-    return numba.njit(types.FunctionType(function.__code__, scope, function.__name__))
+    copy = types.FunctionType(function.__code__, scope, function.__name__, function.__defaults__)
+    return numba.njit(copy)
 
 
 @numba.njit

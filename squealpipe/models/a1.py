@@ -22,7 +22,9 @@ from enum import IntEnum
 from typing import Any
 
 from squealpipe.laws.contact import contact_energy, contact_force
+from squealpipe.laws.dashpots import damping_force, linear_damping_force
 from squealpipe.laws.friction import slip_force
+from squealpipe.laws.friction_laws import coefficient
 from squealpipe.laws.springs import (
     Geometry,
     elastic_energy,
@@ -41,19 +43,37 @@ class Regime(IntEnum):
     separated = 3
 
 
-VARIANTS = ("A1", "A1-no-stick", "A1-no-separation", "A1-linear-springs")
-
-
-def spring_force(x: Any, y: Any, p: Any, g: Geometry, *, linear_springs: bool) -> tuple[Any, Any]:
-    """Force of both springs on the mass, exact or linearized, N."""
+def suspension_force(
+    x: Any,
+    y: Any,
+    vx: Any,
+    vy: Any,
+    p: Any,
+    g: Geometry,
+    *,
+    linear_springs: bool,
+    long_springs: tuple[bool, bool] = (False, False),
+    dashpots: bool = True,
+) -> tuple[Any, Any]:
+    """Force of both springs and their dashpots, if any, on the mass, exact or linearized, N."""
     if linear_springs:
-        return linear_elastic_force(x, y, linear_stiffness(p, g))
-    return elastic_force(x, y, p, g)
+        fx, fy = linear_elastic_force(x, y, linear_stiffness(p, g))
+    else:
+        fx, fy = elastic_force(x, y, p, g, *long_springs)
+    if not dashpots:
+        return fx, fy
+    if linear_springs:
+        cx, cy = linear_damping_force(vx, vy, p, g)
+    else:
+        cx, cy = damping_force(x, y, vx, vy, p, g)
+    return fx + cx, fy + cy
 
 
 def acceleration(
     x: Any,
     y: Any,
+    vx: Any,
+    vy: Any,
     p: Any,
     g: Geometry,
     *,
@@ -61,35 +81,44 @@ def acceleration(
     direction: Any,
     stick: Any = 0.0,
     linear_springs: bool = False,
+    long_springs: tuple[bool, bool] = (False, False),
+    dashpots: bool = True,
 ) -> tuple[Any, Any]:
     """Eqs. (4), (5): (ẍ, ÿ) within one regime, m/s².
 
     Args:
-        x, y: displacement, m.
+        x, y: displacement, m; vx, vy: velocity, m/s.
         p: parameters; g: direction cosines.
         contact: 1 in contact, 0 separated.
         direction: sgn(V − ẋ).
-        stick: 1 while sticking, when friction balances the elastic x-force and ẍ = 0.
-        linear_springs: use K r instead of the exact geometry.
+        stick: 1 while sticking, when friction balances the other x-forces and ẍ = 0.
+        linear_springs: use K r and C ṙ instead of the exact geometry.
+        long_springs: which of the springs take the form for long ones.
+        dashpots: whether there are any.
     """
-    fx, fy = spring_force(x, y, p, g, linear_springs=linear_springs)
+    fx, fy = suspension_force(
+        x, y, vx, vy, p, g,
+        linear_springs=linear_springs, long_springs=long_springs, dashpots=dashpots,
+    )  # fmt: skip
     normal = contact * contact_force(y, p)
+    friction = slip_force(normal, direction, coefficient(direction * (p.belt_speed - vx), p))
     inverse_mass = p.mass**-1.0
-    ax = (1.0 - stick) * inverse_mass * (fx + slip_force(normal, direction, p))
+    ax = (1.0 - stick) * inverse_mass * (fx + friction)
     return ax, inverse_mass * (fy + normal)
 
 
 def mechanical_energy(
     x: Any, y: Any, vx: Any, vy: Any, p: Any, g: Geometry, *, contact: Any
 ) -> Any:
-    """Kinetic + spring + contact energy, J; changes only by :func:`friction_power`."""
+    """Kinetic + spring + contact energy, J; changes by :func:`friction_power` and the dashpots."""
     kinetic = 0.5 * p.mass * (vx * vx + vy * vy)
     return kinetic + elastic_energy(x, y, p, g) + contact * contact_energy(y, p)
 
 
 def friction_power(
-    vx: Any, elastic_x: Any, normal_force: Any, p: Any, *, direction: Any, stick: Any = 0.0
+    vx: Any, suspension_x: Any, normal_force: Any, p: Any, *, direction: Any, stick: Any = 0.0
 ) -> Any:
-    """Power of the belt on the mass, W: μNẋ sgn(V − ẋ) in slip, −V·(elastic x-force) in stick."""
-    slipping = slip_force(normal_force, direction, p) * vx
-    return (1.0 - stick) * slipping - stick * p.belt_speed * elastic_x
+    """Power of the belt on the mass, W: μNẋ sgn(V − ẋ) in slip, −V·(other x-forces) in stick."""
+    mu = coefficient(direction * (p.belt_speed - vx), p)
+    slipping = slip_force(normal_force, direction, mu) * vx
+    return (1.0 - stick) * slipping - stick * p.belt_speed * suspension_x

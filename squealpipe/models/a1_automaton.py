@@ -14,10 +14,10 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from squealpipe.laws.contact import contact_force, regularized_force, unilateral_force
-from squealpipe.laws.friction import regularized_slip_force, slip_force
+from squealpipe.laws.friction import regularized_slip_force, slip_force, stick_limit
 from squealpipe.laws.springs import Geometry, elastic_force, geometry
-from squealpipe.models.a1 import Regime, acceleration, spring_force
-from squealpipe.parameters import Parameters
+from squealpipe.models.a1 import Regime, acceleration, suspension_force
+from squealpipe.parameters import TABLE, Parameters
 
 
 class EventKind(IntEnum):
@@ -48,6 +48,7 @@ class A1Automaton:
         self.geometry = Geometry(*map(float, geometry(alpha1, alpha2)))
         self.linear_springs = linear_springs
         self.stick = stick
+        self.dashpots = params.damping1 + params.damping2 > 0.0
 
     def field(self, regime: int) -> Any:
         """The field f(t, z) of a regime."""
@@ -59,8 +60,8 @@ class A1Automaton:
         def f(_: float, z: np.ndarray) -> tuple[float, float, float, float]:
             x, y, vx, vy = z.tolist()
             ax, ay = acceleration(
-                x, y, p, g, contact=contact, direction=direction, stick=stick,
-                linear_springs=self.linear_springs,
+                x, y, vx, vy, p, g, contact=contact, direction=direction, stick=stick,
+                linear_springs=self.linear_springs, dashpots=self.dashpots,
             )  # fmt: skip
             return vx, vy, ax, ay
 
@@ -89,12 +90,12 @@ class A1Automaton:
         return float(self.params.belt_speed - z[2])
 
     def grip(self, z: np.ndarray) -> float:
-        """μN, N: what friction can hold."""
-        return float(slip_force(contact_force(float(z[1]), self.params), 1.0, self.params))
+        """μs N, N: what friction can hold."""
+        return float(stick_limit(contact_force(float(z[1]), self.params), self.params))
 
     def pull(self, z: np.ndarray) -> float:
-        """Elastic x-force, N."""
-        return float(self._elastic(z)[0])
+        """x-force of springs and dashpots, N."""
+        return float(self._suspension(z)[0])
 
     def start(self, z: np.ndarray) -> int:
         """The regime of a state, also of one that lies on guards."""
@@ -133,12 +134,12 @@ class A1Automaton:
         return z
 
     def _in_contact(self, z: np.ndarray) -> bool:
-        """On the threshold the velocity decides, then the elastic force."""
+        """On the threshold the velocity decides, then the force."""
         if self.gap(z) != 0.0:
             return self.gap(z) > 0.0
         if z[3] != 0.0:
             return bool(z[3] < 0.0)
-        return bool(self._elastic(z)[1] <= 0.0)
+        return bool(self._suspension(z)[1] <= 0.0)
 
     def _sliding(self, z: np.ndarray) -> int:
         """Slip or stick in contact; at belt speed the force decides."""
@@ -149,9 +150,12 @@ class A1Automaton:
             return Regime.stick
         return Regime.slip_faster if self.pull(z) > 0.0 else Regime.slip_slower
 
-    def _elastic(self, z: np.ndarray) -> tuple[float, float]:
-        x, y = z[:2].tolist()
-        return spring_force(x, y, self.params, self.geometry, linear_springs=self.linear_springs)
+    def _suspension(self, z: np.ndarray) -> tuple[float, float]:
+        x, y, vx, vy = z.tolist()
+        p, g = self.params, self.geometry
+        return suspension_force(
+            x, y, vx, vy, p, g, linear_springs=self.linear_springs, dashpots=self.dashpots
+        )
 
 
 def regularized_field(
@@ -159,11 +163,11 @@ def regularized_field(
 ) -> Any:
     """A1 without regimes: contact and friction as tanh of widths 1/σ (m) and 1/σ_v (m/s)."""
     g = Geometry(*map(float, geometry(alpha1, alpha2)))
-    inverse_mass = 1.0 / params.mass
+    inverse_mass, dashpots = 1.0 / params.mass, params.damping1 + params.damping2 > 0.0
 
     def f(_: float, z: np.ndarray) -> tuple[float, float, float, float]:
         x, y, vx, vy = z.tolist()
-        fx, fy = spring_force(x, y, params, g, linear_springs=False)
+        fx, fy = suspension_force(x, y, vx, vy, params, g, linear_springs=False, dashpots=dashpots)
         normal = regularized_force(y, params, sigma)
         friction = regularized_slip_force(normal, vx, params, sigma_v)
         return vx, vy, inverse_mass * (fx + friction), inverse_mass * (fy + normal)
@@ -171,24 +175,15 @@ def regularized_field(
     return f
 
 
-class PlainParameters(NamedTuple):
-    """The parameters of :class:`squealpipe.parameters.Parameters` as compiled code takes them."""
-
-    mass: float
-    k1: float
-    k2: float
-    k3: float
-    mu: float
-    belt_speed: float
-    preload: float
-    length1: float
-    length2: float
-    sigma: float
+PlainParameters: Any = NamedTuple(  # type: ignore[misc]
+    "PlainParameters", [(name, float) for name, row in TABLE.items() if not row.extension]
+)
+"""The parameters of the paper's model as compiled code takes them."""
 
 
-def smooth_forces(x: Any, y: Any, data: tuple[PlainParameters, Geometry]) -> tuple[Any, Any, Any]:
-    """(x-force of the springs, y-force of springs and contact, friction bound μN), N."""
+def smooth_forces(x: Any, y: Any, data: tuple[Any, Geometry]) -> tuple[Any, Any, Any]:
+    """(x-force of the springs, y-force of springs and contact, friction bound μN), N; Coulomb."""
     p, g = data
     fx, fy = elastic_force(x, y, p, g)
     normal = unilateral_force(y, p)
-    return fx, fy + normal, slip_force(normal, 1.0, p)
+    return fx, fy + normal, slip_force(normal, 1.0, p.mu)

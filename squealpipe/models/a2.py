@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from squealpipe.laws.contact import linearized_contact_stiffness, regularized_force
-from squealpipe.laws.friction import slip_force
+from squealpipe.laws.friction import dragging_force
 from squealpipe.laws.springs import Stiffness, linear_elastic_force
 
 ROUND_OFF = 4.0 * np.finfo(float).eps
@@ -28,7 +28,7 @@ def acceleration(
     stiffness3 = contact_stiffness(p, sigma)
     normal = actuation(p, sigma) - stiffness3 * y
     fx, fy = linear_elastic_force(x, y, stiffness)
-    friction = slip_force(normal, p.belt_direction, p)
+    friction = dragging_force(normal, p)
     inverse_mass = p.mass**-1.0
     return inverse_mass * (fx + friction), inverse_mass * (fy + normal)
 

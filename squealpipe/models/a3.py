@@ -184,9 +184,9 @@ def _crowded(start: float, stop: float, points: int) -> np.ndarray:
 
 def flutter_circle(p: Any, k3: float) -> tuple[complex, float]:
     """Centre and radius of the circle in the plane of Z inside which there is flutter, N/m."""
-    return k3 * (1.0 - 1j * p.drag), p.mu * k3
+    return k3 * (1.0 - 1j * p.drag), abs(p.drag) * k3
 
 
 def divergence_circle(p: Any, k3: float) -> tuple[complex, float]:
     """Centre and radius of the circle in the plane of Z outside which there is divergence, N/m."""
-    return k3 * (1.0 - 1j * p.drag), float(np.hypot(p.k1 + p.k2 + k3, p.mu * k3))
+    return k3 * (1.0 - 1j * p.drag), float(np.hypot(p.k1 + p.k2 + k3, p.drag * k3))

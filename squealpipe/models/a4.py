@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from squealpipe.laws.contact import contact_force
-from squealpipe.laws.friction import slip_force
+from squealpipe.laws.friction import dragging_force
 from squealpipe.laws.springs import Geometry, Stiffness, linear_elastic_force, linear_stiffness
 
 
@@ -20,7 +20,7 @@ def acceleration(x: Any, y: Any, p: Any, g: Geometry, *, contact: Any) -> tuple[
     """Eqs. (18), (19): (ẍ, ÿ), m/s²; Eqs. (20), (21) in contact, (23), (24) separated."""
     fx, fy = linear_elastic_force(x, y, linear_stiffness(p, g))
     normal = contact * contact_force(y, p)
-    friction = slip_force(normal, p.belt_direction, p)
+    friction = dragging_force(normal, p)
     inverse_mass = p.mass**-1.0
     return inverse_mass * (fx + friction), inverse_mass * (fy + normal)
 

@@ -1,54 +1,91 @@
-"""A comparison for people: a table in the terminal, a page with pictures."""
+"""A comparison for people: a screenful in the terminal, a page with pictures."""
 
 from __future__ import annotations
 
 import base64
 import io
 import math
+from collections.abc import Iterator
+from functools import lru_cache
+from pathlib import Path
 from typing import Any
 
 import jinja2
-from rich.console import Group, RenderableType
-from rich.markup import escape
-from rich.table import Table
-from rich.text import Text
+import xarray as xr
 
-from squealpipe.figures.difference import CAPTION, draw, drawable
+from squealpipe.figures.parts.difference import CAPTION, draw, drawable
 from squealpipe.schema import find
+from squealpipe.schema.comparing import ComparedAs
 from squealpipe.store.compare import Comparison, DatasetDifference
-from squealpipe.store.differences import VariableDifference, Verdict, align
+from squealpipe.store.differences import Agreement, VariableDifference
+from squealpipe.store.matching import align
 from squealpipe.store.netcdf import load
+from squealpipe.store.statements import StatementChange
 
-STYLES = {
-    Verdict.equal: "green",
-    Verdict.within_tolerance: "green",
-    Verdict.different: "bold red",
-    Verdict.not_comparable: "bold yellow",
-}
 MOST_PICTURES = 12
+SCREEN = {"parameters": 6, "statements": 5, "differences": 6}
+"""Lines of each part that a terminal shows unless all are asked for."""
+WIDTH = 100
 
 
-def table(comparison: Comparison, *, every: bool = False) -> RenderableType:
-    """Changed parameters first, then what differs, then the verdict.
+def lines(comparison: Comparison, *, every: bool = False) -> list[str]:
+    """The answer, changed parameters, changed statements, what differs (worst first); for people.
 
     Args:
         comparison: of two places.
-        every: also list what is equal.
+        every: all of it, with what is equal and where each side was made; else a screenful.
     """
-    parts: list[RenderableType] = []
-    for title, changes in (
-        ("changed parameters", comparison.parameters),
-        ("made elsewhere", comparison.environment),
+    told = [verdict_line(comparison)]
+    worst = sorted(comparison.datasets, key=lambda item: item.severity, reverse=True)
+    listed = [line for item in worst for line in _dataset_lines(item, every=every)]
+    verdicts = sum(change.verdict_changed for change in comparison.statements)
+    values = len(comparison.statements) - verdicts
+    title = f"statements of the paper: {verdicts} changed their verdict, {values} only a value"
+    for name, heading, part in (
+        ("parameters", "changed parameters", list(_change_lines(comparison.parameters))),
+        ("statements", title, [statement_line(change) for change in comparison.statements]),
+        ("differences", "differences, worst first", listed),
     ):
-        if changes:
-            parts.append(_changes(title, comparison, changes))
-    listed = [item for item in comparison.datasets if every or _says_something(item)]
-    if listed:
-        parts.append(_datasets(listed, every=every))
-    parts.append(
-        Text(f"{verdict_line(comparison)}", style=STYLES[comparison.verdict], overflow="fold")
-    )
-    return Group(*parts)
+        most = len(part) if every else SCREEN[name]
+        shown = part if len(part) <= most else [*part[: most - 1], _more(len(part) - most + 1)]
+        told += [heading, *(f"  {line}" for line in shown)] if part else []
+    if every and comparison.environment:
+        told += ["made elsewhere", *(f"  {line}" for line in _change_lines(comparison.environment))]
+    return told if every else [_shortened(told[0], 3 * WIDTH), *(_shortened(x) for x in told[1:])]
+
+
+def statement_line(change: StatementChange) -> str:
+    """For instance ``S3: holds → fails, 0.96 → 0.71``."""
+    verdicts = [verdict or "not judged" for verdict in change.verdicts]
+    values = ["–" if value is None else f"{value:.4g}" for value in change.values]
+    told = " → ".join(verdicts) if change.verdict_changed else verdicts[0]
+    return f"{change.claim}: {told}, value {values[0]} → {values[1]}"
+
+
+def _change_lines(changes: dict[str, tuple[Any, Any]]) -> Iterator[str]:
+    for key, pair in changes.items():
+        yield f"{key}: " + " → ".join("–" if value is None else str(value) for value in pair)
+
+
+def _dataset_lines(item: DatasetDifference, *, every: bool) -> Iterator[str]:
+    if item.reason or (every and (item.notes or not item.variables)):
+        yield f"{item.name}: {words(item.verdict)}; " + "; ".join(
+            filter(None, [item.reason, *item.notes])
+        )
+    equal = [entry for entry in item.variables if entry not in item.differences]
+    for entry in [*item.differences, *(equal if every else [])]:
+        verdict = "" if entry.verdict == Agreement.different else f"{words(entry.verdict)} "
+        kind = "volatile " if entry.volatile else verdict
+        at = f" at {where(entry)}" if entry.where else ""
+        yield f"{item.name}.{entry.name}: {kind}{how_much(entry)}{at}"
+
+
+def _more(count: int) -> str:
+    return f"and {count} more; --all shows them"
+
+
+def _shortened(line: str, width: int = WIDTH) -> str:
+    return line if len(line) <= width else f"{line[: width - 1]}…"
 
 
 def verdict_line(comparison: Comparison) -> str:
@@ -56,7 +93,8 @@ def verdict_line(comparison: Comparison) -> str:
     if comparison.reason:
         return f"not comparable: {comparison.reason}"
     counts = {
-        verdict: sum(item.verdict == verdict for item in comparison.datasets) for verdict in Verdict
+        verdict: sum(item.verdict == verdict for item in comparison.datasets)
+        for verdict in Agreement
     }
     told = ", ".join(f"{words(verdict)} {count}" for verdict, count in counts.items() if count)
     total = len(comparison.datasets)
@@ -65,7 +103,7 @@ def verdict_line(comparison: Comparison) -> str:
     return line + skipped if comparison.skipped else line
 
 
-def words(verdict: Verdict) -> str:
+def words(verdict: Agreement) -> str:
     """A verdict as words."""
     return verdict.name.replace("_", " ")
 
@@ -77,17 +115,18 @@ def where(entry: VariableDifference) -> str:
 
 def how_much(entry: VariableDifference) -> str:
     """Size of the difference in words."""
-    if entry.reason and not entry.compared:
+    if entry.reason and (not entry.compared or entry.compared_as == ComparedAs.sample.value):
         return entry.reason
     if entry.flips:
         return f"{entry.differing} flipped: " + ", ".join(
             f"{pair} {count}" for pair, count in entry.flips.items()
         )
-    if entry.verdict == Verdict.equal:
+    if entry.verdict == Agreement.equal:
         return ""
+    allowed = entry.compared_as or f"rtol {entry.rtol:g}, atol {entry.atol:g}"
     told = (
-        f"abs {entry.largest_absolute:.3g}, rel {entry.largest_relative:.3g}, "
-        f"{entry.differing} of {entry.compared} beyond rtol {entry.rtol:g}, atol {entry.atol:g}"
+        f"{entry.differing} of {entry.compared} beyond {allowed}; "
+        f"largest {entry.largest_absolute:.3g}, relative {entry.largest_relative:.3g}"
     )
     return f"{told}; {entry.reason}" if entry.reason else told
 
@@ -98,53 +137,35 @@ def page(comparison: Comparison) -> str:
         loader=jinja2.PackageLoader("squealpipe.report", "templates"), autoescape=True
     )
     template = environment.get_template("comparison.html.j2")
+    pictures = _pictures(comparison)
+    _aligned.cache_clear()  # the files may change before the next page
     return template.render(
         comparison=comparison,
         verdict=verdict_line(comparison),
-        pictures=_pictures(comparison),
+        pictures=pictures,
+        statements=list(_statements(comparison)),
         caption=CAPTION,
         words=words,
         where=where,
         how_much=how_much,
-        Verdict=Verdict,
+        Agreement=Agreement,
     )
 
 
-def _changes(title: str, comparison: Comparison, changes: dict[str, tuple[Any, Any]]) -> Table:
-    grid = Table(title=title, title_justify="left", title_style="bold")
-    grid.add_column("key")
-    grid.add_column(escape(comparison.a), overflow="fold")
-    grid.add_column(escape(comparison.b), overflow="fold")
-    for key, pair in changes.items():
-        grid.add_row(escape(key), *(escape("–" if value is None else str(value)) for value in pair))
-    return grid
+def _statements(comparison: Comparison) -> Iterator[tuple[StatementChange, str, list[str]]]:
+    """Each changed statement with its line and its pictures; a pair is embedded once."""
+    shown: set[tuple[Path | None, Path | None]] = set()
+    for change in comparison.statements:
+        pictures = [] if change.figures in shown else [_embedded(path) for path in change.figures]
+        shown.add(change.figures)
+        yield change, statement_line(change), pictures
 
 
-def _says_something(item: DatasetDifference) -> bool:
-    equal = all(entry.verdict == Verdict.equal for entry in item.variables)
-    return not equal or bool(item.notes) or item.verdict != Verdict.equal
-
-
-def _datasets(datasets: list[DatasetDifference], *, every: bool) -> Table:
-    grid = Table(title="variables", title_justify="left", title_style="bold")
-    for column in ("dataset", "variable", "verdict", "difference", "where"):
-        grid.add_column(column, overflow="fold")
-    for item in datasets:
-        style = STYLES[item.verdict]
-        note = "; ".join([item.reason, *item.notes] if item.reason else item.notes)
-        grid.add_row(escape(item.name), "", Text(words(item.verdict), style=style), escape(note))
-        for entry in item.variables:
-            if entry.verdict == Verdict.equal and not every:
-                continue
-            shown = "volatile" if entry.volatile else words(entry.verdict)
-            grid.add_row(
-                "",
-                escape(entry.name),
-                Text(shown, style="dim" if entry.volatile else STYLES[entry.verdict]),
-                escape(how_much(entry)),
-                escape(where(entry)),
-            )
-    return grid
+def _embedded(path: Path | None) -> str:
+    """A picture as a data address; empty where it is not kept."""
+    if path is None:
+        return ""
+    return f"data:image/png;base64,{base64.b64encode(path.read_bytes()).decode()}"
 
 
 def _place(dim: str, value: float | str) -> str:
@@ -158,7 +179,7 @@ def _pictures(comparison: Comparison) -> list[dict[str, str]]:
         (item, entry)
         for item in comparison.datasets
         for entry in item.variables
-        if entry.verdict == Verdict.different and entry.compared and not entry.volatile
+        if entry.verdict == Agreement.different and entry.compared and not entry.volatile
     ]
     wanted.sort(key=lambda pair: pair[1].differing / pair[1].compared, reverse=True)
     pictures: list[dict[str, str]] = []
@@ -172,12 +193,20 @@ def _pictures(comparison: Comparison) -> list[dict[str, str]]:
     return pictures
 
 
+@lru_cache(maxsize=64)
+def _aligned(first: Path, second: Path) -> tuple[xr.Dataset, xr.Dataset]:
+    """Two files on what they share; read once for all the variables that differ."""
+    a, b = load(first), load(second)
+    a, b, _ = align(a, b, find(str(a.attrs["schema"])))
+    return a, b
+
+
 def _picture(item: DatasetDifference, entry: VariableDifference) -> str:
     """PNG of one variable as base64; empty where it is not a map."""
     first, second = item.files
     if first is None or second is None:
         return ""
-    a, b, _ = align(load(first), load(second))
+    a, b = _aligned(first, second)
     line = find(str(a.attrs["schema"])).lookup(entry.name)
     if line is None or not drawable(a[entry.name]):
         return ""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import os
 import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
@@ -16,26 +17,13 @@ from PIL import Image
 
 from squealpipe.claims.evidence import Run
 from squealpipe.claims.table import rows
-from squealpipe.parameters import Parameters
-from squealpipe.report.captions import read_caption, title
+from squealpipe.figures import declared
+from squealpipe.parameters import TABLE, Parameters
 from squealpipe.report.facts import gather_facts
-from squealpipe.schema.claims import Verdict
+from squealpipe.report.places import FIGURES, PLACES
+from squealpipe.report.summary import PAPER, is_misprint, summarize, tally
 
 TITLE = "Hammering and brake squeal: a paper computed again, statement by statement"
-
-SYMBOLS = {
-    "mass": ("m", "mass of the particle"),
-    "k1": ("k_1", "stiffness of spring 1"),
-    "k2": ("k_2", "stiffness of spring 2"),
-    "k3": ("k_3", "stiffness of the contact spring"),
-    "mu": ("mu", "Coulomb friction coefficient"),
-    "belt_speed": ("V", "speed of the belt"),
-    "preload": ('l_"pre"', "precompression of the contact spring"),
-    "length1": ("L_1", "free length of spring 1"),
-    "length2": ("L_2", "free length of spring 2"),
-    "sigma": ("sigma", "regularizing factor of the paper's tanh"),
-}
-"""Parameter → (symbol as Typst mathematics, meaning)."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -59,6 +47,8 @@ def gather(
     parameters: Parameters,
     *,
     explorer: str | None = None,
+    animations: Mapping[str, str] | None = None,
+    page: Path | None = None,
 ) -> dict[str, Any]:
     """The report's content; see ``templates/`` for how it is used.
 
@@ -67,30 +57,50 @@ def gather(
         figures: name → PNG file.
         parameters: those of the study.
         explorer: link to the explorer page, if the run makes one.
+        animations: what each shows → its GIF.
+        page: where the page will be; then it links the PDF beside it and each dataset.
     """
     run = Run(parameters, {name: made.path for name, made in datasets.items()})
     claims = rows(run["claims"]) if "claims" in run else []
     records = {name: _record(name, datasets[name]) for name in sorted(datasets)}
+    facts = gather_facts(run)
+
+    def link(path: str | Path) -> str | None:
+        return None if page is None else os.path.relpath(path, page.parent)
+
     return {
         "title": TITLE,
+        "paper": PAPER,
+        "summary": summarize(claims, facts, figures),
         "shipped": parameters == Parameters(),
         "parameters": _parameters(parameters),
+        "one_pivot": parameters.length1 == parameters.length2,
+        "belt_along_x": parameters.belt_speed > 0,
         "environment": _environment(datasets),
-        "datasets": records,
+        "datasets": {
+            name: {**record, "link": link(datasets[name].path)} for name, record in records.items()
+        },
         "rules": _rules(records),
         "configuration": _configuration(datasets),
-        "figures": {name: _picture(name, figures[name], records) for name in sorted(figures)},
+        "places": PLACES,
+        "figures": {
+            name: _picture(name, figures[name], records, run) for name in FIGURES if name in figures
+        },
         "explorer": explorer,
-        "claims": claims,
-        "tally": [
-            {
-                "verdict": verdict.words,
-                "ids": [row["id"] for row in claims if row["verdict"] == verdict.words],
-            }
-            for verdict in Verdict
-            if any(row["verdict"] == verdict.words for row in claims)
+        "pdf": None if page is None else "report.pdf",
+        "animations": [
+            {"what": what, "link": link(path)} for what, path in (animations or {}).items()
         ],
-        "facts": gather_facts(run),
+        "claims": claims,
+        "statements": {
+            "rows": (judged := [row for row in claims if not is_misprint(row)]),
+            "tally": tally(judged),
+        },
+        "misprints": {
+            "rows": (printed := [row for row in claims if is_misprint(row)]),
+            "tally": tally(printed),
+        },
+        "facts": facts,
     }
 
 
@@ -107,10 +117,10 @@ def slug(name: str) -> str:
 def _parameters(parameters: Parameters) -> list[dict[str, Any]]:
     return [
         {
-            "symbol": SYMBOLS[name][0],
-            "meaning": SYMBOLS[name][1],
+            "symbol": TABLE[name].symbol,
+            "meaning": TABLE[name].meaning,
             "value": value,
-            "unit": Parameters.units(name),
+            "unit": TABLE[name].units,
         }
         for name, value in parameters.as_dict().items()
     ]
@@ -172,16 +182,28 @@ def _leaves(key: str, value: Any) -> Iterator[tuple[str, Any]]:
         yield key, value
 
 
-def _picture(name: str, made: Made, records: Mapping[str, Mapping[str, Any]]) -> dict[str, Any]:
-    caption, alt = read_caption(name)
+def title(name: str) -> str:
+    """Heading of a picture: the paper's number, or the name in words."""
+    paper = re.fullmatch(r"fig(\d+)", name)
+    if paper:
+        return f"Fig. {int(paper[1])}."
+    words = name.replace("_", " ").capitalize()
+    return re.sub(r"\ba\d\b", lambda level: level[0].upper(), words) + "."
+
+
+def _picture(
+    name: str, made: Made, records: Mapping[str, Mapping[str, Any]], run: Run
+) -> dict[str, Any]:
+    caption, alt = declared.texts(name, run)
     with Image.open(made.path) as image:
-        width = image.width / image.info["dpi"][0]
+        width, aspect = image.width / image.info["dpi"][0], image.height / image.width
     return {
         "path": f"pictures/{name}.png",
         "title": title(name),
         "caption": caption,
         "alt": alt,
         "width_inches": width,
+        "aspect": aspect,
         "rule": made.rule,
         "sources": _rules({key: records[key] for key in made.datasets if key in records}),
     }

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from squealpipe.schema import DatasetSchema, Variable, outcome
+from squealpipe.schema import RUN_ENDS, DatasetSchema, Outcome, Variable, outcome
 from squealpipe.schema.linear import ANGLES, MAP
 
 YES_NO = {0: "no", 1: "yes"}
@@ -10,11 +10,11 @@ TABLE = ("level", "scene")
 
 
 def _names(dimension: str, meaning: str) -> Variable:
-    return Variable(dims=(dimension,), dtype="U", long_name=meaning)
+    return Variable(meaning, dims=(dimension,), dtype="U")
 
 
 def _largest(units: str, meaning: str) -> Variable:
-    return Variable(dims=TABLE, units=units, long_name=meaning, nan_allowed=True, rtol=1e-6)
+    return Variable(meaning, units, TABLE, nan_allowed=True, rtol=1e-6)
 
 
 ASSUMPTIONS = DatasetSchema(
@@ -27,30 +27,29 @@ ASSUMPTIONS = DatasetSchema(
     },
     variables={
         "needed": Variable(
+            "whether the level makes the assumption",
             dims=("level", "assumption"),
             dtype="i1",
             flags=YES_NO,
-            long_name="whether the level makes the assumption",
         ),
         "measure": Variable(
-            dims=(*TABLE, "assumption"),
-            nan_allowed=True,
-            rtol=1e-6,
-            long_name="the number that decides",
+            "the number that decides", dims=(*TABLE, "assumption"), nan_allowed=True, rtol=1e-6
         ),
-        "limit": Variable(dims=("assumption",), long_name="limit of the measure"),
+        "limit": Variable("limit of the measure", dims=("assumption",)),
         "held": Variable(
+            "whether the assumption held along the whole motion",
             dims=(*TABLE, "assumption"),
             dtype="i1",
             flags=YES_NO,
-            long_name="whether the assumption held along the whole motion",
         ),
         "largest_x": _largest("m", "largest |x|"),
         "largest_y": _largest("m", "largest y"),
         "peak_contact_force": _largest("1", "largest contact force over k3 l_pre"),
         "lowest_contact_force": _largest("1", "lowest contact force over k3 l_pre"),
-        "t_end": Variable(dims=("scene",), units="s", long_name="end of the motion"),
-        "outcome": outcome(*TABLE),
+        "t_end": Variable("end of the motion", "s", ("scene",)),
+        "outcome": outcome(
+            *TABLE, among=(*RUN_ENDS, Outcome.separated, Outcome.singular_static_state)
+        ),
     },
 )
 
@@ -60,18 +59,18 @@ LINEAR_PULL = DatasetSchema(
     coordinates=ANGLES,
     variables={
         "lowest_contact_force": Variable(
-            dims=MAP, long_name="lowest contact force over k3 l_pre; negative: the spring pulls"
+            "lowest contact force over k3 l_pre; negative: the spring pulls", dims=MAP
         ),
         "pulling_fraction": Variable(
-            dims=MAP, long_name="fraction of the time during which the spring pulls"
+            "fraction of the time during which the spring pulls", dims=MAP
         ),
         "first_pull_time": Variable(
-            dims=MAP,
-            units="s",
+            "first instant at which the spring pulls (NaN: never, outcome converged)",
+            "s",
+            MAP,
             nan_allowed=True,
-            long_name="first instant at which the spring pulls (NaN: never, outcome converged)",
         ),
-        "t_end": Variable(units="s", long_name="end of the motion"),
-        "outcome": outcome(*MAP),
+        "t_end": Variable("end of the motion", "s"),
+        "outcome": outcome(*MAP, among=(Outcome.converged, Outcome.separated)),
     },
 )

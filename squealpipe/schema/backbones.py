@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from enum import IntEnum
 
-from squealpipe.schema import DatasetSchema, Variable, outcome
+from squealpipe.schema import ORBIT_ENDS, RUN_ENDS, DatasetSchema, Outcome, Variable, outcome
+from squealpipe.schema.comparing import Listing
 from squealpipe.schema.linear import ANGLES, MAP, MODES
 
 
@@ -21,6 +22,7 @@ class Route(IntEnum):
     none = 0
     linear_mode = 1
     neighbour = 2
+    across = 3
 
 
 class Special(IntEnum):
@@ -44,31 +46,30 @@ def _orbit_variables(*dims: str) -> dict[str, Variable]:
         "y_amplitude": real("m", "half of the peak-to-peak of y over a period"),
         "largest_speed": real("m s-1", "largest speed of the mass along the belt, |x'|"),
         "sliding_assumption": Variable(
-            dims=dims, dtype="i1", flags=Assumption, long_name="whether x' stays below belt speed"
+            "whether x' stays below belt speed", dims=dims, dtype="i1", flags=Assumption
         ),
         "stability_index": real("1", "trace of the monodromy matrix minus 2", atol=1e-7),
-        "outcome": outcome(*dims),
+        "outcome": outcome(*dims, among=ORBIT_ENDS),
     }
 
 
 PERIODIC_ORBIT = DatasetSchema(
     name="periodic_orbit",
     title="An exact symmetric periodic motion of model A4",
-    coordinates={
-        "switch": Variable(dims=("switch",), dtype="i4", long_name="switch of contact, in order")
-    },
+    lists={"switch": Listing()},
+    coordinates={"switch": Variable("switch of contact, in order", dims=("switch",), dtype="i4")},
     variables={
         **_orbit_variables(),
-        "y_peak": Variable(units="m", long_name="y at the symmetric instant"),
-        "mode": Variable(dtype="i4", long_name="mode, by ascending frequency in contact"),
+        "y_peak": Variable("y at the symmetric instant", "m"),
+        "mode": Variable("mode, by ascending frequency in contact", dtype="i4"),
         "switching_times": Variable(
-            dims=("switch",),
-            units="s",
-            long_name="times in the half period after the peak at which contact begins or ends",
+            "times in the half period after the peak at which contact begins or ends",
+            "s",
+            ("switch",),
         ),
         "residual": Variable(
-            units="1",
-            long_name="largest velocity after half a period, over l_pre and the frequency unit",
+            "largest velocity after half a period, over l_pre and the frequency unit",
+            "1",
             nan_allowed=True,
             atol=1e-13,
         ),
@@ -78,77 +79,84 @@ PERIODIC_ORBIT = DatasetSchema(
 BACKBONE = DatasetSchema(
     name="backbone",
     title="A backbone of model A4: a family of free periodic motions",
+    lists={
+        "point": Listing(position="y_peak"),
+        "special": Listing(kinds=("special_kind",), position="special_y_peak"),
+    },
     coordinates={
-        "point": Variable(dims=("point",), dtype="i4", long_name="point along the branch"),
+        "point": Variable("point along the branch", dims=("point",), dtype="i4"),
         "special": Variable(
-            dims=("special",), dtype="i4", long_name="located special point (exact branches)"
+            "located special point (exact branches)", dims=("special",), dtype="i4"
         ),
         "harmonic": Variable(
-            dims=("harmonic",), dtype="i4", long_name="harmonic of the motion", optional=True
+            "harmonic of the motion", dims=("harmonic",), dtype="i4", optional=True
         ),
     },
     variables={
         **_orbit_variables("point"),
-        "y_peak": Variable(
-            dims=("point",), units="m", long_name="y at the symmetric instant with the larger y"
-        ),
-        "switches": Variable(
-            dims=("point",), dtype="i4", long_name="switches of contact in half a period"
-        ),
+        "y_peak": Variable("y at the symmetric instant with the larger y", "m", ("point",)),
+        "switches": Variable("switches of contact in half a period", dims=("point",), dtype="i4"),
         "residual": Variable(
-            dims=("point",),
-            units="1",
-            long_name="residual of the method's equations, scaled",
+            "residual of the method's equations, scaled",
+            "1",
+            ("point",),
             nan_allowed=True,
             atol=1e-9,
         ),
-        "x_cosine": Variable(
-            dims=("point", "harmonic"),
-            units="m",
-            long_name="cosine coefficients of x",
-            optional=True,
-        ),
-        "y_cosine": Variable(
-            dims=("point", "harmonic"),
-            units="m",
-            long_name="cosine coefficients of y",
-            optional=True,
-        ),
+        "x_cosine": Variable("cosine coefficients of x", "m", ("point", "harmonic"), optional=True),
+        "y_cosine": Variable("cosine coefficients of y", "m", ("point", "harmonic"), optional=True),
         "omega_exact": Variable(
-            dims=("point",),
-            units="rad s-1",
-            long_name="angular frequency of the exact orbit of equal y_peak",
+            "angular frequency of the exact orbit of equal y_peak",
+            "rad s-1",
+            ("point",),
             nan_allowed=True,
             optional=True,
         ),
         "waveform_error": Variable(
-            dims=("point",),
-            units="m",
-            long_name="largest distance in (x, y) from the exact orbit of equal y_peak, "
-            "at equal phase",
+            "largest distance in (x, y) from the exact orbit of equal y_peak, at equal phase",
+            "m",
+            ("point",),
             nan_allowed=True,
             optional=True,
             rtol=1e-4,
         ),
         "integration_error": Variable(
-            dims=("point",),
-            units="m",
-            long_name="largest distance in (x, y) from A4 integrated in time over one period from "
+            "largest distance in (x, y) from A4 integrated in time over one period from "
             "the peak of the series",
+            "m",
+            ("point",),
             nan_allowed=True,
             optional=True,
             rtol=1e-4,
         ),
         "special_kind": Variable(
-            dims=("special",), dtype="i1", flags=Special, long_name="kind of special point"
+            "kind of special point", dims=("special",), dtype="i1", flags=Special
         ),
-        "special_y_peak": Variable(
-            dims=("special",), units="m", long_name="y_peak at which it lies", rtol=1e-8
+        "special_y_peak": Variable("y_peak at which it lies", "m", ("special",), rtol=1e-8),
+        "special_omega": Variable("angular frequency there", "rad s-1", ("special",), rtol=1e-8),
+        "end": Variable("why the branch ends", dtype="i1", flags=outcome(among=ORBIT_ENDS).flags),
+    },
+)
+
+DOUBLED_BRANCH = DatasetSchema(
+    name="doubled_branch",
+    title="Periodic motions of model A4 of doubled period, from a period doubling on",
+    coordinates={name: BACKBONE.coordinates[name] for name in ("point", "special")},
+    variables={
+        **{name: entry for name, entry in BACKBONE.variables.items() if not entry.optional},
+        "end": Variable(
+            "why the branch ends",
+            dtype="i1",
+            flags=outcome(among=(*ORBIT_ENDS, Outcome.no_doubling)).flags,
         ),
-        "special_omega": Variable(
-            dims=("special",), units="rad s-1", long_name="angular frequency there", rtol=1e-8
+        "y_largest": Variable("largest y over a period", "m", ("point",)),
+        "first_integral": Variable("first integral H of model A4", "N J m-1", ("point",)),
+        "doubling_omega": Variable(
+            "angular frequency of the simple orbit at the doubling", "rad s-1", nan_allowed=True
         ),
-        "end": Variable(dtype="i1", flags=outcome().flags, long_name="why the branch ends"),
+        "doubling_y_peak": Variable(
+            "y_peak of the simple orbit at the doubling", "m", nan_allowed=True
+        ),
     },
 )
 
@@ -158,40 +166,37 @@ ORBIT_ATLAS = DatasetSchema(
     coordinates={**ANGLES, **MODES},
     variables={
         "omega": Variable(
-            dims=(*MAP, "mode"),
-            units="rad s-1",
-            long_name="angular frequency of the periodic motion",
-            nan_allowed=True,
+            "angular frequency of the periodic motion", "rad s-1", (*MAP, "mode"), nan_allowed=True
         ),
         "stability_index": Variable(
+            "trace of the monodromy matrix minus 2",
             dims=(*MAP, "mode"),
-            long_name="trace of the monodromy matrix minus 2",
             nan_allowed=True,
             atol=1e-7,
         ),
-        "outcome": outcome(*MAP, "mode"),
+        "outcome": outcome(
+            *MAP, "mode", among=(*ORBIT_ENDS, Outcome.separated, Outcome.not_computed)
+        ),
         "route": Variable(
+            "how it was reached: along the branch, from a neighbour, across resonances",
             dims=(*MAP, "mode"),
             dtype="i1",
             flags=Route,
-            long_name="whether the branch leads here or a neighbouring cell's orbit",
         ),
-        "y_peak": Variable(units="m", long_name="y at the symmetric instant"),
+        "y_peak": Variable("y at the symmetric instant", "m"),
     },
 )
 
-SCENE = {"scene": Variable(dims=("scene",), dtype="U", long_name="scene and mode")}
+SCENE = {"scene": Variable("scene and mode", dims=("scene",), dtype="U")}
 _SWEEP = ("scene", "peak", "harmonics")
 
 
 def _error(*dims: str, long_name: str, units: str = "rad s-1") -> Variable:
-    return Variable(
-        dims=dims, units=units, long_name=long_name, nan_allowed=True, rtol=0.05, atol=1e-11
-    )
+    return Variable(long_name, units, dims, nan_allowed=True, rtol=0.05, atol=1e-11)
 
 
 def _rate(*dims: str, long_name: str) -> Variable:
-    return Variable(dims=dims, long_name=long_name, nan_allowed=True, rtol=0.05)
+    return Variable(long_name, dims=dims, nan_allowed=True, rtol=0.05)
 
 
 HARMONIC_SWEEP = DatasetSchema(
@@ -199,10 +204,10 @@ HARMONIC_SWEEP = DatasetSchema(
     title="Errors of harmonic balance against exact orbits over N_h, N, sigma and amplitude",
     coordinates={
         **SCENE,
-        "peak": Variable(dims=("peak",), long_name="y_peak over l_pre"),
-        "harmonics": Variable(dims=("harmonics",), dtype="i4", long_name="harmonics N_h"),
-        "samples": Variable(dims=("samples",), dtype="i4", long_name="samples N a period"),
-        "sigma": Variable(dims=("sigma",), long_name="regularizing factor times l_pre"),
+        "peak": Variable("y_peak over l_pre", dims=("peak",)),
+        "harmonics": Variable("harmonics N_h", dims=("harmonics",), dtype="i4"),
+        "samples": Variable("samples N a period", dims=("samples",), dtype="i4"),
+        "sigma": Variable("regularizing factor times l_pre", dims=("sigma",)),
     },
     variables={
         "omega_error": _error(*_SWEEP, long_name="error of omega at equal y_peak"),
@@ -219,8 +224,8 @@ HARMONIC_SWEEP = DatasetSchema(
         "omega_rate": _rate("scene", "peak", long_name="exponent p of omega error ~ N_h^-p"),
         "waveform_rate": _rate("scene", "peak", long_name="exponent p of waveform error ~ N_h^-p"),
         "sigma_rate": _rate("scene", "peak", long_name="exponent p of the shift ~ sigma^-p"),
-        "n_harmonics_fixed": Variable(dtype="i4", long_name="N_h while N or sigma is varied"),
-        "outcome": outcome(*_SWEEP),
+        "n_harmonics_fixed": Variable("N_h while N or sigma is varied", dtype="i4"),
+        "outcome": outcome(*_SWEEP, among=(Outcome.converged, Outcome.no_convergence)),
     },
 )
 
@@ -234,29 +239,27 @@ class Form(IntEnum):
 
 HARMONIC_FORMS = DatasetSchema(
     name="harmonic_forms",
-    title="The paper's harmonic balance, mended and as printed, against exact orbits",
+    title="The paper's harmonic balance, corrected and as printed, against exact orbits",
     coordinates={
         **SCENE,
-        "form": Variable(dims=("form",), dtype="i4", flags=Form, long_name="Eq. (34)"),
-        "samples": Variable(dims=("samples",), dtype="i4", long_name="samples N a period"),
+        "form": Variable("Eq. (34)", dims=("form",), dtype="i4", flags=Form),
+        "samples": Variable("samples N a period", dims=("samples",), dtype="i4"),
     },
     variables={
         "omega": _error("scene", "form", long_name="angular frequency that was found"),
-        "omega_exact": Variable(
-            dims=("scene",), units="rad s-1", long_name="angular frequency of the exact orbit"
-        ),
+        "omega_exact": Variable("angular frequency of the exact orbit", "rad s-1", ("scene",)),
         "y_largest": _error("scene", "form", units="m", long_name="largest y of the series"),
-        "y_peak": Variable(units="m", long_name="y_peak of the exact orbit it starts from"),
+        "y_peak": Variable("y_peak of the exact orbit it starts from", "m"),
         "residual": Variable(
-            dims=("scene", "form"), long_name="largest residual, scaled", rtol=1.0, atol=1e-9
+            "largest residual, scaled", dims=("scene", "form"), rtol=1.0, atol=1e-9
         ),
         "rank_deficit": Variable(
-            dims=("scene", "form"), dtype="i4", long_name="columns minus rank of the Jacobian"
+            "columns minus rank of the Jacobian", dims=("scene", "form"), dtype="i4"
         ),
-        "outcome": outcome("scene", "form"),
-        "n_harmonics": Variable(dtype="i4", long_name="harmonics N_h"),
-        "fourier_columns": Variable(dtype="i4", long_name="columns of Gamma, 2 N_h + 1"),
-        "fourier_rank": Variable(dims=("samples",), dtype="i4", long_name="rank of Gamma"),
+        "outcome": outcome("scene", "form", among=(Outcome.converged, Outcome.no_convergence)),
+        "n_harmonics": Variable("harmonics N_h", dtype="i4"),
+        "fourier_columns": Variable("columns of Gamma, 2 N_h + 1", dtype="i4"),
+        "fourier_rank": Variable("rank of Gamma", dims=("samples",), dtype="i4"),
         "phase_spread_y": _error(
             "samples", units="m", long_name="spread of the largest y over the phase of the start"
         ),
@@ -272,39 +275,33 @@ A1_BESIDE_A4 = DatasetSchema(
     title="Model A1 in time, started on periodic motions of A4, for springs of several lengths",
     coordinates={
         **SCENE,
-        "length_ratio": Variable(dims=("length_ratio",), long_name="spring length over l_pre"),
-        "period": Variable(dims=("period",), long_name="time over the period of A4"),
-        "order": Variable(dims=("order",), long_name="frequency over omega of A4"),
+        "length_ratio": Variable("spring length over l_pre", dims=("length_ratio",)),
+        "period": Variable("time over the period of A4", dims=("period",)),
+        "order": Variable("frequency over omega of A4", dims=("order",)),
     },
     variables={
-        "omega": Variable(dims=("scene",), units="rad s-1", long_name="angular frequency of A4"),
-        "y_a4": Variable(dims=("scene", "period"), units="m", long_name="y of A4"),
+        "omega": Variable("angular frequency of A4", "rad s-1", ("scene",)),
+        "y_a4": Variable("y of A4", "m", ("scene", "period")),
         "y_a1": Variable(
-            dims=("scene", "length_ratio", "period"),
-            units="m",
-            long_name="y of A1",
-            nan_allowed=True,
-            rtol=1e-6,
+            "y of A1", "m", ("scene", "length_ratio", "period"), nan_allowed=True, rtol=1e-6
         ),
-        "spectrum_a4": Variable(
-            dims=("scene", "order"), units="m", long_name="amplitude spectrum of y, A4", rtol=1e-6
-        ),
+        "spectrum_a4": Variable("amplitude spectrum of y, A4", "m", ("scene", "order"), rtol=1e-6),
         "spectrum_a1": Variable(
-            dims=("scene", "length_ratio", "order"),
-            units="m",
-            long_name="amplitude spectrum of y, A1",
+            "amplitude spectrum of y, A1",
+            "m",
+            ("scene", "length_ratio", "order"),
             nan_allowed=True,
             rtol=1e-3,
             atol=1e-6,
         ),
         "omega_a1": Variable(
-            dims=("scene", "length_ratio"),
-            units="rad s-1",
-            long_name="angular frequency of the largest line of y near omega of A4, A1",
+            "angular frequency of the largest line of y near omega of A4, A1",
+            "rad s-1",
+            ("scene", "length_ratio"),
             nan_allowed=True,
             rtol=1e-4,
         ),
-        "y_peak": Variable(units="m", long_name="y at the symmetric instant"),
-        "outcome": outcome("scene", "length_ratio"),
+        "y_peak": Variable("y at the symmetric instant", "m"),
+        "outcome": outcome("scene", "length_ratio", among=RUN_ENDS),
     },
 )

@@ -22,17 +22,38 @@ class Verdict(IntEnum):
         return self.name.replace("_", " ")
 
 
+class Basis(IntEnum):
+    """Whether a statement can speak for the inferred parameters."""
+
+    fitted = 0
+    predicted = 1
+    unknown = 2
+
+
+class Origin(IntEnum):
+    """Whose statement a row is."""
+
+    paper = 0
+    misprints = 1
+
+
 def _text(meaning: str, *, volatile: bool = False) -> Variable:
-    return Variable(dims=("claim",), dtype="U", long_name=meaning, volatile=volatile)
+    return Variable(meaning, dims=("claim",), dtype="U", volatile=volatile)
 
 
-def _number(meaning: str) -> Variable:
+def _number(meaning: str, *, optional: bool = False) -> Variable:
     # Some values come from long runs, whose last digits differ from machine to machine.
-    return Variable(dims=("claim",), nan_allowed=True, rtol=1e-3, atol=1e-6, long_name=meaning)
+    return Variable(
+        meaning, dims=("claim",), nan_allowed=True, rtol=1e-3, atol=1e-6, optional=optional
+    )
+
+
+def _flag(flags: type[IntEnum], meaning: str) -> Variable:
+    return Variable(meaning, dims=("claim",), dtype="i1", flags=flags, optional=True)
 
 
 def _verdict(meaning: str) -> Variable:
-    return Variable(dims=("claim",), dtype="i1", flags=Verdict, long_name=meaning)
+    return Variable(meaning, dims=("claim",), dtype="i1", flags=Verdict)
 
 
 CLAIMS = DatasetSchema(
@@ -46,14 +67,24 @@ CLAIMS = DatasetSchema(
         "verdict": _verdict("what the data say, over the inferred feasible set as well"),
         "verdict_here": _verdict("what the data say at the parameters of the run"),
         "recorded": _verdict("verdict_here recorded for the shipped baseline"),
-        "value": _number("measured value; NaN where the verdict is cannot be decided"),
+        "value": _number("measured value; NaN where nothing was measured"),
         "relation": _text("relation of value and threshold under which the check passes"),
         "threshold": _number("threshold of the check; NaN as in value"),
         "margin": _number("distance of the value from the threshold, positive where it passes"),
         "feasible_share": _number(
-            "share of the inferred feasible parameters in which the statement holds; NaN where "
-            "the inference does not evaluate it"
+            "share of the inferred feasible parameters in which the statement holds; NaN where it "
+            "was fitted and where the inference does not judge it"
         ),
+        "feasible_count": Variable(
+            "feasible parameter sets behind feasible_share; 0 where there is none",
+            dims=("claim",),
+            dtype="i4",
+            optional=True,
+        ),
+        "feasible_share_low": _number("lower end of its 95 % Wilson interval", optional=True),
+        "feasible_share_high": _number("upper end of its 95 % Wilson interval", optional=True),
+        "basis": _flag(Basis, "whether the statement was fitted by the inference or is predicted"),
+        "origin": _flag(Origin, "the paper's own statement, or one of our list of its misprints"),
         "evidence": _text("one line of evidence", volatile=True),
         "dataset": _text("datasets read, with their ids", volatile=True),
         "figure": _text("picture that shows it"),

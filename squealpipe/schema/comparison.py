@@ -1,11 +1,11 @@
-"""Datasets that compare methods and models: speed against accuracy, failures, the model ladder."""
+"""Datasets that compare methods: speed against accuracy, failures."""
 
 from __future__ import annotations
 
 from enum import IntEnum
 
-from squealpipe.schema import DatasetSchema, Variable, outcome
-from squealpipe.schema.linear import ANGLES, MAP
+from squealpipe.schema import DatasetSchema, Outcome, Variable, outcome
+from squealpipe.schema.comparing import Listing, magnitude
 
 RUN = ("run",)
 
@@ -19,41 +19,42 @@ class Role(IntEnum):
 
 
 def _text(long_name: str, *dims: str) -> Variable:
-    return Variable(dims=dims, dtype="U64", long_name=long_name)
+    return Variable(long_name, dims=dims, dtype="U64")
 
 
 WORK_PRECISION = DatasetSchema(
     name="work_precision",
     title="Error of a method against its cost, one run a row",
-    coordinates={"run": Variable(dims=RUN, dtype="i4", long_name="one method at one setting")},
+    lists={"run": Listing(kinds=("task", "scene", "method", "setting"))},
+    coordinates={"run": Variable("one method at one setting", dims=RUN, dtype="i4")},
     variables={
         "task": _text("kind of task", *RUN),
         "scene": _text("what is computed", *RUN),
         "method": _text("method", *RUN),
         "setting": _text("its setting", *RUN),
-        "role": Variable(
-            dims=RUN, dtype="i1", flags=Role, long_name="public method, ours, or our default"
-        ),
+        "role": Variable("public method, ours, or our default", dims=RUN, dtype="i1", flags=Role),
         "error": Variable(
+            "error against the reference, scaled to order one",
             dims=RUN,
-            long_name="error against the reference, scaled to order one",
             nan_allowed=True,
             rtol=1e-3,
-            atol=1e-12,
+            round_off=magnitude(
+                "an error at the end of many adaptive steps: the last bit of one step changes the "
+                "next ones, and at tight tolerances nothing but round-off is left",
+                floor=1e-12,
+            ),
         ),
-        "reference_error": Variable(
-            dims=RUN, long_name="bound on the error of the reference", rtol=1.0
-        ),
+        "reference_error": Variable("bound on the error of the reference", dims=RUN, rtol=1.0),
         "wrong_events": Variable(
+            "contact changes too many or too few, or cells decided wrongly; "
+            "-1 where the method reports none",
             dims=RUN,
             dtype="i4",
-            long_name="contact changes too many or too few, or cells decided wrongly; "
-            "-1 where the method reports none",
         ),
         "boundary_distance": Variable(
-            dims=RUN,
-            units="rad",
-            long_name="mean distance of a map's boundary from the reference's",
+            "mean distance of a map's boundary from the reference's",
+            "rad",
+            RUN,
             nan_allowed=True,
             rtol=1e-3,
         ),
@@ -64,16 +65,17 @@ WORK_PRECISION = DatasetSchema(
             # The paper's Newton method has a Jacobian without full rank: from run to run round-off
             # alone changes its number of steps by a quarter.
             rtol=0.5,
+            round_off=magnitude("Newton's method with a rank-deficient Jacobian follows round-off"),
         ),
-        "wall_time": Variable(
-            dims=RUN, units="s", long_name="median wall time of one solution", volatile=True
+        "wall_time": Variable("median wall time of one solution", "s", RUN, volatile=True),
+        "outcome": outcome(
+            *RUN, among=(Outcome.converged, Outcome.complex_pair, Outcome.no_convergence)
         ),
-        "outcome": outcome(*RUN),
     },
 )
 
 
-class Verdict(IntEnum):
+class Reliability(IntEnum):
     """What a method's answer to a hard scene is worth."""
 
     not_applicable = 0
@@ -93,104 +95,36 @@ FAILURE_ATLAS = DatasetSchema(
     },
     variables={
         "verdict": Variable(
-            dims=SCENE_SOLVER, dtype="i1", flags=Verdict, long_name="verdict on the answer"
+            "verdict on the answer", dims=SCENE_SOLVER, dtype="i1", flags=Reliability
         ),
         "error": Variable(
+            "largest error of the answer; infinite where there is none",
             dims=SCENE_SOLVER,
-            long_name="largest error of the answer; infinite where there is none",
             nan_allowed=True,
             rtol=1e-2,
-            atol=1e-9,
+            round_off=magnitude(
+                "the scenes are those where methods fail: beyond the predictability horizon and at "
+                "tight tolerances round-off decides the error; `verdict` holds what it is worth",
+                floor=1e-9,
+            ),
+        ),
+        "missed_events": Variable(
+            "contact changes reported too few or too many; NaN where none are reported",
+            dims=SCENE_SOLVER,
+            nan_allowed=True,
+            optional=True,
         ),
         "flagged": Variable(
-            dims=SCENE_SOLVER, dtype="i1", flags={0: "no", 1: "yes"}, long_name="method warned"
+            "method warned", dims=SCENE_SOLVER, dtype="i1", flags={0: "no", 1: "yes"}
         ),
         "message": _text("what the method said", *SCENE_SOLVER),
-        "tolerance": Variable(dims=("scene",), long_name="largest error that counts as right"),
-        "role": Variable(dims=("solver",), dtype="i1", flags=Role, long_name="whose method it is"),
-    },
-)
-
-
-class Level(IntEnum):
-    """Levels of the model ladder, cheapest first."""
-
-    closed_form = 0
-    a3_in_contact = 1
-    a4_exact = 2
-    a4_in_time = 3
-    a1_linear_springs = 4
-    a1_no_stick = 5
-    a1_short = 6
-    a1 = 7
-
-
-QUESTIONS = ("contact_lost", "frequency", "peak_contact_force", "max_displacement")
-"""What can be asked of a scene."""
-
-_CELL = ("question", *MAP)
-
-MODEL_LADDER = DatasetSchema(
-    name="model_ladder",
-    title="The cheapest adequate model over both spring angles",
-    coordinates={
-        **ANGLES,
-        "question": _text("question asked of a cell", "question"),
-        "level": _text("level of the ladder", "level"),
-    },
-    variables={
-        "error": Variable(
-            dims=("question", "level", *MAP),
-            long_name="error of a level against A1, relative (0 or 1 for contact lost)",
+        "tolerance": Variable("largest error that counts as right", dims=("scene",)),
+        "role": Variable("whose method it is", dims=("solver",), dtype="i1", flags=Role),
+        "requested": Variable(
+            "tolerance that the method is given; NaN where it takes none",
+            dims=("solver",),
             nan_allowed=True,
-            rtol=1e-3,
-            atol=1e-9,
+            optional=True,
         ),
-        "cheapest": Variable(
-            dims=_CELL, dtype="i1", flags=Level, long_name="cheapest level within the tolerance"
-        ),
-        "chosen": Variable(
-            dims=_CELL, dtype="i1", flags=Level, long_name="level that choose_model takes"
-        ),
-        "chosen_error": Variable(
-            dims=_CELL,
-            long_name="error of the chosen answer against A1",
-            nan_allowed=True,
-            rtol=1e-3,
-            atol=1e-9,
-        ),
-        "chosen_time": Variable(
-            dims=("question",), units="s", long_name="time integrated by choose_model, all cells"
-        ),
-        "always_time": Variable(
-            dims=("question",),
-            units="s",
-            long_name="time integrated by always A1 until the question is answered, all cells",
-        ),
-        "hindsight_time": Variable(
-            dims=("question",),
-            units="s",
-            long_name="time integrated if the cheapest adequate level were known, all cells",
-        ),
-        "level_wall_time": Variable(
-            dims=("level",),
-            units="s",
-            long_name="wall time of a level over the whole map",
-            volatile=True,
-        ),
-        "always_wall_time": Variable(
-            dims=("question",),
-            units="s",
-            long_name="wall time of always A1 over the whole map, stopped at the answer",
-            volatile=True,
-        ),
-        "chosen_wall_time": Variable(
-            dims=("question",),
-            units="s",
-            long_name="wall time of choose_model over the whole map",
-            volatile=True,
-        ),
-        "tolerance": Variable(long_name="error that is allowed"),
-        "outcome": outcome(*MAP),
     },
 )

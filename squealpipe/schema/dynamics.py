@@ -4,7 +4,10 @@ from __future__ import annotations
 
 from enum import IntEnum
 
-from squealpipe.schema import DatasetSchema, Variable, outcome
+import xarray as xr
+
+from squealpipe.schema import RUN_ENDS, DatasetSchema, Outcome, Variable, outcome
+from squealpipe.schema.comparing import Listing
 from squealpipe.schema.linear import ANGLES, MAP, REGIME_LINEAR
 
 
@@ -29,24 +32,27 @@ class EventFlag(IntEnum):
 
 
 class MotionFlag(IntEnum):
-    """Meaning of motion."""
+    """Meaning of motion. In files without ``motion_later``, 2 stands for 2, 5 and 6."""
 
     perpetual_contact = 0
     stick_slip = 1
     periodic_hammering = 2
     irregular_hammering = 3
     whirl = 4
+    regular_hammering = 5
+    quasi_periodic_hammering = 6
 
 
 def _series(units: str, long_name: str, **more: object) -> Variable:
     return Variable(dims=("time",), units=units, long_name=long_name, nan_allowed=True, **more)  # type: ignore[arg-type]
 
 
-TIME = Variable(dims=("time",), units="s", long_name="time")
+TIME = Variable("time", "s", ("time",))
 
 SIMULATION = DatasetSchema(
     name="simulation",
     title="One nonlinear run from given initial conditions, events located",
+    lists={"event": Listing(kinds=("event_kind",))},
     coordinates={"time": TIME},
     variables={
         "x": _series("m", "displacement along the belt"),
@@ -55,21 +61,28 @@ SIMULATION = DatasetSchema(
         "vy": _series("m s-1", "velocity away from the belt"),
         "normal_force": _series("N", "contact force"),
         "normalized_contact_force": _series("1", "contact force over k3 l_pre"),
-        "regime": Variable(dims=("time",), dtype="i1", flags=RegimeFlag, long_name="regime"),
-        "event_time": Variable(dims=("event",), units="s", long_name="instant of a regime change"),
+        "regime": Variable("regime", dims=("time",), dtype="i1", flags=RegimeFlag),
+        "event_time": Variable("instant of a regime change", "s", ("event",)),
         "event_kind": Variable(
-            dims=("event",), dtype="i1", flags=EventFlag, long_name="kind of regime change"
+            "kind of regime change", dims=("event",), dtype="i1", flags=EventFlag
         ),
-        "alpha1": Variable(units="rad", long_name="angle of spring 1"),
-        "alpha2": Variable(units="rad", long_name="angle of spring 2"),
-        "preload": Variable(units="m", long_name="precompression l_pre of the contact spring"),
-        "length1": Variable(units="m", long_name="free length L1 of spring 1"),
-        "length2": Variable(units="m", long_name="free length L2 of spring 2"),
-        "time_reached": Variable(units="s", long_name="time at which the run ended"),
-        "n_steps": Variable(dtype="i8", long_name="Taylor steps of the run"),
-        "outcome": outcome(),
+        "alpha1": Variable("angle of spring 1", "rad"),
+        "alpha2": Variable("angle of spring 2", "rad"),
+        "preload": Variable("precompression l_pre of the contact spring", "m"),
+        "length1": Variable("free length L1 of spring 1", "m"),
+        "length2": Variable("free length L2 of spring 2", "m"),
+        "time_reached": Variable("time at which the run ended", "s"),
+        "n_steps": Variable("Taylor steps of the run", dtype="i8"),
+        "outcome": outcome(among=RUN_ENDS),
     },
 )
+
+GROWTH_THRESHOLD = 2.0
+"""``response_growth`` from which a response that keeps contact grows.
+
+|x| ∝ t, the slowest growth of an unstable linear system (at the onset of flutter), doubles from
+one half of a run to the next; exponential growth exceeds that, and a bounded one falls short.
+"""
 
 VALIDITY_MAP = DatasetSchema(
     name="validity_map",
@@ -77,54 +90,58 @@ VALIDITY_MAP = DatasetSchema(
     coordinates=ANGLES,
     variables={
         "first_separation_time": Variable(
-            dims=MAP,
-            units="s",
-            long_name="first loss of contact from rest (NaN: none before t_end)",
-            nan_allowed=True,
+            "first loss of contact from rest (NaN: none before t_end)", "s", MAP, nan_allowed=True
         ),
-        "separates": Variable(
-            dims=MAP, dtype="bool", long_name="whether contact is lost before t_end"
-        ),
+        "separates": Variable("whether contact is lost before t_end", dims=MAP, dtype="bool"),
         "regime_linear": REGIME_LINEAR,
         "response_growth": Variable(
+            "largest |x| of the second half of a run over that of the first (NaN: separated)",
             dims=MAP,
-            long_name="largest |x| of the second half of a run over that of the first "
-            "(NaN: separated)",
             nan_allowed=True,
         ),
-        "t_end": Variable(units="s", long_name="end of each run"),
-        "outcome": outcome(*MAP),
+        "growth_threshold": Variable(
+            "response_growth from which a response grows: that of |x| ∝ t", optional=True
+        ),
+        "t_end": Variable("end of each run", "s"),
+        "outcome": outcome(*MAP, among=(*RUN_ENDS, Outcome.separated)),
     },
 )
+
+
+def growth_threshold(validity: xr.Dataset) -> float:
+    """The threshold that a ``validity_map`` carries; today's where an older file has none."""
+    return float(validity.get("growth_threshold", GROWTH_THRESHOLD))
+
 
 HAMMERING_MAP = DatasetSchema(
     name="hammering_map",
     title="Impacts, forces and kind of motion of model A1 over both spring angles",
     coordinates=ANGLES,
     variables={
-        "impact_rate": Variable(
-            dims=MAP, units="s-1", long_name="returns to the belt per unit of time"
-        ),
-        "separated_fraction": Variable(dims=MAP, long_name="share of the time off the belt"),
-        "peak_contact_force": Variable(
-            dims=MAP, long_name="largest contact force over the preload k3 l_pre"
-        ),
-        "stick_fraction": Variable(dims=MAP, long_name="share of the time sticking to the belt"),
-        "max_displacement": Variable(
-            dims=MAP, units="m", long_name="largest distance from the start position"
-        ),
-        "turns": Variable(dims=MAP, long_name="net turns around both fixed ends"),
+        "impact_rate": Variable("returns to the belt per unit of time", "s-1", MAP),
+        "separated_fraction": Variable("share of the time off the belt", dims=MAP),
+        "peak_contact_force": Variable("largest contact force over the preload k3 l_pre", dims=MAP),
+        "stick_fraction": Variable("share of the time sticking to the belt", dims=MAP),
+        "max_displacement": Variable("largest distance from the start position", "m", MAP),
+        "turns": Variable("net turns around both fixed ends", dims=MAP),
         "lyapunov_exponent": Variable(
-            dims=MAP, units="s-1", long_name="finite-time growth rate of a small perturbation"
+            "finite-time growth rate of a small perturbation", "s-1", MAP, nan_allowed=True
         ),
         "predictability_horizon": Variable(
-            dims=MAP,
-            units="s",
-            long_name="time at which an error of tol has grown to l_pre/1000 (t_end: not before)",
+            "time at which an error of tol has grown to l_pre/1000 (t_end: not before)", "s", MAP
         ),
-        "motion": Variable(dims=MAP, dtype="i1", flags=MotionFlag, long_name="kind of motion"),
-        "t_end": Variable(units="s", long_name="end of each run"),
-        "outcome": outcome(*MAP),
+        "motion": Variable(
+            "kind of motion of the run to t_end", dims=MAP, dtype="i1", flags=MotionFlag
+        ),
+        "motion_later": Variable(
+            "kind of motion of the run to 2 t_end",
+            dims=MAP,
+            dtype="i1",
+            flags=MotionFlag,
+            optional=True,
+        ),
+        "t_end": Variable("end of each run", "s"),
+        "outcome": outcome(*MAP, among=(*RUN_ENDS, Outcome.beyond_horizon)),
     },
 )
 
@@ -133,125 +150,61 @@ REFINED_VALIDITY_MAP = DatasetSchema(
     title="Where model A1 keeps contact, computed only where the answer changes",
     coordinates=ANGLES,
     variables={
-        "separates": Variable(
-            dims=MAP, dtype="bool", long_name="whether contact is lost before t_end"
-        ),
+        "separates": Variable("whether contact is lost before t_end", dims=MAP, dtype="bool"),
         "first_separation_time": Variable(
-            dims=MAP,
-            units="s",
-            long_name="first loss of contact from rest (NaN: none before t_end, or not computed)",
+            "first loss of contact from rest (NaN: none before t_end, or not computed)",
+            "s",
+            MAP,
             nan_allowed=True,
         ),
-        "computed": Variable(
-            dims=MAP, dtype="bool", long_name="whether the cell was run, not inherited"
+        "computed": Variable("whether the cell was run, not inherited", dims=MAP, dtype="bool"),
+        "inherited_checked": Variable(
+            "inherited cells of a random sample that were run", dtype="i8", optional=True
         ),
-        "t_end": Variable(units="s", long_name="end of each run"),
-        "outcome": outcome(*MAP),
+        "inherited_wrong": Variable(
+            "of these, cells that were wrong (put right since)", dtype="i8", optional=True
+        ),
+        "inherited_error": Variable(
+            "share of inherited cells that are wrong, from the sample (NaN: no sample)",
+            nan_allowed=True,
+            optional=True,
+        ),
+        "inherited_error_interval": Variable(
+            "95 % Wilson interval of inherited_error",
+            dims=("end",),
+            nan_allowed=True,
+            optional=True,
+        ),
+        "t_end": Variable("end of each run", "s"),
+        "outcome": outcome(
+            # not_computed: inherited cells of files from before they had an outcome of their own
+            *MAP,
+            among=(*RUN_ENDS, Outcome.separated, Outcome.inherited, Outcome.not_computed),
+        ),
     },
 )
 
 REFINEMENT_CHECK = DatasetSchema(
     name="refinement_check",
     title="The refined map against uniform ones: runs and cells",
-    coordinates={
-        "points": Variable(dims=("points",), dtype="i4", long_name="points a side, uniform map")
-    },
+    coordinates={"points": Variable("points per side, uniform map", dims=("points",), dtype="i4")},
     variables={
-        "runs": Variable(dims=("points",), dtype="i8", long_name="runs of the uniform map"),
+        "runs": Variable("runs of the uniform map", dims=("points",), dtype="i8"),
         "different_cells": Variable(
+            "cells of the uniform map that the refined one labels otherwise",
             dims=("points",),
             dtype="i8",
-            long_name="cells of the uniform map that the refined one labels otherwise",
         ),
         "missed_regions": Variable(
+            "connected regions of the uniform map that the refined one lacks",
             dims=("points",),
             dtype="i8",
-            long_name="connected regions of the uniform map that the refined one lacks",
         ),
         "wrong_share": Variable(
+            "share of the refined cells that the nearest uniform cell labels otherwise",
             dims=("points",),
-            long_name="share of the refined cells that the nearest uniform cell labels otherwise",
         ),
-        "refined_runs": Variable(dtype="i8", long_name="runs of the refined map"),
-        "refined_points": Variable(dtype="i4", long_name="points a side, refined map"),
-    },
-)
-
-WHIRL = DatasetSchema(
-    name="whirl",
-    title="Where the growth at (0.4 pi, 0.6 pi) ends, over belt speed",
-    coordinates={
-        "belt_speed": Variable(dims=("belt_speed",), units="m s-1", long_name="belt speed V")
-    },
-    variables={
-        "amplitude": Variable(
-            dims=("belt_speed",), units="m", long_name="largest |x| in the last fifth of the run"
-        ),
-        "amplitude_before": Variable(
-            dims=("belt_speed",), units="m", long_name="largest |x| before the last fifth"
-        ),
-        "max_vx": Variable(
-            dims=("belt_speed",), units="m s-1", long_name="largest velocity along the belt"
-        ),
-        "turn_rate": Variable(
-            dims=("belt_speed",), units="s-1", long_name="net turns around both fixed ends a time"
-        ),
-        "stick_fraction": Variable(
-            dims=("belt_speed",), long_name="share of the time sticking to the belt"
-        ),
-        "motion": Variable(
-            dims=("belt_speed",), dtype="i1", flags=MotionFlag, long_name="kind of motion"
-        ),
-        "fitted": Variable(
-            dims=("belt_speed",), dtype="bool", long_name="whether the speed is in the fit"
-        ),
-        "slope": Variable(
-            units="s", long_name="fitted growth of the amplitude with V", nan_allowed=True
-        ),
-        "offset": Variable(units="m", long_name="fitted amplitude at V = 0", nan_allowed=True),
-        "fit_outcome": outcome(),
-        "energy_slope": Variable(
-            units="s", long_name="sqrt(m/(k1 + k2)): the slope if the top speed were V"
-        ),
-        "energy_offset": Variable(
-            units="m", long_name="far end of the unstretched springs: the offset if so"
-        ),
-        "t_end": Variable(units="s", long_name="end of each run"),
-        "outcome": outcome("belt_speed"),
-    },
-)
-
-_ESCAPE = ("belt_speed", "sample")
-TRANSIENT = DatasetSchema(
-    name="transient",
-    title="How long the bounded motion at (0.2 pi, 0.8 pi) lasts",
-    coordinates={
-        "belt_speed": Variable(dims=("belt_speed",), units="m s-1", long_name="belt speed V"),
-        "sample": Variable(dims=("sample",), dtype="i4", long_name="number of the perturbation"),
-    },
-    variables={
-        "start_x": Variable(dims=("sample",), units="m", long_name="x at the start"),
-        "lifetime": Variable(
-            dims=_ESCAPE,
-            units="s",
-            long_name="time of the tenth net turn around both fixed ends (NaN: not before t_end)",
-            nan_allowed=True,
-        ),
-        "max_displacement": Variable(
-            dims=_ESCAPE, units="m", long_name="largest distance from the start position until then"
-        ),
-        "shown_start_x": Variable(
-            dims=("shown_sample",), units="m", long_name="x at the start, at the speed shown"
-        ),
-        "shown_lifetime": Variable(
-            dims=("shown_sample",),
-            units="s",
-            long_name="lifetimes at the study's own belt speed (NaN: not before t_end)",
-            nan_allowed=True,
-        ),
-        "shown_belt_speed": Variable(units="m s-1", long_name="the study's own belt speed"),
-        "t_end": Variable(units="s", long_name="end of each run"),
-        "outcome": outcome(*_ESCAPE),
-        "shown_outcome": outcome("shown_sample"),
+        "refined_runs": Variable("runs of the refined map", dtype="i8"),
+        "refined_points": Variable("points per side, refined map", dtype="i4"),
     },
 )

@@ -2,30 +2,22 @@
 
 from __future__ import annotations
 
-from squealpipe.schema import DatasetSchema, Variable, outcome
+from squealpipe.schema import ORBIT_ENDS, RUN_ENDS, DatasetSchema, Variable, outcome
 from squealpipe.schema.dynamics import TIME
 from squealpipe.schema.linear import ANGLES, MAP, MODES
 
-FREQUENCY = Variable(dims=("frequency",), units="rad s-1", long_name="angular frequency")
+FREQUENCY = Variable("angular frequency", "rad s-1", ("frequency",))
 RUN = (*MAP, "time")
 BRANCH = (*MAP, "mode", "point")
 
 
 def _motion(units: str, long_name: str) -> Variable:
     """A history, kept in single precision: it is drawn, not computed with."""
-    return Variable(dims=RUN, units=units, long_name=long_name, dtype="f4", rtol=1e-5, atol=1e-6)
+    return Variable(long_name, units, RUN, dtype="f4", rtol=1e-5, atol=1e-6)
 
 
 def _branch(units: str, long_name: str) -> Variable:
-    return Variable(
-        dims=BRANCH,
-        units=units,
-        long_name=long_name,
-        dtype="f4",
-        nan_allowed=True,
-        rtol=1e-5,
-        atol=1e-6,
-    )
+    return Variable(long_name, units, BRANCH, dtype="f4", nan_allowed=True, rtol=1e-5, atol=1e-6)
 
 
 EXPLORER = DatasetSchema(
@@ -36,31 +28,34 @@ EXPLORER = DatasetSchema(
         **MODES,
         "time": TIME,
         "frequency": FREQUENCY,
-        "point": Variable(dims=("point",), dtype="i4", long_name="point along the branch"),
+        "point": Variable("point along the branch", dims=("point",), dtype="i4"),
     },
     variables={
         "x": _motion("m", "displacement along the belt"),
         "y": _motion("m", "displacement away from the belt"),
         "normalized_contact_force": _motion("1", "contact force over k3 l_pre"),
         "force_spectrum": Variable(
+            "amplitude spectrum of the normalized contact force",
             dims=(*MAP, "frequency"),
             dtype="f4",
-            long_name="amplitude spectrum of the normalized contact force",
             rtol=1e-4,
             atol=1e-5,
         ),
-        "outcome": outcome(*MAP),
+        "outcome": outcome(*MAP, among=RUN_ENDS),
         "omega": _branch("rad s-1", "angular frequency of the periodic motion"),
         "x_amplitude": _branch("m", "half of the peak-to-peak of x over a period"),
         "y_amplitude": _branch("m", "half of the peak-to-peak of y over a period"),
         "y_peak": _branch("m", "y at the symmetric instant with the larger y"),
         "stability_index": _branch("1", "trace of the monodromy matrix minus 2"),
         "end": Variable(
-            dims=(*MAP, "mode"), dtype="i1", flags=outcome().flags, long_name="why the branch ends"
+            "why the branch ends",
+            dims=(*MAP, "mode"),
+            dtype="i1",
+            flags=outcome(among=ORBIT_ENDS).flags,
         ),
-        "preload": Variable(units="m", long_name="precompression l_pre of the contact spring"),
-        "length1": Variable(units="m", long_name="free length of spring 1"),
-        "length2": Variable(units="m", long_name="free length of spring 2"),
-        "belt_speed": Variable(units="m s-1", long_name="belt speed V"),
+        "preload": Variable("precompression l_pre of the contact spring", "m"),
+        "length1": Variable("free length of spring 1", "m"),
+        "length2": Variable("free length of spring 2", "m"),
+        "belt_speed": Variable("belt speed V", "m s-1"),
     },
 )

@@ -4,15 +4,16 @@ from __future__ import annotations
 
 from enum import IntEnum
 
-from squealpipe.schema import DatasetSchema, Variable, outcome
+from squealpipe.schema import LINEAR_ENDS, DatasetSchema, Variable, outcome
+from squealpipe.schema.comparing import Listing
 
 MAP = ("alpha1", "alpha2")
 
 ANGLES = {
-    "alpha1": Variable(dims=("alpha1",), units="rad", long_name="angle of spring 1"),
-    "alpha2": Variable(dims=("alpha2",), units="rad", long_name="angle of spring 2"),
+    "alpha1": Variable("angle of spring 1", "rad", ("alpha1",)),
+    "alpha2": Variable("angle of spring 2", "rad", ("alpha2",)),
 }
-MODES = {"mode": Variable(dims=("mode",), dtype="i4", long_name="mode, by ascending frequency")}
+MODES = {"mode": Variable("mode, by ascending frequency", dims=("mode",), dtype="i4")}
 
 
 class LinearRegimeFlag(IntEnum):
@@ -24,7 +25,7 @@ class LinearRegimeFlag(IntEnum):
 
 
 REGIME_LINEAR = Variable(
-    dims=MAP, dtype="i1", flags=LinearRegimeFlag, long_name="stability regime of model A3"
+    "stability regime of model A3", dims=MAP, dtype="i1", flags=LinearRegimeFlag
 )
 
 STABILITY_MAP = DatasetSchema(
@@ -33,43 +34,76 @@ STABILITY_MAP = DatasetSchema(
     coordinates={**ANGLES, **MODES},
     variables={
         "growth_rate": Variable(
-            dims=MAP, units="s-1", long_name="largest real part of the eigenvalues"
+            "largest real part of the eigenvalues", "s-1", MAP, nan_allowed=True
         ),
         "frequency": Variable(
-            dims=(*MAP, "mode"), units="rad s-1", long_name="imaginary part of the eigenvalues"
+            "imaginary part of the eigenvalues", "rad s-1", (*MAP, "mode"), nan_allowed=True
         ),
         "regime_linear": REGIME_LINEAR,
-        "outcome": outcome(*MAP),
+        "outcome": outcome(*MAP, among=LINEAR_ENDS),
     },
 )
+
+
+def _critical(suffix: str) -> Variable:
+    return Variable(f"critical friction{suffix}", "1", MAP)
+
+
+CRITICAL_FRICTION_MAP = DatasetSchema(
+    name="critical_friction_map",
+    title="Friction at which steady sliding loses its stability (model A3) over both spring angles",
+    coordinates=ANGLES,
+    variables={
+        "critical_mu": _critical(""),
+        "critical_mu_undamped": _critical(" without dashpots"),
+        "critical_mu_vanishing": _critical(" as both dashpots vanish at their ratio"),
+        "destabilized": Variable("dashpots lower the critical friction", dims=MAP, dtype="bool"),
+    },
+)
+
+CRITICAL_DAMPING_MAP = DatasetSchema(
+    name="critical_damping_map",
+    title="Friction at which steady sliding loses its stability (model A3) over both dashpots",
+    coordinates={
+        f"damping{i}": Variable(f"dashpot along spring {i}", "N s m-1", (f"damping{i}",))
+        for i in (1, 2)
+    },
+    variables={
+        "critical_mu": Variable("critical friction", dims=("damping1", "damping2")),
+        "critical_mu_undamped": Variable("critical friction without dashpots"),
+        "destabilized": Variable(
+            "dashpots lower the critical friction", dims=("damping1", "damping2"), dtype="bool"
+        ),
+        "alpha1": Variable("angle of spring 1", "rad"),
+        "alpha2": Variable("angle of spring 2", "rad"),
+    },
+)
+
+
+def _stiffness(symbol: str) -> Variable:
+    return Variable(f"{symbol} of Eq. (8), springs alone", "N m-1", MAP, optional=True)
+
 
 QUASI_STATIC_MAP = DatasetSchema(
     name="quasi_static_map",
     title="Quasi-static sliding (model A2) and the linear static state over both spring angles",
     coordinates=ANGLES,
     variables={
-        "possible_as_printed": Variable(
-            dims=MAP, dtype="bool", long_name="Eq. (11) as printed holds"
-        ),
-        "possible": Variable(
-            dims=MAP, dtype="bool", long_name="reaction force of model A2 is positive"
-        ),
-        "reaction_force": Variable(
-            dims=MAP, units="N", nan_allowed=True, long_name="reaction force of model A2, y = 0"
-        ),
-        "x_static": Variable(
-            dims=MAP, units="m", nan_allowed=True, long_name="x of the static state of Eq. (15)"
-        ),
-        "y_static": Variable(
-            dims=MAP, units="m", nan_allowed=True, long_name="y of the static state of Eq. (15)"
-        ),
+        "possible_as_printed": Variable("Eq. (11) as printed holds", dims=MAP, dtype="bool"),
+        "possible": Variable("reaction force of model A2 is positive", dims=MAP, dtype="bool"),
+        "reaction_force": Variable("reaction force of model A2, y = 0", "N", MAP, nan_allowed=True),
+        "x_static": Variable("x of the static state of Eq. (15)", "m", MAP, nan_allowed=True),
+        "y_static": Variable("y of the static state of Eq. (15)", "m", MAP, nan_allowed=True),
         "contact_force_static": Variable(
-            dims=MAP,
-            units="N",
+            "contact force of the static state of Eq. (15), negative where k3 pulls",
+            "N",
+            MAP,
             nan_allowed=True,
-            long_name="contact force of the static state of Eq. (15), negative where k3 pulls",
         ),
-        "outcome": outcome(*MAP),
+        "stiffness_x": _stiffness("K11"),
+        "stiffness_xy": _stiffness("K12"),
+        "stiffness_y": _stiffness("K22"),
+        "outcome": outcome(*MAP, among=LINEAR_ENDS),
     },
 )
 
@@ -79,17 +113,11 @@ NATURAL_FREQUENCIES = DatasetSchema(
     coordinates={
         **ANGLES,
         **MODES,
-        "contact_state": Variable(
-            dims=("contact_state",), dtype="U", long_name="state of the contact"
-        ),
+        "contact_state": Variable("state of the contact", dims=("contact_state",), dtype="U"),
     },
     variables={
-        "omega": Variable(
-            dims=(*MAP, "mode", "contact_state"),
-            units="rad s-1",
-            long_name="natural frequency",
-        ),
-        "outcome": outcome(*MAP, "mode", "contact_state"),
+        "omega": Variable("natural frequency", "rad s-1", (*MAP, "mode", "contact_state")),
+        "outcome": outcome(*MAP, "mode", "contact_state", among=LINEAR_ENDS),
     },
 )
 
@@ -106,27 +134,28 @@ class Boundary(IntEnum):
 STABILITY_BOUNDARIES = DatasetSchema(
     name="stability_boundaries",
     title="Exact boundaries of flutter, divergence and quasi-static sliding",
+    lists={"point": Listing(kinds=("boundary", "segment"))},
     coordinates={
-        "point": Variable(dims=("point",), dtype="i4", long_name="number of the point"),
+        "point": Variable("number of the point", dims=("point",), dtype="i4"),
     },
     variables={
         "alpha1": Variable(
-            dims=("point",), units="rad", long_name="angle of spring 1, continuous along a segment"
+            dims=("point",),
+            units="rad",
+            long_name="angle of spring 1, continuous along a segment",
+            atol=3e-8,  # at its turning points an arc cosine keeps half of the digits
         ),
         "alpha2": Variable(
-            dims=("point",), units="rad", long_name="angle of spring 2, continuous along a segment"
+            dims=("point",),
+            units="rad",
+            long_name="angle of spring 2, continuous along a segment",
+            atol=3e-8,  # at its turning points an arc cosine keeps half of the digits
         ),
-        "z_real": Variable(
-            dims=("point",), units="N m-1", long_name="Re(k1 exp(2i alpha1) + k2 exp(-2i alpha2))"
-        ),
-        "z_imag": Variable(
-            dims=("point",), units="N m-1", long_name="Im(k1 exp(2i alpha1) + k2 exp(-2i alpha2))"
-        ),
-        "boundary": Variable(
-            dims=("point",), dtype="i1", flags=Boundary, long_name="which boundary"
-        ),
+        "z_real": Variable("Re(k1 exp(2i alpha1) + k2 exp(-2i alpha2))", "N m-1", ("point",)),
+        "z_imag": Variable("Im(k1 exp(2i alpha1) + k2 exp(-2i alpha2))", "N m-1", ("point",)),
+        "boundary": Variable("which boundary", dims=("point",), dtype="i1", flags=Boundary),
         "segment": Variable(
-            dims=("point",), dtype="i4", long_name="points of one number are joined by a line"
+            "points of one number are joined by a line", dims=("point",), dtype="i4"
         ),
     },
 )
@@ -135,16 +164,16 @@ PAIR = ("mu", "kappa")
 
 
 def _share(dims: tuple[str, ...], long_name: str) -> Variable:
-    return Variable(dims=dims, long_name=f"share of the angle map: {long_name}")
+    return Variable(f"share of the angle map: {long_name}", dims=dims)
 
 
 LINEAR_SHARES = DatasetSchema(
     name="linear_shares",
     title="How much of the angle map the linear models forbid or find unstable",
     coordinates={
-        "mu": Variable(dims=("mu",), long_name="friction coefficient"),
-        "kappa": Variable(dims=("kappa",), long_name="k3/k1"),
-        "sharpness": Variable(dims=("sharpness",), long_name="sigma times l_pre"),
+        "mu": Variable("friction coefficient", dims=("mu",)),
+        "kappa": Variable("k3/k1", dims=("kappa",)),
+        "sharpness": Variable("sigma times l_pre", dims=("sharpness",)),
     },
     variables={
         "impossible_as_printed": _share(("mu",), "Eq. (11) as printed fails"),
@@ -156,7 +185,7 @@ LINEAR_SHARES = DatasetSchema(
             PAIR, "not possible by model A2, contact force of Eq. (15) positive"
         ),
         "unstable_where_possible": _share(PAIR, "unstable where sliding is possible"),
-        "stiffness_ratio": Variable(dims=("sharpness",), long_name="K3 of Eq. (8d) over k3"),
+        "stiffness_ratio": Variable("K3 of Eq. (8d) over k3", dims=("sharpness",)),
         "flutter_regularized": _share(("sharpness",), "flutter with K3 of Eq. (8d)"),
         "divergence_regularized": _share(("sharpness",), "divergence with K3 of Eq. (8d)"),
     },
@@ -166,31 +195,31 @@ MODE_COUPLING = DatasetSchema(
     name="mode_coupling",
     title="Minimal mode-coupling model of Hoffmann, Fischer, Allgaier and Gaul (2002) by model A3",
     coordinates={
-        "mu": Variable(dims=("mu",), long_name="friction coefficient"),
+        "mu": Variable("friction coefficient", dims=("mu",)),
         **MODES,
         "distance": Variable(
-            dims=("distance",), long_name="relative distance of mu from the onset of flutter"
+            "relative distance of mu from the onset of flutter", dims=("distance",)
         ),
-        "side": Variable(dims=("side",), dtype="U", long_name="side of the onset"),
+        "side": Variable("side of the onset", dims=("side",), dtype="U"),
     },
     variables={
-        "growth_rate": Variable(dims=("mu",), units="s-1", long_name="largest real part by A3"),
-        "frequency": Variable(dims=("mu", "mode"), units="rad s-1", long_name="frequency by A3"),
+        "growth_rate": Variable("largest real part by A3", "s-1", ("mu",)),
+        "frequency": Variable("frequency by A3", "rad s-1", ("mu", "mode")),
         "published_growth_rate": Variable(
-            dims=("mu",), units="s-1", long_name="largest real part by the published model"
+            "largest real part by the published model", "s-1", ("mu",)
         ),
         "published_frequency": Variable(
-            dims=("mu", "mode"), units="rad s-1", long_name="frequency by the published model"
+            "frequency by the published model", "rad s-1", ("mu", "mode")
         ),
         "closed_form_error": Variable(
+            "relative error of the eigenvalues by A3, against 60 digits",
             dims=("side", "distance"),
             atol=1e-11,
-            long_name="relative error of the eigenvalues by A3, against 60 digits",
         ),
         "numeric_error": Variable(
+            "relative error of numeric eigenvalues, against 60 digits",
             dims=("side", "distance"),
             atol=1e-6,
-            long_name="relative error of numeric eigenvalues, against 60 digits",
         ),
     },
 )

@@ -2,33 +2,35 @@
 
 from __future__ import annotations
 
-from squealpipe.schema import DatasetSchema, Variable, outcome
+from squealpipe.schema import RUN_ENDS, DatasetSchema, Variable, outcome
+from squealpipe.schema.comparing import Listing
 from squealpipe.schema.explorer import FREQUENCY
 
 RUN_SUMMARY = DatasetSchema(
     name="run_summary",
     title="Summary of one run",
+    lists={"peak": Listing()},
     coordinates={
         "frequency": FREQUENCY,
-        "peak": Variable(dims=("peak",), dtype="i4", long_name="peak of the spectrum, by height"),
+        "peak": Variable("peak of the spectrum, by height", dims=("peak",), dtype="i4"),
     },
     variables={
         "first_separation_time": Variable(
-            units="s", long_name="time of the first loss of contact", nan_allowed=True
+            "time of the first loss of contact", "s", nan_allowed=True
         ),
-        "impact_rate": Variable(units="s-1", long_name="contacts regained per time"),
-        "separated_fraction": Variable(long_name="share of the time without contact"),
-        "stick_fraction": Variable(long_name="share of the time in stick"),
-        "peak_contact_force": Variable(long_name="largest sampled contact force over k3 l_pre"),
-        "largest_x": Variable(units="m", long_name="largest |x| among the samples"),
-        "largest_y": Variable(units="m", long_name="largest |y| among the samples"),
+        "impact_rate": Variable("contacts regained per time", "s-1"),
+        "separated_fraction": Variable("share of the time without contact"),
+        "stick_fraction": Variable("share of the time in stick"),
+        "peak_contact_force": Variable("largest sampled contact force over k3 l_pre"),
+        "largest_x": Variable("largest |x| among the samples", "m"),
+        "largest_y": Variable("largest |y| among the samples", "m"),
         "force_spectrum": Variable(
-            dims=("frequency",), long_name="amplitude spectrum of the normalized contact force"
+            "amplitude spectrum of the normalized contact force", dims=("frequency",)
         ),
         "dominant_frequency": Variable(
-            dims=("peak",), units="rad s-1", long_name="angular frequencies of its highest peaks"
+            "angular frequencies of its highest peaks", "rad s-1", ("peak",)
         ),
-        "dominant_amplitude": Variable(dims=("peak",), long_name="heights of these peaks"),
-        "outcome": outcome(),
+        "dominant_amplitude": Variable("heights of these peaks", dims=("peak",)),
+        "outcome": outcome(among=RUN_ENDS),
     },
 )

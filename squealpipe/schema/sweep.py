@@ -10,17 +10,20 @@ import re
 from collections.abc import Sequence
 from dataclasses import replace
 
+import numpy as np
+
 from squealpipe.parameters import Parameters
+from squealpipe.ranges import NUMBERS
 from squealpipe.schema import ABSENT, DatasetSchema, SchemaError, Variable, find, flag_table
 
 RAGGED = ("event", "point", "switch", "harmonic")
 """Dimensions whose length may differ from run to run of a sweep."""
 
 OPTIONS = {
-    "t_end": Variable(units="s", long_name="horizon"),
-    "tol": Variable(units="1", long_name="tolerance of the integration"),
-    "mode": Variable(dtype="i4", units="1", long_name="mode, by ascending frequency"),
-    "y_peak": Variable(units="m", long_name="y at the symmetric instant"),
+    "t_end": Variable("horizon", "s"),
+    "tol": Variable("tolerance of the integration", "1"),
+    "mode": Variable("mode, by ascending frequency", "1", dtype="i4"),
+    "y_peak": Variable("y at the symmetric instant", "m"),
 }
 """Options of tasks that can be swept besides parameters and angles."""
 
@@ -39,12 +42,12 @@ def swept_coordinate(name: str) -> Variable:
         SchemaError: nothing of that name can be swept.
     """
     if name in {"alpha1", "alpha2"}:
-        return Variable(dims=(name,), units="rad", long_name=f"angle of spring {name[-1]}")
+        return Variable(f"angle of spring {name[-1]}", "rad", (name,))
     if name in OPTIONS:
         return replace(OPTIONS[name], dims=(name,))
-    if name in Parameters.__dataclass_fields__:
-        return Variable(dims=(name,), units=Parameters.units(name), long_name=name)
-    known = ["alpha1", "alpha2", *Parameters.__dataclass_fields__, *OPTIONS]
+    if name in NUMBERS:
+        return Variable(name, Parameters.units(name), (name,))
+    known = ["alpha1", "alpha2", *NUMBERS, *OPTIONS]
     raise SchemaError(f"{name!r} cannot be swept; known: {', '.join(known)}")
 
 
@@ -58,7 +61,7 @@ def derived(name: str) -> DatasetSchema | None:
     kept = {key: entry for key, entry in base.coordinates.items() if key not in names}
     sizes = {
         f"{dim}_count": Variable(
-            dims=tuple(names), dtype="i4", long_name=f"entries that this run has along {dim}"
+            f"entries that this run has along {dim}", dims=tuple(names), dtype="i4"
         )
         for dim in ragged_dims(base)
     }
@@ -104,3 +107,13 @@ def _with_leading(entry: Variable, names: Sequence[str]) -> Variable:
     if entry.flags is not None:
         return replace(swept, flags={**flag_table(entry.flags), ABSENT: "absent"})
     return replace(swept, nan_allowed=True)
+
+
+def fill_up(array: np.ndarray, shape: tuple[int, ...]) -> np.ndarray:
+    """A shorter run in the shape of the longest: beyond its end is NaN, "" or the flag "absent"."""
+    if array.shape == shape:
+        return array
+    nothing = {"f": np.nan, "U": ""}.get(array.dtype.kind, ABSENT)
+    filled = np.full(shape, nothing, dtype=array.dtype)
+    filled[tuple(map(slice, array.shape))] = array
+    return filled

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import datetime
-import hashlib
 import importlib.metadata
 import json
 import os
 import platform
 import shutil
 import tempfile
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path, PurePosixPath
 from typing import Any
@@ -18,25 +17,34 @@ from typing import Any
 import yaml
 
 from squealpipe.config import Study, read_study
+from squealpipe.store.checkout import commit
 from squealpipe.store.crate import METADATA, describe
+from squealpipe.store.identity import canonical
+from squealpipe.store.memory.objects import (
+    DRAFT,
+    OBJECTS,
+    checksum,
+    locked,
+    object_path,
+    seal_fits,
+    seal_text,
+    share,
+)
 from squealpipe.store.netcdf import StoreError, load, sync
-from squealpipe.store.provenance import commit
 from squealpipe.store.runs import (
     LEFT_OUT,
     MANIFEST,
+    SEAL,
     archive_folder,
     dataset_files,
+    listed_files,
     locate,
     matches_any,
-    read_manifest,
     regular_files,
 )
 
 PARTS = ("data", "figures", "report")
 """Folders of a run that are frozen."""
-
-SEAL = "manifest.sha256"
-"""Holds the checksum of the manifest, so that an edited manifest is noticed too."""
 
 
 @dataclass(frozen=True)
@@ -103,30 +111,32 @@ def archive(
     if not run.is_dir():
         raise FileNotFoundError(f"no run in {run}; run snakemake first")
     _refuse_stale(run, study)
-    target.parent.mkdir(parents=True, exist_ok=True)
-    draft = Path(tempfile.mkdtemp(dir=target.parent, prefix=f".{name}.", suffix=".tmp"))
+    patterns = [f"*{entry}" if entry.startswith(".") else entry for entry in leave_out]
     try:
-        draft.chmod(0o755)
-        patterns = [f"*{entry}" if entry.startswith(".") else entry for entry in leave_out]
-        _copy_run(run, draft, patterns)
-        _copy_setting(config_files, study, base, draft)
-        frozen_at = datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds")
-        (draft / METADATA).write_text(describe(draft, name, frozen_at), encoding="utf-8")
-        _seal(draft, {"name": name, "frozen": frozen_at, LEFT_OUT: patterns})
-        draft.rename(target)
-        sync(target.parent)
+        with locked(target.parent):
+            draft = Path(tempfile.mkdtemp(dir=target.parent, prefix=f".{name}.", suffix=DRAFT))
+            try:
+                draft.chmod(0o777 & ~_umask())
+                _copy_run(run, draft, patterns)
+                _copy_setting(config_files, study, base, draft)
+                frozen_at = datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds")
+                (draft / METADATA).write_text(describe(draft, name, frozen_at), encoding="utf-8")
+                about = {"name": name, "frozen": frozen_at, "commit": commit(), LEFT_OUT: patterns}
+                _seal(draft, {**about, "config": study.model_dump(mode="json")})
+                draft.rename(target)
+                sync(target.parent)
+            finally:
+                shutil.rmtree(draft, ignore_errors=True)
     except OSError as error:
         raise StoreError(
-            f"cannot write {target}: {error.strerror or error}; free space or mend permissions, "
+            f"cannot write {target}: {error.strerror or error}; free space or fix permissions, "
             "then run the same command again"
         ) from error
-    finally:
-        shutil.rmtree(draft, ignore_errors=True)
     return target
 
 
 def verify(what: str | os.PathLike[str], root: str | os.PathLike[str] = ".") -> Verification:
-    """Compare every byte of an archive with its manifest.
+    """Compare every byte of an archive, and of the objects it shares, with its manifest.
 
     Args:
         what: name or folder of an archive.
@@ -139,7 +149,7 @@ def verify(what: str | os.PathLike[str], root: str | os.PathLike[str] = ".") -> 
     folder = locate(what, root)
     if not (folder / MANIFEST).is_file():
         raise FileNotFoundError(f"{folder} has no {MANIFEST}; it is not an archive")
-    listed = _listed_files(folder)
+    listed = listed_files(folder)
     if listed is None:
         return Verification(folder=folder, files=0, changed=[f"{MANIFEST} (damaged)"])
     unsafe = sorted(path for path in listed if not _stays_inside(path))
@@ -154,8 +164,13 @@ def verify(what: str | os.PathLike[str], root: str | os.PathLike[str] = ".") -> 
         if (folder / path).stat().st_size != expected[path].get("bytes")
         or checksum(folder / path) != expected[path].get("sha256")
     ]
-    if not _seal_fits(folder):
+    if not seal_fits(folder):
         changed.append(MANIFEST)
+    changed += [
+        f"{OBJECTS}/{digest} (shared object of {path})"
+        for path, digest in _shared_apart(folder, expected)
+        if checksum(object_path(folder.parent, digest)) != digest
+    ]
     return Verification(
         folder=folder,
         files=len(expected),
@@ -166,12 +181,6 @@ def verify(what: str | os.PathLike[str], root: str | os.PathLike[str] = ".") -> 
     )
 
 
-def checksum(path: Path) -> str:
-    """SHA-256 of a file."""
-    with path.open("rb") as file:
-        return hashlib.file_digest(file, "sha256").hexdigest()
-
-
 def _refuse_stale(run: Path, study: Study) -> None:
     """Every dataset must be whole and made with the configuration that is frozen with it."""
     stale = []
@@ -180,10 +189,15 @@ def _refuse_stale(run: Path, study: Study) -> None:
         part = json.loads(dataset.attrs.get("config", "{}"))
         # Plain keys that are no section tell one file of a rule from another: scene, mode.
         part = {key: part[key] for key in part if "." in key or key in Study.model_fields}
-        try:
-            current = study.slice(*part)
-        except (KeyError, TypeError):
-            current = None
+        if name.startswith("sweeps/"):
+            sweep = name.removeprefix("sweeps/")
+            current = json.loads(canonical(study.sweep(sweep))) if sweep in study.sweeps else None
+            part = json.loads(dataset.attrs.get("config", "{}"))
+        else:
+            try:
+                current = study.slice(*part)
+            except (KeyError, TypeError):
+                current = None
         if current != part:
             stale.append(name)
     if stale:
@@ -238,28 +252,31 @@ def _seal(draft: Path, about: dict[str, Any]) -> None:
     }
     manifest = {"format": 1, **about, "files": files}
     (draft / MANIFEST).write_text(json.dumps(manifest, indent=1) + "\n", encoding="utf-8")
-    (draft / SEAL).write_text(_seal_text(draft), encoding="utf-8")
+    (draft / SEAL).write_text(seal_text(draft), encoding="utf-8")
+    for name in (MANIFEST, SEAL):
+        (draft / name).chmod(0o444 & ~_umask())
+    for name, entry in files.items():
+        path = draft / name
+        path.chmod(0o444 & ~_umask())  # its content may be that of other archives too
+        share(path, str(entry["sha256"]), draft.parent)
     for path in regular_files(draft):
         sync(path)
 
 
-def _seal_text(folder: Path) -> str:
-    return f"{checksum(folder / MANIFEST)}  {MANIFEST}\n"
+def _umask() -> int:
+    mask = os.umask(0)
+    os.umask(mask)
+    return mask
 
 
-def _seal_fits(folder: Path) -> bool:
-    seal = folder / SEAL
-    return seal.is_file() and seal.read_bytes() == _seal_text(folder).encode()
-
-
-def _listed_files(folder: Path) -> dict[str, dict[str, Any]] | None:
-    """File name → entry; None if the manifest is damaged."""
-    manifest = read_manifest(folder)
-    try:
-        files = manifest["files"]
-        return {str(name): dict(entry) for name, entry in files.items()}
-    except (KeyError, TypeError, AttributeError, ValueError):
-        return None
+def _shared_apart(folder: Path, listed: dict[str, dict[str, Any]]) -> Iterator[tuple[str, str]]:
+    """Files whose object exists but is not the file itself, with their checksum."""
+    for path, entry in listed.items():
+        digest = str(entry.get("sha256"))
+        kept = object_path(folder.parent, digest)
+        file = folder / path
+        if digest.isalnum() and kept.is_file() and not (file.is_file() and kept.samefile(file)):
+            yield path, digest
 
 
 def _everything(folder: Path) -> list[str]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import concurrent.futures
 import hashlib
+import json
 import os
 import shutil
 import zipfile
@@ -16,7 +17,6 @@ from typing import Any, Self, TypeVar
 import numpy as np
 
 from squealpipe.progress import Progress
-from squealpipe.store.identity import canonical
 from squealpipe.store.netcdf import StoreError
 
 Chunk = TypeVar("Chunk")
@@ -56,7 +56,8 @@ class Checkpoint:
             sources: files whose text decides the result.
             log: file for progress lines.
         """
-        key = hashlib.sha256(canonical(config).encode())
+        # Keys in the order given, unlike in a dataset's id: chunks are numbered by that order.
+        key = hashlib.sha256(json.dumps(config, allow_nan=False).encode())
         for path in sorted(map(Path, sources)):
             key.update(path.read_bytes())
         target = Path(output)
@@ -77,8 +78,19 @@ class Checkpoint:
         error: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
-        if kind is None:
+        if kind is None or not self.kept():
             shutil.rmtree(self.directory.parent, ignore_errors=True)
+
+    def kept(self) -> int:
+        """Finished chunks that wait here."""
+        return sum(1 for _ in self.directory.rglob("*.npz"))
+
+    def advice(self) -> str:
+        """How to go on after an interrupt."""
+        count = self.kept()
+        if not count:
+            return "nothing was finished; run the same command again"
+        return f"{count} finished parts are kept; run the same command again to go on from them"
 
     def part(self, name: str) -> Checkpoint:
         """A checkpoint of its own for one of several chunked computations of a job."""
@@ -108,7 +120,7 @@ class Checkpoint:
             return  # cleaned up just now: the chunk is in memory, and only a restart would miss it
         except OSError as error:
             raise StoreError(
-                f"cannot write {self.path(index)}: {error.strerror}; free space or mend "
+                f"cannot write {self.path(index)}: {error.strerror}; free space or fix "
                 "permissions, then run the same command again"
             ) from error
         finally:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 import os
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -13,11 +14,17 @@ from typing import Any
 import xarray as xr
 
 from squealpipe.schema import DatasetSchema, find
-from squealpipe.store.differences import VariableDifference, Verdict, align, difference
+from squealpipe.schema.claims import CLAIMS
+from squealpipe.store.differences import Agreement, VariableDifference, difference
+from squealpipe.store.matching import align
 from squealpipe.store.netcdf import load
 from squealpipe.store.provenance import VOLATILE_ATTRIBUTES
 from squealpipe.store.runs import dataset_files, left_out, locate, matches_any
+from squealpipe.store.statements import StatementChange, changed_statements
 from squealpipe.yaml_files import flat
+
+PHYSICAL_KEY = re.compile(r"(parameters\.|alpha\d|mode\b|scene\b|vary\.|fixed\.)")
+"""Configuration keys that say what is computed; the others say how, and on which grid."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -25,11 +32,28 @@ class DatasetDifference:
     """Comparison of one dataset; ``reason`` says why where it could not be compared."""
 
     name: str
-    verdict: Verdict
+    verdict: Agreement
     variables: list[VariableDifference] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
     reason: str = ""
     files: tuple[Path | None, Path | None] = (None, None)
+
+    @property
+    def differences(self) -> list[VariableDifference]:
+        """Variables beyond their tolerance, worst first; volatile ones are not judged."""
+        found = [
+            entry
+            for entry in self.variables
+            if entry.verdict >= Agreement.different and not entry.volatile
+        ]
+        return sorted(found, key=lambda entry: entry.severity, reverse=True)
+
+    @property
+    def severity(self) -> tuple[int, float, float]:
+        """That of the worst variable."""
+        if self.verdict == Agreement.not_comparable or not self.differences:
+            return self.verdict, 0.0, 0.0
+        return self.differences[0].severity
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -41,6 +65,7 @@ class Comparison:
         parameters: changed configuration key → values in a and b (None: the key is absent).
         environment: what else differs in how they were made: commit, versions, platform.
         datasets: one entry for each name found on either side.
+        statements: statements of the paper whose verdict or value changed.
         skipped: datasets that one side, an archive, deliberately left out.
         reason: why nothing could be compared, if so.
     """
@@ -50,20 +75,21 @@ class Comparison:
     parameters: dict[str, tuple[Any, Any]] = field(default_factory=dict)
     environment: dict[str, tuple[Any, Any]] = field(default_factory=dict)
     datasets: list[DatasetDifference] = field(default_factory=list)
+    statements: list[StatementChange] = field(default_factory=list)
     skipped: list[str] = field(default_factory=list)
     reason: str = ""
 
     @property
-    def verdict(self) -> Verdict:
+    def verdict(self) -> Agreement:
         """The worst of the datasets' verdicts."""
         if self.reason or not self.datasets:
-            return Verdict.not_comparable
+            return Agreement.not_comparable
         return max(item.verdict for item in self.datasets)
 
     @property
     def exit_code(self) -> int:
         """0 equal or within tolerance, 1 different, 2 not comparable."""
-        return {Verdict.different: 1, Verdict.not_comparable: 2}.get(self.verdict, 0)
+        return {Agreement.different: 1, Agreement.not_comparable: 2}.get(self.verdict, 0)
 
     def as_dict(self) -> dict[str, Any]:
         """Plain values for JSON: no NaN, no infinity."""
@@ -76,6 +102,15 @@ class Comparison:
             "skipped": self.skipped,
             "parameters": {key: list(pair) for key, pair in self.parameters.items()},
             "environment": {key: list(pair) for key, pair in self.environment.items()},
+            "statements": [
+                {
+                    "claim": change.claim,
+                    "statement": change.statement,
+                    "verdicts": list(change.verdicts),
+                    "values": list(change.values),
+                }
+                for change in self.statements
+            ],
             "datasets": [
                 {
                     "name": item.name,
@@ -111,12 +146,15 @@ def compare(
     parameters: dict[str, tuple[Any, Any]] = {}
     environment: dict[str, tuple[Any, Any]] = {}
     datasets = []
+    statements: list[StatementChange] = []
     skipped = [name for name in set(left) ^ set(right) if matches_any(f"data/{name}.nc", absent)]
     for name in sorted((set(left) | set(right)) - set(skipped)):
         if name not in left or name not in right:
             side = a if name in left else b
             reason = f"only in {side}"
-            datasets.append(DatasetDifference(name=name, verdict=Verdict.different, reason=reason))
+            datasets.append(
+                DatasetDifference(name=name, verdict=Agreement.different, reason=reason)
+            )
             continue
         files = (left[name], right[name])
         try:
@@ -127,10 +165,13 @@ def compare(
         parameters.update(changed_configuration(*pair))
         environment.update(changed_environment(*pair))
         datasets.append(compare_datasets(name, *pair, files=files))
+        if pair[0].attrs["schema"] == pair[1].attrs["schema"] == CLAIMS.name:
+            statements = changed_statements(*pair, (files[0].parents[1], files[1].parents[1]))
     return Comparison(
         a=str(a),
         b=str(b),
-        parameters=dict(sorted(parameters.items())),
+        parameters={key: parameters[key] for key in sorted(parameters, key=_physical_first)},
+        statements=statements,
         environment=dict(sorted(environment.items())),
         datasets=datasets,
         skipped=sorted(skipped),
@@ -144,13 +185,17 @@ def compare_datasets(
     *,
     files: tuple[Path | None, Path | None] = (None, None),
 ) -> DatasetDifference:
-    """Compare two datasets of one schema, variable by variable, on the grid that they share."""
+    """Compare two datasets of one schema, variable by variable, on what they share.
+
+    Points of grids are matched by value, entries of lists as the schema's ``lists`` say.
+    """
     kinds = (a.attrs["schema"], b.attrs["schema"])
     if kinds[0] != kinds[1]:
         return _refused(name, files, f"the schemas are {kinds[0]!r} and {kinds[1]!r}")
     schema = find(str(kinds[0]))
+    lengths = [(dim, a.sizes.get(dim), b.sizes.get(dim)) for dim in schema.lists]
     try:
-        a, b, notes = align(a, b)
+        a, b, notes = align(a, b, schema)
     except ValueError as error:
         return _refused(name, files, str(error))
     variables = [
@@ -158,10 +203,19 @@ def compare_datasets(
         for variable in [*schema.coordinates, *schema.variables]
         if variable in a.variables or variable in b.variables
     ]
+    variables += [
+        VariableDifference(
+            name=f"number of {dim}",
+            verdict=Agreement.different,
+            reason=f"{first} entries against {second}",
+        )
+        for dim, first, second in lengths
+        if first != second
+    ]
     judged = [entry.verdict for entry in variables if not entry.volatile]
     return DatasetDifference(
         name=name,
-        verdict=max(judged, default=Verdict.equal),
+        verdict=max(judged, default=Agreement.equal),
         variables=variables,
         notes=notes,
         files=files,
@@ -173,17 +227,19 @@ def _variable(name: str, a: xr.Dataset, b: xr.Dataset, schema: DatasetSchema) ->
     if entry is None or name not in a.variables or name not in b.variables:
         side = "first" if name in a.variables else "second"
         reason = f"only in the {side}"
-        return VariableDifference(name=name, verdict=Verdict.different, reason=reason)
+        return VariableDifference(name=name, verdict=Agreement.different, reason=reason)
     return difference(name, a[name], b[name], entry)
 
 
 def _refused(name: str, files: tuple[Path | None, Path | None], reason: str) -> DatasetDifference:
-    return DatasetDifference(name=name, verdict=Verdict.not_comparable, reason=reason, files=files)
+    return DatasetDifference(
+        name=name, verdict=Agreement.not_comparable, reason=reason, files=files
+    )
 
 
 def changed_configuration(a: xr.Dataset, b: xr.Dataset) -> dict[str, tuple[Any, Any]]:
     """Configuration keys whose values differ between the makers of two datasets."""
-    return _changes(_configuration(a), _configuration(b))
+    return _changes(configuration(a), configuration(b))
 
 
 def changed_environment(a: xr.Dataset, b: xr.Dataset) -> dict[str, tuple[Any, Any]]:
@@ -194,11 +250,20 @@ def changed_environment(a: xr.Dataset, b: xr.Dataset) -> dict[str, tuple[Any, An
     return _changes(_opened(left), _opened(right))
 
 
-def _configuration(dataset: xr.Dataset) -> dict[str, Any]:
+def _physical_first(key: str) -> tuple[bool, str]:
+    """Sorts numbers of grids and methods after what they are used on."""
+    return not PHYSICAL_KEY.match(key), key
+
+
+def configuration(dataset: xr.Dataset) -> dict[str, Any]:
+    """Dotted key → value of what made a dataset: of the study's slice, else of the call."""
+    told = dataset.attrs
     try:
-        return flat(json.loads(dataset.attrs.get("config", "{}")))
+        if "config" in told:
+            return flat(json.loads(told["config"]))
+        return flat({"parameters": json.loads(told.get("parameters", "{}"))})
     except ValueError:
-        return {"config": dataset.attrs["config"]}
+        return {"config": told.get("config", told.get("parameters"))}
 
 
 def _opened(attributes: dict[str, Any]) -> dict[str, Any]:
@@ -219,7 +284,7 @@ def _changes(a: dict[str, Any], b: dict[str, Any]) -> dict[str, tuple[Any, Any]]
 def _plain(entry: Mapping[str, Any]) -> dict[str, Any]:
     plain: dict[str, Any] = {}
     for key, value in entry.items():
-        if isinstance(value, Verdict):
+        if isinstance(value, Agreement):
             plain[key] = value.name
         elif isinstance(value, dict):
             plain[key] = _plain(value)

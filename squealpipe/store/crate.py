@@ -50,7 +50,7 @@ def describe(folder: Path, name: str, frozen_at: str) -> str:
     )
     files = {
         path.relative_to(folder).as_posix(): crate.add_file(
-            path, path.relative_to(folder).as_posix(), properties=_properties(path)
+            path, path.relative_to(folder).as_posix(), properties=file_properties(path)
         )
         for path in regular_files(folder)
     }
@@ -73,7 +73,8 @@ def describe(folder: Path, name: str, frozen_at: str) -> str:
     return json.dumps(crate.metadata.generate(), indent=1, sort_keys=True) + "\n"
 
 
-def _properties(path: Path) -> dict[str, Any]:
+def file_properties(path: Path) -> dict[str, Any]:
+    """Size, checksum and type of a file; of a dataset also title and id."""
     content = path.read_bytes()
     kind = TYPES.get(path.suffix) or mimetypes.guess_type(path.name)[0]
     properties: dict[str, Any] = {

@@ -8,18 +8,18 @@ from enum import IntEnum
 
 import numpy as np
 import xarray as xr
+from scipy.stats import ks_2samp
 
 from squealpipe.schema import Variable, flag_table
+from squealpipe.schema.comparing import ComparedAs, RoundOff
 
-ALIGNED = 1e-9
-"""Grid points that differ by less, relative to the extent of the grid, are the same point."""
-
-
+SMALLEST_CHANCE = 1e-6
+"""Two samples of one distribution are taken for different ones at this probability or less."""
 LONGEST = 60
 """Characters of a text that an account of flips quotes."""
 
 
-class Verdict(IntEnum):
+class Agreement(IntEnum):
     """Ordered: the verdict on a whole is the largest of its parts."""
 
     equal = 0
@@ -42,11 +42,12 @@ class VariableDifference:
         flips: "a → b" → count, for flags.
         rtol, atol: the schema's tolerance.
         volatile: differs by nature; no part of the verdict.
+        compared_as: what was compared where round-off decides the digits; empty: the values.
         reason: in words, where numbers do not say it.
     """
 
     name: str
-    verdict: Verdict
+    verdict: Agreement
     compared: int = 0
     differing: int = 0
     largest_absolute: float = 0.0
@@ -56,54 +57,13 @@ class VariableDifference:
     rtol: float = 0.0
     atol: float = 0.0
     volatile: bool = False
+    compared_as: str = ""
     reason: str = ""
 
-
-def align(a: xr.Dataset, b: xr.Dataset) -> tuple[xr.Dataset, xr.Dataset, list[str]]:
-    """Both datasets on the grid points that they share, and notes on what was left out.
-
-    Dimensions without a coordinate (events, points of a branch) are lists, not grids: they stay.
-
-    Raises:
-        ValueError: a grid shares fewer than two points with the other.
-    """
-    notes = []
-    for dim in sorted(map(str, set(a.dims) & set(b.dims))):
-        if dim not in a.coords or dim not in b.coords:
-            continue
-        left, right = a[dim].values, b[dim].values
-        if left.shape == right.shape and np.array_equal(left, right):
-            continue
-        at_left, at_right = _shared(left, right)
-        if len(at_left) < min(2, len(left), len(right)) or not len(at_left):
-            raise ValueError(
-                f"the grids of {dim} share {len(at_left)} of {len(left)} and {len(right)} points; "
-                "compute both on grids of which one holds the other"
-            )
-        a, b = a.isel({dim: at_left}), b.isel({dim: at_right})
-        if len(at_left) < max(len(left), len(right)):
-            notes.append(
-                f"{dim}: compared on {len(at_left)} shared points of {len(left)} and {len(right)}"
-            )
-    return a, b, notes
-
-
-def _shared(left: np.ndarray, right: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Indices of the points that two one-dimensional grids have in common."""
-    if left.dtype.kind not in "fiu" or right.dtype.kind not in "fiu":
-        _, at_left, at_right = np.intersect1d(left, right, return_indices=True)
-        order = np.argsort(at_left)
-        return at_left[order], at_right[order]
-    extent = max(np.ptp(left), np.ptp(right)) if left.size and right.size else 0.0
-    order = np.argsort(right, kind="stable")
-    if not right.size:
-        return np.array([], int), np.array([], int)
-    place = np.clip(np.searchsorted(right[order], left), 1, max(len(right) - 1, 1))
-    near = np.clip(np.stack([place - 1, place]), 0, len(right) - 1)
-    distance = np.abs(right[order][near] - left)
-    nearest = order[near[distance.argmin(axis=0), np.arange(len(left))]]
-    close = distance.min(axis=0) <= ALIGNED * extent
-    return np.flatnonzero(close), nearest[close]
+    @property
+    def severity(self) -> tuple[int, float, float]:
+        """Larger is worse: verdict, share of values that differ, largest relative difference."""
+        return self.verdict, self.differing / max(self.compared, 1), self.largest_relative
 
 
 def difference(name: str, a: xr.DataArray, b: xr.DataArray, entry: Variable) -> VariableDifference:
@@ -122,10 +82,13 @@ def difference(name: str, a: xr.DataArray, b: xr.DataArray, entry: Variable) -> 
         )
         return VariableDifference(
             name=name,
-            verdict=Verdict.different,
+            verdict=Agreement.different,
             volatile=entry.volatile,
-            reason=f"lists of different length: {lengths or f'{a.dims} against {b.dims}'}",
+            reason=f"lists of different length: {lengths or f'{a.dims} against {b.dims}'}"
+            + _ranges(a.values, b.values),
         )
+    if entry.round_off is not None and entry.round_off.compared is ComparedAs.sample:
+        return _sampled(name, a, b, entry, entry.round_off)
     if entry.flags is not None or a.dtype.kind not in "fc":
         return _discrete(name, a, b, entry)
     return _continuous(name, a, b, entry)
@@ -138,8 +101,54 @@ def outside_tolerance(a: np.ndarray, b: np.ndarray, entry: Variable) -> np.ndarr
     same = (a == b) | (np.isnan(a) & np.isnan(b))
     with np.errstate(invalid="ignore", over="ignore"):
         close = np.abs(a - b) <= entry.atol + entry.rtol * np.maximum(np.abs(a), np.abs(b))
+    if entry.round_off is not None:
+        close |= _same_magnitude(a, b, entry.round_off)
     finite = np.isfinite(a) & np.isfinite(b)
     return np.asarray(~(same | (close & finite)))
+
+
+def _same_magnitude(a: np.ndarray, b: np.ndarray, how: RoundOff) -> np.ndarray:
+    sizes = [np.maximum(np.abs(side), how.floor) for side in (a, b)]
+    with np.errstate(invalid="ignore", over="ignore"):
+        return np.asarray(np.maximum(*sizes) <= how.factor * np.minimum(*sizes))
+
+
+def _ranges(left: np.ndarray, right: np.ndarray) -> str:
+    """What lists that cannot be matched hold, in short."""
+    if left.dtype.kind not in "fiu" or not (np.isfinite(left).any() and np.isfinite(right).any()):
+        return ""
+    told = [f"{np.nanmin(side):.4g} to {np.nanmax(side):.4g}" for side in (left, right)]
+    return f"; from {told[0]} against {told[1]}"
+
+
+def _sampled(
+    name: str, a: xr.DataArray, b: xr.DataArray, entry: Variable, how: RoundOff
+) -> VariableDifference:
+    """Both sides as samples along one dimension, by the test of Kolmogorov and Smirnov.
+
+    What did not end in time (NaN) counts as longer than all others.
+    """
+    left, right = (side.transpose(..., how.sample).values.astype(float) for side in (a, b))
+    rows = [side.reshape(-1, side.shape[-1]) for side in (left, right)]
+    filled = [np.nan_to_num(side, nan=np.inf, posinf=np.inf) for side in rows]
+    chances = np.array([ks_2samp(x, y).pvalue for x, y in zip(*filled, strict=True)])
+    unlikely = chances <= SMALLEST_CHANCE
+    equal = np.array_equal(left, right, equal_nan=True)
+    verdict = Agreement.different if unlikely.any() else Agreement.within_tolerance
+    rest = a.isel({how.sample: 0})
+    return VariableDifference(
+        name=name,
+        verdict=Agreement.equal if equal else verdict,
+        compared=len(chances),
+        differing=int(unlikely.sum()),
+        where=_place(rest, int(chances.argmin())) if chances.size and not equal else {},
+        volatile=entry.volatile,
+        compared_as=how.compared.value,
+        reason=""
+        if equal
+        else f"{len(chances)} samples along {how.sample}, smallest chance that both are "
+        f"of one distribution {chances.min(initial=1.0):.2g}",
+    )
 
 
 def _discrete(name: str, a: xr.DataArray, b: xr.DataArray, entry: Variable) -> VariableDifference:
@@ -153,7 +162,7 @@ def _discrete(name: str, a: xr.DataArray, b: xr.DataArray, entry: Variable) -> V
     )
     return VariableDifference(
         name=name,
-        verdict=Verdict.different if count else Verdict.equal,
+        verdict=Agreement.different if count else Agreement.equal,
         compared=left.size,
         differing=count,
         where=_place(a, int(differing.argmax())) if count else {},
@@ -172,9 +181,9 @@ def _continuous(name: str, a: xr.DataArray, b: xr.DataArray, entry: Variable) ->
     differing = outside_tolerance(left, right, entry)
     same = (left == right) | (np.isnan(left) & np.isnan(right))
     if same.all():
-        verdict = Verdict.equal
+        verdict = Agreement.equal
     else:
-        verdict = Verdict.different if differing.any() else Verdict.within_tolerance
+        verdict = Agreement.different if differing.any() else Agreement.within_tolerance
     with np.errstate(invalid="ignore", over="ignore"):
         gap = np.where(same, 0.0, np.abs(left - right))
     one_sided = ~np.isfinite(gap)
@@ -190,10 +199,11 @@ def _continuous(name: str, a: xr.DataArray, b: xr.DataArray, entry: Variable) ->
         differing=int(differing.sum()),
         largest_absolute=float(finite.max(initial=0.0)),
         largest_relative=float(relative.max(initial=0.0)),
-        where=_place(a, worst) if verdict != Verdict.equal else {},
+        where=_place(a, worst) if verdict != Agreement.equal else {},
         rtol=entry.rtol,
         atol=entry.atol,
         volatile=entry.volatile,
+        compared_as="" if entry.round_off is None else entry.round_off.compared.value,
         reason=f"{int(one_sided.sum())} values are finite on one side only"
         if one_sided.any()
         else "",

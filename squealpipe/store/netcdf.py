@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import contextlib
+import datetime
 import os
 import tempfile
+import time
 from pathlib import Path
 from typing import Any
 
@@ -11,12 +14,19 @@ import numpy as np
 import xarray as xr
 
 from squealpipe.schema import SchemaError, find, validate
+from squealpipe.store.checkout import commit
+from squealpipe.store.conventions import as_dataset, as_file
+from squealpipe.store.header import header_of
 from squealpipe.store.identity import dataset_id
+from squealpipe.store.seal import SEALED, Seal, archive_around, judge, write_seal
 
 
 class StoreError(ValueError):
     """A file cannot be read or written as a dataset; the message names it and the remedy."""
 
+
+LEFT_AFTER_S = 3600.0
+"""Age from which a temporary file belongs to no process that still runs."""
 
 DAMAGED = (OSError, RuntimeError, ValueError, LookupError, AttributeError, TypeError, MemoryError)
 """What netCDF-4 and Xarray raise on files with damaged bytes."""
@@ -25,13 +35,18 @@ DAMAGED = (OSError, RuntimeError, ValueError, LookupError, AttributeError, TypeE
 def save(dataset: xr.Dataset, path: str | os.PathLike[str]) -> Path:
     """Write a dataset atomically, with its id: temporary name, validation, fsync, rename.
 
+    Commit and date are added where the dataset does not tell them yet.
+
     Raises:
         SchemaError: the dataset does not fit its schema; nothing is written.
-        StoreError: the folder cannot be written; an earlier file of that name is untouched.
+        StoreError: the folder cannot be written, or the path is a device or part of an archive;
+            an earlier file of that name is untouched.
     """
     target = Path(path)
     validate(dataset, find(str(dataset.attrs.get("schema"))))
-    dataset = dataset.assign_attrs(dataset_id=dataset_id(dataset))
+    refuse_target(target)
+    made = {"commit": commit(), "history": made_now(), **dataset.attrs}
+    dataset = dataset.assign_attrs({**made, **SEALED, "dataset_id": dataset_id(dataset)})
     encoding: dict[str, dict[str, Any]] = {
         str(name): {"zlib": True, "complevel": 4, "shuffle": True}
         for name, variable in dataset.variables.items()
@@ -45,13 +60,16 @@ def save(dataset: xr.Dataset, path: str | os.PathLike[str]) -> Path:
     temporary = None
     try:
         target.parent.mkdir(parents=True, exist_ok=True)
+        clear_leftovers(target.parent, f".{target.name}.*.tmp")
         handle, name_ = tempfile.mkstemp(
             dir=target.parent, prefix=f".{target.name}.", suffix=".tmp"
         )
         os.close(handle)
         temporary = Path(name_)
-        dataset.to_netcdf(temporary, engine="netcdf4", format="NETCDF4", encoding=encoding)
-        _check_content(_read(temporary), temporary)
+        as_file(dataset).to_netcdf(temporary, engine="netcdf4", format="NETCDF4", encoding=encoding)
+        written = _read(temporary)
+        _check_content(written, temporary)
+        write_seal(temporary, header_of(written))
         umask = os.umask(0)
         os.umask(umask)
         temporary.chmod(0o666 & ~umask)
@@ -61,7 +79,7 @@ def save(dataset: xr.Dataset, path: str | os.PathLike[str]) -> Path:
     except (OSError, RuntimeError, StoreError) as error:  # netCDF-4 reports a full disk as any
         reason = getattr(error, "strerror", None) or error
         raise StoreError(
-            f"cannot write {target}: {reason}; free space or mend permissions, "
+            f"cannot write {target}: {reason}; free space or fix permissions, "
             "then run the same command again"
         ) from error
     finally:
@@ -85,6 +103,14 @@ def load(path: str | os.PathLike[str], *, schema: str | None = None) -> xr.Datas
     source = Path(path)
     if not source.is_file():
         raise FileNotFoundError(f"no dataset {source}; make it with snakemake, or check the path")
+    seal = judge(source)
+    if seal is Seal.broken:
+        raise StoreError(_changed(source))
+    if seal is Seal.unreadable:
+        raise StoreError(
+            f"{source} is damaged: the NetCDF library hangs on it or dies; delete it and run "
+            "snakemake again"
+        )
     dataset = _read(source)
     found = dataset.attrs.get("schema")
     if found is None:
@@ -93,22 +119,52 @@ def load(path: str | os.PathLike[str], *, schema: str | None = None) -> xr.Datas
         raise SchemaError(f"{source} holds {found!r}, {schema!r} was expected; pass the right file")
     validate(dataset, find(str(found)))
     _check_content(dataset, source)
+    if seal is Seal.absent and SEALED.keys() & dataset.attrs.keys():
+        raise StoreError(_changed(source))
     return dataset
+
+
+def refuse_target(target: Path) -> None:
+    """Refuse to write what must not be replaced.
+
+    Raises:
+        StoreError: a device, pipe, socket or folder of that name exists, or it is in an archive.
+    """
+    if target.exists() and not target.is_file():
+        raise StoreError(f"{target} is no regular file; choose another name to write to")
+    archive = archive_around(target)
+    if archive is not None:
+        raise StoreError(f"{target} is part of the archive {archive}, which never changes")
+
+
+def clear_leftovers(folder: Path, pattern: str) -> None:
+    """Delete temporary files that a killed process left; those of the last hour may be in use."""
+    for path in folder.glob(pattern):
+        with contextlib.suppress(FileNotFoundError):  # another process clears them too
+            if time.time() - path.stat().st_mtime > LEFT_AFTER_S:
+                path.unlink()
+
+
+def made_now() -> str:
+    """The line of CF's ``history`` for a dataset that is made now."""
+    return f"{datetime.datetime.now(datetime.UTC):%Y-%m-%dT%H:%M:%SZ} squealpipe"
+
+
+def _changed(source: Path) -> str:
+    return f"{source} was changed or damaged since it was made; delete it and run snakemake again"
 
 
 def _check_content(dataset: xr.Dataset, source: Path) -> None:
     """Raise if the values are not those that were saved."""
-    if dataset.attrs.get("dataset_id", "") not in {"", dataset_id(dataset)}:
-        raise StoreError(
-            f"{source} was changed or damaged since it was made; delete it and run snakemake again"
-        )
+    if dataset.attrs.get("dataset_id") != dataset_id(dataset):
+        raise StoreError(_changed(source))
 
 
 def _read(source: Path) -> xr.Dataset:
     try:
         with xr.open_dataset(source, engine="netcdf4", decode_times=False) as opened:
             _refuse_too_large(opened)
-            dataset = opened.load()
+            dataset = as_dataset(opened.load())
     except DAMAGED as error:
         raise StoreError(
             f"{source} is truncated or not NetCDF-4 ({error}); delete it and run snakemake again"

@@ -2,27 +2,39 @@
 
 from __future__ import annotations
 
-import datetime
-import importlib.metadata
 import os
 import platform
-import subprocess
 import time
 from collections.abc import Callable, Iterable, Mapping
-from functools import cache
 from pathlib import Path
 from typing import Any
 
 import xarray as xr
 
+from squealpipe.schema.origin import versions
+from squealpipe.sources import code_digests, edited
+from squealpipe.stale import attributes, some
+from squealpipe.store.checkout import commit
 from squealpipe.store.identity import canonical, digest
-from squealpipe.store.netcdf import load, save
+from squealpipe.store.netcdf import StoreError, load, made_now, save
 
-LIBRARIES = ("numpy", "scipy", "xarray", "netCDF4", "heyoka", "numba")
 VOLATILE_ATTRIBUTES = frozenset(
-    {"history", "wall_time_s", "platform", "libraries", "package_version", "commit", "inputs"}
+    {
+        "history",
+        "wall_time_s",
+        "platform",
+        "libraries",
+        "package_version",
+        "commit",
+        "inputs",
+        "code",
+    }
 )
 """Global attributes that tell of the run, not of the result."""
+
+
+STARTED = time.time()
+"""When this process began, s since 1970: no later than any of its jobs."""
 
 
 def produce(
@@ -31,6 +43,7 @@ def produce(
     config: Mapping[str, Any],
     output: str | os.PathLike[str],
     inputs: Iterable[str | os.PathLike[str]] = (),
+    sources: Iterable[str | os.PathLike[str]] = (),
 ) -> Path:
     """Run a task, stamp the result with its provenance, and save it.
 
@@ -39,11 +52,55 @@ def produce(
         config: exactly the configuration that the task was given.
         output: where the dataset goes.
         inputs: NetCDF files that the task read.
+        sources: files whose code decides the result; where given, the dataset tells their digests
+            and a result that is out of date when the task ends is not published.
+
+    Raises:
+        StoreError: the code changed while the task ran, or another configuration or other code
+            wrote ``output`` meanwhile; what is there stays.
     """
+    files = [Path(path) for path in sources]
+    code = code_digests(files)
+    dataset = stamped(make, config=config, inputs=inputs)
+    if code:
+        refuse_outdated(Path(output), files, dataset.attrs["config"], code)
+        dataset = dataset.assign_attrs(code=canonical(code))
+    return save(dataset, output)
+
+
+def refuse_outdated(
+    output: Path, sources: Iterable[Path], config: str, code: Mapping[str, str]
+) -> None:
+    """Raise if a result made from this configuration and code is out of date by now."""
+    changed = edited(sources)
+    if changed:
+        raise StoreError(
+            f"{output} is not written: {some(changed)} changed while it was computed; "
+            "run snakemake again"
+        )
+    if output.is_file() and output.stat().st_mtime > STARTED:
+        newer = attributes(output)
+        if newer is not None and (newer.get("config"), newer.get("code")) != (
+            config,
+            canonical(code),
+        ):
+            raise StoreError(
+                f"{output} is not written: a job that began later has written it, from another "
+                "configuration or other code"
+            )
+
+
+def stamped(
+    make: Callable[[], xr.Dataset],
+    *,
+    config: Mapping[str, Any],
+    inputs: Iterable[str | os.PathLike[str]] = (),
+) -> xr.Dataset:
+    """What a task makes, with its provenance and wall time, not yet saved."""
     started = time.perf_counter()
     dataset = make()
     wall_time = time.perf_counter() - started
-    return save(stamp(dataset, config=config, inputs=inputs, wall_time=wall_time), output)
+    return stamp(dataset, config=config, inputs=inputs, wall_time=wall_time)
 
 
 def stamp(
@@ -58,29 +115,10 @@ def stamp(
     return dataset.assign_attrs(
         config=text,
         config_hash=digest(text),
-        package_version=importlib.metadata.version("squealpipe"),
+        **versions(),
         commit=commit(),
-        libraries=canonical({name: importlib.metadata.version(name) for name in LIBRARIES}),
         platform=f"{platform.platform()}, Python {platform.python_version()}",
         inputs=canonical({str(path): load(path).attrs["dataset_id"] for path in inputs}),
         wall_time_s=wall_time,
-        history=f"{datetime.datetime.now(datetime.UTC):%Y-%m-%dT%H:%M:%SZ} squealpipe",
+        history=made_now(),
     )
-
-
-@cache
-def commit() -> str:
-    """Commit of the checkout that the package runs from, with a mark if it has changes."""
-    root = Path(__file__).resolve().parents[2]
-    try:
-        described = subprocess.run(
-            ["git", "describe", "--always", "--dirty", "--abbrev=12"],
-            cwd=root,
-            capture_output=True,
-            text=True,
-            check=True,
-            timeout=10,
-        )
-    except (OSError, subprocess.SubprocessError):
-        return "unknown"
-    return described.stdout.strip()

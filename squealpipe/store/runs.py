@@ -12,6 +12,8 @@ from typing import Any
 
 ARCHIVES = Path("results/archive")
 MANIFEST = "manifest.json"
+SEAL = "manifest.sha256"
+"""Holds the checksum of the manifest, so that an edited manifest is noticed too."""
 NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,79}")
 MOST_FILES = 100_000
 """A folder with more files is not one of ours."""
@@ -42,6 +44,16 @@ def read_manifest(folder: Path) -> dict[str, Any]:
     except ValueError:
         return {}
     return manifest if isinstance(manifest, dict) else {}
+
+
+def listed_files(folder: Path) -> dict[str, dict[str, Any]] | None:
+    """File name → entry of an archive's manifest; None if it is damaged."""
+    manifest = read_manifest(folder)
+    try:
+        files = manifest["files"]
+        return {str(name): dict(entry) for name, entry in files.items()}
+    except (KeyError, TypeError, AttributeError, ValueError):
+        return None
 
 
 def left_out(place: Path) -> list[str]:

@@ -17,16 +17,16 @@ import time
 import numpy as np
 
 from squealpipe.laws.springs import geometry, linear_stiffness
+from squealpipe.methods.balance.harmonic_balance import CosineBalance, contact_of, cosines_of
 from squealpipe.methods.continuation import ContinuationSettings
-from squealpipe.methods.harmonic_balance import CosineBalance, contact_of, cosines_of
-from squealpipe.methods.orbit_shape import sample
+from squealpipe.methods.orbits.orbit_shape import sample
 from squealpipe.models.a4 import first_integral
 from squealpipe.parameters import Parameters
-from squealpipe.tasks.a4_system import scaled_system
-from squealpipe.tasks.atlas import orbit_atlas
-from squealpipe.tasks.exact_branches import exact_branch
-from squealpipe.tasks.harmonic_branches import coupled_branch, linear_series
-from squealpipe.tasks.orbits import find_orbit, linear_orbit
+from squealpipe.solvers.a4.exact_branches import exact_branch
+from squealpipe.solvers.a4.harmonic_branches import coupled_branch, linear_series
+from squealpipe.solvers.a4.orbits import find_orbit, linear_orbit
+from squealpipe.solvers.a4.system import scaled_system
+from squealpipe.tasks.backbones.atlas import orbit_atlas
 
 PARAMS = Parameters()
 ANGLES = 0.3 * math.pi, 0.9 * math.pi

@@ -1,6 +1,7 @@
 """Speed and accuracy of the event-driven engine beside other integrators, in one run.
 
-Prints medians and ratios; the ratios are what to compare between machines.
+Prints medians and ratios; the ratios are what to compare between machines. What runs in this
+process alone is timed by its CPU time, so that others at work on the machine disturb less.
 """
 
 from __future__ import annotations
@@ -19,17 +20,19 @@ import numpy as np
 import xarray as xr
 
 from squealpipe.laws.springs import Geometry
-from squealpipe.methods import taylor_compiler
 from squealpipe.methods.hybrid import Guard
+from squealpipe.methods.taylor import taylor_compiler
+from squealpipe.methods.taylor.series import HybridSystem
+from squealpipe.methods.taylor.symbols import in_order
 from squealpipe.models import switching
 from squealpipe.models.a1_automaton import A1Automaton
 from squealpipe.parameters import Parameters
-from squealpipe.tasks.a1_system import PARAMETER_INDEX, lane_system
-from squealpipe.tasks.dynamics import simulate, validity_map
-from squealpipe.tasks.ensemble import run_ensemble
-from squealpipe.tasks.peers import simulate_scipy
-from squealpipe.tasks.reference import simulate_reference
-from squealpipe.tasks.refinement import refine_validity_map
+from squealpipe.solvers.a1.ensemble import run_ensemble
+from squealpipe.solvers.a1.peers import simulate_scipy
+from squealpipe.solvers.a1.reference import simulate_reference
+from squealpipe.solvers.a1.system import PARAMETERS, REGIME, lane_system
+from squealpipe.tasks.dynamics.refinement import refine_validity_map
+from squealpipe.tasks.dynamics.runs import simulate, validity_map
 
 PAIRS = 8
 T_END = 50.0
@@ -37,24 +40,53 @@ BASELINE = Parameters()
 SUNDIALS = ("Adams", "BDF") if importlib.util.find_spec("sksundae") else ()
 """Methods of the optional peer scikit-sundae; ``make bench`` installs it."""
 COLD = """
-import time; started = time.perf_counter()
+import time
 import numpy as np
 from squealpipe.parameters import Parameters
-from squealpipe.tasks.dynamics import validity_map
+from squealpipe.tasks.dynamics.runs import validity_map
 angles = np.linspace(0, np.pi, 181)
-validity_map(Parameters(), angles, angles)
-print(time.perf_counter() - started)
+validity_map(Parameters(), angles, angles, workers=1)
+print(time.process_time())
 """
 
 
-def median(work: Callable[[], object], repeats: int = 5) -> float:
-    """Median wall time, s."""
+def median(
+    work: Callable[[], object], repeats: int = 5, clock: Callable[[], float] = time.process_time
+) -> float:
+    """Median time of a few repeats, s."""
     times = []
     for _ in range(repeats):
-        started = time.perf_counter()
+        started = clock()
         work()
-        times.append(time.perf_counter() - started)
+        times.append(clock() - started)
     return statistics.median(times)
+
+
+def as_heyoka(system: HybridSystem) -> tuple[list[Any], list[Any]]:
+    """Equations and events of a system as heyoka's expressions."""
+    names = [variable.arguments[0] for variable in system.variables]
+    value: dict[int, Any] = {}
+    for node in in_order([*system.rates, *system.events]):
+        given = [value.get(id(each), each) for each in node.arguments]
+        if node.kind == "variable":
+            value[id(node)] = heyoka.make_vars(*given)
+        elif node.kind == "parameter":
+            value[id(node)] = heyoka.par[system.parameters.index(given[0])]
+        elif node.kind == "number":
+            value[id(node)] = given[0]
+        elif node.kind == "+":
+            value[id(node)] = given[0] + given[1]
+        elif node.kind == "*":
+            value[id(node)] = given[0] * given[1]
+        elif node.kind == "joined":
+            c1, a1, b1, c2, a2, b2 = given
+            value[id(node)] = c1 * (a1 * b1) + c2 * (a2 * b2)
+        else:
+            value[id(node)] = given[0] ** given[1]
+    rates = [value[id(rate)] for rate in system.rates]
+    return list(zip(heyoka.make_vars(*names), rates, strict=True)), [
+        value[id(event)] for event in system.events
+    ]
 
 
 class ScalarLoop:
@@ -62,21 +94,18 @@ class ScalarLoop:
 
     def __init__(self, tol: float) -> None:
         taylor_compiler.set_up()
-        system = lane_system(linear_springs=False, tangent=False)
+        equations, events = as_heyoka(lane_system(linear_springs=False))
         self.integrator = heyoka.taylor_adaptive(
-            list(system.equations),
+            equations,
             np.zeros(4),
             tol=tol,
-            t_events=[heyoka.t_event(event, cooldown=0.0) for event in system.events],
+            t_events=[heyoka.t_event(event, cooldown=0.0) for event in events],
         )
 
     def run(self, params: Parameters, alpha1: float, alpha2: float, t_end: float) -> np.ndarray:
         """The state at t_end from rest; parameters in units of m = k1 = l_pre = 1."""
         rules = switching.VARIANT_RULES["A1"]
-        p = switching.ScaledParameters(
-            1.0, 1.0, params.k2, params.k3, params.mu, params.belt_speed, 1.0,
-            params.length1, params.length2,
-        )  # fmt: skip
+        p = switching.ScaledParameters.of(params)
         g = Geometry(np.cos(alpha1), np.sin(alpha1), np.cos(alpha2), np.sin(alpha2))
         ta = self.integrator
         ta.time = 0.0
@@ -85,10 +114,10 @@ class ScalarLoop:
         values = dict(zip(("k2", "k3", "mu", "belt_speed"), p[2:6], strict=True))
         values |= {"length1": p.length1, "length2": p.length2, **g._asdict()}
         for name, value in values.items():
-            ta.pars[PARAMETER_INDEX[name]] = value
+            ta.pars[PARAMETERS.index(name)] = value
         while True:
             slips = regime in (switching.SLOWER, switching.FASTER)
-            ta.pars[10:] = (
+            ta.pars[PARAMETERS.index(REGIME[0]) :] = (
                 regime != switching.SEPARATED,
                 (1.0 if regime == switching.SLOWER else -1.0) if slips else 0.0,
                 regime == switching.STICK,
@@ -180,17 +209,17 @@ def compare_integrators() -> None:
         rows.append(("heyoka scalar loop 1e-12", seconds, states))
         methods = [("DOP853", 1e-12), ("DOP853", 1e-10), ("RK45", 1e-10), ("LSODA", 1e-10)]
         for method, tol in methods:
-            started = time.perf_counter()
+            started = time.process_time()
             states = [
                 np.asarray(simulate_scipy(params, *a, t_end=T_END, method=method, tol=tol).state)
                 for a in angles
             ]
-            seconds = (time.perf_counter() - started) / PAIRS
+            seconds = (time.process_time() - started) / PAIRS
             rows.append((f"scipy {method} {tol:g}", seconds, states))
         for method in SUNDIALS:
-            started = time.perf_counter()
+            started = time.process_time()
             states = [simulate_sundials(params, *a, method=method, tol=1e-10) for a in angles]
-            seconds = (time.perf_counter() - started) / PAIRS
+            seconds = (time.process_time() - started) / PAIRS
             rows.append((f"CVODE {method} 1e-10", seconds, states))
         print(f"\nA1, V = {speed:g}, t = {T_END:g}, {PAIRS} random angle pairs, one core")
         for name, seconds, states in rows:
@@ -205,7 +234,13 @@ def main() -> None:
     """Print the tables."""
     compare_integrators()
     angles = np.linspace(0, np.pi, 24)
+    pairs = np.random.default_rng(0).uniform(0, np.pi, (5, 2))
+    public = statistics.median(
+        median(lambda pair=pair: simulate_scipy(BASELINE, *pair, t_end=200.0, tol=1e-12), repeats=1)
+        for pair in pairs
+    )
     print("\nEnsembles, T = 200, 24 × 24 angles, all events and outputs, 1e-12, one core")
+    print(f"  scipy DOP853 1e-12, 5 random pairs {1e6 * public:7.0f} µs a trajectory")
     for tangent in (False, True):
         seconds = median(
             lambda t=tangent: run_ensemble(
@@ -213,16 +248,21 @@ def main() -> None:
             )
         )
         label = "with predictability horizon" if tangent else "outputs of hammering_map"
-        print(f"  {label:30} {1e6 * seconds / 576:7.1f} µs a trajectory")
+        each = seconds / 576
+        print(
+            f"  {label:30} {1e6 * each:7.1f} µs a trajectory, DOP853 over ours {public / each:.0f}"
+        )
     angles = np.linspace(0, np.pi, 181)
-    for workers in (1, None):
-        seconds = median(lambda w=workers: validity_map(BASELINE, angles, angles, workers=w))
-        print(f"  validity map 181 × 181, workers = {workers}: {seconds:.2f} s")
+    for workers, kind, clock in ((1, "CPU", time.process_time), (None, "wall", time.perf_counter)):
+        seconds = median(
+            lambda w=workers: validity_map(BASELINE, angles, angles, workers=w), clock=clock
+        )
+        print(f"  validity map 181 × 181, workers = {workers}: {seconds:.2f} s {kind}")
     cold = [
         float(subprocess.run([sys.executable, "-c", COLD], capture_output=True, check=True).stdout)
         for _ in range(3)
     ]
-    print(f"  the same from a cold process, imports included: {statistics.median(cold):.2f} s")
+    print(f"  the same from a cold process, imports included: {statistics.median(cold):.2f} s CPU")
     started = time.perf_counter()
     refined = refine_validity_map(BASELINE, resolution=1441, coarse=91)
     seconds = time.perf_counter() - started

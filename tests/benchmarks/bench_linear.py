@@ -14,7 +14,7 @@ from squealpipe import natural_frequencies, quasi_static_map, stability_map
 from squealpipe.laws.springs import geometry, linear_stiffness
 from squealpipe.models.a4 import contact_matrix
 from squealpipe.parameters import Parameters
-from squealpipe.tasks.inference import infer_parameters
+from squealpipe.tasks.inference.inference import infer_parameters
 
 POINTS = 1441
 SAMPLES = 20_480

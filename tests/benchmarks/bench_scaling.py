@@ -14,11 +14,11 @@ from pathlib import Path
 
 import numpy as np
 
+from squealpipe.execution.row_blocks import map_in_blocks
 from squealpipe.parameters import Parameters
 from squealpipe.store import save
-from squealpipe.tasks.dynamics import validity_map
-from squealpipe.tasks.hammering import hammering_map
-from squealpipe.tasks.row_blocks import map_in_blocks
+from squealpipe.tasks.dynamics.hammering import hammering_map
+from squealpipe.tasks.dynamics.runs import validity_map
 
 
 def cpu_seconds() -> float:

@@ -7,14 +7,14 @@ import pytest
 import xarray as xr
 
 from squealpipe.parameters import SCENES, Parameters
-from squealpipe.tasks.assumptions import check_assumptions, linear_pull_map
-from squealpipe.tasks.backbones import backbone
-from squealpipe.tasks.dynamics import simulate, validity_map
-from squealpipe.tasks.hammering import hammering_map
-from squealpipe.tasks.harmonic_sweeps import compare_harmonic_forms
-from squealpipe.tasks.inference import infer_parameters
-from squealpipe.tasks.linear import natural_frequencies, quasi_static_map, stability_map
-from squealpipe.tasks.whirl import transient_lifetimes, whirl_sizes
+from squealpipe.tasks.backbones.backbone import backbone
+from squealpipe.tasks.backbones.harmonic_sweeps import compare_harmonic_forms
+from squealpipe.tasks.dynamics.assumptions import check_assumptions, linear_pull_map
+from squealpipe.tasks.dynamics.hammering import hammering_map
+from squealpipe.tasks.dynamics.runs import simulate, validity_map
+from squealpipe.tasks.dynamics.whirl import transient_lifetimes, whirl_sizes
+from squealpipe.tasks.inference.inference import infer_parameters
+from squealpipe.tasks.linear.maps import natural_frequencies, quasi_static_map, stability_map
 
 POINTS = 41
 """Multiples of π/40: holds 0.4π, 0.5π and π."""

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 import xarray as xr
@@ -9,9 +11,10 @@ import xarray as xr
 from squealpipe.claims.datasets import READ
 from squealpipe.claims.judge import judge
 from squealpipe.claims.statements import STATEMENTS
-from squealpipe.claims.table import rows, table
+from squealpipe.claims.table import rows, table, totals
+from squealpipe.figures.linear import fig07
 from squealpipe.parameters import Parameters
-from squealpipe.schema.claims import Verdict
+from squealpipe.schema.claims import Basis, Verdict
 from squealpipe.store.netcdf import save
 from squealpipe.store.provenance import stamp
 
@@ -131,9 +134,73 @@ def test_a_statement_that_divides_the_feasible_set_depends_on_the_parameters(
     assert float(claims.feasible_share) == pytest.approx(0.3)
 
 
-def test_constraints_of_the_inference_hold_in_all_of_the_feasible_set(
+def test_each_row_says_whether_it_was_fitted_or_is_predicted(
     evidence: dict[str, xr.Dataset], baseline: Parameters
 ) -> None:
+    """What defined the feasible set is no evidence for it: only predictions get a share."""
     claims = judge(baseline, evidence)
     constraints = [str(name) for name in evidence["parameter_inference"].statement.values]
-    assert (claims.feasible_share.sel(claim=constraints) == 1.0).all()
+    fitted = claims.sel(claim=constraints)
+    assert (fitted.basis == Basis.fitted).all()
+    assert np.isnan(fitted.feasible_share).all()
+    predicted = claims.sel(claim=~claims.claim.isin(constraints))
+    assert (predicted.basis == Basis.predicted).all()
+    shared = predicted.sel(claim=np.isfinite(predicted.feasible_share))
+    assert set(shared.claim.values) == {"S3", "F6b", "F6c", "F7a", "F8c", "C2", "E8", "E10"}
+    size = int(evidence["parameter_inference"].feasible_count)
+    assert (shared.feasible_count == size).all()
+    assert (shared.feasible_share_low <= shared.feasible_share).all()
+    assert (shared.feasible_share <= shared.feasible_share_high).all()
+    assert (shared.feasible_share_high - shared.feasible_share_low > 1 / size).all()
+    alone = {name: data for name, data in evidence.items() if name != "parameter_inference"}
+    assert (judge(baseline, alone).basis == Basis.unknown).all()
+
+
+def test_the_papers_statements_and_the_misprints_have_totals_of_their_own(
+    evidence: dict[str, xr.Dataset], baseline: Parameters
+) -> None:
+    table_ = rows(judge(baseline, evidence))
+    counted = totals(table_)
+    assert {row["id"] for row in table_ if row["origin"] == "misprints"} == {
+        f"E{number}" for number in range(1, 13)
+    }
+    assert sum(counted["misprints"].values()) == 12
+    assert sum(counted["paper"].values()) == len(CLAIMS) - 12
+
+
+def test_claims_of_an_older_file_are_read(
+    tmp_path: Path, evidence: dict[str, xr.Dataset], baseline: Parameters
+) -> None:
+    added = ("basis", "origin", "feasible_count", "feasible_share_low", "feasible_share_high")
+    older = judge(baseline, evidence).drop_vars(added)
+    path = save(stamp(older, config={}, wall_time=0.0), tmp_path / "claims.nc")
+    found, _ = table(path)
+    assert all(row[name] is None for row in found for name in added)
+
+
+def test_one_threshold_of_growth_for_the_figure_and_the_verdict(
+    evidence: dict[str, xr.Dataset], baseline: Parameters
+) -> None:
+    """The reproducer: growth of 1.5 to 2 was black in Fig. 7 and none in E10."""
+    validity = evidence["validity_map"]
+    kept = validity.separates.values == 0
+    for growth, black in ((1.9, 0), (2.0, 1)):
+        changed = validity.response_growth.copy()
+        changed.values[tuple(np.argwhere(kept)[0])] = growth
+        data = {**evidence, "validity_map": validity.assign(response_growth=changed)}
+        row = judge(baseline, data).sel(claim="E10")
+        assert float(row.value) == black
+        assert f"and {black} in (b)" in fig07.caption(data["validity_map"])
+
+
+def test_where_the_modes_switch_is_read_from_the_map(
+    evidence: dict[str, xr.Dataset], baseline: Parameters
+) -> None:
+    """C1 against the closed form on α1 = α2 = α: K11 − K22 = 2k cos 2α between 0 and k3."""
+    row = judge(baseline, evidence).sel(claim="C1")
+    angles = np.linspace(0.0, np.pi, 1201)
+    sums, differences = angles[:, None] + angles, angles[:, None] - angles
+    split = 2.0 * np.cos(sums) * np.cos(differences)
+    exact = ((split > 0) & (split < baseline.k3)).mean()
+    assert float(row.value) == pytest.approx(exact, abs=0.02)
+    assert "0.2π to 0.225π and 0.775π to 0.8π" in str(row.evidence.item())

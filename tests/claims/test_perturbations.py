@@ -71,11 +71,6 @@ def other_second_mode(dataset: xr.Dataset) -> xr.DataArray:
     return dataset.omega.where(dataset.mode == 1, dataset.omega.sel(mode=1))
 
 
-def crossing(dataset: xr.Dataset) -> xr.DataArray:
-    """The frequency falls below that of the isolated x mode on the way."""
-    return dataset.omega.where(dataset.point < 3, 0.5)
-
-
 def saturated(dataset: xr.Dataset, *, later: float) -> xr.DataArray:
     return dataset.amplitude_before * later
 
@@ -105,6 +100,7 @@ FLIPS = [
     Flip("F2c", "simulate/F2c", touching, FAILS),
     Flip("F2d", "simulate/F2d", without_events, FAILS),
     Flip("F2e", "simulate/F2b", scaled("normalized_contact_force", 0.5), FAILS),
+    Flip("F2e", "simulate/F2d", scaled("normalized_contact_force", 2.0), HOLDS),
     Flip("F3", "simulate/F3", no_growth, FAILS),
     Flip("F3", "whirl", put("amplitude", lambda d: saturated(d, later=1.2)), HOLDS),
     Flip("F4", "simulate/F4", growing, FAILS),
@@ -166,7 +162,8 @@ FLIPS = [
     Flip("F12b", "backbone/F12_mode2", put("omega", lambda d: 2 - d.omega), FAILS),
     Flip("F13", "backbone/F13_mode2", put("y_amplitude", lambda _: 0.1), FAILS),
     Flip("F13", "backbone/F13_mode1", scaled("y_peak", 0.1), FAILS),
-    Flip("C1", "backbone/F10_mode2", put("omega", crossing), HOLDS),
+    Flip("C1", "quasi_static_map", put("stiffness_y", lambda d: d.stiffness_x), FAILS),
+    Flip("C1", "quasi_static_map", put("stiffness_y", lambda d: d.stiffness_x - 0.1), HOLDS),
     Flip("C2", "quasi_static_map", NEVER, HOLDS),
     Flip("C3", "backbone/F10_mode2", scaled("omega", 1.2), FAILS),
     Flip("C3", "simulate/F2d", without_events, FAILS),
@@ -179,7 +176,7 @@ FLIPS = [
     Flip(
         "E5",
         "quasi_static_map",
-        put("reaction_force", lambda d: np.abs(d.reaction_force) + 10.0),
+        put("stiffness_xy", lambda d: np.abs(d.stiffness_xy)),
         HOLDS,
     ),
     Flip(
@@ -199,7 +196,7 @@ FLIPS = [
         put("contact_force_static", lambda d: 2.0 * d.possible - 1.0),
         HOLDS,
     ),
-    Flip("E12", "quasi_static_map", put("reaction_force", lambda _: 1.0), HOLDS),
+    Flip("E12", "quasi_static_map", put("stiffness_x", lambda _: 1.0), HOLDS),
 ]
 
 

@@ -7,6 +7,7 @@ import re
 import subprocess
 import sys
 import time
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -14,6 +15,7 @@ import pytest
 from squealpipe import __version__, load
 from squealpipe.cli import COMMANDS, run
 
+SWEPT = ["sweep", "stability_map", "--alpha1", "1", "--alpha2", "2"]
 HEAVY = ("heyoka", "numba", "xarray", "numpy", "matplotlib", "plotly")
 
 
@@ -64,12 +66,30 @@ def test_help_loads_no_numerics():
         (["simulate", "1", "2", "--muu", "3"], "Did you mean --mu"),
         (["simulate", "1", "2", "--t-end", "0"], "--t-end 0.0 must be greater than 0"),
         (["simulate", "1", "2", "--points", "3"], "give 16 or more"),
-        (["simulate", "1", "2", "-o", "run.png"], "another name than the picture"),
-        (["map", "stability", "-p", "map.txt"], "end the name in .png, .svg, .pdf"),
+        (["simulate", "1", "2", "-o", "run.png"], "end the name in .nc or .csv"),
+        (["map", "stability", "-p", "map.txt"], "end the name in .png, .svg or .pdf"),
         (["map", "sound"], "validity"),
         (["map", "stability", "--alpha1", "1"], "2 or more angles of each spring"),
         (["sweep", "stability_map", "--vary", "mu"], "write for instance mu=0:0.6:13"),
         (["sweep", "anything", "--vary", "mu=1,2"], "choose from simulate"),
+        ([*SWEPT, "--vary", "mu=1,2", "--vary", "mu=3,4"], "--vary mu stands twice"),
+        ([*SWEPT, "--vary", "mu=1,2", "--mu", "0.3"], "mu is both fixed and varied"),
+        ([*SWEPT, "--vary", "alpha1=0:1:3"], "alpha1 is both fixed and varied"),
+        (["propensity", "1", "2", "--spread", "mu=uniform:0.1"], "mu=uniform:0.1:0.9"),
+        (["propensity", "1", "2", "--spread", "muu=uniform:0:1"], "did you mean 'mu'"),
+        ([*SWEPT, "--vary", "friction_law=coulomb,exponential"], "sweep once for each"),
+        (["simulate", "1", "2", "3"], "too many arguments: 3"),
+        (["simulate", "72", "108"], "write 72deg or 72rad"),
+        (["map", "stability", "--alpha1", "0:360:37"], "write 360deg or 360rad"),
+        (["simulate", "1", "2", "-o", "."], "is a folder; give a file in it, NAME.nc"),
+        (["simulate", "1", "2", "-o", "-"], "nothing is streamed"),
+        (["simulate", "1", "2", "-o", "/dev/null"], "a device or pipe, not a file"),
+        (["simulate", "1", "2", "-o", "run.txt"], "end the name in .nc or .csv"),
+        (["simulate", "1", "2", "--points", "1000000000"], "200 GB of memory; ask for less, or"),
+        (["simulate", "1", "2", "--t-end", "1e9"], "add --yes"),
+        (["map", "hammering", "--alpha1", "0:pi:9999", "--t-end", "1e4"], "add --yes"),
+        ([*SWEPT, "--vary", "mu=0:1:9000", "--vary", "k3=1:2:9000"], "add --yes"),
+        (["simulate", "1", "2", "-c", "nowhere.yaml"], "no configuration nowhere.yaml"),
         (["verify", "nothing"], "no archive, folder or file 'nothing'"),
         (["claims", "nothing.nc"], "make it with snakemake"),
         (["explain", "--times"], "run snakemake in this folder first"),
@@ -82,6 +102,16 @@ def test_wrong_input_is_one_message_with_its_remedy(arguments, message, capsys, 
     assert message in told
     assert "Traceback" not in told
     assert not list(tmp_path.iterdir())
+
+
+def test_propensity_writes_shares_and_a_picture(capsys):
+    spread = ["--spread", "mu=uniform:0.1:0.9", "--spread", "alpha2=normal:55deg:3deg"]
+    command = ["propensity", "0.07pi", "0.305pi", *spread, "--samples", "64", "--t-end", "20"]
+    assert run([*command, "-o", "p.nc"]) == 0
+    dataset = load("p.nc")
+    assert dataset.input.values.tolist() == ["mu", "alpha2"]
+    assert f"{100 * float(dataset.share[0]):.2f} %" in capsys.readouterr().out
+    assert Path("p.png").stat().st_size > 0
 
 
 def test_simulate_writes_a_run_and_a_picture_and_sums_it_up(capsys, tmp_path):
@@ -119,6 +149,27 @@ def test_backbone_follows_the_linear_mode_first(capsys):
     assert float(branch.y_peak.max()) == pytest.approx(1.5)
 
 
+@pytest.mark.parametrize("method", ["exact", "hbm"])
+@pytest.mark.parametrize(
+    ("angles", "reason"),
+    [
+        (("0.4pi", "0.6pi"), "singular_static_state"),
+        (("0.2pi", "0.8pi"), "singular_static_state"),
+        (("0.1pi", "0.9pi"), "singular_static_state"),
+        (("0.5pi", "0.5pi"), "rigid_mode"),
+    ],
+)
+def test_an_empty_backbone_gives_its_reason_in_one_line(angles, reason, method, capsys, tmp_path):
+    assert run(["backbone", *angles, "--method", method, "-o", "b.nc"]) == 1
+    told = capsys.readouterr()
+    assert told.out.count("\n") == 1
+    assert reason in told.out
+    assert "try other angles" in told.out
+    assert not told.err
+    assert load("b.nc").sizes["point"] == 0
+    assert (tmp_path / "b.png").is_file()
+
+
 def test_sweep_writes_one_dataset(capsys):
     assert run([
         "sweep", "stability_map", "--vary", "mu=0:0.6:3", "--vary", "alpha1=0:pi:5",
@@ -135,6 +186,7 @@ def test_compare_tells_equal_from_different_by_its_exit_code(capsys, tmp_path):
     assert run(["compare", "a.nc", "c.nc"]) == 1
     out = capsys.readouterr().out
     assert re.search(r"parameters\.mu\W+0\.2\W+0\.4", out)
+    assert "\nequal: 1 dataset (equal 1)\n" in out
     assert run(["compare", "a.nc", "nowhere.nc"]) == 2
     capsys.readouterr()
     assert run(["compare", "a.nc", "c.nc", "--json", "--html", "difference.html"]) == 1

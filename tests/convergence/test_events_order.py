@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from squealpipe.parameters import Parameters
-from squealpipe.tasks.ensemble import run_ensemble
-from squealpipe.tasks.reference import simulate_reference
+from squealpipe.solvers.a1.ensemble import run_ensemble
+from squealpipe.solvers.a1.reference import simulate_reference
 
 TOLERANCES = np.array([1e-5, 1e-7, 1e-9, 1e-11, 1e-13])
 

@@ -12,8 +12,8 @@ import pytest
 from squealpipe.parameters import Parameters
 from squealpipe.schema import Outcome
 from squealpipe.schema.dynamics import EventFlag, RegimeFlag
-from squealpipe.tasks.dynamics import simulate
-from squealpipe.tasks.ensemble import run_ensemble
+from squealpipe.solvers.a1.ensemble import run_ensemble
+from squealpipe.tasks.dynamics.runs import simulate
 
 IDENTITY = {"alpha1": 0.5 * np.pi, "alpha2": np.pi, "model": "A1-linear-springs"}
 VERTICAL = {"alpha1": 0.5 * np.pi, "alpha2": 0.5 * np.pi, "model": "A1-linear-springs"}

@@ -4,23 +4,27 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from squealpipe.schema.comparison import Role, Verdict
-from squealpipe.tasks.failure_verdicts import Answer, error_of, verdict_of
-from squealpipe.tasks.failures import judge_methods
+from squealpipe.schema.comparison import Reliability, Role
+from squealpipe.tasks.comparison.failures.atlas import judge_methods
+from squealpipe.tasks.comparison.failures.verdicts import Answer, error_of, verdict_of
+
+SOLVERS = ("DOP853", "RK45", "LSODA")
+TIGHT = "1e-12"
 
 
 @pytest.fixture(scope="module")
 def atlas() -> xr.Dataset:
-    return judge_methods()
+    """Without Radau, which takes as long as all others together."""
+    return judge_methods(solvers=SOLVERS)
 
 
-def cell(atlas: xr.Dataset, scene: str, method: str) -> Verdict:
-    return Verdict(int(atlas.verdict.sel(scene=scene, solver=method)))
+def cell(atlas: xr.Dataset, scene: str, method: str) -> Reliability:
+    return Reliability(int(atlas.verdict.sel(scene=scene, solver=method)))
 
 
 def test_our_methods_are_never_silently_wrong(atlas: xr.Dataset) -> None:
     ours = atlas.isel(solver=atlas.role.values != Role.public)
-    silent = ours.verdict == Verdict.silently_wrong
+    silent = ours.verdict == Reliability.silently_wrong
     where = [
         (str(ours.scene.values[i]), str(ours.solver.values[j]))
         for i, j in np.argwhere(silent.values)
@@ -30,34 +34,52 @@ def test_our_methods_are_never_silently_wrong(atlas: xr.Dataset) -> None:
 
 def test_our_methods_do_not_cry_wolf(atlas: xr.Dataset) -> None:
     ours = atlas.isel(solver=atlas.role.values != Role.public)
-    assert not ((ours.verdict == Verdict.right) & (ours.flagged > 0)).any()
+    assert not ((ours.verdict == Reliability.right) & (ours.flagged > 0)).any()
 
 
 def test_every_scene_is_asked_of_ours_and_of_a_public_method(atlas: xr.Dataset) -> None:
-    asked = atlas.verdict != Verdict.not_applicable
+    asked = atlas.verdict != Reliability.not_applicable
     for role in (True, False):
         columns = (atlas.role.values != Role.public) == role
         assert asked.isel(solver=columns).any("solver").all()
 
 
-@pytest.mark.parametrize("method", ["DOP853", "RK45", "LSODA", "Radau"])
-def test_step_end_sign_checks_pass_over_a_grazing_pair(atlas: xr.Dataset, method: str) -> None:
-    name = f"{method} + events"
-    assert cell(atlas, "grazing contact", name) == Verdict.silently_wrong
-    # exactly one separation and one contact are missing; the state itself is hardly moved
-    assert float(atlas.error.sel(scene="grazing contact", solver=name)) == 2.0
-    assert cell(atlas, "grazing contact", "Taylor + events") == Verdict.right
+@pytest.mark.parametrize("method", SOLVERS)
+@pytest.mark.parametrize("tolerance", ["1e-8", "1e-10", TIGHT])
+def test_step_end_sign_checks_pass_over_a_grazing_pair(
+    atlas: xr.Dataset, method: str, tolerance: str
+) -> None:
+    """Exactly one separation and one contact are missing; the state itself is right."""
+    name = f"{method} + events, {tolerance}"
+    assert cell(atlas, "grazing contact", name) == Reliability.right
+    assert float(atlas.missed_events.sel(scene="grazing contact", solver=name)) == 2.0
+    ours = f"Taylor + events, {tolerance}"
+    assert float(atlas.missed_events.sel(scene="grazing contact", solver=ours)) == 0.0
+
+
+def test_chaotic_hammering_needs_a_tighter_tolerance_than_the_loosest(atlas: xr.Dataset) -> None:
+    verdicts = [
+        cell(atlas, "chaotic hammering", f"DOP853 + events, {tolerance}")
+        for tolerance in ("1e-8", "1e-10", TIGHT)
+    ]
+    assert verdicts == [Reliability.silently_wrong, Reliability.right, Reliability.right]
+
+
+def test_errors_fall_with_the_tolerance_where_the_motion_is_regular(atlas: xr.Dataset) -> None:
+    for scene in ("separation in stick", "stick release", "simultaneous events"):
+        for method in ("DOP853", "RK45", "LSODA"):
+            names = [f"{method} + events, {tolerance}" for tolerance in ("1e-8", TIGHT)]
+            loose, tight = (float(atlas.error.sel(scene=scene, solver=name)) for name in names)
+            assert tight < 0.1 * loose, (scene, method)
 
 
 @pytest.mark.parametrize(
     ("scene", "method"),
     [
-        ("chaotic hammering", "LSODA + events"),
-        ("T beyond the horizon", "DOP853 + events"),
-        ("T beyond the horizon", "Moreau–Jean"),
-        ("very stiff contact", "Moreau–Jean"),
-        ("σ too small", "LSODA, tanh"),
-        ("σ too large", "LSODA, tanh"),
+        ("T beyond the horizon", f"DOP853 + events, {TIGHT}"),
+        ("T beyond the horizon", "Moreau–Jean, h = 0.001"),
+        ("very stiff contact", "Moreau–Jean, h = 0.001"),
+        ("σ = 10/m", f"LSODA, tanh, {TIGHT}"),
         ("σ too small (balance)", "tanh balance, sampled"),
         ("σ too large (balance)", "tanh balance, sampled"),
         ("aliasing, N ≈ 2N_h", "cold Newton, sampled"),
@@ -74,39 +96,39 @@ def test_step_end_sign_checks_pass_over_a_grazing_pair(atlas: xr.Dataset, method
 def test_public_methods_fail_silently_where_we_say(
     atlas: xr.Dataset, scene: str, method: str
 ) -> None:
-    assert cell(atlas, scene, method) == Verdict.silently_wrong
+    assert cell(atlas, scene, method) == Reliability.silently_wrong
 
 
 @pytest.mark.parametrize(
     ("scene", "method"),
     [
-        ("T beyond the horizon", "Taylor + events"),
+        ("T beyond the horizon", f"Taylor + events, {TIGHT}"),
         ("singular static state", "closed form, exact orbit"),
         ("tongue end", "closed form, exact orbit"),
         ("pole at ω_x/2", "closed-form balance"),
     ],
 )
 def test_ours_say_where_there_is_no_answer(atlas: xr.Dataset, scene: str, method: str) -> None:
-    assert cell(atlas, scene, method) == Verdict.flagged
+    assert cell(atlas, scene, method) == Reliability.flagged
     assert atlas.message.sel(scene=scene, solver=method).item() != ""
 
 
 @pytest.mark.parametrize(
     ("value", "flag", "truth", "expected"),
     [
-        (1.0, "", 1.0 + 1e-4, Verdict.right),
-        (1.0, "careful", 1.0 + 1e-4, Verdict.right),
-        (1.0, "", 1.1, Verdict.silently_wrong),
-        (1.0, "careful", 1.1, Verdict.flagged),
-        (np.nan, "no answer", 1.0, Verdict.flagged),
-        (np.nan, "", 1.0, Verdict.silently_wrong),
-        (1.0, "", np.nan, Verdict.silently_wrong),
-        (np.nan, "there is none", np.nan, Verdict.flagged),
-        (np.nan, "", np.nan, Verdict.silently_wrong),
+        (1.0, "", 1.0 + 1e-4, Reliability.right),
+        (1.0, "careful", 1.0 + 1e-4, Reliability.right),
+        (1.0, "", 1.1, Reliability.silently_wrong),
+        (1.0, "careful", 1.1, Reliability.flagged),
+        (np.nan, "no answer", 1.0, Reliability.flagged),
+        (np.nan, "", 1.0, Reliability.silently_wrong),
+        (1.0, "", np.nan, Reliability.silently_wrong),
+        (np.nan, "there is none", np.nan, Reliability.flagged),
+        (np.nan, "", np.nan, Reliability.silently_wrong),
     ],
 )
 def test_verdicts_follow_from_errors_and_flags(
-    value: float, flag: str, truth: float, expected: Verdict
+    value: float, flag: str, truth: float, expected: Reliability
 ) -> None:
     error = error_of(Answer(value, flag), truth)
     assert verdict_of(error, 1e-3, flag, truth) == expected

@@ -11,14 +11,16 @@ import pytest
 import xarray as xr
 from PIL import Image
 
-from squealpipe.figures import angle_map, branch, fig01, run
-from squealpipe.figures.animation import animate
-from squealpipe.figures.mechanism import draw_mechanism
-from squealpipe.figures.style import new_figure
+from squealpipe.figures.cli import branch, run
+from squealpipe.figures.dynamics.animation import animate
+from squealpipe.figures.model import fig01
+from squealpipe.figures.model.mechanism import draw_mechanism
+from squealpipe.figures.parts import angle_map
+from squealpipe.figures.parts.style import new_figure, save_figure
 from squealpipe.parameters import Parameters
-from squealpipe.tasks.dynamics import simulate
-from squealpipe.tasks.linear import stability_map
-from squealpipe.tasks.summary import summarize
+from squealpipe.tasks.dynamics.runs import simulate
+from squealpipe.tasks.dynamics.summary import summarize
+from squealpipe.tasks.linear.maps import stability_map
 
 PARAMS = Parameters()
 compared = pytest.mark.mpl_image_compare(
@@ -82,3 +84,23 @@ def test_animation_refuses_more_frames_than_samples(tmp_path):
     motion = simulate(PARAMS, 1.0, 2.0, t_end=1.0, times=np.linspace(0, 1, 5))
     with pytest.raises(ValueError, match="at most so many frames"):
         animate(motion, tmp_path / "no.gif", start=0.0, end=1.0, frames=50)
+
+
+def test_all_files_of_a_figure_have_the_layout_of_the_first(tmp_path):
+    def drawn():
+        figure, axes = new_figure(3.5, 2.5, ncols=2)
+        mappable = axes[0, 0].imshow(np.eye(3))
+        figure.colorbar(mappable, ax=axes[0, 0], label="a long label")
+        axes[0, 1].set_ylabel("another one")
+        return figure
+
+    def layout(figure):
+        return [axis.get_position().bounds for axis in figure.axes]
+
+    both, first, plain = drawn(), drawn(), drawn()
+    unset = layout(plain)
+    save_figure(both, [tmp_path / "both.png", tmp_path / "both.svg"])
+    save_figure(first, [tmp_path / "first.png"])
+    assert layout(both) == layout(first) != unset
+    assert (tmp_path / "both.png").read_bytes() == (tmp_path / "first.png").read_bytes()
+    assert "another one" in (tmp_path / "both.svg").read_text(encoding="utf-8")

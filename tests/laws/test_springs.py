@@ -62,11 +62,12 @@ def test_linear_force_is_the_gradient_of_its_energy() -> None:
     k = springs.linear_stiffness(params, geometry(state))
     x, y = state["x"], state["y"]
     force = springs.linear_elastic_force(x, y, k)
+
     # The energy is quadratic, so central differences of any step are exact but for round-off.
-    slopes = (
-        springs.linear_elastic_energy(x + 1, y, k) - springs.linear_elastic_energy(x - 1, y, k),
-        springs.linear_elastic_energy(x, y + 1, k) - springs.linear_elastic_energy(x, y - 1, k),
-    )
+    def energy(x: float, y: float) -> float:
+        return 0.5 * k.k11 * x * x + k.k12 * x * y + 0.5 * k.k22 * y * y
+
+    slopes = (energy(x + 1, y) - energy(x - 1, y), energy(x, y + 1) - energy(x, y - 1))
     np.testing.assert_allclose(force, [-slope / 2 for slope in slopes], rtol=1e-13)
 
 
@@ -89,3 +90,52 @@ def test_sine_of_the_sum_keeps_all_digits_next_to_its_zeros(turn: int, nearby: f
     with mpmath.workdps(50):
         exact = float(mpmath.sin(mpmath.mpf(first) + mpmath.mpf(second)))
     assert springs.sine_of_sum(first, second) == pytest.approx(exact, rel=1e-15, abs=0)
+
+
+def _in_60_digits(length: float, x: float, y: float, cosine: object, sine: object) -> np.ndarray:
+    with mpmath.workdps(60):
+        rx, ry = mpmath.mpf(x) - length * cosine, mpmath.mpf(y) - length * sine
+        stretch = 1 - length / mpmath.sqrt(rx * rx + ry * ry)
+        return np.array([float(-stretch * rx), float(-stretch * ry)])
+
+
+def _worst(form: object, length: float, near: float | None = None) -> float:
+    """Largest error of a form over 60 random states: about the start, or so near to the pivot."""
+    rng, worst = np.random.default_rng(6), 0.0
+    for _ in range(60):
+        angle, around = rng.uniform(0, 2 * np.pi, 2)
+        with mpmath.workdps(60):
+            pair = mpmath.cos_sin(mpmath.mpf(angle))
+            cosine, sine = pair if near is None else map(mpmath.mpf, map(float, pair))
+            c, s = float(cosine), float(sine)
+        x, y = rng.uniform(-2, 2, 2)
+        if near is not None:
+            x, y = length * (c + near * np.cos(around)), length * (s + near * np.sin(around))
+        exact = _in_60_digits(length, x, y, cosine, sine)
+        found = np.array(form(1.0, length, x, y, length * c, length * s))  # type: ignore[operator]
+        worst = max(worst, np.hypot(*(found - exact)) / max(1.0, np.hypot(*exact)))
+    return float(worst)
+
+
+@pytest.mark.parametrize("length", [1e3, 1e5, 1e7, 1e9])
+def test_long_springs_lose_no_digits(length: float) -> None:
+    """Against 60 digits; the usual form loses as many digits as the length has."""
+    assert _worst(springs.long_spring_force, length) < 3e-15
+    assert _worst(springs.spring_force, length) > 1e-17 * length
+
+
+def test_next_to_its_fixed_end_a_spring_takes_the_usual_form() -> None:
+    """There q → −L² and d² = L² + q cancels; a mass is that far out beyond 1e3 l_pre only."""
+    for near in (1e-1, 1e-3, 1e-6):
+        assert _worst(springs.spring_force, 5.0, near) < 1e-15 / near
+        assert _worst(springs.long_spring_force, 1e4, near) < 1e-15 / near**2
+
+
+def test_both_forms_agree_where_one_takes_over() -> None:
+    params = Parameters(length1=2 * springs.LONG, length2=0.7 * springs.LONG, k2=1.3)
+    g = springs.geometry(0.7, 2.1)
+    usual = springs.elastic_force(0.3, -0.8, params, g)
+    for flags in ((True, False), (False, True), (True, True)):
+        np.testing.assert_allclose(
+            springs.elastic_force(0.3, -0.8, params, g, *flags), usual, atol=2e-12
+        )

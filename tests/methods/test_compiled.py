@@ -15,7 +15,7 @@ PACKAGE = Path(squealpipe.__file__).parent
 PROGRAM = """
 import math
 from squealpipe.parameters import Parameters
-from squealpipe.tasks.orbits import periodic_orbit
+from squealpipe.tasks.backbones.orbit import periodic_orbit
 found = periodic_orbit(Parameters(), math.pi / 2, math.pi, mode=2, y_peak=2.0)
 print(repr(float(found.omega)))
 """
@@ -50,7 +50,7 @@ def test_every_kernel_file_is_part_of_the_digest():
     """A kernel in a file that is not listed would be used stale after an edit."""
     methods = PACKAGE / "methods"
     using = {
-        path.name for path in methods.glob("*.py") if "\n@compiled\n" in path.read_text("utf-8")
+        path.name for path in methods.rglob("*.py") if "\n@compiled\n" in path.read_text("utf-8")
     }
     assert len(using) > 4
     assert using <= {path.name for path in compiled.kernel_sources()}
@@ -70,7 +70,7 @@ def test_an_edit_of_any_kernel_opens_a_new_store(copy, monkeypatch):
     """numba itself would go by the file of the calling kernel alone."""
     monkeypatch.setattr(compiled, "__file__", str(copy / "squealpipe/methods/compiled.py"))
     before = compiled._store.__wrapped__()
-    edited = copy / "squealpipe/methods/modal_flow.py"
+    edited = copy / "squealpipe/methods/orbits/modal_flow.py"
     edited.write_text(edited.read_text("utf-8") + "\n# edited\n", "utf-8")
     assert compiled._store.__wrapped__() != before
 

@@ -5,17 +5,17 @@ import math
 import numpy as np
 import pytest
 
-from squealpipe.methods.branch_tracing import COLUMNS
 from squealpipe.methods.continuation import (
     Continuation,
     ContinuationEnd,
     ContinuationSettings,
 )
-from squealpipe.methods.orbits import trace_branch
-from squealpipe.methods.shooting import MAX_SEGMENTS, rest_conditions
+from squealpipe.methods.orbits.branch_tracing import COLUMNS
+from squealpipe.methods.orbits.orbits import trace_branch
+from squealpipe.methods.orbits.shooting import MAX_SEGMENTS, rest_conditions
 from squealpipe.parameters import Parameters
-from squealpipe.tasks.a4_system import scaled_system
-from squealpipe.tasks.orbits import grazing_start
+from squealpipe.solvers.a4.orbits import grazing_start
+from squealpipe.solvers.a4.system import scaled_system
 
 
 class Circle:
@@ -95,8 +95,8 @@ def test_settings_that_contradict_each_other_are_named(wrong):
 def test_the_compiled_trace_follows_the_same_branch():
     scene = scaled_system(Parameters(), 0.2 * math.pi, 0.7 * math.pi)
     seed = grazing_start(scene, 1)
-    control = seed.settings(0.05, 3.0)
-    table, _ = trace_branch(scene.system, seed.point, seed.direction, 3.0, control)
+    control = seed.settings()
+    table, _ = trace_branch(scene.system, seed.point, seed.direction, 3.0, control, 0.05)
     settings = ContinuationSettings(first_step=control.first_step, longest_step=0.05)
     general = Continuation(Shooting(scene.system), seed.point, seed.direction, settings)
     result = general.run(lambda state: bool(state.point[1] > 3.0))

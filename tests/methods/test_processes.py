@@ -77,7 +77,7 @@ def test_a_script_without_main_guard_ends():
     script = (
         "import numpy as np\n"
         "from squealpipe.parameters import Parameters\n"
-        "from squealpipe.tasks.dynamics import validity_map\n"
+        "from squealpipe.tasks.dynamics.runs import validity_map\n"
         "a = np.linspace(0, np.pi, 15)\n"
         "print(int((validity_map(Parameters(), a, a, t_end=20.0, workers=2).separates).sum()))\n"
     )

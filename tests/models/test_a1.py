@@ -16,9 +16,14 @@ LINEAR_FORCE = symbols.function(symbols.LINEAR_FORCE)
 CONTACT_FORCE = symbols.function(symbols.CONTACT_FORCE)
 
 
-def acceleration(params: Parameters, state: dict[str, float], **regime: object) -> np.ndarray:
+def acceleration(
+    params: Parameters,
+    state: dict[str, float],
+    velocity: tuple[float, float] = (0.3, -0.2),
+    **regime: object,
+) -> np.ndarray:
     g = geometry(state["alpha1"], state["alpha2"])
-    return np.array(a1.acceleration(state["x"], state["y"], params, g, **regime))
+    return np.array(a1.acceleration(state["x"], state["y"], *velocity, params, g, **regime))
 
 
 @pytest.mark.parametrize(("params", "state"), DRAWS)

@@ -10,7 +10,9 @@ import sympy as sp
 from squealpipe.laws.springs import Stiffness, geometry, linear_stiffness, stiffness_determinant
 from squealpipe.models import a4
 from squealpipe.parameters import Parameters
-from squealpipe.tasks.ensemble import run_ensemble
+from squealpipe.schema import Outcome
+from squealpipe.solvers.a1.ensemble import run_ensemble
+from squealpipe.tasks.dynamics.runs import simulate
 from tests import symbols
 
 DRAWS = symbols.draws(30)
@@ -141,3 +143,14 @@ def test_a_definite_first_integral_bounds_motion_and_force_across_contact_loss()
     assert (run.max_vx[bound] <= reach.speed[bound] * (1.0 + 1e-10)).all()
     # The bound is no empty one: outside, the force does grow beyond that of the start.
     assert run.peak_contact_force[~bound].max() > 1.1
+
+
+def test_lengths_that_a4_does_not_know_change_nothing():
+    """Also where their squares vanish, which only A1's distance from its pivots would feel."""
+    runs = [
+        simulate(Parameters(length2=length), 1.0, 2.0, t_end=20.0, model="A4")
+        for length in (5.0, 1e-170)
+    ]
+    assert [int(run.outcome) for run in runs] == [Outcome.converged] * 2
+    np.testing.assert_array_equal(runs[0].x, runs[1].x)
+    np.testing.assert_array_equal(runs[0].event_time, runs[1].event_time)

@@ -24,10 +24,12 @@ from squealpipe.models.switching import (
     start,
     switch,
 )
+from squealpipe.parameters import Parameters
 
 # K is the identity: the elastic force is −(x, y).
 G = Geometry(0.0, 1.0, -1.0, 0.0)
-P = ScaledParameters(1.0, 1.0, 1.0, 1.0, 0.5, 2.0, 1.0, 5.0, 5.0)
+PARAMS = Parameters(k3=1.0, mu=0.5, belt_speed=2.0)
+P = ScaledParameters.of(PARAMS)
 RULES = VARIANT_RULES["A1-linear-springs"]
 
 
@@ -130,6 +132,6 @@ def test_start(state, regime):
 
 
 def test_no_friction_never_sticks():
-    free = P._replace(mu=0.0)
+    free = ScaledParameters.of(PARAMS.with_(mu=0.0))
     assert start(0.0, 0.0, 2.0, 0.0, free, G, RULES)[0] != STICK
     assert at(0.0, 0.0, 2.0, 0.0, SLOWER, p=free).regime != STICK

@@ -9,16 +9,16 @@ import numpy as np
 import pytest
 
 from squealpipe.claims.judge import judge
-from squealpipe.figures import fig01, fig06
-from squealpipe.figures.style import save_figure
+from squealpipe.figures.declared import draw, reads
+from squealpipe.figures.parts.style import save_figure
 from squealpipe.parameters import Parameters
 from squealpipe.report.build import write_report
 from squealpipe.report.content import Made, gather, picture_files
 from squealpipe.store.netcdf import save
 from squealpipe.store.provenance import stamp
-from squealpipe.tasks.assumptions import linear_pull_map
-from squealpipe.tasks.linear import natural_frequencies, quasi_static_map, stability_map
-from squealpipe.tasks.linear_boundaries import stability_boundaries
+from squealpipe.tasks.dynamics.assumptions import linear_pull_map
+from squealpipe.tasks.linear.boundaries import stability_boundaries
+from squealpipe.tasks.linear.maps import natural_frequencies, quasi_static_map, stability_map
 
 POINTS = 21
 
@@ -50,20 +50,12 @@ def small_report(tmp_path_factory: pytest.TempPathFactory) -> SmallReport:
     for name, dataset in datasets.items():
         path = save(stamp(dataset, config={}, wall_time=0.1), folder / f"data/{name}.nc")
         made[name] = Made(path=path, rule=f"make_{name}")
-    drawn = {
-        "fig01": fig01.draw(),
-        "fig06": fig06.draw(
-            datasets["stability_map"],
-            datasets["quasi_static_map"],
-            datasets["stability_boundaries"],
-        ),
-    }
     figures = {}
-    for name, figure in drawn.items():
+    for name in ("fig01", "fig06"):
         path = folder / f"figures/{name}.png"
-        save_figure(figure, [path])
-        figures[name] = Made(path=path, rule=f"draw_{name}", datasets=("stability_map",))
-    content = gather(made, figures, parameters)
+        save_figure(draw(name, datasets), [path])
+        figures[name] = Made(path=path, rule="draw_topic", datasets=reads(name))
     page, pdf = folder / "report/index.html", folder / "report/report.pdf"
+    content = gather(made, figures, parameters, page=page)
     write_report(content, picture_files(content, figures), page, pdf)
     return SmallReport(page, pdf, content, datasets, figures)

@@ -1,18 +1,19 @@
 """What people see of a comparison: parameters first, the place, pictures of flipped cells."""
 
-import io
+import base64
 
 import numpy as np
 import pytest
-from rich.console import Console
 
-from squealpipe.figures.difference import draw, drawable
+from squealpipe.figures.parts.difference import draw, drawable
 from squealpipe.parameters import Parameters
-from squealpipe.report.comparison import page, table, verdict_line
+from squealpipe.report.comparison import lines, page, statement_line, verdict_line
 from squealpipe.schema.linear import STABILITY_MAP
 from squealpipe.store import produce
-from squealpipe.store.compare import compare
-from squealpipe.tasks.linear import stability_map
+from squealpipe.store.compare import Comparison, DatasetDifference, compare
+from squealpipe.store.differences import Agreement, VariableDifference
+from squealpipe.store.statements import StatementChange
+from squealpipe.tasks.linear.maps import stability_map
 
 
 @pytest.fixture
@@ -28,20 +29,80 @@ def pair(tmp_path):
 
 
 def printed(comparison):
-    buffer = io.StringIO()
-    Console(file=buffer, width=160).print(table(comparison))
-    return buffer.getvalue()
+    return "\n".join(lines(comparison))
 
 
-def test_table_lists_changed_parameters_first_and_the_verdict_last(pair):
+def test_the_answer_comes_first_then_changed_parameters_then_what_differs(pair):
     text = printed(compare(*pair))
+    assert text.startswith("different: 1 dataset (different 1)\nchanged parameters\n")
+    assert "parameters.mu: 0.3 → 0.5" in text
     assert text.index("parameters.mu") < text.index("growth_rate")
     assert "stable → flutter" in text
-    assert text.rstrip().endswith("different: 1 dataset (different 1)")
 
 
 def test_equal_datasets_are_counted_but_not_listed(pair):
-    assert printed(compare(pair[0], pair[0])) == "equal: 1 dataset (equal 1)\n"
+    found = compare(pair[0], pair[0])
+    assert printed(found) == "equal: 1 dataset (equal 1)"
+    assert any("growth_rate: equal" in line for line in lines(found, every=True))
+
+
+def difference(name, share, **more):
+    more = {"verdict": Agreement.different, **more}
+    return VariableDifference(name=name, compared=100, differing=share, **more)
+
+
+def test_worst_comes_first_and_a_screenful_is_enough():
+    """Many differences, long texts and many keys: one screen of 24 lines, the rest on request."""
+    many = [
+        DatasetDifference(
+            name=f"d{i}",
+            verdict=Agreement.different,
+            variables=[difference("mild", i), difference("bad", i + 50, reason="because " * 30)],
+        )
+        for i in range(40)
+    ]
+    refused = DatasetDifference(name="z", verdict=Agreement.not_comparable, reason="damaged")
+    keys = {f"{part}.{i}": (i, -i) for part in ("parameters", "linear") for i in range(9)}
+    changes = [
+        StatementChange(
+            claim=f"F{i}", statement="", verdicts=("holds", "fails"), values=(1.0, None)
+        )
+        for i in range(9)
+    ]
+    found = Comparison(a="a", b="b", datasets=[*many, refused], parameters=keys, statements=changes)
+    shown = lines(found)
+    assert len(shown) <= 24
+    assert max(map(len, shown)) <= 100
+    at = shown.index("differences, worst first")
+    assert "z: not comparable; damaged" in shown[at + 1]
+    assert "d39.bad" in shown[at + 2]
+    assert "d39.mild" in shown[at + 3]
+    assert shown[-1] == "  and 76 more; --all shows them"
+    assert len(lines(found, every=True)) > 100
+
+
+def test_statements_that_changed_show_both_figures_side_by_side(tmp_path):
+    pictures = [tmp_path / name for name in ("a.png", "b.png")]
+    for path in pictures:
+        path.write_bytes(path.name.encode())
+    changed = StatementChange(
+        claim="F3",
+        statement="x grows",
+        verdicts=("holds", "fails"),
+        values=(32.3, 12.0),
+        figures=(pictures[0], pictures[1]),
+    )
+    bare = StatementChange(
+        claim="F4", statement="bounded", verdicts=("holds", ""), values=(1.0, None)
+    )
+    found = Comparison(a="one", b="two", statements=[changed, bare])
+    assert statement_line(changed) == "F3: holds → fails, value 32.3 → 12"
+    assert statement_line(bare) == "F4: holds → not judged, value 1 → –"
+    assert any("2 changed their verdict" in line for line in lines(found))
+    html = page(found)
+    for path in pictures:
+        assert base64.b64encode(path.read_bytes()).decode() in html
+    assert html.count('<div class="pair">') == 1
 
 
 def test_table_of_what_cannot_be_compared_tells_why(pair, tmp_path):

@@ -3,22 +3,30 @@
 from __future__ import annotations
 
 import base64
+import json
+import re
 
 import numpy as np
 import pytest
 
+from squealpipe.cli import run
 from squealpipe.parameters import Parameters
-from squealpipe.report.explorer import payload, write_explorer
+from squealpipe.report.explorer import blocks, in_script, payload, run_options, write_explorer
 from squealpipe.report.explorer.layers import layers
-from squealpipe.tasks.dynamics import validity_map
-from squealpipe.tasks.explorer import explorer_data
-from squealpipe.tasks.hammering import hammering_map
-from squealpipe.tasks.linear import natural_frequencies, stability_map
-from squealpipe.tasks.model_ladder import model_ladder
+from squealpipe.store import load
+from squealpipe.tasks.dynamics.explorer import explorer_data
+from squealpipe.tasks.dynamics.hammering import hammering_map
+from squealpipe.tasks.dynamics.runs import validity_map
+from squealpipe.tasks.ladder.ladder import model_ladder
+from squealpipe.tasks.linear.maps import natural_frequencies, stability_map
 from tests.browser import chromium_path, open_page
 
 ANGLES = np.linspace(0, np.pi, 7)
 FINE = np.linspace(0, np.pi, 13)
+OPTIONS = (
+    "--t-end 60 --points 301 --mass 1 --k1 1 --k2 1 --k3 0.75 --mu 0.3 --belt-speed 100 "
+    "--preload 1 --length1 5 --length2 5 --sigma 1000"
+)
 HISTORY = "document.getElementById('{}').data[0]"
 
 in_browser = [
@@ -62,13 +70,13 @@ def opened(page_file):
 
 
 def test_curves_survive_packing(explorer, shown):
-    packed = payload(explorer, shown)["histories"]["x"]
-    numbers, low, scale = (
-        np.frombuffer(base64.b64decode(packed[key]), kind)
-        for key, kind in (("values", "<u2"), ("low", "<f4"), ("scale", "<f4"))
-    )
+    text = blocks(explorer, shown)["x"]
     count = explorer.sizes["time"]
-    curves = numbers.reshape(-1, count) * scale[:, None] + low[:, None]
+    length = len(text) // explorer.outcome.size
+    records = [base64.b64decode(text[at : at + length]) for at in range(0, len(text), length)]
+    heads = np.array([np.frombuffer(record[:8], "<f4") for record in records])
+    numbers = np.array([np.frombuffer(record[8:], "<u2") for record in records])
+    curves = numbers * heads[:, 1:] + heads[:, :1]
     x = explorer.x.values.reshape(-1, count)
     error = np.abs(curves - x).max(axis=1)
     assert (error <= np.ptp(x, axis=1) / 65535 + 1e-6).all()
@@ -79,6 +87,39 @@ def test_page_is_one_file_within_its_size(page_file):
     head = page_file.read_text(encoding="utf-8")[:4000]
     assert 'name="viewport"' in head
     assert '<link rel="icon" href="data:,">' in head
+
+
+def test_the_command_repeats_what_is_shown(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    params = Parameters(mass=2.0, k1=1.5, k3=0.9, mu=0.2, belt_speed=-3.0, preload=0.1)
+    made = explorer_data(
+        params, ANGLES[3:5], history_time=9.0, spectrum_time=20.0, samples=31, branch_points=3,
+        workers=1,
+    )  # fmt: skip
+    command = ["simulate", "pi/2", "2pi/3", *run_options(made).split(), "-q"]
+    assert run(command) == 0
+    again = load("run.nc")
+    np.testing.assert_allclose(again.time[:31], made.time, rtol=1e-12)
+    np.testing.assert_allclose(again.x[:31], made.x[0, 1], rtol=1e-6, atol=1e-9)
+
+
+def test_no_text_can_leave_the_data_of_the_page():
+    """A comment and a script tag in data would otherwise hide the rest of the page."""
+    text = in_script({"meaning": "<!--<script>", "label": "</script>&amp;"})
+    assert not {"<", ">"} & set(text)
+    assert json.loads(text) == {"meaning": "<!--<script>", "label": "</script>&amp;"}
+
+
+def test_page_survives_a_meaning_that_looks_like_markup(explorer, shown, tmp_path):
+    hostile = explorer.copy()
+    hostile["outcome"].attrs = dict(
+        explorer.outcome.attrs,
+        flag_meanings=explorer.outcome.attrs["flag_meanings"].replace("converged", "<!--<script>"),
+    )
+    write_explorer(hostile, shown, tmp_path / "e.html")
+    text = (tmp_path / "e.html").read_text(encoding="utf-8")
+    assert "<!--<script>" not in text
+    assert payload(hostile, shown)["outcome"]["meanings"][0] == "<!--<script>"
 
 
 def cell(explorer, name, i, j):
@@ -98,7 +139,7 @@ class TestInBrowser:
             cell(explorer, "normalized_contact_force", 5, 5),
             atol=5e-5,
         )
-        assert opened.inner_text("#command") == "squealpipe simulate 5pi/6 5pi/6"
+        assert opened.inner_text("#command") == f"squealpipe simulate 5pi/6 5pi/6 {OPTIONS}"
 
     def test_click_changes_every_panel_to_the_dataset(self, opened, explorer):
         box = opened.evaluate(
@@ -138,6 +179,39 @@ class TestInBrowser:
         rows = opened.locator("#facts tr").all_inner_texts()
         assert [row.split("\t")[0] for row in rows][:-1] == [one.label for one in shown.values()]
 
+    def test_hover_tells_angles_and_there_is_no_cloud_button(self, opened):
+        text = opened.evaluate(f"{HISTORY.format('map')}.text[3][6]")
+        assert text.startswith("α₁ = π/2, α₂ = π/4<br>")
+        buttons = opened.evaluate(
+            "Array.from(document.querySelectorAll('.modebar-btn')).map(b => b.dataset.title)"
+        )
+        assert buttons
+        assert not [title for title in buttons if "loud" in title or "tudio" in title]
+
+    def test_scenes_open_the_pair_that_they_name(self, opened):
+        names = opened.locator("#scenes button").all_inner_texts()
+        assert "Fig 2: 5π/6, 5π/6" in names
+        for place, name in enumerate(names):
+            opened.locator("#scenes button").nth(place).click()
+            shown = [opened.inner_text(f"#alpha{k}-text") for k in (1, 2)]
+            assert name.endswith(": " + ", ".join(item.removeprefix("= ") for item in shown))
+
+    def test_a_link_leads_back_to_the_report(self, opened):
+        assert opened.get_attribute("nav a", "href") == "index.html"
+
+    @pytest.mark.parametrize("scheme", ["light", "dark"])
+    def test_text_stands_out_in_both_schemes(self, page_file, scheme):
+        with open_page(page_file.as_uri(), scheme=scheme) as (page, faults):
+            page.wait_for_function("document.body.dataset.ready === 'true'")
+            ink, paper = page.evaluate(
+                "[getComputedStyle(document.querySelector('#force .xtick text')).fill,"
+                " getComputedStyle(document.body).backgroundColor]"
+            )
+            light = [sum(map(int, re.findall(r"\d+", value)[:3])) / 765 for value in (ink, paper)]
+            assert (light[0] < light[1]) == (scheme == "light")
+            assert abs(light[0] - light[1]) > 0.6
+            assert faults == []
+
     def test_play_moves_the_springs(self, opened):
         before = opened.evaluate("document.getElementById('orbit').data[6].y[0]")
         opened.click("#play")
@@ -157,5 +231,5 @@ class TestInBrowser:
     def test_address_chooses_the_pair(self, page_file):
         with open_page(f"{page_file.as_uri()}#0.5,1") as (page, faults):
             page.wait_for_function("document.body.dataset.ready === 'true'")
-            assert page.inner_text("#command") == "squealpipe simulate pi/2 pi"
+            assert page.inner_text("#command") == f"squealpipe simulate pi/2 pi {OPTIONS}"
             assert faults == []

@@ -9,7 +9,7 @@ import yaml
 from squealpipe.config import Study
 from squealpipe.parameters import Parameters
 from squealpipe.store import produce
-from squealpipe.tasks.linear import stability_map
+from squealpipe.tasks.linear.maps import stability_map
 
 
 def write_run(root: Path, *, points: int = 13, mu: float = 0.3, results: str = "results") -> Path:

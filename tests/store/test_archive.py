@@ -1,20 +1,33 @@
 """An archive is whole, sealed, and every changed, missing or extra byte is found."""
 
 import json
+import os
 import shutil
 from pathlib import Path
 
 import pytest
+import yaml
 from rocrate.rocrate import ROCrate
 
-from squealpipe.store import StoreError, load, save
-from squealpipe.store.archive import archive, checksum, verify
+from squealpipe.config import read_study
+from squealpipe.execution.sweep import planned, run_sweep
+from squealpipe.store import StoreError, load, produce, save
+from squealpipe.store.archive import archive, verify
 from squealpipe.store.compare import compare
+from squealpipe.store.memory.objects import checksum
+
+FIXED = {"alpha1": "1.1", "alpha2": "1.2"}
 
 
 @pytest.fixture
 def frozen(run):
+    """Its files are links to shared objects and read-only: to damage one, replace it."""
     return archive("first", root=run)
+
+
+def replace(path, content):
+    path.unlink()
+    path.write_bytes(content)
 
 
 def test_archive_holds_result_and_what_made_it(run, frozen):
@@ -34,7 +47,7 @@ def test_archive_holds_result_and_what_made_it(run, frozen):
         load(run / "results/data/stability_map.nc")
     )
     assert verify("first", root=run).intact
-    assert not list((run / "results/archive").glob(".*"))
+    assert not list((run / "results/archive").glob(".*.tmp"))
 
 
 def test_crate_is_read_by_its_own_library(frozen):
@@ -50,7 +63,7 @@ def test_any_flipped_bit_is_found(frozen, place):
     path = files[place % len(files)]
     content = bytearray(path.read_bytes())
     content[len(content) * place // 100] ^= 1
-    path.write_bytes(content)
+    replace(path, content)
     assert not verify(frozen).intact
 
 
@@ -58,7 +71,7 @@ def test_missing_extra_truncated_and_hidden_files_are_found(frozen):
     (frozen / "figures/fig06.png").unlink()
     (frozen / "figures/.note").write_text("hidden")
     path = frozen / "data/stability_map.nc"
-    path.write_bytes(path.read_bytes()[:-1])
+    replace(path, path.read_bytes()[:-1])
     found = verify(frozen)
     assert found.missing == ["figures/fig06.png"]
     assert found.extra == ["figures/.note"]
@@ -70,7 +83,7 @@ def test_missing_extra_truncated_and_hidden_files_are_found(frozen):
 def test_manifest_cannot_lead_out_of_the_folder(frozen, name, monkeypatch):
     manifest = json.loads((frozen / "manifest.json").read_text())
     manifest["files"][name] = {"bytes": 1, "sha256": "0" * 64}
-    (frozen / "manifest.json").write_text(json.dumps(manifest))
+    replace(frozen / "manifest.json", json.dumps(manifest).encode())
     read = []
     original = Path.open
     monkeypatch.setattr(
@@ -134,7 +147,7 @@ def test_no_run_is_told(tmp_path, run):
 
 
 def test_oversized_or_damaged_manifest_is_refused(frozen, monkeypatch):
-    (frozen / "manifest.json").write_text('{"files": [1, 2]}')
+    replace(frozen / "manifest.json", b'{"files": [1, 2]}')
     assert verify(frozen).changed == ["manifest.json (damaged)"]
     monkeypatch.setattr("squealpipe.store.runs.LARGEST_MANIFEST", 3)
     with pytest.raises(ValueError, match="not one of ours"):
@@ -167,3 +180,32 @@ def test_files_that_say_which_of_a_rules_outputs_they_are_can_be_frozen(run):
     config = json.loads(dataset.attrs["config"])
     save(dataset.assign_attrs(config=json.dumps({**config, "scene": "F3", "mode": 1})), path)
     assert verify(archive("second", root=run)).intact
+
+
+def test_a_study_with_sweeps_can_be_frozen(run):
+    """A sweep's dataset holds its own configuration, not a slice of the study's."""
+    config = run / "workflow/config/paper.yaml"
+    sweeps = {"k3": {"task": "stability_map", "vary": {"k3": "0.5,0.75"}, "fixed": FIXED}}
+    content = {**yaml.safe_load(config.read_text()), "sweeps": sweeps}
+    config.write_text(yaml.safe_dump(content))
+    plan = read_study(config).sweep("k3")
+    path = run / "results/data/sweeps/k3.nc"
+    produce(lambda: run_sweep(planned(plan)), config=plan, output=path)
+    assert verify(archive("swept", root=run)).intact
+    content["parameters"]["mu"] = 0.7
+    config.write_text(yaml.safe_dump(content))
+    (run / "results/data/stability_map.nc").unlink()
+    with pytest.raises(ValueError, match="another configuration: sweeps/k3"):
+        archive("stale", root=run)
+
+
+@pytest.mark.parametrize("mask", [0o022, 0o077, 0o002])
+def test_archives_obey_the_umask(run, mask):
+    before = os.umask(mask)
+    try:
+        frozen = archive("first", root=run)
+    finally:
+        os.umask(before)
+    for path in [frozen, *frozen.rglob("*")]:
+        allowed = 0o777 if path.is_dir() else 0o444
+        assert path.stat().st_mode & 0o777 == allowed & ~mask, path

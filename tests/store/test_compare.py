@@ -2,16 +2,24 @@
 
 import json
 import shutil
+from pathlib import Path
 
 import numpy as np
 import pytest
 import xarray as xr
 
-from squealpipe.schema import DatasetSchema, Variable, build
+from squealpipe import Parameters, Sweep, backbone, run_sweep, simulate
+from squealpipe.schema import DatasetSchema, Variable, all_schemas, build
+from squealpipe.schema.claims import CLAIMS
+from squealpipe.schema.comparing import magnitude, sampled
 from squealpipe.store import load, save
 from squealpipe.store.archive import archive
 from squealpipe.store.compare import compare, compare_datasets
-from squealpipe.store.differences import Verdict, align, difference
+from squealpipe.store.differences import Agreement, difference
+from squealpipe.store.matching import align
+
+OLD_ARCHIVE = Path(__file__).with_name("old_archive")
+"""A part of an archive made before manifests told the configuration and files were sealed."""
 
 
 def edited(path, change):
@@ -29,7 +37,7 @@ def dataset_file(run):
 def test_two_runs_of_one_configuration_are_equal(tmp_path, write_run):
     a, b = write_run(tmp_path / "a"), write_run(tmp_path / "b")
     found = compare(a / "results", b / "results")
-    assert found.verdict == Verdict.equal
+    assert found.verdict == Agreement.equal
     assert found.exit_code == 0
     assert found.parameters == {}
     assert json.loads(json.dumps(found.as_dict(), allow_nan=False))["verdict"] == "equal"
@@ -46,7 +54,7 @@ def test_round_off_is_within_tolerance(dataset_file):
         dataset["growth_rate"][...] = dataset.growth_rate * (1 + 1e-12)
 
     found = compare(dataset_file, edited(dataset_file, shift))
-    assert found.verdict == Verdict.within_tolerance
+    assert found.verdict == Agreement.within_tolerance
     assert found.exit_code == 0
 
 
@@ -112,7 +120,7 @@ def test_damaged_and_foreign_files_are_not_comparable(dataset_file, tmp_path):
     damaged.write_bytes(dataset_file.read_bytes()[:-2000])
     foreign = tmp_path / "foreign.nc"
     xr.Dataset({"x": ("t", [1.0])}).to_netcdf(foreign)
-    for other, reason in [(damaged, "truncated"), (foreign, "not written by squealpipe")]:
+    for other, reason in [(damaged, "changed or damaged"), (foreign, "not written by squealpipe")]:
         found = compare(dataset_file, other)
         assert found.exit_code == 2
         assert reason in found.datasets[0].reason
@@ -143,18 +151,18 @@ def one(a, b, **entry):
 @pytest.mark.parametrize(
     ("a", "b", "verdict"),
     [
-        ([np.nan], [np.nan], Verdict.equal),
-        ([np.inf], [np.inf], Verdict.equal),
-        ([0.0], [-0.0], Verdict.equal),
-        ([np.nan], [1.0], Verdict.different),
-        ([np.inf], [-np.inf], Verdict.different),
-        ([np.inf], [1e308], Verdict.different),
-        ([1.0], [1.0005], Verdict.within_tolerance),
-        ([1.0], [1.002], Verdict.different),
-        ([0.0], [5e-7], Verdict.within_tolerance),
-        ([0.0], [5e-6], Verdict.different),
-        ([1e308], [-1e308], Verdict.different),
-        ([], [], Verdict.equal),
+        ([np.nan], [np.nan], Agreement.equal),
+        ([np.inf], [np.inf], Agreement.equal),
+        ([0.0], [-0.0], Agreement.equal),
+        ([np.nan], [1.0], Agreement.different),
+        ([np.inf], [-np.inf], Agreement.different),
+        ([np.inf], [1e308], Agreement.different),
+        ([1.0], [1.0005], Agreement.within_tolerance),
+        ([1.0], [1.002], Agreement.different),
+        ([0.0], [5e-7], Agreement.within_tolerance),
+        ([0.0], [5e-6], Agreement.different),
+        ([1e308], [-1e308], Agreement.different),
+        ([], [], Agreement.equal),
     ],
 )
 def test_verdicts_at_the_edges(a, b, verdict):
@@ -163,9 +171,9 @@ def test_verdicts_at_the_edges(a, b, verdict):
 
 
 def test_text_and_lists_of_different_length():
-    assert one(["a", "b"], ["a", "c"]).verdict == Verdict.different
+    assert one(["a", "b"], ["a", "c"]).verdict == Agreement.different
     longer = one([1.0, 2.0, 3.0], [1.0, 2.0])
-    assert longer.verdict == Verdict.different
+    assert longer.verdict == Agreement.different
     assert "3 against 2 along t" in longer.reason
 
 
@@ -174,10 +182,10 @@ def test_volatile_variables_are_no_part_of_the_verdict(monkeypatch):
     a = build(TABLE, {"x": [1.0, 2.0], "wall": 3.0}, {"t": [0.0, 1.0]})
     b = build(TABLE, {"x": [1.0, 2.0], "wall": 4.0}, {"t": [0.0, 1.0]})
     found = compare_datasets("probe", a, b)
-    assert found.verdict == Verdict.equal
-    assert next(v for v in found.variables if v.name == "wall").verdict == Verdict.different
+    assert found.verdict == Agreement.equal
+    assert next(v for v in found.variables if v.name == "wall").verdict == Agreement.different
     c = build(TABLE, {"x": [1.0, 2.0], "event": [1.0]}, {"t": [0.0, 1.0]})
-    assert compare_datasets("probe", a, c).verdict == Verdict.different
+    assert compare_datasets("probe", a, c).verdict == Agreement.different
 
 
 def test_alignment_is_by_value_not_by_position():
@@ -191,3 +199,160 @@ def test_alignment_is_by_value_not_by_position():
     others = xr.Dataset({"x": ("s", [2, 1])}, {"s": ["F2a", "F3"]})
     left, right, _ = align(names, others)
     np.testing.assert_array_equal(left.x, right.x)
+
+
+def rounded(a, b, how, **entry):
+    """Agreement on one variable whose digits round-off decides."""
+    dims = ("group", "sample") if how.sample else ("t",)
+    sides = [xr.DataArray(np.asarray(side, float), dims=dims) for side in (a, b)]
+    return difference("x", *sides, Variable(dims=dims, nan_allowed=True, round_off=how, **entry))
+
+
+@pytest.mark.parametrize(
+    ("a", "b", "same"),
+    [
+        (2e-14, 9e-13, True),  # both below the floor
+        (0.0, 1e-12, True),
+        (1e-6, 9e-6, True),
+        (1e-6, 2e-5, False),
+        (0.0, 2e-11, False),
+        (np.nan, np.nan, True),
+        (np.inf, np.inf, True),
+        (np.inf, 1.0, False),
+        (np.nan, 1.0, False),
+    ],
+)
+def test_errors_at_round_off_are_compared_as_magnitudes(a, b, same):
+    for pair in ((a, b), (b, a)):
+        found = rounded([pair[0]], [pair[1]], magnitude("why", floor=1e-12))
+        assert (found.verdict < Agreement.different) is same
+        assert found.compared_as == "order of magnitude"
+
+
+def test_chaotic_lifetimes_are_compared_as_samples():
+    """Two samples of one exponential law agree; a law of half the mean does not; NaN is late."""
+    random = np.random.default_rng(5)
+    first, second = random.exponential(1.0, (2, 3, 400))
+    how = sampled("sample", "why")
+    first[first > 2], second[second > 2] = np.nan, np.nan
+    assert rounded(first, second, how).verdict == Agreement.within_tolerance
+    assert rounded(first, first, how).verdict == Agreement.equal
+    found = rounded(first, second * [[1.0], [0.5], [1.0]], how)
+    assert found.verdict == Agreement.different
+    assert (found.differing, found.compared, found.where) == (1, 3, {"group": 1})
+
+
+def test_every_class_of_round_off_states_its_reason():
+    classed = [
+        entry.round_off
+        for schema in all_schemas().values()
+        for entry in schema.variables.values()
+        if entry.round_off is not None
+    ]
+    assert len(classed) >= 10
+    assert all(len(how.reason) > 40 for how in classed)
+
+
+def test_events_are_matched_by_order_and_kind():
+    """A run with other parameters has other events; the n-th of a kind means the n-th."""
+    runs = [simulate(Parameters(mu=mu), 2.6, 2.6, t_end=30) for mu in (0.3, 0.1)]
+    shorter = runs[0].isel(event=slice(1, None))
+    found = compare_datasets("run", runs[0], shorter)
+    assert found.verdict == Agreement.different
+    assert any("matched by kind and order" in note for note in found.notes)
+    times = [each.event_time.values[each.event_kind.values == 0] for each in (runs[0], shorter)]
+    entry = next(v for v in found.variables if v.name == "event_time")
+    shared = min(map(len, times))
+    largest = np.abs(times[0][:shared] - times[1][:shared]).max()
+    assert entry.largest_absolute >= largest
+    assert any(v.name == "number of event" for v in found.differences)
+    assert compare_datasets("run", *runs).verdict == Agreement.different
+
+
+def test_special_points_of_a_branch_are_matched_with_the_nearest_of_their_kind():
+    """A point more on one side is told; the others still compare with their own."""
+    branch = backbone(Parameters(), 0.3 * np.pi, 0.9 * np.pi, mode=1, y_peak_max=6.5)
+    assert branch.sizes["special"] >= 2
+    fewer = branch.isel(special=slice(1, None))
+    fewer = fewer.assign_coords(special=branch.special[:-1])
+    found = compare_datasets("branch", branch, fewer)
+    assert [entry.name for entry in found.differences] == ["number of special"]
+    none = branch.isel(special=slice(0))
+    for pair in ((branch, none), (none, branch), (none, none)):
+        assert compare_datasets("branch", *pair).verdict < Agreement.not_comparable
+
+
+def test_branches_of_other_parameters_compare():
+    pair = [
+        backbone(Parameters(k3=k3), 0.3 * np.pi, 0.9 * np.pi, mode=1, y_peak_max=top)
+        for k3, top in ((0.75, 6.5), (0.6, 3.0))
+    ]
+    found = compare_datasets("branch", *pair)
+    assert found.verdict == Agreement.different
+    assert found.differences[0].compared or found.differences[0].reason
+
+
+def test_ragged_sweeps_compare():
+    def swept(values):
+        plan = Sweep(
+            task="backbone",
+            params=Parameters(),
+            vary={"k3": values},
+            fixed={"alpha1": 0.9, "alpha2": 2.8, "mode": 1, "y_peak_max": 1.3},
+        )
+        return run_sweep(plan)
+
+    first, second = swept([0.6, 0.75]), swept([0.6, 0.75, 0.9])
+    assert compare_datasets("sweep", first, first).verdict == Agreement.equal
+    found = compare_datasets("sweep", first, second)
+    assert found.verdict == Agreement.equal
+    assert "k3: compared on 2 shared points of 2 and 3" in found.notes
+    cut = first.isel(point=slice(-1))
+    assert compare_datasets("sweep", first, cut).verdict < Agreement.not_comparable
+
+
+def test_physical_keys_come_before_those_of_grids(tmp_path, write_run):
+    a, b = write_run(tmp_path / "a"), write_run(tmp_path / "b", mu=0.4, points=7)
+    found = compare(a / "results", b / "results")
+    assert list(found.parameters) == ["parameters.mu", "linear.points"]
+
+
+def test_statements_that_changed_are_told_with_verdict_value_and_figures(tmp_path):
+    claims = ["A", "B", "C"]
+    text = {
+        name: ["t"] * 3
+        for name in ("statement", "section", "check", "relation", "evidence", "dataset")
+    }
+    judged = {"a": ([0, 0, 2], [1, 2, np.nan]), "b": ([0, 2, 2], [1.1, 2, np.nan])}
+    for place, (verdict, value) in judged.items():
+        numbers = dict.fromkeys(("threshold", "margin", "feasible_share"), [1.0] * 3)
+        flags = {"verdict": verdict, "verdict_here": verdict, "recorded": [0] * 3}
+        data = {**text, **numbers, **flags, "value": value, "figure": ["fig02", "fig03", ""]}
+        save(build(CLAIMS, data, {"claim": claims}), tmp_path / place / "data/claims.nc")
+    (tmp_path / "a/figures").mkdir()
+    (tmp_path / "a/figures/fig03.png").write_bytes(b"picture")
+    found = compare(tmp_path / "a", tmp_path / "b").statements
+    assert [change.claim for change in found] == ["B", "A"]
+    assert [change.verdict_changed for change in found] == [True, False]
+    assert found[0].verdicts == ("holds", "fails")
+    assert found[0].figures == (tmp_path / "a/figures/fig03.png", None)
+    assert found[1].values == (1.0, 1.1)
+
+
+@pytest.mark.parametrize("name", ["whirl", "failure_atlas", "backbone/F10_mode1"])
+def test_archives_made_before_files_were_sealed_compare(name, monkeypatch):
+    """Every byte is held against the manifest, so the slow probe is not needed."""
+    monkeypatch.setattr("squealpipe.store.seal.opens_in_time", None)
+    path = OLD_ARCHIVE / f"data/{name}.nc"
+    assert compare(path, path).verdict == Agreement.equal
+
+
+def test_damaged_file_of_an_archive_is_not_opened(tmp_path):
+    copy = tmp_path / "old"
+    (copy / "data").mkdir(parents=True)
+    for name in ("manifest.json", "data/whirl.nc"):
+        shutil.copy(OLD_ARCHIVE / name, copy / name)
+    content = bytearray((copy / "data/whirl.nc").read_bytes())
+    content[5000] ^= 4
+    (copy / "data/whirl.nc").write_bytes(content)
+    assert "changed or damaged" in compare(copy, copy).datasets[0].reason

@@ -20,7 +20,8 @@ from hypothesis import strategies as st
 from squealpipe.parameters import Parameters
 from squealpipe.schema import SchemaError
 from squealpipe.store import StoreError, load, produce, save
-from squealpipe.tasks.linear import stability_map
+from squealpipe.store.seal import HEADER, LENGTH
+from squealpipe.tasks.linear.maps import stability_map
 
 ANGLES = np.linspace(0, np.pi, 31)
 
@@ -41,7 +42,11 @@ def leftovers(folder):
 
 def test_what_is_saved_is_loaded(dataset, path):
     back = load(path)
-    xr.testing.assert_identical(back, dataset.assign_attrs(dataset_id=back.attrs["dataset_id"]))
+    added = {"commit", "history", "file_checksum", "dataset_id"}
+    assert set(back.attrs) - set(dataset.attrs) == added
+    xr.testing.assert_identical(
+        back, dataset.assign_attrs({name: back.attrs[name] for name in added})
+    )
     assert back.growth_rate.dtype == np.float64
     assert leftovers(path.parent) == []
 
@@ -85,8 +90,97 @@ def test_corrupted_bytes_never_pass_as_another_result(tmp_path_factory, place, f
         found = load(path)
     except (StoreError, SchemaError):
         return
-    for name in original.variables:
-        np.testing.assert_array_equal(found[name].values, original[name].values)
+    xr.testing.assert_identical(found, original)
+
+
+def without_seal(path):
+    """The file as versions before the checksum of whole files wrote it."""
+    path.write_bytes(path.read_bytes().rpartition(HEADER)[0])
+    with netCDF4.Dataset(path, "a") as file:
+        file.delncattr("file_checksum")
+    return path
+
+
+def test_files_from_before_the_checksum_are_read(path):
+    before = load(path)
+    after = load(without_seal(path))
+    assert after.equals(before)
+    assert "file_checksum" not in after.attrs
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        lambda file: file.setncattr("title", "another"),
+        lambda file: file["regime_linear"].setncattr("flag_meanings", "flutter stable divergence"),
+        lambda file: file["growth_rate"].setncattr("units", "h-1"),
+        lambda file: file.setncattr("commit", "another"),
+    ],
+)
+def test_what_a_reader_sees_beside_the_values_is_covered_too(path, change):
+    with netCDF4.Dataset(path, "a") as file:
+        change(file)
+    with pytest.raises(StoreError, match="was changed or damaged since it was made"):
+        load(path)
+
+
+@pytest.mark.parametrize("change", ["delete", "empty"])
+def test_a_file_without_its_id_is_refused(path, change):
+    with netCDF4.Dataset(without_seal(path), "a") as file:
+        if change == "delete":
+            file.delncattr("dataset_id")
+        else:
+            file.dataset_id = ""
+        file["growth_rate"][0, 0] = 5.0
+    with pytest.raises(StoreError, match="was changed or damaged since it was made"):
+        load(path)
+
+
+def test_every_flip_is_refused_before_the_file_is_opened(path, monkeypatch):
+    def opened(*_):
+        raise AssertionError("HDF5 got the damaged file")
+
+    monkeypatch.setattr("squealpipe.store.netcdf._read", opened)
+    monkeypatch.setattr("squealpipe.store.seal.opens_in_time", opened)
+    whole = path.read_bytes()
+    for place in np.random.default_rng(3).integers(0, len(whole) - LENGTH, 200):
+        content = bytearray(whole)
+        content[place] ^= 1 << int(place) % 8
+        path.write_bytes(content)
+        with pytest.raises(StoreError, match="was changed or damaged"):
+            load(path)
+
+
+@pytest.mark.parametrize("probe", ["import time; time.sleep(60)", "import os; os.abort()"])
+def test_files_that_hang_or_kill_the_library_are_refused_in_time(path, probe, monkeypatch):
+    """The probe of a file without checksum runs in a process of its own, with a limit."""
+    monkeypatch.setattr("squealpipe.store.seal.PROBE", probe)
+    monkeypatch.setattr("squealpipe.store.seal.TIME_LIMIT_S", 0.5)
+    with pytest.raises(StoreError, match="hangs on it or dies"):
+        load(without_seal(path))
+
+
+@pytest.mark.parametrize("kind", ["device", "pipe", "folder", "link"])
+def test_what_is_no_regular_file_is_never_replaced(dataset, tmp_path, kind):
+    target = tmp_path / "target.nc"
+    make = {
+        "device": lambda: target.symlink_to("/dev/null"),
+        "pipe": lambda: os.mkfifo(target),
+        "folder": target.mkdir,
+        "link": lambda: target.symlink_to(tmp_path),
+    }
+    make[kind]()
+    with pytest.raises(StoreError, match="no regular file"):
+        save(dataset, target)
+    assert not target.is_file()
+
+
+def test_files_of_an_archive_are_never_replaced(dataset, path, tmp_path):
+    (tmp_path / "manifest.json").write_text("{}")
+    before = path.read_bytes()
+    with pytest.raises(StoreError, match="part of the archive"):
+        save(dataset, path)
+    assert path.read_bytes() == before
 
 
 def test_foreign_and_unknown_files_are_refused(tmp_path, dataset):
@@ -152,7 +246,7 @@ def test_links_to_elsewhere_and_pickles_do_not_run(tmp_path):
         lambda d: d.assign(extra=1.0),
         lambda d: d.assign(growth_rate=d.growth_rate.astype(int)),
         lambda d: d.assign(growth_rate=d.growth_rate.T),
-        lambda d: d.assign(growth_rate=d.growth_rate * np.nan),
+        lambda d: d.assign(regime_linear=d.regime_linear + np.int8(99)),
         lambda d: d.assign_attrs(schema_version=99),
         lambda d: d.assign_attrs(schema=None),
     ],
@@ -181,7 +275,7 @@ def no_space():
 def test_full_disk_leaves_the_earlier_file(path, dataset):
     before = path.read_bytes()
     larger = stability_map(Parameters(), *[np.linspace(0, np.pi, 201)] * 2)
-    with no_space(), pytest.raises(StoreError, match="free space or mend permissions"):
+    with no_space(), pytest.raises(StoreError, match="free space or fix permissions"):
         save(larger, path)
     assert path.read_bytes() == before
     assert leftovers(path.parent) == []
@@ -199,7 +293,7 @@ def test_full_file_system_leaves_the_earlier_file(tmp_path, dataset):
         path = save(dataset, disk / "map.nc")
         before = path.read_bytes()
         (disk / "filler").write_bytes(b"x" * (os.statvfs(disk).f_bavail * 4096))
-        with pytest.raises(StoreError, match="free space or mend permissions"):
+        with pytest.raises(StoreError, match="free space or fix permissions"):
             save(dataset, path)
         assert path.read_bytes() == before
         assert leftovers(disk) == []
@@ -211,7 +305,7 @@ def test_full_file_system_leaves_the_earlier_file(tmp_path, dataset):
 
 def test_no_write_permission_is_told(path, dataset, read_only):
     before = path.read_bytes()
-    with read_only(path.parent), pytest.raises(StoreError, match="free space or mend permissions"):
+    with read_only(path.parent), pytest.raises(StoreError, match="free space or fix permissions"):
         save(dataset, path)
     assert path.read_bytes() == before
     assert leftovers(path.parent) == []
@@ -235,7 +329,7 @@ import itertools, sys
 import numpy as np
 from squealpipe.parameters import Parameters
 from squealpipe.store import save
-from squealpipe.tasks.linear import stability_map
+from squealpipe.tasks.linear.maps import stability_map
 maps = [stability_map(Parameters(mu=mu), *[np.linspace(0, np.pi, 91)] * 2) for mu in (0.2, 0.4)]
 save(maps[0], sys.argv[1])
 print("ready", flush=True)

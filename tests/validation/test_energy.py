@@ -1,5 +1,5 @@
-"""A1's exact energy balance on random runs: kinetic, spring and contact energy change by the
-work of friction alone. The work is integrated here, by Gauss quadrature between events."""
+"""A1's exact energy balance on random runs: kinetic, spring and contact energy change by the work
+of friction and dashpots alone. The work is integrated here, by Gauss quadrature between events."""
 
 from __future__ import annotations
 
@@ -9,14 +9,16 @@ import numpy as np
 import pytest
 
 from squealpipe.laws.contact import contact_force
-from squealpipe.laws.springs import elastic_force, geometry
-from squealpipe.models.a1 import Regime, friction_power, mechanical_energy
-from squealpipe.parameters import Parameters
+from squealpipe.laws.dashpots import damping_power
+from squealpipe.laws.springs import geometry
+from squealpipe.models.a1 import Regime, friction_power, mechanical_energy, suspension_force
+from squealpipe.parameters import LAW_NAMES, Parameters
 from squealpipe.schema import Outcome
-from squealpipe.tasks.ensemble import run_ensemble
+from squealpipe.solvers.a1.ensemble import run_ensemble
 
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(12)
 LOGGED = 300
+LAW = "friction_law"
 
 
 def random_runs(count: int, seed: int):
@@ -46,8 +48,26 @@ def random_runs(count: int, seed: int):
     return parameters, angles, time_unit
 
 
+def with_dissipation(parameters, law: str, seed: int):
+    """The same runs, damped and under a friction law."""
+    rng = np.random.default_rng(seed)
+    count = parameters["mass"].size
+    unit = np.sqrt(parameters["mass"] / parameters["k1"])
+    damping = rng.choice([0.0, 0.01, 0.3], (2, count)) * parameters["k1"] * unit
+    speed = parameters["preload"] / unit
+    return parameters | {
+        "damping1": damping[0],
+        "damping2": damping[1],
+        "friction_law": law,
+        "mu_static": parameters["mu"] + rng.choice([0.0, 0.1, 0.5], count),
+        "friction_speed": speed * np.exp(rng.uniform(-3, 3, count)),
+    }
+
+
 def energy_error(parameters, angles, t_end, panel):
-    """|ΔE − work| over the largest energy or the friction's total work, and the outcome."""
+    """|ΔE − work| over the largest energy or the total work, and the outcome."""
+    parameters = {"damping1": 0 * angles[0], "damping2": 0 * angles[0], **parameters}
+    law = parameters.get("friction_law", "coulomb")
     run = run_ensemble(parameters, *angles, t_end=t_end, log_events=LOGGED)
     p = SimpleNamespace(**parameters)
     unit = np.sqrt(p.mass / p.k1)
@@ -62,14 +82,15 @@ def energy_error(parameters, angles, t_end, panel):
     times = (start + 0.5 * width * (1 + NODES)).reshape(run.time.size, -1)
     weights = (0.5 * width * WEIGHTS).reshape(times.shape)
     seen = run_ensemble(parameters, *angles, t_end=run.time, times=times)
-    wide = SimpleNamespace(**{name: values[:, None] for name, values in parameters.items()})
+    columns = {name: values[:, None] for name, values in parameters.items() if name != LAW}
+    wide = SimpleNamespace(**columns, friction_law=law, static_mu=columns.get("mu_static"))
     x, y, vx, vy = np.moveaxis(seen.samples, -1, 0)
     g, regime = geometry(*angles[:, :, None]), seen.sample_regimes
     contact = (regime != Regime.separated) * 1.0
     energy = mechanical_energy(x, y, vx, vy, wide, g, contact=contact)
-    power = friction_power(
+    power = damping_power(x, y, vx, vy, wide, g) + friction_power(
         vx,
-        elastic_force(x, y, wide, g)[0],
+        suspension_force(x, y, vx, vy, wide, g, linear_springs=False)[0],
         contact * contact_force(y, wide),
         wide,
         direction=(regime == Regime.slip_slower) * 1.0 - (regime == Regime.slip_faster),
@@ -83,21 +104,31 @@ def energy_error(parameters, angles, t_end, panel):
     return np.abs(end - 0.5 * p.k3 * p.preload**2 - work) / scale, run.outcome
 
 
-def check(count: int, seed: int, duration: float) -> None:
+def part(parameters, rows):
+    """Some of the runs."""
+    return {
+        name: values if isinstance(values, str) else values[rows]
+        for name, values in parameters.items()
+    }
+
+
+def check(count: int, seed: int, duration: float, law: str | None = None) -> None:
     parameters, angles, unit = random_runs(count, seed)
+    if law is not None:
+        parameters = with_dissipation(parameters, law, seed)
     worst = np.zeros(count)
     outcome = np.zeros(count, int)
     # Runs of one stiffness need quadrature panels of one size.
     order = np.argsort(parameters["k3"] / parameters["k1"])
     for chosen in np.array_split(order, max(1, count // 50)):
-        some = {name: values[chosen] for name, values in parameters.items()}
+        some = part(parameters, chosen)
         worst[chosen], outcome[chosen] = energy_error(
             some, angles[:, chosen], duration * unit[chosen], 0.3
         )
     doubtful = np.flatnonzero((worst > 1e-11) & (outcome == Outcome.converged))
     for job in doubtful:
         # A near pass of a pivot needs a finer quadrature, which only these few runs get.
-        some = {name: values[[job]] for name, values in parameters.items()}
+        some = part(parameters, [job])
         worst[[job]], _ = energy_error(some, angles[:, [job]], duration * unit[[job]], 0.01)
     assert worst[outcome == Outcome.converged].max() <= 1e-9
     assert np.mean(outcome == Outcome.converged) >= 0.98
@@ -106,6 +137,11 @@ def check(count: int, seed: int, duration: float) -> None:
 
 def test_energy_balance_of_random_runs():
     check(100, seed=7, duration=6.0)
+
+
+@pytest.mark.parametrize("law", LAW_NAMES)
+def test_energy_balance_with_dashpots_and_each_law(law):
+    check(60, seed=8, duration=6.0, law=law)
 
 
 @pytest.mark.slow

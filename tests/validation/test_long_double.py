@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from squealpipe.parameters import Parameters
-from squealpipe.tasks.ensemble import run_ensemble
-from squealpipe.tasks.peers import simulate_scipy
-from squealpipe.tasks.reference import simulate_reference
+from squealpipe.solvers.a1.ensemble import run_ensemble
+from squealpipe.solvers.a1.peers import simulate_scipy
+from squealpipe.solvers.a1.reference import simulate_reference
 
 T_END = 50.0
 

@@ -9,8 +9,8 @@ import pytest
 
 from squealpipe.laws.springs import geometry, linear_stiffness
 from squealpipe.models.a4 import contact_matrix
-from squealpipe.tasks.linear import stability_map
-from squealpipe.tasks.mode_coupling import ANGLE, ONSET, mode_coupling, published_parameters
+from squealpipe.tasks.linear.maps import stability_map
+from squealpipe.tasks.linear.mode_coupling import ANGLE, ONSET, mode_coupling, published_parameters
 
 
 @pytest.fixture(scope="module")

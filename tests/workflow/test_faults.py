@@ -180,7 +180,7 @@ def test_full_disk_is_told_and_the_next_run_completes(small, undisturbed):
     try:
         full = run(small)
         assert full.returncode != 0
-        assert "free space or mend permissions" in full.stdout + full.stderr
+        assert "free space or fix permissions" in full.stdout + full.stderr
         check_files(small)
         subprocess.run(["mount", "-o", "remount,size=64m", results], check=True)
         complete(small)

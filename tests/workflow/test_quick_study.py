@@ -18,6 +18,27 @@ def test_report_is_written(quick_study):
     assert "</html>" in text
 
 
+def test_log_of_a_run_has_one_line_a_job_and_a_file_has_the_rest(quick_study):
+    text = quick_study.log
+    jobs = re.findall(r"^Job \d+: (\w+) → results/quick/\S+$", text, flags=re.MULTILINE)
+    assert sorted(jobs) == sorted(
+        rule
+        for rule in re.findall(r"^Finished jobid: \d+ \(Rule: (\w+)\)", text, re.MULTILINE)
+        if rule != "all"
+    )
+    assert not re.search(r"^ +(input|output): ", text, flags=re.MULTILINE)
+    listing = (quick_study.checkout / ".snakemake/log/rules.txt").read_text(encoding="utf-8")
+    assert "reads squealpipe/parameters.py" in listing
+    assert "writes results/quick/data/claims.nc" in listing
+
+
+def test_snakemake_writes_its_own_report(quick_study, snakemake):
+    config = ("--configfile", "workflow/config/quick.yaml")
+    done = snakemake(quick_study.checkout, *config, "--report", "own.html")
+    assert done.returncode == 0, done.stderr[-2000:]
+    assert (quick_study.checkout / "own.html").stat().st_size > 100_000
+
+
 def test_second_run_has_nothing_to_do(quick_study, snakemake):
     again = snakemake(quick_study.checkout, "--configfile", "workflow/config/quick.yaml")
     assert again.returncode == 0
@@ -28,8 +49,9 @@ def test_only_declared_outputs_are_written(quick_study, snakemake):
     summary = snakemake(
         quick_study.checkout, "--configfile", "workflow/config/quick.yaml", "--summary"
     )
+    listing = (quick_study.checkout / ".snakemake/log/rules.txt").read_text(encoding="utf-8")
     declared = {line.split("\t")[0] for line in summary.stdout.splitlines()[1:]}
-    declared |= set(re.findall(r"^\s+log: (.*)$", quick_study.log, flags=re.MULTILINE))
+    declared |= set(re.findall(r"^ +logs to (.*)$", listing, flags=re.MULTILINE))
     written = {
         str(path.relative_to(quick_study.checkout))
         for path in (quick_study.checkout / "results").rglob("*")

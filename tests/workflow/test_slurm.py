@@ -100,6 +100,7 @@ SMALL_RULES = [
     "compute_explorer",
     "map_model_ladder",
     "trace_backbones",
+    "follow_doublings",
 ]
 TWO_PARTS = [
     *PROFILE,
@@ -113,7 +114,7 @@ Where nothing ended between two looks the plugin waits 10 s longer for the next.
 """
 SCATTERED = {"map_validity", "map_hammering", "run_sweep_orbits"}
 JOINS = {"join_validity_map", "join_hammering_map", "join_sweep_orbits"}
-COMPILE = "from squealpipe.tasks.lane_kernel import lane_kernel; lane_kernel()"
+COMPILE = "from squealpipe.solvers.a1.kernel import lane_kernel; lane_kernel()"
 
 
 def ready() -> bool:
@@ -161,7 +162,7 @@ def on_slurm(
         env=environment(checkout),
         capture_output=True,
         text=True,
-        timeout=400,
+        timeout=1500,
         check=False,
     )
 
@@ -209,7 +210,8 @@ def study_laid_over_quick(checkout: Path, text: str) -> dict[str, Any]:
     return content
 
 
-@pytest.mark.timeout(900)
+@pytest.mark.slow
+@pytest.mark.timeout(1800)
 def test_whole_study_equals_one_machine_bit_for_bit(cluster_checkout, snakemake):
     """Datasets, figures, report and explorer of a tiny study, maps and sweep in parts."""
     study = study_laid_over_quick(cluster_checkout, TINY)

@@ -16,3 +16,8 @@ rule animate_scenes:
 
 
 TARGETS += rules.animate_scenes.output
+ANIMATIONS = {
+    "hammering at (5π/6, 5π/6)": str(rules.animate_scenes.output.hammering),
+    "the motion of Fig. 3": str(rules.animate_scenes.output.whirl),
+}
+"""What each animation shows, for the report."""

@@ -3,6 +3,7 @@
 BACKBONE_SCENES = ["F10", "F11", "F12", "F13", *STUDY.backbones.coupled]
 BACKBONES = [f"{scene}_mode{mode}" for scene in BACKBONE_SCENES for mode in (1, 2)]
 SERIES = [f"{name}_hbm" for name in BACKBONES]
+DOUBLED = [f"{scene}_{number}" for scene in STUDY.backbones.coupled for number in (1, 2)]
 
 
 rule trace_backbones:
@@ -18,10 +19,20 @@ rule trace_backbones:
             "backbones.x_amplitude_max",
             "backbones.n_harmonics",
         ),
-    # early, so that it compiles the kernels in a fresh checkout and the jobs below find them
-    priority: 1
+    priority: LONG
     script:
         "../scripts/trace_backbones.py"
+
+
+rule follow_doublings:
+    input:
+        sources=sources("follow_doublings"),
+    output:
+        **{name: data(f"doubled_branch/{name}") for name in DOUBLED},
+    params:
+        part=part("parameters", "backbones.coupled", "backbones.y_peak_max"),
+    script:
+        "../scripts/follow_doublings.py"
 
 
 rule sweep_harmonic_balance:
@@ -59,37 +70,6 @@ rule map_orbits:
     params:
         part=part("parameters", "backbones.atlas_points", "backbones.atlas_peak"),
     threads: cores_for(STUDY.backbones.atlas_points**2, enough=4000)
+    priority: LONG
     script:
         "../scripts/map_orbits.py"
-
-
-rule draw_backbones:
-    input:
-        **{name: data(f"backbone/{name}") for name in BACKBONES + SERIES},
-        sources=sources("draw_backbones"),
-    output:
-        fig10=figure("fig10"),
-        fig11=figure("fig11"),
-        fig12=figure("fig12"),
-        fig13=figure("fig13"),
-        coupled=figure("coupled_backbones"),
-    params:
-        part=part("parameters", "backbones.coupled"),
-    script:
-        "../scripts/draw_backbones.py"
-
-
-rule draw_orbits:
-    input:
-        sweep=data("harmonic_sweep"),
-        forms=data("harmonic_forms"),
-        beside=data("a1_beside_a4"),
-        atlas=data("orbit_atlas"),
-        sources=sources("draw_orbits"),
-    output:
-        sweep=figure("harmonic_convergence"),
-        forms=figure("harmonic_forms"),
-        beside=figure("a1_beside_a4"),
-        atlas=figure("orbit_atlas"),
-    script:
-        "../scripts/draw_orbits.py"

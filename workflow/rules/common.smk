@@ -1,8 +1,11 @@
 """What every rule needs: where results go, which sources a script uses, its slice of the study."""
 
 import os
+import sys
 from pathlib import Path
 
+from squealpipe.models.refusals import without_extensions
+from squealpipe.parameters import Parameters, parameters_of
 from squealpipe.sources import closure
 
 # Our matrices are small: several threads of linear algebra in a job only wait for one another,
@@ -11,7 +14,7 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 ROOT = Path(workflow.basedir)
 TARGETS = []
-FIGURES = {}
+NO_RESULT = {"progress.py", "sources.py", "stale.py"}  # they watch jobs: no result depends on them
 
 
 def data(name):
@@ -19,22 +22,29 @@ def data(name):
     return f"{RESULTS}/data/{name}.nc"
 
 
-def figure(name):
-    """PNG and SVG of a figure; the figure becomes a target and part of the report."""
-    paths = [f"{RESULTS}/figures/{name}.{suffix}" for suffix in ("png", "svg")]
-    FIGURES[name] = paths
-    TARGETS.extend(paths)
-    return paths
+def from_root(path):
+    """A file of the checkout as an input: relative to it, or absolute where the folder is another."""
+    whole = ROOT / path
+    return str(whole.relative_to(ROOT) if Path.cwd() == ROOT else whole)
 
 
-def sources(script):
+def sources(script, *loaded):
     """The script and the package modules whose edit makes its result stale.
+
+    ``loaded`` are modules that the package imports by name only when it runs.
+
 
     As inputs they are judged by checksum; Snakemake's own trigger for scripts goes by date and
     would take a fresh checkout for an edit (so the profiles leave it out).
     """
-    path = ROOT / f"workflow/scripts/{script}.py"
-    return [str(found.relative_to(ROOT)) for found in [path, *closure(path)]]
+    return with_imports([ROOT / f"workflow/scripts/{script}.py", *loaded])
+
+
+def with_imports(paths):
+    """Modules and all that they import, as inputs, but for those on which no result depends."""
+    given = list(paths)
+    found = dict.fromkeys([*given, *(path for each in given for path in closure(each))])
+    return [from_root(path) for path in found if path.name not in NO_RESULT]
 
 
 def part(*paths):
@@ -42,6 +52,35 @@ def part(*paths):
     return STUDY.slice(*paths)
 
 
-def cores_for(size, enough):
-    """All cores for a job of ``enough`` cells or more; smaller jobs run beside one another."""
+def all_cores_for(size, enough):
+    """All cores for a job of ``enough`` cells or more, one for a smaller one."""
     return workflow.cores if size >= enough else 1
+
+
+def cores_for(size, enough):
+    """Half of the cores for a job of ``enough`` cells or more, one for a smaller one.
+
+    Two such jobs side by side keep all cores busy where one of them starts, ends or is serial.
+    """
+    return (all_cores_for(size, enough) + 1) // 2
+
+
+# Jobs that take all cores go first, when no core has to wait for the others to become free; then
+# long ones, so that short ones fill the cores to the end.
+FIRST, LONG = 20, 5
+
+
+_given = parameters_of(part("parameters"))
+PAPERS_FRICTION = without_extensions(_given) is _given
+"""Whether the levels that carry neither dashpots nor other laws of friction can be part of it."""
+
+if not PAPERS_FRICTION and workflow.is_main_process:
+    beyond = {k: v for k, v in _given.as_dict().items() if k not in Parameters(mu=_given.mu).as_dict()}
+    print(
+        "Left out, for they carry neither dashpots nor any friction but Coulomb's with one μ: "
+        "model A4 and harmonic balance (backbones, orbits, natural frequencies, the explorer), the "
+        "model ladder, time stepping, exact boundaries of A3, and the inference from the paper's "
+        f"statements. Without {', '.join(f'{k} = {v!r}' for k, v in beyond.items())} they are part "
+        "of the study.",
+        file=sys.stderr,
+    )

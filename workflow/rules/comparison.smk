@@ -6,28 +6,34 @@ def alone(repeats):
     return workflow.cores if repeats > 1 else 1
 
 
-rule measure_integration:
-    input:
-        sources=sources("measure_integration"),
-    output:
-        data("work_precision_integration"),
-    params:
-        part=part("parameters", "comparison.integration", "comparison.validity"),
-    threads: alone(STUDY.comparison.integration.repeats)
-    script:
-        "../scripts/measure_integration.py"
+if PAPERS_FRICTION:
+
+    rule measure_integration:
+        input:
+            sources=sources("measure_integration"),
+        output:
+            data("work_precision_integration"),
+        params:
+            part=part("parameters", "comparison.integration", "comparison.validity"),
+        threads: alone(STUDY.comparison.integration.repeats)
+        priority: FIRST
+        script:
+            "../scripts/measure_integration.py"
 
 
-rule measure_frequencies:
-    input:
-        sources=sources("measure_frequencies"),
-    output:
-        data("work_precision_frequencies"),
-    params:
-        part=part("parameters", "comparison.harmonic", "comparison.onset"),
-    threads: alone(STUDY.comparison.harmonic.repeats)
-    script:
-        "../scripts/measure_frequencies.py"
+if PAPERS_FRICTION:
+
+    rule measure_frequencies:
+        input:
+            sources=sources("measure_frequencies"),
+        output:
+            data("work_precision_frequencies"),
+        params:
+            part=part("parameters", "comparison.harmonic", "comparison.onset"),
+        threads: alone(STUDY.comparison.harmonic.repeats)
+        priority: FIRST
+        script:
+            "../scripts/measure_frequencies.py"
 
 
 rule judge_methods:
@@ -37,36 +43,24 @@ rule judge_methods:
         data("failure_atlas"),
     params:
         part=part("comparison.atlas"),
+    priority: LONG
     script:
         "../scripts/judge_methods.py"
 
 
-rule map_model_ladder:
-    input:
-        sources=sources("map_model_ladder"),
-    output:
-        data("model_ladder"),
-    params:
-        part=part("parameters", "comparison.ladder"),
-    threads: cores_for(STUDY.comparison.ladder.points**2, enough=1000)
-    script:
-        "../scripts/map_model_ladder.py"
+LADDER_LEVELS = sorted((ROOT / "squealpipe/tasks/ladder/levels").glob("*.py"))
 
 
-rule draw_comparison:
-    input:
-        integration=data("work_precision_integration"),
-        frequencies=data("work_precision_frequencies"),
-        atlas=data("failure_atlas"),
-        ladder=data("model_ladder"),
-        sources=sources("draw_comparison"),
-    output:
-        work_precision_time=figure("work_precision_time"),
-        work_precision_evaluations=figure("work_precision_evaluations"),
-        work_precision_validity=figure("work_precision_validity"),
-        work_precision_frequencies=figure("work_precision_frequencies"),
-        failure_atlas=figure("failure_atlas"),
-        model_ladder=figure("model_ladder"),
-        model_ladder_cost=figure("model_ladder_cost"),
-    script:
-        "../scripts/draw_comparison.py"
+if PAPERS_FRICTION:
+
+    rule map_model_ladder:
+        input:
+            sources=sources("map_model_ladder", *LADDER_LEVELS),
+        output:
+            data("model_ladder"),
+        params:
+            part=part("parameters", "comparison.ladder"),
+        threads: all_cores_for(STUDY.comparison.ladder.points**2, enough=1000) # it quotes times
+        priority: FIRST
+        script:
+            "../scripts/map_model_ladder.py"

@@ -11,13 +11,3 @@ rule infer_parameters:
     threads: cores_for(STUDY.inference.samples, enough=4000)
     script:
         "../scripts/infer_parameters.py"
-
-
-rule draw_parameter_inference:
-    input:
-        inference=data("parameter_inference"),
-        sources=sources("draw_parameter_inference"),
-    output:
-        figure("parameter_inference"),
-    script:
-        "../scripts/draw_parameter_inference.py"

@@ -1,5 +1,11 @@
 """Linear maps, natural frequencies, and the validation by a published model."""
 
+PAPERS_OWN = {
+    "frequencies": data("natural_frequencies"),
+    "boundaries": data("stability_boundaries"),
+    "shares": data("linear_shares"),
+} if PAPERS_FRICTION else {}
+
 
 rule map_linear:
     input:
@@ -7,13 +13,30 @@ rule map_linear:
     output:
         quasi_static=data("quasi_static_map"),
         stability=data("stability_map"),
-        frequencies=data("natural_frequencies"),
-        boundaries=data("stability_boundaries"),
-        shares=data("linear_shares"),
+        **PAPERS_OWN,
     params:
         part=part("parameters", "linear"),
     script:
         "../scripts/map_linear.py"
+
+
+rule map_critical_friction:
+    input:
+        sources=sources("map_critical_friction"),
+    output:
+        angles=data("critical_friction_map"),
+        dashpots=data("critical_damping_map"),
+    params:
+        part=part(
+            "parameters",
+            "linear.points",
+            "spread.critical_damping",
+            "spread.critical_points",
+            "spread.critical_extent",
+            "spread.scene",
+        ),
+    script:
+        "../scripts/map_critical_friction.py"
 
 
 rule validate_mode_coupling:
@@ -23,43 +46,3 @@ rule validate_mode_coupling:
         data("mode_coupling"),
     script:
         "../scripts/validate_mode_coupling.py"
-
-
-rule draw_stability:
-    input:
-        stability=data("stability_map"),
-        quasi_static=data("quasi_static_map"),
-        boundaries=data("stability_boundaries"),
-        shares=data("linear_shares"),
-        coupling=data("mode_coupling"),
-        sources=sources("draw_stability"),
-    output:
-        fig06=figure("fig06"),
-        static=figure("static_state"),
-        plane=figure("stability_plane"),
-        shares=figure("linear_shares"),
-        coupling=figure("mode_coupling"),
-    script:
-        "../scripts/draw_stability.py"
-
-
-rule draw_frequencies:
-    input:
-        frequencies=data("natural_frequencies"),
-        sources=sources("draw_frequencies"),
-    output:
-        fig08=figure("fig08"),
-        fig09=figure("fig09"),
-        shift=figure("frequency_shift"),
-    script:
-        "../scripts/draw_frequencies.py"
-
-
-rule draw_linear_against_nonlinear:
-    input:
-        validity=data("validity_map"),
-        sources=sources("draw_linear_against_nonlinear"),
-    output:
-        figure("linear_against_nonlinear"),
-    script:
-        "../scripts/draw_linear_against_nonlinear.py"

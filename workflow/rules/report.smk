@@ -1,19 +1,17 @@
 """The report: datasets, figures and claims on one page. Included last: it reads all other rules."""
 
-from squealpipe.report.lineage import lineage
-
-
-def caption_sources(names):
-    """Modules that draw the figures, which hold their captions, and all that these import."""
-    modules = [ROOT / f"squealpipe/figures/{name}.py" for name in names]
-    found = {path for module in modules for path in (module, *closure(module))}
-    return sorted(str(path.relative_to(ROOT)) for path in found)
-
-
-MADE = lineage(workflow.rules, f"{RESULTS}/data/", f"{RESULTS}/figures/")
+MADE = lineage(workflow.rules, f"{RESULTS}/data/")
+DRAWN = {
+    name: {
+        "path": f"{RESULTS}/figures/{name}.png",
+        "rule": f"draw_{declared.topic(name)}",
+        "datasets": found,
+    }
+    for name, found in READ_BY.items()
+}
 
 TEMPLATES = sorted(
-    str(path.relative_to(ROOT))
+    from_root(path)
     for path in (ROOT / "squealpipe/report/templates").rglob("*.*")
     if path.suffix in (".typ", ".css") or path.name == "page.html.j2"
 )
@@ -21,9 +19,9 @@ TEMPLATES = sorted(
 
 rule write_report:
     input:
-        datasets=[made["path"] for made in MADE["datasets"].values()],
-        figures=[made["path"] for made in MADE["figures"].values()],
-        captions=caption_sources(MADE["figures"]),
+        datasets=[made["path"] for made in MADE.values()],
+        figures=[made["path"] for made in DRAWN.values()],
+        captions=figure_sources(READ_BY),
         templates=TEMPLATES,
         sources=sources("write_report"),
     output:
@@ -32,6 +30,8 @@ rule write_report:
     params:
         part=part("parameters"),
         made=MADE,
+        drawn=DRAWN,
+        animations=ANIMATIONS if PAPERS_FRICTION else {},
         explorer="explorer.html" if f"{RESULTS}/report/explorer.html" in TARGETS else None,
     script:
         "../scripts/write_report.py"

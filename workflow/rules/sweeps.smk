@@ -11,7 +11,7 @@ from squealpipe.ranges import longest
 SWEEPS = {name: STUDY.sweep(name) for name in STUDY.sweeps}
 
 if SWEEPS and workflow.is_main_process:  # jobs need not check again: the import takes a second
-    from squealpipe.tasks.sweep import planned
+    from squealpipe.execution.sweep import planned
 
     faults = []
     for name, sweep in SWEEPS.items():
@@ -46,7 +46,7 @@ for name, sweep in SWEEPS.items():
             f"{RESULTS}/logs/sweeps/{name}{'' if whole else '.{scatteritem}'}.log",
         params:
             part=sweep,
-        threads: cores_for(prod(map(len, sweep["vary"].values())), enough=16)
+        threads: all_cores_for(prod(map(len, sweep["vary"].values())), enough=16)
         script:
             "../scripts/run_sweep.py"
 

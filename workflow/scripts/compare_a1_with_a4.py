@@ -2,8 +2,8 @@
 
 from squealpipe.parameters import parameters_of
 from squealpipe.store import produce
-from squealpipe.tasks.a1_beside_a4 import a1_beside_a4
-from squealpipe.tasks.backbones import contact_losing_branches, with_orbits
+from squealpipe.tasks.backbones.a1_beside_a4 import a1_beside_a4
+from squealpipe.tasks.backbones.backbone import contact_losing_branches, with_orbits
 
 part = snakemake.params.part
 found = contact_losing_branches(part["backbones.coupled"])
@@ -16,6 +16,6 @@ produce(
         peak=part["backbones.atlas_peak"],
         length_ratios=part["backbones.length_ratios"],
     ).assign_attrs(left_out=left_out),
-    config=part,
+    config=part, sources=snakemake.input.sources,
     output=snakemake.output[0],
 )

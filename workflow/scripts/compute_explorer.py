@@ -4,13 +4,13 @@ import numpy as np
 
 from squealpipe.parameters import parameters_of
 from squealpipe.store import produce
-from squealpipe.tasks.explorer import explorer_data
+from squealpipe.tasks.dynamics.explorer import explorer_data
 
 part = snakemake.params.part
 options = dict(part["explorer"])
 angles = np.linspace(0.0, np.pi, options.pop("points"))
 produce(
     lambda: explorer_data(parameters_of(part), angles, **options),
-    config=part,
+    config=part, sources=snakemake.input.sources,
     output=snakemake.output[0],
 )

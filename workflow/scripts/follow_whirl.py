@@ -4,8 +4,8 @@ import numpy as np
 
 from squealpipe.parameters import SCENES, parameters_of
 from squealpipe.store import produce
-from squealpipe.tasks.dynamics import simulate
-from squealpipe.tasks.whirl import transient_lifetimes, whirl_sizes
+from squealpipe.tasks.dynamics.runs import simulate
+from squealpipe.tasks.dynamics.whirl import transient_lifetimes, whirl_sizes
 
 part, out = snakemake.params.part, snakemake.output
 params, scene = parameters_of(part), SCENES["F3"]
@@ -14,14 +14,14 @@ speed = params.preload / second
 
 
 def speeds(topic):
-    """Evenly spaced on a logarithmic scale, m/s."""
+    """Evenly spaced on a logarithmic scale, m/s, without the direction of the belt."""
     return speed * np.geomspace(*part[f"dynamics.{topic}_speeds"], part[f"dynamics.{topic}_count"])
 
 
 t_end = 0.1 * part["dynamics.whirl_horizon"] * second
 produce(
     lambda: simulate(params, scene.alpha1, scene.alpha2, t_end=t_end, tol=tol),
-    config=part,
+    config=part, sources=snakemake.input.sources,
     output=out.run,
 )
 produce(
@@ -31,7 +31,7 @@ produce(
         t_end=part["dynamics.whirl_horizon"] * second,
         tol=tol,
     ),
-    config=part,
+    config=part, sources=snakemake.input.sources,
     output=out.whirl,
 )
 produce(
@@ -43,6 +43,6 @@ produce(
         t_end=part["dynamics.transient_horizon"] * second,
         tol=tol,
     ),
-    config=part,
+    config=part, sources=snakemake.input.sources,
     output=out.transient,
 )

@@ -2,11 +2,11 @@
 
 from squealpipe.parameters import parameters_of
 from squealpipe.store import produce
-from squealpipe.tasks.inference import infer_parameters
+from squealpipe.tasks.inference.inference import infer_parameters
 
 part = snakemake.params.part
 produce(
     lambda: infer_parameters(parameters_of(part), **part["inference"]),
-    config=part,
+    config=part, sources=snakemake.input.sources,
     output=snakemake.output[0],
 )

@@ -2,13 +2,13 @@
 
 from squealpipe.ranges import longest
 from squealpipe.store import load, produce
-from squealpipe.tasks.row_blocks import join
+from squealpipe.execution.row_blocks import join
 
 part, parts = snakemake.params.part, list(snakemake.input.parts)
 along = longest(part["vary"]) if "vary" in part else "alpha1"
 produce(
     lambda: join([load(path) for path in parts], along),
-    config=part,
+    config=part, sources=snakemake.input.sources,
     output=snakemake.output[0],
     inputs=parts,
 )

@@ -8,7 +8,7 @@ part, paths = snakemake.params.part, snakemake.input.datasets
 sources = dict(zip(snakemake.params.names, paths, strict=True))
 produce(
     lambda: judge(parameters_of(part), sources),
-    config=part,
+    config=part, sources=snakemake.input.sources,
     output=snakemake.output[0],
     inputs=paths,
 )

@@ -6,9 +6,9 @@ import os
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 from squealpipe.store import produce
-from squealpipe.tasks.failures import judge_methods
+from squealpipe.tasks.comparison.failures.atlas import judge_methods
 
 part = snakemake.params.part
 produce(
-    lambda: judge_methods(**part["comparison.atlas"]), config=part, output=snakemake.output[0]
+    lambda: judge_methods(**part["comparison.atlas"]), config=part, sources=snakemake.input.sources, output=snakemake.output[0]
 )

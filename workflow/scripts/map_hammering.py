@@ -1,7 +1,7 @@
 """Impacts, extremes and kind of motion of model A1; of a scattered map the rows of one part."""
 
-from squealpipe.tasks.hammering import hammering_map
-from squealpipe.tasks.row_blocks import make_map
+from squealpipe.tasks.dynamics.hammering import hammering_map
+from squealpipe.execution.row_blocks import make_map
 
 make_map(
     hammering_map,

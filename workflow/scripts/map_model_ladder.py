@@ -2,7 +2,7 @@
 
 from squealpipe.parameters import parameters_of
 from squealpipe.store import produce
-from squealpipe.tasks.model_ladder import model_ladder
+from squealpipe.tasks.ladder.ladder import model_ladder
 
 part = snakemake.params.part
 params, ladder = parameters_of(part), part["comparison.ladder"]
@@ -14,6 +14,6 @@ produce(
         t_end=ladder["horizon"] * params.time_unit,
         workers=snakemake.threads,
     ),
-    config=part,
+    config=part, sources=snakemake.input.sources,
     output=snakemake.output[0],
 )

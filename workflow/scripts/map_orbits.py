@@ -4,7 +4,7 @@ import numpy as np
 
 from squealpipe.parameters import parameters_of
 from squealpipe.store import produce
-from squealpipe.tasks.atlas import orbit_atlas
+from squealpipe.tasks.backbones.atlas import orbit_atlas
 
 part = snakemake.params.part
 params = parameters_of(part)
@@ -17,6 +17,6 @@ produce(
         y_peak=part["backbones.atlas_peak"] * params.preload,
         workers=snakemake.threads,
     ),
-    config=part,
+    config=part, sources=snakemake.input.sources,
     output=snakemake.output[0],
 )

@@ -1,7 +1,7 @@
 """Where model A1 keeps contact; of a scattered map the rows of one part."""
 
-from squealpipe.tasks.dynamics import validity_map
-from squealpipe.tasks.row_blocks import make_map
+from squealpipe.tasks.dynamics.runs import validity_map
+from squealpipe.execution.row_blocks import make_map
 
 make_map(
     validity_map,

@@ -7,8 +7,8 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 from squealpipe.parameters import parameters_of
 from squealpipe.store import produce
-from squealpipe.tasks import speed_accuracy_harmonic, speed_accuracy_stability
-from squealpipe.tasks.work_precision import work_precision
+from squealpipe.tasks.comparison.work_precision import harmonic as speed_accuracy_harmonic, stability as speed_accuracy_stability
+from squealpipe.tasks.comparison.work_precision.solutions import work_precision
 
 part = snakemake.params.part
 params = parameters_of(part)
@@ -19,6 +19,6 @@ produce(
             *speed_accuracy_stability.solutions(**part["comparison.onset"]),
         ]
     ),
-    config=part,
+    config=part, sources=snakemake.input.sources,
     output=snakemake.output[0],
 )

@@ -2,8 +2,8 @@
 
 from squealpipe.parameters import parameters_of
 from squealpipe.store import produce
-from squealpipe.tasks import speed_accuracy_integration, speed_accuracy_validity
-from squealpipe.tasks.work_precision import work_precision
+from squealpipe.tasks.comparison.work_precision import integration as speed_accuracy_integration, validity as speed_accuracy_validity
+from squealpipe.tasks.comparison.work_precision.solutions import work_precision
 
 part = snakemake.params.part
 study = part["comparison.integration"]
@@ -16,6 +16,6 @@ produce(
             *speed_accuracy_validity.solutions(params, **maps),
         ]
     ),
-    config=part,
+    config=part, sources=snakemake.input.sources,
     output=snakemake.output[0],
 )

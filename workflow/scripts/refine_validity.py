@@ -2,7 +2,7 @@
 
 from squealpipe.parameters import parameters_of
 from squealpipe.store import load, produce
-from squealpipe.tasks.refinement import check_refinement, refine_validity_map
+from squealpipe.tasks.dynamics.refinement import check_refinement, refine_validity_map
 
 part, out = snakemake.params.part, snakemake.output
 params = parameters_of(part)
@@ -14,14 +14,14 @@ produce(
         t_end=part["dynamics.validity_horizon"] * params.time_unit,
         tol=part["dynamics.tol"],
     ),
-    config=part,
+    config=part, sources=snakemake.input.sources,
     output=out.refined,
 )
 produce(
     lambda: check_refinement(
         params, load(out.refined), points=part["dynamics.uniform_points"], tol=part["dynamics.tol"]
     ),
-    config=part,
+    config=part, sources=snakemake.input.sources,
     output=out.check,
     inputs=[out.refined],
 )

@@ -2,7 +2,7 @@
 
 from squealpipe.store import produce
 from squealpipe.store.chunks import Checkpoint
-from squealpipe.tasks.sweep import executor, planned, run_sweep
+from squealpipe.execution.sweep import executor, planned, run_sweep
 
 part = snakemake.params.part
 sweep = planned(part).part(snakemake.wildcards.get("scatteritem", "1-of-1"))
@@ -15,5 +15,6 @@ with (
     produce(
         lambda: run_sweep(sweep, executor=pool, checkpoint=checkpoint),
         config=part,
+        sources=sources,
         output=output,
     )

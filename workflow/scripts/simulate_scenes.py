@@ -2,7 +2,7 @@
 
 from squealpipe.parameters import SCENES, parameters_of
 from squealpipe.store import produce
-from squealpipe.tasks.dynamics import simulate
+from squealpipe.tasks.dynamics.runs import simulate
 
 part = snakemake.params.part
 params = parameters_of(part)
@@ -16,6 +16,6 @@ for name, path in snakemake.output.items():
             t_end=scene.t_end * params.time_unit,
             tol=part["dynamics.tol"],
         ),
-        config={**part, "scene": name},
+        config={**part, "scene": name}, sources=snakemake.input.sources,
         output=path,
     )

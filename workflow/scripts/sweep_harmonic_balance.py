@@ -2,8 +2,8 @@
 
 from squealpipe.parameters import parameters_of
 from squealpipe.store import produce
-from squealpipe.tasks.backbones import contact_losing_branches, with_orbits
-from squealpipe.tasks.harmonic_sweeps import compare_harmonic_forms, sweep_harmonic_balance
+from squealpipe.tasks.backbones.backbone import contact_losing_branches, with_orbits
+from squealpipe.tasks.backbones.harmonic_sweeps import compare_harmonic_forms, sweep_harmonic_balance
 
 part = snakemake.params.part
 params = parameters_of(part)
@@ -14,11 +14,11 @@ produce(
     lambda: sweep_harmonic_balance(
         params, branches, n_harmonics=part["backbones.n_harmonics"], **sweep
     ).assign_attrs(left_out=left_out),
-    config=part,
+    config=part, sources=snakemake.input.sources,
     output=snakemake.output.sweep,
 )
 produce(
     lambda: compare_harmonic_forms(params, branches).assign_attrs(left_out=left_out),
-    config=part,
+    config=part, sources=snakemake.input.sources,
     output=snakemake.output.forms,
 )

@@ -2,7 +2,7 @@
 
 from squealpipe.parameters import parameters_of
 from squealpipe.store import produce
-from squealpipe.tasks.backbones import backbone, named_scenes
+from squealpipe.tasks.backbones.backbone import backbone, named_scenes
 
 part = snakemake.params.part
 params = parameters_of(part)
@@ -19,6 +19,6 @@ for name, angles in named_scenes(part["backbones.coupled"]).items():
         for ending, options in methods.items():
             produce(
                 lambda: backbone(params, *angles, mode=mode, **limits, **options),
-                config={**part, "scene": name, "mode": mode, **options},
+                config={**part, "scene": name, "mode": mode, **options}, sources=snakemake.input.sources,
                 output=snakemake.output[f"{name}_mode{mode}{ending}"],
             )

@@ -1,6 +1,6 @@
 """A published mode-coupling model by our A3, and accuracy at the onset of flutter."""
 
 from squealpipe.store import produce
-from squealpipe.tasks.mode_coupling import mode_coupling
+from squealpipe.tasks.linear.mode_coupling import mode_coupling
 
-produce(mode_coupling, config={}, output=snakemake.output[0])
+produce(mode_coupling, config={}, sources=snakemake.input.sources, output=snakemake.output[0])

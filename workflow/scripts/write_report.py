@@ -6,13 +6,14 @@ from squealpipe.parameters import parameters_of
 from squealpipe.report.build import write_report
 from squealpipe.report.content import gather, made_files, picture_files
 
-made = snakemake.params.made
-datasets, figures = made_files(made["datasets"]), made_files(made["figures"])
+datasets, figures = made_files(snakemake.params.made), made_files(snakemake.params.drawn)
 content = gather(
     datasets,
     figures,
     parameters_of(snakemake.params.part),
     explorer=snakemake.params.explorer,
+    animations=snakemake.params.animations,
+    page=Path(snakemake.output.page),
 )
 write_report(
     content,

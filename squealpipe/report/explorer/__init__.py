@@ -17,6 +17,7 @@ from plotly.offline import get_plotlyjs
 
 from squealpipe.parameters import SCENES
 from squealpipe.report.explorer.layers import Layer
+from squealpipe.schema import meanings
 
 HERE = Path(str(files("squealpipe.report.explorer")))
 HISTORIES = ("x", "y", "normalized_contact_force", "force_spectrum")
@@ -52,20 +53,40 @@ def page(explorer: xr.Dataset, layers: Mapping[str, Layer]) -> str:
         script=(HERE / "explorer.js").read_text(encoding="utf-8"),
         plotly=get_plotlyjs(),
         layers={key: layer.label for key, layer in layers.items()},
-        payload=json.dumps(payload(explorer, layers), allow_nan=False).replace("</", "<\\/"),
+        payload=in_script(payload(explorer, layers)),
+        blocks=blocks(explorer, layers),
         commit=explorer.attrs.get("commit", "unknown"),
         dataset_id=explorer.attrs.get("dataset_id", "unknown"),
     )
 
 
-def payload(explorer: xr.Dataset, layers: Mapping[str, Layer]) -> dict[str, Any]:
-    """Everything the script draws, ready for JSON."""
+def in_script(content: Mapping[str, Any]) -> str:
+    """JSON that no text in it can end or comment out, whatever the browser's parser is in."""
+    return json.dumps(content, allow_nan=False).replace("<", "\\u003c").replace(">", "\\u003e")
+
+
+def blocks(explorer: xr.Dataset, layers: Mapping[str, Layer]) -> dict[str, str]:
+    """Numbers as text that the page decodes when a pair or layer is chosen, not before."""
     return {
-        "angles": [_single(explorer.alpha1.values), _single(explorer.alpha2.values)],
+        **{name: packed_curves(explorer[name].values) for name in HISTORIES},
+        **{
+            name: _records(
+                np.asarray(explorer[name].values, "<f4").reshape(explorer.outcome.size, -1)
+            )
+            for name in BRANCHES
+        },
+        **{f"layer-{key}": _single(layer.values) for key, layer in layers.items()},
+    }
+
+
+def payload(explorer: xr.Dataset, layers: Mapping[str, Layer]) -> dict[str, Any]:
+    """What the script needs at once, ready for JSON."""
+    return {
+        "angles": [explorer.alpha1.values.tolist(), explorer.alpha2.values.tolist()],
         "time": _single(explorer.time.values),
         "frequency": _single(explorer.frequency.values),
-        "histories": {name: _scaled(explorer[name].values) for name in HISTORIES},
-        "branches": {name: _single(explorer[name].values) for name in BRANCHES},
+        "points": explorer.sizes["point"],
+        "options": run_options(explorer),
         "outcome": _meanings(explorer.outcome),
         "end": _meanings(explorer.end),
         "preload": float(explorer.preload),
@@ -79,12 +100,28 @@ def payload(explorer: xr.Dataset, layers: Mapping[str, Layer]) -> dict[str, Any]
     }
 
 
+def run_options(explorer: xr.Dataset) -> str:
+    """Options of ``squealpipe simulate`` that repeat the runs shown: times and all parameters."""
+    told = explorer.attrs
+    parameters = told.get("parameters") or json.loads(told.get("config", "{}")).get("parameters")
+    if parameters is None:
+        return ""
+    values = json.loads(parameters) if isinstance(parameters, str) else parameters
+    end = told.get("run_t_end", explorer.time.values[-1])
+    points = told.get("run_points", explorer.sizes["time"])
+    options = {"t_end": float(end), "points": int(points), **values}
+    return " ".join(f"--{key.replace('_', '-')} {_plain(value)}" for key, value in options.items())
+
+
+def _plain(value: object) -> str:
+    return repr(int(value)) if isinstance(value, float) and value.is_integer() else str(value)
+
+
 def _layer(layer: Layer) -> dict[str, Any]:
     return {
         "label": layer.label,
         "unit": layer.unit,
-        "angles": [_single(layer.alpha1), _single(layer.alpha2)],
-        "values": _single(layer.values),
+        "angles": [layer.alpha1.tolist(), layer.alpha2.tolist()],
         "range": _colour_range(layer.values),
         "meanings": layer.meanings,
         "colours": layer.colours,
@@ -99,8 +136,7 @@ def _colour_range(values: np.ndarray) -> list[float]:
 
 
 def _meanings(flag: xr.DataArray) -> dict[str, Any]:
-    names = str(flag.attrs["flag_meanings"]).split()
-    table = dict(zip(map(int, flag.attrs["flag_values"]), names, strict=True))
+    table = meanings(flag)
     return {
         "values": _encode(np.asarray(flag.values, "i1")),
         "meanings": {key: table[key].replace("_", " ") for key in np.unique(flag.values).tolist()},
@@ -111,19 +147,22 @@ def _single(values: np.ndarray) -> str:
     return _encode(np.asarray(values, "<f4"))
 
 
-def _scaled(values: np.ndarray) -> dict[str, str]:
-    """Each pair's curve as 16-bit integers between its own lowest and highest value.
+def packed_curves(values: np.ndarray) -> str:
+    """Each pair's curve: its lowest value, a scale, and 16-bit integers between lowest and highest.
 
     That halves the page; the error is below 1/131,070 of the curve's range.
     """
     flat = np.asarray(values, float).reshape(-1, values.shape[-1])
     low, high = flat.min(axis=1, keepdims=True), flat.max(axis=1, keepdims=True)
     scale = np.where(high > low, high - low, 1.0) / 65535.0
-    return {
-        "values": _encode(np.round((flat - low) / scale).astype("<u2")),
-        "low": _single(low),
-        "scale": _single(scale),
-    }
+    numbers = np.round((flat - low) / scale).astype("<u2")
+    head = np.hstack([low, scale]).astype("<f4")
+    return _records(np.hstack([head.view(np.uint8), numbers.view(np.uint8)]))
+
+
+def _records(rows: np.ndarray) -> str:
+    """Rows as pieces of text of one length, so that each can be decoded alone."""
+    return "".join(map(_encode, rows))
 
 
 def _encode(values: np.ndarray) -> str:

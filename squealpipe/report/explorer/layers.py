@@ -8,9 +8,10 @@ from dataclasses import dataclass, field
 import numpy as np
 import xarray as xr
 
-from squealpipe.figures.model_ladder import NAMES
-from squealpipe.figures.style import REGIME_COLOURS
-from squealpipe.schema.comparison import Level
+from squealpipe.figures.comparison.model_ladder import colour_of
+from squealpipe.figures.parts.style import REGIME_COLOURS, flag_words
+from squealpipe.schema import meanings
+from squealpipe.schema.ladder import Level
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -56,8 +57,7 @@ def category(variable: xr.DataArray, label: str, *, colours: Mapping[str, str]) 
     Raises:
         KeyError: a meaning that occurs has no colour.
     """
-    names = str(variable.attrs["flag_meanings"]).split()
-    table = dict(zip(map(int, variable.attrs["flag_values"]), names, strict=True))
+    table = meanings(variable)
     present = np.unique(variable.values).tolist()
     return Layer(
         label=label,
@@ -65,7 +65,7 @@ def category(variable: xr.DataArray, label: str, *, colours: Mapping[str, str]) 
         alpha1=variable.alpha1.values,
         alpha2=variable.alpha2.values,
         values=variable.values.astype(float),
-        meanings={code: table[code].replace("_", " ") for code in present},
+        meanings={code: flag_words(table[code]) for code in present},
         colours={code: colours[table[code]] for code in present},
     )
 
@@ -73,15 +73,16 @@ def category(variable: xr.DataArray, label: str, *, colours: Mapping[str, str]) 
 def cheapest(ladder: xr.Dataset, question: str) -> Layer:
     """The cheapest adequate model for a question, named and coloured as in the ladder's figure."""
     levels = ladder.cheapest.sel(question=question)
-    present = [Level(code) for code in np.unique(levels.values).tolist()]
+    codes = np.unique(levels.values).tolist()
+    present = [level for level in Level if level in codes]
     return Layer(
         label=f"cheapest model: {question.replace('_', ' ')}",
         unit="",
         alpha1=levels.alpha1.values,
         alpha2=levels.alpha2.values,
         values=levels.values.astype(float),
-        meanings={int(level): NAMES[level][0] for level in present},
-        colours={int(level): NAMES[level][1] for level in present},
+        meanings={int(level): level.label for level in present},
+        colours={int(level): colour_of(level) for level in present},
     )
 
 
@@ -113,6 +114,12 @@ def layers(
             note="blank: contact is kept to the end of the run",
         ),
         "peak_force": quantity(hammering.peak_contact_force, "peak contact force / (k₃ l_pre)"),
+        "impact_rate": quantity(hammering.impact_rate, "impacts per time"),
+        "predictability": quantity(
+            hammering.predictability_horizon,
+            "predictable until",
+            note="beyond it a single run means nothing; the largest value is the end of the runs",
+        ),
         "growth_rate": quantity(stability.growth_rate, "growth rate (A3)"),
     }
     for state, words in (("contact", "in contact"), ("separated", "separated")):

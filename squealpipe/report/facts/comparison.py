@@ -5,36 +5,64 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+import xarray as xr
 
 from squealpipe.claims.evidence import Run
+from squealpipe.schema.comparison import Reliability, Role
 
 
 def failures(run: Run) -> dict[str, Any]:
-    """Verdicts of each method over the hard scenes."""
+    """Verdicts of each method and setting over the hard scenes, and totals at equal tolerance."""
     dataset = run["failure_atlas"]
-    meanings = dataset.verdict.attrs["flag_meanings"].split()
-    values = dict(zip(meanings, dataset.verdict.attrs["flag_values"], strict=True))
-    methods = []
-    for name in dataset.solver.values:
-        row = dataset.sel(solver=name)
-        right = row.verdict == values["right"]
-        methods.append(
-            {
-                "method": str(name),
-                "ours": int(row.role) > 0,
-                "asked": int((row.verdict != values["not_applicable"]).sum()),
-                "right": int(right.sum()),
-                "flagged": int((row.verdict == values["flagged"]).sum()),
-                "silent": int((row.verdict == values["silently_wrong"]).sum()),
-                "warned": int((right & (row.flagged == 1)).sum()),
-            }
-        )
+    tightest = float(dataset.requested.min())
+    methods = [_judged(dataset.sel(solver=name)) for name in dataset.solver.values]
+    equal = [row for row in methods if row["tolerance"] in {None, tightest}]
     return {
         "scenes": dataset.sizes["scene"],
+        "tolerance": tightest,
         "methods": methods,
-        "ours_silent": sum(row["silent"] for row in methods if row["ours"]),
-        "others_silent": sum(row["silent"] for row in methods if not row["ours"]),
+        "totals": {
+            whose: {
+                key: sum(row[key] for row in equal if row["ours"] == ours)
+                for key in ("asked", "silent", "missed")
+            }
+            for whose, ours in (("ours", True), ("others", False))
+        },
+        "recovered": _recovered(dataset),
     }
+
+
+def _judged(row: xr.Dataset) -> dict[str, Any]:
+    right = row.verdict == Reliability.right
+    return {
+        "method": str(row.solver.item()),
+        "ours": int(row.role) != Role.public,
+        "tolerance": None if np.isnan(row.requested) else float(row.requested),
+        "asked": int((row.verdict != Reliability.not_applicable).sum()),
+        "right": int(right.sum()),
+        "flagged": int((row.verdict == Reliability.flagged).sum()),
+        "silent": int((row.verdict == Reliability.silently_wrong).sum()),
+        "warned": int((right & (row.flagged == 1)).sum()),
+        "missed": int(row.missed_events.sum()),
+    }
+
+
+def _recovered(dataset: xr.Dataset) -> list[dict[str, Any]]:
+    """Scenes in which a public method is wrong at one tolerance and right at a tighter one."""
+    found = []
+    timed = dataset.isel(
+        solver=(np.isfinite(dataset.requested) & (dataset.role == Role.public)).values
+    )
+    names = np.array([str(name).rsplit(", ", 1)[0] for name in timed.solver.values])
+    for name in dict.fromkeys(names.tolist()):
+        mine = timed.isel(solver=names == name).sortby("requested", ascending=False)
+        for scene in mine.scene.values:
+            verdicts = mine.verdict.sel(scene=scene).values
+            right = np.flatnonzero(verdicts == Reliability.right)
+            if verdicts[0] not in {Reliability.not_applicable, Reliability.right} and right.size:
+                tolerance = float(mine.requested[int(right[0])])
+                found.append({"method": name, "scene": str(scene), "tolerance": tolerance})
+    return found
 
 
 def ladder(run: Run) -> dict[str, Any]:
@@ -58,7 +86,9 @@ def ladder(run: Run) -> dict[str, Any]:
                 "wall": float(row.chosen_wall_time / row.always_wall_time),
             }
         )
+    reached = dataset.get("belt_reached")
     return {
+        "belt_reached": None if reached is None else float(reached.mean()),
         "tolerance": tolerance,
         "points": dataset.sizes["alpha1"],
         "questions": questions,

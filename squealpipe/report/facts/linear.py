@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from math import isnan
 from typing import Any
 
@@ -9,19 +10,21 @@ import numpy as np
 import xarray as xr
 
 from squealpipe.claims.evidence import Run
+from squealpipe.claims.maps import unstable_yet_sliding
 
 
 def linear(datasets: Run) -> dict[str, Any]:
     """Counts of cells on the linear maps."""
-    stability, sliding = datasets["stability_map"], datasets["quasi_static_map"]
-    regime, possible = stability.regime_linear, sliding.possible == 1
+    stability = datasets["stability_map"]
+    regime = stability.regime_linear
+    printed, physical = unstable_yet_sliding(datasets)
     return {
         "points": stability.sizes["alpha1"],
         "flutter": int((regime == 1).sum()),
         "divergence": int((regime == 2).sum()),
-        "unstable_printed": int(((regime > 0) & (sliding.possible_as_printed == 1)).sum()),
-        "unstable_physical": int(((regime > 0) & possible).sum()),
-        "flutter_physical": int(((regime == 1) & possible).sum()),
+        "unstable_printed": int(printed.sum()),
+        "unstable_physical": int(physical.sum()),
+        "flutter_physical": int(((regime == 1) & physical).sum()),
     }
 
 
@@ -74,3 +77,18 @@ def _constraint(row: xr.Dataset) -> dict[str, Any]:
 
 def _or_none(value: xr.DataArray) -> float | None:
     return None if isnan(float(value)) else float(value)
+
+
+def critical(run: Run) -> dict[str, Any]:
+    """Where dashpots lower the critical friction, and what that changes at the study's own."""
+    dataset, mu = run["critical_friction_map"], run.parameters.mu
+    given = json.loads(dataset.attrs["parameters"])
+    damped, undamped = dataset.critical_mu.values, dataset.critical_mu_undamped.values
+    return {
+        "damping": [given.get(f"damping{i}", 0.0) for i in (1, 2)],
+        "points": dataset.sizes["alpha1"],
+        "lowered": float(dataset.destabilized.mean()),
+        "mu": mu,
+        "turned": float(np.mean((damped < mu) & (undamped >= mu))),
+        "saved": float(np.mean((damped >= mu) & (undamped < mu))),
+    }

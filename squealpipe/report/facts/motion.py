@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
-from fractions import Fraction
 from typing import Any
 
 import numpy as np
 
 from squealpipe.claims.evidence import Run
+from squealpipe.figures.parts.style import flag_words, pi_label
 from squealpipe.parameters import SCENES
+
+SATURATED = 0.01
+"""Relative change of the amplitude between two late parts of a run below which it has settled."""
+REGULAR = ("periodic_hammering", "quasi_periodic_hammering", "regular_hammering")
+"""Kinds of hammering in which no perturbation grew exponentially."""
 
 
 def assumptions(run: Run) -> dict[str, Any]:
@@ -29,7 +34,7 @@ def assumptions(run: Run) -> dict[str, Any]:
                 ]
             )
         scene = SCENES[name]
-        angles = f"({_over_pi(scene.alpha1)}, {_over_pi(scene.alpha2)})"
+        angles = f"({pi_label(scene.alpha1)}, {pi_label(scene.alpha2)})"
         scenes.append({"name": name, "angles": angles, "cells": cells})
     return {
         "levels": levels,
@@ -45,17 +50,42 @@ def whirl(run: Run) -> dict[str, Any]:
     dataset, parameters = run["whirl"], run.parameters
     here = dataset.sel(belt_speed=parameters.belt_speed, method="nearest")
     whirls = dataset.amplitude.where(dataset.motion == _flag(dataset.motion, "whirl"))
+    names = dict(
+        zip(dataset.motion.attrs["flag_values"], dataset.motion.attrs["flag_meanings"].split(),
+            strict=True)
+    )  # fmt: skip
+    growth = float(here.amplitude / here.amplitude_before) - 1.0
     return {
+        "motion": names[int(here.motion)].replace("_", " "),
+        "saturated": abs(growth) < SATURATED,
         "speed": float(here.belt_speed),
+        "own_speed": bool(np.isclose(here.belt_speed, parameters.belt_speed, rtol=1e-6)),
         "amplitude": float(here.amplitude / parameters.preload),
-        "top_speed": float(here.max_vx / here.belt_speed),
-        "lowest_speed": _finite(dataset.belt_speed.where(whirls.notnull()).min()),
-        "speeds": [float(dataset.belt_speed.min()), float(dataset.belt_speed.max())],
+        "top_speed": float(here.max_vx / abs(here.belt_speed)),
+        "lowest_speed": _finite(abs(dataset.belt_speed).where(whirls.notnull()).min()),
+        "speeds": _slowest_and_fastest(dataset),
         "t_end": float(dataset.t_end / parameters.time_unit),
+        **_fit_and_onset(dataset),
         "slope": _finite(dataset.slope),
         "offset": _finite(dataset.offset),
         "energy_slope": float(dataset.energy_slope),
         "energy_offset": float(dataset.energy_offset),
+    }
+
+
+def _fit_and_onset(dataset: Any) -> dict[str, Any]:
+    """How far and how well the line holds, and the onset; None in files that do not tell."""
+    if "fit_range" not in dataset:
+        return dict.fromkeys(("fit_range", "fit_residual", "worst_outside", "onset"))
+    outside = np.abs(dataset.residual.where(dataset.fitted == 0))
+    known = bool(np.isfinite(dataset.fit_range).all())
+    bracket = bool(np.isfinite(dataset.onset).all())
+    return {
+        "fit_range": [float(speed) for speed in dataset.fit_range] if known else None,
+        "fit_residual": _finite(dataset.fit_residual),
+        "worst_outside": _finite(outside.max()),
+        "onset": [float(speed) for speed in dataset.onset] if bracket else None,
+        "onset_exceptions": int(dataset.onset_exceptions),
     }
 
 
@@ -70,11 +100,38 @@ def transient(run: Run) -> dict[str, Any]:
         "runs": int(lifetimes.size),
         "ended": int(ended.size),
         "shortest": float(ended.min()) if ended.size else None,
-        "median": float(np.median(ended)) if ended.size else None,
+        # runs cut off at t_end count as longer than all others
+        "median": _finite(np.median(np.where(np.isfinite(lifetimes), lifetimes, np.inf))),
+        **_survival(dataset, unit),
         "longest": float(ended.max()) if ended.size else None,
         "t_end": float(dataset.t_end) / unit,
         "never": [float(speed) for speed in speeds],
-        "speeds": [float(dataset.belt_speed.min()), float(dataset.belt_speed.max())],
+        "speeds": _slowest_and_fastest(dataset),
+    }
+
+
+def _slowest_and_fastest(dataset: Any) -> list[float]:
+    speeds = np.abs(dataset.belt_speed.values)
+    return [float(speeds.min()), float(speeds.max())]
+
+
+def _survival(dataset: Any, unit: float) -> dict[str, Any]:
+    """Interval of the median, and the hazard of the first and of all later spans of age."""
+    if "median_lifetime" not in dataset:
+        return {"median_interval": None, "hazards": None}
+    median, low, high = dataset.median_lifetime.values / unit
+    edges = dataset.hazard_edges.values / unit
+    rates = zip(
+        edges[:-1], edges[1:], dataset.hazard.values * unit, dataset.hazard_low.values * unit,
+        dataset.hazard_high.values * unit, strict=True,
+    )  # fmt: skip
+    names = ("from", "to", "rate", "low", "high")
+    return {
+        "median": _finite(median),
+        "median_interval": [float(low), _finite(high)] if np.isfinite(low) else None,
+        "hazards": [
+            dict(zip(names, map(float, row), strict=True)) for row in rates if np.isfinite(row[2])
+        ],
     }
 
 
@@ -83,10 +140,14 @@ def hammering(run: Run) -> dict[str, Any]:
     dataset = run["hammering_map"]
     meanings = dataset.motion.attrs["flag_meanings"].split()
     values = dataset.motion.attrs["flag_values"]
-    kinds = [
-        {"kind": name.replace("_", " "), "share": float((dataset.motion == value).mean())}
+    kinds: list[dict[str, Any]] = [
+        {"kind": flag_words(name), "share": float((dataset.motion == value).mean())}
         for name, value in zip(meanings, values, strict=True)
     ]
+    counts = {
+        name: int((dataset.motion == value).sum())
+        for name, value in zip(meanings, values, strict=True)
+    }
     unit = run.parameters.time_unit
     limited = dataset.predictability_horizon < dataset.t_end
     horizon = dataset.predictability_horizon.where(limited) / unit
@@ -94,9 +155,26 @@ def hammering(run: Run) -> dict[str, Any]:
         "points": dataset.sizes["alpha1"],
         "t_end": float(dataset.t_end) / unit,
         "kinds": [kind for kind in kinds if kind["share"] > 0],
+        "regular": sum(counts.get(name, 0) for name in REGULAR),
+        "repeating": counts["periodic_hammering"],
+        **_lasting(dataset),
         "peak": float(dataset.peak_contact_force.max()),
         "limited": float(limited.mean()),
         "median_horizon": _finite(horizon.median()),
+    }
+
+
+def _lasting(dataset: Any) -> dict[str, Any]:
+    """How many labels are others at twice the time; nothing where that was not looked at."""
+    if "motion_later" not in dataset:
+        return {"changed": None, "broken": None}
+    regular = dataset.motion.isin([_flag(dataset.motion, name) for name in REGULAR])
+    broken = dataset.motion_later.isin(
+        [_flag(dataset.motion, name) for name in ("irregular_hammering", "whirl")]
+    )
+    return {
+        "changed": int((dataset.motion != dataset.motion_later).sum()),
+        "broken": int((regular & broken).sum()),
     }
 
 
@@ -111,16 +189,19 @@ def refinement(run: Run) -> dict[str, Any]:
         "uniform": int(finest.points),
         "different": int(finest.different_cells),
         "missed": int(finest.missed_regions),
+        **_inherited(run["refined_validity_map"]),
     }
 
 
-def _over_pi(angle: float) -> str:
-    """An angle as people write it: 0, π, 0.83π, 5π/6."""
-    multiple = angle / np.pi
-    if abs(multiple - round(multiple, 2)) < 1e-12:
-        return {0.0: "0", 1.0: "π"}.get(round(multiple, 2), f"{multiple:.4g}π")
-    ratio = Fraction(multiple).limit_denominator(100)
-    return f"{ratio.numerator}π/{ratio.denominator}"
+def _inherited(refined: Any) -> dict[str, Any]:
+    """How often a cell that was not run is wrong, by a sample of them."""
+    if "inherited_error" not in refined or not np.isfinite(refined.inherited_error):
+        return {"checked": None, "wrong": None, "most_wrong": None}
+    return {
+        "checked": int(refined.inherited_checked),
+        "wrong": int(refined.inherited_wrong),
+        "most_wrong": float(refined.inherited_error_interval[1]),
+    }
 
 
 def _flag(variable: Any, name: str) -> int:

@@ -1,0 +1,104 @@
+"""``squealpipe claims``: the paper's statements with their verdicts, in one line each."""
+
+from __future__ import annotations
+
+import csv
+import json
+import shutil
+import sys
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Annotated, Any
+
+from cyclopts import Parameter
+
+from squealpipe.cli.arguments import Switch
+from squealpipe.cli.exit_codes import DONE
+
+MADE = Path("results/data/claims.nc")
+NARROW = 40
+"""Columns below which a terminal is taken to have as many."""
+
+
+def claims(
+    *what: str,
+    only: str | None = None,
+    csv_: Annotated[bool, Parameter(name="--csv", negative="")] = False,
+    json_: Annotated[bool, Parameter(name="--json", negative="")] = False,
+    file: Path | None = None,
+    wide: Switch = False,
+) -> int:
+    """Print the paper's statements with their verdicts; those that are named, in full.
+
+    With the shipped parameters, exit code 1 tells that a verdict differs from the recorded one.
+
+    Example: `squealpipe claims F2d` or `squealpipe claims --only fails`
+
+    Args:
+        what: ids of statements to show in full; a file of verdicts is taken as --file.
+        only: a verdict: holds, fails, depends … or holds only …; its first letters are enough.
+        csv_: print CSV with every column.
+        json_: print a JSON list of objects.
+        file: dataset of verdicts, made by `snakemake`; results/data/claims.nc by default.
+        wide: print whole lines, for a pager, instead of cutting them at the terminal's width.
+    """
+    from squealpipe.claims.table import table
+
+    named = [Path(item) for item in what if item.endswith(".nc") or Path(item).is_file()]
+    if len(named) + (file is not None) > 1:
+        raise ValueError("give one file of verdicts")
+    every, code = table(file or next(iter(named), MADE))
+    rows = _chosen(every, [item for item in what if Path(item) not in named], only)
+    if json_:
+        print(json.dumps(rows, indent=1, allow_nan=False))
+    elif csv_:
+        writer = csv.DictWriter(sys.stdout, rows[0] if rows else ["id"], lineterminator="\n")
+        writer.writeheader()
+        writer.writerows(rows)
+    elif len(named) < len(what):
+        for row in rows:
+            print(*_details(row), "", sep="\n")
+    else:
+        width = None if wide else max(shutil.get_terminal_size().columns, NARROW)
+        print(*(_line(row, width) for row in rows), sep="\n")
+        if rows:
+            print(f"{len(rows)} statements; `squealpipe claims {rows[0]['id']}` shows one in full")
+    return code if rows else DONE
+
+
+def _chosen(
+    rows: Sequence[Mapping[str, Any]], ids: Sequence[str], only: str | None
+) -> list[Mapping[str, Any]]:
+    known = {row["id"].lower(): row for row in rows}
+    for name in ids:
+        if name.lower() not in known:
+            raise ValueError(f"no statement {name!r}; known: {', '.join(r['id'] for r in rows)}")
+    kept = [known[name.lower()] for name in ids] or list(rows)
+    if only is None:
+        return kept
+    verdicts = sorted({row["verdict"] for row in rows})
+    wanted = only.strip().lower()
+    exact = [verdict for verdict in verdicts if verdict == wanted]
+    fitting = exact or [verdict for verdict in verdicts if verdict.startswith(wanted)]
+    if not fitting:
+        raise ValueError(f"--only {only}: no statement has this verdict; {', '.join(verdicts)}")
+    return [row for row in kept if row["verdict"] in fitting]
+
+
+def _line(row: Mapping[str, Any], width: int | None) -> str:
+    value = "" if row["value"] is None else f"{row['value']:.4g}"
+    text = f"{row['id']:<5}{row['verdict']:<26}{value:>10}  {row['statement']}"
+    return text if width is None or len(text) <= width else f"{text[: width - 1]}…"
+
+
+def _details(row: Mapping[str, Any]) -> list[str]:
+    lines = [f"{row['id']}  {row['verdict']}  ({row['section']})", row["statement"]]
+    if row["value"] is not None:
+        lines.append(f"{row['check']}: {row['value']:.6g} {row['relation']} {row['threshold']:.6g}")
+    if row["feasible_share"] is not None:
+        lines.append(f"holds in {row['feasible_share']:.1%} of the feasible parameter sets")
+    lines.append(row["evidence"])
+    lines += [f"{key}: {row[key]}" for key in ("dataset", "figure") if row[key]]
+    if not row["as_recorded"]:
+        lines.append(f"here: {row['verdict_here']}; recorded: {row['recorded']}")
+    return lines

@@ -1,0 +1,96 @@
+"""What a command says, and how much of it: quiet, normal, or with tracebacks."""
+
+from __future__ import annotations
+
+import os
+import sys
+import warnings
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from squealpipe import progress
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+TRACEBACK = "SQUEALPIPE_TRACEBACK"
+"""Environment variable that asks for tracebacks, as -v does."""
+PATIENCE = 1.5
+"""Seconds from Ctrl-C after which a command that has not stopped by itself is ended."""
+SWITCHES = {
+    "-q": "quiet",
+    "--quiet": "quiet",
+    "-v": "verbose",
+    "--verbose": "verbose",
+}
+
+
+def _nothing_kept() -> str:
+    return "nothing was written; run the same command again"
+
+
+@dataclass
+class _Session:
+    """One command's settings.
+
+    Attributes:
+        quiet: print answers and errors alone.
+        verbose: print tracebacks and warnings.
+        typed: physical parameters that stood on the command line.
+        advice: how to go on after an interrupt.
+        interrupted: Ctrl-C was pressed.
+        patience: seconds from Ctrl-C after which the process is ended from outside.
+    """
+
+    quiet: bool = False
+    verbose: bool = False
+    typed: set[str] = field(default_factory=set)
+    advice: Callable[[], str] = _nothing_kept
+    interrupted: bool = False
+    patience: float = PATIENCE
+
+
+SESSION = _Session()
+
+
+@contextmanager
+def session(arguments: Sequence[str]) -> Iterator[list[str]]:
+    """Apply -q and -v, which every command takes, and give the other arguments."""
+    kept: list[str] = []
+    found: set[str] = set()
+    for place, argument in enumerate(arguments):
+        if argument == "--":
+            kept.extend(arguments[place:])
+            break
+        if argument in SWITCHES:
+            found.add(SWITCHES[argument])
+        else:
+            kept.append(argument)
+    SESSION.quiet = "quiet" in found
+    SESSION.verbose = "verbose" in found or os.environ.get(TRACEBACK, "0") not in {"", "0"}
+    SESSION.advice, SESSION.patience = _nothing_kept, PATIENCE
+    SESSION.typed, SESSION.interrupted = set(), False
+    with warnings.catch_warnings(), progress.silenced(SESSION.quiet):
+        if not SESSION.verbose and not sys.warnoptions:
+            warnings.simplefilter("ignore")
+        yield kept
+
+
+def say(*lines: str) -> None:
+    """Print what a user may want to know while a command works; nothing under -q."""
+    if not SESSION.quiet:
+        for line in lines:
+            print(line)
+
+
+def console() -> Console:
+    """A console for tables, which ends as quietly as ``print`` when its reader goes away."""
+    from rich.console import Console as RichConsole
+
+    class _Console(RichConsole):
+        def on_broken_pipe(self) -> None:
+            raise BrokenPipeError
+
+    return _Console()

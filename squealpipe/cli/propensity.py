@@ -1,0 +1,109 @@
+"""``squealpipe propensity``: how often instability occurs over uncertain parameters, and why."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Any
+
+from cyclopts import Parameter
+
+from squealpipe.cli.arguments import BASELINE, Angle, Configs, Output, Physical, Picture, Switch
+from squealpipe.cli.console import say
+from squealpipe.cli.cost import estimate
+from squealpipe.cli.exit_codes import DONE
+from squealpipe.cli.output import check_outputs, write
+from squealpipe.ranges import ANGLES, parse_angle, parse_number
+
+FORM = "write for instance mu=uniform:0.1:0.9, k1=normal:1:0.05 or k3=lognormal:0.75:0.1"
+
+
+def propensity(
+    alpha1: Angle,
+    alpha2: Angle,
+    /,
+    *,
+    spread: Annotated[list[str], Parameter(metavar="NAME=KIND:A:B", negative="")],
+    samples: int = 1024,
+    t_end: float = 200.0,
+    spring_correlation: float = 0.0,
+    seed: int = 1,
+    output: Output = Path("propensity.nc"),
+    picture: Picture = None,
+    force: Switch = False,
+    yes: Switch = False,
+    config: Configs = None,  # noqa: ARG001 (read by `parameters_from_study`)
+    params: Physical = BASELINE,
+) -> int:
+    """Shares of flutter, contact loss, irregular hammering and whirl over uncertain parameters.
+
+    Example: `squealpipe propensity 0.07pi 0.305pi --spread mu=uniform:0.1:0.9
+    --spread k1=normal:1:0.05 -o propensity.nc`
+
+    Args:
+        alpha1: angle of spring 1 where it has no distribution.
+        alpha2: angle of spring 2 where it has none.
+        spread: a parameter or angle with its distribution: uniform:low:high, normal:mean:std or
+            lognormal:median:log_std; repeat for more.
+        samples: size of the sample, a power of 2.
+        t_end: end of each run, s.
+        spring_correlation: of k1 and k2; no Sobol indices are given with it.
+        seed: of the sample.
+        output: dataset to write: NetCDF (.nc) or CSV (.csv).
+        picture: picture to write; by default beside the output.
+        force: overwrite files that exist.
+        yes: go on though it takes long or much memory.
+        config: study whose parameters are used where none are typed; repeatable.
+    """
+    distributions = dict(map(_distribution, spread))
+    if len(distributions) < len(spread):
+        raise ValueError("--spread: a name stands twice; keep one")
+    picture = check_outputs(output, picture, force=force)
+    runs = samples * (len(distributions) + 3)
+    estimate("hammering_map", params, {"t_end": t_end}, runs=runs).check(yes=yes)
+
+    from squealpipe.figures.parts.style import save_figure
+    from squealpipe.figures.spread.propensity import draw
+    from squealpipe.tasks.spread import propensity as task
+
+    options: dict[str, Any] = {
+        "distributions": distributions,
+        "samples": samples,
+        "t_end": t_end,
+        "spring_correlation": spring_correlation,
+        "seed": seed,
+    }
+    dataset = write(
+        lambda: task.propensity(params, alpha1, alpha2, **options),
+        output,
+        config={"parameters": params.as_dict(), "alpha1": alpha1, "alpha2": alpha2, **options},
+    )
+    save_figure(draw(dataset), [picture])
+    say(
+        *(
+            f"{str(name).replace('_', ' '):<20} {100 * share:6.2f} %  "
+            f"(95 %: {100 * low:.2f} to {100 * high:.2f})"
+            for name, share, low, high in zip(
+                dataset.quantity.values, dataset.share.values, dataset.share_low.values,
+                dataset.share_high.values, strict=True,
+            )
+        ),
+        f"wrote {output} and {picture}",
+    )  # fmt: skip
+    return DONE
+
+
+def _distribution(text: str) -> tuple[str, dict[str, str | float]]:
+    """Name and distribution of NAME=KIND:A:B.
+
+    Raises:
+        ValueError: the text is none.
+    """
+    from squealpipe.tasks.spread.distributions import KINDS
+
+    name, _, words = text.partition("=")
+    name, parts = name.strip().replace("-", "_"), words.split(":")
+    if len(parts) != 3 or parts[0] not in KINDS:
+        raise ValueError(f"--spread {text!r} is no distribution; {FORM}")
+    one = parse_angle if name in ANGLES else parse_number
+    numbers = dict(zip(KINDS[parts[0]], map(one, parts[1:]), strict=True))
+    return name, {"distribution": parts[0], **numbers}

@@ -1,0 +1,1 @@
+"""The same task many times: catalogue, sweeps, row blocks."""

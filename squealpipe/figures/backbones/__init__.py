@@ -1,0 +1,1 @@
+"""Periodic motions of A4."""

@@ -1,0 +1,1 @@
+"""Pictures of single results, for the command line."""

@@ -1,0 +1,1 @@
+"""Methods and model levels compared."""

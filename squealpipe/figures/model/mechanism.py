@@ -1,0 +1,157 @@
+"""The mechanism drawn to scale: mass, two inclined springs, contact spring, belt."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from matplotlib.patches import Arc, Circle, FancyArrowPatch, Rectangle
+
+from squealpipe.figures.parts.style import BLUE, GREY, ORANGE, RED
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+SPRING_COLOURS = (BLUE, ORANGE)
+"""Springs 1 and 2, here and in every schematic."""
+
+
+def coil(
+    start: tuple[float, float], end: tuple[float, float], *, turns: int = 7, width: float = 0.1
+) -> np.ndarray:
+    """Points (n, 2) of a zigzag spring between two points, with straight ends."""
+    along = np.subtract(end, start)
+    length = float(np.hypot(*along))
+    unit = along / length if length else np.array([1.0, 0.0])
+    across = np.array([-unit[1], unit[0]])
+    position = np.concatenate([[0.0], np.linspace(0.2, 0.8, 2 * turns + 1), [1.0]])
+    offset = np.zeros(position.size)
+    offset[2:-2] = width * np.where(np.arange(position.size - 4) % 2, -1.0, 1.0)
+    points: np.ndarray = np.asarray(start) + position[:, None] * along + offset[:, None] * across
+    return points
+
+
+def draw_mechanism(
+    axes: Axes,
+    alpha1: float,
+    alpha2: float,
+    *,
+    length: float = 1.0,
+    labels: bool = False,
+    pivots: bool = True,
+) -> None:
+    """Draw an arrangement of the springs around the mass at the origin.
+
+    Args:
+        axes: where to draw; its frame is switched off.
+        alpha1, alpha2: spring angles, rad.
+        length: drawn length of the springs (the mass has radius 0.12).
+        labels: name the parts with the paper's symbols.
+        pivots: draw the fixed ends.
+    """
+    radius = 0.12 * length
+    directions = (
+        np.array([np.cos(alpha1), np.sin(alpha1)]),
+        np.array([-np.cos(alpha2), np.sin(alpha2)]),
+    )
+    belt_top = -0.62 * length
+    line = 1.2 if labels else 0.8
+    aside = apart(*directions, 0.1 * length)
+    for direction, shift, colour in zip(directions, aside, SPRING_COLOURS, strict=True):
+        path = coil(tuple(direction * radius), tuple(direction * length), width=0.07 * length)
+        path[1:-1] += shift
+        axes.plot(*path.T, color=colour, linewidth=line, solid_joinstyle="round", zorder=2)
+        if pivots:
+            axes.add_patch(
+                Circle(tuple(direction * length), 0.04 * length, color="black", zorder=3)
+            )
+    contact = coil((0.0, -radius), (0.0, belt_top), turns=4, width=0.07 * length)
+    axes.plot(*contact.T, color=GREY, linewidth=line, zorder=1)
+    axes.add_patch(Circle((0.0, 0.0), radius, facecolor="white", edgecolor="black", zorder=4))
+    half = (1.25 if labels else 0.8) * length
+    axes.add_patch(
+        Rectangle(
+            (-half, belt_top - 0.12 * length),
+            2 * half,
+            0.12 * length,
+            facecolor="#E8E8E8",
+            edgecolor="black",
+            linewidth=0.6,
+            hatch="////" if labels else None,
+        )
+    )
+    axes.add_patch(
+        FancyArrowPatch(
+            (0.30 * half, belt_top - 0.27 * length),
+            (0.85 * half, belt_top - 0.27 * length),
+            arrowstyle="-|>",
+            mutation_scale=11 if labels else 6,
+            color=RED,
+        )
+    )
+    if labels:
+        _label(axes, directions, (alpha1, alpha2), length, belt_top)
+    axes.set_aspect("equal")
+    axes.set_axis_off()
+    axes.margins(0.04)
+
+
+def _label(
+    axes: Axes,
+    directions: tuple[np.ndarray, np.ndarray],
+    angles: tuple[float, float],
+    length: float,
+    belt_top: float,
+) -> None:
+    text: dict[str, Any] = {"fontsize": 10, "ha": "center", "va": "center"}
+    axes.text(0, 0, "m", zorder=5, **text)
+    for index, direction in enumerate(directions, start=1):
+        side = np.array([-direction[1], direction[0]]) * (1 if index == 1 else -1)
+        place = 0.58 * length * direction + 0.27 * length * side
+        name = f"$k_{index},\\ L_{index}$"
+        axes.text(place[0], place[1], name, color=SPRING_COLOURS[index - 1], **text)
+    span = 0.42 * length
+    axes.plot([-0.62 * length, 0.62 * length], [0, 0], color=GREY, linewidth=0.6, linestyle=":")
+    degrees = np.degrees(angles)
+    axes.add_patch(Arc((0, 0), 2 * span, 2 * span, theta1=0, theta2=degrees[0], linewidth=0.8))
+    axes.add_patch(
+        Arc((0, 0), 2 * span, 2 * span, theta1=180 - degrees[1], theta2=180, linewidth=0.8)
+    )
+    for index, mid in ((1, angles[0] / 2), (2, np.pi - angles[1] / 2)):
+        place = 1.3 * span * np.array([np.cos(mid), np.sin(mid)])
+        axes.text(place[0], place[1], f"$\\alpha_{index}$", **text)
+    axes.text(0.26 * length, 0.5 * belt_top - 0.06 * length, "$k_3$", color=GREY, **text)
+    axes.text(-0.75 * length, belt_top + 0.1 * length, "friction $\\mu$", **text)
+    axes.text(1.14 * length, belt_top - 0.27 * length, "V", color=RED, **text)
+    origin = np.array([-1.2, 0.02]) * length
+    for step, name in (((0.3, 0.0), "x"), ((0.0, 0.3), "y")):
+        tip = origin + np.multiply(step, length)
+        axes.add_patch(
+            FancyArrowPatch(
+                tuple(origin), tuple(tip), arrowstyle="-|>", mutation_scale=8, color="black"
+            )
+        )
+        label = tip + 0.3 * np.subtract(tip, origin)
+        axes.text(label[0], label[1], f"${name}$", **text)
+
+
+def displaced_springs(
+    x: float, y: float, alpha1: float, alpha2: float, lengths: tuple[float, float], width: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """Zigzag points of both springs with the mass displaced to (x, y), in metres."""
+    end1 = (lengths[0] * np.cos(alpha1), lengths[0] * np.sin(alpha1))
+    end2 = (-lengths[1] * np.cos(alpha2), lengths[1] * np.sin(alpha2))
+    first, second = coil((x, y), end1, width=width), coil((x, y), end2, width=width)
+    aside = apart(np.subtract(end1, (x, y)), np.subtract(end2, (x, y)), 1.3 * width)
+    first[1:-1] += aside[0]
+    second[1:-1] += aside[1]
+    return first, second
+
+
+def apart(first: np.ndarray, second: np.ndarray, distance: float) -> np.ndarray:
+    """Sideways shifts of two springs that would hide one another, in rows; else zero."""
+    length = float(np.hypot(*first))
+    if not np.allclose(first, second, atol=1e-6 * length) or length == 0.0:
+        return np.zeros((2, 2))
+    across = np.array([-first[1], first[0]]) / length
+    return np.array([0.5 * distance * across, -0.5 * distance * across])

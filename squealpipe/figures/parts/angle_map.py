@@ -1,0 +1,97 @@
+"""A picture of any dataset over both spring angles, for the command line."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from squealpipe.figures.parts.style import (
+    COLUMN,
+    REGIME_COLOURS,
+    category_colours,
+    draw_map,
+    new_figure,
+)
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from matplotlib.figure import Figure
+
+
+@dataclass(frozen=True)
+class Shown:
+    """The variable of a schema that its picture shows, and the dimensions fixed for it."""
+
+    name: str
+    at: tuple[tuple[str, object], ...] = ()
+
+    def variable(self, dataset: xr.Dataset) -> xr.DataArray:
+        """The variable, over both angles only."""
+        return dataset[self.name].sel(dict(self.at))
+
+    def counts(self, dataset: xr.Dataset) -> list[str]:
+        """What the map holds, in words."""
+        variable = self.variable(dataset)
+        if "flag_meanings" in variable.attrs:
+            meanings = str(variable.attrs["flag_meanings"]).split()
+            table = dict(zip(variable.attrs["flag_values"], meanings, strict=True))
+            codes, numbers = np.unique(variable.values, return_counts=True)
+            return [
+                f"{number} of {variable.size} cells: {table[code].replace('_', ' ')}"
+                for code, number in zip(codes, numbers, strict=True)
+            ]
+        values = variable.values
+        finite = np.isfinite(values)
+        return [
+            f"{np.count_nonzero(finite)} of {values.size} cells have a {variable.long_name}, "
+            f"from {values[finite].min():.6g} to {values[finite].max():.6g} {variable.units}"
+            if finite.any()
+            else f"no cell has a {variable.long_name}"
+        ]
+
+
+SHOWN = {
+    "validity_map": Shown("first_separation_time"),
+    "hammering_map": Shown("motion"),
+    "quasi_static_map": Shown("reaction_force"),
+    "stability_map": Shown("regime_linear"),
+    "critical_friction_map": Shown("critical_mu"),
+    "natural_frequencies": Shown("omega", (("mode", 1), ("contact_state", "contact"))),
+}
+"""Schema → what its picture shows."""
+
+
+def draw(dataset: xr.Dataset) -> Figure:
+    """The map of a dataset's first interest, in the colours of all other figures.
+
+    Args:
+        dataset: a map whose schema is a key of :data:`SHOWN`.
+    """
+    variable = SHOWN[str(dataset.attrs["schema"])].variable(dataset)
+    figure, axes = new_figure(COLUMN, 3.1)
+    axis, values = axes[0, 0], variable.values.astype(float)
+    angles = (dataset.alpha1.values, dataset.alpha2.values)
+    if "flag_meanings" not in variable.attrs:
+        finite = values[np.isfinite(values)]
+        low, high = np.percentile(finite, [1, 99]) if finite.size else (0, 1)
+        mesh = draw_map(axis, *angles, values, cmap="viridis", vmin=low, vmax=high)
+        figure.colorbar(mesh, ax=axis, label=_label(variable), extend="both", shrink=0.85)
+        return figure
+    names = str(variable.attrs["flag_meanings"]).split()
+    codes = variable.attrs["flag_values"]
+    present = [k for k, code in enumerate(codes) if np.any(values == code)]
+    places = np.full(values.shape, -1)
+    for place, k in enumerate(present):
+        places[values == codes[k]] = place
+    colours = [REGIME_COLOURS[names[k]] for k in present]
+    mesh = draw_map(axis, *angles, places, **category_colours(colours))
+    bar = figure.colorbar(mesh, ax=axis, ticks=range(len(present)), shrink=0.85)
+    bar.ax.set_yticklabels([names[k].replace("_", "\n") for k in present])
+    return figure
+
+
+def _label(variable: xr.DataArray) -> str:
+    words = str(variable.long_name).split(" (")[0]
+    return words if variable.units == "1" else f"{words} ({variable.units})"

@@ -1,0 +1,1 @@
+"""Periodic motions of hybrid systems: flow with events, return map, branches."""

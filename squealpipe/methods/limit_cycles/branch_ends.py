@@ -1,0 +1,68 @@
+"""What a branch of cycles consists of, and why it ends."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import IntEnum
+
+from squealpipe.methods.continuation import ContinuationState
+from squealpipe.methods.limit_cycles.cycles import Cycle
+from squealpipe.methods.limit_cycles.special_points import Label
+
+
+class BranchEnd(IntEnum):
+    """Why a branch ended."""
+
+    arrived = 0
+    """at the value that was asked for"""
+    returned = 1
+    """at the value that it started from, on another cycle"""
+    lost = 2
+    """no step is short enough"""
+    point_limit = 3
+    """as many points as were allowed"""
+    at_rest = 4
+    """the cycle has shrunk to a state of rest"""
+    closed = 5
+    """it has come back to its first part, in the same direction"""
+    retraced = 6
+    """it has come back to its first part, in the opposite direction"""
+    shorter = 7
+    """it has met a cycle of half the period or a third of it"""
+    singular = 8
+    """the cycle has come to where the field is not defined"""
+    tangency = 9
+    """a hold of the motion is just touched or ends at a tangent, beyond which the motion jumps"""
+
+
+@dataclass(frozen=True)
+class BranchPoint:
+    """A cycle on a branch.
+
+    Attributes:
+        parameter: its value.
+        cycle: the periodic motion.
+        label: what is special about it.
+        state: of the continuation.
+    """
+
+    parameter: float
+    cycle: Cycle
+    label: Label
+    state: ContinuationState
+
+
+@dataclass(frozen=True, kw_only=True)
+class CycleBranchSettings:
+    """How a branch is followed.
+
+    Attributes:
+        low, high: range of the parameter.
+        max_points: points after which the branch ends.
+        largest_change: of a multiplier between neighbouring points with the same events.
+    """
+
+    low: float
+    high: float
+    max_points: int
+    largest_change: float = 1.0

@@ -1,0 +1,1 @@
+"""Exact periodic orbits of piecewise linear systems, and their branches."""

@@ -1,0 +1,350 @@
+"""Exact symmetric periodic orbits and their branches, from compiled kernels."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from enum import IntEnum
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from squealpipe.methods.orbits import branch_tracing
+from squealpipe.methods.orbits.modal_flow import propagator
+from squealpipe.methods.orbits.orbit_shape import extremes
+from squealpipe.methods.orbits.piecewise_linear import PiecewiseLinearSystem
+from squealpipe.methods.orbits.shooting import (
+    MAX_SEGMENTS,
+    rest_conditions,
+    shoot,
+    solve_constrained,
+    stability_index,
+)
+
+_MOST_HALVINGS = 100
+_ROWS_PER_CALL = 512
+
+
+class TraceEnd(IntEnum):
+    """Why a trace ended (:mod:`squealpipe.methods.orbits.branch_tracing`)."""
+
+    reached = branch_tracing.REACHED
+    returned = branch_tracing.RETURNED
+    tongue_end = branch_tracing.TONGUE_END
+    lost = branch_tracing.BRANCH_LOST
+    step_limit = branch_tracing.STEP_LIMIT
+    diverged = branch_tracing.DIVERGED
+
+
+@dataclass(frozen=True)
+class TraceSettings:
+    """Step control of a trace, in arclength over 1 + |z| of z = (x0, y0, T/2).
+
+    Attributes:
+        first_step, longest_step: steps.
+        least_cosine: of the angle between branch directions before and after a step.
+        strict: whether a step must keep the sense of the branch; without it a trace crosses
+            narrow resonances, so it may leave its branch.
+        max_points: points after which the trace gives up.
+        largest_x: |x0| over y0 and the linear mode's x0 together, beyond which the branch
+            follows an internal resonance to infinity.
+        linear_x, linear_slope: |x0| of the linear mode at the threshold and its growth with y0.
+    """
+
+    first_step: float = 0.01
+    longest_step: float = 0.1
+    least_cosine: float = 0.98
+    strict: bool = True
+    max_points: int = 4000
+    largest_x: float = 50.0
+    linear_x: float = 0.0
+    linear_slope: float = 0.0
+
+    def __post_init__(self) -> None:
+        if not (0.0 < self.first_step <= self.longest_step < 1.0):
+            raise ValueError(
+                f"first_step = {self.first_step!r}, longest_step = {self.longest_step!r}: "
+                "0 < first_step <= longest_step < 1 is needed"
+            )
+        if not (0.0 < self.least_cosine < 1.0 and self.max_points > 0):
+            raise ValueError(
+                f"least_cosine = {self.least_cosine!r}, max_points = {self.max_points!r}: "
+                "a cosine between 0 and 1 and at least one point are needed"
+            )
+
+    def control(self) -> NDArray[np.float64]:
+        """The array that the compiled kernels read."""
+        return np.array(
+            [
+                self.longest_step,
+                self.least_cosine,
+                float(self.strict),
+                float(self.max_points),
+                self.largest_x,
+                self.linear_x,
+                self.linear_slope,
+            ]
+        )
+
+
+@dataclass(frozen=True)
+class Orbit:
+    """A symmetric periodic orbit in the units of its system.
+
+    Attributes:
+        point: (3,) x0, y0, T/2, the orbit's state at rest with the larger y.
+        switches: times of the switches within the half period.
+        stability_index: trace of the monodromy matrix − 2.
+        residual: largest velocity after the half period.
+    """
+
+    point: NDArray[np.float64]
+    switches: NDArray[np.float64]
+    stability_index: float
+    residual: float
+
+    @property
+    def omega(self) -> float:
+        """Angular frequency 2π/T."""
+        return float(math.pi / self.point[2])
+
+    def other_rest(self, system: PiecewiseLinearSystem) -> NDArray[np.float64]:
+        """(2,) x and y after half a period, the other instant of rest."""
+        final = np.empty(4)
+        x0, y0, half_period = self.point
+        work = np.empty((MAX_SEGMENTS, 9)), np.empty(MAX_SEGMENTS)
+        shoot(system.rows, x0, y0, half_period, *work, final)
+        return final[:2]
+
+    def largest_y(self, system: PiecewiseLinearSystem) -> float:
+        """Largest y over the period."""
+        out = np.empty(6)
+        extremes(system.rows, np.ascontiguousarray(self.point, dtype=float), out)
+        return float(out[3])
+
+
+def solve_orbit(system: PiecewiseLinearSystem, guess: NDArray[np.float64]) -> Orbit | None:
+    """The orbit with the y0 of a guess (x0, y0, T/2), or None where Newton's method fails."""
+    row, switches = np.empty(len(branch_tracing.COLUMNS)), np.empty(MAX_SEGMENTS)
+    start = np.array(guess[:3], dtype=float)
+    if not branch_tracing.orbit_at(system.rows, start, row, switches):
+        return None
+    return _orbit(row, switches)
+
+
+def orbit_across(
+    system: PiecewiseLinearSystem, guess: NDArray[np.float64], normal: NDArray[np.float64]
+) -> Orbit | None:
+    """The orbit on the plane through a guess across a normal, or None where Newton fails."""
+    found = _on_chord(system, guess, np.asarray(normal, dtype=float), 0.0)
+    return None if found is None else found[0]
+
+
+def rest_jacobian(system: PiecewiseLinearSystem, point: NDArray[np.float64]) -> NDArray[np.float64]:
+    """(2, 3) derivatives of the velocities after half a period by (x0, y0, T/2)."""
+    jacobian = np.empty((2, 3))
+    rest_conditions(
+        system.rows,
+        point,
+        np.empty((MAX_SEGMENTS, 9)),
+        np.empty(MAX_SEGMENTS),
+        np.empty(2),
+        jacobian,
+        np.empty(4),
+    )
+    return jacobian
+
+
+def is_primitive(system: PiecewiseLinearSystem, orbit: Orbit) -> bool:
+    """Whether an orbit is not a shorter one that is run through several times."""
+    return bool(branch_tracing.times_run_through(system.rows, orbit.point) == 1)
+
+
+def trace_branch(
+    system: PiecewiseLinearSystem,
+    start: NDArray[np.float64],
+    direction: NDArray[np.float64],
+    y_stop: float,
+    settings: TraceSettings,
+    spacing: float,
+) -> tuple[NDArray[np.float64], TraceEnd]:
+    """Points of a branch and why it ended.
+
+    Args:
+        system: the system.
+        start, direction: (3,) a solution and the way to go; neither needs to be regular.
+        y_stop: larger y of the instants of rest at which the trace ends.
+        settings: step control.
+        spacing: largest distance of the points, over 1 + |z|; the steps do not depend on it.
+
+    Returns:
+        (n, 8) points (columns: ``branch_tracing.COLUMNS``) and the end.
+    """
+    table, _, end = _trace(system, start, direction, y_stop, settings, spacing)
+    return table, end
+
+
+def orbit_on_branch(
+    system: PiecewiseLinearSystem,
+    start: NDArray[np.float64],
+    direction: NDArray[np.float64],
+    y_stop: float,
+    settings: TraceSettings,
+) -> tuple[Orbit | None, TraceEnd]:
+    """The branch's orbit at y0 = y_stop, and why the trace ended; None where it is not met."""
+    table, switches, end = _trace(system, start, direction, y_stop, settings, 0.0)
+    return (_orbit(table[-1], switches) if len(table) else None), end
+
+
+def _trace(
+    system: PiecewiseLinearSystem,
+    start: NDArray[np.float64],
+    direction: NDArray[np.float64],
+    y_stop: float,
+    settings: TraceSettings,
+    spacing: float,
+) -> tuple[NDArray[np.float64], NDArray[np.float64], TraceEnd]:
+    """Points, switching times of the last one, and the end; interruptible between calls."""
+    motion = np.array([start, direction / np.linalg.norm(direction)], dtype=float)
+    pace, control = np.array([settings.first_step, *[0.0] * 5]), settings.control()
+    table = np.empty((_ROWS_PER_CALL if spacing else 1, len(branch_tracing.COLUMNS)))
+    switches, parts = np.empty(MAX_SEGMENTS), []
+    end = branch_tracing.GOES_ON
+    while end == branch_tracing.GOES_ON:
+        count, end = branch_tracing.trace(
+            system.rows, motion, pace, control, y_stop, spacing, table, switches
+        )
+        parts.append(table[:count].copy())
+    return np.concatenate(parts), switches, TraceEnd(end)
+
+
+def _orbit(row: NDArray[np.float64], switches: NDArray[np.float64]) -> Orbit:
+    return Orbit(row[:3].copy(), switches[: int(row[7])].copy(), float(row[5]), float(row[6]))
+
+
+class SpecialPoint(IntEnum):
+    """What happens at a special point of a branch."""
+
+    period_doubling = 0
+    index_two = 1
+    fold = 2
+
+
+def special_points(
+    system: PiecewiseLinearSystem, orbits: Sequence[Orbit]
+) -> list[tuple[SpecialPoint, Orbit]]:
+    """Period doublings (index −2), other crossings of index 2, and folds of the peak, located.
+
+    Args:
+        orbits: consecutive orbits of one branch; each change of sign between two is followed
+            down to round-off by solving for orbits on the plane across their chord.
+    """
+    found = []
+    for first, second in pairwise(orbits):
+        chord = second.point - first.point
+        ends = [_on_chord(system, first.point, chord, share) for share in (0.0, 1.0)]
+        if ends[0] is None or ends[1] is None:
+            continue
+        before, after = (_measures(*end) for end in ends if end is not None)
+        for kind in SpecialPoint:
+            if before[kind] * after[kind] < 0.0:
+                located = _locate(system, first.point, chord, kind)
+                if located is not None:
+                    found.append((kind, located))
+    return found
+
+
+def _measures(orbit: Orbit, tangent: NDArray[np.float64]) -> tuple[float, float, float]:
+    """What changes its sign at each kind of special point."""
+    return orbit.stability_index + 2.0, orbit.stability_index - 2.0, float(tangent[1])
+
+
+def _on_chord(
+    system: PiecewiseLinearSystem,
+    start: NDArray[np.float64],
+    chord: NDArray[np.float64],
+    share: float,
+) -> tuple[Orbit, NDArray[np.float64]] | None:
+    """The orbit on the plane across a chord, and the branch's direction along the chord there."""
+    point, segments = start + share * chord, np.empty((MAX_SEGMENTS, 9))
+    switches, final, tangent = np.empty(MAX_SEGMENTS), np.empty(4), np.empty(3)
+    normal = chord / np.linalg.norm(chord)
+    count, _, residual = solve_constrained(
+        system.rows, point, normal, 0.0, segments, switches, final, tangent
+    )
+    if count == 0:
+        return None
+    index = float(stability_index(system.rows, segments, count))
+    sign = 1.0 if float(tangent @ normal) > 0.0 else -1.0
+    return Orbit(point, switches[: count - 1].copy(), index, float(residual)), sign * tangent
+
+
+def _locate(
+    system: PiecewiseLinearSystem,
+    start: NDArray[np.float64],
+    chord: NDArray[np.float64],
+    kind: SpecialPoint,
+) -> Orbit | None:
+    """Regula falsi (Illinois) along the chord; None where an orbit in between is not found."""
+    left, right = 0.0, 1.0
+    ends = [_on_chord(system, start, chord, share) for share in (left, right)]
+    if ends[0] is None or ends[1] is None:
+        return None
+    low, high = (_measures(*end)[kind] for end in ends if end is not None)
+    if not low * high < 0.0:
+        return None
+    kept, orbit = 0, ends[1][0]
+    for _ in range(_MOST_HALVINGS):
+        share = right - high * (right - left) / (high - low)
+        found = _on_chord(system, start, chord, share)
+        if found is None:
+            return None
+        orbit, value = found[0], _measures(*found)[kind]
+        if value == 0.0 or right - left <= 4e-16:
+            break
+        if value * low > 0.0:
+            left, low, high, kept = share, value, high * (0.5 if kept == 1 else 1.0), 1
+        else:
+            right, high, low, kept = share, value, low * (0.5 if kept == 2 else 1.0), 2
+        if abs(value) <= 1e-13:
+            break
+    return orbit
+
+
+def decoupled_half_period(system: PiecewiseLinearSystem, y_peak: float) -> float:
+    """T/2 of a y motion that does not feel x: one spring above the threshold, another below."""
+    above, below = system.above, system.below
+    frequency = math.sqrt(above.matrix[1][1])
+    centre = above.load[1] / above.matrix[1][1]
+    fall = math.acos((system.threshold - centre) / (y_peak - centre))
+    speed = (y_peak - centre) * frequency * math.sin(fall)
+    stiff = math.sqrt(below.matrix[1][1])
+    offset = system.threshold - below.load[1] / below.matrix[1][1]
+    return fall / frequency + (math.pi - math.atan2(speed / stiff, offset)) / stiff
+
+
+def shape(system: PiecewiseLinearSystem, point: NDArray[np.float64]) -> tuple[float, float, float]:
+    """(x amplitude, y amplitude, largest |vx|) over a period; amplitudes are half peak-to-peak."""
+    out = np.empty(6)
+    extremes(system.rows, np.ascontiguousarray(point[:3], dtype=float), out)
+    return 0.5 * (out[1] - out[0]), 0.5 * (out[3] - out[2]), float(np.abs(out[4:]).max())
+
+
+def index_from_switches(
+    system: PiecewiseLinearSystem, switches: NDArray[np.float64], half_period: float, y0: float
+) -> float:
+    """Stability index of a motion that switches at given times of its half period.
+
+    The tangent flow depends on the motion through these times alone, so this serves a series
+    as well as an exact orbit: it is the exact trace − 2 of the approximate orbit.
+    """
+    times = np.concatenate([[0.0], switches, [half_period]])
+    segments = np.empty((len(times) - 1, 9))
+    side = int(y0 > system.threshold)
+    for leg, duration in enumerate(np.diff(times)):
+        propagator(system.rows[side], float(duration), segments[leg])
+        segments[leg, 8] = side
+        side = 1 - side
+    return float(stability_index(system.rows, segments, len(segments)))

@@ -1,0 +1,35 @@
+"""Whether a sequence of events repeats itself."""
+
+from __future__ import annotations
+
+import numpy as np
+
+LEAST_REPEATS = 3
+"""Whole periods that a sequence must show."""
+
+
+def repeats_after(times: np.ndarray, kinds: np.ndarray, tolerance: float) -> int:
+    """The smallest number of events after which kinds and intervals repeat; 0 if none is found.
+
+    Event j + p must be of the kind of event j, and the interval that follows it must equal the
+    one after event j within ``tolerance`` of the period, for all events. The sequence must hold
+    three periods, so a period of more than a third of the events is not seen.
+
+    Args:
+        times: instants of the events, ascending.
+        kinds: their kinds.
+        tolerance: largest difference of intervals, over the period.
+    """
+    intervals, kinds = np.diff(times), kinds[:-1]
+    lags = np.arange(1, intervals.size // LEAST_REPEATS + 1)
+    if not lags.size:
+        return 0
+    allowed = tolerance * (times[lags] - times[0])
+    # the first interval alone leaves few lags to be checked in full
+    likely = (kinds[lags] == kinds[0]) & (np.abs(intervals[lags] - intervals[0]) <= allowed)
+    for lag, most in zip(lags[likely], allowed[likely], strict=True):
+        if (kinds[lag:] == kinds[:-lag]).all() and (
+            np.abs(intervals[lag:] - intervals[:-lag]).max() <= most
+        ):
+            return int(lag)
+    return 0

@@ -1,0 +1,185 @@
+"""The smallest vector for which something happens: random directions, bisection, local search.
+
+Nothing is asked of where it happens but that it can be asked of many vectors at once. Along a ray
+the first of some evenly spaced radii at which it happens is found, and the interval below it is
+bisected; a region that begins and ends between two of them is overlooked, so each result is an
+upper bound. The best directions are then improved by random steps that shrink.
+
+What the directions themselves say of the minimum is order statistics: of n independent ones, with
+probability 1 − p at most a share 1 − p^(1/n) of all directions has a smaller radius.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import expm
+from scipy.optimize import minimize_scalar
+
+Array = NDArray[np.float64]
+Happens = Callable[[Array], NDArray[np.bool_]]
+"""(n, size) vectors → whether it happens for each."""
+
+GAIN = 1e-3
+"""A step counts as better where it still happens at a radius smaller by this share."""
+SHRINK = 0.5
+FIRST_STEP = 0.5
+"""Length of the first random steps on the unit sphere."""
+
+FINE = 2
+"""Times the halvings of a direction that is being improved."""
+PHASE = 0.02
+"""Step of the scan in time of :func:`smallest_linear`, over the shortest time scale."""
+
+
+@dataclass(frozen=True)
+class Settings:
+    """How hard to search.
+
+    Attributes:
+        directions: random directions.
+        radii: evenly spaced radii at which each is tried.
+        halvings: of the interval along a direction; FINE times as many for improved ones.
+        improved: of the best directions, how many are improved.
+        tries: random steps from each of them in a round.
+        followed: how many of those that are better are bisected.
+        rounds: of such steps.
+    """
+
+    directions: int
+    radii: int = 16
+    halvings: int = 8
+    improved: int = 4
+    tries: int = 16
+    followed: int = 3
+    rounds: int = 14
+
+
+class Found(NamedTuple):
+    """Result of a search; ∞ where it does not happen within the bound.
+
+    Attributes:
+        radius: of each random direction, (directions,).
+        improved: radius after the local search, (improved,), in the order of ``radius``.
+        vector: the smallest vector found, NaN without one.
+    """
+
+    radius: Array
+    improved: Array
+    vector: Array
+
+
+def search(
+    happens: Happens, size: int, bound: float, settings: Settings, generator: np.random.Generator
+) -> Found:
+    """The smallest vector of Euclidean norm up to ``bound`` for which something happens.
+
+    Args:
+        happens: asked of vectors of dimension ``size``.
+        size: dimension.
+        bound: largest radius.
+        settings: how hard to search.
+        generator: of the directions, which are uniform on the sphere and independent, and of the
+            steps.
+    """
+    unit = _normalized(generator.standard_normal((settings.directions, size)))
+    radius = _along(happens, unit, bound, settings)
+    best = np.argsort(radius, kind="stable")[: settings.improved]
+    best = best[np.isfinite(radius[best])]
+    improved = np.full(settings.improved, np.inf)
+    if not best.size:
+        return Found(radius, improved, np.full(size, np.nan))
+    directions, radii = _improve(happens, unit[best], radius[best], settings, generator)
+    improved[: best.size] = radii
+    smallest = int(np.argmin(radii))
+    return Found(radius, improved, directions[smallest] * radii[smallest])
+
+
+def _normalized(vectors: Array) -> Array:
+    return np.asarray(vectors / np.linalg.norm(vectors, axis=-1, keepdims=True))
+
+
+def _along(happens: Happens, unit: Array, bound: float, settings: Settings) -> Array:
+    """Radius along each direction at which it first happens, to the last halving, or ∞."""
+    levels = bound * np.arange(1, settings.radii + 1) / settings.radii
+    first = np.full(len(unit), np.inf)
+    for level in levels:
+        left = np.flatnonzero(np.isinf(first))
+        if left.size:
+            first[left[happens(level * unit[left])]] = level
+    rows = np.flatnonzero(np.isfinite(first))
+    first[rows] = _bisect(
+        happens, unit[rows], first[rows] - levels[0], first[rows], settings.halvings
+    )
+    return first
+
+
+def _bisect(happens: Happens, unit: Array, low: Array, high: Array, halvings: int) -> Array:
+    """The upper ends of intervals in which it does not happen below and happens above."""
+    low, high = low.copy(), high.copy()
+    for _ in range(halvings if len(unit) else 0):
+        middle = 0.5 * (low + high)
+        yes = happens(middle[:, None] * unit)
+        low, high = np.where(yes, low, middle), np.where(yes, middle, high)
+    return high
+
+
+def _improve(
+    happens: Happens, unit: Array, radius: Array, settings: Settings, generator: np.random.Generator
+) -> tuple[Array, Array]:
+    """Directions moved by random steps to smaller radii, all of them side by side."""
+    unit, radius = unit.copy(), radius.copy()
+    step = np.full(len(unit), FIRST_STEP)
+    count = settings.tries
+    for _ in range(settings.rounds):
+        moves = generator.standard_normal((len(unit), count, unit.shape[1]))
+        tried = _normalized(unit[:, None] + step[:, None, None] * _normalized(moves))
+        below = (1.0 - GAIN * step / FIRST_STEP) * radius
+        works = happens((below[:, None, None] * tried).reshape(-1, unit.shape[1]))
+        works = works.reshape(len(unit), count)
+        owner, which = np.nonzero(works & (np.cumsum(works, axis=1) <= settings.followed))
+        found = _bisect(
+            happens, tried[owner, which], 0.5 * below[owner], below[owner], FINE * settings.halvings
+        )
+        for row in range(len(unit)):
+            mine = np.flatnonzero(owner == row)
+            if mine.size:
+                best = mine[np.argmin(found[mine])]
+                unit[row], radius[row] = tried[row, which[best]], found[best]
+            else:
+                step[row] *= SHRINK
+    return unit, radius
+
+
+def smallest_linear(matrix: Array, row: Array, level: float, t_end: float) -> float:
+    """The smallest vector z0 with which ż = A z takes c·z to a level in [0, t_end], in closed form.
+
+    At an instant c·z = (c exp(A t))·z0, so the smallest z0 that is at the level then has the length
+    level/|c exp(A t)|, and the largest of these rows decides.
+
+    Args:
+        matrix: A, (n, n).
+        row: c, (n,).
+        level: above 0.
+        t_end: horizon.
+    """
+    rate = max(float(np.abs(np.linalg.eigvals(matrix)).max()), 1.0 / t_end)
+    count = int(np.ceil(rate * t_end / PHASE)) + 1
+    step = t_end / count
+    move, rows = expm(step * matrix), np.empty((count + 1, len(row)))
+    rows[0] = row
+    for index in range(count):
+        rows[index + 1] = rows[index] @ move
+    longest = int(np.argmax(np.linalg.norm(rows, axis=1)))
+    low, high = step * max(longest - 1, 0), step * min(longest + 1, count)
+    best = minimize_scalar(
+        lambda time: -float(np.linalg.norm(row @ expm(time * matrix))),
+        bounds=(low, high),
+        method="bounded",
+        options={"xatol": 1e-9 * step},
+    )
+    return level / max(-float(best.fun), float(np.linalg.norm(rows[longest])))

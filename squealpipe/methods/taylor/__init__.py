@@ -1,0 +1,1 @@
+"""Taylor series of hybrid systems: symbols, recurrences, lanes, roots; heyoka for references."""

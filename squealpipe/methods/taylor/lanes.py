@@ -1,0 +1,165 @@
+"""Batches of event-driven integrations whose lanes are refilled as soon as one finishes.
+
+A :class:`squealpipe.methods.taylor.series.HybridSystem` is a symbolic vector field whose regime
+sits in parameters, with the functions whose roots end a regime. Its Taylor series are compiled
+once; a compiled loop alternates them with what happens after each step: events, observations,
+refilling.
+
+Lanes share nothing and each carries its own time, so a result does not depend on the lane, its
+neighbours, the order of the jobs or the number of processes.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import math
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numba
+import numpy as np
+from llvmlite import ir
+from numba import types
+from numba.core import cgutils
+from numba.extending import intrinsic
+
+from squealpipe.methods.compiled import compiled_entry, part
+from squealpipe.methods.taylor import simd
+from squealpipe.methods.taylor.series import HybridSystem, perturbation_source, series_source
+from squealpipe.progress import observer
+
+_numba: Any = numba
+_cgutils: Any = cgutils
+SIGNATURES = {
+    "series": types.void(types.intp, types.intp, types.intp, types.intp),
+    "perturb": types.void(types.intp, types.intp, types.intp, types.intp, types.intp),
+}
+ROUNDS = 4096
+"""Steps of all lanes between two returns from compiled code: some ten milliseconds."""
+MOST_TERMS = 64
+INVERSES = 1.0 / np.maximum(1.0, np.arange(MOST_TERMS))
+
+
+@dataclass(frozen=True, eq=False)
+class CompiledSystem:
+    """The compiled series of a system.
+
+    Attributes:
+        series: address of :func:`squealpipe.methods.taylor.series.series_source`, compiled.
+        perturb: likewise of ``perturbation_source``, 0 if left out.
+        code: keeps both in memory.
+        n_series: number of series that the former keeps.
+    """
+
+    series: int
+    perturb: int
+    code: tuple[Any, ...]
+    n_series: int
+
+
+def compile_system(system: HybridSystem, *, tangent: bool) -> CompiledSystem:
+    """Write and compile the functions of a system, or take them from the store."""
+    source, n_series = series_source(system)
+    code = [_from_source("series", source)]
+    if tangent:
+        code.append(_from_source("perturb", perturbation_source(system)))
+    perturb = code[1].address if tangent else 0
+    return CompiledSystem(code[0].address, perturb, tuple(code), n_series)
+
+
+def _from_source(name: str, source: str) -> Any:
+    names = ("load", "store", "number", "fma", "splat", "root", "exponential")
+    scope: dict[str, Any] = {each: getattr(simd, each) for each in names}
+    scope["__name__"] = simd.__name__
+    exec(compile(source, simd.__file__, "exec"), scope)  # noqa: S102
+    content = source.encode() + Path(simd.__file__).read_bytes()
+    return compiled_entry(scope[name], SIGNATURES[name], content)
+
+
+def _to_pointer(typing_context: Any, value: Any) -> Any:  # noqa: ARG001
+    """An integer as a pointer."""
+
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:  # noqa: ARG001
+        return builder.inttoptr(arguments[0], cgutils.voidptr_t)
+
+    return types.voidptr(types.intp), generate
+
+
+_address: Any = intrinsic(_to_pointer)
+
+
+def _call(typing_context: Any, function: Any, arguments: Any) -> Any:  # noqa: ARG001
+    """Call the C function at an address with addresses and sizes."""
+
+    def generate(context: Any, builder: Any, signature: Any, values: Any) -> Any:
+        word = context.get_value_type(types.intp)
+        given = _cgutils.unpack_tuple(builder, values[1], len(signature.args[1]))
+        kind = ir.FunctionType(ir.VoidType(), [word] * len(given))
+        builder.call(builder.inttoptr(values[0], kind.as_pointer()), given)
+        return context.get_dummy_value()
+
+    return types.void(types.intp, arguments), generate
+
+
+call: Any = intrinsic(_call)
+
+
+@part
+def view(address: int, shape: Any, dtype: Any) -> Any:
+    """The array at an address."""
+    return _numba.carray(_address(address), shape, dtype)
+
+
+class Workspace:
+    """Addresses of arrays and sizes for a compiled function, as one record; keeps the arrays."""
+
+    def __init__(
+        self, record: np.dtype, arrays: Mapping[str, np.ndarray], sizes: dict[str, int]
+    ) -> None:
+        for name, array in arrays.items():
+            if not array.flags.c_contiguous or array.dtype.itemsize % 8:
+                raise ValueError(f"{name}: the workspace holds contiguous 8-byte fields only")
+        self.arrays = dict(arrays)
+        at = {name: array.ctypes.data for name, array in arrays.items()} | sizes
+        self.table = np.array([tuple(at[name] for name in record.names or ())], record)
+
+    @property
+    def pointer(self) -> ctypes.c_void_p:
+        """Address of the table."""
+        return ctypes.c_void_p(self.table.ctypes.data)
+
+
+def compile_advance(advance: Callable[..., Any], sources: Iterable[Path]) -> Any:
+    """A C function from ``advance(table) -> busy lanes``, stored under a digest of ``sources``."""
+    content = b"".join(source.read_bytes() for source in sorted(sources))
+    compiled = compiled_entry(advance, types.intp(types.voidptr), content)
+    function: Any = ctypes.CFUNCTYPE(ctypes.c_ssize_t, ctypes.c_void_p)(compiled.address)
+    # The wrapper does not own the machine code.
+    function.code = compiled
+    return function
+
+
+def drive(advance: Any, workspace: Workspace, clock: np.ndarray) -> None:
+    """Call ``advance``, which returns every ``ROUNDS`` steps, until it reports no lane busy.
+
+    An observer (:func:`squealpipe.progress.observed`) hears each time the time of lane 0.
+    """
+    tell = observer()
+    while advance(workspace.pointer):
+        if tell is not None:
+            tell(float(clock[0]))
+
+
+def taylor_terms(tol: float) -> int:
+    """Number of Taylor coefficients for a tolerance (Jorba and Zou 2005)."""
+    return max(2, math.ceil(1.0 - 0.5 * math.log(tol))) + 1
+
+
+def aligned(*shape: int) -> np.ndarray:
+    """Zeros whose rows of ``LANES`` start where ``simd`` wants them."""
+    size = math.prod(shape)
+    store = np.zeros(size + simd.ALIGNMENT // 8)
+    first = -store.ctypes.data // 8 % (simd.ALIGNMENT // 8)
+    return store[first : first + size].reshape(shape)

@@ -1,0 +1,145 @@
+"""The first root of a Taylor polynomial in its step, with a proof where there is none; compiled.
+
+On an interval of width w a function with |p''| ≤ M lies within w² M/8 of the chord of its ends,
+a monotone one has a root where its ends differ in sign, and one that is convex or concave has at
+most one extremum. An interval where none of this decides is halved.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from squealpipe.methods.compiled import part, polynomial
+
+NO_ROOT = -1.0
+FINEST = 2.0**-48
+"""Share of a step below which an undecided interval (two roots that are one to round-off) goes."""
+
+
+@polynomial
+def evaluate_twice(coefficients: Any, variable: int, lane: int, step: float) -> Any:
+    """A polynomial and its first and second derivatives."""
+    order = coefficients.shape[1] - 1
+    value, slope, bend = coefficients[variable, order, lane], 0.0, 0.0
+    for k in range(order - 1, -1, -1):
+        bend = bend * step + slope
+        slope = slope * step + value
+        value = value * step + coefficients[variable, k, lane]
+    return value, slope, 2.0 * bend
+
+
+@part
+def _largest_third(coefficients: Any, variable: int, lane: int, step: float) -> Any:
+    """A bound of the third derivative over the step."""
+    bound = 0.0
+    for k in range(coefficients.shape[1] - 1, 2, -1):
+        bound = bound * step + k * (k - 1.0) * (k - 2.0) * abs(coefficients[variable, k, lane])
+    return bound
+
+
+@part
+def first_root(coefficients: Any, variable: int, lane: int, step: float) -> Any:
+    """The first t in (0, step] where the polynomial changes its sign or touches zero.
+
+    A root at 0 itself is where the state starts from; it does not count. Returns ``NO_ROOT`` where
+    there is none.
+    """
+    third = _largest_third(coefficients, variable, lane, step)
+    left, right = 0.0, step
+    p0, s0, b0 = evaluate_twice(coefficients, variable, lane, left)
+    while True:
+        p1, s1, b1 = evaluate_twice(coefficients, variable, lane, right)
+        width = right - left
+        side = p0 if p0 != 0.0 else (s0 if s0 != 0.0 else b0)
+        decided, root = _look(coefficients, variable, lane, left, right, side, third,
+                              (p0, s0, b0), (p1, s1, b1))  # fmt: skip
+        if decided or width < FINEST * step:
+            if decided and root >= 0.0:
+                return root
+            if right >= step:
+                return NO_ROOT
+            left, right = right, step
+            p0, s0, b0 = p1, s1, b1
+        else:
+            right = left + 0.5 * width
+
+
+@part
+def _look(
+    coefficients: Any, variable: int, lane: int, left: float, right: float, side: float,
+    third: float, start: Any, end: Any,
+) -> Any:  # fmt: skip
+    """Whether an interval is decided, and its first root or ``NO_ROOT``."""
+    p0, s0, b0 = start
+    p1, s1, b1 = end
+    width = right - left
+    bend = max(abs(b0), abs(b1)) + 0.5 * third * width
+    monotone = s0 * s1 > 0.0 and min(abs(s0), abs(s1)) > 0.5 * bend * width
+    curved = b0 * b1 > 0.0 and min(abs(b0), abs(b1)) > 0.5 * third * width
+    if side * p1 <= 0.0:
+        if monotone or curved:
+            return True, _bracketed(coefficients, variable, lane, left, right, side)
+        return False, NO_ROOT
+    if monotone or min(abs(p0), abs(p1)) > 0.125 * bend * width * width:
+        return True, NO_ROOT
+    if not curved:
+        return False, NO_ROOT
+    if side * b0 < 0.0 or s0 * s1 >= 0.0:
+        # An arch is lowest at its ends; a bow without a turning point likewise.
+        return True, NO_ROOT
+    lowest = _turning_point(coefficients, variable, lane, left, right, s0)
+    value, _, _ = evaluate_twice(coefficients, variable, lane, lowest)
+    if side * value > 0.0:
+        return True, NO_ROOT
+    return True, _bracketed(coefficients, variable, lane, left, lowest, side)
+
+
+@part
+def _bracketed(
+    coefficients: Any, variable: int, lane: int, left: float, right: float, side: float
+) -> Any:
+    """The only root between a point on ``side`` of zero and one that is not, by Newton's method.
+
+    A step out of the bracket, which shrinks each time, is replaced by its middle.
+    """
+    low, high = left, right
+    time = 0.5 * (low + high)
+    for _ in range(100):
+        value, slope, _ = evaluate_twice(coefficients, variable, lane, time)
+        if value == 0.0:
+            return time
+        if value * side > 0.0:
+            low = time
+        else:
+            high = time
+        following = time - value / slope
+        if not low < following < high:
+            following = 0.5 * (low + high)
+        if abs(following - time) <= 2.0**-53 * abs(time) or following in (low, high):
+            return following
+        time = following
+    return time
+
+
+@part
+def _turning_point(
+    coefficients: Any, variable: int, lane: int, left: float, right: float, slope0: float
+) -> Any:
+    """Where the slope changes its sign between two points."""
+    low, high = left, right
+    time = 0.5 * (low + high)
+    for _ in range(100):
+        _, slope, bend = evaluate_twice(coefficients, variable, lane, time)
+        if slope == 0.0:
+            return time
+        if slope * slope0 > 0.0:
+            low = time
+        else:
+            high = time
+        following = time - slope / bend
+        if not low < following < high:
+            following = 0.5 * (low + high)
+        if abs(following - time) <= 2.0**-53 * abs(time) or following in (low, high):
+            return following
+        time = following
+    return time

@@ -1,0 +1,398 @@
+"""Taylor series of a vector field and of its event functions, for ``LANES`` runs at once.
+
+From the symbols of a :class:`HybridSystem` two functions are written and compiled. One computes
+the Taylor coefficients of the state and of the event functions, order after order: a product is a
+convolution, a power or an exponential a recurrence (Jorba and Zou 2005), everything linear costs
+next to nothing. The other carries a perturbation along these polynomials.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import Any
+
+from squealpipe.methods.taylor import simd
+from squealpipe.methods.taylor.symbols import Symbol, derivative, in_order, moving_part
+
+Name = Callable[[Symbol], str]
+SWEEPS = 5
+"""Gauss–Seidel sweeps over the stages of the perturbation; each gains a digit or two."""
+_ROOT = 30.0**0.5
+_INNER, _OUTER = (((525.0 + side * 70.0 * _ROOT) ** 0.5) / 70.0 for side in (-1.0, 1.0))
+GAUSS = (0.5 - _OUTER, 0.5 - _INNER, 0.5 + _INNER, 0.5 + _OUTER)
+"""Four-point Gauss collocation: order 8, and neither damps nor excites an oscillation."""
+
+
+def collocation_weights(nodes: tuple[float, ...], end: float) -> tuple[float, ...]:
+    """Weights of the integral from 0 to ``end`` of the polynomial through values at the nodes."""
+    weights = []
+    for node in nodes:
+        powers = [1.0]  # of the Lagrange polynomial that is 1 there
+        for other in nodes:
+            if other != node:
+                above, below = [0.0, *powers], [*powers, 0.0]
+                powers = [
+                    (a - other * b) / (node - other) for a, b in zip(above, below, strict=True)
+                ]
+        weights.append(sum(p * end ** (k + 1) / (k + 1) for k, p in enumerate(powers)))
+    return tuple(weights)
+
+
+GAUSS_WEIGHTS = collocation_weights(GAUSS, 1.0)
+GAUSS_MATRIX = tuple(collocation_weights(GAUSS, node) for node in GAUSS)
+TOGETHER = 2
+"""Convolutions in one loop: their sums fill the registers of AVX2."""
+
+
+@dataclass(frozen=True, eq=False)
+class HybridSystem:
+    """A vector field with switched parameters and the functions whose roots switch them.
+
+    Attributes:
+        variables: the state.
+        rates: its time derivatives.
+        events: a root of one of these may end a step.
+        parameters: names of the parameters, in the order of their rows.
+    """
+
+    variables: tuple[Symbol, ...]
+    rates: tuple[Symbol, ...]
+    events: tuple[Symbol, ...]
+    parameters: tuple[str, ...]
+
+
+def series_source(system: HybridSystem) -> tuple[str, int]:
+    """Source of ``series(base, parameters, inverses, terms)`` and the number of its series.
+
+    Row k of series i is at ``base + (i terms + k) ROW``: the state's series first, whose order 0
+    is given, then those of the events (one order short if not linear), then inner ones.
+    ``inverses`` is the address of 1/k.
+    """
+    return _SeriesWriter(system).source()
+
+
+class _SeriesWriter:
+    """Writes the series of a system.
+
+    Constants enter order 0 alone: (a + c)(b + d) has the coefficients of a b plus
+    (c b + d a), so series are kept without the constants added to them, and what is a difference
+    of nearly equal numbers (the distance from a fixed end) is formed once, at order 0.
+    """
+
+    def __init__(self, system: HybridSystem) -> None:
+        self.system = system
+        self.nodes = in_order([*system.rates, *system.events])
+        self.number = {id(node): index for index, node in enumerate(self.nodes)}
+        self.moving = [node for node in self.nodes if node.varies]
+        self.place = {id(node): index for index, node in enumerate(system.variables)}
+        self.events = len(self.place)
+        self.count = self.events + len(system.events)
+        self.joined: dict[int, int] = {}
+        for node in self.moving:
+            self._prepare(node)
+        self.level = self._levels()
+
+    def _prepare(self, node: Symbol) -> None:
+        """Places of the series that a node's sums read."""
+        if node.kind == "*" and _is_sum(node):
+            for each in node.arguments:
+                self._keep(moving_part(each))
+        elif node.kind in {"**", "exp"}:
+            self._keep(moving_part(node.arguments[0]))
+            self._keep(node)
+        elif node.kind == "joined":
+            self._keep(moving_part(node.arguments[2]))
+            key = tuple(id(node.arguments[i]) for i in (0, 1, 3, 4))
+            self.joined[id(node)] = self.joined.get(hash(key), self.count)
+            if self.joined[id(node)] == self.count:
+                self.joined[hash(key)] = self.count
+                self.count += 1
+
+    def _keep(self, node: Symbol) -> None:
+        if id(node) not in self.place:
+            self.place[id(node)] = self.count
+            self.count += 1
+
+    def _levels(self) -> dict[int, int]:
+        level: dict[int, int] = {}
+        for node in self.moving:
+            below = [level[id(a)] for a in node.arguments if isinstance(a, Symbol) and a.varies]
+            level[id(node)] = max(below, default=0) + _is_sum(node)
+        return level
+
+    def source(self) -> tuple[str, int]:
+        """The function and the number of its series."""
+        body = [f"s{i} = base + {i} * stride" for i in range(self.count)]
+        body += [f"{self._v(n)} = {constant(self.system, n, self._v)}" for n in self._fixed()]
+        for node in self.moving:
+            body += self._first(node)
+        body += self._outputs("0")
+        body += ["for k in range(1, terms - 1):"]
+        inner = [f"r = k * {simd.ROW}", "inverse = number(inverses + 8 * k)"]
+        for level in range(max(self.level.values()) + 1):
+            here = [node for node in self.moving if self.level[id(node)] == level]
+            inner += self._sums([node for node in here if _is_sum(node)])
+            for node in here:
+                inner += self._later(node)
+        inner += self._outputs("r")
+        body += [f" {line}" for line in inner]
+        body += [f"r = (terms - 1) * {simd.ROW}", *self._last_events()]
+        head = ["def series(base, parameters, inverses, terms):", f" stride = terms * {simd.ROW}"]
+        return "\n".join(head + [f" {line}" for line in body]) + "\n", self.count
+
+    def _fixed(self) -> list[Symbol]:
+        return [node for node in self.nodes if not node.varies]
+
+    def _v(self, node: Symbol) -> str:
+        return f"{'v' if node.varies else 'c'}{self.number[id(node)]}"
+
+    def _o(self, node: Symbol) -> str:
+        return f"o{self.number[id(node)]}"
+
+    def _s(self, node: Symbol) -> str:
+        return f"s{self.place[id(moving_part(node))]}"
+
+    def _stored(self, node: Symbol, row: str) -> Iterator[str]:
+        if id(node) in self.place and node.kind != "variable":
+            yield f"store(s{self.place[id(node)]} + {row}, {self._v(node)})"
+        if node.kind == "joined":
+            c1, a1, _, c2, a2, _ = (self._v(each) for each in node.arguments)
+            total = f"fma({c1}, {a1}, {c2} * {a2})"
+            yield f"store(s{self.joined[id(node)]} + {row}, {total})"
+
+    def _first(self, node: Symbol) -> Iterator[str]:
+        """Order 0."""
+        name = self._v(node)
+        if node.kind == "variable":
+            yield f"{name} = load({self._s(node)})"
+        else:
+            yield f"{name} = {pointwise(node, self._v)}"
+        yield f"{self._o(node)} = {name}"
+        if node.kind == "**":
+            yield f"i{self.number[id(node)]} = splat(1.0) / {self._v(node.arguments[0])}"
+        yield from self._stored(node, "0")
+
+    def _later(self, node: Symbol) -> Iterator[str]:
+        """Order k from the sums over lower orders."""
+        name = self._v(node)
+        if node.kind == "variable":
+            yield f"{name} = load({self._s(node)} + r)"
+            return
+        if not _is_sum(node):
+            yield f"{name} = {_linear(node, self._v)}"
+        elif node.kind == "*":
+            a, b = node.arguments
+            total = f"q{self.number[id(node)]}"
+            if a is b:
+                yield f"{name} = fma({self._o(a)} + {self._o(a)}, {self._v(a)}, {total})"
+            else:
+                crossed = f"fma({self._v(a)}, {self._o(b)}, {total})"
+                yield f"{name} = fma({self._o(a)}, {self._v(b)}, {crossed})"
+        elif node.kind == "joined":
+            c1, a1, b1, c2, a2, b2 = node.arguments
+            yield f"{name} = q{self.number[id(node)]}"
+            for c, a, b in ((c1, a1, b1), (c2, a2, b2)):
+                yield f"{name} = fma({self._v(c)} * {self._v(a)}, {self._o(b)}, {name})"
+        yield from self._stored(node, "r")
+
+    def _sums(self, nodes: list[Symbol]) -> Iterator[str]:
+        """The sums over lower orders that nodes of one level need, a few in each loop."""
+        squares = [n for n in nodes if n.kind == "*" and n.arguments[0] is n.arguments[1]]
+        same: dict[str, list[Symbol]] = {}
+        for node in squares:
+            same.setdefault(self._s(node.arguments[0]), []).append(node)
+        for group in _groups(list(same)):
+            names = [f"q{self.number[id(same[s][0])]}" for s in group]
+            yield from self._half(group, names)
+            for s, name in zip(group, names, strict=True):
+                yield from (f"q{self.number[id(n)]} = {name}" for n in same[s][1:])
+        for group in _groups([n for n in nodes if n.kind == "*" and n not in squares]):
+            pairs = [tuple(self._s(each) for each in node.arguments) for node in group]
+            yield from self._full(group, pairs, "range(1, k)", "")
+        for group in _groups([n for n in nodes if n.kind == "joined"]):
+            pairs = [(f"s{self.joined[id(n)]}", self._s(n.arguments[2])) for n in group]
+            yield from self._full(group, pairs, "range(k)", "")
+        for kind in ("**", "exp"):
+            for group in _groups([n for n in nodes if n.kind == kind]):
+                pairs = [(self._s(n.arguments[0]), self._s(n)) for n in group]
+                weights = [
+                    "1.0 * j" if kind == "exp" else f"{n.arguments[1] + 1.0!r} * j - k"
+                    for n in group
+                ]
+                yield from self._full(group, pairs, "range(1, k + 1)", weights)
+                for node in group:
+                    number = self.number[id(node)]
+                    divisor = "" if kind == "exp" else f" * i{number}"
+                    yield f"{self._v(node)} = q{number} * splat(inverse){divisor}"
+
+    def _half(self, series: list[str], names: list[str]) -> Iterator[str]:
+        """Σ a_j a_{k−j} for 0 < j < k, each pair once."""
+        yield from (f"{name} = splat(0.0)" for name in names)
+        yield "for j in range(1, (k + 1) // 2):"
+        yield f" a = j * {simd.ROW}; b = r - a"
+        for s, name in zip(series, names, strict=True):
+            yield f" {name} = fma(load({s} + a), load({s} + b), {name})"
+        yield from (f"{name} = {name} + {name}" for name in names)
+        yield "if k % 2 == 0:"
+        yield f" a = (k // 2) * {simd.ROW}"
+        for s, name in zip(series, names, strict=True):
+            yield f" w = load({s} + a)"
+            yield f" {name} = fma(w, w, {name})"
+
+    def _full(
+        self, nodes: list[Symbol], pairs: list[Any], orders: str, weights: Any
+    ) -> Iterator[str]:
+        names = [f"q{self.number[id(node)]}" for node in nodes]
+        yield from (f"{name} = splat(0.0)" for name in names)
+        yield f"for j in {orders}:"
+        yield f" a = j * {simd.ROW}; b = r - a"
+        for index, (name, (s, t)) in enumerate(zip(names, pairs, strict=True)):
+            weight = f" * splat({weights[index]})" if weights else ""
+            yield f" {name} = fma(load({s} + a){weight}, load({t} + b), {name})"
+
+    def _outputs(self, row: str) -> Iterator[str]:
+        order = "1" if row == "0" else "k + 1"
+        for index, rate in enumerate(self.system.rates):
+            value = f"{self._part(rate, row)} * splat(number(inverses + 8 * ({order})))"
+            yield f"store(s{index} + {row} + {simd.ROW}, {value})"
+        for index, event in enumerate(self.system.events):
+            yield f"store(s{self.events + index} + {row}, {self._part(event, row)})"
+
+    def _part(self, node: Symbol, row: str) -> str:
+        return self._v(node) if node.varies or row == "0" else "splat(0.0)"
+
+    def _last_events(self) -> Iterator[str]:
+        """The highest order of the events that are linear in the state."""
+        for index, event in enumerate(self.system.events):
+            nodes = [node for node in in_order([event]) if node.varies]
+            place = f"s{self.events + index} + r"
+            if not nodes or any(_is_sum(node) for node in nodes):
+                yield f"store({place}, splat(0.0))"
+                continue
+            for node in nodes:
+                yield from (line for line in self._later(node) if not line.startswith("store"))
+            yield f"store({place}, {self._v(event)})"
+
+
+def constant(system: HybridSystem, node: Symbol, name: Name) -> str:
+    """Code of a node that is constant in time."""
+    if node.kind == "number":
+        return f"splat({node.arguments[0]!r})"
+    if node.kind == "parameter":
+        return f"load(parameters + {system.parameters.index(node.arguments[0]) * simd.ROW})"
+    return pointwise(node, name)
+
+
+def perturbation_source(system: HybridSystem) -> str:
+    """Source of ``perturb(base, parameters, step, tangent, terms)``: one step of a perturbation.
+
+    ``step`` and ``tangent`` are addresses: a row of step lengths, and a row per state variable.
+    """
+    size = len(system.variables)
+    slopes = {
+        (i, j): entry
+        for i, rate in enumerate(system.rates)
+        for j, variable in enumerate(system.variables)
+        if (entry := derivative(rate, variable)).kind != "number" or entry.arguments[0]
+    }
+    nodes = in_order(list(slopes.values()))
+    number = {id(node): index for index, node in enumerate(nodes)}
+
+    def at(stage: int) -> Name:
+        return lambda n: f"v{number[id(n)]}_{stage}" if n.varies else f"c{number[id(n)]}"
+
+    lines = [f"stride = terms * {simd.ROW}", "h = load(step)"]
+    lines += [f"z{i} = load(tangent + {i * simd.ROW})" for i in range(size)]
+    lines += [f"{at(0)(n)} = {constant(system, n, at(0))}" for n in nodes if not n.varies]
+    used = [(n, system.variables.index(n)) for n in nodes if n.kind == "variable"]
+    for stage, position in enumerate(GAUSS):
+        lines.append(f"t = h * splat({position!r})")
+        last = f"stride + (terms - 1) * {simd.ROW}"
+        lines += [f"{at(stage)(n)} = load(base + {i} * {last})" for n, i in used]
+        if used:
+            lines.append("for k in range(terms - 2, -1, -1):")
+            for node, i in used:
+                name, place = at(stage)(node), f"base + {i} * stride + k * {simd.ROW}"
+                lines.append(f" {name} = fma({name}, t, load({place}))")
+        inner = [n for n in nodes if n.varies and n.kind != "variable"]
+        lines += [f"{at(stage)(n)} = {pointwise(n, at(stage))}" for n in inner]
+    lines += _collocation(slopes, size, at)
+    head = "def perturb(base, parameters, step, tangent, terms):"
+    return "\n".join([head, *(f" {line}" for line in lines)]) + "\n"
+
+
+def _collocation(
+    slopes: dict[tuple[int, int], Symbol], size: int, at: Callable[[int], Name]
+) -> Iterator[str]:
+    """Stage rates k = A (z + h Σ a k) by Gauss–Seidel sweeps, then the step."""
+    stages = range(len(GAUSS))
+
+    def rate(i: int, stage: int) -> str:
+        terms = [
+            f"w{j}_{stage}" if _is_one(entry) else f"{at(stage)(entry)} * w{j}_{stage}"
+            for (row, j), entry in slopes.items()
+            if row == i
+        ]
+        return " + ".join(terms) or "splat(0.0)"
+
+    yield from (f"w{i}_{stage} = z{i}" for i in range(size) for stage in stages)
+    for sweep in range(SWEEPS + 1):
+        for i in range(size):
+            yield from (f"k{i}_{stage} = {rate(i, stage)}" for stage in stages)
+            if sweep < SWEEPS:
+                for stage in stages:
+                    row = zip(stages, GAUSS_MATRIX[stage], strict=True)
+                    total = " + ".join(f"k{i}_{s} * splat({weight!r})" for s, weight in row)
+                    yield f"w{i}_{stage} = fma(h, {total}, z{i})"
+    for i in range(size):
+        row = zip(stages, GAUSS_WEIGHTS, strict=True)
+        total = " + ".join(f"k{i}_{s} * splat({weight!r})" for s, weight in row)
+        yield f"store(tangent + {i * simd.ROW}, fma(h, {total}, z{i}))"
+
+
+def _is_one(entry: Symbol) -> bool:
+    return entry.kind == "number" and entry.arguments[0] == 1.0
+
+
+def pointwise(node: Symbol, name: Name) -> str:
+    """Code of a node's value from those of its arguments."""
+    if node.kind in {"+", "*"}:
+        a, b = node.arguments
+        return f"{name(a)} {node.kind} {name(b)}"
+    if node.kind == "joined":
+        c1, a1, b1, c2, a2, b2 = (name(each) for each in node.arguments)
+        return f"{c1} * ({a1} * {b1}) + {c2} * ({a2} * {b2})"
+    if node.kind == "exp":
+        return f"exponential({name(node.arguments[0])})"
+    base, exponent = node.arguments
+    value = name(base) if exponent > 0.0 else f"(splat(1.0) / {name(base)})"
+    whole, half = divmod(abs(exponent), 1.0)
+    return " * ".join([value] * int(whole) + [f"root({value})"] * bool(half))
+
+
+def _linear(node: Symbol, name: Name) -> str:
+    """Code of an order above 0 of what is linear in series."""
+    a, b = node.arguments
+    if node.kind == "*":
+        return f"{name(a)} * {name(b)}"
+    if not a.varies:
+        return name(b)
+    if not b.varies:
+        return name(a)
+    for first, second in ((a, b), (b, a)):
+        if first.kind == "*" and not first.arguments[0].varies:
+            factor, series = first.arguments
+            return f"fma({name(factor)}, {name(series)}, {name(second)})"
+    return f"{name(a)} + {name(b)}"
+
+
+def _is_sum(node: Symbol) -> bool:
+    """Whether each order of a node is a sum over all lower ones."""
+    if node.kind in {"**", "exp", "joined"}:
+        return node.varies
+    return node.kind == "*" and all(each.varies for each in node.arguments)
+
+
+def _groups(values: list[Any]) -> Iterator[list[Any]]:
+    return (values[first : first + TOGETHER] for first in range(0, len(values), TOGETHER))

@@ -1,0 +1,194 @@
+"""Expressions of a vector field, recorded from the laws as they are computed.
+
+A law written with +, −, × and ``**`` runs on these symbols as on floats and leaves its operations
+behind. Equal operations are one node, numbers are folded, and an operation on parameters alone
+stays apart from one on the state, because the former is constant in time.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, ClassVar, Self
+
+
+class Symbol:
+    """One operation: ``kind`` applied to ``arguments``.
+
+    Attributes:
+        kind: "variable", "parameter", "number", "+", "*", "**", "exp", or "joined": Σ c A B over
+            triples whose B differ by constants.
+        arguments: symbols; of a variable or parameter its name, of a number its value, of "**"
+            the base and a float.
+        varies: whether it depends on a variable.
+    """
+
+    _all: ClassVar[dict[tuple[Any, ...], Any]] = {}
+    kind: str
+    arguments: tuple[Any, ...]
+    varies: bool
+
+    def __new__(cls, kind: str, *arguments: Any) -> Self:
+        """The one node of this operation."""
+        key = (kind, *(id(a) if isinstance(a, Symbol) else a for a in arguments))
+        if key not in cls._all:
+            node = super().__new__(cls)
+            node.kind, node.arguments = kind, arguments
+            inner = (a.varies for a in arguments if isinstance(a, Symbol))
+            node.varies = kind == "variable" or any(inner)
+            cls._all[key] = node
+        found: Self = cls._all[key]
+        return found
+
+    def __add__(self, other: Any) -> Symbol:
+        """Sum."""
+        return _add(self, symbol(other))
+
+    __radd__ = __add__
+
+    def __neg__(self) -> Symbol:
+        """Negative."""
+        return _multiply(symbol(-1.0), self)
+
+    def __sub__(self, other: Any) -> Symbol:
+        """Difference."""
+        return _add(self, -symbol(other))
+
+    def __rsub__(self, other: Any) -> Symbol:
+        """Difference."""
+        return _add(symbol(other), -self)
+
+    def __mul__(self, other: Any) -> Symbol:
+        """Product."""
+        return _multiply(self, symbol(other))
+
+    __rmul__ = __mul__
+
+    def __pow__(self, exponent: float) -> Symbol:
+        """Power with a multiple of ½ as exponent."""
+        if exponent == 1.0:
+            return self
+        if exponent == 2.0:
+            return self * self
+        if 2.0 * exponent != int(2.0 * exponent):
+            raise ValueError(f"exponent {exponent!r}: a multiple of 1/2 is needed")
+        if self.kind == "number":
+            return symbol(self.arguments[0] ** float(exponent))
+        return Symbol("**", self, float(exponent))
+
+
+def symbol(value: Any) -> Symbol:
+    """A number as a symbol."""
+    return value if isinstance(value, Symbol) else Symbol("number", float(value))
+
+
+def variables(*names: str) -> tuple[Symbol, ...]:
+    """State variables."""
+    return tuple(Symbol("variable", name) for name in names)
+
+
+def parameter(name: str) -> Symbol:
+    """A parameter, constant in time."""
+    return Symbol("parameter", name)
+
+
+def exp(value: Symbol) -> Symbol:
+    """eˣ."""
+    return Symbol("exp", value)
+
+
+def _is(value: Symbol, number: float) -> bool:
+    return value.kind == "number" and value.arguments[0] == number
+
+
+def _add(a: Symbol, b: Symbol) -> Symbol:
+    if a.kind == b.kind == "number":
+        return symbol(a.arguments[0] + b.arguments[0])
+    if _is(a, 0.0):
+        return b
+    if _is(b, 0.0):
+        return a
+    first, second = _lever(a), _lever(b)
+    if first and second and moving_part(first[2]) is moving_part(second[2]):
+        return Symbol("joined", *first, *second)
+    return Symbol("+", a, b)
+
+
+def moving_part(value: Symbol) -> Symbol:
+    """A sum without the constant that is added to it."""
+    if value.kind == "+" and value.varies:
+        a, b = value.arguments
+        if not a.varies:
+            return moving_part(b)
+        if not b.varies:
+            return moving_part(a)
+    return value
+
+
+def _lever(value: Symbol) -> tuple[Symbol, Symbol, Symbol] | None:
+    """c, A and B of a product c A B whose B is a state variable plus a constant."""
+    factor, product = symbol(1.0), value
+    if value.kind == "*" and not value.arguments[0].varies:
+        factor, product = value.arguments
+    if product.kind != "*" or not all(each.varies for each in product.arguments):
+        return None
+    for a, b in (product.arguments, product.arguments[::-1]):
+        if moving_part(b).kind == "variable" and moving_part(a).kind != "variable":
+            return factor, a, b
+    return None
+
+
+def _multiply(a: Symbol, b: Symbol) -> Symbol:
+    if a.kind == b.kind == "number":
+        return symbol(a.arguments[0] * b.arguments[0])
+    for first, second in ((a, b), (b, a)):
+        if _is(first, 1.0):
+            return second
+        if _is(first, 0.0):
+            return first
+    # What is constant in time gathers in front, so that it meets each series once.
+    if a.varies and not b.varies:
+        a, b = b, a
+    if not a.varies and b.kind == "*" and not b.arguments[0].varies and b.varies:
+        return _multiply(_multiply(a, b.arguments[0]), b.arguments[1])
+    if a.varies and a.kind == "*" and not a.arguments[0].varies:
+        return _multiply(a.arguments[0], _multiply(a.arguments[1], b))
+    if a.varies and b.kind == "*" and not b.arguments[0].varies:
+        return _multiply(b.arguments[0], _multiply(a, b.arguments[1]))
+    return Symbol("*", a, b)
+
+
+def derivative(value: Symbol, by: Symbol) -> Any:
+    """The partial derivative by a variable."""
+    if value is by:
+        return symbol(1.0)
+    if not value.varies or value.kind == "variable":
+        return symbol(0.0)
+    if value.kind == "+":
+        return derivative(value.arguments[0], by) + derivative(value.arguments[1], by)
+    if value.kind == "*":
+        a, b = value.arguments
+        return derivative(a, by) * b + a * derivative(b, by)
+    if value.kind == "exp":
+        return value * derivative(value.arguments[0], by)
+    if value.kind == "joined":
+        c1, a1, b1, c2, a2, b2 = value.arguments
+        first = c1 * (derivative(a1, by) * b1 + a1 * derivative(b1, by))
+        return first + c2 * (derivative(a2, by) * b2 + a2 * derivative(b2, by))
+    base, exponent = value.arguments
+    return exponent * base ** (exponent - 1.0) * derivative(base, by)
+
+
+def in_order(roots: Sequence[Symbol]) -> list[Symbol]:
+    """All nodes below the roots, arguments before what uses them."""
+    found: dict[int, Symbol] = {}
+
+    def visit(node: Symbol) -> None:
+        if id(node) not in found:
+            for argument in node.arguments:
+                if isinstance(argument, Symbol):
+                    visit(argument)
+            found[id(node)] = node
+
+    for each in roots:
+        visit(each)
+    return list(found.values())

@@ -1,0 +1,206 @@
+"""A3 with dashpots and friction that depends on speed: m r̈ + C ṙ + K r = 0 (not in the paper).
+
+C has the dashpots and, from the slope of the friction law, N0 μ'(|V|) in its x diagonal: a law that
+falls with speed is negative damping. The eigenvalues are the roots of
+
+    s⁴ + p1 s³ + p2 s² + p3 s + p4,   p1 = tr C, p2 = tr K + det C,
+    p3 = c11 k22 + c22 k11 − c12 (k12 + k21), p4 = det K   (all over m),
+
+stable exactly where all p > 0 and p1 p2 p3 > p3² + p1² p4 (Routh–Hurwitz). As damping vanishes at a
+fixed ratio, that becomes ω1² < p3/p1 < ω2², so the onset jumps away from the undamped one for all
+ratios but one: damping-induced destabilization (Hoffmann and Gaul, ZAMM 83 (2003) 524–534).
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from squealpipe.laws.dashpots import linear_damping
+from squealpipe.laws.friction_laws import slope
+from squealpipe.laws.springs import Stiffness, geometry
+from squealpipe.models import a2, a3
+from squealpipe.models.a3 import LinearRegime
+from squealpipe.models.a4 import contact_matrix
+from squealpipe.models.contact_system import contact_system
+
+POLISHES = 3
+"""Newton steps in long double that take double eigenvalues to its round-off."""
+MARGINAL = 1e-16
+"""Growth below this share of |s| is the round-off of a mode that is not damped."""
+
+
+class DampedSystem(NamedTuple):
+    """C and K of the mass in contact, over m: 1/s and 1/s²; K is not symmetric; and det K."""
+
+    c11: Any
+    c12: Any
+    c22: Any
+    k11: Any
+    k12: Any
+    k21: Any
+    k22: Any
+    determinant: Any
+
+
+def is_undamped(p: Any) -> bool:
+    """Whether C = 0, so that the closed form of A3 holds."""
+    return bool(p.damping1 == 0 and p.damping2 == 0 and slope(abs(p.belt_speed), p) == 0)
+
+
+def damped_system(p: Any, alpha1: Any, alpha2: Any, *, sigma: Any = None) -> DampedSystem:
+    """The system at angles of any floating type, which decides the precision; NaN where friction
+    depends on speed and there is no static contact force N0.
+
+    Args:
+        p: parameters.
+        alpha1, alpha2: angles, rad, which broadcast.
+        sigma: regularizing factor of the contact law, 1/m; None means the sharp law.
+    """
+    kind = np.result_type(alpha1, alpha2)
+    k3 = kind.type(a2.contact_stiffness(p, sigma))
+    system = contact_system(p, alpha1, alpha2, k3=k3)
+    k11, k12, k21, k22 = contact_matrix(system.stiffness, k3, p.drag)
+    c11, c12, c22 = linear_damping(p, geometry(alpha1, alpha2))
+    gradient = slope(abs(p.belt_speed), p)
+    if gradient != 0:
+        force = a3.static_state(
+            system.stiffness, system.spring_determinant,
+            k3=k3, mu=p.drag, actuation=a2.actuation(p, sigma),
+        )[2]  # fmt: skip
+        c11 = c11 + np.where(np.isfinite(force), force, np.nan) * gradient
+    stiffness = system.stiffness
+    determinant = system.spring_determinant + k3 * (stiffness.k11 - p.drag * stiffness.k12)
+    mass = kind.type(p.mass)
+    entries = np.broadcast_arrays(c11, c12, c22, k11, k12, k21, k22, determinant / mass)
+    return DampedSystem._make(entry / mass for entry in entries)
+
+
+class Quartic(NamedTuple):
+    """Coefficients of the characteristic polynomial (module docstring)."""
+
+    p1: Any
+    p2: Any
+    p3: Any
+    p4: Any
+
+
+def quartic(s: DampedSystem) -> Quartic:
+    """The characteristic polynomial of C and K."""
+    return Quartic(
+        s.c11 + s.c22,
+        s.k11 + s.k22 + (s.c11 * s.c22 - s.c12 * s.c12),
+        s.c11 * s.k22 + s.c22 * s.k11 - s.c12 * (s.k12 + s.k21),
+        s.determinant,
+    )
+
+
+def eigenvalues(s: DampedSystem) -> np.ndarray:
+    """The four s of each cell, complex, 1/s, in a new last axis; imaginary parts descend.
+
+    From the double companion matrix, polished on the polynomial in the system's precision, which
+    long double carries through coalescing pairs.
+    """
+    p = quartic(s)
+    unit = np.sqrt(np.abs(s.k11) + np.abs(s.k22))
+    scaled = [np.asarray(c / unit**n) for n, c in enumerate(p, 1)]
+    known = np.all([np.isfinite(c) for c in scaled], axis=0)
+    clean = [np.where(known, c, 0.0) for c in scaled]
+    matrix = np.zeros((*known.shape, 4, 4))
+    matrix[..., 0, :] = -np.stack(clean, axis=-1).astype(float)
+    matrix[..., [1, 2, 3], [0, 1, 2]] = 1.0
+    roots = np.linalg.eigvals(matrix).astype(np.clongdouble)
+    p1, p2, p3, p4 = (c[..., None] for c in clean)
+    for _ in range(POLISHES):
+        value = (((roots + p1) * roots + p2) * roots + p3) * roots + p4
+        rate = ((4 * roots + 3 * p1) * roots + 2 * p2) * roots + p3
+        step = np.where(rate == 0, 0, value / np.where(rate == 0, 1, rate))
+        roots = roots - np.where(np.abs(step) < 1e-3 * (1 + np.abs(roots)), step, 0)
+    order = np.argsort(-roots.imag, axis=-1, kind="stable")
+    roots = np.take_along_axis(roots, order, axis=-1) * unit[..., None]
+    return np.where(known[..., None], roots, np.nan + 0j)
+
+
+class Stability(NamedTuple):
+    """Largest real part, 1/s; |Im s| of both modes (mode last), rad/s; :class:`LinearRegime`."""
+
+    growth_rate: Any
+    frequency: Any
+    regime: Any
+
+
+def stability(s: DampedSystem) -> Stability:
+    """How small motions grow: flutter where the fastest growing pair is complex."""
+    found = eigenvalues(s)
+    leading = np.take_along_axis(found, np.argmax(found.real, axis=-1)[..., None], axis=-1)[..., 0]
+    unstable = leading.real > MARGINAL * np.abs(found).max(axis=-1)
+    oscillates = np.abs(leading.imag) > np.sqrt(MARGINAL) * np.abs(leading)
+    return Stability(
+        leading.real.astype(float),
+        np.maximum(found.imag[..., 1::-1], 0.0).astype(float),
+        np.where(
+            unstable,
+            np.where(oscillates, LinearRegime.flutter, LinearRegime.divergence),
+            LinearRegime.stable,
+        ),
+    )
+
+
+def critical_friction(
+    p: Any, alpha1: Any, alpha2: Any, *, vanishing: bool = False
+) -> tuple[Any, Any]:
+    """The smallest μ ≥ 0 at which the sliding state of Coulomb friction is unstable, ∞: none.
+
+    Routh–Hurwitz is a quadratic in μ, because p3 and p4 are linear in it and p1 and p2 free of it.
+
+    Args:
+        p: parameters, whose ``mu`` is not looked at and whose belt gives the direction.
+        alpha1, alpha2: angles, rad, which broadcast.
+        vanishing: the limit of both dashpots going to 0 at their ratio.
+
+    Returns:
+        μ of the first loss of stability, and μ of the same system without dashpots.
+    """
+    stiffness, determinant, _ = contact_system(p, alpha1, alpha2)
+    # round-off would give a friction of 1e16, or none, by its sign
+    coupling = np.where(a2.coupling_is_zero(stiffness), 0.0, stiffness.k12)
+    stiffness = stiffness._replace(k12=coupling)
+    c11, c12, c22 = (entry / p.mass for entry in linear_damping(p, geometry(alpha1, alpha2)))
+    undamped = _undamped_critical_friction(p, stiffness, determinant)
+    k11, k12, k22 = (entry / p.mass for entry in stiffness)
+    push = p.belt_direction * p.k3 / p.mass
+    k22 = k22 + p.k3 / p.mass
+    p1 = c11 + c22
+    p2 = k11 + k22 + (0.0 if vanishing else c11 * c22 - c12 * c12)
+    # p3 = a + b μ and p4 = d + e μ
+    a, b = c11 * k22 + c22 * k11 - 2.0 * c12 * k12, -c12 * push
+    d = determinant / p.mass**2 + p.k3 / p.mass * k11
+    e = -push * k12
+    flutter = _first_root(-b * b, p1 * p2 * b - 2.0 * a * b - p1 * p1 * e,
+                          p1 * p2 * a - a * a - p1 * p1 * d)  # fmt: skip
+    divergence = np.where(e < 0.0, -d / np.where(e < 0.0, e, 1.0), np.inf)
+    damped = np.where(p1 > 0.0, np.minimum(flutter, divergence), undamped)
+    return damped, undamped
+
+
+def _undamped_critical_friction(p: Any, stiffness: Stiffness, determinant: Any) -> Any:
+    """Flutter where (K11 − K22 − k3)² + 4 K12 (K12 + μ k3) < 0, divergence where det < 0."""
+    k11, k12, k22 = stiffness
+    k12 = p.belt_direction * k12
+    gap = k11 - k22 - p.k3
+    negative, positive = np.where(k12 < 0.0, k12, -1.0), np.where(k12 > 0.0, k12, 1.0)
+    flutter = np.where(k12 < 0.0, (-gap * gap / (4.0 * negative) - negative) / p.k3, np.inf)
+    divergence = (determinant + p.k3 * k11) / (p.k3 * positive)
+    return np.where(k12 > 0.0, divergence, flutter)
+
+
+def _first_root(a: Any, b: Any, c: Any) -> Any:
+    """Smallest positive zero of a x² + b x + c where it turns negative, ∞ without; 0 if c < 0."""
+    a, b, c = np.broadcast_arrays(a, b, c)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        root = np.sqrt(np.maximum(b * b - 4.0 * a * c, 0.0))
+        q = -0.5 * (b + np.where(b < 0.0, -root, root))
+        zeros = np.stack([q / a, c / q])
+    zeros = np.where((b * b >= 4.0 * a * c) & np.isfinite(zeros) & (zeros > 0.0), zeros, np.inf)
+    return np.where(c < 0.0, 0.0, zeros.min(axis=0))

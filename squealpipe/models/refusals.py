@@ -1,0 +1,78 @@
+"""Levels that carry the paper's friction alone: Coulomb's law, one coefficient, no dashpots."""
+
+from __future__ import annotations
+
+from squealpipe.laws.friction_laws import COULOMB, LAWS
+from squealpipe.parameters import DEFAULTS, TABLE, Parameters
+
+WHY_A4 = (
+    "A4 has families of periodic orbits by its first integral alone, which damping and friction "
+    "that depends on speed destroy"
+)
+
+
+WHY_CIRCLES = "its curves are circles of the undamped model A3 alone"
+
+
+def without_extensions(params: Parameters) -> Parameters:
+    """The parameters with the paper's friction alone; the same object where they have no other."""
+    try:
+        refuse_extensions(params, "", "")
+    except ValueError:
+        return params.with_(
+            **{name: DEFAULTS[name] for name, row in TABLE.items() if row.extension}
+        )
+    return params
+
+
+def refuse_extensions(params: Parameters, who: str, why: str) -> None:
+    """Stop a level that carries neither dashpots nor any friction but Coulomb's with one μ.
+
+    Args:
+        params: physical parameters.
+        who: the level or method, for the message.
+        why: the reason.
+
+    Raises:
+        ValueError: names the parameters that it cannot carry, with the remedy.
+    """
+    of_other_laws = {name for law in LAWS.values() for name in law.PARAMETERS} - set(
+        LAWS[COULOMB].PARAMETERS
+    )
+    given = {
+        name: getattr(params, name)
+        for name, row in TABLE.items()
+        if row.extension and name not in of_other_laws
+    }
+    if params.static_mu == params.mu:
+        given.pop("mu_static")
+    carried = {name: DEFAULTS[name] for name in given}
+    wrong = [name for name, value in given.items() if value != carried[name]]
+    if wrong:
+        found = ", ".join(f"{name} = {given[name]!r}" for name in wrong)
+        remedy = ", ".join(f"{name} = {carried[name]!r}" for name in wrong)
+        raise ValueError(f"{found}: {who} cannot carry this ({why}); use model A1, or {remedy}")
+
+
+def refuse_scales(params: Parameters) -> None:
+    """Stop linear models whose characteristic polynomial leaves the range of a double.
+
+    Raises:
+        ValueError: names the parameter, with the remedy.
+    """
+    mass, stiffest = params.mass, max(params.k1, params.k2, params.k3)
+    squares = {name: (getattr(params, name), 1e-140) for name in ("k1", "k2", "k3")}
+    squares["mu"] = (max(abs(params.drag), params.static_mu) * stiffest, 0.0)
+    squares["preload"] = (params.preload * stiffest, 0.0)
+    for name, (value, least) in squares.items():
+        if not least <= value / mass < 1e140:
+            raise ValueError(
+                f"{name} = {getattr(params, name)!r} with mass = {mass!r}: over the mass it is "
+                f"{value / mass:.3g}, whose square a number cannot hold; use other units"
+            )
+    for name in ("damping1", "damping2"):
+        if not getattr(params, name) / mass < 1e70:
+            raise ValueError(
+                f"{name} = {getattr(params, name)!r} with mass = {mass!r}: over the mass it is "
+                "more than 1e70 per second, whose powers a number cannot hold; use other units"
+            )

@@ -1,0 +1,164 @@
+"""Numbers about other settings, other starts and uncertain parameters."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from squealpipe.claims.evidence import Run
+from squealpipe.parameters import SCENES
+from squealpipe.schema import Outcome
+from squealpipe.schema.linear import LinearRegimeFlag
+from squealpipe.schema.spread import WIDEST
+
+MOST_CHANGED = 3
+FEASIBLE = "feasible parameters"
+SIGNS = {"k1": "k₁", "k2": "k₂", "k3": "k₃", "mu": "μ", "alpha1": "α₁", "alpha2": "α₂"}
+
+
+def reach(run: Run) -> dict[str, Any]:
+    """How many verdicts differ from that of the setting as configured, and which never do."""
+    dataset = run["verdict_reach"]
+    share = dataset.share.values
+    judged_in = dict(
+        zip(
+            dataset.variant.values.tolist(), dataset.judged.values.max(axis=1).tolist(), strict=True
+        )
+    )
+    first, others = share[0], share[1:]
+    judged = np.isfinite(others) & np.isfinite(first)
+    changed = judged & (np.abs(others - first) > 0.5)
+    counts = changed.sum(axis=0)
+    names = dataset.statement.values.tolist()
+    order = np.argsort(-counts, kind="stable")
+    varies = (judged & (others != first)).any(axis=0)
+    return {
+        "settings": len(others),
+        "judged": int(judged.sum()),
+        "changed": int(changed.sum()),
+        "firm": [name for name, moved in zip(names, varies, strict=True) if not moved],
+        "least": [f"{names[i]} ({counts[i]})" for i in order[:MOST_CHANGED] if counts[i]],
+        "starts": max(count for title, count in judged_in.items() if title.startswith("starts")),
+        "feasible": judged_in.get(FEASIBLE),
+    }
+
+
+def basins(run: Run) -> dict[str, Any]:
+    """Share of the starts of each scene by the kind of motion."""
+    scenes = []
+    for name in ("F2d", "F3"):
+        dataset = run[f"basin/{name}"]
+        words = str(dataset.motion.attrs["flag_meanings"]).split()
+        values, counts = np.unique(dataset.motion.values, return_counts=True)
+        angles = [float(dataset[key]) / np.pi for key in ("alpha1", "alpha2")]
+        scenes.append({
+            "angles": f"({angles[0]:.4g}π, {angles[1]:.4g}π)",
+            "parts": [
+                {"words": words[value].replace("_", " "), "share": float(count / counts.sum())}
+                for value, count in zip(values, counts, strict=True)
+            ],
+        })  # fmt: skip
+    return {
+        "starts": int(run["basin/F3"].motion.size),
+        "t_end": float(run["basin/F3"].t_end) / run.parameters.time_unit,
+        "scenes": scenes,
+    }
+
+
+STEADY = {
+    Outcome.already_unstable: "unstable",
+    Outcome.no_sliding_state: "none",
+}
+"""What steady sliding of A1 is, where no disturbance was looked for."""
+
+
+def disturbances(run: Run) -> dict[str, Any]:
+    """Smallest disturbances of steady sliding by scene, beside the linear verdict."""
+    rows = []
+    for name, scene in SCENES.items():
+        pair = [f"disturbance/{name}_{goal}" for goal in ("contact_lost", "whirl")]
+        if not all(one in run for one in pair):
+            continue
+        contact, whirl = (run[one] for one in pair)
+        outcome = Outcome(int(contact.outcome))
+        rows.append({
+            "scene": scene.panel,
+            "linear": LinearRegimeFlag(int(contact.regime_linear)).name,
+            "steady": STEADY.get(outcome, "stable"),
+            "rest": _or_none(contact.rest_distance),
+            "linear_contact": _or_none(contact.linear_distance),
+            "contact": _or_none(contact.distance),
+            "whirl": _or_none(whirl.distance),
+            "whirl_bound": float(whirl.bound) if outcome not in STEADY else None,
+            "spread": [_or_none(part) for part in (whirl.distance, whirl.improved_distance.max())],
+        })  # fmt: skip
+    first = run["disturbance/F2a_contact_lost"]
+    return {
+        "rows": rows,
+        "directions": int(first.directions[-1]),
+        "t_end": float(first.t_end) / run.parameters.time_unit,
+        "share_below": next(
+            (
+                share
+                for name in SCENES
+                if f"disturbance/{name}_contact_lost" in run
+                and (share := _or_none(run[f"disturbance/{name}_contact_lost"].share_below))
+            ),
+            None,
+        ),
+        "conditional": [
+            row["scene"] for row in rows if row["linear"] == "stable" and row["contact"] is not None
+        ],
+        "contradicted": [
+            row["scene"]
+            for row in rows
+            if row["linear"] == "stable" and row["steady"] == "unstable"
+        ],
+    }
+
+
+def _or_none(value: Any) -> float | None:
+    return float(value) if np.isfinite(value) else None
+
+
+def propensity(run: Run) -> dict[str, Any]:
+    """Shares with intervals, and the parameter with the largest total index of each quantity."""
+    dataset = run["propensity"]
+    words = [name.replace("_", " ") for name in dataset.quantity.values.tolist()]
+    total = dataset.total_order.values
+    supported = np.isfinite(total).all(axis=1)
+    half = dataset.half_width_by_size.values[:, -1]
+    base = dataset.index_samples.values[:, -1]
+    leading = []
+    for i in np.flatnonzero(supported):
+        best = int(np.argmax(total[i]))
+        name = str(dataset.input.values[best])
+        low, high = (
+            dataset.total_order_low.values[i, best],
+            dataset.total_order_high.values[i, best],
+        )
+        leading.append({
+            "words": words[i],
+            "input": SIGNS.get(name, name),
+            "index": float(total[i, best]),
+            "half": float(0.5 * (high - low)),
+        })  # fmt: skip
+    return {
+        "samples": int(dataset.judged),
+        "rows": [
+            {
+                "words": words[i],
+                "share": float(dataset.share[i]),
+                "low": float(dataset.share_low[i]),
+                "high": float(dataset.share_high[i]),
+            }
+            for i in range(len(words))
+        ],
+        "leading": leading,
+        "unsupported": [
+            {"words": words[i], "half": _or_none(half[i]), "samples": int(base[i])}
+            for i in np.flatnonzero(~supported)
+        ],
+        "widest": WIDEST,
+    }

@@ -1,0 +1,175 @@
+"""Datasets of limit cycles of the full model A1."""
+
+from __future__ import annotations
+
+from enum import IntEnum
+
+from squealpipe.methods.limit_cycles.special_points import Label
+from squealpipe.parameters import Parameters
+from squealpipe.schema import DatasetSchema, Variable, outcome
+from squealpipe.schema.dynamics import EventFlag, RegimeFlag
+
+
+class Stability(IntEnum):
+    """Whether small disturbances of a cycle decay."""
+
+    no = 0
+    yes = 1
+
+
+def _cycle_variables(*dims: str) -> dict[str, Variable]:
+    """What one cycle carries, over some dimensions."""
+
+    def real(units: str, long_name: str, **kwargs: object) -> Variable:
+        return Variable(dims=dims, units=units, long_name=long_name, nan_allowed=True, **kwargs)  # type: ignore[arg-type]
+
+    def multiplier(part: str) -> Variable:
+        return Variable(
+            dims=(*dims, "multiplier"),
+            long_name=f"{part} part of the Floquet multipliers, the trivial one first",
+            nan_allowed=True,
+            rtol=1e-6,
+            atol=1e-6,
+        )
+
+    return {
+        "period": real("s", "period"),
+        "x_min": real("m", "smallest x over the period"),
+        "x_max": real("m", "largest x over the period"),
+        "y_min": real("m", "smallest y over the period"),
+        "y_max": real("m", "largest y over the period"),
+        "contact_fraction": real("1", "share of the period in contact"),
+        "stick_fraction": real("1", "share of the period in stick"),
+        "least_contact_force": real("N", "smallest contact force; 0 where contact is lost"),
+        "stable": Variable(
+            dims=dims,
+            dtype="i1",
+            flags=Stability,
+            long_name="whether small disturbances decay; no for a member of a family",
+        ),
+        "multiplier_real": multiplier("real"),
+        "multiplier_imag": multiplier("imaginary"),
+        "residual": real("1", "closing error over the extent of the cycle", atol=1e-9),
+        "outcome": outcome(*dims),
+    }
+
+
+_STATE = {
+    "x": ("m", "x"),
+    "y": ("m", "y"),
+    "vx": ("m s-1", "velocity along the belt"),
+    "vy": ("m s-1", "velocity away from the belt"),
+}
+
+MULTIPLIER = Variable(dims=("multiplier",), dtype="i4", long_name="number of the multiplier")
+
+LIMIT_CYCLE = DatasetSchema(
+    name="limit_cycle",
+    title="A periodic motion of model A1, events located, with its Floquet multipliers",
+    coordinates={"multiplier": MULTIPLIER},
+    variables={
+        **_cycle_variables(),
+        "event_time": Variable(dims=("event",), units="s", long_name="instant of an event"),
+        "event_kind": Variable(
+            dims=("event",), dtype="i1", flags=EventFlag, long_name="kind of the event"
+        ),
+        **{
+            f"event_{name}": Variable(
+                dims=("event",), units=units, long_name=f"{words} at the event"
+            )
+            for name, (units, words) in _STATE.items()
+        },
+        "segment_regime": Variable(
+            dims=("segment",),
+            dtype="i1",
+            flags=RegimeFlag,
+            long_name="regime from the start and after each event",
+        ),
+        **{
+            f"{name}_start": Variable(
+                units=units, long_name=f"{words} at time 0 of the cycle", nan_allowed=True
+            )
+            for name, (units, words) in _STATE.items()
+        },
+        "time": Variable(dims=("sample",), units="s", long_name="instant of a sample"),
+        **{
+            f"{name}_path": Variable(
+                dims=("sample",), units=units, long_name=f"{words} along the cycle"
+            )
+            for name, (units, words) in _STATE.items()
+        },
+        "regime_path": Variable(
+            dims=("sample",), dtype="i1", flags=RegimeFlag, long_name="regime along the cycle"
+        ),
+        "alpha1": Variable(units="rad", long_name="angle of spring 1"),
+        "alpha2": Variable(units="rad", long_name="angle of spring 2"),
+    },
+)
+
+
+def _followed() -> dict[str, Variable]:
+    """Every quantity that a branch may be followed in, over the points."""
+    table = {name: Parameters.units(name) for name in Parameters.__dataclass_fields__}
+    return {
+        name: Variable(
+            dims=("point",), units=units, long_name=f"{name} along the branch", optional=True
+        )
+        for name, units in {**table, "alpha1": "rad", "alpha2": "rad"}.items()
+    }
+
+
+CYCLE_BRANCH = DatasetSchema(
+    name="cycle_branch",
+    title="A branch of periodic motions of model A1 in one parameter",
+    coordinates={
+        "multiplier": MULTIPLIER,
+        "point": Variable(dims=("point",), dtype="i4", long_name="point along the branch"),
+    },
+    variables={
+        **_cycle_variables("point"),
+        "label": Variable(
+            dims=("point",), dtype="i1", flags=Label, long_name="what is special about the point"
+        ),
+        "events": Variable(dims=("point",), dtype="i4", long_name="events per period"),
+        **{
+            f"{name}_start": Variable(
+                dims=("point",),
+                units=units,
+                long_name=f"{words} at time 0 of the cycle",
+                nan_allowed=True,
+            )
+            for name, (units, words) in _STATE.items()
+        },
+        **_followed(),
+        "end": outcome(),
+    },
+)
+
+SETTLED_EXTREMES = DatasetSchema(
+    name="settled_extremes",
+    title="Largest displacement late in runs of model A1 from many starts",
+    coordinates={
+        "scene": Variable(dims=("scene",), dtype="U", long_name="scene"),
+        "mu": Variable(dims=("mu",), long_name="friction coefficient"),
+        "start": Variable(dims=("start",), dtype="i4", long_name="number of the start"),
+    },
+    variables={
+        "late_max_x": Variable(
+            dims=("scene", "mu", "start"),
+            units="m",
+            long_name="largest |x| in the last fifth of the run",
+            nan_allowed=True,
+            rtol=1e-6,
+        ),
+        "separated_fraction": Variable(
+            dims=("scene", "mu", "start"),
+            long_name="share of the time without contact",
+            nan_allowed=True,
+            rtol=1e-6,
+        ),
+        "outcome": outcome("scene", "mu", "start"),
+        "x0": Variable(dims=("start",), units="m", long_name="x at the start"),
+        "y0": Variable(dims=("start",), units="m", long_name="y at the start"),
+        "t_end": Variable(units="s", long_name="length of the runs"),
+    },
+)

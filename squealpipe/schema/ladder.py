@@ -1,0 +1,148 @@
+"""The levels of the model ladder, one record each, and the dataset that compares them."""
+
+from __future__ import annotations
+
+from enum import IntEnum
+from typing import Self
+
+from squealpipe.schema import DatasetSchema, Outcome, Variable, outcome
+from squealpipe.schema.linear import ANGLES, MAP
+
+
+def _text(long_name: str, *dims: str) -> Variable:
+    return Variable(long_name, dims=dims, dtype="U64")
+
+
+# fmt: off
+class Level(IntEnum):
+    """All levels, cheapest first; a level is one record.
+
+    Its value is its number in files, whatever its place in the order. A level with a ``model`` is
+    that model in time; any other is a module of ``squealpipe/tasks/ladder/levels``, by its name.
+
+    Attributes:
+        label: its name for people.
+        drops: what it drops from A1.
+        needs: what must hold for its answer to be trusted.
+        colour: name of its colour in :mod:`squealpipe.figures.parts.style`.
+        model: the model that it integrates in time; "" where it does not.
+        share: part of the horizon that it integrates.
+    """
+
+    label: str
+    drops: str
+    needs: str
+    colour: str
+    model: str
+    share: float
+
+    closed_form = (
+        0, "closed form", "all but both modes in contact and their sum",
+        "contact kept, belt not reached, small displacements", "WHITE",
+    )
+    a3_in_contact = (
+        1, "A3 in contact", "contact loss, geometry, reversal of friction",
+        "contact kept, belt not reached, small displacements", "LIGHT",
+    )
+    a4_exact = (
+        2, "A4, closed-form flow", "geometry, reversal of friction",
+        "belt not reached, small displacements", "GREEN",
+    )
+    a4_in_time = (
+        3, "A4 in time", "geometry, reversal of friction",
+        "belt not reached, small displacements", "BLUE", "A4", 1.0,
+    )
+    a1_linear_springs = (
+        4, "A1, linear springs", "geometry", "small displacements", "PURPLE",
+        "A1-linear-springs", 1.0,
+    )
+    a1_no_stick = (
+        5, "A1 without stick", "stick", "short spells of stick", "ORANGE", "A1-no-stick", 1.0,
+    )
+    a1_short = (
+        6, "A1, part of the horizon", "the rest of the horizon", "nothing new after that part",
+        "GREY", "A1", 0.5,
+    )
+    a1 = (7, "A1", "nothing", "nothing", "RED", "A1", 1.0)
+
+    def __new__(
+        cls, number: int, label: str = "", drops: str = "", needs: str = "", colour: str = "",
+        model: str = "", share: float = 0.0,
+    ) -> Self:
+        """A level from its record."""
+        level = int.__new__(cls, number)
+        level._value_ = number
+        level.label, level.drops, level.needs = label, drops, needs
+        level.colour, level.model, level.share = colour, model, share
+        return level
+# fmt: on
+
+
+QUESTIONS = ("contact_lost", "frequency", "peak_contact_force", "max_displacement")
+"""What can be asked of a scene."""
+
+_CELL = ("question", *MAP)
+
+MODEL_LADDER = DatasetSchema(
+    name="model_ladder",
+    title="The cheapest adequate model over both spring angles",
+    coordinates={
+        **ANGLES,
+        "question": _text("question asked of a cell", "question"),
+        "level": _text("level of the ladder", "level"),
+    },
+    variables={
+        "error": Variable(
+            "error of a level against A1, relative (0 or 1 for contact lost)",
+            dims=("question", "level", *MAP),
+            nan_allowed=True,
+            rtol=1e-3,
+            atol=1e-9,
+        ),
+        "cheapest": Variable(
+            "cheapest level within the tolerance that drops something that mattered",
+            dims=_CELL,
+            dtype="i1",
+            flags=Level,
+        ),
+        "chosen": Variable("level that choose_model takes", dims=_CELL, dtype="i1", flags=Level),
+        "chosen_error": Variable(
+            "error of the chosen answer against A1",
+            dims=_CELL,
+            nan_allowed=True,
+            rtol=1e-3,
+            atol=1e-9,
+        ),
+        "chosen_time": Variable("time integrated by choose_model, all cells", "s", ("question",)),
+        "always_time": Variable(
+            "time integrated by always A1 until the question is answered, all cells",
+            "s",
+            ("question",),
+        ),
+        "hindsight_time": Variable(
+            "time integrated if the cheapest adequate level were known, all cells",
+            "s",
+            ("question",),
+        ),
+        "level_wall_time": Variable(
+            "wall time of a level over the whole map", "s", ("level",), volatile=True
+        ),
+        "always_wall_time": Variable(
+            "wall time of always A1 over the whole map, stopped at the answer",
+            "s",
+            ("question",),
+            volatile=True,
+        ),
+        "chosen_wall_time": Variable(
+            "wall time of choose_model over the whole map", "s", ("question",), volatile=True
+        ),
+        "belt_reached": Variable(
+            "whether the mass of A1 reaches belt speed in contact",
+            dims=MAP,
+            dtype="bool",
+            optional=True,
+        ),
+        "tolerance": Variable("error that is allowed"),
+        "outcome": outcome(*MAP, among=(Outcome.converged,)),
+    },
+)

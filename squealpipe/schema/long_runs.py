@@ -1,0 +1,164 @@
+"""Datasets of the long runs: the size of the whirl, and how long the bounded motion lasts."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from squealpipe.schema import RUN_ENDS, DatasetSchema, Outcome, Variable, outcome
+from squealpipe.schema.comparing import magnitude, sampled
+from squealpipe.schema.dynamics import MotionFlag
+
+_IRREGULAR = (
+    "one long run, irregular where the belt is slow: the last bit of the belt speed, which the "
+    "vector instructions of the processor decide, changes when each extreme is reached"
+)
+_LONG_RUN = magnitude(_IRREGULAR, factor=1.1)
+_LONG_SHARE = magnitude(_IRREGULAR, factor=1.25, floor=5e-3)
+
+WHIRL = DatasetSchema(
+    name="whirl",
+    title="Where the growth at (0.4 pi, 0.6 pi) ends, over belt speed",
+    coordinates={"belt_speed": Variable("belt speed V", "m s-1", ("belt_speed",))},
+    variables={
+        "amplitude": Variable(
+            "largest |x| in the last fifth of the run", "m", ("belt_speed",), round_off=_LONG_RUN
+        ),
+        "amplitude_before": Variable(
+            "largest |x| before the last fifth", "m", ("belt_speed",), round_off=_LONG_RUN
+        ),
+        "max_vx": Variable(
+            "largest velocity in the direction of the belt",
+            "m s-1",
+            ("belt_speed",),
+            round_off=_LONG_RUN,
+        ),
+        "turn_rate": Variable(
+            "net turns around both fixed ends a time", "s-1", ("belt_speed",), round_off=_LONG_SHARE
+        ),
+        "stick_fraction": Variable(
+            "share of the time sticking to the belt", dims=("belt_speed",), round_off=_LONG_SHARE
+        ),
+        "motion": Variable("kind of motion", dims=("belt_speed",), dtype="i1", flags=MotionFlag),
+        "fitted": Variable("whether the speed is in the fit", dims=("belt_speed",), dtype="bool"),
+        "slope": Variable("fitted growth of the amplitude with |V|", "s", nan_allowed=True),
+        "offset": Variable("fitted amplitude at V = 0", "m", nan_allowed=True),
+        "residual": Variable(
+            "amplitude over the fitted line, less 1 (NaN: no line, or no whirl)",
+            dims=("belt_speed",),
+            nan_allowed=True,
+            optional=True,
+            round_off=_LONG_SHARE,
+        ),
+        "fit_range": Variable(
+            "speed of the slowest and of the fastest belt in the fit",
+            "m s-1",
+            ("end",),
+            nan_allowed=True,
+            optional=True,
+        ),
+        "fit_residual": Variable(
+            "largest |residual| of the speeds in the fit",
+            nan_allowed=True,
+            optional=True,
+            round_off=_LONG_SHARE,
+        ),
+        "onset": Variable(
+            "|V| without a whirl, and the next faster one, with a whirl, by bisection",
+            "m s-1",
+            ("end",),
+            nan_allowed=True,
+            optional=True,
+            round_off=_LONG_RUN,
+        ),
+        "onset_exceptions": Variable(
+            "speeds tried above the onset without a whirl",
+            dtype="i4",
+            optional=True,
+            round_off=_LONG_RUN,
+        ),
+        "onset_outcome": replace(
+            outcome(among=(Outcome.converged, Outcome.unresolved)), optional=True
+        ),
+        "fit_outcome": outcome(among=(Outcome.converged, Outcome.unresolved)),
+        "energy_slope": Variable("sqrt(m/(k1 + k2)): the slope if the top speed were V", "s"),
+        "energy_offset": Variable("far end of the unstretched springs: the offset if so", "m"),
+        "t_end": Variable("end of each run", "s"),
+        "outcome": outcome("belt_speed", among=(*RUN_ENDS, Outcome.amplitude_reached)),
+    },
+)
+
+_WHY_CHAOTIC = (
+    "a chaotic transient multiplies round-off by e many times over before it ends: only the "
+    "distribution of its lifetimes is a result"
+)
+_CHAOTIC = sampled("sample", _WHY_CHAOTIC)
+_CHAOTIC_SHOWN = sampled("shown_sample", _WHY_CHAOTIC)
+_CHAOTIC_AGE = magnitude(_WHY_CHAOTIC, factor=1.5, floor=0.05)
+_CHAOTIC_BOUND = magnitude(_WHY_CHAOTIC, factor=1.5)
+_CHAOTIC_SPAN = magnitude(_WHY_CHAOTIC, factor=3.0)
+_ESCAPE = ("belt_speed", "sample")
+_ESCAPE_ENDS = (*RUN_ENDS, Outcome.amplitude_reached)
+TRANSIENT = DatasetSchema(
+    name="transient",
+    title="How long the bounded motion at (0.2 pi, 0.8 pi) lasts",
+    coordinates={
+        "belt_speed": Variable("belt speed V", "m s-1", ("belt_speed",)),
+        "sample": Variable("number of the perturbation", dims=("sample",), dtype="i4"),
+    },
+    variables={
+        "start_x": Variable("x at the start", "m", ("sample",)),
+        "lifetime": Variable(
+            "time of the tenth net turn around both fixed ends (NaN: not before t_end)",
+            "s",
+            _ESCAPE,
+            nan_allowed=True,
+            round_off=_CHAOTIC,
+        ),
+        "max_displacement": Variable(
+            "largest distance from the start position until then", "m", _ESCAPE, round_off=_CHAOTIC
+        ),
+        "shown_start_x": Variable("x at the start, at the speed shown", "m", ("shown_sample",)),
+        "shown_lifetime": Variable(
+            "lifetimes at the study's own belt speed (NaN: not before t_end)",
+            "s",
+            ("shown_sample",),
+            nan_allowed=True,
+            round_off=_CHAOTIC_SHOWN,
+        ),
+        "survival_time": Variable(
+            "age, at the study's own belt speed", "s", ("age",), optional=True
+        ),
+        **{
+            name: Variable(text, dims=("age",), optional=True, round_off=_CHAOTIC_AGE)
+            for name, text in (
+                ("survival", "share still bounded at that age, Kaplan-Meier"),
+                ("survival_low", "lower end of its 95 % confidence band, log-log"),
+                ("survival_high", "upper end of its 95 % confidence band, log-log"),
+            )
+        },
+        "median_lifetime": Variable(
+            "median lifetime of all runs, and its 95 % interval (infinite: not seen)",
+            "s",
+            ("bound",),
+            optional=True,
+            round_off=_CHAOTIC_BOUND,
+        ),
+        "hazard_edges": Variable("edges of the spans of age", "s", ("edge",), optional=True),
+        **{
+            name: Variable(
+                text, "s-1", ("span",), nan_allowed=True, optional=True, round_off=_CHAOTIC_SPAN
+            )
+            for name, text in (
+                ("hazard", "ends per time at risk in a span of age (NaN: no run that old)"),
+                ("hazard_low", "lower end of its 95 % interval"),
+                ("hazard_high", "upper end of its 95 % interval"),
+            )
+        },
+        "shown_belt_speed": Variable("the study's own belt speed", "m s-1"),
+        "t_end": Variable("end of each run", "s"),
+        "outcome": replace(outcome(*_ESCAPE, among=_ESCAPE_ENDS), round_off=_CHAOTIC),
+        "shown_outcome": replace(
+            outcome("shown_sample", among=_ESCAPE_ENDS), round_off=_CHAOTIC_SHOWN
+        ),
+    },
+)

@@ -1,0 +1,109 @@
+"""What made a dataset: parameters, model, method, tolerance and versions, in its attributes.
+
+Every public task carries :func:`recorded`, so a dataset that is saved from a notebook tells its
+parameters as one of the study does. None of these attributes enters the dataset's id.
+"""
+
+from __future__ import annotations
+
+import functools
+import importlib.metadata
+import inspect
+import json
+from collections.abc import Callable, Mapping
+from typing import Any, ParamSpec
+
+import numpy as np
+import xarray as xr
+
+from squealpipe.parameters import Parameters
+
+LIBRARIES = ("numpy", "scipy", "xarray", "netCDF4", "heyoka", "numba")
+LONGEST = 8
+"""Arguments with more values than this are told by first, last and number."""
+INHERITED = ("parameters", "model", "method", "tolerance")
+
+Given = ParamSpec("Given")
+
+_HOW: dict[str, tuple[str, str]] = {}
+"""Task → model and method, as :func:`recorded` was told."""
+
+
+def recorded(
+    *, model: str = "", method: str = ""
+) -> Callable[[Callable[Given, xr.Dataset]], Callable[Given, xr.Dataset]]:
+    """Have a task write what made its dataset into the attributes.
+
+    Args:
+        model: level of the model, where it is no argument of the task.
+        method: how it is computed, where that is no argument.
+    """
+
+    def decorate(task: Callable[Given, xr.Dataset]) -> Callable[Given, xr.Dataset]:
+        signature = inspect.signature(task)
+        _HOW[task.__name__] = model, method
+
+        @functools.wraps(task)
+        def run(*args: Given.args, **kwargs: Given.kwargs) -> xr.Dataset:
+            dataset = task(*args, **kwargs)
+            bound = signature.bind(*args, **kwargs)
+            bound.apply_defaults()
+            # Grids are coordinates of the dataset; of a part of a map they would tell the part's.
+            grids = set(dataset.coords)
+            kept = {key: value for key, value in bound.arguments.items() if key not in grids}
+            dataset.attrs.update(origin(task.__name__, kept))
+            return dataset
+
+        return run
+
+    return decorate
+
+
+def origin(name: str, arguments: Mapping[str, Any]) -> dict[str, Any]:
+    """Attributes that tell of a call; ``tolerance`` is "round-off" where there is no ``tol``.
+
+    Args:
+        name: of a task that is :func:`recorded`.
+        arguments: argument → value; of a dataset among them, the attributes are inherited.
+    """
+    model, method = _HOW[name]
+    given = {key: value for key, value in arguments.items() if key != "workers"}
+    told: dict[str, Any] = {"made_by": f"squealpipe.{name}"}
+    for key, value in list(given.items()):
+        if isinstance(value, Parameters):
+            told["parameters"] = json.dumps(given.pop(key).as_dict())
+        elif isinstance(value, xr.Dataset):
+            told |= {key: value.attrs[key] for key in INHERITED if key in value.attrs}
+            del given[key]
+    told["model"] = given.pop("model", model or told.get("model", ""))
+    told["method"] = given.pop("method", method or told.get("method", ""))
+    told["tolerance"] = given.pop("tol", told.get("tolerance", "round-off"))
+    told["arguments"] = json.dumps({key: plain(value) for key, value in given.items()})
+    return {**told, **versions()}
+
+
+def plain(value: Any) -> Any:
+    """A value as JSON takes it; of a long array only first, last and number of values."""
+    if isinstance(value, Mapping):
+        return {str(key): plain(item) for key, item in value.items()}
+    if value is None or isinstance(value, str | int | float):
+        return value
+    array = np.asarray(value)
+    if array.size > LONGEST:
+        values = array.ravel()
+        return {"first": plain(values[0]), "last": plain(values[-1]), "number": array.size}
+    return array.tolist() if array.dtype.kind in "biufU" else str(value)
+
+
+@functools.cache
+def _versions() -> tuple[str, str]:
+    found = {name: importlib.metadata.version(name) for name in LIBRARIES}
+    return importlib.metadata.version("squealpipe"), json.dumps(
+        found, sort_keys=True, separators=(",", ":")
+    )
+
+
+def versions() -> dict[str, str]:
+    """Attributes with the version of this package and of the libraries that decide results."""
+    package, libraries = _versions()
+    return {"package_version": package, "libraries": libraries}

@@ -1,0 +1,88 @@
+"""Datasets on how far verdicts carry and how parameters spread into results."""
+
+from __future__ import annotations
+
+from squealpipe.schema import DatasetSchema, Outcome, Variable, outcome
+
+WIDEST = 0.02
+"""A Sobol index whose 95 % interval is wider than twice this is not given."""
+
+_CELL = ("variant", "statement")
+
+VERDICT_REACH = DatasetSchema(
+    name="verdict_reach",
+    title="Statements of the paper in settings that it leaves out",
+    coordinates={
+        "variant": Variable(dims=("variant",), dtype="U", long_name="setting"),
+        "statement": Variable(dims=("statement",), dtype="U", long_name="statement, by its id"),
+    },
+    variables={
+        "share": Variable(
+            dims=_CELL,
+            long_name="share of the runs in which the statement holds; 1 or 0 for a single one",
+            nan_allowed=True,
+        ),
+        "share_low": Variable(
+            dims=_CELL, long_name="lower end of its 95 % interval", nan_allowed=True
+        ),
+        "share_high": Variable(
+            dims=_CELL, long_name="upper end of its 95 % interval", nan_allowed=True
+        ),
+        "judged": Variable(dims=_CELL, dtype="i4", long_name="number of runs judged"),
+        "outcome": outcome(
+            *_CELL, among=(Outcome.converged, Outcome.unresolved, Outcome.not_computed)
+        ),
+    },
+)
+
+_QUANTITY, _INPUT = ("quantity",), ("quantity", "input")
+
+PROPENSITY = DatasetSchema(
+    name="propensity",
+    title="Propensity for instability, and what it depends on, over a spread of parameters",
+    coordinates={
+        "quantity": Variable(dims=_QUANTITY, dtype="U", long_name="what happens"),
+        "input": Variable(dims=("input",), dtype="U", long_name="uncertain parameter"),
+        "size": Variable(dims=("size",), dtype="i4", long_name="size of a part of the sample"),
+    },
+    variables={
+        "share": Variable(dims=_QUANTITY, long_name="share of the sample in which it happens"),
+        "share_low": Variable(dims=_QUANTITY, long_name="lower end of its 95 % interval"),
+        "share_high": Variable(dims=_QUANTITY, long_name="upper end of its 95 % interval"),
+        "share_by_size": Variable(
+            dims=("quantity", "size"), long_name="the same share from a part of the sample"
+        ),
+        **{
+            f"{order}{end}": Variable(
+                dims=_INPUT,
+                long_name=f"Sobol index, {words}{of}",
+                nan_allowed=True,
+                rtol=1e-6,
+            )
+            for order, words in (("first_order", "first order"), ("total_order", "total"))
+            for end, of in (
+                ("", ""),
+                ("_low", ", lower end of its 95 % interval"),
+                ("_high", ", upper end of its 95 % interval"),
+            )
+        },
+        "half_width_by_size": Variable(
+            dims=("quantity", "size"),
+            long_name="half-width of the widest total index",
+            nan_allowed=True,
+            optional=True,
+            rtol=1e-6,
+        ),
+        "index_samples": Variable(
+            dims=("quantity", "size"),
+            dtype="i4",
+            optional=True,
+            long_name="base sample of the indices",
+        ),
+        "judged": Variable(dtype="i4", long_name="number of parameter sets"),
+        "outcome": outcome(*_QUANTITY, among=(Outcome.converged, Outcome.unresolved)),
+        "alpha1": Variable(units="rad", long_name="angle of spring 1"),
+        "alpha2": Variable(units="rad", long_name="angle of spring 2"),
+        "t_end": Variable(units="s", long_name="end of each run"),
+    },
+)

@@ -1,0 +1,135 @@
+"""Datasets of runs from other starts than rest."""
+
+from __future__ import annotations
+
+from enum import IntEnum
+
+from squealpipe.schema import RUN_ENDS, DatasetSchema, Outcome, Variable, outcome
+from squealpipe.schema.dynamics import MotionFlag
+from squealpipe.schema.linear import LinearRegimeFlag
+
+STARTS = ("x0", "y0", "vx0", "vy0")
+UNITS = {"x0": "m", "y0": "m", "vx0": "m s-1", "vy0": "m s-1"}
+WORDS = {
+    "x0": "x at the start",
+    "y0": "y at the start",
+    "vx0": "velocity along the belt at the start",
+    "vy0": "velocity away from the belt at the start",
+}
+
+UNSETTLED = 7
+StartMotion = IntEnum(  # type: ignore[misc]
+    "StartMotion", {**{flag.name: flag.value for flag in MotionFlag}, "unsettled": UNSETTLED}
+)
+"""Kind of motion from a start; unsettled: the second half of the run has another label."""
+
+
+def basin_schema(swept: tuple[str, ...]) -> DatasetSchema:
+    """The schema of a basin map whose dimensions are the ``swept`` ones of STARTS."""
+
+    def real(units: str, long_name: str, *, nan_allowed: bool = True) -> Variable:
+        return Variable(long_name, units, swept, nan_allowed=nan_allowed)
+
+    return DatasetSchema(
+        name="basin_map" + "".join(f"_{name}" for name in swept),
+        title="Kind of motion of model A1 over its starts",
+        coordinates={name: Variable(WORDS[name], UNITS[name], (name,)) for name in swept},
+        variables={
+            "motion": Variable(
+                "kind of motion of the run to t_end, checked against its second half",
+                dims=swept,
+                dtype="i1",
+                flags=StartMotion,
+            ),
+            "late_max_x": real("m", "largest |x| from t_late on"),
+            "late_max_vx": real("m s-1", "largest velocity along the belt, |x'|, from t_late on"),
+            "separates": Variable("whether contact is lost before t_end", dims=swept, dtype="bool"),
+            "first_separation_time": real("s", "first loss of contact (NaN: none before t_end)"),
+            "peak_contact_force": real("1", "largest contact force over k3 l_pre"),
+            "lyapunov_exponent": real("s-1", "rate of growth of a perturbation over the run"),
+            "predictability_horizon": real(
+                "s", "time at which an error of the tolerance has grown to l_pre/1000, or the end"
+            ),
+            "outcome": outcome(*swept, among=(*RUN_ENDS, Outcome.beyond_horizon)),
+            **{name: Variable(WORDS[name], UNITS[name]) for name in STARTS if name not in swept},
+            "alpha1": Variable("angle of spring 1", "rad"),
+            "alpha2": Variable("angle of spring 2", "rad"),
+            "t_end": Variable("end of each run", "s"),
+        },
+    )
+
+
+BASIN_MAPS = tuple(
+    basin_schema(tuple(name for i, name in enumerate(STARTS) if chosen >> i & 1))
+    for chosen in range(16)
+)
+"""One schema for each choice of dimensions."""
+
+
+class LeadsTo(IntEnum):
+    """What a disturbance leads to."""
+
+    contact_lost = 0
+    whirl = 1
+
+
+def _scalar(units: str, long_name: str) -> Variable:
+    return Variable(long_name, units, nan_allowed=True)
+
+
+def _distance(dim: str, long_name: str) -> Variable:
+    return Variable(long_name, dims=(dim,), nan_allowed=True, rtol=1e-6)
+
+
+SMALLEST_DISTURBANCE = DatasetSchema(
+    name="smallest_disturbance",
+    title="Smallest disturbance of steady sliding that leads to contact loss, or to the whirl",
+    coordinates={
+        "directions": Variable("number of random directions", dims=("directions",), dtype="i4"),
+        "improved": Variable(
+            "rank of the direction that was improved", dims=("improved",), dtype="i4"
+        ),
+    },
+    variables={
+        "leads_to": Variable("what it leads to", dtype="i1", flags=LeadsTo),
+        "x_rest": _scalar("m", "x of steady sliding"),
+        "y_rest": _scalar("m", "y of steady sliding"),
+        "growth_rate": _scalar("s-1", "largest real part of small motions about it"),
+        "regime_linear": Variable(
+            "stability regime of model A3", dtype="i1", flags=LinearRegimeFlag
+        ),
+        "rest_distance": _scalar("1", "norm of the start at rest at r = 0"),
+        "linear_distance": _scalar("1", "smallest norm with which the linear motion loses contact"),
+        "distance": Variable("smallest norm found, an upper bound", nan_allowed=True, rtol=1e-6),
+        **{
+            f"{name}_disturbance": Variable(f"its {words}", units, nan_allowed=True, rtol=1e-4)
+            for name, units, words in (
+                ("x", "m", "part along the belt"),
+                ("y", "m", "part away from the belt"),
+                ("vx", "m s-1", "velocity along the belt"),
+                ("vy", "m s-1", "velocity away from the belt"),
+            )
+        },
+        "distance_by_number": _distance("directions", "smallest norm along the first directions"),
+        "improved_distance": _distance("improved", "norm after the local search from a direction"),
+        "share_below": _scalar(
+            "1", "most of all directions that can have a smaller norm than those tried, 95 %"
+        ),
+        "reached": Variable(
+            "number of directions along which it happens within the bound", dtype="i4"
+        ),
+        "unfinished": Variable("number of runs that did not reach their end", dtype="i4"),
+        "outcome": outcome(
+            among=(
+                Outcome.converged,
+                Outcome.not_reached,
+                Outcome.already_unstable,
+                Outcome.no_sliding_state,
+            )
+        ),
+        "alpha1": Variable("angle of spring 1", "rad"),
+        "alpha2": Variable("angle of spring 2", "rad"),
+        "t_end": Variable("end of each run", "s"),
+        "bound": Variable("largest norm tried"),
+    },
+)

@@ -1,0 +1,1 @@
+"""Models prepared for the methods that solve them: arrays in, arrays out."""

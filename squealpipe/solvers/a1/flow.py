@@ -1,0 +1,265 @@
+"""A1 as a flow with derivative: its automaton under :mod:`squealpipe.methods.limit_cycles`."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import cache
+from typing import Any
+
+import numpy as np
+from scipy.optimize import minimize_scalar
+
+from squealpipe.laws.friction_laws import coefficient
+from squealpipe.laws.springs import fixed_ends
+from squealpipe.methods.limit_cycles.event_flow import (
+    Passage,
+    Segment,
+    Switched,
+    Touch,
+    TurningPoint,
+    Vector,
+    compile_flow,
+    sample_path,
+    turning_points,
+)
+from squealpipe.models.a1 import Regime
+from squealpipe.models.a1_automaton import A1Automaton, EventKind
+from squealpipe.models.damped import is_undamped
+from squealpipe.models.switching import Event
+from squealpipe.parameters import Parameters
+from squealpipe.solvers.a1.reference import (
+    PARAMETERS,
+    SURFACES,
+    VARIED,
+    regime_values,
+    symbolic_automaton,
+)
+
+ROUND_OFF = 2.0**-52
+_PIVOT = 1e-3
+"""A distance from a pivot over the spring's length at which a cycle counts as meeting it."""
+_TANGENT, _BEFORE = 1e-4, 1e-3
+"""Share of the friction limit, or of the speeds, within which an event is at a tangent, the share
+of the period before it."""
+_TOUCHES: dict[tuple[tuple[int, ...], tuple[int, ...]], Touch] = {
+    ((Event.separation, Event.contact), ()): Touch.graze,
+    ((Event.contact, Event.separation), ()): Touch.graze,
+    ((Event.stick, Event.slip), ()): Touch.touch,
+    ((Event.reversal, Event.reversal), ()): Touch.touch,
+    ((Event.slip, Event.stick), ()): Touch.split,
+    ((Event.stick, Event.slip), (Event.reversal,)): Touch.passing,
+    ((Event.reversal,), ()): Touch.meeting,
+}
+"""Events that stand in place of others → what has happened."""
+
+
+@cache
+def _compiled(law: str) -> tuple[Any, Any, Any]:
+    """Integrators with and without variational equations, and gradients of the surfaces."""
+    return compile_flow(*symbolic_automaton(law), len(PARAMETERS), VARIED)
+
+
+class A1Flow:
+    """A1 at given parameters and angles, for :mod:`squealpipe.methods.limit_cycles.event_flow`.
+
+    Args:
+        params: physical parameters.
+        alpha1, alpha2: angles, rad.
+        follow: name of a parameter or angle that derivatives are taken by.
+        unit: of that parameter.
+    """
+
+    def __init__(
+        self,
+        params: Parameters,
+        alpha1: float,
+        alpha2: float,
+        *,
+        follow: str | None = None,
+        unit: float = 1.0,
+    ) -> None:
+        self.params = params
+        self.a1 = A1Automaton(params, alpha1, alpha2)
+        self.has_families = is_undamped(params)
+        self.jumps = params.static_mu != float(coefficient(0.0, params))
+        self.integrator, self.plain, self._gradients = _compiled(params.friction_law)
+        self._values = {regime: regime_values(self.a1, regime) for regime in Regime}
+        self.rates = unit * self._rates(follow)
+
+    def _rates(self, follow: str | None) -> Vector:
+        """Change of :data:`PARAMETERS` with one parameter or angle."""
+        g = self.a1.geometry
+        changes: dict[str | None, dict[str, float]] = {
+            None: {},
+            "alpha1": {"c1": -g.s1, "s1": g.c1},
+            "alpha2": {"c2": -g.s2, "s2": g.c2},
+            "mu": {"mu": 1.0, "static_mu": float(self.params.mu_static is None)},
+            "mu_static": {"static_mu": 1.0},
+        }
+        change = changes.get(follow, {str(follow): 1.0})
+        return np.array([change.get(name, 0.0) for name in PARAMETERS[:VARIED]])
+
+    def parameters(self, regime: int) -> Sequence[float]:
+        """Values of the symbolic parameters in a regime."""
+        return self._values[Regime(regime)]
+
+    def start(self, state: Vector) -> tuple[int, Vector]:
+        """The regime of a state, and the state off any surface."""
+        regime = self.a1.start(state)
+        return regime, self.a1.leave(regime, state, ROUND_OFF)
+
+    def switch(self, surface: int, regime: int, state: Vector) -> Switched:
+        """What follows when a surface is met."""
+        kind = SURFACES[surface]
+        if kind == EventKind.separation and regime == Regime.separated:
+            kind = EventKind.contact
+        after, on_surface = self.a1.switch(kind, regime, state)
+        gradient = None
+        if kind in {EventKind.belt_speed, EventKind.release}:
+            values = self._gradients(on_surface, pars=[*self.parameters(regime), *self.rates, 0.0])
+            gradient = np.asarray(values).reshape(-1, len(state) + 1)[surface]
+        return Switched(
+            int(_event(kind, after)), after, self.a1.leave(after, on_surface, ROUND_OFF), gradient
+        )
+
+    def velocity(self, regime: int, state: Vector) -> Vector:
+        """The field of a regime."""
+        return np.array(self.a1.field(regime)(0.0, state))
+
+    def jacobian(self, regime: int, state: Vector) -> Vector:
+        """∂f/∂z of a regime, (4, 4), from the variational equations at time 0."""
+        size = len(state)
+        integrator = self.integrator
+        integrator.time = 0.0
+        integrator.pars[:] = [*self.parameters(regime), *self.rates, 0.0]
+        integrator.state[:size] = state
+        integrator.state[size:] = np.eye(size, size + 1).ravel()
+        integrator.step(write_tc=True)
+        return np.array(integrator.tc[size:, 1]).reshape(size, size + 1)[:, :size]
+
+    def holds(self, regime: int) -> bool:
+        """Whether a regime fixes a component of the state: stick."""
+        return regime == Regime.stick
+
+    def touch_of(self, extra: tuple[int, ...], missing: tuple[int, ...]) -> Touch | None:
+        """What has happened where the kinds ``extra`` stand in place of ``missing``."""
+        return _TOUCHES.get((extra, missing))
+
+    def clearance(self, touch: Touch, passage: Passage) -> float:
+        """How far a motion that was kept is from a touch; infinite where none is near.
+
+        In m for contact, m/s for belt speed, N for the limit of stick.
+        """
+        p, segments = self.params, passage.segments
+        distances: list[float] = []
+        if touch == Touch.graze:
+            distances = [abs(point.value - p.preload) for point in turning_points(segments, 1)]
+        elif touch == Touch.touch:
+            distances = [
+                abs(point.value - p.belt_speed)
+                for point in turning_points(segments, 2)
+                if _is_inside(point, segments[point.segment])
+            ]
+        elif touch == Touch.split:
+            distances = [self._least_margin(part) for part in segments if self.holds(part.regime)]
+        else:
+            for kind, state in zip(passage.event_kinds, passage.event_states, strict=True):
+                if touch == Touch.passing and kind == Event.reversal:
+                    distances.append(abs(self.a1.pull(state)) - self.a1.grip(state))
+                elif touch == Touch.meeting and kind in {Event.separation, Event.contact}:
+                    distances.append(abs(self.a1.lag(state)))
+        return min(distances, default=np.inf)
+
+    def overlap(self, touch: Touch, passage: Passage, first: int) -> float:
+        """How far a motion is beyond a touch whose first event has the index ``first``.
+
+        A depth in the units of :meth:`clearance`, or the time between the events (squared where
+        it grows as a root).
+        """
+        times = passage.event_times
+        if touch == Touch.meeting:
+            places = [i for i in (first - 1, first + 1) if 0 <= i < len(times)]
+            return min((abs(times[i] - times[first]) for i in places), default=np.inf)
+        between = passage.segments[first + 1]
+        duration = times[first + 1] - times[first]
+        if touch == Touch.passing:
+            return duration
+        if touch == Touch.split or self.holds(between.regime):
+            return duration * duration
+        graze = touch == Touch.graze
+        surface = self.params.preload if graze else self.params.belt_speed
+        depths = [
+            abs(point.value - surface) for point in turning_points([between], 1 if graze else 2)
+        ]
+        return max(depths, default=duration * duration)
+
+    def is_singular(self, passage: Passage) -> bool:
+        """Whether a motion that was kept comes next to a pivot, where d = 0."""
+        p, ends = self.params, fixed_ends(self.params, self.a1.geometry)
+        for part in passage.segments:
+            place = part.coefficients[:, :2, 0]
+            for length, pivot in ((p.length1, ends[:2]), (p.length2, ends[2:])):
+                if (np.hypot(*(place - np.array(pivot)).T) < _PIVOT * length).any():
+                    return True
+        return False
+
+    def is_tangent(self, passage: Passage) -> bool:
+        """Whether a motion that was kept touches stick, or a release from it, at a tangent."""
+        p, parts = self.params, passage.segments
+        duration = parts[-1].times[-1]
+        places = np.concatenate([part.coefficients[:, :, 0] for part in parts])
+        speed = _TANGENT * float(np.ptp(places[:, 2]))
+        force = _TANGENT * p.static_mu * p.k3 * p.preload
+        if self.clearance(Touch.touch, passage) < speed:
+            return True
+        if min(self.clearance(touch, passage) for touch in (Touch.split, Touch.passing)) < force:
+            return True
+        for kind, part in zip(passage.event_kinds, parts, strict=False):
+            before = float(part.times[-1] - _BEFORE * duration)
+            if before <= part.times[0] or part.regime == Regime.separated:
+                continue
+            if kind == Event.slip:
+                depth, limit = self._margin(part, before), force
+            elif kind in {Event.stick, Event.reversal}:
+                depth, limit = self.a1.lag(sample_path([part], np.array([before]))[0]), speed
+            else:
+                continue
+            if abs(depth) < limit:
+                return True
+        return False
+
+    def _least_margin(self, segment: Segment) -> float:
+        """Smallest μs N − |x-force| of a stick away from its end, N; infinite where it falls."""
+        inside = np.linspace(segment.times[0], segment.times[-1], 8 * len(segment.times) + 1)
+        path = sample_path([segment], inside)
+        margin = np.array([self.a1.grip(z) - abs(self.a1.pull(z)) for z in path])
+        low = np.flatnonzero((margin[1:-1] < margin[:-2]) & (margin[1:-1] <= margin[2:])) + 1
+        least = np.inf
+        for place in low:
+            found = minimize_scalar(
+                lambda time: self._margin(segment, float(time)),
+                bounds=(inside[place - 1], inside[place + 1]), method="bounded",
+                options={"xatol": 1e-12},
+            )  # fmt: skip
+            least = min(least, float(found.fun))
+        return least
+
+    def _margin(self, segment: Segment, time: float) -> float:
+        state = sample_path([segment], np.array([time]))[0]
+        return self.a1.grip(state) - abs(self.a1.pull(state))
+
+
+def _is_inside(point: TurningPoint, part: Segment) -> bool:
+    """Whether a turning point is in slip and not its first instant, after a stick."""
+    late = point.time - part.times[0] > 1e-6 * (part.times[-1] - part.times[0])
+    return late and part.regime in {Regime.slip_slower, Regime.slip_faster}
+
+
+def _event(kind: EventKind, after: int) -> Event:
+    if kind == EventKind.separation:
+        return Event.separation
+    if kind == EventKind.contact:
+        return Event.contact
+    if kind == EventKind.release:
+        return Event.slip
+    return Event.stick if after == Regime.stick else Event.reversal

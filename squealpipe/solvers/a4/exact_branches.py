@@ -1,0 +1,109 @@
+"""Branches of exact periodic motions of model A4, in scaled units."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from squealpipe.methods.orbits.orbits import (
+    Orbit,
+    TraceEnd,
+    decoupled_half_period,
+    solve_orbit,
+    trace_branch,
+)
+from squealpipe.schema import Outcome
+from squealpipe.solvers.a4.orbits import grazing_start, linear_orbit
+from squealpipe.solvers.a4.system import ScaledSystem
+
+BRANCH_ENDS = {
+    TraceEnd.reached: Outcome.amplitude_reached,
+    TraceEnd.returned: Outcome.retraced,
+    TraceEnd.tongue_end: Outcome.tongue_end,
+    TraceEnd.lost: Outcome.branch_lost,
+    TraceEnd.step_limit: Outcome.step_limit,
+    TraceEnd.diverged: Outcome.pole,
+}
+"""Outcome of a branch that was followed upwards."""
+
+LINEAR_POINTS = 6
+"""Points on the linear mode, from rest to grazing, with which a backbone begins."""
+_SPACING = 0.02
+"""Of the recorded points, over 1 + |z|."""
+_DECOUPLED_SPACING = 0.04
+_ISOLATED_POINTS = 24
+
+
+def exact_branch(
+    scene: ScaledSystem, mode: int, y_max: float, x_max: float, *, cross_poles: bool = False
+) -> tuple[list[Orbit], list[Outcome], Outcome]:
+    """Orbits of a branch in scaled units, their outcomes, and why it ends."""
+    if scene.obstacle != Outcome.converged:
+        return [], [], scene.obstacle
+    if scene.isolated_mode == mode:
+        orbits = isolated_orbits(scene, mode, x_max)
+        return orbits, [Outcome.isolated_mode] * len(orbits), Outcome.amplitude_reached
+    if not math.isfinite(scene.slope(mode)):
+        return [], [], Outcome.pole
+    peaks = np.linspace(scene.rest[1], min(1.0, y_max), LINEAR_POINTS + 1)[1:]
+    orbits = [linear_orbit(scene, mode, float(peak)) for peak in peaks]
+    outcomes = [linear_outcome(float(peak)) for peak in peaks]
+    if y_max <= 1.0:
+        return orbits, outcomes, Outcome.amplitude_reached
+    if scene.system.decoupled:
+        beyond, end = _decoupled_branch(scene, y_max, cross_poles=cross_poles)
+    else:
+        seed = grazing_start(scene, mode)
+        table, why = trace_branch(
+            scene.system, seed.point, seed.direction, y_max, seed.settings(), _SPACING
+        )
+        beyond = [Orbit(row[:3], np.empty(int(row[7])), row[5], row[6]) for row in table]
+        end = BRANCH_ENDS[why]
+    return orbits + beyond, outcomes + [Outcome.converged] * len(beyond), end
+
+
+def linear_outcome(peak: float) -> Outcome:
+    """Outcome of a point on the linear mode, with its scaled peak."""
+    return Outcome.grazing if peak == 1.0 else Outcome.linear_mode
+
+
+def isolated_orbits(scene: ScaledSystem, mode: int, x_max: float) -> list[Orbit]:
+    """The vertical branch of a decoupled x mode: y rests, x swings at its own frequency."""
+    half_period = math.pi / scene.omega(mode)
+    index = 2.0 * math.cos(2.0 * half_period * scene.omega(3 - mode))
+    x_rest, y_rest = scene.rest
+    return [
+        Orbit(np.array([x_rest + float(a), y_rest, half_period]), np.empty(0), index, 0.0)
+        for a in np.linspace(0.0, x_max, _ISOLATED_POINTS + 1)[1:]
+    ]
+
+
+def pole_number(scene: ScaledSystem, half_period: float) -> int:
+    """How many internal resonances ω = ω_x/n lie above this motion's ω, where K12 = 0."""
+    return int(half_period * math.sqrt(scene.system.below.matrix[0][0]) / math.pi)
+
+
+def decoupled_peaks(y_max: float) -> NDArray[np.float64]:
+    """Peaks from just above grazing to y_max at which a decoupled branch is computed."""
+    count = max(8, math.ceil((y_max - 1.0) / _DECOUPLED_SPACING))
+    return 1.0 + (y_max - 1.0) * np.linspace(0.0, 1.0, count + 1)[1:] ** 1.5
+
+
+def _decoupled_branch(
+    scene: ScaledSystem, y_max: float, *, cross_poles: bool
+) -> tuple[list[Orbit], Outcome]:
+    """The y mode where K12 = 0: y is known in closed form and drives x, up to a pole."""
+    peaks = decoupled_peaks(y_max)
+    orbits: list[Orbit] = []
+    first = pole_number(scene, math.pi / math.sqrt(scene.system.below.matrix[1][1]))
+    for peak in map(float, peaks):
+        half_period = decoupled_half_period(scene.system, peak)
+        if pole_number(scene, half_period) != first and not cross_poles:
+            return orbits, Outcome.pole
+        guess = np.array([scene.rest[0], peak, half_period])
+        found = solve_orbit(scene.system, guess)
+        if found is not None:
+            orbits.append(found)
+    return orbits, Outcome.amplitude_reached

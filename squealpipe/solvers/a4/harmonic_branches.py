@@ -1,0 +1,252 @@
+"""Branches of model A4 by harmonic balance in cosines, each point judged by the exact orbit."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from squealpipe.methods.balance.harmonic_balance import CosineBalance, contact_of
+from squealpipe.methods.continuation import (
+    Continuation,
+    ContinuationEnd,
+    ContinuationSettings,
+    ContinuationState,
+)
+from squealpipe.methods.orbits.orbit_shape import sample
+from squealpipe.methods.orbits.orbits import decoupled_half_period, index_from_switches, solve_orbit
+from squealpipe.schema import Outcome
+from squealpipe.solvers.a4.exact_branches import (
+    LINEAR_POINTS,
+    decoupled_peaks,
+    isolated_orbits,
+    linear_outcome,
+    pole_number,
+)
+from squealpipe.solvers.a4.orbits import grazing_start, linear_orbit
+from squealpipe.solvers.a4.system import ScaledSystem
+
+Vector = NDArray[np.float64]
+
+_PHASES = np.linspace(0.0, math.pi, 257)
+_NEAR_EXACT = 0.05
+"""Share of ω by which an exact orbit may differ and still be the same motion."""
+_FAR = 0.05
+"""Waveform distance over l_pre beyond which a series does not stand for the exact orbit."""
+
+
+@dataclass(frozen=True)
+class HarmonicPoint:
+    """A solution of the balance in scaled units, with what the exact orbits say of it.
+
+    Attributes:
+        z: unknowns of :class:`CosineBalance`.
+        residual: of the balance.
+        outcome: of the point.
+        switches: contact times over the unit of time, in the half period.
+        stability_index: trace − 2 of the monodromy along the series' contact times.
+        omega_exact: ω of the exact orbit of equal peak, NaN without one.
+        waveform_error: largest distance of (x, y) from it at equal phase.
+        integration_error: the same from A4 integrated over one period from the series' peak.
+    """
+
+    z: Vector
+    residual: float
+    outcome: Outcome
+    switches: Vector
+    stability_index: float
+    omega_exact: float
+    waveform_error: float
+    integration_error: float
+
+
+def harmonic_branch(
+    scene: ScaledSystem,
+    mode: int,
+    y_max: float,
+    x_max: float,
+    *,
+    n_harmonics: int,
+    n_time: int | None = None,
+    sigma: float | None = None,
+    cross_poles: bool = False,
+    settings: ContinuationSettings | None = None,
+) -> tuple[CosineBalance, list[HarmonicPoint], Outcome]:
+    """Points of a branch from the linear mode upwards, and why it ends; all scaled.
+
+    Args:
+        scene: the system; mode: 1 or 2; y_max, x_max: scaled ends of the branch.
+        n_harmonics: harmonics; n_time: samples a period, or None for closed forms.
+        sigma: scaled regularizing factor, or None for the sharp law.
+        cross_poles: go on beyond ω = ω_x/n where K12 = 0.
+        settings: step control of the continuation.
+    """
+    balance = CosineBalance(scene.system, contact_of(n_harmonics, 1.0, n_time, sigma))
+    if scene.obstacle != Outcome.converged:
+        return balance, [], scene.obstacle
+    if scene.isolated_mode == mode:
+        swings = [linear_series(scene, mode, n_harmonics, x) for x in _isolated(scene, mode, x_max)]
+        points = [_judged(scene, balance, z, Outcome.isolated_mode) for z in swings]
+        return balance, points, Outcome.amplitude_reached
+    if not math.isfinite(scene.slope(mode)):
+        return balance, [], Outcome.pole
+    peaks = np.linspace(scene.rest[1], min(1.0, y_max), LINEAR_POINTS + 1)[1:]
+    series = [
+        linear_series(scene, mode, n_harmonics, linear_orbit(scene, mode, float(peak)).point)
+        for peak in peaks
+    ]
+    points = [
+        _judged(scene, balance, z, linear_outcome(float(peak)))
+        for z, peak in zip(series, peaks, strict=True)
+    ]
+    if y_max <= 1.0:
+        return balance, points, Outcome.amplitude_reached
+    if scene.system.decoupled:
+        beyond, end = _decoupled_branch(scene, balance, series[-1], y_max, cross_poles=cross_poles)
+    else:
+        control = settings or ContinuationSettings()
+        beyond, end = coupled_branch(scene, balance, mode, series[-1], y_max, control)
+    return balance, points + [_judged(scene, balance, z, Outcome.converged) for z in beyond], end
+
+
+def linear_series(scene: ScaledSystem, mode: int, n_harmonics: int, point: Vector) -> Vector:
+    """Unknowns of the linear mode that starts at rest at (x0, y0) of a point."""
+    z = np.zeros(2 * n_harmonics + 3)
+    z[0], z[n_harmonics + 1] = scene.rest
+    z[1], z[n_harmonics + 2] = point[:2] - scene.rest
+    z[-1] = scene.omega(mode)
+    return z
+
+
+def _isolated(scene: ScaledSystem, mode: int, x_max: float) -> list[Vector]:
+    return [orbit.point for orbit in isolated_orbits(scene, mode, x_max)]
+
+
+def coupled_branch(
+    scene: ScaledSystem,
+    balance: CosineBalance,
+    mode: int,
+    start: Vector,
+    y_max: float,
+    settings: ContinuationSettings,
+) -> tuple[list[Vector], Outcome]:
+    """Solutions beyond grazing, followed by pseudo-arclength, and why the branch ends."""
+    seed = grazing_start(scene, mode)
+    direction = np.zeros_like(start)
+    direction[1], direction[balance.contact.n_harmonics + 2] = seed.direction[:2]
+    first = min(settings.first_step, 0.1 * seed.room / (1.0 + float(np.linalg.norm(start))))
+    control = replace(settings, first_step=max(first, settings.shortest_step))
+    ended = Outcome.converged
+
+    def from_higher_end(state: ContinuationState) -> ContinuationState:
+        if _other_end(balance, state.point) <= _peak(balance, state.point):
+            return state
+        signs = balance.shift_signs
+        return replace(
+            state,
+            point=signs * state.point,
+            tangent=signs * state.tangent,
+            curvature=signs * state.curvature,
+        )
+
+    def stop(state: ContinuationState) -> bool:
+        nonlocal ended
+        odd = state.point * (balance.shift_signs < 0.0)
+        reach = state.step * (1.0 + float(np.linalg.norm(state.point)))
+        if _peak(balance, state.point) >= y_max:
+            ended = Outcome.amplitude_reached
+        elif float(np.linalg.norm(odd)) < reach:
+            ended = Outcome.tongue_end
+        elif _peak(balance, state.point) <= 1.0:
+            ended = Outcome.retraced
+        return ended != Outcome.converged
+
+    result = Continuation(balance, start, direction, control, from_higher_end).run(stop)
+    found = [state.point for state in result.states]
+    if result.end == ContinuationEnd.branch_lost:
+        return found, Outcome.branch_lost
+    if result.end == ContinuationEnd.point_limit:
+        return found, Outcome.step_limit
+    if ended == Outcome.amplitude_reached:
+        last = balance.solve(found[-1], balance.peak_row, y_max)
+        found = found[:-1] + ([last[0]] if last else [])
+    return found, ended
+
+
+def _peak(balance: CosineBalance, z: Vector) -> float:
+    return float(balance.peak_row @ z)
+
+
+def _other_end(balance: CosineBalance, z: Vector) -> float:
+    return float(balance.peak_row @ (balance.shift_signs * z))
+
+
+def _decoupled_branch(
+    scene: ScaledSystem, balance: CosineBalance, start: Vector, y_max: float, *, cross_poles: bool
+) -> tuple[list[Vector], Outcome]:
+    """The y mode where K12 = 0, at given peaks, up to a pole of x."""
+    found: list[Vector] = []
+    guess = start
+    first = pole_number(scene, math.pi / start[-1])
+    for peak in map(float, decoupled_peaks(y_max)):
+        half_period = decoupled_half_period(scene.system, peak)
+        if pole_number(scene, half_period) != first and not cross_poles:
+            return found, Outcome.pole
+        guess = guess.copy()
+        guess[-1] = math.pi / half_period
+        solved = balance.solve(guess, balance.peak_row, peak)
+        if solved is not None:
+            guess = solved[0]
+            found.append(guess)
+    return found, Outcome.amplitude_reached
+
+
+def _judged(
+    scene: ScaledSystem, balance: CosineBalance, z: Vector, outcome: Outcome
+) -> HarmonicPoint:
+    """A point with its index and its distances from exact orbit and exact flow."""
+    x, y, omega = balance.split(z)
+    half_period = math.pi / omega
+    start = np.array([x.sum(), y.sum(), half_period])
+    period = np.array([start[0], start[1], 2.0 * half_period])
+    switches = balance.contact.angles(y) / omega
+    values, _ = balance.evaluate(z)
+    omega_exact, waveform_error = _distance(scene, balance, z, start, outcome)
+    if outcome == Outcome.converged and not waveform_error <= _FAR:
+        outcome = Outcome.unconfirmed
+    return HarmonicPoint(
+        z=z,
+        residual=float(np.abs(values).max()),
+        outcome=outcome,
+        switches=switches,
+        stability_index=index_from_switches(scene.system, switches, half_period, start[1]),
+        omega_exact=omega_exact,
+        waveform_error=waveform_error,
+        integration_error=_apart(scene, balance, z, period, 2.0 * _PHASES),
+    )
+
+
+def _distance(
+    scene: ScaledSystem, balance: CosineBalance, z: Vector, start: Vector, outcome: Outcome
+) -> tuple[float, float]:
+    """(ω, waveform distance) of the exact orbit of equal peak; NaN where none is near."""
+    omega = balance.split(z)[2]
+    point = start
+    if outcome == Outcome.converged:
+        exact = solve_orbit(scene.system, start)
+        if exact is None or abs(exact.omega - omega) > _NEAR_EXACT * omega:
+            return math.nan, math.nan
+        point = exact.point
+    return math.pi / float(point[2]), _apart(scene, balance, z, point, _PHASES)
+
+
+def _apart(
+    scene: ScaledSystem, balance: CosineBalance, z: Vector, point: Vector, theta: Vector
+) -> float:
+    """Largest distance of the series at θ from the exact motion that ``point`` starts."""
+    x, y, _ = balance.split(z)
+    table = np.cos(np.outer(theta, np.arange(len(x))))
+    states = sample(scene.system.rows, point, _PHASES)
+    return float(np.hypot(table @ x - states[:, 0], table @ y - states[:, 1]).max())

@@ -1,0 +1,35 @@
+"""The commit of the checkout that the package runs from."""
+
+from __future__ import annotations
+
+import subprocess
+from functools import cache
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+UNKNOWN = "unknown"
+
+
+@cache
+def commit(root: Path = ROOT) -> str:
+    """Our own commit, with a mark if there are changes; never that of a surrounding repository.
+
+    Args:
+        root: the checkout; "unknown" if it is none, or a folder inside another repository.
+    """
+    package = "squealpipe/__init__.py"
+    if _git(root, "rev-parse", "--show-prefix") or _git(root, "ls-files", package) != package:
+        return UNKNOWN
+    if not (root / "Snakefile").is_file():  # installed below a repository of someone else's
+        return UNKNOWN
+    return _git(root, "describe", "--always", "--dirty", "--abbrev=12") or UNKNOWN
+
+
+def _git(root: Path, *arguments: str) -> str:
+    try:
+        done = subprocess.run(
+            ["git", *arguments], cwd=root, capture_output=True, text=True, check=True, timeout=10
+        )
+    except (OSError, subprocess.SubprocessError):
+        return ""
+    return done.stdout.strip()

@@ -1,0 +1,110 @@
+"""The branch of doubled period that leaves a backbone of model A4 at a period doubling."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from squealpipe.laws.springs import geometry, linear_stiffness
+from squealpipe.methods.orbits.orbits import Orbit, SpecialPoint, special_points
+from squealpipe.models.a4 import first_integral_value
+from squealpipe.parameters import Parameters, brief, is_whole_number
+from squealpipe.schema import Outcome, build
+from squealpipe.schema.backbones import DOUBLED_BRANCH
+from squealpipe.solvers.a4.doubled_branches import OFFSETS, doubled_branch_from
+from squealpipe.solvers.a4.exact_branches import BRANCH_ENDS, exact_branch
+from squealpipe.solvers.a4.system import ScaledSystem, scaled_system
+from squealpipe.tasks.backbones.backbone import exact_variables, special_variables
+from squealpipe.tasks.backbones.orbit import check_length, check_mode
+
+
+def doubled_branch(
+    params: Parameters,
+    alpha1: float,
+    alpha2: float,
+    *,
+    mode: int,
+    doubling: int = 1,
+    y_peak_max: float | None = None,
+) -> xr.Dataset:
+    """The family of motions of doubled period that leaves a backbone at a period doubling.
+
+    The backbone is followed to the doubling (stability index −2), which is located to
+    round-off; there the conditions of rest over two periods lose rank at one of the two instants
+    of rest, and the null direction leads to the new orbits. They are symmetric and exact like
+    those of ``backbone``, and are followed in the same steps.
+
+    Args:
+        params: physical parameters.
+        alpha1, alpha2: angles, rad.
+        mode: 1 or 2, by ascending ω of the contact state.
+        doubling: which period doubling along the backbone, from 1.
+        y_peak_max: larger y of the instants of rest, m, to which both branches are followed;
+            6 l_pre by default. The new orbits pass the other instant of rest of the old ones
+            in motion, so it is not always the largest y of a period (``y_largest``).
+
+    Returns:
+        Dataset over ``point`` as from ``backbone``, the doubling first (run through twice, index
+        2), with y_largest (m), first_integral (N J/m) and, of the doubling,
+        doubling_omega (rad/s, of the simple orbit) and doubling_y_peak (m). ``end`` says why the
+        branch ends, or why there is none: ``no_doubling`` or the end of an empty backbone.
+
+    Raises:
+        ValueError: an argument is out of its range; the message names it.
+    """
+    check_mode(mode)
+    if not (is_whole_number(doubling) and doubling >= 1):
+        raise ValueError(f"doubling = {brief(doubling)}: a whole number from 1 is needed")
+    y_max = 6.0 * params.preload if y_peak_max is None else y_peak_max
+    check_length("y_peak_max", y_max, params.preload)
+    scene = scaled_system(params, alpha1, alpha2)
+    peak = y_max / scene.length
+    simple, outcomes, end = exact_branch(scene, mode, peak, peak)
+    flying = [
+        orbit
+        for orbit, outcome in zip(simple, outcomes, strict=True)
+        if outcome == Outcome.converged
+    ]
+    found = [
+        orbit
+        for kind, orbit in special_points(scene.system, flying)
+        if kind is SpecialPoint.period_doubling
+    ]
+    attrs = {"alpha1": alpha1, "alpha2": alpha2, "mode": mode, "doubling": doubling}
+    if len(found) < doubling:
+        return _dataset(scene, params, [], None, Outcome.no_doubling if simple else end, attrs)
+    start = found[doubling - 1]
+    orbits, why = doubled_branch_from(scene, start, peak)
+    return _dataset(scene, params, orbits, start, BRANCH_ENDS[why], attrs)
+
+
+def _dataset(
+    scene: ScaledSystem,
+    params: Parameters,
+    orbits: list[Orbit],
+    start: Orbit | None,
+    end: Outcome,
+    attrs: dict[str, Any],
+) -> xr.Dataset:
+    special = special_points(scene.system, orbits[len(OFFSETS) :])
+    variables = exact_variables(scene, params, orbits, [Outcome.converged] * len(orbits), end)
+    stiffness = linear_stiffness(params, geometry(attrs["alpha1"], attrs["alpha2"]))
+    rest = np.array([orbit.point[:2] for orbit in orbits]).reshape(-1, 2) * scene.length
+    highest = [orbit.largest_y(scene.system) for orbit in orbits]
+    return build(
+        DOUBLED_BRANCH,
+        {
+            **variables,
+            **special_variables(scene, special),
+            "y_largest": np.array(highest) * scene.length,
+            "first_integral": first_integral_value(
+                rest[:, 0], rest[:, 1], 0.0, 0.0, params, stiffness
+            ),
+            "doubling_omega": start.omega * scene.frequency if start else np.nan,
+            "doubling_y_peak": start.point[1] * scene.length if start else np.nan,
+        },
+        {"point": np.arange(len(orbits)), "special": np.arange(len(special))},
+        attrs,
+    )

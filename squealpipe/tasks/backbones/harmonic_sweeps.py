@@ -1,0 +1,269 @@
+"""Errors of harmonic balance over its settings, and what the paper's own form of it finds."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+from squealpipe.methods.balance.harmonic_balance import CosineBalance, contact_of, cosines_of
+from squealpipe.methods.balance.sampled_balance import SampledBalance
+from squealpipe.methods.orbits.orbit_shape import sample
+from squealpipe.methods.orbits.orbits import Orbit
+from squealpipe.parameters import Parameters
+from squealpipe.schema import Outcome, build
+from squealpipe.schema.backbones import HARMONIC_FORMS, HARMONIC_SWEEP, Form
+from squealpipe.solvers.a4.orbits import find_orbit
+from squealpipe.solvers.a4.system import ScaledSystem, scaled_system
+
+Vector = NDArray[np.float64]
+Branches = Mapping[str, tuple[float, float, int]]
+"""Name → (alpha1, alpha2, mode)."""
+
+_INTERVALS = 2**14
+"""Intervals of half a period from which an exact orbit's cosines are taken."""
+_SHAPE_INTERVALS = 512
+_ROUND_OFF = 1e-12
+"""Errors below this say nothing of a convergence rate."""
+_PHASES = 13
+"""Phases of the start; not a divisor of the samples, whose own symmetry would hide the spread."""
+
+
+@dataclass(frozen=True)
+class ExactMotion:
+    """An exact orbit with its cosine coefficients, scaled."""
+
+    scene: ScaledSystem
+    orbit: Orbit
+    x: Vector
+    y: Vector
+
+    def series(self, n_harmonics: int) -> Vector:
+        """Unknowns of :class:`CosineBalance`, truncated."""
+        kept = n_harmonics + 1
+        return np.concatenate([self.x[:kept], self.y[:kept], [self.orbit.omega]])
+
+
+def exact_motion(
+    params: Parameters, alpha1: float, alpha2: float, mode: int, peak: float
+) -> ExactMotion:
+    """The exact orbit of a mode at y_peak = peak·l_pre.
+
+    Raises:
+        ValueError: there is none; the message says why.
+    """
+    scene = scaled_system(params, alpha1, alpha2)
+    orbit, outcome = find_orbit(scene, mode, peak)
+    if orbit is None:
+        raise ValueError(
+            f"alpha1 = {alpha1!r}, alpha2 = {alpha2!r}, mode = {mode!r}, peak = {peak!r}: no "
+            f"orbit ({outcome.name}); choose another scene, mode or peak"
+        )
+    states = sample(scene.system.rows, orbit.point, np.linspace(0.0, math.pi, _INTERVALS + 1))
+    return ExactMotion(scene, orbit, cosines_of(states[:, 0]), cosines_of(states[:, 1]))
+
+
+def sweep_harmonic_balance(
+    params: Parameters,
+    branches: Branches,
+    *,
+    peaks: Sequence[float],
+    harmonics: Sequence[int],
+    samples: Sequence[int],
+    sigmas: Sequence[float],
+    n_harmonics: int,
+) -> xr.Dataset:
+    """Errors against exact orbits, each setting varied alone, with fitted rates.
+
+    Args:
+        params: physical parameters.
+        branches: name → (alpha1, alpha2, mode).
+        peaks: y_peak over l_pre; harmonics: N_h.
+        samples: N a period, and sigmas: σ l_pre, varied at ``n_harmonics`` harmonics.
+        n_harmonics: N_h while N or σ is varied.
+    """
+    shape = len(branches), len(peaks)
+    errors = np.full((3, *shape, len(harmonics)), np.nan)
+    by_samples = np.full((*shape, len(samples)), np.nan)
+    by_sigma = np.full((*shape, len(sigmas)), np.nan)
+    units = []
+    for i, (alpha1, alpha2, mode) in enumerate(branches.values()):
+        for j, peak in enumerate(peaks):
+            motion = exact_motion(params, alpha1, alpha2, mode, peak)
+            for k, count in enumerate(harmonics):
+                errors[:, i, j, k] = _series_errors(motion, count)
+            by_samples[i, j] = [_omega_error(motion, n_harmonics, n, None) for n in samples]
+            by_sigma[i, j] = _smoothing_shifts(motion, n_harmonics, sigmas)
+        units.append(motion.scene.frequency)
+    unit = np.array(units)[:, None, None]
+    data = {
+        "omega_error": errors[0] * unit,
+        "omega_error_first": errors[1] * unit,
+        "waveform_error": errors[2] * params.preload,
+        "omega_error_samples": by_samples * unit,
+        "omega_error_sigma": by_sigma * unit,
+    }
+    return build(
+        HARMONIC_SWEEP,
+        {
+            **data,
+            "omega_rate": _rates(harmonics, errors[0]),
+            "waveform_rate": _rates(harmonics, errors[2]),
+            "sigma_rate": _rates(sigmas, by_sigma),
+            "n_harmonics_fixed": n_harmonics,
+            "outcome": np.where(
+                np.isfinite(errors).all(axis=0), Outcome.converged, Outcome.no_convergence
+            ),
+        },
+        {
+            "scene": list(branches),
+            "peak": np.asarray(peaks, float),
+            "harmonics": list(harmonics),
+            "samples": list(samples),
+            "sigma": np.asarray(sigmas, float),
+        },
+    )
+
+
+def _series_errors(motion: ExactMotion, count: int) -> tuple[float, float, float]:
+    """(ω at equal peak, ω at equal first harmonic, waveform), NaN where Newton fails."""
+    balance = CosineBalance(motion.scene.system, contact_of(count, 1.0, None, None))
+    guess = motion.series(count)
+    equal_peak = balance.solve(guess, balance.peak_row, float(motion.orbit.point[1]))
+    equal_first = balance.solve(guess, balance.first_harmonic_row, float(motion.y[1]))
+    if equal_peak is None or equal_first is None:
+        return math.nan, math.nan, math.nan
+    theta = np.linspace(0.0, math.pi, _SHAPE_INTERVALS + 1)
+    table = np.cos(np.outer(theta, np.arange(count + 1)))
+    states = sample(motion.scene.system.rows, motion.orbit.point, theta)
+    x, y, omega = balance.split(equal_peak[0])
+    return (
+        abs(omega - motion.orbit.omega),
+        abs(float(equal_first[0][-1]) - motion.orbit.omega),
+        float(np.hypot(table @ x - states[:, 0], table @ y - states[:, 1]).max()),
+    )
+
+
+def _omega(motion: ExactMotion, count: int, n_time: int | None, sigma: float | None) -> float:
+    balance = CosineBalance(motion.scene.system, contact_of(count, 1.0, n_time, sigma))
+    solved = balance.solve(motion.series(count), balance.peak_row, float(motion.orbit.point[1]))
+    return math.nan if solved is None else float(solved[0][-1])
+
+
+def _omega_error(motion: ExactMotion, count: int, n_time: int | None, sigma: float | None) -> float:
+    return abs(_omega(motion, count, n_time, sigma) - motion.orbit.omega)
+
+
+def _smoothing_shifts(motion: ExactMotion, count: int, sigmas: Sequence[float]) -> list[float]:
+    """|ω − ω of the sharp law| at the same harmonics, so truncation cancels."""
+    sharp = _omega(motion, count, None, None)
+    return [abs(_omega(motion, count, None, float(sigma)) - sharp) for sigma in sigmas]
+
+
+def _rates(settings: Sequence[float], errors: Vector) -> Vector:
+    """Exponents p of errors ~ setting^-p along the last axis, above round-off.
+
+    The coarsest setting is left out where three remain: it is seldom asymptotic yet.
+    """
+    first = 1 if errors.shape[-1] > 3 else 0
+    settings, errors = settings[first:], errors[..., first:]
+    flat = errors.reshape(-1, errors.shape[-1])
+    fitted = np.full(len(flat), np.nan)
+    for index, row in enumerate(flat):
+        usable = np.isfinite(row) & (row > _ROUND_OFF)
+        if usable.sum() >= 2:
+            logs = np.log(np.asarray(settings, float)[usable]), np.log(row[usable])
+            fitted[index] = -np.polyfit(*logs, 1)[0]
+    return fitted.reshape(errors.shape[:-1])
+
+
+def compare_harmonic_forms(
+    params: Parameters,
+    branches: Branches,
+    *,
+    peak: float = 2.0,
+    n_harmonics: int = 8,
+    n_time: int = 34,
+) -> xr.Dataset:
+    """The paper's balance, corrected and with Eq. (34) as printed, started at the exact orbit.
+
+    Args:
+        params: physical parameters; σ is ``params.sigma``.
+        branches: name → (alpha1, alpha2, mode).
+        peak: y_peak over l_pre of the orbits; n_harmonics: N_h; n_time: N.
+
+    Returns:
+        Per branch and form what was found; per N the rank of Γ and the spread over the phase
+        of the start on the last branch, for want of a phase condition.
+    """
+    forms = (Form.mended, Form.as_printed)
+    sigma = params.sigma * params.preload
+    motions = [exact_motion(params, *branch, peak) for branch in branches.values()]
+    found = [
+        [
+            SampledBalance(
+                motion.scene.system, n_harmonics, n_time, sigma, as_printed=form == Form.as_printed
+            )
+            for form in forms
+        ]
+        for motion in motions
+    ]
+    solved = [
+        [
+            balance.solve(balance.start_from_cosines(motion.x, motion.y, motion.orbit.omega))
+            for balance in row
+        ]
+        for motion, row in zip(motions, found, strict=True)
+    ]
+    unit = np.array([motion.scene.frequency for motion in motions])
+    peaks = [
+        [balance.peak(solution) for balance, solution in zip(*pair, strict=True)]
+        for pair in zip(found, solved, strict=True)
+    ]
+    counts = [2 * n_harmonics + extra for extra in (0, 1, 2)] + [4 * n_harmonics + 2]
+    counts += [16 * n_harmonics, 64 * n_harmonics]
+    spreads = [_phase_spread(motions[-1], n_harmonics, n, sigma) for n in counts]
+    return build(
+        HARMONIC_FORMS,
+        {
+            "omega": np.array([[s.omega for s in row] for row in solved]) * unit[:, None],
+            "omega_exact": np.array([motion.orbit.omega for motion in motions]) * unit,
+            "y_largest": np.array(peaks) * params.preload,
+            "y_peak": peak * params.preload,
+            "residual": [[s.residual for s in row] for row in solved],
+            "rank_deficit": [[s.rank_deficit for s in row] for row in solved],
+            "outcome": [
+                [Outcome.converged if s.converged else Outcome.no_convergence for s in row]
+                for row in solved
+            ],
+            "n_harmonics": n_harmonics,
+            "fourier_columns": 2 * n_harmonics + 1,
+            "fourier_rank": [rank for _, _, rank in spreads],
+            "phase_spread_y": np.array([y for y, _, _ in spreads]) * params.preload,
+            "phase_spread_omega": np.array([omega for _, omega, _ in spreads]) * unit[-1],
+        },
+        {"scene": list(branches), "form": list(forms), "samples": counts},
+        {"spread_scene": list(branches)[-1]},
+    )
+
+
+def _phase_spread(
+    motion: ExactMotion, n_harmonics: int, n_time: int, sigma: float
+) -> tuple[float, float, int]:
+    """(spread of the largest y, spread of ω, rank of Γ) over the phase of the start."""
+    balance = SampledBalance(motion.scene.system, n_harmonics, n_time, sigma)
+    peaks, omegas = [], []
+    for phase in 2.0 * math.pi * np.arange(_PHASES) / _PHASES:
+        start = balance.start_from_cosines(motion.x, motion.y, motion.orbit.omega, float(phase))
+        solution = balance.solve(start)
+        if solution.converged:
+            peaks.append(balance.peak(solution))
+            omegas.append(solution.omega)
+    rank = int(np.linalg.matrix_rank(balance.fourier))
+    if not peaks:
+        return math.nan, math.nan, rank
+    return max(peaks) - min(peaks), max(omegas) - min(omegas), rank

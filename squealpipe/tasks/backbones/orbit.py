@@ -1,0 +1,90 @@
+"""Exact periodic motions of model A4: one orbit, found from cold."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from squealpipe.parameters import Parameters, brief, is_finite_number, is_whole_number
+from squealpipe.schema import build
+from squealpipe.schema.backbones import PERIODIC_ORBIT, Assumption
+from squealpipe.schema.origin import recorded
+from squealpipe.solvers.a4.orbits import find_orbit, orbit_values
+from squealpipe.solvers.a4.system import scaled_system
+
+MOST_PRELOADS = 1e100
+"""Lengths over l_pre beyond which squares overflow."""
+
+
+@recorded(model="A4", method="exact")
+def periodic_orbit(
+    params: Parameters, alpha1: float, alpha2: float, *, mode: int, y_peak: float
+) -> xr.Dataset:
+    """The exact periodic motion of model A4 that belongs to a mode and a peak.
+
+    Nothing needs to be known beforehand: the branch is followed from the linear mode at grazing
+    contact to the peak, in the steps of ``backbone``, which are checked not to leave it. Below
+    l_pre the motion is the linear mode itself. Where the branch ends before the peak, an orbit of
+    another branch may be found across the resonance that ends it; its outcome is then
+    ``other_branch``.
+
+    Args:
+        params: physical parameters.
+        alpha1, alpha2: angles, rad.
+        mode: 1 or 2, by ascending ω of the contact state.
+        y_peak: larger y of the two instants of rest, m. An isolated x mode (K12 = 0) has
+            constant y and only the peak of its equilibrium; use ``backbone`` for it.
+
+    Returns:
+        Dataset with omega (rad/s), x_at_peak (m), switching_times (s, within the half period
+        after the peak), stability_index, residual, outcome and the orbit's shape. NaN with the
+        reason in ``outcome`` where there is no such motion.
+
+    Raises:
+        ValueError: mode is not 1 or 2, or y_peak is not a finite number above the equilibrium.
+    """
+    check_mode(mode)
+    check_length("y_peak", y_peak, params.preload)
+    scene = scaled_system(params, alpha1, alpha2)
+    found, outcome = find_orbit(scene, mode, y_peak / scene.length, across=True)
+    values, switches = _empty_values(), np.empty(0)
+    if found is not None:
+        values = orbit_values(scene, params, found.point)
+        values["stability_index"] = found.stability_index
+        values["residual"] = found.residual
+        switches = found.switches / scene.frequency
+    return build(
+        PERIODIC_ORBIT,
+        {**values, "y_peak": y_peak, "mode": mode, "switching_times": switches, "outcome": outcome},
+        {"switch": np.arange(1, len(switches) + 1)},
+        {"alpha1": alpha1, "alpha2": alpha2},
+    )
+
+
+def check_mode(mode: int) -> None:
+    """Raise a ValueError unless mode is the whole number 1 or 2."""
+    if not is_whole_number(mode) or mode not in (1, 2):
+        raise ValueError(
+            f"mode = {brief(mode)}: the whole number 1 or 2 is needed, by ascending frequency "
+            "in contact"
+        )
+
+
+def check_length(name: str, value: float, preload: float) -> None:
+    """Raise a ValueError unless a length is positive and finite, also over l_pre."""
+    if not (is_finite_number(value) and value > 0):
+        raise ValueError(f"{name} = {brief(value)}: a finite length above 0 is needed, m")
+    if not value <= MOST_PRELOADS * preload:
+        raise ValueError(
+            f"{name} = {brief(value)}: more than {MOST_PRELOADS:g} times preload = {preload!r}; "
+            "give lengths in one system of units"
+        )
+
+
+def _empty_values() -> dict[str, Any]:
+    names = ("omega", "x_at_peak", "x_amplitude", "y_amplitude", "largest_speed")
+    blank: dict[str, Any] = dict.fromkeys((*names, "stability_index", "residual"), math.nan)
+    return {**blank, "sliding_assumption": Assumption.holds}

@@ -1,0 +1,1 @@
+"""Error against time of every method."""

@@ -1,0 +1,260 @@
+"""One periodic motion of model A1, from a settled run or a guess."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from scipy.optimize import root
+
+from squealpipe.arrays import real_array
+from squealpipe.methods.limit_cycles.cycles import Cycle, common_scale, find_returns, solve_cycle
+from squealpipe.methods.limit_cycles.event_flow import Vector, flow, sample_path
+from squealpipe.models.a1 import Regime
+from squealpipe.parameters import Parameters, brief, is_finite_number
+from squealpipe.schema import Outcome, build
+from squealpipe.schema.cycles import LIMIT_CYCLE
+from squealpipe.schema.origin import recorded
+from squealpipe.solvers.a1.flow import A1Flow
+
+T_SETTLE = 2000.0
+"""Default time, in units of √(m/k1), after which a run counts as settled."""
+_WINDOWS = (40.0, 160.0)
+"""Times within which a return is looked for, in the same units."""
+_NEAR = 0.05
+"""A return this close, over the extent of the motion, ends the search for a better one."""
+_FAR = 0.3
+"""Newton's method has left the motion that it started from, over its period and extent."""
+_TRIES = 4
+_AT_REST = 1e-9
+SAMPLES = 400
+
+SCALARS = (
+    "period",
+    "x_min",
+    "x_max",
+    "y_min",
+    "y_max",
+    "contact_fraction",
+    "stick_fraction",
+    "least_contact_force",
+    "residual",
+)
+
+
+@recorded(method="Newton on the return map, events located")
+def limit_cycle(
+    params: Parameters,
+    alpha1: float,
+    alpha2: float,
+    *,
+    model: str = "A1",
+    guess: Sequence[float] | None = None,
+    t_settle: float | None = None,
+) -> xr.Dataset:
+    """A periodic motion of A1 with every event located, its stability included.
+
+    Newton's method on the return map; its derivative comes from the variational equations, with
+    the saltation matrix at each event. Without damping cycles come in families: the member nearest
+    to the guess is returned with the outcome ``family_member``.
+
+    Args:
+        params: physical parameters.
+        alpha1, alpha2: angles, rad.
+        model: "A1".
+        guess: state (x, y, ẋ, ẏ) in m and m/s near the cycle, which may be unstable. Without it,
+            the state that a run from rest has reached at ``t_settle``.
+        t_settle: s; default 2000 √(m/k1).
+
+    Returns:
+        Dataset with period (s), extrema (m), fractions in contact and stick, Floquet multipliers
+        (the trivial one first), events, and the motion at 401 instants. NaN with the reason in
+        ``outcome`` where no cycle is found.
+
+    Raises:
+        ValueError: an argument is not allowed.
+    """
+    if model != "A1":
+        raise ValueError(f"model = {model!r}: limit cycles are found for 'A1'")
+    if t_settle is not None and not (is_finite_number(t_settle) and t_settle > 0):
+        raise ValueError(f"t_settle = {t_settle!r}: a finite time above 0 is needed, s")
+    alpha1, alpha2 = checked_scene(params, alpha1, alpha2)
+    system = A1Flow(params, alpha1, alpha2)
+    if guess is None:
+        settle = T_SETTLE * params.time_unit if t_settle is None else float(t_settle)
+        run = flow(system, np.zeros(4), settle, derivative=False, max_events=1_000_000)
+        if not (run.complete and np.isfinite(run.state).all()):
+            return cycle_dataset(None, Outcome.event_limit, alpha1, alpha2)
+        state = run.state
+    else:
+        state = checked_state("guess", guess)
+    cycle, outcome = find_cycle(system, state)
+    return cycle_dataset(cycle, outcome, alpha1, alpha2)
+
+
+def checked_scene(params: Parameters, alpha1: float, alpha2: float) -> tuple[float, float]:
+    """Both angles as floats.
+
+    Raises:
+        ValueError: they are not finite numbers, or ``params`` are not :class:`Parameters`.
+    """
+    if not isinstance(params, Parameters):
+        raise ValueError(f"params = {brief(params)}: Parameters(...) are needed")  # noqa: TRY004
+    for name, angle in (("alpha1", alpha1), ("alpha2", alpha2)):
+        if real_array(name, angle).ndim:
+            raise ValueError(f"{name} = {brief(angle)}: one angle in rad is needed")
+    return float(alpha1), float(alpha2)
+
+
+def checked_state(name: str, state: Sequence[float]) -> Vector:
+    """A state as an array.
+
+    Raises:
+        ValueError: it is not four finite numbers.
+    """
+    values = list(state) if isinstance(state, Iterable) else []
+    if len(values) != 4 or not all(is_finite_number(value) for value in values):
+        raise ValueError(f"{name} = {state!r}: four finite numbers (x, y, vx, vy) are needed")
+    return np.array(values, dtype=np.float64)
+
+
+def find_cycle(system: A1Flow, state: Vector) -> tuple[Cycle | None, Outcome]:
+    """The cycle near a state, and its outcome."""
+    unit = system.params.time_unit
+    trial = flow(system, state, unit, derivative=False, keep=True)
+    if not trial.segments or not np.isfinite(trial.state).all():
+        return None, Outcome.singular_geometry
+    if _comes_to_rest(system, state, _WINDOWS[0] * unit):
+        return None, Outcome.equilibrium
+    tried: list[float] = []
+    for window in _WINDOWS:
+        returns = find_returns(system, state, window * unit)
+        if returns and returns[0][1] == 0.0:
+            return None, Outcome.equilibrium
+        last = window == _WINDOWS[-1]
+        for time, distance in returns[:_TRIES]:
+            if distance > (_FAR if last else _NEAR):
+                break
+            if any(abs(time - other) < 1e-3 * time for other in tried):
+                continue
+            tried.append(time)
+            cycle = _solve(system, state, time)
+            if cycle is None:
+                continue
+            if np.abs(cycle.extent[1] - cycle.extent[0]).max() < _AT_REST * _size(cycle):
+                return None, Outcome.equilibrium
+            return cycle, Outcome.family_member if cycle.is_family_member else Outcome.converged
+    return None, Outcome.no_convergence
+
+
+def _comes_to_rest(system: A1Flow, state: Vector, window: float) -> bool:
+    """Whether a motion shrinks towards a stable state of rest."""
+    passage = flow(system, state, window, derivative=False, keep=True)
+    if passage.event_kinds:
+        return False
+    path = sample_path(passage.segments, np.linspace(0.0, window, 400))
+    first, second = (np.ptp(half, axis=0).max() for half in np.split(path, 2))
+    rest = root(lambda z: system.velocity(passage.regime, z), path[200:].mean(axis=0), tol=1e-13)
+    near = np.abs(rest.x - path[200:].mean(axis=0)).max() <= 0.5 * second + 1e-9 * _reach(path)
+    if not (rest.success and near):
+        return False
+    growth = float(np.linalg.eigvals(system.jacobian(passage.regime, rest.x)).real.max())
+    return bool(growth < 0.0 and second < first + 1e-12 * _reach(path))
+
+
+def _reach(path: Vector) -> float:
+    return float(np.abs(path).max()) + 1e-300
+
+
+def _size(cycle: Cycle) -> float:
+    return float(np.abs(cycle.state[:2]).max()) + 1e-300
+
+
+def _solve(system: A1Flow, state: Vector, time: float) -> Cycle | None:
+    """The cycle from a return, described from outside stick and by its least period."""
+    passage = flow(system, state, time, derivative=False, keep=True)
+    free = [part for part in passage.segments if not system.holds(part.regime)]
+    if not free:
+        return None
+    longest = max(free, key=lambda part: part.times[-1] - part.times[0])
+    middle = 0.5 * float(longest.times[0] + longest.times[-1])
+    place = sample_path(passage.segments, np.array([middle]))[0]
+    scale = common_scale(sample_path(passage.segments, np.linspace(0.0, time, 200)))
+    cycle = solve_cycle(system, place, time, scale)
+    if cycle is not None and not (
+        abs(cycle.period - time) < _FAR * time
+        and np.abs((cycle.state - place) / scale).max() < _FAR
+    ):
+        return None
+    for parts in (2, 3, 4, 5):
+        if cycle is None:
+            return None
+        half = flow(system, cycle.state, cycle.period / parts, derivative=False).state
+        if np.abs((half - cycle.state) / scale).max() < 1e-6:
+            cycle = solve_cycle(system, cycle.state, cycle.period / parts, scale) or cycle
+    return cycle
+
+
+def cycle_values(cycle: Cycle) -> dict[str, Any]:
+    """The scalars of a dataset, and the multipliers."""
+    (x_min, y_min), (x_max, y_max) = cycle.extent
+    times = dict.fromkeys(Regime, 0.0)
+    for part in cycle.segments:
+        times[Regime(part.regime)] += float(part.times[-1] - part.times[0])
+    p = cycle.system.params  # type: ignore[attr-defined]
+    return {
+        "period": cycle.period,
+        "x_min": x_min,
+        "x_max": x_max,
+        "y_min": y_min,
+        "y_max": y_max,
+        "contact_fraction": 1.0 - times[Regime.separated] / cycle.period,
+        "stick_fraction": times[Regime.stick] / cycle.period,
+        "least_contact_force": p.k3 * max(p.preload - y_max, 0.0),
+        "residual": cycle.residual,
+        "stable": int(cycle.is_stable and not cycle.is_family_member),
+        "multiplier_real": cycle.multipliers.real,
+        "multiplier_imag": cycle.multipliers.imag,
+    }
+
+
+def cycle_dataset(
+    cycle: Cycle | None, outcome: Outcome, alpha1: float, alpha2: float
+) -> xr.Dataset:
+    """A limit cycle, or the reason why there is none, as a dataset."""
+    names = ("x", "y", "vx", "vy")
+    if cycle is None:
+        values: dict[str, Any] = dict.fromkeys(SCALARS, math.nan)
+        values |= {"stable": 0, "multiplier_real": np.full(4, np.nan)}
+        values["multiplier_imag"] = np.full(4, np.nan)
+        start, times, path = np.full(4, np.nan), np.empty(0), np.empty((0, 4))
+        event_times, kinds, states, regimes = [], [], np.empty((0, 4)), []
+        regime_path = np.empty(0, np.int8)
+    else:
+        values, start, passage = cycle_values(cycle), cycle.state, cycle.passage
+        event_times, kinds, regimes = passage.event_times, passage.event_kinds, passage.regimes
+        states = np.array(passage.event_states).reshape(-1, 4)
+        times = np.linspace(0.0, cycle.period, SAMPLES + 1)
+        path = sample_path(cycle.segments, times)
+        regime_path = np.array(regimes)[np.searchsorted(event_times, times, side="right")]
+    return build(
+        LIMIT_CYCLE,
+        {
+            **values,
+            "event_time": event_times,
+            "event_kind": kinds,
+            **{f"event_{name}": states[:, i] for i, name in enumerate(names)},
+            "segment_regime": regimes,
+            **{f"{name}_start": start[i] for i, name in enumerate(names)},
+            "time": times,
+            **{f"{name}_path": path[:, i] for i, name in enumerate(names)},
+            "regime_path": regime_path,
+            "alpha1": alpha1,
+            "alpha2": alpha2,
+            "outcome": outcome,
+        },
+        {"multiplier": np.arange(1, 5)},
+    )

@@ -1,0 +1,77 @@
+"""Where runs from many starts end: the brute-force counterpart of a branch."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+import xarray as xr
+
+from squealpipe.parameters import Parameters
+from squealpipe.schema import build
+from squealpipe.schema.cycles import SETTLED_EXTREMES
+from squealpipe.schema.origin import recorded
+from squealpipe.solvers.a1.ensemble import run_ensemble
+
+AMPLITUDES = (0.01, 30.0)
+"""Smallest and largest distance of a start from r = 0, over l_pre."""
+
+
+@recorded(model="A1", method="Taylor series with located events")
+def settled_extremes(
+    params: Parameters,
+    scenes: Mapping[str, tuple[float, float]],
+    mu: np.ndarray,
+    *,
+    starts: int,
+    t_end: float,
+    seed: int = 1,
+    tol: float = 1e-12,
+    workers: int | None = None,
+) -> xr.Dataset:
+    """Largest |x| in the last fifth of runs from starts near and far.
+
+    The first start of each cell is r = 0 at rest; the others are at rest at random places whose
+    distance is evenly spread on a logarithmic scale.
+
+    Args:
+        params: physical parameters; ``mu`` replaces theirs.
+        scenes: name → angles, rad.
+        mu: friction coefficients, (mu,).
+        starts: runs per scene and friction.
+        t_end: s.
+        seed: of the random starts, which all scenes and frictions share.
+        tol: tolerance of the integrator.
+        workers: processes; None takes all cores.
+    """
+    generator = np.random.default_rng(seed)
+    low, high = np.log(AMPLITUDES)
+    distance = params.preload * np.exp(generator.uniform(low, high, starts))
+    direction = generator.uniform(0.0, 2.0 * np.pi, starts)
+    distance[0] = 0.0
+    state = np.zeros((starts, 4))
+    state[:, 0], state[:, 1] = distance * np.cos(direction), distance * np.sin(direction)
+    angles = np.array(list(scenes.values()))
+    fields = {**params.as_dict(), "mu": np.asarray(mu)[None, :, None]}
+    run = run_ensemble(
+        fields,
+        angles[:, 0][:, None, None],
+        angles[:, 1][:, None, None],
+        t_end=t_end,
+        t_late=0.8 * t_end,
+        tol=tol,
+        initial_state=np.broadcast_to(state, (len(scenes), len(mu), starts, 4)),
+        workers=workers,
+    )
+    return build(
+        SETTLED_EXTREMES,
+        {
+            "late_max_x": run.late_max_x,
+            "separated_fraction": run.separated_time / run.time,
+            "outcome": run.outcome,
+            "x0": state[:, 0],
+            "y0": state[:, 1],
+            "t_end": t_end,
+        },
+        {"scene": list(scenes), "mu": np.asarray(mu), "start": np.arange(starts)},
+    )

@@ -1,0 +1,228 @@
+"""What each model level takes for granted, checked along the motion that it computes itself."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any, NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from squealpipe.arrays import angle_axis
+from squealpipe.laws.contact import contact_force
+from squealpipe.laws.springs import (
+    Stiffness,
+    elastic_force,
+    fixed_ends,
+    geometry,
+    linear_elastic_force,
+    linear_stiffness,
+    squared_distance,
+)
+from squealpipe.methods.linear_response import response_from_rest
+from squealpipe.models import a2
+from squealpipe.models.a4 import contact_matrix
+from squealpipe.models.refusals import refuse_extensions
+from squealpipe.parameters import SCENES, Parameters, Scene
+from squealpipe.schema import Outcome, build
+from squealpipe.schema.assumptions import ASSUMPTIONS, LINEAR_PULL
+from squealpipe.tasks.dynamics.runs import simulate
+
+LEVELS = ("A1", "A1-no-separation", "A2", "A3", "A4")
+
+LIMITS = {
+    "contact is kept": 0.0,
+    "belt is faster": 0.0,
+    "angles are constant": 0.1,
+    "springs are linear": 0.1,
+    "mass stays off the pivots": 0.1,
+}
+"""Assumption → limit of its measure: lowest contact force over the preload, smallest 1 − ẋ/V,
+largest turn of a spring (rad), largest error of the linear spring force relative to the largest
+spring force, smallest length of a spring over its free length."""
+
+BELOW = ("angles are constant", "springs are linear")
+"""Assumptions that hold while their measure is below the limit; the others, above it."""
+
+NEEDS = {
+    "A1": ("mass stays off the pivots",),
+    "A1-no-separation": ("contact is kept", "mass stays off the pivots"),
+    "A2": ("contact is kept", "belt is faster", "angles are constant", "springs are linear"),
+    "A3": ("contact is kept", "belt is faster", "angles are constant", "springs are linear"),
+    "A4": ("belt is faster", "angles are constant", "springs are linear"),
+}
+
+STEPS_PER_TIME_UNIT = 20
+
+
+class Motion(NamedTuple):
+    """States along a motion; arrays over time."""
+
+    x: np.ndarray
+    y: np.ndarray
+    vx: np.ndarray
+    force: np.ndarray
+    outcome: int
+
+
+def check_assumptions(params: Parameters, scenes: Iterable[Scene] = ()) -> xr.Dataset:
+    """Table 1 of the paper, extended: which assumptions held, by level and scene.
+
+    Args:
+        params: physical parameters.
+        scenes: scenes to look at; all named ones by default.
+
+    Returns:
+        Dataset over (level, scene, assumption); see ``schema.assumptions.ASSUMPTIONS``.
+    """
+    chosen = tuple(scenes) or tuple(SCENES.values())
+    names = list(LIMITS)
+    measures = np.full((len(LEVELS), len(chosen), len(names)), np.nan)
+    outcomes = np.zeros(measures.shape[:2], dtype=int)
+    extremes = {
+        key: np.full(measures.shape[:2], np.nan)
+        for key in ("largest_x", "largest_y", "peak_contact_force", "lowest_contact_force")
+    }
+    for row, level in enumerate(LEVELS):
+        for column, scene in enumerate(chosen):
+            motion = _motion(params, scene, level)
+            outcomes[row, column] = motion.outcome
+            if not motion.x.size:
+                continue
+            measures[row, column] = _measures(params, scene, motion)
+            force = motion.force / (params.k3 * params.preload)
+            extremes["largest_x"][row, column] = np.abs(motion.x).max()
+            extremes["largest_y"][row, column] = motion.y.max()
+            extremes["peak_contact_force"][row, column] = force.max()
+            extremes["lowest_contact_force"][row, column] = force.min()
+    limits = np.array([LIMITS[name] for name in names])
+    below = np.array([name in BELOW for name in names])
+    return build(
+        ASSUMPTIONS,
+        {
+            "needed": [[name in NEEDS[level] for name in names] for level in LEVELS],
+            "measure": measures,
+            "limit": limits,
+            "held": np.where(below, measures <= limits, measures > limits),
+            **extremes,
+            "t_end": [scene.t_end * params.time_unit for scene in chosen],
+            "outcome": outcomes,
+        },
+        {"level": list(LEVELS), "scene": [scene.name for scene in chosen], "assumption": names},
+    )
+
+
+def linear_pull_map(
+    params: Parameters, alpha1: Any, alpha2: Any, *, t_end: float = 50.0
+) -> xr.Dataset:
+    """How far the linear model (Eqs. 6, 7) lets the contact spring pull, started at rest.
+
+    Args:
+        params: physical parameters.
+        alpha1, alpha2: 1-D arrays of angles, rad.
+        t_end: end of the motion, s.
+
+    Returns:
+        Dataset over (alpha1, alpha2): lowest_contact_force (over k3 l_pre), pulling_fraction,
+        first_pull_time (s), outcome.
+
+    Raises:
+        ValueError: dashpots or a friction law that these equations do not have.
+    """
+    refuse_extensions(params, "linear_pull_map", "Eqs. (6), (7) have neither")
+    alpha1, alpha2 = angle_axis("alpha1", alpha1), angle_axis("alpha2", alpha2)
+    stiffness = linear_stiffness(params, geometry(alpha1[:, None], alpha2[None, :]))
+    step, steps = _steps(params, t_end)
+    lowest = np.full(stiffness.k11.shape, np.inf)
+    pulling = np.zeros(lowest.shape)
+    first = np.full(lowest.shape, np.nan)
+    for index, state in enumerate(_linear_response(params, stiffness, step, steps)):
+        force = 1.0 - state[..., 1] / params.preload
+        lowest = np.minimum(lowest, force)
+        pulls = force < 0
+        pulling += pulls
+        first = np.where(pulls & np.isnan(first), index * step, first)
+    return build(
+        LINEAR_PULL,
+        {
+            "lowest_contact_force": lowest,
+            "pulling_fraction": pulling / (steps + 1),
+            "first_pull_time": first,
+            "t_end": t_end,
+            "outcome": np.where(np.isnan(first), Outcome.converged, Outcome.separated),
+        },
+        {"alpha1": alpha1, "alpha2": alpha2},
+    )
+
+
+def _motion(params: Parameters, scene: Scene, level: str) -> Motion:
+    """The motion from rest that a level computes; empty where it has none."""
+    t_end = scene.t_end * params.time_unit
+    if level == "A2":
+        return _sliding_state(params, scene)
+    if level == "A3":
+        return _linear_motion(params, scene, t_end)
+    run = simulate(params, scene.alpha1, scene.alpha2, t_end=t_end, model=level)
+    reached = np.isfinite(run.x.values)
+    x, y, vx, force = (run[name].values[reached] for name in ("x", "y", "vx", "normal_force"))
+    return Motion(x, y, vx, force, int(run.outcome))
+
+
+def _sliding_state(params: Parameters, scene: Scene) -> Motion:
+    """A2: one state, at y = 0, with the friction of its reaction force."""
+    stiffness = linear_stiffness(params, geometry(scene.alpha1, scene.alpha2))
+    reaction = float(a2.reaction_force(stiffness, params.drag, a2.actuation(params)))
+    if np.isnan(reaction) or stiffness.k11 == 0:
+        nothing = np.array([])
+        return Motion(nothing, nothing, nothing, nothing, Outcome.singular_static_state)
+    still = np.zeros(1)
+    x = np.array([params.drag * reaction / stiffness.k11])
+    return Motion(x, still, still, np.array([reaction]), Outcome.converged)
+
+
+def _linear_motion(params: Parameters, scene: Scene, t_end: float) -> Motion:
+    """A3 in time: Eqs. (6) and (7) from rest; velocities by central differences."""
+    stiffness = linear_stiffness(params, geometry(scene.alpha1, scene.alpha2))
+    step, steps = _steps(params, t_end)
+    states = np.array(list(_linear_response(params, stiffness, step, steps)))
+    x, y = states[:, 0], states[:, 1]
+    return Motion(x, y, np.gradient(x, step), contact_force(y, params), Outcome.converged)
+
+
+def _linear_response(params: Parameters, stiffness: Stiffness, step: float, steps: int) -> Any:
+    a11, a12, a21, a22 = contact_matrix(stiffness, params.k3, params.drag)
+    matrix = np.stack([np.stack([a11, a12], -1), np.stack([a21, a22], -1)], -2) / params.mass
+    actuation = a2.actuation(params) / params.mass
+    load = np.broadcast_to([params.drag * actuation, actuation], matrix.shape[:-1])
+    return response_from_rest(matrix, load, step, steps)
+
+
+def _steps(params: Parameters, t_end: float) -> tuple[float, int]:
+    """Step length and number of steps up to t_end, short enough for the stiffest spring."""
+    stiffest = max(1.0, (params.k2 + params.k3) / params.k1)
+    steps = int(np.ceil(STEPS_PER_TIME_UNIT * np.sqrt(stiffest) * t_end / params.time_unit))
+    return t_end / steps, steps
+
+
+def _measures(params: Parameters, scene: Scene, motion: Motion) -> list[float]:
+    """The number that decides about each assumption, in the order of ``LIMITS``."""
+    g = geometry(scene.alpha1, scene.alpha2)
+    x1, y1, x2, y2 = fixed_ends(params, g)
+    exact = np.stack(elastic_force(motion.x, motion.y, params, g))
+    linear = np.stack(linear_elastic_force(motion.x, motion.y, linear_stiffness(params, g)))
+    largest = np.hypot(*exact).max()
+    turns, lengths = [], []
+    for x_fixed, y_fixed, length in ((x1, y1, params.length1), (x2, y2, params.length2)):
+        turn = np.arctan2(motion.y - y_fixed, motion.x - x_fixed) - np.arctan2(-y_fixed, -x_fixed)
+        turns.append(np.abs(np.angle(np.exp(1j * turn))).max())
+        lengths.append(
+            np.sqrt(squared_distance(motion.x, motion.y, x_fixed, y_fixed)).min() / length
+        )
+    belt = params.belt_speed
+    return [
+        float(motion.force.min() / (params.k3 * params.preload)),
+        float((1.0 - motion.vx / belt).min()) if belt else -np.inf,
+        float(max(turns)),
+        float(np.hypot(*(linear - exact)).max() / largest) if largest > 0 else 0.0,
+        float(min(lengths)),
+    ]

@@ -1,0 +1,138 @@
+"""Map of what model A1 does after its first separation: impacts, forces, kind of motion."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from squealpipe.arrays import angle_axis, real_number
+from squealpipe.parameters import Parameters
+from squealpipe.schema import Outcome, build
+from squealpipe.schema.dynamics import HAMMERING_MAP
+from squealpipe.schema.origin import recorded
+from squealpipe.solvers.a1.ensemble import run_map
+from squealpipe.tasks.dynamics.motion import (
+    classify_motion,
+    linear_time,
+    refine_labels,
+    regular_growth,
+)
+from squealpipe.tasks.normal_form import NormalForm
+
+USED = (
+    "outcome",
+    "time",
+    "contacts",
+    "separations",
+    "sticks",
+    "slips",
+    "reversals",
+    "separated_time",
+    "stick_time",
+    "peak_contact_force",
+    "max_displacement",
+    "turns",
+    "log_growth",
+    "predictability_horizon",
+    "final_state",
+)
+"""Results of the runs that the map is made from."""
+
+
+@recorded(model="A1", method="Taylor series with located events")
+def hammering_map(
+    params: Parameters,
+    alpha1: Any,
+    alpha2: Any,
+    *,
+    t_end: float,
+    tol: float = 1e-12,
+    workers: int | None = None,
+) -> xr.Dataset:
+    """Impacts, forces, extremes, kind of motion and predictability of A1 started at rest.
+
+    ``motion`` says what the run to ``t_end`` shows:
+
+    - perpetual contact, or stick–slip in contact;
+    - whirl: at least three net turns around both fixed ends, and one for two returns to the belt;
+    - irregular hammering: a perturbation has grown faster than (1 + t)², t in √(2m/(k1 + k2));
+    - periodic hammering: it has not, and the kinds and intervals of the events of the later half
+      repeat within 1e-6 of the period;
+    - quasi-periodic hammering: regular to ``t_end``, but they do not repeat;
+    - regular hammering: there are too few events to tell these two apart.
+
+    ``motion_later`` is the same label at 2 ``t_end``, ``changed`` the number of cells where the
+    two differ. Systems that are mirror images of one another get the same labels: the runs are
+    made in the form of :class:`squealpipe.tasks.normal_form.NormalForm`.
+
+    Args:
+        params: physical parameters.
+        alpha1, alpha2: 1-D arrays of angles, rad.
+        t_end: end of each run, s.
+        tol: tolerance of the Taylor integrator.
+        workers: processes; None takes all cores.
+
+    Returns:
+        Dataset over (alpha1, alpha2); see ``schema.dynamics.HAMMERING_MAP``. ``outcome`` is
+        ``beyond_horizon`` where an error of ``tol`` decides the state before t_end: there only
+        statistics mean something.
+
+    Raises:
+        ValueError: an argument is not a finite number, or t_end is not positive.
+    """
+    first, second = angle_axis("alpha1", alpha1), angle_axis("alpha2", alpha2)
+    t_end = real_number("t_end", t_end, above=0.0)
+    form = NormalForm.of(params)
+    rows, columns = form.angles(first, second)
+    run = run_map(
+        form.params,
+        rows,
+        columns,
+        USED,
+        t_end=t_end,
+        tol=tol,
+        tangent=True,
+        workers=workers,
+    )
+    unit = linear_time(params)
+    cells = np.broadcast_arrays(rows[:, None], columns)
+    flat = SimpleNamespace(
+        **{
+            name: values.reshape(cells[0].size, *values.shape[2:])
+            for name, values in vars(run).items()
+        }
+    )
+    motion, later = (
+        labels.reshape(cells[0].shape)
+        for labels in refine_labels(
+            form.params, cells[0].ravel(), cells[1].ravel(), flat, classify_motion(flat, unit),
+            t_end=t_end, tol=tol, workers=workers,
+        )
+    )  # fmt: skip
+    # A run that ended early is averaged over the time that it lasted.
+    time = np.maximum(run.time, np.finfo(float).tiny)
+    chaotic = (run.outcome == Outcome.converged) & np.isfinite(run.predictability_horizon)
+    maps = {
+        "impact_rate": run.contacts / time,
+        "separated_fraction": run.separated_time / time,
+        "peak_contact_force": run.peak_contact_force,
+        "stick_fraction": run.stick_time / time,
+        "max_displacement": run.max_displacement,
+        "turns": form.sign * run.turns,
+        "lyapunov_exponent": run.log_growth / time,
+        "predictability_horizon": np.where(
+            np.isnan(run.predictability_horizon), run.time, run.predictability_horizon
+        ),
+        "motion": motion,
+        "motion_later": later,
+        "outcome": np.where(chaotic, Outcome.beyond_horizon, run.outcome),
+    }
+    return build(
+        HAMMERING_MAP,
+        {**{name: form.back(values) for name, values in maps.items()}, "t_end": t_end},
+        {"alpha1": first, "alpha2": second},
+        {"regular_growth": float(regular_growth(t_end / unit))},
+    )

@@ -1,0 +1,191 @@
+"""The map of kept contact at high resolution, and its check against uniform maps."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+import xarray as xr
+from scipy.ndimage import label
+
+from squealpipe.methods.adaptive_grid import Evaluate, RefinedGrid, follow_boundaries, refine_grid
+from squealpipe.parameters import Parameters
+from squealpipe.schema import Outcome, build
+from squealpipe.schema.dynamics import REFINED_VALIDITY_MAP, REFINEMENT_CHECK
+from squealpipe.schema.inference import wilson_interval
+from squealpipe.schema.origin import recorded
+from squealpipe.solvers.a1.ensemble import run_ensemble
+
+SUSPECT_SHARE = 0.1
+"""Cells that separate only after this share of t_end lie next to those that never do."""
+SAMPLE, SEED = 4000, 2021
+"""Inherited cells that are run to measure how often they are wrong."""
+EIGHT_NEIGHBOURS = np.ones((3, 3))
+
+
+@recorded(model="A1", method="Taylor series with located events on an adaptive grid")
+def refine_validity_map(
+    params: Parameters,
+    *,
+    resolution: int,
+    coarse: int,
+    t_end: float = 200.0,
+    tol: float = 1e-12,
+    workers: int | None = None,
+) -> xr.Dataset:
+    """Where model A1 keeps contact, over both angles from 0 to π, at full resolution.
+
+    Cells are run on a coarse grid, along every boundary, and around cells where a region too thin
+    for the grid may hide: those that separate late, and those whose lowest contact force is small
+    against its change between neighbours. The others inherit the answer of a neighbour. How often
+    that is wrong is measured by running a random sample of them; if it finds wrong ones, the
+    boundaries around these are followed too, and a new sample tells what is left.
+
+    Args:
+        params: physical parameters.
+        resolution, coarse: points per side of the finest and the first grid; (resolution − 1) must
+            be (coarse − 1) times a power of two.
+        t_end: end of each run, s.
+        tol: tolerance of the Taylor integrator.
+        workers: processes; None takes all cores.
+
+    Returns:
+        Dataset over (alpha1, alpha2): separates, first_separation_time (s), computed, outcome
+        (``inherited`` for cells that were not run), and the error rate of inherited cells with
+        its 95 % interval. Cells of a sample that were wrong are put right.
+
+    Raises:
+        ValueError: the grids do not nest, or t_end is not positive.
+    """
+    if not t_end > 0:
+        raise ValueError(f"t_end = {t_end!r}: must be greater than 0")
+    angles = np.linspace(0.0, np.pi, resolution)
+    time = np.full((resolution, resolution), np.nan)
+    outcome = np.full((resolution, resolution), int(Outcome.inherited), np.int8)
+
+    def evaluate(
+        rows: np.ndarray, columns: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        run = run_ensemble(
+            params,
+            angles[rows],
+            angles[columns],
+            t_end=t_end,
+            tol=tol,
+            stop_at_first_separation=True,
+            workers=workers,
+        )
+        time[rows, columns] = run.first_separation_time
+        outcome[rows, columns] = run.outcome
+        lost = run.outcome == Outcome.separated
+        late = lost & (run.first_separation_time > SUSPECT_SHARE * t_end)
+        return lost, late, np.where(lost, np.nan, run.lowest_contact_force)
+
+    grid = refine_grid(evaluate, resolution, coarse)
+    checked, wrong = _check_inherited(evaluate, grid, SEED)
+    if wrong:
+        follow_boundaries(evaluate, grid)
+        checked, wrong = _check_inherited(evaluate, grid, SEED + 1)
+    time[~grid.computed], outcome[~grid.computed] = np.nan, Outcome.inherited
+    return build(
+        REFINED_VALIDITY_MAP,
+        {
+            "separates": grid.labels,
+            "first_separation_time": time,
+            "computed": grid.computed,
+            "inherited_checked": checked,
+            "inherited_wrong": wrong,
+            "inherited_error": wrong / checked if checked else np.nan,
+            "inherited_error_interval": wilson_interval(wrong, checked),
+            "t_end": t_end,
+            "outcome": outcome,
+        },
+        {"alpha1": angles, "alpha2": angles},
+        {"runs": int(grid.computed.sum()), "coarse": coarse},
+    )
+
+
+def _check_inherited(evaluate: Evaluate, grid: RefinedGrid, seed: int) -> tuple[int, int]:
+    """Run a sample of the inherited cells: (how many, how many were wrong); put those right."""
+    inherited = np.flatnonzero(~grid.computed)
+    if not inherited.size:
+        return 0, 0
+    size = min(SAMPLE, inherited.size)
+    chosen = inherited[np.random.default_rng(seed).choice(inherited.size, size, replace=False)]
+    rows, columns = np.unravel_index(np.sort(chosen), grid.labels.shape)
+    lost, _, _ = evaluate(rows, columns)
+    wrong = lost != grid.labels[rows, columns]
+    here = rows[wrong], columns[wrong]
+    grid.labels[here], grid.computed[here] = lost[wrong], True
+    return int(chosen.size), int(wrong.sum())
+
+
+def check_refinement(
+    params: Parameters,
+    refined: xr.Dataset,
+    *,
+    points: Sequence[int] = (91, 181, 361),
+    tol: float = 1e-12,
+    workers: int | None = None,
+) -> xr.Dataset:
+    """The refined map against uniform maps whose cells are among its own.
+
+    Args:
+        params: those of the refined map.
+        refined: dataset ``refined_validity_map``.
+        points: points per side of the uniform maps, ascending; each must nest in the next and in
+            the refined one.
+        tol: tolerance of the Taylor integrator.
+        workers: processes; None takes all cores.
+
+    Raises:
+        ValueError: the grids do not nest.
+    """
+    labels = refined.separates.values.astype(bool)
+    resolution = len(labels)
+    finest = points[-1]
+    for count in points:
+        if (resolution - 1) % (count - 1) or (finest - 1) % (count - 1):
+            raise ValueError(f"a uniform map of {count} points does not nest in {resolution}")
+    angles = np.linspace(0.0, np.pi, resolution)[:: (resolution - 1) // (finest - 1)]
+    run = run_ensemble(
+        params,
+        angles[:, None],
+        angles[None, :],
+        t_end=float(refined.t_end),
+        tol=tol,
+        stop_at_first_separation=True,
+        workers=workers,
+    )
+    lost = run.outcome == Outcome.separated
+    different, missed, wrong = [], [], []
+    for count in points:
+        uniform = lost[:: (finest - 1) // (count - 1), :: (finest - 1) // (count - 1)]
+        step = (resolution - 1) // (count - 1)
+        same_cells = labels[::step, ::step]
+        different.append(np.count_nonzero(uniform != same_cells))
+        missed.append(_missed_regions(uniform, same_cells))
+        nearest = (np.arange(resolution) + step // 2) // step
+        wrong.append(np.mean(uniform[np.ix_(nearest, nearest)] != labels))
+    return build(
+        REFINEMENT_CHECK,
+        {
+            "runs": [count**2 for count in points],
+            "different_cells": different,
+            "missed_regions": missed,
+            "wrong_share": wrong,
+            "refined_runs": int(refined.computed.sum()),
+            "refined_points": resolution,
+        },
+        {"points": list(points)},
+    )
+
+
+def _missed_regions(uniform: np.ndarray, refined: np.ndarray) -> int:
+    """Connected regions of the first map without one cell of that label in the second."""
+    missed = 0
+    for value in (True, False):
+        regions, count = label(uniform == value, EIGHT_NEIGHBOURS)
+        hit = np.unique(regions[(uniform == value) & (refined == value)])
+        missed += count - np.count_nonzero(hit)
+    return missed

@@ -1,0 +1,113 @@
+"""One run in a few numbers: separation, impacts, forces, dominant frequencies."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+from squealpipe.methods.spectrum import amplitude_spectrum, highest_peaks
+from squealpipe.schema import build
+from squealpipe.schema.dynamics import EventFlag, RegimeFlag
+from squealpipe.schema.origin import recorded
+from squealpipe.schema.run_summary import RUN_SUMMARY
+
+PEAKS = 3
+"""Dominant frequencies that are named."""
+PADDING = 8
+"""How much finer the spectrum's grid is than the resolution of the run."""
+
+
+@recorded()
+def summarize(run: xr.Dataset) -> xr.Dataset:
+    """Summarize a run that was sampled uniformly from its start.
+
+    Times of events are exact; forces, displacements and the spectrum come from the samples.
+
+    Args:
+        run: dataset ``simulation``.
+
+    Returns:
+        Dataset with first_separation_time (s), impact_rate (1/s), separated_fraction,
+        stick_fraction, peak_contact_force, largest_x, largest_y (m), the spectrum of the
+        normalized contact force over ``frequency`` (rad/s), and its highest peaks.
+
+    Raises:
+        ValueError: fewer than 16 samples were reached, or they are not uniform.
+    """
+    time = run.time.values[np.isfinite(run.x.values)]
+    if time.size < 16:
+        raise ValueError(
+            f"the run ended after {time.size} samples; ask for more samples or a longer run"
+        )
+    steps = np.diff(time)
+    if np.ptp(steps) > 1e-6 * steps[0]:
+        raise ValueError("the samples are not uniform in time; give uniform `times`")
+    end = float(run.time_reached)
+    kinds, times = run.event_kind.values, run.event_time.values
+    separations = times[kinds == EventFlag.separation]
+    force = run.normalized_contact_force.values[: time.size]
+    frequency, amplitude = amplitude_spectrum(force, float(steps[0]), padding=PADDING)
+    peak_frequency, peak_amplitude = highest_peaks(frequency, amplitude, PEAKS)
+    return build(
+        RUN_SUMMARY,
+        {
+            "first_separation_time": separations[0] if separations.size else np.nan,
+            "impact_rate": np.count_nonzero(kinds == EventFlag.contact) / end,
+            "separated_fraction": _share(run, EventFlag.separation, RegimeFlag.separated, end),
+            "stick_fraction": _share(run, EventFlag.stick, RegimeFlag.stick, end),
+            "peak_contact_force": force.max(),
+            "largest_x": np.abs(run.x.values[: time.size]).max(),
+            "largest_y": np.abs(run.y.values[: time.size]).max(),
+            "force_spectrum": amplitude,
+            "dominant_frequency": peak_frequency,
+            "dominant_amplitude": peak_amplitude,
+            "outcome": int(run.outcome),
+        },
+        {"frequency": frequency, "peak": np.arange(1, peak_frequency.size + 1)},
+    )
+
+
+def _share(run: xr.Dataset, begins: EventFlag, regime: RegimeFlag, end: float) -> float:
+    """Share of the time in a regime, which an event of this kind begins and the next one ends."""
+    lengths = np.diff(run.event_time.values, prepend=0.0, append=end)
+    within = [int(run.regime[0]) == regime, *(run.event_kind.values == begins)]
+    return float(lengths[within].sum() / end)
+
+
+def summary_lines(run: xr.Dataset, summary: xr.Dataset) -> Iterator[str]:
+    """The summary for people, a line a finding.
+
+    Args:
+        run: dataset ``simulation``; summary: what :func:`summarize` made of it.
+    """
+    first = float(summary.first_separation_time)
+    yield f"regime             {_regime(summary)}"
+    yield "first separation   " + (
+        f"t = {first:.6g}" if np.isfinite(first) else f"none until t = {float(run.time_reached):g}"
+    )
+    yield f"impacts            {float(summary.impact_rate):.4g} per second"
+    yield f"peak contact force {float(summary.peak_contact_force):.5g} k3 l_pre"
+    yield (
+        f"largest motion     |x| = {float(summary.largest_x):.5g} m, "
+        f"|y| = {float(summary.largest_y):.5g} m"
+    )
+    yield f"dominant           {_peaks(summary.dominant_frequency.values)}"
+
+
+def _regime(summary: xr.Dataset) -> str:
+    apart, stuck = float(summary.separated_fraction), float(summary.stick_fraction)
+    parts = []
+    if apart:
+        parts.append(f"separated {apart:.1%} of the time")
+    if stuck:
+        parts.append(f"stuck to the belt {stuck:.1%}")
+    return "; ".join(parts) if parts else "contact is kept, sliding throughout"
+
+
+def _peaks(frequencies: NDArray[np.float64]) -> str:
+    if not frequencies.size:
+        return "no oscillation of the contact force"
+    return "ω = " + ", ".join(f"{value:.4g}" for value in frequencies) + " rad/s"

@@ -1,0 +1,235 @@
+"""What becomes of the paper's growing and bounded responses in the long run.
+
+At (0.4π, 0.6π) and (0.2π, 0.8π) both springs share one fixed end. The mass goes round it, and
+each pass over the belt adds energy until the mass is as fast as the belt.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from squealpipe.methods.survival import hazard, survival
+from squealpipe.parameters import SCENES, Parameters
+from squealpipe.schema import Outcome, build
+from squealpipe.schema.dynamics import MotionFlag
+from squealpipe.schema.long_runs import TRANSIENT, WHIRL
+from squealpipe.solvers.a1.ensemble import Ensemble, run_ensemble
+from squealpipe.tasks.dynamics.motion import classify_motion, linear_time
+from squealpipe.tasks.normal_form import NormalForm
+
+LATE_SHARE = 0.8
+"""Share of a run after which it counts as late."""
+FAR = 4.0
+"""Amplitude, in free lengths, from which the springs' free length is a small correction."""
+LEAST_FITTED = 3
+ONSET_ROUNDS, ONSET_SPEEDS = 2, 15
+"""Each round divides the interval that holds the onset by the number of speeds + 1."""
+AGES = 201
+"""Ages at which the share of survivors is told."""
+SPANS = np.array([0.0, 0.1, 0.2, 0.4, 1.0])
+"""Edges of the spans of age in which the hazard is told, over the end of the runs."""
+ESCAPE_TURNS = 10.0
+"""Net turns that a pendulum swinging back and forth over the top never makes."""
+LARGEST_PERTURBATION = 1e-9
+"""Largest |x| at the start of a transient, in l_pre."""
+
+
+def whirl_sizes(
+    params: Parameters,
+    belt_speeds: Any,
+    *,
+    t_end: float,
+    tol: float = 1e-12,
+    workers: int | None = None,
+) -> xr.Dataset:
+    """Size of the motion at (0.4π, 0.6π) after saturation, over belt speed, and its law.
+
+    Far from the fixed end both springs pull as one of stiffness k1 + k2, so a mass that passes
+    the belt at speed V swings out to x = c1 L1 + L1 + V √(m/(k1 + k2)). The fit takes this line's
+    form, over all speeds with a whirl larger than four free lengths; ``fit_range`` and ``residual``
+    tell how far and how well it holds. The onset of the whirl is bracketed below the slowest belt
+    that whirls the mass, in two rounds of 15 speeds each.
+
+    Args:
+        params: physical parameters; of the belt speed only the direction is kept.
+        belt_speeds: 1-D array, m/s, without sign.
+        t_end: end of each run, s; the last fifth gives the size.
+        tol: tolerance of the Taylor integrator.
+        workers: processes; None takes all cores.
+
+    Returns:
+        Dataset over belt_speed; see ``schema.dynamics.WHIRL``. Without three such speeds slope and
+        offset are NaN and ``fit_outcome`` is ``unresolved``.
+
+    Raises:
+        ValueError: as :func:`run_ensemble`.
+    """
+    form, scene = NormalForm.of(params), SCENES["F3"]
+    alpha1, alpha2 = form.angles(scene.alpha1, scene.alpha2)
+    speeds = np.asarray(belt_speeds, float)
+
+    def runs(tried: np.ndarray) -> tuple[Ensemble, np.ndarray]:
+        run = run_ensemble(
+            {**form.params.as_dict(), "belt_speed": tried},
+            alpha1,
+            alpha2,
+            t_end=t_end,
+            tol=tol,
+            t_late=LATE_SHARE * t_end,
+            tangent=True,
+            workers=workers,
+        )
+        return run, classify_motion(run, linear_time(params))
+
+    run, motion = runs(speeds)
+    whirls = motion == MotionFlag.whirl
+    onset, exceptions = _onset(lambda tried: runs(tried)[1] == MotionFlag.whirl, speeds, whirls)
+    length = max(params.length1, params.length2)
+    fitted = whirls & (run.late_max_x > FAR * length)
+    slope = offset = np.nan
+    if np.count_nonzero(fitted) >= LEAST_FITTED:
+        weights = 1.0 / run.late_max_x[fitted]
+        slope, offset = np.polyfit(speeds[fitted], run.late_max_x[fitted], 1, w=weights)
+    residual = np.where(whirls, run.late_max_x / (offset + slope * speeds) - 1.0, np.nan)
+    in_fit = np.abs(residual[fitted]) if np.isfinite(slope) else np.array([np.nan])
+    return build(
+        WHIRL,
+        {
+            "amplitude": run.late_max_x,
+            "amplitude_before": run.early_max_x,
+            "max_vx": run.max_vx,
+            "turn_rate": form.sign * run.turns / run.time,
+            "stick_fraction": run.stick_time / run.time,
+            "motion": motion,
+            "fitted": fitted,
+            "residual": residual,
+            "fit_range": [speeds[fitted].min(), speeds[fitted].max()]
+            if np.isfinite(slope)
+            else [np.nan, np.nan],
+            "fit_residual": in_fit.max(),
+            "onset": onset,
+            "onset_exceptions": exceptions,
+            "onset_outcome": Outcome.converged if np.isfinite(onset).all() else Outcome.unresolved,
+            "slope": slope,
+            "offset": offset,
+            "energy_slope": np.sqrt(params.mass / (params.k1 + params.k2)),
+            "energy_offset": params.length1 * (1.0 + np.cos(scene.alpha1)),
+            "fit_outcome": Outcome.unresolved if np.isnan(slope) else Outcome.converged,
+            "t_end": t_end,
+            "outcome": run.outcome,
+        },
+        {"belt_speed": form.sign * speeds},
+    )
+
+
+def _onset(
+    whirls_at: Callable[[np.ndarray], np.ndarray], speeds: np.ndarray, whirls: np.ndarray
+) -> tuple[list[float], int]:
+    """(a speed without a whirl and the next one with, how many faster ones had none).
+
+    The slowest speed with a whirl and the next slower one tried, their interval divided again and
+    again; NaN where all or none of the speeds whirl.
+    """
+    order = np.argsort(speeds)
+    speeds, whirls = speeds[order], whirls[order]
+    if whirls.all() or not whirls.any() or whirls[0] or speeds[0] <= 0.0:
+        return [np.nan, np.nan], 0
+    for _ in range(ONSET_ROUNDS):
+        first = int(whirls.argmax())
+        tried = np.geomspace(speeds[first - 1], speeds[first], ONSET_SPEEDS + 2)[1:-1]
+        speeds = np.insert(speeds, first, tried)
+        whirls = np.insert(whirls, first, whirls_at(tried))
+    first = int(whirls.argmax())
+    return [float(speeds[first - 1]), float(speeds[first])], int((~whirls[first:]).sum())
+
+
+def transient_lifetimes(
+    params: Parameters,
+    belt_speeds: Any,
+    *,
+    samples: int,
+    shown_samples: int,
+    t_end: float,
+    tol: float = 1e-12,
+    workers: int | None = None,
+) -> xr.Dataset:
+    """Lifetimes of the bounded motion at (0.2π, 0.8π) over tiny perturbations of its start.
+
+    The samples start at rest at y = 0 and evenly spaced x up to ±1e-9 l_pre. A run ends with its
+    tenth net turn around the fixed ends: from there on it whirls. The lifetimes at the belt speed
+    of ``params`` give a Kaplan–Meier estimate of survival, in which runs that have not ended count
+    as longer than they were followed, its median, and the hazard in spans of age.
+
+    Args:
+        params: physical parameters.
+        belt_speeds: 1-D array, m/s, of the speeds to compare, without sign; the belts run in the
+            direction of that of ``params``.
+        samples: runs at each of these speeds.
+        shown_samples: runs at the belt speed of ``params``.
+        t_end: end of the runs, s.
+        tol: tolerance of the Taylor integrator.
+        workers: processes; None takes all cores.
+
+    Raises:
+        ValueError: as :func:`run_ensemble`.
+    """
+    form, scene = NormalForm.of(params), SCENES["F4"]
+    alpha1, alpha2 = form.angles(scene.alpha1, scene.alpha2)
+    speeds = np.asarray(belt_speeds, float)
+    runs = []
+    starts = []
+    for count, speed in ((samples, speeds[:, None]), (shown_samples, form.params.belt_speed)):
+        start = LARGEST_PERTURBATION * params.preload * np.linspace(-1.0, 1.0, count)
+        state = np.zeros((count, 4))
+        state[:, 0] = form.sign * start
+        starts.append(start)
+        runs.append(
+            run_ensemble(
+                {**form.params.as_dict(), "belt_speed": speed},
+                alpha1,
+                alpha2,
+                t_end=t_end,
+                tol=tol,
+                initial_state=state,
+                stop_at_turns=ESCAPE_TURNS,
+                workers=workers,
+            )
+        )
+    compared, shown = runs
+    lifetimes = [
+        np.where(run.outcome == Outcome.amplitude_reached, run.time, np.nan) for run in runs
+    ]
+    # runs that have not ended, for whatever reason, were followed for the time that they lasted
+    time, ended = shown.time, shown.outcome == Outcome.amplitude_reached
+    estimate = survival(time, ended)
+    ages = np.linspace(0.0, t_end, AGES)
+    share, low, high = estimate.at(ages)
+    rate, rate_low, rate_high = hazard(time, ended, SPANS * t_end)
+    return build(
+        TRANSIENT,
+        {
+            "start_x": starts[0],
+            "lifetime": lifetimes[0],
+            "max_displacement": compared.max_displacement,
+            "shown_start_x": starts[1],
+            "shown_lifetime": lifetimes[1],
+            "survival_time": ages,
+            "survival": share,
+            "survival_low": low,
+            "survival_high": high,
+            "median_lifetime": estimate.median(),
+            "hazard_edges": SPANS * t_end,
+            "hazard": rate,
+            "hazard_low": rate_low,
+            "hazard_high": rate_high,
+            "shown_belt_speed": params.belt_speed,
+            "t_end": t_end,
+            "outcome": compared.outcome,
+            "shown_outcome": shown.outcome,
+        },
+        {"belt_speed": form.sign * speeds, "sample": np.arange(samples)},
+    )

@@ -1,0 +1,140 @@
+"""Every level of the model ladder over the angle map, judged by A1, and what choosing saves."""
+
+from __future__ import annotations
+
+import math
+import time
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from squealpipe.models.refusals import refuse_extensions
+from squealpipe.parameters import Parameters
+from squealpipe.schema import Outcome, build
+from squealpipe.schema.ladder import MODEL_LADDER, QUESTIONS, Level
+from squealpipe.solvers.a1.ensemble import run_ensemble
+from squealpipe.tasks.ladder.choice import DEFAULT_HORIZON, choose_models
+from squealpipe.tasks.ladder.levels import answer
+from squealpipe.tasks.ladder.levels.answers import Answers, Scenes
+from squealpipe.tasks.normal_form import NormalForm
+
+WHY = "its cheaper levels have neither dashpots nor any friction but Coulomb's"
+LEVELS = tuple(Level)
+_SHARES = np.array([level.share for level in LEVELS])
+"""Share of the horizon that each level integrates in time, by rank."""
+
+
+def model_ladder(
+    params: Parameters,
+    points: int,
+    tol: float,
+    *,
+    t_end: float | None = None,
+    workers: int | None = None,
+) -> xr.Dataset:
+    """Dataset ``model_ladder`` over both angles from 0 to π.
+
+    Args:
+        params: physical parameters.
+        points: cells along each angle, at the centres of equal intervals.
+        tol: relative error that is allowed.
+        t_end: horizon, s; 200 √(m/k1) by default.
+        workers: processes; None takes all cores.
+    """
+    refuse_extensions(params, "the model ladder", WHY)
+    horizon = DEFAULT_HORIZON * params.time_unit if t_end is None else t_end
+    angles = (np.arange(points) + 0.5) * math.pi / points
+    alpha1, alpha2 = (grid.ravel() for grid in np.meshgrid(angles, angles, indexing="ij"))
+    # V ≥ 0 from here on: the largest ẋ is the largest speed along the belt
+    form = NormalForm.of(params)
+    params, (alpha1, alpha2) = form.params, form.angles(alpha1, alpha2)
+    scenes = Scenes(params, alpha1, alpha2, horizon, workers)
+    run_ensemble(params, alpha1[:1], alpha2[:1], t_end=1.0, workers=1)  # compile off the clock
+    found = {level: answer(level, scenes) for level in Level}
+    truth = found[Level.a1].values
+    reached = np.asarray(found[Level.a1].belt_reached, dtype=bool)
+    error = np.stack([_errors(found[level].values, truth) for level in LEVELS], axis=1)
+    valid = np.stack([found[level].valid for level in LEVELS], axis=1)
+    # where the belt is never reached, A1 without stick is A1
+    valid[:, LEVELS.index(Level.a1_no_stick)] &= reached
+    cheapest = (valid & (error <= tol)).argmax(axis=1)
+    chosen = [
+        _chosen(scenes, question, tol, found[Level.a1], best)
+        for question, best in zip(QUESTIONS, cheapest, strict=True)
+    ]
+    shape = (points, points)
+    return build(
+        MODEL_LADDER,
+        {
+            "error": error.reshape(len(QUESTIONS), len(LEVELS), *shape),
+            "cheapest": np.array(LEVELS)[cheapest].reshape(-1, *shape),
+            "chosen": np.stack([entry.level for entry in chosen]).reshape(-1, *shape),
+            "chosen_error": np.stack([entry.error for entry in chosen]).reshape(-1, *shape),
+            "chosen_time": [entry.time for entry in chosen],
+            "always_time": [entry.always_time for entry in chosen],
+            "hindsight_time": [entry.hindsight_time for entry in chosen],
+            "level_wall_time": [found[level].seconds for level in LEVELS],
+            "always_wall_time": [entry.always_seconds for entry in chosen],
+            "chosen_wall_time": [entry.seconds for entry in chosen],
+            "belt_reached": reached.reshape(shape),
+            "tolerance": tol,
+            "outcome": np.full(shape, Outcome.converged),
+        },
+        {
+            "alpha1": angles,
+            "alpha2": angles,
+            "question": list(QUESTIONS),
+            "level": [level.name for level in LEVELS],
+        },
+    )
+
+
+def _errors(values: np.ndarray, truth: np.ndarray) -> np.ndarray:
+    """Relative errors (question, cell); 0 or 1 for contact lost."""
+    error = np.empty(values.shape)
+    error[0] = values[0] != truth[0]
+    error[1:] = np.abs(values[1:] / truth[1:] - 1.0)
+    return np.where(np.isfinite(values), error, np.inf)
+
+
+class _Chosen(NamedTuple):
+    level: np.ndarray
+    error: np.ndarray
+    time: float
+    always_time: float
+    hindsight_time: float
+    seconds: float
+    always_seconds: float
+
+
+def _chosen(
+    scenes: Scenes, question: str, tol: float, always: Answers, cheapest: np.ndarray
+) -> _Chosen:
+    """What choose_model takes, its error, and its cost beside that of always A1."""
+    params, alpha1, alpha2, horizon, workers = scenes
+    needed = np.full(cheapest.shape, horizon)
+    truth = always.values[QUESTIONS.index(question)]
+    always_time, always_seconds = always.time, always.seconds
+    if question == "contact_lost":
+        started = time.perf_counter()
+        stopped = run_ensemble(
+            params, alpha1, alpha2, t_end=horizon, stop_at_first_separation=True, workers=workers
+        )
+        needed = stopped.time
+        always_time = float(needed.sum())
+        always_seconds = time.perf_counter() - started
+    started = time.perf_counter()
+    choices = choose_models(params, alpha1, alpha2, question, tol, t_end=horizon, workers=workers)
+    seconds = time.perf_counter() - started
+    wrong = choices.value != truth
+    error = wrong.astype(float) if question == "contact_lost" else abs(choices.value / truth - 1.0)
+    return _Chosen(
+        level=choices.level,
+        error=error,
+        time=float(choices.integrated.sum()),
+        always_time=always_time,
+        hindsight_time=float((needed * _SHARES[cheapest]).sum()),
+        seconds=seconds,
+        always_seconds=always_seconds,
+    )

@@ -1,0 +1,24 @@
+"""The linear motion in contact, sampled over the horizon."""
+
+from __future__ import annotations
+
+import time
+
+import numpy as np
+
+from squealpipe.schema.ladder import QUESTIONS
+from squealpipe.tasks.ladder.answers import answer_of_samples, sample_times
+from squealpipe.tasks.ladder.choice import contact_motion
+from squealpipe.tasks.ladder.levels.answers import Answers, Scenes
+from squealpipe.tasks.ladder.levels.in_contact import linear_validity
+
+
+def answer(scenes: Scenes) -> Answers:
+    """Answers from the sum of both modes."""
+    started = time.perf_counter()
+    params = scenes.params
+    motion = contact_motion(params, scenes.alpha1, scenes.alpha2)
+    times = sample_times(params, scenes.horizon)
+    x, y = motion.positions(times)
+    values = np.stack([answer_of_samples(x, y, name, params, times) for name in QUESTIONS])
+    return Answers(values, linear_validity(motion, params), time.perf_counter() - started)

@@ -1,0 +1,28 @@
+"""Bounds of the linear motion for all times, and its dominant mode."""
+
+from __future__ import annotations
+
+import time
+
+import numpy as np
+
+from squealpipe.tasks.ladder.choice import contact_motion
+from squealpipe.tasks.ladder.levels.answers import Answers, Scenes
+from squealpipe.tasks.ladder.levels.in_contact import linear_validity
+
+
+def answer(scenes: Scenes) -> Answers:
+    """Answers without any instant."""
+    started = time.perf_counter()
+    params = scenes.params
+    motion = contact_motion(params, scenes.alpha1, scenes.alpha2)
+    dominant = np.abs(motion.y_mode).argmax(axis=-1)[..., None]
+    values = np.stack(
+        [
+            (motion.highest() > params.preload).astype(float),
+            np.take_along_axis(motion.omega, dominant, axis=-1)[..., 0],
+            1.0 - motion.lowest() / params.preload,
+            motion.farthest(),
+        ]
+    )
+    return Answers(values, linear_validity(motion, params), time.perf_counter() - started)

@@ -1,0 +1,1 @@
+"""Maps and boundaries of the linear models."""

@@ -1,0 +1,110 @@
+"""The friction at which steady sliding turns unstable, over the angles and over both dashpots."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+
+import numpy as np
+import xarray as xr
+from numpy.typing import ArrayLike
+
+from squealpipe.arrays import angle_axis, real_array
+from squealpipe.laws.friction_laws import slope
+from squealpipe.models.damped import critical_friction
+from squealpipe.parameters import Parameters, is_finite_number
+from squealpipe.schema import build
+from squealpipe.schema.linear import CRITICAL_DAMPING_MAP, CRITICAL_FRICTION_MAP
+from squealpipe.schema.origin import recorded
+
+
+@recorded(model="A3", method="closed form")
+def critical_friction_map(params: Parameters, alpha1: ArrayLike, alpha2: ArrayLike) -> xr.Dataset:
+    """The friction at which steady sliding turns unstable: A3 and Coulomb, by Routh–Hurwitz.
+
+    Args:
+        params: physical parameters; the sign of the belt's speed counts, ``mu`` does not.
+        alpha1, alpha2: 1-D arrays of angles, rad.
+
+    Returns:
+        Dataset over (alpha1, alpha2): critical_mu, critical_mu_undamped (without dashpots),
+        critical_mu_vanishing (the limit of both dashpots going to 0 at their ratio; that without
+        dashpots where there are none), each ∞ where no friction destabilizes; destabilized: the
+        dashpots lower the critical friction.
+
+    Raises:
+        ValueError: the friction law depends on speed, so that its slope counts beside μ.
+    """
+    _refuse_slope(params)
+    alpha1, alpha2 = angle_axis("alpha1", alpha1), angle_axis("alpha2", alpha2)
+    pair = alpha1[:, None], alpha2[None, :]
+    critical, undamped = critical_friction(params, *pair)
+    vanishing, _ = critical_friction(params, *pair, vanishing=True)
+    return build(
+        CRITICAL_FRICTION_MAP,
+        {
+            "critical_mu": critical,
+            "critical_mu_undamped": undamped,
+            "critical_mu_vanishing": vanishing,
+            "destabilized": critical < undamped,
+        },
+        {"alpha1": alpha1, "alpha2": alpha2},
+    )
+
+
+@recorded(model="A3", method="closed form")
+def critical_damping_map(
+    params: Parameters, alpha1: float, alpha2: float, damping1: ArrayLike, damping2: ArrayLike
+) -> xr.Dataset:
+    """The critical friction of :func:`critical_friction_map` at one pair of angles, over dashpots.
+
+    Args:
+        params: physical parameters, whose dashpots are replaced.
+        alpha1, alpha2: angles, rad.
+        damping1, damping2: 1-D arrays of dashpots along springs 1 and 2, N·s/m, 0 or greater.
+
+    Returns:
+        Dataset over (damping1, damping2): critical_mu, ∞ where no friction destabilizes;
+        destabilized: below critical_mu_undamped, a scalar.
+
+    Raises:
+        ValueError: as :func:`critical_friction_map`, an angle that is no number, or a negative
+            dashpot.
+    """
+    _refuse_slope(params)
+    for name, angle in (("alpha1", alpha1), ("alpha2", alpha2)):
+        if not is_finite_number(angle):
+            raise ValueError(f"{name} = {angle!r}: a finite angle is needed, rad")
+    axes = {}
+    for name, values in (("damping1", damping1), ("damping2", damping2)):
+        axes[name] = np.atleast_1d(real_array(name, values))
+        if axes[name].ndim != 1 or not axes[name].size or not (axes[name] >= 0).all():
+            raise ValueError(f"{name}: numbers of 0 or greater are needed, in one dimension")
+    given = {name: getattr(params, name) for name in ("mass", "k1", "k2", "k3", "drag")}
+    system = SimpleNamespace(
+        **given,
+        belt_direction=params.belt_direction,
+        damping1=axes["damping1"][:, None],
+        damping2=axes["damping2"][None, :],
+    )
+    critical, undamped = critical_friction(system, float(alpha1), float(alpha2))
+    return build(
+        CRITICAL_DAMPING_MAP,
+        {
+            "critical_mu": critical,
+            "critical_mu_undamped": undamped,
+            "destabilized": critical < undamped,
+            "alpha1": float(alpha1),
+            "alpha2": float(alpha2),
+        },
+        axes,
+    )
+
+
+def _refuse_slope(params: Parameters) -> None:
+    """Stop a friction law whose slope counts beside μ."""
+    if slope(abs(params.belt_speed), params) != 0:
+        raise ValueError(
+            f"friction_law = {params.friction_law!r}: critical friction is that of Coulomb's law, "
+            "for the slope of another counts beside μ; use stability_map in a sweep over mu, or "
+            "friction_law = 'coulomb'"
+        )

@@ -1,0 +1,73 @@
+"""Distributions of uncertain parameters, from their words in the configuration."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from scipy import stats
+
+from squealpipe.parameters import Parameters, is_finite_number
+from squealpipe.ranges import ANGLES, NUMBERS
+
+TRUNCATION = 4.0
+"""A normal distribution is cut off at this many standard deviations."""
+KINDS: dict[str, tuple[str, str]] = {
+    "uniform": ("low", "high"),
+    "normal": ("mean", "std"),
+    "lognormal": ("median", "log_std"),
+}
+"""Distribution → its two numbers."""
+
+
+def distribution(name: str, given: Mapping[str, Any]) -> Any:
+    """A frozen scipy distribution of one parameter.
+
+    Raises:
+        ValueError: an unknown name or kind, a missing number, or a support that the parameter may
+            not have.
+    """
+    if name not in (*ANGLES, *NUMBERS):
+        near = difflib.get_close_matches(name, NUMBERS, n=1, cutoff=0.0)
+        raise ValueError(f"{name}: no parameter or angle; did you mean {near[0]!r}?")
+    kind = given.get("distribution")
+    if kind not in KINDS:
+        raise ValueError(f"{name}: distribution = {kind!r}: one of {', '.join(KINDS)} is needed")
+    first, second = KINDS[kind]
+    if set(given) != {"distribution", first, second}:
+        raise ValueError(f"{name}: a {kind} distribution needs {first} and {second} alone")
+    for key in (first, second):
+        if not is_finite_number(given[key]):
+            raise ValueError(f"{name}: {key} = {given[key]!r}: a finite number is needed")
+    frozen = _frozen(name, kind, given[first], given[second])
+    if name not in ANGLES:
+        _check_support(name, kind, frozen)
+    return frozen
+
+
+def _frozen(name: str, kind: str, first: float, second: float) -> Any:
+    if kind == "uniform":
+        if not first < second:
+            raise ValueError(f"{name}: low = {first!r} must be below high = {second!r}")
+        return stats.uniform(first, second - first)
+    if not second > 0:
+        raise ValueError(f"{name}: {KINDS[kind][1]} = {second!r}: a number above 0 is needed")
+    if kind == "normal":
+        return stats.truncnorm(-TRUNCATION, TRUNCATION, loc=first, scale=second)
+    if not first > 0:
+        raise ValueError(f"{name}: median = {first!r}: a number above 0 is needed")
+    return stats.lognorm(second, scale=first)
+
+
+def _check_support(name: str, kind: str, frozen: Any) -> None:
+    for end in frozen.support():
+        if not np.isfinite(end):
+            continue
+        try:
+            Parameters().with_(**{name: float(end) or 1e-300})
+        except ValueError as error:
+            raise ValueError(
+                f"{name}: the {kind} distribution reaches {end:g}, which is not allowed: {error}"
+            ) from error

@@ -1,0 +1,256 @@
+"""Propensities over distributed parameters, and Sobol indices of what they depend on."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from functools import partial
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from scipy import stats
+
+from squealpipe.laws.friction_laws import coefficient, slope
+from squealpipe.models import a3
+from squealpipe.models.contact_system import contact_system
+from squealpipe.models.damped import damped_system, stability
+from squealpipe.parameters import DEFAULTS, Parameters, direction_of, is_finite_number
+from squealpipe.schema import Outcome, build
+from squealpipe.schema.dynamics import MotionFlag
+from squealpipe.schema.inference import wilson_interval
+from squealpipe.schema.origin import recorded
+from squealpipe.schema.spread import PROPENSITY, WIDEST
+from squealpipe.solvers.a1.ensemble import run_ensemble
+from squealpipe.tasks.dynamics.motion import classify_motion
+from squealpipe.tasks.spread.distributions import distribution
+
+QUANTITIES = ("flutter", "contact_loss", "irregular_hammering", "whirl")
+LEAST_EVENTS = 30
+"""With fewer cases, or fewer non-cases, in the sample no index is given."""
+INDEX_FACTOR = np.array([[4], [1], [1], [1]])
+"""Base sample of the indices of each quantity, over that of the shares: flutter needs no run."""
+SIZES = 6
+RESAMPLES = 200
+ORDERS = ("first_order", "total_order")
+INDICES = tuple(f"{order}{end}" for order in ORDERS for end in ("", "_low", "_high"))
+
+
+@recorded(model="A1, A3", method="quasi-random sample; Saltelli's estimator of Sobol indices")
+def propensity(
+    params: Parameters,
+    alpha1: float,
+    alpha2: float,
+    *,
+    distributions: Mapping[str, Mapping[str, Any]],
+    samples: int,
+    t_end: float,
+    spring_correlation: float = 0.0,
+    seed: int = 1,
+    tol: float = 1e-9,
+    workers: int | None = None,
+) -> xr.Dataset:
+    """How often flutter, contact loss, irregular hammering and whirl occur, and why.
+
+    Args:
+        params: the parameters that are not distributed.
+        alpha1, alpha2: angles, rad; they may be distributed too.
+        distributions: name → {"distribution": "uniform", "low", "high"}, {"normal", "mean",
+            "std"} (cut off at 4 std) or {"lognormal", "median", "log_std"}.
+        samples: size of the sample, a power of 2; the indices take samples·(inputs + 2) runs, and
+            4 times as many points for flutter, which needs none.
+        t_end: end of each run, s.
+        spring_correlation: of k1 and k2 (Gaussian copula). Sobol indices assume independent
+            inputs and are not given with it.
+        seed: of the scrambled Sobol sequence.
+        tol: tolerance of the integrator.
+        workers: processes; None takes all cores.
+
+    Returns:
+        Dataset over quantity and input: shares with 95 % intervals (Wilson), the share of growing
+        parts of the sample, first-order and total Sobol indices with bootstrap intervals, and the
+        half-width of the widest total by the size of the base sample. An index is NaN, with outcome
+        ``unresolved``, where its half-width is above 0.02 or fewer than 30 samples differ.
+
+    Raises:
+        ValueError: a distribution or another argument is not allowed.
+    """
+    if isinstance(samples, bool) or samples < 64 or samples & (samples - 1):
+        raise ValueError(f"samples = {samples!r}: a power of 2 of at least 64 is needed")
+    if not (is_finite_number(t_end) and t_end > 0):
+        raise ValueError(f"t_end = {t_end!r}: a finite time above 0 is needed, s")
+    if not (is_finite_number(spring_correlation) and -1 < spring_correlation < 1):
+        raise ValueError(f"spring_correlation = {spring_correlation!r}: must lie between -1 and 1")
+    if len(distributions) < 1:
+        raise ValueError("distributions: at least one parameter is needed")
+    frozen = {name: distribution(name, given) for name, given in distributions.items()}
+    names = list(frozen)
+    if spring_correlation and not {"k1", "k2"} <= set(names):
+        raise ValueError("spring_correlation: distributions of k1 and k2 are needed for it")
+    fixed = {**params.as_dict(), "alpha1": alpha1, "alpha2": alpha2}
+
+    def judge(values: np.ndarray, *, runs: bool = True) -> np.ndarray:
+        size = values.shape[-1]
+        fields: dict[str, Any] = {
+            name: value if isinstance(value, str) or value is None else np.broadcast_to(value, size)
+            for name, value in {**fixed, **dict(zip(names, values, strict=True))}.items()
+        }
+        angles = fields.pop("alpha1"), fields.pop("alpha2")
+        flutters = _flutters(fields, *angles)[None]
+        if not runs:
+            return flutters
+        return np.concatenate([flutters, _events(fields, *angles, t_end, tol, workers)])
+
+    points = stats.qmc.Sobol(len(names), rng=np.random.default_rng(seed)).random(samples)
+    points = np.clip(points, 1e-12, 1.0 - 1e-12)
+    if spring_correlation:
+        points = _correlate(points, names.index("k1"), names.index("k2"), spring_correlation)
+    values = np.array([frozen[name].ppf(points[:, i]) for i, name in enumerate(names)])
+    happens = judge(values)
+    counts = happens.sum(axis=1)
+    low, high = np.transpose([wilson_interval(int(count), samples) for count in counts])
+    sizes = samples >> np.arange(SIZES)[::-1]
+    index_samples = INDEX_FACTOR * sizes
+    blank = dict.fromkeys(INDICES, np.full((len(QUANTITIES), len(names)), np.nan))
+    table = blank | {"half_width_by_size": np.full((len(QUANTITIES), SIZES), np.nan)}
+    if not spring_correlation:
+        linear = _judged_matrices(partial(judge, runs=False), frozen, index_samples[0, -1], seed)
+        by_run = _judged_matrices(judge, frozen, index_samples[1, -1], seed)
+        table |= _sobol([linear[:, 0], *np.moveaxis(by_run[:, 1:], 1, 0)], SIZES, seed)
+    supported = np.isfinite(table["total_order"]).all(axis=1)
+    return build(
+        PROPENSITY,
+        {
+            "share": counts / samples,
+            "share_low": low,
+            "share_high": high,
+            "share_by_size": np.stack([happens[:, :size].mean(axis=1) for size in sizes], axis=1),
+            **table,
+            "index_samples": index_samples,
+            "judged": samples,
+            "outcome": np.where(supported, Outcome.converged, Outcome.unresolved),
+            "alpha1": float(alpha1),
+            "alpha2": float(alpha2),
+            "t_end": t_end,
+        },
+        {"quantity": list(QUANTITIES), "input": names, "size": sizes},
+        {"spring_correlation": spring_correlation},
+    )
+
+
+def _correlate(points: np.ndarray, first: int, second: int, correlation: float) -> np.ndarray:
+    """Two columns of a uniform sample joined by a Gaussian copula."""
+    normal = stats.norm.ppf(points[:, [first, second]])
+    mixed = correlation * normal[:, 0] + np.sqrt(1.0 - correlation**2) * normal[:, 1]
+    joined = points.copy()
+    joined[:, second] = stats.norm.cdf(mixed)
+    return joined
+
+
+def _events(
+    fields: Mapping[str, Any],
+    alpha1: np.ndarray,
+    alpha2: np.ndarray,
+    t_end: float,
+    tol: float,
+    workers: int | None,
+) -> np.ndarray:
+    """Whether each quantity that needs a run occurs, (quantities − 1, size)."""
+    run = run_ensemble(fields, alpha1, alpha2, t_end=t_end, tol=tol, tangent=True, workers=workers)
+    unit = np.sqrt(2.0 * fields["mass"] / (fields["k1"] + fields["k2"]))
+    motion = classify_motion(run, unit)
+    return np.array(
+        [
+            np.isfinite(run.first_separation_time),
+            motion == MotionFlag.irregular_hammering,
+            motion == MotionFlag.whirl,
+        ]
+    )
+
+
+def _flutters(fields: Mapping[str, Any], alpha1: np.ndarray, alpha2: np.ndarray) -> np.ndarray:
+    p = SimpleNamespace(**(DEFAULTS | dict(fields)))
+    p.static_mu = p.mu if p.mu_static is None else p.mu_static
+    p.drag = direction_of(p.belt_speed) * coefficient(np.abs(p.belt_speed), p)
+    damped = (p.damping1 != 0) | (p.damping2 != 0) | (slope(np.abs(p.belt_speed), p) != 0)
+    if not np.any(damped):
+        system = contact_system(p, alpha1, alpha2)
+        return np.asarray(a3.regime(system.invariants) == a3.LinearRegime.flutter)
+    names = [name for name, value in fields.items() if isinstance(value, np.ndarray)]
+    fixed: dict[str, Any] = {name: value for name, value in fields.items() if name not in names}
+    columns = np.array([fields[name] for name in names]).T.tolist()
+    return np.array([
+        stability(
+            damped_system(Parameters(**fixed, **dict(zip(names, row, strict=True))), first, second)
+        ).regime == a3.LinearRegime.flutter
+        for row, first, second in zip(columns, alpha1, alpha2, strict=True)
+    ]).ravel()  # fmt: skip
+
+
+def _sobol(judged: Sequence[np.ndarray], parts: int, seed: int) -> dict[str, np.ndarray]:
+    """Sobol indices with bootstrap intervals, and the widest total's half-width by sample size.
+
+    Args:
+        judged: of each quantity, as :func:`_judged_matrices`, (2 + inputs, size).
+        parts: of the sample, each twice the one before; the last is all of it.
+        seed: of the bootstrap.
+    """
+    shape = (len(judged), len(judged[0]) - 2)
+    found = {key: np.full(shape, np.nan) for key in INDICES}
+    widest = np.full((len(judged), parts), np.nan)
+    for row, whole in enumerate(judged):
+        for column in range(parts):
+            part = whole[:, : whole.shape[1] >> (parts - 1 - column)]
+            count = part[0].sum()
+            if min(count, part.shape[1] - count) < LEAST_EVENTS:
+                continue
+            value, low, high = _with_intervals(part, np.random.default_rng(seed + 2))
+            half = 0.5 * (high - low)
+            widest[row, column] = half[1].max()
+            if column < parts - 1:
+                continue
+            # beyond its interval below 0 an estimate is a failure of the sample, not an index
+            failed = (half > WIDEST) | (high < 0.0)
+            for order, name in enumerate(ORDERS):
+                for end, limit in (("", value), ("_low", low), ("_high", high)):
+                    found[name + end][row] = np.where(failed[order], np.nan, limit[order])
+    return {**found, "half_width_by_size": widest}
+
+
+def _judged_matrices(judge: Any, frozen: Mapping[str, Any], size: int, seed: int) -> np.ndarray:
+    """Saltelli's samples A, B and A with one input of B each, (2 + inputs, quantities, size)."""
+    inputs = len(frozen)
+    points = stats.qmc.Sobol(2 * inputs, rng=np.random.default_rng(seed + 1)).random(size).T
+    points = np.clip(points, 1e-12, 1.0 - 1e-12)
+    values = np.array([
+        distribution.ppf(points[half * inputs + i])
+        for half in (0, 1) for i, distribution in enumerate(frozen.values())
+    ])  # fmt: skip
+    first, second = values[:inputs], values[inputs:]
+    mixed = []
+    for i in range(inputs):
+        mixed.append(first.copy())
+        mixed[i][i] = second[i]
+    return np.stack([judge(matrix) for matrix in (first, second, *mixed)]).astype(float)
+
+
+def _with_intervals(
+    judged: np.ndarray, generator: np.random.Generator
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Indices and the ends of their 95 % intervals (bootstrap, percentiles), (order, inputs)."""
+
+    def indices(rows: np.ndarray) -> np.ndarray:
+        # twice, for scipy squeezes a single quantity away
+        drawn = np.repeat(judged[:, None, rows], 2, axis=1)
+        found = stats.sobol_indices(
+            func={"f_A": drawn[0], "f_B": drawn[1], "f_AB": drawn[2:]}, n=rows.size
+        )
+        orders = found.first_order, found.total_order
+        return np.stack([np.reshape(order, (2, -1))[0] for order in orders])
+
+    size = judged.shape[1]
+    resampled = np.stack([
+        indices(np.asarray(generator.integers(0, size, size))) for _ in range(RESAMPLES)
+    ])  # fmt: skip
+    low, high = np.percentile(resampled, [2.5, 97.5], axis=0)
+    return indices(np.arange(size)), low, high

@@ -1,0 +1,152 @@
+"""How far each verdict carries: the paper's statements with damping, other laws, other starts."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+import numpy as np
+import xarray as xr
+
+from squealpipe.parameters import Parameters
+from squealpipe.schema import Outcome, build
+from squealpipe.schema.inference import wilson_interval
+from squealpipe.schema.origin import recorded
+from squealpipe.schema.spread import VERDICT_REACH
+from squealpipe.tasks.inference.consequences import CONSEQUENCES, judge_consequences
+from squealpipe.tasks.inference.constraints import CONSTRAINTS, Candidates, measure
+
+RATIOS = (0.005, 0.02, 0.05)
+"""Damping ratios c/(2 √(k m)) of each spring."""
+SPEEDS = (1.0, 10.0, 100.0)
+"""Slow, middle and fast belt, over the speed v0 by which friction falls."""
+STATIC = 2.0
+"""Static over sliding friction of the two falling laws."""
+NEAR = (0.01, 0.1)
+"""Largest distance of a start from rest, over l_pre (displacement) and l_pre √(k1/m) (velocity)."""
+
+Share = tuple[float, float, float, int, int]
+"""Share, its interval, number judged, outcome."""
+
+
+def variants(params: Parameters) -> Iterator[tuple[str, Parameters]]:
+    """(name, parameters) of the variants that start at rest."""
+    yield "as configured", params
+    unit = [2.0 * math.sqrt(k * params.mass) for k in (params.k1, params.k2)]
+    for ratio in RATIOS:
+        yield (
+            f"damping ratio {100 * ratio:g} %",
+            params.with_(damping1=ratio * unit[0], damping2=ratio * unit[1]),
+        )
+    yield "damping 2 %, spring 1 only", params.with_(damping1=0.02 * unit[0], damping2=0.0)
+    yield "damping 2 %, spring 2 only", params.with_(damping1=0.0, damping2=0.02 * unit[1])
+    for law in ("exponential", "hyperbolic"):
+        for speed in SPEEDS:
+            yield (
+                f"{law} law, |V| = {speed:g} v₀",
+                params.with_(
+                    friction_law=law,
+                    mu_static=STATIC * params.mu,
+                    friction_speed=abs(params.belt_speed) / speed or 1.0,
+                ),
+            )
+    for factor, words in ((2.0, "double"), (0.5, "half")):
+        yield f"{words} κ", params.with_(k3=factor * params.k3)
+        lengths = {name: factor * getattr(params, name) for name in ("length1", "length2")}
+        yield f"{words} λ", params.with_(**lengths)
+
+
+@recorded(model="A1, A2, A3", method="margins of the statements")
+def verdict_reach(
+    params: Parameters,
+    *,
+    starts: int,
+    inferred: xr.Dataset | None = None,
+    seed: int = 1,
+    tol: float = 1e-12,
+    workers: int | None = None,
+) -> xr.Dataset:
+    """Whether each statement of Figs. 2 to 9 holds, setting by setting.
+
+    Statements are those of the inference, with its criteria and thresholds; starts at rest, but for
+    the last variants, where a share of random starts is given with its 95 % interval (Wilson).
+
+    Args:
+        params: physical parameters as configured.
+        starts: random starts of each of the last variants.
+        inferred: dataset ``parameter_inference``; its feasible parameter sets become a variant, in
+            which statements that were fitted are not judged, for they hold by construction.
+        seed: of the starts.
+        tol: tolerance of the integrator.
+        workers: processes; None takes all cores.
+
+    Returns:
+        Dataset over (variant, statement): share (0 or 1 for a single setting), its interval, the
+        number of runs judged, and the outcome.
+    """
+    names = [constraint.name for constraint in CONSTRAINTS] + list(CONSEQUENCES)
+    rows, titles = [], []
+    for title, variant in variants(params):
+        fields = {key: np.array([value]) for key, value in variant.as_dict().items()}
+        verdicts = _margins(Candidates(fields, tol, workers))
+        found = judge_consequences(fields, tol=tol, workers=workers)
+        verdicts |= {name: (values, np.ones(1, bool)) for name, values in found.items()}
+        rows.append([_share(*verdicts[name]) for name in names])
+        titles.append(title)
+    generator = np.random.default_rng(seed)
+    speed = params.preload / params.time_unit
+    for near in NEAR:
+        fields = {key: np.full(starts, value) for key, value in params.as_dict().items()}
+        size = near * np.array([params.preload, params.preload, speed, speed])
+        state = generator.uniform(-1.0, 1.0, (starts, 4)) * size
+        verdicts = _margins(Candidates(fields, tol, workers, initial_state=state))
+        rows.append([_share(*verdicts.get(name, (None, None))) for name in names])
+        titles.append(f"starts within {100 * near:g} % of l_pre")
+    if inferred is not None:
+        rows.insert(1, _feasible(inferred, names))
+        titles.insert(1, "feasible parameters")
+    share, low, high, judged, outcome = np.moveaxis(np.array(rows), -1, 0)
+    return build(
+        VERDICT_REACH,
+        {
+            "share": share,
+            "share_low": low,
+            "share_high": high,
+            "judged": judged,
+            "outcome": outcome,
+        },
+        {"variant": titles, "statement": names},
+    )
+
+
+def _margins(candidates: Candidates) -> dict[str, tuple[np.ndarray, np.ndarray]]:
+    """Statement → (holds, could be judged)."""
+    return {
+        name: (found.margin > 0.0, np.isfinite(found.margin))
+        for name, found in measure(candidates).items()
+    }
+
+
+def _feasible(inferred: xr.Dataset, names: list[str]) -> list[Share]:
+    """The row of the inferred parameter sets: what was predicted of them."""
+    count = int(inferred.feasible_count)
+    rows = []
+    for name in names:
+        if name not in inferred.consequence.values:
+            rows.append(_share(None, None))
+            continue
+        held = round(float(inferred.feasible_share.sel(consequence=name).fillna(0.0)) * count)
+        rows.append(_share(np.arange(count) < held, np.ones(count, bool)))
+    return rows
+
+
+def _share(holds: np.ndarray | None, judged: np.ndarray | None) -> Share:
+    """(share, its interval, number judged, outcome)."""
+    if holds is None or judged is None:
+        return math.nan, math.nan, math.nan, 0, Outcome.not_computed
+    number, count = int(judged.sum()), int((holds & judged).sum())
+    if not number:
+        return math.nan, math.nan, math.nan, 0, Outcome.unresolved
+    if number == 1:
+        return float(count), float(count), float(count), 1, Outcome.converged
+    return count / number, *wilson_interval(count, number), number, Outcome.converged

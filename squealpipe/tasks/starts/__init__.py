@@ -1,0 +1,1 @@
+"""Runs from other starts than rest: basins and smallest disturbances."""

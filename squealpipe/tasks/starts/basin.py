@@ -1,0 +1,142 @@
+"""What model A1 does from many starts at one configuration."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from squealpipe.arrays import real_array, real_number
+from squealpipe.parameters import Parameters
+from squealpipe.schema import Outcome, build
+from squealpipe.schema.origin import recorded
+from squealpipe.schema.starts import STARTS, UNSETTLED, basin_schema
+from squealpipe.solvers.a1.ensemble import Ensemble, run_ensemble
+from squealpipe.tasks.dynamics.motion import classify_motion, linear_time
+
+SAMPLES = 1000
+"""Instants after t_late at which |ẋ| is read off; its maximum is refined by a parabola."""
+RUNS_AT_ONCE = 2000
+
+
+@recorded(model="A1", method="Taylor series with located events")
+def basin_map(
+    params: Parameters,
+    alpha1: float,
+    alpha2: float,
+    *,
+    x: Any = 0.0,
+    y: Any = 0.0,
+    vx: Any = 0.0,
+    vy: Any = 0.0,
+    t_end: float,
+    t_late: float | None = None,
+    tol: float = 1e-12,
+    workers: int | None = None,
+) -> xr.Dataset:
+    """Runs of A1 from a grid of starts, and the kind of motion that each leads to.
+
+    ``motion`` is judged over the whole run as in ``hammering_map``. Where the second half of the
+    run alone would get another label, the run has not settled and its label is ``unsettled``.
+
+    Args:
+        params: physical parameters.
+        alpha1, alpha2: angles, rad.
+        x, y, vx, vy: start, each a number or a 1-D array, m and m/s; the arrays become the
+            dimensions x0, y0, vx0, vy0.
+        t_end: end of each run, s.
+        t_late: from where the late extrema count, s; default 0.8 t_end.
+        tol: tolerance of the Taylor integrator.
+        workers: processes; None takes all cores.
+
+    Returns:
+        Dataset over the starts; see ``schema.starts``.
+
+    Raises:
+        ValueError: an argument is not finite, has too many dimensions, or a time is not allowed.
+    """
+    alpha1, alpha2 = real_number("alpha1", alpha1), real_number("alpha2", alpha2)
+    t_end = real_number("t_end", t_end, above=0.0)
+    late = 0.8 * t_end if t_late is None else real_number("t_late", t_late, least=0.0)
+    if not late < t_end:
+        raise ValueError(f"t_late = {t_late!r}: 0 or a time before t_end = {t_end!r} is needed, s")
+    axes = {}
+    for name, value in zip(STARTS, (x, y, vx, vy), strict=True):
+        axes[name] = real_array(name.removesuffix("0"), value)
+        if axes[name].ndim > 1 or not axes[name].size:
+            raise ValueError(f"{name.removesuffix('0')}: a number or a 1-D array is needed")
+    shape = tuple(axis.size for axis in axes.values() if axis.ndim)
+    grid = np.meshgrid(*(np.atleast_1d(axis) for axis in axes.values()), indexing="ij")
+    starts = np.stack([part.ravel() for part in grid], axis=-1)
+    blocks = [
+        _block(params, alpha1, alpha2, starts[rows], t_end, late, tol, workers)
+        for rows in _rows(len(starts))
+    ]
+    columns = {
+        name: np.concatenate([block[name] for block in blocks]).reshape(shape) for name in blocks[0]
+    }
+    swept = {name: axis for name, axis in axes.items() if axis.ndim}
+    fixed = {name: float(axis) for name, axis in axes.items() if not axis.ndim}
+    angles = {"alpha1": alpha1, "alpha2": alpha2}
+    return build(basin_schema(tuple(swept)), {**columns, **fixed, **angles, "t_end": t_end}, swept)
+
+
+def _rows(size: int) -> Iterator[slice]:
+    for first in range(0, size, RUNS_AT_ONCE):
+        yield slice(first, min(first + RUNS_AT_ONCE, size))
+
+
+def _block(
+    params: Parameters,
+    alpha1: float,
+    alpha2: float,
+    starts: np.ndarray,
+    t_end: float,
+    t_late: float,
+    tol: float,
+    workers: int | None,
+) -> dict[str, np.ndarray]:
+    """Variables of some starts."""
+    times = np.union1d(np.linspace(t_late, t_end, SAMPLES), 0.5 * t_end)
+    run = run_ensemble(
+        params, alpha1, alpha2, t_end=t_end, t_late=t_late, initial_state=starts, times=times,
+        tol=tol, tangent=True, workers=workers,
+    )  # fmt: skip
+    half = run.samples[:, int(np.searchsorted(times, 0.5 * t_end))]
+    finished = np.isfinite(half).all(axis=1) & (run.outcome == Outcome.converged)
+    second = run_ensemble(
+        params, alpha1, alpha2, t_end=0.5 * t_end, tol=tol, tangent=True, workers=workers,
+        initial_state=np.where(finished[:, None], half, 0.0),
+    )  # fmt: skip
+    unit = linear_time(params)
+    whole, later = classify_motion(run, unit), classify_motion(second, unit)
+    motion = np.where(whole == later, whole, UNSETTLED)
+    motion = np.where(finished, motion, UNSETTLED)
+    chaotic = (run.outcome == Outcome.converged) & np.isfinite(run.predictability_horizon)
+    return {
+        "motion": motion,
+        "late_max_x": run.late_max_x,
+        "late_max_vx": _late_speed(run, times >= t_late),
+        "separates": np.isfinite(run.first_separation_time),
+        "first_separation_time": run.first_separation_time,
+        "peak_contact_force": run.peak_contact_force,
+        "lyapunov_exponent": run.log_growth / np.maximum(run.time, np.finfo(float).tiny),
+        "predictability_horizon": np.where(
+            np.isnan(run.predictability_horizon), run.time, run.predictability_horizon
+        ),
+        "outcome": np.where(chaotic, Outcome.beyond_horizon, run.outcome),
+    }
+
+
+def _late_speed(run: Ensemble, late: np.ndarray) -> np.ndarray:
+    """Largest |ẋ| of evenly spaced samples, each peak refined by the parabola through three."""
+    speed = np.abs(run.samples[:, late, 2])
+    left, middle, right = speed[:, :-2], speed[:, 1:-1], speed[:, 2:]
+    bend = left - 2.0 * middle + right
+    with np.errstate(divide="ignore", invalid="ignore"):
+        peak = middle - (right - left) ** 2 / (8.0 * bend)
+    inside = (middle >= left) & (middle >= right) & (bend < 0.0)
+    refined = np.where(inside, peak, 0.0).max(axis=1)
+    return np.asarray(np.maximum(speed.max(axis=1), refined))

@@ -1,0 +1,203 @@
+"""The smallest disturbance of steady sliding that leads to contact loss, or to the whirl."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from squealpipe.methods.smallest_vector import Found, Settings, search, smallest_linear
+from squealpipe.models.a1_automaton import A1Automaton
+from squealpipe.models.switching import VARIANT_RULES
+from squealpipe.parameters import Parameters, is_finite_number, is_whole_number
+from squealpipe.schema import Outcome, build
+from squealpipe.schema.origin import recorded
+from squealpipe.schema.starts import SMALLEST_DISTURBANCE, LeadsTo
+from squealpipe.solvers.a1.ensemble import run_ensemble
+from squealpipe.solvers.a1.jobs import known_model
+from squealpipe.solvers.a1.sliding import sliding_equilibrium, sliding_jacobian
+from squealpipe.tasks.dynamics.motion import linear_time, whirls
+from squealpipe.tasks.linear.maps import stability_map
+
+T_END = 200.0
+"""Default horizon, in units of √(2m/(k1 + k2))."""
+BOUNDS = {LeadsTo.contact_lost: 3.0, LeadsTo.whirl: 15.0}
+"""Default largest disturbance, in the norm of :func:`smallest_disturbance`."""
+GROWS = 1e-7
+"""Growth rate, over the largest |s|, above which steady sliding is unstable; below it is the
+round-off of an undamped pair."""
+LEAST_DIRECTIONS = 8
+CONFIDENCE = 0.95
+
+
+@recorded(method="random directions, bisection, local search")
+def smallest_disturbance(
+    params: Parameters,
+    alpha1: float,
+    alpha2: float,
+    *,
+    leads_to: str = "contact_lost",
+    model: str = "A1",
+    t_end: float | None = None,
+    bound: float | None = None,
+    directions: int = 128,
+    seed: int = 1,
+    tol: float = 1e-9,
+    workers: int | None = None,
+) -> xr.Dataset:
+    """How far a state may be from steady sliding before contact is lost, or the mass whirls.
+
+    A disturbance (x, y, ẋ, ẏ) has the norm √((x² + y²)/l_pre² + (ẋ² + ẏ²)/(l_pre ω)²) with
+    ω² = (k1 + k2)/(2m). The smallest one that was found is an upper bound on the smallest there is:
+    random directions are tried at 16 radii up to the bound, bisected, and the best four improved.
+    How the minimum falls with the number of directions is told, and so is the largest share of
+    directions that can have a smaller one (95 %, order statistics).
+
+    Args:
+        params: physical parameters.
+        alpha1, alpha2: angles, rad.
+        leads_to: "contact_lost" or "whirl" (three turns or more around both fixed ends).
+        model: "A1" or one of its variants that can lose contact; "A1-linear-springs" and "A4" have
+            no whirl.
+        t_end: time within which it is to happen, s; default 200 √(2m/(k1 + k2)).
+        bound: largest disturbance tried, in the norm above; default 3 for contact loss, 15 for
+            the whirl.
+        directions: random directions.
+        seed: of the directions.
+        tol: tolerance of the Taylor integrator.
+        workers: processes; None takes all cores.
+
+    Returns:
+        Dataset: the steady state (m), its growth rate in this model beside the regime of model A3,
+        ``distance`` and its disturbance, ``distance_by_number`` over growing numbers of
+        directions, ``linear_distance`` (contact loss by the linear motion about the steady state,
+        closed form), ``rest_distance`` (the start at rest at r = 0). Outcomes: converged,
+        not_reached (by none within the bound), already_unstable (any disturbance grows: none is
+        looked for), no_sliding_state.
+
+    Raises:
+        ValueError: an argument is not allowed.
+    """
+    _check(leads_to, model, t_end, bound, directions)
+    time = linear_time(params)
+    horizon = T_END * time if t_end is None else float(t_end)
+    goal = LeadsTo[leads_to]
+    largest = BOUNDS[goal] if bound is None else float(bound)
+    a1 = A1Automaton(params, alpha1, alpha2, linear_springs=VARIANT_RULES[model].linear_springs)
+    rest = sliding_equilibrium(a1) if params.belt_speed != 0.0 else None
+    numbers = np.unique(np.append(2 ** np.arange(3, directions.bit_length()), directions))
+    numbers = numbers[numbers <= directions]
+    nothing = {
+        **dict.fromkeys(_SCALARS, np.nan),
+        "distance_by_number": np.full(numbers.size, np.nan),
+        "improved_distance": np.full(Settings(directions).improved, np.nan),
+        "reached": 0,
+        "unfinished": 0,
+        "leads_to": goal,
+        "regime_linear": stability_map(params, [alpha1], [alpha2]).regime_linear.item(),
+        "alpha1": float(alpha1),
+        "alpha2": float(alpha2),
+        "t_end": horizon,
+        "bound": largest,
+    }
+    coordinates = {
+        "directions": numbers,
+        "improved": np.arange(1, Settings(directions).improved + 1),
+    }
+
+    def result(outcome: Outcome, **found: Any) -> xr.Dataset:
+        return build(SMALLEST_DISTURBANCE, {**nothing, **found, "outcome": outcome}, coordinates)
+
+    if rest is None:
+        return result(Outcome.no_sliding_state)
+    scale = params.preload * np.array([1.0, 1.0, 1.0 / time, 1.0 / time])
+    jacobian = sliding_jacobian(a1, rest)
+    values = np.linalg.eigvals(jacobian)
+    growth = float(values.real.max())
+    known = {
+        "x_rest": rest[0],
+        "y_rest": rest[1],
+        "growth_rate": growth,
+        "rest_distance": float(np.linalg.norm(rest / scale)),
+    }
+    if growth > GROWS * float(np.abs(values).max()):
+        return result(Outcome.already_unstable, **known)
+    if goal == LeadsTo.contact_lost:
+        known["linear_distance"] = smallest_linear(
+            jacobian * (scale / scale[:, None]),
+            np.eye(4)[1],
+            (params.preload - rest[1]) / params.preload,
+            horizon,
+        )
+    unfinished = 0
+
+    def happens(vectors: np.ndarray) -> np.ndarray:
+        nonlocal unfinished
+        run = run_ensemble(
+            params, alpha1, alpha2, t_end=horizon, model=model, tol=tol, workers=workers,
+            initial_state=rest + scale * vectors,
+            stop_at_first_separation=goal == LeadsTo.contact_lost,
+        )  # fmt: skip
+        unfinished += int(
+            np.sum((run.outcome != Outcome.converged) & (run.outcome != Outcome.separated))
+        )
+        if goal == LeadsTo.contact_lost:
+            return np.asarray(np.isfinite(run.first_separation_time))
+        return whirls(run)
+
+    found = search(happens, 4, largest, Settings(directions), np.random.default_rng(seed))
+    known |= _described(found, numbers, scale)
+    reached = int(np.isfinite(found.radius).sum())
+    outcome = Outcome.converged if reached else Outcome.not_reached
+    return result(outcome, **known, reached=reached, unfinished=unfinished)
+
+
+_SCALARS = (
+    "x_rest",
+    "y_rest",
+    "growth_rate",
+    "rest_distance",
+    "linear_distance",
+    "distance",
+    "x_disturbance",
+    "y_disturbance",
+    "vx_disturbance",
+    "vy_disturbance",
+    "share_below",
+)
+
+
+def _described(found: Found, numbers: np.ndarray, scale: np.ndarray) -> dict[str, Any]:
+    """The variables of a search."""
+    lowest = np.minimum.accumulate(found.radius)[numbers - 1]
+    move = scale * found.vector
+    return {
+        "distance": float(np.linalg.norm(found.vector)),
+        **{f"{name}_disturbance": move[i] for i, name in enumerate(("x", "y", "vx", "vy"))},
+        "distance_by_number": np.where(np.isfinite(lowest), lowest, np.nan),
+        "improved_distance": np.where(np.isfinite(found.improved), found.improved, np.nan),
+        "share_below": 1.0 - (1.0 - CONFIDENCE) ** (1.0 / found.radius.size),
+    }
+
+
+def _check(leads_to: str, model: str, t_end: object, bound: object, directions: object) -> None:
+    known = ", ".join(repr(goal.name) for goal in LeadsTo)
+    if leads_to not in LeadsTo.__members__:
+        raise ValueError(f"leads_to = {leads_to!r}: unknown; choose from {known}")
+    rules = VARIANT_RULES[known_model(model)]
+    if not rules.separates:
+        raise ValueError(f"model = {model!r} never loses contact; use 'A1'")
+    if leads_to == LeadsTo.whirl.name and rules.linear_springs:
+        raise ValueError(
+            f"model = {model!r} has no whirl, for its springs do not turn; use 'A1', or "
+            "leads_to = 'contact_lost'"
+        )
+    if t_end is not None and not (is_finite_number(t_end) and t_end > 0):  # type: ignore[operator]
+        raise ValueError(f"t_end = {t_end!r}: a finite time above 0 is needed, s")
+    if bound is not None and not (is_finite_number(bound) and bound > 0):  # type: ignore[operator]
+        raise ValueError(f"bound = {bound!r}: a finite number above 0 is needed")
+    if not (is_whole_number(directions) and directions >= LEAST_DIRECTIONS):  # type: ignore[operator]
+        raise ValueError(
+            f"directions = {directions!r}: a whole number of {LEAST_DIRECTIONS} or more is needed"
+        )

@@ -1,0 +1,183 @@
+"""Files that commands write, and parameters that they take from a study."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import warnings
+
+import numpy as np
+import pandas as pd
+import pytest
+import yaml
+
+from squealpipe import Parameters, load, natural_frequencies, simulate
+from squealpipe.cli import run
+from squealpipe.config import parse_study, read_study
+from squealpipe.store.tables import write_csv
+
+STABILITY = ["map", "stability", "--alpha1", "0:pi:5", "--alpha2", "0:2:3"]
+
+
+@pytest.fixture(autouse=True)
+def elsewhere(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("COLUMNS", "100")
+
+
+def test_existing_files_are_overwritten_by_force_only(capsys, tmp_path):
+    assert run([*STABILITY, "-o", "a.nc"]) == 0
+    first = (tmp_path / "a.nc").read_bytes()
+    assert run([*STABILITY, "-o", "a.nc", "--mu", "0.9"]) == 2
+    assert "a.nc exists; add --force" in capsys.readouterr().err
+    assert run([*STABILITY, "-o", "b.nc", "-p", "a.png"]) == 2
+    assert (tmp_path / "a.nc").read_bytes() == first
+    assert run([*STABILITY, "-o", "a.nc", "--mu", "0.9", "--force"]) == 0
+    assert json.loads(load("a.nc").attrs["config"])["parameters"]["mu"] == 0.9
+
+
+def test_tables_beside_a_csv_are_overwritten_by_force_only(capsys, tmp_path):
+    once = ["simulate", "5pi/6", "5pi/6", "--t-end", "20", "-o", "run[1].csv"]
+    assert run(once) == 0
+    (tmp_path / "run[1].csv").unlink()
+    beside = tmp_path / "run[1].event.csv"
+    beside.write_text("mine")
+    capsys.readouterr()
+    assert run(once) == 2
+    assert "run[1].event.csv exists; add --force" in capsys.readouterr().err
+    assert beside.read_text() == "mine"
+    assert run([*once, "--force"]) == 0
+    assert beside.read_text() != "mine"
+
+
+def test_pipes_are_left_alone(tmp_path):
+    os.mkfifo(tmp_path / "pipe.nc")
+    assert run([*STABILITY, "-o", "pipe.nc", "--force"]) == 2
+    assert (tmp_path / "pipe.nc").is_fifo()
+
+
+def test_csv_holds_the_numbers_of_the_dataset(tmp_path):
+    assert run([*STABILITY, "-o", "s.nc"]) == 0
+    assert run([*STABILITY, "-o", "t.csv"]) == 0
+    table = pd.read_csv("t.csv", comment="#", float_precision="round_trip").set_index(
+        ["alpha1", "alpha2"]
+    )
+    dataset = load("s.nc")
+    for (alpha1, alpha2), row in table.iterrows():
+        cell = dataset.sel(alpha1=alpha1, alpha2=alpha2, method="nearest")
+        assert row.growth_rate == float(cell.growth_rate)
+    words = set(dataset.regime_linear.attrs["flag_meanings"].split())
+    assert set(table.regime_linear) <= words
+    assert "growth_rate [s-1]" in (tmp_path / "t.csv").read_text(encoding="utf-8")
+
+
+def test_csv_of_a_run_has_its_events_beside_it(tmp_path):
+    made = simulate(Parameters(), 5 * np.pi / 6, 5 * np.pi / 6, t_end=20.0)
+    files = write_csv(made, tmp_path / "run.csv")
+    assert [path.name for path in files] == ["run.csv", "run.event.csv"]
+    np.testing.assert_array_equal(
+        pd.read_csv(files[0], comment="#", float_precision="round_trip").x, made.x
+    )
+    events = pd.read_csv(files[1], comment="#", float_precision="round_trip")
+    np.testing.assert_array_equal(events.event_time, made.event_time)
+    assert events.event_kind[0] == "separation"
+    assert "# preload = 1.0 [m]" in files[0].read_text(encoding="utf-8")
+
+
+def test_csv_of_a_sweep_has_the_longest_table_first(tmp_path, capsys):
+    swept = ["sweep", "simulate", "--vary", "mu=0.1,0.3", "--alpha1", "2", "--alpha2", "2.5"]
+    assert run([*swept, "--option", "t_end=2", "--workers", "1", "-o", "s.csv"]) == 0
+    table = pd.read_csv("s.csv", comment="#", float_precision="round_trip")
+    assert list(table.columns[:3]) == ["mu", "time", "x"]
+    expected = simulate(Parameters(mu=0.1), 2.0, 2.5, t_end=2.0)
+    np.testing.assert_array_equal(table.x[table.mu == 0.1], expected.x)
+    assert "other dimensions are in s.mu.csv" in capsys.readouterr().out
+
+
+def test_parameters_come_from_a_study_unless_they_are_typed(tmp_path):
+    (tmp_path / "soft.yaml").write_text("parameters: {k1: 2.0, k3: 0.6, mu: 0.1}\n")
+    assert run(["map", "frequencies", "-c", "soft.yaml", "--k3", "3", "--alpha1", "1,2",
+                "--alpha2", "0.5,0.7", "-o", "f.nc"]) == 0  # fmt: skip
+    expected = natural_frequencies(Parameters(k1=2.0, k3=3.0, mu=0.1), [1.0, 2.0], [0.5, 0.7])
+    np.testing.assert_array_equal(load("f.nc").omega, expected.omega)
+
+
+def test_initial_state_is_the_one_given():
+    state = ["--x0", "0.2", "--y0=-0.1", "--vx0", "0.3", "--vy0", "0.4"]
+    assert run(["simulate", "2", "2.5", "--t-end", "5", "--points", "20", *state]) == 0
+    expected = simulate(
+        Parameters(), 2.0, 2.5, t_end=5.0, times=np.linspace(0, 5, 20),
+        initial_state=(0.2, -0.1, 0.3, 0.4),
+    )  # fmt: skip
+    np.testing.assert_array_equal(load("run.nc").y, expected.y)
+
+
+def test_sweep_tells_outcomes_and_where_nan_comes_from(capsys):
+    assert run([
+        "sweep", "periodic_orbit", "--vary", "y_peak=1.1:3:4", "--vary", "mu=0.1,0.3",
+        "--option", "mode=1", "--alpha1", "0.3pi", "--alpha2", "0.9pi", "--workers", "1",
+    ]) == 0  # fmt: skip
+    out = capsys.readouterr().out
+    assert "outcome of 8 runs: converged 4, tongue_end 4" in out
+    assert "NaN in omega" in out
+    assert "where the outcome is tongue_end (mu = 0.1)" in out
+
+
+def test_quiet_prints_nothing_and_warnings_do_not_leak(capfd):
+    assert run([*STABILITY, "-q"]) == 0
+    assert capfd.readouterr() == ("", "")
+
+
+def test_unexpected_errors_are_one_line_and_a_traceback_on_request(capsys, monkeypatch):
+    def broken(*_, **__):
+        warnings.warn("internal", RuntimeWarning, stacklevel=2)
+        return {}["nothing"]
+
+    monkeypatch.setattr("squealpipe.execution.catalogue.run_task", broken)
+    assert run(STABILITY) == 2
+    assert capsys.readouterr().err == (
+        "squealpipe: unexpected error (KeyError: 'nothing'); "
+        "-v or SQUEALPIPE_TRACEBACK=1 shows where\n"
+    )
+    assert run(["-v", *STABILITY]) == 2
+    assert "Traceback" in capsys.readouterr().err
+    monkeypatch.setenv("SQUEALPIPE_TRACEBACK", "1")
+    assert run(STABILITY) == 2
+    assert "Traceback" in capsys.readouterr().err
+
+
+def test_a_reader_that_goes_away_is_no_error():
+    code = (
+        "import sys; from squealpipe.cli import main; sys.argv = ['squealpipe', '--help']; main()"
+    )
+    reader, writer = os.pipe()
+    os.close(reader)
+    with os.fdopen(writer, "w") as pipe:
+        done = subprocess.run(
+            [sys.executable, "-c", code], stdout=pipe, stderr=subprocess.PIPE, check=False,
+            preexec_fn=lambda: signal.signal(signal.SIGPIPE, signal.SIG_IGN),
+        )  # fmt: skip
+    assert (done.returncode, done.stderr) == (0, b"")
+
+
+def test_init_writes_an_overlay_of_the_paper_to_edit(tmp_path, capsys):
+    assert run(["init", "mine.yaml"]) == 0
+    assert run(["init", "mine.yaml"]) == 2
+    text = (tmp_path / "mine.yaml").read_text(encoding="utf-8")
+    study = read_study("mine.yaml")
+    assert study.results == "results/mine"
+    assert study.parameters == parse_study({}).parameters
+    body = text[text.index("\n\n") :]
+    live = "\n".join(line.removeprefix("# ") for line in body.splitlines())
+    assert parse_study(yaml.safe_load(live)).slice("dynamics") == parse_study({}).slice("dynamics")
+    assert "squealpipe run --config mine.yaml" in capsys.readouterr().out
+
+
+def test_completion_is_offered(capsys, monkeypatch, tmp_path):
+    monkeypatch.setenv("HOME", str(tmp_path))
+    assert run(["--install-completion", "--shell", "bash"]) == 0
+    written = [path for path in tmp_path.rglob("*") if path.is_file()]
+    assert any("backbone" in path.read_text(encoding="utf-8") for path in written)

@@ -1,0 +1,287 @@
+"""Sweeps against the task run point by point; ragged runs; resuming after a stop."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+import yaml
+
+from squealpipe.config import parse_study
+from squealpipe.execution import sweep as sweeping
+from squealpipe.execution.row_blocks import join
+from squealpipe.execution.sweep import Sweep, executor, planned, run_sweep
+from squealpipe.parameters import Parameters
+from squealpipe.ranges import longest, parse_range
+from squealpipe.schema import find
+from squealpipe.store import load, save
+from squealpipe.store.chunks import Checkpoint
+from squealpipe.store.identity import dataset_id
+from squealpipe.tasks.backbones.backbone import backbone
+from squealpipe.tasks.dynamics.runs import simulate
+from squealpipe.tasks.linear.maps import stability_map
+
+ANGLES = [0.0, 1.0, 2.0]
+
+
+def linear_sweep(**changes):
+    plan = {
+        "task": "stability_map",
+        "params": Parameters(),
+        "vary": {"mu": [0.0, 0.4], "k3": [0.5, 0.75, 1.0], "alpha1": ANGLES},
+        "fixed": {"alpha2": 0.6},
+    }
+    return Sweep(**{**plan, **changes})
+
+
+def test_map_task_gets_swept_names_as_leading_dimensions():
+    found = run_sweep(linear_sweep())
+    assert found.growth_rate.dims == ("mu", "k3", "alpha1", "alpha2")
+    for mu in (0.0, 0.4):
+        for k3 in (0.5, 0.75, 1.0):
+            alone = stability_map(Parameters(mu=mu, k3=k3), ANGLES, [0.6])
+            np.testing.assert_array_equal(found.frequency.sel(mu=mu, k3=k3), alone.frequency)
+    assert found.mu.attrs["units"] == "1"
+    assert found.k3.attrs["units"] == "N m-1"
+
+
+def test_processes_give_the_same_bits():
+    with executor(2) as pool:
+        shared = run_sweep(linear_sweep(), executor=pool)
+    assert shared.identical(run_sweep(linear_sweep()))
+
+
+def test_angles_and_options_can_be_swept_and_ragged_runs_are_filled_up(tmp_path):
+    plan = Sweep(
+        task="simulate",
+        params=Parameters(),
+        vary={"alpha1": [0.5 * np.pi, 5 * np.pi / 6], "t_end": [20.0]},
+        fixed={"alpha2": 5 * np.pi / 6, "times": np.linspace(0, 20, 50)},
+    )
+    found = load(save(run_sweep(plan), tmp_path / "sweep.nc"))
+    assert found.x.dims == ("alpha1", "t_end", "time")
+    for k, alpha1 in enumerate(plan.vary["alpha1"]):
+        alone = simulate(
+            Parameters(), alpha1, 5 * np.pi / 6, t_end=20.0, times=np.linspace(0, 20, 50)
+        )
+        count = int(found.event_count[k, 0])
+        assert count == alone.sizes["event"]
+        np.testing.assert_array_equal(found.event_time[k, 0, :count], alone.event_time)
+        assert np.isnan(found.event_time[k, 0, count:]).all()
+        assert (found.event_kind[k, 0, count:] == -1).all()
+
+
+def test_backbones_of_both_modes():
+    plan = Sweep(
+        task="backbone",
+        params=Parameters(),
+        vary={"mode": [1, 2]},
+        fixed={"alpha1": 0.3 * np.pi, "alpha2": 0.9 * np.pi, "y_peak_max": 1.5},
+    )
+    found = run_sweep(plan)
+    for mode in (1, 2):
+        alone = backbone(Parameters(), 0.3 * np.pi, 0.9 * np.pi, mode=mode, y_peak_max=1.5)
+        one = found.sel(mode=mode).isel(point=slice(int(found.point_count.sel(mode=mode))))
+        np.testing.assert_array_equal(one.omega, alone.omega)
+
+
+def test_a_stopped_sweep_goes_on_where_it_was(tmp_path, monkeypatch):
+    kept = Checkpoint.beside(tmp_path / "s.nc", config={"a": 1})
+    calls = []
+    original = sweeping.run_task
+
+    def counted(*arguments, **options):
+        calls.append(1)
+        if len(calls) == 4:
+            raise KeyboardInterrupt
+        return original(*arguments, **options)
+
+    monkeypatch.setattr(sweeping, "run_task", counted)
+    with pytest.raises(KeyboardInterrupt), kept:
+        run_sweep(linear_sweep(), checkpoint=kept)
+    with kept:
+        found = run_sweep(linear_sweep(), checkpoint=kept)
+    assert len(calls) == 4 + 3
+    assert found.identical(run_sweep(linear_sweep()))
+    assert not kept.directory.exists()
+
+
+def test_a_stopped_sweep_repeated_in_another_order_is_no_mixture(tmp_path, monkeypatch):
+    """Chunks are numbered by the order of the swept names, so the order is part of their key."""
+    vary = {"k3": [0.5, 0.75, 1.0, 1.25], "mu": [0.1, 0.2, 0.3], "alpha1": ANGLES}
+    other = {name: vary[name] for name in ("mu", "k3", "alpha1")}
+    calls = []
+    original = sweeping.run_task
+
+    def counted(*arguments, **options):
+        calls.append(1)
+        if len(calls) == 6:
+            raise KeyboardInterrupt
+        return original(*arguments, **options)
+
+    monkeypatch.setattr(sweeping, "run_task", counted)
+    kept = Checkpoint.beside(tmp_path / "s.nc", config={"vary": vary})
+    with pytest.raises(KeyboardInterrupt), kept:
+        run_sweep(linear_sweep(vary=vary), checkpoint=kept)
+    with Checkpoint.beside(tmp_path / "s.nc", config={"vary": other}) as again:
+        found = run_sweep(linear_sweep(vary=other), checkpoint=again)
+    whole = run_sweep(linear_sweep(vary=vary))
+    assert found.growth_rate.transpose(*whole.growth_rate.dims).identical(whole.growth_rate)
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"task": "sing"}, "no task 'sing'; choose from simulate"),
+        ({"vary": {"nu": [1]}}, "'nu' cannot be varied"),
+        ({"vary": {"mu": []}}, "one or more values"),
+        ({"vary": {"mu": [1, 1], "alpha1": [0]}}, "each once"),
+        ({"vary": {"mu": [1]}}, "needs alpha1 once"),
+        ({"vary": {"mu": [1], "alpha1": [1]}, "fixed": {"alpha1": 0, "alpha2": 0}}, "alpha1 once"),
+        ({"fixed": {"alpha2": 0, "depth": 3}}, "no option 'depth'"),
+        ({"vary": {"alpha1": ANGLES}}, "vary a parameter too"),
+        ({"task": "simulate"}, "simulate needs t_end once"),
+        ({"fixed": {"alpha2": 0, "mu": 0.1}}, "needs mu once"),
+        ({"fixed": {"alpha2": 0, "mass": -1.0}}, "mass = -1.0: must be greater than 0"),
+    ],
+)
+def test_plans_that_cannot_work_are_refused(changes, message):
+    with pytest.raises(ValueError, match=message):
+        linear_sweep(**changes)
+
+
+def test_bad_parameter_value_is_refused_by_the_parameters():
+    with pytest.raises(ValueError, match=r"mu = -1\.0: must be 0 or greater"):
+        run_sweep(linear_sweep(vary={"mu": [-1.0], "alpha1": ANGLES}))
+
+
+def test_parameters_may_be_fixed_for_a_sweep():
+    found = run_sweep(linear_sweep(fixed={"alpha2": 0.6, "mass": 2.0}))
+    assert found.identical(run_sweep(linear_sweep(params=Parameters(mass=2.0))))
+
+
+def test_an_option_with_a_parameters_name_is_the_option():
+    plan = {
+        "task": "backbone",
+        "params": Parameters(),
+        "fixed": {"alpha1": 0.94, "alpha2": 2.83, "mode": 1, "method": "hbm", "n_harmonics": 4,
+                  "y_peak_max": 1.2},
+        "vary": {"sigma": [3.0, 1000.0]},
+    }  # fmt: skip
+    found = run_sweep(Sweep(**plan))
+    assert not np.array_equal(found.omega[0], found.omega[1])
+
+
+def test_schema_of_a_sweep_follows_from_its_name():
+    schema = find("sweep of natural_frequencies over mu, belt_speed")
+    assert schema.variables["omega"].dims[:2] == ("mu", "belt_speed")
+    assert schema.coordinates["belt_speed"].units == "m s-1"
+    with pytest.raises(ValueError, match="'colour' cannot be swept"):
+        find("sweep of stability_map over colour")
+
+
+def test_a_script_without_a_main_guard_can_sweep(tmp_path):
+    script = tmp_path / "script.py"
+    script.write_text(
+        "from squealpipe import Parameters, Sweep, run_sweep\n"
+        "from squealpipe.execution.sweep import executor\n"
+        "plan = Sweep(task='stability_map', params=Parameters(),\n"
+        "             vary={'mu': [0.1, 0.2, 0.3]}, fixed={'alpha1': 1.0, 'alpha2': 2.0})\n"
+        "with executor(2) as pool:\n"
+        "    print(run_sweep(plan, executor=pool).sizes['mu'])\n",
+        encoding="utf-8",
+    )
+    done = subprocess.run(
+        [sys.executable, str(script)], capture_output=True, text=True, timeout=120, check=False
+    )
+    assert done.stdout == "3\n", done.stderr
+
+
+SCATTERED = {
+    "ragged events": {
+        "task": "simulate",
+        "vary": {"mu": [0.1, 0.6], "alpha1": [1.6, 2.0, 5 * np.pi / 6, 2.7]},
+        "fixed": {"alpha2": 5 * np.pi / 6, "t_end": 20.0},
+    },
+    "ragged branches": {
+        "task": "backbone",
+        "vary": {"k3": [0.5, 0.75, 1.0]},
+        "fixed": {"alpha1": 0.3 * np.pi, "alpha2": 0.9 * np.pi, "mode": 1, "y_peak_max": 1.5},
+    },
+    "log range": {
+        "task": "periodic_orbit",
+        "vary": {"mode": [1, 2], "y_peak": parse_range("1.1:4:7:log")},
+        "fixed": {"alpha1": 0.3 * np.pi, "alpha2": 0.9 * np.pi},
+    },
+    "maps over a parameter": {
+        "task": "validity_map",
+        "vary": {"mu": [0.2, 0.4], "alpha1": np.linspace(0, np.pi, 5).tolist(), "alpha2": [0.5, 2]},
+        "fixed": {"t_end": 20.0},
+    },
+    "one number a run": {
+        "task": "stability_map",
+        "vary": {"mu": parse_range("0:0.6:5")},
+        "fixed": {"alpha1": 1.0, "alpha2": 2.0},
+    },
+}
+
+
+@pytest.mark.parametrize("name", SCATTERED)
+def test_parts_joined_are_the_whole_bit_for_bit(name, tmp_path):
+    plan = Sweep(params=Parameters(), **SCATTERED[name])
+    whole = run_sweep(plan)
+    cut = longest(plan.vary)
+    parts = []
+    for k in range(3):
+        path = save(run_sweep(plan.part(f"{k + 1}-of-3")), tmp_path / f"{k}.nc")
+        parts.append(load(path))
+    assert sum(part.sizes[cut] for part in parts) == whole.sizes[cut]
+    joined = join(parts, cut)
+    for written in ("dataset_id", "commit", "history", "file_checksum"):
+        assert joined.attrs.pop(written) == parts[0].attrs[written]
+    assert joined.identical(whole)
+    assert dataset_id(joined) == dataset_id(whole)
+    if "ragged" in name:
+        dim = "event" if plan.task == "simulate" else "point"
+        assert len({part.sizes[dim] for part in parts}) > 1
+
+
+def test_parts_are_the_values_once_each_and_no_more_than_there_are():
+    plan = linear_sweep()
+    parts = [plan.part(f"{k}-of-2").vary for k in (1, 2)]
+    assert [value for part in parts for value in part["k3"]] == [0.5, 0.75, 1.0]
+    assert all(part["mu"] == plan.vary["mu"] for part in parts)
+    with pytest.raises(ValueError, match="at most 3 parts"):
+        plan.part("1-of-4")
+
+
+def test_foreign_parts_are_not_joined():
+    a = run_sweep(linear_sweep(vary={"mu": [0.1], "alpha1": ANGLES}))
+    b = run_sweep(linear_sweep(vary={"mu": [0.2], "alpha1": ANGLES[:2]}))
+    with pytest.raises(ValueError, match="not blocks of rows of one map, cut along mu"):
+        join([a, b], "mu")
+
+
+def test_runs_at_other_instants_are_not_put_on_one_axis():
+    plan = {
+        "task": "simulate",
+        "params": Parameters(),
+        "vary": {"t_end": [5.0, 10.0]},
+        "fixed": {"alpha1": 1.6, "alpha2": 2.6},
+    }
+    with pytest.raises(ValueError, match="time differs from run to run; fix the option 'times'"):
+        run_sweep(Sweep(**plan))
+
+
+def test_the_sweeps_in_the_page_on_clusters_can_be_planned():
+    page = Path(__file__).parents[2] / "docs/cluster.md"
+    (block,) = re.findall(r"```yaml\n(.*?)```", page.read_text(encoding="utf-8"), flags=re.DOTALL)
+    study = parse_study(yaml.safe_load(block))
+    plans = {name: planned(study.sweep(name)) for name in study.sweeps}
+    assert len(plans["orbits_over_friction"].points) == 52
+    assert plans["contact_over_stiffness"].names == ["k3"]
+    assert longest(plans["contact_over_stiffness"].vary) == "alpha1"

@@ -1,0 +1,293 @@
+"""Random calls of the public functions, with arguments that make sense and others that do not."""
+
+from __future__ import annotations
+
+import math
+import signal
+import time
+from collections import Counter
+from collections.abc import Callable
+from dataclasses import dataclass, field, fields
+from random import Random
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+import squealpipe as sp
+from squealpipe.config import parse_study
+from squealpipe.parameters import LAW_NAMES, TABLE
+from squealpipe.ranges import parse_angle, parse_range
+from squealpipe.schema.ladder import QUESTIONS
+
+LONGEST = 20.0
+"""Seconds of CPU time after which a call counts as one that does not end."""
+
+NO_NUMBER = [
+    None, "1", "", b"1", 1j, True, np.bool_(True), math.nan, math.inf, -math.inf, 10**400,
+    [], {}, object(), np.timedelta64(1, "s"), np.datetime64("2020-01-01"), np.array([1.0, 2.0]),
+    np.ma.masked, np.complex128(1), {1.0}, range(2), np.nan, "π",
+]  # fmt: skip
+NO_ANGLES = [
+    None, "1", ["0", "1"], [True, False], 1j, [1j], [math.nan], [0.0, math.inf], [[0.1], [0, 1]],
+    np.ma.masked_all(2), np.ma.masked_array([0.3, 2.0], [False, True]), [None, 2.0], [10**400],
+    np.array([1], "timedelta64[s]"), {}, object(), [object()], [[0.1, 0.2]], np.zeros((2, 2, 2)),
+]  # fmt: skip
+EXTREMES = [5e-324, 1e-300, 1e-155, 1e-12, 1e12, 1e155, 1e300, 1.7e308]
+
+
+@dataclass
+class Kind:
+    """Values of one kind of argument: how to draw one that makes sense, and what is refused."""
+
+    good: Callable[[Random], Any]
+    bad: list[Any]
+
+
+def number(low: float, high: float, *, zero: bool = False, extremes: bool = True) -> Kind:
+    """A positive number, mostly of ordinary size; ``zero`` allows 0."""
+
+    def draw(rng: Random) -> Any:
+        if extremes and rng.random() < 0.03:
+            return rng.choice(EXTREMES)
+        if zero and rng.random() < 0.1:
+            return 0
+        value = math.exp(rng.uniform(math.log(low), math.log(high)))
+        return rng.choice([value, np.float64(value), np.float32(value)])
+
+    return Kind(draw, [*NO_NUMBER, -1.0, -5e-324, *([] if zero else [0, 0.0, -0.0])])
+
+
+def one_of(*values: Any) -> Kind:
+    """One of a few values."""
+    return Kind(lambda rng: rng.choice(values), ["", "x", None, 1.5, [], object(), "A1 "])
+
+
+def whole(*values: int) -> Kind:
+    """A whole number."""
+    return Kind(
+        lambda rng: rng.choice([*values, np.int64(values[0])]), [*NO_NUMBER, 0, -1, 1.5, 1.0]
+    )
+
+
+ANGLE = Kind(
+    lambda rng: rng.choice(
+        [rng.uniform(0, math.pi), rng.uniform(-10, 10), 0, math.pi / 2, math.pi, np.float32(1.0)]
+    ),
+    NO_NUMBER,
+)
+ANGLES = Kind(
+    lambda rng: rng.choice(
+        [
+            [rng.uniform(-7, 7) for _ in range(rng.choice([1, 2, 3]))],
+            np.linspace(0, math.pi, 3),
+            [0.0, math.pi / 2],
+            np.float32([0.2, 3.0]),
+            [1, 2],
+            xr.DataArray([0.5, 1.0]),
+        ]
+    ),
+    NO_ANGLES,
+)
+HORIZON = number(0.05, 8.0)
+MAYBE = Kind(HORIZON.good, [bad for bad in HORIZON.bad if bad is not None])
+FROM_NOW = number(0.05, 8.0, zero=True)
+TOL = Kind(lambda rng: 10.0 ** rng.uniform(-17, -3), [*NO_NUMBER, 0.0, -1e-6, 1.0, 1e-19, 1e-300])
+MODEL = one_of("A1", "A1-no-stick", "A1-no-separation", "A1-linear-springs", "A4")
+STATE = Kind(
+    lambda rng: [rng.uniform(-0.5, 0.5) for _ in range(4)],
+    [*NO_NUMBER, [0.0] * 3, [0.0] * 5, ["0"] * 4, [math.nan] * 4, [None] * 4, [True] * 4],
+)
+OPTIONAL = [bad for bad in NO_NUMBER if bad is not None]
+SIGMA = Kind(lambda rng: rng.choice([None, 10.0, 1e3]), OPTIONAL)
+START = Kind(
+    lambda rng: rng.choice([0.0, rng.uniform(-0.5, 0.5), [rng.uniform(-0.5, 0.0), 0.3]]),
+    [bad for bad in NO_ANGLES if not isinstance(bad, np.ma.MaskedArray)],
+)
+ONE = Kind(lambda _: 1, [])
+
+PHYSICAL = {
+    name: {
+        "positive": number(0.05, 20.0),
+        "not negative": number(0.01, 3.0, zero=True),
+        "finite": Kind(lambda rng: rng.uniform(-5, 5), NO_NUMBER),
+        "law": Kind(
+            lambda rng: rng.choice(LAW_NAMES), ["", "columb", None, 3, True, [], object(), b"x"]
+        ),
+    }[row.allowed]
+    for name, row in TABLE.items()
+}
+PHYSICAL["mu_static"] = Kind(lambda rng: rng.choice([None, 30.0]), OPTIONAL)
+WRITTEN = {
+    name: Kind(kind.good, [bad for bad in kind.bad if type(bad).__module__ == "builtins"])
+    for name, kind in PHYSICAL.items()
+}
+"""What a YAML file can hold."""
+SCENE = {"alpha1": ANGLE, "alpha2": ANGLE}
+MAP = {"alpha1": ANGLES, "alpha2": ANGLES}
+
+
+CALLS: dict[str, tuple[float, Callable[..., Any], dict[str, Kind]]] = {
+    "Parameters": (6.0, sp.Parameters, PHYSICAL),
+    "natural_frequencies": (2.0, sp.natural_frequencies, MAP),
+    "stability_map": (2.0, sp.stability_map, {**MAP, "sigma": SIGMA}),
+    "quasi_static_map": (2.0, sp.quasi_static_map, {**MAP, "sigma": SIGMA}),
+    "critical_friction_map": (1.0, sp.critical_friction_map, MAP),
+    "simulate": (
+        3.0, sp.simulate,
+        {**SCENE, "t_end": FROM_NOW, "model": MODEL, "tol": TOL, "initial_state": STATE},
+    ),
+    "validity_map": (1.0, sp.validity_map, {**MAP, "t_end": FROM_NOW, "tol": TOL, "workers": ONE}),
+    "hammering_map": (1.0, sp.hammering_map, {**MAP, "t_end": HORIZON, "tol": TOL, "workers": ONE}),
+    "basin_map": (
+        0.5, sp.basin_map, {**SCENE, "x": START, "vy": START, "t_end": HORIZON, "workers": ONE}
+    ),
+    "periodic_orbit": (
+        2.0, sp.periodic_orbit, {**SCENE, "mode": whole(1, 2), "y_peak": number(0.1, 10.0)}
+    ),
+    "backbone": (
+        0.15, sp.backbone,
+        {**SCENE, "mode": whole(1, 2), "y_peak_max": number(1.1, 4.0, extremes=False),
+         "method": one_of("exact", "hbm"), "n_harmonics": whole(4, 8)},
+    ),
+    "choose_model": (
+        0.7, sp.choose_model,
+        {**SCENE, "question": one_of(*QUESTIONS), "tol": number(1e-3, 0.5), "t_end": MAYBE},
+    ),
+    "parse_study": (1.0, lambda **given: parse_study({"parameters": given}), WRITTEN),
+    "parse_range": (
+        0.7, lambda **given: parse_range(given["text"], parse_angle),
+        {"text": Kind(
+            lambda rng: rng.choice(["0:pi:5", "1,2", ".5pi", "0.1:10:4:log", "5pi/6"]),
+            ["", ":", "0:1", "0:1:0", "0:1:-3", "a", "nan", "inf", "1:2:3:4", "0:1:5:log", "1,,2",
+             "pipi", "1e999", "0:1:1e9", "0:1:2.5"],
+        )},
+    ),
+    "Scene": (
+        0.5, lambda **given: sp.Scene(name="X", figure=1, statement="", **given),
+        {**SCENE, "t_end": number(0.1, 100.0)},
+    ),
+}  # fmt: skip
+"""Name → weight, function, arguments."""
+
+
+@dataclass
+class Findings:
+    """What random calls did."""
+
+    calls: Counter[str] = field(default_factory=Counter)
+    refused: Counter[str] = field(default_factory=Counter)
+    faults: list[str] = field(default_factory=list)
+    longest: float = 0.0
+
+
+class TooLongError(Exception):
+    """A call that does not end."""
+
+
+def _ring(*_: Any) -> None:
+    raise TooLongError
+
+
+def physical(rng: Random) -> sp.Parameters:
+    """Parameters that make sense, the paper's or any others."""
+    if rng.random() < 0.2:
+        return sp.Parameters()
+    while True:
+        chosen = rng.sample(sorted(PHYSICAL), rng.randrange(1, 8))
+        try:
+            return sp.Parameters(**{name: PHYSICAL[name].good(rng) for name in chosen})
+        except ValueError:  # the static coefficient below that of sliding
+            continue
+
+
+def draw(rng: Random) -> tuple[str, dict[str, Any], set[str]]:
+    """A call: function, arguments, and the names of those that make no sense."""
+    name = rng.choices(list(CALLS), [weight for weight, *_ in CALLS.values()])[0]
+    kinds = CALLS[name][2]
+    given = {argument: kind.good(rng) for argument, kind in kinds.items()}
+    if kinds is PHYSICAL or name == "parse_study":
+        given = {argument: given[argument] for argument in rng.sample(sorted(given), 4)}
+    wrong: set[str] = set()
+    if rng.random() < 0.5:
+        candidates = [argument for argument in given if kinds[argument].bad]
+        for argument in rng.sample(candidates, min(len(candidates), rng.choice([1, 1, 2]))):
+            given[argument] = rng.choice(kinds[argument].bad)
+            wrong.add(argument)
+    return name, given, wrong
+
+
+def fault_of(name: str, given: dict[str, Any], wrong: set[str], params: Any) -> str:
+    """What is wrong with what a call did; empty where nothing is."""
+    function = CALLS[name][1]
+    takes_params = name not in {"Parameters", "parse_study", "parse_range", "Scene"}
+    try:
+        found = function(params, **given) if takes_params else function(**given)
+    except TooLongError:
+        return "does not end"
+    except ValueError as error:
+        named = any(argument in str(error) for argument in (*given, *TABLE))
+        return "" if named or name == "parse_range" else f"names no argument: {error}"
+    except Exception as error:  # noqa: BLE001  whatever it is, it is the finding
+        return f"raw {type(error).__name__}: {error}"
+    if wrong:
+        return "silent"
+    return unearned(found) if isinstance(found, xr.Dataset) else ""
+
+
+def unearned(found: xr.Dataset) -> str:
+    """A converged outcome beside numbers that are none."""
+    if "outcome" not in found:
+        return ""
+    converged = found.outcome == 0
+    for name in ("x_static", "growth_rate", "omega", "x", "max_displacement", "late_max_x"):
+        if name not in found or not set(found.outcome.dims) <= set(found[name].dims):
+            continue
+        if bool((np.isnan(found[name]) & converged).any()):
+            return f"{name} is NaN where the outcome is converged"
+    return ""
+
+
+def warm_up() -> None:
+    """Compile what the calls need; each law and form of springs is a system of its own."""
+    for law in LAW_NAMES:
+        for model in ("A1", "A1-linear-springs"):
+            for damping in (0.0, 0.1):
+                params = sp.Parameters(friction_law=law, mu_static=0.5, damping1=damping)
+                sp.simulate(params, 1.0, 2.0, t_end=0.1, model=model)
+    sp.hammering_map(sp.Parameters(), [1.0], [2.0], t_end=1.0, workers=1)
+    for method in ("exact", "hbm"):
+        sp.backbone(sp.Parameters(), 0.5, 3.0, mode=2, y_peak_max=1.2, method=method)
+    sp.periodic_orbit(sp.Parameters(), 0.5, 3.0, mode=2, y_peak=2.0)
+
+
+def fuzz(calls: int, seed: int) -> Findings:
+    """Make random calls and judge each, once all that is compiled is there."""
+    warm_up()
+    rng, verdict = Random(seed), Findings()  # noqa: S311
+    previous = signal.signal(signal.SIGPROF, _ring)
+    try:
+        for _ in range(calls):
+            name, given, wrong = draw(rng)
+            params = physical(rng)
+            if "t_end" in given and "t_end" not in wrong and given["t_end"]:
+                # a run of a million time units ends, but it takes minutes
+                given["t_end"] = min(given["t_end"], 1e4 * params.time_unit) or params.time_unit
+            started = time.process_time()
+            signal.setitimer(signal.ITIMER_PROF, LONGEST)
+            fault = fault_of(name, given, wrong, params)
+            signal.setitimer(signal.ITIMER_PROF, 0.0)
+            verdict.longest = max(verdict.longest, time.process_time() - started)
+            verdict.calls[name] += 1
+            verdict.refused[name] += bool(wrong)
+            if fault:
+                changed = {
+                    item.name: getattr(params, item.name)
+                    for item in fields(params)
+                    if getattr(params, item.name) != item.default
+                }
+                verdict.faults.append(f"{name}({given}) with {changed}: {fault}")
+    finally:
+        signal.setitimer(signal.ITIMER_PROF, 0.0)
+        signal.signal(signal.SIGPROF, previous)
+    return verdict

@@ -1,0 +1,93 @@
+"""One gate for arrays: whatever is no real number is refused with the argument's name."""
+
+import math
+
+import numpy as np
+import pytest
+
+from squealpipe import Parameters, simulate
+from squealpipe.arrays import angle_axis, real_array
+from squealpipe.tasks.backbones.atlas import orbit_atlas
+from squealpipe.tasks.dynamics.assumptions import linear_pull_map
+from squealpipe.tasks.dynamics.hammering import hammering_map
+from squealpipe.tasks.dynamics.runs import validity_map
+from squealpipe.tasks.linear.critical import critical_friction_map
+from squealpipe.tasks.linear.maps import (
+    natural_frequencies,
+    quasi_static_map,
+    stability_map,
+)
+
+GOOD = np.array([0.3, 2.0])
+BAD = {
+    "complex": np.array([0.3 + 0.1j, 2.0]),
+    "text": np.array(["0.3", "2.0"]),
+    "truth": np.array([True, False]),
+    "durations": np.array([1, 2], "timedelta64[s]"),
+    "dates": np.array(["2020-01-01"], "datetime64[s]"),
+    "masked": np.ma.masked_array([0.3, 2.0], [False, True]),
+    "all masked": np.ma.masked_all(2),
+    "objects": [None, 2.0],
+    "ragged": [[0.3], [2.0, 1.0]],
+    "huge": [10**400],
+    "NaN": [0.3, math.nan],
+    "infinite": [0.3, math.inf],
+}
+MAPS = {
+    "quasi_static_map": quasi_static_map,
+    "stability_map": stability_map,
+    "critical_friction_map": critical_friction_map,
+    "natural_frequencies": natural_frequencies,
+    "linear_pull_map": linear_pull_map,
+    "orbit_atlas": orbit_atlas,
+    "validity_map": lambda *args: validity_map(*args, t_end=1.0),
+    "hammering_map": lambda *args: hammering_map(*args, t_end=1.0),
+}
+
+
+@pytest.mark.parametrize("what", BAD)
+@pytest.mark.parametrize("name", MAPS)
+def test_maps_refuse_what_is_no_real_number(name, what):
+    with pytest.raises(ValueError, match=r"^alpha1 "):
+        MAPS[name](Parameters(), BAD[what], GOOD)
+    with pytest.raises(ValueError, match=r"^alpha2 "):
+        MAPS[name](Parameters(), GOOD, BAD[what])
+
+
+@pytest.mark.parametrize("values", [[1, 2], np.float32([1, 2]), np.ma.masked_array([1.0, 2.0])])
+def test_gate_lets_numbers_through(values):
+    assert real_array("x", values).tolist() == [1.0, 2.0]
+    assert real_array("x", [math.inf, 2], infinite=True).tolist() == [math.inf, 2.0]
+    assert angle_axis("x", 2).tolist() == [2.0]
+
+
+@pytest.mark.parametrize("sigma", [-5, 0, 1j, "1000", True, math.nan, math.inf])
+@pytest.mark.parametrize("make", [quasi_static_map, stability_map])
+def test_sigma_is_a_positive_number(make, sigma):
+    with pytest.raises(ValueError, match=r"^sigma = "):
+        make(Parameters(), GOOD, GOOD, sigma=sigma)
+
+
+@pytest.mark.parametrize(
+    ("params", "t_end"),
+    [
+        (Parameters(k1=1e300), 10.0),
+        (Parameters(mass=1e-300, k1=1e300), 10.0),
+        (Parameters(mass=1e300, k1=1e-300), 10.0),
+        (Parameters(), 1e10),
+    ],
+)
+def test_run_of_too_many_time_units_is_refused_with_its_remedy(params, t_end):
+    with pytest.raises(ValueError, match=r"time units .* shorten t_end, or give mass and k1"):
+        simulate(params, 2.0, 2.6, t_end=t_end)
+
+
+@pytest.mark.parametrize("times", [[], [[1.0, 2.0]], 1.0])
+def test_instants_are_a_sequence(times):
+    with pytest.raises(ValueError, match=r"times has shape .* a sequence of instants is needed"):
+        simulate(Parameters(), 2.0, 2.6, t_end=2.0, times=times)
+
+
+def test_huge_mass_ends_in_an_outcome_or_a_state():
+    found = simulate(Parameters(mass=1e300), 2.0, 2.6, t_end=10.0)
+    assert found.outcome != 0 or np.isfinite(found.x).all()

@@ -1,0 +1,40 @@
+"""Compiled code that fails is heard: no run counts as converged that nothing finished."""
+
+import ctypes
+
+import numba
+import numpy as np
+import pytest
+from numba import types
+
+from squealpipe import Parameters, simulate
+from squealpipe.schema import Outcome
+from squealpipe.solvers.a1 import ensemble
+from squealpipe.solvers.a1.ensemble import run_ensemble
+
+
+def kernel_that_divides_by_zero():
+    def divide(table):
+        return 1 // len("")
+
+    compiled = numba.cfunc(types.intp(types.voidptr))(divide)
+    function = ctypes.CFUNCTYPE(ctypes.c_ssize_t, ctypes.c_void_p)(compiled.address)
+    function.code = compiled
+    return function
+
+
+@pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")
+@pytest.mark.parametrize("workers", [1, 2])
+def test_exception_in_compiled_code_reaches_the_caller(monkeypatch, workers):
+    failing = kernel_that_divides_by_zero()
+    monkeypatch.setattr(ensemble, "lane_kernel", lambda: failing)
+    with pytest.raises(RuntimeError, match="exception in compiled code"):
+        run_ensemble(Parameters(), np.linspace(1.0, 2.0, 4), 2.6, t_end=1.0, workers=workers)
+
+
+@pytest.mark.parametrize("model", ["A1", "A4", "A1-linear-springs"])
+@pytest.mark.parametrize("length", ["length1", "length2"])
+def test_vanishing_length_earns_no_success_without_states(model, length):
+    found = simulate(Parameters(**{length: 1e-170}), 2.0, 2.6, t_end=2.0, model=model)
+    whole = all(np.isfinite(found[name]).all() for name in ("x", "y", "vx", "vy"))
+    assert (found.outcome == Outcome.converged) == whole

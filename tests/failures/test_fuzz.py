@@ -1,0 +1,79 @@
+"""No call is silent, raw or endless, whatever it is given; no flipped bit goes unseen."""
+
+from __future__ import annotations
+
+import warnings
+from pathlib import Path
+from random import Random
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from squealpipe import Parameters, load, save, simulate
+from squealpipe.schema import SchemaError
+from squealpipe.store import StoreError
+from tests.failures.fuzz import fuzz, warm_up
+
+
+def judge(calls: int, seed: int) -> None:
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", RuntimeWarning)  # extremes overflow on their way to NaN
+        verdict = fuzz(calls, seed)
+    assert not verdict.faults, "\n\n".join(verdict.faults[:10])
+    assert sum(verdict.calls.values()) == calls
+    assert 0.3 * calls < sum(verdict.refused.values()) < 0.7 * calls
+
+
+def flip(folder: Path, flips: int, seed: int) -> None:
+    """Files with one bit flipped are refused, or hold what they held."""
+    rng = Random(seed)  # noqa: S311
+    good = simulate(Parameters(), 5 * np.pi / 6, 5 * np.pi / 6, t_end=3.0)
+    save(good, folder / "good.nc")
+    known, content = load(folder / "good.nc"), (folder / "good.nc").read_bytes()
+    seen = 0
+    for _ in range(flips):
+        damaged = bytearray(content)
+        damaged[rng.randrange(len(damaged))] ^= 1 << rng.randrange(8)
+        (folder / "bad.nc").write_bytes(damaged)
+        try:
+            found = load(folder / "bad.nc")
+        except (StoreError, SchemaError):
+            seen += 1
+        else:
+            xr.testing.assert_identical(found, known)
+    assert seen > 0.9 * flips
+
+
+def test_a_sample_of_random_calls():
+    judge(400, seed=18)
+
+
+def test_a_sample_of_flipped_bits(tmp_path):
+    flip(tmp_path, 60, seed=18)
+
+
+@pytest.mark.slow
+def test_twenty_thousand_random_calls():
+    judge(20_000, seed=1)
+
+
+@pytest.mark.slow
+def test_fifteen_hundred_flipped_bits(tmp_path):
+    flip(tmp_path, 1_500, seed=1)
+
+
+def test_faults_are_found(monkeypatch):
+    """The judge itself: a function that takes anything, one that raises a raw error."""
+    from tests.failures import fuzz as judged
+
+    warm_up()
+    takes_all = (1.0, lambda **_: None, {"alpha1": judged.ANGLE})
+    raw = (1.0, lambda **given: given["alpha1"] + 1.0 // 0.0, {"alpha1": judged.ANGLE})
+    nan = xr.Dataset({"x": ("time", [np.nan]), "outcome": ("time", [0])})
+    unearned = (1.0, lambda **_: nan, {"alpha1": judged.Kind(lambda _: 1.0, [])})
+    for call, fault in ((takes_all, "silent"), (raw, "raw"), (unearned, "NaN where")):
+        monkeypatch.setattr(judged, "CALLS", {"Scene": call})
+        found = judged.fuzz(20, seed=3)
+        assert found.faults
+        assert all(fault in text for text in found.faults)

@@ -1,0 +1,110 @@
+"""Pictures of backbones show what the datasets hold."""
+
+import math
+
+import numpy as np
+import pytest
+
+from squealpipe.figures.backbones import (
+    a1_beside_a4,
+    coupled_backbones,
+    doubled_branch,
+    fig10,
+    fig13,
+    harmonic_convergence,
+    harmonic_forms,
+    orbit_atlas,
+)
+from squealpipe.parameters import Parameters
+from squealpipe.store.provenance import stamp
+from squealpipe.tasks.backbones import a1_beside_a4 as beside_task
+from squealpipe.tasks.backbones import atlas, harmonic_sweeps
+from squealpipe.tasks.backbones.backbone import backbone
+from squealpipe.tasks.backbones.doubling import doubled_branch as follow_doubling
+
+PI = math.pi
+BRANCHES = {"F10 mode 2": (0.5 * PI, PI, 2)}
+
+
+def _branches(alpha1, alpha2, params=None, scene="F10", **limits):
+    params = params or Parameters()
+    options = {"": {"method": "exact"}, "_hbm": {"method": "hbm", "n_harmonics": 8}}
+    return {
+        f"backbone/{scene}_mode{mode}{form}": stamp(
+            backbone(params, alpha1 * PI, alpha2 * PI, mode=mode, **option, **limits),
+            config={"parameters": params.as_dict()},
+            wall_time=0.0,
+        )
+        for mode in (1, 2)
+        for form, option in options.items()
+    }
+
+
+def test_fig10_draws_both_amplitudes_and_the_threshold():
+    branches = _branches(0.5, 1.0)
+    figure = fig10.draw(branches)
+    lines = {line.get_label(): line for axes in figure.axes for line in axes.get_lines()}
+    exact = branches["backbone/F10_mode2"]
+    np.testing.assert_allclose(lines["y, exact"].get_ydata(), exact.y_amplitude)
+    np.testing.assert_allclose(lines["x, exact"].get_xdata(), exact.omega)
+    np.testing.assert_allclose(lines[r"$l_\mathrm{pre}$"].get_ydata(), 1.0)
+    circle = lines["contact is lost above"]
+    assert float(circle.get_xdata()[0]) == pytest.approx(float(exact.omega[0]))
+
+
+def test_unstable_stretches_are_dotted():
+    figure = coupled_backbones.draw(_branches(0.3, 0.9, y_peak_max=5.0))
+    dotted = [line for line in figure.axes[0].get_lines() if line.get_linestyle() == ":"]
+    assert any(np.isfinite(np.asarray(line.get_ydata(), float)).any() for line in dotted)
+
+
+def test_a_broken_assumption_is_ringed():
+    slow = Parameters(belt_speed=0.2)
+    figure = fig13.draw(_branches(5 / 6, 5 / 6, slow))
+    rings = [line for line in figure.axes[0].get_lines() if line.get_marker() == "o"]
+    assert any(len(line.get_xdata()) > 3 for line in rings)
+
+
+def test_an_empty_branch_says_why_in_the_picture():
+    figure = fig10.draw(_branches(0.4, 0.6))
+    assert "singular static state" in figure.axes[0].texts[0].get_text()
+
+
+def test_the_other_pictures_are_drawn():
+    sweep = harmonic_sweeps.sweep_harmonic_balance(
+        Parameters(),
+        BRANCHES,
+        peaks=(2.0,),
+        harmonics=(4, 8),
+        samples=(66, 128),
+        sigmas=(10.0, 100.0),
+        n_harmonics=8,
+    )
+    assert len(harmonic_convergence.draw(sweep).axes) == 4
+    forms = harmonic_sweeps.compare_harmonic_forms(Parameters(), BRANCHES)
+    assert len(harmonic_forms.draw(forms).axes) == 2
+    beside = beside_task.a1_beside_a4(Parameters(), BRANCHES, peak=2.0, length_ratios=(5.0,))
+    assert len(a1_beside_a4.draw(beside).axes) == 2
+    angles = np.linspace(0, PI, 9)
+    assert len(orbit_atlas.draw(atlas.orbit_atlas(Parameters(), angles, angles)).axes) == 6
+
+
+def test_doubled_branches_are_drawn_at_twice_their_frequency():
+    """A scene with a doubling, one without, and one without a backbone."""
+    scenes = {"one": (0.3, 0.9, 4.5), "none": (0.3, 0.9, 3.0), "empty": (0.4, 0.6, 3.0)}
+    backbones, doubled = {}, {}
+    for name, (alpha1, alpha2, peak) in scenes.items():
+        angles = alpha1 * PI, alpha2 * PI
+        options = {"mode": 1, "y_peak_max": peak}
+        backbones[f"backbone/{name}_mode1"] = backbone(Parameters(), *angles, **options)
+        for number in (1, 2):
+            doubled[f"doubled_branch/{name}_{number}"] = follow_doubling(
+                Parameters(), *angles, doubling=number, **options
+            )
+    panels = doubled_branch.draw(backbones, doubled).axes
+    assert len(panels) == 6
+    branch = doubled["doubled_branch/one_1"]
+    shown = [line for line in panels[0].lines if line.get_label() == "doubled branch 1"]
+    np.testing.assert_allclose(shown[0].get_xdata()[0], 2.0 * branch.omega[0])
+    assert not any("doubled" in line.get_label() for line in panels[2].lines)
+    assert "singular static state" in panels[4].texts[0].get_text()

@@ -1,0 +1,57 @@
+"""Figures declare what they read, and speak for themselves."""
+
+from __future__ import annotations
+
+import inspect
+
+import pytest
+
+from squealpipe.figures import declared
+from squealpipe.report.places import FIGURES
+
+NAMES = [f"simulate/F2{letter}" for letter in "abcd"]
+
+
+@pytest.mark.parametrize("name", FIGURES)
+def test_every_figure_of_the_report_can_be_drawn_from_what_it_declares(name: str) -> None:
+    module = declared._import(name)
+    takes = inspect.signature(module.draw)
+    takes.bind(*declared.reads(name))
+    assert declared.reads(name) == module.READS
+    for text in (module.CAPTION, module.ALT):
+        if callable(text):
+            inspect.signature(text).bind(*declared.reads(name))
+        else:
+            assert 40 < len(text) < 900
+
+
+def test_no_module_is_left_without_a_place() -> None:
+    declaring = {
+        path.stem for path in declared.FOLDER.glob("*/*.py") if "\nREADS = " in path.read_text()
+    }
+    assert declaring == set(FIGURES)
+
+
+def test_a_wildcard_stands_for_all_that_match() -> None:
+    known = ["backbone/F10_mode1", "backbone/F11_mode1", "backbone/coupled_mode1"]
+    assert declared.datasets_of("fig10", known) == known[:1]
+    assert declared.datasets_of("coupled_backbones", known) == known[2:]
+    datasets = {name: number for number, name in enumerate(known)}
+    assert declared.arguments("fig11", datasets) == [{"backbone/F11_mode1": 1}]
+
+
+def test_plain_names_keep_their_order() -> None:
+    assert declared.datasets_of("fig02", reversed(NAMES)) == NAMES
+    assert declared.arguments("fig02", {name: name for name in NAMES}) == NAMES
+
+
+def test_what_is_missing_is_said() -> None:
+    assert declared.datasets_of("fig02", NAMES[:3]) is None
+    with pytest.raises(ValueError, match="the figure fig02 reads the dataset simulate/F2d"):
+        declared.arguments("fig02", dict.fromkeys(NAMES[:3]))
+    with pytest.raises(ValueError, match="has no READS"):
+        declared.reads("style")
+    with pytest.raises(ValueError, match="has no CAPTION"):
+        declared.texts("style", {})
+    with pytest.raises(ValueError, match="0 modules"):
+        declared.topic("unknown")

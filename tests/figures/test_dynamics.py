@@ -1,0 +1,90 @@
+"""Figures of the dynamics show what their datasets hold, also where a part of it is empty."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from squealpipe.figures.dynamics import (
+    fig02,
+    fig03,
+    fig04,
+    fig05,
+    hammering_map,
+    predictability,
+    refined_boundary,
+    transient,
+    whirl,
+)
+from squealpipe.figures.linear import fig07
+from squealpipe.figures.parts.style import save_figure
+from squealpipe.parameters import SCENES, Parameters
+from squealpipe.tasks.dynamics import hammering as hammering_task
+from squealpipe.tasks.dynamics import refinement
+from squealpipe.tasks.dynamics import runs as dynamics
+from squealpipe.tasks.dynamics import whirl as whirl_task
+
+ANGLES = np.linspace(0, np.pi, 31)
+STUDIES = {
+    "baseline": Parameters(),
+    "never separates": Parameters(k3=1e-3),
+    "always separates": Parameters(k3=50.0, belt_speed=-2.0),
+    "belt at rest": Parameters(belt_speed=0.0),
+}
+
+
+def scene(name, params):
+    chosen = SCENES[name]
+    return dynamics.simulate(params, chosen.alpha1, chosen.alpha2, t_end=chosen.t_end)
+
+
+@pytest.mark.parametrize("params", STUDIES.values(), ids=STUDIES)
+def test_all_are_drawn_for_any_study(params, tmp_path):
+    maps = {
+        "validity": dynamics.validity_map(params, ANGLES, ANGLES, t_end=50.0),
+        "hammering": hammering_task.hammering_map(params, ANGLES, ANGLES, t_end=50.0),
+        "refined": refinement.refine_validity_map(params, resolution=61, coarse=16, t_end=50.0),
+        "whirl": whirl_task.whirl_sizes(params, [0.5, 5.0, 50.0], t_end=200.0),
+        "transient": whirl_task.transient_lifetimes(
+            params, [0.5, 5.0], samples=3, shown_samples=5, t_end=400.0
+        ),
+    }
+    check = refinement.check_refinement(params, maps["refined"], points=(16, 31))
+    runs = {name: scene(name, params) for name in ("F2a", "F2b", "F2c", "F2d", "F3", "F4", "F5a")}
+    figures = {
+        "fig02": fig02.draw(*(runs[name] for name in ("F2a", "F2b", "F2c", "F2d"))),
+        "fig03": fig03.draw(runs["F3"]),
+        "fig04": fig04.draw(runs["F4"]),
+        "fig05": fig05.draw(runs["F5a"], runs["F5a"]),
+        "fig07": fig07.draw(maps["validity"]),
+        "hammering": hammering_map.draw(maps["hammering"]),
+        "predictability": predictability.draw(maps["hammering"]),
+        "refined": refined_boundary.draw(maps["refined"], check),
+        "whirl": whirl.draw(runs["F3"], maps["whirl"]),
+        "transient": transient.draw(maps["transient"]),
+    }
+    for name, figure in figures.items():
+        save_figure(figure, [tmp_path / f"{name}.png"])
+        assert (tmp_path / f"{name}.png").stat().st_size > 5000
+
+
+def test_fig07_tones():
+    validity = dynamics.validity_map(Parameters(), ANGLES, ANGLES, t_end=50.0)
+    grown = validity.response_growth.copy()
+    kept = validity.separates.values == 0
+    grown.values[kept] = np.where(np.arange(kept.sum()) % 2, 3.0, 1.0)
+    figure = fig07.draw(validity.assign(response_growth=grown))
+    for axes, unstable in zip(
+        figure.axes, (validity.regime_linear.values > 0, grown.values > 1.5), strict=True
+    ):
+        tones = np.asarray(axes.collections[0].get_array()).reshape(kept.shape).T
+        np.testing.assert_array_equal(tones == 0, ~kept)
+        np.testing.assert_array_equal(tones == 2, kept & unstable)
+
+
+def test_separated_spells_are_marked_where_the_force_is_zero():
+    run = scene("F2d", Parameters())
+    figure = fig02.draw(run, run, run, run)
+    line = figure.axes[0].get_lines()[0]
+    np.testing.assert_array_equal(line.get_ydata(), run.normalized_contact_force)
+    assert run.normalized_contact_force.values[run.regime.values == 3].max() == 0.0

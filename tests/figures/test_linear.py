@@ -1,0 +1,110 @@
+"""Figures of the linear topic show what their datasets hold."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from squealpipe.figures.inference import parameter_inference
+from squealpipe.figures.linear import (
+    fig06,
+    fig08,
+    fig09,
+    frequency_shift,
+    linear_against_nonlinear,
+    linear_shares,
+    mode_coupling,
+    stability_plane,
+    static_state,
+)
+from squealpipe.figures.parts.style import save_figure
+from squealpipe.parameters import SCENES, Parameters
+from squealpipe.tasks.inference import inference
+from squealpipe.tasks.linear import boundaries as linear_boundaries
+from squealpipe.tasks.linear import maps as linear
+from squealpipe.tasks.linear import mode_coupling as coupling
+
+ANGLES = np.linspace(0.0, np.pi, 61)
+BASELINE = Parameters()
+
+
+@pytest.fixture(scope="module")
+def maps() -> dict[str, xr.Dataset]:
+    return {
+        "stability": linear.stability_map(BASELINE, ANGLES, ANGLES),
+        "quasi_static": linear.quasi_static_map(BASELINE, ANGLES, ANGLES),
+        "frequencies": linear.natural_frequencies(BASELINE, ANGLES, ANGLES),
+        "boundaries": linear_boundaries.stability_boundaries(BASELINE, points=41),
+    }
+
+
+def mesh_values(axes: object) -> np.ndarray:
+    """Values of a panel's map, indexed by (alpha1, alpha2)."""
+    return np.asarray(axes.collections[0].get_array()).reshape(ANGLES.size, ANGLES.size).T
+
+
+def test_fig06_tones_are_the_two_readings(maps: dict[str, xr.Dataset]) -> None:
+    figure = fig06.draw(maps["stability"], maps["quasi_static"], maps["boundaries"])
+    unstable = maps["stability"].regime_linear.values > 0
+    readings = (maps["quasi_static"].possible_as_printed, maps["quasi_static"].possible)
+    for axes, possible in zip(figure.axes, readings, strict=True):
+        tones = mesh_values(axes)
+        np.testing.assert_array_equal(tones == 2, unstable)
+        np.testing.assert_array_equal(tones == 0, possible.values & ~unstable)
+        crosses = [line for line in axes.get_lines() if line.get_marker() == "x"]
+        assert [line.get_xydata().tolist() for line in crosses] == [
+            [[SCENES["F3"].alpha1, SCENES["F3"].alpha2]]
+        ]
+
+
+@pytest.mark.parametrize(("module", "mode"), [(fig08, 1), (fig09, 2)])
+def test_frequency_maps_show_both_states(
+    maps: dict[str, xr.Dataset], module: object, mode: int
+) -> None:
+    figure = module.draw(maps["frequencies"])
+    for axes, state in zip(figure.axes[:2], ("contact", "separated"), strict=True):
+        omega = maps["frequencies"].omega.sel(mode=mode, contact_state=state)
+        np.testing.assert_array_equal(mesh_values(axes), omega)
+    assert figure.axes[0].collections[0].get_clim() == figure.axes[1].collections[0].get_clim()
+
+
+def test_boundaries_are_drawn_inside_the_map(maps: dict[str, xr.Dataset]) -> None:
+    """Curves that leave the map come in again: each flutter island has its outline."""
+    figure = fig06.draw(maps["stability"], maps["quasi_static"], maps["boundaries"])
+    axes = figure.axes[0]
+    drawn = np.concatenate(
+        [line.get_xydata() for line in axes.get_lines() if line.get_color() == "#0072B2"]
+    )
+    for centre in ((0.14, 0.23), (0.77, 0.86)):
+        gap = np.hypot(*(drawn / np.pi - centre).T)
+        assert gap.min() < 0.06
+
+
+def test_comparison_counts_every_cell_once() -> None:
+    regimes = np.array([[0, 0, 1, 2]] * 2, np.int8)
+    separates = np.array([[False, True, True, False]] * 2)
+    validity = xr.Dataset(
+        {"regime_linear": (("a", "b"), regimes), "separates": (("a", "b"), separates)}
+    )
+    kinds = linear_against_nonlinear.kinds_of_cells(validity)
+    np.testing.assert_array_equal(kinds, [[0, 2, 1, 3]] * 2)
+
+
+def test_extra_figures_are_written(maps: dict[str, xr.Dataset], tmp_path: Path) -> None:
+    figures = {
+        "plane": stability_plane.draw(maps["boundaries"]),
+        "shift": frequency_shift.draw(maps["frequencies"]),
+        "static": static_state.draw(maps["quasi_static"]),
+        "coupling": mode_coupling.draw(coupling.mode_coupling(points=7)),
+        "shares": linear_shares.draw(
+            linear_boundaries.linear_shares(BASELINE, [0, 0.5, 1], [0.5, 1], [0.1, 1], points=30)
+        ),
+        "inference": parameter_inference.draw(inference.infer_parameters(BASELINE, samples=64)),
+    }
+    for name, figure in figures.items():
+        paths = [tmp_path / f"{name}.png", tmp_path / f"{name}.svg"]
+        save_figure(figure, paths)
+        assert all(path.stat().st_size > 5000 for path in paths), name

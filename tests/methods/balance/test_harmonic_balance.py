@@ -1,0 +1,97 @@
+"""Harmonic balance in cosines: derivatives, order of convergence, symmetry of the description."""
+
+import math
+
+import numpy as np
+import pytest
+
+from squealpipe.methods.balance.harmonic_balance import (
+    CosineBalance,
+    contact_of,
+    cosines_of,
+    series_extremes,
+    series_speed,
+)
+from squealpipe.methods.orbits.orbit_shape import sample
+from squealpipe.parameters import Parameters
+from squealpipe.solvers.a4.orbits import find_orbit
+from squealpipe.solvers.a4.system import scaled_system
+
+ANGLES = (0.3 * math.pi, 0.9 * math.pi)
+
+
+def _exact(peak, mode=1):
+    scene = scaled_system(Parameters(), *ANGLES)
+    orbit, _ = find_orbit(scene, mode, peak)
+    states = sample(scene.system.rows, orbit.point, np.linspace(0, math.pi, 2**14 + 1))
+    return scene, orbit, cosines_of(states[:, 0]), cosines_of(states[:, 1])
+
+
+@pytest.mark.parametrize(("n_time", "sigma"), [(None, None), (400, 30.0)])
+def test_jacobian_agrees_with_differences(n_time, sigma):
+    scene, orbit, x, y = _exact(2.0)
+    balance = CosineBalance(scene.system, contact_of(6, 1.0, n_time, sigma))
+    z = np.concatenate([x[:7], y[:7], [orbit.omega]]) + 0.01
+    _, jacobian = balance.evaluate(z)
+    step = 1e-6
+    for column in range(len(z)):
+        shift = step * np.eye(len(z))[column]
+        ahead, behind = balance.evaluate(z + shift)[0], balance.evaluate(z - shift)[0]
+        np.testing.assert_allclose(jacobian[:, column], (ahead - behind) / (2 * step), atol=1e-7)
+
+
+def test_omega_converges_with_the_fourth_power_and_keeps_the_goals():
+    """The goals of the project: N_h = 32 to 1e-7, N_h = 64 to 1e-8 at equal peak; 1e-10 at
+    equal first harmonic."""
+    peaks = (1.25, 2.0, 2.75, 3.5)
+    exact = [_exact(peak) for peak in peaks]
+    worst = {}
+    for count in (8, 16, 32, 64):
+        at_peak, at_first = [], []
+        for peak, (scene, orbit, x, y) in zip(peaks, exact, strict=True):
+            balance = CosineBalance(scene.system, contact_of(count, 1.0, None, None))
+            guess = np.concatenate([x[: count + 1], y[: count + 1], [orbit.omega]])
+            same_peak = balance.solve(guess, balance.peak_row, peak)
+            same_first = balance.solve(guess, balance.first_harmonic_row, float(y[1]))
+            unit = scene.frequency
+            at_peak.append(abs(same_peak[0][-1] - orbit.omega) * unit)
+            at_first.append(abs(same_first[0][-1] - orbit.omega) * unit)
+        worst[count] = max(at_peak), max(at_first)
+    assert worst[32][0] <= 1e-7
+    assert worst[64][0] <= 1e-8
+    assert worst[64][1] <= 1e-10
+    rate = np.polyfit(np.log(list(worst)), np.log([value[0] for value in worst.values()]), 1)[0]
+    assert -4.8 < rate < -3.4
+
+
+def test_a_motion_described_from_its_other_end_solves_the_equations_too():
+    scene, orbit, x, y = _exact(2.0)
+    balance = CosineBalance(scene.system, contact_of(12, 1.0, None, None))
+    guess = np.concatenate([x[:13], y[:13], [orbit.omega]])
+    solution, _ = balance.solve(guess, balance.peak_row, 2.0)
+    values, _ = balance.evaluate(balance.shift_signs * solution)
+    assert np.abs(values).max() < 1e-12
+
+
+def test_linear_motion_in_contact_is_exact_with_one_harmonic():
+    scene = scaled_system(Parameters(), *ANGLES)
+    balance = CosineBalance(scene.system, contact_of(1, 1.0, None, None))
+    amplitude = 0.5 * (1.0 - scene.rest[1])
+    z = np.array(
+        [scene.rest[0], scene.slope(1) * amplitude, scene.rest[1], amplitude, scene.omega(1)]
+    )
+    assert np.abs(balance.evaluate(z)[0]).max() < 1e-15
+
+
+def test_extremes_and_speed_of_a_series_known_in_closed_form():
+    series = np.array([[0.7, 2.0, 0.0], [0.0, 0.0, 1.5]])
+    np.testing.assert_allclose(series_extremes(series), [2.0, 1.5], rtol=1e-9)
+    np.testing.assert_allclose(series_speed(series), [2.0, 3.0], rtol=1e-3)
+
+
+def test_cosines_of_samples_come_back():
+    theta = np.linspace(0, math.pi, 65)
+    found = cosines_of(0.3 + 0.5 * np.cos(theta) - 0.2 * np.cos(7 * theta))
+    expected = np.zeros(65)
+    expected[[0, 1, 7]] = 0.3, 0.5, -0.2
+    np.testing.assert_allclose(found, expected, atol=1e-15)

@@ -1,0 +1,65 @@
+"""Hill's method against the exact monodromy, and how sampling spoils it."""
+
+import math
+
+import numpy as np
+import pytest
+
+from squealpipe.methods.balance.harmonic_balance import CosineBalance, contact_of
+from squealpipe.methods.balance.hill import hill_multipliers, sampled_share_above
+from squealpipe.parameters import Parameters
+from squealpipe.solvers.a4.orbits import find_orbit
+from squealpipe.solvers.a4.system import scaled_system
+from squealpipe.tasks.comparison.work_precision.harmonic import orbit_series
+
+SCENE = scaled_system(Parameters(), 0.3 * math.pi, 0.9 * math.pi)
+
+
+def share_above(contact_angles: np.ndarray, n_harmonics: int) -> np.ndarray:
+    """Cosine means of the part of the period spent above, 0 … 2 H, in closed form.
+
+    Args:
+        contact_angles: θ in (0, π) at which y crosses the threshold, ascending; above at θ = 0.
+        n_harmonics: H.
+    """
+    edges = np.concatenate([[0.0], contact_angles, [math.pi]])
+    begin, end = edges[:-1:2], edges[1::2]
+    order = np.arange(1, 2 * n_harmonics + 1)
+    share = np.empty(2 * n_harmonics + 1)
+    share[0] = (end - begin).sum() / math.pi
+    share[1:] = (np.sin(np.outer(order, end)) - np.sin(np.outer(order, begin))).sum(axis=1)
+    share[1:] /= math.pi * order
+    return share
+
+
+def solved(y_peak: float, n_harmonics: int) -> tuple[CosineBalance, np.ndarray, float, float]:
+    orbit, _ = find_orbit(SCENE, 1, y_peak)
+    assert orbit is not None
+    balance = CosineBalance(SCENE.system, contact_of(n_harmonics, 1.0, None, None))
+    found = balance.solve(orbit_series(SCENE, orbit, n_harmonics), balance.peak_row, y_peak)
+    assert found is not None
+    _, y, omega = balance.split(found[0])
+    return balance, y, omega, orbit.stability_index
+
+
+@pytest.mark.parametrize("y_peak", [4.0, 4.5, 5.0])
+def test_closed_form_coefficients_give_the_true_doubling_multiplier(y_peak: float) -> None:
+    balance, y, omega, index = solved(y_peak, 16)
+    share = share_above(balance.contact.angles(y), 16)
+    largest = np.abs(hill_multipliers(SCENE.system, share, omega)).max()
+    assert index < -2.0
+    assert largest == pytest.approx((-index + math.sqrt(index * index - 4.0)) / 2.0, abs=2e-3)
+
+
+def test_sampled_coefficients_call_a_doubled_motion_stable() -> None:
+    _, y, omega, index = solved(4.0, 16)
+    largest = np.abs(hill_multipliers(SCENE.system, sampled_share_above(y, 1.0, 80), omega)).max()
+    assert index < -2.0
+    assert largest == pytest.approx(1.0, abs=1e-6)
+
+
+def test_sampled_shares_tend_to_the_closed_form() -> None:
+    balance, y, _, _ = solved(3.0, 8)
+    exact = share_above(balance.contact.angles(y), 8)
+    errors = [np.abs(sampled_share_above(y, 1.0, n) - exact).max() for n in (100, 100_000)]
+    assert errors[1] < 2e-5 < errors[0]

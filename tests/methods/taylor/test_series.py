@@ -1,0 +1,96 @@
+"""Taylor series written from symbols, against closed forms; perturbations, against theirs."""
+
+from __future__ import annotations
+
+import ctypes
+from math import factorial
+
+import numpy as np
+import pytest
+
+from squealpipe.methods.taylor.lanes import INVERSES, aligned, compile_system, taylor_terms
+from squealpipe.methods.taylor.series import HybridSystem
+from squealpipe.methods.taylor.simd import LANES
+from squealpipe.methods.taylor.symbols import derivative, exp, parameter, symbol, variables
+
+TERMS = 16
+ONE = symbol(1.0)
+Words = ctypes.CFUNCTYPE(None, *[ctypes.c_ssize_t] * 4)
+FiveWords = ctypes.CFUNCTYPE(None, *[ctypes.c_ssize_t] * 5)
+
+
+def coefficients(rates, start, events=(ONE, ONE, ONE), parameters=()):
+    """Series of the state and the events from one start, the same in all lanes."""
+    names = variables(*"xyzw"[: len(rates)])
+    system = HybridSystem(names, rates, events, tuple(name for name, _ in parameters))
+    compiled = compile_system(system, tangent=True)
+    rows = aligned(compiled.n_series, TERMS, LANES)
+    rows[: len(start), 0] = np.array(start, float)[:, None]
+    values = aligned(max(1, len(parameters)), LANES)
+    for row, (_, value) in zip(values, parameters, strict=False):
+        row[:] = value
+    addresses = rows.ctypes.data, values.ctypes.data
+    Words(compiled.series)(*addresses, INVERSES.ctypes.data, TERMS)
+    assert (rows == rows[:, :, :1]).all()
+    return compiled, rows, values
+
+
+def test_power_series_in_closed_form():
+    x, y, z, w = variables(*"xyzw")
+    rates = (x * x, exp(-y), z**-1.0 * 0.5, w**0.5)
+    _, rows, _ = coefficients(rates, (1.0, 0.0, 1.0, 1.0))
+    k = np.arange(1, TERMS)
+    np.testing.assert_allclose(rows[0, :, 0], 1.0, rtol=1e-14)  # 1/(1 − t)
+    np.testing.assert_allclose(rows[1, 1:, 0], (-1.0) ** (k + 1) / k, rtol=1e-13)  # ln(1 + t)
+    binomial = np.cumprod(np.concatenate([[1.0], (0.5 - np.arange(TERMS - 1)) / k]))
+    np.testing.assert_allclose(rows[2, :, 0], binomial, rtol=1e-13)  # √(1 + t)
+    square = np.zeros(TERMS)
+    square[:3] = 1.0, 1.0, 0.25  # (1 + t/2)²
+    np.testing.assert_allclose(rows[3, :, 0], square, atol=1e-15)
+
+
+def test_two_centres_that_coincide_are_one():
+    """x'' = −½ Σ (x − a) |r − a|^−3 − … on the unit circle about a: cosine and sine."""
+    x, y, z, w = variables(*"xyzw")
+    a = parameter("a")
+    distance2 = (x - a) * (x - a) + y * y
+    pull = 0.5 * distance2**-1.5
+    ax = -(pull * (x - a)) + -(pull * (x - a))
+    ay = -(pull * y) - pull * y
+    events = (x - a, z * z + w * w, distance2**0.5 + 2.0)
+    _, rows, _ = coefficients((z, w, ax, ay), (3.0, 0.0, 0.0, 1.0), events, [("a", 2.0)])
+    cosine = np.array([np.cos(0.5 * np.pi * k) / factorial(k) for k in range(TERMS)])
+    sine = np.array([np.sin(0.5 * np.pi * k) / factorial(k) for k in range(TERMS)])
+    np.testing.assert_allclose(rows[0, :, 0], cosine + 2.0 * (np.arange(TERMS) == 0), atol=2e-15)
+    np.testing.assert_allclose(rows[1, :, 0], sine, atol=2e-15)
+    np.testing.assert_allclose(rows[4, :, 0], cosine, atol=2e-15)
+    constant = np.arange(TERMS) == 0
+    np.testing.assert_allclose(rows[5, :, 0], constant, atol=5e-15)
+    np.testing.assert_allclose(rows[6, :, 0], 3.0 * constant, atol=5e-15)
+
+
+@pytest.mark.parametrize("step", [0.1, 0.2, 0.4])
+def test_a_perturbation_follows_the_variational_equation(step):
+    """x' = −x², y' = x y: δx = δx0/(1 + t)², δy = (1 + t) δy0 + t δx0 from x = y = 1."""
+    x, y = variables(*"xy")
+    compiled, rows, values = coefficients((-(x * x), x * y), (1.0, 1.0))
+    length, tangent = aligned(LANES), aligned(2, LANES)
+    length[:], tangent[0], tangent[1] = step, 0.7, -0.4
+    FiveWords(compiled.perturb)(
+        rows.ctypes.data, values.ctypes.data, length.ctypes.data, tangent.ctypes.data, TERMS
+    )
+    exact = [0.7 / (1.0 + step) ** 2, -0.4 * (1.0 + step) + 0.7 * step]
+    np.testing.assert_allclose(tangent[:, 0], exact, atol=2e-3 * step**4)
+
+
+def test_derivatives_of_symbols():
+    x, y = variables(*"xy")
+    assert derivative(x * x * y, x) is not derivative(x * x * y, y)
+    assert derivative(parameter("a") * x, x) is parameter("a")
+    assert derivative(symbol(2.0) * y, x) is symbol(0.0)
+    with pytest.raises(ValueError, match="multiple of 1/2"):
+        x**0.3
+
+
+def test_terms_grow_with_the_digits_asked_for():
+    assert [taylor_terms(tol) for tol in (1e-4, 1e-12, 1e-16)] == [7, 16, 21]

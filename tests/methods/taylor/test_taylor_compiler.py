@@ -1,0 +1,22 @@
+"""heyoka's compiler leaves nothing behind."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+
+RUN = """
+import numpy as np
+from squealpipe.parameters import Parameters
+from squealpipe.tasks.dynamics.runs import simulate
+from squealpipe.solvers.a1.reference import simulate_reference
+simulate(Parameters(), 1.0, 2.0, t_end=1.0)
+simulate_reference(Parameters(), 1.0, 2.0, t_end=1.0)
+"""
+
+
+def test_no_compiled_code_is_stored_outside_the_project(tmp_path):
+    environment = {**os.environ, "HOME": str(tmp_path), "HEYOKA_CACHE_DIR": str(tmp_path / "store")}
+    subprocess.run([sys.executable, "-c", RUN], env=environment, check=True)
+    assert not list(tmp_path.rglob("*"))

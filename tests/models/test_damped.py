@@ -1,0 +1,233 @@
+"""A3 with dashpots and falling friction: eigenvalues in 60 digits, Routh–Hurwitz, limits."""
+
+from __future__ import annotations
+
+import math
+
+import mpmath as mp
+import numpy as np
+import pytest
+
+from squealpipe.models.damped import critical_friction, damped_system, eigenvalues, stability
+from squealpipe.parameters import LAW_NAMES, Parameters
+from squealpipe.tasks.linear.critical import critical_damping_map, critical_friction_map
+from squealpipe.tasks.linear.maps import stability_map
+
+RNG = np.random.default_rng(41)
+
+
+def random_parameters() -> Parameters:
+    """Unequal springs, both belt directions, any law, damping from none to overcritical."""
+    mu = RNG.uniform(0, 1)
+    return Parameters(
+        mass=RNG.uniform(0.2, 5),
+        k1=RNG.uniform(0.2, 5),
+        k2=RNG.uniform(0.2, 5),
+        k3=RNG.uniform(0.2, 5),
+        mu=mu,
+        belt_speed=RNG.choice([-1, 1]) * RNG.uniform(0.1, 5),
+        preload=RNG.uniform(0.3, 3),
+        damping1=RNG.choice([0.0, 1e-6, 0.1, 5.0]),
+        damping2=RNG.uniform(0, 2),
+        friction_law=str(RNG.choice(LAW_NAMES)),
+        mu_static=mu + RNG.uniform(0, 1),
+        friction_speed=RNG.uniform(0.1, 5),
+    )
+
+
+def eigenvalues_in_60_digits(p: Parameters, alpha1: float, alpha2: float) -> list[complex]:
+    """From C and K as they are defined, by an independent route: a 4×4 matrix."""
+    with mp.workdps(60):
+        f = mp.mpf
+        (c1, s1), (c2, s2) = mp.cos_sin(f(alpha1)), mp.cos_sin(f(alpha2))
+        side, speed = (1 if p.belt_speed >= 0 else -1), abs(f(p.belt_speed))
+        fall, v0 = f(p.static_mu) - f(p.mu), f(p.friction_speed)
+        mu, slope = {
+            "coulomb": lambda: (f(p.mu), f(0)),
+            "exponential": lambda: (
+                f(p.mu) + fall * mp.exp(-speed / v0), -fall / v0 * mp.exp(-speed / v0)),
+            "hyperbolic": lambda: (
+                f(p.mu) + fall / (1 + speed / v0), -fall / v0 / (1 + speed / v0) ** 2),
+        }[p.friction_law]()  # fmt: skip
+        e1, e2 = mp.matrix([c1, s1]), mp.matrix([-c2, s2])
+        k = f(p.k1) * e1 * e1.T + f(p.k2) * e2 * e2.T
+        c = f(p.damping1) * e1 * e1.T + f(p.damping2) * e2 * e2.T
+        k3 = f(p.k3)
+        contact = k + mp.matrix([[0, side * mu * k3], [0, k3]])
+        push = k3 * f(p.preload)
+        rest = mp.lu_solve(contact, mp.matrix([side * mu * push, push]))
+        c[0, 0] += k3 * (f(p.preload) - rest[1]) * slope
+        whole = mp.zeros(4)
+        for i in range(2):
+            whole[i, 2 + i] = 1
+            for j in range(2):
+                whole[2 + i, j] = -contact[i, j] / f(p.mass)
+                whole[2 + i, 2 + j] = -c[i, j] / f(p.mass)
+        return [complex(value) for value in mp.eig(whole, right=False)]
+
+
+def test_eigenvalues_of_200_random_sets_to_1e_12() -> None:
+    for _ in range(200):
+        params = random_parameters()
+        alpha1, alpha2 = RNG.uniform(0, np.pi, 2)
+        system = damped_system(params, np.longdouble(alpha1), np.longdouble(alpha2))
+        found = eigenvalues(system).astype(complex)
+        for value in eigenvalues_in_60_digits(params, alpha1, alpha2):
+            assert np.abs(found - value).min() <= 1e-12 * abs(value)
+
+
+def test_the_map_is_that_of_the_eigenvalues_and_mirrors_with_the_belt() -> None:
+    params = random_parameters().with_(friction_law="exponential")
+    alpha1, alpha2 = np.sort(RNG.uniform(0, np.pi, (2, 4)))
+    found = stability_map(params, alpha1, alpha2)
+    for i, first in enumerate(alpha1):
+        for j, second in enumerate(alpha2):
+            exact = eigenvalues_in_60_digits(params, first, second)
+            cell = found.isel(alpha1=i, alpha2=j)
+            growth = max(value.real for value in exact)
+            assert float(cell.growth_rate) == pytest.approx(growth, rel=1e-11, abs=1e-13)
+            upper = sorted((value.imag for value in exact), reverse=True)[:2]
+            np.testing.assert_allclose(
+                cell.frequency, np.maximum(sorted(upper), 0.0), rtol=1e-11, atol=1e-9
+            )
+            assert (int(cell.regime_linear) > 0) == (growth > 0)
+    other = stability_map(
+        params.with_(belt_speed=-params.belt_speed), np.pi - alpha1, np.pi - alpha2
+    )
+    np.testing.assert_allclose(other.growth_rate, found.growth_rate, rtol=1e-10, atol=1e-12)
+
+
+def test_vanishing_damping_is_the_closed_form() -> None:
+    params = Parameters(k2=1.4, belt_speed=-0.7)
+    angles = np.linspace(0.1, 3.0, 12)
+    plain = stability_map(params, angles, angles)
+    slight = stability_map(params.with_(damping1=1e-10, damping2=1e-10), angles, angles)
+    far = np.abs(plain.growth_rate) > 0.05
+    np.testing.assert_allclose(
+        slight.growth_rate.where(far), plain.growth_rate.where(far), rtol=1e-8
+    )
+    calm = plain.regime_linear == 0
+    assert float(np.abs(slight.growth_rate.where(calm)).max()) < 1e-8
+    same_law = params.with_(friction_law="hyperbolic", mu_static=params.mu)
+    np.testing.assert_array_equal(
+        stability_map(same_law, angles, angles).growth_rate, plain.growth_rate
+    )
+
+
+def test_routh_hurwitz_agrees_with_the_eigenvalues_on_either_side() -> None:
+    """Stable just below the critical friction and from 0 on, unstable just above."""
+    judged = 0
+    for _ in range(150):
+        params = random_parameters().with_(friction_law="coulomb", mu=0.0, damping1=0.3)
+        alpha = tuple(np.longdouble(RNG.uniform(0, np.pi, 2)))
+        critical = float(critical_friction(params, *alpha)[0])
+        if not 1e-3 < critical < 50:
+            continue
+        judged += 1
+        for share, stable in ((0.3, True), (1 - 1e-7, True), (1 + 1e-7, False)):
+            there = params.with_(mu=share * critical, mu_static=None)
+            found = stability(damped_system(there, *alpha))
+            assert (float(found.growth_rate) < 0) == stable, (share, critical)
+    assert judged >= 40
+
+
+def test_undamped_critical_friction_is_the_onset_of_the_closed_form() -> None:
+    judged = 0
+    for _ in range(100):
+        params = random_parameters().with_(
+            friction_law="coulomb", mu=0.0, mu_static=None, damping1=0.0, damping2=0.0
+        )
+        alpha1, alpha2 = RNG.uniform(0, np.pi, (2, 1))
+        critical = float(critical_friction(params, alpha1, alpha2)[1][0])
+        if not 1e-3 < critical < 50:
+            continue
+        judged += 1
+        for share, stable in ((1 - 1e-9, True), (1 + 1e-9, False)):
+            there = stability_map(params.with_(mu=share * critical), alpha1, alpha2)
+            assert (int(there.regime_linear.item()) == 0) == stable
+    assert judged >= 40
+
+
+def test_hoffmann_and_gaul_damping_destabilizes() -> None:
+    """Their minimal model: y reversed, K = [[2, −1 + μk3], [−1, 2]], undamped onset μ = 0.75.
+
+    With C vanishing at the ratio c1:c2, the onset is where p3/p1 meets one of ω² = 2 ∓ √(1 − μk3),
+    a quadratic in μ; no ratio but the symmetric one keeps 0.75.
+    """
+    springs = {"k1": 2 / 3 * (2 - math.sqrt(3)), "k2": 2 / 3 * (2 + math.sqrt(3)), "k3": 4 / 3}
+    angle = np.array([math.pi / 6])
+    for ratio in (0.01, 0.1, 0.4, 1.0, 3.0, 20.0):
+        params = Parameters(**springs, damping1=ratio, damping2=1.0)
+        found = critical_friction_map(params, angle, angle)
+        assert found.critical_mu_undamped.item() == pytest.approx(0.75, abs=1e-12)
+        vanishing = found.critical_mu_vanishing.item()
+        with mp.workdps(40):
+            cosine, sine = mp.cos_sin(mp.pi / 6)
+            c11, c22 = (ratio + 1) * cosine**2, (ratio + 1) * sine**2
+            c12 = (ratio - 1) * cosine * sine
+            # K11 = K22 = 2 and K12 = −1: q = p3/p1 = 2 − c12 (−2 + μk3)/p1 must meet 2 ∓ √(1 − μk3)
+            slope = c12 / (c11 + c22)
+            # (slope (2 − h))² = 1 − h with h = μ k3
+            a, b, c = slope**2, 1 - 4 * slope**2, 4 * slope**2 - 1
+            expected = (-c / b if a == 0 else (-b + mp.sqrt(b * b - 4 * a * c)) / (2 * a)) * 3 / 4
+        assert vanishing == pytest.approx(float(expected), abs=1e-9)
+        assert vanishing < 0.75 or c12 == 0
+        assert bool(found.destabilized) == (found.critical_mu.item() < 0.75)
+        # the limit is reached linearly or faster, from the eigenvalues themselves
+        tiny = params.with_(damping1=1e-6 * ratio, damping2=1e-6)
+        assert critical_friction_map(tiny, angle, angle).critical_mu.item() == pytest.approx(
+            vanishing, abs=1e-9
+        )
+        if vanishing < 0.749:
+            between = 0.5 * (vanishing + 0.75)
+            growth = stability_map(tiny.with_(mu=between), angle, angle).growth_rate.item()
+            assert growth > 0
+            assert stability_map(params.with_(damping1=0, damping2=0, mu=between), angle, angle
+                                 ).regime_linear.item() == 0  # fmt: skip
+
+
+def test_the_map_over_dashpots_is_that_over_the_angles_cell_by_cell() -> None:
+    """Unequal springs, a belt against x, and stability just below and above by eigenvalues."""
+    params = Parameters(mass=1.7, k1=2.0, k2=0.6, k3=1.1, belt_speed=-0.4, preload=0.5)
+    angles, c1, c2 = (2.1, 2.6), np.array([0.0, 0.03, 0.4]), np.array([0.0, 0.2])
+    found = critical_damping_map(params, *angles, c1, c2)
+    for i, first in enumerate(c1):
+        for j, second in enumerate(c2):
+            damped = params.with_(damping1=first, damping2=second)
+            cell = critical_friction_map(damped, angles[:1], angles[1:])
+            assert float(found.critical_mu[i, j]) == cell.critical_mu.item()
+            assert bool(found.destabilized[i, j]) == bool(cell.destabilized.item())
+            for factor, stable in ((1 - 1e-6, True), (1 + 1e-6, False)):
+                there = damped.with_(mu=factor * cell.critical_mu.item())
+                regime = stability_map(there, angles[:1], angles[1:]).regime_linear.item()
+                assert (regime == 0) == stable
+    assert float(found.critical_mu_undamped) == found.critical_mu[0, 0]
+
+
+def test_round_off_of_the_coupling_gives_no_critical_friction() -> None:
+    """K12 = 0 along α1 = α2 with equal springs: without dashpots no friction destabilizes."""
+    angles = np.linspace(0.1, 3.0, 30)
+    found = critical_friction_map(Parameters(), angles, angles)
+    same = np.diagonal(found.critical_mu_undamped)
+    assert np.isinf(same).all()
+
+
+@pytest.mark.parametrize(
+    ("change", "named"),
+    [
+        ({"alpha1": math.nan}, "alpha1 = nan"),
+        ({"damping1": [-0.1]}, "damping1: numbers of 0 or greater"),
+        ({"damping2": [[0.1]]}, "damping2: numbers of 0 or greater"),
+    ],
+)
+def test_the_map_over_dashpots_refuses_what_is_no_dashpot(change, named) -> None:
+    given = {"alpha1": 1.0, "alpha2": 2.0, "damping1": [0.1], "damping2": [0.1]} | change
+    with pytest.raises(ValueError, match=named):
+        critical_damping_map(Parameters(), **given)
+
+
+def test_critical_friction_is_of_coulombs_law() -> None:
+    with pytest.raises(ValueError, match=r"friction_law = 'exponential'.*use stability_map"):
+        critical_friction_map(
+            Parameters(friction_law="exponential", mu_static=0.5, belt_speed=1.0), [1.0], [2.0]
+        )

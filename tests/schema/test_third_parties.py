@@ -1,0 +1,94 @@
+"""What another person needs from a file alone: title, references, licence, words, CF."""
+
+from __future__ import annotations
+
+import importlib.util
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from squealpipe import Parameters, load, natural_frequencies, save, simulate
+from squealpipe.schema import Outcome, SchemaError, all_schemas, flag_table, meanings
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+@pytest.fixture(scope="module")
+def scene(tmp_path_factory):
+    """The scene of Fig. 2d, as a file."""
+    angle = 0.83 * np.pi
+    return save(
+        simulate(Parameters(), angle, angle, t_end=20.0), tmp_path_factory.mktemp("cf") / "F2d.nc"
+    )
+
+
+def test_the_cf_checker_has_nothing_to_say_about_a_run(scene):
+    checker = Path(sys.executable).with_name("compliance-checker")
+    done = subprocess.run(
+        [checker, "--test=cf:1.11", scene], capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stdout[-2000:]
+    assert "All tests passed" in done.stdout
+
+
+def test_a_run_says_what_it_is(scene):
+    run = load(scene)
+    assert "model A1 at alpha1 = 0.83 pi, alpha2 = 0.83 pi" in run.attrs["title"]
+    assert run.attrs["license"] == "MIT"
+    assert "Noise Control Engineering Journal, 2021" in run.attrs["references"]
+    assert "-L2 cos alpha2" in run.attrs["comment"]
+    assert "3: step limit (shorten t_end" in run.outcome.attrs["comment"]
+
+
+def test_time_is_cf_in_the_file_and_seconds_in_memory(scene):
+    made = load(scene)
+    assert made.time.attrs["units"] == "s"
+    with xr.open_dataset(scene, decode_times=False) as raw:
+        assert raw.time.attrs["standard_name"] == "time"
+        assert raw.time.attrs["units"].startswith("seconds since")
+        np.testing.assert_array_equal(raw.time, made.time)
+    with xr.open_dataset(scene) as decoded:
+        elapsed = (decoded.time - decoded.time[0]) / np.timedelta64(1, "s")
+        np.testing.assert_allclose(elapsed, made.time, atol=1e-8)
+
+
+def test_only_outcomes_that_can_be_are_listed(scene):
+    run = set(meanings(load(scene).outcome).values())
+    assert {"converged", "step_limit", "singular_geometry"} <= run
+    assert not run & {"complex_pair", "pole", "infeasible", "tongue_end"}
+    linear = natural_frequencies(Parameters(), [1.0], [2.0])
+    assert set(meanings(linear.outcome).values()) == {
+        "converged", "singular_static_state", "complex_pair", "divergence", "rigid_mode",
+    }  # fmt: skip
+
+
+def test_an_outcome_that_cannot_be_is_refused(scene):
+    from squealpipe.schema import find, validate
+
+    wrong = load(scene)
+    wrong["outcome"] = wrong.outcome.copy(data=np.int8(Outcome.pole))
+    with pytest.raises(SchemaError, match="outcome holds flags"):
+        validate(wrong, find("simulation"))
+
+
+@pytest.mark.parametrize("name", sorted(all_schemas()))
+def test_every_variable_says_what_it_is(name):
+    schema = all_schemas()[name]
+    for key, entry in {**schema.coordinates, **schema.variables}.items():
+        assert entry.long_name, key
+        if entry.flags is not None:
+            assert all(flag_table(entry.flags).values())
+
+
+def test_the_data_dictionary_is_current():
+    path = ROOT / "docs/build_dictionary.py"
+    spec = importlib.util.spec_from_file_location("build_dictionary", path)
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    assert module.TARGET.read_text(encoding="utf-8") == module.page(), "run `make dictionary`"

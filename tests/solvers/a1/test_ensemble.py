@@ -1,0 +1,205 @@
+"""Ensembles: bitwise independence of how they are run, units, limits, refusals."""
+
+from __future__ import annotations
+
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import fields
+
+import numpy as np
+import pytest
+
+from squealpipe.laws.springs import Geometry
+from squealpipe.models.switching import Rules, ScaledParameters
+from squealpipe.parameters import Parameters
+from squealpipe.schema import Outcome
+from squealpipe.solvers.a1 import ensemble
+from squealpipe.solvers.a1.ensemble import RESULTS, Ensemble, run_ensemble
+from squealpipe.solvers.a1.records import LANE, ORDER
+from squealpipe.solvers.a1.system import EXTENSIONS, PARAMETERS, PHYSICAL
+
+RNG = np.random.default_rng(3)
+SIZE = 83
+MIXED = {
+    "k3": RNG.uniform(0.3, 3.0, SIZE),
+    "mu": RNG.uniform(0.0, 0.8, SIZE),
+    "belt_speed": RNG.choice([0.0, 0.3, 5.0, 100.0, -0.3], SIZE),
+    "length1": RNG.uniform(2.0, 30.0, SIZE),
+    "preload": RNG.uniform(0.5, 2.0, SIZE),
+}
+ANGLES = RNG.uniform(0, np.pi, (2, SIZE))
+ENDS = RNG.uniform(1.0, 60.0, SIZE)
+
+
+def _run(order=slice(None), **options) -> Ensemble:
+    return run_ensemble(
+        {name: values[order] for name, values in MIXED.items()},
+        ANGLES[0][order],
+        ANGLES[1][order],
+        t_end=ENDS[order],
+        tangent=True,
+        log_events=40,
+        times=np.linspace(0, 1.0, 7),
+        **options,
+    )
+
+
+def assert_identical(first: Ensemble, second: Ensemble) -> None:
+    for item in fields(Ensemble):
+        a, b = getattr(first, item.name), getattr(second, item.name)
+        assert a.tobytes() == b.tobytes(), item.name
+
+
+@pytest.fixture(scope="module")
+def reference() -> Ensemble:
+    return _run(workers=1)
+
+
+@pytest.mark.parametrize("workers", [2, 3])
+def test_any_number_of_workers_gives_the_same_bits(reference, workers):
+    assert_identical(_run(workers=workers), reference)
+
+
+def test_any_order_of_jobs_gives_the_same_bits(reference):
+    order = np.random.default_rng(0).permutation(SIZE)
+    shuffled = _run(order, workers=1)
+    back = Ensemble(
+        **{f.name: getattr(shuffled, f.name)[np.argsort(order)] for f in fields(Ensemble)}
+    )
+    assert_identical(back, reference)
+
+
+@pytest.mark.parametrize("job", [0, 1, SIZE - 1])
+def test_a_run_alone_gives_the_same_bits(reference, job):
+    alone = _run(slice(job, job + 1), workers=1)
+    kept = Ensemble(**{f.name: getattr(reference, f.name)[job : job + 1] for f in fields(Ensemble)})
+    assert_identical(alone, kept)
+
+
+def test_repeating_gives_the_same_bits(reference):
+    assert_identical(_run(workers=1), reference)
+
+
+def test_a_longer_horizon_continues_the_same_run():
+    """t_end never shortens a step, so a longer run passes through the same states."""
+    times = np.linspace(0, 20, 41)
+    short = run_ensemble(Parameters(), 0.3, 2.5, t_end=20.0, times=times)
+    long = run_ensemble(Parameters(), 0.3, 2.5, t_end=100.0, times=times)
+    assert short.samples.tobytes() == long.samples.tobytes()
+
+
+def test_results_have_the_shape_of_the_inputs():
+    run = run_ensemble(Parameters(), np.zeros((3, 1)), np.zeros(4), t_end=1.0, times=[0.0, 1.0])
+    assert run.outcome.shape == (3, 4)
+    assert run.samples.shape == (3, 4, 2, 4)
+    assert run_ensemble(Parameters(), 1.0, 1.0, t_end=1.0).time.shape == ()
+
+
+def test_no_runs():
+    assert run_ensemble(Parameters(), np.zeros(0), 1.0, t_end=1.0).outcome.shape == (0,)
+
+
+def test_t_end_zero_is_the_start():
+    run = run_ensemble(
+        Parameters(), 1.0, 1.0, t_end=0.0, initial_state=(0.1, 0.2, 0.3, 0.4), times=[0.0]
+    )
+    assert run.outcome == Outcome.converged
+    np.testing.assert_array_equal(run.final_state, [0.1, 0.2, 0.3, 0.4])
+    np.testing.assert_array_equal(run.samples, [[0.1, 0.2, 0.3, 0.4]])
+
+
+def test_stops_say_so():
+    first = run_ensemble(Parameters(), np.pi, np.pi, t_end=50.0, stop_at_first_separation=True)
+    assert first.outcome == Outcome.separated
+    assert first.time == first.first_separation_time
+    far = run_ensemble(Parameters(), 0.4 * np.pi, 0.6 * np.pi, t_end=600.0, stop_at_x=20.0)
+    assert far.outcome == Outcome.amplitude_reached
+    assert 20.0 < far.early_max_x < 35.0
+    turned = run_ensemble(Parameters(), 0.4 * np.pi, 0.6 * np.pi, t_end=600.0, stop_at_turns=5)
+    assert turned.outcome == Outcome.amplitude_reached
+    assert abs(turned.turns) == 5
+
+
+def test_instants_past_a_stop_hold_nan_and_a_flag():
+    times = np.linspace(0, 50, 51)
+    run = run_ensemble(
+        Parameters(), np.pi, np.pi, t_end=50.0, times=times, stop_at_first_separation=True
+    )
+    past = times > run.time
+    assert past.any()
+    np.testing.assert_array_equal(np.isnan(run.samples).all(axis=-1), past)
+    np.testing.assert_array_equal(run.sample_regimes == -1, past)
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"alpha1": np.nan}, "alpha1"),
+        ({"alpha2": "0.5pi"}, "alpha2"),
+        ({"t_end": -1.0}, "t_end"),
+        ({"t_end": np.inf}, "t_end"),
+        ({"model": "A1-nostick"}, "A1-no-stick"),
+        ({"tol": 0.0}, "tol"),
+        ({"tol": "tight"}, "tol"),
+        ({"times": [1.0, 0.5]}, "ascend"),
+        ({"times": [-1.0, 0.5]}, "0 or later"),
+        ({"times": [0.0, 11.0]}, "beyond t_end"),
+        ({"times": 3.0}, "sequence"),
+        ({"initial_state": (0.0, 1.0)}, "vx"),
+        ({"initial_state": (0.0, 1.0, np.inf, 0.0)}, "initial_state"),
+        ({"parameters": {"mass": [1.0, -1.0]}}, "mass"),
+        ({"parameters": {"mu": -0.1}}, "mu"),
+        ({"parameters": {"beltspeed": 1.0}}, "belt_speed"),
+        ({"parameters": {"k3": np.nan}}, "k3"),
+        ({"workers": 0}, "workers"),
+    ],
+)
+def test_refusals_name_the_argument(changes, message):
+    arguments = {"parameters": Parameters(), "alpha1": 1.0, "alpha2": 1.0, "t_end": 10.0, **changes}
+    with pytest.raises(ValueError, match=message):
+        run_ensemble(**arguments)
+
+
+def test_maps_in_blocks_are_the_same(monkeypatch):
+    alpha1, alpha2 = np.linspace(0, np.pi, 9), np.linspace(0, np.pi, 7)
+    whole = ensemble.run_map(Parameters(), alpha1, alpha2, ("max_displacement",), t_end=20.0)
+    monkeypatch.setattr(ensemble, "BLOCK", 10)
+    parts = ensemble.run_map(Parameters(), alpha1, alpha2, ("max_displacement",), t_end=20.0)
+    assert whole.max_displacement.shape == (9, 7)
+    assert whole.max_displacement.tobytes() == parts.max_displacement.tobytes()
+
+
+def test_a_physical_parameter_is_one_name():
+    """Jobs, lanes and series take the names, and their order, from one place."""
+    assert {*PHYSICAL, *EXTENSIONS} < set(ORDER.names)
+    first = LANE.names.index(PARAMETERS[0])
+    assert LANE.names[first : first + len(PARAMETERS)] == PARAMETERS
+    laws = {*ScaledParameters._fields, *Geometry._fields, *Rules._fields}
+    assert laws < set(ORDER.names)
+
+
+def test_what_an_ensemble_reports_has_a_row_each():
+    assert [*RESULTS] == [item.name for item in fields(Ensemble)]
+
+
+def test_parameters_in_other_forms_give_the_same_bits():
+    """One set of parameters is scaled once; arrays of the same values take the other path."""
+    signed = {"damping1": -0.0, "belt_speed": -0.0}
+    for params in (
+        Parameters(mass=2.0, k1=3.0, preload=0.7, k2=1.7, belt_speed=-3.0),
+        Parameters(damping1=0.2, friction_law="exponential", mu_static=0.6, length1=1e7),
+        Parameters(mu_static=0.6),
+        Parameters(**signed),
+        Parameters(**dict.fromkeys(signed, 0.0)),
+    ):
+        given = {name: np.array([value] * 3) for name, value in vars(params).items() if value}
+        alone, rows = (
+            run_ensemble(each, np.full(3, 1.2), 2.6, t_end=9.0, log_events=9, workers=1)
+            for each in (params, {**given, "belt_speed": params.belt_speed})
+        )
+        assert_identical(alone, rows)
+
+
+def test_threads_do_not_disturb_each_other(reference):
+    with ThreadPoolExecutor(2) as pool:
+        for run in pool.map(lambda _: _run(workers=1), range(4)):
+            assert_identical(run, reference)

@@ -1,0 +1,158 @@
+"""What other integrators with events got wrong, tried on ours; closed forms at (π/2, π).
+
+There K is the identity for equal springs, so in contact y oscillates about κ/(1 + κ) at √(1 + κ),
+in units of m = k = l_pre = 1.
+"""
+
+from __future__ import annotations
+
+from dataclasses import fields, replace
+
+import numpy as np
+import pytest
+
+from squealpipe.methods.taylor.lanes import compile_system
+from squealpipe.parameters import Parameters
+from squealpipe.schema import Outcome
+from squealpipe.schema.dynamics import EventFlag
+from squealpipe.solvers.a1 import ensemble
+from squealpipe.solvers.a1.ensemble import Ensemble, run_ensemble
+from squealpipe.solvers.a1.system import PAPER, lane_system
+
+IDENTITY = {"alpha1": 0.5 * np.pi, "alpha2": np.pi, "model": "A1-linear-springs"}
+KAPPA = 0.75
+REST, OMEGA = KAPPA / (1 + KAPPA), np.sqrt(1 + KAPPA)
+FRICTIONLESS = Parameters(k3=KAPPA, mu=0.0)
+
+
+def random_runs(size, seed):
+    rng = np.random.default_rng(seed)
+    parameters = {
+        "k2": rng.uniform(0.3, 3.0, size),
+        "k3": rng.uniform(0.3, 3.0, size),
+        "mu": rng.uniform(0.0, 0.8, size),
+        "belt_speed": rng.choice([0.05, 0.3, 5.0, 100.0, -0.3], size),
+        "length1": rng.uniform(2.0, 30.0, size),
+    }
+    return parameters, rng.uniform(0, np.pi, size), rng.uniform(0, np.pi, size)
+
+
+@pytest.mark.parametrize("exponent", range(-14, -2))
+@pytest.mark.parametrize("phase", [0.3, 1.0, 2.0])
+def test_two_crossings_inside_a_step(exponent, phase):
+    """y rises above l_pre by the depth alone: it leaves the belt and lands again."""
+    depth = 10.0**exponent
+    amplitude = 1.0 + depth - REST
+    state = (0.0, REST + amplitude * np.cos(-phase), 0.0, -amplitude * OMEGA * np.sin(-phase))
+    t_top = phase / OMEGA
+    # In flight y'' = −y: the mass is back after about 2 √(2 depth).
+    flight = 2.0 * np.sqrt(2.0 * depth)
+    options = {"t_end": t_top + 2.0, "initial_state": state, "log_events": 4, **IDENTITY}
+    run = run_ensemble(FRICTIONLESS, **options)
+    if exponent == -14 and run.separations == 0:
+        # As deep as the state's own round-off after a step.
+        assert abs(run.lowest_contact_force) < 2e-14
+        return
+    assert run.outcome == Outcome.converged
+    assert run.event_kinds.tolist() == [EventFlag.separation, EventFlag.contact, -1, -1]
+    assert abs(run.event_times[:2].mean() - t_top) < 0.3 * flight
+    assert run.event_times[1] - run.event_times[0] == pytest.approx(flight, rel=0.1 + 3e-15 / depth)
+    near = 10.0**-13 if exponent < -12 else depth
+    missed = (0.0, REST + (1.0 - near - REST) * np.cos(phase), 0.0,
+              (1.0 - near - REST) * OMEGA * np.sin(phase))  # fmt: skip
+    assert run_ensemble(FRICTIONLESS, **options | {"initial_state": missed}).separations == 0
+
+
+def test_the_order_of_events_in_their_list_decides_nothing(monkeypatch):
+    """Starts from which contact is lost and belt speed is reached within one step."""
+    parameters, *angles = random_runs(300, 3)
+    rng = np.random.default_rng(3)
+    before = rng.uniform(0.0, 0.05, (2, 300))
+    speed = parameters["belt_speed"] - before[1]
+    starts = np.stack([rng.uniform(-1, 1, 300), 1 - before[0], speed, np.ones(300)], axis=-1)
+    options = {"t_end": 3.0, "log_events": 60, "workers": 1, "initial_state": starts}
+    first = run_ensemble(parameters, *angles, **options)
+    close = np.diff(first.event_times[:, :2], axis=1)[:, 0] < 0.05
+    pairs = np.sort(first.event_kinds[close, :2], axis=1).tolist()
+    assert pairs.count([EventFlag.separation, EventFlag.reversal]) > 20
+    system = lane_system(linear_springs=False, dissipation=PAPER)
+    for order in ((2, 1, 0), (1, 2, 0)):
+        other = replace(system, events=tuple(system.events[index] for index in order))
+        compiled = compile_system(other, tangent=False)
+        monkeypatch.setattr(ensemble, "compiled_system", lambda c=compiled, **_: c)
+        second = run_ensemble(parameters, *angles, **options)
+        for item in fields(Ensemble):
+            a, b = getattr(first, item.name), getattr(second, item.name)
+            assert a.tobytes() == b.tobytes(), item.name
+
+
+@pytest.mark.parametrize("block", [1, 7, 40])
+def test_blocks_of_any_size_give_the_same_bits(block):
+    parameters, *angles = random_runs(40, 4)
+    whole = run_ensemble(parameters, *angles, t_end=20.0, workers=1, tangent=True)
+    for start in range(0, 40, block):
+        rows = slice(start, start + block)
+        chosen = {name: values[rows] for name, values in parameters.items()}
+        part = run_ensemble(chosen, *(a[rows] for a in angles), t_end=20.0, workers=1, tangent=True)
+        for item in fields(Ensemble):
+            a, b = getattr(whole, item.name)[rows], getattr(part, item.name)
+            assert a.tobytes() == b.tobytes(), item.name
+
+
+def test_an_event_at_the_end_and_at_an_asked_instant():
+    params = Parameters(k3=2.0)
+    time = float(run_ensemble(params, t_end=5.0, log_events=1, **IDENTITY).event_times[0])
+    before, after = np.nextafter(time, 0.0), np.nextafter(time, np.inf)
+    counts = []
+    for t_end in (before, time, after):
+        run = run_ensemble(params, t_end=t_end, log_events=3, times=[t_end], **IDENTITY)
+        assert run.outcome == Outcome.converged
+        assert run.time == t_end
+        assert run.samples[0, 1] == pytest.approx(1.0, abs=2e-15)
+        counts.append(int(run.separations))
+    assert counts[0] == 0
+    assert counts[2] == 1
+    asked = [before, time, after]
+    run = run_ensemble(params, t_end=5.0, times=asked, log_events=9, **IDENTITY)
+    assert (run.event_kinds == EventFlag.separation).sum() == run.separations
+    np.testing.assert_allclose(run.samples[:, 1], 1.0, rtol=0, atol=2e-15)
+
+
+def test_no_event_of_a_step_that_is_cut():
+    """A run to t has the events of a longer one before t, and no other."""
+    parameters, *angles = random_runs(200, 5)
+    ends = np.random.default_rng(6).uniform(1.0, 20.0, 200)
+    long = run_ensemble(parameters, *angles, t_end=25.0, log_events=99)
+    short = run_ensemble(parameters, *angles, t_end=ends, log_events=99)
+    # Times that a longer run reaches before this one's end are the same bits.
+    kept = np.where(long.event_times < ends[:, None], long.event_times, np.nan)
+    assert kept.tobytes() == short.event_times.tobytes()
+    assert np.isfinite(kept).sum() > 500
+
+
+@pytest.mark.parametrize("speed", [0.0, 1e-3, -0.02])
+def test_an_approach_to_stick_in_ever_shorter_slips_moves_on(speed):
+    rng = np.random.default_rng(8)
+    starts = rng.uniform(-0.3, 0.3, (50, 4))
+    params = Parameters(k3=2.0, mu=0.6, belt_speed=speed)
+    run = run_ensemble(params, 1.2, 2.6, t_end=200.0, initial_state=starts, log_events=2000)
+    assert (run.outcome == Outcome.converged).all()
+    assert (run.sticks > 0).all()
+    assert (run.event_kinds[:, -1] == -1).all()
+    y, kinds = run.event_states[..., 1], run.event_kinds
+    landed = (kinds >= 0) & (kinds != EventFlag.separation)
+    assert (y[landed] <= 1.0 + 1e-9).all()
+
+
+def test_the_derivative_of_an_event_time():
+    """dt/dκ of the first separation, t = arccos(1 − (1 + κ)/κ)/√(1 + κ), through the event."""
+    kappa, step = 2.0, 1e-4
+    found = run_ensemble(
+        {"k3": kappa + step * np.array([-2.0, -1.0, 1.0, 2.0])}, t_end=5.0, log_events=1, **IDENTITY
+    ).event_times[:, 0]
+    slope = (found[0] - 8.0 * found[1] + 8.0 * found[2] - found[3]) / (12.0 * step)
+    cosine, omega = -1.0 / kappa, np.sqrt(1.0 + kappa)
+    exact = (
+        -(1.0 / kappa**2) / np.sqrt(1.0 - cosine**2) / omega - 0.5 * np.arccos(cosine) / omega**3
+    )
+    assert slope == pytest.approx(exact, rel=1e-10)

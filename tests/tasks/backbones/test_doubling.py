@@ -1,0 +1,148 @@
+"""Branches of doubled period: index at the switch, time integration, first integral, closure."""
+
+import math
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+from squealpipe.laws.contact import unilateral_force
+from squealpipe.laws.springs import geometry, linear_elastic_force, linear_stiffness
+from squealpipe.methods.orbits.orbit_shape import sample
+from squealpipe.methods.orbits.orbits import is_primitive, solve_orbit
+from squealpipe.models.a4 import first_integral_value
+from squealpipe.parameters import Parameters
+from squealpipe.schema import Outcome
+from squealpipe.solvers.a4.system import scaled_system
+from squealpipe.store import load, save
+from squealpipe.tasks.backbones.backbone import backbone
+from squealpipe.tasks.backbones.doubling import doubled_branch
+from squealpipe.tasks.backbones.orbit import periodic_orbit
+
+PI = math.pi
+BASE = Parameters()
+SCENE = (0.3 * PI, 0.9 * PI)
+OTHER = Parameters(k1=1.1, k3=0.8, mu=0.25, mass=2.0, preload=0.5, belt_speed=-100.0)
+"""Other units, unequal springs, the belt the other way: a mirror image leads to a doubling."""
+
+
+@pytest.fixture(scope="module", params=[1, 2])
+def branch(request):
+    return doubled_branch(BASE, *SCENE, mode=1, doubling=request.param)
+
+
+def _after_a_period(params, angles, branch, point):
+    """A4 from the peak over one doubled period, by an independent integrator."""
+    stiffness = linear_stiffness(params, geometry(*angles))
+
+    def field(_, state):
+        x, y, vx, vy = state
+        fx, fy = linear_elastic_force(x, y, stiffness)
+        normal = unilateral_force(y, params)
+        push = params.drag * normal
+        return [vx, vy, (fx + push) / params.mass, (fy + normal) / params.mass]
+
+    start = [float(branch.x_at_peak[point]), float(branch.y_peak[point]), 0.0, 0.0]
+    period = 2.0 * PI / float(branch.omega[point])
+    run = solve_ivp(
+        field, (0.0, period), start, "DOP853", rtol=1e-12, atol=1e-13, max_step=period / 400
+    )
+    energies = first_integral_value(*run.y, params, stiffness)
+    return np.array(start), run, energies
+
+
+def test_the_branch_starts_at_the_doubling(branch):
+    simple = backbone(BASE, *SCENE, mode=1, y_peak_max=6.0)
+    number = branch.attrs["doubling"] - 1
+    assert float(branch.doubling_y_peak) == pytest.approx(
+        float(simple.special_y_peak[number]), rel=1e-12
+    )
+    assert float(branch.doubling_y_peak) == pytest.approx((3.919, 5.820)[number], abs=6e-4)
+    assert float(branch.doubling_omega) == pytest.approx(2.0 * float(branch.omega[0]), rel=1e-14)
+    assert float(branch.y_largest[0]) == pytest.approx(float(branch.doubling_y_peak), rel=1e-12)
+
+
+def test_the_index_is_continuous_at_the_switch(branch):
+    """It starts at (−2)² − 2 = 2 and leaves it with the square of the distance, as ω does."""
+    away = np.hypot(branch.x_at_peak - branch.x_at_peak[0], branch.y_peak - branch.y_peak[0])
+    near = slice(2, 5)  # beyond round-off, before terms of higher order
+    for values in (branch.stability_index, branch.omega):
+        change = np.abs(values - values[0]).values
+        slope = np.polyfit(np.log(away.values[near]), np.log(change[near]), 1)[0]
+        assert slope == pytest.approx(2.0, abs=0.1)
+    assert float(branch.stability_index[0]) == pytest.approx(2.0, abs=1e-12)
+    # one side of the doubling of a stable orbit: stable if it leaves downwards
+    assert np.sign(float(branch.stability_index[4]) - 2.0) == (-1, 1)[branch.attrs["doubling"] - 1]
+
+
+def test_orbits_close_after_the_doubled_period_and_not_before(branch):
+    for point in (4, branch.sizes["point"] // 2, branch.sizes["point"] - 1):
+        start, run, energies = _after_a_period(BASE, SCENE, branch, point)
+        scale = 1.0 + np.abs(start).max()
+        growth = max(1.0, abs(float(branch.stability_index[point])))
+        assert np.abs(run.y[:, -1] - start).max() < 2e-9 * growth * scale
+        half = np.array([np.interp(run.t[-1] / 2, run.t, entry) for entry in run.y])
+        assert np.abs(half - start).max() > 1e-3
+        energy = float(branch.first_integral[point])
+        np.testing.assert_allclose(energies, energy, rtol=2e-10)
+    assert float(branch.residual.max()) < 1e-12
+
+
+def test_no_orbit_of_the_branch_is_the_old_one_run_through_twice(branch):
+    scene = scaled_system(BASE, *SCENE)
+    for point in range(4, branch.sizes["point"], 5):
+        guess = [
+            float(branch.x_at_peak[point]),
+            float(branch.y_peak[point]),
+            PI * scene.frequency / float(branch.omega[point]),
+        ]
+        orbit = solve_orbit(scene.system, np.array(guess))
+        if orbit is None:  # next to a fold of y_peak
+            continue
+        assert is_primitive(scene.system, orbit)
+        ends = sample(scene.system.rows, orbit.point, np.array([0.0, PI]))
+        assert np.abs(ends[0, :2] - ends[1, :2]).max() > 1e-3
+
+
+def test_a_doubling_in_other_units_with_the_belt_the_other_way():
+    """x → −x and V → −V: (α1, α2) becomes (π − α1, π − α2)."""
+    angles = (PI - SCENE[0], PI - SCENE[1])
+    branch = doubled_branch(OTHER, *angles, mode=1, y_peak_max=8.0 * OTHER.preload)
+    assert branch.sizes["point"] > 10
+    at_doubling = periodic_orbit(OTHER, *angles, mode=1, y_peak=float(branch.doubling_y_peak))
+    assert float(at_doubling.stability_index) == pytest.approx(-2.0, abs=1e-9)
+    start, run, energies = _after_a_period(OTHER, angles, branch, branch.sizes["point"] // 2)
+    assert np.abs(run.y[:, -1] - start).max() < 1e-8
+    assert np.ptp(energies) < 1e-9 * np.abs(energies).max()
+
+
+def test_a_branch_that_closes_meets_an_orbit_of_half_its_period():
+    branch = doubled_branch(BASE, 0.2 * PI, 0.7 * PI, mode=1)
+    assert int(branch.end) == Outcome.tongue_end
+    assert float(branch.stability_index[-1]) == pytest.approx(2.0, abs=0.02)
+
+
+def test_without_a_doubling_the_dataset_is_empty_with_its_reason():
+    for options, reason in (
+        ({"doubling": 3}, Outcome.no_doubling),
+        ({"y_peak_max": 3.0}, Outcome.no_doubling),
+    ):
+        empty = doubled_branch(BASE, *SCENE, mode=1, **options)
+        assert empty.sizes["point"] == 0
+        assert int(empty.end) == reason
+        assert np.isnan(float(empty.doubling_omega))
+    singular = doubled_branch(BASE, 0.4 * PI, 0.6 * PI, mode=1)
+    assert int(singular.end) == Outcome.singular_static_state
+
+
+@pytest.mark.parametrize("wrong", [{"doubling": 0}, {"doubling": 1.0}, {"mode": 3}])
+def test_wrong_arguments_are_named(wrong):
+    with pytest.raises(ValueError, match=next(iter(wrong))):
+        doubled_branch(BASE, *SCENE, **{"mode": 1, **wrong})
+
+
+def test_branch_without_a_doubling_tells_so_and_survives_the_store(tmp_path):
+    empty = doubled_branch(BASE, 2.0, 2.6, mode=1, doubling=2, y_peak_max=1.2)
+    assert empty.end == Outcome.no_doubling
+    assert "no_doubling" in empty.end.attrs["flag_meanings"].split()
+    assert load(save(empty, tmp_path / "empty.nc")).equals(empty)

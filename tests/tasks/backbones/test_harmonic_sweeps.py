@@ -1,0 +1,85 @@
+"""Sweeps of harmonic balance: rates of convergence, and what the paper's form finds."""
+
+import math
+
+import numpy as np
+import pytest
+
+from squealpipe.parameters import Parameters
+from squealpipe.schema import Outcome
+from squealpipe.schema.backbones import Form
+from squealpipe.tasks.backbones.a1_beside_a4 import a1_beside_a4
+from squealpipe.tasks.backbones.backbone import contact_losing_branches, named_scenes
+from squealpipe.tasks.backbones.harmonic_sweeps import (
+    compare_harmonic_forms,
+    sweep_harmonic_balance,
+)
+
+PI = math.pi
+BRANCHES = {"F10 mode 2": (0.5 * PI, PI, 2), "coupled mode 1": (0.3 * PI, 0.9 * PI, 1)}
+
+
+@pytest.fixture(scope="module")
+def sweep():
+    return sweep_harmonic_balance(
+        Parameters(),
+        BRANCHES,
+        peaks=(1.0, 1.25, 2.0),
+        harmonics=(4, 8, 16, 32, 64),
+        samples=(66, 512, 4096),
+        sigmas=(10.0, 100.0, 1000.0),
+        n_harmonics=32,
+    )
+
+
+def test_rates_of_convergence(sweep):
+    """ω like N_h^-3.6 … -4.4, the waveform like N_h^-3, smoothing like σ^-2 (-1.5 at grazing)."""
+    beyond = sweep.sel(peak=[1.25, 2.0])
+    assert ((beyond.omega_rate > 3.2) & (beyond.omega_rate < 4.8)).all()
+    assert ((beyond.waveform_rate > 2.7) & (beyond.waveform_rate < 3.3)).all()
+    np.testing.assert_allclose(beyond.sigma_rate, 2.0, atol=0.1)
+    np.testing.assert_allclose(sweep.sigma_rate.sel(peak=1.0), 1.5, atol=0.1)
+
+
+def test_closed_form_integrals_remove_the_sampling_error(sweep):
+    """With few samples aliasing dominates: a hundred times the truncation error of N_h = 32."""
+    sampled = sweep.omega_error_samples.sel(peak=2.0, samples=66)
+    closed = sweep.omega_error.sel(peak=2.0, harmonics=32)
+    assert (sampled > 100 * closed).all()
+
+
+def test_the_papers_form_mended_and_as_printed():
+    forms = compare_harmonic_forms(Parameters(), BRANCHES)
+    assert (forms.outcome == Outcome.converged).all()
+    mended, printed = (forms.omega.sel(form=int(form)) for form in (Form.mended, Form.as_printed))
+    np.testing.assert_allclose(mended, forms.omega_exact, rtol=5e-3)
+    assert float(printed.sel(scene="F10 mode 2")) == pytest.approx(1.0, abs=1e-6)
+    assert float(forms.omega_exact.sel(scene="F10 mode 2")) == pytest.approx(1.2341, abs=5e-5)
+    rank = forms.fourier_rank.values
+    assert rank[0] == int(forms.fourier_columns) - 1
+    assert (rank[1:] == int(forms.fourier_columns)).all()
+
+
+def test_a1_stays_beside_a4_the_longer_the_springs():
+    """The geometry's part of the frequency shift falls like the inverse of the length."""
+    beside = a1_beside_a4(
+        Parameters(), {"F10 mode 2": BRANCHES["F10 mode 2"]}, peak=2.0, length_ratios=(50, 500)
+    )
+    shifts = np.abs(beside.omega_a1 / beside.omega - 1.0).values[0]
+    assert shifts[1] < 0.2 * shifts[0] < 2e-3
+    apart = np.abs(beside.y_a1 - beside.y_a4).max("period").values[0]
+    assert apart[1] < 0.2 * apart[0]
+
+
+def test_scenes_by_name():
+    scenes = named_scenes({"coupled": (0.3, 0.9)})
+    assert list(scenes) == ["F10", "F11", "F12", "F13", "coupled"]
+    assert scenes["coupled"] == pytest.approx((0.3 * PI, 0.9 * PI))
+    branches = contact_losing_branches({"coupled": (0.3, 0.9)})
+    assert branches["F13 mode 1"][2] == 1
+    assert {"coupled mode 1", "coupled mode 2"} <= set(branches)
+
+
+def test_a_scene_without_orbits_is_refused_with_its_reason():
+    with pytest.raises(ValueError, match="singular_static_state"):
+        compare_harmonic_forms(Parameters(), {"whirl": (0.4 * PI, 0.6 * PI, 1)})

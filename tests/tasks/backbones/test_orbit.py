@@ -1,0 +1,224 @@
+"""Exact periodic motions against values known to 14 digits, 30-digit arithmetic, independent
+integration, closed forms and symmetries."""
+
+import math
+
+import mpmath
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+from squealpipe.laws.springs import geometry, linear_stiffness
+from squealpipe.models.a4 import first_integral_value
+from squealpipe.parameters import Parameters
+from squealpipe.schema import Outcome
+from squealpipe.tasks.backbones.orbit import periodic_orbit
+
+PI = math.pi
+BASE = Parameters()
+
+KNOWN = [
+    (0.5, 1.0, 2, 2.0, 1.23408516277258),
+    (1.0, 0.5, 2, 2.0, 1.23408516277258),
+    (0.75, 0.75, 2, 2.0, 1.23408516277258),
+    (5 / 6, 5 / 6, 1, 2.0, 0.98203370531224),
+    (0.3, 0.9, 1, 3.0, 0.58624446384709),
+    (0.3, 0.9, 2, 3.0, 1.41139033666343),
+    (0.2, 0.7, 1, 6.0, 0.36074585418702),
+]
+"""Computed independently of this package, to 14 digits: angles over π, mode, y_peak, ω."""
+
+
+def _orbit(alpha1, alpha2, mode, y_peak, params=BASE):
+    return periodic_orbit(params, alpha1 * PI, alpha2 * PI, mode=mode, y_peak=y_peak)
+
+
+@pytest.mark.parametrize(("alpha1", "alpha2", "mode", "y_peak", "omega"), KNOWN)
+def test_known_orbits_are_found_from_cold(alpha1, alpha2, mode, y_peak, omega):
+    found = _orbit(alpha1, alpha2, mode, y_peak)
+    assert int(found.outcome) == Outcome.converged
+    assert float(found.omega) == pytest.approx(omega, abs=1.2e-14)
+    assert float(found.residual) <= 1e-14
+
+
+@pytest.mark.parametrize(("alpha1", "alpha2", "mode", "y_peak", "omega"), KNOWN[3:])
+def test_omega_agrees_with_thirty_digits(alpha1, alpha2, mode, y_peak, omega):
+    """Newton's method on x0, the switching times and T/2 in 30 digits, from our answer."""
+    found = _orbit(alpha1, alpha2, mode, y_peak)
+    precise = _in_thirty_digits(alpha1, alpha2, y_peak, found)
+    assert abs(float(found.omega) - precise) <= 1e-13
+
+
+def _in_thirty_digits(alpha1, alpha2, y_peak, found):
+    with mpmath.workdps(30):
+        a1, a2 = (mpmath.mpf(float(alpha)) * PI for alpha in (alpha1, alpha2))
+        c1, s1, c2, s2 = mpmath.cos(a1), mpmath.sin(a1), mpmath.cos(a2), mpmath.sin(a2)
+        k11, k12, k22 = c1**2 + c2**2, c1 * s1 - c2 * s2, s1**2 + s2**2
+        if abs(k12) < 1e-14:
+            k12 = mpmath.mpf(0)
+        k3, mu = mpmath.mpf("0.75"), mpmath.mpf("0.3")
+        states = [
+            (mpmath.matrix([[k11, k12], [k12, k22]]), mpmath.matrix([0, 0])),
+            (mpmath.matrix([[k11, k12 + mu * k3], [k12, k22 + k3]]), mpmath.matrix([mu * k3, k3])),
+        ]
+
+        def advance(u, v, state, time):
+            matrix, load = states[state]
+            values, vectors = mpmath.eig(matrix)
+            inverse = vectors**-1
+            rest = matrix**-1 * load
+            q, p = inverse * (u - rest), inverse * v
+            w = [mpmath.sqrt(value) for value in values]
+            qt = [
+                q[i] * mpmath.cos(w[i] * time) + p[i] * mpmath.sin(w[i] * time) / w[i]
+                for i in (0, 1)
+            ]
+            pt = [
+                p[i] * mpmath.cos(w[i] * time) - q[i] * w[i] * mpmath.sin(w[i] * time)
+                for i in (0, 1)
+            ]
+            return rest + vectors * mpmath.matrix(qt), vectors * mpmath.matrix(pt)
+
+        def conditions(x0, *times):
+            u, v, before, state = mpmath.matrix([x0, y_peak]), mpmath.matrix([0, 0]), 0, 0
+            values = []
+            for time in times[:-1]:
+                u, v = advance(u, v, state, time - before)
+                values.append(mpmath.re(u[1]) - 1)
+                before, state = time, 1 - state
+            u, v = advance(u, v, state, times[-1] - before)
+            return [*values, mpmath.re(v[0]), mpmath.re(v[1])]
+
+        start = [
+            float(found.x_at_peak),
+            *map(float, found.switching_times),
+            PI / float(found.omega),
+        ]
+        solution = mpmath.findroot(conditions, start, tol=1e-50, maxsteps=30)
+        return float(mpmath.pi / solution[len(start) - 1] - float(found.omega)) + float(found.omega)
+
+
+@pytest.mark.parametrize(("alpha1", "alpha2", "mode", "y_peak", "omega"), KNOWN)
+def test_an_independent_integrator_closes_the_orbit(alpha1, alpha2, mode, y_peak, omega):
+    stiffness = linear_stiffness(BASE, geometry(alpha1 * PI, alpha2 * PI))
+
+    def field(_, u):
+        normal = BASE.k3 * max(1.0 - u[1], 0.0)
+        return [
+            u[2],
+            u[3],
+            -stiffness.k11 * u[0] - stiffness.k12 * u[1] + BASE.mu * normal,
+            -stiffness.k12 * u[0] - stiffness.k22 * u[1] + normal,
+        ]
+
+    found = _orbit(alpha1, alpha2, mode, y_peak)
+    start = [float(found.x_at_peak), y_peak, 0.0, 0.0]
+    period = 2 * PI / float(found.omega)
+    run = solve_ivp(
+        field,
+        (0.0, period),
+        start,
+        method="DOP853",
+        rtol=1e-12,
+        atol=1e-13,
+        max_step=period / 800,
+        dense_output=True,
+    )
+    np.testing.assert_allclose(run.y[:, -1], start, atol=2e-8)
+    np.testing.assert_allclose(run.sol(period / 2)[2:], 0.0, atol=2e-8)
+    energy = first_integral_value(*run.y, BASE, stiffness)
+    assert np.ptp(energy) < 1e-8
+    assert float(found.x_amplitude) == pytest.approx(0.5 * np.ptp(run.y[0]), rel=1e-4)
+    assert float(found.y_amplitude) == pytest.approx(0.5 * np.ptp(run.y[1]), rel=1e-4)
+    assert float(found.largest_speed) == pytest.approx(abs(run.y[2]).max(), rel=1e-3)
+
+
+def test_below_contact_loss_the_orbit_is_the_linear_mode():
+    found = _orbit(0.3, 0.9, 1, 0.9)
+    assert int(found.outcome) == Outcome.linear_mode
+    assert found.sizes["switch"] == 0
+    just_beyond = _orbit(0.3, 0.9, 1, 1.0 + 1e-9)
+    assert float(just_beyond.omega) == pytest.approx(float(found.omega), abs=1e-8)
+
+
+def test_a_decoupled_y_motion_tends_to_the_bilinear_oscillator():
+    """1/ω = (1/ω_contact + 1/ω_free)/2 in the limit of large amplitudes, from above like 1/y."""
+    limit = 2.0 / (1 / math.sqrt(1.75) + 1.0)
+    gaps = [float(_orbit(0.5, 1.0, 2, peak).omega) - limit for peak in (50.0, 100.0, 200.0)]
+    assert gaps[2] < 2e-3
+    np.testing.assert_allclose(np.divide(gaps[:-1], gaps[1:]), 2.0, rtol=0.03)
+
+
+def test_a_coupled_motion_does_not_have_the_bilinear_limit():
+    """Quoted in the field as if general: at (0.3π, 0.9π), mode 2, it is 1.420 against 1.385."""
+    scene = geometry(0.3 * PI, 0.9 * PI)
+    free = math.sqrt(np.linalg.eigvalsh(_matrix(linear_stiffness(BASE, scene)))[1])
+    contact = float(_orbit(0.3, 0.9, 2, 0.9).omega)
+    bilinear = 2.0 / (1.0 / contact + 1.0 / free)
+    assert abs(float(_orbit(0.3, 0.9, 2, 30.0).omega) - bilinear) > 0.02
+
+
+def _matrix(stiffness):
+    return np.array([[stiffness.k11, stiffness.k12], [stiffness.k12, stiffness.k22]])
+
+
+def test_mirror_image_moves_alike():
+    """(α1, α2) and (π − α2, π − α1) are one system where the springs are equal."""
+    one, other = _orbit(0.3, 0.9, 1, 2.5), _orbit(0.1, 0.7, 1, 2.5)
+    assert float(one.omega) == pytest.approx(float(other.omega), rel=1e-13)
+    assert float(one.stability_index) == pytest.approx(float(other.stability_index), abs=1e-10)
+
+
+def test_units_scale():
+    """Millimetres, tonnes and megahertz: the same motion in other numbers."""
+    scaled = Parameters(mass=2e-3, k1=8e5, k2=8e5, k3=6e5, preload=1e-4, length1=5e-4, length2=5e-4)
+    found = _orbit(0.3, 0.9, 1, 3e-4, scaled)
+    reference = _orbit(0.3, 0.9, 1, 3.0)
+    unit = math.sqrt(8e5 / 2e-3)
+    assert float(found.omega) == pytest.approx(unit * float(reference.omega), rel=1e-12)
+    assert float(found.x_at_peak) == pytest.approx(1e-4 * float(reference.x_at_peak), rel=1e-10)
+    assert float(found.residual) <= 1e-14
+
+
+@pytest.mark.parametrize(
+    ("alpha1", "alpha2", "mode", "outcome"),
+    [
+        (0.5, 1.0, 1, Outcome.isolated_mode),
+        (5 / 6, 5 / 6, 2, Outcome.isolated_mode),
+        (0.4, 0.6, 1, Outcome.singular_static_state),
+        (0.75, 0.85, 1, Outcome.complex_pair),
+        (0.44, 0.57, 1, Outcome.divergence),
+    ],
+)
+def test_scenes_without_such_a_motion_say_why(alpha1, alpha2, mode, outcome):
+    found = _orbit(alpha1, alpha2, mode, 2.0)
+    assert Outcome(int(found.outcome)) == outcome
+    assert math.isnan(float(found.x_at_peak))
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [
+        {"mode": 3},
+        {"mode": "first"},
+        {"y_peak": -1.0},
+        {"y_peak": math.nan},
+        {"y_peak": "2"},
+        {"alpha1": math.inf},
+        {"alpha2": "0.4pi"},
+    ],
+)
+def test_arguments_out_of_range_are_named(wrong):
+    name = next(iter(wrong))
+    with pytest.raises(ValueError, match=name):
+        periodic_orbit(BASE, **{"alpha1": 1.0, "alpha2": 2.0, "mode": 1, "y_peak": 2.0, **wrong})
+
+
+def test_a_peak_below_the_equilibrium_is_refused():
+    with pytest.raises(ValueError, match="equilibrium"):
+        _orbit(0.5, 1.0, 2, 0.2)
+
+
+def test_a_slow_belt_breaks_the_assumption_and_says_so():
+    assert int(_orbit(0.3, 0.9, 1, 3.0).sliding_assumption) == 1
+    assert int(_orbit(0.3, 0.9, 1, 3.0, Parameters(belt_speed=0.2)).sliding_assumption) == 0

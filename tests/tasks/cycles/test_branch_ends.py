@@ -1,0 +1,171 @@
+"""Branches of limit cycles: changes of the events, why a branch ends, what is refused."""
+
+import math
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from squealpipe import Parameters, cycle_branch, limit_cycle, simulate
+from squealpipe.methods.limit_cycles.event_flow import Touch, flow
+from squealpipe.methods.limit_cycles.special_points import Label
+from squealpipe.schema import Outcome
+from squealpipe.solvers.a1.flow import A1Flow
+
+PENDULUM = (0.4 * math.pi, 0.6 * math.pi)
+STICKING = Parameters(belt_speed=1.0, damping1=0.02, damping2=0.02, k2=1.2)
+STATE = ("x", "y", "vx", "vy")
+
+
+def start_of(dataset):
+    return np.array([float(dataset[f"{name}_start"]) for name in STATE])
+
+
+@pytest.fixture(scope="module")
+def sticking():
+    return limit_cycle(STICKING, *PENDULUM)
+
+
+@pytest.mark.parametrize(
+    "name", ["mu", "belt_speed", "alpha1", "alpha2", "k3", "preload", "length2", "mass", "damping1"]
+)
+def test_slope_by_a_parameter_agrees_with_differences(name, sticking):
+    state, period = start_of(sticking), float(sticking.period)
+
+    def system(offset):
+        values = {"alpha1": PENDULUM[0], "alpha2": PENDULUM[1], **STICKING.as_dict()}
+        values[name] += offset
+        angles = values.pop("alpha1"), values.pop("alpha2")
+        return A1Flow(Parameters(**values), *angles, follow=name)
+
+    ends = [flow(system(h), state, period, derivative=False).state for h in (1e-5, -1e-5)]
+    differences = (ends[0] - ends[1]) / 2e-5
+    slope = flow(system(0.0), state, period).slope
+    np.testing.assert_allclose(slope, differences, atol=1e-6 * np.abs(differences).max())
+
+
+def located_crossings(branch, parameter):
+    """Points where a crossing of belt speed becomes stick: μs N holds the x-force to round-off."""
+    found = []
+    for point in np.flatnonzero(branch.label == Label.stick_onset):
+        here = branch.isel(point=point)
+        system = A1Flow(STICKING.with_(**{parameter: float(here[parameter])}), *PENDULUM)
+        passage = flow(system, start_of(here), float(here.period), keep=True)
+        excess = abs(system.clearance(Touch.passing, passage))
+        stick = [part for part in passage.segments if system.holds(part.regime)]
+        shortest = min((part.times[-1] - part.times[0] for part in stick), default=np.inf)
+        assert min(excess, shortest) < 1e-7
+        found.append(float(here[parameter]))
+    return found
+
+
+def test_stick_of_no_length_is_an_onset_of_stick(sticking):
+    down = cycle_branch(STICKING, *PENDULUM, parameter="mu", to=0.02, start=sticking)
+    assert down.end == Outcome.converged
+    np.testing.assert_allclose(located_crossings(down, "mu")[1], 0.17793611, atol=1e-8)
+    assert float(down.stick_fraction[-1]) == 0.0
+    up = cycle_branch(STICKING, *PENDULUM, parameter="belt_speed", to=6.0, start=sticking)
+    assert up.end == Outcome.returned
+    np.testing.assert_allclose(located_crossings(up, "belt_speed"), [1.0303, 1.0409], atol=5e-5)
+    fold = int(np.flatnonzero(up.label == Label.fold)[0])
+    multipliers = up.multiplier_real[fold].values
+    assert abs(multipliers[0] - 1.0) < 1e-9
+    assert np.abs(multipliers[1:] - 1.0).min() < 1e-4
+
+
+@pytest.mark.slow
+def test_branch_ends_on_the_cycle_of_half_the_period():
+    params = Parameters(
+        k1=0.8787958456924088, k2=1.3068838111256635, k3=1.266242024044932,
+        mu=0.3036800352221386, belt_speed=-1.885, damping1=0.02744740168299363,
+        damping2=0.026220449336112735, friction_law="exponential",
+        mu_static=0.42515204931099404, friction_speed=0.7,
+    )  # fmt: skip
+    angles = (1.8416983400284646, 1.1767777127079984)
+    first = limit_cycle(params, *angles, guess=(-1.7125886, 9.9902116, 2.3424566, -0.1426892))
+    np.testing.assert_allclose(first.period, 31.6469, atol=1e-3)
+    branch = cycle_branch(params, *angles, parameter="belt_speed", to=-1.0, start=first)
+    assert branch.end == Outcome.tongue_end
+    assert branch.label[-1] == Label.end
+    last = branch.isel(point=-1)
+    system = A1Flow(params.with_(belt_speed=float(last.belt_speed)), *angles)
+    half = flow(system, start_of(last), 0.5 * float(last.period), derivative=False).state
+    assert np.abs(half - start_of(last)).max() < 0.02
+    assert abs(last.multiplier_real[1] - 1.0) < 1e-3
+    parameter = branch.belt_speed.values
+    folds = np.flatnonzero(branch.label == Label.fold)
+    np.testing.assert_allclose(parameter[folds[:2]], [-1.879322, -1.879525], atol=1e-6)
+
+
+def test_a_touch_of_stick_that_would_jump_ends_the_branch():
+    """With a static coefficient of its own, a mass that touches belt speed stays there."""
+    params = Parameters(
+        k1=1.3685895636278969, k2=1.1717696456380882, k3=1.165372514053258,
+        mu=0.4863140547913525, belt_speed=0.17, length2=4.167532071016394,
+        damping1=0.011181702363416656, damping2=0.02593450195002516,
+        mu_static=0.9015819524317354,
+    )  # fmt: skip
+    angles = (0.9903645711198943, 0.2685180420617395)
+    guess = (-0.0007415, 0.5437495, -0.1917294, -0.1816512)
+    branch = cycle_branch(params, *angles, parameter="belt_speed", to=0.27, start=guess)
+    assert branch.end == Outcome.tangency
+    assert branch.label[-1] == Label.end
+    jumps = []
+    for point in (0, -1):
+        place = branch.isel(point=point)
+        faster = params.with_(belt_speed=float(place.belt_speed) + 1e-4)
+        times = float(place.period) * np.arange(20.0, 24.0, 0.01)
+        run = simulate(faster, *angles, t_end=times[-1], times=times, initial_state=start_of(place))
+        jumps.append(abs(float(run.y.max() - place.y_max)))
+    assert jumps[0] < 1e-3
+    assert jumps[1] > 0.05
+
+
+def test_every_end_has_its_label_and_reason(sticking):
+    branch = cycle_branch(STICKING, *PENDULUM, parameter="mu", to=0.02, start=sticking, n_points=7)
+    assert branch.end == Outcome.point_limit
+    assert branch.sizes["point"] <= 7
+    assert branch.label[-1] == Label.end
+    assert float(branch.mu[-1]) > 0.02
+
+
+def test_a_branch_ends_where_the_cycle_shrinks_to_rest():
+    params = Parameters(damping1=0.01, damping2=0.01, mu=0.0)
+    born = cycle_branch(params, 0.22, 0.96, parameter="mu", to=0.9, start="onset", n_points=12)
+    large = born.isel(point=-1)
+    back = cycle_branch(
+        params.with_(mu=float(large.mu)), 0.22, 0.96, parameter="mu", to=0.0,
+        start=tuple(start_of(large)),
+    )  # fmt: skip
+    assert back.end == Outcome.equilibrium
+    np.testing.assert_allclose(back.mu[-1], born.mu[0], rtol=1e-2)
+
+
+@pytest.mark.parametrize(
+    ("given", "named"),
+    [
+        ({"alpha1": math.nan}, "alpha1 holds nan"),
+        ({"alpha1": "x"}, "alpha1 = 'x'"),
+        ({"alpha2": [1.0]}, "alpha2 = "),
+        ({"params": {}}, "params = {}: Parameters"),
+    ],
+)
+def test_both_tasks_name_what_they_cannot_read(given, named):
+    scene = {"params": Parameters(), "alpha1": 1.0, "alpha2": 2.0} | given
+    with pytest.raises(ValueError, match=named):
+        limit_cycle(**scene)
+    with pytest.raises(ValueError, match=named):
+        cycle_branch(**scene, parameter="mu", to=0.5)
+
+
+@pytest.mark.parametrize(
+    ("given", "named"),
+    [
+        ({"start": xr.Dataset()}, "start holds nothing: a dataset of limit_cycle"),
+        ({"start": 3}, "start = 3: four finite numbers"),
+        ({"parameter": "sigma"}, r"parameter = 'sigma' \(A1 does not read it\): one of mass"),
+    ],
+)
+def test_branch_names_what_it_cannot_start_from(given, named):
+    with pytest.raises(ValueError, match=named):
+        cycle_branch(Parameters(), 1.0, 2.0, **({"parameter": "mu", "to": 0.5} | given))

@@ -1,0 +1,234 @@
+"""Limit cycles of A1 and their branches, against published oscillators and differences."""
+
+import math
+
+import numpy as np
+import pytest
+from scipy.integrate import quad
+from scipy.interpolate import CubicSpline
+from scipy.optimize import brentq
+
+from squealpipe import Parameters, cycle_branch, limit_cycle
+from squealpipe.laws.springs import geometry, linear_stiffness
+from squealpipe.methods.limit_cycles.event_flow import flow
+from squealpipe.methods.limit_cycles.special_points import Label
+from squealpipe.schema import Outcome
+from squealpipe.solvers.a1.flow import A1Flow
+
+ANGLES = (0.5 * math.pi, math.pi)
+
+
+def friction_oscillator(belt_speed, reach=1e6):
+    """m = k = 1, c = 0.1, N = 1, exponential law 1 → 0.5 over 0.5, as the limit of A1.
+
+    Spring 2 is the oscillator's; spring 1 holds the mass on the belt. N = 1 to 1/reach.
+    """
+    return Parameters(
+        k1=4.0, k2=1.0, k3=1.0 / reach, preload=reach, length1=reach, length2=reach,
+        mu=0.5, mu_static=1.0, friction_speed=0.5, friction_law="exponential",
+        belt_speed=belt_speed, damping1=0.4, damping2=0.1,
+    )  # fmt: skip
+
+
+def equilibrium(belt_speed):
+    return 0.5 + 0.5 * math.exp(-2.0 * belt_speed)
+
+
+STICK_SLIP = {1.25: (6.353748505, 5.614853916), 0.5: (6.929871535, 5.013270760)}
+UNSTABLE = {1.25: (0.664228586, 0.08019692), 1.55: (1.436881604, 0.35659639)}
+
+
+@pytest.mark.parametrize("speed", STICK_SLIP)
+def test_stick_slip_cycle_of_a_published_oscillator(speed):
+    """The error is that of the limit: it falls with the length of the springs."""
+    errors = []
+    for reach in (1e5, 1e6):
+        cycle = limit_cycle(friction_oscillator(speed, reach), *ANGLES, guess=(1.5, 0.25, speed, 0))
+        assert cycle.outcome == Outcome.converged
+        assert cycle.stable == 1
+        period = float(cycle.period)
+        slip = period * (1.0 - float(cycle.stick_fraction))
+        errors.append(np.abs(np.array([period, slip]) - STICK_SLIP[speed]))
+    assert errors[1].max() < 5e-6
+    np.testing.assert_allclose(errors[0] / errors[1], 10.0, rtol=0.02)
+    assert np.abs(cycle.multiplier_real).min() < 1e-9, "stick forgets one direction"
+
+
+@pytest.mark.parametrize("speed", UNSTABLE)
+def test_unstable_cycle_bounds_the_published_basin(speed):
+    amplitude, share = UNSTABLE[speed]
+    centre = equilibrium(speed)
+    cycle = limit_cycle(
+        friction_oscillator(speed), *ANGLES, guess=(centre + amplitude, 0.25, 0.0, 0.0)
+    )
+    assert cycle.outcome == Outcome.converged
+    assert cycle.stable == 0
+    assert abs(float(cycle.x_max) - centre - amplitude) < 2e-6
+    speed_at = CubicSpline(cycle.time, cycle.vx_path)
+    turns = speed_at.roots(extrapolate=False)
+    begin = next(t for t in turns if speed_at(t, 1) > 0.0)
+    end = next((t for t in turns if t > begin), None) or turns[0] + float(cycle.period)
+
+    def squared(time):
+        return float(speed_at(time % float(cycle.period))) ** 2
+
+    area = quad(squared, begin, end, epsabs=1e-11, limit=200)[0]
+    assert abs(area / 8.0 - share) < 1e-6
+
+
+@pytest.mark.parametrize("wanted", [4, pytest.param(100, marks=pytest.mark.slow)])
+def test_trivial_multiplier_and_differences_of_the_return_map(wanted):
+    generator = np.random.default_rng(5)
+    checked = 0
+    while checked < wanted:
+        params = Parameters(
+            k2=generator.uniform(0.6, 1.6),
+            length2=generator.uniform(3.0, 8.0),
+            mu=generator.uniform(0.3, 0.7),
+            belt_speed=generator.choice([-1.0, 1.0]) * generator.uniform(0.3, 3.0),
+            damping1=generator.uniform(0.01, 0.05),
+            damping2=generator.uniform(0.01, 0.05),
+            mu_static=generator.uniform(0.7, 0.9),
+        )
+        angles = generator.uniform(0.2, 2.9, 2)
+        cycle = limit_cycle(params, *angles, t_settle=400.0)
+        if cycle.outcome != Outcome.converged:
+            assert np.isnan(cycle.period)
+            continue
+        checked += 1
+        multipliers = cycle.multiplier_real.values + 1j * cycle.multiplier_imag.values
+        assert abs(multipliers[0] - 1.0) < 1e-9
+        system = A1Flow(params, *angles)
+        start = np.array([float(cycle[f"{name}_start"]) for name in ("x", "y", "vx", "vy")])
+        kinds = cycle.event_kind.values.tolist()
+        errors = []
+        for shift in np.array([3e-5, 1e-5, 3e-6, 1e-4]) * (1.0 + np.abs(start).max()):
+            matrix = differences(system, start, float(cycle.period), shift, kinds)
+            found = np.linalg.eigvals(matrix) if np.isfinite(matrix).all() else np.full(4, np.inf)
+            distance = np.abs(found[:, None] - multipliers).min(axis=0)
+            errors.append(distance.max() / max(1.0, np.abs(multipliers).max()))
+            if errors[-1] < 1e-7:
+                break
+        assert min(errors) < 1e-7
+
+
+def differences(system, start, period, shift, kinds):
+    """The return map's derivative to fourth order; NaN where an end has other events."""
+    matrix = np.empty((4, 4))
+    for column in range(4):
+        offset = shift * np.eye(4)[column]
+        passages = [
+            flow(system, start + steps * offset, period, derivative=False)
+            for steps in (2.0, 1.0, -1.0, -2.0)
+        ]
+        if any(passage.event_kinds != kinds for passage in passages):
+            return np.full((4, 4), np.nan)
+        far, near, back, last = (passage.state for passage in passages)
+        matrix[:, column] = (8.0 * (near - back) - (far - last)) / (12.0 * shift)
+    return matrix
+
+
+def test_mirrored_system_has_the_mirrored_cycle():
+    params = Parameters(damping1=0.02, damping2=0.03, belt_speed=1.0, k2=1.1)
+    mirrored = params.with_(k1=1.1, k2=1.0, damping1=0.03, damping2=0.02, belt_speed=-1.0)
+    mirrored = mirrored.with_(length1=params.length2, length2=params.length1)
+    one = limit_cycle(params, 0.4 * math.pi, 0.6 * math.pi)
+    other = limit_cycle(mirrored, 0.6 * math.pi, 0.4 * math.pi)
+    assert one.outcome == other.outcome
+    np.testing.assert_allclose(one.period, other.period, rtol=1e-9)
+    np.testing.assert_allclose([one.x_min, one.x_max], [-other.x_max, -other.x_min], rtol=1e-8)
+    np.testing.assert_allclose(one.multiplier_real, other.multiplier_real, atol=1e-7)
+
+
+def test_without_damping_cycles_come_in_families():
+    cycle = limit_cycle(Parameters(), 5 * math.pi / 6, 5 * math.pi / 6)
+    assert cycle.outcome == Outcome.family_member
+    assert cycle.stable == 0
+    assert cycle.residual < 1e-9
+
+
+def test_a_settled_state_of_rest_is_no_cycle():
+    params = Parameters(damping1=0.3, damping2=0.3)
+    cycle = limit_cycle(params, 0.75 * math.pi, 0.75 * math.pi)
+    assert cycle.outcome == Outcome.equilibrium
+    assert np.isnan(cycle.period)
+
+
+def test_branch_turns_where_the_unstable_cycle_meets_the_stick_line():
+    start = (equilibrium(1.25) + 0.664, 0.25, 0.0, 0.0)
+    branch = cycle_branch(
+        friction_oscillator(1.25), *ANGLES, parameter="belt_speed", to=1.9, start=start
+    )
+    assert branch.end == Outcome.returned
+    corner = int(np.flatnonzero(branch.label == Label.stick_onset)[0])
+    # from an independent integration of the oscillator: its cycle just reaches the belt's speed
+    assert abs(float(branch.belt_speed[corner]) - 1.8366) < 1e-4
+    assert (branch.stable[:corner] == 0).all()
+    assert (branch.stable[corner + 1 :] == 1).all()
+    assert (branch.stick_fraction[corner + 2 :] > 0.0).all()
+    np.testing.assert_allclose(branch.period[-1], STICK_SLIP[1.25][0], atol=1e-5)
+
+
+def test_branch_goes_round_a_fold_and_labels_it():
+    params = Parameters(damping1=0.02, damping2=0.02, belt_speed=1.0)
+    angles = (0.4 * math.pi, 0.6 * math.pi)
+    branch = cycle_branch(
+        params, *angles, parameter="mu", to=0.05, start=limit_cycle(params, *angles)
+    )
+    fold = int(np.flatnonzero(branch.label == Label.fold)[0])
+    assert float(branch.mu[fold]) == float(branch.mu.min())
+    nontrivial = branch.multiplier_real[fold, 1:].values
+    assert np.abs(nontrivial - 1.0).min() < 1e-3
+    stable = branch.stable.values
+    assert stable[: fold - 1].all()
+    assert not stable[fold + 1 :].any()
+
+
+def test_grazing_points_just_touch():
+    params = Parameters(damping1=0.01, damping2=0.01, mu=0.0)
+    branch = cycle_branch(params, 0.22, 0.96, parameter="mu", to=0.9, start="onset")
+    assert branch.end == Outcome.converged
+    grazing = branch.isel(point=np.flatnonzero(branch.label == Label.grazing))
+    assert grazing.sizes["point"] > 0
+    assert float(grazing.least_contact_force[0]) < 1e-9 * params.k3 * params.preload
+
+
+def test_branch_is_born_at_the_flutter_onset_of_long_springs():
+    params = Parameters(damping1=0.01, damping2=0.02, mu=0.0, length1=1e4, length2=1e4, k2=1.1)
+    angles = (0.22, 0.96)
+
+    def growth(mu):
+        spring = linear_stiffness(params, geometry(*angles))
+        dashpot = linear_stiffness(params.with_(k1=0.01, k2=0.02), geometry(*angles))
+        stiffness = [
+            [spring.k11, spring.k12 + mu * params.k3],
+            [spring.k12, spring.k22 + params.k3],
+        ]
+        damping = [[dashpot.k11, dashpot.k12], [dashpot.k12, dashpot.k22]]
+        matrix = np.block(
+            [[np.zeros((2, 2)), np.eye(2)], [-np.array(stiffness), -np.array(damping)]]
+        )
+        return np.linalg.eigvals(matrix).real.max()
+
+    branch = cycle_branch(params, *angles, parameter="mu", to=0.9, start="onset", n_points=3)
+    onset = brentq(growth, 0.05, 0.9)
+    np.testing.assert_allclose(branch.mu[0], onset, rtol=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("change", "named"),
+    [
+        ({"parameter": "gamma"}, "parameter = 'gamma'"),
+        ({"parameter": "friction_law"}, "parameter = 'friction_law'"),
+        ({"to": 0.3}, "to = 0.3"),
+        ({"to": math.nan}, "to = nan"),
+        ({"to": -1.0}, "mu = -1.0"),
+        ({"n_points": 1}, "n_points = 1"),
+        ({"start": "flutter"}, "start = 'flutter'"),
+        ({"start": (1.0, 2.0)}, "start = "),
+    ],
+)
+def test_branch_refuses_what_it_cannot_do(change, named):
+    given = {"parameter": "mu", "to": 0.5, "start": (0.0, 0.0, 0.0, 0.0)} | change
+    with pytest.raises(ValueError, match=named.replace("(", r"\(")):
+        cycle_branch(Parameters(), 1.0, 2.0, **given)

@@ -1,0 +1,112 @@
+"""What the levels take for granted, against closed forms, bounds and each other."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from squealpipe.parameters import SCENES, Parameters
+from squealpipe.tasks.dynamics.assumptions import LEVELS, NEEDS, check_assumptions, linear_pull_map
+from squealpipe.tasks.dynamics.runs import simulate
+
+DECOUPLED = ("F2a", "F2b", "F2c")
+"""Scenes whose spring stiffness is k times the identity."""
+
+
+@pytest.fixture(scope="module")
+def table() -> xr.Dataset:
+    return check_assumptions(Parameters())
+
+
+def measure(table: xr.Dataset, level: str, scene: str, assumption: str) -> float:
+    return float(table.measure.sel(level=level, scene=scene, assumption=assumption))
+
+
+@pytest.mark.parametrize("scene", DECOUPLED)
+@pytest.mark.parametrize("level", ["A3", "A4"])
+def test_lowest_force_of_the_decoupled_scenes_is_the_closed_form(
+    table: xr.Dataset, level: str, scene: str
+) -> None:
+    kappa = Parameters().kappa
+    lowest = measure(table, level, scene, "contact is kept")
+    assert lowest == pytest.approx((1 - kappa) / (1 + kappa), abs=1e-3)
+    assert bool(table.held.sel(level=level, scene=scene, assumption="contact is kept"))
+
+
+def test_the_linear_contact_pulls_where_the_real_one_lets_go(table: xr.Dataset) -> None:
+    lowest = table.lowest_contact_force
+    for scene in ("F2d", "F3", "F4", "F5a", "F13"):
+        assert float(lowest.sel(level="A3", scene=scene)) < 0
+        assert float(lowest.sel(level="A1", scene=scene)) == 0
+        assert float(lowest.sel(level="A1-no-separation", scene=scene)) < 0
+
+
+def test_without_separation_nothing_changes_where_contact_is_kept(table: xr.Dataset) -> None:
+    for name in ("largest_x", "largest_y", "lowest_contact_force"):
+        pair = table[name].sel(scene=list(DECOUPLED), level=["A1", "A1-no-separation"])
+        np.testing.assert_allclose(pair[0], pair[1], rtol=1e-9)
+
+
+def test_sliding_state_is_the_force_balance_along_the_belt(table: xr.Dataset) -> None:
+    """At F2a K11 = k and K12 = 0: x = μ k3 l_pre/k, and the reaction is the actuation."""
+    p = Parameters()
+    row = table.sel(level="A2", scene="F2a")
+    assert float(row.largest_x) == pytest.approx(p.mu * p.k3 * p.preload / p.k1, rel=1e-12)
+    assert float(row.peak_contact_force) == pytest.approx(1.0, rel=1e-12)
+
+
+def test_turn_of_a_spring_is_that_of_the_motion(table: xr.Dataset) -> None:
+    """At F5a both springs lie along x, so the largest turn follows from the highest point."""
+    p, scene = Parameters(), SCENES["F5a"]
+    run = simulate(p, scene.alpha1, scene.alpha2, t_end=scene.t_end)
+    turns = [np.abs(np.arctan2(run.y, p.length1 + side * run.x)).max() for side in (-1, 1)]
+    assert measure(table, "A1", "F5a", "angles are constant") == pytest.approx(
+        float(max(turns)), rel=1e-9
+    )
+
+
+def test_longer_springs_turn_less_and_are_more_linear() -> None:
+    short, long = (
+        check_assumptions(Parameters(length1=length, length2=length), [SCENES["F2a"]])
+        for length in (5.0, 500.0)
+    )
+    for name in ("angles are constant", "springs are linear"):
+        small, large = (measure(table, "A1", "F2a", name) for table in (long, short))
+        assert small < 0.02 * large
+
+
+def test_each_level_needs_what_the_paper_lists(table: xr.Dataset) -> None:
+    assert list(table.level.values) == list(LEVELS)
+    for level in LEVELS:
+        needed = table.assumption.values[table.needed.sel(level=level).values == 1]
+        assert set(needed) == set(NEEDS[level])
+
+
+def test_linear_pull_map_is_the_closed_form_where_x_and_y_are_decoupled() -> None:
+    kappa = Parameters().kappa
+    pull = linear_pull_map(Parameters(), [0.5 * np.pi, np.pi], [0.5 * np.pi, np.pi], t_end=50.0)
+    lowest = pull.lowest_contact_force.values
+    assert lowest[0, 1] == pytest.approx((1 - kappa) / (1 + kappa), abs=1e-3)
+    assert lowest[1, 0] == pytest.approx((1 - kappa) / (1 + kappa), abs=1e-3)
+    # Springs along x: y'' = k3 (l_pre − y)/m, so the force is l_pre k3 cos(√(k3/m) t).
+    assert lowest[1, 1] == pytest.approx(-1.0, abs=1e-3)
+    assert float(pull.pulling_fraction[1, 1]) == pytest.approx(0.5, abs=0.03)
+    assert float(pull.first_pull_time[1, 1]) == pytest.approx(
+        0.5 * np.pi / np.sqrt(Parameters().k3), abs=0.05
+    )
+
+
+def test_units_scale() -> None:
+    """Ten times the length, four times the mass: the same numbers, twice the time."""
+    base, scaled = (
+        Parameters(),
+        Parameters(
+            mass=4.0, preload=10.0, length1=50.0, length2=50.0, belt_speed=500.0, sigma=100.0
+        ),
+    )
+    scenes = [SCENES["F2d"]]
+    first, second = check_assumptions(base, scenes), check_assumptions(scaled, scenes)
+    np.testing.assert_allclose(first.measure, second.measure, rtol=1e-6, atol=1e-9)
+    np.testing.assert_allclose(10 * first.largest_y, second.largest_y, rtol=1e-6)
+    np.testing.assert_allclose(2 * first.t_end, second.t_end, rtol=1e-12)

@@ -1,0 +1,54 @@
+"""The explorer's dataset against the tasks that it collects."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from squealpipe.parameters import Parameters
+from squealpipe.schema import Outcome
+from squealpipe.tasks.backbones.backbone import backbone
+from squealpipe.tasks.dynamics.explorer import explorer_data
+from squealpipe.tasks.dynamics.runs import simulate
+
+ANGLES = np.array([0.5, 5 / 6, 1.0]) * np.pi
+OPTIONS = {"history_time": 20.0, "spectrum_time": 60.0, "samples": 101, "branch_points": 6}
+
+
+@pytest.fixture(scope="module")
+def explorer():
+    return explorer_data(Parameters(), ANGLES, workers=1, **OPTIONS)
+
+
+def test_motion_is_that_of_simulate(explorer):
+    alone = simulate(Parameters(), ANGLES[1], ANGLES[2], t_end=20.0, times=np.linspace(0, 20, 101))
+    for name in ("x", "y", "normalized_contact_force"):
+        np.testing.assert_allclose(explorer[name][1, 2], alone[name], atol=1e-6)
+
+
+def test_spectrum_peaks_at_the_natural_frequency_of_the_closed_form(explorer):
+    spectrum = explorer.force_spectrum[0, 2]
+    highest = float(explorer.frequency[int(np.argmax(spectrum.values))])
+    assert highest == pytest.approx(np.sqrt(1.75), abs=np.pi / 60)
+
+
+def test_branches_run_from_first_to_last_point_of_the_backbone(explorer):
+    for k, mode in enumerate((1, 2)):
+        alone = backbone(Parameters(), ANGLES[1], ANGLES[1], mode=mode)
+        shown = explorer.isel(alpha1=1, alpha2=1, mode=k)
+        np.testing.assert_allclose(shown.omega[[0, -1]], alone.omega[[0, -1]], rtol=1e-6)
+        assert int(shown.end) == int(alone.end)
+
+
+def test_a_pair_without_a_mode_says_why(explorer):
+    assert np.isnan(explorer.omega[0, 0]).all()
+    assert (explorer.end[0, 0] == Outcome.rigid_mode).all()
+
+
+def test_processes_change_nothing(explorer):
+    assert explorer.identical(explorer_data(Parameters(), ANGLES, workers=2, **OPTIONS))
+
+
+def test_spectrum_needs_the_longer_time():
+    with pytest.raises(ValueError, match="must be at least history_time"):
+        explorer_data(Parameters(), ANGLES, **{**OPTIONS, "spectrum_time": 1.0})

@@ -1,0 +1,83 @@
+"""The refined map at many parameters: what is inherited is right, or measured to be wrong."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from squealpipe.parameters import Parameters
+from squealpipe.schema import Outcome
+from squealpipe.tasks.dynamics import refinement
+from squealpipe.tasks.dynamics.refinement import refine_validity_map
+from squealpipe.tasks.dynamics.runs import validity_map
+
+OTHERS = {
+    "baseline": Parameters(),
+    "unequal springs": Parameters(k2=1.8, length2=12.0, mu=0.45, k3=0.5),
+    "reversed slow belt": Parameters(k2=0.6, length1=8.0, belt_speed=-0.6, mu=0.2, k3=1.1),
+    "short springs": Parameters(length1=2.6, length2=2.6, mu=0.35, k3=0.4, belt_speed=2.0),
+}
+
+
+def compared(params: Parameters, points: int, coarse: int, t_end: float) -> tuple[int, float]:
+    """(cells that differ from the uniform map, share of cells that were run)."""
+    angles = np.linspace(0.0, np.pi, points)
+    refined = refine_validity_map(params, resolution=points, coarse=coarse, t_end=t_end)
+    uniform = validity_map(params, angles, angles, t_end=t_end)
+    wrong = refined.separates.values != uniform.separates.values
+    ran = refined.computed.values
+    assert not wrong[ran].any()
+    assert (refined.outcome.values[~ran] == Outcome.inherited).all()
+    assert (refined.outcome.values[ran] != Outcome.inherited).all()
+    low, high = refined.inherited_error_interval.values
+    assert low <= wrong[~ran].mean() <= high
+    return int(wrong.sum()), float(ran.mean())
+
+
+@pytest.mark.parametrize("params", OTHERS.values(), ids=OTHERS)
+def test_inherited_cells_are_as_wrong_as_measured(params: Parameters) -> None:
+    wrong, share = compared(params, 121, 16, 100.0)
+    assert wrong <= 2
+    assert share < 0.35
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("params", OTHERS.values(), ids=OTHERS)
+def test_inherited_cells_at_241_points(params: Parameters) -> None:
+    wrong, share = compared(params, 241, 31, 200.0)
+    assert wrong <= 2
+    assert share < 0.2
+
+
+def test_an_island_that_the_sample_finds_is_followed(monkeypatch) -> None:
+    """Neither reserve nor late separation is told: some islands are missed by the grid alone."""
+    refine, samples = refinement.refine_grid, []
+
+    def blind(evaluate, resolution, coarse):
+        def without(rows, columns):
+            lost, late, reserve = evaluate(rows, columns)
+            return lost, np.zeros_like(late), np.full(reserve.shape, np.nan)
+
+        return refine(without, resolution, coarse)
+
+    def counting(*arguments):
+        samples.append(refinement_check(*arguments))
+        return samples[-1]
+
+    refinement_check = refinement._check_inherited
+    monkeypatch.setattr(refinement, "refine_grid", blind)
+    monkeypatch.setattr(refinement, "_check_inherited", counting)
+    monkeypatch.setattr(refinement, "SAMPLE", 2000)
+    params = Parameters(
+        k3=0.48023366024799824, mu=0.1390424912331886, belt_speed=-2.0,
+        length1=22.18325523692714, length2=22.18325523692714,
+    )  # fmt: skip
+    angles = np.linspace(0.0, np.pi, 81)
+    refined = refine_validity_map(params, resolution=81, coarse=6, t_end=200.0)
+    uniform = validity_map(params, angles, angles, t_end=200.0)
+    assert len(samples) == 2
+    missed = samples[0][1]
+    assert missed >= 2
+    left = np.count_nonzero(refined.separates.values != uniform.separates.values)
+    assert left < missed
+    assert samples[1] == (int(refined.inherited_checked), int(refined.inherited_wrong))

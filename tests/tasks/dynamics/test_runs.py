@@ -1,0 +1,209 @@
+"""simulate, validity_map, hammering_map, refine_validity_map as users and rules call them."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from squealpipe.parameters import SCENES, Parameters
+from squealpipe.schema import Outcome
+from squealpipe.schema.dynamics import MotionFlag, RegimeFlag
+from squealpipe.store import load, save
+from squealpipe.tasks.dynamics.hammering import hammering_map
+from squealpipe.tasks.dynamics.refinement import check_refinement, refine_validity_map
+from squealpipe.tasks.dynamics.runs import simulate, validity_map
+from squealpipe.tasks.dynamics.whirl import transient_lifetimes, whirl_sizes
+
+BASELINE = Parameters()
+SLOW = Parameters(belt_speed=0.3)
+ANGLES = np.linspace(0, np.pi, 13)
+
+
+def test_state_at_exactly_the_asked_instants():
+    times = np.array([0.0, 0.1, 1 / 3, 7.0, 20.0])
+    few = simulate(SLOW, 0.7, 2.0, t_end=20.0, times=times)
+    np.testing.assert_array_equal(few.time, times)
+    many = simulate(SLOW, 0.7, 2.0, t_end=20.0, times=np.union1d(times, np.linspace(0, 20, 301)))
+    for name in ("x", "y", "vx", "vy", "normal_force", "regime"):
+        np.testing.assert_array_equal(few[name], many[name].sel(time=times))
+
+
+def test_initial_state_is_given_back():
+    state = (0.1, -0.2, 0.3, 0.4)
+    run = simulate(BASELINE, 0.7, 2.0, t_end=1.0, initial_state=state)
+    assert (run.x[0], run.y[0], run.vx[0], run.vy[0]) == state
+
+
+def test_force_and_regimes_agree():
+    run = simulate(SLOW, 0.35 * np.pi, 0.75 * np.pi, t_end=60.0)
+    free = run.regime.values == RegimeFlag.separated
+    assert 0 < np.count_nonzero(free) < free.size
+    np.testing.assert_array_equal(run.normal_force.values[free], 0.0)
+    np.testing.assert_allclose(
+        run.normal_force.values[~free], 0.75 * (1 - run.y.values[~free]), rtol=1e-12
+    )
+    np.testing.assert_array_equal(run.vx.values[run.regime.values == RegimeFlag.stick], 0.3)
+    assert (run.vx.values[run.regime.values == RegimeFlag.slip_slower] < 0.3).all()
+    assert (run.vx.values[run.regime.values == RegimeFlag.slip_faster] > 0.3).all()
+
+
+def test_more_events_than_the_first_log_holds():
+    run = simulate(SLOW, 0.0, 0.0, t_end=9000.0, times=[0.0])
+    assert run.event_time.size > 1024
+    assert (np.diff(run.event_time) >= 0).all()
+
+
+def test_a_run_without_events():
+    run = simulate(BASELINE, 0.5 * np.pi, np.pi, t_end=20.0)
+    assert run.event_time.size == 0
+    assert run.outcome == Outcome.converged
+
+
+@pytest.mark.parametrize("model", ["A1", "A1-no-separation", "A1-linear-springs", "A4"])
+def test_models_differ_as_they_should(model):
+    run = simulate(BASELINE, 0.9 * np.pi, 0.95 * np.pi, t_end=30.0, model=model)
+    assert run.attrs["model"] == model
+    assert run.outcome == Outcome.converged
+    assert (run.normal_force.values < 0).any() == (model == "A1-no-separation")
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"model": "a1"}, "did you mean 'A1'"),
+        ({"t_end": -1.0}, "t_end"),
+        ({"t_end": float("nan")}, "t_end"),
+        ({"t_end": [1.0, 2.0]}, "one number"),
+        ({"alpha1": "0.4pi"}, "alpha1"),
+        ({"times": [[0.0]]}, "times"),
+        ({"times": [0.0, 99.0]}, "beyond t_end"),
+        ({"initial_state": (0, 0, 0)}, "initial_state"),
+    ],
+)
+def test_refusals(changes, message):
+    arguments = {"alpha1": 1.0, "alpha2": 1.0, "t_end": 10.0, **changes}
+    with pytest.raises(ValueError, match=message):
+        simulate(BASELINE, **arguments)
+
+
+def test_validity_map_agrees_with_single_runs():
+    result = validity_map(BASELINE, ANGLES, ANGLES, t_end=60.0)
+    for i, j in ((0, 0), (3, 5), (6, 2), (12, 7), (5, 11)):
+        run = simulate(BASELINE, ANGLES[i], ANGLES[j], t_end=60.0)
+        lost = run.event_time.values[run.event_kind.values == 0]
+        cell = result.isel(alpha1=i, alpha2=j)
+        assert bool(cell.separates) == bool(lost.size)
+        if lost.size:
+            assert cell.first_separation_time == lost[0]
+            assert np.isnan(cell.response_growth)
+    assert set(np.unique(result.outcome)) == {Outcome.converged, Outcome.separated}
+
+
+def test_hammering_map_agrees_with_single_runs(tmp_path):
+    result = hammering_map(SLOW, ANGLES, ANGLES, t_end=60.0)
+    for i, j in ((0, 0), (3, 9), (6, 2), (12, 7)):
+        run = simulate(SLOW, ANGLES[i], ANGLES[j], t_end=60.0, times=np.linspace(0, 60, 20_001))
+        cell = result.isel(alpha1=i, alpha2=j)
+        kinds = run.event_kind.values
+        assert float(cell.impact_rate) == np.count_nonzero(kinds == 1) / 60.0
+        separated = run.regime.values == RegimeFlag.separated
+        assert float(cell.separated_fraction) == pytest.approx(separated.mean(), abs=2e-3)
+        stuck = run.regime.values == RegimeFlag.stick
+        assert float(cell.stick_fraction) == pytest.approx(stuck.mean(), abs=2e-3)
+        force = run.normalized_contact_force.max()
+        assert float(cell.peak_contact_force) == pytest.approx(float(force), abs=1e-5)
+        distance = np.hypot(run.x, run.y).max()
+        assert float(cell.max_displacement) == pytest.approx(float(distance), abs=1e-5)
+    path = save(result, tmp_path / "map.nc")
+    assert load(path).equals(result)
+
+
+def test_horizon_follows_the_divergence_of_two_runs():
+    """An independent estimate: two runs whose starts differ by the tolerance."""
+    tol, angles = 1e-10, (0.2 * np.pi, 0.8 * np.pi)
+    times = np.linspace(0, 600, 6001)
+    first = simulate(BASELINE, *angles, t_end=600.0, times=times)
+    second = simulate(BASELINE, *angles, t_end=600.0, times=times, initial_state=(tol, 0, 0, 0))
+    apart = np.hypot(first.x - second.x, first.y - second.y)
+    lost = float(times[np.argmax(apart.values > 1e-3)])
+    result = hammering_map(BASELINE, [angles[0]], [angles[1]], t_end=600.0, tol=tol)
+    assert result.outcome.item() == Outcome.beyond_horizon
+    assert float(result.predictability_horizon.item()) == pytest.approx(lost, rel=0.25)
+
+
+def test_refined_map_equals_the_uniform_one():
+    angles = np.linspace(0, np.pi, 121)
+    refined = refine_validity_map(BASELINE, resolution=121, coarse=31, t_end=100.0)
+    uniform = validity_map(BASELINE, angles, angles, t_end=100.0)
+    assert np.mean(refined.separates.values != uniform.separates.values) < 1e-3
+    ran = refined.computed.values
+    assert ran.mean() < 0.4
+    np.testing.assert_array_equal(
+        refined.first_separation_time.values[ran], uniform.first_separation_time.values[ran]
+    )
+    assert (refined.outcome.values[~ran] == Outcome.inherited).all()
+    check = check_refinement(BASELINE, refined, points=(31, 61))
+    assert (check.missed_regions == 0).all()
+    assert check.wrong_share[0] > check.wrong_share[1]
+    with pytest.raises(ValueError, match="nest"):
+        check_refinement(BASELINE, refined, points=(50,))
+
+
+def test_whirl_without_a_law_says_so():
+    result = whirl_sizes(BASELINE, [0.3, 0.5], t_end=300.0)
+    assert result.fit_outcome == Outcome.unresolved
+    assert np.isnan(result.slope)
+
+
+def test_lifetimes_are_the_same_when_belt_speed_is_never_reached():
+    result = transient_lifetimes(BASELINE, [50.0, 200.0], samples=4, shown_samples=4, t_end=8000.0)
+    np.testing.assert_array_equal(result.lifetime[0], result.lifetime[1])
+    np.testing.assert_array_equal(result.lifetime[0], result.shown_lifetime)
+
+
+def test_survival_counts_the_runs_that_have_not_ended():
+    result = transient_lifetimes(BASELINE, [50.0], samples=2, shown_samples=24, t_end=6000.0)
+    lifetimes = result.shown_lifetime.values
+    ended = np.isfinite(lifetimes)
+    assert 0 < ended.sum() < ended.size
+    middle, low, high = result.median_lifetime.values
+    assert middle == np.sort(np.where(ended, lifetimes, np.inf))[11]
+    assert low < middle < high
+    # cut off at one time alone, the estimate is the plain share
+    shares = [(~(lifetimes <= age)).mean() for age in result.survival_time.values]
+    np.testing.assert_allclose(result.survival, shares)
+    exposure = np.where(ended, lifetimes, 6000.0)
+    rates = result.hazard.values * np.diff(
+        np.minimum(exposure[:, None], result.hazard_edges.values), axis=1
+    ).sum(axis=0)
+    np.testing.assert_allclose(rates.sum(), ended.sum())
+
+
+def test_fit_of_the_whirl_tells_its_range_and_the_onset_is_bracketed():
+    speeds = [0.4, 0.7, 2.0, 40.0, 80.0, 160.0]
+    result = whirl_sizes(BASELINE, speeds, t_end=3000.0)
+    np.testing.assert_array_equal(result.fit_range, [40.0, 160.0])
+    line = float(result.offset) + float(result.slope) * np.array(speeds)
+    inside = result.amplitude.values[3:] / line[3:] - 1.0
+    assert float(result.fit_residual) == pytest.approx(np.abs(inside).max())
+    outside = abs(float(result.residual[2]))
+    assert outside > 5 * float(result.fit_residual)
+    low, high = result.onset.values
+    assert 0.4 <= low < high <= 2.0
+    assert high / low < 1.02
+    for speed, whirls in ((low, False), (high, True)):
+        again = whirl_sizes(BASELINE, [speed], t_end=3000.0)
+        assert (int(again.motion[0]) == MotionFlag.whirl) == whirls
+
+
+def test_long_runs_follow_the_direction_of_the_belt():
+    """With unequal springs the belt's direction matters: the runs are those of this belt."""
+    params = BASELINE.with_(belt_speed=-20.0, k2=1.3, length2=6.0)
+    scene = SCENES["F3"]
+    times = np.linspace(80.0, 100.0, 20_001)
+    run = simulate(params, scene.alpha1, scene.alpha2, t_end=100.0, times=times)
+    sizes = whirl_sizes(params, [20.0], t_end=100.0)
+    assert float(sizes.belt_speed[0]) == -20.0
+    np.testing.assert_allclose(sizes.amplitude, np.abs(run.x).max(), rtol=1e-5)
+    other = whirl_sizes(params.with_(belt_speed=20.0), [20.0], t_end=100.0)
+    assert abs(float(other.amplitude[0] / sizes.amplitude[0]) - 1.0) > 0.05

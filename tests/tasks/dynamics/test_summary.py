@@ -1,0 +1,72 @@
+"""Summary of a run against closed forms and against its own events."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from squealpipe.parameters import Parameters
+from squealpipe.schema.dynamics import EventFlag
+from squealpipe.tasks.dynamics.runs import simulate
+from squealpipe.tasks.dynamics.summary import summarize, summary_lines
+
+
+def run(alpha1, alpha2, t_end=200.0, points=4001, **options):
+    times = np.linspace(0, t_end, points)
+    return simulate(Parameters(), alpha1, alpha2, t_end=t_end, times=times, **options)
+
+
+def test_decoupled_y_motion_has_the_frequency_and_force_of_the_closed_form():
+    # A4 with K = diag(k, k): y = κ/(1+κ)(1 − cos √(1+κ) t).
+    kappa = Parameters().kappa
+    summary = summarize(run(np.pi / 2, np.pi, model="A4"))
+    assert float(summary.dominant_frequency[0]) == pytest.approx(np.sqrt(1 + kappa), abs=2e-4)
+    assert float(summary.dominant_amplitude[0]) == pytest.approx(kappa / (1 + kappa), rel=1e-3)
+    assert float(summary.peak_contact_force) == pytest.approx(1.0)
+    assert float(summary.largest_y) == pytest.approx(2 * kappa / (1 + kappa), rel=1e-4)
+    assert np.isnan(summary.first_separation_time)
+    assert float(summary.separated_fraction) == 0.0
+
+
+def test_separation_is_that_of_the_events_and_of_the_samples():
+    motion = run(5 * np.pi / 6, 5 * np.pi / 6)
+    summary = summarize(motion)
+    first = motion.event_time.values[motion.event_kind.values == EventFlag.separation][0]
+    assert float(summary.first_separation_time) == first
+    sampled = float((motion.normalized_contact_force.values <= 0).mean())
+    assert float(summary.separated_fraction) == pytest.approx(sampled, abs=2e-3)
+    returns = np.count_nonzero(motion.event_kind.values == EventFlag.contact)
+    assert float(summary.impact_rate) == returns / 200.0
+
+
+def test_slow_belt_sticks():
+    params = Parameters(belt_speed=0.05)
+    times = np.linspace(0, 50, 2001)
+    motion = simulate(params, 0.5 * np.pi, np.pi, t_end=50.0, times=times)
+    share = float(summarize(motion).stick_fraction)
+    assert share == pytest.approx(float((motion.regime == 2).mean()), abs=2e-3)
+    assert share > 0.1
+
+
+def test_words_tell_of_contact_kept_and_of_separation():
+    kept = run(np.pi / 2, np.pi, t_end=50.0)
+    assert "contact is kept" in "\n".join(summary_lines(kept, summarize(kept)))
+    lost = run(5 * np.pi / 6, 5 * np.pi / 6, t_end=50.0)
+    assert "separated 5" in "\n".join(summary_lines(lost, summarize(lost)))
+
+
+def test_too_few_or_uneven_samples_are_refused():
+    with pytest.raises(ValueError, match="more samples"):
+        summarize(run(1.0, 2.0, t_end=10.0, points=8))
+    uneven = simulate(Parameters(), 1.0, 2.0, t_end=9.0, times=np.linspace(0, 3, 40) ** 2)
+    with pytest.raises(ValueError, match="not uniform"):
+        summarize(uneven)
+
+
+def test_a_run_that_starts_in_the_air_is_separated_from_its_start():
+    motion = run(np.pi / 2, np.pi, t_end=3.0, initial_state=(0.0, 2.0, 0.0, 0.0))
+    landing = float(motion.event_time[0])
+    assert int(motion.event_kind[0]) == EventFlag.contact
+    sampled = float((motion.normalized_contact_force.values <= 0).mean())
+    assert float(summarize(motion).separated_fraction) == pytest.approx(sampled, abs=2e-3)
+    assert float(summarize(motion).separated_fraction) >= landing / 3.0

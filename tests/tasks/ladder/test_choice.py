@@ -1,0 +1,161 @@
+"""choose_model against A1 itself: right, cheap, and true to its own checks."""
+
+import numpy as np
+import pytest
+
+from squealpipe.parameters import Parameters
+from squealpipe.schema.ladder import QUESTIONS, Level
+from squealpipe.solvers.a1.ensemble import run_ensemble
+from squealpipe.tasks.ladder.answers import answer_of, dominant_frequency, sample_times
+from squealpipe.tasks.ladder.choice import choose_model, choose_models
+
+CELLS, HORIZON, TOLERANCE = 500, 200.0, 0.05
+
+
+def random_cells(seed: int, count: int = CELLS) -> tuple[np.ndarray, np.ndarray]:
+    alpha1, alpha2 = np.random.default_rng(seed).uniform(0.0, np.pi, (2, count))
+    return alpha1, alpha2
+
+
+def judged(params: Parameters, question: str, seed: int) -> tuple[np.ndarray, float]:
+    """(whether each cell is within tolerance of A1, time integrated over that of always A1)."""
+    cells = random_cells(seed)
+    times = sample_times(params, HORIZON)
+    always = run_ensemble(
+        params, *cells, t_end=HORIZON, times=times if question == "frequency" else None,
+        stop_at_first_separation=question == "contact_lost",
+    )  # fmt: skip
+    truth = answer_of(always, question, times)
+    chosen = choose_models(params, *cells, question, TOLERANCE, t_end=HORIZON)
+    right = (
+        chosen.value == truth
+        if question == "contact_lost"
+        else np.abs(chosen.value / truth - 1.0) <= TOLERANCE
+    )
+    return right, float(chosen.integrated.sum() / always.time.sum())
+
+
+@pytest.mark.parametrize("seed", [2021, 6])
+def test_contact_is_always_decided_rightly_at_less_than_half_of_the_cost(seed: int) -> None:
+    right, cost = judged(Parameters(), "contact_lost", seed)
+    assert right.all()
+    assert cost <= 0.45
+
+
+@pytest.mark.parametrize("question", QUESTIONS[1:])
+@pytest.mark.parametrize("length", [5.0, 300.0])
+def test_every_question_is_answered_within_the_tolerance(question: str, length: float) -> None:
+    """What a mass does after losing contact takes all of A1, so no such saving is claimed."""
+    right, cost = judged(Parameters(length1=length, length2=length), question, 3)
+    assert right.mean() >= 0.99
+    assert cost < 0.95
+
+
+@pytest.mark.parametrize("changes", [{}, {"k2": 1.7, "mu": 0.5}])
+def test_peak_force_on_long_springs_mostly_follows_from_the_first_integral(changes) -> None:
+    right, cost = judged(
+        Parameters(length1=300.0, length2=300.0, **changes), "peak_contact_force", 12
+    )
+    assert right.mean() >= 0.99
+    assert cost <= 0.35
+
+
+def test_first_integral_is_named_where_it_answers() -> None:
+    long = Parameters(length1=300.0, length2=300.0)
+    found = choose_model(long, 0.2 * np.pi, 0.6 * np.pi, "peak_contact_force", TOLERANCE)
+    assert found.model == "closed_form"
+    assert found.value == 1.0
+    assert "first integral" in found.reason
+
+
+@pytest.mark.parametrize("speed", [0.05, -0.05])
+def test_a_level_is_never_taken_when_its_assumption_is_broken(speed: float) -> None:
+    """A slow belt is reached by the mass: only A1 may answer."""
+    slow = Parameters(belt_speed=speed)
+    found = choose_models(slow, *random_cells(4, 200), "contact_lost", TOLERANCE, t_end=50.0)
+    outrun = found.motion.fastest() >= abs(speed)
+    assert outrun.any()
+    assert not (found.level[outrun] < Level.a1_short).any()
+
+
+def test_long_springs_need_no_run_where_contact_is_kept() -> None:
+    params = Parameters(length1=1e4, length2=1e4)
+    found = choose_model(params, 0.5 * np.pi, np.pi, "peak_contact_force", 0.01)
+    # K = diag(k, k): y = κ/(1+κ)(1 − cos √(1+κ) t) ≥ 0, so the largest force is the first one
+    assert found.model == "a3_in_contact"
+    assert found.value == pytest.approx(1.0, rel=1e-4)
+    assert found.cost == 0.0
+    assert all(check.passed for check in found.checks)
+
+
+def test_reason_and_checks_tell_why_a_run_was_needed() -> None:
+    found = choose_model(Parameters(), 0.2 * np.pi, 0.8 * np.pi, "max_displacement", 0.05)
+    assert found.model == "a1"
+    assert found.cost == pytest.approx(1.0, rel=0.05)
+    assert not all(check.passed for check in found.checks)
+    assert "assumptions" in found.reason
+
+
+@pytest.mark.parametrize(
+    ("question", "tol", "text"), [("colour", 0.1, "question = 'colour'"), (QUESTIONS[0], 0, "tol")]
+)
+def test_bad_arguments_are_named(question: str, tol: float, text: str) -> None:
+    with pytest.raises(ValueError, match=text):
+        choose_model(Parameters(), 1.0, 1.0, question, tol)
+
+
+def test_dominant_frequency_of_two_tones() -> None:
+    times = np.linspace(0.0, 200.0, 1001)
+    samples = np.cos(1.2345 * times) + 0.4 * np.cos(0.7 * times)
+    assert dominant_frequency(samples, times) == pytest.approx(1.2345, abs=1e-3)
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"damping1": 0.05, "damping2": 0.05},
+        {"friction_law": "exponential", "mu_static": 0.5},
+        {"mu_static": 0.5},
+    ],
+    ids=str,
+)
+@pytest.mark.parametrize("question", QUESTIONS)
+def test_no_cheaper_level_answers_for_other_friction(change, question):
+    """Where a closed form answers for the paper's friction, A1 answers for any other."""
+    cell = np.array([0.5 * np.pi]), np.array([1.0 * np.pi])
+    plain, other = (
+        choose_models(params, *cell, question, 0.2, t_end=200.0, workers=1)
+        for params in (Parameters(), Parameters(**change))
+    )
+    assert plain.level[0] != Level.a1
+    assert other.level[0] == Level.a1
+    assert other.integrated[0] == 200.0
+    first = choose_model(Parameters(**change), 0.5 * np.pi, np.pi, question, 0.2, t_end=4.0)
+    assert not first.checks[0].passed
+
+
+@pytest.mark.parametrize("question", ["frequency", "peak_contact_force", "max_displacement"])
+def test_a_short_run_shows_both_modes_for_any_springs_belt_and_horizon(question):
+    """Against A1 over the whole horizon; a share of it alone was wrong in a fifth of the cells."""
+    generator = np.random.default_rng(20)
+    answered = wrong = 0
+    for horizon in (50.0, 50.0, 200.0, 200.0):
+        params = Parameters(
+            k2=float(np.exp(generator.normal(0.0, 0.3))),
+            k3=float(generator.uniform(0.2, 1.0)),
+            mu=float(generator.uniform(0.05, 0.5)),
+            length2=float(5.0 * np.exp(generator.normal(0.0, 0.2))),
+            belt_speed=float(generator.choice([-1, 1]) * np.exp(generator.uniform(1.0, 5.0))),
+        )
+        alpha1, alpha2 = generator.uniform(0.0, np.pi, (2, 200))
+        found = choose_models(params, alpha1, alpha2, question, 0.05, t_end=horizon, workers=1)
+        times = sample_times(params, horizon)
+        run = run_ensemble(
+            params, alpha1, alpha2, t_end=horizon,
+            times=times if question == "frequency" else None, workers=1,
+        )  # fmt: skip
+        below = found.level != Level.a1
+        answered += below.sum()
+        wrong += (np.abs(found.value / answer_of(run, question, times) - 1.0) > 0.05)[below].sum()
+    assert answered > 50
+    assert wrong <= 0.02 * answered

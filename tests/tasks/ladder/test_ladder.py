@@ -1,0 +1,86 @@
+"""The ladder's levels against one another, and what choosing saves."""
+
+import numpy as np
+import pytest
+
+from squealpipe.parameters import Parameters
+from squealpipe.schema.ladder import QUESTIONS, Level
+from squealpipe.tasks.ladder.ladder import model_ladder
+
+
+@pytest.fixture(scope="module")
+def ladder():
+    return model_ladder(Parameters(), 14, 0.05, t_end=100.0)
+
+
+def test_a1_is_adequate_everywhere_and_errs_nowhere(ladder) -> None:
+    assert not ladder.error.sel(level="a1").any()
+    assert (ladder.cheapest <= Level.a1).all()
+
+
+def test_both_ways_to_solve_a4_agree(ladder) -> None:
+    """Closed-form flow and Taylor integration of the same model; frequency by sampling alike."""
+    for question in ("contact_lost", "frequency"):
+        first, second = (
+            ladder.error.sel(question=question, level=level).values
+            for level in ("a4_exact", "a4_in_time")
+        )
+        assert np.isclose(first, second, rtol=1e-3, atol=1e-6).mean() > 0.97
+
+
+def test_without_stick_a1_is_the_same_when_the_belt_is_never_reached(ladder) -> None:
+    assert float(ladder.error.sel(level="a1_no_stick").max()) < 1e-6
+
+
+@pytest.mark.parametrize("question", QUESTIONS)
+def test_chosen_answers_are_within_the_tolerance(ladder, question: str) -> None:
+    error = ladder.chosen_error.sel(question=question)
+    assert float((error <= ladder.tolerance).mean()) >= 0.97
+
+
+def test_choosing_saves_most_where_contact_is_asked(ladder) -> None:
+    share = (ladder.chosen_time / ladder.always_time).sel(question="contact_lost")
+    assert float(share) == (ladder.chosen_time / ladder.always_time).min()
+    assert float(share) < 0.5
+
+
+def test_a_level_counts_only_where_what_it_drops_mattered(ladder) -> None:
+    """At V = 100 the belt is never reached; at V = 0.3 it is, and stick matters in some cells."""
+    assert not ladder.belt_reached.any()
+    assert not (ladder.cheapest == Level.a1_no_stick).any()
+    slow = model_ladder(Parameters(belt_speed=0.3), 8, 0.05, t_end=40.0)
+    assert slow.belt_reached.any()
+    used = (slow.cheapest == Level.a1_no_stick).any("question")
+    assert not (used & ~slow.belt_reached).any()
+
+
+@pytest.mark.parametrize("speed", [0.4, 50.0])
+def test_a_reversed_belt_and_its_mirror_image_have_the_same_ladder(speed: float) -> None:
+    params = Parameters(k2=1.4, length2=9.0, mu=0.45, belt_speed=speed)
+    image = Parameters(k1=1.4, length1=9.0, mu=0.45, belt_speed=-speed)
+    # both horizons are the same, √(m/k1) is not
+    here = model_ladder(params, 6, 0.05, t_end=60.0)
+    there = model_ladder(image, 6, 0.05, t_end=60.0)
+    for name in ("cheapest", "chosen", "belt_reached"):
+        swapped = there[name].transpose(..., "alpha2", "alpha1").values
+        np.testing.assert_array_equal(here[name].values, swapped, err_msg=name)
+    # sums over the cells in another order
+    np.testing.assert_allclose(here.chosen_time, there.chosen_time, rtol=1e-13)
+
+
+def test_levels_are_told_apart_by_number_and_name() -> None:
+    for told_by in ("label", "colour"):
+        assert len({getattr(level, told_by) for level in Level}) == len(Level)
+    assert list(Level)[-1] == Level.a1
+
+
+def test_extensions_are_refused() -> None:
+    with pytest.raises(ValueError, match="damping1"):
+        model_ladder(Parameters(damping1=0.1), 2, 0.05, t_end=1.0)
+
+
+def test_knowing_the_cheapest_level_in_advance_costs_least(ladder) -> None:
+    assert (ladder.hindsight_time <= 1.01 * ladder.chosen_time).all()
+    runs = [Level(code).share for code in ladder.cheapest.sel(question="frequency").values.ravel()]
+    least = ladder.hindsight_time / ladder.always_time
+    assert float(least.sel(question="frequency")) == pytest.approx(np.mean(runs), rel=1e-2)

@@ -1,0 +1,117 @@
+"""Boundary curves lie where the symbolic model says; areas follow from exact integrals."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+import scipy.integrate
+
+from squealpipe.parameters import Parameters
+from squealpipe.schema.linear import Boundary
+from squealpipe.tasks.linear.boundaries import linear_shares, stability_boundaries
+from squealpipe.tasks.linear.maps import quasi_static_map, stability_map
+from tests import symbols
+
+STIFFNESS = symbols.function(
+    [symbols.STIFFNESS[0, 0], symbols.STIFFNESS[0, 1], symbols.STIFFNESS[1, 1]]
+)
+BASELINE = Parameters()
+UNEQUAL = Parameters(k1=0.9, k2=0.6, k3=1.1, mu=0.7)
+
+
+@pytest.mark.parametrize("params", [BASELINE, UNEQUAL])
+def test_every_point_lies_on_its_curve(params: Parameters) -> None:
+    curves = stability_boundaries(params, points=101)
+    angles = {"alpha1": curves.alpha1.values, "alpha2": curves.alpha2.values}
+    k11, k12, k22 = STIFFNESS(params, **angles)
+    coupled = k12 + params.mu * params.k3
+    functions = {
+        Boundary.flutter: (k11 - k22 - params.k3) ** 2 / 4 + k12 * coupled,
+        Boundary.divergence: k11 * (k22 + params.k3) - k12 * coupled,
+        Boundary.reaction_changes_sign: k11 - params.mu * k12,
+        Boundary.no_coupling: k12,
+    }
+    for kind, values in functions.items():
+        chosen = curves.boundary.values == kind
+        assert chosen.any()
+        np.testing.assert_allclose(values[chosen], 0.0, atol=2e-14)
+
+
+@pytest.mark.parametrize("params", [BASELINE, UNEQUAL])
+def test_curves_are_continuous(params: Parameters) -> None:
+    curves = stability_boundaries(params, points=201)
+    step = np.hypot(np.diff(curves.alpha1), np.diff(curves.alpha2))
+    inside = np.diff(curves.segment) == 0
+    assert step[inside].max() < 0.1
+
+
+@pytest.mark.parametrize("params", [BASELINE, UNEQUAL])
+@pytest.mark.parametrize(("kind", "regime"), [(Boundary.flutter, 1), (Boundary.divergence, 2)])
+def test_the_regime_changes_across_the_curve(
+    params: Parameters, kind: Boundary, regime: int
+) -> None:
+    curves = stability_boundaries(params, points=41)
+    chosen = curves.boundary.values == kind
+    for alpha1, alpha2 in zip(
+        curves.alpha1.values[chosen][::3], curves.alpha2.values[chosen][::3], strict=True
+    ):
+        near = 2e-3 * np.linspace(-1, 1, 9)
+        regimes = stability_map(params, alpha1 + near, alpha2 + near).regime_linear.values
+        assert (regimes == regime).any()
+        assert (regimes != regime).any()
+
+
+def test_no_curve_where_there_is_no_friction() -> None:
+    curves = stability_boundaries(BASELINE.with_(mu=0.0), points=21)
+    assert not np.isin(curves.boundary, (Boundary.flutter,)).any()
+
+
+def test_shares_are_those_of_a_map() -> None:
+    points = 90
+    angles = (np.arange(points) + 0.5) * math.pi / points
+    params = UNEQUAL
+    shares = linear_shares(
+        params, [params.mu], [params.k3 / params.k1], [50.0], points=points
+    ).isel(mu=0, kappa=0, sharpness=0)
+    stability = stability_map(params, angles, angles)
+    sliding = quasi_static_map(params, angles, angles)
+    regime, possible = stability.regime_linear.values, sliding.possible.values
+    expected = {
+        "flutter": regime == 1,
+        "divergence": regime == 2,
+        "flutter_regularized": regime == 1,
+        "divergence_regularized": regime == 2,
+        "impossible": ~possible,
+        "impossible_as_printed": ~sliding.possible_as_printed.values,
+        "unstable_where_possible": possible & (regime > 0),
+        "pulled": sliding.contact_force_static.values < 0,
+        "impossible_but_pressed": ~possible & (sliding.contact_force_static.values > 0),
+    }
+    for name, cells in expected.items():
+        assert float(shares[name]) == pytest.approx(cells.mean(), abs=1e-12), name
+
+
+@pytest.mark.parametrize("mu", [0.3, 1.0])
+def test_share_without_sliding_by_an_integral_along_one_angle(mu: float) -> None:
+    """Equal springs: 1 + cos p cos q < μ cos p sin q, with p the sum and q the difference."""
+
+    def part(p: float) -> float:
+        bound = -1.0 / (math.cos(p) * math.hypot(1.0, mu))
+        if abs(bound) >= 1.0:
+            return 0.0
+        return math.acos(abs(bound)) / math.pi
+
+    edge = math.acos(1.0 / math.hypot(1.0, mu))
+    exact = (
+        scipy.integrate.quad(part, math.pi - edge, math.pi + edge, points=[math.pi])[0] / math.pi
+    )
+    found = linear_shares(BASELINE, [mu], [1.0], [1.0], points=720).impossible
+    assert float(found[0]) == pytest.approx(exact, rel=5e-3)
+
+
+def test_printed_condition_fails_for_half_of_the_map_without_friction() -> None:
+    shares = linear_shares(BASELINE, [0.0], [1.0], [1.0], points=720)
+    assert float(shares.impossible_as_printed[0]) == pytest.approx(0.5, abs=2e-3)
+    assert float(shares.impossible[0]) == 0.0

@@ -1,0 +1,242 @@
+"""Linear maps against high-precision eigenvalues, numeric eigenvalues and algebra."""
+
+from __future__ import annotations
+
+import math
+
+import mpmath
+import numpy as np
+import pytest
+import scipy.linalg
+import scipy.optimize
+
+from squealpipe.parameters import Parameters
+from squealpipe.schema import Outcome
+from squealpipe.store import load, save
+from squealpipe.tasks.linear.maps import natural_frequencies, quasi_static_map, stability_map
+from tests import symbols
+
+BASELINE = Parameters()
+ANGLES = np.linspace(0.0, np.pi, 181)
+UNEQUAL = Parameters(mass=1.7, k1=1.4, k2=0.6, k3=0.9, mu=0.45, preload=0.5)
+SEED = 11
+
+
+def reference_matrix(params: Parameters, alpha1: float, alpha2: float) -> mpmath.matrix:
+    """Stiffness over mass in contact, from the paper's Eqs. (8), (20), (21) in high precision."""
+    p = {name: mpmath.mpf(value) for name, value in params.as_dict().items()}
+    (c1, s1), (c2, s2) = (mpmath.cos_sin(mpmath.mpf(a)) for a in (alpha1, alpha2))
+    k11 = p["k1"] * c1**2 + p["k2"] * c2**2
+    k22 = p["k1"] * s1**2 + p["k2"] * s2**2
+    k12 = p["k1"] * c1 * s1 - p["k2"] * c2 * s2
+    rows = [[k11, k12 + p["mu"] * p["k3"]], [k12, k22 + p["k3"]]]
+    return mpmath.matrix(rows) / p["mass"]
+
+
+def reference_eigenvalues(params: Parameters, alpha1: float, alpha2: float) -> list[complex]:
+    """All s with s² = −ω², by mpmath's general eigenvalue solver."""
+    with mpmath.workdps(60):
+        squares = mpmath.eig(reference_matrix(params, alpha1, alpha2), right=False)
+        roots = [mpmath.sqrt(-value) for value in squares]
+        return [complex(sign * root) for root in roots for sign in (1, -1)]
+
+
+def own_eigenvalues(params: Parameters, alpha1: float, alpha2: float) -> np.ndarray:
+    cell = stability_map(params, [alpha1], [alpha2]).isel(alpha1=0, alpha2=0)
+    if cell.regime_linear == 2:
+        growing = [float(cell.growth_rate), 1j * float(cell.frequency[1])]
+    else:
+        growing = list(float(cell.growth_rate) + 1j * cell.frequency.values)
+    upper = np.array(growing)
+    return np.concatenate([upper, -upper, upper.conj(), -upper.conj()])
+
+
+def relative_error(params: Parameters, alpha1: float, alpha2: float) -> float:
+    own = own_eigenvalues(params, alpha1, alpha2)
+    reference = reference_eigenvalues(params, alpha1, alpha2)
+    return max(float(np.abs(own - value).min() / abs(value)) for value in reference)
+
+
+@pytest.mark.parametrize("params", [BASELINE, UNEQUAL, BASELINE.with_(mu=0.8, k3=1.3)])
+def test_eigenvalues_to_thirteen_digits(params: Parameters) -> None:
+    generator = np.random.default_rng(SEED)
+    worst = max(relative_error(params, *generator.uniform(0, np.pi, 2)) for _ in range(60))
+    assert worst < 1e-13
+
+
+def onset(params: Parameters, alpha2: float, low: float, high: float) -> float:
+    """The α1 of flutter onset, where the two squares of the high-precision matrix meet."""
+
+    def discriminant(alpha1: float) -> float:
+        m = reference_matrix(params, alpha1, alpha2)
+        return float(((m[0, 0] - m[1, 1]) / 2) ** 2 + m[0, 1] * m[1, 0])
+
+    with mpmath.workdps(40):
+        return float(scipy.optimize.brentq(discriminant, low, high, xtol=1e-16, rtol=1e-15))
+
+
+@pytest.mark.parametrize("ulps", [-40, -3, -1, 0, 1, 3, 40])
+def test_eigenvalues_to_twelve_digits_at_the_onset_of_flutter(ulps: int) -> None:
+    """The nearest floating-point angles to the onset, where numeric eigenvalues fail."""
+    alpha2 = 0.23 * math.pi
+    alpha1 = onset(BASELINE, alpha2, 0.05 * math.pi, 0.14 * math.pi)
+    alpha1 += ulps * np.spacing(alpha1)
+    assert relative_error(BASELINE, alpha1, alpha2) < 1e-12
+    m = np.array(reference_matrix(BASELINE, alpha1, alpha2).tolist(), dtype=float)
+    numeric = scipy.linalg.eigvals(
+        np.block([[np.zeros((2, 2)), np.eye(2)], [-m, np.zeros((2, 2))]])
+    )
+    reference = reference_eigenvalues(BASELINE, alpha1, alpha2)
+    lost = max(float(np.abs(numeric - value).min() / abs(value)) for value in reference)
+    assert lost > 1e-10
+
+
+@pytest.mark.parametrize("distance", [1e-14, 1e-10, 1e-6, 1e-3])
+def test_growth_rates_next_to_both_boundaries(distance: float) -> None:
+    """Growth itself keeps twelve digits, though it is a small difference of large numbers."""
+    alpha2 = 0.23 * math.pi
+    flutter = onset(BASELINE, alpha2, 0.05 * math.pi, 0.14 * math.pi) + distance
+
+    def determinant(alpha1: float) -> float:
+        m = reference_matrix(BASELINE, alpha1, 0.55 * math.pi)
+        return float(m[0, 0] * m[1, 1] - m[0, 1] * m[1, 0])
+
+    with mpmath.workdps(40):
+        divergence = scipy.optimize.brentq(determinant, 0.3 * math.pi, 0.45 * math.pi, xtol=1e-16)
+    for alpha1, second in ((flutter, alpha2), (divergence + distance, 0.55 * math.pi)):
+        exact = max(s.real for s in reference_eigenvalues(BASELINE, alpha1, second))
+        found = float(stability_map(BASELINE, [alpha1], [second]).growth_rate[0, 0])
+        assert exact > 0
+        assert found == pytest.approx(exact, rel=1e-12)
+
+
+def test_the_map_agrees_with_numeric_eigenvalues_everywhere() -> None:
+    angles = np.linspace(0.0, np.pi, 61)
+    result = stability_map(UNEQUAL, angles, angles)
+    for i, j in np.ndindex(61, 61):
+        m = np.array(reference_matrix(UNEQUAL, angles[i], angles[j]).tolist(), dtype=float)
+        s = np.emath.sqrt(-scipy.linalg.eigvals(m))
+        assert float(result.growth_rate[i, j]) == pytest.approx(np.abs(s.real).max(), abs=2e-7)
+        expected = np.sort(np.abs(s.imag))
+        np.testing.assert_allclose(np.sort(result.frequency[i, j]), expected, atol=2e-7)
+
+
+def test_cell_counts_at_the_baseline() -> None:
+    """Counts stated in the project's brief, found there by an independent code."""
+    stability = stability_map(BASELINE, ANGLES, ANGLES)
+    sliding = quasi_static_map(BASELINE, ANGLES, ANGLES)
+    flutter, divergence = (stability.regime_linear.values == kind for kind in (1, 2))
+    assert (flutter.sum(), divergence.sum()) == (366, 230)
+    unstable = flutter | divergence
+    assert not (unstable & sliding.possible_as_printed.values).any()
+    assert (flutter & sliding.possible.values).sum() == 366
+    assert (divergence & sliding.possible.values).sum() == 0
+    pressed = sliding.contact_force_static.values > 0
+    assert (~sliding.possible.values & pressed).sum() == 212
+
+
+def test_flutter_needs_negative_coupling_and_divergence_positive() -> None:
+    k = symbols.function(symbols.STIFFNESS)
+    stability = stability_map(UNEQUAL.with_(k1=0.9, mu=0.8), ANGLES, ANGLES)
+    for kind, sign in ((1, -1), (2, 1)):
+        rows, columns = np.nonzero(stability.regime_linear.values == kind)
+        for i, j in zip(rows[::7], columns[::7], strict=True):
+            params = UNEQUAL.with_(k1=0.9, mu=0.8)
+            assert sign * k(params, alpha1=ANGLES[i], alpha2=ANGLES[j])[0, 1] > 0
+
+
+def test_mass_scales_rates_and_friction_vanishes() -> None:
+    heavy = stability_map(BASELINE.with_(mass=4.0), ANGLES[::9], ANGLES[::9])
+    light = stability_map(BASELINE, ANGLES[::9], ANGLES[::9])
+    np.testing.assert_allclose(heavy.growth_rate, light.growth_rate / 2, rtol=1e-14)
+    without = stability_map(BASELINE.with_(mu=0.0), ANGLES, ANGLES)
+    assert (without.regime_linear == 0).all()
+    assert (without.growth_rate == 0).all()
+
+
+def test_sigma_matters_only_where_the_contact_law_is_blunt() -> None:
+    sharp = stability_map(BASELINE, ANGLES[::5], ANGLES[::5])
+    steep = stability_map(BASELINE, ANGLES[::5], ANGLES[::5], sigma=1000.0)
+    np.testing.assert_allclose(steep.frequency, sharp.frequency, rtol=1e-14)
+    blunt = stability_map(BASELINE, ANGLES[::5], ANGLES[::5], sigma=1.2)
+    stiffer = BASELINE.with_(k3=BASELINE.k3 * 1.0997817)
+    same = stability_map(stiffer, ANGLES[::5], ANGLES[::5])
+    np.testing.assert_allclose(blunt.frequency, same.frequency, atol=1e-4)
+
+
+def test_static_state_of_the_scene_of_fig_3_sits_at_the_edge_of_contact() -> None:
+    cell = quasi_static_map(BASELINE, [0.4 * math.pi], [0.6 * math.pi]).isel(alpha1=0, alpha2=0)
+    assert bool(cell.possible)
+    assert bool(cell.possible_as_printed)
+    assert float(cell.y_static) == pytest.approx(BASELINE.preload, rel=1e-14)
+    assert float(cell.x_static) == pytest.approx(-math.tan(0.4 * math.pi), rel=1e-13)
+    assert float(cell.contact_force_static) == 0.0
+
+
+def test_no_static_state_where_both_springs_are_vertical() -> None:
+    cell = quasi_static_map(BASELINE, [math.pi / 2], [math.pi / 2]).isel(alpha1=0, alpha2=0)
+    assert int(cell.outcome) == Outcome.singular_static_state
+    assert np.isnan(cell.reaction_force)
+    assert not bool(cell.possible)
+    assert not bool(cell.possible_as_printed)
+
+
+def test_static_state_balances_the_forces() -> None:
+    force = symbols.function(symbols.LINEAR_FORCE)
+    result = quasi_static_map(UNEQUAL, ANGLES[::20], ANGLES[::20])
+    for i, j in np.ndindex(result.x_static.shape):
+        cell = result.isel(alpha1=i, alpha2=j)
+        angles = {"alpha1": float(cell.alpha1), "alpha2": float(cell.alpha2)}
+        x, y = float(cell.x_static), float(cell.y_static)
+        normal = UNEQUAL.k3 * (UNEQUAL.preload - y)
+        balance = force(UNEQUAL, x=x, y=y, **angles) + normal * np.array([UNEQUAL.mu, 1.0])
+        np.testing.assert_allclose(balance, 0.0, atol=1e-12 * (1 + abs(x) + abs(y)))
+        assert float(cell.contact_force_static) == pytest.approx(normal, abs=1e-11 * (1 + abs(y)))
+
+
+def test_frequencies_in_both_states() -> None:
+    """Largest ω1², rigid modes along α1 + α2 = nπ, and flags for what is no oscillation."""
+    result = natural_frequencies(BASELINE, ANGLES, ANGLES)
+    first, second = np.meshgrid(np.arange(181), np.arange(181), indexing="ij")
+    separated = result.sel(contact_state="separated")
+    rigid = separated.outcome.sel(mode=1).values == Outcome.rigid_mode
+    np.testing.assert_array_equal(rigid, (first + second) % 180 == 0)
+    assert (separated.omega.sel(mode=1).values[rigid] == 0).all()
+    np.testing.assert_allclose(separated.omega.sel(mode=2).values[rigid], math.sqrt(2), rtol=1e-14)
+    half = np.isin(first + second, (90, 270))
+    np.testing.assert_allclose(separated.omega.values[half], 1.0, rtol=1e-7)
+    contact = result.sel(contact_state="contact")
+    free = contact.isel(alpha1=90, alpha2=90).sel(mode=1)
+    assert int(free.outcome) == Outcome.rigid_mode
+    assert float(free.omega) == 0.0
+    assert (contact.outcome.sel(mode=1) == Outcome.complex_pair).sum() == 366
+    assert (contact.outcome.sel(mode=1) == Outcome.divergence).sum() == 230
+    assert (contact.outcome.sel(mode=2) == Outcome.divergence).sum() == 0
+    real = contact.outcome.sel(mode=1).values == Outcome.converged
+    assert contact.omega.sel(mode=1).values[real].max() ** 2 == pytest.approx(1.375, abs=5e-3)
+
+
+@pytest.mark.parametrize("nearby", [1e-3, 1e-6, 1e-9, 1e-12])
+def test_a_small_separated_frequency_keeps_its_digits(nearby: float) -> None:
+    """ω1² = (k/m)(1 − |cos(α1 + α2)|) = 2 (k/m) sin²((α1 + α2)/2) near α1 + α2 = π."""
+    first, second = 0.3, math.pi - 0.3 + nearby
+    with mpmath.workdps(50):
+        total = mpmath.mpf(first) + mpmath.mpf(second)
+        exact = float(mpmath.sqrt(1 - abs(mpmath.cos(total))))
+    found = natural_frequencies(BASELINE, [first], [second]).isel(alpha1=0, alpha2=0)
+    lower = float(found.omega.sel(mode=1, contact_state="separated"))
+    assert lower == pytest.approx(exact, rel=1e-13)
+
+
+@pytest.mark.parametrize("task", [quasi_static_map, stability_map, natural_frequencies])
+def test_maps_survive_the_store(task: object, tmp_path: object) -> None:
+    result = task(BASELINE, ANGLES[::15], ANGLES[::20])
+    path = save(result, tmp_path / "map.nc")
+    assert load(path).equals(result)
+
+
+@pytest.mark.parametrize("task", [quasi_static_map, stability_map, natural_frequencies])
+@pytest.mark.parametrize("bad", [[math.nan], [math.inf], [], [[0.0, 1.0]]])
+def test_angles_are_checked(task: object, bad: list) -> None:
+    with pytest.raises(ValueError, match=r"^alpha2 .*finite (angles|numbers)"):
+        task(BASELINE, [0.0], bad)

@@ -1,0 +1,151 @@
+"""Propensities against closed forms; distributions and settings."""
+
+import numpy as np
+import pytest
+from scipy import stats
+from scipy.optimize import brentq
+
+from squealpipe import Parameters, stability_map
+from squealpipe.schema import Outcome
+from squealpipe.tasks.inference.inference import infer_parameters
+from squealpipe.tasks.spread.distributions import distribution
+from squealpipe.tasks.spread.propensity import _judged_matrices, _sobol, propensity
+from squealpipe.tasks.spread.reach import _feasible, _share, variants
+
+ANGLES = (0.22, 0.96)
+FRICTION = {"mu": {"distribution": "uniform", "low": 0.1, "high": 0.9}}
+
+
+def onset():
+    """The friction above which the undamped linear model flutters."""
+
+    def discriminant(mu):
+        system = stability_map(Parameters(mu=mu), [ANGLES[0]], [ANGLES[1]])
+        return float(system.regime_linear[0, 0]) - 0.5
+
+    return brentq(discriminant, 0.1, 0.9, xtol=1e-9)
+
+
+@pytest.mark.parametrize("belt_speed", [100.0, -3.0])
+def test_share_of_flutter_is_that_of_the_frictions_above_onset(belt_speed):
+    angles = ANGLES if belt_speed > 0 else (np.pi - ANGLES[0], np.pi - ANGLES[1])
+    spread = propensity(
+        Parameters(belt_speed=belt_speed), *angles, distributions=FRICTION, samples=4096, t_end=1.0
+    )
+    exact = (0.9 - onset()) / 0.8
+    found = spread.sel(quantity="flutter")
+    # a scrambled Sobol sequence of n points misses an interval's share by about 1/n
+    assert abs(float(found.share) - exact) < 2.5 / 4096
+    assert found.share_low < exact < found.share_high
+    np.testing.assert_allclose(found.total_order, 1.0, atol=0.05)
+    np.testing.assert_allclose(found.share_by_size[-1], found.share)
+    never = spread.sel(quantity="whirl")
+    assert never.outcome == Outcome.unresolved
+    assert np.isnan(never.total_order).all()
+
+
+def test_indices_are_those_of_a_product_and_too_wide_ones_are_not_given():
+    """[u1 < a][u2 < b], u3 idle: variance ab(1 − ab), S1 = b² a(1 − a)/variance, T1 = 1 − S2."""
+    frozen = {f"u{i}": stats.uniform(0.0, 1.0) for i in (1, 2, 3)}
+    a, b = 0.6, 0.45
+
+    def judge(u):
+        return ((u[0] < a) & (u[1] < b))[None]
+
+    (row,) = np.moveaxis(_judged_matrices(judge, frozen, 2**14, 5), 1, 0)
+    found = _sobol([row, row[:, : 2**8], np.zeros_like(row)], 3, 5)
+    again = _sobol([row], 3, 5)
+    variance = a * b * (1.0 - a * b)
+    first = np.array([b * b * a * (1 - a), a * a * b * (1 - b), 0.0]) / variance
+    total = np.array([1.0 - first[1], 1.0 - first[0], 0.0])
+    for key, exact in (("first_order", first), ("total_order", total)):
+        low, high = found[f"{key}_low"][0], found[f"{key}_high"][0]
+        np.testing.assert_allclose(found[key][0], exact, atol=0.02)
+        assert (0.5 * (high - low) <= 0.02).all()
+        assert (np.abs(found[key][0] - exact) <= high - low).all()
+        np.testing.assert_array_equal(found[key][0], again[key][0])
+        assert np.isnan(found[key][1:, :2]).all(), "too small a sample, or nothing that differs"
+    widths = found["half_width_by_size"]
+    np.testing.assert_allclose(widths[0, 1:] / widths[0, :-1], 0.5**0.5, rtol=0.35)
+    assert widths[1, -1] > 0.02
+    assert np.isnan(widths[2]).all()
+
+
+def test_correlated_springs_have_propensities_but_no_indices():
+    springs = {name: {"distribution": "normal", "mean": 1.0, "std": 0.05} for name in ("k1", "k2")}
+    spread = propensity(
+        Parameters(), *ANGLES, distributions=springs, samples=64, t_end=10.0,
+        spring_correlation=0.9,
+    )  # fmt: skip
+    assert np.isfinite(spread.share).all()
+    assert (spread.outcome == Outcome.unresolved).all()
+
+
+@pytest.mark.parametrize(
+    ("name", "given", "words"),
+    [
+        ("mu", {"distribution": "beta", "low": 0.0, "high": 1.0}, "distribution = 'beta'"),
+        ("my", {"distribution": "uniform", "low": 0.0, "high": 1.0}, "did you mean 'mu'"),
+        ("mu", {"distribution": "uniform", "low": -0.1, "high": 1.0}, "reaches -0.1"),
+        ("k1", {"distribution": "normal", "mean": 1.0, "std": 0.3}, "reaches -0.2"),
+        ("k1", {"distribution": "normal", "mean": 1.0}, "needs mean and std"),
+        ("k1", {"distribution": "lognormal", "median": -1.0, "log_std": 0.1}, "median = -1.0"),
+        ("k3", {"distribution": "uniform", "low": 1.0, "high": 1.0}, "must be below"),
+        ("k3", {"distribution": "normal", "mean": 1.0, "std": float("nan")}, "std = nan"),
+    ],
+)
+def test_impossible_distributions_are_refused(name, given, words):
+    with pytest.raises(ValueError, match=words):
+        distribution(name, given)
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"samples": 100}, "samples = 100"),
+        ({"t_end": -1.0}, "t_end = -1.0"),
+        ({"spring_correlation": 1.0}, "spring_correlation = 1.0"),
+        ({"spring_correlation": 0.5}, "distributions of k1 and k2"),
+        ({"distributions": {}}, "at least one parameter"),
+    ],
+)
+def test_propensity_refuses_what_it_cannot_do(change, words):
+    given = {"distributions": FRICTION, "samples": 64, "t_end": 10.0} | change
+    with pytest.raises(ValueError, match=words):
+        propensity(Parameters(), *ANGLES, **given)
+
+
+def test_settings_differ_from_the_paper_one_at_a_time():
+    params = Parameters(k2=1.3, belt_speed=-2.0)
+    found = dict(variants(params))
+    assert found["as configured"] == params
+    assert found["damping ratio 2 %"].damping2 == pytest.approx(0.04 * np.sqrt(1.3))
+    assert found["half λ"].length1 == 0.5 * params.length1
+    slow = found["exponential law, |V| = 1 v₀"]
+    assert (slow.friction_speed, slow.mu_static) == (2.0, 0.6)
+    assert len(set(found.values())) == len(found)
+
+
+def test_feasible_sets_are_judged_by_what_was_predicted_alone():
+    inferred = infer_parameters(Parameters(), samples=512, tol=1e-6)
+    count = int(inferred.feasible_count)
+    names = ["F2a", *inferred.consequence.values.tolist()]
+    fitted, *predicted = _feasible(inferred, names)
+    assert fitted[-1] == Outcome.not_computed
+    assert np.isnan(fitted[0])
+    assert count > 0
+    for found, name in zip(predicted, names[1:], strict=True):
+        one = inferred.sel(consequence=name)
+        if count > 1:
+            exact = [one.feasible_share, one.feasible_share_low, one.feasible_share_high]
+            np.testing.assert_allclose(found[:3], exact, rtol=1e-12)
+        assert found[3] == count
+
+
+def test_share_counts_only_what_was_judged():
+    share, low, high, judged, outcome = _share(
+        np.array([True, False, True, True]), np.array([True, True, True, False])
+    )
+    assert (share, judged, outcome) == (2 / 3, 3, Outcome.converged)
+    assert low < share < high
+    assert _share(np.array([True]), np.array([False]))[-1] == Outcome.unresolved

@@ -1,0 +1,90 @@
+"""Basins of published oscillators, and starts as a grid."""
+
+import math
+
+import numpy as np
+import pytest
+
+from squealpipe import Parameters, basin_map, simulate
+from squealpipe.schema import Outcome
+from squealpipe.schema.dynamics import MotionFlag
+from squealpipe.schema.starts import StartMotion
+
+ANGLES = (0.5 * math.pi, math.pi)
+SHARES = {1.25: 0.08019692, 1.4: 0.21226526, 1.55: 0.35659639, 1.7: 0.49411159}
+"""Exact share of starts that come to rest, by the area of the unstable cycle."""
+
+
+def friction_oscillator(belt_speed, reach=1e4):
+    """m = k = 1, c = 0.1, N = 1 to 1/reach, exponential law 1 → 0.5 over 0.5."""
+    return Parameters(
+        k1=4.0, k2=1.0, k3=1.0 / reach, preload=reach, length1=reach, length2=reach,
+        mu=0.5, mu_static=1.0, friction_speed=0.5, friction_law="exponential",
+        belt_speed=belt_speed, damping2=0.1,
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("speed", "starts"),
+    [
+        (1.25, 1000),
+        (1.55, 1000),
+        *(
+            pytest.param(v, 100_000, marks=[pytest.mark.slow, pytest.mark.timeout(3600)])
+            for v in SHARES
+        ),
+    ],
+)
+def test_basin_shares_of_a_published_oscillator(speed, starts):
+    generator = np.random.default_rng(int(100 * speed))
+    side = math.isqrt(starts)
+    # one random start in each cell of a grid, so that the error is at most that of random starts
+    x = -2.0 + 4.0 * (np.arange(side) + generator.uniform(size=side)) / side
+    vx = 2.0 * (np.arange(side) + generator.uniform(size=side)) / side
+    basin = basin_map(
+        friction_oscillator(speed), *ANGLES, x=x, vx=vx, y=0.25, t_end=500.0, t_late=400.0
+    )
+    assert basin.late_max_vx.dims == ("x0", "vx0")
+    rest = basin.late_max_vx.values <= 0.2
+    error = math.sqrt(SHARES[speed] * (1.0 - SHARES[speed]) / rest.size)
+    assert abs(rest.mean() - SHARES[speed]) < 3.0 * error
+    assert not basin.separates.any()
+    moving = basin.motion.values[~rest]
+    # next to the unstable cycle a motion grows so slowly that it has not stuck by t = 500
+    growing = ~np.isin(moving, (MotionFlag.stick_slip, StartMotion["unsettled"]))
+    assert (moving[growing] == MotionFlag.perpetual_contact).all()
+    assert growing.mean() < 2e-3
+
+
+def test_rest_is_the_run_from_rest():
+    params = Parameters(k2=1.3, belt_speed=-2.0)
+    basin = basin_map(params, 1.0, 2.2, t_end=15.0)
+    run = simulate(params, 1.0, 2.2, t_end=15.0, times=np.linspace(12.0, 15.0, 20_001))
+    assert basin.sizes == {}
+    np.testing.assert_allclose(basin.late_max_x, np.abs(run.x).max(), rtol=1e-6)
+    np.testing.assert_allclose(basin.late_max_vx, np.abs(run.vx).max(), rtol=1e-4)
+
+
+def test_a_run_that_has_not_settled_says_so():
+    """Dashpots end the hammering of Fig. 2(d) early in the run."""
+    damped = Parameters(damping1=0.1, damping2=0.1)
+    angles = (5 * math.pi / 6, 5 * math.pi / 6)
+    basin = basin_map(damped, *angles, vy=[0.0, 0.01], t_end=400.0)
+    assert (basin.outcome == Outcome.converged).all()
+    assert basin.separates.all()
+    assert (basin.motion == StartMotion["unsettled"]).all()
+
+
+@pytest.mark.parametrize(
+    ("change", "named"),
+    [
+        ({"t_end": 0.0}, "t_end = 0.0"),
+        ({"t_late": 60.0}, "t_late = 60.0"),
+        ({"x": [[1.0]]}, "x: a number or a 1-D array"),
+        ({"vx": math.nan}, "vx"),
+        ({"vy": []}, "vy"),
+    ],
+)
+def test_refuses_what_it_cannot_do(change, named):
+    with pytest.raises(ValueError, match=named):
+        basin_map(Parameters(), 1.0, 2.0, **({"t_end": 50.0} | change))

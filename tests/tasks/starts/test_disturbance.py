@@ -1,0 +1,164 @@
+"""Smallest disturbances: the linear motion in closed form, and what A1 itself does with them."""
+
+import math
+
+import numpy as np
+import pytest
+
+from squealpipe import Parameters, simulate, smallest_disturbance
+from squealpipe.laws.springs import geometry, linear_stiffness
+from squealpipe.models.damped import critical_friction
+from squealpipe.schema import Outcome
+from squealpipe.solvers.a1.ensemble import run_ensemble
+from squealpipe.tasks.dynamics.motion import linear_time
+
+RNG = np.random.default_rng(16)
+
+
+def random_case(direction):
+    """Unequal springs, other units, friction below the onset of flutter."""
+    while True:
+        k1, k2, k3 = RNG.uniform(0.5, 4.0, 3)
+        params = Parameters(
+            mass=RNG.uniform(0.5, 3), k1=k1, k2=k2, k3=k3, preload=RNG.uniform(0.5, 2),
+            belt_speed=direction * RNG.uniform(0.5, 50),
+        )  # fmt: skip
+        alpha1, alpha2 = RNG.uniform(0.0, math.pi, 2)
+        onset = float(critical_friction(params, alpha1, alpha2)[1])
+        params = params.with_(mu=RNG.uniform(0.1, 0.8) * min(onset, 1.0))
+        rest = steady_state(params, alpha1, alpha2)
+        if abs(math.sin(alpha1 + alpha2)) > 0.2 and rest[1] < 0.8 * params.preload:
+            return params, alpha1, alpha2
+
+
+def contact_matrix(params, alpha1, alpha2):
+    k11, k12, k22 = linear_stiffness(params, geometry(alpha1, alpha2))
+    drag = math.copysign(params.mu, params.belt_speed)
+    return np.array([[k11, k12 + drag * params.k3], [k12, k22 + params.k3]]) / params.mass, drag
+
+
+def steady_state(params, alpha1, alpha2):
+    matrix, drag = contact_matrix(params, alpha1, alpha2)
+    return np.linalg.solve(matrix, np.array([drag, 1.0]) * params.k3 * params.preload / params.mass)
+
+
+def shortest_by_modes(params, alpha1, alpha2, t_end):
+    """min over t of gap/|row of y at t|, from the modes of the 2×2 matrix and nothing else."""
+    matrix, _ = contact_matrix(params, alpha1, alpha2)
+    squared, shapes = np.linalg.eig(matrix)
+    omega = np.sqrt(squared)
+    t = np.linspace(0.0, t_end, 200_001)[:, None]
+    inverse = np.linalg.inv(shapes)
+    by_place = (shapes[1] * np.cos(omega * t)) @ inverse * params.preload
+    by_speed = (shapes[1] * np.sin(omega * t) / omega) @ inverse * params.preload
+    by_speed /= linear_time(params)
+    longest = np.sqrt((by_place**2 + by_speed**2).sum(axis=1)).max()
+    return (params.preload - steady_state(params, alpha1, alpha2)[1]) / longest
+
+
+@pytest.mark.parametrize("direction", [1.0, -1.0])
+def test_undamped_linear_sliding_has_a_closed_form(direction):
+    """A4 is linear until contact is lost; the search knows nothing of that."""
+    for _ in range(2):
+        params, alpha1, alpha2 = random_case(direction)
+        t_end = 40.0 * linear_time(params)
+        found = smallest_disturbance(params, alpha1, alpha2, model="A4", t_end=t_end, workers=1)
+        exact = shortest_by_modes(params, alpha1, alpha2, t_end)
+        assert found.outcome == Outcome.converged
+        assert float(found.linear_distance) == pytest.approx(exact, rel=1e-6)
+        assert exact * (1 - 1e-6) < float(found.distance) < exact * 1.01
+        np.testing.assert_allclose(
+            [found.x_rest, found.y_rest],
+            steady_state(params, alpha1, alpha2),
+            rtol=1e-9,
+            atol=1e-12,
+        )
+        assert (np.diff(found.distance_by_number) <= 0).all()
+
+
+def state_of(found, params, factor=1.0):
+    parts = [float(found[f"{name}_disturbance"]) for name in ("x", "y", "vx", "vy")]
+    rest = [float(found.x_rest), float(found.y_rest), 0.0, 0.0]
+    return np.add(rest, np.multiply(parts, factor))
+
+
+@pytest.mark.parametrize("belt_speed", [60.0, -3.0])
+def test_what_is_found_loses_contact_and_random_smaller_ones_keep_it(belt_speed):
+    params = Parameters(k2=1.3, length1=4.0, mass=2.0, preload=0.8, belt_speed=belt_speed)
+    angles = (2.4, 2.5) if belt_speed > 0 else (math.pi - 2.4, math.pi - 2.5)
+    found = smallest_disturbance(params, *angles, t_end=60.0, workers=1)
+    assert found.outcome == Outcome.converged
+    run = simulate(params, *angles, t_end=60.0, initial_state=state_of(found, params, 1.0 + 1e-5))
+    assert (run.event_kind.values == 0).any()
+    size = 400
+    z = np.random.default_rng(5).standard_normal((size, 4))
+    unit = params.preload * np.array([1.0, 1.0, 1 / linear_time(params), 1 / linear_time(params)])
+    z *= 0.97 * float(found.distance) / np.linalg.norm(z, axis=1, keepdims=True)
+    rest = state_of(found, params, 0.0)
+    runs = run_ensemble(params, *angles, t_end=60.0, initial_state=rest + unit * z, workers=1)
+    assert np.isnan(runs.first_separation_time).all()
+
+
+def test_the_search_is_that_of_the_mirrored_system():
+    """x → −x with the belt reversed; the directions differ, so the search agrees to its error."""
+    params = Parameters(mu=0.2, belt_speed=5.0)
+    one = smallest_disturbance(params, 2.3, 2.45, t_end=60.0, workers=1)
+    other = smallest_disturbance(
+        params.with_(belt_speed=-5.0), 2.45, 2.3, t_end=60.0, seed=2, workers=1
+    )
+    assert float(one.linear_distance) == pytest.approx(float(other.linear_distance), rel=1e-9)
+    assert float(one.distance) == pytest.approx(float(other.distance), rel=0.01)
+
+
+def test_whirl_is_reached_and_beyond_a_small_bound_not():
+    params, angles = Parameters(), (0.75 * math.pi, 0.75 * math.pi)
+    found = smallest_disturbance(
+        params, *angles, leads_to="whirl", t_end=60.0, directions=16, workers=1
+    )
+    assert found.outcome == Outcome.converged
+    run = run_ensemble(params, *angles, t_end=60.0, tol=1e-9, initial_state=state_of(found, params))
+    assert abs(float(run.turns)) >= 3
+    assert 0 < int(found.reached) <= 16
+    none = smallest_disturbance(
+        params, *angles, leads_to="whirl", t_end=60.0, directions=8, bound=0.4, workers=1
+    )
+    assert none.outcome == Outcome.not_reached
+    assert np.isnan(none.distance)
+    assert none.reached == 0
+
+
+def test_unstable_or_no_sliding_is_said_and_nothing_is_run():
+    flutter = smallest_disturbance(Parameters(mu=0.9), 0.22, 0.96)
+    assert flutter.outcome == Outcome.already_unstable
+    assert float(flutter.growth_rate) > 0
+    falling = Parameters(
+        friction_law="exponential", mu_static=0.6, friction_speed=2.0, belt_speed=2.0
+    )
+    assert smallest_disturbance(falling, 2.4, 2.5).outcome == Outcome.already_unstable
+    damped = falling.with_(damping1=1.0, damping2=1.0)
+    assert smallest_disturbance(damped, 2.4, 2.5, t_end=20.0, directions=8).outcome == 0
+    for params, angles in (
+        (Parameters(belt_speed=0.0), (2.4, 2.5)),
+        (Parameters(), (0.2 * math.pi, 0.8 * math.pi)),
+    ):
+        still = smallest_disturbance(params, *angles)
+        assert still.outcome == Outcome.no_sliding_state
+        assert np.isnan(still.distance)
+
+
+@pytest.mark.parametrize(
+    ("change", "named"),
+    [
+        ({"leads_to": "stick"}, "leads_to = 'stick'"),
+        ({"model": "A3"}, "model = 'A3'"),
+        ({"model": "A1-no-separation"}, "never loses contact"),
+        ({"model": "A4", "leads_to": "whirl"}, "has no whirl"),
+        ({"t_end": 0.0}, "t_end = 0.0"),
+        ({"bound": -1.0}, "bound = -1.0"),
+        ({"directions": 4}, "directions = 4"),
+        ({"directions": 16.5}, "directions = 16.5"),
+    ],
+)
+def test_refuses_what_it_cannot_do(change, named):
+    with pytest.raises(ValueError, match=named):
+        smallest_disturbance(Parameters(), 2.4, 2.5, **change)

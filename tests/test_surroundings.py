@@ -1,0 +1,84 @@
+"""Odd surroundings: a path with a space, a home folder that cannot be written, oldest libraries."""
+
+import os
+import shutil
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from squealpipe.figures.parts.style import new_figure, save_figure
+
+ROOT = Path(__file__).resolve().parents[1]
+NO_HOME = {**os.environ, "HOME": "/proc/none"}
+
+
+def run(command, **kwargs):
+    return subprocess.run(command, capture_output=True, text=True, check=False, **kwargs)
+
+
+def test_a_checkout_path_with_a_space_is_refused_with_the_reason(tmp_path):
+    place = tmp_path / "my checkout"
+    place.mkdir()
+    for name in ("Makefile", "requirements.lock", "pyproject.toml"):
+        shutil.copy(ROOT / name, place / name)
+    done = run(["make", "env"], cwd=place)
+    assert done.returncode != 0
+    assert "has a space" in done.stderr
+    assert not (place / ".venv").exists()
+
+
+def test_commands_need_no_home(tmp_path):
+    command = [sys.executable, "-m", "squealpipe", "map", "stability", "--alpha1", "0:pi:3"]
+    if not (ROOT / "squealpipe/__main__.py").is_file():
+        command[1:3] = ["-c", "from squealpipe.cli import main; main()"]
+    done = run(command, cwd=tmp_path, env=NO_HOME)
+    assert done.returncode == 0, done.stderr
+    assert (tmp_path / "map.nc").is_file()
+
+
+def test_make_gives_snakemake_a_cache_where_there_is_no_home(tmp_path):
+    shutil.copy(ROOT / "Makefile", tmp_path / "Makefile")
+    with (tmp_path / "Makefile").open("a", encoding="utf-8") as file:
+        file.write("\nshow:\n\t@echo cache=$$XDG_CACHE_HOME\n")
+    shown = run(["make", "--no-print-directory", "show"], cwd=tmp_path, env=NO_HOME).stdout
+    assert shown.startswith(f"cache={tmp_path}")
+
+
+def test_pictures_left_by_a_killed_process_are_cleared(tmp_path):
+    old, new, other = (tmp_path / f".{name}.png" for name in ("fig.123", "fig.456", "another.123"))
+    for path in (old, new, other):
+        path.write_bytes(b"half a picture")
+    before = time.time() - 7200
+    for path in (old, other):
+        os.utime(path, (before, before))
+    save_figure(new_figure(3.0, 3.0)[0], [tmp_path / "fig.png"])
+    assert sorted(path.name for path in tmp_path.iterdir()) == [
+        ".another.123.png",
+        ".fig.456.png",
+        "fig.png",
+    ]
+
+
+@pytest.mark.slow
+def test_every_lower_bound_of_the_dependencies_works(tmp_path):
+    """Installs the oldest versions that pyproject.toml allows, then runs commands with them."""
+    uv, place = str(Path(sys.executable).with_name("uv")), tmp_path / "oldest"
+    assert run([uv, "venv", "-q", "--python", sys.executable, place]).returncode == 0
+    install = [uv, "pip", "install", "-q", "--python", place / "bin/python"]
+    done = run([*install, "--resolution", "lowest-direct", ROOT])
+    assert done.returncode == 0, done.stderr
+    program = place / "bin/squealpipe"
+    for arguments in (
+        "--help",
+        "simulate 5pi/6 5pi/6 --t-end 10 -o run.nc",
+        "map stability --alpha1 0:pi:5 --alpha2 0:pi:5 -o map.nc",
+        "backbone 0.3pi 0.9pi --y-peak-max 1.2 -o branch.nc",
+        "sweep stability_map --vary mu=0.1,0.2 --alpha1 1 --alpha2 1 --workers 1 -o sweep.nc",
+        "compare map.nc map.nc",
+        "list",
+    ):
+        done = run([program, *arguments.split()], cwd=tmp_path)
+        assert done.returncode == 0, arguments + done.stderr

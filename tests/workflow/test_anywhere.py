@@ -1,0 +1,78 @@
+"""The workflow from other folders, through `squealpipe run`, and before Snakemake's own linter."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from squealpipe.cli.project import Teller
+
+ROOT = Path(__file__).resolve().parents[2]
+QUICK = "workflow/config/quick.yaml"
+EXCEPTIONS = {
+    "No log directive defined": "short jobs say nothing unless they fail, and then Snakemake's "
+    "own log has the traceback; every job with progress to tell has a log",
+    "Specify a conda environment or container for each rule.": "one environment for all rules, "
+    "locked with hashes in requirements.lock and made by `make env`",
+    "Mixed rules and functions in same snakefile.": "helpers of one topic stand beside its rules; "
+    "those of several are in common.smk",
+}
+"""What `snakemake --lint` says that we leave as it is, and why."""
+
+
+def snakemake(folder, *arguments):
+    return subprocess.run(
+        [sys.executable, "-m", "snakemake", "--nocolor", *arguments],
+        cwd=folder, capture_output=True, text=True, check=False,
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize("how", ["--snakefile", "--directory"])
+def test_a_plan_can_be_made_from_any_folder(how, tmp_path):
+    (tmp_path / "mine.yaml").write_text("results: out\n")
+    if how == "--snakefile":
+        place, words = tmp_path, ["--snakefile", str(ROOT / "Snakefile")]
+        config = ["--configfile", str(ROOT / QUICK), "mine.yaml"]
+    else:
+        place, words = ROOT, ["--directory", str(tmp_path)]
+        config = ["--configfile", QUICK, str(tmp_path / "mine.yaml")]
+    done = snakemake(place, *words, *config, "--dry-run", "out/data/validity_map.nc")
+    assert done.returncode == 0, done.stderr[-2000:]
+    assert f"{ROOT}/squealpipe/parameters.py" in done.stdout
+    assert "output: out/data/validity_map.nc" in done.stdout
+
+
+def test_lint_says_only_what_has_a_reason():
+    done = snakemake(ROOT, "--lint")
+    told = set(re.findall(r"^ {4}\* (.*?):?$", done.stdout + done.stderr, flags=re.MULTILINE))
+    assert told
+    assert told <= set(EXCEPTIONS), told - set(EXCEPTIONS)
+
+
+def test_run_tells_a_line_for_each_rule_and_names_failures():
+    teller = Teller()
+    text = """job              count
+-------------  -------
+draw_linear          1
+map_validity         2
+all                  1
+total                4
+
+Job 3: map_validity → a.nc
+Reason: Missing output files: a.nc
+Finished jobid: 3 (Rule: map_validity)
+Job 4: map_validity → b.nc
+Finished jobid: 4 (Rule: map_validity)
+Error in rule draw_linear:
+    message: None
+    jobid: 5
+    log: results/logs/draw.log (check log file(s) for error details)
+"""
+    told = [line for row in text.splitlines() for line in teller.hear(row)]
+    assert len(told) == 1
+    assert re.fullmatch(r"map_validity +[\d.]+ s   1 rule left", told[0])
+    assert teller.failures == ["draw_linear, see results/logs/draw.log"]

@@ -1,0 +1,242 @@
+"""The recipes of CONTRIBUTING.md, followed to the letter in a copy of the project."""
+
+from __future__ import annotations
+
+import difflib
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+from textwrap import indent
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+ROW, LAW, LAW_NAME, RECORD, LEVEL, FIGURE, FIGURE_NAME = range(7)
+FILES = {
+    LAW: "squealpipe/laws/friction_laws/rising.py",
+    LEVEL: "squealpipe/tasks/ladder/levels/a2_static.py",
+    FIGURE: "squealpipe/figures/dynamics/impacts.py",
+}
+LINES = {
+    ROW: (
+        "squealpipe/parameters.py",
+        "\n    def __post_init__(self) -> None:\n        for name",
+    ),
+    RECORD: ("squealpipe/schema/ladder.py", "    closed_form = ("),
+    LAW_NAME: ("squealpipe/laws/friction_laws/__init__.py", None),
+    FIGURE_NAME: ("squealpipe/report/places.py", None),
+}
+"""Where a block goes: before a text, or in place of the line that begins as it does."""
+
+
+def write_down(folder: Path) -> dict[str, tuple[int, int]]:
+    """Take every step; path → lines added and removed in the files that were there before."""
+    text = (folder / "CONTRIBUTING.md").read_text()
+    recipes = text[text.index("## Recipes") : text.index("## Rules")]
+    blocks = re.findall(r"```python\n(.*?)```", recipes, flags=re.DOTALL)
+    for number, name in FILES.items():
+        assert name in recipes
+        assert not (folder / name).exists()
+        (folder / name).write_text(blocks[number])
+    changed = {}
+    for number in (ROW, RECORD, FIGURE_NAME):  # these stand in a class or a table
+        blocks[number] = indent(blocks[number], "    ")
+    for number, (name, place) in LINES.items():
+        path = folder / name
+        assert name in recipes
+        before = path.read_text()
+        if place is None:
+            start = re.escape(re.match(r"\s*\S+ \S+|\s*\S+:", blocks[number]).group())
+            after, found = re.subn(rf"^{start}.*\n", blocks[number], before, flags=re.MULTILINE)
+        else:
+            after, found = before.replace(place, blocks[number] + place), before.count(place)
+        assert found == 1, name
+        path.write_text(after)
+        moved = [line[:2] for line in difflib.ndiff(before.splitlines(), after.splitlines())]
+        changed[name] = (moved.count("+ "), moved.count("- "))
+    return changed
+
+
+@pytest.fixture(scope="module")
+def extended(new_checkout, tmp_path_factory):
+    """A copy with a parameter, a law, a level and a figure more; and what that took."""
+    folder = new_checkout(tmp_path_factory.mktemp("recipes") / "squealpipe")
+    return folder, write_down(folder)
+
+
+def python(folder: Path, script: str) -> str:
+    """Run a script with the package of the copy."""
+    run = subprocess.run(
+        [sys.executable, "-c", script],
+        cwd=folder,
+        env={**os.environ, "PYTHONPATH": str(folder)},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert run.returncode == 0, run.stderr[-4000:]
+    return run.stdout
+
+
+def test_the_steps_are_as_few_as_promised(extended):
+    _, changed = extended
+    assert changed == {
+        "squealpipe/parameters.py": (3, 0),
+        "squealpipe/schema/ladder.py": (1, 0),
+        "squealpipe/laws/friction_laws/__init__.py": (1, 1),
+        "squealpipe/report/places.py": (1, 1),
+    }
+
+
+PARAMETER_AND_LAW = """
+import numpy as np
+from squealpipe import Parameters, stability_map
+from squealpipe.config import parse_study
+from squealpipe.models.a1_automaton import A1Automaton
+from squealpipe.models.switching import ScaledParameters
+from squealpipe.solvers.a1.jobs import Jobs
+from squealpipe.solvers.a1.peers import simulate_scipy
+from squealpipe.solvers.a1.reference import simulate_reference
+
+# a row: in no id where it has its default, refused where it makes no sense, known everywhere
+assert "friction_slope" not in Parameters().as_dict()
+try:
+    parse_study({"parameters": {"friction_slope": -1.0}})
+except ValueError as error:
+    assert "friction_slope" in str(error)
+else:
+    raise AssertionError
+params = Parameters(
+    mass=1.7, k1=0.8, k2=1.3, preload=2.0, belt_speed=-0.7, friction_law="rising",
+    friction_slope=0.4, mu=0.2,
+)
+assert parse_study({"parameters": params.as_dict()}).parameters.friction_slope == 0.4
+assert ScaledParameters.of(params).friction_slope == 0.4
+order = Jobs.build(
+    params, 1.0, 2.0, t_end=1.0, model="A1", tol=1e-12, initial_state=np.zeros(4), times=None,
+    stop_at_first_separation=False, stop_at_x=np.inf, stop_at_turns=np.inf, t_late=np.inf,
+).orders[0]
+assert np.isclose(order["friction_slope"], 0.4 * 2.0 / np.sqrt(1.7 / 0.8), rtol=1e-14)
+
+# the law: symbols of the reference against floats with public solvers, stick and slip
+for mu_static in (None, 0.35):
+    case = params.with_(mu_static=mu_static, belt_speed=-0.1, friction_slope=0.2)
+    exact = simulate_reference(case, 0.5, 1.9, t_end=12.0)
+    public = simulate_scipy(case, 0.5, 1.9, t_end=12.0, tol=1e-12)
+    assert {"belt_speed", "release"} <= {kind.name for kind in exact.event_kinds}
+    assert public.event_kinds == exact.event_kinds
+    np.testing.assert_allclose(public.state, np.float64(exact.state), rtol=1e-7, atol=1e-8)
+
+# A3 against differences of the full field about the static state: the rise of friction damps
+rising = params.with_(belt_speed=30.0, friction_slope=0.01)
+field = A1Automaton(rising, 0.9, 2.4, linear_springs=True).field(0)
+
+def jacobian(state):
+    columns = [
+        (np.array(field(0.0, state + 1e-5 * unit)) - np.array(field(0.0, state - 1e-5 * unit)))
+        for unit in np.eye(4)
+    ]
+    return np.array(columns).T / 2e-5
+
+rest = np.linalg.solve(jacobian(np.zeros(4)), -np.array(field(0.0, np.zeros(4))))
+np.testing.assert_allclose(field(0.0, rest), 0.0, atol=1e-9)
+grown, without = (
+    float(stability_map(p, np.array([0.9]), np.array([2.4])).growth_rate[0, 0])
+    for p in (rising, rising.with_(friction_slope=0.0))
+)
+assert np.isclose(grown, np.linalg.eigvals(jacobian(rest)).real.max(), rtol=1e-5, atol=1e-8)
+assert grown != without
+"""
+
+
+def test_a_parameter_and_a_law_reach_every_kind_of_number(extended):
+    folder, _ = extended
+    python(folder, PARAMETER_AND_LAW)
+
+
+@pytest.mark.slow
+def test_the_engine_integrates_the_new_law(extended):
+    """Compiled anew in the copy, at random parameters, against long double."""
+    folder, _ = extended
+    script = """
+import numpy as np
+from squealpipe import Parameters
+from squealpipe.solvers.a1.ensemble import run_ensemble
+from squealpipe.solvers.a1.reference import simulate_reference
+rng = np.random.default_rng(7)
+for _ in range(12):
+    values = {name: rng.uniform(0.5, 2.0) for name in ("mass", "k1", "k2", "k3", "preload")}
+    mu = rng.uniform(0.1, 0.5)
+    p = Parameters(
+        **values, mu=mu, mu_static=mu + rng.choice([0.0, 0.2]), friction_law="rising",
+        friction_slope=rng.uniform(0, 0.5), belt_speed=rng.choice([-1, 1]) * rng.uniform(0.2, 3),
+        damping1=0.1,
+    )
+    angles = rng.uniform(0, np.pi, 2)
+    end = 8.0 * p.time_unit
+    run = run_ensemble(p, *angles, t_end=end)
+    exact = simulate_reference(p, *angles, t_end=end)
+    np.testing.assert_allclose(run.final_state, np.float64(exact.state), rtol=1e-8, atol=1e-9)
+"""
+    python(folder, script)
+
+
+LEVEL_ALONE = """
+import numpy as np
+from squealpipe import Parameters, quasi_static_map
+from squealpipe.figures.comparison.model_ladder import colour_of
+from squealpipe.schema.ladder import QUESTIONS, Level
+from squealpipe.tasks.ladder.levels import answer
+from squealpipe.tasks.ladder.levels.answers import Scenes
+params = Parameters(k1=1.4, mu=0.6, preload=2.0, mass=0.3)
+angles = np.linspace(0.1, 3.0, 8)
+first, second = (grid.ravel() for grid in np.meshgrid(angles, angles, indexing="ij"))
+found = answer(Level.a2_static, Scenes(params, first, second, 10.0, 1))
+known = quasi_static_map(params, angles, angles)
+force = found.values[QUESTIONS.index("peak_contact_force")]
+np.testing.assert_allclose(force * params.k3 * 2.0, known.reaction_force.values.ravel())
+possible = known.possible.values.ravel()
+assert possible.any() and not possible.all()
+np.testing.assert_array_equal(found.values[0] == 0.0, possible)
+assert list(Level)[0] is Level.a2_static and len({colour_of(level) for level in Level}) == 9
+"""
+
+
+def test_a_level_answers_for_itself(extended):
+    folder, _ = extended
+    python(folder, LEVEL_ALONE)
+
+
+@pytest.mark.slow
+def test_the_ladder_takes_the_new_level(extended):
+    folder, _ = extended
+    script = """
+import numpy as np
+from squealpipe import Parameters
+from squealpipe.figures import declared
+from squealpipe.tasks.ladder.ladder import model_ladder
+ladder = model_ladder(Parameters(mu=0.5), 8, 0.05, t_end=100.0, workers=1)
+assert ladder.level.values[0] == "a2_static" and ladder.sizes["level"] == 9
+wrong = ladder.error.sel(level="a2_static", question="contact_lost") > 0
+assert wrong.any() and not wrong.all()
+for name in ("model_ladder", "model_ladder_cost"):
+    declared.draw(name, {"model_ladder": ladder}).savefig(name + ".png")
+"""
+    python(folder, script)
+
+
+def test_workflow_plans_the_new_figure_and_watches_the_new_level(extended, snakemake):
+    folder, _ = extended
+    targets = ["results/figures/impacts.png", "results/data/model_ladder.nc"]
+    run = snakemake(folder, "--dry-run", *targets, "--nocolor")
+    assert run.returncode == 0, run.stderr[-3000:]
+    plan = run.stdout + run.stderr
+    for rule, paths in {
+        "draw_dynamics": ("hammering_map.nc", "simulate/F2b.nc", "figures/dynamics/impacts.py"),
+        "map_model_ladder": ("levels/a2_static.py", "friction_laws/rising.py"),
+    }.items():
+        block = plan[plan.index(f"rule {rule}:") :].split("jobid")[0]
+        for path in paths:
+            assert path in block

@@ -1,0 +1,45 @@
+"""Figures: one rule for each topic, from what the figures of the report declare to read.
+
+Included after all rules that make datasets. A figure that reads a dataset which this study does
+not make is left out.
+"""
+
+from squealpipe.figures import declared
+from squealpipe.report.lineage import lineage
+from squealpipe.report.places import FIGURES
+
+MADE = lineage(workflow.rules, f"{RESULTS}/data/")
+READ_BY = {name: declared.datasets_of(name, MADE) for name in FIGURES}
+READ_BY = {name: found for name, found in READ_BY.items() if found is not None}
+
+
+def figure(name):
+    """PNG and SVG of a figure, which become targets."""
+    paths = [f"{RESULTS}/figures/{name}.{suffix}" for suffix in ("png", "svg")]
+    TARGETS.extend(paths)
+    return paths
+
+
+def figure_sources(names):
+    """Modules that draw the figures, and hold their captions, and all that these import."""
+    return sorted(with_imports(declared.find_module(name) for name in names))
+
+
+for topic in dict.fromkeys(map(declared.topic, READ_BY)):
+    figures = [name for name in READ_BY if declared.topic(name) == topic]
+    datasets = sorted({read for name in figures for read in READ_BY[name]})
+
+    rule:
+        name:
+            f"draw_{topic}"
+        input:
+            datasets=[MADE[name]["path"] for name in datasets],
+            sources=sources("draw_figures"),
+            figures=figure_sources(figures),
+        output:
+            **{name: figure(name) for name in figures},
+        params:
+            figures=figures,
+            datasets=datasets,
+        script:
+            "../scripts/draw_figures.py"

@@ -1,0 +1,60 @@
+"""Cycles of the damped scenes of Figs. 3 and 2(d), and of one born by flutter, over friction."""
+
+import math
+
+import numpy as np
+
+from squealpipe.parameters import SCENES, parameters_of
+from squealpipe.store import load, produce
+from squealpipe.tasks.cycles.branch import cycle_branch
+from squealpipe.tasks.cycles.cycle import limit_cycle
+from squealpipe.tasks.cycles.extremes import settled_extremes
+
+part, out = snakemake.params.part, snakemake.output
+paper, cycles = parameters_of(part), part["cycles"]
+damping = cycles["damping"] * math.sqrt(paper.k1 * paper.mass)
+params = paper.with_(damping1=damping, damping2=damping)
+settle = cycles["settle"] * params.time_unit
+low, high = cycles["mu"]
+scenes = {name: (SCENES[name].alpha1, SCENES[name].alpha2) for name in ("F3", "F2d")}
+scenes["flutter"] = tuple(math.pi * angle for angle in cycles["flutter"])
+
+for name in ("F3", "F2d"):
+    produce(
+        lambda name=name: limit_cycle(params, *scenes[name], t_settle=settle),
+        config=part, sources=snakemake.input.sources,
+        output=out[f"limit_{name}"],
+    )
+first = load(out.limit_F3)
+for way, to in (("down", low), ("up", high)):
+    produce(
+        lambda to=to: cycle_branch(
+            params, *scenes["F3"], parameter="mu", to=to, start=first, n_points=cycles["points"]
+        ),
+        config=part, sources=snakemake.input.sources,
+        output=out[f"branch_F3_{way}"],
+    )
+produce(
+    lambda: cycle_branch(
+        params.with_(mu=low),
+        *scenes["flutter"],
+        parameter="mu",
+        to=high,
+        start="onset",
+        n_points=cycles["points"],
+    ),
+    config=part, sources=snakemake.input.sources,
+    output=out.branch_flutter,
+)
+produce(
+    lambda: settled_extremes(
+        params,
+        scenes,
+        np.linspace(low, high, cycles["extremes_mu"]),
+        starts=cycles["extremes_starts"],
+        t_end=cycles["extremes_horizon"] * params.time_unit,
+        workers=snakemake.threads,
+    ),
+    config=part, sources=snakemake.input.sources,
+    output=out.extremes,
+)

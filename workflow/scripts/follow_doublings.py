@@ -1,0 +1,19 @@
+"""Branches of doubled period that leave mode 1 of the coupled scenes, at two doublings each."""
+
+import math
+
+from squealpipe.parameters import parameters_of
+from squealpipe.store import produce
+from squealpipe.tasks.backbones.doubling import doubled_branch
+
+part = snakemake.params.part
+params = parameters_of(part)
+limit = part["backbones.y_peak_max"] * params.preload
+for scene, over_pi in part["backbones.coupled"].items():
+    angles = [angle * math.pi for angle in over_pi]
+    for doubling in (1, 2):
+        produce(
+            lambda: doubled_branch(params, *angles, mode=1, doubling=doubling, y_peak_max=limit),
+            config={**part, "scene": scene, "doubling": doubling}, sources=snakemake.input.sources,
+            output=snakemake.output[f"{scene}_{doubling}"],
+        )

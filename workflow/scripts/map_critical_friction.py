@@ -1,0 +1,24 @@
+"""Critical friction of Coulomb's law over the angles, and over both dashpots at a pair of them."""
+
+import math
+
+import numpy as np
+
+from squealpipe.models.refusals import without_extensions
+from squealpipe.parameters import parameters_of
+from squealpipe.store import produce
+from squealpipe.tasks.linear.critical import critical_damping_map, critical_friction_map
+
+part, out = snakemake.params.part, snakemake.output
+params = without_extensions(parameters_of(part))
+unit = math.sqrt(params.k1 * params.mass)
+damping1, damping2 = (unit * share for share in part["spread.critical_damping"])
+angles = np.linspace(0.0, math.pi, part["linear.points"])
+dashpots = np.linspace(0.0, part["spread.critical_extent"] * unit, part["spread.critical_points"])
+damped = params.with_(damping1=damping1, damping2=damping2)
+scene = [math.pi * angle for angle in part["spread.scene"]]
+for task, path in (
+    (lambda: critical_friction_map(damped, angles, angles), out.angles),
+    (lambda: critical_damping_map(params, *scene, dashpots, dashpots), out.dashpots),
+):
+    produce(task, config=part, sources=snakemake.input.sources, output=path)

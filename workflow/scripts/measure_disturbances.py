@@ -1,0 +1,24 @@
+"""Smallest disturbances of steady sliding in the paper's scenes."""
+
+from squealpipe.parameters import SCENES, parameters_of
+from squealpipe.store import produce
+from squealpipe.tasks.starts.disturbance import smallest_disturbance
+
+part = snakemake.params.part
+params = parameters_of(part)
+for name, path in snakemake.output.items():
+    scene, _, goal = name.partition("_")
+    produce(
+        lambda scene=SCENES[scene], goal=goal: smallest_disturbance(
+            params,
+            scene.alpha1,
+            scene.alpha2,
+            leads_to=goal,
+            t_end=part["spread.disturbance_horizon"] * params.time_unit,
+            directions=part["spread.disturbance_directions"],
+            workers=snakemake.threads,
+        ),
+        config=part,
+        sources=snakemake.input.sources,
+        output=path,
+    )

@@ -1,0 +1,24 @@
+"""Propensities over uncertain parameters, and what they depend on."""
+
+import math
+
+from squealpipe.parameters import parameters_of
+from squealpipe.store import produce
+from squealpipe.tasks.spread.propensity import propensity
+
+part = snakemake.params.part
+params = parameters_of(part)
+produce(
+    lambda: propensity(
+        params,
+        *(math.pi * angle for angle in part["spread.scene"]),
+        distributions=part["spread.distributions"],
+        samples=part["spread.samples"],
+        spring_correlation=part["spread.spring_correlation"],
+        t_end=part["spread.horizon"] * params.time_unit,
+        workers=snakemake.threads,
+    ),
+    config=part,
+    sources=snakemake.input.sources,
+    output=snakemake.output[0],
+)
