@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
+from filelock import FileLock
 
 ROOT = Path(__file__).resolve().parents[1]
 NOT_COPIED = shutil.ignore_patterns(
@@ -42,14 +43,6 @@ def run_snakemake(
     )
 
 
-@pytest.hookimpl(tryfirst=True)  # before xdist reads the groups
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """One process for all that reads the quick study, so that it is run once; else one a file."""
-    for item in items:
-        shared = "quick_study" in getattr(item, "fixturenames", ())
-        item.add_marker(pytest.mark.xdist_group("study" if shared else str(item.path)))
-
-
 @dataclass(frozen=True)
 class QuickStudy:
     """A finished quick study: its checkout, its results, and what snakemake printed."""
@@ -57,7 +50,6 @@ class QuickStudy:
     checkout: Path
     results: Path
     log: str
-    seconds: float
 
 
 @pytest.fixture
@@ -67,17 +59,22 @@ def checkout(tmp_path: Path) -> Path:
 
 
 @pytest.fixture(scope="session")
-def quick_study(tmp_path_factory: pytest.TempPathFactory) -> QuickStudy:
-    """The quick study, run once a session in a copy of the project."""
-    import time
-
-    directory = copy_checkout(tmp_path_factory.mktemp("study") / "squealpipe")
-    started = time.perf_counter()
-    run = run_snakemake(directory, "--configfile", "workflow/config/quick.yaml")
-    assert run.returncode == 0, run.stderr[-6000:]
-    return QuickStudy(
-        directory, directory / "results/quick", run.stderr, time.perf_counter() - started
-    )
+def quick_study(tmp_path_factory: pytest.TempPathFactory, worker_id: str) -> QuickStudy:
+    """The quick study, run once for all test processes, each of which has a copy to itself."""
+    own = tmp_path_factory.getbasetemp()
+    shared = own if worker_id == "master" else own.parent
+    original, log = shared / "study/squealpipe", shared / "study/log.txt"
+    with FileLock(shared / "study.lock"):
+        if not log.exists():
+            shutil.rmtree(original, ignore_errors=True)
+            run = run_snakemake(
+                copy_checkout(original), "--configfile", "workflow/config/quick.yaml"
+            )
+            assert run.returncode == 0, run.stderr[-6000:]
+            log.write_text(run.stderr, encoding="utf-8")
+    copy = own / "quick_study"
+    subprocess.run(["cp", "-a", original, copy], check=True)  # keeps the dates
+    return QuickStudy(copy, copy / "results/quick", log.read_text(encoding="utf-8"))
 
 
 @pytest.fixture(scope="session")
