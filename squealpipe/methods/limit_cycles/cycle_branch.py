@@ -27,9 +27,9 @@ from squealpipe.methods.limit_cycles.cycle_equations import CycleEquations, anch
 from squealpipe.methods.limit_cycles.cycles import Cycle, common_scale
 from squealpipe.methods.limit_cycles.event_changes import EventChange, event_change, same_events
 from squealpipe.methods.limit_cycles.event_flow import Touch, Vector, sample_path
+from squealpipe.methods.limit_cycles.labels import Label
 from squealpipe.methods.limit_cycles.special_points import (
     LABELS,
-    Label,
     Located,
     Test,
     hides_folds,
