@@ -11,7 +11,8 @@ from collections.abc import Callable
 
 import numpy as np
 
-from squealpipe.methods.continuation import ContinuationState, PseudoArclength
+from squealpipe.methods.continuation import ContinuationState
+from squealpipe.methods.limit_cycles.corrector import Corrector
 from squealpipe.methods.limit_cycles.cycle_equations import CycleEquations, cycle_at
 from squealpipe.methods.limit_cycles.cycles import Cycle
 from squealpipe.methods.limit_cycles.event_changes import EventChange, event_change, same_events
@@ -30,7 +31,7 @@ _CLOSE = 1e-11
 
 def approach(
     equations: CycleEquations,
-    algorithm: PseudoArclength,
+    algorithm: Corrector,
     state: ContinuationState,
     cycle: Cycle,
     distance: Callable[[Cycle], float],
@@ -67,7 +68,7 @@ def approach(
 
 def _same_side(
     equations: CycleEquations,
-    algorithm: PseudoArclength,
+    algorithm: Corrector,
     state: ContinuationState,
     cycle: Cycle,
     length: float,
@@ -84,7 +85,7 @@ def _same_side(
 
 def turn_corner(
     equations: CycleEquations,
-    algorithm: PseudoArclength,
+    algorithm: Corrector,
     state: ContinuationState,
     cycle: Cycle,
 ) -> tuple[ContinuationState, Cycle, EventChange] | None:
@@ -97,7 +98,7 @@ def turn_corner(
         direction = np.linalg.svd(jacobian)[2][-1]
         for length in (wide * size * 10.0**power for power in range(4)):
             for way in (direction, -direction):
-                found = algorithm.correct(equations, state.point + length * way, way)
+                found = algorithm.correct(equations, state.point + length * way, way, 1)
                 if found is None:
                     continue
                 point, tangent, iterations, residual = found
@@ -115,7 +116,7 @@ def turn_corner(
 
 def around_corner(
     equations: CycleEquations,
-    algorithm: PseudoArclength,
+    algorithm: Corrector,
     state: ContinuationState,
     cycle: Cycle,
 ) -> tuple[Place, tuple[ContinuationState, Cycle, EventChange] | None] | None:
@@ -149,10 +150,10 @@ def _measures(cycle: Cycle) -> list[Callable[[Cycle], float]]:
     system, kinds = cycle.system, cycle.passage.event_kinds
 
     def before(touch: Touch) -> Callable[[Cycle], float]:
-        return lambda here: system.clearance(touch, here.passage)
+        return lambda here: here.system.clearance(touch, here.passage)
 
     def beyond(touch: Touch, first: int) -> Callable[[Cycle], float]:
-        return lambda here: system.overlap(touch, here.passage, first)
+        return lambda here: here.system.overlap(touch, here.passage, first)
 
     found = [before(touch) for touch in (Touch.touch, Touch.split, Touch.passing, Touch.graze)]
     for first in range(len(kinds) - 1):

@@ -15,7 +15,6 @@ import numpy as np
 from squealpipe.methods.continuation import (
     ContinuationSettings,
     ContinuationState,
-    PseudoArclength,
 )
 from squealpipe.methods.limit_cycles.branch_ends import (
     BranchEnd,
@@ -23,13 +22,15 @@ from squealpipe.methods.limit_cycles.branch_ends import (
     CycleBranchSettings,
 )
 from squealpipe.methods.limit_cycles.corners import around_corner
+from squealpipe.methods.limit_cycles.corrector import Corrector
 from squealpipe.methods.limit_cycles.cycle_equations import CycleEquations, anchor, cycle_at
-from squealpipe.methods.limit_cycles.cycles import Cycle, common_scale
+from squealpipe.methods.limit_cycles.cycles import Cycle, multiplier_change
 from squealpipe.methods.limit_cycles.event_changes import EventChange, event_change, same_events
-from squealpipe.methods.limit_cycles.event_flow import Touch, Vector, sample_path
-from squealpipe.methods.limit_cycles.labels import Label
+from squealpipe.methods.limit_cycles.event_flow import Touch, Vector
+from squealpipe.methods.limit_cycles.shorter_cycles import after_part, at_crossing, is_shorter
 from squealpipe.methods.limit_cycles.special_points import (
     LABELS,
+    Label,
     Located,
     Test,
     hides_folds,
@@ -40,15 +41,16 @@ from squealpipe.methods.limit_cycles.special_points import (
 _AT_REST = 1e-6
 """A cycle of this size, over the scale of the branch, is a state of rest."""
 _HALVINGS_TO_CORNER = 2
-_EASY, _GROWTH = 2, 3.0
-"""With no more than so many iterations the next step grows by this factor."""
+_EASY, _GROWTH = 3, 3.0
+"""With no more than so many iterations the next step may grow, by no more than this factor."""
+_TURN = 0.7
+"""Turn of the branch over the largest one that the next step is meant for."""
 _COARSE = 1e-6
 """Step below which several changes of the events at once are one change."""
 _KINKS = {Touch.touch, Touch.split}
 """Changes of the events at which a branch may have a corner."""
-_PHASES, _MET = 12, 0.03
-"""Instants at which a cycle is compared with itself a part of the period later, and the distance
-there, over the scale, below which the equations are next to singular."""
+_MET = 0.03
+"""Distance from a shorter cycle, over the scale, below which the equations are next to singular."""
 _SAME = 1e-3
 """Distance from an older piece of the branch, over that piece, that is on it."""
 
@@ -87,14 +89,14 @@ def follow_cycles(
     Returns:
         (points, why it ended); the last point is labelled as the end.
     """
-    return _Follower(equations, settings, PseudoArclength(steps)).run(start)
+    return _Follower(equations, settings, Corrector(steps)).run(start)
 
 
 class _Follower:
     """A branch as it is followed."""
 
     def __init__(
-        self, equations: CycleEquations, settings: CycleBranchSettings, algorithm: PseudoArclength
+        self, equations: CycleEquations, settings: CycleBranchSettings, algorithm: Corrector
     ) -> None:
         self.equations = equations
         self.settings = settings
@@ -190,11 +192,8 @@ class _Follower:
                     self.at_rest = True
                     return None
             if isinstance(verdict, _Step):
-                growth = _GROWTH if verdict.state.iterations <= _EASY else 1.0
-                length = min(
-                    max(verdict.state.step, growth * step, wanted),
-                    self.algorithm.settings.longest_step,
-                )
+                length = max(self._next_length(state, step, verdict.state), wanted)
+                length = min(length, self.algorithm.settings.longest_step)
                 return replace(verdict, state=replace(verdict.state, step=length))
             if verdict == _Refused.several_changes:
                 wanted = max(wanted, step)
@@ -210,6 +209,15 @@ class _Follower:
             step *= 0.5
         return None
 
+    def _next_length(
+        self, state: ContinuationState, step: float, following: ContinuationState
+    ) -> float:
+        """The step after this one: longer, but not so that the branch turns by too much in it."""
+        most = np.arccos(self.algorithm.settings.least_cosine)
+        turn = float(np.linalg.norm(following.tangent - state.tangent))
+        growth = _GROWTH if following.iterations <= _EASY else 1.0
+        return step * float(np.clip(_TURN * most / max(turn, 1e-300), 0.5, growth))
+
     def _judge(
         self,
         state: ContinuationState,
@@ -223,11 +231,21 @@ class _Follower:
         if not self.settings.low - margin <= parameter <= self.settings.high + margin:
             return _Refused.too_long
         for parts in (2, 3):
-            offset, after = _after(cycle, parts), _after(reached, parts)
+            offset, after = after_part(cycle, parts), after_part(reached, parts)
             if offset @ after < -0.2 * float(offset @ offset):
-                return self._shorter(state, following, offset, parts)
+                return self._shorter((state, cycle), (following, reached), offset, parts)
             if np.linalg.norm(after - offset) > 0.7 * np.linalg.norm(offset):
                 return _Refused.too_long  # perhaps on the shorter cycle, or beyond it
+        return self._check(state, cycle, following, reached)
+
+    def _check(
+        self,
+        state: ContinuationState,
+        cycle: Cycle,
+        following: ContinuationState,
+        reached: Cycle,
+    ) -> _Step | _Refused:
+        """The step with what lies in it, if that is shown to be all."""
         fine = state.step < _COARSE
         change = None if same_events(cycle, reached) else event_change(cycle, reached)
         if change is None and not same_events(cycle, reached) and not fine:
@@ -237,7 +255,7 @@ class _Follower:
         tests = special_tests(state, cycle, following, reached, change)
         if (len(tests) > 1 or hides_folds(state, following)) and not fine:
             return _Refused.several_changes
-        step = _Step(following, reached, self._locate(state, following, tests))
+        step = _Step(following, reached, self._locate((state, cycle), (following, reached), tests))
         if change is not None and change.touch in _KINKS:
             return step if self._passes(following, step.located, change) else _Refused.too_long
         return step
@@ -256,14 +274,14 @@ class _Follower:
         if not kink and turn < self.algorithm.settings.least_cosine:
             return True
         smooth = change is None and state.step > _COARSE
-        if smooth and _multiplier_change(cycle, reached) > self.settings.largest_change:
+        if smooth and multiplier_change(cycle, reached) > self.settings.largest_change:
             return True
         return self._turns_round(self._shape(following, reached))
 
     def _locate(
         self,
-        before: ContinuationState,
-        after: ContinuationState,
+        before: Located,
+        after: Located,
         tests: list[tuple[Label, Test]],
     ) -> list[tuple[Label, Located]]:
         return [
@@ -287,7 +305,7 @@ class _Follower:
         return False
 
     def _shorter(
-        self, before: ContinuationState, after: ContinuationState, offset: Vector, parts: int
+        self, before: Located, after: Located, offset: Vector, parts: int
     ) -> _Step | _Refused:
         """The point where the state after a part of the period is the initial one."""
         met = locate(
@@ -295,11 +313,12 @@ class _Follower:
             self.algorithm,
             before,
             after,
-            lambda _, here: float(offset @ _after(here, parts)),
+            lambda _, here: float(offset @ after_part(here, parts)),
         )
-        if met is not None and _is_shorter(met[1], parts, 1e-5, 1e-3):
-            return _Step(*met, [], BranchEnd.shorter)
-        return _Refused.too_long
+        if met is None or not is_shorter(met[1], parts, 1e-5, 1e-5):
+            return _Refused.too_long
+        step = self._check(*before, at_crossing(before[0], met[0]), met[1])
+        return replace(step, end=BranchEnd.shorter) if isinstance(step, _Step) else step
 
     def _turns_round(self, shape: Vector) -> bool:
         """Whether the shape goes back where it came from."""
@@ -332,7 +351,7 @@ class _Follower:
             return None
         label = LABELS.get(change.touch, Label.regular)
         tests = special_tests(state, cycle, touched, there, None)
-        located = self._locate(state, touched, tests)
+        located = self._locate((state, cycle), (touched, there), tests)
         return _Step(beyond, other, [*located, (label, (touched, there))])
 
     def _turns_round_at(self, corner: Vector, beyond: Vector) -> bool:
@@ -366,34 +385,10 @@ class _Follower:
         """Why no step leads on."""
         if self.at_rest:
             return BranchEnd.at_rest
-        if any(_is_shorter(cycle, parts, _MET, _MET) for parts in (2, 3)):
+        if any(is_shorter(cycle, parts, _MET, _MET) for parts in (2, 3)):
             return BranchEnd.shorter
         if cycle.system.is_singular(cycle.passage):
             return BranchEnd.singular
         if cycle.system.is_tangent(cycle.passage):
             return BranchEnd.tangency
         return BranchEnd.lost
-
-
-def _after(cycle: Cycle, parts: int) -> Vector:
-    """How far states after a part of the period are from those before, over its extent, (48,)."""
-    times = np.arange(_PHASES) / _PHASES * cycle.period
-    path = sample_path(cycle.segments, times)
-    path /= common_scale(path)
-    return np.asarray(np.roll(path, _PHASES // parts, axis=0) - path).ravel()
-
-
-def _is_shorter(cycle: Cycle, parts: int, near: float, close: float) -> bool:
-    """Whether a cycle is a shorter one run through several times, where branches meet.
-
-    There a second multiplier is 1; a shorter one with another multiplier is only passed nearby.
-    """
-    second = float(np.abs(cycle.multipliers[1:] - 1.0).min())
-    return bool(np.linalg.norm(_after(cycle, parts)) < near and second < close)
-
-
-def _multiplier_change(one: Cycle, other: Cycle) -> float:
-    """Largest relative distance of a multiplier from the nearest of the other cycle."""
-    first, second = one.multipliers, other.multipliers
-    distance = np.abs(first[:, None] - second) / (1.0 + np.abs(first[:, None]))
-    return float(max(distance.min(axis=0).max(), distance.min(axis=1).max()))

@@ -109,6 +109,13 @@ def common_scale(path: Vector) -> Vector:
     return scale
 
 
+def multiplier_change(one: Cycle, other: Cycle) -> float:
+    """Largest relative distance of a multiplier from the nearest of the other cycle."""
+    first, second = one.multipliers, other.multipliers
+    distance = np.abs(first[:, None] - second) / (1.0 + np.abs(first[:, None]))
+    return float(max(distance.min(axis=0).max(), distance.min(axis=1).max()))
+
+
 def find_returns(
     system: HybridSystem, state: Vector, longest: float, samples: int = 4000
 ) -> list[tuple[float, float]]:

@@ -1,8 +1,8 @@
 """The flow of a hybrid system with its derivative, through located events.
 
-The variational equations of each regime, by the state and by one parameter, are integrated beside
-the state; at an event the derivative is multiplied by the saltation matrix, which accounts for the
-shift of the event's time.
+Between events the derivative by the state and by one parameter is that of
+:mod:`squealpipe.methods.limit_cycles.sensitivity`; at an event it is multiplied by the saltation
+matrix, which accounts for the shift of the event's time.
 """
 
 from __future__ import annotations
@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from enum import IntEnum
+from itertools import zip_longest
 from typing import Any, NamedTuple, Protocol
 
 import heyoka
@@ -17,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import brentq
 
+from squealpipe.methods.limit_cycles.sensitivity import step_derivatives
 from squealpipe.methods.taylor import taylor_compiler
 
 Vector = NDArray[np.float64]
@@ -47,15 +49,12 @@ class HybridSystem(Protocol):
     """A hybrid system at fixed parameters.
 
     Attributes:
-        integrator, plain: of :func:`compile_flow`, made once for all parameters.
-        rates: change of the symbolic parameters with the one that is followed.
+        integrator: of :func:`compile_flow`, made once for all parameters.
         has_families: whether cycles need not be isolated, as without damping.
         jumps: whether the motion jumps where a hold just begins.
     """
 
     integrator: Any
-    plain: Any
-    rates: Vector
     has_families: bool
     jumps: bool
 
@@ -70,6 +69,9 @@ class HybridSystem(Protocol):
 
     def velocity(self, regime: int, state: Vector) -> Vector:
         """The field of a regime."""
+
+    def slopes(self, regimes: NDArray[np.intp], states: Vector) -> Vector:
+        """Derivatives of the accelerations at many states, as ``step_derivatives`` takes them."""
 
     def holds(self, regime: int) -> bool:
         """Whether a regime fixes a component of the state."""
@@ -105,23 +107,34 @@ class Touch(IntEnum):
     """two events coincide, one of which is none on the other side"""
 
 
+class CompiledFlow(NamedTuple):
+    """A system's symbolic equations, compiled.
+
+    Attributes:
+        integrator: stops at the surfaces.
+        slopes: derivatives of the accelerations by state and parameter.
+        gradients: of the surfaces, likewise.
+    """
+
+    integrator: Any
+    slopes: Any
+    gradients: Any
+
+
 def compile_flow(
     equations: Sequence[tuple[Any, Any]], surfaces: Sequence[Any], parameters: int, varied: int
-) -> tuple[Any, Any, Any]:
-    """heyoka's integrators with and without the variational equations, stopping at the surfaces.
+) -> CompiledFlow:
+    """heyoka's integrator, stopping at the surfaces, and what its derivatives are made of.
 
-    Compact mode costs a factor of two in speed and saves ten seconds of compilation.
+    Compact mode costs a factor of two in speed and saves seconds of compilation.
 
     Args:
-        equations: of the state.
+        equations: of the state, positions before velocities.
         surfaces: functions that are zero where a regime ends.
         parameters: number of symbolic parameters.
         varied: how many of them, from the first on, may change with the one that is followed:
             with their rates behind them, and an offset of 0 in the last place, they are the
-            parameters of the first integrator and of the gradients.
-
-    Returns:
-        (with variational equations, without, gradients of the surfaces by state and parameter).
+            parameters of the derivatives.
     """
     taylor_compiler.set_up()
     offset = heyoka.par[parameters + varied]
@@ -129,27 +142,21 @@ def compile_flow(
         heyoka.par[i]: heyoka.par[i] + heyoka.par[parameters + i] * offset for i in range(varied)
     }
     variables = [variable for variable, _ in equations]
-    moved = [(variable, heyoka.subs(rate, along)) for variable, rate in equations]
-    variational = heyoka.var_ode_sys(moved, [*variables, offset])
-    gradients = heyoka.cfunc(
-        [
-            heyoka.diff(heyoka.subs(surface, along), by)
-            for surface in surfaces
-            for by in (*variables, offset)
-        ],
-        vars=variables,
+
+    def derivatives(functions: Sequence[Any]) -> Any:
+        moved = heyoka.subs(list(functions), along)
+        by = (*variables, offset)
+        return heyoka.cfunc([heyoka.diff(f, v) for f in moved for v in by], vars=variables)
+
+    integrator = heyoka.taylor_adaptive(
+        list(equations),
+        np.zeros(len(equations)),
+        tol=TOLERANCE,
+        compact_mode=True,
+        t_events=[heyoka.t_event(surface, cooldown=0.0) for surface in surfaces],
     )
-
-    def build(system: Any) -> Any:
-        return heyoka.taylor_adaptive(
-            system,
-            np.zeros(len(equations)),
-            tol=TOLERANCE,
-            compact_mode=True,
-            t_events=[heyoka.t_event(surface, cooldown=0.0) for surface in surfaces],
-        )
-
-    return build(variational), build(list(equations)), gradients
+    accelerations = [rate for _, rate in equations[len(equations) // 2 :]]
+    return CompiledFlow(integrator, derivatives(accelerations), derivatives(surfaces))
 
 
 @dataclass
@@ -212,29 +219,25 @@ def flow(
         system: the hybrid system.
         state: initial state.
         duration: time to go, positive.
-        derivative: integrate the variational equations too.
+        derivative: compute that of the end state; the motion is kept for it.
         keep: keep the motion between events.
         max_events, max_steps: limits after which the passage is incomplete.
     """
     size = len(state)
-    integrator = system.integrator if derivative else system.plain
+    integrator = system.integrator
     regime, state = system.start(np.asarray(state, dtype=np.float64))
-    passage = Passage(state, regime, np.eye(size), np.zeros(size), regimes=[regime])
-    # small tangents leave the step size to the state
-    tangent_scale = 1e-3 * max(float(np.abs(state).max()), 1e-3)
-    tangent = tangent_scale * np.eye(size, size + 1)
-    behind = [*(tangent_scale * system.rates), 0.0] if derivative else []
+    passage = Passage(state, regime, np.full((size, size), np.nan), np.full(size, np.nan))
+    passage.regimes.append(regime)
+    saltations: list[Vector] = []
     integrator.time = 0.0
     while True:
-        integrator.pars[:] = [*system.parameters(regime), *behind]
-        integrator.state[:size] = state
-        if derivative:
-            integrator.state[size:] = tangent.ravel()
+        integrator.pars[:] = system.parameters(regime)
+        integrator.state[:] = state
         integrator.reset_cooldowns()
-        outcome, steps = _propagate(integrator, regime, duration, max_steps, passage, keep)
-        state = integrator.state[:size].copy()
-        if derivative:
-            tangent = integrator.state[size:].reshape(size, size + 1).copy()
+        outcome, steps = _propagate(
+            integrator, regime, duration, max_steps, passage, keep or derivative
+        )
+        state = integrator.state.copy()
         max_steps -= steps
         surface = -int(outcome.value) - 1
         if surface >= _NO_SURFACE or len(passage.event_times) >= max_events or max_steps <= 0:
@@ -242,8 +245,8 @@ def flow(
             break
         before = regime
         switched = system.switch(surface, regime, state)
-        if derivative and switched.gradient is not None:
-            tangent += _saltation(system, state, before, switched, tangent, tangent_scale)
+        if derivative:
+            saltations.append(_saltation(system, state, before, switched))
         regime, state = switched.regime, switched.state
         if switched.kind >= 0:
             passage.event_times.append(float(integrator.time))
@@ -252,10 +255,8 @@ def flow(
             passage.regimes.append(regime)
     passage.state, passage.regime = state, regime
     if derivative:
-        tangent /= tangent_scale
-        passage.derivative, passage.slope = tangent[:, :size], tangent[:, size]
-    else:
-        passage.derivative, passage.slope = np.full((size, size), np.nan), np.full(size, np.nan)
+        total = _derivative(system, passage.segments, saltations)
+        passage.derivative, passage.slope = total[:size, :size], total[:size, size]
     return passage
 
 
@@ -276,7 +277,7 @@ def _propagate(
     while times[-1] < duration and len(coefficients) < max_steps:
         outcome, _ = integrator.step(duration - times[-1], write_tc=True)
         times.append(float(integrator.time))
-        coefficients.append(integrator.tc[:size].copy())
+        coefficients.append(integrator.tc.copy())
         if outcome != heyoka.taylor_outcome.success:
             break
     order = integrator.tc.shape[1]
@@ -286,22 +287,38 @@ def _propagate(
     return outcome, len(coefficients)
 
 
-def _saltation(
-    system: HybridSystem,
-    state: Vector,
-    before: int,
-    switched: Switched,
-    tangent: Vector,
-    scale: float,
-) -> Vector:
-    """(f₊ − f₋)(∇hᵀ δz + ∂h/∂p δp)/(∇h·f₋), what an event adds to a tangent."""
-    gradient = np.asarray(switched.gradient)
+def _saltation(system: HybridSystem, state: Vector, before: int, switched: Switched) -> Vector:
+    """I + (f₊ − f₋)(∇hᵀ, ∂h/∂p)/(∇h·f₋), (states + 1, states + 1)."""
     size = len(state)
-    field_before = system.velocity(before, state)
-    jump = system.velocity(switched.regime, switched.state) - field_before
-    shift = gradient[:size] @ tangent
-    shift[size] += gradient[size] * scale
-    return np.outer(jump, shift) / float(gradient[:size] @ field_before)
+    matrix = np.eye(size + 1)
+    if switched.gradient is not None:
+        field_before = system.velocity(before, state)
+        jump = system.velocity(switched.regime, switched.state) - field_before
+        rate = float(switched.gradient[:size] @ field_before)
+        matrix[:size] += np.outer(jump, switched.gradient / rate)
+    return matrix
+
+
+def _derivative(
+    system: HybridSystem, segments: Sequence[Segment], saltations: Sequence[Vector]
+) -> Vector:
+    """The product of the steps' derivatives and the saltations, (states + 1, states + 1)."""
+    lengths = [len(part.coefficients) for part in segments]
+    regimes = np.repeat([part.regime for part in segments], lengths)
+    factors = step_derivatives(
+        lambda states: system.slopes(np.repeat(regimes, states.shape[1] // len(regimes)), states),
+        np.concatenate([np.diff(part.times) for part in segments]),
+        np.concatenate([part.coefficients for part in segments]),
+    )
+    total: Vector = np.eye(factors.shape[1])
+    first = 0
+    for length, saltation in zip_longest(lengths, saltations):
+        for factor in factors[first : first + length]:
+            total = factor @ total
+        if saltation is not None:
+            total = saltation @ total
+        first += length
+    return total
 
 
 class TurningPoint(NamedTuple):

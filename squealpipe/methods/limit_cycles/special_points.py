@@ -3,16 +3,30 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from enum import IntEnum
 
 import numpy as np
 from scipy.optimize import brentq
 
-from squealpipe.methods.continuation import ContinuationState, PseudoArclength
+from squealpipe.methods.continuation import ContinuationState
+from squealpipe.methods.limit_cycles.corrector import Corrector
 from squealpipe.methods.limit_cycles.cycle_equations import CycleEquations, cycle_at
 from squealpipe.methods.limit_cycles.cycles import Cycle
 from squealpipe.methods.limit_cycles.event_changes import EventChange
-from squealpipe.methods.limit_cycles.event_flow import Touch
-from squealpipe.methods.limit_cycles.labels import Label
+from squealpipe.methods.limit_cycles.event_flow import Touch, Vector
+
+
+class Label(IntEnum):
+    """What a point of a branch is."""
+
+    regular = 0
+    fold = 1
+    period_doubling = 2
+    torus = 3
+    grazing = 4
+    stick_onset = 5
+    end = 6
+
 
 LABELS = {
     Touch.graze: Label.grazing,
@@ -21,6 +35,9 @@ LABELS = {
     Touch.passing: Label.stick_onset,
 }
 """Changes of the events that are located; two events that coincide make no special point."""
+
+_ZERO, _MOST = 1e-12, 40
+"""A test is zero below this share of its values at both ends; most of its evaluations."""
 
 Test = Callable[[ContinuationState, Cycle], float]
 Located = tuple[ContinuationState, Cycle]
@@ -75,32 +92,51 @@ def _modulus(cycle: Cycle) -> float:
 
 def locate(
     equations: CycleEquations,
-    algorithm: PseudoArclength,
-    before: ContinuationState,
-    after: ContinuationState,
+    algorithm: Corrector,
+    before: Located,
+    after: Located,
     test: Test,
 ) -> Located | None:
     """The point between two where ``test`` is zero; None where it cannot be solved for."""
+    (first, _), (last, _) = before, after
     known = {0.0: before, 1.0: after}
-    cycles: dict[float, Cycle] = {}
+    reach = float(first.tangent @ (last.point - first.point))
+    ends = test(*before), test(*after)
+    zero = _ZERO * max(map(abs, ends))
 
     def value(share: float) -> float:
         if share not in known:
-            guess = before.point + share * (after.point - before.point)
-            corrected = algorithm.correct(equations, guess, before.tangent)
+            guess = _between(known, share, first.tangent, reach)
+            corrected = algorithm.correct(equations, guess, first.tangent)
             if corrected is None:
                 raise ArithmeticError
             point, tangent, iterations, residual = corrected
-            curvature = np.zeros_like(point)
-            known[share] = ContinuationState(
-                point, tangent, curvature, before.step, iterations, residual
+            state = ContinuationState(
+                point, tangent, np.zeros_like(point), first.step, iterations, residual
             )
-        cycles[share] = cycle_at(equations, known[share])
-        return test(known[share], cycles[share])
+            known[share] = state, cycle_at(equations, state)
+        result = test(*known[share])
+        return 0.0 if abs(result) < zero else result
 
     try:
-        root = brentq(value, 0.0, 1.0, xtol=1e-13, rtol=1e-13, maxiter=60)
-        value(root)
+        root = brentq(value, 0.0, 1.0, xtol=1e-13, rtol=1e-13, maxiter=_MOST)
     except (ArithmeticError, ValueError, RuntimeError):
         return None
-    return known[root], cycles[root]
+    return known[root]
+
+
+def _between(known: dict[float, Located], share: float, normal: Vector, reach: float) -> Vector:
+    """The branch between its two nearest known points by Hermite's cubic, over ``normal``."""
+    low = max(at for at in known if at < share)
+    high = min(at for at in known if at > share)
+    (one, _), (other, _) = known[low], known[high]
+    width, part = high - low, (share - low) / (high - low)
+    step = other.point - one.point
+    slopes = [
+        state.tangent * (width * reach / float(normal @ state.tangent)) - step
+        for state in (one, other)
+    ]
+    bend = (1.0 - part) * slopes[0] - part * slopes[1]
+    if not np.linalg.norm(bend) < np.linalg.norm(step):
+        bend = np.zeros_like(step)
+    return np.asarray(one.point + part * step + part * (1.0 - part) * bend)

@@ -4,14 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import cache
-from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.optimize import minimize_scalar
 
 from squealpipe.laws.friction_laws import coefficient
 from squealpipe.laws.springs import fixed_ends
 from squealpipe.methods.limit_cycles.event_flow import (
+    CompiledFlow,
     Passage,
     Segment,
     Switched,
@@ -54,8 +55,7 @@ _TOUCHES: dict[tuple[tuple[int, ...], tuple[int, ...]], Touch] = {
 
 
 @cache
-def _compiled(law: str) -> tuple[Any, Any, Any]:
-    """Integrators with and without variational equations, and gradients of the surfaces."""
+def _compiled(law: str) -> CompiledFlow:
     return compile_flow(*symbolic_automaton(law), len(PARAMETERS), VARIED)
 
 
@@ -82,11 +82,12 @@ class A1Flow:
         self.a1 = A1Automaton(params, alpha1, alpha2)
         self.has_families = is_undamped(params)
         self.jumps = params.static_mu != float(coefficient(0.0, params))
-        self.integrator, self.plain, self._gradients = _compiled(params.friction_law)
+        self.integrator, self._slopes, self._gradients = _compiled(params.friction_law)
         self._values = {regime: regime_values(self.a1, regime) for regime in Regime}
-        self.rates = unit * self._rates(follow)
+        behind = [*(unit * self._changes(follow)), 0.0]
+        self._behind = np.array([[*self._values[regime], *behind] for regime in Regime])
 
-    def _rates(self, follow: str | None) -> Vector:
+    def _changes(self, follow: str | None) -> Vector:
         """Change of :data:`PARAMETERS` with one parameter or angle."""
         g = self.a1.geometry
         changes: dict[str | None, dict[str, float]] = {
@@ -116,8 +117,8 @@ class A1Flow:
         after, on_surface = self.a1.switch(kind, regime, state)
         gradient = None
         if kind in {EventKind.belt_speed, EventKind.release}:
-            values = self._gradients(on_surface, pars=[*self.parameters(regime), *self.rates, 0.0])
-            gradient = np.asarray(values).reshape(-1, len(state) + 1)[surface]
+            values = self._gradients(on_surface, pars=self._behind[regime])
+            gradient = values.reshape(-1, len(state) + 1)[surface]
         return Switched(
             int(_event(kind, after)), after, self.a1.leave(after, on_surface, ROUND_OFF), gradient
         )
@@ -126,16 +127,15 @@ class A1Flow:
         """The field of a regime."""
         return np.array(self.a1.field(regime)(0.0, state))
 
+    def slopes(self, regimes: NDArray[np.intp], states: Vector) -> Vector:
+        """Derivatives of ẍ and ÿ by state and parameter, (2, 5, n), at states (4, n)."""
+        values = self._slopes(states, pars=np.ascontiguousarray(self._behind[regimes].T))
+        return np.asarray(values).reshape(2, 5, -1)
+
     def jacobian(self, regime: int, state: Vector) -> Vector:
-        """∂f/∂z of a regime, (4, 4), from the variational equations at time 0."""
-        size = len(state)
-        integrator = self.integrator
-        integrator.time = 0.0
-        integrator.pars[:] = [*self.parameters(regime), *self.rates, 0.0]
-        integrator.state[:size] = state
-        integrator.state[size:] = np.eye(size, size + 1).ravel()
-        integrator.step(write_tc=True)
-        return np.array(integrator.tc[size:, 1]).reshape(size, size + 1)[:, :size]
+        """∂f/∂z of a regime, (4, 4)."""
+        slopes = self.slopes(np.array([regime]), state[:, None])
+        return np.vstack([np.eye(2, 4, 2), slopes[:, :4, 0]])
 
     def holds(self, regime: int) -> bool:
         """Whether a regime fixes a component of the state: stick."""

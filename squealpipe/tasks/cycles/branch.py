@@ -13,18 +13,18 @@ import xarray as xr
 from squealpipe.methods.continuation import (
     ContinuationSettings,
     ContinuationState,
-    PseudoArclength,
 )
 from squealpipe.methods.limit_cycles.branch_ends import (
     BranchEnd,
     BranchPoint,
     CycleBranchSettings,
 )
+from squealpipe.methods.limit_cycles.corrector import Corrector
 from squealpipe.methods.limit_cycles.cycle_branch import follow_cycles
 from squealpipe.methods.limit_cycles.cycle_equations import CycleEquations
 from squealpipe.methods.limit_cycles.cycles import Cycle
 from squealpipe.methods.limit_cycles.event_flow import flow
-from squealpipe.methods.limit_cycles.labels import Label
+from squealpipe.methods.limit_cycles.special_points import Label
 from squealpipe.parameters import TABLE, Parameters, is_finite_number
 from squealpipe.schema import Outcome, build
 from squealpipe.schema.cycles import CYCLE_BRANCH, LIMIT_CYCLE
@@ -211,7 +211,7 @@ def _direction(
     point = equations.pack(cycle.state, cycle.period, begin)
     ahead = np.zeros(6)
     ahead[5] = math.copysign(1.0, to - begin)
-    corrected = PseudoArclength(steps).correct(equations, point, ahead)
+    corrected = Corrector(steps).correct(equations, point, ahead)
     if corrected is None:
         return None
     return equations, ContinuationState(
@@ -240,7 +240,7 @@ def _doubled(
         direction = np.zeros(6)
         direction[:4] = flip - equations.normal * (equations.normal @ flip)
         direction /= np.linalg.norm(direction)
-        algorithm = PseudoArclength(steps)
+        algorithm = Corrector(steps)
         for length in (1e-3, 3e-3, 1e-2):
             found = algorithm.correct(equations, start + length * direction, direction)
             if found is not None:

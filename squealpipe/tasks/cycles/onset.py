@@ -11,8 +11,8 @@ from scipy.optimize import brentq
 from squealpipe.methods.continuation import (
     ContinuationSettings,
     ContinuationState,
-    PseudoArclength,
 )
+from squealpipe.methods.limit_cycles.corrector import Corrector
 from squealpipe.methods.limit_cycles.cycle_equations import CycleEquations
 from squealpipe.methods.limit_cycles.event_flow import Vector
 from squealpipe.solvers.a1.flow import A1Flow
@@ -89,7 +89,7 @@ def find_onset(
     direction[:4] = shape / size
     direction /= np.linalg.norm(direction)
     guess = equations.pack(state, equations.time, onset)
-    found = PseudoArclength(steps).correct(equations, guess, direction)
+    found = Corrector(steps).correct(equations, guess, direction)
     if found is None:
         return None
     return equations, ContinuationState(

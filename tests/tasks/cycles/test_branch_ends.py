@@ -8,7 +8,7 @@ import xarray as xr
 
 from squealpipe import Parameters, cycle_branch, limit_cycle, simulate
 from squealpipe.methods.limit_cycles.event_flow import Touch, flow
-from squealpipe.methods.limit_cycles.labels import Label
+from squealpipe.methods.limit_cycles.special_points import Label
 from squealpipe.schema import Outcome
 from squealpipe.solvers.a1.flow import A1Flow
 
@@ -73,7 +73,6 @@ def test_stick_of_no_length_is_an_onset_of_stick(sticking):
     assert np.abs(multipliers[1:] - 1.0).min() < 1e-4
 
 
-@pytest.mark.slow
 def test_branch_ends_on_the_cycle_of_half_the_period():
     params = Parameters(
         k1=0.8787958456924088, k2=1.3068838111256635, k3=1.266242024044932,
