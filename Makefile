@@ -19,7 +19,7 @@ quick: env  ## the same study, coarse, into results/quick
 	$(BIN)/snakemake --configfile workflow/config/quick.yaml
 
 test: env  ## all tests but the slow sweeps
-	$(BIN)/python -m pytest -q -n 2 --dist loadfile
+	$(BIN)/python -m pytest -q -n 2 --dist loadfile --no-loadscope-reorder
 
 bench: env  ## speed and accuracy beside other tools, as ratios
 	$(BIN)/python -m pip install -q --require-hashes -r requirements-peers.lock

@@ -64,7 +64,7 @@ def dry_runs() -> Callable[[Path, Sequence[Sequence[str]]], list[Plan]]:
     return run
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="module")
 def study_copy(quick_study, tmp_path_factory) -> Path:
     """A finished quick study whose files may be edited; dates are kept."""
     copy = tmp_path_factory.mktemp("edited") / "squealpipe"

@@ -16,7 +16,7 @@ import snakemake.cli
 import squealpipe.claims.statements
 import squealpipe.config
 import squealpipe.report.lineage  # noqa: F401
-from squealpipe.sources import closure
+from squealpipe.sources import closure, code_digests
 
 
 def dry_run(arguments: list[str]) -> tuple[int, str]:
@@ -38,6 +38,6 @@ def dry_run(arguments: list[str]) -> tuple[int, str]:
 if __name__ == "__main__":
     snakemake.cli.get_argument_parser()  # finds the plugins
     for script in Path("workflow/scripts").glob("*.py"):
-        closure(script)
+        code_digests([script, *closure(script)])
     with ThreadPoolExecutor(os.cpu_count()) as pool:
         json.dump(list(pool.map(dry_run, json.load(sys.stdin))), sys.stdout)
