@@ -16,6 +16,7 @@ from functools import cache, cached_property
 from typing import Any
 
 import numpy as np
+import pandas as pd
 import xarray as xr
 from xarray.indexes import PandasIndex
 
@@ -259,7 +260,7 @@ def _dataset(
         variables[name] = xr.Variable(entry.dims, array, entry.attributes(), fastpath=plain)
     for name in coords:
         if variables[name].dims == (name,):
-            index = PandasIndex(arrays[name], name, coord_dtype=arrays[name].dtype)
+            index = PandasIndex(pd.Index(arrays[name]), name, coord_dtype=arrays[name].dtype)
             indexes[name] = index
             variables |= index.create_variables({name: variables[name]})
     return xr.Dataset._construct_direct(variables, set(coords), indexes=indexes)  # noqa: SLF001

@@ -71,7 +71,7 @@ def origin(name: str, arguments: Mapping[str, Any]) -> dict[str, Any]:
     told: dict[str, Any] = {"made_by": f"squealpipe.{name}"}
     for key, value in list(given.items()):
         if isinstance(value, Parameters):
-            told["parameters"] = json.dumps(given.pop(key).as_dict())
+            told["parameters"] = _as_json(given.pop(key))
         elif isinstance(value, xr.Dataset):
             told |= {key: value.attrs[key] for key in INHERITED if key in value.attrs}
             del given[key]
@@ -80,6 +80,11 @@ def origin(name: str, arguments: Mapping[str, Any]) -> dict[str, Any]:
     told["tolerance"] = given.pop("tol", told.get("tolerance", "round-off"))
     told["arguments"] = json.dumps({key: plain(value) for key, value in given.items()})
     return {**told, **versions()}
+
+
+@functools.lru_cache(maxsize=64)
+def _as_json(parameters: Parameters) -> str:
+    return json.dumps(parameters.as_dict())
 
 
 def plain(value: Any) -> Any:

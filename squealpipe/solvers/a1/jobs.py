@@ -168,9 +168,9 @@ def _sample_times(
     array = real_array("times", times)
     if array.ndim == 0:
         raise ValueError("times must be a sequence of instants")
-    rows = np.broadcast_to(array, (*shape, array.shape[-1])).reshape(-1, array.shape[-1])
-    if array.size and not ((rows[:, 1:] >= rows[:, :-1]).all() and (rows[:, 0] >= 0).all()):
+    if array.size and not ((array[..., 1:] >= array[..., :-1]).all() and array.min() >= 0):
         raise ValueError("times must ascend and start at 0 or later")
+    rows = np.broadcast_to(array, (*shape, array.shape[-1])).reshape(-1, array.shape[-1])
     if array.size and (rows[:, -1] > t_end).any():
         raise ValueError(f"times reach {rows[:, -1].max()!r}, beyond t_end = {t_end.min()!r}")
     return np.ascontiguousarray(rows / time_unit[:, None])
