@@ -33,6 +33,14 @@ def _over(sine: Any, frequency: Any, limit: Any) -> Any:
 
 
 @compiled
+def _cosine_of_double(sine: Any, cosine: Any) -> Any:
+    """cos 2φ from sin φ and cos φ, by the smaller of them: their own round-off does not enter."""
+    if abs(cosine) < abs(sine):
+        return 2.0 * cosine * cosine - 1.0
+    return 1.0 - 2.0 * sine * sine
+
+
+@compiled
 def modal_coefficients(omega1: Any, omega2: Any, time: Any) -> Any:
     """(α, β) of C = cos(√A t), S = sin(√A t)/√A and G = (1 − C)/A; real or complex ω.
 
@@ -56,7 +64,7 @@ def modal_coefficients(omega1: Any, omega2: Any, time: Any) -> Any:
     cosine_beta = -0.5 * sine_mean * sine_half
     rise_beta = -(cosine_beta + rise1) / (omega2 * omega2)
     return (
-        1.0 - (sin1 * sin1 + sin2 * sin2),
+        0.5 * (_cosine_of_double(sin1, cos1) + _cosine_of_double(sin2, cos2)),
         cosine_beta,
         0.5 * (sine1 + sine2),
         sine_beta,
