@@ -256,6 +256,8 @@ class _Follower:
         if (len(tests) > 1 or hides_folds(state, following)) and not fine:
             return _Refused.several_changes
         step = _Step(following, reached, self._locate((state, cycle), (following, reached), tests))
+        if len(step.located) < len(tests) and not fine:
+            return _Refused.several_changes
         if change is not None and change.touch in _KINKS:
             return step if self._passes(following, step.located, change) else _Refused.too_long
         return step

@@ -8,6 +8,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
+
 from squealpipe.methods.limit_cycles.cycles import Cycle
 from squealpipe.methods.limit_cycles.event_flow import Touch
 
@@ -47,11 +49,11 @@ class EventChange:
 def event_change(one: Cycle, other: Cycle) -> EventChange | None:
     """The single change between two cycles with different events; None where it is not one.
 
-    Of several places that fit, the one whose events follow each other fastest.
+    Of several that fit, the one that both cycles are nearest to.
     """
     first, second = tuple(one.passage.event_kinds), tuple(other.passage.event_kinds)
-    longer, passage = (first, one.passage) if len(first) > len(second) else (second, other.passage)
-    shorter = second if longer is first else first
+    longer, shorter = (first, second) if len(first) > len(second) else (second, first)
+    cycles = (one, other) if longer is first else (other, one)
     found: list[tuple[float, EventChange]] = []
     for appear, vanish in _EXCHANGES:
         if len(longer) - len(shorter) != appear - vanish:
@@ -64,8 +66,18 @@ def event_change(one: Cycle, other: Cycle) -> EventChange | None:
             touch = one.system.touch_of(extra, missing)
             if touch is not None:
                 change = EventChange(touch, shorter, longer, place)
-                found.append((one.system.overlap(touch, passage, place), change))
+                found.append((_remoteness(change, *cycles), change))
     return min(found, key=lambda item: item[0])[1] if found else None
+
+
+def _remoteness(change: EventChange, more: Cycle, fewer: Cycle) -> float:
+    """Square of the time between the events on one side, and clearance on the other, relative."""
+    times, first = more.passage.event_times, change.first
+    meets = change.touch == Touch.meeting
+    near = times[first - 1 if meets and first else first : first + 2]
+    apart = min(np.diff(near), default=more.period) / more.period
+    clearance = fewer.system.clearance(change.touch, fewer.passage)
+    return float(apart**2 + clearance / fewer.system.unit_of(change.touch))
 
 
 def same_events(one: Cycle, other: Cycle) -> bool:

@@ -88,6 +88,9 @@ class HybridSystem(Protocol):
     def clearance(self, touch: Touch, passage: Passage) -> float:
         """How far a motion that was kept is from a touch; infinite where none is near."""
 
+    def unit_of(self, touch: Touch) -> float:
+        """The unit of a clearance."""
+
     def overlap(self, touch: Touch, passage: Passage, first: int) -> float:
         """How far a motion is beyond a touch whose first event has the index ``first``."""
 

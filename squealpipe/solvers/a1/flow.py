@@ -170,6 +170,13 @@ class A1Flow:
                     distances.append(abs(self.a1.lag(state)))
         return min(distances, default=np.inf)
 
+    def unit_of(self, touch: Touch) -> float:
+        """The unit of a clearance: l_pre, l_pre √(k1/m) or μs k3 l_pre."""
+        p = self.params
+        if touch in {Touch.split, Touch.passing}:
+            return max(p.static_mu * p.k3 * p.preload, 1e-300)
+        return p.preload if touch == Touch.graze else p.preload / p.time_unit
+
     def overlap(self, touch: Touch, passage: Passage, first: int) -> float:
         """How far a motion is beyond a touch whose first event has the index ``first``.
 
