@@ -46,10 +46,13 @@ def approach(
     low, high = 0.0, np.inf
     length = _PROBE * state.step * size
     for _ in range(_MOST_TRIALS):
-        found = _same_side(equations, algorithm, state, cycle, length)
+        nearest = state if reached is None else reached[0]
+        found = _same_side(equations, algorithm, state, cycle, length, nearest)
         if found is None:
             high = length
             length = 0.5 * (low + high)
+        elif found[0].tangent @ state.tangent < algorithm.settings.least_cosine:
+            return None  # beyond a turn, which comes first
         else:
             there = distance(found[1])
             if not there < here:
@@ -72,9 +75,15 @@ def _same_side(
     state: ContinuationState,
     cycle: Cycle,
     length: float,
+    nearest: ContinuationState,
 ) -> tuple[ContinuationState, Cycle] | None:
-    """The branch's point so far ahead, if it is near there and has the same events."""
-    corrected = algorithm.correct(equations, state.point + length * state.tangent, state.tangent)
+    """The branch's point so far ahead, if it is near there and has the same events.
+
+    The guess is on the tangent of the nearest point that is known.
+    """
+    left = length - float(state.tangent @ (nearest.point - state.point))
+    guess = nearest.point + left / float(state.tangent @ nearest.tangent) * nearest.tangent
+    corrected = algorithm.correct(equations, guess, state.tangent)
     if corrected is None or np.linalg.norm(corrected[0] - state.point) > 2.0 * length:
         return None
     point, tangent, iterations, residual = corrected
@@ -128,6 +137,7 @@ def around_corner(
         state,
         cycle,
         _PROBE * state.step * (1.0 + float(np.linalg.norm(state.point))),
+        state,
     )
     if probe is None:
         return None
@@ -136,8 +146,6 @@ def around_corner(
         if not (np.isfinite(here) and there < (1.0 - 0.5 * _PROBE) * here):
             continue
         touched = approach(equations, algorithm, state, cycle, measure)
-        if touched and touched[0].tangent @ state.tangent < algorithm.settings.least_cosine:
-            continue
         beyond = touched and turn_corner(equations, algorithm, *touched)
         if touched and beyond:
             return touched, beyond
