@@ -114,3 +114,24 @@ def test_time_of_a_known_wait() -> None:
 
     _, seconds = timed(lambda: time.sleep(0.01), repeats=3)
     assert 0.01 <= seconds < 0.2
+
+
+def test_a_long_run_is_called_twice() -> None:
+    import time
+
+    calls: list[None] = []
+    timed(lambda: calls.append(time.sleep(0.11)), repeats=5)
+    assert len(calls) == 2
+
+
+def test_evaluations_do_not_depend_on_the_number_of_repeats() -> None:
+    counts = [
+        [
+            solution.evaluations
+            for solution in speed_accuracy_harmonic.solutions(
+                Parameters(), harmonics=[4], sigmas=[], oversampling=[], repeats=repeats
+            )
+        ]
+        for repeats in (1, 3)
+    ]
+    assert counts[0] == counts[1]

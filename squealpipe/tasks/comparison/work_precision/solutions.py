@@ -18,6 +18,8 @@ _Result = TypeVar("_Result")
 
 _SHORT = 2e-3
 """A run shorter than this, s, is called several times between two readings of the clock."""
+_LONG = 0.1
+"""A run longer than this, s, is called twice at most: it scatters little, and all cores wait."""
 
 
 class Solution(NamedTuple):
@@ -40,12 +42,13 @@ class Solution(NamedTuple):
 def timed(run: Callable[[], _Result], repeats: int) -> tuple[_Result, float]:
     """The result of a run and the median wall time of ``repeats`` runs, s.
 
-    The median drops what the first run compiles or allocates, from three repeats on.
+    The median drops what the first run compiles or allocates, from three repeats on; of two runs,
+    as many as long ones get, the shorter counts.
     """
     result, first = _clocked(run, 1)
     calls = 1 if first > _SHORT else 5
-    samples = [first, *(_clocked(run, calls)[1] for _ in range(repeats - 1))]
-    return result, statistics.median(samples)
+    others = (min(repeats, 2) if first > _LONG else repeats) - 1
+    return result, statistics.median_low([first, *(_clocked(run, calls)[1] for _ in range(others))])
 
 
 def _clocked(run: Callable[[], _Result], calls: int) -> tuple[_Result, float]:
