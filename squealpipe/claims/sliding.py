@@ -117,7 +117,8 @@ def linearly_stable_but_not(run: Run) -> Finding:
         "≤",
         1e-9,
         f"A3's largest growth rate there is {rate:.1g}; in A1 |x| reaches {early:.3g} l_pre in "
-        f"the first half of the run and {late:.3g} l_pre in the second.",
+        f"the first half of the run and {late:.3g} l_pre in the second"
+        f" ({GROWTH_THRESHOLD:g} times as far counts as growth).",
         also=late > GROWTH_THRESHOLD * early,
     )
 

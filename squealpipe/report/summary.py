@@ -115,14 +115,19 @@ def _fitted(statements: Rows, facts: Mapping[str, Facts]) -> str:
     found = facts["inference"]
     fitted = [row for row in statements if row["basis"] == Basis.fitted.name]
     others = [row for row in statements if row["basis"] == Basis.predicted.name]
+    fails = Verdict.fails.words
     held = sum(row["verdict"] == Verdict.holds.words for row in others)
-    refuted = [str(row["id"]) for row in others if row["verdict"] == Verdict.fails.words]
+    refuted = [str(row["id"]) for row in others if row["verdict"] == fails]
     broken = found["broken"]
+    beyond = [str(r["id"]) for r in fitted if r["verdict"] == fails and r["id"] not in broken]
     here = (
         f"the parameters of this run violate {listed(broken)}"
         if broken
         else "the parameters of this run satisfy all of them"
     )
+    if beyond:
+        fail = "fails" if len(beyond) == 1 else "fail"
+        here += f" ({listed(beyond)} {fail} in a part that was not fitted)"
     judged = (
         f"{listed(refuted)} {'is' if len(refuted) == 1 else 'are'} refuted"
         if refuted

@@ -50,6 +50,9 @@ def test_fitted_statements_are_no_predictions() -> None:
     assert "fitted to 1 of the statements, which 7 of 100 trial sets satisfy" in text
     assert "of the other 3 statements 1 hold, and F3 is refuted" in text
     assert "violate F1" in told(inference=INFERENCE | {"broken": ["F1"]})
+    rows = [ROWS[0] | {"verdict": "fails"}, *ROWS[1:]]
+    text = " ".join(summary.summarize(rows, {"inference": INFERENCE}, ["fig01"]))
+    assert "satisfy all of them (F1 fails in a part that was not fitted)" in text
 
 
 @pytest.mark.parametrize(

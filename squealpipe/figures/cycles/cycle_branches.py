@@ -41,8 +41,8 @@ CAPTION = (
     "Limit cycles of the full model with dashpots over the friction coefficient: largest |x| of "
     "the cycle. Full lines: stable; dashed: unstable; marks: located special points. Dots: largest "
     "|x| in the last fifth of long runs from starts near and far, cycles and states of rest alike. "
-    "(a) Scene of Fig. 3; (b) a scene where steady sliding flutters, the branch from its onset; "
-    "(c) scene of Fig. 2(d)."
+    "(a) Scene of Fig. 3; (b) the scene of the flutter onset, the branch from there if steady "
+    "sliding flutters within the range; (c) scene of Fig. 2(d)."
 )
 ALT = (
     "Three charts of largest |x| over friction. Lines show branches of cycles with marks at "
@@ -60,7 +60,7 @@ def draw(down: xr.Dataset, up: xr.Dataset, flutter: xr.Dataset, extremes: xr.Dat
     """
     figure, axes = new_figure(PAGE, 3.2, ncols=3)
     panels = (("F3", (down, up)), ("flutter", (flutter,)), ("F2d", ()))
-    titles = ("scene of Fig. 3", "born by flutter", "scene of Fig. 2(d)")
+    titles = ("scene of Fig. 3", "from flutter onset", "scene of Fig. 2(d)")
     shown: dict[str, tuple[str, str, str]] = {}
     for letter, panel, (scene, branches), title in zip("abc", axes[0], panels, titles, strict=True):
         runs = extremes.late_max_x.sel(scene=scene)

@@ -16,7 +16,8 @@ READS = ("cycles/branch_F3_down", "cycles/branch_flutter")
 CAPTION = (
     "Floquet multipliers along two branches of the previous figure, without the trivial one. Dots: "
     "points where the cycle is stable; crosses: where it is not; the circle is the limit of "
-    "stability. (a) Scene of Fig. 3, from the study's friction down; (b) the scene born by flutter."
+    "stability. (a) Scene of Fig. 3, from the study's friction down; (b) the "
+    "branch from the onset of flutter."
 )
 ALT = "Two complex planes with the unit circle and the multipliers of cycles along a branch."
 
@@ -30,7 +31,7 @@ def draw(growing: xr.Dataset, flutter: xr.Dataset) -> Figure:
     """
     figure, axes = new_figure(PAGE, 3.3, ncols=2)
     turn = np.linspace(0.0, 2.0 * np.pi, 200)
-    titles = ("scene of Fig. 3", "born by flutter")
+    titles = ("scene of Fig. 3", "from flutter onset")
     for letter, panel, branch, title in zip("ab", axes[0], (growing, flutter), titles, strict=True):
         panel.plot(np.cos(turn), np.sin(turn), color=GREY, linewidth=0.8)
         real = branch.multiplier_real.values[:, 1:]
@@ -44,6 +45,8 @@ def draw(growing: xr.Dataset, flutter: xr.Dataset) -> Figure:
                 real[wanted].ravel(), imaginary[wanted].ravel(), marker, color=colour,
                 markersize=3.5, label=words,
             )  # fmt: skip
+        if not stable.size:
+            panel.text(0.0, 0.0, "no cycle", ha="center", color=GREY)
         panel.set(xlabel="Re λ", ylabel="Im λ", aspect="equal")
         panel.set_adjustable("datalim")
         panel_letter(panel, letter, title)

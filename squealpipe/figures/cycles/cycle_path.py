@@ -16,9 +16,9 @@ if TYPE_CHECKING:
 
 READS = ("cycles/limit_F3",)
 CAPTION = (
-    "The limit cycle of the scene of Fig. 3 with dashpots, at the study's friction. (a) Path of "
-    "the mass; the line is the height at which contact ends. (b) Velocity along the belt over one "
-    "period; the line is belt speed. Colours: the regime."
+    "The limit cycle of the scene of Fig. 3 with dashpots, at the study's friction, if there is "
+    "one. (a) Path of the mass; the line is the height at which contact ends. (b) Velocity along "
+    "the belt over one period; the line is belt speed. Colours: the regime."
 )
 ALT = (
     "Left, a closed path in the plane of x and y; right, velocity over one period. Regimes differ "

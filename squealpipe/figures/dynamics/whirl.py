@@ -26,9 +26,9 @@ READS = ("simulate/whirl", "whirl")
 CAPTION = (
     "The response of Fig. 3 followed further. (a) x at (0.4π, 0.6π); the band marks the time that "
     "Fig. 3 shows. (b) Largest |x| late in the run over belt speed. Dashed: the line that follows "
-    "from the energy at speed V in springs of stiffness k₁ + k₂. Full line: fit of the same form, "
-    "over the speeds that it covers; dotted below them. Grey stroke: the slowest belt found to "
-    "whirl the mass."
+    "from the energy at speed V in springs of stiffness k₁ + k₂. Only where the mass whirls: a "
+    "full line, fit of the same form, over the speeds that it covers, dotted below them, and a "
+    "grey stroke at the slowest belt found to whirl the mass."
 )
 ALT = (
     "Left, x over time with a band over the time of Fig. 3. Right, a log–log chart of the final "
