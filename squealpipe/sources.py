@@ -11,19 +11,24 @@ import ast
 import hashlib
 import os
 from collections.abc import Iterable, Iterator, Sequence
-from functools import cache
+from dataclasses import dataclass
+from functools import cache, cached_property
 from pathlib import Path
-from typing import NamedTuple
 
 PACKAGE = Path(__file__).resolve().parent
 
 
-class Source(NamedTuple):
-    """One file: its bytes as a checksum, its code as a digest, and the package files it imports."""
+@dataclass(frozen=True)
+class Source:
+    """One file: its bytes and the package files that it imports."""
 
-    checksum: str
-    code: str
+    content: bytes
     imports: frozenset[Path]
+
+    @cached_property
+    def code(self) -> str:
+        """Digest of the code; wanted for few of the files that are looked through for imports."""
+        return _code_digest(ast.parse(self.content))
 
 
 def closure(script: str | Path) -> list[Path]:
@@ -75,20 +80,14 @@ def first_seen(source: Path) -> Source:
         elif isinstance(node, ast.ImportFrom) and node.module and not node.level:
             names.add(node.module)
             names.update(f"{node.module}.{alias.name}" for alias in node.names)
-    return Source(
-        checksum=hashlib.sha256(content).hexdigest(),
-        code=_code_digest(tree),
-        imports=frozenset(path for name in names for path in _files(name)),
-    )
+    return Source(content, frozenset(path for name in names for path in _files(name)))
 
 
 def _is_edited(path: Path) -> bool:
     before = first_seen(path)
     try:
         content = path.read_bytes()
-        if hashlib.sha256(content).hexdigest() == before.checksum:
-            return False
-        return _code_digest(ast.parse(content)) != before.code
+        return content != before.content and _code_digest(ast.parse(content)) != before.code
     except (OSError, SyntaxError):  # deleted, or saved half-way through an edit
         return True
 

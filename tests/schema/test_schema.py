@@ -191,3 +191,13 @@ def test_importing_one_table_does_not_import_the_others():
     run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     tables = [f"squealpipe.schema.{name}" for name in ("comparing", "linear", "outcomes")]
     assert run.stdout.split() == tables
+
+
+def test_reading_a_dataset_loads_no_heavy_library():
+    """Every job looks for its schema in all tables: what one of them imports costs all jobs."""
+    code = (
+        "import sys; from squealpipe.schema import all_schemas; all_schemas(); "
+        "print(*{name.split('.')[0] for name in sys.modules} & {'scipy', 'heyoka', 'numba'})"
+    )
+    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert run.stdout.split() == []

@@ -7,7 +7,7 @@ from enum import IntEnum
 
 from squealpipe.methods.continuation import ContinuationState
 from squealpipe.methods.limit_cycles.cycles import Cycle
-from squealpipe.methods.limit_cycles.special_points import Label
+from squealpipe.methods.limit_cycles.labels import Label
 
 
 class BranchEnd(IntEnum):

@@ -27,10 +27,10 @@ from squealpipe.methods.limit_cycles.cycle_equations import CycleEquations, anch
 from squealpipe.methods.limit_cycles.cycles import Cycle, multiplier_change
 from squealpipe.methods.limit_cycles.event_changes import EventChange, event_change, same_events
 from squealpipe.methods.limit_cycles.event_flow import Touch, Vector
+from squealpipe.methods.limit_cycles.labels import Label
 from squealpipe.methods.limit_cycles.shorter_cycles import after_part, at_crossing, is_shorter
 from squealpipe.methods.limit_cycles.special_points import (
     LABELS,
-    Label,
     Located,
     Test,
     hides_folds,

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from enum import IntEnum
 
 import numpy as np
 from scipy.optimize import brentq
@@ -14,19 +13,7 @@ from squealpipe.methods.limit_cycles.cycle_equations import CycleEquations, cycl
 from squealpipe.methods.limit_cycles.cycles import Cycle
 from squealpipe.methods.limit_cycles.event_changes import EventChange
 from squealpipe.methods.limit_cycles.event_flow import Touch, Vector
-
-
-class Label(IntEnum):
-    """What a point of a branch is."""
-
-    regular = 0
-    fold = 1
-    period_doubling = 2
-    torus = 3
-    grazing = 4
-    stick_onset = 5
-    end = 6
-
+from squealpipe.methods.limit_cycles.labels import Label
 
 LABELS = {
     Touch.graze: Label.grazing,

@@ -24,7 +24,7 @@ from squealpipe.methods.limit_cycles.cycle_branch import follow_cycles
 from squealpipe.methods.limit_cycles.cycle_equations import CycleEquations
 from squealpipe.methods.limit_cycles.cycles import Cycle
 from squealpipe.methods.limit_cycles.event_flow import flow
-from squealpipe.methods.limit_cycles.special_points import Label
+from squealpipe.methods.limit_cycles.labels import Label
 from squealpipe.parameters import TABLE, Parameters, is_finite_number
 from squealpipe.schema import Outcome, build
 from squealpipe.schema.cycles import CYCLE_BRANCH, LIMIT_CYCLE

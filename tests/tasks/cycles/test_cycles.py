@@ -11,7 +11,7 @@ from scipy.optimize import brentq
 from squealpipe import Parameters, cycle_branch, limit_cycle
 from squealpipe.laws.springs import geometry, linear_stiffness
 from squealpipe.methods.limit_cycles.event_flow import flow
-from squealpipe.methods.limit_cycles.special_points import Label
+from squealpipe.methods.limit_cycles.labels import Label
 from squealpipe.schema import Outcome
 from squealpipe.solvers.a1.flow import A1Flow
 
