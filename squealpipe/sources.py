@@ -20,14 +20,25 @@ PACKAGE = Path(__file__).resolve().parent
 
 @dataclass(frozen=True)
 class Source:
-    """One file: its bytes and the package files that it imports."""
+    """One file; the workflow asks for its imports, a job for the digest of its code."""
 
     content: bytes
-    imports: frozenset[Path]
+
+    @cached_property
+    def imports(self) -> frozenset[Path]:
+        """Package files that it imports."""
+        names: set[str] = set()
+        for node in _statements(ast.parse(self.content).body):
+            if isinstance(node, ast.Import):
+                names.update(alias.name for alias in node.names)
+            elif isinstance(node, ast.ImportFrom) and node.module and not node.level:
+                names.add(node.module)
+                names.update(f"{node.module}.{alias.name}" for alias in node.names)
+        return frozenset(path for name in names for path in _files(name))
 
     @cached_property
     def code(self) -> str:
-        """Digest of the code; wanted for few of the files that are looked through for imports."""
+        """Digest of its code."""
         return _code_digest(ast.parse(self.content))
 
 
@@ -71,16 +82,7 @@ def name_of(path: Path) -> str:
 @cache
 def first_seen(source: Path) -> Source:
     """A file as it is at the first call of this process."""
-    content = source.read_bytes()
-    tree = ast.parse(content)
-    names: set[str] = set()
-    for node in _statements(tree.body):
-        if isinstance(node, ast.Import):
-            names.update(alias.name for alias in node.names)
-        elif isinstance(node, ast.ImportFrom) and node.module and not node.level:
-            names.add(node.module)
-            names.update(f"{node.module}.{alias.name}" for alias in node.names)
-    return Source(content, frozenset(path for name in names for path in _files(name)))
+    return Source(source.read_bytes())
 
 
 def _is_edited(path: Path) -> bool:
