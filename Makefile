@@ -21,6 +21,10 @@ quick: env  ## the same study, coarse, into results/quick
 test: env  ## all tests but the slow sweeps
 	$(BIN)/python -m pytest -q -n 2 --dist loadfile --no-loadscope-reorder
 
+# One thread for linear algebra, since one core is what is told: where others are at work, threads that
+# wait for one another made the peer of the backbones forty times slower.
+bench: export OPENBLAS_NUM_THREADS := 1
+bench: export OMP_NUM_THREADS := 1
 bench: env  ## speed and accuracy beside other tools, as ratios
 	$(BIN)/python -m pip install -q --require-hashes -r requirements-peers.lock
 	for script in tests/benchmarks/bench_*.py; do $(BIN)/python $$script || exit 1; done
