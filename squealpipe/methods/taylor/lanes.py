@@ -153,8 +153,12 @@ def drive(advance: Any, workspace: Workspace, clock: np.ndarray) -> None:
 
 
 def taylor_terms(tol: float) -> int:
-    """Number of Taylor coefficients for a tolerance (Jorba and Zou 2005)."""
-    return max(2, math.ceil(1.0 - 0.5 * math.log(tol))) + 1
+    """Number of Taylor coefficients for a tolerance.
+
+    Two orders more than a step's own error asks for (Jorba and Zou 2005), since errors of a
+    hundred steps add up and grow.
+    """
+    return max(2, math.ceil(1.0 - 0.5 * math.log(tol))) + 3
 
 
 def aligned(*shape: int) -> np.ndarray:

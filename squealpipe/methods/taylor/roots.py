@@ -87,7 +87,7 @@ def _look(
     if side * b0 < 0.0 or s0 * s1 >= 0.0:
         # An arch is lowest at its ends; a bow without a turning point likewise.
         return True, NO_ROOT
-    lowest = _turning_point(coefficients, variable, lane, left, right, s0)
+    lowest = _bracketed(coefficients, variable, lane, left, right, s0, of_slope=True)
     value, _, _ = evaluate_twice(coefficients, variable, lane, lowest)
     if side * value > 0.0:
         return True, NO_ROOT
@@ -96,16 +96,20 @@ def _look(
 
 @part
 def _bracketed(
-    coefficients: Any, variable: int, lane: int, left: float, right: float, side: float
-) -> Any:
+    coefficients: Any, variable: int, lane: int, left: float, right: float, side: float,
+    of_slope: bool = False,
+) -> Any:  # fmt: skip
     """The only root between a point on ``side`` of zero and one that is not, by Newton's method.
 
-    A step out of the bracket, which shrinks each time, is replaced by its middle.
+    A step out of the bracket, which shrinks each time, is replaced by its middle. Of the slope
+    instead of the polynomial if asked.
     """
     low, high = left, right
     time = 0.5 * (low + high)
     for _ in range(100):
-        value, slope, _ = evaluate_twice(coefficients, variable, lane, time)
+        value, slope, bend = evaluate_twice(coefficients, variable, lane, time)
+        if of_slope:
+            value, slope = slope, bend
         if value == 0.0:
             return time
         if value * side > 0.0:
@@ -113,30 +117,6 @@ def _bracketed(
         else:
             high = time
         following = time - value / slope
-        if not low < following < high:
-            following = 0.5 * (low + high)
-        if abs(following - time) <= 2.0**-53 * abs(time) or following in (low, high):
-            return following
-        time = following
-    return time
-
-
-@part
-def _turning_point(
-    coefficients: Any, variable: int, lane: int, left: float, right: float, slope0: float
-) -> Any:
-    """Where the slope changes its sign between two points."""
-    low, high = left, right
-    time = 0.5 * (low + high)
-    for _ in range(100):
-        _, slope, bend = evaluate_twice(coefficients, variable, lane, time)
-        if slope == 0.0:
-            return time
-        if slope * slope0 > 0.0:
-            low = time
-        else:
-            high = time
-        following = time - slope / bend
         if not low < following < high:
             following = 0.5 * (low + high)
         if abs(following - time) <= 2.0**-53 * abs(time) or following in (low, high):

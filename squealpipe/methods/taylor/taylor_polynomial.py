@@ -8,7 +8,8 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from squealpipe.methods.compiled import part, polynomial
+from squealpipe.methods.compiled import inline, part, polynomial
+from squealpipe.methods.taylor.simd import larger, smaller
 
 
 @polynomial
@@ -63,16 +64,20 @@ def evaluate_with_slope(coefficients: Any, variable: int, lane: int, step: float
     return value, slope
 
 
-@part
-def tangents_meet(start: Any, end: Any, first: Any, last: Any, step: Any) -> Any:
-    """Where the tangents at both ends of a step meet: beyond any extremum between them.
+@inline
+def above(start: Any, end: Any, first: Any, last: Any, step: Any) -> Any:
+    """A bound of the maximum between two points, for rows of lanes.
 
-    Takes numbers or rows of lanes.
-
-    ``first`` and ``last`` are the slopes, of opposite sign; the function must not have an
-    inflection inside the step.
+    ``first`` > 0 > ``last`` are the slopes there. The function may have one inflection in between:
+    on the side of the maximum that has none, the curve is below the tangent.
     """
-    return (first * (end - last * step) - last * start) / (first - last)
+    return larger(start + first * step, end - last * step)
+
+
+@inline
+def below(start: Any, end: Any, first: Any, last: Any, step: Any) -> Any:
+    """Likewise of the minimum, where ``first`` < 0 < ``last``."""
+    return smaller(start + first * step, end - last * step)
 
 
 @part

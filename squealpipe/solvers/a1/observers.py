@@ -23,12 +23,13 @@ from squealpipe.methods.taylor.simd import (
     store,
 )
 from squealpipe.methods.taylor.taylor_polynomial import (
+    above,
+    below,
     evaluate_motion,
     evaluate_state,
     extremum,
     first_guess,
     inside,
-    tangents_meet,
 )
 from squealpipe.solvers.a1.records import AT, JUMP2, TANGENT_NORM
 
@@ -49,19 +50,19 @@ def observe(c: Any, lanes: Any, at: int, begin: Any, speeds: Any) -> None:
     touching = bits_below(zero, contact)
 
     lowest, highest = load(at + AT.lowest_y), load(at + AT.highest_y)
-    meet = tangents_meet(y0, y1, vy0, vy1, step)
-    dips = bits_below(vy0, zero) & bits_below(zero, vy1) & bits_below(meet, lowest) & touching
-    tops = bits_below(zero, vy0) & bits_below(vy1, zero) & bits_below(highest, meet) & touching
+    least, most = below(y0, y1, vy0, vy1, step), above(y0, y1, vy0, vy1, step)
+    dips = bits_below(vy0, zero) & bits_below(zero, vy1) & bits_below(least, lowest) & touching
+    tops = bits_below(zero, vy0) & bits_below(vy1, zero) & bits_below(highest, most) & touching
     low, high = smaller(smaller(y0, y1), lowest), larger(larger(y0, y1), highest)
     store(at + AT.lowest_y, choose_below(zero, contact, low, lowest))
     store(at + AT.highest_y, choose_below(zero, contact, high, highest))
 
     clock, t_late = load(at + AT.clock), load(at + AT.t_late)
     early, late = load(at + AT.early_largest_x), load(at + AT.late_largest_x)
-    meet = magnitude(tangents_meet(x0, x1, vx0, vx1, step))
     large = larger(magnitude(x0), magnitude(x1))
+    most = larger(magnitude(x0 + vx0 * step), magnitude(x1 - vx1 * step))
     swings = bits_below(vx0 * vx1, zero) & bits_below(
-        choose_below(clock, t_late, early, late), meet
+        choose_below(clock, t_late, early, late), most
     )
     store(at + AT.early_largest_x, choose_below(clock, t_late, larger(early, large), early))
     store(at + AT.late_largest_x, choose_below(clock, t_late, late, larger(late, large)))
@@ -69,8 +70,8 @@ def observe(c: Any, lanes: Any, at: int, begin: Any, speeds: Any) -> None:
 
     out0, out1 = x0 * vx0 + y0 * vy0, x1 * vx1 + y1 * vy1
     first, last, farthest = x0 * x0 + y0 * y0, x1 * x1 + y1 * y1, load(at + AT.largest_r2)
-    meet = tangents_meet(first, last, 2.0 * out0, 2.0 * out1, step)
-    turns = bits_below(zero, out0) & bits_below(out1, zero) & bits_below(farthest, meet)
+    most = above(first, last, 2.0 * out0, 2.0 * out1, step)
+    turns = bits_below(zero, out0) & bits_below(out1, zero) & bits_below(farthest, most)
     store(at + AT.largest_r2, larger(last, farthest))
     bits = dips | tops | swings | turns
     while bits:
@@ -107,7 +108,7 @@ def observe_pivot(
     out0 = x0 * speeds[0] + y0 * speeds[1]
     out1 = x1 * load(at + AT.vx) + y1 * load(at + AT.vy)
     far, near = x0 * x0 + y0 * y0, x1 * x1 + y1 * y1
-    least = tangents_meet(far, near, 2.0 * out0, 2.0 * out1, step)
+    least = below(far, near, 2.0 * out0, 2.0 * out1, step)
     close = bits_below(least * scale, nearest) | bits_below(least, far * JUMP2)
     passes = bits_below(out0, zero) & bits_below(zero, out1) & close
     crosses = bits_below(x0, zero) ^ bits_below(x1, zero)

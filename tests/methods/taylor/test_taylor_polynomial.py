@@ -9,6 +9,8 @@ import numpy as np
 import pytest
 
 from squealpipe.methods.taylor import taylor_polynomial
+from squealpipe.methods.taylor.lanes import aligned
+from squealpipe.methods.taylor.simd import LANES, ROW, splat, store
 
 STEP = 0.4
 
@@ -64,10 +66,32 @@ def test_extrema_are_found_to_round_off():
     assert taylor.extremum(table, 1, 3, 0, STEP, first, last) == pytest.approx(-1.0, abs=1e-14)
 
 
-def test_tangents_meet_beyond_the_extremum():
-    start, end = math.sin(0.9), math.sin(3 * STEP + 0.9)
-    first, last = 3 * math.cos(0.9), 3 * math.cos(3 * STEP + 0.9)
-    assert taylor.tangents_meet(start, end, first, last, STEP) > 1.0
+@numba.njit
+def bounds_over_step(row, start, end, first, last, step):
+    """``above`` of one curve and ``below`` of its negative, in each lane."""
+    at = row.ctypes.data
+    curve = splat(start), splat(end), splat(first), splat(last), splat(step)
+    store(at, taylor_polynomial.above(*curve))
+    mirrored = -1.0 * curve[0], -1.0 * curve[1], -1.0 * curve[2], -1.0 * curve[3], curve[4]
+    store(at + ROW, taylor_polynomial.below(*mirrored))
+
+
+@pytest.mark.parametrize("early", [True, False])
+def test_a_maximum_is_below_its_bound_also_with_an_inflection_in_the_step(early):
+    """Tangents at the ends of t (t − 1)², or of it backwards, meet far below its top."""
+    curve = np.polynomial.Polynomial([0.0, 1.0, -2.0, 1.0])
+    length = 0.99
+    if not early:
+        curve = curve(np.polynomial.Polynomial([length, -1.0]))
+    ends = curve(0.0), curve(length), curve.deriv()(0.0), curve.deriv()(length)
+    top = curve(curve.deriv().roots()).max()
+    rows = aligned(2, LANES)
+    bounds_over_step(rows, *ends, length)
+    assert (rows[0] >= top).all()
+    assert (rows[1] <= -top).all()
+    start, end, first, last = ends
+    tangents_meet = (first * (end - last * length) - last * start) / (first - last)
+    assert tangents_meet < 0.2 * top
 
 
 @pytest.mark.parametrize("scale", [1.0, 1e-12, 1e12])
