@@ -141,7 +141,7 @@ def find_cycle(system: A1Flow, state: Vector) -> tuple[Cycle | None, Outcome]:
             if any(abs(time - other) < 1e-3 * time for other in tried):
                 continue
             tried.append(time)
-            cycle = _solve(system, state, time)
+            cycle = least_cycle(system, state, time)
             if cycle is None:
                 continue
             if np.abs(cycle.extent[1] - cycle.extent[0]).max() < _AT_REST * _size(cycle):
@@ -173,7 +173,7 @@ def _size(cycle: Cycle) -> float:
     return float(np.abs(cycle.state[:2]).max()) + 1e-300
 
 
-def _solve(system: A1Flow, state: Vector, time: float) -> Cycle | None:
+def least_cycle(system: A1Flow, state: Vector, time: float) -> Cycle | None:
     """The cycle from a return, described from outside stick and by its least period."""
     passage = flow(system, state, time, derivative=False, keep=True)
     free = [part for part in passage.segments if not system.holds(part.regime)]
@@ -189,7 +189,7 @@ def _solve(system: A1Flow, state: Vector, time: float) -> Cycle | None:
         and np.abs((cycle.state - place) / scale).max() < _FAR
     ):
         return None
-    for parts in (2, 3, 4, 5):
+    for parts in (5, 4, 3, 2):
         if cycle is None:
             return None
         half = flow(system, cycle.state, cycle.period / parts, derivative=False).state

@@ -14,6 +14,7 @@ from squealpipe.methods.limit_cycles.event_flow import flow
 from squealpipe.methods.limit_cycles.labels import Label
 from squealpipe.schema import Outcome
 from squealpipe.solvers.a1.flow import A1Flow
+from squealpipe.tasks.cycles.cycle import least_cycle
 
 ANGLES = (0.5 * math.pi, math.pi)
 
@@ -232,3 +233,12 @@ def test_branch_refuses_what_it_cannot_do(change, named):
     given = {"parameter": "mu", "to": 0.5, "start": (0.0, 0.0, 0.0, 0.0)} | change
     with pytest.raises(ValueError, match=named.replace("(", r"\(")):
         cycle_branch(Parameters(), 1.0, 2.0, **given)
+
+
+@pytest.mark.parametrize("rounds", [2, 3, 4, 6, 8])
+def test_a_return_after_several_rounds_gives_the_least_period(rounds):
+    params, angles = friction_oscillator(1.25, reach=1e4), ANGLES
+    once = limit_cycle(params, *angles, guess=(1.5, 0.25, 1.25, 0.0))
+    start = np.array([float(once[f"{name}_start"]) for name in ("x", "y", "vx", "vy")])
+    cycle = least_cycle(A1Flow(params, *angles), start, rounds * float(once.period))
+    np.testing.assert_allclose(cycle.period, once.period, rtol=1e-9)

@@ -1,0 +1,69 @@
+"""Folds of branches of cycles against long runs; grazing points against the force there."""
+
+import math
+
+import numpy as np
+import pytest
+
+from squealpipe import Parameters, cycle_branch, limit_cycle, simulate
+from squealpipe.methods.limit_cycles.event_flow import Touch, flow
+from squealpipe.methods.limit_cycles.special_points import Label
+from squealpipe.schema import Outcome
+from squealpipe.solvers.a1.flow import A1Flow
+
+STATE = ("x", "y", "vx", "vy")
+ONE_WAY = (Parameters(damping1=0.02, damping2=0.02, belt_speed=1.0), 0.4, 0.6)
+OTHER_WAY = (Parameters(k1=1.005, damping1=0.02, damping2=0.02, belt_speed=-1.0), 0.6, 0.4)
+
+
+def start_of(dataset):
+    return np.array([float(dataset[f"{name}_start"]) for name in STATE])
+
+
+@pytest.mark.parametrize(("params", "alpha1", "alpha2"), [ONE_WAY, OTHER_WAY])
+def test_long_runs_jump_at_the_fold(params, alpha1, alpha2):
+    """Runs swept down in friction, each from the end of the one before, leave past the fold."""
+    angles = (alpha1 * math.pi, alpha2 * math.pi)
+    branch = cycle_branch(
+        params, *angles, parameter="mu", to=0.05, start=limit_cycle(params, *angles)
+    )
+    fold = int(np.flatnonzero(branch.label == Label.fold)[0])
+    before = branch.isel(point=slice(0, fold + 1))
+    state, step, t_end = start_of(branch.isel(point=fold - 1)), 1e-3, 1500.0
+    follows = []
+    for steps in (3.0, 2.0, 1.0, 0.5, -0.5, -1.0):
+        mu = float(branch.mu[fold]) + steps * step
+        late = np.linspace(t_end - 100.0, t_end, 4001)
+        run = simulate(params.with_(mu=mu), *angles, t_end=t_end, times=late, initial_state=state)
+        state = np.array([float(run[name][-1]) for name in STATE])
+        extent = np.array([float(run.x.min()), float(run.x.max())])
+        order = np.argsort(before.mu.values)
+        known = [
+            np.interp(mu, before.mu[order], before[name][order]) for name in ("x_min", "x_max")
+        ]
+        follows.append(bool(np.abs(extent - known).max() < 0.02))
+    assert follows == [True] * 4 + [False] * 2
+
+
+def test_grazing_points_at_random_parameters_just_touch():
+    """The force at the touch, be it the least of the cycle or that of another approach."""
+    generator = np.random.default_rng(8)
+    touched = 0
+    while touched < 6:
+        params = Parameters(
+            k2=generator.uniform(0.8, 1.3), k3=generator.uniform(0.5, 1.2), mu=0.0,
+            length2=generator.uniform(4.0, 8.0), damping1=generator.uniform(0.005, 0.02),
+            damping2=generator.uniform(0.005, 0.02),
+            belt_speed=generator.uniform(20.0, 100.0),
+        )  # fmt: skip
+        angles = generator.uniform((0.15, 0.8), (0.3, 1.1))
+        branch = cycle_branch(params, *angles, parameter="mu", to=0.9, start="onset", n_points=60)
+        if branch.end == Outcome.no_convergence:
+            assert branch.sizes["point"] == 0
+            continue
+        for point in np.flatnonzero(branch.label == Label.grazing):
+            here = branch.isel(point=point)
+            system = A1Flow(params.with_(mu=float(here.mu)), *angles)
+            passage = flow(system, start_of(here), float(here.period), keep=True)
+            assert system.clearance(Touch.graze, passage) < 1e-9 * params.preload
+            touched += 1
