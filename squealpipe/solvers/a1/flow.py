@@ -228,7 +228,8 @@ class A1Flow:
             if kind == Event.slip:
                 depth, limit = self._margin(part, before), force
             elif kind in {Event.stick, Event.reversal}:
-                depth, limit = self.a1.lag(sample_path([part], np.array([before]))[0]), speed
+                end = sample_path([part], part.times[-1:])[0]
+                depth, limit = self.velocity(part.regime, end)[2], 10.0 * speed / p.time_unit
             else:
                 continue
             if abs(depth) < limit:
