@@ -106,9 +106,18 @@ class ContinuationResult:
 
 @dataclass(frozen=True)
 class PseudoArclength:
-    """The algorithm: predict along the bending tangent, correct in the plane normal to it."""
+    """The algorithm: predict along the bending tangent, correct in the plane normal to it.
+
+    Attributes:
+        settings: step control.
+        least_iterations: of Newton's method; 0 accepts a guess as it is where it is a solution.
+        own_tangent: take it from the Jacobian at the point; else, for one solution of the linear
+            system less, from the one before.
+    """
 
     settings: ContinuationSettings
+    least_iterations: int = 1
+    own_tangent: bool = False
 
     def correct(
         self, problem: Problem, guess: Vector, normal: Vector
@@ -117,10 +126,9 @@ class PseudoArclength:
 
         Returns:
             (point, tangent, iterations, residual), or None where it does not converge. The
-            tangent is that of the last Jacobian, oriented along ``normal``.
+            tangent is oriented along ``normal``.
         """
-        z = guess.copy()
-        size = len(z)
+        z, size = guess, len(guess)
         system = np.empty((size, size))
         right = np.zeros((size, 2))
         system[-1], right[-1, 1] = normal, 1.0
@@ -129,8 +137,11 @@ class PseudoArclength:
             values, jacobian = problem.evaluate(z)
             residual = float(np.abs(values).max())
             stagnates = 0.2 * previous < residual <= self.settings.stagnant
-            if (residual <= self.settings.tolerance or stagnates) and iteration > 0:
-                return z, tangent / np.linalg.norm(tangent), iteration, residual
+            solved = (
+                residual <= self.settings.tolerance or stagnates
+            ) and iteration >= self.least_iterations
+            if solved and not self.own_tangent:
+                break
             if not residual < max(10.0 * previous, self.settings.tolerance):
                 return None
             previous = residual
@@ -139,9 +150,23 @@ class PseudoArclength:
                 solution = np.linalg.solve(system, right)
             except np.linalg.LinAlgError:
                 return None
-            z = z + solution[:, 0]
             tangent = np.asarray(solution[:, 1], dtype=np.float64)
-        return None
+            if solved:
+                break
+            z = z + solution[:, 0]
+        else:
+            return None
+        return z, tangent / np.linalg.norm(tangent), iteration, residual
+
+    def solve(
+        self, problem: Problem, guess: Vector, normal: Vector, step: float
+    ) -> ContinuationState | None:
+        """The state that :meth:`correct` leads to, of no known curvature, with its next step."""
+        found = self.correct(problem, guess, normal)
+        if found is None:
+            return None
+        point, tangent, iterations, residual = found
+        return ContinuationState(point, tangent, np.zeros_like(point), step, iterations, residual)
 
     def attempt(
         self, problem: Problem, state: ContinuationState, *, least_cosine: float | None = None

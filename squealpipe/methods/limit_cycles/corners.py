@@ -8,17 +8,16 @@ the branch goes along the null vector of the Jacobian taken there.
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 
-from squealpipe.methods.continuation import ContinuationState
-from squealpipe.methods.limit_cycles.corrector import Corrector
+from squealpipe.methods.continuation import ContinuationState, PseudoArclength
 from squealpipe.methods.limit_cycles.cycle_equations import CycleEquations, cycle_at
 from squealpipe.methods.limit_cycles.cycles import Cycle
 from squealpipe.methods.limit_cycles.event_changes import EventChange, event_change, same_events
 from squealpipe.methods.limit_cycles.event_flow import Touch
-
-Place = tuple[ContinuationState, Cycle]
+from squealpipe.methods.limit_cycles.special_points import Located
 
 _MOST_TRIALS = 40
 _PROBE = 0.1
@@ -31,7 +30,7 @@ _CLOSE = 1e-11
 
 def approach(
     equations: CycleEquations,
-    algorithm: Corrector,
+    algorithm: PseudoArclength,
     state: ContinuationState,
     cycle: Cycle,
     distance: Callable[[Cycle], float],
@@ -71,7 +70,7 @@ def approach(
 
 def _same_side(
     equations: CycleEquations,
-    algorithm: Corrector,
+    algorithm: PseudoArclength,
     state: ContinuationState,
     cycle: Cycle,
     length: float,
@@ -83,23 +82,22 @@ def _same_side(
     """
     left = length - float(state.tangent @ (nearest.point - state.point))
     guess = nearest.point + left / float(state.tangent @ nearest.tangent) * nearest.tangent
-    corrected = algorithm.correct(equations, guess, state.tangent)
-    if corrected is None or np.linalg.norm(corrected[0] - state.point) > 2.0 * length:
+    reached = algorithm.solve(equations, guess, state.tangent, state.step)
+    if reached is None or np.linalg.norm(reached.point - state.point) > 2.0 * length:
         return None
-    point, tangent, iterations, residual = corrected
-    reached = ContinuationState(point, tangent, np.zeros(6), state.step, iterations, residual)
     other = cycle_at(equations, reached)
     return (reached, other) if same_events(cycle, other) else None
 
 
 def turn_corner(
     equations: CycleEquations,
-    algorithm: Corrector,
+    algorithm: PseudoArclength,
     state: ContinuationState,
     cycle: Cycle,
 ) -> tuple[ContinuationState, Cycle, EventChange] | None:
     """The branch on the other side of a touch, from a point next to it."""
     size = 1.0 + float(np.linalg.norm(state.point))
+    algorithm = replace(algorithm, least_iterations=1)
     for wide in (1e-8, 1e-7, 1e-6, 1e-5):
         _, jacobian = equations.evaluate(state.point + wide * size * state.tangent)
         if not np.isfinite(jacobian).all():
@@ -107,15 +105,12 @@ def turn_corner(
         direction = np.linalg.svd(jacobian)[2][-1]
         for length in (wide * size * 10.0**power for power in range(4)):
             for way in (direction, -direction):
-                found = algorithm.correct(equations, state.point + length * way, way, 1)
-                if found is None:
+                guess = state.point + length * way
+                following = algorithm.solve(equations, guess, way, length / size)
+                if following is None:
                     continue
-                point, tangent, iterations, residual = found
-                if np.linalg.norm(point - state.point) > 3.0 * length:
+                if np.linalg.norm(following.point - state.point) > 3.0 * length:
                     continue
-                following = ContinuationState(
-                    point, tangent, np.zeros(6), length / size, iterations, residual
-                )
                 other = cycle_at(equations, following)
                 change = None if same_events(cycle, other) else event_change(cycle, other)
                 if change is not None:
@@ -125,10 +120,10 @@ def turn_corner(
 
 def around_corner(
     equations: CycleEquations,
-    algorithm: Corrector,
+    algorithm: PseudoArclength,
     state: ContinuationState,
     cycle: Cycle,
-) -> tuple[Place, tuple[ContinuationState, Cycle, EventChange] | None] | None:
+) -> tuple[Located, tuple[ContinuationState, Cycle, EventChange] | None] | None:
     """(a touch, the first point beyond it or None); None where no touch is near."""
     ending = None
     probe = _same_side(

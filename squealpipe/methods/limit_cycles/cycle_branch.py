@@ -15,6 +15,7 @@ import numpy as np
 from squealpipe.methods.continuation import (
     ContinuationSettings,
     ContinuationState,
+    PseudoArclength,
 )
 from squealpipe.methods.limit_cycles.branch_ends import (
     BranchEnd,
@@ -22,8 +23,12 @@ from squealpipe.methods.limit_cycles.branch_ends import (
     CycleBranchSettings,
 )
 from squealpipe.methods.limit_cycles.corners import around_corner
-from squealpipe.methods.limit_cycles.corrector import Corrector
-from squealpipe.methods.limit_cycles.cycle_equations import CycleEquations, anchor, cycle_at
+from squealpipe.methods.limit_cycles.cycle_equations import (
+    CycleEquations,
+    anchor,
+    cycle_algorithm,
+    cycle_at,
+)
 from squealpipe.methods.limit_cycles.cycles import Cycle, multiplier_change
 from squealpipe.methods.limit_cycles.event_changes import EventChange, event_change, same_events
 from squealpipe.methods.limit_cycles.event_flow import Touch, Vector
@@ -89,14 +94,14 @@ def follow_cycles(
     Returns:
         (points, why it ended); the last point is labelled as the end.
     """
-    return _Follower(equations, settings, Corrector(steps)).run(start)
+    return _Follower(equations, settings, cycle_algorithm(steps)).run(start)
 
 
 class _Follower:
     """A branch as it is followed."""
 
     def __init__(
-        self, equations: CycleEquations, settings: CycleBranchSettings, algorithm: Corrector
+        self, equations: CycleEquations, settings: CycleBranchSettings, algorithm: PseudoArclength
     ) -> None:
         self.equations = equations
         self.settings = settings
@@ -377,11 +382,10 @@ class _Follower:
         guess[5] = edge / equations.unit
         normal = np.zeros(6)
         normal[5] = np.copysign(1.0, state.tangent[5])
-        corrected = self.algorithm.correct(equations, guess, normal)
-        if corrected is None or float(np.linalg.norm(corrected[0] - guess)) > 0.3 * length:
+        found = self.algorithm.solve(equations, guess, normal, state.step)
+        if found is None or float(np.linalg.norm(found.point - guess)) > 0.3 * length:
             return None
-        point, tangent, iterations, residual = corrected
-        return ContinuationState(point, tangent, np.zeros(6), state.step, iterations, residual)
+        return found
 
     def _reason(self, cycle: Cycle) -> BranchEnd:
         """Why no step leads on."""

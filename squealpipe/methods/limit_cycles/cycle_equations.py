@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from squealpipe.methods.continuation import ContinuationState
+from squealpipe.methods.continuation import ContinuationSettings, ContinuationState, PseudoArclength
 from squealpipe.methods.limit_cycles.cycles import Cycle
 from squealpipe.methods.limit_cycles.event_flow import HybridSystem, Passage, Vector, flow
 
@@ -61,6 +61,11 @@ class CycleEquations:
         jacobian[:4, 5] = passage.slope / self.scale
         jacobian[4, :4] = self.normal
         return values, jacobian
+
+
+def cycle_algorithm(steps: ContinuationSettings) -> PseudoArclength:
+    """For equations that are dear to evaluate: a good guess is a point, with its own tangent."""
+    return PseudoArclength(steps, least_iterations=0, own_tangent=True)
 
 
 def cycle_at(equations: CycleEquations, state: ContinuationState) -> Cycle:

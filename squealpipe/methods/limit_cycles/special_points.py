@@ -7,8 +7,7 @@ from collections.abc import Callable
 import numpy as np
 from scipy.optimize import brentq
 
-from squealpipe.methods.continuation import ContinuationState
-from squealpipe.methods.limit_cycles.corrector import Corrector
+from squealpipe.methods.continuation import ContinuationState, PseudoArclength
 from squealpipe.methods.limit_cycles.cycle_equations import CycleEquations, cycle_at
 from squealpipe.methods.limit_cycles.cycles import Cycle
 from squealpipe.methods.limit_cycles.event_changes import EventChange
@@ -79,7 +78,7 @@ def _modulus(cycle: Cycle) -> float:
 
 def locate(
     equations: CycleEquations,
-    algorithm: Corrector,
+    algorithm: PseudoArclength,
     before: Located,
     after: Located,
     test: Test,
@@ -94,13 +93,9 @@ def locate(
     def value(share: float) -> float:
         if share not in known:
             guess = _between(known, share, first.tangent, reach)
-            corrected = algorithm.correct(equations, guess, first.tangent)
-            if corrected is None:
+            state = algorithm.solve(equations, guess, first.tangent, first.step)
+            if state is None:
                 raise ArithmeticError
-            point, tangent, iterations, residual = corrected
-            state = ContinuationState(
-                point, tangent, np.zeros_like(point), first.step, iterations, residual
-            )
             known[share] = state, cycle_at(equations, state)
         result = test(*known[share])
         return 0.0 if abs(result) < zero else result

@@ -10,18 +10,14 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from squealpipe.methods.continuation import (
-    ContinuationSettings,
-    ContinuationState,
-)
+from squealpipe.methods.continuation import ContinuationSettings, ContinuationState
 from squealpipe.methods.limit_cycles.branch_ends import (
     BranchEnd,
     BranchPoint,
     CycleBranchSettings,
 )
-from squealpipe.methods.limit_cycles.corrector import Corrector
 from squealpipe.methods.limit_cycles.cycle_branch import follow_cycles
-from squealpipe.methods.limit_cycles.cycle_equations import CycleEquations
+from squealpipe.methods.limit_cycles.cycle_equations import CycleEquations, cycle_algorithm
 from squealpipe.methods.limit_cycles.cycles import Cycle
 from squealpipe.methods.limit_cycles.event_flow import flow
 from squealpipe.methods.limit_cycles.labels import Label
@@ -211,12 +207,8 @@ def _direction(
     point = equations.pack(cycle.state, cycle.period, begin)
     ahead = np.zeros(6)
     ahead[5] = math.copysign(1.0, to - begin)
-    corrected = Corrector(steps).correct(equations, point, ahead)
-    if corrected is None:
-        return None
-    return equations, ContinuationState(
-        corrected[0], corrected[1], np.zeros(6), steps.first_step, 0, corrected[3]
-    )
+    state = cycle_algorithm(steps).solve(equations, point, ahead, steps.first_step)
+    return None if state is None else (equations, state)
 
 
 def _doubled(
@@ -240,13 +232,11 @@ def _doubled(
         direction = np.zeros(6)
         direction[:4] = flip - equations.normal * (equations.normal @ flip)
         direction /= np.linalg.norm(direction)
-        algorithm = Corrector(steps)
+        algorithm = cycle_algorithm(steps)
         for length in (1e-3, 3e-3, 1e-2):
-            found = algorithm.correct(equations, start + length * direction, direction)
-            if found is not None:
-                state = ContinuationState(
-                    found[0], found[1], np.zeros(6), steps.first_step, 0, found[3]
-                )
+            guess = start + length * direction
+            state = algorithm.solve(equations, guess, direction, steps.first_step)
+            if state is not None:
                 followed, end = follow_cycles(equations, state, settings, steps)
                 return followed, ENDS[end]
     return [], Outcome.no_doubling

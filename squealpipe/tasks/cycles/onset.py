@@ -8,12 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import brentq
 
-from squealpipe.methods.continuation import (
-    ContinuationSettings,
-    ContinuationState,
-)
-from squealpipe.methods.limit_cycles.corrector import Corrector
-from squealpipe.methods.limit_cycles.cycle_equations import CycleEquations
+from squealpipe.methods.continuation import ContinuationSettings, ContinuationState
+from squealpipe.methods.limit_cycles.cycle_equations import CycleEquations, cycle_algorithm
 from squealpipe.methods.limit_cycles.event_flow import Vector
 from squealpipe.solvers.a1.flow import A1Flow
 from squealpipe.solvers.a1.sliding import sliding_equilibrium, sliding_regime
@@ -89,9 +85,5 @@ def find_onset(
     direction[:4] = shape / size
     direction /= np.linalg.norm(direction)
     guess = equations.pack(state, equations.time, onset)
-    found = Corrector(steps).correct(equations, guess, direction)
-    if found is None:
-        return None
-    return equations, ContinuationState(
-        found[0], found[1], np.zeros(6), steps.first_step, 0, found[3]
-    )
+    state = cycle_algorithm(steps).solve(equations, guess, direction, steps.first_step)
+    return None if state is None else (equations, state)
