@@ -65,6 +65,12 @@ def dry_runs() -> Callable[[Path, Sequence[Sequence[str]]], list[Plan]]:
 
 
 @pytest.fixture(scope="module")
+def one_checkout(new_checkout, tmp_path_factory) -> Path:
+    """One for all tests of a file: in each new one the engine is compiled anew."""
+    return new_checkout(tmp_path_factory.mktemp("one") / "squealpipe")
+
+
+@pytest.fixture(scope="module")
 def study_copy(quick_study, tmp_path_factory) -> Path:
     """A finished quick study whose files may be edited; dates are kept."""
     copy = tmp_path_factory.mktemp("edited") / "squealpipe"

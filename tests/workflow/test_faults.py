@@ -86,16 +86,9 @@ def discard_results(checkout: Path) -> None:
 
 
 @pytest.fixture(scope="module")
-def one_checkout(new_checkout, tmp_path_factory):
-    """One for all tests: in each new one the engine is compiled anew."""
-    checkout = new_checkout(tmp_path_factory.mktemp("faults") / "squealpipe")
-    (checkout / "small.yaml").write_text(SMALL)
-    return checkout
-
-
-@pytest.fixture(scope="module")
 def undisturbed(one_checkout):
     """Ids of the datasets of a run without faults, and how long it took."""
+    (one_checkout / "small.yaml").write_text(SMALL)
     compiled = run(one_checkout)
     assert compiled.returncode == 0, compiled.stderr[-4000:]
     discard_results(one_checkout)

@@ -193,12 +193,6 @@ def wait(condition, seconds: float = 120.0):
 
 
 @pytest.fixture(scope="module")
-def one_checkout(new_checkout, tmp_path_factory):
-    """One for all tests: in each new one the engine is compiled anew."""
-    return new_checkout(tmp_path_factory.mktemp("slurm") / "squealpipe")
-
-
-@pytest.fixture(scope="module")
 def undisturbed(one_checkout, snakemake) -> Path:
     """The same map made on this machine, in another results folder."""
     (one_checkout / "local.yaml").write_text(SMALL + "results: results/local\n")
