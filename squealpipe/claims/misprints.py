@@ -11,7 +11,7 @@ from squealpipe.claims.motions import scene
 from squealpipe.claims.statement import Rows
 from squealpipe.schema import Outcome
 from squealpipe.schema.claims import Verdict
-from squealpipe.schema.dynamics import growth_threshold
+from squealpipe.schema.dynamics.runs import growth_threshold
 from squealpipe.schema.inference import wilson_interval
 
 rows = Rows()

@@ -9,7 +9,7 @@ from squealpipe.claims.evidence import Finding, Run, finding
 from squealpipe.claims.motions import events, halves, scene
 from squealpipe.claims.statement import Check, Rows
 from squealpipe.schema.claims import Verdict
-from squealpipe.schema.dynamics import GROWTH_THRESHOLD
+from squealpipe.schema.dynamics.runs import GROWTH_THRESHOLD
 from squealpipe.schema.inference import LITTLE
 
 rows = Rows()

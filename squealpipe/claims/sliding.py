@@ -14,7 +14,7 @@ from squealpipe.claims.maps import (
 from squealpipe.claims.motions import halves, scene
 from squealpipe.claims.statement import Rows
 from squealpipe.schema.claims import Verdict
-from squealpipe.schema.dynamics import GROWTH_THRESHOLD
+from squealpipe.schema.dynamics.runs import GROWTH_THRESHOLD
 
 rows = Rows()
 

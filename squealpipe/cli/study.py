@@ -122,7 +122,7 @@ def compare(
         html: write a page with pictures: maps that differ, and figures of changed statements.
         json_: print JSON.
     """
-    from squealpipe.store.compare import compare as difference_of
+    from squealpipe.store.comparison.compare import compare as difference_of
 
     comparison = difference_of(a, b)
     if html is not None:

@@ -16,11 +16,11 @@ import xarray as xr
 from squealpipe.figures.parts.difference import CAPTION, draw, drawable
 from squealpipe.schema import find
 from squealpipe.schema.comparing import ComparedAs
-from squealpipe.store.compare import Comparison, DatasetDifference
-from squealpipe.store.differences import Agreement, VariableDifference
-from squealpipe.store.matching import align
+from squealpipe.store.comparison.compare import Comparison, DatasetDifference
+from squealpipe.store.comparison.differences import Agreement, VariableDifference
+from squealpipe.store.comparison.matching import align
+from squealpipe.store.comparison.statements import StatementChange
 from squealpipe.store.netcdf import load
-from squealpipe.store.statements import StatementChange
 
 MOST_PICTURES = 12
 SCREEN = {"parameters": 6, "statements": 5, "differences": 6}

@@ -1,6 +1,6 @@
 """What every dataset holds: names, dimensions, units, meanings, tolerances: stated once.
 
-The tables are in the sibling modules, one a topic; a task imports its own table and calls
+The tables are in the modules below, one a topic; a task imports its own table and calls
 :func:`build`. :func:`find` gets a schema by name, for readers of files.
 """
 
@@ -341,8 +341,8 @@ def find(name: str) -> DatasetSchema:
 def all_schemas() -> dict[str, DatasetSchema]:
     """Every schema of the package by name."""
     found = {}
-    for module in pkgutil.iter_modules(__path__):
-        table = importlib.import_module(f"{__name__}.{module.name}")
+    for module in pkgutil.walk_packages(__path__, f"{__name__}."):
+        table = importlib.import_module(module.name)
         for value in vars(table).values():
             for schema in value if isinstance(value, tuple) else (value,):
                 if isinstance(schema, DatasetSchema):

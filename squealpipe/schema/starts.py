@@ -5,7 +5,7 @@ from __future__ import annotations
 from enum import IntEnum
 
 from squealpipe.schema import RUN_ENDS, DatasetSchema, Outcome, Variable, outcome
-from squealpipe.schema.dynamics import MotionFlag
+from squealpipe.schema.dynamics.runs import MotionFlag
 from squealpipe.schema.linear import LinearRegimeFlag
 
 STARTS = ("x0", "y0", "vx0", "vy0")

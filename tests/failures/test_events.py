@@ -11,7 +11,7 @@ import pytest
 
 from squealpipe.parameters import Parameters
 from squealpipe.schema import Outcome
-from squealpipe.schema.dynamics import EventFlag, RegimeFlag
+from squealpipe.schema.dynamics.runs import EventFlag, RegimeFlag
 from squealpipe.solvers.a1.ensemble import run_ensemble
 from squealpipe.tasks.dynamics.runs import simulate
 

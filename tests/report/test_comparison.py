@@ -10,9 +10,9 @@ from squealpipe.parameters import Parameters
 from squealpipe.report.comparison import lines, page, statement_line, verdict_line
 from squealpipe.schema.linear import STABILITY_MAP
 from squealpipe.store import produce
-from squealpipe.store.compare import Comparison, DatasetDifference, compare
-from squealpipe.store.differences import Agreement, VariableDifference
-from squealpipe.store.statements import StatementChange
+from squealpipe.store.comparison.compare import Comparison, DatasetDifference, compare
+from squealpipe.store.comparison.differences import Agreement, VariableDifference
+from squealpipe.store.comparison.statements import StatementChange
 from squealpipe.tasks.linear.maps import stability_map
 
 

@@ -11,7 +11,7 @@ from squealpipe.methods.survival import survival
 from squealpipe.parameters import Parameters
 from squealpipe.report.facts.sampling import sampling
 from squealpipe.schema import build
-from squealpipe.schema.dynamics import VALIDITY_MAP
+from squealpipe.schema.dynamics.runs import VALIDITY_MAP
 from squealpipe.tasks.linear.maps import quasi_static_map, stability_map
 
 ANGLES = np.linspace(0.0, np.pi, 81)

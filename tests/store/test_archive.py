@@ -13,7 +13,7 @@ from squealpipe.config import read_study
 from squealpipe.execution.sweep import planned, run_sweep
 from squealpipe.store import StoreError, load, produce, save
 from squealpipe.store.archive import archive, verify
-from squealpipe.store.compare import compare
+from squealpipe.store.comparison.compare import compare
 from squealpipe.store.memory.objects import checksum
 
 FIXED = {"alpha1": "1.1", "alpha2": "1.2"}

@@ -14,9 +14,9 @@ from squealpipe.schema.claims import CLAIMS
 from squealpipe.schema.comparing import magnitude, sampled
 from squealpipe.store import load, save
 from squealpipe.store.archive import archive
-from squealpipe.store.compare import compare, compare_datasets
-from squealpipe.store.differences import Agreement, difference
-from squealpipe.store.matching import align
+from squealpipe.store.comparison.compare import compare, compare_datasets
+from squealpipe.store.comparison.differences import Agreement, difference
+from squealpipe.store.comparison.matching import align
 
 OLD_ARCHIVE = Path(__file__).with_name("old_archive")
 """A part of an archive made before manifests told the configuration and files were sealed."""
@@ -178,7 +178,7 @@ def test_text_and_lists_of_different_length():
 
 
 def test_volatile_variables_are_no_part_of_the_verdict(monkeypatch):
-    monkeypatch.setattr("squealpipe.store.compare.find", {"probe": TABLE}.get)
+    monkeypatch.setattr("squealpipe.store.comparison.compare.find", {"probe": TABLE}.get)
     a = build(TABLE, {"x": [1.0, 2.0], "wall": 3.0}, {"t": [0.0, 1.0]})
     b = build(TABLE, {"x": [1.0, 2.0], "wall": 4.0}, {"t": [0.0, 1.0]})
     found = compare_datasets("probe", a, b)

@@ -23,7 +23,7 @@ import pytest
 import yaml
 
 from squealpipe.store import load
-from squealpipe.store.compare import compare
+from squealpipe.store.comparison.compare import compare
 from squealpipe.yaml_files import overlay
 
 pytestmark = pytest.mark.slurm

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from squealpipe.parameters import SCENES, Parameters
-from squealpipe.schema.dynamics import EventFlag
+from squealpipe.schema.dynamics.runs import EventFlag
 from squealpipe.store import load
 
 

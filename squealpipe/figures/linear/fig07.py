@@ -18,7 +18,7 @@ from squealpipe.figures.parts.style import (
     new_figure,
     panel_letter,
 )
-from squealpipe.schema.dynamics import growth_threshold
+from squealpipe.schema.dynamics.runs import growth_threshold
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -16,7 +16,7 @@ from squealpipe.figures.parts.style import (
     new_figure,
 )
 from squealpipe.schema import Variable, flag_table
-from squealpipe.store.differences import outside_tolerance
+from squealpipe.store.comparison.differences import outside_tolerance
 
 if TYPE_CHECKING:
     import xarray as xr

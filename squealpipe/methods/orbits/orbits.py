@@ -11,7 +11,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from squealpipe.methods.orbits import branch_tracing
+from squealpipe.methods.orbits import branch_steps, branch_tracing, shorter_orbits
 from squealpipe.methods.orbits.modal_flow import propagator
 from squealpipe.methods.orbits.orbit_shape import extremes
 from squealpipe.methods.orbits.piecewise_linear import PiecewiseLinearSystem
@@ -28,14 +28,14 @@ _ROWS_PER_CALL = 512
 
 
 class TraceEnd(IntEnum):
-    """Why a trace ended (:mod:`squealpipe.methods.orbits.branch_tracing`)."""
+    """Why a trace ended (:mod:`squealpipe.methods.orbits.branch_steps`)."""
 
-    reached = branch_tracing.REACHED
-    returned = branch_tracing.RETURNED
-    tongue_end = branch_tracing.TONGUE_END
-    lost = branch_tracing.BRANCH_LOST
-    step_limit = branch_tracing.STEP_LIMIT
-    diverged = branch_tracing.DIVERGED
+    reached = branch_steps.REACHED
+    returned = branch_steps.RETURNED
+    tongue_end = branch_steps.TONGUE_END
+    lost = branch_steps.BRANCH_LOST
+    step_limit = branch_steps.STEP_LIMIT
+    diverged = branch_steps.DIVERGED
 
 
 @dataclass(frozen=True)
@@ -159,7 +159,7 @@ def rest_jacobian(system: PiecewiseLinearSystem, point: NDArray[np.float64]) -> 
 
 def is_primitive(system: PiecewiseLinearSystem, orbit: Orbit) -> bool:
     """Whether an orbit is not a shorter one that is run through several times."""
-    return bool(branch_tracing.times_run_through(system.rows, orbit.point) == 1)
+    return bool(shorter_orbits.times_run_through(system.rows, orbit.point) == 1)
 
 
 def trace_branch(
@@ -211,8 +211,8 @@ def _trace(
     pace, control = np.array([settings.first_step, *[0.0] * 5]), settings.control()
     table = np.empty((_ROWS_PER_CALL if spacing else 1, len(branch_tracing.COLUMNS)))
     switches, parts = np.empty(MAX_SEGMENTS), []
-    end = branch_tracing.GOES_ON
-    while end == branch_tracing.GOES_ON:
+    end = branch_steps.GOES_ON
+    while end == branch_steps.GOES_ON:
         count, end = branch_tracing.trace(
             system.rows, motion, pace, control, y_stop, spacing, table, switches
         )

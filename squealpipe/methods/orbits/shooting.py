@@ -30,6 +30,24 @@ _MAX_NEWTON = 12
 
 
 @compiled
+def norm(vector: Any) -> float:
+    """Euclidean norm of three components."""
+    return float(np.sqrt(vector[0] * vector[0] + vector[1] * vector[1] + vector[2] * vector[2]))
+
+
+@compiled
+def dot(left: Any, right: Any) -> float:
+    """Inner product of three components."""
+    return float(left[0] * right[0] + left[1] * right[1] + left[2] * right[2])
+
+
+@compiled
+def fastest(rows: Any) -> float:
+    """Frequency of the fastest mode of either state."""
+    return float(max(rows[0, 7], rows[1, 7]))
+
+
+@compiled
 def shoot(
     rows: Any, x0: float, y0: float, half_period: float, segments: Any, switches: Any, final: Any
 ) -> int:
@@ -44,7 +62,7 @@ def shoot(
     Returns:
         The number of segments, or 0 if there were too many or the shot is too long.
     """
-    if not half_period * max(rows[0, 7], rows[1, 7]) < LONGEST_PHASE:
+    if not fastest(rows) * half_period < LONGEST_PHASE:
         return 0
     final[0], final[1], final[2], final[3] = x0, y0, 0.0, 0.0
     side = 1 if y0 > rows[0, 11] else 0
@@ -183,6 +201,6 @@ def _cross(left: Any, right: Any, out: Any) -> None:
 
 @compiled
 def _normalize(vector: Any) -> None:
-    norm = np.sqrt(vector[0] ** 2 + vector[1] ** 2 + vector[2] ** 2)
+    size = norm(vector)
     for index in range(3):
-        vector[index] /= norm
+        vector[index] /= size

@@ -15,9 +15,9 @@ from xarray.core import indexing
 
 from squealpipe.schema import DatasetSchema, find
 from squealpipe.schema.sweep import fill_up
-from squealpipe.store.compare import configuration
+from squealpipe.store.comparison.compare import configuration
+from squealpipe.store.comparison.matching import on_shared_points
 from squealpipe.store.header import dataset_from
-from squealpipe.store.matching import on_shared_points
 from squealpipe.store.netcdf import StoreError, load
 from squealpipe.store.runs import dataset_files, locate
 from squealpipe.store.seal import Seal, read_seal

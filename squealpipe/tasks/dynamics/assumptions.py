@@ -25,7 +25,7 @@ from squealpipe.models.a4 import contact_matrix
 from squealpipe.models.refusals import refuse_extensions
 from squealpipe.parameters import SCENES, Parameters, Scene
 from squealpipe.schema import Outcome, build
-from squealpipe.schema.assumptions import ASSUMPTIONS, LINEAR_PULL
+from squealpipe.schema.dynamics.assumptions import ASSUMPTIONS, LINEAR_PULL
 from squealpipe.tasks.dynamics.runs import simulate
 
 LEVELS = ("A1", "A1-no-separation", "A2", "A3", "A4")
@@ -73,7 +73,7 @@ def check_assumptions(params: Parameters, scenes: Iterable[Scene] = ()) -> xr.Da
         scenes: scenes to look at; all named ones by default.
 
     Returns:
-        Dataset over (level, scene, assumption); see ``schema.assumptions.ASSUMPTIONS``.
+        Dataset over (level, scene, assumption); see ``schema.dynamics.assumptions.ASSUMPTIONS``.
     """
     chosen = tuple(scenes) or tuple(SCENES.values())
     names = list(LIMITS)

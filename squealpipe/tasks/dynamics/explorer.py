@@ -13,7 +13,7 @@ from squealpipe.methods.processes import run_shared
 from squealpipe.methods.spectrum import amplitude_spectrum
 from squealpipe.parameters import Parameters
 from squealpipe.schema import build
-from squealpipe.schema.explorer import EXPLORER
+from squealpipe.schema.dynamics.explorer import EXPLORER
 from squealpipe.tasks.backbones.backbone import backbone
 from squealpipe.tasks.dynamics.runs import simulate
 

@@ -11,7 +11,7 @@ import xarray as xr
 from squealpipe.arrays import angle_axis, real_number
 from squealpipe.parameters import Parameters
 from squealpipe.schema import Outcome, build
-from squealpipe.schema.dynamics import HAMMERING_MAP
+from squealpipe.schema.dynamics.runs import HAMMERING_MAP
 from squealpipe.schema.origin import recorded
 from squealpipe.solvers.a1.ensemble import run_map
 from squealpipe.tasks.dynamics.motion import (
@@ -76,7 +76,7 @@ def hammering_map(
         workers: processes; None takes all cores.
 
     Returns:
-        Dataset over (alpha1, alpha2); see ``schema.dynamics.HAMMERING_MAP``. ``outcome`` is
+        Dataset over (alpha1, alpha2); see ``schema.dynamics.runs.HAMMERING_MAP``. ``outcome`` is
         ``beyond_horizon`` where an error of ``tol`` decides the state before t_end: there only
         statistics mean something.
 

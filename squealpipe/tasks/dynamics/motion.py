@@ -11,7 +11,7 @@ import numpy as np
 
 from squealpipe.methods.recurrence import LEAST_REPEATS, repeats_after
 from squealpipe.parameters import Parameters
-from squealpipe.schema.dynamics import MotionFlag
+from squealpipe.schema.dynamics.runs import MotionFlag
 from squealpipe.solvers.a1.ensemble import Ensemble, run_ensemble
 
 LEAST_TURNS = 3

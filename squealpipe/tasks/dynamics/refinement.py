@@ -11,7 +11,7 @@ from scipy.ndimage import label
 from squealpipe.methods.adaptive_grid import Evaluate, RefinedGrid, follow_boundaries, refine_grid
 from squealpipe.parameters import Parameters
 from squealpipe.schema import Outcome, build
-from squealpipe.schema.dynamics import REFINED_VALIDITY_MAP, REFINEMENT_CHECK
+from squealpipe.schema.dynamics.runs import REFINED_VALIDITY_MAP, REFINEMENT_CHECK
 from squealpipe.schema.inference import wilson_interval
 from squealpipe.schema.origin import recorded
 from squealpipe.solvers.a1.ensemble import run_ensemble

@@ -14,7 +14,7 @@ from squealpipe.laws.contact import contact_force
 from squealpipe.models.switching import VARIANT_RULES
 from squealpipe.parameters import Parameters
 from squealpipe.schema import Outcome, build
-from squealpipe.schema.dynamics import GROWTH_THRESHOLD, SIMULATION, VALIDITY_MAP, RegimeFlag
+from squealpipe.schema.dynamics.runs import GROWTH_THRESHOLD, SIMULATION, VALIDITY_MAP, RegimeFlag
 from squealpipe.schema.origin import recorded
 from squealpipe.solvers.a1.ensemble import integrate, run_map
 from squealpipe.solvers.a1.jobs import Jobs, known_model
@@ -55,8 +55,8 @@ def simulate(
         initial_state: x, y, vx, vy at t = 0, m and m/s.
 
     Returns:
-        Dataset over ``time`` and ``event``; see ``schema.dynamics.SIMULATION``. Instants that a
-        run with another outcome than ``converged`` did not reach hold NaN.
+        Dataset over ``time`` and ``event``; see ``schema.dynamics.runs.SIMULATION``. Instants
+        that a run with another outcome than ``converged`` did not reach hold NaN.
 
     Raises:
         ValueError: an argument is not a finite number, is negative, or names no model.

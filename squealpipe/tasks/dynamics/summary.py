@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 
 from squealpipe.methods.spectrum import amplitude_spectrum, highest_peaks
 from squealpipe.schema import build
-from squealpipe.schema.dynamics import EventFlag, RegimeFlag
+from squealpipe.schema.dynamics.run_summary import RUN_SUMMARY
+from squealpipe.schema.dynamics.runs import EventFlag, RegimeFlag
 from squealpipe.schema.origin import recorded
-from squealpipe.schema.run_summary import RUN_SUMMARY
 
 PEAKS = 3
 """Dominant frequencies that are named."""

@@ -15,8 +15,8 @@ import xarray as xr
 from squealpipe.methods.survival import hazard, survival
 from squealpipe.parameters import SCENES, Parameters
 from squealpipe.schema import Outcome, build
-from squealpipe.schema.dynamics import MotionFlag
-from squealpipe.schema.long_runs import TRANSIENT, WHIRL
+from squealpipe.schema.dynamics.long_runs import TRANSIENT, WHIRL
+from squealpipe.schema.dynamics.runs import MotionFlag
 from squealpipe.solvers.a1.ensemble import Ensemble, run_ensemble
 from squealpipe.tasks.dynamics.motion import classify_motion, linear_time
 from squealpipe.tasks.normal_form import NormalForm
@@ -62,8 +62,8 @@ def whirl_sizes(
         workers: processes; None takes all cores.
 
     Returns:
-        Dataset over belt_speed; see ``schema.dynamics.WHIRL``. Without three such speeds slope and
-        offset are NaN and ``fit_outcome`` is ``unresolved``.
+        Dataset over belt_speed; see ``schema.dynamics.long_runs.WHIRL``. Without three such speeds
+        slope and offset are NaN and ``fit_outcome`` is ``unresolved``.
 
     Raises:
         ValueError: as :func:`run_ensemble`.

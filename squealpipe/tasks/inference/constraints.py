@@ -24,7 +24,7 @@ from squealpipe.solvers.a1.ensemble import Ensemble, run_ensemble
 GROWTH = 1.5
 """F3 and F4: |x| grows if the second half of the horizon exceeds the first by this factor.
 
-Less than the 2 of |x| ∝ t (``schema.dynamics.GROWTH_THRESHOLD``), for the whirl of Fig. 3 may
+Less than the 2 of |x| ∝ t (``schema.dynamics.runs.GROWTH_THRESHOLD``), for the whirl of Fig. 3 may
 saturate before the horizon, and more than the √2 of |x| ∝ √t."""
 SAMENESS = 1e-10
 """F5a: how far the two motions may differ, over k3 l_pre and over the horizon."""

@@ -17,7 +17,7 @@ from squealpipe.models.contact_system import contact_system
 from squealpipe.models.damped import damped_system, stability
 from squealpipe.parameters import DEFAULTS, Parameters, direction_of, is_finite_number
 from squealpipe.schema import Outcome, build
-from squealpipe.schema.dynamics import MotionFlag
+from squealpipe.schema.dynamics.runs import MotionFlag
 from squealpipe.schema.inference import wilson_interval
 from squealpipe.schema.origin import recorded
 from squealpipe.schema.spread import PROPENSITY, WIDEST

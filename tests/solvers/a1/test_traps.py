@@ -14,7 +14,7 @@ import pytest
 from squealpipe.methods.taylor.lanes import compile_system
 from squealpipe.parameters import Parameters
 from squealpipe.schema import Outcome
-from squealpipe.schema.dynamics import EventFlag
+from squealpipe.schema.dynamics.runs import EventFlag
 from squealpipe.solvers.a1 import ensemble
 from squealpipe.solvers.a1.ensemble import Ensemble, run_ensemble
 from squealpipe.solvers.a1.system import PAPER, lane_system

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from squealpipe.parameters import Parameters
-from squealpipe.schema.dynamics import MotionFlag
+from squealpipe.schema.dynamics.runs import MotionFlag
 from squealpipe.tasks.dynamics.hammering import hammering_map
 from squealpipe.tasks.dynamics.motion import linear_time, tell_periodic
 from squealpipe.tasks.dynamics.runs import simulate

@@ -7,7 +7,7 @@ import pytest
 
 from squealpipe.parameters import SCENES, Parameters
 from squealpipe.schema import Outcome
-from squealpipe.schema.dynamics import MotionFlag, RegimeFlag
+from squealpipe.schema.dynamics.runs import MotionFlag, RegimeFlag
 from squealpipe.store import load, save
 from squealpipe.tasks.dynamics.hammering import hammering_map
 from squealpipe.tasks.dynamics.refinement import check_refinement, refine_validity_map

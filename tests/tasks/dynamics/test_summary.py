@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from squealpipe.parameters import Parameters
-from squealpipe.schema.dynamics import EventFlag
+from squealpipe.schema.dynamics.runs import EventFlag
 from squealpipe.tasks.dynamics.runs import simulate
 from squealpipe.tasks.dynamics.summary import summarize, summary_lines
 

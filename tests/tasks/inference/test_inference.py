@@ -10,23 +10,11 @@ import pytest
 import scipy.integrate
 
 from squealpipe.config import read_study
-from squealpipe.models import a3
-from squealpipe.models.contact_system import contact_system
 from squealpipe.parameters import SCENES, Parameters
 from squealpipe.schema import Outcome
 from squealpipe.schema.inference import wilson_interval
 from squealpipe.solvers.a1.ensemble import run_ensemble
 from squealpipe.store import load, save
-from squealpipe.tasks.inference.consequences import (
-    ANGLES,
-    CLEAR,
-    RIM,
-    _linear,
-    _some_keep_contact,
-    judge_consequences,
-    separating_share,
-    unstable_cells,
-)
 from squealpipe.tasks.inference.constraints import (
     CONSTRAINTS,
     GROWTH,
@@ -35,8 +23,9 @@ from squealpipe.tasks.inference.constraints import (
     measure,
 )
 from squealpipe.tasks.inference.inference import infer_parameters
-from squealpipe.tasks.linear.maps import natural_frequencies, quasi_static_map, stability_map
+from squealpipe.tasks.linear.maps import stability_map
 from tests import symbols
+from tests.tasks.inference.parameter_sets import fields_of, random_sets
 
 ROOT = Path(__file__).resolve().parents[3]
 BASELINE = Parameters()
@@ -202,32 +191,6 @@ def test_the_number_of_processes_changes_nothing(inference: object) -> None:
     assert infer_parameters(BASELINE, samples=256, workers=1).identical(inference)
 
 
-def test_consequences_at_the_baseline() -> None:
-    """What the brief states of the baseline: F6b as printed only, Fig. 7 without black cells."""
-    fields = {name: np.array([value]) for name, value in BASELINE.as_dict().items()}
-    held = {key: bool(values[0]) for key, values in judge_consequences(fields, tol=1e-9).items()}
-    assert held == {
-        "S3": True,
-        "F6b": False,
-        "F6b_printed": True,
-        "F7a": True,
-        "F7_black": True,
-        "F8c": False,
-        "F8c_separated": True,
-    }
-
-
-def test_consequences_can_come_out_otherwise() -> None:
-    """Without friction nothing is unstable; a soft contact on short springs is hardly left."""
-    fields = {
-        name: np.array([value]) for name, value in BASELINE.with_(mu=0.0, k3=0.05).as_dict().items()
-    }
-    held = {key: bool(values[0]) for key, values in judge_consequences(fields, tol=1e-9).items()}
-    assert not held["S3"]
-    assert held["F6b"]
-    assert not held["F7a"]
-
-
 def test_shares_of_the_feasible_samples(inference: object) -> None:
     feasible = inference.feasible.values
     size = int(inference.feasible_count)
@@ -254,37 +217,6 @@ def test_wilsons_interval_as_in_closed_form() -> None:
     assert np.isnan(wilson_interval(0, 0)).all()
 
 
-def random_sets(generator: np.random.Generator, count: int, *, equal: bool) -> list[Parameters]:
-    """Parameter sets of either direction of the belt, in units of their own."""
-    sets = []
-    for _ in range(count):
-        k1, length1, mass, preload = np.exp(generator.uniform(-1, 1, 4))
-        k2, length2 = (k1, 1.0) if equal else np.exp(generator.uniform(-1, 1, 2))
-        reach = preload * np.exp(generator.uniform(0.7, 3.5))
-        sets.append(
-            Parameters(
-                mass=mass,
-                k1=k1,
-                k2=k2,
-                k3=k1 * generator.uniform(0.1, 3.0),
-                mu=generator.uniform(0.0, 0.9),
-                preload=preload,
-                length1=reach * (1.0 if equal else length1),
-                length2=reach * length2,
-                belt_speed=generator.choice([-1, 1]) * np.exp(generator.uniform(-2, 5)),
-            )
-        )
-    return sets
-
-
-def fields_of(sets: list[Parameters]) -> dict[str, np.ndarray]:
-    return {
-        name: np.array([params.as_dict()[name] for params in sets])
-        for name in BASELINE.as_dict()
-        if name != "sigma"
-    }
-
-
 def test_samples_and_maps_are_judged_alike() -> None:
     """F6d at random parameters, belt either way: stable exactly where ``stability_map`` is."""
     generator = np.random.default_rng(13)
@@ -303,93 +235,6 @@ def test_a_belt_along_minus_x_passes_beyond_the_bound_of_the_other() -> None:
     margins = measure(long_springs(mu=[0.5, 0.5], belt_speed=[100.0, -100.0]))["F6d"].margin
     slope = 0.5 * math.tan(0.4 * math.pi)
     np.testing.assert_allclose(margins, [1 - slope, 1 + slope], rtol=1e-12)
-
-
-@pytest.mark.parametrize("equal", [True, False])
-def test_exact_conditions_agree_with_fine_maps(equal: bool) -> None:
-    """The plane of Z against maps over the angles, at random parameters."""
-    generator = np.random.default_rng(5)
-    angles = np.linspace(0.0, np.pi, 241)
-    on_lines = (np.arange(241)[:, None] + np.arange(241)) % 240 == 120
-    seen = set()
-    for params in random_sets(generator, 12, equal=equal):
-        cells = unstable_cells(params)
-        regime = stability_map(params, angles, angles).regime_linear.values
-        sliding = quasi_static_map(params, angles, angles)
-        found = {
-            "S3": (regime == 1).any(),
-            "F6b": not ((regime > 0) & sliding.possible.values).any(),
-            "F6b_printed": not ((regime > 0) & sliding.possible_as_printed.values).any(),
-        }
-        exact = _linear(params, *cells)
-        assert {key: exact[key] for key in found} == found, params
-        frequencies = natural_frequencies(params, angles, angles).sel(mode=1)
-        real = frequencies.outcome == Outcome.converged
-        for state, key in (("contact", "F8c"), ("separated", "F8c_separated")):
-            omega = frequencies.omega.where(real).sel(contact_state=state).values
-            largest = np.nanmax(omega[on_lines]) >= np.nanmax(omega) * (1 - 1e-12)
-            # The circle where ω1 is largest may cross the lines between two grid points.
-            assert exact[key] == largest or (
-                exact[key] and np.nanmax(omega[on_lines]) > 0.999 * np.nanmax(omega)
-            )
-        seen.add(tuple(exact.values()))
-    assert len(seen) > 1 or equal
-
-
-@pytest.fixture(scope="module")
-def likely() -> dict[str, np.ndarray]:
-    """Parameter sets from where the feasible ones lie, belt either way."""
-    generator = np.random.default_rng(7)
-    count = 24
-    length = np.exp(generator.uniform(np.log(2.5), np.log(16.0), count))
-    fields = {name: np.full(count, value) for name, value in BASELINE.as_dict().items()}
-    return fields | {
-        "k3": generator.uniform(0.4, 0.9, count),
-        "mu": generator.uniform(0.05, 0.32, count),
-        "length1": length,
-        "length2": length,
-        "belt_speed": generator.choice([-100.0, 100.0], count),
-    }
-
-
-def test_the_black_region_is_found_however_thin(likely: dict[str, np.ndarray]) -> None:
-    """The rim of the disc of flutter, at three resolutions, against random cells of all of it."""
-    sets = [
-        Parameters(**{name: float(values[i]) for name, values in likely.items()})
-        for i in range(len(likely["mu"]))
-    ]
-    found = {
-        number: _some_keep_contact(
-            likely, [unstable_cells(params, rim=number) for params in sets], 1e-9, None
-        )
-        for number in (RIM // 2, RIM, 2 * RIM)
-    }
-    assert 0.2 < found[RIM].mean() < 0.8
-    for number in (RIM // 2, 2 * RIM):
-        assert (found[number] != found[RIM]).sum() <= 1
-    generator = np.random.default_rng(3)
-    cells = []
-    for params in sets:
-        alpha1, alpha2 = generator.uniform(0.0, np.pi, (2, 40_000))
-        unstable = a3.regime(contact_system(params, alpha1, alpha2).invariants) > 0
-        cells.append((alpha1[unstable][:400], alpha2[unstable][:400]))
-    anywhere = _some_keep_contact(likely, cells, 1e-9, None)
-    assert not (anywhere & ~found[2 * RIM]).any()
-    assert anywhere.sum() >= 0.6 * found[2 * RIM].sum()
-
-
-def test_the_separating_share_has_converged(likely: dict[str, np.ndarray]) -> None:
-    """Twice the resolution leaves the shares within a spacing's error, and F7a within one set."""
-    coarse = separating_share(likely, tol=1e-9)
-    fine = separating_share(likely, angles=tuple(2 * number for number in ANGLES), tol=1e-9)
-    assert np.abs(coarse - fine).max() < CLEAR / ANGLES[0]
-    assert ((coarse > 0.5) != (fine > 0.5)).sum() <= 1
-    few = {name: values[:3] for name, values in likely.items()}
-    unequal = few | {"length2": few["length1"] * (1 + 1e-12)}
-    np.testing.assert_array_equal(
-        separating_share(few, angles=(12,), tol=1e-9),
-        separating_share(unequal, angles=(12,), tol=1e-9),
-    )
 
 
 @pytest.mark.slow

@@ -7,7 +7,7 @@ import pytest
 
 from squealpipe import Parameters, basin_map, simulate
 from squealpipe.schema import Outcome
-from squealpipe.schema.dynamics import MotionFlag
+from squealpipe.schema.dynamics.runs import MotionFlag
 from squealpipe.schema.starts import StartMotion
 
 ANGLES = (0.5 * math.pi, math.pi)

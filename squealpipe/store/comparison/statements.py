@@ -9,7 +9,7 @@ from pathlib import Path
 import xarray as xr
 
 from squealpipe.schema.claims import CLAIMS, Verdict
-from squealpipe.store.differences import outside_tolerance
+from squealpipe.store.comparison.differences import outside_tolerance
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from squealpipe.schema import ORBIT_ENDS, RUN_ENDS, DatasetSchema, Variable, outcome
-from squealpipe.schema.dynamics import TIME
+from squealpipe.schema.dynamics.runs import TIME
 from squealpipe.schema.linear import ANGLES, MAP, MODES
 
 FREQUENCY = Variable("angular frequency", "rad s-1", ("frequency",))

@@ -15,12 +15,12 @@ import xarray as xr
 
 from squealpipe.schema import DatasetSchema, find
 from squealpipe.schema.claims import CLAIMS
-from squealpipe.store.differences import Agreement, VariableDifference, difference
-from squealpipe.store.matching import align
+from squealpipe.store.comparison.differences import Agreement, VariableDifference, difference
+from squealpipe.store.comparison.matching import align
+from squealpipe.store.comparison.statements import StatementChange, changed_statements
 from squealpipe.store.netcdf import load
 from squealpipe.store.provenance import VOLATILE_ATTRIBUTES
 from squealpipe.store.runs import dataset_files, left_out, locate, matches_any
-from squealpipe.store.statements import StatementChange, changed_statements
 from squealpipe.yaml_files import flat
 
 PHYSICAL_KEY = re.compile(r"(parameters\.|alpha\d|mode\b|scene\b|vary\.|fixed\.)")

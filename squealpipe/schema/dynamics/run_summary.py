@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from squealpipe.schema import RUN_ENDS, DatasetSchema, Variable, outcome
 from squealpipe.schema.comparing import Listing
-from squealpipe.schema.explorer import FREQUENCY
+from squealpipe.schema.dynamics.explorer import FREQUENCY
 
 RUN_SUMMARY = DatasetSchema(
     name="run_summary",

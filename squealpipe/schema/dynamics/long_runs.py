@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from squealpipe.schema import RUN_ENDS, DatasetSchema, Outcome, Variable, outcome
 from squealpipe.schema.comparing import magnitude, sampled
-from squealpipe.schema.dynamics import MotionFlag
+from squealpipe.schema.dynamics.runs import MotionFlag
 
 _IRREGULAR = (
     "one long run, irregular where the belt is slow: the last bit of the belt speed, which the "
