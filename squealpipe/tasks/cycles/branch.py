@@ -19,9 +19,8 @@ from squealpipe.methods.limit_cycles.branch_ends import (
 from squealpipe.methods.limit_cycles.cycle_branch import follow_cycles
 from squealpipe.methods.limit_cycles.cycle_equations import CycleEquations, cycle_algorithm
 from squealpipe.methods.limit_cycles.cycles import Cycle
-from squealpipe.methods.limit_cycles.event_flow import flow
 from squealpipe.methods.limit_cycles.labels import Label
-from squealpipe.parameters import TABLE, Parameters, is_finite_number
+from squealpipe.parameters import TABLE, Parameters, brief, is_finite_number, is_whole_number
 from squealpipe.schema import Outcome, build
 from squealpipe.schema.cycles import CYCLE_BRANCH, LIMIT_CYCLE
 from squealpipe.schema.origin import recorded
@@ -32,6 +31,7 @@ from squealpipe.tasks.cycles.cycle import (
     checked_state,
     cycle_values,
     find_cycle,
+    settled_state,
 )
 from squealpipe.tasks.cycles.onset import find_onset
 
@@ -47,6 +47,8 @@ ENDS = {
     BranchEnd.singular: Outcome.singular_geometry,
     BranchEnd.tangency: Outcome.tangency,
 }
+_SAME_VALUE = 1e-11
+"""Two values of a parameter as close as this, relative, are one to a branch."""
 _STATE = ("x", "y", "vx", "vy")
 
 
@@ -93,7 +95,7 @@ def cycle_branch(
     """
     alpha1, alpha2 = checked_scene(params, alpha1, alpha2)
     begin = _value(params, alpha1, alpha2, parameter)
-    _check(params, parameter, begin, to, n_points)
+    _check(params, parameter, begin, to, n_points, doubled)
 
     def system_at(value: float) -> A1Flow:
         return _system(params, alpha1, alpha2, parameter, value, unit)
@@ -128,13 +130,17 @@ def cycle_branch(
     return _dataset(points, ENDS[end], (alpha1, alpha2), parameter)
 
 
-def _check(params: Parameters, parameter: str, begin: float, to: float, n_points: int) -> None:
-    if not is_finite_number(to) or to == begin:
+def _check(
+    params: Parameters, parameter: str, begin: float, to: float, n_points: int, doubled: bool
+) -> None:
+    if not is_finite_number(to) or math.isclose(to, begin, rel_tol=_SAME_VALUE):
         raise ValueError(
             f"to = {to!r}: a finite value other than {parameter} = {begin!r}, the start, is needed"
         )
-    if isinstance(n_points, bool) or not isinstance(n_points, int) or n_points < 2:
+    if not is_whole_number(n_points) or n_points < 2:
         raise ValueError(f"n_points = {n_points!r}: an integer of 2 or more is needed")
+    if not isinstance(doubled, bool):
+        raise ValueError(f"doubled = {brief(doubled)}: True or False is needed")  # noqa: TRY004
     if parameter not in ("alpha1", "alpha2"):
         params.with_(**{parameter: to})
 
@@ -144,7 +150,8 @@ def _value(params: Parameters, alpha1: float, alpha2: float, parameter: str) -> 
     values |= {"alpha1": alpha1, "alpha2": alpha2}
     if not (isinstance(parameter, str) and is_finite_number(values.get(parameter))):
         known = ", ".join(name for name, value in values.items() if is_finite_number(value))
-        why = " (A1 does not read it)" if parameter in TABLE and parameter not in values else ""
+        unread = isinstance(parameter, str) and parameter in TABLE and parameter not in values
+        why = " (A1 does not read it)" if unread else ""
         raise ValueError(f"parameter = {parameter!r}{why}: one of {known} is needed")
     return float(values[parameter])
 
@@ -164,8 +171,10 @@ def _first_cycle(
     system: A1Flow, start: Sequence[float] | xr.Dataset | None
 ) -> tuple[Cycle | None, Outcome]:
     if start is None:
-        time = T_SETTLE * system.params.time_unit
-        state = flow(system, np.zeros(4), time, derivative=False, max_events=1_000_000).state
+        settled, outcome = settled_state(system, T_SETTLE * system.params.time_unit)
+        if settled is None:
+            return None, outcome
+        state = settled
     elif isinstance(start, xr.Dataset):
         if start.attrs.get("schema") != LIMIT_CYCLE.name:
             raise ValueError(
@@ -177,8 +186,6 @@ def _first_cycle(
         state = np.array([float(start[f"{name}_start"]) for name in _STATE])
     else:
         state = checked_state("start", start)
-    if not np.isfinite(state).all():
-        return None, Outcome.not_finite
     return find_cycle(system, state)
 
 

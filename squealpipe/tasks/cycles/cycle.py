@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -30,6 +30,7 @@ _FAR = 0.3
 """Newton's method has left the motion that it started from, over its period and extent."""
 _TRIES = 4
 _AT_REST = 1e-9
+_MOST_EVENTS = 1_000_000
 SAMPLES = 400
 
 SCALARS = (
@@ -67,7 +68,8 @@ def limit_cycle(
         model: "A1".
         guess: state (x, y, ẋ, ẏ) in m and m/s near the cycle, which may be unstable. Without it,
             the state that a run from rest has reached at ``t_settle``.
-        t_settle: s; default 2000 √(m/k1).
+        t_settle: s; default 2000 √(m/k1). A run that takes too many steps for it ends with
+            ``step_limit``.
 
     Returns:
         Dataset with period (s), extrema (m), fractions in contact and stick, Floquet multipliers
@@ -85,14 +87,24 @@ def limit_cycle(
     system = A1Flow(params, alpha1, alpha2)
     if guess is None:
         settle = T_SETTLE * params.time_unit if t_settle is None else float(t_settle)
-        run = flow(system, np.zeros(4), settle, derivative=False, max_events=1_000_000)
-        if not (run.complete and np.isfinite(run.state).all()):
-            return cycle_dataset(None, Outcome.event_limit, alpha1, alpha2)
-        state = run.state
+        state, outcome = settled_state(system, settle)
+        if state is None:
+            return cycle_dataset(None, outcome, alpha1, alpha2)
     else:
         state = checked_state("guess", guess)
     cycle, outcome = find_cycle(system, state)
     return cycle_dataset(cycle, outcome, alpha1, alpha2)
+
+
+def settled_state(system: A1Flow, time: float) -> tuple[Vector | None, Outcome]:
+    """The state that a run from rest has reached at some time, s; None with the reason."""
+    run = flow(system, np.zeros(4), time, derivative=False, max_events=_MOST_EVENTS)
+    if not np.isfinite(run.state).all():
+        return None, Outcome.not_finite
+    if not run.complete:
+        many = len(run.event_times) >= _MOST_EVENTS
+        return None, Outcome.event_limit if many else Outcome.step_limit
+    return run.state, Outcome.converged
 
 
 def checked_scene(params: Parameters, alpha1: float, alpha2: float) -> tuple[float, float]:
@@ -115,7 +127,10 @@ def checked_state(name: str, state: Sequence[float]) -> Vector:
     Raises:
         ValueError: it is not four finite numbers.
     """
-    values = list(state) if isinstance(state, Iterable) else []
+    try:
+        values = list(state)
+    except TypeError:  # no sequence, or an array without dimensions
+        values = []
     if len(values) != 4 or not all(is_finite_number(value) for value in values):
         raise ValueError(f"{name} = {state!r}: four finite numbers (x, y, vx, vy) are needed")
     return np.array(values, dtype=np.float64)

@@ -162,9 +162,30 @@ def test_both_tasks_name_what_they_cannot_read(given, named):
     [
         ({"start": xr.Dataset()}, "start holds nothing: a dataset of limit_cycle"),
         ({"start": 3}, "start = 3: four finite numbers"),
+        ({"start": np.array(3.0)}, r"start = array\(3.*four finite numbers"),
+        ({"parameter": ["mu"]}, r"parameter = \['mu'\]: one of mass"),
+        ({"to": 0.3 + 1e-15}, "to = 0.3.*a finite value other than mu = 0.3"),
+        ({"doubled": "no"}, "doubled = 'no': True or False"),
         ({"parameter": "sigma"}, r"parameter = 'sigma' \(A1 does not read it\): one of mass"),
     ],
 )
 def test_branch_names_what_it_cannot_start_from(given, named):
     with pytest.raises(ValueError, match=named):
         cycle_branch(Parameters(), 1.0, 2.0, **({"parameter": "mu", "to": 0.5} | given))
+
+
+def test_a_number_of_points_may_be_of_numpy(sticking):
+    branch = cycle_branch(
+        STICKING, *PENDULUM, parameter="mu", to=0.02, start=sticking, n_points=np.int64(3)
+    )
+    assert branch.end == Outcome.point_limit
+
+
+def test_a_run_too_long_to_settle_says_so():
+    """Nothing accumulates here: the run ends at the limit of its steps."""
+    cycle = limit_cycle(STICKING, *PENDULUM, t_settle=1e9)
+    assert cycle.outcome == Outcome.step_limit
+    stiff = STICKING.with_(k2=1e8)
+    assert limit_cycle(stiff, *PENDULUM).outcome == Outcome.step_limit
+    branch = cycle_branch(stiff, *PENDULUM, parameter="mu", to=0.2)
+    assert branch.end == Outcome.step_limit
