@@ -74,8 +74,8 @@ def same_as_first(scene: str) -> Check:
             max(difference, first),
             "≤",
             NEARLY_THE_SAME,
-            f"Against (0.5π, π), ω1 differs by {first:.1g}, ω2 along the branch by at most "
-            f"{difference:.1g} and the x amplitude by at most {amplitude:.1g} l_pre.",
+            f"Against (0.5π, π), ω1 differs by {first:.2g} of itself, ω2 along the branch by at "
+            f"most {difference:.2g} and the x amplitude by at most {amplitude:.2g} l_pre.",
         )
 
     return check

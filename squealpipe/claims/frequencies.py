@@ -104,8 +104,8 @@ def first_is_largest_on_lines(run: Run) -> Finding:
         "Separated, the largest ω1² "
         + ("lies" if excess["separated"] <= ROUND_OFF else "does not lie")
         + " on α1 + α2 = π/2 or 3π/2. "
-        f"In contact it is {largest / unit:.4g} k/m at ({first_angle:.3g}π, {second_angle:.3g}π), "
-        f"against {line / unit:.4g} k/m on those lines. For even n ω1 = 0 there when separated.",
+        f"In contact it is {largest / unit:.4g} k1/m at ({first_angle:.3g}π, {second_angle:.3g}π), "
+        f"against {line / unit:.4g} k1/m on those lines. For even n ω1 = 0 there when separated.",
         otherwise=Verdict.holds_only_as_printed
         if excess["separated"] <= ROUND_OFF
         else Verdict.fails,

@@ -51,7 +51,7 @@ def simulate(
     Args:
         alpha1: angle of spring 1: 0.4pi, 2pi/5, 72deg or radians.
         alpha2: angle of spring 2.
-        t_end: horizon; the unit of time is √(mass/k1) at the baseline.
+        t_end: horizon, s; at the baseline 1 s is √(mass/k1).
         model: level of the model.
         tol: tolerance of the integration.
         points: instants at which the state is kept.

@@ -46,6 +46,7 @@ def gather(
     figures: Mapping[str, Made],
     parameters: Parameters,
     *,
+    beyond_paper: bool = False,
     explorer: str | None = None,
     animations: Mapping[str, str] | None = None,
     page: Path | None = None,
@@ -56,6 +57,7 @@ def gather(
         datasets: name (path below ``data/`` without suffix) → NetCDF file.
         figures: name → PNG file.
         parameters: those of the study.
+        beyond_paper: it has dashpots or friction other than Coulomb's, which A4 cannot carry.
         explorer: link to the explorer page, if the run makes one.
         animations: what each shows → its GIF.
         page: where the page will be; then it links the PDF beside it and each dataset.
@@ -75,7 +77,8 @@ def gather(
         "shipped": parameters == Parameters(),
         "parameters": _parameters(parameters),
         "one_pivot": parameters.length1 == parameters.length2,
-        "belt_along_x": parameters.belt_speed > 0,
+        "belt_along_x": parameters.belt_direction > 0,
+        "beyond_paper": beyond_paper,
         "environment": _environment(datasets),
         "datasets": {
             name: {**record, "link": link(datasets[name].path)} for name, record in records.items()

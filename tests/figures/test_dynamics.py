@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import json
+
 import numpy as np
 import pytest
+from matplotlib.patches import FancyArrowPatch
 
 from squealpipe.figures.dynamics import (
     fig02,
@@ -17,7 +20,8 @@ from squealpipe.figures.dynamics import (
     whirl,
 )
 from squealpipe.figures.linear import fig07
-from squealpipe.figures.parts.style import save_figure
+from squealpipe.figures.model.mechanism import draw_mechanism
+from squealpipe.figures.parts.style import new_figure, save_figure
 from squealpipe.parameters import SCENES, Parameters
 from squealpipe.tasks.dynamics import hammering as hammering_task
 from squealpipe.tasks.dynamics import refinement
@@ -49,6 +53,7 @@ def test_all_are_drawn_for_any_study(params, tmp_path):
             params, [0.5, 5.0], samples=3, shown_samples=5, t_end=400.0
         ),
     }
+    own = json.dumps(params.as_dict())
     check = refinement.check_refinement(params, maps["refined"], points=(16, 31))
     runs = {name: scene(name, params) for name in ("F2a", "F2b", "F2c", "F2d", "F3", "F4", "F5a")}
     figures = {
@@ -61,7 +66,7 @@ def test_all_are_drawn_for_any_study(params, tmp_path):
         "predictability": predictability.draw(maps["hammering"]),
         "refined": refined_boundary.draw(maps["refined"], check),
         "whirl": whirl.draw(runs["F3"], maps["whirl"]),
-        "transient": transient.draw(maps["transient"]),
+        "transient": transient.draw(maps["transient"].assign_attrs(parameters=own)),
     }
     for name, figure in figures.items():
         save_figure(figure, [tmp_path / f"{name}.png"])
@@ -88,3 +93,11 @@ def test_separated_spells_are_marked_where_the_force_is_zero():
     line = figure.axes[0].get_lines()[0]
     np.testing.assert_array_equal(line.get_ydata(), run.normalized_contact_force)
     assert run.normalized_contact_force.values[run.regime.values == 3].max() == 0.0
+
+
+def test_the_arrow_of_the_belt_points_where_it_runs():
+    for direction in (1.0, -1.0):
+        _, axes = new_figure(2.0, 2.0)
+        draw_mechanism(axes[0, 0], 0.3 * np.pi, 0.2 * np.pi, direction=direction)
+        (arrow,) = (part for part in axes[0, 0].patches if isinstance(part, FancyArrowPatch))
+        assert direction * arrow.get_path().vertices[:, 0].mean() > 0

@@ -14,6 +14,7 @@ from squealpipe.claims.evidence import Run
 from squealpipe.claims.judge import judge
 from squealpipe.figures import declared
 from squealpipe.figures.parts.style import save_figure
+from squealpipe.models.refusals import without_extensions
 from squealpipe.parameters import SCENES, Parameters
 from squealpipe.report.build import TEMPLATES, write_report
 from squealpipe.report.content import Made, gather, picture_files
@@ -33,6 +34,9 @@ STUDIES = {
     "less friction": Parameters(mu=0.25),
     "unequal springs": Parameters(length1=4.0, length2=7.0, k1=1.3, k2=0.8),
     "slow belt the other way": Parameters(belt_speed=-1.0),
+    "dashpots and friction that falls": Parameters(
+        damping1=0.05, damping2=0.02, friction_law="exponential", mu_static=0.6, friction_speed=50.0
+    ),
 }
 LINEAR, NONLINEAR = np.linspace(0, np.pi, 41), np.linspace(0, np.pi, 9)
 
@@ -48,22 +52,29 @@ OUTCOMES = (
 Datasets = Mapping[str, xr.Dataset]
 
 
+def beyond_paper(params: Parameters) -> bool:
+    return without_extensions(params) is not params
+
+
 def datasets_of(params: Parameters) -> dict[str, xr.Dataset]:
     """A study of tiny grids and short runs."""
     made = {
         "quasi_static_map": quasi_static_map(params, LINEAR, LINEAR),
         "stability_map": stability_map(params, LINEAR, LINEAR),
-        "natural_frequencies": natural_frequencies(params, LINEAR, LINEAR),
-        "stability_boundaries": stability_boundaries(params, points=41),
-        "linear_pull": linear_pull_map(params, NONLINEAR, NONLINEAR),
         "validity_map": validity_map(params, NONLINEAR, NONLINEAR, t_end=50.0),
         "hammering_map": hammering_map(params, NONLINEAR, NONLINEAR, t_end=50.0),
         "whirl": whirl_sizes(params, abs(params.belt_speed) * np.array([0.5, 1.0]), t_end=300.0),
         "transient": transient_lifetimes(
             params, [abs(params.belt_speed)], samples=2, shown_samples=6, t_end=400.0
         ),
-        "parameter_inference": infer_parameters(params, samples=32),
     }
+    if not beyond_paper(params):
+        made |= {
+            "natural_frequencies": natural_frequencies(params, LINEAR, LINEAR),
+            "stability_boundaries": stability_boundaries(params, points=41),
+            "linear_pull": linear_pull_map(params, NONLINEAR, NONLINEAR),
+            "parameter_inference": infer_parameters(params, samples=32),
+        }
     for name in ("F2a", "F2b", "F2c", "F2d", "F3", "F4", "F5a", "F5b"):
         scene = SCENES[name]
         times = np.linspace(0.0, 50.0, 501)
@@ -92,9 +103,9 @@ def study(request, tmp_path_factory) -> tuple[Parameters, Datasets, dict[str, An
             path = folder / f"figures/{name}.png"
             save_figure(declared.draw(name, datasets), [path])
             figures[name] = Made(path=path, rule="draw", datasets=tuple(found))
-    assert len(figures) > 15
+    assert len(figures) > (8 if beyond_paper(params) else 15)
     page, pdf = folder / "report/index.html", folder / "report/report.pdf"
-    content = gather(made, figures, params, page=page)
+    content = gather(made, figures, params, beyond_paper=beyond_paper(params), page=page)
     write_report(content, picture_files(content, figures), page, pdf)
     text = re.sub(r"<style.*?</style>|<[^>]+>", " ", page.read_text("utf-8"), flags=re.DOTALL)
     return params, datasets, content, " ".join(text.split())
@@ -130,7 +141,11 @@ SENTENCES: dict[str, Callable[[Parameters, Datasets], bool]] = {
     "not of the mechanics": lambda _, data: sliding_excludes_instability(data),
     "being of one length": lambda params, _: params.length1 == params.length2,
     "the belt runs along": lambda params, _: params.belt_speed < 0,
-    "denies sliding to every": lambda params, _: params.belt_speed > 0,
+    "printed quotient is negative there": lambda params, _: params.belt_speed > 0,
+    "is judged by the mirror image": lambda params, _: params.belt_speed < 0,
+    "This run goes beyond the paper": lambda params, _: beyond_paper(params),
+    "Without dashpots and with": lambda params, _: beyond_paper(params),
+    "Only four groups matter": lambda params, _: not beyond_paper(params),
     "They are the baseline": lambda params, _: params == Parameters(),
     "parameters of this run satisfy all of them": lambda _, data: bool(
         data["parameter_inference"].baseline_holds.all()

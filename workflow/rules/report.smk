@@ -31,6 +31,7 @@ rule write_report:
         part=part("parameters"),
         made=MADE,
         drawn=DRAWN,
+        beyond_paper=not PAPERS_FRICTION,
         animations=ANIMATIONS if PAPERS_FRICTION else {},
         explorer="explorer.html" if f"{RESULTS}/report/explorer.html" in TARGETS else None,
     script:

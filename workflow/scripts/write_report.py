@@ -11,6 +11,7 @@ content = gather(
     datasets,
     figures,
     parameters_of(snakemake.params.part),
+    beyond_paper=snakemake.params.beyond_paper,
     explorer=snakemake.params.explorer,
     animations=snakemake.params.animations,
     page=Path(snakemake.output.page),

@@ -30,8 +30,9 @@ CAPTION = (
     "Branches of doubled period of model A4, one row for each spring arrangement, mode 1, around "
     "the doublings. Left: largest y of a period over the frequency, twice their own one for the "
     "doubled branches. Dotted: unstable; circles: period doublings of the backbone, where its "
-    "index is −2 and that of the doubled branch starts at 2. Right: the stability index over the "
-    "same largest y; the grey band holds the stable orbits."
+    "index is −2 and that of the doubled branch starts at 2; a row without any has no doubling on "
+    "the branch followed. Right: the stability index over the same largest y; the grey band "
+    "holds the stable orbits."
 )
 ALT = (
     "For each spring arrangement two panels: largest displacement over frequency for the backbone "

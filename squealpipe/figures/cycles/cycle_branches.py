@@ -45,8 +45,8 @@ CAPTION = (
     "sliding flutters within the range; (c) scene of Fig. 2(d)."
 )
 ALT = (
-    "Three charts of largest |x| over friction. Lines show branches of cycles with marks at "
-    "special points; dots show where long runs end."
+    "Three charts of largest |x| over friction. Lines, if any, show branches of cycles with "
+    "marks at special points; dots show where long runs end."
 )
 
 

@@ -19,7 +19,10 @@ CAPTION = (
     "stability. (a) Scene of Fig. 3, from the study's friction down; (b) the "
     "branch from the onset of flutter."
 )
-ALT = "Two complex planes with the unit circle and the multipliers of cycles along a branch."
+ALT = (
+    "Two complex planes with the unit circle and the multipliers of cycles along a branch, or "
+    "a note that there is none."
+)
 
 
 def draw(growing: xr.Dataset, flutter: xr.Dataset) -> Figure:
@@ -50,5 +53,6 @@ def draw(growing: xr.Dataset, flutter: xr.Dataset) -> Figure:
         panel.set(xlabel="Re λ", ylabel="Im λ", aspect="equal")
         panel.set_adjustable("datalim")
         panel_letter(panel, letter, title)
-    axes[0, 0].legend(loc="upper left")
+    handles, words = axes[0, 0].get_legend_handles_labels()
+    figure.legend(handles, words, loc="outside lower center", ncols=len(words))
     return figure

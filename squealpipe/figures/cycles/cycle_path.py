@@ -21,8 +21,8 @@ CAPTION = (
     "the belt over one period; the line is belt speed. Colours: the regime."
 )
 ALT = (
-    "Left, a closed path in the plane of x and y; right, velocity over one period. Regimes differ "
-    "in colour."
+    "Left, the path of the cycle in the plane of x and y; right, its velocity over one period. "
+    "Regimes differ in colour; a panel without a cycle says so."
 )
 
 

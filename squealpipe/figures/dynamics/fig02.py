@@ -7,7 +7,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from squealpipe.figures.model.mechanism import draw_mechanism
+from squealpipe.figures.parts.origin import parameter
 from squealpipe.figures.parts.style import BLUE, GREY, PAGE, RED, new_figure, panel_letter, pi_label
+from squealpipe.parameters import direction_of
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -35,9 +37,9 @@ def draw(*runs: xr.Dataset) -> Figure:
     figure, axes = new_figure(PAGE, 4.3, nrows=2, ncols=2, sharex=True, sharey=True)
     for panel, letter, run in zip(axes.flat, "abcd", runs, strict=True):
         draw_force(panel, run)
-        angles = float(run.alpha1), float(run.alpha2)
-        panel_letter(panel, letter, f"α₁ = {pi_label(angles[0])}, α₂ = {pi_label(angles[1])}")
-        inset_mechanism(panel, *angles, (1.005, 0.3, 0.27, 0.6))
+        angles = pi_label(float(run.alpha1)), pi_label(float(run.alpha2))
+        panel_letter(panel, letter, f"α₁ = {angles[0]}, α₂ = {angles[1]}")
+        inset_mechanism(panel, run, (1.005, 0.3, 0.27, 0.6))
     for panel in axes[1]:
         panel.set_xlabel("t (s)")
     for panel in axes[:, 0]:
@@ -57,9 +59,8 @@ def draw_force(axes: Axes, run: xr.Dataset) -> None:
     axes.set(xlim=(0.0, float(time[-1])), ylim=(-0.08, max(1.3, 1.1 * np.nanmax(force))))
 
 
-def inset_mechanism(
-    axes: Axes, alpha1: float, alpha2: float, place: tuple[float, float, float, float]
-) -> None:
-    """The spring arrangement in a corner, in axes fractions."""
+def inset_mechanism(axes: Axes, run: xr.Dataset, place: tuple[float, float, float, float]) -> None:
+    """The spring arrangement of a run with its belt, at a place in axes fractions."""
     inset = axes.inset_axes(place)
-    draw_mechanism(inset, alpha1, alpha2)
+    direction = direction_of(parameter(run, "belt_speed"))
+    draw_mechanism(inset, float(run.alpha1), float(run.alpha2), direction=direction)

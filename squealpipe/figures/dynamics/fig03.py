@@ -23,7 +23,7 @@ ALT = (
 )
 
 
-TITLES = {"x": "x, along the belt", "y": "y, away from the belt"}
+TITLES = {"x": "x, along the belt", "y": r"y, away from the belt (dotted: $l_\mathrm{pre}$)"}
 
 
 def draw(run: xr.Dataset) -> Figure:
@@ -41,8 +41,7 @@ def draw(run: xr.Dataset) -> Figure:
         panel.axhline(0.0, color=GREY, linewidth=0.5)
         panel.set(ylabel=f"{name} (m)", xlim=(0.0, time[-1]))
         panel_letter(panel, letter, TITLES[name])
-    axes[1, 0].axhline(float(run.preload), color="black", ls=":", lw=0.8, label=r"$l_\mathrm{pre}$")
-    axes[1, 0].legend(loc="upper left")
+    axes[1, 0].axhline(float(run.preload), color="black", ls=":", lw=0.8)
     axes[1, 0].set_xlabel("t (s)")
-    inset_mechanism(axes[0, 0], float(run.alpha1), float(run.alpha2), (0.005, 0.62, 0.14, 0.4))
+    inset_mechanism(axes[0, 0], run, (1.0, 0.3, 0.14, 0.4))
     return figure

@@ -48,18 +48,11 @@ def draw(run: xr.Dataset) -> Figure:
     panel.add_collection(orbit)
     _springs(panel, run, 0.0, 0.0, (LIGHT, LIGHT))
     _springs(panel, run, x[-1], y[-1], SPRING_COLOURS)
-    panel.axhline(float(run.preload), color="black", linestyle=":", linewidth=0.8)
-    panel.annotate(
-        r"contact is lost above $l_\mathrm{pre}$",
-        (0.55, float(run.preload)),
-        xycoords=("axes fraction", "data"),
-        xytext=(0, 2),
-        textcoords="offset points",
-        ha="center",
-        fontsize=7,
-    )
+    label = r"$l_\mathrm{pre}$: contact is lost above"
+    panel.axhline(float(run.preload), color="black", linestyle=":", linewidth=0.8, label=label)
     panel.set(xlabel="x (m)", ylabel="y (m)", aspect="equal")
     panel.autoscale_view()
+    figure.legend(loc="outside upper left")
     figure.colorbar(orbit, ax=panel, label="t (s)", shrink=0.8)
     return figure
 

@@ -49,6 +49,6 @@ def draw(first: xr.Dataset, second: xr.Dataset) -> Figure:
     difference = np.abs(first.normalized_contact_force - second.normalized_contact_force).max()
     panel.set(xlabel="t (s)", ylabel=FORCE)
     panel.set_title(f"largest difference {number(float(difference), 2)}", loc="right")
-    inset_mechanism(panel, float(first.alpha1), float(first.alpha2), (1.0, 0.3, 0.16, 0.7))
+    inset_mechanism(panel, first, (1.0, 0.3, 0.16, 0.7))
     figure.legend(loc="outside upper left", ncols=3)
     return figure

@@ -74,6 +74,6 @@ def draw(hammering: xr.Dataset) -> Figure:
         float(hammering.attrs["regular_growth"]), color=GREY, linestyle="--", linewidth=1.0
     )
     panel.set(xlabel=f"ln of the growth over t = {t_end:g} s", ylabel="cells", yscale="log")
-    panel.legend(loc="upper right")
+    figure.legend(loc="outside lower right", ncols=3)
     panel_letter(panel, "b", "growth of a perturbation")
     return figure

@@ -122,7 +122,7 @@ def _comparison(axes: Axes, check: xr.Dataset) -> None:
         check.points.values, check.runs.values, check.wrong_share.values, strict=True
     ):
         axes.annotate(
-            f"{count}²", (runs, wrong), xytext=(0, 6), textcoords="offset points", ha="center",
+            f"{count}²", (runs, wrong), xytext=(-4, 4), textcoords="offset points", ha="right",
             fontsize=7,
         )  # fmt: skip
     refined = float(check.refined_runs)
@@ -131,5 +131,7 @@ def _comparison(axes: Axes, check: xr.Dataset) -> None:
         "refined map", (refined, 0.96), xycoords=axes.get_xaxis_transform(), xytext=(3, 0),
         textcoords="offset points", rotation=90, va="top", fontsize=7, color=BLUE,
     )  # fmt: skip
+    axes.set_xticks(check.runs.values, [f"{runs}" for runs in check.runs.values], fontsize=6)
+    axes.minorticks_off()
     axes.set(xlabel="runs", ylabel="wrong cells of uniform maps (share)")
     panel_letter(axes, "c", f"{int(check.missed_regions.sum())} regions missed")

@@ -27,10 +27,11 @@ if TYPE_CHECKING:
 READS = ("parameter_inference",)
 CAPTION = (
     "Parameters inferred from the paper's own statements. (a)–(c) Samples in which all statements "
-    "hold, for either direction of the belt, over the sampled ranges; star: this study; the "
-    "dashed line in (a) is the bound of F6d for a belt along +x, μ = cot 0.4π (a belt along −x "
-    "has none). (d) Share of the samples in which each statement holds, and the share that it "
-    "alone excludes. (e) Margins of the study's own parameters: positive where the statement holds."
+    "hold, for either direction of the belt, over the sampled ranges; star: this study, by its "
+    "spring 1; the dashed line in (a) is the bound of F6d for a belt along +x, μ = cot 0.4π (a "
+    "belt along −x has none). (d) Share of the samples in which each statement holds, and the "
+    "share that it alone excludes. (e) Margins of the study's own parameters: positive where the "
+    "statement holds."
 )
 ALT = "Three scatter plots of feasible parameters and two bar charts over the paper's statements."
 PANELS = (
@@ -72,7 +73,12 @@ def draw(inference: xr.Dataset) -> Figure:
     margins.invert_yaxis()
     for name, value in zip(names, values, strict=True):
         margins.annotate(
-            f"{value:.2g}", (value, name), (3, 0), textcoords="offset points", va="center", size=6
+            f"{value:.2g}",
+            (max(value, 0.0), name),
+            (3, 0),
+            textcoords="offset points",
+            va="center",
+            size=6,
         )
     margins.set_xlim(right=1.12 * max(values.max(), 0.1))
     panel_letter(margins, "e", "margins of this study")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -13,6 +14,7 @@ from squealpipe.figures.parts.style import (
     WHITE,
     draw_map,
     new_figure,
+    number,
     panel_letter,
 )
 
@@ -23,13 +25,22 @@ if TYPE_CHECKING:
 READS = ("critical_friction_map", "critical_damping_map")
 LARGEST = 1.5
 """Upper end of the colours."""
-CAPTION = (
-    "Friction coefficient of Coulomb's law at which steady sliding turns unstable by A3 "
-    "(Routh–Hurwitz). (a) Without dashpots, (b) with those of the study over both spring angles; "
-    "hatched: the dashpots lower the critical friction. (c) Over both dashpots at one pair of "
-    "angles; white line: as without dashpots, hatched: below that."
-)
 ALT = "Two maps over both spring angles and one over both dashpots, coloured by critical friction."
+
+
+def caption(angles: xr.Dataset, _: xr.Dataset) -> str:
+    """What is shown, with the dashpots of the maps."""
+    given = json.loads(angles.attrs["parameters"])
+    c1, c2 = (number(given.get(f"damping{i}", 0.0)) for i in (1, 2))
+    return (
+        "Friction coefficient of Coulomb's law at which steady sliding turns unstable by A3 "
+        f"(Routh–Hurwitz), over both spring angles (a) without dashpots, (b) with c₁ = {c1} and "
+        f"c₂ = {c2} N s/m; hatched: the dashpots lower the critical friction. (c) Over both "
+        "dashpots at one pair of angles; white line: as without dashpots, hatched: below that."
+    )
+
+
+CAPTION = caption
 
 
 def draw(angles: xr.Dataset, dashpots: xr.Dataset) -> Figure:

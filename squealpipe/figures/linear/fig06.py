@@ -8,6 +8,7 @@ import numpy as np
 from matplotlib.patches import Patch
 
 from squealpipe.figures.linear.linear_overlay import draw_boundaries, mark_scene
+from squealpipe.figures.parts.origin import parameter
 from squealpipe.figures.parts.style import (
     BLACK,
     LIGHT,
@@ -18,6 +19,7 @@ from squealpipe.figures.parts.style import (
     new_figure,
     panel_letter,
 )
+from squealpipe.parameters import direction_of
 from squealpipe.schema.linear import Boundary
 
 if TYPE_CHECKING:
@@ -25,7 +27,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 READS = ("stability_map", "quasi_static_map", "stability_boundaries")
-CAPTION = (
+CAPTION_ALONG_X = (
     "Quasi-static sliding (A2) and linear stability (A3) over both spring angles. White: sliding "
     "is possible; grey: it is not; black: the linear model is unstable. Sliding is judged (a) by "
     "Eq. (11) as printed, μ < K₁₁/K₁₂, and (b) by the sign of the reaction force, μK₁₂ < K₁₁. "
@@ -35,6 +37,19 @@ ALT = (
     "Two square maps over both spring angles in white, grey and black with boundary curves, one "
     "map for each reading of Eq. (11)."
 )
+
+
+def caption(stability: xr.Dataset, _: xr.Dataset, __: xr.Dataset) -> str:
+    """What the tones mean; how the signs are read where the belt runs along −x."""
+    if direction_of(parameter(stability, "belt_speed")) > 0:
+        return CAPTION_ALONG_X
+    return CAPTION_ALONG_X + (
+        " The belt runs along −x: μ counts as negative in (b), and (a) judges the mirror image, "
+        "|μ| < −K₁₁/K₁₂."
+    )
+
+
+CAPTION = caption
 
 
 def draw(stability: xr.Dataset, quasi_static: xr.Dataset, boundaries: xr.Dataset) -> Figure:

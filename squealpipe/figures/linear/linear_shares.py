@@ -17,8 +17,8 @@ READS = ("linear_shares",)
 CAPTION = (
     "Shares of the angle map. (a) Where quasi-static sliding is not possible, by Eq. (11) as "
     "printed and by the reaction force, over μ. (b) Where it is not possible by A2, though the "
-    "static state of Eq. (15) is pressed against the belt, for several κ = k₃/k. (c) Where sliding "
-    "is possible and the linear model unstable, for the same κ. (d) K₃ of Eq. (8d) and the "
+    "static state of Eq. (15) is pressed against the belt, for several κ = k₃/k₁. (c) Where "
+    "sliding is possible and the linear model unstable, for the same κ. (d) K₃ of Eq. (8d) and the "
     "unstable share over the regularizing factor σ, at the study's parameters."
 )
 ALT = "Four line plots of map shares against friction, and of K3 over k3 against sigma."

@@ -39,6 +39,7 @@ def draw_mechanism(
     length: float = 1.0,
     labels: bool = False,
     pivots: bool = True,
+    direction: float = 1.0,
 ) -> None:
     """Draw an arrangement of the springs around the mass at the origin.
 
@@ -48,6 +49,7 @@ def draw_mechanism(
         length: drawn length of the springs (the mass has radius 0.12).
         labels: name the parts with the paper's symbols.
         pivots: draw the fixed ends.
+        direction: of the belt, +1 or −1.
     """
     radius = 0.12 * length
     directions = (
@@ -57,14 +59,12 @@ def draw_mechanism(
     belt_top = -0.62 * length
     line = 1.2 if labels else 0.8
     aside = apart(*directions, 0.1 * length)
-    for direction, shift, colour in zip(directions, aside, SPRING_COLOURS, strict=True):
-        path = coil(tuple(direction * radius), tuple(direction * length), width=0.07 * length)
+    for towards, shift, colour in zip(directions, aside, SPRING_COLOURS, strict=True):
+        path = coil(tuple(towards * radius), tuple(towards * length), width=0.07 * length)
         path[1:-1] += shift
         axes.plot(*path.T, color=colour, linewidth=line, solid_joinstyle="round", zorder=2)
         if pivots:
-            axes.add_patch(
-                Circle(tuple(direction * length), 0.04 * length, color="black", zorder=3)
-            )
+            axes.add_patch(Circle(tuple(towards * length), 0.04 * length, color="black", zorder=3))
     contact = coil((0.0, -radius), (0.0, belt_top), turns=4, width=0.07 * length)
     axes.plot(*contact.T, color=GREY, linewidth=line, zorder=1)
     axes.add_patch(Circle((0.0, 0.0), radius, facecolor="white", edgecolor="black", zorder=4))
@@ -82,8 +82,8 @@ def draw_mechanism(
     )
     axes.add_patch(
         FancyArrowPatch(
-            (0.30 * half, belt_top - 0.27 * length),
-            (0.85 * half, belt_top - 0.27 * length),
+            (direction * 0.30 * half, belt_top - 0.27 * length),
+            (direction * 0.85 * half, belt_top - 0.27 * length),
             arrowstyle="-|>",
             mutation_scale=11 if labels else 6,
             color=RED,

@@ -12,6 +12,7 @@ from squealpipe.figures.parts.style import (
     REGIME_COLOURS,
     category_colours,
     draw_map,
+    flag_words,
     new_figure,
 )
 
@@ -39,16 +40,16 @@ class Shown:
             table = dict(zip(variable.attrs["flag_values"], meanings, strict=True))
             codes, numbers = np.unique(variable.values, return_counts=True)
             return [
-                f"{number} of {variable.size} cells: {table[code].replace('_', ' ')}"
+                f"{number} of {variable.size} cells: {flag_words(table[code])}"
                 for code, number in zip(codes, numbers, strict=True)
             ]
         values = variable.values
         finite = np.isfinite(values)
         return [
-            f"{np.count_nonzero(finite)} of {values.size} cells have a {variable.long_name}, "
+            f"{_words(variable)}: in {np.count_nonzero(finite)} of {values.size} cells, "
             f"from {values[finite].min():.6g} to {values[finite].max():.6g} {variable.units}"
             if finite.any()
-            else f"no cell has a {variable.long_name}"
+            else f"{_words(variable)}: in no cell"
         ]
 
 
@@ -92,6 +93,10 @@ def draw(dataset: xr.Dataset) -> Figure:
     return figure
 
 
+def _words(variable: xr.DataArray) -> str:
+    return str(variable.long_name).split(" (")[0]
+
+
 def _label(variable: xr.DataArray) -> str:
-    words = str(variable.long_name).split(" (")[0]
+    words = _words(variable)
     return words if variable.units == "1" else f"{words} ({variable.units})"

@@ -32,7 +32,8 @@ QUANTITIES = (("x_amplitude", X_COLOUR, "x"), ("y_amplitude", Y_COLOUR, "y"))
 KEY = (
     "Crosses: harmonic balance; lines: exact orbits, dotted where unstable. Amplitudes are half of "
     "the peak to peak and exclude the mean: contact is lost from the circle upwards, where mean "
-    "and amplitude of y add up to l_pre (grey line). Red rings: x' > V, where A4 does not hold."
+    "and amplitude of y add up to l_pre (grey line). Red rings: the mass overtakes the belt, where "
+    "A4 does not hold."
 )
 """What the marks mean, for captions."""
 SCENE_ALT = "Two panels of amplitude over frequency for x and y, one for each mode."

@@ -8,6 +8,7 @@ import numpy as np
 import xarray as xr
 
 from squealpipe.claims.evidence import Run
+from squealpipe.figures.comparison.model_ladder import QUESTION_NAMES
 from squealpipe.schema.comparison import Reliability, Role
 
 
@@ -78,7 +79,7 @@ def ladder(run: Run) -> dict[str, Any]:
         asked = np.isfinite(errors)
         questions.append(
             {
-                "question": str(name).replace("_", " "),
+                "question": QUESTION_NAMES[str(name)].rstrip("?"),
                 "within": float((errors[asked] <= tolerance).mean()),
                 "simpler": float((row.cheapest != complete).mean()),
                 "hindsight": float(row.hindsight_time / row.always_time),

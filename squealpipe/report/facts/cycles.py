@@ -22,6 +22,10 @@ def cycles(run: Run) -> dict[str, Any]:
     found = int(cycle.outcome) == Outcome.converged
     return {
         "damping": parameters["damping1"] / np.sqrt(parameters["k1"] * parameters["mass"]),
+        "own_damping": any(
+            own not in (0.0, parameters["damping1"])
+            for own in (run.parameters.damping1, run.parameters.damping2)
+        ),
         "mu": parameters["mu"],
         "found": found,
         "reason": Outcome(int(cycle.outcome)).name.replace("_", " "),

@@ -83,9 +83,12 @@ def critical(run: Run) -> dict[str, Any]:
     """Where dashpots lower the critical friction, and what that changes at the study's own."""
     dataset, mu = run["critical_friction_map"], run.parameters.mu
     given = json.loads(dataset.attrs["parameters"])
+    damping = [given.get(f"damping{i}", 0.0) for i in (1, 2)]
+    own = [run.parameters.damping1, run.parameters.damping2]
     damped, undamped = dataset.critical_mu.values, dataset.critical_mu_undamped.values
     return {
-        "damping": [given.get(f"damping{i}", 0.0) for i in (1, 2)],
+        "damping": damping,
+        "own_damping": own if any(own) and own != damping else None,
         "points": dataset.sizes["alpha1"],
         "lowered": float(dataset.destabilized.mean()),
         "mu": mu,

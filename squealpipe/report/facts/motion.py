@@ -56,7 +56,7 @@ def whirl(run: Run) -> dict[str, Any]:
     )  # fmt: skip
     growth = float(here.amplitude / here.amplitude_before) - 1.0
     return {
-        "motion": names[int(here.motion)].replace("_", " "),
+        "motion": flag_words(names[int(here.motion)]),
         "saturated": abs(growth) < SATURATED,
         "speed": float(here.belt_speed),
         "own_speed": bool(np.isclose(here.belt_speed, parameters.belt_speed, rtol=1e-6)),

@@ -18,6 +18,7 @@ import xarray as xr
 
 from squealpipe.claims.evidence import Run
 from squealpipe.claims.maps import coupling_is_negative, order_turns_over, unstable_cells
+from squealpipe.figures.parts.style import flag_words
 from squealpipe.report.facts.orbits import orbit_cells
 from squealpipe.schema.inference import CONFIDENCE, wilson_interval
 
@@ -156,7 +157,7 @@ def _hammering(run: Run) -> Iterator[Row]:
         motion.attrs["flag_meanings"].split(), motion.attrs["flag_values"], strict=True
     ):
         if (motion == value).any():
-            yield _area(f"motion: {name.replace('_', ' ')}", motion == value)
+            yield _area(f"motion: {flag_words(name)}", motion == value)
     if "motion_later" in hammering:
         yield _area("motion: another label at twice the time", motion != hammering.motion_later)
     limited = hammering.predictability_horizon < hammering.t_end

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from squealpipe.claims.evidence import Run
+from squealpipe.figures.parts.style import flag_words
 from squealpipe.parameters import SCENES
 from squealpipe.schema import Outcome
 from squealpipe.schema.linear import LinearRegimeFlag
@@ -55,7 +56,7 @@ def basins(run: Run) -> dict[str, Any]:
         scenes.append({
             "angles": f"({angles[0]:.4g}π, {angles[1]:.4g}π)",
             "parts": [
-                {"words": words[value].replace("_", " "), "share": float(count / counts.sum())}
+                {"words": flag_words(words[value]), "share": float(count / counts.sum())}
                 for value, count in zip(values, counts, strict=True)
             ],
         })  # fmt: skip
