@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import IntEnum
+
+import numpy as np
 
 from squealpipe.methods.continuation import ContinuationState
 from squealpipe.methods.limit_cycles.cycles import Cycle
 from squealpipe.methods.limit_cycles.labels import Label
+
+_SMALL = 1e-3
+"""Size of a cycle, over the largest on its branch, below which one that shrinks comes to rest."""
 
 
 class BranchEnd(IntEnum):
@@ -50,6 +56,12 @@ class BranchPoint:
     cycle: Cycle
     label: Label
     state: ContinuationState
+
+
+def has_shrunk(points: Sequence[BranchPoint]) -> bool:
+    """Whether the cycle, small by now, still shrinks: with events it is not followed to its end."""
+    sizes = [float(np.diff(point.cycle.extent, axis=0).max()) for point in points]
+    return len(sizes) > 1 and sizes[-1] < _SMALL * max(sizes) and sizes[-1] < sizes[-2]
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -21,6 +21,7 @@ from squealpipe.methods.limit_cycles.branch_ends import (
     BranchEnd,
     BranchPoint,
     CycleBranchSettings,
+    has_shrunk,
 )
 from squealpipe.methods.limit_cycles.corners import around_corner
 from squealpipe.methods.limit_cycles.cycle_equations import (
@@ -389,12 +390,10 @@ class _Follower:
 
     def _reason(self, cycle: Cycle) -> BranchEnd:
         """Why no step leads on."""
-        if self.at_rest:
+        if self.at_rest or has_shrunk(self.points):
             return BranchEnd.at_rest
         if any(is_shorter(cycle, parts, _MET, _MET) for parts in (2, 3)):
             return BranchEnd.shorter
         if cycle.system.is_singular(cycle.passage):
             return BranchEnd.singular
-        if cycle.system.is_tangent(cycle.passage):
-            return BranchEnd.tangency
-        return BranchEnd.lost
+        return BranchEnd.tangency if cycle.system.is_tangent(cycle.passage) else BranchEnd.lost

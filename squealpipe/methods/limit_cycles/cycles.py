@@ -85,6 +85,12 @@ class Cycle:
         return np.array(result).T
 
     @property
+    def closing_error(self) -> float:
+        """Largest closing error over the cycle's own extent, which may be far below ``scale``."""
+        path = sample_path(self.segments, np.linspace(0.0, self.period, 200))
+        return float(np.abs((self.passage.state - self.state) / common_scale(path)).max())
+
+    @property
     def is_family_member(self) -> bool:
         """Whether a second multiplier is 1 in a system whose cycles come in families."""
         near = np.abs(self.multipliers[1:] - 1.0).min() < FAMILY

@@ -31,6 +31,7 @@ _FAR = 0.3
 _TRIES = 4
 _AT_REST = 1e-9
 _MOST_EVENTS = 1_000_000
+_MOST_ROUNDS = 100
 SAMPLES = 400
 
 SCALARS = (
@@ -204,13 +205,20 @@ def least_cycle(system: A1Flow, state: Vector, time: float) -> Cycle | None:
         and np.abs((cycle.state - place) / scale).max() < _FAR
     ):
         return None
-    for parts in (5, 4, 3, 2):
-        if cycle is None:
-            return None
-        half = flow(system, cycle.state, cycle.period / parts, derivative=False).state
-        if np.abs((half - cycle.state) / scale).max() < 1e-6:
-            cycle = solve_cycle(system, cycle.state, cycle.period / parts, scale) or cycle
+    rounds = 1 if cycle is None else _rounds(cycle)
+    if cycle is not None and rounds > 1:
+        cycle = solve_cycle(system, cycle.state, cycle.period / rounds, scale) or cycle
     return cycle
+
+
+def _rounds(cycle: Cycle) -> int:
+    """How many times a cycle runs through a shorter one: 1 if its period is the least."""
+    phases, parts = np.arange(8) / 8, np.arange(2, _MOST_ROUNDS + 1)
+    before = sample_path(cycle.segments, cycle.period * phases)
+    later = (phases + 1.0 / parts[:, None]) % 1.0
+    after = sample_path(cycle.segments, cycle.period * later.ravel()).reshape(len(parts), 8, -1)
+    same = (np.abs(after - before) < 1e-6 * cycle.scale).all(axis=(1, 2))
+    return int(parts[same].max(initial=1))
 
 
 def cycle_values(cycle: Cycle) -> dict[str, Any]:
@@ -229,7 +237,7 @@ def cycle_values(cycle: Cycle) -> dict[str, Any]:
         "contact_fraction": 1.0 - times[Regime.separated] / cycle.period,
         "stick_fraction": times[Regime.stick] / cycle.period,
         "least_contact_force": p.k3 * max(p.preload - y_max, 0.0),
-        "residual": cycle.residual,
+        "residual": cycle.closing_error,
         "stable": int(cycle.is_stable and not cycle.is_family_member),
         "multiplier_real": cycle.multipliers.real,
         "multiplier_imag": cycle.multipliers.imag,

@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 import xarray as xr
+from scipy.optimize import root
 
 from squealpipe import Parameters, cycle_branch, limit_cycle, simulate
 from squealpipe.methods.limit_cycles.event_flow import Touch, flow
@@ -138,6 +139,47 @@ def test_a_branch_ends_where_the_cycle_shrinks_to_rest():
     )  # fmt: skip
     assert back.end == Outcome.equilibrium
     np.testing.assert_allclose(back.mu[-1], born.mu[0], rtol=1e-2)
+
+
+def test_a_hammering_cycle_shrinks_to_rest_at_the_edge_of_contact():
+    """It keeps both its events: the springs alone then balance just where contact begins."""
+    params = Parameters(
+        mass=0.36, k1=0.11, k2=0.89, k3=0.21, mu=0.8, belt_speed=0.0122, preload=0.0311,
+        length1=0.1057, length2=0.065, damping1=0.00237, friction_law="exponential",
+        mu_static=1.209, friction_speed=0.0291,
+    )  # fmt: skip
+    angles = (2.512, 2.953)
+    branch = cycle_branch(
+        params,
+        *angles,
+        parameter="alpha2",
+        to=3.75,
+        start=(0.02881478, 0.06621683, 0.02418213, 0.00180263),
+    )
+    assert branch.end == Outcome.equilibrium
+    assert branch.events[-1] == 2
+
+    def forces(unknown):
+        x, alpha2 = unknown
+        ends = (
+            (params.k1, params.length1, math.cos(angles[0]), math.sin(angles[0])),
+            (params.k2, params.length2, -math.cos(alpha2), math.sin(alpha2)),
+        )
+        total = np.zeros(2)
+        for stiffness, length, c, s in ends:
+            arm = np.array([x, params.preload]) - length * np.array([c, s])
+            distance = np.hypot(*arm)
+            total -= stiffness * (distance - length) / distance * arm
+        return total
+
+    x, alpha2 = root(forces, [float(branch.x_max[-1]), float(branch.alpha2[-1])], tol=1e-13).x
+    np.testing.assert_allclose(branch.alpha2[-1], alpha2, rtol=1e-4)
+    np.testing.assert_allclose(branch.x_max[-1], x, rtol=1e-3)
+    last = branch.isel(point=-1)
+    system = A1Flow(params, angles[0], float(last.alpha2))
+    end = flow(system, start_of(last), float(last.period), derivative=False).state
+    extent = max(float(last.x_max - last.x_min), float(last.y_max - last.y_min))
+    assert last.residual >= 0.99 * np.abs(end - start_of(last))[:2].max() / extent
 
 
 @pytest.mark.parametrize(

@@ -235,7 +235,7 @@ def test_branch_refuses_what_it_cannot_do(change, named):
         cycle_branch(Parameters(), 1.0, 2.0, **given)
 
 
-@pytest.mark.parametrize("rounds", [2, 3, 4, 6, 8])
+@pytest.mark.parametrize("rounds", [2, 3, 4, 6, 7, 8, 9, 25])
 def test_a_return_after_several_rounds_gives_the_least_period(rounds):
     params, angles = friction_oscillator(1.25, reach=1e4), ANGLES
     once = limit_cycle(params, *angles, guess=(1.5, 0.25, 1.25, 0.0))
