@@ -135,19 +135,23 @@ class Parameters:
         0.0, "N s m-1", "c_2", "dashpot along spring 2", allowed="not negative", extension=True
     )
     friction_law: str = _row(
-        COULOMB, "1", '"law"', "friction coefficient over speed", allowed="law", extension=True
+        COULOMB, "1", '"law"', "friction law: " + ", ".join(LAWS), allowed="law", extension=True
     )
     mu_static: float | None = _row(
         None,
         "1",
         "mu_s",
-        "static friction coefficient; none given: that of sliding",
+        "static friction coefficient, that of sliding if none is given",
         allowed="not negative",
         extension=True,
         optional=True,
     )
     friction_speed: float = _row(
-        1.0, "m s-1", "v_0", "speed over which friction falls to that of sliding", extension=True
+        1.0,
+        "m s-1",
+        "v_0",
+        "speed over which friction falls towards that of sliding",
+        extension=True,
     )
 
     def __post_init__(self) -> None:
@@ -247,7 +251,8 @@ NUMBERS_OF_A1: dict[str, str] = {
 DEFAULTS: dict[str, Any] = {item.name: item.default for item in fields(Parameters)}
 
 Parameters.__doc__ = f"{Parameters.__doc__}\n    Attributes:\n" + "\n".join(
-    f"        {name}: {row.meaning}, {row.units}." for name, row in TABLE.items()
+    f"        {name}: {row.meaning}{f', {row.units}' if row.units != '1' else ''}."
+    for name, row in TABLE.items()
 )
 
 

@@ -10,6 +10,7 @@ from typing import Any
 
 import xarray as xr
 
+from squealpipe.claims.evidence import passes
 from squealpipe.schema.claims import Basis, Origin, Verdict
 from squealpipe.store import load
 
@@ -37,6 +38,7 @@ def rows(claims: xr.Dataset) -> list[dict[str, Any]]:
                 **{key: _number(row[key].item()) for key in NUMBERS},
                 **verdicts,
                 "as_recorded": verdicts["verdict_here"] == verdicts["recorded"],
+                "unmet": _fails_by_a_further_condition(row),
                 **_standing(row),
             }
         )
@@ -78,6 +80,13 @@ def _standing(row: xr.Dataset) -> dict[str, Any]:
         **{key: _number(row[key].item()) if key in row else None for key in INTERVAL},
         **{key: flags(int(row[key])).name if key in row else None for key, flags in FLAGS.items()},
     }
+
+
+def _fails_by_a_further_condition(row: xr.Dataset) -> bool:
+    """Whether the statement fails here though its deciding comparison is true."""
+    value, relation, threshold = (row[key].item() for key in ("value", "relation", "threshold"))
+    fails = int(row.verdict_here) == Verdict.fails
+    return fails and relation != "" and passes(value, relation, threshold)
 
 
 def _number(value: float) -> float | None:

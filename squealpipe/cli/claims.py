@@ -94,7 +94,11 @@ def _line(row: Mapping[str, Any], width: int | None) -> str:
 def _details(row: Mapping[str, Any]) -> list[str]:
     lines = [f"{row['id']}  {row['verdict']}  ({row['section']})", row["statement"]]
     if row["value"] is not None:
-        lines.append(f"{row['check']}: {row['value']:.6g} {row['relation']} {row['threshold']:.6g}")
+        but = ", but a further condition is not met" if row["unmet"] else ""
+        lines.append(
+            f"{row['check']}: {row['value']:.6g}, wanted {row['relation']} "
+            f"{row['threshold']:.6g}{but}"
+        )
     if row["feasible_share"] is not None:
         lines.append(f"holds in {row['feasible_share']:.1%} of the feasible parameter sets")
     lines.append(row["evidence"])

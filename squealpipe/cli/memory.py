@@ -63,12 +63,20 @@ def find(expression: str, /, *, json_: AsJson = False) -> int:
         json_: print a JSON list of names.
     """
     from squealpipe.config import Study
+    from squealpipe.parameters import DEFAULTS, TABLE
     from squealpipe.store.memory.catalogue import runs
     from squealpipe.store.memory.expressions import Condition
     from squealpipe.yaml_files import flat
 
-    condition = Condition(expression, flat(Study().model_dump(mode="json")))
-    names = [run.name for run in runs() if run.config and condition.holds(run.config)]
+    known = {f"parameters.{name}": DEFAULTS[name] for name in TABLE if TABLE[name].extension}
+    known |= flat(Study().model_dump(mode="json"))
+    static, sliding = "parameters.mu_static", "parameters.mu"
+    condition = Condition(expression, {**known, static: known[sliding]})
+    names = [
+        run.name
+        for run in runs()
+        if run.config and condition.holds({static: run.config.get(sliding), **run.config})
+    ]
     print(json.dumps(names) if json_ else "\n".join(names) or "no run fulfils it")
     return DONE if names else ANSWER_IS_NO
 

@@ -59,6 +59,7 @@ def test_list_tells_what_differs_and_whether_it_was_verified(memory, capsys):
         ("mu > 0.25 or not k3 == 0.75", ["first"]),
         ("0.2 < mu <= 0.25 and linear.points in [13, 31]", ["second", "results"]),
         ("length1 / l_pre == 5 and mu * 4 == 1", ["second", "results"]),
+        ("damping1 == 0 and mu_static < 0.3 and friction_law == 'coulomb'", ["second", "results"]),
     ],
 )
 def test_find_prints_the_runs_that_match(memory, capsys, expression, names):

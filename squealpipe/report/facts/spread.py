@@ -147,6 +147,7 @@ def propensity(run: Run) -> dict[str, Any]:
         })  # fmt: skip
     return {
         "samples": int(dataset.judged),
+        "inputs": [SIGNS.get(name, name) for name in dataset.input.values.tolist()],
         "rows": [
             {
                 "words": words[i],
