@@ -33,7 +33,7 @@ class EventChange:
     first: int
 
     def distance(self, cycle: Cycle) -> float:
-        """Zero where the change is, positive with more events, negative with fewer.
+        """Zero where the change is, positive with more events, negative with fewer; no unit.
 
         Raises:
             ArithmeticError: the cycle has neither of the two sequences of events.
@@ -42,7 +42,8 @@ class EventChange:
         if kinds == self.more:
             return cycle.system.overlap(self.touch, cycle.passage, self.first)
         if kinds == self.fewer:
-            return -cycle.system.clearance(self.touch, cycle.passage)
+            clearance = cycle.system.clearance(self.touch, cycle.passage)
+            return -clearance / cycle.system.unit_of(self.touch)
         raise ArithmeticError
 
 

@@ -92,7 +92,7 @@ class HybridSystem(Protocol):
         """The unit of a clearance."""
 
     def overlap(self, touch: Touch, passage: Passage, first: int) -> float:
-        """How far a motion is beyond a touch whose first event has the index ``first``."""
+        """How far a motion is beyond a touch whose first event is ``first``; without a unit."""
 
 
 class Touch(IntEnum):

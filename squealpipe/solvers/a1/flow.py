@@ -180,15 +180,15 @@ class A1Flow:
     def overlap(self, touch: Touch, passage: Passage, first: int) -> float:
         """How far a motion is beyond a touch whose first event has the index ``first``.
 
-        A depth in the units of :meth:`clearance`, or the time between the events (squared where
-        it grows as a root).
+        A depth over :meth:`unit_of`, or the time between the events over √(m/k1) (squared where it
+        grows as a root).
         """
-        times = passage.event_times
+        times = np.array(passage.event_times) / self.params.time_unit
         if touch == Touch.meeting:
             places = [i for i in (first - 1, first + 1) if 0 <= i < len(times)]
-            return min((abs(times[i] - times[first]) for i in places), default=np.inf)
+            return min((abs(float(times[i] - times[first])) for i in places), default=np.inf)
         between = passage.segments[first + 1]
-        duration = times[first + 1] - times[first]
+        duration = float(times[first + 1] - times[first])
         if touch == Touch.passing:
             return duration
         if touch == Touch.split or self.holds(between.regime):
@@ -198,7 +198,7 @@ class A1Flow:
         depths = [
             abs(point.value - surface) for point in turning_points([between], 1 if graze else 2)
         ]
-        return max(depths, default=duration * duration)
+        return max(depths) / self.unit_of(touch) if depths else duration * duration
 
     def is_singular(self, passage: Passage) -> bool:
         """Whether a motion that was kept comes next to a pivot, where d = 0."""

@@ -67,3 +67,26 @@ def test_grazing_points_at_random_parameters_just_touch():
             passage = flow(system, start_of(here), float(here.period), keep=True)
             assert system.clearance(Touch.graze, passage) < 1e-9 * params.preload
             touched += 1
+
+
+def test_special_points_do_not_depend_on_units():
+    """Time 1000 √(m/k1), force 1e-6: what tells a touch from either side has another unit."""
+    params, unit = Parameters(
+        k1=1.596, k2=0.391, k3=2.894, mu=0.336, belt_speed=-1.103, length1=5.49, length2=5.574,
+        damping1=0.0045, damping2=0.071,
+    ), np.array([1e-3, 1e-3, 1e-6, 1e-6])  # fmt: skip
+    scaled = {"mass": 1e3, "length1": 1e-3, "length2": 1e-3, "preload": 1e-3, "belt_speed": 1e-6}
+    scaled |= dict.fromkeys(("k1", "k2", "k3"), 1e-3) | dict.fromkeys(("damping1", "damping2"), 1.0)
+    other = params.with_(
+        **{name: factor * getattr(params, name) for name, factor in scaled.items()}
+    )
+    angles, guess = (1.823, 1.037), (-1.51915, 10.9181, 1.45042, -0.12146)
+    branches = [
+        cycle_branch(given, *angles, parameter="alpha1", to=1.1, start=start, n_points=30)
+        for given, start in ((params, guess), (other, np.array(guess) * unit))
+    ]
+    special = [np.flatnonzero(branch.label > 0)[:-1] for branch in branches]
+    np.testing.assert_array_equal(*(b.label[at] for b, at in zip(branches, special, strict=True)))
+    assert (branches[0].label == Label.stick_onset).any()
+    places = [b.alpha1[at] for b, at in zip(branches, special, strict=True)]
+    np.testing.assert_allclose(*places, rtol=1e-9)
