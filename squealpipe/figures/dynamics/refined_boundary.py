@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from matplotlib.patches import Patch, Rectangle
+from matplotlib.ticker import NullLocator
 
 from squealpipe.figures.parts.style import (
     BLUE,
@@ -122,7 +123,7 @@ def _comparison(axes: Axes, check: xr.Dataset) -> None:
         check.points.values, check.runs.values, check.wrong_share.values, strict=True
     ):
         axes.annotate(
-            f"{count}²", (runs, wrong), xytext=(-4, 4), textcoords="offset points", ha="right",
+            f"{count}²", (runs, wrong), xytext=(0, 6), textcoords="offset points", ha="center",
             fontsize=7,
         )  # fmt: skip
     refined = float(check.refined_runs)
@@ -132,6 +133,6 @@ def _comparison(axes: Axes, check: xr.Dataset) -> None:
         textcoords="offset points", rotation=90, va="top", fontsize=7, color=BLUE,
     )  # fmt: skip
     axes.set_xticks(check.runs.values, [f"{runs}" for runs in check.runs.values], fontsize=6)
-    axes.minorticks_off()
+    axes.xaxis.set_minor_locator(NullLocator())
     axes.set(xlabel="runs", ylabel="wrong cells of uniform maps (share)")
     panel_letter(axes, "c", f"{int(check.missed_regions.sum())} regions missed")
