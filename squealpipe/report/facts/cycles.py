@@ -12,7 +12,7 @@ from squealpipe.claims.evidence import Run
 from squealpipe.schema import Outcome
 
 CLOSE = 0.05
-"""A long run this close to a cycle's size, relative, has reached it."""
+"""A long run whose size is this close to a cycle's, relative, counts as one that has reached it."""
 
 
 def cycles(run: Run) -> dict[str, Any]:
@@ -44,6 +44,7 @@ def cycles(run: Run) -> dict[str, Any]:
         "runs": int(extremes.sizes["start"]),
         "frictions": int(extremes.sizes["mu"]),
         "both": _both(run),
+        "close": CLOSE,
         "rest_2d": _settles(run),
         "far_2d": _far(extremes, parameters),
     }
@@ -62,7 +63,7 @@ def _turn(branch: xr.Dataset) -> dict[str, Any]:
 
 
 def _both(run: Run) -> int:
-    """Frictions at which some long runs end on the stable cycle and others do not."""
+    """Frictions at which some long runs end with the stable cycle's size and others do not."""
     extremes, count = run["cycles/extremes"].sel(scene="F3"), 0
     friction, size = [], []
     for way in ("down", "up"):

@@ -141,8 +141,9 @@ def find_cycle(system: A1Flow, state: Vector) -> tuple[Cycle | None, Outcome]:
     """The cycle near a state, and its outcome."""
     unit = system.params.time_unit
     trial = flow(system, state, unit, derivative=False, keep=True)
-    if not trial.segments or not np.isfinite(trial.state).all():
-        return None, Outcome.singular_geometry
+    if not np.isfinite(trial.state).all():
+        at_pivot = system.is_singular(trial)
+        return None, Outcome.singular_geometry if at_pivot else Outcome.not_finite
     if _comes_to_rest(system, state, _WINDOWS[0] * unit):
         return None, Outcome.equilibrium
     tried: list[float] = []

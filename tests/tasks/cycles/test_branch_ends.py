@@ -231,3 +231,15 @@ def test_a_run_too_long_to_settle_says_so():
     assert limit_cycle(stiff, *PENDULUM).outcome == Outcome.step_limit
     branch = cycle_branch(stiff, *PENDULUM, parameter="mu", to=0.2)
     assert branch.end == Outcome.step_limit
+
+
+@pytest.mark.parametrize(
+    ("guess", "outcome"),
+    [
+        ((5.0 * math.cos(PENDULUM[0]), 5.0 * math.sin(PENDULUM[0]), 0, 0), "singular_geometry"),
+        ((1e200, 1.0, 1.0, 1.0), "not_finite"),
+        ((0.0, 0.0, 1e100, 0.0), "not_finite"),
+    ],
+)
+def test_a_pivot_is_told_from_an_overflow(guess, outcome):
+    assert limit_cycle(STICKING, *PENDULUM, guess=guess).outcome == Outcome[outcome]
