@@ -8,6 +8,7 @@ import re
 import shutil
 import tempfile
 from collections.abc import Iterator, Mapping
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from importlib.resources import files
 from pathlib import Path
@@ -34,12 +35,17 @@ def write_report(
         pdf: ``report.pdf``.
     """
     with _source(content, pictures) as main:
-        made = typst.compile(main, format="html", sys_inputs={"target": "html"}).decode()
-        document = typst.compile(
-            main, format="pdf", sys_inputs={"target": "pdf"}, ignore_system_fonts=True
-        )
-    _write(page, _page(content, made).encode())
-    _write(pdf, document)
+        with ThreadPoolExecutor(2) as pool:
+            made = pool.submit(typst.compile, main, format="html", sys_inputs={"target": "html"})
+            document = pool.submit(
+                typst.compile,
+                main,
+                format="pdf",
+                sys_inputs={"target": "pdf"},
+                ignore_system_fonts=True,
+            )
+    _write(page, _page(content, made.result().decode()).encode())
+    _write(pdf, document.result())
 
 
 @contextmanager

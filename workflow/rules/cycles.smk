@@ -10,5 +10,6 @@ rule follow_cycles:
         **{name: data(f"cycles/{name}") for name in CYCLES},
     params:
         part=part("parameters", "cycles"),
+    priority: LONG
     script:
         "../scripts/follow_cycles.py"
