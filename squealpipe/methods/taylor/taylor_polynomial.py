@@ -11,6 +11,9 @@ from typing import Any
 from squealpipe.methods.compiled import inline, part, polynomial
 from squealpipe.methods.taylor.simd import larger, smaller
 
+MOST_TURNS = 60
+"""Newton iterations for an extremum; two do where the step is short beside the oscillation."""
+
 
 @polynomial
 def evaluate(coefficients: Any, variable: int, lane: int, step: float) -> Any:
@@ -98,15 +101,31 @@ def first_guess(first: float, last: float, slope: float, step: float) -> Any:
 
 
 @part
+def improved(time: float, rate: float, slope: float, low: float, high: float) -> float:
+    """A better root of a rate by Newton's method, or the middle of the bracket that it leaves."""
+    following = time - rate / slope
+    return following if low <= following <= high else 0.5 * (low + high)
+
+
+@part
+def settled(turn: int, change: float, step: float) -> bool:
+    """Whether the time of an extremum is good enough: its error enters the value squared."""
+    return turn > 0 and abs(change) < 1e-7 * step
+
+
+@part
 def extremum(
     coefficients: Any, variable: int, rate: int, lane: int, step: float, first: float, last: float
 ) -> Any:
-    """A variable where its rate, ``first`` and ``last`` at the step's ends, changes sign.
-
-    The time is found by Newton's method; its error enters the value squared.
-    """
-    time = first_guess(first, last, coefficients[rate, 1, lane], step)
-    for _ in range(2):
+    """A variable where its rate, ``first`` and ``last`` at the step's ends, changes sign."""
+    time, low, high = first_guess(first, last, coefficients[rate, 1, lane], step), 0.0, step
+    for turn in range(MOST_TURNS):
         value, slope = evaluate_with_slope(coefficients, rate, lane, time)
-        time = inside(time - value / slope, step)
+        if value * first > 0.0:
+            low = time
+        else:
+            high = time
+        before, time = time, improved(time, value, slope, low, high)
+        if settled(turn, time - before, step):
+            break
     return evaluate(coefficients, variable, lane, time)

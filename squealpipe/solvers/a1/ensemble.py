@@ -44,7 +44,8 @@ class Ensemble:
         separated_time, stick_time: total time in those regimes, s.
         peak_contact_force, lowest_contact_force: extremes of N/(k3 l_pre) while in contact.
         max_displacement: largest √(x² + y²), m.
-        early_max_x, late_max_x: largest |x| before and after ``t_late``, m.
+        early_max_x, late_max_x: largest |x| in integration steps that begin before ``t_late``, and
+            from there on, m.
         max_vx: largest ẋ at the ends of integration steps, m/s.
         nearest_pivot: smallest distance to a fixed end at step ends, in free lengths.
         turns: net turns around both fixed ends, counterclockwise positive.
@@ -126,7 +127,7 @@ def run_ensemble(
         stop_at_first_separation: end a run there with outcome ``separated``.
         stop_at_x: end a run when |x| exceeds this, m, with outcome ``amplitude_reached``.
         stop_at_turns: end a run at this many net turns around both fixed ends, likewise.
-        t_late: where ``early_max_x`` ends and ``late_max_x`` starts, s.
+        t_late: where ``early_max_x`` ends and ``late_max_x`` starts, at the end of a step, s.
         tangent: carry one perturbation along (for the predictability horizon).
         log_events: number of events a run to keep.
         workers: processes; None takes all cores. The results are the same bit for bit.

@@ -227,7 +227,8 @@ def _change_regimes(lanes: Any, c: Any, bits: int, jobs: Any, events: Any) -> An
 def _observe(lanes: Any, c: Any, at: int, base: int, terms: int) -> None:
     begin = (load(base), load(base + terms * ROW))
     speeds = (load(base + 2 * terms * ROW), load(base + 3 * terms * ROW))
-    observe(c, lanes, at, begin, speeds)
+    rates = (load(base + (2 * terms + 1) * ROW), load(base + (3 * terms + 1) * ROW))
+    observe(c, lanes, at, begin, speeds, rates)
     first, second = lanes.half_turns1, lanes.half_turns2
     observe_pivot(c, lanes, at, begin, speeds, first, AT.pivot_x1, AT.pivot_y1, AT.scale1)
     observe_pivot(c, lanes, at, begin, speeds, second, AT.pivot_x2, AT.pivot_y2, AT.scale2)

@@ -23,25 +23,28 @@ from squealpipe.methods.taylor.simd import (
     store,
 )
 from squealpipe.methods.taylor.taylor_polynomial import (
+    MOST_TURNS,
     above,
     below,
     evaluate_motion,
     evaluate_state,
     extremum,
     first_guess,
-    inside,
+    improved,
+    settled,
 )
 from squealpipe.solvers.a1.records import AT, JUMP2, TANGENT_NORM
 
 
 @inline
-def observe(c: Any, lanes: Any, at: int, begin: Any, speeds: Any) -> None:
+def observe(c: Any, lanes: Any, at: int, begin: Any, speeds: Any, rates: Any) -> None:
     """Times in each regime and the extrema over one step of all lanes.
 
-    ``begin`` and ``speeds`` are x, y and ẋ, ẏ at its start.
+    ``begin``, ``speeds`` and ``rates`` are x, y, ẋ, ẏ and ẍ, ÿ at its start.
     """
     x0, y0 = begin
     vx0, vy0 = speeds
+    ax0, ay0 = rates
     x1, y1, vx1, vy1 = load(at + AT.x), load(at + AT.y), load(at + AT.vx), load(at + AT.vy)
     step, zero = load(at + AT.step), splat(0.0)
     contact, stick = load(at + AT.contact), load(at + AT.stick)
@@ -74,10 +77,23 @@ def observe(c: Any, lanes: Any, at: int, begin: Any, speeds: Any) -> None:
     turns = bits_below(zero, out0) & bits_below(out1, zero) & bits_below(farthest, most)
     store(at + AT.largest_r2, larger(last, farthest))
     bits = dips | tops | swings | turns
+    reach_y, reach_x = magnitude(vy0) * step, magnitude(vx0) * step
+    wiggles = _may_turn_twice(vy0, vy1, ay0, step) & touching
+    wiggles &= bits_below(highest, larger(y0, y1) + reach_y) | bits_below(
+        smaller(y0, y1) - reach_y, lowest
+    )
+    record = choose_below(clock, t_late, early, late)
+    wiggles |= _may_turn_twice(vx0, vx1, ax0, step) & bits_below(record, large + reach_x)
+    slope = vx0 * vx0 + vy0 * vy0 + x0 * ax0 + y0 * ay0
+    most = larger(first, last) + 2.0 * magnitude(out0) * step
+    wiggles |= _may_turn_twice(out0, out1, slope, step) & bits_below(farthest, most)
+    bits |= wiggles
     while bits:
         lane = first_bit(bits)
         bit = 1 << lane
         bits ^= bit
+        if wiggles & bit:
+            _observe_wiggles(c, lanes, lane)
         if dips & bit:
             found = _extremum(c, lanes, 1, 3, lane)
             lanes.lowest_y[lane] = min(lanes.lowest_y[lane], found)
@@ -93,6 +109,75 @@ def observe(c: Any, lanes: Any, at: int, begin: Any, speeds: Any) -> None:
         if turns & bit:
             found = _turning_distance2(c, lanes, lane, 0.0, 0.0)
             lanes.largest_r2[lane] = max(lanes.largest_r2[lane], found)
+
+
+@inline
+def _may_turn_twice(first: Any, last: Any, slope: Any, step: Any) -> Any:
+    """Lanes in which a rate that keeps its sign over the step may have lost it in between.
+
+    The tangent at the start crosses zero: a rate that only dips below zero is convex before.
+    """
+    zero = splat(0.0)
+    return bits_below(zero, first * last) & bits_below(first * (first + slope * step), zero)
+
+
+@part
+def _observe_wiggles(c: Any, lanes: Any, lane: int) -> None:
+    """Records that lie between two extrema inside one step."""
+    low, high = _two_extrema(c, lanes, lane, 1)
+    if lanes.contact[lane] > 0.0:
+        lanes.lowest_y[lane] = min(lanes.lowest_y[lane], low)
+        lanes.highest_y[lane] = max(lanes.highest_y[lane], high)
+    low, high = _two_extrema(c, lanes, lane, 0)
+    if lanes.clock[lane] < lanes.t_late[lane]:
+        lanes.early_largest_x[lane] = max(lanes.early_largest_x[lane], high, -low)
+    else:
+        lanes.late_largest_x[lane] = max(lanes.late_largest_x[lane], high, -low)
+    low, high = _two_extrema(c, lanes, lane, 2)
+    lanes.largest_r2[lane] = max(lanes.largest_r2[lane], high)
+
+
+@part
+def _two_extrema(c: Any, lanes: Any, lane: int, kind: int) -> Any:
+    """Least and largest value where a quantity turns twice in a step; (∞, −∞) where it does not."""
+    step = lanes.step[lane]
+    _, first, slope = _quantity(c, lane, kind, 0.0)
+    _, last, end_slope = _quantity(c, lane, kind, step)
+    if first * last > 0.0 and slope * end_slope < 0.0:
+        middle = _turn(c, lane, kind, 0.0, step, slope, True)
+        _, between, _ = _quantity(c, lane, kind, middle)
+        if first * between < 0.0:
+            one, _, _ = _quantity(c, lane, kind, _turn(c, lane, kind, 0.0, middle, first, False))
+            two, _, _ = _quantity(c, lane, kind, _turn(c, lane, kind, middle, step, between, False))
+            return min(one, two), max(one, two)
+    return math.inf, -math.inf
+
+
+@part
+def _quantity(c: Any, lane: int, kind: int, time: float) -> Any:
+    """x, y or x² + y² with its rate (of the last, half of it) and the slope of that."""
+    x, y, vx, vy, ax, ay = evaluate_motion(c, lane, time)
+    if kind == 0:
+        return x, vx, ax
+    if kind == 1:
+        return y, vy, ay
+    return x * x + y * y, x * vx + y * vy, vx * vx + vy * vy + x * ax + y * ay
+
+
+@part
+def _turn(
+    c: Any, lane: int, kind: int, left: float, right: float, side: float, of_slope: bool
+) -> Any:
+    """Where the rate, or its slope, leaves the sign of ``side``, by bisection."""
+    while True:
+        middle = left + 0.5 * (right - left)
+        if not left < middle < right:
+            return middle
+        _, rate, slope = _quantity(c, lane, kind, middle)
+        if (slope if of_slope else rate) * side > 0.0:
+            left = middle
+        else:
+            right = middle
 
 
 @inline
@@ -154,12 +239,18 @@ def _turning_distance2(c: Any, lanes: Any, lane: int, px: float, py: float) -> A
     x, y, vx, vy = c[0, 0, lane] - px, c[1, 0, lane] - py, c[2, 0, lane], c[3, 0, lane]
     slope = vx * vx + vy * vy + x * c[2, 1, lane] + y * c[3, 1, lane]
     first = x * vx + y * vy
-    time = first_guess(first, last, slope, step)
-    for _ in range(2):
+    time, low, high = first_guess(first, last, slope, step), 0.0, step
+    for turn in range(MOST_TURNS):
         x, y, vx, vy, ax, ay = evaluate_motion(c, lane, time)
         x, y = x - px, y - py
-        slope = vx * vx + vy * vy + x * ax + y * ay
-        time = inside(time - (x * vx + y * vy) / slope, step)
+        outwards, slope = x * vx + y * vy, vx * vx + vy * vy + x * ax + y * ay
+        if outwards * first > 0.0:
+            low = time
+        else:
+            high = time
+        before, time = time, improved(time, outwards, slope, low, high)
+        if settled(turn, time - before, step):
+            break
     x, y, vx, vy = evaluate_state(c, lane, time)
     return (x - px) ** 2 + (y - py) ** 2
 

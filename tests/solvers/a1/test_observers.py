@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from squealpipe.schema import Outcome
 from squealpipe.solvers.a1.ensemble import run_ensemble
 
 SIZE = 200
@@ -45,3 +46,41 @@ def test_extrema_between_steps_are_as_exact_as_the_states():
     state[:, [0, 2]] = 0.0
     along_y = run_ensemble(parameters, alpha, alpha, initial_state=state, **options)
     np.testing.assert_allclose(along_y.max_displacement, rest + amplitude_y, rtol=0, atol=2e-11)
+
+
+FOUND_BY_SEARCH = [272, 415, 2339, 3283, 5660, 7001]
+"""Of 8,000 random runs, those in which an extremum was missed: by Newton's method, which left the
+step, and where a quantity turns twice in one step."""
+
+
+def test_no_sample_exceeds_an_extremum():
+    """Linear springs: long steps, in which distances turn twice or have several inflections."""
+    rng, size = np.random.default_rng(3), 8000
+    ratio = {
+        name: np.exp(rng.uniform(low, high, size))
+        for name, low, high in (("k1", -1, 1), ("k2", -1, 1), ("k3", -2, 1.5))
+    }
+    ratio["mu"] = rng.uniform(0, 0.9, size)
+    for name in ("length1", "length2"):
+        ratio[name] = np.exp(rng.uniform(0.7, 3, size))
+    ratio["belt_speed"] = rng.choice([-1, 1], size) * np.exp(rng.uniform(-2, 5, size))
+    alpha1, alpha2 = rng.uniform(0, np.pi, (2, size))
+    kept = [*FOUND_BY_SEARCH, *range(200)]
+    times = np.linspace(0.0, 30.0, 6001)
+    run = run_ensemble(
+        {name: values[kept] for name, values in ratio.items()},
+        alpha1[kept],
+        alpha2[kept],
+        t_end=30.0,
+        model="A1-linear-springs",
+        times=times,
+        t_late=15.0,
+        stop_at_x=1e3,
+    )
+    done = run.outcome == Outcome.converged
+    assert done[: len(FOUND_BY_SEARCH)].all()
+    x, y = run.samples[done, :, 0], run.samples[done, :, 1]
+    slack = 1e-10 * (1.0 + np.hypot(x, y).max(axis=1))
+    assert (np.hypot(x, y).max(axis=1) <= run.max_displacement[done] + slack).all()
+    early = np.abs(x[:, times < 15.0]).max(axis=1)
+    assert (early <= run.early_max_x[done] + slack).all()
