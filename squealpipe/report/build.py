@@ -12,7 +12,7 @@ from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from importlib.resources import files
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import typst
 from jinja2 import Environment, StrictUndefined
@@ -21,6 +21,16 @@ TEMPLATES = Path(str(files("squealpipe.report"))) / "templates"
 
 SPACING_ACCENTS = {0x0307: "\u02d9", 0x0308: "\u00a8"}
 """Dots over a symbol: as combining characters they land beside it where no mathematics font is."""
+
+
+def _typeset(source: Path, target: Literal["html", "pdf"]) -> bytes:
+    """The document in one format; the PDF with the fonts that come with Typst."""
+    return typst.compile(
+        source,
+        format=target,
+        sys_inputs={"target": target},
+        ignore_system_fonts=target == "pdf",
+    )
 
 
 def write_report(
@@ -34,16 +44,9 @@ def write_report(
         page: ``index.html``; needs no network and no other file.
         pdf: ``report.pdf``.
     """
-    with _source(content, pictures) as main:
-        with ThreadPoolExecutor(2) as pool:
-            made = pool.submit(typst.compile, main, format="html", sys_inputs={"target": "html"})
-            document = pool.submit(
-                typst.compile,
-                main,
-                format="pdf",
-                sys_inputs={"target": "pdf"},
-                ignore_system_fonts=True,
-            )
+    with _source(content, pictures) as main, ThreadPoolExecutor(2) as pool:
+        made = pool.submit(_typeset, main, "html")
+        document = pool.submit(_typeset, main, "pdf")
     _write(page, _page(content, made.result().decode()).encode())
     _write(pdf, document.result())
 

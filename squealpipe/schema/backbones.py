@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from enum import IntEnum
 
 from squealpipe.schema import ORBIT_ENDS, RUN_ENDS, DatasetSchema, Outcome, Variable, outcome
-from squealpipe.schema.comparing import Listing
+from squealpipe.schema.comparing import Listing, most
 from squealpipe.schema.linear import ANGLES, MAP, MODES
 
 
@@ -160,28 +161,40 @@ DOUBLED_BRANCH = DatasetSchema(
     },
 )
 
+_NEXT_TO_ANOTHER = most(
+    "next to where branches meet, round-off decides which of them a cell is led along",
+    share=1e-4,
+)
+
 ORBIT_ATLAS = DatasetSchema(
     name="orbit_atlas",
     title="Angular frequency of both modes at one y_peak over both spring angles",
     coordinates={**ANGLES, **MODES},
     variables={
         "omega": Variable(
-            "angular frequency of the periodic motion", "rad s-1", (*MAP, "mode"), nan_allowed=True
+            "angular frequency of the periodic motion",
+            "rad s-1",
+            (*MAP, "mode"),
+            nan_allowed=True,
+            round_off=_NEXT_TO_ANOTHER,
         ),
         "stability_index": Variable(
             "trace of the monodromy matrix minus 2",
             dims=(*MAP, "mode"),
             nan_allowed=True,
             atol=1e-7,
+            round_off=_NEXT_TO_ANOTHER,
         ),
-        "outcome": outcome(
-            *MAP, "mode", among=(*ORBIT_ENDS, Outcome.separated, Outcome.not_computed)
+        "outcome": replace(
+            outcome(*MAP, "mode", among=(*ORBIT_ENDS, Outcome.separated, Outcome.not_computed)),
+            round_off=_NEXT_TO_ANOTHER,
         ),
         "route": Variable(
             "how it was reached: along the branch, from a neighbour, across resonances",
             dims=(*MAP, "mode"),
             dtype="i1",
             flags=Route,
+            round_off=_NEXT_TO_ANOTHER,
         ),
         "y_peak": Variable("y at the symmetric instant", "m"),
     },

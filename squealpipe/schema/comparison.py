@@ -5,7 +5,7 @@ from __future__ import annotations
 from enum import IntEnum
 
 from squealpipe.schema import DatasetSchema, Outcome, Variable, outcome
-from squealpipe.schema.comparing import Listing, magnitude
+from squealpipe.schema.comparing import Listing, magnitude, most
 
 RUN = ("run",)
 
@@ -113,6 +113,11 @@ FAILURE_ATLAS = DatasetSchema(
             dims=SCENE_SOLVER,
             nan_allowed=True,
             optional=True,
+            round_off=most(
+                "in the scene beyond the predictability horizon round-off decides the events of "
+                "every method; `verdict` holds what an answer is worth",
+                share=0.02,
+            ),
         ),
         "flagged": Variable(
             "method warned", dims=SCENE_SOLVER, dtype="i1", flags={0: "no", 1: "yes"}

@@ -7,6 +7,7 @@ from enum import IntEnum
 from squealpipe.methods.limit_cycles.labels import Label
 from squealpipe.parameters import Parameters
 from squealpipe.schema import DatasetSchema, Variable, outcome
+from squealpipe.schema.comparing import Listing, most, unjudged
 from squealpipe.schema.dynamics.runs import EventFlag, RegimeFlag
 
 
@@ -21,7 +22,8 @@ def _cycle_variables(*dims: str) -> dict[str, Variable]:
     """What one cycle carries, over some dimensions."""
 
     def real(units: str, long_name: str, **kwargs: object) -> Variable:
-        return Variable(dims=dims, units=units, long_name=long_name, nan_allowed=True, **kwargs)  # type: ignore[arg-type]
+        kept = {"rtol": 1e-7, "atol": 1e-9, **kwargs}
+        return Variable(long_name, units, dims, nan_allowed=True, **kept)  # type: ignore[arg-type]
 
     def multiplier(part: str) -> Variable:
         return Variable(
@@ -49,7 +51,7 @@ def _cycle_variables(*dims: str) -> dict[str, Variable]:
         ),
         "multiplier_real": multiplier("real"),
         "multiplier_imag": multiplier("imaginary"),
-        "residual": real("1", "closing error over the extent of the cycle", atol=1e-9),
+        "residual": real("1", "closing error over the extent of the cycle"),
         "outcome": outcome(*dims),
     }
 
@@ -60,6 +62,10 @@ _STATE = {
     "vx": ("m s-1", "velocity along the belt"),
     "vy": ("m s-1", "velocity away from the belt"),
 }
+
+_PHASE = unjudged(
+    "where on a cycle its description starts follows from the way on which it was found"
+)
 
 MULTIPLIER = Variable(dims=("multiplier",), dtype="i4", long_name="number of the multiplier")
 
@@ -112,7 +118,11 @@ def _followed() -> dict[str, Variable]:
     table = {name: Parameters.units(name) for name in Parameters.__dataclass_fields__}
     return {
         name: Variable(
-            dims=("point",), units=units, long_name=f"{name} along the branch", optional=True
+            dims=("point",),
+            units=units,
+            long_name=f"{name} along the branch",
+            optional=True,
+            rtol=1e-7,
         )
         for name, units in {**table, "alpha1": "rad", "alpha2": "rad"}.items()
     }
@@ -121,6 +131,7 @@ def _followed() -> dict[str, Variable]:
 CYCLE_BRANCH = DatasetSchema(
     name="cycle_branch",
     title="A branch of periodic motions of model A1 in one parameter",
+    lists={"point": Listing(kinds=("label",), position="x_max", filler=int(Label.regular))},
     coordinates={
         "multiplier": MULTIPLIER,
         "point": Variable(dims=("point",), dtype="i4", long_name="point along the branch"),
@@ -130,13 +141,19 @@ CYCLE_BRANCH = DatasetSchema(
         "label": Variable(
             dims=("point",), dtype="i1", flags=Label, long_name="what is special about the point"
         ),
-        "events": Variable(dims=("point",), dtype="i4", long_name="events per period"),
+        "events": Variable(
+            "events per period",
+            dims=("point",),
+            dtype="i4",
+            round_off=most("where a contact is just touched, round-off decides", share=0.5),
+        ),
         **{
             f"{name}_start": Variable(
                 dims=("point",),
                 units=units,
                 long_name=f"{words} at time 0 of the cycle",
                 nan_allowed=True,
+                round_off=_PHASE,
             )
             for name, (units, words) in _STATE.items()
         },
@@ -159,13 +176,13 @@ SETTLED_EXTREMES = DatasetSchema(
             units="m",
             long_name="largest |x| in the last fifth of the run",
             nan_allowed=True,
-            rtol=1e-6,
+            rtol=1e-5,
         ),
         "separated_fraction": Variable(
             dims=("scene", "mu", "start"),
             long_name="share of the time without contact",
             nan_allowed=True,
-            rtol=1e-6,
+            rtol=1e-5,
         ),
         "outcome": outcome("scene", "mu", "start"),
         "x0": Variable(dims=("start",), units="m", long_name="x at the start"),

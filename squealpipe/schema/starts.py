@@ -5,7 +5,7 @@ from __future__ import annotations
 from enum import IntEnum
 
 from squealpipe.schema import RUN_ENDS, DatasetSchema, Outcome, Variable, outcome
-from squealpipe.schema.dynamics.runs import MotionFlag
+from squealpipe.schema.dynamics.runs import IN_MAP, MotionFlag
 from squealpipe.schema.linear import LinearRegimeFlag
 
 STARTS = ("x0", "y0", "vx0", "vy0")
@@ -28,7 +28,7 @@ def basin_schema(swept: tuple[str, ...]) -> DatasetSchema:
     """The schema of a basin map whose dimensions are the ``swept`` ones of STARTS."""
 
     def real(units: str, long_name: str, *, nan_allowed: bool = True) -> Variable:
-        return Variable(long_name, units, swept, nan_allowed=nan_allowed)
+        return Variable(long_name, units, swept, nan_allowed=nan_allowed, **IN_MAP)
 
     return DatasetSchema(
         name="basin_map" + "".join(f"_{name}" for name in swept),
@@ -40,6 +40,7 @@ def basin_schema(swept: tuple[str, ...]) -> DatasetSchema:
                 dims=swept,
                 dtype="i1",
                 flags=StartMotion,
+                **IN_MAP,
             ),
             "late_max_x": real("m", "largest |x| from t_late on"),
             "late_max_vx": real("m s-1", "largest velocity along the belt, |x'|, from t_late on"),
@@ -47,8 +48,12 @@ def basin_schema(swept: tuple[str, ...]) -> DatasetSchema:
             "first_separation_time": real("s", "first loss of contact (NaN: none before t_end)"),
             "peak_contact_force": real("1", "largest contact force over k3 l_pre"),
             "lyapunov_exponent": real("s-1", "rate of growth of a perturbation over the run"),
-            "predictability_horizon": real(
-                "s", "time at which an error of the tolerance has grown to l_pre/1000, or the end"
+            "predictability_horizon": Variable(
+                "time at which an error of the tolerance has grown to l_pre/1000, or the end",
+                "s",
+                swept,
+                nan_allowed=True,
+                rtol=1e-6,
             ),
             "outcome": outcome(*swept, among=(*RUN_ENDS, Outcome.beyond_horizon)),
             **{name: Variable(WORDS[name], UNITS[name]) for name in STARTS if name not in swept},

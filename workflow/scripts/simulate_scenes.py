@@ -15,6 +15,7 @@ for name, path in snakemake.output.items():
             scene.alpha2,
             t_end=scene.t_end * params.time_unit,
             tol=part["dynamics.tol"],
+            growth=True,
         ),
         config={**part, "scene": name}, sources=snakemake.input.sources,
         output=path,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from squealpipe.schema import RUN_ENDS, DatasetSchema, Outcome, Variable, outcome
-from squealpipe.schema.comparing import magnitude, sampled
+from squealpipe.schema.comparing import magnitude, sampled, unjudged
 from squealpipe.schema.dynamics.runs import MotionFlag
 
 _IRREGULAR = (
@@ -13,7 +13,7 @@ _IRREGULAR = (
     "vector instructions of the processor decide, changes when each extreme is reached"
 )
 _LONG_RUN = magnitude(_IRREGULAR, factor=1.1)
-_LONG_SHARE = magnitude(_IRREGULAR, factor=1.25, floor=5e-3)
+_LONG_SAMPLE = sampled("belt_speed", _IRREGULAR)
 
 WHIRL = DatasetSchema(
     name="whirl",
@@ -30,15 +30,24 @@ WHIRL = DatasetSchema(
             "largest velocity in the direction of the belt",
             "m s-1",
             ("belt_speed",),
-            round_off=_LONG_RUN,
+            round_off=magnitude(_IRREGULAR, factor=1.25),
         ),
         "turn_rate": Variable(
-            "net turns around both fixed ends a time", "s-1", ("belt_speed",), round_off=_LONG_SHARE
+            "net turns around both fixed ends a time",
+            "s-1",
+            ("belt_speed",),
+            round_off=_LONG_SAMPLE,
         ),
         "stick_fraction": Variable(
-            "share of the time sticking to the belt", dims=("belt_speed",), round_off=_LONG_SHARE
+            "share of the time sticking to the belt", dims=("belt_speed",), round_off=_LONG_SAMPLE
         ),
-        "motion": Variable("kind of motion", dims=("belt_speed",), dtype="i1", flags=MotionFlag),
+        "motion": Variable(
+            "kind of motion",
+            dims=("belt_speed",),
+            dtype="i1",
+            flags=MotionFlag,
+            round_off=_LONG_SAMPLE,
+        ),
         "fitted": Variable("whether the speed is in the fit", dims=("belt_speed",), dtype="bool"),
         "slope": Variable("fitted growth of the amplitude with |V|", "s", nan_allowed=True),
         "offset": Variable("fitted amplitude at V = 0", "m", nan_allowed=True),
@@ -47,7 +56,7 @@ WHIRL = DatasetSchema(
             dims=("belt_speed",),
             nan_allowed=True,
             optional=True,
-            round_off=_LONG_SHARE,
+            round_off=_LONG_SAMPLE,
         ),
         "fit_range": Variable(
             "speed of the slowest and of the fastest belt in the fit",
@@ -60,7 +69,7 @@ WHIRL = DatasetSchema(
             "largest |residual| of the speeds in the fit",
             nan_allowed=True,
             optional=True,
-            round_off=_LONG_SHARE,
+            round_off=magnitude(_IRREGULAR, factor=1.25, floor=5e-3),
         ),
         "onset": Variable(
             "|V| without a whirl, and the next faster one, with a whirl, by bisection",
@@ -74,7 +83,7 @@ WHIRL = DatasetSchema(
             "speeds tried above the onset without a whirl",
             dtype="i4",
             optional=True,
-            round_off=_LONG_RUN,
+            round_off=unjudged(_IRREGULAR),
         ),
         "onset_outcome": replace(
             outcome(among=(Outcome.converged, Outcome.unresolved)), optional=True

@@ -15,8 +15,9 @@ import xarray as xr
 
 from squealpipe.schema import DatasetSchema, find
 from squealpipe.schema.claims import CLAIMS
-from squealpipe.store.comparison.differences import Agreement, VariableDifference, difference
-from squealpipe.store.comparison.matching import align
+from squealpipe.store.comparison.differences import Agreement, VariableDifference
+from squealpipe.store.comparison.matching import align, judged_length
+from squealpipe.store.comparison.round_off import judge
 from squealpipe.store.comparison.statements import StatementChange, changed_statements
 from squealpipe.store.netcdf import load
 from squealpipe.store.provenance import VOLATILE_ATTRIBUTES
@@ -193,7 +194,10 @@ def compare_datasets(
     if kinds[0] != kinds[1]:
         return _refused(name, files, f"the schemas are {kinds[0]!r} and {kinds[1]!r}")
     schema = find(str(kinds[0]))
-    lengths = [(dim, a.sizes.get(dim), b.sizes.get(dim)) for dim in schema.lists]
+    lengths = [
+        (dim, *(judged_length(each, dim, how) for each in (a, b)))
+        for dim, how in schema.lists.items()
+    ]
     try:
         a, b, notes = align(a, b, schema)
     except ValueError as error:
@@ -228,7 +232,7 @@ def _variable(name: str, a: xr.Dataset, b: xr.Dataset, schema: DatasetSchema) ->
         side = "first" if name in a.variables else "second"
         reason = f"only in the {side}"
         return VariableDifference(name=name, verdict=Agreement.different, reason=reason)
-    return difference(name, a[name], b[name], entry)
+    return judge(name, a, b, entry)
 
 
 def _refused(name: str, files: tuple[Path | None, Path | None], reason: str) -> DatasetDifference:

@@ -101,7 +101,7 @@ def outside_tolerance(a: np.ndarray, b: np.ndarray, entry: Variable) -> np.ndarr
     same = (a == b) | (np.isnan(a) & np.isnan(b))
     with np.errstate(invalid="ignore", over="ignore"):
         close = np.abs(a - b) <= entry.atol + entry.rtol * np.maximum(np.abs(a), np.abs(b))
-    if entry.round_off is not None:
+    if entry.round_off is not None and entry.round_off.compared is ComparedAs.magnitude:
         close |= _same_magnitude(a, b, entry.round_off)
     finite = np.isfinite(a) & np.isfinite(b)
     return np.asarray(~(same | (close & finite)))

@@ -11,6 +11,8 @@ from squealpipe.schema import DatasetSchema
 from squealpipe.schema.comparing import Listing
 from squealpipe.schema.sweep import RAGGED
 
+SAME_PLACE = 1e-9
+"""Positions of filling entries of a list that differ by less, relative, are the same."""
 ALIGNED = 1e-9
 """Grid points that differ by less, relative to the extent of the grid, are the same point."""
 
@@ -42,13 +44,20 @@ def match(
     """Entries of a list that mean the same, in the first one's order."""
     sizes = a.sizes[dim], b.sizes[dim]
     kinds = _kinds(a, dim, how.kinds), _kinds(b, dim, how.kinds)
-    if sizes[0] == sizes[1] and kinds[0] == kinds[1]:
+    if sizes[0] == sizes[1] and kinds[0] == kinds[1] and how.filler is None:
         return a, b, []
     at_a: list[int] = []
     at_b: list[int] = []
     for kind in dict.fromkeys(kinds[0]):
         places = [np.flatnonzero([item == kind for item in side]) for side in kinds]
-        found = _pairs(_positions(a, how, dim, places[0]), _positions(b, how, dim, places[1]))
+        positions = _positions(a, how, dim, places[0]), _positions(b, how, dim, places[1])
+        found = _pairs(*positions)
+        if kind and kind[0] == how.filler:
+            found = [
+                (i, j)
+                for i, j in found
+                if abs(positions[0][i] - positions[1][j]) <= SAME_PLACE * abs(positions[0][i])
+            ]
         at_a.extend(places[0][[pair[0] for pair in found]])
         at_b.extend(places[1][[pair[1] for pair in found]])
     order = np.argsort(at_a, kind="stable").astype(int)
@@ -59,6 +68,14 @@ def match(
     if dim in a.coords and dim in b.coords and a[dim].dims == (dim,):
         b = b.assign_coords({dim: a[dim].variable})
     return a, b, [note] if max(sizes) > len(first) else []
+
+
+def judged_length(dataset: xr.Dataset, dim: str, how: Listing) -> int | None:
+    """Number of entries whose number is a result; None without the dimension."""
+    if dim not in dataset.sizes or how.filler is None:
+        return int(dataset.sizes[dim]) if dim in dataset.sizes else None
+    labels = dataset[how.kinds[0]].values
+    return int((labels != how.filler).sum())
 
 
 def _kinds(dataset: xr.Dataset, dim: str, names: Iterable[str]) -> list[tuple]:

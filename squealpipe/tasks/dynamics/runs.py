@@ -40,6 +40,7 @@ def simulate(
     tol: float = 1e-12,
     times: Any = None,
     initial_state: Any = (0.0, 0.0, 0.0, 0.0),
+    growth: bool = False,
 ) -> xr.Dataset:
     """One run of a nonlinear model, with every regime change located.
 
@@ -53,6 +54,7 @@ def simulate(
         tol: tolerance of the Taylor integrator, relative to l_pre.
         times: the state is given at exactly these instants, s; by default 20 a time unit √(m/k1).
         initial_state: x, y, vx, vy at t = 0, m and m/s.
+        growth: tell too by which factor a small perturbation of the start has grown at the end.
 
     Returns:
         Dataset over ``time`` and ``event``; see ``schema.dynamics.runs.SIMULATION``. Instants
@@ -78,10 +80,12 @@ def simulate(
         times=times,
         initial_state=initial,
     )
+    wanted = (*WANTED, *COUNTS, *(("log_growth",) if growth else ()))
     room, logged = 0, FIRST_LOG
     while room < logged:
         room = logged
-        run = SimpleNamespace(**integrate(job, (*WANTED, *COUNTS), log_events=room, workers=1))
+        found = integrate(job, wanted, tangent=growth, log_events=room, workers=1)
+        run = SimpleNamespace(**found)
         logged = sum(int(getattr(run, name)) for name in COUNTS)
     x, y, vx, vy = run.samples.T
     if times.size and times[0] == 0.0:
@@ -109,6 +113,7 @@ def simulate(
             "length2": params.length2,
             "time_reached": run.time,
             "n_steps": run.steps,
+            **({"growth": np.exp(run.log_growth)} if growth else {}),
             "outcome": run.outcome,
         },
         {"time": times},
