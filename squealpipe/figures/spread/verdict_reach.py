@@ -18,8 +18,9 @@ CAPTION = (
     "The paper's statements in settings that it leaves out, by the criteria of the inference. "
     "Blue: the statement holds; red: it fails; numbers: share of random starts, or of the feasible "
     "parameters, in which it holds, with half of its 95 % interval; grey: not judged there. "
-    "Statements with a suffix are readings of the row of that id. S3, F6b and F8c are judged by A3 "
-    "without dashpots and without the slope of friction, F7† by A1 where that A3 is unstable."
+    "Statements with a suffix are readings of the row of that id. With dashpots, or friction that "
+    "depends on speed, S3, F6b and F7† are judged in the unstable cells of a grid of 181 × 181 "
+    "angles (S3: flutter, where eigenvalues need not merge); F8c is of undamped frequencies."
 )
 ALT = "A table of settings by statements, blue where a statement holds and red where it fails."
 WORDS = {

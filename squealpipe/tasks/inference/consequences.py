@@ -13,6 +13,7 @@ import numpy as np
 
 from squealpipe.models import a2, a3
 from squealpipe.models.contact_system import contact_system
+from squealpipe.models.damped import damped_system, is_undamped, stability
 from squealpipe.parameters import Parameters
 from squealpipe.schema import Outcome
 from squealpipe.solvers.a1.ensemble import run_ensemble
@@ -26,6 +27,8 @@ INSIDE = 1.0 - 1e-6
 """Their distance from its centre, in radii: unstable, and at the edge where contact lasts."""
 DIVERGENT = 24
 """Points along each arc that bounds divergence."""
+GRID = 181
+"""Midpoints an axis of the angle map, where dashpots or a law of friction leave no closed form."""
 ANGLES, CLEAR = (12, 24, 48), 0.6
 """Midpoints an axis of the maps of runs: finer while |share − ½| is below ``CLEAR`` spacings."""
 
@@ -73,7 +76,15 @@ def unstable_cells(
     Flutter is searched at ``rim`` directions, just inside of its disc in the plane of Z. For
     divergence, outside of a circle that ends at |Z| = k1 + k2, the search goes along the middle
     between the two. Both may be empty.
+
+    Dashpots, and friction that depends on speed, leave no such form: there, all unstable cells of a
+    grid.
     """
+    if not is_undamped(params):
+        axis = (np.arange(GRID) + 0.5) * (np.pi / GRID)
+        alpha1, alpha2 = (part.ravel() for part in np.meshgrid(axis, axis, indexing="ij"))
+        unstable = _regime(params, alpha1, alpha2) > a3.LinearRegime.stable
+        return alpha1[unstable], alpha2[unstable]
     farthest, nearest = params.k1 + params.k2, abs(params.k1 - params.k2)
     centre, radius = a3.flutter_circle(params, params.k3)
     turn = (np.arange(rim) + 0.5) * (2.0 * np.pi / rim)
@@ -86,8 +97,15 @@ def unstable_cells(
     if springs_are_equal(params.as_dict()):
         # (α1, α2) and (π − α2, π − α1) have the same Z and the same motion.
         alpha1, alpha2 = alpha1[0], alpha2[0]
-    unstable = a3.regime(contact_system(params, alpha1, alpha2).invariants) > 0
+    unstable = _regime(params, alpha1, alpha2) > a3.LinearRegime.stable
     return alpha1[unstable], alpha2[unstable]
+
+
+def _regime(params: Parameters, alpha1: np.ndarray, alpha2: np.ndarray) -> np.ndarray:
+    """Regime of A3, damped where the parameters are."""
+    if is_undamped(params):
+        return np.asarray(a3.regime(contact_system(params, alpha1, alpha2).invariants))
+    return np.asarray(stability(damped_system(params, alpha1, alpha2)).regime)
 
 
 def _linear(params: Parameters, alpha1: np.ndarray, alpha2: np.ndarray) -> dict[str, bool]:
@@ -95,7 +113,7 @@ def _linear(params: Parameters, alpha1: np.ndarray, alpha2: np.ndarray) -> dict[
     system = contact_system(params, alpha1, alpha2)
     reaction = a2.reaction_force(system.stiffness, params.drag, a2.actuation(params))
     return {
-        "S3": bool((a3.regime(system.invariants) == a3.LinearRegime.flutter).any()),
+        "S3": bool((_regime(params, alpha1, alpha2) == a3.LinearRegime.flutter).any()),
         "F6b": not (reaction > 0).any(),
         "F6b_printed": not a2.possible_as_printed(system.stiffness, params.drag).any(),
         "F8c": first_is_largest_on_lines(params, params.k3),

@@ -15,7 +15,9 @@ from typing import Any
 import numpy as np
 
 from squealpipe.models.a2 import ROUND_OFF
+from squealpipe.models.a3 import LinearRegime
 from squealpipe.models.contact_system import ContactSystem, contact_system
+from squealpipe.models.damped import damped_system, is_undamped, stability
 from squealpipe.parameters import SCENES, Parameters, Scene
 from squealpipe.schema import Outcome
 from squealpipe.schema.inference import LITTLE
@@ -174,7 +176,17 @@ def _linearly_stable(candidates: Candidates) -> Margin:
     fields = candidates.fields
     divergence = invariants.determinant * fields["mass"] ** 2 / (stiffness.k11 * fields["k3"])
     flutter = invariants.discriminant / invariants.half_trace**2
-    return _closed(np.minimum(divergence, np.where(flutter < 0, flutter, np.inf)))
+    margin = np.minimum(divergence, np.where(flutter < 0, flutter, np.inf))
+    scene = np.array([SCENES["F3"].alpha1]), np.array([SCENES["F3"].alpha2])
+    for i, params in enumerate(parameter_sets(fields)):
+        if is_undamped(params):
+            continue
+        found = stability(damped_system(params, *scene))
+        decay = -found.growth_rate[0] * params.time_unit
+        # what decays or grows by no more than round-off is as without damping
+        if found.regime[0] != LinearRegime.stable or decay > ROUND_OFF:
+            margin[i] = decay
+    return _closed(margin)
 
 
 def _modes_switched(candidates: Candidates) -> Margin:
@@ -244,7 +256,7 @@ CONSTRAINTS: tuple[Constraint, ...] = (
     Constraint(
         name="F6d",
         criterion="A3 stable at (0.4π, 0.6π), that is, μ sgn V < cot 0.4π; margin det/(K11 k3), "
-        "or disc/(trace/2)² in flutter",
+        "or disc/(trace/2)² in flutter; damped, less the growth rate times √(m/k1)",
         horizon=np.nan,
         check=_linearly_stable,
     ),

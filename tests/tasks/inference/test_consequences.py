@@ -7,7 +7,7 @@ import pytest
 
 from squealpipe.models import a3
 from squealpipe.models.contact_system import contact_system
-from squealpipe.parameters import Parameters
+from squealpipe.parameters import SCENES, Parameters
 from squealpipe.schema import Outcome
 from squealpipe.tasks.inference.consequences import (
     ANGLES,
@@ -19,6 +19,7 @@ from squealpipe.tasks.inference.consequences import (
     separating_share,
     unstable_cells,
 )
+from squealpipe.tasks.inference.constraints import candidate_of, measure
 from squealpipe.tasks.linear.maps import natural_frequencies, quasi_static_map, stability_map
 from tests.tasks.inference.parameter_sets import random_sets
 
@@ -136,3 +137,43 @@ def test_the_separating_share_has_converged(likely: dict[str, np.ndarray]) -> No
         separating_share(few, angles=(12,), tol=1e-9),
         separating_share(unequal, angles=(12,), tol=1e-9),
     )
+
+
+@pytest.mark.parametrize(
+    "beyond",
+    [
+        {"damping1": 0.1, "damping2": 0.02},
+        {"damping1": 0.0, "damping2": 0.05},
+        {"friction_law": "exponential", "mu_static": 0.6, "friction_speed": 3.0},
+    ],
+)
+def test_damped_settings_are_judged_by_the_damped_problem(beyond: dict[str, object]) -> None:
+    """Against maps on other angles, at random parameters; dashpots alone make K12 = 0 flutter."""
+    angles = np.linspace(0.0, np.pi, 240)
+    changed = 0
+    for params in random_sets(np.random.default_rng(8), 6, equal=False):
+        scale = np.sqrt(params.k1 * params.mass)
+        damped = params.with_(
+            **{
+                name: value * scale if name.startswith("damping") else value
+                for name, value in beyond.items()
+            }
+        )
+        regime = stability_map(damped, angles, angles).regime_linear.values
+        sliding = quasi_static_map(damped, angles, angles)
+        found = _linear(damped, *unstable_cells(damped))
+        assert found["S3"] == (regime == 1).any()
+        assert found["F6b"] == (not ((regime > 0) & sliding.possible.values).any())
+        scene = SCENES["F3"]
+        f6d = measure(candidate_of(damped, tol=1e-9))["F6d"].margin.item()
+        growth = stability_map(damped, [scene.alpha1], [scene.alpha2]).growth_rate.item()
+        if abs(growth) * params.time_unit > 1e-12:
+            assert f6d == pytest.approx(-growth * params.time_unit, rel=1e-12)
+        slow = params.with_(friction_law="exponential", mu_static=0.9, friction_speed=1e-3)
+        margins = [
+            measure(candidate_of(each, tol=1e-9))["F6d"].margin.item()
+            for each in (slow.with_(belt_speed=40.0), params.with_(belt_speed=40.0))
+        ]
+        assert margins[0] == margins[1]  # friction falls by e^-40000 only
+        changed += found != _linear(params, *unstable_cells(params))
+    assert changed
