@@ -33,32 +33,26 @@ def branch(run: Run, scene: str, mode: int) -> xr.Dataset:
     return points
 
 
-def isolated_first_mode(scene: str) -> Check:
-    """F10: mode 1 moves x alone, mode 2 both."""
-
-    def check(run: Run) -> Finding:
-        alone, both = (_participation(branch(run, scene, mode)) for mode in (1, 2))
-        omega1, omega2 = (linear_omega(branch(run, scene, mode)) for mode in (1, 2))
-        return finding(
-            alone[1] / alone[0],
-            "≤",
-            ALONE,
-            f"Near ω1 = {omega1:.4g} the y amplitude is {alone[1] / alone[0]:.1g} of that of x; "
-            f"near ω2 = {omega2:.4g} x reaches {both[0]:.3g} and y {both[1]:.3g}.",
-            also=both[0] > 0.01 * both[1] > 0,
-        )
-
-    return check
-
-
-rows.add(
+@rows.add(
     "F10",
     "7",
     "(π/2, π): near ω1 one peak, in x alone; near ω2 peaks in x and y",
     "y amplitude of mode 1, as a share of its x amplitude",
     "fig10",
     Verdict.holds,
-)(isolated_first_mode("F10"))
+)
+def first_mode_is_isolated(run: Run) -> Finding:
+    """F10: mode 1 moves x alone, mode 2 both."""
+    alone, both = (_participation(branch(run, "F10", mode)) for mode in (1, 2))
+    omega1, omega2 = (linear_omega(branch(run, "F10", mode)) for mode in (1, 2))
+    return finding(
+        alone[1] / alone[0],
+        "≤",
+        ALONE,
+        f"Near ω1 = {omega1:.4g} the y amplitude is {alone[1] / alone[0]:.1g} of that of x; "
+        f"near ω2 = {omega2:.4g} x reaches {both[0]:.3g} and y {both[1]:.3g}.",
+        also=both[0] > 0.01 * both[1] > 0,
+    )
 
 
 def same_as_first(scene: str) -> Check:
@@ -81,31 +75,22 @@ def same_as_first(scene: str) -> Check:
     return check
 
 
-rows.add(
-    "F11",
-    "7",
-    "(π, π/2): nearly the same response",
-    "largest relative difference of ω from (π/2, π) at equal y",
-    "fig11",
-    Verdict.holds,
-)(same_as_first("F11"))
+for name, angles in (("F11", "(π, π/2)"), ("F12", "(3π/4, 3π/4)")):
+    rows.add(
+        name,
+        "7",
+        f"{angles}: nearly the same response",
+        "largest relative difference of ω from (π/2, π) at equal y",
+        name.replace("F", "fig"),
+        Verdict.holds,
+    )(same_as_first(name))
 
 
-rows.add(
-    "F12",
-    "7",
-    "(3π/4, 3π/4): nearly the same response",
-    "largest relative difference of ω from (π/2, π) at equal y",
-    "fig12",
-    Verdict.holds,
-)(same_as_first("F12"))
-
-
-def bends_down(scene: str, mode: int = 2) -> Check:
+def bends_down(scene: str) -> Check:
     """F10b, F11b, F12b: y passes l_pre and the frequency then falls."""
 
     def check(run: Run) -> Finding:
-        points = branch(run, scene, mode)
+        points = branch(run, scene, 2)
         preload = run.parameters.preload
         reached = float(points.y_peak.max() / preload)
         linear = linear_omega(points)
@@ -125,34 +110,19 @@ def bends_down(scene: str, mode: int = 2) -> Check:
     return check
 
 
-rows.add(
-    "F10b",
-    "7",
-    "y crosses l_pre and the peak then bends to lower frequency (Fig. 10)",
-    "relative drop of ω along the branch",
-    "fig10",
-    Verdict.holds,
-)(bends_down("F10"))
-
-
-rows.add(
-    "F11b",
-    "7",
-    "the same in Fig. 11",
-    "relative drop of ω along the branch",
-    "fig11",
-    Verdict.holds,
-)(bends_down("F11"))
-
-
-rows.add(
-    "F12b",
-    "7",
-    "the same in Fig. 12",
-    "relative drop of ω along the branch",
-    "fig12",
-    Verdict.holds,
-)(bends_down("F12"))
+for name, text in (
+    ("F10", "y crosses l_pre and the peak then bends to lower frequency (Fig. 10)"),
+    ("F11", "the same in Fig. 11"),
+    ("F12", "the same in Fig. 12"),
+):
+    rows.add(
+        f"{name}b",
+        "7",
+        text,
+        "relative drop of ω along the branch",
+        name.replace("F", "fig"),
+        Verdict.holds,
+    )(bends_down(name))
 
 
 @rows.add(

@@ -12,6 +12,7 @@ from squealpipe.claims.maps import order_turns_over, share, unstable_cells
 from squealpipe.claims.motions import events, frequency, scene
 from squealpipe.claims.statement import Rows
 from squealpipe.schema.claims import Verdict
+from squealpipe.schema.dynamics.runs import EventFlag
 
 rows = Rows()
 
@@ -78,7 +79,7 @@ def time_and_frequency_agree(run: Run) -> Finding:
         predicted = float(branch(run, twin, 2).omega[0])
         differences.append(abs(measured / predicted - 1))
         lines.append(f"{measured:.4g} and {predicted:.4g}")
-    loses = events(scene(run, "F2d"), "separation").size > 0
+    loses = events(scene(run, "F2d"), EventFlag.separation).size > 0
     reaches = float(branch(run, "F13", 1).y_peak.max()) > run.parameters.preload
     return finding(
         max(differences),

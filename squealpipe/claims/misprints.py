@@ -10,6 +10,7 @@ from squealpipe.claims.maps import cell, coupling_is_negative, on_grid_of, share
 from squealpipe.claims.motions import scene
 from squealpipe.claims.statement import Rows
 from squealpipe.schema import Outcome
+from squealpipe.schema.backbones import Form
 from squealpipe.schema.claims import Verdict
 from squealpipe.schema.dynamics.runs import growth_threshold
 from squealpipe.schema.inference import wilson_interval
@@ -62,21 +63,20 @@ def printed_residual_converges_right(run: Run) -> Finding:
     """E2: ω found with Eq. (34) as printed and corrected, against the exact orbit."""
     forms = run["harmonic_forms"]
     error = abs(forms.omega / forms.omega_exact - 1)
-    names = forms.form.attrs["flag_meanings"].split()
-    printed, mended = names.index("as_printed"), names.index("mended")
-    converged = forms.outcome.isel(form=printed) == Outcome.converged
+    converged = forms.outcome.sel(form=Form.as_printed) == Outcome.converged
     pairs = ", ".join(
         f"{float(found):.4f} for {float(exact):.4f}"
         for found, exact in zip(
-            forms.omega.isel(form=printed).values, forms.omega_exact.values, strict=True
+            forms.omega.sel(form=Form.as_printed).values, forms.omega_exact.values, strict=True
         )
     )
     return finding(
-        float(error.isel(form=printed).max()),
+        float(error.sel(form=Form.as_printed).max()),
         "≤",
         WRONG_FREQUENCY,
         f"As printed, ω converges in {int(converged.sum())} of {converged.size} scenes, to "
-        f"{pairs}; with K12·a + K22·b it is right to {float(error.isel(form=mended).max()):.1g}.",
+        f"{pairs}; with K12·a + K22·b it is right to "
+        f"{float(error.sel(form=Form.mended).max()):.1g}.",
     )
 
 
@@ -174,17 +174,16 @@ def samples_suffice(run: Run) -> Finding:
 def jacobian_is_regular(run: Run) -> Finding:
     """E7: columns of the Jacobian of Eq. (36) minus its rank at the solutions."""
     forms = run["harmonic_forms"]
-    deficits = forms.rank_deficit
-    mended = deficits.isel(form=deficits.form.attrs["flag_meanings"].split().index("mended"))
+    deficits = forms.rank_deficit.sel(form=Form.mended)
     return finding(
-        int(mended.min()),
+        int(deficits.min()),
         "≤",
         0,
         f"At the solutions the Jacobian of Eq. (36) has more columns than its rank, by "
-        f"{int(mended.min())} or more in all {mended.size} scenes: ω is one unknown too many and "
-        "J has no inverse. Nor is the phase fixed: starts shifted in time end in solutions whose "
-        f"ω differs by up to {float(forms.phase_spread_omega.max()):.1g}. Conditions on amplitude "
-        "and phase, and continuation, are needed.",
+        f"{int(deficits.min())} or more in all {deficits.size} scenes: ω is one unknown too many "
+        "and J has no inverse. Nor is the phase fixed: starts shifted in time end in solutions "
+        f"whose ω differs by up to {float(forms.phase_spread_omega.max()):.1g}. Conditions on "
+        "amplitude and phase, and continuation, are needed.",
     )
 
 

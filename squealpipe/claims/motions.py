@@ -6,6 +6,7 @@ import numpy as np
 import xarray as xr
 
 from squealpipe.claims.evidence import MissingDataError, Run
+from squealpipe.schema.dynamics.runs import EventFlag
 
 
 def scene(run: Run, name: str) -> xr.Dataset:
@@ -13,11 +14,9 @@ def scene(run: Run, name: str) -> xr.Dataset:
     return run[f"simulate/{name}"]
 
 
-def events(motion: xr.Dataset, kind: str) -> np.ndarray:
+def events(motion: xr.Dataset, kind: EventFlag) -> np.ndarray:
     """Times of the events of a kind, in the run's unit of time."""
-    meanings = motion.event_kind.attrs["flag_meanings"].split()
-    value = motion.event_kind.attrs["flag_values"][meanings.index(kind)]
-    return np.asarray(motion.event_time.values[motion.event_kind.values == value])
+    return np.asarray(motion.event_time.values[motion.event_kind.values == kind])
 
 
 def halves(motion: xr.Dataset) -> tuple[float, float]:

@@ -9,6 +9,7 @@ from squealpipe.claims.maps import share
 from squealpipe.claims.motions import events, scene
 from squealpipe.claims.statement import Rows
 from squealpipe.schema.claims import Verdict
+from squealpipe.schema.dynamics.runs import EventFlag
 
 rows = Rows()
 
@@ -58,7 +59,7 @@ def levels_have_assumptions(run: Run) -> Finding:
 def hammering_occurs(run: Run) -> Finding:
     """S1: losses of contact, returns, how widespread they are, and how hard the impacts are."""
     motion = scene(run, "F2d")
-    lost, found = events(motion, "separation").size, events(motion, "contact").size
+    lost, found = events(motion, EventFlag.separation).size, events(motion, EventFlag.contact).size
     peak = float(motion.normalized_contact_force.max())
     hammering = run["hammering_map"]
     strikes = hammering.impact_rate > 0

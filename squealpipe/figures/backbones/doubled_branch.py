@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from squealpipe.figures.parts.backbone_panels import STABLE_TO_ROUND_OFF, say_why_empty
+from squealpipe.figures.parts.backbone_panels import STABLE_TO_ROUND_OFF, key_entries, say_why_empty
 from squealpipe.figures.parts.style import (
     BLUE,
     GREEN,
@@ -58,15 +58,9 @@ def draw(backbones: Mapping[str, xr.Dataset], doubled: Mapping[str, xr.Dataset])
         angles = ", ".join(pi_label(float(simple.attrs[key])) for key in ("alpha1", "alpha2"))
         panel_letter(left, next(letters), f"({angles})")
         panel_letter(right, next(letters))
-    entries = {
-        label: handle
-        for panel in axes.ravel()
-        for handle, label in zip(*panel.get_legend_handles_labels(), strict=True)
-    }
-    if entries:
-        figure.legend(
-            list(entries.values()), list(entries), loc="outside lower center", ncols=len(entries)
-        )
+    handles, labels = key_entries(axes.ravel())
+    if labels:
+        figure.legend(handles, labels, loc="outside lower center", ncols=len(labels))
     return figure
 
 

@@ -39,46 +39,22 @@ COLOURS = (BLUE, ORANGE, GREEN, RED, PURPLE, BLACK)
 MARKERS = "osv^DP"
 
 
+PANELS = (
+    ("omega_error", "harmonics", r"$N_\mathrm{h}$", "error of ω (rad/s)", -4),
+    ("waveform_error", "harmonics", r"$N_\mathrm{h}$", "waveform error (m)", -3),
+    ("omega_error_samples", "samples", "N", "error of ω (rad/s)", None),
+    ("omega_error_sigma", "sigma", r"$\sigma\,l_\mathrm{pre}$", "shift of ω (rad/s)", -2),
+)
+"""Variable, setting, both labels and the slope drawn beside, of each panel."""
+
+
 def draw(sweep: xr.Dataset) -> Figure:
     """Four panels from dataset ``harmonic_sweep``."""
     figure, axes = new_figure(PAGE, 5.2, nrows=2, ncols=2)
     panels = axes.ravel()
-    _lines(
-        sweep,
-        panels[0],
-        sweep.omega_error.median("peak"),
-        "harmonics",
-        r"$N_\mathrm{h}$",
-        "error of ω (rad/s)",
-        -4,
-    )
-    _lines(
-        sweep,
-        panels[1],
-        sweep.waveform_error.median("peak"),
-        "harmonics",
-        r"$N_\mathrm{h}$",
-        "waveform error (m)",
-        -3,
-    )
-    _lines(
-        sweep,
-        panels[2],
-        sweep.omega_error_samples.median("peak"),
-        "samples",
-        "N",
-        "error of ω (rad/s)",
-        None,
-    )
-    _lines(
-        sweep,
-        panels[3],
-        sweep.omega_error_sigma.median("peak"),
-        "sigma",
-        r"$\sigma\,l_\mathrm{pre}$",
-        "shift of ω (rad/s)",
-        -2,
-    )
+    for panel, (name, setting, xlabel, ylabel, slope) in zip(panels, PANELS, strict=True):
+        _lines(sweep, panel, sweep[name].median("peak"), setting, slope)
+        panel.set(xlabel=xlabel, ylabel=ylabel)
     fixed = int(sweep.n_harmonics_fixed)
     at_fixed = sweep.omega_error.sel(
         harmonics=[count for count in sweep.harmonics.values if count == fixed]
@@ -103,13 +79,7 @@ def draw(sweep: xr.Dataset) -> Figure:
 
 
 def _lines(
-    sweep: xr.Dataset,
-    panel: Axes,
-    errors: xr.DataArray,
-    name: str,
-    xlabel: str,
-    ylabel: str,
-    slope: int | None,
+    sweep: xr.Dataset, panel: Axes, errors: xr.DataArray, name: str, slope: int | None
 ) -> None:
     settings = errors[name].values.astype(float)
     for index, scene in enumerate(errors.scene.values):
@@ -128,6 +98,6 @@ def _lines(
             f"slope −{-slope}", (0.97, 0.95), xycoords="axes fraction", ha="right", va="top",
             fontsize=7, color=GREY,
         )  # fmt: skip
-    panel.set(xscale="log", yscale="log", xlabel=xlabel, ylabel=ylabel)
+    panel.set(xscale="log", yscale="log")
     panel.set_xticks(settings, [f"{value:g}" for value in settings])
     panel.minorticks_off()

@@ -98,10 +98,7 @@ def _draw(axes: Axes, rows: xr.Dataset, name: str, cost: str) -> None:
         "no wrong cell", (0.02, floor), xycoords=("axes fraction", "data"), fontsize=6, color=GREY,
         xytext=(0, 2), textcoords="offset points",
     )  # fmt: skip
-    axes.set(
-        xscale="log",
-        yscale="log",
-    )
+    axes.set(xscale="log", yscale="log")
     axes.margins(x=0.15)
     axes.minorticks_off()
     axes.grid(visible=True, lw=0.3, color="#DDDDDD")

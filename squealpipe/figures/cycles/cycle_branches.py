@@ -18,6 +18,7 @@ from squealpipe.figures.parts.style import (
     new_figure,
     panel_letter,
 )
+from squealpipe.schema import meanings
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -96,9 +97,8 @@ def _branch(panel: Axes, branch: xr.Dataset) -> dict[str, tuple[str, str, str]]:
         colour, dash = (BLUE, "-") if steady[piece[0]] else (ORANGE, "--")
         points = slice(piece[0], piece[-1] + 2)
         panel.plot(friction[points], size[points], dash, color=colour, linewidth=1.2)
-    names = str(branch.label.attrs["flag_meanings"]).split()
     found = {}
-    for value, name in enumerate(names):
+    for value, name in meanings(branch.label).items():
         points = branch.label.values == value
         if name in MARKS and points.any():
             marker, colour, words = MARKS[name]

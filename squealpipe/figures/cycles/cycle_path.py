@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-import json
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from squealpipe.figures.parts.origin import parameter
 from squealpipe.figures.parts.style import GREY, PAGE, REGIME_COLOURS, new_figure, panel_letter
+from squealpipe.schema import meanings
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -40,9 +41,8 @@ def draw(cycle: xr.Dataset) -> Figure:
     else:
         _coloured(path, cycle.x_path.values, cycle.y_path.values, cycle)
         _coloured(rate, cycle.time.values, cycle.vx_path.values, cycle)
-        path.axhline(_limits(cycle)["preload"], color=GREY, linewidth=0.6)
-        speed = _limits(cycle)["belt_speed"]
-        rate.axhline(speed, color=GREY, linewidth=0.6)
+        path.axhline(parameter(cycle, "preload"), color=GREY, linewidth=0.6)
+        rate.axhline(parameter(cycle, "belt_speed"), color=GREY, linewidth=0.6)
         handles, words = path.get_legend_handles_labels()
         figure.legend(handles, words, loc="outside lower center", ncols=len(words))
     path.set(xlabel="x (m)", ylabel="y (m)")
@@ -52,19 +52,8 @@ def draw(cycle: xr.Dataset) -> Figure:
     return figure
 
 
-def _limits(cycle: xr.Dataset) -> dict[str, float]:
-    found: dict[str, float] = json.loads(cycle.attrs["parameters"])
-    return found
-
-
 def _coloured(panel: Axes, x: np.ndarray, y: np.ndarray, cycle: xr.Dataset) -> None:
-    flags = dict(
-        zip(
-            cycle.regime_path.attrs["flag_values"].tolist(),
-            str(cycle.regime_path.attrs["flag_meanings"]).split(),
-            strict=True,
-        )
-    )
+    flags = meanings(cycle.regime_path)
     regimes = cycle.regime_path.values
     for value in np.unique(regimes):
         here = np.isin(np.arange(len(x)), np.flatnonzero(regimes == value))

@@ -18,6 +18,7 @@ from squealpipe.figures.parts.style import (
     panel_letter,
 )
 from squealpipe.parameters import SCENES
+from squealpipe.schema import meanings
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -75,9 +76,7 @@ def draw(hammering: xr.Dataset) -> Figure:
 
 def _draw_motion(figure: Figure, panel: Any, hammering: xr.Dataset) -> None:
     motion = hammering.motion
-    table = dict(
-        zip(motion.attrs["flag_values"], motion.attrs["flag_meanings"].split(), strict=True)
-    )
+    table = meanings(motion)
     present, index = np.unique(motion.values, return_inverse=True)
     names = [table[code] for code in present]
     angles = hammering.alpha1.values, hammering.alpha2.values

@@ -15,6 +15,7 @@ from squealpipe.figures.parts.style import (
     new_figure,
     panel_letter,
 )
+from squealpipe.schema import meanings
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -60,8 +61,8 @@ def draw(hammering: xr.Dataset) -> Figure:
         axes[0, 0], "a", f"reached in {np.count_nonzero(horizon < t_end)} of {horizon.size}"
     )
     growth = hammering.lyapunov_exponent.values * t_end
-    names = str(hammering.motion.attrs["flag_meanings"]).split()
-    present = [k for k in range(len(names)) if np.any(hammering.motion.values == k)]
+    names = meanings(hammering.motion)
+    present = [k for k in names if np.any(hammering.motion.values == k)]
     panel = axes[0, 1]
     panel.hist(
         [growth[hammering.motion.values == k] for k in present],

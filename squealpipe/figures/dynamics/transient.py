@@ -18,6 +18,7 @@ from squealpipe.figures.parts.style import (
     new_figure,
     panel_letter,
 )
+from squealpipe.parameters import SCENES
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -36,8 +37,6 @@ ALT = (
     "Left, a survival curve on a logarithmic axis. Right, the share of runs that left and their "
     "median lifetime over belt speed."
 )
-PAPER_TIME = 500.0
-"""Horizon of the paper's scene, in √(m/k1)."""
 
 
 def draw(transient: xr.Dataset) -> Figure:
@@ -69,7 +68,7 @@ def _survival(axes: Axes, transient: xr.Dataset) -> None:
     )  # fmt: skip
     _constant_hazard(axes, transient)
     unit = float(np.sqrt(parameter(transient, "mass") / parameter(transient, "k1")))
-    axes.axvspan(0, PAPER_TIME * unit, color=ORANGE, alpha=0.3, linewidth=0)
+    axes.axvspan(0, SCENES["F4"].t_end * unit, color=ORANGE, alpha=0.3, linewidth=0)
     axes.set(xlabel="t (s)", ylabel="share still bounded", yscale="log", xlim=(0, t_end))
     positive = transient.survival.values[transient.survival.values > 0]
     axes.set_ylim(bottom=0.5 * positive.min(), top=1.6)

@@ -16,6 +16,8 @@ from squealpipe.figures.parts.style import (
     new_figure,
     panel_letter,
 )
+from squealpipe.parameters import SCENES
+from squealpipe.schema import meanings
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -34,8 +36,6 @@ ALT = (
     "Left, x over time with a band over the time of Fig. 3. Right, a log–log chart of the final "
     "amplitude over belt speed with two lines."
 )
-PAPER_TIME = 500.0
-"""Horizon of the paper's scene, in √(m/k1)."""
 
 
 def draw(run: xr.Dataset, sizes: xr.Dataset) -> Figure:
@@ -48,7 +48,7 @@ def draw(run: xr.Dataset, sizes: xr.Dataset) -> Figure:
     figure, axes = new_figure(PAGE, 2.9, ncols=2, width_ratios=(1.3, 1))
     panel = axes[0, 0]
     panel.plot(run.time, run.x, color=X_COLOUR, linewidth=0.25, rasterized=True)
-    shown = PAPER_TIME * float(np.sqrt(parameter(run, "mass") / parameter(run, "k1")))
+    shown = SCENES["F3"].t_end * float(np.sqrt(parameter(run, "mass") / parameter(run, "k1")))
     panel.axvspan(0, shown, color=GREY, alpha=0.25, linewidth=0, label="shown in Fig. 3")
     panel.axhline(0, color=GREY, linewidth=0.5)
     panel.set(xlabel="t (s)", ylabel="x (m)", xlim=(0, float(run.time[-1])))
@@ -60,8 +60,7 @@ def draw(run: xr.Dataset, sizes: xr.Dataset) -> Figure:
 
 def _sizes(axes: Axes, sizes: xr.Dataset) -> None:
     speed = np.abs(sizes.belt_speed.values)
-    names = str(sizes.motion.attrs["flag_meanings"]).split()
-    for k, name in enumerate(names):
+    for k, name in meanings(sizes.motion).items():
         chosen = sizes.motion.values == k
         if chosen.any():
             axes.loglog(

@@ -36,44 +36,39 @@ def draw_mechanism(
     alpha1: float,
     alpha2: float,
     *,
-    length: float = 1.0,
     labels: bool = False,
-    pivots: bool = True,
     direction: float = 1.0,
 ) -> None:
-    """Draw an arrangement of the springs around the mass at the origin.
+    """Draw an arrangement of springs of length 1 around the mass, of radius 0.12, at the origin.
 
     Args:
         axes: where to draw; its frame is switched off.
         alpha1, alpha2: spring angles, rad.
-        length: drawn length of the springs (the mass has radius 0.12).
         labels: name the parts with the paper's symbols.
-        pivots: draw the fixed ends.
         direction: of the belt, +1 or −1.
     """
-    radius = 0.12 * length
+    radius = 0.12
     directions = (
         np.array([np.cos(alpha1), np.sin(alpha1)]),
         np.array([-np.cos(alpha2), np.sin(alpha2)]),
     )
-    belt_top = -0.62 * length
+    belt_top = -0.62
     line = 1.2 if labels else 0.8
-    aside = apart(*directions, 0.1 * length)
+    aside = apart(*directions, 0.1)
     for towards, shift, colour in zip(directions, aside, SPRING_COLOURS, strict=True):
-        path = coil(tuple(towards * radius), tuple(towards * length), width=0.07 * length)
+        path = coil(tuple(towards * radius), tuple(towards), width=0.07)
         path[1:-1] += shift
         axes.plot(*path.T, color=colour, linewidth=line, solid_joinstyle="round", zorder=2)
-        if pivots:
-            axes.add_patch(Circle(tuple(towards * length), 0.04 * length, color="black", zorder=3))
-    contact = coil((0.0, -radius), (0.0, belt_top), turns=4, width=0.07 * length)
+        axes.add_patch(Circle(tuple(towards), 0.04, color="black", zorder=3))
+    contact = coil((0.0, -radius), (0.0, belt_top), turns=4, width=0.07)
     axes.plot(*contact.T, color=GREY, linewidth=line, zorder=1)
     axes.add_patch(Circle((0.0, 0.0), radius, facecolor="white", edgecolor="black", zorder=4))
-    half = (1.25 if labels else 0.8) * length
+    half = 1.25 if labels else 0.8
     axes.add_patch(
         Rectangle(
-            (-half, belt_top - 0.12 * length),
+            (-half, belt_top - 0.12),
             2 * half,
-            0.12 * length,
+            0.12,
             facecolor="#E8E8E8",
             edgecolor="black",
             linewidth=0.6,
@@ -82,15 +77,15 @@ def draw_mechanism(
     )
     axes.add_patch(
         FancyArrowPatch(
-            (direction * 0.30 * half, belt_top - 0.27 * length),
-            (direction * 0.85 * half, belt_top - 0.27 * length),
+            (direction * 0.30 * half, belt_top - 0.27),
+            (direction * 0.85 * half, belt_top - 0.27),
             arrowstyle="-|>",
             mutation_scale=11 if labels else 6,
             color=RED,
         )
     )
     if labels:
-        _label(axes, directions, (alpha1, alpha2), length, belt_top)
+        _label(axes, directions, (alpha1, alpha2), belt_top)
     axes.set_aspect("equal")
     axes.set_axis_off()
     axes.margins(0.04)
@@ -100,18 +95,17 @@ def _label(
     axes: Axes,
     directions: tuple[np.ndarray, np.ndarray],
     angles: tuple[float, float],
-    length: float,
     belt_top: float,
 ) -> None:
     text: dict[str, Any] = {"fontsize": 10, "ha": "center", "va": "center"}
     axes.text(0, 0, "m", zorder=5, **text)
     for index, direction in enumerate(directions, start=1):
         side = np.array([-direction[1], direction[0]]) * (1 if index == 1 else -1)
-        place = 0.58 * length * direction + 0.27 * length * side
+        place = 0.58 * direction + 0.27 * side
         name = f"$k_{index},\\ L_{index}$"
         axes.text(place[0], place[1], name, color=SPRING_COLOURS[index - 1], **text)
-    span = 0.42 * length
-    axes.plot([-0.62 * length, 0.62 * length], [0, 0], color=GREY, linewidth=0.6, linestyle=":")
+    span = 0.42
+    axes.plot([-0.62, 0.62], [0, 0], color=GREY, linewidth=0.6, linestyle=":")
     degrees = np.degrees(angles)
     axes.add_patch(Arc((0, 0), 2 * span, 2 * span, theta1=0, theta2=degrees[0], linewidth=0.8))
     axes.add_patch(
@@ -120,12 +114,12 @@ def _label(
     for index, mid in ((1, angles[0] / 2), (2, np.pi - angles[1] / 2)):
         place = 1.3 * span * np.array([np.cos(mid), np.sin(mid)])
         axes.text(place[0], place[1], f"$\\alpha_{index}$", **text)
-    axes.text(0.26 * length, 0.5 * belt_top - 0.06 * length, "$k_3$", color=GREY, **text)
-    axes.text(-0.75 * length, belt_top + 0.1 * length, "friction $\\mu$", **text)
-    axes.text(1.14 * length, belt_top - 0.27 * length, "V", color=RED, **text)
-    origin = np.array([-1.2, 0.02]) * length
+    axes.text(0.26, 0.5 * belt_top - 0.06, "$k_3$", color=GREY, **text)
+    axes.text(-0.75, belt_top + 0.1, "friction $\\mu$", **text)
+    axes.text(1.14, belt_top - 0.27, "V", color=RED, **text)
+    origin = np.array([-1.2, 0.02])
     for step, name in (((0.3, 0.0), "x"), ((0.0, 0.3), "y")):
-        tip = origin + np.multiply(step, length)
+        tip = origin + step
         axes.add_patch(
             FancyArrowPatch(
                 tuple(origin), tuple(tip), arrowstyle="-|>", mutation_scale=8, color="black"

@@ -15,6 +15,7 @@ from squealpipe.figures.parts.style import (
     flag_words,
     new_figure,
 )
+from squealpipe.schema import meanings
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -35,9 +36,7 @@ class Shown:
     def counts(self, dataset: xr.Dataset) -> list[str]:
         """What the map holds, in words."""
         variable = self.variable(dataset)
-        if "flag_meanings" in variable.attrs:
-            meanings = str(variable.attrs["flag_meanings"]).split()
-            table = dict(zip(variable.attrs["flag_values"], meanings, strict=True))
+        if table := meanings(variable):
             codes, numbers = np.unique(variable.values, return_counts=True)
             return [
                 f"{number} of {variable.size} cells: {flag_words(table[code])}"
@@ -74,22 +73,19 @@ def draw(dataset: xr.Dataset) -> Figure:
     figure, axes = new_figure(COLUMN, 3.1)
     axis, values = axes[0, 0], variable.values.astype(float)
     angles = (dataset.alpha1.values, dataset.alpha2.values)
-    if "flag_meanings" not in variable.attrs:
+    table = meanings(variable)
+    if not table:
         finite = values[np.isfinite(values)]
         low, high = np.percentile(finite, [1, 99]) if finite.size else (0, 1)
         mesh = draw_map(axis, *angles, values, cmap="viridis", vmin=low, vmax=high)
         figure.colorbar(mesh, ax=axis, label=_label(variable), extend="both", shrink=0.85)
         return figure
-    names = str(variable.attrs["flag_meanings"]).split()
-    codes = variable.attrs["flag_values"]
-    present = [k for k, code in enumerate(codes) if np.any(values == code)]
-    places = np.full(values.shape, -1)
-    for place, k in enumerate(present):
-        places[values == codes[k]] = place
-    colours = [REGIME_COLOURS[names[k]] for k in present]
-    mesh = draw_map(axis, *angles, places, **category_colours(colours))
-    bar = figure.colorbar(mesh, ax=axis, ticks=range(len(present)), shrink=0.85)
-    bar.ax.set_yticklabels([names[k].replace("_", "\n") for k in present])
+    present, places = np.unique(variable.values, return_inverse=True)
+    names = [table[code] for code in present]
+    colours = category_colours([REGIME_COLOURS[name] for name in names])
+    mesh = draw_map(axis, *angles, places.reshape(values.shape), **colours)
+    bar = figure.colorbar(mesh, ax=axis, ticks=range(len(names)), shrink=0.85)
+    bar.ax.set_yticklabels([name.replace("_", "\n") for name in names])
     return figure
 
 

@@ -17,6 +17,7 @@ from squealpipe.figures.parts.style import (
     panel_letter,
     pi_label,
 )
+from squealpipe.schema import meanings
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -122,8 +123,7 @@ def draw_branch(panel: Axes, exact: xr.Dataset, series: xr.Dataset, preload: flo
 
 def say_why_empty(panel: Axes, branch: xr.Dataset) -> None:
     """Write why a branch has no points into its panel."""
-    meanings = str(branch.end.attrs["flag_meanings"]).split()
-    reason = meanings[list(branch.end.attrs["flag_values"]).index(int(branch.end))]
+    reason = meanings(branch.end)[int(branch.end)]
     text = f"no periodic motions:\n{reason.replace('_', ' ')}"
     panel.text(0.5, 0.5, text, transform=panel.transAxes, ha="center", va="center")
     panel.set(xticks=[], yticks=[])
@@ -168,7 +168,7 @@ def _evenly(series: xr.Dataset) -> np.ndarray:
 
 
 def key_entries(panels: Iterable[Axes]) -> tuple[list[Artist], list[str]]:
-    """Each label once, over both panels."""
+    """Each label once, over all panels."""
     found: dict[str, Artist] = {}
     for panel in panels:
         for handle, label in zip(*panel.get_legend_handles_labels(), strict=True):

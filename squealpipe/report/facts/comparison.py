@@ -10,6 +10,7 @@ import xarray as xr
 from squealpipe.claims.evidence import Run
 from squealpipe.figures.comparison.model_ladder import QUESTION_NAMES
 from squealpipe.schema.comparison import Reliability, Role
+from squealpipe.schema.ladder import Level
 
 
 def failures(run: Run) -> dict[str, Any]:
@@ -70,8 +71,6 @@ def ladder(run: Run) -> dict[str, Any]:
     """What the cheapest adequate model answers and saves, question by question."""
     dataset = run["model_ladder"]
     tolerance = float(dataset.tolerance)
-    meanings = dataset.cheapest.attrs["flag_meanings"].split()
-    complete = dataset.cheapest.attrs["flag_values"][meanings.index("a1")]
     questions = []
     for name in dataset.question.values:
         row = dataset.sel(question=name)
@@ -81,7 +80,7 @@ def ladder(run: Run) -> dict[str, Any]:
             {
                 "question": QUESTION_NAMES[str(name)].rstrip("?"),
                 "within": float((errors[asked] <= tolerance).mean()),
-                "simpler": float((row.cheapest != complete).mean()),
+                "simpler": float((row.cheapest != Level.a1).mean()),
                 "hindsight": float(row.hindsight_time / row.always_time),
                 "work": float(row.chosen_time / row.always_time),
                 "wall": float(row.chosen_wall_time / row.always_wall_time),
@@ -100,15 +99,8 @@ def integration(run: Run) -> dict[str, Any]:
     """Our default setting beside the most accurate public method, scene by scene."""
     dataset = run["work_precision_integration"]
     dataset = dataset.isel(run=(dataset.task == "integration").values)
-    roles = dict(
-        zip(
-            dataset.role.attrs["flag_meanings"].split(),
-            dataset.role.attrs["flag_values"],
-            strict=True,
-        )
-    )
     ours, public = (
-        dataset.isel(run=(dataset.role == roles[name]).values) for name in ("our_setting", "public")
+        dataset.isel(run=(dataset.role == role).values) for role in (Role.our_setting, Role.public)
     )
     rows = []
     for scene in dict.fromkeys(map(str, ours.scene.values)):

@@ -9,10 +9,16 @@ import numpy as np
 from squealpipe.claims.evidence import Run
 from squealpipe.figures.parts.style import flag_words, pi_label
 from squealpipe.parameters import SCENES
+from squealpipe.schema import meanings
+from squealpipe.schema.dynamics.runs import MotionFlag
 
 SATURATED = 0.01
 """Relative change of the amplitude between two late parts of a run below which it has settled."""
-REGULAR = ("periodic_hammering", "quasi_periodic_hammering", "regular_hammering")
+REGULAR = [
+    MotionFlag.periodic_hammering,
+    MotionFlag.quasi_periodic_hammering,
+    MotionFlag.regular_hammering,
+]
 """Kinds of hammering in which no perturbation grew exponentially."""
 
 
@@ -49,14 +55,10 @@ def whirl(run: Run) -> dict[str, Any]:
     """Size of the whirl at the study's belt speed and its law."""
     dataset, parameters = run["whirl"], run.parameters
     here = dataset.sel(belt_speed=parameters.belt_speed, method="nearest")
-    whirls = dataset.amplitude.where(dataset.motion == _flag(dataset.motion, "whirl"))
-    names = dict(
-        zip(dataset.motion.attrs["flag_values"], dataset.motion.attrs["flag_meanings"].split(),
-            strict=True)
-    )  # fmt: skip
+    whirls = dataset.amplitude.where(dataset.motion == MotionFlag.whirl)
     growth = float(here.amplitude / here.amplitude_before) - 1.0
     return {
-        "motion": flag_words(names[int(here.motion)]),
+        "motion": flag_words(meanings(dataset.motion)[int(here.motion)]),
         "saturated": abs(growth) < SATURATED,
         "speed": float(here.belt_speed),
         "own_speed": bool(np.isclose(here.belt_speed, parameters.belt_speed, rtol=1e-6)),
@@ -138,16 +140,10 @@ def _survival(dataset: Any, unit: float) -> dict[str, Any]:
 def hammering(run: Run) -> dict[str, Any]:
     """Kinds of motion over the angle map."""
     dataset = run["hammering_map"]
-    meanings = dataset.motion.attrs["flag_meanings"].split()
-    values = dataset.motion.attrs["flag_values"]
     kinds: list[dict[str, Any]] = [
         {"kind": flag_words(name), "share": float((dataset.motion == value).mean())}
-        for name, value in zip(meanings, values, strict=True)
+        for value, name in meanings(dataset.motion).items()
     ]
-    counts = {
-        name: int((dataset.motion == value).sum())
-        for name, value in zip(meanings, values, strict=True)
-    }
     unit = run.parameters.time_unit
     limited = dataset.predictability_horizon < dataset.t_end
     horizon = dataset.predictability_horizon.where(limited) / unit
@@ -155,8 +151,8 @@ def hammering(run: Run) -> dict[str, Any]:
         "points": dataset.sizes["alpha1"],
         "t_end": float(dataset.t_end) / unit,
         "kinds": [kind for kind in kinds if kind["share"] > 0],
-        "regular": sum(counts.get(name, 0) for name in REGULAR),
-        "repeating": counts["periodic_hammering"],
+        "regular": int(dataset.motion.isin(REGULAR).sum()),
+        "repeating": int((dataset.motion == MotionFlag.periodic_hammering).sum()),
         **_lasting(dataset),
         "peak": float(dataset.peak_contact_force.max()),
         "limited": float(limited.mean()),
@@ -168,10 +164,8 @@ def _lasting(dataset: Any) -> dict[str, Any]:
     """How many labels are others at twice the time; nothing where that was not looked at."""
     if "motion_later" not in dataset:
         return {"changed": None, "broken": None}
-    regular = dataset.motion.isin([_flag(dataset.motion, name) for name in REGULAR])
-    broken = dataset.motion_later.isin(
-        [_flag(dataset.motion, name) for name in ("irregular_hammering", "whirl")]
-    )
+    regular = dataset.motion.isin(REGULAR)
+    broken = dataset.motion_later.isin([MotionFlag.irregular_hammering, MotionFlag.whirl])
     return {
         "changed": int((dataset.motion != dataset.motion_later).sum()),
         "broken": int((regular & broken).sum()),
@@ -202,11 +196,6 @@ def _inherited(refined: Any) -> dict[str, Any]:
         "wrong": int(refined.inherited_wrong),
         "most_wrong": float(refined.inherited_error_interval[1]),
     }
-
-
-def _flag(variable: Any, name: str) -> int:
-    meanings = variable.attrs["flag_meanings"].split()
-    return int(variable.attrs["flag_values"][meanings.index(name)])
 
 
 def _finite(value: Any) -> float | None:

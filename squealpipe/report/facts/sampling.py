@@ -20,6 +20,7 @@ from squealpipe.claims.evidence import Run
 from squealpipe.claims.maps import coupling_is_negative, order_turns_over, unstable_cells
 from squealpipe.figures.parts.style import flag_words
 from squealpipe.report.facts.orbits import orbit_cells
+from squealpipe.schema import meanings
 from squealpipe.schema.inference import CONFIDENCE, wilson_interval
 
 HOW_CONSEQUENCES_CONVERGE = {
@@ -153,9 +154,7 @@ def _hammering(run: Run) -> Iterator[Row]:
         strikes,
     )
     motion = hammering.motion
-    for name, value in zip(
-        motion.attrs["flag_meanings"].split(), motion.attrs["flag_values"], strict=True
-    ):
+    for value, name in meanings(motion).items():
         if (motion == value).any():
             yield _area(f"motion: {flag_words(name)}", motion == value)
     if "motion_later" in hammering:
