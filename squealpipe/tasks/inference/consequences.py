@@ -167,8 +167,8 @@ def separating_share(
 def springs_are_equal(fields: Mapping[str, np.ndarray | float]) -> bool:
     """Whether (α1, α2) and (π − α2, π − α1) are the same system at every parameter set."""
     return all(
-        bool(np.all(np.equal(fields[first], fields[second])))
-        for first, second in (("k1", "k2"), ("length1", "length2"))
+        bool(np.all(np.equal(fields.get(f"{name}1", 0.0), fields.get(f"{name}2", 0.0))))
+        for name in ("k", "length", "damping")
     )
 
 

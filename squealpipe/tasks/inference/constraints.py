@@ -14,6 +14,8 @@ from typing import Any
 
 import numpy as np
 
+from squealpipe.laws.dashpots import linear_damping
+from squealpipe.laws.springs import geometry
 from squealpipe.models.a2 import ROUND_OFF
 from squealpipe.models.a3 import LinearRegime
 from squealpipe.models.contact_system import ContactSystem, contact_system
@@ -196,9 +198,19 @@ def _modes_switched(candidates: Candidates) -> Margin:
     first = before.k22 + fields["k3"] - before.k11
     second = after.k11 - after.k22 - fields["k3"]
     coupling = np.maximum(np.abs(before.k12), np.abs(after.k12))
+    if {"damping1", "damping2"} & set(fields):
+        coupling = np.maximum(coupling, _coupling_by_dashpots(fields))
     isolated = coupling <= ROUND_OFF * fields["k1"]
     margin = np.where(isolated, np.minimum(first, second), -coupling)
     return _closed(margin / fields["k1"])
+
+
+def _coupling_by_dashpots(fields: Mapping[str, np.ndarray]) -> np.ndarray:
+    """Largest |C12| √(k1/m) at the scenes of Figs. 12 and 13, N/m: as stiff as K12 at √(k1/m)."""
+    p = SimpleNamespace(**{"damping1": 0.0, "damping2": 0.0, **fields})
+    scenes = SCENES["F12"], SCENES["F13"]
+    c12 = [linear_damping(p, geometry(scene.alpha1, scene.alpha2)).k12 for scene in scenes]
+    return np.max(np.abs(c12), axis=0) * np.sqrt(p.k1 / p.mass)
 
 
 def _closed(margin: np.ndarray) -> Margin:
@@ -255,15 +267,16 @@ CONSTRAINTS: tuple[Constraint, ...] = (
     ),
     Constraint(
         name="F6d",
-        criterion="A3 stable at (0.4π, 0.6π), that is, μ sgn V < cot 0.4π; margin det/(K11 k3), "
-        "or disc/(trace/2)² in flutter; damped, less the growth rate times √(m/k1)",
+        criterion="A3 stable at (0.4π, 0.6π): undamped, μ sgn V < cot 0.4π and no flutter; margin "
+        "det/(K11 k3), or disc/(trace/2)² in flutter; damped, less the growth rate times √(m/k1)",
         horizon=np.nan,
         check=_linearly_stable,
     ),
     Constraint(
         name="F13",
         criterion="isolated x mode first at (3π/4, 3π/4) and second at (5π/6, 5π/6); margin of "
-        "K11 against K22 + k3, over k1: 1 − κ at the latter; −|K12|/k1 if coupled",
+        "K11 against K22 + k3, over k1: 1 − κ at the latter; if coupled, −|K12|/k1 or, by unequal "
+        "dashpots, −|C12|/√(m k1)",
         horizon=np.nan,
         check=_modes_switched,
     ),

@@ -9,6 +9,7 @@ from squealpipe.models import a3
 from squealpipe.models.contact_system import contact_system
 from squealpipe.parameters import SCENES, Parameters
 from squealpipe.schema import Outcome
+from squealpipe.tasks.dynamics.runs import validity_map
 from squealpipe.tasks.inference.consequences import (
     ANGLES,
     CLEAR,
@@ -17,6 +18,7 @@ from squealpipe.tasks.inference.consequences import (
     _some_keep_contact,
     judge_consequences,
     separating_share,
+    springs_are_equal,
     unstable_cells,
 )
 from squealpipe.tasks.inference.constraints import candidate_of, measure
@@ -177,3 +179,14 @@ def test_damped_settings_are_judged_by_the_damped_problem(beyond: dict[str, obje
         assert margins[0] == margins[1]  # friction falls by e^-40000 only
         changed += found != _linear(params, *unstable_cells(params))
     assert changed
+
+
+@pytest.mark.parametrize("name", ["damping1", "damping2"])
+def test_unequal_dashpots_have_no_mirror_image(name: str) -> None:
+    """Cells (α1, α2) and (π − α2, π − α1) then move differently: share against the whole map."""
+    params = Parameters(**{name: 0.1})
+    axis = (np.arange(12) + 0.5) * (np.pi / 12)
+    whole = validity_map(params, axis, axis, t_end=200.0, tol=1e-9).separates.mean().item()
+    fields = {key: np.array([value]) for key, value in params.as_dict().items()}
+    assert separating_share(fields, angles=(12,), tol=1e-9).item() == whole
+    assert springs_are_equal(fields | {"damping1": 0.1, "damping2": 0.1})

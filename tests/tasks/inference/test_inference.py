@@ -91,6 +91,16 @@ def test_unequal_springs_break_what_needs_equal_ones() -> None:
     assert verdicts["F13"].margin[0] == pytest.approx(-0.5 * 0.1, rel=1e-12)
 
 
+def test_unequal_dashpots_couple_the_x_mode() -> None:
+    """(3π/4, 3π/4), (5π/6, 5π/6): C12 = (c1 − c2) sin α cos α, 0 for equal dashpots alone."""
+    own = BASELINE.with_(mass=2.0, k1=3.0, k2=3.0)
+    unequal = measure(candidate_of(own.with_(damping1=0.4), tol=1e-12))["F13"]
+    assert unequal.margin[0] == pytest.approx(-0.5 * 0.4 / math.sqrt(6.0), rel=1e-12)
+    equal = own.with_(damping1=0.4, damping2=0.4)
+    margins = [measure(candidate_of(each, tol=1e-12))["F13"].margin[0] for each in (own, equal)]
+    assert margins[0] == margins[1] > 0
+
+
 def test_margins_do_not_depend_on_units() -> None:
     plain = measure(candidate_of(BASELINE, tol=1e-12))
     speed = 3.0 * math.sqrt(7.0 / 2.0)
