@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from scipy import stats
 
+from squealpipe.laws.friction_laws import COULOMB, FALLING
 from squealpipe.parameters import Parameters, is_finite_number
 from squealpipe.ranges import ANGLES, NUMBERS
 
@@ -66,8 +67,26 @@ def _check_support(name: str, kind: str, frozen: Any) -> None:
         if not np.isfinite(end):
             continue
         try:
-            Parameters().with_(**{name: float(end) or 1e-300})
+            # of its own: how mu_static stands to mu is seen when both are known
+            Parameters(**{"friction_law": FALLING[0], name: float(end) or 1e-300})
         except ValueError as error:
             raise ValueError(
                 f"{name}: the {kind} distribution reaches {end:g}, which is not allowed: {error}"
             ) from error
+
+
+def check_stick(params: Parameters, frozen: Mapping[str, Any]) -> None:
+    """Stop distributions that let static friction be below that of sliding with Coulomb's law.
+
+    Raises:
+        ValueError: names both ends.
+    """
+    if params.friction_law != COULOMB or ("mu_static" not in frozen and params.mu_static is None):
+        return
+    least = frozen["mu_static"].support()[0] if "mu_static" in frozen else params.static_mu
+    most = frozen["mu"].support()[1] if "mu" in frozen else params.mu
+    if least < most:
+        raise ValueError(
+            f"mu_static reaches {least:g} and mu {most:g}: with the Coulomb law mu_static must be "
+            "mu or greater in all of the sample"
+        )

@@ -23,7 +23,7 @@ from squealpipe.schema.origin import recorded
 from squealpipe.schema.spread import PROPENSITY, WIDEST
 from squealpipe.solvers.a1.ensemble import run_ensemble
 from squealpipe.tasks.dynamics.motion import classify_motion
-from squealpipe.tasks.spread.distributions import distribution
+from squealpipe.tasks.spread.distributions import check_stick, distribution
 
 QUANTITIES = ("flutter", "contact_loss", "irregular_hammering", "whirl")
 LEAST_EVENTS = 30
@@ -84,6 +84,7 @@ def propensity(
     if len(distributions) < 1:
         raise ValueError("distributions: at least one parameter is needed")
     frozen = {name: distribution(name, given) for name, given in distributions.items()}
+    check_stick(params, frozen)
     names = list(frozen)
     if spring_correlation and not {"k1", "k2"} <= set(names):
         raise ValueError("spring_correlation: distributions of k1 and k2 are needed for it")

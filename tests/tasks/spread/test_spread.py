@@ -115,6 +115,18 @@ def test_propensity_refuses_what_it_cannot_do(change, words):
         propensity(Parameters(), *ANGLES, **given)
 
 
+def test_static_friction_below_that_of_sliding_is_for_laws_that_allow_it():
+    static = {"mu_static": {"distribution": "uniform", "low": 0.1, "high": 0.2}}
+    given = {"distributions": static, "samples": 64, "t_end": 1.0, "workers": 1}
+    rising = Parameters(friction_law="exponential", mu_static=0.2)
+    assert propensity(rising, *ANGLES, **given).judged == 64
+    with pytest.raises(ValueError, match=r"mu_static reaches 0\.1 and mu 0\.3"):
+        propensity(Parameters(), *ANGLES, **given)
+    given["distributions"] = FRICTION
+    with pytest.raises(ValueError, match=r"mu_static reaches 0\.31 and mu"):
+        propensity(Parameters(mu_static=0.31), *ANGLES, **given)
+
+
 def test_settings_differ_from_the_paper_one_at_a_time():
     params = Parameters(k2=1.3, belt_speed=-2.0)
     found = dict(variants(params))
