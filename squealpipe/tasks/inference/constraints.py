@@ -210,7 +210,7 @@ def _coupling_by_dashpots(fields: Mapping[str, np.ndarray]) -> np.ndarray:
     p = SimpleNamespace(**{"damping1": 0.0, "damping2": 0.0, **fields})
     scenes = SCENES["F12"], SCENES["F13"]
     c12 = [linear_damping(p, geometry(scene.alpha1, scene.alpha2)).k12 for scene in scenes]
-    return np.max(np.abs(c12), axis=0) * np.sqrt(p.k1 / p.mass)
+    return np.asarray(np.max(np.abs(c12), axis=0) * np.sqrt(p.k1 / p.mass))
 
 
 def _closed(margin: np.ndarray) -> Margin:

@@ -68,7 +68,7 @@ def _check_support(name: str, kind: str, frozen: Any) -> None:
             continue
         try:
             # of its own: how mu_static stands to mu is seen when both are known
-            Parameters(**{"friction_law": FALLING[0], name: float(end) or 1e-300})
+            Parameters(friction_law=FALLING[0]).with_(**{name: float(end) or 1e-300})
         except ValueError as error:
             raise ValueError(
                 f"{name}: the {kind} distribution reaches {end:g}, which is not allowed: {error}"
