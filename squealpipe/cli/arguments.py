@@ -41,6 +41,7 @@ Physical = Annotated[Parameters, Parameter(name="*", group=PHYSICAL_GROUP)]
 Configs = Annotated[list[Path] | None, Parameter(name=["--config", "-c"], negative="")]
 Output = Annotated[Path, Parameter(name=["--output", "-o"], allow_leading_hyphen=True)]
 Picture = Annotated[Path | None, Parameter(name=["--picture", "-p"])]
+AsJson = Annotated[bool, Parameter(name="--json", negative="")]
 Switch = Annotated[bool, Parameter(negative="")]
 
 BASELINE = Parameters()

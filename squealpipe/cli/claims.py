@@ -12,7 +12,7 @@ from typing import Annotated, Any
 
 from cyclopts import Parameter
 
-from squealpipe.cli.arguments import Switch
+from squealpipe.cli.arguments import AsJson, Switch
 from squealpipe.cli.exit_codes import DONE
 
 MADE = Path("results/data/claims.nc")
@@ -24,7 +24,7 @@ def claims(
     *what: str,
     only: str | None = None,
     csv_: Annotated[bool, Parameter(name="--csv", negative="")] = False,
-    json_: Annotated[bool, Parameter(name="--json", negative="")] = False,
+    json_: AsJson = False,
     file: Path | None = None,
     wide: Switch = False,
 ) -> int:

@@ -19,12 +19,7 @@ TRACEBACK = "SQUEALPIPE_TRACEBACK"
 """Environment variable that asks for tracebacks, as -v does."""
 PATIENCE = 1.5
 """Seconds from Ctrl-C after which a command that has not stopped by itself is ended."""
-SWITCHES = {
-    "-q": "quiet",
-    "--quiet": "quiet",
-    "-v": "verbose",
-    "--verbose": "verbose",
-}
+SWITCHES = {"-q": "quiet", "--quiet": "quiet", "-v": "verbose", "--verbose": "verbose"}
 
 
 def _nothing_kept() -> str:

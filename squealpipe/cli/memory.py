@@ -9,9 +9,9 @@ from typing import Annotated, Any
 
 from cyclopts import Parameter
 
+from squealpipe.cli.arguments import AsJson
 from squealpipe.cli.exit_codes import ANSWER_IS_NO, DONE
 
-AsJson = Annotated[bool, Parameter(name="--json", negative="")]
 SHOWN = 4
 """Changed parameters of a run that a line shows."""
 

@@ -8,12 +8,10 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
-from squealpipe.cli.arguments import Configs
+from squealpipe.cli.arguments import AsJson, Configs
 from squealpipe.cli.console import console
 from squealpipe.cli.exit_codes import ANSWER_IS_NO, DONE
-
-AsJson = Annotated[bool, Parameter(name="--json", negative="")]
-BASE_CONFIG = Path("workflow/config/paper.yaml")
+from squealpipe.config import PAPER
 
 
 def explain(*, config: Configs = None, times: bool = False, json_: AsJson = False) -> int:
@@ -75,7 +73,7 @@ def archive(
     from squealpipe.store.archive import archive as freeze
 
     folder = freeze(
-        name, results=results, configs=config or [BASE_CONFIG], leave_out=leave_out or []
+        name, results=results, configs=config or [Path(PAPER)], leave_out=leave_out or []
     )
     size = sum(path.stat().st_size for path in folder.rglob("*") if path.is_file())
     print(f"froze the run in {folder} ({size / 1e6:.1f} MB)")

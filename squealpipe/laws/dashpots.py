@@ -71,9 +71,3 @@ def linear_damping_force(vx: Scalar, vy: Scalar, p: Any, g: Geometry) -> tuple[S
     """−C ṙ, N."""
     c11, c12, c22 = linear_damping(p, g)
     return -(c11 * vx + c12 * vy), -(c12 * vx + c22 * vy)
-
-
-def damping_power(x: Scalar, y: Scalar, vx: Scalar, vy: Scalar, p: Any, g: Geometry) -> Scalar:
-    """Power of both dashpots on the mass, W; never positive."""
-    fx, fy = damping_force(x, y, vx, vy, p, g)
-    return fx * vx + fy * vy

@@ -43,16 +43,11 @@ def regularized_slip_force(normal_force: Any, vx: Any, p: Any, sigma_v: Any) -> 
     return coefficient(np.abs(lag), p) * normal_force * np.tanh(sigma_v * lag)
 
 
-def speed_along_belt(vx: Any, p: Any) -> Any:
-    """sgn(V) ẋ, m/s: how fast the mass moves in the direction of the belt."""
-    return p.belt_direction * vx
-
-
 def slides(speed: Any, p: Any) -> Any:
     """Whether the mass keeps sliding in one sense: its speed along the belt stays below |V|.
 
     Args:
-        speed: largest :func:`speed_along_belt` of a motion, m/s; of a motion that is symmetric
+        speed: largest sgn(V) ẋ of a motion, m/s; of a motion that is symmetric
             in time the largest |ẋ|, which for any other one is a bound.
         p: parameters; the belt may run either way.
     """

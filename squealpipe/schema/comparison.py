@@ -1,4 +1,4 @@
-"""Datasets that compare methods: speed against accuracy, failures."""
+"""Datasets that compare methods: work–precision and the failure atlas."""
 
 from __future__ import annotations
 

@@ -31,8 +31,8 @@ def wilson_interval(count: int, size: int) -> tuple[float, float]:
     return float(interval.low), float(interval.high)
 
 
-def _group(long_name: str, units: str = "1") -> Variable:
-    return Variable(long_name, units, SAMPLE)
+def _group(long_name: str) -> Variable:
+    return Variable(long_name, dims=SAMPLE)
 
 
 def _limit(side: str) -> Variable:

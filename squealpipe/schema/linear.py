@@ -139,18 +139,15 @@ STABILITY_BOUNDARIES = DatasetSchema(
         "point": Variable("number of the point", dims=("point",), dtype="i4"),
     },
     variables={
-        "alpha1": Variable(
-            dims=("point",),
-            units="rad",
-            long_name="angle of spring 1, continuous along a segment",
-            atol=3e-8,  # at its turning points an arc cosine keeps half of the digits
-        ),
-        "alpha2": Variable(
-            dims=("point",),
-            units="rad",
-            long_name="angle of spring 2, continuous along a segment",
-            atol=3e-8,  # at its turning points an arc cosine keeps half of the digits
-        ),
+        **{
+            f"alpha{i}": Variable(
+                f"angle of spring {i}, continuous along a segment",
+                "rad",
+                ("point",),
+                atol=3e-8,  # at its turning points an arc cosine keeps half of the digits
+            )
+            for i in (1, 2)
+        },
         "z_real": Variable("Re(k1 exp(2i alpha1) + k2 exp(-2i alpha2))", "N m-1", ("point",)),
         "z_imag": Variable("Im(k1 exp(2i alpha1) + k2 exp(-2i alpha2))", "N m-1", ("point",)),
         "boundary": Variable("which boundary", dims=("point",), dtype="i1", flags=Boundary),

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from squealpipe.laws.contact import contact_force
-from squealpipe.laws.dashpots import damping_power
+from squealpipe.laws.dashpots import damping_force
 from squealpipe.laws.springs import geometry
 from squealpipe.models.a1 import Regime, friction_power, mechanical_energy, suspension_force
 from squealpipe.parameters import LAW_NAMES, Parameters
@@ -88,13 +88,18 @@ def energy_error(parameters, angles, t_end, panel):
     g, regime = geometry(*angles[:, :, None]), seen.sample_regimes
     contact = (regime != Regime.separated) * 1.0
     energy = mechanical_energy(x, y, vx, vy, wide, g, contact=contact)
-    power = damping_power(x, y, vx, vy, wide, g) + friction_power(
-        vx,
-        suspension_force(x, y, vx, vy, wide, g, linear_springs=False)[0],
-        contact * contact_force(y, wide),
-        wide,
-        direction=(regime == Regime.slip_slower) * 1.0 - (regime == Regime.slip_faster),
-        stick=(regime == Regime.stick) * 1.0,
+    dx, dy = damping_force(x, y, vx, vy, wide, g)
+    power = (
+        dx * vx
+        + dy * vy
+        + friction_power(
+            vx,
+            suspension_force(x, y, vx, vy, wide, g, linear_springs=False)[0],
+            contact * contact_force(y, wide),
+            wide,
+            direction=(regime == Regime.slip_slower) * 1.0 - (regime == Regime.slip_faster),
+            stick=(regime == Regime.stick) * 1.0,
+        )
     )
     end = mechanical_energy(
         *run.final_state.T, p, geometry(*angles), contact=run.final_regime != Regime.separated

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from math import isnan
 from typing import Any
 
 import numpy as np
@@ -11,6 +10,7 @@ import xarray as xr
 
 from squealpipe.claims.evidence import Run
 from squealpipe.claims.maps import unstable_yet_sliding
+from squealpipe.report.facts.motion import finite_or_none
 
 
 def linear(datasets: Run) -> dict[str, Any]:
@@ -69,14 +69,10 @@ def _constraint(row: xr.Dataset) -> dict[str, Any]:
     return {
         "name": str(row.statement.item()),
         "criterion": str(row.criterion.item()),
-        "horizon": _or_none(row.horizon),
+        "horizon": finite_or_none(row.horizon),
         "share": float(row.share_holding),
         "margin": float(row.baseline_margin),
     }
-
-
-def _or_none(value: xr.DataArray) -> float | None:
-    return None if isnan(float(value)) else float(value)
 
 
 def critical(run: Run) -> dict[str, Any]:

@@ -64,12 +64,12 @@ def whirl(run: Run) -> dict[str, Any]:
         "own_speed": bool(np.isclose(here.belt_speed, parameters.belt_speed, rtol=1e-6)),
         "amplitude": float(here.amplitude / parameters.preload),
         "top_speed": float(here.max_vx / abs(here.belt_speed)),
-        "lowest_speed": _finite(abs(dataset.belt_speed).where(whirls.notnull()).min()),
+        "lowest_speed": finite_or_none(abs(dataset.belt_speed).where(whirls.notnull()).min()),
         "speeds": _slowest_and_fastest(dataset),
         "t_end": float(dataset.t_end / parameters.time_unit),
         **_fit_and_onset(dataset),
-        "slope": _finite(dataset.slope),
-        "offset": _finite(dataset.offset),
+        "slope": finite_or_none(dataset.slope),
+        "offset": finite_or_none(dataset.offset),
         "energy_slope": float(dataset.energy_slope),
         "energy_offset": float(dataset.energy_offset),
     }
@@ -84,8 +84,8 @@ def _fit_and_onset(dataset: Any) -> dict[str, Any]:
     bracket = bool(np.isfinite(dataset.onset).all())
     return {
         "fit_range": [float(speed) for speed in dataset.fit_range] if known else None,
-        "fit_residual": _finite(dataset.fit_residual),
-        "worst_outside": _finite(outside.max()),
+        "fit_residual": finite_or_none(dataset.fit_residual),
+        "worst_outside": finite_or_none(outside.max()),
         "onset": [float(speed) for speed in dataset.onset] if bracket else None,
         "onset_exceptions": int(dataset.onset_exceptions),
     }
@@ -103,7 +103,7 @@ def transient(run: Run) -> dict[str, Any]:
         "ended": int(ended.size),
         "shortest": float(ended.min()) if ended.size else None,
         # runs cut off at t_end count as longer than all others
-        "median": _finite(np.median(np.where(np.isfinite(lifetimes), lifetimes, np.inf))),
+        "median": finite_or_none(np.median(np.where(np.isfinite(lifetimes), lifetimes, np.inf))),
         **_survival(dataset, unit),
         "longest": float(ended.max()) if ended.size else None,
         "t_end": float(dataset.t_end) / unit,
@@ -129,8 +129,8 @@ def _survival(dataset: Any, unit: float) -> dict[str, Any]:
     )  # fmt: skip
     names = ("from", "to", "rate", "low", "high")
     return {
-        "median": _finite(median),
-        "median_interval": [float(low), _finite(high)] if np.isfinite(low) else None,
+        "median": finite_or_none(median),
+        "median_interval": [float(low), finite_or_none(high)] if np.isfinite(low) else None,
         "hazards": [
             dict(zip(names, map(float, row), strict=True)) for row in rates if np.isfinite(row[2])
         ],
@@ -156,7 +156,7 @@ def hammering(run: Run) -> dict[str, Any]:
         **_lasting(dataset),
         "peak": float(dataset.peak_contact_force.max()),
         "limited": float(limited.mean()),
-        "median_horizon": _finite(horizon.median()),
+        "median_horizon": finite_or_none(horizon.median()),
     }
 
 
@@ -198,6 +198,7 @@ def _inherited(refined: Any) -> dict[str, Any]:
     }
 
 
-def _finite(value: Any) -> float | None:
+def finite_or_none(value: Any) -> float | None:
+    """A number as JSON takes it."""
     number = float(value)
     return number if np.isfinite(number) else None

@@ -9,6 +9,7 @@ import numpy as np
 from squealpipe.claims.evidence import Run
 from squealpipe.figures.parts.style import flag_words
 from squealpipe.parameters import SCENES
+from squealpipe.report.facts.motion import finite_or_none
 from squealpipe.schema import Outcome
 from squealpipe.schema.linear import LinearRegimeFlag
 from squealpipe.schema.spread import WIDEST
@@ -87,12 +88,14 @@ def disturbances(run: Run) -> dict[str, Any]:
             "scene": scene.panel,
             "linear": LinearRegimeFlag(int(contact.regime_linear)).name,
             "steady": STEADY.get(outcome, "stable"),
-            "rest": _or_none(contact.rest_distance),
-            "linear_contact": _or_none(contact.linear_distance),
-            "contact": _or_none(contact.distance),
-            "whirl": _or_none(whirl.distance),
+            "rest": finite_or_none(contact.rest_distance),
+            "linear_contact": finite_or_none(contact.linear_distance),
+            "contact": finite_or_none(contact.distance),
+            "whirl": finite_or_none(whirl.distance),
             "whirl_bound": float(whirl.bound) if outcome not in STEADY else None,
-            "spread": [_or_none(part) for part in (whirl.distance, whirl.improved_distance.max())],
+            "spread": [
+                finite_or_none(part) for part in (whirl.distance, whirl.improved_distance.max())
+            ],
         })  # fmt: skip
     first = run["disturbance/F2a_contact_lost"]
     return {
@@ -104,7 +107,7 @@ def disturbances(run: Run) -> dict[str, Any]:
                 share
                 for name in SCENES
                 if f"disturbance/{name}_contact_lost" in run
-                and (share := _or_none(run[f"disturbance/{name}_contact_lost"].share_below))
+                and (share := finite_or_none(run[f"disturbance/{name}_contact_lost"].share_below))
             ),
             None,
         ),
@@ -117,10 +120,6 @@ def disturbances(run: Run) -> dict[str, Any]:
             if row["linear"] == "stable" and row["steady"] == "unstable"
         ],
     }
-
-
-def _or_none(value: Any) -> float | None:
-    return float(value) if np.isfinite(value) else None
 
 
 def propensity(run: Run) -> dict[str, Any]:
@@ -159,7 +158,7 @@ def propensity(run: Run) -> dict[str, Any]:
         ],
         "leading": leading,
         "unsupported": [
-            {"words": words[i], "half": _or_none(half[i]), "samples": int(base[i])}
+            {"words": words[i], "half": finite_or_none(half[i]), "samples": int(base[i])}
             for i in np.flatnonzero(~supported)
         ],
         "widest": WIDEST,

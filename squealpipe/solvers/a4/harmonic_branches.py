@@ -69,10 +69,9 @@ def harmonic_branch(
     x_max: float,
     *,
     n_harmonics: int,
-    n_time: int | None = None,
-    sigma: float | None = None,
-    cross_poles: bool = False,
-    settings: ContinuationSettings | None = None,
+    n_time: int | None,
+    sigma: float | None,
+    cross_poles: bool,
 ) -> tuple[CosineBalance, list[HarmonicPoint], Outcome]:
     """Points of a branch from the linear mode upwards, and why it ends; all scaled.
 
@@ -81,7 +80,6 @@ def harmonic_branch(
         n_harmonics: harmonics; n_time: samples a period, or None for closed forms.
         sigma: scaled regularizing factor, or None for the sharp law.
         cross_poles: go on beyond ω = ω_x/n where K12 = 0.
-        settings: step control of the continuation.
     """
     balance = CosineBalance(scene.system, contact_of(n_harmonics, 1.0, n_time, sigma))
     if scene.obstacle != Outcome.converged:
@@ -106,8 +104,8 @@ def harmonic_branch(
     if scene.system.decoupled:
         beyond, end = _decoupled_branch(scene, balance, series[-1], y_max, cross_poles=cross_poles)
     else:
-        control = settings or ContinuationSettings()
-        beyond, end = coupled_branch(scene, balance, mode, series[-1], y_max, control)
+        settings = ContinuationSettings()
+        beyond, end = coupled_branch(scene, balance, mode, series[-1], y_max, settings)
     return balance, points + [_judged(scene, balance, z, Outcome.converged) for z in beyond], end
 
 

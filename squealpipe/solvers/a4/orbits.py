@@ -123,6 +123,12 @@ def grazing_start(scene: ScaledSystem, mode: int) -> GrazingStart:
     return GrazingStart(linear_orbit(scene, mode, 1.0).point, direction, room)
 
 
+SHAPE = (
+    "omega", "x_at_peak", "x_amplitude", "y_amplitude", "largest_speed", "sliding_assumption",
+)  # fmt: skip
+"""What :func:`orbit_values` gives."""
+
+
 def orbit_values(
     scene: ScaledSystem, params: Parameters, point: NDArray[np.float64]
 ) -> dict[str, Any]:

@@ -149,7 +149,8 @@ def check(folder: Path) -> list[str]:
         faults.append(f"{CITATION}: {error}")
     faults += [] if faults else _crate_faults(folder)
     if (folder / RUN).is_dir():
-        faults += [] if verify(folder / RUN).intact else verify(folder / RUN).lines()
+        found = verify(folder / RUN)
+        faults += [] if found.intact else found.lines()
     else:
         faults.append(f"{RUN}: the archive is missing")
     return faults

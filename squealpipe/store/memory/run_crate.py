@@ -52,9 +52,8 @@ def describe_deposit(folder: Path, metadata: dict[str, Any]) -> str:
             )
         else:
             files[name] = crate.add_file(path, name, properties=file_properties(path))
-    for hidden in (".zenodo.json",):
-        path = folder / hidden
-        files[hidden] = crate.add_file(path, hidden, properties=file_properties(path))
+    hidden = folder / ".zenodo.json"
+    files[hidden.name] = crate.add_file(hidden, hidden.name, properties=file_properties(hidden))
     engine = _entity(crate, "#snakemake", "SoftwareApplication", name="Snakemake")
     files[WORKFLOW]["softwareRequirements"] = engine
     datasets = {name: files[name] for name in files if name.startswith("run/data/")}

@@ -8,7 +8,6 @@ from typing import Any, Literal
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
 
 from squealpipe.laws.friction import slides
 from squealpipe.methods.balance.harmonic_balance import CosineBalance, series_extremes, series_speed
@@ -25,7 +24,7 @@ from squealpipe.schema.backbones import BACKBONE
 from squealpipe.schema.origin import recorded
 from squealpipe.solvers.a4.exact_branches import exact_branch
 from squealpipe.solvers.a4.harmonic_branches import HarmonicPoint, harmonic_branch
-from squealpipe.solvers.a4.orbits import find_orbit, orbit_values
+from squealpipe.solvers.a4.orbits import SHAPE, find_orbit, orbit_values
 from squealpipe.solvers.a4.system import ScaledSystem, scaled_system
 from squealpipe.tasks.backbones.orbit import check_length, check_mode
 
@@ -181,12 +180,7 @@ def _exact_dataset(
     end: Outcome,
     attrs: dict[str, Any],
 ) -> xr.Dataset:
-    flying = [
-        orbit
-        for orbit, outcome in zip(orbits, outcomes, strict=True)
-        if outcome == Outcome.converged
-    ]
-    beyond = special_points(scene.system, flying)
+    beyond = special_beyond_contact(scene, orbits, outcomes)
     return build(
         BACKBONE,
         {
@@ -206,9 +200,9 @@ def exact_variables(
     end: Outcome,
 ) -> dict[str, Any]:
     """What a dataset says of the exact orbits of a branch."""
-    columns = columns_of([orbit_values(scene, params, orbit.point) for orbit in orbits])
+    shapes = [orbit_values(scene, params, orbit.point) for orbit in orbits]
     return {
-        **columns,
+        **{name: np.array([shape[name] for shape in shapes]) for name in SHAPE},
         "y_peak": np.array([orbit.point[1] for orbit in orbits]) * scene.length,
         "stability_index": np.array([orbit.stability_index for orbit in orbits]),
         "switches": [len(orbit.switches) for orbit in orbits],
@@ -264,6 +258,14 @@ def _harmonic_dataset(
     )
 
 
+def special_beyond_contact(
+    scene: ScaledSystem, orbits: Sequence[Orbit], outcomes: Sequence[Outcome]
+) -> list[tuple[SpecialPoint, Orbit]]:
+    """Special points of the part of an exact branch that loses contact."""
+    pairs = zip(orbits, outcomes, strict=True)
+    return special_points(scene.system, [o for o, outcome in pairs if outcome == Outcome.converged])
+
+
 def special_variables(
     scene: ScaledSystem, found: Sequence[tuple[SpecialPoint, Orbit]]
 ) -> dict[str, Any]:
@@ -273,16 +275,3 @@ def special_variables(
         "special_y_peak": np.array([orbit.point[1] for _, orbit in found]) * scene.length,
         "special_omega": np.array([orbit.omega for _, orbit in found]) * scene.frequency,
     }
-
-
-def columns_of(rows: list[dict[str, Any]]) -> dict[str, NDArray[Any]]:
-    """One array a name from one mapping a point; empty arrays for an empty branch."""
-    names = (
-        "omega",
-        "x_at_peak",
-        "x_amplitude",
-        "y_amplitude",
-        "largest_speed",
-        "sliding_assumption",
-    )
-    return {name: np.array([row[name] for row in rows]) for name in names}

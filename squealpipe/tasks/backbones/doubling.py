@@ -16,7 +16,11 @@ from squealpipe.schema.backbones import DOUBLED_BRANCH
 from squealpipe.solvers.a4.doubled_branches import OFFSETS, doubled_branch_from
 from squealpipe.solvers.a4.exact_branches import BRANCH_ENDS, exact_branch
 from squealpipe.solvers.a4.system import ScaledSystem, scaled_system
-from squealpipe.tasks.backbones.backbone import exact_variables, special_variables
+from squealpipe.tasks.backbones.backbone import (
+    exact_variables,
+    special_beyond_contact,
+    special_variables,
+)
 from squealpipe.tasks.backbones.orbit import check_length, check_mode
 
 
@@ -62,16 +66,8 @@ def doubled_branch(
     scene = scaled_system(params, alpha1, alpha2)
     peak = y_max / scene.length
     simple, outcomes, end = exact_branch(scene, mode, peak, peak)
-    flying = [
-        orbit
-        for orbit, outcome in zip(simple, outcomes, strict=True)
-        if outcome == Outcome.converged
-    ]
-    found = [
-        orbit
-        for kind, orbit in special_points(scene.system, flying)
-        if kind is SpecialPoint.period_doubling
-    ]
+    special = special_beyond_contact(scene, simple, outcomes)
+    found = [orbit for kind, orbit in special if kind is SpecialPoint.period_doubling]
     attrs = {"alpha1": alpha1, "alpha2": alpha2, "mode": mode, "doubling": doubling}
     if len(found) < doubling:
         return _dataset(scene, params, [], None, Outcome.no_doubling if simple else end, attrs)

@@ -12,7 +12,7 @@ from squealpipe.parameters import Parameters, brief, is_finite_number, is_whole_
 from squealpipe.schema import build
 from squealpipe.schema.backbones import PERIODIC_ORBIT, Assumption
 from squealpipe.schema.origin import recorded
-from squealpipe.solvers.a4.orbits import find_orbit, orbit_values
+from squealpipe.solvers.a4.orbits import SHAPE, find_orbit, orbit_values
 from squealpipe.solvers.a4.system import scaled_system
 
 MOST_PRELOADS = 1e100
@@ -85,6 +85,5 @@ def check_length(name: str, value: float, preload: float) -> None:
 
 
 def _empty_values() -> dict[str, Any]:
-    names = ("omega", "x_at_peak", "x_amplitude", "y_amplitude", "largest_speed")
-    blank: dict[str, Any] = dict.fromkeys((*names, "stability_index", "residual"), math.nan)
+    blank: dict[str, Any] = dict.fromkeys((*SHAPE, "stability_index", "residual"), math.nan)
     return {**blank, "sliding_assumption": Assumption.holds}

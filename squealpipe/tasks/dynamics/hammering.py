@@ -10,13 +10,14 @@ import xarray as xr
 
 from squealpipe.arrays import angle_axis, real_number
 from squealpipe.parameters import Parameters
-from squealpipe.schema import Outcome, build
+from squealpipe.schema import build
 from squealpipe.schema.dynamics.runs import HAMMERING_MAP
 from squealpipe.schema.origin import recorded
 from squealpipe.solvers.a1.ensemble import run_map
 from squealpipe.tasks.dynamics.motion import (
     classify_motion,
     linear_time,
+    predictability,
     refine_labels,
     regular_growth,
 )
@@ -114,7 +115,6 @@ def hammering_map(
     )  # fmt: skip
     # A run that ended early is averaged over the time that it lasted.
     time = np.maximum(run.time, np.finfo(float).tiny)
-    chaotic = (run.outcome == Outcome.converged) & np.isfinite(run.predictability_horizon)
     maps = {
         "impact_rate": run.contacts / time,
         "separated_fraction": run.separated_time / time,
@@ -122,13 +122,9 @@ def hammering_map(
         "stick_fraction": run.stick_time / time,
         "max_displacement": run.max_displacement,
         "turns": form.sign * run.turns,
-        "lyapunov_exponent": run.log_growth / time,
-        "predictability_horizon": np.where(
-            np.isnan(run.predictability_horizon), run.time, run.predictability_horizon
-        ),
         "motion": motion,
         "motion_later": later,
-        "outcome": np.where(chaotic, Outcome.beyond_horizon, run.outcome),
+        **predictability(run),
     }
     return build(
         HAMMERING_MAP,

@@ -11,6 +11,7 @@ import numpy as np
 
 from squealpipe.methods.recurrence import LEAST_REPEATS, repeats_after
 from squealpipe.parameters import Parameters
+from squealpipe.schema import Outcome
 from squealpipe.schema.dynamics.runs import MotionFlag
 from squealpipe.solvers.a1.ensemble import Ensemble, run_ensemble
 
@@ -48,6 +49,22 @@ def whirls(run: Ensemble | SimpleNamespace) -> np.ndarray:
     """Whether each run of an ensemble turns around both fixed ends, returns to the belt aside."""
     turns = np.abs(run.turns)
     return np.asarray((turns >= LEAST_TURNS) & (turns > TURNS_PER_RETURN * run.contacts))
+
+
+def predictability(run: Ensemble | SimpleNamespace) -> dict[str, np.ndarray]:
+    """Growth rate, horizon (the run's end where it lies beyond) and outcome, as datasets hold them.
+
+    ``beyond_horizon`` is the outcome of a run whose state an error of ``tol`` decides before its
+    end.
+    """
+    horizon = run.predictability_horizon
+    chaotic = (run.outcome == Outcome.converged) & np.isfinite(horizon)
+    return {
+        # A run that ended early is averaged over the time that it lasted.
+        "lyapunov_exponent": run.log_growth / np.maximum(run.time, np.finfo(float).tiny),
+        "predictability_horizon": np.where(np.isnan(horizon), run.time, horizon),
+        "outcome": np.where(chaotic, Outcome.beyond_horizon, run.outcome),
+    }
 
 
 def classify_motion(run: Ensemble | SimpleNamespace, time_unit: float) -> np.ndarray:

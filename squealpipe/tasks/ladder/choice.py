@@ -59,7 +59,7 @@ class Choice:
     """The cheapest trustworthy answer.
 
     Attributes:
-        model: name of the level, of :class:`squealpipe.schema.comparison.Level`.
+        model: name of the level, of :class:`squealpipe.schema.ladder.Level`.
         value: the answer: truth value, rad/s, N_max/(k3 l_pre), or m.
         reason: why this level.
         checks: what was looked at.
@@ -78,7 +78,7 @@ class Choices:
     """Choices of many cells; all arrays of one shape.
 
     Attributes:
-        level: :class:`squealpipe.schema.comparison.Level`.
+        level: :class:`squealpipe.schema.ladder.Level`.
         value: answers.
         integrated: time integrated by A1, s.
         motion: the linear motion that was looked at.

@@ -14,7 +14,7 @@ from squealpipe.schema import Outcome, build
 from squealpipe.schema.origin import recorded
 from squealpipe.schema.starts import STARTS, UNSETTLED, basin_schema
 from squealpipe.solvers.a1.ensemble import Ensemble, run_ensemble
-from squealpipe.tasks.dynamics.motion import classify_motion, linear_time
+from squealpipe.tasks.dynamics.motion import classify_motion, linear_time, predictability
 
 SAMPLES = 1000
 """Instants after t_late at which |ẋ| is read off; its maximum is refined by a parabola."""
@@ -114,7 +114,6 @@ def _block(
     whole, later = classify_motion(run, unit), classify_motion(second, unit)
     motion = np.where(whole == later, whole, UNSETTLED)
     motion = np.where(finished, motion, UNSETTLED)
-    chaotic = (run.outcome == Outcome.converged) & np.isfinite(run.predictability_horizon)
     return {
         "motion": motion,
         "late_max_x": run.late_max_x,
@@ -122,11 +121,7 @@ def _block(
         "separates": np.isfinite(run.first_separation_time),
         "first_separation_time": run.first_separation_time,
         "peak_contact_force": run.peak_contact_force,
-        "lyapunov_exponent": run.log_growth / np.maximum(run.time, np.finfo(float).tiny),
-        "predictability_horizon": np.where(
-            np.isnan(run.predictability_horizon), run.time, run.predictability_horizon
-        ),
-        "outcome": np.where(chaotic, Outcome.beyond_horizon, run.outcome),
+        **predictability(run),
     }
 
 

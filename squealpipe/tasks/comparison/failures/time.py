@@ -19,6 +19,7 @@ from squealpipe.solvers.a1.ensemble import run_ensemble
 from squealpipe.solvers.a1.peers import simulate_moreau_jean, simulate_regularized, simulate_scipy
 from squealpipe.solvers.a1.reference import simulate_reference
 from squealpipe.tasks.comparison.failures.verdicts import Answer, HardScene, Method
+from squealpipe.tasks.comparison.work_precision.integration import contact_changes
 
 OURS = "Taylor + events"
 TOLERANCE = 1e-3
@@ -147,14 +148,9 @@ def _state(run: HybridRun) -> np.ndarray:
     return np.array([*map(float, run.state)])
 
 
-def _changes(run: HybridRun) -> int:
-    """Number of contact changes."""
-    return sum(kind in (EventKind.separation, EventKind.contact) for kind in run.event_kinds)
-
-
 def _answer(run: HybridRun, reference: HybridRun) -> Answer:
     """A method without events is not asked for them."""
-    missed = abs(_changes(run) - _changes(reference)) if run.reports_events else None
+    missed = abs(contact_changes(run) - contact_changes(reference)) if run.reports_events else None
     return Answer(_state(run), run.message, missed)
 
 
@@ -174,7 +170,7 @@ def _ours(case: Case, tol: float, reference: HybridRun) -> Answer:
     flag = "" if outcome == Outcome.converged else outcome.name
     if np.isfinite(found.predictability_horizon):
         flag = Outcome.beyond_horizon.name
-    missed = abs(int(found.separations + found.contacts) - _changes(reference))
+    missed = abs(int(found.separations + found.contacts) - contact_changes(reference))
     return Answer(np.array(found.final_state), flag, missed)
 
 

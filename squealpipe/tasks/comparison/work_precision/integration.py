@@ -197,8 +197,9 @@ def _wrong_contacts(found: HybridRun, reference: HybridRun) -> int:
     """Contact changes too many or too few; −1 for methods that report none."""
     if not found.reports_events:
         return -1
-    contact_changes = (EventKind.separation, EventKind.contact)
-    counts = [
-        sum(kind in contact_changes for kind in run.event_kinds) for run in (found, reference)
-    ]
-    return abs(counts[0] - counts[1])
+    return abs(contact_changes(found) - contact_changes(reference))
+
+
+def contact_changes(run: HybridRun) -> int:
+    """Number of losses and returns of contact."""
+    return sum(kind in (EventKind.separation, EventKind.contact) for kind in run.event_kinds)
