@@ -204,7 +204,7 @@ class LadderComparison(Section):
 
 
 class ComparisonSection(Section):
-    """Speed against accuracy, and the model ladder."""
+    """Work–precision, and the model ladder."""
 
     integration: IntegrationComparison = IntegrationComparison()
     validity: ValidityComparison = ValidityComparison()

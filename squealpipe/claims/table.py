@@ -22,7 +22,7 @@ FLAGS = {"basis": Basis, "origin": Origin}
 
 
 def rows(claims: xr.Dataset) -> list[dict[str, Any]]:
-    """One mapping a statement; numbers that do not exist are None.
+    """One mapping per statement; numbers that do not exist are None.
 
     Args:
         claims: dataset ``claims``.

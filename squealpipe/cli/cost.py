@@ -31,10 +31,10 @@ SECONDS = {
     "backbone": 0.05,
     "smallest_disturbance": 2.0,
 }
-"""A run (of maps: a cell), on one core; of the first three per unit of time √(m/k1)."""
+"""Per run, or per cell of a map, on one core; the first three also per unit of time √(m/k1)."""
 
 BYTES = {"simulate": 200, "natural_frequencies": 500, "periodic_orbit": 2000, "backbone": 40_000}
-"""A run, of ``simulate`` an instant; of the other maps 300 a cell."""
+"""Per run; ``simulate`` per instant, ``natural_frequencies`` per cell, other maps ``MAP_BYTES``."""
 
 TIMED = ("simulate", "validity_map", "hammering_map")
 MAP_BYTES = 300

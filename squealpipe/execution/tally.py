@@ -47,7 +47,7 @@ def lines(dataset: xr.Dataset, names: list[str]) -> list[str]:
 def _missing(dataset: xr.Dataset, outcome: xr.DataArray) -> dict[str, np.ndarray]:
     """Variable → where it holds NaN, over the dimensions of the outcome.
 
-    What a run does not have at all (a time beyond its end) is no riddle and left out.
+    What a run does not have at all (a time beyond its end) needs no word.
     """
     found = {}
     for name, variable in dataset.data_vars.items():

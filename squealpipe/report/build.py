@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
 import re
 import shutil
 import tempfile
@@ -16,6 +15,8 @@ from typing import Any, Literal
 
 import typst
 from jinja2 import Environment, StrictUndefined
+
+from squealpipe.store.whole_files import whole_file
 
 TEMPLATES = Path(str(files("squealpipe.report"))) / "templates"
 
@@ -47,8 +48,10 @@ def write_report(
     with _source(content, pictures) as main, ThreadPoolExecutor(2) as pool:
         made = pool.submit(_typeset, main, "html")
         document = pool.submit(_typeset, main, "pdf")
-    _write(page, _page(content, made.result().decode()).encode())
-    _write(pdf, document.result())
+    with whole_file(page) as temporary:
+        temporary.write_bytes(_page(content, made.result().decode()).encode())
+    with whole_file(pdf) as temporary:
+        temporary.write_bytes(document.result())
 
 
 @contextmanager
@@ -81,13 +84,3 @@ def _page(content: Mapping[str, Any], made: str) -> str:
 
 def _between(text: str, start: str, end: str) -> str:
     return text[text.index(start) + len(start) : text.rindex(end)]
-
-
-def _write(path: Path, text: bytes) -> None:
-    path.parent.mkdir(parents=True, exist_ok=True)
-    temporary = path.with_name(f".{path.name}.{os.getpid()}")
-    try:
-        temporary.write_bytes(text)
-        temporary.replace(path)
-    finally:
-        temporary.unlink(missing_ok=True)

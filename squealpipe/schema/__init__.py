@@ -1,6 +1,6 @@
 """What every dataset holds: names, dimensions, units, meanings, tolerances: stated once.
 
-The tables are in the modules below, one a topic; a task imports its own table and calls
+The tables are in the modules below, one per topic; a task imports its own table and calls
 :func:`build`. :func:`find` gets a schema by name, for readers of files.
 """
 

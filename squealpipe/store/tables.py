@@ -9,6 +9,7 @@ import numpy as np
 import xarray as xr
 
 from squealpipe.schema import meanings
+from squealpipe.store.whole_files import whole_file
 
 
 def write_csv(dataset: xr.Dataset, path: str | os.PathLike[str]) -> list[Path]:
@@ -26,7 +27,6 @@ def write_csv(dataset: xr.Dataset, path: str | os.PathLike[str]) -> list[Path]:
         The files, the main one first.
     """
     target = Path(path)
-    target.parent.mkdir(parents=True, exist_ok=True)
     tables: dict[tuple[str, ...], list[str]] = {}
     single = []
     for name, variable in dataset.data_vars.items():
@@ -58,14 +58,9 @@ def _write_table(
         for key in ("config", "package_version", "commit")
         if key in dataset.attrs
     ]
-    temporary = path.with_name(f".{path.name}.{os.getpid()}.tmp")
-    try:
-        with temporary.open("w", encoding="utf-8", newline="") as file:
-            file.write("\n".join(head) + "\n")
-            frame[names].reset_index().to_csv(file, index=False)
-        temporary.replace(path)
-    finally:
-        temporary.unlink(missing_ok=True)
+    with whole_file(path) as temporary, temporary.open("w", encoding="utf-8", newline="") as file:
+        file.write("\n".join(head) + "\n")
+        frame[names].reset_index().to_csv(file, index=False)
 
 
 def _words(variable: xr.DataArray) -> xr.DataArray:

@@ -12,6 +12,7 @@ from PIL import Image
 
 from squealpipe.figures.model.mechanism import SPRING_COLOURS, coil, displaced_springs
 from squealpipe.figures.parts.style import BLUE, GREEN, GREY, LIGHT, RED, new_figure, pi_label
+from squealpipe.store.whole_files import whole_file
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -51,14 +52,8 @@ def animate(
     panels = (_Mechanism(axes[0, 0], part), _Force(axes[0, 1], part))
     chosen = np.linspace(0, inside.size - 1, frames).round().astype(int)
     pictures = list(_pictures(figure, panels, chosen))
-    target = Path(path)
-    target.parent.mkdir(parents=True, exist_ok=True)
-    temporary = target.with_name(f".{target.stem}.{os.getpid()}.gif")
-    try:
+    with whole_file(Path(path)) as temporary:
         _write(pictures, temporary)
-        temporary.replace(target)
-    finally:
-        temporary.unlink(missing_ok=True)
 
 
 class _Mechanism:

@@ -33,7 +33,7 @@ BAR: dict[str, Any] = {"location": "bottom", "aspect": 40}
 
 
 def drawable(array: xr.DataArray) -> bool:
-    """Whether a variable is a map over both spring angles with more than one cell a side."""
+    """Whether a variable is a map over both spring angles with more than one cell per side."""
     return array.dims[:2] == MAP and array.dtype.kind in "fiub" and min(array.shape[:2]) > 1
 
 

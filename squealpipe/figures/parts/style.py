@@ -12,6 +12,7 @@ from matplotlib.colors import BoundaryNorm, ListedColormap
 from matplotlib.figure import Figure
 
 from squealpipe.store.netcdf import clear_leftovers
+from squealpipe.store.whole_files import whole_file
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -189,12 +190,7 @@ def save_figure(figure: Figure, paths: Sequence[str | os.PathLike[str]]) -> None
         engine.execute(figure)
         figure.set_layout_engine(None)
     for path in map(Path, paths):
-        path.parent.mkdir(parents=True, exist_ok=True)
         clear_leftovers(path.parent, f".{path.stem}.*{path.suffix}")
-        temporary = path.with_name(f".{path.stem}.{os.getpid()}{path.suffix}")
         metadata = {"Date": None} if path.suffix == ".svg" else {"Software": "squealpipe"}
-        try:
+        with whole_file(path) as temporary:
             figure.savefig(temporary, metadata=metadata)
-            temporary.replace(path)
-        finally:
-            temporary.unlink(missing_ok=True)

@@ -159,7 +159,7 @@ class ClosedFormContact:
 
 @dataclass(frozen=True)
 class SampledContact:
-    """Contact force from N samples a period, sharp or smoothed by tanh: the paper's way.
+    """Contact force from N samples per period, sharp or smoothed by tanh: the paper's way.
 
     Attributes:
         n_harmonics: N_h.

@@ -18,6 +18,7 @@ from plotly.offline import get_plotlyjs
 from squealpipe.parameters import SCENES
 from squealpipe.report.explorer.layers import Layer
 from squealpipe.schema import meanings
+from squealpipe.store.whole_files import whole_file
 
 HERE = Path(str(files("squealpipe.report.explorer")))
 HISTORIES = ("x", "y", "normalized_contact_force", "force_spectrum")
@@ -34,14 +35,8 @@ def write_explorer(
         layers: what the map can show, by key.
         path: the HTML file; it needs no network and no other file.
     """
-    target = Path(path)
-    target.parent.mkdir(parents=True, exist_ok=True)
-    temporary = target.with_name(f".{target.name}.{os.getpid()}")
-    try:
+    with whole_file(Path(path)) as temporary:
         temporary.write_text(page(explorer, layers), encoding="utf-8")
-        temporary.replace(target)
-    finally:
-        temporary.unlink(missing_ok=True)
 
 
 def page(explorer: xr.Dataset, layers: Mapping[str, Layer]) -> str:

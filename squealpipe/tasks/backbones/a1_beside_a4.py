@@ -22,7 +22,7 @@ Vector = NDArray[np.float64]
 _PERIODS = 32
 _SAMPLES = 64
 _SHOWN = 4
-"""Periods of the run, samples a period, and periods that are kept as a time history."""
+"""Periods of the run, samples per period, and periods that are kept as a time history."""
 _ORDERS = 5
 _PADDING = 4
 _NEIGHBOURHOOD = 0.5

@@ -52,7 +52,7 @@ def simulate(
             "A1-no-separation" (k3 also pulls), "A1-linear-springs" or "A4" (which goes on past
             ẋ = V, where it does not hold; compare ``vx`` with the belt speed).
         tol: tolerance of the Taylor integrator, relative to l_pre.
-        times: the state is given at exactly these instants, s; by default 20 a time unit √(m/k1).
+        times: the state is given at exactly these instants, s; by default 20 per time unit √(m/k1).
         initial_state: x, y, vx, vy at t = 0, m and m/s.
         growth: tell too by which factor a small perturbation of the start has grown at the end.
 
@@ -186,7 +186,7 @@ def validity_map(
 
 
 def _instants(times: Any, t_end: float, time_unit: float) -> np.ndarray:
-    """Checked instants, s; by default 20 a time unit.
+    """Checked instants, s; by default 20 per time unit.
 
     Raises:
         ValueError: they are no sequence, or empty.

@@ -78,7 +78,7 @@ def _share(run: xr.Dataset, begins: EventFlag, regime: RegimeFlag, end: float) -
 
 
 def summary_lines(run: xr.Dataset, summary: xr.Dataset) -> Iterator[str]:
-    """The summary for people, a line a finding.
+    """The summary for people, one line per finding.
 
     Args:
         run: dataset ``simulation``; summary: what :func:`summarize` made of it.

@@ -110,7 +110,7 @@ def state_distance(state: Any, reference: Any, params: Parameters) -> float:
 
 
 def taylor_evaluations(steps: float, tol: float) -> float:
-    """Taylor steps as evaluations of the field: p + 1 a step, order p = 1 − ½ ln tol."""
+    """Taylor steps as evaluations of the field: p + 1 per step, order p = 1 − ½ ln tol."""
     return steps * (math.ceil(1.0 - 0.5 * math.log(tol)) + 1)
 
 
