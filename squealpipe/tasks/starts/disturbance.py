@@ -57,7 +57,8 @@ def smallest_disturbance(
     Args:
         params: physical parameters.
         alpha1, alpha2: angles, rad.
-        leads_to: "contact_lost" or "whirl" (three turns or more around both fixed ends).
+        leads_to: "contact_lost" (a start out of contact counts) or "whirl" (three turns or more
+            around both fixed ends, counted by half turns, so that 2½ may do).
         model: "A1" or one of its variants that can lose contact; "A1-linear-springs" and "A4" have
             no whirl.
         t_end: time within which it is to happen, s; default 200 √(2m/(k1 + k2)).

@@ -68,6 +68,24 @@ def test_first_integral_is_named_where_it_answers() -> None:
     assert "first integral" in found.reason
 
 
+@pytest.mark.parametrize(
+    ("k2", "k3", "mu", "lengths", "angles"),
+    [
+        (1.63, 0.8, 0.62, (55.0, 26.0), (1.39, 0.34)),
+        (1.83, 0.89, 0.36, (23.0, 48.0), (0.82, 0.55)),
+        (1.82, 0.82, 0.27, (26.0, 28.0), (1.2, 0.33)),
+    ],
+)
+def test_first_integral_does_not_answer_where_geometry_makes_sliding_unstable(
+    k2, k3, mu, lengths, angles
+) -> None:
+    """A4 keeps N ≤ k3 l_pre there, but A1 reaches 1.4 to 3.3 times that by growing."""
+    params = Parameters(k2=k2, k3=k3, mu=mu, length1=lengths[0], length2=lengths[1], belt_speed=1e3)
+    found = choose_model(params, *angles, "peak_contact_force", 0.1, t_end=HORIZON)
+    assert found.model == "a1"
+    assert found.value > 1.3
+
+
 @pytest.mark.parametrize("speed", [0.05, -0.05])
 def test_a_level_is_never_taken_when_its_assumption_is_broken(speed: float) -> None:
     """A slow belt is reached by the mass: only A1 may answer."""
