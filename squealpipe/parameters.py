@@ -176,15 +176,6 @@ class Parameters:
             f"λ = {self.length_ratio:.4g}, v = {self.speed_ratio:.4g}"
         )
 
-    @classmethod
-    def from_groups(
-        cls, *, kappa: float, mu: float, length_ratio: float, speed_ratio: float
-    ) -> Parameters:
-        """Equal springs with unit mass, stiffness and preload and the given groups."""
-        return cls(
-            k3=kappa, mu=mu, length1=length_ratio, length2=length_ratio, belt_speed=speed_ratio
-        )
-
     @property
     def time_unit(self) -> float:
         """√(m/k1), s."""

@@ -72,8 +72,8 @@ def test_groups_do_not_depend_on_the_units(mass: float, stiffness: float, length
         assert math.isclose(getattr(scaled, group), getattr(plain, group), rel_tol=1e-14)
 
 
-def test_from_groups_inverts_the_groups() -> None:
-    params = Parameters.from_groups(kappa=0.6, mu=0.2, length_ratio=4.0, speed_ratio=-7.0)
+def test_groups_of_equal_springs() -> None:
+    params = Parameters(k3=0.6, mu=0.2, length1=4.0, length2=4.0, belt_speed=-7.0)
     groups = (params.kappa, params.mu, params.length_ratio, params.speed_ratio)
     assert groups == (0.6, 0.2, 4.0, -7.0)
 

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from typing import Any
 
 from squealpipe.figures.parts.style import number
@@ -49,28 +49,20 @@ def summarize(claims: Rows, facts: Mapping[str, Facts], figures: Collection[str]
     """
     statements = [row for row in claims if not is_misprint(row)]
     printed = [row for row in claims if is_misprint(row)]
+
+    def told(topic: str, sentence: Callable[[Facts], str]) -> str:
+        return sentence(facts[topic]) if topic in facts else ""
+
     sentences = [
         _reproduced(statements, figures),
         _fitted(statements, facts),
-        *(
-            sentence(facts[topic])
-            for topic, sentence in (
-                ("whirl", _whirl),
-                ("transient", _transient),
-                ("linear", _sliding),
-            )
-            if topic in facts
-        ),
+        told("whirl", _whirl),
+        told("transient", _transient),
+        told("linear", _sliding),
         _misprints(printed),
-        *(
-            sentence(facts[topic])
-            for topic, sentence in (
-                ("integration", _speed),
-                ("failures", _failures),
-                ("ladder", _ladder),
-            )
-            if topic in facts
-        ),
+        told("integration", _speed),
+        told("failures", _failures),
+        told("ladder", _ladder),
     ]
     return [sentence for sentence in sentences if sentence]
 

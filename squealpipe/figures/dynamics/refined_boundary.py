@@ -68,7 +68,6 @@ def draw(refined: xr.Dataset, check: xr.Dataset) -> Figure:
     panel_letter(axes[0, 0], "a", f"{size}×{size}, {float(refined.computed.mean()):.1%} run")
     part = refined.sel(alpha1=slice(*window[:2]), alpha2=slice(*window[2:]))
     _map(axes[0, 1], part)
-    axes[0, 1].set(xlim=window[:2], ylim=window[2:])
     for axis in (axes[0, 1].xaxis, axes[0, 1].yaxis):
         angle_ticks(axis, np.pi, np.pi / 25)
     axes[0, 1].set(xlim=window[:2], ylim=window[2:])

@@ -216,25 +216,16 @@ def _refinement(run: Run) -> Iterator[Row]:
     check = run["refinement_check"]
     wrong = (check.different_cells / check.points.astype(float) ** 2).values
     last = check.isel(points=-1)
-    count, size = int(last.different_cells), int(last.points) ** 2
-    low, high = wilson_interval(count, size)
-    yield {
-        "name": "cells of a uniform map that the refined one labels otherwise",
-        "kind": "share",
-        "unit": "1",
-        "value": count / size,
-        "low": low,
-        "high": high,
-        "sample": size,
-        "of": f"cells, {int(last.points)} an axis",
-        "error": f"{100 * CONFIDENCE:.0f} % Wilson interval",
-        "convergence": "on uniform maps of "
-        + ", ".join(
-            f"{int(points)} ({100 * share:.2g} %)"
-            for points, share in zip(check.points.values, wrong, strict=True)
-        )
-        + " angles an axis",
-    }
+    told = ", ".join(
+        f"{int(points)} ({100 * share:.2g} %)"
+        for points, share in zip(check.points.values, wrong, strict=True)
+    )
+    yield _share(
+        "cells of a uniform map that the refined one labels otherwise",
+        np.arange(int(last.points) ** 2) < int(last.different_cells),
+        f"cells, {int(last.points)} an axis",
+        f"on uniform maps of {told} angles an axis",
+    )
 
 
 def _whirl(run: Run) -> Iterator[Row]:

@@ -25,8 +25,8 @@ from squealpipe.models.refusals import without_extensions
 from squealpipe.parameters import Parameters
 from squealpipe.schema.ladder import QUESTIONS, Level
 from squealpipe.solvers.a1.ensemble import run_ensemble
-from squealpipe.tasks.ladder.answers import answer_of, answer_of_samples, sample_times
 from squealpipe.tasks.ladder.certificate import Certificate, contact_certificate
+from squealpipe.tasks.ladder.questions import answer_of, answer_of_samples, sample_times
 from squealpipe.tasks.normal_form import NormalForm
 
 DEFAULT_HORIZON = 200.0

@@ -6,8 +6,8 @@ import pytest
 from squealpipe.parameters import Parameters
 from squealpipe.schema.ladder import QUESTIONS, Level
 from squealpipe.solvers.a1.ensemble import run_ensemble
-from squealpipe.tasks.ladder.answers import answer_of, dominant_frequency, sample_times
 from squealpipe.tasks.ladder.choice import choose_model, choose_models
+from squealpipe.tasks.ladder.questions import answer_of, dominant_frequency, sample_times
 
 CELLS, HORIZON, TOLERANCE = 500, 200.0, 0.05
 
