@@ -114,10 +114,13 @@ def _block(
     whole, later = classify_motion(run, unit), classify_motion(second, unit)
     motion = np.where(whole == later, whole, UNSETTLED)
     motion = np.where(finished, motion, UNSETTLED)
+    late = times >= t_late
+    # the engine's own starts with the first step that begins after t_late
+    begins = np.fmax.reduce(np.abs(run.samples[:, late, 0]), axis=1)
     return {
         "motion": motion,
-        "late_max_x": run.late_max_x,
-        "late_max_vx": _late_speed(run, times >= t_late),
+        "late_max_x": np.fmax(run.late_max_x, begins),
+        "late_max_vx": _late_speed(run, late),
         "separates": np.isfinite(run.first_separation_time),
         "first_separation_time": run.first_separation_time,
         "peak_contact_force": run.peak_contact_force,

@@ -88,3 +88,17 @@ def test_a_run_that_has_not_settled_says_so():
 def test_refuses_what_it_cannot_do(change, named):
     with pytest.raises(ValueError, match=named):
         basin_map(Parameters(), 1.0, 2.0, **({"t_end": 50.0} | change))
+
+
+def test_late_extremes_begin_at_t_late():
+    """A decaying motion is largest there, inside of a step of the integrator."""
+    params = Parameters(damping1=0.3, damping2=0.2, k2=1.3)
+    starts = np.linspace(-0.5, 0.5, 6)
+    for late in (7.3, 21.1):
+        found = basin_map(params, 1.1, 0.6, x=starts, t_end=50.0, t_late=late, workers=1)
+        for start, largest in zip(starts, found.late_max_x.values, strict=True):
+            run = simulate(
+                params, 1.1, 0.6, t_end=50.0, initial_state=(start, 0, 0, 0),
+                times=np.linspace(late, 50.0, 20_001),
+            )  # fmt: skip
+            assert largest == pytest.approx(np.abs(run.x).max().item(), rel=1e-4)
