@@ -100,6 +100,10 @@ def verdict_reach(
         size = near * np.array([params.preload, params.preload, speed, speed])
         state = generator.uniform(-1.0, 1.0, (starts, 4)) * size
         verdicts = _margins(Candidates(fields, tol, workers, initial_state=state))
+        for constraint in CONSTRAINTS:
+            if math.isnan(constraint.horizon):  # no motion, so one setting however it starts
+                holds, judged = verdicts[constraint.name]
+                verdicts[constraint.name] = holds[:1], judged[:1]
         rows.append([_share(*verdicts.get(name, (None, None))) for name in names])
         titles.append(f"starts within {100 * near:g} % of l_pre")
     if inferred is not None:

@@ -8,6 +8,7 @@ from scipy.optimize import brentq
 from squealpipe import Parameters, stability_map
 from squealpipe.schema import Outcome
 from squealpipe.tasks.inference.inference import infer_parameters
+from squealpipe.tasks.spread import reach
 from squealpipe.tasks.spread.distributions import distribution
 from squealpipe.tasks.spread.propensity import _judged_matrices, _sobol, propensity
 from squealpipe.tasks.spread.reach import _feasible, _share, variants
@@ -161,3 +162,11 @@ def test_share_counts_only_what_was_judged():
     assert (share, judged, outcome) == (2 / 3, 3, Outcome.converged)
     assert low < share < high
     assert _share(np.array([True]), np.array([False]))[-1] == Outcome.unresolved
+
+
+def test_statements_without_a_motion_are_no_sample_of_starts(monkeypatch):
+    monkeypatch.setattr(reach, "variants", lambda _: iter(()))
+    found = reach.verdict_reach(Parameters(), starts=4, tol=1e-9, workers=1)
+    judged = found.judged.sel(statement=["F2a", "F3", "F6d", "F13"])
+    np.testing.assert_array_equal(judged, [[4, 4, 1, 1]] * 2)
+    assert (found.share.sel(statement="F6d") == 1.0).all()
