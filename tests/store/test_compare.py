@@ -12,23 +12,16 @@ from squealpipe import (
     Parameters,
     Sweep,
     backbone,
-    cycle_branch,
-    hammering_map,
-    limit_cycle,
     run_sweep,
     simulate,
 )
-from squealpipe.methods.limit_cycles.labels import Label
-from squealpipe.parameters import SCENES
-from squealpipe.schema import DatasetSchema, Outcome, Variable, all_schemas, build
+from squealpipe.schema import DatasetSchema, Variable, build
 from squealpipe.schema.claims import CLAIMS
-from squealpipe.schema.comparing import magnitude, most, sampled, unjudged
 from squealpipe.store import load, save
 from squealpipe.store.archive import archive
 from squealpipe.store.comparison.compare import compare, compare_datasets
 from squealpipe.store.comparison.differences import Agreement, difference
 from squealpipe.store.comparison.matching import align
-from squealpipe.store.comparison.round_off import judge
 
 OLD_ARCHIVE = Path(__file__).with_name("old_archive")
 """A part of an archive made before manifests told the configuration and files were sealed."""
@@ -211,130 +204,6 @@ def test_alignment_is_by_value_not_by_position():
     others = xr.Dataset({"x": ("s", [2, 1])}, {"s": ["F2a", "F3"]})
     left, right, _ = align(names, others)
     np.testing.assert_array_equal(left.x, right.x)
-
-
-def rounded(a, b, how, **entry):
-    """Agreement on one variable whose digits round-off decides."""
-    dims = ("group", "sample") if how.sample else ("t",)
-    sides = [xr.Dataset({"x": (dims, np.asarray(side, float))}) for side in (a, b)]
-    return judge("x", *sides, Variable(dims=dims, nan_allowed=True, round_off=how, **entry))
-
-
-@pytest.mark.parametrize(
-    ("a", "b", "same"),
-    [
-        (2e-14, 9e-13, True),  # both below the floor
-        (0.0, 1e-12, True),
-        (1e-6, 9e-6, True),
-        (1e-6, 2e-5, False),
-        (0.0, 2e-11, False),
-        (np.nan, np.nan, True),
-        (np.inf, np.inf, True),
-        (np.inf, 1.0, False),
-        (np.nan, 1.0, False),
-    ],
-)
-def test_errors_at_round_off_are_compared_as_magnitudes(a, b, same):
-    for pair in ((a, b), (b, a)):
-        found = rounded([pair[0]], [pair[1]], magnitude("why", floor=1e-12))
-        assert (found.verdict < Agreement.different) is same
-        assert found.compared_as == "order of magnitude"
-
-
-def test_chaotic_lifetimes_are_compared_as_samples():
-    """Two samples of one exponential law agree; a law of half the mean does not; NaN is late."""
-    random = np.random.default_rng(5)
-    first, second = random.exponential(1.0, (2, 3, 400))
-    how = sampled("sample", "why")
-    first[first > 2], second[second > 2] = np.nan, np.nan
-    assert rounded(first, second, how).verdict == Agreement.within_tolerance
-    assert rounded(first, first, how).verdict == Agreement.equal
-    found = rounded(first, second * [[1.0], [0.5], [1.0]], how)
-    assert found.verdict == Agreement.different
-    assert (found.differing, found.compared, found.where) == (1, 3, {"group": 1})
-
-
-def test_every_class_of_round_off_states_its_reason():
-    classed = [
-        entry.round_off
-        for schema in all_schemas().values()
-        for entry in schema.variables.values()
-        if entry.round_off is not None
-    ]
-    assert len(classed) >= 10
-    assert all(len(how.reason) > 40 for how in classed)
-
-
-def test_runs_agree_to_the_digits_that_growth_leaves():
-    """Fig. 4's run from a start that is off by the last digit, and by a thousand of them."""
-    scene = SCENES["F4"]
-    runs = [
-        simulate(
-            Parameters(),
-            scene.alpha1,
-            scene.alpha2,
-            t_end=500.0,
-            initial_state=(off, 0.0, 0.0, 0.0),
-            growth=True,
-        )
-        for off in (0.0, 2e-16, 1e-12)
-    ]
-    assert float(runs[0].growth) > 1e10
-    assert compare_datasets("run", *runs[:2]).verdict == Agreement.within_tolerance
-    assert compare_datasets("run", runs[0], runs[2]).verdict == Agreement.different
-    assert compare_datasets("run", runs[0], runs[0].drop_vars("growth")).verdict == (
-        Agreement.within_tolerance
-    )
-    without = [each.drop_vars("growth") for each in runs[:2]]
-    assert compare_datasets("run", *without).verdict == Agreement.different
-
-
-def test_cells_beyond_the_horizon_are_one_sample_and_the_others_are_not():
-    scene = {"alpha1": np.linspace(0.15, 3.0, 12), "alpha2": np.linspace(0.15, 3.0, 12)}
-    made = hammering_map(Parameters(), **scene, t_end=50.0)
-    made.outcome[:, :6] = Outcome.beyond_horizon
-    lost = (made.outcome == Outcome.beyond_horizon).values
-    verdicts = {}
-    for name, change in {
-        "one lost cell": lambda v: v.flat.__setitem__(lost.argmax(), v[lost][1]),
-        "all lost cells": lambda v: v.__setitem__(lost, v[lost] * 2 + 1),
-        "one sure cell": lambda v: v.flat.__setitem__((~lost).argmax(), 3.0),
-    }.items():
-        other = made.copy(deep=True)
-        change(other.peak_contact_force.values)
-        verdicts[name] = compare_datasets("map", made, other).verdict
-    assert verdicts == {
-        "one lost cell": Agreement.within_tolerance,
-        "all lost cells": Agreement.different,
-        "one sure cell": Agreement.different,
-    }
-
-
-def test_points_that_steps_placed_elsewhere_are_no_difference_but_a_special_point_is():
-    damped = Parameters(damping1=0.02, damping2=0.02)
-    scene = 0.4 * np.pi, 0.6 * np.pi
-    start = limit_cycle(damped, *scene)
-    branch = cycle_branch(damped, *scene, parameter="mu", to=0.2, start=start)
-    fewer = branch.drop_isel(point=2)
-    assert compare_datasets("branch", branch, fewer).verdict <= Agreement.within_tolerance
-    for name, point, value, verdict in (
-        ("x_max", 2, branch.x_max[2] * (1 + 1e-5), Agreement.equal),  # another point
-        ("y_max", 2, branch.y_max[2] * (1 + 1e-5), Agreement.different),
-        ("y_max", -1, branch.y_max[-1] * (1 + 1e-5), Agreement.different),
-        ("label", 2, Label.fold, Agreement.different),
-    ):
-        other = branch.copy(deep=True)
-        other[name][point] = value
-        assert compare_datasets("branch", branch, other).verdict == verdict, (name, point)
-
-
-def test_a_share_of_cells_may_differ_where_branches_meet():
-    values = np.zeros(1000)
-    few, many = values.copy(), values.copy()
-    few[:3], many[:30] = 1.0, 1.0
-    assert rounded(values, few, most("why", share=0.01)).verdict == Agreement.within_tolerance
-    assert rounded(values, many, most("why", share=0.01)).verdict == Agreement.different
-    assert rounded(values, many, unjudged("why")).verdict == Agreement.within_tolerance
 
 
 def test_events_are_matched_by_order_and_kind():
