@@ -101,10 +101,17 @@ def first_guess(first: float, last: float, slope: float, step: float) -> Any:
 
 
 @part
-def improved(time: float, rate: float, slope: float, low: float, high: float) -> float:
-    """A better root of a rate by Newton's method, or the middle of the bracket that it leaves."""
+def improved(time: float, rate: float, slope: float, first: float, low: float, high: float) -> Any:
+    """A better root of a rate by Newton's method, or the middle of the bracket that it leaves.
+
+    ``first`` is the rate at the lower end. Returns the narrowed bracket too.
+    """
+    if rate * first > 0.0:
+        low = time
+    else:
+        high = time
     following = time - rate / slope
-    return following if low <= following <= high else 0.5 * (low + high)
+    return (following if low <= following <= high else 0.5 * (low + high)), low, high
 
 
 @part
@@ -121,11 +128,8 @@ def extremum(
     time, low, high = first_guess(first, last, coefficients[rate, 1, lane], step), 0.0, step
     for turn in range(MOST_TURNS):
         value, slope = evaluate_with_slope(coefficients, rate, lane, time)
-        if value * first > 0.0:
-            low = time
-        else:
-            high = time
-        before, time = time, improved(time, value, slope, low, high)
+        before = time
+        time, low, high = improved(time, value, slope, first, low, high)
         if settled(turn, time - before, step):
             break
     return evaluate(coefficients, variable, lane, time)

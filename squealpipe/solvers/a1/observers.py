@@ -244,11 +244,8 @@ def _turning_distance2(c: Any, lanes: Any, lane: int, px: float, py: float) -> A
         x, y, vx, vy, ax, ay = evaluate_motion(c, lane, time)
         x, y = x - px, y - py
         outwards, slope = x * vx + y * vy, vx * vx + vy * vy + x * ax + y * ay
-        if outwards * first > 0.0:
-            low = time
-        else:
-            high = time
-        before, time = time, improved(time, outwards, slope, low, high)
+        before = time
+        time, low, high = improved(time, outwards, slope, first, low, high)
         if settled(turn, time - before, step):
             break
     x, y, vx, vy = evaluate_state(c, lane, time)
