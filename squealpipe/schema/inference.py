@@ -20,6 +20,10 @@ LITTLE = 0.1
 "a minimal difference"; the paper gives no number."""
 
 
+DAMPED_GRID = 181
+"""Angles per axis at which instability is looked for where it has no closed form."""
+
+
 def wilson_interval(count: int, size: int) -> tuple[float, float]:
     """Wilson's interval for the share count/size of a random sample; NaN without a sample."""
     if size == 0:

@@ -8,6 +8,7 @@ import numpy as np
 from matplotlib.colors import LinearSegmentedColormap
 
 from squealpipe.figures.parts.style import BLACK, BLUE, GREY, PAGE, RED, new_figure
+from squealpipe.schema.inference import DAMPED_GRID
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -19,8 +20,9 @@ CAPTION = (
     "Blue: the statement holds; red: it fails; numbers: share of random starts, or of the feasible "
     "parameters, in which it holds, with half of its 95 % interval; grey: not judged there. "
     "Statements with a suffix are readings of the row of that id. With dashpots, or friction that "
-    "depends on speed, S3, F6b and F7† are judged in the unstable cells of a grid of 181 × 181 "
-    "angles (S3: flutter, where eigenvalues need not merge); F8c is of undamped frequencies."
+    "depends on speed, S3, F6b and F7† are judged in the unstable cells of a grid of "
+    f"{DAMPED_GRID} × {DAMPED_GRID} angles (S3: flutter, where eigenvalues need not merge); F8c is "
+    "of undamped frequencies."
 )
 ALT = "A table of settings by statements, blue where a statement holds and red where it fails."
 WORDS = {

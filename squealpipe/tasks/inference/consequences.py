@@ -16,6 +16,7 @@ from squealpipe.models.contact_system import contact_system
 from squealpipe.models.damped import damped_system, is_undamped, stability
 from squealpipe.parameters import Parameters
 from squealpipe.schema import Outcome
+from squealpipe.schema.inference import DAMPED_GRID
 from squealpipe.solvers.a1.ensemble import run_ensemble
 from squealpipe.tasks.inference.constraints import parameter_sets
 
@@ -27,8 +28,6 @@ INSIDE = 1.0 - 1e-6
 """Their distance from its centre, in radii: unstable, and at the edge where contact lasts."""
 DIVERGENT = 24
 """Points along each arc that bounds divergence."""
-GRID = 181
-"""Midpoints an axis of the angle map, where dashpots or a law of friction leave no closed form."""
 ANGLES, CLEAR = (12, 24, 48), 0.6
 """Midpoints an axis of the maps of runs: finer while |share − ½| is below ``CLEAR`` spacings."""
 
@@ -71,20 +70,32 @@ def judge_consequences(
 def unstable_cells(
     params: Parameters, *, rim: int = RIM, inside: float = INSIDE
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Angles along the edge of every region in which A3 is unstable, rad.
+    """Angles along the edge of every region in which A3 is unstable, rad; both may be empty.
+
+    Dashpots, and friction that depends on speed, leave no such edge in closed form: there, all
+    unstable cells of a grid.
+    """
+    alpha1, alpha2 = (
+        _along_edges(params, rim, inside) if is_undamped(params) else _midpoints(DAMPED_GRID)
+    )
+    unstable = _regime(params, alpha1, alpha2) > a3.LinearRegime.stable
+    return alpha1[unstable], alpha2[unstable]
+
+
+def _midpoints(number: int) -> tuple[np.ndarray, np.ndarray]:
+    """Angles of the cells of a map with ``number`` of them per axis, rad."""
+    axis = (np.arange(number) + 0.5) * (np.pi / number)
+    alpha1, alpha2 = np.meshgrid(axis, axis, indexing="ij")
+    return alpha1.ravel(), alpha2.ravel()
+
+
+def _along_edges(params: Parameters, rim: int, inside: float) -> tuple[np.ndarray, np.ndarray]:
+    """Angles, rad, that are unstable if any are, undamped.
 
     Flutter is searched at ``rim`` directions, just inside of its disc in the plane of Z. For
     divergence, outside of a circle that ends at |Z| = k1 + k2, the search goes along the middle
-    between the two. Both may be empty.
-
-    Dashpots, and friction that depends on speed, leave no such form: there, all unstable cells of a
-    grid.
+    between the two.
     """
-    if not is_undamped(params):
-        axis = (np.arange(GRID) + 0.5) * (np.pi / GRID)
-        alpha1, alpha2 = (part.ravel() for part in np.meshgrid(axis, axis, indexing="ij"))
-        unstable = _regime(params, alpha1, alpha2) > a3.LinearRegime.stable
-        return alpha1[unstable], alpha2[unstable]
     farthest, nearest = params.k1 + params.k2, abs(params.k1 - params.k2)
     centre, radius = a3.flutter_circle(params, params.k3)
     turn = (np.arange(rim) + 0.5) * (2.0 * np.pi / rim)
@@ -97,8 +108,7 @@ def unstable_cells(
     if springs_are_equal(params.as_dict()):
         # (α1, α2) and (π − α2, π − α1) have the same Z and the same motion.
         alpha1, alpha2 = alpha1[0], alpha2[0]
-    unstable = _regime(params, alpha1, alpha2) > a3.LinearRegime.stable
-    return alpha1[unstable], alpha2[unstable]
+    return alpha1, alpha2
 
 
 def _regime(params: Parameters, alpha1: np.ndarray, alpha2: np.ndarray) -> np.ndarray:
@@ -151,8 +161,7 @@ def separating_share(
     for number in angles:
         open_ = np.flatnonzero(np.abs(shares - 0.5) < CLEAR / number)
         chosen = {name: values[open_, None] for name, values in columns.items()}
-        axis = (np.arange(number) + 0.5) * (np.pi / number)
-        alpha1, alpha2 = (part.ravel() for part in np.meshgrid(axis, axis, indexing="ij"))
+        alpha1, alpha2 = _midpoints(number)
         weight = np.ones(alpha1.size)
         if springs_are_equal(columns):
             middle = np.abs(alpha1 + alpha2 - np.pi) < 1e-9

@@ -96,9 +96,14 @@ class Candidates:
         return contact_system(p, scene.alpha1, scene.alpha2)
 
     @cached_property
+    def sets(self) -> list[Parameters]:
+        """The parameter sets one by one."""
+        return parameter_sets(self.fields)
+
+    @cached_property
     def drag(self) -> np.ndarray:
         """Friction over normal force along +x, with the direction of the belt."""
-        return np.array([params.drag for params in parameter_sets(self.fields)])
+        return np.array([params.drag for params in self.sets])
 
 
 @dataclass(frozen=True)
@@ -180,7 +185,7 @@ def _linearly_stable(candidates: Candidates) -> Margin:
     flutter = invariants.discriminant / invariants.half_trace**2
     margin = np.minimum(divergence, np.where(flutter < 0, flutter, np.inf))
     scene = np.array([SCENES["F3"].alpha1]), np.array([SCENES["F3"].alpha2])
-    for i, params in enumerate(parameter_sets(fields)):
+    for i, params in enumerate(candidates.sets):
         if is_undamped(params):
             continue
         found = stability(damped_system(params, *scene))
@@ -197,9 +202,8 @@ def _modes_switched(candidates: Candidates) -> Margin:
     after = candidates.linear(SCENES["F13"]).stiffness
     first = before.k22 + fields["k3"] - before.k11
     second = after.k11 - after.k22 - fields["k3"]
-    coupling = np.maximum(np.abs(before.k12), np.abs(after.k12))
-    if {"damping1", "damping2"} & set(fields):
-        coupling = np.maximum(coupling, _coupling_by_dashpots(fields))
+    by_springs = np.maximum(np.abs(before.k12), np.abs(after.k12))
+    coupling = np.maximum(by_springs, _coupling_by_dashpots(fields))
     isolated = coupling <= ROUND_OFF * fields["k1"]
     margin = np.where(isolated, np.minimum(first, second), -coupling)
     return _closed(margin / fields["k1"])
