@@ -21,9 +21,8 @@ class Stability(IntEnum):
 def _cycle_variables(*dims: str) -> dict[str, Variable]:
     """What one cycle carries, over some dimensions."""
 
-    def real(units: str, long_name: str, **kwargs: object) -> Variable:
-        kept = {"rtol": 1e-7, "atol": 1e-9, **kwargs}
-        return Variable(long_name, units, dims, nan_allowed=True, **kept)  # type: ignore[arg-type]
+    def real(units: str, long_name: str) -> Variable:
+        return Variable(long_name, units, dims, nan_allowed=True, rtol=1e-7, atol=1e-9)
 
     def multiplier(part: str) -> Variable:
         return Variable(

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from matplotlib.ticker import MaxNLocator
 
-from squealpipe.figures.parts.origin import parameter
+from squealpipe.figures.parts.origin import time_unit
 from squealpipe.figures.parts.style import (
     BLACK,
     BLUE,
@@ -67,8 +67,8 @@ def _survival(axes: Axes, transient: xr.Dataset) -> None:
         linewidth=0, label="95 % band",
     )  # fmt: skip
     _constant_hazard(axes, transient)
-    unit = float(np.sqrt(parameter(transient, "mass") / parameter(transient, "k1")))
-    axes.axvspan(0, SCENES["F4"].t_end * unit, color=ORANGE, alpha=0.3, linewidth=0)
+    shown = SCENES["F4"].t_end * time_unit(transient)
+    axes.axvspan(0, shown, color=ORANGE, alpha=0.3, linewidth=0)
     axes.set(xlabel="t (s)", ylabel="share still bounded", yscale="log", xlim=(0, t_end))
     positive = transient.survival.values[transient.survival.values > 0]
     axes.set_ylim(bottom=0.5 * positive.min(), top=1.6)

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from squealpipe.figures.parts.origin import parameter
+from squealpipe.figures.parts.origin import time_unit
 from squealpipe.figures.parts.style import (
     BLACK,
     GREY,
@@ -48,7 +48,7 @@ def draw(run: xr.Dataset, sizes: xr.Dataset) -> Figure:
     figure, axes = new_figure(PAGE, 2.9, ncols=2, width_ratios=(1.3, 1))
     panel = axes[0, 0]
     panel.plot(run.time, run.x, color=X_COLOUR, linewidth=0.25, rasterized=True)
-    shown = SCENES["F3"].t_end * float(np.sqrt(parameter(run, "mass") / parameter(run, "k1")))
+    shown = SCENES["F3"].t_end * time_unit(run)
     panel.axvspan(0, shown, color=GREY, alpha=0.25, linewidth=0, label="shown in Fig. 3")
     panel.axhline(0, color=GREY, linewidth=0.5)
     panel.set(xlabel="t (s)", ylabel="x (m)", xlim=(0, float(run.time[-1])))

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import json
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from matplotlib.patches import Patch
 
+from squealpipe.figures.parts.origin import parameter
 from squealpipe.figures.parts.style import (
     BLACK,
     PAGE,
@@ -30,8 +30,7 @@ ALT = "Two maps over both spring angles and one over both dashpots, coloured by 
 
 def caption(angles: xr.Dataset, _: xr.Dataset) -> str:
     """What is shown, with the dashpots of the maps."""
-    given = json.loads(angles.attrs["parameters"])
-    c1, c2 = (number(given.get(f"damping{i}", 0.0)) for i in (1, 2))
+    c1, c2 = (number(parameter(angles, f"damping{i}")) for i in (1, 2))
     return (
         "Friction coefficient of Coulomb's law at which steady sliding turns unstable by A3 "
         f"(Routh–Hurwitz), over both spring angles (a) without dashpots, (b) with c₁ = {c1} and "

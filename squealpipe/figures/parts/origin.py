@@ -7,23 +7,30 @@ import math
 from typing import TYPE_CHECKING
 
 from squealpipe.figures.parts.style import pi_label
-from squealpipe.parameters import SCENES
+from squealpipe.parameters import DEFAULTS, SCENES, TABLE
 
 if TYPE_CHECKING:
     import xarray as xr
 
 
 def parameter(dataset: xr.Dataset, name: str) -> float:
-    """A parameter of the run, from the attributes of its dataset.
+    """A parameter of the run, from the attributes of its dataset, which leave out what is not used.
 
     Raises:
         ValueError: the dataset carries none.
     """
     own = json.loads(dataset.attrs.get("parameters", "{}"))
     study = json.loads(dataset.attrs.get("config", "{}")).get("parameters", {})
+    if TABLE[name].extension:
+        study = {name: DEFAULTS[name], **study}
     if name not in own | study:
         raise ValueError(f"the dataset carries no parameter {name}; save it with its configuration")
     return float((study | own)[name])
+
+
+def time_unit(dataset: xr.Dataset) -> float:
+    """√(m/k1) of the run, s."""
+    return math.sqrt(parameter(dataset, "mass") / parameter(dataset, "k1"))
 
 
 def scene_name(dataset: xr.Dataset, scene: str) -> str:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from typing import Any
 
 import numpy as np
@@ -10,6 +9,7 @@ import xarray as xr
 
 from squealpipe.claims.evidence import Run
 from squealpipe.claims.maps import unstable_yet_sliding
+from squealpipe.figures.parts.origin import parameter
 from squealpipe.report.facts.motion import finite_or_none
 
 
@@ -78,8 +78,7 @@ def _constraint(row: xr.Dataset) -> dict[str, Any]:
 def critical(run: Run) -> dict[str, Any]:
     """Where dashpots lower the critical friction, and what that changes at the study's own."""
     dataset, mu = run["critical_friction_map"], run.parameters.mu
-    given = json.loads(dataset.attrs["parameters"])
-    damping = [given.get(f"damping{i}", 0.0) for i in (1, 2)]
+    damping = [parameter(dataset, f"damping{i}") for i in (1, 2)]
     own = [run.parameters.damping1, run.parameters.damping2]
     damped, undamped = dataset.critical_mu.values, dataset.critical_mu_undamped.values
     return {

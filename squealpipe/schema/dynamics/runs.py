@@ -45,12 +45,12 @@ class MotionFlag(IntEnum):
 
 
 _GROWN = grown("growth", "an error of the last digit grows along the run")
-LOST = beyond_horizon(
+_LOST = beyond_horizon(
     "beyond its predictability horizon a run follows the last digits of its start, which differ "
     "from machine to machine"
 )
 
-IN_MAP: dict[str, Any] = {"rtol": 1e-5, "atol": 1e-7, "round_off": LOST}
+IN_MAP: dict[str, Any] = {"rtol": 1e-5, "atol": 1e-7, "round_off": _LOST}
 """Up to the horizon an error of the last digit may have grown to nearly l_pre/1000."""
 
 
