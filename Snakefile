@@ -9,25 +9,28 @@ STUDY = read_study(
 RESULTS = STUDY.results
 
 include: "workflow/rules/common.smk"
-include: "workflow/rules/scatter.smk"
+include: "workflow/rules/execution/scatter.smk"
 include: "workflow/rules/linear.smk"
 include: "workflow/rules/dynamics.smk"
-include: "workflow/rules/gather.smk"
+include: "workflow/rules/execution/gather.smk"
 if PAPERS_FRICTION:
     include: "workflow/rules/inference.smk"
     include: "workflow/rules/backbones.smk"
 include: "workflow/rules/cycles.smk"
 include: "workflow/rules/spread.smk"
+include: "workflow/rules/starts.smk"
 include: "workflow/rules/comparison.smk"
+if PAPERS_FRICTION:
+    include: "workflow/rules/ladder.smk"
 include: "workflow/rules/assumptions.smk"
 if PAPERS_FRICTION:
-    include: "workflow/rules/explorer.smk"
-    include: "workflow/rules/animation.smk"
-include: "workflow/rules/figures.smk"
-include: "workflow/rules/claims.smk"
-include: "workflow/rules/report.smk"
-include: "workflow/rules/sweeps.smk"
-include: "workflow/rules/local.smk"
+    include: "workflow/rules/report/explorer.smk"
+    include: "workflow/rules/report/animation.smk"
+include: "workflow/rules/report/figures.smk"
+include: "workflow/rules/report/claims.smk"
+include: "workflow/rules/report/report.smk"
+include: "workflow/rules/execution/sweeps.smk"
+include: "workflow/rules/execution/local.smk"
 
 
 rule all:

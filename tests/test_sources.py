@@ -64,5 +64,5 @@ def test_closure_is_transitive(tmp_path):
 
 
 def test_every_closure_stays_in_the_package():
-    for script in Path(__file__).parents[1].glob("workflow/scripts/*.py"):
+    for script in Path(__file__).parents[1].glob("workflow/scripts/*/*.py"):
         assert all(PACKAGE in path.parents for path in closure(script))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from squealpipe.claims.misprints import REVERSED
+from squealpipe.claims.checks.misprints import REVERSED
 
 READ = (
     "assumptions",

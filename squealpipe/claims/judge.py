@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from squealpipe.claims.checks.feasible import standing
 from squealpipe.claims.evidence import MissingDataError, Run
-from squealpipe.claims.feasible import standing
 from squealpipe.claims.statement import Statement
 from squealpipe.claims.statements import PAPER, STATEMENTS
 from squealpipe.parameters import Parameters

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from squealpipe.claims import (
+from squealpipe.claims.checks import (
     backbones,
     conclusions,
     frequencies,

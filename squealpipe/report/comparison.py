@@ -15,7 +15,7 @@ import xarray as xr
 
 from squealpipe.figures.parts.difference import CAPTION, draw, drawable
 from squealpipe.schema import find
-from squealpipe.schema.comparing import ComparedAs
+from squealpipe.schema.agreement import ComparedAs
 from squealpipe.store.comparison.compare import Comparison, DatasetDifference
 from squealpipe.store.comparison.differences import Agreement, VariableDifference
 from squealpipe.store.comparison.matching import align

@@ -20,7 +20,7 @@ import pandas as pd
 import xarray as xr
 from xarray.indexes import PandasIndex
 
-from squealpipe.schema.comparing import Listing, RoundOff
+from squealpipe.schema.agreement import Listing, RoundOff
 from squealpipe.schema.outcomes import REMEDIES as REMEDIES
 from squealpipe.schema.outcomes import Outcome as Outcome
 

@@ -6,7 +6,7 @@ from dataclasses import replace
 from enum import IntEnum
 
 from squealpipe.schema import ORBIT_ENDS, RUN_ENDS, DatasetSchema, Outcome, Variable, outcome
-from squealpipe.schema.comparing import Listing, most
+from squealpipe.schema.agreement import Listing, most
 from squealpipe.schema.linear import ANGLES, MAP, MODES
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from enum import IntEnum
 
 from squealpipe.schema import DatasetSchema, Outcome, Variable, outcome
-from squealpipe.schema.comparing import Listing, magnitude, most
+from squealpipe.schema.agreement import Listing, magnitude, most
 
 RUN = ("run",)
 

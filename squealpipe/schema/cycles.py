@@ -7,7 +7,7 @@ from enum import IntEnum
 from squealpipe.methods.limit_cycles.labels import Label
 from squealpipe.parameters import Parameters
 from squealpipe.schema import DatasetSchema, Variable, outcome
-from squealpipe.schema.comparing import Listing, most, unjudged
+from squealpipe.schema.agreement import Listing, most, unjudged
 from squealpipe.schema.dynamics.runs import EventFlag, RegimeFlag
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from enum import IntEnum
 
 from squealpipe.schema import LINEAR_ENDS, DatasetSchema, Variable, outcome
-from squealpipe.schema.comparing import Listing
+from squealpipe.schema.agreement import Listing
 
 MAP = ("alpha1", "alpha2")
 

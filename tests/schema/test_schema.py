@@ -189,7 +189,7 @@ def test_importing_one_table_does_not_import_the_others():
         "print(*sorted(n for n in sys.modules if n.startswith('squealpipe.schema.')))"
     )
     run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    tables = [f"squealpipe.schema.{name}" for name in ("comparing", "linear", "outcomes")]
+    tables = [f"squealpipe.schema.{name}" for name in ("agreement", "linear", "outcomes")]
     assert run.stdout.split() == tables
 
 

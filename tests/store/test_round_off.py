@@ -14,7 +14,7 @@ from squealpipe import (
 from squealpipe.methods.limit_cycles.labels import Label
 from squealpipe.parameters import SCENES
 from squealpipe.schema import Outcome, Variable, all_schemas
-from squealpipe.schema.comparing import magnitude, most, sampled, unjudged
+from squealpipe.schema.agreement import magnitude, most, sampled, unjudged
 from squealpipe.store.comparison.compare import compare_datasets
 from squealpipe.store.comparison.differences import Agreement
 from squealpipe.store.comparison.round_off import judge

@@ -37,7 +37,7 @@ def dry_run(arguments: list[str]) -> tuple[int, str]:
 
 if __name__ == "__main__":
     snakemake.cli.get_argument_parser()  # finds the plugins
-    for script in Path("workflow/scripts").glob("*.py"):
+    for script in Path("workflow/scripts").glob("*/*.py"):
         code_digests([script, *closure(script)])
     with ThreadPoolExecutor(os.cpu_count()) as pool:
         json.dump(list(pool.map(dry_run, json.load(sys.stdin))), sys.stdout)

@@ -9,11 +9,11 @@ LINEAR_CHECKS = {
 
 rule check_assumptions:
     input:
-        sources=sources("check_assumptions"),
+        sources=sources("dynamics/check_assumptions"),
     output:
         **LINEAR_CHECKS,
         reversed=data("simulate/F2a_reversed"),
     params:
         part=part("parameters", "linear.points"),
     script:
-        "../scripts/check_assumptions.py"
+        "../scripts/dynamics/check_assumptions.py"

@@ -8,7 +8,7 @@ DOUBLED = [f"{scene}_{number}" for scene in STUDY.backbones.coupled for number i
 
 rule trace_backbones:
     input:
-        sources=sources("trace_backbones"),
+        sources=sources("backbones/trace_backbones"),
     output:
         **{name: data(f"backbone/{name}") for name in BACKBONES + SERIES},
     params:
@@ -21,23 +21,23 @@ rule trace_backbones:
         ),
     priority: LONG
     script:
-        "../scripts/trace_backbones.py"
+        "../scripts/backbones/trace_backbones.py"
 
 
 rule follow_doublings:
     input:
-        sources=sources("follow_doublings"),
+        sources=sources("backbones/follow_doublings"),
     output:
         **{name: data(f"doubled_branch/{name}") for name in DOUBLED},
     params:
         part=part("parameters", "backbones.coupled", "backbones.y_peak_max"),
     script:
-        "../scripts/follow_doublings.py"
+        "../scripts/backbones/follow_doublings.py"
 
 
 rule sweep_harmonic_balance:
     input:
-        sources=sources("sweep_harmonic_balance"),
+        sources=sources("backbones/sweep_harmonic_balance"),
     output:
         sweep=data("harmonic_sweep"),
         forms=data("harmonic_forms"),
@@ -46,12 +46,12 @@ rule sweep_harmonic_balance:
             "parameters", "backbones.coupled", "backbones.n_harmonics", "backbones.sweep"
         ),
     script:
-        "../scripts/sweep_harmonic_balance.py"
+        "../scripts/backbones/sweep_harmonic_balance.py"
 
 
 rule compare_a1_with_a4:
     input:
-        sources=sources("compare_a1_with_a4"),
+        sources=sources("backbones/compare_a1_with_a4"),
     output:
         data("a1_beside_a4"),
     params:
@@ -59,12 +59,12 @@ rule compare_a1_with_a4:
             "parameters", "backbones.coupled", "backbones.length_ratios", "backbones.atlas_peak"
         ),
     script:
-        "../scripts/compare_a1_with_a4.py"
+        "../scripts/backbones/compare_a1_with_a4.py"
 
 
 rule map_orbits:
     input:
-        sources=sources("map_orbits"),
+        sources=sources("backbones/map_orbits"),
     output:
         data("orbit_atlas"),
     params:
@@ -72,4 +72,4 @@ rule map_orbits:
     threads: cores_for(STUDY.backbones.atlas_points**2, enough=4000)
     priority: LONG
     script:
-        "../scripts/map_orbits.py"
+        "../scripts/backbones/map_orbits.py"

@@ -1,4 +1,4 @@
-"""What every rule needs: where results go, which sources a script uses, its slice of the study."""
+"""What rules share: where results go, which sources a script uses, its slice of the study."""
 
 import os
 import sys
@@ -32,7 +32,6 @@ def sources(script, *loaded):
     """The script and the package modules whose edit makes its result stale.
 
     ``loaded`` are modules that the package imports by name only when it runs.
-
 
     As inputs they are judged by checksum; Snakemake's own trigger for scripts goes by date and
     would take a fresh checkout for an edit (so the profiles leave it out).

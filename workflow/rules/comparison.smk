@@ -1,4 +1,4 @@
-"""Speed against accuracy, failures, and the model ladder."""
+"""Methods compared: speed against accuracy, and where they fail."""
 
 
 def alone(repeats):
@@ -10,7 +10,7 @@ if PAPERS_FRICTION:
 
     rule measure_integration:
         input:
-            sources=sources("measure_integration"),
+            sources=sources("comparison/measure_integration"),
         output:
             data("work_precision_integration"),
         params:
@@ -18,14 +18,11 @@ if PAPERS_FRICTION:
         threads: alone(STUDY.comparison.integration.repeats)
         priority: FIRST
         script:
-            "../scripts/measure_integration.py"
-
-
-if PAPERS_FRICTION:
+            "../scripts/comparison/measure_integration.py"
 
     rule measure_frequencies:
         input:
-            sources=sources("measure_frequencies"),
+            sources=sources("comparison/measure_frequencies"),
         output:
             data("work_precision_frequencies"),
         params:
@@ -33,34 +30,16 @@ if PAPERS_FRICTION:
         threads: alone(STUDY.comparison.harmonic.repeats)
         priority: FIRST
         script:
-            "../scripts/measure_frequencies.py"
+            "../scripts/comparison/measure_frequencies.py"
 
 
 rule judge_methods:
     input:
-        sources=sources("judge_methods"),
+        sources=sources("comparison/judge_methods"),
     output:
         data("failure_atlas"),
     params:
         part=part("comparison.atlas"),
     priority: LONG
     script:
-        "../scripts/judge_methods.py"
-
-
-LADDER_LEVELS = sorted((ROOT / "squealpipe/tasks/ladder/levels").glob("*.py"))
-
-
-if PAPERS_FRICTION:
-
-    rule map_model_ladder:
-        input:
-            sources=sources("map_model_ladder", *LADDER_LEVELS),
-        output:
-            data("model_ladder"),
-        params:
-            part=part("parameters", "comparison.ladder"),
-        threads: all_cores_for(STUDY.comparison.ladder.points**2, enough=1000) # it quotes times
-        priority: FIRST
-        script:
-            "../scripts/map_model_ladder.py"
+        "../scripts/comparison/judge_methods.py"

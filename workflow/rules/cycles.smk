@@ -5,11 +5,11 @@ CYCLES = ("limit_F3", "limit_F2d", "branch_F3_down", "branch_F3_up", "branch_flu
 
 rule follow_cycles:
     input:
-        sources=sources("follow_cycles"),
+        sources=sources("cycles/follow_cycles"),
     output:
         **{name: data(f"cycles/{name}") for name in CYCLES},
     params:
         part=part("parameters", "cycles"),
     priority: LONG
     script:
-        "../scripts/follow_cycles.py"
+        "../scripts/cycles/follow_cycles.py"

@@ -7,13 +7,13 @@ IN_TIME = [scene for scene in SCENES.values() if scene.figure <= 5]
 
 rule simulate_scenes:
     input:
-        sources=sources("simulate_scenes"),
+        sources=sources("dynamics/simulate_scenes"),
     output:
         **{scene.name: data(f"simulate/{scene.name}") for scene in IN_TIME},
     params:
         part=part("parameters", "dynamics.tol"),
     script:
-        "../scripts/simulate_scenes.py"
+        "../scripts/dynamics/simulate_scenes.py"
 
 
 VALIDITY = part(
@@ -23,7 +23,7 @@ VALIDITY = part(
 
 rule map_validity:
     input:
-        sources=sources("map_validity"),
+        sources=sources("dynamics/map_validity"),
     output:
         map_output("validity_map", VALIDITY),
     log:
@@ -32,7 +32,7 @@ rule map_validity:
         part=VALIDITY,
     threads: cores_for(STUDY.dynamics.validity_points**2, enough=10_000)
     script:
-        "../scripts/map_validity.py"
+        "../scripts/dynamics/map_validity.py"
 
 
 HAMMERING = part(
@@ -42,7 +42,7 @@ HAMMERING = part(
 
 rule map_hammering:
     input:
-        sources=sources("map_hammering"),
+        sources=sources("dynamics/map_hammering"),
     output:
         map_output("hammering_map", HAMMERING),
     log:
@@ -51,12 +51,12 @@ rule map_hammering:
         part=HAMMERING,
     threads: cores_for(STUDY.dynamics.hammering_points**2, enough=4000)
     script:
-        "../scripts/map_hammering.py"
+        "../scripts/dynamics/map_hammering.py"
 
 
 rule refine_validity:
     input:
-        sources=sources("refine_validity"),
+        sources=sources("dynamics/refine_validity"),
     output:
         refined=data("refined_validity_map"),
         check=data("refinement_check"),
@@ -71,12 +71,12 @@ rule refine_validity:
         ),
     threads: cores_for(STUDY.dynamics.refined_points**2, enough=1_000_000)
     script:
-        "../scripts/refine_validity.py"
+        "../scripts/dynamics/refine_validity.py"
 
 
 rule follow_whirl:
     input:
-        sources=sources("follow_whirl"),
+        sources=sources("dynamics/follow_whirl"),
     output:
         run=data("simulate/whirl"),
         whirl=data("whirl"),
@@ -96,4 +96,4 @@ rule follow_whirl:
         ),
     threads: cores_for(STUDY.dynamics.transient_shown, enough=100)
     script:
-        "../scripts/follow_whirl.py"
+        "../scripts/dynamics/follow_whirl.py"

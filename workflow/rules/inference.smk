@@ -3,11 +3,11 @@
 
 rule infer_parameters:
     input:
-        sources=sources("infer_parameters"),
+        sources=sources("inference/infer_parameters"),
     output:
         data("parameter_inference"),
     params:
         part=part("parameters", "inference"),
     threads: cores_for(STUDY.inference.samples, enough=4000)
     script:
-        "../scripts/infer_parameters.py"
+        "../scripts/inference/infer_parameters.py"

@@ -9,7 +9,7 @@ PAPERS_OWN = {
 
 rule map_linear:
     input:
-        sources=sources("map_linear"),
+        sources=sources("linear/map_linear"),
     output:
         quasi_static=data("quasi_static_map"),
         stability=data("stability_map"),
@@ -17,12 +17,12 @@ rule map_linear:
     params:
         part=part("parameters", "linear"),
     script:
-        "../scripts/map_linear.py"
+        "../scripts/linear/map_linear.py"
 
 
 rule map_critical_friction:
     input:
-        sources=sources("map_critical_friction"),
+        sources=sources("linear/map_critical_friction"),
     output:
         angles=data("critical_friction_map"),
         dashpots=data("critical_damping_map"),
@@ -36,13 +36,13 @@ rule map_critical_friction:
             "spread.scene",
         ),
     script:
-        "../scripts/map_critical_friction.py"
+        "../scripts/linear/map_critical_friction.py"
 
 
 rule validate_mode_coupling:
     input:
-        sources=sources("validate_mode_coupling"),
+        sources=sources("linear/validate_mode_coupling"),
     output:
         data("mode_coupling"),
     script:
-        "../scripts/validate_mode_coupling.py"
+        "../scripts/linear/validate_mode_coupling.py"

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from squealpipe.schema import RUN_ENDS, DatasetSchema, Outcome, Variable, outcome
-from squealpipe.schema.comparing import magnitude, sampled, unjudged
+from squealpipe.schema.agreement import magnitude, sampled, unjudged
 from squealpipe.schema.dynamics.runs import MotionFlag
 
 _IRREGULAR = (

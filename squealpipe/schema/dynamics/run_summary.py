@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from squealpipe.schema import RUN_ENDS, DatasetSchema, Variable, outcome
-from squealpipe.schema.comparing import Listing
+from squealpipe.schema.agreement import Listing
 from squealpipe.schema.dynamics.explorer import FREQUENCY
 
 RUN_SUMMARY = DatasetSchema(

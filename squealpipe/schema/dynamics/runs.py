@@ -8,7 +8,7 @@ from typing import Any
 import xarray as xr
 
 from squealpipe.schema import RUN_ENDS, DatasetSchema, Outcome, Variable, outcome
-from squealpipe.schema.comparing import Listing, beyond_horizon, grown, magnitude
+from squealpipe.schema.agreement import Listing, beyond_horizon, grown, magnitude
 from squealpipe.schema.linear import ANGLES, MAP, REGIME_LINEAR
 
 

@@ -11,7 +11,7 @@ import xarray as xr
 from scipy.stats import ks_2samp
 
 from squealpipe.schema import Variable, flag_table
-from squealpipe.schema.comparing import ComparedAs, RoundOff
+from squealpipe.schema.agreement import ComparedAs, RoundOff
 
 SMALLEST_CHANCE = 1e-6
 """Two samples of one distribution are taken for different ones at this probability or less."""

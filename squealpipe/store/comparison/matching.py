@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 
 from squealpipe.schema import DatasetSchema
-from squealpipe.schema.comparing import Listing
+from squealpipe.schema.agreement import Listing
 from squealpipe.schema.sweep import RAGGED
 
 SAME_PLACE = 1e-9

@@ -9,7 +9,7 @@ import xarray as xr
 from scipy.stats import ks_2samp
 
 from squealpipe.schema import Outcome, Variable
-from squealpipe.schema.comparing import ComparedAs, RoundOff
+from squealpipe.schema.agreement import ComparedAs, RoundOff
 from squealpipe.store.comparison.differences import (
     SMALLEST_CHANCE,
     Agreement,

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from squealpipe.claims.checks.motions import events, scene
 from squealpipe.claims.evidence import Finding, Run, finding
 from squealpipe.claims.maps import share
-from squealpipe.claims.motions import events, scene
 from squealpipe.claims.statement import Rows
 from squealpipe.schema.claims import Verdict
 from squealpipe.schema.dynamics.runs import EventFlag

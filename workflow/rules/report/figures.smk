@@ -34,7 +34,7 @@ for topic in dict.fromkeys(map(declared.topic, READ_BY)):
             f"draw_{topic}"
         input:
             datasets=[MADE[name]["path"] for name in datasets],
-            sources=sources("draw_figures"),
+            sources=sources("report/draw_figures"),
             figures=figure_sources(figures),
         output:
             **{name: figure(name) for name in figures},
@@ -42,4 +42,4 @@ for topic in dict.fromkeys(map(declared.topic, READ_BY)):
             figures=figures,
             datasets=datasets,
         script:
-            "../scripts/draw_figures.py"
+            "../../scripts/report/draw_figures.py"

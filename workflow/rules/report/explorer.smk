@@ -3,14 +3,14 @@
 
 rule compute_explorer:
     input:
-        sources=sources("compute_explorer"),
+        sources=sources("report/compute_explorer"),
     output:
         data("explorer"),
     params:
         part=part("parameters", "explorer"),
     threads: cores_for(STUDY.explorer.points**2, enough=200)
     script:
-        "../scripts/compute_explorer.py"
+        "../../scripts/report/compute_explorer.py"
 
 
 EXPLORER_PAGE = [
@@ -27,11 +27,11 @@ rule write_explorer:
         hammering=data("hammering_map"),
         ladder=data("model_ladder"),
         page=EXPLORER_PAGE,
-        sources=sources("write_explorer"),
+        sources=sources("report/write_explorer"),
     output:
         f"{RESULTS}/report/explorer.html",
     script:
-        "../scripts/write_explorer.py"
+        "../../scripts/report/write_explorer.py"
 
 
 TARGETS += rules.write_explorer.output

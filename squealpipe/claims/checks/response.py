@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
+from squealpipe.claims.checks.motions import events, halves, scene
 from squealpipe.claims.evidence import Finding, Run, finding
-from squealpipe.claims.motions import events, halves, scene
 from squealpipe.claims.statement import Check, Rows
 from squealpipe.schema.claims import Verdict
 from squealpipe.schema.dynamics.runs import GROWTH_THRESHOLD, EventFlag

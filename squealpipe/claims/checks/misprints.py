@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from squealpipe.claims import frequencies, sliding
+from squealpipe.claims.checks import frequencies, sliding
+from squealpipe.claims.checks.motions import scene
 from squealpipe.claims.evidence import Finding, MissingDataError, Run, finding
 from squealpipe.claims.maps import cell, coupling_is_negative, on_grid_of, share, stiffness
-from squealpipe.claims.motions import scene
 from squealpipe.claims.statement import Rows
 from squealpipe.schema import Outcome
 from squealpipe.schema.backbones import Form

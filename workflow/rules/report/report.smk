@@ -23,7 +23,7 @@ rule write_report:
         figures=[made["path"] for made in DRAWN.values()],
         captions=figure_sources(READ_BY),
         templates=TEMPLATES,
-        sources=sources("write_report"),
+        sources=sources("report/write_report"),
     output:
         page=f"{RESULTS}/report/index.html",
         pdf=f"{RESULTS}/report/report.pdf",
@@ -35,7 +35,7 @@ rule write_report:
         animations=ANIMATIONS if PAPERS_FRICTION else {},
         explorer="explorer.html" if f"{RESULTS}/report/explorer.html" in TARGETS else None,
     script:
-        "../scripts/write_report.py"
+        "../../scripts/report/write_report.py"
 
 
 TARGETS += rules.write_report.output

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from squealpipe.claims.checks.motions import halves, scene
 from squealpipe.claims.evidence import Finding, Run, finding
 from squealpipe.claims.maps import (
     cell,
@@ -11,7 +12,6 @@ from squealpipe.claims.maps import (
     unstable_cells,
     unstable_yet_sliding,
 )
-from squealpipe.claims.motions import halves, scene
 from squealpipe.claims.statement import Rows
 from squealpipe.schema.claims import Verdict
 from squealpipe.schema.dynamics.runs import GROWTH_THRESHOLD

@@ -8,11 +8,11 @@ EVIDENCE = [name for name in READ if name in MADE]
 rule judge_claims:
     input:
         datasets=[MADE[name]["path"] for name in EVIDENCE],
-        sources=sources("judge_claims"),
+        sources=sources("report/judge_claims"),
     output:
         data("claims"),
     params:
         part=part("parameters"),
         names=EVIDENCE,
     script:
-        "../scripts/judge_claims.py"
+        "../../scripts/report/judge_claims.py"

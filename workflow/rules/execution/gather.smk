@@ -7,10 +7,10 @@ for name, slice_of_study in SCATTERED.items():
             f"join_{name}"
         input:
             parts=gather.maps(f"{RESULTS}/parts/{name}/{{scatteritem}}.nc"),
-            sources=sources("join_parts"),
+            sources=sources("execution/join_parts"),
         output:
             data(name),
         params:
             part=slice_of_study,
         script:
-            "../scripts/join_parts.py"
+            "../../scripts/execution/join_parts.py"

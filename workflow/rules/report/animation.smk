@@ -5,14 +5,14 @@ rule animate_scenes:
     input:
         explorer=data("explorer"),
         F3=data("simulate/F3"),
-        sources=sources("animate_scenes"),
+        sources=sources("report/animate_scenes"),
     output:
         hammering=f"{RESULTS}/figures/hammering.gif",
         whirl=f"{RESULTS}/figures/whirl.gif",
     params:
         part=part("animation"),
     script:
-        "../scripts/animate_scenes.py"
+        "../../scripts/report/animate_scenes.py"
 
 
 TARGETS += rules.animate_scenes.output

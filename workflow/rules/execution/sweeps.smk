@@ -39,7 +39,7 @@ for name, sweep in SWEEPS.items():
         name:
             f"run_sweep_{name}"
         input:
-            sources=sources("run_sweep"),
+            sources=sources("execution/run_sweep"),
         output:
             data(f"sweeps/{name}") if whole else temp(parts),
         log:
@@ -48,7 +48,7 @@ for name, sweep in SWEEPS.items():
             part=sweep,
         threads: all_cores_for(prod(map(len, sweep["vary"].values())), enough=16)
         script:
-            "../scripts/run_sweep.py"
+            "../../scripts/execution/run_sweep.py"
 
     if not whole:
 
@@ -57,13 +57,13 @@ for name, sweep in SWEEPS.items():
                 f"join_sweep_{name}"
             input:
                 parts=getattr(gather, f"sweep_{name}")(parts),
-                sources=sources("join_parts"),
+                sources=sources("execution/join_parts"),
             output:
                 data(f"sweeps/{name}"),
             params:
                 part=sweep,
             script:
-                "../scripts/join_parts.py"
+                "../../scripts/execution/join_parts.py"
 
 
 rule sweeps:

@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
-from squealpipe.claims import sliding
-from squealpipe.claims.backbones import branch, linear_omega
+from squealpipe.claims.checks import sliding
+from squealpipe.claims.checks.backbones import branch, linear_omega
+from squealpipe.claims.checks.motions import events, frequency, scene
 from squealpipe.claims.evidence import Finding, Run, finding
 from squealpipe.claims.maps import order_turns_over, share, unstable_cells
-from squealpipe.claims.motions import events, frequency, scene
 from squealpipe.claims.statement import Rows
 from squealpipe.schema.claims import Verdict
 from squealpipe.schema.dynamics.runs import EventFlag

@@ -1,0 +1,1 @@
+"""Checks: rows of statements, one module for each part of the paper."""
