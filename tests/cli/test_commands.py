@@ -16,7 +16,7 @@ from squealpipe import __version__, load
 from squealpipe.cli import COMMANDS, run
 
 SWEPT = ["sweep", "stability_map", "--alpha1", "1", "--alpha2", "2"]
-HEAVY = ("heyoka", "numba", "xarray", "numpy", "matplotlib", "plotly")
+HEAVY = ("heyoka", "numba", "xarray", "numpy", "matplotlib")
 
 
 @pytest.fixture(autouse=True)

@@ -13,7 +13,6 @@ from typing import Any
 import numpy as np
 import xarray as xr
 from jinja2 import Environment, StrictUndefined
-from plotly.offline import get_plotlyjs
 
 from squealpipe.parameters import SCENES
 from squealpipe.report.explorer.layers import Layer
@@ -22,7 +21,7 @@ from squealpipe.store.whole_files import whole_file
 
 HERE = Path(str(files("squealpipe.report.explorer")))
 HISTORIES = ("x", "y", "normalized_contact_force", "force_spectrum")
-BRANCHES = ("omega", "x_amplitude", "y_amplitude", "y_peak", "stability_index")
+BRANCHES = ("omega", "x_amplitude", "y_peak", "stability_index")
 
 
 def write_explorer(
@@ -46,7 +45,7 @@ def page(explorer: xr.Dataset, layers: Mapping[str, Layer]) -> str:
     return shell.render(
         style=(HERE / "explorer.css").read_text(encoding="utf-8"),
         script=(HERE / "explorer.js").read_text(encoding="utf-8"),
-        plotly=get_plotlyjs(),
+        chart=(HERE / "chart.js").read_text(encoding="utf-8"),
         layers={key: layer.label for key, layer in layers.items()},
         payload=in_script(payload(explorer, layers)),
         blocks=blocks(explorer, layers),
@@ -70,7 +69,10 @@ def blocks(explorer: xr.Dataset, layers: Mapping[str, Layer]) -> dict[str, str]:
             )
             for name in BRANCHES
         },
-        **{f"layer-{key}": _single(layer.values) for key, layer in layers.items()},
+        **{
+            f"layer-{key}": _encode(layer.values.astype("i1" if layer.meanings else "<f4"))
+            for key, layer in layers.items()
+        },
     }
 
 

@@ -33,7 +33,10 @@
   for (const [key, item] of Object.entries(payload.layers)) {
     layers[key] = { ...item, key, categories: Object.keys(item.meanings).map(Number) };
   }
-  const valuesOf = (layer) => floats(block(`layer-${layer.key}`));
+  const valuesOf = (layer) => {
+    const data = buffer(block(`layer-${layer.key}`));
+    return layer.categories.length ? new Int8Array(data) : new Float32Array(data);
+  };
   const outcomes = new Int8Array(buffer(payload.outcome.values));
   const ends = new Int8Array(buffer(payload.end.values));
 
@@ -54,10 +57,10 @@
   };
   const layerValue = (layer, pair) => {
     const [i, j] = [0, 1].map((axis) => nearest(layer.angles[axis], angles[axis][pair[axis]]));
-    // Three bytes are four letters: the six bytes around the value's four.
-    const at = 4 * (i * layer.angles[1].length + j), first = Math.floor(at / 3);
-    const bytes = buffer(block(`layer-${layer.key}`).slice(4 * first, 4 * first + 8));
-    return new DataView(bytes).getFloat32(at - 3 * first, true);
+    // Three bytes are four letters: the six bytes around the value's one or four.
+    const wide = layer.categories.length ? 1 : 4, at = wide * (i * layer.angles[1].length + j), first = Math.floor(at / 3);
+    const bytes = new DataView(buffer(block(`layer-${layer.key}`).slice(4 * first, 4 * first + 8)));
+    return wide === 1 ? bytes.getInt8(at - 3 * first) : bytes.getFloat32(at - 3 * first, true);
   };
   // An angle as a fraction of π, for instance 5π/6; the grid's angles all have a small one.
   const fraction = (angle, pi, digits = 4) => {
@@ -73,80 +76,84 @@
   const written = (layer, value) => {
     if (Number.isNaN(value)) return "none";
     if (layer.categories.length) return layer.meanings[value];
-    const rounded = Math.abs(value) < 1e-9 ? "0" : value.toPrecision(4);
+    const rounded = Math.abs(value) < 1e-9 ? "0" : value.toPrecision(4).replaceAll("-", "−");
     return `${rounded} ${layer.unit}`.trim();
   };
 
   // ---- plots ------------------------------------------------------------------------------
-  const coarse = matchMedia("(pointer: coarse)").matches;
-  const config = {
-    responsive: true, displaylogo: false, displayModeBar: coarse ? false : "hover",
-    showSendToCloud: false, showEditInChartStudio: false,
-    modeBarButtonsToRemove: ["sendDataToCloud", "editInChartStudio", "lasso2d", "select2d"],
-  };
-  const frame = (x, y, more = {}) => ({
-    margin: { l: 52, r: 12, t: 8, b: 42 }, dragmode: coarse ? false : "zoom", showlegend: false,
-    font: { size: 12, color: INK }, hovermode: "closest",
-    paper_bgcolor: "rgba(0,0,0,0)", plot_bgcolor: "rgba(0,0,0,0)",
-    modebar: { bgcolor: "rgba(0,0,0,0)", color: GREY, activecolor: INK },
-    xaxis: { title: { text: x }, zeroline: false, gridcolor: LINE, ...(more.xaxis || {}) },
-    yaxis: { title: { text: y }, zeroline: false, gridcolor: LINE, ...(more.yaxis || {}) },
-    ...(more.layout || {}),
-  });
-  const line = (x, y, color, more = {}) => ({ type: "scatter", mode: "lines", x, y, line: { color, width: 1.4 }, ...more });
-  const dot = (color, size = 9) => ({ type: "scatter", mode: "markers", x: [0], y: [0], hoverinfo: "skip", marker: { color, size } });
+  const charts = Object.fromEntries(["map", "force", "orbit", "spectrum", "backbones"].map((id) => [id, chart(element(id))]));
+  const axesOf = (x, y) => [{ title: x }, { title: y, fromZero: true }];
+  const draw = (id, content) => charts[id].draw({ ...content, colours: { ink: INK, line: LINE, paper: PAPER } });
+  const dot = (color, x, y, size = 4.5) => ({ x: [x], y: [y], color, marks: [true], size, width: 0, quiet: true });
 
   let chosen = [0, 0];
   let orbit = null;
 
+  // The colours of numbers: Viridis in nine steps.
+  const VIRIDIS = ["#440154", "#472d7b", "#3b528b", "#2c728e", "#21918c", "#28ae80", "#5ec962", "#addc30", "#fde725"];
+  const channels = (hex) => [1, 3, 5].map((at) => parseInt(hex.slice(at, at + 2), 16));
+  const between = VIRIDIS.map(channels);
+  function shade(part) {
+    const at = Math.min(Math.max(part, 0), 1) * (between.length - 1), k = Math.min(Math.floor(at), between.length - 2);
+    return between[k].map((value, c) => value + (at - k) * (between[k + 1][c] - value));
+  }
+
+  // One pixel per cell; where there is no value it stays clear.
+  function picture(layer, values) {
+    const [columns, rows] = layer.angles.map((own) => own.length), [low, high] = layer.range;
+    const canvas = document.createElement("canvas");
+    [canvas.width, canvas.height] = [columns, rows];
+    const pen = canvas.getContext("2d"), image = pen.createImageData(columns, rows);
+    const colours = Object.fromEntries(layer.categories.map((code) => [code, channels(layer.colours[code])]));
+    for (let i = 0; i < columns; i += 1) {
+      for (let j = 0; j < rows; j += 1) {
+        const value = values[i * rows + j];
+        if (Number.isNaN(value)) continue;
+        image.data.set([...(colours[value] || shade((value - low) / (high - low || 1))), 255], 4 * ((rows - 1 - j) * columns + i));
+      }
+    }
+    pen.putImageData(image, 0, 0);
+    return canvas.toDataURL();
+  }
+
   function drawMap() {
     const layer = layers[element("layer").value];
-    const [a1, a2] = layer.angles;
-    const category = layer.categories.length > 0;
-    const position = new Map(layer.categories.map((code, place) => [code, place]));
     const values = valuesOf(layer);
-    const rows = Array.from(a2, (_, j) => Array.from(a1, (__, i) => {
-      const value = values[i * a2.length + j];
-      return category ? position.get(value) : value;
-    }));
-    const [first, second] = [a1, a2].map((own, axis) => own.map((angle) => `α${"₁₂"[axis]} = ${fraction(angle, "π")}`));
-    const text = rows.map((row, j) => row.map((place, i) => (
-      `${first[i]}, ${second[j]}${category ? `<br>${layer.meanings[layer.categories[place]]}` : ""}`)));
-    const count = layer.categories.length;
-    const steps = layer.categories.flatMap((code, place) => [
-      [place / count, layer.colours[code]], [(place + 1) / count, layer.colours[code]],
-    ]);
-    const ticks = [0, 0.25, 0.5, 0.75, 1].map((part) => part * Math.PI);
-    const axis = { tickvals: ticks, ticktext: ["0", "π/4", "π/2", "3π/4", "π"], range: [-0.05, Math.PI + 0.05], constrain: "domain" };
-    const heat = {
-      type: "heatmap", x: Array.from(a1), y: Array.from(a2), z: rows, text,
-      hovertemplate: category ? "%{text}<extra></extra>" : `%{text}<br>%{z:.4g} ${layer.unit}<extra></extra>`,
-      colorbar: { thickness: 12, orientation: "h", y: -0.22, yanchor: "top", x: 0.5, len: 1, title: { text: category ? "" : layer.unit } },
-      ...(category
-        ? { colorscale: steps, zmin: -0.5, zmax: count - 0.5, showscale: false }
-        : { colorscale: "Viridis", zmin: layer.range[0], zmax: layer.range[1] }),
-    };
-    const cross = {
-      type: "scatter", mode: "markers", ...mark(), hoverinfo: "skip",
-      marker: { symbol: "circle-open", size: 15, color: "#ffffff", line: { width: 5 } },
-    };
-    const ring = { ...cross, marker: { symbol: "circle-open", size: 15, color: RED, line: { width: 2.5 } } };
-    const layout = frame("α₁ (rad)", "α₂ (rad)", {
-      xaxis: axis, yaxis: { ...axis, scaleanchor: "x" },
-      layout: { dragmode: false, margin: { l: 52, r: 10, t: 6, b: category ? 42 : 112 } },
+    const ticks = ["0", "π/4", "π/2", "3π/4", "π"].map((text, k) => [k * Math.PI / 4, text]);
+    draw("map", {
+      axes: ["α₁ (rad)", "α₂ (rad)"].map((title) => ({ title, ticks, range: [-0.05, Math.PI + 0.05] })),
+      equal: true,
+      zoom: false,
+      image: {
+        href: picture(layer, values),
+        ranges: layer.angles.map((own) => [own[0], own[own.length - 1]].map((end, k) => end + (k - 0.5) * (own[1] - own[0]))),
+      },
+      traces: [{ ...mark(), width: 0, marks: [false], size: 7.5, ring: 6, color: "#ffffff" }, { ...mark(), width: 0, marks: [false], size: 7.5, ring: 2.5, color: RED }],
+      hover: (x, y) => {
+        const cell = [x, y].map((value, axis) => nearest(layer.angles[axis], value));
+        const told = cell.map((place, axis) => `α${"₁₂"[axis]} = ${fraction(layer.angles[axis][place], "π")}`).join(", ");
+        return `${told}\n${written(layer, values[cell[0] * layer.angles[1].length + cell[1]])}`;
+      },
+      click: (x, y) => choose(pairAt([x, y])),
     });
     element("note").replaceChildren(...legend(layer));
-    return Plotly.react("map", [heat, cross, ring], layout, { ...config, displayModeBar: false });
+  }
+
+  function swatch(background, width) {
+    const box = document.createElement("span");
+    box.style.cssText = `display:inline-block;width:${width};height:0.9em;border:1px solid #555;vertical-align:-0.1em;background:${background}`;
+    return box;
   }
 
   function legend(layer) {
-    if (!layer.categories.length) return [document.createTextNode(layer.note)];
+    if (!layer.categories.length) {
+      const [low, high] = layer.range.map((end) => written(layer, end));
+      return [`${low} `, swatch(`linear-gradient(to right, ${VIRIDIS.join(", ")})`, "40%"), ` ${high}`, ...(layer.note ? [document.createElement("br"), layer.note] : [])];
+    }
     return layer.categories.map((code) => {
       const entry = document.createElement("span");
       entry.style.cssText = "display:inline-block;margin-right:0.8em";
-      const swatch = document.createElement("span");
-      swatch.style.cssText = `display:inline-block;width:0.9em;height:0.9em;border:1px solid #555;vertical-align:-0.1em;background:${layer.colours[code]}`;
-      entry.append(swatch, ` ${layer.meanings[code]}`);
+      entry.append(swatch(layer.colours[code], "0.9em"), ` ${layer.meanings[code]}`);
       return entry;
     });
   }
@@ -156,45 +163,42 @@
     return { x, y };
   }
 
-  function markMap() {
-    const { x, y } = mark();
-    return Plotly.restyle("map", { x: [x, x], y: [y, y] }, [1, 2]);
-  }
-
   function drawForce(cell) {
     const force = history("normalized_contact_force", cell);
-    Plotly.react("force", [line(time, force, BLUE), { ...dot(RED), x: [time[0]], y: [force[0]] }],
-      frame("t (s)", "N / (k₃ l_pre)", { yaxis: { rangemode: "tozero" } }), config);
+    draw("force", {
+      axes: axesOf("t (s)", "N / (k₃ l_pre)"),
+      traces: [{ x: time, y: force, color: BLUE }, dot(RED, time[0], force[0])],
+    });
   }
 
   function drawSpectrum(cell) {
     const natural = ["omega1_contact", "omega2_contact"].filter((key) => key in layers)
       .map((key) => layerValue(layers[key], chosen)).filter((value) => value > 0);
-    const shapes = natural.map((value) => ({
-      type: "line", x0: value, x1: value, yref: "paper", y0: 0, y1: 1, line: { color: GREY, dash: "dot", width: 1.5 },
-    }));
-    Plotly.react("spectrum", [line(frequency, history("force_spectrum", cell), BLUE)],
-      frame("ω (rad/s)", "amplitude", { yaxis: { rangemode: "tozero" }, layout: { shapes } }), config);
+    draw("spectrum", {
+      axes: axesOf("ω (rad/s)", "amplitude"),
+      traces: [{ x: frequency, y: history("force_spectrum", cell), color: BLUE }],
+      rules: natural.map((value) => [0, value]),
+    });
   }
 
   function drawBackbones(cell) {
-    const traces = [], reasons = [];
+    const traces = [], reasons = [], names = [];
     [BLUE, ORANGE].forEach((color, mode) => {
       const omega = branch("omega", cell, mode);
       const reason = payload.end.meanings[ends[2 * cell + mode]];
       if (omega.some(Number.isNaN)) { reasons.push(`mode ${mode + 1}: none (${reason})`); return; }
       reasons.push(`mode ${mode + 1} ends: ${reason}`);
-      const index = branch("stability_index", cell, mode);
-      const marker = { size: 6, symbol: index.map((v) => (Math.abs(v) > 2 ? "circle-open" : "circle")), color };
-      const shared = { type: "scatter", x: omega, showlegend: true };
-      traces.push({ ...shared, mode: "lines+markers", y: branch("y_peak", cell, mode), name: `mode ${mode + 1}: y peak`, line: { color }, marker });
-      traces.push({ ...shared, mode: "lines", y: branch("x_amplitude", cell, mode), name: `mode ${mode + 1}: x amplitude`, line: { color, dash: "dash" } });
+      const marks = branch("stability_index", cell, mode).map((value) => Math.abs(value) <= 2);
+      traces.push({ x: omega, y: branch("y_peak", cell, mode), name: `mode ${mode + 1}: y peak`, color, marks });
+      traces.push({ x: omega, y: branch("x_amplitude", cell, mode), name: `mode ${mode + 1}: x amplitude`, color, dash: "6 4" });
     });
-    const shapes = [{ type: "line", xref: "paper", x0: 0, x1: 1, y0: preload, y1: preload, line: { color: GREY, width: 1.5 } }];
-    Plotly.react("backbones", traces, frame("ω (rad/s)", "displacement (m)", {
-      yaxis: { rangemode: "tozero" },
-      layout: { shapes, showlegend: true, legend: { orientation: "h", y: 1.02, yanchor: "bottom" }, margin: { l: 52, r: 12, t: 50, b: 42 } },
-    }), config);
+    draw("backbones", { axes: axesOf("ω (rad/s)", "displacement (m)"), traces, rules: [[1, preload]] });
+    element("key").replaceChildren(...traces.map(({ name, color, marks }) => {
+      const entry = document.createElement("span"), stroke = document.createElement("i");
+      stroke.style.borderTop = `2px ${marks ? "solid" : "dashed"} ${color}`;
+      entry.append(stroke, name);
+      return entry;
+    }));
     element("ends").textContent = reasons.join("; ");
   }
 
@@ -226,19 +230,19 @@
     };
     const xRange = reach(x, ends.map((end) => end[0])), yRange = reach(y, [...ends.map((end) => end[1]), belt]);
     orbit = { x, y, ends, foot, belt, width: 0.03 * (xRange[1] - xRange[0]), force: history("normalized_contact_force", cell) };
-    const pivots = { type: "scatter", mode: "markers", hoverinfo: "skip", x: ends.map((e) => e[0]), y: ends.map((e) => e[1]), marker: { color: INK, size: 8, symbol: "square" } };
     const { springs, contact, mass, colours } = mechanism(0);
-    const spring = (points, color) => line(points.x, points.y, color, { hoverinfo: "skip" });
-    const traces = [
-      line(x, y, "#9a9a9a", { line: { color: "#9a9a9a", width: 1 } }),
-      line([-1e4, 1e4], [belt, belt], "#1a1a1a", { hoverinfo: "skip", line: { color: INK, width: 3 } }),
-      pivots,
-      spring(springs[0], colours[0]), spring(springs[1], colours[1]), spring(contact, colours[2]),
-      { ...dot(INK, 13), x: [mass[0]], y: [mass[1]] },
-    ];
-    Plotly.react("orbit", traces, frame("x (m)", "y (m)", {
-      xaxis: { range: xRange }, yaxis: { range: yRange, scaleanchor: "x" },
-    }), config);
+    const drawn = (points, color) => ({ ...points, color, quiet: true });
+    draw("orbit", {
+      axes: [{ title: "x (m)", range: xRange }, { title: "y (m)", range: yRange }],
+      equal: true,
+      traces: [
+        { x, y, color: "#9a9a9a", width: 1 },
+        { x: ends.map((end) => end[0]), y: ends.map((end) => end[1]), color: INK, marks: [true, true], size: 4, width: 0, quiet: true },
+        drawn(springs[0], colours[0]), drawn(springs[1], colours[1]), drawn(contact, colours[2]),
+        dot(INK, ...mass, 6.5),
+      ],
+      rules: [[1, belt, INK, 3]],
+    });
     tell(0);
   }
 
@@ -257,12 +261,9 @@
   function showInstant() {
     const k = Number(element("instant").value);
     const { springs, contact, mass, colours } = mechanism(k);
-    Plotly.restyle("orbit", {
-      x: [springs[0].x, springs[1].x, contact.x, [mass[0]]],
-      y: [springs[0].y, springs[1].y, contact.y, [mass[1]]],
-      "line.color": [...colours, INK],
-    }, [3, 4, 5, 6]);
-    Plotly.restyle("force", { x: [[time[k]]], y: [[orbit.force[k]]] }, [1]);
+    [springs[0], springs[1], contact].forEach((points, place) => charts.orbit.move(2 + place, { ...points, color: colours[place] }));
+    charts.orbit.move(5, { x: [mass[0]], y: [mass[1]] });
+    charts.force.move(1, { x: [time[k]], y: [orbit.force[k]] });
     tell(k);
   }
 
@@ -288,7 +289,7 @@
     element("instant").value = 0;
     drawForce(cell); drawOrbit(cell);
     drawSpectrum(cell); drawBackbones(cell);
-    return markMap();
+    [0, 1].forEach((ring) => charts.map.move(ring, mark()));
   }
 
   const pairAt = (values) => values.map((value, axis) => nearest(angles[axis], value));
@@ -338,18 +339,16 @@
     if (opened.every((place, axis) => Math.abs(angles[axis][place] - scene.angles[axis]) < 0.03)) element("scenes").append(button);
   }
 
-  dark.addEventListener("change", () => { readColours(); drawMap().then(() => choose(chosen)); });
+  dark.addEventListener("change", () => { readColours(); drawMap(); choose(chosen); });
 
   const fromAddress = window.location.hash.slice(1).split(",").map((part) => Number(part) * Math.PI);
   const start = fromAddress.length === 2 && fromAddress.every(Number.isFinite) ? fromAddress : [5 * Math.PI / 6, 5 * Math.PI / 6];
   chosen = pairAt(start);
-  drawMap().then(() => {
-    element("map").on("plotly_click", (event) => choose(pairAt([event.points[0].x, event.points[0].y])));
-    // The browser shows the map before the panels are drawn.
-    setTimeout(() => {
-      choose(chosen);
-      document.body.dataset.ready = "true";
-      if (!matchMedia("(prefers-reduced-motion: reduce)").matches) play(true);
-    });
+  drawMap();
+  // The browser shows the map before the panels are drawn.
+  setTimeout(() => {
+    choose(chosen);
+    document.body.dataset.ready = "true";
+    if (!matchMedia("(prefers-reduced-motion: reduce)").matches) play(true);
   });
 })();
