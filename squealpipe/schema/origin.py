@@ -40,17 +40,16 @@ def recorded(
     """
 
     def decorate(task: Callable[Given, xr.Dataset]) -> Callable[Given, xr.Dataset]:
-        signature = inspect.signature(task)
+        defaults = {each.name: each.default for each in inspect.signature(task).parameters.values()}
         _HOW[task.__name__] = model, method
 
         @functools.wraps(task)
         def run(*args: Given.args, **kwargs: Given.kwargs) -> xr.Dataset:
             dataset = task(*args, **kwargs)
-            bound = signature.bind(*args, **kwargs)
-            bound.apply_defaults()
+            given = defaults | dict(zip(defaults, args, strict=False)) | kwargs
             # Grids are coordinates of the dataset; of a part of a map they would tell the part's.
             grids = set(dataset.coords)
-            kept = {key: value for key, value in bound.arguments.items() if key not in grids}
+            kept = {key: value for key, value in given.items() if key not in grids}
             dataset.attrs.update(origin(task.__name__, kept))
             return dataset
 

@@ -59,22 +59,30 @@ class CompiledSystem:
     n_series: int
 
 
-def compile_system(system: HybridSystem, *, tangent: bool) -> CompiledSystem:
-    """Write and compile the functions of a system, or take them from the store."""
+def compile_system(system: HybridSystem, *, tangent: bool, few: bool = False) -> CompiledSystem:
+    """Write and compile the functions of a system, or take them from the store.
+
+    Args:
+        system: the symbolic system.
+        tangent: with its perturbation.
+        few: compute the first ``simd.FEW`` lanes only.
+    """
     source, n_series = series_source(system)
-    code = [_from_source("series", source)]
+    code = [_from_source("series", source, few)]
     if tangent:
-        code.append(_from_source("perturb", perturbation_source(system)))
+        code.append(_from_source("perturb", perturbation_source(system), few))
     perturb = code[1].address if tangent else 0
     return CompiledSystem(code[0].address, perturb, tuple(code), n_series)
 
 
-def _from_source(name: str, source: str) -> Any:
+def _from_source(name: str, source: str, few: bool) -> Any:
     names = ("load", "store", "number", "fma", "splat", "root", "exponential")
     scope: dict[str, Any] = {each: getattr(simd, each) for each in names}
+    if few:
+        scope |= {"load": simd.load_few, "splat": simd.splat_few}
     scope["__name__"] = simd.__name__
     exec(compile(source, simd.__file__, "exec"), scope)  # noqa: S102
-    content = source.encode() + Path(simd.__file__).read_bytes()
+    content = source.encode() + Path(simd.__file__).read_bytes() + b"few" * few
     return compiled_entry(scope[name], SIGNATURES[name], content)
 
 

@@ -1,9 +1,10 @@
-"""One number per lane: vectors of ``LANES`` doubles inside compiled code.
+"""One number per lane: vectors of doubles inside compiled code.
 
-A compiled function loads a row of ``LANES`` contiguous doubles as one value, computes with it as
-with a float, and stores it. LLVM maps each operation onto what the processor has (two AVX-512 or
-four AVX2 registers). All operations are exact to the last bit as IEEE 754 defines them and lanes
-never mix, so a result depends neither on the lane nor on the processor.
+A compiled function loads a row of ``LANES`` contiguous doubles, or its first ``FEW``, as one value,
+computes with it as with a float, and stores it. LLVM maps each operation onto what the processor
+has (a row onto two AVX-512 or four AVX2 registers). All operations are exact to the last bit as
+IEEE 754 defines them and lanes never mix, so a result depends neither on the lane nor on the
+processor.
 """
 
 from __future__ import annotations
@@ -20,12 +21,12 @@ from numba.extending import intrinsic, lower_builtin, models, register_model
 
 LANES = 16
 """Lanes of a batch: two registers of AVX-512; the last digits do not depend on it."""
+FEW = 4
+"""Lanes that a batch of no more runs needs: one register of AVX2. Rows keep their size."""
 ROW = 8 * LANES
 """Bytes of one row; rows start at multiples of ``ALIGNMENT``."""
 ALIGNMENT = 64
 
-_DOUBLES: Any = ir.VectorType(ir.DoubleType(), LANES)
-_WORDS: Any = ir.VectorType(ir.IntType(64), LANES)
 _cgutils: Any = cgutils
 _Type: Any = types.Type
 ConcreteTemplate: Any = templates.ConcreteTemplate
@@ -37,29 +38,37 @@ _lower_builtin: Any = lower_builtin
 class _Lanes(_Type):  # type: ignore[misc]
     """numba's type of a vector."""
 
-    def __init__(self) -> None:
-        super().__init__(name=f"lanes({LANES})")
+    def __init__(self, width: int) -> None:
+        super().__init__(name=f"lanes({width})")
+        self.doubles = ir.VectorType(ir.DoubleType(), width)
 
 
-lanes = _Lanes()
+lanes = _Lanes(LANES)
+few_lanes = _Lanes(FEW)
 _PrimitiveModel: Any = models.PrimitiveModel
 
 
 @register_model(_Lanes)
 class _Model(_PrimitiveModel):  # type: ignore[misc]
     def __init__(self, manager: Any, kind: Any) -> None:
-        super().__init__(manager, kind, _DOUBLES)
+        super().__init__(manager, kind, kind.doubles)
 
 
 def _intrinsic(result: Any, arguments: tuple[Any, ...], generate: Callable[..., Any]) -> Any:
-    """A function of compiled code from ``generate(builder, *values) -> value``."""
+    """A function of compiled code from ``generate(builder, *values) -> value``.
+
+    Where it takes ``lanes`` it takes vectors of any width, and returns the same.
+    """
 
     def typing(context: Any, *given: Any) -> Any:  # noqa: ARG001
+        width = next((kind for kind in given if isinstance(kind, _Lanes)), lanes)
+        kinds = [width if kind is lanes else kind for kind in (result, *arguments)]
+
         def code(context: Any, builder: Any, signature: Any, values: Any) -> Any:  # noqa: ARG001
             made = generate(builder, *values)
             return context.get_dummy_value() if result is types.void else made
 
-        return result(*arguments), code
+        return kinds[0](*kinds[1:]), code
 
     names = ", ".join("abcdef"[: len(arguments)])
     scope: dict[str, Any] = {"typing": typing}
@@ -67,37 +76,49 @@ def _intrinsic(result: Any, arguments: tuple[Any, ...], generate: Callable[..., 
     return intrinsic(scope["function"])
 
 
-def _pointer(builder: Any, address: Any) -> Any:
-    return builder.inttoptr(address, _DOUBLES.as_pointer())
+def _pointer(builder: Any, address: Any, kind: Any) -> Any:
+    return builder.inttoptr(address, kind.as_pointer())
 
 
-def _load(builder: Any, address: Any) -> Any:
-    row = builder.load(_pointer(builder, address))
-    row.align = ALIGNMENT
-    return row
+def _loads(kind: _Lanes) -> Any:
+    def generate(builder: Any, address: Any) -> Any:
+        row = builder.load(_pointer(builder, address, kind.doubles))
+        row.align = min(ALIGNMENT, 8 * kind.doubles.count)
+        return row
+
+    return _intrinsic(kind, (types.intp,), generate)
 
 
 def _store(builder: Any, address: Any, row: Any) -> None:
-    builder.store(row, _pointer(builder, address)).align = ALIGNMENT
+    stored = builder.store(row, _pointer(builder, address, row.type))
+    stored.align = min(ALIGNMENT, 8 * row.type.count)
 
 
 def _number(builder: Any, address: Any) -> Any:
-    return builder.load(builder.inttoptr(address, ir.DoubleType().as_pointer()))
+    return builder.load(_pointer(builder, address, ir.DoubleType()))
 
 
-def _splat(builder: Any, value: Any) -> Any:
-    undefined = ir.Constant(_DOUBLES, ir.Undefined)
+def _repeated(builder: Any, value: Any, doubles: Any) -> Any:
+    undefined = ir.Constant(doubles, ir.Undefined)
     first = builder.insert_element(undefined, value, ir.Constant(ir.IntType(32), 0))
-    zeros = ir.Constant(ir.VectorType(ir.IntType(32), LANES), None)
+    zeros = ir.Constant(ir.VectorType(ir.IntType(32), doubles.count), None)
     return builder.shuffle_vector(first, undefined, zeros)
+
+
+def _splats(kind: _Lanes) -> Any:
+    return _intrinsic(
+        kind, (types.float64,), lambda builder, value: _repeated(builder, value, kind.doubles)
+    )
 
 
 def _called(name: str) -> Callable[..., Any]:
     """A function of LLVM's own, lane by lane."""
 
     def generate(builder: Any, *values: Any) -> Any:
-        kind = ir.FunctionType(_DOUBLES, [_DOUBLES] * len(values))
-        function = _cgutils.get_or_insert_function(builder.module, kind, f"llvm.{name}.v{LANES}f64")
+        doubles = values[0].type
+        kind = ir.FunctionType(doubles, [doubles] * len(values))
+        name_of_width = f"llvm.{name}.v{doubles.count}f64"
+        function = _cgutils.get_or_insert_function(builder.module, kind, name_of_width)
         return builder.call(function, values)
 
     return generate
@@ -105,19 +126,11 @@ def _called(name: str) -> Callable[..., Any]:
 
 def _bits_below(builder: Any, first: Any, second: Any) -> Any:
     below = builder.fcmp_ordered("<", first, second)
-    return builder.zext(builder.bitcast(below, ir.IntType(LANES)), ir.IntType(64))
+    return builder.zext(builder.bitcast(below, ir.IntType(below.type.count)), ir.IntType(64))
 
 
 def _choose_below(builder: Any, first: Any, second: Any, then: Any, otherwise: Any) -> Any:
     return builder.select(builder.fcmp_ordered("<", first, second), then, otherwise)
-
-
-def _word(value: int) -> Any:
-    return ir.Constant(_WORDS, [value] * LANES)
-
-
-def _double(value: float) -> Any:
-    return ir.Constant(_DOUBLES, [value] * LANES)
 
 
 _SHIFT = 2.0**52
@@ -126,17 +139,26 @@ _SHIFT = 2.0**52
 
 def _power(builder: Any, value: Any, exponent: Any) -> Any:
     """value ** exponent to about 1 %, from the bits of a positive normal number."""
-    high = builder.lshr(builder.bitcast(value, _WORDS), _word(32))
-    high = builder.or_(high, builder.bitcast(_double(_SHIFT), _WORDS))
-    units = builder.fsub(builder.bitcast(high, _DOUBLES), _double(_SHIFT))
-    mantissa_log = builder.fsub(builder.fmul(units, _double(2.0**-20)), _double(1023.0))
+    doubles = value.type
+    words = ir.VectorType(ir.IntType(64), doubles.count)
+
+    def word(each: int) -> Any:
+        return ir.Constant(words, [each] * doubles.count)
+
+    def double(each: float) -> Any:
+        return ir.Constant(doubles, [each] * doubles.count)
+
+    high = builder.lshr(builder.bitcast(value, words), word(32))
+    high = builder.or_(high, builder.bitcast(double(_SHIFT), words))
+    units = builder.fsub(builder.bitcast(high, doubles), double(_SHIFT))
+    mantissa_log = builder.fsub(builder.fmul(units, double(2.0**-20)), double(1023.0))
     power = builder.fmul(mantissa_log, exponent)
     whole = _called("floor")(builder, power)
     part = builder.fsub(power, whole)
-    curve = builder.fadd(builder.fmul(part, _double(0.3431)), _double(0.6569))
-    curve = builder.fadd(builder.fmul(part, curve), _double(1.0))
-    shifted = builder.bitcast(builder.fadd(whole, _double(_SHIFT + 1023.0)), _WORDS)
-    scale = builder.bitcast(builder.shl(shifted, _word(52)), _DOUBLES)
+    curve = builder.fadd(builder.fmul(part, double(0.3431)), double(0.6569))
+    curve = builder.fadd(builder.fmul(part, curve), double(1.0))
+    shifted = builder.bitcast(builder.fadd(whole, double(_SHIFT + 1023.0)), words)
+    scale = builder.bitcast(builder.shl(shifted, word(52)), doubles)
     return builder.fmul(curve, scale)
 
 
@@ -146,12 +168,16 @@ first_bit: Any = _intrinsic(
     lambda builder, bits: builder.cttz(bits, ir.Constant(ir.IntType(1), 0)),
 )
 """Position of the lowest bit that is set."""
-load: Any = _intrinsic(lanes, (types.intp,), _load)
+load: Any = _loads(lanes)
 """The row at an address."""
+load_few: Any = _loads(few_lanes)
+"""The first ``FEW`` numbers of the row at an address."""
 store: Any = _intrinsic(types.void, (types.intp, lanes), _store)
 """Write a row to an address."""
-splat: Any = _intrinsic(lanes, (types.float64,), _splat)
+splat: Any = _splats(lanes)
 """The same number in each lane."""
+splat_few: Any = _splats(few_lanes)
+"""The same number in each of ``FEW`` lanes."""
 number: Any = _intrinsic(types.float64, (types.intp,), _number)
 """The one double at an address."""
 fma: Any = _intrinsic(lanes, (lanes, lanes, lanes), _called("fma"))
@@ -178,23 +204,28 @@ smaller: Any = _intrinsic(
 def _operate(symbol: Any, instruction: str) -> None:
     """An operator between rows, and between a row and a number."""
     number_kind = types.float64
-    cases = [(lanes, lanes), (lanes, number_kind), (number_kind, lanes)]
+    cases = [
+        (kind, *case)
+        for kind in (lanes, few_lanes)
+        for case in ((kind, kind), (kind, number_kind), (number_kind, kind))
+    ]
 
     class Typing(ConcreteTemplate):  # type: ignore[misc]
         pass
 
-    Typing.cases = [signature(lanes, *case) for case in cases]
+    Typing.cases = [signature(*case) for case in cases]
     register: Any = infer_global(symbol)
     register(Typing)
 
     def lower(context: Any, builder: Any, sig: Any, values: Any) -> Any:  # noqa: ARG001
+        doubles = sig.return_type.doubles
         rows = [
-            value if kind is lanes else _splat(builder, value)
+            value if isinstance(kind, _Lanes) else _repeated(builder, value, doubles)
             for kind, value in zip(sig.args, values, strict=True)
         ]
         return getattr(builder, instruction)(*rows)
 
-    for case in cases:
+    for _, *case in cases:
         register = _lower_builtin(symbol, *case)
         register(lower)
 

@@ -20,7 +20,7 @@ from squealpipe.methods.taylor.lanes import (
     drive,
     taylor_terms,
 )
-from squealpipe.methods.taylor.simd import LANES
+from squealpipe.methods.taylor.simd import FEW, LANES
 from squealpipe.models.switching import VARIANT_RULES, Event
 from squealpipe.parameters import Parameters
 from squealpipe.schema import Outcome
@@ -205,6 +205,7 @@ def _run(
         linear_springs=VARIANT_RULES[jobs.model].linear_springs,
         dissipation=dissipation,
         tangent=tangent,
+        few=size <= FEW and not tangent,
     )
     lane_kernel()
 

@@ -126,8 +126,8 @@ def lane_system(*, linear_springs: bool, dissipation: Dissipation = PAPER) -> Hy
 
 @cache
 def compiled_system(
-    *, linear_springs: bool, dissipation: Dissipation, tangent: bool
+    *, linear_springs: bool, dissipation: Dissipation, tangent: bool, few: bool = False
 ) -> CompiledSystem:
     """The compiled series of a system, built once a process for each combination."""
     system = lane_system(linear_springs=linear_springs, dissipation=dissipation)
-    return compile_system(system, tangent=tangent)
+    return compile_system(system, tangent=tangent, few=few)

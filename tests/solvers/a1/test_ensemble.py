@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from squealpipe.laws.springs import Geometry
+from squealpipe.methods.taylor.simd import FEW
 from squealpipe.models.switching import Rules, ScaledParameters
 from squealpipe.parameters import Parameters
 from squealpipe.schema import Outcome
@@ -30,13 +31,13 @@ ANGLES = RNG.uniform(0, np.pi, (2, SIZE))
 ENDS = RNG.uniform(1.0, 60.0, SIZE)
 
 
-def _run(order=slice(None), **options) -> Ensemble:
+def _run(order=slice(None), *, tangent=True, **options) -> Ensemble:
     return run_ensemble(
         {name: values[order] for name, values in MIXED.items()},
         ANGLES[0][order],
         ANGLES[1][order],
         t_end=ENDS[order],
-        tangent=True,
+        tangent=tangent,
         log_events=40,
         times=np.linspace(0, 1.0, 7),
         **options,
@@ -68,11 +69,22 @@ def test_any_order_of_jobs_gives_the_same_bits(reference):
     assert_identical(back, reference)
 
 
+def _rows(run: Ensemble, rows: slice) -> Ensemble:
+    return Ensemble(**{f.name: getattr(run, f.name)[rows] for f in fields(Ensemble)})
+
+
 @pytest.mark.parametrize("job", [0, 1, SIZE - 1])
 def test_a_run_alone_gives_the_same_bits(reference, job):
-    alone = _run(slice(job, job + 1), workers=1)
-    kept = Ensemble(**{f.name: getattr(reference, f.name)[job : job + 1] for f in fields(Ensemble)})
-    assert_identical(alone, kept)
+    rows = slice(job, job + 1)
+    assert_identical(_run(rows, workers=1), _rows(reference, rows))
+
+
+@pytest.mark.parametrize("model", ["A1", "A1-linear-springs"])
+def test_few_runs_whose_series_are_narrower_give_the_same_bits(model):
+    whole = _run(model=model, tangent=False, workers=1)
+    for size in range(1, FEW + 1):
+        rows = slice(7 * size, 8 * size)
+        assert_identical(_run(rows, model=model, tangent=False, workers=1), _rows(whole, rows))
 
 
 def test_repeating_gives_the_same_bits(reference):
