@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
-from squealpipe.parameters import Parameters
+from squealpipe.parameters import TABLE, Parameters
 from squealpipe.schema.claims import Verdict
 from squealpipe.store import load
 
@@ -41,13 +41,19 @@ class Run(Mapping[str, xr.Dataset]):
 
     def __getitem__(self, name: str) -> xr.Dataset:
         if name not in self.sources:
-            raise MissingDataError(f"the run has no dataset {name}")
+            raise MissingDataError(f"the run has no dataset {name}: {self._why_missing()}")
         if name not in self.used:
             self.used.append(name)
         if name not in self._loaded:
             source = self.sources[name]
             self._loaded[name] = source if isinstance(source, xr.Dataset) else load(source)
         return self._loaded[name]
+
+    def _why_missing(self) -> str:
+        given = [name for name in self.parameters.as_dict() if TABLE[name].extension]
+        if not given:
+            return "it is no part of this study, or not computed yet"
+        return f"the study leaves out what cannot carry {', '.join(given)}"
 
     def __contains__(self, name: object) -> bool:
         return name in self.sources
@@ -134,12 +140,12 @@ def finding(
         value=float(value),
         relation=relation,
         threshold=float(threshold),
-        evidence=without_exponents(evidence),
+        evidence=as_people_write(evidence),
     )
 
 
-def without_exponents(text: str) -> str:
-    """Numbers as people write them: 4.42e+03 becomes 4420, 3e-15 becomes 3·10⁻¹⁵."""
+def as_people_write(text: str) -> str:
+    """Numbers as people write them: 4.42e+03 becomes 4420, 3e-15 3·10⁻¹⁵, and -2 −2."""
 
     def written(match: re.Match[str]) -> str:
         exponent = int(match[2])
@@ -147,4 +153,5 @@ def without_exponents(text: str) -> str:
             return f"{float(match[0]):.0f}"
         return f"{match[1]}·10{str(exponent).translate(SUPERSCRIPTS)}"
 
-    return re.sub(r"(\d+(?:\.\d+)?)e([+-]\d+)", written, text)
+    plain = re.sub(r"(\d+(?:\.\d+)?)e([+-]\d+)", written, text)
+    return re.sub(r"(?<![\w)-])-(?=[\d.]|inf)", "−", plain)

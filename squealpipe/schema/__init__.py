@@ -119,7 +119,7 @@ def flag_table(flags: Any) -> dict[int, str]:
 
 
 def in_words(table: Mapping[int, str]) -> str:
-    """Flags for people: ``0: converged; 3: step limit (shorten t_end or raise the step limit)``."""
+    """Flags for people: ``0: converged; 9: divergence (ω² < 0: there is no oscillation …)``."""
     remedies = {item.name: text for item, text in REMEDIES.items() if text != "none needed"}
     return "; ".join(
         f"{value}: {name.replace('_', ' ')}" + (f" ({remedies[name]})" if name in remedies else "")

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from squealpipe.claims.evidence import MissingDataError, finding, without_exponents
+from squealpipe.claims.evidence import MissingDataError, as_people_write, finding
 from squealpipe.schema.claims import Verdict
 
 
@@ -45,8 +45,10 @@ def test_no_number_no_verdict() -> None:
         ("after 4.42e+03 s", "after 4420 s"),
         ("off by 3e-15.", "off by 3·10⁻¹⁵."),
         ("1.2e+09 cells", "1.2·10⁹ cells"),
-        ("K12 at 0.25 and -2.5e-07", "K12 at 0.25 and -2.5·10⁻⁷"),
+        ("K12 at 0.25 and -2.5e-07", "K12 at 0.25 and −2.5·10⁻⁷"),
+        ("x = -0.126 l_pre, (-1, -.5), from 3 to -4", "x = −0.126 l_pre, (−1, −.5), from 3 to −4"),
+        ("sets 2-4 of A1-no-stick, backbone/F10-1", "sets 2-4 of A1-no-stick, backbone/F10-1"),
     ],
 )
-def test_numbers_are_written_without_exponents(text: str, written: str) -> None:
-    assert without_exponents(text) == written
+def test_numbers_are_written_as_people_write(text: str, written: str) -> None:
+    assert as_people_write(text) == written

@@ -52,6 +52,13 @@ def test_without_datasets_nothing_is_decided_and_the_reason_names_what_is_missin
     assert (claims.verdict == Verdict.cannot_be_decided).all()
     for text in claims.evidence.values:
         assert "the run has no dataset" in str(text)
+        assert "not computed yet" in str(text)
+
+
+def test_what_a_study_with_dashpots_leaves_out_gives_that_reason(baseline: Parameters) -> None:
+    claims = judge(baseline.with_(damping1=0.02), {})
+    for text in claims.evidence.values:
+        assert str(text).endswith("leaves out what cannot carry damping1.")
 
 
 def test_the_list_of_datasets_read_is_complete(

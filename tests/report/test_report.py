@@ -198,6 +198,10 @@ def test_no_measured_number_is_typed_into_a_template(template: Path) -> None:
 def test_page_in_a_browser(small_report, width: int) -> None:
     with open_page(small_report.page.as_uri(), width=width) as (page, faults):
         assert page.evaluate("document.documentElement.scrollWidth") <= width
+        assert page.evaluate(
+            "[...document.querySelectorAll('math[display=block]')]"
+            ".every(formula => formula.scrollWidth <= formula.clientWidth + 1)"
+        )
         assert page.evaluate("[...document.images].every(image => image.naturalWidth > 0)")
         assert page.evaluate("document.querySelector('math').getBoundingClientRect().width") > 5
         assert faults == []

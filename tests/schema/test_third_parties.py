@@ -41,7 +41,7 @@ def test_a_run_says_what_it_is(scene):
     assert run.attrs["license"] == "MIT"
     assert "Noise Control Engineering Journal, 2021" in run.attrs["references"]
     assert "-L2 cos alpha2" in run.attrs["comment"]
-    assert "3: step limit (shorten t_end" in run.outcome.attrs["comment"]
+    assert "3: step limit (too many steps: shorten t_end" in run.outcome.attrs["comment"]
 
 
 def test_time_is_cf_in_the_file_and_seconds_in_memory(scene):
