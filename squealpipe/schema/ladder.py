@@ -46,7 +46,7 @@ class Level(IntEnum):
     )
     a4_exact = (
         2, "A4, closed-form flow", "geometry, reversal of friction",
-        "belt not reached, small displacements", "GREEN",
+        "belt not reached, small displacements", "ORANGE",
     )
     a4_in_time = (
         3, "A4 in time", "geometry, reversal of friction",
@@ -57,13 +57,13 @@ class Level(IntEnum):
         "A1-linear-springs", 1.0,
     )
     a1_no_stick = (
-        5, "A1 without stick", "stick", "short spells of stick", "ORANGE", "A1-no-stick", 1.0,
+        5, "A1 without stick", "stick", "short spells of stick", "GREEN", "A1-no-stick", 1.0,
     )
     a1_short = (
         6, "A1, part of the horizon", "the rest of the horizon", "nothing new after that part",
         "GREY", "A1", 0.5,
     )
-    a1 = (7, "A1", "nothing", "nothing", "RED", "A1", 1.0)
+    a1 = (7, "A1", "nothing", "nothing", "BLACK", "A1", 1.0)
 
     def __new__(
         cls, number: int, label: str = "", drops: str = "", needs: str = "", colour: str = "",

@@ -15,6 +15,7 @@ from squealpipe.figures.backbones import (
     harmonic_forms,
     orbit_atlas,
 )
+from squealpipe.figures.parts.style import symbols
 from squealpipe.parameters import Parameters
 from squealpipe.store.provenance import stamp
 from squealpipe.tasks.backbones import a1_beside_a4 as beside_task
@@ -63,6 +64,12 @@ def test_a_broken_assumption_is_ringed():
     figure = fig13.draw(_branches(5 / 6, 5 / 6, slow))
     rings = [line for line in figure.axes[0].get_lines() if line.get_marker() == "o"]
     assert any(len(line.get_xdata()) > 3 for line in rings)
+    assert "mass overtakes the belt" in figure.axes[0].get_legend_handles_labels()[1]
+
+
+def test_symbols_are_set_as_symbols():
+    text = "N_h = 8, l_pre, tol 1e-08, DOP853, 1e-10"
+    assert symbols(text) == r"$N_\mathrm{h}$ = 8, $l_\mathrm{pre}$, tol 10⁻⁸, DOP853, 10⁻¹⁰"
 
 
 def test_an_empty_branch_says_why_in_the_picture():

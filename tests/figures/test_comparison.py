@@ -79,7 +79,7 @@ def test_integration_charts_name_methods_scenes_and_machine(integration, module)
 
 def test_validity_chart_labels_only_maps_with_wrong_cells(integration) -> None:
     text = written(work_precision_validity.draw(integration))
-    assert "T 50" in text
+    assert "T = 50" in text
     assert "tol 1" not in text
     assert "no wrong cell" in text
 
@@ -114,7 +114,7 @@ def test_atlas_prints_verdicts_and_counts() -> None:
         FAILURE_ATLAS,
         {
             "verdict": verdict,
-            "error": np.where(np.array(verdict) > 0, 1e-3, np.nan),
+            "error": np.where(np.array(verdict) > 0, 1e-5, np.nan),
             "flagged": [[0, 0, 0], [1, 1, 0], [0, 0, 0]],
             "message": [["", "", ""], ["careful", "careful", ""], ["", "", ""]],
             "missed_events": [[0, 2, np.nan], [np.nan, 0, np.nan], [np.nan] * 3],
@@ -127,8 +127,8 @@ def test_atlas_prints_verdicts_and_counts() -> None:
     figure = failure_atlas.draw(atlas)
     text = written(figure)
     for sign, verdict in (("✗", Reliability.silently_wrong), ("✓", Reliability.right)):
-        assert text.count(f"{sign} 1e-3") == int((atlas.verdict == verdict).sum())
-    assert text.count("✗ 1e-3 (2)") == 1
+        assert text.count(f"{sign}\N{THIN SPACE}10⁻⁵") == int((atlas.verdict == verdict).sum())
+    assert text.count("✗\N{THIN SPACE}10⁻⁵\N{THIN SPACE}(2)") == 1
     assert "✗ silently wrong" in text
     bold = [
         label.get_text()

@@ -6,6 +6,7 @@ import json
 
 import numpy as np
 import pytest
+import xarray as xr
 from matplotlib.patches import FancyArrowPatch
 
 from squealpipe.figures.dynamics import (
@@ -20,7 +21,7 @@ from squealpipe.figures.dynamics import (
     whirl,
 )
 from squealpipe.figures.linear import fig07
-from squealpipe.figures.model.mechanism import draw_mechanism
+from squealpipe.figures.model.mechanism import displaced_springs, draw_mechanism
 from squealpipe.figures.parts.style import new_figure, save_figure
 from squealpipe.parameters import SCENES, Parameters
 from squealpipe.tasks.dynamics import hammering as hammering_task
@@ -101,3 +102,27 @@ def test_the_arrow_of_the_belt_points_where_it_runs():
         draw_mechanism(axes[0, 0], 0.3 * np.pi, 0.2 * np.pi, direction=direction)
         (arrow,) = (part for part in axes[0, 0].patches if isinstance(part, FancyArrowPatch))
         assert direction * arrow.get_path().vertices[:, 0].mean() > 0
+
+
+@pytest.mark.parametrize("lengths", [(5.0, 5.0), (5.0, 7.0)])
+def test_springs_that_share_a_direction_are_drawn_apart(lengths):
+    first, second = displaced_springs(0, 0, 0.2 * np.pi, 0.8 * np.pi, lengths, 0.3)
+    across = np.array([-np.sin(0.2 * np.pi), np.cos(0.2 * np.pi)])
+    assert (first[1:-1] @ across).min() > (second[1:-1] @ across).max()
+
+
+@pytest.mark.parametrize("tip", [(30, 60), (150, 140)])
+def test_the_window_is_where_the_boundary_is_most_intricate(tip):
+    """Contact is kept below a straight line, and in a horn three cells wide above it."""
+    rows, columns = np.indices((181, 181))
+    horn = (abs(rows - tip[0]) <= 1) & (columns < tip[1]) & (columns > tip[1] - 20)
+    kept = (columns < tip[1] - 15) | horn
+    angles = np.linspace(0, np.pi, 181)
+    map_ = xr.Dataset(
+        {"separates": (("alpha1", "alpha2"), (~kept).astype("i1"))},
+        {"alpha1": angles, "alpha2": angles},
+    )
+    low1, high1, low2, high2 = refined_boundary._intricate(map_)
+    assert low1 < angles[tip[0]] < high1
+    assert low2 < angles[tip[1]] < high2
+    assert high1 - low1 == pytest.approx(refined_boundary.WINDOW * np.pi, rel=0.06)

@@ -117,6 +117,7 @@ def test_there_are_at_most_ten() -> None:
         (1e-12, "10⁻¹²"),
         (6.5e6, "6.5·10⁶"),
         (80.73, "80.7"),
+        (-1234567.0, "−1.23·10⁶"),
     ],
 )
 def test_numbers_are_written_as_people_write_them(value, text) -> None:

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 READS = ("a1_beside_a4",)
 CAPTION = (
-    "Model A1 started on periodic motions of A4 (grey), for springs of several lengths L. Left: y "
+    "Model A1 started on periodic motions of A4 (grey), with both springs of the length L. Left: y "
     "over the first periods; right: amplitude spectrum of y over 32 periods."
 )
 ALT = "Rows of two panels: time histories of y of both models, and their spectra."

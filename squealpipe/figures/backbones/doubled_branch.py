@@ -57,7 +57,7 @@ def draw(backbones: Mapping[str, xr.Dataset], doubled: Mapping[str, xr.Dataset])
         _draw_scene(left, right, simple, leaving)
         angles = ", ".join(pi_label(float(simple.attrs[key])) for key in ("alpha1", "alpha2"))
         panel_letter(left, next(letters), f"({angles})")
-        panel_letter(right, next(letters))
+        panel_letter(right, next(letters), "stability index")
     handles, labels = key_entries(axes.ravel())
     if labels:
         figure.legend(handles, labels, loc="outside lower center", ncols=len(labels))
@@ -83,6 +83,7 @@ def _draw_scene(left: Axes, right: Axes, simple: xr.Dataset, doubled: list[xr.Da
         left.plot(
             branch.doubling_omega, branch.y_largest[0], linestyle="none", marker="o",
             markersize=5, markerfacecolor="white", markeredgecolor=colour, zorder=3,
+            label="period doubling",
         )  # fmt: skip
     left.set(xlabel="ω, twice ω of doubled branches (rad/s)", ylabel="largest y (m)")
     right.set(xlabel="largest y (m)", ylabel="stability index", ylim=(-3, 3.5))

@@ -42,7 +42,7 @@ MARKERS = "osv^DP"
 PANELS = (
     ("omega_error", "harmonics", r"$N_\mathrm{h}$", "error of ω (rad/s)", -4),
     ("waveform_error", "harmonics", r"$N_\mathrm{h}$", "waveform error (m)", -3),
-    ("omega_error_samples", "samples", "N", "error of ω (rad/s)", None),
+    ("omega_error_samples", "samples", "$N$", "error of ω (rad/s)", None),
     ("omega_error_sigma", "sigma", r"$\sigma\,l_\mathrm{pre}$", "shift of ω (rad/s)", -2),
 )
 """Variable, setting, both labels and the slope drawn beside, of each panel."""

@@ -81,7 +81,9 @@ def _spread(panel: Axes, forms: xr.Dataset) -> None:
         color=RED,
         label="Γ lacks full rank",
     )
-    panel.set(xscale="log", yscale="log", xlabel="samples N", ylabel="spread of the largest y (m)")
+    panel.set(
+        xscale="log", yscale="log", xlabel="samples $N$", ylabel="spread of the largest y (m)"
+    )
     panel.set_xticks(forms.samples.values[[0, 3, 4, 5]], forms.samples.values[[0, 3, 4, 5]])
     panel.minorticks_off()
     panel.legend(loc="lower left")

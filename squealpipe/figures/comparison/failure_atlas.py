@@ -17,6 +17,7 @@ from squealpipe.figures.parts.style import (
     WHITE,
     category_colours,
     new_figure,
+    number,
     panel_letter,
     symbols,
 )
@@ -30,7 +31,7 @@ if TYPE_CHECKING:
 READS = ("failure_atlas",)
 CAPTION = (
     "The failure atlas: every method on every hard scene, (a) in time and (b) of frequencies and "
-    "stability. Tolerances stand after the names of the methods that take one; our maps use 1e-12. "
+    "stability. Tolerances stand after the names of the methods that take one; our maps use 10⁻¹². "
     "A cell gives the verdict on the error against a reference (long double, sixty digits, or a "
     "balance of 128 harmonics), that error, and in brackets the contact changes that the method "
     "missed; empty: not asked. The last columns count silent errors, right answers that were "
@@ -45,6 +46,8 @@ _WORDS = {
     Reliability.flagged: "wrong, but said so",
     Reliability.silently_wrong: "silently wrong",
 }
+_LONG = 11
+"""Characters from which the text of a cell is set smaller."""
 _ROW = 0.2
 """Height of a row, inches."""
 _HEADS = 1.0
@@ -82,11 +85,12 @@ def _draw(axes: Axes, part: xr.Dataset) -> None:
     for row, column in np.argwhere(verdict > 0):
         words = [_SIGNS[Reliability(int(verdict[row, column]))]]
         if 0 < error[row, column] < np.inf:
-            words.append(np.format_float_scientific(error[row, column], 0, trim="-", exp_digits=1))
+            words.append(number(error[row, column], 1))
         if missed[row, column] > 0:
             words.append(f"({missed[row, column]:.0f})")
-        text = " ".join(words)
-        axes.text(column, row, text, ha="center", va="center", fontsize=5, color=BLACK)
+        text = "\N{THIN SPACE}".join(words)
+        size = 5 if len(text) < _LONG else 4.4
+        axes.text(column, row, text, ha="center", va="center", fontsize=size, color=BLACK)
     totals = {
         "silently\nwrong": (verdict == Reliability.silently_wrong).sum(axis=1),
         "right but\nflagged": ((verdict == Reliability.right) & flagged).sum(axis=1),
@@ -98,7 +102,7 @@ def _draw(axes: Axes, part: xr.Dataset) -> None:
     axes.axvline(columns - 0.5, color=GREY, lw=0.8)
     names = [*map(symbols, part.scene.values.tolist()), *totals]
     axes.set_xticks(range(len(names)), names, rotation=40, ha="right", rotation_mode="anchor")
-    axes.set_yticks(range(rows), part.solver.values.tolist())
+    axes.set_yticks(range(rows), list(map(symbols, part.solver.values.tolist())))
     for label, role in zip(axes.get_yticklabels(), part.role.values, strict=True):
         label.set_fontweight("bold" if role != Role.public else "normal")
     axes.set_xlim(-0.5, columns + len(totals) - 0.5)

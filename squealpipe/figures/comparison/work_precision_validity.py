@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -28,7 +29,7 @@ READS = ("work_precision_integration",)
 CAPTION = (
     "Share of the cells of the validity map that are decided wrongly (left) and mean distance of "
     "its boundary from the reference's (right), against (a, b) the wall time of the map and (c, "
-    "d) evaluations of the right-hand side: over tolerance and step (reference: tolerance 1e-15),"
+    "d) evaluations of the right-hand side: over tolerance and step (reference: tolerance 10⁻¹⁵),"
     " over the horizon (reference: the longest), and over the grid (reference: the fine grid, "
     "each coarse cell standing for its neighbourhood). Settings without any wrong cell are drawn "
     "at the dotted line. Red ring: the setting that our maps use. Machine and versions are named "
@@ -36,6 +37,8 @@ CAPTION = (
 )
 ALT = "Four charts: share of wrong cells and boundary distance against wall time and evaluations."
 
+SETTING = re.compile("^([Th]) ")
+"""A setting's symbol, before its value."""
 _COSTS = {
     "wall_time": "wall time of the map (s)",
     "evaluations": "evaluations of the right-hand side",
@@ -86,8 +89,9 @@ def _draw(axes: Axes, rows: xr.Dataset, name: str, cost: str) -> None:
         )  # fmt: skip
         for index in np.flatnonzero(mine & (values > 0)):
             axes.annotate(
-                rows.setting.values[index], (spent[index], shown[index]), fontsize=5.5,
-                xytext=(2, 3), textcoords="offset points", color=colour,
+                SETTING.sub(r"\1 = ", rows.setting.values[index]), (spent[index], shown[index]),
+                xytext=(-3 if scene == "horizon" else 2, 3), textcoords="offset points",
+                ha="right" if scene == "horizon" else "left", fontsize=5.5, color=colour,
             )  # fmt: skip
     ours = rows.role.values == Role.our_setting
     axes.plot(

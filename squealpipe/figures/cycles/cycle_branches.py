@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import json
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from squealpipe.figures.parts.origin import scene_title
 from squealpipe.figures.parts.style import (
     BLACK,
     BLUE,
@@ -17,6 +19,7 @@ from squealpipe.figures.parts.style import (
     RED,
     new_figure,
     panel_letter,
+    pi_label,
 )
 from squealpipe.schema import meanings
 
@@ -42,7 +45,7 @@ CAPTION = (
     "Limit cycles of the full model with dashpots over the friction coefficient: largest |x| of "
     "the cycle. Full lines: stable; dashed: unstable; marks: located special points. Dots: largest "
     "|x| in the last fifth of long runs from starts near and far, cycles and states of rest alike. "
-    "(a) Scene of Fig. 3; (b) the scene of the flutter onset, the branch from there if steady "
+    "(a) Scene of Fig. 3; (b) another scene, with the branch from the onset of flutter if steady "
     "sliding flutters within the range; (c) scene of Fig. 2(d)."
 )
 ALT = (
@@ -61,7 +64,7 @@ def draw(down: xr.Dataset, up: xr.Dataset, flutter: xr.Dataset, extremes: xr.Dat
     """
     figure, axes = new_figure(PAGE, 3.2, ncols=3)
     panels = (("F3", (down, up)), ("flutter", (flutter,)), ("F2d", ()))
-    titles = ("scene of Fig. 3", "from flutter onset", "scene of Fig. 2(d)")
+    titles = (scene_title("F3"), flutter_title(extremes), scene_title("F2d"))
     shown: dict[str, tuple[str, str, str]] = {}
     for letter, panel, (scene, branches), title in zip("abc", axes[0], panels, titles, strict=True):
         runs = extremes.late_max_x.sel(scene=scene)
@@ -82,6 +85,12 @@ def draw(down: xr.Dataset, up: xr.Dataset, flutter: xr.Dataset, extremes: xr.Dat
         handles += axes[0, 0].plot([], [], marker, color=colour, markersize=4, label=words)
     figure.legend(handles=handles, loc="outside lower center", ncols=min(len(handles), 4))
     return figure
+
+
+def flutter_title(dataset: xr.Dataset) -> str:
+    """The scene of the flutter onset by its angles, from the configuration of its dataset."""
+    angles = json.loads(dataset.attrs["config"])["cycles"]["flutter"]
+    return f"({', '.join(pi_label(float(angle) * np.pi) for angle in angles)}), flutter onset"
 
 
 def _branch(panel: Axes, branch: xr.Dataset) -> dict[str, tuple[str, str, str]]:

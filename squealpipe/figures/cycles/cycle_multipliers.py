@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from squealpipe.figures.cycles.cycle_branches import flutter_title
+from squealpipe.figures.parts.origin import scene_title
 from squealpipe.figures.parts.style import BLUE, GREY, ORANGE, PAGE, new_figure, panel_letter
 
 if TYPE_CHECKING:
@@ -34,7 +36,7 @@ def draw(growing: xr.Dataset, flutter: xr.Dataset) -> Figure:
     """
     figure, axes = new_figure(PAGE, 3.3, ncols=2)
     turn = np.linspace(0.0, 2.0 * np.pi, 200)
-    titles = ("scene of Fig. 3", "from flutter onset")
+    titles = (scene_title("F3"), flutter_title(flutter))
     for letter, panel, branch, title in zip("ab", axes[0], (growing, flutter), titles, strict=True):
         panel.plot(np.cos(turn), np.sin(turn), color=GREY, linewidth=0.8)
         real = branch.multiplier_real.values[:, 1:]

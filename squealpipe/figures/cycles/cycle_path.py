@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from squealpipe.figures.parts.backbone_panels import key_entries
 from squealpipe.figures.parts.origin import parameter
 from squealpipe.figures.parts.style import GREY, PAGE, REGIME_COLOURS, new_figure, panel_letter
 from squealpipe.schema import meanings
@@ -18,12 +19,12 @@ if TYPE_CHECKING:
 READS = ("cycles/limit_F3",)
 CAPTION = (
     "The limit cycle of the scene of Fig. 3 with dashpots, at the study's friction, if there is "
-    "one. (a) Path of the mass; the line is the height at which contact ends. (b) Velocity along "
-    "the belt over one period; the line is belt speed. Colours: the regime."
+    "one. (a) Path of the mass; the line is l_pre, above which contact is lost. (b) Velocity along "
+    "the belt over one period; the dashed line is belt speed. Colours: the regime."
 )
 ALT = (
-    "Left, the path of the cycle in the plane of x and y; right, its velocity over one period. "
-    "Regimes differ in colour; a panel without a cycle says so."
+    "Left, the path of the cycle in the plane of x and y, to scale; right, its velocity over one "
+    "period. Regimes differ in colour; a panel without a cycle says so."
 )
 
 
@@ -38,12 +39,15 @@ def draw(cycle: xr.Dataset) -> Figure:
     if not cycle.sizes["sample"]:
         for panel in (path, rate):
             panel.text(0.5, 0.5, "no cycle", transform=panel.transAxes, ha="center", color=GREY)
+            panel.set(xticks=[], yticks=[])
     else:
         _coloured(path, cycle.x_path.values, cycle.y_path.values, cycle)
         _coloured(rate, cycle.time.values, cycle.vx_path.values, cycle)
-        path.axhline(parameter(cycle, "preload"), color=GREY, linewidth=0.6)
-        rate.axhline(parameter(cycle, "belt_speed"), color=GREY, linewidth=0.6)
-        handles, words = path.get_legend_handles_labels()
+        height, speed = parameter(cycle, "preload"), parameter(cycle, "belt_speed")
+        path.axhline(height, color=GREY, lw=0.6, label=r"$l_\mathrm{pre}$: contact is lost above")
+        path.set(aspect="equal", adjustable="datalim")
+        rate.axhline(speed, color=GREY, lw=0.6, ls="--", label="belt speed")
+        handles, words = key_entries((path, rate))
         figure.legend(handles, words, loc="outside lower center", ncols=len(words))
     path.set(xlabel="x (m)", ylabel="y (m)")
     rate.set(xlabel="t (s)", ylabel="velocity along the belt (m/s)")

@@ -72,7 +72,11 @@ def draw(hammering: xr.Dataset) -> Figure:
         label=[flag_words(names[k]) for k in present],
     )
     panel.axvline(
-        float(hammering.attrs["regular_growth"]), color=GREY, linestyle="--", linewidth=1.0
+        float(hammering.attrs["regular_growth"]),
+        color=GREY,
+        linestyle="--",
+        linewidth=1.0,
+        label="regular to irregular",
     )
     panel.set(xlabel=f"ln of the growth over t = {t_end:g} s", ylabel="cells", yscale="log")
     figure.legend(loc="outside lower right", ncols=3)

@@ -32,16 +32,16 @@ CAPTION = (
     "Where model A1 keeps contact (grey), at high resolution. (a) In colour the cells that were "
     "run along the boundaries and where a thin region may hide: around late separations and where "
     "little contact force is left; lone points of the coarse grid are not shown, and all other "
-    "cells inherit their neighbour's answer. (b) A part of it, all cells that were run in colour. "
-    "(c) Runs of uniform maps and the share of cells that they show wrongly, against the runs of "
-    "the refined map."
+    "cells inherit their neighbour's answer. (b) The window with most of the boundary, all cells "
+    "that were run in colour. (c) Runs of uniform maps and the share of cells that they show "
+    "wrongly, against the runs of the refined map."
 )
 ALT = (
     "A map of kept contact with the cells that were run in colour; a magnified part of it; a chart "
     "of wrong cells over the number of runs for uniform maps, with the refined map's runs marked."
 )
-HORN = (0.05, 0.17, 0.57, 0.69)
-"""Window of panel (b) over π: α1 from, to; α2 from, to."""
+WINDOW = 0.12
+"""Side of the window of panel (b) over that of the map."""
 
 
 def draw(refined: xr.Dataset, check: xr.Dataset) -> Figure:
@@ -53,7 +53,7 @@ def draw(refined: xr.Dataset, check: xr.Dataset) -> Figure:
     """
     figure, axes = new_figure(PAGE, 2.9, ncols=3, width_ratios=(1, 1, 0.8))
     _map(axes[0, 0], refined.assign(computed=_clustered(refined.computed)))
-    window = np.multiply(HORN, np.pi)
+    window = _intricate(refined)
     axes[0, 0].add_patch(
         Rectangle(
             (window[0], window[2]),
@@ -65,7 +65,9 @@ def draw(refined: xr.Dataset, check: xr.Dataset) -> Figure:
         )
     )
     size = refined.alpha1.size
-    panel_letter(axes[0, 0], "a", f"{size}×{size}, {float(refined.computed.mean()):.1%} run")
+    panel_letter(
+        axes[0, 0], "a", f"{size} × {size}, {100 * float(refined.computed.mean()):.1f} % run"
+    )
     part = refined.sel(alpha1=slice(*window[:2]), alpha2=slice(*window[2:]))
     _map(axes[0, 1], part)
     for axis in (axes[0, 1].xaxis, axes[0, 1].yaxis):
@@ -84,6 +86,23 @@ def draw(refined: xr.Dataset, check: xr.Dataset) -> Figure:
         ncols=4,
     )
     return figure
+
+
+def _intricate(refined: xr.Dataset) -> tuple[float, float, float, float]:
+    """The window that holds most of the boundary, rad: α1 from, to; α2 from, to."""
+    kept = refined.separates.values == 0
+    boundary = np.zeros(kept.shape, int)
+    boundary[1:] += kept[1:] != kept[:-1]
+    boundary[:, 1:] += kept[:, 1:] != kept[:, :-1]
+    sums = np.pad(boundary.cumsum(0).cumsum(1), ((1, 0), (1, 0)))
+    side = max(2, round(WINDOW * len(kept)))
+    rows = sums[side:] - sums[:-side]
+    held = rows[:, side:] - rows[:, :-side]
+    places = np.argwhere(held == held.max())
+    row, column = places[len(places) // 2]
+    alpha1 = refined.alpha1.values[row : row + side]
+    alpha2 = refined.alpha2.values[column : column + side]
+    return alpha1[0], alpha1[-1], alpha2[0], alpha2[-1]
 
 
 def _clustered(computed: xr.DataArray) -> xr.DataArray:

@@ -16,6 +16,7 @@ from squealpipe.figures.parts.style import (
     ORANGE,
     PAGE,
     new_figure,
+    number,
     panel_letter,
 )
 from squealpipe.parameters import SCENES
@@ -29,9 +30,9 @@ READS = ("transient",)
 CAPTION = (
     "How long the bounded motion of Fig. 4 lasts. (a) Share of runs that still swing to and fro "
     "after a time, over perturbations of the start up to a billionth of l_pre: Kaplan–Meier "
-    "estimate with its 95 % band. Dashed: decay at one hazard for all ages. Orange: the time "
-    "of Fig. 4. (b) Share of runs that leave it within the time run, and their median lifetime "
-    "where half of them do, over belt speed."
+    "estimate with its 95 % band. Dashed, where runs end: decay at one hazard for all ages. "
+    "Orange: the time of Fig. 4. (b) Share of runs that leave it within the time run, and their "
+    "median lifetime where half of them do, over belt speed."
 )
 ALT = (
     "Left, a survival curve on a logarithmic axis. Right, the share of runs that left and their "
@@ -60,7 +61,7 @@ def _survival(axes: Axes, transient: xr.Dataset) -> None:
         transient.survival,
         where="post",
         color=BLUE,
-        label=f"{count} runs, V = {float(transient.shown_belt_speed):g} m/s",
+        label=f"{count} runs, V = {number(float(transient.shown_belt_speed))} m/s",
     )
     axes.fill_between(
         age, transient.survival_low, transient.survival_high, step="post", color=BLUE, alpha=0.25,
@@ -68,7 +69,7 @@ def _survival(axes: Axes, transient: xr.Dataset) -> None:
     )  # fmt: skip
     _constant_hazard(axes, transient)
     shown = SCENES["F4"].t_end * time_unit(transient)
-    axes.axvspan(0, shown, color=ORANGE, alpha=0.3, linewidth=0)
+    axes.axvspan(0, shown, color=ORANGE, alpha=0.3, linewidth=0, label="shown in Fig. 4")
     axes.set(xlabel="t (s)", ylabel="share still bounded", yscale="log", xlim=(0, t_end))
     positive = transient.survival.values[transient.survival.values > 0]
     axes.set_ylim(bottom=0.5 * positive.min(), top=1.6)
@@ -100,7 +101,7 @@ def _speeds(axes: Axes, transient: xr.Dataset) -> None:
     ordered = np.sort(np.where(np.isfinite(lifetime), lifetime, np.inf), axis=1)
     median = ordered[:, lifetime.shape[1] // 2]
     half = np.isfinite(median)
-    panel_letter(axes, "b")
+    panel_letter(axes, "b", "runs that left, and their median lifetime")
     if not half.any():
         twin.set_axis_off()
         return

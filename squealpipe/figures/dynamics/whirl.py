@@ -52,7 +52,7 @@ def draw(run: xr.Dataset, sizes: xr.Dataset) -> Figure:
     panel.axvspan(0, shown, color=GREY, alpha=0.25, linewidth=0, label="shown in Fig. 3")
     panel.axhline(0, color=GREY, linewidth=0.5)
     panel.set(xlabel="t (s)", ylabel="x (m)", xlim=(0, float(run.time[-1])))
-    panel.legend(loc="upper left")
+    panel.legend(loc="lower right", bbox_to_anchor=(1, 0.98))
     panel_letter(panel, "a", f"x in time, max |x| = {float(np.abs(run.x).max()):.4g} m")
     _sizes(axes[0, 1], sizes)
     return figure

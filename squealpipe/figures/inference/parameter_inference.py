@@ -16,6 +16,7 @@ from squealpipe.figures.parts.style import (
     ORANGE,
     PAGE,
     new_figure,
+    number,
     panel_letter,
 )
 
@@ -35,9 +36,10 @@ CAPTION = (
 )
 ALT = "Three scatter plots of feasible parameters and two bar charts over the paper's statements."
 PANELS = (
-    ("kappa", "mu", "κ = k₃/k", "μ"),
-    ("length_ratio", "kappa", r"λ = $L/l_\mathrm{pre}$", "κ = k₃/k"),
+    ("friction, stiffness", "kappa", "mu", "κ = k₃/k", "μ"),
+    ("stiffness, length", "length_ratio", "kappa", r"λ = $L/l_\mathrm{pre}$", "κ = k₃/k"),
     (
+        "belt speed, length",
         "length_ratio",
         "speed_ratio",
         r"λ = $L/l_\mathrm{pre}$",
@@ -54,9 +56,9 @@ def draw(inference: xr.Dataset) -> Figure:
     figure.clear()
     grid = figure.add_gridspec(2, 1, height_ratios=(1.15, 1))
     upper, lower = figure.add_subfigure(grid[0]), figure.add_subfigure(grid[1])
-    for panel, letter, names in zip(upper.subplots(1, 3), "abc", PANELS, strict=True):
+    for panel, letter, (title, *names) in zip(upper.subplots(1, 3), "abc", PANELS, strict=True):
         _scatter(panel, inference, *names)
-        panel_letter(panel, letter, "feasible sets" if letter == "a" else "")
+        panel_letter(panel, letter, title)
         if letter == "a":
             panel.axhline(1 / np.tan(0.4 * np.pi), color=GREY, ls="--", lw=0.8)
     upper.legend(*panel.get_legend_handles_labels(), loc="outside lower center", ncols=3)
@@ -73,7 +75,7 @@ def draw(inference: xr.Dataset) -> Figure:
     margins.invert_yaxis()
     for name, value in zip(names, values, strict=True):
         margins.annotate(
-            f"{value:.2g}",
+            number(value, 2),
             (max(value, 0.0), name),
             (3, 0),
             textcoords="offset points",
@@ -133,6 +135,8 @@ def _bars(panel: Axes, inference: xr.Dataset) -> None:
     panel.barh(names, holding, color=LIGHT, height=0.7, label="holds")
     panel.barh(names, alone, color=BLACK, height=0.35, label="excluded by it alone")
     everything = float(inference.feasible.mean())
-    panel.axvline(everything, color=BLUE, ls="--", lw=0.8, label=f"all hold: {everything:.2%}")
+    panel.axvline(
+        everything, color=BLUE, ls="--", lw=0.8, label=f"all hold: {100 * everything:.2f} %"
+    )
     panel.invert_yaxis()
     panel.set(xlabel="share of the samples", xlim=(0, 1))

@@ -62,7 +62,7 @@ def draw(stability: xr.Dataset, quasi_static: xr.Dataset, boundaries: xr.Dataset
     """
     figure, axes = new_figure(PAGE, 3.95, ncols=2)
     readings = (
-        ("as printed", quasi_static.possible_as_printed, Boundary.no_coupling),
+        ("Eq. (11) as printed", quasi_static.possible_as_printed, Boundary.no_coupling),
         ("reaction force positive", quasi_static.possible, None),
     )
     for panel, letter, (title, possible, extra) in zip(axes[0], "ab", readings, strict=True):

@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from squealpipe.figures.parts.style import BLUE, GREEN, GREY, ORANGE, RED, pi_label
+from squealpipe.figures.parts.origin import scene_title
+from squealpipe.figures.parts.style import BLUE, GREEN, GREY, ORANGE, RED
 from squealpipe.parameters import SCENES
 from squealpipe.schema.linear import Boundary
 
@@ -51,6 +52,6 @@ def mark_scene(axes: Axes, name: str) -> None:
         markersize=7,
         markeredgewidth=1.8,
         linestyle="none",
-        label=f"({pi_label(scene.alpha1)}, {pi_label(scene.alpha2)}), Fig. {scene.figure}",
+        label=scene_title(name),
         clip_on=False,
     )

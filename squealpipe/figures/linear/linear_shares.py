@@ -29,15 +29,17 @@ def draw(shares: xr.Dataset) -> Figure:
     figure, axes = new_figure(PAGE, 4.8, nrows=2, ncols=2)
     sliding, pressed, unstable, smooth = axes.ravel()
     mu = shares.mu.values
-    sliding.plot(mu, shares.impossible_as_printed, color=ORANGE, ls="--", label="as printed")
+    sliding.plot(
+        mu, shares.impossible_as_printed, color=ORANGE, ls="--", label="Eq. (11) as printed"
+    )
     sliding.plot(mu, shares.impossible, color=BLUE, label="reaction not positive")
     sliding.set(xlabel="μ", ylabel="share of the map", ylim=(0, None))
     sliding.legend(loc="center right")
     _lines_for_stiffnesses(pressed, shares, "impossible_but_pressed")
+    pressed.legend(loc="upper left")
     pressed.set(xlabel="μ", ylabel="share of the map", ylim=(0, None))
     _lines_for_stiffnesses(unstable, shares, "unstable_where_possible")
     unstable.set(xlabel="μ", ylabel="share of the map", ylim=(0, None))
-    unstable.legend(loc="upper left")
     _regularization(smooth, shares)
     titles = ("sliding not possible", "not possible, yet pressed", "possible, yet unstable",
               "regularization")  # fmt: skip

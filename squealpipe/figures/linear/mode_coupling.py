@@ -48,7 +48,8 @@ def draw(coupling: xr.Dataset) -> Figure:
             label="published" if mode == 1 else None,
         )
     frequency.set(xlabel="μ", ylabel="frequency (rad/s)")
-    frequency.legend()
+    first, marks, second = frequency.get_lines()[:3]
+    frequency.legend(handles=[first, second, marks])
     growth.plot(coupling.mu, coupling.growth_rate, color=BLUE)
     growth.plot(some.mu, some.published_growth_rate, "o", ms=3, mfc="none", color=BLACK, mew=0.6)
     growth.set(xlabel="μ", ylabel="growth rate (1/s)")

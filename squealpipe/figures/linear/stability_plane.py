@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from squealpipe.figures.linear.linear_overlay import LINES
-from squealpipe.figures.parts.style import BLACK, COLUMN, LIGHT, new_figure
+from squealpipe.figures.parts.style import COLUMN, LIGHT, new_figure
 from squealpipe.schema.linear import Boundary
 
 if TYPE_CHECKING:
@@ -40,7 +40,6 @@ def draw(boundaries: xr.Dataset) -> Figure:
             chosen = boundaries.segment.values == segment
             panel.plot(z[chosen].real, z[chosen].imag, label=label, **look)  # type: ignore[arg-type]
             label = ""
-    panel.plot(0, 0, "+", color=BLACK, markersize=5)
     panel.set(xlabel="Re Z = K₁₁ − K₂₂ (N/m)", ylabel="Im Z = 2K₁₂ (N/m)", aspect="equal")
     figure.legend(loc="outside lower center", ncols=2)
     return figure

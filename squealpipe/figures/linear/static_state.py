@@ -18,7 +18,8 @@ CAPTION = (
     "Two contact forces that the paper does not tell apart. (a) Reaction Rₙ of A2, which holds the "
     "mass at y = 0; (b) contact force of the static state of Eq. (15), where y settles. Both over "
     "k₃l_pre, red: pressed, blue: k₃ would have to pull. Black lines: where the sign changes. The "
-    "force in (b) is proportional to det K, which is zero along α₁ + α₂ = nπ."
+    "force in (b) is proportional to det K, which is zero along α₁ + α₂ = nπ. The cross is the "
+    "configuration of Fig. 3."
 )
 ALT = "Two maps over both angles of contact forces in red where pressed and blue where pulled."
 LIMIT = 2.0

@@ -98,7 +98,7 @@ def _label(
     belt_top: float,
 ) -> None:
     text: dict[str, Any] = {"fontsize": 10, "ha": "center", "va": "center"}
-    axes.text(0, 0, "m", zorder=5, **text)
+    axes.text(0, 0, "$m$", zorder=5, **text)
     for index, direction in enumerate(directions, start=1):
         side = np.array([-direction[1], direction[0]]) * (1 if index == 1 else -1)
         place = 0.58 * direction + 0.27 * side
@@ -116,7 +116,7 @@ def _label(
         axes.text(place[0], place[1], f"$\\alpha_{index}$", **text)
     axes.text(0.26, 0.5 * belt_top - 0.06, "$k_3$", color=GREY, **text)
     axes.text(-0.75, belt_top + 0.1, "friction $\\mu$", **text)
-    axes.text(1.14, belt_top - 0.27, "V", color=RED, **text)
+    axes.text(1.14, belt_top - 0.27, "$V$", color=RED, **text)
     origin = np.array([-1.2, 0.02])
     for step, name in (((0.3, 0.0), "x"), ((0.0, 0.3), "y")):
         tip = origin + step
@@ -136,7 +136,7 @@ def displaced_springs(
     end1 = (lengths[0] * np.cos(alpha1), lengths[0] * np.sin(alpha1))
     end2 = (-lengths[1] * np.cos(alpha2), lengths[1] * np.sin(alpha2))
     first, second = coil((x, y), end1, width=width), coil((x, y), end2, width=width)
-    aside = apart(np.subtract(end1, (x, y)), np.subtract(end2, (x, y)), 1.3 * width)
+    aside = apart(np.subtract(end1, (x, y)), np.subtract(end2, (x, y)), 2.1 * width)
     first[1:-1] += aside[0]
     second[1:-1] += aside[1]
     return first, second
@@ -144,8 +144,8 @@ def displaced_springs(
 
 def apart(first: np.ndarray, second: np.ndarray, distance: float) -> np.ndarray:
     """Sideways shifts of two springs that would hide one another, in rows; else zero."""
-    length = float(np.hypot(*first))
-    if not np.allclose(first, second, atol=1e-6 * length) or length == 0.0:
+    lengths = np.hypot(*np.transpose([first, second]))
+    if not lengths.all() or not np.allclose(first / lengths[0], second / lengths[1], atol=1e-6):
         return np.zeros((2, 2))
-    across = np.array([-first[1], first[0]]) / length
+    across = np.array([-first[1], first[0]]) / lengths[0]
     return np.array([0.5 * distance * across, -0.5 * distance * across])

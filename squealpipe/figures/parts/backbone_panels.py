@@ -39,6 +39,8 @@ KEY = (
 """What the marks mean, for captions."""
 SCENE_ALT = "Two panels of amplitude over frequency for x and y, one for each mode."
 
+MOST_IN_A_ROW = 6
+"""Entries that a row of the legend takes."""
 STABLE_TO_ROUND_OFF = 2.0 + 1e-6
 
 
@@ -63,7 +65,8 @@ def draw_scenes(branches: Mapping[str, xr.Dataset], height: float) -> Figure:
             panel_letter(panel, next(letters), f"{_angles(exact)}, vicinity of ω{'₁₂'[mode - 1]}")
         row[0].set_ylabel("amplitude (m)")
     handles, labels = key_entries(axes.ravel())
-    figure.legend(handles, labels, loc="outside lower center", ncols=len(labels))
+    columns = len(labels) if len(labels) <= MOST_IN_A_ROW else -(-len(labels) // 2)
+    figure.legend(handles, labels, loc="outside lower center", ncols=columns)
     return figure
 
 
@@ -97,7 +100,10 @@ def draw_branch(panel: Axes, exact: xr.Dataset, series: xr.Dataset, preload: flo
         # both ends of each unstable stretch are shared with the stable line, so that none gapes
         near = unstable | np.roll(unstable, 1) | np.roll(unstable, -1)
         dotted = np.where(near & unstable.any(), values, np.nan)
-        panel.plot(omega, dotted, color=colour, linewidth=1.4, linestyle=":")
+        panel.plot(
+            omega, dotted, color=colour, linewidth=1.4, linestyle=":",
+            label=f"{label}, unstable" if unstable.any() else None,
+        )  # fmt: skip
         panel.plot(
             series.omega.values[shown],
             series[name].values[shown],
@@ -116,9 +122,10 @@ def draw_branch(panel: Axes, exact: xr.Dataset, series: xr.Dataset, preload: flo
             marker="o",
             markerfacecolor="none",
             markeredgecolor=RED,
+            label="mass overtakes the belt" if broken.any() else None,
         )
     _mark_contact_loss(panel, exact, preload)
-    _frame(panel, omega)
+    _frame(panel, np.concatenate([omega, series.omega.values[shown]]))
 
 
 def say_why_empty(panel: Axes, branch: xr.Dataset) -> None:

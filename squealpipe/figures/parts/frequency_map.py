@@ -32,7 +32,7 @@ CAPTION = (
 """What the lines mean."""
 
 
-HATCH = Patch(facecolor="white", edgecolor=RED, hatch="//////", label="flutter: common frequency")
+HATCH = Patch(facecolor="white", edgecolor=BLACK, hatch="//////", label="flutter: common frequency")
 """Key to what :func:`outline` draws."""
 
 
@@ -58,9 +58,10 @@ def draw_mode(frequencies: xr.Dataset, mode: int) -> Figure:
             vmin=lower,
             vmax=upper,
         )
-        draw_isolines(panel, frequencies, values, 0.2 if mode == 1 else 0.1)
-        outcome = frequencies.outcome.sel(mode=mode, contact_state=state).values
-        outline(panel, frequencies, outcome == Outcome.complex_pair)
+        flutter = frequencies.outcome.sel(mode=mode, contact_state=state) == Outcome.complex_pair
+        shown = np.where(flutter, np.nan, values)
+        draw_isolines(panel, frequencies, shown, 0.2 if mode == 1 else 0.1)
+        outline(panel, frequencies, flutter.values)
         panel_letter(panel, letter, "in contact" if state == "contact" else state)
     draw_sums(axes[0, 1])
     keys = axes[0, 1].get_lines()
@@ -93,7 +94,7 @@ def draw_isolines(axes: Axes, frequencies: xr.Dataset, values: np.ndarray, step:
         frequencies.alpha1.values,
         frequencies.alpha2.values,
         values.T,
-        levels=np.arange(step, float(values.max()), step),
+        levels=np.arange(step, float(np.nanmax(values)), step),
         colors="white",
         linewidths=0.5,
     )

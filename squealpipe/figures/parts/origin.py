@@ -7,7 +7,7 @@ import math
 from typing import TYPE_CHECKING
 
 from squealpipe.figures.parts.style import pi_label
-from squealpipe.parameters import DEFAULTS, SCENES, TABLE
+from squealpipe.parameters import DEFAULTS, SCENES, TABLE, Scene
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -33,14 +33,24 @@ def time_unit(dataset: xr.Dataset) -> float:
     return math.sqrt(parameter(dataset, "mass") / parameter(dataset, "k1"))
 
 
+def angles_of(scene: Scene) -> str:
+    """Both angles of a scene of the paper: ``(0.4π, 0.6π)``."""
+    return f"({pi_label(scene.alpha1)}, {pi_label(scene.alpha2)})"
+
+
+def scene_title(name: str) -> str:
+    """A scene of the paper by its angles and its figure: ``(0.4π, 0.6π), Fig. 3``."""
+    return f"{angles_of(SCENES[name])}, {SCENES[name].panel}"
+
+
 def scene_name(dataset: xr.Dataset, scene: str) -> str:
     """A scene of the periodic motions by its angles: ``(π/2, π), mode 2`` for ``F10 mode 2``."""
     name, _, mode = scene.partition(" mode ")
     own = json.loads(dataset.attrs.get("config", "{}")).get("backbones.coupled", {})
     if name in own:
-        angles = [float(angle) * math.pi for angle in own[name]]
+        angles = f"({', '.join(pi_label(float(angle) * math.pi) for angle in own[name])})"
     elif name in SCENES:
-        angles = [SCENES[name].alpha1, SCENES[name].alpha2]
+        angles = angles_of(SCENES[name])
     else:
         return scene
-    return f"({', '.join(map(pi_label, angles))}), mode {mode}"
+    return f"{angles}, mode {mode}"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -113,27 +114,31 @@ def pi_label(angle: float) -> str:
     return f"{over_pi:.4g}π"
 
 
+RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+"""Digits and sign of an exponent in plain text."""
+
+
 def symbols(text: str) -> str:
-    """Names of quantities in plain text as mathematics, for Matplotlib."""
+    """Names of quantities and powers of ten in plain text as mathematics, for Matplotlib."""
     for name, symbol in (
         ("l_pre", r"l_\mathrm{pre}"),
         ("N_h", r"N_\mathrm{h}"),
         ("ω_x", r"\omega_x"),
     ):
         text = text.replace(name, f"${symbol}$")
-    return text
+    return re.sub(r"\b1e-0?(\d+)", lambda found: "10⁻" + found[1].translate(RAISED), text)
 
 
 def number(value: float, digits: int = 3) -> str:
-    """A number as people write it: 1326, 0.0042, 2.6·10⁻¹⁵."""
-    text = f"{value:.{digits}g}"
-    if "e" not in text:
-        return text
-    mantissa, exponent = text.split("e")
-    if 0 <= int(exponent) < 6:
-        return f"{value:.0f}"
-    power = str(int(exponent)).translate(str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"))
-    return f"10{power}" if mantissa == "1" else f"{mantissa}·10{power}"
+    """A number as people write it: 1326, −0.0042, 2.6·10⁻¹⁵."""
+    mantissa, _, exponent = f"{value:.{digits}g}".partition("e")
+    if exponent and 0 <= int(exponent) < 6:
+        mantissa, exponent = f"{value:.0f}", ""
+    mantissa = mantissa.replace("-", "−")
+    if not exponent:
+        return mantissa
+    raised = str(int(exponent)).translate(RAISED)
+    return f"10{raised}" if mantissa == "1" else f"{mantissa}·10{raised}"
 
 
 def angle_map_axes(axes: Axes, upper: float = np.pi) -> None:

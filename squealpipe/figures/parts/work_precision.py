@@ -38,8 +38,8 @@ MARKS = {
 }
 FALLBACK = [
     Mark(colour, marker, dash)
-    for marker, dash in (("o", "-"), ("x", ":"))
-    for colour in (BLACK, BLUE, GREEN, ORANGE, RED, PURPLE, GREY)
+    for markers, dash in (("os^vDP*", "-"), ("xx+x+x+", ":"))
+    for colour, marker in zip((BLACK, BLUE, GREEN, ORANGE, RED, PURPLE, GREY), markers, strict=True)
 ]
 _FEW_DECADES = 100.0
 """Ratio of costs below which decades alone would leave an axis with hardly a number."""

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from squealpipe.figures.parts.origin import scene_title
 from squealpipe.figures.parts.style import (
     BLACK,
     BLUE,
@@ -18,7 +19,6 @@ from squealpipe.figures.parts.style import (
     new_figure,
     panel_letter,
 )
-from squealpipe.parameters import SCENES
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -27,14 +27,15 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 READS = ("disturbance/*",)
-COLOURS = (BLUE, ORANGE, GREEN, RED, PURPLE, BLACK)
+MARKS = tuple(zip((BLUE, ORANGE, GREEN, RED, PURPLE, BLACK), "osv^DP", strict=True))
+"""Colour and marker by scene."""
 CAPTION = (
     "Smallest disturbance of steady sliding that leads to (a) loss of contact, (b) the whirl, over "
     "the number of random directions tried, by scene. Crosses: after the local search from each of "
     "the best directions, the lowest of them the result. Dashed: contact loss by the linear motion "
     "about the steady state, in closed form. Scenes without a line have no steady sliding, or one "
     "that is unstable, or no disturbance within the bound does it. The norm is "
-    "√((x² + y²)/l_pre² + (x'² + y'²)/(l_pre ω)²) with ω² = (k1 + k2)/(2m)."
+    "√((x² + y²)/l_pre² + (ẋ² + ẏ²)/(l_pre ω)²) with ω² = (k1 + k2)/(2m)."
 )
 ALT = "Two panels of falling lines over the number of directions, with crosses below their ends."
 
@@ -47,7 +48,7 @@ def draw(found: Mapping[str, xr.Dataset]) -> Figure:
     """
     figure, axes = new_figure(PAGE, 3.0, ncols=2)
     scenes = sorted({name.split("/")[1].partition("_")[0] for name in found})
-    colours = dict(zip(scenes, COLOURS, strict=False))
+    marks = dict(zip(scenes, MARKS, strict=False))
     handles = {}
     for letter, panel, goal, title in zip(
         "ab", axes[0], ("contact_lost", "whirl"), ("loss of contact", "whirl"), strict=True
@@ -57,8 +58,10 @@ def draw(found: Mapping[str, xr.Dataset]) -> Figure:
             one = found.get(f"disturbance/{scene}_{goal}")
             if one is None or not np.isfinite(one.distance):
                 continue
-            colour = colours.get(scene, GREY)
-            (handles[scene],) = panel.plot(number, one.distance_by_number, ".-", color=colour)
+            colour, marker = marks.get(scene, (GREY, "."))
+            (handles[scene],) = panel.plot(
+                number, one.distance_by_number, marker=marker, ms=3.5, color=colour
+            )
             improved = one.improved_distance.values
             panel.plot(np.full(improved.size, 1.6 * number[-1]), improved, "x", color=colour)
             if np.isfinite(one.linear_distance):
@@ -74,8 +77,8 @@ def draw(found: Mapping[str, xr.Dataset]) -> Figure:
     if handles:
         figure.legend(
             handles.values(),
-            [SCENES[scene].panel for scene in handles],
+            [scene_title(scene) for scene in handles],
             loc="outside lower center",
-            ncols=len(handles),
+            ncols=min(len(handles), 4),
         )
     return figure

@@ -76,7 +76,7 @@ def draw(spread: xr.Dataset) -> Figure:
         )  # fmt: skip
         indices.plot(at, spread.first_order.values[i], "k.", markersize=3)
     indices.set_xticks(np.arange(len(inputs)), inputs)
-    indices.set(ylabel="Sobol index", ylim=(0, None))
+    indices.set(ylabel="Sobol index", xlim=(-0.5, len(inputs) - 0.5), ylim=(0, None))
     if shown:
         indices.legend()
     else:
@@ -85,7 +85,8 @@ def draw(spread: xr.Dataset) -> Figure:
         if np.isfinite(row).any():
             base = spread.index_samples.sel(quantity=row.quantity)
             widths.plot(base, row, ".-", color=colour)
-    widths.axhline(WIDEST, color=GREY, ls="--", lw=0.8)
+    widths.axhline(WIDEST, color=GREY, ls="--", lw=0.8, label="widest that is given")
+    widths.legend()
     widths.set(
         xlabel="base sample", xscale="log", ylabel="half-width of total index", ylim=(0, None)
     )
