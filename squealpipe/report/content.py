@@ -18,6 +18,7 @@ from PIL import Image
 from squealpipe.claims.evidence import Run
 from squealpipe.claims.table import rows
 from squealpipe.figures import declared
+from squealpipe.figures.parts.style import RAISED
 from squealpipe.parameters import TABLE, Parameters
 from squealpipe.report.facts import gather_facts
 from squealpipe.report.places import FIGURES, PLACES
@@ -123,7 +124,7 @@ def _parameters(parameters: Parameters) -> list[dict[str, Any]]:
             "symbol": TABLE[name].symbol,
             "meaning": TABLE[name].meaning,
             "value": value,
-            "unit": TABLE[name].units,
+            "unit": re.sub(r"-\d", lambda found: found[0].translate(RAISED), TABLE[name].units),
         }
         for name, value in parameters.as_dict().items()
     ]

@@ -134,6 +134,10 @@ def sliding_excludes_instability(datasets: Datasets) -> bool:
 SENTENCES: dict[str, Callable[[Parameters, Datasets], bool]] = {
     "its amplitude saturates": lambda params, data: whirls(data, params),
     "is a transient on the way to a limit cycle": lambda params, data: whirls(data, params),
+    "once the mass passes the belt at belt": lambda params, data: bool(
+        (data["whirl"].max_vx >= abs(params.belt_speed)).any()
+    ),
+    "the picture needs the exact boundaries": lambda params, _: beyond_paper(params),
     "is a chaotic transient": lambda _, data: some_leave(data),
     "what looks like a limit cycle is a transient": lambda _, data: some_leave(data),
     "leaves the motion of Fig. 4 by": lambda _, data: not some_leave(data),
@@ -168,6 +172,12 @@ def test_sentences_are_looked_for_by_words_that_the_report_has() -> None:
     written = " ".join("".join(path.read_text("utf-8") for path in sources).split())
     written = re.sub(r'" f?"', "", written)
     assert [words for words in SENTENCES if words not in written] == []
+
+
+def test_numbers_and_statements_are_written_as_people_write_them(study) -> None:
+    """No hyphen for a minus, no 1e-08 and no name from the code, up to the provenance."""
+    text = study[3].rpartition(" Provenance ")[0]
+    assert re.findall(r"(?<![\w./])-\d.{9}|\be-?\d\d\b|(?<!/)\bF\d+[a-z]?_[a-z]\w+", text) == []
 
 
 def test_counts_of_the_summary_are_those_of_the_verdicts(study) -> None:

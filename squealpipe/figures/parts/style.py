@@ -126,6 +126,11 @@ def symbols(text: str) -> str:
         ("ω_x", r"\omega_x"),
     ):
         text = text.replace(name, f"${symbol}$")
+    return powers(text)
+
+
+def powers(text: str) -> str:
+    """Tolerances like ``1e-08`` in plain text as powers of ten: 10⁻⁸."""
     return re.sub(r"\b1e-0?(\d+)", lambda found: "10⁻" + found[1].translate(RAISED), text)
 
 

@@ -7,7 +7,8 @@ from typing import Any
 import numpy as np
 
 from squealpipe.claims.evidence import Run
-from squealpipe.figures.parts.style import flag_words, pi_label
+from squealpipe.figures.parts.origin import angles_of
+from squealpipe.figures.parts.style import flag_words
 from squealpipe.parameters import SCENES
 from squealpipe.schema import meanings
 from squealpipe.schema.dynamics.runs import MotionFlag
@@ -39,9 +40,7 @@ def assumptions(run: Run) -> dict[str, Any]:
                     for what in row.assumption.values[row.values]
                 ]
             )
-        scene = SCENES[name]
-        angles = f"({pi_label(scene.alpha1)}, {pi_label(scene.alpha2)})"
-        scenes.append({"name": name, "angles": angles, "cells": cells})
+        scenes.append({"name": name, "angles": angles_of(SCENES[name]), "cells": cells})
     return {
         "levels": levels,
         "scenes": scenes,
@@ -63,6 +62,7 @@ def whirl(run: Run) -> dict[str, Any]:
         "speed": float(here.belt_speed),
         "own_speed": bool(np.isclose(here.belt_speed, parameters.belt_speed, rtol=1e-6)),
         "amplitude": float(here.amplitude / parameters.preload),
+        "passes_belt": bool(here.max_vx >= abs(here.belt_speed)),
         "top_speed": float(here.max_vx / abs(here.belt_speed)),
         "lowest_speed": finite_or_none(abs(dataset.belt_speed).where(whirls.notnull()).min()),
         "speeds": _slowest_and_fastest(dataset),

@@ -18,7 +18,9 @@ import xarray as xr
 
 from squealpipe.claims.evidence import Run
 from squealpipe.claims.maps import coupling_is_negative, order_turns_over, unstable_cells
-from squealpipe.figures.parts.style import flag_words
+from squealpipe.figures.comparison.model_ladder import QUESTION_NAMES
+from squealpipe.figures.parts.style import flag_words, number
+from squealpipe.figures.spread.verdict_reach import WORDS
 from squealpipe.report.facts.orbits import orbit_cells
 from squealpipe.schema import meanings
 from squealpipe.schema.inference import CONFIDENCE, wilson_interval
@@ -112,7 +114,7 @@ def _inference(run: Run) -> Iterator[Row]:
         row = inference.sel(consequence=name)
         held = np.arange(count) < round(float(row.feasible_share) * count)
         yield _share(
-            f"{name} over the feasible set: {row.consequence_check.item()}",
+            f"{WORDS.get(str(name), name)} over the feasible set: {row.consequence_check.item()}",
             held,
             "feasible parameter sets",
             HOW_CONSEQUENCES_CONVERGE.get(str(name), "closed form at each parameter set"),
@@ -177,7 +179,7 @@ def _ladder(run: Run) -> Iterator[Row]:
     tolerance = float(ladder.tolerance)
     for name in ladder.question.values:
         errors = ladder.chosen_error.sel(question=name)
-        words = str(name).replace("_", " ")
+        words = QUESTION_NAMES[str(name)].rstrip("?")
         yield _area(
             f"{words}: the chosen model is within the tolerance",
             errors <= tolerance,
@@ -254,14 +256,18 @@ def _whirl(run: Run) -> Iterator[Row]:
             "of": f"belt speeds from {speeds.min():.3g} to {speeds.max():.3g} m/s",
             "error": f"{100 * CONFIDENCE:.0f} % interval of least squares; largest residual "
             f"{100 * residual:.2g} % of the size",
-            "convergence": f"{fastest[index]:.4g} {unit} from the {speeds.size - half} fastest "
-            "of them",
+            "convergence": f"{number(fastest[index], 4)} {unit} from the {speeds.size - half} "
+            "fastest of them",
         }
 
 
 def _harmonic(run: Run) -> Iterator[Row]:
     sweep = run["harmonic_sweep"]
-    for key, error in (("omega_rate", "ω"), ("waveform_rate", "waveform"), ("sigma_rate", "σ")):
+    for key, error, setting in (
+        ("omega_rate", "ω", "N_h"),
+        ("waveform_rate", "waveform", "N_h"),
+        ("sigma_rate", "σ", "σ"),
+    ):
         rates = sweep[key].values[np.isfinite(sweep[key].values)]
         if rates.size:
             yield {
@@ -274,7 +280,7 @@ def _harmonic(run: Run) -> Iterator[Row]:
                 "sample": int(rates.size),
                 "of": "fits, one per scene and peak",
                 "error": "range over scenes and peaks",
-                "convergence": str(sweep[key].attrs["long_name"]),
+                "convergence": f"the p of an error that falls like {setting}⁻ᵖ",
             }
 
 

@@ -7,7 +7,9 @@ from typing import Any
 import numpy as np
 
 from squealpipe.claims.evidence import Run
+from squealpipe.figures.parts.origin import angles_of, scene_title
 from squealpipe.figures.parts.style import flag_words
+from squealpipe.figures.spread.verdict_reach import WORDS
 from squealpipe.parameters import SCENES
 from squealpipe.report.facts.motion import finite_or_none
 from squealpipe.schema import Outcome
@@ -32,7 +34,7 @@ def reach(run: Run) -> dict[str, Any]:
     judged = np.isfinite(others) & np.isfinite(first)
     changed = judged & (np.abs(others - first) > 0.5)
     counts = changed.sum(axis=0)
-    names = dataset.statement.values.tolist()
+    names = [WORDS.get(name, name) for name in dataset.statement.values.tolist()]
     order = np.argsort(-counts, kind="stable")
     varies = (judged & (others != first)).any(axis=0)
     return {
@@ -53,9 +55,8 @@ def basins(run: Run) -> dict[str, Any]:
         dataset = run[f"basin/{name}"]
         words = str(dataset.motion.attrs["flag_meanings"]).split()
         values, counts = np.unique(dataset.motion.values, return_counts=True)
-        angles = [float(dataset[key]) / np.pi for key in ("alpha1", "alpha2")]
         scenes.append({
-            "angles": f"({angles[0]:.4g}π, {angles[1]:.4g}π)",
+            "angles": angles_of(SCENES[name]),
             "parts": [
                 {"words": flag_words(words[value]), "share": float(count / counts.sum())}
                 for value, count in zip(values, counts, strict=True)
@@ -78,14 +79,14 @@ STEADY = {
 def disturbances(run: Run) -> dict[str, Any]:
     """Smallest disturbances of steady sliding by scene, beside the linear verdict."""
     rows = []
-    for name, scene in SCENES.items():
+    for name in SCENES:
         pair = [f"disturbance/{name}_{goal}" for goal in ("contact_lost", "whirl")]
         if not all(one in run for one in pair):
             continue
         contact, whirl = (run[one] for one in pair)
         outcome = Outcome(int(contact.outcome))
         rows.append({
-            "scene": scene.panel,
+            "scene": scene_title(name),
             "linear": LinearRegimeFlag(int(contact.regime_linear)).name,
             "steady": STEADY.get(outcome, "stable"),
             "rest": finite_or_none(contact.rest_distance),
