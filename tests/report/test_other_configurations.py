@@ -177,7 +177,7 @@ def test_sentences_are_looked_for_by_words_that_the_report_has() -> None:
 def test_numbers_and_statements_are_written_as_people_write_them(study) -> None:
     """No hyphen for a minus, no 1e-08 and no name from the code, up to the provenance."""
     text = study[3].rpartition(" Provenance ")[0]
-    assert re.findall(r"(?<![\w./])-\d.{9}|\be-?\d\d\b|(?<!/)\bF\d+[a-z]?_[a-z]\w+", text) == []
+    assert re.findall(r"(?<![\w./])-\d.{9}|\d[eE][-−]\d|(?<!/)\bF\d+[a-z]?_[a-z]\w+", text) == []
 
 
 def test_counts_of_the_summary_are_those_of_the_verdicts(study) -> None:

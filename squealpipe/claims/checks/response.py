@@ -140,8 +140,8 @@ def unstable_response_grows(run: Run) -> Finding:
         )
         saturates = size < SATURATED * before
         evidence += (
-            f"In a run to {float(whirl.t_end) / unit:g} at V = {speed:.3g} it "
-            + ("has stopped growing" if saturates else "still grows")
+            f"At the end of a run to {float(whirl.t_end) / unit:g} at V = {speed:.3g} it "
+            + ("does not grow" if saturates else "grows")
             + f": {size:.3g} l_pre in the last fifth, {before:.3g} before."
         )
     else:

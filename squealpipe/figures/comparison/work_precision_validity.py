@@ -90,7 +90,7 @@ def _draw(axes: Axes, rows: xr.Dataset, name: str, cost: str) -> None:
         for index in np.flatnonzero(mine & (values > 0)):
             axes.annotate(
                 SETTING.sub(r"\1 = ", rows.setting.values[index]), (spent[index], shown[index]),
-                xytext=(-3 if scene == "horizon" else 2, 3), textcoords="offset points",
+                xytext=(-3, -7) if scene == "horizon" else (2, 3), textcoords="offset points",
                 ha="right" if scene == "horizon" else "left", fontsize=5.5, color=colour,
             )  # fmt: skip
     ours = rows.role.values == Role.our_setting
