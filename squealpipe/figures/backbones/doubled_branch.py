@@ -28,11 +28,12 @@ if TYPE_CHECKING:
 READS = ("backbone/[a-z]*_mode1", "doubled_branch/*")
 CAPTION = (
     "Branches of doubled period of model A4, one row for each spring arrangement, mode 1, around "
-    "the doublings. Left: largest y of a period over the frequency, twice their own one for the "
-    "doubled branches. Dotted: unstable; circles: period doublings of the backbone, where its "
-    "index is −2 and that of the doubled branch starts at 2; a row without any has no doubling on "
-    "the branch followed. Right: the stability index over the same largest y; the grey band "
-    "holds the stable orbits."
+    "the doublings if there are any. Left: y of the backbone, the larger of the two at which the "
+    "mass rests, and largest y of the doubled branches, over the frequency, twice their own one "
+    "for the latter. Dotted: unstable; circles: period doublings of the backbone, where its index "
+    "is −2 and that of the doubled branch starts at 2; a row without any has no doubling on the "
+    "branch followed. Right: the stability index over the same y; the grey band holds the stable "
+    "orbits."
 )
 ALT = (
     "For each spring arrangement two panels: largest displacement over frequency for the backbone "
@@ -85,8 +86,8 @@ def _draw_scene(left: Axes, right: Axes, simple: xr.Dataset, doubled: list[xr.Da
             markersize=5, markerfacecolor="white", markeredgecolor=colour, zorder=3,
             label="period doubling",
         )  # fmt: skip
-    left.set(xlabel="ω, twice ω of doubled branches (rad/s)", ylabel="largest y (m)")
-    right.set(xlabel="largest y (m)", ylabel="stability index", ylim=(-3, 3.5))
+    left.set(xlabel="ω, twice ω of doubled branches (rad/s)", ylabel="y (m)")
+    right.set(xlabel="y (m)", ylabel="stability index", ylim=(-3, 3.5))
     if corners:
         left.set(xlim=_framed([x for x, _ in corners]), ylim=_framed([y for _, y in corners]))
         right.set_xlim(left.get_ylim())

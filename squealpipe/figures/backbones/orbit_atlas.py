@@ -26,10 +26,10 @@ if TYPE_CHECKING:
 READS = ("orbit_atlas",)
 CAPTION = (
     "Angular frequency of the exact periodic motions of model A4 that peak at the same y beyond "
-    "the loss of contact, over both spring angles (top), and their stability (bottom). Grey "
-    "cells hold none: flutter, divergence, no static state, or the branch turns into an internal "
-    "resonance. Where it does and an orbit beyond was found, that one is shown; the dataset's "
-    "outcome says where."
+    "the loss of contact, over both spring angles (top), and their stability (bottom). The peak is "
+    "the larger y of the two at which the mass rests. Grey cells hold none: flutter, divergence, "
+    "no static state, or the branch turns into an internal resonance. Where it does and an orbit "
+    "beyond was found, that one is shown; the dataset's outcome says where."
 )
 ALT = "Square maps over both spring angles: angular frequency and stability of each mode."
 

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 READS = ("work_precision_frequencies",)
 CAPTION = (
-    "Harmonic balance on model A4: median error of ω at equal y_peak against exact orbits, over "
+    "Harmonic balance on model A4: median error of ω at equal peak of y against exact orbits, over "
     "N_h, the number of samples N, and σ (points of a line run over N_h or σ), against (a) wall "
     "time and (b) evaluations of the balance's equations. The exact orbit itself is shown with the "
     "velocity left after half a period. (c) Error of both ω next to flutter onset, stable (full) "
