@@ -93,7 +93,10 @@ class Progress:
         error: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
-        ending = "finished" if kind is None else f"stopped by {kind.__name__}"
+        stop = (
+            "interrupted" if kind is KeyboardInterrupt else f"stopped by {kind and kind.__name__}"
+        )
+        ending = "finished" if kind is None else stop
         line = f"{self.line()}, {ending}"
         self._append(line)
         if self._spoke:
@@ -112,7 +115,7 @@ class Progress:
         if self._terminal() and elapsed >= self._next_rewrite:
             self._next_rewrite = elapsed + 0.2
             self._speak("\r\x1b[K" + self.line())
-        if elapsed >= self._next_line:
+        if elapsed >= self._next_line and self.done < self.total:
             self._next_line = elapsed + self.interval
             self._append(self.line())
             if not self._terminal():

@@ -38,6 +38,9 @@ def read_yaml(path: Path) -> tuple[dict[str, Any], list[str]]:
         content = {} if fatal else yaml.safe_load(text)
     except UnicodeDecodeError as error:
         return {}, [f"{path} is not UTF-8 text: {error}"]
+    except yaml.MarkedYAMLError as error:
+        line = "" if error.problem_mark is None else f", line {error.problem_mark.line + 1}"
+        return {}, [f"{path}{line} is not YAML: {error.problem}{_hint(error)}"]
     except (yaml.YAMLError, ValueError) as error:
         return {}, [f"{path} is not YAML: {' '.join(str(error).split())}"]
     if content is None:
@@ -46,6 +49,13 @@ def read_yaml(path: Path) -> tuple[dict[str, Any], list[str]]:
         return {}, [*faults, f"{path} must hold keys and values, not {type(content).__name__}"]
     content.pop(CODE, None)
     return content, faults
+
+
+def _hint(error: yaml.MarkedYAMLError) -> str:
+    if "\\t" in str(error.problem):
+        return "; indent with spaces"
+    begun = error.context_mark
+    return "" if begun is None else f" ({error.context}, from line {begun.line + 1} on)"
 
 
 def overlay(base: dict[str, Any], top: Mapping[str, Any]) -> None:

@@ -84,9 +84,12 @@ def test_angles_as_text_are_told_how_to_write_them(written):
     [
         ("- 1\n- 2", "must hold keys and values, not list"),
         ("just text", "must hold keys and values, not str"),
-        ("a: [1, 2", "is not YAML"),
-        ("a: b: c", "is not YAML"),
-        ("a:\n\t- b", "is not YAML"),
+        ("a: [1, 2", "line 1 is not YAML: expected ',' or ']'"),
+        ("a: 1\nb: b: c", "line 2 is not YAML"),
+        (
+            "a:\n\t- b",
+            "line 2 is not YAML: found character '\\t' that cannot start any token; indent",
+        ),
         ("parameters: 5", "parameters = 5: keys and values are needed"),
         ("parameters: {mass: [1, 2]}", "parameters.mass = (1, 2)"),
         ("parameters: {mass: null}", "parameters.mass = None"),

@@ -18,6 +18,8 @@ from squealpipe.cli.exit_codes import DONE
 MADE = Path("results/data/claims.nc")
 NARROW = 40
 """Columns below which a terminal is taken to have as many."""
+ROOM_FOR_A_NUMBER = 60
+"""Columns from which on a line has the deciding number too."""
 
 
 def claims(
@@ -87,7 +89,9 @@ def _chosen(
 
 def _line(row: Mapping[str, Any], width: int | None) -> str:
     value = "" if row["value"] is None else f"{row['value']:.4g}"
-    text = f"{row['id']:<5}{row['verdict']:<26}{value:>10}  {row['statement']}"
+    # Where the line is too short for words beside it, a number is better left out than cut.
+    number = "" if width is not None and width < ROOM_FOR_A_NUMBER else f"{value:>10}  "
+    text = f"{row['id']:<5}{row['verdict']:<26}{number}{row['statement']}"
     return text if width is None or len(text) <= width else f"{text[: width - 1]}…"
 
 

@@ -18,6 +18,7 @@ from squealpipe.cli.console import SESSION, say
 from squealpipe.cli.exit_codes import DONE, NOT_DONE
 from squealpipe.cli.output import check_output
 from squealpipe.config import PAPER, read_study
+from squealpipe.parameters import DEFAULTS, TABLE, Row
 from squealpipe.progress import duration
 from squealpipe.yaml_files import read_yaml
 
@@ -62,8 +63,17 @@ def overlay_text(paper: str, *, file: str, results: str) -> str:
     for line in paper[paper.index("parameters:") :].splitlines():
         if line and not line.startswith((" ", "#")):
             live = line.startswith("parameters:")
+        if not line and live:
+            lines += [_commented(name, row) for name, row in TABLE.items() if row.extension]
         lines.append(line if live or not line else f"# {line}")
     return HEAD.format(file=file, results=results) + "\n".join(lines) + "\n"
+
+
+def _commented(name: str, row: Row) -> str:
+    default = "null" if DEFAULTS[name] is None else DEFAULTS[name]
+    return f"  # {name}: {default} # {row.meaning}" + (
+        f", {row.units}" if row.units not in {"", "1"} else ""
+    )
 
 
 def checkout() -> Path:

@@ -22,6 +22,8 @@ def test_a_line_for_each_statement_at_any_width(width, capsys, monkeypatch):
     assert all(len(line) <= width for line in lines)
     assert last.startswith(f"{len(lines)} statements")
     assert lines[0].split()[0] == "T1"
+    statement = "contact is kept throughout at (0.5π, π)"
+    assert lines[4].removesuffix("…").split("  ")[-1].strip() in statement
 
 
 def test_one_statement_in_full(capsys):

@@ -86,6 +86,7 @@ def test_help_loads_no_numerics():
         (["simulate", "1", "2", "-o", "/dev/null"], "a device or pipe, not a file"),
         (["simulate", "1", "2", "-o", "run.txt"], "end the name in .nc or .csv"),
         (["simulate", "1", "2", "--points", "1000000000"], "200 GB of memory; ask for less, or"),
+        (["simulate", "1", "2", "--points", "100000000000"], "20 TB of memory; ask for less, or"),
         (["simulate", "1", "2", "--t-end", "1e9"], "add --yes"),
         (["map", "hammering", "--alpha1", "0:pi:9999", "--t-end", "1e4"], "add --yes"),
         ([*SWEPT, "--vary", "mu=0:1:9000", "--vary", "k3=1:2:9000"], "add --yes"),

@@ -171,6 +171,7 @@ def test_init_writes_an_overlay_of_the_paper_to_edit(tmp_path, capsys):
     assert study.results == "results/mine"
     assert study.parameters == parse_study({}).parameters
     body = text[text.index("\n\n") :]
+    assert "  # damping1: 0.0 # " in text
     live = "\n".join(line.removeprefix("# ") for line in body.splitlines())
     assert parse_study(yaml.safe_load(live)).slice("dynamics") == parse_study({}).slice("dynamics")
     assert "squealpipe run --config mine.yaml" in capsys.readouterr().out

@@ -126,6 +126,25 @@ cli.run(['blocked'])
 """
 
 
+EARLY = """
+import runpy, sys
+class Interrupt:
+    def find_spec(self, name, *_):
+        if name == 'cyclopts':
+            raise KeyboardInterrupt
+sys.meta_path.insert(0, Interrupt())
+runpy.run_module('squealpipe', run_name='__main__')
+"""
+
+
+def test_interrupt_while_the_command_is_loaded_is_quiet_too():
+    done = subprocess.run(
+        [sys.executable, "-c", EARLY], capture_output=True, text=True, timeout=60, check=False
+    )
+    assert done.returncode == INTERRUPTED
+    assert done.stderr == "squealpipe: interrupted; nothing was written\n"
+
+
 def test_compiled_code_that_does_not_return_is_ended_from_outside():
     started = time.perf_counter()
     done = subprocess.run(

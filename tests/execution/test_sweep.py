@@ -137,7 +137,9 @@ def test_a_stopped_sweep_repeated_in_another_order_is_no_mixture(tmp_path, monke
     ("changes", "message"),
     [
         ({"task": "sing"}, "no task 'sing'; choose from simulate"),
+        ({"task": "natural_frequency"}, "did you mean 'natural_frequencies'?"),
         ({"vary": {"nu": [1]}}, "'nu' cannot be varied"),
+        ({"vary": {"my": [1]}}, "did you mean 'mu'?"),
         ({"vary": {"mu": []}}, "one or more values"),
         ({"vary": {"mu": [1, 1], "alpha1": [0]}}, "each once"),
         ({"vary": {"mu": [1]}}, "needs alpha1 once"),

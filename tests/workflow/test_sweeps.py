@@ -113,6 +113,7 @@ def test_plans_that_cannot_work_are_all_told_before_anything_runs(checkout, snak
     refused = snakemake(checkout, "--dry-run", "--configfile", "bad.yaml")
     assert refused.returncode != 0
     assert (
-        "sweeps.a: no task 'periodic_orbi'; choose from simulate" in refused.stdout + refused.stderr
+        "sweeps.a: no task 'periodic_orbi'; did you mean 'periodic_orbit'"
+        in refused.stdout + refused.stderr
     )
     assert "sweeps.b: mu = -1.0: must be 0 or greater" in refused.stdout + refused.stderr

@@ -1,0 +1,19 @@
+"""Entry point of the command ``squealpipe``, which loads it so that Ctrl-C is quiet even then."""
+
+from __future__ import annotations
+
+import sys
+
+
+def main() -> None:
+    """Run the command line."""
+    try:
+        from squealpipe.cli import run
+    except KeyboardInterrupt:
+        print("squealpipe: interrupted; nothing was written", file=sys.stderr)
+        sys.exit(130)
+    sys.exit(run(sys.argv[1:]))
+
+
+if __name__ == "__main__":
+    main()
