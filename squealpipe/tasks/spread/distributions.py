@@ -10,7 +10,7 @@ import numpy as np
 from scipy import stats
 
 from squealpipe.laws.friction_laws import COULOMB, FALLING
-from squealpipe.parameters import Parameters, is_finite_number
+from squealpipe.parameters import Parameters, brief, is_finite_number
 from squealpipe.ranges import ANGLES, NUMBERS
 
 TRUNCATION = 4.0
@@ -27,14 +27,19 @@ def distribution(name: str, given: Mapping[str, Any]) -> Any:
     """A frozen scipy distribution of one parameter.
 
     Raises:
-        ValueError: an unknown name or kind, a missing number, or a support that the parameter may
-            not have.
+        ValueError: an unknown name or kind, no mapping, a missing number, or a support that the
+            parameter may not have.
     """
-    if name not in (*ANGLES, *NUMBERS):
-        near = difflib.get_close_matches(name, NUMBERS, n=1, cutoff=0.0)
+    if not isinstance(name, str) or name not in (*ANGLES, *NUMBERS):
+        near = difflib.get_close_matches(str(name), NUMBERS, n=1, cutoff=0.0)
         raise ValueError(f"{name}: no parameter or angle; did you mean {near[0]!r}?")
+    if not isinstance(given, Mapping):
+        raise ValueError(  # noqa: TRY004
+            f"{name} = {brief(given)}: a mapping is needed, such as "
+            "{'distribution': 'uniform', 'low': ..., 'high': ...}"
+        )
     kind = given.get("distribution")
-    if kind not in KINDS:
+    if not isinstance(kind, str) or kind not in KINDS:
         raise ValueError(f"{name}: distribution = {kind!r}: one of {', '.join(KINDS)} is needed")
     first, second = KINDS[kind]
     if set(given) != {"distribution", first, second}:

@@ -15,7 +15,7 @@ from squealpipe.laws.friction_laws import coefficient, slope
 from squealpipe.models import a3
 from squealpipe.models.contact_system import contact_system
 from squealpipe.models.damped import damped_system, stability
-from squealpipe.parameters import DEFAULTS, Parameters, direction_of, is_finite_number
+from squealpipe.parameters import DEFAULTS, Parameters, brief, direction_of, is_finite_number
 from squealpipe.schema import Outcome, build
 from squealpipe.schema.dynamics.runs import MotionFlag
 from squealpipe.schema.inference import wilson_interval
@@ -81,8 +81,11 @@ def propensity(
         raise ValueError(f"t_end = {t_end!r}: a finite time above 0 is needed, s")
     if not (is_finite_number(spring_correlation) and -1 < spring_correlation < 1):
         raise ValueError(f"spring_correlation = {spring_correlation!r}: must lie between -1 and 1")
-    if len(distributions) < 1:
-        raise ValueError("distributions: at least one parameter is needed")
+    if not isinstance(distributions, Mapping) or not distributions:
+        raise ValueError(
+            f"distributions = {brief(distributions)}: a mapping from at least one parameter to its "
+            "distribution is needed"
+        )
     frozen = {name: distribution(name, given) for name, given in distributions.items()}
     check_stick(params, frozen)
     names = list(frozen)
