@@ -48,7 +48,8 @@ class Ensemble:
             from there on, m.
         max_vx: largest ẋ at the ends of integration steps, m/s.
         nearest_pivot: smallest distance to a fixed end at step ends, in free lengths.
-        turns: net turns around both fixed ends, counterclockwise positive.
+        turns: net turns around both fixed ends, counterclockwise positive; counted by half turns,
+            so that the angle is known to half a turn.
         separations, contacts, sticks, slips, reversals: event counts.
         steps: integration steps.
         final_state: (…, 4) x, y, vx, vy at ``time``, m and m/s; final_regime its regime.

@@ -58,7 +58,8 @@ def hammering_map(
     ``motion`` says what the run to ``t_end`` shows:
 
     - perpetual contact, or stick–slip in contact;
-    - whirl: at least three net turns around both fixed ends, and one for two returns to the belt;
+    - whirl: at least three net turns around both fixed ends, counted by half turns (2½ may do),
+      and one for two returns to the belt;
     - irregular hammering: a perturbation has grown faster than (1 + t)², t in √(2m/(k1 + k2));
     - periodic hammering: it has not, and the kinds and intervals of the events of the later half
       repeat within 1e-6 of the period;

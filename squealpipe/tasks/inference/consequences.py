@@ -8,6 +8,7 @@ grid over the angles would hit.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from typing import NamedTuple
 
 import numpy as np
 
@@ -43,6 +44,14 @@ CONSEQUENCES: dict[str, str] = {
 """Key (the id in the claims table, where one check settles the statement) → what is checked."""
 
 
+class Unstable(NamedTuple):
+    """Unstable cells: angles, rad, and whether it is by flutter."""
+
+    alpha1: np.ndarray
+    alpha2: np.ndarray
+    flutters: np.ndarray
+
+
 def judge_consequences(
     fields: Mapping[str, np.ndarray], *, tol: float, workers: int | None = None
 ) -> dict[str, np.ndarray]:
@@ -60,17 +69,15 @@ def judge_consequences(
     if not sets:
         return {key: np.zeros(0, bool) for key in CONSEQUENCES}
     cells = [unstable_cells(params) for params in sets]
-    linear = [_linear(params, *angles) for params, angles in zip(sets, cells, strict=True)]
+    linear = [_linear(params, *where) for params, where in zip(sets, cells, strict=True)]
     found = {key: np.array([verdict[key] for verdict in linear], bool) for key in linear[0]}
     found["F7a"] = separating_share(fields, tol=tol, workers=workers) > 0.5
     found["F7_black"] = ~_some_keep_contact(fields, cells, tol, workers)
     return {key: found[key] for key in CONSEQUENCES}
 
 
-def unstable_cells(
-    params: Parameters, *, rim: int = RIM, inside: float = INSIDE
-) -> tuple[np.ndarray, np.ndarray]:
-    """Angles along the edge of every region in which A3 is unstable, rad; both may be empty.
+def unstable_cells(params: Parameters, *, rim: int = RIM, inside: float = INSIDE) -> Unstable:
+    """Cells along the edge of every region in which A3 is unstable; there may be none.
 
     Dashpots, and friction that depends on speed, leave no such edge in closed form: there, all
     unstable cells of a grid.
@@ -78,8 +85,10 @@ def unstable_cells(
     alpha1, alpha2 = (
         _along_edges(params, rim, inside) if is_undamped(params) else _midpoints(DAMPED_GRID)
     )
-    unstable = _regime(params, alpha1, alpha2) > a3.LinearRegime.stable
-    return alpha1[unstable], alpha2[unstable]
+    regime = _regime(params, alpha1, alpha2)
+    unstable = regime > a3.LinearRegime.stable
+    flutters = regime[unstable] == a3.LinearRegime.flutter
+    return Unstable(alpha1[unstable], alpha2[unstable], flutters)
 
 
 def _midpoints(number: int) -> tuple[np.ndarray, np.ndarray]:
@@ -118,12 +127,14 @@ def _regime(params: Parameters, alpha1: np.ndarray, alpha2: np.ndarray) -> np.nd
     return np.asarray(stability(damped_system(params, alpha1, alpha2)).regime)
 
 
-def _linear(params: Parameters, alpha1: np.ndarray, alpha2: np.ndarray) -> dict[str, bool]:
+def _linear(
+    params: Parameters, alpha1: np.ndarray, alpha2: np.ndarray, flutters: np.ndarray
+) -> dict[str, bool]:
     """What is said of linear stability, sliding and frequencies, from the unstable cells."""
     system = contact_system(params, alpha1, alpha2)
     reaction = a2.reaction_force(system.stiffness, params.drag, a2.actuation(params))
     return {
-        "S3": bool((_regime(params, alpha1, alpha2) == a3.LinearRegime.flutter).any()),
+        "S3": bool(flutters.any()),
         "F6b": not (reaction > 0).any(),
         "F6b_printed": not a2.possible_as_printed(system.stiffness, params.drag).any(),
         "F8c": first_is_largest_on_lines(params, params.k3),
@@ -183,13 +194,13 @@ def springs_are_equal(fields: Mapping[str, np.ndarray | float]) -> bool:
 
 def _some_keep_contact(
     fields: Mapping[str, np.ndarray],
-    cells: Sequence[tuple[np.ndarray, np.ndarray]],
+    cells: Sequence[tuple[np.ndarray, ...]],
     tol: float,
     workers: int | None,
 ) -> np.ndarray:
     """Whether A1 keeps contact in some of each parameter set's cells."""
-    owner = np.repeat(np.arange(len(cells)), [alpha1.size for alpha1, _ in cells])
-    alpha1, alpha2 = (np.concatenate([pair[i] for pair in cells]) for i in (0, 1))
+    owner = np.repeat(np.arange(len(cells)), [where[0].size for where in cells])
+    alpha1, alpha2 = (np.concatenate([where[i] for where in cells]) for i in (0, 1))
     chosen = {name: np.asarray(values)[owner] for name, values in fields.items()}
     kept = ~_separates(chosen, alpha1, alpha2, tol, workers)
     return np.bincount(owner[kept], minlength=len(cells)) > 0
