@@ -51,9 +51,17 @@ class ModalMotion(NamedTuple):
         return np.asarray(self.rest[..., 1] - np.abs(self.y_mode).sum(axis=-1))
 
     def farthest(self) -> np.ndarray:
-        """Bound on √(x² + y²), m."""
-        x = np.abs(self.rest[..., 0]) + np.abs(self.x_mode).sum(axis=-1)
-        return np.asarray(np.hypot(x, np.maximum(np.abs(self.highest()), np.abs(self.lowest()))))
+        """Bound on √(x² + y²), m: the distance is convex, so largest at a corner ±z1 ± z2."""
+        signs = np.array([-1.0, 1.0])
+        x, y = (
+            rest[..., None, None]
+            + mode[..., :1, None] * signs[:, None]
+            + mode[..., 1:, None] * signs
+            for rest, mode in zip(
+                np.moveaxis(self.rest, -1, 0), (self.x_mode, self.y_mode), strict=True
+            )
+        )
+        return np.asarray(np.hypot(x, y).max(axis=(-2, -1)))
 
     def fastest(self) -> np.ndarray:
         """Bound on |ẋ|, m/s."""
@@ -107,10 +115,14 @@ class SecondOrder(NamedTuple):
         motion: the linear motion about the equilibrium; where Newton's method found none, it
             does not oscillate.
         shift: (…, 2) bound on what the quadratic force adds to x and to y, m.
+        exchange: the share of the slower mode that the difference tone ω2 − ω1 adds to it. Near
+            ω2 = 2 ω1 the faster mode feeds the slower one, however small that one is: about 1 at
+            the edge of Mathieu's tongue.
     """
 
     motion: ModalMotion
     shift: np.ndarray
+    exchange: np.ndarray
 
 
 def motion_about(field: Field, shape: tuple[int, ...], length: np.ndarray) -> SecondOrder:
@@ -147,7 +159,7 @@ def motion_about(field: Field, shape: tuple[int, ...], length: np.ndarray) -> Se
         # what has not settled gets a complex pair, which does not oscillate
         smaller = np.where(step <= SETTLED, smaller, 1j)
     motion = modal_motion((a11, a12, a21, a22), (smaller, larger), (x, y))
-    return SecondOrder(motion, _shift(field, motion, (a11, a12, a21, a22)))
+    return SecondOrder(motion, *_shift(field, motion, (a11, a12, a21, a22)))
 
 
 def _stiffness(
@@ -166,8 +178,8 @@ def _shift(
     field: Field,
     motion: ModalMotion,
     matrix: tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray],
-) -> np.ndarray:
-    """Sum of the largest responses at all combination frequencies, (…, 2)."""
+) -> tuple[np.ndarray, np.ndarray]:
+    """Sum of the largest responses at all combination frequencies, (…, 2), and the exchange."""
     x, y = motion.rest[..., 0], motion.rest[..., 1]
     modes = [(motion.x_mode[..., i], motion.y_mode[..., i]) for i in (0, 1)]
 
@@ -189,7 +201,8 @@ def _shift(
     a11, a12, a21, a22 = matrix
     total = np.zeros((*np.shape(w1), 2))
     with np.errstate(all="ignore"):
-        for own, other in ((w1 * w1, w2 * w2), (w2 * w2, w1 * w1)):
+        slower, faster = w1 * w1, w2 * w2
+        for own, other in ((slower, faster), (faster, slower)):
             for (fx, fy), weight, frequency in driven:
                 # the share of this mode: (A − λ_other)/(λ_own − λ_other) times the force
                 part = (
@@ -199,5 +212,12 @@ def _shift(
                     / (own - other)[..., None]
                 )
                 distance = np.abs(own - frequency * frequency)[..., None]
-                total += 2.0 * weight * np.abs(part) / distance
-    return np.where(motion.oscillates[..., None], total, np.inf)
+                response = 2.0 * weight * np.abs(part) / distance
+                total += response
+            if own is slower:
+                (ux, uy), size = modes[0], np.linalg.norm(response, axis=-1)
+                exchange = np.where(size > 0.0, size / np.hypot(ux, uy), 0.0)
+    return (
+        np.where(motion.oscillates[..., None], total, np.inf),
+        np.where(motion.oscillates, exchange, np.inf),
+    )

@@ -26,7 +26,8 @@ class Level(IntEnum):
         needs: what must hold for its answer to be trusted.
         colour: name of its colour in :mod:`squealpipe.figures.parts.style`.
         model: the model that it integrates in time; "" where it does not.
-        share: part of the horizon that it integrates.
+        share: part of the horizon that it integrates where levels are compared; ``choose_model``
+            takes for each cell the part that its bounds need.
     """
 
     label: str

@@ -56,6 +56,34 @@ def test_no_certificate_is_wrong() -> None:
     assert keeps.sum() > 0.4 * (~lost).sum()
 
 
+def test_force_and_distance_stay_below_their_bounds() -> None:
+    parameters, alpha1, alpha2 = random_systems(14, 4000)
+    drag = np.where(parameters["belt_speed"] >= 0.0, 1.0, -1.0) * parameters["mu"]
+    t_end = RANGE.horizon / np.sqrt(0.5 * (1.0 + parameters["k2"]))
+    found = contact_certificate(SimpleNamespace(**parameters, drag=drag), alpha1, alpha2, t_end)
+    here = found.keeps
+    chosen = {name: values[here] for name, values in parameters.items()}
+    run = run_ensemble(chosen, alpha1[here], alpha2[here], t_end=t_end[here])
+    assert here.sum() > 500
+    assert (run.max_displacement <= found.largest_distance()[here]).all()
+    assert (run.peak_contact_force <= found.largest_force(1.0)[here]).all()
+
+
+def test_a_slower_mode_fed_by_the_faster_one_is_not_certified() -> None:
+    """At ω2 = 1.825 ω1 the small slower mode grows: the distance passes its bound by 4 %."""
+    params = Parameters(
+        k2=1.8223095499541144, k3=0.785748690728944, mu=0.6166011011415228,
+        length1=16.35195578621062, length2=3.0732380457152995, belt_speed=11.031063509001287,
+    )  # fmt: skip
+    alpha1, alpha2 = 2.409697515651464, 2.2137425964807824
+    found = contact_certificate(params, alpha1, alpha2, 336.0)
+    run = run_ensemble(params, alpha1, alpha2, t_end=336.0, workers=1)
+    assert run.max_displacement > found.largest_distance()
+    assert found.second.exchange == pytest.approx(0.977, abs=1e-3)
+    assert found.mild
+    assert not found.keeps
+
+
 @pytest.mark.slow
 def test_no_certificate_is_wrong_in_100_000_cells() -> None:
     keeps, lost = judged(12, 100_000)

@@ -91,7 +91,7 @@ def test_a_level_is_never_taken_when_its_assumption_is_broken(speed: float) -> N
     """A slow belt is reached by the mass: only A1 may answer."""
     slow = Parameters(belt_speed=speed)
     found = choose_models(slow, *random_cells(4, 200), "contact_lost", TOLERANCE, t_end=50.0)
-    outrun = found.motion.fastest() >= abs(speed)
+    outrun = found.certificate.second.motion.fastest() >= abs(speed)
     assert outrun.any()
     assert not (found.level[outrun] < Level.a1_short).any()
 
@@ -100,7 +100,7 @@ def test_long_springs_need_no_run_where_contact_is_kept() -> None:
     params = Parameters(length1=1e4, length2=1e4)
     found = choose_model(params, 0.5 * np.pi, np.pi, "peak_contact_force", 0.01)
     # K = diag(k, k): y = κ/(1+κ)(1 − cos √(1+κ) t) ≥ 0, so the largest force is the first one
-    assert found.model == "a3_in_contact"
+    assert found.model == "closed_form"
     assert found.value == pytest.approx(1.0, rel=1e-4)
     assert found.cost == 0.0
     assert all(check.passed for check in found.checks)
@@ -152,28 +152,59 @@ def test_no_cheaper_level_answers_for_other_friction(change, question):
     assert not first.checks[0].passed
 
 
-@pytest.mark.parametrize("question", ["frequency", "peak_contact_force", "max_displacement"])
-def test_a_short_run_shows_both_modes_for_any_springs_belt_and_horizon(question):
-    """Against A1 over the whole horizon; a share of it alone was wrong in a fifth of the cells."""
+def random_parameters(generator: np.random.Generator) -> tuple[Parameters, float]:
+    """Unequal springs, both belt directions, slow and fast belts, other units; and a horizon."""
+
+    def between(low: float, high: float) -> float:
+        return float(np.exp(generator.uniform(np.log(low), np.log(high))))
+
+    mass, stiffness, length = between(1e-2, 1e2), between(1e-3, 1e6), between(1e-4, 10.0)
+    unit = np.sqrt(mass / stiffness)
+    k2, free = between(0.2, 5.0), between(2.5, 1000.0)
+    params = Parameters(
+        mass=mass, k1=stiffness, k2=k2 * stiffness, preload=length,
+        k3=between(0.05, 5.0) * 0.5 * (1.0 + k2) * stiffness, mu=generator.uniform(0.0, 0.8),
+        belt_speed=generator.choice([-1, 1]) * between(0.1, 300.0) * length / unit,
+        length1=free * length, length2=free * between(0.4, 2.5) * length,
+    )  # fmt: skip
+    return params, between(30.0, 400.0) * unit
+
+
+def test_no_cheap_answer_is_wrong_at_random_parameters() -> None:
+    """Against A1 over the whole horizon, at the tolerance that was asked for."""
     generator = np.random.default_rng(20)
-    answered = wrong = 0
-    for horizon in (50.0, 50.0, 200.0, 200.0):
-        params = Parameters(
-            k2=float(np.exp(generator.normal(0.0, 0.3))),
-            k3=float(generator.uniform(0.2, 1.0)),
-            mu=float(generator.uniform(0.05, 0.5)),
-            length2=float(5.0 * np.exp(generator.normal(0.0, 0.2))),
-            belt_speed=float(generator.choice([-1, 1]) * np.exp(generator.uniform(1.0, 5.0))),
-        )
-        alpha1, alpha2 = generator.uniform(0.0, np.pi, (2, 200))
-        found = choose_models(params, alpha1, alpha2, question, 0.05, t_end=horizon, workers=1)
+    answered = dict.fromkeys(QUESTIONS[1:], 0)
+    for _ in range(60):
+        params, horizon = random_parameters(generator)
+        tol = float(generator.choice([0.01, 0.02, 0.05, 0.1, 0.2]))
+        cells = generator.uniform(0.0, np.pi, (2, 40))
         times = sample_times(params, horizon)
-        run = run_ensemble(
-            params, alpha1, alpha2, t_end=horizon,
-            times=times if question == "frequency" else None, workers=1,
-        )  # fmt: skip
-        below = found.level != Level.a1
-        answered += below.sum()
-        wrong += (np.abs(found.value / answer_of(run, question, times) - 1.0) > 0.05)[below].sum()
-    assert answered > 50
-    assert wrong <= 0.02 * answered
+        run = run_ensemble(params, *cells, t_end=horizon, times=times, workers=1)
+        for question in answered:
+            found = choose_models(params, *cells, question, tol, t_end=horizon, workers=1)
+            below = found.level != Level.a1
+            error = np.abs(found.value / answer_of(run, question, times) - 1.0)
+            assert not (error > tol)[below].any(), (params, question, tol)
+            assert (found.integrated[below] <= 0.5 * horizon).all()
+            answered[question] += below.sum()
+    assert min(answered.values()) > 0.12 * 60 * 40, answered
+
+
+@pytest.mark.parametrize("question", ["peak_contact_force", "max_displacement"])
+def test_answer_lies_between_what_a_short_run_reaches_and_the_bound(question: str) -> None:
+    params = Parameters(k2=1.4, length1=40.0, length2=60.0, belt_speed=-20.0)
+    cells = random_cells(8, 200)
+    found = choose_models(params, *cells, question, 0.005, t_end=HORIZON)
+    truth = answer_of(run_ensemble(params, *cells, t_end=HORIZON), question, np.zeros(0))
+    asked = np.isfinite(found.upper)
+    assert (found.level == Level.a1_short).sum() > 5
+    assert (found.lower[asked] <= truth[asked] * (1.0 + 1e-9)).all()
+    assert (truth[asked] <= found.upper[asked]).all()
+
+
+@pytest.mark.parametrize("question", QUESTIONS)
+def test_reason_of_what_is_not_proved_names_its_sample(question: str) -> None:
+    params = Parameters(length1=100.0, length2=100.0)
+    found = choose_model(params, 0.5 * np.pi, 0.9 * np.pi, question, TOLERANCE)
+    assert found.model in {"closed_form", "a1_short"}
+    assert "measured, not proved" in found.reason

@@ -7,9 +7,8 @@ import time
 import numpy as np
 
 from squealpipe.schema.ladder import QUESTIONS
-from squealpipe.tasks.ladder.choice import contact_motion
 from squealpipe.tasks.ladder.levels.answers import Answers, Scenes
-from squealpipe.tasks.ladder.levels.in_contact import linear_validity
+from squealpipe.tasks.ladder.levels.in_contact import contact_motion, linear_validity
 from squealpipe.tasks.ladder.questions import answer_of_samples, sample_times
 
 

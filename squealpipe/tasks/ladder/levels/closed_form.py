@@ -6,9 +6,8 @@ import time
 
 import numpy as np
 
-from squealpipe.tasks.ladder.choice import contact_motion
 from squealpipe.tasks.ladder.levels.answers import Answers, Scenes
-from squealpipe.tasks.ladder.levels.in_contact import linear_validity
+from squealpipe.tasks.ladder.levels.in_contact import contact_motion, linear_validity
 
 
 def answer(scenes: Scenes) -> Answers:
