@@ -16,6 +16,7 @@ from squealpipe.figures.parts.style import (
     category_colours,
     draw_map,
     new_figure,
+    number,
     panel_letter,
 )
 
@@ -42,7 +43,7 @@ def draw(atlas: xr.Dataset) -> Figure:
         angles = atlas.alpha1.values, atlas.alpha2.values
         upper.set_facecolor(LIGHT)
         mesh = draw_map(upper, *angles, np.ma.masked_invalid(part.omega.values), cmap="cividis")
-        panel_letter(upper, letters[0], f"mode {mode}, peak at {float(atlas.y_peak):g} m")
+        panel_letter(upper, letters[0], f"mode {mode}, peak at {number(float(atlas.y_peak))} m")
         figure.colorbar(mesh, ax=upper, label="ω (rad/s)", shrink=0.85)  # type: ignore[arg-type]
         draw_map(lower, *angles, _stability(part), **category_colours([WHITE, ORANGE, LIGHT]))
         panel_letter(lower, letters[1], f"mode {mode}, stability")

@@ -15,6 +15,7 @@ from squealpipe.figures.parts.style import (
     draw_map,
     flag_words,
     new_figure,
+    number,
     panel_letter,
 )
 from squealpipe.parameters import SCENES
@@ -92,4 +93,4 @@ def _draw_motion(figure: Figure, panel: Any, hammering: xr.Dataset) -> None:
     bar = figure.colorbar(mesh, ax=panel, ticks=range(len(names)), shrink=0.85)
     labels = [flag_words(name).replace(" ", "\n", 1) for name in names]
     bar.ax.set_yticklabels(labels, fontsize=6)
-    panel_letter(panel, "a", f"motion to t = {float(hammering.t_end):g} s")
+    panel_letter(panel, "a", f"motion to t = {number(float(hammering.t_end), 4)} s")

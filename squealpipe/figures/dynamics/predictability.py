@@ -13,6 +13,7 @@ from squealpipe.figures.parts.style import (
     draw_map,
     flag_words,
     new_figure,
+    number,
     panel_letter,
 )
 from squealpipe.schema import meanings
@@ -78,7 +79,9 @@ def draw(hammering: xr.Dataset) -> Figure:
         linewidth=1.0,
         label="regular to irregular",
     )
-    panel.set(xlabel=f"ln of the growth over t = {t_end:g} s", ylabel="cells", yscale="log")
+    panel.set(
+        xlabel=f"ln of the growth over t = {number(t_end, 4)} s", ylabel="cells", yscale="log"
+    )
     figure.legend(loc="outside lower right", ncols=3)
     panel_letter(panel, "b", "growth of a perturbation")
     return figure

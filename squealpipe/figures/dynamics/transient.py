@@ -86,7 +86,7 @@ def _constant_hazard(axes: Axes, transient: xr.Dataset) -> None:
     if ended:
         rate = ended / exposure
         age = transient.survival_time.values
-        label = f"constant hazard, mean {1 / rate:.0f} s"
+        label = f"constant hazard, mean {number(1 / rate, 4)} s"
         axes.plot(age, np.exp(-rate * age), "--", color=BLACK, label=label)
 
 
@@ -95,7 +95,7 @@ def _speeds(axes: Axes, transient: xr.Dataset) -> None:
     left = np.isfinite(lifetime).mean(axis=1)
     axes.semilogx(speed, left, "o-", color=GREEN, markersize=4)
     axes.set(xlabel="belt speed |V| (m/s)", ylim=(-0.05, 1.1))
-    axes.set_ylabel(f"share that left by t = {float(transient.t_end):g} s", color=GREEN)
+    axes.set_ylabel(f"share that left by t = {number(float(transient.t_end), 4)} s", color=GREEN)
     axes.axhline(0, color=GREY, linewidth=0.5)
     twin = axes.twinx()
     ordered = np.sort(np.where(np.isfinite(lifetime), lifetime, np.inf), axis=1)

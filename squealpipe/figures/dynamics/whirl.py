@@ -14,6 +14,7 @@ from squealpipe.figures.parts.style import (
     REGIME_COLOURS,
     X_COLOUR,
     new_figure,
+    number,
     panel_letter,
 )
 from squealpipe.parameters import SCENES
@@ -53,7 +54,7 @@ def draw(run: xr.Dataset, sizes: xr.Dataset) -> Figure:
     panel.axhline(0, color=GREY, linewidth=0.5)
     panel.set(xlabel="t (s)", ylabel="x (m)", xlim=(0, float(run.time[-1])))
     panel.legend(loc="lower right", bbox_to_anchor=(1, 0.98))
-    panel_letter(panel, "a", f"x in time, max |x| = {float(np.abs(run.x).max()):.4g} m")
+    panel_letter(panel, "a", f"x in time, max |x| = {number(float(np.abs(run.x).max()), 4)} m")
     _sizes(axes[0, 1], sizes)
     return figure
 
@@ -76,7 +77,7 @@ def _sizes(axes: Axes, sizes: xr.Dataset) -> None:
     axes.loglog(line, energy, "--", color=GREY, label="energy at speed V")
     if np.isfinite(sizes.slope):
         fit = float(sizes.offset) + float(sizes.slope) * line
-        label = f"{float(sizes.offset):.3g} m + {float(sizes.slope):.3g} s · |V|"
+        label = f"{number(float(sizes.offset))} m + {number(float(sizes.slope))} s · |V|"
         low, high = sizes.fit_range.values if "fit_range" in sizes else (speed[0], speed[-1])
         inside = (line >= low) & (line <= high)
         axes.loglog(line[inside], fit[inside], color=BLACK, linewidth=0.8, label=label)

@@ -16,6 +16,7 @@ from squealpipe.figures.parts.style import (
     new_figure,
     number,
     panel_letter,
+    pi_label,
 )
 
 if TYPE_CHECKING:
@@ -65,10 +66,10 @@ def draw(angles: xr.Dataset, dashpots: xr.Dataset) -> Figure:
     if values.min() < level < values.max():
         plane.contour(c1, c2, values.T, levels=[level], colors=[WHITE], linewidths=1.0)
     plane.set(xlabel="dashpot c₁ (N s/m)", ylabel="dashpot c₂ (N s/m)", aspect="equal")
-    where = [float(dashpots[name]) / np.pi for name in ("alpha1", "alpha2")]
+    where = [pi_label(float(dashpots[name])) for name in ("alpha1", "alpha2")]
     panel_letter(without, "a", "no dashpots")
     panel_letter(with_dashpots, "b", "with dashpots")
-    panel_letter(plane, "c", f"at ({where[0]:.3g}π, {where[1]:.3g}π)")
+    panel_letter(plane, "c", f"at ({', '.join(where)})")
     figure.colorbar(mesh, ax=axes[0], label="critical friction", extend="max", shrink=0.7)
     figure.legend(
         handles=[
