@@ -8,11 +8,11 @@ import sys
 def main() -> None:
     """Run the command line."""
     try:
-        from squealpipe.cli import run
+        from squealpipe.cli import main as command
     except KeyboardInterrupt:
         print("squealpipe: interrupted; nothing was written", file=sys.stderr)
         sys.exit(130)
-    sys.exit(run(sys.argv[1:]))
+    command()
 
 
 if __name__ == "__main__":

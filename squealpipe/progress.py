@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
 from pathlib import Path
@@ -93,10 +93,10 @@ class Progress:
         error: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
-        stop = (
-            "interrupted" if kind is KeyboardInterrupt else f"stopped by {kind and kind.__name__}"
+        left = kind in {KeyboardInterrupt, GeneratorExit}
+        ending = (
+            "finished" if kind is None else "interrupted" if left else f"stopped by {kind.__name__}"
         )
-        ending = "finished" if kind is None else stop
         line = f"{self.line()}, {ending}"
         self._append(line)
         if self._spoke:
@@ -147,6 +147,14 @@ class Progress:
         if self.log is not None:
             with self.log.open("a", encoding="utf-8") as file:
                 file.write(f"{time.strftime('%Y-%m-%dT%H:%M:%S')} {text}\n")
+
+
+def counted(items: Sequence[str], label: str, *, unit: str) -> Iterator[str]:
+    """The items, one after another, with progress."""
+    with Progress(len(items), label, unit=unit) as progress:
+        for item in items:
+            yield item
+            progress.advance()
 
 
 @contextmanager

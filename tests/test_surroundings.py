@@ -32,8 +32,6 @@ def test_a_checkout_path_with_a_space_is_refused_with_the_reason(tmp_path):
 
 def test_commands_need_no_home(tmp_path):
     command = [sys.executable, "-m", "squealpipe", "map", "stability", "--alpha1", "0:pi:3"]
-    if not (ROOT / "squealpipe/__main__.py").is_file():
-        command[1:3] = ["-c", "from squealpipe.cli import main; main()"]
     done = run(command, cwd=tmp_path, env=NO_HOME)
     assert done.returncode == 0, done.stderr
     assert (tmp_path / "map.nc").is_file()

@@ -11,6 +11,7 @@ from cyclopts import Parameter
 
 from squealpipe.cli.arguments import AsJson
 from squealpipe.cli.exit_codes import ANSWER_IS_NO, DONE
+from squealpipe.progress import elapsing
 
 SHOWN = 4
 """Changed parameters of a run that a line shows."""
@@ -128,7 +129,8 @@ def deposit(
     token = os.environ.get("ZENODO_TOKEN", "")
     if (upload or publish) and not token:
         raise ValueError("ZENODO_TOKEN is not set: put your access token into it")
-    path, metadata = bundle(name, output=output)
+    with elapsing("deposit"):
+        path, metadata = bundle(name, output=output)
     print(f"wrote {path} ({path.stat().st_size / 1e6:.1f} MB), checked")
     if upload or publish:
         from squealpipe.store.memory.upload import upload as send

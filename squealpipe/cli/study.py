@@ -12,6 +12,7 @@ from squealpipe.cli.arguments import AsJson, Configs
 from squealpipe.cli.console import console
 from squealpipe.cli.exit_codes import ANSWER_IS_NO, DONE
 from squealpipe.config import PAPER
+from squealpipe.progress import elapsing
 
 
 def explain(*, config: Configs = None, times: bool = False, json_: AsJson = False) -> int:
@@ -29,7 +30,8 @@ def explain(*, config: Configs = None, times: bool = False, json_: AsJson = Fals
     if times:
         _print_times()
         return DONE
-    plan = plan_of(config or [])
+    with elapsing("explain"):
+        plan = plan_of(config or [])
     if json_:
         print(json.dumps(plan.as_dict(), indent=1))
         return DONE
@@ -72,9 +74,10 @@ def archive(
     """
     from squealpipe.store.archive import archive as freeze
 
-    folder = freeze(
-        name, results=results, configs=config or [Path(PAPER)], leave_out=leave_out or []
-    )
+    with elapsing("archive"):
+        folder = freeze(
+            name, results=results, configs=config or [Path(PAPER)], leave_out=leave_out or []
+        )
     size = sum(path.stat().st_size for path in folder.rglob("*") if path.is_file())
     print(f"froze the run in {folder} ({size / 1e6:.1f} MB)")
     return DONE
@@ -91,7 +94,8 @@ def verify(name: str, /) -> int:
     from squealpipe.store.archive import verify as check
     from squealpipe.store.memory.catalogue import note_verified
 
-    found = check(name)
+    with elapsing("verify"):
+        found = check(name)
     note_verified(found.folder, "intact" if found.intact else "changed")
     for line in found.lines():
         print(line)

@@ -90,7 +90,7 @@ def locate(what: str | os.PathLike[str], root: str | os.PathLike[str] = ".") -> 
         if archive.is_dir():
             return archive
     folder = Path(root) / ARCHIVES
-    known = sorted(item.name for item in folder.iterdir()) if folder.is_dir() else []
+    known = sorted(item.name for item in folder.glob("[!.]*") if item.is_dir())
     raise FileNotFoundError(
         f"no archive, folder or file {str(what)!r}; "
         + (f"archives: {', '.join(known)}" if known else "there are no archives yet")

@@ -11,7 +11,7 @@ import time
 import numpy as np
 import pytest
 
-from squealpipe.progress import Progress, duration
+from squealpipe.progress import Progress, counted, duration
 from squealpipe.store.chunks import Checkpoint, run_chunks
 
 
@@ -120,6 +120,19 @@ def test_work_kept_from_before_does_not_count_as_fast():
     progress.started -= 10
     progress.advance(10)
     assert "1 cells/s, 40 s left" in progress.line()
+
+
+def test_a_loop_tells_how_far_it_is_and_that_it_was_left(monkeypatch, capsys):
+    monkeypatch.setattr("squealpipe.progress.QUIET", -1.0)
+    assert list(counted(["a", "b"], "comparison", unit="datasets")) == ["a", "b"]
+    told = capsys.readouterr().err.splitlines()
+    assert told[0].startswith("comparison: 1 of 2 datasets (50%)")
+    assert told[-1].endswith("finished")
+    assert len(told) == 2
+    loop = counted(["a", "b", "c"], "comparison", unit="datasets")
+    next(loop), next(loop)
+    loop.close()
+    assert capsys.readouterr().err.splitlines()[-1].endswith("interrupted")
 
 
 def test_short_jobs_stay_quiet():

@@ -117,7 +117,9 @@ def test_wrong_questions_are_told(run, tmp_path):
             open_results(wrong)
     with pytest.raises(ValueError, match="named twice"):
         open_results([run / "results"] * 2, along="run")
-    with pytest.raises(FileNotFoundError, match="no archive, folder or file"):
+    (tmp_path / "results/archive/first").mkdir(parents=True)
+    (tmp_path / "results/archive/.index.json").touch()
+    with pytest.raises(FileNotFoundError, match=r"no archive, folder or file.*; archives: first$"):
         open_results("nothing", root=tmp_path)
 
 

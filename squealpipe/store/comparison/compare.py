@@ -13,6 +13,7 @@ from typing import Any
 
 import xarray as xr
 
+from squealpipe.progress import counted
 from squealpipe.schema import DatasetSchema, find
 from squealpipe.schema.claims import CLAIMS
 from squealpipe.store.comparison.differences import Agreement, VariableDifference
@@ -149,7 +150,8 @@ def compare(
     datasets = []
     statements: list[StatementChange] = []
     skipped = [name for name in set(left) ^ set(right) if matches_any(f"data/{name}.nc", absent)]
-    for name in sorted((set(left) | set(right)) - set(skipped)):
+    names = sorted((set(left) | set(right)) - set(skipped))
+    for name in counted(names, "comparison", unit="datasets"):
         if name not in left or name not in right:
             side = a if name in left else b
             reason = f"only in {side}"
