@@ -8,7 +8,7 @@ from typing import Annotated, Any
 from cyclopts import Parameter
 
 from squealpipe.cli.arguments import BASELINE, Angle, Configs, Output, Physical, Picture, Switch
-from squealpipe.cli.console import say
+from squealpipe.cli.console import SESSION, say
 from squealpipe.cli.cost import estimate
 from squealpipe.cli.exit_codes import DONE
 from squealpipe.cli.output import check_outputs, write
@@ -22,7 +22,7 @@ def propensity(
     alpha2: Angle,
     /,
     *,
-    spread: Annotated[list[str], Parameter(metavar="NAME=KIND:A:B", negative="")],
+    spread: Annotated[list[str], Parameter(metavar="NAME=KIND:LOW:HIGH", negative="")],
     samples: int = 1024,
     t_end: float = 200.0,
     spring_correlation: float = 0.0,
@@ -57,6 +57,8 @@ def propensity(
     distributions = dict(map(_distribution, spread))
     if len(distributions) < len(spread):
         raise ValueError("--spread: a name stands twice; keep one")
+    for name in sorted(set(distributions) & SESSION.typed):
+        raise ValueError(f"{name} is both fixed and spread; keep one")
     picture = check_outputs(output, picture, force=force)
     runs = samples * (len(distributions) + 3)
     estimate("hammering_map", params, {"t_end": t_end}, runs=runs).check(yes=yes)

@@ -29,7 +29,9 @@ def elsewhere(tmp_path, monkeypatch):
 @pytest.mark.parametrize("command", COMMANDS)
 def test_help_explains_with_an_example(command, capsys):
     assert run([command, "--help"]) == 0
-    assert f"Example: squealpipe {command}" in capsys.readouterr().out
+    out = capsys.readouterr().out
+    assert f"Example: squealpipe {command}" in out
+    assert max(out) < "\U0001f000"  # "KIND:A:B" would be drawn as an emoji
 
 
 def test_overview_names_every_command_and_the_exit_codes(capsys):
@@ -77,6 +79,10 @@ def test_help_loads_no_numerics():
         ([*SWEPT, "--vary", "alpha1=0:1:3"], "alpha1 is both fixed and varied"),
         (["propensity", "1", "2", "--spread", "mu=uniform:0.1"], "mu=uniform:0.1:0.9"),
         (["propensity", "1", "2", "--spread", "muu=uniform:0:1"], "did you mean 'mu'"),
+        (
+            ["propensity", "1", "2", "--spread", "mu=uniform:0:1", "--mu", "0.3"],
+            "mu is both fixed and spread",
+        ),
         ([*SWEPT, "--vary", "friction_law=coulomb,exponential"], "sweep once for each"),
         (["simulate", "1", "2", "3"], "too many arguments: 3"),
         (["simulate", "72", "108"], "write 72deg or 72rad"),
