@@ -213,8 +213,10 @@ class TestInBrowser:
         )
         opened.mouse.move(x, y)
         first, second = opened.inner_text("#force .tip").split("\n")
-        assert float(first.removeprefix("t (s): ")) == pytest.approx(float(explorer.time[40]))
-        assert float(second.split(": ")[1]) == pytest.approx(force[40], abs=1e-3)
+        assert float(first.removeprefix("t = ").removesuffix(" s")) == pytest.approx(
+            float(explorer.time[40])
+        )
+        assert float(second.split(" = ")[1]) == pytest.approx(force[40], abs=1e-3)
         ticks = opened.locator("#force .xtick").all_text_contents()
         opened.mouse.down()
         opened.mouse.move(x + 60, y + 40)

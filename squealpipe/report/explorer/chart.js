@@ -1,7 +1,7 @@
 "use strict";
 // A chart in SVG: lines, marks and an image over two linear axes; hover, zoom by dragging, saving.
 const chart = (() => {
-  const MARGIN = { left: 52, right: 12, top: 8, bottom: 42 };
+  const MARGIN = { left: 58, right: 12, top: 8, bottom: 42 };
   const REACH = 40; // px from a point within which it is told
   const mouse = matchMedia("(pointer: fine)").matches;
 
@@ -12,13 +12,24 @@ const chart = (() => {
   };
 
   // About as many round numbers between two ends.
-  function roundTicks([low, high], count) {
+  function roundTicks([low, high], count, scale) {
     const rough = (high - low) / Math.max(count, 1), power = 10 ** Math.floor(Math.log10(rough));
-    const step = power * ([1, 2, 5].find((times) => times * power >= rough) || 10);
+    const step = power * ([1, 2, 2.5, 5].find((times) => times * power >= rough) || 10);
     const found = [];
     for (let k = Math.ceil(low / step - 1e-9); k * step <= high + 1e-9 * step; k += 1) found.push(k * step);
-    return found.map((value) => [value, shown(value)]);
+    return found.map((value) => [value, shown(value / scale)]);
   }
+
+  // The power of ten that is told with the unit, so that no number on the axis is long.
+  function powerOf(range) {
+    const power = Math.floor(Math.log10(Math.max(...range.map(Math.abs))));
+    return power > 4 || power < -2 ? power : 0;
+  }
+  const titleOf = ({ title, unit }, power) => {
+    const raised = String(power).replace(/./g, (letter) => "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"["-0123456789".indexOf(letter)]);
+    const words = [...(power ? [`10${raised}`] : []), ...(unit ? [unit] : [])].join(" ");
+    return words ? `${title} (${words})` : title;
+  };
 
   function rangeOf(values, axis) {
     if (axis.range) return axis.range;
@@ -38,7 +49,7 @@ const chart = (() => {
     });
   }
 
-  // One chart in `host`. `draw` takes { axes: two of { title, range?, fromZero?, ticks? }, equal?,
+  // One chart in `host`. `draw` takes { axes: two of { title, unit?, range?, fromZero?, ticks? }, equal?,
   // colours: { ink, line, paper }, traces, rules?: [axis, value, color?, thick?][], image?, hover?, click?, zoom? }.
   // A trace has x, y, color and, at will, width, dash, marks (filled or not, for each point), size,
   // ring, name, quiet (no hover).
@@ -77,7 +88,8 @@ const chart = (() => {
       wanted ??= spec.axes.map((axis, k) => rangeOf(spec.traces.flatMap((trace) => Array.from(k ? trace.y : trace.x)), axis));
       ranges = spec.equal ? equalised(wanted, sizes) : wanted;
       const { ink, line, paper } = spec.colours, [w, h] = sizes;
-      const grid = spec.axes.map((axis, k) => (axis.ticks || roundTicks(ranges[k], sizes[k] / (k ? 45 : 70))).map(([value, text]) => {
+      const powers = spec.axes.map((axis, k) => (axis.ticks ? 0 : powerOf(ranges[k])));
+      const grid = spec.axes.map((axis, k) => (axis.ticks || roundTicks(ranges[k], sizes[k] / (k ? 45 : 70), 10 ** powers[k])).map(([value, text]) => {
         const at = pixel(k, value).toFixed(1);
         return k
           ? `<path d="M0 ${at}H${w}" stroke="${line}"/><text class="ytick" x="-6" y="${at}" dy="0.35em" text-anchor="end">${text}</text>`
@@ -94,8 +106,8 @@ const chart = (() => {
       }
       drawing.innerHTML = `<svg xmlns="http://www.w3.org/2000/svg" width="${width}" height="${height}" style="background:${paper}" font-family="system-ui, sans-serif" font-size="12" fill="${ink}">
         <g transform="translate(${MARGIN.left} ${MARGIN.top})">${grid}
-        <text x="${w / 2}" y="${h + 36}" text-anchor="middle">${spec.axes[0].title}</text>
-        <text transform="translate(-40 ${h / 2}) rotate(-90)" text-anchor="middle">${spec.axes[1].title}</text>
+        <text x="${w / 2}" y="${h + 36}" text-anchor="middle">${titleOf(spec.axes[0], powers[0])}</text>
+        <text transform="translate(-47 ${h / 2}) rotate(-90)" text-anchor="middle">${titleOf(spec.axes[1], powers[1])}</text>
         <svg width="${w}" height="${h}" overflow="hidden">${picture}${rules}${spec.traces.map((trace) => `<g>${shape(trace)}</g>`).join("")}<rect fill="${ink}" fill-opacity="0.15"/></svg></g></svg>`;
       inner = drawing.querySelector("svg svg");
       band = inner.lastChild;
@@ -112,7 +124,7 @@ const chart = (() => {
       }
       if (!best) return "";
       const [trace, k] = best, told = [trace.x[k], trace.y[k]];
-      return [...(trace.name ? [trace.name] : []), ...spec.axes.map((axis, own) => `${axis.title}: ${shown(told[own])}`)].join("\n");
+      return [...(trace.name ? [trace.name] : []), ...spec.axes.map((axis, own) => `${axis.title} = ${shown(told[own])} ${axis.unit || ""}`.trim())].join("\n");
     }
 
     function place(event) {

@@ -82,7 +82,7 @@
 
   // ---- plots ------------------------------------------------------------------------------
   const charts = Object.fromEntries(["map", "force", "orbit", "spectrum", "backbones"].map((id) => [id, chart(element(id))]));
-  const axesOf = (x, y) => [{ title: x }, { title: y, fromZero: true }];
+  const axesOf = (x, y) => [x, { ...y, fromZero: true }];
   const draw = (id, content) => charts[id].draw({ ...content, colours: { ink: INK, line: LINE, paper: PAPER } });
   const dot = (color, x, y, size = 4.5) => ({ x: [x], y: [y], color, marks: [true], size, width: 0, quiet: true });
 
@@ -121,7 +121,7 @@
     const values = valuesOf(layer);
     const ticks = ["0", "π/4", "π/2", "3π/4", "π"].map((text, k) => [k * Math.PI / 4, text]);
     draw("map", {
-      axes: ["α₁ (rad)", "α₂ (rad)"].map((title) => ({ title, ticks, range: [-0.05, Math.PI + 0.05] })),
+      axes: ["α₁", "α₂"].map((title) => ({ title, unit: "rad", ticks, range: [-0.05, Math.PI + 0.05] })),
       equal: true,
       zoom: false,
       image: {
@@ -166,7 +166,7 @@
   function drawForce(cell) {
     const force = history("normalized_contact_force", cell);
     draw("force", {
-      axes: axesOf("t (s)", "N / (k₃ l_pre)"),
+      axes: axesOf({ title: "t", unit: "s" }, { title: "N / (k₃ l_pre)" }),
       traces: [{ x: time, y: force, color: BLUE }, dot(RED, time[0], force[0])],
     });
   }
@@ -175,7 +175,7 @@
     const natural = ["omega1_contact", "omega2_contact"].filter((key) => key in layers)
       .map((key) => layerValue(layers[key], chosen)).filter((value) => value > 0);
     draw("spectrum", {
-      axes: axesOf("ω (rad/s)", "amplitude"),
+      axes: axesOf({ title: "ω", unit: "rad/s" }, { title: "amplitude" }),
       traces: [{ x: frequency, y: history("force_spectrum", cell), color: BLUE }],
       rules: natural.map((value) => [0, value]),
     });
@@ -192,7 +192,7 @@
       traces.push({ x: omega, y: branch("y_peak", cell, mode), name: `mode ${mode + 1}: y peak`, color, marks });
       traces.push({ x: omega, y: branch("x_amplitude", cell, mode), name: `mode ${mode + 1}: x amplitude`, color, dash: "6 4" });
     });
-    draw("backbones", { axes: axesOf("ω (rad/s)", "displacement (m)"), traces, rules: [[1, preload]] });
+    draw("backbones", { axes: axesOf({ title: "ω", unit: "rad/s" }, { title: "displacement", unit: "m" }), traces, rules: [[1, preload]] });
     element("key").replaceChildren(...traces.map(({ name, color, marks }) => {
       const entry = document.createElement("span"), stroke = document.createElement("i");
       stroke.style.borderTop = `2px ${marks ? "solid" : "dashed"} ${color}`;
@@ -233,7 +233,7 @@
     const { springs, contact, mass, colours } = mechanism(0);
     const drawn = (points, color) => ({ ...points, color, quiet: true });
     draw("orbit", {
-      axes: [{ title: "x (m)", range: xRange }, { title: "y (m)", range: yRange }],
+      axes: [{ title: "x", unit: "m", range: xRange }, { title: "y", unit: "m", range: yRange }],
       equal: true,
       traces: [
         { x, y, color: "#9a9a9a", width: 1 },
@@ -255,7 +255,7 @@
   }
 
   function tell(k) {
-    element("clock").textContent = `t = ${time[k].toFixed(1)}${orbit.force[k] > 0 ? "" : ", apart"}`;
+    element("clock").textContent = `t = ${+time[k].toPrecision(3)} s${orbit.force[k] > 0 ? "" : ", apart"}`;
   }
 
   function showInstant() {
@@ -296,7 +296,7 @@
 
   // ---- animation --------------------------------------------------------------------------
   let playing = false, started = 0, shown = 0;
-  const unitsPerSecond = 5;
+  const unitsPerSecond = time[time.length - 1] / 12;
   function tick(now) {
     if (!playing) return;
     if (now - shown > 33) {
