@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import sys
 import traceback
@@ -99,9 +100,10 @@ def run(arguments: Sequence[str]) -> int:
             if SESSION.interrupted or isinstance(error, KeyboardInterrupt):
                 print(interrupted(), file=sys.stderr)
                 return INTERRUPTED
-            if SESSION.verbose:
-                traceback.print_exc()
-            print(f"squealpipe: {_told(error)}", file=sys.stderr)
+            with contextlib.suppress(BrokenPipeError):  # nobody reads it
+                if SESSION.verbose:
+                    traceback.print_exc()
+                print(f"squealpipe: {_told(error)}", file=sys.stderr)
             return NOT_DONE
         return code
 

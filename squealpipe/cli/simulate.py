@@ -78,7 +78,7 @@ def simulate(
     from squealpipe.figures.parts.style import save_figure
     from squealpipe.schema import REMEDIES, Outcome
     from squealpipe.tasks.dynamics.runs import simulate as task
-    from squealpipe.tasks.dynamics.summary import summarize, summary_lines
+    from squealpipe.tasks.dynamics.summary import FEWEST, summarize, summary_lines
 
     options: dict[str, Any] = {"t_end": t_end, "model": model, "tol": tol}
     if any((x0, y0, vx0, vy0)):
@@ -98,12 +98,16 @@ def simulate(
                 config={**settings, "points": points},
             )
         progress.done = t_end
+    outcome = Outcome(int(run.outcome))
+    early = f"the run ended early: {outcome.name} ({REMEDIES[outcome]})"
+    if outcome is not Outcome.converged and np.isfinite(run.x).sum() < FEWEST:
+        say(early, f"wrote {output}, too short for a picture")
+        return ANSWER_IS_NO
     summary = summarize(run)
     say(*summary_lines(run, summary))
     save_figure(draw(run, summary), [picture])
     say(f"wrote {output} and {picture}")
-    outcome = Outcome(int(run.outcome))
     if outcome is Outcome.converged:
         return DONE
-    say(f"the run ended early: {outcome.name} ({REMEDIES[outcome]})")
+    say(early)
     return ANSWER_IS_NO

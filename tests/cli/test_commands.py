@@ -133,6 +133,13 @@ def test_simulate_writes_a_run_and_a_picture_and_sums_it_up(capsys, tmp_path):
     assert json.loads(dataset.attrs["config"])["parameters"]["mu"] == 0.3
 
 
+def test_a_run_that_ends_at_once_says_why(capsys):
+    assert run(["simulate", "0", "pi", "--x0", "5"]) == 1  # on both pivots
+    out = capsys.readouterr().out
+    assert "the run ended early: singular_geometry (the mass met a pivot" in out
+    assert "wrote run.nc, too short for a picture" in out
+
+
 @pytest.mark.parametrize("kind", ["validity", "hammering", "quasi-static", "stability"])
 def test_map_writes_dataset_and_picture(kind, capsys, tmp_path):
     angles = ["--alpha1", "0:pi:5", "--alpha2", "0.1,2.0"]

@@ -149,6 +149,15 @@ def test_unexpected_errors_are_one_line_and_a_traceback_on_request(capsys, monke
     assert "Traceback" in capsys.readouterr().err
 
 
+def test_nobody_to_read_an_error_leaves_its_exit_code():
+    code = "import sys; from squealpipe.cli import main; sys.argv = ['squealpipe', 'no']; main()"
+    reader, writer = os.pipe()
+    os.close(reader)
+    with os.fdopen(writer, "w") as pipe:
+        done = subprocess.run([sys.executable, "-c", code], stderr=pipe, check=False)
+    assert done.returncode == 2
+
+
 def test_a_reader_that_goes_away_is_no_error():
     code = (
         "import sys; from squealpipe.cli import main; sys.argv = ['squealpipe', '--help']; main()"

@@ -18,6 +18,8 @@ PEAKS = 3
 """Dominant frequencies that are named."""
 PADDING = 8
 """How much finer the spectrum's grid is than the resolution of the run."""
+FEWEST = 16
+"""Samples of a run from which it can be summed up."""
 
 
 @recorded()
@@ -35,10 +37,10 @@ def summarize(run: xr.Dataset) -> xr.Dataset:
         normalized contact force over ``frequency`` (rad/s), and its highest peaks.
 
     Raises:
-        ValueError: fewer than 16 samples were reached, or they are not uniform.
+        ValueError: fewer than ``FEWEST`` samples were reached, or they are not uniform.
     """
     time = run.time.values[np.isfinite(run.x.values)]
-    if time.size < 16:
+    if time.size < FEWEST:
         raise ValueError(
             f"the run ended after {time.size} samples; ask for more samples or a longer run"
         )
