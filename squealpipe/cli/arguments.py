@@ -11,7 +11,7 @@ from cyclopts import App, ArgumentCollection, Group, Parameter, Token
 
 from squealpipe.cli.console import SESSION
 from squealpipe.parameters import Parameters
-from squealpipe.ranges import parse_angle, parse_range
+from squealpipe.ranges import parse_angle, parse_number, parse_range
 
 
 def _angle(_: Any, tokens: Sequence[Any]) -> float:
@@ -22,6 +22,14 @@ def _angles(_: Any, tokens: Sequence[Any]) -> list[float]:
     return parse_range(tokens[0].value, parse_angle)
 
 
+def _whole(_: Any, tokens: Sequence[Any]) -> int:
+    number = parse_number(tokens[0].value)
+    if not number.is_integer():
+        raise ValueError(f"{tokens[0].value!r} is no whole number")
+    return int(number)
+
+
+Whole = Annotated[int, Parameter(converter=_whole, metavar="INT", n_tokens=1)]
 Angle = Annotated[
     float, Parameter(converter=_angle, metavar="ANGLE", allow_leading_hyphen=True, n_tokens=1)
 ]

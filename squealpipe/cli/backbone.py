@@ -13,6 +13,7 @@ from squealpipe.cli.arguments import (
     Physical,
     Picture,
     Switch,
+    Whole,
 )
 from squealpipe.cli.console import say
 from squealpipe.cli.cost import estimate
@@ -30,7 +31,7 @@ def backbone(
     method: Literal["exact", "hbm"] = "exact",
     y_peak_max: float | None = None,
     x_amplitude_max: float | None = None,
-    n_harmonics: int = 16,
+    n_harmonics: Whole = 16,
     output: Output = Path("backbone.nc"),
     picture: Picture = None,
     force: Switch = False,

@@ -13,7 +13,7 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any, TextIO
 
-from squealpipe.cli.arguments import Configs, Switch
+from squealpipe.cli.arguments import Configs, Switch, Whole
 from squealpipe.cli.console import SESSION, say
 from squealpipe.cli.exit_codes import DONE, NOT_DONE
 from squealpipe.cli.output import check_output
@@ -90,7 +90,7 @@ def checkout() -> Path:
     )
 
 
-def run(*, config: Configs = None, quick: Switch = False, cores: int | None = None) -> int:
+def run(*, config: Configs = None, quick: Switch = False, cores: Whole | None = None) -> int:
     """Compute a study: one line for each rule when it is done, and what failed, with its log.
 
     Stop it and run the same command again: it goes on where it was.

@@ -7,7 +7,16 @@ from typing import Annotated, Any
 
 from cyclopts import Parameter
 
-from squealpipe.cli.arguments import BASELINE, Angle, Configs, Output, Physical, Picture, Switch
+from squealpipe.cli.arguments import (
+    BASELINE,
+    Angle,
+    Configs,
+    Output,
+    Physical,
+    Picture,
+    Switch,
+    Whole,
+)
 from squealpipe.cli.console import SESSION, say
 from squealpipe.cli.cost import estimate
 from squealpipe.cli.exit_codes import DONE
@@ -23,10 +32,10 @@ def propensity(
     /,
     *,
     spread: Annotated[list[str], Parameter(metavar="NAME=KIND:LOW:HIGH", negative="")],
-    samples: int = 1024,
+    samples: Whole = 1024,
     t_end: float = 200.0,
     spring_correlation: float = 0.0,
-    seed: int = 1,
+    seed: Whole = 1,
     output: Output = Path("propensity.nc"),
     picture: Picture = None,
     force: Switch = False,

@@ -14,6 +14,7 @@ from squealpipe.cli.arguments import (
     Physical,
     Picture,
     Switch,
+    Whole,
 )
 from squealpipe.cli.console import say
 from squealpipe.cli.cost import estimate
@@ -32,7 +33,7 @@ def simulate(
     t_end: float = 50.0,
     model: Model = "A1",
     tol: float = 1e-12,
-    points: int = 2001,
+    points: Whole = 2001,
     x0: float = 0.0,
     y0: float = 0.0,
     vx0: float = 0.0,

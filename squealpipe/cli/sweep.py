@@ -8,7 +8,7 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
-from squealpipe.cli.arguments import BASELINE, Angle, Configs, Output, Physical, Switch
+from squealpipe.cli.arguments import BASELINE, Angle, Configs, Output, Physical, Switch, Whole
 from squealpipe.cli.console import SESSION, say
 from squealpipe.cli.cost import of_sweep
 from squealpipe.cli.exit_codes import DONE
@@ -24,7 +24,7 @@ def sweep(
     alpha1: Angle | None = None,
     alpha2: Angle | None = None,
     option: Annotated[list[str] | None, Parameter(metavar="NAME=VALUE", negative="")] = None,
-    workers: int | None = None,
+    workers: Whole | None = None,
     output: Output = Path("sweep.nc"),
     force: Switch = False,
     yes: Switch = False,
