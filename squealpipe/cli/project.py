@@ -33,6 +33,8 @@ results: {results}
 """
 PATIENCE = 30.0
 """Seconds in which a workflow that was interrupted may end its jobs and tidy up."""
+GRACE = 5.0
+"""Seconds after which jobs that did not heed the interrupt are killed, and then Snakemake."""
 
 
 def init(
@@ -161,11 +163,24 @@ def _follow(command: list[str], log: TextIO) -> tuple[int, Teller]:
             return process.wait(), teller
         except KeyboardInterrupt:
             os.killpg(process.pid, signal.SIGINT)
-            try:
-                process.wait(PATIENCE / 2)
-            except subprocess.TimeoutExpired:
-                os.killpg(process.pid, signal.SIGKILL)
+            if not _ended(process, log):  # a job does not heed it: Snakemake tidies up without it
+                import psutil
+
+                for job in psutil.Process(process.pid).children(recursive=True):
+                    job.kill()
+                if not _ended(process, log):
+                    os.killpg(process.pid, signal.SIGKILL)
+                    subprocess.run([*command, "--unlock"], capture_output=True, check=False)
             raise
+
+
+def _ended(process: subprocess.Popen[str], log: TextIO) -> bool:
+    """Whether Snakemake has come to its end within the time that it is given."""
+    try:
+        log.write(process.communicate(timeout=GRACE)[0])
+    except subprocess.TimeoutExpired:
+        return False
+    return True
 
 
 class Teller:
