@@ -163,10 +163,9 @@ def critical_friction(
         μ of the first loss of stability, and μ of the same system without dashpots.
     """
     stiffness, determinant, _ = contact_system(p, alpha1, alpha2)
-    # round-off would give a friction of 1e16, or none, by its sign
-    coupling = np.where(a2.coupling_is_zero(stiffness), 0.0, stiffness.k12)
-    stiffness = stiffness._replace(k12=coupling)
-    c11, c12, c22 = (entry / p.mass for entry in linear_damping(p, geometry(alpha1, alpha2)))
+    stiffness = _without_round_off(stiffness)
+    damping = _without_round_off(linear_damping(p, geometry(alpha1, alpha2)))
+    c11, c12, c22 = (entry / p.mass for entry in damping)
     undamped = _undamped_critical_friction(p, stiffness, determinant)
     k11, k12, k22 = (entry / p.mass for entry in stiffness)
     push = p.belt_direction * p.k3 / p.mass
@@ -177,11 +176,18 @@ def critical_friction(
     a, b = c11 * k22 + c22 * k11 - 2.0 * c12 * k12, -c12 * push
     d = determinant / p.mass**2 + p.k3 / p.mass * k11
     e = -push * k12
-    flutter = _first_root(-b * b, p1 * p2 * b - 2.0 * a * b - p1 * p1 * e,
-                          p1 * p2 * a - a * a - p1 * p1 * d)  # fmt: skip
+    damps, drives = p1 * p2 * a, a * a + p1 * p1 * d
+    # 0 where a mode moves neither dashpot
+    left = np.where(np.abs(damps - drives) <= a2.ROUND_OFF * (damps + drives), 0.0, damps - drives)
+    flutter = _first_root(-b * b, p1 * p2 * b - 2.0 * a * b - p1 * p1 * e, left)
     divergence = np.where(e < 0.0, -d / np.where(e < 0.0, e, 1.0), np.inf)
     damped = np.where(p1 > 0.0, np.minimum(flutter, divergence), undamped)
     return damped, undamped
+
+
+def _without_round_off(matrix: Stiffness) -> Stiffness:
+    """K or C whose coupling is zero to round-off, which would give a friction of 1e16, or none."""
+    return matrix._replace(k12=np.where(a2.coupling_is_zero(matrix), 0.0, matrix.k12))
 
 
 def _undamped_critical_friction(p: Any, stiffness: Stiffness, determinant: Any) -> Any:
@@ -196,11 +202,12 @@ def _undamped_critical_friction(p: Any, stiffness: Stiffness, determinant: Any) 
 
 
 def _first_root(a: Any, b: Any, c: Any) -> Any:
-    """Smallest positive zero of a x² + b x + c where it turns negative, ∞ without; 0 if c < 0."""
+    """Smallest x ≥ 0 from which a x² + b x + c is negative, for a ≤ 0; ∞: none."""
     a, b, c = np.broadcast_arrays(a, b, c)
     with np.errstate(divide="ignore", invalid="ignore"):
         root = np.sqrt(np.maximum(b * b - 4.0 * a * c, 0.0))
         q = -0.5 * (b + np.where(b < 0.0, -root, root))
         zeros = np.stack([q / a, c / q])
     zeros = np.where((b * b >= 4.0 * a * c) & np.isfinite(zeros) & (zeros > 0.0), zeros, np.inf)
-    return np.where(c < 0.0, 0.0, zeros.min(axis=0))
+    at_once = (c < 0.0) | ((c == 0.0) & ((b < 0.0) | ((b == 0.0) & (a < 0.0))))
+    return np.where(at_once, 0.0, zeros.min(axis=0))

@@ -212,6 +212,22 @@ def test_round_off_of_the_coupling_gives_no_critical_friction() -> None:
     assert np.isinf(same).all()
 
 
+@pytest.mark.parametrize("springs", [{}, {"k2": 1.3, "length2": 7.0, "belt_speed": -40.0}])
+def test_round_off_of_the_dashpots_coupling_gives_no_critical_friction(springs) -> None:
+    """C12 = K12 = 0 for springs along the axes, and wherever C is proportional to such a K."""
+    angles = np.linspace(0.0, np.pi, 61)
+    unlike = critical_friction_map(
+        Parameters(damping1=0.03, damping2=0.01, **springs), angles, angles
+    )
+    assert unlike.critical_mu.where(np.isfinite(unlike.critical_mu)).max() < 1e6
+    assert np.isinf(unlike.critical_mu.values[::30, ::30]).sum() >= 5
+    params = Parameters(**springs)
+    alike = params.with_(damping1=0.02 * params.k1, damping2=0.02 * params.k2)
+    found = critical_friction_map(alike, angles, angles)
+    free = np.isinf(found.critical_mu_undamped)
+    assert np.isinf(found.critical_mu.where(free, np.inf)).all()
+
+
 @pytest.mark.parametrize(
     ("change", "named"),
     [

@@ -45,8 +45,8 @@ class Shown:
         values = variable.values
         finite = np.isfinite(values)
         return [
-            f"{_words(variable)}: in {np.count_nonzero(finite)} of {values.size} cells, "
-            f"from {values[finite].min():.6g} to {values[finite].max():.6g} {variable.units}"
+            f"{_label(variable)}: in {np.count_nonzero(finite)} of {values.size} cells, "
+            f"from {values[finite].min():.6g} to {values[finite].max():.6g}"
             if finite.any()
             else f"{_words(variable)}: in no cell"
         ]
