@@ -66,7 +66,6 @@ OTHERS = {
 }
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("params", OTHERS.values(), ids=OTHERS)
 def test_no_evidence_contradicts_its_data(params: Parameters) -> None:
     """What the sentences say in words, against the datasets, where words may go either way."""
@@ -83,7 +82,7 @@ def test_no_evidence_contradicts_its_data(params: Parameters) -> None:
     lost = bool((data["simulate/F2d"].event_kind == 0).any())
     assert f"contact is {'lost' if lost else 'kept'} in A1" in text["C3"]
     near = np.abs(data["whirl"].belt_speed / params.belt_speed - 1).min() <= 0.05
-    assert bool(near) == ("In a run to" in text["F3"])
+    assert bool(near) == ("No long run was made" not in text["F3"])
     validity = data["validity_map"]
     black = (validity.separates == 0) & (validity.regime_linear > 0)
     assert f"{int(black.sum())} are unstable by A3" in text["E10"]
