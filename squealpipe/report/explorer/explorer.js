@@ -166,7 +166,7 @@
   function drawForce(cell) {
     const force = history("normalized_contact_force", cell);
     draw("force", {
-      axes: axesOf({ title: "t", unit: "s" }, { title: "N / (k₃ l_pre)" }),
+      axes: axesOf({ title: "t", unit: "s" }, { title: "N / (k₃ lₚᵣₑ)" }),
       traces: [{ x: time, y: force, color: BLUE }, dot(RED, time[0], force[0])],
     });
   }

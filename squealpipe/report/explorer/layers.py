@@ -113,7 +113,7 @@ def layers(
             "first separation",
             note="blank: contact is kept to the end of the run",
         ),
-        "peak_force": quantity(hammering.peak_contact_force, "peak contact force / (k₃ l_pre)"),
+        "peak_force": quantity(hammering.peak_contact_force, "peak contact force / (k₃ lₚᵣₑ)"),
         "impact_rate": quantity(hammering.impact_rate, "impacts per time"),
         "predictability": quantity(
             hammering.predictability_horizon,
