@@ -84,7 +84,7 @@ def simulate(
     room, logged = 0, FIRST_LOG
     while room < logged:
         room = logged
-        found = integrate(job, wanted, tangent=growth, log_events=room, workers=1)
+        found = integrate(job, wanted, tangent=growth, log_events=room, few=not growth, workers=1)
         run = SimpleNamespace(**found)
         logged = sum(int(getattr(run, name)) for name in COUNTS)
     x, y, vx, vy = run.samples.T
