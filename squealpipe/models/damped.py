@@ -152,7 +152,10 @@ def critical_friction(
 ) -> tuple[Any, Any]:
     """The smallest μ ≥ 0 at which the sliding state of Coulomb friction is unstable, ∞: none.
 
+    Unstable is what grows exponentially; a double frequency, where motions grow like t, is not.
     Routh–Hurwitz is a quadratic in μ, because p3 and p4 are linear in it and p1 and p2 free of it.
+    Without friction it is, with C_i the damping of the modes of K of eigenvalues κ_i,
+    p1 det C p3 + C_1 C_2 (κ1 − κ2)², which loses no digit where a mode moves hardly a dashpot.
 
     Args:
         p: parameters, whose ``mu`` is not looked at and whose belt gives the direction.
@@ -164,22 +167,28 @@ def critical_friction(
     """
     stiffness, determinant, _ = contact_system(p, alpha1, alpha2)
     stiffness = _without_round_off(stiffness)
-    damping = _without_round_off(linear_damping(p, geometry(alpha1, alpha2)))
-    c11, c12, c22 = (entry / p.mass for entry in damping)
+    g = geometry(alpha1, alpha2)
+    c11, c12, c22 = (entry / p.mass for entry in _without_round_off(linear_damping(p, g)))
     undamped = _undamped_critical_friction(p, stiffness, determinant)
     k11, k12, k22 = (entry / p.mass for entry in stiffness)
     push = p.belt_direction * p.k3 / p.mass
     k22 = k22 + p.k3 / p.mass
     p1 = c11 + c22
-    p2 = k11 + k22 + (0.0 if vanishing else c11 * c22 - c12 * c12)
+    turned = g.s1 * g.c2 + g.c1 * g.s2
+    area = 0.0 if vanishing else p.damping1 * p.damping2 * (turned / p.mass) ** 2  # det C
+    p2 = k11 + k22 + area
     # p3 = a + b μ and p4 = d + e μ
     a, b = c11 * k22 + c22 * k11 - 2.0 * c12 * k12, -c12 * push
     d = determinant / p.mass**2 + p.k3 / p.mass * k11
     e = -push * k12
-    damps, drives = p1 * p2 * a, a * a + p1 * p1 * d
-    # 0 where a mode moves neither dashpot
-    left = np.where(np.abs(damps - drives) <= a2.ROUND_OFF * (damps + drives), 0.0, damps - drives)
+    mode = 0.5 * np.arctan2(2.0 * k12, k11 - k22)
+    along, across = (
+        (p.damping1 * (g.c1 * c + g.s1 * s) ** 2 + p.damping2 * (g.c2 * c - g.s2 * s) ** 2) / p.mass
+        for c, s in ((np.cos(mode), np.sin(mode)), (-np.sin(mode), np.cos(mode)))
+    )
+    left = p1 * area * a + along * across * ((k11 - k22) ** 2 + 4.0 * k12 * k12)
     flutter = _first_root(-b * b, p1 * p2 * b - 2.0 * a * b - p1 * p1 * e, left)
+    flutter = np.where((b == 0.0) & (e == 0.0), np.inf, flutter)  # friction couples nothing
     divergence = np.where(e < 0.0, -d / np.where(e < 0.0, e, 1.0), np.inf)
     damped = np.where(p1 > 0.0, np.minimum(flutter, divergence), undamped)
     return damped, undamped

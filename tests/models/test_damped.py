@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import mpmath as mp
 import numpy as np
@@ -226,6 +227,56 @@ def test_round_off_of_the_dashpots_coupling_gives_no_critical_friction(springs) 
     found = critical_friction_map(alike, angles, angles)
     free = np.isinf(found.critical_mu_undamped)
     assert np.isinf(found.critical_mu.where(free, np.inf)).all()
+
+
+def _onset_by_bisection(params: Parameters, alpha1: float, alpha2: float) -> float:
+    """The critical friction from eigenvalues of forty digits."""
+    with mp.workdps(40):
+        cos1, sin1 = mp.cos(alpha1), mp.sin(alpha1)
+        cos2, sin2 = mp.cos(alpha2), mp.sin(alpha2)
+
+        def inclined(one: float, two: float) -> list[Any]:
+            coupling = one * cos1 * sin1 - two * cos2 * sin2
+            return [one * cos1**2 + two * cos2**2, coupling, one * sin1**2 + two * sin2**2]
+
+        k11, k12, k22 = inclined(mp.mpf(params.k1), mp.mpf(params.k2))
+        c11, c12, c22 = inclined(mp.mpf(params.damping1), mp.mpf(params.damping2))
+
+        def grows(mu: Any) -> bool:
+            push = mu * params.k3 * params.belt_direction
+            matrix = mp.matrix(
+                [
+                    [0, 0, 1, 0],
+                    [0, 0, 0, 1],
+                    [-k11, -k12 - push, -c11, -c12],
+                    [-k12, -k22 - params.k3, -c12, -c22],
+                ]
+            )
+            return bool(max(mp.re(s) for s in mp.eig(matrix)[0]) > mp.mpf("1e-32"))
+
+        low, high = mp.mpf("1e-12"), mp.mpf(1)
+        while high / low > 1 + 1e-9:
+            middle = mp.sqrt(low * high)
+            low, high = (low, middle) if grows(middle) else (middle, high)
+        return float(high)
+
+
+@pytest.mark.parametrize(
+    ("angles", "dashpots", "speed"),
+    [
+        ((3.1415927, 1.5707963), (0.1, 0.0), -1.0),
+        ((1.57079633, 0.0), (0.0, 0.1), 1.0),
+        ((0.0, 1.5708), (0.1, 0.0), -1.0),
+        ((0.8562937104837142, 0.6322501818389592), (0.0, 1e7), 1.0),
+    ],
+)
+def test_critical_friction_where_a_mode_moves_hardly_a_dashpot(angles, dashpots, speed) -> None:
+    """Round-off once gave 0, which says unstable at any friction, or a few digits."""
+    springs = {"k2": 2.3, "k3": 0.6} if max(dashpots) < 1 else {"k2": 0.2, "k3": 0.18}
+    damping1, damping2 = dashpots
+    params = Parameters(damping1=damping1, damping2=damping2, belt_speed=speed, **springs)
+    found = float(critical_friction(params, *angles)[0])
+    assert found == pytest.approx(_onset_by_bisection(params, *angles), rel=1e-6)
 
 
 @pytest.mark.parametrize(

@@ -69,6 +69,31 @@ def test_force_and_distance_stay_below_their_bounds() -> None:
     assert (run.peak_contact_force <= found.largest_force(1.0)[here]).all()
 
 
+@pytest.mark.parametrize(
+    ("springs", "mu", "speed", "angles"),
+    [
+        # loses contact at t = 28
+        (
+            (0.2016830247574389, 0.5073972318014053, 16.158968502507427, 3.034028343281659),
+            0.6379818062197151, -162.08906067187806, (1.5471206975677092, 0.2524776472769858),
+        ),
+        # ω2 = 2.99 ω1: the distance passes its bound
+        (
+            (3.1646352962730955, 1.9977259058453658, 4.215417101464209, 8.31125550760323),
+            0.5520721244511883, -18.657334464508182, (2.7358789539779234, 1.5199218454844075),
+        ),
+    ],
+)  # fmt: skip
+def test_a_far_swing_of_a_short_spring_is_not_certified(springs, mu, speed, angles) -> None:
+    """Found by a directed search; both were certified once."""
+    k2, k3, length1, length2 = springs
+    params = Parameters(
+        k2=k2, k3=k3, length1=length1, length2=length2, mu=mu, belt_speed=speed
+    )  # fmt: skip
+    for question in ("contact_lost", "max_displacement"):
+        assert choose_model(params, *angles, question, 0.05, t_end=300.0).model == "a1"
+
+
 def test_a_slower_mode_fed_by_the_faster_one_is_not_certified() -> None:
     """At ω2 = 1.825 ω1 the small slower mode grows: the distance passes its bound by 4 %."""
     params = Parameters(
