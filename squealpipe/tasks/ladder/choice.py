@@ -113,9 +113,9 @@ def choose_model(
 
     That a cheaper level than A1 keeps to the tolerance is measured at random parameters, not
     proved; ``reason`` names the sample. Outside of the range of the sample
-    (:class:`squealpipe.tasks.ladder.certificate.Measured`) A1 answers. A1 is run on the mirror image
-    with V ≥ 0 and the stiffer spring first: in a chaotic motion, whose numbers round-off decides
-    beyond its predictability horizon, that is another sample than a run as given.
+    (:class:`squealpipe.tasks.ladder.certificate.Measured`) A1 answers. A1 is run on the mirror
+    image with V ≥ 0 and the stiffer spring first: in a chaotic motion, whose numbers round-off
+    decides beyond its predictability horizon, that is another sample than a run as given.
 
     Args:
         params: physical parameters.
