@@ -137,9 +137,14 @@ def sine_of_sum(alpha1: Any, alpha2: Any) -> Any:
     return np.sin(total) + lost * np.cos(total)
 
 
+def pair_determinant(first: Scalar, second: Scalar, sine: Scalar) -> Scalar:
+    """The determinant of :func:`inclined_pair` as q1 q2 sin²(α1 + α2), which does not cancel."""
+    return first * second * sine * sine
+
+
 def determinant_from_sine(p: Any, sine: Scalar) -> Scalar:
-    """K11 K22 − K12² of Eqs. (8a)–(8c) as k1 k2 sin²(α1 + α2), which does not cancel, N²/m²."""
-    return p.k1 * p.k2 * sine * sine
+    """K11 K22 − K12² of Eqs. (8a)–(8c), N²/m²."""
+    return pair_determinant(p.k1, p.k2, sine)
 
 
 def stiffness_determinant(p: Any, g: Geometry) -> Scalar:

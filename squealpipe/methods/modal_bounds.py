@@ -194,9 +194,10 @@ def _shift(
     w1, w2 = motion.omega[..., 0], motion.omega[..., 1]
     still = np.zeros(np.shape(w1))
     q11, q22, q12 = quadratic(0, 0), quadratic(1, 1), quadratic(0, 1)
+    difference = w2 - w1
     driven = [
         (q11, 0.5, still), (q11, 0.5, 2.0 * w1), (q22, 0.5, still), (q22, 0.5, 2.0 * w2),
-        (q12, 1.0, w2 + w1), (q12, 1.0, w2 - w1),
+        (q12, 1.0, w2 + w1), (q12, 1.0, difference),
     ]  # fmt: skip
     a11, a12, a21, a22 = matrix
     total = np.zeros((*np.shape(w1), 2))
@@ -214,9 +215,9 @@ def _shift(
                 distance = np.abs(own - frequency * frequency)[..., None]
                 response = 2.0 * weight * np.abs(part) / distance
                 total += response
-            if own is slower:
-                (ux, uy), size = modes[0], np.linalg.norm(response, axis=-1)
-                exchange = np.where(size > 0.0, size / np.hypot(ux, uy), 0.0)
+                if own is slower and frequency is difference:
+                    (ux, uy), size = modes[0], np.linalg.norm(response, axis=-1)
+                    exchange = np.where(size > 0.0, size / np.hypot(ux, uy), 0.0)
     return (
         np.where(motion.oscillates[..., None], total, np.inf),
         np.where(motion.oscillates, exchange, np.inf),

@@ -19,7 +19,7 @@ import numpy as np
 
 from squealpipe.laws.dashpots import linear_damping
 from squealpipe.laws.friction_laws import slope
-from squealpipe.laws.springs import Stiffness, geometry
+from squealpipe.laws.springs import Stiffness, geometry, pair_determinant, sine_of_sum
 from squealpipe.models import a2, a3
 from squealpipe.models.a3 import LinearRegime
 from squealpipe.models.a4 import contact_matrix
@@ -174,9 +174,9 @@ def critical_friction(
     push = p.belt_direction * p.k3 / p.mass
     k22 = k22 + p.k3 / p.mass
     p1 = c11 + c22
-    turned = g.s1 * g.c2 + g.c1 * g.s2
-    area = 0.0 if vanishing else p.damping1 * p.damping2 * (turned / p.mass) ** 2  # det C
-    p2 = k11 + k22 + area
+    sine = sine_of_sum(alpha1, alpha2) / p.mass
+    product = 0.0 if vanishing else pair_determinant(p.damping1, p.damping2, sine)  # det C
+    p2 = k11 + k22 + product
     # p3 = a + b μ and p4 = d + e μ
     a, b = c11 * k22 + c22 * k11 - 2.0 * c12 * k12, -c12 * push
     d = determinant / p.mass**2 + p.k3 / p.mass * k11
@@ -186,7 +186,7 @@ def critical_friction(
         (p.damping1 * (g.c1 * c + g.s1 * s) ** 2 + p.damping2 * (g.c2 * c - g.s2 * s) ** 2) / p.mass
         for c, s in ((np.cos(mode), np.sin(mode)), (-np.sin(mode), np.cos(mode)))
     )
-    left = p1 * area * a + along * across * ((k11 - k22) ** 2 + 4.0 * k12 * k12)
+    left = p1 * product * a + along * across * ((k11 - k22) ** 2 + 4.0 * k12 * k12)
     flutter = _first_root(-b * b, p1 * p2 * b - 2.0 * a * b - p1 * p1 * e, left)
     flutter = np.where((b == 0.0) & (e == 0.0), np.inf, flutter)  # friction couples nothing
     divergence = np.where(e < 0.0, -d / np.where(e < 0.0, e, 1.0), np.inf)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from squealpipe.figures.parts.backbone_panels import STABLE_TO_ROUND_OFF, key_entries, say_why_empty
+from squealpipe.figures.parts.origin import angle_pair
 from squealpipe.figures.parts.style import (
     BLUE,
     GREEN,
@@ -15,7 +16,6 @@ from squealpipe.figures.parts.style import (
     PAGE,
     new_figure,
     panel_letter,
-    pi_label,
 )
 
 if TYPE_CHECKING:
@@ -56,8 +56,8 @@ def draw(backbones: Mapping[str, xr.Dataset], doubled: Mapping[str, xr.Dataset])
             if key.removeprefix("doubled_branch/").rpartition("_")[0] == scene
         ]
         _draw_scene(left, right, simple, leaving)
-        angles = ", ".join(pi_label(float(simple.attrs[key])) for key in ("alpha1", "alpha2"))
-        panel_letter(left, next(letters), f"({angles})")
+        angles = angle_pair(simple.attrs["alpha1"], simple.attrs["alpha2"])
+        panel_letter(left, next(letters), angles)
         panel_letter(right, next(letters), "stability index")
     handles, labels = key_entries(axes.ravel())
     if labels:

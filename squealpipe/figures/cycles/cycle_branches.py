@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from squealpipe.figures.parts.origin import scene_title
+from squealpipe.figures.parts.origin import angle_pair, scene_title
 from squealpipe.figures.parts.style import (
     BLACK,
     BLUE,
@@ -19,7 +19,6 @@ from squealpipe.figures.parts.style import (
     RED,
     new_figure,
     panel_letter,
-    pi_label,
 )
 from squealpipe.schema import meanings
 
@@ -90,7 +89,7 @@ def draw(down: xr.Dataset, up: xr.Dataset, flutter: xr.Dataset, extremes: xr.Dat
 def flutter_title(dataset: xr.Dataset) -> str:
     """The scene of the flutter onset by its angles, from the configuration of its dataset."""
     angles = json.loads(dataset.attrs["config"])["cycles"]["flutter"]
-    return f"({', '.join(pi_label(float(angle) * np.pi) for angle in angles)}), flutter onset"
+    return f"{angle_pair(*(float(angle) * np.pi for angle in angles))}, flutter onset"
 
 
 def _branch(panel: Axes, branch: xr.Dataset) -> dict[str, tuple[str, str, str]]:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from matplotlib.patches import Patch
 
-from squealpipe.figures.parts.origin import parameter
+from squealpipe.figures.parts.origin import angle_pair, parameter
 from squealpipe.figures.parts.style import (
     BLACK,
     PAGE,
@@ -16,7 +16,6 @@ from squealpipe.figures.parts.style import (
     new_figure,
     number,
     panel_letter,
-    pi_label,
 )
 
 if TYPE_CHECKING:
@@ -66,10 +65,9 @@ def draw(angles: xr.Dataset, dashpots: xr.Dataset) -> Figure:
     if values.min() < level < values.max():
         plane.contour(c1, c2, values.T, levels=[level], colors=[WHITE], linewidths=1.0)
     plane.set(xlabel="dashpot c₁ (N s/m)", ylabel="dashpot c₂ (N s/m)", aspect="equal")
-    where = [pi_label(float(dashpots[name])) for name in ("alpha1", "alpha2")]
     panel_letter(without, "a", "no dashpots")
     panel_letter(with_dashpots, "b", "with dashpots")
-    panel_letter(plane, "c", f"at ({', '.join(where)})")
+    panel_letter(plane, "c", f"at {angle_pair(dashpots.alpha1, dashpots.alpha2)}")
     figure.colorbar(mesh, ax=axes[0], label="critical friction", extend="max", shrink=0.7)
     figure.legend(
         handles=[

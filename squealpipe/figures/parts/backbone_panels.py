@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from squealpipe.figures.parts.origin import parameter
+from squealpipe.figures.parts.origin import angle_pair, parameter
 from squealpipe.figures.parts.style import (
     GREY,
     PAGE,
@@ -15,7 +15,6 @@ from squealpipe.figures.parts.style import (
     Y_COLOUR,
     new_figure,
     panel_letter,
-    pi_label,
 )
 from squealpipe.schema import meanings
 
@@ -80,8 +79,7 @@ def scene_caption(branches: Mapping[str, xr.Dataset]) -> str:
 
 
 def _angles(branch: xr.Dataset) -> str:
-    first, second = (pi_label(float(branch.attrs[name])) for name in ("alpha1", "alpha2"))
-    return f"({first}, {second})"
+    return angle_pair(branch.attrs["alpha1"], branch.attrs["alpha2"])
 
 
 def draw_branch(panel: Axes, exact: xr.Dataset, series: xr.Dataset, preload: float) -> None:

@@ -33,9 +33,14 @@ def time_unit(dataset: xr.Dataset) -> float:
     return math.sqrt(parameter(dataset, "mass") / parameter(dataset, "k1"))
 
 
+def angle_pair(alpha1: float, alpha2: float) -> str:
+    """Both angles as people write them: ``(0.4π, 0.6π)``."""
+    return f"({pi_label(float(alpha1))}, {pi_label(float(alpha2))})"
+
+
 def angles_of(scene: Scene) -> str:
-    """Both angles of a scene of the paper: ``(0.4π, 0.6π)``."""
-    return f"({pi_label(scene.alpha1)}, {pi_label(scene.alpha2)})"
+    """Both angles of a scene of the paper."""
+    return angle_pair(scene.alpha1, scene.alpha2)
 
 
 def scene_title(name: str) -> str:
@@ -48,7 +53,7 @@ def scene_name(dataset: xr.Dataset, scene: str) -> str:
     name, _, mode = scene.partition(" mode ")
     own = json.loads(dataset.attrs.get("config", "{}")).get("backbones.coupled", {})
     if name in own:
-        angles = f"({', '.join(pi_label(float(angle) * math.pi) for angle in own[name])})"
+        angles = angle_pair(*(float(angle) * math.pi for angle in own[name]))
     elif name in SCENES:
         angles = angles_of(SCENES[name])
     else:

@@ -10,7 +10,7 @@ import pytest
 
 from squealpipe.parameters import Parameters
 from squealpipe.solvers.a1.ensemble import run_ensemble
-from squealpipe.tasks.ladder.certificate import RANGE, contact_certificate
+from squealpipe.tasks.ladder.certificate import LARGEST_EXCHANGE, RANGE, contact_certificate
 from squealpipe.tasks.ladder.choice import choose_model
 
 
@@ -92,6 +92,19 @@ def test_a_far_swing_of_a_short_spring_is_not_certified(springs, mu, speed, angl
     )  # fmt: skip
     for question in ("contact_lost", "max_displacement"):
         assert choose_model(params, *angles, question, 0.05, t_end=300.0).model == "a1"
+
+
+def test_three_to_one_is_a_resonance() -> None:
+    """Though the difference tone feeds neither mode."""
+    params = Parameters(
+        k2=3.1646352962730955, k3=1.9977259058453658, mu=0.5520721244511883,
+        length1=4.215417101464209, length2=8.31125550760323, belt_speed=-18.657334464508182,
+    )  # fmt: skip
+    found = contact_certificate(params, 2.7358789539779234, 1.5199218454844075, 277.0)
+    slower, faster = found.second.motion.omega
+    assert faster / slower == pytest.approx(2.986, abs=1e-3)
+    assert found.second.exchange < LARGEST_EXCHANGE
+    assert not found.detuned
 
 
 def test_a_slower_mode_fed_by_the_faster_one_is_not_certified() -> None:
