@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import sys
 from typing import Any
 
 import numpy as np
@@ -27,7 +28,8 @@ def real_array(name: str, values: Any, *, infinite: bool = False) -> np.ndarray:
         ValueError: no real numbers, masked entries, NaN or (unless allowed) infinity, with the
             name and the first culprit.
     """
-    if isinstance(values, float) and math.isfinite(values):  # most often, and most runs
+    # most often, and most runs
+    if isinstance(values, float) and abs(values) <= (math.inf if infinite else sys.float_info.max):
         return np.array(values)
     if np.ma.is_masked(values):
         raise ValueError(f"{name} has masked entries: fill them or leave them out")

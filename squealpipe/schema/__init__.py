@@ -219,17 +219,22 @@ def build(
         SchemaError: something is missing, unknown, of the wrong shape, or NaN without leave.
     """
     arrays: dict[str, np.ndarray] = {}
+    variables: dict[Any, xr.Variable] = {}
     for kind, given, table in (
         ("variable", data, schema.variables),
         ("coordinate", coords, schema.coordinates),
     ):
-        unknown = sorted(set(given) - set(table))
+        unknown = sorted(given.keys() - table.keys())
         if unknown:
             raise SchemaError(f"{schema.name}: unknown {kind} {', '.join(unknown)}")
         for name, values in given.items():
-            array, stored = np.asarray(values), table[name].stored
-            arrays[name] = array.astype(array.dtype if stored.kind in "US" else stored)
-    dataset = _dataset(schema, arrays, coords)
+            entry = table[name]
+            array = np.array(values, None if entry.stored.kind in "US" else entry.stored)
+            # ``fastpath`` leaves out the search for dates in arrays of numbers.
+            plain = array.ndim == len(entry.dims) and array.dtype.kind in "fiub"
+            arrays[name] = array
+            variables[name] = xr.Variable(entry.dims, array, entry.attributes(), fastpath=plain)
+    dataset = _dataset(variables, {name: arrays[name] for name in coords})
     dataset.attrs = {
         "Conventions": "CF-1.11",
         "title": schema.title,
@@ -244,23 +249,15 @@ def build(
     return dataset
 
 
-def _dataset(
-    schema: DatasetSchema, arrays: Mapping[str, np.ndarray], coords: Iterable[str]
-) -> xr.Dataset:
-    """What ``xr.Dataset(data, coords)`` makes of arrays that need no alignment.
+def _dataset(variables: dict[Any, xr.Variable], coords: Mapping[str, np.ndarray]) -> xr.Dataset:
+    """What ``xr.Dataset(data, coords)`` makes of variables that need no alignment.
 
     That constructor copies and merges: 0.4 ms, more than a run in time takes.
     """
-    variables: dict[Any, xr.Variable] = {}
     indexes: dict[Any, Any] = {}
-    for name, array in arrays.items():
-        entry: Any = schema.lookup(name)
-        # ``fastpath`` leaves out the search for dates in arrays of numbers.
-        plain = array.ndim == len(entry.dims) and array.dtype.kind in "fiub"
-        variables[name] = xr.Variable(entry.dims, array, entry.attributes(), fastpath=plain)
-    for name in coords:
+    for name, array in coords.items():
         if variables[name].dims == (name,):
-            index = PandasIndex(pd.Index(arrays[name]), name, coord_dtype=arrays[name].dtype)
+            index = PandasIndex(pd.Index(array), name, coord_dtype=array.dtype)
             indexes[name] = index
             variables |= index.create_variables({name: variables[name]})
     return xr.Dataset._construct_direct(variables, set(coords), indexes=indexes)  # noqa: SLF001

@@ -50,7 +50,7 @@ class Ensemble:
         nearest_pivot: smallest distance to a fixed end at step ends, in free lengths.
         turns: net turns around both fixed ends, counterclockwise positive; counted by half turns,
             so that the angle is known to half a turn.
-        separations, contacts, sticks, slips, reversals: event counts.
+        separations, contacts, sticks, slips, reversals: event counts; ``events`` their sum.
         steps: integration steps.
         final_state: (…, 4) x, y, vx, vy at ``time``, m and m/s; final_regime its regime.
         log_growth: ln of the growth of a perturbation (0 without ``tangent``).
@@ -79,6 +79,7 @@ class Ensemble:
     sticks: np.ndarray
     slips: np.ndarray
     reversals: np.ndarray
+    events: np.ndarray
     steps: np.ndarray
     final_state: np.ndarray
     final_regime: np.ndarray
@@ -276,9 +277,9 @@ def _run_lanes(
     arrays["results"]["outcome"][first::stride] = Outcome.not_finite
     terms = taylor_terms(jobs.tol)
     # An idle lane keeps its last job's numbers, or these: no distance is zero.
-    lanes = aligned(LANE.itemsize // 8)
-    lanes[:] = 1.0
-    lanes = lanes.view(LANE)
+    numbers = aligned(LANE.itemsize // 8)
+    numbers[:] = 1.0
+    lanes = np.ndarray(1, LANE, numbers)
     lanes["job"] = IDLE
     clock = lanes["clock"][0]
     arrays = arrays | {
@@ -358,6 +359,7 @@ RESULTS: dict[str, Callable[[Any, _Units], Any]] = {
     "sticks": _count(Event.stick),
     "slips": _count(Event.slip),
     "reversals": _count(Event.reversal),
+    "events": lambda raw, _: raw.results["events"],
     "steps": lambda raw, _: raw.results["steps"],
     "final_state": lambda raw, u: raw.results["final_state"] * u.state,
     "final_regime": lambda raw, _: raw.results["regime"].astype(np.int8),

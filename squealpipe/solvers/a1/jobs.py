@@ -77,8 +77,7 @@ class Jobs:
         shape = np.broadcast_shapes(physical.time_unit.shape, *shapes, state.shape[:-1])
 
         def flat(array: np.ndarray) -> np.ndarray:
-            whole = array if array.shape == shape else np.broadcast_to(array, shape)
-            return whole.reshape(-1)
+            return _spread(array, shape).reshape(-1)
 
         time_unit, ends = flat(physical.time_unit), flat(inputs["t_end"])
         _refuse_too_long(ends, time_unit)
@@ -102,7 +101,7 @@ class Jobs:
             "max_events": 1e3 + 20 * rate * t_end,
         }.items():
             orders[name] = values
-        initial = np.broadcast_to(state, (*shape, 4)).reshape(-1, 4)
+        initial = _spread(state, (*shape, 4)).reshape(-1, 4)
         speed_unit = length / time_unit
         scale = np.array([length, length, speed_unit, speed_unit]).T
         return cls(
@@ -146,6 +145,11 @@ def known_model(model: str) -> str:
     return model
 
 
+def _spread(array: np.ndarray, shape: tuple[int, ...]) -> np.ndarray:
+    """``np.broadcast_to``, which a single run would pay for without need."""
+    return array if array.shape == shape else np.broadcast_to(array, shape)
+
+
 def _refuse_too_long(t_end: np.ndarray, time_unit: np.ndarray) -> None:
     """Raise for runs that would not end in hours, and for units of time that overflow."""
     with np.errstate(over="ignore", divide="ignore", invalid="ignore"):
@@ -170,7 +174,7 @@ def _sample_times(
         raise ValueError("times must be a sequence of instants")
     if array.size and not ((array[..., 1:] >= array[..., :-1]).all() and array.min() >= 0):
         raise ValueError("times must ascend and start at 0 or later")
-    rows = np.broadcast_to(array, (*shape, array.shape[-1])).reshape(-1, array.shape[-1])
+    rows = _spread(array, (*shape, array.shape[-1])).reshape(-1, array.shape[-1])
     if array.size and (rows[:, -1] > t_end).any():
         raise ValueError(f"times reach {rows[:, -1].max()!r}, beyond t_end = {t_end.min()!r}")
     return np.ascontiguousarray(rows / time_unit[:, None])

@@ -54,7 +54,7 @@ from squealpipe.solvers.a1.records import (
     TANGENT_NORM,
 )
 from squealpipe.solvers.a1.start import set_regime, start_job
-from squealpipe.solvers.a1.steps import AT_STATE, N_EVENTS, N_STATE, end_of_step, take_step
+from squealpipe.solvers.a1.steps import AT_STATE, N_EVENTS, N_STATE, end_of_step, reaches, take_step
 from squealpipe.solvers.a1.system import PARAMETERS
 from squealpipe.sources import closure
 
@@ -188,20 +188,27 @@ def _refill(
 
 
 @inline
-def _cut_steps(lanes: Any, c: Any, bits: int, results: Any, samples: Any) -> Any:
-    """Where steps end at events, at the end of a run, beyond samples; returns lanes at an end."""
-    times, states, regimes = samples
+def _cut_steps(lanes: Any, c: Any, bits: int) -> Any:
+    """Where steps end at events or at the end of a run; returns lanes at an end."""
     ended = 0
     while bits:
         lane = first_bit(bits)
         bits ^= 1 << lane
-        job = lanes.job[lane]
         lanes.outcome[lane] = end_of_step(lanes, c, lane)
         if lanes.outcome[lane] != RUNNING:
             ended |= 1 << lane
-        if times.shape[1]:
-            sample(c, lanes, results[job].regime, lane, times[job], states[job], regimes[job])
     return ended
+
+
+@inline
+def _sample(lanes: Any, c: Any, bits: int, results: Any, samples: Any) -> None:
+    """States at the instants that are asked for."""
+    times, states, regimes = samples
+    while bits:
+        lane = first_bit(bits)
+        bits ^= 1 << lane
+        job = lanes.job[lane]
+        sample(c, lanes, results[job].regime, lane, times[job], states[job], regimes[job])
 
 
 @inline
@@ -288,8 +295,10 @@ def _advance(table: Any) -> int:
         if not busy:
             return 0
         call(t.take_step, (base, parameters, t.inverses, terms))
-        special = take_step(at, base, terms, n_samples) & busy
-        ended = _cut_steps(lanes, c, special, jobs[1], samples)
+        special = take_step(at, base, terms) & busy
+        due = reaches(at, AT.next_sample) & busy if n_samples else 0
+        ended = _cut_steps(lanes, c, special)
+        _sample(lanes, c, due, jobs[1], samples)
         _observe(lanes, c, at, base, terms)
         if t.tangent:
             call(t.perturb, (base, parameters, at + AT.step, at + AT.dx, terms))

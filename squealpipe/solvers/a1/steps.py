@@ -84,7 +84,7 @@ def _free_of_events(base: int, terms: int, step: Any) -> Any:
 
 
 @inline
-def take_step(at: int, base: int, terms: int, samples: int) -> Any:
+def take_step(at: int, base: int, terms: int) -> Any:
     """Ends of all lanes' steps; returns the lanes that need a look of their own."""
     step = _step_length(base, terms)
     store(at + AT.step, step)
@@ -94,11 +94,14 @@ def take_step(at: int, base: int, terms: int, samples: int) -> Any:
         store(at + AT_STATE[variable], value)
         lost = lost + value * 0.0
     plain = _free_of_events(base, terms, step) & bits_below(magnitude(lost), splat(np.inf))
+    return ~plain | reaches(at, AT.t_end)
+
+
+@inline
+def reaches(at: int, instant: int) -> Any:
+    """Lanes whose step does not end before the instant in a row."""
     clock, correction = load(at + AT.clock), load(at + AT.correction)
-    plain &= bits_below(step, (load(at + AT.t_end) - clock) - correction)
-    if samples > 0:
-        plain &= bits_below(step, (load(at + AT.next_sample) - clock) - correction)
-    return ~plain
+    return ~bits_below(load(at + AT.step), (load(at + instant) - clock) - correction)
 
 
 @part

@@ -140,12 +140,11 @@ def refine_labels(
         )  # fmt: skip
         again[kept] = on.separations > 0
         later[kept[on.stick_time > 0]] = MotionFlag.stick_slip
-    events = run.separations + run.contacts + run.sticks + run.slips + run.reversals
-    for cells in _blocks(np.flatnonzero(again), events):
+    for cells in _blocks(np.flatnonzero(again), run.events):
         # twice the time holds about twice the events; a steadier first half holds fewer
         on = run_ensemble(
             params, alpha1[cells], alpha2[cells], t_end=2.0 * t_end, tol=tol, tangent=True,
-            log_events=int(3 * events[cells].max() + 4 * LEAST_EVENTS), workers=workers,
+            log_events=int(3 * run.events[cells].max() + 4 * LEAST_EVENTS), workers=workers,
         )  # fmt: skip
         later[cells] = classify_motion(on, unit)
         for label, end in ((motion, t_end), (later, 2.0 * t_end)):

@@ -22,10 +22,18 @@ from squealpipe.tasks.linear.maps import stability_map
 
 SAMPLES_PER_TIME_UNIT = 20
 MOST_SAMPLES = 20_001
-FIRST_LOG = 1024
+FIRST_LOG = 256
 """Events kept at first; a run that has more is made again with room for all."""
-COUNTS = ("separations", "contacts", "sticks", "slips", "reversals")
-WANTED = ("samples", "sample_regimes", "event_times", "event_kinds", "time", "steps", "outcome")
+WANTED = (
+    "samples",
+    "sample_regimes",
+    "event_times",
+    "event_kinds",
+    "events",
+    "time",
+    "steps",
+    "outcome",
+)
 """Results that ``simulate`` reports."""
 
 
@@ -80,18 +88,19 @@ def simulate(
         times=times,
         initial_state=initial,
     )
-    wanted = (*WANTED, *COUNTS, *(("log_growth",) if growth else ()))
+    wanted = (*WANTED, *(("log_growth",) if growth else ()))
     room, logged = 0, FIRST_LOG
     while room < logged:
         room = logged
         found = integrate(job, wanted, tangent=growth, log_events=room, few=not growth, workers=1)
         run = SimpleNamespace(**found)
-        logged = sum(int(getattr(run, name)) for name in COUNTS)
+        logged = int(run.events)
     x, y, vx, vy = run.samples.T
     if times.size and times[0] == 0.0:
         x[0], y[0], vx[0], vy[0] = initial
     if VARIANT_RULES[model].separates:
-        normal = np.where(run.sample_regimes == RegimeFlag.separated, 0.0, contact_force(y, params))
+        off = run.sample_regimes == RegimeFlag.separated.value
+        normal = np.where(off, 0.0, contact_force(y, params))
     else:
         normal = contact_force(y, params)
     return build(
@@ -192,10 +201,10 @@ def _instants(times: Any, t_end: float, time_unit: float) -> np.ndarray:
         ValueError: they are no sequence, or empty.
     """
     if times is None:
-        with np.errstate(over="ignore", divide="ignore", invalid="ignore"):
-            wanted = float(np.float64(SAMPLES_PER_TIME_UNIT * t_end) / time_unit)
+        # a unit of time that underflows is refused with the run
+        wanted = SAMPLES_PER_TIME_UNIT * t_end / time_unit if time_unit else math.inf
         count = math.ceil(min(MOST_SAMPLES, wanted)) + 1
-        times = np.linspace(0.0, t_end, min(max(count, 2), MOST_SAMPLES))
+        return np.linspace(0.0, t_end, min(max(count, 2), MOST_SAMPLES))
     instants = real_array("times", times)
     if instants.ndim != 1 or not instants.size:
         raise ValueError(f"times has shape {instants.shape}: a sequence of instants is needed")

@@ -260,8 +260,7 @@ def _answer_by_short_run(choices: Choices, question: str, tol: float, runs: _Run
     choices.integrated.flat[cells] += run.time
     reached = answer_of(run, question, ends)
     choices.lower.flat[cells] = reached
-    as_certified = run.separations + run.sticks + run.slips + run.reversals == 0
-    as_certified &= reached <= choices.upper.flat[cells] * (1.0 + ROUND_OFF)
+    as_certified = (run.events == 0) & (reached <= choices.upper.flat[cells] * (1.0 + ROUND_OFF))
     _settle(choices, cells[as_certified], Level.a1_short, tol)
 
 
