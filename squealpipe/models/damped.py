@@ -32,7 +32,7 @@ MARGINAL = 1e-16
 
 
 class DampedSystem(NamedTuple):
-    """C and K of the mass in contact, over m: 1/s and 1/s²; K is not symmetric; and det K."""
+    """C and K of the mass in contact, over m: 1/s and 1/s²; K is not symmetric; det K and det C."""
 
     c11: Any
     c12: Any
@@ -42,6 +42,7 @@ class DampedSystem(NamedTuple):
     k21: Any
     k22: Any
     determinant: Any
+    damping_determinant: Any
 
 
 def is_undamped(p: Any) -> bool:
@@ -63,17 +64,21 @@ def damped_system(p: Any, alpha1: Any, alpha2: Any, *, sigma: Any = None) -> Dam
     system = contact_system(p, alpha1, alpha2, k3=k3)
     k11, k12, k21, k22 = contact_matrix(system.stiffness, k3, p.drag)
     c11, c12, c22 = linear_damping(p, geometry(alpha1, alpha2))
+    sine = sine_of_sum(alpha1, alpha2)
+    damping_determinant = pair_determinant(p.damping1, p.damping2, sine)
     gradient = slope(abs(p.belt_speed), p)
     if gradient != 0:
         force = a3.static_state(
             system.stiffness, system.spring_determinant,
             k3=k3, mu=p.drag, actuation=a2.actuation(p, sigma),
         )[2]  # fmt: skip
-        c11 = c11 + np.where(np.isfinite(force), force, np.nan) * gradient
+        falling = np.where(np.isfinite(force), force, np.nan) * gradient
+        c11, damping_determinant = c11 + falling, damping_determinant + falling * c22
     stiffness = system.stiffness
     determinant = system.spring_determinant + k3 * (stiffness.k11 - p.drag * stiffness.k12)
     mass = kind.type(p.mass)
-    entries = np.broadcast_arrays(c11, c12, c22, k11, k12, k21, k22, determinant / mass)
+    determinants = (determinant / mass, damping_determinant / mass)
+    entries = np.broadcast_arrays(c11, c12, c22, k11, k12, k21, k22, *determinants)
     return DampedSystem._make(entry / mass for entry in entries)
 
 
@@ -90,7 +95,7 @@ def quartic(s: DampedSystem) -> Quartic:
     """The characteristic polynomial of C and K."""
     return Quartic(
         s.c11 + s.c22,
-        s.k11 + s.k22 + (s.c11 * s.c22 - s.c12 * s.c12),
+        s.k11 + s.k22 + s.damping_determinant,
         s.c11 * s.k22 + s.c22 * s.k11 - s.c12 * (s.k12 + s.k21),
         s.determinant,
     )

@@ -77,6 +77,17 @@ def test_eigenvalues_of_200_random_sets_to_1e_12() -> None:
             assert np.abs(found - value).min() <= 1e-12 * abs(value)
 
 
+@pytest.mark.parametrize("stiff", [1e5, 1e8])
+def test_one_stiff_dashpot_costs_no_digit(stiff: float) -> None:
+    """det C is no difference of two products of its square."""
+    for _ in range(20):
+        params = random_parameters().with_(damping1=stiff)
+        alpha = RNG.uniform(0, np.pi, 2)
+        found = eigenvalues(damped_system(params, *map(np.longdouble, alpha))).astype(complex)
+        for value in eigenvalues_in_60_digits(params, *alpha):
+            assert np.abs(found - value).min() <= 1e-13 * abs(value)
+
+
 def test_the_map_is_that_of_the_eigenvalues_and_mirrors_with_the_belt() -> None:
     params = random_parameters().with_(friction_law="exponential")
     alpha1, alpha2 = np.sort(RNG.uniform(0, np.pi, (2, 4)))
