@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-import difflib
 import fnmatch
 import re
 import typing
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
 from pydantic import BaseModel, ValidationError
+
+from squealpipe.nearest import nearest
 
 NUMBER_AS_TEXT = re.compile(r"\s*[-+]?[\d.]+([eE][-+]?\d+)?\s*")
 
@@ -92,22 +93,13 @@ def known_keys(model: type[BaseModel], stem: str = "") -> Iterator[str]:
             yield from known_keys(section, f"{path}.*" if free else path)
 
 
-def closest(wrong: str, names: Iterable[str]) -> str | None:
-    """The name that was probably meant, if one is near."""
-    every = list(names)
-    near = difflib.get_close_matches(wrong, every, n=1) or difflib.get_close_matches(
-        wrong, [name for name in every if len(name) == len(wrong)], n=1, cutoff=0.5
-    )
-    return near[0] if near else None
-
-
 def _nearest(location: tuple[int | str, ...], model: type[BaseModel]) -> str:
     *above, wrong = [str(key) for key in location if not isinstance(key, int)]
     stem = ".".join(above)
     every = list(known_keys(model))
     siblings = [path for path in every if fnmatch.fnmatchcase(stem, path.rpartition(".")[0])]
     names = [path.rpartition(".")[2] for path in siblings]
-    near = closest(wrong, names)
+    near = nearest(wrong, names)
     if near:
         return f"did you mean {near!r}?"
     elsewhere = [path for path in every if path.rpartition(".")[2] == wrong]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 import math
 import reprlib
 from collections.abc import Mapping
@@ -11,6 +10,7 @@ from numbers import Integral, Real
 from typing import Any, Literal
 
 from squealpipe.laws.friction_laws import COULOMB, LAWS, coefficient
+from squealpipe.nearest import suggestion
 
 LAW_NAMES = tuple(LAWS)
 """Names of the friction laws."""
@@ -51,11 +51,7 @@ class Row:
             return None
         if self.allowed == "law":
             if not isinstance(value, str) or value not in LAWS:
-                near = difflib.get_close_matches(str(value), LAWS, n=1, cutoff=0.0)
-                raise ValueError(
-                    f"{name} = {brief(value)}: unknown; did you mean {near[0]!r}? "
-                    f"known: {', '.join(LAWS)}"
-                )
+                raise ValueError(f"{name} = {brief(value)}: unknown; {suggestion(value, LAWS)}")
             return value
         if not is_finite_number(value):
             raise ValueError(f"{name} = {brief(value)}: a finite number is needed")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -13,11 +12,7 @@ import xarray as xr
 from squealpipe.parameters import TABLE, Parameters
 from squealpipe.schema.claims import Verdict
 from squealpipe.store import load
-
-LONGEST_PLAIN = 6
-"""Digits before the point up to which a number is written out."""
-
-SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+from squealpipe.wording import as_people_write
 
 
 class MissingDataError(LookupError):
@@ -142,16 +137,3 @@ def finding(
         threshold=float(threshold),
         evidence=as_people_write(evidence),
     )
-
-
-def as_people_write(text: str) -> str:
-    """Numbers as people write them: 4.42e+03 becomes 4420, 3e-15 3·10⁻¹⁵, and -2 −2."""
-
-    def written(match: re.Match[str]) -> str:
-        exponent = int(match[2])
-        if 0 <= exponent < LONGEST_PLAIN:
-            return f"{float(match[0]):.0f}"
-        return f"{match[1]}·10{str(exponent).translate(SUPERSCRIPTS)}"
-
-    plain = re.sub(r"(\d+(?:\.\d+)?)e([+-]\d+)", written, text)
-    return re.sub(r"(?<![\w)-])-(?=[\d.]|inf)", "−", plain)

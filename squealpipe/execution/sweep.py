@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import Executor, ProcessPoolExecutor
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
@@ -17,7 +17,7 @@ from squealpipe.execution.catalogue import TASKS, run_task
 from squealpipe.execution.packing import pack, unpack
 from squealpipe.execution.row_blocks import scattered_rows
 from squealpipe.methods.processes import available_cores, leave_interrupts_to_the_parent
-from squealpipe.mistakes import closest
+from squealpipe.nearest import suggestion
 from squealpipe.parameters import Parameters, parameters_of
 from squealpipe.ranges import NUMBERS, PHYSICAL, longest
 from squealpipe.schema import DatasetSchema, Variable, build, find
@@ -52,7 +52,7 @@ class Sweep:
 
     def __post_init__(self) -> None:
         if self.task not in TASKS:
-            raise ValueError(f"no task {self.task!r}; {_choose(self.task, TASKS)}")
+            raise ValueError(f"no task {self.task!r}; {suggestion(self.task, TASKS)}")
         self._check_varied()
         self._check_fixed()
         if not self.names:
@@ -66,7 +66,7 @@ class Sweep:
         for name, values in self.vary.items():
             if name not in allowed:
                 raise ValueError(
-                    f"{name!r} cannot be varied for {self.task}; {_choose(name, allowed)}"
+                    f"{name!r} cannot be varied for {self.task}; {suggestion(name, allowed)}"
                 )
             if not len(values) or len(set(values)) != len(values):
                 raise ValueError(f"{name} needs one or more values, each once, not {values!r}")
@@ -276,8 +276,3 @@ def _length(run: Arrays, dim: str, base: DatasetSchema) -> int:
         if name in run and dim in entry.dims:
             return int(run[name].shape[entry.dims.index(dim)])
     return 0
-
-
-def _choose(wrong: str, names: Iterable[str]) -> str:
-    near = closest(wrong, names)
-    return f"did you mean {near!r}?" if near else f"choose from {', '.join(names)}"

@@ -18,11 +18,11 @@ from PIL import Image
 from squealpipe.claims.evidence import Run
 from squealpipe.claims.table import rows
 from squealpipe.figures import declared
-from squealpipe.figures.parts.style import RAISED
 from squealpipe.parameters import TABLE, Parameters
 from squealpipe.report.facts import gather_facts
 from squealpipe.report.places import FIGURES, PLACES
 from squealpipe.report.summary import PAPER, is_misprint, summarize, tally
+from squealpipe.wording import RAISED
 
 TITLE = "Hammering and brake squeal: a paper computed again, statement by statement"
 

@@ -10,8 +10,8 @@ from collections import Counter
 from collections.abc import Callable, Collection, Mapping, Sequence
 from typing import Any
 
-from squealpipe.figures.parts.style import number
 from squealpipe.schema.claims import Basis, Origin, Verdict
+from squealpipe.wording import number
 
 PAPER = {
     "authors": "O. T. Şen and R. Singh",

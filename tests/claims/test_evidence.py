@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from squealpipe.claims.evidence import MissingDataError, as_people_write, finding
+from squealpipe.claims.evidence import MissingDataError, finding
 from squealpipe.schema.claims import Verdict
+from squealpipe.wording import as_people_write
 
 
 @pytest.mark.parametrize(
@@ -45,6 +46,7 @@ def test_no_number_no_verdict() -> None:
         ("after 4.42e+03 s", "after 4420 s"),
         ("off by 3e-15.", "off by 3·10⁻¹⁵."),
         ("1.2e+09 cells", "1.2·10⁹ cells"),
+        ("DOP853, tolerance 1e-08", "DOP853, tolerance 10⁻⁸"),
         ("K12 at 0.25 and -2.5e-07", "K12 at 0.25 and −2.5·10⁻⁷"),
         ("x = -0.126 l_pre, (-1, -.5), from 3 to -4", "x = −0.126 l_pre, (−1, −.5), from 3 to −4"),
         ("sets 2-4 of A1-no-stick, backbone/F10-1", "sets 2-4 of A1-no-stick, backbone/F10-1"),

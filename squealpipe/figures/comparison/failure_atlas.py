@@ -17,11 +17,11 @@ from squealpipe.figures.parts.style import (
     WHITE,
     category_colours,
     new_figure,
-    number,
     panel_letter,
     symbols,
 )
 from squealpipe.schema.comparison import Reliability, Role
+from squealpipe.wording import number
 
 if TYPE_CHECKING:
     import xarray as xr

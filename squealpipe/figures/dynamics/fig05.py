@@ -7,7 +7,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from squealpipe.figures.dynamics.fig02 import FORCE, draw_force, inset_mechanism
-from squealpipe.figures.parts.style import ORANGE, PAGE, new_figure, number, pi_label
+from squealpipe.figures.parts.style import (
+    ORANGE,
+    PAGE,
+    new_figure,
+    pi_label,
+)
+from squealpipe.wording import number
 
 if TYPE_CHECKING:
     import xarray as xr

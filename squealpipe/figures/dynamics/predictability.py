@@ -13,10 +13,10 @@ from squealpipe.figures.parts.style import (
     draw_map,
     flag_words,
     new_figure,
-    number,
     panel_letter,
 )
 from squealpipe.schema import meanings
+from squealpipe.wording import number
 
 if TYPE_CHECKING:
     import xarray as xr

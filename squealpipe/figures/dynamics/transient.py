@@ -16,10 +16,10 @@ from squealpipe.figures.parts.style import (
     ORANGE,
     PAGE,
     new_figure,
-    number,
     panel_letter,
 )
 from squealpipe.parameters import SCENES
+from squealpipe.wording import number
 
 if TYPE_CHECKING:
     import xarray as xr

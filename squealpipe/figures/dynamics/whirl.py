@@ -14,11 +14,11 @@ from squealpipe.figures.parts.style import (
     REGIME_COLOURS,
     X_COLOUR,
     new_figure,
-    number,
     panel_letter,
 )
 from squealpipe.parameters import SCENES
 from squealpipe.schema import meanings
+from squealpipe.wording import number
 
 if TYPE_CHECKING:
     import xarray as xr

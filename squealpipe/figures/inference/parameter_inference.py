@@ -16,9 +16,9 @@ from squealpipe.figures.parts.style import (
     ORANGE,
     PAGE,
     new_figure,
-    number,
     panel_letter,
 )
+from squealpipe.wording import number
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -14,9 +14,9 @@ from squealpipe.figures.parts.style import (
     WHITE,
     draw_map,
     new_figure,
-    number,
     panel_letter,
 )
+from squealpipe.wording import number
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import re
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -14,6 +13,7 @@ from matplotlib.figure import Figure
 
 from squealpipe.store.netcdf import clear_leftovers
 from squealpipe.store.whole_files import whole_file
+from squealpipe.wording import as_people_write
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -114,10 +114,6 @@ def pi_label(angle: float) -> str:
     return f"{over_pi:.4g}π"
 
 
-RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
-"""Digits and sign of an exponent in plain text."""
-
-
 def symbols(text: str) -> str:
     """Names of quantities and powers of ten in plain text as mathematics, for Matplotlib."""
     for name, symbol in (
@@ -126,24 +122,7 @@ def symbols(text: str) -> str:
         ("ω_x", r"\omega_x"),
     ):
         text = text.replace(name, f"${symbol}$")
-    return powers(text)
-
-
-def powers(text: str) -> str:
-    """Tolerances like ``1e-08`` in plain text as powers of ten: 10⁻⁸."""
-    return re.sub(r"\b1e-0?(\d+)", lambda found: "10⁻" + found[1].translate(RAISED), text)
-
-
-def number(value: float, digits: int = 3) -> str:
-    """A number as people write it: 1326, −0.0042, 2.6·10⁻¹⁵."""
-    mantissa, _, exponent = f"{value:.{digits}g}".partition("e")
-    if exponent and 0 <= int(exponent) < 6:
-        mantissa, exponent = f"{value:.0f}", ""
-    mantissa = mantissa.replace("-", "−")
-    if not exponent:
-        return mantissa
-    raised = str(int(exponent)).translate(RAISED)
-    return f"10{raised}" if mantissa == "1" else f"{mantissa}·10{raised}"
+    return as_people_write(text)
 
 
 def angle_map_axes(axes: Axes, upper: float = np.pi) -> None:

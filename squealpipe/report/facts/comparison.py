@@ -9,9 +9,9 @@ import xarray as xr
 
 from squealpipe.claims.evidence import Run
 from squealpipe.figures.comparison.model_ladder import QUESTION_NAMES
-from squealpipe.figures.parts.style import powers
 from squealpipe.schema.comparison import Reliability, Role
 from squealpipe.schema.ladder import Level
+from squealpipe.wording import as_people_write
 
 
 def failures(run: Run) -> dict[str, Any]:
@@ -38,7 +38,7 @@ def failures(run: Run) -> dict[str, Any]:
 def _judged(row: xr.Dataset) -> dict[str, Any]:
     right = row.verdict == Reliability.right
     return {
-        "method": powers(str(row.solver.item())),
+        "method": as_people_write(str(row.solver.item())),
         "ours": int(row.role) != Role.public,
         "tolerance": None if np.isnan(row.requested) else float(row.requested),
         "asked": int((row.verdict != Reliability.not_applicable).sum()),
@@ -114,7 +114,7 @@ def integration(run: Run) -> dict[str, Any]:
                 "error": float(here.error.max()),
                 "time": float(here.wall_time.max()),
                 "ensemble_time": float(here.wall_time.min()),
-                "public_method": powers(f"{best.method.item()}, {best.setting.item()}"),
+                "public_method": as_people_write(f"{best.method.item()}, {best.setting.item()}"),
                 "public_error": float(best.error),
                 "public_time": float(best.wall_time),
             }

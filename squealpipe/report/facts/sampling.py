@@ -19,11 +19,12 @@ import xarray as xr
 from squealpipe.claims.evidence import Run
 from squealpipe.claims.maps import coupling_is_negative, order_turns_over, unstable_cells
 from squealpipe.figures.comparison.model_ladder import QUESTION_NAMES
-from squealpipe.figures.parts.style import flag_words, number
+from squealpipe.figures.parts.style import flag_words
 from squealpipe.figures.spread.verdict_reach import WORDS
 from squealpipe.report.facts.orbits import orbit_cells
 from squealpipe.schema import meanings
 from squealpipe.schema.inference import CONFIDENCE, wilson_interval
+from squealpipe.wording import number
 
 HOW_CONSEQUENCES_CONVERGE = {
     "F7a": "share of the angle map by the midpoint rule, refined from 12 to 24 and 48 angles an "

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -14,6 +13,7 @@ from squealpipe.arrays import real_array
 from squealpipe.laws import springs
 from squealpipe.models.refusals import WHY_A4, refuse_extensions
 from squealpipe.models.switching import VARIANT_RULES
+from squealpipe.nearest import suggestion
 from squealpipe.parameters import Parameters
 from squealpipe.solvers.a1.scaling import scaled_parameters
 from squealpipe.solvers.a1.system import DISSIPATIONS, Dissipation
@@ -137,11 +137,7 @@ def known_model(model: str) -> str:
         ValueError: it is unknown; the nearest name is suggested.
     """
     if not isinstance(model, str) or model not in VARIANT_RULES:
-        near = difflib.get_close_matches(str(model), VARIANT_RULES, n=1, cutoff=0.0)
-        raise ValueError(
-            f"model = {model!r}: unknown; did you mean {near[0]!r}? known: "
-            + ", ".join(VARIANT_RULES)
-        )
+        raise ValueError(f"model = {model!r}: unknown; {suggestion(model, VARIANT_RULES)}")
     return model
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 import math
 import re
 from collections.abc import Mapping
@@ -15,6 +14,7 @@ import numpy as np
 from squealpipe.arrays import real_array
 from squealpipe.laws import springs
 from squealpipe.laws.friction_laws import COULOMB, FALLING, LAWS
+from squealpipe.nearest import suggestion
 from squealpipe.parameters import DEFAULTS, NUMBERS_OF_A1, TABLE, Parameters
 from squealpipe.solvers.a1.records import ORDER
 from squealpipe.solvers.a1.system import DISSIPATIONS, EXTENSIONS
@@ -111,8 +111,7 @@ def _parameter_arrays(parameters: Mapping[str, Any]) -> dict[str, np.ndarray]:
     """Checked arrays of all parameters of a run; ``mu_static`` of None becomes ``mu``."""
     for name in parameters:
         if name not in TABLE:
-            near = difflib.get_close_matches(str(name), PHYSICAL, n=1, cutoff=0.0)
-            raise ValueError(f"unknown parameter {name!r}; did you mean {near[0]!r}?")
+            raise ValueError(f"unknown parameter {name!r}; {suggestion(name, PHYSICAL)}")
     given = {name: parameters.get(name, DEFAULTS[name]) for name in PHYSICAL}
     if given["mu_static"] is None:
         given["mu_static"] = given["mu"]

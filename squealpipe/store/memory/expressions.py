@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import ast
-import difflib
 import operator
 from collections.abc import Callable, Mapping
 from typing import Any
+
+from squealpipe.nearest import nearest
 
 SYMBOLS = {
     "m": "mass",
@@ -122,10 +123,10 @@ class Condition:
             if key in config:
                 return config[key]
         names = [key.removeprefix("parameters.") for key in self.known]
-        near = difflib.get_close_matches(name, [*names, *SYMBOLS], n=1)
+        near = nearest(name, [*names, *SYMBOLS])
         raise self._fault(
             f"{name!r} is not known; "
-            + (f"did you mean {near[0]!r}?" if near else "write for instance mu, L1, linear.points")
+            + (f"did you mean {near!r}?" if near else "write for instance mu, L1, linear.points")
         )
 
     def _fault(self, reason: str) -> ValueError:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Mapping
 from typing import Any
 
@@ -10,6 +9,7 @@ import numpy as np
 from scipy import stats
 
 from squealpipe.laws.friction_laws import COULOMB, FALLING
+from squealpipe.nearest import suggestion
 from squealpipe.parameters import Parameters, brief, is_finite_number
 from squealpipe.ranges import ANGLES, NUMBERS
 
@@ -31,8 +31,7 @@ def distribution(name: str, given: Mapping[str, Any]) -> Any:
             parameter may not have.
     """
     if not isinstance(name, str) or name not in (*ANGLES, *NUMBERS):
-        near = difflib.get_close_matches(str(name), NUMBERS, n=1, cutoff=0.0)
-        raise ValueError(f"{name}: no parameter or angle; did you mean {near[0]!r}?")
+        raise ValueError(f"{name}: no parameter or angle; {suggestion(name, (*ANGLES, *NUMBERS))}")
     if not isinstance(given, Mapping):
         raise ValueError(  # noqa: TRY004
             f"{name} = {brief(given)}: a mapping is needed, such as "
