@@ -229,11 +229,14 @@ def build(
             raise SchemaError(f"{schema.name}: unknown {kind} {', '.join(unknown)}")
         for name, values in given.items():
             entry = table[name]
-            array = np.array(values, None if entry.stored.kind in "US" else entry.stored)
-            # ``fastpath`` leaves out the search for dates in arrays of numbers.
-            plain = array.ndim == len(entry.dims) and array.dtype.kind in "fiub"
+            try:
+                array = np.array(values, None if entry.stored.kind in "US" else entry.stored)
+                # ``fastpath`` leaves out the search for dates in arrays of numbers.
+                plain = array.ndim == len(entry.dims) and array.dtype.kind in "fiub"
+                variables[name] = xr.Variable(entry.dims, array, entry.attributes(), fastpath=plain)
+            except (TypeError, ValueError, OverflowError) as error:
+                raise SchemaError(f"{schema.name}: {name}: {error}") from error
             arrays[name] = array
-            variables[name] = xr.Variable(entry.dims, array, entry.attributes(), fastpath=plain)
     dataset = _dataset(variables, {name: arrays[name] for name in coords})
     dataset.attrs = {
         "Conventions": "CF-1.11",

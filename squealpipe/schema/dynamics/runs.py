@@ -86,6 +86,7 @@ SIMULATION = DatasetSchema(
         "n_steps": Variable("Taylor steps of the run", dtype="i8"),
         "growth": Variable(
             "factor by which a small perturbation of the start has grown at the end",
+            nan_allowed=True,
             optional=True,
             round_off=magnitude("at the end of a long run it is itself a result of grown errors"),
         ),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import fields
+from dataclasses import fields, replace
 from functools import partial
 
 import numpy as np
@@ -99,6 +99,22 @@ def test_a_longer_horizon_continues_the_same_run():
     short = run_ensemble(Parameters(), 0.3, 2.5, t_end=20.0, times=times)
     long = run_ensemble(Parameters(), 0.3, 2.5, t_end=100.0, times=times)
     assert short.samples.tobytes() == long.samples.tobytes()
+
+
+@pytest.mark.parametrize("model", ["A1", "A1-linear-springs", "A4"])
+def test_asked_instants_do_not_change_a_run(model):
+    """Even one that glides along the surface of contact, held by round-off alone."""
+    angles = np.array([0.4, 1.0, 0.0, 1.0]) * np.pi, np.array([0.6, 1.0, 0.0, 1.0]) * np.pi
+    above = np.nextafter(1.0, 2.0)
+    start = [[0, 0, 0, 0], [-0.2, above, -0.4, 0], [0.2, 1, -0.3, 0], [0, 0, 1, 0]]
+    given = {"t_end": 40.0, "model": model, "initial_state": start, "log_events": 100}
+    plain = run_ensemble(Parameters(belt_speed=1.0), *angles, **given)
+    located = plain.event_times[np.isfinite(plain.event_times)]
+    assert located.size > 4
+    instants = np.sort(np.append(np.linspace(0, 40, 999), located))
+    asked = run_ensemble(Parameters(belt_speed=1.0), *angles, **given, times=instants)
+    sampled = {"samples": plain.samples, "sample_regimes": plain.sample_regimes}
+    assert_identical(replace(asked, **sampled), plain)
 
 
 def test_results_have_the_shape_of_the_inputs():

@@ -34,6 +34,12 @@ def test_initial_state_is_given_back():
     assert (run.x[0], run.y[0], run.vx[0], run.vy[0]) == state
 
 
+def test_growth_of_a_run_that_overflows_is_not_a_number():
+    run = simulate(BASELINE, 1.0, 1.2, t_end=5.0, initial_state=(1e200, 0, 0, 0), growth=True)
+    assert run.outcome == Outcome.not_finite
+    assert np.isnan(run.growth)
+
+
 def test_force_and_regimes_agree():
     run = simulate(SLOW, 0.35 * np.pi, 0.75 * np.pi, t_end=60.0)
     free = run.regime.values == RegimeFlag.separated
