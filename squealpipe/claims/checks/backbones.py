@@ -44,13 +44,15 @@ def branch(run: Run, scene: str, mode: int) -> xr.Dataset:
 def first_mode_is_isolated(run: Run) -> Finding:
     """F10: mode 1 moves x alone, mode 2 both."""
     alone, both = (_participation(branch(run, "F10", mode)) for mode in (1, 2))
+    x, y = (amplitude / run.parameters.preload for amplitude in both)
     omega1, omega2 = (linear_omega(branch(run, "F10", mode)) for mode in (1, 2))
     return finding(
         alone[1] / alone[0],
         "≤",
         ALONE,
-        f"Near ω1 = {omega1:.4g} the y amplitude is {alone[1] / alone[0]:.1g} of that of x; "
-        f"near ω2 = {omega2:.4g} x reaches {both[0]:.3g} and y {both[1]:.3g}.",
+        f"Near ω1 = {omega1:.4g} rad/s the y amplitude is {alone[1] / alone[0]:.1g} of that of x; "
+        f"near ω2 = {omega2:.4g} rad/s the amplitude of x reaches {x:.3g} l_pre and that of y "
+        f"{y:.3g} l_pre.",
         also=both[0] > 0.01 * both[1] > 0,
     )
 
@@ -101,7 +103,8 @@ def bends_down(scene: str) -> Check:
             drop,
             ">",
             BENDS,
-            f"While y stays below l_pre, ω is {linear:.4g} (to {flat:.1g}); where y reaches its "
+            f"While y stays below l_pre, ω is {linear:.4g} rad/s (to {flat:.1g} of itself); where "
+            "y reaches its "
             f"largest value, {reached:.3g} l_pre, it is {100 * abs(drop):.3g} % "
             f"{'lower' if drop > 0 else 'higher'}.",
             also=reached > 1,
@@ -143,9 +146,9 @@ def modes_are_switched(run: Run) -> Finding:
         y_amplitude / x_amplitude,
         "≤",
         ALONE,
-        f"Mode 1 (ω = {linear_omega(first):.4g}) reaches y = {reached:.3g} l_pre and so "
+        f"Mode 1 (ω = {linear_omega(first):.4g} rad/s) reaches y = {reached:.3g} l_pre and so "
         f"{'loses' if reached > 1 else 'keeps'} contact; in mode 2 "
-        f"(ω = {linear_omega(second):.4g}) the y amplitude is "
+        f"(ω = {linear_omega(second):.4g} rad/s) the y amplitude is "
         f"{y_amplitude / x_amplitude:.1g} of that of x.",
         also=reached > 1,
     )

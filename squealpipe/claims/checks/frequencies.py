@@ -171,6 +171,7 @@ def second_is_largest_where_first_vanishes(run: Run) -> Finding:
 def shifts_are_opposite(run: Run) -> Finding:
     """F9b: signs of the change of ω1 and ω2 from cell to cell."""
     shares = {}
+    unit = run.parameters.k1 / run.parameters.mass
     for name in ("contact", "separated"):
         state = _state(run, name)
         real = (state.outcome != Outcome.complex_pair) & (state.outcome != Outcome.divergence)
@@ -179,7 +180,7 @@ def shifts_are_opposite(run: Run) -> Finding:
         products = np.concatenate(
             [(step.sel(mode=1) * step.sel(mode=2)).values.ravel() for step in steps]
         )
-        moving = np.isfinite(products) & (np.abs(products) > 1e-18)
+        moving = np.isfinite(products) & (np.abs(products) > 1e-18 * unit)
         if not moving.any():
             raise MissingDataError(f"the natural frequencies do not vary ({name})")
         shares[name] = float((products[moving] < 0).mean())

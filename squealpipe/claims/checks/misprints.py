@@ -64,8 +64,9 @@ def printed_residual_converges_right(run: Run) -> Finding:
     forms = run["harmonic_forms"]
     error = abs(forms.omega / forms.omega_exact - 1)
     converged = forms.outcome.sel(form=Form.as_printed) == Outcome.converged
+    unit = run.parameters.time_unit
     pairs = ", ".join(
-        f"{float(found):.4f} for {float(exact):.4f}"
+        f"{float(found) * unit:.4f} for {float(exact) * unit:.4f}"
         for found, exact in zip(
             forms.omega.sel(form=Form.as_printed).values, forms.omega_exact.values, strict=True
         )
@@ -74,8 +75,8 @@ def printed_residual_converges_right(run: Run) -> Finding:
         float(error.sel(form=Form.as_printed).max()),
         "≤",
         WRONG_FREQUENCY,
-        f"As printed, ω converges in {int(converged.sum())} of {converged.size} scenes, to "
-        f"{pairs}; with K12·a + K22·b it is right to "
+        f"As printed, ω √(m/k1) converges in {int(converged.sum())} of {converged.size} scenes, "
+        f"to {pairs}; with K12·a + K22·b it is right to "
         f"{float(error.sel(form=Form.mended).max()):.1g}.",
     )
 
@@ -101,14 +102,15 @@ rows.add(
 def shift_is_added(run: Run) -> Finding:
     """E4: mean y in contact against y* and −y*, the rest positions of X − X* and X + X*."""
     motion = scene(run, "F2a")
-    static = float(cell(run["quasi_static_map"], 0.5, 1.0).y_static)
-    mean = float(motion.y.mean())
+    preload = run.parameters.preload
+    static = float(cell(run["quasi_static_map"], 0.5, 1.0).y_static / preload)
+    mean = float(motion.y.mean() / preload)
     return finding(
         abs(mean + static),
         "<",
         abs(mean - static),
-        f"With X + X* the motion would rest at y = {-static:.3g}, with X − X* at {static:.3g}; in "
-        f"A1 at (0.5π, π) y oscillates about {mean:.3g}.",
+        f"With X + X* the motion would rest at y = {-static:.3g} l_pre, with X − X* at "
+        f"{static:.3g} l_pre; in A1 at (0.5π, π) y oscillates about {mean:.3g} l_pre.",
     )
 
 
@@ -274,15 +276,15 @@ def reaction_is_that_of_equilibrium(run: Run) -> Finding:
     known = sliding.outcome == 0
     refused = int((known & (sliding.possible == 0) & pushes).sum())
     allowed = int((known & (sliding.possible == 1) & ~pushes).sum())
-    scene = cell(sliding, 0.4, 0.6)
+    scene, load = cell(sliding, 0.4, 0.6), run.parameters.k3 * run.parameters.preload
     return finding(
         refused + allowed,
         "≤",
         0,
         f"{refused} cells are not possible by A2 though the equilibrium of Eq. (15) presses on "
         f"the belt; {allowed} are possible though it does not. At (0.4π, 0.6π) "
-        f"R_n = {float(scene.reaction_force):.3g} and "
-        f"N* = {float(scene.contact_force_static) + 0.0:.2g}.",
+        f"R_n = {float(scene.reaction_force) / load:.3g} and "
+        f"N* = {float(scene.contact_force_static) / load + 0.0:.2g}, over the preload.",
     )
 
 

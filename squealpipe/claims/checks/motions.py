@@ -19,6 +19,11 @@ def events(motion: xr.Dataset, kind: EventFlag) -> np.ndarray:
     return np.asarray(motion.event_time.values[motion.event_kind.values == kind])
 
 
+def until(run: Run, motion: xr.Dataset) -> str:
+    """Where a run ends, for sentences: ``t = 50 √(m/k1)``."""
+    return f"t = {float(motion.time[-1]) / run.parameters.time_unit:g} √(m/k1)"
+
+
 def halves(motion: xr.Dataset) -> tuple[float, float]:
     """Largest |x| in the first and in the second half of a run, in units of l_pre."""
     if motion.sizes["time"] < 10:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
-from squealpipe.claims.checks.motions import events, halves, scene
+from squealpipe.claims.checks.motions import events, halves, scene, until
 from squealpipe.claims.evidence import Finding, Run, finding
 from squealpipe.claims.statement import Check, Rows
 from squealpipe.schema.claims import Verdict
@@ -36,7 +36,7 @@ def contact_is_kept(name: str) -> Check:
             ">",
             0,
             f"The lowest contact force is {lowest:.4g} of the preload; {lost} separations up to "
-            f"t = {float(motion.time[-1]):g}.",
+            f"{until(run, motion)}.",
             also=lost == 0,
         )
 
@@ -72,8 +72,8 @@ def contact_is_lost(run: Run) -> Finding:
         lost.size,
         ">",
         0,
-        f"{lost.size} separations up to t = {float(motion.time[-1]):g}, the first at "
-        f"{lost[0]:.4g}; the contact force of the run peaks at "
+        f"{lost.size} separations up to {until(run, motion)}, the first at "
+        f"{lost[0] / run.parameters.time_unit:.4g}; the contact force of the run peaks at "
         f"{float(motion.normalized_contact_force.max()):.3g} of the preload.",
     )
 
@@ -130,7 +130,7 @@ def unstable_response_grows(run: Run) -> Finding:
     speed = float(whirl.belt_speed)
     evidence = (
         f"|x| reaches {early:.3g} l_pre in the first half of the run to "
-        f"t = {float(motion.time[-1]) / unit:g} and {late:.3g} l_pre in the second. "
+        f"{until(run, motion)} and {late:.3g} l_pre in the second. "
     )
     saturates = False
     if abs(speed - own) <= SAME_SPEED * abs(own):
@@ -140,7 +140,8 @@ def unstable_response_grows(run: Run) -> Finding:
         )
         saturates = size < SATURATED * before
         evidence += (
-            f"At the end of a run to {float(whirl.t_end) / unit:g} at V = {speed:.3g} it "
+            f"At the end of a run to {float(whirl.t_end) / unit:g} √(m/k1) at "
+            f"V = {speed:.3g} m/s it "
             + ("does not grow" if saturates else "grows")
             + f": {size:.3g} l_pre in the last fifth, {before:.3g} before."
         )
@@ -173,12 +174,12 @@ def limit_cycle_is_bounded(run: Run) -> Finding:
     ended = lifetimes[np.isfinite(lifetimes)]
     horizon = float(run["transient"].t_end) / run.parameters.time_unit
     evidence = (
-        f"|x| reaches {largest:.3g} of the longer free length up to "
-        f"t = {float(motion.time[-1]):g} ({early:.3g} l_pre in the first half, "
-        f"{late:.3g} l_pre in the second). "
+        f"|x| reaches {largest:.3g} of the longer free length up to {until(run, motion)} "
+        f"({early:.3g} l_pre in the first half, {late:.3g} l_pre in the second; "
+        f"{GROWTH_THRESHOLD:g} times as far counts as growth). "
     ) + (
-        f"Beyond, {ended.size} of {lifetimes.size} runs from starts a billionth of l_pre apart end "
-        f"in the whirl before t = {horizon:g}, the first after {ended.min():.3g}"
+        f"Beyond, {ended.size} of {lifetimes.size} runs from starts at most a billionth of l_pre "
+        f"apart end in the whirl before t = {horizon:g}, the first after {ended.min():.3g}"
         f"{_median(run['transient'], run.parameters.time_unit)}."
         if ended.size
         else f"None of {lifetimes.size} runs ends in the whirl before t = {horizon:g}."
@@ -238,7 +239,7 @@ def mass_jumps(run: Run) -> Finding:
         flights,
         "≥",
         2,
-        f"{flights} flights up to t = {float(motion.time[-1]):g}, up to y = {height:.3g} l_pre; "
+        f"{flights} flights up to {until(run, motion)}, up to y = {height:.3g} l_pre; "
         "the springs lie along x and have no vertical stiffness to first order.",
     )
 
