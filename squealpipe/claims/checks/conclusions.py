@@ -86,8 +86,9 @@ def time_and_frequency_agree(run: Run) -> Finding:
         "≤",
         SAME_TREND,
         f"Frequency of the contact force in A1 and ω2 of A4, in rad/s: {'; '.join(lines)} "
-        f"(Figs. 2a–c and 10–12). In the fourth configuration contact is {'lost' if loses else 'kept'} in A1 "
-        f"(Fig. 2d) and {'lost' if reaches else 'kept'} on A4's first mode (Fig. 13).",
+        "(Figs. 2a–c and 10–12). In the fourth configuration contact is "
+        f"{'lost' if loses else 'kept'} in A1 (Fig. 2d) and {'lost' if reaches else 'kept'} on "
+        "A4's first mode (Fig. 13).",
         also=loses and reaches,
     )
 
