@@ -22,7 +22,7 @@ from squealpipe.figures.dynamics import (
 )
 from squealpipe.figures.linear import fig07
 from squealpipe.figures.model.mechanism import displaced_springs, draw_mechanism
-from squealpipe.figures.parts.style import new_figure, save_figure
+from squealpipe.figures.parts.style import COLUMN, new_figure, save_figure
 from squealpipe.parameters import SCENES, Parameters
 from squealpipe.tasks.dynamics import hammering as hammering_task
 from squealpipe.tasks.dynamics import refinement
@@ -86,6 +86,8 @@ def test_fig07_tones():
         tones = np.asarray(axes.collections[0].get_array()).reshape(kept.shape).T
         np.testing.assert_array_equal(tones == 0, ~kept)
         np.testing.assert_array_equal(tones == 2, kept & unstable)
+    labels = [text.get_text() for text in figure.legends[0].get_texts()]
+    assert f"A3 invalid: A1 separates ({np.count_nonzero(~kept)} of {kept.size})" in labels
 
 
 def test_separated_spells_are_marked_where_the_force_is_zero():
@@ -126,3 +128,13 @@ def test_the_window_is_where_the_boundary_is_most_intricate(tip):
     assert low1 < angles[tip[0]] < high1
     assert low2 < angles[tip[1]] < high2
     assert high1 - low1 == pytest.approx(refined_boundary.WINDOW * np.pi, rel=0.06)
+
+
+def test_axes_of_small_numbers_carry_a_power_of_ten(tmp_path):
+    """A study in metres: 0.0002, 0.0003, … ran into one another; others stay as they are."""
+    for size, power in ((5e-4, "10^{−4}"), (0.5, ""), (50.0, "")):
+        figure, axes = new_figure(COLUMN, 2.0)
+        axes[0, 0].plot([0.0, size], [0.0, 2 * size])
+        save_figure(figure, [tmp_path / "small.png"])
+        assert power in axes[0, 0].xaxis.get_offset_text().get_text()
+        assert bool(axes[0, 0].xaxis.get_offset_text().get_text()) == bool(power)

@@ -30,6 +30,8 @@ CAPTION = (
     "ones. (b) There is no phase condition: spread of the largest y over the phases of the start, "
     "against the samples N; circled where Γ lacks full rank."
 )
+DECADES = 1.5
+"""Decades from which an axis has labels enough at the powers of ten."""
 ALT = "Frequencies found by two forms against exact ones, and spread of y over the samples."
 
 
@@ -85,5 +87,7 @@ def _spread(panel: Axes, forms: xr.Dataset) -> None:
         xscale="log", yscale="log", xlabel="samples $N$", ylabel="spread of the largest y (m)"
     )
     panel.set_xticks(forms.samples.values[[0, 3, 4, 5]], forms.samples.values[[0, 3, 4, 5]])
-    panel.minorticks_off()
+    panel.xaxis.minorticks_off()
+    if np.ptp(np.log10(panel.get_ylim())) > DECADES:
+        panel.yaxis.minorticks_off()
     panel.legend(loc="lower left")

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from squealpipe.figures.parts.origin import angle_pair, scene_title
+from squealpipe.figures.parts.origin import angle_pair, parameter, scene_title
 from squealpipe.figures.parts.style import (
     BLACK,
     BLUE,
@@ -65,16 +65,19 @@ def draw(down: xr.Dataset, up: xr.Dataset, flutter: xr.Dataset, extremes: xr.Dat
     panels = (("F3", (down, up)), ("flutter", (flutter,)), ("F2d", ()))
     titles = (scene_title("F3"), flutter_title(extremes), scene_title("F2d"))
     shown: dict[str, tuple[str, str, str]] = {}
+    unit = parameter(extremes, "preload")
     for letter, panel, (scene, branches), title in zip("abc", axes[0], panels, titles, strict=True):
         runs = extremes.late_max_x.sel(scene=scene)
         friction = np.broadcast_to(extremes.mu.values[:, None], runs.shape)
-        panel.plot(friction, runs.values, ".", color=GREY, markersize=2.5, zorder=1)
+        panel.plot(friction, runs.values / unit, ".", color=GREY, markersize=2.5, zorder=1)
         for branch in branches:
-            shown |= _branch(panel, branch)
+            shown |= _branch(panel, branch, unit)
         panel.set(xlabel="μ", yscale="symlog", ylim=(0, None))
         panel.set_yscale("symlog", linthresh=1.0)
+        # up to a power of ten, which has a label
+        panel.set_ylim(0, 10.0 ** max(0.0, np.ceil(np.log10(panel.get_ylim()[1]))))
         panel_letter(panel, letter, title)
-    axes[0, 0].set_ylabel("largest |x| (m)")
+    axes[0, 0].set_ylabel(r"largest |x| / $l_\mathrm{pre}$")
     handles = [
         axes[0, 0].plot([], [], color=BLUE, label="stable cycle")[0],
         axes[0, 0].plot([], [], color=ORANGE, linestyle="--", label="unstable cycle")[0],
@@ -92,11 +95,11 @@ def flutter_title(dataset: xr.Dataset) -> str:
     return f"{angle_pair(*(float(angle) * np.pi for angle in angles))}, flutter onset"
 
 
-def _branch(panel: Axes, branch: xr.Dataset) -> dict[str, tuple[str, str, str]]:
-    """Draw one branch; returns the marks that it has."""
+def _branch(panel: Axes, branch: xr.Dataset, unit: float) -> dict[str, tuple[str, str, str]]:
+    """Draw one branch, with sizes over a unit; returns the marks that it has."""
     if branch.sizes["point"] < 2:
         return {}
-    size = np.maximum(np.abs(branch.x_min), np.abs(branch.x_max)).values
+    size = np.maximum(np.abs(branch.x_min), np.abs(branch.x_max)).values / unit
     friction, stable = branch.mu.values, branch.stable.values.astype(bool)
     # the line between two points is unstable if either is
     steady = stable[:-1] & stable[1:]

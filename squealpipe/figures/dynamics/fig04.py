@@ -52,7 +52,7 @@ def draw(run: xr.Dataset) -> Figure:
     panel.axhline(float(run.preload), color="black", linestyle=":", linewidth=0.8, label=label)
     panel.set(xlabel="x (m)", ylabel="y (m)", aspect="equal")
     panel.autoscale_view()
-    panel.legend(loc="lower left", bbox_to_anchor=(0, 1), borderaxespad=0)
+    panel.legend(loc="lower right", bbox_to_anchor=(1, 1), borderaxespad=0)
     figure.colorbar(orbit, ax=panel, label="t (s)", shrink=0.8)
     return figure
 

@@ -19,6 +19,7 @@ from squealpipe.figures.parts.style import (
     panel_letter,
 )
 from squealpipe.parameters import SCENES
+from squealpipe.schema.inference import wilson_interval
 from squealpipe.wording import number
 
 if TYPE_CHECKING:
@@ -30,7 +31,7 @@ READS = ("transient",)
 CAPTION = (
     "How long the bounded motion of Fig. 4 lasts. (a) Share of runs that still swing to and fro "
     "after a time, over perturbations of the start up to a billionth of l_pre: Kaplan–Meier "
-    "estimate with its 95 % band. Dashed, where runs end: decay at one hazard for all ages. "
+    "estimate. Where runs end: its 95 % band, and dashed the decay at one hazard for all ages. "
     "Orange: the time of Fig. 4. (b) Share of runs that leave it within the time run, and their "
     "median lifetime where half of them do, over belt speed."
 )
@@ -63,10 +64,11 @@ def _survival(axes: Axes, transient: xr.Dataset) -> None:
         color=BLUE,
         label=f"{count} runs, V = {number(float(transient.shown_belt_speed))} m/s",
     )
-    axes.fill_between(
-        age, transient.survival_low, transient.survival_high, step="post", color=BLUE, alpha=0.25,
-        linewidth=0, label="95 % band",
-    )  # fmt: skip
+    if ended:  # before the first end the estimate has no band
+        axes.fill_between(
+            age, transient.survival_low, transient.survival_high, step="post", color=BLUE,
+            alpha=0.25, linewidth=0, label="95 % band",
+        )  # fmt: skip
     _constant_hazard(axes, transient)
     shown = SCENES["F4"].t_end * time_unit(transient)
     axes.axvspan(0, shown, color=ORANGE, alpha=0.3, linewidth=0, label="shown in Fig. 4")
@@ -75,7 +77,8 @@ def _survival(axes: Axes, transient: xr.Dataset) -> None:
     axes.set_ylim(bottom=0.5 * positive.min(), top=1.6)
     axes.xaxis.set_major_locator(MaxNLocator(5))
     axes.legend(loc="lower left")
-    panel_letter(axes, "a", f"{ended} of {count} end in the whirl")
+    most = "" if ended else f" (95 %: at most {100 * wilson_interval(0, count)[1]:.3g} %)"
+    panel_letter(axes, "a", f"{ended} of {count} end in the whirl{most}")
 
 
 def _constant_hazard(axes: Axes, transient: xr.Dataset) -> None:

@@ -65,9 +65,10 @@ def draw(validity: xr.Dataset) -> Figure:
         draw_map(panel, validity.alpha1.values, validity.alpha2.values, tones, **colours)
         mark_scene(panel, "F3")
         panel_letter(panel, letter, f"{title}: {np.count_nonzero(black)} unstable")
+    lost = f"A3 invalid: A1 separates ({np.count_nonzero(~kept)} of {kept.size})"
     patches = [
-        Patch(facecolor=WHITE, edgecolor=BLACK, linewidth=0.6, label="A3 invalid: A1 separates"),
-        Patch(facecolor=LIGHT, label=f"valid, stable ({np.count_nonzero(kept)} of {kept.size})"),
+        Patch(facecolor=WHITE, edgecolor=BLACK, linewidth=0.6, label=lost),
+        Patch(facecolor=LIGHT, label="valid, stable"),
         Patch(facecolor=BLACK, label="valid, unstable"),
     ]
     marks = axes[0, 0].get_legend_handles_labels()[0]

@@ -10,6 +10,7 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.colors import BoundaryNorm, ListedColormap
 from matplotlib.figure import Figure
+from matplotlib.ticker import ScalarFormatter
 
 from squealpipe.store.netcdf import clear_leftovers
 from squealpipe.store.whole_files import whole_file
@@ -36,6 +37,9 @@ BLUE, ORANGE, GREEN, RED, PURPLE, GREY = (
 
 X_COLOUR, Y_COLOUR = ORANGE, BLUE
 """Displacements along the belt and away from it, everywhere."""
+
+SMALL = 1e-3
+"""Largest number on an axis whose labels are written with a power of ten."""
 
 WHITE, LIGHT, BLACK = "#FFFFFF", "#BDBDBD", "#1A1A1A"
 """The paper's three tones."""
@@ -160,12 +164,23 @@ def category_colours(colours: Sequence[Any]) -> dict[str, Any]:
 
 def flag_words(name: str) -> str:
     """A flag's meaning as people write it."""
-    return name.replace("quasi_", "quasi-").replace("_", " ")
+    return name.replace("quasi_", "quasi-").replace("stick_slip", "stick–slip").replace("_", " ")
 
 
 def panel_letter(axes: Axes, letter: str, text: str = "") -> None:
     """(a), (b), … at the left above a panel, with an optional title."""
     axes.set_title(f"({letter}) {text}".rstrip(), loc="left")
+
+
+def shorten_small_ticks(figure: Figure) -> None:
+    """A power of ten beside each axis below 0.001, whose labels would run into one another."""
+    for axes in figure.axes:
+        for axis in (axes.xaxis, axes.yaxis):
+            ticks = axis.get_major_formatter()
+            small = np.abs(axis.get_view_interval()).max() < SMALL
+            if small and isinstance(ticks, ScalarFormatter):
+                ticks.set_useMathText(True)
+                ticks.set_powerlimits((-3, 5))
 
 
 def save_figure(figure: Figure, paths: Sequence[str | os.PathLike[str]]) -> None:
@@ -174,6 +189,7 @@ def save_figure(figure: Figure, paths: Sequence[str | os.PathLike[str]]) -> None
     The layout is found once, at the resolution of the first file: left to ``savefig``, each file
     would be drawn twice.
     """
+    shorten_small_ticks(figure)
     figure.set_dpi(mpl.rcParams["savefig.dpi"])
     if (engine := figure.get_layout_engine()) is not None:
         engine.execute(figure)

@@ -42,7 +42,7 @@ ALT = "Bars of shares, lines of shares over sample size, and bars of sensitivity
 
 
 def draw(spread: xr.Dataset) -> Figure:
-    """Three panels.
+    """Four panels.
 
     Args:
         spread: dataset ``propensity``.
@@ -90,6 +90,12 @@ def draw(spread: xr.Dataset) -> Figure:
     widths.set(
         xlabel="base sample", xscale="log", ylabel="half-width of total index", ylim=(0, None)
     )
+    if not np.isfinite(spread.half_width_by_size).any():
+        widths.text(
+            0.5, 0.5, "too few of the sample differ", transform=widths.transAxes, ha="center"
+        )
+        widths.set_xticks([], minor=True)
+        widths.set_xticks([])
     titles = ("propensity", "convergence of shares", "sensitivity", "convergence of indices")
     for letter, panel, title in zip("abcd", axes.ravel(), titles, strict=True):
         panel_letter(panel, letter, title)
