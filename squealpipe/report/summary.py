@@ -201,9 +201,10 @@ def _speed(found: Facts) -> str:
     ratios = [row["public_time"] / row["time"] for row in scenes]
     theirs = [row["public_error"] for row in scenes]
     return (
-        f"At the setting of all maps one run of A1 is right to {number(error, 1)} in at most "
-        f"{number(1000 * max(row['time'] for row in scenes), 2)} ms; the most accurate public "
-        f"methods reach {number(min(theirs), 1)} to {number(max(theirs), 1)} and take "
+        f"On {len(scenes)} scenes a run of A1 at the setting of all maps is right to "
+        f"{number(error, 1)} in at most {number(1000 * max(row['time'] for row in scenes), 2)} ms; "
+        "the most accurate public methods and settings tried there reach "
+        f"{number(min(theirs), 1)} to {number(max(theirs), 1)} and take "
         f"{number(min(ratios), 2)} to {number(max(ratios), 2)} times as long."
     )
 
@@ -225,7 +226,7 @@ def _ladder(found: Facts) -> str:
     work = [100 * row["work"] for row in found["questions"]]
     return (
         f"A level simpler than A1 answers within {number(100 * found['tolerance'], 2)} % "
-        f"({listed(parts)} of the cells), and choosing it without knowing the answer takes "
-        f"{number(min(work), 2)} to {number(max(work), 2)} % of the time "
-        "integrated by always running A1."
+        f"({listed(parts)} of {found['points']} × {found['points']} cells), and choosing it "
+        f"without knowing the answer takes {number(min(work), 2)} to {number(max(work), 2)} % of "
+        "the time integrated by always running A1."
     )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 from collections.abc import Callable, Mapping
 from typing import Any
@@ -18,7 +19,10 @@ from squealpipe.models.refusals import without_extensions
 from squealpipe.parameters import SCENES, Parameters
 from squealpipe.report.build import TEMPLATES, write_report
 from squealpipe.report.content import Made, gather, picture_files
+from squealpipe.report.facts.cycles import how_it_ends
+from squealpipe.report.facts.spread import drawn_elsewhere
 from squealpipe.report.places import FIGURES
+from squealpipe.schema import Outcome
 from squealpipe.schema.claims import Verdict
 from squealpipe.store.netcdf import save
 from squealpipe.store.provenance import stamp
@@ -148,6 +152,11 @@ SENTENCES: dict[str, Callable[[Parameters, Datasets], bool]] = {
     "printed quotient is negative there": lambda params, _: params.belt_speed > 0,
     "is judged by the mirror image": lambda params, _: params.belt_speed < 0,
     "This run goes beyond the paper": lambda params, _: beyond_paper(params),
+    "In A1 each spring also carries": lambda params, _: beyond_paper(params),
+    "every figure of it": lambda _, data: "backbone/F10_mode1" in data,
+    "Times were measured in this run": lambda _, data: "work_precision_integration" in data,
+    "This run infers no parameters": lambda _, data: "parameter_inference" not in data,
+    "hold in that set by construction": lambda _, data: "parameter_inference" in data,
     "Without dashpots and with": lambda params, _: beyond_paper(params),
     "Only four groups matter": lambda params, _: not beyond_paper(params),
     "They are the baseline": lambda params, _: params == Parameters(),
@@ -227,6 +236,43 @@ def test_captions_made_from_data_name_their_angles() -> None:
     branch = xr.Dataset(attrs={"alpha1": 5 * np.pi / 6, "alpha2": 0.4 * np.pi})
     caption, _ = declared.texts("fig13", {"backbone/F13_mode1": branch})
     assert "(5π/6, 0.4π)" in caption
+
+
+@pytest.mark.parametrize(
+    ("params", "outside"),
+    [
+        (Parameters(), []),
+        (Parameters(k2=1.4), ["k₂"]),
+        (Parameters(mass=2.0, k1=1e6, k2=1.2e6, k3=7e5, mu=0.05), ["k₁", "k₂", "k₃", "μ"]),
+    ],
+)
+def test_a_sample_that_does_not_surround_the_study_is_told(
+    params: Parameters, outside: list[str]
+) -> None:
+    """The paper study's distributions are in its own units, and hold for no other study."""
+    distributions = {
+        "k1": {"distribution": "normal", "mean": 1.0, "std": 0.05},
+        "k2": {"distribution": "normal", "mean": 1.0, "std": 0.05},
+        "k3": {"distribution": "lognormal", "median": 0.75, "log_std": 0.1},
+        "mu": {"distribution": "uniform", "low": 0.1, "high": 0.9},
+        "alpha1": {"distribution": "normal", "mean": 0.22, "std": 0.05},
+    }
+    dataset = xr.Dataset(attrs={"arguments": json.dumps({"distributions": distributions})})
+    assert drawn_elsewhere(Run(params, {"propensity": dataset})) == outside
+
+
+@pytest.mark.parametrize(
+    ("outcome", "stable", "words"),
+    [
+        (Outcome.equilibrium, 0, "comes to rest"),
+        (Outcome.converged, 1, "settles on a stable limit cycle, in contact for 25 %"),
+        (Outcome.converged, 0, "leads to an unstable limit cycle, in contact for 25 %"),
+        (Outcome.no_convergence, 0, "no limit cycle that was found (no convergence)"),
+    ],
+)
+def test_how_a_run_ends_is_said_in_words(outcome: Outcome, stable: int, words: str) -> None:
+    cycle = xr.Dataset({"outcome": int(outcome), "stable": stable, "contact_fraction": 0.25})
+    assert words in str(how_it_ends(Run(Parameters(), {"cycles/limit_F2d": cycle})))
 
 
 def test_the_checks_can_fail() -> None:

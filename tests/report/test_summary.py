@@ -100,7 +100,7 @@ def test_there_are_at_most_ten() -> None:
             "linear": LINEAR,
             "integration": {"scenes": [scene]},
             "failures": {"scenes": 2, "tolerance": 1e-12, "totals": totals},
-            "ladder": {"tolerance": 0.05, "questions": [question]},
+            "ladder": {"tolerance": 0.05, "points": 12, "questions": [question]},
         },
         ["fig01"],
     )

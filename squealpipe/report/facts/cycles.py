@@ -10,6 +10,7 @@ import xarray as xr
 
 from squealpipe.claims.evidence import Run
 from squealpipe.schema import Outcome
+from squealpipe.wording import number
 
 CLOSE = 0.05
 """A long run whose size is this close to a cycle's, relative, counts as one that has reached it."""
@@ -45,7 +46,7 @@ def cycles(run: Run) -> dict[str, Any]:
         "frictions": int(extremes.sizes["mu"]),
         "both": _both(run),
         "close": CLOSE,
-        "rest_2d": _settles(run),
+        "rest_2d": how_it_ends(run),
         "far_2d": _far(extremes, parameters),
     }
 
@@ -84,11 +85,20 @@ def _both(run: Run) -> int:
     return count
 
 
-def _settles(run: Run) -> str | None:
+def how_it_ends(run: Run) -> str | None:
     """How the run from rest of Fig. 2(d)'s scene ends, in words; None where it was not run."""
     if "cycles/limit_F2d" not in run:
         return None
-    return Outcome(int(run["cycles/limit_F2d"].outcome)).name.replace("_", " ")
+    cycle = run["cycles/limit_F2d"]
+    outcome = Outcome(int(cycle.outcome))
+    if outcome == Outcome.equilibrium:
+        return "comes to rest (with this damping its hammering is a transient)"
+    if outcome != Outcome.converged:
+        return f"leads to no limit cycle that was found ({outcome.name.replace('_', ' ')})"
+    share = number(100 * float(cycle.contact_fraction))
+    return (
+        "settles on a stable limit cycle" if cycle.stable else "leads to an unstable limit cycle"
+    ) + f", in contact for {share} % of its period"
 
 
 def _far(extremes: xr.Dataset, parameters: dict[str, Any]) -> list[int]:

@@ -108,6 +108,7 @@ def transient(run: Run) -> dict[str, Any]:
         "longest": float(ended.max()) if ended.size else None,
         "t_end": float(dataset.t_end) / unit,
         "never": [float(speed) for speed in speeds],
+        "each": dataset.sizes["sample"],
         "speeds": _slowest_and_fastest(dataset),
     }
 

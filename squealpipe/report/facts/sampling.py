@@ -9,6 +9,7 @@ is made again with half of its points.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from functools import partial
 from math import isfinite
 from typing import Any
 
@@ -16,14 +17,22 @@ import numpy as np
 import scipy.stats
 import xarray as xr
 
+from squealpipe.claims.checks.frequencies import LARGE, SMALL
 from squealpipe.claims.evidence import Run
-from squealpipe.claims.maps import coupling_is_negative, order_turns_over, unstable_cells
+from squealpipe.claims.maps import (
+    coupling_is_negative,
+    on_grid_of,
+    order_turns_over,
+    unstable_cells,
+)
 from squealpipe.figures.comparison.model_ladder import QUESTION_NAMES
+from squealpipe.figures.parts.origin import scene_title
 from squealpipe.figures.parts.style import flag_words
 from squealpipe.figures.spread.verdict_reach import WORDS
 from squealpipe.report.facts.orbits import orbit_cells
 from squealpipe.schema import meanings
 from squealpipe.schema.inference import CONFIDENCE, wilson_interval
+from squealpipe.schema.ladder import Level
 from squealpipe.wording import number
 
 HOW_CONSEQUENCES_CONVERGE = {
@@ -33,6 +42,8 @@ HOW_CONSEQUENCES_CONVERGE = {
     "points that twice as many change less than the interval",
 }
 """Consequence of the inference → how it is judged at one parameter set; else in closed form."""
+
+ANGLES = ("alpha1", "alpha2")
 
 Row = dict[str, Any]
 
@@ -76,8 +87,10 @@ def _share(name: str, held: np.ndarray, of: str, convergence: str = "") -> Row:
     }
 
 
-def _area(name: str, cells: xr.DataArray, among: xr.DataArray | None = None) -> Row:
-    """A share of the angle map, or of the cells ``among`` that it is asked of."""
+def _area(
+    name: str, cells: xr.DataArray, among: xr.DataArray | None = None, of: str = "cells"
+) -> Row:
+    """A share of a map, or of the cells ``among`` that it is asked of."""
     asked = xr.ones_like(cells, bool) if among is None else among
     values = [_share_on(cells, asked, stride) for stride in (4, 2, 1)]
     coarsest, coarse, value = values
@@ -90,7 +103,7 @@ def _area(name: str, cells: xr.DataArray, among: xr.DataArray | None = None) -> 
         "low": max(0.0, value - error),
         "high": min(1.0, value + error),
         "sample": int(asked.sum()),
-        "of": "cells",
+        "of": of,
         "error": "change from every second line of the grid",
         "convergence": "every fourth line, every second, all: "
         + ", ".join(f"{100 * part:.4g} %" for part in (coarsest, coarse, value)),
@@ -98,7 +111,7 @@ def _area(name: str, cells: xr.DataArray, among: xr.DataArray | None = None) -> 
 
 
 def _share_on(cells: xr.DataArray, asked: xr.DataArray, stride: int) -> float:
-    lines = {"alpha1": slice(None, None, stride), "alpha2": slice(None, None, stride)}
+    lines = dict.fromkeys(cells.dims, slice(None, None, stride))
     among = asked.isel(lines)
     count = int(among.sum())
     return float((cells.isel(lines) & among).sum()) / count if count else 0.0
@@ -127,6 +140,13 @@ def _stability(run: Run) -> Iterator[Row]:
     yield _area("A3 unstable", unstable_cells(run))
     yield _area("A3 in flutter", regime == 1)
     yield _area("A3 divergent", regime == 2)
+    if "quasi_static_map" not in run:
+        return
+    for allowed, words in (
+        (run["quasi_static_map"].possible_as_printed == 1, "that Eq. (11) as printed allows"),
+        (run["quasi_static_map"].possible == 1, "with a positive reaction force"),
+    ):
+        yield _area(f"A3 unstable, of the cells {words} (F6c)", unstable_cells(run), allowed)
 
 
 def _sliding(run: Run) -> Iterator[Row]:
@@ -139,7 +159,57 @@ def _sliding(run: Run) -> Iterator[Row]:
 
 
 def _validity(run: Run) -> Iterator[Row]:
-    yield _area("A1 loses contact (F7a)", run["validity_map"].separates == 1)
+    lost = run["validity_map"].separates == 1
+    yield _area("A1 loses contact (F7a)", lost)
+    if "stability_map" in run:
+        unstable = on_grid_of(run["stability_map"], lost).regime_linear > 0
+        yield _area("A3 and A1 agree (F7b)", unstable.drop_vars(ANGLES) == lost.drop_vars(ANGLES))
+
+
+def _frequencies(run: Run) -> Iterator[Row]:
+    for state in ("contact", "separated"):
+        omega = run["natural_frequencies"].omega.sel(contact_state=state, drop=True)
+        first, second = (omega.sel(mode=mode, drop=True) for mode in (1, 2))
+        yield _area(
+            f"ω1 below {SMALL:g} of its largest, {state} (F8d)", first <= SMALL * first.max()
+        )
+        yield _area(
+            f"ω2 above {LARGE:g} of its largest, {state} (F9c)", second >= LARGE * second.max()
+        )
+
+
+def _critical(run: Run) -> Iterator[Row]:
+    found, mu = run["critical_friction_map"], run.parameters.mu
+    stable, undamped = found.critical_mu >= mu, found.critical_mu_undamped >= mu
+    yield _area("dashpots lower the critical friction", found.destabilized == 1)
+    yield _area("dashpots make unstable what is stable without", ~stable & undamped)
+    yield _area("dashpots make stable what is unstable without", stable & ~undamped)
+
+
+def _basin(run: Run, scene: str) -> Iterator[Row]:
+    motion = run[f"basin/{scene}"].motion
+    for value, name in meanings(motion).items():
+        if (motion == value).any():
+            words = f"{flag_words(name)} from other starts, {scene_title(scene)}"
+            yield _area(words, motion == value, of="starting velocities")
+
+
+def _propensity(run: Run) -> Iterator[Row]:
+    found = run["propensity"]
+    for index, name in enumerate(found.quantity.values.tolist()):
+        yield {
+            "name": f"{flag_words(name)} over the uncertain parameters",
+            "kind": "share",
+            "unit": "1",
+            "value": float(found.share[index]),
+            "low": float(found.share_low[index]),
+            "high": float(found.share_high[index]),
+            "sample": int(found.judged),
+            "of": "parameter sets",
+            "error": f"{100 * CONFIDENCE:.0f} % Wilson interval",
+            "convergence": "from growing parts of the sample: "
+            + ", ".join(f"{100 * part:.3g} %" for part in found.share_by_size.values[index]),
+        }
 
 
 def _pull(run: Run) -> Iterator[Row]:
@@ -181,6 +251,10 @@ def _ladder(run: Run) -> Iterator[Row]:
     for name in ladder.question.values:
         errors = ladder.chosen_error.sel(question=name)
         words = QUESTION_NAMES[str(name)].rstrip("?")
+        yield _area(
+            f"{words}: a level simpler than A1 would do",
+            ladder.cheapest.sel(question=name, drop=True) != Level.a1,
+        )
         yield _area(
             f"{words}: the chosen model is within the tolerance",
             errors <= tolerance,
@@ -291,7 +365,12 @@ TOPICS: dict[str, Callable[[Run], Iterator[Row]]] = {
     "quasi_static_map": _sliding,
     "validity_map": _validity,
     "linear_pull": _pull,
+    "natural_frequencies": _frequencies,
+    "critical_friction_map": _critical,
     "hammering_map": _hammering,
+    "basin/F2d": partial(_basin, scene="F2d"),
+    "basin/F3": partial(_basin, scene="F3"),
+    "propensity": _propensity,
     "orbit_atlas": _orbits,
     "harmonic_sweep": _harmonic,
     "model_ladder": _ladder,

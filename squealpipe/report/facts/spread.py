@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from typing import Any
 
 import numpy as np
@@ -17,6 +18,8 @@ from squealpipe.schema.linear import LinearRegimeFlag
 from squealpipe.schema.spread import WIDEST
 
 MOST_CHANGED = 3
+TRUNCATION = 4.0
+"""Standard deviations at which a normal distribution is cut off; beyond, a lognormal is rare."""
 FEASIBLE = "feasible parameters"
 SIGNS = {"k1": "k₁", "k2": "k₂", "k3": "k₃", "mu": "μ", "alpha1": "α₁", "alpha2": "α₂"}
 
@@ -39,6 +42,7 @@ def reach(run: Run) -> dict[str, Any]:
     varies = (judged & (others != first)).any(axis=0)
     return {
         "settings": len(others),
+        "statements": len(names),
         "judged": int(judged.sum()),
         "changed": int(changed.sum()),
         "firm": [name for name, moved in zip(names, varies, strict=True) if not moved],
@@ -148,6 +152,7 @@ def propensity(run: Run) -> dict[str, Any]:
     return {
         "samples": int(dataset.judged),
         "inputs": [SIGNS.get(name, name) for name in dataset.input.values.tolist()],
+        "outside": drawn_elsewhere(run),
         "rows": [
             {
                 "words": words[i],
@@ -164,3 +169,22 @@ def propensity(run: Run) -> dict[str, Any]:
         ],
         "widest": WIDEST,
     }
+
+
+def drawn_elsewhere(run: Run) -> list[str]:
+    """Parameters whose own value in the study lies beyond all that was drawn of them."""
+    given = json.loads(run["propensity"].attrs.get("arguments", "{}")).get("distributions", {})
+    beyond = []
+    for name, value in run.parameters.as_dict().items():
+        match given.get(name):
+            case {"low": low, "high": high}:
+                drawn = low <= value <= high
+            case {"mean": mean, "std": std}:
+                drawn = abs(value - mean) <= TRUNCATION * std
+            case {"median": median, "log_std": log_std}:
+                drawn = value > 0 and abs(np.log(value / median)) <= TRUNCATION * log_std
+            case _:
+                continue
+        if not drawn:
+            beyond.append(SIGNS.get(name, name))
+    return beyond
