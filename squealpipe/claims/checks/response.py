@@ -176,7 +176,7 @@ def limit_cycle_is_bounded(run: Run) -> Finding:
     evidence = (
         f"|x| reaches {largest:.3g} of the longer free length up to {until(run, motion)} "
         f"({early:.3g} l_pre in the first half, {late:.3g} l_pre in the second; "
-        f"{GROWTH_THRESHOLD:g} times as far counts as growth). "
+        f"{GROWTH_THRESHOLD:g} times as far counts as growth); whether it repeats is not judged. "
     ) + (
         f"Beyond, {ended.size} of {lifetimes.size} runs from starts at most a billionth of l_pre "
         f"apart end in the whirl before t = {horizon:g}, the first after {ended.min():.3g}"
