@@ -96,6 +96,8 @@ def plain(value: Any) -> Any:
     if array.size > LONGEST:
         values = array.ravel()
         return {"first": plain(values[0]), "last": plain(values[-1]), "number": array.size}
+    if array.dtype.kind == "f":
+        array = array.astype(float)  # JSON knows no longer ones
     return array.tolist() if array.dtype.kind in "biufU" else str(value)
 
 

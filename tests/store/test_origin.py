@@ -105,6 +105,7 @@ def test_arguments_are_told_and_long_ones_by_their_ends():
     assert json.loads(RUN.attrs["arguments"])["alpha2"] == 1.1
     assert json.loads(MODEL_AND_TOLERANCE["backbone"][0].attrs["arguments"])["y_peak_max"] == 1.2
     assert plain(np.linspace(0, 1, 9)) == {"first": 0.0, "last": 1.0, "number": 9}
+    assert json.dumps(plain(np.longdouble(1.5))) == "1.5"
     assert plain({"a": (1, 2.5, "x")}) == {"a": ["1", "2.5", "x"]}
 
 
