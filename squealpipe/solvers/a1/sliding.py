@@ -27,15 +27,18 @@ def sliding_equilibrium(a1: A1Automaton) -> NDArray[np.float64] | None:
     Of several it is the one that a Newton method from r = 0 leads to.
     """
     p, field = a1.params, a1.field(sliding_regime(a1))
+    # from r = 0 the solver's steps and differences are absolute numbers, so both are scaled
+    force = 0.5 * (p.k1 + p.k2) * p.preload
 
-    def acceleration(place: NDArray[np.float64]) -> NDArray[np.float64]:
-        return np.array(field(0.0, np.array([place[0], place[1], 0.0, 0.0])))[2:]
+    def pull(place: NDArray[np.float64]) -> NDArray[np.float64]:
+        x, y = p.preload * place
+        return np.array(field(0.0, np.array([x, y, 0.0, 0.0])))[2:] * (p.mass / force)
 
-    found = root(acceleration, [0.0, 0.0], tol=1e-13)
-    unbalanced = float(np.abs(acceleration(found.x)).max()) * p.mass / (p.k3 * p.preload)
-    if not unbalanced < _BALANCE or found.x[1] >= p.preload:
+    found = root(pull, [0.0, 0.0], tol=1e-13)
+    unbalanced = float(np.abs(pull(found.x)).max()) * force / (p.k3 * p.preload)
+    if not unbalanced < _BALANCE or found.x[1] >= 1.0:
         return None
-    return np.array([found.x[0], found.x[1], 0.0, 0.0])
+    return np.array([*(p.preload * found.x), 0.0, 0.0])
 
 
 def sliding_jacobian(a1: A1Automaton, state: Any) -> NDArray[np.float64]:

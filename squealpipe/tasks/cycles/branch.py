@@ -32,6 +32,7 @@ from squealpipe.tasks.cycles.cycle import (
     cycle_values,
     find_cycle,
     settled_state,
+    slow_time,
 )
 from squealpipe.tasks.cycles.onset import find_onset
 
@@ -171,7 +172,7 @@ def _first_cycle(
     system: A1Flow, start: Sequence[float] | xr.Dataset | None
 ) -> tuple[Cycle | None, Outcome]:
     if start is None:
-        settled, outcome = settled_state(system, T_SETTLE * system.params.time_unit)
+        settled, outcome = settled_state(system, T_SETTLE * slow_time(system.params))
         if settled is None:
             return None, outcome
         state = settled

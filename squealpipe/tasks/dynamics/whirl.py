@@ -49,10 +49,11 @@ def whirl_sizes(
     """Size of the motion at (0.4π, 0.6π) after saturation, over belt speed, and its law.
 
     Far from the fixed end both springs pull as one of stiffness k1 + k2, so a mass that passes
-    the belt at speed V swings out to x = c1 L1 + L1 + V √(m/(k1 + k2)). The fit takes this line's
-    form, over all speeds with a whirl larger than four free lengths; ``fit_range`` and ``residual``
-    tell how far and how well it holds. The onset of the whirl is bracketed below the slowest belt
-    that whirls the mass, in two rounds of 15 speeds each.
+    the belt at speed V swings out to x = (1 + c1) L + V √(m/(k1 + k2)), L the mean of both free
+    lengths weighted by stiffness. The fit takes this line's form, over all speeds with a whirl
+    larger than four free lengths; ``fit_range`` and ``residual`` tell how far and how well it
+    holds. The onset of the whirl is bracketed below the slowest belt that whirls the mass, in two
+    rounds of 15 speeds each.
 
     Args:
         params: physical parameters; of the belt speed only the direction is kept.
@@ -88,8 +89,10 @@ def whirl_sizes(
     run, motion = runs(speeds)
     whirls = motion == MotionFlag.whirl
     onset, exceptions = _onset(lambda tried: runs(tried)[1] == MotionFlag.whirl, speeds, whirls)
-    length = max(params.length1, params.length2)
-    fitted = whirls & (run.late_max_x > FAR * length)
+    p = params
+    fitted = whirls & (run.late_max_x > FAR * max(p.length1, p.length2))
+    # of the one spring that both are together from afar
+    length = (p.k1 * p.length1 + p.k2 * p.length2) / (p.k1 + p.k2)
     slope = offset = np.nan
     if np.count_nonzero(fitted) >= LEAST_FITTED:
         weights = 1.0 / run.late_max_x[fitted]
@@ -117,7 +120,7 @@ def whirl_sizes(
             "slope": slope,
             "offset": offset,
             "energy_slope": np.sqrt(params.mass / (params.k1 + params.k2)),
-            "energy_offset": params.length1 * (1.0 + np.cos(scene.alpha1)),
+            "energy_offset": length * (1.0 + np.cos(scene.alpha1)),
             "fit_outcome": Outcome.unresolved if np.isnan(slope) else Outcome.converged,
             "t_end": t_end,
             "outcome": run.outcome,

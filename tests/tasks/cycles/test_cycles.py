@@ -15,6 +15,7 @@ from squealpipe.methods.limit_cycles.labels import Label
 from squealpipe.schema import Outcome
 from squealpipe.solvers.a1.flow import A1Flow
 from squealpipe.tasks.cycles.cycle import least_cycle
+from squealpipe.tasks.normal_form import exchanged
 
 ANGLES = (0.5 * math.pi, math.pi)
 
@@ -153,6 +154,55 @@ def test_a_settled_state_of_rest_is_no_cycle():
     cycle = limit_cycle(params, 0.75 * math.pi, 0.75 * math.pi)
     assert cycle.outcome == Outcome.equilibrium
     assert np.isnan(cycle.period)
+
+
+REST = Parameters(
+    k1=2.2, k2=2.8, k3=0.8, mu=0.15, mu_static=0.18, friction_law="exponential",
+    friction_speed=0.24, belt_speed=-6.6, length1=8.7, length2=49.0,
+    damping1=0.005, damping2=0.2,
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("settle", [1000.0, 1500.0, 2000.0, 5000.0, 20000.0])
+def test_rest_is_rest_in_any_units_and_mirrored(settle):
+    """Round-off decides neither whether the place of rest is found nor whether a motion shrinks."""
+    length, time = 1e-5, 3e3
+    units = {"belt_speed": length / time, "friction_speed": length / time}
+    units |= dict.fromkeys(("k1", "k2", "k3"), time**-2)
+    units |= dict.fromkeys(("preload", "length1", "length2"), length)
+    units |= dict.fromkeys(("damping1", "damping2"), 1.0 / time)
+    other = REST.with_(**{name: unit * getattr(REST, name) for name, unit in units.items()})
+    a1, a2 = 0.8346, 1.5897
+    for params, angles, unit in (
+        (REST, (a1, a2), 1.0),
+        (other, (a1, a2), time),
+        (exchanged(REST), (math.pi - a2, math.pi - a1), 1.0),
+        (exchanged(REST).with_(belt_speed=6.6), (a2, a1), 1.0),
+    ):
+        cycle = limit_cycle(params, *angles, t_settle=settle * unit)
+        assert cycle.outcome == Outcome.equilibrium
+
+
+@pytest.mark.parametrize("speed", UNSTABLE)
+def test_a_smooth_cycle_around_a_state_of_rest_is_found_from_any_phase(speed):
+    params = friction_oscillator(speed, 1e3)
+    guess = (equilibrium(speed) + UNSTABLE[speed][0], 0.25, 0.0, 0.0)
+    cycle = limit_cycle(params, *ANGLES, guess=guess)
+    path = np.array([cycle[f"{name}_path"] for name in ("x", "y", "vx", "vy")])
+    for state in path[:, ::25].T:
+        again = limit_cycle(params, *ANGLES, guess=state)
+        assert again.outcome == Outcome.converged
+        np.testing.assert_allclose(again.period, cycle.period, rtol=1e-9)
+
+
+def test_without_damping_nothing_comes_to_rest():
+    params = Parameters(
+        k1=0.3369548162926997, k2=0.33121791549130847, k3=0.2689114661069115,
+        mu=0.10066315042153495, belt_speed=-13.002080446037427,
+        length1=20.94848468313279, length2=72.09643764912789,
+    )  # fmt: skip
+    cycle = limit_cycle(params, 2.2920388457758087, 1.6485212416566715, t_settle=100.0)
+    assert cycle.outcome != Outcome.equilibrium
 
 
 def test_branch_turns_where_the_unstable_cycle_meets_the_stick_line():

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from scipy.optimize import brentq
 
 from squealpipe.parameters import SCENES, Parameters
 from squealpipe.schema import Outcome
@@ -200,6 +201,23 @@ def test_fit_of_the_whirl_tells_its_range_and_the_onset_is_bracketed():
     for speed, whirls in ((low, False), (high, True)):
         again = whirl_sizes(BASELINE, [speed], t_end=3000.0)
         assert (int(again.motion[0]) == MotionFlag.whirl) == whirls
+
+
+@pytest.mark.parametrize("speed", [20.0, -20.0])
+def test_energy_line_of_unequal_springs_is_that_of_their_potential(speed):
+    """At which x along the line through r = 0 both springs hold the energy of a fast passage."""
+    params = Parameters(mass=2.0, k1=0.6, k2=3.0, length1=2.0, length2=7.0, belt_speed=speed)
+    sizes = whirl_sizes(params, [20.0], t_end=1.0)
+    fast, cosine = 1e5, np.cos(SCENES["F3"].alpha1)
+
+    def left_over(x):
+        stretch = np.hypot(x - 2.0 * cosine, 2.0 * np.sqrt(1 - cosine**2)) - 2.0
+        other = np.hypot(x - 7.0 * cosine, 7.0 * np.sqrt(1 - cosine**2)) - 7.0
+        return 0.5 * (0.6 * stretch**2 + 3.0 * other**2 - params.mass * fast**2)
+
+    far = brentq(left_over, 1e3, 1e6, rtol=1e-15)
+    line = float(sizes.energy_offset) + float(sizes.energy_slope) * fast
+    assert abs(line - far) < 1e-3
 
 
 def test_long_runs_follow_the_direction_of_the_belt():

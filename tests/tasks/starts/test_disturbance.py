@@ -7,9 +7,11 @@ import pytest
 
 from squealpipe import Parameters, simulate, smallest_disturbance
 from squealpipe.laws.springs import geometry, linear_stiffness
+from squealpipe.models.a1_automaton import A1Automaton
 from squealpipe.models.damped import critical_friction
 from squealpipe.schema import Outcome
 from squealpipe.solvers.a1.ensemble import run_ensemble
+from squealpipe.solvers.a1.sliding import sliding_equilibrium
 from squealpipe.tasks.dynamics.motion import linear_time
 
 RNG = np.random.default_rng(16)
@@ -162,3 +164,18 @@ def test_unstable_or_no_sliding_is_said_and_nothing_is_run():
 def test_refuses_what_it_cannot_do(change, named):
     with pytest.raises(ValueError, match=named):
         smallest_disturbance(Parameters(), 2.4, 2.5, **change)
+
+
+def test_steady_sliding_is_found_in_any_units():
+    """Lengths of 1e-9 to 1e9, against the linear state of rest of long springs."""
+    for number in range(30):
+        params, alpha1, alpha2 = random_case(1 if number % 2 else -1)
+        unit = 10.0 ** RNG.uniform(-9, 9)
+        params = params.with_(
+            mass=params.mass * 1e4, preload=params.preload * unit,
+            length1=1e6 * unit, length2=1e6 * unit, belt_speed=params.belt_speed * unit,
+        )  # fmt: skip
+        found = sliding_equilibrium(A1Automaton(params, alpha1, alpha2))
+        assert found is not None
+        expected = steady_state(params, alpha1, alpha2)
+        np.testing.assert_allclose(found[:2], expected, atol=1e-3 * np.abs(expected).max())
