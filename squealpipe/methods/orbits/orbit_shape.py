@@ -13,6 +13,8 @@ from squealpipe.methods.orbits.shooting import MAX_SEGMENTS, shoot
 
 _LOOKS = 12
 """Samples within a segment between which an extreme is looked for."""
+_ITERATIONS = 24
+"""Of the search for an extreme: enough to halve its way out of the rest at an interval's end."""
 
 
 @compiled
@@ -69,11 +71,18 @@ def extremes(rows: Any, point: Any, out: Any) -> None:
                 propagator(row, time, scratch)
                 copy_state(start, state)
                 advance(row, scratch, state)
-                value, slope, _ = _rates(row, state, kind)
+                value, slope, bend = _rates(row, state, kind)
+                # at both instants of rest round-off alone is left of a velocity: its sign just
+                # after the first and just before the second is that of the acceleration
+                if kind < 2 and leg == 0 and look == 0:
+                    slope = bend
+                elif kind < 2 and leg == count - 1 and look == _LOOKS:
+                    slope = -bend
                 out[2 * kind] = min(out[2 * kind], value)
                 out[2 * kind + 1] = max(out[2 * kind + 1], value)
                 if look > 0 and slope * slope_before < 0.0:
-                    value = _turn(row, start, kind, time - (end - begin) / _LOOKS, time, scratch)
+                    before = time - (end - begin) / _LOOKS
+                    value = _turn(row, start, kind, before, time, slope_before, scratch)
                     out[2 * kind] = min(out[2 * kind], value)
                     out[2 * kind + 1] = max(out[2 * kind + 1], value)
                 slope_before = slope
@@ -82,15 +91,17 @@ def extremes(rows: Any, point: Any, out: Any) -> None:
 
 
 @compiled
-def _turn(row: Any, start: Any, kind: int, before: float, after: float, scratch: Any) -> float:
-    """Value at the turning point in (before, after), by safeguarded Newton on the slope."""
+def _turn(
+    row: Any, start: Any, kind: int, before: float, after: float, first: float, scratch: Any
+) -> float:
+    """Value at the turning point in (before, after), by safeguarded Newton on the slope.
+
+    ``first`` has the sign of the slope just after ``before``.
+    """
     state = start.copy()
-    propagator(row, before, scratch)
-    advance(row, scratch, state)
-    _, first, _ = _rates(row, state, kind)
     value = 0.0
     time = 0.5 * (before + after)
-    for _ in range(8):
+    for _ in range(_ITERATIONS):
         propagator(row, time, scratch)
         copy_state(start, state)
         advance(row, scratch, state)

@@ -222,3 +222,33 @@ def test_a_peak_below_the_equilibrium_is_refused():
 def test_a_slow_belt_breaks_the_assumption_and_says_so():
     assert int(_orbit(0.3, 0.9, 1, 3.0).sliding_assumption) == 1
     assert int(_orbit(0.3, 0.9, 1, 3.0, Parameters(belt_speed=0.2)).sliding_assumption) == 0
+
+
+@pytest.mark.parametrize("turn", [(0.0866, 2.3672, 1), (1.1, 0.4, 1), (2.6786, 1.8628, 2)])
+def test_extremes_are_those_of_an_integration(turn):
+    """Where x turns shortly after or before an instant of rest among them."""
+    alpha1, alpha2, mode = turn
+    params = Parameters(k1=0.975, k2=2.68, k3=0.318, mu=0.85)
+    g = geometry(alpha1, alpha2)
+    k11, k12, k22 = linear_stiffness(params, g)
+
+    def field(_, z):
+        contact = params.k3 * max(1.0 - z[1], 0.0)
+        return [
+            z[2], z[3],
+            params.mu * contact - k11 * z[0] - k12 * z[1], contact - k12 * z[0] - k22 * z[1],
+        ]  # fmt: skip
+
+    for peak in np.linspace(1.05, 4.0, 30):
+        orbit = periodic_orbit(params, alpha1, alpha2, mode=mode, y_peak=peak)
+        if orbit.outcome != Outcome.converged:
+            continue
+        half = math.pi / float(orbit.omega)
+        run = solve_ivp(
+            field, (0.0, half), [float(orbit.x_at_peak), peak, 0.0, 0.0], method="DOP853",
+            rtol=1e-10, atol=1e-12, max_step=half / 200, t_eval=np.linspace(0.0, half, 4001),
+        )  # fmt: skip
+        x, y, vx, _ = run.y
+        np.testing.assert_allclose(orbit.x_amplitude, 0.5 * np.ptp(x), rtol=2e-6)
+        np.testing.assert_allclose(orbit.y_amplitude, 0.5 * np.ptp(y), rtol=2e-6)
+        np.testing.assert_allclose(orbit.largest_speed, np.abs(vx).max(), rtol=2e-6)
