@@ -50,7 +50,8 @@ def model_ladder(
     form = NormalForm.of(params)
     params, (alpha1, alpha2) = form.params, form.angles(alpha1, alpha2)
     scenes = Scenes(params, alpha1, alpha2, horizon, workers)
-    run_ensemble(params, alpha1[:1], alpha2[:1], t_end=1.0, workers=1)  # compile off the clock
+    short = 1e-3 * horizon
+    run_ensemble(params, alpha1[:1], alpha2[:1], t_end=short, workers=1)  # compile off the clock
     found = {level: answer(level, scenes) for level in Level}
     truth = found[Level.a1].values
     reached = np.asarray(found[Level.a1].belt_reached, dtype=bool)

@@ -84,3 +84,12 @@ def test_knowing_the_cheapest_level_in_advance_costs_least(ladder) -> None:
     runs = [Level(code).share for code in ladder.cheapest.sel(question="frequency").values.ravel()]
     least = ladder.hindsight_time / ladder.always_time
     assert float(least.sel(question="frequency")) == pytest.approx(np.mean(runs), rel=1e-2)
+
+
+def test_a_short_unit_of_time_is_no_long_run() -> None:
+    """The run that compiles is a share of the horizon, not one second."""
+    params = Parameters(belt_speed=1.0)
+    fast = params.with_(mass=1e-20, belt_speed=1e10)
+    one = model_ladder(params, 3, 0.05, t_end=20.0)
+    other = model_ladder(fast, 3, 0.05, t_end=20.0 * fast.time_unit)
+    np.testing.assert_array_equal(one.chosen, other.chosen)
