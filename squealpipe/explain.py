@@ -119,6 +119,8 @@ class Explanation:
 
     def estimate(self) -> str:
         """For instance ``about 41 s on 2 cores, from recorded times``."""
+        if self.jobs and all(job.seconds is None for job in self.jobs):
+            return "how long it takes is not known: none of these rules has run here"
         rest = f"; not counted, never run: {', '.join(self.unknown)}" if self.unknown else ""
         return f"about {duration(self.seconds)} on {self.cores} cores, from recorded times{rest}"
 

@@ -3,6 +3,7 @@
 import base64
 import io
 import json
+from dataclasses import replace
 
 import pytest
 from rich.console import Console
@@ -165,3 +166,11 @@ def test_files_of_one_job_count_once():
         for index, (rule, seconds, ended) in enumerate(written_by)
     }
     assert job_times(known) == {"draw": [7.0, 3.0], "map": [7.0]}
+
+
+def test_without_any_record_no_time_is_told():
+    """Not "about 0.0 s": nothing is known of rules that never ran."""
+    jobs = tuple(replace(job, seconds=None) for job in read_plan(PLAN, KNOWN))
+    told = Explanation(jobs=jobs, cores=2).estimate()
+    assert "not known" in told
+    assert "0.0 s" not in told
