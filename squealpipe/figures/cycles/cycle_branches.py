@@ -63,7 +63,7 @@ def draw(down: xr.Dataset, up: xr.Dataset, flutter: xr.Dataset, extremes: xr.Dat
     """
     figure, axes = new_figure(PAGE, 3.2, ncols=3)
     panels = (("F3", (down, up)), ("flutter", (flutter,)), ("F2d", ()))
-    titles = (scene_title("F3"), flutter_title(extremes), scene_title("F2d"))
+    titles = (scene_title("F3"), flutter_title(flutter), scene_title("F2d"))
     shown: dict[str, tuple[str, str, str]] = {}
     unit = parameter(extremes, "preload")
     for letter, panel, (scene, branches), title in zip("abc", axes[0], panels, titles, strict=True):
@@ -89,10 +89,11 @@ def draw(down: xr.Dataset, up: xr.Dataset, flutter: xr.Dataset, extremes: xr.Dat
     return figure
 
 
-def flutter_title(dataset: xr.Dataset) -> str:
-    """The scene of the flutter onset by its angles, from the configuration of its dataset."""
-    angles = json.loads(dataset.attrs["config"])["cycles"]["flutter"]
-    return f"{angle_pair(*(float(angle) * np.pi for angle in angles))}, flutter onset"
+def flutter_title(branch: xr.Dataset) -> str:
+    """The scene of the branch from the flutter onset by its angles, from its configuration."""
+    angles = json.loads(branch.attrs["config"])["cycles"]["flutter"]
+    onset = "flutter onset" if branch.sizes["point"] else "no branch"
+    return f"{angle_pair(*(float(angle) * np.pi for angle in angles))}, {onset}"
 
 
 def _branch(panel: Axes, branch: xr.Dataset, unit: float) -> dict[str, tuple[str, str, str]]:
