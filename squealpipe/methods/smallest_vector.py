@@ -34,6 +34,8 @@ FINE = 2
 """Times the halvings of a direction that is being improved."""
 PHASE = 0.02
 """Step of the scan in time of :func:`smallest_linear`, over the shortest time scale."""
+MOST_STEPS = 5e6
+"""Of that scan: 160 MB of rows, and seconds."""
 
 
 @dataclass(frozen=True)
@@ -166,8 +168,16 @@ def smallest_linear(matrix: Array, row: Array, level: float, t_end: float) -> fl
         row: c, (n,).
         level: above 0.
         t_end: horizon.
+
+    Raises:
+        ValueError: the fastest motion is too fast for the horizon.
     """
     rate = max(float(np.abs(np.linalg.eigvals(matrix)).max()), 1.0 / t_end)
+    if not rate * t_end <= MOST_STEPS * PHASE:
+        raise ValueError(
+            f"the linear motion changes within 1/{rate * t_end:.2g} of the horizon, at most "
+            f"1/{MOST_STEPS * PHASE:.0e} is scanned; shorten t_end, or weaken a dashpot or a spring"
+        )
     count = int(np.ceil(rate * t_end / PHASE)) + 1
     step = t_end / count
     move, rows = expm(step * matrix), np.empty((count + 1, len(row)))

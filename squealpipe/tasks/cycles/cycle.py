@@ -182,17 +182,21 @@ def _comes_to_rest(system: A1Flow, state: Vector, window: float) -> bool:
     path = sample_path(passage.segments, np.linspace(0.0, window, 400)) / scale
     first, second = (np.ptp(half, axis=0).max() for half in np.split(path, 2))
 
-    def rate(place: Vector) -> Vector:
-        return system.velocity(passage.regime, place * scale) * time / scale
+    def state_at(place: Vector) -> Vector:
+        return np.asarray(scale * np.array([place[0], place[1], 0.0, 0.0]))
 
-    rest = root(rate, path[200:].mean(axis=0), tol=1e-13)
+    def pull(place: Vector) -> Vector:
+        return np.asarray((system.velocity(passage.regime, state_at(place)) * time / scale)[2:])
+
+    middle = path[200:, :2].mean(axis=0)
+    rest = root(pull, middle, tol=1e-13)
     round_off = ROUND_OFF * (1.0 + max(p.length1, p.length2) / p.preload)
     # the solver may deny success of a place that round-off keeps from being better
     found = np.abs(rest.fun).max() <= 64.0 * round_off + 1e-9 * second
-    near = np.abs(rest.x - path[200:].mean(axis=0)).max() <= 0.5 * second + 1e-9 * _reach(path)
+    near = np.abs(rest.x - middle).max() <= 0.5 * second + 1e-9 * _reach(path)
     if not (found and near):
         return False
-    growth = float(np.linalg.eigvals(system.jacobian(passage.regime, rest.x * scale)).real.max())
+    growth = np.linalg.eigvals(system.jacobian(passage.regime, state_at(rest.x))).real.max()
     return bool(growth < 0.0 and second < first + 1e-12 * _reach(path) + 64.0 * round_off)
 
 

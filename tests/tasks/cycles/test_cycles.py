@@ -195,6 +195,15 @@ def test_a_smooth_cycle_around_a_state_of_rest_is_found_from_any_phase(speed):
         np.testing.assert_allclose(again.period, cycle.period, rtol=1e-9)
 
 
+def test_a_stiff_dashpot_does_not_drive_the_search_for_rest_off():
+    params = Parameters(
+        k1=0.65, k2=1.13, k3=0.46, mu=1.05, mu_static=2.76, friction_law="exponential",
+        friction_speed=1.82, belt_speed=0.2837, length1=9.25, length2=24.5, damping1=1e8,
+    )  # fmt: skip
+    cycle = limit_cycle(params, math.pi, 2.4033, guess=(0.1, 0.0, 0.0, 0.0))
+    assert cycle.outcome != Outcome.converged
+
+
 def test_without_damping_nothing_comes_to_rest():
     params = Parameters(
         k1=0.3369548162926997, k2=0.33121791549130847, k3=0.2689114661069115,

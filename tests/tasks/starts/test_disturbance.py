@@ -179,3 +179,8 @@ def test_steady_sliding_is_found_in_any_units():
         assert found is not None
         expected = steady_state(params, alpha1, alpha2)
         np.testing.assert_allclose(found[:2], expected, atol=1e-3 * np.abs(expected).max())
+
+
+def test_a_dashpot_too_stiff_for_the_horizon_is_refused():
+    with pytest.raises(ValueError, match="shorten t_end, or weaken a dashpot"):
+        smallest_disturbance(Parameters(mu=0.1, damping1=1e8), 2.0, 1.9)
