@@ -135,6 +135,7 @@ def _late_speed(run: Ensemble, late: np.ndarray) -> np.ndarray:
     bend = left - 2.0 * middle + right
     with np.errstate(divide="ignore", invalid="ignore"):
         peak = middle - (right - left) ** 2 / (8.0 * bend)
-    inside = (middle >= left) & (middle >= right) & (bend < 0.0)
+    # a mass that sticks is level with its belt: no peak lies beyond the corner
+    inside = (middle > left) & (middle > right)
     refined = np.where(inside, peak, 0.0).max(axis=1)
     return np.asarray(np.maximum(speed.max(axis=1), refined))

@@ -1,6 +1,7 @@
 """Basins of published oscillators, and starts as a grid."""
 
 import math
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -9,6 +10,7 @@ from squealpipe import Parameters, basin_map, simulate
 from squealpipe.schema import Outcome
 from squealpipe.schema.dynamics.runs import MotionFlag
 from squealpipe.schema.starts import StartMotion
+from squealpipe.tasks.starts.basin import _late_speed
 
 ANGLES = (0.5 * math.pi, math.pi)
 SHARES = {1.25: 0.08019692, 1.4: 0.21226526, 1.55: 0.35659639, 1.7: 0.49411159}
@@ -102,3 +104,10 @@ def test_late_extremes_begin_at_t_late():
                 times=np.linspace(late, 50.0, 20_001),
             )  # fmt: skip
             assert largest == pytest.approx(np.abs(run.x).max().item(), rel=1e-4)
+
+
+def test_a_mass_that_sticks_is_not_told_to_be_faster_than_its_belt():
+    """Samples of a speed that rises to 1, stays and falls: the largest is 1, not a parabola's."""
+    speed = np.minimum(1.0, 1.37 - 0.31 * np.abs(np.linspace(-3.0, 3.0, 41)))
+    run = SimpleNamespace(samples=speed[None, :, None] * np.array([0.0, 0.0, 1.0, 0.0]))
+    np.testing.assert_array_equal(_late_speed(run, np.ones(41, bool)), [1.0])
