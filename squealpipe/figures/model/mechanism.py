@@ -1,4 +1,4 @@
-"""The mechanism drawn to scale: mass, two inclined springs, contact spring, belt."""
+"""The mechanism as a schematic: mass, two inclined springs, contact spring, belt."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def draw_mechanism(
     labels: bool = False,
     direction: float = 1.0,
 ) -> None:
-    """Draw an arrangement of springs of length 1 around the mass, of radius 0.12, at the origin.
+    """Draw an arrangement at its true angles; both springs have length 1, the mass radius 0.12.
 
     Args:
         axes: where to draw; its frame is switched off.
