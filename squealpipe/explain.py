@@ -152,13 +152,17 @@ def why(job: Job) -> list[str]:
 
 
 def explain(
-    configs: Iterable[str | os.PathLike[str]] = (), *, root: str | os.PathLike[str] = "."
+    configs: Iterable[str | os.PathLike[str]] = (),
+    *,
+    root: str | os.PathLike[str] = ".",
+    directory: str | os.PathLike[str] | None = None,
 ) -> Explanation:
     """Ask Snakemake what it would do and put it in terms of keys and sources.
 
     Args:
         configs: YAML files laid over the paper's configuration, as with ``--configfile``.
         root: the checkout.
+        directory: where the study runs; the checkout by default.
 
     Raises:
         FileNotFoundError: no Snakefile, or a configuration that is missing.
@@ -168,16 +172,18 @@ def explain(
     base = Path(root)
     if not (base / "Snakefile").is_file():
         raise FileNotFoundError(f"no Snakefile in {base.resolve()}; run this in the checkout")
-    overlays = [str(path) for path in configs]
+    overlays = [str(Path(path).absolute()) for path in configs]
     read_study(base / PAPER, *overlays)
     overlays = [path for path in overlays if read_yaml(Path(path))[0]]  # Snakemake takes no empty
     command = [sys.executable, "-m", "snakemake", "--dry-run", "--nocolor"]
+    there = base if directory is None else Path(directory)
+    command += ["--snakefile", str((base / "Snakefile").absolute())]
     if overlays:
         command += ["--configfile", *overlays]
-    run = subprocess.run(command, cwd=base, capture_output=True, text=True, check=False)
+    run = subprocess.run(command, cwd=there, capture_output=True, text=True, check=False)
     if run.returncode:
         raise WorkflowError(f"snakemake could not plan:\n{(run.stdout + run.stderr).strip()}")
-    return Explanation(jobs=tuple(read_plan(run.stdout, records(base), told_stale(run.stderr))))
+    return Explanation(jobs=tuple(read_plan(run.stdout, records(there), told_stale(run.stderr))))
 
 
 def told_stale(text: str) -> dict[str, list[str]]:

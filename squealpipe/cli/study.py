@@ -25,13 +25,14 @@ def explain(*, config: Configs = None, times: bool = False, json_: AsJson = Fals
         times: print instead what each rule took when it last ran, as a Markdown table.
         json_: print JSON.
     """
+    from squealpipe.cli.project import checkout
     from squealpipe.explain import explain as plan_of
 
     if times:
         _print_times()
         return DONE
     with elapsing("explain"):
-        plan = plan_of(config or [])
+        plan = plan_of(config or [], root=checkout(), directory=".")
     if json_:
         print(json.dumps(plan.as_dict(), indent=1))
         return DONE

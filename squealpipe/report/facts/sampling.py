@@ -1,9 +1,9 @@
 """What stands behind each share and each fitted number: its sample, error and convergence.
 
 A share of a random sample (parameter sets, runs from perturbed starts) has Wilson's interval. A
-share of a map is an area: its error is the change from every second line of the grid, and the
-change from every fourth to every second tells how it converges. A fit has its standard error, and
-is made again with half of its points.
+share of a map is an area: its error is the change from every second line, at least one cell, and
+the change from every fourth to every second tells how it converges. A fit has its standard error,
+and is made again with half of its points.
 """
 
 from __future__ import annotations
@@ -94,7 +94,8 @@ def _area(
     asked = xr.ones_like(cells, bool) if among is None else among
     values = [_share_on(cells, asked, stride) for stride in (4, 2, 1)]
     coarsest, coarse, value = values
-    error = abs(value - coarse)
+    count = int(asked.sum())
+    error = max(abs(value - coarse), 1.0 / max(1, count))
     return {
         "name": name,
         "kind": "area",
@@ -102,9 +103,9 @@ def _area(
         "value": value,
         "low": max(0.0, value - error),
         "high": min(1.0, value + error),
-        "sample": int(asked.sum()),
+        "sample": count,
         "of": of,
-        "error": "change from every second line of the grid",
+        "error": "one cell, or more: the change from every second line of the grid",
         "convergence": "every fourth line, every second, all: "
         + ", ".join(f"{100 * part:.4g} %" for part in (coarsest, coarse, value)),
     }
