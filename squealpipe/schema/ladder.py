@@ -94,7 +94,7 @@ MODEL_LADDER = DatasetSchema(
     },
     variables={
         "error": Variable(
-            "error of a level against A1, relative (0 or 1 for contact lost)",
+            "error of a level against A1, relative (0 or 1 for contact lost; inf: no answer)",
             dims=("question", "level", *MAP),
             nan_allowed=True,
             rtol=1e-3,

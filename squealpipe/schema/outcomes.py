@@ -82,7 +82,8 @@ REMEDIES: dict[Outcome, str] = {
     Outcome.inherited: "not run: the answer is a neighbour's; see `inherited_error`",
     Outcome.not_reached: "by no disturbance tried within the bound; raise bound or t_end",
     Outcome.already_unstable: "steady sliding is unstable: any disturbance grows",
-    Outcome.no_sliding_state: "there is no steady sliding in contact (a belt at rest, or N* ≤ 0)",
+    Outcome.no_sliding_state: "no steady sliding in contact was found from r = 0 (none exists "
+    "with a belt at rest or N* ≤ 0)",
     Outcome.point_limit: "the branch goes on: raise n_points",
     Outcome.returned: "the branch came back to its first parameter value, on another motion",
     Outcome.closed: "the branch is a closed curve, followed once round",

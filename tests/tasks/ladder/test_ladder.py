@@ -3,9 +3,11 @@
 import numpy as np
 import pytest
 
+from squealpipe.models.a3 import LinearRegime
 from squealpipe.parameters import Parameters
 from squealpipe.schema.ladder import QUESTIONS, Level
 from squealpipe.tasks.ladder.ladder import model_ladder
+from squealpipe.tasks.linear.maps import stability_map
 
 
 @pytest.fixture(scope="module")
@@ -16,6 +18,15 @@ def ladder():
 def test_a1_is_adequate_everywhere_and_errs_nowhere(ladder) -> None:
     assert not ladder.error.sel(level="a1").any()
     assert (ladder.cheapest <= Level.a1).all()
+
+
+def test_a_linear_level_answers_nothing_where_nothing_oscillates(ladder) -> None:
+    linear = stability_map(Parameters(), ladder.alpha1, ladder.alpha2).regime_linear
+    grows = linear != LinearRegime.stable
+    assert 0 < grows.sum() < grows.size
+    for level in ("closed_form", "a3_in_contact"):
+        silent = np.isinf(ladder.error.sel(level=level))
+        assert (silent == grows).all()
 
 
 def test_both_ways_to_solve_a4_agree(ladder) -> None:

@@ -20,4 +20,5 @@ def answer(scenes: Scenes) -> Answers:
     times = sample_times(params, scenes.horizon)
     x, y = motion.positions(times)
     values = np.stack([answer_of_samples(x, y, name, params, times) for name in QUESTIONS])
+    values = np.where(motion.oscillates, values, np.nan)
     return Answers(values, linear_validity(motion, params), time.perf_counter() - started)

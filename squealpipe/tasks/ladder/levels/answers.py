@@ -23,7 +23,7 @@ class Answers(NamedTuple):
     """Answers (question, cell) of one level, where its own assumptions hold, and what they cost.
 
     Attributes:
-        values: in the order of :data:`squealpipe.schema.ladder.QUESTIONS`.
+        values: in the order of :data:`squealpipe.schema.ladder.QUESTIONS`; NaN: there is none.
         valid: whether they may be trusted.
         seconds: wall time.
         time: time integrated, s, all cells.

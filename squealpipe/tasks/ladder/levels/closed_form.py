@@ -24,4 +24,5 @@ def answer(scenes: Scenes) -> Answers:
             motion.farthest(),
         ]
     )
+    values = np.where(motion.oscillates, values, np.nan)
     return Answers(values, linear_validity(motion, params), time.perf_counter() - started)
