@@ -28,10 +28,10 @@ if TYPE_CHECKING:
 READS = ("model_ladder",)
 CAPTION = (
     "(a) Share of the cells in which a level's answer is within the tolerance of A1's, whether or "
-    "not its assumptions hold. (b) Bars: time integrated with choose_model, over that of always "
-    "running A1 until the question is answered, with the share of its answers within the tolerance "
-    "above each bar. Strokes: the same for a choice that knows the cheapest adequate level of "
-    "every cell in advance."
+    "not its assumptions hold; the closed form and A3 have none where their motion does not "
+    "oscillate. (b) Bars: time integrated with choose_model, over that of always running A1 until "
+    "the question is answered, with the share of its answers within the tolerance above each bar. "
+    "Strokes: the same for a choice that knows the cheapest adequate level of every cell."
 )
 ALT = "Dots: share of cells right by level and question. Bars: cost of the chosen models."
 _COLOURS = dict(zip(QUESTION_NAMES, (BLACK, BLUE, GREEN, ORANGE), strict=True))
