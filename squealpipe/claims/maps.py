@@ -34,13 +34,15 @@ def on_grid_of(dataset: xr.Dataset, other: xr.Dataset) -> xr.Dataset:
         MissingDataError: the other grid has points that this one lacks.
     """
     try:
-        return dataset.sel(
+        found = dataset.sel(
             alpha1=other.alpha1, alpha2=other.alpha2, method="nearest", tolerance=1e-6 * np.pi
         )
     except KeyError as error:
         raise MissingDataError(
             f"the grids of {dataset.attrs['schema']} and {other.attrs['schema']} do not meet"
         ) from error
+    # angles that differ by round-off would be dropped where both maps are compared
+    return found.assign_coords(alpha1=other.alpha1, alpha2=other.alpha2)
 
 
 def angle_sum_over_pi(dataset: xr.Dataset) -> xr.DataArray:
@@ -104,3 +106,10 @@ def stiffness(run: Run, name: str) -> xr.DataArray:
     if name not in sliding:
         raise MissingDataError(f"this quasi_static_map holds no {name}; compute it again")
     return sliding[name]
+
+
+def unstable_and_lost(run: Run) -> tuple[xr.DataArray, xr.DataArray]:
+    """Cells that A3 calls unstable, and those that lose contact in A1, on the grid of A1."""
+    validity = run["validity_map"]
+    unstable = on_grid_of(run["stability_map"], validity).regime_linear > 0
+    return unstable, validity.separates == 1

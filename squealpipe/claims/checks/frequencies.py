@@ -122,7 +122,7 @@ def first_is_largest_on_lines(run: Run) -> Finding:
 )
 def vanishing_region_grows(run: Run) -> Finding:
     """F8d: area where ω1 is small, separated against contact."""
-    areas = {name: _area_of_small_first(run, name) for name in ("contact", "separated")}
+    areas = {name: share(first_is_small(run, name)) for name in ("contact", "separated")}
     return finding(
         areas["separated"] / max(areas["contact"], 1e-12),
         ">",
@@ -206,8 +206,7 @@ def largest_region_grows(run: Run) -> Finding:
     """F9c: area where ω2 is close to its largest value, separated against contact."""
     areas = {}
     for name in ("contact", "separated"):
-        second = _state(run, name).omega.sel(mode=2)
-        areas[name] = share(second >= LARGE * second.max())
+        areas[name] = share(second_is_large(run, name))
     return finding(
         areas["separated"] / max(areas["contact"], 1e-12),
         ">",
@@ -221,6 +220,15 @@ def _state(run: Run, name: str) -> xr.Dataset:
     return run["natural_frequencies"].sel(contact_state=name)
 
 
-def _area_of_small_first(run: Run, name: str) -> float:
-    first = _state(run, name).omega.sel(mode=1)
-    return share(first <= SMALL * first.max())
+def first_is_small(run: Run, state: str) -> xr.DataArray:
+    """Cells of F8d: ω1 in contact or separated is small beside its largest value."""
+    first = _state(run, state).omega.sel(mode=1)
+    small: xr.DataArray = first <= SMALL * first.max()
+    return small
+
+
+def second_is_large(run: Run, state: str) -> xr.DataArray:
+    """Cells of F9c: ω2 in contact or separated is close to its largest value."""
+    second = _state(run, state).omega.sel(mode=2)
+    large: xr.DataArray = second >= LARGE * second.max()
+    return large

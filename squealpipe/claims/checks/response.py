@@ -179,10 +179,10 @@ def limit_cycle_is_bounded(run: Run) -> Finding:
         f"{GROWTH_THRESHOLD:g} times as far counts as growth); whether it repeats is not judged. "
     ) + (
         f"Beyond, {ended.size} of {lifetimes.size} runs from starts at most a billionth of l_pre "
-        f"apart end in the whirl before t = {horizon:g}, the first after {ended.min():.3g}"
+        f"apart end in the whirl before t = {horizon:g} √(m/k1), the first after {ended.min():.3g}"
         f"{_median(run['transient'], run.parameters.time_unit)}."
         if ended.size
-        else f"None of {lifetimes.size} runs ends in the whirl before t = {horizon:g}."
+        else f"None of {lifetimes.size} runs ends in the whirl before t = {horizon:g} √(m/k1)."
     )
     return finding(
         largest,

@@ -9,6 +9,7 @@ from squealpipe.claims.maps import (
     on_grid_of,
     share,
     stiffness,
+    unstable_and_lost,
     unstable_cells,
     unstable_yet_sliding,
 )
@@ -181,9 +182,7 @@ def invalid_where_separated(run: Run) -> Finding:
 )
 def linear_analysis_misleads(run: Run) -> Finding:
     """F7b: how often A3's "stable" comes with kept contact in A1, and the reverse."""
-    validity = run["validity_map"]
-    unstable = on_grid_of(run["stability_map"], validity).regime_linear > 0
-    lost = validity.separates == 1
+    unstable, lost = unstable_and_lost(run)
     agree = share(unstable == lost)
     return finding(
         agree,

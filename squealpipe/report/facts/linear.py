@@ -80,13 +80,20 @@ def critical(run: Run) -> dict[str, Any]:
     dataset, mu = run["critical_friction_map"], run.parameters.mu
     damping = [parameter(dataset, f"damping{i}") for i in (1, 2)]
     own = [run.parameters.damping1, run.parameters.damping2]
-    damped, undamped = dataset.critical_mu.values, dataset.critical_mu_undamped.values
+    turned, saved = turned_by_dashpots(run)
     return {
         "damping": damping,
         "own_damping": own if any(own) and own != damping else None,
         "points": dataset.sizes["alpha1"],
         "lowered": float(dataset.destabilized.mean()),
         "mu": mu,
-        "turned": float(np.mean((damped < mu) & (undamped >= mu))),
-        "saved": float(np.mean((damped >= mu) & (undamped < mu))),
+        "turned": float(turned.mean()),
+        "saved": float(saved.mean()),
     }
+
+
+def turned_by_dashpots(run: Run) -> tuple[xr.DataArray, xr.DataArray]:
+    """Cells that dashpots make unstable, and cells that they make stable, at the study's μ."""
+    dataset, mu = run["critical_friction_map"], run.parameters.mu
+    damped, undamped = dataset.critical_mu, dataset.critical_mu_undamped
+    return (damped < mu) & (undamped >= mu), (damped >= mu) & (undamped < mu)

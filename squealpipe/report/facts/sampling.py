@@ -17,18 +17,19 @@ import numpy as np
 import scipy.stats
 import xarray as xr
 
-from squealpipe.claims.checks.frequencies import LARGE, SMALL
+from squealpipe.claims.checks.frequencies import LARGE, SMALL, first_is_small, second_is_large
 from squealpipe.claims.evidence import Run
 from squealpipe.claims.maps import (
     coupling_is_negative,
-    on_grid_of,
     order_turns_over,
+    unstable_and_lost,
     unstable_cells,
 )
 from squealpipe.figures.comparison.model_ladder import QUESTION_NAMES
 from squealpipe.figures.parts.origin import scene_title
 from squealpipe.figures.parts.style import flag_words
 from squealpipe.figures.spread.verdict_reach import WORDS
+from squealpipe.report.facts.linear import turned_by_dashpots
 from squealpipe.report.facts.orbits import orbit_cells
 from squealpipe.schema import meanings
 from squealpipe.schema.inference import CONFIDENCE, wilson_interval
@@ -42,8 +43,6 @@ HOW_CONSEQUENCES_CONVERGE = {
     "points that twice as many change less than the interval",
 }
 """Consequence of the inference → how it is judged at one parameter set; else in closed form."""
-
-ANGLES = ("alpha1", "alpha2")
 
 Row = dict[str, Any]
 
@@ -160,31 +159,25 @@ def _sliding(run: Run) -> Iterator[Row]:
 
 
 def _validity(run: Run) -> Iterator[Row]:
-    lost = run["validity_map"].separates == 1
-    yield _area("A1 loses contact (F7a)", lost)
+    yield _area("A1 loses contact (F7a)", run["validity_map"].separates == 1)
     if "stability_map" in run:
-        unstable = on_grid_of(run["stability_map"], lost).regime_linear > 0
-        yield _area("A3 and A1 agree (F7b)", unstable.drop_vars(ANGLES) == lost.drop_vars(ANGLES))
+        unstable, lost = unstable_and_lost(run)
+        yield _area("A3 and A1 agree (F7b)", unstable == lost)
 
 
 def _frequencies(run: Run) -> Iterator[Row]:
     for state in ("contact", "separated"):
-        omega = run["natural_frequencies"].omega.sel(contact_state=state, drop=True)
-        first, second = (omega.sel(mode=mode, drop=True) for mode in (1, 2))
-        yield _area(
-            f"ω1 below {SMALL:g} of its largest, {state} (F8d)", first <= SMALL * first.max()
-        )
-        yield _area(
-            f"ω2 above {LARGE:g} of its largest, {state} (F9c)", second >= LARGE * second.max()
-        )
+        small, large = first_is_small(run, state), second_is_large(run, state)
+        yield _area(f"ω1 below {SMALL:g} of its largest, {state} (F8d)", small)
+        yield _area(f"ω2 above {LARGE:g} of its largest, {state} (F9c)", large)
 
 
 def _critical(run: Run) -> Iterator[Row]:
-    found, mu = run["critical_friction_map"], run.parameters.mu
-    stable, undamped = found.critical_mu >= mu, found.critical_mu_undamped >= mu
-    yield _area("dashpots lower the critical friction", found.destabilized == 1)
-    yield _area("dashpots make unstable what is stable without", ~stable & undamped)
-    yield _area("dashpots make stable what is unstable without", stable & ~undamped)
+    turned, saved = turned_by_dashpots(run)
+    lowered = run["critical_friction_map"].destabilized == 1
+    yield _area("dashpots lower the critical friction", lowered)
+    yield _area("dashpots make unstable what is stable without", turned)
+    yield _area("dashpots make stable what is unstable without", saved)
 
 
 def _basin(run: Run, scene: str) -> Iterator[Row]:

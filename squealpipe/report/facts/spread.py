@@ -15,11 +15,9 @@ from squealpipe.parameters import SCENES
 from squealpipe.report.facts.motion import finite_or_none
 from squealpipe.schema import Outcome
 from squealpipe.schema.linear import LinearRegimeFlag
-from squealpipe.schema.spread import WIDEST
+from squealpipe.schema.spread import TRUNCATION, WIDEST
 
 MOST_CHANGED = 3
-TRUNCATION = 4.0
-"""Standard deviations at which a normal distribution is cut off; beyond, a lognormal is rare."""
 FEASIBLE = "feasible parameters"
 SIGNS = {"k1": "k₁", "k2": "k₂", "k3": "k₃", "mu": "μ", "alpha1": "α₁", "alpha2": "α₂"}
 
@@ -172,7 +170,10 @@ def propensity(run: Run) -> dict[str, Any]:
 
 
 def drawn_elsewhere(run: Run) -> list[str]:
-    """Parameters whose own value in the study lies beyond all that was drawn of them."""
+    """Parameters whose own value in the study lies beyond what is drawn of them.
+
+    A normal distribution is cut off; a lognormal one is rare beyond as many deviations.
+    """
     given = json.loads(run["propensity"].attrs.get("arguments", "{}")).get("distributions", {})
     beyond = []
     for name, value in run.parameters.as_dict().items():

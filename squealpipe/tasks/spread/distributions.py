@@ -12,9 +12,8 @@ from squealpipe.laws.friction_laws import COULOMB, FALLING
 from squealpipe.nearest import suggestion
 from squealpipe.parameters import Parameters, brief, is_finite_number
 from squealpipe.ranges import ANGLES, NUMBERS
+from squealpipe.schema.spread import TRUNCATION
 
-TRUNCATION = 4.0
-"""A normal distribution is cut off at this many standard deviations."""
 KINDS: dict[str, tuple[str, str]] = {
     "uniform": ("low", "high"),
     "normal": ("mean", "std"),

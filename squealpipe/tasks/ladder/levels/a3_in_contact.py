@@ -8,7 +8,7 @@ import numpy as np
 
 from squealpipe.schema.ladder import QUESTIONS
 from squealpipe.tasks.ladder.levels.answers import Answers, Scenes
-from squealpipe.tasks.ladder.levels.in_contact import contact_motion, linear_validity
+from squealpipe.tasks.ladder.levels.in_contact import contact_motion, linear_answers
 from squealpipe.tasks.ladder.questions import answer_of_samples, sample_times
 
 
@@ -20,5 +20,4 @@ def answer(scenes: Scenes) -> Answers:
     times = sample_times(params, scenes.horizon)
     x, y = motion.positions(times)
     values = np.stack([answer_of_samples(x, y, name, params, times) for name in QUESTIONS])
-    values = np.where(motion.oscillates, values, np.nan)
-    return Answers(values, linear_validity(motion, params), time.perf_counter() - started)
+    return linear_answers(values, motion, params, started)

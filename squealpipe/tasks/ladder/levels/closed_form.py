@@ -7,7 +7,7 @@ import time
 import numpy as np
 
 from squealpipe.tasks.ladder.levels.answers import Answers, Scenes
-from squealpipe.tasks.ladder.levels.in_contact import contact_motion, linear_validity
+from squealpipe.tasks.ladder.levels.in_contact import contact_motion, linear_answers
 
 
 def answer(scenes: Scenes) -> Answers:
@@ -24,5 +24,4 @@ def answer(scenes: Scenes) -> Answers:
             motion.farthest(),
         ]
     )
-    values = np.where(motion.oscillates, values, np.nan)
-    return Answers(values, linear_validity(motion, params), time.perf_counter() - started)
+    return linear_answers(values, motion, params, started)

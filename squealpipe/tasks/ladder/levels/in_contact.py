@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from typing import Any
 
 import numpy as np
@@ -12,6 +13,7 @@ from squealpipe.models import a3, a4
 from squealpipe.models.contact_system import contact_system
 from squealpipe.parameters import Parameters
 from squealpipe.schema.ladder import QUESTIONS
+from squealpipe.tasks.ladder.levels.answers import Answers
 
 
 def contact_motion(params: Parameters, alpha1: Any, alpha2: Any) -> ModalMotion:
@@ -28,8 +30,15 @@ def contact_motion(params: Parameters, alpha1: Any, alpha2: Any) -> ModalMotion:
     return modal_motion((a11, a12, a21, a22), (first, second), (x, y))
 
 
-def linear_validity(motion: ModalMotion, params: Parameters) -> np.ndarray:
-    """Only contact lost may be asked of a motion that leaves contact."""
+def linear_answers(
+    values: np.ndarray, motion: ModalMotion, params: Parameters, started: float
+) -> Answers:
+    """Answers from the linear motion: none where it does not oscillate.
+
+    Only contact lost may be asked of a motion that leaves contact.
+    """
     slow = motion.oscillates & slides(motion.fastest(), params)
     stays = slow & (motion.highest() < params.preload)
-    return np.stack([slow, *[stays] * (len(QUESTIONS) - 1)])
+    valid = np.stack([slow, *[stays] * (len(QUESTIONS) - 1)])
+    answered = np.where(motion.oscillates, values, np.nan)
+    return Answers(answered, valid, time.perf_counter() - started)
