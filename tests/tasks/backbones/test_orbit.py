@@ -224,11 +224,22 @@ def test_a_slow_belt_breaks_the_assumption_and_says_so():
     assert int(_orbit(0.3, 0.9, 1, 3.0, Parameters(belt_speed=0.2)).sliding_assumption) == 0
 
 
-@pytest.mark.parametrize("turn", [(0.0866, 2.3672, 1), (1.1, 0.4, 1), (2.6786, 1.8628, 2)])
-def test_extremes_are_those_of_an_integration(turn):
+NEAR_FIRST_REST = Parameters(k1=0.975, k2=2.68, k3=0.318, mu=0.85)
+NEAR_SECOND_REST = Parameters(k1=2.27, k2=1.717, k3=1.82, mu=0.49)
+
+
+@pytest.mark.parametrize(
+    ("params", "turn"),
+    [
+        (NEAR_FIRST_REST, (0.0866, 2.3672, 1)),
+        (NEAR_FIRST_REST, (1.1, 0.4, 1)),
+        (NEAR_FIRST_REST, (2.6786, 1.8628, 2)),
+        (NEAR_SECOND_REST, (1.5464, 1.8739, 1)),
+    ],
+)
+def test_extremes_are_those_of_an_integration(params, turn):
     """Where x turns shortly after or before an instant of rest among them."""
     alpha1, alpha2, mode = turn
-    params = Parameters(k1=0.975, k2=2.68, k3=0.318, mu=0.85)
     g = geometry(alpha1, alpha2)
     k11, k12, k22 = linear_stiffness(params, g)
 
