@@ -12,7 +12,7 @@ from squealpipe.methods.orbits.modal_flow import acceleration, advance, copy_sta
 from squealpipe.methods.orbits.shooting import MAX_SEGMENTS, shoot
 
 _LOOKS = 12
-"""Samples within a segment between which an extreme is looked for."""
+"""Samples between which an extreme is looked for, in a segment or, if shorter, a fast period."""
 _ITERATIONS = 24
 """Of the search for an extreme: enough to halve its way out of the rest at an interval's end."""
 
@@ -64,10 +64,12 @@ def extremes(rows: Any, point: Any, out: Any) -> None:
     for leg in range(count):
         row = rows[int(segments[leg, 8])]
         end = switches[leg] if leg < count - 1 else point[2]
+        # row[7]: the higher frequency
+        looks = _LOOKS * max(1, int(np.ceil(row[7] * (end - begin) / (2.0 * np.pi))))
         for kind in range(3):
             slope_before = 0.0
-            for look in range(_LOOKS + 1):
-                time = (end - begin) * look / _LOOKS
+            for look in range(looks + 1):
+                time = (end - begin) * look / looks
                 propagator(row, time, scratch)
                 copy_state(start, state)
                 advance(row, scratch, state)
@@ -76,12 +78,12 @@ def extremes(rows: Any, point: Any, out: Any) -> None:
                 # after the first and just before the second is that of the acceleration
                 if kind < 2 and leg == 0 and look == 0:
                     slope = bend
-                elif kind < 2 and leg == count - 1 and look == _LOOKS:
+                elif kind < 2 and leg == count - 1 and look == looks:
                     slope = -bend
                 out[2 * kind] = min(out[2 * kind], value)
                 out[2 * kind + 1] = max(out[2 * kind + 1], value)
                 if look > 0 and slope * slope_before < 0.0:
-                    before = time - (end - begin) / _LOOKS
+                    before = time - (end - begin) / looks
                     value = _turn(row, start, kind, before, time, slope_before, scratch)
                     out[2 * kind] = min(out[2 * kind], value)
                     out[2 * kind + 1] = max(out[2 * kind + 1], value)
