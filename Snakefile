@@ -1,6 +1,6 @@
 """The study: every dataset, figure and the report, from one configuration."""
 
-from squealpipe.config import PAPER, read_study
+from squealpipe.config.settings import PAPER, read_study
 
 # Every mistake is told at once, with its file and line.
 STUDY = read_study(

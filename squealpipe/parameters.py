@@ -10,7 +10,7 @@ from numbers import Integral, Real
 from typing import Any, Literal
 
 from squealpipe.laws.friction_laws import COULOMB, LAWS, coefficient
-from squealpipe.nearest import suggestion
+from squealpipe.text import suggestion
 
 LAW_NAMES = tuple(LAWS)
 """Names of the friction laws."""

@@ -10,16 +10,16 @@ from pathlib import Path
 
 import pytest
 
-from squealpipe.config import (
+from squealpipe.config.mistakes import known_keys
+from squealpipe.config.settings import (
     ConfigError,
     Study,
     json_schema,
     parse_study,
     read_study,
 )
-from squealpipe.mistakes import known_keys
+from squealpipe.config.yaml_files import flat
 from squealpipe.parameters import Parameters, parameters_of
-from squealpipe.yaml_files import flat
 
 ROOT = Path(__file__).resolve().parents[1]
 PAPER = ROOT / "workflow/config/paper.yaml"
@@ -204,7 +204,7 @@ def test_json_schema_is_generated_from_the_types():
     difference = "\n".join(
         difflib.unified_diff(stored.splitlines(), json_schema().splitlines(), "stored", "types")
     )
-    assert stored == json_schema(), f"{difference}\n\nfix with: python -m squealpipe.config"
+    assert stored == json_schema(), f"{difference}\n\nrun python -m squealpipe.config.settings"
 
 
 def test_known_keys_reach_every_value():

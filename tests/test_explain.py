@@ -8,7 +8,7 @@ from dataclasses import replace
 import pytest
 from rich.console import Console
 
-from squealpipe.explain import (
+from squealpipe.execution.explain import (
     Explanation,
     Job,
     Record,
@@ -20,7 +20,7 @@ from squealpipe.explain import (
     records,
     why,
 )
-from squealpipe.report.explanation import table
+from squealpipe.study.report.explanation import table
 
 PLAN = """
 rule map_validity:
@@ -34,10 +34,10 @@ now: {'validity.points': 61, 'parameters': {'mu': 0.4, 'k1': 1.0}}\x20
     resources: tmpdir=/tmp
 [Sat Nov 21 09:43:55 2026]
 rule draw_fig07:
-    input: results/data/validity_map.nc, squealpipe/figures/linear/fig07.py
+    input: results/data/validity_map.nc, squealpipe/study/figures/linear/fig07.py
     output: results/figures/fig07.png, results/figures/fig07.svg
     jobid: 2
-    reason: Updated input files: squealpipe/figures/linear/fig07.py; Input files updated \
+    reason: Updated input files: squealpipe/study/figures/linear/fig07.py; Input files updated \
 by another job: results/data/validity_map.nc
     resources: tmpdir=/tmp
 [Sat Nov 21 09:43:55 2026]
@@ -70,7 +70,7 @@ def test_plan_names_keys_sources_figures_and_time():
         Job(
             rule="draw_fig07",
             outputs=("results/figures/fig07.png", "results/figures/fig07.svg"),
-            reasons=("squealpipe/figures/linear/fig07.py changed",),
+            reasons=("squealpipe/study/figures/linear/fig07.py changed",),
             follows=("map_validity",),
             seconds=2.0,
         ),

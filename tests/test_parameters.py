@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from squealpipe.config import ConfigError, parse_study
+from squealpipe.config.settings import ConfigError, parse_study
 from squealpipe.parameters import DEFAULTS, SCENES, TABLE, Parameters, Scene, parameters_of
 
 POSITIVE = ("mass", "k1", "k2", "k3", "preload", "length1", "length2", "sigma")

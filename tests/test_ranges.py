@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from squealpipe.ranges import (
+from squealpipe.config.ranges import (
     longest,
     parse_angle,
     parse_number,

@@ -16,8 +16,8 @@ from pathlib import Path
 import pytest
 import yaml
 
+from squealpipe.config.yaml_files import overlay
 from squealpipe.store.archive import archive
-from squealpipe.yaml_files import overlay
 
 ROOT = Path(__file__).resolve().parents[1]
 README = (ROOT / "README.md").read_text(encoding="utf-8")

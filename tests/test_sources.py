@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from squealpipe.sources import PACKAGE, closure, imported_modules
+from squealpipe.rerun.sources import PACKAGE, closure, imported_modules
 
 
 def named(*modules):

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from squealpipe.parameters import Parameters
-from squealpipe.sources import code_digests, edited, first_seen
-from squealpipe.stale import Made, attributes, stale
+from squealpipe.rerun.sources import code_digests, edited, first_seen
+from squealpipe.rerun.stale import Made, attributes, stale
 from squealpipe.store import StoreError, load, produce, save
 from squealpipe.tasks.linear.maps import stability_map
 

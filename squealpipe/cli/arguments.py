@@ -10,8 +10,8 @@ from typing import Annotated, Any
 from cyclopts import App, ArgumentCollection, Group, Parameter, Token
 
 from squealpipe.cli.console import SESSION
+from squealpipe.config.ranges import parse_angle, parse_number, parse_range
 from squealpipe.parameters import Parameters
-from squealpipe.ranges import parse_angle, parse_number, parse_range
 
 
 def _angle(_: Any, tokens: Sequence[Any]) -> float:
@@ -61,7 +61,7 @@ def parameters_from_study(_: App, __: tuple[str, ...], arguments: ArgumentCollec
     """Give the parameters that were not typed the values of the study in ``--config``.
 
     Raises:
-        FileNotFoundError, ConfigError: as :func:`squealpipe.config.read_study`.
+        FileNotFoundError, ConfigError: as :func:`squealpipe.config.settings.read_study`.
     """
     found = {argument.name: argument for argument in arguments}
     physical = {
@@ -72,7 +72,7 @@ def parameters_from_study(_: App, __: tuple[str, ...], arguments: ArgumentCollec
     SESSION.typed = {name for name, argument in physical.items() if argument.tokens}
     if not physical or "--config" not in found or not found["--config"].tokens:
         return
-    from squealpipe.config import read_study
+    from squealpipe.config.settings import read_study
 
     paths = [token.value for token in found["--config"].tokens]
     study = read_study(*paths).parameters

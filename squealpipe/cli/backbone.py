@@ -67,9 +67,9 @@ def backbone(
     picture = check_outputs(output, picture, force=force)
     estimate("backbone", params, options).check(yes=yes)
 
-    from squealpipe.figures.cli.branch import draw
-    from squealpipe.figures.parts.style import save_figure
     from squealpipe.schema import REMEDIES, Outcome
+    from squealpipe.study.figures.cli.branch import draw
+    from squealpipe.study.figures.parts.style import save_figure
     from squealpipe.tasks.backbones.backbone import backbone as task
 
     settings = {"parameters": params.as_dict(), "alpha1": alpha1, "alpha2": alpha2, **options}

@@ -44,7 +44,7 @@ def claims(
         file: dataset of verdicts, made by `snakemake`; results/data/claims.nc by default.
         wide: print whole lines, for a pager, instead of cutting them at the terminal's width.
     """
-    from squealpipe.claims.table import table
+    from squealpipe.study.claims.table import table
 
     named = [Path(item) for item in what if item.endswith(".nc") or Path(item).is_file()]
     if len(named) + (file is not None) > 1:

@@ -71,10 +71,10 @@ def map_angles(
 
     from squealpipe.execution import catalogue
     from squealpipe.execution.row_blocks import BLOCK, map_in_blocks
-    from squealpipe.figures.parts.angle_map import SHOWN, draw
-    from squealpipe.figures.parts.style import save_figure
-    from squealpipe.sources import closure
+    from squealpipe.rerun.sources import closure
     from squealpipe.store.chunks import Checkpoint
+    from squealpipe.study.figures.parts.angle_map import SHOWN, draw
+    from squealpipe.study.figures.parts.style import save_figure
 
     settings = {"parameters": params.as_dict(), "alpha1": alpha1, "alpha2": alpha2, **options}
     each = SECONDS[name] * (t_end / params.time_unit if name in TIMED else 1.0)

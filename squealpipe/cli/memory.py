@@ -63,11 +63,11 @@ def find(expression: str, /, *, json_: AsJson = False) -> int:
             keys (linear.points), joined by and, or, not.
         json_: print a JSON list of names.
     """
-    from squealpipe.config import Study
+    from squealpipe.config.settings import Study
+    from squealpipe.config.yaml_files import flat
     from squealpipe.parameters import DEFAULTS, TABLE
     from squealpipe.store.memory.catalogue import runs
     from squealpipe.store.memory.expressions import Condition
-    from squealpipe.yaml_files import flat
 
     known = {f"parameters.{name}": DEFAULTS[name] for name in TABLE if TABLE[name].extension}
     known |= flat(Study().model_dump(mode="json"))

@@ -17,10 +17,10 @@ from squealpipe.cli.arguments import Configs, Switch, Whole
 from squealpipe.cli.console import SESSION, say
 from squealpipe.cli.exit_codes import DONE, NOT_DONE
 from squealpipe.cli.output import check_output
-from squealpipe.config import PAPER, read_study
+from squealpipe.config.settings import PAPER, read_study
+from squealpipe.config.yaml_files import read_yaml
 from squealpipe.parameters import DEFAULTS, TABLE, Row
 from squealpipe.progress import duration
-from squealpipe.yaml_files import read_yaml
 
 QUICK = Path("workflow/config/quick.yaml")
 HEAD = """\

@@ -21,7 +21,7 @@ from squealpipe.cli.console import SESSION, say
 from squealpipe.cli.cost import estimate
 from squealpipe.cli.exit_codes import DONE
 from squealpipe.cli.output import check_outputs, write
-from squealpipe.ranges import ANGLES, parse_angle, parse_number
+from squealpipe.config.ranges import ANGLES, parse_angle, parse_number
 
 FORM = "write for instance mu=uniform:0.1:0.9, k1=normal:1:0.05 or k3=lognormal:0.75:0.1"
 
@@ -72,8 +72,8 @@ def propensity(
     runs = samples * (len(distributions) + 3)
     estimate("hammering_map", params, {"t_end": t_end}, runs=runs).check(yes=yes)
 
-    from squealpipe.figures.parts.style import save_figure
-    from squealpipe.figures.spread.propensity import draw
+    from squealpipe.study.figures.parts.style import save_figure
+    from squealpipe.study.figures.spread.propensity import draw
     from squealpipe.tasks.spread import propensity as task
 
     options: dict[str, Any] = {

@@ -75,9 +75,9 @@ def simulate(
 
     import numpy as np
 
-    from squealpipe.figures.cli.run import draw
-    from squealpipe.figures.parts.style import save_figure
     from squealpipe.schema import REMEDIES, Outcome
+    from squealpipe.study.figures.cli.run import draw
+    from squealpipe.study.figures.parts.style import save_figure
     from squealpipe.tasks.dynamics.runs import simulate as task
     from squealpipe.tasks.dynamics.summary import FEWEST, summarize, summary_lines
 

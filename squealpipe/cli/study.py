@@ -11,7 +11,7 @@ from cyclopts import Parameter
 from squealpipe.cli.arguments import AsJson, Configs
 from squealpipe.cli.console import console
 from squealpipe.cli.exit_codes import ANSWER_IS_NO, DONE
-from squealpipe.config import PAPER
+from squealpipe.config.settings import PAPER
 from squealpipe.progress import elapsing
 
 
@@ -26,7 +26,7 @@ def explain(*, config: Configs = None, times: bool = False, json_: AsJson = Fals
         json_: print JSON.
     """
     from squealpipe.cli.project import checkout
-    from squealpipe.explain import explain as plan_of
+    from squealpipe.execution.explain import explain as plan_of
 
     if times:
         _print_times()
@@ -36,14 +36,14 @@ def explain(*, config: Configs = None, times: bool = False, json_: AsJson = Fals
     if json_:
         print(json.dumps(plan.as_dict(), indent=1))
         return DONE
-    from squealpipe.report.explanation import table
+    from squealpipe.study.report.explanation import table
 
     console().print(table(plan))
     return DONE
 
 
 def _print_times() -> None:
-    from squealpipe.explain import job_times, records
+    from squealpipe.execution.explain import job_times, records
 
     times = job_times(records(Path()))
     if not times:
@@ -129,13 +129,13 @@ def compare(
 
     comparison = difference_of(a, b)
     if html is not None:
-        from squealpipe.report.comparison import page
+        from squealpipe.study.report.comparison import page
 
         html.write_text(page(comparison), encoding="utf-8")
     if json_:
         print(json.dumps(comparison.as_dict(), indent=1, allow_nan=False))
     else:
-        from squealpipe.report.comparison import lines
+        from squealpipe.study.report.comparison import lines
 
         print("\n".join(lines(comparison, every=every)))
     return comparison.exit_code

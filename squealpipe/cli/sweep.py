@@ -13,7 +13,7 @@ from squealpipe.cli.console import SESSION, say
 from squealpipe.cli.cost import of_sweep
 from squealpipe.cli.exit_codes import DONE
 from squealpipe.cli.output import check_output, write
-from squealpipe.ranges import read_fixed, read_values, sweep_config
+from squealpipe.config.ranges import read_fixed, read_values, sweep_config
 
 
 def sweep(
@@ -55,7 +55,7 @@ def sweep(
     """
     from squealpipe.execution import sweep as sweeping
     from squealpipe.execution.tally import lines
-    from squealpipe.sources import closure
+    from squealpipe.rerun.sources import closure
     from squealpipe.store.chunks import Checkpoint
 
     varied = _pairs("--vary", vary)

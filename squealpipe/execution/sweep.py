@@ -13,17 +13,17 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from squealpipe.config.ranges import NUMBERS, PHYSICAL, longest
 from squealpipe.execution.catalogue import TASKS, run_task
 from squealpipe.execution.packing import pack, unpack
 from squealpipe.execution.row_blocks import scattered_rows
 from squealpipe.methods.processes import available_cores, leave_interrupts_to_the_parent
-from squealpipe.nearest import suggestion
 from squealpipe.parameters import Parameters, parameters_of
-from squealpipe.ranges import NUMBERS, PHYSICAL, longest
 from squealpipe.schema import DatasetSchema, Variable, build, find
 from squealpipe.schema.origin import origin
 from squealpipe.schema.sweep import OPTIONS, fill_up, is_ragged, ragged_dims, sweep_name
 from squealpipe.store.chunks import Arrays, Checkpoint, run_chunks
+from squealpipe.text import suggestion
 
 CHUNKS = 256
 """A sweep is kept in at most so many part files: enough to resume finely, cheap to write."""
@@ -141,7 +141,7 @@ class Sweep:
 
 
 def planned(config: Mapping[str, Any]) -> Sweep:
-    """The sweep of a configuration as :func:`squealpipe.ranges.sweep_config` makes it.
+    """The sweep of a configuration as :func:`squealpipe.config.ranges.sweep_config` makes it.
 
     Raises:
         ValueError: as :class:`Sweep`.

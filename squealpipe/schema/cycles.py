@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from enum import IntEnum
 
-from squealpipe.methods.limit_cycles.labels import Label
+from squealpipe.methods.cycles.labels import Label
 from squealpipe.parameters import Parameters
 from squealpipe.schema import DatasetSchema, Variable, outcome
 from squealpipe.schema.agreement import Listing, most, unjudged

@@ -12,8 +12,8 @@ from dataclasses import replace
 
 import numpy as np
 
+from squealpipe.config.ranges import NUMBERS
 from squealpipe.parameters import Parameters
-from squealpipe.ranges import NUMBERS
 from squealpipe.schema import ABSENT, DatasetSchema, SchemaError, Variable, find, flag_table
 
 RAGGED = ("event", "point", "switch", "harmonic")

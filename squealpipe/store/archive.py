@@ -16,7 +16,7 @@ from typing import Any
 
 import yaml
 
-from squealpipe.config import Study, read_study
+from squealpipe.config.settings import Study, read_study
 from squealpipe.store.checkout import commit
 from squealpipe.store.crate import METADATA, describe
 from squealpipe.store.identity import canonical

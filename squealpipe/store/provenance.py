@@ -11,9 +11,9 @@ from typing import Any
 
 import xarray as xr
 
+from squealpipe.rerun.sources import code_digests, edited
+from squealpipe.rerun.stale import attributes, some
 from squealpipe.schema.origin import versions
-from squealpipe.sources import code_digests, edited
-from squealpipe.stale import attributes, some
 from squealpipe.store.checkout import commit
 from squealpipe.store.identity import canonical, digest
 from squealpipe.store.netcdf import StoreError, load, made_now, save

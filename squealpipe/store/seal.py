@@ -15,7 +15,7 @@ import sys
 from enum import Enum
 from pathlib import Path
 
-from squealpipe.stale import HEADER
+from squealpipe.rerun.stale import HEADER
 from squealpipe.store.runs import MANIFEST, read_manifest
 
 MARK = b"\n# squealpipe sha256 "

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from squealpipe.claims.evidence import MissingDataError, finding
 from squealpipe.schema.claims import Verdict
-from squealpipe.wording import as_people_write
+from squealpipe.study.claims.evidence import MissingDataError, finding
+from squealpipe.text import as_people_write
 
 
 @pytest.mark.parametrize(

@@ -8,15 +8,15 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from squealpipe.claims.datasets import READ
-from squealpipe.claims.judge import judge
-from squealpipe.claims.statements import STATEMENTS
-from squealpipe.claims.table import rows, table, totals
-from squealpipe.figures.linear import fig07
 from squealpipe.parameters import Parameters
 from squealpipe.schema.claims import Basis, Verdict
 from squealpipe.store.netcdf import save
 from squealpipe.store.provenance import stamp
+from squealpipe.study.claims.datasets import READ
+from squealpipe.study.claims.judge import judge
+from squealpipe.study.claims.statements import STATEMENTS
+from squealpipe.study.claims.table import rows, table, totals
+from squealpipe.study.figures.linear import fig07
 
 ROWS = """
 T1 S1 S2 S3 F2a F2b F2c F2d F2e F3 F4 F5a F5b F6a F6b F6c F6d F6e F7a F7b F8a F8b F8c F8d

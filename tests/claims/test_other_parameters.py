@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from squealpipe.claims.judge import judge
-from squealpipe.claims.table import rows
 from squealpipe.parameters import Parameters
 from squealpipe.schema.claims import Verdict
+from squealpipe.study.claims.judge import judge
+from squealpipe.study.claims.table import rows
 
 from .conftest import compute_evidence
 

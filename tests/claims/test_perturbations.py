@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from squealpipe.claims.judge import judge
-from squealpipe.claims.statements import STATEMENTS
 from squealpipe.parameters import Parameters
 from squealpipe.schema.claims import Verdict
+from squealpipe.study.claims.judge import judge
+from squealpipe.study.claims.statements import STATEMENTS
 
 HOLDS, PRINTED, FAILS = Verdict.holds, Verdict.holds_only_as_printed, Verdict.fails
 

@@ -16,7 +16,7 @@ import yaml
 
 from squealpipe import Parameters, load, natural_frequencies, simulate
 from squealpipe.cli import run
-from squealpipe.config import parse_study, read_study
+from squealpipe.config.settings import parse_study, read_study
 from squealpipe.store.tables import write_csv
 
 STABILITY = ["map", "stability", "--alpha1", "0:pi:5", "--alpha2", "0:2:3"]

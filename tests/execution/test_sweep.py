@@ -11,12 +11,12 @@ import numpy as np
 import pytest
 import yaml
 
-from squealpipe.config import parse_study
+from squealpipe.config.ranges import longest, parse_range
+from squealpipe.config.settings import parse_study
 from squealpipe.execution import sweep as sweeping
 from squealpipe.execution.row_blocks import join
 from squealpipe.execution.sweep import Sweep, executor, planned, run_sweep
 from squealpipe.parameters import Parameters
-from squealpipe.ranges import longest, parse_range
 from squealpipe.schema import find
 from squealpipe.store import load, save
 from squealpipe.store.chunks import Checkpoint

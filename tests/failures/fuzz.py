@@ -15,9 +15,9 @@ import numpy as np
 import xarray as xr
 
 import squealpipe as sp
-from squealpipe.config import parse_study
+from squealpipe.config.ranges import parse_angle, parse_range
+from squealpipe.config.settings import parse_study
 from squealpipe.parameters import LAW_NAMES, TABLE
-from squealpipe.ranges import parse_angle, parse_range
 from squealpipe.schema.ladder import QUESTIONS
 
 LONGEST = 20.0

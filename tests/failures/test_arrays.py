@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from squealpipe import Parameters, simulate
-from squealpipe.arrays import angle_axis, real_array
 from squealpipe.tasks.backbones.atlas import orbit_atlas
 from squealpipe.tasks.dynamics.assumptions import linear_pull_map
 from squealpipe.tasks.dynamics.hammering import hammering_map
@@ -17,6 +16,7 @@ from squealpipe.tasks.linear.maps import (
     quasi_static_map,
     stability_map,
 )
+from squealpipe.validation import angle_axis, real_array
 
 GOOD = np.array([0.3, 2.0])
 BAD = {

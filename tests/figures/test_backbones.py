@@ -5,7 +5,9 @@ import math
 import numpy as np
 import pytest
 
-from squealpipe.figures.backbones import (
+from squealpipe.parameters import Parameters
+from squealpipe.store.provenance import stamp
+from squealpipe.study.figures.backbones import (
     a1_beside_a4,
     coupled_backbones,
     doubled_branch,
@@ -15,9 +17,7 @@ from squealpipe.figures.backbones import (
     harmonic_forms,
     orbit_atlas,
 )
-from squealpipe.figures.parts.style import symbols
-from squealpipe.parameters import Parameters
-from squealpipe.store.provenance import stamp
+from squealpipe.study.figures.parts.style import symbols
 from squealpipe.tasks.backbones import a1_beside_a4 as beside_task
 from squealpipe.tasks.backbones import atlas, harmonic_sweeps
 from squealpipe.tasks.backbones.backbone import backbone

@@ -4,16 +4,6 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
-from squealpipe.figures.comparison import (
-    failure_atlas,
-    model_ladder,
-    model_ladder_cost,
-    work_precision_evaluations,
-    work_precision_frequencies,
-    work_precision_time,
-    work_precision_validity,
-)
-from squealpipe.figures.parts import work_precision
 from squealpipe.schema import Outcome, build
 from squealpipe.schema.comparison import (
     FAILURE_ATLAS,
@@ -22,6 +12,16 @@ from squealpipe.schema.comparison import (
     Role,
 )
 from squealpipe.schema.ladder import MODEL_LADDER, QUESTIONS, Level
+from squealpipe.study.figures.comparison import (
+    failure_atlas,
+    model_ladder,
+    model_ladder_cost,
+    work_precision_evaluations,
+    work_precision_frequencies,
+    work_precision_time,
+    work_precision_validity,
+)
+from squealpipe.study.figures.parts import work_precision
 
 
 def rows(entries):

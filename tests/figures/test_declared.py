@@ -6,8 +6,8 @@ import inspect
 
 import pytest
 
-from squealpipe.figures import declared
-from squealpipe.report.places import FIGURES
+from squealpipe.study.figures import declared
+from squealpipe.study.report.places import FIGURES
 
 NAMES = [f"simulate/F2{letter}" for letter in "abcd"]
 

@@ -9,7 +9,8 @@ import pytest
 import xarray as xr
 from matplotlib.patches import FancyArrowPatch
 
-from squealpipe.figures.dynamics import (
+from squealpipe.parameters import SCENES, Parameters
+from squealpipe.study.figures.dynamics import (
     fig02,
     fig03,
     fig04,
@@ -20,10 +21,9 @@ from squealpipe.figures.dynamics import (
     transient,
     whirl,
 )
-from squealpipe.figures.linear import fig07
-from squealpipe.figures.model.mechanism import displaced_springs, draw_mechanism
-from squealpipe.figures.parts.style import COLUMN, new_figure, save_figure
-from squealpipe.parameters import SCENES, Parameters
+from squealpipe.study.figures.linear import fig07
+from squealpipe.study.figures.model.mechanism import displaced_springs, draw_mechanism
+from squealpipe.study.figures.parts.style import COLUMN, new_figure, save_figure
 from squealpipe.tasks.dynamics import hammering as hammering_task
 from squealpipe.tasks.dynamics import refinement
 from squealpipe.tasks.dynamics import runs as dynamics

@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from squealpipe.figures.inference import parameter_inference
-from squealpipe.figures.linear import (
+from squealpipe.parameters import SCENES, Parameters
+from squealpipe.study.figures.inference import parameter_inference
+from squealpipe.study.figures.linear import (
     fig06,
     fig08,
     fig09,
@@ -20,8 +21,7 @@ from squealpipe.figures.linear import (
     stability_plane,
     static_state,
 )
-from squealpipe.figures.parts.style import save_figure
-from squealpipe.parameters import SCENES, Parameters
+from squealpipe.study.figures.parts.style import save_figure
 from squealpipe.tasks.inference import inference
 from squealpipe.tasks.linear import boundaries as linear_boundaries
 from squealpipe.tasks.linear import maps as linear

@@ -11,13 +11,13 @@ import pytest
 import xarray as xr
 from PIL import Image
 
-from squealpipe.figures.cli import branch, run
-from squealpipe.figures.dynamics.animation import animate
-from squealpipe.figures.model import fig01
-from squealpipe.figures.model.mechanism import draw_mechanism
-from squealpipe.figures.parts import angle_map
-from squealpipe.figures.parts.style import new_figure, save_figure
 from squealpipe.parameters import Parameters
+from squealpipe.study.figures.cli import branch, run
+from squealpipe.study.figures.dynamics.animation import animate
+from squealpipe.study.figures.model import fig01
+from squealpipe.study.figures.model.mechanism import draw_mechanism
+from squealpipe.study.figures.parts import angle_map
+from squealpipe.study.figures.parts.style import new_figure, save_figure
 from squealpipe.tasks.dynamics.runs import simulate
 from squealpipe.tasks.dynamics.summary import summarize
 from squealpipe.tasks.linear.maps import stability_map

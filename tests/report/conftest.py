@@ -8,14 +8,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from squealpipe.claims.judge import judge
-from squealpipe.figures.declared import draw, reads
-from squealpipe.figures.parts.style import save_figure
 from squealpipe.parameters import Parameters
-from squealpipe.report.build import write_report
-from squealpipe.report.content import Made, gather, picture_files
 from squealpipe.store.netcdf import save
 from squealpipe.store.provenance import stamp
+from squealpipe.study.claims.judge import judge
+from squealpipe.study.figures.declared import draw, reads
+from squealpipe.study.figures.parts.style import save_figure
+from squealpipe.study.report.build import write_report
+from squealpipe.study.report.content import Made, gather, picture_files
 from squealpipe.tasks.dynamics.assumptions import linear_pull_map
 from squealpipe.tasks.linear.boundaries import stability_boundaries
 from squealpipe.tasks.linear.maps import natural_frequencies, quasi_static_map, stability_map

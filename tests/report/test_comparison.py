@@ -5,14 +5,14 @@ import base64
 import numpy as np
 import pytest
 
-from squealpipe.figures.parts.difference import draw, drawable
 from squealpipe.parameters import Parameters
-from squealpipe.report.comparison import lines, page, statement_line, verdict_line
 from squealpipe.schema.linear import STABILITY_MAP
 from squealpipe.store import produce
 from squealpipe.store.comparison.compare import Comparison, DatasetDifference, compare
 from squealpipe.store.comparison.differences import Agreement, VariableDifference
 from squealpipe.store.comparison.statements import StatementChange
+from squealpipe.study.figures.parts.difference import draw, drawable
+from squealpipe.study.report.comparison import lines, page, statement_line, verdict_line
 from squealpipe.tasks.linear.maps import stability_map
 
 

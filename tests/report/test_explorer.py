@@ -11,9 +11,9 @@ import pytest
 
 from squealpipe.cli import run
 from squealpipe.parameters import Parameters
-from squealpipe.report.explorer import blocks, in_script, payload, run_options, write_explorer
-from squealpipe.report.explorer.layers import layers
 from squealpipe.store import load
+from squealpipe.study.report.explorer import blocks, in_script, payload, run_options, write_explorer
+from squealpipe.study.report.explorer.layers import layers
 from squealpipe.tasks.dynamics.explorer import explorer_data
 from squealpipe.tasks.dynamics.hammering import hammering_map
 from squealpipe.tasks.dynamics.runs import validity_map

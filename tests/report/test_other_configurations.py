@@ -11,21 +11,21 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from squealpipe.claims.evidence import Run
-from squealpipe.claims.judge import judge
-from squealpipe.figures import declared
-from squealpipe.figures.parts.style import save_figure
 from squealpipe.models.refusals import without_extensions
 from squealpipe.parameters import SCENES, Parameters
-from squealpipe.report.build import TEMPLATES, write_report
-from squealpipe.report.content import Made, gather, picture_files
-from squealpipe.report.facts.cycles import how_it_ends
-from squealpipe.report.facts.spread import drawn_elsewhere
-from squealpipe.report.places import FIGURES
 from squealpipe.schema import Outcome
 from squealpipe.schema.claims import Verdict
 from squealpipe.store.netcdf import save
 from squealpipe.store.provenance import stamp
+from squealpipe.study.claims.evidence import Run
+from squealpipe.study.claims.judge import judge
+from squealpipe.study.figures import declared
+from squealpipe.study.figures.parts.style import save_figure
+from squealpipe.study.report.build import TEMPLATES, write_report
+from squealpipe.study.report.content import Made, gather, picture_files
+from squealpipe.study.report.facts.cycles import how_it_ends
+from squealpipe.study.report.facts.spread import drawn_elsewhere
+from squealpipe.study.report.places import FIGURES
 from squealpipe.tasks.dynamics.assumptions import linear_pull_map
 from squealpipe.tasks.dynamics.hammering import hammering_map
 from squealpipe.tasks.dynamics.runs import simulate, validity_map

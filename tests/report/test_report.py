@@ -12,13 +12,13 @@ from pathlib import Path
 import pytest
 import yaml
 
-from squealpipe.claims.statements import PAPER as STATED
-from squealpipe.claims.statements import STATEMENTS
-from squealpipe.report.build import TEMPLATES, write_report
-from squealpipe.report.content import picture_files, title
-from squealpipe.report.lineage import lineage
-from squealpipe.report.places import FIGURES, PLACES
-from squealpipe.report.summary import PAPER
+from squealpipe.study.claims.statements import PAPER as STATED
+from squealpipe.study.claims.statements import STATEMENTS
+from squealpipe.study.report.build import TEMPLATES, write_report
+from squealpipe.study.report.content import picture_files, title
+from squealpipe.study.report.lineage import lineage
+from squealpipe.study.report.places import FIGURES, PLACES
+from squealpipe.study.report.summary import PAPER
 from tests.browser import chromium_path, open_page
 from tests.conftest import ROOT
 

@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from squealpipe.claims.evidence import Run
 from squealpipe.methods.survival import survival
 from squealpipe.parameters import Parameters
-from squealpipe.report.facts.sampling import sampling
 from squealpipe.schema import build
 from squealpipe.schema.dynamics.runs import VALIDITY_MAP
+from squealpipe.study.claims.evidence import Run
+from squealpipe.study.report.facts.sampling import sampling
 from squealpipe.tasks.linear.maps import quasi_static_map, stability_map
 
 ANGLES = np.linspace(0.0, np.pi, 81)

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from squealpipe.report import summary
-from squealpipe.wording import number
+from squealpipe.study.report import summary
+from squealpipe.text import number
 
 ROWS = [
     {"id": "F1", "verdict": "holds", "origin": "paper", "basis": "fitted"},

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import yaml
 
-from squealpipe.config import Study
+from squealpipe.config.settings import Study
 from squealpipe.parameters import Parameters
 from squealpipe.store import produce
 from squealpipe.tasks.linear.maps import stability_map

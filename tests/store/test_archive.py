@@ -9,7 +9,7 @@ import pytest
 import yaml
 from rocrate.rocrate import ROCrate
 
-from squealpipe.config import read_study
+from squealpipe.config.settings import read_study
 from squealpipe.execution.sweep import planned, run_sweep
 from squealpipe.store import StoreError, load, produce, save
 from squealpipe.store.archive import archive, verify

@@ -10,12 +10,12 @@ import pytest
 import yaml
 
 from squealpipe.cli import run as command
-from squealpipe.config import Study
+from squealpipe.config.settings import Study
+from squealpipe.config.yaml_files import flat
 from squealpipe.store.archive import archive
 from squealpipe.store.memory.catalogue import INDEX, runs
 from squealpipe.store.memory.expressions import Condition
 from squealpipe.store.memory.objects import seal_text
-from squealpipe.yaml_files import flat
 
 OLD_ARCHIVE = Path(__file__).with_name("old_archive")
 """A part of an archive made before manifests told the configuration and files were sealed."""

@@ -11,7 +11,7 @@ from squealpipe import (
     limit_cycle,
     simulate,
 )
-from squealpipe.methods.limit_cycles.labels import Label
+from squealpipe.methods.cycles.labels import Label
 from squealpipe.parameters import SCENES
 from squealpipe.schema import Outcome, Variable, all_schemas
 from squealpipe.schema.agreement import magnitude, most, sampled, unjudged

@@ -13,10 +13,10 @@ from pathlib import Path
 import smart_open  # noqa: F401  imported before the forks, as are the next, so that none has to
 import snakemake.cli
 
-import squealpipe.claims.statements
-import squealpipe.config
-import squealpipe.report.lineage  # noqa: F401
-from squealpipe.sources import closure, code_digests
+import squealpipe.config.settings
+import squealpipe.study.claims.statements
+import squealpipe.study.report.lineage  # noqa: F401
+from squealpipe.rerun.sources import closure, code_digests
 
 
 def dry_run(arguments: list[str]) -> tuple[int, str]:

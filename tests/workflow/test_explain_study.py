@@ -5,7 +5,7 @@ import os
 
 import pytest
 
-from squealpipe.explain import explain
+from squealpipe.execution.explain import explain
 from squealpipe.store import load, save
 
 QUICK = "workflow/config/quick.yaml"
@@ -36,7 +36,7 @@ def test_changed_key_is_named_with_what_follows(finished, tmp_path):
 
 
 def test_edited_source_is_named(finished):
-    path = finished / "squealpipe/figures/linear/fig06.py"
+    path = finished / "squealpipe/study/figures/linear/fig06.py"
     text, date = path.read_text(), path.stat().st_mtime
     path.write_text(text + "# edited\n")
     try:
@@ -45,7 +45,7 @@ def test_edited_source_is_named(finished):
         path.write_text(text)
         os.utime(path, (date, date))
     reasons = [reason for job in plan.jobs for reason in job.reasons]
-    assert "squealpipe/figures/linear/fig06.py changed" in reasons
+    assert "squealpipe/study/figures/linear/fig06.py changed" in reasons
     assert "fig06" in plan.figures
 
 

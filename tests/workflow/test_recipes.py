@@ -17,7 +17,7 @@ ROW, LAW, LAW_NAME, RECORD, LEVEL, FIGURE, FIGURE_NAME = range(7)
 FILES = {
     LAW: "squealpipe/laws/friction_laws/rising.py",
     LEVEL: "squealpipe/tasks/ladder/levels/a2_static.py",
-    FIGURE: "squealpipe/figures/dynamics/impacts.py",
+    FIGURE: "squealpipe/study/figures/dynamics/impacts.py",
 }
 LINES = {
     ROW: (
@@ -26,7 +26,7 @@ LINES = {
     ),
     RECORD: ("squealpipe/schema/ladder.py", "    closed_form = ("),
     LAW_NAME: ("squealpipe/laws/friction_laws/__init__.py", None),
-    FIGURE_NAME: ("squealpipe/report/places.py", None),
+    FIGURE_NAME: ("squealpipe/study/report/places.py", None),
 }
 """Where a block goes: before a text, or in place of the line that begins as it does."""
 
@@ -86,14 +86,14 @@ def test_the_steps_are_as_few_as_promised(extended):
         "squealpipe/parameters.py": (3, 0),
         "squealpipe/schema/ladder.py": (1, 0),
         "squealpipe/laws/friction_laws/__init__.py": (1, 1),
-        "squealpipe/report/places.py": (1, 1),
+        "squealpipe/study/report/places.py": (1, 1),
     }
 
 
 PARAMETER_AND_LAW = """
 import numpy as np
 from squealpipe import Parameters, stability_map
-from squealpipe.config import parse_study
+from squealpipe.config.settings import parse_study
 from squealpipe.models.a1_automaton import A1Automaton
 from squealpipe.models.switching import ScaledParameters
 from squealpipe.solvers.a1.jobs import Jobs
@@ -186,7 +186,7 @@ for _ in range(12):
 LEVEL_ALONE = """
 import numpy as np
 from squealpipe import Parameters, quasi_static_map
-from squealpipe.figures.comparison.model_ladder import colour_of
+from squealpipe.study.figures.comparison.model_ladder import colour_of
 from squealpipe.schema.ladder import QUESTIONS, Level
 from squealpipe.tasks.ladder.levels import answer
 from squealpipe.tasks.ladder.levels.answers import Scenes
@@ -215,7 +215,7 @@ def test_the_ladder_takes_the_new_level(extended):
     script = """
 import numpy as np
 from squealpipe import Parameters
-from squealpipe.figures import declared
+from squealpipe.study.figures import declared
 from squealpipe.tasks.ladder.ladder import model_ladder
 ladder = model_ladder(Parameters(mu=0.5), 8, 0.05, t_end=100.0, workers=1)
 assert ladder.level.values[0] == "a2_static" and ladder.sizes["level"] == 9

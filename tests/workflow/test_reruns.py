@@ -21,9 +21,9 @@ from typing import Any
 import pytest
 import yaml
 
-from squealpipe.config import ConfigError, Study, parse_study, read_study
-from squealpipe.sources import closure
-from squealpipe.yaml_files import flat, overlay
+from squealpipe.config.settings import ConfigError, Study, parse_study, read_study
+from squealpipe.config.yaml_files import flat, overlay
+from squealpipe.rerun.sources import closure
 
 ROOT = Path(__file__).resolve().parents[2]
 QUICK = "workflow/config/quick.yaml"
@@ -242,14 +242,17 @@ LAYERS = {
     "tasks/linear/maps.py": ({"map_linear"}, {"draw_model"}),
     "schema/linear.py": ({"map_linear"}, {"draw_model"}),
     "store/netcdf.py": ({"map_linear", "draw_linear", "draw_model"}, set()),
-    "figures/linear/fig06.py": ({"draw_linear", "write_report"}, {"map_linear", "draw_model"}),
-    "figures/parts/style.py": ({"draw_linear", "draw_model"}, {"map_linear"}),
-    "report/build.py": ({"write_report"}, {"map_linear", "draw_linear"}),
+    "study/figures/linear/fig06.py": (
+        {"draw_linear", "write_report"},
+        {"map_linear", "draw_model"},
+    ),
+    "study/figures/parts/style.py": ({"draw_linear", "draw_model"}, {"map_linear"}),
+    "study/report/build.py": ({"write_report"}, {"map_linear", "draw_linear"}),
     "store/archive.py": (set(), None),
     "progress.py": (set(), None),
-    "sources.py": (set(), None),
-    "stale.py": (set(), None),
-    "config.py": (set(), None),
+    "rerun/sources.py": (set(), None),
+    "rerun/stale.py": (set(), None),
+    "config/settings.py": (set(), None),
     "cli/__init__.py": (set(), None),
 }
 """Module → rules that its edit must reach, and rules that it must not (None: no rule at all)."""

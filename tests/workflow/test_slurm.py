@@ -22,9 +22,9 @@ from typing import Any
 import pytest
 import yaml
 
+from squealpipe.config.yaml_files import overlay
 from squealpipe.store import load
 from squealpipe.store.comparison.compare import compare
-from squealpipe.yaml_files import overlay
 
 pytestmark = pytest.mark.slurm
 

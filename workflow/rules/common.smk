@@ -6,7 +6,7 @@ from pathlib import Path
 
 from squealpipe.models.refusals import without_extensions
 from squealpipe.parameters import Parameters, parameters_of
-from squealpipe.sources import closure
+from squealpipe.rerun.sources import closure
 
 # Our matrices are small: several threads of linear algebra in a job only wait for one another,
 # and for the jobs beside it.

@@ -1,4 +1,4 @@
-"""A1 as a flow with derivative: its automaton under :mod:`squealpipe.methods.limit_cycles`."""
+"""A1 as a flow with derivative: its automaton under :mod:`squealpipe.methods.cycles`."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from scipy.optimize import minimize_scalar
 
 from squealpipe.laws.friction_laws import coefficient
 from squealpipe.laws.springs import fixed_ends
-from squealpipe.methods.limit_cycles.event_flow import (
+from squealpipe.methods.cycles.event_flow import (
     CompiledFlow,
     Passage,
     Segment,
@@ -60,7 +60,7 @@ def _compiled(law: str) -> CompiledFlow:
 
 
 class A1Flow:
-    """A1 at given parameters and angles, for :mod:`squealpipe.methods.limit_cycles.event_flow`.
+    """A1 at given parameters and angles, for :mod:`squealpipe.methods.cycles.event_flow`.
 
     Args:
         params: physical parameters.

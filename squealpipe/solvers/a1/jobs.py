@@ -9,14 +9,14 @@ from typing import Any
 
 import numpy as np
 
-from squealpipe.arrays import real_array
 from squealpipe.laws import springs
 from squealpipe.models.refusals import WHY_A4, refuse_extensions
 from squealpipe.models.switching import VARIANT_RULES
-from squealpipe.nearest import suggestion
 from squealpipe.parameters import Parameters
 from squealpipe.solvers.a1.scaling import scaled_parameters
 from squealpipe.solvers.a1.system import DISSIPATIONS, Dissipation
+from squealpipe.text import suggestion
+from squealpipe.validation import real_array
 
 MOST_TIME_UNITS = 1e9
 """Longest run; beyond it, one takes hours."""

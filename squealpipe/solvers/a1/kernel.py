@@ -30,6 +30,7 @@ from squealpipe.methods.taylor.simd import (
     store,
 )
 from squealpipe.models import switching
+from squealpipe.rerun.sources import closure
 from squealpipe.solvers.a1.observers import (
     grow,
     norm_of,
@@ -56,7 +57,6 @@ from squealpipe.solvers.a1.records import (
 from squealpipe.solvers.a1.start import set_regime, start_job
 from squealpipe.solvers.a1.steps import AT_STATE, N_EVENTS, N_STATE, end_of_step, reaches, take_step
 from squealpipe.solvers.a1.system import PARAMETERS
-from squealpipe.sources import closure
 
 _numba: Any = numba
 FIRST_PARAMETER = getattr(AT, PARAMETERS[0])

@@ -11,13 +11,13 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from squealpipe.arrays import real_array
 from squealpipe.laws import springs
 from squealpipe.laws.friction_laws import COULOMB, FALLING, LAWS
-from squealpipe.nearest import suggestion
 from squealpipe.parameters import DEFAULTS, NUMBERS_OF_A1, TABLE, Parameters
 from squealpipe.solvers.a1.records import ORDER
 from squealpipe.solvers.a1.system import DISSIPATIONS, EXTENSIONS
+from squealpipe.text import suggestion
+from squealpipe.validation import real_array
 
 PHYSICAL = tuple(name for name, row in TABLE.items() if row.enters_a1)
 """Parameters of a run of A1."""

@@ -13,6 +13,7 @@ from typing import Any
 
 import xarray as xr
 
+from squealpipe.config.yaml_files import flat
 from squealpipe.progress import counted
 from squealpipe.schema import DatasetSchema, find
 from squealpipe.schema.claims import CLAIMS
@@ -23,7 +24,6 @@ from squealpipe.store.comparison.statements import StatementChange, changed_stat
 from squealpipe.store.netcdf import load
 from squealpipe.store.provenance import VOLATILE_ATTRIBUTES
 from squealpipe.store.runs import dataset_files, left_out, locate, matches_any
-from squealpipe.yaml_files import flat
 
 PHYSICAL_KEY = re.compile(r"(parameters\.|alpha\d|mode\b|scene\b|vary\.|fixed\.)")
 """Configuration keys that say what is computed; the others say how, and on which grid."""

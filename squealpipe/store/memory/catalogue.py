@@ -19,12 +19,12 @@ from typing import Any
 
 import yaml
 
-from squealpipe.config import PAPER, Study, read_study
+from squealpipe.config.settings import PAPER, Study, read_study
+from squealpipe.config.yaml_files import flat
 from squealpipe.store.memory.objects import seal_fits
 from squealpipe.store.memory.results import open_lazily
 from squealpipe.store.netcdf import StoreError
 from squealpipe.store.runs import ARCHIVES, MANIFEST, SEAL, dataset_files, read_manifest
-from squealpipe.yaml_files import flat
 
 INDEX = ".index.json"
 FORMAT = 1

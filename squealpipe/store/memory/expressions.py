@@ -7,7 +7,7 @@ import operator
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from squealpipe.nearest import nearest
+from squealpipe.text import nearest
 
 SYMBOLS = {
     "m": "mass",

@@ -11,7 +11,6 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
-from squealpipe.arrays import angle_axis
 from squealpipe.methods.balance.harmonic_balance import cosines_of
 from squealpipe.methods.orbits.orbit_shape import sample
 from squealpipe.methods.orbits.orbits import Orbit, is_primitive, solve_orbit
@@ -21,6 +20,7 @@ from squealpipe.schema.backbones import ORBIT_ATLAS, Route
 from squealpipe.solvers.a4.orbits import find_orbit, orbit_across
 from squealpipe.solvers.a4.system import ScaledSystem, scaled_system
 from squealpipe.tasks.backbones.orbit import check_length
+from squealpipe.validation import angle_axis
 
 _RESUMABLE = (
     Outcome.tongue_end,

@@ -11,15 +11,15 @@ import numpy as np
 import xarray as xr
 
 from squealpipe.methods.continuation import ContinuationSettings, ContinuationState
-from squealpipe.methods.limit_cycles.branch_ends import (
+from squealpipe.methods.cycles.branch_ends import (
     BranchEnd,
     BranchPoint,
     CycleBranchSettings,
 )
-from squealpipe.methods.limit_cycles.cycle_branch import follow_cycles
-from squealpipe.methods.limit_cycles.cycle_equations import CycleEquations, cycle_algorithm
-from squealpipe.methods.limit_cycles.cycles import Cycle
-from squealpipe.methods.limit_cycles.labels import Label
+from squealpipe.methods.cycles.cycle_branch import follow_cycles
+from squealpipe.methods.cycles.cycle_equations import CycleEquations, cycle_algorithm
+from squealpipe.methods.cycles.cycles import Cycle
+from squealpipe.methods.cycles.labels import Label
 from squealpipe.parameters import TABLE, Parameters, brief, is_finite_number, is_whole_number
 from squealpipe.schema import Outcome, build
 from squealpipe.schema.cycles import CYCLE_BRANCH, LIMIT_CYCLE

@@ -10,15 +10,15 @@ import numpy as np
 import xarray as xr
 from scipy.optimize import root
 
-from squealpipe.arrays import real_array
-from squealpipe.methods.limit_cycles.cycles import Cycle, common_scale, find_returns, solve_cycle
-from squealpipe.methods.limit_cycles.event_flow import Vector, flow, sample_path
+from squealpipe.methods.cycles.cycles import Cycle, common_scale, find_returns, solve_cycle
+from squealpipe.methods.cycles.event_flow import Vector, flow, sample_path
 from squealpipe.models.a1 import Regime
 from squealpipe.parameters import Parameters, brief, is_finite_number
 from squealpipe.schema import Outcome, build
 from squealpipe.schema.cycles import LIMIT_CYCLE
 from squealpipe.schema.origin import recorded
 from squealpipe.solvers.a1.flow import ROUND_OFF, A1Flow
+from squealpipe.validation import real_array
 
 T_SETTLE = 2000.0
 """Default time, in units of √(m/min(k1, k2)), after which a run counts as settled."""

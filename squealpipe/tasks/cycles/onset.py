@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 from scipy.optimize import brentq
 
 from squealpipe.methods.continuation import ContinuationSettings, ContinuationState
-from squealpipe.methods.limit_cycles.cycle_equations import CycleEquations, cycle_algorithm
-from squealpipe.methods.limit_cycles.event_flow import Vector
+from squealpipe.methods.cycles.cycle_equations import CycleEquations, cycle_algorithm
+from squealpipe.methods.cycles.event_flow import Vector
 from squealpipe.solvers.a1.flow import A1Flow
 from squealpipe.solvers.a1.sliding import sliding_equilibrium, sliding_regime
 

@@ -8,7 +8,6 @@ from typing import Any, NamedTuple
 import numpy as np
 import xarray as xr
 
-from squealpipe.arrays import angle_axis
 from squealpipe.laws.contact import contact_force
 from squealpipe.laws.springs import (
     Stiffness,
@@ -27,6 +26,7 @@ from squealpipe.parameters import SCENES, Parameters, Scene
 from squealpipe.schema import Outcome, build
 from squealpipe.schema.dynamics.assumptions import ASSUMPTIONS, LINEAR_PULL
 from squealpipe.tasks.dynamics.runs import simulate
+from squealpipe.validation import angle_axis
 
 LEVELS = ("A1", "A1-no-separation", "A2", "A3", "A4")
 

@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from squealpipe.arrays import angle_axis, real_number
 from squealpipe.parameters import Parameters
 from squealpipe.schema import build
 from squealpipe.schema.dynamics.runs import HAMMERING_MAP
@@ -22,6 +21,7 @@ from squealpipe.tasks.dynamics.motion import (
     regular_growth,
 )
 from squealpipe.tasks.normal_form import NormalForm
+from squealpipe.validation import angle_axis, real_number
 
 USED = (
     "outcome",

@@ -9,7 +9,6 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from squealpipe.arrays import angle_axis, real_array, real_number
 from squealpipe.laws.contact import contact_force
 from squealpipe.models.switching import VARIANT_RULES
 from squealpipe.parameters import Parameters
@@ -19,6 +18,7 @@ from squealpipe.schema.origin import recorded
 from squealpipe.solvers.a1.ensemble import integrate, run_map
 from squealpipe.solvers.a1.jobs import Jobs, known_model
 from squealpipe.tasks.linear.maps import stability_map
+from squealpipe.validation import angle_axis, real_array, real_number
 
 SAMPLES_PER_TIME_UNIT = 20
 MOST_SAMPLES = 20_001

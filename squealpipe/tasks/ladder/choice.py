@@ -17,7 +17,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from squealpipe.arrays import real_array, real_number
 from squealpipe.methods.modal_bounds import ModalMotion
 from squealpipe.models import a4
 from squealpipe.models.refusals import without_extensions
@@ -41,6 +40,7 @@ from squealpipe.tasks.ladder.questions import (
     sample_times,
 )
 from squealpipe.tasks.normal_form import NormalForm
+from squealpipe.validation import real_array, real_number
 
 DEFAULT_HORIZON = 200.0
 """Horizon unless told otherwise, √(m/k1)."""

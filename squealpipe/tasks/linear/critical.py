@@ -8,13 +8,13 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
-from squealpipe.arrays import angle_axis, real_array
 from squealpipe.laws.friction_laws import slope
 from squealpipe.models.damped import critical_friction
 from squealpipe.parameters import Parameters, is_finite_number
 from squealpipe.schema import build
 from squealpipe.schema.linear import CRITICAL_DAMPING_MAP, CRITICAL_FRICTION_MAP
 from squealpipe.schema.origin import recorded
+from squealpipe.validation import angle_axis, real_array
 
 
 @recorded(model="A3", method="closed form")

@@ -9,7 +9,6 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
-from squealpipe.arrays import angle_axis
 from squealpipe.laws.springs import (
     Geometry,
     determinant_from_sine,
@@ -28,6 +27,7 @@ from squealpipe.schema.linear import (
     STABILITY_MAP,
 )
 from squealpipe.schema.origin import recorded
+from squealpipe.validation import angle_axis
 
 CANCELLATION = 3e-4
 """A discriminant or determinant below this share of (trace/2)² is formed in more digits."""

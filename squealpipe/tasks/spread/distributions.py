@@ -8,11 +8,11 @@ from typing import Any
 import numpy as np
 from scipy import stats
 
+from squealpipe.config.ranges import ANGLES, NUMBERS
 from squealpipe.laws.friction_laws import COULOMB, FALLING
-from squealpipe.nearest import suggestion
 from squealpipe.parameters import Parameters, brief, is_finite_number
-from squealpipe.ranges import ANGLES, NUMBERS
 from squealpipe.schema.spread import TRUNCATION
+from squealpipe.text import suggestion
 
 KINDS: dict[str, tuple[str, str]] = {
     "uniform": ("low", "high"),

@@ -8,13 +8,13 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from squealpipe.arrays import real_array, real_number
 from squealpipe.parameters import Parameters
 from squealpipe.schema import Outcome, build
 from squealpipe.schema.origin import recorded
 from squealpipe.schema.starts import STARTS, UNSETTLED, basin_schema
 from squealpipe.solvers.a1.ensemble import Ensemble, run_ensemble
 from squealpipe.tasks.dynamics.motion import classify_motion, linear_time, predictability
+from squealpipe.validation import real_array, real_number
 
 SAMPLES = 1000
 """Instants after t_late at which |ẋ| is read off; its maximum is refined by a parabola."""

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from squealpipe import Parameters
-from squealpipe.methods.limit_cycles.event_flow import flow
+from squealpipe.methods.cycles.event_flow import flow
 from squealpipe.models.a1 import Regime
 from squealpipe.solvers.a1.flow import A1Flow
 from squealpipe.solvers.a1.reference import PARAMETERS, symbolic_automaton

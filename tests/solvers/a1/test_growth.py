@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from squealpipe.methods.limit_cycles.event_flow import flow
+from squealpipe.methods.cycles.event_flow import flow
 from squealpipe.parameters import Parameters
 from squealpipe.solvers.a1.ensemble import run_ensemble
 from squealpipe.solvers.a1.flow import A1Flow

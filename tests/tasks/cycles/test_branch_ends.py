@@ -8,8 +8,8 @@ import xarray as xr
 from scipy.optimize import root
 
 from squealpipe import Parameters, cycle_branch, limit_cycle, simulate
-from squealpipe.methods.limit_cycles.event_flow import Touch, flow
-from squealpipe.methods.limit_cycles.labels import Label
+from squealpipe.methods.cycles.event_flow import Touch, flow
+from squealpipe.methods.cycles.labels import Label
 from squealpipe.schema import Outcome
 from squealpipe.solvers.a1.flow import A1Flow
 

@@ -10,8 +10,8 @@ from scipy.optimize import brentq
 
 from squealpipe import Parameters, cycle_branch, limit_cycle
 from squealpipe.laws.springs import geometry, linear_stiffness
-from squealpipe.methods.limit_cycles.event_flow import flow
-from squealpipe.methods.limit_cycles.labels import Label
+from squealpipe.methods.cycles.event_flow import flow
+from squealpipe.methods.cycles.labels import Label
 from squealpipe.schema import Outcome
 from squealpipe.solvers.a1.flow import A1Flow
 from squealpipe.tasks.cycles.cycle import least_cycle

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 import scipy.integrate
 
-from squealpipe.config import read_study
+from squealpipe.config.settings import read_study
 from squealpipe.parameters import SCENES, Parameters
 from squealpipe.schema import Outcome
 from squealpipe.schema.inference import wilson_interval

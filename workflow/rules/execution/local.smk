@@ -7,7 +7,7 @@ import re
 
 import sys
 
-from squealpipe.stale import Made, stale
+from squealpipe.rerun.stale import Made, stale
 
 QUICK = ("draw_", "judge_", "write_")
 

@@ -5,8 +5,8 @@ Included after the report, which shows the paper's study and must not wait for t
 
 from math import prod
 
-from squealpipe.mistakes import ConfigError
-from squealpipe.ranges import longest
+from squealpipe.config.mistakes import ConfigError
+from squealpipe.config.ranges import longest
 
 SWEEPS = {name: STUDY.sweep(name) for name in STUDY.sweeps}
 

@@ -1,6 +1,6 @@
 """The paper's statements, judged on the datasets of the run. Included after all that make data."""
 
-from squealpipe.claims.datasets import READ
+from squealpipe.study.claims.datasets import READ
 
 EVIDENCE = [name for name in READ if name in MADE]
 

@@ -14,7 +14,7 @@ rule compute_explorer:
 
 
 EXPLORER_PAGE = [
-    from_root(f"squealpipe/report/explorer/{name}") for name in ("page.html.j2", "explorer.css", "chart.js", "explorer.js")
+    from_root(f"squealpipe/study/report/explorer/{name}") for name in ("page.html.j2", "explorer.css", "chart.js", "explorer.js")
 ]
 
 

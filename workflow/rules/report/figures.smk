@@ -4,9 +4,9 @@ Included after all rules that make datasets. A figure that reads a dataset which
 not make is left out.
 """
 
-from squealpipe.figures import declared
-from squealpipe.report.lineage import lineage
-from squealpipe.report.places import FIGURES
+from squealpipe.study.figures import declared
+from squealpipe.study.report.lineage import lineage
+from squealpipe.study.report.places import FIGURES
 
 MADE = lineage(workflow.rules, f"{RESULTS}/data/")
 READ_BY = {name: declared.datasets_of(name, MADE) for name in FIGURES}

@@ -12,7 +12,7 @@ DRAWN = {
 
 TEMPLATES = sorted(
     from_root(path)
-    for path in (ROOT / "squealpipe/report/templates").rglob("*.*")
+    for path in (ROOT / "squealpipe/study/report/templates").rglob("*.*")
     if path.suffix in (".typ", ".css") or path.name == "page.html.j2"
 )
 

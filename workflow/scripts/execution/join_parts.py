@@ -1,6 +1,6 @@
 """A scattered map or sweep from its parts."""
 
-from squealpipe.ranges import longest
+from squealpipe.config.ranges import longest
 from squealpipe.store import load, produce
 from squealpipe.execution.row_blocks import join
 

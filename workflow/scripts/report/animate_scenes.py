@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from squealpipe.figures.dynamics.animation import animate
+from squealpipe.study.figures.dynamics.animation import animate
 from squealpipe.store import load
 
 frames = snakemake.params.part["animation"]["frames"]

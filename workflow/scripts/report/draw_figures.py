@@ -1,7 +1,7 @@
 """The figures of one topic, each from the datasets that it declares."""
 
-from squealpipe.figures.declared import draw
-from squealpipe.figures.parts.style import save_figure
+from squealpipe.study.figures.declared import draw
+from squealpipe.study.figures.parts.style import save_figure
 from squealpipe.store import load
 
 given, params = snakemake.input, snakemake.params

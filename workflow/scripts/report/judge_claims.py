@@ -1,6 +1,6 @@
 """The verdict on every statement of the paper."""
 
-from squealpipe.claims.judge import judge
+from squealpipe.study.claims.judge import judge
 from squealpipe.parameters import parameters_of
 from squealpipe.store import produce
 

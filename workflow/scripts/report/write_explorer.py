@@ -1,7 +1,7 @@
 """The explorer page."""
 
-from squealpipe.report.explorer import write_explorer
-from squealpipe.report.explorer.layers import layers
+from squealpipe.study.report.explorer import write_explorer
+from squealpipe.study.report.explorer.layers import layers
 from squealpipe.store import load
 
 maps = ("stability", "frequencies", "validity", "hammering", "ladder")

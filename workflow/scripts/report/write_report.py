@@ -3,8 +3,8 @@
 from pathlib import Path
 
 from squealpipe.parameters import parameters_of
-from squealpipe.report.build import write_report
-from squealpipe.report.content import gather, made_files, picture_files
+from squealpipe.study.report.build import write_report
+from squealpipe.study.report.content import gather, made_files, picture_files
 
 datasets, figures = made_files(snakemake.params.made), made_files(snakemake.params.drawn)
 content = gather(

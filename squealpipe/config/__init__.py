@@ -1,0 +1,1 @@
+"""A study's configuration: sections, YAML, mistakes with a remedy."""

@@ -1,0 +1,133 @@
+"""Mistakes in a configuration, in words: key path, value, what is allowed, the nearest key."""
+
+from __future__ import annotations
+
+import fnmatch
+import re
+import typing
+from collections.abc import Callable, Iterator, Sequence
+from typing import Any
+
+from pydantic import BaseModel, ValidationError
+
+from squealpipe.text import nearest
+
+NUMBER_AS_TEXT = re.compile(r"\s*[-+]?[\d.]+([eE][-+]?\d+)?\s*")
+
+WORDS = {
+    "model_type": "keys and values are needed, like `points: 31`",
+    "dict_type": "names and values are needed, like `name: [0.3, 0.9]`",
+    "tuple_type": "a list is needed, like [0.3, 0.9]",
+    "list_type": "a list is needed, like [0.3, 0.9]",
+    "float_type": "a number is needed",
+    "int_type": "a whole number is needed",
+    "string_type": "text is needed",
+    "string_pattern_mismatch": "only letters, digits and . _ / - are allowed",
+    "finite_number": "a finite number is needed",
+    "greater_than": "it must be greater than {gt:g}",
+    "greater_than_equal": "it must be {ge:g} or greater",
+    "less_than_equal": "it must be {le:g} or less",
+    "literal_error": "choose from {expected}",
+    "too_short": "{min_length} or more items are needed",
+    "too_long": "at most {max_length} items are allowed",
+    "missing": "this key is needed",
+}
+"""What is allowed, by the kind of fault that pydantic names."""
+
+LONGEST = 80
+"""Characters of a value that a message quotes."""
+
+
+class ConfigError(ValueError):
+    """The configuration has mistakes; the message lists all of them."""
+
+    def __init__(self, mistakes: Sequence[str]) -> None:
+        self.mistakes = list(mistakes)
+        super().__init__(
+            "the configuration has mistakes:\n" + "\n".join(f"  {m}" for m in mistakes)
+        )
+
+
+def mistakes(
+    error: ValidationError,
+    model: type[BaseModel],
+    place: Callable[[tuple[str, ...]], str] = lambda _: "",
+) -> Iterator[str]:
+    """One line for each fault that validation of ``model`` found.
+
+    Args:
+        error: what validation raised.
+        model: what was validated.
+        place: keys from the outermost on → the words that say where that is.
+    """
+    faults = error.errors(include_url=False)
+    inner = {fault["loc"][:-1] for fault in faults}
+    for fault in faults:
+        if fault["type"] == "too_short" and fault["loc"] in inner:
+            continue  # its items were refused one by one
+        keys = tuple(map(str, fault["loc"]))
+        path = place(keys) + (".".join(keys) or "the configuration")
+        if fault["type"] == "extra_forbidden":
+            yield f"{path}: unknown key; {_nearest(fault['loc'], model)}"
+            continue
+        message = fault["msg"].removeprefix("Value error, ")
+        if fault["type"] == "value_error":  # one of ours, which says what to do
+            yield f"{path} = {_quoted(fault['input'])}: {message}"
+            continue
+        message = WORDS.get(fault["type"], message[0].lower() + message[1:])
+        message = message.format(**fault.get("ctx", {}))
+        if fault["type"] == "missing":
+            yield f"{path}: {message}"
+            continue
+        yield f"{path} = {_quoted(fault['input'])}: {message}{_remedy(fault['input'])}"
+
+
+def known_keys(model: type[BaseModel], stem: str = "") -> Iterator[str]:
+    """Dotted paths of all keys of a model; ``*`` stands for a name that is free."""
+    for name, entry in model.model_fields.items():
+        path = f"{stem}.{name}" if stem else name
+        yield path
+        section = _section(entry.annotation)
+        if section is not None:
+            free = typing.get_origin(entry.annotation) is dict
+            yield from known_keys(section, f"{path}.*" if free else path)
+
+
+def _nearest(location: tuple[int | str, ...], model: type[BaseModel]) -> str:
+    *above, wrong = [str(key) for key in location if not isinstance(key, int)]
+    stem = ".".join(above)
+    every = list(known_keys(model))
+    siblings = [path for path in every if fnmatch.fnmatchcase(stem, path.rpartition(".")[0])]
+    names = [path.rpartition(".")[2] for path in siblings]
+    near = nearest(wrong, names)
+    if near:
+        return f"did you mean {near!r}?"
+    elsewhere = [path for path in every if path.rpartition(".")[2] == wrong]
+    if elsewhere:
+        return f"did you mean {' or '.join(elsewhere)}?"
+    return f"known: {', '.join(sorted(path.rpartition('.')[2] for path in siblings))}"
+
+
+def _section(annotation: Any) -> type[BaseModel] | None:
+    """The model inside an annotation (plain, optional, or in a list), if there is one."""
+    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
+        return annotation
+    return next(filter(None, map(_section, typing.get_args(annotation))), None)
+
+
+def _quoted(value: object) -> str:
+    try:
+        text = repr(value)
+    except ValueError:  # an integer of more digits than Python prints
+        return "a number of more than 4000 digits"
+    return text if len(text) <= LONGEST else f"{text[: LONGEST - 1]}…"
+
+
+def _remedy(value: object) -> str:
+    if isinstance(value, str) and ("pi" in value or "π" in value):
+        return "; write angles as plain numbers, in multiples of π"
+    return "; write numbers without quotes" if _is_number_as_text(value) else ""
+
+
+def _is_number_as_text(value: object) -> bool:
+    return isinstance(value, str) and NUMBER_AS_TEXT.fullmatch(value) is not None

@@ -1,0 +1,383 @@
+"""The sections of the study configuration: types, limits and the paper study's values."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Annotated, Any, Literal, get_args
+
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    ConfigDict,
+    Field,
+    SerializerFunctionWrapHandler,
+    ValidationInfo,
+    WithJsonSchema,
+    create_model,
+    field_validator,
+    model_serializer,
+    model_validator,
+)
+
+from squealpipe.config.ranges import read_fixed, read_values
+from squealpipe.parameters import DEFAULTS, LAW_NAMES, TABLE, Parameters, Row, without_defaults
+
+
+def _plain_types(annotation: Any) -> set[type]:
+    """The types that occur in an annotation, at any depth."""
+    inner = [kind for part in get_args(annotation) for kind in _plain_types(part)]
+    return {annotation, *inner} if isinstance(annotation, type) else set(inner)
+
+
+def _as_integers(value: Any) -> Any:
+    if isinstance(value, tuple):
+        return tuple(map(_as_integers, value))
+    return int(value) if isinstance(value, float) and value.is_integer() else value
+
+
+class Section(BaseModel):
+    """A part of the configuration: unknown keys and text for numbers are mistakes."""
+
+    model_config = ConfigDict(extra="forbid", strict=True, frozen=True, allow_inf_nan=False)
+
+    @field_validator("*", mode="before")
+    @classmethod
+    def _whole_numbers(cls, value: Any, info: ValidationInfo) -> Any:
+        """181.0 is 181 where a whole number is asked for, so that rewriting it changes nothing."""
+        kinds = _plain_types(cls.model_fields[str(info.field_name)].annotation)
+        return _as_integers(value) if int in kinds and float not in kinds else value
+
+
+Number = Annotated[float, Field(strict=True)]
+Positive = Annotated[float, Field(gt=0)]
+NotNegative = Annotated[float, Field(ge=0)]
+Points = Annotated[int, Field(ge=3, le=4001)]
+
+
+class _ParametersBase(Section):
+    """Physical parameters, in consistent units."""
+
+    @model_validator(mode="after")
+    def _together(self) -> _ParametersBase:
+        """What the parameters demand of one another."""
+        Parameters(**{name: getattr(self, name) for name in TABLE})
+        return self
+
+    @model_serializer(mode="wrap")
+    def _written(self, write: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        """Extensions of the paper's model enter slices and ids only where they are used."""
+        return without_defaults(write(self))
+
+
+def _field_type(row: Row) -> Any:
+    kinds: dict[str, Any] = {
+        "finite": Number,
+        "positive": Positive,
+        "not negative": Annotated[float, Field(ge=0)],
+        "law": Literal[LAW_NAMES],
+    }
+    return kinds[row.allowed] | None if row.optional else kinds[row.allowed]
+
+
+if TYPE_CHECKING:
+
+    class ParametersSection(_ParametersBase):
+        """Made from the table of parameters below."""
+
+else:
+    ParametersSection = create_model(
+        "ParametersSection",
+        __base__=_ParametersBase,
+        __doc__=_ParametersBase.__doc__,
+        **{name: (_field_type(row), DEFAULTS[name]) for name, row in TABLE.items()},
+    )
+    ParametersSection.__annotations__ = {}  # the reference looks for them in the source
+
+
+class LinearSection(Section):
+    """Linear maps over both spring angles from 0 to π, and their areas over μ and κ."""
+
+    points: Points = 181
+    share_points: Annotated[int, Field(ge=2, le=201)] = 25
+    mu_max: Positive = 1.0
+    kappa_max: Positive = 2.0
+
+
+def _ascending(limits: tuple[float, float]) -> tuple[float, float]:
+    if not limits[0] < limits[1]:
+        raise ValueError(f"the lower limit {limits[0]} must be below the upper one {limits[1]}")
+    return limits
+
+
+Range = Annotated[tuple[Positive, Positive], AfterValidator(_ascending)]
+
+
+class InferenceSection(Section):
+    """Quasi-random parameter sets that are judged by the paper's statements."""
+
+    samples: Annotated[int, Field(ge=16, le=1_000_000)] = 20_480
+    seed: Annotated[int, Field(ge=0)] = 2021
+    kappa: Range = (0.3, 1.3)
+    mu: Range = (0.02, 0.8)
+    length_ratio: Range = (2.0, 100.0)
+    speed_ratio: Range = (0.1, 316.0)
+
+
+Settings = Annotated[tuple[Positive, ...], Field(min_length=1)]
+Repeats = Annotated[int, Field(ge=1, le=100)]
+
+
+Solvers = Annotated[
+    tuple[Literal["RK45", "DOP853", "LSODA", "Radau", "BDF"], ...], Field(min_length=1)
+]
+
+
+class IntegrationComparison(Section):
+    """Time integration of A1 by all methods: horizon and steps in √(m/k1), σ times l_pre."""
+
+    horizon: Positive = 30.0
+    solvers: Solvers = ("RK45", "DOP853", "LSODA", "Radau")
+    tolerances: Settings = (1e-4, 1e-6, 1e-8, 1e-10, 1e-14)
+    steps: Settings = (0.1, 0.01, 1e-3, 1e-4)
+    sigmas: Settings = (10.0, 100.0, 1e3, 1e4)
+    repeats: Repeats = 3
+
+
+class ValidityComparison(Section):
+    """The validity map at several tolerances, horizons and grids."""
+
+    points: Points = 91
+    fine_points: Points = 361
+    tolerances: Settings = (1e-3, 1e-6, 1e-12)
+    horizons: Settings = (25.0, 50.0, 100.0, 200.0, 400.0)
+    steps: Settings = (0.1, 0.03)
+
+
+class HarmonicComparison(Section):
+    """Harmonic balance over N_h, N/(2 N_h) and σ l_pre."""
+
+    harmonics: Annotated[tuple[Annotated[int, Field(ge=1, le=512)], ...], Field(min_length=1)] = (
+        4,
+        8,
+        16,
+        32,
+        64,
+    )
+    oversampling: Annotated[
+        tuple[Annotated[int, Field(ge=1, le=256)], ...], Field(min_length=1)
+    ] = (1, 4, 16)
+    sigmas: Settings = (10.0, 100.0, 1e3)
+    repeats: Repeats = 3
+
+
+class OnsetComparison(Section):
+    """Eigenvalues at distances 1 − μ/μ_c = 2⁻ⁿ from flutter onset."""
+
+    halvings: Annotated[tuple[Annotated[int, Field(ge=1, le=50)], ...], Field(min_length=1)] = (
+        4,
+        10,
+        20,
+        30,
+        40,
+        50,
+    )
+    repeats: Repeats = 3
+
+
+class AtlasComparison(Section):
+    """Hard scenes that scipy's solvers are put on as well; horizons in √(m/k1)."""
+
+    solvers: Solvers = ("DOP853", "RK45", "LSODA", "Radau")
+    tolerances: Annotated[
+        tuple[Annotated[float, Field(ge=1e-13, lt=1e-2)], ...], Field(min_length=1)
+    ] = (1e-8, 1e-10, 1e-12)
+    chaotic_horizon: Positive = 200.0
+    beyond_horizon: Positive = 600.0
+
+
+class LadderComparison(Section):
+    """The cheapest adequate model over both angles; horizon in √(m/k1)."""
+
+    points: Annotated[int, Field(ge=3, le=361)] = 46
+    tolerance: Annotated[float, Field(gt=0, lt=1)] = 0.05
+    horizon: Positive = 200.0
+
+
+class ComparisonSection(Section):
+    """Work–precision, and the model ladder."""
+
+    integration: IntegrationComparison = IntegrationComparison()
+    validity: ValidityComparison = ValidityComparison()
+    harmonic: HarmonicComparison = HarmonicComparison()
+    onset: OnsetComparison = OnsetComparison()
+    atlas: AtlasComparison = AtlasComparison()
+    ladder: LadderComparison = LadderComparison()
+
+
+class DynamicsSection(Section):
+    """Nonlinear runs; times in √(m/k1), amplitudes in l_pre, speeds in l_pre √(k1/m)."""
+
+    tol: Annotated[float, Field(gt=1e-18, lt=1e-2)] = 1e-12
+    validity_horizon: Positive = 200.0
+    validity_points: Points = 181
+    refined_points: Points = 1441
+    refined_coarse: Points = 91
+    uniform_points: Annotated[tuple[Points, ...], Field(min_length=1)] = (91, 181, 361)
+    hammering_horizon: Positive = 500.0
+    hammering_points: Points = 91
+    whirl_speeds: Range = (0.3, 300.0)
+    whirl_count: Annotated[int, Field(ge=2, le=1000)] = 31
+    whirl_horizon: Positive = 10_000.0
+    transient_speeds: Range = (0.3, 30.0)
+    transient_count: Annotated[int, Field(ge=2, le=1000)] = 21
+    transient_samples: Annotated[int, Field(ge=2, le=100_000)] = 24
+    transient_shown: Annotated[int, Field(ge=2, le=100_000)] = 400
+    transient_horizon: Positive = 20_000.0
+
+
+class SeriesSweep(Section):
+    """Harmonic balance against exact orbits; peaks over l_pre, sigmas times l_pre."""
+
+    peaks: Settings = (1.25, 2.0, 3.0)
+    harmonics: Annotated[tuple[Annotated[int, Field(ge=1, le=512)], ...], Field(min_length=1)] = (
+        4,
+        8,
+        16,
+        32,
+        64,
+    )
+    samples: Annotated[tuple[Annotated[int, Field(ge=65, le=2**15)], ...], Field(min_length=1)] = (
+        66,
+        128,
+        256,
+        512,
+        1024,
+        4096,
+    )
+    sigmas: Settings = (10.0, 30.0, 100.0, 300.0, 1000.0)
+
+
+Angle = Annotated[float, Field(ge=-2.0, le=2.0)]
+
+
+class BackbonesSection(Section):
+    """Periodic motions of A4; angles over π, lengths over l_pre."""
+
+    coupled: dict[Annotated[str, Field(pattern=r"^[a-z]\w*$")], tuple[Angle, Angle]] = {
+        "coupled": (0.3, 0.9),
+        "slow": (0.2, 0.7),
+    }
+    y_peak_max: Positive = 6.0
+    x_amplitude_max: Positive = 3.0
+    n_harmonics: Annotated[int, Field(ge=1, le=512)] = 32
+    sweep: SeriesSweep = SeriesSweep()
+    length_ratios: Settings = (5.0, 20.0, 100.0)
+    atlas_points: Points = 181
+    atlas_peak: Positive = 2.0
+
+
+class CyclesSection(Section):
+    """Limit cycles of the damped full model; angles over π, times in √(m/k1).
+
+    ``damping`` is that of each dashpot over √(k1 m): twice the damping ratio of one spring.
+    """
+
+    damping: Positive = 0.02
+    mu: Range = (0.01, 1.0)
+    flutter: tuple[Angle, Angle] = (0.07, 0.305)
+    points: Annotated[int, Field(ge=2, le=5000)] = 150
+    settle: Positive = 6000.0
+    extremes_mu: Annotated[int, Field(ge=2, le=1000)] = 17
+    extremes_starts: Annotated[int, Field(ge=1, le=1000)] = 6
+    extremes_horizon: Positive = 2000.0
+
+
+class Distribution(Section):
+    """One uncertain parameter; which two numbers are needed depends on the distribution."""
+
+    distribution: Literal["uniform", "normal", "lognormal"]
+    low: Number | None = None
+    high: Number | None = None
+    mean: Number | None = None
+    std: Number | None = None
+    median: Number | None = None
+    log_std: Number | None = None
+
+    @model_serializer(mode="wrap")
+    def _written(self, write: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        return {name: value for name, value in write(self).items() if value is not None}
+
+
+class SpreadSection(Section):
+    """How far verdicts carry, and propensities over uncertain parameters; angles over π."""
+
+    starts: Annotated[int, Field(ge=2, le=100_000)] = 200
+    basin_points: Annotated[int, Field(ge=2, le=2001)] = 41
+    basin_extent: Positive = 12.0
+    basin_horizon: Positive = 300.0
+    disturbance_directions: Annotated[int, Field(ge=8, le=100_000)] = 64
+    disturbance_horizon: Positive = 100.0
+    critical_damping: tuple[NotNegative, NotNegative] = (0.02, 0.01)
+    critical_points: Points = 61
+    critical_extent: Positive = 0.1
+    scene: tuple[Angle, Angle] = (0.07, 0.305)
+    samples: Annotated[int, Field(ge=64, le=2**20)] = 4096
+    horizon: Positive = 200.0
+    spring_correlation: Annotated[float, Field(gt=-1, lt=1)] = 0.0
+    distributions: dict[str, Distribution] = {
+        "k1": Distribution(distribution="normal", mean=1.0, std=0.05),
+        "k2": Distribution(distribution="normal", mean=1.0, std=0.05),
+        "k3": Distribution(distribution="lognormal", median=0.75, log_std=0.1),
+        "mu": Distribution(distribution="uniform", low=0.1, high=0.9),
+        "alpha1": Distribution(distribution="normal", mean=0.22, std=0.05),
+        "alpha2": Distribution(distribution="normal", mean=0.96, std=0.05),
+    }
+
+
+class ExplorerSection(Section):
+    """The click grid of the explorer page; times in √(m/k1)."""
+
+    points: Annotated[int, Field(ge=3, le=61)] = 31
+    history_time: Positive = 60.0
+    spectrum_time: Positive = 180.0
+    samples: Annotated[int, Field(ge=16, le=2000)] = 400
+    branch_points: Annotated[int, Field(ge=2, le=200)] = 24
+
+
+class AnimationSection(Section):
+    """Short animations of hammering and of the whirl."""
+
+    frames: Annotated[int, Field(ge=2, le=500)] = 60
+
+
+Name = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]*$")]
+VALUES = {"type": ["string", "number", "array"], "items": {"type": ["string", "number"]}}
+
+
+class SweepSection(Section):
+    """A task over ranges, written as for ``squealpipe sweep``; results in data/sweeps/<name>.nc."""
+
+    task: str
+    vary: Annotated[
+        dict[Name, list[float | int]],
+        Field(min_length=1),
+        WithJsonSchema({"type": "object", "minProperties": 1, "additionalProperties": VALUES}),
+    ]
+    fixed: dict[Name, float | int | str | bool | list[float | int] | None] = {}
+
+    @field_validator("vary", "fixed", mode="before")
+    @classmethod
+    def _written_forms(cls, given: Any, info: ValidationInfo) -> Any:
+        """Ranges and angles as numbers, so that each way to write them is the same."""
+        if not isinstance(given, Mapping):
+            return given
+        read = read_values if info.field_name == "vary" else read_fixed
+        found, faults = {}, []
+        for name, value in given.items():
+            try:
+                found[name] = read(name, value)
+            except ValueError as error:
+                faults.append(f"{name}: {error}")
+        if faults:
+            raise ValueError("; ".join(faults))
+        return found

@@ -1,0 +1,189 @@
+"""The study configuration: validated types, one section a topic, and canonical slices.
+
+An overlay (``--configfile mine.yaml``) is merged over ``workflow/config/paper.yaml`` by
+Snakemake; :func:`read_study` does the same for the command line.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path, PurePosixPath
+from typing import Annotated, Any
+
+from pydantic import Field, ValidationError, field_validator
+
+from squealpipe.config.mistakes import ConfigError, mistakes
+from squealpipe.config.ranges import sweep_config
+from squealpipe.config.sections import (
+    AnimationSection,
+    BackbonesSection,
+    ComparisonSection,
+    CyclesSection,
+    DynamicsSection,
+    ExplorerSection,
+    InferenceSection,
+    LinearSection,
+    Name,
+    ParametersSection,
+    Section,
+    SpreadSection,
+    SweepSection,
+)
+from squealpipe.config.yaml_files import key_lines, overlay, read_yaml
+
+__all__ = [
+    "PAPER",
+    "ConfigError",
+    "Section",
+    "Study",
+    "json_schema",
+    "parse_study",
+    "read_study",
+]
+
+
+PAPER = "workflow/config/paper.yaml"
+"""The paper's study, over which other configurations are laid."""
+
+SCIENTIFIC = re.compile(r"[-+]?\d+(\.\d*)?[eE][-+]?\d+")
+
+
+class Study(Section):
+    """A whole study."""
+
+    results: Annotated[str, Field(pattern=r"^[\w./-]+$")] = "results"
+    parameters: ParametersSection = ParametersSection()
+    linear: LinearSection = LinearSection()
+    inference: InferenceSection = InferenceSection()
+    comparison: ComparisonSection = ComparisonSection()
+    dynamics: DynamicsSection = DynamicsSection()
+    backbones: BackbonesSection = BackbonesSection()
+    cycles: CyclesSection = CyclesSection()
+    spread: SpreadSection = SpreadSection()
+    explorer: ExplorerSection = ExplorerSection()
+    animation: AnimationSection = AnimationSection()
+    sweeps: dict[Name, SweepSection] = Field(default={})
+
+    @field_validator("results")
+    @classmethod
+    def _is_a_folder_of_its_own(cls, value: str) -> str:
+        path = PurePosixPath(value)
+        frozen = "/results/archive/" in f"/{path}/"
+        if ".." in path.parts or path.parts in {(), ("/",)} or frozen:
+            raise ValueError(
+                "a run needs a folder of its own, outside results/archive; write for instance "
+                "results/mine"
+            )
+        return value
+
+    def slice(self, *paths: str) -> dict[str, Any]:
+        """Canonical part of the configuration: numbers cast, keys in a fixed order.
+
+        Args:
+            paths: dotted keys, for instance ``"parameters"`` or ``"linear.points"``.
+        """
+        whole = self.model_dump(mode="json")
+        part = {}
+        for path in sorted(paths):
+            value: Any = whole
+            for key in path.split("."):
+                value = value[key]
+            part[path] = value
+        return json.loads(json.dumps(part, sort_keys=True))  # type: ignore[no-any-return]
+
+    def sweep(self, name: str) -> dict[str, Any]:
+        """Configuration of one of the sweeps, with the parameters that it does not name itself."""
+        parameters = self.parameters.model_dump(mode="json")
+        return sweep_config(**self.sweeps[name].model_dump(mode="json"), parameters=parameters)
+
+
+def read_study(*paths: str | Path, changes: Mapping[str, Any] | None = None) -> Study:
+    """A validated study from one or several YAML files, later ones laid over earlier ones.
+
+    Args:
+        paths: YAML files.
+        changes: keys and values laid over all of them.
+
+    Raises:
+        FileNotFoundError: a file is missing.
+        ConfigError: every mistake found, with its file and line, key, value and what is allowed.
+    """
+    merged: dict[str, Any] = {}
+    faults: list[str] = []
+    for path in map(Path, paths):
+        content, found = read_yaml(path)
+        faults.extend(found)
+        overlay(merged, content)
+    overlay(merged, changes or {})
+    return parse_study(merged, faults, place=lambda keys: _place(keys, paths, changes or {}))
+
+
+def _place(keys: tuple[str, ...], paths: Sequence[str | Path], changes: Mapping[str, Any]) -> str:
+    """File and line of a key, or of the nearest one above it: of the last file that has it."""
+    if keys and keys[0] in changes:
+        return ""
+    tables = {str(path): key_lines(Path(path)) for path in paths}
+    for length in range(len(keys), 0, -1):
+        for path in reversed(tables):
+            if line := tables[path].get(keys[:length]):
+                return f"{path}, line {line}: "
+    return ""
+
+
+def parse_study(
+    content: Mapping[str, Any],
+    faults: Sequence[str] = (),
+    *,
+    place: Callable[[tuple[str, ...]], str] = lambda _: "",
+) -> Study:
+    """Validate a configuration mapping.
+
+    Args:
+        content: keys and values.
+        faults: mistakes found before, in the text; told together with those of the values.
+        place: keys from the outermost on → the words that say where that is.
+
+    Raises:
+        ConfigError: as :func:`read_study`.
+    """
+    try:
+        study = Study.model_validate(_plain(_without_empty_sections(content)))
+    except ValidationError as error:
+        raise ConfigError([*faults, *mistakes(error, Study, place)]) from error
+    if faults:
+        raise ConfigError(faults)
+    return study
+
+
+def _without_empty_sections(content: Mapping[str, Any]) -> dict[str, Any]:
+    """A section without keys is the default one."""
+    return {
+        key: value
+        for key, value in content.items()
+        if value is not None or key not in Study.model_fields
+    }
+
+
+def _plain(value: Any) -> Any:
+    """Lists as tuples, and numbers like 1e-9, which YAML 1.1 takes for text, as numbers.
+
+    Keys that are numbers to YAML become text, so that they are found as unknown.
+    """
+    if isinstance(value, Mapping):
+        return {str(key): _plain(item) for key, item in value.items()}
+    if isinstance(value, list):
+        return tuple(map(_plain, value))
+    if isinstance(value, str) and SCIENTIFIC.fullmatch(value):
+        return float(value)
+    return value
+
+
+def json_schema() -> str:
+    """The text of ``workflow/config/schema.json``."""
+    return json.dumps(Study.model_json_schema(), indent=2, sort_keys=True) + "\n"
+
+
+if __name__ == "__main__":
+    Path("workflow/config/schema.json").write_text(json_schema(), encoding="utf-8")

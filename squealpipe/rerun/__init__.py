@@ -1,0 +1,1 @@
+"""Which results an edit makes stale, and what will be computed again."""

@@ -1,0 +1,1 @@
+"""What only a study needs: statements, figures, report."""

@@ -1,0 +1,179 @@
+"""The paper's conclusions (sections 7 and 9)."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+
+from squealpipe.schema.claims import Verdict
+from squealpipe.schema.dynamics.runs import EventFlag
+from squealpipe.study.claims.checks import sliding
+from squealpipe.study.claims.checks.backbones import branch, linear_omega
+from squealpipe.study.claims.checks.motions import events, frequency, scene
+from squealpipe.study.claims.evidence import Finding, Run, finding
+from squealpipe.study.claims.maps import order_turns_over, share, unstable_cells
+from squealpipe.study.claims.statement import Rows
+
+rows = Rows()
+
+SAME_TREND = 0.1
+"""Relative difference of frequencies up to which two descriptions show the same trend."""
+
+DIFFERENCE = 0.1
+"""Relative difference of an extreme from which leaving something out matters."""
+
+
+@rows.add(
+    "C1",
+    "9",
+    "the modes switch when the surfaces separate",
+    "share of cells in which the order of the x and y directions turns over at separation, "
+    "K22 < K11 < K22 + k3",
+    "fig13",
+    Verdict.depends_on_the_parameters,
+)
+def modes_switch_at_separation(run: Run) -> Finding:
+    """C1: where the softer direction is x in contact and y when separated."""
+    switched = order_turns_over(run)
+    crossed = [
+        name
+        for name, mode in (("F10", 2), ("F11", 2), ("F12", 2), ("F13", 1))
+        if _changes_place(run, name, mode)
+    ]
+    return finding(
+        share(switched),
+        ">",
+        0,
+        f"The order of the directions turns over in {100 * share(switched):.3g} % of the cells, "
+        f"those with 0 < K11 − K22 < k3{_on_diagonal(switched)}; in the others it is the same in "
+        "contact and separated. Of the four backbones of Figs. 10–13, the mode that loses contact "
+        f"changes its place on {', '.join(crossed) or 'none'}.",
+        passed=Verdict.holds if bool(switched.all()) else Verdict.depends_on_the_parameters,
+    )
+
+
+rows.add(
+    "C2",
+    "9",
+    "unstable motion occurs only where quasi-static sliding is impossible",
+    "unstable cells with a positive reaction force",
+    "fig06",
+    Verdict.holds_only_as_printed,
+    consequence="F6b",
+)(sliding.unstable_only_without_sliding)
+
+
+@rows.add(
+    "C3",
+    "7, 9",
+    "time and frequency domain show the same trends",
+    "largest relative difference of the frequency in A1 from ω2 of A4",
+    "fig10",
+    Verdict.holds,
+)
+def time_and_frequency_agree(run: Run) -> Finding:
+    """C3: frequency of the contact force in A1 against the backbone's at the same scenes."""
+    differences, lines = [], []
+    for name, twin in (("F2a", "F10"), ("F2b", "F11"), ("F2c", "F12")):
+        measured = frequency(scene(run, name))
+        predicted = float(branch(run, twin, 2).omega[0])
+        differences.append(abs(measured / predicted - 1))
+        lines.append(f"{measured:.4g} and {predicted:.4g}")
+    loses = events(scene(run, "F2d"), EventFlag.separation).size > 0
+    reaches = float(branch(run, "F13", 1).y_peak.max()) > run.parameters.preload
+    return finding(
+        max(differences),
+        "≤",
+        SAME_TREND,
+        f"Frequency of the contact force in A1 and ω2 of A4, in rad/s: {'; '.join(lines)} "
+        "(Figs. 2a–c and 10–12). In the fourth configuration contact is "
+        f"{'lost' if loses else 'kept'} in A1 (Fig. 2d) and {'lost' if reaches else 'kept'} on "
+        "A4's first mode (Fig. 13).",
+        also=loses and reaches,
+    )
+
+
+@rows.add(
+    "C4",
+    "9",
+    "the contact loss must not be left out (A1 against A1 without separation)",
+    "median relative change of the largest displacement in scenes that lose contact",
+    "fig02",
+    Verdict.holds,
+)
+def contact_loss_matters(run: Run) -> Finding:
+    """C4: extremes of A1 with and without contact loss, in the scenes that lose contact."""
+    table = run["assumptions"]
+    lost = table.held.sel(level="A1", assumption="contact is kept").values == 0
+    changes = xr.concat(
+        [_relative_change(table[name]) for name in ("largest_y", "largest_x")], "extreme"
+    ).max("extreme")
+    if not lost.any():
+        return finding(0, ">", 0, "No scene loses contact.")
+    changed = changes.values[lost]
+    kept = changes.values[~lost]
+    names = table.scene.values[lost]
+    worst = int(np.argmax(changed))
+    return finding(
+        float(np.median(changed)),
+        ">",
+        DIFFERENCE,
+        f"Without contact loss the largest displacement changes by {100 * changed.min():.2g} to "
+        f"{100 * changed.max():.3g} % in the {lost.sum()} scenes that lose contact (most in "
+        f"{names[worst]}), and by at most {100 * kept.max(initial=0.0):.1g} % in the others.",
+    )
+
+
+@rows.add(
+    "C5",
+    "9",
+    "the directions of the constraints decide stability",
+    "smaller of the shares of cells that keep and that lose contact",
+    "fig07",
+    Verdict.holds,
+)
+def directions_decide(run: Run) -> Finding:
+    """C5: both outcomes occur, by the angles alone."""
+    lost = run["validity_map"].separates == 1
+    unstable = unstable_cells(run)
+    smaller = min(share(lost), 1 - share(lost))
+    return finding(
+        smaller,
+        ">",
+        0.05,
+        f"At equal parameters the angles alone decide: contact is kept in "
+        f"{100 * (1 - share(lost)):.3g} % of the cells and lost in the rest; A3 is unstable in "
+        f"{100 * share(unstable):.2g} %.",
+        also=bool(unstable.any()),
+    )
+
+
+def _changes_place(run: Run, name: str, mode: int) -> bool:
+    """Whether a mode's frequency crosses that of the other linear mode along its backbone."""
+    moving = branch(run, name, mode).omega
+    side = np.sign(moving - linear_omega(branch(run, name, 3 - mode)))
+    return bool((side != side[0]).any())
+
+
+def _on_diagonal(cells: xr.DataArray) -> str:
+    """Where cells meet α1 = α2, as text; empty where they do not or the axes differ."""
+    angles = cells.alpha1.values / np.pi
+    if cells.shape[0] != cells.shape[1] or not np.array_equal(angles, cells.alpha2.values / np.pi):
+        return ""
+    met = np.flatnonzero(np.diagonal(cells.values))
+    parts = np.split(met, np.flatnonzero(np.diff(met) > 1) + 1)
+    spans = [
+        f"{angles[part[0]]:.3g}π to {angles[part[-1]]:.3g}π"
+        if part.size > 1
+        else f"{angles[part[0]]:.3g}π"
+        for part in parts
+        if part.size
+    ]
+    return f" (on α1 = α2: {' and '.join(spans)})" if spans else ""
+
+
+def _relative_change(extreme: xr.DataArray) -> xr.DataArray:
+    """Change of an extreme of A1 when contact cannot be lost, relative to A1's."""
+    with_loss = extreme.sel(level="A1", drop=True)
+    without = extreme.sel(level="A1-no-separation", drop=True)
+    return abs(without - with_loss) / with_loss

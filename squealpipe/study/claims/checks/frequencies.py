@@ -1,0 +1,234 @@
+"""Statements on the natural frequencies (Figs. 8 and 9)."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+
+from squealpipe.schema import Outcome
+from squealpipe.schema.claims import Verdict
+from squealpipe.study.claims.evidence import Finding, MissingDataError, Run, finding
+from squealpipe.study.claims.maps import angle_sum_over_pi, cell, is_multiple, place, share
+from squealpipe.study.claims.statement import Rows
+
+rows = Rows()
+
+VANISHING = 1e-6
+"""ω1 below this share of its largest value is zero."""
+
+ROUND_OFF = 1e-9
+"""Relative excess over the value on a line that rounding of the angles may cause."""
+
+SMALL, LARGE = 0.1, 0.98
+"""Shares of the largest value that bound "the region where ω1 vanishes" and "ω2 is largest"."""
+
+
+@rows.add(
+    "F8a",
+    "7",
+    "in contact ω1 → 0 near α1 = α2 = π/2",
+    "ω1 at (0.5π, 0.5π), as a share of its largest value",
+    "fig08",
+    Verdict.holds,
+)
+def first_vanishes_in_contact(run: Run) -> Finding:
+    """F8a: ω1 in contact at and around (π/2, π/2)."""
+    contact = _state(run, "contact")
+    first = contact.omega.sel(mode=1)
+    here = float(cell(contact, 0.5, 0.5).omega.sel(mode=1) / first.max())
+    zeros = (first <= VANISHING * first.max()).sum()
+    divergent = (contact.outcome.sel(mode=1) == Outcome.divergence).sum()
+    return finding(
+        here,
+        "≤",
+        VANISHING,
+        f"ω1 at (0.5π, 0.5π) is {here:.2g} of its largest value. In all, ω1 is zero in "
+        f"{int(zeros)} cells, {int(divergent)} of them by divergence.",
+    )
+
+
+@rows.add(
+    "F8b",
+    "7",
+    "separated, ω1 = 0 along α1 + α2 = nπ",
+    "largest ω1 on those lines, as a share of its largest value",
+    "fig08",
+    Verdict.holds,
+)
+def first_vanishes_on_lines(run: Run) -> Finding:
+    """F8b: ω1 separated, along α1 + α2 = nπ."""
+    separated = _state(run, "separated")
+    first = separated.omega.sel(mode=1)
+    on_line = is_multiple(angle_sum_over_pi(separated))
+    largest = float(first.where(on_line).max() / first.max())
+    elsewhere = float(first.where(~on_line).min() / first.max())
+    return finding(
+        largest,
+        "≤",
+        VANISHING,
+        f"On the {int(on_line.sum())} cells with α1 + α2 = nπ, ω1 is at most {largest:.2g} of its "
+        f"largest value; elsewhere at least {elsewhere:.2g} of it.",
+        also=elsewhere > VANISHING,
+    )
+
+
+@rows.add(
+    "F8c",
+    "7",
+    "ω1 is largest at α1 + α2 = nπ/2 (n odd)",
+    "excess of the largest ω1² over that on the lines, the larger of both contact states",
+    "fig08",
+    Verdict.holds_only_as_printed,
+    consequence="F8c",
+)
+def first_is_largest_on_lines(run: Run) -> Finding:
+    """F8c, E8: where ω1 is largest, in both contact states, against α1 + α2 = nπ/2, n odd."""
+    found = {}
+    for name in ("separated", "contact"):
+        state = _state(run, name)
+        first = state.omega.sel(mode=1).where(state.outcome.sel(mode=1) == Outcome.converged)
+        on_line = is_multiple(angle_sum_over_pi(state), 0.5, odd=True)
+        filled = first.fillna(0.0)
+        found[name] = (
+            float(filled.max() ** 2),
+            float(filled.where(on_line).max() ** 2),
+            place(state, filled),
+        )
+    unit = run.parameters.k1 / run.parameters.mass
+    excess = {name: largest / line - 1 for name, (largest, line, _) in found.items()}
+    largest, line, (first_angle, second_angle) = found["contact"]
+    return finding(
+        max(excess.values()),
+        "≤",
+        ROUND_OFF,
+        "Separated, the largest ω1² "
+        + ("lies" if excess["separated"] <= ROUND_OFF else "does not lie")
+        + " on α1 + α2 = π/2 or 3π/2. "
+        f"In contact it is {largest / unit:.4g} k1/m at ({first_angle:.3g}π, {second_angle:.3g}π), "
+        f"against {line / unit:.4g} k1/m on those lines. For even n ω1 = 0 there when separated.",
+        otherwise=Verdict.holds_only_as_printed
+        if excess["separated"] <= ROUND_OFF
+        else Verdict.fails,
+    )
+
+
+@rows.add(
+    "F8d",
+    "9",
+    "the region where ω1 vanishes is larger when separated",
+    "ratio of the areas where ω1 is small, separated to contact",
+    "fig08",
+    Verdict.holds,
+)
+def vanishing_region_grows(run: Run) -> Finding:
+    """F8d: area where ω1 is small, separated against contact."""
+    areas = {name: share(first_is_small(run, name)) for name in ("contact", "separated")}
+    return finding(
+        areas["separated"] / max(areas["contact"], 1e-12),
+        ">",
+        1.0,
+        f"ω1 is below {SMALL:g} of its largest value in {100 * areas['contact']:.3g} % of the map "
+        f"in contact and in {100 * areas['separated']:.3g} % when separated.",
+    )
+
+
+@rows.add(
+    "F9a",
+    "7",
+    "where ω1 = 0, ω2 is largest",
+    "ω2 there, as a share of its largest value",
+    "fig09",
+    Verdict.holds,
+)
+def second_is_largest_where_first_vanishes(run: Run) -> Finding:
+    """F9a: ω2 where ω1 = 0, against its largest value, in both contact states."""
+    separated = _state(run, "separated")
+    contact = _state(run, "contact")
+    lines = is_multiple(angle_sum_over_pi(separated))
+    second = separated.omega.sel(mode=2)
+    on_lines = float(second.where(lines).min() / second.max())
+    in_contact = contact.omega.sel(mode=2)
+    at_centre = float(cell(contact, 0.5, 0.5).omega.sel(mode=2) / in_contact.max())
+    first_angle, second_angle = place(contact, in_contact)
+    return finding(
+        min(on_lines, at_centre),
+        "≥",
+        LARGE,
+        f"Where ω1 = 0, ω2 is {on_lines:.4g} of its largest value when separated (α1 + α2 = nπ) "
+        f"and {at_centre:.4g} in contact at (0.5π, 0.5π); there the largest is at "
+        f"({first_angle:.3g}π, {second_angle:.3g}π).",
+    )
+
+
+@rows.add(
+    "F9b",
+    "7",
+    "ω1 and ω2 shift in opposite directions",
+    "share of steps between cells with opposite signs",
+    "fig09",
+    Verdict.holds,
+)
+def shifts_are_opposite(run: Run) -> Finding:
+    """F9b: signs of the change of ω1 and ω2 from cell to cell."""
+    shares = {}
+    unit = run.parameters.k1 / run.parameters.mass
+    for name in ("contact", "separated"):
+        state = _state(run, name)
+        real = (state.outcome != Outcome.complex_pair) & (state.outcome != Outcome.divergence)
+        omega = state.omega.where(real.all("mode"))
+        steps = [omega.diff(axis) for axis in ("alpha1", "alpha2")]
+        products = np.concatenate(
+            [(step.sel(mode=1) * step.sel(mode=2)).values.ravel() for step in steps]
+        )
+        moving = np.isfinite(products) & (np.abs(products) > 1e-18 * unit)
+        if not moving.any():
+            raise MissingDataError(f"the natural frequencies do not vary ({name})")
+        shares[name] = float((products[moving] < 0).mean())
+    return finding(
+        min(shares.values()),
+        "≥",
+        0.999,
+        f"From cell to cell ω1 and ω2 move in opposite directions in "
+        f"{100 * shares['contact']:.4g} % of the steps in contact and "
+        f"{100 * shares['separated']:.4g} % when separated: ω1² + ω2² is the same at all angles.",
+    )
+
+
+@rows.add(
+    "F9c",
+    "9",
+    "the region where ω2 is largest is larger when separated",
+    "ratio of the areas where ω2 is near its largest value, separated to contact",
+    "fig09",
+    Verdict.holds,
+)
+def largest_region_grows(run: Run) -> Finding:
+    """F9c: area where ω2 is close to its largest value, separated against contact."""
+    areas = {}
+    for name in ("contact", "separated"):
+        areas[name] = share(second_is_large(run, name))
+    return finding(
+        areas["separated"] / max(areas["contact"], 1e-12),
+        ">",
+        1.0,
+        f"ω2 is above {LARGE:g} of its largest value in {100 * areas['contact']:.3g} % of the map "
+        f"in contact and in {100 * areas['separated']:.3g} % when separated.",
+    )
+
+
+def _state(run: Run, name: str) -> xr.Dataset:
+    return run["natural_frequencies"].sel(contact_state=name)
+
+
+def first_is_small(run: Run, state: str) -> xr.DataArray:
+    """Cells of F8d: ω1 in contact or separated is small beside its largest value."""
+    first = _state(run, state).omega.sel(mode=1)
+    small: xr.DataArray = first <= SMALL * first.max()
+    return small
+
+
+def second_is_large(run: Run, state: str) -> xr.DataArray:
+    """Cells of F9c: ω2 in contact or separated is close to its largest value."""
+    second = _state(run, state).omega.sel(mode=2)
+    large: xr.DataArray = second >= LARGE * second.max()
+    return large

@@ -1,0 +1,326 @@
+"""The paper's misprints and gaps: each printed form as a statement, with what it changes."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from squealpipe.schema import Outcome
+from squealpipe.schema.backbones import Form
+from squealpipe.schema.claims import Verdict
+from squealpipe.schema.dynamics.runs import growth_threshold
+from squealpipe.schema.inference import wilson_interval
+from squealpipe.study.claims.checks import frequencies, sliding
+from squealpipe.study.claims.checks.motions import scene
+from squealpipe.study.claims.evidence import Finding, MissingDataError, Run, finding
+from squealpipe.study.claims.maps import cell, coupling_is_negative, on_grid_of, share, stiffness
+from squealpipe.study.claims.statement import Rows
+
+rows = Rows()
+
+ROUND_OFF = 4.0 * np.finfo(float).eps
+"""Stiffnesses below this share of k1 + k2 count as zero."""
+
+WRONG_FREQUENCY = 1e-3
+"""Relative error of ω that truncation and smoothing do not explain."""
+
+REVERSED = "F2a_reversed"
+"""The scene (π/2, π) with the belt running the other way: the friction of Eq. (4) as printed."""
+
+
+@rows.add(
+    "E1",
+    "4, Eq. (4)",
+    "friction with μ(V_r) = μ sgn(V_r), V_r = ẋ − V, drags the mass along, as in Eqs."
+    " (6), (9), (18), (20)",
+    "mean x with the printed sign, in the direction of the static state, over l_pre",
+    "fig01",
+    Verdict.fails,
+)
+def friction_drags_along(run: Run) -> Finding:
+    """E1: mean x with the friction as printed, against the static state of Eq. (15)."""
+    printed = float(scene(run, REVERSED).x.mean() / run.parameters.preload)
+    corrected = float(scene(run, "F2a").x.mean() / run.parameters.preload)
+    static = float(cell(run["quasi_static_map"], 0.5, 1.0).x_static / run.parameters.preload)
+    return finding(
+        printed * np.sign(static),
+        ">",
+        0,
+        f"At (0.5π, π) the mass rests on average at x = {printed:.3g} l_pre with the printed sign "
+        f"and at {corrected:.3g} l_pre with the corrected one; Eq. (15), from the paper's own "
+        f"linear equations, has {static:.3g} l_pre.",
+    )
+
+
+@rows.add(
+    "E2",
+    "7, Eq. (34)",
+    "with K11·a + K12·b, Eq. (34) is the residual of Eq. (32)",
+    "largest relative error of ω with the printed residual",
+    "harmonic_forms",
+    Verdict.fails,
+)
+def printed_residual_converges_right(run: Run) -> Finding:
+    """E2: ω found with Eq. (34) as printed and corrected, against the exact orbit."""
+    forms = run["harmonic_forms"]
+    error = abs(forms.omega / forms.omega_exact - 1)
+    converged = forms.outcome.sel(form=Form.as_printed) == Outcome.converged
+    unit = run.parameters.time_unit
+    pairs = ", ".join(
+        f"{float(found) * unit:.4f} for {float(exact) * unit:.4f}"
+        for found, exact in zip(
+            forms.omega.sel(form=Form.as_printed).values, forms.omega_exact.values, strict=True
+        )
+    )
+    return finding(
+        float(error.sel(form=Form.as_printed).max()),
+        "≤",
+        WRONG_FREQUENCY,
+        f"As printed, ω √(m/k1) converges in {int(converged.sum())} of {converged.size} scenes, "
+        f"to {pairs}; with K12·a + K22·b it is right to "
+        f"{float(error.sel(form=Form.mended).max()):.1g}.",
+    )
+
+
+rows.add(
+    "E3",
+    "5, Eq. (11)",
+    "as printed, Eq. (11) is the condition for a positive contact force",
+    "cells in which the printed condition and the sign of the reaction force differ",
+    "fig06",
+    Verdict.holds_only_as_printed,
+)(sliding.printed_bound_is_physical)
+
+
+@rows.add(
+    "E4",
+    "6, before Eq. (16)",
+    "X + X* moves the origin to the static state",
+    "distance of the mean y from −y*, against its distance from y*",
+    "fig02",
+    Verdict.fails,
+)
+def shift_is_added(run: Run) -> Finding:
+    """E4: mean y in contact against y* and −y*, the rest positions of X − X* and X + X*."""
+    motion = scene(run, "F2a")
+    preload = run.parameters.preload
+    static = float(cell(run["quasi_static_map"], 0.5, 1.0).y_static / preload)
+    mean = float(motion.y.mean() / preload)
+    return finding(
+        abs(mean + static),
+        "<",
+        abs(mean - static),
+        f"With X + X* the motion would rest at y = {-static:.3g} l_pre, with X − X* at "
+        f"{static:.3g} l_pre; in A1 at (0.5π, π) y oscillates about {mean:.3g} l_pre.",
+    )
+
+
+@rows.add(
+    "E5",
+    "6, Eq. (12b)",
+    "ω12 is a real frequency",
+    "share of cells with K12 < 0",
+    "fig06",
+    Verdict.fails,
+)
+def coupling_frequency_is_real(run: Run) -> Finding:
+    """E5: where K12 < 0, ω12 of Eq. (12b) is imaginary."""
+    negative = coupling_is_negative(run)
+    return finding(
+        share(negative),
+        "≤",
+        0,
+        f"K12 is negative in {100 * share(negative):.3g} % of the cells, and ω12 imaginary there; "
+        "only its square enters Eqs. (13)–(17).",
+    )
+
+
+@rows.add(
+    "E6",
+    "7, Eq. (29)",
+    "N ≥ 2N_h samples are enough for Γ",
+    "columns of Γ minus its rank at N = 2N_h",
+    "harmonic_forms",
+    Verdict.fails,
+)
+def samples_suffice(run: Run) -> Finding:
+    """E6: rank of Γ at N = 2N_h, and how far the answer still depends on the phase."""
+    forms = run["harmonic_forms"]
+    columns, harmonics = int(forms.fourier_columns), int(forms.n_harmonics)
+    ranks = {int(row.samples): int(row) for row in forms.fourier_rank}
+    if 2 * harmonics not in ranks:
+        raise MissingDataError(f"harmonic_forms has no row N = {2 * harmonics}")
+    enough = min(samples for samples, rank in ranks.items() if rank == columns)
+    spreads = forms.phase_spread_y.dropna("samples")
+    spread = " and still ".join(
+        f"{float(spreads.sel(samples=number)):.1g} at N = {number}"
+        for number in (enough, int(spreads.samples.max()))
+    )
+    return finding(
+        columns - ranks[2 * harmonics],
+        "≤",
+        0,
+        f"At N_h = {harmonics}, Γ has {columns} columns but rank {ranks[2 * harmonics]} at "
+        f"N = {2 * harmonics}; the rank is full at N = {enough}. Aliasing stays: shifting the "
+        f"start's phase changes the largest y by {spread}.",
+    )
+
+
+@rows.add(
+    "E7",
+    "7, Eqs. (31)–(36)",
+    "Newton's method of Eq. (35) has a regular Jacobian",
+    "columns of the Jacobian minus its rank",
+    "harmonic_forms",
+    Verdict.fails,
+)
+def jacobian_is_regular(run: Run) -> Finding:
+    """E7: columns of the Jacobian of Eq. (36) minus its rank at the solutions."""
+    forms = run["harmonic_forms"]
+    deficits = forms.rank_deficit.sel(form=Form.mended)
+    return finding(
+        int(deficits.min()),
+        "≤",
+        0,
+        f"At the solutions the Jacobian of Eq. (36) has more columns than its rank, by "
+        f"{int(deficits.min())} or more in all {deficits.size} scenes: ω is one unknown too many "
+        "and J has no inverse. Nor is the phase fixed: starts shifted in time end in solutions "
+        f"whose ω differs by up to {float(forms.phase_spread_omega.max()):.1g}. Conditions on "
+        "amplitude and phase, and continuation, are needed.",
+    )
+
+
+rows.add(
+    "E8",
+    "7",
+    "ω1 is maximal at α1 + α2 = 0.5nπ, for every n and in both contact states",
+    "excess of the largest ω1² over that on the lines",
+    "fig08",
+    Verdict.holds_only_as_printed,
+    consequence="F8c",
+)(frequencies.first_is_largest_on_lines)
+
+
+@rows.add(
+    "E9",
+    "all",
+    "the paper prints the parameters that its results need",
+    "parameter sets that agree with all statements",
+    "parameter_inference",
+    Verdict.fails,
+)
+def parameters_are_printed(run: Run) -> Finding:
+    """E9: how much of the parameter space shows what the paper shows."""
+    inference = run["parameter_inference"]
+    feasible = inference.feasible == 1
+    number = int(feasible.sum())
+    low, high = wilson_interval(number, feasible.size)
+    agreeing = inference.isel(sample=feasible.values)
+    ranges = ", ".join(
+        f"{symbol} from {float(agreeing[name].min()):.2g} to {float(agreeing[name].max()):.3g}"
+        for symbol, name in (("k3/k", "kappa"), ("μ", "mu"), ("L/l_pre", "length_ratio"))
+        if number
+    )
+    against = int((agreeing.direction == -1).sum())
+    return finding(
+        number,
+        "≤",
+        1,
+        f"No number is printed. {number} of {feasible.size} parameter sets tried "
+        f"({100 * number / feasible.size:.2g} %, with its sampling error {100 * low:.2g} to "
+        f"{100 * high:.2g} %) agree with every statement that was tried, {against} of them with "
+        "the belt along −x" + (f"; they have {ranges}." if number else "."),
+        otherwise=Verdict.fails if number else Verdict.cannot_be_decided,
+    )
+
+
+@rows.add(
+    "E10",
+    "6, Fig. 7",
+    "Fig. 7 has a region of unstable motion without separation (black)",
+    "cells that keep contact in A1 and are unstable in A3",
+    "fig07",
+    Verdict.fails,
+    consequence="F7_black",
+    opposite=True,
+)
+def black_region_is_there(run: Run) -> Finding:
+    """E10: cells of Fig. 7 that keep contact and are unstable, in both readings."""
+    validity = run["validity_map"]
+    unstable = on_grid_of(run["stability_map"], validity).regime_linear > 0
+    black = unstable & (validity.separates == 0)
+    limit = growth_threshold(validity)
+    growing = int((validity.response_growth >= limit).sum())
+    return finding(
+        max(int(black.sum()), growing),
+        ">",
+        0,
+        f"Of the {int((validity.separates == 0).sum())} cells that keep contact in A1, "
+        f"{int(black.sum())} are unstable by A3 (the text's reading), and in {growing} |x| grows "
+        f"as fast as time or faster, {limit:g} times from the first half of the run to the second "
+        "(the caption's reading)." + _between_the_cells(run),
+    )
+
+
+@rows.add(
+    "E11",
+    "5 and 6",
+    "A2's reaction force decides about the equilibrium of Eq. (15)",
+    "cells in which A2's R_n and the equilibrium's N* differ in sign",
+    "static_state",
+    Verdict.fails,
+)
+def reaction_is_that_of_equilibrium(run: Run) -> Finding:
+    """E11: A2's verdict (y = 0) against the contact force of the equilibrium of Eq. (15)."""
+    sliding = run["quasi_static_map"]
+    pushes = sliding.contact_force_static > 1e-12 * sliding.contact_force_static.max()
+    known = sliding.outcome == 0
+    refused = int((known & (sliding.possible == 0) & pushes).sum())
+    allowed = int((known & (sliding.possible == 1) & ~pushes).sum())
+    scene, load = cell(sliding, 0.4, 0.6), run.parameters.k3 * run.parameters.preload
+    return finding(
+        refused + allowed,
+        "≤",
+        0,
+        f"{refused} cells are not possible by A2 though the equilibrium of Eq. (15) presses on "
+        f"the belt; {allowed} are possible though it does not. At (0.4π, 0.6π) "
+        f"R_n = {float(scene.reaction_force) / load:.3g} and "
+        f"N* = {float(scene.contact_force_static) / load + 0.0:.2g}, over the preload.",
+    )
+
+
+@rows.add(
+    "E12",
+    "6, Eq. (12g)",
+    "the nondimensional equations exist at every pair of angles",
+    "cells with K11 = 0",
+    "fig06",
+    Verdict.fails,
+)
+def nondimensional_time_exists(run: Run) -> Finding:
+    """E12: cells where K11 = 0, so that τ = ω11·t and Eqs. (13)–(17) do not exist."""
+    k11 = stiffness(run, "stiffness_x")
+    undefined = k11 <= ROUND_OFF * (run.parameters.k1 + run.parameters.k2)
+    where = ", ".join(
+        f"({float(k11.alpha1[row]) / np.pi:.3g}π, {float(k11.alpha2[column]) / np.pi:.3g}π)"
+        for row, column in np.argwhere(undefined.values)
+    )
+    return finding(
+        int(undefined.sum()),
+        "≤",
+        0,
+        f"K11 = 0 in {int(undefined.sum())} of {undefined.size} cells"
+        + (f", {where}: ω11 = 0 divides in Eqs. (12)–(17)." if where else "."),
+    )
+
+
+def _between_the_cells(run: Run) -> str:
+    """What the inference's search for the cells that matter found at these parameters."""
+    if "parameter_inference" not in run:
+        return ""
+    inference = run["parameter_inference"]
+    if "baseline_consequence" not in inference:
+        return ""
+    empty = bool(inference.baseline_consequence.sel(consequence="F7_black"))
+    return " Along the edge of the unstable regions of A3, between the cells of the map, A1 " + (
+        "keeps contact nowhere." if empty else "keeps contact in places."
+    )

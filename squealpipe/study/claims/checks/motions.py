@@ -1,0 +1,45 @@
+"""Looking things up in the A1 motions of the paper's scenes."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+
+from squealpipe.schema.dynamics.runs import EventFlag
+from squealpipe.study.claims.evidence import MissingDataError, Run
+
+
+def scene(run: Run, name: str) -> xr.Dataset:
+    """The A1 motion of a scene of the paper."""
+    return run[f"simulate/{name}"]
+
+
+def events(motion: xr.Dataset, kind: EventFlag) -> np.ndarray:
+    """Times of the events of a kind, in the run's unit of time."""
+    return np.asarray(motion.event_time.values[motion.event_kind.values == kind])
+
+
+def until(run: Run, motion: xr.Dataset) -> str:
+    """Where a run ends, for sentences: ``t = 50 √(m/k1)``."""
+    return f"t = {float(motion.time[-1]) / run.parameters.time_unit:g} √(m/k1)"
+
+
+def halves(motion: xr.Dataset) -> tuple[float, float]:
+    """Largest |x| in the first and in the second half of a run, in units of l_pre."""
+    if motion.sizes["time"] < 10:
+        raise MissingDataError("the run holds fewer than ten instants")
+    half = motion.sizes["time"] // 2
+    size = np.abs(motion.x.values) / float(motion.preload)
+    return float(size[:half].max()), float(size[half:].max())
+
+
+def frequency(motion: xr.Dataset) -> float:
+    """Mean angular frequency of the contact force, from its crossings of the mean, upwards."""
+    force = motion.normalized_contact_force.values
+    above = force > force.mean()
+    rising = np.flatnonzero(~above[:-1] & above[1:])
+    if rising.size < 2:
+        raise MissingDataError("the contact force completes no oscillation")
+    share_of_step = (force.mean() - force[rising]) / (force[rising + 1] - force[rising])
+    instants = motion.time.values[rising] + share_of_step * np.diff(motion.time.values)[rising]
+    return float(2 * np.pi * (rising.size - 1) / (instants[-1] - instants[0]))

@@ -1,0 +1,248 @@
+"""Statements on the time histories of model A1 (Figs. 2–5)."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+
+from squealpipe.schema.claims import Verdict
+from squealpipe.schema.dynamics.runs import GROWTH_THRESHOLD, EventFlag
+from squealpipe.schema.inference import LITTLE
+from squealpipe.study.claims.checks.motions import events, halves, scene, until
+from squealpipe.study.claims.evidence import Finding, Run, finding
+from squealpipe.study.claims.statement import Check, Rows
+
+rows = Rows()
+
+ROUND_OFF = 1e-10
+"""Difference of normalized contact forces that two identical runs may show."""
+
+SATURATED = 1.02
+"""Ratio of the late to the earlier size of a whirl below which it has stopped growing."""
+
+SAME_SPEED = 0.05
+"""Relative difference of belt speeds up to which a long run speaks for the study's own."""
+
+
+def contact_is_kept(name: str) -> Check:
+    """F2a–F2c: the lowest contact force of the run, and no separation event."""
+
+    def check(run: Run) -> Finding:
+        motion = scene(run, name)
+        lowest = float(motion.normalized_contact_force.min())
+        lost = events(motion, EventFlag.separation).size
+        return finding(
+            lowest,
+            ">",
+            0,
+            f"The lowest contact force is {lowest:.4g} of the preload; {lost} separations up to "
+            f"{until(run, motion)}.",
+            also=lost == 0,
+        )
+
+    return check
+
+
+for name, angles in (("F2a", "(0.5π, π)"), ("F2b", "(π, 0.5π)"), ("F2c", "(0.75π, 0.75π)")):
+    rows.add(
+        name,
+        "4",
+        f"contact is kept throughout at {angles}",
+        "lowest contact force over the run, as a share of the preload",
+        "fig02",
+        Verdict.holds,
+    )(contact_is_kept(name))
+
+
+@rows.add(
+    "F2d",
+    "4",
+    "contact is lost at (0.83π, 0.83π)",
+    "number of separations",
+    "fig02",
+    Verdict.holds,
+)
+def contact_is_lost(run: Run) -> Finding:
+    """F2d: number of separations."""
+    motion = scene(run, "F2d")
+    lost = events(motion, EventFlag.separation)
+    if not lost.size:
+        return finding(0, ">", 0, "Contact is never lost.")
+    return finding(
+        lost.size,
+        ">",
+        0,
+        f"{lost.size} separations up to {until(run, motion)}, the first at "
+        f"{lost[0] / run.parameters.time_unit:.4g}; the contact force of the run peaks at "
+        f"{float(motion.normalized_contact_force.max()):.3g} of the preload.",
+    )
+
+
+@rows.add(
+    "F2e",
+    "4",
+    "the first three responses differ little from one another",
+    "spread of the extremes of the contact force, as a share of the preload",
+    "fig02",
+    Verdict.cannot_be_decided,
+)
+def responses_differ_little(run: Run) -> Finding:
+    """F2e: extremes of the contact force of the scenes that keep contact, in two readings.
+
+    The paper gives no number for "a minimal difference". It may mean little against the preload,
+    or less than what sets the first three responses apart from the fourth.
+    """
+    forces = [scene(run, name).normalized_contact_force for name in ("F2a", "F2b", "F2c", "F2d")]
+    extremes = np.array([[float(force.min()), float(force.max())] for force in forces])
+    spread = float(np.ptp(extremes[:3], axis=0).max())
+    apart = float(np.abs(extremes[:3] - extremes[3]).max(axis=1).min())
+    little, closer = spread <= LITTLE, spread < apart
+    undecided = Verdict.cannot_be_decided
+    return finding(
+        spread,
+        "≤",
+        LITTLE,
+        f"The lowest forces are {_listed(extremes[:3, 0])} of the preload, the highest "
+        f"{_listed(extremes[:3, 1])}: a spread of {spread:.3g}, and at least {apart:.3g} from the "
+        f"fourth response. The text has no number for “minimal”: the spread is "
+        f"{'within' if little else 'beyond'} the {LITTLE:g} of the preload that the inference "
+        f"took, and {'smaller' if closer else 'larger'} than the distance from the fourth.",
+        passed=Verdict.holds if closer else undecided,
+        otherwise=undecided if closer else Verdict.fails,
+    )
+
+
+@rows.add(
+    "F3",
+    "4",
+    "at (0.4π, 0.6π) the x oscillation grows without bound",
+    "ratio of largest |x| in the second half of the run to that in the first",
+    "fig03",
+    Verdict.holds_only_as_printed,
+)
+def unstable_response_grows(run: Run) -> Finding:
+    """F3: largest |x| early and late, and where it ends in the long run."""
+    motion = scene(run, "F3")
+    early, late = halves(motion)
+    own = run.parameters.belt_speed
+    unit = run.parameters.time_unit
+    whirl = run["whirl"].sel(belt_speed=own, method="nearest")
+    speed = float(whirl.belt_speed)
+    evidence = (
+        f"|x| reaches {early:.3g} l_pre in the first half of the run to "
+        f"{until(run, motion)} and {late:.3g} l_pre in the second. "
+    )
+    saturates = False
+    if abs(speed - own) <= SAME_SPEED * abs(own):
+        size, before = (
+            float(whirl[name] / run.parameters.preload)
+            for name in ("amplitude", "amplitude_before")
+        )
+        saturates = size < SATURATED * before
+        evidence += (
+            f"At the end of a run to {float(whirl.t_end) / unit:g} √(m/k1) at "
+            f"V = {speed:.3g} m/s it "
+            + ("does not grow" if saturates else "grows")
+            + f": {size:.3g} l_pre in the last fifth, {before:.3g} before."
+        )
+    else:
+        evidence += "No long run was made near this belt speed."
+    return finding(
+        late / early,
+        ">",
+        GROWTH_THRESHOLD,
+        evidence,
+        passed=Verdict.holds_only_as_printed if saturates else Verdict.holds,
+    )
+
+
+@rows.add(
+    "F4",
+    "4",
+    "at (0.2π, 0.8π) there is a bounded limit cycle",
+    "largest |x| over the free length of a spring",
+    "fig04",
+    Verdict.holds_only_as_printed,
+)
+def limit_cycle_is_bounded(run: Run) -> Finding:
+    """F4: largest |x| against the springs' length, and whether it grows within the run."""
+    motion = scene(run, "F4")
+    early, late = halves(motion)
+    longest = max(run.parameters.length1, run.parameters.length2)
+    largest = float(np.abs(motion.x.values).max() / longest)
+    lifetimes = run["transient"].shown_lifetime.values / run.parameters.time_unit
+    ended = lifetimes[np.isfinite(lifetimes)]
+    horizon = float(run["transient"].t_end) / run.parameters.time_unit
+    evidence = (
+        f"|x| reaches {largest:.3g} of the longer free length up to {until(run, motion)} "
+        f"({early:.3g} l_pre in the first half, {late:.3g} l_pre in the second; "
+        f"{GROWTH_THRESHOLD:g} times as far counts as growth); whether it repeats is not judged. "
+    ) + (
+        f"Beyond, {ended.size} of {lifetimes.size} runs from starts at most a billionth of l_pre "
+        f"apart end in the whirl before t = {horizon:g} √(m/k1), the first after {ended.min():.3g}"
+        f"{_median(run['transient'], run.parameters.time_unit)}."
+        if ended.size
+        else f"None of {lifetimes.size} runs ends in the whirl before t = {horizon:g} √(m/k1)."
+    )
+    return finding(
+        largest,
+        "<",
+        2.0,
+        evidence,
+        also=late < GROWTH_THRESHOLD * early,
+        passed=Verdict.holds_only_as_printed if ended.size else Verdict.holds,
+    )
+
+
+def _median(transient: xr.Dataset, unit: float) -> str:
+    """The median of all runs with its interval, as a clause; nothing where it was not seen."""
+    if "median_lifetime" not in transient or not np.isfinite(transient.median_lifetime[0]):
+        return ""
+    middle, low, high = transient.median_lifetime.values / unit
+    return f", half of all before {middle:.4g} (95 % interval {low:.4g} to {high:.4g})"
+
+
+@rows.add(
+    "F5a",
+    "4",
+    "(π, π) and (0, 0) give identical contact forces",
+    "largest difference of the contact forces, as a share of the preload",
+    "fig05",
+    Verdict.holds,
+)
+def runs_are_identical(run: Run) -> Finding:
+    """F5a: largest difference of the normalized contact forces at (π, π) and (0, 0)."""
+    first, second = (scene(run, name).normalized_contact_force for name in ("F5a", "F5b"))
+    difference = float(np.abs(first.values - second.values).max())
+    return finding(
+        difference,
+        "≤",
+        ROUND_OFF,
+        f"The contact forces differ by at most {difference:.1g} of the preload.",
+    )
+
+
+@rows.add(
+    "F5b",
+    "4",
+    "there the mass jumps again and again, for lack of vertical stiffness",
+    "number of flights",
+    "fig05",
+    Verdict.holds,
+)
+def mass_jumps(run: Run) -> Finding:
+    """F5b: repeated flights at (π, π), and their height."""
+    motion = scene(run, "F5a")
+    flights = events(motion, EventFlag.separation).size
+    height = float(motion.y.max() / run.parameters.preload)
+    return finding(
+        flights,
+        "≥",
+        2,
+        f"{flights} flights up to {until(run, motion)}, up to y = {height:.3g} l_pre; "
+        "the springs lie along x and have no vertical stiffness to first order.",
+    )
+
+
+def _listed(values: np.ndarray) -> str:
+    return ", ".join(f"{value:.3g}" for value in values)

@@ -1,0 +1,194 @@
+"""Statements on quasi-static sliding and linear stability (Figs. 6 and 7)."""
+
+from __future__ import annotations
+
+from squealpipe.schema.claims import Verdict
+from squealpipe.schema.dynamics.runs import GROWTH_THRESHOLD
+from squealpipe.study.claims.checks.motions import halves, scene
+from squealpipe.study.claims.evidence import Finding, Run, finding
+from squealpipe.study.claims.maps import (
+    cell,
+    on_grid_of,
+    share,
+    stiffness,
+    unstable_and_lost,
+    unstable_cells,
+    unstable_yet_sliding,
+)
+from squealpipe.study.claims.statement import Rows
+
+rows = Rows()
+
+LARGE_REGION = 0.5
+"""Share of the angle map from which a region is called large."""
+
+ADEQUATE_AGREEMENT = 0.95
+"""Share of cells in which A3 would have to agree with A1 to be of use."""
+
+
+@rows.add(
+    "F6a",
+    "5",
+    "Eq. (11) bounds where quasi-static sliding exists",
+    "cells in which Eq. (11) as printed and the sign of the reaction force differ",
+    "fig06",
+    Verdict.holds_only_as_printed,
+)
+def printed_bound_is_physical(run: Run) -> Finding:
+    """F6a, E3: Eq. (11) as printed against a positive reaction force."""
+    sliding = run["quasi_static_map"]
+    differ = sliding.possible_as_printed != sliding.possible
+    pushes = run.parameters.belt_direction * stiffness(run, "stiffness_xy")
+    outside = int((differ & (pushes >= 0)).sum())
+    return finding(
+        int(differ.sum()),
+        "≤",
+        0,
+        f"As printed, sliding is possible in {100 * share(sliding.possible_as_printed == 1):.3g} % "
+        f"of the cells; the reaction force is positive in {100 * share(sliding.possible == 1):.3g} "
+        f"%. The two differ in {int(differ.sum())} cells, {outside} of them with K12 sgn V ≥ 0.",
+        otherwise=Verdict.fails if outside else Verdict.holds_only_as_printed,
+    )
+
+
+@rows.add(
+    "F6b",
+    "6",
+    "every linearly unstable cell lies where quasi-static sliding is impossible",
+    "unstable cells with a positive reaction force",
+    "fig06",
+    Verdict.holds_only_as_printed,
+    consequence="F6b",
+)
+def unstable_only_without_sliding(run: Run) -> Finding:
+    """F6b, C2: unstable cells that lie where sliding is possible, in both readings."""
+    printed, physical = (int(cells.sum()) for cells in unstable_yet_sliding(run))
+    return finding(
+        physical,
+        "≤",
+        0,
+        f"Of {int(unstable_cells(run).sum())} unstable cells, {printed} lie where Eq. (11) as "
+        f"printed allows sliding, but {physical} where the reaction force is positive.",
+        otherwise=Verdict.fails if printed else Verdict.holds_only_as_printed,
+    )
+
+
+@rows.add(
+    "F6c",
+    "6",
+    "the system is stable wherever quasi-static sliding persists",
+    "share of cells with a positive reaction force that are unstable",
+    "fig06",
+    Verdict.holds_only_as_printed,
+    consequence="F6b",
+)
+def stable_where_sliding(run: Run) -> Finding:
+    """F6c: share of the cells with sliding that are unstable, in both readings."""
+    sliding = run["quasi_static_map"]
+    printed, physical = (
+        float(cells.sum() / max(int(allowed.sum()), 1))
+        for cells, allowed in zip(
+            unstable_yet_sliding(run), (sliding.possible_as_printed, sliding.possible), strict=True
+        )
+    )
+    return finding(
+        physical,
+        "≤",
+        0,
+        f"Unstable are {100 * printed:.2g} % of the cells that Eq. (11) as printed allows, and "
+        f"{100 * physical:.2g} % of those with a positive reaction force.",
+        otherwise=Verdict.fails if printed > 0 else Verdict.holds_only_as_printed,
+    )
+
+
+@rows.add(
+    "F6d",
+    "6",
+    "(0.4π, 0.6π) is linearly stable although A1 is not",
+    "growth rate of A3 there, times the time unit",
+    "fig06",
+    Verdict.holds,
+)
+def linearly_stable_but_not(run: Run) -> Finding:
+    """F6d: growth rate of A3 at (0.4π, 0.6π) against the growth of A1's response there."""
+    rate = float(cell(run["stability_map"], 0.4, 0.6).growth_rate) * run.parameters.time_unit
+    early, late = halves(scene(run, "F3"))
+    return finding(
+        rate,
+        "≤",
+        1e-9,
+        f"A3's largest growth rate there is {rate:.1g}; in A1 |x| reaches {early:.3g} l_pre in "
+        f"the first half of the run and {late:.3g} l_pre in the second"
+        f" ({GROWTH_THRESHOLD:g} times as far counts as growth).",
+        also=late > GROWTH_THRESHOLD * early,
+    )
+
+
+@rows.add(
+    "F6e",
+    "6",
+    "the linear model lets k3 pull as well as push, which the contact cannot: by how much, where",
+    "share of cells in which the linear model's k3 pulls",
+    "fig06",
+    Verdict.holds,
+)
+def spring_pulls(run: Run) -> Finding:
+    """F6e: where the linear model's contact spring pulls, and how much."""
+    pull = run["linear_pull"]
+    stable = on_grid_of(run["stability_map"], pull).regime_linear == 0
+    pulls = pull.lowest_contact_force < 0
+    if not pulls.any():
+        return finding(0, ">", 0, "From rest the linear model's k3 pulls in none of the cells.")
+    strongest = max(0.0, -float(pull.lowest_contact_force.where(stable).min()))
+    fraction = float(pull.pulling_fraction.where(pulls).median())
+    return finding(
+        share(pulls),
+        ">",
+        0,
+        f"From rest the linear model's k3 pulls in {100 * share(pulls):.3g} % of the cells, there "
+        f"for {100 * fraction:.2g} % of the time (median), with up to {strongest:.3g} times the "
+        "preload in linearly stable cells.",
+    )
+
+
+@rows.add(
+    "F7a",
+    "6",
+    "A3 is invalid wherever A1 separates; the region is large",
+    "share of cells in which A1 separates",
+    "fig07",
+    Verdict.holds,
+    consequence="F7a",
+)
+def invalid_where_separated(run: Run) -> Finding:
+    """F7a: share of the map on which A1 loses contact."""
+    lost = run["validity_map"].separates == 1
+    return finding(
+        share(lost),
+        ">",
+        LARGE_REGION,
+        f"A1 loses contact in {int(lost.sum())} of {lost.size} cells and keeps it in "
+        f"{int((~lost).sum())}.",
+    )
+
+
+@rows.add(
+    "F7b",
+    "6",
+    "the linear analysis cannot be used to decide the stability of this system",
+    "share of cells in which A3's stability and A1's contact agree",
+    "fig07",
+    Verdict.holds,
+)
+def linear_analysis_misleads(run: Run) -> Finding:
+    """F7b: how often A3's "stable" comes with kept contact in A1, and the reverse."""
+    unstable, lost = unstable_and_lost(run)
+    agree = share(unstable == lost)
+    return finding(
+        agree,
+        "<",
+        ADEQUATE_AGREEMENT,
+        f"A3 and A1 agree in {100 * agree:.3g} % of the cells: A3 calls "
+        f"{int((~unstable & lost).sum())} cells stable that lose contact in A1, and "
+        f"{int((unstable & ~lost).sum())} unstable that keep it.",
+    )

@@ -1,0 +1,139 @@
+"""What a check may look at: the datasets of one run, loaded on demand and noted down."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+
+from squealpipe.parameters import TABLE, Parameters
+from squealpipe.schema.claims import Verdict
+from squealpipe.store import load
+from squealpipe.text import as_people_write
+
+
+class MissingDataError(LookupError):
+    """A check needs a dataset that the run does not have, or one too coarse for it."""
+
+
+@dataclass
+class Run(Mapping[str, xr.Dataset]):
+    """The datasets of one run by name; each that is looked at is noted in ``used``.
+
+    Attributes:
+        parameters: those of the study.
+        sources: dataset name → file, or the dataset itself.
+        used: names looked at since the last :meth:`forget`.
+    """
+
+    parameters: Parameters
+    sources: Mapping[str, Path | xr.Dataset]
+    used: list[str] = field(default_factory=list)
+    _loaded: dict[str, xr.Dataset] = field(default_factory=dict)
+
+    def __getitem__(self, name: str) -> xr.Dataset:
+        if name not in self.sources:
+            raise MissingDataError(f"the run has no dataset {name}: {self._why_missing()}")
+        if name not in self.used:
+            self.used.append(name)
+        if name not in self._loaded:
+            source = self.sources[name]
+            self._loaded[name] = source if isinstance(source, xr.Dataset) else load(source)
+        return self._loaded[name]
+
+    def _why_missing(self) -> str:
+        given = [name for name in self.parameters.as_dict() if TABLE[name].extension]
+        if not given:
+            return "it is no part of this study, or not computed yet"
+        return f"the study leaves out what cannot carry {', '.join(given)}"
+
+    def __contains__(self, name: object) -> bool:
+        return name in self.sources
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.sources)
+
+    def __len__(self) -> int:
+        return len(self.sources)
+
+    def forget(self) -> list[str]:
+        """Names used, each with its id; starts a new note."""
+        names = [
+            f"{name} ({self._loaded[name].attrs.get('dataset_id', 'not stored')})"
+            for name in self.used
+        ]
+        self.used = []
+        return names
+
+
+@dataclass(frozen=True, kw_only=True)
+class Finding:
+    """What one check found.
+
+    Attributes:
+        verdict: what follows for the statement.
+        value, relation, threshold: the deciding number and the comparison that it passes or not.
+        evidence: one line with the numbers that a reader would ask for.
+    """
+
+    verdict: Verdict
+    value: float
+    relation: str
+    threshold: float
+    evidence: str
+
+    @property
+    def margin(self) -> float:
+        """Distance of the value from the threshold, positive where the check passes."""
+        return margin(self.value, self.relation, self.threshold)
+
+
+def passes(value: float, relation: str, threshold: float) -> bool:
+    """Whether the comparison is true; an equality includes its tolerance in the threshold."""
+    return {
+        "<": value < threshold,
+        "≤": value <= threshold,
+        ">": value > threshold,
+        "≥": value >= threshold,
+    }[relation]
+
+
+def margin(value: float, relation: str, threshold: float) -> float:
+    """Signed distance from the threshold, positive where the comparison is true."""
+    return threshold - value if relation in "<≤" else value - threshold
+
+
+def finding(
+    value: float,
+    relation: str,
+    threshold: float,
+    evidence: str,
+    *,
+    otherwise: Verdict = Verdict.fails,
+    passed: Verdict = Verdict.holds,
+    also: bool = True,
+) -> Finding:
+    """A finding from one comparison.
+
+    Args:
+        value, relation, threshold: the deciding comparison.
+        evidence: one line.
+        otherwise, passed: verdicts when the comparison is false and true.
+        also: further conditions, all of which must be true as well.
+
+    Raises:
+        MissingDataError: the value is NaN, so there is nothing to compare.
+    """
+    if np.isnan(value):
+        raise MissingDataError(f"nothing to compare: {evidence}")
+    decided = passes(float(value), relation, threshold) and also
+    return Finding(
+        verdict=passed if decided else otherwise,
+        value=float(value),
+        relation=relation,
+        threshold=float(threshold),
+        evidence=as_people_write(evidence),
+    )

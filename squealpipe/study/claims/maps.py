@@ -1,0 +1,115 @@
+"""Looking things up in maps over both spring angles."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+
+from squealpipe.study.claims.evidence import MissingDataError, Run
+
+ROUND_OFF = 1e-12
+"""Share of a stiffness below which a difference of stiffnesses counts as none."""
+
+
+def cell(dataset: xr.Dataset, alpha1_over_pi: float, alpha2_over_pi: float) -> xr.Dataset:
+    """The cell of a map at a pair of angles.
+
+    Raises:
+        MissingDataError: the grid has no point within a millionth of π.
+    """
+    wanted = {"alpha1": alpha1_over_pi * np.pi, "alpha2": alpha2_over_pi * np.pi}
+    try:
+        return dataset.sel(wanted, method="nearest", tolerance=1e-6 * np.pi)
+    except KeyError as error:
+        raise MissingDataError(
+            f"the grid of {dataset.attrs['schema']} has no cell "
+            f"({alpha1_over_pi:g}π, {alpha2_over_pi:g}π)"
+        ) from error
+
+
+def on_grid_of(dataset: xr.Dataset, other: xr.Dataset) -> xr.Dataset:
+    """The cells of a map that are also cells of another one.
+
+    Raises:
+        MissingDataError: the other grid has points that this one lacks.
+    """
+    try:
+        found = dataset.sel(
+            alpha1=other.alpha1, alpha2=other.alpha2, method="nearest", tolerance=1e-6 * np.pi
+        )
+    except KeyError as error:
+        raise MissingDataError(
+            f"the grids of {dataset.attrs['schema']} and {other.attrs['schema']} do not meet"
+        ) from error
+    # angles that differ by round-off would be dropped where both maps are compared
+    return found.assign_coords(alpha1=other.alpha1, alpha2=other.alpha2)
+
+
+def angle_sum_over_pi(dataset: xr.Dataset) -> xr.DataArray:
+    """(α1 + α2)/π over a map."""
+    total: xr.DataArray = (dataset.alpha1 + dataset.alpha2) / np.pi
+    return total
+
+
+def is_multiple(values: xr.DataArray, of: float = 1.0, *, odd: bool = False) -> xr.DataArray:
+    """Where values are a whole (or odd) multiple, to a millionth."""
+    ratio = values / of
+    whole: xr.DataArray = abs(ratio - ratio.round()) < 1e-6
+    return whole & (ratio.round() % 2 == 1) if odd else whole
+
+
+def share(condition: xr.DataArray) -> float:
+    """Share of cells in which a condition is true."""
+    return float(condition.mean())
+
+
+def place(dataset: xr.Dataset, values: xr.DataArray) -> tuple[float, float]:
+    """(α1/π, α2/π) where values are largest."""
+    row, column = np.unravel_index(int(values.values.argmax()), values.shape)
+    return float(dataset.alpha1[row] / np.pi), float(dataset.alpha2[column] / np.pi)
+
+
+def unstable_cells(run: Run) -> xr.DataArray:
+    """Cells of the stability map in which A3 is unstable."""
+    cells: xr.DataArray = run["stability_map"].regime_linear > 0
+    return cells
+
+
+def unstable_yet_sliding(run: Run) -> tuple[xr.DataArray, xr.DataArray]:
+    """Unstable cells where sliding is possible: by Eq. (11) as printed, and by R_n > 0."""
+    unstable, sliding = unstable_cells(run), run["quasi_static_map"]
+    return unstable & (sliding.possible_as_printed == 1), unstable & (sliding.possible == 1)
+
+
+def coupling_is_negative(run: Run) -> xr.DataArray:
+    """Cells with K12 < 0."""
+    return stiffness(run, "stiffness_xy") < -ROUND_OFF * (run.parameters.k1 + run.parameters.k2)
+
+
+def order_turns_over(run: Run) -> xr.DataArray:
+    """Cells in which x is the softer direction in contact and y when separated.
+
+    In contact x is the softer direction while K11 < K22 + k3, separated while K11 < K22.
+    """
+    difference = stiffness(run, "stiffness_x") - stiffness(run, "stiffness_y")
+    k3 = run.parameters.k3
+    return (difference > ROUND_OFF * k3) & (difference < (1 - ROUND_OFF) * k3)
+
+
+def stiffness(run: Run, name: str) -> xr.DataArray:
+    """K11 (``stiffness_x``), K12 (``stiffness_xy``) or K22 (``stiffness_y``) over the map, N/m.
+
+    Raises:
+        MissingDataError: the dataset was made by a version that did not store it.
+    """
+    sliding = run["quasi_static_map"]
+    if name not in sliding:
+        raise MissingDataError(f"this quasi_static_map holds no {name}; compute it again")
+    return sliding[name]
+
+
+def unstable_and_lost(run: Run) -> tuple[xr.DataArray, xr.DataArray]:
+    """Cells that A3 calls unstable, and those that lose contact in A1, on the grid of A1."""
+    validity = run["validity_map"]
+    unstable = on_grid_of(run["stability_map"], validity).regime_linear > 0
+    return unstable, validity.separates == 1

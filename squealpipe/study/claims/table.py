@@ -1,0 +1,93 @@
+"""The judged statements as plain rows, for the terminal, for machines and for the report."""
+
+from __future__ import annotations
+
+import math
+import os
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import xarray as xr
+
+from squealpipe.schema.claims import Basis, Origin, Verdict
+from squealpipe.store import load
+from squealpipe.study.claims.evidence import passes
+
+TEXT = ("statement", "section", "check", "relation", "evidence", "dataset", "figure")
+VERDICTS = ("verdict", "verdict_here", "recorded")
+NUMBERS = ("value", "threshold", "margin", "feasible_share")
+INTERVAL = ("feasible_share_low", "feasible_share_high")
+FLAGS = {"basis": Basis, "origin": Origin}
+
+
+def rows(claims: xr.Dataset) -> list[dict[str, Any]]:
+    """One mapping per statement; numbers that do not exist are None.
+
+    Args:
+        claims: dataset ``claims``.
+    """
+    table_ = []
+    for index, name in enumerate(claims.claim.values):
+        row = claims.isel(claim=index)
+        verdicts = {key: Verdict(int(row[key])).words for key in VERDICTS}
+        table_.append(
+            {
+                "id": str(name),
+                **{key: str(row[key].item()) for key in TEXT},
+                **{key: _number(row[key].item()) for key in NUMBERS},
+                **verdicts,
+                "as_recorded": verdicts["verdict_here"] == verdicts["recorded"],
+                "unmet": _fails_by_a_further_condition(row),
+                **_standing(row),
+            }
+        )
+    return table_
+
+
+def totals(table_: Sequence[Mapping[str, Any]]) -> dict[str, dict[str, int]]:
+    """Origin of a row → verdict → number of rows: the paper's statements and our misprints apart.
+
+    Args:
+        table_: what :func:`rows` gives.
+    """
+    return {
+        origin.name: dict(Counter(row["verdict"] for row in table_ if row["origin"] == origin.name))
+        for origin in Origin
+    }
+
+
+def table(path: str | os.PathLike[str]) -> tuple[list[dict[str, Any]], int]:
+    """The judged statements of a run and the exit code for a command line.
+
+    Args:
+        path: the dataset ``claims`` of a run, for instance ``results/data/claims.nc``.
+
+    Returns:
+        The rows, and 1 if a verdict differs from the one recorded for the shipped baseline,
+        else 0. A run with other parameters only reports: its code is 0.
+    """
+    claims = load(path, schema="claims")
+    found = rows(claims)
+    shipped = bool(claims.attrs["shipped"])
+    return found, int(shipped and not all(row["as_recorded"] for row in found))
+
+
+def _standing(row: xr.Dataset) -> dict[str, Any]:
+    """How the statement stands to the inference; None where an older file does not say."""
+    return {
+        "feasible_count": int(row.feasible_count) if "feasible_count" in row else None,
+        **{key: _number(row[key].item()) if key in row else None for key in INTERVAL},
+        **{key: flags(int(row[key])).name if key in row else None for key, flags in FLAGS.items()},
+    }
+
+
+def _fails_by_a_further_condition(row: xr.Dataset) -> bool:
+    """Whether the statement fails here though its deciding comparison is true."""
+    value, relation, threshold = (row[key].item() for key in ("value", "relation", "threshold"))
+    fails = int(row.verdict_here) == Verdict.fails
+    return fails and relation != "" and passes(value, relation, threshold)
+
+
+def _number(value: float) -> float | None:
+    return None if math.isnan(value) else float(value)

@@ -1,0 +1,68 @@
+"""Model A1 in time, started on periodic motions of A4."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from squealpipe.study.figures.parts.origin import scene_name
+from squealpipe.study.figures.parts.style import (
+    BLUE,
+    GREEN,
+    GREY,
+    ORANGE,
+    PAGE,
+    RED,
+    new_figure,
+    panel_letter,
+)
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+READS = ("a1_beside_a4",)
+CAPTION = (
+    "Model A1 started on periodic motions of A4 (grey), with both springs of the length L. Left: y "
+    "over the first periods; right: amplitude spectrum of y over 32 periods."
+)
+ALT = "Rows of two panels: time histories of y of both models, and their spectra."
+KINDS = {"period": "y in time", "order": "spectrum of y"}
+COLOURS = (RED, ORANGE, GREEN, BLUE)
+DASHES = ("-", "--", "-.", ":")
+
+
+def draw(beside: xr.Dataset) -> Figure:
+    """One row for each scene, from dataset ``a1_beside_a4``."""
+    scenes = beside.scene.values
+    figure, axes = new_figure(PAGE, 0.5 + 1.7 * len(scenes), nrows=len(scenes), ncols=2)
+    letters = iter("abcdefghijklmnopqrst")
+    for row, scene in zip(axes, scenes, strict=True):
+        part = beside.sel(scene=scene)
+        for panel, axis in zip(row, ("period", "order"), strict=True):
+            _draw(panel, part, axis)
+            panel_letter(panel, next(letters), f"{scene_name(beside, str(scene))}: {KINDS[axis]}")
+        row[0].set_ylabel("y (m)")
+        row[1].set_ylabel("amplitude (m)")
+    axes[-1, 0].set_xlabel("time / period of A4")
+    axes[-1, 1].set_xlabel("frequency / ω of A4")
+    handles, labels = axes[0, 0].get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside lower center", ncols=len(labels))
+    return figure
+
+
+def _draw(panel: Axes, part: xr.Dataset, axis: str) -> None:
+    kind = "y" if axis == "period" else "spectrum"
+    panel.plot(part[axis], part[f"{kind}_a4"], color=GREY, linewidth=2.6, alpha=0.6, label="A4")
+    for index, ratio in enumerate(part.length_ratio.values):
+        panel.plot(
+            part[axis],
+            part[f"{kind}_a1"].sel(length_ratio=ratio),
+            color=COLOURS[index % len(COLOURS)],
+            linestyle=DASHES[index % len(DASHES)],
+            linewidth=0.9,
+            label=f"A1, L = {ratio:g} $l_\\mathrm{{pre}}$",
+        )
+    panel.set_xlim(0, float(np.ceil(part[axis].values[-1])))

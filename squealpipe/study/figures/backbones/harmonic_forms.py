@@ -1,0 +1,93 @@
+"""What the paper's own form of harmonic balance finds, against the exact orbits."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from squealpipe.study.figures.parts.origin import scene_name
+from squealpipe.study.figures.parts.style import (
+    BLUE,
+    GREY,
+    ORANGE,
+    PAGE,
+    RED,
+    new_figure,
+    panel_letter,
+    symbols,
+)
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+READS = ("harmonic_forms",)
+CAPTION = (
+    "The paper's harmonic balance, Eqs. (28) to (36), started at the exact orbits. (a) Frequencies "
+    "found with Eq. (34) corrected (K₁₂a + K₂₂b) and as printed (K₁₁a + K₁₂b), beside the exact "
+    "ones. (b) There is no phase condition: spread of the largest y over the phases of the start, "
+    "against the samples N; circled where Γ lacks full rank."
+)
+DECADES = 1.5
+"""Decades from which an axis has labels enough at the powers of ten."""
+ALT = "Frequencies found by two forms against exact ones, and spread of y over the samples."
+
+
+def draw(forms: xr.Dataset) -> Figure:
+    """Two panels from dataset ``harmonic_forms``."""
+    figure, axes = new_figure(PAGE, 3.2, ncols=2, width_ratios=[1.3, 1])
+    _frequencies(axes[0, 0], forms)
+    _spread(axes[0, 1], forms)
+    panel_letter(axes[0, 0], "a", "frequency found")
+    panel_letter(axes[0, 1], "b", symbols(f"phase dependence, N_h = {int(forms.n_harmonics)}"))
+    return figure
+
+
+def _frequencies(panel: Axes, forms: xr.Dataset) -> None:
+    places = np.arange(forms.sizes["scene"])
+    panel.plot(
+        places, forms.omega_exact, "_", color=GREY, markersize=22, markeredgewidth=2, label="exact"
+    )
+    for form, colour, marker, name in ((0, BLUE, "x", "corrected"), (1, RED, "o", "as printed")):
+        panel.plot(
+            places,
+            forms.omega.sel(form=form).values,
+            linestyle="none",
+            marker=marker,
+            markerfacecolor="none",
+            color=colour,
+            label=f"Eq. (34) {name}",
+        )
+    panel.set_xticks(
+        places,
+        [scene_name(forms, str(name)).replace(", ", ",\n") for name in forms.scene.values],
+    )
+    panel.set(ylabel="ω (rad/s)")
+    panel.set_ylim(bottom=-0.05)
+    panel.margins(x=0.12)
+    panel.legend(loc="upper center", bbox_to_anchor=(0.5, -0.27), ncols=3, handlelength=3.2)
+
+
+def _spread(panel: Axes, forms: xr.Dataset) -> None:
+    panel.plot(forms.samples, forms.phase_spread_y, marker="s", color=ORANGE, markersize=4)
+    lacking = forms.fourier_rank.values < int(forms.fourier_columns)
+    panel.plot(
+        forms.samples.values[lacking],
+        forms.phase_spread_y.values[lacking],
+        linestyle="none",
+        marker="o",
+        markersize=9,
+        markerfacecolor="none",
+        color=RED,
+        label="Γ lacks full rank",
+    )
+    panel.set(
+        xscale="log", yscale="log", xlabel="samples $N$", ylabel="spread of the largest y (m)"
+    )
+    panel.set_xticks(forms.samples.values[[0, 3, 4, 5]], forms.samples.values[[0, 3, 4, 5]])
+    panel.xaxis.minorticks_off()
+    if np.ptp(np.log10(panel.get_ylim())) > DECADES:
+        panel.yaxis.minorticks_off()
+    panel.legend(loc="lower left")

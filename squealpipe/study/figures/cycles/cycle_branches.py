@@ -1,0 +1,119 @@
+"""Amplitude of limit cycles over friction, stable and unstable, beside long runs."""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from squealpipe.schema import meanings
+from squealpipe.study.figures.parts.origin import angle_pair, parameter, scene_title
+from squealpipe.study.figures.parts.style import (
+    BLACK,
+    BLUE,
+    GREEN,
+    GREY,
+    ORANGE,
+    PAGE,
+    PURPLE,
+    RED,
+    new_figure,
+    panel_letter,
+)
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+READS = (
+    "cycles/branch_F3_down",
+    "cycles/branch_F3_up",
+    "cycles/branch_flutter",
+    "cycles/extremes",
+)
+MARKS = {
+    "fold": ("^", RED, "fold"),
+    "period_doubling": ("s", PURPLE, "period doubling"),
+    "torus": ("D", GREEN, "torus bifurcation"),
+    "grazing": ("o", BLACK, "contact just lost or regained"),
+    "stick_onset": ("v", GREEN, "stick just begins or ends"),
+}
+CAPTION = (
+    "Limit cycles of the full model with dashpots over the friction coefficient: largest |x| of "
+    "the cycle. Full lines: stable; dashed: unstable; marks: located special points. Dots: largest "
+    "|x| in the last fifth of long runs from starts near and far, cycles and states of rest alike. "
+    "(a) Scene of Fig. 3; (b) another scene, with the branch from the onset of flutter if steady "
+    "sliding flutters within the range; (c) scene of Fig. 2(d)."
+)
+ALT = (
+    "Three charts of largest |x| over friction. Lines, if any, show branches of cycles with "
+    "marks at special points; dots show where long runs end."
+)
+
+
+def draw(down: xr.Dataset, up: xr.Dataset, flutter: xr.Dataset, extremes: xr.Dataset) -> Figure:
+    """Three panels.
+
+    Args:
+        down, up: branches of the scene of Fig. 3 from the study's friction to its limits.
+        flutter: branch from the onset of flutter.
+        extremes: settled amplitudes by brute force.
+    """
+    figure, axes = new_figure(PAGE, 3.2, ncols=3)
+    panels = (("F3", (down, up)), ("flutter", (flutter,)), ("F2d", ()))
+    titles = (scene_title("F3"), flutter_title(flutter), scene_title("F2d"))
+    shown: dict[str, tuple[str, str, str]] = {}
+    unit = parameter(extremes, "preload")
+    for letter, panel, (scene, branches), title in zip("abc", axes[0], panels, titles, strict=True):
+        runs = extremes.late_max_x.sel(scene=scene)
+        friction = np.broadcast_to(extremes.mu.values[:, None], runs.shape)
+        panel.plot(friction, runs.values / unit, ".", color=GREY, markersize=2.5, zorder=1)
+        for branch in branches:
+            shown |= _branch(panel, branch, unit)
+        panel.set(xlabel="μ", yscale="symlog", ylim=(0, None))
+        panel.set_yscale("symlog", linthresh=1.0)
+        # up to a power of ten, which has a label
+        panel.set_ylim(0, 10.0 ** max(0.0, np.ceil(np.log10(panel.get_ylim()[1]))))
+        panel_letter(panel, letter, title)
+    axes[0, 0].set_ylabel(r"largest |x| / $l_\mathrm{pre}$")
+    handles = [
+        axes[0, 0].plot([], [], color=BLUE, label="stable cycle")[0],
+        axes[0, 0].plot([], [], color=ORANGE, linestyle="--", label="unstable cycle")[0],
+        axes[0, 0].plot([], [], ".", color=GREY, label="long runs")[0],
+    ]
+    for marker, colour, words in shown.values():
+        handles += axes[0, 0].plot([], [], marker, color=colour, markersize=4, label=words)
+    figure.legend(handles=handles, loc="outside lower center", ncols=min(len(handles), 4))
+    return figure
+
+
+def flutter_title(branch: xr.Dataset) -> str:
+    """The scene of the branch from the flutter onset by its angles, from its configuration."""
+    angles = json.loads(branch.attrs["config"])["cycles"]["flutter"]
+    onset = "flutter onset" if branch.sizes["point"] else "no branch"
+    return f"{angle_pair(*(float(angle) * np.pi for angle in angles))}, {onset}"
+
+
+def _branch(panel: Axes, branch: xr.Dataset, unit: float) -> dict[str, tuple[str, str, str]]:
+    """Draw one branch, with sizes over a unit; returns the marks that it has."""
+    if branch.sizes["point"] < 2:
+        return {}
+    size = np.maximum(np.abs(branch.x_min), np.abs(branch.x_max)).values / unit
+    friction, stable = branch.mu.values, branch.stable.values.astype(bool)
+    # the line between two points is unstable if either is
+    steady = stable[:-1] & stable[1:]
+    ends = np.flatnonzero(np.diff(steady)) + 1
+    for piece in np.split(np.arange(len(steady)), ends):
+        colour, dash = (BLUE, "-") if steady[piece[0]] else (ORANGE, "--")
+        points = slice(piece[0], piece[-1] + 2)
+        panel.plot(friction[points], size[points], dash, color=colour, linewidth=1.2)
+    found = {}
+    for value, name in meanings(branch.label).items():
+        points = branch.label.values == value
+        if name in MARKS and points.any():
+            marker, colour, words = MARKS[name]
+            panel.plot(friction[points], size[points], marker, color=colour, markersize=4, zorder=4)
+            found[name] = (marker, colour, words)
+    return found

@@ -1,0 +1,68 @@
+"""Fig. 4: orbit and displaced springs at (0.2π, 0.8π)."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from matplotlib.collections import LineCollection
+
+from squealpipe.study.figures.model.mechanism import SPRING_COLOURS, displaced_springs
+from squealpipe.study.figures.parts.style import GREY, LIGHT, PAGE, RED, new_figure
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+READS = ("simulate/F4",)
+CAPTION = (
+    "Orbit of model A1, started at rest at α₁ = 0.2π, α₂ = 0.8π, coloured by time, with both "
+    "springs drawn at the start (grey) and at the end of the run. Dotted: l_pre, above which "
+    "contact is lost. The figure of the transient shows how long runs from nearby starts stay "
+    "bounded."
+)
+ALT = (
+    "Path of the mass in the x–y plane, to scale and coloured by time, with the springs at two "
+    "instants and a dotted horizontal line at the precompression."
+)
+
+
+def draw(run: xr.Dataset) -> Figure:
+    """The plane of motion, to scale.
+
+    Args:
+        run: dataset ``simulate/F4``.
+    """
+    figure, axes = new_figure(PAGE, 3.9)
+    panel = axes[0, 0]
+    x, y = run.x.values, run.y.values
+    points = np.stack([x, y], axis=-1)
+    orbit = LineCollection(
+        list(np.stack([points[:-1], points[1:]], axis=1)),
+        cmap="viridis",
+        array=run.time.values[:-1],
+        linewidths=0.5,
+        rasterized=True,
+    )
+    panel.add_collection(orbit)
+    _springs(panel, run, 0.0, 0.0, (LIGHT, LIGHT))
+    _springs(panel, run, x[-1], y[-1], SPRING_COLOURS)
+    label = r"$l_\mathrm{pre}$: contact is lost above"
+    panel.axhline(float(run.preload), color="black", linestyle=":", linewidth=0.8, label=label)
+    panel.set(xlabel="x (m)", ylabel="y (m)", aspect="equal")
+    panel.autoscale_view()
+    panel.legend(loc="lower right", bbox_to_anchor=(1, 1), borderaxespad=0)
+    figure.colorbar(orbit, ax=panel, label="t (s)", shrink=0.8)
+    return figure
+
+
+def _springs(axes: Axes, run: xr.Dataset, x: float, y: float, colours: tuple[str, str]) -> None:
+    """Both springs and the mass, displaced to (x, y)."""
+    lengths = float(run.length1), float(run.length2)
+    angles = float(run.alpha1), float(run.alpha2)
+    width = 0.06 * min(lengths)
+    for path, colour in zip(displaced_springs(x, y, *angles, lengths, width), colours, strict=True):
+        axes.plot(*path.T, color=colour, linewidth=1.0, zorder=3)
+        axes.plot(*path[-1], "^", color=GREY, markersize=5, zorder=4)
+    axes.plot(x, y, "o", color=RED if colours == SPRING_COLOURS else LIGHT, markersize=7, zorder=5)

@@ -1,0 +1,60 @@
+"""Fig. 5: contact forces at (π, π) and (0, 0)."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from squealpipe.study.figures.dynamics.fig02 import FORCE, draw_force, inset_mechanism
+from squealpipe.study.figures.parts.style import (
+    ORANGE,
+    PAGE,
+    new_figure,
+    pi_label,
+)
+from squealpipe.text import number
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from matplotlib.figure import Figure
+
+READS = ("simulate/F5a", "simulate/F5b")
+CAPTION = (
+    "Contact force of model A1 over its preload, started at rest with both springs along the belt: "
+    "α₁ = α₂ = π (line) and α₁ = α₂ = 0 (circles). Their largest difference stands above the "
+    "panel. Red strips below zero: contact is lost in the run of the line."
+)
+ALT = (
+    "One time history of the normalized contact force as a line, with circles for the second run "
+    "and red strips where contact is lost."
+)
+
+
+def draw(first: xr.Dataset, second: xr.Dataset) -> Figure:
+    """One panel, line and circles.
+
+    Args:
+        first: dataset ``simulate/F5a``, (π, π).
+        second: dataset ``simulate/F5b``, (0, 0).
+    """
+    figure, axes = new_figure(PAGE, 2.5)
+    panel = axes[0, 0]
+    draw_force(panel, first)
+    panel.get_lines()[0].set_label(f"α₁ = α₂ = {pi_label(float(first.alpha1))}")
+    every = slice(None, None, max(1, first.time.size // 125))
+    panel.plot(
+        second.time.values[every],
+        second.normalized_contact_force.values[every],
+        "o",
+        color=ORANGE,
+        fillstyle="none",
+        markersize=4,
+        label=f"α₁ = α₂ = {pi_label(float(second.alpha1))}",
+    )
+    difference = np.abs(first.normalized_contact_force - second.normalized_contact_force).max()
+    panel.set(xlabel="t (s)", ylabel=FORCE)
+    panel.set_title(f"largest difference {number(float(difference), 2)}", loc="right")
+    inset_mechanism(panel, first, (1.0, 0.3, 0.16, 0.7))
+    figure.legend(loc="outside upper left", ncols=3)
+    return figure

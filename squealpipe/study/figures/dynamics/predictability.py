@@ -1,0 +1,87 @@
+"""How long a run of model A1 can be computed point by point."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from squealpipe.schema import meanings
+from squealpipe.study.figures.parts.style import (
+    GREY,
+    PAGE,
+    REGIME_COLOURS,
+    draw_map,
+    flag_words,
+    new_figure,
+    panel_letter,
+)
+from squealpipe.text import number
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from matplotlib.figure import Figure
+
+READS = ("hammering_map",)
+CAPTION = (
+    "How far ahead model A1 can be computed. (a) Time at which an error of the integrator's "
+    "tolerance has grown to l_pre/1000, from the tangent map through all events; white: not within "
+    "the time run. Beyond it only statistics mean something. (b) Growth of a perturbation over the "
+    "run for each kind of motion; dashed: the growth that separates regular from irregular "
+    "hammering."
+)
+ALT = (
+    "Left, a map over both angles of the predictability horizon, white where it is not reached. "
+    "Right, histograms of the growth for each kind of motion with a dashed line between regular "
+    "and irregular."
+)
+
+
+def draw(hammering: xr.Dataset) -> Figure:
+    """A map of the horizon and histograms of the growth.
+
+    Args:
+        hammering: dataset ``hammering_map``.
+    """
+    figure, axes = new_figure(PAGE, 3.2, ncols=2)
+    t_end = float(hammering.t_end)
+    horizon = hammering.predictability_horizon.values
+    shown = np.where(horizon < t_end, horizon, np.nan)
+    low = np.nanmin(shown) if np.isfinite(shown).any() else 0.1 * t_end
+    mesh = draw_map(
+        axes[0, 0],
+        hammering.alpha1.values,
+        hammering.alpha2.values,
+        shown,
+        cmap="viridis_r",
+        vmin=low,
+        vmax=t_end,
+    )
+    figure.colorbar(mesh, ax=axes[0, 0], label="predictability horizon (s)", shrink=0.85)
+    panel_letter(
+        axes[0, 0], "a", f"reached in {np.count_nonzero(horizon < t_end)} of {horizon.size}"
+    )
+    growth = hammering.lyapunov_exponent.values * t_end
+    names = meanings(hammering.motion)
+    present = [k for k in names if np.any(hammering.motion.values == k)]
+    panel = axes[0, 1]
+    panel.hist(
+        [growth[hammering.motion.values == k] for k in present],
+        bins=np.linspace(growth.min(), growth.max(), 40),
+        stacked=True,
+        color=[REGIME_COLOURS[names[k]] for k in present],
+        label=[flag_words(names[k]) for k in present],
+    )
+    panel.axvline(
+        float(hammering.attrs["regular_growth"]),
+        color=GREY,
+        linestyle="--",
+        linewidth=1.0,
+        label="regular to irregular",
+    )
+    panel.set(
+        xlabel=f"ln of the growth over t = {number(t_end, 4)} s", ylabel="cells", yscale="log"
+    )
+    figure.legend(loc="outside lower right", ncols=3)
+    panel_letter(panel, "b", "growth of a perturbation")
+    return figure

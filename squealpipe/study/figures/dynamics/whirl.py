@@ -1,0 +1,91 @@
+"""The paper's growing response until it saturates, and the size of the whirl over belt speed."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from squealpipe.parameters import SCENES
+from squealpipe.schema import meanings
+from squealpipe.study.figures.parts.origin import time_unit
+from squealpipe.study.figures.parts.style import (
+    BLACK,
+    GREY,
+    PAGE,
+    REGIME_COLOURS,
+    X_COLOUR,
+    new_figure,
+    panel_letter,
+)
+from squealpipe.text import number
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+READS = ("simulate/whirl", "whirl")
+CAPTION = (
+    "The response of Fig. 3 followed further. (a) x at (0.4π, 0.6π); the band marks the time that "
+    "Fig. 3 shows. (b) Largest |x| late in the run over belt speed. Dashed: the line that follows "
+    "from the energy at speed V in springs of stiffness k₁ + k₂. Only where the mass whirls: a "
+    "full line, fit of the same form, over the speeds that it covers, dotted below them, and a "
+    "grey stroke at the slowest belt found to whirl the mass."
+)
+ALT = (
+    "Left, x over time with a band over the time of Fig. 3. Right, a log–log chart of the final "
+    "amplitude over belt speed with two lines."
+)
+
+
+def draw(run: xr.Dataset, sizes: xr.Dataset) -> Figure:
+    """Two panels.
+
+    Args:
+        run: dataset ``simulate/whirl``.
+        sizes: dataset ``whirl``.
+    """
+    figure, axes = new_figure(PAGE, 2.9, ncols=2, width_ratios=(1.3, 1))
+    panel = axes[0, 0]
+    panel.plot(run.time, run.x, color=X_COLOUR, linewidth=0.25, rasterized=True)
+    shown = SCENES["F3"].t_end * time_unit(run)
+    panel.axvspan(0, shown, color=GREY, alpha=0.25, linewidth=0, label="shown in Fig. 3")
+    panel.axhline(0, color=GREY, linewidth=0.5)
+    panel.set(xlabel="t (s)", ylabel="x (m)", xlim=(0, float(run.time[-1])))
+    panel.legend(loc="lower right", bbox_to_anchor=(1, 0.98))
+    panel_letter(panel, "a", f"x in time, max |x| = {number(float(np.abs(run.x).max()), 4)} m")
+    _sizes(axes[0, 1], sizes)
+    return figure
+
+
+def _sizes(axes: Axes, sizes: xr.Dataset) -> None:
+    speed = np.abs(sizes.belt_speed.values)
+    for k, name in meanings(sizes.motion).items():
+        chosen = sizes.motion.values == k
+        if chosen.any():
+            axes.loglog(
+                speed[chosen],
+                sizes.amplitude.values[chosen],
+                "o" if name == "whirl" else "s",
+                color=REGIME_COLOURS[name],
+                markersize=4,
+                label=name.replace("_", " "),
+            )
+    line = np.geomspace(speed[0], speed[-1], 200)
+    energy = float(sizes.energy_offset) + float(sizes.energy_slope) * line
+    axes.loglog(line, energy, "--", color=GREY, label="energy at speed V")
+    if np.isfinite(sizes.slope):
+        fit = float(sizes.offset) + float(sizes.slope) * line
+        label = f"{number(float(sizes.offset))} m + {number(float(sizes.slope))} s · |V|"
+        low, high = sizes.fit_range.values if "fit_range" in sizes else (speed[0], speed[-1])
+        inside = (line >= low) & (line <= high)
+        axes.loglog(line[inside], fit[inside], color=BLACK, linewidth=0.8, label=label)
+        axes.loglog(line[line <= low], fit[line <= low], ":", color=BLACK, linewidth=0.8)
+    if "onset" in sizes and np.isfinite(sizes.onset).all():
+        axes.axvline(
+            float(sizes.onset[1]), ymax=0.4, color=GREY, linewidth=0.6, label="slowest whirl found"
+        )
+    axes.set(xlabel="belt speed |V| (m/s)", ylabel="largest |x|, late (m)")
+    axes.legend(loc="upper left")
+    panel_letter(axes, "b", "size over belt speed")

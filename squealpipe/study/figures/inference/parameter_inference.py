@@ -1,0 +1,142 @@
+"""Extra figure: the parameters that agree with the paper's statements."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from matplotlib.ticker import LogLocator, NullFormatter
+
+from squealpipe.study.figures.parts.style import (
+    BLACK,
+    BLUE,
+    GREEN,
+    GREY,
+    LIGHT,
+    ORANGE,
+    PAGE,
+    new_figure,
+    panel_letter,
+)
+from squealpipe.text import number
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+READS = ("parameter_inference",)
+CAPTION = (
+    "Parameters inferred from the paper's own statements. (a)–(c) Samples in which all statements "
+    "hold, for either direction of the belt, over the sampled ranges; star: this study, by its "
+    "spring 1; the dashed line in (a) is the bound of F6d for a belt along +x, μ = cot 0.4π (a "
+    "belt along −x has none). (d) Share of the samples in which each statement holds, and the "
+    "share that it alone excludes. (e) Margins of the study's own parameters: positive where the "
+    "statement holds."
+)
+ALT = "Three scatter plots of feasible parameters and two bar charts over the paper's statements."
+PANELS = (
+    ("friction, stiffness", "kappa", "mu", "κ = k₃/k", "μ"),
+    ("stiffness, length", "length_ratio", "kappa", r"λ = $L/l_\mathrm{pre}$", "κ = k₃/k"),
+    (
+        "belt speed, length",
+        "length_ratio",
+        "speed_ratio",
+        r"λ = $L/l_\mathrm{pre}$",
+        r"v = $V/(l_\mathrm{pre}\sqrt{k/m})$",
+    ),
+)
+LOGARITHMIC = ("length_ratio", "speed_ratio")
+DIRECTIONS = ((1, "belt along +x", BLUE, "o"), (-1, "belt along −x", ORANGE, "^"))
+
+
+def draw(inference: xr.Dataset) -> Figure:
+    """Five panels, from dataset ``parameter_inference``."""
+    figure, _ = new_figure(PAGE, 5.4)
+    figure.clear()
+    grid = figure.add_gridspec(2, 1, height_ratios=(1.15, 1))
+    upper, lower = figure.add_subfigure(grid[0]), figure.add_subfigure(grid[1])
+    for panel, letter, (title, *names) in zip(upper.subplots(1, 3), "abc", PANELS, strict=True):
+        _scatter(panel, inference, *names)
+        panel_letter(panel, letter, title)
+        if letter == "a":
+            panel.axhline(1 / np.tan(0.4 * np.pi), color=GREY, ls="--", lw=0.8)
+    upper.legend(*panel.get_legend_handles_labels(), loc="outside lower center", ncols=3)
+    shares, margins = lower.subplots(1, 2)
+    _bars(shares, inference)
+    lower.legend(*shares.get_legend_handles_labels(), loc="outside lower left", ncols=3)
+    panel_letter(shares, "d", "each statement over the samples")
+    names = inference.statement.values
+    values = inference.baseline_margin.values
+    colours = [GREEN if value > 0 else ORANGE for value in values]
+    margins.barh(names, values, color=colours, height=0.6)
+    margins.axvline(0, color=BLACK, lw=0.6)
+    margins.set(xlabel="margin at the study's parameters")
+    margins.invert_yaxis()
+    for name, value in zip(names, values, strict=True):
+        margins.annotate(
+            number(value, 2),
+            (max(value, 0.0), name),
+            (3, 0),
+            textcoords="offset points",
+            va="center",
+            size=6,
+        )
+    margins.set_xlim(right=1.12 * max(values.max(), 0.1))
+    panel_letter(margins, "e", "margins of this study")
+    return figure
+
+
+def _scatter(
+    panel: Axes, inference: xr.Dataset, x: str, y: str, x_label: str, y_label: str
+) -> None:
+    feasible = inference.feasible.values.astype(bool)
+    for direction, label, colour, marker in DIRECTIONS:
+        chosen = feasible & (inference.direction.values == direction)
+        panel.plot(
+            inference[x].values[chosen],
+            inference[y].values[chosen],
+            marker,
+            ms=2.6,
+            mew=0.5,
+            mfc="none" if marker == "^" else colour,
+            color=colour,
+            ls="none",
+            label=label,
+        )
+    panel.plot(
+        abs(float(inference[f"baseline_{x}"])),
+        abs(float(inference[f"baseline_{y}"])),
+        "*",
+        ms=9,
+        mew=0.8,
+        mfc="white",
+        color=BLACK,
+        ls="none",
+        label="this study",
+    )
+    for name, axis, scale, limits in (
+        (x, panel.xaxis, panel.set_xscale, panel.set_xlim),
+        (y, panel.yaxis, panel.set_yscale, panel.set_ylim),
+    ):
+        if name in LOGARITHMIC:
+            scale("log")
+            axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0) if name == x else (1.0,)))
+            axis.set_major_formatter("{x:g}")
+            axis.set_minor_formatter(NullFormatter())
+        values = inference[name].values
+        limits(values.min(), values.max())
+    panel.set(xlabel=x_label, ylabel=y_label)
+
+
+def _bars(panel: Axes, inference: xr.Dataset) -> None:
+    names = inference.statement.values
+    holding, alone = inference.share_holding.values, inference.share_cut_alone.values
+    panel.barh(names, holding, color=LIGHT, height=0.7, label="holds")
+    panel.barh(names, alone, color=BLACK, height=0.35, label="excluded by it alone")
+    everything = float(inference.feasible.mean())
+    panel.axvline(
+        everything, color=BLUE, ls="--", lw=0.8, label=f"all hold: {100 * everything:.2f} %"
+    )
+    panel.invert_yaxis()
+    panel.set(xlabel="share of the samples", xlim=(0, 1))

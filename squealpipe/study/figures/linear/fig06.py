@@ -1,0 +1,89 @@
+"""Fig. 6: quasi-static sliding (A2) and stability (A3) over both spring angles."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from matplotlib.patches import Patch
+
+from squealpipe.parameters import direction_of
+from squealpipe.schema.linear import Boundary
+from squealpipe.study.figures.linear.linear_overlay import draw_boundaries, mark_scene
+from squealpipe.study.figures.parts.origin import parameter
+from squealpipe.study.figures.parts.style import (
+    BLACK,
+    LIGHT,
+    PAGE,
+    WHITE,
+    category_colours,
+    draw_map,
+    new_figure,
+    panel_letter,
+)
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from matplotlib.figure import Figure
+
+READS = ("stability_map", "quasi_static_map", "stability_boundaries")
+CAPTION_ALONG_X = (
+    "Quasi-static sliding (A2) and linear stability (A3) over both spring angles. White: sliding "
+    "is possible; grey: it is not; black: the linear model is unstable. Sliding is judged (a) by "
+    "Eq. (11) as printed, μ < K₁₁/K₁₂, and (b) by the sign of the reaction force, μK₁₂ < K₁₁. "
+    "Lines are the exact boundaries; the cross is the configuration of Fig. 3."
+)
+ALT = (
+    "Two square maps over both spring angles in white, grey and black with boundary curves, one "
+    "map for each reading of Eq. (11)."
+)
+
+
+def caption(stability: xr.Dataset, _: xr.Dataset, __: xr.Dataset) -> str:
+    """What the tones mean; how the signs are read where the belt runs along −x."""
+    if direction_of(parameter(stability, "belt_speed")) > 0:
+        return CAPTION_ALONG_X
+    return CAPTION_ALONG_X + (
+        " The belt runs along −x: μ counts as negative in (b), and (a) judges the mirror image, "
+        "|μ| < −K₁₁/K₁₂."
+    )
+
+
+CAPTION = caption
+
+
+def draw(stability: xr.Dataset, quasi_static: xr.Dataset, boundaries: xr.Dataset) -> Figure:
+    """The paper's three tones in both readings of Eq. (11).
+
+    Args:
+        stability: dataset ``stability_map``.
+        quasi_static: dataset ``quasi_static_map`` on the same angles.
+        boundaries: dataset ``stability_boundaries``.
+    """
+    figure, axes = new_figure(PAGE, 3.95, ncols=2)
+    readings = (
+        ("Eq. (11) as printed", quasi_static.possible_as_printed, Boundary.no_coupling),
+        ("reaction force positive", quasi_static.possible, None),
+    )
+    for panel, letter, (title, possible, extra) in zip(axes[0], "ab", readings, strict=True):
+        tones = np.where(possible.values, 0, 1)
+        tones[stability.regime_linear.values > 0] = 2
+        draw_map(
+            panel,
+            stability.alpha1.values,
+            stability.alpha2.values,
+            tones,
+            **category_colours([WHITE, LIGHT, BLACK]),
+        )
+        curves = [Boundary.flutter, Boundary.divergence, Boundary.reaction_changes_sign]
+        draw_boundaries(panel, boundaries, curves if extra is None else [*curves, extra])
+        mark_scene(panel, "F3")
+        panel_letter(panel, letter, title)
+    patches = [
+        Patch(facecolor=WHITE, edgecolor=BLACK, linewidth=0.6, label="sliding possible"),
+        Patch(facecolor=LIGHT, label="sliding not possible"),
+        Patch(facecolor=BLACK, label="linearly unstable"),
+    ]
+    lines = axes[0, 0].get_legend_handles_labels()[0]
+    figure.legend(handles=[*patches, *lines], loc="outside lower center", ncols=4)
+    return figure

@@ -1,0 +1,16 @@
+"""Fig. 8: the first natural frequency over both spring angles."""
+
+from __future__ import annotations
+
+from functools import partial
+
+from squealpipe.study.figures.parts.frequency_map import CAPTION as KEY
+from squealpipe.study.figures.parts.frequency_map import draw_mode
+
+READS = ("natural_frequencies",)
+CAPTION = (
+    "First natural frequency ω₁ of model A4 (a) in contact, Eq. (22a), and (b) separated, "
+    f"Eq. (25a). {KEY}"
+)
+ALT = "Two maps of the first natural frequency over both spring angles, in contact and separated."
+draw = partial(draw_mode, mode=1)

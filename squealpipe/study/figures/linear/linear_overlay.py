@@ -1,0 +1,57 @@
+"""Curves and marks that several maps over both angles share."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from squealpipe.parameters import SCENES
+from squealpipe.schema.linear import Boundary
+from squealpipe.study.figures.parts.origin import scene_title
+from squealpipe.study.figures.parts.style import BLUE, GREEN, GREY, ORANGE, RED
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    import xarray as xr
+    from matplotlib.axes import Axes
+
+LINES = {
+    Boundary.flutter: ("flutter boundary", {"color": BLUE, "linestyle": "-"}),
+    Boundary.divergence: ("divergence boundary", {"color": ORANGE, "linestyle": (0, (4, 1))}),
+    Boundary.reaction_changes_sign: ("K₁₁ = μK₁₂", {"color": GREEN, "linestyle": (0, (1, 1))}),
+    Boundary.no_coupling: ("K₁₂ = 0", {"color": GREY, "linestyle": "-."}),
+}
+
+
+def draw_boundaries(axes: Axes, boundaries: xr.Dataset, kinds: Iterable[Boundary]) -> None:
+    """Exact curves over a map of 0 … π; curves that leave it come in again by periodicity."""
+    alpha1, alpha2 = boundaries.alpha1.values, boundaries.alpha2.values
+    for kind in kinds:
+        label, look = LINES[kind]
+        for segment in np.unique(boundaries.segment.values[boundaries.boundary.values == kind]):
+            chosen = boundaries.segment.values == segment
+            for shift1, shift2 in np.ndindex(5, 5):
+                x = alpha1[chosen] + (shift1 - 2) * np.pi
+                y = alpha2[chosen] + (shift2 - 2) * np.pi
+                inside = (x >= 0) & (x <= np.pi) & (y >= 0) & (y <= np.pi)
+                if inside.any():
+                    axes.plot(x, y, linewidth=0.9, label=label, **look)  # type: ignore[arg-type]
+                    label = ""
+
+
+def mark_scene(axes: Axes, name: str) -> None:
+    """The red × of the paper at a named scene."""
+    scene = SCENES[name]
+    axes.plot(
+        scene.alpha1,
+        scene.alpha2,
+        "x",
+        color=RED,
+        markersize=7,
+        markeredgewidth=1.8,
+        linestyle="none",
+        label=scene_title(name),
+        clip_on=False,
+    )

@@ -1,0 +1,31 @@
+"""Fig. 1: the mechanism."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from squealpipe.study.figures.model.mechanism import draw_mechanism
+from squealpipe.study.figures.parts.style import COLUMN, new_figure
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+READS = ()
+CAPTION = (
+    "The model: a particle of mass m on two inclined springs k₁ and k₂, pressed through the "
+    "contact spring k₃ on a belt that moves at V. The foot of k₃ slides along with the mass, and "
+    "k₃ can only push."
+)
+ALT = (
+    "Sketch of a round mass held by two slanted springs, with a vertical contact spring below it "
+    "that stands on a horizontal belt; an arrow below the belt marks the direction of V > 0."
+)
+
+
+def draw() -> Figure:
+    """The mechanism at a general pair of angles, with the paper's symbols."""
+    figure, axes = new_figure(COLUMN, 2.9)
+    draw_mechanism(axes[0, 0], 0.3 * np.pi, 0.2 * np.pi, labels=True)
+    return figure

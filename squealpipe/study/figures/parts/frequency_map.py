@@ -1,0 +1,122 @@
+"""Maps of one natural frequency in both contact states: the paper's Figs. 8 and 9."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from matplotlib.patches import Patch
+
+from squealpipe.schema import Outcome
+from squealpipe.study.figures.parts.style import (
+    BLACK,
+    ORANGE,
+    PAGE,
+    RED,
+    draw_map,
+    new_figure,
+    panel_letter,
+)
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+STATES = ("contact", "separated")
+FREQUENCY_COLOURS = "cividis"
+CAPTION = (
+    "Dashed: α₁ + α₂ = nπ, where det K = 0; dotted: α₁ + α₂ = nπ/2, n odd. Hatched: flutter, a "
+    "complex pair, of which the common frequency is shown."
+)
+"""What the lines mean."""
+
+
+HATCH = Patch(facecolor="white", edgecolor=BLACK, hatch="//////", label="flutter: common frequency")
+"""Key to what :func:`outline` draws."""
+
+
+def draw_mode(frequencies: xr.Dataset, mode: int) -> Figure:
+    """Two panels, in contact and separated, with one colour scale.
+
+    Args:
+        frequencies: dataset ``natural_frequencies``.
+        mode: 1 or 2.
+    """
+    figure, axes = new_figure(PAGE, 3.45, ncols=2)
+    omega = frequencies.omega.sel(mode=mode)
+    upper = float(omega.max())
+    lower = 0.0 if mode == 1 else float(omega.min())
+    for panel, letter, state in zip(axes[0], "ab", STATES, strict=True):
+        values = omega.sel(contact_state=state).values
+        mesh = draw_map(
+            panel,
+            frequencies.alpha1.values,
+            frequencies.alpha2.values,
+            values,
+            cmap=FREQUENCY_COLOURS,
+            vmin=lower,
+            vmax=upper,
+        )
+        flutter = frequencies.outcome.sel(mode=mode, contact_state=state) == Outcome.complex_pair
+        shown = np.where(flutter, np.nan, values)
+        draw_isolines(panel, frequencies, shown, 0.2 if mode == 1 else 0.1)
+        outline(panel, frequencies, flutter.values)
+        panel_letter(panel, letter, "in contact" if state == "contact" else state)
+    draw_sums(axes[0, 1])
+    keys = axes[0, 1].get_lines()
+    figure.legend(
+        handles=[*(line for line in keys if not str(line.get_label()).startswith("_")), HATCH],
+        loc="outside lower center",
+        ncols=3,
+    )
+    figure.colorbar(mesh, ax=axes, label=f"ω{'₁₂'[mode - 1]} (rad/s)", shrink=0.8)  # type: ignore[arg-type]
+    return figure
+
+
+def draw_sums(axes: Axes) -> None:
+    """The exact lines of the separated state: det K = 0, and smallest |Z| for any stiffnesses."""
+    along = np.array([-np.pi, 2 * np.pi])
+    limits = axes.get_xlim(), axes.get_ylim()
+    for odd, label, colour, dash in (
+        (0, "α₁ + α₂ = nπ", ORANGE, "--"),
+        (1, "α₁ + α₂ = nπ/2, n odd", BLACK, ":"),
+    ):
+        for number in range(odd, 5, 2):
+            axes.plot(along, number * np.pi / 2 - along, color=colour, ls=dash, lw=0.9, label=label)
+            label = "_"
+    axes.set(xlim=limits[0], ylim=limits[1])
+
+
+def draw_isolines(axes: Axes, frequencies: xr.Dataset, values: np.ndarray, step: float) -> None:
+    """Thin labelled isolines, for reading in greyscale."""
+    lines = axes.contour(
+        frequencies.alpha1.values,
+        frequencies.alpha2.values,
+        values.T,
+        levels=np.arange(step, float(np.nanmax(values)), step),
+        colors="white",
+        linewidths=0.5,
+    )
+    axes.clabel(lines, fontsize=5.5, fmt="%.1f")
+
+
+def outline(axes: Axes, frequencies: xr.Dataset, mask: np.ndarray) -> None:
+    """Hatch the cells of a mask."""
+    if mask.any():
+        axes.contourf(
+            frequencies.alpha1.values,
+            frequencies.alpha2.values,
+            mask.T.astype(float),
+            levels=[0.5, 1.5],
+            colors="none",
+            hatches=["//////"],
+        )
+        axes.contour(
+            frequencies.alpha1.values,
+            frequencies.alpha2.values,
+            mask.T.astype(float),
+            levels=[0.5],
+            colors=RED,
+            linewidths=0.8,
+        )

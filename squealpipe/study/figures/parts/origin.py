@@ -1,0 +1,61 @@
+"""What a stored dataset says about the run that made it."""
+
+from __future__ import annotations
+
+import json
+import math
+from typing import TYPE_CHECKING
+
+from squealpipe.parameters import DEFAULTS, SCENES, TABLE, Scene
+from squealpipe.study.figures.parts.style import pi_label
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+def parameter(dataset: xr.Dataset, name: str) -> float:
+    """A parameter of the run, from the attributes of its dataset, which leave out what is not used.
+
+    Raises:
+        ValueError: the dataset carries none.
+    """
+    own = json.loads(dataset.attrs.get("parameters", "{}"))
+    study = json.loads(dataset.attrs.get("config", "{}")).get("parameters", {})
+    if TABLE[name].extension:
+        study = {name: DEFAULTS[name], **study}
+    if name not in own | study:
+        raise ValueError(f"the dataset carries no parameter {name}; save it with its configuration")
+    return float((study | own)[name])
+
+
+def time_unit(dataset: xr.Dataset) -> float:
+    """√(m/k1) of the run, s."""
+    return math.sqrt(parameter(dataset, "mass") / parameter(dataset, "k1"))
+
+
+def angle_pair(alpha1: float, alpha2: float) -> str:
+    """Both angles as people write them: ``(0.4π, 0.6π)``."""
+    return f"({pi_label(float(alpha1))}, {pi_label(float(alpha2))})"
+
+
+def angles_of(scene: Scene) -> str:
+    """Both angles of a scene of the paper."""
+    return angle_pair(scene.alpha1, scene.alpha2)
+
+
+def scene_title(name: str) -> str:
+    """A scene of the paper by its angles and its figure: ``(0.4π, 0.6π), Fig. 3``."""
+    return f"{angles_of(SCENES[name])}, {SCENES[name].panel}"
+
+
+def scene_name(dataset: xr.Dataset, scene: str) -> str:
+    """A scene of the periodic motions by its angles: ``(π/2, π), mode 2`` for ``F10 mode 2``."""
+    name, _, mode = scene.partition(" mode ")
+    own = json.loads(dataset.attrs.get("config", "{}")).get("backbones.coupled", {})
+    if name in own:
+        angles = angle_pair(*(float(angle) * math.pi for angle in own[name]))
+    elif name in SCENES:
+        angles = angles_of(SCENES[name])
+    else:
+        return scene
+    return f"{angles}, mode {mode}"

@@ -1,0 +1,201 @@
+"""One look for every figure: sizes, colours, angle axes, and how files are written."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import matplotlib as mpl
+import numpy as np
+from matplotlib.colors import BoundaryNorm, ListedColormap
+from matplotlib.figure import Figure
+from matplotlib.ticker import ScalarFormatter
+
+from squealpipe.store.netcdf import clear_leftovers
+from squealpipe.store.whole_files import whole_file
+from squealpipe.text import as_people_write
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from matplotlib.axes import Axes
+
+COLUMN = 3.5
+PAGE = 7.0
+"""Widths of one column and of a page, inches."""
+
+BLUE, ORANGE, GREEN, RED, PURPLE, GREY = (
+    "#0072B2",
+    "#E69F00",
+    "#009E73",
+    "#D55E00",
+    "#CC79A7",
+    "#7F7F7F",
+)
+"""Okabe–Ito: told apart by colour-blind readers; lines also differ in dash or marker."""
+
+X_COLOUR, Y_COLOUR = ORANGE, BLUE
+"""Displacements along the belt and away from it, everywhere."""
+
+SMALL = 1e-3
+"""Largest number on an axis whose labels are written with a power of ten."""
+
+WHITE, LIGHT, BLACK = "#FFFFFF", "#BDBDBD", "#1A1A1A"
+"""The paper's three tones."""
+
+REGIME_COLOURS = {
+    "slip_slower": BLUE,
+    "slip_faster": GREEN,
+    "stick": ORANGE,
+    "separated": RED,
+    "perpetual_contact": BLUE,
+    "stick_slip": ORANGE,
+    "periodic_hammering": GREEN,
+    "quasi_periodic_hammering": "#66C2A5",
+    "regular_hammering": "#B8E3D4",
+    "irregular_hammering": RED,
+    "whirl": PURPLE,
+    "undecided": GREY,
+    "stable": WHITE,
+    "flutter": BLACK,
+    "divergence": RED,
+}
+"""One colour for one regime, everywhere."""
+
+SETTINGS: dict[Any, Any] = {
+    "font.family": "DejaVu Sans",
+    "font.size": 8,
+    "axes.titlesize": 8,
+    "axes.labelsize": 8,
+    "xtick.labelsize": 7,
+    "ytick.labelsize": 7,
+    "legend.fontsize": 7,
+    "legend.frameon": False,
+    "axes.linewidth": 0.6,
+    "lines.linewidth": 1.0,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "mathtext.fontset": "dejavusans",
+    "svg.fonttype": "path",
+    "svg.hashsalt": "squealpipe",
+    "figure.dpi": 100,
+    "savefig.dpi": 200,
+}
+
+
+def new_figure(
+    width: float = PAGE, height: float = 3.0, **subplots: object
+) -> tuple[Figure, np.ndarray]:
+    """A figure with the house style, and its axes as a 2-D array.
+
+    Args:
+        width, height: inches; use COLUMN or PAGE for the width.
+        subplots: passed to ``Figure.subplots`` (nrows, ncols, sharex, …).
+    """
+    mpl.rcParams.update(SETTINGS)
+    figure = Figure(figsize=(width, height), layout="constrained")
+    axes = figure.subplots(squeeze=False, **subplots)  # type: ignore[call-overload]
+    return figure, axes
+
+
+def angle_ticks(axis: object, upper: float = np.pi, step: float = np.pi / 4) -> None:
+    """Label an axis (``axes.xaxis`` or ``axes.yaxis``) in multiples of π."""
+    ticks = np.arange(0, upper + step / 2, step)
+    axis.set_ticks(ticks, [pi_label(value) for value in ticks])  # type: ignore[attr-defined]
+
+
+def pi_label(angle: float) -> str:
+    """An angle as the paper writes it: 0, π/4, 5π/6, 0.4π, 0.83π."""
+    over_pi = angle / np.pi
+    for denominator in (1, 2, 3, 4, 6):
+        numerator = round(over_pi * denominator)
+        if abs(over_pi * denominator - numerator) < 1e-9:
+            if numerator == 0:
+                return "0"
+            head = "" if numerator == 1 else str(numerator)
+            return f"{head}π" + ("" if denominator == 1 else f"/{denominator}")
+    return f"{over_pi:.4g}π"
+
+
+def symbols(text: str) -> str:
+    """Names of quantities and powers of ten in plain text as mathematics, for Matplotlib."""
+    for name, symbol in (
+        ("l_pre", r"l_\mathrm{pre}"),
+        ("N_h", r"N_\mathrm{h}"),
+        ("ω_x", r"\omega_x"),
+    ):
+        text = text.replace(name, f"${symbol}$")
+    return as_people_write(text)
+
+
+def angle_map_axes(axes: Axes, upper: float = np.pi) -> None:
+    """A square map over both spring angles with π ticks and labels."""
+    angle_ticks(axes.xaxis, upper)
+    angle_ticks(axes.yaxis, upper)
+    axes.set(xlabel="α₁ (rad)", ylabel="α₂ (rad)", aspect="equal")
+    for side in ("top", "right"):
+        axes.spines[side].set_visible(True)
+
+
+def draw_map(
+    axes: Axes, alpha1: np.ndarray, alpha2: np.ndarray, values: np.ndarray, **kwargs: object
+) -> Any:
+    """``pcolormesh`` of values over (alpha1, alpha2): α1 on x, α2 on y; rasterized in SVG."""
+    mesh = axes.pcolormesh(
+        alpha1,
+        alpha2,
+        np.asarray(values).T,
+        shading="nearest",
+        rasterized=True,
+        **kwargs,  # type: ignore[arg-type]
+    )
+    angle_map_axes(axes, float(alpha1[-1]))
+    axes.set_xlim(alpha1[0], alpha1[-1])
+    axes.set_ylim(alpha2[0], alpha2[-1])
+    return mesh
+
+
+def category_colours(colours: Sequence[Any]) -> dict[str, Any]:
+    """``cmap`` and ``norm`` that paint the integers 0, 1, … with the given colours."""
+    bounds = np.arange(len(colours) + 1) - 0.5
+    return {"cmap": ListedColormap(list(colours)), "norm": BoundaryNorm(bounds, len(colours))}
+
+
+def flag_words(name: str) -> str:
+    """A flag's meaning as people write it."""
+    return name.replace("quasi_", "quasi-").replace("stick_slip", "stick–slip").replace("_", " ")
+
+
+def panel_letter(axes: Axes, letter: str, text: str = "") -> None:
+    """(a), (b), … at the left above a panel, with an optional title."""
+    axes.set_title(f"({letter}) {text}".rstrip(), loc="left")
+
+
+def shorten_small_ticks(figure: Figure) -> None:
+    """A power of ten beside each axis below 0.001, whose labels would run into one another."""
+    for axes in figure.axes:
+        for axis in (axes.xaxis, axes.yaxis):
+            ticks = axis.get_major_formatter()
+            small = np.abs(axis.get_view_interval()).max() < SMALL
+            if small and isinstance(ticks, ScalarFormatter):
+                ticks.set_useMathText(True)
+                ticks.set_powerlimits((-3, 5))
+
+
+def save_figure(figure: Figure, paths: Sequence[str | os.PathLike[str]]) -> None:
+    """Write a figure to every path, atomically and without a date: equal inputs, equal files.
+
+    The layout is found once, at the resolution of the first file: left to ``savefig``, each file
+    would be drawn twice.
+    """
+    shorten_small_ticks(figure)
+    figure.set_dpi(mpl.rcParams["savefig.dpi"])
+    if (engine := figure.get_layout_engine()) is not None:
+        engine.execute(figure)
+        figure.set_layout_engine(None)
+    for path in map(Path, paths):
+        clear_leftovers(path.parent, f".{path.stem}.*{path.suffix}")
+        metadata = {"Date": None} if path.suffix == ".svg" else {"Software": "squealpipe"}
+        with whole_file(path) as temporary:
+            figure.savefig(temporary, metadata=metadata)

@@ -1,0 +1,132 @@
+"""What all work–precision charts share: marks of the methods, Pareto front, and the machine."""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from matplotlib.ticker import FormatStrFormatter, LogLocator
+
+from squealpipe.schema.comparison import Role
+from squealpipe.study.figures.parts.style import (
+    BLACK,
+    BLUE,
+    GREEN,
+    GREY,
+    ORANGE,
+    PURPLE,
+    RED,
+    symbols,
+)
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+
+class Mark(NamedTuple):
+    """How a method is drawn."""
+
+    colour: str
+    marker: str
+    dash: str = "-"
+
+
+MARKS = {
+    "Taylor + events, ensemble": Mark(BLACK, "o"),
+    "Taylor + events, one run": Mark(BLUE, "s"),
+    "DOP853 + events": Mark(GREEN, "^"),
+    "RK45 + events": Mark(ORANGE, "v"),
+    "LSODA + events": Mark(RED, "D"),
+    "Radau + events": Mark(PURPLE, "P"),
+    "RK45, tanh": Mark(ORANGE, "x", ":"),
+    "LSODA, tanh": Mark(RED, "+", ":"),
+    "Moreau–Jean": Mark(GREY, "*", "--"),
+}
+FALLBACK = [
+    Mark(colour, marker, dash)
+    for markers, dash in (("os^vDP*", "-"), ("xx+x+x+", ":"))
+    for colour, marker in zip((BLACK, BLUE, GREEN, ORANGE, RED, PURPLE, GREY), markers, strict=True)
+]
+_FEW_DECADES = 100.0
+"""Ratio of costs below which decades alone would leave an axis with hardly a number."""
+_SMALLEST = 1e-17
+"""Errors below are drawn here: they are zero to the reference's last digit."""
+
+
+def draw_methods(
+    axes: Axes, rows: xr.Dataset, cost: str, scale: float, marks: dict[str, Mark] | None = None
+) -> None:
+    """Error against cost, one line for each method, with the Pareto front and our own setting.
+
+    Args:
+        axes: where.
+        rows: runs of one panel.
+        cost: variable on the y axis.
+        scale: factor from its unit to the axis'.
+        marks: method → mark; those of the integrators by default.
+    """
+    marks = MARKS if marks is None else marks
+    error = np.maximum(rows.error.values, _SMALLEST)
+    values = rows[cost].values * scale
+    fine = np.isfinite(error) & (values > 0)
+    if not fine.any():
+        axes.text(0.5, 0.5, "no such motion\nat these parameters", ha="center", va="center")
+        axes.set(xticks=[], yticks=[])
+        return
+    front = _pareto(error[fine], values[fine])
+    axes.step(
+        error[fine][front], values[fine][front], where="post", color=BLACK, lw=3.0, alpha=0.15,
+        zorder=1,
+    )  # fmt: skip
+    for method in dict.fromkeys(rows.method.values.tolist()):
+        mine = fine & (rows.method.values == method)
+        order = np.argsort(error[mine])
+        mark = marks.get(method, FALLBACK[0])
+        axes.plot(
+            error[mine][order], values[mine][order], mark.dash, color=mark.colour,
+            marker=mark.marker, ms=3.5, lw=0.8, label=symbols(method), zorder=2,
+        )  # fmt: skip
+    ours = fine & (rows.role.values == Role.our_setting)
+    axes.plot(
+        error[ours], values[ours], "o", ms=9, mfc="none", mec=RED, mew=1.0, label="our setting",
+        zorder=3,
+    )  # fmt: skip
+    axes.set(xscale="log", yscale="log")
+    axes.minorticks_off()
+    if values[fine].max() < _FEW_DECADES * values[fine].min():
+        axes.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+        axes.yaxis.set_major_formatter(FormatStrFormatter("%g"))
+    axes.grid(visible=True, lw=0.3, color="#DDDDDD")
+
+
+def _pareto(error: np.ndarray, cost: np.ndarray) -> np.ndarray:
+    """Indices of runs that no other beats in both, by ascending error."""
+    order = np.lexsort((cost, error))
+    kept, least = [], np.inf
+    for index in order:
+        if cost[index] < least:
+            kept.append(index)
+            least = cost[index]
+    return np.array(kept, dtype=int)
+
+
+def legend_above(figure: Figure, axes: Axes, columns: int) -> None:
+    """One legend for all panels, above them."""
+    handles, labels = axes.get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside upper center", ncols=columns, fontsize=6.5)
+
+
+def machine(dataset: xr.Dataset) -> str:
+    """Platform and versions of a run, for the foot of a chart."""
+    libraries = json.loads(dataset.attrs.get("libraries", "{}"))
+    versions = ", ".join(f"{name} {libraries[name]}" for name in sorted(libraries))
+    platform = dataset.attrs.get("platform", "platform unknown")
+    return f"{platform}\n{versions}"
+
+
+def foot(figure: Figure, dataset: xr.Dataset) -> None:
+    """The machine below all panels."""
+    figure.supxlabel(machine(dataset), fontsize=5.5, color=GREY)

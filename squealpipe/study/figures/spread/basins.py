@@ -1,0 +1,60 @@
+"""Kind of motion over the velocity at the start, in two scenes."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from matplotlib.patches import Patch
+
+from squealpipe.study.figures.parts.origin import scene_title
+from squealpipe.study.figures.parts.style import (
+    BLACK,
+    PAGE,
+    REGIME_COLOURS,
+    WHITE,
+    category_colours,
+    flag_words,
+    new_figure,
+    panel_letter,
+)
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from matplotlib.figure import Figure
+
+READS = ("basin/F2d", "basin/F3")
+CAPTION = (
+    "Kind of motion that starts from r = 0 with a velocity lead to. (a) Scene of Fig. 2(d), "
+    "(b) scene of Fig. 3. Each label is that of the whole run; white: the second half alone would "
+    "get another one, so the run has not settled."
+)
+ALT = "Two maps over the velocity at the start, coloured by the kind of motion."
+
+
+def draw(kept: xr.Dataset, growing: xr.Dataset) -> Figure:
+    """Two maps.
+
+    Args:
+        kept: basin of the scene of Fig. 2(d).
+        growing: basin of the scene of Fig. 3.
+    """
+    figure, axes = new_figure(PAGE, 3.5, ncols=2)
+    shown: set[int] = set()
+    names = str(kept.motion.attrs["flag_meanings"]).split()
+    colours = [REGIME_COLOURS.get(name, WHITE) for name in names]
+    titles = (scene_title("F2d"), scene_title("F3"))
+    for letter, panel, basin, title in zip("ab", axes[0], (kept, growing), titles, strict=True):
+        panel.pcolormesh(
+            basin.vx0, basin.vy0, basin.motion.values.T, shading="nearest", rasterized=True,
+            **category_colours(colours),
+        )  # fmt: skip
+        shown |= set(basin.motion.values.ravel().tolist())
+        panel.set(xlabel="velocity along the belt (m/s)", aspect="equal")
+        panel_letter(panel, letter, title)
+    axes[0, 0].set_ylabel("velocity away from the belt (m/s)")
+    handles = [
+        Patch(facecolor=colours[value], edgecolor=BLACK, lw=0.4, label=flag_words(names[value]))
+        for value in sorted(shown)
+    ]
+    figure.legend(handles=handles, loc="outside lower center", ncols=min(len(handles), 4))
+    return figure

@@ -1,0 +1,84 @@
+"""Smallest disturbances of steady sliding over the number of directions that were tried."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from squealpipe.study.figures.parts.origin import scene_title
+from squealpipe.study.figures.parts.style import (
+    BLACK,
+    BLUE,
+    GREEN,
+    GREY,
+    ORANGE,
+    PAGE,
+    PURPLE,
+    RED,
+    new_figure,
+    panel_letter,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    import xarray as xr
+    from matplotlib.figure import Figure
+
+READS = ("disturbance/*",)
+MARKS = tuple(zip((BLUE, ORANGE, GREEN, RED, PURPLE, BLACK), "osv^DP", strict=True))
+"""Colour and marker by scene."""
+CAPTION = (
+    "Smallest disturbance of steady sliding that leads to (a) loss of contact, (b) the whirl, over "
+    "the number of random directions tried, by scene. Crosses: after the local search from each of "
+    "the best directions, the lowest of them the result. Dashed: contact loss by the linear motion "
+    "about the steady state, in closed form. Scenes without a line have no steady sliding, or one "
+    "that is unstable, or no disturbance within the bound does it. The norm is "
+    "√((x² + y²)/l_pre² + (ẋ² + ẏ²)/(l_pre ω)²) with ω² = (k1 + k2)/(2m)."
+)
+ALT = "Two panels of falling lines over the number of directions, with crosses below their ends."
+
+
+def draw(found: Mapping[str, xr.Dataset]) -> Figure:
+    """Two panels.
+
+    Args:
+        found: name → dataset ``smallest_disturbance``.
+    """
+    figure, axes = new_figure(PAGE, 3.0, ncols=2)
+    scenes = sorted({name.split("/")[1].partition("_")[0] for name in found})
+    marks = dict(zip(scenes, MARKS, strict=False))
+    handles = {}
+    for letter, panel, goal, title in zip(
+        "ab", axes[0], ("contact_lost", "whirl"), ("loss of contact", "whirl"), strict=True
+    ):
+        number = next(iter(found.values())).directions.values
+        for scene in scenes:
+            one = found.get(f"disturbance/{scene}_{goal}")
+            if one is None or not np.isfinite(one.distance):
+                continue
+            colour, marker = marks.get(scene, (GREY, "."))
+            (handles[scene],) = panel.plot(
+                number, one.distance_by_number, marker=marker, ms=3.5, color=colour
+            )
+            improved = one.improved_distance.values
+            panel.plot(np.full(improved.size, 1.6 * number[-1]), improved, "x", color=colour)
+            if np.isfinite(one.linear_distance):
+                panel.axhline(float(one.linear_distance), color=colour, ls="--", lw=0.7)
+        panel.set(xlabel="random directions", xscale="log", ylim=(0, None))
+        if panel.lines:
+            panel.set_xticks([*number, 1.6 * number[-1]], [*map(str, number), "local\nsearch"])
+            panel.minorticks_off()
+        if not panel.lines:
+            panel.text(0.5, 0.5, "none found", transform=panel.transAxes, ha="center")
+        panel_letter(panel, letter, title)
+    axes[0, 0].set_ylabel("smallest disturbance")
+    if handles:
+        figure.legend(
+            handles.values(),
+            [scene_title(scene) for scene in handles],
+            loc="outside lower center",
+            ncols=min(len(handles), 4),
+        )
+    return figure

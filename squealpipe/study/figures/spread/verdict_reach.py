@@ -1,0 +1,70 @@
+"""How far each verdict carries: statements by settings."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from matplotlib.colors import LinearSegmentedColormap
+
+from squealpipe.schema.inference import DAMPED_GRID
+from squealpipe.study.figures.parts.style import BLACK, BLUE, GREY, PAGE, RED, new_figure
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from matplotlib.figure import Figure
+
+READS = ("verdict_reach",)
+CAPTION = (
+    "The paper's statements in settings that it leaves out, by the criteria of the inference. "
+    "Blue: the statement holds; red: it fails; numbers: share of random starts, or of the feasible "
+    "parameters, in which it holds, with half of its 95 % interval; grey: not judged there. "
+    "Statements with a suffix are readings of the row of that id. With dashpots, or friction that "
+    "depends on speed, S3, F6b and F7† are judged in the unstable cells of a grid of "
+    f"{DAMPED_GRID} × {DAMPED_GRID} angles (S3: flutter, where eigenvalues need not merge); F8c is "
+    "of undamped frequencies."
+)
+ALT = "A table of settings by statements, blue where a statement holds and red where it fails."
+WORDS = {
+    "F6b_printed": "F6b*",
+    "F7_black": "F7†",
+    "F8c_separated": "F8c‡",
+}
+NOTE = "* Eq. (11) as printed   † black region empty   ‡ separated"
+
+
+def draw(reach: xr.Dataset) -> Figure:
+    """One table.
+
+    Args:
+        reach: dataset ``verdict_reach``.
+    """
+    share = reach.share.values
+    figure, axes = new_figure(PAGE, 0.24 * len(share) + 1.1)
+    panel = axes[0, 0]
+    panel.set_facecolor("#E8E8E8")
+    colours = LinearSegmentedColormap.from_list("verdict", [RED, "#FFFFFF", BLUE])
+    panel.pcolormesh(share, cmap=colours, vmin=0.0, vmax=1.0, edgecolor="white", linewidth=1.5)
+    half = 0.5 * (reach.share_high - reach.share_low).values
+    for row, column in np.argwhere(np.isfinite(share)):
+        value = share[row, column]
+        single = reach.judged.values[row, column] == 1
+        text = "✓" if single and value else "✗" if single else f"{value:.2f}"
+        if not single:
+            text += f"\n±{half[row, column]:.2f}"
+        dark = abs(value - 0.5) > 0.3
+        panel.text(
+            column + 0.5, row + 0.5, text, ha="center", va="center", linespacing=0.9,
+            fontsize=7 if single else 5, color="white" if dark else BLACK,
+        )  # fmt: skip
+    names = [WORDS.get(name, name) for name in reach.statement.values.tolist()]
+    rows = [name.replace("l_pre", r"$l_\mathrm{pre}$") for name in reach.variant.values.tolist()]
+    panel.set_xticks(np.arange(len(names)) + 0.5, names, rotation=45, ha="left")
+    panel.set_yticks(np.arange(len(share)) + 0.5, rows)
+    panel.xaxis.tick_top()
+    panel.invert_yaxis()
+    panel.tick_params(length=0)
+    panel.set_xlabel(NOTE, color=GREY, fontsize=7)
+    for side in panel.spines.values():
+        side.set_visible(False)
+    return figure

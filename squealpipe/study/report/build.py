@@ -1,0 +1,86 @@
+"""One Typst source, two outputs: a self-contained page (HTML with MathML) and a PDF."""
+
+from __future__ import annotations
+
+import json
+import re
+import shutil
+import tempfile
+from collections.abc import Iterator, Mapping
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
+from importlib.resources import files
+from pathlib import Path
+from typing import Any, Literal
+
+import typst
+from jinja2 import Environment, StrictUndefined
+
+from squealpipe.store.whole_files import whole_file
+
+TEMPLATES = Path(str(files("squealpipe.study.report"))) / "templates"
+
+SPACING_ACCENTS = {0x0307: "\u02d9", 0x0308: "\u00a8"}
+"""Dots over a symbol: as combining characters they land beside it where no mathematics font is."""
+
+
+def _typeset(source: Path, target: Literal["html", "pdf"]) -> bytes:
+    """The document in one format; the PDF with the fonts that come with Typst."""
+    return typst.compile(
+        source,
+        format=target,
+        sys_inputs={"target": target},
+        ignore_system_fonts=target == "pdf",
+    )
+
+
+def write_report(
+    content: Mapping[str, Any], pictures: Mapping[str, Path], page: Path, pdf: Path
+) -> None:
+    """Typeset the report and write both files, each whole or not at all.
+
+    Args:
+        content: what :func:`squealpipe.study.report.content.gather` returns.
+        pictures: path inside the source (``content["figures"][name]["path"]``) → PNG file.
+        page: ``index.html``; needs no network and no other file.
+        pdf: ``report.pdf``.
+    """
+    with _source(content, pictures) as main, ThreadPoolExecutor(2) as pool:
+        made = pool.submit(_typeset, main, "html")
+        document = pool.submit(_typeset, main, "pdf")
+    with whole_file(page) as temporary:
+        temporary.write_bytes(_page(content, made.result().decode()).encode())
+    with whole_file(pdf) as temporary:
+        temporary.write_bytes(document.result())
+
+
+@contextmanager
+def _source(content: Mapping[str, Any], pictures: Mapping[str, Path]) -> Iterator[Path]:
+    """The Typst source with data and pictures beside it, in a folder of its own."""
+    with tempfile.TemporaryDirectory(prefix="squealpipe-report-") as folder:
+        root = Path(folder) / "report"
+        shutil.copytree(TEMPLATES, root)
+        (root / "data.json").write_text(json.dumps(content, allow_nan=False), encoding="utf-8")
+        for path, source in pictures.items():
+            target = root / path
+            target.parent.mkdir(exist_ok=True)
+            shutil.copyfile(source, target)
+        yield root / "main.typ"
+
+
+def _page(content: Mapping[str, Any], made: str) -> str:
+    """Our own shell around the body and the mathematics style of Typst's page."""
+    environment = Environment(undefined=StrictUndefined, autoescape=True)
+    shell = environment.from_string((TEMPLATES / "page.html.j2").read_text(encoding="utf-8"))
+    body = _between(made, "<body>", "</body>").translate(SPACING_ACCENTS)
+    return shell.render(
+        title=content["title"],
+        mathematics_style=_between(made, "<style>", "</style>"),
+        style=(TEMPLATES / "style.css").read_text(encoding="utf-8"),
+        sections=re.findall(r'<h2 id="([^"]+)">(.*?)</h2>', body),
+        body=body,
+    )
+
+
+def _between(text: str, start: str, end: str) -> str:
+    return text[text.index(start) + len(start) : text.rindex(end)]

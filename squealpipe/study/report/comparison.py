@@ -1,0 +1,215 @@
+"""A comparison for people: a screenful in the terminal, a page with pictures."""
+
+from __future__ import annotations
+
+import base64
+import io
+import math
+from collections.abc import Iterator
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+import jinja2
+import xarray as xr
+
+from squealpipe.schema import find
+from squealpipe.schema.agreement import ComparedAs
+from squealpipe.store.comparison.compare import Comparison, DatasetDifference
+from squealpipe.store.comparison.differences import Agreement, VariableDifference
+from squealpipe.store.comparison.matching import align
+from squealpipe.store.comparison.statements import StatementChange
+from squealpipe.store.netcdf import load
+from squealpipe.study.figures.parts.difference import CAPTION, draw, drawable
+
+MOST_PICTURES = 12
+SCREEN = {"parameters": 6, "statements": 5, "differences": 6}
+"""Lines of each part that a terminal shows unless all are asked for."""
+WIDTH = 100
+
+
+def lines(comparison: Comparison, *, every: bool = False) -> list[str]:
+    """The answer, changed parameters, changed statements, what differs (worst first); for people.
+
+    Args:
+        comparison: of two places.
+        every: all of it, with what is equal and where each side was made; else a screenful.
+    """
+    told = [verdict_line(comparison)]
+    worst = sorted(comparison.datasets, key=lambda item: item.severity, reverse=True)
+    listed = [line for item in worst for line in _dataset_lines(item, every=every)]
+    verdicts = sum(change.verdict_changed for change in comparison.statements)
+    values = len(comparison.statements) - verdicts
+    title = f"statements of the paper: {verdicts} changed their verdict, {values} only a value"
+    for name, heading, part in (
+        ("parameters", "changed parameters", list(_change_lines(comparison.parameters))),
+        ("statements", title, [statement_line(change) for change in comparison.statements]),
+        ("differences", "differences, worst first", listed),
+    ):
+        most = len(part) if every else SCREEN[name]
+        shown = part if len(part) <= most else [*part[: most - 1], _more(len(part) - most + 1)]
+        told += [heading, *(f"  {line}" for line in shown)] if part else []
+    if every and comparison.environment:
+        told += ["made elsewhere", *(f"  {line}" for line in _change_lines(comparison.environment))]
+    return told if every else [_shortened(told[0], 3 * WIDTH), *(_shortened(x) for x in told[1:])]
+
+
+def statement_line(change: StatementChange) -> str:
+    """For instance ``S3: holds → fails, 0.96 → 0.71``."""
+    verdicts = [verdict or "not judged" for verdict in change.verdicts]
+    values = ["–" if value is None else f"{value:.4g}" for value in change.values]
+    told = " → ".join(verdicts) if change.verdict_changed else verdicts[0]
+    return f"{change.claim}: {told}, value {values[0]} → {values[1]}"
+
+
+def _change_lines(changes: dict[str, tuple[Any, Any]]) -> Iterator[str]:
+    for key, pair in changes.items():
+        yield f"{key}: " + " → ".join("–" if value is None else str(value) for value in pair)
+
+
+def _dataset_lines(item: DatasetDifference, *, every: bool) -> Iterator[str]:
+    if item.reason or (every and (item.notes or not item.variables)):
+        yield f"{item.name}: {words(item.verdict)}; " + "; ".join(
+            filter(None, [item.reason, *item.notes])
+        )
+    equal = [entry for entry in item.variables if entry not in item.differences]
+    for entry in [*item.differences, *(equal if every else [])]:
+        verdict = "" if entry.verdict == Agreement.different else f"{words(entry.verdict)} "
+        kind = "volatile " if entry.volatile else verdict
+        at = f" at {where(entry)}" if entry.where else ""
+        yield f"{item.name}.{entry.name}: {kind}{how_much(entry)}{at}"
+
+
+def _more(count: int) -> str:
+    return f"and {count} more; --all shows them"
+
+
+def _shortened(line: str, width: int = WIDTH) -> str:
+    return line if len(line) <= width else f"{line[: width - 1]}…"
+
+
+def verdict_line(comparison: Comparison) -> str:
+    """For instance ``different: 2 of 9 datasets (equal 6, within tolerance 1)``."""
+    if comparison.reason:
+        return f"not comparable: {comparison.reason}"
+    counts = {
+        verdict: sum(item.verdict == verdict for item in comparison.datasets)
+        for verdict in Agreement
+    }
+    told = ", ".join(f"{words(verdict)} {count}" for verdict, count in counts.items() if count)
+    total = len(comparison.datasets)
+    skipped = f"; left out of the archive: {', '.join(comparison.skipped)}"
+    line = f"{words(comparison.verdict)}: {total} dataset{'s' * (total != 1)} ({told})"
+    return line + skipped if comparison.skipped else line
+
+
+def words(verdict: Agreement) -> str:
+    """A verdict as words."""
+    return verdict.name.replace("_", " ")
+
+
+def where(entry: VariableDifference) -> str:
+    """The place of the largest difference; angles in multiples of π."""
+    return ", ".join(f"{dim} = {_place(dim, value)}" for dim, value in entry.where.items())
+
+
+def how_much(entry: VariableDifference) -> str:
+    """Size of the difference in words."""
+    if entry.reason and (not entry.compared or entry.compared_as == ComparedAs.sample.value):
+        return entry.reason
+    if entry.flips:
+        return f"{entry.differing} flipped: " + ", ".join(
+            f"{pair} {count}" for pair, count in entry.flips.items()
+        )
+    if entry.verdict == Agreement.equal:
+        return ""
+    allowed = entry.compared_as or f"rtol {entry.rtol:g}, atol {entry.atol:g}"
+    told = (
+        f"{entry.differing} of {entry.compared} beyond {allowed}; "
+        f"largest {entry.largest_absolute:.3g}, relative {entry.largest_relative:.3g}"
+    )
+    return f"{told}; {entry.reason}" if entry.reason else told
+
+
+def page(comparison: Comparison) -> str:
+    """One self-contained HTML page with pictures of the maps that differ."""
+    environment = jinja2.Environment(
+        loader=jinja2.PackageLoader("squealpipe.study.report", "templates"), autoescape=True
+    )
+    template = environment.get_template("comparison.html.j2")
+    pictures = _pictures(comparison)
+    _aligned.cache_clear()  # the files may change before the next page
+    return template.render(
+        comparison=comparison,
+        verdict=verdict_line(comparison),
+        pictures=pictures,
+        statements=list(_statements(comparison)),
+        caption=CAPTION,
+        words=words,
+        where=where,
+        how_much=how_much,
+        Agreement=Agreement,
+    )
+
+
+def _statements(comparison: Comparison) -> Iterator[tuple[StatementChange, str, list[str]]]:
+    """Each changed statement with its line and its pictures; a pair is embedded once."""
+    shown: set[tuple[Path | None, Path | None]] = set()
+    for change in comparison.statements:
+        pictures = [] if change.figures in shown else [_embedded(path) for path in change.figures]
+        shown.add(change.figures)
+        yield change, statement_line(change), pictures
+
+
+def _embedded(path: Path | None) -> str:
+    """A picture as a data address; empty where it is not kept."""
+    if path is None:
+        return ""
+    return f"data:image/png;base64,{base64.b64encode(path.read_bytes()).decode()}"
+
+
+def _place(dim: str, value: float | str) -> str:
+    if isinstance(value, str):
+        return value
+    return f"{value / math.pi:.4g}π" if dim.startswith("alpha") else f"{value:.6g}"
+
+
+def _pictures(comparison: Comparison) -> list[dict[str, str]]:
+    wanted = [
+        (item, entry)
+        for item in comparison.datasets
+        for entry in item.variables
+        if entry.verdict == Agreement.different and entry.compared and not entry.volatile
+    ]
+    wanted.sort(key=lambda pair: pair[1].differing / pair[1].compared, reverse=True)
+    pictures: list[dict[str, str]] = []
+    for item, entry in wanted:
+        if len(pictures) == MOST_PICTURES:
+            break
+        picture = _picture(item, entry)
+        if picture:
+            title = f"{item.name}: {entry.name}"
+            pictures.append({"title": title, "source": f"data:image/png;base64,{picture}"})
+    return pictures
+
+
+@lru_cache(maxsize=64)
+def _aligned(first: Path, second: Path) -> tuple[xr.Dataset, xr.Dataset]:
+    """Two files on what they share; read once for all the variables that differ."""
+    a, b = load(first), load(second)
+    a, b, _ = align(a, b, find(str(a.attrs["schema"])))
+    return a, b
+
+
+def _picture(item: DatasetDifference, entry: VariableDifference) -> str:
+    """PNG of one variable as base64; empty where it is not a map."""
+    first, second = item.files
+    if first is None or second is None:
+        return ""
+    a, b = _aligned(first, second)
+    line = find(str(a.attrs["schema"])).lookup(entry.name)
+    if line is None or not drawable(a[entry.name]):
+        return ""
+    buffer = io.BytesIO()
+    draw(entry.name, a[entry.name], b[entry.name], line).savefig(buffer, format="png", dpi=130)
+    return base64.b64encode(buffer.getvalue()).decode()

@@ -1,0 +1,166 @@
+"""The explorer: one self-contained page on which a pair of angles shows its motion."""
+
+from __future__ import annotations
+
+import base64
+import json
+import os
+from collections.abc import Mapping
+from importlib.resources import files
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from jinja2 import Environment, StrictUndefined
+
+from squealpipe.parameters import SCENES
+from squealpipe.schema import meanings
+from squealpipe.store.whole_files import whole_file
+from squealpipe.study.report.explorer.layers import Layer
+
+HERE = Path(str(files("squealpipe.study.report.explorer")))
+HISTORIES = ("x", "y", "normalized_contact_force", "force_spectrum")
+BRANCHES = ("omega", "x_amplitude", "y_peak", "stability_index")
+
+
+def write_explorer(
+    explorer: xr.Dataset, layers: Mapping[str, Layer], path: str | os.PathLike[str]
+) -> None:
+    """Write the page, whole or not at all.
+
+    Args:
+        explorer: dataset ``explorer``.
+        layers: what the map can show, by key.
+        path: the HTML file; it needs no network and no other file.
+    """
+    with whole_file(Path(path)) as temporary:
+        temporary.write_text(page(explorer, layers), encoding="utf-8")
+
+
+def page(explorer: xr.Dataset, layers: Mapping[str, Layer]) -> str:
+    """The text of the page."""
+    environment = Environment(undefined=StrictUndefined, autoescape=True)
+    shell = environment.from_string((HERE / "page.html.j2").read_text(encoding="utf-8"))
+    return shell.render(
+        style=(HERE / "explorer.css").read_text(encoding="utf-8"),
+        script=(HERE / "explorer.js").read_text(encoding="utf-8"),
+        chart=(HERE / "chart.js").read_text(encoding="utf-8"),
+        layers={key: layer.label for key, layer in layers.items()},
+        payload=in_script(payload(explorer, layers)),
+        blocks=blocks(explorer, layers),
+        commit=explorer.attrs.get("commit", "unknown"),
+        dataset_id=explorer.attrs.get("dataset_id", "unknown"),
+    )
+
+
+def in_script(content: Mapping[str, Any]) -> str:
+    """JSON that no text in it can end or comment out, whatever the browser's parser is in."""
+    return json.dumps(content, allow_nan=False).replace("<", "\\u003c").replace(">", "\\u003e")
+
+
+def blocks(explorer: xr.Dataset, layers: Mapping[str, Layer]) -> dict[str, str]:
+    """Numbers as text that the page decodes when a pair or layer is chosen, not before."""
+    return {
+        **{name: packed_curves(explorer[name].values) for name in HISTORIES},
+        **{
+            name: _records(
+                np.asarray(explorer[name].values, "<f4").reshape(explorer.outcome.size, -1)
+            )
+            for name in BRANCHES
+        },
+        **{
+            f"layer-{key}": _encode(layer.values.astype("i1" if layer.meanings else "<f4"))
+            for key, layer in layers.items()
+        },
+    }
+
+
+def payload(explorer: xr.Dataset, layers: Mapping[str, Layer]) -> dict[str, Any]:
+    """What the script needs at once, ready for JSON."""
+    return {
+        "angles": [explorer.alpha1.values.tolist(), explorer.alpha2.values.tolist()],
+        "time": _single(explorer.time.values),
+        "frequency": _single(explorer.frequency.values),
+        "points": explorer.sizes["point"],
+        "options": run_options(explorer),
+        "outcome": _meanings(explorer.outcome),
+        "end": _meanings(explorer.end),
+        "preload": float(explorer.preload),
+        "lengths": [float(explorer.length1), float(explorer.length2)],
+        "layers": {key: _layer(layer) for key, layer in layers.items()},
+        "scenes": [
+            {"name": scene.name, "angles": [scene.alpha1, scene.alpha2], "figure": scene.figure}
+            for scene in SCENES.values()
+            if scene.figure <= 5
+        ],
+    }
+
+
+def run_options(explorer: xr.Dataset) -> str:
+    """Options of ``squealpipe simulate`` that repeat the runs shown: times and all parameters."""
+    told = explorer.attrs
+    parameters = told.get("parameters") or json.loads(told.get("config", "{}")).get("parameters")
+    if parameters is None:
+        return ""
+    values = json.loads(parameters) if isinstance(parameters, str) else parameters
+    end = told.get("run_t_end", explorer.time.values[-1])
+    points = told.get("run_points", explorer.sizes["time"])
+    options = {"t_end": float(end), "points": int(points), **values}
+    return " ".join(f"--{key.replace('_', '-')} {_plain(value)}" for key, value in options.items())
+
+
+def _plain(value: object) -> str:
+    return repr(int(value)) if isinstance(value, float) and value.is_integer() else str(value)
+
+
+def _layer(layer: Layer) -> dict[str, Any]:
+    return {
+        "label": layer.label,
+        "unit": layer.unit,
+        "angles": [layer.alpha1.tolist(), layer.alpha2.tolist()],
+        "range": _colour_range(layer.values),
+        "meanings": layer.meanings,
+        "colours": layer.colours,
+        "note": layer.note,
+    }
+
+
+def _colour_range(values: np.ndarray) -> list[float]:
+    """All but the outermost hundredths: a few late cells must not take the colours of the rest."""
+    finite = values[np.isfinite(values)]
+    return [float(limit) for limit in np.percentile(finite, [1, 99])] if finite.size else [0.0, 1.0]
+
+
+def _meanings(flag: xr.DataArray) -> dict[str, Any]:
+    table = meanings(flag)
+    return {
+        "values": _encode(np.asarray(flag.values, "i1")),
+        "meanings": {key: table[key].replace("_", " ") for key in np.unique(flag.values).tolist()},
+    }
+
+
+def _single(values: np.ndarray) -> str:
+    return _encode(np.asarray(values, "<f4"))
+
+
+def packed_curves(values: np.ndarray) -> str:
+    """Each pair's curve: its lowest value, a scale, and 16-bit integers between lowest and highest.
+
+    That halves the page; the error is below 1/131,070 of the curve's range.
+    """
+    flat = np.asarray(values, float).reshape(-1, values.shape[-1])
+    low, high = flat.min(axis=1, keepdims=True), flat.max(axis=1, keepdims=True)
+    scale = np.where(high > low, high - low, 1.0) / 65535.0
+    numbers = np.round((flat - low) / scale).astype("<u2")
+    head = np.hstack([low, scale]).astype("<f4")
+    return _records(np.hstack([head.view(np.uint8), numbers.view(np.uint8)]))
+
+
+def _records(rows: np.ndarray) -> str:
+    """Rows as pieces of text of one length, so that each can be decoded alone."""
+    return "".join(map(_encode, rows))
+
+
+def _encode(values: np.ndarray) -> str:
+    return base64.b64encode(np.ascontiguousarray(values).tobytes()).decode()
