@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -106,37 +105,22 @@ def deposit(
     /,
     *,
     output: Annotated[Path | None, Parameter(name=["--output", "-o"])] = None,
-    upload: Annotated[bool, Parameter(negative="")] = False,
-    publish: Annotated[bool, Parameter(negative="")] = False,
-    api: str = "https://zenodo.org/api",
 ) -> int:
     """Bundle an archive for others: data, figures, report, code, lock, provenance, citation.
 
-    The bundle is checked. Without --upload nothing needs a network. The access token is read from
-    the environment variable ZENODO_TOKEN.
+    The bundle is checked; its metadata are those that Zenodo and DataCite ask for.
 
     Example: `squealpipe deposit reference`
 
     Args:
         name: of the archive.
         output: the bundle to write; by default results/deposit/NAME.zip.
-        upload: send it as a draft.
-        publish: send it and publish the draft.
-        api: address of a service with Zenodo's interface.
     """
     from squealpipe.store.memory.deposit import bundle
 
-    token = os.environ.get("ZENODO_TOKEN", "")
-    if (upload or publish) and not token:
-        raise ValueError("ZENODO_TOKEN is not set: put your access token into it")
     with elapsing("deposit"):
-        path, metadata = bundle(name, output=output)
+        path, _ = bundle(name, output=output)
     print(f"wrote {path} ({path.stat().st_size / 1e6:.1f} MB), checked")
-    if upload or publish:
-        from squealpipe.store.memory.upload import upload as send
-
-        address = send(path, metadata, api=api.rstrip("/"), token=token, publish=publish)
-        print(f"{'published' if publish else 'sent as a draft'}: {address}")
     return DONE
 
 

@@ -1,10 +1,7 @@
-"""A deposit can be used alone and is valid; an upload is published whole or not at all."""
+"""A deposit can be used alone and is valid."""
 
-import hashlib
-import http.server
 import json
 import shutil
-import threading
 import zipfile
 
 import pytest
@@ -23,7 +20,6 @@ def checkout(run, monkeypatch):
         shutil.copy(ROOT / name, run / name)
     archive("first", root=run)
     monkeypatch.chdir(run)
-    monkeypatch.setenv("ZENODO_TOKEN", "secret")
     return run
 
 
@@ -97,116 +93,7 @@ def test_a_damaged_archive_or_one_without_authors_is_not_bundled(checkout):
     assert not list((checkout / "results/deposit").glob(".deposit.*"))
 
 
-class Service(http.server.BaseHTTPRequestHandler):
-    """Zenodo's interface as far as it is used, with faults on request."""
-
-    def log_message(self, *_):
-        pass
-
-    def _act(self):
-        state, kind = self.server.state, self.command
-        size = int(self.headers.get("Content-Length") or 0)
-        step = (
-            "publish" if "/publish/" in self.path
-            else "bucket" if "/bucket/" in self.path
-            else {"POST": "create", "PUT": "metadata", "DELETE": "delete"}[kind]
-        )  # fmt: skip
-        state["steps"].append(step)
-        assert self.headers["Authorization"] == "Bearer secret"
-        fault = state["faults"].get(step)
-        if fault == "cut":
-            self.rfile.read(min(size, 1000))
-            self.close_connection = True
-            return
-        body = self.rfile.read(size)
-        if fault:
-            self.send_error(fault)
-            return
-        base = f"http://127.0.0.1:{self.server.server_port}/api"
-        if step == "publish":
-            state["published"] = True
-        if step == "delete":
-            state["drafts"] -= 1
-        if step == "create":
-            state["drafts"] += 1
-        checksum = "0" if state["faults"].get("bytes") else hashlib.md5(body).hexdigest()  # noqa: S324
-        links = {name: f"{base}/{name}/7" for name in ("self", "bucket", "publish", "html")}
-        answer = json.dumps({"links": links, "checksum": f"md5:{checksum}"}).encode()
-        self.send_response(200)
-        self.send_header("Content-Length", str(len(answer)))
-        self.end_headers()
-        self.wfile.write(answer)
-
-    do_GET = do_POST = do_PUT = do_DELETE = _act  # noqa: N815
-
-
-@pytest.fixture
-def service():
-    server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), Service)
-    server.state = {"steps": [], "faults": {}, "drafts": 0, "published": False}
-    threading.Thread(target=server.serve_forever, daemon=True).start()
-    yield server
-    server.shutdown()
-    server.server_close()
-
-
-def send(service, *options):
-    return command(
-        ["deposit", "first", *options, "--api", f"http://127.0.0.1:{service.server_port}/api"]
-    )
-
-
-def test_an_upload_is_a_draft_until_publication_is_asked_for(checkout, service, capsys):
-    assert send(service, "--upload") == 0
-    assert service.state["steps"] == ["create", "bucket", "metadata"]
-    assert not service.state["published"]
-    assert send(service, "--publish") == 0
-    assert service.state["published"]
-    assert "published: http://" in capsys.readouterr().out
-
-
-@pytest.mark.parametrize("fault", [413, 500, "cut"])
-@pytest.mark.parametrize("step", ["create", "bucket", "metadata"])
-def test_a_failed_upload_publishes_nothing_and_says_so(checkout, service, capsys, step, fault):
-    service.state["faults"][step] = fault
-    assert send(service, "--publish") == 2
-    assert service.state["steps"].count(step) >= 1
-    assert "publish" not in service.state["steps"]
-    assert not service.state["published"]
-    assert service.state["drafts"] == 0
-    error = capsys.readouterr().err
-    assert "Traceback" not in error
-    assert "secret" not in error
-
-
-def test_other_bytes_than_were_sent_are_not_published(checkout, service, capsys):
-    service.state["faults"]["bytes"] = True
-    assert send(service, "--publish") == 2
-    assert "received other bytes" in capsys.readouterr().err
-    assert (service.state["published"], service.state["drafts"]) == (False, 0)
-
-
-def test_a_draft_that_cannot_be_deleted_is_told(checkout, service, capsys):
-    service.state["faults"] |= {"bucket": 500, "delete": 500}
-    assert send(service, "--upload") == 2
-    assert "an unpublished draft is left at http://" in capsys.readouterr().err
-
-
-def test_a_failed_publication_is_told_as_unknown(checkout, service, capsys):
-    service.state["faults"]["publish"] = "cut"
-    assert send(service, "--publish") == 2
-    assert "is not known" in capsys.readouterr().err
-
-
-def test_without_a_token_nothing_is_done(checkout, service, monkeypatch, capsys):
-    monkeypatch.delenv("ZENODO_TOKEN")
-    assert send(service, "--upload") == 2
-    assert "ZENODO_TOKEN is not set" in capsys.readouterr().err
-    assert service.state["steps"] == []
-    assert not (checkout / "results/deposit").exists()
-
-
-def test_a_dry_run_needs_no_network(checkout, monkeypatch, capsys):
+def test_the_command_needs_no_network(checkout, monkeypatch, capsys):
     def refuse(*_, **__):
         raise AssertionError("the network was used")
 
