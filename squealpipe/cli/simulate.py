@@ -22,7 +22,7 @@ from squealpipe.cli.exit_codes import ANSWER_IS_NO, DONE
 from squealpipe.cli.output import check_outputs, write
 from squealpipe.progress import Progress, observed
 
-Model = Literal["A1", "A1-no-stick", "A1-no-separation", "A1-linear-springs", "A4"]
+Model = Literal["A1", "A1-no-stick", "A1-no-separation", "A1-linear-springs", "A1-as-printed", "A4"]
 
 
 def simulate(

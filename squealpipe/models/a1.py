@@ -13,7 +13,8 @@ separated  0       any       y > l_pre
 
 The variants leave one thing out each: ``A1-no-stick`` (friction reverses at once at ẋ = V),
 ``A1-no-separation`` (the contact spring also pulls), ``A1-linear-springs`` (K r replaces the
-exact geometry).
+exact geometry). ``A1-as-printed`` is Eq. (4) taken literally: friction μ N sgn(ẋ − V) pushes a
+slower mass back and a faster one on, and nothing sticks (see :mod:`squealpipe.reading`).
 """
 
 from __future__ import annotations

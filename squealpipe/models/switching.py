@@ -87,12 +87,19 @@ class ScaledParameters(_Numbers):  # type: ignore[misc]
 
 
 class Rules(NamedTuple):
-    """What a variant leaves out (True: the variant has it)."""
+    """What a variant leaves out (True: the variant has it).
+
+    Friction that does not drag is Eq. (4) as printed: both coefficients change their sign, which is
+    all that the rules below see of it. Belt speed then repels: it is never held, and a mass exactly
+    at it with |x-force of the springs| < μN could leave to either side. It leaves to the side that
+    the springs pull to, below belt speed where they do not.
+    """
 
     separates: bool
     reverses: bool
     sticks: bool
     linear_springs: bool
+    drags: bool = True
 
 
 class Switch(NamedTuple):
@@ -118,6 +125,9 @@ VARIANT_RULES: dict[str, Rules] = {
     "A1-no-stick": Rules(separates=True, reverses=True, sticks=False, linear_springs=False),
     "A1-no-separation": Rules(separates=False, reverses=True, sticks=True, linear_springs=False),
     "A1-linear-springs": Rules(separates=True, reverses=True, sticks=True, linear_springs=True),
+    "A1-as-printed": Rules(
+        separates=True, reverses=True, sticks=False, linear_springs=False, drags=False
+    ),
     "A4": Rules(separates=True, reverses=False, sticks=False, linear_springs=True),
 }
 
@@ -152,7 +162,7 @@ def friction_slack(
     second = reach + (p.length2 if p.length2 <= LONG else 0.0)
     terms = first + p.k2 * second
     terms += (p.damping1 + p.damping2) * (abs(vx) + abs(vy))
-    return SLACK * (1.0 + abs(fx) + terms + p.static_mu * p.k3 * (1.0 + abs(y)))
+    return SLACK * (1.0 + abs(fx) + terms + abs(p.static_mu) * p.k3 * (1.0 + abs(y)))
 
 
 def speed_nudge(p: ScaledParameters) -> float:

@@ -93,7 +93,7 @@ HORIZON = number(0.05, 8.0)
 MAYBE = Kind(HORIZON.good, [bad for bad in HORIZON.bad if bad is not None])
 FROM_NOW = number(0.05, 8.0, zero=True)
 TOL = Kind(lambda rng: 10.0 ** rng.uniform(-17, -3), [*NO_NUMBER, 0.0, -1e-6, 1.0, 1e-19, 1e-300])
-MODEL = one_of("A1", "A1-no-stick", "A1-no-separation", "A1-linear-springs", "A4")
+MODEL = one_of("A1", "A1-no-stick", "A1-no-separation", "A1-linear-springs", "A1-as-printed", "A4")
 STATE = Kind(
     lambda rng: [rng.uniform(-0.5, 0.5) for _ in range(4)],
     [*NO_NUMBER, [0.0] * 3, [0.0] * 5, ["0"] * 4, [math.nan] * 4, [None] * 4, [True] * 4],

@@ -113,6 +113,18 @@ def test_variants_leave_their_part_out():
     assert at(0.0, 1.5, 0.0, 0.1, SLOWER, rules=kept).kind == NO_EVENT
 
 
+@pytest.mark.parametrize(("x", "regime"), [(-0.2, FASTER), (0.2, SLOWER), (0.0, SLOWER)])
+def test_friction_as_printed_never_holds_belt_speed(x, regime):
+    """Within the cone a mass at belt speed could leave to either side; the springs decide."""
+    rules = VARIANT_RULES["A1-as-printed"]._replace(linear_springs=True)
+    repelled = P._replace(mu=-P.mu, static_mu=-P.static_mu, onset_mu=-P.onset_mu)
+    assert start(x, 0.0, 2.0, 0.0, repelled, G, rules)[0] == regime
+    change = at(-0.8, 0.0, 2.0, 0.0, SLOWER, p=repelled, rules=rules)
+    assert (change.kind, change.regime) == (REVERSAL, FASTER)
+    assert change.saltation == pytest.approx((0.8 + 0.5) / (0.8 - 0.5))
+    assert at(-0.2, 0.0, 2.0 - 1e-15, 0.0, SLOWER, p=repelled, rules=rules).kind == NO_EVENT
+
+
 @pytest.mark.parametrize(
     ("state", "regime"),
     [

@@ -122,7 +122,8 @@ def run_ensemble(
             take the baseline's value.
         alpha1, alpha2: spring angles, rad.
         t_end: end of each run, s.
-        model: "A1", "A1-no-stick", "A1-no-separation", "A1-linear-springs" or "A4".
+        model: "A1", "A1-no-stick", "A1-no-separation", "A1-linear-springs", "A1-as-printed" or
+            "A4".
         tol: tolerance of the Taylor integrator.
         initial_state: (x, y, vx, vy) in m and m/s, broadcast over the runs (last axis 4).
         times: instants (last axis), the same for all runs or one row per run, s, ascending.

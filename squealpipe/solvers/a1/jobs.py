@@ -87,6 +87,9 @@ class Jobs:
         if model == "A4" and dissipation.any():
             raise ValueError(f"model A4 carries no damping and Coulomb's law with one μ: {WHY_A4}")
         orders = flat(physical.orders).copy()
+        if not rules.drags:
+            for name in ("mu", "static_mu", "onset_mu"):
+                orders[name] *= -1.0
         t_end, rate = ends / time_unit, flat(physical.rate)
         for name, values in {
             **springs.geometry(flat(inputs["alpha1"]), flat(inputs["alpha2"]))._asdict(),

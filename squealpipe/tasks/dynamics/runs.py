@@ -57,8 +57,9 @@ def simulate(
         alpha1, alpha2: spring angles, rad.
         t_end: end of the run, s.
         model: "A1", "A1-no-stick" (ends at the first stick, with outcome ``event_limit``),
-            "A1-no-separation" (k3 also pulls), "A1-linear-springs" or "A4" (which goes on past
-            ẋ = V, where it does not hold; compare ``vx`` with the belt speed).
+            "A1-no-separation" (k3 also pulls), "A1-linear-springs", "A1-as-printed" (Eq. (4)
+            literally: friction pushes against the belt) or "A4" (which goes on past ẋ = V, where it
+            does not hold; compare ``vx`` with the belt speed).
         tol: tolerance of the Taylor integrator, relative to l_pre.
         times: the state is given at exactly these instants, s; by default 20 per time unit √(m/k1).
         initial_state: x, y, vx, vy at t = 0, m and m/s.
@@ -134,13 +135,14 @@ def simulate(
     )
 
 
-@recorded(model="A1", method="Taylor series with located events")
+@recorded(method="Taylor series with located events")
 def validity_map(
     params: Parameters,
     alpha1: Any,
     alpha2: Any,
     *,
     t_end: float = 200.0,
+    model: str = "A1",
     tol: float = 1e-12,
     workers: int | None = None,
 ) -> xr.Dataset:
@@ -152,6 +154,7 @@ def validity_map(
         params: physical parameters.
         alpha1, alpha2: 1-D arrays of angles, rad.
         t_end: end of each run, s.
+        model: "A1" or one of its variants.
         tol: tolerance of the Taylor integrator.
         workers: processes; None takes all cores.
 
@@ -171,6 +174,7 @@ def validity_map(
         second,
         ("outcome", "first_separation_time", "early_max_x", "late_max_x"),
         t_end=t_end,
+        model=model,
         tol=tol,
         stop_at_first_separation=True,
         t_late=0.5 * t_end,

@@ -189,6 +189,8 @@ def _check(leads_to: str, model: str, t_end: object, bound: object, directions: 
     rules = VARIANT_RULES[known_model(model)]
     if not rules.separates:
         raise ValueError(f"model = {model!r} never loses contact; use 'A1'")
+    if not rules.drags:
+        raise ValueError(f"model = {model!r} has no steady sliding along the belt; use 'A1'")
     if leads_to == LeadsTo.whirl.name and rules.linear_springs:
         raise ValueError(
             f"model = {model!r} has no whirl, for its springs do not turn; use 'A1', or "

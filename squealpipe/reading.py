@@ -1,0 +1,78 @@
+"""How the paper's sign of friction is read: which belt direction each model takes.
+
+Eq. (4) as printed, with μ(V_r) = μ sgn(V_r) and V_r = ẋ − V, pushes a mass slower than the belt
+along −x. Eqs. (6)–(20), from which the linear models and A4 follow, drag it along +x. A study
+computes the paper's figures in one of three readings and, beside it, the corrected physics, which
+has one sign throughout. While |ẋ| < V, Eq. (4) as printed equals a belt along −x: so the correction
+that keeps A1's figures lets the belt run that way in all models.
+
+A reading fixes the direction of the belt; ``belt_speed`` gives the magnitude.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from squealpipe.parameters import Parameters
+from squealpipe.text import suggestion
+
+
+class Reading(NamedTuple):
+    """One reading of the sign of friction.
+
+    Attributes:
+        meaning: in words.
+        a1_model: model that stands for A1.
+        a1_direction: direction of its belt along x.
+        linear_direction: direction in which A2, A3, A4 and the natural frequencies are dragged.
+        corrected: the reading that is the corrected physics beside it.
+    """
+
+    meaning: str
+    a1_model: str
+    a1_direction: int
+    linear_direction: int
+    corrected: str
+
+
+READINGS: dict[str, Reading] = {
+    "as_printed": Reading(
+        "A1 by Eq. (4) as printed, the linear models by Eqs. (6)–(20)",
+        "A1-as-printed", 1, 1, "along_minus_x",
+    ),
+    "along_plus_x": Reading("friction drags along +x in all models", "A1", 1, 1, "along_plus_x"),
+    "along_minus_x": Reading(
+        "friction drags along −x in all models", "A1", -1, -1, "along_minus_x"
+    ),
+}  # fmt: skip
+
+
+def reading_of(name: str) -> Reading:
+    """The reading of that name.
+
+    Raises:
+        ValueError: it is unknown; the nearest name is suggested.
+    """
+    if name not in READINGS:
+        raise ValueError(f"reading = {name!r}: unknown; {suggestion(name, READINGS)}")
+    return READINGS[name]
+
+
+def for_a1(params: Parameters, reading: str) -> tuple[Parameters, str]:
+    """Parameters and model that A1 is computed with."""
+    found = reading_of(reading)
+    return _towards(params, found.a1_direction), found.a1_model
+
+
+def for_linear(params: Parameters, reading: str) -> Parameters:
+    """Parameters that A2, A3, A4 and the natural frequencies are computed with."""
+    return _towards(params, reading_of(reading).linear_direction)
+
+
+def corrected(params: Parameters, reading: str) -> Parameters:
+    """Parameters of the corrected physics beside a reading, for all models."""
+    return for_linear(params, reading_of(reading).corrected)
+
+
+def _towards(params: Parameters, direction: int) -> Parameters:
+    return params.with_(belt_speed=direction * abs(params.belt_speed))
