@@ -62,7 +62,7 @@ def dop853(p, alpha1, alpha2, t_end, start):
                 mass=0.5, k1=1e7, k2=2e7, k3=7e6, mu=0.3, preload=1e-4, length1=1e-3,
                 length2=2e-3, belt_speed=0.1,
             ),
-            (0.0, 0.0, 0.0, 0.0),
+            (0.0, 0.0, 0.15, 0.0),
             1,
         ),
         (PAPER, (0.0, 0.0, 0.0, 0.0), 0),
