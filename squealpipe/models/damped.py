@@ -30,6 +30,9 @@ POLISHES = 3
 MARGINAL = 1e-16
 """Growth below this share of |s| is the round-off of a mode that is not damped."""
 
+_EQUAL = 1e-12
+"""Relative difference within which two critical frictions are one."""
+
 
 class DampedSystem(NamedTuple):
     """C and K of the mass in contact, over m: 1/s and 1/s²; K is not symmetric; det K and det C."""
@@ -197,6 +200,14 @@ def critical_friction(
     divergence = np.where(e < 0.0, -d / np.where(e < 0.0, e, 1.0), np.inf)
     damped = np.where(p1 > 0.0, np.minimum(flutter, divergence), undamped)
     return damped, undamped
+
+
+def dashpots_lower(damped: Any, undamped: Any) -> Any:
+    """Whether one critical friction is the smaller by more than their round-off.
+
+    Where steady sliding diverges first, both are one number that is formed in two ways.
+    """
+    return damped < (1.0 - _EQUAL) * undamped
 
 
 def _without_round_off(matrix: Stiffness) -> Stiffness:

@@ -309,3 +309,21 @@ def test_critical_friction_is_of_coulombs_law() -> None:
         critical_friction_map(
             Parameters(friction_law="exponential", mu_static=0.5, belt_speed=1.0), [1.0], [2.0]
         )
+
+
+@pytest.mark.parametrize("scale", [1.0, 0.3, 7.1])
+def test_where_sliding_diverges_first_dashpots_lower_nothing(scale: float) -> None:
+    """There the critical friction is that of det K = 0, which has no dashpots in it."""
+    params = Parameters(mass=scale, k1=scale, k2=scale, k3=0.75 * scale, belt_speed=-100.0,
+                        damping1=0.05 * scale, damping2=0.05 * scale)  # fmt: skip
+    angles = np.linspace(0.0, math.pi, 181)
+    found = critical_friction_map(params, angles, angles)
+    alpha1, alpha2 = angles[:, None], angles
+    k11 = np.cos(alpha1) ** 2 + np.cos(alpha2) ** 2
+    k12 = 0.5 * (np.sin(2.0 * alpha1) - np.sin(2.0 * alpha2))
+    divergence = np.full(k12.shape, np.inf)  # the belt runs along −x: only where K12 < 0
+    np.divide(np.sin(alpha1 + alpha2) ** 2 + 0.75 * k11, -0.75 * k12, divergence, where=k12 < -1e-9)
+    first = abs(found.critical_mu.values - divergence) < 1e-9 * divergence
+    first &= np.isfinite(divergence)
+    assert first.sum() > 1000
+    assert not found.destabilized.values[first].any()

@@ -24,6 +24,11 @@ from squealpipe.methods.orbits.shooting import (
 )
 
 _MOST_HALVINGS = 100
+_MOST_SPLITS = 6
+_CLEAR = 1e-9
+"""Below it a sign is left to round-off: where a tongue ends, the index tends to 2."""
+_ROOM = 4.0
+"""Over the bend of a measure between two points, least distance from zero that excludes a pair."""
 _ROWS_PER_CALL = 512
 
 
@@ -118,6 +123,15 @@ class Orbit:
         shoot(system.rows, x0, y0, half_period, *work, final)
         return final[:2]
 
+    def from_higher_rest(self, system: PiecewiseLinearSystem) -> Orbit:
+        """The same orbit, described from its instant of rest with the larger y."""
+        final = self.other_rest(system)
+        if final[1] <= self.point[1]:
+            return self
+        times = self.point[2] - self.switches[::-1]
+        point = np.array([*final, self.point[2]])
+        return Orbit(point, times, self.stability_index, self.residual)
+
     def largest_y(self, system: PiecewiseLinearSystem) -> float:
         """Largest y over the period."""
         out = np.empty(6)
@@ -139,7 +153,7 @@ def orbit_across(
 ) -> Orbit | None:
     """The orbit on the plane through a guess across a normal, or None where Newton fails."""
     found = _on_chord(system, guess, np.asarray(normal, dtype=float), 0.0)
-    return None if found is None else found[0]
+    return None if found is None else found.orbit
 
 
 def rest_jacobian(system: PiecewiseLinearSystem, point: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -239,26 +253,57 @@ def special_points(
 
     Args:
         orbits: consecutive orbits of one branch; each change of sign between two is followed
-            down to round-off by solving for orbits on the plane across their chord.
+            down to round-off by solving for orbits on the plane across their chord, and looked
+            for in pairs where the curvature along the chord leaves room for them.
     """
     found = []
     for first, second in pairwise(orbits):
-        chord = second.point - first.point
+        chord = _same_rest(system, first, second) - first.point
         ends = [_on_chord(system, first.point, chord, share) for share in (0.0, 1.0)]
         if ends[0] is None or ends[1] is None:
             continue
-        before, after = (_measures(*end) for end in ends if end is not None)
-        for kind in SpecialPoint:
-            if before[kind] * after[kind] < 0.0:
-                located = _locate(system, first.point, chord, kind)
-                if located is not None:
-                    found.append((kind, located))
+        samples = _between(system, first.point, chord, ends[0], ends[1], _MOST_SPLITS)
+        for left, right in pairwise([ends[0], *samples, ends[1]]):
+            for kind in SpecialPoint:
+                if left.clear_sign[kind] * right.clear_sign[kind] < 0.0:
+                    located = _locate(system, first.point, chord, left, right, kind)
+                    if located is not None:
+                        found.append((kind, located.from_higher_rest(system)))
     return found
 
 
-def _measures(orbit: Orbit, tangent: NDArray[np.float64]) -> tuple[float, float, float]:
-    """What changes its sign at each kind of special point."""
-    return orbit.stability_index + 2.0, orbit.stability_index - 2.0, float(tangent[1])
+def _same_rest(system: PiecewiseLinearSystem, first: Orbit, second: Orbit) -> NDArray[np.float64]:
+    """The second orbit from the instant of rest that continues the first one's.
+
+    Of the two instants of rest another may become the higher one between two orbits.
+    """
+    here, there = second.point[:2], second.other_rest(system)
+    apart = [np.linalg.norm(rest - first.point[:2]) for rest in (here, there)]
+    return np.array([*(here if apart[0] <= apart[1] else there), second.point[2]])
+
+
+@dataclass(frozen=True)
+class _OnChord:
+    """The orbit on the plane across a chord at a share of its length.
+
+    Attributes:
+        tangent: the branch's direction along the chord.
+    """
+
+    share: float
+    orbit: Orbit
+    tangent: NDArray[np.float64]
+
+    @property
+    def measures(self) -> NDArray[np.float64]:
+        """What changes its sign at each kind of special point."""
+        index = self.orbit.stability_index
+        return np.array([index + 2.0, index - 2.0, self.tangent[1]])
+
+    @property
+    def clear_sign(self) -> NDArray[np.float64]:
+        """Signs of the measures; 0 within round-off."""
+        return np.where(abs(self.measures) > _CLEAR, np.sign(self.measures), 0.0)
 
 
 def _on_chord(
@@ -266,8 +311,7 @@ def _on_chord(
     start: NDArray[np.float64],
     chord: NDArray[np.float64],
     share: float,
-) -> tuple[Orbit, NDArray[np.float64]] | None:
-    """The orbit on the plane across a chord, and the branch's direction along the chord there."""
+) -> _OnChord | None:
     point, segments = start + share * chord, np.empty((MAX_SEGMENTS, 9))
     switches, final, tangent = np.empty(MAX_SEGMENTS), np.empty(4), np.empty(3)
     normal = chord / np.linalg.norm(chord)
@@ -278,30 +322,53 @@ def _on_chord(
         return None
     index = float(stability_index(system.rows, segments, count))
     sign = 1.0 if float(tangent @ normal) > 0.0 else -1.0
-    return Orbit(point, switches[: count - 1].copy(), index, float(residual)), sign * tangent
+    orbit = Orbit(point, switches[: count - 1].copy(), index, float(residual))
+    return _OnChord(share, orbit, sign * tangent)
+
+
+def _between(
+    system: PiecewiseLinearSystem,
+    start: NDArray[np.float64],
+    chord: NDArray[np.float64],
+    left: _OnChord,
+    right: _OnChord,
+    splits: int,
+) -> list[_OnChord]:
+    """Orbits between two, by halving wherever a measure may have two zeros between them."""
+    middle = _on_chord(system, start, chord, 0.5 * (left.share + right.share))
+    if middle is None or splits == 0:
+        return []
+    low, half, high = left.measures, middle.measures, right.measures
+    nearest = np.minimum(np.sign(low) * half, np.minimum(abs(low), abs(high)))
+    bend = abs(half - 0.5 * (low + high))
+    one_side = left.clear_sign * right.clear_sign > 0.0
+    if not (one_side & (nearest < _ROOM * bend)).any():
+        return []
+    return [
+        *_between(system, start, chord, left, middle, splits - 1),
+        middle,
+        *_between(system, start, chord, middle, right, splits - 1),
+    ]
 
 
 def _locate(
     system: PiecewiseLinearSystem,
     start: NDArray[np.float64],
     chord: NDArray[np.float64],
+    first: _OnChord,
+    last: _OnChord,
     kind: SpecialPoint,
 ) -> Orbit | None:
     """Regula falsi (Illinois) along the chord; None where an orbit in between is not found."""
-    left, right = 0.0, 1.0
-    ends = [_on_chord(system, start, chord, share) for share in (left, right)]
-    if ends[0] is None or ends[1] is None:
-        return None
-    low, high = (_measures(*end)[kind] for end in ends if end is not None)
-    if not low * high < 0.0:
-        return None
-    kept, orbit = 0, ends[1][0]
+    left, right = first.share, last.share
+    low, high = first.measures[kind], last.measures[kind]
+    kept, orbit = 0, last.orbit
     for _ in range(_MOST_HALVINGS):
         share = right - high * (right - left) / (high - low)
         found = _on_chord(system, start, chord, share)
         if found is None:
             return None
-        orbit, value = found[0], _measures(*found)[kind]
+        orbit, value = found.orbit, found.measures[kind]
         if value == 0.0 or right - left <= 4e-16:
             break
         if value * low > 0.0:

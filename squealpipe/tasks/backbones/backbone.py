@@ -261,9 +261,10 @@ def _harmonic_dataset(
 def special_beyond_contact(
     scene: ScaledSystem, orbits: Sequence[Orbit], outcomes: Sequence[Outcome]
 ) -> list[tuple[SpecialPoint, Orbit]]:
-    """Special points of the part of an exact branch that loses contact."""
+    """Special points of an exact branch from grazing on."""
     pairs = zip(orbits, outcomes, strict=True)
-    return special_points(scene.system, [o for o, outcome in pairs if outcome == Outcome.converged])
+    beyond = (Outcome.grazing, Outcome.converged)
+    return special_points(scene.system, [orbit for orbit, outcome in pairs if outcome in beyond])
 
 
 def special_variables(

@@ -9,7 +9,7 @@ import xarray as xr
 from numpy.typing import ArrayLike
 
 from squealpipe.laws.friction_laws import slope
-from squealpipe.models.damped import critical_friction
+from squealpipe.models.damped import critical_friction, dashpots_lower
 from squealpipe.parameters import Parameters, is_finite_number
 from squealpipe.schema import build
 from squealpipe.schema.linear import CRITICAL_DAMPING_MAP, CRITICAL_FRICTION_MAP
@@ -45,7 +45,7 @@ def critical_friction_map(params: Parameters, alpha1: ArrayLike, alpha2: ArrayLi
             "critical_mu": critical,
             "critical_mu_undamped": undamped,
             "critical_mu_vanishing": vanishing,
-            "destabilized": critical < undamped,
+            "destabilized": dashpots_lower(critical, undamped),
         },
         {"alpha1": alpha1, "alpha2": alpha2},
     )
@@ -92,7 +92,7 @@ def critical_damping_map(
         {
             "critical_mu": critical,
             "critical_mu_undamped": undamped,
-            "destabilized": critical < undamped,
+            "destabilized": dashpots_lower(critical, undamped),
             "alpha1": float(alpha1),
             "alpha2": float(alpha2),
         },

@@ -8,6 +8,7 @@ import pytest
 from squealpipe.parameters import Parameters
 from squealpipe.schema import Outcome
 from squealpipe.schema.backbones import Assumption, Special
+from squealpipe.solvers.a4 import exact_branches
 from squealpipe.tasks.backbones.backbone import backbone, contact_losing_branches, with_orbits
 from squealpipe.tasks.backbones.orbit import periodic_orbit
 
@@ -37,6 +38,45 @@ def test_period_doublings_are_found_again_from_another_start():
     for peak in found.special_y_peak.values:
         assert index(peak) == pytest.approx(-2.0, abs=1e-9)
     assert index(4.9) < -2.0 < min(index(3.9), index(5.84))
+
+
+def test_a_period_doubling_just_above_grazing_is_found():
+    params = Parameters(k2=0.75237, k3=0.650825, mu=0.270188, length1=5, length2=5, belt_speed=100)
+    found = backbone(params, 2.655067, 1.06432, mode=2, y_peak_max=6.0)
+    assert found.special_kind.values.tolist() == [Special.period_doubling]
+    peak = float(found.special_y_peak[0])
+    assert peak == pytest.approx(1.0073, abs=1e-4)
+    at = [
+        float(periodic_orbit(params, 2.655067, 1.06432, mode=2, y_peak=near * peak).stability_index)
+        for near in (0.999, 1.0, 1.001)
+    ]
+    assert at[0] > -2.0 > at[2]
+    assert at[1] == pytest.approx(-2.0, abs=1e-9)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_special_points_of_random_branches_are_those_of_dense_samples(seed, monkeypatch):
+    """Each change of sign between 20 times as many orbits has its special point."""
+    rng = np.random.default_rng(seed)
+    compared = 0
+    for _ in range(12):
+        k2, k3, mu = rng.uniform([0.5, 0.2, 0.02], [2.0, 2.0, 0.8])
+        params = Parameters(k2=k2, k3=k3, mu=mu, length1=5, length2=5, belt_speed=100)
+        angles, mode = rng.uniform(0.0, PI, 2), int(rng.integers(1, 3))
+        found = backbone(params, *angles, mode=mode, y_peak_max=6.0)
+        with monkeypatch.context() as patch:
+            patch.setattr(exact_branches, "_SPACING", 0.001)
+            dense = backbone(params, *angles, mode=mode, y_peak_max=6.0)
+        beyond = dense.outcome.isin([Outcome.grazing, Outcome.converged]).values
+        index = dense.stability_index.values[beyond]
+        for kind, value in ((Special.period_doubling, -2.0), (Special.index_two, 2.0)):
+            off = index - value
+            crossings = int((np.diff(np.sign(off[abs(off) > 1e-9])) != 0).sum())
+            number = int((found.special_kind == kind).sum())
+            assert number >= crossings, (kind, params, angles, mode)
+            assert number % 2 == crossings % 2, (kind, params, angles, mode)
+            compared += crossings
+    assert compared > 5
 
 
 @pytest.mark.parametrize(
