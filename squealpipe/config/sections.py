@@ -95,12 +95,9 @@ else:
 
 
 class LinearSection(Section):
-    """Linear maps over both spring angles from 0 to π, and their areas over μ and κ."""
+    """Linear maps over both spring angles from 0 to π."""
 
     points: Points = 181
-    share_points: Annotated[int, Field(ge=2, le=201)] = 25
-    mu_max: Positive = 1.0
-    kappa_max: Positive = 2.0
 
 
 def _ascending(limits: tuple[float, float]) -> tuple[float, float]:

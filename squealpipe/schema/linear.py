@@ -157,37 +157,6 @@ STABILITY_BOUNDARIES = DatasetSchema(
     },
 )
 
-PAIR = ("mu", "kappa")
-
-
-def _share(dims: tuple[str, ...], long_name: str) -> Variable:
-    return Variable(f"share of the angle map: {long_name}", dims=dims)
-
-
-LINEAR_SHARES = DatasetSchema(
-    name="linear_shares",
-    title="How much of the angle map the linear models forbid or find unstable",
-    coordinates={
-        "mu": Variable("friction coefficient", dims=("mu",)),
-        "kappa": Variable("k3/k1", dims=("kappa",)),
-        "sharpness": Variable("sigma times l_pre", dims=("sharpness",)),
-    },
-    variables={
-        "impossible_as_printed": _share(("mu",), "Eq. (11) as printed fails"),
-        "impossible": _share(("mu",), "reaction force of model A2 is not positive"),
-        "flutter": _share(PAIR, "flutter"),
-        "divergence": _share(PAIR, "divergence"),
-        "pulled": _share(PAIR, "k3 pulls in the static state of Eq. (15)"),
-        "impossible_but_pressed": _share(
-            PAIR, "not possible by model A2, contact force of Eq. (15) positive"
-        ),
-        "unstable_where_possible": _share(PAIR, "unstable where sliding is possible"),
-        "stiffness_ratio": Variable("K3 of Eq. (8d) over k3", dims=("sharpness",)),
-        "flutter_regularized": _share(("sharpness",), "flutter with K3 of Eq. (8d)"),
-        "divergence_regularized": _share(("sharpness",), "divergence with K3 of Eq. (8d)"),
-    },
-)
-
 MODE_COUPLING = DatasetSchema(
     name="mode_coupling",
     title="Minimal mode-coupling model of Hoffmann, Fischer, Allgaier and Gaul (2002) by model A3",

@@ -3,15 +3,13 @@
 import math
 
 import numpy as np
-import pytest
 
 from squealpipe.parameters import Parameters
 from squealpipe.store.provenance import stamp
 from squealpipe.study.figures.backbones import (
     a1_beside_a4,
     coupled_backbones,
-    doubled_branch,
-    fig10,
+    fig10_to_12,
     fig13,
     harmonic_convergence,
     harmonic_forms,
@@ -41,30 +39,30 @@ def _branches(alpha1, alpha2, params=None, scene="F10", **limits):
     }
 
 
-def test_fig10_draws_both_amplitudes_and_the_threshold():
+def test_contact_is_lost_at_the_line():
+    """Largest y reaches l_pre at the linear frequency and falls in frequency above it."""
     branches = _branches(0.5, 1.0)
-    figure = fig10.draw(branches)
-    lines = {line.get_label(): line for axes in figure.axes for line in axes.get_lines()}
-    exact = branches["backbone/F10_mode2"]
-    np.testing.assert_allclose(lines["y, exact"].get_ydata(), exact.y_amplitude)
-    np.testing.assert_allclose(lines["x, exact"].get_xdata(), exact.omega)
-    np.testing.assert_allclose(lines[r"$l_\mathrm{pre}$"].get_ydata(), 1.0)
-    circle = lines["contact is lost above"]
-    assert float(circle.get_xdata()[0]) == pytest.approx(float(exact.omega[0]))
+    figure = fig10_to_12.draw(branches)
+    lines = {line.get_label(): line for line in figure.axes[1].get_lines()}
+    exact, drawn = branches["backbone/F10_mode2"], lines["largest y"].get_xydata()
+    np.testing.assert_allclose(drawn.T, [exact.omega, exact.y_peak])
+    preload = lines[r"$l_\mathrm{pre}$, contact is lost"].get_ydata()[0]
+    kept = drawn[:, 1] <= preload
+    assert kept.any()
+    np.testing.assert_allclose(drawn[kept, 0], drawn[0, 0])
+    assert (np.diff(drawn[~kept, 0]) < 0).all()
 
 
 def test_unstable_stretches_are_dotted():
-    figure = coupled_backbones.draw(_branches(0.3, 0.9, y_peak_max=5.0))
+    figure = coupled_backbones.draw(_branches(0.3, 0.9, y_peak_max=5.0), {})
     dotted = [line for line in figure.axes[0].get_lines() if line.get_linestyle() == ":"]
     assert any(np.isfinite(np.asarray(line.get_ydata(), float)).any() for line in dotted)
 
 
-def test_a_broken_assumption_is_ringed():
-    slow = Parameters(belt_speed=0.2)
-    figure = fig13.draw(_branches(5 / 6, 5 / 6, slow))
-    rings = [line for line in figure.axes[0].get_lines() if line.get_marker() == "o"]
-    assert any(len(line.get_xdata()) > 3 for line in rings)
-    assert "mass overtakes the belt" in figure.axes[0].get_legend_handles_labels()[1]
+def test_what_a4_does_not_cover_is_grey():
+    figure = fig13.draw(_branches(5 / 6, 5 / 6, Parameters(belt_speed=0.2)))
+    labels = figure.axes[0].get_legend_handles_labels()[1]
+    assert "mass overtakes the belt" in labels
 
 
 def test_symbols_are_set_as_symbols():
@@ -73,7 +71,7 @@ def test_symbols_are_set_as_symbols():
 
 
 def test_an_empty_branch_says_why_in_the_picture():
-    figure = fig10.draw(_branches(0.4, 0.6))
+    figure = fig10_to_12.draw(_branches(0.4, 0.6))
     assert "singular static state" in figure.axes[0].texts[0].get_text()
 
 
@@ -97,21 +95,18 @@ def test_the_other_pictures_are_drawn():
 
 
 def test_doubled_branches_are_drawn_at_twice_their_frequency():
-    """A scene with a doubling, one without, and one without a backbone."""
-    scenes = {"one": (0.3, 0.9, 4.5), "none": (0.3, 0.9, 3.0), "empty": (0.4, 0.6, 3.0)}
+    """A scene with a doubling has an inset, one without has none."""
+    scenes = {"one": 4.5, "none": 3.0}
     backbones, doubled = {}, {}
-    for name, (alpha1, alpha2, peak) in scenes.items():
-        angles = alpha1 * PI, alpha2 * PI
-        options = {"mode": 1, "y_peak_max": peak}
-        backbones[f"backbone/{name}_mode1"] = backbone(Parameters(), *angles, **options)
+    for name, peak in scenes.items():
+        backbones |= _branches(0.3, 0.9, scene=name, y_peak_max=peak)
         for number in (1, 2):
             doubled[f"doubled_branch/{name}_{number}"] = follow_doubling(
-                Parameters(), *angles, doubling=number, **options
+                Parameters(), 0.3 * PI, 0.9 * PI, mode=1, doubling=number, y_peak_max=peak
             )
-    panels = doubled_branch.draw(backbones, doubled).axes
-    assert len(panels) == 6
+    first, _, second, _ = coupled_backbones.draw(backbones, doubled).axes
+    (inset,) = first.child_axes
     branch = doubled["doubled_branch/one_1"]
-    shown = [line for line in panels[0].lines if line.get_label() == "doubled branch 1"]
-    np.testing.assert_allclose(shown[0].get_xdata()[0], 2.0 * branch.omega[0])
-    assert not any("doubled" in line.get_label() for line in panels[2].lines)
-    assert "singular static state" in panels[4].texts[0].get_text()
+    starts = [line.get_xdata()[0] for line in inset.lines]
+    assert any(np.isclose(start, 2.0 * float(branch.omega[0])) for start in starts)
+    assert second.child_axes == []

@@ -12,14 +12,11 @@ from squealpipe.parameters import SCENES, Parameters
 from squealpipe.study.figures.inference import parameter_inference
 from squealpipe.study.figures.linear import (
     fig06,
+    fig07,
     fig08,
     fig09,
     frequency_shift,
-    linear_against_nonlinear,
-    linear_shares,
     mode_coupling,
-    stability_plane,
-    static_state,
 )
 from squealpipe.study.figures.parts.style import save_figure
 from squealpipe.tasks.inference import inference
@@ -89,19 +86,14 @@ def test_comparison_counts_every_cell_once() -> None:
     validity = xr.Dataset(
         {"regime_linear": (("a", "b"), regimes), "separates": (("a", "b"), separates)}
     )
-    kinds = linear_against_nonlinear.kinds_of_cells(validity)
-    np.testing.assert_array_equal(kinds, [[0, 2, 1, 3]] * 2)
+    kinds = fig07.kinds_of_cells(validity)
+    np.testing.assert_array_equal(kinds, [[2, 0, 1, 3]] * 2)
 
 
 def test_extra_figures_are_written(maps: dict[str, xr.Dataset], tmp_path: Path) -> None:
     figures = {
-        "plane": stability_plane.draw(maps["boundaries"]),
         "shift": frequency_shift.draw(maps["frequencies"]),
-        "static": static_state.draw(maps["quasi_static"]),
         "coupling": mode_coupling.draw(coupling.mode_coupling(points=7)),
-        "shares": linear_shares.draw(
-            linear_boundaries.linear_shares(BASELINE, [0, 0.5, 1], [0.5, 1], [0.1, 1], points=30)
-        ),
         "inference": parameter_inference.draw(inference.infer_parameters(BASELINE, samples=64)),
     }
     for name, figure in figures.items():

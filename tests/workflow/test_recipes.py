@@ -221,8 +221,7 @@ ladder = model_ladder(Parameters(mu=0.5), 8, 0.05, t_end=100.0, workers=1)
 assert ladder.level.values[0] == "a2_static" and ladder.sizes["level"] == 9
 wrong = ladder.error.sel(level="a2_static", question="contact_lost") > 0
 assert wrong.any() and not wrong.all()
-for name in ("model_ladder", "model_ladder_cost"):
-    declared.draw(name, {"model_ladder": ladder}).savefig(name + ".png")
+declared.draw("model_ladder", {"model_ladder": ladder}).savefig("model_ladder.png")
 """
     python(folder, script)
 

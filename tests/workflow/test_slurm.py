@@ -47,7 +47,7 @@ COUNTS_STEPS = {"work_precision_frequencies"}
 alone may change them from run to run, within the tolerance of the schema."""
 
 TINY = """
-linear: {points: 21, share_points: 3}
+linear: {points: 21}
 inference: {samples: 64}
 comparison:
   integration: {horizon: 5.0, tolerances: [1.0e-4], steps: [0.1], sigmas: [10.0]}

@@ -70,7 +70,7 @@ EDITS = {
     "sweeps: {third: {task: stability_map, vary: {k1: 2}, fixed: {alpha1: 1, alpha2: 2}}}": {
         "run_sweep_third"
     },
-    "linear: {mu_max: 0.9}": set(),
+    "linear: {points: 91}": set(),
     "parameters: {mu: 0.35}": {"run_sweep_stiffness"},
     "parameters: {k3: 0.8}": {"run_sweep_friction"},
 }

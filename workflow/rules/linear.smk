@@ -3,7 +3,6 @@
 PAPERS_OWN = {
     "frequencies": data("natural_frequencies"),
     "boundaries": data("stability_boundaries"),
-    "shares": data("linear_shares"),
 } if PAPERS_FRICTION else {}
 
 

@@ -1,17 +1,15 @@
-"""Exact boundary curves of the linear maps, and the areas that they enclose."""
+"""Exact boundary curves of the linear maps."""
 
 from __future__ import annotations
 
 import numpy as np
 import xarray as xr
 
-from squealpipe.models import a2, a3
-from squealpipe.models.a4 import spectrum
-from squealpipe.models.contact_system import contact_system
+from squealpipe.models import a3
 from squealpipe.models.refusals import WHY_CIRCLES, refuse_extensions
 from squealpipe.parameters import Parameters
 from squealpipe.schema import build
-from squealpipe.schema.linear import LINEAR_SHARES, STABILITY_BOUNDARIES, Boundary
+from squealpipe.schema.linear import STABILITY_BOUNDARIES, Boundary
 
 
 def stability_boundaries(params: Parameters, *, points: int = 400) -> xr.Dataset:
@@ -64,70 +62,4 @@ def stability_boundaries(params: Parameters, *, points: int = 400) -> xr.Dataset
             "segment": np.repeat(np.arange(len(segments)), points),
         },
         {"point": np.arange(count)},
-    )
-
-
-def linear_shares(
-    params: Parameters,
-    mu: np.ndarray,
-    kappa: np.ndarray,
-    sharpness: np.ndarray,
-    *,
-    points: int = 180,
-) -> xr.Dataset:
-    """Areas of the angle map against friction, contact stiffness and regularization.
-
-    Args:
-        params: physical parameters; mu and k3 are replaced by the grids.
-        mu, kappa: friction coefficients and ratios k3/k1.
-        sharpness: values of σ l_pre, for the baseline's mu and k3.
-        points: angles per period and axis; the midpoint rule over one period of the map.
-
-    Returns:
-        Dataset of shares between 0 and 1; see the schema ``linear_shares``.
-    """
-    refuse_extensions(params, "linear_shares", WHY_CIRCLES)
-    angles = (np.arange(points) + 0.5) * (np.pi / points)
-    system = contact_system(params, angles[:, None], angles[None, :])
-    stiffness, determinant = system.stiffness, system.spring_determinant
-
-    def regime(k3: float, friction: float) -> np.ndarray:
-        invariants = spectrum(stiffness, determinant, k3=k3, mu=friction, mass=params.mass)
-        return np.asarray(a3.regime(invariants))
-
-    shape = (len(mu), len(kappa))
-    names = ("flutter", "divergence", "pulled", "impossible_but_pressed", "unstable_where_possible")
-    shares = {name: np.zeros(shape) for name in names}
-    impossible, as_printed = np.zeros(len(mu)), np.zeros(len(mu))
-    for row, friction in enumerate(mu):
-        possible = a2.reaction_force(stiffness, friction, 1.0) > 0
-        impossible[row] = 1.0 - possible.mean()
-        as_printed[row] = 1.0 - a2.possible_as_printed(stiffness, friction).mean()
-        for column, ratio in enumerate(kappa):
-            k3 = ratio * params.k1
-            regimes = regime(k3, friction)
-            force = a3.static_state(stiffness, determinant, k3=k3, mu=friction, actuation=1.0)[2]
-            cell = row, column
-            shares["flutter"][cell] = np.mean(regimes == a3.LinearRegime.flutter)
-            shares["divergence"][cell] = np.mean(regimes == a3.LinearRegime.divergence)
-            shares["pulled"][cell] = np.mean(force < 0)
-            shares["impossible_but_pressed"][cell] = np.mean(~possible & (force > 0))
-            shares["unstable_where_possible"][cell] = np.mean(possible & (regimes > 0))
-    stiffnesses = [
-        a2.contact_stiffness(params, value / params.preload) for value in np.asarray(sharpness)
-    ]
-    regularized = [regime(k3, params.drag) for k3 in stiffnesses]
-    return build(
-        LINEAR_SHARES,
-        {
-            "impossible_as_printed": as_printed,
-            "impossible": impossible,
-            **shares,
-            "stiffness_ratio": np.array(stiffnesses) / params.k3,
-            "flutter_regularized": [np.mean(r == a3.LinearRegime.flutter) for r in regularized],
-            "divergence_regularized": [
-                np.mean(r == a3.LinearRegime.divergence) for r in regularized
-            ],
-        },
-        {"mu": mu, "kappa": kappa, "sharpness": sharpness},
     )

@@ -38,7 +38,7 @@ def branch(run: Run, scene: str, mode: int) -> xr.Dataset:
     "7",
     "(π/2, π): near ω1 one peak, in x alone; near ω2 peaks in x and y",
     "y amplitude of mode 1, as a share of its x amplitude",
-    "fig10",
+    "fig10_to_12",
     Verdict.holds,
 )
 def first_mode_is_isolated(run: Run) -> Finding:
@@ -83,7 +83,7 @@ for name, angles in (("F11", "(π, π/2)"), ("F12", "(3π/4, 3π/4)")):
         "7",
         f"{angles}: nearly the same response",
         "largest relative difference of ω from (π/2, π) at equal y",
-        name.replace("F", "fig"),
+        "fig10_to_12",
         Verdict.holds,
     )(same_as_first(name))
 
@@ -123,7 +123,7 @@ for name, text in (
         "7",
         text,
         "relative drop of ω along the branch",
-        name.replace("F", "fig"),
+        "fig10_to_12",
         Verdict.holds,
     )(bends_down(name))
 

@@ -68,7 +68,7 @@ rows.add(
     "7, 9",
     "time and frequency domain show the same trends",
     "largest relative difference of the frequency in A1 from ω2 of A4",
-    "fig10",
+    "fig10_to_12",
     Verdict.holds,
 )
 def time_and_frequency_agree(run: Run) -> Finding:

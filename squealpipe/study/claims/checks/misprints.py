@@ -266,7 +266,7 @@ def black_region_is_there(run: Run) -> Finding:
     "5 and 6",
     "A2's reaction force decides about the equilibrium of Eq. (15)",
     "cells in which A2's R_n and the equilibrium's N* differ in sign",
-    "static_state",
+    "fig06",
     Verdict.fails,
 )
 def reaction_is_that_of_equilibrium(run: Run) -> Finding:

@@ -1,28 +1,88 @@
-"""Backbones of further scenes, those that the configuration names as coupled."""
+"""Backbones of further scenes, with branches of doubled period as insets."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from squealpipe.study.figures.parts.backbone_panels import KEY, draw_scenes
+import numpy as np
+from matplotlib.ticker import MaxNLocator
+
+from squealpipe.study.figures.parts.backbone_panels import (
+    KEY,
+    STABLE_TO_ROUND_OFF,
+    draw_scenes,
+    joined,
+)
+from squealpipe.study.figures.parts.style import BLACK, GREEN, PURPLE, Y_COLOUR
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     import xarray as xr
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-READS = ("backbone/[a-z]*",)
+READS = ("backbone/[a-z]*", "doubled_branch/*")
 CAPTION = (
     "Periodic motions of model A4 in further spring arrangements, one row for each, with the mode "
-    "of the lower frequency on the left. " + KEY
+    f"of the lower frequency on the left. {KEY} Insets, where mode 1 has period doublings (black "
+    "circles): largest y of the branches of doubled period in green and purple, at twice their "
+    "frequency."
 )
 ALT = (
-    "Panels of amplitude over frequency, one row for each spring arrangement, one column for each "
-    "mode."
+    "Panels of largest y and amplitude of x over frequency, one row for each spring arrangement, "
+    "one column for each mode; insets enlarge the branches of doubled period."
 )
+SHOWN = 1.25
+"""Largest y of a doubled branch shown, over that of the backbone."""
 
 
-def draw(branches: Mapping[str, xr.Dataset]) -> Figure:
-    """One row for each scene; see ``parts.backbone_panels.draw_scenes``."""
-    return draw_scenes(branches, 0.6 + 2.5 * len(branches) / 4)
+def draw(branches: Mapping[str, xr.Dataset], doubled: Mapping[str, xr.Dataset]) -> Figure:
+    """One row for each scene; see ``parts.backbone_panels.draw_scenes``.
+
+    Args:
+        branches: datasets ``backbone/<scene>_mode<n>`` of the scenes that the study names.
+        doubled: datasets ``doubled_branch/<scene>_<number>``.
+    """
+    scenes = dict.fromkeys(
+        name.removeprefix("backbone/").rsplit("_mode", 1)[0] for name in branches
+    )
+    figure = draw_scenes(branches, 0.6 + 2.5 * len(scenes))
+    for panel, scene in zip(figure.axes[::2], scenes, strict=True):
+        leaving = [doubled.get(f"doubled_branch/{scene}_{number}") for number in (1, 2)]
+        found = [branch for branch in leaving if branch is not None and branch.sizes["point"]]
+        if found:
+            _draw_doubled(panel, branches[f"backbone/{scene}_mode1"], found)
+    return figure
+
+
+def _draw_doubled(panel: Axes, simple: xr.Dataset, doubled: list[xr.Dataset]) -> None:
+    inset = panel.inset_axes((0.5, 0.44, 0.48, 0.5))
+    _line(inset, simple, simple.y_peak.values, 1, Y_COLOUR)
+    top = SHOWN * float(simple.y_peak.max())
+    corners = []
+    for branch, colour in zip(doubled, (GREEN, PURPLE), strict=False):
+        shown = branch.isel(point=branch.y_largest.values <= top)
+        _line(inset, shown, shown.y_largest.values, 2, colour)
+        corners.append((2 * shown.omega.values, shown.y_largest.values))
+        at = float(branch.doubling_omega), float(branch.y_largest[0])
+        inset.plot(*at, "o", markersize=4, markerfacecolor="white", markeredgecolor=BLACK, zorder=3)
+    for values, limit in zip(
+        map(np.concatenate, zip(*corners, strict=True)), (inset.set_xlim, inset.set_ylim),
+        strict=True,
+    ):  # fmt: skip
+        margin = 0.12 * np.ptp(values)
+        limit(values.min() - margin, values.max() + margin)
+    inset.set_ylim(top=min(inset.get_ylim()[1], panel.get_ylim()[1]))
+    inset.xaxis.set_major_locator(MaxNLocator(4))
+    inset.tick_params(labelsize=5)
+    panel.indicate_inset_zoom(inset, edgecolor=BLACK, alpha=0.4)
+
+
+def _line(inset: Axes, branch: xr.Dataset, y: np.ndarray, times: int, colour: str) -> None:
+    """A branch at ``times`` its frequency, dotted where unstable."""
+    omega = times * branch.omega.values
+    unstable = np.abs(branch.stability_index.values) > STABLE_TO_ROUND_OFF
+    inset.plot(omega, np.where(unstable, np.nan, y), color=colour, linewidth=1.2)
+    if unstable.any():
+        inset.plot(omega, np.where(joined(unstable), y, np.nan), ":", color=colour, linewidth=1.2)

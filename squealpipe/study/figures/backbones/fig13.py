@@ -1,6 +1,25 @@
 """Fig. 13: backbones of both modes at (5π/6, 5π/6)."""
 
-from squealpipe.study.figures.parts.backbone_panels import SCENE_ALT, draw_scene, scene_caption
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from squealpipe.study.figures.parts.backbone_panels import KEY, SCENE_ALT, draw_scenes
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    import xarray as xr
+    from matplotlib.figure import Figure
 
 READS = ("backbone/F13_*",)
-CAPTION, ALT, draw = scene_caption, SCENE_ALT, draw_scene
+CAPTION = (
+    "Periodic motions of model A4 at (5π/6, 5π/6) over the frequency, (a) near ω₁ and (b) near "
+    f"ω₂. {KEY}"
+)
+ALT = SCENE_ALT
+
+
+def draw(branches: Mapping[str, xr.Dataset]) -> Figure:
+    """One row; see ``parts.backbone_panels.draw_scenes``."""
+    return draw_scenes(branches, 2.9)

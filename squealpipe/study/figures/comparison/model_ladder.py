@@ -9,6 +9,8 @@ from matplotlib.patches import Patch
 from squealpipe.schema.ladder import Level
 from squealpipe.study.figures.parts import style
 from squealpipe.study.figures.parts.style import (
+    BLACK,
+    BLUE,
     GREY,
     PAGE,
     category_colours,
@@ -16,19 +18,26 @@ from squealpipe.study.figures.parts.style import (
     new_figure,
     panel_letter,
 )
+from squealpipe.study.figures.parts.work_precision import foot
 
 if TYPE_CHECKING:
     import xarray as xr
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 READS = ("model_ladder",)
 CAPTION = (
     "The cheapest level of the model ladder whose answer is within the tolerance of A1's and whose "
     "own assumptions hold, over both spring angles (a level that only drops stick counts where "
-    "the belt is reached): (a) is contact lost, (b) dominant frequency of "
-    "y, (c) peak contact force, (d) largest displacement, within the map's horizon."
+    "the belt is reached): (a) is contact lost, (b) dominant frequency of y, (c) peak contact "
+    "force, (d) largest displacement, within the map's horizon. (e) Time that choosing a level by "
+    "choose_model takes over that of always running A1; above 100 % choosing does not pay. Below "
+    "each bar: share of its answers within the tolerance, and of those found by a level below A1."
 )
-ALT = "Four maps over both spring angles, coloured by the cheapest adequate model level."
+ALT = (
+    "Four maps over both spring angles, coloured by the cheapest adequate model level, and a bar "
+    "chart of what choosing it costs."
+)
 
 QUESTION_NAMES = {
     "contact_lost": "contact lost?",
@@ -44,21 +53,42 @@ def colour_of(level: Level) -> str:
 
 
 def draw(ladder: xr.Dataset) -> Figure:
-    """One map for each question, from dataset ``model_ladder``."""
-    figure, axes = new_figure(PAGE, 7.2, nrows=2, ncols=2)
+    """One map for each question and the cost, from dataset ``model_ladder``."""
+    figure, _ = new_figure(PAGE, 4.9)
+    figure.clear()
+    axes = figure.subplot_mosaic("abe;cde")
     colours = category_colours([colour_of(level) for level in sorted(Level)])
     present = set()
-    for letter, panel, question in zip(
-        "abcd", axes.flat, ladder.question.values.tolist(), strict=True
-    ):
+    for letter, question in zip("abcd", ladder.question.values.tolist(), strict=True):
+        panel = axes[letter]
         levels = ladder.cheapest.sel(question=question).values
         present |= set(levels.ravel().tolist())
         draw_map(panel, ladder.alpha1.values, ladder.alpha2.values, levels, **colours)
         panel_letter(panel, letter, QUESTION_NAMES[question])
+    _draw_cost(axes["e"], ladder)
+    panel_letter(axes["e"], "e", "cost of choosing")
     patches = [
         Patch(facecolor=colour_of(level), edgecolor=GREY, lw=0.5, label=level.label)
         for level in Level
         if level in present
     ]
-    figure.legend(handles=patches, loc="outside upper center", ncols=len(patches))
+    figure.legend(handles=patches, loc="outside upper center", ncols=min(len(patches), 4))
+    foot(figure, ladder)
     return figure
+
+
+def _draw_cost(panel: Axes, ladder: xr.Dataset) -> None:
+    questions = ladder.question.values.tolist()
+    cost = 100 * ladder.chosen_wall_time.values / ladder.always_wall_time.values
+    cells = ("alpha1", "alpha2")
+    right = 100 * (ladder.chosen_error <= ladder.tolerance).mean(cells).values
+    below = 100 * (~ladder.chosen.isin([Level.a1, Level.a1_short])).mean(cells).values
+    panel.barh(range(len(questions)), cost, color=BLUE, height=0.35)
+    panel.axvline(100, color=BLACK, lw=0.8, ls="--")
+    for row, question in enumerate(questions):
+        words = f"{QUESTION_NAMES[question]}: {cost[row]:.0f} %"
+        details = f"{right[row]:.1f} % right, {below[row]:.0f} % below A1"
+        panel.text(0, row - 0.22, words, fontsize=7, va="bottom")
+        panel.text(0, row + 0.22, details, fontsize=6, va="top")
+    panel.set(xlabel="time over always A1 (%)", yticks=[], xlim=(0, 1.1 * max(100, *cost)))
+    panel.set_ylim(len(questions) - 0.4, -0.6)

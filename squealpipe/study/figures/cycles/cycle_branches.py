@@ -42,40 +42,49 @@ MARKS = {
 }
 CAPTION = (
     "Limit cycles of the full model with dashpots over the friction coefficient: largest |x| of "
-    "the cycle. Full lines: stable; dashed: unstable; marks: located special points. Dots: largest "
-    "|x| in the last fifth of long runs from starts near and far, cycles and states of rest alike. "
-    "(a) Scene of Fig. 3; (b) another scene, with the branch from the onset of flutter if steady "
-    "sliding flutters within the range; (c) scene of Fig. 2(d)."
+    "the cycle, one panel for each spring arrangement in which cycles or different ends of long "
+    "runs were found. Full blue lines: stable; dashed orange: unstable; marks: located special "
+    "points. Grey dots: largest |x| in the last fifth of long runs from starts near and far, "
+    "cycles and states of rest alike."
 )
 ALT = (
-    "Three charts of largest |x| over friction. Lines, if any, show branches of cycles with "
-    "marks at special points; dots show where long runs end."
+    "Charts of largest |x| over friction. Lines, if any, show branches of cycles with marks at "
+    "special points; dots show where long runs end."
 )
+AT_REST = 0.5
+"""Range of late |x|, in l_pre, below which all long runs of a scene end alike."""
 
 
 def draw(down: xr.Dataset, up: xr.Dataset, flutter: xr.Dataset, extremes: xr.Dataset) -> Figure:
-    """Three panels.
+    """A panel for each scene that moves at all.
 
     Args:
         down, up: branches of the scene of Fig. 3 from the study's friction to its limits.
         flutter: branch from the onset of flutter.
         extremes: settled amplitudes by brute force.
     """
-    figure, axes = new_figure(PAGE, 3.2, ncols=3)
-    panels = (("F3", (down, up)), ("flutter", (flutter,)), ("F2d", ()))
-    titles = (scene_title("F3"), flutter_title(flutter), scene_title("F2d"))
-    shown: dict[str, tuple[str, str, str]] = {}
     unit = parameter(extremes, "preload")
-    for letter, panel, (scene, branches), title in zip("abc", axes[0], panels, titles, strict=True):
-        runs = extremes.late_max_x.sel(scene=scene)
-        friction = np.broadcast_to(extremes.mu.values[:, None], runs.shape)
-        panel.plot(friction, runs.values / unit, ".", color=GREY, markersize=2.5, zorder=1)
+    panels = {
+        "F3": (scene_title("F3"), (down, up)),
+        "flutter": (flutter_title(flutter), (flutter,)),
+        "F2d": (scene_title("F2d"), ()),
+    }
+    sizes = {name: extremes.late_max_x.sel(scene=name).values / unit for name in panels}
+    moving = [
+        name
+        for name, (_, branches) in panels.items()
+        if np.ptp(sizes[name]) > AT_REST or any(branch.sizes["point"] for branch in branches)
+    ] or ["F3"]
+    figure, axes = new_figure(PAGE, 3.1, ncols=len(moving))
+    shown: dict[str, tuple[str, str, str]] = {}
+    for letter, panel, name in zip("abc", axes[0], moving, strict=False):
+        title, branches = panels[name]
+        friction = np.broadcast_to(extremes.mu.values[:, None], sizes[name].shape)
+        panel.plot(friction, sizes[name], ".", color=GREY, markersize=2.5, zorder=1)
         for branch in branches:
             shown |= _branch(panel, branch, unit)
-        panel.set(xlabel="μ", yscale="symlog", ylim=(0, None))
-        panel.set_yscale("symlog", linthresh=1.0)
-        # up to a power of ten, which has a label
-        panel.set_ylim(0, 10.0 ** max(0.0, np.ceil(np.log10(panel.get_ylim()[1]))))
+        _enlarge(panel, branches, unit)
+        panel.set(xlabel="μ", ylim=(0, None))
         panel_letter(panel, letter, title)
     axes[0, 0].set_ylabel(r"largest |x| / $l_\mathrm{pre}$")
     handles = [
@@ -94,6 +103,18 @@ def flutter_title(branch: xr.Dataset) -> str:
     angles = json.loads(branch.attrs["config"])["cycles"]["flutter"]
     onset = "flutter onset" if branch.sizes["point"] else "no branch"
     return f"{angle_pair(*(float(angle) * np.pi for angle in angles))}, {onset}"
+
+
+def _enlarge(panel: Axes, branches: tuple[xr.Dataset, ...], unit: float) -> None:
+    """An inset of branches that would lie on the axis."""
+    drawn = [branch for branch in branches if branch.sizes["point"] > 1]
+    largest = max((float(np.abs(branch.x_max).max()) / unit for branch in drawn), default=0.0)
+    if not 0.0 < largest < 0.1 * panel.get_ylim()[1]:
+        return
+    inset = panel.inset_axes((0.12, 0.62, 0.45, 0.34))
+    for branch in drawn:
+        _branch(inset, branch, unit)
+    inset.tick_params(labelsize=5)
 
 
 def _branch(panel: Axes, branch: xr.Dataset, unit: float) -> dict[str, tuple[str, str, str]]:

@@ -26,19 +26,19 @@ READS = ("hammering_map",)
 CAPTION = (
     "How far ahead model A1 can be computed. (a) Time at which an error of the integrator's "
     "tolerance has grown to l_pre/1000, from the tangent map through all events; white: not within "
-    "the time run. Beyond it only statistics mean something. (b) Growth of a perturbation over the "
-    "run for each kind of motion; dashed: the growth that separates regular from irregular "
-    "hammering."
+    "the time run. Beyond it only statistics mean something. (b) Share of the cells of each kind "
+    "of motion in which a perturbation grows less than that over the run; cells are counted in "
+    "the key; dashed: the growth that separates regular from irregular hammering."
 )
 ALT = (
     "Left, a map over both angles of the predictability horizon, white where it is not reached. "
-    "Right, histograms of the growth for each kind of motion with a dashed line between regular "
-    "and irregular."
+    "Right, cumulative shares of the growth for each kind of motion with a dashed line between "
+    "regular and irregular."
 )
 
 
 def draw(hammering: xr.Dataset) -> Figure:
-    """A map of the horizon and histograms of the growth.
+    """A map of the horizon and the distribution of the growth.
 
     Args:
         hammering: dataset ``hammering_map``.
@@ -65,13 +65,10 @@ def draw(hammering: xr.Dataset) -> Figure:
     names = meanings(hammering.motion)
     present = [k for k in names if np.any(hammering.motion.values == k)]
     panel = axes[0, 1]
-    panel.hist(
-        [growth[hammering.motion.values == k] for k in present],
-        bins=np.linspace(growth.min(), growth.max(), 40),
-        stacked=True,
-        color=[REGIME_COLOURS[names[k]] for k in present],
-        label=[flag_words(names[k]) for k in present],
-    )
+    for code in present:
+        chosen = growth[hammering.motion.values == code]
+        label = f"{flag_words(names[code])} ({chosen.size})"
+        panel.ecdf(chosen, color=REGIME_COLOURS[names[code]], label=label)
     panel.axvline(
         float(hammering.attrs["regular_growth"]),
         color=GREY,
@@ -80,7 +77,7 @@ def draw(hammering: xr.Dataset) -> Figure:
         label="regular to irregular",
     )
     panel.set(
-        xlabel=f"ln of the growth over t = {number(t_end, 4)} s", ylabel="cells", yscale="log"
+        xlabel=f"ln of the growth over t = {number(t_end, 4)} s", ylabel="share of the cells below"
     )
     figure.legend(loc="outside lower right", ncols=3)
     panel_letter(panel, "b", "growth of a perturbation")

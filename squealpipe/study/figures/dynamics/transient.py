@@ -13,12 +13,9 @@ from squealpipe.study.figures.parts.origin import time_unit
 from squealpipe.study.figures.parts.style import (
     BLACK,
     BLUE,
-    GREEN,
-    GREY,
     ORANGE,
     PAGE,
     new_figure,
-    panel_letter,
 )
 from squealpipe.text import number
 
@@ -29,27 +26,22 @@ if TYPE_CHECKING:
 
 READS = ("transient",)
 CAPTION = (
-    "How long the bounded motion of Fig. 4 lasts. (a) Share of runs that still swing to and fro "
-    "after a time, over perturbations of the start up to a billionth of l_pre: Kaplan–Meier "
-    "estimate. Where runs end: its 95 % band, and dashed the decay at one hazard for all ages. "
-    "Orange: the time of Fig. 4. (b) Share of runs that leave it within the time run, and their "
-    "median lifetime where half of them do, over belt speed."
+    "How long the bounded motion of Fig. 4 lasts. Share of runs that still swing to and fro after "
+    "a time, over perturbations of the start up to a billionth of l_pre: Kaplan–Meier estimate. "
+    "Where runs end: its 95 % band, and dashed the decay at one hazard for all ages. Orange: the "
+    "time of Fig. 4."
 )
-ALT = (
-    "Left, a survival curve on a logarithmic axis. Right, the share of runs that left and their "
-    "median lifetime over belt speed."
-)
+ALT = "A survival curve of the bounded motion on a logarithmic axis."
 
 
 def draw(transient: xr.Dataset) -> Figure:
-    """Two panels.
+    """The survival curve.
 
     Args:
         transient: dataset ``transient``.
     """
-    figure, axes = new_figure(PAGE, 2.9, ncols=2)
+    figure, axes = new_figure(0.7 * PAGE, 2.9)
     _survival(axes[0, 0], transient)
-    _speeds(axes[0, 1], transient)
     return figure
 
 
@@ -78,7 +70,7 @@ def _survival(axes: Axes, transient: xr.Dataset) -> None:
     axes.xaxis.set_major_locator(MaxNLocator(5))
     axes.legend(loc="lower left")
     most = "" if ended else f" (95 %: at most {100 * wilson_interval(0, count)[1]:.3g} %)"
-    panel_letter(axes, "a", f"{ended} of {count} end in the whirl{most}")
+    axes.set_title(f"{ended} of {count} end in the whirl{most}", loc="left")
 
 
 def _constant_hazard(axes: Axes, transient: xr.Dataset) -> None:
@@ -91,24 +83,3 @@ def _constant_hazard(axes: Axes, transient: xr.Dataset) -> None:
         age = transient.survival_time.values
         label = f"constant hazard, mean {number(1 / rate, 4)} s"
         axes.plot(age, np.exp(-rate * age), "--", color=BLACK, label=label)
-
-
-def _speeds(axes: Axes, transient: xr.Dataset) -> None:
-    lifetime, speed = transient.lifetime.values, np.abs(transient.belt_speed.values)
-    left = np.isfinite(lifetime).mean(axis=1)
-    axes.semilogx(speed, left, "o-", color=GREEN, markersize=4)
-    axes.set(xlabel="belt speed |V| (m/s)", ylim=(-0.05, 1.1))
-    axes.set_ylabel(f"share that left by t = {number(float(transient.t_end), 4)} s", color=GREEN)
-    axes.axhline(0, color=GREY, linewidth=0.5)
-    twin = axes.twinx()
-    ordered = np.sort(np.where(np.isfinite(lifetime), lifetime, np.inf), axis=1)
-    median = ordered[:, lifetime.shape[1] // 2]
-    half = np.isfinite(median)
-    panel_letter(axes, "b", "runs that left, and their median lifetime")
-    if not half.any():
-        twin.set_axis_off()
-        return
-    twin.plot(speed[half], median[half], "s--", color=BLUE, markersize=4)
-    twin.set_ylabel("median lifetime (s)", color=BLUE)
-    twin.set_ylim(0, 1.4 * max(median[half]))
-    twin.spines["right"].set_visible(True)

@@ -1,17 +1,16 @@
-"""Critical friction over the angles, with and without dashpots, and over both dashpots."""
+"""Critical friction over the angles, what dashpots change of it, and over both dashpots."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
-from matplotlib.patches import Patch
 
 from squealpipe.study.figures.parts.origin import angle_pair, parameter
 from squealpipe.study.figures.parts.style import (
     BLACK,
+    LIGHT,
     PAGE,
-    WHITE,
     draw_map,
     new_figure,
     panel_letter,
@@ -24,8 +23,11 @@ if TYPE_CHECKING:
 
 READS = ("critical_friction_map", "critical_damping_map")
 LARGEST = 1.5
-"""Upper end of the colours."""
-ALT = "Two maps over both spring angles and one over both dashpots, coloured by critical friction."
+"""Upper end of the colours of (a)."""
+ALT = (
+    "Two maps over both spring angles, of the critical friction and of its change by dashpots, and "
+    "one map over both dashpots."
+)
 
 
 def caption(angles: xr.Dataset, _: xr.Dataset) -> str:
@@ -33,9 +35,10 @@ def caption(angles: xr.Dataset, _: xr.Dataset) -> str:
     c1, c2 = (number(parameter(angles, f"damping{i}")) for i in (1, 2))
     return (
         "Friction coefficient of Coulomb's law at which steady sliding turns unstable by A3 "
-        f"(Routh–Hurwitz), over both spring angles (a) without dashpots, (b) with c₁ = {c1} and "
-        f"c₂ = {c2} N s/m; hatched: the dashpots lower the critical friction. (c) Over both "
-        "dashpots at one pair of angles; white line: as without dashpots, hatched: below that."
+        "(Routh–Hurwitz). (a) Over both spring angles without dashpots. (b) Its change by dashpots "
+        f"c₁ = {c1} and c₂ = {c2} N s/m: red, they lower it and make sliding unstable sooner; "
+        f"blue, they raise it; grey, it is above {LARGEST:g} with them and without. (c) Over both "
+        "dashpots at one pair of angles, on a scale of its own; black line: as without dashpots."
     )
 
 
@@ -49,36 +52,38 @@ def draw(angles: xr.Dataset, dashpots: xr.Dataset) -> Figure:
         angles: dataset ``critical_friction_map``.
         dashpots: dataset ``critical_damping_map``.
     """
-    figure, axes = new_figure(PAGE, 2.7, ncols=3)
-    without, with_dashpots, plane = axes[0]
-    colours: dict[str, Any] = {"cmap": "viridis", "vmin": 0.0, "vmax": LARGEST}
+    figure, axes = new_figure(PAGE, 2.4, ncols=3)
+    without, change, plane = axes[0]
     grid = angles.alpha1.values, angles.alpha2.values
-    for panel, name in ((without, "critical_mu_undamped"), (with_dashpots, "critical_mu")):
-        draw_map(panel, *grid, np.minimum(angles[name].values, 2 * LARGEST), **colours)
-    _hatch(with_dashpots, *grid, angles.destabilized.values)
-    with_dashpots.set_ylabel("")
+    undamped, damped = angles.critical_mu_undamped.values, angles.critical_mu.values
+    mesh = draw_map(
+        without, *grid, np.minimum(undamped, 2 * LARGEST), cmap="viridis", vmin=0.0, vmax=LARGEST
+    )
+    figure.colorbar(mesh, ax=without, label="critical μ", extend="max", shrink=0.75)
+    shown = np.fmin(undamped, damped) < LARGEST
+    moved = np.minimum(damped, LARGEST) - np.minimum(undamped, LARGEST)
+    limit = float(np.percentile(abs(moved[shown]), 95)) if shown.any() else 0.0
+    change.set_facecolor(LIGHT)
+    mesh = draw_map(
+        change, *grid, np.where(shown, moved, np.nan), cmap="RdBu", vmin=-limit or -1.0,
+        vmax=limit or 1.0,
+    )  # fmt: skip
+    change.set_ylabel("")
+    figure.colorbar(mesh, ax=change, label="change of critical μ", extend="both", shrink=0.75)
     c1, c2 = dashpots.damping1.values, dashpots.damping2.values
-    values = np.minimum(dashpots.critical_mu.values, 2 * LARGEST)
-    mesh = plane.pcolormesh(c1, c2, values.T, shading="nearest", rasterized=True, **colours)
-    _hatch(plane, c1, c2, dashpots.destabilized.values)
+    values = dashpots.critical_mu.values
+    finite = values[np.isfinite(values)]
+    low, high = np.percentile(finite, [0, 98]) if finite.size else (0.0, 1.0)
+    mesh = plane.pcolormesh(
+        c1, c2, np.minimum(values, 10 * high).T, shading="nearest", rasterized=True, cmap="viridis",
+        vmin=low, vmax=high,
+    )  # fmt: skip
     level = float(dashpots.critical_mu_undamped)
     if values.min() < level < values.max():
-        plane.contour(c1, c2, values.T, levels=[level], colors=[WHITE], linewidths=1.0)
-    plane.set(xlabel="dashpot c₁ (N s/m)", ylabel="dashpot c₂ (N s/m)", aspect="equal")
+        plane.contour(c1, c2, values.T, levels=[level], colors=[BLACK], linewidths=1.0)
+    plane.set(xlabel="dashpot c₁ (N s/m)", ylabel="dashpot c₂ (N s/m)", box_aspect=1)
+    figure.colorbar(mesh, ax=plane, label="critical μ", extend="max", shrink=0.75)
     panel_letter(without, "a", "no dashpots")
-    panel_letter(with_dashpots, "b", "with dashpots")
+    panel_letter(change, "b", "change")
     panel_letter(plane, "c", f"at {angle_pair(dashpots.alpha1, dashpots.alpha2)}")
-    figure.colorbar(mesh, ax=axes[0], label="critical friction", extend="max", shrink=0.7)
-    figure.legend(
-        handles=[
-            Patch(facecolor=WHITE, edgecolor=BLACK, hatch="////", label="lowered by dashpots")
-        ],
-        loc="outside lower center",
-    )
     return figure
-
-
-def _hatch(panel: Any, x: np.ndarray, y: np.ndarray, marked: np.ndarray) -> None:
-    if marked.any():
-        cells = marked.T.astype(float)
-        panel.contourf(x, y, cells, levels=[0.5, 1.5], colors="none", hatches=["////"])

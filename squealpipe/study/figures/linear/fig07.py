@@ -1,4 +1,4 @@
-"""Fig. 7: where the linear stability analysis (A3) is valid, in both readings (E10)."""
+"""Fig. 7: where the linear stability analysis (A3) is valid, and what it misses."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ from squealpipe.study.figures.linear.linear_overlay import mark_scene
 from squealpipe.study.figures.parts.style import (
     BLACK,
     LIGHT,
+    ORANGE,
     PAGE,
     WHITE,
     category_colours,
@@ -21,63 +22,90 @@ from squealpipe.study.figures.parts.style import (
 )
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     import xarray as xr
     from matplotlib.figure import Figure
 
-READS = ("validity_map",)
+READS = ("[cv]*alidity_map",)
+KINDS = (
+    ("A3 stable, A1 loses contact", WHITE),
+    ("A3 unstable, A1 loses contact", ORANGE),
+    ("A3 stable, contact kept", LIGHT),
+    ("A3 unstable, contact kept", BLACK),
+)
 ALT = (
-    "Two equal square maps over both spring angles, in white where contact is lost, grey where it "
-    "is kept and the system is stable, and black where it is kept and unstable; a cross near the "
+    "Square maps over both spring angles in white, orange, grey and black: where model A1 loses "
+    "contact, where it keeps it, and in each whether the linear model is stable. A cross near the "
     "middle marks the configuration of Fig. 3."
 )
+TITLES = {"": "as printed", "corrected/": "sign of Eq. (4) mended"}
 
 
-def caption(validity: xr.Dataset) -> str:
-    """What the tones mean, with the threshold and the numbers of black cells of the dataset."""
-    by_a3, by_a1 = (np.count_nonzero(cells) for cells in _unstable(validity))
+def caption(maps: Mapping[str, xr.Dataset]) -> str:
+    """What the tones mean, with the numbers of cells."""
+    several = "; ".join(
+        f"({letter}) {TITLES[_kind(name)]}" for letter, name in zip("ab", maps, strict=False)
+    )
+    growing = _listed(np.count_nonzero(grows(validity)) for validity in maps.values())
+    threshold = growth_threshold(next(iter(maps.values())))
     return (
-        "Where the linear model A3 is valid. White: A1, started at rest, loses contact, so A3 says "
-        "nothing. Grey: contact is kept and the system is stable; black: kept and unstable, judged "
-        "(a) by the eigenvalues of A3, as the paper's text says, or (b) by the response of A1 "
-        f"itself, as its caption says (|x| grows {growth_threshold(validity):g} times or more from "
-        "the first half of the run to the second, as it does if it grows as fast as time). "
-        f"Black are {by_a3} cells in (a) and {by_a1} in (b). The cross is the configuration of "
-        "Fig. 3."
+        f"Where the linear model A3 is valid{f': {several}' if len(maps) > 1 else ''}. White: A1, "
+        "started at rest, loses contact although A3 is stable; orange: it does and A3 is unstable. "
+        "Grey: contact is kept and A3 is stable; black: kept and unstable by the eigenvalues of "
+        "A3, as the paper's text says. By A1's own response, as its caption says (|x| grows "
+        f"{threshold:g} times or more from the first half of the run to the second), {growing} of "
+        "the cells that keep contact are unstable. Numbers of cells are in the titles and the key."
     )
 
 
 CAPTION = caption
 
 
-def draw(validity: xr.Dataset) -> Figure:
-    """The paper's three tones in both readings.
+def kinds_of_cells(validity: xr.Dataset) -> np.ndarray:
+    """Index into ``KINDS`` of each cell."""
+    unstable = validity.regime_linear.values > 0
+    return 2 * (validity.separates.values == 0) + unstable
+
+
+def grows(validity: xr.Dataset) -> np.ndarray:
+    """Cells that keep contact and grow by A1's own response."""
+    growth = np.nan_to_num(validity.response_growth.values)
+    return np.asarray((validity.separates.values == 0) & (growth >= growth_threshold(validity)))
+
+
+def draw(maps: Mapping[str, xr.Dataset]) -> Figure:
+    """One map, and beside it that of the mended sign if the study has it.
 
     Args:
-        validity: dataset ``validity_map``.
+        maps: dataset ``validity_map``, and ``corrected/validity_map``.
     """
-    kept = validity.separates.values == 0
-    titles = ("stability from A3 (text)", "stability from A1 (caption)")
-    readings = zip(titles, _unstable(validity), strict=True)
-    figure, axes = new_figure(PAGE, 3.8, ncols=2)
-    for panel, letter, (title, black) in zip(axes[0], "ab", readings, strict=True):
-        tones = np.where(black, 2, kept)
-        colours = category_colours([WHITE, LIGHT, BLACK])
-        draw_map(panel, validity.alpha1.values, validity.alpha2.values, tones, **colours)
+    names = sorted(maps, key=len)
+    figure, axes = new_figure(PAGE if len(names) > 1 else 0.62 * PAGE, 3.9, ncols=len(names))
+    counts = []
+    for panel, letter, name in zip(axes[0], "ab", names, strict=False):
+        kinds = kinds_of_cells(maps[name])
+        angles = maps[name].alpha1.values, maps[name].alpha2.values
+        draw_map(panel, *angles, kinds, **category_colours([colour for _, colour in KINDS]))
         mark_scene(panel, "F3")
-        panel_letter(panel, letter, f"{title}: {np.count_nonzero(black)} unstable")
-    lost = f"A3 invalid: A1 separates ({np.count_nonzero(~kept)} of {kept.size})"
-    patches = [
-        Patch(facecolor=WHITE, edgecolor=BLACK, linewidth=0.6, label=lost),
-        Patch(facecolor=LIGHT, label="valid, stable"),
-        Patch(facecolor=BLACK, label="valid, unstable"),
-    ]
-    marks = axes[0, 0].get_legend_handles_labels()[0]
-    figure.legend(handles=[*patches, *marks], loc="outside lower center", ncols=4)
+        counts.append(np.bincount(kinds.ravel(), minlength=len(KINDS)))
+        title = f"{TITLES[_kind(name)]}: " if len(names) > 1 else ""
+        panel_letter(panel, letter, f"{title}{counts[-1][3]} black cells of {kinds.size}")
+    handles = [
+        Patch(
+            facecolor=colour, edgecolor=BLACK, linewidth=0.5,
+            label=f"{label}: {' | '.join(str(count[index]) for count in counts)}",
+        )
+        for index, (label, colour) in enumerate(KINDS)
+    ]  # fmt: skip
+    cross = axes[0, 0].get_legend_handles_labels()[0]
+    figure.legend(handles=[*handles, *cross], loc="outside lower center", ncols=len(names) + 1)
     return figure
 
 
-def _unstable(validity: xr.Dataset) -> tuple[np.ndarray, np.ndarray]:
-    """Cells that keep contact and are unstable, by A3 and by A1's own response."""
-    kept = validity.separates.values == 0
-    grows = np.nan_to_num(validity.response_growth.values) >= growth_threshold(validity)
-    return kept & (validity.regime_linear.values > 0), kept & grows
+def _kind(name: str) -> str:
+    return name.removesuffix("validity_map")
+
+
+def _listed(counts: object) -> str:
+    return " and ".join(map(str, counts))  # type: ignore[call-overload]

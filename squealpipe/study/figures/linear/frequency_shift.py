@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
+from matplotlib.colors import TwoSlopeNorm
 
 from squealpipe.schema import Outcome
 from squealpipe.study.figures.parts.frequency_map import HATCH, outline
@@ -17,8 +18,8 @@ if TYPE_CHECKING:
 READS = ("natural_frequencies",)
 CAPTION = (
     "Natural frequencies separated minus in contact, paired by their order: (a) ω₁, (b) ω₂. Blue: "
-    "the frequency falls when contact is lost; red: it rises; black lines lie between the two. "
-    "Hatched: flutter in contact."
+    "the frequency falls when contact is lost; red: it rises, on a scale of its own; black lines "
+    "lie between the two. Hatched: flutter in contact."
 )
 ROUND_OFF = 1e-9
 """A shift below this is none: where K12 = 0 one frequency does not depend on contact."""
@@ -27,33 +28,25 @@ ALT = "Two maps over both angles of the frequency shift between contact states, 
 
 def draw(frequencies: xr.Dataset) -> Figure:
     """Both modes, from dataset ``natural_frequencies``."""
-    figure, axes = new_figure(PAGE, 3.5, ncols=2)
+    figure, axes = new_figure(PAGE, 3.3, ncols=2)
     shift = frequencies.omega.sel(contact_state="separated") - frequencies.omega.sel(
         contact_state="contact"
     )
-    limit = float(np.abs(shift).max())
+    angles = frequencies.alpha1.values, frequencies.alpha2.values
     for panel, letter, mode in zip(axes[0], "ab", (1, 2), strict=True):
         values = shift.sel(mode=mode).values
-        mesh = draw_map(
-            panel,
-            frequencies.alpha1.values,
-            frequencies.alpha2.values,
-            values,
-            cmap="RdBu_r",
-            vmin=-limit,
-            vmax=limit,
+        scale = TwoSlopeNorm(
+            0.0, min(float(values.min()), -ROUND_OFF), max(float(values.max()), ROUND_OFF)
         )
+        mesh = draw_map(panel, *angles, values, cmap="RdBu_r", norm=scale)
         panel.contour(
-            frequencies.alpha1.values,
-            frequencies.alpha2.values,
-            values.T,
-            levels=[ROUND_OFF],
-            colors="black",
-            linewidths=0.7,
-        )
+            *angles, values.T, levels=[ROUND_OFF], colors="black", linewidths=0.7
+        )  # fmt: skip
         outcome = frequencies.outcome.sel(mode=mode, contact_state="contact").values
         outline(panel, frequencies, outcome == Outcome.complex_pair)
         panel_letter(panel, letter, f"shift of ω{'₁₂'[mode - 1]}")
+        label = "separated − contact (rad/s)" if mode == 2 else ""
+        ticks = [*np.linspace(scale.vmin, 0, 5), *np.linspace(0, scale.vmax, 3)[1:]]
+        figure.colorbar(mesh, ax=panel, label=label, shrink=0.8, ticks=ticks, format="%.2g")
     figure.legend(handles=[HATCH], loc="outside lower center")
-    figure.colorbar(mesh, ax=axes, label="separated − contact (rad/s)", shrink=0.8)  # type: ignore[arg-type]
     return figure

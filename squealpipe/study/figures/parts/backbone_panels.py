@@ -1,4 +1,4 @@
-"""Backbones as the paper shows them: amplitudes over the frequency, one panel for each mode."""
+"""Backbones over the frequency, one panel for each mode."""
 
 from __future__ import annotations
 
@@ -9,9 +9,9 @@ import numpy as np
 from squealpipe.schema import meanings
 from squealpipe.study.figures.parts.origin import angle_pair, parameter
 from squealpipe.study.figures.parts.style import (
+    BLACK,
     GREY,
     PAGE,
-    RED,
     X_COLOUR,
     Y_COLOUR,
     new_figure,
@@ -28,32 +28,25 @@ if TYPE_CHECKING:
 
 CROSSES = 24
 """Points of the harmonic balance that are drawn, evenly spaced along the branch."""
-QUANTITIES = (("x_amplitude", X_COLOUR, "x"), ("y_amplitude", Y_COLOUR, "y"))
+QUANTITIES = (("x_amplitude", X_COLOUR, "amplitude of x"), ("y_peak", Y_COLOUR, "largest y"))
 KEY = (
-    "Crosses: harmonic balance; lines: exact orbits, dotted where unstable. Amplitudes are half of "
-    "the peak to peak and exclude the mean: contact is lost from the circle upwards, where mean "
-    "and amplitude of y add up to l_pre (grey line). Red rings: the mass overtakes the belt, where "
-    "A4 does not hold."
+    "Blue: largest y, so that contact is lost where it reaches the black line at l_pre; orange: "
+    "amplitude of x, half of its peak to peak. Crosses: harmonic balance; lines: exact orbits, "
+    "dotted where unstable, grey where the mass overtakes the belt and A4 does not hold."
 )
 """What the marks mean, for captions."""
-SCENE_ALT = "Two panels of amplitude over frequency for x and y, one for each mode."
+SCENE_ALT = "Two panels of largest y and amplitude of x over frequency, one for each mode."
 
-MOST_IN_A_ROW = 6
-"""Entries that a row of the legend takes."""
 STABLE_TO_ROUND_OFF = 2.0 + 1e-6
 
 
-def draw_scene(branches: Mapping[str, xr.Dataset]) -> Figure:
-    """Two panels, one for each mode.
+def draw_scenes(branches: Mapping[str, xr.Dataset], height: float) -> Figure:
+    """One row for each scene, one panel for each mode.
 
     Args:
         branches: datasets ``backbone/<scene>_mode<n>`` (exact) and those that end in ``_hbm``.
+        height: of the figure, inches.
     """
-    return draw_scenes(branches, 3.0)
-
-
-def draw_scenes(branches: Mapping[str, xr.Dataset], height: float) -> Figure:
-    """One row for each scene, one panel for each mode; ``branches`` as for :func:`draw_scene`."""
     scenes = list(dict.fromkeys(name.rsplit("_mode", 1)[0] for name in branches))
     figure, axes = new_figure(PAGE, height, nrows=len(scenes), ncols=2)
     letters = iter("abcdefghijklmnopqrst")
@@ -62,20 +55,10 @@ def draw_scenes(branches: Mapping[str, xr.Dataset], height: float) -> Figure:
             exact, series = (branches[f"{scene}_mode{mode}{form}"] for form in ("", "_hbm"))
             draw_branch(panel, exact, series, parameter(exact, "preload"))
             panel_letter(panel, next(letters), f"{_angles(exact)}, vicinity of ω{'₁₂'[mode - 1]}")
-        row[0].set_ylabel("amplitude (m)")
+        row[0].set_ylabel("y, x (m)")
     handles, labels = key_entries(axes.ravel())
-    columns = len(labels) if len(labels) <= MOST_IN_A_ROW else -(-len(labels) // 2)
-    figure.legend(handles, labels, loc="outside lower center", ncols=columns)
+    figure.legend(handles, labels, loc="outside lower center", ncols=3)
     return figure
-
-
-def scene_caption(branches: Mapping[str, xr.Dataset]) -> str:
-    """Caption of one scene's backbones."""
-    angles = _angles(next(iter(branches.values())))
-    return (
-        f"Periodic motions of model A4 at (α₁, α₂) = {angles}: amplitudes of x and y over the "
-        f"frequency, (a) near ω₁ and (b) near ω₂. {KEY}"
-    )
 
 
 def _angles(branch: xr.Dataset) -> str:
@@ -84,24 +67,23 @@ def _angles(branch: xr.Dataset) -> str:
 
 def draw_branch(panel: Axes, exact: xr.Dataset, series: xr.Dataset, preload: float) -> None:
     """One mode: lines for exact orbits beneath crosses for harmonic balance."""
-    panel.axhline(preload, color=GREY, linewidth=1.0, label=r"$l_\mathrm{pre}$")
+    panel.axhline(preload, color=BLACK, linewidth=0.8, label=r"$l_\mathrm{pre}$, contact is lost")
     if not exact.sizes["point"]:
         say_why_empty(panel, exact)
         return
     unstable = np.abs(exact.stability_index.values) > STABLE_TO_ROUND_OFF
+    overtakes = exact.sliding_assumption.values == 0
     omega = exact.omega.values
     shown = _evenly(series)
     for name, colour, label in QUANTITIES:
         values = exact[name].values
-        stable = np.where(unstable, np.nan, values)
-        panel.plot(omega, stable, color=colour, linewidth=1.4, label=f"{label}, exact")
-        # both ends of each unstable stretch are shared with the stable line, so that none gapes
-        near = unstable | np.roll(unstable, 1) | np.roll(unstable, -1)
-        dotted = np.where(near & unstable.any(), values, np.nan)
-        panel.plot(
-            omega, dotted, color=colour, linewidth=1.4, linestyle=":",
-            label=f"{label}, unstable" if unstable.any() else None,
-        )  # fmt: skip
+        for chosen, look in (
+            (~unstable & ~overtakes, {"color": colour, "label": label}),
+            (unstable & ~overtakes, {"color": colour, "linestyle": ":", "label": "unstable"}),
+            (overtakes, {"color": GREY, "linestyle": "-", "label": "mass overtakes the belt"}),
+        ):
+            if chosen.any():
+                panel.plot(omega, np.where(joined(chosen), values, np.nan), linewidth=1.4, **look)
         panel.plot(
             series.omega.values[shown],
             series[name].values[shown],
@@ -112,18 +94,15 @@ def draw_branch(panel: Axes, exact: xr.Dataset, series: xr.Dataset, preload: flo
             color=colour,
             label=f"{label}, harmonic balance",
         )
-        broken = exact.sliding_assumption.values == 0
-        panel.plot(
-            omega[broken],
-            values[broken],
-            linestyle="none",
-            marker="o",
-            markerfacecolor="none",
-            markeredgecolor=RED,
-            label="mass overtakes the belt" if broken.any() else None,
-        )
-    _mark_contact_loss(panel, exact, preload)
     _frame(panel, np.concatenate([omega, series.omega.values[shown]]))
+
+
+def joined(chosen: np.ndarray) -> np.ndarray:
+    """Chosen points and the next one on either side, so that no line gapes where looks change."""
+    near = chosen.copy()
+    near[1:] |= chosen[:-1]
+    near[:-1] |= chosen[1:]
+    return near
 
 
 def say_why_empty(panel: Axes, branch: xr.Dataset) -> None:
@@ -132,25 +111,6 @@ def say_why_empty(panel: Axes, branch: xr.Dataset) -> None:
     text = f"no periodic motions:\n{reason.replace('_', ' ')}"
     panel.text(0.5, 0.5, text, transform=panel.transAxes, ha="center", va="center")
     panel.set(xticks=[], yticks=[])
-
-
-def _mark_contact_loss(panel: Axes, exact: xr.Dataset, preload: float) -> None:
-    """A circle where the branch reaches y = l_pre."""
-    peak = exact.y_peak.values
-    if peak.max() <= preload or peak[0] >= preload:
-        return
-    at = int(np.flatnonzero(peak >= preload * (1 - 1e-12))[0])
-    panel.plot(
-        exact.omega.values[at],
-        exact.y_amplitude.values[at],
-        linestyle="none",
-        marker="o",
-        markersize=5,
-        markerfacecolor="white",
-        markeredgecolor=Y_COLOUR,
-        zorder=3,
-        label="contact is lost above",
-    )
 
 
 def _frame(panel: Axes, omega: np.ndarray) -> None:
@@ -165,7 +125,7 @@ def _evenly(series: xr.Dataset) -> np.ndarray:
     """Indices of points at even distances along the branch in the picture."""
     if series.sizes["point"] <= CROSSES:
         return np.arange(series.sizes["point"])
-    parts = [series[name].values for name in ("omega", "x_amplitude", "y_amplitude")]
+    parts = [series[name].values for name in ("omega", "x_amplitude", "y_peak")]
     steps = np.sqrt(sum((np.diff(part) / (np.ptp(part) or 1.0)) ** 2 for part in parts))
     length = np.concatenate([[0.0], np.cumsum(steps)])
     wanted = np.linspace(0.0, length[-1], CROSSES)

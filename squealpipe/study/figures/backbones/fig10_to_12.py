@@ -1,0 +1,28 @@
+"""Figs. 10–12: backbones of both modes at (π/2, π), (π, π/2) and (3π/4, 3π/4)."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from squealpipe.study.figures.parts.backbone_panels import KEY, draw_scenes
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    import xarray as xr
+    from matplotlib.figure import Figure
+
+READS = ("backbone/F1[012]_*",)
+CAPTION = (
+    "Periodic motions of model A4 over the frequency, one row for each of Figs. 10, 11 and 12, "
+    f"with the mode of the lower frequency on the left. {KEY}"
+)
+ALT = (
+    "Three rows of two panels, one row for each figure of the paper: largest y and amplitude of x "
+    "over frequency near the first and the second natural frequency."
+)
+
+
+def draw(branches: Mapping[str, xr.Dataset]) -> Figure:
+    """Three rows; see ``parts.backbone_panels.draw_scenes``."""
+    return draw_scenes(branches, 6.2)
