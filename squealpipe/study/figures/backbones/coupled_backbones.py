@@ -67,12 +67,9 @@ def _draw_doubled(panel: Axes, simple: xr.Dataset, doubled: list[xr.Dataset]) ->
         corners.append((2 * shown.omega.values, shown.y_largest.values))
         at = float(branch.doubling_omega), float(branch.y_largest[0])
         inset.plot(*at, "o", markersize=4, markerfacecolor="white", markeredgecolor=BLACK, zorder=3)
-    for values, limit in zip(
-        map(np.concatenate, zip(*corners, strict=True)), (inset.set_xlim, inset.set_ylim),
-        strict=True,
-    ):  # fmt: skip
-        margin = 0.12 * np.ptp(values)
-        limit(values.min() - margin, values.max() + margin)
+    omega, y = map(np.concatenate, zip(*corners, strict=True))
+    inset.set_xlim(*_framed(omega))
+    inset.set_ylim(*_framed(y))
     inset.set_ylim(top=min(inset.get_ylim()[1], panel.get_ylim()[1]))
     inset.xaxis.set_major_locator(MaxNLocator(4))
     inset.tick_params(labelsize=5)
@@ -86,3 +83,8 @@ def _line(inset: Axes, branch: xr.Dataset, y: np.ndarray, times: int, colour: st
     inset.plot(omega, np.where(unstable, np.nan, y), color=colour, linewidth=1.2)
     if unstable.any():
         inset.plot(omega, np.where(joined(unstable), y, np.nan), ":", color=colour, linewidth=1.2)
+
+
+def _framed(values: np.ndarray) -> tuple[float, float]:
+    margin = 0.12 * float(np.ptp(values))
+    return float(values.min()) - margin, float(values.max()) + margin

@@ -65,7 +65,7 @@ CAPTION = caption
 def kinds_of_cells(validity: xr.Dataset) -> np.ndarray:
     """Index into ``KINDS`` of each cell."""
     unstable = validity.regime_linear.values > 0
-    return 2 * (validity.separates.values == 0) + unstable
+    return np.asarray(2 * (validity.separates.values == 0) + unstable)
 
 
 def grows(validity: xr.Dataset) -> np.ndarray:

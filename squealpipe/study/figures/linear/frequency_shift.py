@@ -35,9 +35,8 @@ def draw(frequencies: xr.Dataset) -> Figure:
     angles = frequencies.alpha1.values, frequencies.alpha2.values
     for panel, letter, mode in zip(axes[0], "ab", (1, 2), strict=True):
         values = shift.sel(mode=mode).values
-        scale = TwoSlopeNorm(
-            0.0, min(float(values.min()), -ROUND_OFF), max(float(values.max()), ROUND_OFF)
-        )
+        low, high = min(float(values.min()), -ROUND_OFF), max(float(values.max()), ROUND_OFF)
+        scale = TwoSlopeNorm(0.0, low, high)
         mesh = draw_map(panel, *angles, values, cmap="RdBu_r", norm=scale)
         panel.contour(
             *angles, values.T, levels=[ROUND_OFF], colors="black", linewidths=0.7
@@ -46,7 +45,7 @@ def draw(frequencies: xr.Dataset) -> Figure:
         outline(panel, frequencies, outcome == Outcome.complex_pair)
         panel_letter(panel, letter, f"shift of ω{'₁₂'[mode - 1]}")
         label = "separated − contact (rad/s)" if mode == 2 else ""
-        ticks = [*np.linspace(scale.vmin, 0, 5), *np.linspace(0, scale.vmax, 3)[1:]]
+        ticks = [*np.linspace(low, 0, 5), *np.linspace(0, high, 3)[1:]]
         figure.colorbar(mesh, ax=panel, label=label, shrink=0.8, ticks=ticks, format="%.2g")
     figure.legend(handles=[HATCH], loc="outside lower center")
     return figure

@@ -77,13 +77,14 @@ def draw_branch(panel: Axes, exact: xr.Dataset, series: xr.Dataset, preload: flo
     shown = _evenly(series)
     for name, colour, label in QUANTITIES:
         values = exact[name].values
-        for chosen, look in (
-            (~unstable & ~overtakes, {"color": colour, "label": label}),
-            (unstable & ~overtakes, {"color": colour, "linestyle": ":", "label": "unstable"}),
-            (overtakes, {"color": GREY, "linestyle": "-", "label": "mass overtakes the belt"}),
+        for chosen, shade, dash, words in (
+            (~unstable & ~overtakes, colour, "-", label),
+            (unstable & ~overtakes, colour, ":", "unstable"),
+            (overtakes, GREY, "-", "mass overtakes the belt"),
         ):
             if chosen.any():
-                panel.plot(omega, np.where(joined(chosen), values, np.nan), linewidth=1.4, **look)
+                drawn = np.where(joined(chosen), values, np.nan)
+                panel.plot(omega, drawn, dash, color=shade, linewidth=1.4, label=words)
         panel.plot(
             series.omega.values[shown],
             series[name].values[shown],
