@@ -27,7 +27,12 @@ from numba.extending import intrinsic
 
 from squealpipe.methods.compiled import compiled_entry, part
 from squealpipe.methods.taylor import simd
-from squealpipe.methods.taylor.series import HybridSystem, perturbation_source, series_source
+from squealpipe.methods.taylor.series import (
+    HybridSystem,
+    longest_source,
+    perturbation_source,
+    series_source,
+)
 from squealpipe.progress import observer
 
 _numba: Any = numba
@@ -35,6 +40,7 @@ _cgutils: Any = cgutils
 SIGNATURES = {
     "series": types.void(types.intp, types.intp, types.intp, types.intp),
     "perturb": types.void(types.intp, types.intp, types.intp, types.intp, types.intp),
+    "longest": types.void(types.intp, types.intp, types.intp, types.intp),
 }
 ROUNDS = 4096
 """Steps of all lanes between two returns from compiled code: some ten milliseconds."""
@@ -49,13 +55,14 @@ class CompiledSystem:
 
     Attributes:
         series: address of :func:`squealpipe.methods.taylor.series.series_source`, compiled.
-        perturb: likewise of ``perturbation_source``, 0 if left out.
-        code: keeps both in memory.
+        perturb, longest: likewise of ``perturbation_source`` and ``longest_source``, 0 if left out.
+        code: keeps them in memory.
         n_series: number of series that the former keeps.
     """
 
     series: int
     perturb: int
+    longest: int
     code: tuple[Any, ...]
     n_series: int
 
@@ -69,15 +76,16 @@ def compile_system(system: HybridSystem, *, tangent: bool, few: bool = False) ->
         few: compute the first ``simd.FEW`` lanes only.
     """
     source, n_series = series_source(system)
-    code = [_from_source("series", source, few)]
+    sources = {"series": source}
     if tangent:
-        code.append(_from_source("perturb", perturbation_source(system), few))
-    perturb = code[1].address if tangent else 0
-    return CompiledSystem(code[0].address, perturb, tuple(code), n_series)
+        sources |= {"perturb": perturbation_source(system), "longest": longest_source(system)}
+    code = {name: _from_source(name, text, few) for name, text in sources.items()}
+    at = {name: code[name].address if name in code else 0 for name in SIGNATURES}
+    return CompiledSystem(**at, code=tuple(code.values()), n_series=n_series)
 
 
 def _from_source(name: str, source: str, few: bool) -> Any:
-    names = ("load", "store", "number", "fma", "splat", "root", "exponential")
+    names = ("load", "store", "number", "fma", "splat", "root", "exponential", "magnitude", "larger")
     scope: dict[str, Any] = {each: getattr(simd, each) for each in names}
     if few:
         scope |= {"load": simd.load_few, "splat": simd.splat_few}

@@ -1,13 +1,15 @@
 """Taylor series of a vector field and of its event functions, for ``LANES`` runs at once.
 
-From the symbols of a :class:`HybridSystem` two functions are written and compiled. One computes
+From the symbols of a :class:`HybridSystem` functions are written and compiled. One computes
 the Taylor coefficients of the state and of the event functions, order after order: a product is a
 convolution, a power or an exponential a recurrence (Jorba and Zou 2005), everything linear costs
-next to nothing. The other carries a perturbation along these polynomials.
+next to nothing. Another carries a perturbation along these polynomials, in steps that its own
+rate limits: near rest those of the state are as long as one likes.
 """
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Any
@@ -22,6 +24,9 @@ _ROOT = 30.0**0.5
 _INNER, _OUTER = (((525.0 + side * 70.0 * _ROOT) ** 0.5) / 70.0 for side in (-1.0, 1.0))
 GAUSS = (0.5 - _OUTER, 0.5 - _INNER, 0.5 + _INNER, 0.5 + _OUTER)
 """Four-point Gauss collocation: order 8, and neither damps nor excites an oscillation."""
+LONGEST = 0.8
+"""Longest step of the perturbation times a bound of its rate: the sweeps leave 1e-7 of it, and few
+steps of a moving state are longer."""
 
 
 def collocation_weights(nodes: tuple[float, ...], end: float) -> tuple[float, ...]:
@@ -284,18 +289,54 @@ def constant(system: HybridSystem, node: Symbol, name: Name) -> str:
     return pointwise(node, name)
 
 
+def _slopes(system: HybridSystem) -> dict[tuple[int, int], Symbol]:
+    """The derivatives of the rates that are not zero, by row and column."""
+    return {
+        (i, j): entry
+        for i, rate in enumerate(system.rates)
+        for j, variable in enumerate(system.variables)
+        if (entry := derivative(rate, variable)).kind != "number" or entry.arguments[0]
+    }
+
+
+def longest_source(system: HybridSystem) -> str:
+    """Source of ``longest(base, parameters, row, terms)``: the perturbation's longest steps.
+
+    The largest rate of the slopes J where a step starts is at most the fourth root of |J|⁴.
+    """
+    slopes, size = _slopes(system), len(system.variables)
+    nodes = in_order(list(slopes.values()))
+    number = {id(node): index for index, node in enumerate(nodes)}
+
+    def at(node: Symbol) -> str:
+        return f"v{number[id(node)]}"
+
+    lines = [f"stride = terms * {simd.ROW}"]
+    for node in nodes:
+        if node.kind == "variable":
+            value = f"load(base + {system.variables.index(node)} * stride)"
+        else:
+            value = pointwise(node, at) if node.varies else constant(system, node, at)
+        lines.append(f"{at(node)} = {value}")
+    sums = ["splat(1.0)"] * size
+    for power in range(4):
+        for i in range(size):
+            terms = [f"magnitude({at(n)}) * {sums[j]}" for (row, j), n in slopes.items() if row == i]
+            lines.append(f"r{i}_{power} = {' + '.join(terms) or 'splat(0.0)'}")
+        sums = [f"r{i}_{power}" for i in range(size)]
+    bound = functools.reduce(lambda a, b: f"larger({a}, {b})", sums)
+    lines.append(f"store(row, splat({LONGEST!r}) / root(root({bound})))")
+    head = "def longest(base, parameters, row, terms):"
+    return "\n".join([head, *(f" {line}" for line in lines)]) + "\n"
+
+
 def perturbation_source(system: HybridSystem) -> str:
     """Source of ``perturb(base, parameters, step, tangent, terms)``: one step of a perturbation.
 
     ``step`` and ``tangent`` are addresses: a row of step lengths, and a row per state variable.
     """
     size = len(system.variables)
-    slopes = {
-        (i, j): entry
-        for i, rate in enumerate(system.rates)
-        for j, variable in enumerate(system.variables)
-        if (entry := derivative(rate, variable)).kind != "number" or entry.arguments[0]
-    }
+    slopes = _slopes(system)
     nodes = in_order(list(slopes.values()))
     number = {id(node): index for index, node in enumerate(nodes)}
 

@@ -281,7 +281,7 @@ def _run_lanes(
     numbers = aligned(LANE.itemsize // 8)
     numbers[:] = 1.0
     lanes = np.ndarray(1, LANE, numbers)
-    lanes["job"] = IDLE
+    lanes["job"], lanes["longest_step"] = IDLE, np.inf
     clock = lanes["clock"][0]
     arrays = arrays | {
         "lanes": lanes,
@@ -301,6 +301,7 @@ def _run_lanes(
         "tangent": tangent,
         "take_step": system.series,
         "perturb": system.perturb,
+        "longest": system.longest,
     }
     drive(lane_kernel(), Workspace(TABLE, {name: arrays[name] for name in ARRAYS}, sizes), clock)
     if lanes["job"].max() != IDLE or arrays["queue"][0]["next"] < len(jobs.orders):

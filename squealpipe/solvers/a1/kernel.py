@@ -295,6 +295,8 @@ def _advance(table: Any) -> int:
         if not busy:
             return 0
         call(t.take_step, (base, parameters, t.inverses, terms))
+        if t.tangent:
+            call(t.longest, (base, parameters, at + AT.longest_step, terms))
         special = take_step(at, base, terms) & busy
         due = reaches(at, AT.next_sample) & busy if n_samples else 0
         ended = _cut_steps(lanes, c, special)

@@ -81,7 +81,7 @@ LANE = _record(
     **_rows("reach2", "separated_time", "stick_time", "lowest_y", "highest_y", "largest_r2"),
     **_rows("early_largest_x", "late_largest_x", "largest_speed", "nearest_pivot2"),
     **_rows("half_turns1", "half_turns2", "dx", "dy", "dvx", "dvy", "lost_growth"),
-    **_rows("lost_square"),
+    **_rows("lost_square", "longest_step"),
     job=("i8", (LANES,)),
     outcome=("i8", (LANES,)),
     sample=("i8", (LANES,)),
@@ -122,7 +122,7 @@ ARRAYS = (
     "queue",
 )
 SIZES = ("n_terms", "n_jobs", "n_samples", "n_logged", "n_rounds", "tangent")
-TABLE = _record(**dict.fromkeys((*ARRAYS, *SIZES, "take_step", "perturb"), "i8"))
+TABLE = _record(**dict.fromkeys((*ARRAYS, *SIZES, "take_step", "perturb", "longest"), "i8"))
 """What a compiled round is given: addresses of arrays, sizes, addresses of the series."""
 QUEUE = _record(next="i8", end="i8", stride="i8")
 

@@ -86,7 +86,7 @@ def _free_of_events(base: int, terms: int, step: Any) -> Any:
 @inline
 def take_step(at: int, base: int, terms: int) -> Any:
     """Ends of all lanes' steps; returns the lanes that need a look of their own."""
-    step = _step_length(base, terms)
+    step = smaller(_step_length(base, terms), load(at + AT.longest_step))
     store(at + AT.step, step)
     lost = step
     for variable in range(N_STATE):

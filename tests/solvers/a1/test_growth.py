@@ -4,11 +4,15 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from scipy.linalg import expm
 
 from squealpipe.methods.cycles.event_flow import flow
-from squealpipe.parameters import Parameters
+from squealpipe.models.a1_automaton import A1Automaton
+from squealpipe.parameters import LAW_NAMES, Parameters
 from squealpipe.solvers.a1.ensemble import run_ensemble
 from squealpipe.solvers.a1.flow import A1Flow
+from squealpipe.solvers.a1.scaling import PHYSICAL
+from squealpipe.solvers.a1.sliding import sliding_equilibrium, sliding_jacobian
 
 T_END = 50.0
 WORST = {
@@ -58,3 +62,67 @@ def test_growth_is_that_of_the_variational_equations():
             compared += 1
             assert run.log_growth[job] == pytest.approx(growth, abs=1e-4), job
     assert compared > 12
+
+
+def resting_runs(count: int, seed: int):
+    """Damped runs next to steady sliding, which they reach: all laws, units and belts."""
+    rng = np.random.default_rng(seed)
+    while count:
+        mass, k1, length = np.exp(rng.uniform(-3.0, 3.0, 3))
+        unit = np.sqrt(mass / k1)
+        mu = rng.uniform(0.0, 0.6)
+        params = Parameters(
+            mass=mass,
+            k1=k1,
+            k2=k1 * np.exp(rng.uniform(-2.0, 2.0)),
+            k3=k1 * np.exp(rng.uniform(-1.5, 4.0)),
+            mu=mu,
+            belt_speed=rng.choice([-1, 1]) * np.exp(rng.uniform(-2.0, 4.0)) * length / unit,
+            preload=length,
+            length1=length * rng.uniform(1.0, 20.0),
+            length2=length * rng.uniform(1.0, 20.0),
+            damping1=np.exp(rng.uniform(-4.0, 1.0)) * k1 * unit,
+            damping2=np.exp(rng.uniform(-4.0, 1.0)) * k1 * unit,
+            friction_law=str(rng.choice(LAW_NAMES)),
+            mu_static=mu + rng.uniform(0.0, 0.6),
+            friction_speed=np.exp(rng.uniform(-3.0, 1.0)) * length / unit,
+        )
+        angles = rng.uniform(0.0, np.pi, 2)
+        a1 = A1Automaton(params, *angles)
+        rest = sliding_equilibrium(a1)
+        if rest is None:
+            continue
+        scale = np.array([length, length, length / unit, length / unit])
+        matrix = sliding_jacobian(a1, rest) * scale / scale[:, None] * unit
+        if np.linalg.eigvals(matrix).real.max() > -1e-3:
+            continue
+        start = rest + scale * rng.normal(size=4) * 10.0 ** rng.uniform(-14.0, -7.0)
+        yield params, angles, start, matrix, np.exp(rng.uniform(2.0, 7.0)), unit
+        count -= 1
+
+
+def test_growth_of_a_motion_that_dies_out_is_that_of_the_linear_system():
+    """It was exp(+224) for exp(-30): a perturbation has a rate of its own, where nothing moves."""
+    params, angles, starts, matrices, times, units = zip(*resting_runs(300, 41), strict=True)
+    run = run_ensemble(
+        {name: [getattr(p, name) for p in params] for name in PHYSICAL},
+        *np.transpose(angles),
+        t_end=np.array(times) * units,
+        initial_state=np.array(starts),
+        tangent=True,
+    )
+    assert not run.events.any()
+    for job, (matrix, time) in enumerate(zip(matrices, times, strict=True)):
+        growth = np.linalg.norm(expm(matrix * time) @ np.full(4, 0.5))
+        if growth > 1e-300:
+            assert run.log_growth[job] == pytest.approx(np.log(growth), abs=1e-3), job
+
+
+def test_growth_of_undamped_steady_sliding():
+    a1 = A1Automaton(Parameters(k3=0.75, length1=5.0, length2=5.0), 0.83 * np.pi, 0.83 * np.pi)
+    rest = sliding_equilibrium(a1)
+    run = run_ensemble(
+        a1.params, 0.83 * np.pi, 0.83 * np.pi, t_end=200.0, initial_state=rest, tangent=True
+    )
+    growth = np.linalg.norm(expm(200.0 * sliding_jacobian(a1, rest)) @ np.full(4, 0.5))
+    assert run.log_growth == pytest.approx(np.log(growth), abs=1e-4)
