@@ -321,7 +321,9 @@ def longest_source(system: HybridSystem) -> str:
     sums = ["splat(1.0)"] * size
     for power in range(4):
         for i in range(size):
-            terms = [f"magnitude({at(n)}) * {sums[j]}" for (row, j), n in slopes.items() if row == i]
+            terms = [
+                f"magnitude({at(n)}) * {sums[j]}" for (row, j), n in slopes.items() if row == i
+            ]
             lines.append(f"r{i}_{power} = {' + '.join(terms) or 'splat(0.0)'}")
         sums = [f"r{i}_{power}" for i in range(size)]
     bound = functools.reduce(lambda a, b: f"larger({a}, {b})", sums)
