@@ -15,6 +15,11 @@ from squealpipe.text import suggestion
 LAW_NAMES = tuple(LAWS)
 """Names of the friction laws."""
 
+FULL_TURN = 2 * math.pi * (1 + 1e-9)
+"""Largest angle, rad; beyond it one meant degrees, or slipped."""
+HORIZON = 200.0
+"""Default horizon of maps and questions, in units of √(m/k1)."""
+
 Allowed = Literal["finite", "positive", "not negative", "law"]
 
 
@@ -176,6 +181,11 @@ class Parameters:
     def time_unit(self) -> float:
         """√(m/k1), s."""
         return math.sqrt(self.mass / self.k1)
+
+    @property
+    def fastest(self) -> float:
+        """√((k1 + k2 + k3)/m), rad/s: linear frequencies and that of the whirl lie below it."""
+        return math.sqrt((self.k1 + self.k2 + self.k3) / self.mass)
 
     @property
     def belt_direction(self) -> float:

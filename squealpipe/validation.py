@@ -1,14 +1,25 @@
-"""The gate for arrays that users give: real, finite numbers, or an error that names the culprit."""
+"""The gate for arguments: annotations say what a function takes; all else is refused by name."""
 
 from __future__ import annotations
 
+import functools
+import inspect
 import math
+import os
 import sys
-from typing import Any
+from collections.abc import Callable, Iterable
+from pathlib import Path
+from typing import Annotated, Any, ParamSpec, TypeVar, cast
 
 import numpy as np
+from annotated_types import Ge, Gt, Interval
+from pydantic import AfterValidator, BeforeValidator, ConfigDict, ValidationError, validate_call
 
-from squealpipe.parameters import brief
+from squealpipe.parameters import FULL_TURN, brief, is_whole_number
+from squealpipe.text import suggestion
+
+Given = ParamSpec("Given")
+Result = TypeVar("Result")
 
 KINDS = {
     "U": "text",
@@ -21,6 +32,42 @@ KINDS = {
 """What else than numbers people give, by NumPy's letter."""
 
 
+def checked(function: Callable[Given, Result]) -> Callable[Given, Result]:
+    """Have a function check and convert its arguments by their annotations.
+
+    Raises:
+        ValueError: an argument that is not allowed; names it, its value and what is needed.
+        TypeError: an argument is missing, unknown or given twice.
+    """
+    names = list(inspect.signature(function).parameters)
+    config = ConfigDict(arbitrary_types_allowed=True, strict=True)
+    call = validate_call(config=config)(function)
+
+    @functools.wraps(function)
+    def run(*args: Given.args, **kwargs: Given.kwargs) -> Result:
+        try:
+            return call(*args, **kwargs)
+        except ValidationError as error:
+            if error.title != function.__name__:
+                raise
+            raise _refusal(error, names) from None
+
+    return cast("Callable[Given, Result]", run)
+
+
+def _refusal(error: ValidationError, names: list[str]) -> Exception:
+    found = error.errors(include_url=False)
+    first = next((each for each in found if "unexpected" in each["type"]), found[0])
+    place, *inside = first["loc"]
+    name = names[place] if isinstance(place, int) and place < len(names) else place
+    if "argument" in first["type"]:
+        near = f"; {suggestion(name, names)}" if first["type"].startswith("unexpected") else ""
+        return TypeError(f"{error.title}: {name}: {first['msg'].lower()}{near}")
+    where = "".join(f"[{step!r}]" for step in inside if step != "[key]")
+    told = first["msg"].removeprefix("Value error, ").replace("Input should", "must")
+    return ValueError(f"{name}{where} = {brief(first['input'])}: {told}")
+
+
 def real_array(name: str, values: Any, *, infinite: bool = False) -> np.ndarray:
     """A float array.
 
@@ -31,49 +78,124 @@ def real_array(name: str, values: Any, *, infinite: bool = False) -> np.ndarray:
     # most often, and most runs
     if isinstance(values, float) and abs(values) <= (math.inf if infinite else sys.float_info.max):
         return np.array(values)
+    try:
+        return _reals(values, infinite=infinite)
+    except ValueError as error:
+        raise ValueError(f"{name} = {brief(values)}: {error}") from None
+
+
+def _reals(values: Any, *, infinite: bool = False) -> np.ndarray:
     if np.ma.is_masked(values):
-        raise ValueError(f"{name} has masked entries: fill them or leave them out")
+        raise ValueError("masked entries: fill them or leave them out")
     try:
         array = np.asarray(values)
-    except ValueError as error:
-        raise ValueError(f"{name} = {brief(values)}: rows of one length are needed") from error
+    except (ValueError, TypeError, OverflowError) as error:
+        raise ValueError("rows of one length are needed") from error
     if array.dtype.kind not in "fiu":
-        kind = KINDS.get(array.dtype.kind, "objects")
-        raise ValueError(f"{name} = {brief(values)}: numbers are needed, not {kind}")
+        raise ValueError(f"numbers are needed, not {KINDS.get(array.dtype.kind, 'objects')}")
     array = array.astype(float)
     bad = np.isnan(array) if infinite else ~np.isfinite(array)
     if bad.any():
-        raise ValueError(f"{name} holds {float(array[bad].flat[0])!r}: finite numbers are needed")
+        raise ValueError(f"finite numbers are needed, not {float(array[bad].flat[0])!r}")
     return array
 
 
-def real_number(
-    name: str, value: Any, *, above: float = -math.inf, least: float = -math.inf
-) -> float:
-    """A finite number, also of an array without dimensions.
-
-    Raises:
-        ValueError: no such number, not greater than ``above``, or less than ``least``.
-    """
-    array = real_array(name, value)
+def _number(value: Any) -> float:
+    if type(value) is float and math.isfinite(value):
+        return value
+    array = _reals(value)
     if array.ndim:
-        raise ValueError(f"{name} = {brief(value)}: one number is needed")
-    if not array > above:
-        raise ValueError(f"{name} = {brief(value)}: must be greater than {above:g}")
-    if not array >= least:
-        raise ValueError(f"{name} = {brief(value)}: must be {least:g} or greater")
+        raise ValueError("one number is needed")
     return float(array)
 
 
-def angle_axis(name: str, values: Any) -> np.ndarray:
-    """A 1-D array of angles, rad; one number is an array of one.
+def _whole(value: Any) -> int:
+    if not is_whole_number(value):
+        raise ValueError("a whole number is needed")
+    return int(value)
+
+
+def _mode(value: Any) -> int:
+    if not is_whole_number(value) or value not in (1, 2):
+        raise ValueError("the whole number 1 or 2 is needed, by ascending frequency in contact")
+    return int(value)
+
+
+def _vector(value: Any) -> np.ndarray:
+    array = np.atleast_1d(_reals(value))
+    if array.ndim != 1 or not array.size:
+        raise ValueError(f"has shape {array.shape}: a 1-D array is needed")
+    return array
+
+
+def _line(value: Any) -> np.ndarray:
+    array = _reals(value)
+    return array if not array.ndim else _vector(array)
+
+
+def _not_negative(values: Any) -> Any:
+    if (values < 0).any():
+        raise ValueError("numbers of 0 or greater are needed")
+    return values
+
+
+def state_of(value: Any) -> np.ndarray:
+    """The array of a state x, y, vx, vy."""
+    array = _reals(value)
+    if array.shape != (4,):
+        raise ValueError("four finite numbers (x, y, vx, vy) are needed")
+    return array
+
+
+def within_a_turn(angles: Any) -> Any:
+    """An angle or an array of them, rad.
 
     Raises:
-        ValueError: it has more dimensions, is empty, or holds no finite numbers.
+        ValueError: one lies beyond a full turn.
     """
-    angles = np.atleast_1d(real_array(name, values))
-    if angles.ndim != 1 or not angles.size:
-        raise ValueError(
-            f"{name} has shape {angles.shape}: a 1-D array of finite angles in rad is needed"
-        )
+    if np.any(np.abs(angles) > FULL_TURN):
+        raise ValueError("more than a full turn; angles are in rad, from −2π to 2π")
     return angles
+
+
+def _path(value: Any) -> Path:
+    if not isinstance(value, str | os.PathLike):
+        raise ValueError("a path is needed")  # noqa: TRY004 (pydantic lets other errors through)
+    return Path(value)
+
+
+def one_of(names: Iterable[str]) -> BeforeValidator:
+    """One of some words."""
+    known = tuple(names)
+
+    def check(value: Any) -> str:
+        if not isinstance(value, str) or value not in known:
+            raise ValueError(f"unknown; {suggestion(value, known)}")
+        return value
+
+    return BeforeValidator(check)
+
+
+Number = Annotated[float, BeforeValidator(_number)]
+"""A finite number, also of an array without dimensions."""
+Positive = Annotated[Number, Gt(0)]
+NotNegative = Annotated[Number, Ge(0)]
+Tolerance = Annotated[Number, Interval(gt=1e-18, lt=1e-2)]
+Whole = Annotated[int, BeforeValidator(_whole)]
+Natural = Annotated[Whole, Ge(1)]
+Workers = Natural | None
+Seed = Annotated[Whole, Ge(0)]
+Mode = Annotated[int, BeforeValidator(_mode)]
+"""1 or 2, by ascending frequency in contact."""
+Angle = Annotated[Number, AfterValidator(within_a_turn)]
+"""One angle, rad."""
+Vector = Annotated[Any, BeforeValidator(_vector)]
+"""A 1-D array of finite numbers; one number is an array of one."""
+NotNegativeVector = Annotated[Vector, AfterValidator(_not_negative)]
+Line = Annotated[Any, BeforeValidator(_line)]
+"""A number, or a 1-D array of them."""
+Angles = Annotated[Vector, AfterValidator(within_a_turn)]
+"""A 1-D array of angles, rad."""
+State = Annotated[Any, BeforeValidator(state_of)]
+"""x, y, vx, vy."""
+AnyPath = Annotated[Any, BeforeValidator(_path)]

@@ -79,7 +79,8 @@ def simulate(
     from squealpipe.study.figures.cli.run import draw
     from squealpipe.study.figures.parts.style import save_figure
     from squealpipe.tasks.dynamics.runs import simulate as task
-    from squealpipe.tasks.dynamics.summary import FEWEST, summarize, summary_lines
+    from squealpipe.tasks.dynamics.summary import summarize, summary_lines
+    from squealpipe.tasks.sampling import FEWEST
 
     options: dict[str, Any] = {"t_end": t_end, "model": model, "tol": tol}
     if any((x0, y0, vx0, vy0)):

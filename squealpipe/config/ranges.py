@@ -10,7 +10,7 @@ import re
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
-from squealpipe.parameters import TABLE
+from squealpipe.parameters import FULL_TURN, TABLE
 
 _NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
 _PI = re.compile(
@@ -19,8 +19,6 @@ _PI = re.compile(
 _DEGREES = re.compile(rf"^(?P<value>{_NUMBER})\s*(?:deg|°)$")
 _RADIANS = re.compile(rf"^(?P<value>{_NUMBER})\s*(?P<unit>rad)?$")
 ANGLE_FORMS = "write 0.4pi, 2pi/5, 72deg or radians"
-FULL_TURN = 2 * math.pi * (1 + 1e-9)
-"""Plain numbers beyond it are rather degrees than radians, so they need a unit."""
 ANGLES = ("alpha1", "alpha2")
 PHYSICAL = tuple(TABLE)
 NUMBERS = tuple(name for name, row in TABLE.items() if row.allowed != "law")

@@ -24,9 +24,17 @@ from squealpipe.schema.origin import origin
 from squealpipe.schema.sweep import OPTIONS, fill_up, is_ragged, ragged_dims, sweep_name
 from squealpipe.store.chunks import Arrays, Checkpoint, run_chunks
 from squealpipe.text import suggestion
+from squealpipe.validation import Line, checked
 
 CHUNKS = 256
 """A sweep is kept in at most so many part files: enough to resume finely, cheap to write."""
+
+
+@checked
+def _gate(
+    task: str, params: Parameters, vary: Mapping[str, Line], fixed: Mapping[str, Any]
+) -> None:
+    """Types of the fields of a sweep."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -51,6 +59,7 @@ class Sweep:
     fixed: Mapping[str, Any]
 
     def __post_init__(self) -> None:
+        _gate(self.task, self.params, self.vary, self.fixed)
         if self.task not in TASKS:
             raise ValueError(f"no task {self.task!r}; {suggestion(self.task, TASKS)}")
         self._check_varied()
@@ -207,6 +216,7 @@ def executor(workers: int | None = None) -> Iterator[Executor | None]:
         pool.shutdown(cancel_futures=True)
 
 
+@checked
 def run_sweep(
     sweep: Sweep, *, executor: Executor | None = None, checkpoint: Checkpoint | None = None
 ) -> xr.Dataset:

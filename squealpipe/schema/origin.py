@@ -17,6 +17,7 @@ import numpy as np
 import xarray as xr
 
 from squealpipe.parameters import Parameters
+from squealpipe.validation import checked
 
 LIBRARIES = ("numpy", "scipy", "xarray", "netCDF4", "heyoka", "numba")
 LONGEST = 8
@@ -32,7 +33,7 @@ _HOW: dict[str, tuple[str, str]] = {}
 def recorded(
     *, model: str = "", method: str = ""
 ) -> Callable[[Callable[Given, xr.Dataset]], Callable[Given, xr.Dataset]]:
-    """Have a task write what made its dataset into the attributes.
+    """Have a task check its arguments, and write what made its dataset into the attributes.
 
     Args:
         model: level of the model, where it is no argument of the task.
@@ -53,7 +54,7 @@ def recorded(
             dataset.attrs.update(origin(task.__name__, kept))
             return dataset
 
-        return run
+        return checked(run)
 
     return decorate
 

@@ -19,6 +19,7 @@ from squealpipe.store.conventions import as_dataset, as_file
 from squealpipe.store.header import header_of
 from squealpipe.store.identity import dataset_id
 from squealpipe.store.seal import SEALED, Seal, archive_around, judge, write_seal
+from squealpipe.validation import AnyPath, checked
 
 
 class StoreError(ValueError):
@@ -32,7 +33,8 @@ DAMAGED = (OSError, RuntimeError, ValueError, LookupError, AttributeError, TypeE
 """What netCDF-4 and Xarray raise on files with damaged bytes."""
 
 
-def save(dataset: xr.Dataset, path: str | os.PathLike[str]) -> Path:
+@checked
+def save(dataset: xr.Dataset, path: AnyPath) -> Path:
     """Write a dataset atomically, with its id: temporary name, validation, fsync, rename.
 
     Commit and date are added where the dataset does not tell them yet.
@@ -42,7 +44,7 @@ def save(dataset: xr.Dataset, path: str | os.PathLike[str]) -> Path:
         StoreError: the folder cannot be written, or the path is a device or part of an archive;
             an earlier file of that name is untouched.
     """
-    target = Path(path)
+    target: Path = path
     validate(dataset, find(str(dataset.attrs.get("schema"))))
     refuse_target(target)
     made = {"commit": commit(), "history": made_now(), **dataset.attrs}
@@ -88,7 +90,8 @@ def save(dataset: xr.Dataset, path: str | os.PathLike[str]) -> Path:
     return target
 
 
-def load(path: str | os.PathLike[str], *, schema: str | None = None) -> xr.Dataset:
+@checked
+def load(path: AnyPath, *, schema: str | None = None) -> xr.Dataset:
     """Read a dataset into memory and validate it.
 
     Args:
@@ -100,7 +103,7 @@ def load(path: str | os.PathLike[str], *, schema: str | None = None) -> xr.Datas
         StoreError: the file is not whole, was changed, or is no dataset of this package.
         SchemaError: it does not fit its schema, or not the one asked for.
     """
-    source = Path(path)
+    source: Path = path
     if not source.is_file():
         raise FileNotFoundError(f"no dataset {source}; make it with snakemake, or check the path")
     seal = judge(source)

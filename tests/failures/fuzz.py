@@ -7,7 +7,7 @@ import signal
 import time
 from collections import Counter
 from collections.abc import Callable
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field
 from random import Random
 from typing import Any
 
@@ -19,6 +19,7 @@ from squealpipe.config.ranges import parse_angle, parse_range
 from squealpipe.config.settings import parse_study
 from squealpipe.parameters import LAW_NAMES, TABLE
 from squealpipe.schema.ladder import QUESTIONS
+from squealpipe.solvers.a1.ensemble import run_ensemble
 
 LONGEST = 20.0
 """Seconds of CPU time after which a call counts as one that does not end."""
@@ -29,6 +30,7 @@ NO_NUMBER = [
     np.ma.masked, np.complex128(1), {1.0}, range(2), np.nan, "π",
 ]  # fmt: skip
 NO_ANGLES = [
+    90.0, [0.1, -7.0],
     None, "1", ["0", "1"], [True, False], 1j, [1j], [math.nan], [0.0, math.inf], [[0.1], [0, 1]],
     np.ma.masked_all(2), np.ma.masked_array([0.3, 2.0], [False, True]), [None, 2.0], [10**400],
     np.array([1], "timedelta64[s]"), {}, object(), [object()], [[0.1, 0.2]], np.zeros((2, 2, 2)),
@@ -72,14 +74,14 @@ def whole(*values: int) -> Kind:
 
 ANGLE = Kind(
     lambda rng: rng.choice(
-        [rng.uniform(0, math.pi), rng.uniform(-10, 10), 0, math.pi / 2, math.pi, np.float32(1.0)]
+        [rng.uniform(0, math.pi), rng.uniform(-6, 6), 0, math.pi / 2, math.pi, np.float32(1.0)]
     ),
-    NO_NUMBER,
+    [*NO_NUMBER, 7.0, -90, 1e9],
 )
 ANGLES = Kind(
     lambda rng: rng.choice(
         [
-            [rng.uniform(-7, 7) for _ in range(rng.choice([1, 2, 3]))],
+            [rng.uniform(-6, 6) for _ in range(rng.choice([1, 2, 3]))],
             np.linspace(0, math.pi, 3),
             [0.0, math.pi / 2],
             np.float32([0.2, 3.0]),
@@ -104,7 +106,13 @@ START = Kind(
     lambda rng: rng.choice([0.0, rng.uniform(-0.5, 0.5), [rng.uniform(-0.5, 0.0), 0.3]]),
     [bad for bad in NO_ANGLES if not isinstance(bad, np.ma.MaskedArray)],
 )
-ONE = Kind(lambda _: 1, [])
+ONE = Kind(lambda _: 1, [0, -1, 1.0, "1", True, 10**400])
+LEAST_ONE = Kind(lambda rng: rng.choice([1, 2, np.int64(3)]), [0, -1, 1.5, "1", True, [], 10**400])
+SEED = Kind(lambda rng: rng.randrange(10**6), [None, -1, 0.5, "1", True, [1], 10**400, object()])
+TRUTH = Kind(lambda rng: rng.random() < 0.5, [None, 0, 1.0, "yes", "", [], object()])
+PLACE = Kind(lambda _: "no-such-folder/no-such-file.nc", [None, 1, 1.5, True, object(), [], {}, 1j])
+MAPPING = [None, 1, "mu", [], ["mu"], object(), {1: 2}, {"mu": None}, {"mu": "uniform"}]
+NO_PARAMETERS = [None, {}, {"mu": 0.3}, "baseline", 1.0, sp.Parameters, [sp.Parameters()]]
 
 PHYSICAL = {
     name: {
@@ -137,7 +145,7 @@ CALLS: dict[str, tuple[float, Callable[..., Any], dict[str, Kind]]] = {
         3.0, sp.simulate,
         {**SCENE, "t_end": FROM_NOW, "model": MODEL, "tol": TOL, "initial_state": STATE},
     ),
-    "validity_map": (1.0, sp.validity_map, {**MAP, "t_end": FROM_NOW, "tol": TOL, "workers": ONE}),
+    "validity_map": (1.0, sp.validity_map, {**MAP, "t_end": MAYBE, "tol": TOL, "workers": ONE}),
     "hammering_map": (1.0, sp.hammering_map, {**MAP, "t_end": HORIZON, "tol": TOL, "workers": ONE}),
     "basin_map": (
         0.5, sp.basin_map, {**SCENE, "x": START, "vy": START, "t_end": HORIZON, "workers": ONE}
@@ -154,6 +162,63 @@ CALLS: dict[str, tuple[float, Callable[..., Any], dict[str, Kind]]] = {
         0.7, sp.choose_model,
         {**SCENE, "question": one_of(*QUESTIONS), "tol": number(1e-3, 0.5), "t_end": MAYBE},
     ),
+    "refine_validity_map": (
+        0.3, sp.refine_validity_map,
+        {"resolution": Kind(lambda _: 5, OPTIONAL), "coarse": Kind(lambda _: 3, OPTIONAL),
+         "t_end": HORIZON, "tol": TOL, "workers": ONE},
+    ),
+    "run_ensemble": (
+        1.0, run_ensemble,
+        {**SCENE, "t_end": FROM_NOW, "model": MODEL, "tol": TOL, "tangent": TRUTH,
+         "log_events": Kind(lambda _: 3, SEED.bad), "stop_at_first_separation": TRUTH,
+         "stop_at_turns": HORIZON,
+         "initial_state": STATE, "workers": ONE},
+    ),
+    "infer_parameters": (
+        0.5, sp.infer_parameters,
+        {"samples": LEAST_ONE, "seed": SEED, "tol": TOL, "workers": ONE,
+         "mu": Kind(lambda _: (0.1, 0.5), [None, 1.0, (0.1,), ("a", "b"), (0.1, math.nan)])},
+    ),
+    "propensity": (
+        0.5, sp.propensity,
+        {**SCENE, "t_end": HORIZON, "seed": SEED, "tol": TOL, "workers": ONE,
+         "samples": Kind(lambda _: 64, [*NO_NUMBER, 0, -64, 65, 64.0]),
+         "distributions": Kind(
+             lambda _: {"mu": {"distribution": "uniform", "low": 0.1, "high": 0.9}}, MAPPING),
+         "spring_correlation": Kind(lambda _: 0.0, [*NO_NUMBER, 1.0, -1.0, 2])},
+    ),
+    "smallest_disturbance": (
+        0.5, sp.smallest_disturbance,
+        {**SCENE, "t_end": HORIZON, "bound": MAYBE,
+         "directions": Kind(lambda _: 8, [*NO_NUMBER, 7]),
+         "leads_to": one_of("contact_lost", "whirl"), "model": MODEL, "seed": SEED, "tol": TOL,
+         "workers": ONE},
+    ),
+    "limit_cycle": (
+        0.5, sp.limit_cycle,
+        {**SCENE, "model": one_of("A1"), "t_settle": MAYBE,
+         "guess": Kind(STATE.good, [bad for bad in STATE.bad if bad is not None])},
+    ),
+    "cycle_branch": (
+        0.5, sp.cycle_branch,
+        {**SCENE, "parameter": one_of("mu", "k3", "alpha1"), "to": number(0.1, 1.0),
+         "n_points": Kind(lambda _: 2, [*NO_NUMBER, 0, 1, -3, 2.0]), "doubled": TRUTH,
+         "start": Kind(STATE.good, ["offset", [0.0] * 3, [None] * 4, ["0"] * 4, object(), 1j])},
+    ),
+    "Sweep": (
+        0.7, lambda params, **given: sp.Sweep(params=params, **given),
+        {"task": one_of("stability_map"),
+         "fixed": Kind(lambda _: {"alpha1": [1.0], "alpha2": [2.0]}, [None, 1, "mu", [], object()]),
+         "vary": Kind(
+             lambda _: {"mu": [0.1, 0.2]},
+             [*MAPPING, {}, {"mu": []}, {"mu": ["a"]}, {"mu": [0.1, 0.1]}, {"mu": [-1.0]}])},
+    ),
+    "load": (0.4, lambda **given: sp.load(given["path"]), {"path": PLACE}),
+    "save": (
+        0.4, lambda **given: sp.save(given["dataset"], given["path"]),
+        {"dataset": Kind(lambda _: xr.Dataset(), [None, {}, 1, "x", object()]), "path": PLACE},
+    ),
+    "open_results": (0.4, sp.open_results, {"name_or_path": PLACE}),
     "parse_study": (1.0, lambda **given: parse_study({"parameters": given}), WRITTEN),
     "parse_range": (
         0.7, lambda **given: parse_range(given["text"], parse_angle),
@@ -179,6 +244,13 @@ class Findings:
     refused: Counter[str] = field(default_factory=Counter)
     faults: list[str] = field(default_factory=list)
     longest: float = 0.0
+
+
+EXPENSIVE = {
+    "infer_parameters", "propensity", "smallest_disturbance", "limit_cycle", "cycle_branch"
+}  # fmt: skip
+"""Always called with an argument that makes no sense."""
+NO_PARAMS = {"Parameters", "parse_study", "parse_range", "Scene", "load", "save", "open_results"}
 
 
 class TooLongError(Exception):
@@ -209,7 +281,7 @@ def draw(rng: Random) -> tuple[str, dict[str, Any], set[str]]:
     if kinds is PHYSICAL or name == "parse_study":
         given = {argument: given[argument] for argument in rng.sample(sorted(given), 4)}
     wrong: set[str] = set()
-    if rng.random() < 0.5:
+    if rng.random() < 0.5 or name in EXPENSIVE:
         candidates = [argument for argument in given if kinds[argument].bad]
         for argument in rng.sample(candidates, min(len(candidates), rng.choice([1, 1, 2]))):
             given[argument] = rng.choice(kinds[argument].bad)
@@ -220,13 +292,15 @@ def draw(rng: Random) -> tuple[str, dict[str, Any], set[str]]:
 def fault_of(name: str, given: dict[str, Any], wrong: set[str], params: Any) -> str:
     """What is wrong with what a call did; empty where nothing is."""
     function = CALLS[name][1]
-    takes_params = name not in {"Parameters", "parse_study", "parse_range", "Scene"}
+    takes_params = name not in NO_PARAMS
     try:
         found = function(params, **given) if takes_params else function(**given)
     except TooLongError:
         return "does not end"
+    except FileNotFoundError:
+        return "" if "path" in given or "name_or_path" in given else "no path was given"
     except ValueError as error:
-        named = any(argument in str(error) for argument in (*given, *TABLE))
+        named = any(argument in str(error) for argument in ("params", *given, *TABLE))
         return "" if named or name == "parse_range" else f"names no argument: {error}"
     except Exception as error:  # noqa: BLE001  whatever it is, it is the finding
         return f"raw {type(error).__name__}: {error}"
@@ -270,9 +344,12 @@ def fuzz(calls: int, seed: int) -> Findings:
         for _ in range(calls):
             name, given, wrong = draw(rng)
             params = physical(rng)
+            if name not in NO_PARAMS and rng.random() < 0.02:
+                params, wrong = rng.choice(NO_PARAMETERS), {*wrong, "params"}
+            unit = params.time_unit if isinstance(params, sp.Parameters) else 1.0
             if "t_end" in given and "t_end" not in wrong and given["t_end"]:
                 # a run of a million time units ends, but it takes minutes
-                given["t_end"] = min(given["t_end"], 1e4 * params.time_unit) or params.time_unit
+                given["t_end"] = min(given["t_end"], 1e4 * unit) or unit
             started = time.process_time()
             signal.setitimer(signal.ITIMER_PROF, LONGEST)
             fault = fault_of(name, given, wrong, params)
@@ -281,12 +358,7 @@ def fuzz(calls: int, seed: int) -> Findings:
             verdict.calls[name] += 1
             verdict.refused[name] += bool(wrong)
             if fault:
-                changed = {
-                    item.name: getattr(params, item.name)
-                    for item in fields(params)
-                    if getattr(params, item.name) != item.default
-                }
-                verdict.faults.append(f"{name}({given}) with {changed}: {fault}")
+                verdict.faults.append(f"{name}({given}) with {params}: {fault}")
     finally:
         signal.setitimer(signal.ITIMER_PROF, 0.0)
         signal.signal(signal.SIGPROF, previous)

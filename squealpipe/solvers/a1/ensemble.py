@@ -24,10 +24,11 @@ from squealpipe.methods.taylor.simd import FEW, LANES
 from squealpipe.models.switching import VARIANT_RULES, Event
 from squealpipe.parameters import Parameters
 from squealpipe.schema import Outcome
-from squealpipe.solvers.a1.jobs import Jobs
+from squealpipe.solvers.a1.jobs import Jobs, Model
 from squealpipe.solvers.a1.kernel import lane_kernel
 from squealpipe.solvers.a1.records import ARRAYS, IDLE, LANE, QUEUE, RESULT, TABLE
 from squealpipe.solvers.a1.system import Dissipation, compiled_system
+from squealpipe.validation import Seed, Tolerance, Workers, checked
 
 BLOCK = 2**17
 """Runs of a map that are held in memory at once, about 1 kB each."""
@@ -92,14 +93,15 @@ class Ensemble:
     event_states: np.ndarray
 
 
+@checked
 def run_ensemble(
     parameters: Parameters | Mapping[str, Any],
     alpha1: Any,
     alpha2: Any,
     *,
     t_end: Any,
-    model: str = "A1",
-    tol: float = 1e-12,
+    model: Model = "A1",
+    tol: Tolerance = 1e-12,
     initial_state: Any = (0.0, 0.0, 0.0, 0.0),
     times: Any = None,
     stop_at_first_separation: bool = False,
@@ -107,8 +109,8 @@ def run_ensemble(
     stop_at_turns: float = math.inf,
     t_late: Any = math.inf,
     tangent: bool = False,
-    log_events: int = 0,
-    workers: int | None = None,
+    log_events: Seed = 0,
+    workers: Workers = None,
 ) -> Ensemble:
     """Integrate many runs at once; every argument may differ from run to run.
 

@@ -18,7 +18,7 @@ from squealpipe.laws.springs import (
 from squealpipe.methods.orbits.piecewise_linear import LinearState, PiecewiseLinearSystem
 from squealpipe.models import a2, a4
 from squealpipe.models.refusals import WHY_A4, refuse_extensions
-from squealpipe.parameters import Parameters, brief, is_finite_number
+from squealpipe.parameters import Parameters
 from squealpipe.schema import Outcome
 
 # The gap left to the contact at rest, over l_pre, below which the linear mode has no room.
@@ -78,13 +78,10 @@ def scaled_system(params: Parameters, alpha1: float, alpha2: float) -> ScaledSys
     (π/2, π) are decoupled.
 
     Raises:
-        ValueError: an angle is not a finite number, a mass or stiffness too large or small, or
+        ValueError: a mass or stiffness too large or small, or
             damping or friction that A4 cannot carry.
     """
     refuse_extensions(params, "model A4", WHY_A4)
-    for name, angle in (("alpha1", alpha1), ("alpha2", alpha2)):
-        if not is_finite_number(angle):
-            raise ValueError(f"{name} = {brief(angle)}: a finite angle in radians is needed")
     for name in ("mass", "k1", "k2", "k3"):
         if not 1.0 / _LARGEST <= getattr(params, name) <= _LARGEST:
             raise ValueError(

@@ -21,12 +21,14 @@ from squealpipe.store.header import dataset_from
 from squealpipe.store.netcdf import StoreError, load
 from squealpipe.store.runs import dataset_files, locate
 from squealpipe.store.seal import Seal, read_seal
+from squealpipe.validation import checked
 
 RUN = "run"
 
 Place = str | os.PathLike[str]
 
 
+@checked
 def open_results(
     name_or_path: Place | Sequence[Place], *, along: str | None = None, root: Place = "."
 ) -> xr.DataTree:

@@ -9,7 +9,7 @@ from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import xarray as xr
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from squealpipe.methods.balance.harmonic_balance import cosines_of
 from squealpipe.methods.orbits.orbit_shape import sample
@@ -20,7 +20,7 @@ from squealpipe.schema.backbones import ORBIT_ATLAS, Route
 from squealpipe.solvers.a4.orbits import find_orbit, orbit_across
 from squealpipe.solvers.a4.system import ScaledSystem, scaled_system
 from squealpipe.tasks.backbones.orbit import check_length
-from squealpipe.validation import angle_axis
+from squealpipe.validation import Angles, Positive, Workers, checked
 
 _RESUMABLE = (
     Outcome.tongue_end,
@@ -38,13 +38,14 @@ Cell = tuple[int, int, int]
 _SMALLEST_STEP = 0.05
 
 
+@checked
 def orbit_atlas(
     params: Parameters,
-    alpha1: ArrayLike,
-    alpha2: ArrayLike,
+    alpha1: Angles,
+    alpha2: Angles,
     *,
-    y_peak: float | None = None,
-    workers: int | None = None,
+    y_peak: Positive | None = None,
+    workers: Workers = None,
 ) -> xr.Dataset:
     """ω and stability index of the exact periodic motion of each mode, each found from cold.
 
@@ -62,13 +63,12 @@ def orbit_atlas(
     Raises:
         ValueError: y_peak is not a finite length above 0, or an angle is not finite.
     """
-    rows, columns = angle_axis("alpha1", alpha1), angle_axis("alpha2", alpha2)
     peak = 2.0 * params.preload if y_peak is None else y_peak
     check_length("y_peak", peak, params.preload)
 
-    found = _Cells(params, rows, columns, peak / params.preload)
+    found = _Cells(params, alpha1, alpha2, peak / params.preload)
     with ThreadPoolExecutor(workers or os.cpu_count()) as pool:
-        list(pool.map(found.fill_line, range(len(rows))))
+        list(pool.map(found.fill_line, range(len(alpha1))))
     found.fill_from_neighbours()
     found.fill_across()
     return build(
@@ -80,7 +80,7 @@ def orbit_atlas(
             "route": found.route,
             "y_peak": peak,
         },
-        {"alpha1": rows, "alpha2": columns, "mode": [1, 2]},
+        {"alpha1": alpha1, "alpha2": alpha2, "mode": [1, 2]},
     )
 
 

@@ -4,21 +4,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
 import numpy as np
 import xarray as xr
+from annotated_types import Interval
 
 from squealpipe.laws.friction import slides
 from squealpipe.methods.balance.harmonic_balance import CosineBalance, series_extremes, series_speed
 from squealpipe.methods.orbits.orbits import Orbit, SpecialPoint, special_points
-from squealpipe.parameters import (
-    SCENES,
-    Parameters,
-    brief,
-    is_finite_number,
-    is_whole_number,
-)
+from squealpipe.parameters import SCENES, Parameters, brief
 from squealpipe.schema import Outcome, build
 from squealpipe.schema.backbones import BACKBONE
 from squealpipe.schema.origin import recorded
@@ -26,7 +21,8 @@ from squealpipe.solvers.a4.exact_branches import exact_branch
 from squealpipe.solvers.a4.harmonic_branches import HarmonicPoint, harmonic_branch
 from squealpipe.solvers.a4.orbits import SHAPE, find_orbit, orbit_values
 from squealpipe.solvers.a4.system import ScaledSystem, scaled_system
-from squealpipe.tasks.backbones.orbit import check_length, check_mode
+from squealpipe.tasks.backbones.orbit import check_length
+from squealpipe.validation import Angle, Mode, Positive, Whole
 
 _MOST_TABLE_ENTRIES = 2**23
 """Of the table of cosines at the samples: 64 MiB."""
@@ -35,16 +31,16 @@ _MOST_TABLE_ENTRIES = 2**23
 @recorded(model="A4")
 def backbone(
     params: Parameters,
-    alpha1: float,
-    alpha2: float,
+    alpha1: Angle,
+    alpha2: Angle,
     *,
-    mode: int,
-    y_peak_max: float | None = None,
-    x_amplitude_max: float | None = None,
+    mode: Mode,
+    y_peak_max: Positive | None = None,
+    x_amplitude_max: Positive | None = None,
     method: Literal["exact", "hbm"] = "exact",
-    n_harmonics: int = 16,
-    n_time: int | None = None,
-    sigma: float | None = None,
+    n_harmonics: Annotated[Whole, Interval(ge=1, le=512)] = 16,
+    n_time: Whole | None = None,
+    sigma: Positive | None = None,
     cross_poles: bool = False,
 ) -> xr.Dataset:
     """The family of periodic motions that grows out of a linear mode of model A4.
@@ -72,12 +68,11 @@ def backbone(
     Raises:
         ValueError: an argument is out of its range; the message names it.
     """
-    check_mode(mode)
     y_max = 3.0 * params.preload if y_peak_max is None else y_peak_max
     x_max = 3.0 * params.preload if x_amplitude_max is None else x_amplitude_max
     check_length("y_peak_max", y_max, params.preload)
     check_length("x_amplitude_max", x_max, params.preload)
-    check_series(n_harmonics, n_time, sigma)
+    _check_sampling(n_harmonics, n_time)
     scene = scaled_system(params, alpha1, alpha2)
     attrs = {"alpha1": alpha1, "alpha2": alpha2, "mode": mode, "method": method}
     if method == "exact":
@@ -85,19 +80,17 @@ def backbone(
             scene, mode, y_max / scene.length, x_max / scene.length, cross_poles=cross_poles
         )
         return _exact_dataset(scene, params, orbits, outcomes, end, attrs)
-    if method == "hbm":
-        balance, points, end = harmonic_branch(
-            scene,
-            mode,
-            y_max / scene.length,
-            x_max / scene.length,
-            n_harmonics=n_harmonics,
-            n_time=n_time,
-            sigma=None if sigma is None else sigma * scene.length,
-            cross_poles=cross_poles,
-        )
-        return _harmonic_dataset(scene, params, balance, points, end, attrs)
-    raise ValueError(f"method = {method!r}: 'exact' or 'hbm' is needed")
+    balance, points, end = harmonic_branch(
+        scene,
+        mode,
+        y_max / scene.length,
+        x_max / scene.length,
+        n_harmonics=n_harmonics,
+        n_time=n_time,
+        sigma=None if sigma is None else sigma * scene.length,
+        cross_poles=cross_poles,
+    )
+    return _harmonic_dataset(scene, params, balance, points, end, attrs)
 
 
 def named_scenes(coupled: Mapping[str, Sequence[float]]) -> dict[str, tuple[float, float]]:
@@ -157,19 +150,15 @@ def with_orbits(
     return kept, "; ".join(reasons)
 
 
-def check_series(n_harmonics: int, n_time: int | None, sigma: float | None) -> None:
-    """Raise a ValueError unless the settings of a series make sense."""
-    if not (is_whole_number(n_harmonics) and 1 <= n_harmonics <= 512):
-        raise ValueError(f"n_harmonics = {brief(n_harmonics)}: a whole number, 1 to 512, is needed")
+def _check_sampling(n_harmonics: int, n_time: int | None) -> None:
+    """Raise a ValueError unless the samples of a period are enough, and fit into memory."""
     least, most = 2 * n_harmonics + 1, _MOST_TABLE_ENTRIES // (n_harmonics + 1)
-    if n_time is not None and not (is_whole_number(n_time) and least <= n_time <= most):
+    if n_time is not None and not least <= n_time <= most:
         raise ValueError(
             f"n_time = {brief(n_time)}: a whole number is needed, at least 2 n_harmonics + 1 = "
             f"{least} and, with {n_harmonics} harmonics, at most {most} samples; leave it out for "
             "contact integrals without sampling error"
         )
-    if sigma is not None and not (is_finite_number(sigma) and sigma > 0):
-        raise ValueError(f"sigma = {brief(sigma)}: a finite number above 0 is needed, 1/m")
 
 
 def _exact_dataset(

@@ -10,7 +10,7 @@ import xarray as xr
 from squealpipe.laws.springs import geometry, linear_stiffness
 from squealpipe.methods.orbits.orbits import Orbit, SpecialPoint, special_points
 from squealpipe.models.a4 import first_integral_value
-from squealpipe.parameters import Parameters, brief, is_whole_number
+from squealpipe.parameters import Parameters
 from squealpipe.schema import Outcome, build
 from squealpipe.schema.backbones import DOUBLED_BRANCH
 from squealpipe.solvers.a4.doubled_branches import OFFSETS, doubled_branch_from
@@ -21,17 +21,19 @@ from squealpipe.tasks.backbones.backbone import (
     special_beyond_contact,
     special_variables,
 )
-from squealpipe.tasks.backbones.orbit import check_length, check_mode
+from squealpipe.tasks.backbones.orbit import check_length
+from squealpipe.validation import Angle, Mode, Natural, Positive, checked
 
 
+@checked
 def doubled_branch(
     params: Parameters,
-    alpha1: float,
-    alpha2: float,
+    alpha1: Angle,
+    alpha2: Angle,
     *,
-    mode: int,
-    doubling: int = 1,
-    y_peak_max: float | None = None,
+    mode: Mode,
+    doubling: Natural = 1,
+    y_peak_max: Positive | None = None,
 ) -> xr.Dataset:
     """The family of motions of doubled period that leaves a backbone at a period doubling.
 
@@ -58,9 +60,6 @@ def doubled_branch(
     Raises:
         ValueError: an argument is out of its range; the message names it.
     """
-    check_mode(mode)
-    if not (is_whole_number(doubling) and doubling >= 1):
-        raise ValueError(f"doubling = {brief(doubling)}: a whole number from 1 is needed")
     y_max = 6.0 * params.preload if y_peak_max is None else y_peak_max
     check_length("y_peak_max", y_max, params.preload)
     scene = scaled_system(params, alpha1, alpha2)

@@ -8,12 +8,13 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from squealpipe.parameters import Parameters, brief, is_finite_number, is_whole_number
+from squealpipe.parameters import Parameters, brief
 from squealpipe.schema import build
 from squealpipe.schema.backbones import PERIODIC_ORBIT, Assumption
 from squealpipe.schema.origin import recorded
 from squealpipe.solvers.a4.orbits import SHAPE, find_orbit, orbit_values
 from squealpipe.solvers.a4.system import scaled_system
+from squealpipe.validation import Angle, Mode, Positive
 
 MOST_PRELOADS = 1e100
 """Lengths over l_pre beyond which squares overflow."""
@@ -21,7 +22,7 @@ MOST_PRELOADS = 1e100
 
 @recorded(model="A4", method="exact")
 def periodic_orbit(
-    params: Parameters, alpha1: float, alpha2: float, *, mode: int, y_peak: float
+    params: Parameters, alpha1: Angle, alpha2: Angle, *, mode: Mode, y_peak: Positive
 ) -> xr.Dataset:
     """The exact periodic motion of model A4 that belongs to a mode and a peak.
 
@@ -46,7 +47,6 @@ def periodic_orbit(
     Raises:
         ValueError: mode is not 1 or 2, or y_peak is not a finite number above the equilibrium.
     """
-    check_mode(mode)
     check_length("y_peak", y_peak, params.preload)
     scene = scaled_system(params, alpha1, alpha2)
     found, outcome = find_orbit(scene, mode, y_peak / scene.length, across=True)
@@ -64,19 +64,8 @@ def periodic_orbit(
     )
 
 
-def check_mode(mode: int) -> None:
-    """Raise a ValueError unless mode is the whole number 1 or 2."""
-    if not is_whole_number(mode) or mode not in (1, 2):
-        raise ValueError(
-            f"mode = {brief(mode)}: the whole number 1 or 2 is needed, by ascending frequency "
-            "in contact"
-        )
-
-
 def check_length(name: str, value: float, preload: float) -> None:
-    """Raise a ValueError unless a length is positive and finite, also over l_pre."""
-    if not (is_finite_number(value) and value > 0):
-        raise ValueError(f"{name} = {brief(value)}: a finite length above 0 is needed, m")
+    """Raise a ValueError unless a length is finite over l_pre too."""
     if not value <= MOST_PRELOADS * preload:
         raise ValueError(
             f"{name} = {brief(value)}: more than {MOST_PRELOADS:g} times preload = {preload!r}; "

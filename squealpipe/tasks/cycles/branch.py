@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import replace
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 import xarray as xr
+from annotated_types import Ge
+from pydantic import BeforeValidator
 
 from squealpipe.methods.continuation import ContinuationSettings, ContinuationState
 from squealpipe.methods.cycles.branch_ends import (
@@ -20,21 +22,20 @@ from squealpipe.methods.cycles.cycle_branch import follow_cycles
 from squealpipe.methods.cycles.cycle_equations import CycleEquations, cycle_algorithm
 from squealpipe.methods.cycles.cycles import Cycle
 from squealpipe.methods.cycles.labels import Label
-from squealpipe.parameters import TABLE, Parameters, brief, is_finite_number, is_whole_number
+from squealpipe.parameters import TABLE, Parameters, is_finite_number
 from squealpipe.schema import Outcome, build
 from squealpipe.schema.cycles import CYCLE_BRANCH, LIMIT_CYCLE
 from squealpipe.schema.origin import recorded
 from squealpipe.solvers.a1.flow import A1Flow
 from squealpipe.tasks.cycles.cycle import (
     T_SETTLE,
-    checked_scene,
-    checked_state,
     cycle_values,
     find_cycle,
     settled_state,
     slow_time,
 )
 from squealpipe.tasks.cycles.onset import find_onset
+from squealpipe.validation import Angle, Number, Whole, state_of
 
 ENDS = {
     BranchEnd.arrived: Outcome.converged,
@@ -48,6 +49,18 @@ ENDS = {
     BranchEnd.singular: Outcome.singular_geometry,
     BranchEnd.tangency: Outcome.tangency,
 }
+
+
+def _start(value: Any) -> Any:
+    if isinstance(value, xr.Dataset) or (isinstance(value, str) and value == "onset"):
+        return value
+    try:
+        return state_of(value)
+    except ValueError as error:
+        raise ValueError("a state (x, y, vx, vy), a dataset or 'onset' is needed") from error
+
+
+Start = Annotated[Any, BeforeValidator(_start)]
 _SAME_VALUE = 1e-11
 """Two values of a parameter as close as this, relative, are one to a branch."""
 _STATE = ("x", "y", "vx", "vy")
@@ -56,13 +69,13 @@ _STATE = ("x", "y", "vx", "vy")
 @recorded(model="A1", method="pseudo-arclength continuation of the return map")
 def cycle_branch(
     params: Parameters,
-    alpha1: float,
-    alpha2: float,
+    alpha1: Angle,
+    alpha2: Angle,
     *,
     parameter: str,
-    to: float,
-    start: Sequence[float] | xr.Dataset | str | None = None,
-    n_points: int = 200,
+    to: Number,
+    start: Start | None = None,
+    n_points: Annotated[Whole, Ge(2)] = 200,
     doubled: bool = False,
 ) -> xr.Dataset:
     """The branch of cycles through a start, in one parameter, stable and unstable parts.
@@ -94,9 +107,8 @@ def cycle_branch(
     Raises:
         ValueError: an argument is not allowed.
     """
-    alpha1, alpha2 = checked_scene(params, alpha1, alpha2)
     begin = _value(params, alpha1, alpha2, parameter)
-    _check(params, parameter, begin, to, n_points, doubled)
+    _check(params, parameter, begin, to)
 
     def system_at(value: float) -> A1Flow:
         return _system(params, alpha1, alpha2, parameter, value, unit)
@@ -112,8 +124,6 @@ def cycle_branch(
         max_points=n_points,
     )
     if isinstance(start, str):
-        if start != "onset":
-            raise ValueError(f"start = {start!r}: a state, a dataset, 'onset' or None is needed")
         first = find_onset(system_at, begin, to, unit, steps)
         outcome = Outcome.no_convergence if first is None else Outcome.converged
     else:
@@ -131,17 +141,11 @@ def cycle_branch(
     return _dataset(points, ENDS[end], (alpha1, alpha2), parameter)
 
 
-def _check(
-    params: Parameters, parameter: str, begin: float, to: float, n_points: int, doubled: bool
-) -> None:
-    if not is_finite_number(to) or math.isclose(to, begin, rel_tol=_SAME_VALUE):
+def _check(params: Parameters, parameter: str, begin: float, to: float) -> None:
+    if math.isclose(to, begin, rel_tol=_SAME_VALUE):
         raise ValueError(
             f"to = {to!r}: a finite value other than {parameter} = {begin!r}, the start, is needed"
         )
-    if not is_whole_number(n_points) or n_points < 2:
-        raise ValueError(f"n_points = {n_points!r}: an integer of 2 or more is needed")
-    if not isinstance(doubled, bool):
-        raise ValueError(f"doubled = {brief(doubled)}: True or False is needed")  # noqa: TRY004
     if parameter not in ("alpha1", "alpha2"):
         params.with_(**{parameter: to})
 
@@ -149,9 +153,9 @@ def _check(
 def _value(params: Parameters, alpha1: float, alpha2: float, parameter: str) -> float:
     values = {name: getattr(params, name) for name, row in TABLE.items() if row.enters_a1}
     values |= {"alpha1": alpha1, "alpha2": alpha2}
-    if not (isinstance(parameter, str) and is_finite_number(values.get(parameter))):
+    if not is_finite_number(values.get(parameter)):
         known = ", ".join(name for name, value in values.items() if is_finite_number(value))
-        unread = isinstance(parameter, str) and parameter in TABLE and parameter not in values
+        unread = parameter in TABLE and parameter not in values
         why = " (A1 does not read it)" if unread else ""
         raise ValueError(f"parameter = {parameter!r}{why}: one of {known} is needed")
     return float(values[parameter])
@@ -168,9 +172,7 @@ def _system(
     return A1Flow(params, **angles, follow=parameter, unit=unit)
 
 
-def _first_cycle(
-    system: A1Flow, start: Sequence[float] | xr.Dataset | None
-) -> tuple[Cycle | None, Outcome]:
+def _first_cycle(system: A1Flow, start: Any) -> tuple[Cycle | None, Outcome]:
     if start is None:
         settled, outcome = settled_state(system, T_SETTLE * slow_time(system.params))
         if settled is None:
@@ -186,7 +188,7 @@ def _first_cycle(
             return None, Outcome(int(start.outcome))
         state = np.array([float(start[f"{name}_start"]) for name in _STATE])
     else:
-        state = checked_state("start", start)
+        state = start
     return find_cycle(system, state)
 
 

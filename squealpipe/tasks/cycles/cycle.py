@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 import xarray as xr
@@ -13,12 +12,12 @@ from scipy.optimize import root
 from squealpipe.methods.cycles.cycles import Cycle, common_scale, find_returns, solve_cycle
 from squealpipe.methods.cycles.event_flow import Vector, flow, sample_path
 from squealpipe.models.a1 import Regime
-from squealpipe.parameters import Parameters, brief, is_finite_number
+from squealpipe.parameters import Parameters
 from squealpipe.schema import Outcome, build
 from squealpipe.schema.cycles import LIMIT_CYCLE
 from squealpipe.schema.origin import recorded
 from squealpipe.solvers.a1.flow import ROUND_OFF, A1Flow
-from squealpipe.validation import real_array
+from squealpipe.validation import Angle, Positive, State, one_of
 
 T_SETTLE = 2000.0
 """Default time, in units of √(m/min(k1, k2)), after which a run counts as settled."""
@@ -50,12 +49,12 @@ SCALARS = (
 @recorded(method="Newton on the return map, events located")
 def limit_cycle(
     params: Parameters,
-    alpha1: float,
-    alpha2: float,
+    alpha1: Angle,
+    alpha2: Angle,
     *,
-    model: str = "A1",
-    guess: Sequence[float] | None = None,
-    t_settle: float | None = None,
+    model: Annotated[str, one_of(["A1"])] = "A1",  # noqa: ARG001 (in the record)
+    guess: State | None = None,
+    t_settle: Positive | None = None,
 ) -> xr.Dataset:
     """A periodic motion of A1 with every event located, its stability included.
 
@@ -80,19 +79,14 @@ def limit_cycle(
     Raises:
         ValueError: an argument is not allowed.
     """
-    if model != "A1":
-        raise ValueError(f"model = {model!r}: limit cycles are found for 'A1'")
-    if t_settle is not None and not (is_finite_number(t_settle) and t_settle > 0):
-        raise ValueError(f"t_settle = {t_settle!r}: a finite time above 0 is needed, s")
-    alpha1, alpha2 = checked_scene(params, alpha1, alpha2)
     system = A1Flow(params, alpha1, alpha2)
     if guess is None:
-        settle = T_SETTLE * slow_time(params) if t_settle is None else float(t_settle)
+        settle = T_SETTLE * slow_time(params) if t_settle is None else t_settle
         state, outcome = settled_state(system, settle)
         if state is None:
             return cycle_dataset(None, outcome, alpha1, alpha2)
     else:
-        state = checked_state("guess", guess)
+        state = guess
     cycle, outcome = find_cycle(system, state)
     return cycle_dataset(cycle, outcome, alpha1, alpha2)
 
@@ -111,35 +105,6 @@ def settled_state(system: A1Flow, time: float) -> tuple[Vector | None, Outcome]:
         many = len(run.event_times) >= _MOST_EVENTS
         return None, Outcome.event_limit if many else Outcome.step_limit
     return run.state, Outcome.converged
-
-
-def checked_scene(params: Parameters, alpha1: float, alpha2: float) -> tuple[float, float]:
-    """Both angles as floats.
-
-    Raises:
-        ValueError: they are not finite numbers, or ``params`` are not :class:`Parameters`.
-    """
-    if not isinstance(params, Parameters):
-        raise ValueError(f"params = {brief(params)}: Parameters(...) are needed")  # noqa: TRY004
-    for name, angle in (("alpha1", alpha1), ("alpha2", alpha2)):
-        if real_array(name, angle).ndim:
-            raise ValueError(f"{name} = {brief(angle)}: one angle in rad is needed")
-    return float(alpha1), float(alpha2)
-
-
-def checked_state(name: str, state: Sequence[float]) -> Vector:
-    """A state as an array.
-
-    Raises:
-        ValueError: it is not four finite numbers.
-    """
-    try:
-        values = list(state)
-    except TypeError:  # no sequence, or an array without dimensions
-        values = []
-    if len(values) != 4 or not all(is_finite_number(value) for value in values):
-        raise ValueError(f"{name} = {state!r}: four finite numbers (x, y, vx, vy) are needed")
-    return np.array(values, dtype=np.float64)
 
 
 def find_cycle(system: A1Flow, state: Vector) -> tuple[Cycle | None, Outcome]:

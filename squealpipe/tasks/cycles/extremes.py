@@ -12,6 +12,7 @@ from squealpipe.schema import build
 from squealpipe.schema.cycles import SETTLED_EXTREMES
 from squealpipe.schema.origin import recorded
 from squealpipe.solvers.a1.ensemble import run_ensemble
+from squealpipe.validation import Natural, NotNegativeVector, Positive, Seed, Tolerance, Workers
 
 AMPLITUDES = (0.01, 30.0)
 """Smallest and largest distance of a start from r = 0, over l_pre."""
@@ -21,13 +22,13 @@ AMPLITUDES = (0.01, 30.0)
 def settled_extremes(
     params: Parameters,
     scenes: Mapping[str, tuple[float, float]],
-    mu: np.ndarray,
+    mu: NotNegativeVector,
     *,
-    starts: int,
-    t_end: float,
-    seed: int = 1,
-    tol: float = 1e-12,
-    workers: int | None = None,
+    starts: Natural,
+    t_end: Positive,
+    seed: Seed = 1,
+    tol: Tolerance = 1e-12,
+    workers: Workers = None,
 ) -> xr.Dataset:
     """Largest |x| in the last fifth of runs from starts near and far.
 
@@ -52,7 +53,7 @@ def settled_extremes(
     state = np.zeros((starts, 4))
     state[:, 0], state[:, 1] = distance * np.cos(direction), distance * np.sin(direction)
     angles = np.array(list(scenes.values()))
-    fields = {**params.as_dict(), "mu": np.asarray(mu)[None, :, None]}
+    fields = {**params.as_dict(), "mu": mu[None, :, None]}
     run = run_ensemble(
         fields,
         angles[:, 0][:, None, None],
@@ -73,5 +74,5 @@ def settled_extremes(
             "y0": state[:, 1],
             "t_end": t_end,
         },
-        {"scene": list(scenes), "mu": np.asarray(mu), "start": np.arange(starts)},
+        {"scene": list(scenes), "mu": mu, "start": np.arange(starts)},
     )

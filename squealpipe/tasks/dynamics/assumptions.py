@@ -26,7 +26,7 @@ from squealpipe.parameters import SCENES, Parameters, Scene
 from squealpipe.schema import Outcome, build
 from squealpipe.schema.dynamics.assumptions import ASSUMPTIONS, LINEAR_PULL
 from squealpipe.tasks.dynamics.runs import simulate
-from squealpipe.validation import angle_axis
+from squealpipe.validation import Angles, Positive, checked
 
 LEVELS = ("A1", "A1-no-separation", "A2", "A3", "A4")
 
@@ -112,15 +112,16 @@ def check_assumptions(params: Parameters, scenes: Iterable[Scene] = ()) -> xr.Da
     )
 
 
+@checked
 def linear_pull_map(
-    params: Parameters, alpha1: Any, alpha2: Any, *, t_end: float = 50.0
+    params: Parameters, alpha1: Angles, alpha2: Angles, *, t_end: Positive | None = None
 ) -> xr.Dataset:
     """How far the linear model (Eqs. 6, 7) lets the contact spring pull, started at rest.
 
     Args:
         params: physical parameters.
         alpha1, alpha2: 1-D arrays of angles, rad.
-        t_end: end of the motion, s.
+        t_end: end of the motion, s; 50 √(m/k1) by default.
 
     Returns:
         Dataset over (alpha1, alpha2): lowest_contact_force (over k3 l_pre), pulling_fraction,
@@ -130,7 +131,7 @@ def linear_pull_map(
         ValueError: dashpots or a friction law that these equations do not have.
     """
     refuse_extensions(params, "linear_pull_map", "Eqs. (6), (7) have neither")
-    alpha1, alpha2 = angle_axis("alpha1", alpha1), angle_axis("alpha2", alpha2)
+    t_end = 50.0 * params.time_unit if t_end is None else t_end
     stiffness = linear_stiffness(params, geometry(alpha1[:, None], alpha2[None, :]))
     step, steps = _steps(params, t_end)
     lowest = np.full(stiffness.k11.shape, np.inf)

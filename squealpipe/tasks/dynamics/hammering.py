@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from types import SimpleNamespace
-from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -21,7 +20,7 @@ from squealpipe.tasks.dynamics.motion import (
     regular_growth,
 )
 from squealpipe.tasks.normal_form import NormalForm
-from squealpipe.validation import angle_axis, real_number
+from squealpipe.validation import Angles, Positive, Tolerance, Workers
 
 USED = (
     "outcome",
@@ -44,12 +43,12 @@ USED = (
 @recorded(model="A1", method="Taylor series with located events")
 def hammering_map(
     params: Parameters,
-    alpha1: Any,
-    alpha2: Any,
+    alpha1: Angles,
+    alpha2: Angles,
     *,
-    t_end: float,
-    tol: float = 1e-12,
-    workers: int | None = None,
+    t_end: Positive,
+    tol: Tolerance = 1e-12,
+    workers: Workers = None,
 ) -> xr.Dataset:
     """Impacts, forces, extremes, kind of motion and predictability of A1 started at rest.
 
@@ -83,10 +82,8 @@ def hammering_map(
     Raises:
         ValueError: an argument is not a finite number, or t_end is not positive.
     """
-    first, second = angle_axis("alpha1", alpha1), angle_axis("alpha2", alpha2)
-    t_end = real_number("t_end", t_end, above=0.0)
     form = NormalForm.of(params)
-    rows, columns = form.angles(first, second)
+    rows, columns = form.angles(alpha1, alpha2)
     run = run_map(
         form.params,
         rows,
@@ -128,6 +125,6 @@ def hammering_map(
     return build(
         HAMMERING_MAP,
         {**{name: form.back(values) for name, values in maps.items()}, "t_end": t_end},
-        {"alpha1": first, "alpha2": second},
+        {"alpha1": alpha1, "alpha2": alpha2},
         {"regular_growth": float(regular_growth(t_end / unit))},
     )

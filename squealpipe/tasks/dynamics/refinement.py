@@ -9,12 +9,13 @@ import xarray as xr
 from scipy.ndimage import label
 
 from squealpipe.methods.adaptive_grid import Evaluate, RefinedGrid, follow_boundaries, refine_grid
-from squealpipe.parameters import Parameters
+from squealpipe.parameters import HORIZON, Parameters
 from squealpipe.schema import Outcome, build
 from squealpipe.schema.dynamics.runs import REFINED_VALIDITY_MAP, REFINEMENT_CHECK
 from squealpipe.schema.inference import wilson_interval
 from squealpipe.schema.origin import recorded
 from squealpipe.solvers.a1.ensemble import run_ensemble
+from squealpipe.validation import Natural, Positive, Tolerance, Workers
 
 SUSPECT_SHARE = 0.1
 """Cells that separate only after this share of t_end lie next to those that never do."""
@@ -27,11 +28,11 @@ EIGHT_NEIGHBOURS = np.ones((3, 3))
 def refine_validity_map(
     params: Parameters,
     *,
-    resolution: int,
-    coarse: int,
-    t_end: float = 200.0,
-    tol: float = 1e-12,
-    workers: int | None = None,
+    resolution: Natural,
+    coarse: Natural,
+    t_end: Positive | None = None,
+    tol: Tolerance = 1e-12,
+    workers: Workers = None,
 ) -> xr.Dataset:
     """Where model A1 keeps contact, over both angles from 0 to π, at full resolution.
 
@@ -45,7 +46,7 @@ def refine_validity_map(
         params: physical parameters.
         resolution, coarse: points per side of the finest and the first grid; (resolution − 1) must
             be (coarse − 1) times a power of two.
-        t_end: end of each run, s.
+        t_end: end of each run, s; 200 √(m/k1) by default.
         tol: tolerance of the Taylor integrator.
         workers: processes; None takes all cores.
 
@@ -57,8 +58,7 @@ def refine_validity_map(
     Raises:
         ValueError: the grids do not nest, or t_end is not positive.
     """
-    if not t_end > 0:
-        raise ValueError(f"t_end = {t_end!r}: must be greater than 0")
+    t_end = HORIZON * params.time_unit if t_end is None else t_end
     angles = np.linspace(0.0, np.pi, resolution)
     time = np.full((resolution, resolution), np.nan)
     outcome = np.full((resolution, resolution), int(Outcome.inherited), np.int8)

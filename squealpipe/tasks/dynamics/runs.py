@@ -3,25 +3,24 @@
 from __future__ import annotations
 
 import math
+import warnings
 from types import SimpleNamespace
-from typing import Any
 
 import numpy as np
 import xarray as xr
 
 from squealpipe.laws.contact import contact_force
 from squealpipe.models.switching import VARIANT_RULES
-from squealpipe.parameters import Parameters
+from squealpipe.parameters import HORIZON, Parameters
 from squealpipe.schema import Outcome, build
 from squealpipe.schema.dynamics.runs import GROWTH_THRESHOLD, SIMULATION, VALIDITY_MAP, RegimeFlag
 from squealpipe.schema.origin import recorded
 from squealpipe.solvers.a1.ensemble import integrate, run_map
-from squealpipe.solvers.a1.jobs import Jobs, known_model
+from squealpipe.solvers.a1.jobs import Jobs, Model
 from squealpipe.tasks.linear.maps import stability_map
-from squealpipe.validation import angle_axis, real_array, real_number
+from squealpipe.tasks.sampling import default_times, unresolved
+from squealpipe.validation import Angle, Angles, NotNegative, State, Tolerance, Vector, Workers
 
-SAMPLES_PER_TIME_UNIT = 20
-MOST_SAMPLES = 20_001
 FIRST_LOG = 256
 """Events kept at first; a run that has more is made again with room for all."""
 WANTED = (
@@ -40,14 +39,14 @@ WANTED = (
 @recorded(method="Taylor series with located events")
 def simulate(
     params: Parameters,
-    alpha1: float,
-    alpha2: float,
+    alpha1: Angle,
+    alpha2: Angle,
     *,
-    t_end: float,
-    model: str = "A1",
-    tol: float = 1e-12,
-    times: Any = None,
-    initial_state: Any = (0.0, 0.0, 0.0, 0.0),
+    t_end: NotNegative,
+    model: Model = "A1",
+    tol: Tolerance = 1e-12,
+    times: Vector | None = None,
+    initial_state: State = (0.0, 0.0, 0.0, 0.0),
     growth: bool = False,
 ) -> xr.Dataset:
     """One run of a nonlinear model, with every regime change located.
@@ -61,7 +60,8 @@ def simulate(
             literally: friction pushes against the belt) or "A4" (which goes on past ẋ = V, where it
             does not hold; compare ``vx`` with the belt speed).
         tol: tolerance of the Taylor integrator, relative to l_pre.
-        times: the state is given at exactly these instants, s; by default 20 per time unit √(m/k1).
+        times: the state is given at exactly these instants, s; by default at equal steps that
+            resolve √((k1 + k2 + k3)/m).
         initial_state: x, y, vx, vy at t = 0, m and m/s.
         growth: tell too by which factor a small perturbation of the start has grown at the end.
 
@@ -72,13 +72,10 @@ def simulate(
     Raises:
         ValueError: an argument is not a finite number, is negative, or names no model.
     """
-    known_model(model)
-    alpha1, alpha2 = real_number("alpha1", alpha1), real_number("alpha2", alpha2)
-    t_end = real_number("t_end", t_end, least=0.0)
-    times = _instants(times, t_end, params.time_unit)
-    initial = real_array("initial_state", initial_state)
-    if initial.shape != (4,):
-        raise ValueError(f"initial_state = {initial_state!r}: x, y, vx and vy are needed")
+    if times is None:
+        times = default_times(params, t_end)
+    elif missed := unresolved(params, times):
+        warnings.warn(missed, stacklevel=6)
     job = Jobs.build(
         params,
         alpha1,
@@ -87,7 +84,7 @@ def simulate(
         model=model,
         tol=tol,
         times=times,
-        initial_state=initial,
+        initial_state=initial_state,
     )
     wanted = (*WANTED, *(("log_growth",) if growth else ()))
     room, logged = 0, FIRST_LOG
@@ -98,7 +95,7 @@ def simulate(
         logged = int(run.events)
     x, y, vx, vy = run.samples.T
     if times.size and times[0] == 0.0:
-        x[0], y[0], vx[0], vy[0] = initial
+        x[0], y[0], vx[0], vy[0] = initial_state
     if VARIANT_RULES[model].separates:
         off = run.sample_regimes == RegimeFlag.separated.value
         normal = np.where(off, 0.0, contact_force(y, params))
@@ -138,13 +135,13 @@ def simulate(
 @recorded(method="Taylor series with located events")
 def validity_map(
     params: Parameters,
-    alpha1: Any,
-    alpha2: Any,
+    alpha1: Angles,
+    alpha2: Angles,
     *,
-    t_end: float = 200.0,
-    model: str = "A1",
-    tol: float = 1e-12,
-    workers: int | None = None,
+    t_end: NotNegative | None = None,
+    model: Model = "A1",
+    tol: Tolerance = 1e-12,
+    workers: Workers = None,
 ) -> xr.Dataset:
     """Where model A1, started at rest, keeps contact until ``t_end``.
 
@@ -153,7 +150,7 @@ def validity_map(
     Args:
         params: physical parameters.
         alpha1, alpha2: 1-D arrays of angles, rad.
-        t_end: end of each run, s.
+        t_end: end of each run, s; 200 √(m/k1) by default.
         model: "A1" or one of its variants.
         tol: tolerance of the Taylor integrator.
         workers: processes; None takes all cores.
@@ -166,12 +163,11 @@ def validity_map(
     Raises:
         ValueError: an argument is not a finite number or is negative.
     """
-    first, second = angle_axis("alpha1", alpha1), angle_axis("alpha2", alpha2)
-    t_end = real_number("t_end", t_end, least=0.0)
+    t_end = HORIZON * params.time_unit if t_end is None else t_end
     run = run_map(
         params,
-        first,
-        second,
+        alpha1,
+        alpha2,
         ("outcome", "first_separation_time", "early_max_x", "late_max_x"),
         t_end=t_end,
         model=model,
@@ -189,27 +185,10 @@ def validity_map(
             "first_separation_time": run.first_separation_time,
             "separates": lost,
             "response_growth": np.where(lost, np.nan, growth),
-            "regime_linear": stability_map(params, first, second)["regime_linear"],
+            "regime_linear": stability_map(params, alpha1, alpha2)["regime_linear"],
             "growth_threshold": GROWTH_THRESHOLD,
             "t_end": t_end,
             "outcome": run.outcome,
         },
-        {"alpha1": first, "alpha2": second},
+        {"alpha1": alpha1, "alpha2": alpha2},
     )
-
-
-def _instants(times: Any, t_end: float, time_unit: float) -> np.ndarray:
-    """Checked instants, s; by default 20 per time unit.
-
-    Raises:
-        ValueError: they are no sequence, or empty.
-    """
-    if times is None:
-        # a unit of time that underflows is refused with the run
-        wanted = SAMPLES_PER_TIME_UNIT * t_end / time_unit if time_unit else math.inf
-        count = math.ceil(min(MOST_SAMPLES, wanted)) + 1
-        return np.linspace(0.0, t_end, min(max(count, 2), MOST_SAMPLES))
-    instants = real_array("times", times)
-    if instants.ndim != 1 or not instants.size:
-        raise ValueError(f"times has shape {instants.shape}: a sequence of instants is needed")
-    return instants

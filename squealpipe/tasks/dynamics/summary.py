@@ -13,13 +13,12 @@ from squealpipe.schema import build
 from squealpipe.schema.dynamics.run_summary import RUN_SUMMARY
 from squealpipe.schema.dynamics.runs import EventFlag, RegimeFlag
 from squealpipe.schema.origin import recorded
+from squealpipe.tasks.sampling import FEWEST
 
 PEAKS = 3
 """Dominant frequencies that are named."""
 PADDING = 8
 """How much finer the spectrum's grid is than the resolution of the run."""
-FEWEST = 16
-"""Samples of a run from which it can be summed up."""
 
 
 @recorded()

@@ -20,22 +20,23 @@ from squealpipe.schema.inference import PARAMETER_INFERENCE, wilson_interval
 from squealpipe.schema.origin import recorded
 from squealpipe.tasks.inference.consequences import CONSEQUENCES, judge_consequences
 from squealpipe.tasks.inference.constraints import CONSTRAINTS, Candidates, candidate_of, measure
+from squealpipe.validation import Natural, Number, Seed, Tolerance, Workers
 
-Range = tuple[float, float]
+Range = tuple[Number, Number]
 
 
 @recorded(model="A1", method="Taylor series with located events over quasi-random samples")
 def infer_parameters(
     params: Parameters,
     *,
-    samples: int,
+    samples: Natural,
     kappa: Range = (0.3, 1.3),
     mu: Range = (0.02, 0.8),
     length_ratio: Range = (2.0, 100.0),
     speed_ratio: Range = (0.1, 316.0),
-    seed: int = 2021,
-    tol: float = 1e-9,
-    workers: int | None = None,
+    seed: Seed = 2021,
+    tol: Tolerance = 1e-9,
+    workers: Workers = None,
 ) -> xr.Dataset:
     """Judge quasi-random parameter sets, and the study's own, by the paper's statements.
 

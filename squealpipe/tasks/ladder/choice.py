@@ -13,14 +13,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
 import numpy as np
 
 from squealpipe.methods.modal_bounds import ModalMotion
 from squealpipe.models import a4
 from squealpipe.models.refusals import without_extensions
-from squealpipe.parameters import Parameters
+from squealpipe.parameters import HORIZON, Parameters
 from squealpipe.schema.ladder import QUESTIONS, Level
 from squealpipe.solvers.a1.ensemble import run_ensemble
 from squealpipe.tasks.ladder.certificate import (
@@ -37,12 +37,11 @@ from squealpipe.tasks.ladder.certificate import (
 from squealpipe.tasks.ladder.questions import (
     answer_of,
     dominant_frequency,
-    sample_times,
 )
 from squealpipe.tasks.normal_form import NormalForm
-from squealpipe.validation import real_array, real_number
+from squealpipe.tasks.sampling import sample_times
+from squealpipe.validation import Angle, Positive, checked, one_of
 
-DEFAULT_HORIZON = 200.0
 """Horizon unless told otherwise, √(m/k1)."""
 LONGEST_PART = 0.5
 """Share of the horizon beyond which a part of it is not tried: failing would cost more than A1."""
@@ -100,14 +99,15 @@ class Choices:
     upper: np.ndarray
 
 
+@checked
 def choose_model(
     params: Parameters,
-    alpha1: float,
-    alpha2: float,
-    question: str,
-    tol: float,
+    alpha1: Angle,
+    alpha2: Angle,
+    question: Annotated[str, one_of(QUESTIONS)],
+    tol: Positive,
     *,
-    t_end: float | None = None,
+    t_end: Positive | None = None,
 ) -> Choice:
     """The cheapest level that answers a question within a tolerance of A1, and its answer.
 
@@ -128,12 +128,8 @@ def choose_model(
     Raises:
         ValueError: the question is unknown or tol is not positive.
     """
-    horizon = DEFAULT_HORIZON * params.time_unit if t_end is None else t_end
-    horizon = real_number("t_end", horizon, above=0.0)
-    cells = (
-        np.array([real_number("alpha1", alpha1)]),
-        np.array([real_number("alpha2", alpha2)]),
-    )
+    horizon = HORIZON * params.time_unit if t_end is None else t_end
+    cells = np.array([alpha1]), np.array([alpha2])
     found = choose_models(params, *cells, question, tol, t_end=horizon, workers=1)
     level = Level(int(found.level[0]))
     value = float(found.value[0])
@@ -157,12 +153,9 @@ def choose_models(
     workers: int | None = None,
 ) -> Choices:
     """:func:`choose_model` for arrays of cells at once; ``alpha1`` and ``alpha2`` of one shape."""
-    if not isinstance(question, str) or question not in QUESTIONS:
-        raise ValueError(f"question = {question!r}: one of {', '.join(QUESTIONS)} is needed")
-    tol = real_number("tol", tol, above=0.0)
     form = NormalForm.of(params)
     params = without_extensions(form.params)
-    alpha1, alpha2 = form.angles(real_array("alpha1", alpha1), real_array("alpha2", alpha2))
+    alpha1, alpha2 = form.angles(alpha1, alpha2)
     choices = Choices(
         level=np.full(alpha1.shape, Level.a1, dtype=int),
         value=np.full(alpha1.shape, np.nan),

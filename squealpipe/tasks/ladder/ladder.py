@@ -10,11 +10,11 @@ import numpy as np
 import xarray as xr
 
 from squealpipe.models.refusals import refuse_extensions
-from squealpipe.parameters import Parameters
+from squealpipe.parameters import HORIZON, Parameters
 from squealpipe.schema import Outcome, build
 from squealpipe.schema.ladder import MODEL_LADDER, QUESTIONS, Level
 from squealpipe.solvers.a1.ensemble import run_ensemble
-from squealpipe.tasks.ladder.choice import DEFAULT_HORIZON, choose_models
+from squealpipe.tasks.ladder.choice import choose_models
 from squealpipe.tasks.ladder.levels import answer
 from squealpipe.tasks.ladder.levels.answers import Answers, Scenes
 from squealpipe.tasks.normal_form import NormalForm
@@ -43,7 +43,7 @@ def model_ladder(
         workers: processes; None takes all cores.
     """
     refuse_extensions(params, "the model ladder", WHY)
-    horizon = DEFAULT_HORIZON * params.time_unit if t_end is None else t_end
+    horizon = HORIZON * params.time_unit if t_end is None else t_end
     angles = (np.arange(points) + 0.5) * math.pi / points
     alpha1, alpha2 = (grid.ravel() for grid in np.meshgrid(angles, angles, indexing="ij"))
     # V ≥ 0 from here on: the largest ẋ is the largest speed along the belt

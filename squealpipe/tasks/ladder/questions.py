@@ -9,22 +9,6 @@ import numpy as np
 
 from squealpipe.parameters import Parameters
 
-SAMPLES_PER_RADIAN = 2.5
-"""Samples per radian of the fastest linear oscillation."""
-MOST_SAMPLES = 1e7
-
-
-def sample_times(params: Parameters, t_end: float) -> np.ndarray:
-    """Instants from 0 to ``t_end`` that resolve √((k1 + k2 + k3)/m), s."""
-    fastest = math.sqrt((params.k1 + params.k2 + params.k3) / params.mass)
-    wanted = SAMPLES_PER_RADIAN * fastest * t_end
-    if not wanted <= MOST_SAMPLES:
-        raise ValueError(
-            f"t_end = {t_end!r}: {wanted:.2g} samples would resolve the fastest oscillation up to "
-            f"there, at most {MOST_SAMPLES:.0e} are taken; shorten t_end"
-        )
-    return np.linspace(0.0, t_end, max(16, math.ceil(wanted)) + 1)
-
 
 def answer_of(run: Any, question: str, times: np.ndarray) -> np.ndarray:
     """The answer that an ensemble holds.

@@ -4,21 +4,19 @@ from __future__ import annotations
 
 from types import SimpleNamespace
 
-import numpy as np
 import xarray as xr
-from numpy.typing import ArrayLike
 
 from squealpipe.laws.friction_laws import slope
 from squealpipe.models.damped import critical_friction, dashpots_lower
-from squealpipe.parameters import Parameters, is_finite_number
+from squealpipe.parameters import Parameters
 from squealpipe.schema import build
 from squealpipe.schema.linear import CRITICAL_DAMPING_MAP, CRITICAL_FRICTION_MAP
 from squealpipe.schema.origin import recorded
-from squealpipe.validation import angle_axis, real_array
+from squealpipe.validation import Angle, Angles, NotNegativeVector
 
 
 @recorded(model="A3", method="closed form")
-def critical_friction_map(params: Parameters, alpha1: ArrayLike, alpha2: ArrayLike) -> xr.Dataset:
+def critical_friction_map(params: Parameters, alpha1: Angles, alpha2: Angles) -> xr.Dataset:
     """The friction at which steady sliding turns unstable: A3 and Coulomb, by Routh–Hurwitz.
 
     Args:
@@ -35,7 +33,6 @@ def critical_friction_map(params: Parameters, alpha1: ArrayLike, alpha2: ArrayLi
         ValueError: the friction law depends on speed, so that its slope counts beside μ.
     """
     _refuse_slope(params)
-    alpha1, alpha2 = angle_axis("alpha1", alpha1), angle_axis("alpha2", alpha2)
     pair = alpha1[:, None], alpha2[None, :]
     critical, undamped = critical_friction(params, *pair)
     vanishing, _ = critical_friction(params, *pair, vanishing=True)
@@ -53,7 +50,11 @@ def critical_friction_map(params: Parameters, alpha1: ArrayLike, alpha2: ArrayLi
 
 @recorded(model="A3", method="closed form")
 def critical_damping_map(
-    params: Parameters, alpha1: float, alpha2: float, damping1: ArrayLike, damping2: ArrayLike
+    params: Parameters,
+    alpha1: Angle,
+    alpha2: Angle,
+    damping1: NotNegativeVector,
+    damping2: NotNegativeVector,
 ) -> xr.Dataset:
     """The critical friction of :func:`critical_friction_map` at one pair of angles, over dashpots.
 
@@ -71,32 +72,24 @@ def critical_damping_map(
             dashpot.
     """
     _refuse_slope(params)
-    for name, angle in (("alpha1", alpha1), ("alpha2", alpha2)):
-        if not is_finite_number(angle):
-            raise ValueError(f"{name} = {angle!r}: a finite angle is needed, rad")
-    axes = {}
-    for name, values in (("damping1", damping1), ("damping2", damping2)):
-        axes[name] = np.atleast_1d(real_array(name, values))
-        if axes[name].ndim != 1 or not axes[name].size or not (axes[name] >= 0).all():
-            raise ValueError(f"{name}: numbers of 0 or greater are needed, in one dimension")
     given = {name: getattr(params, name) for name in ("mass", "k1", "k2", "k3", "drag")}
     system = SimpleNamespace(
         **given,
         belt_direction=params.belt_direction,
-        damping1=axes["damping1"][:, None],
-        damping2=axes["damping2"][None, :],
+        damping1=damping1[:, None],
+        damping2=damping2[None, :],
     )
-    critical, undamped = critical_friction(system, float(alpha1), float(alpha2))
+    critical, undamped = critical_friction(system, alpha1, alpha2)
     return build(
         CRITICAL_DAMPING_MAP,
         {
             "critical_mu": critical,
             "critical_mu_undamped": undamped,
             "destabilized": dashpots_lower(critical, undamped),
-            "alpha1": float(alpha1),
-            "alpha2": float(alpha2),
+            "alpha1": alpha1,
+            "alpha2": alpha2,
         },
-        axes,
+        {"damping1": damping1, "damping2": damping2},
     )
 
 

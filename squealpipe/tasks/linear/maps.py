@@ -7,7 +7,6 @@ from types import SimpleNamespace
 import mpmath
 import numpy as np
 import xarray as xr
-from numpy.typing import ArrayLike
 
 from squealpipe.laws.springs import (
     Geometry,
@@ -19,7 +18,7 @@ from squealpipe.models.a4 import Spectrum, natural_frequencies_squared, spectrum
 from squealpipe.models.contact_system import contact_system
 from squealpipe.models.damped import damped_system, is_undamped, stability
 from squealpipe.models.refusals import WHY_A4, refuse_extensions, refuse_scales
-from squealpipe.parameters import NUMBERS_OF_A1, TABLE, Parameters
+from squealpipe.parameters import NUMBERS_OF_A1, Parameters
 from squealpipe.schema import Outcome, build
 from squealpipe.schema.linear import (
     NATURAL_FREQUENCIES,
@@ -27,7 +26,7 @@ from squealpipe.schema.linear import (
     STABILITY_MAP,
 )
 from squealpipe.schema.origin import recorded
-from squealpipe.validation import angle_axis
+from squealpipe.validation import Angles, Positive
 
 CANCELLATION = 3e-4
 """A discriminant or determinant below this share of (trace/2)² is formed in more digits."""
@@ -37,7 +36,7 @@ DIGITS = 40
 
 @recorded(model="A2", method="closed form")
 def quasi_static_map(
-    params: Parameters, alpha1: ArrayLike, alpha2: ArrayLike, *, sigma: float | None = None
+    params: Parameters, alpha1: Angles, alpha2: Angles, *, sigma: Positive | None = None
 ) -> xr.Dataset:
     """Where quasi-static sliding exists (A2), in both readings, and the state of Eq. (15).
 
@@ -53,9 +52,7 @@ def quasi_static_map(
         stiffness_x, stiffness_xy, stiffness_y (K11, K12, K22, N/m); outcome.
         NaN with outcome singular_static_state where there is no such state.
     """
-    alpha1, alpha2 = angle_axis("alpha1", alpha1), angle_axis("alpha2", alpha2)
     refuse_scales(params)
-    sigma = None if sigma is None else TABLE["sigma"].check("sigma", sigma)
     k3, load = a2.contact_stiffness(params, sigma), a2.actuation(params, sigma)
     system = contact_system(params, alpha1[:, None], alpha2[None, :], k3=k3)
     stiffness = system.stiffness
@@ -93,7 +90,7 @@ def quasi_static_map(
 
 @recorded(model="A3", method="closed form")
 def stability_map(
-    params: Parameters, alpha1: ArrayLike, alpha2: ArrayLike, *, sigma: float | None = None
+    params: Parameters, alpha1: Angles, alpha2: Angles, *, sigma: Positive | None = None
 ) -> xr.Dataset:
     """Growth rate and frequencies of model A3, from closed forms; damped, from the quartic.
 
@@ -113,9 +110,7 @@ def stability_map(
         eigenvalues coalesce, for they are polished in long double, and NaN with outcome
         singular_static_state where friction depends on speed and no static contact force exists.
     """
-    alpha1, alpha2 = angle_axis("alpha1", alpha1), angle_axis("alpha2", alpha2)
     refuse_scales(params)
-    sigma = None if sigma is None else TABLE["sigma"].check("sigma", sigma)
     if not is_undamped(params):
         return _damped_stability(params, alpha1, alpha2, sigma)
     invariants = _spectrum(params, alpha1, alpha2, a2.contact_stiffness(params, sigma))
@@ -155,7 +150,7 @@ def _damped_stability(
 
 
 @recorded(model="A4", method="closed form")
-def natural_frequencies(params: Parameters, alpha1: ArrayLike, alpha2: ArrayLike) -> xr.Dataset:
+def natural_frequencies(params: Parameters, alpha1: Angles, alpha2: Angles) -> xr.Dataset:
     """Natural frequencies of model A4 in both of its states, Eqs. (22) and (25).
 
     Args:
@@ -171,7 +166,6 @@ def natural_frequencies(params: Parameters, alpha1: ArrayLike, alpha2: ArrayLike
         ValueError: damping or friction that A4 cannot carry.
     """
     refuse_extensions(params, "model A4", WHY_A4)
-    alpha1, alpha2 = angle_axis("alpha1", alpha1), angle_axis("alpha2", alpha2)
     refuse_scales(params)
     shape = (alpha1.size, alpha2.size, 2, 2)
     omega, outcomes = np.empty(shape), np.empty(shape, np.int8)

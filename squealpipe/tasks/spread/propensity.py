@@ -5,17 +5,18 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from functools import partial
 from types import SimpleNamespace
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 import xarray as xr
+from annotated_types import Ge, Interval, MinLen
 from scipy import stats
 
 from squealpipe.laws.friction_laws import coefficient, slope
 from squealpipe.models import a3
 from squealpipe.models.contact_system import contact_system
 from squealpipe.models.damped import damped_system, stability
-from squealpipe.parameters import DEFAULTS, Parameters, brief, direction_of, is_finite_number
+from squealpipe.parameters import DEFAULTS, Parameters, direction_of
 from squealpipe.schema import Outcome, build
 from squealpipe.schema.dynamics.runs import MotionFlag
 from squealpipe.schema.inference import wilson_interval
@@ -24,6 +25,7 @@ from squealpipe.schema.spread import PROPENSITY, WIDEST
 from squealpipe.solvers.a1.ensemble import run_ensemble
 from squealpipe.tasks.dynamics.motion import classify_motion
 from squealpipe.tasks.spread.distributions import check_stick, distribution
+from squealpipe.validation import Angle, Number, Positive, Seed, Tolerance, Whole, Workers
 
 QUANTITIES = ("flutter", "contact_loss", "irregular_hammering", "whirl")
 LEAST_EVENTS = 30
@@ -39,16 +41,16 @@ INDICES = tuple(f"{order}{end}" for order in ORDERS for end in ("", "_low", "_hi
 @recorded(model="A1, A3", method="quasi-random sample; Saltelli's estimator of Sobol indices")
 def propensity(
     params: Parameters,
-    alpha1: float,
-    alpha2: float,
+    alpha1: Angle,
+    alpha2: Angle,
     *,
-    distributions: Mapping[str, Mapping[str, Any]],
-    samples: int,
-    t_end: float,
-    spring_correlation: float = 0.0,
-    seed: int = 1,
-    tol: float = 1e-9,
-    workers: int | None = None,
+    distributions: Annotated[Mapping[str, Mapping[str, Any]], MinLen(1)],
+    samples: Annotated[Whole, Ge(64)],
+    t_end: Positive,
+    spring_correlation: Annotated[Number, Interval(gt=-1, lt=1)] = 0.0,
+    seed: Seed = 1,
+    tol: Tolerance = 1e-9,
+    workers: Workers = None,
 ) -> xr.Dataset:
     """How often flutter, contact loss, irregular hammering and whirl occur, and why.
 
@@ -75,17 +77,8 @@ def propensity(
     Raises:
         ValueError: a distribution or another argument is not allowed.
     """
-    if isinstance(samples, bool) or samples < 64 or samples & (samples - 1):
+    if samples & (samples - 1):
         raise ValueError(f"samples = {samples!r}: a power of 2 of at least 64 is needed")
-    if not (is_finite_number(t_end) and t_end > 0):
-        raise ValueError(f"t_end = {t_end!r}: a finite time above 0 is needed, s")
-    if not (is_finite_number(spring_correlation) and -1 < spring_correlation < 1):
-        raise ValueError(f"spring_correlation = {spring_correlation!r}: must lie between -1 and 1")
-    if not isinstance(distributions, Mapping) or not distributions:
-        raise ValueError(
-            f"distributions = {brief(distributions)}: a mapping from at least one parameter to its "
-            "distribution is needed"
-        )
     frozen = {name: distribution(name, given) for name, given in distributions.items()}
     check_stick(params, frozen)
     names = list(frozen)
@@ -133,8 +126,8 @@ def propensity(
             "index_samples": index_samples,
             "judged": samples,
             "outcome": np.where(supported, Outcome.converged, Outcome.unresolved),
-            "alpha1": float(alpha1),
-            "alpha2": float(alpha2),
+            "alpha1": alpha1,
+            "alpha2": alpha2,
             "t_end": t_end,
         },
         {"quantity": list(QUANTITIES), "input": names, "size": sizes},

@@ -15,6 +15,7 @@ from squealpipe.schema.origin import recorded
 from squealpipe.schema.spread import VERDICT_REACH
 from squealpipe.tasks.inference.consequences import CONSEQUENCES, judge_consequences
 from squealpipe.tasks.inference.constraints import CONSTRAINTS, Candidates, measure
+from squealpipe.validation import Natural, Seed, Tolerance, Workers
 
 RATIOS = (0.005, 0.02, 0.05)
 """Damping ratios c/(2 √(k m)) of each spring."""
@@ -60,11 +61,11 @@ def variants(params: Parameters) -> Iterator[tuple[str, Parameters]]:
 def verdict_reach(
     params: Parameters,
     *,
-    starts: int,
+    starts: Natural,
     inferred: xr.Dataset | None = None,
-    seed: int = 1,
-    tol: float = 1e-12,
-    workers: int | None = None,
+    seed: Seed = 1,
+    tol: Tolerance = 1e-12,
+    workers: Workers = None,
 ) -> xr.Dataset:
     """Whether each statement of Figs. 2 to 9 holds, setting by setting.
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -14,7 +13,7 @@ from squealpipe.schema.origin import recorded
 from squealpipe.schema.starts import STARTS, UNSETTLED, basin_schema
 from squealpipe.solvers.a1.ensemble import Ensemble, run_ensemble
 from squealpipe.tasks.dynamics.motion import classify_motion, linear_time, predictability
-from squealpipe.validation import real_array, real_number
+from squealpipe.validation import Angle, Line, NotNegative, Positive, Tolerance, Workers
 
 SAMPLES = 1000
 """Instants after t_late at which |ẋ| is read off; its maximum is refined by a parabola."""
@@ -24,17 +23,17 @@ RUNS_AT_ONCE = 2000
 @recorded(model="A1", method="Taylor series with located events")
 def basin_map(
     params: Parameters,
-    alpha1: float,
-    alpha2: float,
+    alpha1: Angle,
+    alpha2: Angle,
     *,
-    x: Any = 0.0,
-    y: Any = 0.0,
-    vx: Any = 0.0,
-    vy: Any = 0.0,
-    t_end: float,
-    t_late: float | None = None,
-    tol: float = 1e-12,
-    workers: int | None = None,
+    x: Line = 0.0,
+    y: Line = 0.0,
+    vx: Line = 0.0,
+    vy: Line = 0.0,
+    t_end: Positive,
+    t_late: NotNegative | None = None,
+    tol: Tolerance = 1e-12,
+    workers: Workers = None,
 ) -> xr.Dataset:
     """Runs of A1 from a grid of starts, and the kind of motion that each leads to.
 
@@ -57,16 +56,10 @@ def basin_map(
     Raises:
         ValueError: an argument is not finite, has too many dimensions, or a time is not allowed.
     """
-    alpha1, alpha2 = real_number("alpha1", alpha1), real_number("alpha2", alpha2)
-    t_end = real_number("t_end", t_end, above=0.0)
-    late = 0.8 * t_end if t_late is None else real_number("t_late", t_late, least=0.0)
+    late = 0.8 * t_end if t_late is None else t_late
     if not late < t_end:
         raise ValueError(f"t_late = {t_late!r}: 0 or a time before t_end = {t_end!r} is needed, s")
-    axes = {}
-    for name, value in zip(STARTS, (x, y, vx, vy), strict=True):
-        axes[name] = real_array(name.removesuffix("0"), value)
-        if axes[name].ndim > 1 or not axes[name].size:
-            raise ValueError(f"{name.removesuffix('0')}: a number or a 1-D array is needed")
+    axes = dict(zip(STARTS, map(np.asarray, (x, y, vx, vy)), strict=True))
     shape = tuple(axis.size for axis in axes.values() if axis.ndim)
     grid = np.meshgrid(*(np.atleast_1d(axis) for axis in axes.values()), indexing="ij")
     starts = np.stack([part.ravel() for part in grid], axis=-1)

@@ -2,23 +2,25 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 import xarray as xr
+from annotated_types import Ge
 
 from squealpipe.methods.smallest_vector import Found, Settings, search, smallest_linear
 from squealpipe.models.a1_automaton import A1Automaton
 from squealpipe.models.switching import VARIANT_RULES
-from squealpipe.parameters import Parameters, is_finite_number, is_whole_number
+from squealpipe.parameters import Parameters
 from squealpipe.schema import Outcome, build
 from squealpipe.schema.origin import recorded
 from squealpipe.schema.starts import SMALLEST_DISTURBANCE, LeadsTo
 from squealpipe.solvers.a1.ensemble import run_ensemble
-from squealpipe.solvers.a1.jobs import known_model
+from squealpipe.solvers.a1.jobs import Model
 from squealpipe.solvers.a1.sliding import sliding_equilibrium, sliding_jacobian
 from squealpipe.tasks.dynamics.motion import linear_time, whirls
 from squealpipe.tasks.linear.maps import stability_map
+from squealpipe.validation import Angle, Positive, Seed, Tolerance, Whole, Workers, one_of
 
 T_END = 200.0
 """Default horizon, in units of √(2m/(k1 + k2))."""
@@ -27,24 +29,23 @@ BOUNDS = {LeadsTo.contact_lost: 3.0, LeadsTo.whirl: 15.0}
 GROWS = 1e-7
 """Growth rate, over the largest |s|, above which steady sliding is unstable; below it is the
 round-off of an undamped pair."""
-LEAST_DIRECTIONS = 8
 CONFIDENCE = 0.95
 
 
 @recorded(method="random directions, bisection, local search")
 def smallest_disturbance(
     params: Parameters,
-    alpha1: float,
-    alpha2: float,
+    alpha1: Angle,
+    alpha2: Angle,
     *,
-    leads_to: str = "contact_lost",
-    model: str = "A1",
-    t_end: float | None = None,
-    bound: float | None = None,
-    directions: int = 128,
-    seed: int = 1,
-    tol: float = 1e-9,
-    workers: int | None = None,
+    leads_to: Annotated[str, one_of(LeadsTo.__members__)] = "contact_lost",
+    model: Model = "A1",
+    t_end: Positive | None = None,
+    bound: Positive | None = None,
+    directions: Annotated[Whole, Ge(8)] = 128,
+    seed: Seed = 1,
+    tol: Tolerance = 1e-9,
+    workers: Workers = None,
 ) -> xr.Dataset:
     """How far a state may be from steady sliding before contact is lost, or the mass whirls.
 
@@ -80,11 +81,11 @@ def smallest_disturbance(
     Raises:
         ValueError: an argument is not allowed.
     """
-    _check(leads_to, model, t_end, bound, directions)
+    _check_goal(leads_to, model)
     time = linear_time(params)
-    horizon = T_END * time if t_end is None else float(t_end)
+    horizon = T_END * time if t_end is None else t_end
     goal = LeadsTo[leads_to]
-    largest = BOUNDS[goal] if bound is None else float(bound)
+    largest = BOUNDS[goal] if bound is None else bound
     a1 = A1Automaton(params, alpha1, alpha2, linear_springs=VARIANT_RULES[model].linear_springs)
     rest = sliding_equilibrium(a1) if params.belt_speed != 0.0 else None
     numbers = np.unique(np.append(2 ** np.arange(3, directions.bit_length()), directions))
@@ -97,8 +98,8 @@ def smallest_disturbance(
         "unfinished": 0,
         "leads_to": goal,
         "regime_linear": stability_map(params, [alpha1], [alpha2]).regime_linear.item(),
-        "alpha1": float(alpha1),
-        "alpha2": float(alpha2),
+        "alpha1": alpha1,
+        "alpha2": alpha2,
         "t_end": horizon,
         "bound": largest,
     }
@@ -182,11 +183,8 @@ def _described(found: Found, numbers: np.ndarray, scale: np.ndarray) -> dict[str
     }
 
 
-def _check(leads_to: str, model: str, t_end: object, bound: object, directions: object) -> None:
-    known = ", ".join(repr(goal.name) for goal in LeadsTo)
-    if leads_to not in LeadsTo.__members__:
-        raise ValueError(f"leads_to = {leads_to!r}: unknown; choose from {known}")
-    rules = VARIANT_RULES[known_model(model)]
+def _check_goal(leads_to: str, model: str) -> None:
+    rules = VARIANT_RULES[model]
     if not rules.separates:
         raise ValueError(f"model = {model!r} never loses contact; use 'A1'")
     if not rules.drags:
@@ -195,12 +193,4 @@ def _check(leads_to: str, model: str, t_end: object, bound: object, directions: 
         raise ValueError(
             f"model = {model!r} has no whirl, for its springs do not turn; use 'A1', or "
             "leads_to = 'contact_lost'"
-        )
-    if t_end is not None and not (is_finite_number(t_end) and t_end > 0):  # type: ignore[operator]
-        raise ValueError(f"t_end = {t_end!r}: a finite time above 0 is needed, s")
-    if bound is not None and not (is_finite_number(bound) and bound > 0):  # type: ignore[operator]
-        raise ValueError(f"bound = {bound!r}: a finite number above 0 is needed")
-    if not (is_whole_number(directions) and directions >= LEAST_DIRECTIONS):  # type: ignore[operator]
-        raise ValueError(
-            f"directions = {directions!r}: a whole number of {LEAST_DIRECTIONS} or more is needed"
         )

@@ -7,7 +7,8 @@ from squealpipe.parameters import Parameters
 from squealpipe.schema.ladder import QUESTIONS, Level
 from squealpipe.solvers.a1.ensemble import run_ensemble
 from squealpipe.tasks.ladder.choice import choose_model, choose_models
-from squealpipe.tasks.ladder.questions import answer_of, dominant_frequency, sample_times
+from squealpipe.tasks.ladder.questions import answer_of, dominant_frequency
+from squealpipe.tasks.sampling import sample_times
 
 CELLS, HORIZON, TOLERANCE = 500, 200.0, 0.05
 

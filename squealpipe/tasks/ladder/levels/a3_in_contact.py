@@ -9,7 +9,8 @@ import numpy as np
 from squealpipe.schema.ladder import QUESTIONS
 from squealpipe.tasks.ladder.levels.answers import Answers, Scenes
 from squealpipe.tasks.ladder.levels.in_contact import contact_motion, linear_answers
-from squealpipe.tasks.ladder.questions import answer_of_samples, sample_times
+from squealpipe.tasks.ladder.questions import answer_of_samples
+from squealpipe.tasks.sampling import sample_times
 
 
 def answer(scenes: Scenes) -> Answers:

@@ -11,7 +11,8 @@ from squealpipe.methods.orbits.modal_trajectory import trajectory_from_rest
 from squealpipe.schema.ladder import QUESTIONS
 from squealpipe.solvers.a4.system import scaled_system
 from squealpipe.tasks.ladder.levels.answers import Answers, Scenes
-from squealpipe.tasks.ladder.questions import answer_of_samples, sample_times
+from squealpipe.tasks.ladder.questions import answer_of_samples
+from squealpipe.tasks.sampling import sample_times
 
 
 def answer(scenes: Scenes) -> Answers:

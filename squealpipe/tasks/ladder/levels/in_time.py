@@ -11,7 +11,8 @@ from squealpipe.schema import Outcome
 from squealpipe.schema.ladder import QUESTIONS, Level
 from squealpipe.solvers.a1.ensemble import run_ensemble
 from squealpipe.tasks.ladder.levels.answers import Answers, Scenes
-from squealpipe.tasks.ladder.questions import answer_of, sample_times
+from squealpipe.tasks.ladder.questions import answer_of
+from squealpipe.tasks.sampling import sample_times
 
 
 def answer(level: Level, scenes: Scenes) -> Answers:
