@@ -64,7 +64,12 @@ def _refusal(error: ValidationError, names: list[str]) -> Exception:
         near = f"; {suggestion(name, names)}" if first["type"].startswith("unexpected") else ""
         return TypeError(f"{error.title}: {name}: {first['msg'].lower()}{near}")
     where = "".join(f"[{step!r}]" for step in inside if step != "[key]")
-    told = first["msg"].removeprefix("Value error, ").replace("Input should", "must")
+    told = (
+        first["msg"]
+        .removeprefix("Value error, ")
+        .replace("Input should", "must")
+        .replace("a valid boolean", "True or False")
+    )
     return ValueError(f"{name}{where} = {brief(first['input'])}: {told}")
 
 

@@ -140,7 +140,7 @@ def test_a_stopped_sweep_repeated_in_another_order_is_no_mixture(tmp_path, monke
         ({"task": "natural_frequency"}, "did you mean 'natural_frequencies'?"),
         ({"vary": {"nu": [1]}}, "'nu' cannot be varied"),
         ({"vary": {"my": [1]}}, "did you mean 'mu'?"),
-        ({"vary": {"mu": []}}, "one or more values"),
+        ({"vary": {"mu": []}}, "a 1-D array"),
         ({"vary": {"mu": [1, 1], "alpha1": [0]}}, "each once"),
         ({"vary": {"mu": [1]}}, "needs alpha1 once"),
         ({"vary": {"mu": [1], "alpha1": [1]}, "fixed": {"alpha1": 0, "alpha2": 0}}, "alpha1 once"),

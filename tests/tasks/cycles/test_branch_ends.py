@@ -185,10 +185,10 @@ def test_a_hammering_cycle_shrinks_to_rest_at_the_edge_of_contact():
 @pytest.mark.parametrize(
     ("given", "named"),
     [
-        ({"alpha1": math.nan}, "alpha1 holds nan"),
+        ({"alpha1": math.nan}, "alpha1 = nan"),
         ({"alpha1": "x"}, "alpha1 = 'x'"),
         ({"alpha2": [1.0]}, "alpha2 = "),
-        ({"params": {}}, "params = {}: Parameters"),
+        ({"params": {}}, "params = {}: must be an instance of Parameters"),
     ],
 )
 def test_both_tasks_name_what_they_cannot_read(given, named):
@@ -203,11 +203,11 @@ def test_both_tasks_name_what_they_cannot_read(given, named):
     ("given", "named"),
     [
         ({"start": xr.Dataset()}, "start holds nothing: a dataset of limit_cycle"),
-        ({"start": 3}, "start = 3: four finite numbers"),
-        ({"start": np.array(3.0)}, r"start = array\(3.*four finite numbers"),
-        ({"parameter": ["mu"]}, r"parameter = \['mu'\]: one of mass"),
+        ({"start": 3}, "start = 3: a state"),
+        ({"start": np.array(3.0)}, r"start = array\(3.*: a state"),
+        ({"parameter": ["mu"]}, r"parameter = \['mu'\]: must be"),
         ({"to": 0.3 + 1e-15}, "to = 0.3.*a finite value other than mu = 0.3"),
-        ({"doubled": "no"}, "doubled = 'no': True or False"),
+        ({"doubled": "no"}, "doubled = 'no': must be True or False"),
         ({"parameter": "sigma"}, r"parameter = 'sigma' \(A1 does not read it\): one of mass"),
     ],
 )
