@@ -44,7 +44,7 @@ def propensity(
     alpha1: Angle,
     alpha2: Angle,
     *,
-    distributions: Annotated[Mapping[str, Mapping[str, Any]], MinLen(1)],
+    distributions: Annotated[Mapping[str, Any], MinLen(1)],
     samples: Annotated[Whole, Ge(64)],
     t_end: Positive,
     spring_correlation: Annotated[Number, Interval(gt=-1, lt=1)] = 0.0,
