@@ -5,6 +5,7 @@ from __future__ import annotations
 from squealpipe.schema import RUN_ENDS, DatasetSchema, Variable, outcome
 from squealpipe.schema.agreement import Listing
 from squealpipe.schema.dynamics.explorer import FREQUENCY
+from squealpipe.schema.dynamics.runs import IMPACT_SPEED, RETURN_FORCE
 
 RUN_SUMMARY = DatasetSchema(
     name="run_summary",
@@ -22,6 +23,8 @@ RUN_SUMMARY = DatasetSchema(
         "separated_fraction": Variable("share of the time without contact"),
         "stick_fraction": Variable("share of the time in stick"),
         "peak_contact_force": Variable("largest sampled contact force over k3 l_pre"),
+        "return_peak_contact_force": RETURN_FORCE,
+        "impact_speed": IMPACT_SPEED,
         "largest_x": Variable("largest |x| among the samples", "m"),
         "largest_y": Variable("largest |y| among the samples", "m"),
         "force_spectrum": Variable(

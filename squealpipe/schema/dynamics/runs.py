@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from enum import IntEnum
 from typing import Any
 
@@ -54,6 +55,15 @@ IN_MAP: dict[str, Any] = {"rtol": 1e-5, "atol": 1e-7, "round_off": _LOST}
 """Up to the horizon an error of the last digit may have grown to nearly l_pre/1000."""
 
 
+RETURN_FORCE = Variable(
+    "largest contact force after the first return to the belt, over k3 l_pre (NaN: no return)",
+    nan_allowed=True,
+)
+IMPACT_SPEED = Variable(
+    "largest speed towards the belt at a return to it (NaN: no return)", "m s-1", nan_allowed=True
+)
+
+
 def _series(units: str, long_name: str) -> Variable:
     return Variable(long_name, units, ("time",), nan_allowed=True, round_off=_GROWN)
 
@@ -84,6 +94,8 @@ SIMULATION = DatasetSchema(
         "length2": Variable("free length L2 of spring 2", "m"),
         "time_reached": Variable("time at which the run ended", "s"),
         "n_steps": Variable("Taylor steps of the run", dtype="i8"),
+        "return_peak_contact_force": replace(RETURN_FORCE, round_off=_GROWN),
+        "impact_speed": replace(IMPACT_SPEED, round_off=_GROWN),
         "growth": Variable(
             "factor by which a small perturbation of the start has grown at the end",
             nan_allowed=True,
@@ -140,6 +152,8 @@ HAMMERING_MAP = DatasetSchema(
         "peak_contact_force": Variable(
             "largest contact force over the preload k3 l_pre", dims=MAP, **IN_MAP
         ),
+        "return_peak_contact_force": replace(RETURN_FORCE, dims=MAP, **IN_MAP),
+        "impact_speed": replace(IMPACT_SPEED, dims=MAP, **IN_MAP),
         "stick_fraction": Variable("share of the time sticking to the belt", dims=MAP, **IN_MAP),
         "max_displacement": Variable(
             "largest distance from the start position", "m", MAP, **IN_MAP

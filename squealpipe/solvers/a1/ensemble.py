@@ -26,10 +26,11 @@ from squealpipe.parameters import Parameters
 from squealpipe.schema import Outcome
 from squealpipe.solvers.a1.jobs import Jobs, Model
 from squealpipe.solvers.a1.kernel import lane_kernel
-from squealpipe.solvers.a1.records import ARRAYS, IDLE, LANE, QUEUE, RESULT, TABLE
+from squealpipe.solvers.a1.records import ARRAYS, IDLE, LANE, MARKS, QUEUE, RESULT, TABLE
 from squealpipe.solvers.a1.system import Dissipation, compiled_system
 from squealpipe.validation import Seed, Tolerance, Workers, checked
 
+__all__ = ["MARKS", "Ensemble", "integrate", "run_ensemble", "run_map"]
 BLOCK = 2**17
 """Runs of a map that are held in memory at once, about 1 kB each."""
 
@@ -44,9 +45,12 @@ class Ensemble:
         first_separation_time: s, NaN where contact was never lost.
         separated_time, stick_time: total time in those regimes, s.
         peak_contact_force, lowest_contact_force: extremes of N/(k3 l_pre) while in contact.
+        return_peak_contact_force: the largest from the first return to the belt on; NaN: none.
+        impact_speed: largest |ẏ| at a return to the belt, m/s; NaN: none.
         max_displacement: largest √(x² + y²), m.
         early_max_x, late_max_x: largest |x| in integration steps that begin before ``t_late``, and
             from there on, m.
+        early_max_vx, late_max_vx: largest |ẋ|, likewise, m/s.
         max_vx: largest ẋ at the ends of integration steps, m/s.
         nearest_pivot: smallest distance to a fixed end at step ends, in free lengths.
         turns: net turns around both fixed ends, counterclockwise positive; counted by half turns,
@@ -57,6 +61,9 @@ class Ensemble:
         log_growth: ln of the growth of a perturbation (0 without ``tangent``).
         predictability_horizon: time at which an error of ``tol`` has grown to l_pre/1000, s;
             NaN: not before the end.
+        mark_separated_time, mark_stick_time, mark_turns, mark_log_growth, mark_separations,
+            mark_contacts, mark_state: what held at the ends of the steps that reached the shares
+            :data:`MARKS` of the run, in a last axis (of the state, the last but one).
         samples, sample_regimes: states (…, n, 4) at ``times``; NaN and −1 past ``time``.
         event_times, event_kinds, event_states: the first ``log_events`` events; NaN and −1 after
             the last one.
@@ -69,9 +76,13 @@ class Ensemble:
     stick_time: np.ndarray
     peak_contact_force: np.ndarray
     lowest_contact_force: np.ndarray
+    return_peak_contact_force: np.ndarray
+    impact_speed: np.ndarray
     max_displacement: np.ndarray
     early_max_x: np.ndarray
     late_max_x: np.ndarray
+    early_max_vx: np.ndarray
+    late_max_vx: np.ndarray
     max_vx: np.ndarray
     nearest_pivot: np.ndarray
     turns: np.ndarray
@@ -86,6 +97,13 @@ class Ensemble:
     final_regime: np.ndarray
     log_growth: np.ndarray
     predictability_horizon: np.ndarray
+    mark_separated_time: np.ndarray
+    mark_stick_time: np.ndarray
+    mark_turns: np.ndarray
+    mark_log_growth: np.ndarray
+    mark_separations: np.ndarray
+    mark_contacts: np.ndarray
+    mark_state: np.ndarray
     samples: np.ndarray
     sample_regimes: np.ndarray
     event_times: np.ndarray
@@ -352,9 +370,13 @@ RESULTS: dict[str, Callable[[Any, _Units], Any]] = {
     "stick_time": lambda raw, u: raw.results["stick_time"] * u.t,
     "peak_contact_force": lambda raw, _: _force(raw, "lowest_y"),
     "lowest_contact_force": lambda raw, _: _force(raw, "highest_y"),
+    "return_peak_contact_force": lambda raw, _: 1.0 - raw.results["return_lowest_y"],
+    "impact_speed": lambda raw, u: raw.results["impact_speed"] * u.speed,
     "max_displacement": lambda raw, u: np.sqrt(raw.results["largest_r2"]) * u.length,
     "early_max_x": lambda raw, u: raw.results["early_largest_x"] * u.length,
     "late_max_x": lambda raw, u: raw.results["late_largest_x"] * u.length,
+    "early_max_vx": lambda raw, u: raw.results["early_largest_vx"] * u.speed,
+    "late_max_vx": lambda raw, u: raw.results["late_largest_vx"] * u.speed,
     "max_vx": lambda raw, u: raw.results["largest_speed"] * u.speed,
     "nearest_pivot": lambda raw, _: np.sqrt(raw.results["nearest_pivot2"]),
     "turns": lambda raw, _: _common_turns(*raw.results["half_turns"].T),
@@ -369,6 +391,13 @@ RESULTS: dict[str, Callable[[Any, _Units], Any]] = {
     "final_regime": lambda raw, _: raw.results["regime"].astype(np.int8),
     "log_growth": lambda raw, _: raw.results["log_growth"],
     "predictability_horizon": lambda raw, u: raw.results["horizon"] * u.t,
+    "mark_separated_time": lambda raw, u: raw.results["mark_separated_time"] * u.t[:, None],
+    "mark_stick_time": lambda raw, u: raw.results["mark_stick_time"] * u.t[:, None],
+    "mark_turns": lambda raw, _: _common_turns(*np.moveaxis(raw.results["mark_half_turns"], -1, 0)),
+    "mark_log_growth": lambda raw, _: raw.results["mark_growth"],
+    "mark_separations": lambda raw, _: raw.results["mark_kinds"][..., Event.separation],
+    "mark_contacts": lambda raw, _: raw.results["mark_kinds"][..., Event.contact],
+    "mark_state": lambda raw, u: raw.results["mark_state"] * u.state[:, None],
     "samples": lambda raw, u: raw.samples * u.state[:, None],
     "sample_regimes": lambda raw, _: raw.sample_regimes.astype(np.int8),
     "event_times": lambda raw, u: raw.event_times * u.t[:, None],

@@ -44,6 +44,7 @@ from squealpipe.solvers.a1.records import (
     CODES,
     IDLE,
     LANE,
+    MARKS,
     OBSERVED,
     ORDER,
     QUEUE,
@@ -101,6 +102,8 @@ def _switch(lanes: Any, c: Any, order: Any, result: Any, lane: int, events: Any)
         set_regime(lanes, order, lane, change.regime)
         if change.kind == switching.SEPARATION and math.isnan(result.first_separation):
             result.first_separation = lanes.clock[lane]
+        if change.kind == switching.CONTACT:
+            _return_to_belt(lanes, result, lane, change.y, abs(vy))
     if order.stop_at_separation > 0.0 and not math.isnan(result.first_separation):
         return CODES.separated
     return CODES.event_limit if result.events >= order.max_events else RUNNING
@@ -119,6 +122,43 @@ def _record(
         times[job, total], kinds[job, total] = lanes.clock[lane], kind
         for variable in range(N_STATE):
             states[job, total, variable] = c[variable, 0, lane]
+
+
+@part
+def _return_to_belt(lanes: Any, result: Any, lane: int, y: float, speed: float) -> None:
+    """The speed of an impact; from the first one on, extremes of y are kept apart."""
+    if result.kinds[switching.CONTACT] == 1:
+        result.lowest_y, lanes.lowest_y[lane] = lanes.lowest_y[lane], y
+        result.impact_speed = speed
+    result.impact_speed = max(result.impact_speed, speed)
+
+
+@part
+def _mark(lanes: Any, c: Any, result: Any, order: Any, lane: int) -> None:
+    """Keep the sums of a run at one of its marks."""
+    mark = result.marks
+    result.mark_separated_time[mark] = lanes.separated_time[lane]
+    result.mark_stick_time[mark] = lanes.stick_time[lane]
+    result.mark_growth[mark] = result.log_growth + math.log(norm_of(lanes, lane) / TANGENT_NORM)
+    result.mark_half_turns[mark, 0] = lanes.half_turns1[lane]
+    result.mark_half_turns[mark, 1] = lanes.half_turns2[lane]
+    for variable in range(N_STATE):
+        result.mark_state[mark, variable] = c[variable, 0, lane]
+    for kind in range(result.kinds.size):
+        result.mark_kinds[mark, kind] = result.kinds[kind]
+    result.marks += 1
+    last = result.marks == len(MARKS)
+    lanes.next_mark[lane] = math.inf if last else MARKS[result.marks] * order.t_end
+
+
+@inline
+def _mark_runs(lanes: Any, c: Any, bits: int, jobs: Any) -> None:
+    orders, results, _ = jobs
+    while bits:
+        lane = first_bit(bits)
+        bits ^= 1 << lane
+        job = lanes.job[lane]
+        _mark(lanes, c, results[job], orders[job], lane)
 
 
 @inline
@@ -152,8 +192,11 @@ def _finish(lanes: Any, c: Any, result: Any, lane: int, outcome: int, tangent: i
     answered = outcome in (CODES.converged, CODES.separated, CODES.amplitude_reached)
     result.outcome = CODES.unresolved if answered and result.late_events > 0 else outcome
     result.time, result.steps = lanes.clock[lane], int(lanes.steps[lane])
+    first_lowest = result.lowest_y
     for name in literal_unroll(OBSERVED):
         result[name] = lanes[name][lane]
+    result.return_lowest_y = result.lowest_y if result.kinds[switching.CONTACT] else np.nan
+    result.lowest_y = min(result.lowest_y, first_lowest)
     result.half_turns[0], result.half_turns[1] = lanes.half_turns1[lane], lanes.half_turns2[lane]
     for variable in range(N_STATE):
         result.final_state[variable] = c[variable, 0, lane]
@@ -235,7 +278,7 @@ def _observe(lanes: Any, c: Any, at: int, base: int, terms: int) -> None:
     begin = (load(base), load(base + terms * ROW))
     speeds = (load(base + 2 * terms * ROW), load(base + 3 * terms * ROW))
     rates = (load(base + (2 * terms + 1) * ROW), load(base + (3 * terms + 1) * ROW))
-    observe(c, lanes, at, begin, speeds, rates)
+    observe(c, lanes, at, begin, speeds, rates, load(base + (2 * terms + 2) * ROW))
     first, second = lanes.half_turns1, lanes.half_turns2
     observe_pivot(c, lanes, at, begin, speeds, first, AT.pivot_x1, AT.pivot_y1, AT.scale1)
     observe_pivot(c, lanes, at, begin, speeds, second, AT.pivot_x2, AT.pivot_y2, AT.scale2)
@@ -309,6 +352,7 @@ def _advance(table: Any) -> int:
         ended |= _change_regimes(lanes, c, bits, jobs, events)
         if t.tangent:
             _grow(lanes, at, jobs[1], busy)
+        _mark_runs(lanes, c, ~bits_below(load(at + AT.clock), load(at + AT.next_mark)) & busy, jobs)
     return int(busy)
 
 

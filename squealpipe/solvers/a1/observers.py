@@ -11,6 +11,7 @@ import math
 from typing import Any
 
 from squealpipe.methods.compiled import inline, part
+from squealpipe.methods.taylor.roots import evaluate_twice
 from squealpipe.methods.taylor.simd import (
     bits_below,
     choose_below,
@@ -37,10 +38,13 @@ from squealpipe.solvers.a1.records import AT, JUMP2, TANGENT_NORM
 
 
 @inline
-def observe(c: Any, lanes: Any, at: int, begin: Any, speeds: Any, rates: Any) -> None:
+def observe(
+    c: Any, lanes: Any, at: int, begin: Any, speeds: Any, rates: Any, half_jerk: Any
+) -> None:
     """Times in each regime and the extrema over one step of all lanes.
 
-    ``begin``, ``speeds`` and ``rates`` are x, y, ẋ, ẏ and ẍ, ÿ at its start.
+    ``begin``, ``speeds`` and ``rates`` are x, y, ẋ, ẏ and ẍ, ÿ at its start, ``half_jerk`` is
+    half of x's third derivative.
     """
     x0, y0 = begin
     vx0, vy0 = speeds
@@ -71,19 +75,31 @@ def observe(c: Any, lanes: Any, at: int, begin: Any, speeds: Any, rates: Any) ->
     store(at + AT.late_largest_x, choose_below(clock, t_late, late, larger(late, large)))
     store(at + AT.largest_speed, larger(load(at + AT.largest_speed), vx1))
 
+    ax1, fast = load(at + AT.ax), larger(magnitude(vx0), magnitude(vx1))
+    early, late = load(at + AT.early_largest_vx), load(at + AT.late_largest_vx)
+    fastest = choose_below(clock, t_late, early, late)
+    most = larger(magnitude(vx0 + ax0 * step), magnitude(vx1 - ax1 * step))
+    races = bits_below(ax0 * ax1, zero) & bits_below(fastest, most)
+    store(at + AT.early_largest_vx, choose_below(clock, t_late, larger(early, fast), early))
+    store(at + AT.late_largest_vx, choose_below(clock, t_late, late, larger(late, fast)))
+
     out0, out1 = x0 * vx0 + y0 * vy0, x1 * vx1 + y1 * vy1
     first, last, farthest = x0 * x0 + y0 * y0, x1 * x1 + y1 * y1, load(at + AT.largest_r2)
     most = above(first, last, 2.0 * out0, 2.0 * out1, step)
     turns = bits_below(zero, out0) & bits_below(out1, zero) & bits_below(farthest, most)
     store(at + AT.largest_r2, larger(last, farthest))
-    bits = dips | tops | swings | turns
+    bits = dips | tops | swings | turns | races
     reach_y, reach_x = magnitude(vy0) * step, magnitude(vx0) * step
     wiggles = _may_turn_twice(vy0, vy1, ay0, step) & touching
     wiggles &= bits_below(highest, larger(y0, y1) + reach_y) | bits_below(
         smaller(y0, y1) - reach_y, lowest
     )
+    early, late = load(at + AT.early_largest_x), load(at + AT.late_largest_x)
     record = choose_below(clock, t_late, early, late)
     wiggles |= _may_turn_twice(vx0, vx1, ax0, step) & bits_below(record, large + reach_x)
+    wiggles |= _may_turn_twice(ax0, ax1, half_jerk + half_jerk, step) & bits_below(
+        fastest, fast + magnitude(ax0) * step
+    )
     slope = vx0 * vx0 + vy0 * vy0 + x0 * ax0 + y0 * ay0
     most = larger(first, last) + 2.0 * magnitude(out0) * step
     wiggles |= _may_turn_twice(out0, out1, slope, step) & bits_below(farthest, most)
@@ -101,11 +117,9 @@ def observe(c: Any, lanes: Any, at: int, begin: Any, speeds: Any, rates: Any) ->
             found = _extremum(c, lanes, 1, 3, lane)
             lanes.highest_y[lane] = max(lanes.highest_y[lane], found)
         if swings & bit:
-            found = abs(_extremum(c, lanes, 0, 2, lane))
-            if lanes.clock[lane] < lanes.t_late[lane]:
-                lanes.early_largest_x[lane] = max(lanes.early_largest_x[lane], found)
-            else:
-                lanes.late_largest_x[lane] = max(lanes.late_largest_x[lane], found)
+            _note_x(lanes, lane, abs(_extremum(c, lanes, 0, 2, lane)))
+        if races & bit:
+            _note_vx(lanes, lane, _peak_speed(c, lanes, lane))
         if turns & bit:
             found = _turning_distance2(c, lanes, lane, 0.0, 0.0)
             lanes.largest_r2[lane] = max(lanes.largest_r2[lane], found)
@@ -122,6 +136,37 @@ def _may_turn_twice(first: Any, last: Any, slope: Any, step: Any) -> Any:
 
 
 @part
+def _note_x(lanes: Any, lane: int, found: float) -> None:
+    if lanes.clock[lane] < lanes.t_late[lane]:
+        lanes.early_largest_x[lane] = max(lanes.early_largest_x[lane], found)
+    else:
+        lanes.late_largest_x[lane] = max(lanes.late_largest_x[lane], found)
+
+
+@part
+def _note_vx(lanes: Any, lane: int, found: float) -> None:
+    if lanes.clock[lane] < lanes.t_late[lane]:
+        lanes.early_largest_vx[lane] = max(lanes.early_largest_vx[lane], found)
+    else:
+        lanes.late_largest_vx[lane] = max(lanes.late_largest_vx[lane], found)
+
+
+@part
+def _peak_speed(c: Any, lanes: Any, lane: int) -> Any:
+    """|ẋ| where ẍ changes its sign."""
+    first, last, step = c[2, 1, lane], lanes.ax[lane], lanes.step[lane]
+    time, low, high = first_guess(first, last, 2.0 * c[2, 2, lane], step), 0.0, step
+    for turn in range(MOST_TURNS):
+        _, slope, bend = evaluate_twice(c, 2, lane, time)
+        before = time
+        time, low, high = improved(time, slope, bend, first, low, high)
+        if settled(turn, time - before, step):
+            break
+    speed, _, _ = evaluate_twice(c, 2, lane, time)
+    return abs(speed)
+
+
+@part
 def _observe_wiggles(c: Any, lanes: Any, lane: int) -> None:
     """Records that lie between two extrema inside one step."""
     low, high = _two_extrema(c, lanes, lane, 1)
@@ -129,10 +174,9 @@ def _observe_wiggles(c: Any, lanes: Any, lane: int) -> None:
         lanes.lowest_y[lane] = min(lanes.lowest_y[lane], low)
         lanes.highest_y[lane] = max(lanes.highest_y[lane], high)
     low, high = _two_extrema(c, lanes, lane, 0)
-    if lanes.clock[lane] < lanes.t_late[lane]:
-        lanes.early_largest_x[lane] = max(lanes.early_largest_x[lane], high, -low)
-    else:
-        lanes.late_largest_x[lane] = max(lanes.late_largest_x[lane], high, -low)
+    _note_x(lanes, lane, max(high, -low))
+    low, high = _two_extrema(c, lanes, lane, 3)
+    _note_vx(lanes, lane, max(high, -low))
     low, high = _two_extrema(c, lanes, lane, 2)
     lanes.largest_r2[lane] = max(lanes.largest_r2[lane], high)
 
@@ -155,7 +199,9 @@ def _two_extrema(c: Any, lanes: Any, lane: int, kind: int) -> Any:
 
 @part
 def _quantity(c: Any, lane: int, kind: int, time: float) -> Any:
-    """x, y or x² + y² with its rate (of the last, half of it) and the slope of that."""
+    """x, y, x² + y² or ẋ with its rate (of x² + y², half of it) and the slope of that."""
+    if kind == 3:
+        return evaluate_twice(c, 2, lane, time)
     x, y, vx, vy, ax, ay = evaluate_motion(c, lane, time)
     if kind == 0:
         return x, vx, ax

@@ -34,6 +34,8 @@ def _record(**fields: Any) -> np.dtype:
     )
 
 
+MARKS = (0.5, 0.75)
+"""Shares of a run at whose ends (of a step) its sums are kept."""
 ORDER = _record(
     **dict.fromkeys(
         (*UNITS, *PHYSICAL, *EXTENSIONS, "onset_mu", *switching.Rules._fields, *ASKED), "f8"
@@ -50,10 +52,14 @@ RESULT = _record(
     separated_time="f8",
     stick_time="f8",
     lowest_y="f8",
+    return_lowest_y="f8",
+    impact_speed="f8",
     highest_y="f8",
     largest_r2="f8",
     early_largest_x="f8",
     late_largest_x="f8",
+    early_largest_vx="f8",
+    late_largest_vx="f8",
     largest_speed="f8",
     nearest_pivot2="f8",
     half_turns=("f8", (2,)),
@@ -66,8 +72,15 @@ RESULT = _record(
     late_events="i8",
     events="i8",
     kinds=("i8", (len(switching.Event),)),
+    marks="i8",
+    mark_separated_time=("f8", (len(MARKS),)),
+    mark_stick_time=("f8", (len(MARKS),)),
+    mark_growth=("f8", (len(MARKS),)),
+    mark_half_turns=("f8", (len(MARKS), 2)),
+    mark_state=("f8", (len(MARKS), 4)),
+    mark_kinds=("i8", (len(MARKS), len(switching.Event))),
 )
-"""A job's results; ``kinds`` counts the events of each kind."""
+"""A job's results; ``kinds`` counts the events of each kind, ``mark_`` is what held at a mark."""
 
 
 def _rows(*names: str) -> dict[str, Any]:
@@ -75,13 +88,13 @@ def _rows(*names: str) -> dict[str, Any]:
 
 
 LANE = _record(
-    **_rows("clock", "correction", "step", "x", "y", "vx", "vy", *PARAMETERS),
+    **_rows("clock", "correction", "step", "x", "y", "vx", "vy", "ax", *PARAMETERS),
     **_rows("t_end", "t_late", "stop_at_x", "stop_at_turns", "max_steps", "steps"),
     **_rows("next_sample", "pivot_x1", "pivot_y1", "pivot_x2", "pivot_y2", "scale1", "scale2"),
     **_rows("reach2", "separated_time", "stick_time", "lowest_y", "highest_y", "largest_r2"),
     **_rows("early_largest_x", "late_largest_x", "largest_speed", "nearest_pivot2"),
     **_rows("half_turns1", "half_turns2", "dx", "dy", "dvx", "dvy", "lost_growth"),
-    **_rows("lost_square", "longest_step"),
+    **_rows("lost_square", "longest_step", "early_largest_vx", "late_largest_vx", "next_mark"),
     job=("i8", (LANES,)),
     outcome=("i8", (LANES,)),
     sample=("i8", (LANES,)),
@@ -102,6 +115,8 @@ OBSERVED = (
     "largest_r2",
     "early_largest_x",
     "late_largest_x",
+    "early_largest_vx",
+    "late_largest_vx",
     "largest_speed",
     "nearest_pivot2",
 )

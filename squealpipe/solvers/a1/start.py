@@ -15,6 +15,7 @@ from squealpipe.methods.compiled import also_compiled, part
 from squealpipe.models import switching
 from squealpipe.solvers.a1.observers import limit_growth
 from squealpipe.solvers.a1.records import (
+    MARKS,
     OBSERVED,
     PIVOT_REACH2,
     SEPARATED,
@@ -103,13 +104,19 @@ def start_job(lanes: Any, c: Any, order: Any, result: Any, initial: Any, lane: i
     lanes.largest_r2[lane] = x * x + y * y
     lanes.early_largest_x[lane] = abs(x)
     lanes.largest_speed[lane] = vx
+    lanes.early_largest_vx[lane] = abs(vx)
+    lanes.next_mark[lane] = MARKS[0] * order.t_end
     lanes.nearest_pivot2[lane] = min(
         springs.squared_distance(x, y, x1, y1) / order.length1**2,
         springs.squared_distance(x, y, x2, y2) / order.length2**2,
     )
+    result.lowest_y, result.impact_speed = np.inf, np.nan
     result.first_separation = 0.0 if regime == SEPARATED else np.nan
     result.log_growth, result.horizon = 0.0, np.nan
     result.regime = regime
     result.late_events = result.events = 0
     result.kinds[:] = 0
+    result.marks = 0
+    result.mark_separated_time[:] = np.nan
+    result.mark_state[:] = np.nan
     limit_growth(lanes, result, lane)

@@ -26,7 +26,7 @@ from squealpipe.methods.taylor.simd import (
     splat,
     store,
 )
-from squealpipe.methods.taylor.taylor_polynomial import evaluate_state
+from squealpipe.methods.taylor.taylor_polynomial import evaluate_state, evaluate_with_slope
 from squealpipe.solvers.a1.records import AT, CODES, RUNNING, SUSPECT_PIVOT2
 from squealpipe.solvers.a1.system import STATE
 
@@ -63,6 +63,15 @@ def _at_end(series: int, terms: int, step: Any) -> Any:
 
 
 @inline
+def _slope_at_end(series: int, terms: int, step: Any) -> Any:
+    """Its rate there."""
+    slope = load(series + (terms - 1) * ROW) * (terms - 1.0)
+    for k in range(terms - 2, 0, -1):
+        slope = fma(slope, step, load(series + k * ROW) * splat(k * 1.0))
+    return slope
+
+
+@inline
 def _free_of_events(base: int, terms: int, step: Any) -> Any:
     """Lanes in which no event function has a root: both ends are further from zero than it bends.
 
@@ -89,6 +98,7 @@ def take_step(at: int, base: int, terms: int) -> Any:
     step = smaller(_step_length(base, terms), load(at + AT.longest_step))
     store(at + AT.step, step)
     lost = step
+    store(at + AT.ax, _slope_at_end(base + 2 * terms * ROW, terms, step))
     for variable in range(N_STATE):
         value = _at_end(base + variable * terms * ROW, terms, step)
         store(at + AT_STATE[variable], value)
@@ -134,3 +144,4 @@ def _set_end(lanes: Any, c: Any, lane: int) -> None:
     """The state at the end of a lane's step, from its polynomials."""
     x, y, vx, vy = evaluate_state(c, lane, lanes.step[lane])
     lanes.x[lane], lanes.y[lane], lanes.vx[lane], lanes.vy[lane] = x, y, vx, vy
+    _, lanes.ax[lane] = evaluate_with_slope(c, 2, lane, lanes.step[lane])

@@ -32,6 +32,8 @@ WANTED = (
     "time",
     "steps",
     "outcome",
+    "return_peak_contact_force",
+    "impact_speed",
 )
 """Results that ``simulate`` reports."""
 
@@ -120,6 +122,8 @@ def simulate(
             "length2": params.length2,
             "time_reached": run.time,
             "n_steps": run.steps,
+            "return_peak_contact_force": run.return_peak_contact_force,
+            "impact_speed": run.impact_speed,
             **({"growth": np.exp(run.log_growth)} if growth else {}),
             "outcome": run.outcome,
         },

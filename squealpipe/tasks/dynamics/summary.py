@@ -32,8 +32,9 @@ def summarize(run: xr.Dataset) -> xr.Dataset:
 
     Returns:
         Dataset with first_separation_time (s), impact_rate (1/s), separated_fraction,
-        stick_fraction, peak_contact_force, largest_x, largest_y (m), the spectrum of the
-        normalized contact force over ``frequency`` (rad/s), and its highest peaks.
+        stick_fraction, peak_contact_force, return_peak_contact_force, impact_speed (m/s),
+        largest_x, largest_y (m), the spectrum of the normalized contact force over ``frequency``
+        (rad/s), and its highest peaks.
 
     Raises:
         ValueError: fewer than ``FEWEST`` samples were reached, or they are not uniform.
@@ -60,6 +61,8 @@ def summarize(run: xr.Dataset) -> xr.Dataset:
             "separated_fraction": _share(run, EventFlag.separation, RegimeFlag.separated, end),
             "stick_fraction": _share(run, EventFlag.stick, RegimeFlag.stick, end),
             "peak_contact_force": force.max(),
+            "return_peak_contact_force": float(run.return_peak_contact_force),
+            "impact_speed": float(run.impact_speed),
             "largest_x": np.abs(run.x.values[: time.size]).max(),
             "largest_y": np.abs(run.y.values[: time.size]).max(),
             "force_spectrum": amplitude,
@@ -91,6 +94,11 @@ def summary_lines(run: xr.Dataset, summary: xr.Dataset) -> Iterator[str]:
     )
     yield f"impacts            {float(summary.impact_rate):.4g} per second"
     yield f"peak contact force {float(summary.peak_contact_force):.5g} k3 l_pre"
+    if not np.isnan(summary.impact_speed):
+        yield (
+            f"after a return     {float(summary.return_peak_contact_force):.5g} k3 l_pre, "
+            f"at impacts of up to {float(summary.impact_speed):.4g} m/s"
+        )
     yield (
         f"largest motion     |x| = {float(summary.largest_x):.5g} m, "
         f"|y| = {float(summary.largest_y):.5g} m"

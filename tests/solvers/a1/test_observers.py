@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from squealpipe.models.switching import Event
 from squealpipe.schema import Outcome
-from squealpipe.solvers.a1.ensemble import run_ensemble
+from squealpipe.solvers.a1.ensemble import MARKS, run_ensemble
 
 SIZE = 200
 PERIODS = 20.0
@@ -40,6 +41,8 @@ def test_extrema_between_steps_are_as_exact_as_the_states():
         "lowest_contact_force": 1.0 - rest - amplitude_y,
         "early_max_x": amplitude_x,
         "late_max_x": amplitude_x,
+        "early_max_vx": amplitude_x * omega_x,
+        "late_max_vx": amplitude_x * omega_x,
     }
     for name, value in exact.items():
         np.testing.assert_allclose(getattr(run, name), value, rtol=0, atol=2e-11, err_msg=name)
@@ -84,3 +87,26 @@ def test_no_sample_exceeds_an_extremum():
     assert (np.hypot(x, y).max(axis=1) <= run.max_displacement[done] + slack).all()
     early = np.abs(x[:, times < 15.0]).max(axis=1)
     assert (early <= run.early_max_x[done] + slack).all()
+
+
+def test_forces_and_speeds_of_returns_and_sums_at_the_marks():
+    """Against samples and logged events; the peak force itself is that of the start."""
+    angles = np.pi * np.array([[0.2, 0.8], [5 / 6, 5 / 6], [0.0, 0.0], [0.5, 1.0]])
+    times = np.linspace(0.0, 200.0, 40_001)
+    parameters = {"k3": 0.75, "length1": 5.0, "length2": 5.0}
+    run = run_ensemble(parameters, *angles.T, t_end=200.0, times=times, log_events=500)
+    assert (run.peak_contact_force >= 1.0).all()
+    assert (run.return_peak_contact_force[:3] != run.peak_contact_force[:3]).any()
+    assert np.isnan(run.impact_speed[3])
+    assert np.isnan(run.return_peak_contact_force[3])
+    for row in range(3):
+        returns = run.event_kinds[row] == Event.contact
+        assert run.impact_speed[row] == np.abs(run.event_states[row, returns, 3]).max()
+        after = times >= run.event_times[row, returns][0]
+        largest = 1.0 - run.samples[row, after, 1].min()
+        np.testing.assert_allclose(run.return_peak_contact_force[row], largest, atol=1e-4)
+        for mark, share in enumerate(MARKS):
+            before = run.event_times[row, returns] <= share * 200.0
+            assert abs(run.mark_contacts[row, mark] - np.count_nonzero(before)) <= 1
+            near = run.samples[row, np.searchsorted(times, share * 200.0)]
+            np.testing.assert_allclose(run.mark_state[row, mark, :2], near[:2], atol=1.5)

@@ -35,6 +35,10 @@ def test_separation_is_that_of_the_events_and_of_the_samples():
     assert float(summary.first_separation_time) == first
     sampled = float((motion.normalized_contact_force.values <= 0).mean())
     assert float(summary.separated_fraction) == pytest.approx(sampled, abs=2e-3)
+    landing = motion.event_time.values[motion.event_kind.values == EventFlag.contact][0]
+    force = motion.normalized_contact_force.values[motion.time.values > landing].max()
+    assert float(summary.return_peak_contact_force) == pytest.approx(force, abs=1e-3)
+    assert "after a return" in "\n".join(summary_lines(motion, summary))
     returns = np.count_nonzero(motion.event_kind.values == EventFlag.contact)
     assert float(summary.impact_rate) == returns / 200.0
 
