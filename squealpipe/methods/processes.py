@@ -22,6 +22,11 @@ MINIMUM_JOBS = 64
 """Below this many jobs a process a fork costs more than it saves."""
 
 
+def cpu_time() -> float:
+    """CPU time of this process and of those that it started and that have ended, s."""
+    return sum(os.times()[:4])
+
+
 def available_cores() -> int:
     """Cores that this process may use."""
     if hasattr(os, "sched_getaffinity"):

@@ -26,8 +26,7 @@ class Level(IntEnum):
         needs: what must hold for its answer to be trusted.
         colour: name of its colour in :mod:`squealpipe.study.figures.parts.style`.
         model: the model that it integrates in time; "" where it does not.
-        share: part of the horizon that it integrates where levels are compared; ``choose_model``
-            takes for each cell the part that its bounds need.
+        share: part of the horizon that it integrates.
     """
 
     label: str
@@ -114,28 +113,17 @@ MODEL_LADDER = DatasetSchema(
             rtol=1e-3,
             atol=1e-9,
         ),
-        "chosen_time": Variable("time integrated by choose_model, all cells", "s", ("question",)),
-        "always_time": Variable(
-            "time integrated by always A1 until the question is answered, all cells",
-            "s",
-            ("question",),
+        "level_cpu_time": Variable(
+            "CPU time of a level over the whole map", "s", ("level",), volatile=True
         ),
-        "hindsight_time": Variable(
-            "time integrated if the cheapest adequate level were known, all cells",
-            "s",
-            ("question",),
-        ),
-        "level_wall_time": Variable(
-            "wall time of a level over the whole map", "s", ("level",), volatile=True
-        ),
-        "always_wall_time": Variable(
-            "wall time of always A1 over the whole map, stopped at the answer",
+        "always_cpu_time": Variable(
+            "CPU time of always A1 over the whole map, stopped at the answer for contact lost",
             "s",
             ("question",),
             volatile=True,
         ),
-        "chosen_wall_time": Variable(
-            "wall time of choose_model over the whole map", "s", ("question",), volatile=True
+        "chosen_cpu_time": Variable(
+            "CPU time of choose_model over the whole map", "s", ("question",), volatile=True
         ),
         "belt_reached": Variable(
             "whether the mass of A1 reaches belt speed in contact",

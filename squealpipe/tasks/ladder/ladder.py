@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
-import time
 from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
 
+from squealpipe.methods.processes import cpu_time
 from squealpipe.models.refusals import refuse_extensions
 from squealpipe.parameters import HORIZON, Parameters
 from squealpipe.schema import Outcome, build
@@ -21,8 +21,6 @@ from squealpipe.tasks.normal_form import NormalForm
 
 WHY = "its cheaper levels have neither dashpots nor any friction but Coulomb's"
 LEVELS = tuple(Level)
-_SHARES = np.array([level.share for level in LEVELS])
-"""Share of the horizon that each level integrates in time, by rank."""
 
 
 def model_ladder(
@@ -60,10 +58,7 @@ def model_ladder(
     # where the belt is never reached, A1 without stick is A1
     valid[:, LEVELS.index(Level.a1_no_stick)] &= reached
     cheapest = (valid & (error <= tol)).argmax(axis=1)
-    chosen = [
-        _chosen(scenes, question, tol, found[Level.a1], best)
-        for question, best in zip(QUESTIONS, cheapest, strict=True)
-    ]
+    chosen = [_chosen(scenes, question, tol, found[Level.a1]) for question in QUESTIONS]
     shape = (points, points)
     return build(
         MODEL_LADDER,
@@ -72,12 +67,9 @@ def model_ladder(
             "cheapest": np.array(LEVELS)[cheapest].reshape(-1, *shape),
             "chosen": np.stack([entry.level for entry in chosen]).reshape(-1, *shape),
             "chosen_error": np.stack([entry.error for entry in chosen]).reshape(-1, *shape),
-            "chosen_time": [entry.time for entry in chosen],
-            "always_time": [entry.always_time for entry in chosen],
-            "hindsight_time": [entry.hindsight_time for entry in chosen],
-            "level_wall_time": [found[level].seconds for level in LEVELS],
-            "always_wall_time": [entry.always_seconds for entry in chosen],
-            "chosen_wall_time": [entry.seconds for entry in chosen],
+            "level_cpu_time": [found[level].seconds for level in LEVELS],
+            "always_cpu_time": [entry.always_seconds for entry in chosen],
+            "chosen_cpu_time": [entry.seconds for entry in chosen],
             "belt_reached": reached.reshape(shape),
             "tolerance": tol,
             "outcome": np.full(shape, Outcome.converged),
@@ -102,40 +94,22 @@ def _errors(values: np.ndarray, truth: np.ndarray) -> np.ndarray:
 class _Chosen(NamedTuple):
     level: np.ndarray
     error: np.ndarray
-    time: float
-    always_time: float
-    hindsight_time: float
     seconds: float
     always_seconds: float
 
 
-def _chosen(
-    scenes: Scenes, question: str, tol: float, always: Answers, cheapest: np.ndarray
-) -> _Chosen:
-    """What choose_model takes, its error, and its cost beside that of always A1."""
+def _chosen(scenes: Scenes, question: str, tol: float, always: Answers) -> _Chosen:
+    """What choose_model takes, its error, and its CPU time beside that of always A1."""
     params, alpha1, alpha2, horizon, workers = scenes
-    needed = np.full(cheapest.shape, horizon)
     truth = always.values[QUESTIONS.index(question)]
-    always_time, always_seconds = always.time, always.seconds
+    always_seconds = always.seconds
     if question == "contact_lost":
-        started = time.perf_counter()
-        stopped = run_ensemble(
+        started = cpu_time()
+        run_ensemble(
             params, alpha1, alpha2, t_end=horizon, stop_at_first_separation=True, workers=workers
         )
-        needed = stopped.time
-        always_time = float(needed.sum())
-        always_seconds = time.perf_counter() - started
-    started = time.perf_counter()
+        always_seconds = cpu_time() - started
     choices = choose_models(params, alpha1, alpha2, question, tol, t_end=horizon, workers=workers)
-    seconds = time.perf_counter() - started
     wrong = choices.value != truth
     error = wrong.astype(float) if question == "contact_lost" else abs(choices.value / truth - 1.0)
-    return _Chosen(
-        level=choices.level,
-        error=error,
-        time=float(choices.integrated.sum()),
-        always_time=always_time,
-        hindsight_time=float((needed * _SHARES[cheapest]).sum()),
-        seconds=seconds,
-        always_seconds=always_seconds,
-    )
+    return _Chosen(choices.level, error, choices.cost, always_seconds)

@@ -49,10 +49,12 @@ def test_chosen_answers_are_within_the_tolerance(ladder, question: str) -> None:
     assert float((error <= ladder.tolerance).mean()) >= 0.97
 
 
-def test_choosing_saves_most_where_contact_is_asked(ladder) -> None:
-    share = (ladder.chosen_time / ladder.always_time).sel(question="contact_lost")
-    assert float(share) == (ladder.chosen_time / ladder.always_time).min()
-    assert float(share) < 0.5
+def test_cpu_time_is_recorded_and_some_cells_are_answered_below_a1(ladder) -> None:
+    for name in ("level_cpu_time", "always_cpu_time", "chosen_cpu_time"):
+        assert (ladder[name] > 0.0).all()
+        assert ladder[name].attrs["volatile"] == "true"
+    below = (ladder.chosen != Level.a1).mean(("alpha1", "alpha2"))
+    assert float(below.sel(question="contact_lost")) > 0.05
 
 
 def test_a_level_counts_only_where_what_it_drops_mattered(ladder) -> None:
@@ -75,26 +77,17 @@ def test_a_reversed_belt_and_its_mirror_image_have_the_same_ladder(speed: float)
     for name in ("cheapest", "chosen", "belt_reached"):
         swapped = there[name].transpose(..., "alpha2", "alpha1").values
         np.testing.assert_array_equal(here[name].values, swapped, err_msg=name)
-    # sums over the cells in another order
-    np.testing.assert_allclose(here.chosen_time, there.chosen_time, rtol=1e-13)
 
 
-def test_levels_are_told_apart_by_number_and_name() -> None:
-    for told_by in ("label", "colour"):
-        assert len({getattr(level, told_by) for level in Level}) == len(Level)
+def test_levels_differ_by_number_and_name() -> None:
+    for key in ("label", "colour"):
+        assert len({getattr(level, key) for level in Level}) == len(Level)
     assert list(Level)[-1] == Level.a1
 
 
 def test_extensions_are_refused() -> None:
     with pytest.raises(ValueError, match="damping1"):
         model_ladder(Parameters(damping1=0.1), 2, 0.05, t_end=1.0)
-
-
-def test_knowing_the_cheapest_level_in_advance_costs_least(ladder) -> None:
-    assert (ladder.hindsight_time <= 1.01 * ladder.chosen_time).all()
-    runs = [Level(code).share for code in ladder.cheapest.sel(question="frequency").values.ravel()]
-    least = ladder.hindsight_time / ladder.always_time
-    assert float(least.sel(question="frequency")) == pytest.approx(np.mean(runs), rel=1e-2)
 
 
 def test_a_short_unit_of_time_is_no_long_run() -> None:

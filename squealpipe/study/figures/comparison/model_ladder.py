@@ -30,8 +30,8 @@ CAPTION = (
     "The cheapest level of the model ladder whose answer is within the tolerance of A1's and whose "
     "own assumptions hold, over both spring angles (a level that only drops stick counts where "
     "the belt is reached): (a) is contact lost, (b) dominant frequency of y, (c) peak contact "
-    "force, (d) largest displacement, within the map's horizon. (e) Time that choosing a level by "
-    "choose_model takes over that of always running A1; above 100 % choosing does not pay. Below "
+    "force, (d) largest displacement, within the map's horizon. (e) CPU time of "
+    "choose_model over that of always running A1; above 100 % choosing does not pay. Below "
     "each bar: share of its answers within the tolerance, and of those found by a level below A1."
 )
 ALT = (
@@ -79,7 +79,7 @@ def draw(ladder: xr.Dataset) -> Figure:
 
 def _draw_cost(panel: Axes, ladder: xr.Dataset) -> None:
     questions = ladder.question.values.tolist()
-    cost = 100 * ladder.chosen_wall_time.values / ladder.always_wall_time.values
+    cost = 100 * ladder.chosen_cpu_time.values / ladder.always_cpu_time.values
     cells = ("alpha1", "alpha2")
     right = 100 * (ladder.chosen_error <= ladder.tolerance).mean(cells).values
     below = 100 * (~ladder.chosen.isin([Level.a1, Level.a1_short])).mean(cells).values
@@ -90,5 +90,5 @@ def _draw_cost(panel: Axes, ladder: xr.Dataset) -> None:
         details = f"{right[row]:.1f} % right, {below[row]:.0f} % below A1"
         panel.text(0, row - 0.22, words, fontsize=7, va="bottom")
         panel.text(0, row + 0.22, details, fontsize=6, va="top")
-    panel.set(xlabel="time over always A1 (%)", yticks=[], xlim=(0, 1.1 * max(100, *cost)))
+    panel.set(xlabel="CPU time over always A1 (%)", yticks=[], xlim=(0, 1.1 * max(100, *cost)))
     panel.set_ylim(len(questions) - 0.4, -0.6)

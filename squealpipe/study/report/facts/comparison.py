@@ -82,9 +82,8 @@ def ladder(run: Run) -> dict[str, Any]:
                 "question": QUESTION_NAMES[str(name)].rstrip("?"),
                 "within": float((errors[asked] <= tolerance).mean()),
                 "simpler": float((row.cheapest != Level.a1).mean()),
-                "hindsight": float(row.hindsight_time / row.always_time),
-                "work": float(row.chosen_time / row.always_time),
-                "wall": float(row.chosen_wall_time / row.always_wall_time),
+                "below": float((row.chosen != Level.a1).mean()),
+                "cpu": float(row.chosen_cpu_time / row.always_cpu_time),
             }
         )
     reached = dataset.get("belt_reached")

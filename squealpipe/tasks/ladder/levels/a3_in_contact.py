@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import time
-
 import numpy as np
 
+from squealpipe.methods.processes import cpu_time
 from squealpipe.schema.ladder import QUESTIONS
 from squealpipe.tasks.ladder.levels.answers import Answers, Scenes
 from squealpipe.tasks.ladder.levels.in_contact import contact_motion, linear_answers
@@ -15,7 +14,7 @@ from squealpipe.tasks.sampling import sample_times
 
 def answer(scenes: Scenes) -> Answers:
     """Answers from the sum of both modes."""
-    started = time.perf_counter()
+    started = cpu_time()
     params = scenes.params
     motion = contact_motion(params, scenes.alpha1, scenes.alpha2)
     times = sample_times(params, scenes.horizon)

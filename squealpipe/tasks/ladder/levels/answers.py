@@ -25,7 +25,7 @@ class Answers(NamedTuple):
     Attributes:
         values: in the order of :data:`squealpipe.schema.ladder.QUESTIONS`; NaN: there is none.
         valid: whether they may be trusted.
-        seconds: wall time.
+        seconds: CPU time.
         time: time integrated, s, all cells.
         belt_reached: whether the mass reaches belt speed in contact.
     """

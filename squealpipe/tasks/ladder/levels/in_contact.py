@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import time
 from typing import Any
 
 import numpy as np
 
 from squealpipe.laws.friction import slides
 from squealpipe.methods.modal_bounds import ModalMotion, modal_motion
+from squealpipe.methods.processes import cpu_time
 from squealpipe.models import a3, a4
 from squealpipe.models.contact_system import contact_system
 from squealpipe.parameters import Parameters
@@ -41,4 +41,4 @@ def linear_answers(
     stays = slow & (motion.highest() < params.preload)
     valid = np.stack([slow, *[stays] * (len(QUESTIONS) - 1)])
     answered = np.where(motion.oscillates, values, np.nan)
-    return Answers(answered, valid, time.perf_counter() - started)
+    return Answers(answered, valid, cpu_time() - started)

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import time
-
 import numpy as np
 
 from squealpipe.laws.friction import slides
+from squealpipe.methods.processes import cpu_time
 from squealpipe.schema import Outcome
 from squealpipe.schema.ladder import QUESTIONS, Level
 from squealpipe.solvers.a1.ensemble import run_ensemble
@@ -17,7 +16,7 @@ from squealpipe.tasks.sampling import sample_times
 
 def answer(level: Level, scenes: Scenes) -> Answers:
     """Answers of ``level.model`` over ``level.share`` of the horizon."""
-    started = time.perf_counter()
+    started = cpu_time()
     params, alpha1, alpha2, horizon, workers = scenes
     end = level.share * horizon
     times = sample_times(params, end)
@@ -29,6 +28,6 @@ def answer(level: Level, scenes: Scenes) -> Answers:
     if level.model == "A4":
         holds &= slides(found.max_vx, params)
     valid = np.broadcast_to(holds, values.shape)
-    seconds = time.perf_counter() - started
+    seconds = cpu_time() - started
     reached = found.sticks + found.slips + found.reversals > 0
     return Answers(values, valid, seconds, float(found.time.sum()), reached)
