@@ -75,7 +75,7 @@ def run(step: str, language: str, place: Path) -> subprocess.CompletedProcess[st
     )
 
 
-@pytest.mark.study
+@pytest.mark.release
 @pytest.mark.parametrize(("language", "step"), STEPS, ids=[step[:60] for _, step in STEPS])
 def test_step_works(study, language, step):
     command = step.partition("#")[0].strip() if language == "bash" else step

@@ -60,7 +60,7 @@ def test_pictures_left_by_a_killed_process_are_cleared(tmp_path):
     ]
 
 
-@pytest.mark.slow
+@pytest.mark.release
 def test_every_lower_bound_of_the_dependencies_works(tmp_path):
     """Installs the oldest versions that pyproject.toml allows, then runs commands with them."""
     uv, place = str(Path(sys.executable).with_name("uv")), tmp_path / "oldest"

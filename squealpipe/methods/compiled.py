@@ -9,19 +9,22 @@ A function is compiled by who calls it:
 - ``polynomial``: likewise with fused multiply-add, which halves the time of a Horner chain;
 - ``also_compiled``: a law or rule in plain Python, which compiled code calls as it stands.
 
-Only the first two are stored, each with all that it calls. numba decides by a function's own file
-whether its stored code is current, but that code contains what it calls from other files. Each
-store is therefore keyed by a digest of every source: an edit of any of them compiles all again,
-and none is ever stale. (heyoka compiles expressions of its own, in
+Only the first two are stored, each with all that it calls, in the user's cache folder: one store
+for all checkouts. numba decides by a function's own file whether its stored code is current, but
+that code contains what it calls from other files. Each store is therefore keyed by a digest of
+every source and numba's version (numba adds the processor): an edit of any source compiles all
+again, and none is ever stale. (heyoka compiles expressions of its own, in
 :mod:`squealpipe.methods.taylor.taylor_compiler`, and stores nothing.)
 """
 
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Callable, Sequence
-from functools import cache
+import os
+from collections.abc import Callable
+from functools import cache, partial
 from pathlib import Path
+from types import FunctionType
 from typing import Any, TypeVar, cast
 
 import numba
@@ -58,36 +61,40 @@ def _store() -> str:
 
 
 def _folder(kind: str, content: bytes) -> str:
-    """The user's numba directory or the package's own, and in it one for this content."""
-    root = Path(_settings.CACHE_DIR or Path(__file__).parent / "__pycache__")
-    return str(root / f"{kind}-{hashlib.sha256(content).hexdigest()[:16]}")
+    """NUMBA_CACHE_DIR or the user's cache folder, and in it one for this content."""
+    user = os.environ.get("XDG_CACHE_HOME") or os.path.expanduser("~/.cache")  # noqa: PTH111
+    root = _settings.CACHE_DIR or f"{user}/squealpipe"
+    content += numba.__version__.encode()
+    return f"{root}/{kind}-{hashlib.sha256(content).hexdigest()[:16]}"
 
 
-def _kept(make: Callable[..., Any], folders: Sequence[str]) -> Any:
-    """``make(cache=True)`` with the first folder that can be written; else without a store."""
+def _kept(compile_: Callable[..., Any], function: Callable[..., Any], folder: str) -> Any:
+    """The function compiled and stored where the folder can be written; else without a store.
+
+    numba stores under the path of a function's file, which differs from checkout to checkout: the
+    function is given an empty file of the store in its place.
+    """
     previous = _settings.CACHE_DIR
-    for folder in folders:
-        _settings.CACHE_DIR = folder
-        try:
-            return make(cache=True)
-        except (RuntimeError, OSError):
-            continue
-        finally:
-            _settings.CACHE_DIR = previous
-    return make(cache=False)
+    _settings.CACHE_DIR = folder
+    try:
+        place = Path(folder) / f"{function.__module__}.py"
+        place.parent.mkdir(parents=True, exist_ok=True)
+        place.touch()
+        code = function.__code__.replace(co_filename=str(place))
+        return compile_(cache=True)(FunctionType(code, function.__globals__))
+    except (RuntimeError, OSError):
+        return compile_(cache=False)(function)
+    finally:
+        _settings.CACHE_DIR = previous
 
 
 def compiled(function: _Kernel) -> _Kernel:
     """Compile on first call, without the interpreter lock; keep the result where one can write.
 
-    Where the package's directory is read-only numba's own choice (the user's cache) is taken, and
-    where nothing can be written the kernel is compiled anew in each process.
+    Where nothing can be written the kernel is compiled anew in each process.
     """
-
-    def make(*, cache: bool) -> Any:
-        return numba.njit(cache=cache, nogil=True, error_model="numpy")(function)
-
-    return cast("_Kernel", _kept(make, (_store(), _settings.CACHE_DIR)))
+    compile_ = partial(_numba.njit, nogil=True, error_model="numpy")
+    return cast("_Kernel", _kept(compile_, function, _store()))
 
 
 def compiled_entry(function: Callable[..., Any], signature: Any, content: bytes) -> Any:
@@ -95,8 +102,5 @@ def compiled_entry(function: Callable[..., Any], signature: Any, content: bytes)
 
     Compiling takes seconds. Where nothing can be written it is done in each process.
     """
-
-    def make(*, cache: bool) -> Any:
-        return _numba.cfunc(signature, error_model="numpy", cache=cache)(function)
-
-    return _kept(make, (_folder("lanes", content),))
+    compile_ = partial(_numba.cfunc, signature, error_model="numpy")
+    return _kept(compile_, function, _folder("lanes", content))

@@ -53,12 +53,12 @@ def test_a_sample_of_flipped_bits(tmp_path):
     flip(tmp_path, 60, seed=18)
 
 
-@pytest.mark.slow
+@pytest.mark.release
 def test_twenty_thousand_random_calls():
     judge(20_000, seed=1)
 
 
-@pytest.mark.slow
+@pytest.mark.release
 def test_fifteen_hundred_flipped_bits(tmp_path):
     flip(tmp_path, 1_500, seed=1)
 

@@ -168,5 +168,5 @@ def test_ladder_maps_name_only_the_levels_that_occur(ladder) -> None:
 
 def test_ladder_cost_is_the_share_of_time(ladder) -> None:
     text = written(model_ladder.draw(ladder))
-    assert "contact lost?: 100 %" in text
+    assert "contact lost?: 10 %" in text
     assert "100.0 % right, 0 % below A1" in text

@@ -56,13 +56,19 @@ def test_every_kernel_file_is_part_of_the_digest():
     assert using <= {path.name for path in compiled.kernel_sources()}
 
 
-def test_processes_that_start_together_share_one_store(copy):
-    together = [_run(copy) for _ in range(2)]
+@pytest.mark.release
+def test_processes_and_checkouts_share_one_store(copy, tmp_path):
+    place = {"XDG_CACHE_HOME": str(tmp_path / "cache"), "NUMBA_CACHE_DIR": ""}
+    together = [_run(copy, **place) for _ in range(2)]
     assert [_omega(process) for process in together] == pytest.approx([KNOWN] * 2, abs=1.2e-14)
-    stores = list((copy / "squealpipe/methods/__pycache__").glob("kernels-*"))
+    stores = list((tmp_path / "cache/squealpipe").glob("kernels-*"))
     assert len(stores) == 1
     kept = {path.name for path in stores[0].rglob("*.nbc")}
-    assert _omega(_run(copy)) == pytest.approx(KNOWN, abs=1.2e-14)
+    assert kept
+    (copy / "squealpipe").rename(tmp_path / "moved")
+    (tmp_path / "other").mkdir()
+    other = (tmp_path / "moved").rename(tmp_path / "other/squealpipe").parent
+    assert _omega(_run(other, **place)) == pytest.approx(KNOWN, abs=1.2e-14)
     assert {path.name for path in stores[0].rglob("*.nbc")} == kept
 
 
@@ -75,10 +81,10 @@ def test_an_edit_of_any_kernel_opens_a_new_store(copy, monkeypatch):
     assert compiled._store.__wrapped__() != before
 
 
+@pytest.mark.release
 def test_without_any_place_to_write_kernels_are_compiled_in_memory(copy):
-    """Every place that numba or we would choose is a file, which even root cannot write into."""
+    """The place of the store is a file, which even root cannot write into."""
     blocked = copy / "blocked"
     blocked.write_text("", "utf-8")
-    (copy / "squealpipe/methods/__pycache__").write_text("", "utf-8")
     found = _run(copy, HOME=str(blocked), XDG_CACHE_HOME=str(blocked), NUMBA_CACHE_DIR="")
     assert _omega(found) == pytest.approx(KNOWN, abs=1.2e-14)

@@ -30,7 +30,7 @@ OPTIONS = (
 CURVE = "document.getElementById('{}').chart.traces[{}]"
 
 in_browser = [
-    pytest.mark.browser,
+    pytest.mark.release,
     pytest.mark.skipif(chromium_path() is None, reason="no chromium on this machine"),
 ]
 

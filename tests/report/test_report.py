@@ -193,7 +193,7 @@ def test_no_measured_number_is_typed_into_a_template(template: Path) -> None:
 
 
 @pytest.mark.parametrize("width", [1100, 390])
-@pytest.mark.browser
+@pytest.mark.release
 @pytest.mark.skipif(chromium_path() is None, reason="no chromium on this machine")
 def test_page_in_a_browser(small_report, width: int) -> None:
     with open_page(small_report.page.as_uri(), width=width) as (page, faults):

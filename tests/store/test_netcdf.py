@@ -363,6 +363,6 @@ def test_killed_writers_never_leave_half_a_file(tmp_path):
     kill_writers(tmp_path, 6)
 
 
-@pytest.mark.slow
+@pytest.mark.release
 def test_many_killed_writers_never_leave_half_a_file(tmp_path):
     kill_writers(tmp_path, 60)

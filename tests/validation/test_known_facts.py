@@ -35,7 +35,7 @@ def test_shorter_horizon_keeps_2706():
     assert int((~_map(91, t_end=100.0).separates).sum()) == 2706
 
 
-@pytest.mark.slow
+@pytest.mark.release
 def test_longer_horizons_keep_the_same_cells():
     for t_end in (400.0, 1600.0):
         assert int((~_map(91, t_end=t_end).separates).sum()) == 2694

@@ -139,7 +139,7 @@ def test_killed_jobs_and_heads_lose_nothing(small, undisturbed):
     kill_at_random(small, undisturbed, kills=3, seed=11)
 
 
-@pytest.mark.slow
+@pytest.mark.release
 @pytest.mark.timeout(3600)
 def test_many_kills_lose_nothing(small, undisturbed):
     kill_at_random(small, undisturbed, kills=51, seed=12)

@@ -156,7 +156,7 @@ def test_a_parameter_and_a_law_reach_every_kind_of_number(extended):
     python(folder, PARAMETER_AND_LAW)
 
 
-@pytest.mark.slow
+@pytest.mark.release
 def test_the_engine_integrates_the_new_law(extended):
     """Compiled anew in the copy, at random parameters, against long double."""
     folder, _ = extended
@@ -209,7 +209,7 @@ def test_a_level_answers_for_itself(extended):
     python(folder, LEVEL_ALONE)
 
 
-@pytest.mark.slow
+@pytest.mark.release
 def test_the_ladder_takes_the_new_level(extended):
     folder, _ = extended
     script = """

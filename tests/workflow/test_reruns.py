@@ -174,7 +174,7 @@ def test_changed_keys_make_stale_exactly_what_reads_them(
         assert plan.rules == downstream(stated, table), keys
 
 
-@pytest.mark.slow
+@pytest.mark.release
 def test_each_key_makes_stale_exactly_what_reads_it(study_copy, dry_runs, tmp_path):
     made = plans(study_copy, dry_runs, tmp_path, [[key] for key in KEYS])
     found = {key: direct(plan) for key, plan in zip(KEYS, made, strict=True)}

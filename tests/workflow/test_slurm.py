@@ -26,7 +26,7 @@ from squealpipe.config.yaml_files import overlay
 from squealpipe.store import load
 from squealpipe.store.comparison.compare import compare
 
-pytestmark = pytest.mark.slurm
+pytestmark = pytest.mark.release
 
 SCRIPTS = Path(__file__).with_name("slurm")
 PROFILE = [
@@ -217,7 +217,7 @@ def study_laid_over_quick(checkout: Path, text: str) -> dict[str, Any]:
     return content
 
 
-@pytest.mark.slow
+@pytest.mark.release
 @pytest.mark.timeout(1800)
 def test_whole_study_equals_one_machine_bit_for_bit(cluster_checkout, snakemake):
     """Datasets, figures, report and explorer of a tiny study, maps and sweep in parts."""

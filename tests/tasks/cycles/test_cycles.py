@@ -78,7 +78,7 @@ def test_unstable_cycle_bounds_the_published_basin(speed):
     assert abs(area / 8.0 - share) < 1e-6
 
 
-@pytest.mark.parametrize("wanted", [4, pytest.param(100, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("wanted", [4, pytest.param(100, marks=pytest.mark.release)])
 def test_trivial_multiplier_and_differences_of_the_return_map(wanted):
     generator = np.random.default_rng(5)
     checked = 0

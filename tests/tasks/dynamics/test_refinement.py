@@ -41,7 +41,7 @@ def test_inherited_cells_are_as_wrong_as_measured(params: Parameters) -> None:
     assert share < 0.35
 
 
-@pytest.mark.slow
+@pytest.mark.release
 @pytest.mark.parametrize("params", OTHERS.values(), ids=OTHERS)
 def test_inherited_cells_at_241_points(params: Parameters) -> None:
     wrong, share = compared(params, 241, 31, 200.0)

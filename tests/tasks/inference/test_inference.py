@@ -247,7 +247,7 @@ def test_a_belt_along_minus_x_passes_beyond_the_bound_of_the_other() -> None:
     np.testing.assert_allclose(margins, [1 - slope, 1 + slope], rtol=1e-12)
 
 
-@pytest.mark.slow
+@pytest.mark.release
 def test_the_feasible_set_of_the_study() -> None:
     """An independent count has 474 of 20,480 samples; round-off decides a few runs of F4.
 

@@ -30,7 +30,7 @@ def friction_oscillator(belt_speed, reach=1e4):
         (1.25, 1000),
         (1.55, 1000),
         *(
-            pytest.param(v, 100_000, marks=[pytest.mark.slow, pytest.mark.timeout(3600)])
+            pytest.param(v, 100_000, marks=[pytest.mark.release, pytest.mark.timeout(3600)])
             for v in SHARES
         ),
     ],
