@@ -6,6 +6,7 @@ from squealpipe.config.settings import PAPER, read_study
 STUDY = read_study(
     f"{workflow.basedir}/{PAPER}", *workflow.configfiles, changes=workflow.config_settings.config
 )
+SHIPPED = read_study(f"{workflow.basedir}/{PAPER}")
 RESULTS = STUDY.results
 
 include: "workflow/rules/common.smk"

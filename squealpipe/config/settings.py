@@ -93,10 +93,34 @@ class Study(Section):
             part[path] = value
         return json.loads(json.dumps(part, sort_keys=True))  # type: ignore[no-any-return]
 
+    def changes_of(self, other: Study) -> list[tuple[str, Any, Any]]:
+        """Dotted keys that differ from another study, with its value and that of this one.
+
+        Folders of results and sweeps do not count.
+        """
+        theirs, ours = (
+            _leaves(study.model_dump(mode="json", exclude={"results", "sweeps"}))
+            for study in (other, self)
+        )
+        return [
+            (key, theirs.get(key), ours.get(key))
+            for key in dict.fromkeys([*theirs, *ours])
+            if theirs.get(key) != ours.get(key)
+        ]
+
     def sweep(self, name: str) -> dict[str, Any]:
         """Configuration of one of the sweeps, with the parameters that it does not name itself."""
         parameters = self.parameters.model_dump(mode="json")
         return sweep_config(**self.sweeps[name].model_dump(mode="json"), parameters=parameters)
+
+
+def _leaves(content: Mapping[str, Any], above: str = "") -> dict[str, Any]:
+    """Dotted keys and values of a mapping of mappings."""
+    found: dict[str, Any] = {}
+    for key, value in content.items():
+        inner = _leaves(value, f"{above}{key}.") if isinstance(value, Mapping) else {}
+        found |= inner or {f"{above}{key}": value}
+    return found
 
 
 def read_study(*paths: str | Path, changes: Mapping[str, Any] | None = None) -> Study:

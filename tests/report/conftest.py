@@ -14,7 +14,7 @@ from squealpipe.store.provenance import stamp
 from squealpipe.study.claims.judge import judge
 from squealpipe.study.figures.declared import draw, reads
 from squealpipe.study.figures.parts.style import save_figure
-from squealpipe.study.report.build import write_report
+from squealpipe.study.report.build import write_document
 from squealpipe.study.report.content import Made, gather, picture_files
 from squealpipe.tasks.dynamics.assumptions import linear_pull_map
 from squealpipe.tasks.linear.boundaries import stability_boundaries
@@ -30,6 +30,7 @@ class SmallReport:
     page: Path
     pdf: Path
     content: dict
+    supplement: Path
     datasets: dict
     figures: dict[str, Made]
 
@@ -56,6 +57,14 @@ def small_report(tmp_path_factory: pytest.TempPathFactory) -> SmallReport:
         save_figure(draw(name, datasets), [path])
         figures[name] = Made(path=path, rule="draw_topic", datasets=reads(name))
     page, pdf = folder / "report/index.html", folder / "report/report.pdf"
-    content = gather(made, figures, parameters, page=page)
-    write_report(content, picture_files(content, figures), page, pdf)
-    return SmallReport(page, pdf, content, datasets, figures)
+    changed = [("linear.points", 181, POINTS)]
+    content = gather(made, figures, parameters, changed=changed, page=page)
+    content["made"] = "supplement.html"
+    pictures = picture_files(content, figures)
+    write_document("paper", content, pictures, page=page, pdf=pdf)
+    supplement = page.with_name("supplement.html")
+    behind = {**content, "made": None}
+    write_document(
+        "supplement", behind, pictures, page=supplement, pdf=supplement.with_suffix(".pdf")
+    )
+    return SmallReport(page, pdf, content, supplement, datasets, figures)

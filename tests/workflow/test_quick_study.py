@@ -4,7 +4,12 @@ from __future__ import annotations
 
 import re
 
-PAPER_FIGURES = [f"fig{number:02d}" for number in range(1, 14)]
+from squealpipe.parameters import Parameters
+from squealpipe.study.report.build import write_document
+from squealpipe.study.report.content import Made, gather, picture_files
+from squealpipe.study.report.places import FIGURES
+
+PAPER_FIGURES = [*(f"fig{number:02d}" for number in range(1, 10)), "fig10_to_12", "fig13"]
 
 
 def test_every_figure_of_the_paper_in_two_forms(quick_study):
@@ -14,8 +19,34 @@ def test_every_figure_of_the_paper_in_two_forms(quick_study):
 
 
 def test_report_is_written(quick_study):
-    text = (quick_study.results / "report/index.html").read_text(encoding="utf-8")
-    assert "</html>" in text
+    for name in ("index", "supplement"):
+        text = (quick_study.results / f"report/{name}.html").read_text(encoding="utf-8")
+        assert "</html>" in text
+
+
+def test_narrative_of_the_shipped_study_fits_its_datasets(quick_study, tmp_path):
+    """Every number is there, and the page has at most 5,000 words."""
+    data = quick_study.results / "data"
+    datasets = {
+        str(path.relative_to(data).with_suffix("")): Made(path=path, rule="some")
+        for path in data.rglob("*.nc")
+    }
+    figures = {
+        name: Made(path=quick_study.results / f"figures/{name}.png", rule="some", datasets=())
+        for name in FIGURES
+    }
+    content = gather(datasets, figures, Parameters())
+    assert set(content["figures"]) == set(FIGURES)
+    page = tmp_path / "index.html"
+    pictures = picture_files(content, figures)
+    write_document("paper", content, pictures, page=page, pdf=tmp_path / "report.pdf")
+    text = re.sub(
+        r"<style>.*?</style>|<[^>]+>", " ", page.read_text(encoding="utf-8"), flags=re.DOTALL
+    )
+    words = text.split()
+    assert len(words) <= 5000
+    assert not {"None", "nan", "NaN"} & set(words)
+    assert "nothing ends this" in " ".join(words)
 
 
 def test_log_of_a_run_has_one_line_a_job_and_a_file_has_the_rest(quick_study):

@@ -1,4 +1,4 @@
-"""One Typst source, two outputs: a self-contained page (HTML with MathML) and a PDF."""
+"""A Typst source gives two files: a self-contained page (HTML with MathML) and a PDF."""
 
 from __future__ import annotations
 
@@ -34,18 +34,24 @@ def _typeset(source: Path, target: Literal["html", "pdf"]) -> bytes:
     )
 
 
-def write_report(
-    content: Mapping[str, Any], pictures: Mapping[str, Path], page: Path, pdf: Path
+def write_document(
+    template: str,
+    content: Mapping[str, Any],
+    pictures: Mapping[str, Path],
+    *,
+    page: Path,
+    pdf: Path,
 ) -> None:
-    """Typeset the report and write both files, each whole or not at all.
+    """Typeset one document and write both files, each whole or not at all.
 
     Args:
-        content: what :func:`squealpipe.study.report.content.gather` returns.
+        template: name of the Typst source in ``templates``, without suffix.
+        content: what the template shows.
         pictures: path inside the source (``content["figures"][name]["path"]``) → PNG file.
-        page: ``index.html``; needs no network and no other file.
-        pdf: ``report.pdf``.
+        page: HTML; needs no network and no other file.
+        pdf: PDF.
     """
-    with _source(content, pictures) as main, ThreadPoolExecutor(2) as pool:
+    with _source(template, content, pictures) as main, ThreadPoolExecutor(2) as pool:
         made = pool.submit(_typeset, main, "html")
         document = pool.submit(_typeset, main, "pdf")
     with whole_file(page) as temporary:
@@ -55,7 +61,9 @@ def write_report(
 
 
 @contextmanager
-def _source(content: Mapping[str, Any], pictures: Mapping[str, Path]) -> Iterator[Path]:
+def _source(
+    template: str, content: Mapping[str, Any], pictures: Mapping[str, Path]
+) -> Iterator[Path]:
     """The Typst source with data and pictures beside it, in a folder of its own."""
     with tempfile.TemporaryDirectory(prefix="squealpipe-report-") as folder:
         root = Path(folder) / "report"
@@ -65,7 +73,7 @@ def _source(content: Mapping[str, Any], pictures: Mapping[str, Path]) -> Iterato
             target = root / path
             target.parent.mkdir(exist_ok=True)
             shutil.copyfile(source, target)
-        yield root / "main.typ"
+        yield root / f"{template}.typ"
 
 
 def _page(content: Mapping[str, Any], made: str) -> str:

@@ -1,4 +1,4 @@
-"""Everything the report says, gathered from the files of one run as plain data."""
+"""What the pages show, gathered from the files of one run as plain data."""
 
 from __future__ import annotations
 
@@ -6,9 +6,10 @@ import hashlib
 import json
 import os
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from importlib.metadata import version
+from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
@@ -16,15 +17,26 @@ import netCDF4
 from PIL import Image
 
 from squealpipe.parameters import TABLE, Parameters
+from squealpipe.schema.claims import Origin, Verdict
 from squealpipe.study.claims.evidence import Run
 from squealpipe.study.claims.table import rows
 from squealpipe.study.figures import declared
-from squealpipe.study.report.facts import gather_facts
-from squealpipe.study.report.places import FIGURES, PLACES
-from squealpipe.study.report.summary import PAPER, is_misprint, summarize, tally
+from squealpipe.study.report import places
+from squealpipe.study.report.numbers import numbers
 from squealpipe.text import RAISED
 
 TITLE = "Hammering and brake squeal: a paper computed again, statement by statement"
+PAPER = {
+    "authors": "O. T. Şen and R. Singh",
+    "title": "Dynamics of a simplified nonlinear model offering insights into the hammering type "
+    "brake squeal initiation process",
+    "journal": "Noise Control Engineering Journal",
+    "year": 2021,
+}
+"""The paper that is computed again."""
+
+RECORDED = ("verdict", "corrected_verdict")
+"""What :data:`REFERENCE` holds of each statement."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -47,26 +59,23 @@ def gather(
     figures: Mapping[str, Made],
     parameters: Parameters,
     *,
-    beyond_paper: bool = False,
-    explorer: str | None = None,
-    animations: Mapping[str, str] | None = None,
+    changed: Sequence[tuple[str, Any, Any]] = (),
+    links: Mapping[str, str | Path] | None = None,
     page: Path | None = None,
 ) -> dict[str, Any]:
-    """The report's content; see ``templates/`` for how it is used.
+    """Content of the paper's report and of its supplement; see ``templates/``.
 
     Args:
         datasets: name (path below ``data/`` without suffix) → NetCDF file.
         figures: name → PNG file.
         parameters: those of the study.
-        beyond_paper: it has dashpots or friction other than Coulomb's, which A4 cannot carry.
-        explorer: link to the explorer page, if the run makes one.
-        animations: what each shows → its GIF.
-        page: where the page will be; then it links the PDF beside it and each dataset.
+        changed: keys of the configuration that differ from the shipped one, with both values. The
+            narrative is shown only where there are none.
+        links: further files of the run, by the words that lead to them.
+        page: where the page will be; then it links files beside it.
     """
     run = Run(parameters, {name: made.path for name, made in datasets.items()})
     claims = rows(run["claims"]) if "claims" in run else []
-    records = {name: _record(name, datasets[name]) for name in sorted(datasets)}
-    facts = gather_facts(run)
 
     def link(path: str | Path) -> str | None:
         return None if page is None else os.path.relpath(path, page.parent)
@@ -74,38 +83,68 @@ def gather(
     return {
         "title": TITLE,
         "paper": PAPER,
-        "summary": summarize(claims, facts, figures),
-        "shipped": parameters == Parameters(),
-        "parameters": _parameters(parameters),
-        "one_pivot": parameters.length1 == parameters.length2,
-        "belt_along_x": parameters.belt_direction > 0,
-        "beyond_paper": beyond_paper,
-        "environment": _environment(datasets),
-        "datasets": {
-            name: {**record, "link": link(datasets[name].path)} for name, record in records.items()
-        },
-        "rules": _rules(records),
-        "configuration": _configuration(datasets),
-        "places": PLACES,
-        "figures": {
-            name: _picture(name, figures[name], records, run) for name in FIGURES if name in figures
-        },
-        "explorer": explorer,
-        "pdf": None if page is None else "report.pdf",
-        "animations": [
-            {"what": what, "link": link(path)} for what, path in (animations or {}).items()
+        "shipped": not changed,
+        "changed": [
+            {"key": key, "shipped": _written(shipped), "here": _written(here)}
+            for key, shipped, here in changed
         ],
-        "claims": claims,
-        "statements": {
-            "rows": (judged := [row for row in claims if not is_misprint(row)]),
-            "tally": tally(judged),
+        "changed_verdicts": _changed_verdicts(claims),
+        "numbers": {} if changed else numbers(run),
+        "parameters": parameter_table(parameters),
+        "compared": _parts(places.COMPARED),
+        "beyond": _parts(places.BEYOND),
+        "supplement": _parts(places.SUPPLEMENT),
+        "figures": pictures(places.FIGURES, figures, run),
+        "datasets": {name: link(made.path) for name, made in sorted(datasets.items())},
+        "links": [{"words": words, "to": link(to)} for words, to in (links or {}).items()],
+        "statements": [row for row in claims if row["origin"] != Origin.misprints.name],
+        "misprints": [row for row in claims if row["origin"] == Origin.misprints.name],
+        "totals": {
+            key: {
+                verdict.words: count
+                for verdict in Verdict
+                if (count := sum(row.get(key) == verdict.words for row in claims))
+            }
+            for key in RECORDED
         },
-        "misprints": {
-            "rows": (printed := [row for row in claims if is_misprint(row)]),
-            "tally": tally(printed),
-        },
-        "facts": facts,
     }
+
+
+def provenance(datasets: Mapping[str, Made], figures: Mapping[str, Made]) -> dict[str, Any]:
+    """Rules, ids, checksums, times, configuration and environment of a run, for a file."""
+    records, configuration, environment = {}, {}, {"squealpipe": {version("squealpipe")}}
+    for name, made in sorted(datasets.items()):
+        attributes = _attributes(made.path)
+        records[name] = {
+            "rule": made.rule,
+            "made_from": list(made.datasets),
+            "sha256": hashlib.sha256(made.path.read_bytes()).hexdigest(),
+            **{
+                key: attributes[key]
+                for key in ("title", "dataset_id", "config_hash", "wall_time_s")
+                if key in attributes
+            },
+        }
+        configuration |= json.loads(attributes.get("config", "{}"))
+        stated = {key: attributes.get(key, "unknown") for key in ("commit", "platform")}
+        for what, value in {**stated, **json.loads(attributes.get("libraries", "{}"))}.items():
+            environment.setdefault(what, set()).add(value)
+    return {
+        "datasets": records,
+        "figures": {
+            name: {"rule": made.rule, "datasets": list(made.datasets)}
+            for name, made in figures.items()
+        },
+        "configuration": configuration,
+        "environment": {what: sorted(values) for what, values in environment.items()},
+    }
+
+
+def pictures(
+    names: Sequence[str], figures: Mapping[str, Made], run: Mapping[str, Any]
+) -> dict[str, Any]:
+    """Name → what a page needs of each picture that the run has."""
+    return {name: _picture(name, figures[name], run) for name in names if name in figures}
 
 
 def picture_files(content: Mapping[str, Any], figures: Mapping[str, Made]) -> dict[str, Path]:
@@ -113,12 +152,8 @@ def picture_files(content: Mapping[str, Any], figures: Mapping[str, Made]) -> di
     return {item["path"]: figures[name].path for name, item in content["figures"].items()}
 
 
-def slug(name: str) -> str:
-    """A name as an identifier in a page."""
-    return re.sub(r"[^a-z0-9]+", "-", name.lower()).strip("-")
-
-
-def _parameters(parameters: Parameters) -> list[dict[str, Any]]:
+def parameter_table(parameters: Parameters) -> list[dict[str, Any]]:
+    """Symbol, meaning, value and unit of each parameter."""
     return [
         {
             "symbol": TABLE[name].symbol,
@@ -130,74 +165,50 @@ def _parameters(parameters: Parameters) -> list[dict[str, Any]]:
     ]
 
 
-def _attributes(path: Path) -> dict[str, Any]:
-    """Global attributes of a NetCDF file, without its data."""
-    with netCDF4.Dataset(path) as file:
-        return {name: file.getncattr(name) for name in file.ncattrs()}
+def reference_verdicts() -> dict[str, dict[str, str]]:
+    """Id of a statement → its verdicts in the shipped study."""
+    path = files("squealpipe.study.report") / "reference_verdicts.json"
+    return json.loads(path.read_text(encoding="utf-8"))  # type: ignore[no-any-return]
 
 
-def _record(name: str, made: Made) -> dict[str, Any]:
-    """One row of the provenance."""
-    attributes = _attributes(made.path)
-    return {
-        "slug": slug(name),
-        "rule": made.rule,
-        "datasets": list(made.datasets),
-        "title": attributes["title"],
-        "dataset_id": attributes["dataset_id"],
-        "config_hash": attributes["config_hash"],
-        "wall_time_s": float(attributes["wall_time_s"]),
-        "sha256": hashlib.sha256(made.path.read_bytes()).hexdigest(),
-        "bytes": made.path.stat().st_size,
-    }
-
-
-def _rules(records: Mapping[str, Mapping[str, Any]]) -> list[dict[str, Any]]:
-    """Rule → its datasets and the time that making them took, longest first."""
-    found: dict[str, dict[str, Any]] = {}
-    for name, record in records.items():
-        row = found.setdefault(
-            record["rule"], {"rule": record["rule"], "datasets": [], "seconds": 0.0}
-        )
-        row["datasets"].append({"name": name, "slug": record["slug"]})
-        row["seconds"] += record["wall_time_s"]
-    return sorted(found.values(), key=lambda row: -row["seconds"])
-
-
-def _configuration(datasets: Mapping[str, Made]) -> list[dict[str, str]]:
-    """Every configuration value that the datasets were made with, by dotted key."""
-    found: dict[str, set[str]] = {}
-    for made in datasets.values():
-        for key, value in json.loads(_attributes(made.path)["config"]).items():
-            for path, leaf in _leaves(key, value):
-                found.setdefault(path, set()).add(json.dumps(leaf, ensure_ascii=False))
-    return [
-        {"key": key, "value": " or ".join(sorted(values))}
-        for key, values in sorted(found.items())
-        if "." in key
-    ]
-
-
-def _leaves(key: str, value: Any) -> Iterator[tuple[str, Any]]:
-    if isinstance(value, dict):
-        for name, inner in value.items():
-            yield from _leaves(f"{key}.{name}", inner)
-    else:
-        yield key, value
+def recorded(claims: Sequence[Mapping[str, Any]]) -> dict[str, dict[str, str]]:
+    """What ``reference_verdicts.json`` holds, of judged statements."""
+    return {row["id"]: {key: row[key] for key in RECORDED if row.get(key)} for row in claims}
 
 
 def title(name: str) -> str:
     """Heading of a picture: the paper's number, or the name in words."""
-    paper = re.fullmatch(r"fig(\d+)", name)
-    if paper:
-        return f"Fig. {int(paper[1])}."
+    if paper := re.fullmatch(r"fig(\d+)(?:_to_(\d+))?", name):
+        first, last = int(paper[1]), paper[2]
+        return f"Figs. {first}–{int(last)}." if last else f"Fig. {first}."
     words = name.replace("_", " ").capitalize()
     return re.sub(r"\ba\d\b", lambda level: level[0].upper(), words) + "."
 
 
-def _picture(
-    name: str, made: Made, records: Mapping[str, Mapping[str, Any]], run: Run
-) -> dict[str, Any]:
+def made_files(table: Mapping[str, Mapping[str, Any]]) -> dict[str, Made]:
+    """``Made`` records from the plain table that :mod:`squealpipe.study.report.lineage` gives."""
+    return {
+        name: Made(path=Path(row["path"]), rule=row["rule"], datasets=tuple(row["datasets"]))
+        for name, row in table.items()
+    }
+
+
+def _changed_verdicts(claims: Sequence[Mapping[str, Any]]) -> list[dict[str, str]]:
+    reference = reference_verdicts()
+    found = recorded(claims)
+    return [
+        {"id": name, "shipped": reference[name][key], "here": verdicts[key]}
+        for name, verdicts in found.items()
+        for key in RECORDED[:1]
+        if name in reference and reference[name].get(key) != verdicts.get(key)
+    ]
+
+
+def _parts(parts: Mapping[str, places.Part]) -> list[dict[str, Any]]:
+    return [{"id": name, **part._asdict()} for name, part in parts.items()]
+
+
+def _picture(name: str, made: Made, run: Mapping[str, Any]) -> dict[str, Any]:
     caption, alt = declared.texts(name, run)
     with Image.open(made.path) as image:
         width, aspect = image.width / image.info["dpi"][0], image.height / image.width
@@ -209,24 +220,15 @@ def _picture(
         "width_inches": width,
         "aspect": aspect,
         "rule": made.rule,
-        "sources": _rules({key: records[key] for key in made.datasets if key in records}),
+        "datasets": list(made.datasets),
     }
 
 
-def _environment(datasets: Mapping[str, Made]) -> list[dict[str, str]]:
-    """Version, commit, platform and libraries; several values where the datasets differ."""
-    found: dict[str, set[str]] = {"squealpipe": {version("squealpipe")}}
-    for made in datasets.values():
-        attributes = _attributes(made.path)
-        stated = {key: attributes[key] for key in ("commit", "platform")}
-        for what, value in {**stated, **json.loads(attributes["libraries"])}.items():
-            found.setdefault(what, set()).add(value)
-    return [{"what": what, "value": ", ".join(sorted(values))} for what, values in found.items()]
+def _attributes(path: Path) -> dict[str, Any]:
+    """Global attributes of a NetCDF file, without its data."""
+    with netCDF4.Dataset(path) as file:
+        return {name: file.getncattr(name) for name in file.ncattrs()}
 
 
-def made_files(table: Mapping[str, Mapping[str, Any]]) -> dict[str, Made]:
-    """``Made`` records from the plain table that :mod:`squealpipe.study.report.lineage` gives."""
-    return {
-        name: Made(path=Path(row["path"]), rule=row["rule"], datasets=tuple(row["datasets"]))
-        for name, row in table.items()
-    }
+def _written(value: Any) -> str:
+    return "–" if value is None else json.dumps(value, ensure_ascii=False).strip('"')

@@ -12,9 +12,21 @@ DRAWN = {
 
 TEMPLATES = sorted(
     from_root(path)
-    for path in (ROOT / "squealpipe/study/report/templates").rglob("*.*")
-    if path.suffix in (".typ", ".css") or path.name == "page.html.j2"
+    for path in (ROOT / "squealpipe/study/report").rglob("*.*")
+    if path.suffix in (".typ", ".css", ".json") or path.name == "page.html.j2"
 )
+
+
+LINKS = {
+    "This report as PDF": f"{RESULTS}/report/report.pdf",
+    "methods, accuracy and failures": f"{RESULTS}/report/supplement.html",
+    "rules, checksums and configuration": f"{RESULTS}/report/provenance.json",
+}
+if PAPERS_FRICTION:
+    LINKS |= {
+        "the explorer of all angles": f"{RESULTS}/report/explorer.html",
+        **{f"animation of {what}": path for what, path in ANIMATIONS.items()},
+    }
 
 
 rule write_report:
@@ -27,13 +39,15 @@ rule write_report:
     output:
         page=f"{RESULTS}/report/index.html",
         pdf=f"{RESULTS}/report/report.pdf",
+        supplement=f"{RESULTS}/report/supplement.html",
+        supplement_pdf=f"{RESULTS}/report/supplement.pdf",
+        provenance=f"{RESULTS}/report/provenance.json",
     params:
         part=part("parameters"),
         made=MADE,
         drawn=DRAWN,
-        beyond_paper=not PAPERS_FRICTION,
-        animations=ANIMATIONS if PAPERS_FRICTION else {},
-        explorer="explorer.html" if f"{RESULTS}/report/explorer.html" in TARGETS else None,
+        changed=STUDY.changes_of(SHIPPED),
+        links=LINKS,
     script:
         "../../scripts/report/write_report.py"
 

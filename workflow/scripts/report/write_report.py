@@ -1,24 +1,29 @@
-"""The report as a page and as a PDF."""
+"""The paper's report and its supplement, each as a page and as a PDF, and the provenance."""
 
+import json
 from pathlib import Path
 
 from squealpipe.parameters import parameters_of
-from squealpipe.study.report.build import write_report
-from squealpipe.study.report.content import gather, made_files, picture_files
+from squealpipe.store.whole_files import whole_file
+from squealpipe.study.report.build import write_document
+from squealpipe.study.report.content import gather, made_files, picture_files, provenance
 
-datasets, figures = made_files(snakemake.params.made), made_files(snakemake.params.drawn)
+params, out = snakemake.params, snakemake.output
+datasets, figures = made_files(params.made), made_files(params.drawn)
 content = gather(
     datasets,
     figures,
-    parameters_of(snakemake.params.part),
-    beyond_paper=snakemake.params.beyond_paper,
-    explorer=snakemake.params.explorer,
-    animations=snakemake.params.animations,
-    page=Path(snakemake.output.page),
+    parameters_of(params.part),
+    changed=params.changed,
+    links=params.links,
+    page=Path(out.page),
 )
-write_report(
-    content,
-    picture_files(content, figures),
-    Path(snakemake.output.page),
-    Path(snakemake.output.pdf),
+pictures = picture_files(content, figures)
+supplement = {**content, "title": "Methods, accuracy and failures", "made": None}
+content["made"] = Path(out.supplement).name
+write_document("paper", content, pictures, page=Path(out.page), pdf=Path(out.pdf))
+write_document(
+    "supplement", supplement, pictures, page=Path(out.supplement), pdf=Path(out.supplement_pdf)
 )
+with whole_file(Path(out.provenance)) as temporary:
+    temporary.write_text(json.dumps(provenance(datasets, figures), indent=1), encoding="utf-8")

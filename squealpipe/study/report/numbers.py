@@ -1,0 +1,118 @@
+"""Numbers of the shipped study that its narrative inserts, read off the datasets."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from squealpipe.schema import meanings
+from squealpipe.schema.claims import Origin, Verdict
+from squealpipe.study.claims.evidence import Run
+from squealpipe.study.claims.maps import unstable_yet_sliding
+
+
+def numbers(run: Run) -> dict[str, float | str]:
+    """Name in ``templates/narrative.typ`` → number; percentages are between 0 and 100."""
+    return {
+        key: value.item() if isinstance(value, np.generic | xr.DataArray) else value
+        for part in (_verdicts, _growth, _linear, _valid, _bounded, _periodic, _spread)
+        for key, value in part(run).items()
+    }
+
+
+def _verdicts(run: Run) -> dict[str, Any]:
+    claims = run["claims"]
+    own = claims.isel(claim=(claims.origin != Origin.misprints).values)
+    found = {verdict.name: (own.verdict == verdict).sum() for verdict in Verdict}
+    changed = 0
+    if "corrected_verdict" in own:
+        changed = (own.corrected_verdict != own.verdict_here).sum()
+    return {"statements": own.sizes["claim"], "mended_changes": changed, **found}
+
+
+def _growth(run: Run) -> dict[str, Any]:
+    unit, preload = run.parameters.time_unit, run.parameters.preload
+    whirl = run["whirl"]
+    own = whirl.sel(belt_speed=abs(run.parameters.belt_speed), method="nearest")
+    if (whirl.belt_speed < 0).all():
+        own = whirl.sel(belt_speed=-abs(run.parameters.belt_speed), method="nearest")
+    return {
+        "F3_size": abs(run["simulate/F3"].x).max() / preload,
+        "F3_time": run["simulate/F3"].time[-1] / unit,
+        "whirl_size": own.amplitude / preload,
+        "whirl_time": whirl.t_end / unit,
+        "whirl_slope": whirl.slope,
+        **_printed_long(run, preload, unit),
+    }
+
+
+def _printed_long(run: Run, preload: float, unit: float) -> dict[str, Any]:
+    if "simulate/F3_long" not in run:
+        return {}
+    long = run["simulate/F3_long"]
+    return {"F3_long_size": abs(long.x).max() / preload, "F3_long_time": long.time[-1] / unit}
+
+
+def _linear(run: Run) -> dict[str, Any]:
+    regime = run["stability_map"].regime_linear
+    printed, physical = unstable_yet_sliding(run)
+    return {
+        "cells": regime.size,
+        "points": regime.sizes["alpha1"],
+        "flutter": (regime == 1).sum(),
+        "divergence": (regime == 2).sum(),
+        "sliding_printed": printed.sum(),
+        "sliding_physical": physical.sum(),
+    }
+
+
+def _valid(run: Run) -> dict[str, Any]:
+    found = {}
+    for prefix, name in (("", "validity_map"), ("mended_", "corrected/validity_map")):
+        if name in run:
+            validity = run[name]
+            unstable = validity.regime_linear > 0
+            found[f"{prefix}black"] = (unstable & (validity.separates == 0)).sum()
+            found[f"{prefix}unstable"] = unstable.sum()
+            found[f"{prefix}lost"] = 100 * validity.separates.mean()
+    return found
+
+
+def _bounded(run: Run) -> dict[str, Any]:
+    transient, unit = run["transient"], run.parameters.time_unit
+    lifetimes = transient.shown_lifetime.values
+    ended = np.isfinite(lifetimes)
+    return {
+        "F4_size": abs(run["simulate/F4"].x).max() / run.parameters.preload,
+        "transient_runs": lifetimes.size,
+        "transient_ended": int(ended.sum()),
+        "transient_first": float(lifetimes[ended].min() / unit) if ended.any() else "none",
+        "transient_time": transient.t_end / unit,
+    }
+
+
+def _periodic(run: Run) -> dict[str, Any]:
+    first = run["backbone/F10_mode2"]
+    return {
+        "F10_low": first.omega.min(),
+        "F10_linear": first.omega[0],
+        "F13_linear": run["backbone/F13_mode1"].omega[0],
+        "F13_low": run["backbone/F13_mode1"].omega.min(),
+    }
+
+
+def _spread(run: Run) -> dict[str, Any]:
+    hammering, spread = run["hammering_map"], run["propensity"]
+    kinds = {
+        f"motion_{name}": 100 * (hammering.motion == code).mean()
+        for code, name in meanings(hammering.motion).items()
+    }
+    shares = {
+        f"propensity_{name}": 100 * spread.share.sel(quantity=name)
+        for name in map(str, spread.quantity.values)
+    }
+    limited = (hammering.predictability_horizon < hammering.t_end).mean()
+    lowered = run["critical_friction_map"].destabilized.mean()
+    return {**kinds, **shares, "unpredictable": 100 * limited, "lowered": 100 * lowered}
