@@ -128,9 +128,7 @@ def test_every_statement_has_its_place(page: Page, small_report) -> None:
     assert {f"claim-{statement.id}" for statement in STATEMENTS} <= set(page.ids | behind.ids)
 
 
-def test_after_an_edit_the_page_shows_changes_and_no_narrative(
-    text: str, small_report
-) -> None:
+def test_after_an_edit_the_page_shows_changes_and_no_narrative(text: str, small_report) -> None:
     words = prose(text)
     assert "linear.points 181 21" in words
     assert "as printed nothing ends this" not in words
