@@ -112,7 +112,9 @@ def gather(
 
 def provenance(datasets: Mapping[str, Made], figures: Mapping[str, Made]) -> dict[str, Any]:
     """Rules, ids, checksums, times, configuration and environment of a run, for a file."""
-    records, configuration, environment = {}, {}, {"squealpipe": {version("squealpipe")}}
+    records: dict[str, dict[str, Any]] = {}
+    configuration: dict[str, Any] = {}
+    environment: dict[str, set[str]] = {"squealpipe": {version("squealpipe")}}
     for name, made in sorted(datasets.items()):
         attributes = _attributes(made.path)
         records[name] = {
