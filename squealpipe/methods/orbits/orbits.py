@@ -302,8 +302,10 @@ class _OnChord:
 
     @property
     def clear_sign(self) -> NDArray[np.float64]:
-        """Signs of the measures; 0 within round-off."""
-        return np.where(abs(self.measures) > _CLEAR, np.sign(self.measures), 0.0)
+        """Signs of the measures; 0 within round-off, as of the direction where branches meet."""
+        clear = abs(self.measures) > _CLEAR
+        clear[SpecialPoint.fold] &= clear[SpecialPoint.index_two]
+        return np.where(clear, np.sign(self.measures), 0.0)
 
 
 def _on_chord(
