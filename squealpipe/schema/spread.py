@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from squealpipe.schema import DatasetSchema, Outcome, Variable, outcome
 
-WIDEST = 0.02
+WIDEST = 0.05
 """A Sobol index whose 95 % interval is wider than twice this is not given."""
 TRUNCATION = 4.0
 """A normal distribution is cut off at this many standard deviations."""

@@ -65,9 +65,9 @@ def hammering_map(
     - quasi-periodic hammering: regular to ``t_end``, but they do not repeat;
     - regular hammering: there are too few events to tell these two apart.
 
-    ``motion_later`` is the same label at 2 ``t_end``, ``changed`` the number of cells where the
-    two differ. Systems that are mirror images of one another get the same labels: the runs are
-    made in the form of :class:`squealpipe.tasks.normal_form.NormalForm`.
+    ``motion_later`` is the same label at 2 ``t_end``. Systems that are mirror images of one
+    another get the same labels: the runs are made in the form of
+    :class:`squealpipe.tasks.normal_form.NormalForm`.
 
     Args:
         params: physical parameters.

@@ -25,6 +25,7 @@ from squealpipe.schema.spread import PROPENSITY, WIDEST
 from squealpipe.solvers.a1.ensemble import run_ensemble
 from squealpipe.tasks.dynamics.motion import classify_motion
 from squealpipe.tasks.spread.distributions import check_stick, distribution
+from squealpipe.tasks.spread.sobol import REPLICATES, saltelli_matrices, sobol_indices
 from squealpipe.validation import Angle, Number, Positive, Seed, Tolerance, Whole, Workers
 
 QUANTITIES = ("flutter", "contact_loss", "irregular_hammering", "whirl")
@@ -33,12 +34,11 @@ LEAST_EVENTS = 30
 INDEX_FACTOR = np.array([[4], [1], [1], [1]])
 """Base sample of the indices of each quantity, over that of the shares: flutter needs no run."""
 SIZES = 6
-RESAMPLES = 200
 ORDERS = ("first_order", "total_order")
 INDICES = tuple(f"{order}{end}" for order in ORDERS for end in ("", "_low", "_high"))
 
 
-@recorded(model="A1, A3", method="quasi-random sample; Saltelli's estimator of Sobol indices")
+@recorded(model="A1, A3", method="quasi-random sample; Sobol indices from replicates")
 def propensity(
     params: Parameters,
     alpha1: Angle,
@@ -70,9 +70,10 @@ def propensity(
 
     Returns:
         Dataset over quantity and input: shares with 95 % intervals (Wilson), the share of growing
-        parts of the sample, first-order and total Sobol indices with bootstrap intervals, and the
-        half-width of the widest total by the size of the base sample. An index is NaN, with outcome
-        ``unresolved``, where its half-width is above 0.02 or fewer than 30 samples differ.
+        parts of the sample, first-order and total Sobol indices with 95 % intervals (Student's t
+        over 8 replicates), and the half-width of the widest total by the size of the base sample.
+        An index is NaN, with outcome ``unresolved``, where its half-width is above 0.05 or fewer
+        than 30 samples differ.
 
     Raises:
         ValueError: a distribution or another argument is not allowed.
@@ -111,9 +112,11 @@ def propensity(
     blank = dict.fromkeys(INDICES, np.full((len(QUANTITIES), len(names)), np.nan))
     table = blank | {"half_width_by_size": np.full((len(QUANTITIES), SIZES), np.nan)}
     if not spring_correlation:
-        linear = _judged_matrices(partial(judge, runs=False), frozen, index_samples[0, -1], seed)
-        by_run = _judged_matrices(judge, frozen, index_samples[1, -1], seed)
-        table |= _sobol([linear[:, 0], *np.moveaxis(by_run[:, 1:], 1, 0)], SIZES, seed)
+        linear = _judged_matrices(
+            partial(judge, runs=False), frozen, index_samples[0, -1], seed + 1
+        )
+        by_run = _judged_matrices(judge, frozen, index_samples[1, -1], seed + 1)
+        table |= _indices([linear[:, 0], *np.moveaxis(by_run[:, 1:], 1, 0)], SIZES)
     supported = np.isfinite(table["total_order"]).all(axis=1)
     return build(
         PROPENSITY,
@@ -184,70 +187,38 @@ def _flutters(fields: Mapping[str, Any], alpha1: np.ndarray, alpha2: np.ndarray)
     ]).ravel()  # fmt: skip
 
 
-def _sobol(judged: Sequence[np.ndarray], parts: int, seed: int) -> dict[str, np.ndarray]:
-    """Sobol indices with bootstrap intervals, and the widest total's half-width by sample size.
+def _indices(judged: Sequence[np.ndarray], parts: int) -> dict[str, np.ndarray]:
+    """Sobol indices with intervals, and the widest total's half-width by sample size.
 
     Args:
         judged: of each quantity, as :func:`_judged_matrices`, (2 + inputs, size).
         parts: of the sample, each twice the one before; the last is all of it.
-        seed: of the bootstrap.
     """
     shape = (len(judged), len(judged[0]) - 2)
     found = {key: np.full(shape, np.nan) for key in INDICES}
     widest = np.full((len(judged), parts), np.nan)
-    for row, whole in enumerate(judged):
+    for row, flat in enumerate(judged):
+        whole = flat.reshape(len(flat), REPLICATES, -1)
         for column in range(parts):
-            part = whole[:, : whole.shape[1] >> (parts - 1 - column)]
+            part = whole[..., : whole.shape[-1] >> (parts - 1 - column)]
             count = part[0].sum()
-            if min(count, part.shape[1] - count) < LEAST_EVENTS:
+            if min(count, part[0].size - count) < LEAST_EVENTS:
                 continue
-            value, low, high = _with_intervals(part, np.random.default_rng(seed + 2))
-            half = 0.5 * (high - low)
+            value, half = sobol_indices(part)
             widest[row, column] = half[1].max()
             if column < parts - 1:
                 continue
             # beyond its interval below 0 an estimate is a failure of the sample, not an index
-            failed = (half > WIDEST) | (high < 0.0)
+            failed = (half > WIDEST) | (value + half < 0.0)
             for order, name in enumerate(ORDERS):
-                for end, limit in (("", value), ("_low", low), ("_high", high)):
+                for end, limit in (("", value), ("_low", value - half), ("_high", value + half)):
                     found[name + end][row] = np.where(failed[order], np.nan, limit[order])
     return {**found, "half_width_by_size": widest}
 
 
 def _judged_matrices(judge: Any, frozen: Mapping[str, Any], size: int, seed: int) -> np.ndarray:
-    """Saltelli's samples A, B and A with one input of B each, (2 + inputs, quantities, size)."""
-    inputs = len(frozen)
-    points = stats.qmc.Sobol(2 * inputs, rng=np.random.default_rng(seed + 1)).random(size).T
-    points = np.clip(points, 1e-12, 1.0 - 1e-12)
-    values = np.array([
-        distribution.ppf(points[half * inputs + i])
-        for half in (0, 1) for i, distribution in enumerate(frozen.values())
-    ])  # fmt: skip
-    first, second = values[:inputs], values[inputs:]
-    mixed = []
-    for i in range(inputs):
-        mixed.append(first.copy())
-        mixed[i][i] = second[i]
-    return np.stack([judge(matrix) for matrix in (first, second, *mixed)]).astype(float)
-
-
-def _with_intervals(
-    judged: np.ndarray, generator: np.random.Generator
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Indices and the ends of their 95 % intervals (bootstrap, percentiles), (order, inputs)."""
-
-    def indices(rows: np.ndarray) -> np.ndarray:
-        # twice, for scipy squeezes a single quantity away
-        drawn = np.repeat(judged[:, None, rows], 2, axis=1)
-        found = stats.sobol_indices(
-            func={"f_A": drawn[0], "f_B": drawn[1], "f_AB": drawn[2:]}, n=rows.size
-        )
-        orders = found.first_order, found.total_order
-        return np.stack([np.reshape(order, (2, -1))[0] for order in orders])
-
-    size = judged.shape[1]
-    resampled = np.stack([
-        indices(np.asarray(generator.integers(0, size, size))) for _ in range(RESAMPLES)
-    ])  # fmt: skip
-    low, high = np.percentile(resampled, [2.5, 97.5], axis=0)
-    return indices(np.arange(size)), low, high
+    """What is judged at Saltelli's samples, (2 + inputs, quantities, size)."""
+    return np.stack([
+        judge(np.array([each.ppf(u) for each, u in zip(frozen.values(), matrix, strict=True)]))
+        for matrix in saltelli_matrices(len(frozen), size, seed)
+    ]).astype(float)  # fmt: skip

@@ -10,7 +10,7 @@ from squealpipe.schema import Outcome
 from squealpipe.tasks.inference.inference import infer_parameters
 from squealpipe.tasks.spread import reach
 from squealpipe.tasks.spread.distributions import distribution
-from squealpipe.tasks.spread.propensity import _judged_matrices, _sobol, propensity
+from squealpipe.tasks.spread.propensity import _indices, _judged_matrices, propensity
 from squealpipe.tasks.spread.reach import _feasible, _share, variants
 
 ANGLES = (0.22, 0.96)
@@ -54,8 +54,8 @@ def test_indices_are_those_of_a_product_and_too_wide_ones_are_not_given():
         return ((u[0] < a) & (u[1] < b))[None]
 
     (row,) = np.moveaxis(_judged_matrices(judge, frozen, 2**14, 5), 1, 0)
-    found = _sobol([row, row[:, : 2**8], np.zeros_like(row)], 3, 5)
-    again = _sobol([row], 3, 5)
+    (small,) = np.moveaxis(_judged_matrices(judge, frozen, 2**7, 5), 1, 0)
+    found = _indices([row, small, np.zeros_like(row)], 3)
     variance = a * b * (1.0 - a * b)
     first = np.array([b * b * a * (1 - a), a * a * b * (1 - b), 0.0]) / variance
     total = np.array([1.0 - first[1], 1.0 - first[0], 0.0])
@@ -64,11 +64,10 @@ def test_indices_are_those_of_a_product_and_too_wide_ones_are_not_given():
         np.testing.assert_allclose(found[key][0], exact, atol=0.02)
         assert (0.5 * (high - low) <= 0.02).all()
         assert (np.abs(found[key][0] - exact) <= high - low).all()
-        np.testing.assert_array_equal(found[key][0], again[key][0])
         assert np.isnan(found[key][1:, :2]).all(), "too small a sample, or nothing that differs"
     widths = found["half_width_by_size"]
-    np.testing.assert_allclose(widths[0, 1:] / widths[0, :-1], 0.5**0.5, rtol=0.35)
-    assert widths[1, -1] > 0.02
+    assert (widths[0, 1:] < widths[0, :-1]).all()
+    assert widths[1, -1] > 0.05
     assert np.isnan(widths[2]).all()
 
 
