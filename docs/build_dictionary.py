@@ -17,8 +17,7 @@ inputs. Units are those of the parameters (SI by default).
 
 {ANGLE_CONVENTION}.
 
-In files, `time` counts from an arbitrary date, as CF asks; `squealpipe.load` gives seconds since
-the start of the run, and so does `xarray.open_dataset(path, decode_times=False)`.
+`time` is in s since the start of the run, so it is a plain coordinate and not a date of CF.
 
 NaN always has its reason in an outcome of the same dataset. Flags are integers; their meanings are
 attributes of the variable and listed here.

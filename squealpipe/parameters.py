@@ -17,6 +17,7 @@ LAW_NAMES = tuple(LAWS)
 
 FULL_TURN = 2 * math.pi * (1 + 1e-9)
 """Largest angle, rad; beyond it one meant degrees, or slipped."""
+BEYOND_A_TURN = "more than a full turn; angles are in rad, from −2π to 2π"
 HORIZON = 200.0
 """Default horizon of maps and questions, in units of √(m/k1)."""
 
@@ -245,6 +246,9 @@ NUMBERS_OF_A1: dict[str, str] = {
 }
 """What laws and engine read → the parameter that it is, for all numbers that enter A1."""
 
+SYMBOLS = {"m": "mass", "V": "belt_speed", "l_pre": "preload", "L1": "length1", "L2": "length2"}
+"""The paper's symbols for parameters that have another name here."""
+
 DEFAULTS: dict[str, Any] = {item.name: item.default for item in fields(Parameters)}
 
 Parameters.__doc__ = f"{Parameters.__doc__}\n    Attributes:\n" + "\n".join(
@@ -286,6 +290,8 @@ class Scene:
         for key, value in checked.items():
             if not is_finite_number(value):
                 raise ValueError(f"scene {self.name}: {key} = {value!r}: a finite number is needed")
+            if key != "t_end" and abs(value) > FULL_TURN:
+                raise ValueError(f"scene {self.name}: {key} = {value!r}: {BEYOND_A_TURN}")
         if not self.t_end > 0:
             raise ValueError(f"scene {self.name}: t_end = {self.t_end!r}: must be greater than 0")
 

@@ -15,8 +15,8 @@ import numpy as np
 from annotated_types import Ge, Gt, Interval
 from pydantic import AfterValidator, BeforeValidator, ConfigDict, ValidationError, validate_call
 
-from squealpipe.parameters import FULL_TURN, brief, is_whole_number
-from squealpipe.text import suggestion
+from squealpipe.parameters import BEYOND_A_TURN, FULL_TURN, brief, is_whole_number
+from squealpipe.text import in_words, suggestion
 
 Given = ParamSpec("Given")
 Result = TypeVar("Result")
@@ -64,13 +64,7 @@ def _refusal(error: ValidationError, names: list[str]) -> Exception:
         near = f"; {suggestion(name, names)}" if first["type"].startswith("unexpected") else ""
         return TypeError(f"{error.title}: {name}: {first['msg'].lower()}{near}")
     where = "".join(f"[{step!r}]" for step in inside if step != "[key]")
-    told = (
-        first["msg"]
-        .removeprefix("Value error, ")
-        .replace("Input should", "must")
-        .replace("a valid boolean", "True or False")
-    )
-    return ValueError(f"{name}{where} = {brief(first['input'])}: {told}")
+    return ValueError(f"{name}{where} = {brief(first['input'])}: {in_words(first)}")
 
 
 def real_array(name: str, values: Any, *, infinite: bool = False) -> np.ndarray:
@@ -159,7 +153,7 @@ def within_a_turn(angles: Any) -> Any:
         ValueError: one lies beyond a full turn.
     """
     if np.any(np.abs(angles) > FULL_TURN):
-        raise ValueError("more than a full turn; angles are in rad, from −2π to 2π")
+        raise ValueError(BEYOND_A_TURN)
     return angles
 
 

@@ -259,7 +259,7 @@ def test_a_sweep_follows_the_parameters_that_it_does_not_name(written):
         ("{vary: {mu: [1, x]}}", "mu: 'x' is no number"),
         ("{vary: {}}", "sweeps.mine.vary = {}: 1 or more items are needed"),
         ("{vary: [1]}", "sweeps.mine.vary = (1,): names and values are needed"),
-        ("{fixed: {alpha1: north}}", "'north' is no angle; write 0.4pi"),
+        ("{fixed: {alpha1: north}}", "'north' is not a valid angle; write 0.4pi"),
         ("{fixed: {k3: {a: 1}}}", "k3: {'a': 1} is no value; write a number"),
         ("{fixd: {}}", "sweeps.mine.fixd: unknown key; did you mean 'fixed'?"),
         ("{vary: {mu: 1:3:20}}", "line 2: 1:3:20 is one number to YAML; write '1:3:20' in quotes"),

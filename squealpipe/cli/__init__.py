@@ -11,7 +11,7 @@ from collections.abc import Callable, Sequence
 from cyclopts import App, CycloptsError
 from cyclopts.exceptions import UnusedCliTokensError
 
-from squealpipe.cli.arguments import parameters_from_study
+from squealpipe.cli.arguments import by_name, parameters_from_study
 from squealpipe.cli.backbone import backbone
 from squealpipe.cli.claims import claims
 from squealpipe.cli.console import SESSION, TRACEBACK, session
@@ -25,6 +25,7 @@ from squealpipe.cli.propensity import propensity
 from squealpipe.cli.simulate import simulate
 from squealpipe.cli.study import archive, compare, explain, verify
 from squealpipe.cli.sweep import sweep
+from squealpipe.text import visible
 
 HELP = """Friction-induced vibration with contact loss: from one run to the whole study.
 
@@ -86,7 +87,7 @@ def run(arguments: Sequence[str]) -> int:
     """Run a command and return its exit code; errors become one message on standard error."""
     with session(arguments) as left, watched():
         try:
-            code = int(application()(left))
+            code = int(application()(list(map(by_name, left))))
             sys.stdout.flush()
         except BrokenPipeError:  # the reader, for instance `head`, has enough
             os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
@@ -103,7 +104,7 @@ def run(arguments: Sequence[str]) -> int:
             with contextlib.suppress(BrokenPipeError):  # nobody reads it
                 if SESSION.verbose:
                     traceback.print_exc()
-                print(f"squealpipe: {_told(error)}", file=sys.stderr)
+                print(f"squealpipe: {visible(_told(error))}", file=sys.stderr)
             return NOT_DONE
         return code
 

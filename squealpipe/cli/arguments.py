@@ -11,7 +11,7 @@ from cyclopts import App, ArgumentCollection, Group, Parameter, Token
 
 from squealpipe.cli.console import SESSION
 from squealpipe.config.ranges import parse_angle, parse_number, parse_range
-from squealpipe.parameters import Parameters
+from squealpipe.parameters import SYMBOLS, Parameters
 
 
 def _angle(_: Any, tokens: Sequence[Any]) -> float:
@@ -55,6 +55,13 @@ Switch = Annotated[bool, Parameter(negative="")]
 BASELINE = Parameters()
 FULL_RANGE = parse_range("0:pi:61", parse_angle)
 """Both spring angles from 0 to π."""
+
+
+def by_name(argument: str) -> str:
+    """An option by the name of its parameter where it is given by the paper's symbol: --V."""
+    flag, equals, value = argument.partition("=")
+    name = SYMBOLS.get(flag[2:]) if flag.startswith("--") else None
+    return f"--{name.replace('_', '-')}{equals}{value}" if name else argument
 
 
 def parameters_from_study(_: App, __: tuple[str, ...], arguments: ArgumentCollection) -> None:

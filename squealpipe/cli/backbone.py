@@ -15,7 +15,7 @@ from squealpipe.cli.arguments import (
     Switch,
     Whole,
 )
-from squealpipe.cli.console import say
+from squealpipe.cli.console import answer, say
 from squealpipe.cli.cost import estimate
 from squealpipe.cli.exit_codes import ANSWER_IS_NO, DONE
 from squealpipe.cli.output import check_outputs, write
@@ -78,15 +78,16 @@ def backbone(
     save_figure(draw(branch, preload=params.preload), [picture])
     end = Outcome(int(branch.end))
     if not branch.sizes["point"]:
-        say(
+        answer(
             f"mode {mode} has no periodic motions here: {end.name} ({REMEDIES[end]}); "
-            f"try other angles or parameters; wrote {output} and {picture}"
+            "try other angles or parameters"
         )
+        say(f"wrote {output} and {picture}")
         return ANSWER_IS_NO
-    say(
+    answer(
         f"mode {mode}: {branch.sizes['point']} points, ω from {float(branch.omega[0]):.6g} "
         f"to {float(branch.omega[-1]):.6g} rad/s",
         f"the branch ends: {end.name} ({REMEDIES[end]})",
-        f"wrote {output} and {picture}",
     )
+    say(f"wrote {output} and {picture}")
     return DONE

@@ -6,11 +6,12 @@ import os
 import sys
 import warnings
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, redirect_stdout
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, TextIO, cast
 
 from squealpipe import progress
+from squealpipe.text import visible
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -19,6 +20,11 @@ TRACEBACK = "SQUEALPIPE_TRACEBACK"
 """Environment variable that asks for tracebacks, as -v does."""
 PATIENCE = 1.5
 """Seconds from Ctrl-C after which a command that has not stopped by itself is ended."""
+SPELLED = str.maketrans(
+    {"ω": "omega", "α": "alpha", "κ": "kappa", "λ": "lambda", "μ": "mu", "π": "pi", "√": "sqrt",
+     "−": "-", "–": "-", "…": "...", "·": "*", "²": "^2", "₀": "0", "ẋ": "x'", "≤": "<=", "≥": ">="}
+)  # fmt: skip
+"""What a terminal without these letters shows."""
 SWITCHES = {"-q": "quiet", "--quiet": "quiet", "-v": "verbose", "--verbose": "verbose"}
 
 
@@ -50,6 +56,26 @@ class _Session:
 SESSION = _Session()
 
 
+class _Terminal:
+    """The standard output: control characters of a file's text are shown, not obeyed, and a
+    terminal that knows no Greek gets it in letters.
+    """
+
+    def __init__(self, stream: TextIO) -> None:
+        self._stream = stream
+
+    def write(self, text: str) -> int:
+        encoding, text = self._stream.encoding or "utf-8", visible(text)
+        try:
+            text.encode(encoding)
+        except UnicodeEncodeError:
+            text = text.translate(SPELLED).encode(encoding, "replace").decode(encoding)
+        return self._stream.write(text)
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._stream, name)
+
+
 @contextmanager
 def session(arguments: Sequence[str]) -> Iterator[list[str]]:
     """Apply -q and -v, which every command takes, and give the other arguments."""
@@ -67,7 +93,8 @@ def session(arguments: Sequence[str]) -> Iterator[list[str]]:
     SESSION.verbose = "verbose" in found or os.environ.get(TRACEBACK, "0") not in {"", "0"}
     SESSION.advice, SESSION.patience = _nothing_kept, PATIENCE
     SESSION.typed, SESSION.interrupted = set(), False
-    with warnings.catch_warnings(), progress.silenced(SESSION.quiet):
+    terminal = redirect_stdout(cast("TextIO", _Terminal(sys.stdout)))
+    with warnings.catch_warnings(), progress.silenced(SESSION.quiet), terminal:
         if not SESSION.verbose and not sys.warnoptions:
             warnings.simplefilter("ignore")
         yield kept
@@ -78,6 +105,11 @@ def say(*lines: str) -> None:
     if not SESSION.quiet:
         for line in lines:
             print(line)
+
+
+def answer(*lines: str) -> None:
+    """Print what was asked for, under -q too."""
+    print(*lines, sep="\n")
 
 
 def console() -> Console:

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from math import prod
 from typing import Any
 
-from squealpipe.parameters import Parameters
+from squealpipe.parameters import HORIZON, Parameters
 from squealpipe.progress import duration
 
 MOST_SECONDS = 1800.0
@@ -38,7 +38,6 @@ BYTES = {"simulate": 200, "natural_frequencies": 500, "periodic_orbit": 2000, "b
 
 TIMED = ("simulate", "validity_map", "hammering_map")
 MAP_BYTES = 300
-SAMPLES_PER_TIME_UNIT, MOST_SAMPLES = 20, 20_001
 
 
 @dataclass(frozen=True)
@@ -87,11 +86,14 @@ def estimate(
     """
     seconds, memory = SECONDS[task], float(BYTES.get(task, MAP_BYTES))
     if task in TIMED:
-        horizon = float(options.get("t_end") or 200.0) / params.time_unit
+        horizon = float(options.get("t_end") or HORIZON * params.time_unit) / params.time_unit
         seconds *= horizon
         if task == "simulate":
-            default = min(SAMPLES_PER_TIME_UNIT * horizon + 1, MOST_SAMPLES)
-            count = default if samples is None else samples
+            from squealpipe.tasks.sampling import COARSE, FINE, PLENTY
+
+            radians = params.fastest * params.time_unit * horizon
+            usual = max(min(FINE * radians, PLENTY), COARSE * radians)
+            count = usual if samples is None else samples
             memory *= count
             seconds += 5e-7 * count
     if options.get("method") == "hbm":

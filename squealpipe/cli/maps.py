@@ -15,10 +15,11 @@ from squealpipe.cli.arguments import (
     Picture,
     Switch,
 )
-from squealpipe.cli.console import say
+from squealpipe.cli.console import answer, say
 from squealpipe.cli.cost import SECONDS, TIMED, estimate
 from squealpipe.cli.exit_codes import DONE
 from squealpipe.cli.output import check_outputs, write
+from squealpipe.parameters import HORIZON
 
 Kind = Literal[
     "validity", "hammering", "quasi-static", "stability", "critical-friction", "frequencies"
@@ -33,7 +34,7 @@ def map_angles(
     *,
     alpha1: AngleRange = FULL_RANGE,
     alpha2: AngleRange = FULL_RANGE,
-    t_end: float = 200.0,
+    t_end: float | None = None,
     tol: float = 1e-12,
     output: Output = Path("map.nc"),
     picture: Picture = None,
@@ -52,7 +53,7 @@ def map_angles(
         kind: what to map.
         alpha1: angles of spring 1, first:last:count or a list.
         alpha2: angles of spring 2.
-        t_end: horizon of validity and hammering maps.
+        t_end: horizon of validity and hammering maps, s; 200 √(mass/k1) by default.
         tol: tolerance of their integration.
         output: dataset to write: NetCDF (.nc) or CSV (.csv).
         picture: picture to write; by default beside the output.
@@ -62,6 +63,7 @@ def map_angles(
     """
     if min(len(alpha1), len(alpha2)) < 2:
         raise ValueError("a map needs 2 or more angles of each spring; write for instance 0:pi:31")
+    t_end = HORIZON * params.time_unit if t_end is None else t_end
     name = {"frequencies": "natural_frequencies"}.get(kind, f"{kind.replace('-', '_')}_map")
     options = {"t_end": t_end, "tol": tol} if name in TIMED else {}
     picture = check_outputs(output, picture, force=force)
@@ -95,5 +97,6 @@ def map_angles(
         checkpoint=kept,
     )
     save_figure(draw(dataset), [picture])
-    say(*SHOWN[str(dataset.attrs["schema"])].counts(dataset), f"wrote {output} and {picture}")
+    answer(*SHOWN[str(dataset.attrs["schema"])].counts(dataset))
+    say(f"wrote {output} and {picture}")
     return DONE

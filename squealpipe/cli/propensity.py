@@ -17,11 +17,12 @@ from squealpipe.cli.arguments import (
     Switch,
     Whole,
 )
-from squealpipe.cli.console import SESSION, say
+from squealpipe.cli.console import SESSION, answer, say
 from squealpipe.cli.cost import estimate
 from squealpipe.cli.exit_codes import DONE
 from squealpipe.cli.output import check_outputs, write
 from squealpipe.config.ranges import ANGLES, parse_angle, parse_number
+from squealpipe.parameters import HORIZON
 
 FORM = "write for instance mu=uniform:0.1:0.9, k1=normal:1:0.05 or k3=lognormal:0.75:0.1"
 
@@ -33,7 +34,7 @@ def propensity(
     *,
     spread: Annotated[list[str], Parameter(metavar="NAME=KIND:LOW:HIGH", negative="")],
     samples: Whole = 1024,
-    t_end: float = 200.0,
+    t_end: float | None = None,
     spring_correlation: float = 0.0,
     seed: Whole = 1,
     output: Output = Path("propensity.nc"),
@@ -54,7 +55,7 @@ def propensity(
         spread: a parameter or angle with its distribution: uniform:low:high, normal:mean:std or
             lognormal:median:log_std; repeat for more.
         samples: size of the sample, a power of 2.
-        t_end: end of each run, s.
+        t_end: end of each run, s; 200 √(mass/k1) by default.
         spring_correlation: of k1 and k2; no Sobol indices are given with it.
         seed: of the sample.
         output: dataset to write: NetCDF (.nc) or CSV (.csv).
@@ -68,6 +69,7 @@ def propensity(
         raise ValueError("--spread: a name stands twice; keep one")
     for name in sorted(set(distributions) & SESSION.typed):
         raise ValueError(f"{name} is both fixed and spread; keep one")
+    t_end = HORIZON * params.time_unit if t_end is None else t_end
     picture = check_outputs(output, picture, force=force)
     runs = samples * (len(distributions) + 3)
     estimate("hammering_map", params, {"t_end": t_end}, runs=runs).check(yes=yes)
@@ -89,7 +91,7 @@ def propensity(
         config={"parameters": params.as_dict(), "alpha1": alpha1, "alpha2": alpha2, **options},
     )
     save_figure(draw(dataset), [picture])
-    say(
+    answer(
         *(
             f"{str(name).replace('_', ' '):<20} {100 * share:6.2f} %  "
             f"(95 %: {100 * low:.2f} to {100 * high:.2f})"
@@ -98,8 +100,8 @@ def propensity(
                 dataset.share_high.values, strict=True,
             )
         ),
-        f"wrote {output} and {picture}",
     )  # fmt: skip
+    say(f"wrote {output} and {picture}")
     return DONE
 
 

@@ -16,7 +16,7 @@ from squealpipe.cli.arguments import (
     Switch,
     Whole,
 )
-from squealpipe.cli.console import say
+from squealpipe.cli.console import answer, say
 from squealpipe.cli.cost import estimate
 from squealpipe.cli.exit_codes import ANSWER_IS_NO, DONE
 from squealpipe.cli.output import check_outputs, write
@@ -30,10 +30,10 @@ def simulate(
     alpha2: Angle,
     /,
     *,
-    t_end: float = 50.0,
+    t_end: float | None = None,
     model: Model = "A1",
     tol: float = 1e-12,
-    points: Whole = 2001,
+    points: Whole | None = None,
     x0: float = 0.0,
     y0: float = 0.0,
     vx0: float = 0.0,
@@ -52,10 +52,10 @@ def simulate(
     Args:
         alpha1: angle of spring 1: 0.4pi, 2pi/5, 72deg or radians.
         alpha2: angle of spring 2.
-        t_end: horizon, s; at the baseline 1 s is √(mass/k1).
+        t_end: horizon, s; 50 √(mass/k1) by default.
         model: level of the model.
         tol: tolerance of the integration.
-        points: instants at which the state is kept.
+        points: instants at which the state is kept; by default enough for the fastest oscillation.
         x0: displacement along the belt at the start.
         y0: displacement away from the belt at the start.
         vx0: speed along the belt at the start.
@@ -66,8 +66,9 @@ def simulate(
         yes: go on though it takes long or much memory.
         config: study whose parameters are used where none are typed; repeatable.
     """
-    if points < 16:
+    if points is not None and points < 16:
         raise ValueError(f"--points {points} is too few to show a motion; give 16 or more")
+    t_end = 50.0 * params.time_unit if t_end is None else t_end
     if not (t_end > 0 and math.isfinite(t_end)):
         raise ValueError(f"--t-end {t_end!r} must be greater than 0 and finite")
     picture = check_outputs(output, picture, force=force)
@@ -80,13 +81,13 @@ def simulate(
     from squealpipe.study.figures.parts.style import save_figure
     from squealpipe.tasks.dynamics.runs import simulate as task
     from squealpipe.tasks.dynamics.summary import summarize, summary_lines
-    from squealpipe.tasks.sampling import FEWEST
+    from squealpipe.tasks.sampling import FEWEST, default_times, unresolved
 
     options: dict[str, Any] = {"t_end": t_end, "model": model, "tol": tol}
     if any((x0, y0, vx0, vy0)):
         options["initial_state"] = [x0, y0, vx0, vy0]
     settings = {"parameters": params.as_dict(), "alpha1": alpha1, "alpha2": alpha2, **options}
-    times = np.linspace(0.0, t_end, points)
+    times = default_times(params, t_end) if points is None else np.linspace(0.0, t_end, points)
     with Progress(t_end, "simulation", unit="s of motion") as progress:
 
         def tell(scaled_time: float) -> None:
@@ -97,19 +98,22 @@ def simulate(
             run = write(
                 lambda: task(params, alpha1, alpha2, times=times, **options),
                 output,
-                config={**settings, "points": points},
+                config={**settings, "points": times.size},
             )
         progress.done = t_end
     outcome = Outcome(int(run.outcome))
     early = f"the run ended early: {outcome.name} ({REMEDIES[outcome]})"
     if outcome is not Outcome.converged and np.isfinite(run.x).sum() < FEWEST:
-        say(early, f"wrote {output}, too short for a picture")
+        answer(early)
+        say(f"wrote {output}, too short for a picture")
         return ANSWER_IS_NO
     summary = summarize(run)
-    say(*summary_lines(run, summary))
+    answer(*summary_lines(run, summary))
+    if missed := unresolved(params, times):
+        answer(f"note: {missed}")
     save_figure(draw(run, summary), [picture])
     say(f"wrote {output} and {picture}")
     if outcome is Outcome.converged:
         return DONE
-    say(early)
+    answer(early)
     return ANSWER_IS_NO

@@ -9,11 +9,12 @@ from typing import Annotated
 from cyclopts import Parameter
 
 from squealpipe.cli.arguments import BASELINE, Angle, Configs, Output, Physical, Switch, Whole
-from squealpipe.cli.console import SESSION, say
+from squealpipe.cli.console import SESSION, answer, say
 from squealpipe.cli.cost import of_sweep
 from squealpipe.cli.exit_codes import DONE
 from squealpipe.cli.output import check_output, write
 from squealpipe.config.ranges import read_fixed, read_values, sweep_config
+from squealpipe.parameters import SYMBOLS
 
 
 def sweep(
@@ -84,7 +85,8 @@ def sweep(
             config=settings,
             checkpoint=kept,
         )
-    say(*lines(dataset, plan.names), f"wrote {output}")
+    answer(*lines(dataset, plan.names))
+    say(f"wrote {output}")
     return DONE
 
 
@@ -100,6 +102,7 @@ def _pairs(flag: str, texts: Sequence[str]) -> dict[str, str]:
         if not (name and equals and value):
             raise ValueError(f"{text!r} is no NAME=VALUE; write for instance mu=0:0.6:13")
         key = name.strip().replace("-", "_")
+        key = SYMBOLS.get(key, key)
         if key in found:
             raise ValueError(f"{flag} {key} stands twice; keep one, with all its values")
         found[key] = value

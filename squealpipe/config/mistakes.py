@@ -10,29 +10,10 @@ from typing import Any
 
 from pydantic import BaseModel, ValidationError
 
-from squealpipe.text import nearest
+from squealpipe.parameters import SYMBOLS
+from squealpipe.text import in_words, nearest
 
 NUMBER_AS_TEXT = re.compile(r"\s*[-+]?[\d.]+([eE][-+]?\d+)?\s*")
-
-WORDS = {
-    "model_type": "keys and values are needed, like `points: 31`",
-    "dict_type": "names and values are needed, like `name: [0.3, 0.9]`",
-    "tuple_type": "a list is needed, like [0.3, 0.9]",
-    "list_type": "a list is needed, like [0.3, 0.9]",
-    "float_type": "a number is needed",
-    "int_type": "a whole number is needed",
-    "string_type": "text is needed",
-    "string_pattern_mismatch": "only letters, digits and . _ / - are allowed",
-    "finite_number": "a finite number is needed",
-    "greater_than": "it must be greater than {gt:g}",
-    "greater_than_equal": "it must be {ge:g} or greater",
-    "less_than_equal": "it must be {le:g} or less",
-    "literal_error": "choose from {expected}",
-    "too_short": "{min_length} or more items are needed",
-    "too_long": "at most {max_length} items are allowed",
-    "missing": "this key is needed",
-}
-"""What is allowed, by the kind of fault that pydantic names."""
 
 LONGEST = 80
 """Characters of a value that a message quotes."""
@@ -70,16 +51,12 @@ def mistakes(
         if fault["type"] == "extra_forbidden":
             yield f"{path}: unknown key; {_nearest(fault['loc'], model)}"
             continue
-        message = fault["msg"].removeprefix("Value error, ")
-        if fault["type"] == "value_error":  # one of ours, which says what to do
-            yield f"{path} = {_quoted(fault['input'])}: {message}"
-            continue
-        message = WORDS.get(fault["type"], message[0].lower() + message[1:])
-        message = message.format(**fault.get("ctx", {}))
         if fault["type"] == "missing":
-            yield f"{path}: {message}"
+            yield f"{path}: {in_words(fault)}"
             continue
-        yield f"{path} = {_quoted(fault['input'])}: {message}{_remedy(fault['input'])}"
+        # one of ours says what to do
+        remedy = "" if fault["type"] == "value_error" else _remedy(fault["input"])
+        yield f"{path} = {_quoted(fault['input'])}: {in_words(fault)}{remedy}"
 
 
 def known_keys(model: type[BaseModel], stem: str = "") -> Iterator[str]:
@@ -99,7 +76,7 @@ def _nearest(location: tuple[int | str, ...], model: type[BaseModel]) -> str:
     every = list(known_keys(model))
     siblings = [path for path in every if fnmatch.fnmatchcase(stem, path.rpartition(".")[0])]
     names = [path.rpartition(".")[2] for path in siblings]
-    near = nearest(wrong, names)
+    near = SYMBOLS.get(wrong) if SYMBOLS.get(wrong) in names else nearest(wrong, names)
     if near:
         return f"did you mean {near!r}?"
     elsewhere = [path for path in every if path.rpartition(".")[2] == wrong]

@@ -10,14 +10,14 @@ import re
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
-from squealpipe.parameters import FULL_TURN, TABLE
+from squealpipe.parameters import BEYOND_A_TURN, FULL_TURN, TABLE
 
 _NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
 _PI = re.compile(
     rf"^(?P<sign>[+-])?(?P<head>{_NUMBER})?\s*\*?\s*(?:pi|π)(?:/(?P<below>{_NUMBER}))?$"
 )
 _DEGREES = re.compile(rf"^(?P<value>{_NUMBER})\s*(?:deg|°)$")
-_RADIANS = re.compile(rf"^(?P<value>{_NUMBER})\s*(?P<unit>rad)?$")
+_RADIANS = re.compile(rf"^(?P<value>{_NUMBER})\s*(?:rad)?$")
 ANGLE_FORMS = "write 0.4pi, 2pi/5, 72deg or radians"
 ANGLES = ("alpha1", "alpha2")
 PHYSICAL = tuple(TABLE)
@@ -36,23 +36,23 @@ def parse_angle(text: str) -> float:
     Raises:
         ValueError: the text is none of these; the message lists them.
     """
-    stripped = text.strip().lower()
-    if match := _PI.match(stripped):
+    value = _angle_in(text.strip().lower())
+    if value is None or not math.isfinite(value):
+        raise ValueError(f"{text!r} is not a valid angle; {ANGLE_FORMS}")
+    if abs(value) > FULL_TURN:
+        raise ValueError(f"{text.strip()}: {BEYOND_A_TURN}; degrees are written like 72deg")
+    return value
+
+
+def _angle_in(text: str) -> float | None:
+    if match := _PI.match(text):
         head = float(match["head"] or 1) * (-1 if match["sign"] == "-" else 1)
         below = float(match["below"] or 1)
-        if below:
-            return head * math.pi / below
-    elif match := _DEGREES.match(stripped):
+        return head * math.pi / below if below else None
+    if match := _DEGREES.match(text):
         return math.radians(float(match["value"]))
-    elif (match := _RADIANS.match(stripped)) and math.isfinite(float(match["value"])):
-        value = float(match["value"])
-        if abs(value) > FULL_TURN and not match["unit"]:
-            raise ValueError(
-                f"{text.strip()} without a unit is more than a full turn in rad; "
-                f"write {text.strip()}deg or {text.strip()}rad"
-            )
-        return value
-    raise ValueError(f"{text!r} is no angle; {ANGLE_FORMS}")
+    match = _RADIANS.match(text)
+    return float(match["value"]) if match else None
 
 
 def parse_number(text: str) -> float:

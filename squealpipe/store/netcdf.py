@@ -15,7 +15,6 @@ import xarray as xr
 
 from squealpipe.schema import SchemaError, find, validate
 from squealpipe.store.checkout import commit
-from squealpipe.store.conventions import as_dataset, as_file
 from squealpipe.store.header import header_of
 from squealpipe.store.identity import dataset_id
 from squealpipe.store.seal import SEALED, Seal, archive_around, judge, write_seal
@@ -68,7 +67,7 @@ def save(dataset: xr.Dataset, path: AnyPath) -> Path:
         )
         os.close(handle)
         temporary = Path(name_)
-        as_file(dataset).to_netcdf(temporary, engine="netcdf4", format="NETCDF4", encoding=encoding)
+        dataset.to_netcdf(temporary, engine="netcdf4", format="NETCDF4", encoding=encoding)
         written = _read(temporary)
         _check_content(written, temporary)
         write_seal(temporary, header_of(written))
@@ -167,7 +166,7 @@ def _read(source: Path) -> xr.Dataset:
     try:
         with xr.open_dataset(source, engine="netcdf4", decode_times=False) as opened:
             _refuse_too_large(opened)
-            dataset = as_dataset(opened.load())
+            dataset = opened.load()
     except DAMAGED as error:
         raise StoreError(
             f"{source} is truncated or not NetCDF-4 ({error}); delete it and run snakemake again"

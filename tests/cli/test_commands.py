@@ -86,8 +86,8 @@ def test_help_loads_no_numerics():
         ),
         ([*SWEPT, "--vary", "friction_law=coulomb,exponential"], "sweep once for each"),
         (["simulate", "1", "2", "3"], "too many arguments: 3"),
-        (["simulate", "72", "108"], "write 72deg or 72rad"),
-        (["map", "stability", "--alpha1", "0:360:37"], "write 360deg or 360rad"),
+        (["simulate", "72", "108"], "72: more than a full turn; angles are in rad"),
+        (["map", "stability", "--alpha1", "0:360:37"], "degrees are written like 72deg"),
         (["simulate", "1", "2", "-o", "."], "is a folder; give a file in it, NAME.nc"),
         (["simulate", "1", "2", "-o", "-"], "nothing is streamed"),
         (["simulate", "1", "2", "-o", "/dev/null"], "a device or pipe, not a file"),
@@ -177,7 +177,7 @@ def test_backbone_follows_the_linear_mode_first(capsys):
 def test_an_empty_backbone_gives_its_reason_in_one_line(angles, reason, method, capsys, tmp_path):
     assert run(["backbone", *angles, "--method", method, "-o", "b.nc"]) == 1
     told = capsys.readouterr()
-    assert told.out.count("\n") == 1
+    assert told.out.count("\n") == 2
     assert reason in told.out
     assert "try other angles" in told.out
     assert not told.err

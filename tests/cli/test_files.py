@@ -126,9 +126,11 @@ def test_sweep_tells_outcomes_and_where_nan_comes_from(capsys):
     assert "where the outcome is tongue_end (mu = 0.1)" in out
 
 
-def test_quiet_prints_nothing_and_warnings_do_not_leak(capfd):
+def test_quiet_prints_the_answer_alone_and_warnings_do_not_leak(capfd):
     assert run([*STABILITY, "-q"]) == 0
-    assert capfd.readouterr() == ("", "")
+    out, err = capfd.readouterr()
+    assert "wrote" not in out
+    assert (out.count("\n"), err) == (1, "")
 
 
 def test_unexpected_errors_are_one_line_and_a_traceback_on_request(capsys, monkeypatch):

@@ -91,9 +91,11 @@ ANGLES = Kind(
     ),
     NO_ANGLES,
 )
+MANY = Kind(ANGLE.good, NO_ANGLES[2:17])
 HORIZON = number(0.05, 8.0)
 MAYBE = Kind(HORIZON.good, [bad for bad in HORIZON.bad if bad is not None])
 FROM_NOW = number(0.05, 8.0, zero=True)
+LATER = Kind(FROM_NOW.good, [bad for bad in FROM_NOW.bad if bad is not None])
 TOL = Kind(lambda rng: 10.0 ** rng.uniform(-17, -3), [*NO_NUMBER, 0.0, -1e-6, 1.0, 1e-19, 1e-300])
 MODEL = one_of("A1", "A1-no-stick", "A1-no-separation", "A1-linear-springs", "A1-as-printed", "A4")
 STATE = Kind(
@@ -104,7 +106,7 @@ OPTIONAL = [bad for bad in NO_NUMBER if bad is not None]
 SIGMA = Kind(lambda rng: rng.choice([None, 10.0, 1e3]), OPTIONAL)
 START = Kind(
     lambda rng: rng.choice([0.0, rng.uniform(-0.5, 0.5), [rng.uniform(-0.5, 0.0), 0.3]]),
-    [bad for bad in NO_ANGLES if not isinstance(bad, np.ma.MaskedArray)],
+    [bad for bad in NO_ANGLES[2:] if not isinstance(bad, np.ma.MaskedArray)],
 )
 ONE = Kind(lambda _: 1, [0, -1, 1.0, "1", True, 10**400])
 LEAST_ONE = Kind(lambda rng: rng.choice([1, 2, np.int64(3)]), [0, -1, 1.5, "1", True, [], 10**400])
@@ -145,7 +147,7 @@ CALLS: dict[str, tuple[float, Callable[..., Any], dict[str, Kind]]] = {
         3.0, sp.simulate,
         {**SCENE, "t_end": FROM_NOW, "model": MODEL, "tol": TOL, "initial_state": STATE},
     ),
-    "validity_map": (1.0, sp.validity_map, {**MAP, "t_end": MAYBE, "tol": TOL, "workers": ONE}),
+    "validity_map": (1.0, sp.validity_map, {**MAP, "t_end": LATER, "tol": TOL, "workers": ONE}),
     "hammering_map": (1.0, sp.hammering_map, {**MAP, "t_end": HORIZON, "tol": TOL, "workers": ONE}),
     "basin_map": (
         0.5, sp.basin_map, {**SCENE, "x": START, "vy": START, "t_end": HORIZON, "workers": ONE}
@@ -169,7 +171,8 @@ CALLS: dict[str, tuple[float, Callable[..., Any], dict[str, Kind]]] = {
     ),
     "run_ensemble": (
         1.0, run_ensemble,
-        {**SCENE, "t_end": FROM_NOW, "model": MODEL, "tol": TOL, "tangent": TRUTH,
+        {"alpha1": MANY, "alpha2": MANY, "t_end": FROM_NOW, "model": MODEL, "tol": TOL,
+         "tangent": TRUTH,
          "log_events": Kind(lambda _: 3, SEED.bad), "stop_at_first_separation": TRUTH,
          "stop_at_turns": HORIZON,
          "initial_state": STATE, "workers": ONE},

@@ -7,16 +7,8 @@ import operator
 from collections.abc import Callable, Mapping
 from typing import Any
 
+from squealpipe.parameters import SYMBOLS
 from squealpipe.text import nearest
-
-SYMBOLS = {
-    "m": "mass",
-    "V": "belt_speed",
-    "l_pre": "preload",
-    "L1": "length1",
-    "L2": "length2",
-}
-"""The paper's symbols for parameters that have another name here."""
 
 LONGEST = 1000
 COMPARISONS: dict[type[ast.cmpop], Callable[[Any, Any], bool]] = {

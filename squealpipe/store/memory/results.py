@@ -60,7 +60,10 @@ def open_results(
             {name: open_lazily(path) for name, path in files.items()}, name=place.name
         )
     if along != RUN or not name_or_path:
-        raise ValueError(f"along = {along!r}: give one run, or a list of runs and along='run'")
+        raise ValueError(
+            f"name_or_path = {name_or_path!r}, along = {along!r}: give one run, or a list of runs "
+            "and along='run'"
+        )
     runs = {str(item): dataset_files(locate(item, root)) for item in name_or_path}
     if len(runs) < len(name_or_path):
         raise ValueError("a run is named twice; name each once")

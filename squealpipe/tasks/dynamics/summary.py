@@ -90,7 +90,9 @@ def summary_lines(run: xr.Dataset, summary: xr.Dataset) -> Iterator[str]:
     first = float(summary.first_separation_time)
     yield f"regime             {_regime(summary)}"
     yield "first separation   " + (
-        f"t = {first:.6g}" if np.isfinite(first) else f"none until t = {float(run.time_reached):g}"
+        f"t = {first:.6g} s"
+        if np.isfinite(first)
+        else f"none until t = {float(run.time_reached):g} s"
     )
     yield f"impacts            {float(summary.impact_rate):.4g} per second"
     yield f"peak contact force {float(summary.peak_contact_force):.5g} k3 l_pre"

@@ -102,7 +102,7 @@ def _spectrum(axes: Axes, summary: xr.Dataset) -> None:
     axes.plot(summary.frequency, summary.force_spectrum, color=BLUE)
     axes.plot(summary.dominant_frequency, summary.dominant_amplitude, "v", color=RED, markersize=4)
     peaks = summary.dominant_frequency.values
-    axes.set_xlim(0, max(4.0, 1.6 * float(peaks.max())) if peaks.size else None)
+    axes.set_xlim(0, 1.6 * float(peaks.max()) if peaks.size else None)
     axes.set_ylim(bottom=0)
     axes.set(xlabel="ω (rad/s)", ylabel=f"amplitude of {FORCE}")
     panel_letter(axes, "d", "spectrum of the contact force")

@@ -1,0 +1,108 @@
+"""A brake in SI units gets the answers of the same brake in units of its own, without options."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import squealpipe as sp
+from squealpipe.cli import run
+
+SI = sp.Parameters(
+    mass=0.5, k1=1e7, k2=1e7, k3=7e6, mu=0.3, belt_speed=5.0, preload=1e-3, length1=0.05,
+    length2=0.05, sigma=1e6,
+)  # fmt: skip
+TIME, LENGTH, FORCE = SI.time_unit, SI.preload, SI.k1 * SI.preload
+UNIT = sp.Parameters(
+    mass=1.0, k1=1.0, k2=1.0, k3=0.7, mu=0.3, belt_speed=5.0 * TIME / LENGTH, preload=1.0,
+    length1=0.05 / LENGTH, length2=0.05 / LENGTH, sigma=1e6 * LENGTH,
+)  # fmt: skip
+UNITS = {
+    "s": TIME, "s-1": 1 / TIME, "rad s-1": 1 / TIME, "m": LENGTH, "m s-1": LENGTH / TIME,
+    "N": FORCE, "N m-1": SI.k1,
+}  # fmt: skip
+A, B = 5 * np.pi / 6, 0.8 * np.pi
+AXIS = np.linspace(0.1, 3.0, 7)
+CALLS = {
+    "simulate": lambda p: sp.simulate(p, A, B, t_end=30 * p.time_unit),
+    "summarize": lambda p: sp.summarize(sp.simulate(p, A, B, t_end=30 * p.time_unit)),
+    "validity_map": lambda p: sp.validity_map(p, AXIS, AXIS),
+    "refine_validity_map": lambda p: sp.refine_validity_map(p, resolution=9, coarse=5),
+    "hammering_map": lambda p: sp.hammering_map(p, AXIS, AXIS, t_end=30 * p.time_unit),
+    "basin_map": lambda p: sp.basin_map(
+        p, A, B, x=[0.0, 0.3 * p.preload], t_end=30 * p.time_unit
+    ),
+    "smallest_disturbance": lambda p: sp.smallest_disturbance(p, 0.4, 1.0, directions=8),
+    "quasi_static_map": lambda p: sp.quasi_static_map(p, AXIS, AXIS),
+    "stability_map": lambda p: sp.stability_map(p, AXIS, AXIS),
+    "critical_friction_map": lambda p: sp.critical_friction_map(p, AXIS, AXIS),
+    "natural_frequencies": lambda p: sp.natural_frequencies(p, AXIS, AXIS),
+    "periodic_orbit": lambda p: sp.periodic_orbit(
+        p, 0.3 * np.pi, 0.9 * np.pi, mode=1, y_peak=2 * p.preload
+    ),
+    "backbone": lambda p: sp.backbone(p, A, A, mode=1),
+    "backbone by harmonics": lambda p: sp.backbone(
+        p, 0.3 * np.pi, 0.9 * np.pi, mode=2, y_peak_max=1.5 * p.preload, method="hbm"
+    ),
+    "limit_cycle": lambda p: sp.limit_cycle(
+        p, 0.07 * np.pi, 0.305 * np.pi, t_settle=20 * p.time_unit
+    ),
+    "propensity": lambda p: sp.propensity(
+        p, 0.3, 1.0, samples=64, t_end=20 * p.time_unit,
+        distributions={"mu": {"distribution": "uniform", "low": 0.1, "high": 0.9}},
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", CALLS)
+def test_answers_scale(name):
+    """As long as no chaos magnifies the last digits, which these horizons leave no time for."""
+    real, scaled = CALLS[name](SI), CALLS[name](UNIT)
+    assert dict(real.sizes) == dict(scaled.sizes)
+    for key, variable in real.variables.items():
+        if variable.dtype.kind not in "fiub":
+            continue
+        unit = UNITS.get(variable.attrs.get("units", "1"), 1.0)
+        size = np.abs(scaled[key].values[np.isfinite(scaled[key].values)])
+        atol = 1e-7 * size.max(initial=1.0)
+        np.testing.assert_allclose(
+            variable.values / unit, scaled[key].values, rtol=1e-6, atol=atol, err_msg=str(key)
+        )
+
+
+@pytest.mark.parametrize("question", ["contact_lost", "frequency", "max_displacement"])
+def test_choices_scale(question):
+    unit = {"frequency": 1 / TIME, "max_displacement": LENGTH}.get(question, 1.0)
+    real, scaled = (sp.choose_model(p, A, B, question, 0.05) for p in (SI, UNIT))
+    assert real.model == scaled.model
+    assert float(real.value) / unit == pytest.approx(float(scaled.value), rel=1e-6)
+
+
+def typed(params):
+    return [f"--{name.replace('_', '-')}={value}" for name, value in params.as_dict().items()]
+
+
+def test_simulate_prints_the_frequency_of_the_motion(capsys, tmp_path, monkeypatch):
+    """Without options: no beat of samples a thousand periods apart."""
+    monkeypatch.chdir(tmp_path)
+    command = ["simulate", "0.5pi", "pi", "--model", "A4", *typed(SI)]
+    assert run([*command, "-q"]) == 0
+    printed = capsys.readouterr().out.split("ω = ")[1]
+    assert float(printed.split()[0].rstrip(",")) == pytest.approx(np.sqrt(1.7e7 / 0.5), rel=0.02)
+    assert run([*command, "--t-end", "50", "--points", "2001", "-o", "far.nc"]) == 0
+    assert "do not resolve oscillations of period" in capsys.readouterr().out
+
+
+def test_instants_that_skip_oscillations_are_reported():
+    with pytest.warns(UserWarning, match="do not resolve") as caught:
+        sp.simulate(SI, A, B, t_end=1.0, times=np.linspace(0, 1, 101))
+    assert caught[0].filename == __file__
+
+
+def test_times_stay_numbers_where_xarray_opens_a_file(tmp_path):
+    import xarray as xr
+
+    path = sp.save(CALLS["simulate"](SI), tmp_path / "run.nc")
+    with xr.open_dataset(path) as opened:
+        assert all(opened[name].dtype.kind == "f" for name in ("time", "event_time"))
+        np.testing.assert_array_equal(opened.time, sp.load(path).time)
