@@ -85,7 +85,7 @@ def compile_system(system: HybridSystem, *, tangent: bool, few: bool = False) ->
 
 
 def _from_source(name: str, source: str, few: bool) -> Any:
-    names = "load store number fma splat root exponential magnitude larger"
+    names = "load store number fma splat root exponential logarithm sine cosine magnitude larger"
     scope: dict[str, Any] = {each: getattr(simd, each) for each in names.split()}
     if few:
         scope |= {"load": simd.load_few, "splat": simd.splat_few}

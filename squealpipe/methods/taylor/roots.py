@@ -38,19 +38,23 @@ def _largest_third(coefficients: Any, variable: int, lane: int, step: float) -> 
 
 
 @part
-def first_root(coefficients: Any, variable: int, lane: int, step: float) -> Any:
-    """The first t in (0, step] where the polynomial changes its sign or touches zero.
+def first_root(
+    coefficients: Any, variable: int, lane: int, step: float, start: float = 0.0, known: float = 0.0
+) -> Any:
+    """The first t in (start, step] where the polynomial changes its sign or touches zero.
 
-    A root at 0 itself is where the state starts from; it does not count. Returns ``NO_ROOT`` where
-    there is none.
+    A root at the start itself is where the state comes from; it does not count. ``known`` is the
+    sign just after it where round-off hides it. Returns ``NO_ROOT`` where there is none.
     """
     third = _largest_third(coefficients, variable, lane, step)
-    left, right = 0.0, step
+    left, right = start, step
     p0, s0, b0 = evaluate_twice(coefficients, variable, lane, left)
     while True:
         p1, s1, b1 = evaluate_twice(coefficients, variable, lane, right)
         width = right - left
         side = p0 if p0 != 0.0 else (s0 if s0 != 0.0 else b0)
+        if known != 0.0 and left == start:
+            side = known
         decided, root = _look(coefficients, variable, lane, left, right, side, third,
                               (p0, s0, b0), (p1, s1, b1))  # fmt: skip
         if decided or width < FINEST * step:
@@ -123,3 +127,38 @@ def _bracketed(
             return following
         time = following
     return time
+
+
+@part
+def first_crossing(
+    coefficients: Any, variable: int, lane: int, step: float, falls: bool, rises: bool,
+    fresh: bool, noise: float,
+) -> Any:  # fmt: skip
+    """The first t in [0, step] where the polynomial falls, or rises, through zero as is asked.
+
+    One that starts from zero (``fresh``) has the side that it first takes by more than its noise; a
+    side that is the wrong one is a crossing at 0.
+    """
+    start, side = 0.0, coefficients[variable, 0, lane]
+    if fresh:
+        start, side = _leaves_zero(coefficients, variable, lane, step, noise)
+        if (side < 0.0 and falls) or (side > 0.0 and rises):
+            return 0.0
+    while side != 0.0:
+        root = first_root(coefficients, variable, lane, step, start, side)
+        if root < 0.0 or (side > 0.0 and falls) or (side < 0.0 and rises):
+            return root
+        start, side = root, -side
+    return NO_ROOT
+
+
+@part
+def _leaves_zero(coefficients: Any, variable: int, lane: int, step: float, noise: float) -> Any:
+    """When a polynomial that starts from zero first differs from it, and by what; 0 if never."""
+    time = step * FINEST
+    while time <= step:
+        value, _, _ = evaluate_twice(coefficients, variable, lane, time)
+        if abs(value) > noise:
+            return time, value
+        time *= 2.0
+    return step, 0.0

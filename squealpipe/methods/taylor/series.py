@@ -15,7 +15,14 @@ from dataclasses import dataclass
 from typing import Any
 
 from squealpipe.methods.taylor import simd
-from squealpipe.methods.taylor.symbols import Symbol, derivative, in_order, moving_part
+from squealpipe.methods.taylor.symbols import (
+    FUNCTIONS,
+    Symbol,
+    derivative,
+    function,
+    in_order,
+    moving_part,
+)
 
 Name = Callable[[Symbol], str]
 SWEEPS = 5
@@ -46,6 +53,19 @@ def collocation_weights(nodes: tuple[float, ...], end: float) -> tuple[float, ..
 
 GAUSS_WEIGHTS = collocation_weights(GAUSS, 1.0)
 GAUSS_MATRIX = tuple(collocation_weights(GAUSS, node) for node in GAUSS)
+PARTNERS: dict[str, Callable[[Symbol], Symbol]] = {
+    "sin": lambda node: function("cos", node.arguments[0]),
+    "cos": lambda node: function("sin", node.arguments[0]),
+    "tanh": lambda node: Symbol("*", node, node),
+}
+"""Whose lower orders the recurrence of a function reads in place of its own."""
+IN_CODE = {
+    "exp": "exponential({})",
+    "log": "logarithm({})",
+    "sin": "sine({})",
+    "cos": "cosine({})",
+    "tanh": "(splat(1.0) - splat(2.0) / (exponential({0} + {0}) + splat(1.0)))",
+}
 TOGETHER = 2
 """Convolutions in one loop: their sums fill the registers of AVX2."""
 
@@ -59,12 +79,19 @@ class HybridSystem:
         rates: its time derivatives.
         events: a root of one of these may end a step.
         parameters: names of the parameters, in the order of their rows.
+        explicit_time: the last variable is the time, which is not perturbed.
     """
 
     variables: tuple[Symbol, ...]
     rates: tuple[Symbol, ...]
     events: tuple[Symbol, ...]
     parameters: tuple[str, ...]
+    explicit_time: bool = False
+
+    @property
+    def size(self) -> int:
+        """Number of the variables that are perturbed."""
+        return len(self.variables) - self.explicit_time
 
 
 def series_source(system: HybridSystem) -> tuple[str, int]:
@@ -87,7 +114,7 @@ class _SeriesWriter:
 
     def __init__(self, system: HybridSystem) -> None:
         self.system = system
-        self.nodes = in_order([*system.rates, *system.events])
+        self.nodes = _with_partners(in_order([*system.rates, *system.events]))
         self.number = {id(node): index for index, node in enumerate(self.nodes)}
         self.moving = [node for node in self.nodes if node.varies]
         self.place = {id(node): index for index, node in enumerate(system.variables)}
@@ -103,9 +130,9 @@ class _SeriesWriter:
         if node.kind == "*" and _is_sum(node):
             for each in node.arguments:
                 self._keep(moving_part(each))
-        elif node.kind in {"**", "exp"}:
+        elif node.kind == "**" or node.kind in FUNCTIONS:
             self._keep(moving_part(node.arguments[0]))
-            self._keep(node)
+            self._keep(node if node.kind not in PARTNERS else PARTNERS[node.kind](node))
         elif node.kind == "joined":
             self._keep(moving_part(node.arguments[2]))
             key = tuple(id(node.arguments[i]) for i in (0, 1, 3, 4))
@@ -174,7 +201,7 @@ class _SeriesWriter:
         else:
             yield f"{name} = {pointwise(node, self._v)}"
         yield f"{self._o(node)} = {name}"
-        if node.kind == "**":
+        if node.kind in {"**", "log"}:
             yield f"i{self.number[id(node)]} = splat(1.0) / {self._v(node.arguments[0])}"
         yield from self._stored(node, "0")
 
@@ -218,18 +245,31 @@ class _SeriesWriter:
         for group in _groups([n for n in nodes if n.kind == "joined"]):
             pairs = [(f"s{self.joined[id(n)]}", self._s(n.arguments[2])) for n in group]
             yield from self._full(group, pairs, "range(k)", "")
-        for kind in ("**", "exp"):
+        for kind in ("**", *FUNCTIONS):
             for group in _groups([n for n in nodes if n.kind == kind]):
-                pairs = [(self._s(n.arguments[0]), self._s(n)) for n in group]
-                weights = [
-                    "1.0 * j" if kind == "exp" else f"{n.arguments[1] + 1.0!r} * j - k"
-                    for n in group
-                ]
-                yield from self._full(group, pairs, "range(1, k + 1)", weights)
-                for node in group:
-                    number = self.number[id(node)]
-                    divisor = "" if kind == "exp" else f" * i{number}"
-                    yield f"{self._v(node)} = q{number} * splat(inverse){divisor}"
+                yield from self._recurrence(kind, group)
+
+    def _recurrence(self, kind: str, group: list[Symbol]) -> Iterator[str]:
+        """Orders k of powers or of one function f(u), from u and from f or its partner."""
+        inner = [self._s(n.arguments[0]) for n in group]
+        outer = [f"s{self.place[id(PARTNERS[kind](n) if kind in PARTNERS else n)]}" for n in group]
+        pairs = list(
+            zip(outer, inner, strict=True) if kind == "log" else zip(inner, outer, strict=True)
+        )
+        weights = [
+            f"{n.arguments[1] + 1.0!r} * j - k" if kind == "**" else "1.0 * j" for n in group
+        ]
+        orders = "range(1, k)" if kind in {"log", "tanh"} else "range(1, k + 1)"
+        yield from self._full(group, pairs, orders, weights)
+        for node in group:
+            number, value = self.number[id(node)], self._v(node.arguments[0])
+            total = f"q{number} * splat(inverse)"
+            yield f"{self._v(node)} = " + {
+                "**": f"{total} * i{number}",
+                "cos": f"splat(0.0) - {total}",
+                "log": f"({value} - {total}) * i{number}",
+                "tanh": f"{value} * (splat(1.0) - {self._o(node)} * {self._o(node)}) - {total}",
+            }.get(kind, total)
 
     def _half(self, series: list[str], names: list[str]) -> Iterator[str]:
         """Σ a_j a_{k−j} for 0 < j < k, each pair once."""
@@ -293,8 +333,8 @@ def _slopes(system: HybridSystem) -> dict[tuple[int, int], Symbol]:
     """The derivatives of the rates that are not zero, by row and column."""
     return {
         (i, j): entry
-        for i, rate in enumerate(system.rates)
-        for j, variable in enumerate(system.variables)
+        for i, rate in enumerate(system.rates[: system.size])
+        for j, variable in enumerate(system.variables[: system.size])
         if (entry := derivative(rate, variable)).kind != "number" or entry.arguments[0]
     }
 
@@ -304,7 +344,7 @@ def longest_source(system: HybridSystem) -> str:
 
     The largest rate of the slopes J where a step starts is at most the fourth root of |J|⁴.
     """
-    slopes, size = _slopes(system), len(system.variables)
+    slopes, size = _slopes(system), system.size
     nodes = in_order(list(slopes.values()))
     number = {id(node): index for index, node in enumerate(nodes)}
 
@@ -337,8 +377,7 @@ def perturbation_source(system: HybridSystem) -> str:
 
     ``step`` and ``tangent`` are addresses: a row of step lengths, and a row per state variable.
     """
-    size = len(system.variables)
-    slopes = _slopes(system)
+    slopes, size = _slopes(system), system.size
     nodes = in_order(list(slopes.values()))
     number = {id(node): index for index, node in enumerate(nodes)}
 
@@ -406,8 +445,8 @@ def pointwise(node: Symbol, name: Name) -> str:
     if node.kind == "joined":
         c1, a1, b1, c2, a2, b2 = (name(each) for each in node.arguments)
         return f"{c1} * ({a1} * {b1}) + {c2} * ({a2} * {b2})"
-    if node.kind == "exp":
-        return f"exponential({name(node.arguments[0])})"
+    if node.kind in IN_CODE:
+        return IN_CODE[node.kind].format(name(node.arguments[0]))
     base, exponent = node.arguments
     value = name(base) if exponent > 0.0 else f"(splat(1.0) / {name(base)})"
     whole, half = divmod(abs(exponent), 1.0)
@@ -432,9 +471,19 @@ def _linear(node: Symbol, name: Name) -> str:
 
 def _is_sum(node: Symbol) -> bool:
     """Whether each order of a node is a sum over all lower ones."""
-    if node.kind in {"**", "exp", "joined"}:
+    if node.kind in {"**", "joined"} or node.kind in FUNCTIONS:
         return node.varies
     return node.kind == "*" and all(each.varies for each in node.arguments)
+
+
+def _with_partners(nodes: list[Symbol]) -> list[Symbol]:
+    found = list(nodes)
+    for node in nodes:
+        if node.varies and node.kind in PARTNERS:
+            partner = PARTNERS[node.kind](node)
+            if not any(each is partner for each in found):
+                found.append(partner)
+    return found
 
 
 def _groups(values: list[Any]) -> Iterator[list[Any]]:

@@ -98,6 +98,10 @@ def _number(builder: Any, address: Any) -> Any:
     return builder.load(_pointer(builder, address, ir.DoubleType()))
 
 
+def _put(builder: Any, address: Any, value: Any) -> None:
+    builder.store(value, _pointer(builder, address, ir.DoubleType()))
+
+
 def _repeated(builder: Any, value: Any, doubles: Any) -> Any:
     undefined = ir.Constant(doubles, ir.Undefined)
     first = builder.insert_element(undefined, value, ir.Constant(ir.IntType(32), 0))
@@ -178,12 +182,17 @@ splat: Any = _splats(lanes)
 """The same number in each lane."""
 splat_few: Any = _splats(few_lanes)
 """The same number in each of ``FEW`` lanes."""
+put: Any = _intrinsic(types.void, (types.intp, types.float64), _put)
+"""Write one double to an address."""
 number: Any = _intrinsic(types.float64, (types.intp,), _number)
 """The one double at an address."""
 fma: Any = _intrinsic(lanes, (lanes, lanes, lanes), _called("fma"))
 """a b + c, rounded once."""
 root: Any = _intrinsic(lanes, (lanes,), _called("sqrt"))
 exponential: Any = _intrinsic(lanes, (lanes,), _called("exp"))
+logarithm: Any = _intrinsic(lanes, (lanes,), _called("log"))
+sine: Any = _intrinsic(lanes, (lanes,), _called("sin"))
+cosine: Any = _intrinsic(lanes, (lanes,), _called("cos"))
 magnitude: Any = _intrinsic(lanes, (lanes,), _called("fabs"))
 bits_below: Any = _intrinsic(types.int64, (lanes, lanes), _bits_below)
 """Bit i is set where a < b in lane i; never for NaN."""

@@ -7,6 +7,7 @@ stays apart from one on the state, because the former is constant in time.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import Any, ClassVar, Self
 
@@ -15,8 +16,8 @@ class Symbol:
     """One operation: ``kind`` applied to ``arguments``.
 
     Attributes:
-        kind: "variable", "parameter", "number", "+", "*", "**", "exp", or "joined": Σ c A B over
-            triples whose B differ by constants.
+        kind: "variable", "parameter", "number", "+", "*", "**", a function of
+            :data:`FUNCTIONS`, or "joined": Σ c A B over triples whose B differ by constants.
         arguments: symbols; of a variable or parameter its name, of a number its value, of "**"
             the base and a float.
         varies: whether it depends on a variable.
@@ -63,17 +64,42 @@ class Symbol:
 
     __rmul__ = __mul__
 
-    def __pow__(self, exponent: float) -> Symbol:
-        """Power with a multiple of ½ as exponent."""
+    def __truediv__(self, other: Any) -> Symbol:
+        """Quotient."""
+        return self * symbol(other) ** -1.0
+
+    def __rtruediv__(self, other: Any) -> Symbol:
+        """Quotient."""
+        return symbol(other) * self**-1.0
+
+    def __pow__(self, exponent: Any) -> Symbol:
+        """Power: of a number that is a multiple of ½, or exp(b log a) of a positive base."""
+        if isinstance(exponent, Symbol) and exponent.kind == "number":
+            exponent = exponent.arguments[0]
+        if isinstance(exponent, Symbol) or 2.0 * exponent != int(2.0 * exponent):
+            return function("exp", symbol(exponent) * function("log", self))
+        if exponent == 0.0:
+            return symbol(1.0)
         if exponent == 1.0:
             return self
         if exponent == 2.0:
             return self * self
-        if 2.0 * exponent != int(2.0 * exponent):
-            raise ValueError(f"exponent {exponent!r}: a multiple of 1/2 is needed")
         if self.kind == "number":
             return symbol(self.arguments[0] ** float(exponent))
         return Symbol("**", self, float(exponent))
+
+    def __rpow__(self, base: Any) -> Symbol:
+        """Power of a positive number."""
+        return symbol(base) ** self
+
+    def _refuse(self, *_: Any) -> Any:
+        raise TypeError(
+            "a field, surface or condition is one smooth expression: comparisons, abs, min, max, "
+            "sign and branches have no Taylor series; make each side a regime, with a switch"
+        )
+
+    __abs__ = __bool__ = __float__ = __int__ = __lt__ = __le__ = __gt__ = __ge__ = _refuse
+    __round__ = __floor__ = __ceil__ = __mod__ = __floordiv__ = _refuse
 
 
 def symbol(value: Any) -> Symbol:
@@ -91,9 +117,21 @@ def parameter(name: str) -> Symbol:
     return Symbol("parameter", name)
 
 
+FUNCTIONS = {name: getattr(math, name) for name in ("exp", "log", "sin", "cos", "tanh")}
+"""Functions of one argument that have a recurrence, as floats compute them."""
+
+
+def function(name: str, value: Any) -> Symbol:
+    """One of :data:`FUNCTIONS`."""
+    value = symbol(value)
+    if value.kind == "number":
+        return symbol(FUNCTIONS[name](value.arguments[0]))
+    return Symbol(name, value)
+
+
 def exp(value: Symbol) -> Symbol:
     """eˣ."""
-    return Symbol("exp", value)
+    return function("exp", value)
 
 
 def _is(value: Symbol, number: float) -> bool:
@@ -168,14 +206,28 @@ def derivative(value: Symbol, by: Symbol) -> Any:
     if value.kind == "*":
         a, b = value.arguments
         return derivative(a, by) * b + a * derivative(b, by)
-    if value.kind == "exp":
-        return value * derivative(value.arguments[0], by)
+    if value.kind in FUNCTIONS:
+        (inner,) = value.arguments
+        return _slope(value, inner) * derivative(inner, by)
     if value.kind == "joined":
         c1, a1, b1, c2, a2, b2 = value.arguments
         first = c1 * (derivative(a1, by) * b1 + a1 * derivative(b1, by))
         return first + c2 * (derivative(a2, by) * b2 + a2 * derivative(b2, by))
     base, exponent = value.arguments
     return exponent * base ** (exponent - 1.0) * derivative(base, by)
+
+
+def _slope(value: Symbol, inner: Symbol) -> Symbol:
+    """The derivative of a function by its argument."""
+    if value.kind == "exp":
+        return value
+    if value.kind == "log":
+        return inner**-1.0
+    if value.kind == "sin":
+        return function("cos", inner)
+    if value.kind == "cos":
+        return -function("sin", inner)
+    return 1.0 - value * value
 
 
 def in_order(roots: Sequence[Symbol]) -> list[Symbol]:

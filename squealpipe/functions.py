@@ -1,0 +1,45 @@
+"""cos, sin, exp, log, sqrt and tanh of floats, arrays and the symbols of a system."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from squealpipe.methods.taylor import symbols
+
+
+def _of(name: str, value: Any) -> Any:
+    if isinstance(value, symbols.Symbol):
+        return symbols.function(name, value)
+    return getattr(np, name)(value)
+
+
+def cos(value: Any) -> Any:
+    """cos x."""
+    return _of("cos", value)
+
+
+def sin(value: Any) -> Any:
+    """sin x."""
+    return _of("sin", value)
+
+
+def exp(value: Any) -> Any:
+    """eˣ."""
+    return _of("exp", value)
+
+
+def log(value: Any) -> Any:
+    """ln x."""
+    return _of("log", value)
+
+
+def tanh(value: Any) -> Any:
+    """tanh x."""
+    return _of("tanh", value)
+
+
+def sqrt(value: Any) -> Any:
+    """√x."""
+    return value**0.5 if isinstance(value, symbols.Symbol) else np.sqrt(value)

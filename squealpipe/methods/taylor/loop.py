@@ -1,0 +1,596 @@
+"""The compiled loop of any hybrid system: a Taylor step of all lanes, then its events and its ends.
+
+Compiled once for all systems: numbers of states, surfaces and regimes are data, and what a system
+computes is called by address. After each step all lanes are looked at side by side; one in which
+nothing ends, no surface may be crossed and no sample is due takes no path of its own.
+"""
+
+from __future__ import annotations
+
+import math
+from collections import namedtuple
+from enum import IntEnum
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numba
+import numpy as np
+
+from squealpipe.methods.compiled import inline, part
+from squealpipe.methods.taylor.lanes import call, compile_advance, view
+from squealpipe.methods.taylor.roots import first_crossing
+from squealpipe.methods.taylor.simd import (
+    LANES,
+    ROW,
+    bits_below,
+    first_bit,
+    fma,
+    larger,
+    load,
+    magnitude,
+    rough_power,
+    smaller,
+    splat,
+    store,
+)
+from squealpipe.methods.taylor.taylor_polynomial import above, below, evaluate, evaluate_with_slope
+from squealpipe.rerun.sources import closure
+
+_numba: Any = numba
+SLACK = 1e-13
+"""A surface lies within this of zero where round-off hides its sign, over the terms that cancel."""
+NOISE = 1e-15
+"""Round-off of a surface's polynomial, likewise."""
+CHAIN = 64
+"""Switches without progress in time that end a run."""
+LATE_BEGINS = -2
+"""What ends a step where the late part of a run begins."""
+PIECES = 8
+"""Pieces of a step in which turning points of a quantity are looked for, one in each."""
+
+
+class End(IntEnum):
+    """How a run ends; a stop of the system's own is ``STOPPED`` plus its number."""
+
+    running = -1
+    converged = 0
+    step_limit = 3
+    event_limit = 4
+    not_finite = 6
+    accumulation = 38
+
+
+STOPPED = 100
+RUNNING, CONVERGED, STEP_LIMIT = int(End.running), int(End.converged), int(End.step_limit)
+EVENT_LIMIT, NOT_FINITE = int(End.event_limit), int(End.not_finite)
+ACCUMULATION = int(End.accumulation)
+
+CLOCK, CORRECTION, STEP, T_END, T_LATE, LATE, NEXT_SAMPLE, STEPS, MOST_STEPS, FIXED_ROWS = range(10)
+"""Rows of numbers of the lanes that every system has; those of a system follow."""
+JOB, OUTCOME, SAMPLE, REGIME, EVENTS, CHAINED, HIT, FIXED_INTEGERS = range(8)
+"""Rows of integers of the lanes."""
+
+ARRAYS = (
+    "rows", "integers", "series", "inverses", "sizes", "tracked", "regimes", "falls", "rises",
+    "active", "fresh", "noise", "scratch", "initial", "parameters", "first_regime", "limits",
+    "final", "extremes", "counts", "firsts", "durations", "ends", "summary", "sample_times",
+    "samples", "sample_regimes", "event_times", "event_kinds", "event_regimes", "event_states",
+    "queue",
+)  # fmt: skip
+SIZES = (
+    "n_terms", "n_jobs", "n_states", "n_variables", "n_surfaces", "n_tracked", "n_parameters",
+    "n_constants", "n_regimes", "n_kinds", "n_samples", "n_logged", "n_rounds", "tangent",
+    "take_step", "perturb", "gauge", "change", "jump", "n_series", "n_rows", "n_switches",
+)  # fmt: skip
+TABLE = np.dtype([(name, "i8") for name in (*ARRAYS, *SIZES)])
+
+_Memory = namedtuple("_Memory", [name for name in ARRAYS if name not in {"series", "inverses"}])
+
+
+@inline
+def _step_length(base: int, terms: int, n_states: int, sizes: Any) -> Any:
+    """Lengths of the next steps from the last two orders (Jorba and Zou 2005; Biscani 2021)."""
+    size, last, previous = splat(1.0), splat(1e-300), splat(1e-300)
+    for variable in range(n_states):
+        series, unit = base + variable * terms * ROW, splat(1.0 / sizes[variable])
+        size = larger(magnitude(load(series)) * unit, size)
+        last = larger(magnitude(load(series + (terms - 1) * ROW)) * unit, last)
+        previous = larger(magnitude(load(series + (terms - 2) * ROW)) * unit, previous)
+    order = terms - 1.0
+    reach = smaller(
+        rough_power(size / last, splat(1.0 / order)),
+        rough_power(size / previous, splat(1.0 / (order - 1.0))),
+    )
+    return reach * math.exp(-2.0 - 0.7 / (order - 1.0))
+
+
+@inline
+def _at_end(series: int, terms: int, step: Any) -> Any:
+    """A series' value at the end of its step."""
+    value = load(series + (terms - 1) * ROW)
+    for k in range(terms - 2, -1, -1):
+        value = fma(value, step, load(series + k * ROW))
+    return value
+
+
+@inline
+def _free(series: int, terms: int, step: Any) -> Any:
+    """Lanes in which a surface has no root: both ends are further from zero than it bends."""
+    value, bend = load(series + (terms - 1) * ROW), splat(0.0)
+    for k in range(terms - 1, 1, -1):
+        row = load(series + k * ROW)
+        bend = fma(bend, step, magnitude(row) * splat(k * (k - 1.0)))
+        value = fma(value, step, row)
+    value = fma(value, step, load(series + ROW))
+    first = load(series)
+    value = fma(value, step, first)
+    free = bits_below(splat(0.0), first * value)
+    nearest = smaller(magnitude(first), magnitude(value))
+    return free & bits_below(bend * step * step * 0.125, nearest)
+
+
+@inline
+def _reaches(rows: int, instant: int) -> Any:
+    """Lanes whose step does not end before the instant in a row."""
+    left = load(rows + instant * ROW) - load(rows + CLOCK * ROW)
+    return ~bits_below(load(rows + STEP * ROW), left - load(rows + CORRECTION * ROW))
+
+
+@inline
+def _take_step(t: Any, active: Any, sizes: Any) -> Any:
+    """Ends of all lanes' steps; returns the lanes that need a look of their own."""
+    terms, base, at = t.n_terms, t.series, t.rows
+    step = _step_length(base, terms, t.n_states, sizes)
+    store(at + STEP * ROW, step)
+    lost = step
+    for variable in range(t.n_variables):
+        value = _at_end(base + variable * terms * ROW, terms, step)
+        store(at + (FIXED_ROWS + variable) * ROW, value)
+        lost = lost + value * 0.0
+    plain = bits_below(magnitude(lost), splat(np.inf))
+    for surface in range(t.n_surfaces):
+        if active[surface]:
+            series = base + (t.n_variables + surface) * terms * ROW
+            plain &= _free(series, terms, step) | ~active[surface]
+    return ~plain | _reaches(at, T_END) | _reaches(at, T_LATE)
+
+
+@part
+def _cut(t: Any, m: Any, c: Any, lane: int) -> None:
+    """End a lane's step at the first crossing, at the late time or at the end of its run."""
+    rows, integers = m.rows, m.integers
+    integers[HIT, lane] = -1
+    total = rows[STEP, lane]
+    for variable in range(t.n_variables):
+        total += 0.0 * rows[FIXED_ROWS + variable, lane]
+    if not math.isfinite(total):
+        rows[STEP, lane] = 0.0
+        integers[OUTCOME, lane] = NOT_FINITE
+        _set_end(t, m, c, lane)
+        return
+    done = rows[CLOCK, lane]
+    remaining = (rows[T_END, lane] - done) - rows[CORRECTION, lane]
+    step, ends = min(rows[STEP, lane], remaining), remaining <= rows[STEP, lane]
+    late = (rows[T_LATE, lane] - done) - rows[CORRECTION, lane]
+    turns_late = late <= step
+    if turns_late:
+        step, ends = late, ends and late >= remaining
+    regime, bit = integers[REGIME, lane], 1 << lane
+    first, tie = step, step * 2.0**-44
+    for surface in range(t.n_surfaces):
+        falls, rises = m.falls[regime, surface], m.rises[regime, surface]
+        if falls < 0 and rises < 0:
+            continue
+        root = first_crossing(
+            c, t.n_variables + surface, lane, step, falls >= 0, rises >= 0,
+            (m.fresh[surface] & bit) != 0, m.noise[surface, lane],
+        )  # fmt: skip
+        if root < 0.0 or root > first + tie:
+            continue
+        _, slope = evaluate_with_slope(c, t.n_variables + surface, lane, root)
+        which = falls if rises < 0 or (falls >= 0 and slope < 0.0) else rises
+        earlier = root < first - tie or integers[HIT, lane] < 0
+        # of switches at one instant the first by name goes first, whatever their order
+        if earlier or which < integers[HIT, lane]:
+            first, integers[HIT, lane] = min(root, first), which
+    if integers[HIT, lane] >= 0:
+        step, ends, turns_late = first, False, False
+    if turns_late:
+        rows[T_LATE, lane] = math.inf
+    if step != rows[STEP, lane]:
+        rows[STEP, lane] = step
+        _set_end(t, m, c, lane)
+    if turns_late:
+        integers[HIT, lane] = LATE_BEGINS
+    if ends:
+        integers[OUTCOME, lane] = CONVERGED
+
+
+@part
+def _set_end(t: Any, m: Any, c: Any, lane: int) -> None:
+    for variable in range(t.n_variables):
+        m.rows[FIXED_ROWS + variable, lane] = evaluate(c, variable, lane, m.rows[STEP, lane])
+
+
+@part
+def _extremes(c: Any, index: int, lane: int, step: float) -> Any:
+    """Least and largest value at turning points inside a step."""
+    low, high = math.inf, -math.inf
+    left, width = 0.0, step / PIECES
+    _, before = evaluate_with_slope(c, index, lane, 0.0)
+    for _ in range(PIECES):
+        right = left + width
+        _, after = evaluate_with_slope(c, index, lane, right)
+        if before * after < 0.0:
+            a, b = left, right
+            for _ in range(60):
+                middle = 0.5 * (a + b)
+                _, slope = evaluate_with_slope(c, index, lane, middle)
+                if slope * before > 0.0:
+                    a = middle
+                else:
+                    b = middle
+                if b - a < 1e-9 * step:
+                    break
+            value = evaluate(c, index, lane, 0.5 * (a + b))
+            low, high = min(low, value), max(high, value)
+        left, before = right, after
+    return low, high
+
+
+@inline
+def _observe(t: Any, m: Any, c: Any, first_extreme: int, busy: int) -> None:
+    """Extremes of the tracked quantities over one step of all lanes, and times in regimes."""
+    at, terms = t.rows, t.n_terms
+    step, zero = load(at + STEP * ROW), splat(0.0)
+    for lane in range(LANES):
+        m.rows[first_extreme + 4 * t.n_tracked + m.integers[REGIME, lane], lane] += m.rows[
+            STEP, lane
+        ]
+    for index in range(t.n_tracked):
+        series = t.series + m.tracked[index] * terms * ROW
+        end, rate = load(series + (terms - 1) * ROW), zero
+        for k in range(terms - 2, -1, -1):
+            rate = fma(rate, step, end)
+            end = fma(end, step, load(series + k * ROW))
+        start, first, bend = load(series), load(series + ROW), 2.0 * load(series + 2 * ROW)
+        low, high = smaller(start, end), larger(start, end)
+        row = at + (first_extreme + 4 * index) * ROW
+        store(row, smaller(low, load(row)))
+        store(row + ROW, larger(high, load(row + ROW)))
+        reach = magnitude(first) * step
+        turns = bits_below(first * rate, zero)
+        twice = bits_below(zero, first * rate) & bits_below(first * (first + bend * step), zero)
+        most = bits_below(load(row + ROW), above(start, end, first, rate, step)) & turns
+        least = bits_below(below(start, end, first, rate, step), load(row)) & turns
+        wider = bits_below(load(row + ROW), high + reach) | bits_below(low - reach, load(row))
+        late = bits_below(zero, load(at + LATE * ROW)) & busy
+        bits = ((most | least | (twice & wider)) & busy) | late
+        while bits:
+            lane = first_bit(bits)
+            bit = 1 << lane
+            bits ^= bit
+            if (turns | twice) & bit:
+                inner_low, inner_high = _extremes(c, m.tracked[index], lane, m.rows[STEP, lane])
+            else:
+                inner_low, inner_high = math.inf, -math.inf
+            r = first_extreme + 4 * index
+            m.rows[r, lane] = min(m.rows[r, lane], inner_low)
+            m.rows[r + 1, lane] = max(m.rows[r + 1, lane], inner_high)
+            if late & bit:
+                a = c[m.tracked[index], 0, lane]
+                b = evaluate(c, m.tracked[index], lane, m.rows[STEP, lane])
+                m.rows[r + 2, lane] = min(m.rows[r + 2, lane], inner_low, a, b)
+                m.rows[r + 3, lane] = max(m.rows[r + 3, lane], inner_high, a, b)
+
+
+@part
+def _sample(t: Any, m: Any, c: Any, lane: int) -> None:
+    """States at the asked instants of one job that fall into this step."""
+    rows, job = m.rows, m.integers[JOB, lane]
+    following, times = m.integers[SAMPLE, lane], m.sample_times[job]
+    while following < times.size:
+        offset = (times[following] - rows[CLOCK, lane]) - rows[CORRECTION, lane]
+        if offset > rows[STEP, lane]:
+            break
+        for variable in range(t.n_states):
+            m.samples[job, following, variable] = evaluate(c, variable, lane, offset)
+        m.sample_regimes[job, following] = m.integers[REGIME, lane]
+        following += 1
+    m.integers[SAMPLE, lane] = following
+    rows[NEXT_SAMPLE, lane] = times[following] if following < times.size else math.inf
+
+
+@part
+def _enter(t: Any, m: Any, c: Any, lane: int, regime: int, span: float) -> None:
+    """Put a lane into a regime: its constants, which surfaces it watches, which start from zero."""
+    m.integers[REGIME, lane] = regime
+    bit, keep = 1 << lane, ~(1 << lane)
+    first = t.n_rows - t.n_constants
+    for constant in range(t.n_constants):
+        m.rows[first + constant, lane] = m.regimes[regime, constant]
+    z, sizes, out = m.scratch[0], m.scratch[1], m.scratch[2]
+    for variable in range(t.n_variables):
+        z[variable] = c[variable, 0, lane]
+        sizes[variable] = abs(z[variable]) + abs(c[variable, 1, lane]) * span
+    parameters = t.rows + (first - t.n_parameters) * ROW + 8 * lane
+    constants = t.regimes + 8 * regime * t.n_constants
+    stride = m.scratch.shape[1] * 8
+    call(t.gauge, (t.scratch, t.scratch + stride, parameters, constants, t.scratch + 2 * stride))
+    for surface in range(t.n_surfaces):
+        m.active[surface] &= keep
+        m.fresh[surface] &= keep
+        if m.falls[regime, surface] >= 0 or m.rises[regime, surface] >= 0:
+            m.active[surface] |= bit
+            value, scale = out[2 * surface], out[2 * surface + 1]
+            m.noise[surface, lane] = NOISE * scale
+            if abs(value) <= SLACK * scale:
+                m.fresh[surface] |= bit
+
+
+@part
+def _switch(t: Any, m: Any, c: Any, lane: int, tangent_row: int) -> None:
+    """Carry out the switch that ended a lane's step."""
+    rows, integers, job = m.rows, m.integers, m.integers[JOB, lane]
+    which, before = integers[HIT, lane], integers[REGIME, lane]
+    if which >= t.n_switches:
+        integers[OUTCOME, lane] = STOPPED + which - t.n_switches
+        return
+    span, clock = rows[STEP, lane], rows[CLOCK, lane]
+    z, after, out = m.scratch[0], m.scratch[3], m.scratch[2]
+    for variable in range(t.n_variables):
+        z[variable] = c[variable, 0, lane]
+        after[variable] = z[variable]
+    stride = m.scratch.shape[1] * 8
+    first = t.n_rows - t.n_constants - t.n_parameters
+    parameters = t.rows + first * ROW + 8 * lane
+    constants = t.regimes + 8 * before * t.n_constants
+    call(t.change, (which, t.scratch, parameters, constants, t.scratch + 2 * stride))
+    regime, kind = int(out[0]), int(out[1])
+    for variable in range(t.n_states):
+        after[variable] = out[2 + variable]
+    if t.tangent:
+        d = m.scratch[4]
+        for variable in range(t.n_states):
+            d[variable] = rows[tangent_row + variable, lane]
+        call(
+            t.jump,
+            (
+                which, t.scratch, t.scratch + 3 * stride, parameters, constants,
+                t.regimes + 8 * regime * t.n_constants, t.scratch + 4 * stride,
+                t.scratch + 2 * stride,
+            ),
+        )  # fmt: skip
+        for variable in range(t.n_states):
+            rows[tangent_row + variable, lane] = out[variable]
+    for variable in range(t.n_states):
+        c[variable, 0, lane] = after[variable]
+    integers[CHAINED, lane] = (
+        0 if span > 4.0 * 2.0**-52 * abs(clock) else integers[CHAINED, lane] + 1
+    )
+    count = integers[EVENTS, lane]
+    if count < t.n_logged:
+        m.event_times[job, count] = clock + rows[CORRECTION, lane]
+        m.event_kinds[job, count], m.event_regimes[job, count] = kind, regime
+        for variable in range(t.n_states):
+            m.event_states[job, count, variable] = after[variable]
+    integers[EVENTS, lane] = count + 1
+    m.counts[job, kind] += 1
+    if math.isnan(m.firsts[job, kind]):
+        m.firsts[job, kind] = clock
+    _enter(t, m, c, lane, regime, span)
+    if integers[CHAINED, lane] >= CHAIN:
+        integers[OUTCOME, lane] = ACCUMULATION
+    elif count + 1 >= m.limits[job, 3]:
+        integers[OUTCOME, lane] = EVENT_LIMIT
+
+
+@part
+def _grow(t: Any, m: Any, lane: int, tangent_row: int) -> None:
+    """Add to the growth of a perturbation, note the horizon, and scale it back."""
+    job, square = m.integers[JOB, lane], 0.0
+    for variable in range(t.n_states):
+        square += (m.rows[tangent_row + variable, lane] / m.sizes[variable]) ** 2
+    if square == 0.0:
+        m.summary[job, 0] = -math.inf
+        return
+    growth = m.summary[job, 0] + 0.5 * math.log(square)
+    if math.isnan(m.summary[job, 1]) and growth > m.limits[job, 4]:
+        m.summary[job, 1] = m.rows[CLOCK, lane]
+    if not 1e-6 < square < 1e6:
+        for variable in range(t.n_states):
+            m.rows[tangent_row + variable, lane] /= math.sqrt(square)
+        m.summary[job, 0] = growth
+
+
+@part
+def _finish(t: Any, m: Any, c: Any, lane: int, tangent_row: int, first_extreme: int) -> None:
+    """Write a job's results."""
+    rows, job = m.rows, m.integers[JOB, lane]
+    m.ends[job, 0], m.ends[job, 1] = m.integers[OUTCOME, lane], m.integers[REGIME, lane]
+    m.ends[job, 2], m.ends[job, 3] = int(rows[STEPS, lane]), m.integers[EVENTS, lane]
+    m.summary[job, 2] = rows[CLOCK, lane]
+    for variable in range(t.n_states):
+        m.final[job, variable] = c[variable, 0, lane]
+    for index in range(t.n_tracked):
+        for each in range(4):
+            m.extremes[job, index, each] = rows[first_extreme + 4 * index + each, lane]
+    for regime in range(t.n_regimes):
+        m.durations[job, regime] = rows[first_extreme + 4 * t.n_tracked + regime, lane]
+    if t.tangent:
+        square = 0.0
+        for variable in range(t.n_states):
+            square += (rows[tangent_row + variable, lane] / m.sizes[variable]) ** 2
+        m.summary[job, 0] += 0.5 * math.log(square) if square > 0.0 else 0.0
+
+
+@part
+def _start(t: Any, m: Any, c: Any, lane: int, job: int, tangent_row: int, first: int) -> None:
+    """Start a job in a lane."""
+    rows, integers = m.rows, m.integers
+    integers[:, lane] = 0
+    integers[JOB, lane], integers[OUTCOME, lane], integers[HIT, lane] = job, RUNNING, -1
+    for row in (CLOCK, CORRECTION, STEPS, STEP):
+        rows[row, lane] = 0.0
+    rows[T_END, lane], rows[T_LATE, lane] = m.limits[job, 0], m.limits[job, 1]
+    rows[MOST_STEPS, lane] = m.limits[job, 2]
+    rows[LATE, lane] = 0.0
+    if m.limits[job, 1] <= 0.0:
+        rows[T_LATE, lane], rows[LATE, lane] = math.inf, 1.0
+    times = m.sample_times[job]
+    rows[NEXT_SAMPLE, lane] = times[0] if times.size else math.inf
+    first_parameter = t.n_rows - t.n_constants - t.n_parameters
+    for parameter in range(t.n_parameters):
+        rows[first_parameter + parameter, lane] = m.parameters[job, parameter]
+    c[: t.n_variables, :, lane] = 0.0
+    for variable in range(t.n_states):
+        c[variable, 0, lane] = m.initial[job, variable]
+        rows[tangent_row + variable, lane] = m.sizes[variable] / math.sqrt(t.n_states)
+    for index in range(t.n_tracked):
+        for each in range(4):
+            rows[first + 4 * index + each, lane] = math.inf if each % 2 == 0 else -math.inf
+    for regime in range(t.n_regimes):
+        rows[first + 4 * t.n_tracked + regime, lane] = 0.0
+    m.summary[job, 0], m.summary[job, 1] = 0.0, math.nan
+    _enter(t, m, c, lane, m.first_regime[job], 0.0)
+
+
+@inline
+def _go_on(t: Any) -> None:
+    """The end of each lane's step becomes the start of the next; its time is compensated."""
+    at = t.rows
+    for variable in range(t.n_variables):
+        store(t.series + variable * t.n_terms * ROW, load(at + (FIXED_ROWS + variable) * ROW))
+    store(at + STEPS * ROW, load(at + STEPS * ROW) + 1.0)
+    increment = load(at + STEP * ROW) + load(at + CORRECTION * ROW)
+    clock = load(at + CLOCK * ROW)
+    time = clock + increment
+    store(at + CORRECTION * ROW, (clock - time) + increment)
+    store(at + CLOCK * ROW, time)
+
+
+@inline
+def _rounds(t: Any, m: Any, c: Any) -> int:
+    tangent_row = FIXED_ROWS + t.n_variables
+    first_extreme = tangent_row + t.n_states
+    first_parameter = t.n_rows - t.n_constants - t.n_parameters
+    parameters = t.rows + first_parameter * ROW
+    time_unit = first_parameter + t.n_parameters - 1
+    busy, ended = 0, 0
+    for lane in range(LANES):
+        busy |= (1 << lane) if m.integers[JOB, lane] >= 0 else 0
+        ended |= (1 << lane) if m.integers[OUTCOME, lane] != RUNNING else 0
+    for _ in range(t.n_rounds):
+        while ended:
+            lane = first_bit(ended)
+            ended ^= 1 << lane
+            if m.integers[JOB, lane] >= 0:
+                _finish(t, m, c, lane, tangent_row, first_extreme)
+            busy &= ~(1 << lane)
+            m.integers[JOB, lane] = -1
+            if m.queue[0] < m.queue[1]:
+                job = m.queue[0]
+                m.queue[0] += m.queue[2]
+                _start(t, m, c, lane, job, tangent_row, first_extreme)
+                busy |= 1 << lane
+        if not busy:
+            return 0
+        call(t.take_step, (t.series, parameters, t.inverses, t.n_terms))
+        for surface in range(t.n_surfaces):
+            bits = m.fresh[surface]
+            while bits:
+                lane = first_bit(bits)
+                bits ^= 1 << lane
+                c[t.n_variables + surface, 0, lane] = 0.0
+        special = _take_step(t, m.active, m.sizes) & busy
+        due = _reaches(t.rows, NEXT_SAMPLE) & busy if t.n_samples else 0
+        bits = special
+        while bits:
+            lane = first_bit(bits)
+            bits ^= 1 << lane
+            _cut(t, m, c, lane)
+        while due:
+            lane = first_bit(due)
+            due ^= 1 << lane
+            _sample(t, m, c, lane)
+        _observe(t, m, c, first_extreme, busy)
+        if t.tangent:
+            step, at = t.rows + STEP * ROW, t.rows + tangent_row * ROW
+            call(t.perturb, (t.series, parameters, step, at, t.n_terms))
+        _go_on(t)
+        if t.n_variables > t.n_states:
+            clock = load(t.rows + CLOCK * ROW) + load(t.rows + CORRECTION * ROW)
+            now = clock * load(t.rows + time_unit * ROW)
+            store(t.series + t.n_states * t.n_terms * ROW, now)
+        for surface in range(t.n_surfaces):
+            m.fresh[surface] = 0
+        bits = special
+        while bits:
+            lane = first_bit(bits)
+            bits ^= 1 << lane
+            hit = m.integers[HIT, lane]
+            if hit == LATE_BEGINS:
+                m.rows[LATE, lane] = 1.0
+            elif hit >= 0 and m.integers[OUTCOME, lane] == RUNNING:
+                _switch(t, m, c, lane, tangent_row)
+            m.integers[HIT, lane] = -1
+        for lane in range(LANES):
+            if busy & (1 << lane):
+                if t.tangent:
+                    _grow(t, m, lane, tangent_row)
+                if (
+                    m.rows[STEPS, lane] >= m.rows[MOST_STEPS, lane]
+                    and m.integers[OUTCOME, lane] == RUNNING
+                ):
+                    m.integers[OUTCOME, lane] = STEP_LIMIT
+                if m.integers[OUTCOME, lane] != RUNNING:
+                    ended |= 1 << lane
+    return int(busy)
+
+
+def _advance(table: Any) -> int:
+    """Some rounds over all lanes; returns how many are busy. The table: :data:`TABLE`."""
+    t = _numba.carray(table, (1,), TABLE)[0]
+    width = max(2 * t.n_surfaces, t.n_variables) + 2
+    size = t.n_states
+    m = _Memory(
+        rows=view(t.rows, (t.n_rows, LANES), np.float64),
+        integers=view(t.integers, (FIXED_INTEGERS, LANES), np.int64),
+        sizes=view(t.sizes, (size,), np.float64),
+        tracked=view(t.tracked, (t.n_tracked,), np.int64),
+        regimes=view(t.regimes, (t.n_regimes, t.n_constants), np.float64),
+        falls=view(t.falls, (t.n_regimes, t.n_surfaces), np.int64),
+        rises=view(t.rises, (t.n_regimes, t.n_surfaces), np.int64),
+        active=view(t.active, (t.n_surfaces,), np.int64),
+        fresh=view(t.fresh, (t.n_surfaces,), np.int64),
+        noise=view(t.noise, (t.n_surfaces, LANES), np.float64),
+        scratch=view(t.scratch, (5, width), np.float64),
+        initial=view(t.initial, (t.n_jobs, size), np.float64),
+        parameters=view(t.parameters, (t.n_jobs, t.n_parameters), np.float64),
+        first_regime=view(t.first_regime, (t.n_jobs,), np.int64),
+        limits=view(t.limits, (t.n_jobs, 5), np.float64),
+        final=view(t.final, (t.n_jobs, size), np.float64),
+        extremes=view(t.extremes, (t.n_jobs, t.n_tracked, 4), np.float64),
+        counts=view(t.counts, (t.n_jobs, t.n_kinds), np.int64),
+        firsts=view(t.firsts, (t.n_jobs, t.n_kinds), np.float64),
+        durations=view(t.durations, (t.n_jobs, t.n_regimes), np.float64),
+        ends=view(t.ends, (t.n_jobs, 4), np.int64),
+        summary=view(t.summary, (t.n_jobs, 3), np.float64),
+        sample_times=view(t.sample_times, (t.n_jobs, t.n_samples), np.float64),
+        samples=view(t.samples, (t.n_jobs, t.n_samples, size), np.float64),
+        sample_regimes=view(t.sample_regimes, (t.n_jobs, t.n_samples), np.int64),
+        event_times=view(t.event_times, (t.n_jobs, t.n_logged), np.float64),
+        event_kinds=view(t.event_kinds, (t.n_jobs, t.n_logged), np.int64),
+        event_regimes=view(t.event_regimes, (t.n_jobs, t.n_logged), np.int64),
+        event_states=view(t.event_states, (t.n_jobs, t.n_logged, size), np.float64),
+        queue=view(t.queue, (3,), np.int64),
+    )
+    c = view(t.series, (t.n_series, t.n_terms, LANES), np.float64)
+    return _rounds(t, m, c)
+
+
+@cache
+def loop() -> Any:
+    """The compiled loop, built once a process."""
+    return compile_advance(_advance, [Path(__file__), *closure(__file__)])

@@ -1,0 +1,232 @@
+"""Compiled functions of one state, written from symbols: surfaces, switches, resets, saltation.
+
+Arguments are addresses: ``z`` of the state (with the time last, if it is explicit), ``p`` of a
+lane's parameters, ``r`` of a regime's constants, ``out`` of the results.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import math
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+from numba import types
+
+from squealpipe.methods.compiled import compiled_entry
+from squealpipe.methods.taylor import simd
+from squealpipe.methods.taylor.symbols import FUNCTIONS, Symbol, derivative, in_order, symbol
+
+REGIME = "regime "
+"""Begins the names of parameters that are a regime's constants."""
+
+
+@dataclass(frozen=True, eq=False)
+class SwitchSymbols:
+    """One switch as symbols: its surface, where it may lead, and the states that jump."""
+
+    surface: Symbol
+    targets: tuple[tuple[int, Symbol | None, int], ...]
+    reset: dict[int, Symbol]
+
+
+@dataclass
+class _Writer:
+    """Lines that compute symbols, each once; ``load`` gives the code of a variable or parameter."""
+
+    load: Callable[[Symbol], str]
+    prefix: str
+    lines: list[str] = field(default_factory=list)
+    names: dict[int, str] = field(default_factory=dict)
+
+    def value(self, root: Symbol) -> str:
+        for node in in_order([root]):
+            if id(node) not in self.names:
+                name = self.names[id(node)] = f"{self.prefix}{len(self.names)}"
+                self.lines.append(f"{name} = {self._code(node)}")
+        return self.names[id(root)]
+
+    def _code(self, node: Symbol) -> str:
+        if node.kind == "number":
+            return repr(node.arguments[0])
+        if node.kind in {"variable", "parameter"}:
+            return self.load(node)
+        given = [self.names[id(a)] if isinstance(a, Symbol) else repr(a) for a in node.arguments]
+        if node.kind in FUNCTIONS:
+            return f"math.{node.kind}({given[0]})"
+        if node.kind == "joined":
+            c1, a1, b1, c2, a2, b2 = given
+            return f"{c1} * ({a1} * {b1}) + {c2} * ({a2} * {b2})"
+        return f" {node.kind} ".join(given)
+
+    def scale(self, root: Symbol, scale_of: Callable[[Symbol], str]) -> str:
+        """Lines for the size of the terms that cancel in a sum, to which round-off is relative."""
+        sizes: dict[int, str] = {}
+        self.value(root)
+        for node in in_order([root]):
+            name = sizes[id(node)] = f"{self.prefix}z{len(self.lines)}"
+            inner = [sizes[id(a)] for a in node.arguments if isinstance(a, Symbol)]
+            value = self.names[id(node)]
+            if node.kind == "variable":
+                code = scale_of(node)
+            elif node.kind == "+":
+                code = " + ".join(inner)
+            elif node.kind == "*":
+                code = " * ".join(inner)
+            elif node.kind == "joined":
+                code = (
+                    f"{inner[0]} * {inner[1]} * {inner[2]} + {inner[3]} * {inner[4]} * {inner[5]}"
+                )
+            elif node.kind in {"sin", "cos", "tanh"}:
+                code = f"min(1.0, {inner[0]}) + abs({value})"
+            elif node.kind == "exp":
+                code = f"abs({value}) * (1.0 + {inner[0]})"
+            elif node.kind == "log":
+                code = f"1.0 + abs({value})"
+            else:
+                code = f"abs({value})"
+            self.lines.append(f"{name} = {code}")
+        return sizes[id(root)]
+
+
+class ScalarSource:
+    """Writes the three functions of a system."""
+
+    def __init__(
+        self,
+        variables: Sequence[Symbol],
+        rates: Sequence[Symbol],
+        parameters: Sequence[str],
+        constants: Sequence[str],
+        surfaces: Sequence[Symbol],
+        switches: Sequence[SwitchSymbols],
+        size: int,
+    ) -> None:
+        self.place = {id(each): index for index, each in enumerate(variables)}
+        self.variables, self.rates = variables, rates
+        self.parameters, self.constants = list(parameters), list(constants)
+        self.surfaces, self.switches, self.size = surfaces, switches, size
+
+    def _writer(self, prefix: str, state: str = "z", regime: str = "r") -> _Writer:
+        def load(node: Symbol) -> str:
+            if node.kind == "variable":
+                return f"number({state} + {8 * self.place[id(node)]})"
+            name = node.arguments[0]
+            if name.startswith(REGIME):
+                return f"number({regime} + {8 * self.constants.index(name)})"
+            return f"number(p + {simd.ROW * self.parameters.index(name)})"
+
+        return _Writer(load, prefix)
+
+    def gauge(self) -> str:
+        """``gauge(z, sizes, p, r, out)``: value and size of the terms of each surface."""
+        writer = self._writer("v")
+        for index, surface in enumerate(self.surfaces):
+            value = writer.value(surface)
+            size = writer.scale(surface, lambda node: f"number(sizes + {8 * self.place[id(node)]})")
+            writer.lines.append(f"put(out + {16 * index}, {value})")
+            writer.lines.append(f"put(out + {16 * index + 8}, {size})")
+        return _function("gauge(z, sizes, p, r, out)", writer.lines)
+
+    def change(self) -> str:
+        """``change(switch, z, p, r, out)``: next regime, kind of event, state after the reset."""
+        lines: list[str] = []
+        for index, switch in enumerate(self.switches):
+            writer = self._writer("v")
+            for place in range(self.size):
+                value = writer.value(switch.reset.get(place, self.variables[place]))
+                writer.lines.append(f"put(out + {16 + 8 * place}, {value})")
+            body, indent = writer.lines, ""
+            for regime, condition, kind in switch.targets:
+                if condition is not None:
+                    known = len(writer.lines)
+                    value = writer.value(condition)
+                    writer.lines[known:] = [indent + line for line in writer.lines[known:]]
+                    body.append(f"{indent}if {value} >= 0.0:")
+                    body += [f"{indent} put(out, {regime}.0)", f"{indent} put(out + 8, {kind}.0)"]
+                    body.append(f"{indent}else:")
+                    indent += " "
+                else:
+                    body += [f"{indent}put(out, {regime}.0)", f"{indent}put(out + 8, {kind}.0)"]
+            lines += [f"if switch == {index}:", *(f" {line}" for line in body)]
+        return _function("change(switch, z, p, r, out)", lines)
+
+    def jump(self) -> str:
+        """``jump(switch, z, after, p, r, s, d, out)``: a perturbation d across a switch.
+
+        With h the surface, g the reset and f, f₊ the fields before and after: the switch comes
+        δτ = −∇h·d / (∇h·f + ∂h/∂t) later, and d becomes Dg (d + f δτ) + ∂g/∂t δτ − f₊ δτ.
+        """
+        size = self.size
+        before, after = self._writer("b"), self._writer("a", "after", "s")
+        rates = [before.value(rate) for rate in self.rates]
+        later = [after.value(rate) for rate in self.rates]
+        head = [*before.lines, *after.lines]
+        head += [f"d{i} = number(d + {8 * i})" for i in range(size)]
+        lines: list[str] = []
+        for index, switch in enumerate(self.switches):
+            writer = _Writer(before.load, "v")
+            slopes = self._slopes(writer, switch.surface)
+            rate = " + ".join(f"{s} * {rates[j]}" for j, s in slopes)
+            along = " + ".join(f"{s} * d{j}" for j, s in slopes if j < size) or "0.0"
+            writer.lines += [f"w = {rate or '0.0'}", "tau = 0.0", "if w != 0.0:"]
+            writer.lines.append(f" tau = -({along}) / w")
+            for i in range(size):
+                moved = self._slopes(writer, switch.reset.get(i, self.variables[i]))
+                terms = [
+                    f"{s} * (d{j} + {rates[j]} * tau)" if j < size else f"{s} * {rates[j]} * tau"
+                    for j, s in moved
+                ]
+                total = " + ".join(terms) or "0.0"
+                writer.lines.append(f"put(out + {8 * i}, {total} - {later[i]} * tau)")
+            lines += [f"if switch == {index}:", *(f" {line}" for line in writer.lines)]
+        return _function("jump(switch, z, after, p, r, s, d, out)", [*head, *lines])
+
+    def _slopes(self, writer: _Writer, root: Symbol) -> list[tuple[int, str]]:
+        found = [(j, symbol(derivative(root, v))) for j, v in enumerate(self.variables)]
+        return [
+            (j, writer.value(each))
+            for j, each in found
+            if not (each.kind == "number" and each.arguments[0] == 0.0)
+        ]
+
+
+def _function(head: str, lines: Sequence[str]) -> str:
+    return "\n".join([f"def {head}:", *(f" {line}" for line in lines), " return\n"])
+
+
+def compile_scalar(source: str) -> Any:
+    """A C function of addresses and sizes from source text; stored under its digest."""
+    name, _, rest = source[4:].partition("(")
+    scope: dict[str, Any] = {"number": simd.number, "put": simd.put, "math": math}
+    scope["__name__"] = simd.__name__
+    exec(compile(source, simd.__file__, "exec"), scope)  # noqa: S102
+    arguments = rest[: rest.index(")")].count(",") + 1
+    signature = types.void(*[types.intp] * arguments)
+    digest = hashlib.sha256(source.encode()).hexdigest().encode()
+    return compiled_entry(scope[name], signature, digest)
+
+
+def evaluate(roots: Sequence[Symbol], values: dict[str, Any]) -> Iterator[Any]:
+    """Symbols as floats or arrays, from those of variables and parameters by name."""
+    found: dict[int, Any] = {}
+    for node in in_order(list(roots)):
+        inner = [found[id(a)] if isinstance(a, Symbol) else a for a in node.arguments]
+        if node.kind in {"variable", "parameter"}:
+            found[id(node)] = values[node.arguments[0]]
+        elif node.kind == "number":
+            found[id(node)] = inner[0]
+        elif node.kind == "joined":
+            found[id(node)] = inner[0] * inner[1] * inner[2] + inner[3] * inner[4] * inner[5]
+        elif node.kind in FUNCTIONS:
+            import numpy as np
+
+            found[id(node)] = getattr(np, node.kind)(inner[0])
+        elif node.kind == "+":
+            found[id(node)] = inner[0] + inner[1]
+        elif node.kind == "*":
+            found[id(node)] = inner[0] * inner[1]
+        else:
+            found[id(node)] = inner[0] ** inner[1]
+    return (found[id(root)] for root in roots)
