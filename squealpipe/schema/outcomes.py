@@ -46,6 +46,7 @@ class Outcome(IntEnum):
     returned = 35
     closed = 36
     tangency = 37
+    accumulation = 38
 
 
 REMEDIES: dict[Outcome, str] = {
@@ -87,5 +88,7 @@ REMEDIES: dict[Outcome, str] = {
     Outcome.point_limit: "the branch goes on: raise n_points",
     Outcome.returned: "the branch came back to its first parameter value, on another motion",
     Outcome.closed: "the branch is a closed curve, followed once round",
+    Outcome.accumulation: "events accumulate: the limit is the time reached; end there, or add a "
+    "regime of rest",
     Outcome.tangency: "stick is just touched, or ends at a tangent: beyond, the motion jumps",
 }

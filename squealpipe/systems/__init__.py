@@ -1,0 +1,1 @@
+"""Piecewise-smooth systems: each is one file of fields, switches and a start."""

@@ -1,0 +1,434 @@
+"""Single runs and ensembles of a system, as labelled datasets."""
+
+from __future__ import annotations
+
+import math
+import weakref
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import xarray as xr
+
+from squealpipe.methods.processes import run_shared
+from squealpipe.methods.taylor.lanes import (
+    INVERSES,
+    ROUNDS,
+    CompiledSystem,
+    Workspace,
+    aligned,
+    compile_system,
+    drive,
+    taylor_terms,
+)
+from squealpipe.methods.taylor.loop import (
+    ARRAYS,
+    FIXED_INTEGERS,
+    FIXED_ROWS,
+    SIZES,
+    STOPPED,
+    TABLE,
+    loop,
+)
+from squealpipe.methods.taylor.scalar import ScalarSource, compile_scalar
+from squealpipe.methods.taylor.series import HybridSystem
+from squealpipe.methods.taylor.simd import FEW, LANES
+from squealpipe.schema import Outcome, flag_table, in_words
+from squealpipe.systems.trace import TIME, TIME_UNIT
+from squealpipe.text import suggestion
+from squealpipe.validation import real_array, real_number
+
+if TYPE_CHECKING:
+    from squealpipe.systems.system import System
+
+LOST_ERROR = 1e-3
+"""Error, in units of the states' sizes, from which a state says nothing about its run."""
+FIRST_LOG = 256
+"""Events kept at first; a run that has more is made again with room for all."""
+SAMPLES_PER_STEP, MOST_SAMPLES = 4, 20_001
+MOST_STEPS, MOST_EVENTS = 1e7, 1e7
+
+
+@dataclass(frozen=True, eq=False)
+class _Compiled:
+    series: CompiledSystem
+    gauge: Any
+    change: Any
+    jump: Any
+
+
+_COMPILED: weakref.WeakKeyDictionary[Any, dict[tuple[bool, bool], _Compiled]] = (
+    weakref.WeakKeyDictionary()
+)
+
+
+def compiled(system: System, *, tangent: bool, few: bool) -> _Compiled:
+    """The machine code of a system, built once a process and kept on disk."""
+    known = _COMPILED.setdefault(system, {})
+    if (tangent, few) not in known:
+        t = system.traced
+        symbolic = HybridSystem(
+            variables=t.variables,
+            rates=t.rates,
+            events=(*t.surfaces, *t.outputs),
+            parameters=(*t.parameters, *t.constants),
+            explicit_time=len(t.variables) > t.size,
+        )
+        scalar = ScalarSource(
+            t.variables, t.rates, t.parameters, t.constants, t.surfaces, t.switches, t.size
+        )
+        known[tangent, few] = _Compiled(
+            compile_system(symbolic, tangent=tangent, few=few),
+            compile_scalar(scalar.gauge()),
+            compile_scalar(scalar.change()),
+            compile_scalar(scalar.jump()) if tangent else None,
+        )
+    return known[tangent, few]
+
+
+def integrate(
+    system: System,
+    values: Mapping[str, np.ndarray],
+    t_end: np.ndarray,
+    *,
+    t_late: float = math.inf,
+    times: np.ndarray | None = None,
+    tol: float,
+    tangent: bool = False,
+    log_events: int = 0,
+    workers: int | None = None,
+) -> dict[str, np.ndarray]:
+    """Raw results of some runs, one row each.
+
+    Args:
+        system: what is run.
+        values: each state and parameter as an array, (runs,).
+        t_end, t_late: in the system's unit of time.
+        times: instants at which the state is kept.
+        tol: tolerance.
+        tangent: carry a perturbation along.
+        log_events: events kept of each run.
+        workers: processes; None takes all cores.
+    """
+    t, size = system.traced, len(t_end)
+    scale = system.time_scale
+    names = list(system.parameters)
+    unit = np.broadcast_to(
+        scale(_Given(values, names)) if callable(scale) else float(scale), (size,)
+    ).astype(float)
+    parameters = np.stack([*(values[name] for name in names), unit], axis=1)
+    initial = np.stack([values[name] for name in system.states], axis=1)
+    regimes = system.first_regimes({TIME: np.zeros(size), **values}, size)
+    tracked = [*range(t.size)]
+    tracked += [len(t.variables) + len(t.surfaces) + i for i in range(len(t.outputs))]
+    limits = np.column_stack(
+        [
+            t_end / unit,
+            np.full(size, t_late) / unit,
+            np.full(size, MOST_STEPS),
+            np.full(size, MOST_EVENTS),
+            np.full(size, math.log(LOST_ERROR / tol)),
+        ]
+    )
+    samples = np.empty(0) if times is None else times
+    sample_times = np.ascontiguousarray(samples[None, :] / unit[:, None])
+    n_kinds, n_regimes = max(1, len(t.kinds)), len(system.regimes)
+    shapes: dict[str, Any] = {
+        "final": ((size, t.size), "f8"),
+        "extremes": ((size, len(tracked), 4), "f8"),
+        "counts": ((size, n_kinds), "i8"),
+        "firsts": ((size, n_kinds), "f8"),
+        "durations": ((size, n_regimes), "f8"),
+        "ends": ((size, 4), "i8"),
+        "summary": ((size, 3), "f8"),
+        "samples": ((size, samples.size, t.size), "f8"),
+        "sample_regimes": ((size, samples.size), "i8"),
+        "event_times": ((size, log_events), "f8"),
+        "event_kinds": ((size, log_events), "i8"),
+        "event_regimes": ((size, log_events), "i8"),
+        "event_states": ((size, log_events, t.size), "f8"),
+    }
+    code = compiled(system, tangent=tangent, few=size <= FEW)
+    loop()
+    terms = taylor_terms(tol)
+    n_rows = FIXED_ROWS + len(t.variables) + t.size + 4 * len(tracked) + n_regimes
+    n_rows += len(t.parameters) + len(t.constants)
+    width = max(2 * len(t.surfaces), len(t.variables)) + 2
+
+    def work(arrays: dict[str, np.ndarray], first: int, stride: int) -> None:
+        for name in ("samples", "event_times", "event_states", "firsts"):
+            arrays[name][first::stride] = np.nan
+        for name in ("sample_regimes", "event_kinds", "event_regimes"):
+            arrays[name][first::stride] = -1
+        integers = np.full((FIXED_INTEGERS, LANES), -1, np.int64)
+        integers[1] = 0  # every lane asks for a job
+        lanes = aligned(n_rows, LANES)
+        held = arrays | {
+            "rows": lanes,
+            "integers": integers,
+            "series": aligned(code.series.n_series, terms, LANES),
+            "inverses": INVERSES,
+            "sizes": system.sizes,
+            "tracked": np.array(tracked, np.int64),
+            "regimes": t.regimes,
+            "falls": t.falls,
+            "rises": t.rises,
+            "active": np.zeros(len(t.surfaces), np.int64),
+            "fresh": np.zeros(len(t.surfaces), np.int64),
+            "noise": np.zeros((len(t.surfaces), LANES)),
+            "scratch": np.zeros((5, width)),
+            "initial": initial,
+            "parameters": parameters,
+            "first_regime": regimes,
+            "limits": limits,
+            "sample_times": sample_times,
+            "queue": np.array([first, size, stride], np.int64),
+        }
+        sizes = {
+            "n_terms": terms,
+            "n_jobs": size,
+            "n_states": t.size,
+            "n_variables": len(t.variables),
+            "n_surfaces": len(t.surfaces),
+            "n_tracked": len(tracked),
+            "n_parameters": len(t.parameters),
+            "n_constants": len(t.constants),
+            "n_regimes": n_regimes,
+            "n_kinds": n_kinds,
+            "n_samples": samples.size,
+            "n_logged": log_events,
+            "n_rounds": ROUNDS,
+            "tangent": int(tangent),
+            "take_step": code.series.series,
+            "perturb": code.series.perturb,
+            "gauge": code.gauge.address,
+            "change": code.change.address,
+            "jump": code.jump.address if code.jump else 0,
+            "n_series": code.series.n_series,
+            "n_rows": n_rows,
+            "n_switches": len(t.switches),
+        }
+        # a view of nothing has no address
+        held = {k: v if v.size else np.zeros(1, v.dtype) for k, v in held.items() if k in ARRAYS}
+        drive(loop(), Workspace(TABLE, held, {name: sizes[name] for name in SIZES}), lanes[0])
+
+    arrays = run_shared(work, shapes, jobs=size, workers=workers)
+    for name in ("durations", "event_times", "firsts"):
+        arrays[name] = arrays[name] * unit[:, None]
+    arrays["summary"][:, 1:] *= unit[:, None]
+    return arrays
+
+
+class _Given:
+    """Parameters as attributes, for a time scale that depends on them."""
+
+    def __init__(self, values: Mapping[str, Any], names: list[str]) -> None:
+        self.__dict__.update({name: values[name] for name in names})
+
+
+def simulate(
+    system: System,
+    t_end: float,
+    *,
+    times: Any = None,
+    start: Mapping[str, Any] | None = None,
+    tol: float = 1e-12,
+    **parameters: float,
+) -> xr.Dataset:
+    """One run of a system, with every switch located.
+
+    Args:
+        system: what is run.
+        t_end: end of the run.
+        times: instants, ascending; by default four a step of the integrator, evenly spaced.
+        start: states that differ from the system's start.
+        tol: tolerance of the Taylor integrator, relative to the states' sizes.
+        parameters: those that differ from the system's.
+
+    Returns:
+        Dataset over ``time`` and ``event``: each state, ``regime``, ``event_time``, ``event_kind``,
+        ``event_regime`` (entered), ``outcome``. Instants that the run did not reach hold NaN.
+
+    Raises:
+        ValueError: an unknown state or parameter, or a value that is no finite number.
+    """
+    t_end = real_number("t_end", t_end, least=0.0)
+    values = {
+        name: np.array([real_number(name, value)])
+        for name, value in _given(system, start, parameters).items()
+    }
+    ends = np.array([t_end])
+    if times is None:
+        steps = int(integrate(system, values, ends, tol=tol, log_events=0)["ends"][0, 2])
+        times = np.linspace(0.0, t_end, int(np.clip(SAMPLES_PER_STEP * steps, 2, MOST_SAMPLES)))
+    times = real_array("times", times)
+    room = FIRST_LOG
+    while True:
+        raw = integrate(system, values, ends, times=times, tol=tol, log_events=room)
+        count = int(raw["ends"][0, 3])
+        if count <= room:
+            break
+        room = count
+    reached = raw["summary"][0, 2]
+    kinds = dict(enumerate(system.traced.kinds))
+    names = dict(enumerate(system.regimes))
+    found: dict[str, Any] = {
+        name: ("time", raw["samples"][0, :, i], _labels(f"state {name}", system.units[name]))
+        for i, name in enumerate(system.states)
+    }
+    found["regime"] = _flag("regime", "time", raw["sample_regimes"][0], names)
+    found["event_time"] = ("event", raw["event_times"][0, :count], _labels("time of the event", "s"))
+    found["event_kind"] = _flag("kind of the event", "event", raw["event_kinds"][0, :count], kinds)
+    found["event_regime"] = _flag(
+        "regime entered", "event", raw["event_regimes"][0, :count], names
+    )
+    found["outcome"] = _outcome(system, (), raw["ends"][0, 0])
+    found["end_time"] = ((), reached, _labels("time reached", "s"))
+    given = {name: float(value[0]) for name, value in values.items()}
+    coordinates = {"time": ("time", times, _labels("time", "s"))}
+    return xr.Dataset(found, coordinates, _attributes(system, "simulate", given, tol))
+
+
+def ensemble(
+    system: System,
+    t_end: float,
+    *,
+    start: Mapping[str, Any] | None = None,
+    t_late: float | None = None,
+    tol: float = 1e-12,
+    horizon: bool = False,
+    workers: int | None = None,
+    **parameters: Any,
+) -> xr.Dataset:
+    """Many runs: an outer product over all starts and parameters that are given as 1-D arrays.
+
+    Args:
+        system: what is run.
+        t_end: end of each run.
+        start: states that differ from the system's start; an array of ``x`` has dimension ``x0``.
+        t_late: from when the ``late_…`` extremes are kept; 0.8 t_end by default.
+        tol: tolerance of the Taylor integrator.
+        horizon: with the growth of a perturbation and the horizon of predictability.
+        workers: processes; None takes all cores. The result is the same bit for bit.
+        parameters: those that differ from the system's.
+
+    Returns:
+        Dataset over the arrays' dimensions, starts first: final states, ``<name>_min``,
+        ``<name>_max``, ``late_<name>_min``, ``late_<name>_max`` of states and outputs,
+        ``count_<event>``, ``first_<event>`` (NaN: never), ``time_in_<regime>``, ``outcome``.
+
+    Raises:
+        ValueError: an unknown state or parameter, or a value that is no finite number.
+    """
+    t_end = real_number("t_end", t_end, least=0.0)
+    given = {name: real_array(name, v) for name, v in _given(system, start, parameters).items()}
+    # starts first, each under the name of its state and 0
+    order = [*(start or {}), *parameters]
+    dims = {n: (f"{n}0" if n in system.units else n) for n in order if given[n].ndim}
+    for name, value in given.items():
+        if value.ndim > 1:
+            raise ValueError(f"{name} has shape {value.shape}: a number or a 1-D array is needed")
+    shape = tuple(given[name].size for name in dims)
+    axes = {name: i for i, name in enumerate(dims)}
+    values = {
+        name: np.broadcast_to(
+            value if name not in axes else value.reshape([-1] + [1] * (len(shape) - axes[name] - 1)),
+            shape,
+        ).reshape(-1)
+        for name, value in given.items()
+    }
+    size = math.prod(shape)
+    late = 0.8 * t_end if t_late is None else real_number("t_late", t_late, least=0.0)
+    raw = integrate(
+        system, values, np.full(size, t_end), t_late=late, tol=tol, tangent=horizon, workers=workers
+    )
+    over = tuple(dims.values())
+
+    def field(long_name: str, units: str, array: np.ndarray) -> Any:
+        return over, array.reshape(shape), _labels(long_name, units)
+
+    found: dict[str, Any] = {}
+    units = {**system.units, **{name: unit for name, (unit, _) in system.outputs.items()}}
+    for i, name in enumerate(system.states):
+        found[name] = field(f"{name} at the end", units[name], raw["final"][:, i])
+    for i, name in enumerate(units):
+        for j, which in enumerate(("_min", "_max")):
+            label = f"{('smallest', 'largest')[j]} {name}"
+            found[name + which] = field(label, units[name], raw["extremes"][:, i, j])
+            found[f"late_{name}{which}"] = field(
+                f"{label} from t_late on", units[name], _finite(raw["extremes"][:, i, 2 + j])
+            )
+    for i, name in enumerate(system.traced.kinds):
+        found[f"count_{name}"] = field(f"number of events {name}", "1", raw["counts"][:, i])
+        found[f"first_{name}"] = field(f"time of the first {name}", "s", raw["firsts"][:, i])
+    for i, name in enumerate(system.regimes):
+        found[f"time_in_{name}"] = field(f"time in regime {name}", "s", raw["durations"][:, i])
+    if horizon:
+        rate = raw["summary"][:, 0] / np.maximum(raw["summary"][:, 2], 1e-300)
+        found["lyapunov_exponent"] = field("growth rate of a perturbation", "s-1", rate)
+        found["predictability_horizon"] = field(
+            "time at which an error of tol is lost", "s", raw["summary"][:, 1]
+        )
+    found["outcome"] = _outcome(system, over, raw["ends"][:, 0].reshape(shape))
+    coordinates = {
+        dim: (dim, given[name], _labels(f"{name} at t = 0" if dim != name else f"parameter {name}",
+                                        units.get(name, "1")))
+        for name, dim in dims.items()
+    }  # fmt: skip
+    fixed = {name: float(v) for name, v in given.items() if v.ndim == 0}
+    return xr.Dataset(found, coordinates, _attributes(system, "ensemble", fixed, tol))
+
+
+def _given(
+    system: System, start: Mapping[str, Any] | None, parameters: Mapping[str, Any]
+) -> dict[str, Any]:
+    """States and parameters of a call, the system's where it gives none."""
+    for name in start or {}:
+        if name not in system.units:
+            raise ValueError(f"start: {name!r} is unknown; {suggestion(name, system.units)}")
+    for name in parameters:
+        if name not in system.parameters:
+            raise ValueError(
+                f"{system.name}: parameter {name!r} is unknown; {suggestion(name, system.parameters)}"
+            )
+    states = {name: system.start[name] for name in system.units}
+    return {**states, **system.parameters, **(start or {}), **parameters}
+
+
+def _finite(array: np.ndarray) -> np.ndarray:
+    """Extremes of a part that a run did not reach are NaN; the outcome says why."""
+    return np.where(np.isfinite(array), array, np.nan)
+
+
+def _labels(long_name: str, units: str) -> dict[str, str]:
+    return {"long_name": long_name, "units": units}
+
+
+def _flag(long_name: str, dims: Any, values: Any, table: Mapping[int, str]) -> Any:
+    attributes = {
+        "long_name": long_name,
+        "flag_values": np.array(list(table), np.int16),
+        "flag_meanings": " ".join(name.replace(" ", "_") for name in table.values()),
+    }
+    return dims, np.asarray(values, np.int16), attributes
+
+
+def _outcome(system: System, dims: Any, values: Any) -> Any:
+    table = flag_table(Outcome) | {STOPPED + i: name for i, name in enumerate(system.stops)}
+    dims, values, attributes = _flag("how the run ended", dims, values, table)
+    return dims, values, attributes | {"comment": in_words(table)}
+
+
+def _attributes(system: System, what: str, given: Mapping[str, float], tol: float) -> dict[str, Any]:
+    import json
+    from importlib.metadata import version
+
+    return {
+        "title": f"{system.name}: {what}",
+        "system": json.dumps(system.text),
+        "parameters": json.dumps(dict(given)),
+        "tolerance": tol,
+        "method": "Taylor series with located events",
+        "package_version": version("squealpipe"),
+    }

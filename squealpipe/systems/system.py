@@ -1,0 +1,373 @@
+"""``System`` and ``Switch``: any piecewise-smooth system as one definition."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from squealpipe.methods.taylor.scalar import REGIME, SwitchSymbols, evaluate
+from squealpipe.methods.taylor.symbols import Symbol, parameter, symbol
+from squealpipe.systems.trace import (
+    TIME,
+    TIME_UNIT,
+    Traced,
+    Tracer,
+    check_progress,
+    depends_on_time,
+)
+from squealpipe.text import suggestion
+from squealpipe.parameters import is_finite_number
+
+Function = Callable[..., Any]
+MOST_STATES, MOST_SURFACES, MOST_REGIMES = 24, 16, 256
+RESERVED = frozenset(
+    "t_end times start tol sensitivity t_late horizon workers guess periods t_settle to n_points "
+    "parameter parameters label time event point run multiplier outcome regime period stable "
+    "residual event_time event_kind event_regime lyapunov_exponent predictability_horizon".split()
+)
+"""Arguments of the methods, dimensions and variables of what they return."""
+
+
+@dataclass(frozen=True)
+class Switch:
+    """What ends a regime.
+
+    Attributes:
+        name: of the event.
+        leaves: the regime, or regimes, in which it can fire.
+        when: surface (t, s, p, r); it fires where this falls through zero.
+        to: the next regime, or a list of (regime, condition) or (regime, condition, kind) and a
+            last regime: the first whose condition is ≥ 0. ``kind`` renames the event.
+        reset: the states that jump, as a mapping from (t, s, p, r).
+
+    ``when``, ``to`` and ``reset`` see the state before the reset and the constants ``r`` of the
+    regime that is left.
+    """
+
+    name: str
+    leaves: str | Sequence[str]
+    when: Function
+    to: str | Sequence[Any]
+    reset: Function | None = None
+
+
+class System:
+    """A piecewise-smooth system: regimes, a field, and switches between them.
+
+    Args:
+        name: for titles and files.
+        states: name → unit, or (unit, typical size); error control and round-off are relative to
+            the size, 1 if none is given.
+        parameters: name → default.
+        regimes: name → constants ``r`` that field and surfaces read; the same names in each.
+        field: (t, s, p, r) → rates of all states, or one such function for each regime.
+        switches: see :class:`Switch`.
+        start: state → value, and ``regime`` if it is to be given.
+        starts_in: [(regime, condition) or (regime, condition, equality), …, regime], the first
+            whose condition is ≥ 0 and whose equality is 0; left out, the first regime whose
+            surfaces are all ≥ 0.
+        period: of the forcing, a function of the parameters; left out, the system is autonomous.
+        outputs: name → (unit, function (t, s, p, r)): quantities whose extremes are kept.
+        stops: outcome → function (t, s, p, r): ends a run where it falls through zero.
+        time_scale: typical time, a number or a function of the parameters.
+
+    Raises:
+        ValueError: a name is unknown, missing or taken, a surface is constant in a regime, a ``to``
+            has no last resort, or a reset makes no progress.
+        TypeError: a function is not smooth (a comparison, a branch), or gives what is no number.
+    """
+
+    def __init__(
+        self,
+        name: str,
+        *,
+        states: Mapping[str, Any],
+        parameters: Mapping[str, float],
+        regimes: Mapping[str, Mapping[str, float]],
+        field: Function | Mapping[str, Function],
+        switches: Sequence[Switch] = (),
+        start: Mapping[str, Any],
+        starts_in: Sequence[Any] = (),
+        period: Function | None = None,
+        outputs: Mapping[str, tuple[str, Function]] | None = None,
+        stops: Mapping[str, Function] | None = None,
+        time_scale: float | Function = 1.0,
+    ) -> None:
+        self.name = name
+        self.units = {key: value if isinstance(value, str) else value[0] for key, value in states.items()}
+        self.sizes = np.array([1.0 if isinstance(v, str) else float(v[1]) for v in states.values()])
+        self.parameters = dict(parameters)
+        self.regimes, self.field = dict(regimes), field
+        self.switches = tuple(sorted(switches, key=lambda each: each.name))
+        self.start, self.starts_in = dict(start), list(starts_in)
+        self.period, self.time_scale = period, time_scale
+        self.outputs, self.stops = dict(outputs or {}), dict(stops or {})
+        self._check_names()
+        self.traced = self._trace()
+
+    @property
+    def states(self) -> tuple[str, ...]:
+        """Names of the states."""
+        return tuple(self.units)
+
+    def __repr__(self) -> str:
+        switches = ", ".join(each.name for each in self.switches)
+        return f"System({self.name!r}: {', '.join(self.states)}; switches {switches or 'none'})"
+
+    def simulate(self, t_end: float, **options: Any) -> xr.Dataset:
+        """One run with every switch located; see :func:`squealpipe.systems.runs.simulate`."""
+        from squealpipe.systems.runs import simulate
+
+        return simulate(self, t_end, **options)
+
+    def ensemble(self, t_end: float, **options: Any) -> xr.Dataset:
+        """Many runs at once; see :func:`squealpipe.systems.runs.ensemble`."""
+        from squealpipe.systems.runs import ensemble
+
+        return ensemble(self, t_end, **options)
+
+    def _check_names(self) -> None:
+        if not 1 <= len(self.units) <= MOST_STATES:
+            raise ValueError(f"{len(self.units)} states; 1 to {MOST_STATES} can be carried")
+        if not 1 <= len(self.regimes) <= MOST_REGIMES:
+            raise ValueError(f"{len(self.regimes)} regimes; 1 to {MOST_REGIMES} can be carried")
+        if not (self.sizes > 0).all():
+            raise ValueError("the typical size of a state must be greater than 0")
+        taken = {*self.units, *(f"{name}0" for name in self.units), *RESERVED}
+        for name, value in self.parameters.items():
+            if name in taken:
+                raise ValueError(
+                    f"parameter {name!r}: the name is an argument, a state, a start or a result; "
+                    "choose another"
+                )
+            if not is_finite_number(value):
+                raise ValueError(f"parameter {name!r} = {value!r}: a finite number is needed")
+        for name in self.outputs:
+            if name in {*taken, *self.parameters}:
+                raise ValueError(f"output {name!r}: the name is taken; choose another")
+        for name in self.start:
+            if name not in {*self.units, "regime"}:
+                raise ValueError(f"start: {name!r} is unknown; {suggestion(name, self.units)}")
+        for name in self.units:
+            if name in RESERVED:
+                raise ValueError(f"state {name!r}: the name is an argument or a result")
+            if name not in self.start:
+                raise ValueError(f"start lacks the state {name!r}")
+        names = [each.name for each in self.switches]
+        if len(set(names)) < len(names):
+            raise ValueError(f"two switches share a name: {', '.join(names)}")
+
+    def _rates(self, tracer: Tracer) -> list[Symbol]:
+        if not isinstance(self.field, Mapping):
+            return self._complete("the field", tracer.several("the field", self.field))
+        total = [symbol(0.0)] * len(self.units)
+        for regime in self.regimes:
+            if regime not in self.field:
+                raise ValueError(f"the field has no function for regime {regime!r}")
+            what = f"the field of {regime!r}"
+            found = tracer.several(what, self.field[regime], tracer.numbers(regime))
+            here = parameter(REGIME + _indicator(regime))
+            rates = self._complete(what, found)
+            total = [a if b is symbol(0.0) else a + here * b for a, b in zip(total, rates, strict=True)]
+        return total
+
+    def _complete(self, what: str, found: Mapping[str, Symbol]) -> list[Symbol]:
+        for name in self.units:
+            if name not in found:
+                raise ValueError(f"{what} lacks the rate of the state {name!r}")
+        return [found[name] for name in self.units]
+
+    def _trace(self) -> Traced:
+        tracer = Tracer(self.states, self.parameters, self.regimes)
+        rates = self._rates(tracer)
+        kinds: list[str] = []
+        switches, own = [], []
+        for switch in self.switches:
+            symbols, returns = self._trace_switch(tracer, switch, kinds)
+            switches.append(symbols)
+            own.append(returns)
+        stops = [tracer.one(f"stop {name!r}", f) for name, f in self.stops.items()]
+        outputs = [tracer.one(f"output {name!r}", f) for name, (_, f) in self.outputs.items()]
+        starts = [self._trace_start(tracer, each) for each in self.starts_in]
+        if starts and starts[-1][1] is not None:
+            raise ValueError("starts_in has no last resort: end it with a regime alone")
+        every = [*rates, *stops, *outputs, *(each.surface for each in switches)]
+        every += [value for each in switches for value in each.reset.values()]
+        every += [c for each in switches for _, c, _ in each.targets if c is not None]
+        timed = depends_on_time(tracer, every)
+        unit = parameter(TIME_UNIT)
+        if callable(self.time_scale) or self.time_scale != 1.0:
+            rates = [rate * unit for rate in rates]
+        surfaces, falls, rises = self._watch(tracer, switches, stops)
+        indicators = [_indicator(name) for name in self.regimes] * isinstance(self.field, Mapping)
+        table = [
+            [float(self.regimes[name][c]) for c in tracer.constants]
+            + [float(_indicator(name) == each) for each in indicators]
+            for name in self.regimes
+        ]
+        traced = Traced(
+            variables=(*tracer.variables, *([tracer.time] * timed)),
+            size=len(self.units),
+            rates=(*rates, *([unit] * timed)),
+            parameters=(*self.parameters, TIME_UNIT),
+            constants=tuple(REGIME + c for c in (*tracer.constants, *indicators)),
+            regimes=np.array(table, float).reshape(len(self.regimes), -1),
+            surfaces=tuple(surfaces),
+            falls=falls,
+            rises=rises,
+            switches=tuple(switches),
+            kinds=tuple(kinds),
+            outputs=tuple(outputs),
+            starts=tuple(starts),
+        )
+        if not indicators:
+            check_progress(tracer, traced, [each.name for each in self.switches], own)
+        return traced
+
+    def _trace_switch(
+        self, tracer: Tracer, switch: Switch, kinds: list[str]
+    ) -> tuple[SwitchSymbols, bool]:
+        what = f"switch {switch.name!r}"
+        surface = tracer.one(f"{what}: when", switch.when)
+        leaves = self._leaves(tracer, switch)
+        for regime in leaves:
+            inside = tracer.one(f"{what}: when", switch.when, tracer.numbers(self.states_of(regime)))
+            if not inside.varies:
+                raise ValueError(
+                    f"{what}: its surface is constant in regime {self.states_of(regime)!r}; leave "
+                    "that regime out of `leaves`"
+                )
+        given = [switch.to] if isinstance(switch.to, str) else list(switch.to)
+        if not given or not isinstance(given[-1], str):
+            raise ValueError(f"{what}: `to` has no last resort; end it with a regime alone")
+        targets = []
+        for entry in given:
+            regime, condition, kind = (
+                (entry, None, switch.name) if isinstance(entry, str) else (*entry, switch.name)[:3]
+            )
+            if kind not in kinds:
+                kinds.append(kind)
+            symbols = None if condition is None else tracer.one(f"{what}: to {regime!r}", condition)
+            targets.append((tracer.regime(what, regime), symbols, kinds.index(kind)))
+        reset = tracer.several(f"{what}: reset", switch.reset) if switch.reset else {}
+        places = {self.states.index(name): value for name, value in reset.items()}
+        returns = any(regime in leaves for regime, _, _ in targets)
+        return SwitchSymbols(surface, tuple(targets), places), returns
+
+    def states_of(self, regime: int) -> str:
+        """The name of a regime."""
+        return list(self.regimes)[regime]
+
+    def _leaves(self, tracer: Tracer, switch: Switch) -> list[int]:
+        names = [switch.leaves] if isinstance(switch.leaves, str) else switch.leaves
+        return [tracer.regime(f"switch {switch.name!r}", name) for name in names]
+
+    def _trace_start(self, tracer: Tracer, entry: Any) -> tuple[int, Symbol | None, Symbol | None]:
+        if isinstance(entry, str):
+            return tracer.regime("starts_in", entry), None, None
+        regime, condition, equality = (*entry, None)[:3]
+        equal = None if equality is None else tracer.one(f"starts_in {regime!r}", equality)
+        found = tracer.one(f"starts_in {regime!r}", condition)
+        return tracer.regime("starts_in", regime), found, equal
+
+    def _watch(
+        self, tracer: Tracer, switches: Sequence[SwitchSymbols], stops: Sequence[Symbol]
+    ) -> tuple[list[Symbol], np.ndarray, np.ndarray]:
+        """Surfaces without those that another one is, but for its sign, and who watches them."""
+        probe = tracer.samples(np.random.default_rng(1))
+        surfaces: list[Symbol] = []
+        prints: list[np.ndarray] = []
+        watched: list[tuple[int, int, int, int]] = []  # regime, surface, rises, switch
+        everywhere = range(len(self.regimes))
+        places = [*(self._leaves(tracer, each) for each in self.switches), *[everywhere] * len(stops)]
+        for number, (surface, regimes) in enumerate(
+            zip([*(each.surface for each in switches), *stops], places, strict=True)
+        ):
+            with np.errstate(all="ignore"):
+                (value,) = evaluate([surface], probe)
+            mine = np.broadcast_to(value, 32)
+            for index, other in enumerate(prints):
+                size = 1e-12 * np.abs(other).max()
+                if np.abs(mine - other).max() <= size or np.abs(mine + other).max() <= size:
+                    rises = int(np.abs(mine - other).max() > size)
+                    break
+            else:
+                index, rises = len(surfaces), 0
+                surfaces.append(surface)
+                prints.append(mine)
+            watched += [(regime, index, rises, number) for regime in regimes]
+        if len(surfaces) > MOST_SURFACES:
+            raise ValueError(f"{len(surfaces)} surfaces; at most {MOST_SURFACES} can be watched")
+        table = np.full((2, len(self.regimes), len(surfaces)), -1, np.int64)
+        for regime, index, rises, number in watched:
+            if table[rises, regime, index] >= 0:
+                names = [each.name for each in self.switches] + list(self.stops)
+                raise ValueError(
+                    f"{names[table[rises, regime, index]]!r} and {names[number]!r} fire at the same "
+                    f"surface in regime {self.states_of(regime)!r}; make them one switch whose "
+                    "`to` decides"
+                )
+            table[rises, regime, index] = number
+        return surfaces, np.ascontiguousarray(table[0]), np.ascontiguousarray(table[1])
+
+    @cached_property
+    def text(self) -> dict[str, str]:
+        """What the system is, as text: for the attributes of its datasets."""
+        from squealpipe.systems.text import describe
+
+        return describe(self)
+
+    def first_regimes(self, values: Mapping[str, Any], size: int) -> np.ndarray:
+        """The regime in which each run starts.
+
+        Args:
+            values: states, parameters and ``time`` as arrays of that size.
+            size: number of runs.
+
+        Raises:
+            ValueError: no regime fits a start.
+        """
+        if "regime" in self.start:
+            return np.full(size, list(self.regimes).index(self.start["regime"]), np.int64)
+        traced = self.traced
+        chosen = np.full(size, -1, np.int64)
+        entries = traced.starts or tuple((i, None, None) for i in range(len(self.regimes)))
+        for regime, condition, equality in entries:
+            constants = dict(zip(traced.constants, traced.regimes[regime], strict=True))
+            known = {TIME_UNIT: np.ones(size), **values, **constants}
+            fits = np.ones(size, bool)
+            if condition is not None:
+                (value,) = evaluate([condition], known)
+                fits &= np.asarray(value >= 0.0)
+            if equality is not None:
+                (value,) = evaluate([equality], known)
+                fits &= np.asarray(np.abs(value) <= 1e-15 * max(map(_largest, values.values())))
+            if not traced.starts:
+                sides = [(traced.falls[regime], 1.0), (traced.rises[regime], -1.0)]
+                for table, sign in sides:
+                    for index in np.flatnonzero((table >= 0) & (table < len(self.switches))):
+                        (value,) = evaluate([traced.surfaces[index]], known)
+                        fits &= np.asarray(sign * value >= 0.0)
+            chosen = np.where((chosen < 0) & fits, regime, chosen)
+        if (chosen < 0).any():
+            raise ValueError(
+                "no regime fits the start: in each, some surface is below zero; give "
+                "start={'regime': …} or starts_in"
+            )
+        return chosen
+
+
+def _indicator(regime: str) -> str:
+    return f"is {regime}"
+
+
+def _largest(value: Any) -> float:
+    return float(np.max(np.abs(value), initial=0.0))
+
+
+__all__ = ["TIME", "Switch", "System"]

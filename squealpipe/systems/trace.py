@@ -1,0 +1,176 @@
+"""A system's functions as symbols: traced once, checked before anything is compiled."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from squealpipe.methods.taylor.scalar import REGIME, SwitchSymbols, evaluate
+from squealpipe.methods.taylor.symbols import (
+    Symbol,
+    derivative,
+    in_order,
+    parameter,
+    symbol,
+    variables,
+)
+from squealpipe.text import suggestion
+
+TIME, TIME_UNIT = "time", "time unit"
+"""Names that no state or parameter can have: of the time, and of the unit that it is run in."""
+
+
+class Names:
+    """Attributes by name; an unknown one is refused with the nearest."""
+
+    def __init__(self, what: str, values: Mapping[str, Any]) -> None:
+        self.__dict__.update(values)
+        self._what = what
+
+    def __getattr__(self, name: str) -> Any:
+        known = [each for each in self.__dict__ if each != "_what"]
+        raise AttributeError(f"{self._what} has no {name!r}; {suggestion(name, known)}")
+
+
+@dataclass(frozen=True, eq=False)
+class Traced:
+    """A system as symbols.
+
+    Attributes:
+        variables: states, then the time if anything depends on it.
+        rates: their derivatives by time in units of the system's time scale.
+        parameters: names, the time unit last.
+        constants: names of a regime's constants.
+        regimes: (regime, constant) their values.
+        surfaces: functions whose roots switch or stop, no two the same but for sign.
+        falls, rises: (regime, surface) the switch that fires there, or −1; stops follow switches.
+        switches: what each does.
+        kinds: names of the events.
+        outputs: tracked quantities beside the states.
+        starts: (regime, condition or None, equality or None).
+    """
+
+    variables: tuple[Symbol, ...]
+    size: int
+    rates: tuple[Symbol, ...]
+    parameters: tuple[str, ...]
+    constants: tuple[str, ...]
+    regimes: np.ndarray
+    surfaces: tuple[Symbol, ...]
+    falls: np.ndarray
+    rises: np.ndarray
+    switches: tuple[SwitchSymbols, ...]
+    kinds: tuple[str, ...]
+    outputs: tuple[Symbol, ...]
+    starts: tuple[tuple[int, Symbol | None, Symbol | None], ...]
+
+
+class Tracer:
+    """Calls the functions of one system on symbols."""
+
+    def __init__(
+        self, states: Sequence[str], parameters: Iterable[str], regimes: Mapping[str, Mapping]
+    ) -> None:
+        self.states = tuple(states)
+        self.regimes = list(regimes)
+        constants = {name for each in regimes.values() for name in each}
+        for name, each in regimes.items():
+            if missing := constants - set(each):
+                raise ValueError(
+                    f"regime {name!r} lacks the constant {min(missing)!r}, which others have"
+                )
+        self.values = regimes
+        self.time, *state = variables(TIME, *self.states)
+        self.variables = tuple(state)
+        self.s = Names("the state", dict(zip(self.states, state, strict=True)))
+        self.p = Names("the system", {name: parameter(name) for name in parameters})
+        self.constants = tuple(sorted(constants))
+        self.r = Names("a regime", {name: parameter(REGIME + name) for name in self.constants})
+
+    def one(self, what: str, function: Callable[..., Any], r: Any = None) -> Symbol:
+        """A scalar function of (t, s, p, r)."""
+        return self._symbol(what, self._call(what, function, r))
+
+    def several(self, what: str, function: Callable[..., Any], r: Any = None) -> dict[str, Symbol]:
+        """A function that gives a mapping of states."""
+        found = self._call(what, function, r)
+        if not isinstance(found, Mapping):
+            raise TypeError(f"{what} gives {type(found).__name__}; a dict of states is needed")
+        for name in found:
+            if name not in self.states:
+                raise ValueError(f"{what} gives {name!r}; {suggestion(name, self.states)}")
+        return {name: self._symbol(f"{what}[{name!r}]", value) for name, value in found.items()}
+
+    def numbers(self, regime: str) -> Names:
+        """The constants of one regime as numbers."""
+        return Names("a regime", {key: float(value) for key, value in self.values[regime].items()})
+
+    def _call(self, what: str, function: Callable[..., Any], r: Any) -> Any:
+        try:
+            return function(self.time, self.s, self.p, self.r if r is None else r)
+        except (TypeError, AttributeError) as error:
+            raise type(error)(f"{what}: {error}") from error
+
+    def _symbol(self, what: str, value: Any) -> Symbol:
+        try:
+            return symbol(value)
+        except (TypeError, ValueError):
+            raise TypeError(f"{what} gives {value!r}; a number or an expression is needed") from None
+
+    def regime(self, what: str, name: Any) -> int:
+        """The number of a regime.
+
+        Raises:
+            ValueError: there is none of that name.
+        """
+        if name not in self.regimes:
+            raise ValueError(f"{what}: regime {name!r} is unknown; {suggestion(name, self.regimes)}")
+        return self.regimes.index(name)
+
+    def samples(self, rng: np.random.Generator, size: int = 32) -> dict[str, Any]:
+        """Random values of everything that an expression may hold."""
+        names = [TIME, TIME_UNIT, *self.states, *vars(self.p), *(REGIME + c for c in self.constants)]
+        return {name: rng.uniform(0.3, 1.7, size) for name in names}
+
+
+def check_progress(tracer: Tracer, traced: Traced, names: Sequence[str], own: Sequence[bool]) -> None:
+    """Refuse a switch back into its own regime whose reset leaves it on, or behind, its surface.
+
+    Raises:
+        ValueError: at every one of many random states the surface goes on falling after the reset.
+    """
+    rng = np.random.default_rng(0)
+    values = {TIME: 0.3, **tracer.samples(rng, 400)}
+    values |= {name: rng.uniform(-2.0, 2.0, 400) for name in tracer.states}
+    for name, switch, returns in zip(names, traced.switches, own, strict=True):
+        if not returns:
+            continue
+        slope: Any = symbol(0.0)
+        for variable, rate in zip(traced.variables, traced.rates, strict=True):
+            slope = slope + derivative(switch.surface, variable) * rate
+        with np.errstate(all="ignore"):
+            height, rate = evaluate([switch.surface, symbol(slope)], values)
+            after = values | {
+                tracer.states[place]: value
+                for place, value in zip(
+                    switch.reset, evaluate(list(switch.reset.values()), values), strict=True
+                )
+            }
+            later, new_rate = evaluate([switch.surface, symbol(slope)], after)
+        falling = np.asarray(rate < 0) & np.isfinite(np.asarray(rate) + np.asarray(new_rate))
+        behind = np.asarray(later - height) < -1e-9
+        same = np.abs(np.asarray(later - height)) <= 1e-9
+        if falling.any() and (behind | (same & np.asarray(new_rate < 0)))[falling].all():
+            raise ValueError(
+                f"switch {name!r} leads back into a regime that it leaves, and its reset leaves "
+                "the state where the surface goes on falling: it would fire again at once, without "
+                "end; reset a state that turns it, or lead to another regime"
+            )
+
+
+def depends_on_time(tracer: Tracer, roots: Iterable[Symbol]) -> bool:
+    """Whether any expression holds the time."""
+    return any(node is tracer.time for node in in_order(list(roots)))
