@@ -1,1 +1,1 @@
-"""Piecewise-smooth systems: each is one file of fields, switches and a start."""
+"""Piecewise-smooth systems: each is one file of a field, switches and a start."""

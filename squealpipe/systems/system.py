@@ -42,7 +42,8 @@ class Switch:
         leaves: the regime, or regimes, in which it can fire.
         when: surface (t, s, p, r); it fires where this falls through zero.
         to: the next regime, or a list of (regime, condition) or (regime, condition, kind) and a
-            last regime: the first whose condition is ≥ 0. ``kind`` renames the event.
+            last regime (or (regime, None, kind)): the first whose condition is ≥ 0. ``kind``
+            renames the event.
         reset: the states that jump, as a mapping from (t, s, p, r).
 
     ``when``, ``to`` and ``reset`` see the state before the reset and the constants ``r`` of the
@@ -243,7 +244,7 @@ class System:
                     "that regime out of `leaves`"
                 )
         given = [switch.to] if isinstance(switch.to, str) else list(switch.to)
-        if not given or not isinstance(given[-1], str):
+        if not given or not (isinstance(given[-1], str) or given[-1][1] is None):
             raise ValueError(f"{what}: `to` has no last resort; end it with a regime alone")
         targets = []
         for entry in given:

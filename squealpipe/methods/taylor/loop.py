@@ -319,13 +319,17 @@ def _enter(t: Any, m: Any, c: Any, lane: int, regime: int, span: float) -> None:
     stride = m.scratch.shape[1] * 8
     call(t.gauge, (t.scratch, t.scratch + stride, parameters, constants, t.scratch + 2 * stride))
     for surface in range(t.n_surfaces):
+        m.noise[surface, lane] = NOISE * out[2 * surface + 1]
+    # a state is known to round-off of its typical size, however small it has become
+    for variable in range(t.n_states):
+        sizes[variable] = max(sizes[variable], m.sizes[variable])
+    call(t.gauge, (t.scratch, t.scratch + stride, parameters, constants, t.scratch + 2 * stride))
+    for surface in range(t.n_surfaces):
         m.active[surface] &= keep
         m.fresh[surface] &= keep
         if m.falls[regime, surface] >= 0 or m.rises[regime, surface] >= 0:
             m.active[surface] |= bit
-            value, scale = out[2 * surface], out[2 * surface + 1]
-            m.noise[surface, lane] = NOISE * scale
-            if abs(value) <= SLACK * scale:
+            if abs(out[2 * surface]) <= SLACK * out[2 * surface + 1]:
                 m.fresh[surface] |= bit
 
 
