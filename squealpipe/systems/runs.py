@@ -31,7 +31,7 @@ from squealpipe.methods.taylor.loop import (
     TABLE,
     loop,
 )
-from squealpipe.methods.taylor.scalar import ScalarSource, compile_scalar
+from squealpipe.methods.taylor.scalar import ScalarSource, compile_scalar, evaluate
 from squealpipe.methods.taylor.series import HybridSystem
 from squealpipe.methods.taylor.simd import FEW, LANES
 from squealpipe.schema import Outcome, flag_table, in_words
@@ -67,7 +67,7 @@ def compiled(system: System, *, tangent: bool, few: bool) -> _Compiled:
     """The machine code of a system, built once a process and kept on disk."""
     known = _COMPILED.setdefault(system, {})
     if (tangent, few) not in known:
-        t = system.traced
+        t = system.integrated
         symbolic = HybridSystem(
             variables=t.variables,
             rates=t.rates,
@@ -111,13 +111,15 @@ def integrate(
         log_events: events kept of each run.
         workers: processes; None takes all cores.
     """
-    t, size = system.traced, len(t_end)
+    t, size = system.integrated, len(t_end)
     scale = system.time_scale
     names = list(system.parameters)
     unit = np.broadcast_to(
         scale(_Given(values, names)) if callable(scale) else float(scale), (size,)
     ).astype(float)
-    parameters = np.stack([*(values[name] for name in names), unit], axis=1)
+    derived = evaluate(t.derived, {**values, TIME_UNIT: unit})
+    columns = [*(values[name] for name in names), *derived, unit]
+    parameters = np.stack([np.broadcast_to(each, (size,)) for each in columns], axis=1)
     initial = np.stack([values[name] for name in system.states], axis=1)
     regimes = system.first_regimes({TIME: np.zeros(size), **values}, size)
     tracked = [*range(t.size)]

@@ -317,6 +317,11 @@ class System:
         return surfaces, np.ascontiguousarray(table[0]), np.ascontiguousarray(table[1])
 
     @cached_property
+    def integrated(self) -> Traced:
+        """The system as the integrator takes it."""
+        return self.traced.with_derived()
+
+    @cached_property
     def text(self) -> dict[str, str]:
         """What the system is, as text: for the attributes of its datasets."""
         from squealpipe.systems.text import describe

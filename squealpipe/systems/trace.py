@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -11,9 +11,11 @@ import numpy as np
 from squealpipe.methods.taylor.scalar import REGIME, SwitchSymbols, evaluate
 from squealpipe.methods.taylor.symbols import (
     Symbol,
+    constant_parts,
     derivative,
     in_order,
     parameter,
+    substituted,
     symbol,
     variables,
 )
@@ -51,6 +53,7 @@ class Traced:
         kinds: names of the events.
         outputs: tracked quantities beside the states.
         starts: (regime, condition or None, equality or None).
+        derived: what holds parameters alone, computed once a run: parameters after the given ones.
     """
 
     variables: tuple[Symbol, ...]
@@ -66,6 +69,38 @@ class Traced:
     kinds: tuple[str, ...]
     outputs: tuple[Symbol, ...]
     starts: tuple[tuple[int, Symbol | None, Symbol | None], ...]
+    derived: tuple[Symbol, ...] = ()
+
+    def with_derived(self) -> Traced:
+        """The same with its constant parts as parameters, for the integrator."""
+        roots = [*self.rates, *self.surfaces, *self.outputs]
+        for switch in self.switches:
+            roots += [switch.surface, *switch.reset.values()]
+            roots += [c for _, c, _ in switch.targets if c is not None]
+        derived = constant_parts(roots, REGIME)
+        names = [f"derived {i}" for i in range(len(derived))]
+        given = {id(n): parameter(name) for n, name in zip(derived, names, strict=True)}
+
+        def of(root: Any) -> Any:
+            return None if root is None else substituted(root, given)
+
+        switches = tuple(
+            SwitchSymbols(
+                of(each.surface),
+                tuple((regime, of(c), kind) for regime, c, kind in each.targets),
+                {place: of(value) for place, value in each.reset.items()},
+            )
+            for each in self.switches
+        )
+        return replace(
+            self,
+            rates=tuple(map(of, self.rates)),
+            surfaces=tuple(map(of, self.surfaces)),
+            outputs=tuple(map(of, self.outputs)),
+            switches=switches,
+            parameters=(*self.parameters[:-1], *names, TIME_UNIT),
+            derived=tuple(derived),
+        )
 
 
 class Tracer:

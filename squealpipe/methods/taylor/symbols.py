@@ -244,3 +244,31 @@ def in_order(roots: Sequence[Symbol]) -> list[Symbol]:
     for each in roots:
         visit(each)
     return list(found.values())
+
+
+def substituted(root: Symbol, given: dict[int, Symbol]) -> Symbol:
+    """An expression with some of its nodes, by ``id``, replaced."""
+    made = dict(given)
+    for node in in_order([root]):
+        if id(node) not in made:
+            inner = [made[id(a)] if isinstance(a, Symbol) else a for a in node.arguments]
+            made[id(node)] = Symbol(node.kind, *inner)
+    return made[id(root)]
+
+
+def constant_parts(roots: Sequence[Symbol], skipped: str) -> list[Symbol]:
+    """The largest parts that hold parameters alone, none whose name begins with ``skipped``."""
+    fixed: dict[int, bool] = {}
+    found: dict[int, Symbol] = {}
+    nodes = in_order(roots)
+    for node in nodes:
+        inner = [fixed[id(a)] for a in node.arguments if isinstance(a, Symbol)]
+        own = node.kind != "variable" and not (
+            node.kind == "parameter" and node.arguments[0].startswith(skipped)
+        )
+        fixed[id(node)] = own and all(inner)
+    uses = [a for n in nodes if not fixed[id(n)] for a in n.arguments if isinstance(a, Symbol)]
+    for node in (*uses, *roots):
+        if fixed[id(node)] and node.kind not in {"parameter", "number"}:
+            found[id(node)] = node
+    return list(found.values())
