@@ -61,7 +61,11 @@ def belt_oscillator(
                 "reversal",
                 leaves=("slower", "faster"),
                 when=lambda t, s, p, r: r.direction * (p.belt_speed - s.v),
-                to=[("stick", holds, "stick"), ("faster", lambda t, s, p, r: r.direction), "slower"],
+                to=[
+                    ("stick", holds, "stick"),
+                    ("faster", lambda t, s, p, r: r.direction),
+                    "slower",
+                ],
                 reset=lambda t, s, p, r: {"v": p.belt_speed},
             ),
             Switch("slip", leaves="stick", when=margin(1.0), to="slower"),

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import json
 import math
 import weakref
 from collections.abc import Mapping
 from dataclasses import dataclass
+from importlib.metadata import version
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -280,11 +282,13 @@ def simulate(
         for i, name in enumerate(system.states)
     }
     found["regime"] = _flag("regime", "time", raw["sample_regimes"][0], names)
-    found["event_time"] = ("event", raw["event_times"][0, :count], _labels("time of the event", "s"))
-    found["event_kind"] = _flag("kind of the event", "event", raw["event_kinds"][0, :count], kinds)
-    found["event_regime"] = _flag(
-        "regime entered", "event", raw["event_regimes"][0, :count], names
+    found["event_time"] = (
+        "event",
+        raw["event_times"][0, :count],
+        _labels("time of the event", "s"),
     )
+    found["event_kind"] = _flag("kind of the event", "event", raw["event_kinds"][0, :count], kinds)
+    found["event_regime"] = _flag("regime entered", "event", raw["event_regimes"][0, :count], names)
     found["outcome"] = _outcome(system, (), raw["ends"][0, 0])
     found["end_time"] = ((), reached, _labels("time reached", "s"))
     given = {name: float(value[0]) for name, value in values.items()}
@@ -335,7 +339,9 @@ def ensemble(
     axes = {name: i for i, name in enumerate(dims)}
     values = {
         name: np.broadcast_to(
-            value if name not in axes else value.reshape([-1] + [1] * (len(shape) - axes[name] - 1)),
+            value
+            if name not in axes
+            else value.reshape([-1] + [1] * (len(shape) - axes[name] - 1)),
             shape,
         ).reshape(-1)
         for name, value in given.items()
@@ -391,9 +397,8 @@ def _given(
             raise ValueError(f"start: {name!r} is unknown; {suggestion(name, system.units)}")
     for name in parameters:
         if name not in system.parameters:
-            raise ValueError(
-                f"{system.name}: parameter {name!r} is unknown; {suggestion(name, system.parameters)}"
-            )
+            near = suggestion(name, system.parameters)
+            raise ValueError(f"{system.name}: parameter {name!r} is unknown; {near}")
     states = {name: system.start[name] for name in system.units}
     return {**states, **system.parameters, **(start or {}), **parameters}
 
@@ -422,9 +427,9 @@ def _outcome(system: System, dims: Any, values: Any) -> Any:
     return dims, values, attributes | {"comment": in_words(table)}
 
 
-def _attributes(system: System, what: str, given: Mapping[str, float], tol: float) -> dict[str, Any]:
-    import json
-    from importlib.metadata import version
+def _attributes(
+    system: System, what: str, given: Mapping[str, float], tol: float
+) -> dict[str, Any]:
 
     return {
         "title": f"{system.name}: {what}",

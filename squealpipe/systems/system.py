@@ -12,6 +12,7 @@ import xarray as xr
 
 from squealpipe.methods.taylor.scalar import REGIME, SwitchSymbols, evaluate
 from squealpipe.methods.taylor.symbols import Symbol, parameter, symbol
+from squealpipe.parameters import is_finite_number
 from squealpipe.systems.trace import (
     TIME,
     TIME_UNIT,
@@ -21,14 +22,17 @@ from squealpipe.systems.trace import (
     depends_on_time,
 )
 from squealpipe.text import suggestion
-from squealpipe.parameters import is_finite_number
 
 Function = Callable[..., Any]
 MOST_STATES, MOST_SURFACES, MOST_REGIMES = 24, 16, 256
 RESERVED = frozenset(
-    "t_end times start tol sensitivity t_late horizon workers guess periods t_settle to n_points "
-    "parameter parameters label time event point run multiplier outcome regime period stable "
-    "residual event_time event_kind event_regime lyapunov_exponent predictability_horizon".split()
+    (
+        *("t_end", "times", "start", "tol", "sensitivity", "t_late", "horizon", "workers", "guess"),
+        *("periods", "t_settle", "to", "n_points", "parameter", "parameters", "label"),
+        *("time", "event", "point", "run", "multiplier", "outcome", "regime", "period", "stable"),
+        *("residual", "event_time", "event_kind", "event_regime", "end_time"),
+        *("lyapunov_exponent", "predictability_horizon"),
+    )
 )
 """Arguments of the methods, dimensions and variables of what they return."""
 
@@ -100,7 +104,9 @@ class System:
         time_scale: float | Function = 1.0,
     ) -> None:
         self.name = name
-        self.units = {key: value if isinstance(value, str) else value[0] for key, value in states.items()}
+        self.units = {
+            key: value if isinstance(value, str) else value[0] for key, value in states.items()
+        }
         self.sizes = np.array([1.0 if isinstance(v, str) else float(v[1]) for v in states.values()])
         self.parameters = dict(parameters)
         self.regimes, self.field = dict(regimes), field
@@ -133,35 +139,39 @@ class System:
         return ensemble(self, t_end, **options)
 
     def _check_names(self) -> None:
-        if not 1 <= len(self.units) <= MOST_STATES:
-            raise ValueError(f"{len(self.units)} states; 1 to {MOST_STATES} can be carried")
-        if not 1 <= len(self.regimes) <= MOST_REGIMES:
-            raise ValueError(f"{len(self.regimes)} regimes; 1 to {MOST_REGIMES} can be carried")
+        for number, most, what in (
+            (len(self.units), MOST_STATES, "states"),
+            (len(self.regimes), MOST_REGIMES, "regimes"),
+        ):
+            if not 1 <= number <= most:
+                raise ValueError(f"{number} {what}; 1 to {most} can be carried")
         if not (self.sizes > 0).all():
             raise ValueError("the typical size of a state must be greater than 0")
-        taken = {*self.units, *(f"{name}0" for name in self.units), *RESERVED}
+        starts = {f"{name}0" for name in self.units}
+        self._check_free("state", self.units, RESERVED)
+        self._check_free("parameter", self.parameters, {*self.units, *starts, *RESERVED})
+        self._check_free("output", self.outputs, {*self.units, *self.parameters, *RESERVED})
         for name, value in self.parameters.items():
-            if name in taken:
-                raise ValueError(
-                    f"parameter {name!r}: the name is an argument, a state, a start or a result; "
-                    "choose another"
-                )
             if not is_finite_number(value):
                 raise ValueError(f"parameter {name!r} = {value!r}: a finite number is needed")
-        for name in self.outputs:
-            if name in {*taken, *self.parameters}:
-                raise ValueError(f"output {name!r}: the name is taken; choose another")
-        for name in self.start:
-            if name not in {*self.units, "regime"}:
-                raise ValueError(f"start: {name!r} is unknown; {suggestion(name, self.units)}")
-        for name in self.units:
-            if name in RESERVED:
-                raise ValueError(f"state {name!r}: the name is an argument or a result")
-            if name not in self.start:
-                raise ValueError(f"start lacks the state {name!r}")
+        if unknown := [name for name in self.start if name not in {*self.units, "regime"}]:
+            raise ValueError(
+                f"start: {unknown[0]!r} is unknown; {suggestion(unknown[0], self.units)}"
+            )
+        if missing := [name for name in self.units if name not in self.start]:
+            raise ValueError(f"start lacks the state {missing[0]!r}")
         names = [each.name for each in self.switches]
         if len(set(names)) < len(names):
             raise ValueError(f"two switches share a name: {', '.join(names)}")
+
+    @staticmethod
+    def _check_free(what: str, names: Mapping[str, Any], taken: Any) -> None:
+        for name in names:
+            if name in taken:
+                raise ValueError(
+                    f"{what} {name!r}: the name is taken by an argument, a state, a start or a "
+                    "result; choose another"
+                )
 
     def _rates(self, tracer: Tracer) -> list[Symbol]:
         if not isinstance(self.field, Mapping):
@@ -174,7 +184,9 @@ class System:
             found = tracer.several(what, self.field[regime], tracer.numbers(regime))
             here = parameter(REGIME + _indicator(regime))
             rates = self._complete(what, found)
-            total = [a if b is symbol(0.0) else a + here * b for a, b in zip(total, rates, strict=True)]
+            total = [
+                a if b is symbol(0.0) else a + here * b for a, b in zip(total, rates, strict=True)
+            ]
         return total
 
     def _complete(self, what: str, found: Mapping[str, Symbol]) -> list[Symbol]:
@@ -237,7 +249,9 @@ class System:
         surface = tracer.one(f"{what}: when", switch.when)
         leaves = self._leaves(tracer, switch)
         for regime in leaves:
-            inside = tracer.one(f"{what}: when", switch.when, tracer.numbers(self.states_of(regime)))
+            inside = tracer.one(
+                f"{what}: when", switch.when, tracer.numbers(self.states_of(regime))
+            )
             if not inside.varies:
                 raise ValueError(
                     f"{what}: its surface is constant in regime {self.states_of(regime)!r}; leave "
@@ -284,34 +298,31 @@ class System:
         surfaces: list[Symbol] = []
         prints: list[np.ndarray] = []
         watched: list[tuple[int, int, int, int]] = []  # regime, surface, rises, switch
-        everywhere = range(len(self.regimes))
-        places = [*(self._leaves(tracer, each) for each in self.switches), *[everywhere] * len(stops)]
-        for number, (surface, regimes) in enumerate(
-            zip([*(each.surface for each in switches), *stops], places, strict=True)
-        ):
+        everywhere = [*range(len(self.regimes))]
+        places = [self._leaves(tracer, each) for each in self.switches] + [everywhere] * len(stops)
+        every = [*(each.surface for each in switches), *stops]
+        for number, (surface, regimes) in enumerate(zip(every, places, strict=True)):
             with np.errstate(all="ignore"):
                 (value,) = evaluate([surface], probe)
             mine = np.broadcast_to(value, 32)
-            for index, other in enumerate(prints):
-                size = 1e-12 * np.abs(other).max()
-                if np.abs(mine - other).max() <= size or np.abs(mine + other).max() <= size:
-                    rises = int(np.abs(mine - other).max() > size)
-                    break
-            else:
-                index, rises = len(surfaces), 0
+            same = [i for i, other in enumerate(prints) if np.allclose(mine, other, 1e-12, 0)]
+            opposite = [i for i, other in enumerate(prints) if np.allclose(-mine, other, 1e-12, 0)]
+            if not same + opposite:
+                same = [len(surfaces)]
                 surfaces.append(surface)
                 prints.append(mine)
-            watched += [(regime, index, rises, number) for regime in regimes]
+            rises = int(not same)
+            watched += [(regime, (same + opposite)[0], rises, number) for regime in regimes]
         if len(surfaces) > MOST_SURFACES:
             raise ValueError(f"{len(surfaces)} surfaces; at most {MOST_SURFACES} can be watched")
         table = np.full((2, len(self.regimes), len(surfaces)), -1, np.int64)
         for regime, index, rises, number in watched:
             if table[rises, regime, index] >= 0:
                 names = [each.name for each in self.switches] + list(self.stops)
+                first = names[table[rises, regime, index]]
                 raise ValueError(
-                    f"{names[table[rises, regime, index]]!r} and {names[number]!r} fire at the same "
-                    f"surface in regime {self.states_of(regime)!r}; make them one switch whose "
-                    "`to` decides"
+                    f"{first!r} and {names[number]!r} fire at the same surface in regime "
+                    f"{self.states_of(regime)!r}; make them one switch whose `to` decides"
                 )
             table[rises, regime, index] = number
         return surfaces, np.ascontiguousarray(table[0]), np.ascontiguousarray(table[1])

@@ -30,7 +30,9 @@ def describe(system: System) -> dict[str, str]:
     for name, output in zip(system.outputs, traced.outputs, strict=True):
         found[name] = expression(output)
     for row, name in zip(traced.regimes, system.regimes, strict=True):
-        values = (f"{c.removeprefix(REGIME)}={v:g}" for c, v in zip(traced.constants, row, strict=True))
+        values = (
+            f"{c.removeprefix(REGIME)}={v:g}" for c, v in zip(traced.constants, row, strict=True)
+        )
         found[f"regime {name}"] = ", ".join(values)
     return found
 

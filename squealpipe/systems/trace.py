@@ -153,7 +153,9 @@ class Tracer:
         try:
             return symbol(value)
         except (TypeError, ValueError):
-            raise TypeError(f"{what} gives {value!r}; a number or an expression is needed") from None
+            raise TypeError(
+                f"{what} gives {value!r}; a number or an expression is needed"
+            ) from None
 
     def regime(self, what: str, name: Any) -> int:
         """The number of a regime.
@@ -162,16 +164,26 @@ class Tracer:
             ValueError: there is none of that name.
         """
         if name not in self.regimes:
-            raise ValueError(f"{what}: regime {name!r} is unknown; {suggestion(name, self.regimes)}")
+            raise ValueError(
+                f"{what}: regime {name!r} is unknown; {suggestion(name, self.regimes)}"
+            )
         return self.regimes.index(name)
 
     def samples(self, rng: np.random.Generator, size: int = 32) -> dict[str, Any]:
         """Random values of everything that an expression may hold."""
-        names = [TIME, TIME_UNIT, *self.states, *vars(self.p), *(REGIME + c for c in self.constants)]
+        names = [
+            TIME,
+            TIME_UNIT,
+            *self.states,
+            *vars(self.p),
+            *(REGIME + c for c in self.constants),
+        ]
         return {name: rng.uniform(0.3, 1.7, size) for name in names}
 
 
-def check_progress(tracer: Tracer, traced: Traced, names: Sequence[str], own: Sequence[bool]) -> None:
+def check_progress(
+    tracer: Tracer, traced: Traced, names: Sequence[str], own: Sequence[bool]
+) -> None:
     """Refuse a switch back into its own regime whose reset leaves it on, or behind, its surface.
 
     Raises:

@@ -8,11 +8,10 @@ nothing ends, no surface may be crossed and no sample is due takes no path of it
 from __future__ import annotations
 
 import math
-from collections import namedtuple
 from enum import IntEnum
 from functools import cache
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numba
 import numpy as np
@@ -85,7 +84,9 @@ SIZES = (
 )  # fmt: skip
 TABLE = np.dtype([(name, "i8") for name in (*ARRAYS, *SIZES)])
 
-_Memory = namedtuple("_Memory", [name for name in ARRAYS if name not in {"series", "inverses"}])
+_fields: Any = [(name, Any) for name in ARRAYS if name not in {"series", "inverses"}]
+_named_tuple: Any = NamedTuple
+_Memory: Any = _named_tuple("_Memory", _fields)
 
 
 @inline
@@ -157,6 +158,31 @@ def _take_step(t: Any, active: Any, sizes: Any) -> Any:
 
 
 @part
+def _first_switch(t: Any, m: Any, c: Any, lane: int, step: float) -> float:
+    """When the first watched surface is crossed, whose switch goes into ``HIT``; or the step."""
+    integers = m.integers
+    regime, bit = integers[REGIME, lane], 1 << lane
+    first, tie = step, step * 2.0**-44
+    for surface in range(t.n_surfaces):
+        falls, rises = m.falls[regime, surface], m.rises[regime, surface]
+        if falls < 0 and rises < 0:
+            continue
+        root = first_crossing(
+            c, t.n_variables + surface, lane, step, falls >= 0, rises >= 0,
+            (m.fresh[surface] & bit) != 0, m.noise[surface, lane],
+        )  # fmt: skip
+        if root < 0.0 or root > first + tie:
+            continue
+        _, slope = evaluate_with_slope(c, t.n_variables + surface, lane, root)
+        which = falls if rises < 0 or (falls >= 0 and slope < 0.0) else rises
+        earlier = root < first - tie or integers[HIT, lane] < 0
+        # of switches at one instant the first by name goes first, whatever their order
+        if earlier or which < integers[HIT, lane]:
+            first, integers[HIT, lane] = min(root, first), which
+    return first
+
+
+@part
 def _cut(t: Any, m: Any, c: Any, lane: int) -> None:
     """End a lane's step at the first crossing, at the late time or at the end of its run."""
     rows, integers = m.rows, m.integers
@@ -176,24 +202,7 @@ def _cut(t: Any, m: Any, c: Any, lane: int) -> None:
     turns_late = late <= step
     if turns_late:
         step, ends = late, ends and late >= remaining
-    regime, bit = integers[REGIME, lane], 1 << lane
-    first, tie = step, step * 2.0**-44
-    for surface in range(t.n_surfaces):
-        falls, rises = m.falls[regime, surface], m.rises[regime, surface]
-        if falls < 0 and rises < 0:
-            continue
-        root = first_crossing(
-            c, t.n_variables + surface, lane, step, falls >= 0, rises >= 0,
-            (m.fresh[surface] & bit) != 0, m.noise[surface, lane],
-        )  # fmt: skip
-        if root < 0.0 or root > first + tie:
-            continue
-        _, slope = evaluate_with_slope(c, t.n_variables + surface, lane, root)
-        which = falls if rises < 0 or (falls >= 0 and slope < 0.0) else rises
-        earlier = root < first - tie or integers[HIT, lane] < 0
-        # of switches at one instant the first by name goes first, whatever their order
-        if earlier or which < integers[HIT, lane]:
-            first, integers[HIT, lane] = min(root, first), which
+    first = _first_switch(t, m, c, lane, step)
     if integers[HIT, lane] >= 0:
         step, ends, turns_late = first, False, False
     if turns_late:
@@ -334,6 +343,40 @@ def _enter(t: Any, m: Any, c: Any, lane: int, regime: int, span: float) -> None:
 
 
 @part
+def _log(t: Any, m: Any, lane: int, kind: int, regime: int) -> int:
+    """Count an event and, where there is room, log it; returns how many there were."""
+    integers, job, after = m.integers, m.integers[JOB, lane], m.scratch[3]
+    count = integers[EVENTS, lane]
+    if count < t.n_logged:
+        m.event_times[job, count] = m.rows[CLOCK, lane] + m.rows[CORRECTION, lane]
+        m.event_kinds[job, count], m.event_regimes[job, count] = kind, regime
+        for variable in range(t.n_states):
+            m.event_states[job, count, variable] = after[variable]
+    integers[EVENTS, lane] = count + 1
+    m.counts[job, kind] += 1
+    if math.isnan(m.firsts[job, kind]):
+        m.firsts[job, kind] = m.rows[CLOCK, lane]
+    return count + 1
+
+
+@part
+def _carry_over(
+    t: Any, m: Any, lane: int, tangent_row: int, regime: int, parameters: int
+) -> None:
+    """A perturbation across the switch whose states before and after are in the scratch."""
+    d, out, stride = m.scratch[4], m.scratch[2], m.scratch.shape[1] * 8
+    for variable in range(t.n_states):
+        d[variable] = m.rows[tangent_row + variable, lane]
+    before = t.regimes + 8 * m.integers[REGIME, lane] * t.n_constants
+    after = t.regimes + 8 * regime * t.n_constants
+    z, y = t.scratch, t.scratch + 3 * stride
+    at, which = t.scratch + 4 * stride, m.integers[HIT, lane]
+    call(t.jump, (which, z, y, parameters, before, after, at, t.scratch + 2 * stride))
+    for variable in range(t.n_states):
+        m.rows[tangent_row + variable, lane] = out[variable]
+
+
+@part
 def _switch(t: Any, m: Any, c: Any, lane: int, tangent_row: int) -> None:
     """Carry out the switch that ended a lane's step."""
     rows, integers, job = m.rows, m.integers, m.integers[JOB, lane]
@@ -355,38 +398,17 @@ def _switch(t: Any, m: Any, c: Any, lane: int, tangent_row: int) -> None:
     for variable in range(t.n_states):
         after[variable] = out[2 + variable]
     if t.tangent:
-        d = m.scratch[4]
-        for variable in range(t.n_states):
-            d[variable] = rows[tangent_row + variable, lane]
-        call(
-            t.jump,
-            (
-                which, t.scratch, t.scratch + 3 * stride, parameters, constants,
-                t.regimes + 8 * regime * t.n_constants, t.scratch + 4 * stride,
-                t.scratch + 2 * stride,
-            ),
-        )  # fmt: skip
-        for variable in range(t.n_states):
-            rows[tangent_row + variable, lane] = out[variable]
+        _carry_over(t, m, lane, tangent_row, regime, parameters)
     for variable in range(t.n_states):
         c[variable, 0, lane] = after[variable]
-    integers[CHAINED, lane] = (
-        0 if span > 4.0 * 2.0**-52 * abs(clock) else integers[CHAINED, lane] + 1
-    )
-    count = integers[EVENTS, lane]
-    if count < t.n_logged:
-        m.event_times[job, count] = clock + rows[CORRECTION, lane]
-        m.event_kinds[job, count], m.event_regimes[job, count] = kind, regime
-        for variable in range(t.n_states):
-            m.event_states[job, count, variable] = after[variable]
-    integers[EVENTS, lane] = count + 1
-    m.counts[job, kind] += 1
-    if math.isnan(m.firsts[job, kind]):
-        m.firsts[job, kind] = clock
+    integers[CHAINED, lane] += 1
+    if span > 4.0 * 2.0**-52 * abs(clock):
+        integers[CHAINED, lane] = 0
+    count = _log(t, m, lane, kind, regime)
     _enter(t, m, c, lane, regime, span)
     if integers[CHAINED, lane] >= CHAIN:
         integers[OUTCOME, lane] = ACCUMULATION
-    elif count + 1 >= m.limits[job, 3]:
+    elif count >= m.limits[job, 3]:
         integers[OUTCOME, lane] = EVENT_LIMIT
 
 
@@ -475,7 +497,71 @@ def _go_on(t: Any) -> None:
 
 
 @inline
+def _refill(
+    t: Any, m: Any, c: Any, busy: int, ended: int, tangent_row: int, first_extreme: int
+) -> int:
+    """Finish the lanes that have ended and give them new jobs; returns the busy ones."""
+    while ended:
+        lane = first_bit(ended)
+        ended ^= 1 << lane
+        if m.integers[JOB, lane] >= 0:
+            _finish(t, m, c, lane, tangent_row, first_extreme)
+        busy &= ~(1 << lane)
+        m.integers[JOB, lane] = -1
+        if m.queue[0] < m.queue[1]:
+            job = m.queue[0]
+            m.queue[0] += m.queue[2]
+            _start(t, m, c, lane, job, tangent_row, first_extreme)
+            busy |= 1 << lane
+    return busy
+
+
+@inline
+def _start_from_zero(t: Any, m: Any, c: Any) -> None:
+    """Surfaces whose sign round-off hides start from exactly zero."""
+    for surface in range(t.n_surfaces):
+        bits = m.fresh[surface]
+        while bits:
+            lane = first_bit(bits)
+            bits ^= 1 << lane
+            c[t.n_variables + surface, 0, lane] = 0.0
+
+
+@inline
+def _switch_all(t: Any, m: Any, c: Any, special: int, tangent_row: int) -> None:
+    """Carry out what ended the steps of some lanes."""
+    for surface in range(t.n_surfaces):
+        m.fresh[surface] = 0
+    while special:
+        lane = first_bit(special)
+        special ^= 1 << lane
+        hit = m.integers[HIT, lane]
+        if hit == LATE_BEGINS:
+            m.rows[LATE, lane] = 1.0
+        elif hit >= 0 and m.integers[OUTCOME, lane] == RUNNING:
+            _switch(t, m, c, lane, tangent_row)
+        m.integers[HIT, lane] = -1
+
+
+@inline
+def _ended(t: Any, m: Any, busy: int, tangent_row: int) -> int:
+    """Lanes whose run has ended."""
+    ended = 0
+    for lane in range(LANES):
+        if not busy & (1 << lane):
+            continue
+        if t.tangent:
+            _grow(t, m, lane, tangent_row)
+        if m.integers[OUTCOME, lane] == RUNNING and m.rows[STEPS, lane] >= m.rows[MOST_STEPS, lane]:
+            m.integers[OUTCOME, lane] = STEP_LIMIT
+        if m.integers[OUTCOME, lane] != RUNNING:
+            ended |= 1 << lane
+    return ended
+
+
+@inline
 def _rounds(t: Any, m: Any, c: Any) -> int:
+    """Steps of all lanes until none is busy, or there were enough."""
     tangent_row = FIXED_ROWS + t.n_variables
     first_extreme = tangent_row + t.n_states
     first_parameter = t.n_rows - t.n_constants - t.n_parameters
@@ -486,27 +572,11 @@ def _rounds(t: Any, m: Any, c: Any) -> int:
         busy |= (1 << lane) if m.integers[JOB, lane] >= 0 else 0
         ended |= (1 << lane) if m.integers[OUTCOME, lane] != RUNNING else 0
     for _ in range(t.n_rounds):
-        while ended:
-            lane = first_bit(ended)
-            ended ^= 1 << lane
-            if m.integers[JOB, lane] >= 0:
-                _finish(t, m, c, lane, tangent_row, first_extreme)
-            busy &= ~(1 << lane)
-            m.integers[JOB, lane] = -1
-            if m.queue[0] < m.queue[1]:
-                job = m.queue[0]
-                m.queue[0] += m.queue[2]
-                _start(t, m, c, lane, job, tangent_row, first_extreme)
-                busy |= 1 << lane
+        busy = _refill(t, m, c, busy, ended, tangent_row, first_extreme)
         if not busy:
             return 0
         call(t.take_step, (t.series, parameters, t.inverses, t.n_terms))
-        for surface in range(t.n_surfaces):
-            bits = m.fresh[surface]
-            while bits:
-                lane = first_bit(bits)
-                bits ^= 1 << lane
-                c[t.n_variables + surface, 0, lane] = 0.0
+        _start_from_zero(t, m, c)
         special = _take_step(t, m.active, m.sizes) & busy
         due = _reaches(t.rows, NEXT_SAMPLE) & busy if t.n_samples else 0
         bits = special
@@ -527,29 +597,8 @@ def _rounds(t: Any, m: Any, c: Any) -> int:
             clock = load(t.rows + CLOCK * ROW) + load(t.rows + CORRECTION * ROW)
             now = clock * load(t.rows + time_unit * ROW)
             store(t.series + t.n_states * t.n_terms * ROW, now)
-        for surface in range(t.n_surfaces):
-            m.fresh[surface] = 0
-        bits = special
-        while bits:
-            lane = first_bit(bits)
-            bits ^= 1 << lane
-            hit = m.integers[HIT, lane]
-            if hit == LATE_BEGINS:
-                m.rows[LATE, lane] = 1.0
-            elif hit >= 0 and m.integers[OUTCOME, lane] == RUNNING:
-                _switch(t, m, c, lane, tangent_row)
-            m.integers[HIT, lane] = -1
-        for lane in range(LANES):
-            if busy & (1 << lane):
-                if t.tangent:
-                    _grow(t, m, lane, tangent_row)
-                if (
-                    m.rows[STEPS, lane] >= m.rows[MOST_STEPS, lane]
-                    and m.integers[OUTCOME, lane] == RUNNING
-                ):
-                    m.integers[OUTCOME, lane] = STEP_LIMIT
-                if m.integers[OUTCOME, lane] != RUNNING:
-                    ended |= 1 << lane
+        _switch_all(t, m, c, special, tangent_row)
+        ended = _ended(t, m, busy, tangent_row)
     return int(busy)
 
 
@@ -591,7 +640,7 @@ def _advance(table: Any) -> int:
         queue=view(t.queue, (3,), np.int64),
     )
     c = view(t.series, (t.n_series, t.n_terms, LANES), np.float64)
-    return _rounds(t, m, c)
+    return int(_rounds(t, m, c))
 
 
 @cache
