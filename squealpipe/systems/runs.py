@@ -39,7 +39,7 @@ from squealpipe.methods.taylor.simd import FEW, LANES
 from squealpipe.schema import Outcome, flag_table, in_words
 from squealpipe.systems.trace import TIME, TIME_UNIT
 from squealpipe.text import suggestion
-from squealpipe.validation import real_array, real_number
+from squealpipe.validation import real_array
 
 if TYPE_CHECKING:
     from squealpipe.systems.system import System
@@ -206,6 +206,7 @@ def integrate(
             "tangent": int(tangent),
             "take_step": code.series.series,
             "perturb": code.series.perturb,
+            "longest": code.series.longest,
             "gauge": code.gauge.address,
             "change": code.change.address,
             "jump": code.jump.address if code.jump else 0,
@@ -257,9 +258,9 @@ def simulate(
     Raises:
         ValueError: an unknown state or parameter, or a value that is no finite number.
     """
-    t_end = real_number("t_end", t_end, least=0.0)
+    t_end = _instant("t_end", t_end)
     values = {
-        name: np.array([real_number(name, value)])
+        name: np.array([_scalar(name, value)])
         for name, value in _given(system, start, parameters).items()
     }
     ends = np.array([t_end])
@@ -327,7 +328,7 @@ def ensemble(
     Raises:
         ValueError: an unknown state or parameter, or a value that is no finite number.
     """
-    t_end = real_number("t_end", t_end, least=0.0)
+    t_end = _instant("t_end", t_end)
     given = {name: real_array(name, v) for name, v in _given(system, start, parameters).items()}
     # starts first, each under the name of its state and 0
     order = [*(start or {}), *parameters]
@@ -347,7 +348,7 @@ def ensemble(
         for name, value in given.items()
     }
     size = math.prod(shape)
-    late = 0.8 * t_end if t_late is None else real_number("t_late", t_late, least=0.0)
+    late = 0.8 * t_end if t_late is None else _instant("t_late", t_late)
     raw = integrate(
         system, values, np.full(size, t_end), t_late=late, tol=tol, tangent=horizon, workers=workers
     )
@@ -386,6 +387,20 @@ def ensemble(
     }  # fmt: skip
     fixed = {name: float(v) for name, v in given.items() if v.ndim == 0}
     return xr.Dataset(found, coordinates, _attributes(system, "ensemble", fixed, tol))
+
+
+def _scalar(name: str, value: Any) -> float:
+    array = real_array(name, value)
+    if array.ndim:
+        raise ValueError(f"{name} has shape {array.shape}: one number is needed")
+    return float(array)
+
+
+def _instant(name: str, value: Any) -> float:
+    number = _scalar(name, value)
+    if number < 0.0:
+        raise ValueError(f"{name} = {number!r}: must be 0 or greater")
+    return number
 
 
 def _given(

@@ -65,7 +65,10 @@ RUNNING, CONVERGED, STEP_LIMIT = int(End.running), int(End.converged), int(End.s
 EVENT_LIMIT, NOT_FINITE = int(End.event_limit), int(End.not_finite)
 ACCUMULATION = int(End.accumulation)
 
-CLOCK, CORRECTION, STEP, T_END, T_LATE, LATE, NEXT_SAMPLE, STEPS, MOST_STEPS, FIXED_ROWS = range(10)
+(
+    CLOCK, CORRECTION, STEP, LONGEST, T_END, T_LATE, LATE, NEXT_SAMPLE, STEPS, MOST_STEPS,
+    FIXED_ROWS,
+) = range(11)  # fmt: skip
 """Rows of numbers of the lanes that every system has; those of a system follow."""
 JOB, OUTCOME, SAMPLE, REGIME, EVENTS, CHAINED, HIT, FIXED_INTEGERS = range(8)
 """Rows of integers of the lanes."""
@@ -80,7 +83,8 @@ ARRAYS = (
 SIZES = (
     "n_terms", "n_jobs", "n_states", "n_variables", "n_surfaces", "n_tracked", "n_parameters",
     "n_constants", "n_regimes", "n_kinds", "n_samples", "n_logged", "n_rounds", "tangent",
-    "take_step", "perturb", "gauge", "change", "jump", "n_series", "n_rows", "n_switches",
+    "take_step", "perturb", "longest", "gauge", "change", "jump", "n_series", "n_rows",
+    "n_switches",
 )  # fmt: skip
 TABLE = np.dtype([(name, "i8") for name in (*ARRAYS, *SIZES)])
 
@@ -142,7 +146,7 @@ def _reaches(rows: int, instant: int) -> Any:
 def _take_step(t: Any, active: Any, sizes: Any) -> Any:
     """Ends of all lanes' steps; returns the lanes that need a look of their own."""
     terms, base, at = t.n_terms, t.series, t.rows
-    step = _step_length(base, terms, t.n_states, sizes)
+    step = smaller(_step_length(base, terms, t.n_states, sizes), load(at + LONGEST * ROW))
     store(at + STEP * ROW, step)
     lost = step
     for variable in range(t.n_variables):
@@ -356,13 +360,11 @@ def _log(t: Any, m: Any, lane: int, kind: int, regime: int) -> int:
     m.counts[job, kind] += 1
     if math.isnan(m.firsts[job, kind]):
         m.firsts[job, kind] = m.rows[CLOCK, lane]
-    return count + 1
+    return int(count + 1)
 
 
 @part
-def _carry_over(
-    t: Any, m: Any, lane: int, tangent_row: int, regime: int, parameters: int
-) -> None:
+def _carry_over(t: Any, m: Any, lane: int, tangent_row: int, regime: int, parameters: int) -> None:
     """A perturbation across the switch whose states before and after are in the scratch."""
     d, out, stride = m.scratch[4], m.scratch[2], m.scratch.shape[1] * 8
     for variable in range(t.n_states):
@@ -459,6 +461,7 @@ def _start(t: Any, m: Any, c: Any, lane: int, job: int, tangent_row: int, first:
     integers[JOB, lane], integers[OUTCOME, lane], integers[HIT, lane] = job, RUNNING, -1
     for row in (CLOCK, CORRECTION, STEPS, STEP):
         rows[row, lane] = 0.0
+    rows[LONGEST, lane] = math.inf
     rows[T_END, lane], rows[T_LATE, lane] = m.limits[job, 0], m.limits[job, 1]
     rows[MOST_STEPS, lane] = m.limits[job, 2]
     rows[LATE, lane] = 0.0
@@ -576,6 +579,8 @@ def _rounds(t: Any, m: Any, c: Any) -> int:
         if not busy:
             return 0
         call(t.take_step, (t.series, parameters, t.inverses, t.n_terms))
+        if t.tangent:
+            call(t.longest, (t.series, parameters, t.rows + LONGEST * ROW, t.n_terms))
         _start_from_zero(t, m, c)
         special = _take_step(t, m.active, m.sizes) & busy
         due = _reaches(t.rows, NEXT_SAMPLE) & busy if t.n_samples else 0
