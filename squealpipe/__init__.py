@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from squealpipe.parameters import SCENES, Parameters, Scene
     from squealpipe.store.memory.results import open_results
     from squealpipe.store.netcdf import load, save
+    from squealpipe.systems.system import Switch, System
     from squealpipe.tasks.backbones.backbone import backbone
     from squealpipe.tasks.backbones.orbit import periodic_orbit
     from squealpipe.tasks.cycles.branch import cycle_branch
@@ -35,6 +36,8 @@ _HOME = {
     "Parameters": "squealpipe.parameters",
     "Scene": "squealpipe.parameters",
     "Sweep": "squealpipe.execution.sweep",
+    "Switch": "squealpipe.systems.system",
+    "System": "squealpipe.systems.system",
     "backbone": "squealpipe.tasks.backbones.backbone",
     "basin_map": "squealpipe.tasks.starts.basin",
     "choose_model": "squealpipe.tasks.ladder.choice",
@@ -64,6 +67,8 @@ __all__ = [
     "Parameters",
     "Scene",
     "Sweep",
+    "Switch",
+    "System",
     "backbone",
     "basin_map",
     "choose_model",
