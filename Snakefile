@@ -14,21 +14,25 @@ include: "workflow/rules/execution/scatter.smk"
 include: "workflow/rules/linear.smk"
 include: "workflow/rules/dynamics.smk"
 include: "workflow/rules/execution/gather.smk"
-if PAPERS_FRICTION:
-    include: "workflow/rules/inference.smk"
-    include: "workflow/rules/backbones.smk"
-include: "workflow/rules/cycles.smk"
-include: "workflow/rules/spread.smk"
-include: "workflow/rules/starts.smk"
-include: "workflow/rules/comparison.smk"
-if PAPERS_FRICTION:
-    include: "workflow/rules/ladder.smk"
-include: "workflow/rules/assumptions.smk"
-if PAPERS_FRICTION:
-    include: "workflow/rules/report/explorer.smk"
-    include: "workflow/rules/report/animation.smk"
+if not STUDY.paper:
+    include: "workflow/rules/own.smk"
+else:
+    if PAPERS_FRICTION:
+        include: "workflow/rules/inference.smk"
+        include: "workflow/rules/backbones.smk"
+    include: "workflow/rules/cycles.smk"
+    include: "workflow/rules/spread.smk"
+    include: "workflow/rules/starts.smk"
+    include: "workflow/rules/comparison.smk"
+    if PAPERS_FRICTION:
+        include: "workflow/rules/ladder.smk"
+    include: "workflow/rules/assumptions.smk"
+    if PAPERS_FRICTION:
+        include: "workflow/rules/report/explorer.smk"
+        include: "workflow/rules/report/animation.smk"
 include: "workflow/rules/report/figures.smk"
-include: "workflow/rules/report/claims.smk"
+if STUDY.paper:
+    include: "workflow/rules/report/claims.smk"
 include: "workflow/rules/report/report.smk"
 include: "workflow/rules/execution/sweeps.smk"
 include: "workflow/rules/execution/local.smk"

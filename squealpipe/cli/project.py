@@ -31,6 +31,26 @@ HEAD = """\
 results: {results}
 
 """
+OWN = """\
+# A study of scenes of your own: no paper, only what the mass does. Change the numbers, then
+#   squealpipe run --config {file}
+results: {results}
+paper: false
+
+scenes: # angles of the springs; start: displacements (m) and velocities (m/s), at rest if left out
+  mine: {{alpha1: 30deg, alpha2: 140deg, start: {{vx: 0.001}}}}
+
+parameters: # SI units
+  mass: 0.5 # kg
+  k1: 1.0e+7 # N/m
+  k2: 1.0e+7
+  k3: 7.0e+6 # of the contact
+  mu: 0.4
+  belt_speed: 2.0 # m/s
+  preload: 2.0e-5 # m, so that the pad is pressed by k3 times it
+  length1: 0.02 # m
+  length2: 0.02
+"""
 PATIENCE = 30.0
 """Seconds in which a workflow that was interrupted may end its jobs and tidy up."""
 GRACE = 5.0
@@ -38,22 +58,33 @@ GRACE = 5.0
 
 
 def init(
-    file: Path = Path("mine.yaml"), /, *, results: str | None = None, force: Switch = False
+    file: Path = Path("mine.yaml"),
+    /,
+    *,
+    results: str | None = None,
+    own: Switch = False,
+    force: Switch = False,
 ) -> int:
     """Write a configuration to edit: the paper's parameters, and every other key as a comment.
 
-    Example: `squealpipe init mine.yaml`
+    Example: `squealpipe init mine.yaml --own`
 
     Args:
         file: configuration to write (.yaml).
         results: folder of its results; results/NAME of the file by default.
+        own: a short study of scenes of your own in SI units instead, without the paper.
         force: overwrite a file that exists.
     """
     check_output(file, force=force, kinds=(".yaml", ".yml"), option="FILE")
     folder = results or f"results/{file.stem}"
-    text = (checkout() / PAPER).read_text(encoding="utf-8")
+    paper = (checkout() / PAPER).read_text(encoding="utf-8")
+    text = (
+        OWN.format(file=file, results=folder)
+        if own
+        else overlay_text(paper, file=str(file), results=folder)
+    )
     file.parent.mkdir(parents=True, exist_ok=True)
-    file.write_text(overlay_text(text, file=str(file), results=folder), encoding="utf-8")
+    file.write_text(text, encoding="utf-8")
     read_study(checkout() / PAPER, file)
     say(f"wrote {file}; edit it, then: squealpipe run --config {file}")
     return DONE

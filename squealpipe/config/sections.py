@@ -19,7 +19,7 @@ from pydantic import (
     model_validator,
 )
 
-from squealpipe.config.ranges import read_fixed, read_values
+from squealpipe.config.ranges import parse_angle, read_fixed, read_values
 from squealpipe.parameters import DEFAULTS, LAW_NAMES, TABLE, Parameters, Row, without_defaults
 
 
@@ -321,14 +321,7 @@ class SpreadSection(Section):
     samples: Annotated[int, Field(ge=64, le=2**20)] = 4096
     horizon: Positive = 200.0
     spring_correlation: Annotated[float, Field(gt=-1, lt=1)] = 0.0
-    distributions: dict[str, Distribution] = {
-        "k1": Distribution(distribution="normal", mean=1.0, std=0.05),
-        "k2": Distribution(distribution="normal", mean=1.0, std=0.05),
-        "k3": Distribution(distribution="lognormal", median=0.75, log_std=0.1),
-        "mu": Distribution(distribution="uniform", low=0.1, high=0.9),
-        "alpha1": Distribution(distribution="normal", mean=0.22, std=0.05),
-        "alpha2": Distribution(distribution="normal", mean=0.96, std=0.05),
-    }
+    distributions: Annotated[dict[str, Distribution], Field(min_length=1)] | None = None
 
 
 class ExplorerSection(Section):
@@ -348,6 +341,31 @@ class AnimationSection(Section):
 
 
 Name = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]*$")]
+
+
+class Start(Section):
+    """Displacements and velocities at the start, m and m/s."""
+
+    x: Number = 0.0
+    y: Number = 0.0
+    vx: Number = 0.0
+    vy: Number = 0.0
+
+
+class OwnScene(Section):
+    """A scene of a study of one's own; angles like 30deg, 0.4pi or rad, t_end in √(m/k1)."""
+
+    alpha1: Annotated[Number, WithJsonSchema({"type": ["string", "number"]})]
+    alpha2: Annotated[Number, WithJsonSchema({"type": ["string", "number"]})]
+    start: Start = Start()
+    t_end: Positive = 200.0
+
+    @field_validator("alpha1", "alpha2", mode="before")
+    @classmethod
+    def _as_people_write(cls, given: Any) -> Any:
+        return parse_angle(str(given)) if isinstance(given, str | int | float) else given
+
+
 VALUES = {"type": ["string", "number", "array"], "items": {"type": ["string", "number"]}}
 
 

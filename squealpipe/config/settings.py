@@ -12,7 +12,7 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path, PurePosixPath
 from typing import Annotated, Any
 
-from pydantic import Field, ValidationError, field_validator
+from pydantic import Field, ValidationError, field_validator, model_validator
 
 from squealpipe.config.mistakes import ConfigError, mistakes
 from squealpipe.config.ranges import sweep_config
@@ -26,6 +26,7 @@ from squealpipe.config.sections import (
     InferenceSection,
     LinearSection,
     Name,
+    OwnScene,
     ParametersSection,
     Section,
     SpreadSection,
@@ -54,6 +55,8 @@ class Study(Section):
     """A whole study."""
 
     results: Annotated[str, Field(pattern=r"^[\w./-]+$")] = "results"
+    paper: bool = True
+    scenes: dict[Name, OwnScene] = Field(default={})
     parameters: ParametersSection = ParametersSection()
     linear: LinearSection = LinearSection()
     inference: InferenceSection = InferenceSection()
@@ -77,6 +80,15 @@ class Study(Section):
                 "results/mine"
             )
         return value
+
+    @model_validator(mode="after")
+    def _has_something_to_show(self) -> Study:
+        if not self.paper and not self.scenes:
+            raise ValueError(
+                "paper: false makes a report of scenes of your own and needs one; write for "
+                "instance scenes: {mine: {alpha1: 30deg, alpha2: 140deg}}"
+            )
+        return self
 
     def slice(self, *paths: str) -> dict[str, Any]:
         """Canonical part of the configuration: numbers cast, keys in a fixed order.

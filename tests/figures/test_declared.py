@@ -7,12 +7,12 @@ import inspect
 import pytest
 
 from squealpipe.study.figures import declared
-from squealpipe.study.report.places import FIGURES
+from squealpipe.study.report.places import FIGURES, OWN
 
 NAMES = [f"simulate/F2{letter}" for letter in "abcd"]
 
 
-@pytest.mark.parametrize("name", FIGURES)
+@pytest.mark.parametrize("name", [*FIGURES, *OWN])
 def test_every_figure_of_the_report_can_be_drawn_from_what_it_declares(name: str) -> None:
     module = declared._import(name)
     takes = inspect.signature(module.draw)
@@ -29,7 +29,7 @@ def test_no_module_is_left_without_a_place() -> None:
     declaring = {
         path.stem for path in declared.FOLDER.glob("*/*.py") if "\nREADS = " in path.read_text()
     }
-    assert declaring == set(FIGURES)
+    assert declaring == {*FIGURES, *OWN}
 
 
 def test_a_wildcard_stands_for_all_that_match() -> None:

@@ -154,8 +154,8 @@ def picture_files(content: Mapping[str, Any], figures: Mapping[str, Made]) -> di
     return {item["path"]: figures[name].path for name, item in content["figures"].items()}
 
 
-def parameter_table(parameters: Parameters) -> list[dict[str, Any]]:
-    """Symbol, meaning, value and unit of each parameter."""
+def parameter_table(parameters: Parameters, *, of_a1: bool = False) -> list[dict[str, Any]]:
+    """Symbol, meaning, value and unit of each parameter, or of those that enter A1 alone."""
     return [
         {
             "symbol": TABLE[name].symbol,
@@ -164,6 +164,7 @@ def parameter_table(parameters: Parameters) -> list[dict[str, Any]]:
             "unit": re.sub(r"-\d", lambda found: found[0].translate(RAISED), TABLE[name].units),
         }
         for name, value in parameters.as_dict().items()
+        if TABLE[name].enters_a1 or not of_a1
     ]
 
 

@@ -71,3 +71,6 @@ FIGURES = tuple(
     for name in part.figures
 )
 """All figures, in order."""
+
+OWN = ("own_model", "own_motion", "own_map", "propensity", "critical_friction")
+"""Figures of the report of a study of one's own."""

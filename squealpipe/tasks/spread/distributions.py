@@ -93,3 +93,20 @@ def check_stick(params: Parameters, frozen: Mapping[str, Any]) -> None:
             f"mu_static reaches {least:g} and mu {most:g}: with the Coulomb law mu_static must be "
             "mu or greater in all of the sample"
         )
+
+
+def centred(params: Parameters, alpha1: float, alpha2: float) -> dict[str, dict[str, Any]]:
+    """Distributions around a study's own parameters, for those who configure none.
+
+    Springs within 5 % and the contact spring within 10 % (standard deviation), friction between a
+    third and three times its own, angles within 0.05 rad.
+    """
+    normal = {"distribution": "normal"}
+    return {
+        "k1": {**normal, "mean": params.k1, "std": 0.05 * params.k1},
+        "k2": {**normal, "mean": params.k2, "std": 0.05 * params.k2},
+        "k3": {"distribution": "lognormal", "median": params.k3, "log_std": 0.1},
+        "mu": {"distribution": "uniform", "low": params.mu / 3, "high": 3 * params.mu or 0.1},
+        "alpha1": {**normal, "mean": alpha1, "std": 0.05},
+        "alpha2": {**normal, "mean": alpha2, "std": 0.05},
+    }

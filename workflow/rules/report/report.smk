@@ -17,39 +17,63 @@ TEMPLATES = sorted(
 )
 
 
-LINKS = {
-    "This report as PDF": f"{RESULTS}/report/report.pdf",
-    "methods, accuracy and failures": f"{RESULTS}/report/supplement.html",
-    "rules, checksums and configuration": f"{RESULTS}/report/provenance.json",
-}
-if PAPERS_FRICTION:
-    LINKS |= {
-        "the explorer of all angles": f"{RESULTS}/report/explorer.html",
-        **{f"animation of {what}": path for what, path in ANIMATIONS.items()},
+if STUDY.paper:
+    LINKS = {
+        "This report as PDF": f"{RESULTS}/report/report.pdf",
+        "methods, accuracy and failures": f"{RESULTS}/report/supplement.html",
+        "rules, checksums and configuration": f"{RESULTS}/report/provenance.json",
     }
+    if PAPERS_FRICTION:
+        LINKS |= {
+            "the explorer of all angles": f"{RESULTS}/report/explorer.html",
+            **{f"animation of {what}": path for what, path in ANIMATIONS.items()},
+        }
 
 
-rule write_report:
-    input:
-        datasets=[made["path"] for made in MADE.values()],
-        figures=[made["path"] for made in DRAWN.values()],
-        captions=figure_sources(READ_BY),
-        templates=TEMPLATES,
-        sources=sources("report/write_report"),
-    output:
-        page=f"{RESULTS}/report/index.html",
-        pdf=f"{RESULTS}/report/report.pdf",
-        supplement=f"{RESULTS}/report/supplement.html",
-        supplement_pdf=f"{RESULTS}/report/supplement.pdf",
-        provenance=f"{RESULTS}/report/provenance.json",
-    params:
-        part=part("parameters"),
-        made=MADE,
-        drawn=DRAWN,
-        changed=STUDY.changes_of(SHIPPED),
-        links=LINKS,
-    script:
-        "../../scripts/report/write_report.py"
+    rule write_report:
+        input:
+            datasets=[made["path"] for made in MADE.values()],
+            figures=[made["path"] for made in DRAWN.values()],
+            captions=figure_sources(READ_BY),
+            templates=TEMPLATES,
+            sources=sources("report/write_report"),
+        output:
+            page=f"{RESULTS}/report/index.html",
+            pdf=f"{RESULTS}/report/report.pdf",
+            supplement=f"{RESULTS}/report/supplement.html",
+            supplement_pdf=f"{RESULTS}/report/supplement.pdf",
+            provenance=f"{RESULTS}/report/provenance.json",
+        params:
+            part=part("parameters"),
+            made=MADE,
+            drawn=DRAWN,
+            changed=STUDY.changes_of(SHIPPED),
+            links=LINKS,
+        script:
+            "../../scripts/report/write_report.py"
 
+    TARGETS += rules.write_report.output
+else:
+    read = {"own_scenes", "validity_map", "propensity"}
+    own = {name: made for name, made in MADE.items() if name in read or name.startswith("own/")}
+    own |= {name: MADE[name] for drawn in DRAWN.values() for name in drawn["datasets"]}
 
-TARGETS += rules.write_report.output
+    rule write_own_report:
+        input:
+            datasets=[made["path"] for made in own.values()],
+            figures=[made["path"] for made in DRAWN.values()],
+            captions=figure_sources(READ_BY),
+            templates=TEMPLATES,
+            sources=sources("own/write_own_report"),
+        output:
+            page=f"{RESULTS}/report/index.html",
+            pdf=f"{RESULTS}/report/report.pdf",
+            provenance=f"{RESULTS}/report/provenance.json",
+        params:
+            part=part("parameters"),
+            made=own,
+            drawn=DRAWN,
+        script:
+            "../../scripts/own/write_own_report.py"
+
+    TARGETS += rules.write_own_report.output

@@ -4,15 +4,17 @@ import math
 
 from squealpipe.parameters import parameters_of
 from squealpipe.store import produce
+from squealpipe.tasks.spread.distributions import centred
 from squealpipe.tasks.spread.propensity import propensity
 
 part = snakemake.params.part
 params = parameters_of(part)
+angles = [math.pi * angle for angle in part["spread.scene"]]
 produce(
     lambda: propensity(
         params,
-        *(math.pi * angle for angle in part["spread.scene"]),
-        distributions=part["spread.distributions"],
+        *angles,
+        distributions=part["spread.distributions"] or centred(params, *angles),
         samples=part["spread.samples"],
         spring_correlation=part["spread.spring_correlation"],
         t_end=part["spread.horizon"] * params.time_unit,

@@ -1,0 +1,48 @@
+"""What a user's own scenes do, as configured and with one thing changed."""
+
+from __future__ import annotations
+
+from squealpipe.schema import RUN_ENDS, DatasetSchema, Variable, outcome
+from squealpipe.schema.dynamics.runs import IMPACT_SPEED, RETURN_FORCE
+
+_RUN = ("scene", "variant")
+
+
+def _text(meaning: str, *dims: str) -> Variable:
+    return Variable(meaning, dims=dims, dtype="U")
+
+
+def _number(meaning: str, units: str = "1") -> Variable:
+    return Variable(meaning, units, _RUN, nan_allowed=True, rtol=1e-3, atol=1e-9)
+
+
+OWN_SCENES = DatasetSchema(
+    name="own_scenes",
+    title="What the scenes of a study do, as configured and with one thing changed",
+    coordinates={
+        "scene": _text("name of the scene", "scene"),
+        "variant": _text("what is changed", "variant"),
+        "question": _text("question asked of a scene", "question"),
+        "peak": Variable("peak of the spectrum, by height", dims=("peak",), dtype="i4"),
+    },
+    variables={
+        "motion": _text("kind of motion", *_RUN),
+        "first_separation_time": _number("time of the first loss of contact", "s"),
+        "separated_fraction": _number("share of the time without contact"),
+        "stick_fraction": _number("share of the time in stick"),
+        "return_peak_contact_force": _number(RETURN_FORCE.long_name),
+        "impact_speed": _number(IMPACT_SPEED.long_name, IMPACT_SPEED.units),
+        "largest_x": _number("largest |x|", "m"),
+        "largest_y": _number("largest |y|", "m"),
+        "predictability_horizon": _number("time to which a run can be computed", "s"),
+        "dominant_frequency": Variable(
+            "angular frequencies of the contact force", "rad s-1", (*_RUN, "peak"),
+            nan_allowed=True, rtol=1e-3,
+        ),
+        "model": _text("cheapest level that answers", "scene", "question"),
+        "alpha1": Variable("angle of spring 1", "rad", ("scene",)),
+        "alpha2": Variable("angle of spring 2", "rad", ("scene",)),
+        "t_end": Variable("end of the runs", "s", ("scene",)),
+        "outcome": outcome(*_RUN, among=RUN_ENDS),
+    },
+)  # fmt: skip

@@ -1,0 +1,86 @@
+"""The model of each scene at its true angles and lengths, with its numbers."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from matplotlib.patches import Circle, FancyArrowPatch
+
+from squealpipe.parameters import direction_of
+from squealpipe.study.figures.model.mechanism import SPRING_COLOURS, displaced_springs
+from squealpipe.study.figures.parts.origin import parameter
+from squealpipe.study.figures.parts.style import GREY, PAGE, RED, new_figure, panel_letter
+from squealpipe.text import number
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    import xarray as xr
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+READS = ("own/*",)
+CAPTION = (
+    "The model of each scene, springs drawn to scale at their angles. Blue: spring 1; orange: "
+    "spring 2; black dots: fixed ends; grey line: the belt, which runs along the red arrow; the "
+    "contact spring between mass and belt is too short to be seen at this scale."
+)
+ALT = "A drawing of the mass on two inclined springs above the belt for each scene, with numbers."
+
+
+def draw(runs: Mapping[str, xr.Dataset]) -> Figure:
+    """One panel for each scene, from datasets ``own/<scene>``."""
+    columns = min(len(runs), 3)
+    rows = -(-len(runs) // columns)
+    figure, axes = new_figure(PAGE, 2.6 * rows, nrows=rows, ncols=columns)
+    for panel in axes.flat:
+        panel.set_axis_off()
+    for letter, panel, (name, run) in zip(
+        "abcdefghijklmnopqrst", axes.flat, runs.items(), strict=False
+    ):
+        _draw(panel, run)
+        panel_letter(panel, letter, name.removeprefix("own/"))
+    return figure
+
+
+def _draw(panel: Axes, run: xr.Dataset) -> None:
+    alpha1, alpha2 = float(run.alpha1), float(run.alpha2)
+    lengths = parameter(run, "length1"), parameter(run, "length2")
+    scale = max(lengths)
+    springs = displaced_springs(0.0, 0.0, alpha1, alpha2, lengths, 0.03 * scale)
+    one_side = springs[0][-1, 0] * springs[1][-1, 0] > 0
+    for index, (path, colour) in enumerate(zip(springs, SPRING_COLOURS, strict=True), start=1):
+        panel.plot(*path.T, color=colour, linewidth=1.0)
+        end = path[-1]
+        panel.add_patch(Circle(tuple(end), 0.02 * scale, color="black"))
+        stiffness, length = parameter(run, f"k{index}"), lengths[index - 1]
+        angle = np.degrees((alpha1, alpha2)[index - 1])
+        words = (
+            f"$k_{index}$ = {number(stiffness)} N/m\n$L_{index}$ = {number(length)} m\n"
+            f"$α_{index}$ = {number(angle)}°"
+        )
+        side = "left" if end[0] >= 0 else "right"
+        along = 0.95 if index == 2 and one_side else 0.5
+        panel.annotate(
+            words, along * end, (8 if side == "left" else -8, -4), ha=side, va="top", fontsize=6,
+            textcoords="offset points", color=colour,
+        )  # fmt: skip
+    mass = Circle((0.0, 0.0), 0.05 * scale, facecolor="white", edgecolor="black", zorder=4)
+    panel.add_patch(mass)
+    belt = -0.07 * scale
+    panel.plot([-scale, scale], [belt, belt], color=GREY, linewidth=2.0)
+    direction = direction_of(parameter(run, "belt_speed"))
+    panel.add_patch(
+        FancyArrowPatch(
+            (direction * 0.4 * scale, 2 * belt), (direction * 0.9 * scale, 2 * belt),
+            arrowstyle="-|>", mutation_scale=9, color=RED,
+        )
+    )  # fmt: skip
+    below = (
+        f"$m$ = {number(parameter(run, 'mass'))} kg, $k_3$ = {number(parameter(run, 'k3'))} N/m\n"
+        f"$l_\\mathrm{{pre}}$ = {number(parameter(run, 'preload'))} m, "
+        f"$μ$ = {number(parameter(run, 'mu'))}, $V$ = {number(parameter(run, 'belt_speed'))} m/s"
+    )
+    panel.text(0.0, 3.2 * belt, below, ha="center", va="top", fontsize=6)
+    panel.set(xlim=(-1.5 * scale, 1.5 * scale), ylim=(-0.65 * scale, 1.15 * scale), aspect="equal")

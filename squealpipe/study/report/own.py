@@ -1,0 +1,122 @@
+"""What the report of a study of one's own shows, as plain data."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from squealpipe.parameters import Parameters
+from squealpipe.study.claims.evidence import Run
+from squealpipe.study.figures.comparison.model_ladder import QUESTION_NAMES
+from squealpipe.study.report.content import Made, parameter_table, pictures
+from squealpipe.study.report.places import OWN
+
+NUMBERS = (
+    "separated_fraction",
+    "stick_fraction",
+    "return_peak_contact_force",
+    "impact_speed",
+    "largest_x",
+    "largest_y",
+    "first_separation_time",
+    "predictability_horizon",
+)
+
+
+def gather_own(
+    datasets: Mapping[str, Made], figures: Mapping[str, Made], parameters: Parameters
+) -> dict[str, Any]:
+    """Content of ``templates/study.typ``.
+
+    Args:
+        datasets: name → file; those of the rules for scenes and maps.
+        figures: name → PNG file.
+        parameters: those of the study.
+    """
+    run = Run(parameters, {name: made.path for name, made in datasets.items()})
+    table, spread = run["own_scenes"], run["propensity"]
+    return {
+        "title": "What the mass does: report of a study",
+        "parameters": parameter_table(parameters, of_a1=True),
+        "figures": pictures(OWN, figures, run),
+        "variants": [str(name) for name in table.variant.values],
+        "scenes": [_scene(table.sel(scene=name), run) for name in table.scene.values],
+        "spread_scene": str(table.scene.values[0]),
+        "shares": [
+            {
+                "what": str(name).replace("_", " "),
+                "share": float(spread.share.sel(quantity=name)),
+                "low": float(spread.share_low.sel(quantity=name)),
+                "high": float(spread.share_high.sel(quantity=name)),
+                "leading": _leading(spread.sel(quantity=name)),
+            }
+            for name in spread.quantity.values
+        ],
+    }
+
+
+def _scene(table: xr.Dataset, run: Run) -> dict[str, Any]:
+    runs = [
+        {
+            "motion": str(here.motion.item()),
+            **{name: _finite(here[name]) for name in NUMBERS},
+            "frequencies": [value for value in here.dominant_frequency.values if value > 0],
+        }
+        for here in (table.isel(variant=index) for index in range(table.sizes["variant"]))
+    ]
+    return {
+        "name": str(table.scene.item()),
+        "angles": [float(np.degrees(table[name])) for name in ("alpha1", "alpha2")],
+        "t_end": float(table.t_end),
+        "runs": runs,
+        "models": [
+            {
+                "question": QUESTION_NAMES[str(name)],
+                "model": str(table.model.sel(question=name).item()),
+            }
+            for name in table.question.values
+        ],
+        **boundaries(run["validity_map"], float(table.alpha1), float(table.alpha2)),
+    }
+
+
+def boundaries(validity: xr.Dataset, alpha1: float, alpha2: float) -> dict[str, Any]:
+    """What the map says at a pair of angles, and how far the nearest cell is that says otherwise.
+
+    Distances are in degrees in the plane of both angles, of which the map has period π.
+    """
+    period = np.pi
+    gaps = [
+        np.abs((validity[name].values - angle + period / 2) % period - period / 2)
+        for name, angle in (("alpha1", alpha1), ("alpha2", alpha2))
+    ]
+    distance = np.degrees(np.hypot(gaps[0][:, None], gaps[1][None, :]))
+    nearest = np.unravel_index(int(distance.argmin()), distance.shape)
+    found: dict[str, Any] = {}
+    for name, cells in (
+        ("lost", validity.separates.values == 1),
+        ("unstable", validity.regime_linear.values > 0),
+    ):
+        here = bool(cells[nearest])
+        others = distance[cells != here]
+        found[name] = here
+        found[f"{name}_boundary"] = float(others.min()) if others.size else None
+    found["lost_share"] = float(100 * validity.separates.mean())
+    found["cell"] = float(np.degrees(validity.alpha1.values[1] - validity.alpha1.values[0]))
+    return found
+
+
+def _leading(row: xr.Dataset) -> str:
+    """The parameter with the largest total index, or a dash."""
+    total = row.total_order.values
+    if not np.isfinite(total).any():
+        return "not resolved by this sample"
+    best = int(np.nanargmax(total))
+    return f"{row.input.values[best]} ({total[best]:.2f})"
+
+
+def _finite(value: Any) -> float | None:
+    return float(value) if np.isfinite(value) else None

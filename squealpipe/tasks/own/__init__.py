@@ -1,0 +1,1 @@
+"""Scenes of a study of one's own."""

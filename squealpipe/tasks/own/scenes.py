@@ -1,0 +1,151 @@
+"""What the scenes of a study do, which model is enough for them, and what changes them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from squealpipe.models.refusals import without_extensions
+from squealpipe.parameters import Parameters
+from squealpipe.schema import build, meanings
+from squealpipe.schema.ladder import QUESTIONS, Level
+from squealpipe.schema.origin import recorded
+from squealpipe.schema.own import OWN_SCENES
+from squealpipe.tasks.dynamics.runs import simulate
+from squealpipe.tasks.dynamics.summary import PEAKS, summarize
+from squealpipe.tasks.ladder.choice import choose_model
+from squealpipe.tasks.starts.basin import basin_map
+
+TOLERANCE = 0.05
+"""Relative error that the cheapest level may have."""
+DAMPING = (0.02, 0.1)
+"""Dashpots of the variants, over √(k m) of their spring."""
+STATIC = 1.5
+"""Static over sliding friction of the falling law."""
+PUSH = 0.5
+"""Further velocity along y of the pushed start, over l_pre √(k1/m)."""
+NUMBERS = (
+    "first_separation_time",
+    "separated_fraction",
+    "stick_fraction",
+    "return_peak_contact_force",
+    "impact_speed",
+    "largest_x",
+    "largest_y",
+)
+
+
+def variants(params: Parameters, start: tuple[float, ...]) -> dict[str, tuple[Parameters, Any]]:
+    """What is changed → parameters and start."""
+    unit = [np.sqrt(stiffness * params.mass) for stiffness in (params.k1, params.k2)]
+    speed = params.preload / params.time_unit
+    falling = params.with_(
+        friction_law="exponential",
+        mu_static=max(STATIC * params.mu, params.static_mu),
+        friction_speed=speed,
+    )
+    x, y, vx, vy = start
+    return {
+        "as configured": (params, start),
+        **{
+            f"dashpots of {100 * share:g} % of √(k m)": (
+                params.with_(damping1=share * unit[0], damping2=share * unit[1]),
+                start,
+            )
+            for share in DAMPING
+        },
+        "friction falls with speed": (falling, start),
+        "pushed off the belt": (params, (x, y, vx, vy + PUSH * speed)),
+    }
+
+
+@recorded(model="A1", method="Taylor series with located events")
+def own_scenes(
+    params: Parameters, scenes: Mapping[str, Mapping[str, Any]], *, tol: float = 1e-12
+) -> xr.Dataset:
+    """Runs of A1 in each scene, as configured and with one thing changed.
+
+    Args:
+        params: physical parameters.
+        scenes: name → ``alpha1``, ``alpha2`` (rad), ``start`` (``x``, ``y``, ``vx``, ``vy``; m
+            and m/s) and ``t_end`` (√(m/k1)).
+        tol: tolerance of the Taylor integrator.
+
+    Returns:
+        Dataset over scene and variant; see ``schema.own``.
+    """
+    rows = [_scene(params, scene, tol) for scene in scenes.values()]
+    columns = {name: np.stack([row[name] for row in rows]) for name in rows[0]}
+    return build(
+        OWN_SCENES,
+        columns,
+        {
+            "scene": list(scenes),
+            "variant": list(variants(params, (0.0, 0.0, 0.0, 0.0))),
+            "question": list(QUESTIONS),
+            "peak": np.arange(1, PEAKS + 1),
+        },
+    )
+
+
+def start_of(scene: Mapping[str, Any]) -> tuple[float, float, float, float]:
+    """x, y, vx, vy of a scene of the configuration."""
+    x, y, vx, vy = (float(scene["start"][name]) for name in ("x", "y", "vx", "vy"))
+    return x, y, vx, vy
+
+
+def _scene(params: Parameters, scene: Mapping[str, Any], tol: float) -> dict[str, Any]:
+    angles, start = (scene["alpha1"], scene["alpha2"]), start_of(scene)
+    t_end = scene["t_end"] * params.time_unit
+    runs = [
+        _run(changed, angles, begin, t_end, tol)
+        for changed, begin in variants(params, start).values()
+    ]
+    return {
+        **{name: np.array([run[name] for run in runs]) for name in runs[0]},
+        "model": np.array([_level(params, angles, start, name, t_end) for name in QUESTIONS]),
+        "alpha1": angles[0],
+        "alpha2": angles[1],
+        "t_end": t_end,
+    }
+
+
+def _run(
+    params: Parameters,
+    angles: tuple[float, float],
+    start: tuple[float, ...],
+    t_end: float,
+    tol: float,
+) -> dict[str, Any]:
+    run = simulate(params, *angles, t_end=t_end, tol=tol, initial_state=start)
+    summary = summarize(run)
+    kind = basin_map(
+        params, *angles, **dict(zip(("x", "y", "vx", "vy"), start, strict=True)), t_end=t_end,
+        tol=tol, workers=1,
+    )  # fmt: skip
+    peaks = np.full(PEAKS, np.nan)
+    found = summary.dominant_frequency.values
+    peaks[: found.size] = found
+    return {
+        **{name: float(summary[name]) for name in NUMBERS},
+        "motion": meanings(kind.motion)[int(kind.motion)].replace("_", " "),
+        "predictability_horizon": float(kind.predictability_horizon),
+        "dominant_frequency": peaks,
+        "outcome": int(run.outcome),
+    }
+
+
+def _level(
+    params: Parameters,
+    angles: tuple[float, float],
+    start: tuple[float, ...],
+    question: str,
+    t_end: float,
+) -> str:
+    """The level that ``choose_model`` takes; A1 where it cannot be asked."""
+    if any(start) or without_extensions(params) is not params:
+        return Level.a1.label
+    return Level[choose_model(params, *angles, question, TOLERANCE, t_end=t_end).model].label

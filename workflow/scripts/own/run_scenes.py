@@ -1,0 +1,29 @@
+"""The scenes of a study of one's own: each as configured, and all with one thing changed."""
+
+from pathlib import Path
+
+from squealpipe.parameters import parameters_of
+from squealpipe.store import produce
+from squealpipe.tasks.dynamics.runs import simulate
+from squealpipe.tasks.own.scenes import own_scenes, start_of
+
+part, sources = snakemake.params.part, snakemake.input.sources
+params, scenes = parameters_of(part), part["scenes"]
+for path in snakemake.output.runs:
+    name = Path(path).stem
+    scene = scenes[name]
+    produce(
+        lambda: simulate(
+            params,
+            scene["alpha1"],
+            scene["alpha2"],
+            t_end=scene["t_end"] * params.time_unit,
+            initial_state=start_of(scene),
+            tol=part["dynamics.tol"],
+        ),
+        config={**part, "scene": name}, sources=sources, output=path,
+    )
+produce(
+    lambda: own_scenes(params, scenes, tol=part["dynamics.tol"]),
+    config=part, sources=sources, output=snakemake.output.scenes,
+)
