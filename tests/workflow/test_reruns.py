@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import json
 import os
-import re
 import subprocess
 import sys
 from collections.abc import Sequence
@@ -29,11 +28,7 @@ ROOT = Path(__file__).resolve().parents[2]
 QUICK = "workflow/config/quick.yaml"
 STATED = Path(__file__).with_name("direct_readers.yaml")
 FIX = "SQUEALPIPE_FIX=1 python -m pytest -m slow tests/workflow/test_reruns.py"
-WHOLE = re.compile(r"(spread\.distributions\.\w+)\..*")
-"""A distribution changes as a whole: which numbers it has depends on its kind."""
-KEYS = sorted(
-    {WHOLE.sub(r"\1", key) for key in flat(Study().model_dump(mode="json"))} - {"results"}
-)
+KEYS = sorted(set(flat(Study().model_dump(mode="json"))) - {"results", "paper"})
 
 
 def nested(key: str, value: Any) -> dict[str, Any]:
@@ -53,8 +48,8 @@ def candidates(value: Any) -> list[Any]:
     if isinstance(value, list) and value:
         inner = [[*value[:-1], other] for other in candidates(value[-1])]
         return [value[:-1], *inner, value[::-1]]
-    if isinstance(value, dict):
-        return [{"distribution": "uniform", "low": 0.3, "high": 0.4}]
+    if value is None:
+        return [{"mu": {"distribution": "uniform", "low": 0.3, "high": 0.4}}]
     return ["A1", "A4", "exact", "hbm", "RK45", "LSODA", f"{value}x"]
 
 
