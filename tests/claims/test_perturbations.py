@@ -71,6 +71,11 @@ def other_second_mode(dataset: xr.Dataset) -> xr.DataArray:
     return dataset.omega.where(dataset.mode == 1, dataset.omega.sel(mode=1))
 
 
+def negative_damping(dataset: xr.Dataset) -> xr.DataArray:
+    """What flutters has two frequencies."""
+    return dataset.frequency * (1.0 + 0.01 * (dataset.mode - 1))
+
+
 def saturated(dataset: xr.Dataset, *, later: float) -> xr.DataArray:
     return dataset.amplitude_before * later
 
@@ -92,9 +97,11 @@ FLIPS = [
     Flip("T1", "assumptions", put("held", lambda d: 0 * d.held + 1), HOLDS),
     Flip("T1", "assumptions", put("held", lambda d: 0 * d.held), FAILS),
     Flip("S1", "simulate/F2d", without_events, FAILS),
+    Flip("S1", "simulate/F2d", scaled("return_peak_contact_force", 0.4), FAILS),
     Flip("S2", "assumptions", put("held", lambda d: 0 * d.held + 1), FAILS),
     Flip("S2", "assumptions", scaled("measure", 1e-3), FAILS),
     Flip("S3", "stability_map", REGIME, FAILS),
+    Flip("S3", "stability_map", put("frequency", negative_damping), FAILS),
     Flip("F2a", "simulate/F2a", touching, FAILS),
     Flip("F2b", "simulate/F2b", touching, FAILS),
     Flip("F2c", "simulate/F2c", touching, FAILS),

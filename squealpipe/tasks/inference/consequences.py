@@ -45,11 +45,11 @@ CONSEQUENCES: dict[str, str] = {
 
 
 class Unstable(NamedTuple):
-    """Unstable cells: angles, rad, and whether it is by flutter."""
+    """Unstable cells: angles, rad, and whether it is by modes that couple."""
 
     alpha1: np.ndarray
     alpha2: np.ndarray
-    flutters: np.ndarray
+    couples: np.ndarray
 
 
 def judge_consequences(
@@ -85,10 +85,9 @@ def unstable_cells(params: Parameters, *, rim: int = RIM, inside: float = INSIDE
     alpha1, alpha2 = (
         _along_edges(params, rim, inside) if is_undamped(params) else _midpoints(DAMPED_GRID)
     )
-    regime = _regime(params, alpha1, alpha2)
+    regime, couples = _regime(params, alpha1, alpha2)
     unstable = regime > a3.LinearRegime.stable
-    flutters = regime[unstable] == a3.LinearRegime.flutter
-    return Unstable(alpha1[unstable], alpha2[unstable], flutters)
+    return Unstable(alpha1[unstable], alpha2[unstable], couples[unstable])
 
 
 def _midpoints(number: int) -> tuple[np.ndarray, np.ndarray]:
@@ -120,21 +119,25 @@ def _along_edges(params: Parameters, rim: int, inside: float) -> tuple[np.ndarra
     return alpha1, alpha2
 
 
-def _regime(params: Parameters, alpha1: np.ndarray, alpha2: np.ndarray) -> np.ndarray:
-    """Regime of A3, damped where the parameters are."""
+def _regime(
+    params: Parameters, alpha1: np.ndarray, alpha2: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Regime of A3, damped where the parameters are, and whether it is flutter of merged modes."""
     if is_undamped(params):
-        return np.asarray(a3.regime(contact_system(params, alpha1, alpha2).invariants))
-    return np.asarray(stability(damped_system(params, alpha1, alpha2)).regime)
+        regime = np.asarray(a3.regime(contact_system(params, alpha1, alpha2).invariants))
+        return regime, regime == a3.LinearRegime.flutter
+    found = stability(damped_system(params, alpha1, alpha2))
+    return found.regime, (found.regime == a3.LinearRegime.flutter) & a3.merge(found.frequency)
 
 
 def _linear(
-    params: Parameters, alpha1: np.ndarray, alpha2: np.ndarray, flutters: np.ndarray
+    params: Parameters, alpha1: np.ndarray, alpha2: np.ndarray, couples: np.ndarray
 ) -> dict[str, bool]:
     """What is said of linear stability, sliding and frequencies, from the unstable cells."""
     system = contact_system(params, alpha1, alpha2)
     reaction = a2.reaction_force(system.stiffness, params.drag, a2.actuation(params))
     return {
-        "S3": bool(flutters.any()),
+        "S3": bool(couples.any()),
         "F6b": not (reaction > 0).any(),
         "F6b_printed": not a2.possible_as_printed(system.stiffness, params.drag).any(),
         "F8c": first_is_largest_on_lines(params, params.k3),

@@ -21,8 +21,7 @@ CAPTION = (
     "parameters, in which it holds, with half of its 95 % interval; grey: not judged there. "
     "Statements with a suffix are readings of the row of that id. With dashpots, or friction that "
     "depends on speed, S3, F6b and F7† are judged in the unstable cells of a grid of "
-    f"{DAMPED_GRID} × {DAMPED_GRID} angles (S3: flutter, where eigenvalues need not merge); F8c is "
-    "of undamped frequencies."
+    f"{DAMPED_GRID} × {DAMPED_GRID} angles; F8c is of undamped frequencies."
 )
 ALT = "A table of settings by statements, blue where a statement holds and red where it fails."
 WORDS = {
