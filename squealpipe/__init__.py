@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from squealpipe.execution.sweep import Sweep, run_sweep
     from squealpipe.parameters import SCENES, Parameters, Scene
+    from squealpipe.schema import labels
     from squealpipe.store.memory.results import open_results
     from squealpipe.store.netcdf import load, save
     from squealpipe.systems.system import Switch, System
@@ -45,6 +46,7 @@ _HOME = {
     "cycle_branch": "squealpipe.tasks.cycles.branch",
     "hammering_map": "squealpipe.tasks.dynamics.hammering",
     "infer_parameters": "squealpipe.tasks.inference.inference",
+    "labels": "squealpipe.schema",
     "limit_cycle": "squealpipe.tasks.cycles.cycle",
     "load": "squealpipe.store.netcdf",
     "open_results": "squealpipe.store.memory.results",
@@ -76,6 +78,7 @@ __all__ = [
     "cycle_branch",
     "hammering_map",
     "infer_parameters",
+    "labels",
     "limit_cycle",
     "load",
     "natural_frequencies",

@@ -49,7 +49,10 @@ def claims(
     named = [Path(item) for item in what if item.endswith(".nc") or Path(item).is_file()]
     if len(named) + (file is not None) > 1:
         raise ValueError("give one file of verdicts")
-    every, code = table(file or next(iter(named), MADE))
+    chosen = file or next(iter(named), MADE)
+    if not chosen.is_file():
+        raise FileNotFoundError(f"no verdicts {chosen}; make them with: squealpipe run")
+    every, code = table(chosen)
     rows = _chosen(every, [item for item in what if Path(item) not in named], only)
     if json_:
         print(json.dumps(rows, indent=1, allow_nan=False))

@@ -17,8 +17,6 @@ from squealpipe.cli.arguments import Configs, Switch, Whole
 from squealpipe.cli.console import SESSION, say
 from squealpipe.cli.exit_codes import DONE, NOT_DONE
 from squealpipe.cli.output import check_output
-from squealpipe.config.settings import PAPER, read_study
-from squealpipe.config.yaml_files import read_yaml
 from squealpipe.parameters import DEFAULTS, TABLE, Row
 from squealpipe.progress import duration
 
@@ -75,6 +73,8 @@ def init(
         own: a short study of scenes of your own in SI units instead, without the paper.
         force: overwrite a file that exists.
     """
+    from squealpipe.config.settings import PAPER, read_study
+
     check_output(file, force=force, kinds=(".yaml", ".yml"), option="FILE")
     folder = results or f"results/{file.stem}"
     paper = (checkout() / PAPER).read_text(encoding="utf-8")
@@ -115,6 +115,8 @@ def checkout() -> Path:
     Raises:
         FileNotFoundError: neither is one.
     """
+    from squealpipe.config.settings import PAPER
+
     for folder in (Path(), Path(__file__).resolve().parents[2]):
         if (folder / "Snakefile").is_file() and (folder / PAPER).is_file():
             return folder
@@ -135,6 +137,9 @@ def run(*, config: Configs = None, quick: Switch = False, cores: Whole | None = 
         quick: coarse grids and short horizons, for a first look.
         cores: cores to use; all by default.
     """
+    from squealpipe.config.settings import PAPER, read_study
+    from squealpipe.config.yaml_files import read_yaml
+
     root = checkout()
     overlays = [*([root / QUICK] if quick else []), *(config or [])]
     study = read_study(root / PAPER, *overlays)

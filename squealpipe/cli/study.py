@@ -11,7 +11,6 @@ from cyclopts import Parameter
 from squealpipe.cli.arguments import AsJson, Configs
 from squealpipe.cli.console import console
 from squealpipe.cli.exit_codes import ANSWER_IS_NO, DONE
-from squealpipe.config.settings import PAPER
 from squealpipe.progress import elapsing
 
 
@@ -73,6 +72,7 @@ def archive(
         config: the run's configuration files, later ones laid over earlier ones; repeatable.
         leave_out: suffix (.svg) or path pattern (data/simulate/*) that is not frozen; repeatable.
     """
+    from squealpipe.config.settings import PAPER
     from squealpipe.store.archive import archive as freeze
 
     with elapsing("archive"):

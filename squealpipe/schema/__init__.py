@@ -23,6 +23,7 @@ from xarray.indexes import PandasIndex
 from squealpipe.schema.agreement import Listing, RoundOff
 from squealpipe.schema.outcomes import REMEDIES as REMEDIES
 from squealpipe.schema.outcomes import Outcome as Outcome
+from squealpipe.validation import checked
 
 
 class SchemaError(ValueError):
@@ -131,6 +132,24 @@ def meanings(variable: xr.DataArray) -> dict[int, str]:
     """Value → meaning of a flag variable, from its attributes; empty for other variables."""
     names = str(variable.attrs.get("flag_meanings", "")).split()
     return dict(zip(map(int, variable.attrs["flag_values"]), names, strict=True)) if names else {}
+
+
+@checked
+def labels(array: xr.DataArray) -> xr.DataArray:
+    """A flag variable in words, for people: ``print(labels(dataset.motion))``.
+
+    Args:
+        array: a variable with ``flag_values`` and ``flag_meanings``.
+
+    Raises:
+        ValueError: it has no flags.
+    """
+    table = meanings(array)
+    if not table:
+        raise ValueError(f"array = {array.name!r}: a variable with flag_meanings is needed")
+    words = {value: name.replace("_", " ") for value, name in table.items()}
+    named = np.vectorize(words.get, otypes=[object])(array.values).astype(str)
+    return xr.DataArray(named, array.coords, array.dims, array.name)
 
 
 LICENCE = "MIT"

@@ -14,6 +14,8 @@ UNKNOWN = "unknown"
 def commit(root: Path = ROOT) -> str:
     """Our own commit, with a mark if there are changes; never that of a surrounding repository.
 
+    Archives below ``results`` are no code: one that takes the place of another marks nothing.
+
     Args:
         root: the checkout; "unknown" if it is none, or a folder inside another repository.
     """
@@ -22,7 +24,9 @@ def commit(root: Path = ROOT) -> str:
         return UNKNOWN
     if not (root / "Snakefile").is_file():  # installed below a repository of someone else's
         return UNKNOWN
-    return _git(root, "describe", "--always", "--dirty", "--abbrev=12") or UNKNOWN
+    found = _git(root, "describe", "--always", "--abbrev=12") or UNKNOWN
+    changes = ("status", "--porcelain", "--untracked-files=no", "--", ".", ":!results")
+    return f"{found}-dirty" if _git(root, *changes) else found
 
 
 def _git(root: Path, *arguments: str) -> str:

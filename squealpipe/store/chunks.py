@@ -23,6 +23,10 @@ Chunk = TypeVar("Chunk")
 Arrays = dict[str, np.ndarray]
 
 
+MARK = "part of"
+"""Entry of a kept chunk that says which one it is."""
+
+
 @dataclass(frozen=True, kw_only=True)
 class Checkpoint:
     """Where the chunks of an unfinished job wait, and the log of its progress.
@@ -112,7 +116,7 @@ class Checkpoint:
         try:
             self.directory.mkdir(parents=True, exist_ok=True)
             with temporary.open("wb") as file:
-                np.savez(file, **arrays)  # type: ignore[arg-type]
+                np.savez(file, **arrays, **{MARK: np.array(self._mark(index))})  # type: ignore[arg-type]
                 file.flush()
                 os.fsync(file.fileno())
             temporary.replace(self.path(index))
@@ -127,12 +131,25 @@ class Checkpoint:
             temporary.unlink(missing_ok=True)
 
     def read(self, index: int) -> Arrays | None:
-        """One chunk, or None if it is absent or damaged (it is then computed again)."""
+        """One chunk, or None if it is absent or damaged (it is then computed again).
+
+        Raises:
+            StoreError: the file is whole, but another computation's, or another part of this one.
+        """
         try:
             with np.load(self.path(index), allow_pickle=False) as file:
-                return {name: file[name] for name in file.files}
+                found = {name: file[name] for name in file.files}
         except (FileNotFoundError, zipfile.BadZipFile, ValueError, EOFError, OSError, KeyError):
             return None
+        if str(found.pop(MARK, "")) != self._mark(index):
+            raise StoreError(
+                f"{self.path(index)} is a part of something else; delete it and run the same "
+                "command again"
+            )
+        return found
+
+    def _mark(self, index: int) -> str:
+        return "/".join([*self.directory.parts[-2:], str(index)])
 
 
 def run_chunks(

@@ -7,6 +7,7 @@ import platform
 import time
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 import xarray as xr
@@ -97,20 +98,22 @@ def stamped(
     inputs: Iterable[str | os.PathLike[str]] = (),
 ) -> xr.Dataset:
     """What a task makes, with its provenance and wall time, not yet saved."""
+    # before the task reads them: what is there afterwards may be others
+    ids = {str(path): load(path).attrs["dataset_id"] for path in inputs}
     started = time.perf_counter()
     dataset = make()
     wall_time = time.perf_counter() - started
-    return stamp(dataset, config=config, inputs=inputs, wall_time=wall_time)
+    return stamp(dataset, config=config, inputs=ids, wall_time=wall_time)
 
 
 def stamp(
     dataset: xr.Dataset,
     *,
     config: Mapping[str, Any],
-    inputs: Iterable[str | os.PathLike[str]] = (),
+    inputs: Mapping[str, str] = MappingProxyType({}),
     wall_time: float,
 ) -> xr.Dataset:
-    """The dataset with provenance attributes."""
+    """The dataset with provenance attributes; ``inputs`` are the ids of files that were read."""
     text = canonical(config)
     return dataset.assign_attrs(
         config=text,
@@ -118,7 +121,7 @@ def stamp(
         **versions(),
         commit=commit(),
         platform=f"{platform.platform()}, Python {platform.python_version()}",
-        inputs=canonical({str(path): load(path).attrs["dataset_id"] for path in inputs}),
+        inputs=canonical(dict(inputs)),
         wall_time_s=wall_time,
         history=made_now(),
     )

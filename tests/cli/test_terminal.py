@@ -1,0 +1,85 @@
+"""What reaches a terminal: its own letters, no file's control characters, always the answer."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+from squealpipe import Parameters, load, stability_map
+from squealpipe.cli import run
+from squealpipe.config.mistakes import ConfigError
+from squealpipe.config.settings import read_study
+from squealpipe.text import visible
+
+SHORT = ["simulate", "5pi/6", "5pi/6", "--t-end", "5"]
+
+
+@pytest.fixture(autouse=True)
+def elsewhere(tmp_path, monkeypatch):
+    """Commands run in an empty folder."""
+    monkeypatch.chdir(tmp_path)
+
+
+def test_simulate_works_where_the_terminal_is_ascii():
+    surroundings = {**os.environ, "PYTHONIOENCODING": "ascii", "LANG": "C"}
+    done = subprocess.run(
+        [sys.executable, "-m", "squealpipe", *SHORT], env=surroundings, capture_output=True,
+        check=False,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    assert "omega = " in done.stdout.decode("ascii")
+
+
+def test_simulate_answers_under_quiet(capsys):
+    assert run([*SHORT, "-q"]) == 0
+    out = capsys.readouterr().out
+    assert "first separation   t = " in out
+    assert "wrote" not in out
+
+
+def test_control_characters_are_shown_and_colours_obeyed():
+    assert visible("a\x1b[31mb\x1b[0m\n") == "a\x1b[31mb\x1b[0m\n"
+    assert visible("\x1b]0;title\x07\r\u202e\x9b2J") == r"\x1b]0;title\x07\r\u202e\x9b2J"
+
+
+def test_control_characters_of_a_file_do_not_reach_the_terminal(tmp_path, capsys):
+    (tmp_path / "bad\x1b]0;name\x07.nc").write_bytes(b"no dataset")
+    assert run(["compare", str(next(tmp_path.iterdir())), "nothing"]) == 2
+    assert "\x1b" not in "".join(capsys.readouterr())
+
+
+def test_symbols_of_the_paper_are_understood_or_name_their_key(tmp_path, capsys):
+    grid = ["--alpha1", "0:pi:2", "--alpha2", "0:pi:2"]
+    command = ["map", "stability", *grid, "--V", "-3", "--L1=7", "--m", "2", "-o", "m.nc"]
+    assert run(command) == 0
+    found = load("m.nc").attrs["parameters"]
+    for part in ('"belt_speed": -3.0', '"length1": 7.0', '"mass": 2.0'):
+        assert part in found
+    swept = ["sweep", "stability_map", "--vary", "L1=3,4", "--alpha1", "1", "--alpha2", "2"]
+    assert run([*swept, "--workers", "1", "-o", "s.nc"]) == 0
+    assert load("s.nc").length1.values.tolist() == [3.0, 4.0]
+    (tmp_path / "mine.yaml").write_text("parameters: {V: 3}\n")
+    with pytest.raises(ConfigError, match=r"parameters\.V: unknown key; did you mean 'belt_speed'"):
+        read_study(tmp_path / "mine.yaml")
+    capsys.readouterr()
+
+
+def test_claims_outside_a_study_say_what_makes_them(capsys):
+    assert run(["claims"]) == 2
+    assert "squealpipe run" in capsys.readouterr().err
+
+
+def test_labels_are_words():
+    from squealpipe import labels
+
+    found = stability_map(Parameters(), np.linspace(0, np.pi, 9), [2.2])
+    words = labels(found.regime_linear)
+    assert set(np.unique(words)) <= {"stable", "flutter", "divergence"}
+    assert words.dims == found.regime_linear.dims
+    assert words.values[0, 0] in str(words)
+    with pytest.raises(ValueError, match="array = 'growth_rate': a variable with flag_meanings"):
+        labels(found.growth_rate)
