@@ -17,12 +17,6 @@ WORDS = {
     "vy0": "velocity away from the belt at the start",
 }
 
-UNSETTLED = 7
-StartMotion = IntEnum(  # type: ignore[misc]
-    "StartMotion", {**{flag.name: flag.value for flag in MotionFlag}, "unsettled": UNSETTLED}
-)
-"""Kind of motion from a start; unsettled: the second half of the run has another label."""
-
 
 def basin_schema(swept: tuple[str, ...]) -> DatasetSchema:
     """The schema of a basin map whose dimensions are the ``swept`` ones of STARTS."""
@@ -36,10 +30,10 @@ def basin_schema(swept: tuple[str, ...]) -> DatasetSchema:
         coordinates={name: Variable(WORDS[name], UNITS[name], (name,)) for name in swept},
         variables={
             "motion": Variable(
-                "kind of motion of the run to t_end, checked against its second half",
+                "kind of motion in the second half of the run; unsettled: its quarters disagree",
                 dims=swept,
                 dtype="i1",
-                flags=StartMotion,
+                flags=MotionFlag,
                 **IN_MAP,
             ),
             "late_max_x": real("m", "largest |x| from t_late on"),

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from squealpipe.schema import RUN_ENDS, DatasetSchema, Outcome, Variable, outcome
 from squealpipe.schema.agreement import magnitude, sampled, unjudged
-from squealpipe.schema.dynamics.runs import MotionFlag
+from squealpipe.schema.dynamics.runs import MOTION_CHANGED, MotionFlag
 
 _IRREGULAR = (
     "one long run, irregular where the belt is slow: the last bit of the belt speed, which the "
@@ -42,12 +42,13 @@ WHIRL = DatasetSchema(
             "share of the time sticking to the belt", dims=("belt_speed",), round_off=_LONG_SAMPLE
         ),
         "motion": Variable(
-            "kind of motion",
+            "kind of motion in the second half of the run",
             dims=("belt_speed",),
             dtype="i1",
             flags=MotionFlag,
             round_off=_LONG_SAMPLE,
         ),
+        "motion_changed": replace(MOTION_CHANGED, dims=("belt_speed",), round_off=_LONG_SAMPLE),
         "fitted": Variable("whether the speed is in the fit", dims=("belt_speed",), dtype="bool"),
         "slope": Variable("fitted growth of the amplitude with |V|", "s", nan_allowed=True),
         "offset": Variable("fitted amplitude at V = 0", "m", nan_allowed=True),

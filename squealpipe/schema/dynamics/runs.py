@@ -34,15 +34,18 @@ class EventFlag(IntEnum):
 
 
 class MotionFlag(IntEnum):
-    """Meaning of motion. In files without ``motion_later``, 2 stands for 2, 5 and 6."""
+    """Meaning of motion: what it has become, judged from the second half of its run."""
 
-    perpetual_contact = 0
+    contact_kept = 0
     stick_slip = 1
     periodic_hammering = 2
     irregular_hammering = 3
     whirl = 4
-    regular_hammering = 5
+    undetermined = 5
     quasi_periodic_hammering = 6
+    at_rest = 7
+    hammered_then_contact = 8
+    unsettled = 9
 
 
 _GROWN = grown("growth", "an error of the last digit grows along the run")
@@ -55,6 +58,7 @@ IN_MAP: dict[str, Any] = {"rtol": 1e-5, "atol": 1e-7, "round_off": _LOST}
 """Up to the horizon an error of the last digit may have grown to nearly l_pre/1000."""
 
 
+MOTION_CHANGED = Variable("whether the quarters of that half have other labels", dtype="bool")
 RETURN_FORCE = Variable(
     "largest contact force after the first return to the belt, over k3 l_pre (NaN: no return)",
     nan_allowed=True,
@@ -173,20 +177,13 @@ HAMMERING_MAP = DatasetSchema(
             rtol=1e-6,
         ),
         "motion": Variable(
-            "kind of motion of the run to t_end",
+            "kind of motion in the second half of the run",
             dims=MAP,
             dtype="i1",
             flags=MotionFlag,
             **IN_MAP,
         ),
-        "motion_later": Variable(
-            "kind of motion of the run to 2 t_end",
-            dims=MAP,
-            dtype="i1",
-            flags=MotionFlag,
-            optional=True,
-            **IN_MAP,
-        ),
+        "motion_changed": replace(MOTION_CHANGED, dims=MAP, **IN_MAP),
         "t_end": Variable("end of each run", "s"),
         "outcome": outcome(*MAP, among=(*RUN_ENDS, Outcome.beyond_horizon)),
     },

@@ -11,7 +11,8 @@ from squealpipe.parameters import Parameters
 from squealpipe.schema import build
 from squealpipe.schema.dynamics.runs import HAMMERING_MAP
 from squealpipe.schema.origin import recorded
-from squealpipe.solvers.a1.ensemble import run_map
+from squealpipe.solvers.a1.ensemble import Ensemble, run_ensemble, run_map
+from squealpipe.tasks.dynamics import motion
 from squealpipe.tasks.dynamics.motion import (
     classify_motion,
     linear_time,
@@ -23,21 +24,11 @@ from squealpipe.tasks.normal_form import NormalForm
 from squealpipe.validation import Angles, Positive, Tolerance, Workers
 
 USED = (
-    "outcome",
-    "time",
-    "contacts",
-    "separations",
-    "events",
-    "separated_time",
-    "stick_time",
+    *motion.USED,
     "peak_contact_force",
     "return_peak_contact_force",
     "impact_speed",
-    "max_displacement",
-    "turns",
-    "log_growth",
     "predictability_horizon",
-    "final_state",
 )
 """Results of the runs that the map is made from."""
 
@@ -54,19 +45,20 @@ def hammering_map(
 ) -> xr.Dataset:
     """Impacts, forces, extremes, kind of motion and predictability of A1 started at rest.
 
-    ``motion`` says what the run to ``t_end`` shows:
+    ``motion`` says what the motion has become, judged from the second half of the run:
 
-    - perpetual contact, or stick–slip in contact;
-    - whirl: at least three net turns around both fixed ends, counted by half turns (2½ may do),
-      and one for two returns to the belt;
-    - irregular hammering: a perturbation has grown faster than (1 + t)², t in √(2m/(k1 + k2));
-    - periodic hammering: it has not, and the kinds and intervals of the events of the later half
-      repeat within 1e-6 of the period;
-    - quasi-periodic hammering: regular to ``t_end``, but they do not repeat;
-    - regular hammering: there are too few events to tell these two apart.
+    - contact kept in it, or stick–slip in contact; came to rest in contact (within a
+      thousandth of its largest displacement); or hammered earlier, then kept contact;
+    - whirl: net turns around both fixed ends, counted by half turns, at a rate of at least three a
+      run, and one for two returns to the belt;
+    - irregular hammering: a perturbation has grown by more than 1 + t, t in √(2m/(k1 + k2));
+    - periodic hammering: it has not, and the kinds and intervals of the events repeat within 1e-6
+      of the period;
+    - quasi-periodic hammering: they do not repeat, but are distributed alike in both quarters;
+    - undetermined: there are too few events to tell, or they still change.
 
-    ``motion_later`` is the same label at 2 ``t_end``. Systems that are mirror images of one
-    another get the same labels: the runs are made in the form of
+    ``motion_changed``: the two quarters have different labels. Systems that are mirror images of
+    one another get the same labels: the runs are made in the form of
     :class:`squealpipe.tasks.normal_form.NormalForm`.
 
     Args:
@@ -96,21 +88,23 @@ def hammering_map(
         tangent=True,
         workers=workers,
     )
-    unit = linear_time(params)
-    cells = np.broadcast_arrays(rows[:, None], columns)
+    shape = run.outcome.shape
+    cells = [angles.ravel() for angles in np.broadcast_arrays(rows[:, None], columns)]
     flat = SimpleNamespace(
         **{
-            name: values.reshape(cells[0].size, *values.shape[2:])
+            name: values.reshape(-1, *values.shape[len(shape) :])
             for name, values in vars(run).items()
         }
     )
-    motion, later = (
-        labels.reshape(cells[0].shape)
-        for labels in refine_labels(
-            form.params, cells[0].ravel(), cells[1].ravel(), flat, classify_motion(flat, unit),
-            t_end=t_end, tol=tol, workers=workers,
-        )
-    )  # fmt: skip
+
+    def again(some: np.ndarray, room: int) -> Ensemble:
+        return run_ensemble(
+            form.params, *(angles[some] for angles in cells), t_end=t_end, tol=tol, tangent=True,
+            log_events=room, workers=workers,
+        )  # fmt: skip
+
+    kinds, changed = classify_motion(flat, form.params)
+    kinds = refine_labels(kinds, flat, again, t_end)
     # A run that ended early is averaged over the time that it lasted.
     time = np.maximum(run.time, np.finfo(float).tiny)
     maps = {
@@ -122,13 +116,13 @@ def hammering_map(
         "stick_fraction": run.stick_time / time,
         "max_displacement": run.max_displacement,
         "turns": form.sign * run.turns,
-        "motion": motion,
-        "motion_later": later,
+        "motion": kinds.reshape(shape),
+        "motion_changed": changed.reshape(shape),
         **predictability(run),
     }
     return build(
         HAMMERING_MAP,
         {**{name: form.back(values) for name, values in maps.items()}, "t_end": t_end},
         {"alpha1": alpha1, "alpha2": alpha2},
-        {"regular_growth": float(regular_growth(t_end / unit))},
+        {"regular_growth": float(regular_growth(t_end / linear_time(params)))},
     )

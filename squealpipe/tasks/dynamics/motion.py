@@ -1,22 +1,25 @@
-"""Kinds of motion of model A1: what is tested for each label, and whether the label lasts."""
+"""What a motion of model A1 has become, judged from the second half of its run."""
 
 from __future__ import annotations
 
-import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
+from scipy.stats import ks_2samp
 
 from squealpipe.methods.recurrence import LEAST_REPEATS, repeats_after
-from squealpipe.parameters import Parameters
 from squealpipe.schema import Outcome
 from squealpipe.schema.dynamics.runs import MotionFlag
-from squealpipe.solvers.a1.ensemble import Ensemble, run_ensemble
+from squealpipe.solvers.a1.ensemble import MARKS, Ensemble
 
 LEAST_TURNS = 3
-"""Net turns from which a motion can be a whirl."""
+"""Net turns in a run from which a motion can be a whirl."""
+AT_REST = 1e-3
+"""A mass rests that stays this close to where it ends, over its largest displacement."""
+SAME_STATISTICS = 0.01
+"""Chance of two samples of one distribution to differ as much as the events of both halves may."""
 TURNS_PER_RETURN = 0.5
 """Net turns for each return to the belt from which it is one: a pendulum that goes over the top
 and back makes none, however long it lasts."""
@@ -28,16 +31,42 @@ LEAST_EVENTS = 4 * LEAST_REPEATS
 """Events in the later half of a run from which a repetition can be told from none."""
 EVENTS_AT_ONCE = 2**20
 """Logged events that are held in memory at once, 48 bytes each."""
-CONTACT = (MotionFlag.perpetual_contact, MotionFlag.stick_slip)
+CALM = (MotionFlag.contact_kept, MotionFlag.hammered_then_contact, MotionFlag.at_rest)
+USED = (
+    "outcome",
+    "time",
+    "separations",
+    "contacts",
+    "separated_time",
+    "stick_time",
+    "turns",
+    "events",
+    "log_growth",
+    "final_state",
+    "max_displacement",
+    *(
+        f"mark_{name}"
+        for name in (
+            "separations",
+            "contacts",
+            "separated_time",
+            "stick_time",
+            "turns",
+            "log_growth",
+            "state",
+        )
+    ),
+)
+"""Results of the runs that a label is made from."""
 
 
-def linear_time(params: Parameters) -> float:
+def linear_time(params: Any) -> Any:
     """√(2m/(k1 + k2)), s: one over the root mean square of both separated natural frequencies.
 
     Their squares add up to (k1 + k2)/m at any angles, so mirror images have the same unit of
     time; for equal springs it is √(m/k1).
     """
-    return math.sqrt(2.0 * params.mass / (params.k1 + params.k2))
+    return np.sqrt(2.0 * params.mass / (params.k1 + params.k2))
 
 
 def regular_growth(time: Any) -> Any:
@@ -67,26 +96,69 @@ def predictability(run: Ensemble | SimpleNamespace) -> dict[str, np.ndarray]:
     }
 
 
-def classify_motion(run: Ensemble | SimpleNamespace, time_unit: float) -> np.ndarray:
-    """``MotionFlag`` of each run of an ensemble with ``tangent=True``.
+def classify_motion(run: Ensemble | SimpleNamespace, params: Any) -> tuple[Any, np.ndarray]:
+    """(``MotionFlag`` of each run of an ensemble with ``tangent=True``, whether it still changes).
 
-    Hammering is *irregular* where a perturbation has grown faster than (1 + t)², t in
-    ``time_unit``, and else *regular* to the end of the run; :func:`tell_periodic` says more.
+    Judged from the second half of each run; a label still changes where the two quarters of that
+    half have different ones (those in contact without stick are one). Hammering is *irregular*
+    where a perturbation has grown by more than a share of the half (or quarter) of
+    :func:`regular_growth`; of other hammering :func:`tell_periodic` says more, and until then it is
+    *undetermined*.
+
+    Args:
+        run: the runs; ``final_state`` decides their shape.
+        params: their parameters, numbers or arrays.
     """
+    first, second, last = range(len(MARKS) + 1)
+    quarters = (_label(run, params, first, second), _label(run, params, second, last))
+    # a motion that keeps contact may well come to rest
+    changed = np.not_equal(*(np.where(np.isin(q, CALM), CALM[0], q) for q in quarters))
+    return _label(run, params, first, last), changed
+
+
+def _label(run: Any, params: Any, start: int, end: int) -> np.ndarray:
+    """Labels by what happens between two marks; the last one is the end of the run."""
+
+    def at(name: str, mark: int) -> np.ndarray:
+        if mark == len(MARKS):
+            return np.asarray(getattr(run, "final_state" if name == "state" else name))
+        values = np.asarray(getattr(run, f"mark_{name}"))
+        return np.asarray(values[..., mark, :] if name == "state" else values[..., mark])
+
+    def during(name: str) -> np.ndarray:
+        return np.asarray(at(name, end) - at(name, start))
+
+    shares = (*MARKS, 1.0)
+    share = shares[end] - shares[start]
+    unit = linear_time(params)
+    scale = np.stack(np.broadcast_arrays(1.0, 1.0, unit, unit), axis=-1)
+    length = np.asarray(run.max_displacement)[..., None]
+    moved = np.abs(at("state", start) - run.final_state * [1.0, 1.0, 0.0, 0.0]) * scale
+    speeds = np.abs(at("state", end) * [0.0, 0.0, 1.0, 1.0]) * scale
+    rests = (np.maximum(moved, speeds) < AT_REST * length).all(axis=-1)
+    kept = (during("separations") == 0) & (during("separated_time") == 0)
+    turns = np.abs(during("turns"))
+    whirling = (turns >= share * LEAST_TURNS) & (turns > TURNS_PER_RETURN * during("contacts"))
     return np.select(
         [
-            (run.separations == 0) & (run.separated_time == 0) & (run.stick_time == 0),
-            (run.separations == 0) & (run.separated_time == 0),
-            whirls(run),
-            run.log_growth > regular_growth(run.time / time_unit),
+            run.outcome != Outcome.converged,
+            kept & rests,
+            kept & (at("separated_time", end) > 0),
+            kept & (during("stick_time") > 0),
+            kept,
+            whirling,
+            during("log_growth") > share * regular_growth(run.time / unit),
         ],
         [
-            MotionFlag.perpetual_contact,
+            MotionFlag.undetermined,
+            MotionFlag.at_rest,
+            MotionFlag.hammered_then_contact,
             MotionFlag.stick_slip,
+            MotionFlag.contact_kept,
             MotionFlag.whirl,
             MotionFlag.irregular_hammering,
         ],
-        MotionFlag.regular_hammering,
+        MotionFlag.undetermined,
     )
 
 
@@ -94,63 +166,49 @@ def tell_periodic(times: np.ndarray, kinds: np.ndarray, t_end: float) -> MotionF
     """The kind of a regular hammering by the events of the later half of a run to ``t_end``.
 
     *Periodic*: kinds and intervals repeat within 1e-6 of the period, three times at least.
-    *Quasi-periodic*: they do not. *Regular*: there are too few events to tell.
+    *Quasi-periodic*: they do not, and the intervals after each kind of event are distributed alike
+    in both quarters. *Undetermined*: neither, or too few events to tell.
     """
     late = (times > 0.5 * t_end) & (times <= t_end)
-    if np.count_nonzero(late) < LEAST_EVENTS:
-        return MotionFlag.regular_hammering
-    if repeats_after(times[late], kinds[late], INTERVAL_TOLERANCE):
+    times, kinds = times[late], kinds[late]
+    if times.size < LEAST_EVENTS:
+        return MotionFlag.undetermined
+    if repeats_after(times, kinds, INTERVAL_TOLERANCE):
         return MotionFlag.periodic_hammering
+    after, early = np.diff(times), times[:-1] < 0.75 * t_end
+    for kind in np.unique(kinds[:-1]):
+        here = kinds[:-1] == kind
+        quarters = after[here & early], after[here & ~early]
+        if min(map(len, quarters)) < LEAST_REPEATS:
+            return MotionFlag.undetermined
+        if ks_2samp(*quarters, method="asymp").pvalue < SAME_STATISTICS:
+            return MotionFlag.undetermined
     return MotionFlag.quasi_periodic_hammering
 
 
 def refine_labels(
-    params: Parameters,
-    alpha1: np.ndarray,
-    alpha2: np.ndarray,
-    run: Ensemble | SimpleNamespace,
     motion: np.ndarray,
-    *,
+    run: Ensemble | SimpleNamespace,
+    again: Callable[[np.ndarray, int], Ensemble],
     t_end: float,
-    tol: float,
-    workers: int | None,
-) -> tuple[np.ndarray, np.ndarray]:
-    """(labels of the runs, labels of the same runs at 2 ``t_end``), regular hammering told apart.
-
-    Runs in contact are carried on from their last state; the others start again, from rest, for
-    twice as long, with their events logged.
+) -> np.ndarray:
+    """Labels of the runs with undetermined hammering told apart by its events.
 
     Args:
-        params: physical parameters.
-        alpha1, alpha2: angles of the runs, 1-D, rad.
-        run: their results to ``t_end``, 1-D: events, stick time, state and regime at the end.
-        motion: their labels by :func:`classify_motion`.
+        motion: labels by :func:`classify_motion`, 1-D.
+        run: the runs to ``t_end``.
+        again: runs some of them again, by their rows, with so many events logged.
         t_end: end of the runs, s.
-        tol: tolerance of the Taylor integrator.
-        workers: processes; None takes all cores.
     """
-    motion, later = motion.copy(), motion.copy()
-    unit = linear_time(params)
-    kept = np.flatnonzero(np.isin(motion, CONTACT) & np.isfinite(run.final_state).all(axis=-1))
-    again = ~np.isin(motion, CONTACT)
-    if kept.size:
-        on = run_ensemble(
-            params, alpha1[kept], alpha2[kept], t_end=t_end, tol=tol,
-            initial_state=run.final_state[kept], stop_at_first_separation=True, workers=workers,
-        )  # fmt: skip
-        again[kept] = on.separations > 0
-        later[kept[on.stick_time > 0]] = MotionFlag.stick_slip
-    for cells in _blocks(np.flatnonzero(again), run.events):
-        # twice the time holds about twice the events; a steadier first half holds fewer
-        on = run_ensemble(
-            params, alpha1[cells], alpha2[cells], t_end=2.0 * t_end, tol=tol, tangent=True,
-            log_events=int(3 * run.events[cells].max() + 4 * LEAST_EVENTS), workers=workers,
-        )  # fmt: skip
-        later[cells] = classify_motion(on, unit)
-        for label, end in ((motion, t_end), (later, 2.0 * t_end)):
-            for row in np.flatnonzero(label[cells] == MotionFlag.regular_hammering):
-                label[cells[row]] = tell_periodic(on.event_times[row], on.event_kinds[row], end)
-    return motion, later
+    motion = motion.copy()
+    undetermined = (motion == MotionFlag.undetermined) & (run.outcome == Outcome.converged)
+    for rows in _blocks(np.flatnonzero(undetermined), run.events):
+        logged = again(rows, int(run.events[rows].max()))
+        motion[rows] = [
+            tell_periodic(times, kinds, t_end)
+            for times, kinds in zip(logged.event_times, logged.event_kinds, strict=True)
+        ]
+    return motion
 
 
 def _blocks(cells: np.ndarray, events: np.ndarray) -> Iterator[np.ndarray]:
@@ -158,6 +216,6 @@ def _blocks(cells: np.ndarray, events: np.ndarray) -> Iterator[np.ndarray]:
     cells = cells[np.argsort(events[cells], kind="stable")]
     while cells.size:
         # as many of the busiest as fit, so that no block is wider than it needs to be
-        size = max(1, EVENTS_AT_ONCE // int(3 * events[cells[-1]] + 4 * LEAST_EVENTS))
+        size = max(1, EVENTS_AT_ONCE // max(1, int(events[cells[-1]])))
         yield cells[-size:]
         cells = cells[:-size]

@@ -18,7 +18,7 @@ from squealpipe.schema import Outcome, build
 from squealpipe.schema.dynamics.long_runs import TRANSIENT, WHIRL
 from squealpipe.schema.dynamics.runs import MotionFlag
 from squealpipe.solvers.a1.ensemble import Ensemble, run_ensemble
-from squealpipe.tasks.dynamics.motion import classify_motion, linear_time
+from squealpipe.tasks.dynamics.motion import classify_motion, refine_labels
 from squealpipe.tasks.normal_form import NormalForm
 
 LATE_SHARE = 0.8
@@ -73,8 +73,8 @@ def whirl_sizes(
     alpha1, alpha2 = form.angles(scene.alpha1, scene.alpha2)
     speeds = np.asarray(belt_speeds, float)
 
-    def runs(tried: np.ndarray) -> tuple[Ensemble, np.ndarray]:
-        run = run_ensemble(
+    def runs(tried: np.ndarray, **options: Any) -> Ensemble:
+        return run_ensemble(
             {**form.params.as_dict(), "belt_speed": tried},
             alpha1,
             alpha2,
@@ -83,12 +83,20 @@ def whirl_sizes(
             t_late=LATE_SHARE * t_end,
             tangent=True,
             workers=workers,
+            **options,
         )
-        return run, classify_motion(run, linear_time(params))
 
-    run, motion = runs(speeds)
+    def whirling(tried: np.ndarray) -> np.ndarray:
+        motion, _ = classify_motion(runs(tried), form.params)
+        return np.asarray(motion == MotionFlag.whirl)
+
+    run = runs(speeds)
+    motion, changed = classify_motion(run, form.params)
+    motion = refine_labels(
+        motion, run, lambda rows, room: runs(speeds[rows], log_events=room), t_end
+    )
     whirls = motion == MotionFlag.whirl
-    onset, exceptions = _onset(lambda tried: runs(tried)[1] == MotionFlag.whirl, speeds, whirls)
+    onset, exceptions = _onset(whirling, speeds, whirls)
     p = params
     fitted = whirls & (run.late_max_x > FAR * max(p.length1, p.length2))
     # of the one spring that both are together from afar
@@ -108,6 +116,7 @@ def whirl_sizes(
             "turn_rate": form.sign * run.turns / run.time,
             "stick_fraction": run.stick_time / run.time,
             "motion": motion,
+            "motion_changed": changed,
             "fitted": fitted,
             "residual": residual,
             "fit_range": [speeds[fitted].min(), speeds[fitted].max()]

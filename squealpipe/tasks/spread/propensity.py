@@ -157,8 +157,7 @@ def _events(
 ) -> np.ndarray:
     """Whether each quantity that needs a run occurs, (quantities − 1, size)."""
     run = run_ensemble(fields, alpha1, alpha2, t_end=t_end, tol=tol, tangent=True, workers=workers)
-    unit = np.sqrt(2.0 * fields["mass"] / (fields["k1"] + fields["k2"]))
-    motion = classify_motion(run, unit)
+    motion, _ = classify_motion(run, SimpleNamespace(**fields))
     return np.array(
         [
             np.isfinite(run.first_separation_time),

@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import Any
 
 import numpy as np
 import xarray as xr
 
 from squealpipe.parameters import Parameters
-from squealpipe.schema import Outcome, build
+from squealpipe.schema import build
+from squealpipe.schema.dynamics.runs import MotionFlag
 from squealpipe.schema.origin import recorded
-from squealpipe.schema.starts import STARTS, UNSETTLED, basin_schema
-from squealpipe.solvers.a1.ensemble import run_ensemble
-from squealpipe.tasks.dynamics.motion import classify_motion, linear_time, predictability
+from squealpipe.schema.starts import STARTS, basin_schema
+from squealpipe.solvers.a1.ensemble import Ensemble, run_ensemble
+from squealpipe.tasks.dynamics.motion import classify_motion, predictability, refine_labels
 from squealpipe.validation import Angle, Line, NotNegative, Positive, Tolerance, Workers
 
 RUNS_AT_ONCE = 2000
@@ -35,8 +37,8 @@ def basin_map(
 ) -> xr.Dataset:
     """Runs of A1 from a grid of starts, and the kind of motion that each leads to.
 
-    ``motion`` is judged over the whole run as in ``hammering_map``. Where the second half of the
-    run alone would get another label, the run has not settled and its label is ``unsettled``.
+    ``motion`` is judged from the second half of the run as in ``hammering_map``. Where the two
+    quarters of that half have different labels, it is ``unsettled``.
 
     Args:
         params: physical parameters.
@@ -90,25 +92,20 @@ def _block(
     workers: int | None,
 ) -> dict[str, np.ndarray]:
     """Variables of some starts."""
-    times = np.array(sorted((t_late, 0.5 * t_end)))
-    run = run_ensemble(
-        params, alpha1, alpha2, t_end=t_end, t_late=t_late, initial_state=starts, times=times,
-        tol=tol, tangent=True, workers=workers,
-    )  # fmt: skip
-    half = run.samples[:, int(np.searchsorted(times, 0.5 * t_end))]
-    # the engine's own starts with the first step that begins after t_late
-    begins = np.abs(run.samples[:, int(np.searchsorted(times, t_late))])
-    finished = np.isfinite(half).all(axis=1) & (run.outcome == Outcome.converged)
-    second = run_ensemble(
-        params, alpha1, alpha2, t_end=0.5 * t_end, tol=tol, tangent=True, workers=workers,
-        initial_state=np.where(finished[:, None], half, 0.0),
-    )  # fmt: skip
-    unit = linear_time(params)
-    whole, later = classify_motion(run, unit), classify_motion(second, unit)
-    motion = np.where(whole == later, whole, UNSETTLED)
-    motion = np.where(finished, motion, UNSETTLED)
+
+    def runs(rows: Any, **options: Any) -> Ensemble:
+        return run_ensemble(
+            params, alpha1, alpha2, t_end=t_end, initial_state=starts[rows], tol=tol, tangent=True,
+            workers=workers, **options,
+        )  # fmt: skip
+
+    run = runs(slice(None), t_late=t_late, times=[t_late])
+    motion, changed = classify_motion(run, params)
+    motion = refine_labels(motion, run, lambda rows, room: runs(rows, log_events=room), t_end)
+    # the engine's own extrema start with the first step that begins after t_late
+    begins = np.abs(run.samples[:, 0])
     return {
-        "motion": motion,
+        "motion": np.where(changed, MotionFlag.unsettled, motion),
         "late_max_x": np.fmax(run.late_max_x, begins[:, 0]),
         "late_max_vx": np.fmax(run.late_max_vx, begins[:, 2]),
         "separates": np.isfinite(run.first_separation_time),

@@ -8,7 +8,6 @@ import pytest
 from squealpipe import Parameters, basin_map, simulate
 from squealpipe.schema import Outcome
 from squealpipe.schema.dynamics.runs import MotionFlag
-from squealpipe.schema.starts import StartMotion
 
 ANGLES = (0.5 * math.pi, math.pi)
 SHARES = {1.25: 0.08019692, 1.4: 0.21226526, 1.55: 0.35659639, 1.7: 0.49411159}
@@ -51,8 +50,8 @@ def test_basin_shares_of_a_published_oscillator(speed, starts):
     assert not basin.separates.any()
     moving = basin.motion.values[~rest]
     # next to the unstable cycle a motion grows so slowly that it has not stuck by t = 500
-    growing = ~np.isin(moving, (MotionFlag.stick_slip, StartMotion["unsettled"]))
-    assert (moving[growing] == MotionFlag.perpetual_contact).all()
+    growing = ~np.isin(moving, (MotionFlag.stick_slip, MotionFlag.unsettled))
+    assert (moving[growing] == MotionFlag.contact_kept).all()
     assert growing.mean() < 2e-3
 
 
@@ -65,14 +64,19 @@ def test_rest_is_the_run_from_rest():
     np.testing.assert_allclose(basin.late_max_vx, np.abs(run.vx).max(), rtol=1e-6)
 
 
-def test_a_run_that_has_not_settled_says_so():
-    """Dashpots end the hammering of Fig. 2(d) early in the run."""
+def test_a_run_that_came_to_rest_has_settled():
+    """Dashpots end the hammering of Fig. 2(d) early in the run, or just in its second half."""
     damped = Parameters(damping1=0.1, damping2=0.1)
     angles = (5 * math.pi / 6, 5 * math.pi / 6)
-    basin = basin_map(damped, *angles, vy=[0.0, 0.01], t_end=400.0)
+    basin = basin_map(damped, *angles, vy=[0.0, 0.01], t_end=2000.0)
     assert (basin.outcome == Outcome.converged).all()
     assert basin.separates.all()
-    assert (basin.motion == StartMotion["unsettled"]).all()
+    assert (basin.motion == MotionFlag.at_rest).all()
+    shorter = basin_map(damped, *angles, t_end=500.0)
+    assert shorter.motion.item() == MotionFlag.hammered_then_contact
+    ends = float(simulate(damped, *angles, t_end=400.0, times=[0.0]).event_time[-1])
+    early = basin_map(damped, *angles, t_end=1.6 * ends)
+    assert early.motion.item() == MotionFlag.unsettled
 
 
 @pytest.mark.parametrize(

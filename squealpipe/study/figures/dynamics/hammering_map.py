@@ -27,10 +27,10 @@ if TYPE_CHECKING:
 
 READS = ("hammering_map",)
 CAPTION = (
-    "What model A1 does over both spring angles, started at rest. (a) Kind of motion; dots: a "
-    "different kind at twice the time. (b) Returns to the belt per unit of time. (c) Share of the "
-    "time off the belt. (d) Largest contact force over the preload. The cross is the configuration "
-    "of Fig. 3."
+    "What model A1 does over both spring angles, started at rest. (a) Kind of motion in the "
+    "second half of the run; dots: another kind in its last quarter. (b) Returns to the belt per "
+    "unit of time. (c) Share of the time off the belt. (d) Largest contact force over the preload. "
+    "The cross is the configuration of Fig. 3."
 )
 ALT = (
     "Four square maps over both angles: kind of motion, impacts per time, share of time separated, "
@@ -87,9 +87,8 @@ def _draw_motion(figure: Figure, panel: Any, hammering: xr.Dataset) -> None:
         index.reshape(motion.shape),
         **category_colours([REGIME_COLOURS[name] for name in names]),
     )
-    if "motion_later" in hammering:
-        rows, columns = np.nonzero(motion.values != hammering.motion_later.values)
-        panel.plot(angles[0][rows], angles[1][columns], ".", color=BLACK, ms=1.2)
+    rows, columns = np.nonzero(hammering.motion_changed.values)
+    panel.plot(angles[0][rows], angles[1][columns], ".", color=BLACK, ms=1.2)
     bar = figure.colorbar(mesh, ax=panel, ticks=range(len(names)), shrink=0.85)
     labels = [flag_words(name).replace(" ", "\n", 1) for name in names]
     bar.ax.set_yticklabels(labels, fontsize=6)

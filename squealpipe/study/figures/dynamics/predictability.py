@@ -28,12 +28,12 @@ CAPTION = (
     "tolerance has grown to l_pre/1000, from the tangent map through all events; white: not within "
     "the time run. Beyond it only statistics mean something. (b) Share of the cells of each kind "
     "of motion in which a perturbation grows less than that over the run; cells are counted in "
-    "the key; dashed: the growth that separates regular from irregular hammering."
+    "the key; dashed: growth by the square of time, which no regular motion exceeds."
 )
 ALT = (
     "Left, a map over both angles of the predictability horizon, white where it is not reached. "
-    "Right, cumulative shares of the growth for each kind of motion with a dashed line between "
-    "regular and irregular."
+    "Right, cumulative shares of the growth for each kind of motion with a dashed line at "
+    "the most of a regular motion."
 )
 
 
