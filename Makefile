@@ -10,7 +10,7 @@ export XDG_CACHE_HOME := $(CURDIR)/.snakemake/cache
 export MPLCONFIGDIR := $(CURDIR)/.snakemake/cache/matplotlib
 endif
 
-.PHONY: reproduce quick test bench env lint lock docs dictionary clean
+.PHONY: reproduce quick test test-processors bench env lint lock docs dictionary clean
 
 reproduce: env  ## the whole study: datasets, figures, report
 	$(BIN)/snakemake
@@ -20,6 +20,17 @@ quick: env  ## the same study, coarse, into results/quick
 
 test: env  ## all tests but the slow sweeps
 	$(BIN)/python -m pytest -q -n 2 --dist loadfile --no-loadscope-reorder
+
+NUMERICAL := tests/laws tests/methods tests/models tests/solvers tests/tasks tests/validation
+
+test-processors: env  ## numerical tests, and the quick study compared, as on other processors
+	$(BIN)/snakemake -q --configfile workflow/config/quick.yaml
+	for processor in avx2 generic; do \
+	  tests/processors $$processor $(BIN)/python -m pytest -q -n 2 --dist loadfile $(NUMERICAL) && \
+	  tests/processors $$processor $(BIN)/snakemake -q --configfile workflow/config/quick.yaml \
+	    --config results=results/$$processor && \
+	  $(BIN)/squealpipe compare results/quick results/$$processor || exit 1; \
+	done
 
 # One thread for linear algebra, since one core is what is told: where others are at work, threads that
 # wait for one another made the peer of the backbones forty times slower.
