@@ -119,14 +119,14 @@ class Parameters:
     mass: float = _row(1.0, "kg", "m", "mass of the particle")
     k1: float = _row(1.0, "N m-1", "k_1", "stiffness of spring 1")
     k2: float = _row(1.0, "N m-1", "k_2", "stiffness of spring 2")
-    k3: float = _row(0.75, "N m-1", "k_3", "stiffness of the contact spring")
+    k3: float = _row(0.65, "N m-1", "k_3", "stiffness of the contact spring")
     mu: float = _row(0.3, "1", "mu", "sliding friction coefficient", allowed="not negative")
     belt_speed: float = _row(
         100.0, "m s-1", "V", "speed of the belt, its sign the direction", allowed="finite"
     )
     preload: float = _row(1.0, "m", 'l_"pre"', "precompression of the contact spring")
-    length1: float = _row(5.0, "m", "L_1", "free length of spring 1")
-    length2: float = _row(5.0, "m", "L_2", "free length of spring 2")
+    length1: float = _row(15.0, "m", "L_1", "free length of spring 1")
+    length2: float = _row(15.0, "m", "L_2", "free length of spring 2")
     sigma: float = _row(
         1e3, "m-1", "sigma", "regularizing factor of the paper's tanh", enters_a1=False
     )

@@ -6,7 +6,7 @@ computes the paper's figures in one of three readings and, beside it, the correc
 has one sign throughout. While |ẋ| < V, Eq. (4) as printed equals a belt along −x: so the correction
 that keeps A1's figures lets the belt run that way in all models.
 
-A reading fixes the direction of the belt; ``belt_speed`` gives the magnitude.
+With a negative ``belt_speed`` all of it is mirrored.
 """
 
 from __future__ import annotations
@@ -75,4 +75,4 @@ def corrected(params: Parameters, reading: str) -> Parameters:
 
 
 def _towards(params: Parameters, direction: int) -> Parameters:
-    return params.with_(belt_speed=direction * abs(params.belt_speed))
+    return params.with_(belt_speed=direction * params.belt_speed)

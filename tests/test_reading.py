@@ -20,12 +20,12 @@ PARAMS = Parameters(belt_speed=100.0)
     ],
 )
 @pytest.mark.parametrize("sign", [1.0, -1.0])
-def test_each_reading_fixes_belt_and_model(reading, a1, linear, mended, sign):
+def test_each_reading_gives_belt_and_model_mirrored(reading, a1, linear, mended, sign):
     params = PARAMS.with_(belt_speed=sign * 100.0)
     moved, model = for_a1(params, reading)
-    assert (moved.belt_speed, model) == a1
-    assert for_linear(params, reading).belt_speed == linear
-    assert corrected(params, reading).belt_speed == mended
+    assert (sign * moved.belt_speed, model) == a1
+    assert for_linear(params, reading).belt_speed == sign * linear
+    assert corrected(params, reading).belt_speed == sign * mended
 
 
 def test_the_correction_has_one_sign_and_is_its_own():

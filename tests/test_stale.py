@@ -6,11 +6,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from squealpipe.parameters import Parameters
 from squealpipe.rerun.sources import code_digests, edited, first_seen
 from squealpipe.rerun.stale import Made, attributes, stale
 from squealpipe.store import StoreError, load, produce, save
 from squealpipe.tasks.linear.maps import stability_map
+from tests.former import FORMER
 
 ANGLES = np.linspace(0, np.pi, 7)
 PART = {"parameters": {"mu": 0.3}, "linear.points": 7}
@@ -22,7 +22,7 @@ def law(y):
 
 
 def make():
-    return stability_map(Parameters(), ANGLES, ANGLES)
+    return stability_map(FORMER, ANGLES, ANGLES)
 
 
 @pytest.fixture

@@ -68,6 +68,9 @@ def claims(
         print(*(_line(row, width) for row in rows), sep="\n")
         if rows:
             print(f"{len(rows)} statements; `squealpipe claims {rows[0]['id']}` shows one in full")
+        if changed := [row for row in rows if row["changes"]]:
+            print("\nWith friction of one sign throughout these change:")
+            print(*(_line({**row, **_corrected(row)}, width) for row in changed), sep="\n")
     return code if rows else DONE
 
 
@@ -90,6 +93,10 @@ def _chosen(
     return [row for row in kept if row["verdict"] in fitting]
 
 
+def _corrected(row: Mapping[str, Any]) -> dict[str, Any]:
+    return {"verdict": row["corrected_verdict"], "value": row["corrected_value"]}
+
+
 def _line(row: Mapping[str, Any], width: int | None) -> str:
     value = "" if row["value"] is None else f"{row['value']:.4g}"
     # Where the line is too short for words beside it, a number is better left out than cut.
@@ -109,6 +116,11 @@ def _details(row: Mapping[str, Any]) -> list[str]:
     if row["feasible_share"] is not None:
         lines.append(f"holds in {row['feasible_share']:.1%} of the feasible parameter sets")
     lines.append(row["evidence"])
+    if row["changes"]:
+        lines.append(
+            f"with friction of one sign throughout: {row['corrected_verdict']}; "
+            f"{row['corrected_evidence']}"
+        )
     lines += [f"{key}: {row[key]}" for key in ("dataset", "figure") if row[key]]
     if not row["as_recorded"]:
         lines.append(f"here: {row['verdict_here']}; recorded: {row['recorded']}")

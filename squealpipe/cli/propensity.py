@@ -24,7 +24,7 @@ from squealpipe.cli.output import check_outputs, write
 from squealpipe.config.ranges import ANGLES, parse_angle, parse_number
 from squealpipe.parameters import HORIZON
 
-FORM = "write for instance mu=uniform:0.1:0.9, k1=normal:1:0.05 or k3=lognormal:0.75:0.1"
+FORM = "write for instance mu=uniform:0.1:0.9, k1=normal:1:0.05 or k3=lognormal:0.65:0.1"
 
 
 def propensity(

@@ -268,7 +268,7 @@ class BackbonesSection(Section):
     x_amplitude_max: Positive = 3.0
     n_harmonics: Annotated[int, Field(ge=1, le=512)] = 32
     sweep: SeriesSweep = SeriesSweep()
-    length_ratios: Settings = (5.0, 20.0, 100.0)
+    length_ratios: Settings = (5.0, 15.0, 100.0)
     atlas_points: Points = 181
     atlas_peak: Positive = 2.0
 
@@ -281,7 +281,7 @@ class CyclesSection(Section):
 
     damping: Positive = 0.02
     mu: Range = (0.01, 1.0)
-    flutter: tuple[Angle, Angle] = (0.07, 0.305)
+    flutter: tuple[Angle, Angle] = (0.305, 0.07)
     points: Annotated[int, Field(ge=2, le=5000)] = 150
     settle: Positive = 6000.0
     extremes_mu: Annotated[int, Field(ge=2, le=1000)] = 17
@@ -317,7 +317,7 @@ class SpreadSection(Section):
     critical_damping: tuple[NotNegative, NotNegative] = (0.02, 0.01)
     critical_points: Points = 61
     critical_extent: Positive = 0.1
-    scene: tuple[Angle, Angle] = (0.07, 0.305)
+    scene: tuple[Angle, Angle] = (0.305, 0.07)
     samples: Annotated[int, Field(ge=64, le=2**20)] = 4096
     horizon: Positive = 200.0
     spring_correlation: Annotated[float, Field(gt=-1, lt=1)] = 0.0

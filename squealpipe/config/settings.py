@@ -10,7 +10,7 @@ import json
 import re
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path, PurePosixPath
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 from pydantic import Field, ValidationError, field_validator, model_validator
 
@@ -56,6 +56,7 @@ class Study(Section):
 
     results: Annotated[str, Field(pattern=r"^[\w./-]+$")] = "results"
     paper: bool = True
+    reading: Literal["as_printed", "along_plus_x", "along_minus_x"] = "as_printed"
     scenes: dict[Name, OwnScene] = Field(default={})
     parameters: ParametersSection = ParametersSection()
     linear: LinearSection = LinearSection()

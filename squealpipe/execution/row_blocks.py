@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from squealpipe.parameters import parameters_of
+from squealpipe.parameters import Parameters
 from squealpipe.schema import build, find
 from squealpipe.schema.sweep import fill_up
 from squealpipe.store import produce
@@ -56,6 +56,7 @@ def scattered_rows(rows: int, item: str) -> slice:
 
 def make_map(
     task: Callable[..., xr.Dataset],
+    params: Parameters,
     name: str,
     part: Mapping[str, Any],
     *,
@@ -68,6 +69,7 @@ def make_map(
 
     Args:
         task: makes the map from parameters, angles, ``t_end`` and ``tol``.
+        params: physical parameters.
         name: of the map; its keys are ``dynamics.<name>_points`` and ``dynamics.<name>_horizon``.
         part: slice of the configuration.
         output: dataset to write.
@@ -75,7 +77,6 @@ def make_map(
         log: file for progress lines.
         item: part of a scattered map, "i-of-n".
     """
-    params = parameters_of(part)
     angles = np.linspace(0.0, np.pi, part[f"dynamics.{name}_points"])
     horizon, tol = part[f"dynamics.{name}_horizon"] * params.time_unit, part["dynamics.tol"]
     with Checkpoint.beside(output, config=part, sources=sources, log=log) as checkpoint:

@@ -61,13 +61,12 @@ def possible_as_printed(stiffness: Stiffness, mu: Any) -> Any:
     """Eq. (11) as printed: μ < K11/K12.
 
     True where K12 = 0 (no bound on μ), False where K12 < 0 (E3) and where K11 = 0 as well as
-    K12 = 0, at α1 = α2 = π/2, for nothing balances friction there. A negative μ, of a belt along
-    −x, is judged by the mirror image.
+    K12 = 0, at α1 = α2 = π/2, for nothing balances friction there. Taken literally: it knows no
+    direction of the belt, so of a negative μ, of a belt along −x, the size counts.
     """
     k11, k12 = _without_round_off(stiffness)
-    k12, mu = np.where(np.less(mu, 0), -k12, k12), np.abs(mu)
     coupled = k12 != 0
-    return np.where(coupled, mu < k11 / np.where(coupled, k12, 1.0), k11 > 0)
+    return np.where(coupled, np.abs(mu) < k11 / np.where(coupled, k12, 1.0), k11 > 0)
 
 
 def reaction_force(stiffness: Stiffness, mu: Any, load: Any) -> Any:

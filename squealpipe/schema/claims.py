@@ -67,6 +67,12 @@ CLAIMS = DatasetSchema(
         "verdict": _verdict("what the data say, over the inferred feasible set as well"),
         "verdict_here": _verdict("what the data say at the parameters of the run"),
         "recorded": _verdict("verdict_here recorded for the shipped baseline"),
+        "corrected_verdict": _verdict(
+            "verdict in the corrected physics, friction of one sign throughout; that of the "
+            "reading where nothing differs"
+        ),
+        "corrected_value": _number("measured value in the corrected physics"),
+        "corrected_evidence": _text("one line of evidence there", volatile=True),
         "value": _number("measured value; NaN where nothing was measured"),
         "relation": _text("relation of value and threshold under which the check passes"),
         "threshold": _number("threshold of the check; NaN as in value"),

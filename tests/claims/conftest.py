@@ -7,12 +7,13 @@ import pytest
 import xarray as xr
 
 from squealpipe.parameters import SCENES, Parameters
+from squealpipe.reading import READINGS, corrected, for_a1, for_linear
 from squealpipe.tasks.backbones.backbone import backbone
 from squealpipe.tasks.backbones.harmonic_sweeps import compare_harmonic_forms
 from squealpipe.tasks.dynamics.assumptions import check_assumptions, linear_pull_map
 from squealpipe.tasks.dynamics.hammering import hammering_map
 from squealpipe.tasks.dynamics.runs import simulate, validity_map
-from squealpipe.tasks.dynamics.whirl import transient_lifetimes, whirl_sizes
+from squealpipe.tasks.dynamics.whirl import transient_lifetimes
 from squealpipe.tasks.inference.inference import infer_parameters
 from squealpipe.tasks.linear.maps import natural_frequencies, quasi_static_map, stability_map
 
@@ -25,18 +26,52 @@ def baseline() -> Parameters:
     return Parameters()
 
 
-def compute_evidence(params: Parameters) -> dict[str, xr.Dataset]:
-    """All datasets that the checks read, at any parameters; times and speeds scale with them."""
+def compute_evidence(
+    params: Parameters, reading: str = "along_plus_x", *, beside: bool = False
+) -> dict[str, xr.Dataset]:
+    """All datasets that the checks read, at any parameters; times and speeds scale with them.
+
+    Args:
+        params: those of the study.
+        reading: in which what the paper shows is computed.
+        beside: the corrected physics too.
+    """
+    found = of_the_paper(*for_a1(params, reading))
+    if beside:
+        mended = of_the_paper(*for_a1(params, READINGS[reading].corrected))
+        found |= {f"corrected/{name}": dataset for name, dataset in mended.items()}
+    return found | of_one_sign(corrected(params, reading)) | of_a4(for_linear(params, reading))
+
+
+def of_the_paper(params: Parameters, model: str) -> dict[str, xr.Dataset]:
+    """The scenes of Figs. 2–5, and the maps."""
     unit = params.time_unit
-    speed = params.preload / unit
     angles = np.linspace(0.0, np.pi, POINTS)
     found = {
         "quasi_static_map": quasi_static_map(params, angles, angles),
         "stability_map": stability_map(params, angles, angles),
         "natural_frequencies": natural_frequencies(params, angles, angles),
-        "assumptions": check_assumptions(params),
         "linear_pull": linear_pull_map(params, angles, angles, t_end=50.0 * unit),
-        "validity_map": validity_map(params, angles, angles, t_end=200.0 * unit, workers=1),
+        "validity_map": validity_map(
+            params, angles, angles, t_end=200.0 * unit, model=model, workers=1
+        ),
+    }
+    runs = {name: (name, scene.t_end, model) for name, scene in SCENES.items() if scene.figure <= 5}
+    runs |= {f"{name}_long": (name, 3000.0, model) for name in ("F3", "F4")}
+    runs["F2a_printed"] = ("F2a", 50.0, "A1-as-printed")
+    for name, (scene, t_end, of_model) in runs.items():
+        angles_of = SCENES[scene].alpha1, SCENES[scene].alpha2
+        found[f"simulate/{name}"] = simulate(params, *angles_of, t_end=t_end * unit, model=of_model)
+    return found
+
+
+def of_one_sign(params: Parameters) -> dict[str, xr.Dataset]:
+    """What goes beyond the paper."""
+    unit = params.time_unit
+    speed = params.preload / unit
+    angles = np.linspace(0.0, np.pi, POINTS)[::4]
+    return {
+        "assumptions": check_assumptions(params),
         "parameter_inference": infer_parameters(
             params,
             samples=24,
@@ -46,39 +81,25 @@ def compute_evidence(params: Parameters) -> dict[str, xr.Dataset]:
             speed_ratio=(90.0, 110.0),
             workers=1,
         ),
-        "whirl": whirl_sizes(params, [50.0 * speed, 100.0 * speed], t_end=2000.0 * unit, workers=1),
         "transient": transient_lifetimes(
             params, [10.0 * speed], samples=2, shown_samples=8, t_end=4000.0 * unit, workers=1
         ),
-        "harmonic_forms": compare_harmonic_forms(
-            params,
-            {
-                "F10": (0.5 * np.pi, np.pi, 2),
-                "coupled": (0.3 * np.pi, 0.9 * np.pi, 2),
-            },
-        ),
-        "hammering_map": hammering_map(
-            params, angles[::4], angles[::4], t_end=50.0 * unit, workers=1
-        ),
+        "hammering_map": hammering_map(params, angles, angles, t_end=50.0 * unit, workers=1),
     }
-    for name, scene in SCENES.items():
-        if scene.figure <= 5:
-            found[f"simulate/{name}"] = simulate(
-                params, scene.alpha1, scene.alpha2, t_end=scene.t_end * unit
-            )
-        else:
-            for mode in (1, 2):
-                found[f"backbone/{name}_mode{mode}"] = backbone(
-                    params, scene.alpha1, scene.alpha2, mode=mode
-                )
-    first = SCENES["F2a"]
-    printed = params.with_(belt_speed=-params.belt_speed)
-    found["simulate/F2a_reversed"] = simulate(
-        printed, first.alpha1, first.alpha2, t_end=first.t_end * unit
-    )
-    return found
+
+
+def of_a4(params: Parameters) -> dict[str, xr.Dataset]:
+    """Periodic motions of A4."""
+    scenes = {"F10": (0.5 * np.pi, np.pi, 2), "coupled": (0.3 * np.pi, 0.9 * np.pi, 2)}
+    return {"harmonic_forms": compare_harmonic_forms(params, scenes)} | {
+        f"backbone/{name}_mode{mode}": backbone(params, scene.alpha1, scene.alpha2, mode=mode)
+        for name, scene in SCENES.items()
+        if scene.figure > 5
+        for mode in (1, 2)
+    }
 
 
 @pytest.fixture(scope="session")
 def evidence(baseline: Parameters) -> dict[str, xr.Dataset]:
-    return compute_evidence(baseline)
+    """What the paper shows as printed, and the corrected physics beside it."""
+    return compute_evidence(baseline, "as_printed", beside=True)

@@ -29,16 +29,18 @@ def test_verdicts_and_dimensionless_values_do_not_depend_on_the_units(
         mass=4.0,
         k1=100.0,
         k2=100.0,
-        k3=75.0,
+        k3=65.0,
         mu=baseline.mu,
         preload=0.25,
-        length1=1.25,
-        length2=1.25,
+        length1=3.75,
+        length2=3.75,
         belt_speed=125.0,
         sigma=4000.0,
     )
     assert np.isclose(params.speed_ratio, baseline.speed_ratio)
-    first, second = judge(baseline, evidence), judge(params, compute_evidence(params))
+    scaled = compute_evidence(params, "as_printed", beside=True)
+    first, second = judge(baseline, evidence, "as_printed"), judge(params, scaled, "as_printed")
+    np.testing.assert_array_equal(first.corrected_verdict, second.corrected_verdict)
     np.testing.assert_array_equal(first.verdict_here, second.verdict_here)
     kept = ~np.isin(first.claim.values, LONG_RUNS)
     np.testing.assert_allclose(first.value[kept], second.value[kept], rtol=1e-6, atol=1e-8)
@@ -57,13 +59,6 @@ def test_without_friction_nothing_flutters_and_every_row_is_still_judged(
     assert verdicts["S3"] == Verdict.fails
     assert verdicts["F6b"] == Verdict.holds
     assert np.isfinite(claims.value).all()
-
-
-def test_a_long_run_speaks_for_its_own_belt_speed_only(evidence: dict[str, xr.Dataset]) -> None:
-    """The whirl's speeds are positive: for a belt along −x they are no evidence."""
-    row = judge(Parameters(belt_speed=-1.0), evidence).sel(claim="F3")
-    assert "No long run was made near this belt speed." in str(row.evidence.item())
-    assert int(row.verdict_here) == Verdict.holds
 
 
 OTHERS = {
@@ -88,8 +83,6 @@ def test_no_evidence_contradicts_its_data(params: Parameters) -> None:
     assert ("so loses contact" if reaches else "so keeps contact") in text["F13"]
     lost = bool((data["simulate/F2d"].event_kind == 0).any())
     assert f"contact is {'lost' if lost else 'kept'} in A1" in text["C3"]
-    near = np.abs(data["whirl"].belt_speed / params.belt_speed - 1).min() <= 0.05
-    assert bool(near) == ("No long run was made" not in text["F3"])
     validity = data["validity_map"]
     black = (validity.separates == 0) & (validity.regime_linear > 0)
     assert f"{int(black.sum())} are unstable by A3" in text["E10"]

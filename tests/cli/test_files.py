@@ -118,7 +118,8 @@ def test_initial_state_is_the_one_given():
 def test_sweep_tells_outcomes_and_where_nan_comes_from(capsys):
     assert run([
         "sweep", "periodic_orbit", "--vary", "y_peak=1.1:3:4", "--vary", "mu=0.1,0.3",
-        "--option", "mode=1", "--alpha1", "0.3pi", "--alpha2", "0.9pi", "--workers", "1",
+        "--option", "mode=1", "--alpha1", "0.3pi", "--alpha2", "0.9pi", "--k3", "0.75",
+        "--workers", "1",
     ]) == 0  # fmt: skip
     out = capsys.readouterr().out
     assert "outcome of 8 runs: converged 4, tongue_end 4" in out

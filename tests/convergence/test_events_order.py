@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from squealpipe.parameters import Parameters
 from squealpipe.solvers.a1.ensemble import run_ensemble
 from squealpipe.solvers.a1.reference import simulate_reference
+from tests.former import FORMER
 
 TOLERANCES = np.array([1e-5, 1e-7, 1e-9, 1e-11, 1e-13])
 
@@ -22,7 +22,7 @@ TOLERANCES = np.array([1e-5, 1e-7, 1e-9, 1e-11, 1e-13])
 )
 def test_error_follows_the_tolerance_through_events(speed, angles, kinds):
     """log error against log tolerance has slope 1, down to round-off."""
-    params = Parameters(belt_speed=speed)
+    params = FORMER.with_(belt_speed=speed)
     alpha = np.multiply(angles, np.pi)
     exact = np.asarray(simulate_reference(params, *alpha, t_end=20.0).state, float)
     runs = [

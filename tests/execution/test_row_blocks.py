@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from squealpipe.execution.row_blocks import join, map_in_blocks, row_blocks, scattered_rows
-from squealpipe.parameters import Parameters
 from squealpipe.store.chunks import Checkpoint
 from squealpipe.tasks.dynamics.runs import validity_map
 from squealpipe.tasks.linear.maps import stability_map
+from tests.former import FORMER
 
 ANGLES = np.linspace(0, np.pi, 21)
 
@@ -21,7 +21,7 @@ def identical(a, b):
 
 @pytest.mark.parametrize("block", [1, 50, 10_000])
 def test_linear_map_in_blocks_is_the_map(block):
-    params = Parameters(mu=0.5)
+    params = FORMER.with_(mu=0.5)
     whole = stability_map(params, ANGLES, ANGLES)
     parts = map_in_blocks(
         lambda rows: stability_map(params, rows, ANGLES), ANGLES, 21, label="map", block=block
@@ -30,7 +30,7 @@ def test_linear_map_in_blocks_is_the_map(block):
 
 
 def test_validity_map_in_blocks_is_the_map(tmp_path):
-    params = Parameters()
+    params = FORMER
     whole = validity_map(params, ANGLES, ANGLES, t_end=30.0)
     checkpoint = Checkpoint(directory=tmp_path)
 
@@ -70,8 +70,8 @@ def test_blocks_follow_from_the_grid():
 
 
 def test_foreign_parts_are_not_joined():
-    a = stability_map(Parameters(), ANGLES[:3], ANGLES)
+    a = stability_map(FORMER, ANGLES[:3], ANGLES)
     with pytest.raises(ValueError, match="not blocks of rows of one map"):
-        join([a, stability_map(Parameters(), ANGLES[3:], ANGLES[:4])])
+        join([a, stability_map(FORMER, ANGLES[3:], ANGLES[:4])])
     with pytest.raises(ValueError, match="no parts"):
         join([])

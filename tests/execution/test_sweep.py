@@ -24,6 +24,7 @@ from squealpipe.store.identity import dataset_id
 from squealpipe.tasks.backbones.backbone import backbone
 from squealpipe.tasks.dynamics.runs import simulate
 from squealpipe.tasks.linear.maps import stability_map
+from tests.former import FORMER
 
 ANGLES = [0.0, 1.0, 2.0]
 
@@ -43,7 +44,7 @@ def test_map_task_gets_swept_names_as_leading_dimensions():
     assert found.growth_rate.dims == ("mu", "k3", "alpha1", "alpha2")
     for mu in (0.0, 0.4):
         for k3 in (0.5, 0.75, 1.0):
-            alone = stability_map(Parameters(mu=mu, k3=k3), ANGLES, [0.6])
+            alone = stability_map(FORMER.with_(mu=mu, k3=k3), ANGLES, [0.6])
             np.testing.assert_array_equal(found.frequency.sel(mu=mu, k3=k3), alone.frequency)
     assert found.mu.attrs["units"] == "1"
     assert found.k3.attrs["units"] == "N m-1"
@@ -58,16 +59,14 @@ def test_processes_give_the_same_bits():
 def test_angles_and_options_can_be_swept_and_ragged_runs_are_filled_up(tmp_path):
     plan = Sweep(
         task="simulate",
-        params=Parameters(),
+        params=FORMER,
         vary={"alpha1": [0.5 * np.pi, 5 * np.pi / 6], "t_end": [20.0]},
         fixed={"alpha2": 5 * np.pi / 6, "times": np.linspace(0, 20, 50)},
     )
     found = load(save(run_sweep(plan), tmp_path / "sweep.nc"))
     assert found.x.dims == ("alpha1", "t_end", "time")
     for k, alpha1 in enumerate(plan.vary["alpha1"]):
-        alone = simulate(
-            Parameters(), alpha1, 5 * np.pi / 6, t_end=20.0, times=np.linspace(0, 20, 50)
-        )
+        alone = simulate(FORMER, alpha1, 5 * np.pi / 6, t_end=20.0, times=np.linspace(0, 20, 50))
         count = int(found.event_count[k, 0])
         assert count == alone.sizes["event"]
         np.testing.assert_array_equal(found.event_time[k, 0, :count], alone.event_time)
@@ -78,13 +77,13 @@ def test_angles_and_options_can_be_swept_and_ragged_runs_are_filled_up(tmp_path)
 def test_backbones_of_both_modes():
     plan = Sweep(
         task="backbone",
-        params=Parameters(),
+        params=FORMER,
         vary={"mode": [1, 2]},
         fixed={"alpha1": 0.3 * np.pi, "alpha2": 0.9 * np.pi, "y_peak_max": 1.5},
     )
     found = run_sweep(plan)
     for mode in (1, 2):
-        alone = backbone(Parameters(), 0.3 * np.pi, 0.9 * np.pi, mode=mode, y_peak_max=1.5)
+        alone = backbone(FORMER, 0.3 * np.pi, 0.9 * np.pi, mode=mode, y_peak_max=1.5)
         one = found.sel(mode=mode).isel(point=slice(int(found.point_count.sel(mode=mode))))
         np.testing.assert_array_equal(one.omega, alone.omega)
 
@@ -163,7 +162,7 @@ def test_bad_parameter_value_is_refused_by_the_parameters():
 
 def test_parameters_may_be_fixed_for_a_sweep():
     found = run_sweep(linear_sweep(fixed={"alpha2": 0.6, "mass": 2.0}))
-    assert found.identical(run_sweep(linear_sweep(params=Parameters(mass=2.0))))
+    assert found.identical(run_sweep(linear_sweep(params=FORMER.with_(mass=2.0))))
 
 
 def test_an_option_with_a_parameters_name_is_the_option():
@@ -234,7 +233,7 @@ SCATTERED = {
 
 @pytest.mark.parametrize("name", SCATTERED)
 def test_parts_joined_are_the_whole_bit_for_bit(name, tmp_path):
-    plan = Sweep(params=Parameters(), **SCATTERED[name])
+    plan = Sweep(params=FORMER, **SCATTERED[name])
     whole = run_sweep(plan)
     cut = longest(plan.vary)
     parts = []

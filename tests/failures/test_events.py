@@ -9,11 +9,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from squealpipe.parameters import Parameters
 from squealpipe.schema import Outcome
 from squealpipe.schema.dynamics.runs import EventFlag, RegimeFlag
 from squealpipe.solvers.a1.ensemble import run_ensemble
 from squealpipe.tasks.dynamics.runs import simulate
+from tests.former import FORMER
 
 IDENTITY = {"alpha1": 0.5 * np.pi, "alpha2": np.pi, "model": "A1-linear-springs"}
 VERTICAL = {"alpha1": 0.5 * np.pi, "alpha2": 0.5 * np.pi, "model": "A1-linear-springs"}
@@ -27,7 +27,7 @@ SEPARATION, CONTACT, STICK, SLIP, REVERSAL = (
 KAPPA, MU, SPEED = 0.75, 0.4, 0.1
 REST = KAPPA / (1 + KAPPA)  # y at rest, and the contact force there
 GRIP = MU * REST  # the largest elastic x-force that friction holds
-FRICTION = Parameters(k3=KAPPA, mu=MU, belt_speed=SPEED)
+FRICTION = FORMER.with_(k3=KAPPA, mu=MU, belt_speed=SPEED)
 
 
 def events(run):
@@ -45,7 +45,7 @@ def test_separation_and_contact(kappa):
     rate, rest = np.sqrt(1 + kappa), kappa / (1 + kappa)
     leaves = np.arccos(-1 / kappa) / rate
     flight = 2 * np.arctan(rest * rate * np.sin(rate * leaves))
-    params = Parameters(k3=kappa, belt_speed=1e6)
+    params = FORMER.with_(k3=kappa, belt_speed=1e6)
     run = simulate(params, t_end=1.5 * (leaves + flight), **IDENTITY)
     assert run.outcome == Outcome.converged
     assert_events(run, [(SEPARATION, leaves), (CONTACT, leaves + flight)])
@@ -97,7 +97,7 @@ def test_negative_belt_speed_mirrors_the_stick():
 
 def test_separation_during_stick():
     """K11 = 0 and no x-force: the mass sticks from start to separation, and again at contact."""
-    params = Parameters(k3=4.0, belt_speed=0.5)
+    params = FORMER.with_(k3=4.0, belt_speed=0.5)
     rate, rest = np.sqrt(6.0), 4.0 / 6.0
     leaves = np.arccos(1 - 1 / rest) / rate
     upward = rest * rate * np.sin(rate * leaves)
@@ -113,7 +113,7 @@ def test_separation_during_stick():
 
 def test_contact_at_exactly_belt_speed_slips_where_springs_pull():
     """ẋ = V at contact, where N = 0 holds nothing: it slips to the side that the springs pull."""
-    params = Parameters(k3=KAPPA, mu=MU, belt_speed=0.0)
+    params = FORMER.with_(k3=KAPPA, mu=MU, belt_speed=0.0)
     fall = np.arccos(1 / 1.5)
     for x in (-0.3, 0.3):
         # ẋ at contact is −x sin t; start so that it is exactly zero there.
@@ -126,7 +126,9 @@ def test_contact_at_exactly_belt_speed_slips_where_springs_pull():
 
 def test_belt_at_rest_holds_the_mass():
     """V = 0 from rest with an x-force below the grip: sticks until the grip has faded."""
-    run = run_ensemble(Parameters(belt_speed=0.0), 1.0, 1.4, t_end=20.0, log_events=4, times=[0.0])
+    run = run_ensemble(
+        FORMER.with_(belt_speed=0.0), 1.0, 1.4, t_end=20.0, log_events=4, times=[0.0]
+    )
     assert run.outcome == Outcome.converged
     assert run.sample_regimes[0] == RegimeFlag.stick
     assert run.event_kinds[0] in {SLIP, SEPARATION}
@@ -134,7 +136,7 @@ def test_belt_at_rest_holds_the_mass():
 
 def test_start_in_the_air():
     fall = np.arccos(1 / 1.5)
-    run = simulate(Parameters(), t_end=2.0, initial_state=(0, 1.5, 0, 0), **IDENTITY)
+    run = simulate(FORMER, t_end=2.0, initial_state=(0, 1.5, 0, 0), **IDENTITY)
     assert run.regime[0] == RegimeFlag.separated
     assert run.normal_force[0] == 0.0
     assert_events(run, [(CONTACT, fall)])
@@ -144,7 +146,7 @@ def test_start_in_the_air():
     ("vy", "regime", "first"), [(0.5, RegimeFlag.separated, CONTACT), (-0.5, 0, SEPARATION)]
 )
 def test_start_exactly_at_the_threshold_moving(vy, regime, first):
-    run = simulate(Parameters(), t_end=6.0, initial_state=(0, 1.0, 0, vy), **IDENTITY)
+    run = simulate(FORMER, t_end=6.0, initial_state=(0, 1.0, 0, vy), **IDENTITY)
     assert run.regime[0] == regime
     assert run.y[0] == 1.0
     assert events(run)[0][0] == first
@@ -153,7 +155,7 @@ def test_start_exactly_at_the_threshold_moving(vy, regime, first):
 
 def test_start_exactly_at_the_threshold_at_rest():
     """The springs pull down there: it is in contact, and comes back to the threshold."""
-    run = simulate(Parameters(k3=KAPPA), t_end=4.0, initial_state=(0, 1.0, 0, 0), **IDENTITY)
+    run = simulate(FORMER.with_(k3=KAPPA), t_end=4.0, initial_state=(0, 1.0, 0, 0), **IDENTITY)
     assert run.regime[0] == RegimeFlag.slip_slower
     # N = 0 is grazed at the top of the free oscillation about y = κ/(1 + κ).
     np.testing.assert_allclose(
@@ -194,7 +196,7 @@ def test_below_the_threshold_by_as_little_there_is_no_event():
 
 def test_no_friction_never_sticks():
     run = run_ensemble(
-        Parameters(mu=0.0, belt_speed=0.2), 0.3, np.linspace(0, np.pi, 40), t_end=50.0
+        FORMER.with_(mu=0.0, belt_speed=0.2), 0.3, np.linspace(0, np.pi, 40), t_end=50.0
     )
     assert (run.outcome == Outcome.converged).all()
     assert (run.sticks == 0).all()
@@ -203,7 +205,7 @@ def test_no_friction_never_sticks():
 
 def test_two_springs_on_one_side_and_a_belt_at_rest():
     """x-force and contact force vanish at one time: separation comes before friction."""
-    params = Parameters(k3=4.0, belt_speed=0.0)
+    params = FORMER.with_(k3=4.0, belt_speed=0.0)
     run = simulate(params, t_end=3.0, **VERTICAL)
     assert run.outcome == Outcome.converged
     assert events(run)[0][0] == SEPARATION
@@ -227,7 +229,7 @@ def test_without_stick_the_sliding_mode_has_no_solution():
 
 
 def test_without_separation_the_contact_spring_pulls():
-    run = simulate(Parameters(k3=3.0), t_end=20.0, **{**IDENTITY, "model": "A1-no-separation"})
+    run = simulate(FORMER.with_(k3=3.0), t_end=20.0, **{**IDENTITY, "model": "A1-no-separation"})
     assert run.normal_force.min() < 0
     assert not (run.event_kind.values == SEPARATION).any()
 
@@ -235,7 +237,7 @@ def test_without_separation_the_contact_spring_pulls():
 @pytest.mark.parametrize("offset", [0.0, 1e-12, 1e-9, 1e-5])
 def test_a_mass_that_meets_a_pivot_says_so(offset):
     """Springs of half the preload's length, straight above: the mass is thrown at their end."""
-    params = Parameters(k3=5.0, length1=0.5, length2=5.0, belt_speed=0.0)
+    params = FORMER.with_(k3=5.0, length1=0.5, length2=5.0, belt_speed=0.0)
     run = run_ensemble(
         params, 0.5 * np.pi, 0.5 * np.pi, t_end=10.0, initial_state=(offset, 0, 0, 0)
     )
@@ -247,7 +249,7 @@ def test_a_mass_that_meets_a_pivot_says_so(offset):
 
 
 def test_start_on_a_pivot():
-    params = Parameters()
+    params = FORMER
     state = (5 * np.cos(0.7), 5 * np.sin(0.7), 0.0, 0.0)
     run = run_ensemble(params, 0.7, 1.0, t_end=10.0, initial_state=state)
     assert run.outcome == Outcome.singular_geometry
@@ -255,13 +257,13 @@ def test_start_on_a_pivot():
 
 
 def test_an_overflow_is_not_silent():
-    run = run_ensemble(Parameters(), 0.7, 1.0, t_end=1.0, initial_state=(0, 0, 1e200, 0))
+    run = run_ensemble(FORMER, 0.7, 1.0, t_end=1.0, initial_state=(0, 0, 1e200, 0))
     assert run.outcome != Outcome.converged
 
 
 def test_an_exact_equilibrium_stays():
     """No derivative bounds the step of a mass at rest."""
-    params = Parameters(mu=0.0, k3=1.0)
+    params = FORMER.with_(mu=0.0, k3=1.0)
     run = simulate(params, t_end=30.0, initial_state=(0.0, 0.5, 0.0, 0.0), **IDENTITY)
     assert run.outcome == Outcome.converged
     np.testing.assert_allclose(run.y, 0.5, atol=1e-15)

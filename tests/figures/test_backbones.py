@@ -4,7 +4,6 @@ import math
 
 import numpy as np
 
-from squealpipe.parameters import Parameters
 from squealpipe.store.provenance import stamp
 from squealpipe.study.figures.backbones import (
     a1_beside_a4,
@@ -20,13 +19,14 @@ from squealpipe.tasks.backbones import a1_beside_a4 as beside_task
 from squealpipe.tasks.backbones import atlas, harmonic_sweeps
 from squealpipe.tasks.backbones.backbone import backbone
 from squealpipe.tasks.backbones.doubling import doubled_branch as follow_doubling
+from tests.former import FORMER
 
 PI = math.pi
 BRANCHES = {"F10 mode 2": (0.5 * PI, PI, 2)}
 
 
 def _branches(alpha1, alpha2, params=None, scene="F10", **limits):
-    params = params or Parameters()
+    params = params or FORMER
     options = {"": {"method": "exact"}, "_hbm": {"method": "hbm", "n_harmonics": 8}}
     return {
         f"backbone/{scene}_mode{mode}{form}": stamp(
@@ -60,7 +60,7 @@ def test_unstable_stretches_are_dotted():
 
 
 def test_what_a4_does_not_cover_is_grey():
-    figure = fig13.draw(_branches(5 / 6, 5 / 6, Parameters(belt_speed=0.2)))
+    figure = fig13.draw(_branches(5 / 6, 5 / 6, FORMER.with_(belt_speed=0.2)))
     labels = figure.axes[0].get_legend_handles_labels()[1]
     assert "mass overtakes the belt" in labels
 
@@ -77,7 +77,7 @@ def test_an_empty_branch_says_why_in_the_picture():
 
 def test_the_other_pictures_are_drawn():
     sweep = harmonic_sweeps.sweep_harmonic_balance(
-        Parameters(),
+        FORMER,
         BRANCHES,
         peaks=(2.0,),
         harmonics=(4, 8),
@@ -86,12 +86,12 @@ def test_the_other_pictures_are_drawn():
         n_harmonics=8,
     )
     assert len(harmonic_convergence.draw(sweep).axes) == 4
-    forms = harmonic_sweeps.compare_harmonic_forms(Parameters(), BRANCHES)
+    forms = harmonic_sweeps.compare_harmonic_forms(FORMER, BRANCHES)
     assert len(harmonic_forms.draw(forms).axes) == 2
-    beside = beside_task.a1_beside_a4(Parameters(), BRANCHES, peak=2.0, length_ratios=(5.0,))
+    beside = beside_task.a1_beside_a4(FORMER, BRANCHES, peak=2.0, length_ratios=(5.0,))
     assert len(a1_beside_a4.draw(beside).axes) == 2
     angles = np.linspace(0, PI, 9)
-    assert len(orbit_atlas.draw(atlas.orbit_atlas(Parameters(), angles, angles)).axes) == 6
+    assert len(orbit_atlas.draw(atlas.orbit_atlas(FORMER, angles, angles)).axes) == 6
 
 
 def test_doubled_branches_are_drawn_at_twice_their_frequency():
@@ -102,7 +102,7 @@ def test_doubled_branches_are_drawn_at_twice_their_frequency():
         backbones |= _branches(0.3, 0.9, scene=name, y_peak_max=peak)
         for number in (1, 2):
             doubled[f"doubled_branch/{name}_{number}"] = follow_doubling(
-                Parameters(), 0.3 * PI, 0.9 * PI, mode=1, doubling=number, y_peak_max=peak
+                FORMER, 0.3 * PI, 0.9 * PI, mode=1, doubling=number, y_peak_max=peak
             )
     first, _, second, _ = coupled_backbones.draw(backbones, doubled).axes
     (inset,) = first.child_axes

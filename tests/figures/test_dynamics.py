@@ -28,6 +28,7 @@ from squealpipe.tasks.dynamics import hammering as hammering_task
 from squealpipe.tasks.dynamics import refinement
 from squealpipe.tasks.dynamics import runs as dynamics
 from squealpipe.tasks.dynamics import whirl as whirl_task
+from tests.former import FORMER
 
 ANGLES = np.linspace(0, np.pi, 31)
 STUDIES = {
@@ -75,7 +76,7 @@ def test_all_are_drawn_for_any_study(params, tmp_path):
 
 
 def test_fig07_tones():
-    validity = dynamics.validity_map(Parameters(), ANGLES, ANGLES, t_end=50.0)
+    validity = dynamics.validity_map(FORMER, ANGLES, ANGLES, t_end=50.0)
     grown = validity.response_growth.copy()
     kept = validity.separates.values == 0
     grown.values[kept] = np.where(np.arange(kept.sum()) % 2, 3.0, 1.0)
@@ -91,7 +92,7 @@ def test_fig07_tones():
 
 
 def test_separated_spells_are_marked_where_the_force_is_zero():
-    run = scene("F2d", Parameters())
+    run = scene("F2d", FORMER)
     figure = fig02.draw(run, run, run, run)
     line = figure.axes[0].get_lines()[0]
     np.testing.assert_array_equal(line.get_ydata(), run.normalized_contact_force)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from squealpipe.parameters import SCENES, Parameters
+from squealpipe.parameters import SCENES
 from squealpipe.study.figures.inference import parameter_inference
 from squealpipe.study.figures.linear import (
     fig06,
@@ -23,9 +23,10 @@ from squealpipe.tasks.inference import inference
 from squealpipe.tasks.linear import boundaries as linear_boundaries
 from squealpipe.tasks.linear import maps as linear
 from squealpipe.tasks.linear import mode_coupling as coupling
+from tests.former import FORMER
 
 ANGLES = np.linspace(0.0, np.pi, 61)
-BASELINE = Parameters()
+BASELINE = FORMER
 
 
 @pytest.fixture(scope="module")

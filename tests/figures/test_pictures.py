@@ -11,7 +11,6 @@ import pytest
 import xarray as xr
 from PIL import Image
 
-from squealpipe.parameters import Parameters
 from squealpipe.study.figures.cli import branch, run
 from squealpipe.study.figures.dynamics.animation import animate
 from squealpipe.study.figures.model import fig01
@@ -21,8 +20,9 @@ from squealpipe.study.figures.parts.style import new_figure, save_figure
 from squealpipe.tasks.dynamics.runs import simulate
 from squealpipe.tasks.dynamics.summary import summarize
 from squealpipe.tasks.linear.maps import stability_map
+from tests.former import FORMER
 
-PARAMS = Parameters()
+PARAMS = FORMER
 compared = pytest.mark.mpl_image_compare(
     baseline_dir="baseline", style="default", tolerance=2, savefig_kwargs={"dpi": 60}
 )

@@ -11,6 +11,7 @@ import pytest
 from squealpipe.laws import contact
 from squealpipe.parameters import Parameters
 from tests import symbols
+from tests.former import FORMER
 
 FORCE = symbols.function(symbols.CONTACT_FORCE)
 ENERGY = symbols.function(symbols.CONTACT_ENERGY)
@@ -26,20 +27,20 @@ def test_force_is_minus_the_slope_of_the_energy(
 
 
 def test_the_belt_pushes_and_never_pulls() -> None:
-    params = Parameters(k3=2.0, preload=0.5)
+    params = FORMER.with_(k3=2.0, preload=0.5)
     y = np.array([-1.0, 0.0, 0.25, 0.5, 0.75])
     np.testing.assert_array_equal(contact.unilateral_force(y, params), [3.0, 1.0, 0.5, 0.0, 0.0])
 
 
 @pytest.mark.parametrize("y", [-1.0, 0.0, 0.99, 1.0, 1.01, 3.0])
 def test_regularized_force_is_the_printed_one(y: float) -> None:
-    params, sigma = Parameters(k3=0.7), 3.0
+    params, sigma = FORMER.with_(k3=0.7), 3.0
     printed = -0.5 * 0.7 * (y - 1.0) * (1.0 + math.tanh(sigma * (1.0 - y)))
     assert contact.regularized_force(y, params, sigma) == pytest.approx(printed, rel=1e-14)
 
 
 def test_regularized_force_tends_to_the_sharp_one_like_one_over_sigma() -> None:
-    params = Parameters()
+    params = FORMER
     errors = []
     for sigma in (1e1, 1e2, 1e3):
         y = 1.0 + np.linspace(-3.0, 3.0, 601) / sigma
@@ -51,7 +52,7 @@ def test_regularized_force_tends_to_the_sharp_one_like_one_over_sigma() -> None:
 @pytest.mark.parametrize("y", [-0.7, 0.0, 0.9, 1.0, 1.2])
 @pytest.mark.parametrize("sigma", [0.5, 4.0, 30.0])
 def test_regularized_stiffness_is_minus_the_slope(y: float, sigma: float) -> None:
-    params = Parameters()
+    params = FORMER
     with mpmath.workdps(40):
         slope = mpmath.diff(lambda u: (1 - u) * (1 + mpmath.tanh(sigma * (1 - u))) * 0.75 / 2, y)
     stiffness = contact.regularized_stiffness(y, params, sigma)
@@ -60,7 +61,7 @@ def test_regularized_stiffness_is_minus_the_slope(y: float, sigma: float) -> Non
 
 @pytest.mark.parametrize("reach", [0.01, 0.5, 1.2, 5.0, 40.0])
 def test_linearized_stiffness_is_the_printed_k3(reach: float) -> None:
-    params = Parameters(k3=0.8, preload=2.0)
+    params = FORMER.with_(k3=0.8, preload=2.0)
     sigma = reach / 2.0
     t = math.tanh(reach)
     printed = 0.5 * 0.8 * (t + reach - reach * t**2 + 1)
@@ -68,6 +69,6 @@ def test_linearized_stiffness_is_the_printed_k3(reach: float) -> None:
 
 
 def test_linearized_stiffness_overshoots_and_then_settles() -> None:
-    params = Parameters(k3=1.0)
+    params = FORMER.with_(k3=1.0)
     ratio = [contact.linearized_contact_stiffness(params, s) for s in (1e-9, 1.2, 20.0)]
     np.testing.assert_allclose(ratio, [0.5, 1.0998, 1.0], atol=1e-4)

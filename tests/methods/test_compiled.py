@@ -16,7 +16,8 @@ PROGRAM = """
 import math
 from squealpipe.parameters import Parameters
 from squealpipe.tasks.backbones.orbit import periodic_orbit
-found = periodic_orbit(Parameters(), math.pi / 2, math.pi, mode=2, y_peak=2.0)
+from tests.former import FORMER
+found = periodic_orbit(FORMER, math.pi / 2, math.pi, mode=2, y_peak=2.0)
 print(repr(float(found.omega)))
 """
 KNOWN = 1.23408516277258

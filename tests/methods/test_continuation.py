@@ -13,9 +13,9 @@ from squealpipe.methods.continuation import (
 from squealpipe.methods.orbits.branch_tracing import COLUMNS
 from squealpipe.methods.orbits.orbits import trace_branch
 from squealpipe.methods.orbits.shooting import MAX_SEGMENTS, rest_conditions
-from squealpipe.parameters import Parameters
 from squealpipe.solvers.a4.orbits import grazing_start
 from squealpipe.solvers.a4.system import scaled_system
+from tests.former import FORMER
 
 
 class Circle:
@@ -93,7 +93,7 @@ def test_settings_that_contradict_each_other_are_named(wrong):
 
 
 def test_the_compiled_trace_follows_the_same_branch():
-    scene = scaled_system(Parameters(), 0.2 * math.pi, 0.7 * math.pi)
+    scene = scaled_system(FORMER, 0.2 * math.pi, 0.7 * math.pi)
     seed = grazing_start(scene, 1)
     control = seed.settings()
     table, _ = trace_branch(scene.system, seed.point, seed.direction, 3.0, control, 0.05)

@@ -6,7 +6,7 @@ import pytest
 from squealpipe.laws.springs import elastic_force, geometry
 from squealpipe.methods.time_stepping import jitted, step_through
 from squealpipe.models.a1_automaton import PlainParameters
-from squealpipe.parameters import Parameters
+from tests.former import FORMER
 
 
 def oscillator(x, y, data):
@@ -40,7 +40,7 @@ def test_stick_is_exact_until_the_bound_is_met() -> None:
 
 
 def test_compiled_laws_are_the_laws() -> None:
-    params = Parameters(length1=3.0)
+    params = FORMER.with_(length1=3.0)
     record = PlainParameters(**params.as_dict())
     g = geometry(0.7, 2.1)
     expected = elastic_force(0.3, -0.4, params, g)

@@ -9,6 +9,7 @@ from squealpipe.laws.springs import elastic_force, geometry
 from squealpipe.models import a1
 from squealpipe.parameters import Parameters
 from tests import symbols
+from tests.former import FORMER
 
 DRAWS = symbols.draws(30)
 SPRING_FORCE = symbols.function(symbols.SPRING_FORCE)
@@ -88,7 +89,7 @@ def test_energy_changes_by_the_power_of_friction(
 
 def test_mirror_images_move_alike() -> None:
     """Equal springs: (α1, α2, V) and (π − α2, π − α1, V) are one system, and −x gives (α2, α1)."""
-    params, state = Parameters(), {"x": 0.7, "y": -0.4}
+    params, state = FORMER, {"x": 0.7, "y": -0.4}
     here = acceleration(params, {**state, "alpha1": 0.3, "alpha2": 1.9}, contact=1.0, direction=1.0)
     same = acceleration(
         params,

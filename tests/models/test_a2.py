@@ -12,6 +12,7 @@ from squealpipe.laws.springs import Stiffness, geometry, linear_stiffness
 from squealpipe.models import a2
 from squealpipe.parameters import Parameters
 from tests import symbols
+from tests.former import FORMER
 
 REGULARIZED = (
     symbols.P.k3
@@ -89,11 +90,11 @@ def test_both_readings_of_eq_11(
 )
 def test_equal_springs_decouple_on_three_lines(over_pi1: float, over_pi2: float) -> None:
     """α1 = α2 and α1 + α2 = π/2, 3π/2, where round-off must not decide Eq. (11)."""
-    stiffness = linear_stiffness(Parameters(), geometry(over_pi1 * math.pi, over_pi2 * math.pi))
+    stiffness = linear_stiffness(FORMER, geometry(over_pi1 * math.pi, over_pi2 * math.pi))
     assert bool(a2.coupling_is_zero(stiffness))
     assert bool(a2.possible_as_printed(stiffness, 10.0))
 
 
 def test_no_state_where_nothing_balances_friction() -> None:
-    stiffness = linear_stiffness(Parameters(), geometry(math.pi / 2, math.pi / 2))
+    stiffness = linear_stiffness(FORMER, geometry(math.pi / 2, math.pi / 2))
     assert np.isnan(a2.reaction_force(stiffness, 0.3, 0.75))

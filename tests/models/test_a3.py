@@ -12,6 +12,7 @@ from squealpipe.models import a2, a3
 from squealpipe.models.a4 import spectrum
 from squealpipe.parameters import Parameters
 from tests import symbols
+from tests.former import FORMER
 
 DRAWS = symbols.draws(40)
 
@@ -85,7 +86,7 @@ def test_eigenvalues_are_those_of_the_first_order_system(
 
 
 def test_regimes_are_told_apart() -> None:
-    params = Parameters()
+    params = FORMER
     cells = {
         (0.15, 0.23): a3.LinearRegime.flutter,
         (0.45, 0.55): a3.LinearRegime.divergence,

@@ -14,6 +14,7 @@ from squealpipe.schema import Outcome
 from squealpipe.solvers.a1.ensemble import run_ensemble
 from squealpipe.tasks.dynamics.runs import simulate
 from tests import symbols
+from tests.former import FORMER
 
 DRAWS = symbols.draws(30)
 LINEAR_FORCE = symbols.function(symbols.LINEAR_FORCE)
@@ -67,7 +68,7 @@ def test_frequencies_are_eigenvalues_of_the_stiffness(
 @pytest.mark.parametrize("total", np.linspace(0.05, 1.95, 9))
 def test_separated_frequencies_of_equal_springs(total: float) -> None:
     """ω² = (k/m)(1 ∓ |cos(α1 + α2)|), whatever the difference of the angles."""
-    params = Parameters(mass=2.0, k1=3.0, k2=3.0)
+    params = FORMER.with_(mass=2.0, k1=3.0, k2=3.0)
     for first in (0.1, 0.9, 2.5):
         g = geometry(first, total * np.pi - first)
         invariants = a4.spectrum(
@@ -130,7 +131,7 @@ def test_a_definite_first_integral_bounds_motion_and_force_across_contact_loss()
     rng = np.random.default_rng(8)
     size = 400
     alpha1, alpha2 = rng.uniform(0.0, np.pi, (2, size))
-    params = Parameters(k2=1.6, mu=0.4, mass=1.3, preload=0.7)
+    params = FORMER.with_(k2=1.6, mu=0.4, mass=1.3, preload=0.7)
     reach = a4.reach_from_rest(
         linear_stiffness(params, geometry(alpha1, alpha2)), params.mu, params
     )
@@ -148,7 +149,7 @@ def test_a_definite_first_integral_bounds_motion_and_force_across_contact_loss()
 def test_lengths_that_a4_does_not_know_change_nothing():
     """Also where their squares vanish, which only A1's distance from its pivots would feel."""
     runs = [
-        simulate(Parameters(length2=length), 1.0, 2.0, t_end=20.0, model="A4")
+        simulate(FORMER.with_(length2=length), 1.0, 2.0, t_end=20.0, model="A4")
         for length in (5.0, 1e-170)
     ]
     assert [int(run.outcome) for run in runs] == [Outcome.converged] * 2

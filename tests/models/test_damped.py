@@ -13,6 +13,7 @@ from squealpipe.models.damped import critical_friction, damped_system, eigenvalu
 from squealpipe.parameters import LAW_NAMES, Parameters
 from squealpipe.tasks.linear.critical import critical_damping_map, critical_friction_map
 from squealpipe.tasks.linear.maps import stability_map
+from tests.former import FORMER
 
 RNG = np.random.default_rng(41)
 
@@ -20,7 +21,7 @@ RNG = np.random.default_rng(41)
 def random_parameters() -> Parameters:
     """Unequal springs, both belt directions, any law, damping from none to overcritical."""
     mu = RNG.uniform(0, 1)
-    return Parameters(
+    return FORMER.with_(
         mass=RNG.uniform(0.2, 5),
         k1=RNG.uniform(0.2, 5),
         k2=RNG.uniform(0.2, 5),
@@ -110,7 +111,7 @@ def test_the_map_is_that_of_the_eigenvalues_and_mirrors_with_the_belt() -> None:
 
 
 def test_vanishing_damping_is_the_closed_form() -> None:
-    params = Parameters(k2=1.4, belt_speed=-0.7)
+    params = FORMER.with_(k2=1.4, belt_speed=-0.7)
     angles = np.linspace(0.1, 3.0, 12)
     plain = stability_map(params, angles, angles)
     slight = stability_map(params.with_(damping1=1e-10, damping2=1e-10), angles, angles)
@@ -169,7 +170,7 @@ def test_hoffmann_and_gaul_damping_destabilizes() -> None:
     springs = {"k1": 2 / 3 * (2 - math.sqrt(3)), "k2": 2 / 3 * (2 + math.sqrt(3)), "k3": 4 / 3}
     angle = np.array([math.pi / 6])
     for ratio in (0.01, 0.1, 0.4, 1.0, 3.0, 20.0):
-        params = Parameters(**springs, damping1=ratio, damping2=1.0)
+        params = FORMER.with_(**springs, damping1=ratio, damping2=1.0)
         found = critical_friction_map(params, angle, angle)
         assert found.critical_mu_undamped.item() == pytest.approx(0.75, abs=1e-12)
         vanishing = found.critical_mu_vanishing.item()
@@ -200,7 +201,7 @@ def test_hoffmann_and_gaul_damping_destabilizes() -> None:
 
 def test_the_map_over_dashpots_is_that_over_the_angles_cell_by_cell() -> None:
     """Unequal springs, a belt against x, and stability just below and above by eigenvalues."""
-    params = Parameters(mass=1.7, k1=2.0, k2=0.6, k3=1.1, belt_speed=-0.4, preload=0.5)
+    params = FORMER.with_(mass=1.7, k1=2.0, k2=0.6, k3=1.1, belt_speed=-0.4, preload=0.5)
     angles, c1, c2 = (2.1, 2.6), np.array([0.0, 0.03, 0.4]), np.array([0.0, 0.2])
     found = critical_damping_map(params, *angles, c1, c2)
     for i, first in enumerate(c1):
@@ -219,7 +220,7 @@ def test_the_map_over_dashpots_is_that_over_the_angles_cell_by_cell() -> None:
 def test_round_off_of_the_coupling_gives_no_critical_friction() -> None:
     """K12 = 0 along α1 = α2 with equal springs: without dashpots no friction destabilizes."""
     angles = np.linspace(0.1, 3.0, 30)
-    found = critical_friction_map(Parameters(), angles, angles)
+    found = critical_friction_map(FORMER, angles, angles)
     same = np.diagonal(found.critical_mu_undamped)
     assert np.isinf(same).all()
 
@@ -229,11 +230,11 @@ def test_round_off_of_the_dashpots_coupling_gives_no_critical_friction(springs) 
     """C12 = K12 = 0 for springs along the axes, and wherever C is proportional to such a K."""
     angles = np.linspace(0.0, np.pi, 61)
     unlike = critical_friction_map(
-        Parameters(damping1=0.03, damping2=0.01, **springs), angles, angles
+        FORMER.with_(damping1=0.03, damping2=0.01, **springs), angles, angles
     )
     assert unlike.critical_mu.where(np.isfinite(unlike.critical_mu)).max() < 1e6
     assert np.isinf(unlike.critical_mu.values[::30, ::30]).sum() >= 5
-    params = Parameters(**springs)
+    params = FORMER.with_(**springs)
     alike = params.with_(damping1=0.02 * params.k1, damping2=0.02 * params.k2)
     found = critical_friction_map(alike, angles, angles)
     free = np.isinf(found.critical_mu_undamped)
@@ -285,7 +286,7 @@ def test_critical_friction_where_a_mode_moves_hardly_a_dashpot(angles, dashpots,
     """Round-off once gave 0, which says unstable at any friction, or a few digits."""
     springs = {"k2": 2.3, "k3": 0.6} if max(dashpots) < 1 else {"k2": 0.2, "k3": 0.18}
     damping1, damping2 = dashpots
-    params = Parameters(damping1=damping1, damping2=damping2, belt_speed=speed, **springs)
+    params = FORMER.with_(damping1=damping1, damping2=damping2, belt_speed=speed, **springs)
     found = float(critical_friction(params, *angles)[0])
     assert found == pytest.approx(_onset_by_bisection(params, *angles), rel=1e-6)
 
@@ -301,13 +302,13 @@ def test_critical_friction_where_a_mode_moves_hardly_a_dashpot(angles, dashpots,
 def test_the_map_over_dashpots_refuses_what_is_no_dashpot(change, named) -> None:
     given = {"alpha1": 1.0, "alpha2": 2.0, "damping1": [0.1], "damping2": [0.1]} | change
     with pytest.raises(ValueError, match=named):
-        critical_damping_map(Parameters(), **given)
+        critical_damping_map(FORMER, **given)
 
 
 def test_critical_friction_is_of_coulombs_law() -> None:
     with pytest.raises(ValueError, match=r"friction_law = 'exponential'.*use stability_map"):
         critical_friction_map(
-            Parameters(friction_law="exponential", mu_static=0.5, belt_speed=1.0), [1.0], [2.0]
+            FORMER.with_(friction_law="exponential", mu_static=0.5, belt_speed=1.0), [1.0], [2.0]
         )
 
 

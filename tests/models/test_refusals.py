@@ -12,6 +12,7 @@ from squealpipe.parameters import Parameters
 from squealpipe.solvers.a1.ensemble import run_ensemble
 from squealpipe.tasks.dynamics.assumptions import linear_pull_map
 from squealpipe.tasks.inference.inference import infer_parameters
+from tests.former import FORMER
 
 CHANGES = [
     {"damping1": 0.1},
@@ -33,7 +34,7 @@ LEVELS: dict[str, Callable[[Parameters], object]] = {
 def test_a4_refuses(change: dict[str, object], level: str) -> None:
     name, value = next(iter(change.items()))
     with pytest.raises(ValueError, match=rf"{name} = {value!r}.*A4 cannot carry.*use model A1"):
-        LEVELS[level](Parameters(**change))
+        LEVELS[level](FORMER.with_(**change))
 
 
 def test_a4_refuses_runs_of_an_ensemble() -> None:
@@ -42,17 +43,19 @@ def test_a4_refuses_runs_of_an_ensemble() -> None:
 
 
 def test_a4_takes_what_changes_nothing() -> None:
-    plain = simulate(Parameters(), 1.0, 2.0, t_end=5.0, model="A4")
-    same = simulate(Parameters(mu_static=0.3, friction_speed=2.0), 1.0, 2.0, t_end=5.0, model="A4")
+    plain = simulate(FORMER, 1.0, 2.0, t_end=5.0, model="A4")
+    same = simulate(
+        FORMER.with_(mu_static=0.3, friction_speed=2.0), 1.0, 2.0, t_end=5.0, model="A4"
+    )
     np.testing.assert_array_equal(plain.x, same.x)
 
 
 def test_inference_is_of_the_papers_friction() -> None:
     with pytest.raises(ValueError, match=r"damping1 = 0\.1: infer_parameters cannot carry"):
-        infer_parameters(Parameters(damping1=0.1), samples=16)
+        infer_parameters(FORMER.with_(damping1=0.1), samples=16)
 
 
 def test_the_linear_motion_of_the_paper_has_neither_damping_nor_another_law() -> None:
     for change in CHANGES:
         with pytest.raises(ValueError, match=r"linear_pull_map cannot carry"):
-            linear_pull_map(Parameters(**change), [1.0], [2.0])
+            linear_pull_map(FORMER.with_(**change), [1.0], [2.0])

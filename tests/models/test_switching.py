@@ -24,11 +24,11 @@ from squealpipe.models.switching import (
     start,
     switch,
 )
-from squealpipe.parameters import Parameters
+from tests.former import FORMER
 
 # K is the identity: the elastic force is −(x, y).
 G = Geometry(0.0, 1.0, -1.0, 0.0)
-PARAMS = Parameters(k3=1.0, mu=0.5, belt_speed=2.0)
+PARAMS = FORMER.with_(k3=1.0, mu=0.5, belt_speed=2.0)
 P = ScaledParameters.of(PARAMS)
 RULES = VARIANT_RULES["A1-linear-springs"]
 

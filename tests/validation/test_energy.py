@@ -12,9 +12,10 @@ from squealpipe.laws.contact import contact_force
 from squealpipe.laws.dashpots import damping_force
 from squealpipe.laws.springs import geometry
 from squealpipe.models.a1 import Regime, friction_power, mechanical_energy, suspension_force
-from squealpipe.parameters import LAW_NAMES, Parameters
+from squealpipe.parameters import LAW_NAMES
 from squealpipe.schema import Outcome
 from squealpipe.solvers.a1.ensemble import run_ensemble
+from tests.former import FORMER
 
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(12)
 LOGGED = 300
@@ -175,7 +176,7 @@ def test_random_runs_end_truthfully(count, seed):
     assert np.mean(run.outcome == Outcome.converged) >= 0.98
     singular = np.flatnonzero(run.outcome == Outcome.singular_geometry)
     for job in singular:
-        params = Parameters(**{name: values[job] for name, values in parameters.items()})
+        params = FORMER.with_(**{name: values[job] for name, values in parameters.items()})
         assert distance_to_pivot(run, job, params, angles[:, job]) < 0.02
 
 

@@ -21,6 +21,7 @@ from squealpipe.parameters import Parameters
 from squealpipe.schema import Outcome
 from squealpipe.solvers.a1.ensemble import run_ensemble
 from squealpipe.tasks.linear.maps import stability_map
+from tests.former import FORMER
 
 STEADY = 0.25
 """y at which spring 1 of stiffness 4 balances N = 1."""
@@ -28,7 +29,7 @@ STEADY = 0.25
 
 def oscillator(length: float, belt_speed: float, **friction: object) -> Parameters:
     """The oscillator's limit: N = 1 to 1/length, k = 1 along the belt."""
-    return Parameters(
+    return FORMER.with_(
         k1=4.0, k2=1.0, k3=1.0 / length, preload=length, length1=length, length2=length,
         belt_speed=belt_speed, **friction,
     )  # fmt: skip

@@ -5,13 +5,14 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from squealpipe.parameters import SCENES, Parameters
+from squealpipe.parameters import SCENES
 from squealpipe.schema import Outcome
 from squealpipe.solvers.a1.ensemble import run_ensemble
 from squealpipe.tasks.dynamics.runs import simulate, validity_map
 from squealpipe.tasks.dynamics.whirl import transient_lifetimes, whirl_sizes
+from tests.former import FORMER
 
-BASELINE = Parameters()
+BASELINE = FORMER
 
 
 def _map(points, **options):

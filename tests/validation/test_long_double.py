@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from squealpipe.parameters import Parameters
 from squealpipe.solvers.a1.ensemble import run_ensemble
 from squealpipe.solvers.a1.peers import simulate_scipy
 from squealpipe.solvers.a1.reference import simulate_reference
+from tests.former import FORMER
 
 T_END = 50.0
 
@@ -16,7 +16,7 @@ T_END = 50.0
 @pytest.mark.parametrize(("speed", "seed"), [(100.0, 1), (0.3, 2)])
 def test_states_events_and_first_separations(speed, seed):
     """Random angles, t = 50: state ≤ 1e-9 outside chaos, first separation ≤ 1e-11."""
-    params = Parameters(belt_speed=speed)
+    params = FORMER.with_(belt_speed=speed)
     alpha1, alpha2 = np.random.default_rng(seed).uniform(0, np.pi, (2, 40))
     run = run_ensemble(params, alpha1, alpha2, t_end=T_END, tangent=True, log_events=100)
     total = run.separations + run.contacts + run.sticks + run.slips + run.reversals
@@ -33,7 +33,7 @@ def test_states_events_and_first_separations(speed, seed):
 
 @pytest.mark.parametrize("speed", [100.0, 0.3])
 def test_scipy_agrees(speed):
-    params = Parameters(belt_speed=speed)
+    params = FORMER.with_(belt_speed=speed)
     for alpha1, alpha2 in np.random.default_rng(4).uniform(0, np.pi, (4, 2)):
         peer = simulate_scipy(params, alpha1, alpha2, t_end=20.0, tol=1e-11)
         run = run_ensemble(params, alpha1, alpha2, t_end=20.0, log_events=60)

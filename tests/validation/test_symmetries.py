@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from squealpipe.parameters import Parameters
 from squealpipe.solvers.a1.ensemble import run_ensemble
 from squealpipe.tasks.backbones.orbit import periodic_orbit
 from squealpipe.tasks.linear.maps import natural_frequencies, quasi_static_map, stability_map
+from tests.former import FORMER
 
 RNG = np.random.default_rng(5)
 ALPHA1, ALPHA2 = RNG.uniform(0, np.pi, (2, 60))
@@ -31,7 +31,7 @@ def assert_mirrored(first, second, signs):
 @pytest.mark.parametrize("model", MODELS)
 def test_equal_springs_can_be_exchanged(model, speed):
     """(α1, α2) and (π − α2, π − α1) are the same system."""
-    params = Parameters(belt_speed=speed)
+    params = FORMER.with_(belt_speed=speed)
     first = run(params, ALPHA1, ALPHA2, model)
     assert_mirrored(first, run(params, np.pi - ALPHA2, np.pi - ALPHA1, model), [1, 1, 1, 1])
 
@@ -40,16 +40,16 @@ def test_equal_springs_can_be_exchanged(model, speed):
 @pytest.mark.parametrize("model", MODELS)
 def test_mirror_image_runs_on_a_reversed_belt(model, speed):
     """x → −x gives (α2, α1, −V) for equal springs, and (π − α1, π − α2, −V) for any."""
-    first = run(Parameters(belt_speed=speed), ALPHA1, ALPHA2, model)
-    reversed_belt = Parameters(belt_speed=-speed)
+    first = run(FORMER.with_(belt_speed=speed), ALPHA1, ALPHA2, model)
+    reversed_belt = FORMER.with_(belt_speed=-speed)
     mirrored = [-1, 1, -1, 1]
     assert_mirrored(first, run(reversed_belt, ALPHA2, ALPHA1, model), mirrored)
     assert_mirrored(first, run(reversed_belt, np.pi - ALPHA1, np.pi - ALPHA2, model), mirrored)
 
 
 def test_swapping_the_angles_on_one_belt_is_no_symmetry():
-    first = run(Parameters(), ALPHA1, ALPHA2)
-    second = run(Parameters(), ALPHA2, ALPHA1)
+    first = run(FORMER, ALPHA1, ALPHA2)
+    second = run(FORMER, ALPHA2, ALPHA1)
     assert np.abs(first.samples - second.samples).max() > 0.1
 
 
@@ -57,9 +57,9 @@ def test_swapping_the_angles_on_one_belt_is_no_symmetry():
 def test_scales_drop_out(model):
     """Equal dimensionless groups give equal runs in units of √(m/k1) and l_pre."""
     mass, stiffness, length = 3.7e-3, 8.1e5, 2.3e-5
-    base = Parameters(belt_speed=0.3)
+    base = FORMER.with_(belt_speed=0.3)
     unit = np.sqrt(mass / stiffness)
-    scaled = Parameters(
+    scaled = FORMER.with_(
         mass=mass,
         k1=stiffness,
         k2=stiffness,
@@ -86,8 +86,8 @@ def test_scales_drop_out(model):
 
 
 def test_powers_of_two_scale_to_the_bit():
-    first = run(Parameters(belt_speed=0.5), ALPHA1, ALPHA2)
-    scaled = Parameters(
+    first = run(FORMER.with_(belt_speed=0.5), ALPHA1, ALPHA2)
+    scaled = FORMER.with_(
         mass=4.0, k1=16.0, k2=16.0, k3=12.0, belt_speed=2.0, preload=2.0, length1=10.0, length2=10.0
     )
     second = run_ensemble(scaled, ALPHA1, ALPHA2, t_end=6.0, times=TIMES / 2, log_events=30)
@@ -97,7 +97,7 @@ def test_powers_of_two_scale_to_the_bit():
 def test_linear_maps_mirror_with_the_belt():
     # No special angles: there a unit of round-off decides.
     angles = np.sort(RNG.uniform(0.0, np.pi, 13))
-    params = Parameters(k2=1.7, belt_speed=2.0)
+    params = FORMER.with_(k2=1.7, belt_speed=2.0)
     mirrored = params.with_(belt_speed=-2.0)
     for make in (stability_map, quasi_static_map, natural_frequencies):
         first = make(params, angles, angles)
@@ -112,8 +112,8 @@ def test_linear_maps_mirror_with_the_belt():
 
 @pytest.mark.parametrize("mode", [1, 2])
 def test_orbits_mirror_with_the_belt(mode):
-    first = periodic_orbit(Parameters(), 0.3 * np.pi, 0.9 * np.pi, mode=mode, y_peak=1.5)
-    reversed_belt = Parameters(belt_speed=-100.0)
+    first = periodic_orbit(FORMER, 0.3 * np.pi, 0.9 * np.pi, mode=mode, y_peak=1.5)
+    reversed_belt = FORMER.with_(belt_speed=-100.0)
     second = periodic_orbit(reversed_belt, 0.7 * np.pi, 0.1 * np.pi, mode=mode, y_peak=1.5)
     assert float(second.omega) == pytest.approx(float(first.omega), rel=1e-12)
     assert int(second.sliding_assumption) == int(first.sliding_assumption)

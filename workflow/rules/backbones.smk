@@ -18,6 +18,7 @@ rule trace_backbones:
             "backbones.y_peak_max",
             "backbones.x_amplitude_max",
             "backbones.n_harmonics",
+            read_as=READING,
         ),
     priority: LONG
     script:
@@ -30,7 +31,9 @@ rule follow_doublings:
     output:
         **{name: data(f"doubled_branch/{name}") for name in DOUBLED},
     params:
-        part=part("parameters", "backbones.coupled", "backbones.y_peak_max"),
+        part=part(
+            "parameters", "backbones.coupled", "backbones.y_peak_max", read_as=READING
+        ),
     script:
         "../scripts/backbones/follow_doublings.py"
 
@@ -43,7 +46,11 @@ rule sweep_harmonic_balance:
         forms=data("harmonic_forms"),
     params:
         part=part(
-            "parameters", "backbones.coupled", "backbones.n_harmonics", "backbones.sweep"
+            "parameters",
+            "backbones.coupled",
+            "backbones.n_harmonics",
+            "backbones.sweep",
+            read_as=READING,
         ),
     script:
         "../scripts/backbones/sweep_harmonic_balance.py"
@@ -68,7 +75,9 @@ rule map_orbits:
     output:
         data("orbit_atlas"),
     params:
-        part=part("parameters", "backbones.atlas_points", "backbones.atlas_peak"),
+        part=part(
+            "parameters", "backbones.atlas_points", "backbones.atlas_peak", read_as=READING
+        ),
     threads: cores_for(STUDY.backbones.atlas_points**2, enough=4000)
     priority: LONG
     script:

@@ -6,6 +6,7 @@ from pathlib import Path
 
 from squealpipe.models.refusals import without_extensions
 from squealpipe.parameters import Parameters, parameters_of
+from squealpipe.reading import READINGS
 from squealpipe.rerun.sources import closure
 
 # Our matrices are small: several threads of linear algebra in a job only wait for one another,
@@ -14,6 +15,12 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 ROOT = Path(workflow.basedir)
 TARGETS = []
+READING = STUDY.reading if STUDY.paper else "along_plus_x"  # a study of one's own: as given
+CORRECTED = READINGS[READING].corrected
+# what the paper shows is computed in the study's reading, and beside it in the corrected physics
+# where that differs: folder of datasets → reading
+SHOWN = {"": READING} | ({"corrected/": CORRECTED} if CORRECTED != READING else {})
+BEYOND = [*SHOWN][-1]  # folder of the corrected physics
 NO_RESULT = {"progress.py", "sources.py", "stale.py"}  # they watch jobs: no result depends on them
 
 
@@ -46,9 +53,15 @@ def with_imports(paths):
     return [from_root(path) for path in found if path.name not in NO_RESULT]
 
 
-def part(*paths):
-    """Canonical slice of the study, the only configuration that a script sees."""
-    return STUDY.slice(*paths)
+def part(*paths, read_as=None):
+    """Canonical slice of the study, the only configuration that a script sees.
+
+    ``read_as`` is the reading whose belt the parameters get: that of the corrected physics, if
+    none is given.
+    """
+    given = STUDY.slice(*paths)
+    return given | {"read_as": read_as or CORRECTED} if "parameters" in given else given
+
 
 
 def all_cores_for(size, enough):
@@ -69,7 +82,7 @@ def cores_for(size, enough):
 FIRST, LONG = 20, 5
 
 
-_given = parameters_of(part("parameters"))
+_given = parameters_of(STUDY.slice("parameters"))
 PAPERS_FRICTION = without_extensions(_given) is _given
 """Whether the levels that carry neither dashpots nor other laws of friction can be part of it."""
 

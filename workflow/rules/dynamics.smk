@@ -5,34 +5,43 @@ from squealpipe.parameters import SCENES
 IN_TIME = [scene for scene in SCENES.values() if scene.figure <= 5]
 
 
-rule simulate_scenes:
-    input:
-        sources=sources("dynamics/simulate_scenes"),
-    output:
-        **{scene.name: data(f"simulate/{scene.name}") for scene in IN_TIME},
-    params:
-        part=part("parameters", "dynamics.tol"),
-    script:
-        "../scripts/dynamics/simulate_scenes.py"
+for folder, reading in SHOWN.items():
 
+    rule:
+        name:
+            f"simulate_{folder.replace('/', '_')}scenes"
+        input:
+            sources=sources("dynamics/simulate_scenes"),
+        output:
+            **{scene.name: data(f"{folder}simulate/{scene.name}") for scene in IN_TIME},
+            **{name: data(f"{folder}simulate/{name}") for name in ("F3_long", "F4_long", "F2a_printed")},
+        params:
+            part=part("parameters", "dynamics.tol", read_as=reading),
+        script:
+            "../scripts/dynamics/simulate_scenes.py"
 
-VALIDITY = part(
-    "parameters", "dynamics.tol", "dynamics.validity_horizon", "dynamics.validity_points"
-)
+    validity = part(
+        "parameters",
+        "dynamics.tol",
+        "dynamics.validity_horizon",
+        "dynamics.validity_points",
+        read_as=reading,
+    )
 
-
-rule map_validity:
-    input:
-        sources=sources("dynamics/map_validity"),
-    output:
-        map_output("validity_map", VALIDITY),
-    log:
-        map_log("validity_map"),
-    params:
-        part=VALIDITY,
-    threads: cores_for(STUDY.dynamics.validity_points**2, enough=10_000)
-    script:
-        "../scripts/dynamics/map_validity.py"
+    rule:
+        name:
+            f"map_{folder.replace('/', '_')}validity"
+        input:
+            sources=sources("dynamics/map_validity"),
+        output:
+            map_output(f"{folder}validity_map", validity),
+        log:
+            map_log(f"{folder}validity_map"),
+        params:
+            part=validity,
+        threads: cores_for(STUDY.dynamics.validity_points**2, enough=10_000)
+        script:
+            "../scripts/dynamics/map_validity.py"
 
 
 HAMMERING = part(
@@ -68,6 +77,7 @@ rule refine_validity:
             "dynamics.refined_points",
             "dynamics.refined_coarse",
             "dynamics.uniform_points",
+            read_as=READING,
         ),
     threads: cores_for(STUDY.dynamics.refined_points**2, enough=1_000_000)
     script:

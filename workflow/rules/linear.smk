@@ -1,22 +1,24 @@
 """Linear maps, natural frequencies, and the validation by a published model."""
 
-PAPERS_OWN = {
-    "frequencies": data("natural_frequencies"),
-    "boundaries": data("stability_boundaries"),
-} if PAPERS_FRICTION else {}
+for folder, reading in SHOWN.items():
 
-
-rule map_linear:
-    input:
-        sources=sources("linear/map_linear"),
-    output:
-        quasi_static=data("quasi_static_map"),
-        stability=data("stability_map"),
-        **PAPERS_OWN,
-    params:
-        part=part("parameters", "linear"),
-    script:
-        "../scripts/linear/map_linear.py"
+    rule:
+        name:
+            f"map_{folder.replace('/', '_')}linear"
+        input:
+            sources=sources("linear/map_linear"),
+        output:
+            quasi_static=data(f"{folder}quasi_static_map"),
+            stability=data(f"{folder}stability_map"),
+            **{
+                name: data(f"{folder}{name}")
+                for name in ("natural_frequencies", "stability_boundaries", "linear_pull")
+                if PAPERS_FRICTION
+            },
+        params:
+            part=part("parameters", "linear.points", read_as=reading),
+        script:
+            "../scripts/linear/map_linear.py"
 
 
 rule map_critical_friction:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from squealpipe.study.claims.checks.misprints import REVERSED
+from squealpipe.study.claims.checks.misprints import PRINTED
 
 READ = (
     "assumptions",
@@ -15,9 +15,8 @@ READ = (
     "stability_map",
     "transient",
     "validity_map",
-    "whirl",
     *(f"simulate/{name}" for name in ("F2a", "F2b", "F2c", "F2d", "F3", "F4", "F5a", "F5b")),
-    f"simulate/{REVERSED}",
+    *(f"simulate/{name}" for name in ("F3_long", "F4_long", PRINTED)),
     *(f"backbone/{name}_mode{mode}" for name in ("F10", "F11", "F12", "F13") for mode in (1, 2)),
 )
-"""Datasets that the checks read."""
+"""Datasets that the checks read; those of the corrected physics are in a folder of their own."""

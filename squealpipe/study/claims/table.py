@@ -14,9 +14,18 @@ from squealpipe.schema.claims import Basis, Origin, Verdict
 from squealpipe.store import load
 from squealpipe.study.claims.evidence import passes
 
-TEXT = ("statement", "section", "check", "relation", "evidence", "dataset", "figure")
-VERDICTS = ("verdict", "verdict_here", "recorded")
-NUMBERS = ("value", "threshold", "margin", "feasible_share")
+TEXT = (
+    "statement",
+    "section",
+    "check",
+    "relation",
+    "evidence",
+    "corrected_evidence",
+    "dataset",
+    "figure",
+)
+VERDICTS = ("verdict", "corrected_verdict", "verdict_here", "recorded")
+NUMBERS = ("value", "corrected_value", "threshold", "margin", "feasible_share")
 INTERVAL = ("feasible_share_low", "feasible_share_high")
 FLAGS = {"basis": Basis, "origin": Origin}
 
@@ -37,6 +46,7 @@ def rows(claims: xr.Dataset) -> list[dict[str, Any]]:
                 **{key: str(row[key].item()) for key in TEXT},
                 **{key: _number(row[key].item()) for key in NUMBERS},
                 **verdicts,
+                "changes": verdicts["corrected_verdict"] != verdicts["verdict"],
                 "as_recorded": verdicts["verdict_here"] == verdicts["recorded"],
                 "unmet": _fails_by_a_further_condition(row),
                 **_standing(row),

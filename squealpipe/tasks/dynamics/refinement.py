@@ -15,6 +15,7 @@ from squealpipe.schema.dynamics.runs import REFINED_VALIDITY_MAP, REFINEMENT_CHE
 from squealpipe.schema.inference import wilson_interval
 from squealpipe.schema.origin import recorded
 from squealpipe.solvers.a1.ensemble import run_ensemble
+from squealpipe.solvers.a1.jobs import Model
 from squealpipe.validation import Natural, Positive, Tolerance, Workers
 
 SUSPECT_SHARE = 0.1
@@ -24,13 +25,14 @@ SAMPLE, SEED = 4000, 2021
 EIGHT_NEIGHBOURS = np.ones((3, 3))
 
 
-@recorded(model="A1", method="Taylor series with located events on an adaptive grid")
+@recorded(method="Taylor series with located events on an adaptive grid")
 def refine_validity_map(
     params: Parameters,
     *,
     resolution: Natural,
     coarse: Natural,
     t_end: Positive | None = None,
+    model: Model = "A1",
     tol: Tolerance = 1e-12,
     workers: Workers = None,
 ) -> xr.Dataset:
@@ -47,6 +49,7 @@ def refine_validity_map(
         resolution, coarse: points per side of the finest and the first grid; (resolution − 1) must
             be (coarse − 1) times a power of two.
         t_end: end of each run, s; 200 √(m/k1) by default.
+        model: "A1" or one of its variants.
         tol: tolerance of the Taylor integrator.
         workers: processes; None takes all cores.
 
@@ -71,6 +74,7 @@ def refine_validity_map(
             angles[rows],
             angles[columns],
             t_end=t_end,
+            model=model,
             tol=tol,
             stop_at_first_separation=True,
             workers=workers,
@@ -125,6 +129,7 @@ def check_refinement(
     refined: xr.Dataset,
     *,
     points: Sequence[int] = (91, 181, 361),
+    model: Model = "A1",
     tol: float = 1e-12,
     workers: int | None = None,
 ) -> xr.Dataset:
@@ -135,6 +140,7 @@ def check_refinement(
         refined: dataset ``refined_validity_map``.
         points: points per side of the uniform maps, ascending; each must nest in the next and in
             the refined one.
+        model: that of the refined map.
         tol: tolerance of the Taylor integrator.
         workers: processes; None takes all cores.
 
@@ -153,6 +159,7 @@ def check_refinement(
         angles[:, None],
         angles[None, :],
         t_end=float(refined.t_end),
+        model=model,
         tol=tol,
         stop_at_first_separation=True,
         workers=workers,

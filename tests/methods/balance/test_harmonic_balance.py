@@ -13,15 +13,15 @@ from squealpipe.methods.balance.harmonic_balance import (
     series_speed,
 )
 from squealpipe.methods.orbits.orbit_shape import sample
-from squealpipe.parameters import Parameters
 from squealpipe.solvers.a4.orbits import find_orbit
 from squealpipe.solvers.a4.system import scaled_system
+from tests.former import FORMER
 
 ANGLES = (0.3 * math.pi, 0.9 * math.pi)
 
 
 def _exact(peak, mode=1):
-    scene = scaled_system(Parameters(), *ANGLES)
+    scene = scaled_system(FORMER, *ANGLES)
     orbit, _ = find_orbit(scene, mode, peak)
     states = sample(scene.system.rows, orbit.point, np.linspace(0, math.pi, 2**14 + 1))
     return scene, orbit, cosines_of(states[:, 0]), cosines_of(states[:, 1])
@@ -74,7 +74,7 @@ def test_a_motion_described_from_its_other_end_solves_the_equations_too():
 
 
 def test_linear_motion_in_contact_is_exact_with_one_harmonic():
-    scene = scaled_system(Parameters(), *ANGLES)
+    scene = scaled_system(FORMER, *ANGLES)
     balance = CosineBalance(scene.system, contact_of(1, 1.0, None, None))
     amplitude = 0.5 * (1.0 - scene.rest[1])
     z = np.array(

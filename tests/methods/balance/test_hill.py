@@ -7,12 +7,12 @@ import pytest
 
 from squealpipe.methods.balance.harmonic_balance import CosineBalance, contact_of
 from squealpipe.methods.balance.hill import hill_multipliers, sampled_share_above
-from squealpipe.parameters import Parameters
 from squealpipe.solvers.a4.orbits import find_orbit
 from squealpipe.solvers.a4.system import scaled_system
 from squealpipe.tasks.comparison.work_precision.harmonic import orbit_series
+from tests.former import FORMER
 
-SCENE = scaled_system(Parameters(), 0.3 * math.pi, 0.9 * math.pi)
+SCENE = scaled_system(FORMER, 0.3 * math.pi, 0.9 * math.pi)
 
 
 def share_above(contact_angles: np.ndarray, n_harmonics: int) -> np.ndarray:

@@ -12,13 +12,13 @@ from squealpipe.methods.balance.sampled_balance import (
     fourier_matrix,
 )
 from squealpipe.methods.orbits.orbit_shape import sample
-from squealpipe.parameters import Parameters
 from squealpipe.solvers.a4.orbits import find_orbit
 from squealpipe.solvers.a4.system import scaled_system
+from tests.former import FORMER
 
 
 def _started(angles, mode, peak, *, as_printed, n_time=34):
-    scene = scaled_system(Parameters(), angles[0] * math.pi, angles[1] * math.pi)
+    scene = scaled_system(FORMER, angles[0] * math.pi, angles[1] * math.pi)
     orbit, _ = find_orbit(scene, mode, peak)
     states = sample(scene.system.rows, orbit.point, np.linspace(0, math.pi, 2049))
     balance = SampledBalance(scene.system, 8, n_time, 1e3, as_printed=as_printed)
@@ -86,7 +86,7 @@ def test_without_a_phase_condition_the_answer_depends_on_the_phase():
     spreads = []
     for n_time in (18, 512):
         _, orbit, balance, _ = _started((0.3, 0.9), 1, 3.0, as_printed=False, n_time=n_time)
-        scene = scaled_system(Parameters(), 0.3 * math.pi, 0.9 * math.pi)
+        scene = scaled_system(FORMER, 0.3 * math.pi, 0.9 * math.pi)
         states = sample(scene.system.rows, orbit.point, np.linspace(0, math.pi, 2049))
         x, y = cosines_of(states[:, 0]), cosines_of(states[:, 1])
         found = [

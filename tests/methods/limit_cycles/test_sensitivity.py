@@ -6,11 +6,11 @@ import heyoka
 import numpy as np
 import pytest
 
-from squealpipe import Parameters
 from squealpipe.methods.cycles.event_flow import flow
 from squealpipe.models.a1 import Regime
 from squealpipe.solvers.a1.flow import A1Flow
 from squealpipe.solvers.a1.reference import PARAMETERS, symbolic_automaton
+from tests.former import FORMER
 
 FOLLOWED = "k2"
 
@@ -31,7 +31,7 @@ def variational(system, law, regime, state, duration):
 @pytest.mark.parametrize("belt_speed", [-1.3, 40.0])
 @pytest.mark.parametrize("law", ["coulomb", "exponential"])
 def test_derivative_agrees_with_the_variational_equations(law, belt_speed):
-    params = Parameters(
+    params = FORMER.with_(
         k2=1.4, length1=3.0, length2=7.0, belt_speed=belt_speed, mu=0.2, mu_static=0.6,
         friction_law=law, friction_speed=0.3, damping1=0.03, damping2=0.1,
     )  # fmt: skip

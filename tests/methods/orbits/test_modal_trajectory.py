@@ -4,14 +4,14 @@ import numpy as np
 import pytest
 
 from squealpipe.methods.orbits.modal_trajectory import trajectory_from_rest
-from squealpipe.parameters import Parameters
 from squealpipe.solvers.a1.ensemble import run_ensemble
 from squealpipe.solvers.a4.system import scaled_system
+from tests.former import FORMER
 
 
 @pytest.mark.parametrize("over_pi", [(0.3, 0.9), (0.83, 0.83), (0.5, 1.0), (0.1, 0.35)])
 def test_flow_from_switch_to_switch_is_the_integrated_motion(over_pi: tuple[float, float]) -> None:
-    params = Parameters()
+    params = FORMER
     alpha1, alpha2 = np.pi * np.array(over_pi)
     times = np.linspace(0.0, 25.0, 51)
     scene = scaled_system(params, alpha1, alpha2)

@@ -7,8 +7,8 @@ import pytest
 
 from squealpipe.methods.orbits.orbits import solve_orbit
 from squealpipe.methods.orbits.shooting import MAX_SEGMENTS, rest_conditions, shoot, stability_index
-from squealpipe.parameters import Parameters
 from squealpipe.solvers.a4.system import scaled_system
+from tests.former import FORMER
 
 SCENES = [(0.3, 0.9, -0.9, 2.7, 4.9), (0.2, 0.7, -0.5, 3.2, 9.0), (0.5, 1.0, 0.1, 2.2, 2.6)]
 
@@ -22,7 +22,7 @@ def _conditions(rows, point):
 
 @pytest.mark.parametrize("scene", SCENES)
 def test_derivatives_agree_with_differences(scene):
-    rows = scaled_system(Parameters(), scene[0] * math.pi, scene[1] * math.pi).system.rows
+    rows = scaled_system(FORMER, scene[0] * math.pi, scene[1] * math.pi).system.rows
     point = np.array(scene[2:])
     _, jacobian, _, _ = _conditions(rows, point)
     step = 1e-6
@@ -37,9 +37,9 @@ def test_derivatives_agree_with_differences(scene):
 @pytest.mark.parametrize("scene", SCENES)
 def test_flow_runs_backwards_by_turning_velocities(scene):
     """From the state after half a period, velocities turned, the start comes back."""
-    rows = scaled_system(Parameters(), scene[0] * math.pi, scene[1] * math.pi).system.rows
+    rows = scaled_system(FORMER, scene[0] * math.pi, scene[1] * math.pi).system.rows
     found = solve_orbit(
-        scaled_system(Parameters(), scene[0] * math.pi, scene[1] * math.pi).system,
+        scaled_system(FORMER, scene[0] * math.pi, scene[1] * math.pi).system,
         np.array(scene[2:]),
     )
     assert found is not None
@@ -53,7 +53,7 @@ def test_flow_runs_backwards_by_turning_velocities(scene):
 
 def test_monodromy_has_two_unit_multipliers_and_a_reciprocal_pair():
     """Its trace − 2 equals λ + 1/λ from a monodromy built by differences of the flow."""
-    scene = scaled_system(Parameters(), 0.3 * math.pi, 0.9 * math.pi)
+    scene = scaled_system(FORMER, 0.3 * math.pi, 0.9 * math.pi)
     found = solve_orbit(scene.system, np.array([-0.9, 2.7, 4.9]))
     assert found is not None
     monodromy = _monodromy_by_differences(scene.system.rows, found.point)
@@ -93,7 +93,7 @@ def _integrate(rows, start, time):
 
 
 def test_the_index_is_independent_of_where_the_period_starts():
-    scene = scaled_system(Parameters(), 0.3 * math.pi, 0.9 * math.pi)
+    scene = scaled_system(FORMER, 0.3 * math.pi, 0.9 * math.pi)
     found = solve_orbit(scene.system, np.array([-0.9, 2.7, 4.9]))
     segments, switches, final = np.empty((MAX_SEGMENTS, 9)), np.empty(MAX_SEGMENTS), np.empty(4)
     count = shoot(scene.system.rows, *found.point, segments, switches, final)

@@ -11,8 +11,9 @@ import numpy as np
 from squealpipe.parameters import Parameters
 from squealpipe.tasks.dynamics.runs import simulate
 from squealpipe.solvers.a1.reference import simulate_reference
-simulate(Parameters(), 1.0, 2.0, t_end=1.0)
-simulate_reference(Parameters(), 1.0, 2.0, t_end=1.0)
+from tests.former import FORMER
+simulate(FORMER, 1.0, 2.0, t_end=1.0)
+simulate_reference(FORMER, 1.0, 2.0, t_end=1.0)
 """
 
 

@@ -13,6 +13,7 @@ from squealpipe.parameters import LAW_NAMES, Parameters
 from squealpipe.solvers.a1.ensemble import run_ensemble
 from squealpipe.solvers.a1.peers import simulate_scipy
 from squealpipe.solvers.a1.reference import simulate_reference
+from tests.former import FORMER
 
 ALPHA1, ALPHA2 = np.array([0.5, 1.4, 2.2, 2.9]), np.array([1.9, 2.6, 0.7, 2.4])
 
@@ -46,7 +47,7 @@ def random_cases(
         }
         start = rng.uniform(-0.5, 0.5, 4) * [length, length, length / unit, length / unit]
         alpha1, alpha2 = rng.uniform(0, np.pi, 2)
-        cases.append((Parameters(**{**values, **fixed}), alpha1, alpha2, tuple(start.tolist())))
+        cases.append((FORMER.with_(**{**values, **fixed}), alpha1, alpha2, tuple(start.tolist())))
     return cases
 
 
@@ -109,7 +110,7 @@ def test_falling_laws_are_coulombs_where_both_coefficients_agree() -> None:
 )
 def test_small_extensions_move_a_run_in_proportion(change: dict[str, Any]) -> None:
     """Half the extension, half the difference: the limit is the paper's model."""
-    base = Parameters(belt_speed=0.4, mu=0.3)
+    base = FORMER.with_(belt_speed=0.4, mu=0.3)
     times = np.linspace(0.5, 6.0, 12)
 
     def run(share: float) -> np.ndarray:
@@ -223,7 +224,7 @@ def test_ensembles_refuse_what_makes_no_sense(change: dict[str, Any], message: s
 def test_very_long_springs_keep_their_digits(length1: float, length2: float) -> None:
     """Against long double, whose own loss is 1e-12 at these lengths; it was 2e-8."""
     for params, alpha1, alpha2, _ in random_cases(4, seed=39, friction_law="coulomb"):
-        plain = Parameters(
+        plain = FORMER.with_(
             k2=params.k2 / params.k1, mu=params.mu, belt_speed=0.7, length1=length1, length2=length2
         )
         run = run_ensemble(plain, alpha1, alpha2, t_end=5.0, log_events=9)

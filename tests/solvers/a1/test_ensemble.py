@@ -12,12 +12,12 @@ import pytest
 from squealpipe.laws.springs import Geometry
 from squealpipe.methods.taylor.simd import FEW
 from squealpipe.models.switching import Rules, ScaledParameters
-from squealpipe.parameters import Parameters
 from squealpipe.schema import Outcome
 from squealpipe.solvers.a1 import ensemble
 from squealpipe.solvers.a1.ensemble import RESULTS, Ensemble, run_ensemble
 from squealpipe.solvers.a1.records import LANE, ORDER
 from squealpipe.solvers.a1.system import EXTENSIONS, PARAMETERS, PHYSICAL
+from tests.former import FORMER
 
 RNG = np.random.default_rng(3)
 SIZE = 83
@@ -96,8 +96,8 @@ def test_repeating_gives_the_same_bits(reference):
 def test_a_longer_horizon_continues_the_same_run():
     """t_end never shortens a step, so a longer run passes through the same states."""
     times = np.linspace(0, 20, 41)
-    short = run_ensemble(Parameters(), 0.3, 2.5, t_end=20.0, times=times)
-    long = run_ensemble(Parameters(), 0.3, 2.5, t_end=100.0, times=times)
+    short = run_ensemble(FORMER, 0.3, 2.5, t_end=20.0, times=times)
+    long = run_ensemble(FORMER, 0.3, 2.5, t_end=100.0, times=times)
     assert short.samples.tobytes() == long.samples.tobytes()
 
 
@@ -108,52 +108,48 @@ def test_asked_instants_do_not_change_a_run(model):
     above = np.nextafter(1.0, 2.0)
     start = [[0, 0, 0, 0], [-0.2, above, -0.4, 0], [0.2, 1, -0.3, 0], [0, 0, 1, 0]]
     given = {"t_end": 40.0, "model": model, "initial_state": start, "log_events": 100}
-    plain = run_ensemble(Parameters(belt_speed=1.0), *angles, **given)
+    plain = run_ensemble(FORMER.with_(belt_speed=1.0), *angles, **given)
     located = plain.event_times[np.isfinite(plain.event_times)]
     assert located.size > 4
     instants = np.sort(np.append(np.linspace(0, 40, 999), located))
-    asked = run_ensemble(Parameters(belt_speed=1.0), *angles, **given, times=instants)
+    asked = run_ensemble(FORMER.with_(belt_speed=1.0), *angles, **given, times=instants)
     sampled = {"samples": plain.samples, "sample_regimes": plain.sample_regimes}
     assert_identical(replace(asked, **sampled), plain)
 
 
 def test_results_have_the_shape_of_the_inputs():
-    run = run_ensemble(Parameters(), np.zeros((3, 1)), np.zeros(4), t_end=1.0, times=[0.0, 1.0])
+    run = run_ensemble(FORMER, np.zeros((3, 1)), np.zeros(4), t_end=1.0, times=[0.0, 1.0])
     assert run.outcome.shape == (3, 4)
     assert run.samples.shape == (3, 4, 2, 4)
-    assert run_ensemble(Parameters(), 1.0, 1.0, t_end=1.0).time.shape == ()
+    assert run_ensemble(FORMER, 1.0, 1.0, t_end=1.0).time.shape == ()
 
 
 def test_no_runs():
-    assert run_ensemble(Parameters(), np.zeros(0), 1.0, t_end=1.0).outcome.shape == (0,)
+    assert run_ensemble(FORMER, np.zeros(0), 1.0, t_end=1.0).outcome.shape == (0,)
 
 
 def test_t_end_zero_is_the_start():
-    run = run_ensemble(
-        Parameters(), 1.0, 1.0, t_end=0.0, initial_state=(0.1, 0.2, 0.3, 0.4), times=[0.0]
-    )
+    run = run_ensemble(FORMER, 1.0, 1.0, t_end=0.0, initial_state=(0.1, 0.2, 0.3, 0.4), times=[0.0])
     assert run.outcome == Outcome.converged
     np.testing.assert_array_equal(run.final_state, [0.1, 0.2, 0.3, 0.4])
     np.testing.assert_array_equal(run.samples, [[0.1, 0.2, 0.3, 0.4]])
 
 
 def test_stops_say_so():
-    first = run_ensemble(Parameters(), np.pi, np.pi, t_end=50.0, stop_at_first_separation=True)
+    first = run_ensemble(FORMER, np.pi, np.pi, t_end=50.0, stop_at_first_separation=True)
     assert first.outcome == Outcome.separated
     assert first.time == first.first_separation_time
-    far = run_ensemble(Parameters(), 0.4 * np.pi, 0.6 * np.pi, t_end=600.0, stop_at_x=20.0)
+    far = run_ensemble(FORMER, 0.4 * np.pi, 0.6 * np.pi, t_end=600.0, stop_at_x=20.0)
     assert far.outcome == Outcome.amplitude_reached
     assert 20.0 < far.early_max_x < 35.0
-    turned = run_ensemble(Parameters(), 0.4 * np.pi, 0.6 * np.pi, t_end=600.0, stop_at_turns=5)
+    turned = run_ensemble(FORMER, 0.4 * np.pi, 0.6 * np.pi, t_end=600.0, stop_at_turns=5)
     assert turned.outcome == Outcome.amplitude_reached
     assert abs(turned.turns) == 5
 
 
 def test_instants_past_a_stop_hold_nan_and_a_flag():
     times = np.linspace(0, 50, 51)
-    run = run_ensemble(
-        Parameters(), np.pi, np.pi, t_end=50.0, times=times, stop_at_first_separation=True
-    )
+    run = run_ensemble(FORMER, np.pi, np.pi, t_end=50.0, times=times, stop_at_first_separation=True)
     past = times > run.time
     assert past.any()
     np.testing.assert_array_equal(np.isnan(run.samples).all(axis=-1), past)
@@ -184,16 +180,16 @@ def test_instants_past_a_stop_hold_nan_and_a_flag():
     ],
 )
 def test_refusals_name_the_argument(changes, message):
-    arguments = {"parameters": Parameters(), "alpha1": 1.0, "alpha2": 1.0, "t_end": 10.0, **changes}
+    arguments = {"parameters": FORMER, "alpha1": 1.0, "alpha2": 1.0, "t_end": 10.0, **changes}
     with pytest.raises(ValueError, match=message):
         run_ensemble(**arguments)
 
 
 def test_maps_in_blocks_are_the_same(monkeypatch):
     alpha1, alpha2 = np.linspace(0, np.pi, 9), np.linspace(0, np.pi, 7)
-    whole = ensemble.run_map(Parameters(), alpha1, alpha2, ("max_displacement",), t_end=20.0)
+    whole = ensemble.run_map(FORMER, alpha1, alpha2, ("max_displacement",), t_end=20.0)
     monkeypatch.setattr(ensemble, "BLOCK", 10)
-    parts = ensemble.run_map(Parameters(), alpha1, alpha2, ("max_displacement",), t_end=20.0)
+    parts = ensemble.run_map(FORMER, alpha1, alpha2, ("max_displacement",), t_end=20.0)
     assert whole.max_displacement.shape == (9, 7)
     assert whole.max_displacement.tobytes() == parts.max_displacement.tobytes()
 
@@ -215,11 +211,11 @@ def test_parameters_in_other_forms_give_the_same_bits():
     """One set of parameters is scaled once; arrays of the same values take the other path."""
     signed = {"damping1": -0.0, "belt_speed": -0.0}
     for params in (
-        Parameters(mass=2.0, k1=3.0, preload=0.7, k2=1.7, belt_speed=-3.0),
-        Parameters(damping1=0.2, friction_law="exponential", mu_static=0.6, length1=1e7),
-        Parameters(mu_static=0.6),
-        Parameters(**signed),
-        Parameters(**dict.fromkeys(signed, 0.0)),
+        FORMER.with_(mass=2.0, k1=3.0, preload=0.7, k2=1.7, belt_speed=-3.0),
+        FORMER.with_(damping1=0.2, friction_law="exponential", mu_static=0.6, length1=1e7),
+        FORMER.with_(mu_static=0.6),
+        FORMER.with_(**signed),
+        FORMER.with_(**dict.fromkeys(signed, 0.0)),
     ):
         given = {name: np.array([value] * 3) for name, value in vars(params).items() if value}
         alone, rows = (

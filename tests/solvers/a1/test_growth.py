@@ -8,11 +8,12 @@ from scipy.linalg import expm
 
 from squealpipe.methods.cycles.event_flow import flow
 from squealpipe.models.a1_automaton import A1Automaton
-from squealpipe.parameters import LAW_NAMES, Parameters
+from squealpipe.parameters import LAW_NAMES
 from squealpipe.solvers.a1.ensemble import run_ensemble
 from squealpipe.solvers.a1.flow import A1Flow
 from squealpipe.solvers.a1.scaling import PHYSICAL
 from squealpipe.solvers.a1.sliding import sliding_equilibrium, sliding_jacobian
+from tests.former import FORMER
 
 T_END = 50.0
 WORST = {
@@ -53,7 +54,7 @@ def test_growth_is_that_of_the_variational_equations():
     run = run_ensemble(parameters, *angles, t_end=T_END, tangent=True, workers=1)
     compared = 0
     for job in range(run.outcome.size):
-        params = Parameters(**{name: float(values[job]) for name, values in parameters.items()})
+        params = FORMER.with_(**{name: float(values[job]) for name, values in parameters.items()})
         passage = flow(A1Flow(params, *angles[:, job]), np.zeros(4), T_END)
         growth = np.log(np.linalg.norm(passage.derivative @ np.full(4, 0.5)))
         total = run.separations + run.contacts + run.sticks + run.slips + run.reversals
@@ -71,7 +72,7 @@ def resting_runs(count: int, seed: int):
         mass, k1, length = np.exp(rng.uniform(-3.0, 3.0, 3))
         unit = np.sqrt(mass / k1)
         mu = rng.uniform(0.0, 0.6)
-        params = Parameters(
+        params = FORMER.with_(
             mass=mass,
             k1=k1,
             k2=k1 * np.exp(rng.uniform(-2.0, 2.0)),
@@ -119,7 +120,7 @@ def test_growth_of_a_motion_that_dies_out_is_that_of_the_linear_system():
 
 
 def test_growth_of_undamped_steady_sliding():
-    a1 = A1Automaton(Parameters(k3=0.75, length1=5.0, length2=5.0), 0.83 * np.pi, 0.83 * np.pi)
+    a1 = A1Automaton(FORMER.with_(k3=0.75, length1=5.0, length2=5.0), 0.83 * np.pi, 0.83 * np.pi)
     rest = sliding_equilibrium(a1)
     run = run_ensemble(
         a1.params, 0.83 * np.pi, 0.83 * np.pi, t_end=200.0, initial_state=rest, tangent=True

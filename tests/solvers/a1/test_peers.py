@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 
 from squealpipe.models.a1_automaton import EventKind
-from squealpipe.parameters import Parameters
 from squealpipe.solvers.a1.peers import simulate_scipy
+from tests.former import FORMER
 
 
 def test_first_separation_has_the_closed_form_time() -> None:
     """K = diag(k, k): y = κ/(1+κ)(1 − cos √(1+κ) t) meets l_pre at a known time."""
-    p = Parameters(k3=2.0)
+    p = FORMER.with_(k3=2.0)
     run = simulate_scipy(
         p,
         np.pi / 2,
@@ -26,7 +26,7 @@ def test_first_separation_has_the_closed_form_time() -> None:
 
 def test_stick_and_release_have_closed_form_times() -> None:
     """V small: x is caught at ẋ = V and carried until k x = μN (y at rest at its equilibrium)."""
-    p = Parameters(k3=0.75, mu=0.3, belt_speed=0.05)
+    p = FORMER.with_(k3=0.75, mu=0.3, belt_speed=0.05)
     y = 0.75 / 1.75
     force = 0.3 * 0.75 * (1 - y)
     t_end = 8.0
@@ -49,7 +49,7 @@ def test_stick_and_release_have_closed_form_times() -> None:
 @pytest.mark.parametrize("method", ["RK45", "LSODA", "Radau"])
 def test_methods_agree_with_one_another(method: str) -> None:
     run = {
-        name: simulate_scipy(Parameters(), np.pi, np.pi, t_end=10.0, tol=1e-9, method=name)
+        name: simulate_scipy(FORMER, np.pi, np.pi, t_end=10.0, tol=1e-9, method=name)
         for name in ("DOP853", method)
     }
     assert run[method].event_kinds == run["DOP853"].event_kinds

@@ -4,15 +4,15 @@ import numpy as np
 import pytest
 
 from squealpipe.models.a1_automaton import EventKind
-from squealpipe.parameters import Parameters
 from squealpipe.solvers.a1.peers import simulate_moreau_jean, simulate_regularized, simulate_scipy
 from squealpipe.solvers.a1.reference import simulate_reference
 from squealpipe.tasks.comparison.work_precision.integration import SCENES
+from tests.former import FORMER
 
 
 @pytest.mark.parametrize("scene", SCENES, ids=lambda scene: scene.name)
 def test_reference_agrees_with_scipy_at_its_limit(scene) -> None:
-    arguments = scene.arguments(Parameters())
+    arguments = scene.arguments(FORMER)
     found = simulate_reference(**arguments, t_end=30.0)
     public = simulate_scipy(**arguments, t_end=30.0, tol=1e-13)
     assert found.message == ""
@@ -27,7 +27,7 @@ def test_reference_agrees_with_scipy_at_its_limit(scene) -> None:
 def test_reference_is_long_double() -> None:
     """At rest from y = 0 the first separation has a closed form for K = diag(k, k), L → ∞."""
     run = simulate_reference(
-        Parameters(k3=2.0, mu=0.0, length1=1e12, length2=1e12),
+        FORMER.with_(k3=2.0, mu=0.0, length1=1e12, length2=1e12),
         np.pi / 2, np.pi, t_end=5.0, stop_at=EventKind.separation,
     )  # fmt: skip
     assert run.state.dtype == np.longdouble
@@ -36,7 +36,7 @@ def test_reference_is_long_double() -> None:
 
 @pytest.mark.parametrize(("initial", "first"), [((0, 1, 0, 0.5), 3), ((0, 1, 0, -0.5), 0)])
 def test_a_start_on_the_threshold_goes_where_its_velocity_points(initial, first) -> None:
-    params = Parameters()
+    params = FORMER
     for run in (
         simulate_reference(params, 0.9, 2.0, t_end=3.0, initial_state=initial),
         simulate_scipy(params, 0.9, 2.0, t_end=3.0, tol=1e-10, initial_state=initial),
@@ -46,7 +46,7 @@ def test_a_start_on_the_threshold_goes_where_its_velocity_points(initial, first)
 
 def test_regularized_laws_tend_to_the_sharp_ones() -> None:
     scene = SCENES[2]
-    arguments = scene.arguments(Parameters())
+    arguments = scene.arguments(FORMER)
     sharp = simulate_reference(**arguments, t_end=10.0)
     errors = [
         np.abs(
@@ -61,7 +61,7 @@ def test_regularized_laws_tend_to_the_sharp_ones() -> None:
 
 def test_moreau_jean_tends_to_the_reference_with_its_step() -> None:
     scene = SCENES[1]
-    arguments = scene.arguments(Parameters())
+    arguments = scene.arguments(FORMER)
     sharp = simulate_reference(**arguments, t_end=10.0)
     errors = [
         np.abs(

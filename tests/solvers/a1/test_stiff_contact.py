@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from squealpipe.parameters import Parameters
 from squealpipe.schema import Outcome
 from squealpipe.solvers.a1.ensemble import run_ensemble
 from squealpipe.solvers.a1.reference import simulate_reference
+from tests.former import FORMER
 
 COUNT = 40
 
@@ -42,7 +42,7 @@ def test_releases_are_where_long_double_has_them() -> None:
     found = run_ensemble(parameters, *angles, t_end=2.0, log_events=4)
     judged = 0
     for job in range(10):
-        params = Parameters(**{name: float(values[job]) for name, values in parameters.items()})
+        params = FORMER.with_(**{name: float(values[job]) for name, values in parameters.items()})
         exact = simulate_reference(params, *map(float, angles[:, job]), t_end=2.0)
         count = min(4, len(exact.event_times))
         np.testing.assert_allclose(

@@ -12,17 +12,17 @@ import numpy as np
 import pytest
 
 from squealpipe.methods.taylor.lanes import compile_system
-from squealpipe.parameters import Parameters
 from squealpipe.schema import Outcome
 from squealpipe.schema.dynamics.runs import EventFlag
 from squealpipe.solvers.a1 import ensemble
 from squealpipe.solvers.a1.ensemble import Ensemble, run_ensemble
 from squealpipe.solvers.a1.system import PAPER, lane_system
+from tests.former import FORMER
 
 IDENTITY = {"alpha1": 0.5 * np.pi, "alpha2": np.pi, "model": "A1-linear-springs"}
 KAPPA = 0.75
 REST, OMEGA = KAPPA / (1 + KAPPA), np.sqrt(1 + KAPPA)
-FRICTIONLESS = Parameters(k3=KAPPA, mu=0.0)
+FRICTIONLESS = FORMER.with_(k3=KAPPA, mu=0.0)
 
 
 def random_runs(size, seed):
@@ -100,7 +100,7 @@ def test_blocks_of_any_size_give_the_same_bits(block):
 
 
 def test_an_event_at_the_end_and_at_an_asked_instant():
-    params = Parameters(k3=2.0)
+    params = FORMER.with_(k3=2.0)
     time = float(run_ensemble(params, t_end=5.0, log_events=1, **IDENTITY).event_times[0])
     before, after = np.nextafter(time, 0.0), np.nextafter(time, np.inf)
     counts = []
@@ -134,7 +134,7 @@ def test_no_event_of_a_step_that_is_cut():
 def test_an_approach_to_stick_in_ever_shorter_slips_moves_on(speed):
     rng = np.random.default_rng(8)
     starts = rng.uniform(-0.3, 0.3, (50, 4))
-    params = Parameters(k3=2.0, mu=0.6, belt_speed=speed)
+    params = FORMER.with_(k3=2.0, mu=0.6, belt_speed=speed)
     run = run_ensemble(params, 1.2, 2.6, t_end=200.0, initial_state=starts, log_events=2000)
     assert (run.outcome == Outcome.converged).all()
     assert (run.sticks > 0).all()

@@ -11,9 +11,10 @@ from squealpipe.schema.backbones import Assumption, Special
 from squealpipe.solvers.a4 import exact_branches
 from squealpipe.tasks.backbones.backbone import backbone, contact_losing_branches, with_orbits
 from squealpipe.tasks.backbones.orbit import periodic_orbit
+from tests.former import FORMER
 
 PI = math.pi
-BASE = Parameters()
+BASE = FORMER
 
 
 def _branch(alpha1, alpha2, mode, **options):
@@ -213,7 +214,7 @@ def test_numbers_of_another_kind_or_size_are_named(wrong):
 @pytest.mark.parametrize("speed", [-100.0, 100.0, -0.5, 0.5])
 @pytest.mark.parametrize("mode", [1, 2])
 def test_both_methods_judge_sliding_alike_for_either_belt_direction(speed, mode):
-    params = Parameters(belt_speed=speed)
+    params = FORMER.with_(belt_speed=speed)
     held = []
     for options in ({"method": "exact"}, {"method": "hbm", "n_harmonics": 32}):
         branch = backbone(params, 0.3 * PI, 0.9 * PI, mode=mode, **options)
@@ -228,14 +229,14 @@ def test_both_methods_judge_sliding_alike_for_either_belt_direction(speed, mode)
 def test_branches_without_orbits_are_left_out_with_their_reason():
     # With unequal springs the x mode of F10 comes second: it is isolated and never separates.
     found = contact_losing_branches({"coupled": (0.3, 0.9)})
-    kept, left_out = with_orbits(Parameters(k2=2.0), found, [2.0])
+    kept, left_out = with_orbits(FORMER.with_(k2=2.0), found, [2.0])
     assert "F10 mode 2" not in kept
     assert "F10 mode 2: isolated_mode" in left_out
-    everything, nothing = with_orbits(Parameters(), found, [2.0])
+    everything, nothing = with_orbits(FORMER, found, [2.0])
     assert everything == found
     assert nothing == ""
     with pytest.raises(ValueError, match="no branch has orbits"):
-        with_orbits(Parameters(k2=2.0), {"F10 mode 2": found["F10 mode 2"]}, [2.0])
+        with_orbits(FORMER.with_(k2=2.0), {"F10 mode 2": found["F10 mode 2"]}, [2.0])
 
 
 @pytest.mark.parametrize(("alpha1", "alpha2"), [(0.4, 0.55), (0.3, 0.9), (0.2, 0.7)])

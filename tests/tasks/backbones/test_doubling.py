@@ -10,18 +10,18 @@ from squealpipe.laws.springs import geometry, linear_elastic_force, linear_stiff
 from squealpipe.methods.orbits.orbit_shape import sample
 from squealpipe.methods.orbits.orbits import is_primitive, solve_orbit
 from squealpipe.models.a4 import first_integral_value
-from squealpipe.parameters import Parameters
 from squealpipe.schema import Outcome
 from squealpipe.solvers.a4.system import scaled_system
 from squealpipe.store import load, save
 from squealpipe.tasks.backbones.backbone import backbone
 from squealpipe.tasks.backbones.doubling import doubled_branch
 from squealpipe.tasks.backbones.orbit import periodic_orbit
+from tests.former import FORMER
 
 PI = math.pi
-BASE = Parameters()
+BASE = FORMER
 SCENE = (0.3 * PI, 0.9 * PI)
-OTHER = Parameters(k1=1.1, k3=0.8, mu=0.25, mass=2.0, preload=0.5, belt_speed=-100.0)
+OTHER = FORMER.with_(k1=1.1, k3=0.8, mu=0.25, mass=2.0, preload=0.5, belt_speed=-100.0)
 """Other units, unequal springs, the belt the other way: a mirror image leads to a doubling."""
 
 

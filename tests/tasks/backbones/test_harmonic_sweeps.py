@@ -5,7 +5,6 @@ import math
 import numpy as np
 import pytest
 
-from squealpipe.parameters import Parameters
 from squealpipe.schema import Outcome
 from squealpipe.schema.backbones import Form
 from squealpipe.tasks.backbones.a1_beside_a4 import a1_beside_a4
@@ -14,6 +13,7 @@ from squealpipe.tasks.backbones.harmonic_sweeps import (
     compare_harmonic_forms,
     sweep_harmonic_balance,
 )
+from tests.former import FORMER
 
 PI = math.pi
 BRANCHES = {"F10 mode 2": (0.5 * PI, PI, 2), "coupled mode 1": (0.3 * PI, 0.9 * PI, 1)}
@@ -22,7 +22,7 @@ BRANCHES = {"F10 mode 2": (0.5 * PI, PI, 2), "coupled mode 1": (0.3 * PI, 0.9 * 
 @pytest.fixture(scope="module")
 def sweep():
     return sweep_harmonic_balance(
-        Parameters(),
+        FORMER,
         BRANCHES,
         peaks=(1.0, 1.25, 2.0),
         harmonics=(4, 8, 16, 32, 64),
@@ -49,7 +49,7 @@ def test_closed_form_integrals_remove_the_sampling_error(sweep):
 
 
 def test_the_papers_form_mended_and_as_printed():
-    forms = compare_harmonic_forms(Parameters(), BRANCHES)
+    forms = compare_harmonic_forms(FORMER, BRANCHES)
     assert (forms.outcome == Outcome.converged).all()
     mended, printed = (forms.omega.sel(form=int(form)) for form in (Form.mended, Form.as_printed))
     np.testing.assert_allclose(mended, forms.omega_exact, rtol=5e-3)
@@ -63,7 +63,7 @@ def test_the_papers_form_mended_and_as_printed():
 def test_a1_stays_beside_a4_the_longer_the_springs():
     """The geometry's part of the frequency shift falls like the inverse of the length."""
     beside = a1_beside_a4(
-        Parameters(), {"F10 mode 2": BRANCHES["F10 mode 2"]}, peak=2.0, length_ratios=(50, 500)
+        FORMER, {"F10 mode 2": BRANCHES["F10 mode 2"]}, peak=2.0, length_ratios=(50, 500)
     )
     shifts = np.abs(beside.omega_a1 / beside.omega - 1.0).values[0]
     assert shifts[1] < 0.2 * shifts[0] < 2e-3
@@ -82,4 +82,4 @@ def test_scenes_by_name():
 
 def test_a_scene_without_orbits_is_refused_with_its_reason():
     with pytest.raises(ValueError, match="singular_static_state"):
-        compare_harmonic_forms(Parameters(), {"whirl": (0.4 * PI, 0.6 * PI, 1)})
+        compare_harmonic_forms(FORMER, {"whirl": (0.4 * PI, 0.6 * PI, 1)})

@@ -15,15 +15,15 @@ from squealpipe.laws.springs import geometry, linear_stiffness
 from squealpipe.methods.orbits.orbit_shape import sample
 from squealpipe.methods.orbits.orbits import TraceEnd, is_primitive, orbit_on_branch, solve_orbit
 from squealpipe.models.a4 import first_integral_value
-from squealpipe.parameters import Parameters
 from squealpipe.schema import Outcome
 from squealpipe.solvers.a4.orbits import grazing_start
 from squealpipe.solvers.a4.system import scaled_system
 from squealpipe.tasks.backbones.backbone import backbone
 from squealpipe.tasks.backbones.orbit import periodic_orbit
+from tests.former import FORMER
 
 PI = math.pi
-BASE = Parameters()
+BASE = FORMER
 LEFT = (0.85 * PI, 11 * PI / 180)
 """Here mode 1 ends at y = 1.091 in the resonance 1:2."""
 
@@ -34,7 +34,7 @@ def _random_cells(count, seed):
     found = 0
     while found < count:
         k1, k2, k3 = random.uniform(0.3, 3.0, 3)
-        params = Parameters(
+        params = FORMER.with_(
             k1=k1, k2=k2, k3=k3, mu=random.uniform(0, 0.8), belt_speed=random.choice([-1, 1]) * 50.0
         )
         angles = random.uniform(0.0, PI, 2)
@@ -147,7 +147,7 @@ EXTREME = [
 @pytest.mark.parametrize(("changes", "angles", "peak"), EXTREME)
 @pytest.mark.parametrize("mode", [1, 2])
 def test_extreme_ratios_end_soon_with_an_outcome(changes, angles, peak, mode):
-    params = Parameters(**changes)
+    params = FORMER.with_(**changes)
     periodic_orbit(BASE, 0.3 * PI, 0.9 * PI, mode=1, y_peak=2.0)  # compiled
     began = time.perf_counter()
     single = periodic_orbit(params, *angles, mode=mode, y_peak=peak)
@@ -160,7 +160,7 @@ def test_extreme_ratios_end_soon_with_an_outcome(changes, angles, peak, mode):
 @pytest.mark.parametrize("name", ["mass", "k1", "k2", "k3"])
 @pytest.mark.parametrize("value", [1e300, 1e-300])
 def test_numbers_whose_squares_overflow_are_named(name, value):
-    params = Parameters(**{name: value})
+    params = FORMER.with_(**{name: value})
     with pytest.raises(
         ValueError, match=re.escape(f"{name} = {value!r}: between") + ".*choose other units"
     ):
@@ -174,7 +174,7 @@ def test_lengths_beyond_doubles_are_named():
         with pytest.raises(ValueError, match="y_peak = "):
             periodic_orbit(BASE, 1.0, 2.0, mode=1, y_peak=peak)
     with pytest.raises(ValueError, match=r"y_peak = 1\.0: more than .* preload"):
-        periodic_orbit(Parameters(preload=5e-324), 1.0, 2.0, mode=1, y_peak=1.0)
+        periodic_orbit(FORMER.with_(preload=5e-324), 1.0, 2.0, mode=1, y_peak=1.0)
 
 
 def test_a_trace_can_be_interrupted():

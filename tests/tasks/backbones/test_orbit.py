@@ -10,12 +10,12 @@ from scipy.integrate import solve_ivp
 
 from squealpipe.laws.springs import geometry, linear_stiffness
 from squealpipe.models.a4 import first_integral_value
-from squealpipe.parameters import Parameters
 from squealpipe.schema import Outcome
 from squealpipe.tasks.backbones.orbit import periodic_orbit
+from tests.former import FORMER
 
 PI = math.pi
-BASE = Parameters()
+BASE = FORMER
 
 KNOWN = [
     (0.5, 1.0, 2, 2.0, 1.23408516277258),
@@ -171,7 +171,9 @@ def test_mirror_image_moves_alike():
 
 def test_units_scale():
     """Millimetres, tonnes and megahertz: the same motion in other numbers."""
-    scaled = Parameters(mass=2e-3, k1=8e5, k2=8e5, k3=6e5, preload=1e-4, length1=5e-4, length2=5e-4)
+    scaled = FORMER.with_(
+        mass=2e-3, k1=8e5, k2=8e5, k3=6e5, preload=1e-4, length1=5e-4, length2=5e-4
+    )
     found = _orbit(0.3, 0.9, 1, 3e-4, scaled)
     reference = _orbit(0.3, 0.9, 1, 3.0)
     unit = math.sqrt(8e5 / 2e-3)
@@ -221,11 +223,11 @@ def test_a_peak_below_the_equilibrium_is_refused():
 
 def test_a_slow_belt_breaks_the_assumption_and_says_so():
     assert int(_orbit(0.3, 0.9, 1, 3.0).sliding_assumption) == 1
-    assert int(_orbit(0.3, 0.9, 1, 3.0, Parameters(belt_speed=0.2)).sliding_assumption) == 0
+    assert int(_orbit(0.3, 0.9, 1, 3.0, FORMER.with_(belt_speed=0.2)).sliding_assumption) == 0
 
 
-NEAR_FIRST_REST = Parameters(k1=0.975, k2=2.68, k3=0.318, mu=0.85)
-NEAR_SECOND_REST = Parameters(k1=2.27, k2=1.717, k3=1.82, mu=0.49)
+NEAR_FIRST_REST = FORMER.with_(k1=0.975, k2=2.68, k3=0.318, mu=0.85)
+NEAR_SECOND_REST = FORMER.with_(k1=2.27, k2=1.717, k3=1.82, mu=0.49)
 
 
 @pytest.mark.parametrize(

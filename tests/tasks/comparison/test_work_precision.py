@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from squealpipe.parameters import Parameters
 from squealpipe.schema import Outcome
 from squealpipe.schema.comparison import Role
 from squealpipe.tasks.comparison.work_precision import harmonic as speed_accuracy_harmonic
@@ -12,13 +11,14 @@ from squealpipe.tasks.comparison.work_precision import stability as speed_accura
 from squealpipe.tasks.comparison.work_precision import validity as speed_accuracy_validity
 from squealpipe.tasks.comparison.work_precision.solutions import timed, work_precision
 from squealpipe.tasks.comparison.work_precision.validity import boundary_distance, on_grid
+from tests.former import FORMER
 
 
 @pytest.fixture(scope="module")
 def integration():
     return work_precision(
         speed_accuracy_integration.solutions(
-            Parameters(), horizon=20.0, solvers=("DOP853",), tolerances=(1e-4, 1e-8),
+            FORMER, horizon=20.0, solvers=("DOP853",), tolerances=(1e-4, 1e-8),
             steps=(1e-2,), sigmas=(100.0,), repeats=1,
         )
     )  # fmt: skip
@@ -57,7 +57,7 @@ def test_harmonic_balance_converges_as_published() -> None:
     """ω falls about like N_h^-4 with closed-form integrals; the printed Eq. (34) is just wrong."""
     found = work_precision(
         speed_accuracy_harmonic.solutions(
-            Parameters(), harmonics=(8, 32), oversampling=(1,), sigmas=(10.0,), repeats=1
+            FORMER, harmonics=(8, 32), oversampling=(1,), sigmas=(10.0,), repeats=1
         )
     )
     closed = found.isel(run=found.method.values == "cosines, closed-form contact")
@@ -85,7 +85,7 @@ def test_first_order_eigenvalues_lose_half_their_digits_and_the_closed_form_none
 def test_validity_map_needs_its_horizon_more_than_its_tolerance() -> None:
     found = work_precision(
         speed_accuracy_validity.solutions(
-            Parameters(), points=31, fine_points=61, tolerances=(1e-6,), horizons=(25.0, 400.0),
+            FORMER, points=31, fine_points=61, tolerances=(1e-6,), horizons=(25.0, 400.0),
             steps=(0.1,),
         )
     )  # fmt: skip
@@ -129,7 +129,7 @@ def test_evaluations_do_not_depend_on_the_number_of_repeats() -> None:
         [
             solution.evaluations
             for solution in speed_accuracy_harmonic.solutions(
-                Parameters(), harmonics=[4], sigmas=[], oversampling=[], repeats=repeats
+                FORMER, harmonics=[4], sigmas=[], oversampling=[], repeats=repeats
             )
         ]
         for repeats in (1, 3)

@@ -7,14 +7,15 @@ import pytest
 import xarray as xr
 from scipy.optimize import root
 
-from squealpipe import Parameters, cycle_branch, limit_cycle, simulate
+from squealpipe import cycle_branch, limit_cycle, simulate
 from squealpipe.methods.cycles.event_flow import Touch, flow
 from squealpipe.methods.cycles.labels import Label
 from squealpipe.schema import Outcome
 from squealpipe.solvers.a1.flow import A1Flow
+from tests.former import FORMER
 
 PENDULUM = (0.4 * math.pi, 0.6 * math.pi)
-STICKING = Parameters(belt_speed=1.0, damping1=0.02, damping2=0.02, k2=1.2)
+STICKING = FORMER.with_(belt_speed=1.0, damping1=0.02, damping2=0.02, k2=1.2)
 STATE = ("x", "y", "vx", "vy")
 
 
@@ -37,7 +38,7 @@ def test_slope_by_a_parameter_agrees_with_differences(name, sticking):
         values = {"alpha1": PENDULUM[0], "alpha2": PENDULUM[1], **STICKING.as_dict()}
         values[name] += offset
         angles = values.pop("alpha1"), values.pop("alpha2")
-        return A1Flow(Parameters(**values), *angles, follow=name)
+        return A1Flow(FORMER.with_(**values), *angles, follow=name)
 
     ends = [flow(system(h), state, period, derivative=False).state for h in (1e-5, -1e-5)]
     differences = (ends[0] - ends[1]) / 2e-5
@@ -75,7 +76,7 @@ def test_stick_of_no_length_is_an_onset_of_stick(sticking):
 
 
 def test_branch_ends_on_the_cycle_of_half_the_period():
-    params = Parameters(
+    params = FORMER.with_(
         k1=0.8787958456924088, k2=1.3068838111256635, k3=1.266242024044932,
         mu=0.3036800352221386, belt_speed=-1.885, damping1=0.02744740168299363,
         damping2=0.026220449336112735, friction_law="exponential",
@@ -99,7 +100,7 @@ def test_branch_ends_on_the_cycle_of_half_the_period():
 
 def test_a_touch_of_stick_that_would_jump_ends_the_branch():
     """With a static coefficient of its own, a mass that touches belt speed stays there."""
-    params = Parameters(
+    params = FORMER.with_(
         k1=1.3685895636278969, k2=1.1717696456380882, k3=1.165372514053258,
         mu=0.4863140547913525, belt_speed=0.17, length2=4.167532071016394,
         damping1=0.011181702363416656, damping2=0.02593450195002516,
@@ -130,7 +131,7 @@ def test_every_end_has_its_label_and_reason(sticking):
 
 
 def test_a_branch_ends_where_the_cycle_shrinks_to_rest():
-    params = Parameters(damping1=0.01, damping2=0.01, mu=0.0)
+    params = FORMER.with_(damping1=0.01, damping2=0.01, mu=0.0)
     born = cycle_branch(params, 0.22, 0.96, parameter="mu", to=0.9, start="onset", n_points=12)
     large = born.isel(point=-1)
     back = cycle_branch(
@@ -143,7 +144,7 @@ def test_a_branch_ends_where_the_cycle_shrinks_to_rest():
 
 def test_a_hammering_cycle_shrinks_to_rest_at_the_edge_of_contact():
     """It keeps both its events: the springs alone then balance just where contact begins."""
-    params = Parameters(
+    params = FORMER.with_(
         mass=0.36, k1=0.11, k2=0.89, k3=0.21, mu=0.8, belt_speed=0.0122, preload=0.0311,
         length1=0.1057, length2=0.065, damping1=0.00237, friction_law="exponential",
         mu_static=1.209, friction_speed=0.0291,
@@ -192,7 +193,7 @@ def test_a_hammering_cycle_shrinks_to_rest_at_the_edge_of_contact():
     ],
 )
 def test_both_tasks_name_what_they_cannot_read(given, named):
-    scene = {"params": Parameters(), "alpha1": 1.0, "alpha2": 2.0} | given
+    scene = {"params": FORMER, "alpha1": 1.0, "alpha2": 2.0} | given
     with pytest.raises(ValueError, match=named):
         limit_cycle(**scene)
     with pytest.raises(ValueError, match=named):
@@ -213,7 +214,7 @@ def test_both_tasks_name_what_they_cannot_read(given, named):
 )
 def test_branch_names_what_it_cannot_start_from(given, named):
     with pytest.raises(ValueError, match=named):
-        cycle_branch(Parameters(), 1.0, 2.0, **({"parameter": "mu", "to": 0.5} | given))
+        cycle_branch(FORMER, 1.0, 2.0, **({"parameter": "mu", "to": 0.5} | given))
 
 
 def test_a_number_of_points_may_be_of_numpy(sticking):

@@ -8,7 +8,7 @@ from scipy.integrate import quad
 from scipy.interpolate import CubicSpline
 from scipy.optimize import brentq
 
-from squealpipe import Parameters, cycle_branch, limit_cycle
+from squealpipe import cycle_branch, limit_cycle
 from squealpipe.laws.springs import geometry, linear_stiffness
 from squealpipe.methods.cycles.event_flow import flow
 from squealpipe.methods.cycles.labels import Label
@@ -16,6 +16,7 @@ from squealpipe.schema import Outcome
 from squealpipe.solvers.a1.flow import A1Flow
 from squealpipe.tasks.cycles.cycle import least_cycle
 from squealpipe.tasks.normal_form import exchanged
+from tests.former import FORMER
 
 ANGLES = (0.5 * math.pi, math.pi)
 
@@ -25,7 +26,7 @@ def friction_oscillator(belt_speed, reach=1e6):
 
     Spring 2 is the oscillator's; spring 1 holds the mass on the belt. N = 1 to 1/reach.
     """
-    return Parameters(
+    return FORMER.with_(
         k1=4.0, k2=1.0, k3=1.0 / reach, preload=reach, length1=reach, length2=reach,
         mu=0.5, mu_static=1.0, friction_speed=0.5, friction_law="exponential",
         belt_speed=belt_speed, damping1=0.4, damping2=0.1,
@@ -83,7 +84,7 @@ def test_trivial_multiplier_and_differences_of_the_return_map(wanted):
     generator = np.random.default_rng(5)
     checked = 0
     while checked < wanted:
-        params = Parameters(
+        params = FORMER.with_(
             k2=generator.uniform(0.6, 1.6),
             length2=generator.uniform(3.0, 8.0),
             mu=generator.uniform(0.3, 0.7),
@@ -131,7 +132,7 @@ def differences(system, start, period, shift, kinds):
 
 
 def test_mirrored_system_has_the_mirrored_cycle():
-    params = Parameters(damping1=0.02, damping2=0.03, belt_speed=1.0, k2=1.1)
+    params = FORMER.with_(damping1=0.02, damping2=0.03, belt_speed=1.0, k2=1.1)
     mirrored = params.with_(k1=1.1, k2=1.0, damping1=0.03, damping2=0.02, belt_speed=-1.0)
     mirrored = mirrored.with_(length1=params.length2, length2=params.length1)
     one = limit_cycle(params, 0.4 * math.pi, 0.6 * math.pi)
@@ -143,20 +144,20 @@ def test_mirrored_system_has_the_mirrored_cycle():
 
 
 def test_without_damping_cycles_come_in_families():
-    cycle = limit_cycle(Parameters(), 5 * math.pi / 6, 5 * math.pi / 6)
+    cycle = limit_cycle(FORMER, 5 * math.pi / 6, 5 * math.pi / 6)
     assert cycle.outcome == Outcome.family_member
     assert cycle.stable == 0
     assert cycle.residual < 1e-9
 
 
 def test_a_settled_state_of_rest_is_no_cycle():
-    params = Parameters(damping1=0.3, damping2=0.3)
+    params = FORMER.with_(damping1=0.3, damping2=0.3)
     cycle = limit_cycle(params, 0.75 * math.pi, 0.75 * math.pi)
     assert cycle.outcome == Outcome.equilibrium
     assert np.isnan(cycle.period)
 
 
-REST = Parameters(
+REST = FORMER.with_(
     k1=2.2, k2=2.8, k3=0.8, mu=0.15, mu_static=0.18, friction_law="exponential",
     friction_speed=0.24, belt_speed=-6.6, length1=8.7, length2=49.0,
     damping1=0.005, damping2=0.2,
@@ -196,7 +197,7 @@ def test_a_smooth_cycle_around_a_state_of_rest_is_found_from_any_phase(speed):
 
 
 def test_a_stiff_dashpot_does_not_drive_the_search_for_rest_off():
-    params = Parameters(
+    params = FORMER.with_(
         k1=0.65, k2=1.13, k3=0.46, mu=1.05, mu_static=2.76, friction_law="exponential",
         friction_speed=1.82, belt_speed=0.2837, length1=9.25, length2=24.5, damping1=1e8,
     )  # fmt: skip
@@ -205,7 +206,7 @@ def test_a_stiff_dashpot_does_not_drive_the_search_for_rest_off():
 
 
 def test_without_damping_nothing_comes_to_rest():
-    params = Parameters(
+    params = FORMER.with_(
         k1=0.3369548162926997, k2=0.33121791549130847, k3=0.2689114661069115,
         mu=0.10066315042153495, belt_speed=-13.002080446037427,
         length1=20.94848468313279, length2=72.09643764912789,
@@ -230,7 +231,7 @@ def test_branch_turns_where_the_unstable_cycle_meets_the_stick_line():
 
 
 def test_branch_goes_round_a_fold_and_labels_it():
-    params = Parameters(damping1=0.02, damping2=0.02, belt_speed=1.0)
+    params = FORMER.with_(damping1=0.02, damping2=0.02, belt_speed=1.0)
     angles = (0.4 * math.pi, 0.6 * math.pi)
     branch = cycle_branch(
         params, *angles, parameter="mu", to=0.05, start=limit_cycle(params, *angles)
@@ -245,7 +246,7 @@ def test_branch_goes_round_a_fold_and_labels_it():
 
 
 def test_grazing_points_just_touch():
-    params = Parameters(damping1=0.01, damping2=0.01, mu=0.0)
+    params = FORMER.with_(damping1=0.01, damping2=0.01, mu=0.0)
     branch = cycle_branch(params, 0.22, 0.96, parameter="mu", to=0.9, start="onset")
     assert branch.end == Outcome.converged
     grazing = branch.isel(point=np.flatnonzero(branch.label == Label.grazing))
@@ -254,7 +255,7 @@ def test_grazing_points_just_touch():
 
 
 def test_branch_is_born_at_the_flutter_onset_of_long_springs():
-    params = Parameters(damping1=0.01, damping2=0.02, mu=0.0, length1=1e4, length2=1e4, k2=1.1)
+    params = FORMER.with_(damping1=0.01, damping2=0.02, mu=0.0, length1=1e4, length2=1e4, k2=1.1)
     angles = (0.22, 0.96)
 
     def growth(mu):
@@ -291,7 +292,7 @@ def test_branch_is_born_at_the_flutter_onset_of_long_springs():
 def test_branch_refuses_what_it_cannot_do(change, named):
     given = {"parameter": "mu", "to": 0.5, "start": (0.0, 0.0, 0.0, 0.0)} | change
     with pytest.raises(ValueError, match=named.replace("(", r"\(")):
-        cycle_branch(Parameters(), 1.0, 2.0, **given)
+        cycle_branch(FORMER, 1.0, 2.0, **given)
 
 
 @pytest.mark.parametrize("rounds", [2, 3, 4, 6, 7, 8, 9, 25])

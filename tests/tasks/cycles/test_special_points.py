@@ -5,15 +5,16 @@ import math
 import numpy as np
 import pytest
 
-from squealpipe import Parameters, cycle_branch, limit_cycle, simulate
+from squealpipe import cycle_branch, limit_cycle, simulate
 from squealpipe.methods.cycles.event_flow import Touch, flow
 from squealpipe.methods.cycles.labels import Label
 from squealpipe.schema import Outcome
 from squealpipe.solvers.a1.flow import A1Flow
+from tests.former import FORMER
 
 STATE = ("x", "y", "vx", "vy")
-ONE_WAY = (Parameters(damping1=0.02, damping2=0.02, belt_speed=1.0), 0.4, 0.6)
-OTHER_WAY = (Parameters(k1=1.005, damping1=0.02, damping2=0.02, belt_speed=-1.0), 0.6, 0.4)
+ONE_WAY = (FORMER.with_(damping1=0.02, damping2=0.02, belt_speed=1.0), 0.4, 0.6)
+OTHER_WAY = (FORMER.with_(k1=1.005, damping1=0.02, damping2=0.02, belt_speed=-1.0), 0.6, 0.4)
 
 
 def start_of(dataset):
@@ -50,7 +51,7 @@ def test_grazing_points_at_random_parameters_just_touch():
     generator = np.random.default_rng(8)
     touched = 0
     while touched < 6:
-        params = Parameters(
+        params = FORMER.with_(
             k2=generator.uniform(0.8, 1.3), k3=generator.uniform(0.5, 1.2), mu=0.0,
             length2=generator.uniform(4.0, 8.0), damping1=generator.uniform(0.005, 0.02),
             damping2=generator.uniform(0.005, 0.02),
@@ -71,7 +72,7 @@ def test_grazing_points_at_random_parameters_just_touch():
 
 def test_special_points_do_not_depend_on_units():
     """Time 1000 √(m/k1), force 1e-6: what tells a touch from either side has another unit."""
-    params, unit = Parameters(
+    params, unit = FORMER.with_(
         k1=1.596, k2=0.391, k3=2.894, mu=0.336, belt_speed=-1.103, length1=5.49, length2=5.574,
         damping1=0.0045, damping2=0.071,
     ), np.array([1e-3, 1e-3, 1e-6, 1e-6])  # fmt: skip

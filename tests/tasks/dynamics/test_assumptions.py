@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from squealpipe.parameters import SCENES, Parameters
+from squealpipe.parameters import SCENES
 from squealpipe.tasks.dynamics.assumptions import LEVELS, NEEDS, check_assumptions, linear_pull_map
 from squealpipe.tasks.dynamics.runs import simulate
+from tests.former import FORMER
 
 DECOUPLED = ("F2a", "F2b", "F2c")
 """Scenes whose spring stiffness is k times the identity."""
@@ -16,7 +17,7 @@ DECOUPLED = ("F2a", "F2b", "F2c")
 
 @pytest.fixture(scope="module")
 def table() -> xr.Dataset:
-    return check_assumptions(Parameters())
+    return check_assumptions(FORMER)
 
 
 def measure(table: xr.Dataset, level: str, scene: str, assumption: str) -> float:
@@ -28,7 +29,7 @@ def measure(table: xr.Dataset, level: str, scene: str, assumption: str) -> float
 def test_lowest_force_of_the_decoupled_scenes_is_the_closed_form(
     table: xr.Dataset, level: str, scene: str
 ) -> None:
-    kappa = Parameters().kappa
+    kappa = FORMER.kappa
     lowest = measure(table, level, scene, "contact is kept")
     assert lowest == pytest.approx((1 - kappa) / (1 + kappa), abs=1e-3)
     assert bool(table.held.sel(level=level, scene=scene, assumption="contact is kept"))
@@ -50,7 +51,7 @@ def test_without_separation_nothing_changes_where_contact_is_kept(table: xr.Data
 
 def test_sliding_state_is_the_force_balance_along_the_belt(table: xr.Dataset) -> None:
     """At F2a K11 = k and K12 = 0: x = μ k3 l_pre/k, and the reaction is the actuation."""
-    p = Parameters()
+    p = FORMER
     row = table.sel(level="A2", scene="F2a")
     assert float(row.largest_x) == pytest.approx(p.mu * p.k3 * p.preload / p.k1, rel=1e-12)
     assert float(row.peak_contact_force) == pytest.approx(1.0, rel=1e-12)
@@ -58,7 +59,7 @@ def test_sliding_state_is_the_force_balance_along_the_belt(table: xr.Dataset) ->
 
 def test_turn_of_a_spring_is_that_of_the_motion(table: xr.Dataset) -> None:
     """At F5a both springs lie along x, so the largest turn follows from the highest point."""
-    p, scene = Parameters(), SCENES["F5a"]
+    p, scene = FORMER, SCENES["F5a"]
     run = simulate(p, scene.alpha1, scene.alpha2, t_end=scene.t_end)
     turns = [np.abs(np.arctan2(run.y, p.length1 + side * run.x)).max() for side in (-1, 1)]
     assert measure(table, "A1", "F5a", "angles are constant") == pytest.approx(
@@ -68,7 +69,7 @@ def test_turn_of_a_spring_is_that_of_the_motion(table: xr.Dataset) -> None:
 
 def test_longer_springs_turn_less_and_are_more_linear() -> None:
     short, long = (
-        check_assumptions(Parameters(length1=length, length2=length), [SCENES["F2a"]])
+        check_assumptions(FORMER.with_(length1=length, length2=length), [SCENES["F2a"]])
         for length in (5.0, 500.0)
     )
     for name in ("angles are constant", "springs are linear"):
@@ -84,8 +85,8 @@ def test_each_level_needs_what_the_paper_lists(table: xr.Dataset) -> None:
 
 
 def test_linear_pull_map_is_the_closed_form_where_x_and_y_are_decoupled() -> None:
-    kappa = Parameters().kappa
-    pull = linear_pull_map(Parameters(), [0.5 * np.pi, np.pi], [0.5 * np.pi, np.pi], t_end=50.0)
+    kappa = FORMER.kappa
+    pull = linear_pull_map(FORMER, [0.5 * np.pi, np.pi], [0.5 * np.pi, np.pi], t_end=50.0)
     lowest = pull.lowest_contact_force.values
     assert lowest[0, 1] == pytest.approx((1 - kappa) / (1 + kappa), abs=1e-3)
     assert lowest[1, 0] == pytest.approx((1 - kappa) / (1 + kappa), abs=1e-3)
@@ -93,15 +94,15 @@ def test_linear_pull_map_is_the_closed_form_where_x_and_y_are_decoupled() -> Non
     assert lowest[1, 1] == pytest.approx(-1.0, abs=1e-3)
     assert float(pull.pulling_fraction[1, 1]) == pytest.approx(0.5, abs=0.03)
     assert float(pull.first_pull_time[1, 1]) == pytest.approx(
-        0.5 * np.pi / np.sqrt(Parameters().k3), abs=0.05
+        0.5 * np.pi / np.sqrt(FORMER.k3), abs=0.05
     )
 
 
 def test_units_scale() -> None:
     """Ten times the length, four times the mass: the same numbers, twice the time."""
     base, scaled = (
-        Parameters(),
-        Parameters(
+        FORMER,
+        FORMER.with_(
             mass=4.0, preload=10.0, length1=50.0, length2=50.0, belt_speed=500.0, sigma=100.0
         ),
     )

@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from squealpipe.parameters import Parameters
 from squealpipe.schema import Outcome
 from squealpipe.tasks.backbones.backbone import backbone
 from squealpipe.tasks.dynamics.explorer import explorer_data
 from squealpipe.tasks.dynamics.runs import simulate
+from tests.former import FORMER
 
 ANGLES = np.array([0.5, 5 / 6, 1.0]) * np.pi
 OPTIONS = {"history_time": 20.0, "spectrum_time": 60.0, "samples": 101, "branch_points": 6}
@@ -17,11 +17,11 @@ OPTIONS = {"history_time": 20.0, "spectrum_time": 60.0, "samples": 101, "branch_
 
 @pytest.fixture(scope="module")
 def explorer():
-    return explorer_data(Parameters(), ANGLES, workers=1, **OPTIONS)
+    return explorer_data(FORMER, ANGLES, workers=1, **OPTIONS)
 
 
 def test_motion_is_that_of_simulate(explorer):
-    alone = simulate(Parameters(), ANGLES[1], ANGLES[2], t_end=20.0, times=np.linspace(0, 20, 101))
+    alone = simulate(FORMER, ANGLES[1], ANGLES[2], t_end=20.0, times=np.linspace(0, 20, 101))
     for name in ("x", "y", "normalized_contact_force"):
         np.testing.assert_allclose(explorer[name][1, 2], alone[name], atol=1e-6)
 
@@ -34,7 +34,7 @@ def test_spectrum_peaks_at_the_natural_frequency_of_the_closed_form(explorer):
 
 def test_branches_run_from_first_to_last_point_of_the_backbone(explorer):
     for k, mode in enumerate((1, 2)):
-        alone = backbone(Parameters(), ANGLES[1], ANGLES[1], mode=mode)
+        alone = backbone(FORMER, ANGLES[1], ANGLES[1], mode=mode)
         shown = explorer.isel(alpha1=1, alpha2=1, mode=k)
         np.testing.assert_allclose(shown.omega[[0, -1]], alone.omega[[0, -1]], rtol=1e-6)
         assert int(shown.end) == int(alone.end)
@@ -46,9 +46,9 @@ def test_a_pair_without_a_mode_says_why(explorer):
 
 
 def test_processes_change_nothing(explorer):
-    assert explorer.identical(explorer_data(Parameters(), ANGLES, workers=2, **OPTIONS))
+    assert explorer.identical(explorer_data(FORMER, ANGLES, workers=2, **OPTIONS))
 
 
 def test_spectrum_needs_the_longer_time():
     with pytest.raises(ValueError, match="must be at least history_time"):
-        explorer_data(Parameters(), ANGLES, **{**OPTIONS, "spectrum_time": 1.0})
+        explorer_data(FORMER, ANGLES, **{**OPTIONS, "spectrum_time": 1.0})

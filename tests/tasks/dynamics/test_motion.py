@@ -5,15 +5,15 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from squealpipe.parameters import Parameters
 from squealpipe.schema.dynamics.runs import MotionFlag
 from squealpipe.tasks.dynamics.hammering import hammering_map
 from squealpipe.tasks.dynamics.motion import linear_time, tell_periodic
 from squealpipe.tasks.dynamics.runs import simulate
 from squealpipe.tasks.normal_form import NormalForm
+from tests.former import FORMER
 
-BASELINE = Parameters()
-FALLING = Parameters(
+BASELINE = FORMER
+FALLING = FORMER.with_(
     belt_speed=0.1, friction_law="exponential", mu_static=0.6, friction_speed=0.2, damping1=0.1
 )
 """Sticks again and again; with Coulomb's law the last stick ends early."""
@@ -32,7 +32,7 @@ REGULAR = (
         (MotionFlag.quasi_periodic_hammering, 5 / 6, 5 / 6, BASELINE),
         (MotionFlag.irregular_hammering, 0.2, 0.8, BASELINE),
         (MotionFlag.whirl, 0.5, 0.5, BASELINE),
-        (MotionFlag.periodic_hammering, 0.0, 0.0, Parameters(mu=0.0)),
+        (MotionFlag.periodic_hammering, 0.0, 0.0, FORMER.with_(mu=0.0)),
     ],
 )
 def test_motions_are_told_apart(motion, first, second, params):
@@ -43,7 +43,7 @@ def test_motions_are_told_apart(motion, first, second, params):
 @pytest.mark.parametrize("mu", [0.0, 0.3])
 def test_labels_follow_from_the_events_of_a_single_run(mu):
     """The same rule applied to ``simulate``, whose runs carry no tangent vector."""
-    params, angles = Parameters(mu=mu), np.linspace(0.0, np.pi, 7)
+    params, angles = FORMER.with_(mu=mu), np.linspace(0.0, np.pi, 7)
     result = hammering_map(params, angles, angles, t_end=300.0)
     regular = np.argwhere(np.isin(result.motion.values, REGULAR) & (result.outcome.values == 0))
     assert len(regular) > 5
@@ -58,7 +58,7 @@ def damped_map(scale=(1.0, 1.0, 1.0), t_end=1000.0):
     mass, stiffness, length = scale
     unit = np.sqrt(mass / stiffness)
     damping = 0.05 * np.sqrt(mass * stiffness)
-    params = Parameters(
+    params = FORMER.with_(
         mass=mass, k1=stiffness, k2=stiffness, k3=0.75 * stiffness, preload=length,
         length1=5.0 * length, length2=5.0 * length, belt_speed=100.0 * length / unit,
         damping1=damping, damping2=0.5 * damping,
@@ -121,7 +121,7 @@ def random_parameters(seed, *, equal):
     rng = np.random.default_rng(seed)
     k1, k2 = rng.uniform(0.4, 2.5, 2)
     length1, length2 = rng.uniform(3.0, 20.0, 2)
-    return Parameters(
+    return FORMER.with_(
         mass=rng.uniform(0.2, 5.0), k1=k1, k2=k1 if equal else k2, k3=rng.uniform(0.3, 1.5),
         mu=rng.uniform(0.0, 0.6), belt_speed=rng.choice([-1, 1]) * rng.choice([0.4, 3.0, 50.0]),
         preload=rng.uniform(0.5, 2.0), length1=length1, length2=length1 if equal else length2,

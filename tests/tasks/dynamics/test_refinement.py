@@ -10,12 +10,13 @@ from squealpipe.schema import Outcome
 from squealpipe.tasks.dynamics import refinement
 from squealpipe.tasks.dynamics.refinement import refine_validity_map
 from squealpipe.tasks.dynamics.runs import validity_map
+from tests.former import FORMER
 
 OTHERS = {
-    "baseline": Parameters(),
-    "unequal springs": Parameters(k2=1.8, length2=12.0, mu=0.45, k3=0.5),
-    "reversed slow belt": Parameters(k2=0.6, length1=8.0, belt_speed=-0.6, mu=0.2, k3=1.1),
-    "short springs": Parameters(length1=2.6, length2=2.6, mu=0.35, k3=0.4, belt_speed=2.0),
+    "baseline": FORMER,
+    "unequal springs": FORMER.with_(k2=1.8, length2=12.0, mu=0.45, k3=0.5),
+    "reversed slow belt": FORMER.with_(k2=0.6, length1=8.0, belt_speed=-0.6, mu=0.2, k3=1.1),
+    "short springs": FORMER.with_(length1=2.6, length2=2.6, mu=0.35, k3=0.4, belt_speed=2.0),
 }
 
 
@@ -68,7 +69,7 @@ def test_an_island_that_the_sample_finds_is_followed(monkeypatch) -> None:
     monkeypatch.setattr(refinement, "refine_grid", blind)
     monkeypatch.setattr(refinement, "_check_inherited", counting)
     monkeypatch.setattr(refinement, "SAMPLE", 2000)
-    params = Parameters(
+    params = FORMER.with_(
         k3=0.48023366024799824, mu=0.1390424912331886, belt_speed=-2.0,
         length1=22.18325523692714, length2=22.18325523692714,
     )  # fmt: skip

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from squealpipe.parameters import SCENES, Parameters
+from squealpipe.parameters import SCENES
 from squealpipe.schema import Outcome
 from squealpipe.schema.dynamics.runs import MotionFlag, RegimeFlag
 from squealpipe.store import load, save
@@ -14,9 +14,10 @@ from squealpipe.tasks.dynamics.hammering import hammering_map
 from squealpipe.tasks.dynamics.refinement import check_refinement, refine_validity_map
 from squealpipe.tasks.dynamics.runs import simulate, validity_map
 from squealpipe.tasks.dynamics.whirl import transient_lifetimes, whirl_sizes
+from tests.former import FORMER
 
-BASELINE = Parameters()
-SLOW = Parameters(belt_speed=0.3)
+BASELINE = FORMER
+SLOW = FORMER.with_(belt_speed=0.3)
 ANGLES = np.linspace(0, np.pi, 13)
 
 
@@ -206,7 +207,7 @@ def test_fit_of_the_whirl_tells_its_range_and_the_onset_is_bracketed():
 @pytest.mark.parametrize("speed", [20.0, -20.0])
 def test_energy_line_of_unequal_springs_is_that_of_their_potential(speed):
     """At which x along the line through r = 0 both springs hold the energy of a fast passage."""
-    params = Parameters(mass=2.0, k1=0.6, k2=3.0, length1=2.0, length2=7.0, belt_speed=speed)
+    params = FORMER.with_(mass=2.0, k1=0.6, k2=3.0, length1=2.0, length2=7.0, belt_speed=speed)
     sizes = whirl_sizes(params, [20.0], t_end=1.0)
     fast, cosine = 1e5, np.cos(SCENES["F3"].alpha1)
 

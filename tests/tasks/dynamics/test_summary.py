@@ -5,20 +5,20 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from squealpipe.parameters import Parameters
 from squealpipe.schema.dynamics.runs import EventFlag
 from squealpipe.tasks.dynamics.runs import simulate
 from squealpipe.tasks.dynamics.summary import summarize, summary_lines
+from tests.former import FORMER
 
 
 def run(alpha1, alpha2, t_end=200.0, points=4001, **options):
     times = np.linspace(0, t_end, points)
-    return simulate(Parameters(), alpha1, alpha2, t_end=t_end, times=times, **options)
+    return simulate(FORMER, alpha1, alpha2, t_end=t_end, times=times, **options)
 
 
 def test_decoupled_y_motion_has_the_frequency_and_force_of_the_closed_form():
     # A4 with K = diag(k, k): y = κ/(1+κ)(1 − cos √(1+κ) t).
-    kappa = Parameters().kappa
+    kappa = FORMER.kappa
     summary = summarize(run(np.pi / 2, np.pi, model="A4"))
     assert float(summary.dominant_frequency[0]) == pytest.approx(np.sqrt(1 + kappa), abs=2e-4)
     assert float(summary.dominant_amplitude[0]) == pytest.approx(kappa / (1 + kappa), rel=1e-3)
@@ -44,7 +44,7 @@ def test_separation_is_that_of_the_events_and_of_the_samples():
 
 
 def test_slow_belt_sticks():
-    params = Parameters(belt_speed=0.05)
+    params = FORMER.with_(belt_speed=0.05)
     times = np.linspace(0, 50, 2001)
     motion = simulate(params, 0.5 * np.pi, np.pi, t_end=50.0, times=times)
     share = float(summarize(motion).stick_fraction)
@@ -62,7 +62,7 @@ def test_words_tell_of_contact_kept_and_of_separation():
 def test_too_few_or_uneven_samples_are_refused():
     with pytest.raises(ValueError, match="more samples"):
         summarize(run(1.0, 2.0, t_end=10.0, points=8))
-    uneven = simulate(Parameters(), 1.0, 2.0, t_end=9.0, times=np.linspace(0, 3, 40) ** 2)
+    uneven = simulate(FORMER, 1.0, 2.0, t_end=9.0, times=np.linspace(0, 3, 40) ** 2)
     with pytest.raises(ValueError, match="not uniform"):
         summarize(uneven)
 

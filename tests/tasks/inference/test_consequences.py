@@ -7,7 +7,7 @@ import pytest
 
 from squealpipe.models import a3
 from squealpipe.models.contact_system import contact_system
-from squealpipe.parameters import SCENES, Parameters
+from squealpipe.parameters import SCENES
 from squealpipe.schema import Outcome
 from squealpipe.tasks.dynamics.runs import validity_map
 from squealpipe.tasks.inference.consequences import (
@@ -23,9 +23,10 @@ from squealpipe.tasks.inference.consequences import (
 )
 from squealpipe.tasks.inference.constraints import candidate_of, measure
 from squealpipe.tasks.linear.maps import natural_frequencies, quasi_static_map, stability_map
+from tests.former import FORMER
 from tests.tasks.inference.parameter_sets import random_sets
 
-BASELINE = Parameters()
+BASELINE = FORMER
 
 
 def test_consequences_at_the_baseline() -> None:
@@ -104,7 +105,7 @@ def likely() -> dict[str, np.ndarray]:
 def test_the_black_region_is_found_however_thin(likely: dict[str, np.ndarray]) -> None:
     """The rim of the disc of flutter, at three resolutions, against random cells of all of it."""
     sets = [
-        Parameters(**{name: float(values[i]) for name, values in likely.items()})
+        FORMER.with_(**{name: float(values[i]) for name, values in likely.items()})
         for i in range(len(likely["mu"]))
     ]
     found = {
@@ -185,7 +186,7 @@ def test_damped_settings_are_judged_by_the_damped_problem(beyond: dict[str, obje
 @pytest.mark.parametrize("name", ["damping1", "damping2"])
 def test_unequal_dashpots_have_no_mirror_image(name: str) -> None:
     """Cells (α1, α2) and (π − α2, π − α1) then move differently: share against the whole map."""
-    params = Parameters(**{name: 0.1})
+    params = FORMER.with_(**{name: 0.1})
     axis = (np.arange(12) + 0.5) * (np.pi / 12)
     whole = validity_map(params, axis, axis, t_end=200.0, tol=1e-9).separates.mean().item()
     fields = {key: np.array([value]) for key, value in params.as_dict().items()}

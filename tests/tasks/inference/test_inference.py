@@ -10,7 +10,7 @@ import pytest
 import scipy.integrate
 
 from squealpipe.config.settings import read_study
-from squealpipe.parameters import SCENES, Parameters
+from squealpipe.parameters import SCENES
 from squealpipe.schema import Outcome
 from squealpipe.schema.inference import wilson_interval
 from squealpipe.solvers.a1.ensemble import run_ensemble
@@ -25,10 +25,11 @@ from squealpipe.tasks.inference.constraints import (
 from squealpipe.tasks.inference.inference import infer_parameters
 from squealpipe.tasks.linear.maps import stability_map
 from tests import symbols
+from tests.former import FORMER
 from tests.tasks.inference.parameter_sets import fields_of, random_sets
 
 ROOT = Path(__file__).resolve().parents[3]
-BASELINE = Parameters()
+BASELINE = FORMER
 FORCE = symbols.function(symbols.SPRING_FORCE)
 
 
@@ -49,7 +50,7 @@ def long_springs(**arrays: object) -> Candidates:
 
 def test_the_shipped_baseline_is_feasible() -> None:
     study = read_study(ROOT / "workflow/config/paper.yaml")
-    params = Parameters(**study.parameters.model_dump())
+    params = FORMER.with_(**study.parameters.model_dump())
     verdicts = measure(candidate_of(params, tol=1e-12))
     assert {
         name: float(verdict.margin[0]) > 0 for name, verdict in verdicts.items()

@@ -4,15 +4,15 @@ import numpy as np
 import pytest
 
 from squealpipe.models.a3 import LinearRegime
-from squealpipe.parameters import Parameters
 from squealpipe.schema.ladder import QUESTIONS, Level
 from squealpipe.tasks.ladder.ladder import model_ladder
 from squealpipe.tasks.linear.maps import stability_map
+from tests.former import FORMER
 
 
 @pytest.fixture(scope="module")
 def ladder():
-    return model_ladder(Parameters(), 14, 0.05, t_end=100.0)
+    return model_ladder(FORMER, 14, 0.05, t_end=100.0)
 
 
 def test_a1_is_adequate_everywhere_and_errs_nowhere(ladder) -> None:
@@ -21,7 +21,7 @@ def test_a1_is_adequate_everywhere_and_errs_nowhere(ladder) -> None:
 
 
 def test_a_linear_level_answers_nothing_where_nothing_oscillates(ladder) -> None:
-    linear = stability_map(Parameters(), ladder.alpha1, ladder.alpha2).regime_linear
+    linear = stability_map(FORMER, ladder.alpha1, ladder.alpha2).regime_linear
     grows = linear != LinearRegime.stable
     assert 0 < grows.sum() < grows.size
     for level in ("closed_form", "a3_in_contact"):
@@ -61,7 +61,7 @@ def test_a_level_counts_only_where_what_it_drops_mattered(ladder) -> None:
     """At V = 100 the belt is never reached; at V = 0.3 it is, and stick matters in some cells."""
     assert not ladder.belt_reached.any()
     assert not (ladder.cheapest == Level.a1_no_stick).any()
-    slow = model_ladder(Parameters(belt_speed=0.3), 8, 0.05, t_end=40.0)
+    slow = model_ladder(FORMER.with_(belt_speed=0.3), 8, 0.05, t_end=40.0)
     assert slow.belt_reached.any()
     used = (slow.cheapest == Level.a1_no_stick).any("question")
     assert not (used & ~slow.belt_reached).any()
@@ -69,8 +69,8 @@ def test_a_level_counts_only_where_what_it_drops_mattered(ladder) -> None:
 
 @pytest.mark.parametrize("speed", [0.4, 50.0])
 def test_a_reversed_belt_and_its_mirror_image_have_the_same_ladder(speed: float) -> None:
-    params = Parameters(k2=1.4, length2=9.0, mu=0.45, belt_speed=speed)
-    image = Parameters(k1=1.4, length1=9.0, mu=0.45, belt_speed=-speed)
+    params = FORMER.with_(k2=1.4, length2=9.0, mu=0.45, belt_speed=speed)
+    image = FORMER.with_(k1=1.4, length1=9.0, mu=0.45, belt_speed=-speed)
     # both horizons are the same, √(m/k1) is not
     here = model_ladder(params, 6, 0.05, t_end=60.0)
     there = model_ladder(image, 6, 0.05, t_end=60.0)
@@ -87,12 +87,12 @@ def test_levels_differ_by_number_and_name() -> None:
 
 def test_extensions_are_refused() -> None:
     with pytest.raises(ValueError, match="damping1"):
-        model_ladder(Parameters(damping1=0.1), 2, 0.05, t_end=1.0)
+        model_ladder(FORMER.with_(damping1=0.1), 2, 0.05, t_end=1.0)
 
 
 def test_a_short_unit_of_time_is_no_long_run() -> None:
     """The run that compiles is a share of the horizon, not one second."""
-    params = Parameters(belt_speed=1.0)
+    params = FORMER.with_(belt_speed=1.0)
     fast = params.with_(mass=1e-20, belt_speed=1e10)
     one = model_ladder(params, 3, 0.05, t_end=20.0)
     other = model_ladder(fast, 3, 0.05, t_end=20.0 * fast.time_unit)

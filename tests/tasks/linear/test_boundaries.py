@@ -13,13 +13,14 @@ from squealpipe.schema.linear import Boundary
 from squealpipe.tasks.linear.boundaries import stability_boundaries
 from squealpipe.tasks.linear.maps import quasi_static_map, stability_map
 from tests import symbols
+from tests.former import FORMER
 
 STIFFNESS = symbols.function(
     [symbols.STIFFNESS[0, 0], symbols.STIFFNESS[0, 1], symbols.STIFFNESS[1, 1]]
 )
-BASELINE = Parameters()
+BASELINE = FORMER
 MIDPOINTS = (np.arange(720) + 0.5) * math.pi / 720
-UNEQUAL = Parameters(k1=0.9, k2=0.6, k3=1.1, mu=0.7)
+UNEQUAL = FORMER.with_(k1=0.9, k2=0.6, k3=1.1, mu=0.7)
 
 
 @pytest.mark.parametrize("params", [BASELINE, UNEQUAL])

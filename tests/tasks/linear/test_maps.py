@@ -15,10 +15,11 @@ from squealpipe.schema import Outcome
 from squealpipe.store import load, save
 from squealpipe.tasks.linear.maps import natural_frequencies, quasi_static_map, stability_map
 from tests import symbols
+from tests.former import FORMER
 
-BASELINE = Parameters()
+BASELINE = FORMER
 ANGLES = np.linspace(0.0, np.pi, 181)
-UNEQUAL = Parameters(mass=1.7, k1=1.4, k2=0.6, k3=0.9, mu=0.45, preload=0.5)
+UNEQUAL = FORMER.with_(mass=1.7, k1=1.4, k2=0.6, k3=0.9, mu=0.45, preload=0.5)
 SEED = 11
 
 

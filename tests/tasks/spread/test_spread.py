@@ -5,13 +5,14 @@ import pytest
 from scipy import stats
 from scipy.optimize import brentq
 
-from squealpipe import Parameters, stability_map
+from squealpipe import stability_map
 from squealpipe.schema import Outcome
 from squealpipe.tasks.inference.inference import infer_parameters
 from squealpipe.tasks.spread import reach
 from squealpipe.tasks.spread.distributions import distribution
 from squealpipe.tasks.spread.propensity import _indices, _judged_matrices, propensity
 from squealpipe.tasks.spread.reach import _feasible, _share, variants
+from tests.former import FORMER
 
 ANGLES = (0.22, 0.96)
 FRICTION = {"mu": {"distribution": "uniform", "low": 0.1, "high": 0.9}}
@@ -21,7 +22,7 @@ def onset():
     """The friction above which the undamped linear model flutters."""
 
     def discriminant(mu):
-        system = stability_map(Parameters(mu=mu), [ANGLES[0]], [ANGLES[1]])
+        system = stability_map(FORMER.with_(mu=mu), [ANGLES[0]], [ANGLES[1]])
         return float(system.regime_linear[0, 0]) - 0.5
 
     return brentq(discriminant, 0.1, 0.9, xtol=1e-9)
@@ -31,7 +32,11 @@ def onset():
 def test_share_of_flutter_is_that_of_the_frictions_above_onset(belt_speed):
     angles = ANGLES if belt_speed > 0 else (np.pi - ANGLES[0], np.pi - ANGLES[1])
     spread = propensity(
-        Parameters(belt_speed=belt_speed), *angles, distributions=FRICTION, samples=4096, t_end=1.0
+        FORMER.with_(belt_speed=belt_speed),
+        *angles,
+        distributions=FRICTION,
+        samples=4096,
+        t_end=1.0,
     )
     exact = (0.9 - onset()) / 0.8
     found = spread.sel(quantity="flutter")
@@ -74,7 +79,7 @@ def test_indices_are_those_of_a_product_and_too_wide_ones_are_not_given():
 def test_correlated_springs_have_propensities_but_no_indices():
     springs = {name: {"distribution": "normal", "mean": 1.0, "std": 0.05} for name in ("k1", "k2")}
     spread = propensity(
-        Parameters(), *ANGLES, distributions=springs, samples=64, t_end=10.0,
+        FORMER, *ANGLES, distributions=springs, samples=64, t_end=10.0,
         spring_correlation=0.9,
     )  # fmt: skip
     assert np.isfinite(spread.share).all()
@@ -121,23 +126,23 @@ def test_impossible_distributions_are_refused(name, given, words):
 def test_propensity_refuses_what_it_cannot_do(change, words):
     given = {"distributions": FRICTION, "samples": 64, "t_end": 10.0} | change
     with pytest.raises(ValueError, match=words):
-        propensity(Parameters(), *ANGLES, **given)
+        propensity(FORMER, *ANGLES, **given)
 
 
 def test_static_friction_below_that_of_sliding_is_for_laws_that_allow_it():
     static = {"mu_static": {"distribution": "uniform", "low": 0.1, "high": 0.2}}
     given = {"distributions": static, "samples": 64, "t_end": 1.0, "workers": 1}
-    rising = Parameters(friction_law="exponential", mu_static=0.2)
+    rising = FORMER.with_(friction_law="exponential", mu_static=0.2)
     assert propensity(rising, *ANGLES, **given).judged == 64
     with pytest.raises(ValueError, match=r"mu_static reaches 0\.1 and mu 0\.3"):
-        propensity(Parameters(), *ANGLES, **given)
+        propensity(FORMER, *ANGLES, **given)
     given["distributions"] = FRICTION
     with pytest.raises(ValueError, match=r"mu_static reaches 0\.31 and mu"):
-        propensity(Parameters(mu_static=0.31), *ANGLES, **given)
+        propensity(FORMER.with_(mu_static=0.31), *ANGLES, **given)
 
 
 def test_settings_differ_from_the_paper_one_at_a_time():
-    params = Parameters(k2=1.3, belt_speed=-2.0)
+    params = FORMER.with_(k2=1.3, belt_speed=-2.0)
     found = dict(variants(params))
     assert found["as configured"] == params
     assert found["damping ratio 2 %"].damping2 == pytest.approx(0.04 * np.sqrt(1.3))
@@ -148,7 +153,7 @@ def test_settings_differ_from_the_paper_one_at_a_time():
 
 
 def test_feasible_sets_are_judged_by_what_was_predicted_alone():
-    inferred = infer_parameters(Parameters(), samples=512, tol=1e-6)
+    inferred = infer_parameters(FORMER, samples=512, tol=1e-6)
     count = int(inferred.feasible_count)
     names = ["F2a", *inferred.consequence.values.tolist()]
     fitted, *predicted = _feasible(inferred, names)
@@ -174,7 +179,7 @@ def test_share_counts_only_what_was_judged():
 
 def test_statements_without_a_motion_are_no_sample_of_starts(monkeypatch):
     monkeypatch.setattr(reach, "variants", lambda _: iter(()))
-    found = reach.verdict_reach(Parameters(), starts=4, tol=1e-9, workers=1)
+    found = reach.verdict_reach(FORMER, starts=4, tol=1e-9, workers=1)
     judged = found.judged.sel(statement=["F2a", "F3", "F6d", "F13"])
     np.testing.assert_array_equal(judged, [[4, 4, 1, 1]] * 2)
     assert (found.share.sel(statement="F6d") == 1.0).all()

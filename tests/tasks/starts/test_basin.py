@@ -5,9 +5,10 @@ import math
 import numpy as np
 import pytest
 
-from squealpipe import Parameters, basin_map, simulate
+from squealpipe import basin_map, simulate
 from squealpipe.schema import Outcome
 from squealpipe.schema.dynamics.runs import MotionFlag
+from tests.former import FORMER
 
 ANGLES = (0.5 * math.pi, math.pi)
 SHARES = {1.25: 0.08019692, 1.4: 0.21226526, 1.55: 0.35659639, 1.7: 0.49411159}
@@ -16,7 +17,7 @@ SHARES = {1.25: 0.08019692, 1.4: 0.21226526, 1.55: 0.35659639, 1.7: 0.49411159}
 
 def friction_oscillator(belt_speed, reach=1e4):
     """m = k = 1, c = 0.1, N = 1 to 1/reach, exponential law 1 → 0.5 over 0.5."""
-    return Parameters(
+    return FORMER.with_(
         k1=4.0, k2=1.0, k3=1.0 / reach, preload=reach, length1=reach, length2=reach,
         mu=0.5, mu_static=1.0, friction_speed=0.5, friction_law="exponential",
         belt_speed=belt_speed, damping2=0.1,
@@ -56,7 +57,7 @@ def test_basin_shares_of_a_published_oscillator(speed, starts):
 
 
 def test_rest_is_the_run_from_rest():
-    params = Parameters(k2=1.3, belt_speed=-2.0)
+    params = FORMER.with_(k2=1.3, belt_speed=-2.0)
     basin = basin_map(params, 1.0, 2.2, t_end=15.0)
     run = simulate(params, 1.0, 2.2, t_end=15.0, times=np.linspace(12.0, 15.0, 20_001))
     assert basin.sizes == {}
@@ -66,7 +67,7 @@ def test_rest_is_the_run_from_rest():
 
 def test_a_run_that_came_to_rest_has_settled():
     """Dashpots end the hammering of Fig. 2(d) early in the run, or just in its second half."""
-    damped = Parameters(damping1=0.1, damping2=0.1)
+    damped = FORMER.with_(damping1=0.1, damping2=0.1)
     angles = (5 * math.pi / 6, 5 * math.pi / 6)
     basin = basin_map(damped, *angles, vy=[0.0, 0.01], t_end=2000.0)
     assert (basin.outcome == Outcome.converged).all()
@@ -91,12 +92,12 @@ def test_a_run_that_came_to_rest_has_settled():
 )
 def test_refuses_what_it_cannot_do(change, named):
     with pytest.raises(ValueError, match=named):
-        basin_map(Parameters(), 1.0, 2.0, **({"t_end": 50.0} | change))
+        basin_map(FORMER, 1.0, 2.0, **({"t_end": 50.0} | change))
 
 
 def test_late_extremes_begin_at_t_late():
     """A decaying motion is largest there, inside of a step of the integrator."""
-    params = Parameters(damping1=0.3, damping2=0.2, k2=1.3)
+    params = FORMER.with_(damping1=0.3, damping2=0.2, k2=1.3)
     starts = np.linspace(-0.5, 0.5, 6)
     for late in (7.3, 21.1):
         found = basin_map(params, 1.1, 0.6, x=starts, t_end=50.0, t_late=late, workers=1)
@@ -110,7 +111,7 @@ def test_late_extremes_begin_at_t_late():
 
 def test_late_speed_is_that_of_the_engine_not_of_samples():
     """1,000 samples of a long run gave 0.7518."""
-    former = Parameters(k3=0.75, length1=5.0, length2=5.0)
+    former = FORMER.with_(k3=0.75, length1=5.0, length2=5.0)
     basin = basin_map(former, 0.3 * math.pi, 0.9 * math.pi, t_end=2000.0, t_late=0.0)
     run = simulate(
         former, 0.3 * math.pi, 0.9 * math.pi, t_end=2000.0, times=np.linspace(0.0, 2000.0, 400_001)

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from squealpipe import Parameters, simulate, smallest_disturbance
+from squealpipe import simulate, smallest_disturbance
 from squealpipe.laws.springs import geometry, linear_stiffness
 from squealpipe.models.a1_automaton import A1Automaton
 from squealpipe.models.damped import critical_friction
@@ -13,6 +13,7 @@ from squealpipe.schema import Outcome
 from squealpipe.solvers.a1.ensemble import run_ensemble
 from squealpipe.solvers.a1.sliding import sliding_equilibrium
 from squealpipe.tasks.dynamics.motion import linear_time
+from tests.former import FORMER
 
 RNG = np.random.default_rng(16)
 
@@ -21,7 +22,7 @@ def random_case(direction):
     """Unequal springs, other units, friction below the onset of flutter."""
     while True:
         k1, k2, k3 = RNG.uniform(0.5, 4.0, 3)
-        params = Parameters(
+        params = FORMER.with_(
             mass=RNG.uniform(0.5, 3), k1=k1, k2=k2, k3=k3, preload=RNG.uniform(0.5, 2),
             belt_speed=direction * RNG.uniform(0.5, 50),
         )  # fmt: skip
@@ -86,7 +87,7 @@ def state_of(found, params, factor=1.0):
 
 @pytest.mark.parametrize("belt_speed", [60.0, -3.0])
 def test_what_is_found_loses_contact_and_random_smaller_ones_keep_it(belt_speed):
-    params = Parameters(k2=1.3, length1=4.0, mass=2.0, preload=0.8, belt_speed=belt_speed)
+    params = FORMER.with_(k2=1.3, length1=4.0, mass=2.0, preload=0.8, belt_speed=belt_speed)
     angles = (2.4, 2.5) if belt_speed > 0 else (math.pi - 2.4, math.pi - 2.5)
     found = smallest_disturbance(params, *angles, t_end=60.0, workers=1)
     assert found.outcome == Outcome.converged
@@ -103,7 +104,7 @@ def test_what_is_found_loses_contact_and_random_smaller_ones_keep_it(belt_speed)
 
 def test_the_search_is_that_of_the_mirrored_system():
     """x → −x with the belt reversed; the directions differ, so the search agrees to its error."""
-    params = Parameters(mu=0.2, belt_speed=5.0)
+    params = FORMER.with_(mu=0.2, belt_speed=5.0)
     one = smallest_disturbance(params, 2.3, 2.45, t_end=60.0, workers=1)
     other = smallest_disturbance(
         params.with_(belt_speed=-5.0), 2.45, 2.3, t_end=60.0, seed=2, workers=1
@@ -113,7 +114,7 @@ def test_the_search_is_that_of_the_mirrored_system():
 
 
 def test_whirl_is_reached_and_beyond_a_small_bound_not():
-    params, angles = Parameters(), (0.75 * math.pi, 0.75 * math.pi)
+    params, angles = FORMER, (0.75 * math.pi, 0.75 * math.pi)
     found = smallest_disturbance(
         params, *angles, leads_to="whirl", t_end=60.0, directions=16, workers=1
     )
@@ -130,18 +131,18 @@ def test_whirl_is_reached_and_beyond_a_small_bound_not():
 
 
 def test_unstable_or_no_sliding_is_said_and_nothing_is_run():
-    flutter = smallest_disturbance(Parameters(mu=0.9), 0.22, 0.96)
+    flutter = smallest_disturbance(FORMER.with_(mu=0.9), 0.22, 0.96)
     assert flutter.outcome == Outcome.already_unstable
     assert float(flutter.growth_rate) > 0
-    falling = Parameters(
+    falling = FORMER.with_(
         friction_law="exponential", mu_static=0.6, friction_speed=2.0, belt_speed=2.0
     )
     assert smallest_disturbance(falling, 2.4, 2.5).outcome == Outcome.already_unstable
     damped = falling.with_(damping1=1.0, damping2=1.0)
     assert smallest_disturbance(damped, 2.4, 2.5, t_end=20.0, directions=8).outcome == 0
     for params, angles in (
-        (Parameters(belt_speed=0.0), (2.4, 2.5)),
-        (Parameters(), (0.2 * math.pi, 0.8 * math.pi)),
+        (FORMER.with_(belt_speed=0.0), (2.4, 2.5)),
+        (FORMER, (0.2 * math.pi, 0.8 * math.pi)),
     ):
         still = smallest_disturbance(params, *angles)
         assert still.outcome == Outcome.no_sliding_state
@@ -163,7 +164,7 @@ def test_unstable_or_no_sliding_is_said_and_nothing_is_run():
 )
 def test_refuses_what_it_cannot_do(change, named):
     with pytest.raises(ValueError, match=named):
-        smallest_disturbance(Parameters(), 2.4, 2.5, **change)
+        smallest_disturbance(FORMER, 2.4, 2.5, **change)
 
 
 def test_steady_sliding_is_found_in_any_units():
@@ -183,4 +184,4 @@ def test_steady_sliding_is_found_in_any_units():
 
 def test_a_dashpot_too_stiff_for_the_horizon_is_refused():
     with pytest.raises(ValueError, match="shorten t_end, or weaken a dashpot"):
-        smallest_disturbance(Parameters(mu=0.1, damping1=1e8), 2.0, 1.9)
+        smallest_disturbance(FORMER.with_(mu=0.1, damping1=1e8), 2.0, 1.9)

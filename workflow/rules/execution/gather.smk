@@ -4,7 +4,7 @@ for name, slice_of_study in SCATTERED.items():
 
     rule:
         name:
-            f"join_{name}"
+            f"join_{name.replace('/', '_')}"
         input:
             parts=gather.maps(f"{RESULTS}/parts/{name}/{{scatteritem}}.nc"),
             sources=sources("execution/join_parts"),

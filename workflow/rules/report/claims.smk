@@ -2,7 +2,7 @@
 
 from squealpipe.study.claims.datasets import READ
 
-EVIDENCE = [name for name in READ if name in MADE]
+EVIDENCE = [name for folder in SHOWN for name in (f"{folder}{read}" for read in READ) if name in MADE]
 
 
 rule judge_claims:
@@ -12,7 +12,7 @@ rule judge_claims:
     output:
         data("claims"),
     params:
-        part=part("parameters"),
+        part=STUDY.slice("parameters", "reading"),
         names=EVIDENCE,
     script:
         "../../scripts/report/judge_claims.py"

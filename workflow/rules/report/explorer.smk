@@ -21,9 +21,9 @@ EXPLORER_PAGE = [
 rule write_explorer:
     input:
         explorer=data("explorer"),
-        stability=data("stability_map"),
-        frequencies=data("natural_frequencies"),
-        validity=data("validity_map"),
+        stability=data(f"{BEYOND}stability_map"),
+        frequencies=data(f"{BEYOND}natural_frequencies"),
+        validity=data(f"{BEYOND}validity_map"),
         hammering=data("hammering_map"),
         ladder=data("model_ladder"),
         page=EXPLORER_PAGE,

@@ -44,7 +44,7 @@ if STUDY.paper:
             supplement_pdf=f"{RESULTS}/report/supplement.pdf",
             provenance=f"{RESULTS}/report/provenance.json",
         params:
-            part=part("parameters"),
+            part=STUDY.slice("parameters", "reading"),
             made=MADE,
             drawn=DRAWN,
             changed=STUDY.changes_of(SHIPPED),

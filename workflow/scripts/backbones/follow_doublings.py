@@ -3,11 +3,12 @@
 import math
 
 from squealpipe.parameters import parameters_of
+from squealpipe.reading import for_linear
 from squealpipe.store import produce
 from squealpipe.tasks.backbones.doubling import doubled_branch
 
 part = snakemake.params.part
-params = parameters_of(part)
+params = for_linear(parameters_of(part), part["read_as"])
 limit = part["backbones.y_peak_max"] * params.preload
 for scene, over_pi in part["backbones.coupled"].items():
     angles = [angle * math.pi for angle in over_pi]

@@ -1,11 +1,12 @@
 """Backbones of the paper's scenes and of coupled ones, exact and by harmonic balance."""
 
 from squealpipe.parameters import parameters_of
+from squealpipe.reading import for_linear
 from squealpipe.store import produce
 from squealpipe.tasks.backbones.backbone import backbone, named_scenes
 
 part = snakemake.params.part
-params = parameters_of(part)
+params = for_linear(parameters_of(part), part["read_as"])
 limits = {
     "y_peak_max": part["backbones.y_peak_max"] * params.preload,
     "x_amplitude_max": part["backbones.x_amplitude_max"] * params.preload,

@@ -6,12 +6,13 @@ import os
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 from squealpipe.parameters import parameters_of
+from squealpipe.reading import for_linear
 from squealpipe.store import produce
 from squealpipe.tasks.comparison.work_precision import harmonic as speed_accuracy_harmonic, stability as speed_accuracy_stability
 from squealpipe.tasks.comparison.work_precision.solutions import work_precision
 
 part = snakemake.params.part
-params = parameters_of(part)
+params = for_linear(parameters_of(part), part["read_as"])
 produce(
     lambda: work_precision(
         [

@@ -5,13 +5,14 @@ import math
 import numpy as np
 
 from squealpipe.parameters import SCENES, parameters_of
+from squealpipe.reading import for_linear
 from squealpipe.store import load, produce
 from squealpipe.tasks.cycles.branch import cycle_branch
 from squealpipe.tasks.cycles.cycle import limit_cycle
 from squealpipe.tasks.cycles.extremes import settled_extremes
 
 part, out = snakemake.params.part, snakemake.output
-paper, cycles = parameters_of(part), part["cycles"]
+paper, cycles = for_linear(parameters_of(part), part["read_as"]), part["cycles"]
 damping = cycles["damping"] * math.sqrt(paper.k1 * paper.mass)
 params = paper.with_(damping1=damping, damping2=damping)
 settle = cycles["settle"] * params.time_unit

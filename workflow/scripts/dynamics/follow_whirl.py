@@ -3,12 +3,13 @@
 import numpy as np
 
 from squealpipe.parameters import SCENES, parameters_of
+from squealpipe.reading import for_linear
 from squealpipe.store import produce
 from squealpipe.tasks.dynamics.runs import simulate
 from squealpipe.tasks.dynamics.whirl import transient_lifetimes, whirl_sizes
 
 part, out = snakemake.params.part, snakemake.output
-params, scene = parameters_of(part), SCENES["F3"]
+params, scene = for_linear(parameters_of(part), part["read_as"]), SCENES["F3"]
 tol, second = part["dynamics.tol"], params.time_unit
 speed = params.preload / second
 

@@ -1,12 +1,16 @@
 """Impacts, extremes and kind of motion of model A1; of a scattered map the rows of one part."""
 
-from squealpipe.tasks.dynamics.hammering import hammering_map
 from squealpipe.execution.row_blocks import make_map
+from squealpipe.parameters import parameters_of
+from squealpipe.reading import for_linear
+from squealpipe.tasks.dynamics.hammering import hammering_map
 
+part = snakemake.params.part
 make_map(
     hammering_map,
+    for_linear(parameters_of(part), part["read_as"]),
     "hammering",
-    snakemake.params.part,
+    part,
     output=snakemake.output[0],
     sources=snakemake.input.sources,
     log=snakemake.log[0],

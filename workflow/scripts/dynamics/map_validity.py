@@ -1,12 +1,19 @@
 """Where model A1 keeps contact; of a scattered map the rows of one part."""
 
-from squealpipe.tasks.dynamics.runs import validity_map
-from squealpipe.execution.row_blocks import make_map
+from functools import partial
 
+from squealpipe.execution.row_blocks import make_map
+from squealpipe.parameters import parameters_of
+from squealpipe.reading import for_a1
+from squealpipe.tasks.dynamics.runs import validity_map
+
+part = snakemake.params.part
+params, model = for_a1(parameters_of(part), part["read_as"])
 make_map(
-    validity_map,
+    partial(validity_map, model=model),
+    params,
     "validity",
-    snakemake.params.part,
+    part,
     output=snakemake.output[0],
     sources=snakemake.input.sources,
     log=snakemake.log[0],

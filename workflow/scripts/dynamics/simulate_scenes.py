@@ -1,21 +1,32 @@
-"""Model A1 in the scenes of Figs. 2 to 5."""
+"""Model A1 in the scenes of Figs. 2 to 5; Figs. 3 and 4 in the long run; Fig. 2(a) by Eq. (4) as printed."""
+
+from dataclasses import replace
 
 from squealpipe.parameters import SCENES, parameters_of
+from squealpipe.reading import READINGS, for_a1
 from squealpipe.store import produce
 from squealpipe.tasks.dynamics.runs import simulate
 
+LONG = 3000.0  # √(m/k1)
+
 part = snakemake.params.part
-params = parameters_of(part)
+params, model = for_a1(parameters_of(part), part["read_as"])
+runs = {name: (scene, model) for name, scene in SCENES.items()} | {
+    "F3_long": (replace(SCENES["F3"], t_end=LONG), model),
+    "F4_long": (replace(SCENES["F4"], t_end=LONG), model),
+    "F2a_printed": (SCENES["F2a"], READINGS["as_printed"].a1_model),
+}
 for name, path in snakemake.output.items():
-    scene = SCENES[name]
+    scene, of_model = runs[name]
     produce(
         lambda: simulate(
             params,
             scene.alpha1,
             scene.alpha2,
             t_end=scene.t_end * params.time_unit,
+            model=of_model,
             tol=part["dynamics.tol"],
-            growth=True,
+            growth=name in SCENES,
         ),
         config={**part, "scene": name}, sources=snakemake.input.sources,
         output=path,

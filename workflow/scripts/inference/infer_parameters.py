@@ -5,8 +5,12 @@ from squealpipe.store import produce
 from squealpipe.tasks.inference.inference import infer_parameters
 
 part = snakemake.params.part
+options = {
+    key: tuple(value) if isinstance(value, list) else value
+    for key, value in part["inference"].items()
+}
 produce(
-    lambda: infer_parameters(parameters_of(part), **part["inference"]),
+    lambda: infer_parameters(parameters_of(part), **options),
     config=part, sources=snakemake.input.sources,
     output=snakemake.output[0],
 )

@@ -1,11 +1,12 @@
 """The cheapest adequate model over both spring angles."""
 
 from squealpipe.parameters import parameters_of
+from squealpipe.reading import for_linear
 from squealpipe.store import produce
 from squealpipe.tasks.ladder.ladder import model_ladder
 
 part = snakemake.params.part
-params, ladder = parameters_of(part), part["comparison.ladder"]
+params, ladder = for_linear(parameters_of(part), part["read_as"]), part["comparison.ladder"]
 produce(
     lambda: model_ladder(
         params,

@@ -6,11 +6,12 @@ import numpy as np
 
 from squealpipe.models.refusals import without_extensions
 from squealpipe.parameters import parameters_of
+from squealpipe.reading import for_linear
 from squealpipe.store import produce
 from squealpipe.tasks.linear.critical import critical_damping_map, critical_friction_map
 
 part, out = snakemake.params.part, snakemake.output
-params = without_extensions(parameters_of(part))
+params = without_extensions(for_linear(parameters_of(part), part["read_as"]))
 unit = math.sqrt(params.k1 * params.mass)
 damping1, damping2 = (unit * share for share in part["spread.critical_damping"])
 angles = np.linspace(0.0, math.pi, part["linear.points"])

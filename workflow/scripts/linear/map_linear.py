@@ -1,20 +1,24 @@
-"""Linear maps over both spring angles: sliding (A2), stability (A3), frequencies (A4)."""
+"""Linear maps over both spring angles: sliding (A2), stability (A3) and frequencies (A4)."""
 
 import numpy as np
 
 from squealpipe.parameters import parameters_of
+from squealpipe.reading import for_linear
 from squealpipe.store import produce
-from squealpipe.tasks.linear.maps import natural_frequencies, quasi_static_map, stability_map
+from squealpipe.tasks.dynamics.assumptions import linear_pull_map
 from squealpipe.tasks.linear.boundaries import stability_boundaries
+from squealpipe.tasks.linear.maps import natural_frequencies, quasi_static_map, stability_map
 
 part = snakemake.params.part
-section, params, out = part["linear"], parameters_of(part), snakemake.output
-angles = np.linspace(0.0, np.pi, section["points"])
+out = snakemake.output
+params = for_linear(parameters_of(part), part["read_as"])
+angles = np.linspace(0.0, np.pi, part["linear.points"])
 tasks = {
     "quasi_static": lambda: quasi_static_map(params, angles, angles),
     "stability": lambda: stability_map(params, angles, angles),
-    "frequencies": lambda: natural_frequencies(params, angles, angles),
-    "boundaries": lambda: stability_boundaries(params),
+    "natural_frequencies": lambda: natural_frequencies(params, angles, angles),
+    "stability_boundaries": lambda: stability_boundaries(params),
+    "linear_pull": lambda: linear_pull_map(params, angles, angles),
 }
 for name, path in out.items():
     produce(tasks[name], config=part, sources=snakemake.input.sources, output=path)

@@ -3,6 +3,7 @@
 import numpy as np
 
 from squealpipe.parameters import parameters_of
+from squealpipe.reading import for_linear
 from squealpipe.store import produce
 from squealpipe.tasks.dynamics.explorer import explorer_data
 
@@ -10,7 +11,7 @@ part = snakemake.params.part
 options = dict(part["explorer"])
 angles = np.linspace(0.0, np.pi, options.pop("points"))
 produce(
-    lambda: explorer_data(parameters_of(part), angles, **options),
+    lambda: explorer_data(for_linear(parameters_of(part), part["read_as"]), angles, **options),
     config=part, sources=snakemake.input.sources,
     output=snakemake.output[0],
 )

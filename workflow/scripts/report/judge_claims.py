@@ -7,7 +7,7 @@ from squealpipe.store import produce
 part, paths = snakemake.params.part, snakemake.input.datasets
 sources = dict(zip(snakemake.params.names, paths, strict=True))
 produce(
-    lambda: judge(parameters_of(part), sources),
+    lambda: judge(parameters_of(part), sources, part["reading"]),
     config=part, sources=snakemake.input.sources,
     output=snakemake.output[0],
     inputs=paths,

@@ -3,12 +3,13 @@
 import math
 
 from squealpipe.parameters import parameters_of
+from squealpipe.reading import for_linear
 from squealpipe.store import produce
 from squealpipe.tasks.spread.distributions import centred
 from squealpipe.tasks.spread.propensity import propensity
 
 part = snakemake.params.part
-params = parameters_of(part)
+params = for_linear(parameters_of(part), part["read_as"])
 angles = [math.pi * angle for angle in part["spread.scene"]]
 produce(
     lambda: propensity(

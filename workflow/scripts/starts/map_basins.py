@@ -3,11 +3,12 @@
 import numpy as np
 
 from squealpipe.parameters import SCENES, parameters_of
+from squealpipe.reading import for_linear
 from squealpipe.store import produce
 from squealpipe.tasks.starts.basin import basin_map
 
 part, out = snakemake.params.part, snakemake.output
-params = parameters_of(part)
+params = for_linear(parameters_of(part), part["read_as"])
 speed = part["spread.basin_extent"] * params.preload / params.time_unit
 axis = np.linspace(-speed, speed, part["spread.basin_points"])
 for name, path in out.items():

@@ -1,11 +1,12 @@
 """Smallest disturbances of steady sliding in the paper's scenes."""
 
 from squealpipe.parameters import SCENES, parameters_of
+from squealpipe.reading import for_linear
 from squealpipe.store import produce
 from squealpipe.tasks.starts.disturbance import smallest_disturbance
 
 part = snakemake.params.part
-params = parameters_of(part)
+params = for_linear(parameters_of(part), part["read_as"])
 for name, path in snakemake.output.items():
     scene, _, goal = name.partition("_")
     produce(

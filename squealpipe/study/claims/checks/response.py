@@ -17,11 +17,11 @@ rows = Rows()
 ROUND_OFF = 1e-10
 """Difference of normalized contact forces that two identical runs may show."""
 
+LONGEST = 2.0
+"""|x| over the longer free length up to which the motion is that of a pendulum on its springs."""
+
 SATURATED = 1.02
 """Ratio of the late to the earlier size of a whirl below which it has stopped growing."""
-
-SAME_SPEED = 0.05
-"""Relative difference of belt speeds up to which a long run speaks for the study's own."""
 
 
 def contact_is_kept(name: str) -> Check:
@@ -84,7 +84,7 @@ def contact_is_lost(run: Run) -> Finding:
     "the first three responses differ little from one another",
     "spread of the extremes of the contact force, as a share of the preload",
     "fig02",
-    Verdict.cannot_be_decided,
+    Verdict.holds,
 )
 def responses_differ_little(run: Run) -> Finding:
     """F2e: extremes of the contact force of the scenes that keep contact, in two readings.
@@ -118,35 +118,22 @@ def responses_differ_little(run: Run) -> Finding:
     "at (0.4π, 0.6π) the x oscillation grows without bound",
     "ratio of largest |x| in the second half of the run to that in the first",
     "fig03",
-    Verdict.holds_only_as_printed,
+    Verdict.holds,
 )
 def unstable_response_grows(run: Run) -> Finding:
     """F3: largest |x| early and late, and where it ends in the long run."""
-    motion = scene(run, "F3")
-    early, late = halves(motion)
-    own = run.parameters.belt_speed
-    unit = run.parameters.time_unit
-    whirl = run["whirl"].sel(belt_speed=own, method="nearest")
-    speed = float(whirl.belt_speed)
+    early, late = halves(scene(run, "F3"))
+    longer = scene(run, "F3_long")
+    size = np.abs(longer.x.values) / float(longer.preload)
+    last = size.size - size.size // 5
+    before, end = float(size[:last].max()), float(size[last:].max())
+    saturates = end < SATURATED * before
     evidence = (
         f"|x| reaches {early:.3g} l_pre in the first half of the run to "
-        f"{until(run, motion)} and {late:.3g} l_pre in the second. "
+        f"{until(run, scene(run, 'F3'))} and {late:.3g} l_pre in the second. At the end of a run "
+        f"to {until(run, longer)} it {'does not grow' if saturates else 'grows'}: "
+        f"{end:.3g} l_pre in the last fifth, {before:.3g} before."
     )
-    saturates = False
-    if abs(speed - own) <= SAME_SPEED * abs(own):
-        size, before = (
-            float(whirl[name] / run.parameters.preload)
-            for name in ("amplitude", "amplitude_before")
-        )
-        saturates = size < SATURATED * before
-        evidence += (
-            f"At the end of a run to {float(whirl.t_end) / unit:g} √(m/k1) at "
-            f"V = {speed:.3g} m/s it "
-            + ("does not grow" if saturates else "grows")
-            + f": {size:.3g} l_pre in the last fifth, {before:.3g} before."
-        )
-    else:
-        evidence += "No long run was made near this belt speed."
     return finding(
         late / early,
         ">",
@@ -162,7 +149,7 @@ def unstable_response_grows(run: Run) -> Finding:
     "at (0.2π, 0.8π) there is a bounded limit cycle",
     "largest |x| over the free length of a spring",
     "fig04",
-    Verdict.holds_only_as_printed,
+    Verdict.holds,
 )
 def limit_cycle_is_bounded(run: Run) -> Finding:
     """F4: largest |x| against the springs' length, and whether it grows within the run."""
@@ -170,27 +157,34 @@ def limit_cycle_is_bounded(run: Run) -> Finding:
     early, late = halves(motion)
     longest = max(run.parameters.length1, run.parameters.length2)
     largest = float(np.abs(motion.x.values).max() / longest)
-    lifetimes = run["transient"].shown_lifetime.values / run.parameters.time_unit
-    ended = lifetimes[np.isfinite(lifetimes)]
-    horizon = float(run["transient"].t_end) / run.parameters.time_unit
+    longer = scene(run, "F4_long")
+    later = float(np.abs(longer.x.values).max() / longest)
     evidence = (
         f"|x| reaches {largest:.3g} of the longer free length up to {until(run, motion)} "
         f"({early:.3g} l_pre in the first half, {late:.3g} l_pre in the second; "
-        f"{GROWTH_THRESHOLD:g} times as far counts as growth); whether it repeats is not judged. "
-    ) + (
-        f"Beyond, {ended.size} of {lifetimes.size} runs from starts at most a billionth of l_pre "
-        f"apart end in the whirl before t = {horizon:g} √(m/k1), the first after {ended.min():.3g}"
-        f"{_median(run['transient'], run.parameters.time_unit)}."
-        if ended.size
-        else f"None of {lifetimes.size} runs ends in the whirl before t = {horizon:g} √(m/k1)."
+        f"{GROWTH_THRESHOLD:g} times as far counts as growth), and {later:.3g} of it up to "
+        f"{until(run, longer)}; whether it repeats is not judged."
     )
+    transient = run["transient"]
+    ended = np.empty(0)
+    if float(transient.shown_belt_speed) == run.parameters.belt_speed:  # not as printed
+        lifetimes = transient.shown_lifetime.values / run.parameters.time_unit
+        ended = lifetimes[np.isfinite(lifetimes)]
+        horizon = float(transient.t_end) / run.parameters.time_unit
+        evidence += (
+            f" Beyond, {ended.size} of {lifetimes.size} runs from starts at most a billionth of "
+            f"l_pre apart end in the whirl before t = {horizon:g} √(m/k1), the first after "
+            f"{ended.min():.3g}{_median(transient, run.parameters.time_unit)}."
+            if ended.size
+            else f" None of {lifetimes.size} runs ends in the whirl before t = {horizon:g} √(m/k1)."
+        )
     return finding(
         largest,
         "<",
-        2.0,
+        LONGEST,
         evidence,
         also=late < GROWTH_THRESHOLD * early,
-        passed=Verdict.holds_only_as_printed if ended.size else Verdict.holds,
+        passed=Verdict.holds_only_as_printed if ended.size or later >= LONGEST else Verdict.holds,
     )
 
 

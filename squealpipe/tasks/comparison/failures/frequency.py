@@ -23,7 +23,7 @@ from squealpipe.solvers.a4.orbits import find_orbit, linear_orbit
 from squealpipe.solvers.a4.system import ScaledSystem, scaled_system
 from squealpipe.tasks.backbones.backbone import backbone
 from squealpipe.tasks.backbones.orbit import periodic_orbit
-from squealpipe.tasks.comparison.failures.verdicts import Answer, HardScene, Method
+from squealpipe.tasks.comparison.failures.verdicts import BASE, Answer, HardScene, Method
 from squealpipe.tasks.comparison.work_precision.harmonic import orbit_series
 from squealpipe.tasks.comparison.work_precision.stability import OnsetCase
 from squealpipe.tasks.linear.maps import quasi_static_map
@@ -93,7 +93,7 @@ def scenes() -> list[HardScene]:
 
 
 def _branch(case: BranchCase) -> HardScene:
-    params = Parameters()
+    params = BASE
     scene = scaled_system(params, *case.angles)
     answers: dict[str, Callable[[], Answer]] = {
         EXACT: lambda: _exact_orbit(params, case),
@@ -211,7 +211,7 @@ def _flag(outcome: Outcome) -> str:
 
 def _period_doubling() -> HardScene:
     """Is the motion stable? Inside the window its multipliers are real and negative."""
-    params, angles, mode, y_peak = Parameters(), (0.3 * math.pi, 0.9 * math.pi), 1, 4.0
+    params, angles, mode, y_peak = BASE, (0.3 * math.pi, 0.9 * math.pi), 1, 4.0
     scene = scaled_system(params, *angles)
     exact, _ = find_orbit(scene, mode, y_peak)
     balance = CosineBalance(scene.system, contact_of(HILL_HARMONICS, 1.0, None, None))
@@ -247,7 +247,7 @@ def _period_doubling() -> HardScene:
 
 def _singular_static_state() -> HardScene:
     """x of the static state at α1 = α2 = π/2, where K11 = 0 and there is none."""
-    params, angle = Parameters(), np.array([0.5 * math.pi])
+    params, angle = BASE, np.array([0.5 * math.pi])
 
     def ours() -> Answer:
         found = quasi_static_map(params, angle, angle)

@@ -18,7 +18,7 @@ from squealpipe.schema.comparison import Role
 from squealpipe.solvers.a1.ensemble import run_ensemble
 from squealpipe.solvers.a1.peers import simulate_moreau_jean, simulate_regularized, simulate_scipy
 from squealpipe.solvers.a1.reference import simulate_reference
-from squealpipe.tasks.comparison.failures.verdicts import Answer, HardScene, Method
+from squealpipe.tasks.comparison.failures.verdicts import BASE, Answer, HardScene, Method
 from squealpipe.tasks.comparison.work_precision.integration import contact_changes
 
 OURS = "Taylor + events"
@@ -73,8 +73,8 @@ def time_methods(solvers: Sequence[str], tolerances: Sequence[float]) -> list[Me
 
 
 def cases(chaotic_horizon: float, beyond_horizon: float) -> list[Case]:
-    """The hard scenes at the baseline, in units of m = k1 = l_pre = 1."""
-    base = Parameters()
+    """The hard scenes, in units of m = k1 = l_pre = 1."""
+    base = BASE
     pivot = (base.length1 * math.cos(math.pi / 3), base.length1 * math.sin(math.pi / 3))
     return [
         Case("grazing contact", base.with_(k3=_grazing_k3(base)), 0.5, 1.0, 4.0),

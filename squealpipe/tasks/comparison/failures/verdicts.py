@@ -9,8 +9,12 @@ from dataclasses import dataclass
 import numpy as np
 import xarray as xr
 
+from squealpipe.parameters import Parameters
 from squealpipe.schema import build
 from squealpipe.schema.comparison import FAILURE_ATLAS, Reliability, Role
+
+BASE = Parameters(k3=0.75, mu=0.3, belt_speed=100.0, length1=5.0, length2=5.0)
+"""Parameters at which the scenes are hard, whatever the study's are."""
 
 
 @dataclass(frozen=True)
