@@ -120,7 +120,7 @@ class _SeriesWriter:
         self.place = {id(node): index for index, node in enumerate(system.variables)}
         self.events = len(self.place)
         self.count = self.events + len(system.events)
-        self.joined: dict[int, int] = {}
+        self.joined: dict[tuple[int, ...], int] = {}
         for node in self.moving:
             self._prepare(node)
         self.level = self._levels()
@@ -135,10 +135,9 @@ class _SeriesWriter:
             self._keep(node if node.kind not in PARTNERS else PARTNERS[node.kind](node))
         elif node.kind == "joined":
             self._keep(moving_part(node.arguments[2]))
-            key = tuple(id(node.arguments[i]) for i in (0, 1, 3, 4))
-            self.joined[id(node)] = self.joined.get(hash(key), self.count)
-            if self.joined[id(node)] == self.count:
-                self.joined[hash(key)] = self.count
+            key = _levers(node)
+            if key not in self.joined:
+                self.joined[key] = self.count
                 self.count += 1
 
     def _keep(self, node: Symbol) -> None:
@@ -191,7 +190,7 @@ class _SeriesWriter:
         if node.kind == "joined":
             c1, a1, _, c2, a2, _ = (self._v(each) for each in node.arguments)
             total = f"fma({c1}, {a1}, {c2} * {a2})"
-            yield f"store(s{self.joined[id(node)]} + {row}, {total})"
+            yield f"store(s{self.joined[_levers(node)]} + {row}, {total})"
 
     def _first(self, node: Symbol) -> Iterator[str]:
         """Order 0."""
@@ -243,7 +242,7 @@ class _SeriesWriter:
             pairs = [tuple(self._s(each) for each in node.arguments) for node in group]
             yield from self._full(group, pairs, "range(1, k)", "")
         for group in _groups([n for n in nodes if n.kind == "joined"]):
-            pairs = [(f"s{self.joined[id(n)]}", self._s(n.arguments[2])) for n in group]
+            pairs = [(f"s{self.joined[_levers(n)]}", self._s(n.arguments[2])) for n in group]
             yield from self._full(group, pairs, "range(k)", "")
         for kind in ("**", *FUNCTIONS):
             for group in _groups([n for n in nodes if n.kind == kind]):
@@ -318,6 +317,11 @@ class _SeriesWriter:
             for node in nodes:
                 yield from (line for line in self._later(node) if not line.startswith("store"))
             yield f"store({place}, {self._v(event)})"
+
+
+def _levers(node: Symbol) -> tuple[int, ...]:
+    """What decides the series c₁ A₁ + c₂ A₂ of a joined node."""
+    return tuple(id(node.arguments[i]) for i in (0, 1, 3, 4))
 
 
 def constant(system: HybridSystem, node: Symbol, name: Name) -> str:
