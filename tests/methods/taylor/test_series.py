@@ -126,5 +126,5 @@ def test_series_are_told_apart_by_what_they_are_not_by_a_hash(monkeypatch):
     rates = (z, w, -(x**-1.0 * x + y**-1.0 * x), -(x**-2.0 * y + y**-2.0 * y))
     system = HybridSystem((x, y, z, w), rates, (ONE, ONE, ONE), ())
     usual = series_source(system)
-    monkeypatch.setattr(series, "hash", lambda key: 0, raising=False)
+    monkeypatch.setattr(series, "hash", {}.get, raising=False)
     assert series_source(system) == usual
