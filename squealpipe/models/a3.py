@@ -92,16 +92,6 @@ def regime(invariants: Spectrum) -> Any:
     )
 
 
-MERGED = 1e-6
-"""Relative difference of two frequencies up to which they have merged."""
-
-
-def merge(frequency: Any) -> Any:
-    """Whether both modes (last axis, ascending) have one frequency, as where they couple."""
-    slow, fast = frequency[..., 0], frequency[..., 1]
-    return fast - slow <= MERGED * fast
-
-
 def static_state(
     stiffness: Stiffness, spring_determinant: Any, *, k3: Any, mu: Any, actuation: Any
 ) -> tuple[Any, Any, Any]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from enum import IntEnum
+from typing import Any
 
 from squealpipe.schema import LINEAR_ENDS, DatasetSchema, Variable, outcome
 from squealpipe.schema.agreement import Listing
@@ -22,6 +23,16 @@ class LinearRegimeFlag(IntEnum):
     stable = 0
     flutter = 1
     divergence = 2
+
+
+MERGED = 1e-6
+"""Relative difference of two frequencies up to which they have merged."""
+
+
+def merge(frequency: Any) -> Any:
+    """Whether both modes (last axis, ascending) have one frequency, as where they couple."""
+    slow, fast = frequency[..., 0], frequency[..., 1]
+    return fast - slow <= MERGED * fast
 
 
 REGIME_LINEAR = Variable(

@@ -18,6 +18,7 @@ from squealpipe.models.damped import damped_system, is_undamped, stability
 from squealpipe.parameters import Parameters
 from squealpipe.schema import Outcome
 from squealpipe.schema.inference import DAMPED_GRID
+from squealpipe.schema.linear import merge
 from squealpipe.solvers.a1.ensemble import run_ensemble
 from squealpipe.tasks.inference.constraints import parameter_sets
 
@@ -127,7 +128,7 @@ def _regime(
         regime = np.asarray(a3.regime(contact_system(params, alpha1, alpha2).invariants))
         return regime, regime == a3.LinearRegime.flutter
     found = stability(damped_system(params, alpha1, alpha2))
-    return found.regime, (found.regime == a3.LinearRegime.flutter) & a3.merge(found.frequency)
+    return found.regime, (found.regime == a3.LinearRegime.flutter) & merge(found.frequency)
 
 
 def _linear(

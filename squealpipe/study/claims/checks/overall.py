@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from squealpipe.models.a3 import LinearRegime, merge
 from squealpipe.schema.claims import Verdict
 from squealpipe.schema.dynamics.runs import EventFlag
+from squealpipe.schema.linear import LinearRegimeFlag, merge
 from squealpipe.study.claims.checks.motions import events, scene
 from squealpipe.study.claims.evidence import Finding, Run, finding
 from squealpipe.study.claims.maps import share
@@ -125,7 +125,7 @@ def earlier_assumptions_fail(run: Run) -> Finding:
 def modes_couple(run: Run) -> Finding:
     """S3: frequencies merge in cells that flutter; negative damping makes flutter without it."""
     stability = run["stability_map"]
-    flutter = stability.regime_linear == LinearRegime.flutter
+    flutter = stability.regime_linear == LinearRegimeFlag.flutter
     frequency = stability.frequency.transpose(..., "mode")
     merged = flutter & merge(frequency.values)
     evidence = (
