@@ -36,11 +36,12 @@ def parameters_of_run(params: Parameters, alpha1: float, alpha2: float) -> dict[
 
 
 @cache
-def brake(friction_law: str = COULOMB) -> System:
+def brake(friction_law: str = COULOMB, *, damped: bool = False) -> System:
     """A1 with one friction law.
 
     Args:
         friction_law: its name.
+        damped: with dashpots; without, ``damping1`` and ``damping2`` are not read.
     """
     defaults = {
         name: DEFAULTS[of] if DEFAULTS[of] is not None else DEFAULTS["mu"]
@@ -55,12 +56,14 @@ def brake(friction_law: str = COULOMB) -> System:
     def field(t: Any, s: Any, p: Any, r: Any) -> dict[str, Any]:
         ax, ay = a1.acceleration(
             s.x, s.y, s.vx, s.vy, *of(p),
-            contact=r.contact, direction=r.direction, stick=r.stick,
+            contact=r.contact, direction=r.direction, stick=r.stick, dashpots=damped,
         )  # fmt: skip
         return {"x": s.vx, "y": s.vy, "vx": ax, "vy": ay}
 
     def pull(s: Any, p: Any) -> Any:
-        return a1.suspension_force(s.x, s.y, s.vx, s.vy, *of(p), linear_springs=False)[0]
+        return a1.suspension_force(
+            s.x, s.y, s.vx, s.vy, *of(p), linear_springs=False, dashpots=damped
+        )[0]
 
     def limit(s: Any, p: Any) -> Any:
         q, _ = of(p)

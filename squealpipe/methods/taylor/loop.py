@@ -18,11 +18,12 @@ import numpy as np
 
 from squealpipe.methods.compiled import inline, part
 from squealpipe.methods.taylor.lanes import call, compile_advance, view
-from squealpipe.methods.taylor.roots import first_crossing
+from squealpipe.methods.taylor.roots import evaluate_twice, first_crossing
 from squealpipe.methods.taylor.simd import (
     LANES,
     ROW,
     bits_below,
+    choose_below,
     first_bit,
     fma,
     larger,
@@ -33,7 +34,7 @@ from squealpipe.methods.taylor.simd import (
     splat,
     store,
 )
-from squealpipe.methods.taylor.taylor_polynomial import above, below, evaluate, evaluate_with_slope
+from squealpipe.methods.taylor.taylor_polynomial import MOST_TURNS, evaluate, evaluate_with_slope
 from squealpipe.rerun.sources import closure
 
 _numba: Any = numba
@@ -45,6 +46,8 @@ CHAIN = 64
 """Switches without progress in time that end a run."""
 LATE_BEGINS = -2
 """What ends a step where the late part of a run begins."""
+REST = 2e-4
+"""Share of a quantity that the higher orders of its second derivative add to a step's span."""
 PIECES = 8
 """Pieces of a step in which turning points of a quantity are looked for, one in each."""
 
@@ -231,22 +234,24 @@ def _extremes(c: Any, index: int, lane: int, step: float) -> Any:
     """Least and largest value at turning points inside a step."""
     low, high = math.inf, -math.inf
     left, width = 0.0, step / PIECES
-    _, before = evaluate_with_slope(c, index, lane, 0.0)
+    _, before, _ = evaluate_twice(c, index, lane, 0.0)
     for _ in range(PIECES):
         right = left + width
-        _, after = evaluate_with_slope(c, index, lane, right)
+        _, after, _ = evaluate_twice(c, index, lane, right)
         if before * after < 0.0:
-            a, b = left, right
-            for _ in range(60):
-                middle = 0.5 * (a + b)
-                _, slope = evaluate_with_slope(c, index, lane, middle)
+            a, b, time = left, right, 0.5 * (left + right)
+            for _ in range(MOST_TURNS):
+                value, slope, bend = evaluate_twice(c, index, lane, time)
                 if slope * before > 0.0:
-                    a = middle
+                    a = time
                 else:
-                    b = middle
-                if b - a < 1e-9 * step:
+                    b = time
+                last, time = time, time - slope / bend
+                if not a <= time <= b:
+                    time = 0.5 * (a + b)
+                if abs(time - last) < 1e-7 * step:  # the error enters squared
                     break
-            value = evaluate(c, index, lane, 0.5 * (a + b))
+            value, _, _ = evaluate_twice(c, index, lane, time)
             low, high = min(low, value), max(high, value)
         left, before = right, after
     return low, high
@@ -254,48 +259,55 @@ def _extremes(c: Any, index: int, lane: int, step: float) -> Any:
 
 @inline
 def _observe(t: Any, m: Any, c: Any, first_extreme: int, busy: int) -> None:
-    """Extremes of the tracked quantities over one step of all lanes, and times in regimes."""
+    """Extremes of the tracked quantities over one step of all lanes, and times in regimes.
+
+    Inside a step a quantity leaves the span of its ends by at most h²/8 times its second
+    derivative, of which the first orders are nearly all: only where that could be a record are
+    turning points looked for.
+    """
     at, terms = t.rows, t.n_terms
     step, zero = load(at + STEP * ROW), splat(0.0)
+    late = load(at + LATE * ROW)
+    first_time = first_extreme + 4 * t.n_tracked
     for lane in range(LANES):
-        m.rows[first_extreme + 4 * t.n_tracked + m.integers[REGIME, lane], lane] += m.rows[
-            STEP, lane
-        ]
+        m.rows[first_time + m.integers[REGIME, lane], lane] += m.rows[STEP, lane]
     for index in range(t.n_tracked):
-        series = t.series + m.tracked[index] * terms * ROW
-        end, rate = load(series + (terms - 1) * ROW), zero
-        for k in range(terms - 2, -1, -1):
-            rate = fma(rate, step, end)
-            end = fma(end, step, load(series + k * ROW))
-        start, first, bend = load(series), load(series + ROW), 2.0 * load(series + 2 * ROW)
+        variable = m.tracked[index]
+        series, r = t.series + variable * terms * ROW, first_extreme + 4 * index
+        if variable < t.n_variables:
+            end = load(at + (FIXED_ROWS + variable) * ROW)
+        else:
+            end = _at_end(series, terms, step)
+        start = load(series)
         low, high = smaller(start, end), larger(start, end)
-        row = at + (first_extreme + 4 * index) * ROW
+        bend = 0.75 * magnitude(load(series + 3 * ROW)) + 1.5 * step * magnitude(
+            load(series + 4 * ROW)
+        )
+        bend = step * step * (0.25 * magnitude(load(series + 2 * ROW)) + step * bend)
+        beyond = bend + REST * larger(magnitude(start), magnitude(end))
+        row = at + r * ROW
         store(row, smaller(low, load(row)))
         store(row + ROW, larger(high, load(row + ROW)))
-        reach = magnitude(first) * step
-        turns = bits_below(first * rate, zero)
-        twice = bits_below(zero, first * rate) & bits_below(first * (first + bend * step), zero)
-        most = bits_below(load(row + ROW), above(start, end, first, rate, step)) & turns
-        least = bits_below(below(start, end, first, rate, step), load(row)) & turns
-        wider = bits_below(load(row + ROW), high + reach) | bits_below(low - reach, load(row))
-        late = bits_below(zero, load(at + LATE * ROW)) & busy
-        bits = ((most | least | (twice & wider)) & busy) | late
+        store(
+            row + 2 * ROW,
+            choose_below(zero, late, smaller(low, load(row + 2 * ROW)), load(row + 2 * ROW)),
+        )
+        store(
+            row + 3 * ROW,
+            choose_below(zero, late, larger(high, load(row + 3 * ROW)), load(row + 3 * ROW)),
+        )
+        least = choose_below(zero, late, load(row + 2 * ROW), load(row))
+        most = choose_below(zero, late, load(row + 3 * ROW), load(row + ROW))
+        bits = (bits_below(most, high + beyond) | bits_below(low - beyond, least)) & busy
         while bits:
             lane = first_bit(bits)
-            bit = 1 << lane
-            bits ^= bit
-            if (turns | twice) & bit:
-                inner_low, inner_high = _extremes(c, m.tracked[index], lane, m.rows[STEP, lane])
-            else:
-                inner_low, inner_high = math.inf, -math.inf
-            r = first_extreme + 4 * index
+            bits ^= 1 << lane
+            inner_low, inner_high = _extremes(c, variable, lane, m.rows[STEP, lane])
             m.rows[r, lane] = min(m.rows[r, lane], inner_low)
             m.rows[r + 1, lane] = max(m.rows[r + 1, lane], inner_high)
-            if late & bit:
-                a = c[m.tracked[index], 0, lane]
-                b = evaluate(c, m.tracked[index], lane, m.rows[STEP, lane])
-                m.rows[r + 2, lane] = min(m.rows[r + 2, lane], inner_low, a, b)
-                m.rows[r + 3, lane] = max(m.rows[r + 3, lane], inner_high, a, b)
+            if m.rows[LATE, lane] > 0.0:
+                m.rows[r + 2, lane] = min(m.rows[r + 2, lane], inner_low)
+                m.rows[r + 3, lane] = max(m.rows[r + 3, lane], inner_high)
 
 
 @part

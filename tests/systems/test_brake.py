@@ -1,0 +1,47 @@
+"""The brake as a system: the same motion as A1's own loop, event by event."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from squealpipe import Parameters, simulate
+from squealpipe.systems.brake import brake, parameters_of_run
+
+
+@pytest.mark.parametrize("damping", [0.0, 0.05])
+def test_events_and_states_are_those_of_a1(damping):
+    rng = np.random.default_rng(3)
+    system, events = brake(damped=damping > 0.0), 0
+    for _ in range(12):
+        params = Parameters(
+            mass=0.5,
+            k1=100.0,
+            k2=100.0 * rng.uniform(0.5, 2.0),
+            k3=100.0 * rng.uniform(0.3, 1.5),
+            mu=rng.uniform(0.1, 0.7),
+            belt_speed=rng.choice([-1, 1]) * 10 ** rng.uniform(-0.5, 2.0),
+            length1=rng.uniform(2.0, 8.0),
+            length2=rng.uniform(2.0, 8.0),
+            damping1=damping,
+            damping2=2.0 * damping,
+        )
+        angles = rng.uniform(0.0, np.pi, 2)
+        t_end = 40.0 * params.time_unit
+        ours = system.simulate(
+            t_end, times=np.linspace(0.0, t_end, 9), **parameters_of_run(params, *angles)
+        )
+        other = simulate(params, *angles, t_end=t_end, times=np.linspace(0.0, t_end, 9))
+        np.testing.assert_allclose(ours.event_time, other.event_time, atol=1e-10 * t_end)
+        events += ours.sizes["event"]
+        names = [
+            each.attrs["flag_meanings"].split() for each in (ours.event_kind, other.event_kind)
+        ]
+        mine, theirs = (
+            [n[k] for k in d.event_kind.values] for n, d in zip(names, (ours, other), strict=True)
+        )
+        assert mine == theirs
+        for name in ("x", "y", "vx", "vy"):
+            scale = max(1.0, float(np.abs(other[name]).max()))
+            np.testing.assert_allclose(ours[name], other[name], atol=1e-9 * scale)
+    assert events > 50
