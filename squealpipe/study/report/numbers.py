@@ -44,15 +44,18 @@ def _growth(run: Run) -> dict[str, Any]:
         "whirl_size": own.amplitude / preload,
         "whirl_time": whirl.t_end / unit,
         "whirl_slope": whirl.slope,
-        **_printed_long(run, preload, unit),
+        **_long_runs(run, preload, unit),
     }
 
 
-def _printed_long(run: Run, preload: float, unit: float) -> dict[str, Any]:
-    if "simulate/F3_long" not in run:
-        return {}
+def _long_runs(run: Run, preload: float, unit: float) -> dict[str, Any]:
     long = run["simulate/F3_long"]
-    return {"F3_long_size": abs(long.x).max() / preload, "F3_long_time": long.time[-1] / unit}
+    mended = run["corrected/simulate/F3_long"]
+    return {
+        "F3_long_size": abs(long.x).max() / preload,
+        "F3_long_time": long.time[-1] / unit,
+        "mended_F3_long_size": abs(mended.x).max() / preload,
+    }
 
 
 def _linear(run: Run) -> dict[str, Any]:

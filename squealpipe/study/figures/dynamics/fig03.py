@@ -21,39 +21,48 @@ if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.figure import Figure
 
-READS = ("*simulate/F3",)
+READS = ("*simulate/F3*",)
 CAPTION = (
     "Displacements of model A1, started at rest at α₁ = 0.4π, α₂ = 0.6π: (a) x, along the belt, "
-    "and (b) y, away from it. Orange and blue: friction as the study reads the paper; black, where "
-    "drawn: with the sign of Eq. (4) mended. Dotted: l_pre, above which contact is lost."
+    "and (b) y, away from it. Dotted: l_pre, above which contact is lost. (c) x much longer, as "
+    "the study reads the paper (orange) and, where that differs, with the sign of friction mended "
+    "(black)."
 )
 ALT = (
-    "Two time histories, x above y, with a drawing of the springs and a dotted line at the "
-    "precompression in the lower panel."
+    "Time histories of x and y with a drawing of the springs and a dotted line at the "
+    "precompression, and below them x over a much longer time in one or two readings of the paper."
 )
 TITLES = {"x": "x, along the belt", "y": r"y, away from the belt (dotted: $l_\mathrm{pre}$)"}
+READINGS = (
+    ("simulate/F3_long", X_COLOUR, "as printed"),
+    ("corrected/simulate/F3_long", BLACK, "sign mended"),
+)
 
 
 def draw(runs: Mapping[str, xr.Dataset]) -> Figure:
-    """Two panels.
+    """Two panels, and a third one where the study has long runs.
 
     Args:
-        runs: dataset ``simulate/F3``, and ``corrected/simulate/F3``.
+        runs: dataset ``simulate/F3``, ``simulate/F3_long``, and both of ``corrected/``.
     """
-    figure, axes = new_figure(PAGE, 3.6, nrows=2, sharex=True)
-    run, *mended = (runs[name] for name in sorted(runs, key=len))
+    run = runs["simulate/F3"]
+    long = [(runs[name], *look) for name, *look in READINGS if name in runs]
+    figure, axes = new_figure(PAGE, 3.6 + 1.6 * bool(long), nrows=2 + bool(long))
     for panel, letter, name, colour in zip(
-        axes[:, 0], "ab", ("x", "y"), (X_COLOUR, Y_COLOUR), strict=True
+        axes[:2, 0], "ab", ("x", "y"), (X_COLOUR, Y_COLOUR), strict=True
     ):
-        panel.plot(run.time, run[name], color=colour, linewidth=0.7, label="as printed")
-        for other in mended:
-            panel.plot(other.time, other[name], color=BLACK, lw=0.6, label="sign mended")
+        panel.plot(run.time, run[name], color=colour, linewidth=0.7)
         panel.axhline(0.0, color=GREY, linewidth=0.5)
         panel.set(ylabel=f"{name} (m)", xlim=(0.0, float(run.time[-1])))
         panel_letter(panel, letter, TITLES[name])
-    if mended:
-        axes[0, 0].legend(loc="upper left", ncols=2)
     axes[1, 0].axhline(float(run.preload), color="black", ls=":", lw=0.8)
-    axes[1, 0].set_xlabel("t (s)")
+    for other, colour, label in long:
+        label = label if len(long) > 1 else None
+        axes[2, 0].plot(other.time, other.x, color=colour, linewidth=0.4, label=label)
+        axes[2, 0].set(ylabel="x (m)", xlim=(0.0, float(other.time[-1])))
+        panel_letter(axes[2, 0], "c", "x, longer")
+    if len(long) > 1:
+        axes[2, 0].legend(loc="upper left", ncols=2)
+    axes[-1, 0].set_xlabel("t (s)")
     inset_mechanism(axes[0, 0], run, (1.0, 0.3, 0.14, 0.4))
     return figure

@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     import xarray as xr
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 READS = ("[cv]*alidity_map",)
@@ -74,6 +75,28 @@ def grows(validity: xr.Dataset) -> np.ndarray:
     return np.asarray((validity.separates.values == 0) & (growth >= growth_threshold(validity)))
 
 
+def draw_kinds(panel: Axes, validity: xr.Dataset) -> np.ndarray:
+    """The four kinds of cells, orange ones hatched for reading in greyscale."""
+    kinds = kinds_of_cells(validity)
+    angles = validity.alpha1.values, validity.alpha2.values
+    draw_map(panel, *angles, kinds, **category_colours([colour for _, colour in KINDS]))
+    if (kinds == 1).any():
+        cells = (kinds == 1).T.astype(float)
+        panel.contourf(*angles, cells, levels=[0.5, 1.5], colors="none", hatches=["//////"])
+    return kinds
+
+
+def key() -> list[Patch]:
+    """What the tones mean."""
+    return [
+        Patch(
+            facecolor=colour, edgecolor=BLACK, linewidth=0.5, label=label,
+            hatch="//////" if colour == ORANGE else None,
+        )
+        for label, colour in KINDS
+    ]  # fmt: skip
+
+
 def draw(maps: Mapping[str, xr.Dataset]) -> Figure:
     """One map, and beside it that of the mended sign if the study has it.
 
@@ -84,20 +107,15 @@ def draw(maps: Mapping[str, xr.Dataset]) -> Figure:
     figure, axes = new_figure(PAGE if len(names) > 1 else 0.62 * PAGE, 3.9, ncols=len(names))
     counts = []
     for panel, letter, name in zip(axes[0], "ab", names, strict=False):
-        kinds = kinds_of_cells(maps[name])
-        angles = maps[name].alpha1.values, maps[name].alpha2.values
-        draw_map(panel, *angles, kinds, **category_colours([colour for _, colour in KINDS]))
+        kinds = draw_kinds(panel, maps[name])
         mark_scene(panel, "F3")
         counts.append(np.bincount(kinds.ravel(), minlength=len(KINDS)))
         title = f"{TITLES[_kind(name)]}: " if len(names) > 1 else ""
         panel_letter(panel, letter, f"{title}{counts[-1][3]} black cells of {kinds.size}")
-    handles = [
-        Patch(
-            facecolor=colour, edgecolor=BLACK, linewidth=0.5,
-            label=f"{label}: {' | '.join(str(count[index]) for count in counts)}",
-        )
-        for index, (label, colour) in enumerate(KINDS)
-    ]  # fmt: skip
+    handles = key()
+    for index, handle in enumerate(handles):
+        numbers = " | ".join(str(count[index]) for count in counts)
+        handle.set_label(f"{handle.get_label()}: {numbers}")
     cross = axes[0, 0].get_legend_handles_labels()[0]
     figure.legend(handles=[*handles, *cross], loc="outside lower center", ncols=len(names) + 1)
     return figure

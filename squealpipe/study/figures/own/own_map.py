@@ -5,17 +5,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from matplotlib.patches import Patch
 
-from squealpipe.study.figures.linear.fig07 import KINDS, kinds_of_cells
-from squealpipe.study.figures.parts.style import (
-    BLACK,
-    BLUE,
-    PAGE,
-    category_colours,
-    draw_map,
-    new_figure,
-)
+from squealpipe.study.figures.linear.fig07 import draw_kinds, key
+from squealpipe.study.figures.parts.style import BLUE, PAGE, new_figure
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -33,17 +25,12 @@ ALT = "A map over both spring angles in white, orange, grey and black with cross
 def draw(validity: xr.Dataset, scenes: xr.Dataset) -> Figure:
     """The map with the scenes."""
     figure, axes = new_figure(0.7 * PAGE, 3.9)
-    panel, kinds = axes[0, 0], kinds_of_cells(validity)
-    colours = category_colours([colour for _, colour in KINDS])
-    draw_map(panel, validity.alpha1.values, validity.alpha2.values, kinds, **colours)
+    panel = axes[0, 0]
+    draw_kinds(panel, validity)
     for scene in scenes.scene.values:
         here = scenes.sel(scene=scene)
         at = float(here.alpha1) % np.pi, float(here.alpha2) % np.pi
         panel.plot(*at, "x", color=BLUE, markersize=8, markeredgewidth=2)
         panel.annotate(str(scene), at, (5, 5), textcoords="offset points", color=BLUE, fontsize=8)
-    handles = [
-        Patch(facecolor=colour, edgecolor=BLACK, linewidth=0.5, label=label)
-        for label, colour in KINDS
-    ]
-    figure.legend(handles=handles, loc="outside lower center", ncols=2)
+    figure.legend(handles=key(), loc="outside lower center", ncols=2)
     return figure
