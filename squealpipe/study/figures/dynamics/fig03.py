@@ -46,7 +46,7 @@ def draw(runs: Mapping[str, xr.Dataset]) -> Figure:
         runs: dataset ``simulate/F3``, ``simulate/F3_long``, and both of ``corrected/``.
     """
     run = runs["simulate/F3"]
-    long = [(runs[name], *look) for name, *look in READINGS if name in runs]
+    long = [(runs[name], colour, words) for name, colour, words in READINGS if name in runs]
     figure, axes = new_figure(PAGE, 3.6 + 1.6 * bool(long), nrows=2 + bool(long))
     for panel, letter, name, colour in zip(
         axes[:2, 0], "ab", ("x", "y"), (X_COLOUR, Y_COLOUR), strict=True
@@ -56,9 +56,8 @@ def draw(runs: Mapping[str, xr.Dataset]) -> Figure:
         panel.set(ylabel=f"{name} (m)", xlim=(0.0, float(run.time[-1])))
         panel_letter(panel, letter, TITLES[name])
     axes[1, 0].axhline(float(run.preload), color="black", ls=":", lw=0.8)
-    for other, colour, label in long:
-        label = label if len(long) > 1 else None
-        axes[2, 0].plot(other.time, other.x, color=colour, linewidth=0.4, label=label)
+    for other, colour, words in long:
+        axes[2, 0].plot(other.time, other.x, color=colour, linewidth=0.4, label=words)
         axes[2, 0].set(ylabel="x (m)", xlim=(0.0, float(other.time[-1])))
         panel_letter(axes[2, 0], "c", "x, longer")
     if len(long) > 1:
