@@ -2,7 +2,9 @@
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
-STAMP := $(VENV)/.made-from-lock
+STUDY := $(VENV)/.made-from-lock
+DEV := $(VENV)/.made-from-dev-lock
+TESTS := $(BIN)/python -m pytest -q -n 2 --dist loadfile --no-loadscope-reorder
 
 # Snakemake and Matplotlib keep caches in the home folder; without one that can be written, here.
 ifneq ($(shell test -w "$$HOME" && echo yes),yes)
@@ -10,7 +12,7 @@ export XDG_CACHE_HOME := $(CURDIR)/.snakemake/cache
 export MPLCONFIGDIR := $(CURDIR)/.snakemake/cache/matplotlib
 endif
 
-.PHONY: reproduce quick test test-processors bench env lint lock docs dictionary clean
+.PHONY: reproduce quick test test-release test-processors bench env dev lint lock docs dictionary clean
 
 reproduce: env  ## the whole study: datasets, figures, report
 	$(BIN)/snakemake
@@ -18,12 +20,15 @@ reproduce: env  ## the whole study: datasets, figures, report
 quick: env  ## the same study, coarse, into results/quick
 	$(BIN)/snakemake --configfile workflow/config/quick.yaml
 
-test: env  ## all tests but the slow sweeps
-	$(BIN)/python -m pytest -q -n 2 --dist loadfile --no-loadscope-reorder
+test: dev  ## the tests of each change, minutes
+	$(TESTS)
+
+test-release: dev  ## the rest: whole studies, cluster, faults, browser, recipes, large samples
+	$(TESTS) -m release --timeout 3000
 
 NUMERICAL := tests/laws tests/methods tests/models tests/solvers tests/tasks tests/validation
 
-test-processors: env  ## numerical tests, and the quick study compared, as on other processors
+test-processors: dev  ## numerical tests, and the quick study compared, as on other processors
 	$(BIN)/snakemake -q --configfile workflow/config/quick.yaml
 	for processor in avx2 generic; do \
 	  tests/processors $$processor $(BIN)/python -m pytest -q -n 2 --dist loadfile $(NUMERICAL) && \
@@ -36,22 +41,24 @@ test-processors: env  ## numerical tests, and the quick study compared, as on ot
 # wait for one another made the peer of the backbones forty times slower.
 bench: export OPENBLAS_NUM_THREADS := 1
 bench: export OMP_NUM_THREADS := 1
-bench: env  ## speed and accuracy beside other tools, as ratios
+bench: dev  ## speed and accuracy beside other tools, as ratios
 	$(BIN)/python -m pip install -q --require-hashes -r requirements-peers.lock
 	for script in tests/benchmarks/bench_*.py; do $(BIN)/python $$script || exit 1; done
 
-lint: env
+lint: dev
 	$(BIN)/ruff check . && $(BIN)/ruff format --check .
 	$(BIN)/mypy && $(BIN)/lint-imports
 
-docs: env  ## API reference into build/reference
+docs: dev  ## API reference into build/reference
 	$(BIN)/python docs/build_reference.py
 
-env: $(STAMP)
+env: $(STUDY)  ## what a study needs
 
-# The last two steps compile the event loop (6 s) and the tracer of orbits (9 s), which several first
-# jobs would otherwise do at once.
-$(STAMP): requirements.lock pyproject.toml
+dev: $(DEV)  ## and what tests, checks and docs need
+
+# The last two steps compile the event loop (6 s) and the tracer of orbits (9 s) into the user's cache,
+# which several first jobs would otherwise do at once.
+$(STUDY): requirements.lock pyproject.toml
 	@case "$(CURDIR)" in *[[:space:]]*) echo "make env: the path '$(CURDIR)' has a space, which the first lines of installed scripts cannot hold; move the checkout" >&2; exit 1;; esac
 	test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
 	$(BIN)/python -m pip install -q --disable-pip-version-check --require-hashes -r requirements.lock
@@ -60,15 +67,19 @@ $(STAMP): requirements.lock pyproject.toml
 	$(BIN)/python -c "import squealpipe as s; s.periodic_orbit(s.Parameters(), 0.9, 2.8, mode=1, y_peak=2)"
 	touch $@
 
-lock: env
-	$(BIN)/uv pip compile pyproject.toml --universal --python-version 3.11 --generate-hashes \
-	  --no-emit-index-url --extra dev --extra notebook --extra slurm \
-	  --custom-compile-command "make lock" -q -o requirements.lock
-	$(BIN)/uv pip compile pyproject.toml --universal --python-version 3.11 --generate-hashes \
-	  --no-emit-index-url --extra peers -c requirements.lock \
-	  --custom-compile-command "make lock" -q -o requirements-peers.lock
+$(DEV): requirements-dev.lock $(STUDY)
+	$(BIN)/python -m pip install -q --disable-pip-version-check --require-hashes -r requirements-dev.lock
+	touch $@
 
-dictionary: env  ## docs/datasets.md from the schemas
+COMPILE = $(BIN)/uv pip compile pyproject.toml --universal --python-version 3.11 --generate-hashes \
+  --no-emit-index-url --custom-compile-command "make lock" -q
+
+lock: dev
+	$(COMPILE) --extra study -o requirements.lock
+	$(COMPILE) --extra study --extra dev --extra notebook --extra slurm -c requirements.lock -o requirements-dev.lock
+	$(COMPILE) --extra peers -c requirements-dev.lock -o requirements-peers.lock
+
+dictionary: dev  ## docs/datasets.md from the schemas
 	$(BIN)/python docs/build_dictionary.py
 
 clean:  ## results of the study; archives and the environment stay

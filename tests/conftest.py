@@ -1,4 +1,4 @@
-"""Shared fixtures: a copy of the checkout, and one run of the quick study for all tests."""
+"""Shared fixtures: a copy of the checkout, and one run of the tiny study for all tests."""
 
 from __future__ import annotations
 
@@ -54,8 +54,8 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 
 
 @dataclass(frozen=True)
-class QuickStudy:
-    """A finished quick study: its checkout, its results, and what snakemake printed."""
+class TinyStudy:
+    """A finished tiny study: its checkout, its results, and what snakemake printed."""
 
     checkout: Path
     results: Path
@@ -69,8 +69,8 @@ def checkout(tmp_path: Path) -> Path:
 
 
 @pytest.fixture(scope="session")
-def quick_study(tmp_path_factory: pytest.TempPathFactory, worker_id: str) -> QuickStudy:
-    """The quick study, run once for all test processes, each of which has a copy to itself."""
+def tiny_study(tmp_path_factory: pytest.TempPathFactory, worker_id: str) -> TinyStudy:
+    """The tiny study, run once for all test processes, each of which has a copy to itself."""
     own = tmp_path_factory.getbasetemp()
     shared = own if worker_id == "master" else own.parent
     original, log = shared / "study/squealpipe", shared / "study/log.txt"
@@ -78,13 +78,13 @@ def quick_study(tmp_path_factory: pytest.TempPathFactory, worker_id: str) -> Qui
         if not log.exists():
             shutil.rmtree(original, ignore_errors=True)
             run = run_snakemake(
-                copy_checkout(original), "--configfile", "workflow/config/quick.yaml"
+                copy_checkout(original), "--configfile", "workflow/config/tiny.yaml"
             )
             assert run.returncode == 0, run.stderr[-6000:]
             log.write_text(run.stderr, encoding="utf-8")
-    copy = own / "quick_study"
+    copy = own / "tiny_study"
     subprocess.run(["cp", "-a", original, copy], check=True)  # keeps the dates
-    return QuickStudy(copy, copy / "results/quick", log.read_text(encoding="utf-8"))
+    return TinyStudy(copy, copy / "results/tiny", log.read_text(encoding="utf-8"))
 
 
 @pytest.fixture(scope="session")

@@ -6,11 +6,14 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+
 import squealpipe
 
 ROOT = Path(__file__).resolve().parents[1]
 
 
+@pytest.mark.release
 def test_reference_builds_without_warnings(tmp_path):
     done = subprocess.run(
         [sys.executable, str(ROOT / "docs/build_reference.py"), str(tmp_path)],

@@ -16,8 +16,8 @@ ROOT = Path(__file__).resolve().parents[1]
     [
         ("ruff", "check", "."),
         ("ruff", "format", "--check", "."),
-        ("mypy",),
-        ("lint-imports", "--no-cache"),
+        pytest.param(("mypy",), marks=pytest.mark.release),
+        pytest.param(("lint-imports", "--no-cache"), marks=pytest.mark.release),
     ],
     ids=lambda command: " ".join(command[:2]),
 )

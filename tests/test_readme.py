@@ -1,6 +1,6 @@
-"""The README's commands and Python are run, in its order, in a copy with a finished quick study.
+"""The README's commands and Python are run, in its order, in a copy with a finished tiny study.
 
-There the quick study stands for the paper's: its configuration takes the place of paper.yaml.
+There the tiny study stands for the paper's: its configuration takes the place of paper.yaml.
 `make` and `snakemake`, which other tests run in earnest, are asked for their plan.
 """
 
@@ -28,20 +28,20 @@ STEPS = [
     for step in (block.splitlines() if language == "bash" else [block])
 ]
 ANSWERS = {"claims": {0, 1}, "compare": {0, 1}}
-"""Exit codes that are an answer; the coarse grids of the quick study may change one."""
+"""Exit codes that are an answer; the coarse grids of the tiny study may change one."""
 
 
 @pytest.fixture(scope="module")
-def study(quick_study, tmp_path_factory) -> Path:
-    """A checkout in which the quick study is the study."""
+def study(tiny_study, tmp_path_factory) -> Path:
+    """A checkout in which the tiny study is the study."""
     copy = tmp_path_factory.mktemp("readme") / "squealpipe"
-    shutil.copytree(quick_study.checkout, copy, symlinks=True)
+    shutil.copytree(tiny_study.checkout, copy, symlinks=True)
     config = copy / "workflow/config"
     merged = yaml.safe_load((config / "paper.yaml").read_text(encoding="utf-8"))
-    overlay(merged, yaml.safe_load((config / "quick.yaml").read_text(encoding="utf-8")))
+    overlay(merged, yaml.safe_load((config / "tiny.yaml").read_text(encoding="utf-8")))
     merged["results"] = "results"
     (config / "paper.yaml").write_text(yaml.safe_dump(merged), encoding="utf-8")
-    for part in (copy / "results/quick").iterdir():
+    for part in (copy / "results/tiny").iterdir():
         part.rename(copy / "results" / part.name)
     archive("reference", root=copy, leave_out=[".svg", ".html", ".gif"])
     return copy

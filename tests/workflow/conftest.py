@@ -1,4 +1,4 @@
-"""Dry runs of a finished quick study, many at a time."""
+"""Dry runs of a finished tiny study, many at a time."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from pathlib import Path
 
 import pytest
 
-QUICK = "workflow/config/quick.yaml"
+TINY = "workflow/config/tiny.yaml"
 
 
 @dataclass(frozen=True)
@@ -71,8 +71,8 @@ def one_checkout(new_checkout, tmp_path_factory) -> Path:
 
 
 @pytest.fixture(scope="module")
-def study_copy(quick_study, tmp_path_factory) -> Path:
-    """A finished quick study whose files may be edited; dates are kept."""
+def study_copy(tiny_study, tmp_path_factory) -> Path:
+    """A finished tiny study whose files may be edited; dates are kept."""
     copy = tmp_path_factory.mktemp("edited") / "squealpipe"
-    subprocess.run(["cp", "-a", quick_study.checkout, copy], check=True)
+    subprocess.run(["cp", "-a", tiny_study.checkout, copy], check=True)
     return copy

@@ -11,8 +11,11 @@ import pytest
 
 from squealpipe.cli.project import Teller
 
+pytestmark = pytest.mark.release
+
+
 ROOT = Path(__file__).resolve().parents[2]
-QUICK = "workflow/config/quick.yaml"
+TINY = "workflow/config/tiny.yaml"
 EXCEPTIONS = {
     "No log directive defined": "short jobs say nothing unless they fail, and then Snakemake's "
     "own log has the traceback; every job with progress to tell has a log",
@@ -36,10 +39,10 @@ def test_a_plan_can_be_made_from_any_folder(how, tmp_path):
     (tmp_path / "mine.yaml").write_text("results: out\n")
     if how == "--snakefile":
         place, words = tmp_path, ["--snakefile", str(ROOT / "Snakefile")]
-        config = ["--configfile", str(ROOT / QUICK), "mine.yaml"]
+        config = ["--configfile", str(ROOT / TINY), "mine.yaml"]
     else:
         place, words = ROOT, ["--directory", str(tmp_path)]
-        config = ["--configfile", QUICK, str(tmp_path / "mine.yaml")]
+        config = ["--configfile", TINY, str(tmp_path / "mine.yaml")]
     done = snakemake(place, *words, *config, "--dry-run", "out/data/validity_map.nc")
     assert done.returncode == 0, done.stderr[-2000:]
     assert f"{ROOT}/squealpipe/parameters.py" in done.stdout

@@ -6,9 +6,14 @@ import hashlib
 import re
 from pathlib import Path
 
+import pytest
+
 from squealpipe.store import load
 
-QUICK = "workflow/config/quick.yaml"
+pytestmark = pytest.mark.release
+
+
+TINY = "workflow/config/tiny.yaml"
 EDIT = "inference: {samples: 600}\n"
 STALE = {
     "infer_parameters", "draw_inference", "judge_reach", "draw_spread", "judge_claims",
@@ -44,12 +49,12 @@ def ids(results: Path) -> dict[str, str]:
 
 
 def test_an_edit_is_run_and_taken_back(study_copy, snakemake):
-    results = study_copy / "results/quick"
+    results = study_copy / "results/tiny"
 
     def run(*configs: str) -> tuple[set[str], set[str]]:
         """Rules that ran, and files whose bytes or date changed."""
         before = files(results)
-        done = snakemake(study_copy, "--configfile", QUICK, *configs)
+        done = snakemake(study_copy, "--configfile", TINY, *configs)
         assert done.returncode == 0, done.stderr[-4000:]
         rules = set(re.findall(r"^Job \d+: (\w+) → ", done.stderr, flags=re.MULTILINE))
         after = files(results)

@@ -8,7 +8,10 @@ import pytest
 from squealpipe.execution.explain import explain
 from squealpipe.store import load, save
 
-QUICK = "workflow/config/quick.yaml"
+pytestmark = pytest.mark.release
+
+
+TINY = "workflow/config/tiny.yaml"
 
 
 @pytest.fixture
@@ -18,13 +21,13 @@ def finished(study_copy, monkeypatch):
 
 
 def test_finished_study_has_nothing_to_do(finished):
-    assert explain([finished / QUICK], root=finished).jobs == ()
+    assert explain([finished / TINY], root=finished).jobs == ()
 
 
 def test_changed_key_is_named_with_what_follows(finished, tmp_path):
     mine = tmp_path / "mine.yaml"
     mine.write_text("linear: {points: 71}\n")
-    plan = explain([finished / QUICK, mine], root=finished)
+    plan = explain([finished / TINY, mine], root=finished)
     jobs = {job.rule: job for job in plan.jobs}
     assert any(reason.startswith("linear.points: ") for reason in jobs["map_linear"].reasons)
     assert "map_linear" in jobs["draw_linear"].follows
@@ -40,7 +43,7 @@ def test_edited_source_is_named(finished):
     text, date = path.read_text(), path.stat().st_mtime
     path.write_text(text + "# edited\n")
     try:
-        plan = explain([finished / QUICK], root=finished)
+        plan = explain([finished / TINY], root=finished)
     finally:
         path.write_text(text)
         os.utime(path, (date, date))
@@ -55,8 +58,8 @@ def test_results_without_snakemakes_records_are_held_against_the_study(finished,
     records = finished / ".snakemake/metadata"
     aside = records.rename(tmp_path / "metadata")
     try:
-        same = explain([finished / QUICK], root=finished)
-        other = explain([finished / QUICK, mine], root=finished)
+        same = explain([finished / TINY], root=finished)
+        other = explain([finished / TINY, mine], root=finished)
     finally:
         aside.rename(records)
     assert same.jobs == ()
@@ -67,7 +70,7 @@ def test_results_without_snakemakes_records_are_held_against_the_study(finished,
 
 
 def test_copied_dataset_of_another_configuration_is_found(finished):
-    path = finished / "results/quick/data/quasi_static_map.nc"
+    path = finished / "results/tiny/data/quasi_static_map.nc"
     whole, date = path.read_bytes(), path.stat().st_mtime
     foreign = load(path)
     told = json.loads(foreign.attrs["config"])
@@ -75,12 +78,12 @@ def test_copied_dataset_of_another_configuration_is_found(finished):
     save(foreign.assign_attrs(config=json.dumps(told)), path)
     os.utime(path, (date, date))
     try:
-        reasons = {job.rule: job.reasons for job in explain([finished / QUICK], root=finished).jobs}
+        reasons = {job.rule: job.reasons for job in explain([finished / TINY], root=finished).jobs}
     finally:
         path.write_bytes(whole)
         os.utime(path, (date, date))
     assert reasons["map_linear"] == ("parameters.mu: 0.123 → 0.3",)
-    assert explain([finished / QUICK], root=finished).jobs == ()
+    assert explain([finished / TINY], root=finished).jobs == ()
 
 
 def test_source_with_an_older_date_is_noticed(finished):
@@ -89,7 +92,7 @@ def test_source_with_an_older_date_is_noticed(finished):
     path.write_text(text + "ANOTHER = 1\n")
     os.utime(path, (1e9, 1e9))
     try:
-        reasons = {job.rule: job.reasons for job in explain([finished / QUICK], root=finished).jobs}
+        reasons = {job.rule: job.reasons for job in explain([finished / TINY], root=finished).jobs}
     finally:
         path.write_text(text)
         os.utime(path, (date, date))

@@ -6,8 +6,11 @@ from pathlib import Path
 
 import pytest
 
+pytestmark = pytest.mark.release
+
+
 ROOT = Path(__file__).resolve().parents[2]
-QUICK = "workflow/config/quick.yaml"
+TINY = "workflow/config/tiny.yaml"
 STUDIES = {
     "dashpots": "{damping1: 0.02, damping2: 0.02}",
     "law": "{friction_law: exponential, mu_static: 0.6, friction_speed: 10.0}",
@@ -24,11 +27,11 @@ NOT_CARRIED = {
 @pytest.fixture(scope="module")
 def plans(dry_runs, tmp_path_factory):
     folder = tmp_path_factory.mktemp("studies")
-    arguments = [["--forceall", "--configfile", QUICK]]
+    arguments = [["--forceall", "--configfile", TINY]]
     for name, parameters in STUDIES.items():
         overlay = folder / f"{name}.yaml"
-        overlay.write_text(f"results: results/quick\nparameters: {parameters}\n")
-        arguments.append(["--forceall", "--configfile", QUICK, str(overlay)])
+        overlay.write_text(f"results: results/tiny\nparameters: {parameters}\n")
+        arguments.append(["--forceall", "--configfile", TINY, str(overlay)])
     return dict(zip(("paper", *STUDIES), dry_runs(ROOT, arguments), strict=True))
 
 
@@ -37,9 +40,9 @@ def test_rules_that_cannot_carry_it_are_left_out_and_all_others_stay(name, plans
     assert plans["paper"].rules - plans[name].rules == NOT_CARRIED
     assert plans[name].rules < plans["paper"].rules
     made = {path for _, _, outputs in plans[name].files for path in outputs}
-    assert "results/quick/data/stability_map.nc" in made
-    assert "results/quick/data/natural_frequencies.nc" not in made
-    assert "results/quick/report/index.html" in made
+    assert "results/tiny/data/stability_map.nc" in made
+    assert "results/tiny/data/natural_frequencies.nc" not in made
+    assert "results/tiny/report/index.html" in made
 
 
 def test_they_are_named_with_the_remedy(plans):

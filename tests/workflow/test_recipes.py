@@ -12,6 +12,9 @@ from textwrap import indent
 
 import pytest
 
+pytestmark = pytest.mark.release
+
+
 ROOT = Path(__file__).parents[2]
 ROW, LAW, LAW_NAME, RECORD, LEVEL, FIGURE, FIGURE_NAME = range(7)
 FILES = {
@@ -156,7 +159,6 @@ def test_a_parameter_and_a_law_reach_every_kind_of_number(extended):
     python(folder, PARAMETER_AND_LAW)
 
 
-@pytest.mark.release
 def test_the_engine_integrates_the_new_law(extended):
     """Compiled anew in the copy, at random parameters, against long double."""
     folder, _ = extended
@@ -209,7 +211,6 @@ def test_a_level_answers_for_itself(extended):
     python(folder, LEVEL_ALONE)
 
 
-@pytest.mark.release
 def test_the_ladder_takes_the_new_level(extended):
     folder, _ = extended
     script = """

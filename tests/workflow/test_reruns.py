@@ -24,8 +24,11 @@ from squealpipe.config.settings import ConfigError, Study, parse_study, read_stu
 from squealpipe.config.yaml_files import flat, overlay
 from squealpipe.rerun.sources import closure
 
+pytestmark = pytest.mark.release
+
+
 ROOT = Path(__file__).resolve().parents[2]
-QUICK = "workflow/config/quick.yaml"
+TINY = "workflow/config/tiny.yaml"
 STATED = Path(__file__).with_name("direct_readers.yaml")
 FIX = "SQUEALPIPE_FIX=1 python -m pytest -m slow tests/workflow/test_reruns.py"
 KEYS = sorted(set(flat(Study().model_dump(mode="json"))) - {"results", "paper"})
@@ -55,12 +58,12 @@ def candidates(value: Any) -> list[Any]:
 
 @cache
 def quick_config() -> dict[str, Any]:
-    return read_study(ROOT / "workflow/config/paper.yaml", ROOT / QUICK).model_dump(mode="json")
+    return read_study(ROOT / "workflow/config/paper.yaml", ROOT / TINY).model_dump(mode="json")
 
 
 @cache
 def another_value(key: str) -> dict[str, Any]:
-    """An overlay that changes one key of the quick study to another allowed value."""
+    """An overlay that changes one key of the tiny study to another allowed value."""
     current = quick_config()
     present = reduce(getitem, key.split("."), current)
     for value in candidates(present):
@@ -99,7 +102,7 @@ def downstream(rules: set[str], table: dict[str, set[str]]) -> set[str]:
 
 @pytest.fixture(scope="module")
 def everything(study_copy, dry_runs):
-    return dry_runs(study_copy, [["--configfile", QUICK, "--forceall"]])[0]
+    return dry_runs(study_copy, [["--configfile", TINY, "--forceall"]])[0]
 
 
 def batches(table: dict[str, set[str]]) -> list[list[str]]:
@@ -148,7 +151,7 @@ def plans(study_copy, dry_runs, folder, changes: Sequence[Sequence[str]]) -> lis
     for index, keys in enumerate(changes):
         path = folder / f"{index}.yaml"
         path.write_text(yaml.safe_dump(all_changed(keys)))
-        arguments.append(["--configfile", QUICK, path])
+        arguments.append(["--configfile", TINY, path])
     return dry_runs(study_copy, arguments)
 
 
@@ -169,7 +172,6 @@ def test_changed_keys_make_stale_exactly_what_reads_them(
         assert plan.rules == downstream(stated, table), keys
 
 
-@pytest.mark.release
 def test_each_key_makes_stale_exactly_what_reads_it(study_copy, dry_runs, tmp_path):
     made = plans(study_copy, dry_runs, tmp_path, [[key] for key in KEYS])
     found = {key: direct(plan) for key, plan in zip(KEYS, made, strict=True)}
@@ -215,7 +217,7 @@ def test_rewording_the_configuration_reruns_nothing(study_copy, dry_runs, tmp_pa
         path = tmp_path / f"{name}.yaml"
         path.write_text(reword(text))
         assert path.read_text() != text
-        arguments.append(["--configfile", path, QUICK])
+        arguments.append(["--configfile", path, TINY])
     made = dict(zip(REWORDINGS, dry_runs(study_copy, arguments), strict=True))
     assert {name: plan.rules for name, plan in made.items() if plan.rules} == {}
 
@@ -226,9 +228,9 @@ def test_new_dates_rerun_nothing_and_neither_does_an_edit_taken_back(study_copy,
     edited = study_copy / "squealpipe/laws/springs.py"
     text = edited.read_text()
     edited.write_text(text + "# edited\n")
-    assert dry_runs(study_copy, [["--configfile", QUICK]])[0].rules
+    assert dry_runs(study_copy, [["--configfile", TINY]])[0].rules
     edited.write_text(text)
-    assert dry_runs(study_copy, [["--configfile", QUICK]])[0].rules == set()
+    assert dry_runs(study_copy, [["--configfile", TINY]])[0].rules == set()
 
 
 LAYERS = {
@@ -260,7 +262,7 @@ def test_source_edits_reach_what_imports_them(module, study_copy, dry_runs, ever
     text = path.read_text()
     path.write_text(text + "# edited\n")
     try:
-        found = dry_runs(study_copy, [["--configfile", QUICK]])[0].rules
+        found = dry_runs(study_copy, [["--configfile", TINY]])[0].rules
     finally:
         path.write_text(text)
     reads = {rule for rule, inputs, _ in everything.files if f"squealpipe/{module}" in inputs}

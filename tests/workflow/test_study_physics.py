@@ -1,6 +1,6 @@
 """What the paper's figures show, read from the datasets of a study as `snakemake` made them.
 
-Each test would fail if the physics behind its figure were wrong; grids of the quick study are
+Each test would fail if the physics behind its figure were wrong; grids of the tiny study are
 coarse, but the scenes run to the paper study's full horizons.
 """
 
@@ -15,8 +15,8 @@ from squealpipe.store import load
 
 
 @pytest.fixture(scope="module")
-def scene(quick_study):
-    return lambda name: load(quick_study.results / f"data/simulate/{name}.nc")
+def scene(tiny_study):
+    return lambda name: load(tiny_study.results / f"data/simulate/{name}.nc")
 
 
 @pytest.mark.parametrize(
@@ -75,9 +75,9 @@ def test_the_black_region_of_fig_7_is_there_as_printed_only(quick_study):
 
 
 @pytest.mark.parametrize("figure", ["F10", "F11", "F12", "F13"])
-def test_branches_bend_to_lower_frequency_past_contact_loss(quick_study, figure):
+def test_branches_bend_to_lower_frequency_past_contact_loss(tiny_study, figure):
     mode = 1 if figure == "F13" else 2
-    branch = load(quick_study.results / f"data/backbone/{figure}_mode{mode}.nc")
+    branch = load(tiny_study.results / f"data/backbone/{figure}_mode{mode}.nc")
     separated = branch.where(branch.y_peak > 1.001 * Parameters().preload, drop=True)
     assert separated.sizes["point"] > 5
     by_amplitude = separated.sortby("y_peak")

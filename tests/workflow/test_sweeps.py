@@ -9,7 +9,10 @@ import pytest
 from squealpipe.cli import run
 from squealpipe.store import load
 
-QUICK = "workflow/config/quick.yaml"
+pytestmark = pytest.mark.release
+
+
+TINY = "workflow/config/tiny.yaml"
 RAGGED = """
 sweeps:
   runs:
@@ -52,9 +55,9 @@ def test_parts_equal_the_whole_and_the_command_line(checkout, snakemake, monkeyp
 
 @pytest.fixture(scope="module")
 def swept(study_copy, snakemake):
-    """A finished quick study with two small sweeps."""
+    """A finished tiny study with two small sweeps."""
     (study_copy / "two.yaml").write_text(TWO)
-    done = snakemake(study_copy, "--configfile", QUICK, "two.yaml")
+    done = snakemake(study_copy, "--configfile", TINY, "two.yaml")
     assert done.returncode == 0, done.stderr[-4000:]
     started = set(re.findall(r"^Job \d+: (\w+)", done.stderr, flags=re.MULTILINE))
     assert started == {"run_sweep_friction", "run_sweep_stiffness", "all"}
@@ -82,7 +85,7 @@ def test_an_edit_makes_its_own_sweep_stale_alone(swept, dry_runs, tmp_path):
     for number, text in enumerate(EDITS):
         path = tmp_path / f"{number}.yaml"
         path.write_text(text)
-        arguments.append(["--configfile", QUICK, "two.yaml", path])
+        arguments.append(["--configfile", TINY, "two.yaml", path])
     for (text, expected), plan in zip(EDITS.items(), dry_runs(swept, arguments), strict=True):
         assert {rule for rule in plan.rules if "_sweep_" in rule} == expected, text
         if text.startswith("sweeps"):
@@ -90,7 +93,7 @@ def test_an_edit_makes_its_own_sweep_stale_alone(swept, dry_runs, tmp_path):
 
 
 def test_no_sweep_leaves_the_rest_up_to_date(swept, dry_runs):
-    assert dry_runs(swept, [["--configfile", QUICK]])[0].rules == set()
+    assert dry_runs(swept, [["--configfile", TINY]])[0].rules == set()
 
 
 def test_code_of_sweeps_touches_sweeps_alone(swept, dry_runs):
@@ -98,7 +101,7 @@ def test_code_of_sweeps_touches_sweeps_alone(swept, dry_runs):
     text = path.read_text()
     path.write_text(text + "# edited\n")
     try:
-        plan = dry_runs(swept, [["--configfile", QUICK, "two.yaml"]])[0]
+        plan = dry_runs(swept, [["--configfile", TINY, "two.yaml"]])[0]
     finally:
         path.write_text(text)
     assert plan.rules == {"run_sweep_friction", "run_sweep_stiffness"}

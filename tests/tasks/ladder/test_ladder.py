@@ -9,10 +9,12 @@ from squealpipe.tasks.ladder.ladder import model_ladder
 from squealpipe.tasks.linear.maps import stability_map
 from tests.former import FORMER
 
+PARAMS = Parameters()
+
 
 @pytest.fixture(scope="module")
 def ladder():
-    return model_ladder(FORMER, 14, 0.05, t_end=100.0)
+    return model_ladder(PARAMS, 14, 0.05, t_end=100.0)
 
 
 def test_a1_is_adequate_everywhere_and_errs_nowhere(ladder) -> None:
@@ -21,7 +23,7 @@ def test_a1_is_adequate_everywhere_and_errs_nowhere(ladder) -> None:
 
 
 def test_a_linear_level_answers_nothing_where_nothing_oscillates(ladder) -> None:
-    linear = stability_map(FORMER, ladder.alpha1, ladder.alpha2).regime_linear
+    linear = stability_map(PARAMS, ladder.alpha1, ladder.alpha2).regime_linear
     grows = linear != LinearRegime.stable
     assert 0 < grows.sum() < grows.size
     for level in ("closed_form", "a3_in_contact"):

@@ -1,0 +1,87 @@
+"""The package as a stranger installs it: core dependencies alone, types shipped, metadata valid."""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+import sys
+import tomllib
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[1]
+STUDY = {"jinja2", "psutil", "rocrate", "snakemake", "typst"}
+"""What only a study needs."""
+LIBRARY = f"""
+import sys
+
+class Without:
+    def find_spec(self, name, path=None, target=None):
+        if name.partition(".")[0] in {sorted(STUDY)}:
+            raise ModuleNotFoundError(name)
+
+sys.meta_path.insert(0, Without())
+import squealpipe
+from squealpipe.cli import run
+
+for name in squealpipe.__all__:
+    getattr(squealpipe, name)
+params = squealpipe.Parameters()
+assert squealpipe.simulate(params, 1.0, 2.0, t_end=5.0).outcome == 0
+assert run(["simulate", "5pi/6", "5pi/6", "--t-end", "5", "-o", "run.nc"]) == 0
+assert run(["map", "stability", "--alpha1", "0:pi:3", "--alpha2", "0:pi:3"]) == 0
+"""
+
+
+def run(*command, cwd) -> str:
+    done = subprocess.run(
+        [str(word) for word in command], cwd=cwd, capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stdout[-2000:] + done.stderr[-4000:]
+    return done.stdout
+
+
+def test_the_library_and_its_commands_work_without_what_a_study_needs(tmp_path):
+    run(sys.executable, "-c", LIBRARY, cwd=tmp_path)
+
+
+def test_no_dependency_of_a_study_is_one_of_the_library():
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    core = {line.partition(">")[0].lower() for line in project["dependencies"]}
+    study = {line.partition(">")[0] for line in project["optional-dependencies"]["study"]}
+    assert study >= STUDY
+    assert not core & study
+
+
+@pytest.mark.parametrize("name", ["requirements.lock", "requirements-dev.lock"])
+def test_locks_name_no_index_and_agree(name):
+    text = (ROOT / name).read_text(encoding="utf-8")
+    assert "--index-url" not in text
+    assert "://" not in text
+    study = (ROOT / "requirements.lock").read_text(encoding="utf-8")
+    pinned = {line.split()[0] for line in study.splitlines() if "==" in line}
+    assert pinned <= {line.split()[0] for line in text.splitlines() if "==" in line}
+
+
+@pytest.mark.release
+def test_wheel_in_a_bare_environment(tmp_path):
+    """Built, checked by twine, installed with the core dependencies alone."""
+    here = Path(sys.executable).parent
+    source = tmp_path / "source"
+    shutil.copytree(ROOT / "squealpipe", source / "squealpipe")
+    for name in ("pyproject.toml", "README.md", "LICENSE"):
+        shutil.copy(ROOT / name, source / name)
+    run(here / "python", "-m", "build", "--no-isolation", "-o", tmp_path / "dist", cwd=source)
+    built = list((tmp_path / "dist").iterdir())
+    assert {path.suffix for path in built} == {".whl", ".gz"}
+    run(here / "twine", "check", "--strict", *built, cwd=tmp_path)
+    bare = tmp_path / "bare"
+    run(here / "uv", "venv", "-q", "--python", sys.executable, bare, cwd=tmp_path)
+    wheel = next(path for path in built if path.suffix == ".whl")
+    run(here / "uv", "pip", "install", "-q", "--python", bare / "bin/python", wheel, cwd=tmp_path)
+    script = "import importlib.util as u; print(u.find_spec('snakemake'))"
+    assert run(bare / "bin/python", "-c", script, cwd=tmp_path).strip() == "None"
+    run(bare / "bin/squealpipe", "simulate", "5pi/6", "5pi/6", "--t-end", "5", cwd=tmp_path)
+    assert list(bare.glob("lib/*/site-packages/squealpipe/py.typed"))
+    assert list(bare.glob("lib/*/site-packages/squealpipe/study/report/templates/*"))
