@@ -7,10 +7,11 @@ need them); κ, μ, λ, v and the direction of the belt are left.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 import xarray as xr
+from pydantic import Strict
 from scipy.stats import qmc
 
 from squealpipe.models.refusals import refuse_extensions
@@ -22,7 +23,7 @@ from squealpipe.tasks.inference.consequences import CONSEQUENCES, judge_conseque
 from squealpipe.tasks.inference.constraints import CONSTRAINTS, Candidates, candidate_of, measure
 from squealpipe.validation import Natural, Number, Seed, Tolerance, Workers
 
-Range = tuple[Number, Number]
+Range = Annotated[tuple[Number, Number], Strict(strict=False)]  # a list of a configuration too
 
 
 @recorded(model="A1", method="Taylor series with located events over quasi-random samples")

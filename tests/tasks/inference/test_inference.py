@@ -258,3 +258,9 @@ def test_the_feasible_set_of_the_study() -> None:
     found = infer_parameters(BASELINE, samples=20_480)
     assert abs(int(found.feasible_count) - 474) <= 3
     assert found.direction.values[found.feasible.values].min() == -1
+
+
+def test_ranges_are_lists_in_a_configuration() -> None:
+    given = {"kappa": [0.6, 0.7], "mu": [0.1, 0.2], "length_ratio": [3, 4], "speed_ratio": [5, 6]}
+    found = infer_parameters(Parameters(), samples=2, **given, workers=1)
+    assert ((found.kappa >= 0.6) & (found.kappa <= 0.7)).all()
