@@ -30,7 +30,7 @@ pytestmark = pytest.mark.release
 ROOT = Path(__file__).resolve().parents[2]
 TINY = "workflow/config/tiny.yaml"
 STATED = Path(__file__).with_name("direct_readers.yaml")
-FIX = "SQUEALPIPE_FIX=1 python -m pytest -m slow tests/workflow/test_reruns.py"
+FIX = "SQUEALPIPE_FIX=1 python -m pytest -m release tests/workflow/test_reruns.py"
 KEYS = sorted(set(flat(Study().model_dump(mode="json"))) - {"results", "paper"})
 
 
