@@ -262,5 +262,5 @@ def test_the_feasible_set_of_the_study() -> None:
 
 def test_ranges_are_lists_in_a_configuration() -> None:
     given = {"kappa": [0.6, 0.7], "mu": [0.1, 0.2], "length_ratio": [3, 4], "speed_ratio": [5, 6]}
-    found = infer_parameters(Parameters(), samples=2, **given, workers=1)
+    found = infer_parameters(FORMER, samples=2, **given, workers=1)
     assert ((found.kappa >= 0.6) & (found.kappa <= 0.7)).all()

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from squealpipe.models.a3 import LinearRegime
+from squealpipe.parameters import Parameters
 from squealpipe.schema.ladder import QUESTIONS, Level
 from squealpipe.tasks.ladder.ladder import model_ladder
 from squealpipe.tasks.linear.maps import stability_map
