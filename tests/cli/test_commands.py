@@ -99,7 +99,7 @@ def test_help_loads_no_numerics():
         ([*SWEPT, "--vary", "mu=0:1:9000", "--vary", "k3=1:2:9000"], "add --yes"),
         (["simulate", "1", "2", "-c", "nowhere.yaml"], "no configuration nowhere.yaml"),
         (["verify", "nothing"], "no archive, folder or file 'nothing'"),
-        (["claims", "nothing.nc"], "make it with snakemake"),
+        (["claims", "nothing.nc"], "make them with: squealpipe run"),
         (["explain", "--times"], "run snakemake in this folder first"),
     ],
 )

@@ -91,6 +91,10 @@ ANGLES = Kind(
     ),
     NO_ANGLES,
 )
+TURNS = Kind(
+    lambda rng: rng.uniform(1, 9),
+    ["1", True, np.bool_(True), 1j, math.nan, None, object(), b"1"],
+)
 MANY = Kind(ANGLE.good, NO_ANGLES[2:17])
 HORIZON = number(0.05, 8.0)
 MAYBE = Kind(HORIZON.good, [bad for bad in HORIZON.bad if bad is not None])
@@ -174,7 +178,7 @@ CALLS: dict[str, tuple[float, Callable[..., Any], dict[str, Kind]]] = {
         {"alpha1": MANY, "alpha2": MANY, "t_end": FROM_NOW, "model": MODEL, "tol": TOL,
          "tangent": TRUTH,
          "log_events": Kind(lambda _: 3, SEED.bad), "stop_at_first_separation": TRUTH,
-         "stop_at_turns": HORIZON,
+         "stop_at_turns": TURNS,
          "initial_state": STATE, "workers": ONE},
     ),
     "infer_parameters": (
@@ -303,7 +307,7 @@ def fault_of(name: str, given: dict[str, Any], wrong: set[str], params: Any) -> 
     except FileNotFoundError:
         return "" if "path" in given or "name_or_path" in given else "no path was given"
     except ValueError as error:
-        named = any(argument in str(error) for argument in ("params", *given, *TABLE))
+        named = any(argument in str(error) for argument in ("param", *given, *TABLE))
         return "" if named or name == "parse_range" else f"names no argument: {error}"
     except Exception as error:  # noqa: BLE001  whatever it is, it is the finding
         return f"raw {type(error).__name__}: {error}"

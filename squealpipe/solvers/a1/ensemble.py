@@ -6,9 +6,10 @@ import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from types import SimpleNamespace
-from typing import Any, NamedTuple
+from typing import Annotated, Any, NamedTuple
 
 import numpy as np
+from pydantic import BeforeValidator
 
 from squealpipe.methods.processes import run_shared
 from squealpipe.methods.taylor.lanes import (
@@ -111,9 +112,20 @@ class Ensemble:
     event_states: np.ndarray
 
 
+def _fields(value: Any) -> Any:
+    if not isinstance(value, Parameters | Mapping):
+        raise ValueError(  # noqa: TRY004 (pydantic lets other errors through)
+            "Parameters(...) or a mapping of their names to arrays is needed"
+        )
+    return value
+
+
+Fields = Annotated[Any, BeforeValidator(_fields)]
+
+
 @checked
 def run_ensemble(
-    parameters: Parameters | Mapping[str, Any],
+    parameters: Fields,
     alpha1: Any,
     alpha2: Any,
     *,

@@ -66,6 +66,7 @@ class Jobs:
             "t_end": real_array("t_end", t_end),
             "stop_at_x": real_array("stop_at_x", stop_at_x, infinite=True),
             "t_late": real_array("t_late", t_late, infinite=True),
+            "stop_at_turns": real_array("stop_at_turns", stop_at_turns, infinite=True),
         }
         state = real_array("initial_state", initial_state)
         if state.shape[-1:] != (4,):
@@ -97,7 +98,7 @@ class Jobs:
             "t_late": flat(inputs["t_late"]) / time_unit,
             "stop_at_x": flat(inputs["stop_at_x"]) / length,
             "stop_at_separation": stop_at_first_separation,
-            "stop_at_turns": stop_at_turns,
+            "stop_at_turns": flat(inputs["stop_at_turns"]),
             "lost_growth": math.log(LOST_ERROR / tol),
             "max_steps": 1e4 + 200 * rate * t_end,
             "max_events": 1e3 + 20 * rate * t_end,
