@@ -1,10 +1,11 @@
-"""Commands about the runs that are kept: which there are, which to find, what nobody needs."""
+"""Commands about the runs that are kept: which there are, and which to find."""
 
 from __future__ import annotations
 
 import json
+import sys
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 from cyclopts import Parameter
 
@@ -12,12 +13,15 @@ from squealpipe.cli.arguments import AsJson
 from squealpipe.cli.exit_codes import ANSWER_IS_NO, DONE
 from squealpipe.progress import elapsing
 
+if TYPE_CHECKING:
+    from squealpipe.store.memory.catalogue import Run
+
 SHOWN = 4
 """Changed parameters of a run that a line shows."""
 
 
 def list_runs(*, json_: AsJson = False) -> int:
-    """List archives and folders of results: date, commit, size, verification, changed parameters.
+    """List archives and folders of results: date, commit, size, whether intact, changed parameters.
 
     Example: `squealpipe list`
 
@@ -33,14 +37,14 @@ def list_runs(*, json_: AsJson = False) -> int:
     if not found:
         print("no archives and no results yet; run snakemake, then squealpipe archive NAME")
         return DONE
-    rows = [("name", "date", "commit", "MB", "verified", "differs from the paper's configuration")]
+    rows = [("name", "date", "commit", "MB", "files", "differs from the paper's configuration")]
     rows += [
         (
             run.name,
             run.date[:16].replace("T", " "),
             run.commit[:20] or "–",
             f"{run.size / 1e6:.1f}",
-            run.verified or ("no" if run.kind == "archive" else "–"),
+            "damaged" if run.faults else "intact",
             _changes(run.changed(paper)),
         )
         for run in found
@@ -49,6 +53,7 @@ def list_runs(*, json_: AsJson = False) -> int:
     for row in rows:
         cells = [cell.ljust(width) for cell, width in zip(row, widths, strict=False)]
         print("  ".join([*cells, row[-1]]).rstrip())
+    _warn(found)
     return DONE
 
 
@@ -59,45 +64,16 @@ def find(expression: str, /, *, json_: AsJson = False) -> int:
 
     Args:
         expression: comparisons of parameters, of the paper's symbols (L1, V) or of configuration
-            keys (linear.points), joined by and, or, not.
+            keys (linear.points), joined by and, or, not, as pandas reads them.
         json_: print a JSON list of names.
     """
-    from squealpipe.config.settings import Study
-    from squealpipe.config.yaml_files import flat
-    from squealpipe.parameters import DEFAULTS, TABLE
-    from squealpipe.store.memory.catalogue import runs
-    from squealpipe.store.memory.expressions import Condition
+    from squealpipe.store.memory.catalogue import matching, runs
 
-    known = {f"parameters.{name}": DEFAULTS[name] for name in TABLE if TABLE[name].extension}
-    known |= flat(Study().model_dump(mode="json"))
-    static, sliding = "parameters.mu_static", "parameters.mu"
-    condition = Condition(expression, {**known, static: known[sliding]})
-    names = [
-        run.name
-        for run in runs()
-        if run.config and condition.holds({static: run.config.get(sliding), **run.config})
-    ]
+    found = runs()
+    names = matching(expression, found)
+    _warn(found)
     print(json.dumps(names) if json_ else "\n".join(names) or "no run fulfils it")
     return DONE if names else ANSWER_IS_NO
-
-
-def collect_garbage(*, dry_run: Annotated[bool, Parameter(negative="")] = False) -> int:
-    """Delete shared contents that no archive refers to, and archives that were left half written.
-
-    Example: `squealpipe gc --dry-run`
-
-    Args:
-        dry_run: only tell what would be deleted.
-    """
-    from squealpipe.store.memory.objects import collect, garbage
-
-    found = garbage() if dry_run else collect()
-    word = "would be deleted" if dry_run else "deleted"
-    for path in [*found.objects, *found.drafts]:
-        print(path)
-    count = len(found.objects) + len(found.drafts)
-    print(f"{count} {word}, {found.size / 1e6:.1f} MB" if count else "nothing to delete")
-    return DONE
 
 
 def deposit(
@@ -124,6 +100,13 @@ def deposit(
     return DONE
 
 
+def _warn(found: list[Run]) -> None:
+    """Name the files that are not as they were written; the rest is listed all the same."""
+    for run in found:
+        for fault in run.faults:
+            print(f"{run.name}: {fault}", file=sys.stderr)
+
+
 def _changes(changed: dict[str, Any]) -> str:
     physical = sorted(changed, key=lambda key: (not key.startswith("parameters."), key))
     told = [f"{key.removeprefix('parameters.')}={changed[key]}" for key in physical[:SHOWN]]
@@ -131,6 +114,6 @@ def _changes(changed: dict[str, Any]) -> str:
     return ", ".join([*told, *([f"and {more} more"] if more else [])]) or "nothing"
 
 
-def _plain(run: Any, paper: dict[str, Any]) -> dict[str, Any]:
+def _plain(run: Run, paper: dict[str, Any]) -> dict[str, Any]:
     told = {name: getattr(run, name) for name in ("name", "kind", "date", "commit", "size")}
-    return {**told, "verified": run.verified, "changed": run.changed(paper), "config": run.config}
+    return {**told, "faults": run.faults, "changed": run.changed(paper), "config": run.config}

@@ -1,9 +1,4 @@
-"""What runs there are: archives and folders of results, found again by their parameters.
-
-An index beside the archives spares reading them. Each entry holds the seal, size and date of the
-manifest (or of the datasets) that it was read from; where those differ it is read again, so a
-missing, old or damaged index costs time, never truth.
-"""
+"""What runs there are: archives and folders of results, found again by their parameters."""
 
 from __future__ import annotations
 
@@ -11,25 +6,29 @@ import contextlib
 import datetime
 import json
 import os
-import tempfile
+import re
 from collections.abc import Iterator
-from dataclasses import asdict, dataclass, field
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-import yaml
+import pandas as pd
 
 from squealpipe.config.settings import PAPER, Study, read_study
 from squealpipe.config.yaml_files import flat
-from squealpipe.store.memory.objects import seal_fits
-from squealpipe.store.memory.results import open_lazily
-from squealpipe.store.netcdf import StoreError
-from squealpipe.store.runs import ARCHIVES, MANIFEST, SEAL, dataset_files, read_manifest
+from squealpipe.parameters import DEFAULTS, TABLE
+from squealpipe.store.archive import verify
+from squealpipe.store.netcdf import attributes
+from squealpipe.store.runs import ARCHIVES, MANIFEST, dataset_files, read_manifest
+from squealpipe.text import nearest
 
-INDEX = ".index.json"
-FORMAT = 1
+EXAMPLE = "write for instance 'mu == 0.25 and L1 > 4'"
 NOT_COMPARED = ("results",)
 """Configuration keys that say where, not what."""
+
+SYMBOLS = {re.sub(r"\W", "", row.symbol): name for name, row in TABLE.items()}
+SYMBOLS |= {symbol.replace("_", ""): name for symbol, name in SYMBOLS.items()}
+"""The paper's symbols (``V``, ``L1``) for parameters that have another name here."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -40,11 +39,10 @@ class Run:
         name: of the archive, or the folder.
         kind: "archive" or "results".
         date: when it was frozen or last changed, ISO.
-        commit: of the code that froze or made it; empty if not told.
+        commit: of the code that froze or made it; empty if not stated.
         size: bytes.
         config: dotted key → value of what made it.
-        verified: when and with what answer it was last verified; empty: not since it is known.
-        key: of the files that the entry was read from.
+        faults: what is wrong with it, file by file; none: it is intact.
     """
 
     name: str
@@ -53,8 +51,7 @@ class Run:
     commit: str
     size: int
     config: dict[str, Any] = field(default_factory=dict)
-    verified: str = ""
-    key: list[Any] = field(default_factory=list)
+    faults: list[str] = field(default_factory=list)
 
     def changed(self, paper: dict[str, Any]) -> dict[str, Any]:
         """Configuration keys whose values are not the paper's."""
@@ -66,30 +63,45 @@ class Run:
 
 
 def runs(root: str | os.PathLike[str] = ".") -> list[Run]:
-    """All archives and folders of results of a checkout, by name."""
+    """All archives and folders of results of a checkout, by name; each file is verified."""
     base = Path(root)
-    known = _read_index(base)
-    found = []
-    for place in _places(base):
-        key = _key(place)
-        old = known.get(_name(place, base))
-        found.append(old if old is not None and old.key == key else _read(place, base, key))
-    if {run.name: run for run in found} != known:
-        _write_index(base, found)
-    return found
+    return [*map(_archived, _archives(base)), *(_results(at, base) for at in _folders(base))]
 
 
-def note_verified(folder: Path, answer: str, root: str | os.PathLike[str] = ".") -> None:
-    """Remember in the index what the verification of an archive said."""
-    base = Path(root)
-    today = datetime.datetime.now(datetime.UTC).date().isoformat()
-    noted = [
-        Run(**{**asdict(run), "verified": f"{answer} {today}"})
-        if (base / ARCHIVES / run.name).resolve() == folder.resolve()
-        else run
-        for run in runs(base)
-    ]
-    _write_index(base, noted)
+def matching(expression: str, found: list[Run]) -> list[str]:
+    """Names of the runs whose parameters fulfil a condition, as pandas reads it.
+
+    Names are parameters (``mu``, ``length1``), the paper's symbols (``L1``), or keys of the
+    configuration with their section (``linear.points``).
+
+    Raises:
+        ValueError: it is no condition, or names an unknown key.
+    """
+    known = [run for run in found if run.config]
+    rows = [_row(run.config) for run in known] or [_row({})]
+    if any(sign in expression for sign in ("@", "__", "**")):
+        raise ValueError(f"{expression!r}: only comparisons of parameters are allowed in it")
+    text = re.sub(r"\b[a-z]\w*(\.\w+)+", lambda key: f"`{key[0]}`", expression)
+    try:
+        holds = pd.DataFrame(rows).eval(text, engine="python")
+    except Exception as error:
+        unknown = re.search(r"name '(\w+)' is not defined", str(error))
+        near = nearest(unknown[1], list(rows[0])) if unknown else None
+        hint = f"; did you mean {near!r}?" if near else ""
+        raise ValueError(f"{expression!r}: {error}{hint}; {EXAMPLE}") from error
+    if not isinstance(holds, pd.Series) or holds.dtype.kind != "b":
+        raise ValueError(f"{expression!r}: it is no condition that is true or false; {EXAMPLE}")
+    return [run.name for run, held in zip(known, holds, strict=False) if held]
+
+
+def _row(config: dict[str, Any]) -> dict[str, Any]:
+    """A run's values by the names that a condition may use, defaults where it states none."""
+    given = {**flat(Study().model_dump(mode="json")), **config}
+    row = {name: given.get(f"parameters.{name}", DEFAULTS[name]) for name in TABLE}
+    if row["mu_static"] is None:
+        row["mu_static"] = row["mu"]
+    row |= {symbol: row[name] for symbol, name in SYMBOLS.items() if symbol not in row}
+    return row | {key: value for key, value in given.items() if "parameters." not in key}
 
 
 def paper_configuration(root: str | os.PathLike[str] = ".") -> dict[str, Any]:
@@ -99,107 +111,60 @@ def paper_configuration(root: str | os.PathLike[str] = ".") -> dict[str, Any]:
     return flat(study.model_dump(mode="json"))
 
 
-def _places(base: Path) -> Iterator[Path]:
-    archives = base / ARCHIVES
-    if archives.is_dir():
-        for place in sorted(archives.iterdir()):
-            if not place.name.startswith(".") and (place / MANIFEST).is_file():
-                yield place
-    results = base / ARCHIVES.parent
-    for place in [results, *(sorted(results.iterdir()) if results.is_dir() else [])]:
-        if place != archives and (place / "data").is_dir():
+def _archives(base: Path) -> Iterator[Path]:
+    for place in sorted((base / ARCHIVES).glob("[!.]*")):
+        if (place / MANIFEST).is_file():
             yield place
 
 
-def _name(place: Path, base: Path) -> str:
-    return place.name if (place / MANIFEST).is_file() else place.relative_to(base).as_posix()
+def _folders(base: Path) -> Iterator[Path]:
+    results = base / ARCHIVES.parent
+    for place in [results, *sorted(results.glob("[!.]*"))]:
+        if place != base / ARCHIVES and any((place / "data").rglob("*.nc")):
+            yield place
 
 
-def _key(place: Path) -> list[Any]:
-    """What changes whenever an entry has to be read again."""
-    manifest = place / MANIFEST
-    if manifest.is_file():
-        stat, seal = manifest.stat(), place / SEAL
-        told = seal.read_text(errors="replace")[:100] if seal.is_file() else ""
-        return [told, stat.st_size, stat.st_mtime_ns]
-    files = dataset_files(place).values() if any((place / "data").rglob("*.nc")) else []
-    stats = [path.stat() for path in files]
-    sizes, dates = [stat.st_size for stat in stats], [stat.st_mtime_ns for stat in stats]
-    return [len(stats), sum(sizes), max(dates, default=0), sum(dates) % 2**52]
-
-
-def _read(place: Path, base: Path, key: list[Any]) -> Run:
-    if (place / MANIFEST).is_file():
-        return _read_archive(place, key)
-    config: dict[str, Any] = {}
-    commits: set[str] = set()
-    files = list(dataset_files(place).values()) if key[0] else []
-    for path in files:
-        with contextlib.suppress(StoreError):  # `verify` and `compare` tell of damage
-            attrs = open_lazily(path).attrs
-            told = json.loads(attrs.get("config", "{}"))
-            keys = [name for name in told if name in Study.model_fields or "." in name]
-            config |= {name: told[name] for name in keys}
-            commits.add(str(attrs.get("commit", "")))
-    newest = max((path.stat().st_mtime for path in files), default=0.0)
-    return Run(
-        name=_name(place, base),
-        kind="results",
-        date=datetime.datetime.fromtimestamp(newest, datetime.UTC).isoformat(timespec="seconds"),
-        commit=", ".join(sorted(commits - {""})),
-        size=sum(path.stat().st_size for path in files),
-        config=flat(config),
-        key=key,
-    )
-
-
-def _read_archive(place: Path, key: list[Any]) -> Run:
+def _archived(place: Path) -> Run:
+    found = verify(place)
     manifest = read_manifest(place)
-    config, commit = manifest.get("config"), manifest.get("commit")
-    if not isinstance(config, dict):  # archives made before the manifest told it
-        config = _older(place / "config/resolved.yaml")
-    if commit is None:
-        commit = _older(place / "environment.json").get("commit", "")
-    files = manifest.get("files", {})
-    sizes = [entry.get("bytes", 0) for entry in files.values()] if isinstance(files, dict) else []
+    config = manifest.get("config")
+    files = manifest.get("files")
     return Run(
         name=place.name,
         kind="archive",
         date=str(manifest.get("frozen", "")),
-        commit=str(commit),
-        size=sum(sizes),
-        config=flat(config),
-        verified="" if seal_fits(place) else "damaged manifest",
-        key=key,
+        commit=str(manifest.get("commit", "")),
+        size=sum(path.stat().st_size for path in place.rglob("*") if path.is_file()),
+        config=flat(config) if isinstance(config, dict) and isinstance(files, dict) else {},
+        faults=[] if found.intact else [line.strip() for line in found.lines()[1:]],
     )
 
 
-def _older(path: Path) -> dict[str, Any]:
-    """A mapping from YAML or JSON; empty where it is missing or damaged."""
-    try:
-        content = yaml.safe_load(path.read_text(encoding="utf-8"))
-    except (OSError, ValueError, yaml.YAMLError):
-        return {}
-    return content if isinstance(content, dict) else {}
-
-
-def _read_index(base: Path) -> dict[str, Run]:
-    try:
-        content = json.loads((base / ARCHIVES / INDEX).read_text(encoding="utf-8"))
-        if content["format"] != FORMAT:
-            return {}
-        return {entry["name"]: Run(**entry) for entry in content["runs"]}
-    except (OSError, ValueError, KeyError, TypeError):
-        return {}
-
-
-def _write_index(base: Path, found: list[Run]) -> None:
-    """Whole or not at all; a folder that cannot be written has no index."""
-    folder = base / ARCHIVES
-    text = json.dumps({"format": FORMAT, "runs": [asdict(run) for run in found]}, default=str)
-    with contextlib.suppress(OSError):
-        folder.mkdir(parents=True, exist_ok=True)
-        handle, name = tempfile.mkstemp(dir=folder, prefix=INDEX)
-        with os.fdopen(handle, "w", encoding="utf-8") as file:
-            file.write(text)
-        Path(name).replace(folder / INDEX)
+def _results(place: Path, base: Path) -> Run:
+    """A run that is going on or was edited: what can be read of it, and which files cannot."""
+    config: dict[str, Any] = {}
+    commits: set[str] = set()
+    faults: list[str] = []
+    files = list(dataset_files(place).values())
+    for path in files:
+        try:
+            stated = attributes(path)
+        except ValueError as error:
+            faults.append(str(error))
+            continue
+        part = json.loads(stated.get("config", "{}"))
+        config |= {key: part[key] for key in part if key in Study.model_fields or "." in key}
+        commits.add(str(stated.get("commit", "")))
+    newest = 0.0
+    for path in files:
+        with contextlib.suppress(FileNotFoundError):  # a run that goes on replaces its files
+            newest = max(newest, path.stat().st_mtime)
+    return Run(
+        name=place.relative_to(base).as_posix(),
+        kind="results",
+        date=datetime.datetime.fromtimestamp(newest, datetime.UTC).isoformat(timespec="seconds"),
+        commit=", ".join(sorted(commits - {""})),
+        size=sum(path.stat().st_size for path in files if path.is_file()),
+        config=flat(config),
+        faults=faults,
+    )
