@@ -4,26 +4,29 @@ from __future__ import annotations
 
 import contextlib
 import datetime
+import hashlib
 import os
-import tempfile
 import time
 from pathlib import Path
 from typing import Any
 
+import netCDF4
 import numpy as np
 import xarray as xr
 
 from squealpipe.schema import SchemaError, find, validate
 from squealpipe.store.checkout import commit
-from squealpipe.store.header import header_of
 from squealpipe.store.identity import dataset_id
-from squealpipe.store.seal import SEALED, Seal, archive_around, judge, write_seal
+from squealpipe.store.runs import archive_around
+from squealpipe.store.whole_files import checksum, whole_file
 from squealpipe.validation import AnyPath, checked
 
 
 class StoreError(ValueError):
     """A file cannot be read or written as a dataset; the message names it and the remedy."""
 
+
+MARK = b"\n# squealpipe sha256 "
 
 LEFT_AFTER_S = 3600.0
 """Age from which a temporary file belongs to no process that still runs."""
@@ -36,7 +39,8 @@ DAMAGED = (OSError, RuntimeError, ValueError, LookupError, AttributeError, TypeE
 def save(dataset: xr.Dataset, path: AnyPath) -> Path:
     """Write a dataset atomically, with its id: temporary name, validation, fsync, rename.
 
-    Commit and date are added where the dataset does not tell them yet.
+    Commit and date are added where the dataset does not state them yet. The last line of the file,
+    behind its NetCDF content, is the SHA-256 of all before it.
 
     Raises:
         SchemaError: the dataset does not fit its schema; nothing is written.
@@ -47,7 +51,7 @@ def save(dataset: xr.Dataset, path: AnyPath) -> Path:
     validate(dataset, find(str(dataset.attrs.get("schema"))))
     refuse_target(target)
     made = {"commit": commit(), "history": made_now(), **dataset.attrs}
-    dataset = dataset.assign_attrs({**made, **SEALED, "dataset_id": dataset_id(dataset)})
+    dataset = dataset.assign_attrs({**made, "dataset_id": dataset_id(dataset)})
     encoding: dict[str, dict[str, Any]] = {
         str(name): {"zlib": True, "complevel": 4, "shuffle": True}
         for name, variable in dataset.variables.items()
@@ -58,34 +62,20 @@ def save(dataset: xr.Dataset, path: AnyPath) -> Path:
         encoding.setdefault(str(name), {})
         if variable.dtype.kind in "fiu":
             encoding[str(name)]["_FillValue"] = None
-    temporary = None
     try:
-        target.parent.mkdir(parents=True, exist_ok=True)
-        clear_leftovers(target.parent, f".{target.name}.*.tmp")
-        handle, name_ = tempfile.mkstemp(
-            dir=target.parent, prefix=f".{target.name}.", suffix=".tmp"
-        )
-        os.close(handle)
-        temporary = Path(name_)
-        dataset.to_netcdf(temporary, engine="netcdf4", format="NETCDF4", encoding=encoding)
-        written = _read(temporary)
-        _check_content(written, temporary)
-        write_seal(temporary, header_of(written))
-        umask = os.umask(0)
-        os.umask(umask)
-        temporary.chmod(0o666 & ~umask)
-        sync(temporary)
-        temporary.replace(target)
-        sync(target.parent)
+        clear_leftovers(target.parent, f".{target.stem}.*{target.suffix}")
+        with whole_file(target) as temporary:
+            dataset.to_netcdf(
+                temporary, engine="netcdf4", format="NETCDF4", encoding=encoding
+            )
+            with temporary.open("ab") as file:
+                file.write(MARK + checksum(temporary).encode() + b"\n")
     except (OSError, RuntimeError, StoreError) as error:  # netCDF-4 reports a full disk as any
         reason = getattr(error, "strerror", None) or error
         raise StoreError(
             f"cannot write {target}: {reason}; free space or fix permissions, "
             "then run the same command again"
         ) from error
-    finally:
-        if temporary is not None:
-            temporary.unlink(missing_ok=True)
     return target
 
 
@@ -102,28 +92,41 @@ def load(path: AnyPath, *, schema: str | None = None) -> xr.Dataset:
         StoreError: the file is not whole, was changed, or is no dataset of this package.
         SchemaError: it does not fit its schema, or not the one asked for.
     """
-    source: Path = path
-    if not source.is_file():
-        raise FileNotFoundError(f"no dataset {source}; make it with snakemake, or check the path")
-    seal = judge(source)
-    if seal is Seal.broken:
-        raise StoreError(_changed(source))
-    if seal is Seal.unreadable:
-        raise StoreError(
-            f"{source} is damaged: the NetCDF library hangs on it or dies; delete it and run "
-            "snakemake again"
-        )
+    source = verified(path)
     dataset = _read(source)
-    found = dataset.attrs.get("schema")
-    if found is None:
-        raise StoreError(f"{source} was not written by squealpipe: it has no `schema` attribute")
+    found = str(dataset.attrs.get("schema"))
     if schema is not None and found != schema:
         raise SchemaError(f"{source} holds {found!r}, {schema!r} was expected; pass the right file")
-    validate(dataset, find(str(found)))
-    _check_content(dataset, source)
-    if seal is Seal.absent and SEALED.keys() & dataset.attrs.keys():
-        raise StoreError(_changed(source))
+    validate(dataset, find(found))
     return dataset
+
+
+def attributes(path: str | os.PathLike[str]) -> dict[str, Any]:
+    """Global attributes of a dataset file.
+
+    Raises:
+        FileNotFoundError, StoreError: as :func:`load`.
+    """
+    with netCDF4.Dataset(verified(path)) as file:
+        return {name: file.getncattr(name) for name in file.ncattrs()}
+
+
+def verified(path: str | os.PathLike[str]) -> Path:
+    """The path of a dataset file whose bytes are those that were written, before HDF5 opens it.
+
+    Raises:
+        FileNotFoundError, StoreError: as :func:`load`.
+    """
+    source = Path(path)
+    if not source.is_file():
+        raise FileNotFoundError(f"no dataset {source}; make it with snakemake, or check the path")
+    content, mark, stated = source.read_bytes().rpartition(MARK)
+    if not mark or stated != hashlib.sha256(content).hexdigest().encode() + b"\n":
+        raise StoreError(
+            f"{source} was changed or damaged since squealpipe wrote it, or another program wrote "
+            "it; delete it and run snakemake again"
+        )
+    return source
 
 
 def refuse_target(target: Path) -> None:
@@ -152,16 +155,6 @@ def made_now() -> str:
     return f"{datetime.datetime.now(datetime.UTC):%Y-%m-%dT%H:%M:%SZ} squealpipe"
 
 
-def _changed(source: Path) -> str:
-    return f"{source} was changed or damaged since it was made; delete it and run snakemake again"
-
-
-def _check_content(dataset: xr.Dataset, source: Path) -> None:
-    """Raise if the values are not those that were saved."""
-    if dataset.attrs.get("dataset_id") != dataset_id(dataset):
-        raise StoreError(_changed(source))
-
-
 def _read(source: Path) -> xr.Dataset:
     try:
         with xr.open_dataset(source, engine="netcdf4", decode_times=False) as opened:
@@ -181,12 +174,3 @@ def _refuse_too_large(opened: xr.Dataset) -> None:
     memory = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
     if opened.nbytes > memory:
         raise ValueError(f"it claims {opened.nbytes} bytes, more than this machine's memory")
-
-
-def sync(path: Path) -> None:
-    """Have a file or folder on disk before going on."""
-    handle = os.open(path, os.O_RDONLY)
-    try:
-        os.fsync(handle)
-    finally:
-        os.close(handle)

@@ -10,6 +10,8 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any
 
+from squealpipe.store.whole_files import checksum
+
 ARCHIVES = Path("results/archive")
 MANIFEST = "manifest.json"
 SEAL = "manifest.sha256"
@@ -54,6 +56,22 @@ def listed_files(folder: Path) -> dict[str, dict[str, Any]] | None:
         return {str(name): dict(entry) for name, entry in files.items()}
     except (KeyError, TypeError, AttributeError, ValueError):
         return None
+
+
+def seal_fits(folder: Path) -> bool:
+    """Whether the manifest of an archive is as it was sealed."""
+    seal = folder / SEAL
+    return seal.is_file() and seal.read_bytes() == seal_text(folder).encode()
+
+
+def seal_text(folder: Path) -> str:
+    """The line that seals the manifest of an archive, as `sha256sum` writes and checks it."""
+    return f"{checksum(folder / MANIFEST)}  {MANIFEST}\n"
+
+
+def archive_around(path: Path) -> Path | None:
+    """The archive that a file is part of, if any."""
+    return next((at for at in path.resolve().parents if (at / MANIFEST).is_file()), None)
 
 
 def left_out(place: Path) -> list[str]:

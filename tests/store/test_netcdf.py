@@ -20,7 +20,8 @@ from hypothesis import strategies as st
 from squealpipe.parameters import Parameters
 from squealpipe.schema import SchemaError
 from squealpipe.store import StoreError, load, produce, save
-from squealpipe.store.seal import HEADER, LENGTH
+from squealpipe.store.netcdf import MARK
+from squealpipe.store.whole_files import checksum
 from squealpipe.tasks.linear.maps import stability_map
 
 ANGLES = np.linspace(0, np.pi, 31)
@@ -36,13 +37,25 @@ def path(tmp_path, dataset):
     return save(dataset, tmp_path / "map.nc")
 
 
+def seal(path):
+    """Have a file that another program wrote end as ours do."""
+    line = MARK + checksum(path).encode() + b"\n"
+    with path.open("ab") as file:
+        file.write(line)
+
+
+def sealed(dataset, path):
+    dataset.to_netcdf(path)
+    seal(path)
+
+
 def leftovers(folder):
     return [entry.name for entry in folder.iterdir() if entry.name.startswith(".")]
 
 
 def test_what_is_saved_is_loaded(dataset, path):
     back = load(path)
-    added = {"commit", "history", "file_checksum", "dataset_id"}
+    added = {"commit", "history", "dataset_id"}
     assert set(back.attrs) - set(dataset.attrs) == added
     xr.testing.assert_identical(
         back, dataset.assign_attrs({name: back.attrs[name] for name in added})
@@ -82,30 +95,14 @@ def test_corrupted_bytes_never_pass_as_another_result(tmp_path_factory, place, f
     folder = tmp_path_factory.mktemp("corrupt")
     made = stability_map(Parameters(), ANGLES, ANGLES)
     path = produce(lambda: made, config={}, output=folder / "map.nc")
-    original = load(path)
     content = bytearray(path.read_bytes())
     content[int(len(content) * place)] ^= flip
     path.write_bytes(content)
     try:
         found = load(path)
-    except (StoreError, SchemaError):
+    except StoreError:
         return
-    xr.testing.assert_identical(found, original)
-
-
-def without_seal(path):
-    """The file as versions before the checksum of whole files wrote it."""
-    path.write_bytes(path.read_bytes().rpartition(HEADER)[0])
-    with netCDF4.Dataset(path, "a") as file:
-        file.delncattr("file_checksum")
-    return path
-
-
-def test_files_from_before_the_checksum_are_read(path):
-    before = load(path)
-    after = load(without_seal(path))
-    assert after.equals(before)
-    assert "file_checksum" not in after.attrs
+    raise AssertionError(f"a flipped byte passed: {found}")
 
 
 @pytest.mark.parametrize(
@@ -120,44 +117,8 @@ def test_files_from_before_the_checksum_are_read(path):
 def test_what_a_reader_sees_beside_the_values_is_covered_too(path, change):
     with netCDF4.Dataset(path, "a") as file:
         change(file)
-    with pytest.raises(StoreError, match="was changed or damaged since it was made"):
+    with pytest.raises(StoreError, match="was changed or damaged since"):
         load(path)
-
-
-@pytest.mark.parametrize("change", ["delete", "empty"])
-def test_a_file_without_its_id_is_refused(path, change):
-    with netCDF4.Dataset(without_seal(path), "a") as file:
-        if change == "delete":
-            file.delncattr("dataset_id")
-        else:
-            file.dataset_id = ""
-        file["growth_rate"][0, 0] = 5.0
-    with pytest.raises(StoreError, match="was changed or damaged since it was made"):
-        load(path)
-
-
-def test_every_flip_is_refused_before_the_file_is_opened(path, monkeypatch):
-    def opened(*_):
-        raise AssertionError("HDF5 got the damaged file")
-
-    monkeypatch.setattr("squealpipe.store.netcdf._read", opened)
-    monkeypatch.setattr("squealpipe.store.seal.opens_in_time", opened)
-    whole = path.read_bytes()
-    for place in np.random.default_rng(3).integers(0, len(whole) - LENGTH, 200):
-        content = bytearray(whole)
-        content[place] ^= 1 << int(place) % 8
-        path.write_bytes(content)
-        with pytest.raises(StoreError, match="was changed or damaged"):
-            load(path)
-
-
-@pytest.mark.parametrize("probe", ["import time; time.sleep(60)", "import os; os.abort()"])
-def test_files_that_hang_or_kill_the_library_are_refused_in_time(path, probe, monkeypatch):
-    """The probe of a file without checksum runs in a process of its own, with a limit."""
-    monkeypatch.setattr("squealpipe.store.seal.PROBE", probe)
-    monkeypatch.setattr("squealpipe.store.seal.TIME_LIMIT_S", 0.5)
-    with pytest.raises(StoreError, match="hangs on it or dies"):
-        load(without_seal(path))
 
 
 @pytest.mark.parametrize("kind", ["device", "pipe", "folder", "link"])
@@ -186,14 +147,13 @@ def test_files_of_an_archive_are_never_replaced(dataset, path, tmp_path):
 def test_foreign_and_unknown_files_are_refused(tmp_path, dataset):
     foreign = tmp_path / "foreign.nc"
     xr.Dataset({"x": ("t", [1.0])}).to_netcdf(foreign)
-    with pytest.raises(StoreError, match="not written by squealpipe"):
-        load(foreign)
     text = tmp_path / "text.nc"
     text.write_text("no dataset")
-    with pytest.raises(StoreError, match="not NetCDF-4"):
-        load(text)
+    for path in (foreign, text):
+        with pytest.raises(StoreError, match="or another program wrote it"):
+            load(path)
     unknown = tmp_path / "unknown.nc"
-    dataset.assign_attrs(schema="colour_map").to_netcdf(unknown)
+    sealed(dataset.assign_attrs(schema="colour_map"), unknown)
     with pytest.raises(SchemaError, match="no schema 'colour_map'"):
         load(unknown)
     with pytest.raises(FileNotFoundError, match="make it with snakemake"):
@@ -205,7 +165,7 @@ def test_foreign_and_unknown_files_are_refused(tmp_path, dataset):
 def test_values_changed_by_another_program_are_noticed(path):
     with netCDF4.Dataset(path, "a") as file:
         file["growth_rate"][2, 3] += 1e-9
-    with pytest.raises(StoreError, match="was changed or damaged since it was made"):
+    with pytest.raises(StoreError, match="was changed or damaged since"):
         load(path)
 
 
@@ -213,6 +173,7 @@ def test_claimed_sizes_beyond_memory_are_refused(tmp_path):
     with netCDF4.Dataset(tmp_path / "bomb.nc", "w") as file:
         file.createDimension("t", 2**45)
         file.createVariable("x", "f8", ("t",), chunksizes=(1024,), zlib=True)
+    seal(tmp_path / "bomb.nc")
     with pytest.raises(StoreError, match="more than this machine's memory"):
         load(tmp_path / "bomb.nc")
 
@@ -225,7 +186,7 @@ def test_another_schema_than_asked_for_is_refused(path):
 def test_files_with_damaged_values_are_refused(dataset, tmp_path):
     damaged = dataset.copy(deep=True)
     damaged["regime_linear"][0, 0] = 9
-    damaged.to_netcdf(tmp_path / "damaged.nc")
+    sealed(damaged, tmp_path / "damaged.nc")
     with pytest.raises(SchemaError, match="flags \\[9\\] that have no meaning"):
         load(tmp_path / "damaged.nc")
 

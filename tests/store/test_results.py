@@ -1,26 +1,24 @@
 """A run as one tree, read when it is used; several runs stacked along what was changed."""
 
-import shutil
-import time
-
 import numpy as np
 import pytest
 import xarray as xr
 
-from squealpipe import Parameters, backbone, load, open_results, save, stability_map
-from squealpipe.store import StoreError
+from squealpipe import Parameters, backbone, load, open_results, save
+from squealpipe.rerun.key import file_key
+from squealpipe.store import StoreError, produce
 from squealpipe.store.archive import archive
 from squealpipe.store.checkout import ROOT
-from squealpipe.store.memory import results
-from squealpipe.store.seal import HEADER
 
 
-def test_nodes_are_the_datasets_by_their_names(run):
+def test_nodes_are_the_datasets_by_their_names(run, keys_of):
     folder = run / "results/data"
-    shutil.copy(folder / "stability_map.nc", folder / "second.nc")
-    (folder / "deep").mkdir()
-    shutil.copy(folder / "stability_map.nc", folder / "deep/third.nc")
-    archive("first", root=run)
+    made = load(folder / "stability_map.nc")
+    keys = keys_of(run)
+    for name in ("second", "deep/third"):
+        path = produce(lambda: made, config={}, output=folder / f"{name}.nc", key="0" * 16)
+        keys[f"results/data/{name}.nc"] = file_key("0" * 16, path)
+    archive("first", keys=keys, root=run)
     for tree in (open_results(run / "results"), open_results("first", root=run)):
         assert isinstance(tree, xr.DataTree)
         assert {node.path for node in tree.subtree if node.has_data} == {
@@ -28,7 +26,7 @@ def test_nodes_are_the_datasets_by_their_names(run):
             "/second",
             "/deep/third",
         }
-        whole = load(folder / "stability_map.nc")
+        whole = load(folder / "deep/third.nc")
         xr.testing.assert_identical(tree["deep/third"].to_dataset().load(), whole)
         np.testing.assert_array_equal(
             tree["second"].growth_rate[3:5, ::2].values, whole.growth_rate.values[3:5, ::2]
@@ -40,42 +38,6 @@ def test_every_kind_of_dataset_of_the_reference_is_the_one_that_load_reads():
     for name in ("claims", "whirl", "backbone/F10_mode1", "failure_atlas", "model_ladder"):
         whole = load(ROOT / f"results/archive/reference/data/{name}.nc")
         xr.testing.assert_identical(tree[name].to_dataset().load(), whole)
-
-
-def test_values_are_read_when_they_are_used(run, monkeypatch):
-    read = []
-    original = results._StoredArray._read
-
-    def counted(self, key):
-        read.append(self.name)
-        return original(self, key)
-
-    monkeypatch.setattr(results._StoredArray, "_read", counted)
-    tree = open_results(run / "results")
-    assert read == []
-    assert float(tree["stability_map"].growth_rate.max()) > 0
-    assert set(read) == {"growth_rate"}
-
-
-@pytest.mark.parametrize("points", [5, 5000])
-def test_the_header_gives_what_the_file_gives(tmp_path, points):
-    """Attributes, types and grids; a grid that is too long for it is read from the file."""
-    made = stability_map(Parameters(), [0.3, 1.2], np.linspace(0, 3, points))
-    made = made.assign_attrs(note="é", number=3, factor=0.1, vector=np.array([1.5, np.nan]))
-    path = save(made, tmp_path / "map.nc")
-    assert results.open_lazily(path).load().identical(load(path))
-    without = tmp_path / "without.nc"
-    without.write_bytes(path.read_bytes().rpartition(HEADER)[0])
-    assert results.open_lazily(without).load().identical(load(path))
-
-
-def test_damaged_files_are_refused(run):
-    path = run / "results/data/stability_map.nc"
-    content = bytearray(path.read_bytes())
-    content[2000] ^= 1
-    path.write_bytes(content)
-    with pytest.raises(StoreError, match="changed or damaged"):
-        open_results(run / "results")
 
 
 def test_runs_are_stacked_along_the_parameters_that_changed(tmp_path, write_run):
@@ -118,20 +80,52 @@ def test_wrong_questions_are_told(run, tmp_path):
     with pytest.raises(ValueError, match="named twice"):
         open_results([run / "results"] * 2, along="run")
     (tmp_path / "results/archive/first").mkdir(parents=True)
-    (tmp_path / "results/archive/.index.json").touch()
     with pytest.raises(FileNotFoundError, match=r"no archive, folder or file.*; archives: first$"):
         open_results("nothing", root=tmp_path)
 
 
-def test_a_thousand_nodes_open_within_three_seconds(tmp_path):
-    """Of processor time; no file stays open."""
-    angles = np.linspace(0, np.pi, 31)
-    made = stability_map(Parameters(), angles, angles)
-    first = save(made, tmp_path / "0.nc")
-    for i in range(1, 1000):
-        shutil.copy(first, tmp_path / f"{i}.nc")
-    began = time.process_time()
-    tree = open_results(tmp_path)
-    assert time.process_time() - began < 3.0
-    assert len(tree.children) == 1000
-    assert tree["999"].to_dataset().load().identical(load(first))
+DAMAGES = {
+    "cut": lambda whole, share: whole[: int(len(whole) * share)],
+    "cut at the front": lambda whole, share: whole[int(len(whole) * share) + 1 :],
+    "flipped": lambda whole, share: flipped(whole, int(len(whole) * share)),
+    "zeroed": lambda whole, share: whole[: (k := int(len(whole) * share))] + bytes(len(whole) - k),
+    "lengthened": lambda whole, share: whole + whole[: int(len(whole) * share) + 1],
+}
+
+
+def flipped(whole, place):
+    content = bytearray(whole)
+    content[place] ^= 1 << place % 8
+    return bytes(content)
+
+
+@pytest.mark.parametrize("kind", DAMAGES)
+def test_sixty_damaged_files_of_each_kind_are_refused_at_open(run, kind):
+    path = run / "results/data/stability_map.nc"
+    whole = path.read_bytes()
+    for share in np.linspace(0, 0.9999, 60):
+        path.write_bytes(DAMAGES[kind](whole, share))
+        with pytest.raises(StoreError, match="changed or damaged"):
+            open_results(run / "results")
+
+
+def test_values_doubled_by_another_program_are_refused(run):
+    path = run / "results/data/stability_map.nc"
+    dataset = load(path)
+    dataset["growth_rate"] = dataset.growth_rate * 2
+    dataset.to_netcdf(path)
+    with pytest.raises(StoreError, match="another program wrote it"):
+        open_results(run / "results")
+
+
+def test_files_that_were_swapped_are_refused(run, tmp_path):
+    folder = run / "results/data"
+    made = load(folder / "stability_map.nc")
+    for name in ("first", "second"):
+        produce(lambda: made, config={}, output=folder / f"{name}.nc", key="0" * 16)
+    assert set(open_results(run / "results").children) == {"first", "second", "stability_map"}
+    (folder / "first.nc").rename(tmp_path / "aside.nc")
+    (folder / "second.nc").rename(folder / "first.nc")
+    (tmp_path / "aside.nc").rename(folder / "second.nc")
+    with pytest.raises(StoreError, match=r"first\.nc is a copy of data/second\.nc"):
+        open_results(run / "results")

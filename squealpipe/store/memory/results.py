@@ -1,4 +1,4 @@
-"""A whole run as one tree of datasets, opened without reading the values."""
+"""A whole run as one tree of datasets."""
 
 from __future__ import annotations
 
@@ -7,20 +7,15 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-import netCDF4
 import numpy as np
 import xarray as xr
-from xarray.backends import BackendArray
-from xarray.core import indexing
 
 from squealpipe.schema import DatasetSchema, find
 from squealpipe.schema.sweep import fill_up
 from squealpipe.store.comparison.compare import configuration
 from squealpipe.store.comparison.matching import on_shared_points
-from squealpipe.store.header import dataset_from
 from squealpipe.store.netcdf import StoreError, load
 from squealpipe.store.runs import dataset_files, locate
-from squealpipe.store.seal import Seal, read_seal
 from squealpipe.validation import checked
 
 RUN = "run"
@@ -34,13 +29,13 @@ def open_results(
 ) -> xr.DataTree:
     """The datasets of a run as a tree: one node each, by their names below ``data/``.
 
-    Values are read when they are used; every file is held against its checksum when it is opened.
+    Every file is held against its checksum.
 
     Args:
         name_or_path: an archive by its name, or a folder of results; with ``along`` a list.
         along: "run" stacks each dataset that all runs have along a new dimension ``run``, whose
             coordinates are the runs' names and every parameter that differs. Grids are cut to the
-            points that all share; shorter lists are filled up as in a sweep. The values are read.
+            points that all share; shorter lists are filled up as in a sweep.
         root: the checkout, where archives are looked up by name.
 
     Returns:
@@ -57,7 +52,7 @@ def open_results(
         place = locate(name_or_path, root)
         files = dataset_files(place)
         return xr.DataTree.from_dict(
-            {name: open_lazily(path) for name, path in files.items()}, name=place.name
+            {name: _load(name, path) for name, path in files.items()}, name=place.name
         )
     if along != RUN or not name_or_path:
         raise ValueError(
@@ -73,69 +68,20 @@ def open_results(
     if not shared:
         raise ValueError(f"{', '.join(runs)} share no dataset of one name")
     return xr.DataTree.from_dict(
-        {name: stacked({run: load(files[name]) for run, files in runs.items()}) for name in shared}
+        {
+            name: stacked({run: _load(name, files[name]) for run, files in runs.items()})
+            for name in shared
+        }
     )
 
 
-def open_lazily(path: Path) -> xr.Dataset:
-    """A dataset whose values are read when they are used; coordinates of grids are read now.
-
-    Raises:
-        StoreError: the file is not as it was written, or cannot be opened.
-    """
-    seal, header = read_seal(path)
-    if seal in {Seal.broken, Seal.unreadable}:
-        raise StoreError(f"{path} was changed or damaged since it was made; make it again")
-    made = dataset_from(header, lambda *of: indexing.LazilyIndexedArray(_StoredArray(path, *of)))
-    if made is not None:
-        return made
-    try:
-        with netCDF4.Dataset(path) as file:
-            variables = {name: _lazy(path, name, file[name]) for name in file.variables}
-            attrs = {name: file.getncattr(name) for name in file.ncattrs()}
-    except (OSError, RuntimeError) as error:
-        raise StoreError(f"{path} cannot be opened as NetCDF-4 ({error})") from error
-    if "schema" not in attrs:
-        raise StoreError(f"{path} was not written by squealpipe: it has no `schema` attribute")
-    coords = {name for name in find(str(attrs["schema"])).coordinates if name in variables}
-    data = {name: variable for name, variable in variables.items() if name not in coords}
-    return xr.Dataset(data, {name: variables[name] for name in coords}, attrs)
-
-
-def _lazy(path: Path, name: str, variable: Any) -> xr.Variable:
-    attrs = dict(variable.__dict__)
-    truth = attrs.pop("dtype", "") == "bool"  # how Xarray marks what NetCDF has no type for
-    if variable.dimensions == (name,):
-        values = _text(variable[...])
-        return xr.Variable((name,), values.astype(bool) if truth else values, attrs)
-    stored = np.dtype(object) if variable.dtype is str else np.dtype(variable.dtype)
-    array = _StoredArray(path, name, variable.shape, np.dtype(bool) if truth else stored)
-    lazy = indexing.LazilyIndexedArray(array)
-    return xr.Variable(variable.dimensions, lazy, attrs, fastpath=True)
-
-
-def _text(values: Any) -> np.ndarray:
-    array = np.ma.getdata(values)
-    return array.astype(str) if array.dtype.kind == "O" else array
-
-
-class _StoredArray(BackendArray):
-    """A variable in a file that is opened for each access, so no tree holds files open."""
-
-    def __init__(self, path: Path, name: str, shape: tuple[int, ...], dtype: np.dtype) -> None:
-        self.path, self.name, self.shape, self.dtype = path, name, shape, dtype
-
-    def __getitem__(self, key: indexing.ExplicitIndexer) -> Any:
-        return indexing.explicit_indexing_adapter(
-            key, self.shape, indexing.IndexingSupport.OUTER, self._read
-        )
-
-    def _read(self, key: tuple) -> np.ndarray:
-        with netCDF4.Dataset(self.path) as file:
-            variable = file[self.name]
-            variable.set_auto_maskandscale(False)
-            values = _text(variable[key] if key else variable[...])
-        return values.astype(bool) if self.dtype == bool else values
+def _load(name: str, path: Path) -> xr.Dataset:
+    """A dataset of a run; a copy under another name is refused."""
+    dataset = load(path)
+    stated = str(dataset.attrs.get("key", "")).partition(" ")[2]
+    if stated not in {"", f"data/{name}.nc"}:
+        raise StoreError(f"{path} is a copy of {stated}; delete it and run snakemake again")
+    return dataset
 
 
 def stacked(datasets: Mapping[str, xr.Dataset]) -> xr.Dataset:
