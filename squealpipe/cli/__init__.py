@@ -18,7 +18,7 @@ from squealpipe.cli.console import SESSION, TRACEBACK, session
 from squealpipe.cli.exit_codes import DONE, INTERRUPTED, NOT_DONE
 from squealpipe.cli.interrupts import interrupted, watched
 from squealpipe.cli.maps import map_angles
-from squealpipe.cli.memory import collect_garbage, deposit, find, list_runs
+from squealpipe.cli.memory import deposit, find, list_runs
 from squealpipe.cli.project import init
 from squealpipe.cli.project import run as run_study
 from squealpipe.cli.propensity import propensity
@@ -49,7 +49,6 @@ COMMANDS: dict[str, Callable[..., int]] = {
     "compare": compare,
     "list": list_runs,
     "find": find,
-    "gc": collect_garbage,
     "deposit": deposit,
 }
 FORESEEN = (CycloptsError, ValueError, OSError, RuntimeError)

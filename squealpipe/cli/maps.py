@@ -73,16 +73,15 @@ def map_angles(
 
     from squealpipe.execution import catalogue
     from squealpipe.execution.row_blocks import BLOCK, map_in_blocks
-    from squealpipe.rerun.sources import closure
+    from squealpipe.rerun.key import rule_key, sources
     from squealpipe.store.chunks import Checkpoint
     from squealpipe.study.figures.parts.angle_map import SHOWN, draw
     from squealpipe.study.figures.parts.style import save_figure
 
     settings = {"parameters": params.as_dict(), "alpha1": alpha1, "alpha2": alpha2, **options}
     each = SECONDS[name] * (t_end / params.time_unit if name in TIMED else 1.0)
-    kept = Checkpoint.beside(
-        output, config={"task": name, **settings}, sources=closure(catalogue.__file__)
-    )
+    key = rule_key({"task": name, **settings}, sources(Path(catalogue.__file__)))
+    kept = Checkpoint.beside(output, key=key)
     dataset = write(
         lambda: map_in_blocks(
             lambda rows: catalogue.run_task(name, params, rows, alpha2, **options),

@@ -3,15 +3,11 @@
 from __future__ import annotations
 
 import os
-import re
 import signal
 import subprocess
 import sys
 import time
-from collections import Counter
-from collections.abc import Iterable
 from pathlib import Path
-from typing import Any, TextIO
 
 from squealpipe.cli.arguments import Configs, Switch, Whole
 from squealpipe.cli.console import SESSION, say
@@ -20,7 +16,6 @@ from squealpipe.cli.output import check_output
 from squealpipe.parameters import DEFAULTS, TABLE, Row
 from squealpipe.progress import duration
 
-QUICK = Path("workflow/config/quick.yaml")
 HEAD = """\
 # A study of your own, laid over the paper's: what stands here replaces what stands there.
 # Edit the parameters; for other keys take away the "# " of the key and of its section.
@@ -51,8 +46,6 @@ parameters: # SI units
 """
 PATIENCE = 30.0
 """Seconds in which a workflow that was interrupted may end its jobs and tidy up."""
-GRACE = 5.0
-"""Seconds after which jobs that did not heed the interrupt are killed, and then Snakemake."""
 
 
 def init(
@@ -126,7 +119,7 @@ def checkout() -> Path:
 
 
 def run(*, config: Configs = None, quick: Switch = False, cores: Whole | None = None) -> int:
-    """Compute a study: one line for each rule when it is done, and what failed, with its log.
+    """Compute a study, with Snakemake's account of the steps, and of what failed with its log.
 
     Stop it and run the same command again: it goes on where it was.
 
@@ -137,36 +130,18 @@ def run(*, config: Configs = None, quick: Switch = False, cores: Whole | None = 
         quick: coarse grids and short horizons, for a first look.
         cores: cores to use; all by default.
     """
-    from squealpipe.config.settings import PAPER, read_study
-    from squealpipe.config.yaml_files import read_yaml
+    from squealpipe.execution.explain import snakemake_command
 
     root = checkout()
-    overlays = [*([root / QUICK] if quick else []), *(config or [])]
-    study = read_study(root / PAPER, *overlays)
-    command = [sys.executable, "-m", "snakemake", "--nocolor", "--cores", str(cores or "all")]
-    if root != Path():
-        command += ["--snakefile", str(root / "Snakefile"), "--directory", str(Path.cwd())]
-    overlays = [path for path in overlays if read_yaml(path)[0]]  # Snakemake takes no empty one
-    if overlays:
-        command += ["--configfile", *map(str, overlays)]
-    log = Path(study.results) / "logs" / "run.log"
-    log.parent.mkdir(parents=True, exist_ok=True)
-    SESSION.patience = PATIENCE
+    command, study = snakemake_command(config or [], quick=quick, root=root)
     SESSION.advice = lambda: "what is finished is kept; run the same command again to go on"
     started = time.perf_counter()
-    with log.open("w", encoding="utf-8") as file:
-        code, teller = _follow(command, file)
-    for failure in teller.failures:
-        print(f"failed: {failure}", file=sys.stderr)
+    quiet = ["--quiet", "all"] if SESSION.quiet else ["--quiet", "host", "rules"]
+    code = _patiently([*command, "--cores", str(cores or "all"), *quiet])
     if code:
-        print(f"squealpipe: the study is not complete; everything is in {log}", file=sys.stderr)
+        print(f"squealpipe: the study in {study.results} is not complete", file=sys.stderr)
         return NOT_DONE
-    taken = duration(time.perf_counter() - started)
-    say(
-        f"done in {taken}: {study.results}/report/index.html"
-        if teller.rules
-        else f"nothing to do: every result in {study.results} is up to date"
-    )
+    say(f"done in {duration(time.perf_counter() - started)}: {study.results}/report/index.html")
     return DONE
 
 
@@ -178,82 +153,17 @@ def _caches() -> dict[str, str]:
     return {"XDG_CACHE_HOME": kept, "MPLCONFIGDIR": f"{kept}/matplotlib", **os.environ}
 
 
-def _follow(command: list[str], log: TextIO) -> tuple[int, Teller]:
-    """Run Snakemake, keep all that it says in the log, and say what matters."""
-    teller = Teller()
-    environment = {**os.environ, **_caches(), "PYTHONUNBUFFERED": "1"}
-    with subprocess.Popen(
-        command,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.STDOUT,
-        text=True,
-        env=environment,
-        start_new_session=True,
-    ) as process:
-        assert process.stdout is not None  # noqa: S101 (for the type checker)
+def _patiently(command: list[str]) -> int:
+    """Run Snakemake to its end; after Ctrl-C it gets the time to end its jobs and tidy up."""
+    SESSION.patience = PATIENCE
+    with subprocess.Popen(command, env={**os.environ, **_caches()}, start_new_session=True) as made:
         try:
-            for line in process.stdout:
-                log.write(line)
-                log.flush()
-                say(*teller.hear(line.rstrip("\n")))
-            return process.wait(), teller
+            return made.wait()
         except KeyboardInterrupt:
-            os.killpg(process.pid, signal.SIGINT)
-            if not _ended(process, log):  # a job does not heed it: Snakemake tidies up without it
-                import psutil
-
-                for job in psutil.Process(process.pid).children(recursive=True):
-                    job.kill()
-                if not _ended(process, log):
-                    os.killpg(process.pid, signal.SIGKILL)
-                    subprocess.run([*command, "--unlock"], capture_output=True, check=False)
+            os.killpg(made.pid, signal.SIGINT)
+            try:
+                made.wait(PATIENCE / 2)
+            except subprocess.TimeoutExpired:  # a job does not heed it
+                os.killpg(made.pid, signal.SIGKILL)
+                subprocess.run([*command, "--unlock"], capture_output=True, check=False)
             raise
-
-
-def _ended(process: subprocess.Popen[str], log: TextIO) -> bool:
-    """Whether Snakemake has come to its end within the time that it is given."""
-    try:
-        log.write(process.communicate(timeout=GRACE)[0])
-    except subprocess.TimeoutExpired:
-        return False
-    return True
-
-
-class Teller:
-    """Reads Snakemake's account line by line and gives one line for each rule that is done."""
-
-    def __init__(self) -> None:
-        self.rules: Counter[str] = Counter()
-        self.failures: list[str] = []
-        self._begun: dict[str, float] = {}
-        self._seconds: dict[str, float] = {}
-        self._table = False
-        self._failed = ""
-
-    def hear(self, line: str) -> Iterable[str]:
-        """Take in one line; what to say about it."""
-        if re.match(r"job\s+count", line):
-            self._table = True
-        elif self._table and (match := re.match(r"(\w+)\s+(\d+)$", line)):
-            if match[1] not in {"total", "all"}:
-                self.rules[match[1]] = int(match[2])
-        elif self._table and not line:
-            self._table = False
-        elif match := re.match(r"Job (\d+): ", line):
-            self._begun.setdefault(match[1], time.perf_counter())
-        elif match := re.match(r"Finished jobid: (\d+) \(Rule: (\w+)\)", line):
-            yield from self._finished(*match.groups())
-        elif match := re.match(r"Error in rule (\w+)", line):
-            self._failed = match[1]
-            self.failures.append(self._failed)
-        elif self._failed and (match := re.match(r"\s+log: (.*?)(?: \(check.*)?$", line)):
-            self.failures[-1] = f"{self._failed}, see {match[1]}"
-
-    def _finished(self, job: str, rule: str) -> Iterable[Any]:
-        now = time.perf_counter()
-        self._seconds[rule] = self._seconds.get(rule, 0.0) + now - self._begun.get(job, now)
-        self.rules[rule] -= 1
-        if self.rules[rule] == 0 and rule != "all":
-            left = sum(1 for count in self.rules.values() if count > 0)
-            rest = f"{left} {'rule' if left == 1 else 'rules'} left"
-            yield f"{rule:<32}{duration(self._seconds[rule]):>12}   {rest}"

@@ -8,76 +8,89 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
-from squealpipe.cli.arguments import AsJson, Configs
+from squealpipe.cli.arguments import AsJson, Configs, Switch
 from squealpipe.cli.console import console
 from squealpipe.cli.exit_codes import ANSWER_IS_NO, DONE
-from squealpipe.progress import elapsing
+from squealpipe.cli.project import checkout
+from squealpipe.progress import duration, elapsing
 
 
-def explain(*, config: Configs = None, times: bool = False, json_: AsJson = False) -> int:
-    """Tell what `snakemake` would compute again, why, which figures change and how long it takes.
+def explain(
+    *,
+    config: Configs = None,
+    quick: Switch = False,
+    times: Switch = False,
+    json_: AsJson = False,
+) -> int:
+    """State what `snakemake` would compute again, why, which figures change and how long it takes.
 
     Example: `squealpipe explain --config mine.yaml`
 
     Args:
         config: configuration laid over the paper's, as for `snakemake --configfile`; repeatable.
+        quick: coarse grids and short horizons, as for `squealpipe run --quick`.
         times: print instead what each rule took when it last ran, as a Markdown table.
         json_: print JSON.
     """
-    from squealpipe.cli.project import checkout
+    from rich.markup import escape
+    from rich.table import Table
+
     from squealpipe.execution.explain import explain as plan_of
+    from squealpipe.execution.explain import job_times
 
     if times:
-        _print_times()
+        taken = job_times(Path())
+        if not taken:
+            raise FileNotFoundError("no run is recorded here; run snakemake in this folder first")
+        print("| rule | seconds |\n|---|---:|")
+        for rule, seconds in [*taken.items(), ("all", sum(taken.values()))]:
+            print(f"| {rule} | {seconds:.1f} |")
         return DONE
     with elapsing("explain"):
-        plan = plan_of(config or [], root=checkout(), directory=".")
+        plan = plan_of(config or [], quick=quick, root=checkout(), directory=".")
     if json_:
         print(json.dumps(plan.as_dict(), indent=1))
         return DONE
-    from squealpipe.study.report.explanation import table
-
-    console().print(table(plan))
+    if not plan.jobs:
+        print("nothing to do: every result is up to date")
+        return DONE
+    grid = Table("rule", "why", "last took", title="will be computed", title_justify="left")
+    for job in plan.jobs:
+        time = "never run" if job.seconds is None else duration(job.seconds)
+        grid.add_row(job.rule, escape(job.why()), time)
+    console().print(grid)
+    print(f"figures that change: {', '.join(plan.figures) or 'none'}\n{plan.estimate()}")
     return DONE
-
-
-def _print_times() -> None:
-    from squealpipe.execution.explain import job_times, records
-
-    times = job_times(records(Path()))
-    if not times:
-        raise FileNotFoundError("no run is recorded here; run snakemake in this folder first")
-    print("| rule | jobs | seconds |\n|---|---:|---:|")
-    for rule, seconds in sorted(times.items()):
-        print(f"| {rule} | {len(seconds)} | {sum(seconds):.1f} |")
-    every = [taken for seconds in times.values() for taken in seconds]
-    print(f"| all | {len(every)} | {sum(every):.1f} |")
 
 
 def archive(
     name: str,
     /,
     *,
-    results: Path | None = None,
     config: Configs = None,
     leave_out: Annotated[list[str] | None, Parameter(negative="")] = None,
 ) -> int:
     """Freeze a run: data, figures, report, configuration, environment and checksums.
 
+    Every result that the rules make must be there, made with this configuration and code.
+
     Example: `squealpipe archive before-the-change`
 
     Args:
         name: of the archive, which goes to results/archive/NAME.
-        results: folder of the run; by default the one that the configuration names.
-        config: the run's configuration files, later ones laid over earlier ones; repeatable.
+        config: the run's configuration laid over the paper's, as for `squealpipe run`; repeatable.
         leave_out: suffix (.svg) or path pattern (data/simulate/*) that is not frozen; repeatable.
     """
     from squealpipe.config.settings import PAPER
+    from squealpipe.execution.explain import explain as plan_of
     from squealpipe.store.archive import archive as freeze
 
     with elapsing("archive"):
+        # a configuration that was given whole may be the paper's own
+        overlays = [path for path in config or [] if not path.samefile(PAPER)]
+        plan = plan_of(overlays)
         folder = freeze(
-            name, results=results, configs=config or [Path(PAPER)], leave_out=leave_out or []
+            name, keys=plan.keys, configs=[Path(PAPER), *overlays], leave_out=leave_out or []
         )
     size = sum(path.stat().st_size for path in folder.rglob("*") if path.is_file())
     print(f"froze the run in {folder} ({size / 1e6:.1f} MB)")
@@ -93,11 +106,9 @@ def verify(name: str, /) -> int:
         name: name or folder of the archive.
     """
     from squealpipe.store.archive import verify as check
-    from squealpipe.store.memory.catalogue import note_verified
 
     with elapsing("verify"):
         found = check(name)
-    note_verified(found.folder, "intact" if found.intact else "changed")
     for line in found.lines():
         print(line)
     return DONE if found.intact else ANSWER_IS_NO

@@ -56,7 +56,7 @@ def sweep(
     """
     from squealpipe.execution import sweep as sweeping
     from squealpipe.execution.tally import lines
-    from squealpipe.rerun.sources import closure
+    from squealpipe.rerun.key import rule_key, sources
     from squealpipe.store.chunks import Checkpoint
 
     varied = _pairs("--vary", vary)
@@ -76,7 +76,7 @@ def sweep(
     cost = of_sweep(settings, params, workers)
     cost.check(yes=yes)
     say(f"{len(plan.points)} runs of {task} over {', '.join(plan.names)}{cost.told}")
-    kept = Checkpoint.beside(output, config=settings, sources=closure(sweeping.__file__))
+    kept = Checkpoint.beside(output, key=rule_key(settings, sources(Path(sweeping.__file__))))
 
     with sweeping.executor(workers) as pool:
         dataset = write(

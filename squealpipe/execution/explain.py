@@ -1,36 +1,33 @@
 """What `snakemake` would do now: which rules run, why, which figures change, how long it takes.
 
-Snakemake is asked for a dry run in a process of its own; its reasons are put in terms of
-configuration keys and source files, and durations come from its records of earlier runs.
+Snakemake gives its summary of every file and its records of earlier runs; the workflow gives what
+each file should be made from. Nothing is read from text that Snakemake writes for people.
 """
 
 from __future__ import annotations
 
-import ast
-import base64
-import binascii
 import json
 import os
 import re
 import subprocess
 import sys
+import tempfile
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 
-from squealpipe.config.settings import PAPER, read_study
+from squealpipe.config.settings import PAPER, Study, read_study
 from squealpipe.config.yaml_files import flat, read_yaml
 from squealpipe.progress import duration
+from squealpipe.rerun.key import PLAN
+from squealpipe.store.keys import misfits
+from squealpipe.store.netcdf import StoreError, attributes
 
+QUICK = Path("workflow/config/quick.yaml")
 FIGURE = re.compile(r"figures/([\w-]+)\.\w+$")
-STALE = re.compile(r"^stale (\S+): (.*)$", flags=re.MULTILINE)
-MOST_REASONS = 4
-"""Reasons of one job that are printed; JSON has all."""
-
-
-SAME_JOB = 0.05
-"""Files of a rule that were begun and ended within so many seconds come from one job."""
+MOST_NAMES = 4
+"""Files or keys that a line names."""
 
 
 class WorkflowError(RuntimeError):
@@ -38,35 +35,27 @@ class WorkflowError(RuntimeError):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Record:
-    """What Snakemake noted about a file that it made."""
-
-    rule: str
-    seconds: float
-    params: str
-    ended: float = field(default=0.0, compare=False)
-    """When its job ended, s since 1970; for the files of one job the same but for milliseconds."""
-
-
-@dataclass(frozen=True, kw_only=True)
 class Job:
-    """One job that would run.
+    """A rule that would run.
 
     Attributes:
-        rule: its rule.
+        rule: its name.
         outputs: files that it would make.
         reasons: why, in words, for instance ``parameters.mu: 0.3 → 0.4``.
         follows: rules whose new results it reads.
-        threads: cores that it takes.
         seconds: duration of its last run, or None if it never ran.
     """
 
     rule: str
-    outputs: tuple[str, ...]
-    reasons: tuple[str, ...]
-    follows: tuple[str, ...]
-    threads: int = 1
+    outputs: list[str]
+    reasons: list[str]
+    follows: list[str]
     seconds: float | None = None
+
+    def why(self) -> str:
+        """Reasons as one phrase."""
+        followed = [f"follows {', '.join(self.follows)}"] if self.follows else []
+        return "; ".join([*self.reasons, *followed]) or "asked for"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -74,11 +63,13 @@ class Explanation:
     """The plan.
 
     Attributes:
-        jobs: in the order of Snakemake's plan.
+        jobs: in the order of the workflow.
+        keys: file of the study → the key that it must state.
         cores: used for the estimate.
     """
 
-    jobs: tuple[Job, ...] = ()
+    jobs: list[Job] = field(default_factory=list)
+    keys: dict[str, str] = field(default_factory=dict)
     cores: int = field(default_factory=lambda: os.cpu_count() or 1)
 
     @property
@@ -89,71 +80,28 @@ class Explanation:
 
     @property
     def seconds(self) -> float:
-        """Estimated duration: the work shared by all cores, or the longest chain of jobs.
-
-        Jobs that never ran count nothing.
-        """
-        work = sum((job.seconds or 0) * min(job.threads, self.cores) for job in self.jobs)
-        finish: dict[str, float] = {}
-        for job in self.jobs:
-            start = max((finish.get(rule, 0.0) for rule in job.follows), default=0.0)
-            finish[job.rule] = max(start + (job.seconds or 0), finish.get(job.rule, 0.0))
-        return max(work / self.cores, *finish.values(), 0.0)
-
-    @property
-    def unknown(self) -> list[str]:
-        """Rules without a record, which the estimate leaves out."""
-        return sorted({job.rule for job in self.jobs if job.seconds is None})
-
-    def lines(self) -> list[str]:
-        """The plan as plain text."""
-        if not self.jobs:
-            return ["nothing to do: every result is up to date"]
-        text = []
-        for job in self.jobs:
-            time = "never run" if job.seconds is None else duration(job.seconds)
-            text.append(f"{job.rule} ({time}): {'; '.join(why(job))}")
-        text.append(f"figures that change: {', '.join(self.figures) or 'none'}")
-        text.append(self.estimate())
-        return text
+        """Estimated duration: work shared by all cores, but no less than the longest job."""
+        known = [job.seconds or 0.0 for job in self.jobs]
+        return max([sum(known) / self.cores, *known])
 
     def estimate(self) -> str:
         """For instance ``about 41 s on 2 cores, from recorded times``."""
-        if self.jobs and all(job.seconds is None for job in self.jobs):
+        unknown = [job.rule for job in self.jobs if job.seconds is None]
+        if len(unknown) == len(self.jobs):
             return "how long it takes is not known: none of these rules has run here"
-        rest = f"; not counted, never run: {', '.join(self.unknown)}" if self.unknown else ""
+        rest = f"; not counted, never run: {', '.join(unknown)}" if unknown else ""
         return f"about {duration(self.seconds)} on {self.cores} cores, from recorded times{rest}"
 
     def as_dict(self) -> dict[str, Any]:
         """Plain values for JSON."""
-        return {
-            "jobs": [
-                {
-                    "rule": job.rule,
-                    "outputs": list(job.outputs),
-                    "reasons": list(job.reasons),
-                    "follows": list(job.follows),
-                    "seconds": job.seconds,
-                }
-                for job in self.jobs
-            ],
-            "figures": self.figures,
-            "seconds": self.seconds,
-            "never_run": self.unknown,
-        }
-
-
-def why(job: Job) -> list[str]:
-    """Reasons of a job as phrases, the first few of many."""
-    more = len(job.reasons) - MOST_REASONS
-    told = [*job.reasons[:MOST_REASONS], *([f"and {more} more"] if more > 0 else [])]
-    followed = [f"follows {', '.join(job.follows)}"] if job.follows else []
-    return [*told, *followed] or ["asked for"]
+        jobs = [asdict(job) for job in self.jobs]
+        return {"jobs": jobs, "figures": self.figures, "seconds": self.seconds}
 
 
 def explain(
     configs: Iterable[str | os.PathLike[str]] = (),
     *,
+    quick: bool = False,
     root: str | os.PathLike[str] = ".",
     directory: str | os.PathLike[str] | None = None,
 ) -> Explanation:
@@ -161,6 +109,7 @@ def explain(
 
     Args:
         configs: YAML files laid over the paper's configuration, as with ``--configfile``.
+        quick: coarse grids and short horizons.
         root: the checkout.
         directory: where the study runs; the checkout by default.
 
@@ -169,149 +118,117 @@ def explain(
         ConfigError: mistakes in the configuration.
         WorkflowError: Snakemake could not plan.
     """
-    base = Path(root)
-    if not (base / "Snakefile").is_file():
-        raise FileNotFoundError(f"no Snakefile in {base.resolve()}; run this in the checkout")
-    overlays = [str(Path(path).absolute()) for path in configs]
-    read_study(base / PAPER, *overlays)
-    overlays = [path for path in overlays if read_yaml(Path(path))[0]]  # Snakemake takes no empty
-    command = [sys.executable, "-m", "snakemake", "--dry-run", "--nocolor"]
-    there = base if directory is None else Path(directory)
-    command += ["--snakefile", str((base / "Snakefile").absolute())]
-    if overlays:
-        command += ["--configfile", *overlays]
-    run = subprocess.run(command, cwd=there, capture_output=True, text=True, check=False)
-    if run.returncode:
-        raise WorkflowError(f"snakemake could not plan:\n{(run.stdout + run.stderr).strip()}")
-    return Explanation(jobs=tuple(read_plan(run.stdout, records(there), told_stale(run.stderr))))
-
-
-def told_stale(text: str) -> dict[str, list[str]]:
-    """File → why it is out of date, from the lines that the Snakefile prints about such files."""
-    return {match[1]: match[2].split("; ") for match in STALE.finditer(text)}
-
-
-def read_plan(
-    text: str, known: Mapping[str, Record], stale: Mapping[str, list[str]] | None = None
-) -> list[Job]:
-    """Jobs of a dry run's output.
-
-    Args:
-        text: standard output of ``snakemake --dry-run``.
-        known: file → record of the run that made it.
-        stale: file → why it is out of date, where Snakemake itself does not see it.
-    """
-    blocks = re.split(r"^(?:local)?(?:rule|checkpoint) (\w+):$", text, flags=re.MULTILINE)[1:]
-    planned = {}
-    for rule, block in zip(blocks[::2], blocks[1::2], strict=True):
-        entries = dict(re.findall(r"^    (\w+): (.*)$", block, flags=re.MULTILINE))
-        if "output" in entries:
-            outputs = tuple(entries["output"].split(", "))
-            planned[outputs] = (rule, entries)
-    maker = {path: rule for outputs, (rule, _) in planned.items() for path in outputs}
-    slowest: dict[str, float] = {}
-    for record in known.values():
-        slowest[record.rule] = max(record.seconds, slowest.get(record.rule, 0.0))
+    there = Path(root if directory is None else directory)
+    command, _ = snakemake_command(configs, quick=quick, root=root, directory=there)
+    with tempfile.NamedTemporaryFile("r", suffix=".json", encoding="utf-8") as plan:
+        done = subprocess.run(
+            [*command, "--summary"],
+            env={**os.environ, PLAN: plan.name},
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+        if done.returncode:
+            raise WorkflowError(f"snakemake could not plan:\n{(done.stdout + done.stderr).strip()}")
+        made: dict[str, dict[str, Any]] = json.load(plan)
+    rows = [line.split("\t") for line in done.stdout.splitlines()[1:]]
+    pending = {row[0]: row[4] for row in rows if row[-1] == "update pending" and row[0] in made}
+    kept = {path: made[path]["key"] for path in made if path not in pending}
+    pending |= dict.fromkeys((line.partition(": ")[0] for line in misfits(kept, there)), "misfit")
+    times = job_times(there)
     jobs = []
-    for outputs, (rule, entries) in planned.items():
-        own = known.get(outputs[0])
-        reasons, updated = _reasons(entries.get("reason", ""))
-        own_reasons = [phrase for path in outputs for phrase in (stale or {}).get(path, [])]
-        reasons = list(dict.fromkeys(own_reasons)) or reasons
+    for rule in dict.fromkeys(made[path]["rule"] for path in made if path in pending):
+        outputs = [path for path in pending if made[path]["rule"] == rule]
+        first = made[outputs[0]]
+        follows = sorted({made[path]["rule"] for path in first["inputs"] if path in pending})
+        missing = [path for path in outputs if pending[path] == "missing"]
+        reasons = (
+            [f"missing: {_some(missing)}"]
+            if missing
+            else list(
+                dict.fromkeys(what for path in outputs for what in _changes(there / path, first))
+            )
+            or ([] if follows else [_changed_code(there / outputs[0], first["sources"])])
+        )
         jobs.append(
             Job(
                 rule=rule,
                 outputs=outputs,
-                reasons=tuple(reasons),
-                follows=tuple(sorted({maker[path] for path in updated if path in maker})),
-                threads=int(entries.get("threads", 1)),
-                seconds=own.seconds if own else slowest.get(rule),
+                reasons=reasons,
+                follows=follows,
+                seconds=times.get(rule),
             )
         )
-    return jobs
+    return Explanation(jobs=jobs, keys={path: made[path]["key"] for path in made})
 
 
-def records(base: Path) -> dict[str, Record]:
-    """File → record, from Snakemake's metadata folder."""
-    found = {}
-    for path in (base / ".snakemake/metadata").glob("*"):
+def snakemake_command(
+    configs: Iterable[str | os.PathLike[str]] = (),
+    *,
+    quick: bool = False,
+    root: str | os.PathLike[str] = ".",
+    directory: str | os.PathLike[str] = ".",
+) -> tuple[list[str], Study]:
+    """Snakemake's command for a study, and the study, which is validated before anything runs.
+
+    A quick study goes beside the full one: ``results/mine-quick`` beside ``results/mine``.
+
+    Raises:
+        FileNotFoundError, ConfigError: as :func:`explain`.
+    """
+    base = Path(root)
+    if not (base / "Snakefile").is_file():
+        raise FileNotFoundError(f"no Snakefile in {base.resolve()}; run this in the checkout")
+    given = [Path(path).absolute() for path in configs]
+    full = read_study(base / PAPER, *given)
+    paths = [*([(base / QUICK).absolute()] if quick else []), *given]
+    changes = {}
+    if quick:
+        beside = full.results == Study().results
+        changes["results"] = f"{full.results}{'/quick' if beside else '-quick'}"
+    study = read_study(base / PAPER, *paths, changes=changes)
+    command = [sys.executable, "-m", "snakemake", "--nocolor"]
+    command += ["--snakefile", str((base / "Snakefile").absolute())]
+    command += ["--directory", str(Path(directory).absolute())]
+    filled = [str(path) for path in paths if read_yaml(path)[0]]
+    if filled:  # Snakemake takes no empty file
+        command += ["--configfile", *filled]
+    if changes:
+        command += ["--config", *(f"{key}={value}" for key, value in changes.items())]
+    return command, study
+
+
+def job_times(directory: Path) -> dict[str, float]:
+    """Rule → what it took when it last ran, s, from Snakemake's records."""
+    spans: dict[str, list[float]] = {}
+    for path in (directory / ".snakemake/metadata").glob("*"):
         try:
-            name = base64.b64decode(path.name, validate=True).decode()
-            entry = json.loads(path.read_text(encoding="utf-8"))
-            found[name] = Record(
-                rule=str(entry["rule"]),
-                seconds=float(entry["endtime"]) - float(entry["starttime"]),
-                params=str(entry["params"]),
-                ended=float(entry["endtime"]),
-            )
-        except (OSError, ValueError, KeyError, TypeError, binascii.Error):
+            record = json.loads(path.read_text(encoding="utf-8"))
+            start, end = float(record["starttime"]), float(record["endtime"])
+        except (OSError, ValueError, KeyError, TypeError):
             continue  # a record that cannot be read means: duration unknown
-    return found
+        spans.setdefault(str(record["rule"]), []).append(end - start)
+    return {rule: max(seconds) for rule, seconds in sorted(spans.items())}
 
 
-def job_times(known: Mapping[str, Record]) -> dict[str, list[float]]:
-    """Rule → what each of its jobs took, s; files that one job made together count once."""
-    times: dict[str, list[float]] = {}
-    latest: dict[str, Record] = {}
-    for record in sorted(known.values(), key=lambda record: (record.rule, record.ended)):
-        last = latest.get(record.rule)
-        latest[record.rule] = record
-        together = last is not None and (
-            abs(record.ended - last.ended) < SAME_JOB
-            and abs(record.seconds - last.seconds) < SAME_JOB
-        )
-        if not together:
-            times.setdefault(record.rule, []).append(record.seconds)
-    return times
+def _changes(path: Path, made: Mapping[str, Any]) -> list[str]:
+    """``key: old → new`` for a dataset of another configuration."""
+    try:
+        old = flat(json.loads(attributes(path).get("config", "{}"))) if path.suffix == ".nc" else {}
+    except (StoreError, FileNotFoundError):
+        return [f"{path.name} is damaged"]
+    new = flat(made["part"]) if old else {}
+    return [
+        f"{key}: {old.get(key, 'absent')} → {new[key]}" for key in new if old.get(key) != new[key]
+    ]
 
 
-def _reasons(text: str) -> tuple[list[str], list[str]]:
-    """Snakemake's reason as phrases, and the files that other jobs will have updated."""
-    told: list[str] = []
-    updated: list[str] = []
-    for phrase in re.split(r"; (?=[A-Z])", text):
-        head, _, rest = phrase.partition(": ")
-        files = [name for name in rest.split(", ") if name]
-        if head == "Input files updated by another job":
-            updated = files
-        elif head == "Missing output files":
-            told.append(f"missing: {_some(files)}")
-        elif head == "Incomplete output files":
-            told.append(f"interrupted: {_some(files)}")
-        elif head == "Updated input files" and not told:  # of a missing file nothing is older
-            told.extend(f"{name} changed" for name in sorted(files))
-        elif head == "Params have changed since last execution":
-            told.extend(changed_keys(rest))
-        elif phrase and head != "Updated input files":
-            told.append(phrase[0].lower() + phrase[1:])
-    return told, updated
+def _changed_code(output: Path, sources: list[str]) -> str:
+    written = output.stat().st_mtime
+    newer = [Path(path).name for path in sources if Path(path).stat().st_mtime > written]
+    return f"code changed{f', of {_some(newer)}' if newer else ''}"
 
 
 def _some(files: list[str]) -> str:
-    more = f" and {len(files) - 2} more" if len(files) > 2 else ""
-    return ", ".join(sorted(files)[:2]) + more
-
-
-def changed_keys(text: str) -> list[str]:
-    """``key: old → new`` for each key, from Snakemake's account of changed parameters."""
-    match = re.search(r"before: (.*) now: (.*)$", text.strip(), flags=re.DOTALL)
-    before, now = (_literals(side) for side in match.groups()) if match else ({}, {})
-    changes = [
-        f"{key}: {before.get(key, 'absent')} → {now.get(key, 'absent')}"
-        for key in sorted(set(before) | set(now))
-        if before.get(key) != now.get(key)
-    ]
-    return changes or ["parameters of the rule changed"]
-
-
-def _literals(text: str) -> dict[str, Any]:
-    """Dotted key → value of the dictionaries in a comma-separated list of Python literals."""
-    try:
-        values = ast.literal_eval(f"[{text}]")
-    except (ValueError, SyntaxError):
-        return {}
-    found: dict[str, Any] = {}
-    for value in values:
-        if isinstance(value, dict):
-            found.update(flat(value))
-    return found
+    more = len(files) - MOST_NAMES
+    return ", ".join(files[:MOST_NAMES]) + (f" and {more} more" if more > 0 else "")

@@ -61,7 +61,7 @@ def make_map(
     part: Mapping[str, Any],
     *,
     output: str,
-    sources: Sequence[str],
+    key: str,
     log: str,
     item: str = "1-of-1",
 ) -> None:
@@ -73,13 +73,13 @@ def make_map(
         name: of the map; its keys are ``dynamics.<name>_points`` and ``dynamics.<name>_horizon``.
         part: slice of the configuration.
         output: dataset to write.
-        sources: files whose text decides the result.
+        key: of the rule.
         log: file for progress lines.
         item: part of a scattered map, "i-of-n".
     """
     angles = np.linspace(0.0, np.pi, part[f"dynamics.{name}_points"])
     horizon, tol = part[f"dynamics.{name}_horizon"] * params.time_unit, part["dynamics.tol"]
-    with Checkpoint.beside(output, config=part, sources=sources, log=log) as checkpoint:
+    with Checkpoint.beside(output, key=key, log=log) as checkpoint:
         produce(
             lambda: map_in_blocks(
                 lambda rows: task(params, rows, angles, t_end=horizon, tol=tol),
@@ -90,7 +90,7 @@ def make_map(
             ),
             config=part,
             output=output,
-            sources=sources,
+            key=key,
         )
 
 
