@@ -35,6 +35,7 @@ if STUDY.paper:
     include: "workflow/rules/report/claims.smk"
 include: "workflow/rules/report/report.smk"
 include: "workflow/rules/execution/sweeps.smk"
+include: "workflow/rules/execution/keys.smk"
 include: "workflow/rules/execution/local.smk"
 
 

@@ -1,10 +1,14 @@
 """The import closure: every way to import counts, types-only imports do not."""
 
+import time
 from pathlib import Path
 
 import pytest
 
-from squealpipe.rerun.sources import PACKAGE, closure, imported_modules
+from squealpipe.rerun.key import STARTED, key_behind, rule_key, sources, state_key
+from squealpipe.rerun.sources import PACKAGE, closure, read_source
+from squealpipe.store import StoreError
+from squealpipe.store.provenance import refuse_edited
 
 
 def named(*modules):
@@ -16,7 +20,7 @@ def imports(tmp_path):
     def find(text):
         path = tmp_path / f"script{len(list(tmp_path.iterdir()))}.py"
         path.write_text(text)
-        return set(imported_modules(path))
+        return set(read_source(path).imports)
 
     return find
 
@@ -66,3 +70,59 @@ def test_closure_is_transitive(tmp_path):
 def test_every_closure_stays_in_the_package():
     for script in Path(__file__).parents[1].glob("workflow/scripts/*/*.py"):
         assert all(PACKAGE in path.parents for path in closure(script))
+
+
+@pytest.mark.parametrize(
+    ("edit", "same"),
+    [
+        (lambda text: "# a comment\n" + text, True),
+        (lambda text: text.replace("What it is", "What it was"), True),
+        (lambda text: text.replace('"""Doc."""\n', ""), True),
+        (lambda text: text.replace("2 * y", "(2   * y)  # twice"), True),
+        (lambda text: text.replace("2 * y", "3 * y"), False),
+    ],
+)
+def test_comments_and_docstrings_are_not_code(tmp_path, edit, same):
+    text = '"""Doc."""\ndef law(y):\n    """What it is."""\n    return 2 * y\n'
+    found = []
+    for place, content in enumerate((text, edit(text))):
+        (tmp_path / str(place)).mkdir()
+        path = tmp_path / str(place) / "law.py"
+        path.write_text(content)
+        found.append(rule_key({"mu": 0.3}, sources(path)))
+    assert (found[0] == found[1]) == same
+
+
+def test_key_changes_with_slice_inputs_and_files_that_the_slice_names(tmp_path):
+    table = tmp_path / "friction.csv"
+    table.write_text("0,0.3")
+    part = {"parameters": {"friction_table": str(table)}, "points": 7}
+    first = rule_key(part, [], {"data/a.nc": "1"})
+    assert rule_key(dict(part), [], {"data/a.nc": "1"}) == first
+    assert rule_key({**part, "points": 8}, [], {"data/a.nc": "1"}) != first
+    assert rule_key(part, [], {"data/a.nc": "2"}) != first
+    table.write_text("0,0.4")
+    assert rule_key(part, [], {"data/a.nc": "1"}) != first
+
+
+def test_figures_and_pages_state_their_key(tmp_path):
+    for name in (
+        "figures/fig01.svg",
+        "figures/fig01.png",
+        "report/index.html",
+        "report/report.pdf",
+    ):
+        path = tmp_path / name
+        path.parent.mkdir(exist_ok=True)
+        path.write_bytes(b"content")
+        assert key_behind(path) is None
+        state_key(path, "0" * 16)
+        assert key_behind(path) == f"{'0' * 16} {name}"
+
+
+def test_result_of_code_that_changed_meanwhile_is_not_published(tmp_path, monkeypatch):
+    monkeypatch.setenv(STARTED, "0")
+    with pytest.raises(StoreError, match=r"springs\.py.*changed while it was computed"):
+        refuse_edited(tmp_path / "map.nc")
+    monkeypatch.setenv(STARTED, str(time.time()))
+    refuse_edited(tmp_path / "map.nc")

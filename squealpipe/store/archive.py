@@ -9,7 +9,7 @@ import os
 import platform
 import shutil
 import tempfile
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path, PurePosixPath
 from typing import Any
@@ -19,32 +19,21 @@ import yaml
 from squealpipe.config.settings import Study, read_study
 from squealpipe.store.checkout import commit
 from squealpipe.store.crate import METADATA, describe
-from squealpipe.store.identity import canonical
-from squealpipe.store.memory.objects import (
-    DRAFT,
-    OBJECTS,
-    checksum,
-    locked,
-    object_path,
-    seal_fits,
-    seal_text,
-    share,
-)
-from squealpipe.store.netcdf import StoreError, load, sync
+from squealpipe.store.keys import refuse_misfits
+from squealpipe.store.netcdf import StoreError
 from squealpipe.store.runs import (
     LEFT_OUT,
     MANIFEST,
     SEAL,
     archive_folder,
-    dataset_files,
     listed_files,
     locate,
     matches_any,
     regular_files,
+    seal_fits,
+    seal_text,
 )
-
-PARTS = ("data", "figures", "report")
-"""Folders of a run that are frozen."""
+from squealpipe.store.whole_files import checksum, sync
 
 
 @dataclass(frozen=True)
@@ -78,7 +67,7 @@ class Verification:
 def archive(
     name: str,
     *,
-    results: str | os.PathLike[str] | None = None,
+    keys: Mapping[str, str],
     configs: Iterable[str | os.PathLike[str]] = ("workflow/config/paper.yaml",),
     root: str | os.PathLike[str] = ".",
     leave_out: Iterable[str] = (),
@@ -87,7 +76,7 @@ def archive(
 
     Args:
         name: of the archive.
-        results: folder of the run; the one that the configuration names by default.
+        keys: every file that the rules make → the key that it must state.
         configs: the configuration files of the run, later ones laid over earlier ones.
         root: the checkout.
         leave_out: what is not frozen: suffixes (``".svg"``) or patterns of paths in the archive
@@ -98,8 +87,8 @@ def archive(
 
     Raises:
         FileNotFoundError: there is no run.
-        ValueError: the name is taken or not allowed, a dataset is damaged or was made with
-            another configuration.
+        ValueError: the name is taken or not allowed, or a result is missing, damaged or made with
+            another configuration or other code.
     """
     base = Path(root)
     target = archive_folder(name, root)
@@ -107,26 +96,25 @@ def archive(
         raise ValueError(f"{target} exists; archives never change: choose another name")
     config_files = [base / path for path in configs]
     study = read_study(*config_files)
-    run = base / (study.results if results is None else results)
+    run = base / study.results
     if not run.is_dir():
         raise FileNotFoundError(f"no run in {run}; run snakemake first")
-    _refuse_stale(run, study)
     patterns = [f"*{entry}" if entry.startswith(".") else entry for entry in leave_out]
+    names = {path: path.removeprefix(f"{study.results}/") for path in keys}
+    kept = {path: key for path, key in keys.items() if not matches_any(names[path], patterns)}
+    refuse_misfits(kept, base)
     try:
-        with locked(target.parent):
-            draft = Path(tempfile.mkdtemp(dir=target.parent, prefix=f".{name}.", suffix=DRAFT))
-            try:
-                draft.chmod(0o777 & ~_umask())
-                _copy_run(run, draft, patterns)
-                _copy_setting(config_files, study, base, draft)
-                frozen_at = datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds")
-                (draft / METADATA).write_text(describe(draft, name, frozen_at), encoding="utf-8")
-                about = {"name": name, "frozen": frozen_at, "commit": commit(), LEFT_OUT: patterns}
-                _seal(draft, {**about, "config": study.model_dump(mode="json")})
-                draft.rename(target)
-                sync(target.parent)
-            finally:
-                shutil.rmtree(draft, ignore_errors=True)
+        target.parent.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryDirectory(dir=target.parent, prefix=f".{name}.") as folder:
+            draft = Path(folder) / name
+            _copy_run(run, [names[path] for path in kept], draft)
+            _copy_setting(config_files, study, base, draft)
+            frozen_at = datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds")
+            (draft / METADATA).write_text(describe(draft, name, frozen_at), encoding="utf-8")
+            about = {"name": name, "frozen": frozen_at, "commit": commit(), LEFT_OUT: patterns}
+            _seal(draft, {**about, "config": study.model_dump(mode="json")})
+            draft.rename(target)
+            sync(target.parent)
     except OSError as error:
         raise StoreError(
             f"cannot write {target}: {error.strerror or error}; free space or fix permissions, "
@@ -136,7 +124,7 @@ def archive(
 
 
 def verify(what: str | os.PathLike[str], root: str | os.PathLike[str] = ".") -> Verification:
-    """Compare every byte of an archive, and of the objects it shares, with its manifest.
+    """Compare every byte of an archive with its manifest.
 
     Args:
         what: name or folder of an archive.
@@ -166,11 +154,6 @@ def verify(what: str | os.PathLike[str], root: str | os.PathLike[str] = ".") -> 
     ]
     if not seal_fits(folder):
         changed.append(MANIFEST)
-    changed += [
-        f"{OBJECTS}/{digest} (shared object of {path})"
-        for path, digest in _shared_apart(folder, expected)
-        if checksum(object_path(folder.parent, digest)) != digest
-    ]
     return Verification(
         folder=folder,
         files=len(expected),
@@ -181,47 +164,17 @@ def verify(what: str | os.PathLike[str], root: str | os.PathLike[str] = ".") -> 
     )
 
 
-def _refuse_stale(run: Path, study: Study) -> None:
-    """Every dataset must be whole and made with the configuration that is frozen with it."""
-    stale = []
-    for name, path in dataset_files(run).items():
-        dataset = load(path)
-        part = json.loads(dataset.attrs.get("config", "{}"))
-        # Plain keys that are no section tell one file of a rule from another: scene, mode.
-        part = {key: part[key] for key in part if "." in key or key in Study.model_fields}
-        if name.startswith("sweeps/"):
-            sweep = name.removeprefix("sweeps/")
-            current = json.loads(canonical(study.sweep(sweep))) if sweep in study.sweeps else None
-            part = json.loads(dataset.attrs.get("config", "{}"))
-        else:
-            try:
-                current = study.slice(*part)
-            except (KeyError, TypeError):
-                current = None
-        if current != part:
-            stale.append(name)
-    if stale:
-        raise ValueError(
-            f"{run}: made with another configuration: {', '.join(stale)}; run snakemake first, "
-            "with the same --configfile, and delete datasets that are no longer made"
-        )
-
-
-def _copy_run(run: Path, draft: Path, patterns: list[str]) -> None:
-    for part in PARTS:
-        for path in regular_files(run / part):
-            name = path.relative_to(run)
-            if matches_any(name.as_posix(), patterns):
-                continue
-            copy = draft / name
-            copy.parent.mkdir(parents=True, exist_ok=True)
-            shutil.copyfile(path, copy)
+def _copy_run(run: Path, names: Iterable[str], draft: Path) -> None:
+    for name in names:
+        copy = draft / name
+        copy.parent.mkdir(parents=True, exist_ok=True)
+        shutil.copyfile(run / name, copy)
 
 
 def _copy_setting(configs: list[Path], study: Study, base: Path, draft: Path) -> None:
     """Configuration as written and as resolved, lock, and environment."""
     folder = draft / "config"
-    folder.mkdir()
+    folder.mkdir(parents=True)
     for path in configs:
         shutil.copyfile(path, folder / path.name)
     resolved = study.model_dump(mode="json")
@@ -253,30 +206,9 @@ def _seal(draft: Path, about: dict[str, Any]) -> None:
     manifest = {"format": 1, **about, "files": files}
     (draft / MANIFEST).write_text(json.dumps(manifest, indent=1) + "\n", encoding="utf-8")
     (draft / SEAL).write_text(seal_text(draft), encoding="utf-8")
-    for name in (MANIFEST, SEAL):
-        (draft / name).chmod(0o444 & ~_umask())
-    for name, entry in files.items():
-        path = draft / name
-        path.chmod(0o444 & ~_umask())  # its content may be that of other archives too
-        share(path, str(entry["sha256"]), draft.parent)
     for path in regular_files(draft):
+        path.chmod(path.stat().st_mode & 0o444)
         sync(path)
-
-
-def _umask() -> int:
-    mask = os.umask(0)
-    os.umask(mask)
-    return mask
-
-
-def _shared_apart(folder: Path, listed: dict[str, dict[str, Any]]) -> Iterator[tuple[str, str]]:
-    """Files whose object exists but is not the file itself, with their checksum."""
-    for path, entry in listed.items():
-        digest = str(entry.get("sha256"))
-        kept = object_path(folder.parent, digest)
-        file = folder / path
-        if digest.isalnum() and kept.is_file() and not (file.is_file() and kept.samefile(file)):
-            yield path, digest
 
 
 def _everything(folder: Path) -> list[str]:

@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 import concurrent.futures
-import hashlib
-import json
 import os
 import shutil
 import zipfile
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from types import TracebackType
-from typing import Any, Self, TypeVar
+from typing import Self, TypeVar
 
 import numpy as np
 
@@ -31,7 +29,7 @@ MARK = "part of"
 class Checkpoint:
     """Where the chunks of an unfinished job wait, and the log of its progress.
 
-    The folder's name is a hash of the configuration and of the sources, so chunks made with
+    The folder's name is the job's key, so chunks made with
     other numbers or other code are never taken for one's own. As a context it removes the
     folder once the block, which saves the dataset, ends without an error.
 
@@ -48,25 +46,19 @@ class Checkpoint:
         cls,
         output: str | os.PathLike[str],
         *,
-        config: Mapping[str, Any],
-        sources: Iterable[str | os.PathLike[str]] = (),
+        key: str,
         log: str | os.PathLike[str] | None = None,
     ) -> Checkpoint:
         """The checkpoint of a job that will write ``output``.
 
         Args:
             output: the dataset to be written; the folder lies beside it, hidden.
-            config: exactly the configuration of the job.
-            sources: files whose text decides the result.
+            key: digest of the configuration and code of the job.
             log: file for progress lines.
         """
-        # Keys in the order given, unlike in a dataset's id: chunks are numbered by that order.
-        key = hashlib.sha256(json.dumps(config, allow_nan=False).encode())
-        for path in sorted(map(Path, sources)):
-            key.update(path.read_bytes())
         target = Path(output)
         shelf = target.parent / f".{target.name}.parts"
-        return cls(directory=shelf / key.hexdigest()[:16], log=None if log is None else Path(log))
+        return cls(directory=shelf / key, log=None if log is None else Path(log))
 
     def __enter__(self) -> Self:
         if self.directory.parent.is_dir():

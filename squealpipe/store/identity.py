@@ -3,23 +3,12 @@
 from __future__ import annotations
 
 import hashlib
-import json
-from typing import Any
 
 import numpy as np
 import xarray as xr
 
+from squealpipe.rerun.key import canonical
 from squealpipe.schema import find
-
-
-def canonical(config: Any) -> str:
-    """One text for one meaning: sorted keys, no white space."""
-    return json.dumps(config, sort_keys=True, separators=(",", ":"), allow_nan=False)
-
-
-def digest(text: str | bytes) -> str:
-    """Sixteen hexadecimal digits of SHA-256."""
-    return hashlib.sha256(text.encode() if isinstance(text, str) else text).hexdigest()[:16]
 
 
 def dataset_id(dataset: xr.Dataset) -> str:

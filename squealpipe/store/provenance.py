@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import platform
+import sys
 import time
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
@@ -12,11 +13,10 @@ from typing import Any
 
 import xarray as xr
 
-from squealpipe.rerun.sources import code_digests, edited
-from squealpipe.rerun.stale import attributes, some
+from squealpipe.rerun.key import STARTED, canonical, digest, file_key
+from squealpipe.rerun.sources import PACKAGE
 from squealpipe.schema.origin import versions
 from squealpipe.store.checkout import commit
-from squealpipe.store.identity import canonical, digest
 from squealpipe.store.netcdf import StoreError, load, made_now, save
 
 VOLATILE_ATTRIBUTES = frozenset(
@@ -28,14 +28,10 @@ VOLATILE_ATTRIBUTES = frozenset(
         "package_version",
         "commit",
         "inputs",
-        "code",
+        "key",
     }
 )
 """Global attributes that tell of the run, not of the result."""
-
-
-STARTED = time.time()
-"""When this process began, s since 1970: no later than any of its jobs."""
 
 
 def produce(
@@ -44,7 +40,7 @@ def produce(
     config: Mapping[str, Any],
     output: str | os.PathLike[str],
     inputs: Iterable[str | os.PathLike[str]] = (),
-    sources: Iterable[str | os.PathLike[str]] = (),
+    key: str | None = None,
 ) -> Path:
     """Run a task, stamp the result with its provenance, and save it.
 
@@ -53,42 +49,30 @@ def produce(
         config: exactly the configuration that the task was given.
         output: where the dataset goes.
         inputs: NetCDF files that the task read.
-        sources: files whose code decides the result; where given, the dataset tells their digests
-            and a result that is out of date when the task ends is not published.
+        key: of the rule (see :mod:`squealpipe.rerun.key`).
 
     Raises:
-        StoreError: the code changed while the task ran, or another configuration or other code
-            wrote ``output`` meanwhile; what is there stays.
+        StoreError: the code was edited while the study ran, so the key may be another's; what is
+            there stays.
     """
-    files = [Path(path) for path in sources]
-    code = code_digests(files)
     dataset = stamped(make, config=config, inputs=inputs)
-    if code:
-        refuse_outdated(Path(output), files, dataset.attrs["config"], code)
-        dataset = dataset.assign_attrs(code=canonical(code))
+    if key is not None:
+        refuse_edited(Path(output))
+        dataset = dataset.assign_attrs(key=file_key(key, output))
     return save(dataset, output)
 
 
-def refuse_outdated(
-    output: Path, sources: Iterable[Path], config: str, code: Mapping[str, str]
-) -> None:
-    """Raise if a result made from this configuration and code is out of date by now."""
-    changed = edited(sources)
-    if changed:
+def refuse_edited(output: Path) -> None:
+    """Raise if a module that this process has loaded is younger than the workflow's reading."""
+    started = float(os.environ.get(STARTED, "inf"))
+    files = {str(getattr(module, "__file__", "")) for module in list(sys.modules.values())}
+    own = sorted(Path(file) for file in files if file.startswith(str(PACKAGE)))
+    edited = [path.name for path in own if not path.exists() or path.stat().st_mtime > started]
+    if edited:
         raise StoreError(
-            f"{output} is not written: {some(changed)} changed while it was computed; "
+            f"{output} is not written: {', '.join(edited)} changed while it was computed; "
             "run snakemake again"
         )
-    if output.is_file() and output.stat().st_mtime > STARTED:
-        newer = attributes(output)
-        if newer is not None and (newer.get("config"), newer.get("code")) != (
-            config,
-            canonical(code),
-        ):
-            raise StoreError(
-                f"{output} is not written: a job that began later has written it, from another "
-                "configuration or other code"
-            )
 
 
 def stamped(

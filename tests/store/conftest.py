@@ -8,8 +8,17 @@ import yaml
 
 from squealpipe.config.settings import Study
 from squealpipe.parameters import Parameters
+from squealpipe.rerun.key import file_key, state_key
 from squealpipe.store import produce
 from squealpipe.tasks.linear.maps import stability_map
+
+KEY = "0123456789abcdef"
+
+
+def keys_of(root: Path, results: str = "results") -> dict[str, str]:
+    """File → the key that it must state, as the workflow would give it."""
+    names = ("data/stability_map.nc", "figures/fig06.png")
+    return {f"{results}/{name}": file_key(KEY, name) for name in names}
 
 
 def write_run(root: Path, *, points: int = 13, mu: float = 0.3, results: str = "results") -> Path:
@@ -24,16 +33,23 @@ def write_run(root: Path, *, points: int = 13, mu: float = 0.3, results: str = "
         lambda: stability_map(Parameters(mu=mu), angles, angles),
         config=part,
         output=root / results / "data/stability_map.nc",
+        key=KEY,
     )
     figure = root / results / "figures/fig06.png"
     figure.parent.mkdir(parents=True, exist_ok=True)
     figure.write_bytes(b"a picture")
+    state_key(figure, KEY)
     return root
 
 
 @pytest.fixture(name="write_run")
 def _write_run():
     return write_run
+
+
+@pytest.fixture(name="keys_of")
+def _keys_of():
+    return keys_of
 
 
 @pytest.fixture

@@ -6,23 +6,19 @@ import shutil
 from pathlib import Path
 
 import pytest
-import yaml
 from rocrate.rocrate import ROCrate
 
-from squealpipe.config.settings import read_study
-from squealpipe.execution.sweep import planned, run_sweep
+from squealpipe.rerun.key import file_key
 from squealpipe.store import StoreError, load, produce, save
 from squealpipe.store.archive import archive, verify
 from squealpipe.store.comparison.compare import compare
-from squealpipe.store.memory.objects import checksum
-
-FIXED = {"alpha1": "1.1", "alpha2": "1.2"}
+from squealpipe.store.whole_files import checksum
 
 
 @pytest.fixture
-def frozen(run):
-    """Its files are links to shared objects and read-only: to damage one, replace it."""
-    return archive("first", root=run)
+def frozen(run, keys_of):
+    """Its files are read-only: to damage one, replace it."""
+    return archive("first", keys=keys_of(run), root=run)
 
 
 def replace(path, content):
@@ -30,7 +26,7 @@ def replace(path, content):
     path.write_bytes(content)
 
 
-def test_archive_holds_result_and_what_made_it(run, frozen):
+def test_archive_holds_result_and_what_made_it(run, frozen, keys_of):
     assert frozen == run / "results/archive/first"
     names = {path.relative_to(frozen).as_posix() for path in frozen.rglob("*") if path.is_file()}
     assert {
@@ -111,37 +107,22 @@ def test_link_in_place_of_a_file_is_found(frozen, tmp_path):
 
 
 @pytest.mark.parametrize("name", ["", "..", "a/b", "/abs", ".hidden", "a" * 81, "a\nb"])
-def test_names_that_could_escape_are_refused(run, name):
+def test_names_that_could_escape_are_refused(run, name, keys_of):
     with pytest.raises(ValueError, match="archive name"):
-        archive(name, root=run)
+        archive(name, keys=keys_of(run), root=run)
 
 
-def test_archives_never_change(run, frozen):
+def test_archives_never_change(run, frozen, keys_of):
     before = checksum(frozen / "manifest.json")
     with pytest.raises(ValueError, match="choose another name"):
-        archive("first", root=run)
+        archive("first", keys=keys_of(run), root=run)
     assert checksum(frozen / "manifest.json") == before
 
 
-def test_run_of_another_configuration_is_refused(run):
-    config = run / "workflow/config/paper.yaml"
-    config.write_text(config.read_text().replace("mu: 0.3", "mu: 0.4"))
-    with pytest.raises(ValueError, match=r"another configuration: stability_map; run snakemake"):
-        archive("second", root=run)
-    assert not (run / "results/archive/second").exists()
-
-
-def test_damaged_dataset_is_refused(run):
-    path = run / "results/data/stability_map.nc"
-    path.write_bytes(path.read_bytes()[:3000])
-    with pytest.raises(StoreError, match="truncated"):
-        archive("second", root=run)
-
-
-def test_no_run_is_told(tmp_path, run):
+def test_no_run_is_told(tmp_path, run, keys_of):
     shutil.rmtree(run / "results")
     with pytest.raises(FileNotFoundError, match="run snakemake first"):
-        archive("first", root=run)
+        archive("first", keys=keys_of(run), root=run)
     with pytest.raises(FileNotFoundError, match="no archives yet"):
         verify("first", root=run)
 
@@ -154,58 +135,59 @@ def test_oversized_or_damaged_manifest_is_refused(frozen, monkeypatch):
         verify(frozen)
 
 
-def test_left_out_datasets_are_no_difference(run):
-    path = run / "results/data/stability_map.nc"
-    (run / "results/data/simulate").mkdir()
-    shutil.copy(path, run / "results/data/simulate/F3.nc")
-    frozen = archive("small", root=run, leave_out=["data/simulate/*"])
-    assert not (frozen / "data/simulate").exists()
-    assert verify(frozen).intact
-    found = compare(frozen, run / "results")
-    assert found.exit_code == 0
-    assert found.skipped == ["simulate/F3"]
-    path.rename(path.with_name("another.nc"))
-    assert compare(frozen, run / "results").exit_code == 1
-
-
-def test_suffixes_can_be_left_out(run):
-    frozen = archive("small", root=run, leave_out=[".png"])
+def test_suffixes_can_be_left_out(run, keys_of):
+    frozen = archive("small", keys=keys_of(run), root=run, leave_out=[".png"])
     assert not (frozen / "figures/fig06.png").exists()
     assert verify(frozen).intact
 
 
-def test_files_that_say_which_of_a_rules_outputs_they_are_can_be_frozen(run):
-    path = run / "results/data/stability_map.nc"
-    dataset = load(path)
-    config = json.loads(dataset.attrs["config"])
-    save(dataset.assign_attrs(config=json.dumps({**config, "scene": "F3", "mode": 1})), path)
-    assert verify(archive("second", root=run)).intact
-
-
-def test_a_study_with_sweeps_can_be_frozen(run):
-    """A sweep's dataset holds its own configuration, not a slice of the study's."""
-    config = run / "workflow/config/paper.yaml"
-    sweeps = {"k3": {"task": "stability_map", "vary": {"k3": "0.5,0.75"}, "fixed": FIXED}}
-    content = {**yaml.safe_load(config.read_text()), "sweeps": sweeps}
-    config.write_text(yaml.safe_dump(content))
-    plan = read_study(config).sweep("k3")
-    path = run / "results/data/sweeps/k3.nc"
-    produce(lambda: run_sweep(planned(plan)), config=plan, output=path)
-    assert verify(archive("swept", root=run)).intact
-    content["parameters"]["mu"] = 0.7
-    config.write_text(yaml.safe_dump(content))
-    (run / "results/data/stability_map.nc").unlink()
-    with pytest.raises(ValueError, match="another configuration: sweeps/k3"):
-        archive("stale", root=run)
-
-
 @pytest.mark.parametrize("mask", [0o022, 0o077, 0o002])
-def test_archives_obey_the_umask(run, mask):
+def test_archives_obey_the_umask(run, mask, keys_of):
     before = os.umask(mask)
     try:
-        frozen = archive("first", root=run)
+        frozen = archive("first", keys=keys_of(run), root=run)
     finally:
         os.umask(before)
     for path in [frozen, *frozen.rglob("*")]:
         allowed = 0o777 if path.is_dir() else 0o444
         assert path.stat().st_mode & 0o777 == allowed & ~mask, path
+
+
+def spoil_figure(path):
+    path.write_bytes(path.read_bytes()[:3])
+
+
+def other_code(path):
+    save(load(path).assign_attrs(key=file_key("f" * 16, path)), path)
+
+
+@pytest.mark.parametrize(
+    ("name", "spoil", "reason"),
+    [
+        ("data/stability_map.nc", Path.unlink, "missing"),
+        ("data/stability_map.nc", spoil_figure, "changed or damaged"),
+        ("data/stability_map.nc", other_code, "another configuration or other code"),
+        ("figures/fig06.png", Path.unlink, "missing"),
+        ("figures/fig06.png", spoil_figure, "does not state what it was made from"),
+    ],
+)
+def test_what_is_not_of_this_configuration_and_code_is_refused_by_name(
+    run, keys_of, name, spoil, reason
+):
+    spoil(run / "results" / name)
+    with pytest.raises(StoreError, match=rf"results/{name}.*{reason}"):
+        archive("second", keys=keys_of(run), root=run)
+    assert not (run / "results/archive/second").exists()
+    assert verify(archive("rest", keys=keys_of(run), root=run, leave_out=[name])).intact
+
+
+def test_left_out_datasets_are_no_difference(run, keys_of):
+    path = run / "results/data/stability_map.nc"
+    extra = produce(lambda: load(path), config={}, output=run / "results/data/simulate/F3.nc")
+    keys = {**keys_of(run), "results/data/simulate/F3.nc": "?"}
+    frozen = archive("small", keys=keys, root=run, leave_out=["data/simulate/*"])
+    assert extra.is_file()
+    assert not (frozen / "data/simulate").exists()
+    found = compare(frozen, run / "results")
+    assert found.exit_code == 0
+    assert found.skipped == ["simulate/F3"]

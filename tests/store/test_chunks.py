@@ -30,7 +30,7 @@ def test_results_come_in_order_with_and_without_processes():
 
 
 def test_only_missing_chunks_are_computed_again(tmp_path):
-    checkpoint = Checkpoint.beside(tmp_path / "map.nc", config={"a": 1})
+    checkpoint = Checkpoint.beside(tmp_path / "map.nc", key="a1")
     calls = []
 
     def compute(chunk):
@@ -46,18 +46,6 @@ def test_only_missing_chunks_are_computed_again(tmp_path):
     assert calls == [0, 1, 2, 3, 3, 4]
     assert [int(item["square"]) for item in found] == [0, 1, 4, 9, 16]
     assert list(tmp_path.iterdir()) == []
-
-
-def test_other_configuration_or_sources_do_not_meet(tmp_path):
-    source = tmp_path / "law.py"
-    source.write_text("a = 1")
-    first = Checkpoint.beside(tmp_path / "map.nc", config={"mu": 0.3}, sources=[source])
-    same = Checkpoint.beside(tmp_path / "map.nc", config={"mu": 0.3}, sources=[source])
-    other = Checkpoint.beside(tmp_path / "map.nc", config={"mu": 0.4}, sources=[source])
-    source.write_text("a = 2")
-    edited = Checkpoint.beside(tmp_path / "map.nc", config={"mu": 0.3}, sources=[source])
-    assert first == same
-    assert len({first.directory, other.directory, edited.directory}) == 3
 
 
 @pytest.mark.parametrize("damage", [b"", b"PK\x03\x04 not a chunk", None])

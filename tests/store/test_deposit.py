@@ -14,11 +14,11 @@ from squealpipe.store.memory.deposit import bundle, check
 
 
 @pytest.fixture
-def checkout(run, monkeypatch):
+def checkout(run, keys_of, monkeypatch):
     """A checkout with one archive and what else a deposit needs."""
     for name in ("CITATION.cff", "LICENSE", "Snakefile", "pyproject.toml", "requirements.lock"):
         shutil.copy(ROOT / name, run / name)
-    archive("first", root=run)
+    archive("first", keys=keys_of(run), root=run)
     monkeypatch.chdir(run)
     return run
 

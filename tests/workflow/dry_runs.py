@@ -16,7 +16,7 @@ import snakemake.cli
 import squealpipe.config.settings
 import squealpipe.study.claims.statements
 import squealpipe.study.report.lineage  # noqa: F401
-from squealpipe.rerun.sources import closure, code_digests
+from squealpipe.rerun.sources import closure, read_source
 
 
 def dry_run(arguments: list[str]) -> tuple[int, str]:
@@ -38,6 +38,7 @@ def dry_run(arguments: list[str]) -> tuple[int, str]:
 if __name__ == "__main__":
     snakemake.cli.get_argument_parser()  # finds the plugins
     for script in Path("workflow/scripts").glob("*/*.py"):
-        code_digests([script, *closure(script)])
+        for path in [script.resolve(), *closure(script.resolve())]:
+            read_source(path)
     with ThreadPoolExecutor(os.cpu_count()) as pool:
         json.dump(list(pool.map(dry_run, json.load(sys.stdin))), sys.stdout)

@@ -49,7 +49,7 @@ def test_narrative_of_the_shipped_study_fits_its_datasets(tiny_study, tmp_path):
     assert "nothing ends this" in " ".join(words)
 
 
-def test_log_of_a_run_has_one_line_a_job_and_a_file_has_the_rest(tiny_study):
+def test_log_of_a_run_has_one_line_a_job(tiny_study):
     text = tiny_study.log
     jobs = re.findall(r"^Job \d+: (\w+) → results/tiny/\S+$", text, flags=re.MULTILINE)
     assert sorted(jobs) == sorted(
@@ -58,9 +58,6 @@ def test_log_of_a_run_has_one_line_a_job_and_a_file_has_the_rest(tiny_study):
         if rule != "all"
     )
     assert not re.search(r"^ +(input|output): ", text, flags=re.MULTILINE)
-    listing = (tiny_study.checkout / ".snakemake/log/rules.txt").read_text(encoding="utf-8")
-    assert "reads squealpipe/parameters.py" in listing
-    assert "writes results/tiny/data/claims.nc" in listing
 
 
 def test_snakemake_writes_its_own_report(tiny_study, snakemake):
@@ -80,12 +77,10 @@ def test_only_declared_outputs_are_written(tiny_study, snakemake):
     summary = snakemake(
         tiny_study.checkout, "--configfile", "workflow/config/tiny.yaml", "--summary"
     )
-    listing = (tiny_study.checkout / ".snakemake/log/rules.txt").read_text(encoding="utf-8")
     declared = {line.split("\t")[0] for line in summary.stdout.splitlines()[1:]}
-    declared |= set(re.findall(r"^ +logs to (.*)$", listing, flags=re.MULTILINE))
     written = {
         str(path.relative_to(tiny_study.checkout))
         for path in (tiny_study.checkout / "results").rglob("*")
-        if path.is_file() and path.parent.name != "benchmarks"
+        if path.is_file() and "logs" not in path.parts
     }
     assert written <= declared, sorted(written - declared)

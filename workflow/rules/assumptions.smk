@@ -3,8 +3,6 @@
 if PAPERS_FRICTION:
 
     rule check_assumptions:
-        input:
-            sources=sources("dynamics/check_assumptions"),
         output:
             data("assumptions"),
         params:

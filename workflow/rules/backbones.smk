@@ -7,8 +7,6 @@ DOUBLED = [f"{scene}_{number}" for scene in STUDY.backbones.coupled for number i
 
 
 rule trace_backbones:
-    input:
-        sources=sources("backbones/trace_backbones"),
     output:
         **{name: data(f"backbone/{name}") for name in BACKBONES + SERIES},
     params:
@@ -26,8 +24,6 @@ rule trace_backbones:
 
 
 rule follow_doublings:
-    input:
-        sources=sources("backbones/follow_doublings"),
     output:
         **{name: data(f"doubled_branch/{name}") for name in DOUBLED},
     params:
@@ -39,8 +35,6 @@ rule follow_doublings:
 
 
 rule sweep_harmonic_balance:
-    input:
-        sources=sources("backbones/sweep_harmonic_balance"),
     output:
         sweep=data("harmonic_sweep"),
         forms=data("harmonic_forms"),
@@ -57,8 +51,6 @@ rule sweep_harmonic_balance:
 
 
 rule compare_a1_with_a4:
-    input:
-        sources=sources("backbones/compare_a1_with_a4"),
     output:
         data("a1_beside_a4"),
     params:
@@ -70,8 +62,6 @@ rule compare_a1_with_a4:
 
 
 rule map_orbits:
-    input:
-        sources=sources("backbones/map_orbits"),
     output:
         data("orbit_atlas"),
     params:

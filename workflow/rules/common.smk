@@ -1,13 +1,14 @@
-"""What rules share: where results go, which sources a script uses, its slice of the study."""
+"""What rules share: where results go, its slice of the study."""
 
 import os
 import sys
+import time
 from pathlib import Path
 
 from squealpipe.models.refusals import without_extensions
 from squealpipe.parameters import Parameters, parameters_of
 from squealpipe.reading import READINGS
-from squealpipe.rerun.sources import closure
+from squealpipe.rerun.key import STARTED
 
 # Our matrices are small: several threads of linear algebra in a job only wait for one another,
 # and for the jobs beside it.
@@ -21,7 +22,9 @@ CORRECTED = READINGS[READING].corrected
 # where that differs: folder of datasets → reading
 SHOWN = {"": READING} | ({"corrected/": CORRECTED} if CORRECTED != READING else {})
 BEYOND = [*SHOWN][-1]  # folder of the corrected physics
-NO_RESULT = {"progress.py", "sources.py", "stale.py"}  # they watch jobs: no result depends on them
+
+# Jobs publish nothing if the code is edited after the keys of the rules were taken from it.
+os.environ[STARTED] = str(time.time())
 
 
 def data(name):
@@ -33,24 +36,6 @@ def from_root(path):
     """A file of the checkout as an input: relative to it, or absolute where the folder is another."""
     whole = ROOT / path
     return str(whole.relative_to(ROOT) if Path.cwd() == ROOT else whole)
-
-
-def sources(script, *loaded):
-    """The script and the package modules whose edit makes its result stale.
-
-    ``loaded`` are modules that the package imports by name only when it runs.
-
-    As inputs they are judged by checksum; Snakemake's own trigger for scripts goes by date and
-    would take a fresh checkout for an edit (so the profiles leave it out).
-    """
-    return with_imports([ROOT / f"workflow/scripts/{script}.py", *loaded])
-
-
-def with_imports(paths):
-    """Modules and all that they import, as inputs, but for those on which no result depends."""
-    given = list(paths)
-    found = dict.fromkeys([*given, *(path for each in given for path in closure(each))])
-    return [from_root(path) for path in found if path.name not in NO_RESULT]
 
 
 def part(*paths, read_as=None):

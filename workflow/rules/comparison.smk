@@ -9,8 +9,6 @@ def alone(repeats):
 if PAPERS_FRICTION:
 
     rule measure_integration:
-        input:
-            sources=sources("comparison/measure_integration"),
         output:
             data("work_precision_integration"),
         params:
@@ -21,8 +19,6 @@ if PAPERS_FRICTION:
             "../scripts/comparison/measure_integration.py"
 
     rule measure_frequencies:
-        input:
-            sources=sources("comparison/measure_frequencies"),
         output:
             data("work_precision_frequencies"),
         params:
@@ -34,8 +30,6 @@ if PAPERS_FRICTION:
 
 
 rule judge_methods:
-    input:
-        sources=sources("comparison/judge_methods"),
     output:
         data("failure_atlas"),
     params:

@@ -4,8 +4,6 @@ CYCLES = ("limit_F3", "limit_F2d", "branch_F3_down", "branch_F3_up", "branch_flu
 
 
 rule follow_cycles:
-    input:
-        sources=sources("cycles/follow_cycles"),
     output:
         **{name: data(f"cycles/{name}") for name in CYCLES},
     params:

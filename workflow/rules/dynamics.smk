@@ -10,8 +10,6 @@ for folder, reading in SHOWN.items():
     rule:
         name:
             f"simulate_{folder.replace('/', '_')}scenes"
-        input:
-            sources=sources("dynamics/simulate_scenes"),
         output:
             **{scene.name: data(f"{folder}simulate/{scene.name}") for scene in IN_TIME},
             **{name: data(f"{folder}simulate/{name}") for name in ("F3_long", "F4_long", "F2a_printed")},
@@ -31,8 +29,6 @@ for folder, reading in SHOWN.items():
     rule:
         name:
             f"map_{folder.replace('/', '_')}validity"
-        input:
-            sources=sources("dynamics/map_validity"),
         output:
             map_output(f"{folder}validity_map", validity),
         log:
@@ -50,8 +46,6 @@ HAMMERING = part(
 
 
 rule map_hammering:
-    input:
-        sources=sources("dynamics/map_hammering"),
     output:
         map_output("hammering_map", HAMMERING),
     log:
@@ -64,8 +58,6 @@ rule map_hammering:
 
 
 rule refine_validity:
-    input:
-        sources=sources("dynamics/refine_validity"),
     output:
         refined=data("refined_validity_map"),
         check=data("refinement_check"),
@@ -85,8 +77,6 @@ rule refine_validity:
 
 
 rule follow_whirl:
-    input:
-        sources=sources("dynamics/follow_whirl"),
     output:
         run=data("simulate/whirl"),
         whirl=data("whirl"),

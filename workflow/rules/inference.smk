@@ -2,8 +2,6 @@
 
 
 rule infer_parameters:
-    input:
-        sources=sources("inference/infer_parameters"),
     output:
         data("parameter_inference"),
     params:

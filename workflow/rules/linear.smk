@@ -5,8 +5,6 @@ for folder, reading in SHOWN.items():
     rule:
         name:
             f"map_{folder.replace('/', '_')}linear"
-        input:
-            sources=sources("linear/map_linear"),
         output:
             quasi_static=data(f"{folder}quasi_static_map"),
             stability=data(f"{folder}stability_map"),
@@ -22,8 +20,6 @@ for folder, reading in SHOWN.items():
 
 
 rule map_critical_friction:
-    input:
-        sources=sources("linear/map_critical_friction"),
     output:
         angles=data("critical_friction_map"),
         dashpots=data("critical_damping_map"),
@@ -41,8 +37,6 @@ rule map_critical_friction:
 
 
 rule validate_mode_coupling:
-    input:
-        sources=sources("linear/validate_mode_coupling"),
     output:
         data("mode_coupling"),
     script:

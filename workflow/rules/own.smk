@@ -4,8 +4,6 @@ OWN = list(STUDY.scenes)
 
 
 rule run_scenes:
-    input:
-        sources=sources("own/run_scenes"),
     output:
         runs=[data(f"own/{name}") for name in OWN],
         scenes=data("own_scenes"),
@@ -16,8 +14,6 @@ rule run_scenes:
 
 
 rule spread_scene:
-    input:
-        sources=sources("own/spread_scene"),
     output:
         data("propensity"),
     params:

@@ -4,7 +4,6 @@
 rule judge_reach:
     input:
         **({"inferred": data("parameter_inference")} if PAPERS_FRICTION else {}),
-        sources=sources("spread/judge_reach"),
     output:
         data("verdict_reach"),
     params:
@@ -14,8 +13,6 @@ rule judge_reach:
 
 
 rule spread_parameters:
-    input:
-        sources=sources("spread/spread_parameters"),
     output:
         data("propensity"),
     params:

@@ -6,8 +6,6 @@ LEADS_TO = ["contact_lost", "whirl"]
 
 
 rule map_basins:
-    input:
-        sources=sources("starts/map_basins"),
     output:
         **{name: data(f"basin/{name}") for name in BASINS},
     params:
@@ -20,8 +18,6 @@ rule map_basins:
 
 
 rule measure_disturbances:
-    input:
-        sources=sources("starts/measure_disturbances"),
     output:
         **{
             f"{name}_{goal}": data(f"disturbance/{name}_{goal}")

@@ -18,10 +18,10 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 from rocrate.rocrate import ROCrate
 
 from squealpipe.store.archive import verify
-from squealpipe.store.memory.objects import checksum
 from squealpipe.store.memory.run_crate import describe_deposit
 from squealpipe.store.netcdf import StoreError
 from squealpipe.store.runs import locate, read_manifest, regular_files
+from squealpipe.store.whole_files import checksum
 
 CITATION, ZENODO, DATACITE = "CITATION.cff", ".zenodo.json", "datacite.json"
 CRATE = "ro-crate-metadata.json"

@@ -13,7 +13,7 @@ from rocrate.model.contextentity import ContextEntity
 from rocrate.rocrate import ROCrate
 
 from squealpipe.store.crate import file_properties
-from squealpipe.store.memory.results import open_lazily
+from squealpipe.store.netcdf import attributes
 from squealpipe.store.runs import regular_files
 
 PROFILES = (
@@ -77,7 +77,7 @@ def _dataset_run(
     crate: ROCrate, path: Path, entity: Any, datasets: dict[str, Any]
 ) -> ContextEntity:
     """The run that made one dataset, as its own attributes tell it."""
-    attrs = open_lazily(path).attrs
+    attrs = attributes(path)
     inputs = [f"run/data/{name.partition('/data/')[2]}" for name in json.loads(attrs["inputs"])]
     key = entity.id.removeprefix("run/data/").removesuffix(".nc")
     package = f"#squealpipe-{attrs.get('commit', 'unknown')}"

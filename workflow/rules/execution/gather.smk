@@ -7,7 +7,6 @@ for name, slice_of_study in SCATTERED.items():
             f"join_{name.replace('/', '_')}"
         input:
             parts=gather.maps(f"{RESULTS}/parts/{name}/{{scatteritem}}.nc"),
-            sources=sources("execution/join_parts"),
         output:
             data(name),
         params:

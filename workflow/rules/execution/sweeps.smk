@@ -38,8 +38,6 @@ for name, sweep in SWEEPS.items():
     rule:
         name:
             f"run_sweep_{name}"
-        input:
-            sources=sources("execution/run_sweep"),
         output:
             data(f"sweeps/{name}") if whole else temp(parts),
         log:
@@ -57,7 +55,6 @@ for name, sweep in SWEEPS.items():
                 f"join_sweep_{name}"
             input:
                 parts=getattr(gather, f"sweep_{name}")(parts),
-                sources=sources("execution/join_parts"),
             output:
                 data(f"sweeps/{name}"),
             params:

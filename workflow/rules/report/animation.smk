@@ -5,7 +5,6 @@ rule animate_scenes:
     input:
         explorer=data("explorer"),
         F3=data("simulate/F3"),
-        sources=sources("report/animate_scenes"),
     output:
         hammering=f"{RESULTS}/figures/hammering.gif",
         whirl=f"{RESULTS}/figures/whirl.gif",

@@ -8,7 +8,6 @@ EVIDENCE = [name for folder in SHOWN for name in (f"{folder}{read}" for read in 
 rule judge_claims:
     input:
         datasets=[MADE[name]["path"] for name in EVIDENCE],
-        sources=sources("report/judge_claims"),
     output:
         data("claims"),
     params:

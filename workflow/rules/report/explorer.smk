@@ -2,8 +2,6 @@
 
 
 rule compute_explorer:
-    input:
-        sources=sources("report/compute_explorer"),
     output:
         data("explorer"),
     params:
@@ -27,7 +25,6 @@ rule write_explorer:
         hammering=data("hammering_map"),
         ladder=data("model_ladder"),
         page=EXPLORER_PAGE,
-        sources=sources("report/write_explorer"),
     output:
         f"{RESULTS}/report/explorer.html",
     script:

@@ -20,11 +20,6 @@ def figure(name):
     return paths
 
 
-def figure_sources(names):
-    """Modules that draw the figures, and hold their captions, and all that these import."""
-    return sorted(with_imports(declared.find_module(name) for name in names))
-
-
 for topic in dict.fromkeys(map(declared.topic, READ_BY)):
     figures = [name for name in READ_BY if declared.topic(name) == topic]
     datasets = sorted({read for name in figures for read in READ_BY[name]})
@@ -34,12 +29,11 @@ for topic in dict.fromkeys(map(declared.topic, READ_BY)):
             f"draw_{topic}"
         input:
             datasets=[MADE[name]["path"] for name in datasets],
-            sources=sources("report/draw_figures"),
-            figures=figure_sources(figures),
         output:
             **{name: figure(name) for name in figures},
         params:
             figures=figures,
             datasets=datasets,
+            modules=[from_root(declared.find_module(name)) for name in figures],
         script:
             "../../scripts/report/draw_figures.py"

@@ -34,9 +34,7 @@ if STUDY.paper:
         input:
             datasets=[made["path"] for made in MADE.values()],
             figures=[made["path"] for made in DRAWN.values()],
-            captions=figure_sources(READ_BY),
             templates=TEMPLATES,
-            sources=sources("report/write_report"),
         output:
             page=f"{RESULTS}/report/index.html",
             pdf=f"{RESULTS}/report/report.pdf",
@@ -44,6 +42,7 @@ if STUDY.paper:
             supplement_pdf=f"{RESULTS}/report/supplement.pdf",
             provenance=f"{RESULTS}/report/provenance.json",
         params:
+            modules=[from_root(declared.find_module(name)) for name in READ_BY],
             part=STUDY.slice("parameters", "reading"),
             made=MADE,
             drawn=DRAWN,
@@ -62,14 +61,13 @@ else:
         input:
             datasets=[made["path"] for made in own.values()],
             figures=[made["path"] for made in DRAWN.values()],
-            captions=figure_sources(READ_BY),
             templates=TEMPLATES,
-            sources=sources("own/write_own_report"),
         output:
             page=f"{RESULTS}/report/index.html",
             pdf=f"{RESULTS}/report/report.pdf",
             provenance=f"{RESULTS}/report/provenance.json",
         params:
+            modules=[from_root(declared.find_module(name)) for name in READ_BY],
             part=part("parameters"),
             made=own,
             drawn=DRAWN,

@@ -17,6 +17,6 @@ produce(
         peak=part["backbones.atlas_peak"],
         length_ratios=part["backbones.length_ratios"],
     ).assign_attrs(left_out=left_out),
-    config=part, sources=snakemake.input.sources,
+    config=part, key=snakemake.params.key,
     output=snakemake.output[0],
 )

@@ -15,6 +15,6 @@ for scene, over_pi in part["backbones.coupled"].items():
     for doubling in (1, 2):
         produce(
             lambda: doubled_branch(params, *angles, mode=1, doubling=doubling, y_peak_max=limit),
-            config={**part, "scene": scene, "doubling": doubling}, sources=snakemake.input.sources,
+            config={**part, "scene": scene, "doubling": doubling}, key=snakemake.params.key,
             output=snakemake.output[f"{scene}_{doubling}"],
         )

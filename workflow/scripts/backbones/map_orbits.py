@@ -18,6 +18,6 @@ produce(
         y_peak=part["backbones.atlas_peak"] * params.preload,
         workers=snakemake.threads,
     ),
-    config=part, sources=snakemake.input.sources,
+    config=part, key=snakemake.params.key,
     output=snakemake.output[0],
 )

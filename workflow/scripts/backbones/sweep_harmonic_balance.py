@@ -15,11 +15,11 @@ produce(
     lambda: sweep_harmonic_balance(
         params, branches, n_harmonics=part["backbones.n_harmonics"], **sweep
     ).assign_attrs(left_out=left_out),
-    config=part, sources=snakemake.input.sources,
+    config=part, key=snakemake.params.key,
     output=snakemake.output.sweep,
 )
 produce(
     lambda: compare_harmonic_forms(params, branches).assign_attrs(left_out=left_out),
-    config=part, sources=snakemake.input.sources,
+    config=part, key=snakemake.params.key,
     output=snakemake.output.forms,
 )

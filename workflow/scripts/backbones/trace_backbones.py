@@ -20,6 +20,6 @@ for name, angles in named_scenes(part["backbones.coupled"]).items():
         for ending, options in methods.items():
             produce(
                 lambda: backbone(params, *angles, mode=mode, **limits, **options),
-                config={**part, "scene": name, "mode": mode, **options}, sources=snakemake.input.sources,
+                config={**part, "scene": name, "mode": mode, **options}, key=snakemake.params.key,
                 output=snakemake.output[f"{name}_mode{mode}{ending}"],
             )

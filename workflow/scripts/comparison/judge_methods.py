@@ -10,5 +10,5 @@ from squealpipe.tasks.comparison.failures.atlas import judge_methods
 
 part = snakemake.params.part
 produce(
-    lambda: judge_methods(**part["comparison.atlas"]), config=part, sources=snakemake.input.sources, output=snakemake.output[0]
+    lambda: judge_methods(**part["comparison.atlas"]), config=part, key=snakemake.params.key, output=snakemake.output[0]
 )

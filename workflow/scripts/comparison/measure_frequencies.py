@@ -20,6 +20,6 @@ produce(
             *speed_accuracy_stability.solutions(**part["comparison.onset"]),
         ]
     ),
-    config=part, sources=snakemake.input.sources,
+    config=part, key=snakemake.params.key,
     output=snakemake.output[0],
 )

@@ -17,6 +17,6 @@ produce(
             *speed_accuracy_validity.solutions(params, **maps),
         ]
     ),
-    config=part, sources=snakemake.input.sources,
+    config=part, key=snakemake.params.key,
     output=snakemake.output[0],
 )

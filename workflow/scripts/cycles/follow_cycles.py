@@ -23,7 +23,7 @@ scenes["flutter"] = tuple(math.pi * angle for angle in cycles["flutter"])
 for name in ("F3", "F2d"):
     produce(
         lambda name=name: limit_cycle(params, *scenes[name], t_settle=settle),
-        config=part, sources=snakemake.input.sources,
+        config=part, key=snakemake.params.key,
         output=out[f"limit_{name}"],
     )
 first = load(out.limit_F3)
@@ -32,7 +32,7 @@ for way, to in (("down", low), ("up", high)):
         lambda to=to: cycle_branch(
             params, *scenes["F3"], parameter="mu", to=to, start=first, n_points=cycles["points"]
         ),
-        config=part, sources=snakemake.input.sources,
+        config=part, key=snakemake.params.key,
         output=out[f"branch_F3_{way}"],
     )
 produce(
@@ -44,7 +44,7 @@ produce(
         start="onset",
         n_points=cycles["points"],
     ),
-    config=part, sources=snakemake.input.sources,
+    config=part, key=snakemake.params.key,
     output=out.branch_flutter,
 )
 produce(
@@ -56,6 +56,6 @@ produce(
         t_end=cycles["extremes_horizon"] * params.time_unit,
         workers=snakemake.threads,
     ),
-    config=part, sources=snakemake.input.sources,
+    config=part, key=snakemake.params.key,
     output=out.extremes,
 )

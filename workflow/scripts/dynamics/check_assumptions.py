@@ -8,6 +8,6 @@ from squealpipe.tasks.dynamics.assumptions import check_assumptions
 part = snakemake.params.part
 produce(
     lambda: check_assumptions(for_linear(parameters_of(part), part["read_as"])),
-    config=part, sources=snakemake.input.sources,
+    config=part, key=snakemake.params.key,
     output=snakemake.output[0],
 )

@@ -22,7 +22,7 @@ def speeds(topic):
 t_end = 0.1 * part["dynamics.whirl_horizon"] * second
 produce(
     lambda: simulate(params, scene.alpha1, scene.alpha2, t_end=t_end, tol=tol),
-    config=part, sources=snakemake.input.sources,
+    config=part, key=snakemake.params.key,
     output=out.run,
 )
 produce(
@@ -32,7 +32,7 @@ produce(
         t_end=part["dynamics.whirl_horizon"] * second,
         tol=tol,
     ),
-    config=part, sources=snakemake.input.sources,
+    config=part, key=snakemake.params.key,
     output=out.whirl,
 )
 produce(
@@ -44,6 +44,6 @@ produce(
         t_end=part["dynamics.transient_horizon"] * second,
         tol=tol,
     ),
-    config=part, sources=snakemake.input.sources,
+    config=part, key=snakemake.params.key,
     output=out.transient,
 )

@@ -12,7 +12,7 @@ make_map(
     "hammering",
     part,
     output=snakemake.output[0],
-    sources=snakemake.input.sources,
+    key=snakemake.params.key,
     log=snakemake.log[0],
     item=snakemake.wildcards.get("scatteritem", "1-of-1"),
 )

@@ -16,7 +16,7 @@ produce(
         model=model,
         tol=part["dynamics.tol"],
     ),
-    config=part, sources=snakemake.input.sources,
+    config=part, key=snakemake.params.key,
     output=out.refined,
 )
 produce(
@@ -27,7 +27,7 @@ produce(
         model=model,
         tol=part["dynamics.tol"],
     ),
-    config=part, sources=snakemake.input.sources,
+    config=part, key=snakemake.params.key,
     output=out.check,
     inputs=[out.refined],
 )

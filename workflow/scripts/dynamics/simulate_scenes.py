@@ -28,6 +28,6 @@ for name, path in snakemake.output.items():
             tol=part["dynamics.tol"],
             growth=name in SCENES,
         ),
-        config={**part, "scene": name}, sources=snakemake.input.sources,
+        config={**part, "scene": name}, key=snakemake.params.key,
         output=path,
     )

@@ -8,7 +8,7 @@ part, parts = snakemake.params.part, list(snakemake.input.parts)
 along = longest(part["vary"]) if "vary" in part else "alpha1"
 produce(
     lambda: join([load(path) for path in parts], along),
-    config=part, sources=snakemake.input.sources,
+    config=part, key=snakemake.params.key,
     output=snakemake.output[0],
     inputs=parts,
 )

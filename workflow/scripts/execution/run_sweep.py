@@ -6,15 +6,15 @@ from squealpipe.execution.sweep import executor, planned, run_sweep
 
 part = snakemake.params.part
 sweep = planned(part).part(snakemake.wildcards.get("scatteritem", "1-of-1"))
-output, sources, log = snakemake.output[0], snakemake.input.sources, snakemake.log[0]
+output, key, log = snakemake.output[0], snakemake.params.key, snakemake.log[0]
 
 with (
-    Checkpoint.beside(output, config=part, sources=sources, log=log) as checkpoint,
+    Checkpoint.beside(output, key=key, log=log) as checkpoint,
     executor(snakemake.threads) as pool,
 ):
     produce(
         lambda: run_sweep(sweep, executor=pool, checkpoint=checkpoint),
         config=part,
-        sources=sources,
+        key=key,
         output=output,
     )

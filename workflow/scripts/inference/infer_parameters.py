@@ -11,6 +11,6 @@ options = {
 }
 produce(
     lambda: infer_parameters(parameters_of(part), **options),
-    config=part, sources=snakemake.input.sources,
+    config=part, key=snakemake.params.key,
     output=snakemake.output[0],
 )

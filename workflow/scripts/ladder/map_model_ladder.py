@@ -15,6 +15,6 @@ produce(
         t_end=ladder["horizon"] * params.time_unit,
         workers=snakemake.threads,
     ),
-    config=part, sources=snakemake.input.sources,
+    config=part, key=snakemake.params.key,
     output=snakemake.output[0],
 )

@@ -22,4 +22,4 @@ for task, path in (
     (lambda: critical_friction_map(damped, angles, angles), out.angles),
     (lambda: critical_damping_map(params, *scene, dashpots, dashpots), out.dashpots),
 ):
-    produce(task, config=part, sources=snakemake.input.sources, output=path)
+    produce(task, config=part, key=snakemake.params.key, output=path)

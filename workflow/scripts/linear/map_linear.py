@@ -21,4 +21,4 @@ tasks = {
     "linear_pull": lambda: linear_pull_map(params, angles, angles),
 }
 for name, path in out.items():
-    produce(tasks[name], config=part, sources=snakemake.input.sources, output=path)
+    produce(tasks[name], config=part, key=snakemake.params.key, output=path)

@@ -3,4 +3,4 @@
 from squealpipe.store import produce
 from squealpipe.tasks.linear.mode_coupling import mode_coupling
 
-produce(mode_coupling, config={}, sources=snakemake.input.sources, output=snakemake.output[0])
+produce(mode_coupling, config={}, key=snakemake.params.key, output=snakemake.output[0])

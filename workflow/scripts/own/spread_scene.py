@@ -18,5 +18,5 @@ produce(
         t_end=part["spread.horizon"] * params.time_unit,
         workers=snakemake.threads,
     ),
-    config=part, sources=snakemake.input.sources, output=snakemake.output[0],
+    config=part, key=snakemake.params.key, output=snakemake.output[0],
 )

@@ -12,6 +12,6 @@ options = dict(part["explorer"])
 angles = np.linspace(0.0, np.pi, options.pop("points"))
 produce(
     lambda: explorer_data(for_linear(parameters_of(part), part["read_as"]), angles, **options),
-    config=part, sources=snakemake.input.sources,
+    config=part, key=snakemake.params.key,
     output=snakemake.output[0],
 )

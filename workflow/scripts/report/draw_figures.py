@@ -2,9 +2,12 @@
 
 from squealpipe.study.figures.declared import draw
 from squealpipe.study.figures.parts.style import save_figure
+from squealpipe.rerun.key import state_key
 from squealpipe.store import load
 
 given, params = snakemake.input, snakemake.params
 datasets = {name: load(path) for name, path in zip(params.datasets, given.datasets, strict=True)}
 for name in params.figures:
     save_figure(draw(name, datasets), snakemake.output[name])
+for path in snakemake.output:
+    state_key(path, snakemake.params.key)

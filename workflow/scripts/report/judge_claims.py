@@ -8,7 +8,7 @@ part, paths = snakemake.params.part, snakemake.input.datasets
 sources = dict(zip(snakemake.params.names, paths, strict=True))
 produce(
     lambda: judge(parameters_of(part), sources, part["reading"]),
-    config=part, sources=snakemake.input.sources,
+    config=part, key=snakemake.params.key,
     output=snakemake.output[0],
     inputs=paths,
 )

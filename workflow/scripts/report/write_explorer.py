@@ -2,6 +2,7 @@
 
 from squealpipe.study.report.explorer import write_explorer
 from squealpipe.study.report.explorer.layers import layers
+from squealpipe.rerun.key import state_key
 from squealpipe.store import load
 
 maps = ("stability", "frequencies", "validity", "hammering", "ladder")
@@ -10,3 +11,5 @@ write_explorer(
     layers(**{name: load(snakemake.input[name]) for name in maps}),
     snakemake.output[0],
 )
+for path in snakemake.output:
+    state_key(path, snakemake.params.key)

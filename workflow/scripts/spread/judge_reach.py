@@ -15,7 +15,7 @@ produce(
         workers=snakemake.threads,
     ),
     config=part,
-    sources=snakemake.input.sources,
+    key=snakemake.params.key,
     inputs=[inferred] if inferred else [],
     output=snakemake.output[0],
 )

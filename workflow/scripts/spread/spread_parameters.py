@@ -22,6 +22,6 @@ produce(
         workers=snakemake.threads,
     ),
     config=part,
-    sources=snakemake.input.sources,
+    key=snakemake.params.key,
     output=snakemake.output[0],
 )

@@ -24,6 +24,6 @@ for name, path in out.items():
             workers=snakemake.threads,
         ),
         config=part,
-        sources=snakemake.input.sources,
+        key=snakemake.params.key,
         output=path,
     )

@@ -20,6 +20,6 @@ for name, path in snakemake.output.items():
             workers=snakemake.threads,
         ),
         config=part,
-        sources=snakemake.input.sources,
+        key=snakemake.params.key,
         output=path,
     )

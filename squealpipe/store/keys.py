@@ -1,0 +1,61 @@
+"""Whether files of a run are what they should be: whole, there, and made from this and no other."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+
+from squealpipe.rerun.key import key_behind
+from squealpipe.store.netcdf import StoreError, attributes
+
+
+def stated_key(path: str | Path) -> str | None:
+    """The key that a dataset, figure or page states; None if it states none.
+
+    Raises:
+        StoreError: the dataset is damaged.
+    """
+    if Path(path).suffix == ".nc":
+        key = attributes(path).get("key")
+        return None if key is None else str(key)
+    return key_behind(path)
+
+
+def misfits(keys: Mapping[str, str], root: Path = Path()) -> list[str]:
+    """Which files are missing, damaged or not of this configuration and code, with the reason.
+
+    Args:
+        keys: file → the key that it must state.
+        root: where the files are looked up.
+    """
+    found = []
+    for path, key in keys.items():
+        try:
+            stated = stated_key(root / path)
+        except FileNotFoundError:
+            found.append(f"{path}: missing")
+        except StoreError as error:
+            found.append(f"{path}: {error}")
+        else:
+            if stated is None:
+                found.append(f"{path}: does not state what it was made from")
+            elif stated.partition(" ")[2] != key.partition(" ")[2]:
+                found.append(f"{path}: is a copy of {stated.partition(' ')[2]}")
+            elif stated != key:
+                found.append(f"{path}: made with another configuration or other code")
+    return found
+
+
+def refuse_misfits(keys: Mapping[str, str], root: Path = Path()) -> None:
+    """Raise if a file is not what it should be.
+
+    Raises:
+        StoreError: names each such file.
+    """
+    found = misfits(keys, root)
+    if found:
+        raise StoreError(
+            "not the results of this configuration and code:\n"
+            + "\n".join(f"  {line}" for line in found)
+            + "\ndelete these files and run snakemake, with the same --configfile"
+        )
