@@ -65,9 +65,7 @@ def save(dataset: xr.Dataset, path: AnyPath) -> Path:
     try:
         clear_leftovers(target.parent, f".{target.stem}.*{target.suffix}")
         with whole_file(target) as temporary:
-            dataset.to_netcdf(
-                temporary, engine="netcdf4", format="NETCDF4", encoding=encoding
-            )
+            dataset.to_netcdf(temporary, engine="netcdf4", format="NETCDF4", encoding=encoding)
             with temporary.open("ab") as file:
                 file.write(MARK + checksum(temporary).encode() + b"\n")
     except (OSError, RuntimeError, StoreError) as error:  # netCDF-4 reports a full disk as any

@@ -7,7 +7,7 @@ from squealpipe.store import produce
 from squealpipe.tasks.dynamics.runs import simulate
 from squealpipe.tasks.own.scenes import own_scenes, start_of
 
-part, sources = snakemake.params.part, snakemake.input.sources
+part, key = snakemake.params.part, snakemake.params.key
 params, scenes = parameters_of(part), part["scenes"]
 for path in snakemake.output.runs:
     name = Path(path).stem
@@ -21,9 +21,9 @@ for path in snakemake.output.runs:
             initial_state=start_of(scene),
             tol=part["dynamics.tol"],
         ),
-        config={**part, "scene": name}, sources=sources, output=path,
+        config={**part, "scene": name}, key=key, output=path,
     )
 produce(
     lambda: own_scenes(params, scenes, tol=part["dynamics.tol"]),
-    config=part, sources=sources, output=snakemake.output.scenes,
+    config=part, key=key, output=snakemake.output.scenes,
 )
