@@ -90,8 +90,8 @@ def load(path: AnyPath, *, schema: str | None = None) -> xr.Dataset:
         StoreError: the file is not whole, was changed, or is no dataset of this package.
         SchemaError: it does not fit its schema, or not the one asked for.
     """
-    source = verified(path)
-    dataset = _read(source)
+    source = Path(path)
+    dataset = read(source)
     found = str(dataset.attrs.get("schema"))
     if schema is not None and found != schema:
         raise SchemaError(f"{source} holds {found!r}, {schema!r} was expected; pass the right file")
@@ -153,7 +153,9 @@ def made_now() -> str:
     return f"{datetime.datetime.now(datetime.UTC):%Y-%m-%dT%H:%M:%SZ} squealpipe"
 
 
-def _read(source: Path) -> xr.Dataset:
+def read(path: str | os.PathLike[str]) -> xr.Dataset:
+    """As :func:`load`, but not held against its schema, which may have changed since."""
+    source = verified(path)
     try:
         with xr.open_dataset(source, engine="netcdf4", decode_times=False) as opened:
             _refuse_too_large(opened)

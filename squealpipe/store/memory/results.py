@@ -14,7 +14,7 @@ from squealpipe.schema import DatasetSchema, find
 from squealpipe.schema.sweep import fill_up
 from squealpipe.store.comparison.compare import configuration
 from squealpipe.store.comparison.matching import on_shared_points
-from squealpipe.store.netcdf import StoreError, load
+from squealpipe.store.netcdf import StoreError, read
 from squealpipe.store.runs import dataset_files, locate
 from squealpipe.validation import checked
 
@@ -77,7 +77,7 @@ def open_results(
 
 def _load(name: str, path: Path) -> xr.Dataset:
     """A dataset of a run; a copy under another name is refused."""
-    dataset = load(path)
+    dataset = read(path)
     stated = str(dataset.attrs.get("key", "")).partition(" ")[2]
     if stated not in {"", f"data/{name}.nc"}:
         raise StoreError(f"{path} is a copy of {stated}; delete it and run snakemake again")
