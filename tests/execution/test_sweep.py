@@ -16,7 +16,6 @@ from squealpipe.config.settings import parse_study
 from squealpipe.execution import sweep as sweeping
 from squealpipe.execution.row_blocks import join
 from squealpipe.execution.sweep import Sweep, executor, planned, run_sweep
-from squealpipe.parameters import Parameters
 from squealpipe.schema import find
 from squealpipe.store import load, save
 from squealpipe.store.chunks import Checkpoint
@@ -32,7 +31,7 @@ ANGLES = [0.0, 1.0, 2.0]
 def linear_sweep(**changes):
     plan = {
         "task": "stability_map",
-        "params": Parameters(),
+        "params": FORMER,
         "vary": {"mu": [0.0, 0.4], "k3": [0.5, 0.75, 1.0], "alpha1": ANGLES},
         "fixed": {"alpha2": 0.6},
     }
@@ -168,7 +167,7 @@ def test_parameters_may_be_fixed_for_a_sweep():
 def test_an_option_with_a_parameters_name_is_the_option():
     plan = {
         "task": "backbone",
-        "params": Parameters(),
+        "params": FORMER,
         "fixed": {"alpha1": 0.94, "alpha2": 2.83, "mode": 1, "method": "hbm", "n_harmonics": 4,
                   "y_peak_max": 1.2},
         "vary": {"sigma": [3.0, 1000.0]},
@@ -270,7 +269,7 @@ def test_foreign_parts_are_not_joined():
 def test_runs_at_other_instants_are_not_put_on_one_axis():
     plan = {
         "task": "simulate",
-        "params": Parameters(),
+        "params": FORMER,
         "vary": {"t_end": [5.0, 10.0]},
         "fixed": {"alpha1": 1.6, "alpha2": 2.6},
     }
