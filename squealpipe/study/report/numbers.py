@@ -61,7 +61,11 @@ def _long_runs(run: Run, preload: float, unit: float) -> dict[str, Any]:
 def _linear(run: Run) -> dict[str, Any]:
     regime = run["stability_map"].regime_linear
     printed, physical = unstable_yet_sliding(run)
+    mended, sliding = run["corrected/stability_map"], run["corrected/quasi_static_map"]
     return {
+        "mended_sliding_printed": (
+            (mended.regime_linear > 0) & (sliding.possible_as_printed == 1)
+        ).sum(),
         "cells": regime.size,
         "points": regime.sizes["alpha1"],
         "flutter": (regime == 1).sum(),
@@ -91,7 +95,6 @@ def _bounded(run: Run) -> dict[str, Any]:
         "F4_size": abs(run["simulate/F4"].x).max() / run.parameters.preload,
         "transient_runs": lifetimes.size,
         "transient_ended": int(ended.sum()),
-        "transient_first": float(lifetimes[ended].min() / unit) if ended.any() else "none",
         "transient_time": transient.t_end / unit,
     }
 
