@@ -136,12 +136,10 @@ def test_after_an_edit_the_page_shows_changes_and_no_narrative(text: str, small_
     assert not re.search(r"\bnan\b", words)
 
 
-def test_verdicts_that_differ_from_the_shipped_study_are_listed(monkeypatch) -> None:
-    reference = {"F3": {"verdict": "holds"}, "F4": {"verdict": "fails"}}
-    monkeypatch.setattr(contents, "reference_verdicts", lambda: reference)
-    claims = [{"id": name, "verdict": "fails"} for name in ("F3", "F4")]
-    found = contents._changed_verdicts(claims)
-    assert found == [{"id": "F3", "shipped": "holds", "here": "fails"}]
+def test_verdicts_that_differ_from_the_recorded_ones_are_listed(small_report) -> None:
+    changed = {row["id"] for row in small_report.content["changed_verdicts"]}
+    claims = [*small_report.content["statements"], *small_report.content["misprints"]]
+    assert changed == {row["id"] for row in claims if row["verdict_here"] != row["recorded"]}
 
 
 def test_narrative_has_words_for_every_part() -> None:

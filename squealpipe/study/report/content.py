@@ -9,7 +9,6 @@ import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from importlib.metadata import version
-from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
@@ -17,7 +16,7 @@ import netCDF4
 from PIL import Image
 
 from squealpipe.parameters import TABLE, Parameters
-from squealpipe.schema.claims import Origin, Verdict
+from squealpipe.schema.claims import Origin
 from squealpipe.study.claims.evidence import Run
 from squealpipe.study.claims.table import rows
 from squealpipe.study.figures import declared
@@ -34,9 +33,6 @@ PAPER = {
     "year": 2021,
 }
 """The paper that is computed again."""
-
-RECORDED = ("verdict", "corrected_verdict")
-"""What :data:`REFERENCE` holds of each statement."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -88,7 +84,11 @@ def gather(
             {"key": key, "shipped": _written(shipped), "here": _written(here)}
             for key, shipped, here in changed
         ],
-        "changed_verdicts": _changed_verdicts(claims),
+        "changed_verdicts": [
+            {"id": row["id"], "shipped": row["recorded"], "here": row["verdict_here"]}
+            for row in claims
+            if not row["as_recorded"]
+        ],
         "numbers": {} if changed else numbers(run),
         "parameters": parameter_table(parameters),
         "compared": _parts(places.COMPARED),
@@ -99,14 +99,6 @@ def gather(
         "links": [{"words": words, "to": link(to)} for words, to in (links or {}).items()],
         "statements": [row for row in claims if row["origin"] != Origin.misprints.name],
         "misprints": [row for row in claims if row["origin"] == Origin.misprints.name],
-        "totals": {
-            key: {
-                verdict.words: count
-                for verdict in Verdict
-                if (count := sum(row.get(key) == verdict.words for row in claims))
-            }
-            for key in RECORDED
-        },
     }
 
 
@@ -168,17 +160,6 @@ def parameter_table(parameters: Parameters, *, of_a1: bool = False) -> list[dict
     ]
 
 
-def reference_verdicts() -> dict[str, dict[str, str]]:
-    """Id of a statement → its verdicts in the shipped study."""
-    path = files("squealpipe.study.report") / "reference_verdicts.json"
-    return json.loads(path.read_text(encoding="utf-8"))  # type: ignore[no-any-return]
-
-
-def recorded(claims: Sequence[Mapping[str, Any]]) -> dict[str, dict[str, str]]:
-    """What ``reference_verdicts.json`` holds, of judged statements."""
-    return {row["id"]: {key: row[key] for key in RECORDED if row.get(key)} for row in claims}
-
-
 def title(name: str) -> str:
     """Heading of a picture: the paper's number, or the name in words."""
     if paper := re.fullmatch(r"fig(\d+)(?:_to_(\d+))?", name):
@@ -194,17 +175,6 @@ def made_files(table: Mapping[str, Mapping[str, Any]]) -> dict[str, Made]:
         name: Made(path=Path(row["path"]), rule=row["rule"], datasets=tuple(row["datasets"]))
         for name, row in table.items()
     }
-
-
-def _changed_verdicts(claims: Sequence[Mapping[str, Any]]) -> list[dict[str, str]]:
-    reference = reference_verdicts()
-    found = recorded(claims)
-    return [
-        {"id": name, "shipped": reference[name][key], "here": verdicts[key]}
-        for name, verdicts in found.items()
-        for key in RECORDED[:1]
-        if name in reference and reference[name].get(key) != verdicts.get(key)
-    ]
 
 
 def _parts(parts: Mapping[str, places.Part]) -> list[dict[str, Any]]:

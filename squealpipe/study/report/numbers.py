@@ -26,9 +26,7 @@ def _verdicts(run: Run) -> dict[str, Any]:
     claims = run["claims"]
     own = claims.isel(claim=(claims.origin != Origin.misprints).values)
     found = {verdict.name: (own.verdict == verdict).sum() for verdict in Verdict}
-    changed = 0
-    if "corrected_verdict" in own:
-        changed = (own.corrected_verdict != own.verdict_here).sum()
+    changed = (own.corrected_verdict != own.verdict).sum()
     return {"statements": own.sizes["claim"], "mended_changes": changed, **found}
 
 

@@ -13,7 +13,7 @@ DRAWN = {
 TEMPLATES = sorted(
     from_root(path)
     for path in (ROOT / "squealpipe/study/report").rglob("*.*")
-    if path.suffix in (".typ", ".css", ".json") or path.name == "page.html.j2"
+    if path.suffix in (".typ", ".css") or path.name == "page.html.j2"
 )
 
 
