@@ -61,14 +61,14 @@ dev: $(DEV)  ## and what tests, checks and docs need
 $(STUDY): requirements.lock pyproject.toml
 	@case "$(CURDIR)" in *[[:space:]]*) echo "make env: the path '$(CURDIR)' has a space, which the first lines of installed scripts cannot hold; move the checkout" >&2; exit 1;; esac
 	test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
-	$(BIN)/python -m pip install -q --disable-pip-version-check --require-hashes -r requirements.lock
+	$(BIN)/python -m pip install -q --no-compile --disable-pip-version-check --require-hashes -r requirements.lock
 	$(BIN)/python -m pip install -q --disable-pip-version-check --no-deps --no-build-isolation -e .
 	$(BIN)/python -c "from squealpipe.solvers.a1.kernel import lane_kernel; lane_kernel()"
 	$(BIN)/python -c "import squealpipe as s; s.periodic_orbit(s.Parameters(), 0.9, 2.8, mode=1, y_peak=2)"
 	touch $@
 
 $(DEV): requirements-dev.lock $(STUDY)
-	$(BIN)/python -m pip install -q --disable-pip-version-check --require-hashes -r requirements-dev.lock
+	$(BIN)/python -m pip install -q --no-compile --disable-pip-version-check --require-hashes -r requirements-dev.lock
 	touch $@
 
 COMPILE = $(BIN)/uv pip compile pyproject.toml --universal --python-version 3.11 --generate-hashes \

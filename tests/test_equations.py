@@ -1,4 +1,4 @@
-"""Every equation of the paper has exactly one home, and the README's table says where.
+"""Every equation of the paper has exactly one home, and docs/equations.md says where.
 
 A home is a function or class below laws, models, methods, solvers or tasks whose docstring begins
 with ``Eq. (n)`` or ``Eqs. (m), (n)``. References, ``of Eq. (n)``, and words before it do not count.
@@ -55,10 +55,10 @@ def homes() -> dict[str, set[str]]:
     return found
 
 
-def readme_table() -> dict[str, set[str]]:
-    """Equation → ``path: name`` as the README has it."""
+def table() -> dict[str, set[str]]:
+    """Equation → ``path: name`` as docs/equations.md has it."""
     found = defaultdict(set)
-    for line in (ROOT / "README.md").read_text(encoding="utf-8").splitlines():
+    for line in (ROOT / "docs/equations.md").read_text(encoding="utf-8").splitlines():
         match = re.match(r"\| (\(.*?\)) \| .* \| `(squealpipe/\S+\.py)` `(\w+)` \|$", line)
         if match:
             for number in numbers(match[1]):
@@ -74,8 +74,8 @@ def test_every_equation_has_exactly_one_home():
     assert not several
 
 
-def test_readme_says_where_each_one_lives():
-    assert readme_table() == dict(homes())
+def test_the_table_says_where_each_one_lives():
+    assert table() == dict(homes())
 
 
 def test_ranges_are_spelled_out():

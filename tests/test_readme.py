@@ -1,4 +1,4 @@
-"""The README's commands and Python are run, in its order, in a copy with a finished tiny study.
+"""The commands and Python of README and guide are run, in order, with a finished tiny study.
 
 There the tiny study stands for the paper's: its configuration takes the place of paper.yaml.
 `make` and `snakemake`, which other tests run in earnest, are asked for their plan.
@@ -21,7 +21,8 @@ from squealpipe.store.archive import archive
 
 ROOT = Path(__file__).resolve().parents[1]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
-BLOCKS = re.findall(r"^```(bash|python)\n(.*?)^```", README, flags=re.MULTILINE | re.DOTALL)
+GUIDE = (ROOT / "docs/guide.md").read_text(encoding="utf-8")
+BLOCKS = re.findall(r"^```(bash|python)\n(.*?)^```", README + GUIDE, flags=re.MULTILINE | re.DOTALL)
 STEPS = [
     (language, step)
     for language, block in BLOCKS
@@ -48,7 +49,9 @@ def study(tiny_study, tmp_path_factory) -> Path:
 
 
 def planned(command: str) -> str:
-    """The command, with make and snakemake asked for their plan only."""
+    """The command, with pip, make and snakemake asked for their plan only."""
+    if command.startswith("pip "):
+        return f"{command} --dry-run --no-deps --no-build-isolation"
     if command.startswith("make "):
         return command.replace("make ", "make --dry-run ", 1)
     if command.startswith("snakemake"):
@@ -85,8 +88,11 @@ def test_step_works(study, language, step):
     assert "Traceback" not in done.stderr
 
 
-def test_first_commands_are_reproduce_and_test():
-    assert [step.split("#")[0].strip() for _, step in STEPS[:2]] == ["make reproduce", "make test"]
+def test_a_first_picture_comes_first_and_the_whole_is_short():
+    assert [step.split()[0] for _, step in STEPS[:2]] == ["pip", "squealpipe"]
+    assert README.count("\n") <= 120
+    steps = [step.partition("#")[0].strip() for _, step in STEPS]
+    assert {"make reproduce", "make test"} <= set(steps)
 
 
 def test_the_printed_summary_is_what_the_command_prints(tmp_path):
@@ -97,5 +103,6 @@ def test_the_printed_summary_is_what_the_command_prints(tmp_path):
 
 
 def test_links_lead_somewhere():
-    for target in re.findall(r"\]\(([^)#]+)\)", README):
-        assert (ROOT / target).exists(), target
+    for folder, text in ((ROOT, README), (ROOT / "docs", GUIDE)):
+        for target in re.findall(r"\]\(([^)#]+)\)", text):
+            assert (folder / target).exists(), target
