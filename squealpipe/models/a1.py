@@ -19,7 +19,6 @@ slower mass back and a faster one on, and nothing sticks (see :mod:`squealpipe.r
 
 from __future__ import annotations
 
-from enum import IntEnum
 from typing import Any
 
 from squealpipe.laws.contact import contact_energy, contact_force
@@ -33,15 +32,6 @@ from squealpipe.laws.springs import (
     linear_elastic_force,
     linear_stiffness,
 )
-
-
-class Regime(IntEnum):
-    """Regimes of A1, as stored in datasets."""
-
-    slip_slower = 0
-    slip_faster = 1
-    stick = 2
-    separated = 3
 
 
 def suspension_force(

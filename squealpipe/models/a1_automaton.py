@@ -3,7 +3,7 @@
 Written from the definition of A1 (see :mod:`squealpipe.models.a1`) and nothing else, so that
 public integrators can run it and our own engine has an independent counterpart.
 
-Regimes are those of :class:`squealpipe.models.a1.Regime`.
+Regimes are those of :class:`squealpipe.codes.Regime`.
 """
 
 from __future__ import annotations
@@ -13,10 +13,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from squealpipe.codes import Regime
 from squealpipe.laws.contact import contact_force, regularized_force, unilateral_force
 from squealpipe.laws.friction import regularized_slip_force, slip_force, stick_limit
 from squealpipe.laws.springs import Geometry, elastic_force, geometry
-from squealpipe.models.a1 import Regime, acceleration, suspension_force
+from squealpipe.models.a1 import acceleration, suspension_force
 from squealpipe.parameters import TABLE, Parameters
 
 

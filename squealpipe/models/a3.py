@@ -11,21 +11,13 @@ outside |Z − c|² = (S + k3)² + μ²k3², and Eq. (11) at Re(Z (1 + iμ)) = �
 
 from __future__ import annotations
 
-from enum import IntEnum
 from typing import Any, NamedTuple
 
 import numpy as np
 
+from squealpipe.codes import LinearRegime
 from squealpipe.laws.springs import Stiffness
 from squealpipe.models.a4 import Spectrum, natural_frequencies_squared
-
-
-class LinearRegime(IntEnum):
-    """Stability regimes of A3, as stored in datasets."""
-
-    stable = 0
-    flutter = 1
-    divergence = 2
 
 
 class Groups(NamedTuple):

@@ -17,11 +17,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from squealpipe.codes import LinearRegime
 from squealpipe.laws.dashpots import linear_damping
 from squealpipe.laws.friction_laws import slope
 from squealpipe.laws.springs import Stiffness, geometry, pair_determinant, sine_of_sum
 from squealpipe.models import a2, a3
-from squealpipe.models.a3 import LinearRegime
 from squealpipe.models.a4 import contact_matrix
 from squealpipe.models.contact_system import contact_system
 

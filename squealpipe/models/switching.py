@@ -11,9 +11,9 @@ without end, a contact would be lost and found twice.
 
 from __future__ import annotations
 
-from enum import IntEnum
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from squealpipe.codes import Event, Regime
 from squealpipe.laws.contact import contact_force
 from squealpipe.laws.dashpots import (
     damping_force,
@@ -31,19 +31,7 @@ from squealpipe.laws.springs import (
     linear_elastic_force,
     linear_stiffness,
 )
-from squealpipe.models.a1 import Regime
 from squealpipe.parameters import NUMBERS_OF_A1, Parameters
-
-
-class Event(IntEnum):
-    """Kinds of events, as stored in datasets."""
-
-    separation = 0
-    contact = 1
-    stick = 2
-    slip = 3
-    reversal = 4
-
 
 NO_EVENT, CHATTER = -1, -2
 SLOWER, FASTER = int(Regime.slip_slower), int(Regime.slip_faster)

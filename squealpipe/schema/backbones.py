@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from enum import IntEnum
 
+from squealpipe.codes import SpecialPoint
 from squealpipe.schema import ORBIT_ENDS, RUN_ENDS, DatasetSchema, Outcome, Variable, outcome
 from squealpipe.schema.agreement import Listing, most
 from squealpipe.schema.linear import ANGLES, MAP, MODES
@@ -24,14 +25,6 @@ class Route(IntEnum):
     linear_mode = 1
     neighbour = 2
     across = 3
-
-
-class Special(IntEnum):
-    """What happens at a special point of a branch."""
-
-    period_doubling = 0
-    index_two = 1
-    fold = 2
 
 
 def _orbit_variables(*dims: str) -> dict[str, Variable]:
@@ -131,7 +124,7 @@ BACKBONE = DatasetSchema(
             rtol=1e-4,
         ),
         "special_kind": Variable(
-            "kind of special point", dims=("special",), dtype="i1", flags=Special
+            "kind of special point", dims=("special",), dtype="i1", flags=SpecialPoint
         ),
         "special_y_peak": Variable("y_peak at which it lies", "m", ("special",), rtol=1e-8),
         "special_omega": Variable("angular frequency there", "rad s-1", ("special",), rtol=1e-8),

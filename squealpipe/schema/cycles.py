@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from enum import IntEnum
 
+from squealpipe.codes import Event
 from squealpipe.methods.cycles.labels import Label
 from squealpipe.parameters import Parameters
 from squealpipe.schema import DatasetSchema, Variable, outcome
 from squealpipe.schema.agreement import Listing, most, unjudged
-from squealpipe.schema.dynamics.runs import EventFlag, RegimeFlag
+from squealpipe.schema.dynamics.runs import REGIMES
 
 
 class Stability(IntEnum):
@@ -76,7 +77,7 @@ LIMIT_CYCLE = DatasetSchema(
         **_cycle_variables(),
         "event_time": Variable(dims=("event",), units="s", long_name="instant of an event"),
         "event_kind": Variable(
-            dims=("event",), dtype="i1", flags=EventFlag, long_name="kind of the event"
+            dims=("event",), dtype="i1", flags=Event, long_name="kind of the event"
         ),
         **{
             f"event_{name}": Variable(
@@ -87,7 +88,7 @@ LIMIT_CYCLE = DatasetSchema(
         "segment_regime": Variable(
             dims=("segment",),
             dtype="i1",
-            flags=RegimeFlag,
+            flags=REGIMES,
             long_name="regime from the start and after each event",
         ),
         **{
@@ -104,7 +105,7 @@ LIMIT_CYCLE = DatasetSchema(
             for name, (units, words) in _STATE.items()
         },
         "regime_path": Variable(
-            dims=("sample",), dtype="i1", flags=RegimeFlag, long_name="regime along the cycle"
+            dims=("sample",), dtype="i1", flags=REGIMES, long_name="regime along the cycle"
         ),
         "alpha1": Variable(units="rad", long_name="angle of spring 1"),
         "alpha2": Variable(units="rad", long_name="angle of spring 2"),

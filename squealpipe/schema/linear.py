@@ -5,6 +5,7 @@ from __future__ import annotations
 from enum import IntEnum
 from typing import Any
 
+from squealpipe.codes import LinearRegime
 from squealpipe.schema import LINEAR_ENDS, DatasetSchema, Variable, outcome
 from squealpipe.schema.agreement import Listing
 
@@ -17,14 +18,6 @@ ANGLES = {
 MODES = {"mode": Variable("mode, by ascending frequency", dims=("mode",), dtype="i4")}
 
 
-class LinearRegimeFlag(IntEnum):
-    """Meaning of regime_linear."""
-
-    stable = 0
-    flutter = 1
-    divergence = 2
-
-
 MERGED = 1e-6
 """Relative difference of two frequencies up to which they have merged."""
 
@@ -35,9 +28,7 @@ def merge(frequency: Any) -> Any:
     return fast - slow <= MERGED * fast
 
 
-REGIME_LINEAR = Variable(
-    "stability regime of model A3", dims=MAP, dtype="i1", flags=LinearRegimeFlag
-)
+REGIME_LINEAR = Variable("stability regime of model A3", dims=MAP, dtype="i1", flags=LinearRegime)
 
 STABILITY_MAP = DatasetSchema(
     name="stability_map",

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from enum import IntEnum
 
+from squealpipe.codes import LinearRegime
 from squealpipe.schema import RUN_ENDS, DatasetSchema, Outcome, Variable, outcome
 from squealpipe.schema.dynamics.runs import IN_MAP, MotionFlag
-from squealpipe.schema.linear import LinearRegimeFlag
 
 STARTS = ("x0", "y0", "vx0", "vy0")
 UNITS = {"x0": "m", "y0": "m", "vx0": "m s-1", "vy0": "m s-1"}
@@ -94,9 +94,7 @@ SMALLEST_DISTURBANCE = DatasetSchema(
         "x_rest": _scalar("m", "x of steady sliding"),
         "y_rest": _scalar("m", "y of steady sliding"),
         "growth_rate": _scalar("s-1", "largest real part of small motions about it"),
-        "regime_linear": Variable(
-            "stability regime of model A3", dtype="i1", flags=LinearRegimeFlag
-        ),
+        "regime_linear": Variable("stability regime of model A3", dtype="i1", flags=LinearRegime),
         "rest_distance": _scalar("1", "norm of the start at rest at r = 0"),
         "linear_distance": _scalar("1", "smallest norm with which the linear motion loses contact"),
         "distance": Variable("smallest norm found, an upper bound", nan_allowed=True, rtol=1e-6),

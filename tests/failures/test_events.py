@@ -9,8 +9,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from squealpipe.codes import Event, Regime
 from squealpipe.schema import Outcome
-from squealpipe.schema.dynamics.runs import EventFlag, RegimeFlag
 from squealpipe.solvers.a1.ensemble import run_ensemble
 from squealpipe.tasks.dynamics.runs import simulate
 from tests.former import FORMER
@@ -18,11 +18,11 @@ from tests.former import FORMER
 IDENTITY = {"alpha1": 0.5 * np.pi, "alpha2": np.pi, "model": "A1-linear-springs"}
 VERTICAL = {"alpha1": 0.5 * np.pi, "alpha2": 0.5 * np.pi, "model": "A1-linear-springs"}
 SEPARATION, CONTACT, STICK, SLIP, REVERSAL = (
-    EventFlag.separation,
-    EventFlag.contact,
-    EventFlag.stick,
-    EventFlag.slip,
-    EventFlag.reversal,
+    Event.separation,
+    Event.contact,
+    Event.stick,
+    Event.slip,
+    Event.reversal,
 )
 KAPPA, MU, SPEED = 0.75, 0.4, 0.1
 REST = KAPPA / (1 + KAPPA)  # y at rest, and the contact force there
@@ -104,10 +104,10 @@ def test_separation_during_stick():
     flight = 2 * np.arctan(upward / np.sqrt(2)) / np.sqrt(2)
     run = simulate(params, t_end=5.0, initial_state=(0, 0, 0.5, 0), **VERTICAL)
     assert run.outcome == Outcome.converged
-    assert run.regime[0] == RegimeFlag.stick
+    assert run.regime[0] == Regime.stick
     assert_events(run, [(SEPARATION, leaves), (CONTACT, leaves + flight)])
     after = run.regime.values[np.searchsorted(run.time, leaves + flight) + 1]
-    assert after == RegimeFlag.stick
+    assert after == Regime.stick
     np.testing.assert_array_equal(run.vx, 0.5)
 
 
@@ -130,20 +130,20 @@ def test_belt_at_rest_holds_the_mass():
         FORMER.with_(belt_speed=0.0), 1.0, 1.4, t_end=20.0, log_events=4, times=[0.0]
     )
     assert run.outcome == Outcome.converged
-    assert run.sample_regimes[0] == RegimeFlag.stick
+    assert run.sample_regimes[0] == Regime.stick
     assert run.event_kinds[0] in {SLIP, SEPARATION}
 
 
 def test_start_in_the_air():
     fall = np.arccos(1 / 1.5)
     run = simulate(FORMER, t_end=2.0, initial_state=(0, 1.5, 0, 0), **IDENTITY)
-    assert run.regime[0] == RegimeFlag.separated
+    assert run.regime[0] == Regime.separated
     assert run.normal_force[0] == 0.0
     assert_events(run, [(CONTACT, fall)])
 
 
 @pytest.mark.parametrize(
-    ("vy", "regime", "first"), [(0.5, RegimeFlag.separated, CONTACT), (-0.5, 0, SEPARATION)]
+    ("vy", "regime", "first"), [(0.5, Regime.separated, CONTACT), (-0.5, 0, SEPARATION)]
 )
 def test_start_exactly_at_the_threshold_moving(vy, regime, first):
     run = simulate(FORMER, t_end=6.0, initial_state=(0, 1.0, 0, vy), **IDENTITY)
@@ -156,7 +156,7 @@ def test_start_exactly_at_the_threshold_moving(vy, regime, first):
 def test_start_exactly_at_the_threshold_at_rest():
     """The springs pull down there: it is in contact, and comes back to the threshold."""
     run = simulate(FORMER.with_(k3=KAPPA), t_end=4.0, initial_state=(0, 1.0, 0, 0), **IDENTITY)
-    assert run.regime[0] == RegimeFlag.slip_slower
+    assert run.regime[0] == Regime.slip_slower
     # N = 0 is grazed at the top of the free oscillation about y = κ/(1 + κ).
     np.testing.assert_allclose(
         run.y, REST + (1 - REST) * np.cos(np.sqrt(1.75) * run.time), atol=1e-9

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from squealpipe.codes import Regime
 from squealpipe.laws.springs import elastic_force, geometry
 from squealpipe.models import a1
 from squealpipe.parameters import Parameters
@@ -56,15 +57,15 @@ def test_separated_only_the_springs_act(params: Parameters, state: dict[str, flo
 
 
 @pytest.mark.parametrize(("params", "state"), DRAWS)
-@pytest.mark.parametrize("regime", a1.Regime)
+@pytest.mark.parametrize("regime", Regime)
 def test_energy_changes_by_the_power_of_friction(
-    params: Parameters, state: dict[str, float], regime: a1.Regime
+    params: Parameters, state: dict[str, float], regime: Regime
 ) -> None:
     """dE/dt along the flow, by a central difference over the flow's tangent."""
     g = geometry(state["alpha1"], state["alpha2"])
-    sticking = regime is a1.Regime.stick
-    contact = float(regime is not a1.Regime.separated)
-    direction = {a1.Regime.slip_slower: 1.0, a1.Regime.slip_faster: -1.0}.get(regime, 0.0)
+    sticking = regime is Regime.stick
+    contact = float(regime is not Regime.separated)
+    direction = {Regime.slip_slower: 1.0, Regime.slip_faster: -1.0}.get(regime, 0.0)
     vx = params.belt_speed if sticking else params.belt_speed - (direction or 1.0)
     vy = 0.7
     stick = float(sticking)

@@ -7,6 +7,7 @@ import pytest
 import scipy.linalg
 import sympy as sp
 
+from squealpipe.codes import LinearRegime
 from squealpipe.laws.springs import geometry, linear_stiffness, stiffness_determinant
 from squealpipe.models import a2, a3
 from squealpipe.models.a4 import spectrum
@@ -82,16 +83,16 @@ def test_eigenvalues_are_those_of_the_first_order_system(
     for value in numeric:
         assert np.abs(own - value).min() < 1e-7 * np.abs(numeric).max()
     growth = numeric.real.max()
-    assert bool(a3.regime(invariants) != a3.LinearRegime.stable) == (growth > 1e-6)
+    assert bool(a3.regime(invariants) != LinearRegime.stable) == (growth > 1e-6)
 
 
 def test_regimes_are_told_apart() -> None:
     params = FORMER
     cells = {
-        (0.15, 0.23): a3.LinearRegime.flutter,
-        (0.45, 0.55): a3.LinearRegime.divergence,
-        (0.4, 0.6): a3.LinearRegime.stable,
-        (0.5, 1.0): a3.LinearRegime.stable,
+        (0.15, 0.23): LinearRegime.flutter,
+        (0.45, 0.55): LinearRegime.divergence,
+        (0.4, 0.6): LinearRegime.stable,
+        (0.5, 1.0): LinearRegime.stable,
     }
     for (first, second), expected in cells.items():
         state = {"alpha1": first * np.pi, "alpha2": second * np.pi}

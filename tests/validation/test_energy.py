@@ -8,10 +8,11 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from squealpipe.codes import Regime
 from squealpipe.laws.contact import contact_force
 from squealpipe.laws.dashpots import damping_force
 from squealpipe.laws.springs import geometry
-from squealpipe.models.a1 import Regime, friction_power, mechanical_energy, suspension_force
+from squealpipe.models.a1 import friction_power, mechanical_energy, suspension_force
 from squealpipe.parameters import LAW_NAMES
 from squealpipe.schema import Outcome
 from squealpipe.solvers.a1.ensemble import run_ensemble

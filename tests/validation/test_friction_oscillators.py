@@ -16,7 +16,7 @@ import math
 import numpy as np
 import pytest
 
-from squealpipe.models.switching import Event
+from squealpipe.codes import Event
 from squealpipe.parameters import Parameters
 from squealpipe.schema import Outcome
 from squealpipe.solvers.a1.ensemble import run_ensemble

@@ -9,8 +9,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from squealpipe.codes import Event
 from squealpipe.parameters import SCENES, Parameters
-from squealpipe.schema.dynamics.runs import EventFlag
 from squealpipe.store import load
 
 
@@ -39,7 +39,7 @@ def test_the_two_horizontal_arrangements_are_identical(scene):
     np.testing.assert_allclose(first.x, second.x, atol=1e-10)
     np.testing.assert_allclose(first.y, second.y, atol=1e-10)
     assert float(first.y.max()) > 2 * Parameters().preload
-    assert (first.event_kind == EventFlag.separation).sum() >= 4
+    assert (first.event_kind == Event.separation).sum() >= 4
 
 
 def test_the_pendulum_is_pumped_past_thirty(scene):

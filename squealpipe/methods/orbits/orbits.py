@@ -11,6 +11,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
+from squealpipe.codes import SpecialPoint
 from squealpipe.methods.orbits import branch_steps, branch_tracing, shorter_orbits
 from squealpipe.methods.orbits.modal_flow import propagator
 from squealpipe.methods.orbits.orbit_shape import extremes
@@ -236,14 +237,6 @@ def _trace(
 
 def _orbit(row: NDArray[np.float64], switches: NDArray[np.float64]) -> Orbit:
     return Orbit(row[:3].copy(), switches[: int(row[7])].copy(), float(row[5]), float(row[6]))
-
-
-class SpecialPoint(IntEnum):
-    """What happens at a special point of a branch."""
-
-    period_doubling = 0
-    index_two = 1
-    fold = 2
 
 
 def special_points(

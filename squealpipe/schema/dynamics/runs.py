@@ -8,29 +8,13 @@ from typing import Any
 
 import xarray as xr
 
+from squealpipe.codes import Event, Regime
 from squealpipe.schema import RUN_ENDS, DatasetSchema, Outcome, Variable, outcome
 from squealpipe.schema.agreement import Listing, beyond_horizon, grown, magnitude
 from squealpipe.schema.linear import ANGLES, MAP, REGIME_LINEAR
 
-
-class RegimeFlag(IntEnum):
-    """Meaning of regime."""
-
-    slip_slower = 0
-    slip_faster = 1
-    stick = 2
-    separated = 3
-    not_reached = -1
-
-
-class EventFlag(IntEnum):
-    """Meaning of event_kind."""
-
-    separation = 0
-    contact = 1
-    stick = 2
-    slip = 3
-    reversal = 4
+REGIMES = {**{int(each): each.name for each in Regime}, -1: "not_reached"}
+"""Meaning of regime."""
 
 
 class MotionFlag(IntEnum):
@@ -86,11 +70,9 @@ SIMULATION = DatasetSchema(
         "vy": _series("m s-1", "velocity away from the belt"),
         "normal_force": _series("N", "contact force"),
         "normalized_contact_force": _series("1", "contact force over k3 l_pre"),
-        "regime": Variable("regime", dims=("time",), dtype="i1", flags=RegimeFlag),
+        "regime": Variable("regime", dims=("time",), dtype="i1", flags=REGIMES),
         "event_time": Variable("instant of a regime change", "s", ("event",), round_off=_GROWN),
-        "event_kind": Variable(
-            "kind of regime change", dims=("event",), dtype="i1", flags=EventFlag
-        ),
+        "event_kind": Variable("kind of regime change", dims=("event",), dtype="i1", flags=Event),
         "alpha1": Variable("angle of spring 1", "rad"),
         "alpha2": Variable("angle of spring 2", "rad"),
         "preload": Variable("precompression l_pre of the contact spring", "m"),

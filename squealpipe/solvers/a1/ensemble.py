@@ -11,6 +11,7 @@ from typing import Annotated, Any, NamedTuple
 import numpy as np
 from pydantic import BeforeValidator
 
+from squealpipe.codes import Event
 from squealpipe.methods.processes import run_shared
 from squealpipe.methods.taylor.lanes import (
     INVERSES,
@@ -22,7 +23,7 @@ from squealpipe.methods.taylor.lanes import (
     taylor_terms,
 )
 from squealpipe.methods.taylor.simd import FEW, LANES
-from squealpipe.models.switching import VARIANT_RULES, Event
+from squealpipe.models.switching import VARIANT_RULES
 from squealpipe.parameters import Parameters
 from squealpipe.schema import Outcome
 from squealpipe.solvers.a1.jobs import Jobs, Model

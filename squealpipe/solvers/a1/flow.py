@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import minimize_scalar
 
+from squealpipe.codes import Event, Regime
 from squealpipe.laws.friction_laws import coefficient
 from squealpipe.laws.springs import fixed_ends
 from squealpipe.methods.cycles.event_flow import (
@@ -23,10 +24,8 @@ from squealpipe.methods.cycles.event_flow import (
     sample_path,
     turning_points,
 )
-from squealpipe.models.a1 import Regime
 from squealpipe.models.a1_automaton import A1Automaton, EventKind
 from squealpipe.models.damped import is_undamped
-from squealpipe.models.switching import Event
 from squealpipe.parameters import Parameters
 from squealpipe.solvers.a1.reference import (
     PARAMETERS,

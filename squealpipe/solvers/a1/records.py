@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from squealpipe.codes import Event
 from squealpipe.methods.taylor.simd import LANES
 from squealpipe.models import switching
 from squealpipe.schema import Outcome
@@ -71,14 +72,14 @@ RESULT = _record(
     steps="i8",
     late_events="i8",
     events="i8",
-    kinds=("i8", (len(switching.Event),)),
+    kinds=("i8", (len(Event),)),
     marks="i8",
     mark_separated_time=("f8", (len(MARKS),)),
     mark_stick_time=("f8", (len(MARKS),)),
     mark_growth=("f8", (len(MARKS),)),
     mark_half_turns=("f8", (len(MARKS), 2)),
     mark_state=("f8", (len(MARKS), 4)),
-    mark_kinds=("i8", (len(MARKS), len(switching.Event))),
+    mark_kinds=("i8", (len(MARKS), len(Event))),
 )
 """A job's results; ``kinds`` counts the events of each kind, ``mark_`` is what held at a mark."""
 

@@ -10,6 +10,7 @@ from typing import Any
 import heyoka
 import numpy as np
 
+from squealpipe.codes import Regime
 from squealpipe.laws.contact import contact_force
 from squealpipe.laws.friction import stick_limit
 from squealpipe.laws.springs import Geometry
@@ -19,7 +20,7 @@ from squealpipe.methods.taylor.long_double import (
     compile_long_double,
     integrate_long_double,
 )
-from squealpipe.models.a1 import Regime, acceleration, suspension_force
+from squealpipe.models.a1 import acceleration, suspension_force
 from squealpipe.models.a1_automaton import A1Automaton, EventKind
 from squealpipe.parameters import NUMBERS_OF_A1, Parameters
 

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import root
 
-from squealpipe.models.a1 import Regime
+from squealpipe.codes import Regime
 from squealpipe.models.a1_automaton import A1Automaton
 
 _BALANCE = 1e-8

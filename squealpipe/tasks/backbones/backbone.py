@@ -10,9 +10,10 @@ import numpy as np
 import xarray as xr
 from annotated_types import Interval
 
+from squealpipe.codes import SpecialPoint
 from squealpipe.laws.friction import slides
 from squealpipe.methods.balance.harmonic_balance import CosineBalance, series_extremes, series_speed
-from squealpipe.methods.orbits.orbits import Orbit, SpecialPoint, special_points
+from squealpipe.methods.orbits.orbits import Orbit, special_points
 from squealpipe.parameters import SCENES, Parameters, brief
 from squealpipe.schema import Outcome, build
 from squealpipe.schema.backbones import BACKBONE

@@ -9,9 +9,9 @@ import numpy as np
 import xarray as xr
 from scipy.optimize import root
 
+from squealpipe.codes import Regime
 from squealpipe.methods.cycles.cycles import Cycle, common_scale, find_returns, solve_cycle
 from squealpipe.methods.cycles.event_flow import Vector, flow, sample_path
-from squealpipe.models.a1 import Regime
 from squealpipe.parameters import Parameters
 from squealpipe.schema import Outcome, build
 from squealpipe.schema.cycles import LIMIT_CYCLE

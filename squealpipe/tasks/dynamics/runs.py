@@ -9,11 +9,12 @@ from types import SimpleNamespace
 import numpy as np
 import xarray as xr
 
+from squealpipe.codes import Regime
 from squealpipe.laws.contact import contact_force
 from squealpipe.models.switching import VARIANT_RULES
 from squealpipe.parameters import HORIZON, Parameters
 from squealpipe.schema import Outcome, build
-from squealpipe.schema.dynamics.runs import GROWTH_THRESHOLD, SIMULATION, VALIDITY_MAP, RegimeFlag
+from squealpipe.schema.dynamics.runs import GROWTH_THRESHOLD, SIMULATION, VALIDITY_MAP
 from squealpipe.schema.origin import recorded
 from squealpipe.solvers.a1.ensemble import integrate, run_map
 from squealpipe.solvers.a1.jobs import Jobs, Model
@@ -99,7 +100,7 @@ def simulate(
     if times.size and times[0] == 0.0:
         x[0], y[0], vx[0], vy[0] = initial_state
     if VARIANT_RULES[model].separates:
-        off = run.sample_regimes == RegimeFlag.separated.value
+        off = run.sample_regimes == Regime.separated.value
         normal = np.where(off, 0.0, contact_force(y, params))
     else:
         normal = contact_force(y, params)

@@ -8,10 +8,10 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
+from squealpipe.codes import Event, Regime
 from squealpipe.methods.spectrum import amplitude_spectrum, highest_peaks
 from squealpipe.schema import build
 from squealpipe.schema.dynamics.run_summary import RUN_SUMMARY
-from squealpipe.schema.dynamics.runs import EventFlag, RegimeFlag
 from squealpipe.schema.origin import recorded
 from squealpipe.tasks.sampling import FEWEST
 
@@ -49,7 +49,7 @@ def summarize(run: xr.Dataset) -> xr.Dataset:
         raise ValueError("the samples are not uniform in time; give uniform `times`")
     end = float(run.time_reached)
     kinds, times = run.event_kind.values, run.event_time.values
-    separations = times[kinds == EventFlag.separation]
+    separations = times[kinds == Event.separation]
     force = run.normalized_contact_force.values[: time.size]
     frequency, amplitude = amplitude_spectrum(force, float(steps[0]), padding=PADDING)
     peak_frequency, peak_amplitude = highest_peaks(frequency, amplitude, PEAKS)
@@ -57,9 +57,9 @@ def summarize(run: xr.Dataset) -> xr.Dataset:
         RUN_SUMMARY,
         {
             "first_separation_time": separations[0] if separations.size else np.nan,
-            "impact_rate": np.count_nonzero(kinds == EventFlag.contact) / end,
-            "separated_fraction": _share(run, EventFlag.separation, RegimeFlag.separated, end),
-            "stick_fraction": _share(run, EventFlag.stick, RegimeFlag.stick, end),
+            "impact_rate": np.count_nonzero(kinds == Event.contact) / end,
+            "separated_fraction": _share(run, Event.separation, Regime.separated, end),
+            "stick_fraction": _share(run, Event.stick, Regime.stick, end),
             "peak_contact_force": force.max(),
             "return_peak_contact_force": float(run.return_peak_contact_force),
             "impact_speed": float(run.impact_speed),
@@ -74,7 +74,7 @@ def summarize(run: xr.Dataset) -> xr.Dataset:
     )
 
 
-def _share(run: xr.Dataset, begins: EventFlag, regime: RegimeFlag, end: float) -> float:
+def _share(run: xr.Dataset, begins: Event, regime: Regime, end: float) -> float:
     """Share of the time in a regime, which an event of this kind begins and the next one ends."""
     lengths = np.diff(run.event_time.values, prepend=0.0, append=end)
     within = [int(run.regime[0]) == regime, *(run.event_kind.values == begins)]

@@ -12,6 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from squealpipe.codes import LinearRegime
 from squealpipe.models import a2, a3
 from squealpipe.models.contact_system import contact_system
 from squealpipe.models.damped import damped_system, is_undamped, stability
@@ -87,7 +88,7 @@ def unstable_cells(params: Parameters, *, rim: int = RIM, inside: float = INSIDE
         _along_edges(params, rim, inside) if is_undamped(params) else _midpoints(DAMPED_GRID)
     )
     regime, couples = _regime(params, alpha1, alpha2)
-    unstable = regime > a3.LinearRegime.stable
+    unstable = regime > LinearRegime.stable
     return Unstable(alpha1[unstable], alpha2[unstable], couples[unstable])
 
 
@@ -126,9 +127,9 @@ def _regime(
     """Regime of A3, damped where the parameters are, and whether it is flutter of merged modes."""
     if is_undamped(params):
         regime = np.asarray(a3.regime(contact_system(params, alpha1, alpha2).invariants))
-        return regime, regime == a3.LinearRegime.flutter
+        return regime, regime == LinearRegime.flutter
     found = stability(damped_system(params, alpha1, alpha2))
-    return found.regime, (found.regime == a3.LinearRegime.flutter) & merge(found.frequency)
+    return found.regime, (found.regime == LinearRegime.flutter) & merge(found.frequency)
 
 
 def _linear(

@@ -14,10 +14,10 @@ from typing import Any
 
 import numpy as np
 
+from squealpipe.codes import LinearRegime
 from squealpipe.laws.dashpots import linear_damping
 from squealpipe.laws.springs import geometry
 from squealpipe.models.a2 import ROUND_OFF
-from squealpipe.models.a3 import LinearRegime
 from squealpipe.models.contact_system import ContactSystem, contact_system
 from squealpipe.models.damped import damped_system, is_undamped, stability
 from squealpipe.parameters import SCENES, Parameters, Scene

@@ -12,6 +12,7 @@ import xarray as xr
 from annotated_types import Ge, Interval, MinLen
 from scipy import stats
 
+from squealpipe.codes import LinearRegime
 from squealpipe.laws.friction_laws import coefficient, slope
 from squealpipe.models import a3
 from squealpipe.models.contact_system import contact_system
@@ -174,14 +175,14 @@ def _flutters(fields: Mapping[str, Any], alpha1: np.ndarray, alpha2: np.ndarray)
     damped = (p.damping1 != 0) | (p.damping2 != 0) | (slope(np.abs(p.belt_speed), p) != 0)
     if not np.any(damped):
         system = contact_system(p, alpha1, alpha2)
-        return np.asarray(a3.regime(system.invariants) == a3.LinearRegime.flutter)
+        return np.asarray(a3.regime(system.invariants) == LinearRegime.flutter)
     names = [name for name, value in fields.items() if isinstance(value, np.ndarray)]
     fixed: dict[str, Any] = {name: value for name, value in fields.items() if name not in names}
     columns = np.array([fields[name] for name in names]).T.tolist()
     return np.array([
         stability(
             damped_system(Parameters(**fixed, **dict(zip(names, row, strict=True))), first, second)
-        ).regime == a3.LinearRegime.flutter
+        ).regime == LinearRegime.flutter
         for row, first, second in zip(columns, alpha1, alpha2, strict=True)
     ]).ravel()  # fmt: skip
 

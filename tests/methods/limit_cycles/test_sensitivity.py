@@ -6,8 +6,8 @@ import heyoka
 import numpy as np
 import pytest
 
+from squealpipe.codes import Regime
 from squealpipe.methods.cycles.event_flow import flow
-from squealpipe.models.a1 import Regime
 from squealpipe.solvers.a1.flow import A1Flow
 from squealpipe.solvers.a1.reference import PARAMETERS, symbolic_automaton
 from tests.former import FORMER

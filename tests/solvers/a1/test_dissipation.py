@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 import pytest
 
+from squealpipe.codes import Event
 from squealpipe.laws.friction_laws import FALLING
-from squealpipe.models.switching import Event
 from squealpipe.parameters import LAW_NAMES, Parameters
 from squealpipe.solvers.a1.ensemble import run_ensemble
 from squealpipe.solvers.a1.peers import simulate_scipy

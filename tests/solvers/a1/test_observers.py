@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from squealpipe.models.switching import Event
+from squealpipe.codes import Event
 from squealpipe.schema import Outcome
 from squealpipe.solvers.a1.ensemble import MARKS, run_ensemble
 

@@ -11,9 +11,9 @@ from dataclasses import fields, replace
 import numpy as np
 import pytest
 
+from squealpipe.codes import Event
 from squealpipe.methods.taylor.lanes import compile_system
 from squealpipe.schema import Outcome
-from squealpipe.schema.dynamics.runs import EventFlag
 from squealpipe.solvers.a1 import ensemble
 from squealpipe.solvers.a1.ensemble import Ensemble, run_ensemble
 from squealpipe.solvers.a1.system import PAPER, lane_system
@@ -54,7 +54,7 @@ def test_two_crossings_inside_a_step(exponent, phase):
         assert abs(run.lowest_contact_force) < 2e-14
         return
     assert run.outcome == Outcome.converged
-    assert run.event_kinds.tolist() == [EventFlag.separation, EventFlag.contact, -1, -1]
+    assert run.event_kinds.tolist() == [Event.separation, Event.contact, -1, -1]
     assert abs(run.event_times[:2].mean() - t_top) < 0.3 * flight
     assert run.event_times[1] - run.event_times[0] == pytest.approx(flight, rel=0.1 + 3e-15 / depth)
     near = 10.0**-13 if exponent < -12 else depth
@@ -74,7 +74,7 @@ def test_the_order_of_events_in_their_list_decides_nothing(monkeypatch):
     first = run_ensemble(parameters, *angles, **options)
     close = np.diff(first.event_times[:, :2], axis=1)[:, 0] < 0.05
     pairs = np.sort(first.event_kinds[close, :2], axis=1).tolist()
-    assert pairs.count([EventFlag.separation, EventFlag.reversal]) > 20
+    assert pairs.count([Event.separation, Event.reversal]) > 20
     system = lane_system(linear_springs=False, dissipation=PAPER)
     for order in ((2, 1, 0), (1, 2, 0)):
         other = replace(system, events=tuple(system.events[index] for index in order))
@@ -114,7 +114,7 @@ def test_an_event_at_the_end_and_at_an_asked_instant():
     assert counts[2] == 1
     asked = [before, time, after]
     run = run_ensemble(params, t_end=5.0, times=asked, log_events=9, **IDENTITY)
-    assert (run.event_kinds == EventFlag.separation).sum() == run.separations
+    assert (run.event_kinds == Event.separation).sum() == run.separations
     np.testing.assert_allclose(run.samples[:, 1], 1.0, rtol=0, atol=2e-15)
 
 
@@ -140,7 +140,7 @@ def test_an_approach_to_stick_in_ever_shorter_slips_moves_on(speed):
     assert (run.sticks > 0).all()
     assert (run.event_kinds[:, -1] == -1).all()
     y, kinds = run.event_states[..., 1], run.event_kinds
-    landed = (kinds >= 0) & (kinds != EventFlag.separation)
+    landed = (kinds >= 0) & (kinds != Event.separation)
     assert (y[landed] <= 1.0 + 1e-9).all()
 
 

@@ -5,9 +5,10 @@ import math
 import numpy as np
 import pytest
 
+from squealpipe.codes import SpecialPoint
 from squealpipe.parameters import Parameters
 from squealpipe.schema import Outcome
-from squealpipe.schema.backbones import Assumption, Special
+from squealpipe.schema.backbones import Assumption
 from squealpipe.solvers.a4 import exact_branches
 from squealpipe.tasks.backbones.backbone import backbone, contact_losing_branches, with_orbits
 from squealpipe.tasks.backbones.orbit import periodic_orbit
@@ -23,7 +24,9 @@ def _branch(alpha1, alpha2, mode, **options):
 
 def test_period_doublings_are_located():
     found = _branch(0.3, 0.9, 1, y_peak_max=7.0)
-    doublings = found.special_y_peak.values[found.special_kind.values == Special.period_doubling]
+    doublings = found.special_y_peak.values[
+        found.special_kind.values == SpecialPoint.period_doubling
+    ]
     np.testing.assert_allclose(doublings, [3.919, 5.820], atol=6e-4)
 
 
@@ -44,7 +47,7 @@ def test_period_doublings_are_found_again_from_another_start():
 def test_a_period_doubling_just_above_grazing_is_found():
     params = Parameters(k2=0.75237, k3=0.650825, mu=0.270188, length1=5, length2=5, belt_speed=100)
     found = backbone(params, 2.655067, 1.06432, mode=2, y_peak_max=6.0)
-    assert found.special_kind.values.tolist() == [Special.period_doubling]
+    assert found.special_kind.values.tolist() == [SpecialPoint.period_doubling]
     peak = float(found.special_y_peak[0])
     assert peak == pytest.approx(1.0073, abs=1e-4)
     at = [
@@ -70,7 +73,7 @@ def test_special_points_of_random_branches_are_those_of_dense_samples(seed, monk
             dense = backbone(params, *angles, mode=mode, y_peak_max=6.0)
         beyond = dense.outcome.isin([Outcome.grazing, Outcome.converged]).values
         index = dense.stability_index.values[beyond]
-        for kind, value in ((Special.period_doubling, -2.0), (Special.index_two, 2.0)):
+        for kind, value in ((SpecialPoint.period_doubling, -2.0), (SpecialPoint.index_two, 2.0)):
             off = index - value
             crossings = int((np.diff(np.sign(off[abs(off) > 1e-9])) != 0).sum())
             number = int((found.special_kind == kind).sum())
@@ -146,7 +149,7 @@ def test_a_pole_ends_the_branch_unless_its_other_side_is_asked_for(method):
 def test_a_branch_that_turns_into_a_resonance_says_so():
     found = _branch(0.0, 51 / 60, 1, y_peak_max=2.0)
     assert int(found.end) in (Outcome.pole, Outcome.tongue_end, Outcome.retraced)
-    assert Special.fold in found.special_kind.values
+    assert SpecialPoint.fold in found.special_kind.values
     assert float(found.y_peak.max()) < 2.0
 
 

@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
+from squealpipe.codes import Regime
 from squealpipe.parameters import SCENES
 from squealpipe.schema import Outcome
-from squealpipe.schema.dynamics.runs import MotionFlag, RegimeFlag
+from squealpipe.schema.dynamics.runs import MotionFlag
 from squealpipe.store import load, save
 from squealpipe.tasks.dynamics.hammering import hammering_map
 from squealpipe.tasks.dynamics.refinement import check_refinement, refine_validity_map
@@ -44,15 +45,15 @@ def test_growth_of_a_run_that_overflows_is_not_a_number():
 
 def test_force_and_regimes_agree():
     run = simulate(SLOW, 0.35 * np.pi, 0.75 * np.pi, t_end=60.0)
-    free = run.regime.values == RegimeFlag.separated
+    free = run.regime.values == Regime.separated
     assert 0 < np.count_nonzero(free) < free.size
     np.testing.assert_array_equal(run.normal_force.values[free], 0.0)
     np.testing.assert_allclose(
         run.normal_force.values[~free], 0.75 * (1 - run.y.values[~free]), rtol=1e-12
     )
-    np.testing.assert_array_equal(run.vx.values[run.regime.values == RegimeFlag.stick], 0.3)
-    assert (run.vx.values[run.regime.values == RegimeFlag.slip_slower] < 0.3).all()
-    assert (run.vx.values[run.regime.values == RegimeFlag.slip_faster] > 0.3).all()
+    np.testing.assert_array_equal(run.vx.values[run.regime.values == Regime.stick], 0.3)
+    assert (run.vx.values[run.regime.values == Regime.slip_slower] < 0.3).all()
+    assert (run.vx.values[run.regime.values == Regime.slip_faster] > 0.3).all()
 
 
 def test_more_events_than_the_first_log_holds():
@@ -114,9 +115,9 @@ def test_hammering_map_agrees_with_single_runs(tmp_path):
         cell = result.isel(alpha1=i, alpha2=j)
         kinds = run.event_kind.values
         assert float(cell.impact_rate) == np.count_nonzero(kinds == 1) / 60.0
-        separated = run.regime.values == RegimeFlag.separated
+        separated = run.regime.values == Regime.separated
         assert float(cell.separated_fraction) == pytest.approx(separated.mean(), abs=2e-3)
-        stuck = run.regime.values == RegimeFlag.stick
+        stuck = run.regime.values == Regime.stick
         assert float(cell.stick_fraction) == pytest.approx(stuck.mean(), abs=2e-3)
         force = run.normalized_contact_force.max()
         assert float(cell.peak_contact_force) == pytest.approx(float(force), abs=1e-5)

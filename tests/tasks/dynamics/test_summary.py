@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from squealpipe.schema.dynamics.runs import EventFlag
+from squealpipe.codes import Event
 from squealpipe.tasks.dynamics.runs import simulate
 from squealpipe.tasks.dynamics.summary import summarize, summary_lines
 from tests.former import FORMER
@@ -31,15 +31,15 @@ def test_decoupled_y_motion_has_the_frequency_and_force_of_the_closed_form():
 def test_separation_is_that_of_the_events_and_of_the_samples():
     motion = run(5 * np.pi / 6, 5 * np.pi / 6)
     summary = summarize(motion)
-    first = motion.event_time.values[motion.event_kind.values == EventFlag.separation][0]
+    first = motion.event_time.values[motion.event_kind.values == Event.separation][0]
     assert float(summary.first_separation_time) == first
     sampled = float((motion.normalized_contact_force.values <= 0).mean())
     assert float(summary.separated_fraction) == pytest.approx(sampled, abs=2e-3)
-    landing = motion.event_time.values[motion.event_kind.values == EventFlag.contact][0]
+    landing = motion.event_time.values[motion.event_kind.values == Event.contact][0]
     force = motion.normalized_contact_force.values[motion.time.values > landing].max()
     assert float(summary.return_peak_contact_force) == pytest.approx(force, abs=1e-3)
     assert "after a return" in "\n".join(summary_lines(motion, summary))
-    returns = np.count_nonzero(motion.event_kind.values == EventFlag.contact)
+    returns = np.count_nonzero(motion.event_kind.values == Event.contact)
     assert float(summary.impact_rate) == returns / 200.0
 
 
@@ -70,7 +70,7 @@ def test_too_few_or_uneven_samples_are_refused():
 def test_a_run_that_starts_in_the_air_is_separated_from_its_start():
     motion = run(np.pi / 2, np.pi, t_end=3.0, initial_state=(0.0, 2.0, 0.0, 0.0))
     landing = float(motion.event_time[0])
-    assert int(motion.event_kind[0]) == EventFlag.contact
+    assert int(motion.event_kind[0]) == Event.contact
     sampled = float((motion.normalized_contact_force.values <= 0).mean())
     assert float(summarize(motion).separated_fraction) == pytest.approx(sampled, abs=2e-3)
     assert float(summarize(motion).separated_fraction) >= landing / 3.0

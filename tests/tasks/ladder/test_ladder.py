@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from squealpipe.models.a3 import LinearRegime
+from squealpipe.codes import LinearRegime
 from squealpipe.parameters import Parameters
 from squealpipe.schema.ladder import QUESTIONS, Level
 from squealpipe.tasks.ladder.ladder import model_ladder

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
+from squealpipe.codes import Event
 from squealpipe.schema.claims import Verdict
-from squealpipe.schema.dynamics.runs import EventFlag
 from squealpipe.study.claims.checks import sliding
 from squealpipe.study.claims.checks.backbones import branch, linear_omega
 from squealpipe.study.claims.checks.motions import events, frequency, scene
@@ -79,7 +79,7 @@ def time_and_frequency_agree(run: Run) -> Finding:
         predicted = float(branch(run, twin, 2).omega[0])
         differences.append(abs(measured / predicted - 1))
         lines.append(f"{measured:.4g} and {predicted:.4g}")
-    loses = events(scene(run, "F2d"), EventFlag.separation).size > 0
+    loses = events(scene(run, "F2d"), Event.separation).size > 0
     reaches = float(branch(run, "F13", 1).y_peak.max()) > run.parameters.preload
     return finding(
         max(differences),

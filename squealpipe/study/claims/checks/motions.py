@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
-from squealpipe.schema.dynamics.runs import EventFlag
+from squealpipe.codes import Event
 from squealpipe.study.claims.evidence import MissingDataError, Run
 
 
@@ -14,7 +14,7 @@ def scene(run: Run, name: str) -> xr.Dataset:
     return run[f"simulate/{name}"]
 
 
-def events(motion: xr.Dataset, kind: EventFlag) -> np.ndarray:
+def events(motion: xr.Dataset, kind: Event) -> np.ndarray:
     """Times of the events of a kind, in the run's unit of time."""
     return np.asarray(motion.event_time.values[motion.event_kind.values == kind])
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from squealpipe.codes import Event, LinearRegime
 from squealpipe.schema.claims import Verdict
-from squealpipe.schema.dynamics.runs import EventFlag
-from squealpipe.schema.linear import LinearRegimeFlag, merge
+from squealpipe.schema.linear import merge
 from squealpipe.study.claims.checks.motions import events, scene
 from squealpipe.study.claims.evidence import Finding, Run, finding
 from squealpipe.study.claims.maps import share
@@ -63,7 +63,7 @@ def levels_have_assumptions(run: Run) -> Finding:
 def hammering_occurs(run: Run) -> Finding:
     """S1: returns after a loss of contact, how widespread they are, and how hard they strike."""
     motion = scene(run, "F2d")
-    lost, found = events(motion, EventFlag.separation).size, events(motion, EventFlag.contact).size
+    lost, found = events(motion, Event.separation).size, events(motion, Event.contact).size
     force = float(motion.return_peak_contact_force)
     unit = run.parameters.preload / run.parameters.time_unit
     hammering = run["hammering_map"]
@@ -125,7 +125,7 @@ def earlier_assumptions_fail(run: Run) -> Finding:
 def modes_couple(run: Run) -> Finding:
     """S3: frequencies merge in cells that flutter; negative damping makes flutter without it."""
     stability = run["stability_map"]
-    flutter = stability.regime_linear == LinearRegimeFlag.flutter
+    flutter = stability.regime_linear == LinearRegime.flutter
     frequency = stability.frequency.transpose(..., "mode")
     merged = flutter & merge(frequency.values)
     evidence = (

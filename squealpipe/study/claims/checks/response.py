@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
+from squealpipe.codes import Event
 from squealpipe.schema.claims import Verdict
-from squealpipe.schema.dynamics.runs import GROWTH_THRESHOLD, EventFlag
+from squealpipe.schema.dynamics.runs import GROWTH_THRESHOLD
 from squealpipe.schema.inference import LITTLE
 from squealpipe.study.claims.checks.motions import events, halves, scene, until
 from squealpipe.study.claims.evidence import Finding, Run, finding
@@ -30,7 +31,7 @@ def contact_is_kept(name: str) -> Check:
     def check(run: Run) -> Finding:
         motion = scene(run, name)
         lowest = float(motion.normalized_contact_force.min())
-        lost = events(motion, EventFlag.separation).size
+        lost = events(motion, Event.separation).size
         return finding(
             lowest,
             ">",
@@ -65,7 +66,7 @@ for name, angles in (("F2a", "(0.5π, π)"), ("F2b", "(π, 0.5π)"), ("F2c", "(0
 def contact_is_lost(run: Run) -> Finding:
     """F2d: number of separations."""
     motion = scene(run, "F2d")
-    lost = events(motion, EventFlag.separation)
+    lost = events(motion, Event.separation)
     if not lost.size:
         return finding(0, ">", 0, "Contact is never lost.")
     return finding(
@@ -227,7 +228,7 @@ def runs_are_identical(run: Run) -> Finding:
 def mass_jumps(run: Run) -> Finding:
     """F5b: repeated flights at (π, π), and their height."""
     motion = scene(run, "F5a")
-    flights = events(motion, EventFlag.separation).size
+    flights = events(motion, Event.separation).size
     height = float(motion.y.max() / run.parameters.preload)
     return finding(
         flights,

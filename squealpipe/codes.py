@@ -1,0 +1,40 @@
+"""The codes that models, methods and datasets share."""
+
+from __future__ import annotations
+
+from enum import IntEnum
+
+
+class Regime(IntEnum):
+    """Regimes of A1."""
+
+    slip_slower = 0
+    slip_faster = 1
+    stick = 2
+    separated = 3
+
+
+class Event(IntEnum):
+    """Kinds of events of A1."""
+
+    separation = 0
+    contact = 1
+    stick = 2
+    slip = 3
+    reversal = 4
+
+
+class LinearRegime(IntEnum):
+    """Stability regimes of A3."""
+
+    stable = 0
+    flutter = 1
+    divergence = 2
+
+
+class SpecialPoint(IntEnum):
+    """What happens at a special point of a branch of periodic orbits."""
+
+    period_doubling = 0
+    index_two = 1
+    fold = 2
