@@ -7,7 +7,6 @@ from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
-from scipy.stats import ks_2samp
 
 from squealpipe.methods.recurrence import LEAST_REPEATS, repeats_after
 from squealpipe.schema import Outcome
@@ -18,8 +17,9 @@ LEAST_TURNS = 3
 """Net turns in a run from which a motion can be a whirl."""
 AT_REST = 1e-3
 """A mass rests that stays this close to where it ends, over its largest displacement."""
-SAME_STATISTICS = 0.01
-"""Chance of two samples of one distribution to differ as much as the events of both halves may."""
+SAME_STATISTICS = 1.63
+"""Largest Kolmogorov–Smirnov distance of both quarters' intervals, over √(1/n + 1/m): 1 % of pairs
+of samples of one distribution lie further apart."""
 TURNS_PER_RETURN = 0.5
 """Net turns for each return to the belt from which it is one: a pendulum that goes over the top
 and back makes none, however long it lasts."""
@@ -181,9 +181,19 @@ def tell_periodic(times: np.ndarray, kinds: np.ndarray, t_end: float) -> MotionF
         quarters = after[here & early], after[here & ~early]
         if min(map(len, quarters)) < LEAST_REPEATS:
             return MotionFlag.undetermined
-        if ks_2samp(*quarters, method="asymp").pvalue < SAME_STATISTICS:
+        allowed = SAME_STATISTICS * np.sqrt(sum(1.0 / len(q) for q in quarters))
+        if _distance(*quarters) > allowed:
             return MotionFlag.undetermined
     return MotionFlag.quasi_periodic_hammering
+
+
+def _distance(first: np.ndarray, second: np.ndarray) -> float:
+    """Largest difference of two samples' distributions (``ks_2samp`` takes 50 times as long)."""
+    values = np.concatenate([first, second])
+    shares = [
+        np.searchsorted(np.sort(each), values, side="right") / each.size for each in (first, second)
+    ]
+    return float(np.abs(shares[0] - shares[1]).max())
 
 
 def refine_labels(

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from scipy.stats import ks_2samp
 
 from squealpipe.schema.dynamics.runs import MotionFlag
 from squealpipe.tasks.dynamics.hammering import hammering_map
-from squealpipe.tasks.dynamics.motion import linear_time, tell_periodic
+from squealpipe.tasks.dynamics.motion import _distance, linear_time, tell_periodic
 from squealpipe.tasks.dynamics.runs import simulate
 from squealpipe.tasks.normal_form import NormalForm
 from tests.former import FORMER
@@ -163,3 +164,10 @@ def test_the_normal_form_is_the_same_system(seed):
     sign = -1.0 if form.mirrored else 1.0
     np.testing.assert_allclose(sign * normal.x, own.x, atol=1e-7)
     np.testing.assert_allclose(normal.y, own.y, atol=1e-7)
+
+
+def test_the_distance_of_two_samples_is_that_of_scipy():
+    rng = np.random.default_rng(4)
+    for sizes in ((3, 3), (7, 40), (200, 150)):
+        first, second = (rng.normal(size=size).round(1) for size in sizes)
+        assert _distance(first, second) == pytest.approx(ks_2samp(first, second).statistic)
