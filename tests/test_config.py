@@ -14,6 +14,7 @@ from squealpipe.config.mistakes import known_keys
 from squealpipe.config.settings import (
     ConfigError,
     Study,
+    check_results_folder,
     json_schema,
     parse_study,
     read_study,
@@ -314,3 +315,21 @@ def test_messages_speak_of_no_internal_types(tmp_path):
             read_study(tmp_path / "x.yaml")
         told = str(caught.value)
         assert not re.search(r"instance|dictionary|tuple|Section|input should|pattern", told), told
+
+
+def test_a_folder_of_results_holds_nothing_else(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    for name in ("results/data", "results/quick/figures", "results/archive/first/data", "docs"):
+        (tmp_path / name).mkdir(parents=True)
+    (tmp_path / "docs/store.md").touch()
+    (tmp_path / "results/archive/first/manifest.json").touch()
+    for name in ("results", "results/new"):
+        check_results_folder(name)
+    with pytest.raises(ConfigError, match=r"holds docs/store\.md, which is no result"):
+        check_results_folder("docs")
+    (tmp_path / "link").symlink_to("results/archive/first")
+    (tmp_path / "mine").mkdir()
+    (tmp_path / "mine/data").symlink_to(tmp_path / "results/archive/first/data")
+    for name in ("link", "link/data", "mine"):
+        with pytest.raises(ConfigError, match="leads into the archive"):
+            check_results_folder(name)

@@ -33,6 +33,7 @@ from squealpipe.config.sections import (
     SweepSection,
 )
 from squealpipe.config.yaml_files import key_lines, overlay, read_yaml
+from squealpipe.rerun.key import PARTS
 
 __all__ = [
     "PAPER",
@@ -155,6 +156,34 @@ def read_study(*paths: str | Path, changes: Mapping[str, Any] | None = None) -> 
         overlay(merged, content)
     overlay(merged, changes or {})
     return parse_study(merged, faults, place=lambda keys: _place(keys, paths, changes or {}))
+
+
+def check_results_folder(results: str) -> None:
+    """Refuse a folder of results in which Snakemake could overwrite or delete anything else.
+
+    Raises:
+        ConfigError: it, or a part of it, leads into an archive, or it holds other files.
+    """
+    folder = Path(results)
+    for part in (folder, *(folder / name for name in PARTS)):
+        inside = [part.resolve(), *part.resolve().parents]
+        if any((at / "manifest.json").is_file() for at in inside):
+            raise ConfigError([f"results = {results!r}: {part} leads into the archive {inside[0]}"])
+    if (stranger := _stranger(folder)) is not None:
+        what = f"it holds {stranger}, which is no result; a run needs a folder of its own"
+        raise ConfigError([f"results = {results!r}: {what}, for instance results/mine"])
+
+
+def _stranger(folder: Path) -> Path | None:
+    """The first file of a folder that no run puts there, if there is one."""
+    for path in sorted(folder.glob("[!.]*")):
+        if path.name in {*PARTS, "logs", "parts", "archive", "deposit", "README.md"}:
+            continue
+        if not path.is_dir():
+            return path
+        if (found := _stranger(path)) is not None:
+            return found
+    return None
 
 
 def _place(keys: tuple[str, ...], paths: Sequence[str | Path], changes: Mapping[str, Any]) -> str:

@@ -14,7 +14,6 @@ from squealpipe.rerun.key import STARTED
 # and for the jobs beside it.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
-ROOT = Path(workflow.basedir)
 TARGETS = []
 READING = STUDY.reading if STUDY.paper else "along_plus_x"  # a study of one's own: as given
 CORRECTED = READINGS[READING].corrected
