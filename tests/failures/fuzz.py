@@ -118,7 +118,7 @@ SEED = Kind(lambda rng: rng.randrange(10**6), [None, -1, 0.5, "1", True, [1], 10
 TRUTH = Kind(lambda rng: rng.random() < 0.5, [None, 0, 1.0, "yes", "", [], object()])
 PLACE = Kind(lambda _: "no-such-folder/no-such-file.nc", [None, 1, 1.5, True, object(), [], {}, 1j])
 MAPPING = [None, 1, "mu", [], ["mu"], object(), {1: 2}, {"mu": None}, {"mu": "uniform"}]
-NO_PARAMETERS = [None, {}, {"mu": 0.3}, "baseline", 1.0, sp.Parameters, [sp.Parameters()]]
+NO_PARAMETERS = [None, {"nu": 0.3}, "baseline", 1.0, sp.Parameters, [sp.Parameters()]]
 
 PHYSICAL = {
     name: {
@@ -208,7 +208,7 @@ CALLS: dict[str, tuple[float, Callable[..., Any], dict[str, Kind]]] = {
     ),
     "cycle_branch": (
         0.5, sp.cycle_branch,
-        {**SCENE, "parameter": one_of("mu", "k3", "alpha1"), "to": number(0.1, 1.0),
+        {**SCENE, "parameter": one_of("mu", "k3", "alpha1"), "to": number(0.1, 1.0, zero=True),
          "n_points": Kind(lambda _: 2, [*NO_NUMBER, 0, 1, -3, 2.0]), "doubled": TRUTH,
          "start": Kind(STATE.good, ["offset", [0.0] * 3, [None] * 4, ["0"] * 4, object(), 1j])},
     ),
