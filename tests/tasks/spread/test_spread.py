@@ -117,7 +117,7 @@ def test_impossible_distributions_are_refused(name, given, words):
         ({"t_end": -1.0}, "t_end = -1.0"),
         ({"spring_correlation": 1.0}, "spring_correlation = 1.0"),
         ({"spring_correlation": 0.5}, "distributions of k1 and k2"),
-        ({"distributions": {}}, "distributions = {}: .*at least 1"),
+        ({"distributions": {}}, "distributions = {}: .*1 or more"),
         ({"distributions": ["mu"]}, r"distributions = \['mu'\]: must be"),
         ({"distributions": None}, "distributions = None: must be"),
         ({"distributions": {"mu": "uniform"}}, "mu = 'uniform': a mapping is needed"),
