@@ -23,28 +23,27 @@ class Reading(NamedTuple):
     Attributes:
         meaning: in words.
         a1_model: model that stands for A1.
-        a1_direction: direction of its belt along x.
-        linear_direction: direction in which A2, A3, A4 and the natural frequencies are dragged.
+        direction: of the belt along x. The linear models are dragged along it, and so is A1 but for
+            its model that is as printed.
         corrected: the reading that is the corrected physics beside it.
     """
 
     meaning: str
     a1_model: str
-    a1_direction: int
-    linear_direction: int
+    direction: int
     corrected: str
 
 
 READINGS: dict[str, Reading] = {
     "as_printed": Reading(
         "A1 by Eq. (4) as printed, the linear models by Eqs. (6)–(20)",
-        "A1-as-printed", 1, 1, "along_minus_x",
+        "A1-as-printed",
+        1,
+        "along_minus_x",
     ),
-    "along_plus_x": Reading("friction drags along +x in all models", "A1", 1, 1, "along_plus_x"),
-    "along_minus_x": Reading(
-        "friction drags along −x in all models", "A1", -1, -1, "along_minus_x"
-    ),
-}  # fmt: skip
+    "along_plus_x": Reading("friction drags along +x in all models", "A1", 1, "along_plus_x"),
+    "along_minus_x": Reading("friction drags along −x in all models", "A1", -1, "along_minus_x"),
+}
 
 
 def reading_of(name: str) -> Reading:
@@ -60,19 +59,14 @@ def reading_of(name: str) -> Reading:
 
 def for_a1(params: Parameters, reading: str) -> tuple[Parameters, str]:
     """Parameters and model that A1 is computed with."""
-    found = reading_of(reading)
-    return _towards(params, found.a1_direction), found.a1_model
+    return for_linear(params, reading), reading_of(reading).a1_model
 
 
 def for_linear(params: Parameters, reading: str) -> Parameters:
     """Parameters that A2, A3, A4 and the natural frequencies are computed with."""
-    return _towards(params, reading_of(reading).linear_direction)
+    return params.with_(belt_speed=reading_of(reading).direction * params.belt_speed)
 
 
 def corrected(params: Parameters, reading: str) -> Parameters:
     """Parameters of the corrected physics beside a reading, for all models."""
     return for_linear(params, reading_of(reading).corrected)
-
-
-def _towards(params: Parameters, direction: int) -> Parameters:
-    return params.with_(belt_speed=direction * params.belt_speed)

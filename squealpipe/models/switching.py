@@ -116,6 +116,9 @@ VARIANT_RULES: dict[str, Rules] = {
     "A1-as-printed": Rules(
         separates=True, reverses=True, sticks=False, linear_springs=False, drags=False
     ),
+    "A1-as-printed-no-separation": Rules(
+        separates=False, reverses=True, sticks=False, linear_springs=False, drags=False
+    ),
     "A4": Rules(separates=True, reverses=False, sticks=False, linear_springs=True),
 }
 

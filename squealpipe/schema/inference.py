@@ -3,16 +3,35 @@
 from __future__ import annotations
 
 import math
+from enum import IntEnum
+from typing import TYPE_CHECKING
 
-from squealpipe.schema import RUN_ENDS, DatasetSchema, Outcome, Variable, outcome
+from squealpipe.reading import READINGS
+from squealpipe.schema import DatasetSchema, Outcome, Variable, outcome
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 CONFIDENCE = 0.95
 """Confidence of every interval that is given for a share."""
 
 SAMPLE = ("sample",)
 STATEMENT = ("statement",)
-BOTH = ("sample", "statement")
+READING = ("reading",)
+JUDGED = ("sample", "reading")
+BY_READING = ("reading", "statement")
 CONSEQUENCE = ("consequence",)
+PREDICTED = ("reading", "consequence")
+SIMPLE = ("simple",)
+
+
+class Holds(IntEnum):
+    """Whether a statement holds at a parameter set, as stored."""
+
+    no = 0
+    yes = 1
+    undecided = 2
+    not_judged = 3
 
 
 LITTLE = 0.1
@@ -39,89 +58,105 @@ def _group(long_name: str) -> Variable:
     return Variable(long_name, dims=SAMPLE)
 
 
-def _limit(side: str) -> Variable:
-    return Variable(
-        f"{side} end of the {CONFIDENCE:.0%} Wilson interval of feasible_share",
-        dims=CONSEQUENCE,
-        nan_allowed=True,
-        optional=True,
-    )
+def _limit(side: str, of: str, dims: tuple[str, ...]) -> Variable:
+    name = f"{side} end of the {CONFIDENCE:.0%} Wilson interval of {of}"
+    return Variable(name, dims=dims, nan_allowed=True)
 
 
-def _yes_no(dims: tuple[str, ...], long_name: str) -> Variable:
-    return Variable(long_name, dims=dims, dtype="bool")
+def _verdict(dims: tuple[str, ...], long_name: str) -> Variable:
+    return Variable(long_name, dims=dims, dtype="i1", flags=Holds)
+
+
+def _which_reading(long_name: str) -> Variable:
+    return Variable(long_name, dtype="i1", flags=dict(enumerate(READINGS)))
 
 
 PARAMETER_INFERENCE = DatasetSchema(
     name="parameter_inference",
-    title="Which parameters agree with the paper's statements",
+    title="Which parameters agree with the paper's statements, in which reading of its friction",
     coordinates={
         "sample": Variable("number of the sample", dims=SAMPLE, dtype="i4"),
+        "reading": Variable("reading of the sign of friction", dims=READING, dtype="U"),
         "statement": Variable("id of the statement", dims=STATEMENT, dtype="U"),
         "consequence": Variable(
             "id of a statement that was not a constraint", dims=CONSEQUENCE, dtype="U"
         ),
+        "simple": Variable("rank of a set of simple numbers", dims=SIMPLE, dtype="i4"),
     },
     variables={
         "kappa": _group("contact stiffness k3/k"),
         "mu": _group("friction coefficient"),
         "length_ratio": _group("free length of the springs over l_pre"),
         "speed_ratio": _group("belt speed over l_pre √(k/m)"),
-        "direction": Variable(
-            "direction of the belt", dims=SAMPLE, dtype="i1", flags={-1: "against_x", 1: "along_x"}
+        "holds": _verdict(
+            (*JUDGED, *STATEMENT),
+            "whether the statement holds; not judged where other statements had failed",
         ),
-        "margin": Variable(
-            "by how much the statement holds; negative where it fails",
-            dims=BOTH,
+        "smallest_margin": Variable(
+            "smallest margin of the statements that were judged",
+            dims=JUDGED,
             rtol=1e-6,
             atol=1e-6,
         ),
-        "holds": _yes_no(BOTH, "the statement holds"),
-        "feasible": _yes_no(SAMPLE, "all statements hold"),
+        "feasible": Variable("all statements hold", dims=JUDGED, dtype="bool"),
         "outcome": outcome(
-            *SAMPLE, among=(Outcome.converged, Outcome.unresolved, Outcome.infeasible)
+            *JUDGED, among=(Outcome.converged, Outcome.unresolved, Outcome.infeasible)
         ),
-        "baseline_kappa": Variable("k3/k1 of the study"),
-        "baseline_mu": Variable("friction coefficient of the study"),
-        "baseline_length_ratio": Variable("L1/l_pre of the study"),
-        "baseline_speed_ratio": Variable("V/(l_pre √(k1/m)) of the study, signed"),
-        "baseline_margin": Variable(
-            "margin at the parameters of the study", dims=STATEMENT, rtol=1e-6, atol=1e-6
+        "feasible_count": Variable("number of feasible samples", dims=READING, dtype="i4"),
+        "share": Variable("share of the samples that are feasible", dims=READING),
+        "share_low": _limit("lower", "share", READING),
+        "share_high": _limit("upper", "share", READING),
+        "judged": Variable(
+            "number of samples that the statement was judged at", dims=BY_READING, dtype="i4"
         ),
-        "baseline_holds": _yes_no(STATEMENT, "the statement holds at the parameters of the study"),
-        "baseline_outcome": Variable(
-            "how that run ended",
-            dims=STATEMENT,
-            dtype="i1",
-            flags=outcome(among=(*RUN_ENDS, Outcome.separated, Outcome.amplitude_reached)).flags,
+        "share_holding": Variable("share of those in which the statement holds", dims=BY_READING),
+        "share_cut_alone": Variable(
+            "share of the samples that this statement alone excludes", dims=BY_READING
         ),
         "criterion": Variable("what was checked", dims=STATEMENT, dtype="U"),
         "horizon": Variable(
             "horizon over √(m/k); NaN for statements without time", dims=STATEMENT, nan_allowed=True
         ),
-        "share_holding": Variable(
-            "share of the samples in which the statement holds", dims=STATEMENT
+        "baseline_kappa": Variable("k3/k1 of the study"),
+        "baseline_mu": Variable("friction coefficient of the study"),
+        "baseline_length_ratio": Variable("L1/l_pre of the study"),
+        "baseline_speed_ratio": Variable("V/(l_pre √(k1/m)) of the study, signed"),
+        "baseline_reading": _which_reading("the study's reading"),
+        "baseline_margin": Variable(
+            "margin at the parameters of the study", dims=BY_READING, rtol=1e-6, atol=1e-6
         ),
-        "share_cut_alone": Variable(
-            "share of the samples that this statement alone excludes", dims=STATEMENT
+        "baseline_holds": _verdict(
+            BY_READING, "whether the statement holds at the parameters of the study"
+        ),
+        "baseline_consequence": Variable(
+            "the consequence holds at the parameters of the study", dims=PREDICTED, dtype="bool"
         ),
         "consequence_check": Variable(
             "what was checked of the consequence", dims=CONSEQUENCE, dtype="U"
         ),
-        "feasible_count": Variable("number of feasible samples", dtype="i4"),
         "feasible_share": Variable(
             "share of the feasible samples in which the consequence holds; NaN where "
             "feasible_count is 0",
-            dims=CONSEQUENCE,
+            dims=PREDICTED,
             nan_allowed=True,
         ),
-        "feasible_share_low": _limit("lower"),
-        "feasible_share_high": _limit("upper"),
-        "baseline_consequence": Variable(
-            "the consequence holds at the parameters of the study",
-            dims=CONSEQUENCE,
-            dtype="bool",
-            optional=True,
+        "feasible_share_low": _limit("lower", "feasible_share", PREDICTED),
+        "feasible_share_high": _limit("upper", "feasible_share", PREDICTED),
+        "simple_reading": _which_reading("the reading that simple sets were judged in"),
+        "simple_kappa": Variable("contact stiffness k3/k of a simple set", dims=SIMPLE),
+        "simple_mu": Variable("friction coefficient of a simple set", dims=SIMPLE),
+        "simple_length_ratio": Variable("L/l_pre of a simple set", dims=SIMPLE),
+        "simple_speed_ratio": Variable("belt speed over l_pre √(k/m), simple set", dims=SIMPLE),
+        "simple_margin": Variable(
+            "margin of the statement at a simple set",
+            dims=("simple", "statement"),
+            rtol=1e-6,
+            atol=1e-6,
         ),
     },
 )
+
+
+def of_study(inference: xr.Dataset) -> xr.Dataset:
+    """The part of a ``parameter_inference`` that is in the study's own reading."""
+    return inference.isel(reading=int(inference.baseline_reading))

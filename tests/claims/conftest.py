@@ -75,9 +75,9 @@ def of_one_sign(params: Parameters) -> dict[str, xr.Dataset]:
         "parameter_inference": infer_parameters(
             params,
             samples=24,
-            kappa=(0.6, 0.8),
-            mu=(0.2, 0.3),
-            length_ratio=(4.5, 6.0),
+            kappa=(0.55, 0.7),
+            mu=(0.28, 0.31),
+            length_ratio=(8.0, 16.0),
             speed_ratio=(90.0, 110.0),
             workers=1,
         ),

@@ -89,14 +89,5 @@ def test_no_evidence_contradicts_its_data(params: Parameters) -> None:
     k12 = data["quasi_static_map"].stiffness_xy
     negative = 100 * float((k12 < -1e-15 * params.k1).mean())
     assert f"K12 is negative in {negative:.3g} %" in text["E5"]
-    whole = int(
-        (
-            data["parameter_inference"].direction.values[
-                data["parameter_inference"].feasible.values == 1
-            ]
-            == -1
-        ).sum()
-    )
-    assert f"{whole} of them with the belt along −x" in text["E9"]
     spread = table["F2e"]["value"]
     assert (f"is {'within' if spread <= 0.1 else 'beyond'} the 0.1") in text["F2e"]

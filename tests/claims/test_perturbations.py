@@ -85,10 +85,6 @@ def as_mended(dataset: xr.Dataset) -> xr.DataArray:
     return dataset.omega.isel(form=0)
 
 
-def only_first(dataset: xr.Dataset) -> xr.DataArray:
-    return (dataset.sample == dataset.sample[0]).astype(int)
-
-
 REGIME = put("regime_linear", lambda d: 0 * d.regime_linear)
 EVERYWHERE_PRINTED = put("possible_as_printed", lambda d: 0 * d.possible + 1)
 AS_PHYSICAL = put("possible_as_printed", lambda d: d.possible)
@@ -195,7 +191,12 @@ FLIPS = [
     ),
     Flip("E6", "harmonic_forms", put("fourier_rank", lambda d: d.fourier_columns), HOLDS),
     Flip("E7", "harmonic_forms", put("rank_deficit", lambda _: 0), HOLDS),
-    Flip("E9", "parameter_inference", put("feasible", only_first), HOLDS),
+    Flip(
+        "E9",
+        "parameter_inference",
+        put("feasible_count", lambda d: d.feasible_count.clip(max=1)),
+        HOLDS,
+    ),
     Flip("E10", "stability_map", REGIME, FAILS),
     Flip("E10", "validity_map", put("separates", lambda d: d.separates | True), FAILS),
     Flip(

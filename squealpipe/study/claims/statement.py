@@ -26,7 +26,6 @@ class Statement:
         check: reads datasets only.
         consequence: what the inference judges at each feasible parameter set and what decides
             about this statement there; empty where it judges nothing of the kind.
-        opposite: the statement holds exactly where that consequence does not.
     """
 
     id: str
@@ -37,7 +36,6 @@ class Statement:
     recorded: Verdict
     check: Check
     consequence: str = ""
-    opposite: bool = False
 
 
 class Rows(list[Statement]):
@@ -53,7 +51,6 @@ class Rows(list[Statement]):
         recorded: Verdict,
         *,
         consequence: str = "",
-        opposite: bool = False,
     ) -> Callable[[Check], Check]:
         """Decorator of a check; the arguments are those of :class:`Statement`."""
 
@@ -68,7 +65,6 @@ class Rows(list[Statement]):
                     recorded=recorded,
                     check=check,
                     consequence=consequence,
-                    opposite=opposite,
                 )
             )
             return check

@@ -1,12 +1,11 @@
-"""Which parameters agree with the paper's statements: quasi-random samples, margins, the baseline.
+"""Which parameters agree with the paper's statements, and in which reading of the sign of friction.
 
 The paper prints no numbers. Equal springs are assumed (Fig. 5 and the isolated x mode of Fig. 12
-need them); κ, μ, λ, v and the direction of the belt are left.
+need them); κ, μ, λ and v are left.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Annotated, Any
 
 import numpy as np
@@ -16,14 +15,21 @@ from scipy.stats import qmc
 
 from squealpipe.models.refusals import refuse_extensions
 from squealpipe.parameters import Parameters
+from squealpipe.reading import READINGS, reading_of
 from squealpipe.schema import Outcome, build
-from squealpipe.schema.inference import PARAMETER_INFERENCE, wilson_interval
+from squealpipe.schema.inference import PARAMETER_INFERENCE, Holds, wilson_interval
 from squealpipe.schema.origin import recorded
+from squealpipe.tasks.inference.candidates import Candidates
 from squealpipe.tasks.inference.consequences import CONSEQUENCES, judge_consequences
-from squealpipe.tasks.inference.constraints import CONSTRAINTS, Candidates, candidate_of, measure
+from squealpipe.tasks.inference.constraints import CONSTRAINTS, Stage, judge, measure, verdicts
+from squealpipe.tasks.inference.simple_sets import rank_simple_sets, sets_of
 from squealpipe.validation import Natural, Number, Seed, Tolerance, Workers
 
 Range = Annotated[tuple[Number, Number], Strict(strict=False)]  # a list of a configuration too
+
+FULLY_JUDGED = 8
+"""Every so many samples are judged until a second statement refutes them: by these it is known what
+a statement excludes alone, but for those on maps, which are judged together and last."""
 
 
 @recorded(model="A1", method="Taylor series with located events over quasi-random samples")
@@ -31,6 +37,7 @@ def infer_parameters(
     params: Parameters,
     *,
     samples: Natural,
+    reading: str = "as_printed",
     kappa: Range = (0.3, 1.3),
     mu: Range = (0.02, 0.8),
     length_ratio: Range = (2.0, 100.0),
@@ -41,117 +48,117 @@ def infer_parameters(
 ) -> xr.Dataset:
     """Judge quasi-random parameter sets, and the study's own, by the paper's statements.
 
-    Scrambled Halton points, uniform in κ, μ, ln λ, ln v and in the direction of the belt.
+    Scrambled Halton points, uniform in κ, μ, ln λ and ln v, each judged in every reading of the
+    sign of friction (:mod:`squealpipe.reading`), cheap statements first: a set that one has refuted
+    is not judged by costlier ones.
 
     Args:
         params: the study's parameters, whose margins are the baseline's.
         samples: number of parameter sets.
+        reading: the study's reading.
         kappa, mu, length_ratio, speed_ratio: ranges of k3/k, μ, L/l_pre, |V|/(l_pre √(k/m)).
         seed: of the scrambling.
         tol: tolerance of the integrator.
         workers: processes; None takes all cores. The result is the same bit for bit.
 
     Returns:
-        Dataset over (sample, statement), see the schema ``parameter_inference``; and over
-        consequence, the shares of the feasible samples in which further statements hold.
+        Dataset over (sample, reading, statement), see the schema ``parameter_inference``; over
+        consequence, the shares of the feasible samples in which further statements hold; and over
+        ``simple``, the sets of simple numbers that meet all statements in the reading with the most
+        feasible samples, by falling smallest margin.
 
     Raises:
-        ValueError: dashpots or a friction law that the paper does not have.
+        ValueError: an unknown reading; dashpots or a friction law that the paper does not have.
     """
     refuse_extensions(params, "infer_parameters", "the paper's statements are of its own friction")
-    groups = _sample(samples, seed, kappa, mu, length_ratio, speed_ratio)
-    ones = np.ones(samples)
-    candidates = Candidates(
-        {
-            "mass": ones,
-            "k1": ones,
-            "k2": ones,
-            "k3": groups["kappa"],
-            "mu": groups["mu"],
-            "preload": ones,
-            "length1": groups["length_ratio"],
-            "length2": groups["length_ratio"],
-            "belt_speed": groups["direction"] * groups["speed_ratio"],
-        },
-        tol,
-        workers,
-    )
-    margins = measure(candidates)
-    margin = np.stack([found.margin for found in margins.values()], axis=1)
-    ended = np.stack([found.outcome for found in margins.values()], axis=1)
-    decided = (ended == Outcome.converged) & np.isfinite(margin)
-    holds = decided & (margin > 0)
-    feasible = holds.all(axis=1)
-    alone = (~holds).sum(axis=1, keepdims=True) == 1
-    refuted = (decided & (margin <= 0)).any(axis=1)
-    inferred = {name: values[feasible] for name, values in candidates.fields.items()}
-    consequences = judge_consequences(inferred, tol=tol, workers=workers)
-    study = candidate_of(params, tol=tol)
-    own = measure(study)
-    own_consequences = judge_consequences(study.fields, tol=tol, workers=workers)
-    own_margin = np.array([float(own[constraint.name].margin[0]) for constraint in CONSTRAINTS])
-    own_outcome = np.array([int(own[constraint.name].outcome[0]) for constraint in CONSTRAINTS])
+    reading_of(reading)
+    ranges = {
+        "kappa": kappa, "mu": mu, "length_ratio": length_ratio, "speed_ratio": speed_ratio
+    }  # fmt: skip
+    groups = _sample(samples, seed, ranges)
+    sets, own = sets_of(groups, tol=tol, workers=workers), Candidates.of(params, tol=tol)
+    found = [_over_samples(sets.read(name)) for name in READINGS]
+    joined: dict[str, Any] = {name: np.stack([each[name] for each in found]) for name in found[0]}
+    most = list(READINGS)[int(joined["feasible_count"].argmax())]
+    ranked = rank_simple_sets(ranges, most, tol=tol, workers=workers)
+    for name in ("holds", "feasible", "outcome", "smallest_margin"):
+        joined[name] = joined[name].swapaxes(0, 1)
+    margins = [list(measure(own.read(name)).values()) for name in READINGS]
     return build(
         PARAMETER_INFERENCE,
         {
             **groups,
-            "margin": np.where(np.isfinite(margin), margin, -1.0),
-            "holds": holds,
-            "feasible": feasible,
-            "outcome": np.select(
-                [feasible, refuted], [Outcome.converged, Outcome.infeasible], Outcome.unresolved
-            ),
+            **joined,
             "baseline_kappa": params.kappa,
             "baseline_mu": params.mu,
             "baseline_length_ratio": params.length_ratio,
             "baseline_speed_ratio": params.speed_ratio,
-            "baseline_margin": own_margin,
-            "baseline_holds": (own_margin > 0) & (own_outcome == Outcome.converged),
-            "baseline_outcome": own_outcome,
+            "baseline_reading": list(READINGS).index(reading),
+            "baseline_margin": [[float(each.margin[0]) for each in row] for row in margins],
+            "baseline_holds": [[int(verdicts(each)[0]) for each in row] for row in margins],
+            "baseline_consequence": [
+                [bool(held[0]) for held in judge_consequences(own.read(name)).values()]
+                for name in READINGS
+            ],
             "criterion": [constraint.criterion for constraint in CONSTRAINTS],
             "horizon": [constraint.horizon for constraint in CONSTRAINTS],
-            "share_holding": holds.mean(axis=0),
-            "share_cut_alone": (~holds & alone).mean(axis=0),
             "consequence_check": list(CONSEQUENCES.values()),
-            "feasible_count": int(feasible.sum()),
-            "feasible_share": [
-                held.mean() if held.size else np.nan for held in consequences.values()
-            ],
-            **_intervals(consequences),
-            "baseline_consequence": [bool(held[0]) for held in own_consequences.values()],
+            "simple_reading": list(READINGS).index(most),
+            **{f"simple_{name}": values for name, values in ranked.items()},
         },
         {
             "sample": np.arange(samples),
+            "reading": list(READINGS),
             "statement": [constraint.name for constraint in CONSTRAINTS],
             "consequence": list(CONSEQUENCES),
+            "simple": np.arange(1, len(ranked["mu"]) + 1),
         },
     )
 
 
-def _intervals(consequences: Mapping[str, np.ndarray]) -> dict[str, list[float]]:
-    """Sampling error of each share: Wilson's interval."""
-    limits = [wilson_interval(int(held.sum()), held.size) for held in consequences.values()]
+def _over_samples(sets: Candidates) -> dict[str, Any]:
+    """Verdicts on all samples in one reading, and their shares."""
+    margin, holds = judge(sets)
+    shown = np.arange(0, sets.size, FULLY_JUDGED)
+    margin[shown], holds[shown] = judge(sets.subset(shown), failures=1)
+    met, failed = holds == Holds.yes, holds == Holds.no
+    feasible, judged = met.all(axis=1), holds != Holds.not_judged
+    alone = failed & (met.sum(axis=1, keepdims=True) == len(CONSTRAINTS) - 1)
+    on_maps = [constraint.stage == Stage.maps for constraint in CONSTRAINTS]
+    consequences = judge_consequences(sets.subset(np.flatnonzero(feasible)))
+    count = int(feasible.sum())
+    held = [int(values.sum()) for values in consequences.values()]
+    intervals = np.array([wilson_interval(number, count) for number in held])
+    low, high = wilson_interval(count, sets.size)
     return {
-        "feasible_share_low": [low for low, _ in limits],
-        "feasible_share_high": [high for _, high in limits],
+        "holds": holds,
+        "smallest_margin": np.nanmin(np.where(judged, margin, np.inf), axis=1),
+        "feasible": feasible,
+        "outcome": np.select(
+            [feasible, failed.any(axis=1)],
+            [Outcome.converged, Outcome.infeasible],
+            Outcome.unresolved,
+        ),
+        "feasible_count": count,
+        "share": count / sets.size,
+        "share_low": low,
+        "share_high": high,
+        "judged": judged.sum(axis=0),
+        "share_holding": met.sum(axis=0) / np.maximum(judged.sum(axis=0), 1),
+        "share_cut_alone": np.where(on_maps, alone.mean(axis=0), alone[shown].mean(axis=0)),
+        "feasible_share": np.array(held) / count if count else np.full(len(held), np.nan),
+        "feasible_share_low": intervals[:, 0],
+        "feasible_share_high": intervals[:, 1],
     }
 
 
-def _sample(
-    samples: int, seed: int, kappa: Range, mu: Range, length_ratio: Range, speed_ratio: Range
-) -> Mapping[str, Any]:
-    points = qmc.Halton(5, seed=seed).random(samples)
-
-    def spread(column: int, limits: Range) -> np.ndarray:
-        return np.asarray(np.interp(points[:, column], (0.0, 1.0), limits))
-
-    def spread_log(column: int, limits: Range) -> np.ndarray:
-        return np.asarray(np.exp(spread(column, (np.log(limits[0]), np.log(limits[1])))))
-
-    return {
-        "kappa": spread(0, kappa),
-        "mu": spread(1, mu),
-        "length_ratio": spread_log(2, length_ratio),
-        "speed_ratio": spread_log(3, speed_ratio),
-        "direction": np.where(points[:, 4] < 0.5, 1, -1),
-    }
+def _sample(samples: int, seed: int, ranges: dict[str, Range]) -> dict[str, np.ndarray]:
+    points = qmc.Halton(len(ranges), seed=seed).random(samples)
+    groups = {}
+    for column, (name, limits) in enumerate(ranges.items()):
+        share = points[:, column]
+        if name in {"length_ratio", "speed_ratio"}:
+            groups[name] = np.exp(np.interp(share, (0.0, 1.0), np.log(limits)))
+        else:
+            groups[name] = np.interp(share, (0.0, 1.0), limits)
+    return groups

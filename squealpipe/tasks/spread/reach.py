@@ -3,18 +3,19 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 import numpy as np
 import xarray as xr
 
 from squealpipe.parameters import Parameters
 from squealpipe.schema import Outcome, build
-from squealpipe.schema.inference import wilson_interval
+from squealpipe.schema.inference import of_study, wilson_interval
 from squealpipe.schema.origin import recorded
 from squealpipe.schema.spread import VERDICT_REACH
+from squealpipe.tasks.inference.candidates import Candidates
 from squealpipe.tasks.inference.consequences import CONSEQUENCES, judge_consequences
-from squealpipe.tasks.inference.constraints import CONSTRAINTS, Candidates, measure
+from squealpipe.tasks.inference.constraints import CONSTRAINTS, Stage, measure
 from squealpipe.validation import Natural, Seed, Tolerance, Workers
 
 RATIOS = (0.005, 0.02, 0.05)
@@ -88,9 +89,9 @@ def verdict_reach(
     names = [constraint.name for constraint in CONSTRAINTS] + list(CONSEQUENCES)
     rows, titles = [], []
     for title, variant in variants(params):
-        fields = {key: np.array([value]) for key, value in variant.as_dict().items()}
-        verdicts = _margins(Candidates(fields, tol, workers))
-        found = judge_consequences(fields, tol=tol, workers=workers)
+        candidates = Candidates.of(variant, tol=tol, workers=workers)
+        verdicts = _margins(candidates)
+        found = judge_consequences(candidates)
         verdicts |= {name: (values, np.ones(1, bool)) for name, values in found.items()}
         rows.append([_share(*verdicts[name]) for name in names])
         titles.append(title)
@@ -100,15 +101,16 @@ def verdict_reach(
         fields = {key: np.full(starts, value) for key, value in params.as_dict().items()}
         size = near * np.array([params.preload, params.preload, speed, speed])
         state = generator.uniform(-1.0, 1.0, (starts, 4)) * size
-        verdicts = _margins(Candidates(fields, tol, workers, initial_state=state))
+        candidates = Candidates(fields, tol, workers, initial_state=state)
+        verdicts = _margins(candidates, set(Stage) - {Stage.maps})  # maps are of starts at rest
         for constraint in CONSTRAINTS:
-            if math.isnan(constraint.horizon):  # no motion, so one setting however it starts
+            if constraint.stage == Stage.linear:  # one setting however it starts
                 holds, judged = verdicts[constraint.name]
                 verdicts[constraint.name] = holds[:1], judged[:1]
         rows.append([_share(*verdicts.get(name, (None, None))) for name in names])
         titles.append(f"starts within {100 * near:g} % of l_pre")
     if inferred is not None:
-        rows.insert(1, _feasible(inferred, names))
+        rows.insert(1, _feasible(of_study(inferred), names))
         titles.insert(1, "feasible parameters")
     share, low, high, judged, outcome = np.moveaxis(np.array(rows), -1, 0)
     return build(
@@ -124,11 +126,13 @@ def verdict_reach(
     )
 
 
-def _margins(candidates: Candidates) -> dict[str, tuple[np.ndarray, np.ndarray]]:
+def _margins(
+    candidates: Candidates, stages: Iterable[Stage] = Stage
+) -> dict[str, tuple[np.ndarray, np.ndarray]]:
     """Statement → (holds, could be judged)."""
     return {
         name: (found.margin > 0.0, np.isfinite(found.margin))
-        for name, found in measure(candidates).items()
+        for name, found in measure(candidates, stages).items()
     }
 
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from math import nan
 
 from squealpipe.schema.claims import Basis
-from squealpipe.schema.inference import wilson_interval
+from squealpipe.schema.inference import of_study, wilson_interval
 from squealpipe.study.claims.evidence import Run
 from squealpipe.study.claims.statement import Statement
 
@@ -45,13 +45,12 @@ def standing(statement: Statement, run: Run) -> Standing:
     """How a statement stands to the inference of a run; ``unknown`` where the run has none."""
     if "parameter_inference" not in run:
         return Standing(basis=Basis.unknown)
-    inference = run["parameter_inference"]
-    if statement.id in inference.statement.values:
+    inference = of_study(run["parameter_inference"])
+    if {statement.id, statement.consequence} & set(inference.statement.values.tolist()):
         return Standing(basis=Basis.fitted)
     count = int(inference.feasible_count)
     if not count or statement.consequence not in inference.consequence.values:
         return Standing(basis=Basis.predicted)
     share = float(inference.feasible_share.sel(consequence=statement.consequence))
-    share = 1.0 - share if statement.opposite else share
     low, high = wilson_interval(round(share * count), count)
     return Standing(basis=Basis.predicted, share=share, count=count, low=low, high=high)

@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 from matplotlib.ticker import LogLocator, NullFormatter
 
+from squealpipe.schema.inference import of_study
 from squealpipe.study.figures.parts.style import (
     BLACK,
     BLUE,
     GREEN,
     GREY,
-    LIGHT,
     ORANGE,
     PAGE,
     new_figure,
@@ -28,11 +28,11 @@ if TYPE_CHECKING:
 READS = ("parameter_inference",)
 CAPTION = (
     "Parameters inferred from the paper's own statements. (a)–(c) Samples in which all statements "
-    "hold, for either direction of the belt, over the sampled ranges; star: this study, by its "
-    "spring 1; the dashed line in (a) is the bound of F6d for a belt along +x, μ = cot 0.4π (a "
-    "belt along −x has none). (d) Share of the samples in which each statement holds, and the "
-    "share that it alone excludes. (e) Margins of the study's own parameters: positive where the "
-    "statement holds."
+    "hold, in each reading of the sign of friction, over the sampled ranges; star: this study, by "
+    "its spring 1; the dashed line in (a) is the bound of F6d where the linear models are dragged "
+    "along +x, μ = cot 0.4π. (d) Share of the samples that each statement alone excludes, by "
+    "reading. (e) Margins of the study's own parameters in its reading: positive where the "
+    "statement holds, cut at −1."
 )
 ALT = "Three scatter plots of feasible parameters and two bar charts over the paper's statements."
 PANELS = (
@@ -47,7 +47,8 @@ PANELS = (
     ),
 )
 LOGARITHMIC = ("length_ratio", "speed_ratio")
-DIRECTIONS = ((1, "belt along +x", BLUE, "o"), (-1, "belt along −x", ORANGE, "^"))
+LOOKS = (("as printed", GREEN, "s"), ("along +x", BLUE, "o"), ("along −x", ORANGE, "^"))
+"""Label, colour and marker of each reading."""
 
 
 def draw(inference: xr.Dataset) -> Figure:
@@ -65,9 +66,9 @@ def draw(inference: xr.Dataset) -> Figure:
     shares, margins = lower.subplots(1, 2)
     _bars(shares, inference)
     lower.legend(*shares.get_legend_handles_labels(), loc="outside lower left", ncols=3)
-    panel_letter(shares, "d", "each statement over the samples")
+    panel_letter(shares, "d", "excluded by one statement alone")
     names = inference.statement.values
-    values = inference.baseline_margin.values
+    values = np.maximum(of_study(inference).baseline_margin.values, -1.0)
     colours = [GREEN if value > 0 else ORANGE for value in values]
     margins.barh(names, values, color=colours, height=0.6)
     margins.axvline(0, color=BLACK, lw=0.6)
@@ -90,19 +91,19 @@ def draw(inference: xr.Dataset) -> Figure:
 def _scatter(
     panel: Axes, inference: xr.Dataset, x: str, y: str, x_label: str, y_label: str
 ) -> None:
-    feasible = inference.feasible.values.astype(bool)
-    for direction, label, colour, marker in DIRECTIONS:
-        chosen = feasible & (inference.direction.values == direction)
+    for row, (label, colour, marker) in enumerate(LOOKS):
+        one = inference.isel(reading=row)
+        chosen = one.feasible.values == 1
         panel.plot(
-            inference[x].values[chosen],
-            inference[y].values[chosen],
+            one[x].values[chosen],
+            one[y].values[chosen],
             marker,
             ms=2.6,
             mew=0.5,
-            mfc="none" if marker == "^" else colour,
+            mfc="none",
             color=colour,
             ls="none",
-            label=label,
+            label=f"{label} ({int(one.feasible_count)})",
         )
     panel.plot(
         abs(float(inference[f"baseline_{x}"])),
@@ -130,13 +131,10 @@ def _scatter(
 
 
 def _bars(panel: Axes, inference: xr.Dataset) -> None:
-    names = inference.statement.values
-    holding, alone = inference.share_holding.values, inference.share_cut_alone.values
-    panel.barh(names, holding, color=LIGHT, height=0.7, label="holds")
-    panel.barh(names, alone, color=BLACK, height=0.35, label="excluded by it alone")
-    everything = float(inference.feasible.mean())
-    panel.axvline(
-        everything, color=BLUE, ls="--", lw=0.8, label=f"all hold: {100 * everything:.2f} %"
-    )
+    places = np.arange(inference.sizes["statement"])
+    for row, (label, colour, _) in enumerate(LOOKS):
+        alone = 100 * inference.share_cut_alone.values[row]
+        panel.barh(places + 0.27 * (row - 1), alone, color=colour, height=0.25, label=label)
+    panel.set_yticks(places, inference.statement.values)
     panel.invert_yaxis()
-    panel.set(xlabel="share of the samples", xlim=(0, 1))
+    panel.set(xlabel="share of the samples, %")

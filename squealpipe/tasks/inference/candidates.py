@@ -1,0 +1,130 @@
+"""Parameter sets that the paper's statements are measured at, and their motions."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+
+from squealpipe.models.contact_system import ContactSystem, contact_system
+from squealpipe.parameters import SCENES, Parameters, Scene
+from squealpipe.reading import reading_of
+from squealpipe.schema import Outcome
+from squealpipe.solvers.a1.ensemble import Ensemble, run_ensemble
+from squealpipe.tasks.inference.unstable_cells import Unstable, unstable_cells
+
+
+@dataclass(frozen=True)
+class Margin:
+    """By how much one statement holds, and how the runs behind that ended, both (size,)."""
+
+    margin: np.ndarray
+    outcome: np.ndarray
+
+
+@dataclass(frozen=True)
+class Candidates:
+    """Parameter sets, one an entry of each array, and the motions computed for them.
+
+    Attributes:
+        fields: names of ``Parameters`` → 1-D arrays of one length.
+        tol: tolerance of the integrator.
+        workers: processes, as in ``run_ensemble``.
+        initial_state: (x, y, ẋ, ẏ) of the scenes' runs, (4,) or one for each set, m and m/s.
+        model: model that stands for A1.
+    """
+
+    fields: Mapping[str, np.ndarray]
+    tol: float
+    workers: int | None = None
+    initial_state: Any = (0.0, 0.0, 0.0, 0.0)
+    model: str = "A1"
+
+    @classmethod
+    def of(cls, params: Parameters, *, tol: float, workers: int | None = 1) -> Candidates:
+        """One candidate."""
+        fields = {name: np.array([value]) for name, value in params.as_dict().items()}
+        return cls(fields, tol, workers)
+
+    def read(self, name: str) -> Candidates:
+        """The same sets in one reading of the sign of friction."""
+        reading = reading_of(name)
+        speed = reading.direction * self.fields["belt_speed"]
+        fields = {**self.fields, "belt_speed": speed}
+        return replace(self, fields=fields, model=reading.a1_model)
+
+    def subset(self, rows: np.ndarray) -> Candidates:
+        """Some of the sets, which all start alike."""
+        return replace(self, fields={name: each[rows] for name, each in self.fields.items()})
+
+    @property
+    def size(self) -> int:
+        """How many sets there are."""
+        return len(self.fields["mu"])
+
+    @cached_property
+    def time_unit(self) -> np.ndarray:
+        """√(m/k1), s."""
+        return np.asarray(np.sqrt(self.fields["mass"] / self.fields["k1"]))
+
+    def run(self, scene: Scene, variant: str = "") -> Ensemble:
+        """The motion at a scene over its horizon, with its second half as the late one."""
+        t_end = scene.t_end * self.time_unit
+        return run_ensemble(
+            self.fields,
+            scene.alpha1,
+            scene.alpha2,
+            t_end=t_end,
+            t_late=0.5 * t_end,
+            model=self.model + variant,
+            tol=self.tol,
+            workers=self.workers,
+            initial_state=self.initial_state,
+        )
+
+    @cached_property
+    def contact(self) -> dict[str, Margin]:
+        """Lowest N/(k3 l_pre) at the scenes of Fig. 2, negative where contact is lost.
+
+        From the variant whose contact spring also pulls: it moves as A1 does until N = 0, and
+        then shows by how much contact is lost.
+        """
+        runs = {
+            name: self.run(SCENES[name], "-no-separation") for name in ("F2a", "F2b", "F2c", "F2d")
+        }
+        return {
+            # where contact is lost, it does not matter how the run went on
+            name: Margin(lowest, np.where(lowest < 0, Outcome.converged, run.outcome))
+            for name, run in runs.items()
+            for lowest in [run.lowest_contact_force]
+        }
+
+    @cached_property
+    def level(self) -> Ensemble:
+        """The motion at (π, π), both springs along the belt."""
+        return self.run(SCENES["F5a"])
+
+    def linear(self, scene: Scene) -> ContactSystem:
+        """The linear system at a scene, with the friction of the belt's direction."""
+        p = SimpleNamespace(**self.fields, drag=self.drag)
+        return contact_system(p, scene.alpha1, scene.alpha2)
+
+    @cached_property
+    def sets(self) -> list[Parameters]:
+        """The parameter sets one by one."""
+        rows = zip(*(np.asarray(values).tolist() for values in self.fields.values()), strict=True)
+        return [Parameters(**dict(zip(self.fields, row, strict=True))) for row in rows]
+
+    @cached_property
+    def drag(self) -> np.ndarray:
+        """Friction over normal force along +x in the linear models."""
+        return np.array([params.drag for params in self.sets])
+
+    @cached_property
+    def unstable(self) -> list[Unstable]:
+        """Angles at which A3 is unstable, of each set."""
+        return [unstable_cells(params) for params in self.sets]
