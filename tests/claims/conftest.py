@@ -40,6 +40,16 @@ def compute_evidence(
     if beside:
         mended = of_the_paper(*for_a1(params, READINGS[reading].corrected))
         found |= {f"corrected/{name}": dataset for name, dataset in mended.items()}
+    found["parameter_inference"] = infer_parameters(
+        params,
+        samples=24,
+        reading=reading,
+        kappa=(0.55, 0.7),
+        mu=(0.28, 0.31),
+        length_ratio=(8.0, 16.0),
+        speed_ratio=(90.0, 110.0),
+        workers=1,
+    )
     return found | of_one_sign(corrected(params, reading)) | of_a4(for_linear(params, reading))
 
 
@@ -72,15 +82,6 @@ def of_one_sign(params: Parameters) -> dict[str, xr.Dataset]:
     angles = np.linspace(0.0, np.pi, POINTS)[::4]
     return {
         "assumptions": check_assumptions(params),
-        "parameter_inference": infer_parameters(
-            params,
-            samples=24,
-            kappa=(0.55, 0.7),
-            mu=(0.28, 0.31),
-            length_ratio=(8.0, 16.0),
-            speed_ratio=(90.0, 110.0),
-            workers=1,
-        ),
         "transient": transient_lifetimes(
             params, [10.0 * speed], samples=2, shown_samples=8, t_end=4000.0 * unit, workers=1
         ),

@@ -26,6 +26,7 @@ from squealpipe.tasks.linear.maps import natural_frequencies, quasi_static_map, 
 from tests.former import FORMER
 from tests.tasks.inference.parameter_sets import random_sets
 
+
 def judged(params: Parameters) -> dict[str, bool]:
     """Whether statements on all angles hold at one parameter set."""
     candidates = Candidates.of(params, tol=1e-9)

@@ -209,7 +209,7 @@ rows.add(
 def parameters_are_printed(run: Run) -> Finding:
     """E9: how much of the parameter space shows what the paper shows."""
     inference = run["parameter_inference"]
-    best = inference.isel(reading=int(inference.feasible_count.argmax()))
+    best = inference.isel(reading=int(inference.feasible_count.values.argmax()))
     number = int(best.feasible_count)
     agreeing = best.isel(sample=best.feasible.values == 1)
     ranges = ", ".join(
