@@ -5,12 +5,10 @@ from squealpipe.store import produce
 from squealpipe.tasks.inference.inference import infer_parameters
 
 part = snakemake.params.part
-options = {
-    key: tuple(value) if isinstance(value, list) else value
-    for key, value in part["inference"].items()
-}
 produce(
-    lambda: infer_parameters(parameters_of(part), **options),
+    lambda: infer_parameters(
+        parameters_of(part), reading=part["reading"], **part["inference"]
+    ),
     config=part, key=snakemake.params.key,
     output=snakemake.output[0],
 )
