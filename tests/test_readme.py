@@ -17,7 +17,9 @@ import pytest
 import yaml
 
 from squealpipe.config.yaml_files import overlay
+from squealpipe.rerun.key import PARTS
 from squealpipe.store.archive import archive
+from squealpipe.store.keys import stated_key
 
 ROOT = Path(__file__).resolve().parents[1]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
@@ -44,7 +46,9 @@ def study(tiny_study, tmp_path_factory) -> Path:
     (config / "paper.yaml").write_text(yaml.safe_dump(merged), encoding="utf-8")
     for part in (copy / "results/tiny").iterdir():
         part.rename(copy / "results" / part.name)
-    archive("reference", root=copy, leave_out=[".svg", ".html", ".gif"])
+    made = [path for part in PARTS for path in (copy / "results" / part).rglob("*.*")]
+    keys = {str(path.relative_to(copy)): stated_key(path) for path in made}
+    archive("reference", keys=keys, root=copy, leave_out=[".svg", ".html", ".gif"])
     return copy
 
 

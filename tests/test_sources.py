@@ -114,7 +114,7 @@ def test_figures_and_pages_state_their_key(tmp_path):
     ):
         path = tmp_path / name
         path.parent.mkdir(exist_ok=True)
-        path.write_bytes(b"content")
+        path.write_bytes(b"content" if path.suffix != ".json" else b'{"a": 1}')
         assert key_behind(path) is None
         state_key(path, "0" * 16)
         assert key_behind(path) == f"{'0' * 16} {name}"

@@ -16,6 +16,7 @@ from squealpipe.config.settings import parse_study
 from squealpipe.execution import sweep as sweeping
 from squealpipe.execution.row_blocks import join
 from squealpipe.execution.sweep import Sweep, executor, planned, run_sweep
+from squealpipe.rerun.key import rule_key
 from squealpipe.schema import find
 from squealpipe.store import load, save
 from squealpipe.store.chunks import Checkpoint
@@ -88,7 +89,7 @@ def test_backbones_of_both_modes():
 
 
 def test_a_stopped_sweep_goes_on_where_it_was(tmp_path, monkeypatch):
-    kept = Checkpoint.beside(tmp_path / "s.nc", config={"a": 1})
+    kept = Checkpoint.beside(tmp_path / "s.nc", key="a1")
     calls = []
     original = sweeping.run_task
 
@@ -122,10 +123,10 @@ def test_a_stopped_sweep_repeated_in_another_order_is_no_mixture(tmp_path, monke
         return original(*arguments, **options)
 
     monkeypatch.setattr(sweeping, "run_task", counted)
-    kept = Checkpoint.beside(tmp_path / "s.nc", config={"vary": vary})
+    kept = Checkpoint.beside(tmp_path / "s.nc", key=rule_key({"vary": vary}, []))
     with pytest.raises(KeyboardInterrupt), kept:
         run_sweep(linear_sweep(vary=vary), checkpoint=kept)
-    with Checkpoint.beside(tmp_path / "s.nc", config={"vary": other}) as again:
+    with Checkpoint.beside(tmp_path / "s.nc", key=rule_key({"vary": other}, [])) as again:
         found = run_sweep(linear_sweep(vary=other), checkpoint=again)
     whole = run_sweep(linear_sweep(vary=vary))
     assert found.growth_rate.transpose(*whole.growth_rate.dims).identical(whole.growth_rate)
