@@ -14,7 +14,7 @@ from squealpipe.laws.contact import linearized_contact_stiffness, regularized_fo
 from squealpipe.laws.friction import dragging_force
 from squealpipe.laws.springs import Stiffness, linear_elastic_force
 
-ROUND_OFF = 4.0 * np.finfo(float).eps
+FEW_ULPS = 4.0 * np.finfo(float).eps
 """Below this share of the stiffness, K11 and K12 count as zero."""
 
 
@@ -45,12 +45,12 @@ def actuation(p: Any, sigma: Any = None) -> Any:
 
 def coupling_is_zero(stiffness: Stiffness) -> Any:
     """Whether K12 vanishes to round-off (E3)."""
-    return np.abs(stiffness.k12) <= ROUND_OFF * (stiffness.k11 + stiffness.k22)
+    return np.abs(stiffness.k12) <= FEW_ULPS * (stiffness.k11 + stiffness.k22)
 
 
 def _without_round_off(stiffness: Stiffness) -> tuple[Any, Any]:
     """K11 and K12, exactly 0 where they vanish to round-off."""
-    k11_is_zero = stiffness.k11 <= ROUND_OFF * stiffness.k22
+    k11_is_zero = stiffness.k11 <= FEW_ULPS * stiffness.k22
     return (
         np.where(k11_is_zero, 0.0, stiffness.k11),
         np.where(coupling_is_zero(stiffness), 0.0, stiffness.k12),

@@ -13,7 +13,7 @@ from squealpipe.laws.springs import (
     linear_stiffness,
     sine_of_sum,
 )
-from squealpipe.models.a2 import ROUND_OFF
+from squealpipe.models.a2 import FEW_ULPS
 from squealpipe.models.a4 import Spectrum, spectrum
 
 
@@ -51,4 +51,4 @@ def contact_system(p: Any, alpha1: Any, alpha2: Any, *, k3: Any = None) -> Conta
 def spring_determinant(p: Any, alpha1: Any, alpha2: Any) -> Any:
     """det K, N²/m²; 0 where α1 + α2 is a multiple of π but for the rounding of π."""
     sine = sine_of_sum(alpha1, alpha2)
-    return determinant_from_sine(p, np.where(np.abs(sine) <= ROUND_OFF, 0.0, sine))
+    return determinant_from_sine(p, np.where(np.abs(sine) <= FEW_ULPS, 0.0, sine))

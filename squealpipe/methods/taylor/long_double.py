@@ -17,7 +17,7 @@ from squealpipe.methods.hybrid import HybridRun
 from squealpipe.methods.taylor import taylor_compiler
 
 TOLERANCE = 1e-19
-ROUND_OFF = 2.0**-62
+LONG_ULP = 2.0**-62
 """A state on a surface is moved by this (times its scale), so that its root is not found again."""
 
 

@@ -35,7 +35,7 @@ from squealpipe.solvers.a1.reference import (
     symbolic_automaton,
 )
 
-ROUND_OFF = 2.0**-52
+ULP = 2.0**-52
 _PIVOT = 1e-3
 """A distance from a pivot over the spring's length at which a cycle counts as meeting it."""
 _TANGENT, _BEFORE = 1e-4, 1e-3
@@ -106,7 +106,7 @@ class A1Flow:
     def start(self, state: Vector) -> tuple[int, Vector]:
         """The regime of a state, and the state off any surface."""
         regime = self.a1.start(state)
-        return regime, self.a1.leave(regime, state, ROUND_OFF)
+        return regime, self.a1.leave(regime, state, ULP)
 
     def switch(self, surface: int, regime: int, state: Vector) -> Switched:
         """What follows when a surface is met."""
@@ -119,7 +119,7 @@ class A1Flow:
             values = self._gradients(on_surface, pars=self._behind[regime])
             gradient = values.reshape(-1, len(state) + 1)[surface]
         return Switched(
-            int(_event(kind, after)), after, self.a1.leave(after, on_surface, ROUND_OFF), gradient
+            int(_event(kind, after)), after, self.a1.leave(after, on_surface, ULP), gradient
         )
 
     def velocity(self, regime: int, state: Vector) -> Vector:

@@ -16,7 +16,7 @@ from squealpipe.laws.friction import stick_limit
 from squealpipe.laws.springs import Geometry
 from squealpipe.methods.hybrid import HybridRun
 from squealpipe.methods.taylor.long_double import (
-    ROUND_OFF,
+    LONG_ULP,
     compile_long_double,
     integrate_long_double,
 )
@@ -91,7 +91,7 @@ def simulate_reference(
         if kind == EventKind.separation and regime == Regime.separated:
             kind = EventKind.contact
         after, z = a1.switch(kind, regime, z)
-        return kind, after, a1.leave(after, z, ROUND_OFF)
+        return kind, after, a1.leave(after, z, LONG_ULP)
 
     state = np.asarray(initial_state, dtype=np.longdouble)
     regime = a1.start(state)
@@ -99,5 +99,5 @@ def simulate_reference(
         state[2] = params.belt_speed
     return integrate_long_double(
         _integrator(params.friction_law), partial(regime_values, a1),
-        (regime, a1.leave(regime, state, ROUND_OFF)), switch, t_end, stop_at=stop_at,
+        (regime, a1.leave(regime, state, LONG_ULP)), switch, t_end, stop_at=stop_at,
     )  # fmt: skip

@@ -7,7 +7,7 @@ import xarray as xr
 
 from squealpipe.study.claims.evidence import MissingDataError, Run
 
-ROUND_OFF = 1e-12
+SAME_STIFFNESS = 1e-12
 """Share of a stiffness below which a difference of stiffnesses counts as none."""
 
 
@@ -83,7 +83,9 @@ def unstable_yet_sliding(run: Run) -> tuple[xr.DataArray, xr.DataArray]:
 
 def coupling_is_negative(run: Run) -> xr.DataArray:
     """Cells with K12 < 0."""
-    return stiffness(run, "stiffness_xy") < -ROUND_OFF * (run.parameters.k1 + run.parameters.k2)
+    return stiffness(run, "stiffness_xy") < -SAME_STIFFNESS * (
+        run.parameters.k1 + run.parameters.k2
+    )
 
 
 def order_turns_over(run: Run) -> xr.DataArray:
@@ -93,7 +95,7 @@ def order_turns_over(run: Run) -> xr.DataArray:
     """
     difference = stiffness(run, "stiffness_x") - stiffness(run, "stiffness_y")
     k3 = run.parameters.k3
-    return (difference > ROUND_OFF * k3) & (difference < (1 - ROUND_OFF) * k3)
+    return (difference > SAME_STIFFNESS * k3) & (difference < (1 - SAME_STIFFNESS) * k3)
 
 
 def stiffness(run: Run, name: str) -> xr.DataArray:

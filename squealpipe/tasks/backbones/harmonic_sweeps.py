@@ -27,7 +27,7 @@ Branches = Mapping[str, tuple[float, float, int]]
 _INTERVALS = 2**14
 """Intervals of half a period from which an exact orbit's cosines are taken."""
 _SHAPE_INTERVALS = 512
-_ROUND_OFF = 1e-12
+_FLOOR = 1e-12
 """Errors below this say nothing of a convergence rate."""
 _PHASES = 13
 """Phases of the start; not a divisor of the samples, whose own symmetry would hide the spread."""
@@ -174,7 +174,7 @@ def _rates(settings: Sequence[float], errors: Vector) -> Vector:
     flat = errors.reshape(-1, errors.shape[-1])
     fitted = np.full(len(flat), np.nan)
     for index, row in enumerate(flat):
-        usable = np.isfinite(row) & (row > _ROUND_OFF)
+        usable = np.isfinite(row) & (row > _FLOOR)
         if usable.sum() >= 2:
             logs = np.log(np.asarray(settings, float)[usable]), np.log(row[usable])
             fitted[index] = -np.polyfit(*logs, 1)[0]

@@ -16,7 +16,7 @@ from squealpipe.parameters import Parameters
 from squealpipe.schema import Outcome, build
 from squealpipe.schema.cycles import LIMIT_CYCLE
 from squealpipe.schema.origin import recorded
-from squealpipe.solvers.a1.flow import ROUND_OFF, A1Flow
+from squealpipe.solvers.a1.flow import ULP, A1Flow
 from squealpipe.validation import Angle, Positive, State, one_of
 
 T_SETTLE = 2000.0
@@ -155,7 +155,7 @@ def _comes_to_rest(system: A1Flow, state: Vector, window: float) -> bool:
 
     middle = path[200:, :2].mean(axis=0)
     rest = root(pull, middle, tol=1e-13)
-    round_off = ROUND_OFF * (1.0 + max(p.length1, p.length2) / p.preload)
+    round_off = ULP * (1.0 + max(p.length1, p.length2) / p.preload)
     # the solver may deny success of a place that round-off keeps from being better
     found = np.abs(rest.fun).max() <= 64.0 * round_off + 1e-9 * second
     near = np.abs(rest.x - middle).max() <= 0.5 * second + 1e-9 * _reach(path)

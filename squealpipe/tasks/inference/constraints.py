@@ -123,7 +123,7 @@ def _linearly_stable(candidates: Candidates) -> Margin:
         found = stability(damped_system(params, *scene))
         decay = -found.growth_rate[0] * params.time_unit
         # what decays or grows by no more than round-off is as without damping
-        if found.regime[0] != LinearRegime.stable or decay > a2.ROUND_OFF:
+        if found.regime[0] != LinearRegime.stable or decay > a2.FEW_ULPS:
             margin[i] = decay
     return _closed(margin)
 
@@ -136,7 +136,7 @@ def _modes_switched(candidates: Candidates) -> Margin:
     second = after.k11 - after.k22 - fields["k3"]
     by_springs = np.maximum(np.abs(before.k12), np.abs(after.k12))
     coupling = np.maximum(by_springs, _coupling_by_dashpots(fields))
-    isolated = coupling <= a2.ROUND_OFF * fields["k1"]
+    isolated = coupling <= a2.FEW_ULPS * fields["k1"]
     margin = np.where(isolated, np.minimum(first, second), -coupling)
     return _closed(margin / fields["k1"])
 

@@ -65,7 +65,7 @@ def quasi_static_map(
         actuation=load,
     )
     # Farther out than this, the state is the quotient of two round-off errors.
-    farthest = load / (a2.ROUND_OFF * (params.k1 + params.k2))
+    farthest = load / (a2.FEW_ULPS * (params.k1 + params.k2))
     singular = ~(np.hypot(state[0], state[1]) < farthest)
     x, y, force = (np.where(singular, np.nan, value) for value in state)
     return build(
@@ -172,7 +172,7 @@ def natural_frequencies(params: Parameters, alpha1: Angles, alpha2: Angles) -> x
     for state, k3 in enumerate((params.k3, 0.0)):
         squares = natural_frequencies_squared(_spectrum(params, alpha1, alpha2, k3))
         # Below this ω1 is the round-off of a free direction, as at α1 = α2 = π/2 in contact.
-        smallest = a2.ROUND_OFF**2 * np.abs(squares[1])
+        smallest = a2.FEW_ULPS**2 * np.abs(squares[1])
         for mode, square in enumerate(squares):
             rigid = np.abs(square) <= smallest
             omega[..., mode, state] = np.where(rigid, 0.0, np.abs(np.sqrt(-square).imag))

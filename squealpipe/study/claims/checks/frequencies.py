@@ -16,7 +16,7 @@ rows = Rows()
 VANISHING = 1e-6
 """ω1 below this share of its largest value is zero."""
 
-ROUND_OFF = 1e-9
+SAME_OMEGA = 1e-9
 """Relative excess over the value on a line that rounding of the angles may cause."""
 
 SMALL, LARGE = 0.1, 0.98
@@ -100,14 +100,14 @@ def first_is_largest_on_lines(run: Run) -> Finding:
     return finding(
         max(excess.values()),
         "≤",
-        ROUND_OFF,
+        SAME_OMEGA,
         "Separated, the largest ω1² "
-        + ("lies" if excess["separated"] <= ROUND_OFF else "does not lie")
+        + ("lies" if excess["separated"] <= SAME_OMEGA else "does not lie")
         + " on α1 + α2 = π/2 or 3π/2. "
         f"In contact it is {largest / unit:.4g} k1/m at ({first_angle:.3g}π, {second_angle:.3g}π), "
         f"against {line / unit:.4g} k1/m on those lines. For even n ω1 = 0 there when separated.",
         otherwise=Verdict.holds_only_as_printed
-        if excess["separated"] <= ROUND_OFF
+        if excess["separated"] <= SAME_OMEGA
         else Verdict.fails,
     )
 

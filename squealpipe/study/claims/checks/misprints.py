@@ -17,7 +17,7 @@ from squealpipe.study.claims.statement import Rows
 
 rows = Rows()
 
-ROUND_OFF = 4.0 * np.finfo(float).eps
+FEW_ULPS = 4.0 * np.finfo(float).eps
 """Stiffnesses below this share of k1 + k2 count as zero."""
 
 WRONG_FREQUENCY = 1e-3
@@ -299,7 +299,7 @@ def reaction_is_that_of_equilibrium(run: Run) -> Finding:
 def nondimensional_time_exists(run: Run) -> Finding:
     """E12: cells where K11 = 0, so that τ = ω11·t and Eqs. (13)–(17) do not exist."""
     k11 = stiffness(run, "stiffness_x")
-    undefined = k11 <= ROUND_OFF * (run.parameters.k1 + run.parameters.k2)
+    undefined = k11 <= FEW_ULPS * (run.parameters.k1 + run.parameters.k2)
     where = ", ".join(
         f"({float(k11.alpha1[row]) / np.pi:.3g}π, {float(k11.alpha2[column]) / np.pi:.3g}π)"
         for row, column in np.argwhere(undefined.values)

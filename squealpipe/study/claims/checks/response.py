@@ -15,7 +15,7 @@ from squealpipe.study.claims.statement import Check, Rows
 
 rows = Rows()
 
-ROUND_OFF = 1e-10
+SAME_FORCE = 1e-10
 """Difference of normalized contact forces that two identical runs may show."""
 
 LONGEST = 2.0
@@ -212,7 +212,7 @@ def runs_are_identical(run: Run) -> Finding:
     return finding(
         difference,
         "≤",
-        ROUND_OFF,
+        SAME_FORCE,
         f"The contact forces differ by at most {difference:.1g} of the preload.",
     )
 

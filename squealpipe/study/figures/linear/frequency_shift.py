@@ -21,7 +21,7 @@ CAPTION = (
     "the frequency falls when contact is lost; red: it rises, on a scale of its own; black lines "
     "lie between the two. Hatched: flutter in contact."
 )
-ROUND_OFF = 1e-9
+NO_SHIFT = 1e-9
 """A shift below this is none: where K12 = 0 one frequency does not depend on contact."""
 ALT = "Two maps over both angles of the frequency shift between contact states, in blue and red."
 
@@ -35,11 +35,11 @@ def draw(frequencies: xr.Dataset) -> Figure:
     angles = frequencies.alpha1.values, frequencies.alpha2.values
     for panel, letter, mode in zip(axes[0], "ab", (1, 2), strict=True):
         values = shift.sel(mode=mode).values
-        low, high = min(float(values.min()), -ROUND_OFF), max(float(values.max()), ROUND_OFF)
+        low, high = min(float(values.min()), -NO_SHIFT), max(float(values.max()), NO_SHIFT)
         scale = TwoSlopeNorm(0.0, low, high)
         mesh = draw_map(panel, *angles, values, cmap="RdBu_r", norm=scale)
         panel.contour(
-            *angles, values.T, levels=[ROUND_OFF], colors="black", linewidths=0.7
+            *angles, values.T, levels=[NO_SHIFT], colors="black", linewidths=0.7
         )  # fmt: skip
         outcome = frequencies.outcome.sel(mode=mode, contact_state="contact").values
         outline(panel, frequencies, outcome == Outcome.complex_pair)
