@@ -68,7 +68,7 @@ def test_every_mistake_is_told_at_once(written):
         "parameters.belt_speed = inf: ",
         "parameters.preload = True: a number is needed",
         "parameters.lenght1: unknown key; did you mean 'length1'?",
-        "line 11: key 'points' stands twice",
+        "line 11: key 'points' is a duplicate",
         "linear.points = 61.5: ",
         "mu: unknown key; did you mean parameters.mu",
         "colour: unknown key; known: ",

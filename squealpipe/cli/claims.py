@@ -32,7 +32,7 @@ def claims(
 ) -> int:
     """Print the paper's statements with their verdicts; those that are named, in full.
 
-    With the shipped parameters, exit code 1 tells that a verdict differs from the recorded one.
+    With the shipped parameters, exit code 1 means that a verdict differs from the recorded one.
 
     Example: `squealpipe claims F2d` or `squealpipe claims --only fails`
 

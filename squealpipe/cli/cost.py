@@ -1,4 +1,4 @@
-"""What a request will cost, told before it is begun; large ones need --yes.
+"""What a request will cost, stated before it begins; large ones need --yes.
 
 The rates were measured on one core of an ordinary server and are right within a factor of a few,
 which is enough to tell minutes from days.

@@ -66,7 +66,7 @@ def propensity(
     """
     distributions = dict(map(_distribution, spread))
     if len(distributions) < len(spread):
-        raise ValueError("--spread: a name stands twice; keep one")
+        raise ValueError("--spread: a duplicate name; keep one")
     for name in sorted(set(distributions) & SESSION.typed):
         raise ValueError(f"{name} is both fixed and spread; keep one")
     t_end = HORIZON * params.time_unit if t_end is None else t_end

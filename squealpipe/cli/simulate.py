@@ -45,7 +45,7 @@ def simulate(
     config: Configs = None,  # noqa: ARG001 (read by `parameters_from_study`)
     params: Physical = BASELINE,
 ) -> int:
-    """Integrate one configuration, from rest unless told otherwise; write a dataset and a picture.
+    """Integrate one configuration, from rest unless given otherwise; write a dataset and a picture.
 
     Example: `squealpipe simulate 5pi/6 5pi/6 --t-end 100 --mu 0.2 -o hammering.nc`
 

@@ -94,7 +94,7 @@ def _pairs(flag: str, texts: Sequence[str]) -> dict[str, str]:
     """Name → value of each NAME=VALUE.
 
     Raises:
-        ValueError: a text is none, or a name stands twice.
+        ValueError: a text is none, or a duplicate name.
     """
     found: dict[str, str] = {}
     for text in texts:
@@ -104,6 +104,6 @@ def _pairs(flag: str, texts: Sequence[str]) -> dict[str, str]:
         key = name.strip().replace("-", "_")
         key = SYMBOLS.get(key, key)
         if key in found:
-            raise ValueError(f"{flag} {key} stands twice; keep one, with all its values")
+            raise ValueError(f"{flag} {key} is a duplicate; keep one, with all its values")
         found[key] = value
     return found

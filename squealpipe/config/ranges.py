@@ -164,7 +164,7 @@ def sweep_config(
     fixed: Mapping[str, Any],
     parameters: Mapping[str, float],
 ) -> dict[str, Any]:
-    """The configuration of a sweep in its one form; no parameter that it names stands twice.
+    """The configuration of a sweep in its one form; no parameter that it names is a duplicate.
 
     Args:
         task: name of the task.

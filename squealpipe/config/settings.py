@@ -208,7 +208,7 @@ def parse_study(
 
     Args:
         content: keys and values.
-        faults: mistakes found before, in the text; told together with those of the values.
+        faults: mistakes found before, in the text; reported together with those of the values.
         place: keys from the outermost on → the words that say where that is.
 
     Raises:

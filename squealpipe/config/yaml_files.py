@@ -141,6 +141,6 @@ def _node_faults(event: yaml.NodeEvent) -> Iterator[str]:
 
 def _key_faults(key: str, seen: set[str]) -> Iterator[str]:
     if key in seen:
-        yield f"key {key!r} stands twice; keep one"
+        yield f"key {key!r} is a duplicate; keep one"
     if key == CODE:
         yield f"key {CODE!r} would run code; a configuration is data"

@@ -156,7 +156,7 @@ LICENCE = "MIT"
 REFERENCES = (
     "O. T. Şen and R. Singh, Dynamics of a simplified nonlinear model offering insights into the "
     "hammering type brake squeal initiation process, Noise Control Engineering Journal, 2021; "
-    "computed by squealpipe (see package_version and commit; CITATION.cff tells how to cite it)"
+    "computed by squealpipe (see package_version and commit; CITATION.cff says how to cite it)"
 )
 ANGLE_CONVENTION = (
     "Spring 1 has its fixed end at (+L1 cos alpha1, +L1 sin alpha1), spring 2 at (-L2 cos alpha2, "

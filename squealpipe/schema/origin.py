@@ -21,13 +21,13 @@ from squealpipe.validation import checked
 
 LIBRARIES = ("numpy", "scipy", "xarray", "netCDF4", "heyoka", "numba")
 LONGEST = 8
-"""Arguments with more values than this are told by first, last and number."""
+"""Arguments with more values than this are recorded by first, last and number."""
 INHERITED = ("parameters", "model", "method", "tolerance")
 
 Given = ParamSpec("Given")
 
 _HOW: dict[str, tuple[str, str]] = {}
-"""Task → model and method, as :func:`recorded` was told."""
+"""Task → model and method, as given to :func:`recorded`."""
 
 
 def recorded(

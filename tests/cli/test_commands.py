@@ -75,7 +75,7 @@ def test_help_loads_no_numerics():
         (["map", "stability", "--alpha1", "1"], "2 or more angles of each spring"),
         (["sweep", "stability_map", "--vary", "mu"], "write for instance mu=0:0.6:13"),
         (["sweep", "anything", "--vary", "mu=1,2"], "choose from simulate"),
-        ([*SWEPT, "--vary", "mu=1,2", "--vary", "mu=3,4"], "--vary mu stands twice"),
+        ([*SWEPT, "--vary", "mu=1,2", "--vary", "mu=3,4"], "--vary mu is a duplicate"),
         ([*SWEPT, "--vary", "mu=1,2", "--mu", "0.3"], "mu is both fixed and varied"),
         ([*SWEPT, "--vary", "alpha1=0:1:3"], "alpha1 is both fixed and varied"),
         (["propensity", "1", "2", "--spread", "mu=uniform:0.1"], "mu=uniform:0.1:0.9"),

@@ -64,7 +64,7 @@ class CycleEquations:
 
 
 def cycle_algorithm(steps: ContinuationSettings) -> PseudoArclength:
-    """For equations that are dear to evaluate: a good guess is a point, with its own tangent."""
+    """For equations expensive to evaluate: a good guess is a point, with its own tangent."""
     return PseudoArclength(steps, least_iterations=0, own_tangent=True)
 
 

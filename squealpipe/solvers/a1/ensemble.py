@@ -339,7 +339,7 @@ def _run_lanes(
     drive(lane_kernel(), Workspace(TABLE, {name: arrays[name] for name in ARRAYS}, sizes), clock)
     if lanes["job"].max() != IDLE or arrays["queue"][0]["next"] < len(jobs.orders):
         raise RuntimeError(
-            "an exception in compiled code, told above, ended the integration before its runs "
+            "an exception in compiled code, reported above, ended the integration before its runs "
             "were finished; please report the parameters"
         )
 

@@ -29,9 +29,9 @@ LEAST_FITTED = 3
 ONSET_ROUNDS, ONSET_SPEEDS = 2, 15
 """Each round divides the interval that holds the onset by the number of speeds + 1."""
 AGES = 201
-"""Ages at which the share of survivors is told."""
+"""Ages at which the share of survivors is stated."""
 SPANS = np.array([0.0, 0.1, 0.2, 0.4, 1.0])
-"""Edges of the spans of age in which the hazard is told, over the end of the runs."""
+"""Edges of the spans of age in which the hazard is stated, over the end of the runs."""
 ESCAPE_TURNS = 10.0
 """Net turns that a pendulum swinging back and forth over the top never makes."""
 LARGEST_PERTURBATION = 1e-9
@@ -51,7 +51,7 @@ def whirl_sizes(
     Far from the fixed end both springs pull as one of stiffness k1 + k2, so a mass that passes
     the belt at speed V swings out to x = (1 + c1) L + V √(m/(k1 + k2)), L the mean of both free
     lengths weighted by stiffness. The fit takes this line's form, over all speeds with a whirl
-    larger than four free lengths; ``fit_range`` and ``residual`` tell how far and how well it
+    larger than four free lengths; ``fit_range`` and ``residual`` say how far and how well it
     holds. The onset of the whirl is bracketed below the slowest belt that whirls the mass, in two
     rounds of 15 speeds each.
 

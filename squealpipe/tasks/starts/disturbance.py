@@ -52,7 +52,7 @@ def smallest_disturbance(
     A disturbance (x, y, ẋ, ẏ) has the norm √((x² + y²)/l_pre² + (ẋ² + ẏ²)/(l_pre ω)²) with
     ω² = (k1 + k2)/(2m). The smallest one that was found is an upper bound on the smallest there is:
     random directions are tried at 16 radii up to the bound, bisected, and the best four improved.
-    How the minimum falls with the number of directions is told, and so is the largest share of
+    How the minimum falls with the number of directions is reported, and so is the largest share of
     directions that can have a smaller one (95 %, order statistics).
 
     Args:

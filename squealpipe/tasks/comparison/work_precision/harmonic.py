@@ -24,7 +24,7 @@ from squealpipe.tasks.comparison.work_precision.solutions import Solution, timed
 TASK = "harmonic balance"
 REFERENCE_ERROR = 1e-14
 DEFAULT_HARMONICS = 16
-"""N_h of our backbones unless told otherwise."""
+"""N_h of our backbones unless given otherwise."""
 MODE = 1
 COUPLED_SCENE = (0.3 * math.pi, 0.9 * math.pi)
 """Angles at which mode 1 moves in x and y and loses contact, rad."""

@@ -23,7 +23,7 @@ TASK = "integration"
 REFERENCE_ERROR = 1e-16
 """Long double, tolerance 1e-19, outside chaos."""
 DEFAULT_TOLERANCE = 1e-12
-"""The tolerance that our tasks use unless told otherwise."""
+"""The tolerance that our tasks use unless given otherwise."""
 ENSEMBLE = 64
 """Runs of the ensemble whose time per run is quoted."""
 _STIFF_LIMIT = 1e-8
