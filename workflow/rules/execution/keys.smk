@@ -48,7 +48,8 @@ for known in workflow.rules:
 KEYS = {path: file_key(known.params.key, path) for path, known in MAKERS.items() if known.is_script and "{" not in path}
 """File → the key that it must state."""
 
-TARGETS += KEYS
+if STUDY.paper:  # a study of one's own makes what its report needs
+    TARGETS += KEYS
 
 for known in workflow.rules:  # the report holds what it shows against the keys
     if known.name in ("write_report", "write_own_report"):
