@@ -7,6 +7,7 @@ from scipy.optimize import brentq
 
 from squealpipe import stability_map
 from squealpipe.schema import Outcome
+from squealpipe.schema.inference import of_study
 from squealpipe.tasks.inference.inference import infer_parameters
 from squealpipe.tasks.spread import reach
 from squealpipe.tasks.spread.distributions import distribution
@@ -153,7 +154,7 @@ def test_settings_differ_from_the_paper_one_at_a_time():
 
 
 def test_feasible_sets_are_judged_by_what_was_predicted_alone():
-    inferred = infer_parameters(FORMER, samples=512, tol=1e-6)
+    inferred = of_study(infer_parameters(FORMER, samples=512, tol=1e-6))
     count = int(inferred.feasible_count)
     names = ["F2a", *inferred.consequence.values.tolist()]
     fitted, *predicted = _feasible(inferred, names)
