@@ -58,19 +58,19 @@ def test_the_swing_of_fig_4_stays_below_two_lengths(scene):
 
 
 def test_as_printed_a1_and_the_linear_model_disagree_about_the_sign_and_corrected_they_agree(
-    quick_study,
+    tiny_study,
 ):
     for folder, agree in (("", False), ("corrected/", True)):
-        data = quick_study.results / f"data/{folder}"
+        data = tiny_study.results / f"data/{folder}"
         run = load(data / "simulate/F2a.nc")
         static = load(data / "quasi_static_map.nc").x_static
         linear = static.sel(alpha1=np.pi / 2, alpha2=np.pi, method="nearest")
         assert (float(run.x.mean()) * float(linear) > 0) == agree
 
 
-def test_the_black_region_of_fig_7_is_there_as_printed_only(quick_study):
+def test_the_black_region_of_fig_7_is_there_as_printed_only(tiny_study):
     for folder, there in (("", True), ("corrected/", False)):
-        validity = load(quick_study.results / f"data/{folder}validity_map.nc")
+        validity = load(tiny_study.results / f"data/{folder}validity_map.nc")
         assert bool(((validity.separates == 0) & (validity.regime_linear > 0)).any()) == there
 
 
