@@ -135,7 +135,7 @@ def test_simulate_writes_a_run_and_a_picture_and_sums_it_up(capsys, tmp_path):
 
 
 def test_a_run_that_ends_at_once_says_why(capsys):
-    assert run(["simulate", "0", "pi", "--x0", "5"]) == 1  # on both pivots
+    assert run(["simulate", "0", "pi", "--x0", "15"]) == 1  # on both pivots
     out = capsys.readouterr().out
     assert "the run ended early: singular_geometry (the mass met a pivot" in out
     assert "wrote run.nc, too short for a picture" in out

@@ -295,8 +295,8 @@ def test_critical_friction_where_a_mode_moves_hardly_a_dashpot(angles, dashpots,
     ("change", "named"),
     [
         ({"alpha1": math.nan}, "alpha1 = nan"),
-        ({"damping1": [-0.1]}, "damping1: numbers of 0 or greater"),
-        ({"damping2": [[0.1]]}, "damping2: numbers of 0 or greater"),
+        ({"damping1": [-0.1]}, r"damping1 = \[-0.1\]: numbers of 0 or greater"),
+        ({"damping2": [[0.1]]}, "damping2 = .* a 1-D array is needed"),
     ],
 )
 def test_the_map_over_dashpots_refuses_what_is_no_dashpot(change, named) -> None:

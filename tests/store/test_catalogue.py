@@ -31,9 +31,9 @@ def told(capsys, *arguments):
     [
         ("mu == 0.25", ["second", "results"]),
         ("mu == 0.25 and L1 > 4", ["second", "results"]),
-        ("mu > 0.25 or not k3 == 0.75", ["first"]),
+        ("mu > 0.25 or not k3 == 0.65", ["first"]),
         ("0.2 < mu <= 0.25 and linear.points in [13, 31]", ["second", "results"]),
-        ("length1 / l_pre == 5 and mu * 4 == 1", ["second", "results"]),
+        ("length1 / l_pre == 15 and mu * 4 == 1", ["second", "results"]),
         ("damping1 == 0 and mu_static < 0.3 and friction_law == 'coulomb'", ["second", "results"]),
     ],
 )

@@ -5,7 +5,6 @@ import pytest
 import xarray as xr
 
 from squealpipe import (
-    Parameters,
     cycle_branch,
     hammering_map,
     limit_cycle,
@@ -18,6 +17,7 @@ from squealpipe.schema.agreement import magnitude, most, sampled, unjudged
 from squealpipe.store.comparison.compare import compare_datasets
 from squealpipe.store.comparison.differences import Agreement
 from squealpipe.store.comparison.round_off import judge
+from tests.former import FORMER
 
 
 def rounded(a, b, how, **entry):
@@ -77,7 +77,7 @@ def test_runs_agree_to_the_digits_that_growth_leaves():
     scene = SCENES["F4"]
     runs = [
         simulate(
-            Parameters(),
+            FORMER,
             scene.alpha1,
             scene.alpha2,
             t_end=500.0,
@@ -98,7 +98,7 @@ def test_runs_agree_to_the_digits_that_growth_leaves():
 
 def test_cells_beyond_the_horizon_are_one_sample_and_the_others_are_not():
     scene = {"alpha1": np.linspace(0.15, 3.0, 12), "alpha2": np.linspace(0.15, 3.0, 12)}
-    made = hammering_map(Parameters(), **scene, t_end=50.0)
+    made = hammering_map(FORMER, **scene, t_end=50.0)
     made.outcome[:, :6] = Outcome.beyond_horizon
     lost = (made.outcome == Outcome.beyond_horizon).values
     verdicts = {}
@@ -118,7 +118,7 @@ def test_cells_beyond_the_horizon_are_one_sample_and_the_others_are_not():
 
 
 def test_points_that_steps_placed_elsewhere_are_no_difference_but_a_special_point_is():
-    damped = Parameters(damping1=0.02, damping2=0.02)
+    damped = FORMER.with_(damping1=0.02, damping2=0.02)
     scene = 0.4 * np.pi, 0.6 * np.pi
     start = limit_cycle(damped, *scene)
     branch = cycle_branch(damped, *scene, parameter="mu", to=0.2, start=start)

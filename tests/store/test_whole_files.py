@@ -37,7 +37,7 @@ def test_ids_of_inputs_are_those_of_the_files_that_the_task_read(tmp_path):
 
 
 def test_a_foreign_part_is_named(tmp_path):
-    parts = Checkpoint.beside(tmp_path / "sweep.nc", config={"task": "x"})
+    parts = Checkpoint.beside(tmp_path / "sweep.nc", key="x")
     for index in (0, 1):
         parts.write(index, {"a": np.arange(2.0) + index})
     assert parts.read(1)["a"].tolist() == [1.0, 2.0]

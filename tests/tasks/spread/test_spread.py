@@ -119,8 +119,8 @@ def test_impossible_distributions_are_refused(name, given, words):
         ({"spring_correlation": 1.0}, "spring_correlation = 1.0"),
         ({"spring_correlation": 0.5}, "distributions of k1 and k2"),
         ({"distributions": {}}, "distributions = {}: .*1 or more"),
-        ({"distributions": ["mu"]}, r"distributions = \['mu'\]: must be"),
-        ({"distributions": None}, "distributions = None: must be"),
+        ({"distributions": ["mu"]}, r"distributions = \['mu'\]: names and values"),
+        ({"distributions": None}, "distributions = None: names and values"),
         ({"distributions": {"mu": "uniform"}}, "mu = 'uniform': a mapping is needed"),
     ],
 )
