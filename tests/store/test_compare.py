@@ -276,6 +276,8 @@ def test_statements_that_changed_are_told_with_verdict_value_and_figures(tmp_pat
     for place, (verdict, value) in judged.items():
         numbers = dict.fromkeys(("threshold", "margin", "feasible_share"), [1.0] * 3)
         flags = {"verdict": verdict, "verdict_here": verdict, "recorded": [0] * 3}
+        flags |= {"corrected_verdict": verdict, "corrected_value": value}
+        text["corrected_evidence"] = ["t"] * 3
         data = {**text, **numbers, **flags, "value": value, "figure": ["fig02", "fig03", ""]}
         save(build(CLAIMS, data, {"claim": claims}), tmp_path / place / "data/claims.nc")
     (tmp_path / "a/figures").mkdir()
