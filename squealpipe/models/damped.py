@@ -187,7 +187,7 @@ def critical_friction(
     p2 = k11 + k22 + product
     # p3 = a + b μ and p4 = d + e μ
     a, b = c11 * k22 + c22 * k11 - 2.0 * c12 * k12, -c12 * push
-    d = determinant / p.mass**2 + p.k3 / p.mass * k11
+    d = determinant / p.mass / p.mass + p.k3 / p.mass * k11
     e = -push * k12
     mode = 0.5 * np.arctan2(2.0 * k12, k11 - k22)
     along, across = (
