@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import re
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -10,6 +13,18 @@ from squealpipe.schema import Outcome
 from squealpipe.systems.belt_friction import exponential_oscillator, leine_oscillator
 from squealpipe.systems.bouncing_ball import bouncing_ball
 from squealpipe.systems.impact_oscillator import impact_oscillator
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+def test_the_page_on_systems_runs(capsys):
+    page = (ROOT / "docs/systems.md").read_text(encoding="utf-8")
+    blocks = re.findall(r"^```python\n(.*?)^```", page, flags=re.MULTILINE | re.DOTALL)
+    scope = {}
+    for block in blocks:
+        exec(block, scope)  # noqa: S102
+    assert "19 impacts, the first at 6.57" in capsys.readouterr().out
+    assert scope["found"].outcome.dims == ("x0", "omega")
 
 
 def times_of(run, kind):
