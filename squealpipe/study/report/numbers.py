@@ -17,7 +17,7 @@ def numbers(run: Run) -> dict[str, float | str]:
     """Name in ``templates/narrative.typ`` → number; percentages are between 0 and 100."""
     return {
         key: value.item() if isinstance(value, np.generic | xr.DataArray) else value
-        for part in (_verdicts, _growth, _linear, _valid, _bounded, _periodic, _spread)
+        for part in (_verdicts, _inferred, _growth, _linear, _valid, _bounded, _periodic, _spread)
         for key, value in part(run).items()
     }
 
@@ -28,6 +28,21 @@ def _verdicts(run: Run) -> dict[str, Any]:
     found = {verdict.name: (own.verdict == verdict).sum() for verdict in Verdict}
     changed = (own.corrected_verdict != own.verdict).sum()
     return {"statements": own.sizes["claim"], "mended_changes": changed, **found}
+
+
+def _inferred(run: Run) -> dict[str, Any]:
+    found = run["parameter_inference"]
+    shares = {
+        f"share_{reading}{end}": 100 * found[f"share{end}"].sel(reading=reading)
+        for reading in found.reading.values
+        for end in ("", "_low", "_high")
+    }
+    return {
+        "sets": found.sizes["sample"],
+        "simple_sets": found.sizes["simple"],
+        "margin": found.simple_margin.min("statement").max(),
+        **shares,
+    }
 
 
 def _growth(run: Run) -> dict[str, Any]:
