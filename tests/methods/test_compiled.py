@@ -16,8 +16,8 @@ PROGRAM = """
 import math
 from squealpipe.parameters import Parameters
 from squealpipe.tasks.backbones.orbit import periodic_orbit
-from tests.former import FORMER
-found = periodic_orbit(FORMER, math.pi / 2, math.pi, mode=2, y_peak=2.0)
+params = Parameters(k3=0.75, mu=0.3, belt_speed=100.0, length1=5.0, length2=5.0)
+found = periodic_orbit(params, math.pi / 2, math.pi, mode=2, y_peak=2.0)
 print(repr(float(found.omega)))
 """
 KNOWN = 1.23408516277258

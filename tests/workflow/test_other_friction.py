@@ -19,7 +19,7 @@ NOT_CARRIED = {
     "trace_backbones", "follow_doublings", "sweep_harmonic_balance", "compare_a1_with_a4",
     "map_orbits", "infer_parameters", "map_model_ladder", "measure_integration",
     "measure_frequencies", "compute_explorer", "write_explorer", "animate_scenes",
-    "draw_backbones", "draw_inference",
+    "draw_backbones", "draw_inference", "check_assumptions",
 }  # fmt: skip
 """Rules of levels with the paper's friction alone, and what reads nothing but their datasets."""
 

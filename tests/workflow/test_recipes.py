@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+import json
 import os
 import re
 import subprocess
@@ -11,6 +12,8 @@ from pathlib import Path
 from textwrap import indent
 
 import pytest
+
+from squealpipe.rerun.key import PLAN
 
 pytestmark = pytest.mark.release
 
@@ -227,16 +230,19 @@ declared.draw("model_ladder", {"model_ladder": ladder}).savefig("model_ladder.pn
     python(folder, script)
 
 
-def test_workflow_plans_the_new_figure_and_watches_the_new_level(extended, snakemake):
+def test_workflow_plans_the_new_figure_and_watches_the_new_level(
+    extended, snakemake, tmp_path, monkeypatch
+):
     folder, _ = extended
-    targets = ["results/figures/impacts.png", "results/data/model_ladder.nc"]
-    run = snakemake(folder, "--dry-run", *targets, "--nocolor")
+    monkeypatch.setenv(PLAN, str(tmp_path / "plan.json"))
+    figure, ladder = "results/figures/impacts.png", "results/data/model_ladder.nc"
+    run = snakemake(folder, "--dry-run", figure, ladder)
     assert run.returncode == 0, run.stderr[-3000:]
-    plan = run.stdout + run.stderr
-    for rule, paths in {
-        "draw_dynamics": ("hammering_map.nc", "simulate/F2b.nc", "figures/dynamics/impacts.py"),
-        "map_model_ladder": ("levels/a2_static.py", "friction_laws/rising.py"),
+    plan = json.loads((tmp_path / "plan.json").read_text())
+    for name, paths in {
+        figure: ("hammering_map.nc", "simulate/F2b.nc", "figures/dynamics/impacts.py"),
+        ladder: ("levels/a2_static.py", "friction_laws/rising.py"),
     }.items():
-        block = plan[plan.index(f"rule {rule}:") :].split("jobid")[0]
+        read = " ".join(plan[name]["inputs"] + plan[name]["sources"])
         for path in paths:
-            assert path in block
+            assert path in read
