@@ -24,8 +24,8 @@ from tests.browser import chromium_path, open_page
 ANGLES = np.linspace(0, np.pi, 7)
 FINE = np.linspace(0, np.pi, 13)
 OPTIONS = (
-    "--t-end 60 --points 301 --mass 1 --k1 1 --k2 1 --k3 0.75 --mu 0.3 --belt-speed 100 "
-    "--preload 1 --length1 5 --length2 5 --sigma 1000"
+    "--t-end 60 --points 301 --mass 1 --k1 1 --k2 1 --k3 0.65 --mu 0.3 --belt-speed 100 "
+    "--preload 1 --length1 15 --length2 15 --sigma 1000"
 )
 CURVE = "document.getElementById('{}').chart.traces[{}]"
 
