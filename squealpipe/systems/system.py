@@ -14,7 +14,6 @@ from squealpipe.methods.taylor.scalar import REGIME, SwitchSymbols, evaluate
 from squealpipe.methods.taylor.symbols import Symbol, parameter, symbol
 from squealpipe.parameters import is_finite_number
 from squealpipe.systems.trace import (
-    TIME,
     TIME_UNIT,
     Traced,
     Tracer,
@@ -385,6 +384,3 @@ def _indicator(regime: str) -> str:
 
 def _largest(value: Any) -> float:
     return float(np.max(np.abs(value), initial=0.0))
-
-
-__all__ = ["TIME", "Switch", "System"]

@@ -12,6 +12,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
+import numpy as np
 from numba import types
 
 from squealpipe.methods.compiled import compiled_entry
@@ -220,8 +221,6 @@ def evaluate(roots: Sequence[Symbol], values: dict[str, Any]) -> Iterator[Any]:
         elif node.kind == "joined":
             found[id(node)] = inner[0] * inner[1] * inner[2] + inner[3] * inner[4] * inner[5]
         elif node.kind in FUNCTIONS:
-            import numpy as np
-
             found[id(node)] = getattr(np, node.kind)(inner[0])
         elif node.kind == "+":
             found[id(node)] = inner[0] + inner[1]
