@@ -4,15 +4,20 @@ from __future__ import annotations
 
 import re
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
+from scipy.linalg import expm
 
 from squealpipe.functions import sqrt
 from squealpipe.schema import Outcome
 from squealpipe.systems.belt_friction import exponential_oscillator, leine_oscillator
 from squealpipe.systems.bouncing_ball import bouncing_ball
 from squealpipe.systems.impact_oscillator import impact_oscillator
+from squealpipe.systems.mode_coupling import mode_coupling
+from squealpipe.systems.rigid_pad import LEADING, TRAILING, approach, rigid_pad, spring
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -66,3 +71,81 @@ def test_the_unstable_cycle_divides_the_starts_of_the_exponential_oscillator():
     found = exponential_oscillator.ensemble(600.0, start={"x": starts}, belt_speed=1.25)
     assert float(found.late_x_max[0] - found.late_x_min[0]) < 1.0
     assert float(found.late_x_max[1] - found.late_x_min[1]) > 1.5
+
+
+@pytest.mark.parametrize("omega", [0.7, 1.9])
+def test_the_forced_oscillator_meets_its_stop_from_the_grazing_amplitude_on(omega):
+    """Its orbit without impacts has amplitude A over the square root below."""
+    stiffness = 1.0 - omega**2
+    grazing = np.sqrt(stiffness**2 + 0.01 * omega**2)
+    for factor, hits in ((1.0 - 1e-9, False), (1.0 + 1e-9, True)):
+        amplitude = grazing * factor
+        start = {
+            "x": amplitude * stiffness / grazing**2,
+            "v": amplitude * 0.1 * omega**2 / grazing**2,
+        }
+        run = impact_oscillator.ensemble(20.0, start=start, amplitude=amplitude, omega=omega)
+        assert (int(run.count_impact) > 0) == hits
+
+
+@pytest.mark.parametrize(("mu", "flutters"), [(0.7, False), (0.74, False), (0.76, True)])
+def test_two_modes_flutter_from_the_published_friction_on(mu, flutters):
+    """In contact the run is exp(At); the largest growth rate is Re s with s² = −2 ± √(1 − 4μ/3)."""
+    matrix = np.zeros((4, 4))
+    matrix[:2, 2:] = np.eye(2)
+    matrix[2:, :2] = -np.array([[2.0, -1.0 + 4.0 / 3.0 * mu], [-1.0, 2.0]])
+    run = mode_coupling.simulate(100.0, mu=mu, start={"x": 1e-4})
+    assert run.sizes["event"] == 0
+    exact = expm(100.0 * matrix) @ [1e-4, 0.0, 0.0, 0.0]
+    found = [float(run[name][-1]) for name in mode_coupling.states]
+    np.testing.assert_allclose(found, exact, rtol=1e-9, atol=1e-14)
+    growth = np.linalg.eigvals(matrix).real.max()
+    assert growth == pytest.approx(np.sqrt(-2 + np.sqrt(1 - 4 / 3 * mu + 0j)).real, abs=1e-7)
+    assert (growth > 1e-3) == flutters
+
+
+def energy(s, p):
+    """Of masses and springs, those of the contacts among them while they are pressed."""
+    stored = 0.5 * p.mass * (s.vx**2 + s.vy**2) + 0.5 * p.inertia * s.spin**2
+    for side in (LEADING, TRAILING):
+        stored += 0.5 * p.stiffness * (spring(side, s, p)[0] - p.free_length) ** 2
+        stored += 0.5 * p.contact_stiffness * np.maximum(approach(side, s, p), 0.0) ** 2
+    return stored
+
+
+@pytest.mark.parametrize("tilt", [0.0, 0.1, -0.3])
+def test_a_rigid_pad_that_lifts_off_at_either_edge_gains_what_friction_does(tilt):
+    run = rigid_pad.simulate(60.0, start={"theta": tilt})
+    s = SimpleNamespace(**{name: run[name].values for name in rigid_pad.states})
+    balance = energy(s, SimpleNamespace(**rigid_pad.parameters)) - s.work
+    np.testing.assert_allclose(balance, balance[0], rtol=1e-12)
+
+
+def test_a_rigid_pad_lifts_and_lands_when_dop853_says():
+    """The same field with approaches cut off at zero: continuous, so that one run goes through."""
+    run = rigid_pad.simulate(30.0, start={"theta": 0.1})
+    p, names = SimpleNamespace(**rigid_pad.parameters), rigid_pad.states
+
+    def rates(t, z):
+        s = SimpleNamespace(**dict(zip(names, z, strict=True)))
+        pressed = {
+            name: float(approach(side, s, p) > 0.0)
+            for name, side in (("leading", LEADING), ("trailing", TRAILING))
+        }
+        found = rigid_pad.field(t, s, p, SimpleNamespace(**pressed))
+        return [found[name] for name in names]
+
+    def gap(side):
+        return lambda t, z: approach(side, SimpleNamespace(**dict(zip(names, z, strict=True))), p)
+
+    start = [0.1 if name == "theta" else 0.0 for name in names]
+    own = solve_ivp(
+        rates, (0.0, 30.0), start, "DOP853", rtol=1e-12, atol=1e-12, max_step=0.02,
+        events=[gap(LEADING), gap(TRAILING)],
+    )  # fmt: skip
+    for name, times in zip(("leading", "trailing"), own.t_events, strict=True):
+        found = np.sort(
+            np.concatenate([times_of(run, f"{name}_{what}") for what in ("lifts", "lands")])
+        )
+        assert found.size > 2
+        np.testing.assert_allclose(found, times, atol=1e-9)
