@@ -107,7 +107,7 @@ def integrate(
         system: what is run.
         values: each state and parameter as an array, (runs,).
         t_end, t_late: in the system's unit of time.
-        times: instants at which the state is kept.
+        times: instants at which the state is kept, (instants,) or (runs, instants).
         tol: tolerance.
         tangent: carry a perturbation along.
         log_events: events kept of each run.
@@ -135,8 +135,9 @@ def integrate(
             np.full(size, math.log(LOST_ERROR / tol)),
         ]
     )
-    samples = np.empty(0) if times is None else times
-    sample_times = np.ascontiguousarray(samples[None, :] / unit[:, None])
+    samples = np.empty((1, 0)) if times is None else np.atleast_2d(times)
+    sample_times = np.ascontiguousarray(samples / unit[:, None])
+    n_samples = samples.shape[1]
     n_kinds, n_regimes = max(1, len(t.kinds)), len(system.regimes)
     shapes: dict[str, Any] = {
         "final": ((size, t.size), "f8"),
@@ -146,8 +147,8 @@ def integrate(
         "durations": ((size, n_regimes), "f8"),
         "ends": ((size, 4), "i8"),
         "summary": ((size, 3), "f8"),
-        "samples": ((size, samples.size, t.size), "f8"),
-        "sample_regimes": ((size, samples.size), "i8"),
+        "samples": ((size, n_samples, t.size), "f8"),
+        "sample_regimes": ((size, n_samples), "i8"),
         "event_times": ((size, log_events), "f8"),
         "event_kinds": ((size, log_events), "i8"),
         "event_regimes": ((size, log_events), "i8"),
@@ -200,7 +201,7 @@ def integrate(
             "n_constants": len(t.constants),
             "n_regimes": n_regimes,
             "n_kinds": n_kinds,
-            "n_samples": samples.size,
+            "n_samples": n_samples,
             "n_logged": log_events,
             "n_rounds": ROUNDS,
             "tangent": int(tangent),
@@ -258,7 +259,7 @@ def simulate(
     Raises:
         ValueError: an unknown state or parameter, or a value that is no finite number.
     """
-    t_end = _instant("t_end", t_end)
+    t_end = instant("t_end", t_end)
     values = {
         name: np.array([_scalar(name, value)])
         for name, value in _given(system, start, parameters).items()
@@ -279,22 +280,22 @@ def simulate(
     kinds = dict(enumerate(system.traced.kinds))
     names = dict(enumerate(system.regimes))
     found: dict[str, Any] = {
-        name: ("time", raw["samples"][0, :, i], _labels(f"state {name}", system.units[name]))
+        name: ("time", raw["samples"][0, :, i], labels(f"state {name}", system.units[name]))
         for i, name in enumerate(system.states)
     }
-    found["regime"] = _flag("regime", "time", raw["sample_regimes"][0], names)
+    found["regime"] = flag("regime", "time", raw["sample_regimes"][0], names)
     found["event_time"] = (
         "event",
         raw["event_times"][0, :count],
-        _labels("time of the event", "s"),
+        labels("time of the event", "s"),
     )
-    found["event_kind"] = _flag("kind of the event", "event", raw["event_kinds"][0, :count], kinds)
-    found["event_regime"] = _flag("regime entered", "event", raw["event_regimes"][0, :count], names)
-    found["outcome"] = _outcome(system, (), raw["ends"][0, 0])
-    found["end_time"] = ((), reached, _labels("time reached", "s"))
+    found["event_kind"] = flag("kind of the event", "event", raw["event_kinds"][0, :count], kinds)
+    found["event_regime"] = flag("regime entered", "event", raw["event_regimes"][0, :count], names)
+    found["outcome"] = outcome(system, (), raw["ends"][0, 0])
+    found["end_time"] = ((), reached, labels("time reached", "s"))
     given = {name: float(value[0]) for name, value in values.items()}
-    coordinates = {"time": ("time", times, _labels("time", "s"))}
-    return xr.Dataset(found, coordinates, _attributes(system, "simulate", given, tol))
+    coordinates = {"time": ("time", times, labels("time", "s"))}
+    return xr.Dataset(found, coordinates, attributes(system, "simulate", given, tol))
 
 
 def ensemble(
@@ -328,34 +329,18 @@ def ensemble(
     Raises:
         ValueError: an unknown state or parameter, or a value that is no finite number.
     """
-    t_end = _instant("t_end", t_end)
-    given = {name: real_array(name, v) for name, v in _given(system, start, parameters).items()}
-    # starts first, each under the name of its state and 0
-    order = [*(start or {}), *parameters]
-    dims = {n: (f"{n}0" if n in system.units else n) for n in order if given[n].ndim}
-    for name, value in given.items():
-        if value.ndim > 1:
-            raise ValueError(f"{name} has shape {value.shape}: a number or a 1-D array is needed")
-    shape = tuple(given[name].size for name in dims)
-    axes = {name: i for i, name in enumerate(dims)}
-    values = {
-        name: np.broadcast_to(
-            value
-            if name not in axes
-            else value.reshape([-1] + [1] * (len(shape) - axes[name] - 1)),
-            shape,
-        ).reshape(-1)
-        for name, value in given.items()
-    }
-    size = math.prod(shape)
-    late = 0.8 * t_end if t_late is None else _instant("t_late", t_late)
+    t_end = instant("t_end", t_end)
+    grid = outer_product(system, start, parameters)
+    shape, size = grid.shape, math.prod(grid.shape)
+    late = 0.8 * t_end if t_late is None else instant("t_late", t_late)
     raw = integrate(
-        system, values, np.full(size, t_end), t_late=late, tol=tol, tangent=horizon, workers=workers
-    )
-    over = tuple(dims.values())
+        system, grid.values, np.full(size, t_end), t_late=late, tol=tol, tangent=horizon,
+        workers=workers,
+    )  # fmt: skip
+    over = tuple(grid.coordinates)
 
     def field(long_name: str, units: str, array: np.ndarray) -> Any:
-        return over, array.reshape(shape), _labels(long_name, units)
+        return over, array.reshape(shape), labels(long_name, units)
 
     found: dict[str, Any] = {}
     units = {**system.units, **{name: unit for name, (unit, _) in system.outputs.items()}}
@@ -379,14 +364,54 @@ def ensemble(
         found["predictability_horizon"] = field(
             "time at which an error of tol is lost", "s", raw["summary"][:, 1]
         )
-    found["outcome"] = _outcome(system, over, raw["ends"][:, 0].reshape(shape))
-    coordinates = {
-        dim: (dim, given[name], _labels(f"{name} at t = 0" if dim != name else f"parameter {name}",
-                                        units.get(name, "1")))
-        for name, dim in dims.items()
-    }  # fmt: skip
-    fixed = {name: float(v) for name, v in given.items() if v.ndim == 0}
-    return xr.Dataset(found, coordinates, _attributes(system, "ensemble", fixed, tol))
+    found["outcome"] = outcome(system, over, raw["ends"][:, 0].reshape(shape))
+    return xr.Dataset(found, grid.coordinates, attributes(system, "ensemble", grid.fixed, tol))
+
+
+@dataclass(frozen=True)
+class Grid:
+    """An outer product of starts and parameters.
+
+    Attributes:
+        shape: of the product.
+        values: each state and parameter in every run, (runs,).
+        coordinates: those that vary, as the dimensions of a dataset.
+        fixed: the others.
+    """
+
+    shape: tuple[int, ...]
+    values: dict[str, np.ndarray]
+    coordinates: dict[str, Any]
+    fixed: dict[str, float]
+
+
+def outer_product(
+    system: System, start: Mapping[str, Any] | None, parameters: Mapping[str, Any]
+) -> Grid:
+    """The grid of what a call gives as 1-D arrays, starts first.
+
+    Raises:
+        ValueError: an unknown state or parameter, or a value that is no finite number.
+    """
+    given = {name: real_array(name, v) for name, v in _given(system, start, parameters).items()}
+    for name, value in given.items():
+        if value.ndim > 1:
+            raise ValueError(f"{name} has shape {value.shape}: a number or a 1-D array is needed")
+    swept = [name for name in (*(start or {}), *parameters) if given[name].ndim]
+    shape = tuple(given[name].size for name in swept)
+    axes = np.meshgrid(*(given[name] for name in swept), indexing="ij")
+    fixed = {name: float(value) for name, value in given.items() if not value.ndim}
+    size = math.prod(shape)
+    values = {name: np.full(size, value) for name, value in fixed.items()}
+    values |= {name: axis.ravel() for name, axis in zip(swept, axes, strict=True)}
+    coordinates = {}
+    for name in swept:
+        at_start = name in system.units
+        label = labels(f"{name} at t = 0" if at_start else f"parameter {name}",
+                       system.units.get(name, "1"))  # fmt: skip
+        dim = f"{name}0" if at_start else name
+        coordinates[dim] = (dim, given[name], label)
+    return Grid(shape, values, coordinates, fixed)
 
 
 def _scalar(name: str, value: Any) -> float:
@@ -396,7 +421,8 @@ def _scalar(name: str, value: Any) -> float:
     return float(array)
 
 
-def _instant(name: str, value: Any) -> float:
+def instant(name: str, value: Any) -> float:
+    """A time that is 0 or later."""
     number = _scalar(name, value)
     if number < 0.0:
         raise ValueError(f"{name} = {number!r}: must be 0 or greater")
@@ -423,11 +449,13 @@ def _finite(array: np.ndarray) -> np.ndarray:
     return np.where(np.isfinite(array), array, np.nan)
 
 
-def _labels(long_name: str, units: str) -> dict[str, str]:
+def labels(long_name: str, units: str) -> dict[str, str]:
+    """Attributes of a variable."""
     return {"long_name": long_name, "units": units}
 
 
-def _flag(long_name: str, dims: Any, values: Any, table: Mapping[int, str]) -> Any:
+def flag(long_name: str, dims: Any, values: Any, table: Mapping[int, str]) -> Any:
+    """A flag variable: dimensions, values and the names of its values."""
     attributes = {
         "long_name": long_name,
         "flag_values": np.array(list(table), np.int16),
@@ -436,16 +464,15 @@ def _flag(long_name: str, dims: Any, values: Any, table: Mapping[int, str]) -> A
     return dims, np.asarray(values, np.int16), attributes
 
 
-def _outcome(system: System, dims: Any, values: Any) -> Any:
+def outcome(system: System, dims: Any, values: Any) -> Any:
+    """The flag variable that says how runs ended."""
     table = flag_table(Outcome) | {STOPPED + i: name for i, name in enumerate(system.stops)}
-    dims, values, attributes = _flag("how the run ended", dims, values, table)
+    dims, values, attributes = flag("how the run ended", dims, values, table)
     return dims, values, attributes | {"comment": in_words(table)}
 
 
-def _attributes(
-    system: System, what: str, given: Mapping[str, float], tol: float
-) -> dict[str, Any]:
-
+def attributes(system: System, what: str, given: Mapping[str, float], tol: float) -> dict[str, Any]:
+    """What a dataset records of its system and its run."""
     return {
         "title": f"{system.name}: {what}",
         "system": json.dumps(system.text),

@@ -137,6 +137,12 @@ class System:
 
         return ensemble(self, t_end, **options)
 
+    def basin(self, t_end: float, **options: Any) -> xr.Dataset:
+        """What motions from many starts become; see :func:`squealpipe.systems.basin.basin`."""
+        from squealpipe.systems.basin import basin
+
+        return basin(self, t_end, **options)
+
     def _check_names(self) -> None:
         for number, most, what in (
             (len(self.units), MOST_STATES, "states"),

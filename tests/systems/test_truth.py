@@ -13,6 +13,7 @@ from scipy.linalg import expm
 
 from squealpipe.functions import sqrt
 from squealpipe.schema import Outcome
+from squealpipe.systems.basin import Motion
 from squealpipe.systems.belt_friction import exponential_oscillator, leine_oscillator
 from squealpipe.systems.bouncing_ball import bouncing_ball
 from squealpipe.systems.impact_oscillator import impact_oscillator
@@ -149,3 +150,26 @@ def test_a_rigid_pad_lifts_and_lands_when_dop853_says():
         )
         assert found.size > 2
         np.testing.assert_allclose(found, times, atol=1e-9)
+
+
+def midpoints(low, high, n):
+    return low + (high - low) * (np.arange(n) + 0.5) / n
+
+
+def test_the_basin_of_the_fixed_point_has_its_exact_share():
+    """0.356596 of [−2, 2] × [0, 2], the area within the unstable cycle, by 1,800 cells."""
+    start = {"x": midpoints(-2.0, 2.0, 60), "v": midpoints(0.0, 2.0, 30)}
+    found = exponential_oscillator.basin(1500.0, start=start, belt_speed=1.55)
+    assert set(np.unique(found.motion)) == {Motion.rest, Motion.cycle}
+    assert float((found.motion == Motion.rest).mean()) == pytest.approx(0.35659639, abs=0.005)
+    assert set(np.unique(found.attractor)) == {0, 1}
+
+
+def test_a_forced_motion_is_a_cycle_of_so_many_periods_or_unsettled():
+    """At ω = 2.1 the cycle of one impact is doubled below A = 3.506188447846."""
+    amplitude = np.array([3.5, 3.51])
+    found = impact_oscillator.basin(4000.0, start={"x": 0.3}, omega=2.1, amplitude=amplitude)
+    np.testing.assert_allclose(found.period * 2.1 / (2.0 * np.pi), [2.0, 1.0], rtol=1e-12)
+    early = impact_oscillator.basin(20.0, start={"x": 0.3}, omega=2.1, amplitude=amplitude)
+    assert (early.motion == Motion.unsettled).all()
+    assert np.isnan(early.period).all()

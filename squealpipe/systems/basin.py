@@ -1,0 +1,165 @@
+"""What the motion of a system has become from each of many starts."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from enum import IntEnum
+from types import SimpleNamespace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import xarray as xr
+
+from squealpipe.methods.recurrence import LEAST_REPEATS, repeats_after
+from squealpipe.schema import Outcome, flag_table
+from squealpipe.systems.runs import (
+    attributes,
+    flag,
+    instant,
+    integrate,
+    labels,
+    outcome,
+    outer_product,
+)
+
+if TYPE_CHECKING:
+    from squealpipe.systems.system import System
+
+AT_REST = 1e-3
+"""A motion rests whose states stay this close together, over their ranges in the whole run."""
+REPEATED = 1e-6
+"""Largest difference of intervals, over the period, or of states, over their ranges, in a cycle."""
+MOST_PERIODS = 32
+"""Periods of the forcing up to which a cycle is sought."""
+SAME_ATTRACTOR = 1e-3
+"""Extremes of one attractor from two starts differ by less, over those of all attractors."""
+EVENTS_AT_ONCE = 2**20
+"""Logged events that are held at once."""
+
+
+class Motion(IntEnum):
+    """What a motion has become by the second half of its run."""
+
+    unsettled = 0
+    rest = 1
+    cycle = 2
+
+
+def basin(
+    system: System,
+    t_end: float,
+    *,
+    start: Mapping[str, Any],
+    tol: float = 1e-12,
+    workers: int | None = None,
+    **parameters: Any,
+) -> xr.Dataset:
+    """Runs from many starts, and what each has become in the second half of its run.
+
+    At *rest* every state stays within 1e-3 of its range in the whole run. On a *cycle* the motion
+    repeats three times at least: with a forcing the states after so many of its periods, else the
+    kinds of events and the intervals between them; of an autonomous motion without events both
+    quarters have the same extremes. All else is *unsettled*.
+
+    Args:
+        system: what is run.
+        t_end: end of each run.
+        start: states that differ from the system's start, numbers or 1-D arrays.
+        tol: tolerance of the Taylor integrator.
+        workers: processes; None takes all cores.
+        parameters: those that differ from the system's, numbers or 1-D arrays.
+
+    Returns:
+        Dataset over the arrays' dimensions, starts first: ``motion``; ``attractor``, which numbers
+        rests and cycles by their extremes (-1: unsettled); ``period`` (NaN: none is known);
+        ``<state>_min`` and ``<state>_max`` of the last quarter; ``outcome``.
+
+    Raises:
+        ValueError: an unknown state or parameter, or a value that is no finite number.
+    """
+    t_end = instant("t_end", t_end)
+    grid = outer_product(system, start, parameters)
+    size = math.prod(grid.shape)
+
+    def run(rows: Any, share: float = 1.0, late: float = 1.0, **options: Any) -> Any:
+        values = {name: value[rows] for name, value in grid.values.items()}
+        ends = np.full(values[system.states[0]].size, share * t_end)
+        return integrate(
+            system, values, ends, t_late=late * t_end, tol=tol, workers=workers, **options
+        )
+
+    whole = run(slice(None), late=0.75)
+    quarters = [each["extremes"][:, : len(system.states)] for each in
+                (run(slice(None), 0.75, 0.5), whole)]  # fmt: skip
+    spans = np.maximum(quarters[1][..., 1] - quarters[1][..., 0], np.finfo(float).tiny)
+    (low, high), (last_low, last_high) = [(q[..., 2], q[..., 3]) for q in quarters]
+    stays = np.maximum(high, last_high) - np.minimum(low, last_low)
+    rests = (stays <= AT_REST * spans).all(axis=1)
+    alike = np.maximum(np.abs(high - last_high), np.abs(low - last_low))
+    period = np.full(size, np.nan)
+    repeats = np.zeros(size, bool)
+    counts = whole["counts"].sum(axis=1)
+    moving = np.flatnonzero(~rests & (whole["ends"][:, 0] == Outcome.converged))
+    if system.period is not None:
+        names = SimpleNamespace(**grid.values)
+        forcing = np.broadcast_to(np.asarray(system.period(names), float), size)
+        kept = int(np.clip(0.5 * t_end / forcing.max(), 0, LEAST_REPEATS * MOST_PERIODS))
+        times = t_end - forcing[moving, None] * np.arange(kept, -1, -1)
+        states = run(moving, times=times)["samples"] / spans[moving, None]
+        for lag in range(kept // LEAST_REPEATS, 0, -1):
+            off = np.abs(states[:, lag:] - states[:, :-lag]).max(axis=(1, 2), initial=0.0)
+            period[moving[off <= REPEATED]] = (lag * forcing[moving])[off <= REPEATED]
+        repeats = np.isfinite(period)
+    else:
+        for rows in _blocks(moving, counts):
+            logged = run(rows, log_events=max(1, int(counts[rows].max())))
+            for row, at, kinds in zip(
+                rows, logged["event_times"], logged["event_kinds"], strict=True
+            ):
+                late = at > 0.5 * t_end
+                lag = repeats_after(at[late], kinds[late], REPEATED)
+                period[row] = at[late][lag] - at[late][0] if lag else np.nan
+                silent = not late.any() and (alike[row] <= REPEATED * spans[row]).all()
+                repeats[row] = lag > 0 or silent
+    motion = np.select([rests, repeats], [Motion.rest, Motion.cycle], Motion.unsettled)
+    motion[whole["ends"][:, 0] != Outcome.converged] = Motion.unsettled
+    over, shape = tuple(grid.coordinates), grid.shape
+    numbers = _numbered(motion, quarters[1][..., 2:])
+    found: dict[str, Any] = {
+        "motion": flag(
+            "what the motion has become", over, motion.reshape(shape), flag_table(Motion)
+        ),
+        "attractor": (over, numbers.reshape(shape), labels("number of the attractor", "1")),
+        "period": (over, period.reshape(shape), labels("period of the cycle", "s")),
+        "outcome": outcome(system, over, whole["ends"][:, 0].reshape(shape)),
+    }
+    for i, (name, unit) in enumerate(system.units.items()):
+        for which, word, values in (("min", "smallest", last_low), ("max", "largest", last_high)):
+            column = np.where(np.isfinite(values[:, i]), values[:, i], np.nan)
+            label = labels(f"{word} {name} in the last quarter", unit)
+            found[f"{name}_{which}"] = (over, column.reshape(shape), label)
+    return xr.Dataset(found, grid.coordinates, attributes(system, "basin", grid.fixed, tol))
+
+
+def _blocks(rows: np.ndarray, events: np.ndarray) -> Iterator[np.ndarray]:
+    """The rows, so many at a time that their logs fit; the busiest first."""
+    rows = rows[np.argsort(-events[rows], kind="stable")]
+    while rows.size:
+        count = max(1, EVENTS_AT_ONCE // max(1, int(events[rows[0]])))
+        yield rows[:count]
+        rows = rows[count:]
+
+
+def _numbered(motion: np.ndarray, extremes: np.ndarray) -> np.ndarray:
+    """Equal numbers for rests, or cycles, whose extremes are equal, in the order of their runs."""
+    numbers = np.full(motion.size, -1)
+    spans = np.ptp(extremes[motion != Motion.unsettled], axis=(0, 2), keepdims=True)
+    for number in range(motion.size):
+        left = np.flatnonzero((numbers < 0) & (motion != Motion.unsettled))
+        if not left.size:
+            break
+        off = np.abs(extremes - extremes[left[0]]) <= SAME_ATTRACTOR * spans
+        same = off.all(axis=(1, 2)) & (motion == motion[left[0]]) & (numbers < 0)
+        numbers[same] = number
+    return numbers
