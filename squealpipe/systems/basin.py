@@ -154,12 +154,12 @@ def _blocks(rows: np.ndarray, events: np.ndarray) -> Iterator[np.ndarray]:
 def _numbered(motion: np.ndarray, extremes: np.ndarray) -> np.ndarray:
     """Equal numbers for rests, or cycles, whose extremes are equal, in the order of their runs."""
     numbers = np.full(motion.size, -1)
-    spans = np.ptp(extremes[motion != Motion.unsettled], axis=(0, 2), keepdims=True)
-    for number in range(motion.size):
-        left = np.flatnonzero((numbers < 0) & (motion != Motion.unsettled))
-        if not left.size:
-            break
-        off = np.abs(extremes - extremes[left[0]]) <= SAME_ATTRACTOR * spans
-        same = off.all(axis=(1, 2)) & (motion == motion[left[0]]) & (numbers < 0)
-        numbers[same] = number
+    settled = np.flatnonzero(motion != Motion.unsettled)
+    number = 0
+    while settled.size:
+        ends = extremes[settled]
+        off = np.abs(ends - ends[0]) <= SAME_ATTRACTOR * np.ptp(extremes, axis=(0, 2))[:, None]
+        same = off.all(axis=(1, 2)) & (motion[settled] == motion[settled[0]])
+        numbers[settled[same]] = number
+        settled, number = settled[~same], number + 1
     return numbers
