@@ -156,9 +156,10 @@ def _numbered(motion: np.ndarray, extremes: np.ndarray) -> np.ndarray:
     numbers = np.full(motion.size, -1)
     settled = np.flatnonzero(motion != Motion.unsettled)
     number = 0
+    spans = np.ptp(extremes[settled], axis=(0, 2)) if settled.size else np.empty(0)
     while settled.size:
         ends = extremes[settled]
-        off = np.abs(ends - ends[0]) <= SAME_ATTRACTOR * np.ptp(extremes, axis=(0, 2))[:, None]
+        off = np.abs(ends - ends[0]) <= SAME_ATTRACTOR * spans[:, None]
         same = off.all(axis=(1, 2)) & (motion[settled] == motion[settled[0]])
         numbers[settled[same]] = number
         settled, number = settled[~same], number + 1
