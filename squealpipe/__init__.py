@@ -13,8 +13,8 @@ if TYPE_CHECKING:
     from squealpipe.execution.sweep import Sweep, run_sweep
     from squealpipe.parameters import SCENES, Parameters, Scene
     from squealpipe.schema import labels
-    from squealpipe.store.memory.results import open_results
     from squealpipe.store.netcdf import load, save
+    from squealpipe.store.results import open_results
     from squealpipe.systems.system import Switch, System
     from squealpipe.tasks.backbones.backbone import backbone
     from squealpipe.tasks.backbones.orbit import periodic_orbit
@@ -49,7 +49,7 @@ _HOME = {
     "labels": "squealpipe.schema",
     "limit_cycle": "squealpipe.tasks.cycles.cycle",
     "load": "squealpipe.store.netcdf",
-    "open_results": "squealpipe.store.memory.results",
+    "open_results": "squealpipe.store.results",
     "natural_frequencies": "squealpipe.tasks.linear.maps",
     "periodic_orbit": "squealpipe.tasks.backbones.orbit",
     "propensity": "squealpipe.tasks.spread.propensity",

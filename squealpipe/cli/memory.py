@@ -14,7 +14,7 @@ from squealpipe.cli.exit_codes import ANSWER_IS_NO, DONE
 from squealpipe.progress import elapsing
 
 if TYPE_CHECKING:
-    from squealpipe.store.memory.catalogue import Run
+    from squealpipe.store.catalogue import Run
 
 SHOWN = 4
 """Changed parameters of a run that a line shows."""
@@ -28,7 +28,7 @@ def list_runs(*, json_: AsJson = False) -> int:
     Args:
         json_: print JSON, with the whole configuration of each run.
     """
-    from squealpipe.store.memory.catalogue import paper_configuration, runs
+    from squealpipe.store.catalogue import paper_configuration, runs
 
     found, paper = runs(), paper_configuration()
     if json_:
@@ -67,7 +67,7 @@ def find(expression: str, /, *, json_: AsJson = False) -> int:
             keys (linear.points), joined by and, or, not, as pandas reads them.
         json_: print a JSON list of names.
     """
-    from squealpipe.store.memory.catalogue import matching, runs
+    from squealpipe.store.catalogue import matching, runs
 
     found = runs()
     names = matching(expression, found)
@@ -82,9 +82,7 @@ def deposit(
     *,
     output: Annotated[Path | None, Parameter(name=["--output", "-o"])] = None,
 ) -> int:
-    """Bundle an archive for others: data, figures, report, code, lock, provenance, citation.
-
-    The bundle is checked; its metadata are those that Zenodo and DataCite ask for.
+    """Bundle an archive for others: data, figures, report, code, lock and citation.
 
     Example: `squealpipe deposit reference`
 
@@ -92,11 +90,11 @@ def deposit(
         name: of the archive.
         output: the bundle to write; by default results/deposit/NAME.zip.
     """
-    from squealpipe.store.memory.deposit import bundle
+    from squealpipe.store.deposit import bundle
 
     with elapsing("deposit"):
-        path, _ = bundle(name, output=output)
-    print(f"wrote {path} ({path.stat().st_size / 1e6:.1f} MB), checked")
+        path = bundle(name, output=output)
+    print(f"wrote {path} ({path.stat().st_size / 1e6:.1f} MB)")
     return DONE
 
 

@@ -1,0 +1,75 @@
+"""A bundle of one archived run that another person can use alone: the archive and its code."""
+
+from __future__ import annotations
+
+import os
+import zipfile
+from pathlib import Path
+
+from squealpipe.store.archive import verify
+from squealpipe.store.netcdf import StoreError
+from squealpipe.store.runs import locate
+from squealpipe.store.whole_files import whole_file
+
+SOURCES = (
+    "squealpipe", "workflow", "Snakefile", "pyproject.toml", "requirements.lock", "LICENSE",
+    "README.md",
+)  # fmt: skip
+README = """\
+# An archived run of squealpipe
+
+- `run/data`: NetCDF-4, CF conventions, one file a dataset; `run/figures`, `run/report`;
+  `run/config/resolved.yaml` is the whole configuration.
+- `run/manifest.json`: SHA-256 of every file; `run/ro-crate-metadata.json`: what made what.
+- `code`: workflow and package; `code/requirements.lock` pins what it needs.
+
+To compute it again: install `code` with its lock and run
+`snakemake --configfile ../run/config/resolved.yaml` in it; `squealpipe compare ../run results` then
+states whether you find the same.
+"""
+
+
+def bundle(
+    name: str | os.PathLike[str],
+    *,
+    output: str | os.PathLike[str] | None = None,
+    root: str | os.PathLike[str] = ".",
+) -> Path:
+    """Write ``results/deposit/NAME.zip``; it appears whole or not at all.
+
+    Args:
+        name: of an archive.
+        output: the file to write.
+        root: the checkout.
+
+    Raises:
+        FileNotFoundError: there is no such archive, or no ``CITATION.cff``.
+        ValueError: the archive is not intact; every file that is not.
+    """
+    base, archive = Path(root), locate(name, root)
+    found = verify(archive)
+    if not found.intact:
+        raise ValueError("\n".join(found.lines()))
+    citation = base / "CITATION.cff"
+    if not citation.is_file():
+        raise FileNotFoundError(f"{citation} is missing: it names authors and licence")
+    target = Path(output) if output else base / f"results/deposit/{archive.name}.zip"
+    contents = {"README.md": README.encode(), citation.name: citation.read_bytes()}
+    contents |= {f"run/{path.relative_to(archive)}": path for path in archive.rglob("*")}
+    contents |= {
+        f"code/{path.relative_to(base)}": path
+        for source in SOURCES
+        for path in [base / source, *(base / source).rglob("*")]
+        if "__pycache__" not in path.parts
+    }
+    try:
+        with whole_file(target) as draft, zipfile.ZipFile(draft, "w", zipfile.ZIP_DEFLATED) as file:
+            for place, content in sorted(contents.items()):
+                if isinstance(content, bytes) or content.is_file():
+                    # entries without a date: equal archives give equal bundles
+                    entry = zipfile.ZipInfo(f"{archive.name}/{place}")
+                    data = content if isinstance(content, bytes) else content.read_bytes()
+                    file.writestr(entry, data, zipfile.ZIP_DEFLATED)
+    except OSError as error:
+        raise StoreError(f"cannot write {target}: {error.strerror}") from error
+    return target
