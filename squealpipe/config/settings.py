@@ -7,7 +7,6 @@ Snakemake; :func:`read_study` does the same for the command line.
 from __future__ import annotations
 
 import json
-import re
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path, PurePosixPath
 from typing import Annotated, Any, Literal
@@ -32,7 +31,7 @@ from squealpipe.config.sections import (
     SpreadSection,
     SweepSection,
 )
-from squealpipe.config.yaml_files import key_lines, overlay, read_yaml
+from squealpipe.config.yaml_files import Lines, flat, overlay, read_yaml
 from squealpipe.rerun.key import PARTS
 
 __all__ = [
@@ -48,8 +47,6 @@ __all__ = [
 
 PAPER = "workflow/config/paper.yaml"
 """The paper's study, over which other configurations are laid."""
-
-SCIENTIFIC = re.compile(r"[-+]?\d+(\.\d*)?[eE][-+]?\d+")
 
 
 class Study(Section):
@@ -113,7 +110,7 @@ class Study(Section):
         Folders of results and sweeps do not count.
         """
         theirs, ours = (
-            _leaves(study.model_dump(mode="json", exclude={"results", "sweeps"}))
+            flat(study.model_dump(mode="json", exclude={"results", "sweeps"}))
             for study in (other, self)
         )
         return [
@@ -126,15 +123,6 @@ class Study(Section):
         """Configuration of one of the sweeps, with the parameters that it does not name itself."""
         parameters = self.parameters.model_dump(mode="json")
         return sweep_config(**self.sweeps[name].model_dump(mode="json"), parameters=parameters)
-
-
-def _leaves(content: Mapping[str, Any], above: str = "") -> dict[str, Any]:
-    """Dotted keys and values of a mapping of mappings."""
-    found: dict[str, Any] = {}
-    for key, value in content.items():
-        inner = _leaves(value, f"{above}{key}.") if isinstance(value, Mapping) else {}
-        found |= inner or {f"{above}{key}": value}
-    return found
 
 
 def read_study(*paths: str | Path, changes: Mapping[str, Any] | None = None) -> Study:
@@ -150,12 +138,13 @@ def read_study(*paths: str | Path, changes: Mapping[str, Any] | None = None) -> 
     """
     merged: dict[str, Any] = {}
     faults: list[str] = []
+    tables: dict[str, Lines] = {}
     for path in map(Path, paths):
-        content, found = read_yaml(path)
+        content, tables[str(path)], found = read_yaml(path)
         faults.extend(found)
         overlay(merged, content)
     overlay(merged, changes or {})
-    return parse_study(merged, faults, place=lambda keys: _place(keys, paths, changes or {}))
+    return parse_study(merged, faults, place=lambda keys: _place(keys, tables, changes or {}))
 
 
 def check_results_folder(results: str) -> None:
@@ -186,11 +175,10 @@ def _stranger(folder: Path) -> Path | None:
     return None
 
 
-def _place(keys: tuple[str, ...], paths: Sequence[str | Path], changes: Mapping[str, Any]) -> str:
+def _place(keys: tuple[str, ...], tables: Mapping[str, Lines], changes: Mapping[str, Any]) -> str:
     """File and line of a key, or of the nearest one above it: of the last file that has it."""
     if keys and keys[0] in changes:
         return ""
-    tables = {str(path): key_lines(Path(path)) for path in paths}
     for length in range(len(keys), 0, -1):
         for path in reversed(tables):
             if line := tables[path].get(keys[:length]):
@@ -233,16 +221,11 @@ def _without_empty_sections(content: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _plain(value: Any) -> Any:
-    """Lists as tuples, and numbers like 1e-9, which YAML 1.1 takes for text, as numbers.
-
-    Keys that are numbers to YAML become text, so that they are found as unknown.
-    """
+    """Lists as tuples; keys that are numbers become text, so that they are found as unknown."""
     if isinstance(value, Mapping):
         return {str(key): _plain(item) for key, item in value.items()}
     if isinstance(value, list):
         return tuple(map(_plain, value))
-    if isinstance(value, str) and SCIENTIFIC.fullmatch(value):
-        return float(value)
     return value
 
 

@@ -54,6 +54,7 @@ def bundle(
     if not citation.is_file():
         raise FileNotFoundError(f"{citation} is missing: it names authors and licence")
     target = Path(output) if output else base / f"results/deposit/{archive.name}.zip"
+    contents: dict[str, bytes | Path]
     contents = {"README.md": README.encode(), citation.name: citation.read_bytes()}
     contents |= {f"run/{path.relative_to(archive)}": path for path in archive.rglob("*")}
     contents |= {
