@@ -175,7 +175,7 @@ def _stranger(folder: Path) -> Path | None:
     return None
 
 
-def _place(keys: tuple[str, ...], tables: Mapping[str, Lines], changes: Mapping[str, Any]) -> str:
+def _place(keys: tuple[str, ...], tables: dict[str, Lines], changes: Mapping[str, Any]) -> str:
     """File and line of a key, or of the nearest one above it: of the last file that has it."""
     if keys and keys[0] in changes:
         return ""
