@@ -15,7 +15,7 @@ import numpy as np
 import xarray as xr
 
 from squealpipe.parameters import Parameters
-from squealpipe.schema import build, find
+from squealpipe.schema import build, find, schema_of
 from squealpipe.schema.sweep import fill_up
 from squealpipe.store import produce
 from squealpipe.store.chunks import Arrays, Checkpoint, run_chunks
@@ -139,7 +139,7 @@ def join(parts: Sequence[xr.Dataset], along: str = "alpha1") -> xr.Dataset:
     if not parts:
         raise ValueError("no parts to join")
     first = parts[0]
-    schema = find(str(first.attrs["schema"]))
+    schema = schema_of(first)
     shared = [name for name in first.coords if along not in first[name].dims]
     for part in parts[1:]:
         same_kind = part.attrs["schema"] == first.attrs["schema"]

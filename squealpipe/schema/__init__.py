@@ -25,6 +25,9 @@ from squealpipe.schema.outcomes import REMEDIES as REMEDIES
 from squealpipe.schema.outcomes import Outcome as Outcome
 from squealpipe.validation import checked
 
+SYSTEM = "system "
+"""How the schemas begin that datasets of systems state: ``system ensemble``."""
+
 
 class SchemaError(ValueError):
     """A dataset does not fit its schema; the message names the variable and how to fix it."""
@@ -131,7 +134,8 @@ def in_words(table: Mapping[int, str]) -> str:
 def meanings(variable: xr.DataArray) -> dict[int, str]:
     """Value → meaning of a flag variable, from its attributes; empty for other variables."""
     names = str(variable.attrs.get("flag_meanings", "")).split()
-    return dict(zip(map(int, variable.attrs["flag_values"]), names, strict=True)) if names else {}
+    values = np.atleast_1d(variable.attrs.get("flag_values", []))  # netCDF makes one a number
+    return dict(zip(map(int, values), names, strict=True))
 
 
 @checked
@@ -354,6 +358,37 @@ def find(name: str) -> DatasetSchema:
     if (swept := importlib.import_module(f"{__name__}.sweep").derived(name)) is not None:
         return swept  # type: ignore[no-any-return]
     raise SchemaError(f"no schema {name!r}; known: {', '.join(sorted(schemas))}")
+
+
+def schema_of(dataset: xr.Dataset) -> DatasetSchema:
+    """The schema that a dataset states; that of a system of the user's own is the dataset itself.
+
+    Raises:
+        SchemaError: it states none, or an unknown one.
+    """
+    name = str(dataset.attrs.get("schema"))
+    if not name.startswith(SYSTEM):
+        return find(name)
+    return DatasetSchema(
+        name=name,
+        title=str(dataset.attrs.get("title")),
+        coordinates={str(key): _described(value) for key, value in dataset.coords.items()},
+        variables={str(key): _described(value) for key, value in dataset.data_vars.items()},
+        lists={"event": Listing(kinds=("event_kind",))} if "event_kind" in dataset else {},
+    )
+
+
+def _described(variable: xr.DataArray) -> Variable:
+    """The table entry that a variable's own attributes make."""
+    flags = meanings(variable) if "flag_values" in variable.attrs else None
+    return Variable(
+        str(variable.attrs.get("long_name", variable.name)),
+        str(variable.attrs.get("units", "1")),
+        tuple(map(str, variable.dims)),
+        dtype="U" if variable.dtype.kind in "UO" else variable.dtype.str[1:],
+        flags=flags,
+        nan_allowed=True,
+    )
 
 
 @cache

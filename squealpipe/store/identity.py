@@ -8,12 +8,12 @@ import numpy as np
 import xarray as xr
 
 from squealpipe.rerun.key import canonical
-from squealpipe.schema import find
+from squealpipe.schema import schema_of
 
 
 def dataset_id(dataset: xr.Dataset) -> str:
     """Hash of what was computed: schema, configuration and all values that are not volatile."""
-    schema = find(str(dataset.attrs["schema"]))
+    schema = schema_of(dataset)
     total = hashlib.sha256()
     total.update(canonical([schema.name, schema.version, dataset.attrs.get("config", "")]).encode())
     for name in sorted(map(str, dataset.variables)):

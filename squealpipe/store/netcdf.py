@@ -14,7 +14,7 @@ import netCDF4
 import numpy as np
 import xarray as xr
 
-from squealpipe.schema import SchemaError, find, validate
+from squealpipe.schema import SchemaError, schema_of, validate
 from squealpipe.store.checkout import commit
 from squealpipe.store.identity import dataset_id
 from squealpipe.store.runs import archive_around
@@ -48,7 +48,7 @@ def save(dataset: xr.Dataset, path: AnyPath) -> Path:
             an earlier file of that name is untouched.
     """
     target: Path = path
-    validate(dataset, find(str(dataset.attrs.get("schema"))))
+    validate(dataset, schema_of(dataset))
     refuse_target(target)
     made = {"commit": commit(), "history": made_now(), **dataset.attrs}
     dataset = dataset.assign_attrs({**made, "dataset_id": dataset_id(dataset)})
@@ -95,7 +95,7 @@ def load(path: AnyPath, *, schema: str | None = None) -> xr.Dataset:
     found = str(dataset.attrs.get("schema"))
     if schema is not None and found != schema:
         raise SchemaError(f"{source} holds {found!r}, {schema!r} was expected; pass the right file")
-    validate(dataset, find(found))
+    validate(dataset, schema_of(dataset))
     return dataset
 
 

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from squealpipe.schema import DatasetSchema, find
+from squealpipe.schema import DatasetSchema, schema_of
 from squealpipe.schema.sweep import fill_up
 from squealpipe.store.comparison.compare import configuration
 from squealpipe.store.comparison.matching import on_shared_points
@@ -93,8 +93,8 @@ def stacked(datasets: Mapping[str, xr.Dataset]) -> xr.Dataset:
     names = {str(dataset.attrs["schema"]) for dataset in datasets.values()}
     if len(names) > 1:
         raise ValueError(f"datasets of different schemas: {', '.join(sorted(names))}")
-    schema = find(names.pop())
     every = list(datasets.values())
+    schema = schema_of(every[0])
     shared = every[0]
     for other in every[1:]:
         shared = _on_shared_grids(shared, other, schema)[0]

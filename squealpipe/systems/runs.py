@@ -36,7 +36,7 @@ from squealpipe.methods.taylor.loop import (
 from squealpipe.methods.taylor.scalar import ScalarSource, compile_scalar, evaluate
 from squealpipe.methods.taylor.series import HybridSystem
 from squealpipe.methods.taylor.simd import FEW, LANES
-from squealpipe.schema import Outcome, flag_table, in_words
+from squealpipe.schema import SYSTEM, Outcome, flag_table, in_words
 from squealpipe.systems.trace import TIME, TIME_UNIT
 from squealpipe.text import suggestion
 from squealpipe.validation import real_array
@@ -475,6 +475,8 @@ def attributes(system: System, what: str, given: Mapping[str, float], tol: float
     """What a dataset records of its system and its run."""
     return {
         "title": f"{system.name}: {what}",
+        "schema": SYSTEM + what,
+        "schema_version": 1,
         "system": json.dumps(system.text),
         "parameters": json.dumps(dict(given)),
         "tolerance": tol,

@@ -15,7 +15,7 @@ import xarray as xr
 
 from squealpipe.config.yaml_files import flat
 from squealpipe.progress import counted
-from squealpipe.schema import DatasetSchema, find
+from squealpipe.schema import DatasetSchema, schema_of
 from squealpipe.schema.claims import CLAIMS
 from squealpipe.store.comparison.differences import Agreement, VariableDifference
 from squealpipe.store.comparison.matching import align, judged_length
@@ -195,7 +195,7 @@ def compare_datasets(
     kinds = (a.attrs["schema"], b.attrs["schema"])
     if kinds[0] != kinds[1]:
         return _refused(name, files, f"the schemas are {kinds[0]!r} and {kinds[1]!r}")
-    schema = find(str(kinds[0]))
+    schema = schema_of(a)
     lengths = [
         (dim, *(judged_length(each, dim, how) for each in (a, b)))
         for dim, how in schema.lists.items()

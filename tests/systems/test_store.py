@@ -1,0 +1,44 @@
+"""Datasets of systems in files, and two of them compared."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import squealpipe
+from squealpipe.store.comparison.compare import compare_datasets
+from squealpipe.store.comparison.differences import Agreement
+from squealpipe.systems.belt_friction import leine_oscillator
+from squealpipe.systems.impact_oscillator import impact_oscillator
+from squealpipe.systems.mode_coupling import mode_coupling
+
+
+@pytest.mark.parametrize(
+    "make",
+    [
+        lambda: impact_oscillator.simulate(30.0, omega=1.2),
+        lambda: leine_oscillator.ensemble(
+            30.0, start={"x": np.linspace(0.0, 1.0, 3)}, horizon=True
+        ),
+        lambda: impact_oscillator.basin(50.0, start={"x": np.linspace(0.0, 1.0, 3)}),
+        lambda: mode_coupling.simulate(3.0),  # no event
+    ],
+)
+def test_a_dataset_of_a_system_is_kept_with_its_definition(make, tmp_path):
+    dataset = make()
+    squealpipe.save(dataset, tmp_path / "mine.nc")
+    found = squealpipe.load(tmp_path / "mine.nc")
+    xr.testing.assert_equal(found, dataset)
+    assert any(key.startswith("d") for key in json.loads(found.attrs["system"]))
+
+
+def test_runs_of_a_system_are_compared_variable_by_variable():
+    a, b, c = (
+        impact_oscillator.ensemble(30.0, start={"x": [0.0, 0.1]}, amplitude=amplitude)
+        for amplitude in (0.5, 0.5, 0.6)
+    )
+    assert compare_datasets("x", a, b).verdict == Agreement.equal
+    assert compare_datasets("x", a, c).verdict == Agreement.different
