@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from math import prod
 from pathlib import Path
 from typing import Annotated
 
@@ -42,9 +43,10 @@ def sweep(
     Args:
         task: simulate, validity_map, hammering_map, quasi_static_map, stability_map,
             critical_friction_map, natural_frequencies, periodic_orbit, backbone or
-            smallest_disturbance.
-        vary: a parameter, angle or option with its values: mu=0:0.6:13, alpha1=0:pi:31,
-            belt_speed=0.1:100:7:log or k3=0.5,0.75; repeat for further dimensions.
+            smallest_disturbance; or a system of your own as FILE.py:NAME.
+        vary: a parameter, angle or option, or a start of a system (x0), with its values:
+            mu=0:0.6:13, alpha1=0:pi:31, belt_speed=0.1:100:7:log or k3=0.5,0.75; repeat for
+            further dimensions.
         alpha1: angle of spring 1 where it is not varied.
         alpha2: angle of spring 2 where it is not varied.
         option: a further keyword of the task, for instance t_end=100; repeat for more.
@@ -55,6 +57,7 @@ def sweep(
         config: study whose parameters are used where none are typed; repeatable.
     """
     from squealpipe.execution import sweep as sweeping
+    from squealpipe.execution.system_sweep import is_system
     from squealpipe.execution.tally import lines
     from squealpipe.rerun.key import rule_key, sources
     from squealpipe.store.chunks import Checkpoint
@@ -73,9 +76,13 @@ def sweep(
     )
     plan = sweeping.planned(settings)
     check_output(output, force=force)
-    cost = of_sweep(settings, params, workers)
-    cost.check(yes=yes)
-    say(f"{len(plan.points)} runs of {task} over {', '.join(plan.names)}{cost.told}")
+    expected = ""
+    if not is_system(task):
+        cost = of_sweep(settings, params, workers)
+        cost.check(yes=yes)
+        expected = cost.told
+    runs = prod(len(plan.vary[name]) for name in plan.names)
+    say(f"{runs} runs of {task} over {', '.join(plan.names)}{expected}")
     kept = Checkpoint.beside(output, key=rule_key(settings, sources(Path(sweeping.__file__))))
 
     with sweeping.executor(workers) as pool:

@@ -178,6 +178,8 @@ def sweep_config(
     for name in sorted(set(vary) & set(fixed)):
         raise ValueError(f"{name} is both fixed and varied; keep one")
     named = {*vary, *fixed}
+    if ":" in task:  # a system in a file has parameters of its own
+        parameters = {}
     return {
         "task": task,
         "parameters": {name: value for name, value in parameters.items() if name not in named},

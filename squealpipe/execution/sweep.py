@@ -17,6 +17,7 @@ from squealpipe.config.ranges import NUMBERS, PHYSICAL, longest
 from squealpipe.execution.catalogue import TASKS, run_task
 from squealpipe.execution.packing import pack, unpack
 from squealpipe.execution.row_blocks import scattered_rows
+from squealpipe.execution.system_sweep import SystemSweep, is_system
 from squealpipe.methods.processes import available_cores, leave_interrupts_to_the_parent
 from squealpipe.parameters import Parameters, parameters_of
 from squealpipe.schema import DatasetSchema, Variable, build, find
@@ -149,12 +150,14 @@ class Sweep:
         return replace(self, vary={**self.vary, cut: values[scattered_rows(len(values), item)]})
 
 
-def planned(config: Mapping[str, Any]) -> Sweep:
+def planned(config: Mapping[str, Any]) -> Sweep | SystemSweep:
     """The sweep of a configuration as :func:`squealpipe.config.ranges.sweep_config` makes it.
 
     Raises:
-        ValueError: as :class:`Sweep`.
+        ValueError: as :class:`Sweep` or :class:`SystemSweep`.
     """
+    if is_system(config["task"]):
+        return SystemSweep(task=config["task"], vary=config["vary"], fixed=config["fixed"])
     return Sweep(
         task=config["task"],
         params=parameters_of(config),
@@ -218,7 +221,10 @@ def executor(workers: int | None = None) -> Iterator[Executor | None]:
 
 @checked
 def run_sweep(
-    sweep: Sweep, *, executor: Executor | None = None, checkpoint: Checkpoint | None = None
+    sweep: Sweep | SystemSweep,
+    *,
+    executor: Executor | None = None,
+    checkpoint: Checkpoint | None = None,
 ) -> xr.Dataset:
     """Run a sweep.
 
@@ -232,9 +238,11 @@ def run_sweep(
         than the longest along a dimension such as ``point`` are filled up with NaN, or the
         flag "absent", and ``<dimension>_count`` tells their lengths.
     """
+    workers = None if executor is None else 1
+    if isinstance(sweep, SystemSweep):
+        return sweep.run(None if executor else 1)  # an ensemble shares its runs by itself
     count = len(sweep.points)
     size = -(-count // CHUNKS)
-    workers = None if executor is None else 1
     chunks = [_Chunk(sweep, at, min(at + size, count), workers) for at in range(0, count, size)]
     parts = run_chunks(
         _compute,

@@ -31,7 +31,10 @@ def lines(dataset: xr.Dataset, names: list[str]) -> list[str]:
     unit = "runs" if outcome.ndim == len(names) else "points"
     text = [f"outcome of {present.size} {unit}: {', '.join(told)}"]
     missing = _missing(dataset, outcome)
+    remedies = {int(item): remedy for item, remedy in REMEDIES.items()}
     for value in values[order]:
+        if value == Outcome.converged:  # such as the time of an event that never came
+            continue
         lost = [name for name, nan in missing.items() if (nan & (outcome.values == value)).any()]
         if not lost:
             continue
@@ -39,7 +42,7 @@ def lines(dataset: xr.Dataset, names: list[str]) -> list[str]:
         text.append(
             f"NaN in {', '.join(lost[:MOST_NAMES])}{more} where the outcome is "
             f"{words[int(value)]}{_where(dataset, outcome == value, names)}: "
-            f"{REMEDIES[Outcome(int(value))]}"
+            f"{remedies.get(int(value), 'a stop of the system')}"
         )
     return text
 

@@ -99,10 +99,11 @@ def key_behind(path: str | Path) -> str | None:
 
 
 def _files_named_in(value: Any) -> Iterator[str]:
-    """Texts of a slice that are paths of files, for instance of a table of friction."""
+    """Files that a slice names: a table of friction, or a system as FILE.py:NAME."""
     if isinstance(value, str):
-        if "." in value and Path(value).is_file():
-            yield value
+        file = value.partition(":")[0]
+        if "." in file and Path(file).is_file():
+            yield file
     elif isinstance(value, Mapping | list | tuple):
         for item in value.values() if isinstance(value, Mapping) else value:
             yield from _files_named_in(item)

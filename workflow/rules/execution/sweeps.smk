@@ -24,7 +24,12 @@ if SWEEPS and workflow.is_main_process:  # jobs need not check again: the import
 
 
 def sweep_parts(sweep):
-    """Parts of a sweep: as many as a map has, but no more than it has values to cut."""
+    """Parts of a sweep: as many as a map has, but no more than it has values to cut.
+
+    A basin is made whole: its attractors are numbered over all starts.
+    """
+    if sweep["fixed"].get("run") == "basin":
+        return 1
     return min(PARTS, len(sweep["vary"][longest(sweep["vary"])]))
 
 

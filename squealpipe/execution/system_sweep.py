@@ -1,0 +1,104 @@
+"""A sweep of a system of the user's own: ``FILE.py:NAME``, over its starts and parameters."""
+
+from __future__ import annotations
+
+import importlib.util
+import inspect
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any
+
+import xarray as xr
+
+from squealpipe.config.ranges import longest
+from squealpipe.execution.row_blocks import scattered_rows
+from squealpipe.systems import basin, runs
+from squealpipe.systems.system import System
+from squealpipe.text import suggestion
+
+WAYS = {"ensemble": runs.ensemble, "basin": basin.basin}
+
+
+def is_system(task: str) -> bool:
+    """Whether a task is a system in a file."""
+    return ":" in task
+
+
+def find_system(place: str) -> System:
+    """The system that a file defines under a name.
+
+    Args:
+        place: ``FILE.py:NAME``.
+
+    Raises:
+        ValueError: no such file, or none of its systems has the name.
+    """
+    file, _, name = place.partition(":")
+    if not Path(file).is_file():
+        raise ValueError(f"no file {file!r}; a system is named like impact.py:impact_oscillator")
+    spec = importlib.util.spec_from_file_location(Path(file).stem, file)
+    assert spec is not None and spec.loader is not None  # noqa: S101, PT018 (a file has both)
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    found = getattr(module, name, None)
+    if not isinstance(found, System):
+        known = [key for key, value in vars(module).items() if isinstance(value, System)]
+        raise ValueError(f"{file} defines no system {name!r}; {suggestion(name, known)}")  # noqa: TRY004
+    return found
+
+
+@dataclass(frozen=True, kw_only=True)
+class SystemSweep:
+    """A system's ensemble, or basin, over ranges.
+
+    Attributes:
+        task: ``FILE.py:NAME``.
+        vary: name → values, of parameters and of starts (``x0``).
+        fixed: further ones, ``t_end``, and ``run``: ensemble (by default) or basin, with its
+            options.
+
+    Raises:
+        ValueError: an unknown file, system, way to run it, name or option.
+    """
+
+    task: str
+    vary: Mapping[str, Sequence[float]]
+    fixed: Mapping[str, Any]
+    system: System = field(init=False, compare=False)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "system", find_system(self.task))
+        way = self.fixed.get("run", "ensemble")
+        if way not in WAYS:
+            raise ValueError(f"run = {way!r}: {suggestion(way, WAYS)}")
+        known = [*(f"{name}0" for name in self.system.states), *self.system.parameters]
+        options = [
+            name for name in inspect.signature(WAYS[way]).parameters
+            if name not in ("system", "start", "parameters", "workers")
+        ]  # fmt: skip
+        for name in (*self.vary, *(set(self.fixed) - {"run", *options})):
+            if name not in known:
+                near = suggestion(name, [*known, *options])
+                raise ValueError(f"{self.system.name}: {name!r} is unknown; {near}")
+        if "t_end" not in self.fixed:
+            raise ValueError(f"{self.system.name} needs t_end, fixed")
+
+    @property
+    def names(self) -> list[str]:
+        """Swept names in the order given."""
+        return list(self.vary)
+
+    def part(self, item: str) -> SystemSweep:
+        """One part of a scattered sweep, ``i-of-n`` along its longest name."""
+        cut = longest(self.vary)
+        values = self.vary[cut]
+        return replace(self, vary={**self.vary, cut: values[scattered_rows(len(values), item)]})
+
+    def run(self, workers: int | None = None) -> xr.Dataset:
+        """The dataset, its dimensions starts first."""
+        given = {**self.fixed, **self.vary}
+        way = WAYS[given.pop("run", "ensemble")]
+        states = self.system.states
+        start = {name: given.pop(f"{name}0") for name in states if f"{name}0" in given}
+        return way(self.system, given.pop("t_end"), start=start, workers=workers, **given)
