@@ -19,11 +19,12 @@ pytestmark = pytest.mark.release
 
 
 ROOT = Path(__file__).parents[2]
-ROW, LAW, LAW_NAME, RECORD, LEVEL, FIGURE, FIGURE_NAME = range(7)
+ROW, LAW, LAW_NAME, RECORD, LEVEL, FIGURE, FIGURE_NAME, SYSTEM = range(8)
 FILES = {
     LAW: "squealpipe/laws/friction_laws/rising.py",
     LEVEL: "squealpipe/tasks/ladder/levels/a2_static.py",
     FIGURE: "squealpipe/study/figures/dynamics/impacts.py",
+    SYSTEM: "squealpipe/systems/pendulum.py",
 }
 LINES = {
     ROW: (
@@ -184,6 +185,21 @@ for _ in range(12):
     run = run_ensemble(p, *angles, t_end=end)
     exact = simulate_reference(p, *angles, t_end=end)
     np.testing.assert_allclose(run.final_state, np.float64(exact.state), rtol=1e-8, atol=1e-9)
+"""
+    python(folder, script)
+
+
+def test_a_system_runs(extended):
+    """Between impacts the energy is kept, at each it loses 1 − e² of what it was."""
+    folder, _ = extended
+    script = """
+import numpy as np
+from squealpipe.systems.pendulum import pendulum
+run = pendulum.simulate(12.0)
+energy = 0.5 * run.rate**2 + 9.81 * (1.0 - np.cos(run.angle))
+impacts = np.searchsorted(run.event_time, run.time, side="right")
+assert run.sizes["event"] > 4
+np.testing.assert_allclose(energy, float(energy[0]) * 0.81**impacts, rtol=1e-10)
 """
     python(folder, script)
 
