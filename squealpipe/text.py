@@ -77,6 +77,20 @@ def as_people_write(text: str) -> str:
     return re.sub(r"(?<![\w)-])-(?=[\d.]|inf)", "−", plain)
 
 
+def duration(seconds: float) -> str:
+    """Seconds for people: 0.4 s, 17 s, 3 min 20 s, 2 h 5 min, 12 days."""
+    if seconds < 10:
+        return f"{seconds:.1f} s"
+    whole = round(seconds)
+    if whole < 120:
+        return f"{whole} s"
+    if whole < 7200:
+        return f"{whole // 60} min {whole % 60} s"
+    if whole < 172_800:
+        return f"{whole // 3600} h {whole % 3600 // 60} min"
+    return f"{whole // 86_400} days"
+
+
 def nearest(wrong: object, names: Iterable[str]) -> str | None:
     """The name that is near enough to have been meant, if there is one."""
     every = list(names)

@@ -16,7 +16,6 @@ from squealpipe.cli.backbone import backbone
 from squealpipe.cli.claims import claims
 from squealpipe.cli.console import SESSION, TRACEBACK, session
 from squealpipe.cli.exit_codes import DONE, INTERRUPTED, NOT_DONE
-from squealpipe.cli.interrupts import interrupted, watched
 from squealpipe.cli.maps import map_angles
 from squealpipe.cli.memory import deposit, find, list_runs
 from squealpipe.cli.project import init
@@ -51,7 +50,7 @@ COMMANDS: dict[str, Callable[..., int]] = {
     "find": find,
     "deposit": deposit,
 }
-FORESEEN = (CycloptsError, ValueError, OSError, RuntimeError)
+FORESEEN = (CycloptsError, ValueError, OSError, RuntimeError, MemoryError)
 """Errors whose message says what to do."""
 
 
@@ -84,7 +83,7 @@ def _version() -> str:
 
 def run(arguments: Sequence[str]) -> int:
     """Run a command and return its exit code; errors become one message on standard error."""
-    with session(arguments) as left, watched():
+    with session(arguments) as left:
         try:
             code = int(application()(list(map(by_name, left))))
             sys.stdout.flush()
@@ -95,11 +94,10 @@ def run(arguments: Sequence[str]) -> int:
             if isinstance(left_by_rich.__context__, BrokenPipeError):
                 return DONE
             raise
-        except (KeyboardInterrupt, Exception) as error:  # noqa: BLE001 (one line, not a trace)
-            # Libraries may turn an interrupt into an error of their own.
-            if SESSION.interrupted or isinstance(error, KeyboardInterrupt):
-                print(interrupted(), file=sys.stderr)
-                return INTERRUPTED
+        except KeyboardInterrupt:
+            print("squealpipe: interrupted; run the same command again", file=sys.stderr)
+            return INTERRUPTED
+        except Exception as error:  # noqa: BLE001 (one line, not a trace)
             with contextlib.suppress(BrokenPipeError):  # nobody reads it
                 if SESSION.verbose:
                     traceback.print_exc()

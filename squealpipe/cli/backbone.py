@@ -15,11 +15,9 @@ from squealpipe.cli.arguments import (
     Switch,
     Whole,
 )
-from squealpipe.cli.console import answer, say
-from squealpipe.cli.cost import estimate
+from squealpipe.cli.console import answer, say, working
 from squealpipe.cli.exit_codes import ANSWER_IS_NO, DONE
 from squealpipe.cli.output import check_outputs, write
-from squealpipe.progress import elapsing
 
 
 def backbone(
@@ -35,7 +33,6 @@ def backbone(
     output: Output = Path("backbone.nc"),
     picture: Picture = None,
     force: Switch = False,
-    yes: Switch = False,
     config: Configs = None,  # noqa: ARG001 (read by `parameters_from_study`)
     params: Physical = BASELINE,
 ) -> int:
@@ -54,7 +51,6 @@ def backbone(
         output: dataset to write: NetCDF (.nc) or CSV (.csv).
         picture: picture to write; by default beside the output.
         force: overwrite files that exist.
-        yes: go on though it takes long or much memory.
         config: study whose parameters are used where none are typed; repeatable.
     """
     options: dict[str, Any] = {
@@ -65,7 +61,6 @@ def backbone(
         **({"n_harmonics": n_harmonics} if method == "hbm" else {}),
     }
     picture = check_outputs(output, picture, force=force)
-    estimate("backbone", params, options).check(yes=yes)
 
     from squealpipe.schema import REMEDIES, Outcome
     from squealpipe.study.figures.cli.branch import draw
@@ -73,7 +68,7 @@ def backbone(
     from squealpipe.tasks.backbones.backbone import backbone as task
 
     settings = {"parameters": params.as_dict(), "alpha1": alpha1, "alpha2": alpha2, **options}
-    with elapsing("backbone"):
+    with working("backbone"):
         branch = write(lambda: task(params, alpha1, alpha2, **options), output, config=settings)
     save_figure(draw(branch, preload=params.preload), [picture])
     end = Outcome(int(branch.end))

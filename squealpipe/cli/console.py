@@ -5,12 +5,11 @@ from __future__ import annotations
 import os
 import sys
 import warnings
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, redirect_stdout
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, TextIO, cast
 
-from squealpipe import progress
 from squealpipe.text import visible
 
 if TYPE_CHECKING:
@@ -18,18 +17,12 @@ if TYPE_CHECKING:
 
 TRACEBACK = "SQUEALPIPE_TRACEBACK"
 """Environment variable that asks for tracebacks, as -v does."""
-PATIENCE = 1.5
-"""Seconds from Ctrl-C after which a command that has not stopped by itself is ended."""
 SPELLED = str.maketrans(
     {"ω": "omega", "α": "alpha", "κ": "kappa", "λ": "lambda", "μ": "mu", "π": "pi", "√": "sqrt",
      "−": "-", "–": "-", "…": "...", "·": "*", "²": "^2", "₀": "0", "ẋ": "x'", "≤": "<=", "≥": ">="}
 )  # fmt: skip
 """What a terminal without these letters shows."""
 SWITCHES = {"-q": "quiet", "--quiet": "quiet", "-v": "verbose", "--verbose": "verbose"}
-
-
-def _nothing_kept() -> str:
-    return "nothing was written; run the same command again"
 
 
 @dataclass
@@ -40,17 +33,11 @@ class _Session:
         quiet: print answers and errors alone.
         verbose: print tracebacks and warnings.
         typed: physical parameters that stood on the command line.
-        advice: how to go on after an interrupt.
-        interrupted: Ctrl-C was pressed.
-        patience: seconds from Ctrl-C after which the process is ended from outside.
     """
 
     quiet: bool = False
     verbose: bool = False
     typed: set[str] = field(default_factory=set)
-    advice: Callable[[], str] = _nothing_kept
-    interrupted: bool = False
-    patience: float = PATIENCE
 
 
 SESSION = _Session()
@@ -91,10 +78,9 @@ def session(arguments: Sequence[str]) -> Iterator[list[str]]:
             kept.append(argument)
     SESSION.quiet = "quiet" in found
     SESSION.verbose = "verbose" in found or os.environ.get(TRACEBACK, "0") not in {"", "0"}
-    SESSION.advice, SESSION.patience = _nothing_kept, PATIENCE
-    SESSION.typed, SESSION.interrupted = set(), False
+    SESSION.typed = set()
     terminal = redirect_stdout(cast("TextIO", _Terminal(sys.stdout)))
-    with warnings.catch_warnings(), progress.silenced(SESSION.quiet), terminal:
+    with warnings.catch_warnings(), terminal:
         if not SESSION.verbose and not sys.warnoptions:
             warnings.simplefilter("ignore")
         yield kept
@@ -110,6 +96,20 @@ def say(*lines: str) -> None:
 def answer(*lines: str) -> None:
     """Print what was asked for, under -q too."""
     print(*lines, sep="\n")
+
+
+@contextmanager
+def working(what: str) -> Iterator[None]:
+    """A terminal sees that a command works, and for how long it has."""
+    from rich.console import Console as RichConsole
+    from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
+
+    console = RichConsole(stderr=True)
+    columns = (SpinnerColumn(), TextColumn("{task.description}"), TimeElapsedColumn())
+    off = SESSION.quiet or not console.is_terminal
+    with Progress(*columns, console=console, transient=True, disable=off) as progress:
+        progress.add_task(what, total=None)
+        yield
 
 
 def console() -> Console:

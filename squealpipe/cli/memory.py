@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 from cyclopts import Parameter
 
 from squealpipe.cli.arguments import AsJson
+from squealpipe.cli.console import working
 from squealpipe.cli.exit_codes import ANSWER_IS_NO, DONE
-from squealpipe.progress import elapsing
 
 if TYPE_CHECKING:
     from squealpipe.store.catalogue import Run
@@ -92,7 +92,7 @@ def deposit(
     """
     from squealpipe.store.deposit import bundle
 
-    with elapsing("deposit"):
+    with working("deposit"):
         path = bundle(name, output=output)
     print(f"wrote {path} ({path.stat().st_size / 1e6:.1f} MB)")
     return DONE

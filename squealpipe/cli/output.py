@@ -3,17 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from contextlib import nullcontext
 from glob import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from squealpipe.cli.console import SESSION, say
+from squealpipe.cli.console import say
 
 if TYPE_CHECKING:
     import xarray as xr
-
-    from squealpipe.store.chunks import Checkpoint
 
 DATA = (".nc", ".csv")
 PICTURES = (".png", ".svg", ".pdf")
@@ -64,33 +61,23 @@ def check_outputs(output: Path, picture: Path | None, *, force: bool) -> Path:
     return chosen
 
 
-def write(
-    make: Callable[[], xr.Dataset],
-    output: Path,
-    *,
-    config: Mapping[str, Any],
-    checkpoint: Checkpoint | None = None,
-) -> xr.Dataset:
+def write(make: Callable[[], xr.Dataset], output: Path, *, config: Mapping[str, Any]) -> xr.Dataset:
     """Make a dataset, write it in the form that the name asks for, and give it back.
 
     Args:
         make: makes it.
         output: file that ends in ``.nc`` or ``.csv``.
         config: what it was asked for, for its provenance.
-        checkpoint: keeps finished parts until the file is written.
     """
     from squealpipe.store import load, produce
 
-    if checkpoint is not None:
-        SESSION.advice = checkpoint.advice
-    with checkpoint or nullcontext():
-        if output.suffix == ".nc":
-            return load(produce(make, config=config, output=output))
-        from squealpipe.store.provenance import stamped
-        from squealpipe.store.tables import write_csv
+    if output.suffix == ".nc":
+        return load(produce(make, config=config, output=output))
+    from squealpipe.store.provenance import stamped
+    from squealpipe.store.tables import write_csv
 
-        dataset = stamped(make, config=config)
-        beside = write_csv(dataset, output)[1:]
-        if beside:
-            say(f"other dimensions are in {', '.join(map(str, beside))}")
-        return dataset
+    dataset = stamped(make, config=config)
+    beside = write_csv(dataset, output)[1:]
+    if beside:
+        say(f"other dimensions are in {', '.join(map(str, beside))}")
+    return dataset

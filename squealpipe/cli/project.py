@@ -14,7 +14,7 @@ from squealpipe.cli.console import SESSION, say
 from squealpipe.cli.exit_codes import DONE, NOT_DONE
 from squealpipe.cli.output import check_output
 from squealpipe.parameters import DEFAULTS, TABLE, Row
-from squealpipe.progress import duration
+from squealpipe.text import duration
 
 HEAD = """\
 # A study of your own, laid over the paper's: what stands here replaces what stands there.
@@ -44,8 +44,6 @@ parameters: # SI units
   length1: 0.02 # m
   length2: 0.02
 """
-PATIENCE = 30.0
-"""Seconds in which a workflow that was interrupted may end its jobs and tidy up."""
 
 
 def init(
@@ -121,7 +119,7 @@ def checkout() -> Path:
 def run(*, config: Configs = None, quick: Switch = False, cores: Whole | None = None) -> int:
     """Compute a study, with Snakemake's account of the steps, and of what failed with its log.
 
-    Stop it and run the same command again: it goes on where it was.
+    Stop it and run the same command again: it goes on where it was, rule by rule.
 
     Example: `squealpipe run --config mine.yaml --quick`
 
@@ -134,10 +132,9 @@ def run(*, config: Configs = None, quick: Switch = False, cores: Whole | None = 
 
     root = checkout()
     command, study = snakemake_command(config or [], quick=quick, root=root)
-    SESSION.advice = lambda: "what is finished is kept; run the same command again to go on"
     started = time.perf_counter()
     quiet = ["--quiet", "all"] if SESSION.quiet else ["--quiet", "host", "rules"]
-    code = _patiently([*command, "--cores", str(cores or "all"), *quiet])
+    code = _to_its_end([*command, "--cores", str(cores or "all"), *quiet])
     if code:
         print(f"squealpipe: the study in {study.results} is not complete", file=sys.stderr)
         return NOT_DONE
@@ -153,17 +150,12 @@ def _caches() -> dict[str, str]:
     return {"XDG_CACHE_HOME": kept, "MPLCONFIGDIR": f"{kept}/matplotlib", **os.environ}
 
 
-def _patiently(command: list[str]) -> int:
-    """Run Snakemake to its end; after Ctrl-C it gets the time to end its jobs and tidy up."""
-    SESSION.patience = PATIENCE
+def _to_its_end(command: list[str]) -> int:
+    """Run Snakemake; after Ctrl-C it ends its jobs and tidies up."""
     with subprocess.Popen(command, env={**os.environ, **_caches()}, start_new_session=True) as made:
         try:
             return made.wait()
         except KeyboardInterrupt:
             os.killpg(made.pid, signal.SIGINT)
-            try:
-                made.wait(PATIENCE / 2)
-            except subprocess.TimeoutExpired:  # a job does not heed it
-                os.killpg(made.pid, signal.SIGKILL)
-                subprocess.run([*command, "--unlock"], capture_output=True, check=False)
+            made.wait()
             raise

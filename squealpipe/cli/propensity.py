@@ -17,8 +17,7 @@ from squealpipe.cli.arguments import (
     Switch,
     Whole,
 )
-from squealpipe.cli.console import SESSION, answer, say
-from squealpipe.cli.cost import estimate
+from squealpipe.cli.console import SESSION, answer, say, working
 from squealpipe.cli.exit_codes import DONE
 from squealpipe.cli.output import check_outputs, write
 from squealpipe.config.ranges import ANGLES, parse_angle, parse_number
@@ -40,7 +39,6 @@ def propensity(
     output: Output = Path("propensity.nc"),
     picture: Picture = None,
     force: Switch = False,
-    yes: Switch = False,
     config: Configs = None,  # noqa: ARG001 (read by `parameters_from_study`)
     params: Physical = BASELINE,
 ) -> int:
@@ -61,7 +59,6 @@ def propensity(
         output: dataset to write: NetCDF (.nc) or CSV (.csv).
         picture: picture to write; by default beside the output.
         force: overwrite files that exist.
-        yes: go on though it takes long or much memory.
         config: study whose parameters are used where none are typed; repeatable.
     """
     distributions = dict(map(_distribution, spread))
@@ -71,8 +68,6 @@ def propensity(
         raise ValueError(f"{name} is both fixed and spread; keep one")
     t_end = HORIZON * params.time_unit if t_end is None else t_end
     picture = check_outputs(output, picture, force=force)
-    runs = samples * (len(distributions) + 3)
-    estimate("hammering_map", params, {"t_end": t_end}, runs=runs).check(yes=yes)
 
     from squealpipe.study.figures.parts.style import save_figure
     from squealpipe.study.figures.spread.propensity import draw
@@ -85,11 +80,11 @@ def propensity(
         "spring_correlation": spring_correlation,
         "seed": seed,
     }
-    dataset = write(
-        lambda: task.propensity(params, alpha1, alpha2, **options),
-        output,
-        config={"parameters": params.as_dict(), "alpha1": alpha1, "alpha2": alpha2, **options},
-    )
+    settings = {"parameters": params.as_dict(), "alpha1": alpha1, "alpha2": alpha2, **options}
+    with working("propensity"):
+        dataset = write(
+            lambda: task.propensity(params, alpha1, alpha2, **options), output, config=settings
+        )
     save_figure(draw(dataset), [picture])
     answer(
         *(

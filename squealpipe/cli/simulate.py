@@ -16,11 +16,9 @@ from squealpipe.cli.arguments import (
     Switch,
     Whole,
 )
-from squealpipe.cli.console import answer, say
-from squealpipe.cli.cost import estimate
+from squealpipe.cli.console import answer, say, working
 from squealpipe.cli.exit_codes import ANSWER_IS_NO, DONE
 from squealpipe.cli.output import check_outputs, write
-from squealpipe.progress import Progress, observed
 
 Model = Literal["A1", "A1-no-stick", "A1-no-separation", "A1-linear-springs", "A1-as-printed", "A4"]
 
@@ -41,7 +39,6 @@ def simulate(
     output: Output = Path("run.nc"),
     picture: Picture = None,
     force: Switch = False,
-    yes: Switch = False,
     config: Configs = None,  # noqa: ARG001 (read by `parameters_from_study`)
     params: Physical = BASELINE,
 ) -> int:
@@ -63,7 +60,6 @@ def simulate(
         output: dataset to write: NetCDF (.nc) or CSV (.csv).
         picture: picture to write (png, svg or pdf); by default beside the output.
         force: overwrite files that exist.
-        yes: go on though it takes long or much memory.
         config: study whose parameters are used where none are typed; repeatable.
     """
     if points is not None and points < 16:
@@ -72,7 +68,6 @@ def simulate(
     if not (t_end > 0 and math.isfinite(t_end)):
         raise ValueError(f"--t-end {t_end!r} must be greater than 0 and finite")
     picture = check_outputs(output, picture, force=force)
-    estimate("simulate", params, {"t_end": t_end}, samples=points).check(yes=yes)
 
     import numpy as np
 
@@ -88,19 +83,12 @@ def simulate(
         options["initial_state"] = [x0, y0, vx0, vy0]
     settings = {"parameters": params.as_dict(), "alpha1": alpha1, "alpha2": alpha2, **options}
     times = default_times(params, t_end) if points is None else np.linspace(0.0, t_end, points)
-    with Progress(t_end, "simulation", unit="s of motion") as progress:
-
-        def tell(scaled_time: float) -> None:
-            progress.done = min(scaled_time * params.time_unit, t_end)
-            progress.advance(0)
-
-        with observed(tell):
-            run = write(
-                lambda: task(params, alpha1, alpha2, times=times, **options),
-                output,
-                config={**settings, "points": times.size},
-            )
-        progress.done = t_end
+    with working("simulation"):
+        run = write(
+            lambda: task(params, alpha1, alpha2, times=times, **options),
+            output,
+            config={**settings, "points": times.size},
+        )
     outcome = Outcome(int(run.outcome))
     early = f"the run ended early: {outcome.name} ({REMEDIES[outcome]})"
     if outcome is not Outcome.converged and np.isfinite(run.x).sum() < FEWEST:

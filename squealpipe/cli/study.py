@@ -9,10 +9,10 @@ from typing import Annotated
 from cyclopts import Parameter
 
 from squealpipe.cli.arguments import AsJson, Configs, Switch
-from squealpipe.cli.console import console
+from squealpipe.cli.console import console, working
 from squealpipe.cli.exit_codes import ANSWER_IS_NO, DONE
 from squealpipe.cli.project import checkout
-from squealpipe.progress import duration, elapsing
+from squealpipe.text import duration
 
 
 def explain(
@@ -46,7 +46,7 @@ def explain(
         for rule, seconds in [*taken.items(), ("all", sum(taken.values()))]:
             print(f"| {rule} | {seconds:.1f} |")
         return DONE
-    with elapsing("explain"):
+    with working("explain"):
         plan = plan_of(config or [], quick=quick, root=checkout(), directory=".")
     if json_:
         print(json.dumps(plan.as_dict(), indent=1))
@@ -85,7 +85,7 @@ def archive(
     from squealpipe.execution.explain import explain as plan_of
     from squealpipe.store.archive import archive as freeze
 
-    with elapsing("archive"):
+    with working("archive"):
         # a configuration that was given whole may be the paper's own
         overlays = [path for path in config or [] if not path.samefile(PAPER)]
         plan = plan_of(overlays)
@@ -107,7 +107,7 @@ def verify(name: str, /) -> int:
     """
     from squealpipe.store.archive import verify as check
 
-    with elapsing("verify"):
+    with working("verify"):
         found = check(name)
     for line in found.lines():
         print(line)
@@ -138,7 +138,8 @@ def compare(
     """
     from squealpipe.store.comparison.compare import compare as difference_of
 
-    comparison = difference_of(a, b)
+    with working("compare"):
+        comparison = difference_of(a, b)
     if html is not None:
         from squealpipe.study.report.comparison import page
 

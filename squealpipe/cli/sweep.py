@@ -11,7 +11,6 @@ from cyclopts import Parameter
 
 from squealpipe.cli.arguments import BASELINE, Angle, Configs, Output, Physical, Switch, Whole
 from squealpipe.cli.console import SESSION, answer, say
-from squealpipe.cli.cost import of_sweep
 from squealpipe.cli.exit_codes import DONE
 from squealpipe.cli.output import check_output, write
 from squealpipe.config.ranges import read_fixed, read_values, sweep_config
@@ -29,13 +28,10 @@ def sweep(
     workers: Whole | None = None,
     output: Output = Path("sweep.nc"),
     force: Switch = False,
-    yes: Switch = False,
     config: Configs = None,  # noqa: ARG001 (read by `parameters_from_study`)
     params: Physical = BASELINE,
 ) -> int:
     """Run a task at every combination of values; write one dataset with the names as dimensions.
-
-    A sweep that was stopped goes on where it was when the same command is run again.
 
     Example: `squealpipe sweep periodic_orbit --alpha1 0.3pi --alpha2 0.9pi --option mode=1
     --vary y_peak=1.1:4:30 --vary mu=0.1,0.2,0.3 -o orbits.nc`
@@ -53,14 +49,10 @@ def sweep(
         workers: processes; all cores by default.
         output: dataset to write: NetCDF (.nc) or CSV (.csv).
         force: overwrite a file that exists.
-        yes: go on though it takes long or much memory.
         config: study whose parameters are used where none are typed; repeatable.
     """
-    from squealpipe.execution import sweep as sweeping
-    from squealpipe.execution.system_sweep import is_system
+    from squealpipe.execution.sweep import planned, run_sweep
     from squealpipe.execution.tally import lines
-    from squealpipe.rerun.key import rule_key, sources
-    from squealpipe.store.chunks import Checkpoint
 
     varied = _pairs("--vary", vary)
     options = _pairs("--option", option or [])
@@ -74,24 +66,15 @@ def sweep(
         fixed={**{name: read_fixed(name, value) for name, value in options.items()}, **angles},
         parameters=params.as_dict(),
     )
-    plan = sweeping.planned(settings)
+    plan = planned(settings)
     check_output(output, force=force)
-    expected = ""
-    if not is_system(task):
-        cost = of_sweep(settings, params, workers)
-        cost.check(yes=yes)
-        expected = cost.told
     runs = prod(len(plan.vary[name]) for name in plan.names)
-    say(f"{runs} runs of {task} over {', '.join(plan.names)}{expected}")
-    kept = Checkpoint.beside(output, key=rule_key(settings, sources(Path(sweeping.__file__))))
-
-    with sweeping.executor(workers) as pool:
-        dataset = write(
-            lambda: sweeping.run_sweep(plan, executor=pool, checkpoint=kept),
-            output,
-            config=settings,
-            checkpoint=kept,
-        )
+    say(f"{runs} runs of {task} over {', '.join(plan.names)}")
+    dataset = write(
+        lambda: run_sweep(plan, workers=workers, progress=not SESSION.quiet),
+        output,
+        config=settings,
+    )
     answer(*lines(dataset, plan.names))
     say(f"wrote {output}")
     return DONE

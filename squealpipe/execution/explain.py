@@ -19,10 +19,10 @@ from typing import Any
 
 from squealpipe.config.settings import PAPER, Study, read_study
 from squealpipe.config.yaml_files import flat, read_yaml
-from squealpipe.progress import duration
 from squealpipe.rerun.key import PLAN
 from squealpipe.store.keys import misfits
 from squealpipe.store.netcdf import StoreError, attributes
+from squealpipe.text import duration
 
 QUICK = Path("workflow/config/quick.yaml")
 FIGURE = re.compile(r"figures/([\w-]+)\.\w+$")

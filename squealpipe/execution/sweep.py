@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterator, Mapping, Sequence
-from concurrent.futures import Executor, ProcessPoolExecutor
-from contextlib import contextmanager
+import signal
+from collections.abc import Mapping, Sequence
+from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, replace
+from functools import partial
 from multiprocessing import get_all_start_methods, get_context
 from typing import Any
 
@@ -15,20 +16,17 @@ import xarray as xr
 
 from squealpipe.config.ranges import NUMBERS, PHYSICAL, longest
 from squealpipe.execution.catalogue import TASKS, run_task
-from squealpipe.execution.packing import pack, unpack
-from squealpipe.execution.row_blocks import scattered_rows
+from squealpipe.execution.parts import scattered_rows
 from squealpipe.execution.system_sweep import SystemSweep, is_system
-from squealpipe.methods.processes import available_cores, leave_interrupts_to_the_parent
+from squealpipe.methods.processes import available_cores
 from squealpipe.parameters import Parameters, parameters_of
 from squealpipe.schema import DatasetSchema, Variable, build, find
 from squealpipe.schema.origin import origin
 from squealpipe.schema.sweep import OPTIONS, fill_up, is_ragged, ragged_dims, sweep_name
-from squealpipe.store.chunks import Arrays, Checkpoint, run_chunks
 from squealpipe.text import suggestion
-from squealpipe.validation import Line, checked
+from squealpipe.validation import Line, Workers, checked
 
-CHUNKS = 256
-"""A sweep is kept in at most so many part files: enough to resume finely, cheap to write."""
+Arrays = dict[str, np.ndarray]
 
 
 @checked
@@ -166,94 +164,48 @@ def planned(config: Mapping[str, Any]) -> Sweep | SystemSweep:
     )
 
 
-@dataclass(frozen=True)
-class _Chunk:
-    """Consecutive points of a sweep; picklable, so that a worker process can compute it."""
-
-    sweep: Sweep
-    start: int
-    stop: int
-    workers: int | None
-
-
-def _compute(chunk: _Chunk) -> Arrays:
-    """Arrays of all points of a chunk, packed."""
-    points = chunk.sweep.points[chunk.start : chunk.stop]
-    datasets = [chunk.sweep.run(point, chunk.workers) for point in points]
-    return pack(
-        [{str(name): item.values for name, item in one.variables.items()} for one in datasets]
-    )
-
-
-@contextmanager
-def executor(workers: int | None = None) -> Iterator[Executor | None]:
-    """Processes to share a sweep; None where one is asked for or the system cannot fork.
-
-    They are forked, so a script that sweeps needs no main guard.
-
-    Args:
-        workers: number of processes; all cores by default.
-
-    Raises:
-        ValueError: fewer than one worker.
-    """
-    number = available_cores() if workers is None else workers
-    if number < 1:
-        raise ValueError(f"workers = {number}: must be 1 or greater")
-    if number == 1 or "fork" not in get_all_start_methods():
-        yield None
-        return
-    pool = ProcessPoolExecutor(
-        number, mp_context=get_context("fork"), initializer=leave_interrupts_to_the_parent
-    )
-    try:
-        yield pool
-    except BaseException:
-        # What waits is dropped and what runs is ended: an interrupt must not wait for the rest.
-        workers_now = list((pool._processes or {}).values())  # noqa: SLF001 (public from 3.14)
-        pool.shutdown(wait=False, cancel_futures=True)
-        for process in workers_now:
-            process.terminate()
-        raise
-    finally:
-        pool.shutdown(cancel_futures=True)
+def _run(sweep: Sweep, workers: int | None, point: tuple[float, ...]) -> Arrays:
+    """The arrays of one run; picklable with the sweep, so that a process can compute it."""
+    made = sweep.run(point, workers)
+    return {str(name): variable.values for name, variable in made.variables.items()}
 
 
 @checked
 def run_sweep(
-    sweep: Sweep | SystemSweep,
-    *,
-    executor: Executor | None = None,
-    checkpoint: Checkpoint | None = None,
+    sweep: Sweep | SystemSweep, *, workers: Workers = None, progress: bool = False
 ) -> xr.Dataset:
     """Run a sweep.
 
     Args:
         sweep: what to run.
-        executor: processes that share the work; None computes here.
-        checkpoint: where finished chunks are kept until all are done.
+        workers: processes that share the runs, all cores by default. They are forked, so a script
+            needs no main guard; where the system cannot fork, the runs stay here.
+        progress: show a bar on a terminal.
 
     Returns:
         The task's variables with the swept names as leading dimensions. Runs that are shorter
         than the longest along a dimension such as ``point`` are filled up with NaN, or the
-        flag "absent", and ``<dimension>_count`` tells their lengths.
+        flag "absent", and ``<dimension>_count`` states their lengths.
     """
-    workers = None if executor is None else 1
     if isinstance(sweep, SystemSweep):
-        return sweep.run(None if executor else 1)  # an ensemble shares its runs by itself
-    count = len(sweep.points)
-    size = -(-count // CHUNKS)
-    chunks = [_Chunk(sweep, at, min(at + size, count), workers) for at in range(0, count, size)]
-    parts = run_chunks(
-        _compute,
-        chunks,
-        checkpoint=checkpoint,
-        executor=executor,
-        sizes=[chunk.stop - chunk.start for chunk in chunks],
-        label=f"sweep of {sweep.task}",
-        unit="runs",
-    )
-    return _merge(sweep, [run for part in parts for run in unpack(part)])
+        return sweep.run(workers)  # an ensemble shares its runs by itself
+    points = sweep.points
+    number = min(workers or available_cores(), len(points))
+    if number == 1 or "fork" not in get_all_start_methods():
+        runs = _tracked(map(partial(_run, sweep, workers), points), sweep, progress=progress)
+    else:
+        # Ctrl-C reaches the whole group: processes end at once, and the parent says so.
+        with ProcessPoolExecutor(
+            number, get_context("fork"), signal.signal, (signal.SIGINT, signal.SIG_DFL)
+        ) as pool:
+            size = -(-len(points) // (16 * number))
+            made = pool.map(partial(_run, sweep, 1), points, chunksize=size)
+            try:
+                runs = _tracked(made, sweep, progress=progress)
+            except BaseException:
+                pool.shutdown(wait=False, cancel_futures=True)
+                raise
+    return _merge(sweep, runs)
 
 
 def _merge(sweep: Sweep, runs: Sequence[Arrays]) -> xr.Dataset:

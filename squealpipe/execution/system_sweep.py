@@ -12,7 +12,7 @@ from typing import Any
 import xarray as xr
 
 from squealpipe.config.ranges import longest
-from squealpipe.execution.row_blocks import scattered_rows
+from squealpipe.execution.parts import scattered_rows
 from squealpipe.systems import basin, runs
 from squealpipe.systems.system import System
 from squealpipe.text import suggestion

@@ -217,7 +217,7 @@ def integrate(
         }
         # a view of nothing has no address
         held = {k: v if v.size else np.zeros(1, v.dtype) for k, v in held.items() if k in ARRAYS}
-        drive(loop(), Workspace(TABLE, held, {name: sizes[name] for name in SIZES}), lanes[0])
+        drive(loop(), Workspace(TABLE, held, {name: sizes[name] for name in SIZES}))
 
     arrays = run_shared(work, shapes, jobs=size, workers=workers)
     for name in ("durations", "event_times", "firsts"):

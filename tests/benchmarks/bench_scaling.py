@@ -14,7 +14,6 @@ from pathlib import Path
 
 import numpy as np
 
-from squealpipe.execution.row_blocks import map_in_blocks
 from squealpipe.parameters import Parameters
 from squealpipe.store import save
 from squealpipe.tasks.dynamics.hammering import hammering_map
@@ -30,9 +29,7 @@ def measured(task, params: Parameters, points: int, t_end: float):
     """CPU seconds, wall seconds and the map."""
     angles = np.linspace(0.0, np.pi, points)
     cpu, wall = cpu_seconds(), time.perf_counter()
-    made = map_in_blocks(
-        lambda rows: task(params, rows, angles, t_end=t_end), angles, points, label="map"
-    )
+    made = task(params, angles, angles, t_end=t_end)
     return cpu_seconds() - cpu, time.perf_counter() - wall, made
 
 

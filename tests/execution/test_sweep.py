@@ -1,4 +1,4 @@
-"""Sweeps against the task run point by point; ragged runs; resuming after a stop."""
+"""Sweeps against the task run point by point; ragged runs; joined from parts."""
 
 from __future__ import annotations
 
@@ -13,13 +13,10 @@ import yaml
 
 from squealpipe.config.ranges import longest, parse_range
 from squealpipe.config.settings import parse_study
-from squealpipe.execution import sweep as sweeping
-from squealpipe.execution.row_blocks import join
-from squealpipe.execution.sweep import Sweep, executor, planned, run_sweep
-from squealpipe.rerun.key import rule_key
+from squealpipe.execution.parts import join
+from squealpipe.execution.sweep import Sweep, planned, run_sweep
 from squealpipe.schema import find
 from squealpipe.store import load, save
-from squealpipe.store.chunks import Checkpoint
 from squealpipe.store.identity import dataset_id
 from squealpipe.tasks.backbones.backbone import backbone
 from squealpipe.tasks.dynamics.runs import simulate
@@ -51,9 +48,7 @@ def test_map_task_gets_swept_names_as_leading_dimensions():
 
 
 def test_processes_give_the_same_bits():
-    with executor(2) as pool:
-        shared = run_sweep(linear_sweep(), executor=pool)
-    assert shared.identical(run_sweep(linear_sweep()))
+    assert run_sweep(linear_sweep(), workers=2).identical(run_sweep(linear_sweep(), workers=1))
 
 
 def test_angles_and_options_can_be_swept_and_ragged_runs_are_filled_up(tmp_path):
@@ -86,50 +81,6 @@ def test_backbones_of_both_modes():
         alone = backbone(FORMER, 0.3 * np.pi, 0.9 * np.pi, mode=mode, y_peak_max=1.5)
         one = found.sel(mode=mode).isel(point=slice(int(found.point_count.sel(mode=mode))))
         np.testing.assert_array_equal(one.omega, alone.omega)
-
-
-def test_a_stopped_sweep_goes_on_where_it_was(tmp_path, monkeypatch):
-    kept = Checkpoint.beside(tmp_path / "s.nc", key="a1")
-    calls = []
-    original = sweeping.run_task
-
-    def counted(*arguments, **options):
-        calls.append(1)
-        if len(calls) == 4:
-            raise KeyboardInterrupt
-        return original(*arguments, **options)
-
-    monkeypatch.setattr(sweeping, "run_task", counted)
-    with pytest.raises(KeyboardInterrupt), kept:
-        run_sweep(linear_sweep(), checkpoint=kept)
-    with kept:
-        found = run_sweep(linear_sweep(), checkpoint=kept)
-    assert len(calls) == 4 + 3
-    assert found.identical(run_sweep(linear_sweep()))
-    assert not kept.directory.exists()
-
-
-def test_a_stopped_sweep_repeated_in_another_order_is_no_mixture(tmp_path, monkeypatch):
-    """Chunks are numbered by the order of the swept names, so the order is part of their key."""
-    vary = {"k3": [0.5, 0.75, 1.0, 1.25], "mu": [0.1, 0.2, 0.3], "alpha1": ANGLES}
-    other = {name: vary[name] for name in ("mu", "k3", "alpha1")}
-    calls = []
-    original = sweeping.run_task
-
-    def counted(*arguments, **options):
-        calls.append(1)
-        if len(calls) == 6:
-            raise KeyboardInterrupt
-        return original(*arguments, **options)
-
-    monkeypatch.setattr(sweeping, "run_task", counted)
-    kept = Checkpoint.beside(tmp_path / "s.nc", key=rule_key({"vary": vary}, []))
-    with pytest.raises(KeyboardInterrupt), kept:
-        run_sweep(linear_sweep(vary=vary), checkpoint=kept)
-    with Checkpoint.beside(tmp_path / "s.nc", key=rule_key({"vary": other}, [])) as again:
-        found = run_sweep(linear_sweep(vary=other), checkpoint=again)
-    whole = run_sweep(linear_sweep(vary=vary))
-    assert found.growth_rate.transpose(*whole.growth_rate.dims).identical(whole.growth_rate)
 
 
 @pytest.mark.parametrize(
@@ -189,11 +140,9 @@ def test_a_script_without_a_main_guard_can_sweep(tmp_path):
     script = tmp_path / "script.py"
     script.write_text(
         "from squealpipe import Parameters, Sweep, run_sweep\n"
-        "from squealpipe.execution.sweep import executor\n"
         "plan = Sweep(task='stability_map', params=Parameters(),\n"
         "             vary={'mu': [0.1, 0.2, 0.3]}, fixed={'alpha1': 1.0, 'alpha2': 2.0})\n"
-        "with executor(2) as pool:\n"
-        "    print(run_sweep(plan, executor=pool).sizes['mu'])\n",
+        "print(run_sweep(plan, workers=2).sizes['mu'])\n",
         encoding="utf-8",
     )
     done = subprocess.run(

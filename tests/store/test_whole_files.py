@@ -4,13 +4,8 @@ from __future__ import annotations
 
 import subprocess
 
-import numpy as np
-import pytest
-
 from squealpipe import Parameters, save, stability_map
 from squealpipe.store.checkout import commit
-from squealpipe.store.chunks import Checkpoint
-from squealpipe.store.netcdf import StoreError
 from squealpipe.store.provenance import stamped
 from squealpipe.store.whole_files import whole_file
 
@@ -34,19 +29,6 @@ def test_ids_of_inputs_are_those_of_the_files_that_the_task_read(tmp_path):
 
     before = stamped(lambda: made[0], config={}, inputs=[path]).attrs["inputs"]
     assert stamped(task, config={}, inputs=[path]).attrs["inputs"] == before
-
-
-def test_a_foreign_part_is_named(tmp_path):
-    parts = Checkpoint.beside(tmp_path / "sweep.nc", key="x")
-    for index in (0, 1):
-        parts.write(index, {"a": np.arange(2.0) + index})
-    assert parts.read(1)["a"].tolist() == [1.0, 2.0]
-    parts.path(0).write_bytes(parts.path(1).read_bytes())
-    with pytest.raises(StoreError, match=r"000000\.npz is a part of something else; delete it"):
-        parts.read(0)
-    np.savez(parts.path(1), a=np.zeros(2))
-    with pytest.raises(StoreError, match=r"000001\.npz"):
-        parts.read(1)
 
 
 def test_an_archive_that_replaces_another_leaves_the_commit_clean(tmp_path):

@@ -31,8 +31,6 @@ for folder, reading in SHOWN.items():
             f"map_{folder.replace('/', '_')}validity"
         output:
             map_output(f"{folder}validity_map", validity),
-        log:
-            map_log(f"{folder}validity_map"),
         params:
             part=validity,
         threads: cores_for(STUDY.dynamics.validity_points**2, enough=10_000)
@@ -48,8 +46,6 @@ HAMMERING = part(
 rule map_hammering:
     output:
         map_output("hammering_map", HAMMERING),
-    log:
-        map_log("hammering_map"),
     params:
         part=HAMMERING,
     threads: cores_for(STUDY.dynamics.hammering_points**2, enough=4000)

@@ -33,7 +33,6 @@ from squealpipe.methods.taylor.series import (
     perturbation_source,
     series_source,
 )
-from squealpipe.progress import observer
 
 _numba: Any = numba
 _cgutils: Any = cgutils
@@ -166,15 +165,13 @@ def compile_advance(advance: Callable[..., Any], sources: Iterable[Path]) -> Any
     return function
 
 
-def drive(advance: Any, workspace: Workspace, clock: np.ndarray) -> None:
+def drive(advance: Any, workspace: Workspace) -> None:
     """Call ``advance``, which returns every ``ROUNDS`` steps, until it reports no lane busy.
 
-    An observer (:func:`squealpipe.progress.observed`) hears each time the time of lane 0.
+    Between two calls an interrupt is heard.
     """
-    tell = observer()
     while advance(workspace.pointer):
-        if tell is not None:
-            tell(float(clock[0]))
+        pass
 
 
 def taylor_terms(tol: float) -> int:

@@ -315,7 +315,6 @@ def _run_lanes(
     numbers[:] = 1.0
     lanes = np.ndarray(1, LANE, numbers)
     lanes["job"], lanes["longest_step"] = IDLE, np.inf
-    clock = lanes["clock"][0]
     arrays = arrays | {
         "lanes": lanes,
         "series": aligned(system.n_series, terms, LANES),
@@ -336,7 +335,7 @@ def _run_lanes(
         "perturb": system.perturb,
         "longest": system.longest,
     }
-    drive(lane_kernel(), Workspace(TABLE, {name: arrays[name] for name in ARRAYS}, sizes), clock)
+    drive(lane_kernel(), Workspace(TABLE, {name: arrays[name] for name in ARRAYS}, sizes))
     if lanes["job"].max() != IDLE or arrays["queue"][0]["next"] < len(jobs.orders):
         raise RuntimeError(
             "an exception in compiled code, reported above, ended the integration before its runs "

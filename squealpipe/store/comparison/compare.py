@@ -14,7 +14,6 @@ from typing import Any
 import xarray as xr
 
 from squealpipe.config.yaml_files import flat
-from squealpipe.progress import counted
 from squealpipe.schema import DatasetSchema, schema_of
 from squealpipe.schema.claims import CLAIMS
 from squealpipe.store.comparison.differences import Agreement, VariableDifference
@@ -151,7 +150,7 @@ def compare(
     statements: list[StatementChange] = []
     skipped = [name for name in set(left) ^ set(right) if matches_any(f"data/{name}.nc", absent)]
     names = sorted((set(left) | set(right)) - set(skipped))
-    for name in counted(names, "comparison", unit="datasets"):
+    for name in names:
         if name not in left or name not in right:
             side = a if name in left else b
             reason = f"only in {side}"

@@ -19,8 +19,3 @@ def map_output(name, part):
         return data(name)
     SCATTERED[name] = part
     return temp(f"{RESULTS}/parts/{name}/{{scatteritem}}.nc")
-
-
-def map_log(name):
-    """Log with the progress of a map's rule."""
-    return f"{RESULTS}/logs/{name}{'' if PARTS == 1 else '.{scatteritem}'}.log"

@@ -45,8 +45,6 @@ for name, sweep in SWEEPS.items():
             f"run_sweep_{name}"
         output:
             data(f"sweeps/{name}") if whole else temp(parts),
-        log:
-            f"{RESULTS}/logs/sweeps/{name}{'' if whole else '.{scatteritem}'}.log",
         params:
             part=sweep,
         threads: all_cores_for(prod(map(len, sweep["vary"].values())), enough=16)

@@ -1,6 +1,6 @@
 """Impacts, extremes and kind of motion of model A1; of a scattered map the rows of one part."""
 
-from squealpipe.execution.row_blocks import make_map
+from squealpipe.execution.parts import make_map
 from squealpipe.parameters import parameters_of
 from squealpipe.reading import for_linear
 from squealpipe.tasks.dynamics.hammering import hammering_map
@@ -13,6 +13,5 @@ make_map(
     part,
     output=snakemake.output[0],
     key=snakemake.params.key,
-    log=snakemake.log[0],
     item=snakemake.wildcards.get("scatteritem", "1-of-1"),
 )

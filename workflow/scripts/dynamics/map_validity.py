@@ -2,7 +2,7 @@
 
 from functools import partial
 
-from squealpipe.execution.row_blocks import make_map
+from squealpipe.execution.parts import make_map
 from squealpipe.parameters import parameters_of
 from squealpipe.reading import for_a1
 from squealpipe.tasks.dynamics.runs import validity_map
@@ -16,6 +16,5 @@ make_map(
     part,
     output=snakemake.output[0],
     key=snakemake.params.key,
-    log=snakemake.log[0],
     item=snakemake.wildcards.get("scatteritem", "1-of-1"),
 )

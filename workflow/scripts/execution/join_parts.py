@@ -2,7 +2,7 @@
 
 from squealpipe.config.ranges import longest
 from squealpipe.store import load, produce
-from squealpipe.execution.row_blocks import join
+from squealpipe.execution.parts import join
 
 part, parts = snakemake.params.part, list(snakemake.input.parts)
 along = longest(part["vary"]) if "vary" in part else "alpha1"
