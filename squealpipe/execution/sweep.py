@@ -208,6 +208,13 @@ def run_sweep(
     return _merge(sweep, runs)
 
 
+def _tracked(runs: Iterable[Arrays], sweep: Sweep, *, progress: bool) -> list[Arrays]:
+    console = Console(stderr=True)
+    off = not (progress and console.is_terminal)
+    label = f"sweep of {sweep.task}"
+    return list(track(runs, label, len(sweep.points), console=console, disable=off))
+
+
 def _merge(sweep: Sweep, runs: Sequence[Arrays]) -> xr.Dataset:
     schema, base = sweep.schema, find(TASKS[sweep.task].schema)
     shape = tuple(len(sweep.vary[name]) for name in sweep.names)

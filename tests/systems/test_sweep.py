@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pytest
 import xarray as xr
-from squealpipe.execution.row_blocks import join
 
 from squealpipe.config.ranges import sweep_config
+from squealpipe.execution.parts import join
 from squealpipe.execution.sweep import planned, run_sweep
 from squealpipe.rerun.key import rule_key
 from squealpipe.systems import impact_oscillator
