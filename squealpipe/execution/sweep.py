@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 import signal
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, replace
 from functools import partial
@@ -13,6 +13,8 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
+from rich.console import Console
+from rich.progress import track
 
 from squealpipe.config.ranges import NUMBERS, PHYSICAL, longest
 from squealpipe.execution.catalogue import TASKS, run_task
