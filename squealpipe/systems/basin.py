@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator, Mapping
 from enum import IntEnum
 from types import SimpleNamespace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -16,15 +16,12 @@ from squealpipe.schema import Outcome, flag_table
 from squealpipe.systems.runs import (
     attributes,
     flag,
-    instant,
     integrate,
     labels,
     outcome,
     outer_product,
 )
-
-if TYPE_CHECKING:
-    from squealpipe.systems.system import System
+from squealpipe.validation import NotNegative, Tolerance, Workers, checked
 
 AT_REST = 1e-3
 """A motion rests whose states stay this close together, over their ranges in the whole run."""
@@ -46,13 +43,14 @@ class Motion(IntEnum):
     cycle = 2
 
 
+@checked
 def basin(
-    system: System,
-    t_end: float,
+    system: Any,
+    t_end: NotNegative,
     *,
     start: Mapping[str, Any],
-    tol: float = 1e-12,
-    workers: int | None = None,
+    tol: Tolerance = 1e-12,
+    workers: Workers = None,
     **parameters: Any,
 ) -> xr.Dataset:
     """Runs from many starts, and what each has become in the second half of its run.
@@ -65,7 +63,7 @@ def basin(
     Args:
         system: what is run.
         t_end: end of each run.
-        start: states that differ from the system's start, numbers or 1-D arrays.
+        start: states that differ from the system's start, numbers or 1-D arrays, and ``regime``.
         tol: tolerance of the Taylor integrator.
         workers: processes; None takes all cores.
         parameters: those that differ from the system's, numbers or 1-D arrays.
@@ -78,7 +76,6 @@ def basin(
     Raises:
         ValueError: an unknown state or parameter, or a value that is no finite number.
     """
-    t_end = instant("t_end", t_end)
     grid = outer_product(system, start, parameters)
     size = math.prod(grid.shape)
 
@@ -86,8 +83,9 @@ def basin(
         values = {name: value[rows] for name, value in grid.values.items()}
         ends = np.full(values[system.states[0]].size, share * t_end)
         return integrate(
-            system, values, ends, t_late=late * t_end, tol=tol, workers=workers, **options
-        )
+            system, values, ends, t_late=late * t_end, tol=tol, regime=grid.regime,
+            workers=workers, **options,
+        )  # fmt: skip
 
     whole = run(slice(None), late=0.75)
     quarters = [each["extremes"][:, : len(system.states)] for each in
@@ -96,14 +94,18 @@ def basin(
     (low, high), (last_low, last_high) = [(q[..., 2], q[..., 3]) for q in quarters]
     stays = np.maximum(high, last_high) - np.minimum(low, last_low)
     rests = (stays <= AT_REST * spans).all(axis=1)
-    alike = np.maximum(np.abs(high - last_high), np.abs(low - last_low))
+    with np.errstate(invalid="ignore"):  # infinite where a run ended before
+        alike = np.maximum(np.abs(high - last_high), np.abs(low - last_low))
     period = np.full(size, np.nan)
     repeats = np.zeros(size, bool)
     counts = whole["counts"].sum(axis=1)
     moving = np.flatnonzero(~rests & (whole["ends"][:, 0] == Outcome.converged))
     if system.period is not None:
         names = SimpleNamespace(**grid.values)
-        forcing = np.broadcast_to(np.asarray(system.period(names), float), size)
+        with np.errstate(divide="ignore"):
+            forcing = np.broadcast_to(np.asarray(system.period(names), float), size)
+        if not (np.isfinite(forcing) & (forcing > 0.0)).all():
+            raise ValueError(f"{system.name}: the period of its forcing must be greater than 0")
         kept = int(np.clip(0.5 * t_end / forcing.max(), 0, LEAST_REPEATS * MOST_PERIODS))
         times = t_end - forcing[moving, None] * np.arange(kept, -1, -1)
         states = run(moving, times=times)["samples"] / spans[moving, None]

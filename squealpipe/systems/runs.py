@@ -39,7 +39,7 @@ from squealpipe.methods.taylor.simd import FEW, LANES
 from squealpipe.schema import SYSTEM, Outcome, flag_table, in_words
 from squealpipe.systems.trace import TIME, TIME_UNIT
 from squealpipe.text import suggestion
-from squealpipe.validation import real_array
+from squealpipe.validation import NotNegative, Tolerance, Vector, Workers, checked, real_array
 
 if TYPE_CHECKING:
     from squealpipe.systems.system import System
@@ -94,6 +94,7 @@ def integrate(
     values: Mapping[str, np.ndarray],
     t_end: np.ndarray,
     *,
+    regime: str | None = None,
     t_late: float = math.inf,
     times: np.ndarray | None = None,
     tol: float,
@@ -107,6 +108,7 @@ def integrate(
         system: what is run.
         values: each state and parameter as an array, (runs,).
         t_end, t_late: in the system's unit of time.
+        regime: in which all start; by default what fits each.
         times: instants at which the state is kept, (instants,) or (runs, instants).
         tol: tolerance.
         tangent: carry a perturbation along.
@@ -123,7 +125,7 @@ def integrate(
     columns = [*(values[name] for name in names), *derived, unit]
     parameters = np.stack([np.broadcast_to(each, (size,)) for each in columns], axis=1)
     initial = np.stack([values[name] for name in system.states], axis=1)
-    regimes = system.first_regimes({TIME: np.zeros(size), **values}, size)
+    regimes = system.first_regimes({TIME: np.zeros(size), **values}, size, regime)
     tracked = [*range(t.size)]
     tracked += [len(t.variables) + len(t.surfaces) + i for i in range(len(t.outputs))]
     limits = np.column_stack(
@@ -233,14 +235,15 @@ class _Given:
         self.__dict__.update({name: values[name] for name in names})
 
 
+@checked
 def simulate(
-    system: System,
-    t_end: float,
+    system: Any,
+    t_end: NotNegative,
     *,
-    times: Any = None,
+    times: Vector | None = None,
     start: Mapping[str, Any] | None = None,
-    tol: float = 1e-12,
-    **parameters: float,
+    tol: Tolerance = 1e-12,
+    **parameters: Any,
 ) -> xr.Dataset:
     """One run of a system, with every switch located.
 
@@ -248,7 +251,7 @@ def simulate(
         system: what is run.
         t_end: end of the run.
         times: instants, ascending; by default four a step of the integrator, evenly spaced.
-        start: states that differ from the system's start.
+        start: states that differ from the system's start, and ``regime`` if it is to be given.
         tol: tolerance of the Taylor integrator, relative to the states' sizes.
         parameters: those that differ from the system's.
 
@@ -259,19 +262,18 @@ def simulate(
     Raises:
         ValueError: an unknown state or parameter, or a value that is no finite number.
     """
-    t_end = instant("t_end", t_end)
     values = {
         name: np.array([_scalar(name, value)])
         for name, value in _given(system, start, parameters).items()
     }
-    ends = np.array([t_end])
+    ends, regime = np.array([t_end]), (start or {}).get("regime")
     if times is None:
-        steps = int(integrate(system, values, ends, tol=tol, log_events=0)["ends"][0, 2])
+        raw = integrate(system, values, ends, regime=regime, tol=tol)
+        steps = int(raw["ends"][0, 2])
         times = np.linspace(0.0, t_end, int(np.clip(SAMPLES_PER_STEP * steps, 2, MOST_SAMPLES)))
-    times = real_array("times", times)
     room = FIRST_LOG
     while True:
-        raw = integrate(system, values, ends, times=times, tol=tol, log_events=room)
+        raw = integrate(system, values, ends, regime=regime, times=times, tol=tol, log_events=room)
         count = int(raw["ends"][0, 3])
         if count <= room:
             break
@@ -298,15 +300,16 @@ def simulate(
     return xr.Dataset(found, coordinates, attributes(system, "simulate", given, tol))
 
 
+@checked
 def ensemble(
-    system: System,
-    t_end: float,
+    system: Any,
+    t_end: NotNegative,
     *,
     start: Mapping[str, Any] | None = None,
-    t_late: float | None = None,
-    tol: float = 1e-12,
+    t_late: NotNegative | None = None,
+    tol: Tolerance = 1e-12,
     horizon: bool = False,
-    workers: int | None = None,
+    workers: Workers = None,
     **parameters: Any,
 ) -> xr.Dataset:
     """Many runs: an outer product over all starts and parameters that are given as 1-D arrays.
@@ -314,7 +317,8 @@ def ensemble(
     Args:
         system: what is run.
         t_end: end of each run.
-        start: states that differ from the system's start; an array of ``x`` has dimension ``x0``.
+        start: states that differ from the system's start, and ``regime`` if it is to be given; an
+            array of ``x`` has dimension ``x0``.
         t_late: from when the ``late_…`` extremes are kept; 0.8 t_end by default.
         tol: tolerance of the Taylor integrator.
         horizon: with the growth of a perturbation and the horizon of predictability.
@@ -329,13 +333,12 @@ def ensemble(
     Raises:
         ValueError: an unknown state or parameter, or a value that is no finite number.
     """
-    t_end = instant("t_end", t_end)
     grid = outer_product(system, start, parameters)
     shape, size = grid.shape, math.prod(grid.shape)
-    late = 0.8 * t_end if t_late is None else instant("t_late", t_late)
+    late = 0.8 * t_end if t_late is None else t_late
     raw = integrate(
         system, grid.values, np.full(size, t_end), t_late=late, tol=tol, tangent=horizon,
-        workers=workers,
+        regime=grid.regime, workers=workers,
     )  # fmt: skip
     over = tuple(grid.coordinates)
 
@@ -377,12 +380,14 @@ class Grid:
         values: each state and parameter in every run, (runs,).
         coordinates: those that vary, as the dimensions of a dataset.
         fixed: the others.
+        regime: in which all start, if it is given.
     """
 
     shape: tuple[int, ...]
     values: dict[str, np.ndarray]
     coordinates: dict[str, Any]
     fixed: dict[str, float]
+    regime: str | None
 
 
 def outer_product(
@@ -397,7 +402,8 @@ def outer_product(
     for name, value in given.items():
         if value.ndim > 1:
             raise ValueError(f"{name} has shape {value.shape}: a number or a 1-D array is needed")
-    swept = [name for name in (*(start or {}), *parameters) if given[name].ndim]
+    order = [name for name in start or {} if name != "regime"]
+    swept = [name for name in (*order, *parameters) if given[name].ndim]
     shape = tuple(given[name].size for name in swept)
     axes = np.meshgrid(*(given[name] for name in swept), indexing="ij")
     fixed = {name: float(value) for name, value in given.items() if not value.ndim}
@@ -411,7 +417,7 @@ def outer_product(
                        system.units.get(name, "1"))  # fmt: skip
         dim = f"{name}0" if at_start else name
         coordinates[dim] = (dim, given[name], label)
-    return Grid(shape, values, coordinates, fixed)
+    return Grid(shape, values, coordinates, fixed, (start or {}).get("regime"))
 
 
 def _scalar(name: str, value: Any) -> float:
@@ -421,27 +427,22 @@ def _scalar(name: str, value: Any) -> float:
     return float(array)
 
 
-def instant(name: str, value: Any) -> float:
-    """A time that is 0 or later."""
-    number = _scalar(name, value)
-    if number < 0.0:
-        raise ValueError(f"{name} = {number!r}: must be 0 or greater")
-    return number
-
-
 def _given(
     system: System, start: Mapping[str, Any] | None, parameters: Mapping[str, Any]
 ) -> dict[str, Any]:
     """States and parameters of a call, the system's where it gives none."""
-    for name in start or {}:
+    start = dict(start or {})
+    system.check_regime(start)
+    start.pop("regime", None)
+    for name in start:
         if name not in system.units:
-            raise ValueError(f"start: {name!r} is unknown; {suggestion(name, system.units)}")
+            raise ValueError(f"start: {name!r} is unknown; {suggestion(str(name), system.units)}")
     for name in parameters:
         if name not in system.parameters:
             near = suggestion(name, system.parameters)
             raise ValueError(f"{system.name}: parameter {name!r} is unknown; {near}")
     states = {name: system.start[name] for name in system.units}
-    return {**states, **system.parameters, **(start or {}), **parameters}
+    return {**states, **system.parameters, **start, **parameters}
 
 
 def _finite(array: np.ndarray) -> np.ndarray:

@@ -165,9 +165,16 @@ class System:
             )
         if missing := [name for name in self.units if name not in self.start]:
             raise ValueError(f"start lacks the state {missing[0]!r}")
+        self.check_regime(self.start)
         names = [each.name for each in self.switches]
         if len(set(names)) < len(names):
             raise ValueError(f"two switches share a name: {', '.join(names)}")
+
+    def check_regime(self, start: Mapping[str, Any]) -> None:
+        """Refuse a start in a regime that there is not."""
+        given = start.get("regime")
+        if given is not None and given not in self.regimes:
+            raise ValueError(f"start: regime {given!r}: {suggestion(str(given), self.regimes)}")
 
     @staticmethod
     def _check_free(what: str, names: Mapping[str, Any], taken: Any) -> None:
@@ -344,18 +351,22 @@ class System:
 
         return describe(self)
 
-    def first_regimes(self, values: Mapping[str, Any], size: int) -> np.ndarray:
+    def first_regimes(
+        self, values: Mapping[str, Any], size: int, given: str | None = None
+    ) -> np.ndarray:
         """The regime in which each run starts.
 
         Args:
             values: states, parameters and ``time`` as arrays of that size.
             size: number of runs.
+            given: its name; by default that of the system's start, or what fits.
 
         Raises:
             ValueError: no regime fits a start.
         """
-        if "regime" in self.start:
-            return np.full(size, list(self.regimes).index(self.start["regime"]), np.int64)
+        given = given or self.start.get("regime")
+        if given is not None:
+            return np.full(size, list(self.regimes).index(given), np.int64)
         traced = self.traced
         chosen = np.full(size, -1, np.int64)
         entries = traced.starts or tuple((i, None, None) for i in range(len(self.regimes)))

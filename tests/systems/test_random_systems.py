@@ -210,8 +210,34 @@ def test_a_wrong_definition_is_refused_before_anything_is_compiled(change, error
         System("wrong", **{**GOOD, **change})
 
 
-def test_arguments_of_a_run_are_checked():
-    system = System("good", **GOOD)
-    for options in ({"gpa": 1.0}, {"start": {"y": 1.0}}, {"gap": float("nan")}):
-        with pytest.raises(ValueError, match=r"gap|'y'|finite"):
-            system.simulate(1.0, **options)
+@pytest.mark.parametrize("method", ["simulate", "ensemble", "basin"])
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"gpa": 1.0}, "did you mean 'gap'"),
+        ({"start": {"y": 1.0}}, "'y' is unknown"),
+        ({"start": {"regime": "fre"}}, "did you mean 'free'"),
+        ({"start": 1.0}, "start = 1.0"),
+        ({"gap": float("nan")}, "gap = nan"),
+        ({"tol": 0.0}, "tol = 0.0"),
+        ({"t_end": -1.0}, "t_end = -1.0"),
+    ],
+)
+def test_arguments_of_a_run_are_checked(method, options, message):
+    with pytest.raises(ValueError, match=message):
+        getattr(System("good", **GOOD), method)(**{"t_end": 1.0, "start": {}} | options)
+
+
+def test_a_run_starts_in_the_regime_that_it_is_given():
+    """Without surfaces both regimes fit; the first is taken unless another is named."""
+    system = System(
+        "growth or decay",
+        states={"x": "1"},
+        parameters={},
+        regimes={"grows": {"rate": 1.0}, "decays": {"rate": -1.0}},
+        field=lambda t, s, p, r: {"x": r.rate * s.x},
+        start={"x": 1.0},
+    )
+    for start, end in (({}, np.e), ({"regime": "decays"}, 1.0 / np.e)):
+        assert float(system.ensemble(1.0, start=start).x) == pytest.approx(end, rel=1e-14)
+        assert float(system.simulate(1.0, start=start).x[-1]) == pytest.approx(end, rel=1e-14)
