@@ -120,7 +120,6 @@ def compare(
     /,
     *,
     every: Annotated[bool, Parameter(name=["--all", "--every"], negative="")] = False,
-    html: Path | None = None,
     json_: AsJson = False,
 ) -> int:
     """Compare two archives, runs, folders or files, variable by variable.
@@ -133,21 +132,16 @@ def compare(
         a: archive name or path.
         b: archive name or path.
         every: tell all of it: also what is equal, and where each side was made.
-        html: write a page with pictures: maps that differ, and figures of changed statements.
         json_: print JSON.
     """
     from squealpipe.store.comparison.compare import compare as difference_of
 
     with working("compare"):
         comparison = difference_of(a, b)
-    if html is not None:
-        from squealpipe.study.report.comparison import page
-
-        html.write_text(page(comparison), encoding="utf-8")
     if json_:
         print(json.dumps(comparison.as_dict(), indent=1, allow_nan=False))
     else:
-        from squealpipe.study.report.comparison import lines
+        from squealpipe.store.comparison.lines import lines
 
         print("\n".join(lines(comparison, every=every)))
     return comparison.exit_code

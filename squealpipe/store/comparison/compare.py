@@ -37,7 +37,6 @@ class DatasetDifference:
     variables: list[VariableDifference] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
     reason: str = ""
-    files: tuple[Path | None, Path | None] = (None, None)
 
     @property
     def differences(self) -> list[VariableDifference]:
@@ -158,17 +157,16 @@ def compare(
                 DatasetDifference(name=name, verdict=Agreement.different, reason=reason)
             )
             continue
-        files = (left[name], right[name])
         try:
-            pair = (load(files[0]), load(files[1]))
+            pair = (load(left[name]), load(right[name]))
         except ValueError as error:
-            datasets.append(_refused(name, files, str(error)))
+            datasets.append(_refused(name, str(error)))
             continue
         parameters.update(changed_configuration(*pair))
         environment.update(changed_environment(*pair))
-        datasets.append(compare_datasets(name, *pair, files=files))
+        datasets.append(compare_datasets(name, *pair))
         if pair[0].attrs["schema"] == pair[1].attrs["schema"] == CLAIMS.name:
-            statements = changed_statements(*pair, (files[0].parents[1], files[1].parents[1]))
+            statements = changed_statements(*pair)
     return Comparison(
         a=str(a),
         b=str(b),
@@ -180,20 +178,14 @@ def compare(
     )
 
 
-def compare_datasets(
-    name: str,
-    a: xr.Dataset,
-    b: xr.Dataset,
-    *,
-    files: tuple[Path | None, Path | None] = (None, None),
-) -> DatasetDifference:
+def compare_datasets(name: str, a: xr.Dataset, b: xr.Dataset) -> DatasetDifference:
     """Compare two datasets of one schema, variable by variable, on what they share.
 
     Points of grids are matched by value, entries of lists as the schema's ``lists`` say.
     """
     kinds = (a.attrs["schema"], b.attrs["schema"])
     if kinds[0] != kinds[1]:
-        return _refused(name, files, f"the schemas are {kinds[0]!r} and {kinds[1]!r}")
+        return _refused(name, f"the schemas are {kinds[0]!r} and {kinds[1]!r}")
     schema = schema_of(a)
     lengths = [
         (dim, *(judged_length(each, dim, how) for each in (a, b)))
@@ -202,7 +194,7 @@ def compare_datasets(
     try:
         a, b, notes = align(a, b, schema)
     except ValueError as error:
-        return _refused(name, files, str(error))
+        return _refused(name, str(error))
     variables = [
         _variable(variable, a, b, schema)
         for variable in [*schema.coordinates, *schema.variables]
@@ -223,7 +215,6 @@ def compare_datasets(
         verdict=max(judged, default=Agreement.equal),
         variables=variables,
         notes=notes,
-        files=files,
     )
 
 
@@ -241,10 +232,8 @@ def _variable(name: str, a: xr.Dataset, b: xr.Dataset, schema: DatasetSchema) ->
     return judge(name, a, b, entry)
 
 
-def _refused(name: str, files: tuple[Path | None, Path | None], reason: str) -> DatasetDifference:
-    return DatasetDifference(
-        name=name, verdict=Agreement.not_comparable, reason=reason, files=files
-    )
+def _refused(name: str, reason: str) -> DatasetDifference:
+    return DatasetDifference(name=name, verdict=Agreement.not_comparable, reason=reason)
 
 
 def changed_configuration(a: xr.Dataset, b: xr.Dataset) -> dict[str, tuple[Any, Any]]:

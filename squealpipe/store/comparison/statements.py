@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from pathlib import Path
 
 import xarray as xr
 
@@ -21,14 +20,12 @@ class StatementChange:
         statement: in our words.
         verdicts: in the first and the second run; empty where it is not judged.
         values: what was measured; None where there is no number.
-        figures: the picture that shows it, in each run; None where it is not kept.
     """
 
     claim: str
     statement: str
     verdicts: tuple[str, str]
     values: tuple[float | None, float | None]
-    figures: tuple[Path | None, Path | None] = (None, None)
 
     @property
     def verdict_changed(self) -> bool:
@@ -36,14 +33,11 @@ class StatementChange:
         return self.verdicts[0] != self.verdicts[1]
 
 
-def changed_statements(
-    a: xr.Dataset, b: xr.Dataset, runs: tuple[Path, Path]
-) -> list[StatementChange]:
+def changed_statements(a: xr.Dataset, b: xr.Dataset) -> list[StatementChange]:
     """Statements whose verdict or value differs; changed verdicts first.
 
     Args:
         a, b: datasets ``claims`` of two runs.
-        runs: folders of the runs, whose pictures are beside the data.
     """
     rows = [_rows(dataset) for dataset in (a, b)]
     found = []
@@ -53,14 +47,12 @@ def changed_statements(
         if verdicts[0] == verdicts[1] and not _value_changed(first, second):
             continue
         shown = {**rows[1], **rows[0]}[claim]
-        picture = f"figures/{shown['figure'].item()}.png"
         found.append(
             StatementChange(
                 claim=claim,
                 statement=str(shown["statement"].item()),
                 verdicts=verdicts,
                 values=(_value(first), _value(second)),
-                figures=(_existing(runs[0] / picture), _existing(runs[1] / picture)),
             )
         )
     return sorted(found, key=lambda change: not change.verdict_changed)
@@ -84,7 +76,3 @@ def _value_changed(first: xr.Dataset | None, second: xr.Dataset | None) -> bool:
         return True
     entry = CLAIMS.variables["value"]
     return bool(outside_tolerance(first["value"].values, second["value"].values, entry))
-
-
-def _existing(path: Path) -> Path | None:
-    return path if path.is_file() else None

@@ -1,28 +1,16 @@
-"""A comparison for people: a screenful in the terminal, a page with pictures."""
+"""A comparison for people: a screenful in the terminal."""
 
 from __future__ import annotations
 
-import base64
-import io
 import math
 from collections.abc import Iterator
-from functools import lru_cache
-from pathlib import Path
 from typing import Any
 
-import jinja2
-import xarray as xr
-
-from squealpipe.schema import find
 from squealpipe.schema.agreement import ComparedAs
 from squealpipe.store.comparison.compare import Comparison, DatasetDifference
 from squealpipe.store.comparison.differences import Agreement, VariableDifference
-from squealpipe.store.comparison.matching import align
 from squealpipe.store.comparison.statements import StatementChange
-from squealpipe.store.netcdf import load
-from squealpipe.study.figures.parts.difference import CAPTION, draw, drawable
 
-MOST_PICTURES = 12
 SCREEN = {"parameters": 6, "statements": 5, "differences": 6}
 """Lines of each part that a terminal shows unless all are asked for."""
 WIDTH = 100
@@ -131,85 +119,7 @@ def how_much(entry: VariableDifference) -> str:
     return f"{told}; {entry.reason}" if entry.reason else told
 
 
-def page(comparison: Comparison) -> str:
-    """One self-contained HTML page with pictures of the maps that differ."""
-    environment = jinja2.Environment(
-        loader=jinja2.PackageLoader("squealpipe.study.report", "templates"), autoescape=True
-    )
-    template = environment.get_template("comparison.html.j2")
-    pictures = _pictures(comparison)
-    _aligned.cache_clear()  # the files may change before the next page
-    return template.render(
-        comparison=comparison,
-        verdict=verdict_line(comparison),
-        pictures=pictures,
-        statements=list(_statements(comparison)),
-        caption=CAPTION,
-        words=words,
-        where=where,
-        how_much=how_much,
-        Agreement=Agreement,
-    )
-
-
-def _statements(comparison: Comparison) -> Iterator[tuple[StatementChange, str, list[str]]]:
-    """Each changed statement with its line and its pictures; a pair is embedded once."""
-    shown: set[tuple[Path | None, Path | None]] = set()
-    for change in comparison.statements:
-        pictures = [] if change.figures in shown else [_embedded(path) for path in change.figures]
-        shown.add(change.figures)
-        yield change, statement_line(change), pictures
-
-
-def _embedded(path: Path | None) -> str:
-    """A picture as a data address; empty where it is not kept."""
-    if path is None:
-        return ""
-    return f"data:image/png;base64,{base64.b64encode(path.read_bytes()).decode()}"
-
-
 def _place(dim: str, value: float | str) -> str:
     if isinstance(value, str):
         return value
     return f"{value / math.pi:.4g}π" if dim.startswith("alpha") else f"{value:.6g}"
-
-
-def _pictures(comparison: Comparison) -> list[dict[str, str]]:
-    wanted = [
-        (item, entry)
-        for item in comparison.datasets
-        for entry in item.variables
-        if entry.verdict == Agreement.different and entry.compared and not entry.volatile
-    ]
-    wanted.sort(key=lambda pair: pair[1].differing / pair[1].compared, reverse=True)
-    pictures: list[dict[str, str]] = []
-    for item, entry in wanted:
-        if len(pictures) == MOST_PICTURES:
-            break
-        picture = _picture(item, entry)
-        if picture:
-            title = f"{item.name}: {entry.name}"
-            pictures.append({"title": title, "source": f"data:image/png;base64,{picture}"})
-    return pictures
-
-
-@lru_cache(maxsize=64)
-def _aligned(first: Path, second: Path) -> tuple[xr.Dataset, xr.Dataset]:
-    """Two files on what they share; read once for all the variables that differ."""
-    a, b = load(first), load(second)
-    a, b, _ = align(a, b, find(str(a.attrs["schema"])))
-    return a, b
-
-
-def _picture(item: DatasetDifference, entry: VariableDifference) -> str:
-    """PNG of one variable as base64; empty where it is not a map."""
-    first, second = item.files
-    if first is None or second is None:
-        return ""
-    a, b = _aligned(first, second)
-    line = find(str(a.attrs["schema"])).lookup(entry.name)
-    if line is None or not drawable(a[entry.name]):
-        return ""
-    buffer = io.BytesIO()
-    draw(entry.name, a[entry.name], b[entry.name], line).savefig(buffer, format="png", dpi=130)
-    return base64.b64encode(buffer.getvalue()).decode()

@@ -1,18 +1,14 @@
-"""What people see of a comparison: parameters first, the place, pictures of flipped cells."""
-
-import base64
+"""What people see of a comparison: parameters first, the place, the worst first."""
 
 import numpy as np
 import pytest
 
 from squealpipe.parameters import Parameters
-from squealpipe.schema.linear import STABILITY_MAP
 from squealpipe.store import produce
 from squealpipe.store.comparison.compare import Comparison, DatasetDifference, compare
 from squealpipe.store.comparison.differences import Agreement, VariableDifference
+from squealpipe.store.comparison.lines import lines, statement_line, verdict_line
 from squealpipe.store.comparison.statements import StatementChange
-from squealpipe.study.figures.parts.difference import draw, drawable
-from squealpipe.study.report.comparison import lines, page, statement_line, verdict_line
 from squealpipe.tasks.linear.maps import stability_map
 
 
@@ -81,16 +77,9 @@ def test_worst_comes_first_and_a_screenful_is_enough():
     assert len(lines(found, every=True)) > 100
 
 
-def test_statements_that_changed_show_both_figures_side_by_side(tmp_path):
-    pictures = [tmp_path / name for name in ("a.png", "b.png")]
-    for path in pictures:
-        path.write_bytes(path.name.encode())
+def test_statements_that_changed_show_verdicts_and_values():
     changed = StatementChange(
-        claim="F3",
-        statement="x grows",
-        verdicts=("holds", "fails"),
-        values=(32.3, 12.0),
-        figures=(pictures[0], pictures[1]),
+        claim="F3", statement="x grows", verdicts=("holds", "fails"), values=(32.3, 12.0)
     )
     bare = StatementChange(
         claim="F4", statement="bounded", verdicts=("holds", ""), values=(1.0, None)
@@ -99,36 +88,9 @@ def test_statements_that_changed_show_both_figures_side_by_side(tmp_path):
     assert statement_line(changed) == "F3: holds → fails, value 32.3 → 12"
     assert statement_line(bare) == "F4: holds → not judged, value 1 → –"
     assert any("2 changed their verdict" in line for line in lines(found))
-    html = page(found)
-    for path in pictures:
-        assert base64.b64encode(path.read_bytes()).decode() in html
-    assert html.count('<div class="pair">') == 1
 
 
 def test_table_of_what_cannot_be_compared_tells_why(pair, tmp_path):
     found = compare(pair[0], tmp_path / "nowhere")
     assert "no archive, folder or file" in printed(found)
     assert verdict_line(found).startswith("not comparable")
-
-
-def test_page_is_self_contained_and_shows_each_differing_map(pair):
-    html = page(compare(*pair))
-    assert html.count('<img src="data:image/png;base64,') == 4
-    assert "http" not in html.replace("http-equiv", "")
-    assert "13 flipped" in html or "flipped:" in html
-
-
-def test_page_quotes_what_datasets_say(pair, tmp_path):
-    hostile = tmp_path / "<script>alert(1)<script>"
-    pair[1].rename(hostile)
-    assert "<script>" not in page(compare(pair[0], hostile))
-
-
-def test_picture_of_flags_marks_exactly_the_flipped_cells(pair):
-    a, b = (stability_map(Parameters(mu=mu), *[np.linspace(0, np.pi, 13)] * 2) for mu in (0.3, 0.5))
-    entry = STABILITY_MAP.variables["regime_linear"]
-    figure = draw("regime_linear", a.regime_linear, b.regime_linear, entry)
-    drawn = np.asarray(figure.axes[2].collections[0].get_array()).reshape(13, 13)
-    np.testing.assert_array_equal(drawn.T, a.regime_linear.values != b.regime_linear.values)
-    assert drawable(a.frequency)
-    assert not drawable(a.alpha1)
