@@ -225,10 +225,7 @@ class DynamicsSection(Section):
     whirl_speeds: Range = (0.3, 300.0)
     whirl_count: Annotated[int, Field(ge=2, le=1000)] = 31
     whirl_horizon: Positive = 10_000.0
-    transient_speeds: Range = (0.3, 30.0)
-    transient_count: Annotated[int, Field(ge=2, le=1000)] = 21
-    transient_samples: Annotated[int, Field(ge=2, le=100_000)] = 24
-    transient_shown: Annotated[int, Field(ge=2, le=100_000)] = 400
+    transient_samples: Annotated[int, Field(ge=2, le=100_000)] = 400
     transient_horizon: Positive = 20_000.0
 
 

@@ -1,4 +1,4 @@
-"""Lifetimes of which some are only known to be longer than a run: survival and hazard."""
+"""Lifetimes of which some are only known to be longer than a run: survival."""
 
 from __future__ import annotations
 
@@ -67,25 +67,3 @@ def survival(lifetimes: np.ndarray, seen: np.ndarray) -> Survival:
     if missing[-1] and share[-1] < 1.0:
         high[-1] = high[:-1][np.isfinite(high[:-1])][-1]
     return Survival(np.append(0.0, estimate.quantiles), share, low, high)
-
-
-def hazard(
-    lifetimes: np.ndarray, seen: np.ndarray, edges: np.ndarray
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Ends per time at risk between ascending edges, with the exact interval for a Poisson count.
-
-    Args:
-        lifetimes, seen: as :func:`survival`.
-        edges: (m + 1,) times.
-
-    Returns:
-        Rate, its low and its high end, (m,) each; NaN where nothing was at risk.
-    """
-    risk = np.clip(lifetimes[:, None], edges[:-1], edges[1:]) - edges[:-1]
-    exposure = risk.sum(axis=0)
-    count, _ = np.histogram(lifetimes[seen], edges)
-    tail = 0.5 * (1.0 - CONFIDENCE)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        low = np.where(count > 0, stats.chi2.ppf(tail, 2 * count), 0.0) / 2.0
-        high = stats.chi2.ppf(1.0 - tail, 2 * count + 2) / 2.0
-        return count / exposure, low / exposure, np.where(exposure > 0, high / exposure, np.nan)

@@ -78,13 +78,10 @@ def of_the_paper(params: Parameters, model: str) -> dict[str, xr.Dataset]:
 def of_one_sign(params: Parameters) -> dict[str, xr.Dataset]:
     """What goes beyond the paper."""
     unit = params.time_unit
-    speed = params.preload / unit
     angles = np.linspace(0.0, np.pi, POINTS)[::4]
     return {
         "assumptions": check_assumptions(params),
-        "transient": transient_lifetimes(
-            params, [10.0 * speed], samples=2, shown_samples=8, t_end=4000.0 * unit, workers=1
-        ),
+        "transient": transient_lifetimes(params, samples=8, t_end=4000.0 * unit, workers=1),
         "hammering_map": hammering_map(params, angles, angles, t_end=50.0 * unit, workers=1),
     }
 

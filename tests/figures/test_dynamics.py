@@ -51,9 +51,7 @@ def test_all_are_drawn_for_any_study(params, tmp_path):
         "hammering": hammering_task.hammering_map(params, ANGLES, ANGLES, t_end=50.0),
         "refined": refinement.refine_validity_map(params, resolution=61, coarse=16, t_end=50.0),
         "whirl": whirl_task.whirl_sizes(params, [0.5, 5.0, 50.0], t_end=200.0),
-        "transient": whirl_task.transient_lifetimes(
-            params, [0.5, 5.0], samples=3, shown_samples=5, t_end=400.0
-        ),
+        "transient": whirl_task.transient_lifetimes(params, samples=5, t_end=400.0),
     }
     own = json.dumps(params.as_dict())
     check = refinement.check_refinement(params, maps["refined"], points=(16, 31))

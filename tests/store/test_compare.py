@@ -266,7 +266,7 @@ def test_physical_keys_come_before_those_of_grids(tmp_path, write_run):
     assert list(found.parameters) == ["parameters.mu", "linear.points"]
 
 
-def test_statements_that_changed_are_told_with_verdict_value_and_figures(tmp_path):
+def test_statements_that_changed_are_told_with_verdict_and_value(tmp_path):
     claims = ["A", "B", "C"]
     text = {
         name: ["t"] * 3
@@ -280,11 +280,8 @@ def test_statements_that_changed_are_told_with_verdict_value_and_figures(tmp_pat
         text["corrected_evidence"] = ["t"] * 3
         data = {**text, **numbers, **flags, "value": value, "figure": ["fig02", "fig03", ""]}
         save(build(CLAIMS, data, {"claim": claims}), tmp_path / place / "data/claims.nc")
-    (tmp_path / "a/figures").mkdir()
-    (tmp_path / "a/figures/fig03.png").write_bytes(b"picture")
     found = compare(tmp_path / "a", tmp_path / "b").statements
     assert [change.claim for change in found] == ["B", "A"]
     assert [change.verdict_changed for change in found] == [True, False]
     assert found[0].verdicts == ("holds", "fails")
-    assert found[0].figures == (tmp_path / "a/figures/fig03.png", None)
     assert found[1].values == (1.0, 1.1)

@@ -103,11 +103,12 @@ def test_bounded_to_500_and_a_transient_beyond():
 
 
 def test_slow_belt_never_lets_the_transient_end():
-    result = transient_lifetimes(BASELINE, [0.5, 3.0], samples=6, shown_samples=2, t_end=20_000.0)
-    left = np.isfinite(result.lifetime.values)
-    assert not left[0].any()
-    assert left[1].any()
-    assert (result.max_displacement.values[0] < 12).all()
+    left = [
+        transient_lifetimes(BASELINE.with_(belt_speed=speed), samples=6, t_end=20_000.0).lifetime
+        for speed in (0.5, 3.0)
+    ]
+    assert not np.isfinite(left[0]).any()
+    assert np.isfinite(left[1]).any()
 
 
 def test_springs_along_the_belt():

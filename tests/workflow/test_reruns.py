@@ -240,7 +240,6 @@ LAYERS = {
     "study/figures/linear/fig06.py": ({"draw_linear"}, {"map_linear", "draw_model"}),
     "study/report/build.py": ({"write_report"}, {"map_linear", "draw_linear"}),
     "store/archive.py": (set(), {"write_report"}),
-    "progress.py": (set(), {"map_validity"}),
 }
 """Module → rules that its edit must reach, and some that it must not."""
 

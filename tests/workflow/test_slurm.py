@@ -66,9 +66,7 @@ dynamics:
   hammering_horizon: 50.0
   whirl_count: 3
   whirl_horizon: 1000.0
-  transient_count: 2
-  transient_samples: 2
-  transient_shown: 4
+  transient_samples: 4
   transient_horizon: 1000.0
 explorer: {points: 3, history_time: 20.0, spectrum_time: 20.0, samples: 50, branch_points: 4}
 backbones:

@@ -84,12 +84,9 @@ rule follow_whirl:
             "dynamics.whirl_speeds",
             "dynamics.whirl_count",
             "dynamics.whirl_horizon",
-            "dynamics.transient_speeds",
-            "dynamics.transient_count",
             "dynamics.transient_samples",
-            "dynamics.transient_shown",
             "dynamics.transient_horizon",
         ),
-    threads: cores_for(STUDY.dynamics.transient_shown, enough=100)
+    threads: cores_for(STUDY.dynamics.transient_samples, enough=100)
     script:
         "../scripts/dynamics/follow_whirl.py"

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from squealpipe.schema import RUN_ENDS, DatasetSchema, Outcome, Variable, outcome
-from squealpipe.schema.agreement import magnitude, sampled, unjudged
+from squealpipe.schema.agreement import magnitude, sampled
 from squealpipe.schema.dynamics.runs import MOTION_CHANGED, MotionFlag
 
 _IRREGULAR = (
@@ -22,21 +22,6 @@ WHIRL = DatasetSchema(
     variables={
         "amplitude": Variable(
             "largest |x| in the last fifth of the run", "m", ("belt_speed",), round_off=_LONG_RUN
-        ),
-        "amplitude_before": Variable(
-            "largest |x| before the last fifth", "m", ("belt_speed",), round_off=_LONG_RUN
-        ),
-        "max_vx": Variable(
-            "largest velocity in the direction of the belt",
-            "m s-1",
-            ("belt_speed",),
-            round_off=magnitude(_IRREGULAR, factor=1.25),
-        ),
-        "turn_rate": Variable(
-            "net turns around both fixed ends a time",
-            "s-1",
-            ("belt_speed",),
-            round_off=_LONG_SAMPLE,
         ),
         "stick_fraction": Variable(
             "share of the time sticking to the belt", dims=("belt_speed",), round_off=_LONG_SAMPLE
@@ -80,12 +65,6 @@ WHIRL = DatasetSchema(
             optional=True,
             round_off=_LONG_RUN,
         ),
-        "onset_exceptions": Variable(
-            "speeds tried above the onset without a whirl",
-            dtype="i4",
-            optional=True,
-            round_off=unjudged(_IRREGULAR),
-        ),
         "onset_outcome": replace(
             outcome(among=(Outcome.converged, Outcome.unresolved)), optional=True
         ),
@@ -102,44 +81,22 @@ _WHY_CHAOTIC = (
     "distribution of its lifetimes is a result"
 )
 _CHAOTIC = sampled("sample", _WHY_CHAOTIC)
-_CHAOTIC_SHOWN = sampled("shown_sample", _WHY_CHAOTIC)
 _CHAOTIC_AGE = magnitude(_WHY_CHAOTIC, factor=1.5, floor=0.05)
-_CHAOTIC_BOUND = magnitude(_WHY_CHAOTIC, factor=1.5)
-_CHAOTIC_SPAN = magnitude(_WHY_CHAOTIC, factor=3.0)
-_ESCAPE = ("belt_speed", "sample")
-_ESCAPE_ENDS = (*RUN_ENDS, Outcome.amplitude_reached)
 TRANSIENT = DatasetSchema(
     name="transient",
     title="How long the bounded motion at (0.2 pi, 0.8 pi) lasts",
-    coordinates={
-        "belt_speed": Variable("belt speed V", "m s-1", ("belt_speed",)),
-        "sample": Variable("number of the perturbation", dims=("sample",), dtype="i4"),
-    },
+    coordinates={"sample": Variable("number of the perturbation", dims=("sample",), dtype="i4")},
     variables={
-        "start_x": Variable("x at the start", "m", ("sample",)),
         "lifetime": Variable(
             "time of the tenth net turn around both fixed ends (NaN: not before t_end)",
             "s",
-            _ESCAPE,
+            ("sample",),
             nan_allowed=True,
             round_off=_CHAOTIC,
         ),
-        "max_displacement": Variable(
-            "largest distance from the start position until then", "m", _ESCAPE, round_off=_CHAOTIC
-        ),
-        "shown_start_x": Variable("x at the start, at the speed shown", "m", ("shown_sample",)),
-        "shown_lifetime": Variable(
-            "lifetimes at the study's own belt speed (NaN: not before t_end)",
-            "s",
-            ("shown_sample",),
-            nan_allowed=True,
-            round_off=_CHAOTIC_SHOWN,
-        ),
-        "survival_time": Variable(
-            "age, at the study's own belt speed", "s", ("age",), optional=True
-        ),
+        "survival_time": Variable("age", "s", ("age",)),
         **{
-            name: Variable(text, dims=("age",), optional=True, round_off=_CHAOTIC_AGE)
+            name: Variable(text, dims=("age",), round_off=_CHAOTIC_AGE)
             for name, text in (
                 ("survival", "share still bounded at that age, Kaplan-Meier"),
                 ("survival_low", "lower end of its 95 % confidence band, log-log"),
@@ -150,25 +107,12 @@ TRANSIENT = DatasetSchema(
             "median lifetime of all runs, and its 95 % interval (infinite: not seen)",
             "s",
             ("bound",),
-            optional=True,
-            round_off=_CHAOTIC_BOUND,
+            round_off=magnitude(_WHY_CHAOTIC, factor=1.5),
         ),
-        "hazard_edges": Variable("edges of the spans of age", "s", ("edge",), optional=True),
-        **{
-            name: Variable(
-                text, "s-1", ("span",), nan_allowed=True, optional=True, round_off=_CHAOTIC_SPAN
-            )
-            for name, text in (
-                ("hazard", "ends per time at risk in a span of age (NaN: no run that old)"),
-                ("hazard_low", "lower end of its 95 % interval"),
-                ("hazard_high", "upper end of its 95 % interval"),
-            )
-        },
-        "shown_belt_speed": Variable("the study's own belt speed", "m s-1"),
+        "belt_speed": Variable("belt speed V", "m s-1"),
         "t_end": Variable("end of each run", "s"),
-        "outcome": replace(outcome(*_ESCAPE, among=_ESCAPE_ENDS), round_off=_CHAOTIC),
-        "shown_outcome": replace(
-            outcome("shown_sample", among=_ESCAPE_ENDS), round_off=_CHAOTIC_SHOWN
+        "outcome": replace(
+            outcome("sample", among=(*RUN_ENDS, Outcome.amplitude_reached)), round_off=_CHAOTIC
         ),
     },
 )

@@ -102,7 +102,7 @@ def _valid(run: Run) -> dict[str, Any]:
 
 def _bounded(run: Run) -> dict[str, Any]:
     transient, unit = run["transient"], run.parameters.time_unit
-    lifetimes = transient.shown_lifetime.values
+    lifetimes = transient.lifetime.values
     ended = np.isfinite(lifetimes)
     return {
         "F4_size": abs(run["simulate/F4"].x).max() / run.parameters.preload,

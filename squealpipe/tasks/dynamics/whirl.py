@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from squealpipe.methods.survival import hazard, survival
+from squealpipe.methods.survival import survival
 from squealpipe.parameters import SCENES, Parameters
 from squealpipe.schema import Outcome, build
 from squealpipe.schema.dynamics.long_runs import TRANSIENT, WHIRL
@@ -30,8 +30,6 @@ ONSET_ROUNDS, ONSET_SPEEDS = 2, 15
 """Each round divides the interval that holds the onset by the number of speeds + 1."""
 AGES = 201
 """Ages at which the share of survivors is stated."""
-SPANS = np.array([0.0, 0.1, 0.2, 0.4, 1.0])
-"""Edges of the spans of age in which the hazard is stated, over the end of the runs."""
 ESCAPE_TURNS = 10.0
 """Net turns that a pendulum swinging back and forth over the top never makes."""
 LARGEST_PERTURBATION = 1e-9
@@ -96,7 +94,7 @@ def whirl_sizes(
         motion, run, lambda rows, room: runs(speeds[rows], log_events=room), t_end
     )
     whirls = motion == MotionFlag.whirl
-    onset, exceptions = _onset(whirling, speeds, whirls)
+    onset = _onset(whirling, speeds, whirls)
     p = params
     fitted = whirls & (run.late_max_x > FAR * max(p.length1, p.length2))
     # of the one spring that both are together from afar
@@ -111,9 +109,6 @@ def whirl_sizes(
         WHIRL,
         {
             "amplitude": run.late_max_x,
-            "amplitude_before": run.early_max_x,
-            "max_vx": run.max_vx,
-            "turn_rate": form.sign * run.turns / run.time,
             "stick_fraction": run.stick_time / run.time,
             "motion": motion,
             "motion_changed": changed,
@@ -124,7 +119,6 @@ def whirl_sizes(
             else [np.nan, np.nan],
             "fit_residual": in_fit.max(),
             "onset": onset,
-            "onset_exceptions": exceptions,
             "onset_outcome": Outcome.converged if np.isfinite(onset).all() else Outcome.unresolved,
             "slope": slope,
             "offset": offset,
@@ -140,31 +134,28 @@ def whirl_sizes(
 
 def _onset(
     whirls_at: Callable[[np.ndarray], np.ndarray], speeds: np.ndarray, whirls: np.ndarray
-) -> tuple[list[float], int]:
-    """(a speed without a whirl and the next one with, how many faster ones had none).
+) -> list[float]:
+    """The slowest speed found to whirl the mass, after the next slower one tried.
 
-    The slowest speed with a whirl and the next slower one tried, their interval divided again and
-    again; NaN where all or none of the speeds whirl.
+    Their interval is divided again and again; NaN where all or none of the speeds whirl.
     """
     order = np.argsort(speeds)
     speeds, whirls = speeds[order], whirls[order]
     if whirls.all() or not whirls.any() or whirls[0] or speeds[0] <= 0.0:
-        return [np.nan, np.nan], 0
+        return [np.nan, np.nan]
     for _ in range(ONSET_ROUNDS):
         first = int(whirls.argmax())
         tried = np.geomspace(speeds[first - 1], speeds[first], ONSET_SPEEDS + 2)[1:-1]
         speeds = np.insert(speeds, first, tried)
         whirls = np.insert(whirls, first, whirls_at(tried))
     first = int(whirls.argmax())
-    return [float(speeds[first - 1]), float(speeds[first])], int((~whirls[first:]).sum())
+    return [float(speeds[first - 1]), float(speeds[first])]
 
 
 def transient_lifetimes(
     params: Parameters,
-    belt_speeds: Any,
     *,
     samples: int,
-    shown_samples: int,
     t_end: float,
     tol: float = 1e-12,
     workers: int | None = None,
@@ -172,16 +163,13 @@ def transient_lifetimes(
     """Lifetimes of the bounded motion at (0.2π, 0.8π) over tiny perturbations of its start.
 
     The samples start at rest at y = 0 and evenly spaced x up to ±1e-9 l_pre. A run ends with its
-    tenth net turn around the fixed ends: from there on it whirls. The lifetimes at the belt speed
-    of ``params`` give a Kaplan–Meier estimate of survival, in which runs that have not ended count
-    as longer than they were followed, its median, and the hazard in spans of age.
+    tenth net turn around the fixed ends: from there on it whirls. The lifetimes give a Kaplan–Meier
+    estimate of survival, in which runs that have not ended count as longer than they were followed,
+    and its median.
 
     Args:
         params: physical parameters.
-        belt_speeds: 1-D array, m/s, of the speeds to compare, without sign; the belts run in the
-            direction of that of ``params``.
-        samples: runs at each of these speeds.
-        shown_samples: runs at the belt speed of ``params``.
+        samples: number of runs.
         t_end: end of the runs, s.
         tol: tolerance of the Taylor integrator.
         workers: processes; None takes all cores.
@@ -191,57 +179,36 @@ def transient_lifetimes(
     """
     form, scene = NormalForm.of(params), SCENES["F4"]
     alpha1, alpha2 = form.angles(scene.alpha1, scene.alpha2)
-    speeds = np.asarray(belt_speeds, float)
-    runs = []
-    starts = []
-    for count, speed in ((samples, speeds[:, None]), (shown_samples, form.params.belt_speed)):
-        start = LARGEST_PERTURBATION * params.preload * np.linspace(-1.0, 1.0, count)
-        state = np.zeros((count, 4))
-        state[:, 0] = form.sign * start
-        starts.append(start)
-        runs.append(
-            run_ensemble(
-                {**form.params.as_dict(), "belt_speed": speed},
-                alpha1,
-                alpha2,
-                t_end=t_end,
-                tol=tol,
-                initial_state=state,
-                stop_at_turns=ESCAPE_TURNS,
-                workers=workers,
-            )
-        )
-    compared, shown = runs
-    lifetimes = [
-        np.where(run.outcome == Outcome.amplitude_reached, run.time, np.nan) for run in runs
-    ]
+    state = np.zeros((samples, 4))
+    start = LARGEST_PERTURBATION * params.preload * np.linspace(-1.0, 1.0, samples)
+    state[:, 0] = form.sign * start
+    run = run_ensemble(
+        form.params,
+        alpha1,
+        alpha2,
+        t_end=t_end,
+        tol=tol,
+        initial_state=state,
+        stop_at_turns=ESCAPE_TURNS,
+        workers=workers,
+    )
     # runs that have not ended, for whatever reason, were followed for the time that they lasted
-    time, ended = shown.time, shown.outcome == Outcome.amplitude_reached
-    estimate = survival(time, ended)
+    ended = run.outcome == Outcome.amplitude_reached
+    estimate = survival(run.time, ended)
     ages = np.linspace(0.0, t_end, AGES)
     share, low, high = estimate.at(ages)
-    rate, rate_low, rate_high = hazard(time, ended, SPANS * t_end)
     return build(
         TRANSIENT,
         {
-            "start_x": starts[0],
-            "lifetime": lifetimes[0],
-            "max_displacement": compared.max_displacement,
-            "shown_start_x": starts[1],
-            "shown_lifetime": lifetimes[1],
+            "lifetime": np.where(ended, run.time, np.nan),
             "survival_time": ages,
             "survival": share,
             "survival_low": low,
             "survival_high": high,
             "median_lifetime": estimate.median(),
-            "hazard_edges": SPANS * t_end,
-            "hazard": rate,
-            "hazard_low": rate_low,
-            "hazard_high": rate_high,
-            "shown_belt_speed": params.belt_speed,
+            "belt_speed": params.belt_speed,
             "t_end": t_end,
-            "outcome": compared.outcome,
-            "shown_outcome": shown.outcome,
+            "outcome": run.outcome,
         },
-        {"belt_speed": form.sign * speeds, "sample": np.arange(samples)},
+        {"sample": np.arange(samples)},
     )

@@ -11,14 +11,7 @@ from squealpipe.tasks.dynamics.whirl import transient_lifetimes, whirl_sizes
 part, out = snakemake.params.part, snakemake.output
 params, scene = for_linear(parameters_of(part), part["read_as"]), SCENES["F3"]
 tol, second = part["dynamics.tol"], params.time_unit
-speed = params.preload / second
-
-
-def speeds(topic):
-    """Evenly spaced on a logarithmic scale, m/s, without the direction of the belt."""
-    return speed * np.geomspace(*part[f"dynamics.{topic}_speeds"], part[f"dynamics.{topic}_count"])
-
-
+speeds = np.geomspace(*part["dynamics.whirl_speeds"], part["dynamics.whirl_count"])
 t_end = 0.1 * part["dynamics.whirl_horizon"] * second
 produce(
     lambda: simulate(params, scene.alpha1, scene.alpha2, t_end=t_end, tol=tol),
@@ -28,7 +21,7 @@ produce(
 produce(
     lambda: whirl_sizes(
         params,
-        np.union1d(speeds("whirl"), [abs(params.belt_speed)] if params.belt_speed else []),
+        np.union1d(speeds * params.preload / second, [abs(params.belt_speed)] if params.belt_speed else []),
         t_end=part["dynamics.whirl_horizon"] * second,
         tol=tol,
     ),
@@ -38,9 +31,7 @@ produce(
 produce(
     lambda: transient_lifetimes(
         params,
-        speeds("transient"),
         samples=part["dynamics.transient_samples"],
-        shown_samples=part["dynamics.transient_shown"],
         t_end=part["dynamics.transient_horizon"] * second,
         tol=tol,
     ),

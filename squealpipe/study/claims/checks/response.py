@@ -168,8 +168,8 @@ def limit_cycle_is_bounded(run: Run) -> Finding:
     )
     transient = run["transient"]
     ended = np.empty(0)
-    if float(transient.shown_belt_speed) == run.parameters.belt_speed:  # not as printed
-        lifetimes = transient.shown_lifetime.values / run.parameters.time_unit
+    if float(transient.belt_speed) == run.parameters.belt_speed:  # not as printed
+        lifetimes = transient.lifetime.values / run.parameters.time_unit
         ended = lifetimes[np.isfinite(lifetimes)]
         horizon = float(transient.t_end) / run.parameters.time_unit
         evidence += (
@@ -191,7 +191,7 @@ def limit_cycle_is_bounded(run: Run) -> Finding:
 
 def _median(transient: xr.Dataset, unit: float) -> str:
     """The median of all runs with its interval, as a clause; nothing where it was not seen."""
-    if "median_lifetime" not in transient or not np.isfinite(transient.median_lifetime[0]):
+    if not np.isfinite(transient.median_lifetime[0]):
         return ""
     middle, low, high = transient.median_lifetime.values / unit
     return f", half of all before {middle:.4g} (95 % interval {low:.4g} to {high:.4g})"

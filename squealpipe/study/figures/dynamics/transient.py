@@ -46,7 +46,7 @@ def draw(transient: xr.Dataset) -> Figure:
 
 
 def _survival(axes: Axes, transient: xr.Dataset) -> None:
-    lifetime, t_end = transient.shown_lifetime.values, float(transient.t_end)
+    lifetime, t_end = transient.lifetime.values, float(transient.t_end)
     count, ended = lifetime.size, np.count_nonzero(np.isfinite(lifetime))
     age = transient.survival_time.values
     axes.step(
@@ -54,7 +54,7 @@ def _survival(axes: Axes, transient: xr.Dataset) -> None:
         transient.survival,
         where="post",
         color=BLUE,
-        label=f"{count} runs, V = {number(float(transient.shown_belt_speed))} m/s",
+        label=f"{count} runs, V = {number(float(transient.belt_speed))} m/s",
     )
     if ended:  # before the first end the estimate has no band
         axes.fill_between(
@@ -75,9 +75,9 @@ def _survival(axes: Axes, transient: xr.Dataset) -> None:
 
 def _constant_hazard(axes: Axes, transient: xr.Dataset) -> None:
     """What the mean hazard of all ages would give: ends over time at risk."""
-    lifetime = transient.shown_lifetime.fillna(transient.t_end).values
+    lifetime = transient.lifetime.fillna(transient.t_end).values
     exposure = lifetime.sum()
-    ended = np.count_nonzero(np.isfinite(transient.shown_lifetime.values))
+    ended = np.count_nonzero(np.isfinite(transient.lifetime.values))
     if ended:
         rate = ended / exposure
         age = transient.survival_time.values

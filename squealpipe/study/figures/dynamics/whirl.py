@@ -78,11 +78,11 @@ def _sizes(axes: Axes, sizes: xr.Dataset) -> None:
     if np.isfinite(sizes.slope):
         fit = float(sizes.offset) + float(sizes.slope) * line
         label = f"{number(float(sizes.offset))} m + {number(float(sizes.slope))} s · |V|"
-        low, high = sizes.fit_range.values if "fit_range" in sizes else (speed[0], speed[-1])
+        low, high = sizes.fit_range.values
         inside = (line >= low) & (line <= high)
         axes.loglog(line[inside], fit[inside], color=BLACK, linewidth=0.8, label=label)
         axes.loglog(line[line <= low], fit[line <= low], ":", color=BLACK, linewidth=0.8)
-    if "onset" in sizes and np.isfinite(sizes.onset).all():
+    if np.isfinite(sizes.onset).all():
         axes.axvline(
             float(sizes.onset[1]), ymax=0.4, color=GREY, linewidth=0.6, label="slowest whirl found"
         )
