@@ -12,9 +12,11 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from squealpipe.execution.sweep import Sweep, run_sweep
     from squealpipe.parameters import SCENES, Parameters, Scene
+    from squealpipe.plotting import plot
     from squealpipe.schema import labels
     from squealpipe.store.netcdf import load, save
     from squealpipe.store.results import open_results
+    from squealpipe.store.tables import convert
     from squealpipe.systems.system import Switch, System
     from squealpipe.tasks.backbones.backbone import backbone
     from squealpipe.tasks.backbones.orbit import periodic_orbit
@@ -46,12 +48,14 @@ _HOME = {
     "cycle_branch": "squealpipe.tasks.cycles.branch",
     "hammering_map": "squealpipe.tasks.dynamics.hammering",
     "infer_parameters": "squealpipe.tasks.inference.inference",
+    "convert": "squealpipe.store.tables",
     "labels": "squealpipe.schema",
     "limit_cycle": "squealpipe.tasks.cycles.cycle",
     "load": "squealpipe.store.netcdf",
     "open_results": "squealpipe.store.results",
     "natural_frequencies": "squealpipe.tasks.linear.maps",
     "periodic_orbit": "squealpipe.tasks.backbones.orbit",
+    "plot": "squealpipe.plotting",
     "propensity": "squealpipe.tasks.spread.propensity",
     "quasi_static_map": "squealpipe.tasks.linear.maps",
     "refine_validity_map": "squealpipe.tasks.dynamics.refinement",
@@ -74,6 +78,7 @@ __all__ = [
     "backbone",
     "basin_map",
     "choose_model",
+    "convert",
     "critical_friction_map",
     "cycle_branch",
     "hammering_map",
@@ -84,6 +89,7 @@ __all__ = [
     "natural_frequencies",
     "open_results",
     "periodic_orbit",
+    "plot",
     "propensity",
     "quasi_static_map",
     "refine_validity_map",

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from squealpipe.study.figures.parts.style import new_figure, save_figure
+from squealpipe.plotting.style import new_figure, save_figure
 
 ROOT = Path(__file__).resolve().parents[1]
 NO_HOME = {**os.environ, "HOME": "/proc/none"}

@@ -16,6 +16,7 @@ from squealpipe.cli.backbone import backbone
 from squealpipe.cli.claims import claims
 from squealpipe.cli.console import SESSION, TRACEBACK, session
 from squealpipe.cli.exit_codes import DONE, INTERRUPTED, NOT_DONE
+from squealpipe.cli.files import convert, plot
 from squealpipe.cli.maps import map_angles
 from squealpipe.cli.memory import deposit, find, list_runs
 from squealpipe.cli.project import init
@@ -39,6 +40,8 @@ COMMANDS: dict[str, Callable[..., int]] = {
     "backbone": backbone,
     "sweep": sweep,
     "propensity": propensity,
+    "plot": plot,
+    "convert": convert,
     "init": init,
     "run": run_study,
     "explain": explain,

@@ -62,15 +62,15 @@ def backbone(
     }
     picture = check_outputs(output, picture, force=force)
 
+    from squealpipe.plotting import picture as draw
+    from squealpipe.plotting.style import save_figure
     from squealpipe.schema import REMEDIES, Outcome
-    from squealpipe.study.figures.cli.branch import draw
-    from squealpipe.study.figures.parts.style import save_figure
     from squealpipe.tasks.backbones.backbone import backbone as task
 
     settings = {"parameters": params.as_dict(), "alpha1": alpha1, "alpha2": alpha2, **options}
     with working("backbone"):
         branch = write(lambda: task(params, alpha1, alpha2, **options), output, config=settings)
-    save_figure(draw(branch, preload=params.preload), [picture])
+    save_figure(draw(branch), [picture])
     end = Outcome(int(branch.end))
     if not branch.sizes["point"]:
         answer(

@@ -64,8 +64,9 @@ def map_angles(
     picture = check_outputs(output, picture, force=force)
 
     from squealpipe.execution.catalogue import run_task
-    from squealpipe.study.figures.parts.angle_map import SHOWN, draw
-    from squealpipe.study.figures.parts.style import save_figure
+    from squealpipe.plotting import picture as draw
+    from squealpipe.plotting.quantities import counts
+    from squealpipe.plotting.style import save_figure
 
     settings = {"parameters": params.as_dict(), "alpha1": alpha1, "alpha2": alpha2, **options}
     with working(f"{kind} map"):
@@ -73,6 +74,6 @@ def map_angles(
             lambda: run_task(name, params, alpha1, alpha2, **options), output, config=settings
         )
     save_figure(draw(dataset), [picture])
-    answer(*SHOWN[str(dataset.attrs["schema"])].counts(dataset))
+    answer(*counts(dataset))
     say(f"wrote {output} and {picture}")
     return DONE

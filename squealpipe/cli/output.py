@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 DATA = (".nc", ".csv")
+TABLES = (".csv", ".mat", ".xlsx", ".parquet")
 PICTURES = (".png", ".svg", ".pdf")
 
 
@@ -41,8 +42,8 @@ def check_output(
         raise ValueError(f"{option} {path}: {above} is a file, not a folder")
     if path.exists() and not force:
         raise ValueError(f"{option} {path} exists; add --force to overwrite it, or change the name")
-    if path.suffix == ".csv" and not force:
-        for other in sorted(path.parent.glob(f"{escape(path.stem)}.*.csv")):
+    if path.suffix in {".csv", ".parquet"} and not force:
+        for other in sorted(path.parent.glob(f"{escape(path.stem)}.*{path.suffix}")):
             raise ValueError(
                 f"{option} {path} writes further tables beside it, and {other} exists; add --force "
                 "to overwrite it, or change the name"
@@ -74,10 +75,10 @@ def write(make: Callable[[], xr.Dataset], output: Path, *, config: Mapping[str, 
     if output.suffix == ".nc":
         return load(produce(make, config=config, output=output))
     from squealpipe.store.provenance import stamped
-    from squealpipe.store.tables import write_csv
+    from squealpipe.store.tables import convert
 
     dataset = stamped(make, config=config)
-    beside = write_csv(dataset, output)[1:]
+    beside = convert(dataset, output)[1:]
     if beside:
         say(f"other dimensions are in {', '.join(map(str, beside))}")
     return dataset

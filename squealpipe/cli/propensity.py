@@ -69,8 +69,8 @@ def propensity(
     t_end = HORIZON * params.time_unit if t_end is None else t_end
     picture = check_outputs(output, picture, force=force)
 
-    from squealpipe.study.figures.parts.style import save_figure
-    from squealpipe.study.figures.spread.propensity import draw
+    from squealpipe.plotting import picture as draw
+    from squealpipe.plotting.style import save_figure
     from squealpipe.tasks.spread import propensity as task
 
     options: dict[str, Any] = {

@@ -71,12 +71,13 @@ def simulate(
 
     import numpy as np
 
+    from squealpipe.methods.spectrum import FEWEST
+    from squealpipe.plotting import picture as draw
+    from squealpipe.plotting.style import save_figure
     from squealpipe.schema import REMEDIES, Outcome
-    from squealpipe.study.figures.cli.run import draw
-    from squealpipe.study.figures.parts.style import save_figure
     from squealpipe.tasks.dynamics.runs import simulate as task
     from squealpipe.tasks.dynamics.summary import summarize, summary_lines
-    from squealpipe.tasks.sampling import FEWEST, default_times, unresolved
+    from squealpipe.tasks.sampling import default_times, unresolved
 
     options: dict[str, Any] = {"t_end": t_end, "model": model, "tol": tol}
     if any((x0, y0, vx0, vy0)):
@@ -99,7 +100,7 @@ def simulate(
     answer(*summary_lines(run, summary))
     if missed := unresolved(params, times):
         answer(f"note: {missed}")
-    save_figure(draw(run, summary), [picture])
+    save_figure(draw(run), [picture])
     say(f"wrote {output} and {picture}")
     if outcome is Outcome.converged:
         return DONE

@@ -5,6 +5,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+FEWEST = 16
+"""Samples from which a motion, and its spectrum, can be seen."""
+
 
 def amplitude_spectrum(
     signal: NDArray[np.float64], step: float, *, padding: int = 1

@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 
+from squealpipe.methods.spectrum import FEWEST
 from squealpipe.parameters import Parameters
 
 FINE, COARSE = 12.0, 2.5
@@ -13,8 +14,6 @@ FINE, COARSE = 12.0, 2.5
 PLENTY = 20_000
 """Samples up to which a run is sampled finely."""
 MOST_SAMPLES = 1e7
-FEWEST = 16
-"""Instants from which a request is meant to show the motion."""
 
 
 def sample_times(params: Parameters, t_end: float) -> np.ndarray:

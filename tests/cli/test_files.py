@@ -14,10 +14,9 @@ import pandas as pd
 import pytest
 import yaml
 
-from squealpipe import Parameters, load, natural_frequencies, simulate
+from squealpipe import Parameters, convert, load, natural_frequencies, simulate
 from squealpipe.cli import run
 from squealpipe.config.settings import parse_study, read_study
-from squealpipe.store.tables import write_csv
 
 STABILITY = ["map", "stability", "--alpha1", "0:pi:5", "--alpha2", "0:2:3"]
 
@@ -76,7 +75,7 @@ def test_csv_holds_the_numbers_of_the_dataset(tmp_path):
 
 def test_csv_of_a_run_has_its_events_beside_it(tmp_path):
     made = simulate(Parameters(), 5 * np.pi / 6, 5 * np.pi / 6, t_end=20.0)
-    files = write_csv(made, tmp_path / "run.csv")
+    files = convert(made, tmp_path / "run.csv")
     assert [path.name for path in files] == ["run.csv", "run.event.csv"]
     np.testing.assert_array_equal(
         pd.read_csv(files[0], comment="#", float_precision="round_trip").x, made.x

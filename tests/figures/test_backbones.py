@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 
+from squealpipe.plotting.style import symbols
 from squealpipe.store.provenance import stamp
 from squealpipe.study.figures.backbones import (
     a1_beside_a4,
@@ -14,7 +15,6 @@ from squealpipe.study.figures.backbones import (
     harmonic_forms,
     orbit_atlas,
 )
-from squealpipe.study.figures.parts.style import symbols
 from squealpipe.tasks.backbones import a1_beside_a4 as beside_task
 from squealpipe.tasks.backbones import atlas, harmonic_sweeps
 from squealpipe.tasks.backbones.backbone import backbone

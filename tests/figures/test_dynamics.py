@@ -10,6 +10,8 @@ import xarray as xr
 from matplotlib.patches import FancyArrowPatch
 
 from squealpipe.parameters import SCENES, Parameters
+from squealpipe.plotting.mechanism import displaced_springs, draw_mechanism
+from squealpipe.plotting.style import COLUMN, new_figure, save_figure
 from squealpipe.study.figures.dynamics import (
     fig02,
     fig03,
@@ -22,8 +24,6 @@ from squealpipe.study.figures.dynamics import (
     whirl,
 )
 from squealpipe.study.figures.linear import fig07
-from squealpipe.study.figures.model.mechanism import displaced_springs, draw_mechanism
-from squealpipe.study.figures.parts.style import COLUMN, new_figure, save_figure
 from squealpipe.tasks.dynamics import hammering as hammering_task
 from squealpipe.tasks.dynamics import refinement
 from squealpipe.tasks.dynamics import runs as dynamics

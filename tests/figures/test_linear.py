@@ -9,6 +9,7 @@ import pytest
 import xarray as xr
 
 from squealpipe.parameters import SCENES
+from squealpipe.plotting.style import save_figure
 from squealpipe.study.figures.inference import parameter_inference
 from squealpipe.study.figures.linear import (
     fig06,
@@ -18,7 +19,6 @@ from squealpipe.study.figures.linear import (
     frequency_shift,
     mode_coupling,
 )
-from squealpipe.study.figures.parts.style import save_figure
 from squealpipe.tasks.inference import inference
 from squealpipe.tasks.linear import boundaries as linear_boundaries
 from squealpipe.tasks.linear import maps as linear

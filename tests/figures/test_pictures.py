@@ -11,14 +11,12 @@ import pytest
 import xarray as xr
 from PIL import Image
 
-from squealpipe.study.figures.cli import branch, run
+from squealpipe.plotting import picture
+from squealpipe.plotting.mechanism import draw_mechanism
+from squealpipe.plotting.style import new_figure, save_figure
 from squealpipe.study.figures.dynamics.animation import animate
 from squealpipe.study.figures.model import fig01
-from squealpipe.study.figures.model.mechanism import draw_mechanism
-from squealpipe.study.figures.parts import angle_map
-from squealpipe.study.figures.parts.style import new_figure, save_figure
 from squealpipe.tasks.dynamics.runs import simulate
-from squealpipe.tasks.dynamics.summary import summarize
 from squealpipe.tasks.linear.maps import stability_map
 from tests.former import FORMER
 
@@ -45,13 +43,13 @@ def test_schematics_of_the_papers_arrangements():
 def test_run():
     times = np.linspace(0, 40, 801)
     motion = simulate(PARAMS, 5 * np.pi / 6, 5 * np.pi / 6, t_end=40.0, times=times)
-    return run.draw(motion, summarize(motion))
+    return picture(motion)
 
 
 @compared
 def test_angle_map_of_categories():
     angles = np.linspace(0, np.pi, 61)
-    return angle_map.draw(stability_map(PARAMS, angles, angles))
+    return picture(stability_map(PARAMS, angles, angles))
 
 
 @compared
@@ -63,8 +61,9 @@ def test_branch_with_unstable_part():
         "x_amplitude": 0.55 * peak - 0.35,
         "stability_index": np.where((peak > 3.9) & (peak < 5.8), -2.1, 1.0),
     }
-    orbits = xr.Dataset({name: ("point", values) for name, values in points.items()})
-    return branch.draw(orbits, preload=1.0)
+    attributes = {"schema": "backbone", "parameters": '{"preload": 1.0}'}
+    orbits = {name: ("point", values) for name, values in points.items()}
+    return picture(xr.Dataset(orbits, attrs=attributes))
 
 
 def test_animation_moves_and_stays_small(tmp_path):

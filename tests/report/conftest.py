@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 
 from squealpipe.parameters import Parameters
+from squealpipe.plotting.style import save_figure
 from squealpipe.store.netcdf import save
 from squealpipe.store.provenance import stamp
 from squealpipe.study.claims.judge import judge
 from squealpipe.study.figures.declared import draw, reads
-from squealpipe.study.figures.parts.style import save_figure
 from squealpipe.study.report.build import write_document
 from squealpipe.study.report.content import Made, gather, picture_files
 from squealpipe.tasks.dynamics.assumptions import linear_pull_map

@@ -13,11 +13,11 @@ from squealpipe.cli import run
 from squealpipe.config.mistakes import ConfigError
 from squealpipe.config.settings import PAPER, parse_study, read_study
 from squealpipe.parameters import Parameters
+from squealpipe.plotting.style import save_figure
 from squealpipe.store import load
 from squealpipe.store.netcdf import save
 from squealpipe.store.provenance import stamp
 from squealpipe.study.figures.declared import draw, reads
-from squealpipe.study.figures.parts.style import save_figure
 from squealpipe.study.report.build import write_document
 from squealpipe.study.report.content import Made, picture_files
 from squealpipe.study.report.own import boundaries, gather_own

@@ -9,11 +9,10 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from squealpipe.codes import Event, Regime
-from squealpipe.methods.spectrum import amplitude_spectrum, highest_peaks
+from squealpipe.methods.spectrum import FEWEST, amplitude_spectrum, highest_peaks
 from squealpipe.schema import build
 from squealpipe.schema.dynamics.run_summary import RUN_SUMMARY
 from squealpipe.schema.origin import recorded
-from squealpipe.tasks.sampling import FEWEST
 
 PEAKS = 3
 """Dominant frequencies that are named."""

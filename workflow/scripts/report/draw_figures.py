@@ -1,7 +1,7 @@
 """The figures of one topic, each from the datasets that it declares."""
 
 from squealpipe.study.figures.declared import draw
-from squealpipe.study.figures.parts.style import save_figure
+from squealpipe.plotting.style import save_figure
 from squealpipe.rerun.key import state_key
 from squealpipe.store import load
 

@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 from matplotlib.ticker import MaxNLocator
 
+from squealpipe.plotting.style import BLACK, GREEN, PURPLE, Y_COLOUR
 from squealpipe.study.figures.parts.backbone_panels import (
     KEY,
     STABLE_TO_ROUND_OFF,
     draw_scenes,
     joined,
 )
-from squealpipe.study.figures.parts.style import BLACK, GREEN, PURPLE, Y_COLOUR
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

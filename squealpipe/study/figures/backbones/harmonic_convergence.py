@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from squealpipe.study.figures.parts.origin import scene_name
-from squealpipe.study.figures.parts.style import (
+from squealpipe.plotting.origin import scene_name
+from squealpipe.plotting.style import (
     BLACK,
     BLUE,
     GREEN,

@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from matplotlib.patches import Patch
 
-from squealpipe.study.figures.parts.backbone_panels import STABLE_TO_ROUND_OFF
-from squealpipe.study.figures.parts.style import (
+from squealpipe.plotting.style import (
     LIGHT,
     ORANGE,
     PAGE,
@@ -18,6 +17,7 @@ from squealpipe.study.figures.parts.style import (
     new_figure,
     panel_letter,
 )
+from squealpipe.study.figures.parts.backbone_panels import STABLE_TO_ROUND_OFF
 from squealpipe.text import number
 
 if TYPE_CHECKING:

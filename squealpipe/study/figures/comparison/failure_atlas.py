@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from matplotlib.patches import Patch
 
-from squealpipe.schema.comparison import Reliability, Role
-from squealpipe.study.figures.parts.style import (
+from squealpipe.plotting.style import (
     BLACK,
     BLUE,
     GREY,
@@ -21,6 +20,7 @@ from squealpipe.study.figures.parts.style import (
     panel_letter,
     symbols,
 )
+from squealpipe.schema.comparison import Reliability, Role
 from squealpipe.text import number
 
 if TYPE_CHECKING:

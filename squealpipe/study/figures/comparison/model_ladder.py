@@ -6,9 +6,8 @@ from typing import TYPE_CHECKING
 
 from matplotlib.patches import Patch
 
-from squealpipe.schema.ladder import Level
-from squealpipe.study.figures.parts import style
-from squealpipe.study.figures.parts.style import (
+from squealpipe.plotting import style
+from squealpipe.plotting.style import (
     BLACK,
     BLUE,
     GREY,
@@ -18,6 +17,7 @@ from squealpipe.study.figures.parts.style import (
     new_figure,
     panel_letter,
 )
+from squealpipe.schema.ladder import Level
 from squealpipe.study.figures.parts.work_precision import foot
 
 if TYPE_CHECKING:

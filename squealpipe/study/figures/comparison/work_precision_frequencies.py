@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from squealpipe.study.figures.parts.style import PAGE, new_figure
+from squealpipe.plotting.style import PAGE, new_figure
 from squealpipe.study.figures.parts.work_precision import FALLBACK, draw_methods, foot
 
 if TYPE_CHECKING:

@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from squealpipe.schema.comparison import Role
-from squealpipe.study.figures.parts.style import (
+from squealpipe.plotting.style import (
     BLACK,
     BLUE,
     GREEN,
@@ -18,6 +17,7 @@ from squealpipe.study.figures.parts.style import (
     new_figure,
     panel_letter,
 )
+from squealpipe.schema.comparison import Role
 from squealpipe.study.figures.parts.work_precision import foot, legend_above
 
 if TYPE_CHECKING:

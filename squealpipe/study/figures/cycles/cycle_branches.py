@@ -7,17 +7,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from squealpipe.schema import meanings
-from squealpipe.study.figures.parts.origin import angle_pair, parameter, scene_title
-from squealpipe.study.figures.parts.style import (
-    BLACK,
+from squealpipe.plotting.cycles import trace_branch
+from squealpipe.plotting.origin import angle_pair, parameter, scene_title
+from squealpipe.plotting.style import (
     BLUE,
-    GREEN,
     GREY,
     ORANGE,
     PAGE,
-    PURPLE,
-    RED,
     new_figure,
     panel_letter,
 )
@@ -33,13 +29,6 @@ READS = (
     "cycles/branch_flutter",
     "cycles/extremes",
 )
-MARKS = {
-    "fold": ("^", RED, "fold"),
-    "period_doubling": ("s", PURPLE, "period doubling"),
-    "torus": ("D", GREEN, "torus bifurcation"),
-    "grazing": ("o", BLACK, "contact just lost or regained"),
-    "stick_onset": ("v", GREEN, "stick just begins or ends"),
-}
 CAPTION = (
     "Limit cycles of the full model with dashpots over the friction coefficient: largest |x| of "
     "the cycle, one panel for each spring arrangement in which cycles or different ends of long "
@@ -76,13 +65,13 @@ def draw(down: xr.Dataset, up: xr.Dataset, flutter: xr.Dataset, extremes: xr.Dat
         if np.ptp(sizes[name]) > AT_REST or any(branch.sizes["point"] for branch in branches)
     ] or ["F3"]
     figure, axes = new_figure(PAGE, 3.1, ncols=len(moving))
-    shown: dict[str, tuple[str, str, str]] = {}
+    shown: list[tuple[str, str, str]] = []
     for letter, panel, name in zip("abc", axes[0], moving, strict=False):
         title, branches = panels[name]
         friction = np.broadcast_to(extremes.mu.values[:, None], sizes[name].shape)
         panel.plot(friction, sizes[name], ".", color=GREY, markersize=2.5, zorder=1)
         for branch in branches:
-            shown |= _branch(panel, branch, unit)
+            shown += _branch(panel, branch, unit)
         _enlarge(panel, branches, unit)
         panel.set(xlabel="μ", ylim=(0, None))
         panel_letter(panel, letter, title)
@@ -92,7 +81,7 @@ def draw(down: xr.Dataset, up: xr.Dataset, flutter: xr.Dataset, extremes: xr.Dat
         axes[0, 0].plot([], [], color=ORANGE, linestyle="--", label="unstable cycle")[0],
         axes[0, 0].plot([], [], ".", color=GREY, label="long runs")[0],
     ]
-    for marker, colour, words in shown.values():
+    for marker, colour, words in dict.fromkeys(shown):
         handles += axes[0, 0].plot([], [], marker, color=colour, markersize=4, label=words)
     figure.legend(handles=handles, loc="outside lower center", ncols=min(len(handles), 4))
     return figure
@@ -117,24 +106,7 @@ def _enlarge(panel: Axes, branches: tuple[xr.Dataset, ...], unit: float) -> None
     inset.tick_params(labelsize=5)
 
 
-def _branch(panel: Axes, branch: xr.Dataset, unit: float) -> dict[str, tuple[str, str, str]]:
-    """Draw one branch, with sizes over a unit; returns the marks that it has."""
-    if branch.sizes["point"] < 2:
-        return {}
+def _branch(panel: Axes, branch: xr.Dataset, unit: float) -> list[tuple[str, str, str]]:
+    """Draw one branch over friction, with sizes over a unit; returns the marks that it has."""
     size = np.maximum(np.abs(branch.x_min), np.abs(branch.x_max)).values / unit
-    friction, stable = branch.mu.values, branch.stable.values.astype(bool)
-    # the line between two points is unstable if either is
-    steady = stable[:-1] & stable[1:]
-    ends = np.flatnonzero(np.diff(steady)) + 1
-    for piece in np.split(np.arange(len(steady)), ends):
-        colour, dash = (BLUE, "-") if steady[piece[0]] else (ORANGE, "--")
-        points = slice(piece[0], piece[-1] + 2)
-        panel.plot(friction[points], size[points], dash, color=colour, linewidth=1.2)
-    found = {}
-    for value, name in meanings(branch.label).items():
-        points = branch.label.values == value
-        if name in MARKS and points.any():
-            marker, colour, words = MARKS[name]
-            panel.plot(friction[points], size[points], marker, color=colour, markersize=4, zorder=4)
-            found[name] = (marker, colour, words)
-    return found
+    return trace_branch(panel, branch.mu.values, size, branch)

@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from squealpipe.plotting.origin import scene_title
+from squealpipe.plotting.style import BLUE, GREY, ORANGE, PAGE, new_figure, panel_letter
 from squealpipe.study.figures.cycles.cycle_branches import flutter_title
-from squealpipe.study.figures.parts.origin import scene_title
-from squealpipe.study.figures.parts.style import BLUE, GREY, ORANGE, PAGE, new_figure, panel_letter
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -4,22 +4,19 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-import numpy as np
-
-from squealpipe.schema import meanings
-from squealpipe.study.figures.parts.backbone_panels import key_entries
-from squealpipe.study.figures.parts.origin import parameter
-from squealpipe.study.figures.parts.style import (
+from squealpipe.plotting.cycles import draw_regimes
+from squealpipe.plotting.origin import parameter
+from squealpipe.plotting.style import (
     GREY,
     PAGE,
-    REGIME_COLOURS,
     new_figure,
     panel_letter,
+    say_instead,
 )
+from squealpipe.study.figures.parts.backbone_panels import key_entries
 
 if TYPE_CHECKING:
     import xarray as xr
-    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 READS = ("cycles/limit_F3",)
@@ -44,11 +41,10 @@ def draw(cycle: xr.Dataset) -> Figure:
     path, rate = axes[0]
     if not cycle.sizes["sample"]:
         for panel in (path, rate):
-            panel.text(0.5, 0.5, "no cycle", transform=panel.transAxes, ha="center", color=GREY)
-            panel.set(xticks=[], yticks=[])
+            say_instead(panel, "no cycle")
     else:
-        _coloured(path, cycle.x_path.values, cycle.y_path.values, cycle)
-        _coloured(rate, cycle.time.values, cycle.vx_path.values, cycle)
+        draw_regimes(path, cycle.x_path.values, cycle.y_path.values, cycle.regime_path)
+        draw_regimes(rate, cycle.time.values, cycle.vx_path.values, cycle.regime_path)
         height, speed = parameter(cycle, "preload"), parameter(cycle, "belt_speed")
         path.axhline(height, color=GREY, lw=0.6, label=r"$l_\mathrm{pre}$: contact is lost above")
         path.set(aspect="equal", adjustable="datalim")
@@ -60,17 +56,3 @@ def draw(cycle: xr.Dataset) -> Figure:
     panel_letter(path, "a", "path")
     panel_letter(rate, "b", "velocity")
     return figure
-
-
-def _coloured(panel: Axes, x: np.ndarray, y: np.ndarray, cycle: xr.Dataset) -> None:
-    flags = meanings(cycle.regime_path)
-    regimes = cycle.regime_path.values
-    for value in np.unique(regimes):
-        here = np.isin(np.arange(len(x)), np.flatnonzero(regimes == value))
-        # one sample further, so that pieces join
-        here |= np.roll(here, 1) & (np.arange(len(x)) > 0)
-        name = flags[int(value)]
-        panel.plot(
-            np.where(here, x, np.nan), np.where(here, y, np.nan),
-            color=REGIME_COLOURS[name], linewidth=1.4, label=name.replace("_", ", "),
-        )  # fmt: skip

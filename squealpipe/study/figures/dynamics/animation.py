@@ -10,9 +10,9 @@ import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from PIL import Image
 
+from squealpipe.plotting.mechanism import SPRING_COLOURS, coil, displaced_springs
+from squealpipe.plotting.style import BLUE, GREEN, GREY, LIGHT, RED, new_figure, pi_label
 from squealpipe.store.whole_files import whole_file
-from squealpipe.study.figures.model.mechanism import SPRING_COLOURS, coil, displaced_springs
-from squealpipe.study.figures.parts.style import BLUE, GREEN, GREY, LIGHT, RED, new_figure, pi_label
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence

@@ -4,16 +4,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from squealpipe.parameters import direction_of
-from squealpipe.study.figures.model.mechanism import draw_mechanism
-from squealpipe.study.figures.parts.origin import parameter
-from squealpipe.study.figures.parts.style import (
-    BLUE,
-    GREY,
+from squealpipe.plotting.mechanism import draw_mechanism
+from squealpipe.plotting.origin import parameter
+from squealpipe.plotting.run import draw_force
+from squealpipe.plotting.style import (
     PAGE,
-    RED,
     new_figure,
     panel_letter,
     pi_label,
@@ -33,7 +29,6 @@ ALT = (
     "Four time histories of the normalized contact force, each with a small drawing of its "
     "springs; red strips below the axis mark the spells off the belt."
 )
-FORCE = r"$N\,/\,(k_3\,l_\mathrm{pre})$"
 
 
 def draw(*runs: xr.Dataset) -> Figure:
@@ -48,23 +43,8 @@ def draw(*runs: xr.Dataset) -> Figure:
         angles = pi_label(float(run.alpha1)), pi_label(float(run.alpha2))
         panel_letter(panel, letter, f"α₁ = {angles[0]}, α₂ = {angles[1]}")
         inset_mechanism(panel, run, (1.005, 0.3, 0.27, 0.6))
-    for panel in axes[1]:
-        panel.set_xlabel("t (s)")
-    for panel in axes[:, 0]:
-        panel.set_ylabel(FORCE)
+        panel.label_outer()
     return figure
-
-
-def draw_force(axes: Axes, run: xr.Dataset) -> None:
-    """Contact force over time, with the spells off the belt marked."""
-    time, force = run.time.values, run.normalized_contact_force.values
-    axes.plot(time, force, color=BLUE)
-    separated = run.regime.values == 3
-    axes.fill_between(
-        time, -0.06, 0.0, where=separated, color=RED, linewidth=0, step="mid", label="separated"
-    )
-    axes.axhline(0.0, color=GREY, linewidth=0.5)
-    axes.set(xlim=(0.0, float(time[-1])), ylim=(-0.08, max(1.3, 1.1 * np.nanmax(force))))
 
 
 def inset_mechanism(axes: Axes, run: xr.Dataset, place: tuple[float, float, float, float]) -> None:

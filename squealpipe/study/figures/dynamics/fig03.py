@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from squealpipe.study.figures.dynamics.fig02 import inset_mechanism
-from squealpipe.study.figures.parts.style import (
+from squealpipe.plotting.style import (
     BLACK,
     GREY,
     PAGE,
@@ -14,6 +13,7 @@ from squealpipe.study.figures.parts.style import (
     new_figure,
     panel_letter,
 )
+from squealpipe.study.figures.dynamics.fig02 import inset_mechanism
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

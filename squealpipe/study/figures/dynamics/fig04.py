@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from matplotlib.collections import LineCollection
 
-from squealpipe.study.figures.model.mechanism import SPRING_COLOURS, displaced_springs
-from squealpipe.study.figures.parts.style import GREY, LIGHT, PAGE, RED, new_figure
+from squealpipe.plotting.mechanism import SPRING_COLOURS, displaced_springs
+from squealpipe.plotting.style import GREY, LIGHT, PAGE, RED, new_figure
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -6,13 +6,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from squealpipe.study.figures.dynamics.fig02 import FORCE, draw_force, inset_mechanism
-from squealpipe.study.figures.parts.style import (
+from squealpipe.plotting.run import draw_force
+from squealpipe.plotting.style import (
     ORANGE,
     PAGE,
     new_figure,
     pi_label,
 )
+from squealpipe.study.figures.dynamics.fig02 import inset_mechanism
 from squealpipe.text import number
 
 if TYPE_CHECKING:
@@ -53,7 +54,6 @@ def draw(first: xr.Dataset, second: xr.Dataset) -> Figure:
         label=f"α₁ = α₂ = {pi_label(float(second.alpha1))}",
     )
     difference = np.abs(first.normalized_contact_force - second.normalized_contact_force).max()
-    panel.set(xlabel="t (s)", ylabel=FORCE)
     panel.set_title(f"largest difference {number(float(difference), 2)}", loc="right")
     inset_mechanism(panel, first, (1.0, 0.3, 0.16, 0.7))
     figure.legend(loc="outside upper left", ncols=3)

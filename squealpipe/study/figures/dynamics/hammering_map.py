@@ -8,14 +8,11 @@ import numpy as np
 from matplotlib.colors import LogNorm
 
 from squealpipe.parameters import SCENES
-from squealpipe.schema import meanings
-from squealpipe.study.figures.parts.style import (
+from squealpipe.plotting import plot
+from squealpipe.plotting.style import (
     BLACK,
     PAGE,
-    REGIME_COLOURS,
-    category_colours,
     draw_map,
-    flag_words,
     new_figure,
     panel_letter,
 )
@@ -48,7 +45,10 @@ def draw(hammering: xr.Dataset) -> Figure:
     """
     figure, axes = new_figure(PAGE, 6.2, nrows=2, ncols=2)
     angles = hammering.alpha1.values, hammering.alpha2.values
-    _draw_motion(figure, axes[0, 0], hammering)
+    plot(hammering, ax=axes[0, 0])
+    rows, columns = np.nonzero(hammering.motion_changed.values)
+    axes[0, 0].plot(angles[0][rows], angles[1][columns], ".", color=BLACK, ms=1.2)
+    panel_letter(axes[0, 0], "a", f"motion to t = {number(float(hammering.t_end), 4)} s")
     force = hammering.peak_contact_force.values
     quantities: list[tuple[str, str, np.ndarray, dict[str, Any]]] = [
         ("b", "impacts per time (1/s)", hammering.impact_rate.values, {}),
@@ -73,23 +73,3 @@ def draw(hammering: xr.Dataset) -> Figure:
         for colour, width in (("white", 3.2), (BLACK, 1.6)):
             panel.plot(scene.alpha1, scene.alpha2, "x", color=colour, ms=7, mew=width)
     return figure
-
-
-def _draw_motion(figure: Figure, panel: Any, hammering: xr.Dataset) -> None:
-    motion = hammering.motion
-    table = meanings(motion)
-    present, index = np.unique(motion.values, return_inverse=True)
-    names = [table[code] for code in present]
-    angles = hammering.alpha1.values, hammering.alpha2.values
-    mesh = draw_map(
-        panel,
-        *angles,
-        index.reshape(motion.shape),
-        **category_colours([REGIME_COLOURS[name] for name in names]),
-    )
-    rows, columns = np.nonzero(hammering.motion_changed.values)
-    panel.plot(angles[0][rows], angles[1][columns], ".", color=BLACK, ms=1.2)
-    bar = figure.colorbar(mesh, ax=panel, ticks=range(len(names)), shrink=0.85)
-    labels = [flag_words(name).replace(" ", "\n", 1) for name in names]
-    bar.ax.set_yticklabels(labels, fontsize=6)
-    panel_letter(panel, "a", f"motion to t = {number(float(hammering.t_end), 4)} s")

@@ -6,8 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from squealpipe.schema import meanings
-from squealpipe.study.figures.parts.style import (
+from squealpipe.plotting.style import (
     GREY,
     PAGE,
     REGIME_COLOURS,
@@ -16,6 +15,7 @@ from squealpipe.study.figures.parts.style import (
     new_figure,
     panel_letter,
 )
+from squealpipe.schema import meanings
 from squealpipe.text import number
 
 if TYPE_CHECKING:

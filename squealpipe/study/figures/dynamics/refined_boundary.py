@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.patches import Patch, Rectangle
 from matplotlib.ticker import NullLocator
 
-from squealpipe.study.figures.parts.style import (
+from squealpipe.plotting.style import (
     BLUE,
     LIGHT,
     ORANGE,

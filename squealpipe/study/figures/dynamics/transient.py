@@ -8,15 +8,15 @@ import numpy as np
 from matplotlib.ticker import MaxNLocator
 
 from squealpipe.parameters import SCENES
-from squealpipe.schema.inference import wilson_interval
-from squealpipe.study.figures.parts.origin import time_unit
-from squealpipe.study.figures.parts.style import (
+from squealpipe.plotting.origin import time_unit
+from squealpipe.plotting.style import (
     BLACK,
     BLUE,
     ORANGE,
     PAGE,
     new_figure,
 )
+from squealpipe.schema.inference import wilson_interval
 from squealpipe.text import number
 
 if TYPE_CHECKING:

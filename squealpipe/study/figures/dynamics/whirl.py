@@ -7,9 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from squealpipe.parameters import SCENES
-from squealpipe.schema import meanings
-from squealpipe.study.figures.parts.origin import time_unit
-from squealpipe.study.figures.parts.style import (
+from squealpipe.plotting.origin import time_unit
+from squealpipe.plotting.style import (
     BLACK,
     GREY,
     PAGE,
@@ -18,6 +17,7 @@ from squealpipe.study.figures.parts.style import (
     new_figure,
     panel_letter,
 )
+from squealpipe.schema import meanings
 from squealpipe.text import number
 
 if TYPE_CHECKING:

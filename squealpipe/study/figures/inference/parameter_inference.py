@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from matplotlib.ticker import LogLocator, NullFormatter
 
-from squealpipe.schema.inference import of_study
-from squealpipe.study.figures.parts.style import (
+from squealpipe.plotting.style import (
     BLACK,
     BLUE,
     GREEN,
@@ -18,6 +17,7 @@ from squealpipe.study.figures.parts.style import (
     new_figure,
     panel_letter,
 )
+from squealpipe.schema.inference import of_study
 from squealpipe.text import number
 
 if TYPE_CHECKING:

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from squealpipe.study.figures.parts.origin import angle_pair, parameter
-from squealpipe.study.figures.parts.style import (
+from squealpipe.plotting.origin import angle_pair, parameter
+from squealpipe.plotting.style import (
     BLACK,
     LIGHT,
     PAGE,

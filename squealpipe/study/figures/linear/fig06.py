@@ -8,10 +8,8 @@ import numpy as np
 from matplotlib.patches import Patch
 
 from squealpipe.parameters import direction_of
-from squealpipe.schema.linear import Boundary
-from squealpipe.study.figures.linear.linear_overlay import draw_boundaries, mark_scene
-from squealpipe.study.figures.parts.origin import parameter
-from squealpipe.study.figures.parts.style import (
+from squealpipe.plotting.origin import parameter
+from squealpipe.plotting.style import (
     BLACK,
     LIGHT,
     PAGE,
@@ -21,6 +19,8 @@ from squealpipe.study.figures.parts.style import (
     new_figure,
     panel_letter,
 )
+from squealpipe.schema.linear import Boundary
+from squealpipe.study.figures.linear.linear_overlay import draw_boundaries, mark_scene
 
 if TYPE_CHECKING:
     import xarray as xr

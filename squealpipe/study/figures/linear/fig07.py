@@ -7,9 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from matplotlib.patches import Patch
 
-from squealpipe.schema.dynamics.runs import growth_threshold
-from squealpipe.study.figures.linear.linear_overlay import mark_scene
-from squealpipe.study.figures.parts.style import (
+from squealpipe.plotting.style import (
     BLACK,
     LIGHT,
     ORANGE,
@@ -20,6 +18,8 @@ from squealpipe.study.figures.parts.style import (
     new_figure,
     panel_letter,
 )
+from squealpipe.schema.dynamics.runs import growth_threshold
+from squealpipe.study.figures.linear.linear_overlay import mark_scene
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

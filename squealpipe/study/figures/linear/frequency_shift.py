@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 from matplotlib.colors import TwoSlopeNorm
 
+from squealpipe.plotting.style import PAGE, draw_map, new_figure, panel_letter
 from squealpipe.schema import Outcome
 from squealpipe.study.figures.parts.frequency_map import HATCH, outline
-from squealpipe.study.figures.parts.style import PAGE, draw_map, new_figure, panel_letter
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from squealpipe.parameters import SCENES
+from squealpipe.plotting.origin import scene_title
+from squealpipe.plotting.style import BLUE, GREEN, GREY, ORANGE, RED
 from squealpipe.schema.linear import Boundary
-from squealpipe.study.figures.parts.origin import scene_title
-from squealpipe.study.figures.parts.style import BLUE, GREEN, GREY, ORANGE, RED
 
 if TYPE_CHECKING:
     from collections.abc import Iterable

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from squealpipe.study.figures.parts.style import BLACK, BLUE, ORANGE, PAGE, new_figure, panel_letter
+from squealpipe.plotting.style import BLACK, BLUE, ORANGE, PAGE, new_figure, panel_letter
 
 if TYPE_CHECKING:
     import xarray as xr

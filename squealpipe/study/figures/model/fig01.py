@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from squealpipe.study.figures.model.mechanism import draw_mechanism
-from squealpipe.study.figures.parts.style import COLUMN, new_figure
+from squealpipe.plotting.mechanism import draw_mechanism
+from squealpipe.plotting.style import COLUMN, new_figure
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from squealpipe.plotting.style import BLUE, PAGE, new_figure
 from squealpipe.study.figures.linear.fig07 import draw_kinds, key
-from squealpipe.study.figures.parts.style import BLUE, PAGE, new_figure
 
 if TYPE_CHECKING:
     import xarray as xr

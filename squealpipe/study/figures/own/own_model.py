@@ -8,9 +8,9 @@ import numpy as np
 from matplotlib.patches import Circle, FancyArrowPatch
 
 from squealpipe.parameters import direction_of
-from squealpipe.study.figures.model.mechanism import SPRING_COLOURS, displaced_springs
-from squealpipe.study.figures.parts.origin import parameter
-from squealpipe.study.figures.parts.style import GREY, PAGE, RED, new_figure, panel_letter
+from squealpipe.plotting.mechanism import SPRING_COLOURS, displaced_springs
+from squealpipe.plotting.origin import parameter
+from squealpipe.plotting.style import GREY, PAGE, RED, new_figure, panel_letter
 from squealpipe.text import number
 
 if TYPE_CHECKING:

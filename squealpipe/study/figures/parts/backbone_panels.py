@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from squealpipe.schema import meanings
-from squealpipe.study.figures.parts.origin import angle_pair, parameter
-from squealpipe.study.figures.parts.style import (
+from squealpipe.plotting.cycles import joined, say_why_empty
+from squealpipe.plotting.origin import angle_pair, parameter
+from squealpipe.plotting.style import (
     BLACK,
     GREY,
     PAGE,
@@ -68,8 +68,7 @@ def _angles(branch: xr.Dataset) -> str:
 def draw_branch(panel: Axes, exact: xr.Dataset, series: xr.Dataset, preload: float) -> None:
     """One mode: lines for exact orbits beneath crosses for harmonic balance."""
     panel.axhline(preload, color=BLACK, linewidth=0.8, label=r"$l_\mathrm{pre}$, contact is lost")
-    if not exact.sizes["point"]:
-        say_why_empty(panel, exact)
+    if say_why_empty(panel, exact):
         return
     unstable = np.abs(exact.stability_index.values) > STABLE_TO_ROUND_OFF
     overtakes = exact.sliding_assumption.values == 0
@@ -96,22 +95,6 @@ def draw_branch(panel: Axes, exact: xr.Dataset, series: xr.Dataset, preload: flo
             label=f"{label}, harmonic balance",
         )
     _frame(panel, np.concatenate([omega, series.omega.values[shown]]))
-
-
-def joined(chosen: np.ndarray) -> np.ndarray:
-    """Chosen points and the next one on either side, so that no line gapes where looks change."""
-    near = chosen.copy()
-    near[1:] |= chosen[:-1]
-    near[:-1] |= chosen[1:]
-    return near
-
-
-def say_why_empty(panel: Axes, branch: xr.Dataset) -> None:
-    """Write why a branch has no points into its panel."""
-    reason = meanings(branch.end)[int(branch.end)]
-    text = f"no periodic motions:\n{reason.replace('_', ' ')}"
-    panel.text(0.5, 0.5, text, transform=panel.transAxes, ha="center", va="center")
-    panel.set(xticks=[], yticks=[])
 
 
 def _frame(panel: Axes, omega: np.ndarray) -> None:

@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from matplotlib.patches import Patch
 
-from squealpipe.schema import Outcome
-from squealpipe.study.figures.parts.style import (
+from squealpipe.plotting.style import (
     BLACK,
     ORANGE,
     PAGE,
@@ -17,6 +16,7 @@ from squealpipe.study.figures.parts.style import (
     new_figure,
     panel_letter,
 )
+from squealpipe.schema import Outcome
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from squealpipe.study.figures.parts.style import PAGE, new_figure, panel_letter
+from squealpipe.plotting.style import PAGE, new_figure, panel_letter
 from squealpipe.study.figures.parts.work_precision import draw_methods, foot, legend_above
 
 if TYPE_CHECKING:

@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from matplotlib.ticker import FormatStrFormatter, LogLocator
 
-from squealpipe.schema.comparison import Role
-from squealpipe.study.figures.parts.style import (
+from squealpipe.plotting.style import (
     BLACK,
     BLUE,
     GREEN,
@@ -19,6 +18,7 @@ from squealpipe.study.figures.parts.style import (
     RED,
     symbols,
 )
+from squealpipe.schema.comparison import Role
 
 if TYPE_CHECKING:
     import xarray as xr

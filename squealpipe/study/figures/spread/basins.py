@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 from matplotlib.patches import Patch
 
-from squealpipe.study.figures.parts.origin import scene_title
-from squealpipe.study.figures.parts.style import (
+from squealpipe.plotting.origin import scene_title
+from squealpipe.plotting.style import (
     BLACK,
     PAGE,
     REGIME_COLOURS,

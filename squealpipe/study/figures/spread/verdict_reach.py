@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from matplotlib.colors import LinearSegmentedColormap
 
+from squealpipe.plotting.style import BLACK, BLUE, GREY, PAGE, RED, new_figure
 from squealpipe.schema.inference import DAMPED_GRID
-from squealpipe.study.figures.parts.style import BLACK, BLUE, GREY, PAGE, RED, new_figure
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -8,10 +8,10 @@ from dataclasses import dataclass, field
 import numpy as np
 import xarray as xr
 
+from squealpipe.plotting.style import REGIME_COLOURS, flag_words
 from squealpipe.schema import meanings
 from squealpipe.schema.ladder import Level
 from squealpipe.study.figures.comparison.model_ladder import colour_of
-from squealpipe.study.figures.parts.style import REGIME_COLOURS, flag_words
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from matplotlib.patches import Arc, Circle, FancyArrowPatch, Rectangle
 
-from squealpipe.study.figures.parts.style import BLUE, GREY, ORANGE, RED
+from squealpipe.plotting.style import BLUE, GREY, ORANGE, RED
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

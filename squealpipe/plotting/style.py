@@ -35,6 +35,8 @@ BLUE, ORANGE, GREEN, RED, PURPLE, GREY = (
 )
 """Okabe–Ito: told apart by colour-blind readers; lines also differ in dash or marker."""
 
+PALETTE = [BLUE, ORANGE, GREEN, RED, PURPLE, GREY]
+
 X_COLOUR, Y_COLOUR = ORANGE, BLUE
 """Displacements along the belt and away from it, everywhere."""
 
@@ -57,6 +59,8 @@ REGIME_COLOURS = {
     "at_rest": "#9ECAE1",
     "hammered_then_contact": "#DEC24A",
     "unsettled": WHITE,
+    "rest": "#9ECAE1",
+    "cycle": GREEN,
     "irregular_hammering": RED,
     "whirl": PURPLE,
     "undecided": GREY,
@@ -173,6 +177,21 @@ def flag_words(name: str) -> str:
 def panel_letter(axes: Axes, letter: str, text: str = "") -> None:
     """(a), (b), … at the left above a panel, with an optional title."""
     axes.set_title(f"({letter}) {text}".rstrip(), loc="left")
+
+
+def say_instead(axes: Axes, text: str) -> None:
+    """Write into a panel why it would be empty."""
+    axes.text(0.5, 0.5, text, transform=axes.transAxes, ha="center", va="center", wrap=True)
+    axes.set(xticks=[], yticks=[])
+
+
+def preload_line(axes: Axes, preload: float) -> None:
+    """A dotted line at l_pre, above which contact is lost, named at its right end."""
+    axes.axhline(preload, color=GREY, linewidth=0.8, linestyle=":")
+    axes.annotate(
+        r"$l_\mathrm{pre}$", (1, preload), xycoords=("axes fraction", "data"),
+        xytext=(2, 0), textcoords="offset points", va="center", color=GREY, fontsize=7,
+    )  # fmt: skip
 
 
 def shorten_small_ticks(figure: Figure) -> None:

@@ -7,7 +7,7 @@ import math
 from typing import TYPE_CHECKING
 
 from squealpipe.parameters import DEFAULTS, SCENES, TABLE, Scene
-from squealpipe.study.figures.parts.style import pi_label
+from squealpipe.plotting.style import pi_label
 
 if TYPE_CHECKING:
     import xarray as xr

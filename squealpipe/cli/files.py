@@ -1,0 +1,68 @@
+"""Commands about one dataset file: its picture, and its tables for other programs."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+from cyclopts import Parameter
+
+from squealpipe.cli.arguments import Switch
+from squealpipe.cli.console import say
+from squealpipe.cli.exit_codes import DONE
+from squealpipe.cli.output import PICTURES, TABLES, check_output
+
+
+def plot(
+    file: Path,
+    /,
+    *,
+    output: Annotated[Path | None, Parameter(name=["--output", "-o"])] = None,
+    variable: str | None = None,
+    force: Switch = False,
+) -> int:
+    """Draw a dataset: a run, a map, a branch, a cycle, an ensemble of a system.
+
+    Example: `squealpipe plot run.nc -o run.png`
+
+    Args:
+        file: dataset that a command or `squealpipe.save` wrote.
+        output: picture to write (png, svg or pdf); by default FILE.png.
+        variable: draw this variable instead of the usual picture.
+        force: overwrite files that exist.
+    """
+    target = file.with_suffix(".png") if output is None else output
+    check_output(target, force=force, kinds=PICTURES)
+
+    from squealpipe.plotting import picture
+    from squealpipe.plotting.style import save_figure
+    from squealpipe.store import load
+
+    save_figure(picture(load(file), variable), [target])
+    say(f"wrote {target}")
+    return DONE
+
+
+def convert(
+    file: Path,
+    /,
+    *,
+    output: Annotated[Path, Parameter(name=["--output", "-o"])],
+    force: Switch = False,
+) -> int:
+    """Write a dataset for another program: CSV, MATLAB, Excel or Parquet, units in the header.
+
+    Example: `squealpipe convert run.nc -o run.mat`
+
+    Args:
+        file: dataset that a command or `squealpipe.save` wrote.
+        output: file that ends in .csv, .mat, .xlsx or .parquet.
+        force: overwrite files that exist.
+    """
+    check_output(output, force=force, kinds=TABLES)
+
+    from squealpipe.store import load
+    from squealpipe.store.tables import convert as task
+
+    say(f"wrote {' and '.join(map(str, task(load(file), output)))}")
+    return DONE

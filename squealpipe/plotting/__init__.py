@@ -1,0 +1,103 @@
+"""Pictures of datasets: one panel of any of them, and what a command draws."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+import xarray as xr
+from matplotlib.axes import Axes
+
+from squealpipe.plotting.cycles import draw_backbone, draw_branch, draw_cycle
+from squealpipe.plotting.propensity import draw_shares
+from squealpipe.plotting.propensity import figure as propensity_figure
+from squealpipe.plotting.quantities import SHOWN, draw_quantity, shown
+from squealpipe.plotting.run import draw_force, draw_spectrum
+from squealpipe.plotting.run import figure as run_figure
+from squealpipe.plotting.style import COLUMN, SETTINGS, new_figure
+from squealpipe.plotting.systems import draw_ensemble, draw_states
+from squealpipe.schema import SYSTEM
+from squealpipe.validation import checked
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+DRAWN: dict[str, Callable[[Axes, xr.Dataset], None]] = {
+    "simulation": draw_force,
+    "run_summary": draw_spectrum,
+    "backbone": draw_backbone,
+    "limit_cycle": draw_cycle,
+    "cycle_branch": draw_branch,
+    "propensity": draw_shares,
+    SYSTEM + "simulate": draw_states,
+    SYSTEM + "ensemble": draw_ensemble,
+}
+"""Schema → what draws it; :data:`~squealpipe.plotting.quantities.SHOWN` has the others."""
+
+FIGURES: dict[str, Callable[[xr.Dataset], Figure]] = {
+    "simulation": run_figure,
+    "propensity": propensity_figure,
+}
+"""Schema → its picture of several panels."""
+
+
+@checked
+def plot(dataset: xr.Dataset, ax: Axes | None = None, *, variable: str | None = None) -> Axes:
+    """Draw a dataset: a run, a map, a branch, a cycle, an ensemble; its schema says which.
+
+    A picture that would be empty says why instead.
+
+    Args:
+        dataset: what a function of this package returned or :func:`squealpipe.load` read.
+        ax: Matplotlib axes to draw on; by default those of a new figure.
+        variable: draw this variable, over its one or two dimensions, instead of the usual picture.
+
+    Returns:
+        The axes.
+
+    Raises:
+        ValueError: there is no picture of this kind of dataset, or it has too many dimensions.
+    """
+    import matplotlib as mpl
+    import matplotlib.pyplot as plt
+
+    if ax is not None:
+        _draw(ax, dataset, variable)
+        return ax
+    with mpl.rc_context(SETTINGS):
+        figure, ax = plt.subplots(figsize=(5.0, 3.4), layout="constrained")
+        try:
+            _draw(ax, dataset, variable)
+        except ValueError:
+            plt.close(figure)
+            raise
+    return ax
+
+
+def picture(dataset: xr.Dataset, variable: str | None = None) -> Figure:
+    """The picture that a command writes: that of :func:`plot`, or one of several panels."""
+    several = FIGURES.get(str(dataset.attrs.get("schema")))
+    if several is not None and variable is None:
+        return several(dataset)
+    figure, axes = new_figure(COLUMN, 3.0)
+    _draw(axes[0, 0], dataset, variable)
+    return figure
+
+
+def _draw(axes: Axes, dataset: xr.Dataset, variable: str | None) -> None:
+    schema = str(dataset.attrs.get("schema"))
+    if variable is None and schema in DRAWN:
+        DRAWN[schema](axes, dataset)
+        return
+    if variable is None and (quantity := shown(dataset)) is not None:
+        draw_quantity(axes, quantity)
+        return
+    if variable not in dataset:
+        known = ", ".join(sorted([*DRAWN, *SHOWN]))
+        raise ValueError(
+            f"{schema} has no picture of its own (there are those of {known}); name a variable "
+            f"of it: {', '.join(map(str, dataset.data_vars))}"
+            if variable is None
+            else f"variable = {variable!r}: {schema} has {', '.join(map(str, dataset.data_vars))}"
+        )
+    draw_quantity(axes, dataset[variable])

@@ -1,0 +1,156 @@
+"""Periodic motions: one cycle, branches of cycles, backbones."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from squealpipe.plotting.origin import parameter
+from squealpipe.plotting.quantities import label
+from squealpipe.plotting.style import (
+    BLACK,
+    BLUE,
+    GREEN,
+    ORANGE,
+    PURPLE,
+    RED,
+    REGIME_COLOURS,
+    X_COLOUR,
+    Y_COLOUR,
+    flag_words,
+    preload_line,
+    say_instead,
+)
+from squealpipe.schema import meanings
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from matplotlib.axes import Axes
+
+MARKS = {
+    "fold": ("^", RED, "fold"),
+    "period_doubling": ("s", PURPLE, "period doubling"),
+    "torus": ("D", GREEN, "torus bifurcation"),
+    "grazing": ("o", BLACK, "contact just lost or regained"),
+    "stick_onset": ("v", GREEN, "stick just begins or ends"),
+}
+"""Special points of a branch: marker, colour, words."""
+
+
+def draw_backbone(axes: Axes, branch: xr.Dataset) -> None:
+    """Peak of y and amplitude of x over the frequency; open marks are unstable.
+
+    Args:
+        axes: where to draw.
+        branch: dataset ``backbone``; an empty one gives the reason instead.
+    """
+    if say_why_empty(axes, branch):
+        return
+    unstable = np.abs(branch.stability_index.values) > 2
+    for values, colour, dash, words in (
+        (branch.y_peak, Y_COLOUR, "-", "y peak"),
+        (branch.x_amplitude, X_COLOUR, "--", "x amplitude"),
+    ):
+        axes.plot(branch.omega, values, color=colour, linestyle=dash, label=words)
+        axes.plot(
+            branch.omega[unstable], values[unstable], linestyle="none", marker="o",
+            markerfacecolor="white", markeredgecolor=colour, markersize=3,
+        )  # fmt: skip
+    preload_line(axes, parameter(branch, "preload"))
+    axes.set(xlabel="ω (rad/s)", ylabel="displacement (m)")
+    axes.set_ylim(bottom=0)
+    axes.legend(loc="lower right", bbox_to_anchor=(1, 1), ncols=2, borderaxespad=0)
+
+
+def draw_cycle(axes: Axes, cycle: xr.Dataset) -> None:
+    """Path of the mass along a cycle, its regimes coloured.
+
+    Args:
+        axes: where to draw.
+        cycle: dataset ``limit_cycle``; without a cycle it gives the reason instead.
+    """
+    axes.set(xlabel="x (m)", ylabel="y (m)")
+    if not cycle.sizes["sample"]:
+        reason = flag_words(meanings(cycle.outcome)[int(cycle.outcome)])
+        say_instead(axes, f"no cycle:\n{reason}")
+        return
+    draw_regimes(axes, cycle.x_path.values, cycle.y_path.values, cycle.regime_path)
+    preload_line(axes, parameter(cycle, "preload"))
+    axes.set(aspect="equal", adjustable="datalim")
+    axes.legend(loc="lower right", bbox_to_anchor=(1, 1), borderaxespad=0, ncols=2)
+
+
+def draw_regimes(axes: Axes, x: np.ndarray, y: np.ndarray, regimes: xr.DataArray) -> None:
+    """A line in the colours of its regimes."""
+    flags = meanings(regimes)
+    for value in np.unique(regimes.values):
+        name = flags[int(value)]
+        drawn = np.where(joined(regimes.values == value), y, np.nan)
+        words = name.replace("_", ", ")
+        axes.plot(x, drawn, color=REGIME_COLOURS[name], linewidth=1.4, label=words)
+
+
+def draw_branch(axes: Axes, branch: xr.Dataset) -> None:
+    """Largest |x| over the parameter, stable and unstable, with marks at special points.
+
+    Args:
+        axes: where to draw.
+        branch: dataset ``cycle_branch``; an empty one gives the reason instead.
+    """
+    if say_why_empty(axes, branch):
+        return
+    followed = next(
+        array for array in branch.data_vars.values() if "along the branch" in array.long_name
+    )
+    handles = [
+        axes.plot([], [], color=BLUE, label="stable")[0],
+        axes.plot([], [], color=ORANGE, linestyle="--", label="unstable")[0],
+    ]
+    size = np.maximum(np.abs(branch.x_min), np.abs(branch.x_max)).values
+    for marker, colour, words in trace_branch(axes, followed.values, size, branch):
+        handles += axes.plot([], [], marker, color=colour, markersize=4, label=words)
+    axes.set(xlabel=label(followed), ylabel="largest |x| (m)")
+    axes.legend(handles=handles)
+
+
+def trace_branch(
+    axes: Axes, parameters: np.ndarray, sizes: np.ndarray, branch: xr.Dataset
+) -> list[tuple[str, str, str]]:
+    """Draw one branch as lines of two looks; returns the marks that it has."""
+    if branch.sizes["point"] < 2:
+        return []
+    stable = branch.stable.values.astype(bool)
+    # the line between two points is unstable if either is
+    steady = stable[:-1] & stable[1:]
+    ends = np.flatnonzero(np.diff(steady)) + 1
+    for piece in np.split(np.arange(len(steady)), ends):
+        colour, dash = (BLUE, "-") if steady[piece[0]] else (ORANGE, "--")
+        points = slice(piece[0], piece[-1] + 2)
+        axes.plot(parameters[points], sizes[points], dash, color=colour, linewidth=1.2)
+    found = []
+    for value, name in meanings(branch.label).items():
+        points = branch.label.values == value
+        if name in MARKS and points.any():
+            marker, colour, _ = MARKS[name]
+            here = parameters[points], sizes[points]
+            axes.plot(*here, marker, color=colour, markersize=4, zorder=4)
+            found.append(MARKS[name])
+    return found
+
+
+def joined(chosen: np.ndarray) -> np.ndarray:
+    """Chosen points and the next one on either side, so that no line gapes where looks change."""
+    near = chosen.copy()
+    near[1:] |= chosen[:-1]
+    near[:-1] |= chosen[1:]
+    return near
+
+
+def say_why_empty(axes: Axes, branch: xr.Dataset) -> bool:
+    """Whether a branch has no points, and then why, in its panel."""
+    if branch.sizes["point"]:
+        return False
+    reason = flag_words(meanings(branch.end)[int(branch.end)])
+    say_instead(axes, f"no periodic motions:\n{reason}")
+    return True

@@ -1,0 +1,99 @@
+"""Propensities over uncertain parameters, and what they depend on."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from squealpipe.plotting.style import (
+    BLUE,
+    GREEN,
+    GREY,
+    ORANGE,
+    PAGE,
+    PURPLE,
+    RED,
+    flag_words,
+    new_figure,
+    panel_letter,
+)
+from squealpipe.schema.spread import WIDEST
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+SYMBOLS = {
+    "k1": "k₁", "k2": "k₂", "k3": "k₃", "mu": "μ", "alpha1": "α₁", "alpha2": "α₂",
+    "length1": "L₁", "length2": "L₂", "belt_speed": "V", "mass": "m", "mu_static": "μs",
+}  # fmt: skip
+COLOURS = (BLUE, ORANGE, RED, PURPLE, GREEN)
+
+
+def figure(spread: xr.Dataset) -> Figure:
+    """Four panels.
+
+    Args:
+        spread: dataset ``propensity``.
+    """
+    drawn, axes = new_figure(PAGE, 4.8, nrows=2, ncols=2)
+    (bars, sizes), (indices, widths) = axes
+    names = [flag_words(name) for name in spread.quantity.values.tolist()]
+    draw_shares(bars, spread)
+    for row, colour in zip(spread.share_by_size.values, COLOURS, strict=False):
+        sizes.plot(spread["size"], row, ".-", color=colour)
+    sizes.set(xlabel="sample size", xscale="log", ylim=(0, 1.02), ylabel="share")
+    ends = spread["size"].values[[0, -1]]
+    sizes.set_xticks(ends, [f"{end}" for end in ends])
+    sizes.minorticks_off()
+    inputs = [SYMBOLS.get(name, name) for name in spread.input.values.tolist()]
+    shown = [i for i in range(len(names)) if np.isfinite(spread.total_order.values[i]).all()]
+    width = 0.8 / max(len(shown), 1)
+    for position, i in enumerate(shown):
+        at = np.arange(len(inputs)) + (position - 0.5 * (len(shown) - 1)) * width
+        total = spread.total_order.values[i]
+        limits = np.stack([spread.total_order_low.values[i], spread.total_order_high.values[i]])
+        indices.bar(
+            at, total, width, yerr=np.abs(limits - total), color=COLOURS[i], ecolor=GREY,
+            label=names[i],
+        )  # fmt: skip
+        indices.plot(at, spread.first_order.values[i], "k.", markersize=3)
+    indices.set_xticks(np.arange(len(inputs)), inputs)
+    indices.set(ylabel="Sobol index", xlim=(-0.5, len(inputs) - 0.5), ylim=(0, None))
+    if shown:
+        indices.legend()
+    else:
+        indices.text(0.5, 0.5, "none supported", transform=indices.transAxes, ha="center")
+    for row, colour in zip(spread.half_width_by_size, COLOURS, strict=False):
+        if np.isfinite(row).any():
+            base = spread.index_samples.sel(quantity=row.quantity)
+            widths.plot(base, row, ".-", color=colour)
+    widths.axhline(WIDEST, color=GREY, ls="--", lw=0.8, label="widest that is given")
+    widths.legend()
+    widths.set(
+        xlabel="base sample", xscale="log", ylabel="half-width of total index", ylim=(0, None)
+    )
+    if not np.isfinite(spread.half_width_by_size).any():
+        widths.text(
+            0.5, 0.5, "too few of the sample differ", transform=widths.transAxes, ha="center"
+        )
+        widths.set_xticks([], minor=True)
+        widths.set_xticks([])
+    titles = ("propensity", "convergence of shares", "sensitivity", "convergence of indices")
+    for letter, panel, title in zip("abcd", axes.ravel(), titles, strict=True):
+        panel_letter(panel, letter, title)
+    return drawn
+
+
+def draw_shares(axes: Axes, spread: xr.Dataset) -> None:
+    """Share of the sample in which each quantity occurs, with its 95 % interval."""
+    names = [flag_words(name) for name in spread.quantity.values.tolist()]
+    place = np.arange(len(names))
+    share = spread.share.values
+    error = np.abs(np.stack([spread.share_low.values, spread.share_high.values]) - share)
+    axes.barh(place, share, xerr=error, color=COLOURS[: len(names)], ecolor=GREY, height=0.6)
+    axes.set_yticks(place, names)
+    axes.invert_yaxis()
+    axes.set(xlabel="share", xlim=(0, 1))

@@ -1,0 +1,146 @@
+"""One variable over one or two dimensions: curves, maps, and maps of kinds."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from textwrap import fill
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from squealpipe.plotting.style import (
+    BLUE,
+    PALETTE,
+    REGIME_COLOURS,
+    angle_map_axes,
+    category_colours,
+    flag_words,
+    say_instead,
+)
+from squealpipe.schema import SYSTEM, meanings
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from matplotlib.axes import Axes
+
+ANGLES = ("alpha1", "alpha2")
+UNITS = {"s-1": "1/s", "rad s-1": "rad/s", "m s-1": "m/s"}
+"""Units of CF as axes show them."""
+SHOWN: dict[str, tuple[str, Mapping[str, object]]] = {
+    "validity_map": ("first_separation_time", {}),
+    "refined_validity_map": ("separates", {}),
+    "hammering_map": ("motion", {}),
+    "quasi_static_map": ("reaction_force", {}),
+    "stability_map": ("regime_linear", {}),
+    "critical_friction_map": ("critical_mu", {}),
+    "critical_damping_map": ("critical_mu", {}),
+    "natural_frequencies": ("omega", {"mode": 1, "contact_state": "contact"}),
+    "basin_map": ("motion", {}),
+    "smallest_disturbance": ("distance_by_number", {}),
+    SYSTEM + "basin": ("motion", {}),
+}
+"""Schema → the variable that its picture shows, and what is chosen of its further dimensions."""
+
+
+def shown(dataset: xr.Dataset) -> xr.DataArray | None:
+    """The variable that the picture of a dataset, or of a sweep of such datasets, shows."""
+    schema = str(dataset.attrs.get("schema")).removeprefix("sweep of ").split(" over ")[0]
+    schema = "basin_map" if schema.startswith("basin_map") else schema
+    if schema not in SHOWN:
+        return None
+    name, chosen = SHOWN[schema]
+    return dataset[name].sel(chosen)
+
+
+def counts(dataset: xr.Dataset) -> list[str]:
+    """What the variable shown holds, in words."""
+    variable = shown(dataset)
+    assert variable is not None, dataset.attrs  # noqa: S101 (maps of the command line are in SHOWN)
+    if table := meanings(variable):
+        codes, numbers = np.unique(variable.values, return_counts=True)
+        return [
+            f"{number} of {variable.size} cells: {flag_words(table[code])}"
+            for code, number in zip(codes, numbers, strict=True)
+        ]
+    values = variable.values
+    finite = np.isfinite(values)
+    return [
+        f"{label(variable)}: in {np.count_nonzero(finite)} of {values.size} cells, "
+        f"from {values[finite].min():.6g} to {values[finite].max():.6g}"
+        if finite.any()
+        else f"{_words(variable)}: in no cell"
+    ]
+
+
+def draw_quantity(axes: Axes, variable: xr.DataArray) -> None:
+    """A curve over one dimension or a map over two, the first one along x.
+
+    Raises:
+        ValueError: it has no or more than two dimensions, or holds texts.
+    """
+    if variable.ndim not in (1, 2) or variable.dtype.kind not in "biuf":
+        raise ValueError(
+            f"{variable.name} has dimensions {tuple(variable.dims)} and dtype {variable.dtype}; "
+            "one or two dimensions of numbers can be drawn: choose with dataset.sel or isel"
+        )
+    x = variable[variable.dims[0]]
+    table = meanings(variable) or ({0: "no", 1: "yes"} if variable.dtype.kind == "b" else {})
+    values, names = variable.values.astype(float), []
+    if table:
+        present, places = np.unique(variable.values, return_inverse=True)
+        names = [table[int(code)] for code in present]
+        values = places.reshape(variable.shape).astype(float)
+    if not np.isfinite(values).any():
+        say_instead(axes, f"{_words(variable)}:\nno value anywhere")
+        return
+    chosen = [f"{name} {at.item()}" for name, at in variable.coords.items() if not at.ndim]
+    axes.set_title(", ".join(chosen), loc="left")
+    axes.set_xlabel(label(x))
+    if variable.ndim == 1:
+        axes.plot(x, values, "." if names else "-", color=BLUE)
+        axes.set_ylabel(label(variable))
+        if names:
+            axes.set_yticks(range(len(names)), list(map(flag_words, names)))
+        return
+    _draw_map(axes, variable, values, names)
+
+
+def _draw_map(axes: Axes, variable: xr.DataArray, values: np.ndarray, names: list[str]) -> None:
+    x, y = (variable[dim] for dim in variable.dims)
+    if names:
+        scale = category_colours(colours_of(names))
+    else:
+        low, high = np.percentile(values[np.isfinite(values)], [1, 99])
+        scale = {"cmap": "viridis", "vmin": low, "vmax": high}
+    mesh = axes.pcolormesh(x, y, values.T, shading="nearest", rasterized=True, **scale)
+    axes.set_ylabel(label(y))
+    if variable.dims == ANGLES:
+        angle_map_axes(axes, float(x[-1]))
+        axes.set(xlim=(x[0], x[-1]), ylim=(y[0], y[-1]))
+    figure = axes.get_figure(root=False)
+    assert figure is not None  # noqa: S101 (axes that can be drawn on are in a figure)
+    if not names:
+        extend = {"label": label(variable), "extend": "both"}
+        figure.colorbar(mesh, ax=axes, shrink=0.85, **extend)  # type: ignore[arg-type]
+        return
+    axes.set_title(fill(_words(variable), 32), loc="left")
+    bar = figure.colorbar(mesh, ax=axes, ticks=range(len(names)), shrink=0.85)
+    bar.ax.set_yticklabels([flag_words(name).replace(" ", "\n", 1) for name in names])
+
+
+def colours_of(names: list[str]) -> list[str]:
+    """One colour for each flag: its own where it has one, else the next of the palette."""
+    free = iter(PALETTE * len(names))
+    return [REGIME_COLOURS.get(name) or next(free) for name in names]
+
+
+def _words(variable: xr.DataArray) -> str:
+    return str(variable.attrs.get("long_name", variable.name)).split(" (")[0].split("; ")[0]
+
+
+def label(variable: xr.DataArray) -> str:
+    """What a variable is, with its unit, for an axis."""
+    unit = UNITS.get(unit := str(variable.attrs.get("units", "1")), unit)
+    symbol = {"alpha1": "α₁", "alpha2": "α₂"}.get(str(variable.name))
+    words = symbol or _words(variable)
+    return words if unit == "1" else f"{words} ({unit})"

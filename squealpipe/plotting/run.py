@@ -1,0 +1,148 @@
+"""One run: contact force, displacements, orbit and spectrum."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from squealpipe.codes import Regime
+from squealpipe.methods.spectrum import FEWEST, amplitude_spectrum, highest_peaks
+from squealpipe.plotting.mechanism import SPRING_COLOURS, displaced_springs
+from squealpipe.plotting.style import (
+    BLUE,
+    GREY,
+    PAGE,
+    RED,
+    X_COLOUR,
+    Y_COLOUR,
+    new_figure,
+    panel_letter,
+    pi_label,
+    preload_line,
+    say_instead,
+)
+from squealpipe.schema import meanings
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+FORCE = r"$N\,/\,(k_3\,l_\mathrm{pre})$"
+PADDING = 8
+"""How much finer the spectrum's grid is than the resolution of the run."""
+LARGEST_SPRINGS = 20.0
+"""Length of the springs over the extent of a path beside which they are drawn."""
+LOUD = 0.01
+"""Amplitude over the largest one above which the spectrum is drawn."""
+
+
+def figure(run: xr.Dataset) -> Figure:
+    """Four panels of one run.
+
+    Args:
+        run: dataset ``simulation``.
+    """
+    drawn, axes = new_figure(PAGE, 4.8, nrows=2, ncols=2)
+    panels = (
+        (draw_force, "contact force"),
+        (draw_displacements, "displacements"),
+        (draw_orbit, "path of the mass"),
+        (draw_spectrum, "spectrum of the contact force"),
+    )
+    for letter, panel, (draw, title) in zip("abcd", axes.flat, panels, strict=True):
+        draw(panel, run)
+        panel_letter(panel, letter, title)
+    drawn.suptitle(
+        f"α₁ = {pi_label(float(run.alpha1))}, α₂ = {pi_label(float(run.alpha2))}, "
+        f"model {run.attrs.get('model', 'A1')}",
+        fontsize=9,
+    )
+    return drawn
+
+
+def draw_force(axes: Axes, run: xr.Dataset) -> None:
+    """Contact force over its preload, with strips below zero where contact is lost."""
+    if _too_short(axes, run):
+        return
+    time, force = run.time.values, run.normalized_contact_force.values
+    axes.plot(time, force, color=BLUE)
+    axes.fill_between(
+        time, -0.06, 0.0, where=run.regime.values == Regime.separated, color=RED, linewidth=0,
+        step="mid", label="separated",
+    )  # fmt: skip
+    axes.axhline(0.0, color=GREY, linewidth=0.5)
+    axes.set(xlim=(0.0, float(time[-1])), ylim=(-0.08, max(1.3, 1.1 * np.nanmax(force))))
+    axes.set(xlabel="t (s)", ylabel=FORCE)
+
+
+def draw_displacements(axes: Axes, run: xr.Dataset) -> None:
+    """Both displacements over time."""
+    if _too_short(axes, run):
+        return
+    axes.plot(run.time, run.x, color=X_COLOUR, label="x")
+    axes.plot(run.time, run.y, color=Y_COLOUR, linestyle="--", label="y")
+    preload_line(axes, float(run.preload))
+    axes.set(xlabel="t (s)", ylabel="displacement (m)", xlim=(0, float(run.time_reached)))
+    axes.legend(loc="lower right", bbox_to_anchor=(1, 1), borderaxespad=0, ncols=2)
+
+
+def draw_orbit(axes: Axes, run: xr.Dataset) -> None:
+    """The path of the mass, with the springs at its end unless they dwarf it."""
+    if _too_short(axes, run):
+        return
+    axes.plot(run.x, run.y, color=GREY, linewidth=0.6)
+    path = np.stack([run.x.values, run.y.values])
+    path = path[:, np.isfinite(path[0])]
+    x, y = path[:, -1]
+    lengths = (float(run.length1), float(run.length2))
+    if max(lengths) < LARGEST_SPRINGS * np.hypot(*np.ptp(path, axis=1)):
+        width = 0.05 * min(lengths)
+        springs = displaced_springs(x, y, float(run.alpha1), float(run.alpha2), lengths, width)
+        for spring, colour in zip(springs, SPRING_COLOURS, strict=True):
+            axes.plot(*spring.T, color=colour, linewidth=0.9)
+            axes.plot(*spring[-1], "s", color="black", markersize=3)
+    axes.plot(x, y, "o", color="black", markersize=5)
+    axes.axhline(float(run.preload), color=GREY, linewidth=0.8, linestyle=":")
+    axes.set(xlabel="x (m)", ylabel="y (m)")
+    axes.set_aspect("equal", adjustable="datalim")
+
+
+def draw_spectrum(axes: Axes, dataset: xr.Dataset) -> None:
+    """Amplitude spectrum of the contact force.
+
+    Args:
+        axes: where to draw.
+        dataset: ``run_summary``, or ``simulation``, whose spectrum is then computed.
+    """
+    if "force_spectrum" in dataset:
+        frequency, amplitude = dataset.frequency.values, dataset.force_spectrum.values
+    elif _too_short(axes, dataset):
+        return
+    else:
+        kept = np.isfinite(dataset.x.values)
+        steps = np.diff(dataset.time.values[kept])
+        if np.ptp(steps) > 1e-6 * steps[0]:
+            say_instead(axes, "no spectrum:\nthe samples are not uniform in time")
+            return
+        force = dataset.normalized_contact_force.values[kept]
+        frequency, amplitude = amplitude_spectrum(force, float(steps[0]), padding=PADDING)
+    loud = np.flatnonzero(amplitude > LOUD * amplitude.max(initial=0.0))
+    if not loud.size:
+        say_instead(axes, "the contact force does not oscillate")
+        return
+    axes.plot(frequency, amplitude, color=BLUE)
+    axes.plot(*highest_peaks(frequency, amplitude, 3), "v", color=RED, markersize=4)
+    axes.set(xlim=(0, 1.2 * frequency[loud[-1]]), ylim=(0, None))
+    axes.set(xlabel="ω (rad/s)", ylabel=f"amplitude of {FORCE}")
+
+
+def _too_short(axes: Axes, run: xr.Dataset) -> bool:
+    """Whether the run ended before anything can be seen, which the panel then says."""
+    reached = int(np.isfinite(run.x.values).sum())
+    if reached >= FEWEST:
+        return False
+    end = meanings(run.outcome)[int(run.outcome)].replace("_", " ")
+    say_instead(axes, f"too short for a picture:\n{reached} samples, then {end}")
+    return True

@@ -1,1 +1,0 @@
-"""Pictures of single results, for the command line."""

@@ -1,0 +1,56 @@
+"""``squealpipe.plot`` draws what every function returns, or says why there is nothing to draw."""
+
+from __future__ import annotations
+
+import matplotlib.pyplot as plt
+import numpy as np
+import pytest
+
+import squealpipe
+from squealpipe.plotting import picture
+from squealpipe.systems.impact_oscillator import impact_oscillator
+from squealpipe.systems.mode_coupling import mode_coupling
+from tests.former import FORMER
+
+ANGLES = np.linspace(0.1, 3.0, 7)
+SCENE = 0.4 * np.pi, 0.6 * np.pi
+
+
+DATASETS = {
+    "run": lambda: squealpipe.simulate(FORMER, *SCENE, t_end=20.0),
+    "validity": lambda: squealpipe.validity_map(FORMER, ANGLES, ANGLES, t_end=10.0),
+    "hammering": lambda: squealpipe.hammering_map(FORMER, ANGLES, ANGLES, t_end=20.0),
+    "quasi-static": lambda: squealpipe.quasi_static_map(FORMER, ANGLES, ANGLES),
+    "stability": lambda: squealpipe.stability_map(FORMER, ANGLES, ANGLES),
+    "critical friction": lambda: squealpipe.critical_friction_map(FORMER, ANGLES, ANGLES),
+    "frequencies": lambda: squealpipe.natural_frequencies(FORMER, ANGLES, ANGLES),
+    "backbone": lambda: squealpipe.backbone(FORMER, 0.3 * np.pi, 0.9 * np.pi, mode=1),
+    "basin, one start": lambda: squealpipe.basin_map(
+        FORMER, *SCENE, vx=np.linspace(-1, 1, 5), t_end=20.0
+    ),
+    "basin, two starts": lambda: squealpipe.basin_map(
+        FORMER, *SCENE, vx=np.linspace(-1, 1, 5), vy=np.linspace(-1, 1, 4), t_end=20.0
+    ),
+    "system run": lambda: impact_oscillator.simulate(30.0),
+    "system over one": lambda: impact_oscillator.ensemble(
+        60.0, amplitude=np.linspace(0.5, 3.0, 40)
+    ),
+    "system over two": lambda: impact_oscillator.ensemble(
+        30.0, amplitude=np.linspace(0.5, 3.0, 9), omega=np.linspace(1.5, 2.5, 8)
+    ),
+    "system basin": lambda: mode_coupling.basin(60.0, start={"x": np.linspace(-2, 2, 6)}),
+}
+
+
+@pytest.mark.parametrize("name", DATASETS)
+def test_a_picture_for_every_dataset(name, tmp_path):
+    dataset = DATASETS[name]()
+    _, ax = plt.subplots()
+    assert squealpipe.plot(dataset, ax=ax) is ax
+    assert ax.has_data()
+    assert ax.get_xlabel()
+    assert ax.get_ylabel()
+    plt.close("all")
+    squealpipe.plot(dataset).figure.savefig(tmp_path / "own.png")
+    picture(dataset).savefig(tmp_path / "command.png", dpi=150)
+    plt.close("all")
