@@ -49,8 +49,8 @@ def test_what_is_missing_is_said() -> None:
     with pytest.raises(ValueError, match="the figure fig02 reads the dataset simulate/F2d"):
         declared.arguments("fig02", dict.fromkeys(NAMES[:3]))
     with pytest.raises(ValueError, match="has no READS"):
-        declared.reads("style")
+        declared.reads("work_precision")
     with pytest.raises(ValueError, match="has no CAPTION"):
-        declared.texts("style", {})
+        declared.texts("work_precision", {})
     with pytest.raises(ValueError, match="0 modules"):
         declared.topic("unknown")

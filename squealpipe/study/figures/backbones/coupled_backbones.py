@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 from matplotlib.ticker import MaxNLocator
 
+from squealpipe.plotting.cycles import joined
 from squealpipe.plotting.style import BLACK, GREEN, PURPLE, Y_COLOUR
 from squealpipe.study.figures.parts.backbone_panels import (
     KEY,
     STABLE_TO_ROUND_OFF,
     draw_scenes,
-    joined,
 )
 
 if TYPE_CHECKING:
