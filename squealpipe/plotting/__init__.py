@@ -64,7 +64,7 @@ def plot(dataset: xr.Dataset, ax: Axes | None = None, *, variable: str | None = 
     if ax is not None:
         _draw(ax, dataset, variable)
         return ax
-    # made outside of the context, which would undo what a notebook's backend sets at its first figure
+    # outside of the context, which would undo what a backend sets at its first figure
     figure = plt.figure(figsize=(5.0, 3.4), layout="constrained")
     with mpl.rc_context(SETTINGS):
         ax = figure.add_subplot()
