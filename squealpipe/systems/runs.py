@@ -161,7 +161,7 @@ def integrate(
     terms = taylor_terms(tol)
     n_rows = FIXED_ROWS + len(t.variables) + t.size + 4 * len(tracked) + n_regimes
     n_rows += len(t.parameters) + len(t.constants)
-    width = max(2 * len(t.surfaces), len(t.variables)) + 2
+    width = max(3 * len(t.surfaces), len(t.variables)) + 2
 
     def work(arrays: dict[str, np.ndarray], first: int, stride: int) -> None:
         for name in ("samples", "event_times", "event_states", "firsts"):
@@ -183,7 +183,7 @@ def integrate(
             "rises": t.rises,
             "active": np.zeros(len(t.surfaces), np.int64),
             "fresh": np.zeros(len(t.surfaces), np.int64),
-            "noise": np.zeros((len(t.surfaces), LANES)),
+            "noise": np.zeros((len(t.surfaces), 2, LANES)),
             "scratch": np.zeros((5, width)),
             "initial": initial,
             "parameters": parameters,

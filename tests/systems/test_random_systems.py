@@ -13,61 +13,122 @@ from squealpipe.functions import cos
 from squealpipe.schema import Outcome
 from squealpipe.systems.impact_oscillator import impact_oscillator
 
-T_END, MOST_EVENTS = 20.0, 60
+T_END, MOST_EVENTS = 15.0, 60
 
 
-def random_system(seed):
-    """Damped linear regimes with a cubic term and forcing, one reset, and a `to` that decides."""
-    rng = np.random.default_rng(seed)
-    n, regimes = int(rng.integers(2, 5)), int(rng.integers(1, 4))
-    names = [f"s{i}" for i in range(n)]
-    matrices = {}
-    for k in range(regimes):
-        part = rng.normal(size=(n, n))
-        matrices[f"r{k}"] = part - part.T - 0.2 * np.eye(n) - 0.1 * np.diag(rng.random(n))
-    force, normal = rng.normal(size=n), rng.normal(size=n)
-    level = 0.3 * float(rng.random())
+def random_linear(rng, n):
+    part = rng.normal(size=(n, n))
+    return part - part.T - 0.2 * np.eye(n) - 0.1 * np.diag(rng.random(n))
 
-    def field_of(matrix):
-        def field(t, s, p, r):
-            values = [getattr(s, name) for name in names]
-            return {
-                name: sum(float(a) * v for a, v in zip(row, values, strict=True))
-                + float(f) * p.drive * cos(p.omega * t)
-                - 0.1 * values[i] * values[i] * values[i]
-                for i, (name, row, f) in enumerate(zip(names, matrix, force, strict=True))
-            }
 
-        return field
+def random_rates(names, matrix, force):
+    """Damped linear rates with a cubic term and forcing."""
+
+    def rates(t, s, p):
+        values = [getattr(s, name) for name in names]
+        return {
+            name: sum(float(a) * v for a, v in zip(row, values, strict=True))
+            + float(f) * p.drive * cos(p.omega * t)
+            - 0.1 * values[i] * values[i] * values[i]
+            for i, (name, row, f) in enumerate(zip(names, matrix, force, strict=True))
+        }
+
+    return rates
+
+
+def random_height(rng, names):
+    """An affine function of the states."""
+    normal, level = rng.normal(size=len(names)), 0.3 * float(rng.random())
 
     def height(t, s, p, r):
-        return (
-            sum(float(w) * getattr(s, name) for w, name in zip(normal, names, strict=True)) + level
-        )
+        parts = (float(w) * getattr(s, name) for w, name in zip(normal, names, strict=True))
+        return sum(parts) + level
 
-    keys = list(matrices)
+    return height
+
+
+def patches(rng, names):
+    """1 to 4 regimes with fields of their own, one reset, and a ``to`` that decides."""
+    keys = [f"r{k}" for k in range(int(rng.integers(1, 5)))]
+    force, height = rng.normal(size=len(names)), random_height(rng, names)
+
+    def field_of(rates):
+        return lambda t, s, p, r: rates(t, s, p)
+
     switches = [
         Switch(
             "fall", keys[0], height,
-            to=[(keys[-1], lambda t, s, p, r: s.s1, "aside"), keys[regimes // 2]],
+            to=[(keys[-1], lambda t, s, p, r: s.s1, "aside"), keys[len(keys) // 2]],
             reset=lambda t, s, p, r: {"s0": -0.7 * s.s0 + 0.05},
         )
     ]  # fmt: skip
-    if regimes > 1:
+    if len(keys) > 1:
         back = lambda t, s, p, r: 0.2 - height(t, s, p, r)  # noqa: E731
         switches.append(Switch("back", tuple(keys[1:]), back, to=keys[0]))
+    return {
+        "regimes": {key: {} for key in keys},
+        "field": {
+            key: field_of(random_rates(names, random_linear(rng, len(names)), force))
+            for key in keys
+        },
+        "switches": switches,
+        "start": {**dict.fromkeys(names, 0.5), "regime": keys[0]},
+    }
+
+
+def stick(rng, names):
+    """Dry friction on s1, which sticks at 0 while it can, and an impact with a reset."""
+    rates = random_rates(names, random_linear(rng, len(names)), rng.normal(size=len(names)))
+    height, limit = random_height(rng, names), 0.3 + float(rng.random())
+
+    def pull(t, s, p):
+        return rates(t, s, p)["s1"]
+
+    def field(t, s, p, r):
+        found = rates(t, s, p)
+        return {**found, "s1": (1.0 - r.held) * (found["s1"] - limit * r.side)}
+
+    return {
+        "regimes": {
+            "up": {"side": 1.0, "held": 0.0},
+            "down": {"side": -1.0, "held": 0.0},
+            "held": {"side": 0.0, "held": 1.0},
+        },
+        "field": field,
+        "switches": [
+            Switch(
+                "turn", ("up", "down"), lambda t, s, p, r: r.side * s.s1,
+                to=[
+                    ("held", lambda t, s, p, r: limit**2 - pull(t, s, p) ** 2, "stick"),
+                    ("down", lambda t, s, p, r: r.side), "up",
+                ],
+                reset=lambda t, s, p, r: {"s1": 0.0},
+            ),
+            Switch("slip_up", "held", lambda t, s, p, r: limit - pull(t, s, p), "up"),
+            Switch("slip_down", "held", lambda t, s, p, r: limit + pull(t, s, p), "down"),
+            Switch(
+                "impact", ("up", "down"), lambda t, s, p, r: height(t, s, p, r) + 1.0,
+                to=[("up", lambda t, s, p, r: r.side), "down"],
+                reset=lambda t, s, p, r: {"s0": -0.7 * s.s0 + 0.05},
+            ),
+        ],
+        "start": {**dict.fromkeys(names, 0.5), "regime": "up"},
+    }  # fmt: skip
+
+
+def random_system(seed):
+    """A system of 2 to 6 states: patches for even seeds, stick for odd ones."""
+    rng = np.random.default_rng(seed)
+    names = [f"s{i}" for i in range(int(rng.integers(2, 7)))]
     return System(
         f"random {seed}",
         states=dict.fromkeys(names, "1"),
         parameters={"drive": 1.0, "omega": 1.3},
-        regimes={key: {} for key in keys},
-        field={key: field_of(matrix) for key, matrix in matrices.items()},
-        switches=switches,
-        start={**dict.fromkeys(names, 0.5), "regime": keys[0]},
+        **(patches, stick)[seed % 2](rng, names),
     )
 
 
-def independent_run(system, start, parameters):
+def independent_run(system, start, parameters, max_step):
     """The same functions on floats, by DOP853; times and kinds of the events."""
     p = SimpleNamespace(**{**system.parameters, **parameters})
     names, regime, t = list(system.states), system.start["regime"], 0.0
@@ -81,18 +142,21 @@ def independent_run(system, start, parameters):
             s for s in system.switches if regime in ([s.leaves], s.leaves)[type(s.leaves) is tuple]
         ]
 
-        def rates(time, values, regime=regime):
-            return list(system.field[regime](time, state(values), p, None).values())
+        r = SimpleNamespace(**system.regimes[regime])
+        field = system.field[regime] if isinstance(system.field, dict) else system.field
 
-        def guard(switch):
+        def rates(time, values, field=field, r=r):
+            return list(field(time, state(values), p, r).values())
+
+        def guard(switch, r=r):
             def value(time, values):
-                return switch.when(time, state(values), p, None)
+                return switch.when(time, state(values), p, r)
 
             value.terminal, value.direction = True, -1
             return value
 
         run = solve_ivp(
-            rates, (t, T_END), z, "DOP853", rtol=1e-12, atol=1e-12, max_step=0.05,
+            rates, (t, T_END), z, "DOP853", rtol=1e-12, atol=1e-12, max_step=max_step,
             events=[guard(s) for s in here],
         )  # fmt: skip
         t, z = run.t[-1], run.y[:, -1]
@@ -101,24 +165,36 @@ def independent_run(system, start, parameters):
         switch = here[next(i for i, times in enumerate(run.t_events) if len(times))]
         s, targets = state(z), [switch.to] if isinstance(switch.to, str) else switch.to
         for entry in targets:
-            regime, condition, kind = ((entry, None, switch.name), entry)[type(entry) is tuple]
-            if condition is None or condition(t, s, p, None) >= 0.0:
+            parts = entry if type(entry) is tuple else (entry, None)
+            regime, condition, kind = (*parts, switch.name)[:3]
+            if condition is None or condition(t, s, p, r) >= 0.0:
                 break
         found.append((t, kind))
-        for name, new in (switch.reset(t, s, p, None) if switch.reset else {}).items():
+        for name, new in (switch.reset(t, s, p, r) if switch.reset else {}).items():
             z[names.index(name)] = new
     return found, z
 
 
-@pytest.mark.parametrize("seed", range(8))
-def test_events_of_random_systems_are_those_of_dop853(seed):
+def test_events_of_random_systems_are_those_of_dop853():
+    """Six structures; the release tier has sixty."""
+    for seed in range(6):
+        hold_against_dop853(seed, draws=1)
+
+
+@pytest.mark.release
+@pytest.mark.parametrize("seed", range(6, 60))
+def test_events_of_sixty_random_systems_are_those_of_dop853(seed):
+    hold_against_dop853(seed, draws=4)
+
+
+def hold_against_dop853(seed, draws):
+    """Some runs of one structure, event by event."""
     system = random_system(seed)
     rng = np.random.default_rng(100 + seed)
-    for _ in range(2):
+    for _ in range(draws):
         start = {name: float(rng.uniform(0.2, 1.0)) for name in system.states}
         given = {"drive": float(rng.uniform(0.5, 2.0)), "omega": float(rng.uniform(0.5, 2.0))}
         run = system.simulate(T_END, start=start, **given)
-        events, z = independent_run(system, start, given)
         kinds = run.event_kind.attrs["flag_meanings"].split()
         mine = [kinds[int(k)] for k in run.event_kind]
         growth = abs(float(system.ensemble(T_END, start=start, horizon=True, **given)
@@ -126,8 +202,13 @@ def test_events_of_random_systems_are_those_of_dop853(seed):
         if growth > np.log(1e6):
             continue  # chaotic: the lists need not agree to the end
         accumulates = int(run.outcome) == Outcome.accumulation
-        if accumulates:  # where DOP853 falls through the surface
-            events = [event for event in events if event[0] < float(run.end_time) - 1e-8]
+        for max_step in (0.2, 0.01):  # DOP853 sees two crossings in one of its steps as none
+            events, z = independent_run(system, start, given, max_step)
+            if accumulates:  # where it falls through the surface
+                events = [event for event in events if event[0] < float(run.end_time) - 1e-8]
+            if mine[: len(events)] == [kind for _, kind in events]:
+                break
+        if accumulates:
             assert len(events) > 5
         elif len(events) < MOST_EVENTS:
             assert len(mine) == len(events)
@@ -136,6 +217,19 @@ def test_events_of_random_systems_are_those_of_dop853(seed):
         np.testing.assert_allclose(times, [t for t, _ in events], atol=1e-8)
         if len(events) < MOST_EVENTS and not accumulates:
             np.testing.assert_allclose([run[n][-1] for n in system.states], z, atol=1e-7)
+
+
+def test_stick_at_rest_is_left_once():
+    """Released where the pull reaches the limit: the speed begins at zero with zero slope.
+
+    Round-off of the rate, not of the speed, which is exactly zero, hides its side.
+    """
+    run = random_system(3).simulate(T_END)
+    kinds = run.event_kind.attrs["flag_meanings"].split()
+    names = [kinds[int(k)] for k in run.event_kind]
+    assert int(run.outcome) == Outcome.converged
+    assert names.count("stick") > 3
+    assert (np.diff(run.event_time) > 1e-3).all()
 
 
 def test_growth_is_that_of_a_small_difference_through_impacts():

@@ -41,7 +41,7 @@ _numba: Any = numba
 SLACK = 1e-13
 """A surface lies within this of zero where round-off hides its sign, over the terms that cancel."""
 NOISE = 1e-15
-"""Round-off of a surface's polynomial, likewise."""
+"""Round-off of a surface's polynomial and of its rate, likewise."""
 CHAIN = 64
 """Switches without progress in time that end a run."""
 LATE_BEGINS = -2
@@ -176,7 +176,7 @@ def _first_switch(t: Any, m: Any, c: Any, lane: int, step: float) -> float:
             continue
         root = first_crossing(
             c, t.n_variables + surface, lane, step, falls >= 0, rises >= 0,
-            (m.fresh[surface] & bit) != 0, m.noise[surface, lane],
+            (m.fresh[surface] & bit) != 0, m.noise[surface, 0, lane], m.noise[surface, 1, lane],
         )  # fmt: skip
         if root < 0.0 or root > first + tie:
             continue
@@ -344,7 +344,8 @@ def _enter(t: Any, m: Any, c: Any, lane: int, regime: int, span: float) -> None:
     stride = m.scratch.shape[1] * 8
     call(t.gauge, (t.scratch, t.scratch + stride, parameters, constants, t.scratch + 2 * stride))
     for surface in range(t.n_surfaces):
-        m.noise[surface, lane] = NOISE * out[2 * surface + 1]
+        m.noise[surface, 0, lane] = NOISE * out[3 * surface + 1]
+        m.noise[surface, 1, lane] = NOISE * out[3 * surface + 2]
     # a state is known to round-off of its typical size, however small it has become
     for variable in range(t.n_states):
         sizes[variable] = max(sizes[variable], m.sizes[variable])
@@ -354,7 +355,7 @@ def _enter(t: Any, m: Any, c: Any, lane: int, regime: int, span: float) -> None:
         m.fresh[surface] &= keep
         if m.falls[regime, surface] >= 0 or m.rises[regime, surface] >= 0:
             m.active[surface] |= bit
-            if abs(out[2 * surface]) <= SLACK * out[2 * surface + 1]:
+            if abs(out[3 * surface]) <= SLACK * out[3 * surface + 1]:
                 m.fresh[surface] |= bit
 
 
@@ -622,7 +623,7 @@ def _rounds(t: Any, m: Any, c: Any) -> int:
 def _advance(table: Any) -> int:
     """Some rounds over all lanes; returns how many are busy. The table: :data:`TABLE`."""
     t = _numba.carray(table, (1,), TABLE)[0]
-    width = max(2 * t.n_surfaces, t.n_variables) + 2
+    width = max(3 * t.n_surfaces, t.n_variables) + 2
     size = t.n_states
     m = _Memory(
         rows=view(t.rows, (t.n_rows, LANES), np.float64),
@@ -634,7 +635,7 @@ def _advance(table: Any) -> int:
         rises=view(t.rises, (t.n_regimes, t.n_surfaces), np.int64),
         active=view(t.active, (t.n_surfaces,), np.int64),
         fresh=view(t.fresh, (t.n_surfaces,), np.int64),
-        noise=view(t.noise, (t.n_surfaces, LANES), np.float64),
+        noise=view(t.noise, (t.n_surfaces, 2, LANES), np.float64),
         scratch=view(t.scratch, (5, width), np.float64),
         initial=view(t.initial, (t.n_jobs, size), np.float64),
         parameters=view(t.parameters, (t.n_jobs, t.n_parameters), np.float64),

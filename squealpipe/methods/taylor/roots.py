@@ -132,16 +132,16 @@ def _bracketed(
 @part
 def first_crossing(
     coefficients: Any, variable: int, lane: int, step: float, falls: bool, rises: bool,
-    fresh: bool, noise: float,
+    fresh: bool, noise: float, drift: float = 0.0,
 ) -> Any:  # fmt: skip
     """The first t in [0, step] where the polynomial falls, or rises, through zero as is asked.
 
-    One that starts from zero (``fresh``) has the side that it first takes by more than its noise; a
-    side that is the wrong one is a crossing at 0.
+    One that starts from zero (``fresh``) has the side that it first takes by more than its noise,
+    which grows by ``drift`` with time; a side that is the wrong one is a crossing at 0.
     """
     start, side = 0.0, coefficients[variable, 0, lane]
     if fresh:
-        start, side = _leaves_zero(coefficients, variable, lane, step, noise)
+        start, side = _leaves_zero(coefficients, variable, lane, step, noise, drift)
         if (side < 0.0 and falls) or (side > 0.0 and rises):
             return 0.0
     while side != 0.0:
@@ -153,12 +153,14 @@ def first_crossing(
 
 
 @part
-def _leaves_zero(coefficients: Any, variable: int, lane: int, step: float, noise: float) -> Any:
+def _leaves_zero(
+    coefficients: Any, variable: int, lane: int, step: float, noise: float, drift: float
+) -> Any:
     """When a polynomial that starts from zero first differs from it, and by what; 0 if never."""
     time = step * FINEST
     while time <= step:
         value, _, _ = evaluate_twice(coefficients, variable, lane, time)
-        if abs(value) > noise:
+        if abs(value) > noise + drift * time:
             return time, value
         time *= 2.0
     return step, 0.0

@@ -121,13 +121,23 @@ class ScalarSource:
         return _Writer(load, prefix)
 
     def gauge(self) -> str:
-        """``gauge(z, sizes, p, r, out)``: value and size of the terms of each surface."""
+        """``gauge(z, sizes, p, r, out)``: value and size of the terms of each surface and its rate.
+
+        Three numbers a surface: its value, the size of its terms, and that of its rate's terms.
+        """
         writer = self._writer("v")
+
+        def size(node: Symbol) -> str:
+            return f"number(sizes + {8 * self.place[id(node)]})"
+
         for index, surface in enumerate(self.surfaces):
-            value = writer.value(surface)
-            size = writer.scale(surface, lambda node: f"number(sizes + {8 * self.place[id(node)]})")
-            writer.lines.append(f"put(out + {16 * index}, {value})")
-            writer.lines.append(f"put(out + {16 * index + 8}, {size})")
+            rate = symbol(0.0)
+            for variable, each in zip(self.variables, self.rates, strict=True):
+                rate = rate + derivative(surface, variable) * each
+            for place, code in enumerate(
+                (writer.value(surface), writer.scale(surface, size), writer.scale(rate, size))
+            ):
+                writer.lines.append(f"put(out + {24 * index + 8 * place}, {code})")
         return _function("gauge(z, sizes, p, r, out)", writer.lines)
 
     def change(self) -> str:
