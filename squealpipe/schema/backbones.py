@@ -63,7 +63,6 @@ PERIODIC_ORBIT = DatasetSchema(
         ),
         "residual": Variable(
             "largest velocity after half a period, over l_pre and the frequency unit",
-            "1",
             nan_allowed=True,
             atol=1e-13,
         ),

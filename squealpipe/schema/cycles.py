@@ -27,8 +27,8 @@ def _cycle_variables(*dims: str) -> dict[str, Variable]:
 
     def multiplier(part: str) -> Variable:
         return Variable(
+            f"{part} part of the Floquet multipliers, the trivial one first",
             dims=(*dims, "multiplier"),
-            long_name=f"{part} part of the Floquet multipliers, the trivial one first",
             nan_allowed=True,
             rtol=1e-6,
             atol=1e-6,
@@ -44,10 +44,10 @@ def _cycle_variables(*dims: str) -> dict[str, Variable]:
         "stick_fraction": real("1", "share of the period in stick"),
         "least_contact_force": real("N", "smallest contact force; 0 where contact is lost"),
         "stable": Variable(
+            "whether small disturbances decay; no for a member of a family",
             dims=dims,
             dtype="i1",
             flags=Stability,
-            long_name="whether small disturbances decay; no for a member of a family",
         ),
         "multiplier_real": multiplier("real"),
         "multiplier_imag": multiplier("imaginary"),
@@ -76,36 +76,28 @@ LIMIT_CYCLE = DatasetSchema(
     variables={
         **_cycle_variables(),
         "event_time": Variable(dims=("event",), units="s", long_name="instant of an event"),
-        "event_kind": Variable(
-            dims=("event",), dtype="i1", flags=Event, long_name="kind of the event"
-        ),
+        "event_kind": Variable("kind of the event", dims=("event",), dtype="i1", flags=Event),
         **{
-            f"event_{name}": Variable(
-                dims=("event",), units=units, long_name=f"{words} at the event"
-            )
+            f"event_{name}": Variable(f"{words} at the event", units, ("event",))
             for name, (units, words) in _STATE.items()
         },
         "segment_regime": Variable(
+            "regime from the start and after each event",
             dims=("segment",),
             dtype="i1",
             flags=REGIMES,
-            long_name="regime from the start and after each event",
         ),
         **{
-            f"{name}_start": Variable(
-                units=units, long_name=f"{words} at time 0 of the cycle", nan_allowed=True
-            )
+            f"{name}_start": Variable(f"{words} at time 0 of the cycle", units, nan_allowed=True)
             for name, (units, words) in _STATE.items()
         },
         "time": Variable(dims=("sample",), units="s", long_name="instant of a sample"),
         **{
-            f"{name}_path": Variable(
-                dims=("sample",), units=units, long_name=f"{words} along the cycle"
-            )
+            f"{name}_path": Variable(f"{words} along the cycle", units, ("sample",))
             for name, (units, words) in _STATE.items()
         },
         "regime_path": Variable(
-            dims=("sample",), dtype="i1", flags=REGIMES, long_name="regime along the cycle"
+            "regime along the cycle", dims=("sample",), dtype="i1", flags=REGIMES
         ),
         "alpha1": Variable(units="rad", long_name="angle of spring 1"),
         "alpha2": Variable(units="rad", long_name="angle of spring 2"),
@@ -117,13 +109,7 @@ def _followed() -> dict[str, Variable]:
     """Every quantity that a branch may be followed in, over the points."""
     table = {name: Parameters.units(name) for name in Parameters.__dataclass_fields__}
     return {
-        name: Variable(
-            dims=("point",),
-            units=units,
-            long_name=f"{name} along the branch",
-            optional=True,
-            rtol=1e-7,
-        )
+        name: Variable(f"{name} along the branch", units, ("point",), optional=True, rtol=1e-7)
         for name, units in {**table, "alpha1": "rad", "alpha2": "rad"}.items()
     }
 
@@ -139,7 +125,7 @@ CYCLE_BRANCH = DatasetSchema(
     variables={
         **_cycle_variables("point"),
         "label": Variable(
-            dims=("point",), dtype="i1", flags=Label, long_name="what is special about the point"
+            "what is special about the point", dims=("point",), dtype="i1", flags=Label
         ),
         "events": Variable(
             "events per period",
@@ -149,9 +135,9 @@ CYCLE_BRANCH = DatasetSchema(
         ),
         **{
             f"{name}_start": Variable(
-                dims=("point",),
-                units=units,
-                long_name=f"{words} at time 0 of the cycle",
+                f"{words} at time 0 of the cycle",
+                units,
+                ("point",),
                 nan_allowed=True,
                 round_off=_PHASE,
             )
@@ -172,15 +158,15 @@ SETTLED_EXTREMES = DatasetSchema(
     },
     variables={
         "late_max_x": Variable(
-            dims=("scene", "mu", "start"),
-            units="m",
-            long_name="largest |x| in the last fifth of the run",
+            "largest |x| in the last fifth of the run",
+            "m",
+            ("scene", "mu", "start"),
             nan_allowed=True,
             rtol=1e-5,
         ),
         "separated_fraction": Variable(
+            "share of the time without contact",
             dims=("scene", "mu", "start"),
-            long_name="share of the time without contact",
             nan_allowed=True,
             rtol=1e-5,
         ),

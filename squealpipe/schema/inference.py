@@ -93,10 +93,7 @@ PARAMETER_INFERENCE = DatasetSchema(
             "whether the statement holds; not judged where other statements had failed",
         ),
         "smallest_margin": Variable(
-            "smallest margin of the statements that were judged",
-            dims=JUDGED,
-            rtol=1e-6,
-            atol=1e-6,
+            "smallest margin of the statements that were judged", dims=JUDGED, rtol=1e-6, atol=1e-6
         ),
         "feasible": Variable("all statements hold", dims=JUDGED, dtype="bool"),
         "outcome": outcome(

@@ -20,16 +20,12 @@ VERDICT_REACH = DatasetSchema(
     },
     variables={
         "share": Variable(
+            "share of the runs in which the statement holds; 1 or 0 for a single one",
             dims=_CELL,
-            long_name="share of the runs in which the statement holds; 1 or 0 for a single one",
             nan_allowed=True,
         ),
-        "share_low": Variable(
-            dims=_CELL, long_name="lower end of its 95 % interval", nan_allowed=True
-        ),
-        "share_high": Variable(
-            dims=_CELL, long_name="upper end of its 95 % interval", nan_allowed=True
-        ),
+        "share_low": Variable("lower end of its 95 % interval", dims=_CELL, nan_allowed=True),
+        "share_high": Variable("upper end of its 95 % interval", dims=_CELL, nan_allowed=True),
         "judged": Variable(dims=_CELL, dtype="i4", long_name="number of runs judged"),
         "outcome": outcome(
             *_CELL, among=(Outcome.converged, Outcome.unresolved, Outcome.not_computed)
@@ -52,14 +48,11 @@ PROPENSITY = DatasetSchema(
         "share_low": Variable(dims=_QUANTITY, long_name="lower end of its 95 % interval"),
         "share_high": Variable(dims=_QUANTITY, long_name="upper end of its 95 % interval"),
         "share_by_size": Variable(
-            dims=("quantity", "size"), long_name="the same share from a part of the sample"
+            "the same share from a part of the sample", dims=("quantity", "size")
         ),
         **{
             f"{order}{end}": Variable(
-                dims=_INPUT,
-                long_name=f"Sobol index, {words}{of}",
-                nan_allowed=True,
-                rtol=1e-6,
+                f"Sobol index, {words}{of}", dims=_INPUT, nan_allowed=True, rtol=1e-6
             )
             for order, words in (("first_order", "first order"), ("total_order", "total"))
             for end, of in (
@@ -69,17 +62,14 @@ PROPENSITY = DatasetSchema(
             )
         },
         "half_width_by_size": Variable(
+            "half-width of the widest total index",
             dims=("quantity", "size"),
-            long_name="half-width of the widest total index",
             nan_allowed=True,
             optional=True,
             rtol=1e-6,
         ),
         "index_samples": Variable(
-            dims=("quantity", "size"),
-            dtype="i4",
-            optional=True,
-            long_name="base sample of the indices",
+            "base sample of the indices", dims=("quantity", "size"), dtype="i4", optional=True
         ),
         "judged": Variable(dtype="i4", long_name="number of parameter sets"),
         "outcome": outcome(*_QUANTITY, among=(Outcome.converged, Outcome.unresolved)),

@@ -2,26 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
+from squealpipe.plotting import style
 from squealpipe.plotting.origin import scene_name
-from squealpipe.plotting.style import (
-    BLUE,
-    GREEN,
-    GREY,
-    ORANGE,
-    PAGE,
-    RED,
-    new_figure,
-    panel_letter,
-)
-
-if TYPE_CHECKING:
-    import xarray as xr
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 READS = ("a1_beside_a4",)
 CAPTION = (
@@ -30,20 +17,22 @@ CAPTION = (
 )
 ALT = "Rows of two panels: time histories of y of both models, and their spectra."
 KINDS = {"period": "y in time", "order": "spectrum of y"}
-COLOURS = (RED, ORANGE, GREEN, BLUE)
+COLOURS = (style.RED, style.ORANGE, style.GREEN, style.BLUE)
 DASHES = ("-", "--", "-.", ":")
 
 
 def draw(beside: xr.Dataset) -> Figure:
     """One row for each scene, from dataset ``a1_beside_a4``."""
     scenes = beside.scene.values
-    figure, axes = new_figure(PAGE, 0.5 + 1.7 * len(scenes), nrows=len(scenes), ncols=2)
+    figure, axes = style.new_figure(style.PAGE, 0.5 + 1.7 * len(scenes), nrows=len(scenes), ncols=2)
     letters = iter("abcdefghijklmnopqrst")
     for row, scene in zip(axes, scenes, strict=True):
         part = beside.sel(scene=scene)
         for panel, axis in zip(row, ("period", "order"), strict=True):
             _draw(panel, part, axis)
-            panel_letter(panel, next(letters), f"{scene_name(beside, str(scene))}: {KINDS[axis]}")
+            style.panel_letter(
+                panel, next(letters), f"{scene_name(beside, str(scene))}: {KINDS[axis]}"
+            )
         row[0].set_ylabel("y (m)")
         row[1].set_ylabel("amplitude (m)")
     axes[-1, 0].set_xlabel("time / period of A4")
@@ -55,7 +44,9 @@ def draw(beside: xr.Dataset) -> Figure:
 
 def _draw(panel: Axes, part: xr.Dataset, axis: str) -> None:
     kind = "y" if axis == "period" else "spectrum"
-    panel.plot(part[axis], part[f"{kind}_a4"], color=GREY, linewidth=2.6, alpha=0.6, label="A4")
+    panel.plot(
+        part[axis], part[f"{kind}_a4"], color=style.GREY, linewidth=2.6, alpha=0.6, label="A4"
+    )
     for index, ratio in enumerate(part.length_ratio.values):
         panel.plot(
             part[axis],

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Mapping
 
 import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from squealpipe.plotting.cycles import joined
@@ -14,13 +17,6 @@ from squealpipe.study.figures.parts.backbone_panels import (
     STABLE_TO_ROUND_OFF,
     draw_scenes,
 )
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    import xarray as xr
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 READS = ("backbone/[a-z]*", "doubled_branch/*")
 CAPTION = (

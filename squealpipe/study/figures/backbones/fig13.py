@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Mapping
+
+import xarray as xr
+from matplotlib.figure import Figure
 
 from squealpipe.study.figures.parts.backbone_panels import KEY, SCENE_ALT, draw_scenes
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    import xarray as xr
-    from matplotlib.figure import Figure
 
 READS = ("backbone/F13_*",)
 CAPTION = (

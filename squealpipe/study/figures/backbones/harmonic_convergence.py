@@ -2,29 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
+from squealpipe.plotting import style
 from squealpipe.plotting.origin import scene_name
-from squealpipe.plotting.style import (
-    BLACK,
-    BLUE,
-    GREEN,
-    GREY,
-    ORANGE,
-    PAGE,
-    PURPLE,
-    RED,
-    new_figure,
-    panel_letter,
-    symbols,
-)
-
-if TYPE_CHECKING:
-    import xarray as xr
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 READS = ("harmonic_sweep",)
 CAPTION = (
@@ -35,7 +19,7 @@ CAPTION = (
     "the slope −2."
 )
 ALT = "Four log-log panels of errors over harmonics, samples and smoothing."
-COLOURS = (BLUE, ORANGE, GREEN, RED, PURPLE, BLACK)
+COLOURS = (style.BLUE, style.ORANGE, style.GREEN, style.RED, style.PURPLE, style.BLACK)
 MARKERS = "osv^DP"
 
 
@@ -50,7 +34,7 @@ PANELS = (
 
 def draw(sweep: xr.Dataset) -> Figure:
     """Four panels from dataset ``harmonic_sweep``."""
-    figure, axes = new_figure(PAGE, 5.2, nrows=2, ncols=2)
+    figure, axes = style.new_figure(style.PAGE, 5.2, nrows=2, ncols=2)
     panels = axes.ravel()
     for panel, (name, setting, xlabel, ylabel, slope) in zip(panels, PANELS, strict=True):
         _lines(sweep, panel, sweep[name].median("peak"), setting, slope)
@@ -60,9 +44,9 @@ def draw(sweep: xr.Dataset) -> Figure:
         harmonics=[count for count in sweep.harmonics.values if count == fixed]
     )
     if at_fixed.sizes["harmonics"]:
-        panels[2].axhline(float(at_fixed.median()), color=GREY, linestyle="--", linewidth=0.9)
+        panels[2].axhline(float(at_fixed.median()), color=style.GREY, linestyle="--", linewidth=0.9)
         panels[2].annotate(
-            "closed form", (0.03, float(at_fixed.median())), fontsize=7, color=GREY,
+            "closed form", (0.03, float(at_fixed.median())), fontsize=7, color=style.GREY,
             xycoords=panels[2].get_yaxis_transform(), xytext=(0, 2), textcoords="offset points",
         )  # fmt: skip
     titles = (
@@ -72,7 +56,7 @@ def draw(sweep: xr.Dataset) -> Figure:
         f"smoothing, N_h = {fixed}",
     )
     for panel, letter, title in zip(panels, "abcd", titles, strict=True):
-        panel_letter(panel, letter, symbols(title))
+        style.panel_letter(panel, letter, style.symbols(title))
     handles, labels = panels[0].get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside lower center", ncols=3)
     return figure
@@ -93,10 +77,12 @@ def _lines(
         )
     if slope is not None:
         start = 2.5 * float(np.nanmax(errors.values[:, 0]))
-        panel.plot(settings, start * (settings / settings[0]) ** slope, color=GREY, linewidth=0.7)
+        panel.plot(
+            settings, start * (settings / settings[0]) ** slope, color=style.GREY, linewidth=0.7
+        )
         panel.annotate(
             f"slope −{-slope}", (0.97, 0.95), xycoords="axes fraction", ha="right", va="top",
-            fontsize=7, color=GREY,
+            fontsize=7, color=style.GREY,
         )  # fmt: skip
     panel.set(xscale="log", yscale="log")
     panel.set_xticks(settings, [f"{value:g}" for value in settings])

@@ -2,26 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
+from squealpipe.plotting import style
 from squealpipe.plotting.origin import scene_name
-from squealpipe.plotting.style import (
-    BLUE,
-    GREY,
-    ORANGE,
-    PAGE,
-    RED,
-    new_figure,
-    panel_letter,
-    symbols,
-)
-
-if TYPE_CHECKING:
-    import xarray as xr
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 READS = ("harmonic_forms",)
 CAPTION = (
@@ -37,20 +24,31 @@ ALT = "Frequencies found by two forms against exact ones, and spread of y over t
 
 def draw(forms: xr.Dataset) -> Figure:
     """Two panels from dataset ``harmonic_forms``."""
-    figure, axes = new_figure(PAGE, 3.2, ncols=2, width_ratios=[1.3, 1])
+    figure, axes = style.new_figure(style.PAGE, 3.2, ncols=2, width_ratios=[1.3, 1])
     _frequencies(axes[0, 0], forms)
     _spread(axes[0, 1], forms)
-    panel_letter(axes[0, 0], "a", "frequency found")
-    panel_letter(axes[0, 1], "b", symbols(f"phase dependence, N_h = {int(forms.n_harmonics)}"))
+    style.panel_letter(axes[0, 0], "a", "frequency found")
+    style.panel_letter(
+        axes[0, 1], "b", style.symbols(f"phase dependence, N_h = {int(forms.n_harmonics)}")
+    )
     return figure
 
 
 def _frequencies(panel: Axes, forms: xr.Dataset) -> None:
     places = np.arange(forms.sizes["scene"])
     panel.plot(
-        places, forms.omega_exact, "_", color=GREY, markersize=22, markeredgewidth=2, label="exact"
+        places,
+        forms.omega_exact,
+        "_",
+        color=style.GREY,
+        markersize=22,
+        markeredgewidth=2,
+        label="exact",
     )
-    for form, colour, marker, name in ((0, BLUE, "x", "corrected"), (1, RED, "o", "as printed")):
+    for form, colour, marker, name in (
+        (0, style.BLUE, "x", "corrected"),
+        (1, style.RED, "o", "as printed"),
+    ):
         panel.plot(
             places,
             forms.omega.sel(form=form).values,
@@ -71,7 +69,7 @@ def _frequencies(panel: Axes, forms: xr.Dataset) -> None:
 
 
 def _spread(panel: Axes, forms: xr.Dataset) -> None:
-    panel.plot(forms.samples, forms.phase_spread_y, marker="s", color=ORANGE, markersize=4)
+    panel.plot(forms.samples, forms.phase_spread_y, marker="s", color=style.ORANGE, markersize=4)
     lacking = forms.fourier_rank.values < int(forms.fourier_columns)
     panel.plot(
         forms.samples.values[lacking],
@@ -80,7 +78,7 @@ def _spread(panel: Axes, forms: xr.Dataset) -> None:
         marker="o",
         markersize=9,
         markerfacecolor="none",
-        color=RED,
+        color=style.RED,
         label="Γ lacks full rank",
     )
     panel.set(

@@ -2,27 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
+import xarray as xr
+from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
-from squealpipe.plotting.style import (
-    LIGHT,
-    ORANGE,
-    PAGE,
-    WHITE,
-    category_colours,
-    draw_map,
-    new_figure,
-    panel_letter,
-)
+from squealpipe.plotting import style
 from squealpipe.study.figures.parts.backbone_panels import STABLE_TO_ROUND_OFF
 from squealpipe.text import number
-
-if TYPE_CHECKING:
-    import xarray as xr
-    from matplotlib.figure import Figure
 
 READS = ("orbit_atlas",)
 CAPTION = (
@@ -37,19 +24,32 @@ ALT = "Square maps over both spring angles: angular frequency and stability of e
 
 def draw(atlas: xr.Dataset) -> Figure:
     """One column for each mode, frequency above stability, from dataset ``orbit_atlas``."""
-    figure, axes = new_figure(PAGE, 6.2, nrows=2, ncols=2)
+    figure, axes = style.new_figure(style.PAGE, 6.2, nrows=2, ncols=2)
     for (upper, lower), letters, mode in zip(axes.T, ("ac", "bd"), atlas.mode.values, strict=True):
         part = atlas.sel(mode=mode)
         angles = atlas.alpha1.values, atlas.alpha2.values
-        upper.set_facecolor(LIGHT)
-        mesh = draw_map(upper, *angles, np.ma.masked_invalid(part.omega.values), cmap="cividis")
-        panel_letter(upper, letters[0], f"mode {mode}, peak at {number(float(atlas.y_peak))} m")
+        upper.set_facecolor(style.LIGHT)
+        mesh = style.draw_map(
+            upper, *angles, np.ma.masked_invalid(part.omega.values), cmap="cividis"
+        )
+        style.panel_letter(
+            upper, letters[0], f"mode {mode}, peak at {number(float(atlas.y_peak))} m"
+        )
         figure.colorbar(mesh, ax=upper, label="ω (rad/s)", shrink=0.85)  # type: ignore[arg-type]
-        draw_map(lower, *angles, _stability(part), **category_colours([WHITE, ORANGE, LIGHT]))
-        panel_letter(lower, letters[1], f"mode {mode}, stability")
+        style.draw_map(
+            lower,
+            *angles,
+            _stability(part),
+            **style.category_colours([style.WHITE, style.ORANGE, style.LIGHT]),
+        )
+        style.panel_letter(lower, letters[1], f"mode {mode}, stability")
     keys = [
         Patch(facecolor=colour, edgecolor="black", linewidth=0.5, label=label)
-        for colour, label in ((WHITE, "stable"), (ORANGE, "unstable"), (LIGHT, "no such motion"))
+        for colour, label in (
+            (style.WHITE, "stable"),
+            (style.ORANGE, "unstable"),
+            (style.LIGHT, "no such motion"),
+        )
     ]
     figure.legend(handles=keys, loc="outside lower center", ncols=3)
     return figure

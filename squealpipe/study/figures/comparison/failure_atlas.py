@@ -2,31 +2,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
-from squealpipe.plotting.style import (
-    BLACK,
-    BLUE,
-    GREY,
-    ORANGE,
-    PAGE,
-    RED,
-    WHITE,
-    category_colours,
-    new_figure,
-    panel_letter,
-    symbols,
-)
+from squealpipe.plotting import style
 from squealpipe.schema.comparison import Reliability, Role
 from squealpipe.text import number
-
-if TYPE_CHECKING:
-    import xarray as xr
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 READS = ("failure_atlas",)
 CAPTION = (
@@ -39,7 +23,7 @@ CAPTION = (
 )
 ALT = "Two tables of coloured verdicts, methods in rows and hard scenes in columns."
 
-_COLOURS = [WHITE, BLUE, ORANGE, RED]
+_COLOURS = [style.WHITE, style.BLUE, style.ORANGE, style.RED]
 _SIGNS = {Reliability.right: "✓", Reliability.flagged: "!", Reliability.silently_wrong: "✗"}
 _WORDS = {
     Reliability.right: "right",
@@ -60,14 +44,14 @@ def draw(atlas: xr.Dataset) -> Figure:
     last = int(np.flatnonzero(asked[0]).max())
     in_time = np.arange(atlas.sizes["solver"]) <= last
     heights = [_ROW * np.count_nonzero(rows) + _HEADS for rows in (in_time, ~in_time)]
-    figure, axes = new_figure(PAGE, sum(heights) + 0.3, nrows=2, height_ratios=heights)
+    figure, axes = style.new_figure(style.PAGE, sum(heights) + 0.3, nrows=2, height_ratios=heights)
     titles = ("motion in time", "frequencies and stability")
     for panel, letter, title, rows in zip(
         axes[:, 0], "ab", titles, (in_time, ~in_time), strict=True
     ):
         part = atlas.isel(solver=rows)
         _draw(panel, part.isel(scene=(part.verdict.values > 0).any(axis=1)))
-        panel_letter(panel, letter, title)
+        style.panel_letter(panel, letter, title)
     keys = [
         Patch(facecolor=_COLOURS[verdict], alpha=0.75, label=f"{sign} {_WORDS[verdict]}")
         for verdict, sign in _SIGNS.items()
@@ -80,7 +64,7 @@ def _draw(axes: Axes, part: xr.Dataset) -> None:
     verdict, error = part.verdict.values.T, part.error.values.T
     flagged = part.flagged.values.T > 0
     missed = part.missed_events.values.T
-    axes.imshow(verdict, aspect="auto", alpha=0.75, **category_colours(_COLOURS))
+    axes.imshow(verdict, aspect="auto", alpha=0.75, **style.category_colours(_COLOURS))
     rows, columns = verdict.shape
     for row, column in np.argwhere(verdict > 0):
         words = [_SIGNS[Reliability(int(verdict[row, column]))]]
@@ -90,7 +74,7 @@ def _draw(axes: Axes, part: xr.Dataset) -> None:
             words.append(f"({missed[row, column]:.0f})")
         text = "\N{THIN SPACE}".join(words)
         size = 5 if len(text) < _LONG else 4.4
-        axes.text(column, row, text, ha="center", va="center", fontsize=size, color=BLACK)
+        axes.text(column, row, text, ha="center", va="center", fontsize=size, color=style.BLACK)
     totals = {
         "silently\nwrong": (verdict == Reliability.silently_wrong).sum(axis=1),
         "right but\nflagged": ((verdict == Reliability.right) & flagged).sum(axis=1),
@@ -99,14 +83,14 @@ def _draw(axes: Axes, part: xr.Dataset) -> None:
     for offset, counts in enumerate(totals.values()):
         for row, count in enumerate(counts):
             axes.text(columns + offset, row, str(count), ha="center", va="center", fontsize=7)
-    axes.axvline(columns - 0.5, color=GREY, lw=0.8)
-    names = [*map(symbols, part.scene.values.tolist()), *totals]
+    axes.axvline(columns - 0.5, color=style.GREY, lw=0.8)
+    names = [*map(style.symbols, part.scene.values.tolist()), *totals]
     axes.set_xticks(range(len(names)), names, rotation=40, ha="right", rotation_mode="anchor")
-    axes.set_yticks(range(rows), list(map(symbols, part.solver.values.tolist())))
+    axes.set_yticks(range(rows), list(map(style.symbols, part.solver.values.tolist())))
     for label, role in zip(axes.get_yticklabels(), part.role.values, strict=True):
         label.set_fontweight("bold" if role != Role.public else "normal")
     axes.set_xlim(-0.5, columns + len(totals) - 0.5)
     axes.set_xticks(np.arange(columns + 1) - 0.5, minor=True)
     axes.set_yticks(np.arange(rows + 1) - 0.5, minor=True)
-    axes.grid(visible=True, which="minor", color=WHITE, lw=1.0)
+    axes.grid(visible=True, which="minor", color=style.WHITE, lw=1.0)
     axes.tick_params(which="both", length=0)

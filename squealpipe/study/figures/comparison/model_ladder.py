@@ -2,28 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
 from squealpipe.plotting import style
-from squealpipe.plotting.style import (
-    BLACK,
-    BLUE,
-    GREY,
-    PAGE,
-    category_colours,
-    draw_map,
-    new_figure,
-    panel_letter,
-)
 from squealpipe.schema.ladder import Level
 from squealpipe.study.figures.parts.work_precision import foot
-
-if TYPE_CHECKING:
-    import xarray as xr
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 READS = ("model_ladder",)
 CAPTION = (
@@ -54,21 +40,21 @@ def colour_of(level: Level) -> str:
 
 def draw(ladder: xr.Dataset) -> Figure:
     """One map for each question and the cost, from dataset ``model_ladder``."""
-    figure, _ = new_figure(PAGE, 4.9)
+    figure, _ = style.new_figure(style.PAGE, 4.9)
     figure.clear()
     axes = figure.subplot_mosaic("abe;cde")
-    colours = category_colours([colour_of(level) for level in sorted(Level)])
+    colours = style.category_colours([colour_of(level) for level in sorted(Level)])
     present = set()
     for letter, question in zip("abcd", ladder.question.values.tolist(), strict=True):
         panel = axes[letter]
         levels = ladder.cheapest.sel(question=question).values
         present |= set(levels.ravel().tolist())
-        draw_map(panel, ladder.alpha1.values, ladder.alpha2.values, levels, **colours)
-        panel_letter(panel, letter, QUESTION_NAMES[question])
+        style.draw_map(panel, ladder.alpha1.values, ladder.alpha2.values, levels, **colours)
+        style.panel_letter(panel, letter, QUESTION_NAMES[question])
     _draw_cost(axes["e"], ladder)
-    panel_letter(axes["e"], "e", "cost of choosing")
+    style.panel_letter(axes["e"], "e", "cost of choosing")
     patches = [
-        Patch(facecolor=colour_of(level), edgecolor=GREY, lw=0.5, label=level.label)
+        Patch(facecolor=colour_of(level), edgecolor=style.GREY, lw=0.5, label=level.label)
         for level in Level
         if level in present
     ]
@@ -83,8 +69,8 @@ def _draw_cost(panel: Axes, ladder: xr.Dataset) -> None:
     cells = ("alpha1", "alpha2")
     right = 100 * (ladder.chosen_error <= ladder.tolerance).mean(cells).values
     below = 100 * (~ladder.chosen.isin([Level.a1, Level.a1_short])).mean(cells).values
-    panel.barh(range(len(questions)), cost, color=BLUE, height=0.35)
-    panel.axvline(100, color=BLACK, lw=0.8, ls="--")
+    panel.barh(range(len(questions)), cost, color=style.BLUE, height=0.35)
+    panel.axvline(100, color=style.BLACK, lw=0.8, ls="--")
     for row, question in enumerate(questions):
         words = f"{QUESTION_NAMES[question]}: {cost[row]:.0f} %"
         details = f"{right[row]:.1f} % right, {below[row]:.0f} % below A1"

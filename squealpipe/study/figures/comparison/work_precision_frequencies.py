@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+import xarray as xr
+from matplotlib.figure import Figure
 
 from squealpipe.plotting.style import PAGE, new_figure
 from squealpipe.study.figures.parts.work_precision import FALLBACK, draw_methods, foot
-
-if TYPE_CHECKING:
-    import xarray as xr
-    from matplotlib.figure import Figure
 
 READS = ("work_precision_frequencies",)
 CAPTION = (

@@ -3,27 +3,15 @@
 from __future__ import annotations
 
 import re
-from typing import TYPE_CHECKING
 
 import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
-from squealpipe.plotting.style import (
-    BLACK,
-    BLUE,
-    GREEN,
-    GREY,
-    PAGE,
-    RED,
-    new_figure,
-    panel_letter,
-)
+from squealpipe.plotting import style
 from squealpipe.schema.comparison import Role
 from squealpipe.study.figures.parts.work_precision import foot, legend_above
-
-if TYPE_CHECKING:
-    import xarray as xr
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 READS = ("work_precision_integration",)
 CAPTION = (
@@ -44,10 +32,10 @@ _COSTS = {
     "evaluations": "evaluations of the right-hand side",
 }
 _MARKS = {
-    ("tolerance", Role.ours): (BLUE, "o", "over tolerance"),
-    ("horizon", Role.ours): (GREEN, "^", "over horizon"),
-    ("grid", Role.ours): (BLACK, "s", "over grid"),
-    ("tolerance", Role.public): (GREY, "*", "Moreau–Jean, over step"),
+    ("tolerance", Role.ours): (style.BLUE, "o", "over tolerance"),
+    ("horizon", Role.ours): (style.GREEN, "^", "over horizon"),
+    ("grid", Role.ours): (style.BLACK, "s", "over grid"),
+    ("tolerance", Role.public): (style.GREY, "*", "Moreau–Jean, over step"),
 }
 
 TITLES = ("wrong cells", "boundary", "wrong cells", "boundary")
@@ -56,14 +44,14 @@ TITLES = ("wrong cells", "boundary", "wrong cells", "boundary")
 def draw(integration: xr.Dataset) -> Figure:
     """Both charts, from the task ``validity`` of dataset ``work_precision_integration``."""
     rows = integration.isel(run=integration.task.values == "validity")
-    figure, axes = new_figure(PAGE, 5.4, nrows=2, ncols=2, sharex="row", sharey="col")
+    figure, axes = style.new_figure(style.PAGE, 5.4, nrows=2, ncols=2, sharex="row", sharey="col")
     for row, cost in enumerate(_COSTS):
         _draw(axes[row, 0], rows, "error", cost)
         _draw(axes[row, 1], rows, "boundary_distance", cost)
         for panel in axes[row]:
             panel.set_xlabel(_COSTS[cost])
     for letter, panel, title in zip("abcd", axes.flat, TITLES, strict=True):
-        panel_letter(panel, letter, title)
+        style.panel_letter(panel, letter, title)
     for panel in axes[:, 0]:
         panel.set_ylabel("share of wrong cells")
     for panel in axes[:, 1]:
@@ -95,12 +83,12 @@ def _draw(axes: Axes, rows: xr.Dataset, name: str, cost: str) -> None:
             )  # fmt: skip
     ours = rows.role.values == Role.our_setting
     axes.plot(
-        spent[ours], shown[ours], "o", ms=9, mfc="none", mec=RED, mew=1.0, label="our setting"
+        spent[ours], shown[ours], "o", ms=9, mfc="none", mec=style.RED, mew=1.0, label="our setting"
     )
-    axes.axhline(floor, color=GREY, lw=0.6, ls=":")
+    axes.axhline(floor, color=style.GREY, lw=0.6, ls=":")
     axes.annotate(
-        "no wrong cell", (0.02, floor), xycoords=("axes fraction", "data"), fontsize=6, color=GREY,
-        xytext=(0, 2), textcoords="offset points",
+        "no wrong cell", (0.02, floor), xycoords=("axes fraction", "data"), fontsize=6,
+        color=style.GREY, xytext=(0, 2), textcoords="offset points",
     )  # fmt: skip
     axes.set(xscale="log", yscale="log")
     axes.margins(x=0.15)

@@ -3,25 +3,15 @@
 from __future__ import annotations
 
 import json
-from typing import TYPE_CHECKING
 
 import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
+from squealpipe.plotting import style
 from squealpipe.plotting.cycles import trace_branch
 from squealpipe.plotting.origin import angle_pair, parameter, scene_title
-from squealpipe.plotting.style import (
-    BLUE,
-    GREY,
-    ORANGE,
-    PAGE,
-    new_figure,
-    panel_letter,
-)
-
-if TYPE_CHECKING:
-    import xarray as xr
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 READS = (
     "cycles/branch_F3_down",
@@ -64,22 +54,22 @@ def draw(down: xr.Dataset, up: xr.Dataset, flutter: xr.Dataset, extremes: xr.Dat
         for name, (_, branches) in panels.items()
         if np.ptp(sizes[name]) > AT_REST or any(branch.sizes["point"] for branch in branches)
     ] or ["F3"]
-    figure, axes = new_figure(PAGE, 3.1, ncols=len(moving))
+    figure, axes = style.new_figure(style.PAGE, 3.1, ncols=len(moving))
     shown: list[tuple[str, str, str]] = []
     for letter, panel, name in zip("abc", axes[0], moving, strict=False):
         title, branches = panels[name]
         friction = np.broadcast_to(extremes.mu.values[:, None], sizes[name].shape)
-        panel.plot(friction, sizes[name], ".", color=GREY, markersize=2.5, zorder=1)
+        panel.plot(friction, sizes[name], ".", color=style.GREY, markersize=2.5, zorder=1)
         for branch in branches:
             shown += _branch(panel, branch, unit)
         _enlarge(panel, branches, unit)
         panel.set(xlabel="μ", ylim=(0, None))
-        panel_letter(panel, letter, title)
+        style.panel_letter(panel, letter, title)
     axes[0, 0].set_ylabel(r"largest |x| / $l_\mathrm{pre}$")
     handles = [
-        axes[0, 0].plot([], [], color=BLUE, label="stable cycle")[0],
-        axes[0, 0].plot([], [], color=ORANGE, linestyle="--", label="unstable cycle")[0],
-        axes[0, 0].plot([], [], ".", color=GREY, label="long runs")[0],
+        axes[0, 0].plot([], [], color=style.BLUE, label="stable cycle")[0],
+        axes[0, 0].plot([], [], color=style.ORANGE, linestyle="--", label="unstable cycle")[0],
+        axes[0, 0].plot([], [], ".", color=style.GREY, label="long runs")[0],
     ]
     for marker, colour, words in dict.fromkeys(shown):
         handles += axes[0, 0].plot([], [], marker, color=colour, markersize=4, label=words)

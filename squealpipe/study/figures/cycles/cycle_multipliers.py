@@ -2,17 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
+import xarray as xr
+from matplotlib.figure import Figure
 
 from squealpipe.plotting.origin import scene_title
 from squealpipe.plotting.style import BLUE, GREY, ORANGE, PAGE, new_figure, panel_letter
 from squealpipe.study.figures.cycles.cycle_branches import flutter_title
-
-if TYPE_CHECKING:
-    import xarray as xr
-    from matplotlib.figure import Figure
 
 READS = ("cycles/branch_F3_down", "cycles/branch_flutter")
 CAPTION = (

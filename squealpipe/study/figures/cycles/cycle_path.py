@@ -2,22 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+import xarray as xr
+from matplotlib.figure import Figure
 
+from squealpipe.plotting import style
 from squealpipe.plotting.cycles import draw_regimes
 from squealpipe.plotting.origin import parameter
-from squealpipe.plotting.style import (
-    GREY,
-    PAGE,
-    new_figure,
-    panel_letter,
-    say_instead,
-)
 from squealpipe.study.figures.parts.backbone_panels import key_entries
-
-if TYPE_CHECKING:
-    import xarray as xr
-    from matplotlib.figure import Figure
 
 READS = ("cycles/limit_F3",)
 CAPTION = (
@@ -37,22 +28,24 @@ def draw(cycle: xr.Dataset) -> Figure:
     Args:
         cycle: dataset of ``limit_cycle``.
     """
-    figure, axes = new_figure(PAGE, 3.0, ncols=2)
+    figure, axes = style.new_figure(style.PAGE, 3.0, ncols=2)
     path, rate = axes[0]
     if not cycle.sizes["sample"]:
         for panel in (path, rate):
-            say_instead(panel, "no cycle")
+            style.say_instead(panel, "no cycle")
     else:
         draw_regimes(path, cycle.x_path.values, cycle.y_path.values, cycle.regime_path)
         draw_regimes(rate, cycle.time.values, cycle.vx_path.values, cycle.regime_path)
         height, speed = parameter(cycle, "preload"), parameter(cycle, "belt_speed")
-        path.axhline(height, color=GREY, lw=0.6, label=r"$l_\mathrm{pre}$: contact is lost above")
+        path.axhline(
+            height, color=style.GREY, lw=0.6, label=r"$l_\mathrm{pre}$: contact is lost above"
+        )
         path.set(aspect="equal", adjustable="datalim")
-        rate.axhline(speed, color=GREY, lw=0.6, ls="--", label="belt speed")
+        rate.axhline(speed, color=style.GREY, lw=0.6, ls="--", label="belt speed")
         handles, words = key_entries((path, rate))
         figure.legend(handles, words, loc="outside lower center", ncols=len(words))
     path.set(xlabel="x (m)", ylabel="y (m)")
     rate.set(xlabel="t (s)", ylabel="velocity along the belt (m/s)")
-    panel_letter(path, "a", "path")
-    panel_letter(rate, "b", "velocity")
+    style.panel_letter(path, "a", "path")
+    style.panel_letter(rate, "b", "velocity")
     return figure

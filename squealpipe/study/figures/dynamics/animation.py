@@ -3,23 +3,19 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
 from PIL import Image
 
 from squealpipe.plotting.mechanism import SPRING_COLOURS, coil, displaced_springs
 from squealpipe.plotting.style import BLUE, GREEN, GREY, LIGHT, RED, new_figure, pi_label
 from squealpipe.store.whole_files import whole_file
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
-
-    import xarray as xr
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 COLOURS = 64
 DOTS_PER_INCH = 80

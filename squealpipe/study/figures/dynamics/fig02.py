@@ -2,23 +2,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
 from squealpipe.parameters import direction_of
+from squealpipe.plotting import style
 from squealpipe.plotting.mechanism import draw_mechanism
 from squealpipe.plotting.origin import parameter
 from squealpipe.plotting.run import draw_force
-from squealpipe.plotting.style import (
-    PAGE,
-    new_figure,
-    panel_letter,
-    pi_label,
-)
-
-if TYPE_CHECKING:
-    import xarray as xr
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 READS = ("simulate/F2a", "simulate/F2b", "simulate/F2c", "simulate/F2d")
 CAPTION = (
@@ -37,11 +29,11 @@ def draw(*runs: xr.Dataset) -> Figure:
     Args:
         runs: datasets ``simulate/F2a`` … ``simulate/F2d``.
     """
-    figure, axes = new_figure(PAGE, 4.3, nrows=2, ncols=2, sharex=True, sharey=True)
+    figure, axes = style.new_figure(style.PAGE, 4.3, nrows=2, ncols=2, sharex=True, sharey=True)
     for panel, letter, run in zip(axes.flat, "abcd", runs, strict=True):
         draw_force(panel, run)
-        angles = pi_label(float(run.alpha1)), pi_label(float(run.alpha2))
-        panel_letter(panel, letter, f"α₁ = {angles[0]}, α₂ = {angles[1]}")
+        angles = style.pi_label(float(run.alpha1)), style.pi_label(float(run.alpha2))
+        style.panel_letter(panel, letter, f"α₁ = {angles[0]}, α₂ = {angles[1]}")
         inset_mechanism(panel, run, (1.005, 0.3, 0.27, 0.6))
         panel.label_outer()
     return figure

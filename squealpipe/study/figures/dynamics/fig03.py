@@ -2,24 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Mapping
 
-from squealpipe.plotting.style import (
-    BLACK,
-    GREY,
-    PAGE,
-    X_COLOUR,
-    Y_COLOUR,
-    new_figure,
-    panel_letter,
-)
+import xarray as xr
+from matplotlib.figure import Figure
+
+from squealpipe.plotting import style
 from squealpipe.study.figures.dynamics.fig02 import inset_mechanism
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    import xarray as xr
-    from matplotlib.figure import Figure
 
 READS = ("*simulate/F3*",)
 CAPTION = (
@@ -34,8 +23,8 @@ ALT = (
 )
 TITLES = {"x": "x, along the belt", "y": r"y, away from the belt (dotted: $l_\mathrm{pre}$)"}
 READINGS = (
-    ("simulate/F3_long", X_COLOUR, "as printed"),
-    ("corrected/simulate/F3_long", BLACK, "sign mended"),
+    ("simulate/F3_long", style.X_COLOUR, "as printed"),
+    ("corrected/simulate/F3_long", style.BLACK, "sign mended"),
 )
 
 
@@ -47,19 +36,19 @@ def draw(runs: Mapping[str, xr.Dataset]) -> Figure:
     """
     run = runs["simulate/F3"]
     long = [(runs[name], colour, words) for name, colour, words in READINGS if name in runs]
-    figure, axes = new_figure(PAGE, 3.6 + 1.6 * bool(long), nrows=2 + bool(long))
+    figure, axes = style.new_figure(style.PAGE, 3.6 + 1.6 * bool(long), nrows=2 + bool(long))
     for panel, letter, name, colour in zip(
-        axes[:2, 0], "ab", ("x", "y"), (X_COLOUR, Y_COLOUR), strict=True
+        axes[:2, 0], "ab", ("x", "y"), (style.X_COLOUR, style.Y_COLOUR), strict=True
     ):
         panel.plot(run.time, run[name], color=colour, linewidth=0.7)
-        panel.axhline(0.0, color=GREY, linewidth=0.5)
+        panel.axhline(0.0, color=style.GREY, linewidth=0.5)
         panel.set(ylabel=f"{name} (m)", xlim=(0.0, float(run.time[-1])))
-        panel_letter(panel, letter, TITLES[name])
+        style.panel_letter(panel, letter, TITLES[name])
     axes[1, 0].axhline(float(run.preload), color="black", ls=":", lw=0.8)
     for other, colour, words in long:
         axes[2, 0].plot(other.time, other.x, color=colour, linewidth=0.4, label=words)
         axes[2, 0].set(ylabel="x (m)", xlim=(0.0, float(other.time[-1])))
-        panel_letter(axes[2, 0], "c", "x, longer")
+        style.panel_letter(axes[2, 0], "c", "x, longer")
     if len(long) > 1:
         axes[2, 0].legend(loc="upper left", ncols=2)
     axes[-1, 0].set_xlabel("t (s)")

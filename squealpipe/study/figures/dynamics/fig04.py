@@ -2,18 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
+from matplotlib.figure import Figure
 
 from squealpipe.plotting.mechanism import SPRING_COLOURS, displaced_springs
 from squealpipe.plotting.style import GREY, LIGHT, PAGE, RED, new_figure
-
-if TYPE_CHECKING:
-    import xarray as xr
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 READS = ("simulate/F4",)
 CAPTION = (

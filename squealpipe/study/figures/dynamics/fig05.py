@@ -2,23 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
+import xarray as xr
+from matplotlib.figure import Figure
 
+from squealpipe.plotting import style
 from squealpipe.plotting.run import draw_force
-from squealpipe.plotting.style import (
-    ORANGE,
-    PAGE,
-    new_figure,
-    pi_label,
-)
 from squealpipe.study.figures.dynamics.fig02 import inset_mechanism
 from squealpipe.text import number
-
-if TYPE_CHECKING:
-    import xarray as xr
-    from matplotlib.figure import Figure
 
 READS = ("simulate/F5a", "simulate/F5b")
 CAPTION = (
@@ -39,19 +30,19 @@ def draw(first: xr.Dataset, second: xr.Dataset) -> Figure:
         first: dataset ``simulate/F5a``, (π, π).
         second: dataset ``simulate/F5b``, (0, 0).
     """
-    figure, axes = new_figure(PAGE, 2.5)
+    figure, axes = style.new_figure(style.PAGE, 2.5)
     panel = axes[0, 0]
     draw_force(panel, first)
-    panel.get_lines()[0].set_label(f"α₁ = α₂ = {pi_label(float(first.alpha1))}")
+    panel.get_lines()[0].set_label(f"α₁ = α₂ = {style.pi_label(float(first.alpha1))}")
     every = slice(None, None, max(1, first.time.size // 125))
     panel.plot(
         second.time.values[every],
         second.normalized_contact_force.values[every],
         "o",
-        color=ORANGE,
+        color=style.ORANGE,
         fillstyle="none",
         markersize=4,
-        label=f"α₁ = α₂ = {pi_label(float(second.alpha1))}",
+        label=f"α₁ = α₂ = {style.pi_label(float(second.alpha1))}",
     )
     difference = np.abs(first.normalized_contact_force - second.normalized_contact_force).max()
     panel.set_title(f"largest difference {number(float(difference), 2)}", loc="right")

@@ -2,25 +2,16 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+import xarray as xr
 from matplotlib.colors import LogNorm
+from matplotlib.figure import Figure
 
 from squealpipe.parameters import SCENES
-from squealpipe.plotting import plot
-from squealpipe.plotting.style import (
-    BLACK,
-    PAGE,
-    draw_map,
-    new_figure,
-    panel_letter,
-)
+from squealpipe.plotting import plot, style
 from squealpipe.text import number
-
-if TYPE_CHECKING:
-    import xarray as xr
-    from matplotlib.figure import Figure
 
 READS = ("hammering_map",)
 CAPTION = (
@@ -43,12 +34,12 @@ def draw(hammering: xr.Dataset) -> Figure:
     Args:
         hammering: dataset ``hammering_map``.
     """
-    figure, axes = new_figure(PAGE, 6.2, nrows=2, ncols=2)
+    figure, axes = style.new_figure(style.PAGE, 6.2, nrows=2, ncols=2)
     angles = hammering.alpha1.values, hammering.alpha2.values
     plot(hammering, ax=axes[0, 0])
     rows, columns = np.nonzero(hammering.motion_changed.values)
-    axes[0, 0].plot(angles[0][rows], angles[1][columns], ".", color=BLACK, ms=1.2)
-    panel_letter(axes[0, 0], "a", f"motion to t = {number(float(hammering.t_end), 4)} s")
+    axes[0, 0].plot(angles[0][rows], angles[1][columns], ".", color=style.BLACK, ms=1.2)
+    style.panel_letter(axes[0, 0], "a", f"motion to t = {number(float(hammering.t_end), 4)} s")
     force = hammering.peak_contact_force.values
     quantities: list[tuple[str, str, np.ndarray, dict[str, Any]]] = [
         ("b", "impacts per time (1/s)", hammering.impact_rate.values, {}),
@@ -61,15 +52,15 @@ def draw(hammering: xr.Dataset) -> Figure:
         ),
     ]
     for panel, (letter, title, values, scale) in zip(axes.flat[1:], quantities, strict=True):
-        mesh = draw_map(panel, *angles, values, cmap="viridis", **scale)
+        mesh = style.draw_map(panel, *angles, values, cmap="viridis", **scale)
         bar = figure.colorbar(mesh, ax=panel, shrink=0.85)
         if letter == "d":
             ticks = [tick for tick in FORCE_TICKS if tick <= mesh.norm.vmax]
             bar.set_ticks(ticks, labels=[f"{tick:g}" for tick in ticks], minor=False)
             bar.minorticks_off()
-        panel_letter(panel, letter, title)
+        style.panel_letter(panel, letter, title)
     scene = SCENES["F3"]
     for panel in axes.flat:
-        for colour, width in (("white", 3.2), (BLACK, 1.6)):
+        for colour, width in (("white", 3.2), (style.BLACK, 1.6)):
             panel.plot(scene.alpha1, scene.alpha2, "x", color=colour, ms=7, mew=width)
     return figure

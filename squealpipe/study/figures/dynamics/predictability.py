@@ -2,25 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
+import xarray as xr
+from matplotlib.figure import Figure
 
-from squealpipe.plotting.style import (
-    GREY,
-    PAGE,
-    REGIME_COLOURS,
-    draw_map,
-    flag_words,
-    new_figure,
-    panel_letter,
-)
+from squealpipe.plotting import style
 from squealpipe.schema import meanings
 from squealpipe.text import number
-
-if TYPE_CHECKING:
-    import xarray as xr
-    from matplotlib.figure import Figure
 
 READS = ("hammering_map",)
 CAPTION = (
@@ -43,12 +31,12 @@ def draw(hammering: xr.Dataset) -> Figure:
     Args:
         hammering: dataset ``hammering_map``.
     """
-    figure, axes = new_figure(PAGE, 3.2, ncols=2)
+    figure, axes = style.new_figure(style.PAGE, 3.2, ncols=2)
     t_end = float(hammering.t_end)
     horizon = hammering.predictability_horizon.values
     shown = np.where(horizon < t_end, horizon, np.nan)
     low = np.nanmin(shown) if np.isfinite(shown).any() else 0.1 * t_end
-    mesh = draw_map(
+    mesh = style.draw_map(
         axes[0, 0],
         hammering.alpha1.values,
         hammering.alpha2.values,
@@ -58,7 +46,7 @@ def draw(hammering: xr.Dataset) -> Figure:
         vmax=t_end,
     )
     figure.colorbar(mesh, ax=axes[0, 0], label="predictability horizon (s)", shrink=0.85)
-    panel_letter(
+    style.panel_letter(
         axes[0, 0], "a", f"reached in {np.count_nonzero(horizon < t_end)} of {horizon.size}"
     )
     growth = hammering.lyapunov_exponent.values * t_end
@@ -67,11 +55,11 @@ def draw(hammering: xr.Dataset) -> Figure:
     panel = axes[0, 1]
     for code in present:
         chosen = growth[hammering.motion.values == code]
-        label = f"{flag_words(names[code])} ({chosen.size})"
-        panel.ecdf(chosen, color=REGIME_COLOURS[names[code]], label=label)
+        label = f"{style.flag_words(names[code])} ({chosen.size})"
+        panel.ecdf(chosen, color=style.REGIME_COLOURS[names[code]], label=label)
     panel.axvline(
         float(hammering.attrs["regular_growth"]),
-        color=GREY,
+        color=style.GREY,
         linestyle="--",
         linewidth=1.0,
         label="regular to irregular",
@@ -80,5 +68,5 @@ def draw(hammering: xr.Dataset) -> Figure:
         xlabel=f"ln of the growth over t = {number(t_end, 4)} s", ylabel="share of the cells below"
     )
     figure.legend(loc="outside lower right", ncols=3)
-    panel_letter(panel, "b", "growth of a perturbation")
+    style.panel_letter(panel, "b", "growth of a perturbation")
     return figure

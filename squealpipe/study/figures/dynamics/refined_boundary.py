@@ -2,30 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 from matplotlib.patches import Patch, Rectangle
 from matplotlib.ticker import NullLocator
 
-from squealpipe.plotting.style import (
-    BLUE,
-    LIGHT,
-    ORANGE,
-    PAGE,
-    RED,
-    WHITE,
-    angle_ticks,
-    category_colours,
-    draw_map,
-    new_figure,
-    panel_letter,
-)
-
-if TYPE_CHECKING:
-    import xarray as xr
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
+from squealpipe.plotting import style
 
 READS = ("refined_validity_map", "refinement_check")
 CAPTION = (
@@ -51,7 +35,7 @@ def draw(refined: xr.Dataset, check: xr.Dataset) -> Figure:
         refined: dataset ``refined_validity_map``.
         check: dataset ``refinement_check``.
     """
-    figure, axes = new_figure(PAGE, 2.9, ncols=3, width_ratios=(1, 1, 0.8))
+    figure, axes = style.new_figure(style.PAGE, 2.9, ncols=3, width_ratios=(1, 1, 0.8))
     _map(axes[0, 0], refined.assign(computed=_clustered(refined.computed)))
     window = _intricate(refined)
     axes[0, 0].add_patch(
@@ -60,27 +44,27 @@ def draw(refined: xr.Dataset, check: xr.Dataset) -> Figure:
             window[1] - window[0],
             window[3] - window[2],
             fill=False,
-            edgecolor=RED,
+            edgecolor=style.RED,
             linewidth=1.2,
         )
     )
     size = refined.alpha1.size
-    panel_letter(
+    style.panel_letter(
         axes[0, 0], "a", f"{size} × {size}, {100 * float(refined.computed.mean()):.1f} % run"
     )
     part = refined.sel(alpha1=slice(*window[:2]), alpha2=slice(*window[2:]))
     _map(axes[0, 1], part)
     for axis in (axes[0, 1].xaxis, axes[0, 1].yaxis):
-        angle_ticks(axis, np.pi, np.pi / 25)
+        style.angle_ticks(axis, np.pi, np.pi / 25)
     axes[0, 1].set(xlim=window[:2], ylim=window[2:])
-    panel_letter(axes[0, 1], "b", "magnified")
+    style.panel_letter(axes[0, 1], "b", "magnified")
     _comparison(axes[0, 2], check)
     figure.legend(
         handles=[
-            Patch(facecolor=LIGHT, label="contact kept"),
-            Patch(facecolor=BLUE, label="kept, run"),
-            Patch(facecolor=WHITE, edgecolor=LIGHT, label="contact lost"),
-            Patch(facecolor=ORANGE, label="lost, run"),
+            Patch(facecolor=style.LIGHT, label="contact kept"),
+            Patch(facecolor=style.BLUE, label="kept, run"),
+            Patch(facecolor=style.WHITE, edgecolor=style.LIGHT, label="contact lost"),
+            Patch(facecolor=style.ORANGE, label="lost, run"),
         ],
         loc="outside lower center",
         ncols=4,
@@ -122,17 +106,17 @@ def _clustered(computed: xr.DataArray) -> xr.DataArray:
 def _map(axes: Axes, refined: xr.Dataset) -> None:
     kept = refined.separates.values == 0
     tones = np.where(kept, 1, 0) + 2 * (refined.computed.values != 0)
-    draw_map(
+    style.draw_map(
         axes,
         refined.alpha1.values,
         refined.alpha2.values,
         tones,
-        **category_colours([WHITE, LIGHT, ORANGE, BLUE]),
+        **style.category_colours([style.WHITE, style.LIGHT, style.ORANGE, style.BLUE]),
     )
 
 
 def _comparison(axes: Axes, check: xr.Dataset) -> None:
-    axes.plot(check.runs, check.wrong_share, "o-", color=ORANGE)
+    axes.plot(check.runs, check.wrong_share, "o-", color=style.ORANGE)
     axes.margins(x=0.2, y=0.15)
     axes.set_xscale("log")
     if (check.wrong_share > 0).any():
@@ -145,12 +129,12 @@ def _comparison(axes: Axes, check: xr.Dataset) -> None:
             fontsize=7,
         )  # fmt: skip
     refined = float(check.refined_runs)
-    axes.axvline(refined, color=BLUE, linestyle="--")
+    axes.axvline(refined, color=style.BLUE, linestyle="--")
     axes.annotate(
         "refined map", (refined, 0.96), xycoords=axes.get_xaxis_transform(), xytext=(3, 0),
-        textcoords="offset points", rotation=90, va="top", fontsize=7, color=BLUE,
+        textcoords="offset points", rotation=90, va="top", fontsize=7, color=style.BLUE,
     )  # fmt: skip
     axes.set_xticks(check.runs.values, [f"{runs}" for runs in check.runs.values], fontsize=6)
     axes.xaxis.set_minor_locator(NullLocator())
     axes.set(xlabel="runs", ylabel="wrong cells of uniform maps (share)")
-    panel_letter(axes, "c", f"{int(check.missed_regions.sum())} regions missed")
+    style.panel_letter(axes, "c", f"{int(check.missed_regions.sum())} regions missed")

@@ -2,27 +2,17 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from squealpipe.parameters import SCENES
+from squealpipe.plotting import style
 from squealpipe.plotting.origin import time_unit
-from squealpipe.plotting.style import (
-    BLACK,
-    BLUE,
-    ORANGE,
-    PAGE,
-    new_figure,
-)
 from squealpipe.schema.inference import wilson_interval
 from squealpipe.text import number
-
-if TYPE_CHECKING:
-    import xarray as xr
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 READS = ("transient",)
 CAPTION = (
@@ -40,7 +30,7 @@ def draw(transient: xr.Dataset) -> Figure:
     Args:
         transient: dataset ``transient``.
     """
-    figure, axes = new_figure(0.7 * PAGE, 2.9)
+    figure, axes = style.new_figure(0.7 * style.PAGE, 2.9)
     _survival(axes[0, 0], transient)
     return figure
 
@@ -53,17 +43,17 @@ def _survival(axes: Axes, transient: xr.Dataset) -> None:
         age,
         transient.survival,
         where="post",
-        color=BLUE,
+        color=style.BLUE,
         label=f"{count} runs, V = {number(float(transient.belt_speed))} m/s",
     )
     if ended:  # before the first end the estimate has no band
         axes.fill_between(
-            age, transient.survival_low, transient.survival_high, step="post", color=BLUE,
+            age, transient.survival_low, transient.survival_high, step="post", color=style.BLUE,
             alpha=0.25, linewidth=0, label="95 % band",
         )  # fmt: skip
     _constant_hazard(axes, transient)
     shown = SCENES["F4"].t_end * time_unit(transient)
-    axes.axvspan(0, shown, color=ORANGE, alpha=0.3, linewidth=0, label="shown in Fig. 4")
+    axes.axvspan(0, shown, color=style.ORANGE, alpha=0.3, linewidth=0, label="shown in Fig. 4")
     axes.set(xlabel="t (s)", ylabel="share still bounded", yscale="log", xlim=(0, t_end))
     positive = transient.survival.values[transient.survival.values > 0]
     axes.set_ylim(bottom=0.5 * positive.min(), top=1.6)
@@ -82,4 +72,4 @@ def _constant_hazard(axes: Axes, transient: xr.Dataset) -> None:
         rate = ended / exposure
         age = transient.survival_time.values
         label = f"constant hazard, mean {number(1 / rate, 4)} s"
-        axes.plot(age, np.exp(-rate * age), "--", color=BLACK, label=label)
+        axes.plot(age, np.exp(-rate * age), "--", color=style.BLACK, label=label)

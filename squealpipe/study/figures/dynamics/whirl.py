@@ -2,28 +2,16 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
 from squealpipe.parameters import SCENES
+from squealpipe.plotting import style
 from squealpipe.plotting.origin import time_unit
-from squealpipe.plotting.style import (
-    BLACK,
-    GREY,
-    PAGE,
-    REGIME_COLOURS,
-    X_COLOUR,
-    new_figure,
-    panel_letter,
-)
 from squealpipe.schema import meanings
 from squealpipe.text import number
-
-if TYPE_CHECKING:
-    import xarray as xr
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 READS = ("simulate/whirl", "whirl")
 CAPTION = (
@@ -46,15 +34,17 @@ def draw(run: xr.Dataset, sizes: xr.Dataset) -> Figure:
         run: dataset ``simulate/whirl``.
         sizes: dataset ``whirl``.
     """
-    figure, axes = new_figure(PAGE, 2.9, ncols=2, width_ratios=(1.3, 1))
+    figure, axes = style.new_figure(style.PAGE, 2.9, ncols=2, width_ratios=(1.3, 1))
     panel = axes[0, 0]
-    panel.plot(run.time, run.x, color=X_COLOUR, linewidth=0.25, rasterized=True)
+    panel.plot(run.time, run.x, color=style.X_COLOUR, linewidth=0.25, rasterized=True)
     shown = SCENES["F3"].t_end * time_unit(run)
-    panel.axvspan(0, shown, color=GREY, alpha=0.25, linewidth=0, label="shown in Fig. 3")
-    panel.axhline(0, color=GREY, linewidth=0.5)
+    panel.axvspan(0, shown, color=style.GREY, alpha=0.25, linewidth=0, label="shown in Fig. 3")
+    panel.axhline(0, color=style.GREY, linewidth=0.5)
     panel.set(xlabel="t (s)", ylabel="x (m)", xlim=(0, float(run.time[-1])))
     panel.legend(loc="lower right", bbox_to_anchor=(1, 0.98))
-    panel_letter(panel, "a", f"x in time, max |x| = {number(float(np.abs(run.x).max()), 4)} m")
+    style.panel_letter(
+        panel, "a", f"x in time, max |x| = {number(float(np.abs(run.x).max()), 4)} m"
+    )
     _sizes(axes[0, 1], sizes)
     return figure
 
@@ -68,24 +58,28 @@ def _sizes(axes: Axes, sizes: xr.Dataset) -> None:
                 speed[chosen],
                 sizes.amplitude.values[chosen],
                 "o" if name == "whirl" else "s",
-                color=REGIME_COLOURS[name],
+                color=style.REGIME_COLOURS[name],
                 markersize=4,
                 label=name.replace("_", " "),
             )
     line = np.geomspace(speed[0], speed[-1], 200)
     energy = float(sizes.energy_offset) + float(sizes.energy_slope) * line
-    axes.loglog(line, energy, "--", color=GREY, label="energy at speed V")
+    axes.loglog(line, energy, "--", color=style.GREY, label="energy at speed V")
     if np.isfinite(sizes.slope):
         fit = float(sizes.offset) + float(sizes.slope) * line
         label = f"{number(float(sizes.offset))} m + {number(float(sizes.slope))} s · |V|"
         low, high = sizes.fit_range.values
         inside = (line >= low) & (line <= high)
-        axes.loglog(line[inside], fit[inside], color=BLACK, linewidth=0.8, label=label)
-        axes.loglog(line[line <= low], fit[line <= low], ":", color=BLACK, linewidth=0.8)
+        axes.loglog(line[inside], fit[inside], color=style.BLACK, linewidth=0.8, label=label)
+        axes.loglog(line[line <= low], fit[line <= low], ":", color=style.BLACK, linewidth=0.8)
     if np.isfinite(sizes.onset).all():
         axes.axvline(
-            float(sizes.onset[1]), ymax=0.4, color=GREY, linewidth=0.6, label="slowest whirl found"
+            float(sizes.onset[1]),
+            ymax=0.4,
+            color=style.GREY,
+            linewidth=0.6,
+            label="slowest whirl found",
         )
     axes.set(xlabel="belt speed |V| (m/s)", ylabel="largest |x|, late (m)")
     axes.legend(loc="upper left")
-    panel_letter(axes, "b", "size over belt speed")
+    style.panel_letter(axes, "b", "size over belt speed")

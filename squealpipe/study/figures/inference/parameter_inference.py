@@ -2,28 +2,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, NullFormatter
 
-from squealpipe.plotting.style import (
-    BLACK,
-    BLUE,
-    GREEN,
-    GREY,
-    ORANGE,
-    PAGE,
-    new_figure,
-    panel_letter,
-)
+from squealpipe.plotting import style
 from squealpipe.schema.inference import of_study
 from squealpipe.text import number
-
-if TYPE_CHECKING:
-    import xarray as xr
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 READS = ("parameter_inference",)
 CAPTION = (
@@ -47,31 +34,35 @@ PANELS = (
     ),
 )
 LOGARITHMIC = ("length_ratio", "speed_ratio")
-LOOKS = (("as printed", GREEN, "s"), ("along +x", BLUE, "o"), ("along −x", ORANGE, "^"))
+LOOKS = (
+    ("as printed", style.GREEN, "s"),
+    ("along +x", style.BLUE, "o"),
+    ("along −x", style.ORANGE, "^"),
+)
 """Label, colour and marker of each reading."""
 
 
 def draw(inference: xr.Dataset) -> Figure:
     """Five panels, from dataset ``parameter_inference``."""
-    figure, _ = new_figure(PAGE, 5.4)
+    figure, _ = style.new_figure(style.PAGE, 5.4)
     figure.clear()
     grid = figure.add_gridspec(2, 1, height_ratios=(1.15, 1))
     upper, lower = figure.add_subfigure(grid[0]), figure.add_subfigure(grid[1])
     for panel, letter, (title, *names) in zip(upper.subplots(1, 3), "abc", PANELS, strict=True):
         _scatter(panel, inference, *names)
-        panel_letter(panel, letter, title)
+        style.panel_letter(panel, letter, title)
         if letter == "a":
-            panel.axhline(1 / np.tan(0.4 * np.pi), color=GREY, ls="--", lw=0.8)
+            panel.axhline(1 / np.tan(0.4 * np.pi), color=style.GREY, ls="--", lw=0.8)
     upper.legend(*panel.get_legend_handles_labels(), loc="outside lower center", ncols=3)
     shares, margins = lower.subplots(1, 2)
     _bars(shares, inference)
     lower.legend(*shares.get_legend_handles_labels(), loc="outside lower left", ncols=3)
-    panel_letter(shares, "d", "excluded by one statement alone")
+    style.panel_letter(shares, "d", "excluded by one statement alone")
     names = inference.statement.values
     values = np.maximum(of_study(inference).baseline_margin.values, -1.0)
-    colours = [GREEN if value > 0 else ORANGE for value in values]
+    colours = [style.GREEN if value > 0 else style.ORANGE for value in values]
     margins.barh(names, values, color=colours, height=0.6)
-    margins.axvline(0, color=BLACK, lw=0.6)
+    margins.axvline(0, color=style.BLACK, lw=0.6)
     margins.set(xlabel="margin at the study's parameters")
     margins.invert_yaxis()
     for name, value in zip(names, values, strict=True):
@@ -84,7 +75,7 @@ def draw(inference: xr.Dataset) -> Figure:
             size=6,
         )
     margins.set_xlim(right=1.12 * max(values.max(), 0.1))
-    panel_letter(margins, "e", "margins of this study")
+    style.panel_letter(margins, "e", "margins of this study")
     return figure
 
 
@@ -112,7 +103,7 @@ def _scatter(
         ms=9,
         mew=0.8,
         mfc="white",
-        color=BLACK,
+        color=style.BLACK,
         ls="none",
         label="this study",
     )

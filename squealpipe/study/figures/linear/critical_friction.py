@@ -2,24 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
+import xarray as xr
+from matplotlib.figure import Figure
 
+from squealpipe.plotting import style
 from squealpipe.plotting.origin import angle_pair, parameter
-from squealpipe.plotting.style import (
-    BLACK,
-    LIGHT,
-    PAGE,
-    draw_map,
-    new_figure,
-    panel_letter,
-)
 from squealpipe.text import number
-
-if TYPE_CHECKING:
-    import xarray as xr
-    from matplotlib.figure import Figure
 
 READS = ("critical_friction_map", "critical_damping_map")
 LARGEST = 1.5
@@ -52,19 +41,19 @@ def draw(angles: xr.Dataset, dashpots: xr.Dataset) -> Figure:
         angles: dataset ``critical_friction_map``.
         dashpots: dataset ``critical_damping_map``.
     """
-    figure, axes = new_figure(PAGE, 2.4, ncols=3)
+    figure, axes = style.new_figure(style.PAGE, 2.4, ncols=3)
     without, change, plane = axes[0]
     grid = angles.alpha1.values, angles.alpha2.values
     undamped, damped = angles.critical_mu_undamped.values, angles.critical_mu.values
-    mesh = draw_map(
+    mesh = style.draw_map(
         without, *grid, np.minimum(undamped, 2 * LARGEST), cmap="viridis", vmin=0.0, vmax=LARGEST
     )
     figure.colorbar(mesh, ax=without, label="critical μ", extend="max", shrink=0.75)
     shown = np.fmin(undamped, damped) < LARGEST
     moved = np.minimum(damped, LARGEST) - np.minimum(undamped, LARGEST)
     limit = float(np.percentile(abs(moved[shown]), 95)) if shown.any() else 0.0
-    change.set_facecolor(LIGHT)
-    mesh = draw_map(
+    change.set_facecolor(style.LIGHT)
+    mesh = style.draw_map(
         change, *grid, np.where(shown, moved, np.nan), cmap="RdBu", vmin=-limit or -1.0,
         vmax=limit or 1.0,
     )  # fmt: skip
@@ -80,10 +69,10 @@ def draw(angles: xr.Dataset, dashpots: xr.Dataset) -> Figure:
     )  # fmt: skip
     level = float(dashpots.critical_mu_undamped)
     if values.min() < level < values.max():
-        plane.contour(c1, c2, values.T, levels=[level], colors=[BLACK], linewidths=1.0)
+        plane.contour(c1, c2, values.T, levels=[level], colors=[style.BLACK], linewidths=1.0)
     plane.set(xlabel="dashpot c₁ (N s/m)", ylabel="dashpot c₂ (N s/m)", box_aspect=1)
     figure.colorbar(mesh, ax=plane, label="critical μ", extend="max", shrink=0.75)
-    panel_letter(without, "a", "no dashpots")
-    panel_letter(change, "b", "change")
-    panel_letter(plane, "c", f"at {angle_pair(dashpots.alpha1, dashpots.alpha2)}")
+    style.panel_letter(without, "a", "no dashpots")
+    style.panel_letter(change, "b", "change")
+    style.panel_letter(plane, "c", f"at {angle_pair(dashpots.alpha1, dashpots.alpha2)}")
     return figure

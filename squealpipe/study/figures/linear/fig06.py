@@ -2,29 +2,16 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
+import xarray as xr
+from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
 from squealpipe.parameters import direction_of
+from squealpipe.plotting import style
 from squealpipe.plotting.origin import parameter
-from squealpipe.plotting.style import (
-    BLACK,
-    LIGHT,
-    PAGE,
-    WHITE,
-    category_colours,
-    draw_map,
-    new_figure,
-    panel_letter,
-)
 from squealpipe.schema.linear import Boundary
 from squealpipe.study.figures.linear.linear_overlay import draw_boundaries, mark_scene
-
-if TYPE_CHECKING:
-    import xarray as xr
-    from matplotlib.figure import Figure
 
 READS = ("stability_map", "quasi_static_map", "stability_boundaries")
 CAPTION_ALONG_X = (
@@ -60,7 +47,7 @@ def draw(stability: xr.Dataset, quasi_static: xr.Dataset, boundaries: xr.Dataset
         quasi_static: dataset ``quasi_static_map`` on the same angles.
         boundaries: dataset ``stability_boundaries``.
     """
-    figure, axes = new_figure(PAGE, 3.95, ncols=2)
+    figure, axes = style.new_figure(style.PAGE, 3.95, ncols=2)
     readings = (
         ("Eq. (11) as printed", quasi_static.possible_as_printed, Boundary.no_coupling),
         ("reaction force positive", quasi_static.possible, None),
@@ -68,21 +55,23 @@ def draw(stability: xr.Dataset, quasi_static: xr.Dataset, boundaries: xr.Dataset
     for panel, letter, (title, possible, extra) in zip(axes[0], "ab", readings, strict=True):
         tones = np.where(possible.values, 0, 1)
         tones[stability.regime_linear.values > 0] = 2
-        draw_map(
+        style.draw_map(
             panel,
             stability.alpha1.values,
             stability.alpha2.values,
             tones,
-            **category_colours([WHITE, LIGHT, BLACK]),
+            **style.category_colours([style.WHITE, style.LIGHT, style.BLACK]),
         )
         curves = [Boundary.flutter, Boundary.divergence, Boundary.reaction_changes_sign]
         draw_boundaries(panel, boundaries, curves if extra is None else [*curves, extra])
         mark_scene(panel, "F3")
-        panel_letter(panel, letter, title)
+        style.panel_letter(panel, letter, title)
     patches = [
-        Patch(facecolor=WHITE, edgecolor=BLACK, linewidth=0.6, label="sliding possible"),
-        Patch(facecolor=LIGHT, label="sliding not possible"),
-        Patch(facecolor=BLACK, label="linearly unstable"),
+        Patch(
+            facecolor=style.WHITE, edgecolor=style.BLACK, linewidth=0.6, label="sliding possible"
+        ),
+        Patch(facecolor=style.LIGHT, label="sliding not possible"),
+        Patch(facecolor=style.BLACK, label="linearly unstable"),
     ]
     lines = axes[0, 0].get_legend_handles_labels()[0]
     figure.legend(handles=[*patches, *lines], loc="outside lower center", ncols=4)

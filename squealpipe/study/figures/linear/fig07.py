@@ -2,38 +2,24 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Mapping
 
 import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
-from squealpipe.plotting.style import (
-    BLACK,
-    LIGHT,
-    ORANGE,
-    PAGE,
-    WHITE,
-    category_colours,
-    draw_map,
-    new_figure,
-    panel_letter,
-)
+from squealpipe.plotting import style
 from squealpipe.schema.dynamics.runs import growth_threshold
 from squealpipe.study.figures.linear.linear_overlay import mark_scene
 
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    import xarray as xr
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-
 READS = ("[cv]*alidity_map",)
 KINDS = (
-    ("A3 stable, A1 loses contact", WHITE),
-    ("A3 unstable, A1 loses contact", ORANGE),
-    ("A3 stable, contact kept", LIGHT),
-    ("A3 unstable, contact kept", BLACK),
+    ("A3 stable, A1 loses contact", style.WHITE),
+    ("A3 unstable, A1 loses contact", style.ORANGE),
+    ("A3 stable, contact kept", style.LIGHT),
+    ("A3 unstable, contact kept", style.BLACK),
 )
 ALT = (
     "Square maps over both spring angles in white, orange, grey and black: where model A1 loses "
@@ -79,7 +65,7 @@ def draw_kinds(panel: Axes, validity: xr.Dataset) -> np.ndarray:
     """The four kinds of cells, orange ones hatched for reading in greyscale."""
     kinds = kinds_of_cells(validity)
     angles = validity.alpha1.values, validity.alpha2.values
-    draw_map(panel, *angles, kinds, **category_colours([colour for _, colour in KINDS]))
+    style.draw_map(panel, *angles, kinds, **style.category_colours([colour for _, colour in KINDS]))
     if (kinds == 1).any():
         cells = (kinds == 1).T.astype(float)
         panel.contourf(*angles, cells, levels=[0.5, 1.5], colors="none", hatches=["//////"])
@@ -90,8 +76,8 @@ def key() -> list[Patch]:
     """What the tones mean."""
     return [
         Patch(
-            facecolor=colour, edgecolor=BLACK, linewidth=0.5, label=label,
-            hatch="//////" if colour == ORANGE else None,
+            facecolor=colour, edgecolor=style.BLACK, linewidth=0.5, label=label,
+            hatch="//////" if colour == style.ORANGE else None,
         )
         for label, colour in KINDS
     ]  # fmt: skip
@@ -104,14 +90,16 @@ def draw(maps: Mapping[str, xr.Dataset]) -> Figure:
         maps: dataset ``validity_map``, and ``corrected/validity_map``.
     """
     names = sorted(maps, key=len)
-    figure, axes = new_figure(PAGE if len(names) > 1 else 0.62 * PAGE, 3.9, ncols=len(names))
+    figure, axes = style.new_figure(
+        style.PAGE if len(names) > 1 else 0.62 * style.PAGE, 3.9, ncols=len(names)
+    )
     counts = []
     for panel, letter, name in zip(axes[0], "ab", names, strict=False):
         kinds = draw_kinds(panel, maps[name])
         mark_scene(panel, "F3")
         counts.append(np.bincount(kinds.ravel(), minlength=len(KINDS)))
         title = f"{TITLES[_kind(name)]}: " if len(names) > 1 else ""
-        panel_letter(panel, letter, f"{title}{counts[-1][3]} black cells of {kinds.size}")
+        style.panel_letter(panel, letter, f"{title}{counts[-1][3]} black cells of {kinds.size}")
     handles = key()
     for index, handle in enumerate(handles):
         numbers = " | ".join(str(count[index]) for count in counts)

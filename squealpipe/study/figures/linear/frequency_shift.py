@@ -2,18 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
+import xarray as xr
 from matplotlib.colors import TwoSlopeNorm
+from matplotlib.figure import Figure
 
 from squealpipe.plotting.style import PAGE, draw_map, new_figure, panel_letter
 from squealpipe.schema import Outcome
 from squealpipe.study.figures.parts.frequency_map import HATCH, outline
-
-if TYPE_CHECKING:
-    import xarray as xr
-    from matplotlib.figure import Figure
 
 READS = ("natural_frequencies",)
 CAPTION = (

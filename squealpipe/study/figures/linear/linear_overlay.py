@@ -2,20 +2,16 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Iterable
 
 import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
 
 from squealpipe.parameters import SCENES
 from squealpipe.plotting.origin import scene_title
 from squealpipe.plotting.style import BLUE, GREEN, GREY, ORANGE, RED
 from squealpipe.schema.linear import Boundary
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable
-
-    import xarray as xr
-    from matplotlib.axes import Axes
 
 LINES = {
     Boundary.flutter: ("flutter boundary", {"color": BLUE, "linestyle": "-"}),

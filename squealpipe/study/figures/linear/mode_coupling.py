@@ -2,15 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
+import xarray as xr
+from matplotlib.figure import Figure
 
 from squealpipe.plotting.style import BLACK, BLUE, ORANGE, PAGE, new_figure, panel_letter
-
-if TYPE_CHECKING:
-    import xarray as xr
-    from matplotlib.figure import Figure
 
 READS = ("mode_coupling",)
 CAPTION = (

@@ -2,15 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
+from matplotlib.figure import Figure
 
 from squealpipe.plotting.mechanism import draw_mechanism
 from squealpipe.plotting.style import COLUMN, new_figure
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 READS = ()
 CAPTION = (

@@ -2,16 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
+import xarray as xr
+from matplotlib.figure import Figure
 
 from squealpipe.plotting.style import BLUE, PAGE, new_figure
 from squealpipe.study.figures.linear.fig07 import draw_kinds, key
-
-if TYPE_CHECKING:
-    import xarray as xr
-    from matplotlib.figure import Figure
 
 READS = ("validity_map", "own_scenes")
 CAPTION = (

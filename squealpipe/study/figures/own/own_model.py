@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Mapping
 
 import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 from matplotlib.patches import Circle, FancyArrowPatch
 
 from squealpipe.parameters import direction_of
@@ -12,13 +15,6 @@ from squealpipe.plotting.mechanism import SPRING_COLOURS, displaced_springs
 from squealpipe.plotting.origin import parameter
 from squealpipe.plotting.style import GREY, PAGE, RED, new_figure, panel_letter
 from squealpipe.text import number
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    import xarray as xr
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 READS = ("own/*",)
 CAPTION = (

@@ -2,20 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Mapping
 
+import xarray as xr
+from matplotlib.figure import Figure
+
+from squealpipe.plotting import style
 from squealpipe.plotting.run import draw_force, draw_orbit, draw_spectrum
-from squealpipe.plotting.style import (
-    PAGE,
-    new_figure,
-    panel_letter,
-)
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    import xarray as xr
-    from matplotlib.figure import Figure
 
 READS = ("own/*",)
 CAPTION = (
@@ -31,7 +24,7 @@ SHOWN = 0.1
 
 def draw(runs: Mapping[str, xr.Dataset]) -> Figure:
     """Three panels for each scene, from datasets ``own/<scene>``."""
-    figure, axes = new_figure(PAGE, 0.3 + 1.8 * len(runs), nrows=len(runs), ncols=3)
+    figure, axes = style.new_figure(style.PAGE, 0.3 + 1.8 * len(runs), nrows=len(runs), ncols=3)
     letters = iter("abcdefghijklmnopqrstuvwxyz" * len(runs))
     for (history, path, spectrum), (name, run) in zip(axes, runs.items(), strict=True):
         draw_force(history, run.sel(time=slice(0.0, SHOWN * float(run.time[-1]))))
@@ -39,9 +32,9 @@ def draw(runs: Mapping[str, xr.Dataset]) -> Figure:
         draw_spectrum(spectrum, run)
         for panel in (history, path, spectrum):
             panel.ticklabel_format(scilimits=(-3, 4), useMathText=True)
-        panel_letter(history, next(letters), f"{name.removeprefix('own/')}: force")
-        panel_letter(path, next(letters), "path")
-        panel_letter(spectrum, next(letters), "spectrum")
+        style.panel_letter(history, next(letters), f"{name.removeprefix('own/')}: force")
+        style.panel_letter(path, next(letters), "path")
+        style.panel_letter(spectrum, next(letters), "spectrum")
     for panel in axes[:-1].flat:
         panel.set_xlabel("")
     return figure

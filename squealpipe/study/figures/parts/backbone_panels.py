@@ -2,33 +2,24 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Iterable, Mapping
 
 import numpy as np
+import xarray as xr
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
+from squealpipe.plotting import style
 from squealpipe.plotting.cycles import joined, say_why_empty
 from squealpipe.plotting.origin import angle_pair, parameter
-from squealpipe.plotting.style import (
-    BLACK,
-    GREY,
-    PAGE,
-    X_COLOUR,
-    Y_COLOUR,
-    new_figure,
-    panel_letter,
-)
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
-
-    import xarray as xr
-    from matplotlib.artist import Artist
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 CROSSES = 24
 """Points of the harmonic balance that are drawn, evenly spaced along the branch."""
-QUANTITIES = (("x_amplitude", X_COLOUR, "amplitude of x"), ("y_peak", Y_COLOUR, "largest y"))
+QUANTITIES = (
+    ("x_amplitude", style.X_COLOUR, "amplitude of x"),
+    ("y_peak", style.Y_COLOUR, "largest y"),
+)
 KEY = (
     "Blue: largest y, so that contact is lost where it reaches the black line at l_pre; orange: "
     "amplitude of x, half of its peak to peak. Crosses: harmonic balance; lines: exact orbits, "
@@ -48,13 +39,15 @@ def draw_scenes(branches: Mapping[str, xr.Dataset], height: float) -> Figure:
         height: of the figure, inches.
     """
     scenes = list(dict.fromkeys(name.rsplit("_mode", 1)[0] for name in branches))
-    figure, axes = new_figure(PAGE, height, nrows=len(scenes), ncols=2)
+    figure, axes = style.new_figure(style.PAGE, height, nrows=len(scenes), ncols=2)
     letters = iter("abcdefghijklmnopqrst")
     for row, scene in zip(axes, scenes, strict=True):
         for panel, mode in zip(row, (1, 2), strict=True):
             exact, series = (branches[f"{scene}_mode{mode}{form}"] for form in ("", "_hbm"))
             draw_branch(panel, exact, series, parameter(exact, "preload"))
-            panel_letter(panel, next(letters), f"{_angles(exact)}, vicinity of ω{'₁₂'[mode - 1]}")
+            style.panel_letter(
+                panel, next(letters), f"{_angles(exact)}, vicinity of ω{'₁₂'[mode - 1]}"
+            )
         row[0].set_ylabel("y, x (m)")
     handles, labels = key_entries(axes.ravel())
     figure.legend(handles, labels, loc="outside lower center", ncols=3)
@@ -67,7 +60,9 @@ def _angles(branch: xr.Dataset) -> str:
 
 def draw_branch(panel: Axes, exact: xr.Dataset, series: xr.Dataset, preload: float) -> None:
     """One mode: lines for exact orbits beneath crosses for harmonic balance."""
-    panel.axhline(preload, color=BLACK, linewidth=0.8, label=r"$l_\mathrm{pre}$, contact is lost")
+    panel.axhline(
+        preload, color=style.BLACK, linewidth=0.8, label=r"$l_\mathrm{pre}$, contact is lost"
+    )
     if say_why_empty(panel, exact):
         return
     unstable = np.abs(exact.stability_index.values) > STABLE_TO_ROUND_OFF
@@ -79,7 +74,7 @@ def draw_branch(panel: Axes, exact: xr.Dataset, series: xr.Dataset, preload: flo
         for chosen, shade, dash, words in (
             (~unstable & ~overtakes, colour, "-", label),
             (unstable & ~overtakes, colour, ":", "unstable"),
-            (overtakes, GREY, "-", "mass overtakes the belt"),
+            (overtakes, style.GREY, "-", "mass overtakes the belt"),
         ):
             if chosen.any():
                 drawn = np.where(joined(chosen), values, np.nan)

@@ -2,26 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
-from squealpipe.plotting.style import (
-    BLACK,
-    ORANGE,
-    PAGE,
-    RED,
-    draw_map,
-    new_figure,
-    panel_letter,
-)
+from squealpipe.plotting import style
 from squealpipe.schema import Outcome
-
-if TYPE_CHECKING:
-    import xarray as xr
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 STATES = ("contact", "separated")
 FREQUENCY_COLOURS = "cividis"
@@ -32,7 +20,9 @@ CAPTION = (
 """What the lines mean."""
 
 
-HATCH = Patch(facecolor="white", edgecolor=BLACK, hatch="//////", label="flutter: common frequency")
+HATCH = Patch(
+    facecolor="white", edgecolor=style.BLACK, hatch="//////", label="flutter: common frequency"
+)
 """Key to what :func:`outline` draws."""
 
 
@@ -43,13 +33,13 @@ def draw_mode(frequencies: xr.Dataset, mode: int) -> Figure:
         frequencies: dataset ``natural_frequencies``.
         mode: 1 or 2.
     """
-    figure, axes = new_figure(PAGE, 3.45, ncols=2)
+    figure, axes = style.new_figure(style.PAGE, 3.45, ncols=2)
     omega = frequencies.omega.sel(mode=mode)
     upper = float(omega.max())
     lower = 0.0 if mode == 1 else float(omega.min())
     for panel, letter, state in zip(axes[0], "ab", STATES, strict=True):
         values = omega.sel(contact_state=state).values
-        mesh = draw_map(
+        mesh = style.draw_map(
             panel,
             frequencies.alpha1.values,
             frequencies.alpha2.values,
@@ -62,7 +52,7 @@ def draw_mode(frequencies: xr.Dataset, mode: int) -> Figure:
         shown = np.where(flutter, np.nan, values)
         draw_isolines(panel, frequencies, shown, 0.2 if mode == 1 else 0.1)
         outline(panel, frequencies, flutter.values)
-        panel_letter(panel, letter, "in contact" if state == "contact" else state)
+        style.panel_letter(panel, letter, "in contact" if state == "contact" else state)
     draw_sums(axes[0, 1])
     keys = axes[0, 1].get_lines()
     figure.legend(
@@ -79,8 +69,8 @@ def draw_sums(axes: Axes) -> None:
     along = np.array([-np.pi, 2 * np.pi])
     limits = axes.get_xlim(), axes.get_ylim()
     for odd, label, colour, dash in (
-        (0, "α₁ + α₂ = nπ", ORANGE, "--"),
-        (1, "α₁ + α₂ = nπ/2, n odd", BLACK, ":"),
+        (0, "α₁ + α₂ = nπ", style.ORANGE, "--"),
+        (1, "α₁ + α₂ = nπ/2, n odd", style.BLACK, ":"),
     ):
         for number in range(odd, 5, 2):
             axes.plot(along, number * np.pi / 2 - along, color=colour, ls=dash, lw=0.9, label=label)
@@ -117,6 +107,6 @@ def outline(axes: Axes, frequencies: xr.Dataset, mask: np.ndarray) -> None:
             frequencies.alpha2.values,
             mask.T.astype(float),
             levels=[0.5],
-            colors=RED,
+            colors=style.RED,
             linewidths=0.8,
         )

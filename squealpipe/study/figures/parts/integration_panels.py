@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+import xarray as xr
+from matplotlib.figure import Figure
 
 from squealpipe.plotting.style import PAGE, new_figure, panel_letter
 from squealpipe.study.figures.parts.work_precision import draw_methods, foot, legend_above
-
-if TYPE_CHECKING:
-    import xarray as xr
-    from matplotlib.figure import Figure
 
 
 def draw_scenes(dataset: xr.Dataset, cost: str, scale: float, label: str) -> Figure:

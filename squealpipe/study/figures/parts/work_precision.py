@@ -3,27 +3,16 @@
 from __future__ import annotations
 
 import json
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 from matplotlib.ticker import FormatStrFormatter, LogLocator
 
-from squealpipe.plotting.style import (
-    BLACK,
-    BLUE,
-    GREEN,
-    GREY,
-    ORANGE,
-    PURPLE,
-    RED,
-    symbols,
-)
+from squealpipe.plotting import style
 from squealpipe.schema.comparison import Role
-
-if TYPE_CHECKING:
-    import xarray as xr
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 
 class Mark(NamedTuple):
@@ -35,20 +24,24 @@ class Mark(NamedTuple):
 
 
 MARKS = {
-    "Taylor + events, ensemble": Mark(BLACK, "o"),
-    "Taylor + events, one run": Mark(BLUE, "s"),
-    "DOP853 + events": Mark(GREEN, "^"),
-    "RK45 + events": Mark(ORANGE, "v"),
-    "LSODA + events": Mark(RED, "D"),
-    "Radau + events": Mark(PURPLE, "P"),
-    "RK45, tanh": Mark(ORANGE, "x", ":"),
-    "LSODA, tanh": Mark(RED, "+", ":"),
-    "Moreau–Jean": Mark(GREY, "*", "--"),
+    "Taylor + events, ensemble": Mark(style.BLACK, "o"),
+    "Taylor + events, one run": Mark(style.BLUE, "s"),
+    "DOP853 + events": Mark(style.GREEN, "^"),
+    "RK45 + events": Mark(style.ORANGE, "v"),
+    "LSODA + events": Mark(style.RED, "D"),
+    "Radau + events": Mark(style.PURPLE, "P"),
+    "RK45, tanh": Mark(style.ORANGE, "x", ":"),
+    "LSODA, tanh": Mark(style.RED, "+", ":"),
+    "Moreau–Jean": Mark(style.GREY, "*", "--"),
 }
 FALLBACK = [
     Mark(colour, marker, dash)
     for markers, dash in (("os^vDP*", "-"), ("xx+x+x+", ":"))
-    for colour, marker in zip((BLACK, BLUE, GREEN, ORANGE, RED, PURPLE, GREY), markers, strict=True)
+    for colour, marker in zip(
+        (style.BLACK, style.BLUE, style.GREEN, style.ORANGE, style.RED, style.PURPLE, style.GREY),
+        markers,
+        strict=True,
+    )
 ]
 _FEW_DECADES = 100.0
 """Ratio of costs below which decades alone would leave an axis with hardly a number."""
@@ -78,8 +71,8 @@ def draw_methods(
         return
     front = _pareto(error[fine], values[fine])
     axes.step(
-        error[fine][front], values[fine][front], where="post", color=BLACK, lw=3.0, alpha=0.15,
-        zorder=1,
+        error[fine][front], values[fine][front], where="post", color=style.BLACK, lw=3.0,
+        alpha=0.15, zorder=1,
     )  # fmt: skip
     for method in dict.fromkeys(rows.method.values.tolist()):
         mine = fine & (rows.method.values == method)
@@ -87,12 +80,12 @@ def draw_methods(
         mark = marks.get(method, FALLBACK[0])
         axes.plot(
             error[mine][order], values[mine][order], mark.dash, color=mark.colour,
-            marker=mark.marker, ms=3.5, lw=0.8, label=symbols(method), zorder=2,
+            marker=mark.marker, ms=3.5, lw=0.8, label=style.symbols(method), zorder=2,
         )  # fmt: skip
     ours = fine & (rows.role.values == Role.our_setting)
     axes.plot(
-        error[ours], values[ours], "o", ms=9, mfc="none", mec=RED, mew=1.0, label="our setting",
-        zorder=3,
+        error[ours], values[ours], "o", ms=9, mfc="none", mec=style.RED, mew=1.0,
+        label="our setting", zorder=3,
     )  # fmt: skip
     axes.set(xscale="log", yscale="log")
     axes.minorticks_off()
@@ -129,4 +122,4 @@ def machine(dataset: xr.Dataset) -> str:
 
 def foot(figure: Figure, dataset: xr.Dataset) -> None:
     """The machine below all panels."""
-    figure.supxlabel(machine(dataset), fontsize=5.5, color=GREY)
+    figure.supxlabel(machine(dataset), fontsize=5.5, color=style.GREY)

@@ -2,25 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
+import xarray as xr
+from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
+from squealpipe.plotting import style
 from squealpipe.plotting.origin import scene_title
-from squealpipe.plotting.style import (
-    BLACK,
-    PAGE,
-    REGIME_COLOURS,
-    WHITE,
-    category_colours,
-    flag_words,
-    new_figure,
-    panel_letter,
-)
-
-if TYPE_CHECKING:
-    import xarray as xr
-    from matplotlib.figure import Figure
 
 READS = ("basin/F2d", "basin/F3")
 CAPTION = (
@@ -38,22 +25,27 @@ def draw(kept: xr.Dataset, growing: xr.Dataset) -> Figure:
         kept: basin of the scene of Fig. 2(d).
         growing: basin of the scene of Fig. 3.
     """
-    figure, axes = new_figure(PAGE, 3.5, ncols=2)
+    figure, axes = style.new_figure(style.PAGE, 3.5, ncols=2)
     shown: set[int] = set()
     names = str(kept.motion.attrs["flag_meanings"]).split()
-    colours = [REGIME_COLOURS.get(name, WHITE) for name in names]
+    colours = [style.REGIME_COLOURS.get(name, style.WHITE) for name in names]
     titles = (scene_title("F2d"), scene_title("F3"))
     for letter, panel, basin, title in zip("ab", axes[0], (kept, growing), titles, strict=True):
         panel.pcolormesh(
             basin.vx0, basin.vy0, basin.motion.values.T, shading="nearest", rasterized=True,
-            **category_colours(colours),
+            **style.category_colours(colours),
         )  # fmt: skip
         shown |= set(basin.motion.values.ravel().tolist())
         panel.set(xlabel="velocity along the belt (m/s)", aspect="equal")
-        panel_letter(panel, letter, title)
+        style.panel_letter(panel, letter, title)
     axes[0, 0].set_ylabel("velocity away from the belt (m/s)")
     handles = [
-        Patch(facecolor=colours[value], edgecolor=BLACK, lw=0.4, label=flag_words(names[value]))
+        Patch(
+            facecolor=colours[value],
+            edgecolor=style.BLACK,
+            lw=0.4,
+            label=style.flag_words(names[value]),
+        )
         for value in sorted(shown)
     ]
     figure.legend(handles=handles, loc="outside lower center", ncols=min(len(handles), 4))

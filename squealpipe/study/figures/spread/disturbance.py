@@ -2,32 +2,23 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Mapping
 
 import numpy as np
+import xarray as xr
+from matplotlib.figure import Figure
 
+from squealpipe.plotting import style
 from squealpipe.plotting.origin import scene_title
-from squealpipe.plotting.style import (
-    BLACK,
-    BLUE,
-    GREEN,
-    GREY,
-    ORANGE,
-    PAGE,
-    PURPLE,
-    RED,
-    new_figure,
-    panel_letter,
-)
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    import xarray as xr
-    from matplotlib.figure import Figure
 
 READS = ("disturbance/*",)
-MARKS = tuple(zip((BLUE, ORANGE, GREEN, RED, PURPLE, BLACK), "osv^DP", strict=True))
+MARKS = tuple(
+    zip(
+        (style.BLUE, style.ORANGE, style.GREEN, style.RED, style.PURPLE, style.BLACK),
+        "osv^DP",
+        strict=True,
+    )
+)
 """Colour and marker by scene."""
 CAPTION = (
     "Smallest disturbance of steady sliding that leads to (a) loss of contact, (b) the whirl, over "
@@ -46,7 +37,7 @@ def draw(found: Mapping[str, xr.Dataset]) -> Figure:
     Args:
         found: name → dataset ``smallest_disturbance``.
     """
-    figure, axes = new_figure(PAGE, 3.0, ncols=2)
+    figure, axes = style.new_figure(style.PAGE, 3.0, ncols=2)
     scenes = sorted({name.split("/")[1].partition("_")[0] for name in found})
     marks = dict(zip(scenes, MARKS, strict=False))
     handles = {}
@@ -58,7 +49,7 @@ def draw(found: Mapping[str, xr.Dataset]) -> Figure:
             one = found.get(f"disturbance/{scene}_{goal}")
             if one is None or not np.isfinite(one.distance):
                 continue
-            colour, marker = marks.get(scene, (GREY, "."))
+            colour, marker = marks.get(scene, (style.GREY, "."))
             (handles[scene],) = panel.plot(
                 number, one.distance_by_number, marker=marker, ms=3.5, color=colour
             )
@@ -72,7 +63,7 @@ def draw(found: Mapping[str, xr.Dataset]) -> Figure:
             panel.minorticks_off()
         if not panel.lines:
             panel.text(0.5, 0.5, "none found", transform=panel.transAxes, ha="center")
-        panel_letter(panel, letter, title)
+        style.panel_letter(panel, letter, title)
     axes[0, 0].set_ylabel("smallest disturbance")
     if handles:
         figure.legend(

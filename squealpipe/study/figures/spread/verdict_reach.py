@@ -2,17 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
+import xarray as xr
 from matplotlib.colors import LinearSegmentedColormap
+from matplotlib.figure import Figure
 
 from squealpipe.plotting.style import BLACK, BLUE, GREY, PAGE, RED, new_figure
 from squealpipe.schema.inference import DAMPED_GRID
-
-if TYPE_CHECKING:
-    import xarray as xr
-    from matplotlib.figure import Figure
 
 READS = ("verdict_reach",)
 CAPTION = (
