@@ -35,7 +35,10 @@ OWN_SCENES = DatasetSchema(
         "largest_x": _number("largest |x|", "m"),
         "largest_y": _number("largest |y|", "m"),
         "predictability_horizon": _number("time to which a run can be computed", "s"),
-        "dominant_frequency": Variable("angular frequencies of the contact force", "rad s-1", (*_RUN, "peak"), nan_allowed=True, rtol=1e-3),
+        "dominant_frequency": Variable(
+            "angular frequencies of the contact force", "rad s-1", (*_RUN, "peak"),
+            nan_allowed=True, rtol=1e-3,
+        ),
         "model": _text("cheapest level that answers", "scene", "question"),
         "alpha1": Variable("angle of spring 1", "rad", ("scene",)),
         "alpha2": Variable("angle of spring 2", "rad", ("scene",)),
