@@ -6,7 +6,10 @@ from typing import Any
 
 import numpy as np
 
+from squealpipe.laws import functions as of_laws
 from squealpipe.methods.taylor import symbols
+
+of_laws.exp.register(symbols.Symbol, symbols.exp)
 
 
 def _of(name: str, value: Any) -> Any:

@@ -7,14 +7,17 @@ import reprlib
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, replace
 from numbers import Integral, Real
+from types import SimpleNamespace
 from typing import Any, Literal
 
+from squealpipe.laws import contact_laws, friction_laws
+from squealpipe.laws.contact_laws import LINEAR
 from squealpipe.laws.friction_laws import COULOMB, LAWS, coefficient
+from squealpipe.laws.tables import is_table, knots_of, named
 from squealpipe.text import suggestion
 
 LAW_NAMES = tuple(LAWS)
 """Names of the friction laws."""
-
 FULL_TURN = 2 * math.pi * (1 + 1e-9)
 """Largest angle, rad; beyond it one meant degrees, or slipped."""
 BEYOND_A_TURN = "more than a full turn; angles are in rad, from −2π to 2π"
@@ -32,7 +35,8 @@ class Row:
         units: CF unit.
         symbol: symbol as Typst mathematics.
         meaning: in words, for tables.
-        allowed: which values make sense; "law" is one of :data:`LAW_NAMES`.
+        allowed: which values make sense; "law" is a name in ``laws``, or a file.
+        laws: package of laws.
         enters_a1: it enters the integration of A1 and its variants.
         extension: it goes beyond the paper; at its default it is not written down, so that
             configurations and the ids of datasets stay what they were without it.
@@ -43,6 +47,7 @@ class Row:
     symbol: str
     meaning: str
     allowed: Allowed = "positive"
+    laws: Any = None
     enters_a1: bool = True
     extension: bool = False
     optional: bool = False
@@ -56,9 +61,16 @@ class Row:
         if value is None and self.optional:
             return None
         if self.allowed == "law":
-            if not isinstance(value, str) or value not in LAWS:
-                raise ValueError(f"{name} = {brief(value)}: unknown; {suggestion(value, LAWS)}")
-            return value
+            try:
+                law = named(value, self.laws.COLUMNS)
+                if isinstance(law, str) and self.laws.law_of(law) is not None:
+                    return law
+            except (ValueError, OSError) as error:
+                raise ValueError(f"{name}: {error}") from error
+            if why := self.laws.REFUSED.get(str(value)):
+                raise ValueError(f"{name} = {value!r}: {why}")
+            near = suggestion(value, self.laws.LAWS)
+            raise ValueError(f"{name} = {brief(value)}: unknown; {near}, {self.laws.FILES}")
         if not is_finite_number(value):
             raise ValueError(f"{name} = {brief(value)}: a finite number is needed")
         number = float(value)  # type: ignore[arg-type]
@@ -137,7 +149,13 @@ class Parameters:
         0.0, "N s m-1", "c_2", "dashpot along spring 2", allowed="not negative", extension=True
     )
     friction_law: str = _row(
-        COULOMB, "1", '"law"', "friction law: " + ", ".join(LAWS), allowed="law", extension=True
+        COULOMB,
+        "1",
+        '"law"',
+        f"friction law: {', '.join(LAWS)}, {friction_laws.FILES}",
+        allowed="law",
+        laws=friction_laws,
+        extension=True,
     )
     mu_static: float | None = _row(
         None,
@@ -155,6 +173,23 @@ class Parameters:
         "speed over which friction falls towards that of sliding",
         extension=True,
     )
+    contact_law: str = _row(
+        LINEAR,
+        "1",
+        '"contact"',
+        f"contact law: {', '.join(contact_laws.LAWS)}, {contact_laws.FILES}",
+        allowed="law",
+        laws=contact_laws,
+        extension=True,
+    )
+    damping3: float = _row(
+        0.0,
+        "N s m-1",
+        "c_3",
+        "dashpot of the contact, of the contact law dashpot",
+        allowed="not negative",
+        extension=True,
+    )
 
     def __post_init__(self) -> None:
         for name, row in TABLE.items():
@@ -164,11 +199,33 @@ class Parameters:
                 f"friction_speed = {self.friction_speed!r}: must be 1e-300 or greater, for the "
                 "laws divide by it"
             )
-        if self.friction_law == COULOMB and self.static_mu < self.mu:
+        if is_table(self.friction_law):
+            self._take("friction_law", "mu", knots_of(self.friction_law)[1][-1])
+        if is_table(self.contact_law):
+            load = contact_laws.preload_force(self.contact_law, self.preload)
+            self._take("contact_law", "k3", load / self.preload)
+            contact_laws.relative(self.contact_law, self.preload)
+        if self.damping3 and self.contact_law != "dashpot":
             raise ValueError(
-                f"mu_static = {self.mu_static!r}: with the Coulomb law it must be mu = {self.mu!r} "
-                "or greater, for below that a mass at belt speed could neither stick nor slip"
+                f"damping3 = {self.damping3!r}: contact_law = 'dashpot' alone reads it; give that "
+                "law, or leave damping3 out"
             )
+        onset = float(coefficient(0.0, self))
+        if self.static_mu < onset * (1.0 - 1e-12):
+            raise ValueError(
+                f"mu_static = {self.mu_static!r}: it must be {onset!r}, the coefficient at speed "
+                "0, or greater, for below that a mass at belt speed could neither stick nor slip"
+            )
+
+    def _take(self, law: str, parameter: str, value: float) -> None:
+        """Give a parameter the value that follows from a table, which stands for others too."""
+        for name in TABLE[law].laws.IN_TABLE:
+            given = getattr(self, name)
+            if given not in (DEFAULTS[name], value if name == parameter else None):
+                raise ValueError(
+                    f"{name} = {given!r}: {law} is a table that stands for it; leave {name} out"
+                )
+        object.__setattr__(self, parameter, value)
 
     def __repr__(self) -> str:
         """The call that makes it, and as a comment its dimensionless groups."""
@@ -195,8 +252,16 @@ class Parameters:
 
     @property
     def static_mu(self) -> float:
-        """The static friction coefficient: ``mu_static``, or ``mu`` where that is None."""
-        return self.mu if self.mu_static is None else self.mu_static
+        """The static friction coefficient: ``mu_static``, where that is None that of sliding.
+
+        Of a table, or a law of the user's own, the coefficient at speed 0.
+        """
+        if self.mu_static is not None:
+            return self.mu_static
+        if self.friction_law in LAWS:
+            return self.mu
+        numbers = {name: getattr(self, name) for name in TABLE}
+        return float(coefficient(0.0, SimpleNamespace(**numbers, static_mu=self.mu)))
 
     @property
     def drag(self) -> float:
@@ -224,7 +289,9 @@ class Parameters:
 
     def with_(self, **changes: Any) -> Parameters:
         """A copy with some fields changed, validated again."""
-        return replace(self, **changes)
+        tables = [row for name, row in TABLE.items() if row.laws and is_table(getattr(self, name))]
+        follow = {name: DEFAULTS[name] for row in tables for name in row.laws.IN_TABLE}
+        return replace(self, **{**follow, **changes})
 
     def as_dict(self) -> dict[str, Any]:
         """Field name → value; extensions of the paper's model only where they differ from none."""

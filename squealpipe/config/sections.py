@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import partial
 from typing import TYPE_CHECKING, Annotated, Any, Literal, get_args
 
 from pydantic import (
     AfterValidator,
     BaseModel,
+    BeforeValidator,
     ConfigDict,
     Field,
     SerializerFunctionWrapHandler,
@@ -20,7 +22,8 @@ from pydantic import (
 )
 
 from squealpipe.config.ranges import parse_angle, read_fixed, read_values
-from squealpipe.parameters import DEFAULTS, LAW_NAMES, TABLE, Parameters, Row, without_defaults
+from squealpipe.laws.tables import BETWEEN
+from squealpipe.parameters import DEFAULTS, TABLE, Parameters, Row, without_defaults
 
 
 def _plain_types(annotation: Any) -> set[type]:
@@ -69,12 +72,28 @@ class _ParametersBase(Section):
         return without_defaults(write(self))
 
 
-def _field_type(row: Row) -> Any:
+def _field_type(name: str, row: Row) -> Any:
+    if row.allowed == "law":
+        names = {"type": "string", "enum": list(row.laws.LAWS)}
+        files = {
+            "type": "object",
+            "properties": {
+                "table": {"type": "string"},
+                "between": {"enum": list(BETWEEN)},
+                "python": {"type": "string"},
+            },
+            "additionalProperties": False,
+        }
+        text = {"type": "string", "pattern": f"^({'|'.join(BETWEEN)}) "}
+        return Annotated[
+            str,
+            BeforeValidator(partial(row.check, name)),
+            WithJsonSchema({"anyOf": [names, files, text]}),
+        ]
     kinds: dict[str, Any] = {
         "finite": Number,
         "positive": Positive,
         "not negative": Annotated[float, Field(ge=0)],
-        "law": Literal[LAW_NAMES],
     }
     return kinds[row.allowed] | None if row.optional else kinds[row.allowed]
 
@@ -89,7 +108,7 @@ else:
         "ParametersSection",
         __base__=_ParametersBase,
         __doc__=_ParametersBase.__doc__,
-        **{name: (_field_type(row), DEFAULTS[name]) for name, row in TABLE.items()},
+        **{name: (_field_type(name, row), DEFAULTS[name]) for name, row in TABLE.items()},
     )
     ParametersSection.__annotations__ = {}  # the reference looks for them in the source
 

@@ -7,7 +7,7 @@ Snakemake; :func:`read_study` does the same for the command line.
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path, PurePosixPath
 from typing import Annotated, Any, Literal
 
@@ -32,6 +32,8 @@ from squealpipe.config.sections import (
     SweepSection,
 )
 from squealpipe.config.yaml_files import Lines, flat, overlay, read_yaml
+from squealpipe.laws.tables import is_table, named
+from squealpipe.parameters import TABLE, Row
 from squealpipe.rerun.key import PARTS
 
 __all__ = [
@@ -141,10 +143,44 @@ def read_study(*paths: str | Path, changes: Mapping[str, Any] | None = None) -> 
     tables: dict[str, Lines] = {}
     for path in map(Path, paths):
         content, tables[str(path)], found = read_yaml(path)
-        faults.extend(found)
+        faults.extend([*found, *_read_laws(path, content, tables[str(path)])])
         overlay(merged, content)
     overlay(merged, changes or {})
     return parse_study(merged, faults, place=lambda keys: _place(keys, tables, changes or {}))
+
+
+def _read_laws(path: Path, content: dict[str, Any], lines: Lines) -> Iterator[str]:
+    """Put the content of the files that a configuration names as laws in their place; faults."""
+    section = content.get("parameters") or {}
+    for name, given, row in laws_in(section):
+        place = _place(("parameters", name), {str(path): lines}, {}) + f"parameters.{name}"
+        try:
+            section[name] = named(given, row.laws.COLUMNS, path.parent)
+        except (OSError, ValueError) as error:
+            yield f"{place}: {error}"
+            continue
+        taken = ", ".join(other for other in row.laws.IN_TABLE if other in section)
+        if is_table(section[name]) and section[name] != given and taken:
+            yield f"{place}: the table stands for {taken}; leave that out"
+
+
+def laws_in(section: Any) -> Iterator[tuple[str, Any, Row]]:
+    """Parameter, its entry and its row, of each law that a section names."""
+    for name, row in TABLE.items():
+        if row.laws and isinstance(section, dict) and name in section:
+            yield name, section[name], row
+
+
+def files_of_laws(path: Path) -> list[Path]:
+    """The files that a configuration names as laws, as it names them."""
+    entries = [given for _, given, _ in laws_in(read_yaml(path)[0].get("parameters"))]
+    named_in = [
+        file
+        for given in entries
+        for file in (given.values() if isinstance(given, dict) else [given])
+        if str(file).endswith((".csv", ".py"))
+    ]
+    return [Path(file) for file in named_in]
 
 
 def check_results_folder(results: str) -> None:

@@ -2,9 +2,21 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
+
+from squealpipe.laws.contact_laws import ContactLaw, law_of
+
+
+def law(p: Any) -> ContactLaw:
+    """The contact law of some parameters."""
+    return cast("ContactLaw", law_of(p.contact_law, p.preload))
+
+
+def normal_force(y: Any, vy: Any, p: Any) -> Any:
+    """N by the law that ``p.contact_law`` names, within one of its pieces."""
+    return law(p).force(p.preload - y, -vy, p)
 
 
 def contact_force(y: Any, p: Any) -> Any:
@@ -22,8 +34,8 @@ def unilateral_force(y: Any, p: Any) -> Any:
 
 
 def contact_energy(y: Any, p: Any) -> Any:
-    """½ k3 (l_pre − y)² while in contact, J: the potential of :func:`contact_force`."""
-    return 0.5 * p.k3 * (p.preload - y) * (p.preload - y)
+    """The potential of :func:`normal_force` while in contact, J; ½ k3 (l_pre − y)² if linear."""
+    return law(p).energy(p.preload - y, p)
 
 
 def smoothed_compression(compression: Any, sigma: Any) -> Any:

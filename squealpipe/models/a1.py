@@ -21,7 +21,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from squealpipe.laws.contact import contact_energy, contact_force
+from squealpipe.laws.contact import contact_energy, normal_force
 from squealpipe.laws.dashpots import damping_force, linear_damping_force
 from squealpipe.laws.friction import slip_force
 from squealpipe.laws.friction_laws import coefficient
@@ -91,7 +91,7 @@ def acceleration(
         x, y, vx, vy, p, g,
         linear_springs=linear_springs, long_springs=long_springs, dashpots=dashpots,
     )  # fmt: skip
-    normal = contact * contact_force(y, p)
+    normal = contact * normal_force(y, vy, p)
     friction = slip_force(normal, direction, coefficient(direction * (p.belt_speed - vx), p))
     inverse_mass = p.mass**-1.0
     ax = (1.0 - stick) * inverse_mass * (fx + friction)

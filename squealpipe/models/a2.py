@@ -10,7 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from squealpipe.laws.contact import linearized_contact_stiffness, regularized_force
+from squealpipe.laws.contact import law, linearized_contact_stiffness, regularized_force
+from squealpipe.laws.contact_laws import LINEAR
 from squealpipe.laws.friction import dragging_force
 from squealpipe.laws.springs import Stiffness, linear_elastic_force
 
@@ -34,8 +35,18 @@ def acceleration(
 
 
 def contact_stiffness(p: Any, sigma: Any = None) -> Any:
-    """K3 of Eq. (8d), N/m; its sharp limit k3 without ``sigma``."""
-    return p.k3 if sigma is None else linearized_contact_stiffness(p, sigma)
+    """K3 of Eq. (8d), N/m; without ``sigma`` the slope of the contact law at l_pre, k3 if linear.
+
+    Raises:
+        ValueError: ``sigma`` beside a contact law that it does not regularize.
+    """
+    if sigma is None:
+        return law(p).stiffness(p.preload, p)
+    if p.contact_law != LINEAR:
+        raise ValueError(
+            f"sigma = {sigma!r} regularizes the linear contact law alone; leave it out"
+        )
+    return linearized_contact_stiffness(p, sigma)
 
 
 def actuation(p: Any, sigma: Any = None) -> Any:

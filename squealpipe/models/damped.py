@@ -1,10 +1,11 @@
 """A3 with dashpots and friction that depends on speed: m r̈ + C ṙ + K r = 0 (not in the paper).
 
 C has the dashpots and, from the slope of the friction law, N0 μ'(|V|) in its x diagonal: a law that
-falls with speed is negative damping. The eigenvalues are the roots of
+falls with speed is negative damping. A dashpot c3 of the contact enters as k3 does in K. The
+eigenvalues are the roots of
 
     s⁴ + p1 s³ + p2 s² + p3 s + p4,   p1 = tr C, p2 = tr K + det C,
-    p3 = c11 k22 + c22 k11 − c12 (k12 + k21), p4 = det K   (all over m),
+    p3 = c11 k22 + c22 k11 − c12 k21 − c21 k12, p4 = det K   (all over m),
 
 stable exactly where all p > 0 and p1 p2 p3 > p3² + p1² p4 (Routh–Hurwitz). As damping vanishes at a
 fixed ratio, that becomes ω1² < p3/p1 < ω2², so the onset jumps away from the undamped one for all
@@ -35,10 +36,13 @@ _EQUAL = 1e-12
 
 
 class DampedSystem(NamedTuple):
-    """C and K of the mass in contact, over m: 1/s and 1/s²; K is not symmetric; det K and det C."""
+    """C and K of the mass in contact, over m: 1/s and 1/s²; their determinants. With friction
+    neither is symmetric.
+    """
 
     c11: Any
     c12: Any
+    c21: Any
     c22: Any
     k11: Any
     k12: Any
@@ -50,7 +54,8 @@ class DampedSystem(NamedTuple):
 
 def is_undamped(p: Any) -> bool:
     """Whether C = 0, so that the closed form of A3 holds."""
-    return bool(p.damping1 == 0 and p.damping2 == 0 and slope(abs(p.belt_speed), p) == 0)
+    dashpots = (p.damping1, p.damping2, p.damping3)
+    return not any(dashpots) and bool(slope(abs(p.belt_speed), p) == 0)
 
 
 def damped_system(p: Any, alpha1: Any, alpha2: Any, *, sigma: Any = None) -> DampedSystem:
@@ -66,9 +71,11 @@ def damped_system(p: Any, alpha1: Any, alpha2: Any, *, sigma: Any = None) -> Dam
     k3 = kind.type(a2.contact_stiffness(p, sigma))
     system = contact_system(p, alpha1, alpha2, k3=k3)
     k11, k12, k21, k22 = contact_matrix(system.stiffness, k3, p.drag)
-    c11, c12, c22 = linear_damping(p, geometry(alpha1, alpha2))
+    damping, c3 = linear_damping(p, geometry(alpha1, alpha2)), kind.type(p.damping3)
+    c11, c12, c21, c22 = contact_matrix(damping, c3, p.drag)
     sine = sine_of_sum(alpha1, alpha2)
     damping_determinant = pair_determinant(p.damping1, p.damping2, sine)
+    damping_determinant = damping_determinant + c3 * (damping.k11 - p.drag * damping.k12)
     gradient = slope(abs(p.belt_speed), p)
     if gradient != 0:
         force = a3.static_state(
@@ -81,7 +88,7 @@ def damped_system(p: Any, alpha1: Any, alpha2: Any, *, sigma: Any = None) -> Dam
     determinant = system.spring_determinant + k3 * (stiffness.k11 - p.drag * stiffness.k12)
     mass = kind.type(p.mass)
     determinants = (determinant / mass, damping_determinant / mass)
-    entries = np.broadcast_arrays(c11, c12, c22, k11, k12, k21, k22, *determinants)
+    entries = np.broadcast_arrays(c11, c12, c21, c22, k11, k12, k21, k22, *determinants)
     return DampedSystem._make(entry / mass for entry in entries)
 
 
@@ -99,7 +106,7 @@ def quartic(s: DampedSystem) -> Quartic:
     return Quartic(
         s.c11 + s.c22,
         s.k11 + s.k22 + s.damping_determinant,
-        s.c11 * s.k22 + s.c22 * s.k11 - s.c12 * (s.k12 + s.k21),
+        s.c11 * s.k22 + s.c22 * s.k11 - s.c12 * s.k21 - s.c21 * s.k12,
         s.determinant,
     )
 

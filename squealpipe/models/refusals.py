@@ -1,13 +1,15 @@
-"""Levels that carry the paper's friction alone: Coulomb's law, one coefficient, no dashpots."""
+"""Levels that carry the paper's laws alone: Coulomb's with one coefficient, a linear contact, no
+dashpots.
+"""
 
 from __future__ import annotations
 
 from squealpipe.laws.friction_laws import COULOMB, LAWS
-from squealpipe.parameters import DEFAULTS, TABLE, Parameters
+from squealpipe.parameters import DEFAULTS, TABLE, Parameters, brief
 
 WHY_A4 = (
     "A4 has families of periodic orbits by its first integral alone, which damping and friction "
-    "that depends on speed destroy"
+    "that depends on speed destroy, and closed forms for a linear contact alone"
 )
 
 
@@ -49,7 +51,7 @@ def refuse_extensions(params: Parameters, who: str, why: str) -> None:
     carried = {name: DEFAULTS[name] for name in given}
     wrong = [name for name, value in given.items() if value != carried[name]]
     if wrong:
-        found = ", ".join(f"{name} = {given[name]!r}" for name in wrong)
+        found = ", ".join(f"{name} = {brief(given[name])}" for name in wrong)
         remedy = ", ".join(f"{name} = {carried[name]!r}" for name in wrong)
         raise ValueError(f"{found}: {who} cannot carry this ({why}); use model A1, or {remedy}")
 

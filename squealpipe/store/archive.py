@@ -16,7 +16,7 @@ from typing import Any
 
 import yaml
 
-from squealpipe.config.settings import Study, read_study
+from squealpipe.config.settings import Study, files_of_laws, read_study
 from squealpipe.store.checkout import commit
 from squealpipe.store.crate import METADATA, describe
 from squealpipe.store.keys import refuse_misfits
@@ -177,6 +177,11 @@ def _copy_setting(configs: list[Path], study: Study, base: Path, draft: Path) ->
     folder.mkdir(parents=True)
     for path in configs:
         shutil.copyfile(path, folder / path.name)
+        for file in files_of_laws(path):
+            copy = folder / file
+            if copy.resolve().is_relative_to(folder.resolve()):  # resolved.yaml has any
+                copy.parent.mkdir(parents=True, exist_ok=True)
+                shutil.copyfile(path.parent / file, copy)
     resolved = study.model_dump(mode="json")
     (folder / "resolved.yaml").write_text(yaml.safe_dump(resolved), encoding="utf-8")
     for name in ("requirements.lock", "LICENSE", "CITATION.cff"):

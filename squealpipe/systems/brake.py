@@ -1,32 +1,41 @@
 """The brake pad of A1 as a system: exact springs and dashpots, contact loss, friction with stick.
 
-``brake(law)`` is the system for one friction law. Its parameters are those of ``Parameters`` and
-both angles; the laws are those of :mod:`squealpipe.laws`.
+``brake(law)`` is the system for one friction law and one contact law. Its parameters are those of
+``Parameters`` and both angles; the laws are those of :mod:`squealpipe.laws`. A table of friction or
+contact is regimes whose knots are switches, so that the field is smooth in each.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from functools import cache
 from types import SimpleNamespace
 from typing import Any
 
 from squealpipe.functions import cos, sin
-from squealpipe.laws.contact import contact_force
+from squealpipe.laws import contact_laws, friction_laws
+from squealpipe.laws.contact import normal_force
+from squealpipe.laws.contact_laws import LINEAR
 from squealpipe.laws.friction import stick_limit
 from squealpipe.laws.friction_laws import COULOMB
 from squealpipe.laws.springs import Geometry, fixed_ends, squared_distance
+from squealpipe.laws.tables import is_table, pieces_of
 from squealpipe.models import a1
-from squealpipe.parameters import DEFAULTS, NUMBERS_OF_A1, Parameters
+from squealpipe.parameters import NUMBERS_OF_A1, Parameters
 from squealpipe.systems.system import Switch, System
 
-REGIMES = {
-    "slip_slower": {"contact": 1.0, "direction": 1.0, "stick": 0.0},
-    "slip_faster": {"contact": 1.0, "direction": -1.0, "stick": 0.0},
-    "stick": {"contact": 1.0, "direction": 0.0, "stick": 1.0},
-    "separated": {"contact": 0.0, "direction": 0.0, "stick": 0.0},
-}
+SLIP = {"slip_slower": 1.0, "slip_faster": -1.0}
 PIVOT_REACH2 = 1e-14
 """Squared distance from a pivot, in free lengths, below which the force's direction is lost."""
+
+
+def brake_of(params: Parameters) -> System:
+    """The system of some parameters; ``parameters_of_run`` gives its numbers."""
+    return brake(
+        params.friction_law,
+        damped=params.damping1 + params.damping2 > 0,
+        contact_law=contact_laws.relative(params.contact_law, params.preload),
+    )
 
 
 def parameters_of_run(params: Parameters, alpha1: float, alpha2: float) -> dict[str, float]:
@@ -36,100 +45,242 @@ def parameters_of_run(params: Parameters, alpha1: float, alpha2: float) -> dict[
 
 
 @cache
-def brake(friction_law: str = COULOMB, *, damped: bool = False) -> System:
-    """A1 with one friction law.
+def brake(
+    friction_law: str = COULOMB, *, damped: bool = False, contact_law: str = LINEAR
+) -> System:
+    """A1 with one friction law and one contact law.
 
     Args:
-        friction_law: its name.
+        friction_law: its name, or a table.
         damped: with dashpots; without, ``damping1`` and ``damping2`` are not read.
+        contact_law: its name, or a table over l_pre and the force there.
     """
-    defaults = {
-        name: DEFAULTS[of] if DEFAULTS[of] is not None else DEFAULTS["mu"]
-        for name, of in NUMBERS_OF_A1.items()
-    }
+    laws = _Laws(friction_law, contact_law)
+    default = Parameters(friction_law=friction_law, contact_law=contact_law)
+    defaults = {name: getattr(default, name) for name in NUMBERS_OF_A1}
 
-    def of(p: Any) -> tuple[Any, Geometry]:
-        named = {name: getattr(p, name) for name in NUMBERS_OF_A1}
-        g = Geometry(cos(p.alpha1), sin(p.alpha1), cos(p.alpha2), sin(p.alpha2))
-        return SimpleNamespace(friction_law=friction_law, **named), g
+    def pull(s: Any, p: Any, r: Any) -> Any:
+        q, g = laws.of(p, r)
+        return a1.suspension_force(
+            s.x, s.y, s.vx, s.vy, q, g, linear_springs=False, dashpots=damped
+        )[0]
+
+    def force(t: Any, s: Any, p: Any, r: Any) -> Any:
+        return r.contact * normal_force(s.y, s.vy, laws.of(p, r)[0])
+
+    def limit(s: Any, p: Any, r: Any) -> Any:
+        q, _ = laws.of(p, r)
+        return stick_limit(normal_force(s.y, s.vy, q), q)
 
     def field(t: Any, s: Any, p: Any, r: Any) -> dict[str, Any]:
         ax, ay = a1.acceleration(
-            s.x, s.y, s.vx, s.vy, *of(p),
+            s.x, s.y, s.vx, s.vy, *laws.of(p, r),
             contact=r.contact, direction=r.direction, stick=r.stick, dashpots=damped,
         )  # fmt: skip
         return {"x": s.vx, "y": s.vy, "vx": ax, "vy": ay}
 
-    def pull(s: Any, p: Any) -> Any:
-        return a1.suspension_force(
-            s.x, s.y, s.vx, s.vy, *of(p), linear_springs=False, dashpots=damped
-        )[0]
-
-    def limit(s: Any, p: Any) -> Any:
-        q, _ = of(p)
-        return stick_limit(contact_force(s.y, q), q)
-
     def holds(t: Any, s: Any, p: Any, r: Any) -> Any:
-        return limit(s, p) ** 2 - pull(s, p) ** 2
+        return limit(s, p, r) ** 2 - pull(s, p, r) ** 2
 
     def pivot(spring: int) -> Any:
         def near(t: Any, s: Any, p: Any, r: Any) -> Any:
-            q, g = of(p)
+            q, g = laws.of(p, r)
             ends, length = fixed_ends(q, g), (p.length1, p.length2)[spring]
             distance = squared_distance(s.x, s.y, ends[2 * spring], ends[2 * spring + 1])
             return distance - PIVOT_REACH2 * length * length
 
         return near
 
-    def force(t: Any, s: Any, p: Any, r: Any) -> Any:
-        return r.contact * contact_force(s.y, of(p)[0])
+    def free(t: Any, s: Any, p: Any, r: Any) -> Any:
+        return s.y - p.preload
+
+    def on_belt(t: Any, s: Any, p: Any, r: Any) -> Any:
+        return p.belt_speed - s.vx
 
     return System(
         "brake",
         states={"x": "m", "y": "m", "vx": "m/s", "vy": "m/s"},
         parameters={**defaults, "alpha1": 1.0, "alpha2": 1.0},
-        regimes=REGIMES,
+        regimes=laws.regimes(),
         field=field,
         switches=[
-            Switch(
-                "separation",
-                leaves=("slip_slower", "slip_faster", "stick"),
-                when=lambda t, s, p, r: p.preload - s.y,
-                to="separated",
-            ),
-            Switch(
-                "contact",
-                leaves="separated",
-                when=lambda t, s, p, r: s.y - p.preload,
-                to=[("slip_slower", lambda t, s, p, r: p.belt_speed - s.vx), "slip_faster"],
-            ),
-            Switch(
-                "reversal",
-                leaves=("slip_slower", "slip_faster"),
-                when=lambda t, s, p, r: r.direction * (p.belt_speed - s.vx),
-                to=[
-                    ("stick", holds, "stick"),
-                    ("slip_faster", lambda t, s, p, r: r.direction),
-                    "slip_slower",
-                ],
-                reset=lambda t, s, p, r: {"vx": p.belt_speed},
-            ),
-            Switch("slip", "stick", lambda t, s, p, r: limit(s, p) - pull(s, p), "slip_faster"),
-            Switch(
-                "slip_back",
-                leaves="stick",
-                when=lambda t, s, p, r: limit(s, p) + pull(s, p),
-                to=[("slip_slower", None, "slip")],
-            ),
+            *laws.contact_switches(free),
+            *laws.belt_switches(on_belt, holds, limit, pull),
+            *laws.knots(),
         ],
         start={"x": 0.0, "y": 0.0, "vx": 0.0, "vy": 0.0},
-        starts_in=[
-            ("separated", lambda t, s, p, r: s.y - p.preload),
-            ("stick", holds, lambda t, s, p, r: p.belt_speed - s.vx),
-            ("slip_slower", lambda t, s, p, r: p.belt_speed - s.vx),
-            "slip_faster",
-        ],
+        starts_in=laws.starts(free, on_belt),
         outputs={"contact_force": ("N", force)},
         stops={"pivot1": pivot(0), "pivot2": pivot(1)},
         time_scale=lambda p: (p.mass / p.k1) ** 0.5,
     )
+
+
+class _Laws:
+    """Regimes and switches of a friction law and a contact law, one or several pieces each."""
+
+    def __init__(self, friction_law: str, contact_law: str) -> None:
+        self.friction_law, self.contact_law = friction_law, contact_law
+        self.frictions: list[dict[str, float]] = [{}]
+        self.contacts: list[dict[str, float]] = [{}]
+        if is_table(friction_law):
+            self.frictions = pieces_of(friction_law).constants("mu")
+        if is_table(contact_law):
+            self.contacts = pieces_of(contact_law, goes_on=True).constants("press")
+
+    def of(self, p: Any, r: Any) -> tuple[Any, Geometry]:
+        """Parameters as the laws read them, and direction cosines."""
+        q = SimpleNamespace(**{name: getattr(p, name) for name in NUMBERS_OF_A1})
+        q.friction_law, q.contact_law = self.friction_law, self.contact_law
+        if is_table(self.friction_law):
+            q.friction_law = friction_laws.Piece(r.mu_start, (r.mu_c0, r.mu_c1, r.mu_c2, r.mu_c3))
+        if is_table(self.contact_law):
+            coefficients = (r.press_c0, r.press_c1, r.press_c2, r.press_c3)
+            q.contact_law = contact_laws.Piece(r.press_start, coefficients)
+        return q, Geometry(cos(p.alpha1), sin(p.alpha1), cos(p.alpha2), sin(p.alpha2))
+
+    def name(self, kind: str, friction: int, contact: int) -> str:
+        """The name of a regime, with the numbers of its pieces where there are several."""
+        if len(self.frictions) > 1 and kind in SLIP:
+            kind += f"_{friction + 1}"
+        return f"{kind}_press_{contact + 1}" if len(self.contacts) > 1 else kind
+
+    def in_contact(self) -> Iterator[tuple[str, int, int]]:
+        """Kind and pieces of each regime in contact."""
+        for j in range(len(self.contacts)):
+            yield from ((kind, i, j) for i in range(len(self.frictions)) for kind in SLIP)
+            yield "stick", 0, j
+
+    def regimes(self) -> dict[str, dict[str, float]]:
+        """Regimes and their constants."""
+        found = {}
+        for kind, i, j in self.in_contact():
+            terms = {"direction": SLIP.get(kind, 0.0), "stick": float(kind == "stick")}
+            found[self.name(kind, i, j)] = {
+                "contact": 1.0, **terms, **self.frictions[i], **self.contacts[j]
+            }  # fmt: skip
+        terms = {"contact": 0.0, "direction": 0.0, "stick": 0.0}
+        for name in self.apart:
+            found[name] = {**terms, **self.frictions[0], **self.contacts[0]}
+        return found
+
+    @property
+    def apart(self) -> list[str]:
+        """Regimes without contact; with a dashpot also within the spring's free length."""
+        return ["separated", *(["released"] * (self.contact_law == "dashpot"))]
+
+    def landing(self, kind: str) -> list[Any]:
+        """Where a contact that begins leads, by the sliding speed: targets of a switch."""
+
+        def beyond(name: str, i: int) -> Any:
+            def condition(t: Any, s: Any, p: Any, r: Any) -> Any:
+                lag = SLIP[name] * (p.belt_speed - s.vx)
+                return lag - self.frictions[i]["mu_start"] * p.friction_speed if i else lag
+
+            return condition
+
+        order = [(name, i) for name in SLIP for i in reversed(range(len(self.frictions)))]
+        found = [(self.name(name, i, 0), beyond(name, i), kind) for name, i in order]
+        return [*found[:-1], (found[-1][0], None, kind)]
+
+    def contact_switches(self, free: Any) -> list[Switch]:
+        """Where contact is lost and found."""
+        first = [self.name(*each) for each in self.in_contact() if each[2] == 0]
+        if self.contact_law != "dashpot":
+
+            def pressed(t: Any, s: Any, p: Any, r: Any) -> Any:
+                return -free(t, s, p, r)
+
+            return [
+                Switch("separation", first, pressed, "separated"),
+                Switch("contact", "separated", free, self.landing("contact")),
+            ]
+
+        def force(t: Any, s: Any, p: Any, r: Any) -> Any:
+            return normal_force(s.y, s.vy, self.of(p, r)[0])
+
+        return [
+            Switch("separation", first, force, "released"),
+            Switch("contact", "separated", free, self.landing("contact")),
+            Switch(
+                "pressing",
+                "released",
+                lambda t, s, p, r: -force(t, s, p, r),
+                self.landing("contact"),
+            ),
+            Switch("clearance", "released", lambda t, s, p, r: -free(t, s, p, r), "separated"),
+        ]
+
+    def belt_switches(self, on_belt: Any, holds: Any, limit: Any, pull: Any) -> Iterator[Switch]:
+        """Where the mass reaches belt speed, and where stick ends."""
+        several = len(self.contacts) > 1
+        for j in range(len(self.contacts)):
+            slower, faster, stick = (
+                self.name(kind, 0, j) for kind in ("slip_slower", "slip_faster", "stick")
+            )
+            tail = f"_{j + 1}" * several
+            yield Switch(
+                f"reversal{tail}",
+                leaves=(slower, faster),
+                when=lambda t, s, p, r: r.direction * on_belt(t, s, p, r),
+                to=[
+                    (stick, holds, "stick"),
+                    (faster, lambda t, s, p, r: r.direction, "reversal"),
+                    (slower, None, "reversal"),
+                ],
+                reset=lambda t, s, p, r: {"vx": p.belt_speed},
+            )
+            yield Switch(
+                f"slip{tail}",
+                stick,
+                lambda t, s, p, r: limit(s, p, r) - pull(s, p, r),
+                [(faster, None, "slip")],
+            )
+            yield Switch(
+                f"slip_back{tail}",
+                stick,
+                lambda t, s, p, r: limit(s, p, r) + pull(s, p, r),
+                [(slower, None, "slip")],
+            )
+
+    def knots(self) -> Iterator[Switch]:
+        """Where a law goes over from one of its pieces to the next."""
+
+        def slides(end: str) -> Any:
+            def past(t: Any, s: Any, p: Any, r: Any) -> Any:
+                knot = getattr(r, f"mu_{end}") * p.friction_speed
+                return r.direction * (p.belt_speed - s.vx) - knot
+
+            return past
+
+        def presses(end: str) -> Any:
+            return lambda t, s, p, r: p.preload - s.y - getattr(r, f"press_{end}") * p.preload
+
+        for kind, i, j in self.in_contact():
+            here = self.name(kind, i, j)
+            after = [(self.name(kind, i + 1, j), slides)] * (
+                kind in SLIP and i + 1 < len(self.frictions)
+            )
+            after += [(self.name(kind, i, j + 1), presses)] * (j + 1 < len(self.contacts))
+            for there, past in after:
+                yield Switch(
+                    f"{here} to {there}",
+                    here,
+                    _negative(past("end")),
+                    [(there, None, "knot")],
+                )
+                yield Switch(f"{there} to {here}", there, past("start"), [(here, None, "knot")])
+
+    def starts(self, free: Any, on_belt: Any) -> list[Any]:
+        """In which regime a run starts: the first whose surfaces are all ≥ 0."""
+        found: list[Any] = [("separated", free)]
+        found += [(name, None) for name in self.apart[1:]]
+        regimes = [self.name(*each) for each in self.in_contact()]
+        sticks = [name for name in regimes if name.startswith("stick")]
+        slips = [name for name in regimes if name not in sticks]
+        found += [(name, None, on_belt) for name in sticks]
+        return [*found, *((name, None) for name in slips[:-1]), slips[-1]]
+
+
+def _negative(surface: Any) -> Any:
+    return lambda t, s, p, r: -surface(t, s, p, r)

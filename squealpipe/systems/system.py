@@ -73,8 +73,8 @@ class System:
         switches: see :class:`Switch`.
         start: state → value, and ``regime`` if it is to be given.
         starts_in: [(regime, condition) or (regime, condition, equality), …, regime], the first
-            whose condition is ≥ 0 and whose equality is 0; left out, the first regime whose
-            surfaces are all ≥ 0.
+            whose condition is ≥ 0 and whose equality is 0; a condition of None, as one left out,
+            stands for that regime's surfaces being all ≥ 0.
         period: of the forcing, a function of the parameters; left out, the system is autonomous.
         outputs: name → (unit, function (t, s, p, r)): quantities whose extremes are kept.
         stops: outcome → function (t, s, p, r): ends a run where it falls through zero.
@@ -299,8 +299,9 @@ class System:
             return tracer.regime("starts_in", entry), None, None
         regime, condition, equality = (*entry, None)[:3]
         equal = None if equality is None else tracer.one(f"starts_in {regime!r}", equality)
-        found = tracer.one(f"starts_in {regime!r}", condition)
-        return tracer.regime("starts_in", regime), found, equal
+        if condition is not None:
+            condition = tracer.one(f"starts_in {regime!r}", condition)
+        return tracer.regime("starts_in", regime), condition, equal
 
     def _watch(
         self, tracer: Tracer, switches: Sequence[SwitchSymbols], stops: Sequence[Symbol]
@@ -370,7 +371,7 @@ class System:
         traced = self.traced
         chosen = np.full(size, -1, np.int64)
         entries = traced.starts or tuple((i, None, None) for i in range(len(self.regimes)))
-        for regime, condition, equality in entries:
+        for place, (regime, condition, equality) in enumerate(entries):
             constants = dict(zip(traced.constants, traced.regimes[regime], strict=True))
             known = {TIME_UNIT: np.ones(size), **values, **constants}
             fits = np.ones(size, bool)
@@ -380,7 +381,7 @@ class System:
             if equality is not None:
                 (value,) = evaluate([equality], known)
                 fits &= np.asarray(np.abs(value) <= 1e-15 * max(map(_largest, values.values())))
-            if not traced.starts:
+            if condition is None and place != len(traced.starts) - 1:
                 sides = [(traced.falls[regime], 1.0), (traced.rises[regime], -1.0)]
                 for table, sign in sides:
                     for index in np.flatnonzero((table >= 0) & (table < len(self.switches))):

@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 from rocrate.rocrate import ROCrate
 
+from squealpipe.config.settings import read_study
 from squealpipe.rerun.key import file_key
 from squealpipe.store import StoreError, load, produce, save
 from squealpipe.store.archive import archive, verify
@@ -44,6 +45,18 @@ def test_archive_holds_result_and_what_made_it(run, frozen, keys_of):
     )
     assert verify("first", root=run).intact
     assert not list((run / "results/archive").glob(".*.tmp"))
+
+
+def test_an_archive_holds_the_files_of_its_laws(run, keys_of):
+    (run / "laws").mkdir()
+    (run / "laws/friction.csv").write_text("speed,coefficient\n0,0.4\n1,0.3\n")
+    (run / "mine.yaml").write_text("parameters:\n  friction_law: {table: laws/friction.csv}\n")
+    configs = ("workflow/config/paper.yaml", "mine.yaml")
+    frozen = archive("mine", keys=keys_of(run), root=run, configs=configs)
+    shutil.rmtree(run / "laws")
+    for names in (["resolved.yaml"], ["paper.yaml", "mine.yaml"]):
+        study = read_study(*(frozen / "config" / name for name in names))
+        assert study.parameters.friction_law == "linear 0.0:0.4 1.0:0.3"
 
 
 def test_crate_is_read_by_its_own_library(frozen):

@@ -1,14 +1,25 @@
 """The friction laws by name: how the coefficient depends on the sliding speed w = |V − ẋ|.
 
-A law is a module of this folder, and its name in the import below.
+A law is a module of this folder, and its name in the import below; or a table of the user's own
+or a Python file with ``coefficient(speed, p)`` (:mod:`squealpipe.laws.tables`).
 """
 
 from __future__ import annotations
 
-from types import ModuleType
+from functools import lru_cache
+from types import ModuleType, SimpleNamespace
 from typing import Any, Protocol, cast
 
 from squealpipe.laws.friction_laws import coulomb, exponential, hyperbolic  # noqa: F401
+from squealpipe.laws.tables import Pieces, functions_of, is_table, pieces_of, polynomial
+
+COLUMNS = ("speed", "coefficient")
+"""Of a table of friction: the sliding speed, m/s, and μ."""
+FILES = "or a table (FILE.csv), or a law in Python (FILE.py)"
+REFUSED: dict[str, str] = {}
+"""Laws that cannot be carried, with the reason."""
+IN_TABLE = ("mu", "mu_static", "friction_speed")
+"""Parameters that a table stands in for."""
 
 
 class FrictionLaw(Protocol):
@@ -36,11 +47,71 @@ FALLING = [name for name, law in LAWS.items() if getattr(law, "FALLING", False)]
 """Laws in which μ falls from its static value to that of sliding: Coulomb's where both agree."""
 
 
+class Table:
+    """A measured law; speeds in units of ``p.friction_speed``, which is 1 m/s in SI parameters."""
+
+    PARAMETERS = ()
+
+    def __init__(self, pieces: Pieces) -> None:
+        self.pieces = pieces
+
+    def coefficient(self, speed: Any, p: Any) -> Any:
+        """μ(w)."""
+        return self.pieces.value(speed * p.friction_speed**-1.0)
+
+    def slope(self, speed: Any, p: Any) -> Any:
+        """dμ/dw, s/m; at a knot that of higher speeds."""
+        unit = p.friction_speed**-1.0
+        return unit * self.pieces.value(speed * unit, derivative=True)
+
+
+class Piece:
+    """One piece of a table, whose start and coefficients are the constants of a regime."""
+
+    PARAMETERS = ()
+
+    def __init__(self, start: Any, coefficients: Any) -> None:
+        self.start, self.coefficients = start, coefficients
+
+    def coefficient(self, speed: Any, p: Any) -> Any:
+        """μ(w)."""
+        return polynomial(self.coefficients, speed * p.friction_speed**-1.0 - self.start)
+
+
+@lru_cache(maxsize=64)
+def _own(name: str) -> FrictionLaw | None:
+    """A law of the user's own; None if the name is none.
+
+    Raises:
+        ValueError: a table that is no function, or a file without a law.
+    """
+    if is_table(name):
+        return Table(pieces_of(name))
+    if "\n" not in name:
+        return None
+    found = functions_of(name)
+    if "coefficient" not in found:
+        raise ValueError("the file has no function coefficient(speed, p)")
+
+    def slope(speed: Any, p: Any) -> Any:
+        # a complex step is exact for a smooth law
+        return found["coefficient"](speed + 1e-30j, p).imag / 1e-30
+
+    return cast("FrictionLaw", SimpleNamespace(**{"PARAMETERS": (), "slope": slope, **found}))
+
+
+def law_of(name: Any) -> FrictionLaw | None:
+    """The law of a name, None if there is none; a law itself is given back."""
+    if not isinstance(name, str):
+        return cast("FrictionLaw", name)
+    return LAWS.get(name) or _own(name)
+
+
 def coefficient(speed: Any, p: Any) -> Any:
     """μ at a sliding speed w ≥ 0, m/s, by the law that ``p.friction_law`` names."""
-    return LAWS[p.friction_law].coefficient(speed, p)
+    return cast("FrictionLaw", law_of(p.friction_law)).coefficient(speed, p)
 
 
 def slope(speed: Any, p: Any) -> Any:
     """dμ/dw at a sliding speed w ≥ 0, s/m."""
-    return LAWS[p.friction_law].slope(speed, p)
+    return cast("FrictionLaw", law_of(p.friction_law)).slope(speed, p)

@@ -142,24 +142,21 @@ class ScalarSource:
 
     def change(self) -> str:
         """``change(switch, z, p, r, out)``: next regime, kind of event, state after the reset."""
-        lines: list[str] = []
+        head = self._writer("z")
+        state = [head.value(each) for each in self.variables[: self.size]]
+        lines = [*head.lines, *(f"put(out + {16 + 8 * i}, {z})" for i, z in enumerate(state))]
         for index, switch in enumerate(self.switches):
             writer = self._writer("v")
-            for place in range(self.size):
-                value = writer.value(switch.reset.get(place, self.variables[place]))
+            for place, symbols in switch.reset.items():
+                value = writer.value(symbols)
                 writer.lines.append(f"put(out + {16 + 8 * place}, {value})")
-            body, indent = writer.lines, ""
+            body = writer.lines
             for regime, condition, kind in switch.targets:
+                found = [f"put(out, {regime}.0)", f"put(out + 8, {kind}.0)", "return"]
                 if condition is not None:
-                    known = len(writer.lines)
-                    value = writer.value(condition)
-                    writer.lines[known:] = [indent + line for line in writer.lines[known:]]
-                    body.append(f"{indent}if {value} >= 0.0:")
-                    body += [f"{indent} put(out, {regime}.0)", f"{indent} put(out + 8, {kind}.0)"]
-                    body.append(f"{indent}else:")
-                    indent += " "
-                else:
-                    body += [f"{indent}put(out, {regime}.0)", f"{indent}put(out + 8, {kind}.0)"]
+                    body.append(f"if {writer.value(condition)} >= 0.0:")
+                    found = [f" {line}" for line in found]
+                body += found
             lines += [f"if switch == {index}:", *(f" {line}" for line in body)]
         return _function("change(switch, z, p, r, out)", lines)
 

@@ -12,6 +12,7 @@ import numpy as np
 
 from squealpipe.codes import Regime
 from squealpipe.laws.contact import contact_force
+from squealpipe.laws.contact_laws import LINEAR
 from squealpipe.laws.friction import stick_limit
 from squealpipe.laws.springs import Geometry
 from squealpipe.methods.hybrid import HybridRun
@@ -36,7 +37,7 @@ def symbolic_automaton(law: str) -> tuple[list[tuple[Any, Any]], list[Any]]:
     """Equations and surfaces of A1 as heyoka expressions; :func:`regime_values` fills them."""
     x, y, vx, vy = heyoka.make_vars("x", "y", "vx", "vy")
     value = {name: heyoka.par[index] for index, name in enumerate(PARAMETERS)}
-    p = SimpleNamespace(friction_law=law, **value)
+    p = SimpleNamespace(friction_law=law, contact_law=LINEAR, **value)
     g = Geometry(p.c1, p.s1, p.c2, p.s2)
     ax, ay = acceleration(
         x, y, vx, vy, p, g, contact=p.contact, direction=p.direction, stick=p.stick

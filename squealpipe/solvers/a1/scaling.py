@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from squealpipe.laws import springs
+from squealpipe.laws.contact_laws import LINEAR
 from squealpipe.laws.friction_laws import COULOMB, FALLING, LAWS
 from squealpipe.parameters import DEFAULTS, NUMBERS_OF_A1, TABLE, Parameters
 from squealpipe.solvers.a1.records import ORDER
@@ -79,6 +80,10 @@ def _scaled(given: Mapping[str, np.ndarray], linear_springs: bool) -> ScaledRuns
             + 0.0
             for name, of in NUMBERS_OF_A1.items()
         }
+        if not (
+            np.isin(given["friction_law"], list(LAWS)) & (given["contact_law"] == LINEAR)
+        ).all():
+            raise ValueError("own laws are carried by systems.brake.brake alone so far")
         dissipation = _dissipation(given["friction_law"], scaled, linear_springs=linear_springs)
         shape = np.broadcast_shapes(*{array.shape for array in given.values()})
         orders = np.zeros(shape, ORDER)

@@ -7,6 +7,7 @@ from types import SimpleNamespace
 from typing import NamedTuple
 
 from squealpipe.laws.contact import contact_force
+from squealpipe.laws.contact_laws import LINEAR
 from squealpipe.laws.friction import stick_limit
 from squealpipe.laws.friction_laws import COULOMB, LAWS
 from squealpipe.laws.functions import exp
@@ -85,6 +86,7 @@ def lane_system(*, linear_springs: bool, dissipation: Dissipation = PAPER) -> Hy
         k1=1.0,
         preload=1.0,
         friction_law=dissipation.law,
+        contact_law=LINEAR,
         **{name: lane[name] for name in (*PHYSICAL, *EXTENSIONS)},
     )
     if not dissipation.damped:

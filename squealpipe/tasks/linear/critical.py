@@ -6,9 +6,10 @@ from types import SimpleNamespace
 
 import xarray as xr
 
+from squealpipe.laws.contact_laws import LINEAR
 from squealpipe.laws.friction_laws import slope
 from squealpipe.models.damped import critical_friction, dashpots_lower
-from squealpipe.parameters import Parameters
+from squealpipe.parameters import Parameters, brief
 from squealpipe.schema import build
 from squealpipe.schema.linear import CRITICAL_DAMPING_MAP, CRITICAL_FRICTION_MAP
 from squealpipe.schema.origin import recorded
@@ -94,10 +95,15 @@ def critical_damping_map(
 
 
 def _refuse_slope(params: Parameters) -> None:
-    """Stop a friction law whose slope counts beside μ."""
+    """Stop a friction law whose slope counts beside μ, and a contact that is no linear spring."""
+    if params.contact_law != LINEAR:
+        raise ValueError(
+            f"contact_law = {brief(params.contact_law)}: critical friction is that of the linear "
+            "contact; use stability_map, or contact_law = 'linear'"
+        )
     if slope(abs(params.belt_speed), params) != 0:
         raise ValueError(
-            f"friction_law = {params.friction_law!r}: critical friction is that of Coulomb's law, "
-            "for the slope of another counts beside μ; use stability_map in a sweep over mu, or "
-            "friction_law = 'coulomb'"
+            f"friction_law = {brief(params.friction_law)}: critical friction is that of Coulomb's "
+            "law, for the slope of another counts beside μ; use stability_map in a sweep over mu, "
+            "or friction_law = 'coulomb'"
         )

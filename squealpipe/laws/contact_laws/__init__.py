@@ -1,0 +1,113 @@
+"""The contact laws by name: the normal force over the compression δ = l_pre − y and its rate.
+
+A law is a module of this folder, and its name in the import below; or a table of the user's own
+(:mod:`squealpipe.laws.tables`). Contact ends where the force has fallen to zero: no law pulls.
+"""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from types import ModuleType
+from typing import Any, Protocol, cast
+
+from squealpipe.laws.contact_laws import dashpot, linear  # noqa: F401
+from squealpipe.laws.tables import Pieces, is_table, knots_of, pieces_of, polynomial, scaled
+
+COLUMNS = ("compression", "force")
+"""Of a table of contact: δ, m, and N, N."""
+FILES = "or a table (FILE.csv)"
+REFUSED = {
+    "hertz": "d^1.5 has no Taylor series at d = 0, where contact begins and ends, so its order "
+    "would be lost there; give a table of it, whose pieces have one"
+}
+"""Laws that cannot be carried, with the reason."""
+IN_TABLE = ("k3",)
+"""Parameters that a table stands in for."""
+
+
+class ContactLaw(Protocol):
+    """What a contact law holds."""
+
+    def force(self, compression: Any, closing: Any, p: Any) -> Any:
+        """N at a compression δ, m, that grows with the rate ``closing``, m/s."""
+
+    def stiffness(self, compression: Any, p: Any) -> Any:
+        """∂N/∂δ, N/m."""
+
+    def energy(self, compression: Any, p: Any) -> Any:
+        """The work that compresses it slowly from 0, J."""
+
+
+LINEAR = "linear"
+LAWS = {
+    name: cast("ContactLaw", module)
+    for name, module in globals().items()
+    if isinstance(module, ModuleType)
+}
+"""Contact laws by name."""
+
+
+class Table:
+    """A measured law; its last slope goes on beyond the last knot.
+
+    Compressions are over l_pre and forces over k3 l_pre, which is the force at l_pre.
+    """
+
+    def __init__(self, pieces: Pieces) -> None:
+        self.pieces = pieces
+
+    def force(self, compression: Any, closing: Any, p: Any) -> Any:  # noqa: ARG002
+        """N."""
+        return p.k3 * p.preload * self.pieces.value(compression * p.preload**-1.0)
+
+    def stiffness(self, compression: Any, p: Any) -> Any:
+        """∂N/∂δ, N/m; at a knot that of larger compressions."""
+        return p.k3 * self.pieces.value(compression * p.preload**-1.0, derivative=True)
+
+    def energy(self, compression: Any, p: Any) -> Any:
+        """The integral of the pieces, J."""
+        return p.k3 * p.preload**2 * self.pieces.integral(compression * p.preload**-1.0)
+
+
+class Piece:
+    """One piece of a table, whose start and coefficients are the constants of a regime."""
+
+    def __init__(self, start: Any, coefficients: Any) -> None:
+        self.start, self.coefficients = start, coefficients
+
+    def force(self, compression: Any, closing: Any, p: Any) -> Any:  # noqa: ARG002
+        """N."""
+        distance = compression * p.preload**-1.0 - self.start
+        return p.k3 * p.preload * polynomial(self.coefficients, distance)
+
+
+@lru_cache(maxsize=64)
+def relative(name: str, preload: float) -> str:
+    """A law in units of l_pre and the force there: a table is rescaled, other names stay.
+
+    Raises:
+        ValueError: the table's first force is not 0 at compression 0, or it has none at l_pre.
+    """
+    if not is_table(name):
+        return name
+    knots, forces = knots_of(name)
+    if (knots[0], forces[0]) != (0.0, 0.0) or len(knots) < 2:
+        raise ValueError("a table of contact begins with compression 0 and force 0")
+    load = preload_force(name, preload)
+    if not load > 0:
+        raise ValueError(f"the table has no force at preload = {preload!r}")
+    return scaled(name, preload, load)
+
+
+def preload_force(name: str, preload: float) -> float:
+    """N of a table at the compression l_pre, N."""
+    return float(pieces_of(name, goes_on=True).value(preload))
+
+
+def law_of(name: Any, preload: float = 1.0) -> ContactLaw | None:
+    """The law of a name, None if there is none; a law itself is given back."""
+    if not isinstance(name, str):
+        return cast("ContactLaw", name)
+    if is_table(name):
+        return Table(pieces_of(relative(name, preload), goes_on=True))
+    return LAWS.get(name)

@@ -1,0 +1,20 @@
+"""The linear contact spring, the paper's."""
+
+from __future__ import annotations
+
+from typing import Any
+
+
+def force(compression: Any, closing: Any, p: Any) -> Any:  # noqa: ARG001
+    """Eq. (1c): N = k3 δ."""
+    return p.k3 * compression
+
+
+def stiffness(compression: Any, p: Any) -> Any:  # noqa: ARG001
+    """∂N/∂δ = k3, N/m."""
+    return p.k3
+
+
+def energy(compression: Any, p: Any) -> Any:
+    """½ k3 δ², J."""
+    return 0.5 * p.k3 * compression * compression

@@ -1,0 +1,205 @@
+"""Laws of the user's own: values between the knots of a table, or the source of a Python file.
+
+``linear 0:0.5 0.1:0.4 1:0.3`` holds pairs of knot and value, ``cubic …`` the same, joined by the
+monotone cubics of Fritsch and Carlson. The content is the law: it stands in parameters, keys and
+datasets as the name of a formula does, so nothing depends on a file that was read once.
+"""
+
+from __future__ import annotations
+
+import csv
+import math
+from collections.abc import Mapping
+from functools import lru_cache
+from itertools import pairwise
+from os import PathLike, fspath
+from pathlib import Path
+from typing import Any, NamedTuple
+
+BETWEEN = ("linear", "cubic")
+
+
+class Pieces(NamedTuple):
+    """A piecewise polynomial.
+
+    Attributes:
+        starts: (pieces,) where each begins; the last has no end.
+        coefficients: (pieces, 4) of the powers 0 to 3 of the distance from there.
+    """
+
+    starts: Any
+    coefficients: Any
+
+    def value(self, at: Any, *, derivative: bool = False) -> Any:
+        """The value at floats or arrays, or the rate; complex ones count by their real part."""
+        import numpy as np
+
+        piece = np.maximum(np.searchsorted(self.starts, np.real(at), side="right") - 1, 0)
+        return polynomial(self.coefficients[piece].T, at - self.starts[piece], derivative)
+
+    def integral(self, at: Any) -> Any:
+        """The integral from 0 to floats or arrays."""
+        import numpy as np
+
+        powers = np.array([1.0, 2.0, 3.0, 4.0])
+
+        def within(piece: Any, distance: Any) -> Any:
+            terms = self.coefficients[piece] / powers
+            return distance * polynomial(terms.T, distance)
+
+        whole = within(np.arange(len(self.starts) - 1), np.diff(self.starts))
+        before = np.append(0.0, np.cumsum(whole))
+        piece = np.maximum(np.searchsorted(self.starts, at, side="right") - 1, 0)
+        return before[piece] + within(piece, at - self.starts[piece])
+
+    def constants(self, prefix: str) -> list[dict[str, float]]:
+        """Start, end and coefficients of each piece by name; the last ends nowhere."""
+        ends = [*self.starts[1:], self.starts[-1]]
+        names = [f"{prefix}_{what}" for what in ("start", "end", "c0", "c1", "c2", "c3")]
+        rows = zip(self.starts, ends, self.coefficients, strict=True)
+        return [
+            dict(zip(names, map(float, (start, end, *each)), strict=True))
+            for start, end, each in rows
+        ]
+
+
+def polynomial(coefficients: Any, distance: Any, derivative: bool = False) -> Any:
+    """c0 + c1 d + c2 d² + c3 d³ in nested form, or its derivative."""
+    c0, c1, c2, c3 = coefficients
+    if derivative:
+        return c1 + distance * (2.0 * c2 + distance * (3.0 * c3))
+    return c0 + distance * (c1 + distance * (c2 + distance * c3))
+
+
+def read_table(path: str | PathLike[str], columns: tuple[str, str], between: str = "linear") -> str:
+    """The text of a table in a CSV file.
+
+    Args:
+        path: file whose first line names the columns.
+        columns: those of knots and values.
+        between: "linear" or "cubic".
+
+    Raises:
+        FileNotFoundError: no such file.
+        ValueError: a column is missing, or a value is no number; names the line.
+    """
+    if between not in BETWEEN:
+        raise ValueError(f"between = {between!r}: choose from {', '.join(BETWEEN)}")
+    pairs = []
+    with Path(path).open(encoding="utf-8-sig", newline="") as file:
+        rows = csv.DictReader(file, skipinitialspace=True)
+        names = [name.strip() for name in rows.fieldnames or []]
+        rows.fieldnames = names
+        for name in columns:
+            if name not in names:
+                raise ValueError(f"{path} has no column {name!r}; its columns: {', '.join(names)}")
+        for row in rows:
+            try:
+                pairs.append([float(row[name]) for name in columns])
+            except (TypeError, ValueError):
+                given = ", ".join(str(row[name]) for name in columns)
+                raise ValueError(f"{path}, line {rows.line_num}: no numbers: {given}") from None
+    if not pairs:
+        raise ValueError(f"{path} has no rows below its header")
+    return between + "".join(f" {knot!r}:{value!r}" for knot, value in pairs)
+
+
+@lru_cache(maxsize=64)
+def knots_of(text: str) -> tuple[tuple[float, ...], tuple[float, ...]]:
+    """Knots and values of the text of a table.
+
+    Raises:
+        ValueError: it is none, or no function: a knot is a duplicate, negative, or out of order.
+    """
+    try:
+        pairs = [tuple(map(float, pair.split(":"))) for pair in text.split()[1:]]
+        knots, values = (tuple(each) for each in zip(*pairs, strict=True))
+    except ValueError:
+        raise ValueError("a table is written like 'linear 0:0.5 0.1:0.4 1:0.3'") from None
+    for number in (*knots, *values):
+        if not (math.isfinite(number) and number >= 0):
+            raise ValueError(f"{number!r} in the table: finite numbers from 0 on are needed")
+    for before, after in pairwise(knots):
+        if not before < after:
+            raise ValueError(
+                f"{after!r} stands after {before!r} in the table: it must ascend, with one value "
+                "for each"
+            )
+    return knots, values
+
+
+def scaled(text: str, knot: float, value: float) -> str:
+    """The text of a table with knots and values in other units."""
+    pairs = zip(*knots_of(text), strict=True)
+    return text.split(maxsplit=1)[0] + "".join(f" {k / knot!r}:{v / value!r}" for k, v in pairs)
+
+
+def functions_of(source: str) -> dict[str, Any]:
+    """What the source of a law in Python defines; its own code, run as a script is.
+
+    Raises:
+        ValueError: it is not Python.
+    """
+    found: dict[str, Any] = {}
+    try:
+        exec(compile(source, "<law>", "exec"), found)  # noqa: S102 (the user's own file)
+    except SyntaxError as error:
+        raise ValueError(f"line {error.lineno} of the law is not Python: {error.msg}") from error
+    return found
+
+
+def is_table(name: object) -> bool:
+    """Whether the name of a law is the text of a table."""
+    return isinstance(name, str) and name.partition(" ")[0] in BETWEEN and ":" in name
+
+
+@lru_cache(maxsize=64)
+def pieces_of(text: str, *, goes_on: bool = False) -> Pieces:
+    """The pieces of a table, from 0 on.
+
+    Args:
+        text: of the table.
+        goes_on: beyond the last knot with the last slope, not constant.
+    """
+    import numpy as np
+
+    knots, values = (np.array(each) for each in knots_of(text))
+    if text.startswith("cubic") and len(knots) > 2:
+        from scipy.interpolate import PchipInterpolator
+
+        inner = PchipInterpolator(knots, values).c[::-1].T
+    else:
+        slopes = np.diff(values) / np.diff(knots)
+        inner = np.stack([values[:-1], slopes, 0 * slopes, 0 * slopes], axis=-1)
+    last = [values[-1], inner[-1, 1] if goes_on and len(inner) else 0.0, 0.0, 0.0]
+    coefficients = np.vstack([inner.reshape(-1, 4), last])
+    if knots[0] > 0:
+        knots = np.append(0.0, knots)
+        coefficients = np.vstack([[values[0], 0.0, 0.0, 0.0], coefficients])
+    return Pieces(knots, coefficients)
+
+
+def named(given: Any, columns: tuple[str, str], folder: Path = Path()) -> Any:
+    """The name of a law from what a user writes: a file becomes its content.
+
+    Args:
+        given: a name; the path of a CSV or Python file; or ``{"table": path, "between": "cubic"}``
+            or ``{"python": path}``.
+        columns: of the table.
+        folder: from which paths lead.
+
+    Raises:
+        OSError: the file cannot be read.
+        ValueError: as :func:`read_table`, or the mapping is another one.
+    """
+    if isinstance(given, PathLike) or (isinstance(given, str) and given.endswith((".csv", ".py"))):
+        given = {"python" if fspath(given).endswith(".py") else "table": fspath(given)}
+    if not isinstance(given, Mapping):
+        return given
+    if set(given) == {"python"}:
+        return (folder / given["python"]).read_text(encoding="utf-8")
+    if not {"table"} <= set(given) <= {"table", "between"}:
+        raise ValueError(
+            "write {table: FILE.csv}, if wanted with `between: cubic`, or {python: FILE.py}"
+        )
+    return read_table(folder / given["table"], columns, given.get("between", "linear"))
