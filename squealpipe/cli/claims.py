@@ -2,17 +2,13 @@
 
 from __future__ import annotations
 
-import csv
 import json
 import shutil
-import sys
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Any
 
-from cyclopts import Parameter
-
-from squealpipe.cli.arguments import AsJson, Switch
+from squealpipe.cli.arguments import AsJson
 from squealpipe.cli.exit_codes import DONE
 
 MADE = Path("results/data/claims.nc")
@@ -22,14 +18,7 @@ ROOM_FOR_A_NUMBER = 60
 """Columns from which on a line has the deciding number too."""
 
 
-def claims(
-    *what: str,
-    only: str | None = None,
-    csv_: Annotated[bool, Parameter(name="--csv", negative="")] = False,
-    json_: AsJson = False,
-    file: Path | None = None,
-    wide: Switch = False,
-) -> int:
+def claims(*ids: str, only: str | None = None, json_: AsJson = False, file: Path = MADE) -> int:
     """Print the paper's statements with their verdicts; those that are named, in full.
 
     With the shipped parameters, exit code 1 means that a verdict differs from the recorded one.
@@ -37,34 +26,24 @@ def claims(
     Example: `squealpipe claims F2d` or `squealpipe claims --only fails`
 
     Args:
-        what: ids of statements to show in full; a file of verdicts is taken as --file.
+        ids: statements to show in full.
         only: a verdict: holds, fails, depends … or holds only …; its first letters are enough.
-        csv_: print CSV with every column.
         json_: print a JSON list of objects.
-        file: dataset of verdicts, made by `snakemake`; results/data/claims.nc by default.
-        wide: print whole lines, for a pager, instead of cutting them at the terminal's width.
+        file: dataset of verdicts, made by `squealpipe run`.
     """
     from squealpipe.study.claims.table import table
 
-    named = [Path(item) for item in what if item.endswith(".nc") or Path(item).is_file()]
-    if len(named) + (file is not None) > 1:
-        raise ValueError("give one file of verdicts")
-    chosen = file or next(iter(named), MADE)
-    if not chosen.is_file():
-        raise FileNotFoundError(f"no verdicts {chosen}; make them with: squealpipe run")
-    every, code = table(chosen)
-    rows = _chosen(every, [item for item in what if Path(item) not in named], only)
+    if not file.is_file():
+        raise FileNotFoundError(f"no verdicts {file}; make them with: squealpipe run")
+    every, code = table(file)
+    rows = _chosen(every, ids, only)
     if json_:
         print(json.dumps(rows, indent=1, allow_nan=False))
-    elif csv_:
-        writer = csv.DictWriter(sys.stdout, rows[0] if rows else ["id"], lineterminator="\n")
-        writer.writeheader()
-        writer.writerows(rows)
-    elif len(named) < len(what):
+    elif ids:
         for row in rows:
             print(*_details(row), "", sep="\n")
     else:
-        width = None if wide else max(shutil.get_terminal_size().columns, NARROW)
+        width = max(shutil.get_terminal_size().columns, NARROW)
         print(*(_line(row, width) for row in rows), sep="\n")
         if rows:
             print(f"{len(rows)} statements; `squealpipe claims {rows[0]['id']}` shows one in full")
@@ -97,12 +76,12 @@ def _corrected(row: Mapping[str, Any]) -> dict[str, Any]:
     return {"verdict": row["corrected_verdict"], "value": row["corrected_value"]}
 
 
-def _line(row: Mapping[str, Any], width: int | None) -> str:
+def _line(row: Mapping[str, Any], width: int) -> str:
     value = "" if row["value"] is None else f"{row['value']:.4g}"
     # Where the line is too short for words beside it, a number is better left out than cut.
-    number = "" if width is not None and width < ROOM_FOR_A_NUMBER else f"{value:>10}  "
+    number = "" if width < ROOM_FOR_A_NUMBER else f"{value:>10}  "
     text = f"{row['id']:<5}{row['verdict']:<26}{number}{row['statement']}"
-    return text if width is None or len(text) <= width else f"{text[: width - 1]}…"
+    return text if len(text) <= width else f"{text[: width - 1]}…"
 
 
 def _details(row: Mapping[str, Any]) -> list[str]:

@@ -95,7 +95,7 @@ def test_help_loads_no_numerics():
         (["simulate", "1", "2", "--points", "100000000000000"], "Unable to allocate"),
         (["simulate", "1", "2", "-c", "nowhere.yaml"], "no configuration nowhere.yaml"),
         (["verify", "nothing"], "no archive, folder or file 'nothing'"),
-        (["claims", "nothing.nc"], "make them with: squealpipe run"),
+        (["claims", "--file", "nothing.nc"], "make them with: squealpipe run"),
         (["explain", "--times"], "run snakemake in this folder first"),
     ],
 )

@@ -1,10 +1,10 @@
-"""A run as one tree, read when it is used; several runs stacked along what was changed."""
+"""A run as one tree; damaged, swapped and foreign files are refused."""
 
 import numpy as np
 import pytest
 import xarray as xr
 
-from squealpipe import Parameters, backbone, load, open_results, save
+from squealpipe import load, open_results
 from squealpipe.rerun.key import file_key
 from squealpipe.store import StoreError, produce
 from squealpipe.store.archive import archive
@@ -33,45 +33,7 @@ def test_nodes_are_the_datasets_by_their_names(run, keys_of):
         )
 
 
-def test_runs_are_stacked_along_the_parameters_that_changed(tmp_path, write_run):
-    places = []
-    for name, mu, points in (("a", 0.3, 13), ("b", 0.4, 25), ("c", 0.5, 13)):
-        places.append(write_run(tmp_path / name, mu=mu, points=points) / "results")
-    tree = open_results(places, along="run")
-    found = tree["stability_map"]
-    assert found.growth_rate.dims == ("run", "alpha1", "alpha2")
-    assert found.growth_rate.shape == (3, 13, 13)
-    assert found.run.values.tolist() == list(map(str, places))
-    assert found.mu.values.tolist() == [0.3, 0.4, 0.5]
-    assert found["linear.points"].values.tolist() == [13, 25, 13]
-    whole = load(places[1] / "data/stability_map.nc")
-    np.testing.assert_array_equal(found.growth_rate[1], whole.growth_rate[::2, ::2])
-    np.testing.assert_array_equal(found.alpha1, load(places[0] / "data/stability_map.nc").alpha1)
-
-
-def test_lists_of_other_length_are_filled_up(tmp_path):
-    made = {}
-    for name, k3, top in (("a", 0.75, 1.5), ("b", 0.6, 1.2)):
-        params = Parameters(k3=k3)
-        made[name] = backbone(params, 0.9, 2.8, mode=1, y_peak_max=top)
-        save(made[name], tmp_path / name / "data/branch.nc")
-    found = open_results([tmp_path / "a", tmp_path / "b"], along="run")["branch"]
-    assert found.k3.values.tolist() == [0.75, 0.6]
-    sizes = [each.sizes["point"] for each in made.values()]
-    assert found.sizes["point"] == max(sizes)
-    for row, each in zip(found.omega.values, made.values(), strict=True):
-        np.testing.assert_array_equal(row[: each.sizes["point"]], each.omega)
-        assert np.isnan(row[each.sizes["point"] :]).all()
-
-
-def test_wrong_questions_are_told(run, tmp_path):
-    with pytest.raises(ValueError, match="give a list"):
-        open_results(run / "results", along="run")
-    for wrong in ([run / "results"], []):
-        with pytest.raises(ValueError, match="along = None"):
-            open_results(wrong)
-    with pytest.raises(ValueError, match="named twice"):
-        open_results([run / "results"] * 2, along="run")
+def test_an_unknown_run_is_told_with_those_that_there_are(tmp_path):
     (tmp_path / "results/archive/first").mkdir(parents=True)
     with pytest.raises(FileNotFoundError, match=r"no archive, folder or file.*; archives: first$"):
         open_results("nothing", root=tmp_path)

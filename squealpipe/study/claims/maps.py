@@ -99,15 +99,8 @@ def order_turns_over(run: Run) -> xr.DataArray:
 
 
 def stiffness(run: Run, name: str) -> xr.DataArray:
-    """K11 (``stiffness_x``), K12 (``stiffness_xy``) or K22 (``stiffness_y``) over the map, N/m.
-
-    Raises:
-        MissingDataError: the dataset was made by a version that did not store it.
-    """
-    sliding = run["quasi_static_map"]
-    if name not in sliding:
-        raise MissingDataError(f"this quasi_static_map holds no {name}; compute it again")
-    return sliding[name]
+    """K11 (``stiffness_x``), K12 (``stiffness_xy``) or K22 (``stiffness_y``) over the map, N/m."""
+    return run["quasi_static_map"][name]
 
 
 def unstable_and_lost(run: Run) -> tuple[xr.DataArray, xr.DataArray]:

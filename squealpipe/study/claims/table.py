@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import math
 import os
-from collections import Counter
-from collections.abc import Mapping, Sequence
 from typing import Any
 
 import xarray as xr
@@ -25,8 +23,15 @@ TEXT = (
     "figure",
 )
 VERDICTS = ("verdict", "corrected_verdict", "verdict_here", "recorded")
-NUMBERS = ("value", "corrected_value", "threshold", "margin", "feasible_share")
-INTERVAL = ("feasible_share_low", "feasible_share_high")
+NUMBERS = (
+    "value",
+    "corrected_value",
+    "threshold",
+    "margin",
+    "feasible_share",
+    "feasible_share_low",
+    "feasible_share_high",
+)
 FLAGS = {"basis": Basis, "origin": Origin}
 
 
@@ -49,22 +54,11 @@ def rows(claims: xr.Dataset) -> list[dict[str, Any]]:
                 "changes": verdicts["corrected_verdict"] != verdicts["verdict"],
                 "as_recorded": verdicts["verdict_here"] == verdicts["recorded"],
                 "unmet": _fails_by_a_further_condition(row),
-                **_standing(row),
+                "feasible_count": int(row.feasible_count),
+                **{key: flags(int(row[key])).name for key, flags in FLAGS.items()},
             }
         )
     return table_
-
-
-def totals(table_: Sequence[Mapping[str, Any]]) -> dict[str, dict[str, int]]:
-    """Origin of a row → verdict → number of rows: the paper's statements and our misprints apart.
-
-    Args:
-        table_: what :func:`rows` gives.
-    """
-    return {
-        origin.name: dict(Counter(row["verdict"] for row in table_ if row["origin"] == origin.name))
-        for origin in Origin
-    }
 
 
 def table(path: str | os.PathLike[str]) -> tuple[list[dict[str, Any]], int]:
@@ -81,15 +75,6 @@ def table(path: str | os.PathLike[str]) -> tuple[list[dict[str, Any]], int]:
     found = rows(claims)
     shipped = bool(claims.attrs["shipped"])
     return found, int(shipped and not all(row["as_recorded"] for row in found))
-
-
-def _standing(row: xr.Dataset) -> dict[str, Any]:
-    """How the statement stands to the inference; None where an older file does not say."""
-    return {
-        "feasible_count": int(row.feasible_count) if "feasible_count" in row else None,
-        **{key: _number(row[key].item()) if key in row else None for key in INTERVAL},
-        **{key: flags(int(row[key])).name if key in row else None for key, flags in FLAGS.items()},
-    }
 
 
 def _fails_by_a_further_condition(row: xr.Dataset) -> bool:

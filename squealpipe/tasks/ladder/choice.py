@@ -58,14 +58,6 @@ LINE_WIDTH = 4.0 * math.pi
 """Half the width of a spectral line under a Hann window, over one through the length of the run."""
 
 
-class Check(NamedTuple):
-    """One thing that was looked at before a level was trusted."""
-
-    name: str
-    passed: bool
-    detail: str
-
-
 @dataclass(frozen=True)
 class Choice:
     """The cheapest trustworthy answer.
@@ -74,14 +66,12 @@ class Choice:
         model: name of the level, of :class:`squealpipe.schema.ladder.Level`.
         value: the answer: truth value, rad/s, N_max/(k3 l_pre), or m.
         reason: why this level.
-        checks: what was looked at.
         cost: CPU time of the rules and of A1 where it ran, s.
     """
 
     model: str
     value: float | bool
     reason: str
-    checks: tuple[Check, ...]
     cost: float
 
 
@@ -159,7 +149,6 @@ def choose_model(
         model=level.name,
         value=bool(value) if question == "contact_lost" else value,
         reason=_reason(found, level, question),
-        checks=_checks(found, params, question, tol, horizon),
         cost=found.cost,
     )
 
@@ -319,46 +308,3 @@ def _reason(found: Choices, level: Level, question: str) -> str:
     if found.value[0] == 1.0:
         return f"the first integral of A4 allows no larger force than that of the start ({SAMPLE})"
     return f"between the force of the start and a bound that is not exceeded ({SAMPLE})"
-
-
-def _checks(
-    found: Choices, params: Parameters, question: str, tol: float, t_end: float
-) -> tuple[Check, ...]:
-    linear, motion = found.linear, found.linear.motion
-    error = float(linear.error[0])
-    checks = [
-        Check(
-            "no dashpots, Coulomb friction with one μ",
-            without_extensions(params) is params,
-            "what the linear levels carry",
-        ),
-        Check("motion in contact oscillates", bool(motion.oscillates[0]), "both ω² real, positive"),
-        Check(
-            "slower than the belt",
-            bool(slides(motion.fastest(), params)[0]),
-            f"|x'| ≤ {float(motion.fastest()[0]):.3g}, |V| = {abs(params.belt_speed):.3g}",
-        ),
-        Check(
-            "geometry changes little",
-            error < LARGEST_ERROR,
-            f"{error:.2g} of the slower mode; ∞ near a resonance or where nothing was measured",
-        ),
-        Check(
-            "contact never lost",
-            bool(linear.keeps[0]),
-            f"y ≤ {float(motion.highest()[0]):.3g} + {float(linear.margin[0]):.2g}, "
-            f"l_pre = {params.preload:.3g}",
-        ),
-    ]
-    if question == "frequency":
-        clear = bool(dominates(motion, t_end)[0])
-        checks += [
-            Check("one mode dominates y", clear, "amplitudes apart, lines apart, periods enough"),
-            Check("geometry within tolerance", error <= tol, f"{error:.2g} ≤ {tol:.2g}?"),
-        ]
-    if question == "peak_contact_force":
-        bound = float(found.first_integral[0])
-        checks.append(
-            Check("first integral bounds the force", bound <= tol, f"{bound:.2g} ≤ {tol:.2g}?")
-        )
-    return tuple(checks)
