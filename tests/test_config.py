@@ -253,13 +253,16 @@ def test_a_sweep_follows_the_parameters_that_it_does_not_name(written):
 @pytest.mark.parametrize(
     ("section", "expected"),
     [
-        ("{vary: {mu: '0:0.6'}}", "vary = {'mu': '0:0.6'}: mu: '0:0.6' is no range; write first"),
-        ("{vary: {mu: heavy}}", "mu: 'heavy' is no number; write for instance"),
-        ("{vary: {mu: [1, x]}}", "mu: 'x' is no number"),
+        (
+            "{vary: {mu: '0:0.6'}}",
+            "vary = {'mu': '0:0.6'}: mu: '0:0.6' is not a range; write first",
+        ),
+        ("{vary: {mu: heavy}}", "mu: 'heavy' is not a number; write for instance"),
+        ("{vary: {mu: [1, x]}}", "mu: 'x' is not a number"),
         ("{vary: {}}", "sweeps.mine.vary = {}: 1 or more items are needed"),
         ("{vary: [1]}", "sweeps.mine.vary = (1,): names and values are needed"),
         ("{fixed: {alpha1: north}}", "'north' is not a valid angle; write 0.4pi"),
-        ("{fixed: {k3: {a: 1}}}", "k3: {'a': 1} is no value; write a number"),
+        ("{fixed: {k3: {a: 1}}}", "k3: {'a': 1} is not a value; write a number"),
         ("{fixd: {}}", "sweeps.mine.fixd: unknown key; did you mean 'fixed'?"),
     ],
 )
@@ -322,7 +325,7 @@ def test_a_folder_of_results_holds_nothing_else(tmp_path, monkeypatch):
     (tmp_path / "results/archive/first/manifest.json").touch()
     for name in ("results", "results/new"):
         check_results_folder(name)
-    with pytest.raises(ConfigError, match=r"holds docs/store\.md, which is no result"):
+    with pytest.raises(ConfigError, match=r"holds docs/store\.md, which is not a result"):
         check_results_folder("docs")
     (tmp_path / "link").symlink_to("results/archive/first")
     (tmp_path / "mine").mkdir()

@@ -59,7 +59,7 @@ def test_radians_are_read_exactly_up_to_a_full_turn(value):
 
 @pytest.mark.parametrize("text", ["", "x", "nan", "inf"])
 def test_what_is_no_number_is_refused(text):
-    with pytest.raises(ValueError, match="is no number"):
+    with pytest.raises(ValueError, match="is not a number"):
         parse_number(text)
 
 
@@ -82,13 +82,13 @@ def test_list():
 @pytest.mark.parametrize(
     ("text", "part"),
     [
-        ("0:1", "no range"),
-        ("0:1:2:cube", "no range"),
-        ("0:1:x", "no range"),
+        ("0:1", "not a range"),
+        ("0:1:2:cube", "not a range"),
+        ("0:1:x", "not a range"),
         ("0:1:1", "ask for 2 to 100000"),
         ("0:1:1000000", "ask for 2 to 100000"),
         ("0:1:3:log", "neither 0"),
-        ("1,,2", "no number"),
+        ("1,,2", "not a number"),
     ],
 )
 def test_bad_ranges_name_the_form(text, part):
@@ -118,13 +118,13 @@ def test_values_of_a_sweep_may_be_text_numbers_or_lists(name, given_, values):
 @pytest.mark.parametrize(
     ("name", "given_", "part"),
     [
-        ("mu", "0.3pi", "no number"),
-        ("mu", True, "'True' is no number"),
-        ("mu", None, "no number"),
-        ("mu", [math.inf], "no number"),
-        ("mu", [[1]], "no number"),
+        ("mu", "0.3pi", "not a number"),
+        ("mu", True, "'True' is not a number"),
+        ("mu", None, "not a number"),
+        ("mu", [math.inf], "not a number"),
+        ("mu", [[1]], "not a number"),
         ("alpha1", "north", "write 0.4pi"),
-        ("mode", "1:2:3", "1.5 is no whole number"),
+        ("mode", "1:2:3", "1.5 is not a whole number"),
     ],
 )
 def test_what_is_no_value_is_refused(name, given_, part):

@@ -25,7 +25,7 @@ def _angles(_: Any, tokens: Sequence[Any]) -> list[float]:
 def _whole(_: Any, tokens: Sequence[Any]) -> int:
     number = parse_number(tokens[0].value)
     if not number.is_integer():
-        raise ValueError(f"{tokens[0].value!r} is no whole number")
+        raise ValueError(f"{tokens[0].value!r} is not a whole number")
     return int(number)
 
 

@@ -107,11 +107,11 @@ def _warn(found: list[Run]) -> None:
 
 def _changes(changed: dict[str, Any]) -> str:
     physical = sorted(changed, key=lambda key: (not key.startswith("parameters."), key))
-    told = [f"{key.removeprefix('parameters.')}={changed[key]}" for key in physical[:SHOWN]]
-    more = len(physical) - len(told)
-    return ", ".join([*told, *([f"and {more} more"] if more else [])]) or "nothing"
+    stated = [f"{key.removeprefix('parameters.')}={changed[key]}" for key in physical[:SHOWN]]
+    more = len(physical) - len(stated)
+    return ", ".join([*stated, *([f"and {more} more"] if more else [])]) or "nothing"
 
 
 def _plain(run: Run, paper: dict[str, Any]) -> dict[str, Any]:
-    told = {name: getattr(run, name) for name in ("name", "kind", "date", "commit", "size")}
-    return {**told, "faults": run.faults, "changed": run.changed(paper), "config": run.config}
+    stated = {name: getattr(run, name) for name in ("name", "kind", "date", "commit", "size")}
+    return {**stated, "faults": run.faults, "changed": run.changed(paper), "config": run.config}

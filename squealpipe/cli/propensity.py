@@ -111,7 +111,7 @@ def _distribution(text: str) -> tuple[str, dict[str, str | float]]:
     name, _, words = text.partition("=")
     name, parts = name.strip().replace("-", "_"), words.split(":")
     if len(parts) != 3 or parts[0] not in KINDS:
-        raise ValueError(f"--spread {text!r} is no distribution; {FORM}")
+        raise ValueError(f"--spread {text!r} is not a distribution; {FORM}")
     one = parse_angle if name in ANGLES else parse_number
     numbers = dict(zip(KINDS[parts[0]], map(one, parts[1:]), strict=True))
     return name, {"distribution": parts[0], **numbers}

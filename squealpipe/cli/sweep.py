@@ -90,7 +90,7 @@ def _pairs(flag: str, texts: Sequence[str]) -> dict[str, str]:
     for text in texts:
         name, equals, value = text.partition("=")
         if not (name and equals and value):
-            raise ValueError(f"{text!r} is no NAME=VALUE; write for instance mu=0:0.6:13")
+            raise ValueError(f"{text!r} is not NAME=VALUE; write for instance mu=0:0.6:13")
         key = name.strip().replace("-", "_")
         key = SYMBOLS.get(key, key)
         if key in found:

@@ -66,7 +66,7 @@ def parse_number(text: str) -> float:
     except ValueError:
         value = math.nan
     if not math.isfinite(value):
-        raise ValueError(f"{text!r} is no number; write for instance 0.3 or 1e-3")
+        raise ValueError(f"{text!r} is not a number; write for instance 0.3 or 1e-3")
     return value
 
 
@@ -85,7 +85,7 @@ def parse_range(text: str, one: Callable[[str], float] = parse_number) -> list[f
     parts = text.split(":")
     spacing = parts.pop() if len(parts) == 4 else "linear"
     if len(parts) != 3 or spacing not in {"linear", "log"} or not parts[2].isdigit():
-        raise ValueError(f"{text!r} is no range; write first:last:count or first:last:count:log")
+        raise ValueError(f"{text!r} is not a range; write first:last:count or first:last:count:log")
     first, last, count = one(parts[0]), one(parts[1]), int(parts[2])
     if not 2 <= count <= MOST_VALUES:
         raise ValueError(
@@ -125,7 +125,7 @@ def read_values(name: str, given: object) -> list[float]:
         return values
     broken = [value for value in values if not value.is_integer()]
     if broken:
-        raise ValueError(f"{broken[0]!r} is no whole number; {name} needs 1, 2, …")
+        raise ValueError(f"{broken[0]!r} is not a whole number; {name} needs 1, 2, …")
     return [int(value) for value in values]
 
 
@@ -141,7 +141,7 @@ def read_fixed(name: str, given: object) -> Any:
         ValueError: an angle or parameter that is none, or no value at all.
     """
     if not isinstance(given, str | int | float | Sequence | None):
-        raise ValueError(f"{given!r} is no value; write a number, a word or a list of numbers")  # noqa: TRY004
+        raise ValueError(f"{given!r} is not a value; write a number, a word or a list of numbers")  # noqa: TRY004
     if name in (*ANGLES, *NUMBERS) and given is not None:
         return (parse_angle if name in ANGLES else parse_number)(_as_text(given))
     if isinstance(given, str):
@@ -194,5 +194,5 @@ def longest(vary: Mapping[str, Sequence[float]]) -> str:
 
 
 def _as_text(given: object) -> str:
-    """Numbers as text that reads as exactly them; true and false are no numbers."""
+    """Numbers as text that reads as exactly them; true and false are not numbers."""
     return given if isinstance(given, str) else repr(given)

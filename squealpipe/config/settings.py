@@ -195,7 +195,7 @@ def check_results_folder(results: str) -> None:
         if any((at / "manifest.json").is_file() for at in inside):
             raise ConfigError([f"results = {results!r}: {part} leads into the archive {inside[0]}"])
     if (stranger := _stranger(folder)) is not None:
-        what = f"it holds {stranger}, which is no result; a run needs a folder of its own"
+        what = f"it holds {stranger}, which is not a result; a run needs a folder of its own"
         raise ConfigError([f"results = {results!r}: {what}, for instance results/mine"])
 
 

@@ -129,7 +129,7 @@ class Sweep:
 
     @property
     def origin(self) -> dict[str, Any]:
-        """Attributes that tell what makes the result; swept parameters are its coordinates."""
+        """Attributes that record what makes the result; swept parameters are its coordinates."""
         task = TASKS[self.task]
         given = {**task.defaults, **self.fixed}
         physical = {name: given.pop(name) for name in self._physical if name in given}

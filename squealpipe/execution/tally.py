@@ -27,9 +27,9 @@ def lines(dataset: xr.Dataset, names: list[str]) -> list[str]:
     present = outcome.values[outcome.values != ABSENT]
     values, counts = np.unique(present, return_counts=True)
     order = np.argsort(-counts)
-    told = [f"{words[int(values[k])]} {counts[k]}" for k in order]
+    stated = [f"{words[int(values[k])]} {counts[k]}" for k in order]
     unit = "runs" if outcome.ndim == len(names) else "points"
-    text = [f"outcome of {present.size} {unit}: {', '.join(told)}"]
+    text = [f"outcome of {present.size} {unit}: {', '.join(stated)}"]
     missing = _missing(dataset, outcome)
     remedies = {int(item): remedy for item, remedy in REMEDIES.items()}
     for value in values[order]:

@@ -81,7 +81,7 @@ def read_table(path: str | PathLike[str], columns: tuple[str, str], between: str
 
     Raises:
         FileNotFoundError: no such file.
-        ValueError: a column is missing, or a value is no number; names the line.
+        ValueError: a column is missing, or a value is not a number; names the line.
     """
     if between not in BETWEEN:
         raise ValueError(f"between = {between!r}: choose from {', '.join(BETWEEN)}")

@@ -2,7 +2,7 @@
 
 r̈ = b − A r with r(0) = ṙ(0) = 0 has r(t) = (I − cos(√A t)) A⁻¹ b, so samples at equal steps obey
 r(t + h) = 2 cos(√A h) r(t) − r(t − h) + 2 (I − cos(√A h)) A⁻¹ b. Both matrices are entire functions
-of A: no eigenvalues are needed, and singular, defective and unstable matrices are no exception.
+of A: no eigenvalues are needed, and singular, defective and unstable matrices are not an exception.
 """
 
 from __future__ import annotations

@@ -33,7 +33,7 @@ BLUE, ORANGE, GREEN, RED, PURPLE, GREY = (
     "#CC79A7",
     "#7F7F7F",
 )
-"""Okabe–Ito: told apart by colour-blind readers; lines also differ in dash or marker."""
+"""Okabe–Ito: distinct for colour-blind readers; lines also differ in dash or marker."""
 
 PALETTE = [BLUE, ORANGE, GREEN, RED, PURPLE, GREY]
 

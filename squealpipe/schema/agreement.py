@@ -45,11 +45,11 @@ class Listing:
     """A dimension that lists what was found, so its length follows from the result.
 
     Attributes:
-        kinds: variables that tell what an entry is; only entries of one kind are matched.
+        kinds: variables that say what an entry is; only entries of one kind are matched.
         position: variable along which an entry is matched with the nearest one; without it the
             n-th entry of a kind is matched with the n-th.
         filler: entries whose first kind is this lie where a method's steps happened to end. Only
-            those at the same position are matched, and their number is no result.
+            those at the same position are matched, and their number is not a result.
     """
 
     kinds: tuple[str, ...] = ()

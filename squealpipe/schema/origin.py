@@ -1,6 +1,6 @@
 """What made a dataset: parameters, model, method, tolerance and versions, in its attributes.
 
-Every public task carries :func:`recorded`, so a dataset that is saved from a notebook tells its
+Every public task carries :func:`recorded`, so a dataset that is saved from a notebook states its
 parameters as one of the study does. None of these attributes enters the dataset's id.
 """
 
@@ -36,8 +36,8 @@ def recorded(
     """Have a task check its arguments, and write what made its dataset into the attributes.
 
     Args:
-        model: level of the model, where it is no argument of the task.
-        method: how it is computed, where that is no argument.
+        model: level of the model, where it is not an argument of the task.
+        method: how it is computed, where that is not an argument.
     """
 
     def decorate(task: Callable[Given, xr.Dataset]) -> Callable[Given, xr.Dataset]:
@@ -48,7 +48,7 @@ def recorded(
         def run(*args: Given.args, **kwargs: Given.kwargs) -> xr.Dataset:
             dataset = task(*args, **kwargs)
             given = defaults | dict(zip(defaults, args, strict=False)) | kwargs
-            # Grids are coordinates of the dataset; of a part of a map they would tell the part's.
+            # Grids are coordinates of the dataset; of a part of a map they would be the part's.
             grids = dataset.coords
             kept = {key: value for key, value in given.items() if key not in grids}
             dataset.attrs.update(origin(task.__name__, kept))
@@ -60,7 +60,7 @@ def recorded(
 
 
 def origin(name: str, arguments: Mapping[str, Any]) -> dict[str, Any]:
-    """Attributes that tell of a call; ``tolerance`` is "round-off" where there is no ``tol``.
+    """Attributes that record a call; ``tolerance`` is "round-off" where there is no ``tol``.
 
     Args:
         name: of a task that is :func:`recorded`.
@@ -68,18 +68,18 @@ def origin(name: str, arguments: Mapping[str, Any]) -> dict[str, Any]:
     """
     model, method = _HOW[name]
     given = {key: value for key, value in arguments.items() if key != "workers"}
-    told: dict[str, Any] = {"made_by": f"squealpipe.{name}"}
+    stated: dict[str, Any] = {"made_by": f"squealpipe.{name}"}
     for key, value in list(given.items()):
         if isinstance(value, Parameters):
-            told["parameters"] = _as_json(given.pop(key))
+            stated["parameters"] = _as_json(given.pop(key))
         elif isinstance(value, xr.Dataset):
-            told |= {key: value.attrs[key] for key in INHERITED if key in value.attrs}
+            stated |= {key: value.attrs[key] for key in INHERITED if key in value.attrs}
             del given[key]
-    told["model"] = given.pop("model", model or told.get("model", ""))
-    told["method"] = given.pop("method", method or told.get("method", ""))
-    told["tolerance"] = given.pop("tol", told.get("tolerance", "round-off"))
-    told["arguments"] = json.dumps({key: plain(value) for key, value in given.items()})
-    return {**told, **versions()}
+    stated["model"] = given.pop("model", model or stated.get("model", ""))
+    stated["method"] = given.pop("method", method or stated.get("method", ""))
+    stated["tolerance"] = given.pop("tol", stated.get("tolerance", "round-off"))
+    stated["arguments"] = json.dumps({key: plain(value) for key, value in given.items()})
+    return {**stated, **versions()}
 
 
 @functools.lru_cache(maxsize=64)

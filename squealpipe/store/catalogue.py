@@ -75,7 +75,7 @@ def matching(expression: str, found: list[Run]) -> list[str]:
     configuration with their section (``linear.points``).
 
     Raises:
-        ValueError: it is no condition, or names an unknown key.
+        ValueError: it is not a condition, or names an unknown key.
     """
     known = [run for run in found if run.config]
     rows = [_row(run.config) for run in known] or [_row({})]
@@ -90,7 +90,7 @@ def matching(expression: str, found: list[Run]) -> list[str]:
         hint = f"; did you mean {near!r}?" if near else ""
         raise ValueError(f"{expression!r}: {error}{hint}; {EXAMPLE}") from error
     if not isinstance(holds, pd.Series) or holds.dtype.kind != "b":
-        raise ValueError(f"{expression!r}: it is no condition that is true or false; {EXAMPLE}")
+        raise ValueError(f"{expression!r}: it is not a condition that is true or false; {EXAMPLE}")
     return [run.name for run, held in zip(known, holds, strict=False) if held]
 
 

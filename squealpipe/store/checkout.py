@@ -14,7 +14,7 @@ UNKNOWN = "unknown"
 def commit(root: Path = ROOT) -> str:
     """Our own commit, with a mark if there are changes; never that of a surrounding repository.
 
-    Archives below ``results`` are no code: one that takes the place of another marks nothing.
+    Archives below ``results`` are not code: one that takes the place of another marks nothing.
 
     Args:
         root: the checkout; "unknown" if it is none, or a folder inside another repository.

@@ -87,7 +87,7 @@ def load(path: AnyPath, *, schema: str | None = None) -> xr.Dataset:
 
     Raises:
         FileNotFoundError: no such file.
-        StoreError: the file is not whole, was changed, or is no dataset of this package.
+        StoreError: the file is not whole, was changed, or is not a dataset of this package.
         SchemaError: it does not fit its schema, or not the one asked for.
     """
     source = Path(path)
@@ -134,7 +134,7 @@ def refuse_target(target: Path) -> None:
         StoreError: a device, pipe, socket or folder of that name exists, or it is in an archive.
     """
     if target.exists() and not target.is_file():
-        raise StoreError(f"{target} is no regular file; choose another name to write to")
+        raise StoreError(f"{target} is not a regular file; choose another name to write to")
     archive = archive_around(target)
     if archive is not None:
         raise StoreError(f"{target} is part of the archive {archive}, which never changes")

@@ -31,7 +31,7 @@ VOLATILE_ATTRIBUTES = frozenset(
         "key",
     }
 )
-"""Global attributes that tell of the run, not of the result."""
+"""Global attributes that describe the run, not of the result."""
 
 
 def produce(

@@ -31,7 +31,7 @@ def matches_any(name: str, patterns: Iterable[str]) -> bool:
 
 
 def read_manifest(folder: Path) -> dict[str, Any]:
-    """Manifest of an archive; empty where it is damaged or the folder is no archive.
+    """Manifest of an archive; empty where it is damaged or the folder is not an archive.
 
     Raises:
         ValueError: it is too large to be one.
@@ -84,7 +84,7 @@ def archive_folder(name: str, root: str | os.PathLike[str] = ".") -> Path:
     """Folder of an archive of that name.
 
     Raises:
-        ValueError: the name could lead out of the folder of archives, or is no name.
+        ValueError: the name could lead out of the folder of archives, or is not a name.
     """
     if not NAME.fullmatch(name):
         raise ValueError(

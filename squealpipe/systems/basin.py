@@ -74,7 +74,7 @@ def basin(
         ``<state>_min`` and ``<state>_max`` of the last quarter; ``outcome``.
 
     Raises:
-        ValueError: an unknown state or parameter, or a value that is no finite number.
+        ValueError: an unknown state or parameter, or a value that is not a finite number.
     """
     grid = outer_product(system, start, parameters)
     size = math.prod(grid.shape)

@@ -260,7 +260,7 @@ def simulate(
         ``event_regime`` (entered), ``outcome``. Instants that the run did not reach hold NaN.
 
     Raises:
-        ValueError: an unknown state or parameter, or a value that is no finite number.
+        ValueError: an unknown state or parameter, or a value that is not a finite number.
     """
     values = {
         name: np.array([_scalar(name, value)])
@@ -331,7 +331,7 @@ def ensemble(
         ``count_<event>``, ``first_<event>`` (NaN: never), ``time_in_<regime>``, ``outcome``.
 
     Raises:
-        ValueError: an unknown state or parameter, or a value that is no finite number.
+        ValueError: an unknown state or parameter, or a value that is not a finite number.
     """
     grid = outer_product(system, start, parameters)
     shape, size = grid.shape, math.prod(grid.shape)
@@ -396,7 +396,7 @@ def outer_product(
     """The grid of what a call gives as 1-D arrays, starts first.
 
     Raises:
-        ValueError: an unknown state or parameter, or a value that is no finite number.
+        ValueError: an unknown state or parameter, or a value that is not a finite number.
     """
     given = {name: real_array(name, v) for name, v in _given(system, start, parameters).items()}
     for name, value in given.items():

@@ -83,7 +83,7 @@ class System:
     Raises:
         ValueError: a name is unknown, missing or taken, a surface is constant in a regime, a ``to``
             has no last resort, or a reset makes no progress.
-        TypeError: a function is not smooth (a comparison, a branch), or gives what is no number.
+        TypeError: a function is not smooth (a comparison, a branch), or gives what is not a number.
     """
 
     def __init__(

@@ -65,7 +65,7 @@ def test_help_loads_no_numerics():
         (["simulate", "0.4pi", "sixty"], "write 0.4pi, 2pi/5, 72deg or radians"),
         (["simulate", "1", "2", "--mu", "-3"], "mu = -3.0: must be 0 or greater"),
         (["simulate", "1", "2", "--mass", "nan"], "a finite number is needed"),
-        (["simulate", "1", "2", "--points", "100.5"], "--points: '100.5' is no whole number"),
+        (["simulate", "1", "2", "--points", "100.5"], "--points: '100.5' is not a whole number"),
         (["simulate", "1", "2", "--muu", "3"], "Did you mean --mu"),
         (["simulate", "1", "2", "--t-end", "0"], "--t-end 0.0 must be greater than 0"),
         (["simulate", "1", "2", "--points", "3"], "give 16 or more"),

@@ -131,7 +131,7 @@ def test_what_is_no_regular_file_is_never_replaced(dataset, tmp_path, kind):
         "link": lambda: target.symlink_to(tmp_path),
     }
     make[kind]()
-    with pytest.raises(StoreError, match="no regular file"):
+    with pytest.raises(StoreError, match="not a regular file"):
         save(dataset, target)
     assert not target.is_file()
 

@@ -83,7 +83,7 @@ def anchor(
     """The same cycle with a phase condition of its own, described far from events.
 
     The phase stays while there is room to the next event; else it moves to the middle of the
-    longest segment that is no hold. The tangent is carried along by the flow.
+    longest segment that is not a hold. The tangent is carried along by the flow.
     """
     passage = cycle.passage
     bounds = np.array([0.0, *passage.event_times, cycle.period])

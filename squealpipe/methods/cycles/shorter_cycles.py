@@ -36,7 +36,7 @@ def is_shorter(cycle: Cycle, parts: int, near: float, close: float) -> bool:
 def at_crossing(before: ContinuationState, met: ContinuationState) -> ContinuationState:
     """A point where two branches cross, with the tangent of the one that led to it.
 
-    At a cycle of half the period the parameter turns back by symmetry, which is no fold.
+    At a cycle of half the period the parameter turns back by symmetry, which is not a fold.
     """
     chord = met.point - before.point
     tangent = 2.0 * chord / np.linalg.norm(chord) - before.tangent

@@ -85,7 +85,7 @@ def below(start: Any, end: Any, first: Any, last: Any, step: Any) -> Any:
 
 @part
 def inside(time: float, step: float) -> float:
-    """A time within the step; its middle for one that is not, or is no number."""
+    """A time within the step; its middle for one that is not, or is not a number."""
     return time if 0.0 <= time <= step else 0.5 * step
 
 

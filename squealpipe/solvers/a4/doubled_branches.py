@@ -18,7 +18,7 @@ from squealpipe.methods.orbits.orbits import (
 from squealpipe.solvers.a4.system import ScaledSystem
 
 OFFSETS = (1e-4, 3e-4, 1e-3, 3e-3)
-"""Of the first orbits from the doubling, over 1 + |z|; there the trace cannot tell the doubled
+"""Of the first orbits from the doubling, over 1 + |z|; there the trace cannot separate the doubled
 orbit from the one run through twice."""
 _SPACING = 0.02
 

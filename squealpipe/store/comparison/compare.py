@@ -129,7 +129,7 @@ def compare(
 ) -> Comparison:
     """Compare two archives, runs, folders or files, dataset by dataset.
 
-    Bad input is no exception here but a verdict, ``not_comparable``, with its reason.
+    Bad input gives a verdict, not an exception:, ``not_comparable``, with its reason.
 
     Args:
         a, b: a path, or the name of an archive.
@@ -224,7 +224,7 @@ def _variable(name: str, a: xr.Dataset, b: xr.Dataset, schema: DatasetSchema) ->
         side = "first" if name in a.variables else "second"
         reason = f"only in the {side}"
         if entry is not None and entry.optional and entry.round_off is not None:
-            # what only tells how far round-off reaches, as older datasets do not
+            # what only says how far round-off reaches, as older datasets do not
             return VariableDifference(
                 name=name, verdict=Agreement.within_tolerance, reason=f"optional, {reason}"
             )
@@ -243,9 +243,9 @@ def changed_configuration(a: xr.Dataset, b: xr.Dataset) -> dict[str, tuple[Any, 
 
 def changed_environment(a: xr.Dataset, b: xr.Dataset) -> dict[str, tuple[Any, Any]]:
     """Commit, versions and platform where they differ."""
-    told = VOLATILE_ATTRIBUTES - {"history", "wall_time_s", "inputs"}
-    left = {key: a.attrs[key] for key in told if key in a.attrs}
-    right = {key: b.attrs[key] for key in told if key in b.attrs}
+    stated = VOLATILE_ATTRIBUTES - {"history", "wall_time_s", "inputs"}
+    left = {key: a.attrs[key] for key in stated if key in a.attrs}
+    right = {key: b.attrs[key] for key in stated if key in b.attrs}
     return _changes(_opened(left), _opened(right))
 
 
@@ -256,13 +256,13 @@ def _physical_first(key: str) -> tuple[bool, str]:
 
 def configuration(dataset: xr.Dataset) -> dict[str, Any]:
     """Dotted key → value of what made a dataset: of the study's slice, else of the call."""
-    told = dataset.attrs
+    stated = dataset.attrs
     try:
-        if "config" in told:
-            return flat(json.loads(told["config"]))
-        return flat({"parameters": json.loads(told.get("parameters", "{}"))})
+        if "config" in stated:
+            return flat(json.loads(stated["config"]))
+        return flat({"parameters": json.loads(stated.get("parameters", "{}"))})
     except ValueError:
-        return {"config": told.get("config", told.get("parameters"))}
+        return {"config": stated.get("config", stated.get("parameters"))}
 
 
 def _opened(attributes: dict[str, Any]) -> dict[str, Any]:

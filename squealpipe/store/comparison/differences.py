@@ -117,8 +117,8 @@ def _ranges(left: np.ndarray, right: np.ndarray) -> str:
     """What lists that cannot be matched hold, in short."""
     if left.dtype.kind not in "fiu" or not (np.isfinite(left).any() and np.isfinite(right).any()):
         return ""
-    told = [f"{np.nanmin(side):.4g} to {np.nanmax(side):.4g}" for side in (left, right)]
-    return f"; from {told[0]} against {told[1]}"
+    stated = [f"{np.nanmin(side):.4g} to {np.nanmax(side):.4g}" for side in (left, right)]
+    return f"; from {stated[0]} against {stated[1]}"
 
 
 def _sampled(

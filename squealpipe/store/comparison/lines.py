@@ -23,7 +23,7 @@ def lines(comparison: Comparison, *, every: bool = False) -> list[str]:
         comparison: of two places.
         every: all of it, with what is equal and where each side was made; else a screenful.
     """
-    told = [verdict_line(comparison)]
+    stated = [verdict_line(comparison)]
     worst = sorted(comparison.datasets, key=lambda item: item.severity, reverse=True)
     listed = [line for item in worst for line in _dataset_lines(item, every=every)]
     verdicts = sum(change.verdict_changed for change in comparison.statements)
@@ -36,18 +36,25 @@ def lines(comparison: Comparison, *, every: bool = False) -> list[str]:
     ):
         most = len(part) if every else SCREEN[name]
         shown = part if len(part) <= most else [*part[: most - 1], _more(len(part) - most + 1)]
-        told += [heading, *(f"  {line}" for line in shown)] if part else []
+        stated += [heading, *(f"  {line}" for line in shown)] if part else []
     if every and comparison.environment:
-        told += ["made elsewhere", *(f"  {line}" for line in _change_lines(comparison.environment))]
-    return told if every else [_shortened(told[0], 3 * WIDTH), *(_shortened(x) for x in told[1:])]
+        stated += [
+            "made elsewhere",
+            *(f"  {line}" for line in _change_lines(comparison.environment)),
+        ]
+    return (
+        stated
+        if every
+        else [_shortened(stated[0], 3 * WIDTH), *(_shortened(x) for x in stated[1:])]
+    )
 
 
 def statement_line(change: StatementChange) -> str:
     """For instance ``S3: holds → fails, 0.96 → 0.71``."""
     verdicts = [verdict or "not judged" for verdict in change.verdicts]
     values = ["–" if value is None else f"{value:.4g}" for value in change.values]
-    told = " → ".join(verdicts) if change.verdict_changed else verdicts[0]
-    return f"{change.claim}: {told}, value {values[0]} → {values[1]}"
+    stated = " → ".join(verdicts) if change.verdict_changed else verdicts[0]
+    return f"{change.claim}: {stated}, value {values[0]} → {values[1]}"
 
 
 def _change_lines(changes: dict[str, tuple[Any, Any]]) -> Iterator[str]:
@@ -84,10 +91,10 @@ def verdict_line(comparison: Comparison) -> str:
         verdict: sum(item.verdict == verdict for item in comparison.datasets)
         for verdict in Agreement
     }
-    told = ", ".join(f"{words(verdict)} {count}" for verdict, count in counts.items() if count)
+    stated = ", ".join(f"{words(verdict)} {count}" for verdict, count in counts.items() if count)
     total = len(comparison.datasets)
     skipped = f"; left out of the archive: {', '.join(comparison.skipped)}"
-    line = f"{words(comparison.verdict)}: {total} dataset{'s' * (total != 1)} ({told})"
+    line = f"{words(comparison.verdict)}: {total} dataset{'s' * (total != 1)} ({stated})"
     return line + skipped if comparison.skipped else line
 
 
@@ -112,11 +119,11 @@ def how_much(entry: VariableDifference) -> str:
     if entry.verdict == Agreement.equal:
         return ""
     allowed = entry.compared_as or f"rtol {entry.rtol:g}, atol {entry.atol:g}"
-    told = (
+    stated = (
         f"{entry.differing} of {entry.compared} beyond {allowed}; "
         f"largest {entry.largest_absolute:.3g}, relative {entry.largest_relative:.3g}"
     )
-    return f"{told}; {entry.reason}" if entry.reason else told
+    return f"{stated}; {entry.reason}" if entry.reason else stated
 
 
 def _place(dim: str, value: float | str) -> str:

@@ -27,10 +27,10 @@ def judge(name: str, a: xr.Dataset, b: xr.Dataset, entry: Variable) -> VariableD
     if how is None or how.compared in (ComparedAs.magnitude, ComparedAs.sample):
         return difference(name, a[name], b[name], entry)
     entry = replace(entry, round_off=None)
-    told = how.by in a.variables and how.by in b.variables
-    if how.compared is ComparedAs.beyond_horizon and told and a[name].dims == a[how.by].dims:
+    stated = how.by in a.variables and how.by in b.variables
+    if how.compared is ComparedAs.beyond_horizon and stated and a[name].dims == a[how.by].dims:
         return _beyond_horizon(name, a, b, entry, how)
-    if how.compared is ComparedAs.grown and told:
+    if how.compared is ComparedAs.grown and stated:
         size = max(
             (float(np.abs(side[name]).max()) for side in (a, b) if side[name].size), default=0.0
         )
@@ -55,7 +55,7 @@ def _beyond_horizon(
         return found
     chance = float(ks_2samp(*samples, method="asymp").pvalue)
     verdict = Agreement.different if chance <= SMALLEST_CHANCE else Agreement.within_tolerance
-    told = (
+    stated = (
         f"{int((samples[0] != samples[1]).sum())} of {lost.sum()} values beyond the predictability "
         f"horizon differ; chance that both are of one distribution {chance:.2g}"
     )
@@ -63,5 +63,5 @@ def _beyond_horizon(
         found,
         verdict=max(found.verdict, verdict),
         compared_as=how.compared.value,
-        reason="; ".join(filter(None, (found.reason, told))),
+        reason="; ".join(filter(None, (found.reason, stated))),
     )

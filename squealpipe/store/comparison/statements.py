@@ -19,7 +19,7 @@ class StatementChange:
         claim: id of the statement.
         statement: in our words.
         verdicts: in the first and the second run; empty where it is not judged.
-        values: what was measured; None where there is no number.
+        values: what was measured; None where there is not a number.
     """
 
     claim: str

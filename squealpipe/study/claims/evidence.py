@@ -47,7 +47,7 @@ class Run(Mapping[str, xr.Dataset]):
     def _why_missing(self) -> str:
         given = [name for name in self.parameters.as_dict() if TABLE[name].extension]
         if not given:
-            return "it is no part of this study, or not computed yet"
+            return "it is not part of this study, or not computed yet"
         return f"the study leaves out what cannot carry {', '.join(given)}"
 
     def __contains__(self, name: object) -> bool:

@@ -55,7 +55,7 @@ def hammering_map(
     - periodic hammering: it has not, and the kinds and intervals of the events repeat within 1e-6
       of the period;
     - quasi-periodic hammering: they do not repeat, but are distributed alike in both quarters;
-    - undetermined: there are too few events to tell, or they still change.
+    - undetermined: there are too few events to decide, or they still change.
 
     ``motion_changed``: the two quarters have different labels. Systems that are mirror images of
     one another get the same labels: the runs are made in the form of

@@ -28,7 +28,7 @@ REGULAR_GROWTH_POWER = 2.0
 INTERVAL_TOLERANCE = 1e-6
 """Largest difference of event intervals that counts as a repetition, over the period."""
 LEAST_EVENTS = 4 * LEAST_REPEATS
-"""Events in the later half of a run from which a repetition can be told from none."""
+"""Events in the later half of a run from which a repetition can be recognized."""
 EVENTS_AT_ONCE = 2**20
 """Logged events that are held in memory at once, 48 bytes each."""
 CALM = (MotionFlag.contact_kept, MotionFlag.hammered_then_contact, MotionFlag.at_rest)
@@ -167,7 +167,7 @@ def tell_periodic(times: np.ndarray, kinds: np.ndarray, t_end: float) -> MotionF
 
     *Periodic*: kinds and intervals repeat within 1e-6 of the period, three times at least.
     *Quasi-periodic*: they do not, and the intervals after each kind of event are distributed alike
-    in both quarters. *Undetermined*: neither, or too few events to tell.
+    in both quarters. *Undetermined*: neither, or too few events to decide.
     """
     late = (times > 0.5 * t_end) & (times <= t_end)
     times, kinds = times[late], kinds[late]
@@ -202,7 +202,7 @@ def refine_labels(
     again: Callable[[np.ndarray, int], Ensemble],
     t_end: float,
 ) -> np.ndarray:
-    """Labels of the runs with undetermined hammering told apart by its events.
+    """Labels of the runs with undetermined hammering resolved by its events.
 
     Args:
         motion: labels by :func:`classify_motion`, 1-D.

@@ -42,7 +42,7 @@ def refine_validity_map(
     for the grid may hide: those that separate late, and those whose lowest contact force is small
     against its change between neighbours. The others inherit the answer of a neighbour. How often
     that is wrong is measured by running a random sample of them; if it finds wrong ones, the
-    boundaries around these are followed too, and a new sample tells what is left.
+    boundaries around these are followed too, and a new sample shows what is left.
 
     Args:
         params: physical parameters.

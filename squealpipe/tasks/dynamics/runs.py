@@ -66,7 +66,7 @@ def simulate(
         times: the state is given at exactly these instants, s; by default at equal steps that
             resolve √((k1 + k2 + k3)/m).
         initial_state: x, y, vx, vy at t = 0, m and m/s.
-        growth: tell too by which factor a small perturbation of the start has grown at the end.
+        growth: also give the factor by which a small perturbation of the start has grown.
 
     Returns:
         Dataset over ``time`` and ``event``; see ``schema.dynamics.runs.SIMULATION``. Instants

@@ -69,7 +69,7 @@ def critical_damping_map(
         destabilized: below critical_mu_undamped, a scalar.
 
     Raises:
-        ValueError: as :func:`critical_friction_map`, an angle that is no number, or a negative
+        ValueError: as :func:`critical_friction_map`, an angle that is not a number, or a negative
             dashpot.
     """
     _refuse_slope(params)

@@ -99,13 +99,15 @@ def payload(explorer: xr.Dataset, layers: Mapping[str, Layer]) -> dict[str, Any]
 
 def run_options(explorer: xr.Dataset) -> str:
     """Options of ``squealpipe simulate`` that repeat the runs shown: times and all parameters."""
-    told = explorer.attrs
-    parameters = told.get("parameters") or json.loads(told.get("config", "{}")).get("parameters")
+    stated = explorer.attrs
+    parameters = stated.get("parameters") or json.loads(stated.get("config", "{}")).get(
+        "parameters"
+    )
     if parameters is None:
         return ""
     values = json.loads(parameters) if isinstance(parameters, str) else parameters
-    end = told.get("run_t_end", explorer.time.values[-1])
-    points = told.get("run_points", explorer.sizes["time"])
+    end = stated.get("run_t_end", explorer.time.values[-1])
+    points = stated.get("run_points", explorer.sizes["time"])
     options = {"t_end": float(end), "points": int(points), **values}
     return " ".join(f"--{key.replace('_', '-')} {_plain(value)}" for key, value in options.items())
 
