@@ -50,8 +50,8 @@ lint: dev
 	$(BIN)/ruff check . && $(BIN)/ruff format --check .
 	$(BIN)/mypy && $(BIN)/lint-imports
 
-docs: dev  ## API reference into build/reference
-	$(BIN)/python docs/build_reference.py
+docs: dev  ## pages and API reference as one site, build/site
+	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build
 
 env: $(STUDY)  ## what a study needs
 
@@ -77,7 +77,7 @@ COMPILE = $(BIN)/uv pip compile pyproject.toml --universal --python-version 3.11
 
 lock: dev
 	$(COMPILE) --extra study -o requirements.lock
-	$(COMPILE) --extra study --extra dev --extra notebook --extra slurm -c requirements.lock -o requirements-dev.lock
+	$(COMPILE) --extra study --extra dev --extra export --extra notebook --extra slurm -c requirements.lock -o requirements-dev.lock
 	$(COMPILE) --extra peers -c requirements-dev.lock -o requirements-peers.lock
 
 dictionary: dev  ## docs/datasets.md from the schemas

@@ -20,9 +20,17 @@ def chromium_path() -> str | None:
 
 @contextmanager
 def open_page(
-    address: str, *, width: int = 1280, height: int = 900, scheme: Any = "light"
+    address: str,
+    *,
+    width: int = 1280,
+    height: int = 900,
+    scheme: Any = "light",
+    site: str = "data:",
 ) -> Iterator[tuple[Any, Any]]:
-    """A page in a new browser, and the list of what went wrong on it: errors, other addresses."""
+    """A page in a new browser, and the list of what went wrong on it: errors, other addresses.
+
+    Addresses that begin with ``site`` belong to it.
+    """
     from playwright.sync_api import sync_playwright
 
     with sync_playwright() as playwright:
@@ -39,7 +47,7 @@ def open_page(
             "request",
             lambda request: (
                 request.url.split("#")[0] != address.split("#", maxsplit=1)[0]
-                and not request.url.startswith(("data:", "blob:"))
+                and not request.url.startswith(("data:", "blob:", site))
                 and faults.append(f"asks for {request.url}")
             ),
         )

@@ -1,32 +1,66 @@
-"""The API reference builds without warnings, and holds what is public."""
+"""The site builds without warnings, holds what is public, and opens page by page."""
 
 from __future__ import annotations
 
 import subprocess
 import sys
+import threading
+from functools import partial
+from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
 
 import pytest
 
 import squealpipe
+from tests.browser import open_page
 
 ROOT = Path(__file__).resolve().parents[1]
 
 
-@pytest.mark.release
-def test_reference_builds_without_warnings(tmp_path):
+class Quiet(SimpleHTTPRequestHandler):
+    """A server of files that prints nothing."""
+
+    def log_message(self, *_):
+        pass
+
+
+@pytest.fixture(scope="module")
+def site(tmp_path_factory) -> Path:
+    folder = tmp_path_factory.mktemp("site")
     done = subprocess.run(
-        [sys.executable, str(ROOT / "docs/build_reference.py"), str(tmp_path)],
+        [sys.executable, "-m", "mkdocs", "build", "--strict", "-q", "-d", str(folder)],
         cwd=ROOT,
         capture_output=True,
         text=True,
         check=False,
     )
     assert done.returncode == 0, done.stderr[-3000:]
-    assert "Warning" not in done.stderr
-    front = (tmp_path / "squealpipe.html").read_text(encoding="utf-8")
-    assert all(f'id="{name}"' in front for name in squealpipe.__all__)
-    assert (tmp_path / "squealpipe/laws/springs.html").is_file()
+    return folder
+
+
+@pytest.mark.release
+def test_reference_holds_what_is_public(site):
+    page = (site / "reference.html").read_text(encoding="utf-8")
+    assert [name for name in squealpipe.__all__ if f'id="squealpipe.{name}"' not in page] == []
+
+
+@pytest.mark.release
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_every_page_opens(site, scheme):
+    server = ThreadingHTTPServer(("127.0.0.1", 0), partial(Quiet, directory=str(site)))
+    threading.Thread(target=server.serve_forever, daemon=True).start()
+    home = f"http://127.0.0.1:{server.server_port}/"
+    pages = sorted(set(site.glob("*.html")) - {site / "404.html"})
+    assert len(pages) > 15
+    with open_page(f"{home}index.html", scheme=scheme, site=home) as (page, faults):
+        for path in pages:
+            page.goto(home + path.name)
+            assert page.locator("h1").first.inner_text().strip(), path.name
+            assert page.evaluate("document.body.scrollWidth <= innerWidth"), path.name
+            empty = "[...document.images].filter(i => !i.naturalWidth).map(i => i.src)"
+            assert page.evaluate(empty) == []
+    server.shutdown()
+    assert faults == []
 
 
 def test_public_names_are_documented():

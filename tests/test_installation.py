@@ -65,8 +65,17 @@ def test_locks_name_no_index_and_agree(name):
 
 
 @pytest.mark.release
+def test_citation_is_valid():
+    """By its validator, whose old libraries need an environment of their own."""
+    uvx = (Path(sys.executable).parent / "uv", "tool", "run", "cffconvert", "--validate")
+    assert "valid" in run(*uvx, "-i", ROOT / "CITATION.cff", cwd=ROOT)
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    assert f"version: {project['version']}" in (ROOT / "CITATION.cff").read_text(encoding="utf-8")
+
+
+@pytest.mark.release
 def test_wheel_in_a_bare_environment(tmp_path):
-    """Built, checked by twine, installed with the core dependencies alone."""
+    """Sdist and wheel checked by twine, installed with the core dependencies alone."""
     here = Path(sys.executable).parent
     source = tmp_path / "source"
     shutil.copytree(ROOT / "squealpipe", source / "squealpipe")
@@ -78,8 +87,11 @@ def test_wheel_in_a_bare_environment(tmp_path):
     run(here / "twine", "check", "--strict", *built, cwd=tmp_path)
     bare = tmp_path / "bare"
     run(here / "uv", "venv", "-q", "--python", sys.executable, bare, cwd=tmp_path)
-    wheel = next(path for path in built if path.suffix == ".whl")
-    run(here / "uv", "pip", "install", "-q", "--python", bare / "bin/python", wheel, cwd=tmp_path)
+    python = bare / "bin/python"
+    for path in sorted(built):  # the sdist, then the wheel
+        install = ("pip", "install", "-q", "--reinstall-package", "squealpipe", "--python", python)
+        run(here / "uv", *install, path, cwd=tmp_path)
+        assert run(bare / "bin/squealpipe", "--version", cwd=tmp_path).strip()
     script = "import importlib.util as u; print(u.find_spec('snakemake'))"
     assert run(bare / "bin/python", "-c", script, cwd=tmp_path).strip() == "None"
     run(bare / "bin/squealpipe", "simulate", "5pi/6", "5pi/6", "--t-end", "5", cwd=tmp_path)

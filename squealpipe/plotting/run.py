@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 FORCE = r"$N\,/\,(k_3\,l_\mathrm{pre})$"
 PADDING = 8
 """How much finer the spectrum's grid is than the resolution of the run."""
-LARGEST_SPRINGS = 20.0
+LARGEST_SPRINGS = 5.0
 """Length of the springs over the extent of a path beside which they are drawn."""
 LOUD = 0.01
 """Amplitude over the largest one above which the spectrum is drawn."""
