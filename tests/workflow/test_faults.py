@@ -1,4 +1,4 @@
-"""Kills, full disks, damaged files, two runs at once, missing permissions: nothing is lost.
+"""Full disks, damaged files, missing permissions: nothing is lost.
 
 After each fault the next plain `snakemake`, or the one command that its message names, completes;
 the results equal an undisturbed run, and no half-written file was ever read as whole.
@@ -8,14 +8,11 @@ from __future__ import annotations
 
 import os
 import shutil
-import signal
 import subprocess
 import sys
 import time
 from pathlib import Path
 
-import numpy as np
-import psutil
 import pytest
 
 from squealpipe.store import StoreError, load
@@ -105,53 +102,6 @@ def small(one_checkout, undisturbed):
     discard_results(one_checkout)
     (one_checkout / "results").mkdir()
     return one_checkout
-
-
-def kill(head: subprocess.Popen[str], what: str) -> None:
-    """SIGKILL the jobs, the head, or both."""
-    try:
-        children = psutil.Process(head.pid).children(recursive=True)
-    except psutil.NoSuchProcess:
-        children = []
-    if what in ("head", "both"):
-        head.kill()
-    if what in ("job", "both"):
-        for child in children:
-            try:
-                child.send_signal(signal.SIGKILL)
-            except psutil.NoSuchProcess:
-                continue
-    head.communicate()
-
-
-def kill_at_random(checkout: Path, undisturbed, kills: int, seed: int) -> None:
-    expected, seconds = undisturbed
-    random = np.random.default_rng(seed)
-    for index in range(kills):
-        discard_results(checkout)
-        head = start(checkout)
-        time.sleep(random.uniform(0.1, 0.9) * seconds)
-        kill(head, ("job", "head", "both")[index % 3])
-        check_files(checkout)
-        complete(checkout)
-        assert ids(checkout) == expected
-        assert not list((checkout / "results").rglob("*.tmp*"))
-
-
-@pytest.mark.timeout(1200)
-def test_killed_jobs_and_heads_lose_nothing(small, undisturbed):
-    kill_at_random(small, undisturbed, kills=9, seed=11)
-
-
-def test_of_two_snakemakes_one_is_refused_and_harms_none(small, undisturbed):
-    heads = [start(small)]
-    time.sleep(0.3)
-    heads.append(start(small))
-    told = [head.communicate(timeout=300)[1] for head in heads]
-    assert sorted(bool(head.returncode) for head in heads) == [False, True], told
-    refused = told[0] if heads[0].returncode else told[1]
-    assert "lock" in refused.lower()
-    assert ids(small) == undisturbed[0]
 
 
 def test_damaged_dataset_is_named_with_its_remedy(small, undisturbed):

@@ -10,7 +10,6 @@ import json
 import os
 import subprocess
 import sys
-from collections.abc import Sequence
 from copy import deepcopy
 from functools import cache, reduce
 from operator import getitem
@@ -106,52 +105,12 @@ def everything(study_copy, dry_runs):
     return dry_runs(study_copy, [["--configfile", TINY, "--forceall"]])[0]
 
 
-def batches(table: dict[str, set[str]]) -> list[list[str]]:
-    """Groups of keys in which each stated reader tells its key.
-
-    No two have one in common, and none feeds another's: of a rule with new inputs Snakemake does
-    not say whether its parameters changed too.
-    """
-    expected = yaml.safe_load(STATED.read_text())
-    found: list[tuple[list[str], set[str], set[str]]] = []
-    for key in KEYS:
-        readers = set(expected.get(key, ()))
-        reached = downstream(readers, table)
-        for keys, direct, beyond in found:
-            apart = beyond.isdisjoint(readers) and direct.isdisjoint(reached)
-            if readers and apart and fit_together([*keys, key]):
-                keys.append(key)
-                direct |= readers
-                beyond |= reached
-                break
-        else:
-            found.append(([key], readers, reached))
-    return [keys for keys, _, _ in found]
-
-
-def all_changed(keys: Sequence[str]) -> dict[str, Any]:
-    changed: dict[str, Any] = {}
-    for key in keys:
-        overlay(changed, deepcopy(another_value(key)))
-    return changed
-
-
-def fit_together(keys: Sequence[str]) -> bool:
-    trial = deepcopy(quick_config())
-    overlay(trial, all_changed(keys))
-    try:
-        parse_study(trial)
-    except ConfigError:
-        return False
-    return True
-
-
-def plans(study_copy, dry_runs, folder, changes: Sequence[Sequence[str]]) -> list:
-    """What Snakemake would run for each group of changed keys."""
+def plans(study_copy, dry_runs, folder) -> list:
+    """What Snakemake would run for each changed key."""
     arguments = []
-    for index, keys in enumerate(changes):
+    for index, key in enumerate(KEYS):
         path = folder / f"{index}.yaml"
-        path.write_text(yaml.safe_dump(all_changed(keys)))
+        path.write_text(yaml.safe_dump(another_value(key)))
         arguments.append(["--configfile", TINY, path])
     return dry_runs(study_copy, arguments)
 
@@ -160,21 +119,8 @@ def direct(plan) -> list[str]:
     return sorted(rule for rule in plan.rules if "Params have changed" in plan.reasons[rule])
 
 
-def test_changed_keys_make_stale_exactly_what_reads_them(
-    study_copy, dry_runs, everything, tmp_path
-):
-    expected = yaml.safe_load(STATED.read_text())
-    assert sorted(expected) == KEYS, f"state the readers of new keys with: {FIX}"
-    table = feeds(everything)
-    groups = batches(table)
-    for keys, plan in zip(groups, plans(study_copy, dry_runs, tmp_path, groups), strict=True):
-        stated = {rule for key in keys for rule in expected[key]}
-        assert direct(plan) == sorted(stated), keys
-        assert plan.rules == downstream(stated, table), keys
-
-
 def test_each_key_makes_stale_exactly_what_reads_it(study_copy, dry_runs, tmp_path):
-    made = plans(study_copy, dry_runs, tmp_path, [[key] for key in KEYS])
+    made = plans(study_copy, dry_runs, tmp_path)
     found = {key: direct(plan) for key, plan in zip(KEYS, made, strict=True)}
     if os.environ.get("SQUEALPIPE_FIX"):
         STATED.write_text(
