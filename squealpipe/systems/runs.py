@@ -263,8 +263,8 @@ def simulate(
         ValueError: an unknown state or parameter, or a value that is not a finite number.
     """
     values = {
-        name: np.array([_scalar(name, value)])
-        for name, value in _given(system, start, parameters).items()
+        name: np.array([scalar(name, value)])
+        for name, value in call_values(system, start, parameters).items()
     }
     ends, regime = np.array([t_end]), (start or {}).get("regime")
     if times is None:
@@ -398,7 +398,7 @@ def outer_product(
     Raises:
         ValueError: an unknown state or parameter, or a value that is not a finite number.
     """
-    given = {name: real_array(name, v) for name, v in _given(system, start, parameters).items()}
+    given = {name: real_array(name, v) for name, v in call_values(system, start, parameters).items()}
     for name, value in given.items():
         if value.ndim > 1:
             raise ValueError(f"{name} has shape {value.shape}: a number or a 1-D array is needed")
@@ -420,14 +420,15 @@ def outer_product(
     return Grid(shape, values, coordinates, fixed, (start or {}).get("regime"))
 
 
-def _scalar(name: str, value: Any) -> float:
+def scalar(name: str, value: Any) -> float:
+    """One finite number."""
     array = real_array(name, value)
     if array.ndim:
         raise ValueError(f"{name} has shape {array.shape}: one number is needed")
     return float(array)
 
 
-def _given(
+def call_values(
     system: System, start: Mapping[str, Any] | None, parameters: Mapping[str, Any]
 ) -> dict[str, Any]:
     """States and parameters of a call, the system's where it gives none."""

@@ -11,9 +11,10 @@ import numpy as np
 import xarray as xr
 
 from squealpipe.methods.taylor.scalar import REGIME, SwitchSymbols, evaluate
-from squealpipe.methods.taylor.symbols import Symbol, parameter, symbol
+from squealpipe.methods.taylor.symbols import Symbol, derivative, parameter, symbol
 from squealpipe.parameters import is_finite_number
 from squealpipe.systems.trace import (
+    TIME,
     TIME_UNIT,
     Traced,
     Tracer,
@@ -142,6 +143,18 @@ class System:
         from squealpipe.systems.basin import basin
 
         return basin(self, t_end, **options)
+
+    def limit_cycle(self, **options: Any) -> xr.Dataset:
+        """A periodic motion; see :func:`squealpipe.systems.cycles.cycle.limit_cycle`."""
+        from squealpipe.systems.cycles.cycle import limit_cycle
+
+        return limit_cycle(self, **options)
+
+    def cycle_branch(self, parameter: str, to: float, **options: Any) -> xr.Dataset:
+        """A branch of cycles; see :func:`squealpipe.systems.cycles.branch.cycle_branch`."""
+        from squealpipe.systems.cycles.branch import cycle_branch
+
+        return cycle_branch(self, parameter, to, **options)
 
     def _check_names(self) -> None:
         for number, most, what in (
@@ -351,6 +364,25 @@ class System:
         from squealpipe.systems.text import describe
 
         return describe(self)
+
+    @cached_property
+    def holds(self) -> np.ndarray:
+        """(regime, surface) whether the surface is constant along the motion, as in stick."""
+        traced, rng = self.traced, np.random.default_rng(2)
+        names = [TIME, *self.units, *traced.parameters, *traced.constants]
+        values = {name: rng.uniform(0.3, 1.7, 16) for name in names}
+        rates = [
+            sum((derivative(h, z) * f for z, f in zip(traced.variables, traced.rates, strict=True)),
+                start=symbol(0.0))
+            for h in traced.surfaces
+        ]  # fmt: skip
+        found = np.zeros((len(self.regimes), len(traced.surfaces)), bool)
+        for regime, constants in enumerate(traced.regimes):
+            here = values | dict(zip(traced.constants, constants, strict=True))
+            with np.errstate(all="ignore"):
+                for surface, rate in enumerate(evaluate(rates, here)):
+                    found[regime, surface] = np.all(np.abs(rate) < 1e-14)
+        return found
 
     def first_regimes(
         self, values: Mapping[str, Any], size: int, given: str | None = None

@@ -114,6 +114,24 @@ def _step_length(base: int, terms: int, n_states: int, sizes: Any) -> Any:
 
 
 @inline
+def _reach(series: int, terms: int) -> Any:
+    """Longest step of a series that is no state's, from ratios of its orders.
+
+    Where the state rests, what depends on the time alone still needs short steps. Its highest
+    order may be left out.
+    """
+    reach, tiny = splat(0.0), splat(1e-300)
+    for low in (1, 2):
+        base, nearer = larger(magnitude(load(series + low * ROW)), tiny), splat(np.inf)
+        for high in (terms - 3, terms - 2):
+            last = magnitude(load(series + high * ROW))
+            power = rough_power(base / larger(last, tiny), splat(1.0 / (high - low)))
+            nearer = smaller(nearer, choose_below(tiny, last, power, splat(np.inf)))
+        reach = larger(reach, nearer)
+    return reach * math.exp(-2.0)
+
+
+@inline
 def _at_end(series: int, terms: int, step: Any) -> Any:
     """A series' value at the end of its step."""
     value = load(series + (terms - 1) * ROW)
@@ -150,6 +168,9 @@ def _take_step(t: Any, active: Any, sizes: Any) -> Any:
     """Ends of all lanes' steps; returns the lanes that need a look of their own."""
     terms, base, at = t.n_terms, t.series, t.rows
     step = smaller(_step_length(base, terms, t.n_states, sizes), load(at + LONGEST * ROW))
+    if t.n_variables > t.n_states:
+        for each in range(t.n_surfaces + t.n_tracked - t.n_states):
+            step = smaller(step, _reach(base + (t.n_variables + each) * terms * ROW, terms))
     store(at + STEP * ROW, step)
     lost = step
     for variable in range(t.n_variables):

@@ -236,3 +236,15 @@ def evaluate(roots: Sequence[Symbol], values: dict[str, Any]) -> Iterator[Any]:
         else:
             found[id(node)] = inner[0] ** inner[1]
     return (found[id(root)] for root in roots)
+
+
+def python_function(roots: Sequence[Symbol], arguments: Sequence[Symbol], module: Any) -> Any:
+    """The values of symbols as a function of some, with the functions of ``math`` or ``numpy``."""
+    names = {id(each): f"a{index}" for index, each in enumerate(arguments)}
+    writer = _Writer(lambda node: names[id(node)], "v")
+    values = [writer.value(root) for root in roots]
+    lines = [*writer.lines, f"return ({', '.join([*values, ''])})"]
+    source = f"def function({', '.join(names.values())}):\n" + "".join(f" {x}\n" for x in lines)
+    scope: dict[str, Any] = {"math": module}
+    exec(source, scope)  # noqa: S102
+    return scope["function"]

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from functools import cache
 from typing import Any, ClassVar, Self
 
 
@@ -195,11 +196,13 @@ def _multiply(a: Symbol, b: Symbol) -> Symbol:
     return Symbol("*", a, b)
 
 
+@cache
 def derivative(value: Symbol, by: Symbol) -> Any:
-    """The partial derivative by a variable."""
+    """The partial derivative by a variable or a parameter."""
     if value is by:
         return symbol(1.0)
-    if not value.varies or value.kind == "variable":
+    fixed = by.kind == "variable" and not value.varies
+    if fixed or value.kind in {"variable", "parameter", "number"}:
         return symbol(0.0)
     if value.kind == "+":
         return derivative(value.arguments[0], by) + derivative(value.arguments[1], by)

@@ -1,0 +1,1 @@
+"""Periodic motions of systems: event maps, cycles, branches."""

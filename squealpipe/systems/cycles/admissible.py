@@ -1,0 +1,98 @@
+"""Whether a solution of an event map is a motion of the system, and what is about to change.
+
+A solution is a motion while every margin is positive: each watched surface inside a leg and at
+its ends, the speed at which each event's surface is crossed, the length of each leg, and the
+conditions that chose the regime entered. Where one falls to zero the order of the events changes.
+"""
+
+from __future__ import annotations
+
+from enum import IntEnum
+from typing import NamedTuple
+
+import numpy as np
+
+from squealpipe.systems.cycles.event_map import FREE, Cycle
+
+ROUND_OFF = 1e-9
+"""Margin below zero that is round-off."""
+_LATE = 1e-6
+"""Share of a leg after which a surface that it starts from is watched."""
+
+
+class Kind(IntEnum):
+    """What a margin is of."""
+
+    touch = 0
+    """the least of a surface inside a leg"""
+    edge = 1
+    """a surface at an end of a leg"""
+    speed = 2
+    """the crossing of an event's surface"""
+    length = 3
+    """the duration of a leg"""
+    condition = 4
+    """what chose the regime entered"""
+
+
+class Margin(NamedTuple):
+    """Which margin: of a leg (or the event at its end) and a surface (or a condition)."""
+
+    kind: Kind
+    leg: int
+    which: int
+
+
+def margins(cycle: Cycle) -> dict[Margin, float]:
+    """All margins of a cycle, over the size of each quantity in it; infinite where none is near."""
+    system, events = cycle.map.flow.system, cycle.map.events
+    t, path, parts = system.traced, cycle.parts.path, cycle.parts
+    first, count = len(t.variables), len(t.surfaces)
+    found: dict[Margin, float] = {}
+    surfaces = path.series[:, first : first + count, 0]
+    size = np.maximum(np.abs(surfaces).max(axis=0, initial=0.0), 1e-300)
+    turns = path.turns(range(first, first + count))
+    bounds = [path.ends_of(first + s) for s in range(count)]
+    for leg, event in enumerate(events):
+        entry, duration = events[leg - 1], float(parts.durations[leg])
+        for table, sign in ((t.falls, 1.0), (t.rises, -1.0)):
+            for s in np.flatnonzero(table[event.before] >= 0):
+                fresh = entry.surface == s or system.holds[entry.before, s]
+                begin = _LATE * duration if fresh else 0.0
+                inside = [
+                    sign * turn.value
+                    for turn in turns[s]
+                    if turn.leg == leg and turn.is_minimum == (sign > 0) and turn.time > begin
+                ]
+                found[Margin(Kind.touch, leg, int(s))] = min(inside, default=np.inf) / size[s]
+                ends = [] if fresh else [sign * bounds[s][0][leg]]
+                if s != event.surface:
+                    ends.append(sign * bounds[s][1][leg])
+                if ends and event.surface != FREE:
+                    found[Margin(Kind.edge, leg, int(s))] = float(min(ends)) / size[s]
+        if event.surface == FREE:
+            continue
+        crossing = parts.crossings[leg]
+        # a switch's own surface falls, whatever the sign of the one that is shared
+        found[Margin(Kind.speed, leg, event.surface)] = (
+            -crossing.speed * cycle.period / size[event.surface]
+        )
+        found[Margin(Kind.length, leg, FREE)] = duration / cycle.period
+        if event.switch == FREE:
+            continue
+        number = 0
+        for regime, condition, kind in t.switches[event.switch].targets:
+            chosen = (regime, kind) == (event.after, event.kind)
+            if condition is not None:
+                if condition.varies:
+                    value = crossing.conditions[number]
+                    found[Margin(Kind.condition, leg, number)] = value if chosen else -value
+                number += 1
+            if chosen:
+                break
+    return found
+
+
+def is_motion(cycle: Cycle) -> bool:
+    """Whether a solution is a motion of the system, to round-off."""
+    return all(value >= -ROUND_OFF for value in margins(cycle).values())

@@ -1,0 +1,451 @@
+"""One periodic motion of a system: found from a settled run or a guess, described, as a dataset."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import xarray as xr
+
+from squealpipe.methods.taylor.loop import STOPPED
+from squealpipe.schema import Outcome, flag_table, in_words
+from squealpipe.systems import runs
+from squealpipe.systems.cycles.admissible import is_motion
+from squealpipe.systems.cycles.event_map import FREE, Cycle, Event, EventMap, Section, scale_of
+from squealpipe.systems.cycles.flow import Flow, Vector
+from squealpipe.systems.trace import TIME, Names
+
+if TYPE_CHECKING:
+    from squealpipe.systems.system import System
+
+SETTLE = 200.0
+"""Forcing periods, or units of time, after which a run counts as settled."""
+MOST_PERIODS = 64
+"""Most forcing periods after which a settled motion is looked for again."""
+_WINDOWS = (40.0, 160.0, 640.0)
+"""Times, in units, within which a return is looked for without forcing."""
+_NEAR, _FAR = 0.05, 0.3
+"""A return this close, over the motion's extent, ends the search; one this far is none."""
+_TRIES, _SAMPLES = 4, 2000
+_AT_REST = 1e-9
+SETTLED_ON = 200
+"""Outcome of a settled motion of k periods, less k."""
+
+
+@dataclass(frozen=True)
+class Motion:
+    """A run with its events.
+
+    Attributes:
+        regimes: the first, then that after each event.
+        times, kinds, states: of the events.
+        final: state at the end.
+        path: states at the asked instants.
+        outcome: how it ended.
+    """
+
+    regimes: np.ndarray
+    times: Vector
+    kinds: np.ndarray
+    states: Vector
+    final: Vector
+    path: Vector
+    outcome: int
+
+
+def follow(
+    system: System,
+    values: Mapping[str, float],
+    state: Vector,
+    duration: float,
+    *,
+    regime: int | None = None,
+    times: Vector | None = None,
+) -> Motion:
+    """Run a system from a state at t = 0 with all events."""
+    given = {name: np.array([value]) for name, value in values.items()}
+    given |= {name: np.array([value]) for name, value in zip(system.states, state, strict=True)}
+    named = None if regime is None else system.states_of(regime)
+    room = runs.FIRST_LOG
+    while True:
+        raw = runs.integrate(
+            system, given, np.array([duration]), times=times, tol=1e-13, log_events=room,
+            regime=named,
+        )  # fmt: skip
+        count = int(raw["ends"][0, 3])
+        if count <= room:
+            break
+        room = count
+    first = system.first_regimes({TIME: np.zeros(1), **given}, 1, named)
+    return Motion(
+        np.append(first, raw["event_regimes"][0, :count]), raw["event_times"][0, :count],
+        raw["event_kinds"][0, :count], raw["event_states"][0, :count], raw["final"][0],
+        raw["samples"][0], int(raw["ends"][0, 0]),
+    )  # fmt: skip
+
+
+def events_of(system: System, motion: Motion, first: int, count: int) -> tuple[Event, ...]:
+    """Some consecutive events of a run, each with its switch."""
+    t, found = system.traced, []
+    for i in range(first, first + count):
+        before, after, kind = (int(v) for v in (*motion.regimes[i : i + 2], motion.kinds[i]))
+        for table, sign in ((t.falls, 1.0), (t.rises, -1.0)):
+            for surface, switch in enumerate(table[before]):
+                if 0 <= switch < len(t.switches) and any(
+                    (regime, name) == (after, kind) for regime, _, name in t.switches[switch].targets
+                ):
+                    found.append(Event(int(switch), surface, sign, before, after, kind))
+                    break
+            else:
+                continue
+            break
+    return tuple(found)
+
+
+def guess_of(
+    flow: Flow,
+    values: Mapping[str, float],
+    motion: Motion,
+    state: Vector,
+    period: float,
+    *,
+    periods: int,
+    first: int = 0,
+    count: int | None = None,
+    scale: Vector,
+) -> tuple[EventMap, Vector] | None:
+    """Equations and guess from a run that is nearly periodic; None where its regimes are not.
+
+    Args:
+        flow: of the system.
+        values: parameters.
+        motion: the run.
+        state: its first state.
+        period: after which it nearly repeats, s.
+        periods: of the forcing in it; 0 without.
+        first, count: events of one period; all by default.
+        scale: of the states.
+    """
+    count = len(motion.times) if count is None else count
+    units = np.array([max(abs(values[name]), 1e-300) for name in flow.followed])
+    followed = np.array([values[name] for name in flow.followed])
+    if motion.regimes[first] != motion.regimes[first + count]:
+        return None
+    if count == 0:
+        regime = int(motion.regimes[first])
+        section = None
+        if not periods:
+            heading = flow.field(values, regime, state, 0.0) / scale
+            section = Section(state, heading / np.linalg.norm(heading))
+        events: tuple[Event, ...] = (Event(FREE, FREE, 1.0, regime, regime, FREE),)
+        equations = EventMap(flow, events, values, scale, period, units, periods, section)
+        return equations, equations.pack(state[None], np.array([period]), 0.0, followed)
+    events = events_of(flow.system, motion, first, count)
+    if len(events) < count:
+        return None
+    times = motion.times[first : first + count]
+    durations = np.append(np.diff(times), times[0] + period - times[-1])
+    # legs begin after each event: the last ends at the first event
+    equations = EventMap(
+        flow, (*events[1:], events[0]), values, scale, period, units, periods
+    )
+    states = motion.states[first : first + count]
+    return equations, equations.pack(states, durations, float(times[0]), followed)
+
+
+def solved(equations: EventMap, guess: Vector) -> Cycle | None:
+    """The cycle near a guess, if it is a motion of the system."""
+    point = equations.solve(guess)
+    if point is None:
+        return None
+    cycle = Cycle.at(equations, point)
+    return cycle if cycle.period > 0.0 and is_motion(cycle) else None
+
+
+def find_cycle(
+    system: System,
+    values: Mapping[str, float],
+    state: Vector | None,
+    *,
+    guess: bool,
+    periods: int = 1,
+    t_settle: float | None = None,
+) -> tuple[Cycle | None, int]:
+    """A cycle from a start or near a guess, and an outcome; beyond 200, of so many more periods."""
+    flow = Flow(system)
+    if system.period is not None and flow.timed:
+        return _forced(flow, values, state, guess, periods, t_settle)
+    unit = system.time_scale
+    unit = float(unit(Names("the system", values)) if callable(unit) else unit)
+    regime = None
+    if not guess:
+        run = follow(system, values, state, SETTLE * unit if t_settle is None else t_settle)
+        if run.outcome:
+            return None, run.outcome
+        state, regime = run.final, int(run.regimes[-1])
+    return _free(flow, values, state, regime, unit, periods if not guess else 0)
+
+
+def _forced(
+    flow: Flow, values: Mapping[str, float], state: Vector, guess: bool, periods: int,
+    t_settle: float | None,
+) -> tuple[Cycle | None, int]:  # fmt: skip
+    system, forcing = flow.system, flow.forcing(values)[0]
+    regime = None
+    if not guess:
+        rounds = SETTLE if t_settle is None else max(1.0, np.ceil(t_settle / forcing))
+        run = follow(system, values, state, rounds * forcing)
+        if run.outcome:
+            return None, run.outcome
+        state, regime = run.final, int(run.regimes[-1])
+        times = forcing * np.arange(1, MOST_PERIODS + 1)
+        path = follow(system, values, state, times[-1], regime=regime, times=times).path
+        size = np.maximum(np.ptp(path, axis=0), 1e-9 * np.abs(path).max(axis=0) + 1e-300)
+        distance = np.abs((path - state) / size).max(axis=1)
+        rest = np.abs(path - state).max(axis=0) <= 1e-6 * (np.abs(path).max(axis=0) + 1e-300)
+        near = distance < 3.0 * distance.min() + 1e-6
+        least = 1 if rest.all() else int(np.flatnonzero(near)[0]) + 1
+        if distance[least - 1] > _FAR and not rest.all():
+            return None, Outcome.no_convergence
+        if periods % least:
+            return None, SETTLED_ON + least
+    duration = periods * forcing
+    for _ in range(3):
+        run = follow(
+            system, values, state, duration, regime=regime,
+            times=np.linspace(0.0, duration, 200),
+        )  # fmt: skip
+        if run.outcome or not np.isfinite(run.path).all():
+            return None, run.outcome or Outcome.not_finite
+        every = np.concatenate([run.path, run.states])
+        scale = scale_of(np.array([every.min(axis=0), every.max(axis=0)]), system.sizes)
+        found = guess_of(flow, values, run, state, duration, periods=periods, scale=scale)
+        point = None if found is None else found[0].solve(found[1])
+        if found is None or point is None:
+            # perhaps other events are those of the cycle: nearer to it once more
+            state, regime = run.final, int(run.regimes[-1])
+            continue
+        cycle = Cycle.at(found[0], point)
+        if is_motion(cycle):
+            return cycle, Outcome.converged
+        state, regime = at_phase(cycle, 0.0)
+    return None, Outcome.no_convergence
+
+
+def at_phase(cycle: Cycle, time: float) -> tuple[Vector, int]:
+    """State and regime of a forced cycle at an instant."""
+    return cycle.state_at((time - cycle.parts.start) % cycle.period)
+
+
+def _free(
+    flow: Flow, values: Mapping[str, float], state: Vector, regime: int | None, unit: float,
+    returns: int,
+) -> tuple[Cycle | None, int]:  # fmt: skip
+    """A cycle without forcing near a state; with ``returns`` to its section, if that is not 0."""
+    system = flow.system
+    tried: list[float] = []
+    for window in _WINDOWS:
+        times = np.linspace(0.0, window * unit, _SAMPLES)
+        run = follow(system, values, state, times[-1], regime=regime, times=times)
+        if run.outcome or not np.isfinite(run.path).all():
+            return None, run.outcome or Outcome.not_finite
+        every = np.concatenate([run.path, run.states])
+        extremes = np.array([every.min(axis=0), every.max(axis=0)])
+        if _rests(run.path, system.sizes):
+            return None, Outcome.equilibrium
+        scale = scale_of(extremes, system.sizes)
+        for first, count, period, distance in _returns(flow, values, run, times, state, scale):
+            if distance > (_FAR if window == _WINDOWS[-1] else _NEAR):
+                break
+            if any(abs(period - other) < 1e-3 * period for other in tried):
+                continue
+            tried.append(period)
+            found = guess_of(
+                flow, values, run, state, period, periods=0, first=first, count=count, scale=scale
+            )
+            cycle = None if found is None else solved(*found)
+            if cycle is None or abs(cycle.period - period) > _FAR * period:
+                continue
+            number = _least(cycle.events)
+            if returns and number > returns:
+                return None, SETTLED_ON + number
+            return cycle, Outcome.converged
+    return None, Outcome.no_convergence
+
+
+def _rests(path: Vector, sizes: Vector) -> bool:
+    late = path[len(path) // 2 :]
+    return bool((np.ptp(late, axis=0) <= _AT_REST * np.maximum(np.abs(late).max(axis=0), sizes)).all())
+
+
+def _least(events: tuple[Event, ...]) -> int:
+    """How often the rarest event of a cycle occurs: its returns to a section."""
+    kinds = [(event.switch, event.after) for event in events]
+    return min((kinds.count(kind) for kind in kinds), default=1)
+
+
+def _returns(
+    flow: Flow, values: Mapping[str, float], run: Motion, times: Vector, state: Vector, scale: Vector
+) -> Iterator[tuple[int, int, float, float]]:
+    """(first event, events, period, distance) of near returns, the best and earliest first."""
+    found: list[tuple[int, int, float, float]] = []
+    if len(run.times):
+        keys = np.column_stack([run.kinds, run.regimes[:-1], run.regimes[1:]])
+        for count in range(1, len(run.times)):
+            if (keys[count] != keys[0]).any():
+                continue
+            distance = float(np.abs((run.states[count] - run.states[0]) / scale).max())
+            found.append((0, count, float(run.times[count] - run.times[0]), distance))
+    else:
+        normal = flow.field(values, int(run.regimes[0]), state, 0.0) / scale
+        height = ((run.path - state) / scale) @ normal
+        for at in np.flatnonzero((height[:-1] < 0.0) & (height[1:] >= 0.0)):
+            share = -height[at] / (height[at + 1] - height[at])
+            there = run.path[at] + share * (run.path[at + 1] - run.path[at])
+            distance = float(np.abs((there - state) / scale).max())
+            found.append((0, 0, float(times[at] + share * times[1]), distance))
+    nearest = 3.0 * min((each[3] for each in found), default=0.0) + 1e-6
+    found.sort(key=lambda each: (each[3] >= nearest, each[2] if each[3] < nearest else each[3]))
+    yield from found[:_TRIES]
+
+
+def limit_cycle(
+    system: System,
+    *,
+    start: Mapping[str, Any] | None = None,
+    guess: Mapping[str, Any] | None = None,
+    periods: int = 1,
+    t_settle: float | None = None,
+    **parameters: float,
+) -> xr.Dataset:
+    """A periodic motion with every event located, its stability included.
+
+    Newton's method on the legs between the events; derivatives are exact, through resets and with
+    the forcing's phase.
+
+    Args:
+        system: the system.
+        start: from where to settle, states that differ from the system's start.
+        guess: a state near the cycle, which may be unstable; at t = 0 of the forcing.
+        periods: of the forcing; without it, returns to the section, which is the event that is
+            met least often.
+        t_settle: s; 200 forcing periods or time scales by default.
+        parameters: those that differ from the system's.
+
+    Returns:
+        Dataset: ``period``, ``<state>_min``, ``<state>_max`` (of outputs too), ``multiplier_real``
+        and ``multiplier_imag`` (the trivial one first without forcing), ``stable``, ``residual``,
+        ``outcome``, events with states and regimes entered, and ``periods``. Events and samples are
+        at t = 0 of the forcing, or of the first event. NaN with the reason in ``outcome`` where no
+        cycle is found; ``settled_on_k_periods`` where the settled motion has more than asked.
+
+    Raises:
+        ValueError: an unknown state or parameter, a value that is no finite number, or explicit
+            time without a period.
+    """
+    values, state = given(system, guess if guess is not None else start, parameters)
+    if isinstance(periods, bool) or not isinstance(periods, int | np.integer) or periods < 1:
+        raise ValueError(f"periods = {periods!r}: a whole number from 1 on is needed")
+    cycle, outcome = find_cycle(
+        system, values, state, guess=guess is not None, periods=int(periods), t_settle=t_settle
+    )
+    return dataset(system, cycle, outcome, values, int(periods))
+
+
+def given(
+    system: System, start: Mapping[str, Any] | None, parameters: Mapping[str, Any]
+) -> tuple[dict[str, float], Vector]:
+    """Parameters and the start of a call, checked."""
+    found = {
+        name: runs.scalar(name, value) for name, value in runs.call_values(system, start, parameters).items()
+    }
+    if len(system.traced.variables) > system.traced.size and system.period is None:
+        raise ValueError(f"{system.name} depends on the time but has no period; give `period`")
+    return {n: found[n] for n in system.parameters}, np.array([found[n] for n in system.states])
+
+
+def columns(cycle: Cycle | None, system: System) -> dict[str, Any]:
+    """The numbers of one cycle, over no dimension but ``multiplier``."""
+    names = (*system.states, *system.outputs)
+    n = system.traced.size
+    if cycle is None:
+        bare = {"period": np.nan, "residual": np.nan, "stable": 0}
+        bare |= {f"{name}{end}": np.nan for name in names for end in ("_min", "_max")}
+        return bare | dict.fromkeys(("multiplier_real", "multiplier_imag"), np.full(n, np.nan))
+    found: dict[str, Any] = {"period": cycle.period, "residual": cycle.residual}
+    for name, (low, high) in zip(names, cycle.extremes.T, strict=True):
+        found |= {f"{name}_min": low, f"{name}_max": high}
+    found["stable"] = int(cycle.is_stable)
+    multipliers = cycle.multipliers
+    return found | {"multiplier_real": multipliers.real, "multiplier_imag": multipliers.imag}
+
+
+def described(name: str, system: System) -> dict[str, str]:
+    """long_name and units of a number of a cycle."""
+    units = {**system.units, **{n: unit for n, (unit, _) in system.outputs.items()}}
+    for end, word in (("_min", "smallest"), ("_max", "largest")):
+        if name.endswith(end) and name.removesuffix(end) in units:
+            short = name.removesuffix(end)
+            return {"long_name": f"{word} {short} over the period", "units": units[short]}
+    return {
+        "period": {"long_name": "period", "units": "s"},
+        "residual": {"long_name": "largest equation left over, without units", "units": "1"},
+        "multiplier_real": {"long_name": "real part of the Floquet multipliers", "units": "1"},
+        "multiplier_imag": {"long_name": "imaginary part of the Floquet multipliers", "units": "1"},
+    }[name]
+
+
+def outcome_of(system: System, dims: Any, values: Any) -> Any:
+    """How a cycle was found, with the system's own stops and motions of more periods."""
+    table = flag_table(Outcome) | {STOPPED + i: name for i, name in enumerate(system.stops)}
+    more = np.unique(np.asarray(values)[np.asarray(values) > SETTLED_ON])
+    table |= {int(k): f"settled_on_{int(k) - SETTLED_ON}_periods" for k in more}
+    dims, values, attributes = runs.flag("how the cycle was found", dims, values, table)
+    return dims, values, attributes | {"comment": in_words(table)}
+
+
+def dataset(
+    system: System, cycle: Cycle | None, outcome: int, values: Mapping[str, float], periods: int
+) -> xr.Dataset:
+    """A cycle, or the reason why there is none, as a dataset."""
+    found: dict[str, Any] = {}
+    for name, value in columns(cycle, system).items():
+        if name == "stable":
+            found[name] = runs.flag("whether small disturbances decay", (), value, {0: "no", 1: "yes"})
+        else:
+            dims = ("multiplier",) if np.ndim(value) else ()
+            found[name] = dims, value, described(name, system)
+    more = outcome > SETTLED_ON
+    found["periods"] = (
+        (), outcome - SETTLED_ON if more else periods,
+        {"long_name": "forcing periods, or returns to the section", "units": "1"},
+    )  # fmt: skip
+    times, order, offset = np.empty(0), [], 0.0
+    instants, path = np.empty(0), np.empty((0, len(system.states)))
+    if cycle is not None:
+        offset = cycle.parts.start
+        ends = offset + cycle.clocks + cycle.parts.durations
+        events = [i for i, event in enumerate(cycle.map.events) if event.switch != FREE]
+        times = np.array([ends[i] % cycle.period if system.period else ends[i] for i in events])
+        order = [events[i] for i in np.argsort(times)]
+        times = np.sort(times)
+        instants = np.linspace(0.0, cycle.period, 401)
+        path = np.array([cycle.state_at((t - offset) % cycle.period)[0] for t in instants])
+    chosen = [cycle.map.events[i] for i in order] if cycle else []
+    states = np.array([cycle.parts.crossings[i].after for i in order] if cycle else [])
+    states = states.reshape(-1, len(system.states))
+    kinds, names = dict(enumerate(system.traced.kinds)), dict(enumerate(system.regimes))
+    found["event_time"] = ("event", times, runs.labels("time of the event", "s"))
+    found["event_kind"] = runs.flag("kind of the event", "event", [e.kind for e in chosen], kinds)
+    found["event_regime"] = runs.flag("regime entered", "event", [e.after for e in chosen], names)
+    for i, name in enumerate(system.states):
+        unit = system.units[name]
+        found[f"event_{name}"] = ("event", states[:, i], runs.labels(f"{name} after it", unit))
+        found[f"{name}_path"] = ("sample", path[:, i], runs.labels(f"{name} along the cycle", unit))
+        first = path[0, i] if len(path) else np.nan
+        found[f"{name}_start"] = ((), first, runs.labels(f"{name} at t = 0 of the cycle", unit))
+    found["time"] = ("sample", instants, runs.labels("time", "s"))
+    found["outcome"] = outcome_of(system, (), outcome)
+    return xr.Dataset(found, attrs=runs.attributes(system, "limit cycle", values, 1e-14))

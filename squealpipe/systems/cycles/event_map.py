@@ -1,0 +1,333 @@
+"""A cycle as legs between events in a given order: equations that are smooth at a grazing too.
+
+Unknowns are the states after all events, the durations of the legs and, of a forced system, the
+instant of the first state; then the followed parameters. No surface is watched, so the equations
+go on where an event is only just met, or has come to nothing: whether a solution is a motion of
+the system is a question of its own (:mod:`squealpipe.systems.cycles.admissible`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from squealpipe.systems.cycles.flow import Crossing, Flow, Path, Vector
+
+FREE = -1
+"""Number of the switch of what changes nothing: the section of a cycle without events, a touch."""
+
+
+class Event(NamedTuple):
+    """How a leg ends.
+
+    Attributes:
+        switch: its number, or :data:`FREE`.
+        surface: number of the surface, or :data:`FREE` for the section of a cycle without events.
+        sign: of the surface before the event.
+        before, after: regimes.
+        kind: number of the event's name.
+    """
+
+    switch: int
+    surface: int
+    sign: float
+    before: int
+    after: int
+    kind: int
+
+
+@dataclass(frozen=True)
+class Section:
+    """What fixes the phase of a cycle without events: a plane through a state, or an instant."""
+
+    state: Vector
+    normal: Vector
+
+
+@dataclass(frozen=True)
+class Parts:
+    """The legs at some unknowns, and their derivatives."""
+
+    states: Vector
+    durations: Vector
+    start: float
+    values: dict[str, float]
+    path: Path
+    slopes: Vector
+    crossings: tuple[Crossing, ...]
+
+
+@dataclass(eq=False)
+class EventMap:
+    """The equations of a cycle with given events: F(unknowns, parameters) = 0.
+
+    Attributes:
+        flow: of the system; its followed parameters are the last unknowns.
+        events: of the legs, in order.
+        values: all parameters; the followed ones are replaced.
+        scale, time, units: of the states, of time and of the followed parameters.
+        periods: forcing periods, or 0 without forcing.
+        section: of a cycle without events.
+    """
+
+    flow: Flow
+    events: tuple[Event, ...]
+    values: Mapping[str, float]
+    scale: Vector
+    time: float
+    units: Vector
+    periods: int = 0
+    section: Section | None = None
+    _latest: tuple[Vector, Parts] | None = None
+
+    @property
+    def legs(self) -> int:
+        """Number of legs."""
+        return len(self.events)
+
+    @property
+    def size(self) -> int:
+        """Number of equations, and of unknowns without parameters."""
+        return self.legs * (self.flow.size + 1) + (self.periods > 0)
+
+    def pack(self, states: Vector, durations: Vector, start: float, followed: Vector) -> Vector:
+        """The unknowns without units."""
+        parts = [(states / self.scale).ravel(), durations / self.time]
+        if self.periods:
+            parts.append(np.array([start / self.time]))
+        return np.concatenate([*parts, followed / self.units])
+
+    def unpack(self, z: Vector) -> tuple[Vector, Vector, float, dict[str, float]]:
+        """(states, durations, start, all parameters)."""
+        n, m = self.flow.size, self.legs
+        states = z[: m * n].reshape(m, n) * self.scale
+        durations = z[m * n : m * (n + 1)] * self.time
+        start = float(z[m * (n + 1)] * self.time) if self.periods else 0.0
+        followed = z[self.size :] * self.units
+        names = zip(self.flow.followed, map(float, followed), strict=True)
+        return states, durations, start, {**self.values, **dict(names)}
+
+    def parts(self, z: Vector) -> Parts:
+        """The legs at some unknowns."""
+        if self._latest is not None and np.array_equal(self._latest[0], z):
+            return self._latest[1]
+        states, durations, start, values = self.unpack(z)
+        starts = start + np.cumsum(durations) - durations
+        regimes = [event.before for event in self.events]
+        path = self.flow.run(values, states, regimes, starts, durations)
+        slopes = self.flow.derivatives(values, path)
+        crossings = tuple(
+            self.flow.crossing(
+                values, event.switch, event.surface, (event.before, event.after), end, time
+            )
+            for event, end, time in zip(self.events, path.ends, starts + durations, strict=True)
+        )
+        parts = Parts(states, durations, start, values, path, slopes, crossings)
+        self._latest = z.copy(), parts
+        return parts
+
+    def evaluate(self, z: Vector) -> tuple[Vector, Vector]:
+        """F, (size,), and its Jacobian, (size, size + parameters); NaN where there is none."""
+        size, n, m = self.size, self.flow.size, self.legs
+        values, jacobian = np.full(size, np.nan), np.zeros((size, len(z)))
+        if not np.isfinite(z).all():
+            return values, jacobian
+        with np.errstate(all="ignore"):
+            parts = self.parts(z)
+            for leg, crossing in enumerate(parts.crossings):
+                here, following = slice(leg * n, leg * n + n), (leg + 1) % m
+                by_end, by_time = self.by_unknowns(parts, leg)
+                rows = crossing.after_by_state @ by_end + np.outer(crossing.after_by_time, by_time)
+                rows[:, size:] += crossing.after_by
+                rows[:, following * n : following * n + n] -= np.eye(n)
+                values[here] = (crossing.after - parts.states[following]) / self.scale
+                jacobian[here] = rows / self.scale[:, None]
+                values[m * n + leg], jacobian[m * n + leg] = self._surface(parts, leg, by_end, by_time)
+            if self.periods:
+                period, by = self.flow.forcing(parts.values)
+                values[-1] = (parts.durations.sum() - self.periods * period) / self.time
+                jacobian[-1, m * n : m * (n + 1)] = 1.0 / self.time
+                jacobian[-1, size:] = -self.periods * by / self.time
+        jacobian *= self._column_units
+        return values, jacobian
+
+    @cached_property
+    def _column_units(self) -> Vector:
+        times = np.full(self.legs + (self.periods > 0), self.time)
+        return np.concatenate([np.tile(self.scale, self.legs), times, self.units])
+
+    def by_unknowns(self, parts: Parts, leg: int) -> tuple[Vector, Vector]:
+        """Derivatives of the end of a leg, (n, …), and of its instant, (…,), with units."""
+        size, n, m = self.size, self.flow.size, self.legs
+        slopes, count = parts.slopes[leg], len(self.units)
+        by_end, by_time = np.zeros((n, size + count)), np.zeros(size + count)
+        by_end[:, leg * n : leg * n + n] = slopes[:, :n]
+        by_end[:, size:] = slopes[:, n : n + count]
+        by_end[:, m * n + leg] = parts.crossings[leg].rate
+        if self.flow.timed:
+            earlier = [*range(m * n, m * n + leg), *([size - 1] * (self.periods > 0))]
+            by_end[:, earlier] += slopes[:, n + count :]
+            by_time[[*earlier, m * n + leg]] = 1.0
+        return by_end, by_time
+
+    def _surface(
+        self, parts: Parts, leg: int, by_end: Vector, by_time: Vector
+    ) -> tuple[float, Vector]:
+        """The equation of a surface, or of the section, and its row."""
+        n, crossing = self.flow.size, parts.crossings[leg]
+        if self.events[leg].surface == FREE:
+            row = np.zeros(by_end.shape[1])
+            if self.section is None:
+                row[self.size - 1] = 1.0 / self.time
+                return parts.start / self.time, row
+            row[:n] = self.section.normal / self.scale
+            offset = (parts.states[0] - self.section.state) / self.scale
+            return float(self.section.normal @ offset), row
+        size = max(float(np.abs(crossing.height_by_state) @ self.scale), 1e-300)
+        row = crossing.height_by_state @ by_end + crossing.height_by_time * by_time
+        row[self.size :] += crossing.height_by
+        return crossing.height / size, row / size
+
+    def solve(self, guess: Vector, most: int = 20) -> Vector | None:
+        """Newton's method at fixed parameters; None where it does not converge.
+
+        Where cycles come in families the smallest correction is taken.
+        """
+        z, best, previous = guess.copy(), None, np.inf
+        for _ in range(most):
+            values, jacobian = self.evaluate(z)
+            residual = float(np.abs(values).max())
+            if not np.isfinite(residual) or residual > 1e6:
+                return None
+            if residual < previous:
+                best = z.copy()
+            if residual < 1e-14 or (residual >= 0.5 * previous and previous < 1e-9):
+                break
+            previous = min(previous, residual)
+            step = np.linalg.lstsq(jacobian[:, : self.size], -values, rcond=1e-10)[0]
+            z[: self.size] += step * min(1.0, 0.5 / max(float(np.abs(step).max()), 1e-300))
+        return best if previous < 1e-9 else None
+
+
+@dataclass(frozen=True, eq=False)
+class Cycle:
+    """A solution of an event map.
+
+    Attributes:
+        map: its equations.
+        point: the unknowns.
+        parts: the legs.
+        residual: largest of F.
+    """
+
+    map: EventMap
+    point: Vector
+    parts: Parts
+    residual: float
+
+    @classmethod
+    def at(cls, equations: EventMap, point: Vector) -> Cycle:
+        """The cycle at some unknowns."""
+        residual = float(np.abs(equations.evaluate(point)[0]).max())
+        return cls(equations, point, equations.parts(point), residual)
+
+    @property
+    def period(self) -> float:
+        """Its time, s."""
+        return float(self.parts.durations.sum())
+
+    @property
+    def events(self) -> tuple[Event, ...]:
+        """Its events, without the section."""
+        return tuple(event for event in self.map.events if event.switch != FREE)
+
+    @cached_property
+    def monodromy(self) -> Vector:
+        """The derivative of the first state after a period by itself, over the scales."""
+        n, total = self.map.flow.size, np.eye(self.map.flow.size)
+        for event, slopes, crossing in zip(
+            self.map.events, self.parts.slopes, self.parts.crossings, strict=True
+        ):
+            total = slopes[:, :n] @ total
+            if event.switch != FREE:
+                with np.errstate(all="ignore"):
+                    total = crossing.saltation @ total
+        return np.asarray(total * self.map.scale / self.map.scale[:, None])
+
+    @cached_property
+    def multipliers(self) -> NDArray[np.complex128]:
+        """Floquet multipliers by falling magnitude, after the trivial one without forcing.
+
+        The motion's own direction is mapped onto itself; split off, it leaves the others well
+        conditioned where they meet 1, as at a fold.
+        """
+        matrix, trivial = self.monodromy, np.empty(0)
+        if not np.isfinite(matrix).all():
+            return np.full(len(matrix), np.nan + 0.0j)
+        if not self.map.periods:
+            first = self.map.events[0].before
+            ahead = self.map.flow.field(self.parts.values, first, self.parts.states[0], 0.0)
+            ahead = ahead / self.map.scale
+            basis = np.linalg.qr(np.column_stack([ahead, np.eye(len(ahead))]))[0]
+            turned = basis.T @ matrix @ basis
+            trivial, matrix = turned[:1, 0], turned[1:, 1:]
+        rest = np.linalg.eigvals(matrix).astype(np.complex128)
+        # conjugates: positive imaginary part first
+        order = sorted(
+            range(len(rest)), key=lambda i: (-round(float(abs(rest[i])), 9), -rest[i].imag)
+        )
+        return np.concatenate([trivial.astype(np.complex128), rest[order]])
+
+    @property
+    def nontrivial(self) -> NDArray[np.complex128]:
+        """All multipliers but the trivial one."""
+        return self.multipliers[int(not self.map.periods) :]
+
+    @property
+    def is_stable(self) -> bool:
+        """Whether small disturbances decay."""
+        return bool(np.abs(self.nontrivial).max(initial=0.0) < 1.0)
+
+    @cached_property
+    def extremes(self) -> Vector:
+        """(lowest, highest) of each state and output, (2, states + outputs)."""
+        n, path = self.map.flow.size, self.parts.path
+        first = path.series.shape[1] - len(self.map.flow.system.traced.outputs)
+        which = [*range(n), *range(first, path.series.shape[1])]
+        turns = path.turns(which)
+        found = []
+        for number, inside in zip(which, turns, strict=True):
+            values = [*path.ends_of(number)[0], *path.ends_of(number)[1]]
+            values += [turn.value for turn in inside]
+            found.append((min(values), max(values)))
+        return np.array(found).T
+
+    @property
+    def clocks(self) -> Vector:
+        """When each leg begins after the first state."""
+        durations = self.parts.durations
+        return np.asarray(np.cumsum(durations) - durations)
+
+    def state_at(self, time: float) -> tuple[Vector, int]:
+        """The state and the regime at a time after the first state, less than a period."""
+        leg = int(np.searchsorted(self.clocks, time, side="right")) - 1
+        found = self.parts.path.at(leg, time - self.clocks[leg])[: self.map.flow.size]
+        return found, self.map.events[leg].before
+
+    def followed_in(self, flow: Flow, units: Vector) -> EventMap:
+        """Its equations with other followed parameters, scaled by it."""
+        return replace(
+            self.map, flow=flow, values=self.parts.values, units=units, time=self.period,
+            scale=scale_of(self.extremes[:, : flow.size], flow.system.sizes), _latest=None,
+        )  # fmt: skip
+
+
+def scale_of(extremes: Vector, sizes: Vector) -> Vector:
+    """Units of the states: their extents in a motion; of a constant one its size."""
+    extent, largest = extremes[1] - extremes[0], np.abs(extremes).max(axis=0)
+    return np.where(extent > 1e-9 * largest, extent, np.where(largest > 0.0, largest, sizes))
