@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import math
 import weakref
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from importlib.metadata import version
 from typing import TYPE_CHECKING, Any
@@ -235,6 +235,61 @@ class _Given:
         self.__dict__.update({name: values[name] for name in names})
 
 
+@dataclass(frozen=True)
+class Motion:
+    """One run with its events.
+
+    Attributes:
+        regimes: the first, then that after each event.
+        times, kinds, states: of the events, the states after them.
+        final: state at the end.
+        path, path_regimes: at the asked instants.
+        outcome, reached, steps: how and when it ended, and after how many steps.
+    """
+
+    regimes: np.ndarray
+    times: np.ndarray
+    kinds: np.ndarray
+    states: np.ndarray
+    final: np.ndarray
+    path: np.ndarray
+    path_regimes: np.ndarray
+    outcome: int
+    reached: float
+    steps: int
+
+
+def single_run(
+    system: System,
+    values: Mapping[str, float],
+    t_end: float,
+    *,
+    regime: str | None = None,
+    times: np.ndarray | None = None,
+    tol: float,
+    room: int = FIRST_LOG,
+) -> Motion:
+    """Run a system once from states and parameters; ``room`` is that for events at first."""
+    given = {name: np.array([value]) for name, value in values.items()}
+    while True:
+        raw = integrate(
+            system, given, np.array([t_end]), regime=regime, times=times, tol=tol, log_events=room
+        )
+        _, _, steps, count = (int(value) for value in raw["ends"][0])
+        if count <= room or not room:
+            break
+        room = count
+    first = system.first_regimes({TIME: np.zeros(1), **given}, 1, regime)
+    events = {
+        key: raw[f"event_{key}"][0, :count] for key in ("times", "kinds", "states", "regimes")
+    }
+    return Motion(
+        np.append(first, events["regimes"]), events["times"], events["kinds"], events["states"],
+        raw["final"][0], raw["samples"][0], raw["sample_regimes"][0], int(raw["ends"][0, 0]),
+        float(raw["summary"][0, 2]), steps,
+    )  # fmt: skip
+
+
 @checked
 def simulate(
     system: Any,
@@ -243,6 +298,7 @@ def simulate(
     times: Vector | None = None,
     start: Mapping[str, Any] | None = None,
     tol: Tolerance = 1e-12,
+    sensitivity: Sequence[str] = (),
     **parameters: Any,
 ) -> xr.Dataset:
     """One run of a system, with every switch located.
@@ -253,51 +309,42 @@ def simulate(
         times: instants, ascending; by default four a step of the integrator, evenly spaced.
         start: states that differ from the system's start, and ``regime`` if it is to be given.
         tol: tolerance of the Taylor integrator, relative to the states' sizes.
+        sensitivity: names of parameters, and ``<state>0`` of starts, by which derivatives are
+            taken, through all events.
         parameters: those that differ from the system's.
 
     Returns:
         Dataset over ``time`` and ``event``: each state, ``regime``, ``event_time``, ``event_kind``,
-        ``event_regime`` (entered), ``outcome``. Instants that the run did not reach hold NaN.
+        ``event_regime`` (entered), ``outcome``; ``<state>_by_<name>`` (at fixed instants) and
+        ``event_time_by_<name>``. Instants that the run did not reach hold NaN.
 
     Raises:
         ValueError: an unknown state or parameter, or a value that is not a finite number.
     """
-    values = {
-        name: np.array([scalar(name, value)])
-        for name, value in call_values(system, start, parameters).items()
-    }
-    ends, regime = np.array([t_end]), (start or {}).get("regime")
+    values = {n: scalar(n, v) for n, v in call_values(system, start, parameters).items()}
+    regime = (start or {}).get("regime")
     if times is None:
-        raw = integrate(system, values, ends, regime=regime, tol=tol)
-        steps = int(raw["ends"][0, 2])
+        steps = single_run(system, values, t_end, regime=regime, tol=tol, room=0).steps
         times = np.linspace(0.0, t_end, int(np.clip(SAMPLES_PER_STEP * steps, 2, MOST_SAMPLES)))
-    room = FIRST_LOG
-    while True:
-        raw = integrate(system, values, ends, regime=regime, times=times, tol=tol, log_events=room)
-        count = int(raw["ends"][0, 3])
-        if count <= room:
-            break
-        room = count
-    reached = raw["summary"][0, 2]
+    run = single_run(system, values, t_end, regime=regime, times=times, tol=tol)
     kinds = dict(enumerate(system.traced.kinds))
     names = dict(enumerate(system.regimes))
     found: dict[str, Any] = {
-        name: ("time", raw["samples"][0, :, i], labels(f"state {name}", system.units[name]))
+        name: ("time", run.path[:, i], labels(f"state {name}", system.units[name]))
         for i, name in enumerate(system.states)
     }
-    found["regime"] = flag("regime", "time", raw["sample_regimes"][0], names)
-    found["event_time"] = (
-        "event",
-        raw["event_times"][0, :count],
-        labels("time of the event", "s"),
-    )
-    found["event_kind"] = flag("kind of the event", "event", raw["event_kinds"][0, :count], kinds)
-    found["event_regime"] = flag("regime entered", "event", raw["event_regimes"][0, :count], names)
-    found["outcome"] = outcome(system, (), raw["ends"][0, 0])
-    found["end_time"] = ((), reached, labels("time reached", "s"))
-    given = {name: float(value[0]) for name, value in values.items()}
+    found["regime"] = flag("regime", "time", run.path_regimes, names)
+    found["event_time"] = ("event", run.times, labels("time of the event", "s"))
+    found["event_kind"] = flag("kind of the event", "event", run.kinds, kinds)
+    found["event_regime"] = flag("regime entered", "event", run.regimes[1:], names)
+    found["outcome"] = outcome(system, (), run.outcome)
+    found["end_time"] = ((), run.reached, labels("time reached", "s"))
+    if sensitivity:
+        from squealpipe.systems.cycles.sensitivity import sensitivities
+
+        found |= sensitivities(system, sensitivity, values, run, times)
     coordinates = {"time": ("time", times, labels("time", "s"))}
-    return xr.Dataset(found, coordinates, attributes(system, "simulate", given, tol))
+    return xr.Dataset(found, coordinates, attributes(system, "simulate", values, tol))
 
 
 @checked
@@ -398,7 +445,9 @@ def outer_product(
     Raises:
         ValueError: an unknown state or parameter, or a value that is not a finite number.
     """
-    given = {name: real_array(name, v) for name, v in call_values(system, start, parameters).items()}
+    given = {
+        name: real_array(name, v) for name, v in call_values(system, start, parameters).items()
+    }
     for name, value in given.items():
         if value.ndim > 1:
             raise ValueError(f"{name} has shape {value.shape}: a number or a 1-D array is needed")

@@ -125,6 +125,7 @@ def random_system(seed):
         states=dict.fromkeys(names, "1"),
         parameters={"drive": 1.0, "omega": 1.3},
         **(patches, stick)[seed % 2](rng, names),
+        period=lambda p: 2.0 * np.pi / p.omega,
     )
 
 

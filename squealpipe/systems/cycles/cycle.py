@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -15,7 +14,8 @@ from squealpipe.systems import runs
 from squealpipe.systems.cycles.admissible import is_motion
 from squealpipe.systems.cycles.event_map import FREE, Cycle, Event, EventMap, Section, scale_of
 from squealpipe.systems.cycles.flow import Flow, Vector
-from squealpipe.systems.trace import TIME, Names
+from squealpipe.systems.runs import Motion, single_run
+from squealpipe.systems.trace import Names
 
 if TYPE_CHECKING:
     from squealpipe.systems.system import System
@@ -30,60 +30,19 @@ _NEAR, _FAR = 0.05, 0.3
 """A return this close, over the motion's extent, ends the search; one this far is none."""
 _TRIES, _SAMPLES = 4, 2000
 _AT_REST = 1e-9
+SAMPLES = 400
 SETTLED_ON = 200
 """Outcome of a settled motion of k periods, less k."""
 
 
-@dataclass(frozen=True)
-class Motion:
-    """A run with its events.
-
-    Attributes:
-        regimes: the first, then that after each event.
-        times, kinds, states: of the events.
-        final: state at the end.
-        path: states at the asked instants.
-        outcome: how it ended.
-    """
-
-    regimes: np.ndarray
-    times: Vector
-    kinds: np.ndarray
-    states: Vector
-    final: Vector
-    path: Vector
-    outcome: int
-
-
 def follow(
-    system: System,
-    values: Mapping[str, float],
-    state: Vector,
-    duration: float,
-    *,
-    regime: int | None = None,
-    times: Vector | None = None,
+    system: System, values: Mapping[str, float], state: Vector, duration: float, **options: Any
 ) -> Motion:
     """Run a system from a state at t = 0 with all events."""
-    given = {name: np.array([value]) for name, value in values.items()}
-    given |= {name: np.array([value]) for name, value in zip(system.states, state, strict=True)}
+    regime = options.pop("regime", None)
     named = None if regime is None else system.states_of(regime)
-    room = runs.FIRST_LOG
-    while True:
-        raw = runs.integrate(
-            system, given, np.array([duration]), times=times, tol=1e-13, log_events=room,
-            regime=named,
-        )  # fmt: skip
-        count = int(raw["ends"][0, 3])
-        if count <= room:
-            break
-        room = count
-    first = system.first_regimes({TIME: np.zeros(1), **given}, 1, named)
-    return Motion(
-        np.append(first, raw["event_regimes"][0, :count]), raw["event_times"][0, :count],
-        raw["event_kinds"][0, :count], raw["event_states"][0, :count], raw["final"][0],
-        raw["samples"][0], int(raw["ends"][0, 0]),
-    )  # fmt: skip
+    states = dict(zip(system.states, map(float, state), strict=True))
+    return single_run(system, {**values, **states}, duration, regime=named, tol=1e-13, **options)
 
 
 def events_of(system: System, motion: Motion, first: int, count: int) -> tuple[Event, ...]:
@@ -94,7 +53,8 @@ def events_of(system: System, motion: Motion, first: int, count: int) -> tuple[E
         for table, sign in ((t.falls, 1.0), (t.rises, -1.0)):
             for surface, switch in enumerate(table[before]):
                 if 0 <= switch < len(t.switches) and any(
-                    (regime, name) == (after, kind) for regime, _, name in t.switches[switch].targets
+                    (regime, name) == (after, kind)
+                    for regime, _, name in t.switches[switch].targets
                 ):
                     found.append(Event(int(switch), surface, sign, before, after, kind))
                     break
@@ -148,9 +108,7 @@ def guess_of(
     times = motion.times[first : first + count]
     durations = np.append(np.diff(times), times[0] + period - times[-1])
     # legs begin after each event: the last ends at the first event
-    equations = EventMap(
-        flow, (*events[1:], events[0]), values, scale, period, units, periods
-    )
+    equations = EventMap(flow, (*events[1:], events[0]), values, scale, period, units, periods)
     states = motion.states[first : first + count]
     return equations, equations.pack(states, durations, float(times[0]), followed)
 
@@ -172,14 +130,14 @@ def find_cycle(
     guess: bool,
     periods: int = 1,
     t_settle: float | None = None,
+    regime: int | None = None,
 ) -> tuple[Cycle | None, int]:
     """A cycle from a start or near a guess, and an outcome; beyond 200, of so many more periods."""
     flow = Flow(system)
     if system.period is not None and flow.timed:
-        return _forced(flow, values, state, guess, periods, t_settle)
+        return _forced(flow, values, state, guess, periods, t_settle, regime)
     unit = system.time_scale
     unit = float(unit(Names("the system", values)) if callable(unit) else unit)
-    regime = None
     if not guess:
         run = follow(system, values, state, SETTLE * unit if t_settle is None else t_settle)
         if run.outcome:
@@ -190,10 +148,9 @@ def find_cycle(
 
 def _forced(
     flow: Flow, values: Mapping[str, float], state: Vector, guess: bool, periods: int,
-    t_settle: float | None,
+    t_settle: float | None, regime: int | None,
 ) -> tuple[Cycle | None, int]:  # fmt: skip
     system, forcing = flow.system, flow.forcing(values)[0]
-    regime = None
     if not guess:
         rounds = SETTLE if t_settle is None else max(1.0, np.ceil(t_settle / forcing))
         run = follow(system, values, state, rounds * forcing)
@@ -230,13 +187,8 @@ def _forced(
         cycle = Cycle.at(found[0], point)
         if is_motion(cycle):
             return cycle, Outcome.converged
-        state, regime = at_phase(cycle, 0.0)
+        state, regime = cycle.start()
     return None, Outcome.no_convergence
-
-
-def at_phase(cycle: Cycle, time: float) -> tuple[Vector, int]:
-    """State and regime of a forced cycle at an instant."""
-    return cycle.state_at((time - cycle.parts.start) % cycle.period)
 
 
 def _free(
@@ -277,7 +229,9 @@ def _free(
 
 def _rests(path: Vector, sizes: Vector) -> bool:
     late = path[len(path) // 2 :]
-    return bool((np.ptp(late, axis=0) <= _AT_REST * np.maximum(np.abs(late).max(axis=0), sizes)).all())
+    return bool(
+        (np.ptp(late, axis=0) <= _AT_REST * np.maximum(np.abs(late).max(axis=0), sizes)).all()
+    )
 
 
 def _least(events: tuple[Event, ...]) -> int:
@@ -287,7 +241,12 @@ def _least(events: tuple[Event, ...]) -> int:
 
 
 def _returns(
-    flow: Flow, values: Mapping[str, float], run: Motion, times: Vector, state: Vector, scale: Vector
+    flow: Flow,
+    values: Mapping[str, float],
+    run: Motion,
+    times: Vector,
+    state: Vector,
+    scale: Vector,
 ) -> Iterator[tuple[int, int, float, float]]:
     """(first event, events, period, distance) of near returns, the best and earliest first."""
     found: list[tuple[int, int, float, float]] = []
@@ -306,7 +265,7 @@ def _returns(
             there = run.path[at] + share * (run.path[at + 1] - run.path[at])
             distance = float(np.abs((there - state) / scale).max())
             found.append((0, 0, float(times[at] + share * times[1]), distance))
-    nearest = 3.0 * min((each[3] for each in found), default=0.0) + 1e-6
+    nearest = 3.0 * min((each[3] for each in found), default=0.0) + 1e-4
     found.sort(key=lambda each: (each[3] >= nearest, each[2] if each[3] < nearest else each[3]))
     yield from found[:_TRIES]
 
@@ -337,8 +296,8 @@ def limit_cycle(
     Returns:
         Dataset: ``period``, ``<state>_min``, ``<state>_max`` (of outputs too), ``multiplier_real``
         and ``multiplier_imag`` (the trivial one first without forcing), ``stable``, ``residual``,
-        ``outcome``, events with states and regimes entered, and ``periods``. Events and samples are
-        at t = 0 of the forcing, or of the first event. NaN with the reason in ``outcome`` where no
+        ``outcome``, events with states and regimes entered, and ``periods``. Times count
+        from t = 0 of the forcing, or from a state far from events. NaN with the reason in ``outcome`` where no
         cycle is found; ``settled_on_k_periods`` where the settled motion has more than asked.
 
     Raises:
@@ -359,7 +318,8 @@ def given(
 ) -> tuple[dict[str, float], Vector]:
     """Parameters and the start of a call, checked."""
     found = {
-        name: runs.scalar(name, value) for name, value in runs.call_values(system, start, parameters).items()
+        name: runs.scalar(name, value)
+        for name, value in runs.call_values(system, start, parameters).items()
     }
     if len(system.traced.variables) > system.traced.size and system.period is None:
         raise ValueError(f"{system.name} depends on the time but has no period; give `period`")
@@ -406,33 +366,45 @@ def outcome_of(system: System, dims: Any, values: Any) -> Any:
     return dims, values, attributes | {"comment": in_words(table)}
 
 
+def describe_columns(
+    system: System, rows: Sequence[Mapping[str, Any]], dim: str | None = None
+) -> dict[str, Any]:
+    """Numbers of some cycles as variables, over a dimension if there is one."""
+    found: dict[str, Any] = {}
+    over = (dim,) if dim else ()
+    for name, bare in (rows[0] if rows else columns(None, system)).items():
+        stacked = np.array([row[name] for row in rows]).reshape(-1, *np.shape(bare))
+        values = stacked if dim else stacked[0]
+        if name == "stable":
+            table = {0: "no", 1: "yes"}
+            found[name] = runs.flag("whether small disturbances decay", over, values, table)
+        else:
+            dims = (*over, "multiplier") if np.ndim(bare) else over
+            found[name] = dims, values, described(name, system)
+    return found
+
+
 def dataset(
     system: System, cycle: Cycle | None, outcome: int, values: Mapping[str, float], periods: int
 ) -> xr.Dataset:
     """A cycle, or the reason why there is none, as a dataset."""
-    found: dict[str, Any] = {}
-    for name, value in columns(cycle, system).items():
-        if name == "stable":
-            found[name] = runs.flag("whether small disturbances decay", (), value, {0: "no", 1: "yes"})
-        else:
-            dims = ("multiplier",) if np.ndim(value) else ()
-            found[name] = dims, value, described(name, system)
+    found = describe_columns(system, [columns(cycle, system)])
     more = outcome > SETTLED_ON
     found["periods"] = (
         (), outcome - SETTLED_ON if more else periods,
         {"long_name": "forcing periods, or returns to the section", "units": "1"},
     )  # fmt: skip
-    times, order, offset = np.empty(0), [], 0.0
-    instants, path = np.empty(0), np.empty((0, len(system.states)))
+    times, order = np.empty(0), []
+    instants, path, regime = np.empty(0), np.empty((0, len(system.states))), 0
     if cycle is not None:
-        offset = cycle.parts.start
-        ends = offset + cycle.clocks + cycle.parts.durations
         events = [i for i, event in enumerate(cycle.map.events) if event.switch != FREE]
-        times = np.array([ends[i] % cycle.period if system.period else ends[i] for i in events])
+        ends = cycle.clocks + cycle.parts.durations
+        times = np.array([(ends[i] - cycle.phase) % cycle.period for i in events])
         order = [events[i] for i in np.argsort(times)]
         times = np.sort(times)
-        instants = np.linspace(0.0, cycle.period, 401)
-        path = np.array([cycle.state_at((t - offset) % cycle.period)[0] for t in instants])
+        instants = np.linspace(0.0, cycle.period, SAMPLES + 1)
+        path = np.array([cycle.state_at((cycle.phase + t) % cycle.period)[0] for t in instants])
+        regime = cycle.start()[1]
     chosen = [cycle.map.events[i] for i in order] if cycle else []
     states = np.array([cycle.parts.crossings[i].after for i in order] if cycle else [])
     states = states.reshape(-1, len(system.states))
@@ -446,6 +418,7 @@ def dataset(
         found[f"{name}_path"] = ("sample", path[:, i], runs.labels(f"{name} along the cycle", unit))
         first = path[0, i] if len(path) else np.nan
         found[f"{name}_start"] = ((), first, runs.labels(f"{name} at t = 0 of the cycle", unit))
+    found["start_regime"] = runs.flag("regime at t = 0 of the cycle", (), regime, names)
     found["time"] = ("sample", instants, runs.labels("time", "s"))
     found["outcome"] = outcome_of(system, (), outcome)
     return xr.Dataset(found, attrs=runs.attributes(system, "limit cycle", values, 1e-14))

@@ -147,17 +147,20 @@ class EventMap:
                 rows[:, following * n : following * n + n] -= np.eye(n)
                 values[here] = (crossing.after - parts.states[following]) / self.scale
                 jacobian[here] = rows / self.scale[:, None]
-                values[m * n + leg], jacobian[m * n + leg] = self._surface(parts, leg, by_end, by_time)
+                values[m * n + leg], jacobian[m * n + leg] = self._surface(
+                    parts, leg, by_end, by_time
+                )
             if self.periods:
                 period, by = self.flow.forcing(parts.values)
                 values[-1] = (parts.durations.sum() - self.periods * period) / self.time
                 jacobian[-1, m * n : m * (n + 1)] = 1.0 / self.time
                 jacobian[-1, size:] = -self.periods * by / self.time
-        jacobian *= self._column_units
+        jacobian *= self.column_units
         return values, jacobian
 
     @cached_property
-    def _column_units(self) -> Vector:
+    def column_units(self) -> Vector:
+        """Units of all unknowns."""
         times = np.full(self.legs + (self.periods > 0), self.time)
         return np.concatenate([np.tile(self.scale, self.legs), times, self.units])
 
@@ -204,11 +207,11 @@ class EventMap:
             residual = float(np.abs(values).max())
             if not np.isfinite(residual) or residual > 1e6:
                 return None
+            stagnates = residual >= 0.5 * previous and previous < 1e-9
             if residual < previous:
-                best = z.copy()
-            if residual < 1e-14 or (residual >= 0.5 * previous and previous < 1e-9):
+                best, previous = z.copy(), residual
+            if stagnates or residual < 1e-14:
                 break
-            previous = min(previous, residual)
             step = np.linalg.lstsq(jacobian[:, : self.size], -values, rcond=1e-10)[0]
             z[: self.size] += step * min(1.0, 0.5 / max(float(np.abs(step).max()), 1e-300))
         return best if previous < 1e-9 else None
@@ -270,9 +273,7 @@ class Cycle:
         if not np.isfinite(matrix).all():
             return np.full(len(matrix), np.nan + 0.0j)
         if not self.map.periods:
-            first = self.map.events[0].before
-            ahead = self.map.flow.field(self.parts.values, first, self.parts.states[0], 0.0)
-            ahead = ahead / self.map.scale
+            ahead = self.heading
             basis = np.linalg.qr(np.column_stack([ahead, np.eye(len(ahead))]))[0]
             turned = basis.T @ matrix @ basis
             trivial, matrix = turned[:1, 0], turned[1:, 1:]
@@ -282,6 +283,13 @@ class Cycle:
             range(len(rest)), key=lambda i: (-round(float(abs(rest[i])), 9), -rest[i].imag)
         )
         return np.concatenate([trivial.astype(np.complex128), rest[order]])
+
+    @property
+    def heading(self) -> Vector:
+        """Rate of the first state, over the scales and the period."""
+        first = self.map.events[0].before
+        rate = self.map.flow.field(self.parts.values, first, self.parts.states[0], self.parts.start)
+        return np.asarray(rate / self.map.scale * self.period)
 
     @property
     def nontrivial(self) -> NDArray[np.complex128]:
@@ -318,6 +326,25 @@ class Cycle:
         leg = int(np.searchsorted(self.clocks, time, side="right")) - 1
         found = self.parts.path.at(leg, time - self.clocks[leg])[: self.map.flow.size]
         return found, self.map.events[leg].before
+
+    def start(self) -> tuple[Vector, int]:
+        """State and regime at t = 0: of the forcing, or far from any event."""
+        return self.state_at(self.phase)
+
+    @cached_property
+    def phase(self) -> float:
+        """When that is, after the first state."""
+        if self.map.periods:
+            return -self.parts.start % self.period
+        holds = self.map.flow.system.holds
+        lengths = [
+            0.0 if holds[event.before].any() else duration
+            for event, duration in zip(self.map.events, self.parts.durations, strict=True)
+        ]
+        longest = int(np.argmax(lengths))
+        if self.map.events[longest].switch == FREE:
+            return 0.0
+        return float(self.clocks[longest] + 0.5 * self.parts.durations[longest])
 
     def followed_in(self, flow: Flow, units: Vector) -> EventMap:
         """Its equations with other followed parameters, scaled by it."""

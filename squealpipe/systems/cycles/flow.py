@@ -133,7 +133,9 @@ class Path:
         height = (scaled[step, series] * place[:, None] ** np.arange(scaled.shape[2])).sum(axis=1)
         time = (self.offsets[step] + place * self.steps[step]) * self.unit
         for i, number in enumerate(series):
-            turn = Turn(int(self.leg[step[i]]), float(time[i]), float(height[i]), bool(first[i] < 0))
+            turn = Turn(
+                int(self.leg[step[i]]), float(time[i]), float(height[i]), bool(first[i] < 0)
+            )
             found[number].append(turn)
         return found
 
@@ -171,8 +173,12 @@ class Crossing:
     def saltation(self) -> Vector:
         """The derivative of a motion's later state by its earlier one, both at one time."""
         delay = -self.height_by_state / self.speed
-        jump = self.after_by_state @ self.rate + self.after_by_time - self.rate_after
-        return np.asarray(self.after_by_state + np.outer(jump, delay))
+        return np.asarray(self.after_by_state + np.outer(self.jump, delay))
+
+    @property
+    def jump(self) -> Vector:
+        """Of a motion's later state by the time of the event."""
+        return np.asarray(self.after_by_state @ self.rate + self.after_by_time - self.rate_after)
 
 
 class Flow:
@@ -197,7 +203,9 @@ class Flow:
         entries = [(i, j, symbol(derivative(rate, by)))
                    for i, rate in enumerate(t.rates[: t.size])
                    for j, by in enumerate(directions)]  # fmt: skip
-        self._entries = [e for e in entries if not (e[2].kind == "number" and not e[2].arguments[0])]
+        self._entries = [
+            e for e in entries if not (e[2].kind == "number" and not e[2].arguments[0])
+        ]
         self._columns = len(directions)
         self._slopes = python_function([e[2] for e in self._entries], self.arguments, np)
         self._field = python_function(t.rates[: t.size], self.arguments, np)

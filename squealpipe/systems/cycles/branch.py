@@ -1,0 +1,695 @@
+"""Branches of cycles in one parameter, stable and unstable, with located special points.
+
+Pseudo-arclength continuation of an event map. A step is accepted only if the branch does not turn
+round in it and multipliers change by little; a solution that is no motion of the system ends the
+smooth piece where the first margin is zero, and the branch goes on with other events from there.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import xarray as xr
+from scipy.optimize import brentq
+
+from squealpipe.methods.continuation import (
+    ContinuationSettings,
+    ContinuationState,
+    PseudoArclength,
+)
+from squealpipe.methods.cycles.labels import Label
+from squealpipe.parameters import is_finite_number
+from squealpipe.schema import Outcome
+from squealpipe.systems import runs
+from squealpipe.systems.cycles.admissible import ROUND_OFF, Kind, Margin, is_motion, margins
+from squealpipe.systems.cycles.cycle import (
+    columns,
+    describe_columns,
+    find_cycle,
+    follow,
+    guess_of,
+    outcome_of,
+)
+from squealpipe.systems.cycles.event_map import FREE, Cycle, Event, EventMap, Section
+from squealpipe.systems.cycles.flow import Flow, Vector
+from squealpipe.text import suggestion
+
+if TYPE_CHECKING:
+    from squealpipe.systems.system import System
+
+STEPS = ContinuationSettings(
+    first_step=1e-3, shortest_step=1e-9, longest_step=0.05, tolerance=1e-11, stagnant=1e-9
+)
+PRECISE = replace(STEPS, tolerance=3e-14, stagnant=1e-10, max_iterations=10)
+"""Of a special point, which is located to round-off."""
+_EASY, _GROWTH = 3, 3.0
+"""With no more than so many iterations the next step may grow, by no more than this factor."""
+_TURN = 0.7
+"""Turn of the branch over the largest one that the next step is meant for."""
+_CHANGE = 1.0
+"""Largest change of a multiplier between neighbouring points."""
+_COARSE = 1e-6
+"""Step below which a branch is taken as it is."""
+_WEAK = 0.05
+"""Speed or length of an event, over the cycle's, at which it has only just begun."""
+_AT_REST = 1e-3
+"""Size of a cycle, over the largest on its branch, below which one that shrinks comes to rest."""
+_SAME = 1e-3
+"""Distance from an older piece of the branch, over that piece, that is on it."""
+_ZERO = 1e-13
+_CLOSE = 1e-5
+"""Share of a step before a change of the events in which a fold is that change."""
+
+Test = Callable[[ContinuationState, Cycle], float]
+
+
+@dataclass(frozen=True)
+class Point:
+    """A cycle on a branch."""
+
+    state: ContinuationState
+    cycle: Cycle
+    label: Label = Label.regular
+
+    @property
+    def parameter(self) -> float:
+        """Value of the followed parameter."""
+        return self.cycle.parts.values[self.cycle.map.flow.followed[-1]]
+
+
+def flip(cycle: Cycle) -> float:
+    """∏ (λ + 1) over the multipliers: zero at a period doubling."""
+    return float(np.real(np.prod(cycle.nontrivial + 1.0)))
+
+
+def modulus(cycle: Cycle) -> float:
+    """Largest |λ| − 1 of the complex pairs: zero at a torus bifurcation; NaN without a pair."""
+    pairs = cycle.nontrivial[np.abs(cycle.nontrivial.imag) > 1e-9]
+    return float(np.abs(pairs).max() - 1.0) if len(pairs) else np.nan
+
+
+TESTS: tuple[tuple[Label, Test], ...] = (
+    (Label.fold, lambda state, _: float(state.tangent[-1])),
+    (Label.period_doubling, lambda _, cycle: flip(cycle)),
+    (Label.torus, lambda _, cycle: modulus(cycle)),
+)
+
+
+def hides_folds(before: ContinuationState, after: ContinuationState) -> bool:
+    """Whether the parameter, interpolated by Hermite's cubic, turns twice between two points."""
+    step = after.point - before.point
+    first, last = float(before.tangent[-1]), float(after.tangent[-1])
+    mean = float(step[-1] / np.linalg.norm(step))
+    # its slope is first + b s + a s² for s from 0 to 1
+    a, b = 3.0 * (first + last) - 6.0 * mean, 6.0 * mean - 4.0 * first - 2.0 * last
+    if first * last <= 0.0 or a == 0.0 or not 0.0 < -0.5 * b / a < 1.0:
+        return False
+    return (first - 0.25 * b * b / a) * first < 0.0
+
+
+def multiplier_change(one: Cycle, other: Cycle) -> float:
+    """Largest relative distance of a multiplier from the nearest of the other cycle."""
+    first, second = one.multipliers, other.multipliers
+    distance = np.abs(first[:, None] - second) / (1.0 + np.abs(first[:, None]))
+    return float(max(distance.min(axis=0).max(), distance.min(axis=1).max()))
+
+
+def label_of(cycle: Cycle, zero: dict[Margin, float]) -> Label:
+    """What a change of the events is called, from the margins that vanish."""
+    system = cycle.map.flow.system
+    t, found = system.traced, Label.regular
+    for margin in zero:
+        event = cycle.map.events[margin.leg]
+        here = bool(system.holds[event.before].any())
+        if margin.kind == Kind.condition:
+            switch = event.switch
+        elif margin.kind == Kind.length:
+            switch = FREE
+        else:
+            falls, rises = t.falls[event.before, margin.which], t.rises[event.before, margin.which]
+            switch = int(max(falls, rises))
+        if 0 <= switch < len(t.switches):
+            surfaces = {s for table in (t.falls, t.rises) for s in np.nonzero(table == switch)[1]}
+            targets = [regime for regime, _, _ in t.switches[switch].targets]
+            here = here or any(system.holds[r, s] for r in targets for s in surfaces)
+        if here:
+            return Label.stick_onset
+        if margin.kind in {Kind.touch, Kind.speed}:
+            found = Label.grazing
+    return found
+
+
+class Follower:
+    """A branch as it is followed.
+
+    Attributes:
+        low, high: range of the parameter.
+        most: points after which the branch ends.
+        points: of the branch so far.
+    """
+
+    def __init__(self, low: float, high: float, most: int) -> None:
+        self.low, self.high, self.most = low, high, most
+        self.algorithm = PseudoArclength(STEPS, least_iterations=0, own_tangent=True)
+        self.points: list[Point] = []
+        self.shapes: list[Vector] = []
+
+    def run(self, state: ContinuationState, cycle: Cycle) -> Outcome:
+        """Follow the branch to its end, and label it."""
+        end = self._run(state, cycle)
+        self.points[-1] = replace(self.points[-1], label=Label.end)
+        return end
+
+    def _run(self, state: ContinuationState, cycle: Cycle) -> Outcome:
+        self._add(Point(state, cycle))
+        while len(self.points) < self.most:
+            found = self._advance(state, cycle)
+            if found is None:
+                return self._reason()
+            special, state, cycle, on = found
+            for point in special[: self.most - len(self.points)]:
+                self._add(point)
+            if len(self.points) >= self.most:
+                break
+            if not on:
+                return Outcome.branch_lost
+            if (
+                not special
+                or special[-1].label == Label.regular
+                or special[-1].cycle.map is cycle.map
+            ):
+                self._add(Point(state, cycle))
+            if self._is_at_end(self.points[-1].parameter):
+                return Outcome.converged
+            if self._closes():
+                return Outcome.closed
+        return Outcome.point_limit
+
+    def _is_at_end(self, parameter: float) -> bool:
+        return any(abs(parameter - edge) <= 1e-12 * max(abs(edge), 1e-300)
+                   for edge in (self.low, self.high) if math.isfinite(edge))  # fmt: skip
+
+    def _add(self, point: Point) -> None:
+        self.points.append(point)
+        self.shapes.append(self._shape(point.cycle, point.state))
+
+    def _shape(self, cycle: Cycle, state: ContinuationState) -> Vector:
+        """What does not depend on the phase: parameter, period, extremes; without units."""
+        first = self.points[0].cycle.map if self.points else cycle.map
+        extremes = cycle.extremes[:, : len(first.scale)] / first.scale
+        return np.array([state.point[-1], cycle.period / first.time, *extremes.ravel()])
+
+    def _closes(self) -> bool:
+        """Whether the last step lies on an older piece of the branch, in its direction."""
+        shapes = np.array(self.shapes)
+        if len(shapes) < 6:
+            return False
+        ahead, pieces = shapes[-1] - shapes[-2], np.diff(shapes[:-3], axis=0)
+        squared = np.maximum((pieces**2).sum(axis=1), 1e-300)
+        offset = shapes[-1] - shapes[:-4]
+        share = np.clip((offset * pieces).sum(axis=1) / squared, 0.0, 1.0)
+        distance = np.linalg.norm(offset - share[:, None] * pieces, axis=1)
+        length = max(float(np.linalg.norm(ahead)), 1e-300)
+        cosine = (pieces @ ahead) / np.sqrt(squared) / length
+        near = distance < _SAME * np.minimum(np.sqrt(squared), length)
+        return bool((near & (cosine > 0.99)).any())
+
+    def _reason(self) -> Outcome:
+        """Why no step leads on."""
+        shrinks = self._has_shrunk(self.points[-1].cycle)
+        return Outcome.equilibrium if shrinks else Outcome.branch_lost
+
+    def _has_shrunk(self, cycle: Cycle) -> bool:
+        """Whether a cycle without forcing is next to a state of rest."""
+        largest = max(
+            float(np.diff(shape[2:].reshape(2, -1), axis=0).max()) for shape in self.shapes
+        )
+        size = float(
+            np.diff(self._shape(cycle, self.points[-1].state)[2:].reshape(2, -1), axis=0).max()
+        )
+        return not cycle.map.periods and size < _AT_REST * largest
+
+    def _advance(
+        self, state: ContinuationState, cycle: Cycle
+    ) -> tuple[list[Point], ContinuationState, Cycle, bool] | None:
+        """Special points of the next step, where it leads, and whether it goes on from there."""
+        step, equations = state.step, cycle.map
+        while step >= STEPS.shortest_step:
+            trial = replace(state, step=step)
+            following = self._edge(equations, trial)
+            if following is None:
+                following = self.algorithm.attempt(equations, trial)
+            if following is not None:
+                reached = Cycle.at(equations, following.point)
+                if not self._strays(trial, cycle, following, reached):
+                    found = self._examined(trial, cycle, following, reached)
+                    if found is not None:
+                        return found
+            step *= 0.5
+        return None
+
+    def _strays(
+        self, state: ContinuationState, cycle: Cycle, following: ContinuationState, reached: Cycle
+    ) -> bool:
+        """Whether a step is too long to be sure of what lies in it."""
+        if reached.period <= 0.0 or float(following.tangent @ state.tangent) < STEPS.least_cosine:
+            return True
+        section = cycle.map.section
+        if section is not None and float(section.normal @ reached.heading) <= 0.0:
+            return True  # beyond a state of rest
+        if not self.low - ROUND_OFF <= self._at(reached) <= self.high + ROUND_OFF:
+            return True
+        if state.step < _COARSE:
+            return False
+        if hides_folds(state, following):
+            return True
+        one, other = cycle.multipliers, reached.multipliers
+        finite = np.isfinite(one).all() and np.isfinite(other).all()
+        small = finite and max(np.abs(one).max(), np.abs(other).max()) < 100.0
+        return bool(small and multiplier_change(cycle, reached) > _CHANGE)
+
+    def _at(self, cycle: Cycle) -> float:
+        return cycle.parts.values[cycle.map.flow.followed[-1]]
+
+    def _examined(
+        self, state: ContinuationState, cycle: Cycle, following: ContinuationState, reached: Cycle
+    ) -> tuple[list[Point], ContinuationState, Cycle, bool] | None:
+        """A step with what lies in it; None where that is not clear."""
+        line = _Line(
+            replace(self.algorithm, settings=PRECISE),
+            cycle.map,
+            (state, cycle),
+            (following, reached),
+        )
+        found: list[tuple[float, Label]] = []
+        last, changes = 1.0, not is_motion(reached)
+        if changes:
+            first_change = line.root(lambda _, here: min(margins(here).values()))
+            if first_change is None:
+                return None
+            last = first_change
+        for label, test in TESTS if not self._has_shrunk(reached) else ():
+            first, end = test(state, cycle), test(following, reached)
+            if np.isfinite(first * end) and first * end < 0.0:
+                share = line.root(test)
+                if share is None:
+                    return None
+                if not changes or share < last - _CLOSE:
+                    found.append((share, label))
+        found.sort()
+        special = [Point(*line.at(share), label) for share, label in found]
+        following = replace(following, step=self._next_length(state, following))
+        if not changes:
+            return special, *renewed(following, reached), True
+        there = line.at(last)
+        zero = {k: v for k, v in margins(there[1]).items() if abs(v) < 1e-7}
+        special.append(Point(*there, label_of(there[1], zero)))
+        turned = _Turn(self.algorithm, line, last, there, zero).way_on()
+        if turned is None:
+            # not a change of the events that is understood: nearer, perhaps
+            return (special, *there, False) if state.step < 1e3 * STEPS.shortest_step else None
+        return special, replace(turned[0], step=state.step), turned[1], True
+
+    def _next_length(self, state: ContinuationState, following: ContinuationState) -> float:
+        """The step after this one: longer, but not so that the branch turns by too much in it."""
+        most = np.arccos(STEPS.least_cosine)
+        turn = float(np.linalg.norm(following.tangent - state.tangent))
+        growth = _GROWTH if following.iterations <= _EASY else 1.0
+        length = state.step * float(np.clip(_TURN * most / max(turn, 1e-300), 0.5, growth))
+        return min(length, STEPS.longest_step)
+
+    def _edge(self, equations: EventMap, state: ContinuationState) -> ContinuationState | None:
+        """The point at the end of the parameter's range, if the next step would leave it."""
+        unit = float(equations.units[-1])
+        length = state.step * (1.0 + float(np.linalg.norm(state.point)))
+        ahead = float(state.point[-1] + length * state.tangent[-1]) * unit
+        if self.low < ahead < self.high:
+            return None
+        edge = self.low if ahead <= self.low else self.high
+        share = (edge / unit - state.point[-1]) / state.tangent[-1]
+        if share <= 0.0:
+            return None
+        guess = state.point + share * state.tangent
+        guess[-1] = edge / unit
+        normal = np.zeros(len(guess))
+        normal[-1] = math.copysign(1.0, state.tangent[-1])
+        found = self.algorithm.solve(equations, guess, normal, state.step)
+        if found is None or float(np.linalg.norm(found.point - guess)) > 0.3 * length:
+            return None
+        return found
+
+
+def renewed(state: ContinuationState, cycle: Cycle) -> tuple[ContinuationState, Cycle]:
+    """The same point of a branch without events, with a section of its own."""
+    equations = cycle.map
+    if equations.section is None:
+        return state, cycle
+    normal = cycle.heading / np.linalg.norm(cycle.heading)
+    section = Section(cycle.parts.states[0], normal)
+    tangent = state.tangent.copy()
+    tangent[: len(normal)] -= normal * (normal @ tangent[: len(normal)])
+    made = replace(equations, section=section)
+    state = replace(state, tangent=tangent / np.linalg.norm(tangent))
+    return state, replace(cycle, map=made)
+
+
+class _Line:
+    """The branch of one event map between two points of it, and a little beyond."""
+
+    def __init__(
+        self, algorithm: PseudoArclength, equations: EventMap,
+        first: tuple[ContinuationState, Cycle], last: tuple[ContinuationState, Cycle],
+    ) -> None:  # fmt: skip
+        self.algorithm, self.equations = algorithm, equations
+        self.known = {0.0: first, 1.0: last}
+        self.normal = first[0].tangent
+        self.reach = float(self.normal @ (last[0].point - first[0].point))
+
+    def at(self, share: float) -> tuple[ContinuationState, Cycle]:
+        """The point over a share of the step.
+
+        Raises:
+            ArithmeticError: there is none.
+        """
+        if share not in self.known:
+            shares = sorted(self.known)
+            high = next((s for s in shares if s > share), shares[-1])
+            low = shares[shares.index(high) - 1]
+            (one, _), (other, _) = self.known[low], self.known[high]
+            width, part = high - low, (share - low) / (high - low)
+            step = other.point - one.point
+            slopes = [
+                s.tangent * (width * self.reach / float(self.normal @ s.tangent)) - step
+                for s in (one, other)
+            ]
+            bend = (1.0 - part) * slopes[0] - part * slopes[1]
+            if not np.linalg.norm(bend) < np.linalg.norm(step):
+                bend = np.zeros_like(step)
+            guess = one.point + part * step + part * (1.0 - part) * bend
+            state = self.algorithm.solve(
+                self.equations, guess, self.normal, self.known[0.0][0].step
+            )
+            if state is None:
+                raise ArithmeticError
+            self.known[share] = state, Cycle.at(self.equations, state.point)
+        return self.known[share]
+
+    def root(self, test: Test) -> float | None:
+        """Where a test is zero; None where it is not found."""
+
+        def value(share: float) -> float:
+            found = test(*self.at(share))
+            return 1.0 if found == np.inf else found
+
+        try:
+            first = value(0.0)
+            if first <= 0.0 and value(1.0) < 0.0:
+                return 0.0 if first > -ROUND_OFF else None
+            return float(brentq(value, 0.0, 1.0, xtol=_ZERO, rtol=1e-13, maxiter=60))
+        except (ArithmeticError, ValueError, RuntimeError):
+            return None
+
+
+@dataclass
+class _Turn:
+    """How a branch goes on from where the order of its events changes."""
+
+    algorithm: PseudoArclength
+    line: _Line
+    share: float
+    there: tuple[ContinuationState, Cycle]
+    zero: dict[Margin, float]
+
+    def way_on(self) -> tuple[ContinuationState, Cycle] | None:
+        """The first point beyond, with a tangent that leads away."""
+        for equations, guess in (*self._runs(), *self._without()):
+            found = self._started(equations, guess)
+            if found is not None:
+                return found
+        return None
+
+    def _runs(self) -> Iterator[tuple[EventMap, Vector]]:
+        """Motions of the system from just beyond, with the events that they have."""
+        old = _order(self.there[1].map.events)
+        seen = set()
+        for beyond in (1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2):
+            try:
+                cycle = self.line.at(self.share + beyond)[1]
+            except ArithmeticError:
+                continue
+            found = run_of(cycle)
+            if found is None:
+                continue
+            order = _order(found[0].events)
+            if order != old and order not in seen:
+                seen.add(order)
+                yield found
+
+    def _without(self) -> Iterator[tuple[EventMap, Vector]]:
+        """The same motion without an event that has come to nothing."""
+        cycle = self.there[1]
+        equations, parts = cycle.map, cycle.parts
+        for margin in self.zero:
+            event = equations.events[margin.leg]
+            if margin.kind != Kind.speed or event.before != event.after:
+                continue
+            leg, followed = margin.leg, np.array([parts.values[n] for n in equations.flow.followed])
+            if equations.legs == 1:
+                yield _eventless(cycle, event, followed)
+                continue
+            following = (leg + 1) % equations.legs
+            durations = parts.durations.copy()
+            durations[leg] += durations[following]
+            keep = [i for i in range(equations.legs) if i != following]
+            events = [equations.events[i] for i in range(equations.legs)]
+            events[leg] = events[following]
+            fewer = replace(equations, events=tuple(events[i] for i in keep), _latest=None)
+            start = parts.start + (parts.durations[0] if following == 0 else 0.0)
+            yield fewer, fewer.pack(parts.states[keep], durations[keep], start, followed)
+
+    def _started(
+        self, equations: EventMap, guess: Vector
+    ) -> tuple[ContinuationState, Cycle] | None:
+        """A solution next to the change, and the direction in which it is a motion."""
+        values, _ = equations.evaluate(guess)
+        if not np.isfinite(values).all():
+            return None
+        near = margins(Cycle.at(equations, guess))
+        weak = {k: v for k, v in near.items() if k.kind in {Kind.speed, Kind.length} and v < _WEAK}
+        algorithm = replace(self.algorithm, settings=replace(STEPS, max_iterations=12))
+        if weak:
+            key = min(weak, key=lambda k: weak[k])
+            normal = _gradient(equations, guess, key)
+        else:
+            normal = np.eye(len(guess))[-1]
+        state = algorithm.solve(equations, guess, normal, STEPS.first_step)
+        if state is None:
+            return None
+        cycle = Cycle.at(equations, state.point)
+        if cycle.period <= 0.0 or abs(cycle.period - self.there[1].period) > 0.1 * cycle.period:
+            return None
+        if weak:
+            here = margins(cycle)
+            good = all(value >= -ROUND_OFF for value in here.values())
+            return (state, cycle) if good else None
+        ways = []
+        for sign in (1.0, -1.0):
+            trial = replace(state, tangent=sign * state.tangent, step=1e-5)
+            ahead = self.algorithm.attempt(equations, trial)
+            if ahead is not None:
+                beyond = Cycle.at(equations, ahead.point)
+                least = min(margins(beyond).values())
+                if least >= -ROUND_OFF:
+                    ways.append((least, ahead, beyond))
+        if not ways:
+            return None
+        _, state, cycle = max(ways, key=lambda way: way[0])
+        return state, cycle
+
+
+def _order(events: tuple[Event, ...]) -> tuple[tuple[int, ...], ...]:
+    """The events from the rotation that sorts first."""
+    kinds = [(e.switch, e.before, e.after, e.kind) for e in events]
+    return min(tuple(kinds[i:] + kinds[:i]) for i in range(len(kinds)))
+
+
+def run_of(cycle: Cycle) -> tuple[EventMap, Vector] | None:
+    """Equations and guess from a motion of the system next to a solution."""
+    equations, parts = cycle.map, cycle.parts
+    flow = equations.flow
+    state, regime = cycle.start()
+    run = follow(flow.system, parts.values, state, cycle.period, regime=regime)
+    if run.outcome or len(run.times) > 4 * equations.legs + 8:
+        return None
+    found = guess_of(
+        flow, parts.values, run, state, cycle.period, periods=equations.periods,
+        scale=equations.scale,
+    )  # fmt: skip
+    if found is None:
+        return None
+    made = replace(found[0], time=equations.time, units=equations.units)
+    return made, made.pack(*found[0].unpack(found[1])[:3], _followed(cycle))
+
+
+def _followed(cycle: Cycle) -> Vector:
+    return np.array([cycle.parts.values[name] for name in cycle.map.flow.followed])
+
+
+def _eventless(cycle: Cycle, event: Event, followed: Vector) -> tuple[EventMap, Vector]:
+    equations = cycle.map
+    state, regime = cycle.start()
+    section = None
+    if not equations.periods:
+        heading = equations.flow.field(cycle.parts.values, regime, state, 0.0) / equations.scale
+        section = Section(state, heading / np.linalg.norm(heading))
+    free = Event(FREE, FREE, 1.0, event.before, event.before, FREE)
+    made = replace(equations, events=(free,), section=section, _latest=None)
+    return made, made.pack(state[None], np.array([cycle.period]), 0.0, followed)
+
+
+def _gradient(equations: EventMap, point: Vector, margin: Margin) -> Vector:
+    """The direction in which a length, or the speed of an event, grows."""
+    n, m = equations.flow.size, equations.legs
+    if margin.kind == Kind.length:
+        return np.asarray(np.eye(len(point))[m * n + margin.leg])
+    parts, leg = equations.parts(point), margin.leg
+    event, end = equations.events[leg], parts.path.ends[leg]
+    time = parts.start + float(parts.durations[: leg + 1].sum())
+
+    def speed(state: Vector) -> float:
+        regimes = (event.before, event.after)
+        here = equations.flow.crossing(
+            parts.values, event.switch, event.surface, regimes, state, time
+        )
+        return -here.speed
+
+    by_end, _ = equations.by_unknowns(parts, leg)
+    steps = 1e-6 * np.diag(equations.scale)
+    slope = [(speed(end + s) - speed(end - s)) / 2e-6 for s in steps]
+    found = (np.array(slope) / equations.scale) @ by_end * equations.column_units
+    return np.asarray(found / np.linalg.norm(found))
+
+
+def cycle_branch(
+    system: System,
+    parameter: str,
+    to: float,
+    *,
+    start: xr.Dataset,
+    n_points: int = 100,
+) -> xr.Dataset:
+    """The branch of cycles through a start, in one parameter, stable and unstable parts.
+
+    It goes round folds and through changes of the order of events. Folds, period doublings, torus
+    bifurcations, grazings and onsets of stick are located and are points of their own.
+
+    Args:
+        system: the system.
+        parameter: its name.
+        to: value at which the branch ends.
+        start: a dataset of ``limit_cycle`` or one point of a branch; the other parameters are its.
+        n_points: most points.
+
+    Returns:
+        Dataset over ``point`` with what :func:`limit_cycle` gives of a cycle, a variable of the
+        parameter's name, ``label``, ``events`` (their number) and ``end``, why the branch ended.
+
+    Raises:
+        ValueError: an unknown parameter, a value that is no finite number, or no cycle to start
+            from.
+    """
+    if parameter not in system.parameters:
+        near = suggestion(parameter, system.parameters)
+        raise ValueError(f"{system.name}: parameter {parameter!r} is unknown; {near}")
+    if not is_finite_number(to):
+        raise ValueError(f"to = {to!r}: a finite number is needed")
+    if isinstance(n_points, bool) or not isinstance(n_points, int | np.integer) or n_points < 2:
+        raise ValueError(f"n_points = {n_points!r}: a whole number from 2 on is needed")
+    cycle = started(system, start)
+    begin = cycle.parts.values[parameter]
+    if math.isclose(to, begin, rel_tol=1e-11):
+        raise ValueError(f"to = {to!r}: another value than that of the start is needed")
+    low, high = (-math.inf, to) if to > begin else (to, math.inf)
+    points, end = follow_branch(cycle, parameter, to, low=low, high=high, n_points=int(n_points))
+    return dataset(system, points, end, parameter)
+
+
+def started(system: System, start: xr.Dataset) -> Cycle:
+    """The cycle of a dataset.
+
+    Raises:
+        ValueError: it holds none.
+    """
+    import json
+
+    names = [f"{name}_start" for name in system.states]
+    if not isinstance(start, xr.Dataset) or any(name not in start for name in names):
+        raise ValueError("start: a dataset of limit_cycle or one point of a branch is needed")
+    if start[names[0]].ndim:
+        raise ValueError("start has many points; give one, as start.isel(point=…)")
+    values = {**system.parameters, **json.loads(start.attrs["parameters"])}
+    values |= {name: float(start[name]) for name in system.parameters if name in start}
+    state = np.array([float(start[name]) for name in names])
+    if not np.isfinite(state).all():
+        raise ValueError("start holds no cycle")
+    cycle, _ = find_cycle(
+        system, values, state, guess=True, periods=int(start["periods"]),
+        regime=int(start["start_regime"]),
+    )  # fmt: skip
+    if cycle is None:
+        raise ValueError("no cycle is found from start")
+    return cycle
+
+
+def follow_branch(
+    cycle: Cycle, parameter: str, to: float, *, low: float, high: float, n_points: int
+) -> tuple[list[Point], Outcome]:
+    """Points of a branch and why it ended."""
+    begin = cycle.parts.values[parameter]
+    unit = max(abs(begin), abs(to))
+    flow = Flow(cycle.map.flow.system, (parameter,))
+    equations = cycle.followed_in(flow, np.array([unit]))
+    parts = cycle.parts
+    guess = equations.pack(parts.states, parts.durations, parts.start, np.array([begin]))
+    follower = Follower(low, high, n_points)
+    normal = np.zeros(len(guess))
+    normal[-1] = math.copysign(1.0, to - begin)
+    state = follower.algorithm.solve(equations, guess, normal, STEPS.first_step)
+    if state is None:
+        return [], Outcome.no_convergence
+    end = follower.run(state, Cycle.at(equations, state.point))
+    return follower.points, end
+
+
+def dataset(system: System, points: list[Point], end: int, parameter: str) -> xr.Dataset:
+    """A branch as a dataset."""
+    rows = [columns(point.cycle, system) for point in points]
+    found: dict[str, Any] = describe_columns(system, rows, "point")
+    values = points[0].cycle.parts.values if points else {}
+    followed = np.array([point.parameter for point in points])
+    found[parameter] = ("point", followed, runs.labels(f"parameter {parameter}", "1"))
+    labels = {int(label): label.name for label in Label}
+    found["label"] = runs.flag(
+        "what is special about the point", "point", [p.label for p in points], labels
+    )
+    found["events"] = (
+        "point", [len(p.cycle.events) for p in points], runs.labels("events of the cycle", "1"),
+    )  # fmt: skip
+    starts = [point.cycle.start() for point in points]
+    for i, name in enumerate(system.states):
+        first = np.array([state[i] for state, _ in starts])
+        label = runs.labels(f"{name} at t = 0 of the cycle", system.units[name])
+        found[f"{name}_start"] = ("point", first, label)
+    names = dict(enumerate(system.regimes))
+    regimes = [regime for _, regime in starts]
+    found["start_regime"] = runs.flag("regime at t = 0 of the cycle", "point", regimes, names)
+    periods = points[0].cycle.map.periods or 1 if points else 1
+    found["periods"] = ((), periods, runs.labels("forcing periods", "1"))
+    found["outcome"] = outcome_of(system, "point", np.zeros(len(points), int))
+    found["end"] = outcome_of(system, (), int(end))
+    attributes = runs.attributes(system, "cycle branch", values, 1e-14)
+    return xr.Dataset(found, attrs=attributes | {"parameter": parameter})

@@ -1,0 +1,100 @@
+"""Derivatives of a run by parameters and starts, through its events."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from squealpipe.systems import runs
+from squealpipe.systems.cycles.cycle import events_of
+from squealpipe.systems.cycles.flow import Flow, Vector
+from squealpipe.systems.runs import Motion
+from squealpipe.text import suggestion
+
+if TYPE_CHECKING:
+    from squealpipe.systems.system import System
+
+_TOGETHER = 64
+"""Legs that are run at once."""
+
+
+def sensitivities(
+    system: System,
+    names: Sequence[str],
+    values: Mapping[str, float],
+    motion: Motion,
+    times: Vector,
+) -> dict[str, Any]:
+    """``<state>_by_<name>`` over ``time`` and ``event_time_by_<name>`` over ``event``.
+
+    The derivative of a state is at a fixed instant; an event's that of its time.
+
+    Args:
+        system: that was run.
+        names: of parameters, and ``<state>0`` for starts.
+        values: of states at t = 0 and parameters.
+        motion: the run, with its states at ``times``.
+        times: ascending.
+
+    Raises:
+        ValueError: an unknown name.
+    """
+    starts = [f"{state}0" for state in system.states]
+    known = [*system.parameters, *starts]
+    for name in names:
+        if name not in known:
+            raise ValueError(f"sensitivity: {name!r} is unknown; {suggestion(name, known)}")
+    flow = Flow(system, [name for name in names if name in system.parameters])
+    n, count = flow.size, len(motion.times)
+    columns = [i for i, name in enumerate(names) if name in system.parameters]
+    total = np.array([[float(start == name) for name in names] for start in starts])
+    states = np.array([values[state] for state in system.states])
+    by_time = np.full((len(times), n, len(names)), np.nan)
+    delays = np.full((count, len(names)), np.nan)
+    events = events_of(system, motion, 0, count)
+    stops = [(time, 0, i) for i, time in enumerate(motion.times)]
+    stops += [(time, 1, i) for i, time in enumerate(times) if time <= motion.reached]
+    stops.sort()
+    legs: list[tuple[float, Vector, int]] = []
+    clock, regime = 0.0, int(motion.regimes[0])
+    for time, sampled, i in stops:
+        legs.append((clock, states, regime))
+        clock = time
+        states = motion.path[i] if sampled else motion.states[i]
+        regime = regime if sampled else int(motion.regimes[i + 1])
+    for first in range(0, len(stops), _TOGETHER):
+        part = legs[first : first + _TOGETHER]
+        begins = np.array([leg[0] for leg in part])
+        lengths = np.array([stop[0] for stop in stops[first : first + _TOGETHER]]) - begins
+        path = flow.run(
+            values, np.array([leg[1] for leg in part]), [leg[2] for leg in part], begins, lengths
+        )
+        slopes = flow.derivatives(values, path)
+        for leg, (time, sampled, i) in enumerate(stops[first : first + _TOGETHER]):
+            total = slopes[leg][:, :n] @ total
+            total[:, columns] += slopes[leg][:, n : n + len(columns)]
+            if sampled:
+                by_time[i] = total
+                continue
+            event = events[i]
+            crossing = flow.crossing(
+                values, event.switch, event.surface, (event.before, event.after), path.ends[leg],
+                time,
+            )  # fmt: skip
+            along = crossing.height_by_state @ total
+            along[columns] += crossing.height_by
+            delays[i] = -along / crossing.speed
+            total = crossing.after_by_state @ total + np.outer(crossing.jump, delays[i])
+            total[:, columns] += crossing.after_by
+    found: dict[str, Any] = {}
+    for j, name in enumerate(names):
+        for k, state in enumerate(system.states):
+            label = runs.labels(
+                f"derivative of {state} by {name}", f"{system.units[state]} / {name}"
+            )
+            found[f"{state}_by_{name}"] = ("time", by_time[:, k, j], label)
+        label = runs.labels(f"derivative of the time of the event by {name}", f"s / {name}")
+        found[f"event_time_by_{name}"] = ("event", delays[:, j], label)
+    return found

@@ -1,0 +1,260 @@
+"""Cycles, branches and derivatives of systems against closed forms and differences."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from squealpipe.methods.cycles.labels import Label
+from squealpipe.schema import Outcome
+from squealpipe.systems.belt_friction import exponential_oscillator, leine_oscillator
+from squealpipe.systems.dry_friction import dry_friction_oscillator
+from squealpipe.systems.impact_oscillator import impact_oscillator
+from tests.systems.test_random_systems import random_system
+
+V_STAR = 1.83660097221
+"""Belt speed at which both cycles of the exponential oscillator vanish (independent, 12 digits)."""
+
+
+def special(branch, label):
+    points = np.flatnonzero(branch.label.values == label)
+    return branch[branch.attrs["parameter"]].values[points]
+
+
+def test_stick_slip_cycles_have_their_known_periods():
+    cycle = leine_oscillator.limit_cycle()
+    assert float(cycle.period) == pytest.approx(12.001031295, abs=5e-10)
+    kinds = np.array(cycle.event_kind.attrs["flag_meanings"].split())[cycle.event_kind]
+    assert set(kinds) == {"slip", "stick"}
+    slip, stick = (float(cycle.event_time[list(kinds).index(k)]) for k in ("slip", "stick"))
+    assert (stick - slip) % float(cycle.period) == pytest.approx(4.295999525, abs=5e-10)
+    for speed, period in ((1.25, 6.353748505), (0.5, 6.929871535)):
+        cycle = exponential_oscillator.limit_cycle(belt_speed=speed)
+        assert float(cycle.period) == pytest.approx(period, abs=5e-10)
+        assert abs(float(cycle.multiplier_real[0]) - 1.0) < 1e-9
+        assert abs(float(cycle.multiplier_real[1])) < 1e-12, "stick forgets one direction"
+
+
+@pytest.mark.parametrize(("speed", "amplitude"), [(1.25, 0.664228586), (1.55, 1.436881604)])
+def test_the_unstable_cycle_has_its_known_amplitude(speed, amplitude):
+    centre = 0.5 + 0.5 * np.exp(-2.0 * speed)
+    guess = {"x": centre + amplitude - 1e-4, "v": 0.0}
+    cycle = exponential_oscillator.limit_cycle(belt_speed=speed, guess=guess)
+    assert float(cycle.x_max) - centre == pytest.approx(amplitude, abs=5e-10)
+    assert int(cycle.stable) == 0
+    assert cycle.sizes["event"] == 0
+
+
+def test_both_cycles_of_the_exponential_oscillator_vanish_where_they_meet():
+    """Stuck to the corner, round it, and down to the Hopf point, where exp(−2V) = 0.1."""
+    stable = exponential_oscillator.limit_cycle(belt_speed=1.25)
+    branch = exponential_oscillator.cycle_branch("belt_speed", 1.9, start=stable)
+    (corner,) = special(branch, Label.stick_onset)
+    assert corner == pytest.approx(V_STAR, abs=2e-11)
+    assert branch.end == Outcome.equilibrium
+    assert float(branch.belt_speed[-1]) == pytest.approx(-0.5 * np.log(0.1), abs=1e-8)
+    at = int(np.argmax(branch.label.values == Label.stick_onset))
+    assert branch.stable[:at].all()
+    large = (branch.x_max - branch.x_min).values > 0.01
+    assert not branch.stable.values[at + 1 :][large[at + 1 :]].any()
+    guess = {"x": 0.5 + 0.5 * np.exp(-2.5) + 0.664, "v": 0.0}
+    unstable = exponential_oscillator.limit_cycle(belt_speed=1.25, guess=guess)
+    other = exponential_oscillator.cycle_branch("belt_speed", 1.9, start=unstable, n_points=30)
+    (corner,) = special(other, Label.stick_onset)
+    assert corner == pytest.approx(V_STAR, abs=2e-11)
+    assert other.events[-1] == 2
+
+
+def test_branch_of_the_impact_oscillator_has_its_closed_form_points():
+    start = impact_oscillator.limit_cycle(omega=1.9, amplitude=2.2)
+    branch = impact_oscillator.cycle_branch("amplitude", 4.0, start=start)
+    assert special(branch, Label.grazing) == pytest.approx(
+        np.sqrt((1.0 - 1.9**2) ** 2 + 0.01 * 1.9**2), abs=1e-12
+    )
+    assert special(branch, Label.fold) == pytest.approx(2.073204825805628, abs=1e-12)
+    np.testing.assert_array_equal(branch.events[[0, -1]], [0, 1])
+    assert float(branch.amplitude[-1]) == 4.0
+    assert branch.end == Outcome.converged
+    middle = (branch.events == 1) & (branch.label == Label.regular)
+    assert set(branch.stable.values[middle]) == {0, 1}
+
+
+def test_flip_of_the_impact_oscillator():
+    start = impact_oscillator.limit_cycle(omega=2.1, amplitude=4.5, guess={"x": -1.5, "v": 0.5})
+    assert start.sizes["event"] == 1
+    branch = impact_oscillator.cycle_branch("amplitude", 2.5, start=start)
+    flips = special(branch, Label.period_doubling)
+    assert np.abs(flips - 3.506188447846005).min() < 1e-12
+
+
+def test_motion_without_stick_ends_where_closed_forms_say():
+    start = dry_friction_oscillator.limit_cycle(omega=0.9)
+    for to, expected in ((0.5, 0.722679194438), (1.5, 1.235747152322)):
+        branch = dry_friction_oscillator.cycle_branch("omega", to, start=start)
+        assert special(branch, Label.stick_onset)[0] == pytest.approx(expected, abs=1e-12)
+
+
+def test_a_settled_motion_of_more_periods_says_how_many():
+    cycle = impact_oscillator.limit_cycle(omega=2.1, amplitude=3.48, start={"x": 0.5})
+    assert np.isnan(cycle.period)
+    meanings = dict(
+        zip(cycle.outcome.attrs["flag_values"], cycle.outcome.attrs["flag_meanings"].split(),
+            strict=True)
+    )  # fmt: skip
+    number = int(cycle.periods)
+    assert number > 1
+    assert meanings[int(cycle.outcome)] == f"settled_on_{number}_periods"
+    longer = impact_oscillator.limit_cycle(
+        omega=2.1, amplitude=3.48, start={"x": 0.5}, periods=number
+    )
+    assert longer.outcome == Outcome.converged
+    assert float(longer.period) == pytest.approx(number * 2.0 * np.pi / 2.1, rel=1e-12)
+
+
+def stroboscopic_map(system, values, period):
+    """(state → state a period later, its events) by plain runs."""
+
+    def after(state, regime):
+        start = {**dict(zip(system.states, state, strict=True)), "regime": regime}
+        run = system.simulate(
+            period, start=start, times=np.array([0.0, period]), tol=1e-15, **values
+        )
+        return np.array([float(run[name][-1]) for name in system.states]), tuple(
+            run.event_kind.values
+        )
+
+    return after
+
+
+def compare_with_differences(seed):
+    """Multipliers of one random system at some parameters; how many cycles there were."""
+    system, rng, checked = random_system(seed), np.random.default_rng(seed), 0
+    for _ in range(4):
+        values = {"drive": float(rng.uniform(0.2, 1.5)), "omega": float(rng.uniform(0.5, 3.0))}
+        cycle = system.limit_cycle(**values)
+        if cycle.outcome != Outcome.converged:
+            continue
+        state = np.array([float(cycle[f"{name}_start"]) for name in system.states])
+        regime = cycle.start_regime.attrs["flag_meanings"].split()[int(cycle.start_regime)]
+        after = stroboscopic_map(system, values, float(cycle.period))
+        back, kinds = after(state, regime)
+        np.testing.assert_allclose(back, state, atol=1e-9)
+        assert len(kinds) == cycle.sizes["event"]
+        matrix = np.empty((len(state), len(state)))
+        for j, unit in enumerate(1e-4 * np.eye(len(state))):
+            ends = [after(state + k * unit, regime) for k in (2.0, 1.0, -1.0, -2.0)]
+            if any(end[1] != kinds for end in ends):
+                break
+            far, near, other, last = (end[0] for end in ends)
+            matrix[:, j] = (8.0 * (near - other) - (far - last)) / 12e-4
+        else:
+            expected = np.poly(np.linalg.eigvals(matrix))
+            ours = np.poly(cycle.multiplier_real.values + 1j * cycle.multiplier_imag.values)
+            np.testing.assert_allclose(ours, expected, atol=1e-6 * max(1.0, np.abs(expected).max()))
+            checked += 1
+    return checked
+
+
+def test_multipliers_of_random_systems_are_those_of_differences():
+    assert sum(compare_with_differences(seed) for seed in range(6)) > 5
+
+
+@pytest.mark.release
+@pytest.mark.parametrize("seed", range(6, 60))
+def test_multipliers_of_many_random_systems_are_those_of_differences(seed):
+    compare_with_differences(seed)
+
+
+def long_double_run(amplitude, omega, x, v, t_end):
+    """The impact oscillator by its closed form in long double: impact times, final state."""
+    number = np.longdouble
+    amplitude, omega, x, v = (number(value) for value in (amplitude, omega, x, v))
+    half, ten = number(1) / 20, number(8) / 10
+    own = np.sqrt(1 - half * half)
+    slack, drag = 1 - omega * omega, omega / 10
+    size = slack * slack + drag * drag
+    cosine, sine = amplitude * slack / size, amplitude * drag / size
+
+    def flow(t0, x, v, t):
+        a = x - cosine * np.cos(omega * t0) - sine * np.sin(omega * t0)
+        rate = v + omega * (cosine * np.sin(omega * t0) - sine * np.cos(omega * t0))
+        b, s = (rate + half * a) / own, t - t0
+        decay, c, d = np.exp(-half * s), np.cos(own * s), np.sin(own * s)
+        free = decay * (a * c + b * d)
+        free_rate = decay * ((own * b - half * a) * c - (own * a + half * b) * d)
+        forced = cosine * np.cos(omega * t) + sine * np.sin(omega * t)
+        forced_rate = omega * (sine * np.cos(omega * t) - cosine * np.sin(omega * t))
+        return free + forced, free_rate + forced_rate
+
+    t, times = number(0), []
+    while True:
+        grid = t + np.arange(1, 20001) * number("1e-3")
+        over = np.flatnonzero((flow(t, x, v, grid)[0] > 1) & (grid < t_end))
+        if not len(over):
+            return times, flow(t, x, v, number(t_end))
+        hit = grid[over[0]]
+        for _ in range(8):
+            place, speed = flow(t, x, v, hit)
+            hit = hit - (place - 1) / speed
+        speed = flow(t, x, v, hit)[1]
+        t, x, v = hit, number(1), -ten * speed
+        times.append(hit)
+
+
+def test_derivatives_through_impacts_are_those_of_long_double_differences():
+    names, t_end = ("amplitude", "omega", "x0", "v0"), 15.0
+    run = impact_oscillator.simulate(
+        t_end, times=np.array([0.0, t_end]), sensitivity=names, amplitude=0.6, omega=1.2
+    )
+    assert run.sizes["event"] > 1
+    values = np.array([0.6, 1.2, 0.0, 0.0])
+    for name, unit in zip(names, np.eye(4), strict=True):
+        step = np.longdouble("1e-6")
+        ends = [long_double_run(*(values + k * step * unit), t_end) for k in (2, 1, -1, -2)]
+        slopes = [
+            (8 * (near - other) - (far - last)) / (12 * step)
+            for far, near, other, last in zip(
+                *(np.array([*times, *state]) for times, state in ends), strict=True
+            )
+        ]
+        ours = [*run[f"event_time_by_{name}"].values, float(run[f"x_by_{name}"][-1]),
+                float(run[f"v_by_{name}"][-1])]  # fmt: skip
+        np.testing.assert_allclose(ours, np.array(slopes, float), rtol=1e-10, atol=1e-10)
+
+
+def test_derivatives_through_stick_are_those_of_differences():
+    """By the belt's speed, to which the reset sets the velocity, and by a start."""
+    names = ("belt_speed", "x0")
+    given = {"times": np.array([0.0, 17.0, 30.0]), "belt_speed": 0.25}
+    run = leine_oscillator.simulate(30.0, sensitivity=names, **given)
+    for name, key in (("belt_speed", {"belt_speed": 1.0}), ("x0", {"start": {"x": 1.0}})):
+        ends = []
+        for sign in (1.0, -1.0):
+            values = {**given, "start": {"x": 1.0}}
+            if "belt_speed" in key:
+                values["belt_speed"] = 0.25 + sign * 1e-6
+            else:
+                values["start"] = {"x": 1.0 + sign * 1e-6}
+            end = leine_oscillator.simulate(30.0, tol=1e-15, **values)
+            ends.append(np.concatenate([end.event_time, end.x[1:], end.v[1:]]))
+        slopes = (ends[0] - ends[1]) / 2e-6
+        ours = np.concatenate(
+            [run[f"event_time_by_{name}"], run[f"x_by_{name}"][1:], run[f"v_by_{name}"][1:]]
+        )
+        np.testing.assert_allclose(ours, slopes, atol=2e-7 * np.abs(slopes).max())
+
+
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        (lambda s: s.limit_cycle(omga=1.0), "omga"),
+        (lambda s: s.limit_cycle(periods=0), "periods = 0"),
+        (lambda s: s.cycle_branch("omga", 1.0, start=None), "omga"),
+        (lambda s: s.cycle_branch("omega", np.nan, start=None), "to = nan"),
+        (lambda s: s.cycle_branch("omega", 2.0, start=None), "start: a dataset of limit_cycle"),
+        (lambda s: s.simulate(1.0, sensitivity=("omga",)), "'omga' is unknown"),
+    ],
+)
+def test_arguments_are_named_that_cannot_be_used(call, message):
+    with pytest.raises(ValueError, match=message):
+        call(impact_oscillator)
