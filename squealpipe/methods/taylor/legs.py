@@ -6,13 +6,15 @@ so that what solves for a sequence of events is smooth.
 
 from __future__ import annotations
 
+import math
 from functools import cache
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numba
 import numpy as np
 
+from squealpipe.methods.compiled import part
 from squealpipe.methods.taylor.lanes import call, compile_advance, view
 from squealpipe.methods.taylor.loop import _reach, _step_length
 from squealpipe.methods.taylor.simd import FEW, LANES, ROW, smaller, store
@@ -31,40 +33,86 @@ SIZES = (
 TABLE = np.dtype([(name, "i8") for name in (*ARRAYS, *SIZES)])
 
 
+class _Memory(NamedTuple):
+    """Arrays of a run; ``clocks`` and ``lanes`` are of the legs that are under way."""
+
+    rows: Any
+    c: Any
+    regimes: Any
+    initial: Any
+    regime: Any
+    starts: Any
+    durations: Any
+    kept: Any
+    steps: Any
+    counts: Any
+    lanes: Any
+    clocks: Any
+
+
+@part
+def _begin(t: Any, m: Any, lane: int, leg: int, unit: float) -> None:
+    """Put a leg into a lane."""
+    m.lanes[lane], m.clocks[lane], m.counts[leg] = leg, 0.0, 0
+    m.c[: t.n_variables, :, lane] = 0.0
+    for variable in range(t.n_states):
+        m.c[variable, 0, lane] = m.initial[leg, variable]
+    if t.n_variables > t.n_states:
+        m.c[t.n_states, 0, lane] = m.starts[leg] * unit
+    for constant in range(t.n_constants):
+        m.rows[1 + t.n_parameters + constant, lane] = m.regimes[m.regime[leg], constant]
+
+
+@part
+def _keep(t: Any, m: Any, lane: int, unit: float) -> bool:
+    """Keep a lane's step and go to its end; returns whether that is the end of its leg."""
+    leg = m.lanes[lane]
+    step, left, place = m.rows[0, lane], m.durations[leg] - m.clocks[lane], m.counts[leg]
+    ends = not abs(left) > step
+    step = left if ends else math.copysign(step, left)
+    m.counts[leg] = place + 1
+    if place >= t.n_steps:
+        return True
+    m.steps[leg, place] = step
+    for k in range(t.n_kept):
+        for order in range(t.n_terms):
+            m.kept[leg, place, k, order] = m.c[k, order, lane]
+    m.clocks[lane] += step
+    for variable in range(t.n_states):
+        m.c[variable, 0, lane] = evaluate(m.c, variable, lane, step)
+    if t.n_variables > t.n_states:
+        m.c[t.n_states, 0, lane] = (m.starts[leg] + m.clocks[lane]) * unit
+    return ends
+
+
 def _advance(table: Any) -> int:
     """Run all legs, four side by side; returns 0. ``counts`` may be beyond the room for steps."""
     t = _numba.carray(table, (1,), TABLE)[0]
     n, terms = t.n_states, t.n_terms
-    rows = view(t.rows, (1 + t.n_parameters + t.n_constants, LANES), np.float64)
-    c = view(t.series, (t.n_series, terms, LANES), np.float64)
+    m = _Memory(
+        rows=view(t.rows, (1 + t.n_parameters + t.n_constants, LANES), np.float64),
+        c=view(t.series, (t.n_series, terms, LANES), np.float64),
+        regimes=view(t.regimes, (t.n_regimes, t.n_constants), np.float64),
+        initial=view(t.initial, (t.n_legs, n), np.float64),
+        regime=view(t.regime, (t.n_legs,), np.int64),
+        starts=view(t.starts, (t.n_legs,), np.float64),
+        durations=view(t.durations, (t.n_legs,), np.float64),
+        kept=view(t.kept, (t.n_legs, t.n_steps, t.n_kept, terms), np.float64),
+        steps=view(t.steps, (t.n_legs, t.n_steps), np.float64),
+        counts=view(t.counts, (t.n_legs,), np.int64),
+        lanes=view(t.lanes, (FEW,), np.int64),
+        clocks=view(t.lanes + 8 * FEW, (FEW,), np.float64),
+    )
     sizes = view(t.sizes, (n,), np.float64)
-    regimes = view(t.regimes, (t.n_regimes, t.n_constants), np.float64)
-    initial = view(t.initial, (t.n_legs, n), np.float64)
-    regime = view(t.regime, (t.n_legs,), np.int64)
-    starts = view(t.starts, (t.n_legs,), np.float64)
-    durations = view(t.durations, (t.n_legs,), np.float64)
-    kept = view(t.kept, (t.n_legs, t.n_steps, t.n_kept, terms), np.float64)
-    steps = view(t.steps, (t.n_legs, t.n_steps), np.float64)
-    counts = view(t.counts, (t.n_legs,), np.int64)
-    lanes = view(t.lanes, (FEW,), np.int64)
-    clocks = view(t.lanes + 8 * FEW, (FEW,), np.float64)
-    unit = rows[t.n_parameters, 0]
-    lanes[:] = -1
+    unit = m.rows[t.n_parameters, 0]
+    m.lanes[:] = -1
     following, busy = 0, 0
     while True:
         for lane in range(FEW):
-            if lanes[lane] >= 0 or following >= t.n_legs:
-                continue
-            lanes[lane], clocks[lane], counts[following] = following, 0.0, 0
-            c[: t.n_variables, :, lane] = 0.0
-            for variable in range(n):
-                c[variable, 0, lane] = initial[following, variable]
-            if t.n_variables > n:
-                c[n, 0, lane] = starts[following] * unit
-            for constant in range(t.n_constants):
-                rows[1 + t.n_parameters + constant, lane] = regimes[regime[following], constant]
-            following += 1
-            busy += 1
+            if m.lanes[lane] < 0 and following < t.n_legs:
+                _begin(t, m, lane, following, unit)
+                following += 1
+                busy += 1
         if busy == 0:
             return 0
         call(t.take_step, (t.series, t.rows + ROW, t.inverses, terms))
@@ -74,28 +122,8 @@ def _advance(table: Any) -> int:
                 length = smaller(length, _reach(t.series + each * terms * ROW, terms))
         store(t.rows, length)
         for lane in range(FEW):
-            leg = lanes[lane]
-            if leg < 0:
-                continue
-            step, left = rows[0, lane], durations[leg] - clocks[lane]
-            ends = not abs(left) > step
-            step = left if ends else np.copysign(step, left)
-            place = counts[leg]
-            counts[leg] = place + 1
-            if place < t.n_steps:
-                steps[leg, place] = step
-                for k in range(t.n_kept):
-                    for order in range(terms):
-                        kept[leg, place, k, order] = c[k, order, lane]
-            else:
-                ends = True
-            clocks[lane] += step
-            for variable in range(n):
-                c[variable, 0, lane] = evaluate(c, variable, lane, step)
-            if t.n_variables > n:
-                c[n, 0, lane] = (starts[leg] + clocks[lane]) * unit
-            if ends:
-                lanes[lane] = -1
+            if m.lanes[lane] >= 0 and _keep(t, m, lane, unit):
+                m.lanes[lane] = -1
                 busy -= 1
 
 

@@ -78,18 +78,24 @@ def margins(cycle: Cycle) -> dict[Margin, float]:
             -crossing.speed * cycle.period / size[event.surface]
         )
         found[Margin(Kind.length, leg, FREE)] = duration / cycle.period
-        if event.switch == FREE:
-            continue
-        number = 0
-        for regime, condition, kind in t.switches[event.switch].targets:
-            chosen = (regime, kind) == (event.after, event.kind)
-            if condition is not None:
-                if condition.varies:
-                    value = crossing.conditions[number]
-                    found[Margin(Kind.condition, leg, number)] = value if chosen else -value
-                number += 1
-            if chosen:
-                break
+        found |= _conditions(cycle, leg)
+    return found
+
+
+def _conditions(cycle: Cycle, leg: int) -> dict[Margin, float]:
+    """What chose the regime that a leg's event leads to."""
+    event, found, number = cycle.map.events[leg], {}, 0
+    if event.switch == FREE:
+        return {}
+    for regime, condition, kind in cycle.map.flow.system.traced.switches[event.switch].targets:
+        chosen = (regime, kind) == (event.after, event.kind)
+        if condition is not None:
+            if condition.varies:
+                value = cycle.parts.crossings[leg].conditions[number]
+                found[Margin(Kind.condition, leg, number)] = value if chosen else -value
+            number += 1
+        if chosen:
+            break
     return found
 
 

@@ -125,7 +125,7 @@ def solved(equations: EventMap, guess: Vector) -> Cycle | None:
 def find_cycle(
     system: System,
     values: Mapping[str, float],
-    state: Vector | None,
+    state: Vector,
     *,
     guess: bool,
     periods: int = 1,
@@ -296,9 +296,9 @@ def limit_cycle(
     Returns:
         Dataset: ``period``, ``<state>_min``, ``<state>_max`` (of outputs too), ``multiplier_real``
         and ``multiplier_imag`` (the trivial one first without forcing), ``stable``, ``residual``,
-        ``outcome``, events with states and regimes entered, and ``periods``. Times count
-        from t = 0 of the forcing, or from a state far from events. NaN with the reason in ``outcome`` where no
-        cycle is found; ``settled_on_k_periods`` where the settled motion has more than asked.
+        ``outcome``, events with states and regimes entered, and ``periods``. Times count from t = 0
+        of the forcing, or from a state far from events. NaN with the reason in ``outcome`` where
+        no cycle is found; ``settled_on_k_periods`` where the settled motion has more than asked.
 
     Raises:
         ValueError: an unknown state or parameter, a value that is no finite number, or explicit

@@ -381,7 +381,7 @@ class Flow:
         )  # fmt: skip
 
     def derivatives(self, values: Mapping[str, float], path: Path) -> Vector:
-        """Of each leg's end by its start, the followed parameters and the time: (legs, n, n + p)."""
+        """Of each leg's end by its start, followed parameters and the time: (legs, n, n + p)."""
         pieces = 1
         while True:
             slopes = self._slopes_along(values, path, pieces)
