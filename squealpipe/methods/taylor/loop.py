@@ -360,9 +360,6 @@ def _enter(t: Any, m: Any, c: Any, lane: int, regime: int, span: float) -> None:
     for variable in range(t.n_variables):
         z[variable] = c[variable, 0, lane]
         sizes[variable] = abs(z[variable]) + abs(c[variable, 1, lane]) * span
-    # a state is known to round-off of its typical size, however small it has become
-    for variable in range(t.n_states):
-        sizes[variable] = max(sizes[variable], m.sizes[variable])
     parameters = t.rows + (first - t.n_parameters) * ROW + 8 * lane
     constants = t.regimes + 8 * regime * t.n_constants
     stride = m.scratch.shape[1] * 8
