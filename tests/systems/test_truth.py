@@ -29,7 +29,9 @@ def test_the_page_on_systems_runs(capsys):
     scope = {}
     for block in blocks:
         exec(block, scope)  # noqa: S102
-    assert "19 impacts, the first at 6.57" in capsys.readouterr().out
+    printed = capsys.readouterr().out
+    assert "19 impacts, the first at 6.57" in printed
+    assert "fold at amplitude 2.073204825806" in printed
     assert scope["found"].outcome.dims == ("x0", "omega")
 
 
