@@ -238,7 +238,6 @@ class DynamicsSection(Section):
     validity_points: Points = 181
     refined_points: Points = 1441
     refined_coarse: Points = 91
-    uniform_points: Annotated[tuple[Points, ...], Field(min_length=1)] = (91, 181, 361)
     hammering_horizon: Positive = 500.0
     hammering_points: Points = 91
     whirl_speeds: Range = (0.3, 300.0)

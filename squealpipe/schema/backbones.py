@@ -18,15 +18,6 @@ class Assumption(IntEnum):
     holds = 1
 
 
-class Route(IntEnum):
-    """How the orbit of an atlas cell was reached."""
-
-    none = 0
-    linear_mode = 1
-    neighbour = 2
-    across = 3
-
-
 def _orbit_variables(*dims: str) -> dict[str, Variable]:
     """What one periodic orbit carries, over some dimensions."""
 
@@ -181,13 +172,6 @@ ORBIT_ATLAS = DatasetSchema(
             outcome(*MAP, "mode", among=(*ORBIT_ENDS, Outcome.separated, Outcome.not_computed)),
             round_off=_NEXT_TO_ANOTHER,
         ),
-        "route": Variable(
-            "how it was reached: along the branch, from a neighbour, across resonances",
-            dims=(*MAP, "mode"),
-            dtype="i1",
-            flags=Route,
-            round_off=_NEXT_TO_ANOTHER,
-        ),
         "y_peak": Variable("y at the symmetric instant", "m"),
     },
 )
@@ -198,10 +182,6 @@ _SWEEP = ("scene", "peak", "harmonics")
 
 def _error(*dims: str, long_name: str, units: str = "rad s-1") -> Variable:
     return Variable(long_name, units, dims, nan_allowed=True, rtol=0.05, atol=1e-11)
-
-
-def _rate(*dims: str, long_name: str) -> Variable:
-    return Variable(long_name, dims=dims, nan_allowed=True, rtol=0.05)
 
 
 HARMONIC_SWEEP = DatasetSchema(
@@ -216,7 +196,6 @@ HARMONIC_SWEEP = DatasetSchema(
     },
     variables={
         "omega_error": _error(*_SWEEP, long_name="error of omega at equal y_peak"),
-        "omega_error_first": _error(*_SWEEP, long_name="error of omega at equal first harmonic"),
         "waveform_error": _error(
             *_SWEEP, units="m", long_name="largest distance in (x, y) at equal y_peak and phase"
         ),
@@ -226,9 +205,6 @@ HARMONIC_SWEEP = DatasetSchema(
         "omega_error_sigma": _error(
             "scene", "peak", "sigma", long_name="shift of omega by tanh smoothing"
         ),
-        "omega_rate": _rate("scene", "peak", long_name="exponent p of omega error ~ N_h^-p"),
-        "waveform_rate": _rate("scene", "peak", long_name="exponent p of waveform error ~ N_h^-p"),
-        "sigma_rate": _rate("scene", "peak", long_name="exponent p of the shift ~ sigma^-p"),
         "n_harmonics_fixed": Variable("N_h while N or sigma is varied", dtype="i4"),
         "outcome": outcome(*_SWEEP, among=(Outcome.converged, Outcome.no_convergence)),
     },

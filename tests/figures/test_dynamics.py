@@ -54,7 +54,6 @@ def test_all_are_drawn_for_any_study(params, tmp_path):
         "transient": whirl_task.transient_lifetimes(params, samples=5, t_end=400.0),
     }
     own = json.dumps(params.as_dict())
-    check = refinement.check_refinement(params, maps["refined"], points=(16, 31))
     runs = {name: scene(name, params) for name in ("F2a", "F2b", "F2c", "F2d", "F3", "F4", "F5a")}
     figures = {
         "fig02": fig02.draw(*(runs[name] for name in ("F2a", "F2b", "F2c", "F2d"))),
@@ -64,7 +63,7 @@ def test_all_are_drawn_for_any_study(params, tmp_path):
         "fig07": fig07.draw({"validity_map": maps["validity"]}),
         "hammering": hammering_map.draw(maps["hammering"]),
         "predictability": predictability.draw(maps["hammering"]),
-        "refined": refined_boundary.draw(maps["refined"], check),
+        "refined": refined_boundary.draw(maps["refined"]),
         "whirl": whirl.draw(runs["F3"], maps["whirl"]),
         "transient": transient.draw(maps["transient"].assign_attrs(parameters=own)),
     }

@@ -61,7 +61,6 @@ dynamics:
   validity_horizon: 20.0
   refined_points: 41
   refined_coarse: 11
-  uniform_points: [11, 21]
   hammering_points: 9
   hammering_horizon: 50.0
   whirl_count: 3

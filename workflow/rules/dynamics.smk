@@ -55,8 +55,7 @@ rule map_hammering:
 
 rule refine_validity:
     output:
-        refined=data("refined_validity_map"),
-        check=data("refinement_check"),
+        data("refined_validity_map"),
     params:
         part=part(
             "parameters",
@@ -64,7 +63,6 @@ rule refine_validity:
             "dynamics.validity_horizon",
             "dynamics.refined_points",
             "dynamics.refined_coarse",
-            "dynamics.uniform_points",
             read_as=READING,
         ),
     threads: cores_for(STUDY.dynamics.refined_points**2, enough=1_000_000)

@@ -209,28 +209,3 @@ REFINED_VALIDITY_MAP = DatasetSchema(
         ),
     },
 )
-
-REFINEMENT_CHECK = DatasetSchema(
-    name="refinement_check",
-    title="The refined map against uniform ones: runs and cells",
-    coordinates={"points": Variable("points per side, uniform map", dims=("points",), dtype="i4")},
-    variables={
-        "runs": Variable("runs of the uniform map", dims=("points",), dtype="i8"),
-        "different_cells": Variable(
-            "cells of the uniform map that the refined one labels otherwise",
-            dims=("points",),
-            dtype="i8",
-        ),
-        "missed_regions": Variable(
-            "connected regions of the uniform map that the refined one lacks",
-            dims=("points",),
-            dtype="i8",
-        ),
-        "wrong_share": Variable(
-            "share of the refined cells that the nearest uniform cell labels otherwise",
-            dims=("points",),
-        ),
-        "refined_runs": Variable("runs of the refined map", dtype="i8"),
-        "refined_points": Variable("points per side, refined map", dtype="i4"),
-    },
-)

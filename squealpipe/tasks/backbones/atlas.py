@@ -16,7 +16,7 @@ from squealpipe.methods.orbits.orbit_shape import sample
 from squealpipe.methods.orbits.orbits import Orbit, is_primitive, solve_orbit
 from squealpipe.parameters import Parameters
 from squealpipe.schema import Outcome, build
-from squealpipe.schema.backbones import ORBIT_ATLAS, Route
+from squealpipe.schema.backbones import ORBIT_ATLAS
 from squealpipe.solvers.a4.orbits import find_orbit, orbit_across
 from squealpipe.solvers.a4.system import ScaledSystem, scaled_system
 from squealpipe.tasks.backbones.orbit import check_length
@@ -56,7 +56,7 @@ def orbit_atlas(
         workers: threads (the kernels release the interpreter); None: all cores.
 
     Returns:
-        Dataset over (alpha1, alpha2, mode): omega (rad/s), stability_index, route, outcome:
+        Dataset over (alpha1, alpha2, mode): omega (rad/s), stability_index, outcome:
         ``converged`` where the branch of the linear mode leads to the peak, ``other_branch``
         where it ends before and the orbit comes from a neighbouring cell or from across.
 
@@ -77,7 +77,6 @@ def orbit_atlas(
             "omega": found.values[..., 0],
             "stability_index": found.values[..., 1],
             "outcome": found.outcome,
-            "route": found.route,
             "y_peak": peak,
         },
         {"alpha1": alpha1, "alpha2": alpha2, "mode": [1, 2]},
@@ -108,7 +107,6 @@ class _Cells:
         self.values = np.full((*shape, 2), np.nan)
         self.points = np.full((*shape, 3), np.nan)
         self.outcome = np.full(shape, Outcome.not_computed, dtype=int)
-        self.route = np.full(shape, Route.none, dtype=int)
         self.purity = np.full(shape, np.nan)
 
     def fill_line(self, row: int) -> None:
@@ -124,14 +122,13 @@ class _Cells:
             return
         orbit, self.outcome[cell] = find_orbit(scene, mode, self.peak)
         if orbit is not None:
-            self._keep(cell, scene, orbit, Route.linear_mode)
+            self._keep(cell, scene, orbit)
         elif self.outcome[cell] == Outcome.isolated_mode:
             self.values[cell] = scene.omega(mode) * scene.frequency, np.nan
 
-    def _keep(self, cell: Cell, scene: ScaledSystem, orbit: Orbit, route: Route) -> None:
+    def _keep(self, cell: Cell, scene: ScaledSystem, orbit: Orbit) -> None:
         self.points[cell] = orbit.point
         self.values[cell] = orbit.omega * scene.frequency, orbit.stability_index
-        self.route[cell] = route
 
     def fill_from_neighbours(self) -> None:
         """Let orbits spread into the cells that hold none, the purest one of several winning."""
@@ -149,7 +146,7 @@ class _Cells:
                 if not purity <= self.purity[cell] + _CLEARLY_PURER:
                     self.purity[cell] = purity
                     self.outcome[cell] = Outcome.other_branch
-                    self._keep(cell, scene, orbit, Route.neighbour)
+                    self._keep(cell, scene, orbit)
                     spreading.append(cell)
 
     def fill_across(self) -> None:
@@ -160,7 +157,7 @@ class _Cells:
             orbit = orbit_across(scene, cell[2] + 1, self.peak)
             if orbit is not None:
                 self.outcome[cell] = Outcome.other_branch
-                self._keep(cell, scene, orbit, Route.across)
+                self._keep(cell, scene, orbit)
 
     def _cells(self, mask: NDArray[np.bool_]) -> list[Cell]:
         """Cells of a mask that hold an orbit."""

@@ -27,8 +27,6 @@ Branches = Mapping[str, tuple[float, float, int]]
 _INTERVALS = 2**14
 """Intervals of half a period from which an exact orbit's cosines are taken."""
 _SHAPE_INTERVALS = 512
-_FLOOR = 1e-12
-"""Errors below this say nothing of a convergence rate."""
 _PHASES = 13
 """Phases of the start; not a divisor of the samples, whose own symmetry would hide the spread."""
 
@@ -87,7 +85,7 @@ def sweep_harmonic_balance(
         n_harmonics: N_h while N or σ is varied.
     """
     shape = len(branches), len(peaks)
-    errors = np.full((3, *shape, len(harmonics)), np.nan)
+    errors = np.full((2, *shape, len(harmonics)), np.nan)
     by_samples = np.full((*shape, len(samples)), np.nan)
     by_sigma = np.full((*shape, len(sigmas)), np.nan)
     units = []
@@ -102,8 +100,7 @@ def sweep_harmonic_balance(
     unit = np.array(units)[:, None, None]
     data = {
         "omega_error": errors[0] * unit,
-        "omega_error_first": errors[1] * unit,
-        "waveform_error": errors[2] * params.preload,
+        "waveform_error": errors[1] * params.preload,
         "omega_error_samples": by_samples * unit,
         "omega_error_sigma": by_sigma * unit,
     }
@@ -111,9 +108,6 @@ def sweep_harmonic_balance(
         HARMONIC_SWEEP,
         {
             **data,
-            "omega_rate": _rates(harmonics, errors[0]),
-            "waveform_rate": _rates(harmonics, errors[2]),
-            "sigma_rate": _rates(sigmas, by_sigma),
             "n_harmonics_fixed": n_harmonics,
             "outcome": np.where(
                 np.isfinite(errors).all(axis=0), Outcome.converged, Outcome.no_convergence
@@ -129,23 +123,18 @@ def sweep_harmonic_balance(
     )
 
 
-def _series_errors(motion: ExactMotion, count: int) -> tuple[float, float, float]:
-    """(ω at equal peak, ω at equal first harmonic, waveform), NaN where Newton fails."""
+def _series_errors(motion: ExactMotion, count: int) -> tuple[float, float]:
+    """(ω, waveform) at equal peak, NaN where Newton fails."""
     balance = CosineBalance(motion.scene.system, contact_of(count, 1.0, None, None))
-    guess = motion.series(count)
-    equal_peak = balance.solve(guess, balance.peak_row, float(motion.orbit.point[1]))
-    equal_first = balance.solve(guess, balance.first_harmonic_row, float(motion.y[1]))
-    if equal_peak is None or equal_first is None:
-        return math.nan, math.nan, math.nan
+    solved = balance.solve(motion.series(count), balance.peak_row, float(motion.orbit.point[1]))
+    if solved is None:
+        return math.nan, math.nan
     theta = np.linspace(0.0, math.pi, _SHAPE_INTERVALS + 1)
     table = np.cos(np.outer(theta, np.arange(count + 1)))
     states = sample(motion.scene.system.rows, motion.orbit.point, theta)
-    x, y, omega = balance.split(equal_peak[0])
-    return (
-        abs(omega - motion.orbit.omega),
-        abs(float(equal_first[0][-1]) - motion.orbit.omega),
-        float(np.hypot(table @ x - states[:, 0], table @ y - states[:, 1]).max()),
-    )
+    x, y, omega = balance.split(solved[0])
+    apart = np.hypot(table @ x - states[:, 0], table @ y - states[:, 1])
+    return abs(omega - motion.orbit.omega), float(apart.max())
 
 
 def _omega(motion: ExactMotion, count: int, n_time: int | None, sigma: float | None) -> float:
@@ -162,23 +151,6 @@ def _smoothing_shifts(motion: ExactMotion, count: int, sigmas: Sequence[float]) 
     """|ω − ω of the sharp law| at the same harmonics, so truncation cancels."""
     sharp = _omega(motion, count, None, None)
     return [abs(_omega(motion, count, None, float(sigma)) - sharp) for sigma in sigmas]
-
-
-def _rates(settings: Sequence[float], errors: Vector) -> Vector:
-    """Exponents p of errors ~ setting^-p along the last axis, above round-off.
-
-    The coarsest setting is left out where three remain: it is seldom asymptotic yet.
-    """
-    first = 1 if errors.shape[-1] > 3 else 0
-    settings, errors = settings[first:], errors[..., first:]
-    flat = errors.reshape(-1, errors.shape[-1])
-    fitted = np.full(len(flat), np.nan)
-    for index, row in enumerate(flat):
-        usable = np.isfinite(row) & (row > _FLOOR)
-        if usable.sum() >= 2:
-            logs = np.log(np.asarray(settings, float)[usable]), np.log(row[usable])
-            fitted[index] = -np.polyfit(*logs, 1)[0]
-    return fitted.reshape(errors.shape[:-1])
 
 
 def compare_harmonic_forms(

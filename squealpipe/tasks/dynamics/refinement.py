@@ -1,17 +1,14 @@
-"""The map of kept contact at high resolution, and its check against uniform maps."""
+"""The map of kept contact at high resolution."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
 import xarray as xr
-from scipy.ndimage import label
 
 from squealpipe.methods.adaptive_grid import Evaluate, RefinedGrid, follow_boundaries, refine_grid
 from squealpipe.parameters import HORIZON, Parameters
 from squealpipe.schema import Outcome, build
-from squealpipe.schema.dynamics.runs import REFINED_VALIDITY_MAP, REFINEMENT_CHECK
+from squealpipe.schema.dynamics.runs import REFINED_VALIDITY_MAP
 from squealpipe.schema.inference import wilson_interval
 from squealpipe.schema.origin import recorded
 from squealpipe.solvers.a1.ensemble import run_ensemble
@@ -22,7 +19,6 @@ SUSPECT_SHARE = 0.1
 """Cells that separate only after this share of t_end lie next to those that never do."""
 SAMPLE, SEED = 4000, 2021
 """Inherited cells that are run to measure how often they are wrong."""
-EIGHT_NEIGHBOURS = np.ones((3, 3))
 
 
 @recorded(method="Taylor series with located events on an adaptive grid")
@@ -122,77 +118,3 @@ def _check_inherited(evaluate: Evaluate, grid: RefinedGrid, seed: int) -> tuple[
     here = rows[wrong], columns[wrong]
     grid.labels[here], grid.computed[here] = lost[wrong], True
     return int(chosen.size), int(wrong.sum())
-
-
-def check_refinement(
-    params: Parameters,
-    refined: xr.Dataset,
-    *,
-    points: Sequence[int] = (91, 181, 361),
-    model: Model = "A1",
-    tol: float = 1e-12,
-    workers: int | None = None,
-) -> xr.Dataset:
-    """The refined map against uniform maps whose cells are among its own.
-
-    Args:
-        params: those of the refined map.
-        refined: dataset ``refined_validity_map``.
-        points: points per side of the uniform maps, ascending; each must nest in the next and in
-            the refined one.
-        model: that of the refined map.
-        tol: tolerance of the Taylor integrator.
-        workers: processes; None takes all cores.
-
-    Raises:
-        ValueError: the grids do not nest.
-    """
-    labels = refined.separates.values.astype(bool)
-    resolution = len(labels)
-    finest = points[-1]
-    for count in points:
-        if (resolution - 1) % (count - 1) or (finest - 1) % (count - 1):
-            raise ValueError(f"a uniform map of {count} points does not nest in {resolution}")
-    angles = np.linspace(0.0, np.pi, resolution)[:: (resolution - 1) // (finest - 1)]
-    run = run_ensemble(
-        params,
-        angles[:, None],
-        angles[None, :],
-        t_end=float(refined.t_end),
-        model=model,
-        tol=tol,
-        stop_at_first_separation=True,
-        workers=workers,
-    )
-    lost = run.outcome == Outcome.separated
-    different, missed, wrong = [], [], []
-    for count in points:
-        uniform = lost[:: (finest - 1) // (count - 1), :: (finest - 1) // (count - 1)]
-        step = (resolution - 1) // (count - 1)
-        same_cells = labels[::step, ::step]
-        different.append(np.count_nonzero(uniform != same_cells))
-        missed.append(_missed_regions(uniform, same_cells))
-        nearest = (np.arange(resolution) + step // 2) // step
-        wrong.append(np.mean(uniform[np.ix_(nearest, nearest)] != labels))
-    return build(
-        REFINEMENT_CHECK,
-        {
-            "runs": [count**2 for count in points],
-            "different_cells": different,
-            "missed_regions": missed,
-            "wrong_share": wrong,
-            "refined_runs": int(refined.computed.sum()),
-            "refined_points": resolution,
-        },
-        {"points": list(points)},
-    )
-
-
-def _missed_regions(uniform: np.ndarray, refined: np.ndarray) -> int:
-    """Connected regions of the first map without one cell of that label in the second."""
-    missed = 0
-    for value in (True, False):
-        regions, count = label(uniform == value, EIGHT_NEIGHBOURS)
-        hit = np.unique(regions[(uniform == value) & (refined == value)])
-        missed += count - np.count_nonzero(hit)
-    return missed

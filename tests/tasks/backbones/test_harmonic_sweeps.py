@@ -32,13 +32,24 @@ def sweep():
     )
 
 
+def rates(errors, setting):
+    """Exponents p of errors ~ setting^-p, above round-off, without the coarsest of four or more."""
+    errors = errors.isel({setting: slice(1 if errors.sizes[setting] > 3 else 0, None)})
+    errors = errors.where(errors > 1e-12)
+    logs = np.log(errors).assign_coords({setting: np.log(errors[setting].astype(float))})
+    return -logs.polyfit(setting, 1, skipna=True).polyfit_coefficients.sel(degree=1)
+
+
 def test_rates_of_convergence(sweep):
     """ω like N_h^-3.6 … -4.4, the waveform like N_h^-3, smoothing like σ^-2 (-1.5 at grazing)."""
     beyond = sweep.sel(peak=[1.25, 2.0])
-    assert ((beyond.omega_rate > 3.2) & (beyond.omega_rate < 4.8)).all()
-    assert ((beyond.waveform_rate > 2.7) & (beyond.waveform_rate < 3.3)).all()
-    np.testing.assert_allclose(beyond.sigma_rate, 2.0, atol=0.1)
-    np.testing.assert_allclose(sweep.sigma_rate.sel(peak=1.0), 1.5, atol=0.1)
+    omega = rates(beyond.omega_error, "harmonics")
+    assert ((omega > 3.2) & (omega < 4.8)).all()
+    waveform = rates(beyond.waveform_error, "harmonics")
+    assert ((waveform > 2.7) & (waveform < 3.3)).all()
+    np.testing.assert_allclose(rates(beyond.omega_error_sigma, "sigma"), 2.0, atol=0.1)
+    grazing = rates(sweep.omega_error_sigma.sel(peak=1.0), "sigma")
+    np.testing.assert_allclose(grazing, 1.5, atol=0.1)
 
 
 def test_closed_form_integrals_remove_the_sampling_error(sweep):

@@ -12,7 +12,7 @@ from squealpipe.schema import Outcome
 from squealpipe.schema.dynamics.runs import MotionFlag
 from squealpipe.store import load, save
 from squealpipe.tasks.dynamics.hammering import hammering_map
-from squealpipe.tasks.dynamics.refinement import check_refinement, refine_validity_map
+from squealpipe.tasks.dynamics.refinement import refine_validity_map
 from squealpipe.tasks.dynamics.runs import simulate, validity_map
 from squealpipe.tasks.dynamics.whirl import transient_lifetimes, whirl_sizes
 from tests.former import FORMER
@@ -151,11 +151,6 @@ def test_refined_map_equals_the_uniform_one():
         refined.first_separation_time.values[ran], uniform.first_separation_time.values[ran]
     )
     assert (refined.outcome.values[~ran] == Outcome.inherited).all()
-    check = check_refinement(BASELINE, refined, points=(31, 61))
-    assert (check.missed_regions == 0).all()
-    assert check.wrong_share[0] > check.wrong_share[1]
-    with pytest.raises(ValueError, match="nest"):
-        check_refinement(BASELINE, refined, points=(50,))
 
 
 def test_whirl_without_a_law_says_so():

@@ -7,35 +7,25 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch, Rectangle
-from matplotlib.ticker import NullLocator
 
 from squealpipe.plotting import style
 
-READS = ("refined_validity_map", "refinement_check")
+READS = ("refined_validity_map",)
 CAPTION = (
     "Where model A1 keeps contact (grey), at high resolution. (a) In colour the cells that were "
     "run along the boundaries and where a thin region may hide: around late separations and where "
     "little contact force is left; lone points of the coarse grid are not shown, and all other "
     "cells inherit their neighbour's answer. (b) The window with most of the boundary, all cells "
-    "that were run in colour. (c) Runs of uniform maps and the share of cells that they show "
-    "wrongly, against the runs of the refined map."
+    "that were run in colour; above it how many of a random sample of the others were wrong."
 )
-ALT = (
-    "A map of kept contact with the cells that were run in colour; a magnified part of it; a chart "
-    "of wrong cells over the number of runs for uniform maps, with the refined map's runs marked."
-)
+ALT = "A map of kept contact with the cells that were run in colour, and a magnified part of it."
 WINDOW = 0.12
 """Side of the window of panel (b) over that of the map."""
 
 
-def draw(refined: xr.Dataset, check: xr.Dataset) -> Figure:
-    """A map, a magnified part, and the comparison with uniform maps.
-
-    Args:
-        refined: dataset ``refined_validity_map``.
-        check: dataset ``refinement_check``.
-    """
-    figure, axes = style.new_figure(style.PAGE, 2.9, ncols=3, width_ratios=(1, 1, 0.8))
+def draw(refined: xr.Dataset) -> Figure:
+    """A map and a magnified part of it, from dataset ``refined_validity_map``."""
+    figure, axes = style.new_figure(style.PAGE, 3.9, ncols=2)
     _map(axes[0, 0], refined.assign(computed=_clustered(refined.computed)))
     window = _intricate(refined)
     axes[0, 0].add_patch(
@@ -57,8 +47,8 @@ def draw(refined: xr.Dataset, check: xr.Dataset) -> Figure:
     for axis in (axes[0, 1].xaxis, axes[0, 1].yaxis):
         style.angle_ticks(axis, np.pi, np.pi / 25)
     axes[0, 1].set(xlim=window[:2], ylim=window[2:])
-    style.panel_letter(axes[0, 1], "b", "magnified")
-    _comparison(axes[0, 2], check)
+    wrong, checked = int(refined.inherited_wrong), int(refined.inherited_checked)
+    style.panel_letter(axes[0, 1], "b", f"magnified; {wrong} of {checked} others wrong")
     figure.legend(
         handles=[
             Patch(facecolor=style.LIGHT, label="contact kept"),
@@ -113,28 +103,3 @@ def _map(axes: Axes, refined: xr.Dataset) -> None:
         tones,
         **style.category_colours([style.WHITE, style.LIGHT, style.ORANGE, style.BLUE]),
     )
-
-
-def _comparison(axes: Axes, check: xr.Dataset) -> None:
-    axes.plot(check.runs, check.wrong_share, "o-", color=style.ORANGE)
-    axes.margins(x=0.2, y=0.15)
-    axes.set_xscale("log")
-    if (check.wrong_share > 0).any():
-        axes.set_yscale("log")
-    for count, runs, wrong in zip(
-        check.points.values, check.runs.values, check.wrong_share.values, strict=True
-    ):
-        axes.annotate(
-            f"{count}²", (runs, wrong), xytext=(0, 6), textcoords="offset points", ha="center",
-            fontsize=7,
-        )  # fmt: skip
-    refined = float(check.refined_runs)
-    axes.axvline(refined, color=style.BLUE, linestyle="--")
-    axes.annotate(
-        "refined map", (refined, 0.96), xycoords=axes.get_xaxis_transform(), xytext=(3, 0),
-        textcoords="offset points", rotation=90, va="top", fontsize=7, color=style.BLUE,
-    )  # fmt: skip
-    axes.set_xticks(check.runs.values, [f"{runs}" for runs in check.runs.values], fontsize=6)
-    axes.xaxis.set_minor_locator(NullLocator())
-    axes.set(xlabel="runs", ylabel="wrong cells of uniform maps (share)")
-    style.panel_letter(axes, "c", f"{int(check.missed_regions.sum())} regions missed")
