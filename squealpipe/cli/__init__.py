@@ -15,14 +15,17 @@ from squealpipe.cli.arguments import by_name, parameters_from_study
 from squealpipe.cli.backbone import backbone
 from squealpipe.cli.claims import claims
 from squealpipe.cli.console import SESSION, TRACEBACK, session
+from squealpipe.cli.cycles import branch, cycle
 from squealpipe.cli.exit_codes import DONE, INTERRUPTED, NOT_DONE
 from squealpipe.cli.files import convert, plot
 from squealpipe.cli.maps import map_angles
 from squealpipe.cli.memory import deposit, find, list_runs
+from squealpipe.cli.models import choose, infer, refine
 from squealpipe.cli.project import init
 from squealpipe.cli.project import run as run_study
 from squealpipe.cli.propensity import propensity
 from squealpipe.cli.simulate import simulate
+from squealpipe.cli.starts import basin, disturbance
 from squealpipe.cli.study import archive, compare, explain, verify
 from squealpipe.cli.sweep import sweep
 from squealpipe.text import visible
@@ -40,6 +43,13 @@ COMMANDS: dict[str, Callable[..., int]] = {
     "backbone": backbone,
     "sweep": sweep,
     "propensity": propensity,
+    "cycle": cycle,
+    "branch": branch,
+    "basin": basin,
+    "disturbance": disturbance,
+    "choose": choose,
+    "infer": infer,
+    "refine": refine,
     "plot": plot,
     "convert": convert,
     "init": init,

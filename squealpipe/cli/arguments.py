@@ -29,6 +29,17 @@ def _whole(_: Any, tokens: Sequence[Any]) -> int:
     return int(number)
 
 
+def _numbers(_: Any, tokens: Sequence[Any]) -> list[float]:
+    return parse_range(tokens[0].value)
+
+
+Numbers = Annotated[
+    list[float] | None,
+    Parameter(
+        converter=_numbers, metavar="RANGE", allow_leading_hyphen=True, n_tokens=1, negative=""
+    ),
+]
+"""A number, a list of them or first:last:count."""
 Whole = Annotated[int, Parameter(converter=_whole, metavar="INT", n_tokens=1)]
 Angle = Annotated[
     float, Parameter(converter=_angle, metavar="ANGLE", allow_leading_hyphen=True, n_tokens=1)

@@ -7,10 +7,12 @@ from glob import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from squealpipe.cli.console import say
+from squealpipe.cli.console import say, working
 
 if TYPE_CHECKING:
     import xarray as xr
+
+    from squealpipe.parameters import Parameters
 
 DATA = (".nc", ".csv")
 TABLES = (".csv", ".mat", ".xlsx", ".parquet")
@@ -81,4 +83,43 @@ def write(make: Callable[[], xr.Dataset], output: Path, *, config: Mapping[str, 
     beside = convert(dataset, output)[1:]
     if beside:
         say(f"other dimensions are in {', '.join(map(str, beside))}")
+    return dataset
+
+
+def compute(
+    function: str,
+    params: Parameters,
+    *angles: float,
+    output: Path,
+    picture: Path | None,
+    drawn: bool = True,
+    **options: Any,
+) -> xr.Dataset:
+    """Run a function of the package; write its dataset and, if there is one, the picture of it.
+
+    Args:
+        function: its name in ``squealpipe``.
+        params, angles: what it is called with.
+        output, picture: files, checked before.
+        drawn: whether there is a picture.
+        options: its keywords; those that are None are left to their defaults.
+    """
+    import squealpipe
+    from squealpipe.store.identity import dataset_id
+
+    given = {name: value for name, value in options.items() if value is not None}
+    place: dict[str, Any] = dict(zip(("alpha1", "alpha2"), angles, strict=False))
+    place |= {k: dataset_id(v) if hasattr(v, "data_vars") else v for k, v in given.items()}
+    with working(function.replace("_", " ")):
+        dataset = write(
+            lambda: getattr(squealpipe, function)(params, *angles, **given),
+            output,
+            config={"parameters": params.as_dict(), **place},
+        )
+    if drawn and picture is not None:
+        from squealpipe.plotting import picture as draw
+        from squealpipe.plotting.style import save_figure
+
+        save_figure(draw(dataset), [picture])
+    say(f"wrote {output}" + (f" and {picture}" if drawn else ""))
     return dataset

@@ -100,9 +100,7 @@ def draw_branch(axes: Axes, branch: xr.Dataset) -> None:
     """
     if say_why_empty(axes, branch):
         return
-    followed = next(
-        array for array in branch.data_vars.values() if "along the branch" in array.long_name
-    )
+    followed = branch[branch.attrs["parameter"]]
     handles = [
         axes.plot([], [], color=BLUE, label="stable")[0],
         axes.plot([], [], color=ORANGE, linestyle="--", label="unstable")[0],

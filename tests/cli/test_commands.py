@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from squealpipe import __version__, load
+from squealpipe import __version__, load, plot
 from squealpipe.cli import COMMANDS, run
 
 SWEPT = ["sweep", "stability_map", "--alpha1", "1", "--alpha2", "2"]
@@ -202,3 +202,52 @@ def test_compare_tells_equal_from_different_by_its_exit_code(capsys):
     capsys.readouterr()
     assert run(["compare", "a.nc", "c.nc", "--json"]) == 1
     assert json.loads(capsys.readouterr().out)["verdict"] == "different"
+
+
+STICKS = ["--friction-law", "exponential", "--mu-static", "0.6", "--belt-speed", "0.5"]
+STICKS += ["--damping1", "0.02", "--damping2", "0.02"]
+
+
+def test_cycle_and_branch_go_together(capsys):
+    scene = ["0.1pi", "0.5pi", *STICKS]
+    assert run(["cycle", *scene]) == 0
+    assert "stable, 2 events" in capsys.readouterr().out
+    found = load("cycle.nc")
+    to = ["--parameter", "belt-speed", "--to", "0.55", "--n-points", "20"]
+    assert run(["branch", *scene, *to, "--start", "cycle.nc"]) == 0
+    assert "the branch ends: converged" in capsys.readouterr().out
+    branch = load("branch.nc")
+    assert float(branch.belt_speed[-1]) == pytest.approx(0.55, rel=1e-12)
+    assert float(branch.period[0]) == pytest.approx(float(found.period), rel=1e-9)
+    state = ",".join(str(float(found[f"{name}_start"])) for name in ("x", "y", "vx", "vy"))
+    assert run(["cycle", *scene, "--guess", state, "-o", "again.nc"]) == 0
+    assert float(load("again.nc").period) == pytest.approx(float(found.period), rel=1e-9)
+    assert Path("branch.png").stat().st_size > 1000
+    assert plot(branch).get_xlabel() == "belt_speed along the branch (m/s)"
+
+
+def test_a_scene_without_a_cycle_says_so(capsys):
+    assert run(["cycle", "0.305pi", "0.07pi", "--damping1", "1", "--t-settle", "50"]) == 1
+    assert "no periodic motion was found: " in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("command", "words"),
+    [
+        (["basin", "1", "2", "--vx", "-3:3:3", "--vy", "0,1", "--t-end", "20"], "of 6 cells"),
+        (["disturbance", "0.75pi", "0.75pi", "--t-end", "20", "--directions", "8"], "found: 0."),
+        (["choose", "0.75pi", "0.75pi", "max_displacement", "--t-end", "20"], "displacement: 0."),
+        (["infer", "--samples", "16", "--kappa", "0.5,0.8"], "of 16 sets meet every"),
+        (["refine", "--resolution", "17", "--coarse", "9", "--t-end", "5"], "of 289 cells"),
+    ],
+)
+def test_every_ability_has_a_command(command, words, capsys):
+    assert run(command) == 0
+    assert words in capsys.readouterr().out
+    made = {path.suffix for path in Path().iterdir()}
+    assert made == {"choose": set(), "infer": {".nc"}}.get(command[0], {".nc", ".png"})
+
+
+def test_a_basin_needs_a_range(capsys):
+    assert run(["basin", "1", "2", "--vx", "3", "--t-end", "20"]) == 2
+    assert "give a range of one or two of x, y, vx, vy" in capsys.readouterr().err
