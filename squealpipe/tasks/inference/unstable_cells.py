@@ -7,6 +7,7 @@ flutter fills one disc there, so a search along its rim finds unstable cells.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -41,10 +42,25 @@ def unstable_cells(params: Parameters, *, rim: int = RIM, inside: float = INSIDE
     Dashpots, and friction that depends on speed, leave no such edge in closed form: there, all
     unstable cells of a grid.
     """
-    alpha1, alpha2 = (
-        _along_edges(params, rim, inside) if is_undamped(params) else midpoints(DAMPED_GRID)
-    )
-    regime, couples = _regime(params, alpha1, alpha2)
+    if not is_undamped(params):
+        return _on_grid(params)
+    alpha1, alpha2 = _along_edges(params, rim, inside)
+    regime = np.asarray(a3.regime(contact_system(params, alpha1, alpha2).invariants))
+    return _where(regime, alpha1, alpha2, regime == LinearRegime.flutter)
+
+
+@lru_cache(maxsize=4)
+def _on_grid(params: Parameters) -> Unstable:
+    """Several statements ask for the cells of one set, which take a tenth of a second."""
+    alpha1, alpha2 = midpoints(DAMPED_GRID)
+    found = stability(damped_system(params, alpha1, alpha2))
+    couples = (found.regime == LinearRegime.flutter) & merge(found.frequency)
+    return _where(found.regime, alpha1, alpha2, couples)
+
+
+def _where(
+    regime: np.ndarray, alpha1: np.ndarray, alpha2: np.ndarray, couples: np.ndarray
+) -> Unstable:
     unstable = regime > LinearRegime.stable
     return Unstable(alpha1[unstable], alpha2[unstable], couples[unstable])
 
@@ -84,14 +100,3 @@ def _along_edges(params: Parameters, rim: int, inside: float) -> tuple[np.ndarra
         # (α1, α2) and (π − α2, π − α1) have the same Z and the same motion.
         alpha1, alpha2 = alpha1[0], alpha2[0]
     return alpha1, alpha2
-
-
-def _regime(
-    params: Parameters, alpha1: np.ndarray, alpha2: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
-    """Regime of A3, damped where the parameters are, and whether it is flutter of merged modes."""
-    if is_undamped(params):
-        regime = np.asarray(a3.regime(contact_system(params, alpha1, alpha2).invariants))
-        return regime, regime == LinearRegime.flutter
-    found = stability(damped_system(params, alpha1, alpha2))
-    return found.regime, (found.regime == LinearRegime.flutter) & merge(found.frequency)
