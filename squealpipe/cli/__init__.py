@@ -11,6 +11,7 @@ from collections.abc import Callable, Sequence
 from cyclopts import App, CycloptsError
 from cyclopts.exceptions import UnusedCliTokensError
 
+from squealpipe.cli import benchmark
 from squealpipe.cli.arguments import by_name, parameters_from_study
 from squealpipe.cli.backbone import backbone
 from squealpipe.cli.claims import claims
@@ -84,6 +85,10 @@ def application() -> App:
     )
     for place, (name, command) in enumerate(COMMANDS.items()):
         app.command(command, name=name, sort_key=place, help_epilogue="")
+    peers = App(name="benchmark", sort_key=len(COMMANDS), help_epilogue="")
+    peers.default(benchmark.run)
+    peers.command(benchmark.compare, name="compare")
+    app.command(peers)
     app.register_install_completion_command()
     return app
 

@@ -133,3 +133,51 @@ FAILURE_ATLAS = DatasetSchema(
         ),
     },
 )
+
+_CELL = ("problem", "solver", "tolerance")
+_NEAR = most("answers near a limit of the verdict are decided by round-off", share=0.03)
+_COUNT = "; -1 where no events are reported or judged"
+
+BENCHMARK = DatasetSchema(
+    name="benchmark",
+    title="Integrators with events: every solver on every problem at every tolerance",
+    coordinates={
+        "problem": _text("problem", "problem"),
+        "solver": _text("solver", "solver"),
+        "tolerance": Variable("tolerance asked for", dims=("tolerance",)),
+    },
+    variables={
+        "group": _text("class of the problem", "problem"),
+        "role": Variable("whose solver it is", dims=("solver",), dtype="i1", flags=Role),
+        "verdict": Variable(
+            "right; flagged: wrong or without an answer, and said so; silently wrong: another list "
+            "of events, or an error over growth above 100 tolerances",
+            dims=_CELL, dtype="i1", flags=Reliability, round_off=_NEAR,
+        ),
+        "missed": Variable(f"events missed{_COUNT}", dims=_CELL, dtype="i4", round_off=_NEAR),
+        "spurious": Variable(f"events too many{_COUNT}", dims=_CELL, dtype="i4", round_off=_NEAR),
+        "out_of_order": Variable(
+            f"events found before one that they follow{_COUNT}",
+            dims=_CELL, dtype="i4", round_off=_NEAR,
+        ),
+        "time_error": Variable(
+            "largest error of an event's time", dims=_CELL, nan_allowed=True,
+            round_off=magnitude("errors of adaptive steps follow round-off", floor=1e-9),
+        ),
+        "error": Variable(
+            "largest error of final state and event times over the growth of a perturbation",
+            dims=_CELL, nan_allowed=True,
+            round_off=magnitude("errors of adaptive steps follow round-off", floor=1e-9),
+        ),
+        "evaluations": Variable(
+            "calls of the field; a Taylor step of order p counts p + 1", dims=_CELL, dtype="i8",
+            rtol=0.5, round_off=_NEAR,
+        ),
+        "cpu_time": Variable("CPU time", "s", _CELL, nan_allowed=True, volatile=True),
+        "cpu_ratio": Variable(
+            "CPU time over that of scipy's DOP853 at 1e-8 in the same process",
+            dims=_CELL, nan_allowed=True, volatile=True,
+        ),
+        "message": Variable("what the solver said", dims=_CELL, dtype="U64", round_off=_NEAR),
+    },
+)  # fmt: skip

@@ -1,0 +1,1 @@
+"""A public benchmark of integrators with events: problems, references, adapters, scores."""

@@ -1,0 +1,33 @@
+"""One module a solver, each with ``solve(problem, tol)``; see ``docs/benchmark.md``."""
+
+from __future__ import annotations
+
+import importlib
+from collections.abc import Callable
+from functools import partial
+from importlib.util import find_spec
+from typing import Any
+
+SOLVERS: dict[str, tuple[str, str, dict[str, Any]]] = {
+    "squealpipe": ("squealpipe", "heyoka", {}),
+    **{name: ("scipy", "scipy", {"method": name}) for name in ("DOP853", "RK45", "LSODA", "Radau")},
+    "heyoka": ("heyoka", "heyoka", {}),
+    "CyRK": ("cyrk", "CyRK", {}),
+    "SUNDIALS": ("sundials", "sksundae", {}),
+    "diffrax": ("diffrax", "diffrax", {}),
+    **{f"tanh, σ = {s:g}": ("tanh", "scipy", {"sigma": s}) for s in (10.0, 1e3, 1e7)},
+    "Moreau–Jean": ("moreau_jean", "numpy", {}),
+}
+"""Solver → module here, what has to be installed for it, options."""
+
+
+def solver(name: str) -> Callable[..., Any] | None:
+    """The shipped adapter of a name; None where its package is not installed.
+
+    Raises:
+        KeyError: there is no such adapter.
+    """
+    module, needs, options = SOLVERS[name]
+    if find_spec(needs) is None:
+        return None
+    return partial(importlib.import_module(f"{__name__}.{module}").solve, **options)

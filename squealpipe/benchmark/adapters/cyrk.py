@@ -1,0 +1,43 @@
+"""CyRK's ``pysolve_ivp`` with terminal events, which follows scipy's interface (its README)."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from CyRK import pysolve_ivp
+
+from squealpipe.benchmark.problem import Problem, run
+
+
+def solve(problem: Problem, tol: float) -> Any:
+    """Times, kinds, state, evaluations, flag."""
+    failed: list[str] = []
+
+    def advance(problem: Problem, regime: str, watched: Any, t: float, y: Any) -> Any:
+        events = []
+        for switch in watched:
+
+            def event(t: float, y: Any, switch: Any = switch) -> float:
+                return float(switch.when(t, y.tolist(), regime))
+
+            event.terminal, event.direction = True, -1  # type: ignore[attr-defined]
+            events.append(event)
+        found = pysolve_ivp(
+            lambda t, y: np.array(problem.field(t, y.tolist(), regime)),
+            (t, problem.t_end),
+            np.array(y, float),
+            method="DOP853",
+            rtol=tol,
+            atol=tol,
+            events=events,
+            t_eval=np.array([*(each for each in problem.times if each > t), problem.t_end]),
+        )
+        if found.event_terminated:
+            hit = found.event_terminate_index
+            return found.t_events[hit][-1], found.y_events[hit].reshape(len(y), -1)[:, -1], hit
+        failed.extend([str(found.message)] * (not found.success))
+        return problem.t_end, found.y[:, -1], None
+
+    times, kinds, state, evaluations, flag = run(problem, advance)
+    return times, kinds, state, evaluations, flag or "".join(failed)

@@ -1,0 +1,41 @@
+"""SUNDIALS' CVODE by scikit-sundae, with its rootfinding and a new start after each event.
+
+Adams' method, which the page of ``sksundae.cvode.CVODE`` suggests for problems that are not stiff;
+``max_num_steps`` above its default of 500, which a whole flight needs at tight tolerances.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from sksundae.cvode import CVODE
+
+from squealpipe.benchmark.problem import Problem, run
+
+
+def solve(problem: Problem, tol: float) -> Any:
+    """Times, kinds, state, evaluations, flag."""
+    failed: list[str] = []
+
+    def advance(problem: Problem, regime: str, watched: Any, t: float, y: Any) -> Any:
+        def rates(t: float, y: Any, out: Any) -> None:
+            out[:] = problem.field(t, y.tolist(), regime)
+
+        def surfaces(t: float, y: Any, out: Any) -> None:
+            out[:] = [switch.when(t, y.tolist(), regime) for switch in watched]
+
+        surfaces.terminal = [True] * len(watched)  # type: ignore[attr-defined]
+        surfaces.direction = [-1] * len(watched)  # type: ignore[attr-defined]
+        events = {"eventsfn": surfaces, "num_events": len(watched)} if watched else {}
+        solver = CVODE(rates, method="Adams", rtol=tol, atol=tol, max_num_steps=100_000, **events)
+        ends = [t, *(each for each in problem.times if each > t), problem.t_end]
+        found = solver.solve(np.array(ends), np.array(y, float))
+        if found.status == 2:
+            hit = int(np.flatnonzero(found.i_events[-1])[0])
+            return found.t_events[-1], found.y_events[-1], hit
+        failed.extend([str(found.message)] * (not found.success))
+        return problem.t_end, found.y[-1], None
+
+    times, kinds, state, evaluations, flag = run(problem, advance)
+    return times, kinds, state, evaluations, flag or "".join(failed)

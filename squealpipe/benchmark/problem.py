@@ -1,0 +1,170 @@
+"""A benchmark problem as plain data, and the Python functions generated from its equations."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import cache
+from importlib.resources import files
+from typing import Any
+
+import yaml
+
+SHARED = ("regimes", "field", "switches", "smoothed", "stepping")
+"""What makes a system; a problem may take them from an earlier one, its ``system``."""
+FUNCTIONS = ("cos", "sin", "exp", "log", "tanh")
+PATIENCE = 200_000
+"""Calls of the field after which a solver is stopped; its answer then counts as flagged."""
+
+
+class OutOfPatienceError(RuntimeError):
+    """A solver has called the field more often than a problem allows."""
+
+
+@dataclass(frozen=True)
+class Transition:
+    """What ends a regime: a surface, and what happens where it falls through zero.
+
+    Attributes:
+        name: of the switch.
+        leaves: the regimes in which it can fire.
+        when: (t, y, regime) → the surface's value.
+        fire: (t, y, regime) → kind of the event, next regime, state after it.
+    """
+
+    name: str
+    leaves: tuple[str, ...]
+    when: Callable[[Any, Any, str], Any]
+    fire: Callable[[Any, Any, str], tuple[str, str, list[Any]]]
+
+
+class Problem:
+    """A problem that a solver is asked: where does this motion lead, and by which events?
+
+    Args:
+        data: one entry of ``problems.yaml``.
+        functions: module or object with cos, sin, exp, log and tanh: math, mpmath.mp, jax.numpy, …
+        number: what parameters become: float, mpmath.mpf, …
+
+    Attributes:
+        name, group, purpose: what it is called, the class that it belongs to, what it tests.
+        states: names, in order.
+        start: values of the states at t = 0; ``regime``: the regime there.
+        t_end: end of the run; ``times``: instants at which output is asked on the way.
+        parameters: name → number.
+        switches: see :class:`Transition`; each falls through zero where it fires.
+        derivative: None, or the event's number (from 0) and the parameter by which the derivative
+            of its time is asked.
+        smoothed: None, or the regime constants as smooth functions of the state and of ``sigma``.
+        stepping: None, or what Moreau–Jean time stepping needs.
+        calls: how often the field was called.
+    """
+
+    def __init__(
+        self, data: Mapping[str, Any], functions: Any = math, number: Callable[[Any], Any] = float
+    ) -> None:
+        self.data = data
+        self.name, self.group, self.purpose = data["name"], data["class"], data["purpose"]
+        self.states, self.regime = list(data["start"]), data["regime"]
+        self.start = [number(value) for value in data["start"].values()]
+        self.t_end, self.times = number(data["t_end"]), [number(t) for t in data["times"]]
+        self.parameters = {name: number(value) for name, value in data["parameters"].items()}
+        self.regimes: dict[str, dict[str, float]] = data["regimes"]
+        self.derivative = data.get("derivative")
+        self.smoothed, self.stepping = data.get("smoothed"), data.get("stepping")
+        self.calls, self.patience = 0, PATIENCE
+        self._names = {name: getattr(functions, name) for name in FUNCTIONS} | self.parameters
+        self._fields = self.per_regime(list(data["field"].values()))
+        self.switches = [self._transition(switch) for switch in data["switches"]]
+
+    def field(self, t: Any, y: Any, regime: str = "") -> Any:
+        """Rates of all states in a regime, by default that of the start.
+
+        Raises:
+            OutOfPatienceError: the calls are used up.
+        """
+        self.calls += 1
+        if self.calls > self.patience:
+            raise OutOfPatienceError(f"gave up after {self.patience} evaluations")
+        return self._fields[regime or self.regime](t, y)
+
+    def function(self, texts: Any, constants: Mapping[str, Any]) -> Any:
+        """A Python function (t, y) of one text, or of a list of texts."""
+        body = texts if isinstance(texts, str) else f"[{', '.join(texts)}]"
+        source = f"def made(time, y):\n {', '.join(self.states)}, = y\n return {body}"
+        scope = {**self._names, **constants}
+        exec(source, scope)  # noqa: S102 (equations of this package)
+        return scope["made"]
+
+    def per_regime(self, texts: Any) -> dict[str, Callable[[Any, Any], Any]]:
+        """The same texts with the constants of each regime."""
+        return {name: self.function(texts, constants) for name, constants in self.regimes.items()}
+
+    def _transition(self, data: Mapping[str, Any]) -> Transition:
+        leaves = tuple(data["leaves"])
+        when = self.per_regime(data["when"])
+        resets = self.per_regime(list(data["reset"].values()))
+        places = [self.states.index(name) for name in data["reset"]]
+        targets = [
+            (regime, None if text is None else self.per_regime(text), kind)
+            for regime, text, kind in data["to"]
+        ]
+
+        def fire(t: Any, y: Any, regime: str) -> tuple[str, str, list[Any]]:
+            after = [*y]
+            for place, value in zip(places, resets[regime](t, y), strict=True):
+                after[place] = value
+            for target, condition, kind in targets:
+                if condition is None or condition[regime](t, y) >= 0:
+                    return kind, target, after
+            raise AssertionError(data["name"])
+
+        return Transition(data["name"], leaves, lambda t, y, regime: when[regime](t, y), fire)
+
+    def watched(self, regime: str) -> list[Transition]:
+        """The switches that can fire in a regime."""
+        return [switch for switch in self.switches if regime in switch.leaves]
+
+
+def all_data() -> list[dict[str, Any]]:
+    """The entries of ``problems.yaml``, each with the equations of its system."""
+    text = (files("squealpipe.benchmark") / "problems.yaml").read_text("utf-8")
+    entries = yaml.safe_load(text)
+    named = {entry["name"]: entry for entry in entries}
+    shared = {name: {key: e[key] for key in SHARED if key in e} for name, e in named.items()}
+    return [shared.get(entry.get("system"), {}) | entry for entry in entries]
+
+
+@cache
+def references() -> dict[str, dict[str, Any]]:
+    """Final state, events, growth and margin by the problem's name, from ``references.json``."""
+    text = (files("squealpipe.benchmark") / "references.json").read_text("utf-8")
+    return json.loads(text)  # type: ignore[no-any-return]
+
+
+def run(problem: Problem, advance: Callable[..., Any], most_events: int = 2000) -> Any:
+    """Drive a solver that stops at events: restart it after each, in the regime that follows.
+
+    Args:
+        problem: what is solved.
+        advance: (problem, regime, surfaces, t, y) → the time and state at which it stopped, and
+            the number of the surface that fired, None at ``t_end``.
+        most_events: events after which the run is given up.
+
+    Returns:
+        Times, kinds, final state, evaluations, flag.
+    """
+    t, y, regime = 0.0, problem.start, problem.regime
+    times: list[float] = []
+    kinds: list[str] = []
+    while len(times) < most_events:
+        watched = problem.watched(regime)
+        t, y, fired = advance(problem, regime, watched, t, y)
+        if fired is None:
+            return times, kinds, list(map(float, y)), problem.calls, ""
+        kind, regime, y = watched[fired].fire(t, [*map(float, y)], regime)
+        times.append(float(t))
+        kinds.append(kind)
+    return times, kinds, list(y), problem.calls, f"gave up after {most_events} events"

@@ -1,0 +1,59 @@
+"""``squealpipe benchmark`` and ``squealpipe benchmark compare``."""
+
+from __future__ import annotations
+
+import pytest
+
+from squealpipe.cli import run
+
+MINE = """
+from scipy.integrate import solve_ivp
+
+def solve(problem, tol):
+    switch = problem.switches[-1]
+    def event(t, y):
+        return switch.when(t, y, problem.regime)
+    event.direction = -1
+    span = 0, problem.t_end
+    run = solve_ivp(problem.field, span, problem.start, rtol=tol, atol=tol, events=event)
+    times = run.t_events[0].tolist()
+    return times, [switch.name] * len(times), run.y[:, -1].tolist(), run.nfev
+"""
+
+
+@pytest.fixture
+def mine(tmp_path):
+    path = tmp_path / "mine.py"
+    path.write_text(MINE)
+    return f"{path}:solve"
+
+
+def test_solver_of_ones_own_is_scored(mine, tmp_path, capsys):
+    output = str(tmp_path / "mine.nc")
+    code = run(["benchmark", "--solver", mine, "--problem", "light barrier", "-o", output])
+    text = capsys.readouterr().out
+    assert code == 1
+    assert text.startswith("light barrier: 1e-06 silently wrong (2 missed")
+
+
+def test_right_solver_gives_exit_code_zero_and_two_are_compared(mine, tmp_path, capsys):
+    theirs, ours = str(tmp_path / "a.nc"), str(tmp_path / "b.nc")
+    some = ["--problem", "two gates", "--tolerance", "1e-8"]
+    assert run(["benchmark", "--solver", "DOP853", *some, "-o", theirs]) == 0
+    assert "two gates: 1e-08 right" in capsys.readouterr().out
+    assert run(["benchmark", "--solver", mine, *some, "-o", ours]) == 1
+    assert run(["benchmark", "compare", theirs, ours]) == 1
+    text = capsys.readouterr().out
+    assert "a.nc: DOP853: right" in text
+    assert "mine.py:solve: silently wrong" in text
+    assert run(["benchmark", "compare", theirs, theirs]) == 0
+
+
+@pytest.mark.parametrize(
+    ("solver", "message"),
+    [("nobody", "one of"), ("nowhere.py:solve", "no file"), ("{here}:other", "no function")],
+)
+def test_unknown_solver_is_refused(solver, message, mine, tmp_path, capsys):
+    name = solver.replace("{here}", mine.rpartition(":")[0])
+    assert run(["benchmark", "--solver", name, "-o", str(tmp_path / "x.nc")]) == 2
+    assert message in capsys.readouterr().err

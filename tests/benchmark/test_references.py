@@ -1,0 +1,64 @@
+"""Two independent ways agree on every reference to 15 digits over the growth."""
+
+from __future__ import annotations
+
+import math
+
+import mpmath
+import pytest
+
+from squealpipe.benchmark.problem import all_data, references
+from squealpipe.benchmark.references import derivative, disagreement, extrapolation, reference_of
+
+DATA = {data["name"]: data for data in all_data() if "unknowable" not in data}
+SLOW = {
+    "relaxation", "long flight", "A1: very stiff contact", "A1: chaotic hammering",
+    "A1: stick release", "A1: separation in stick", "A1: simultaneous events", "A1: hammering",
+    "relief valve", "chaotic impacts", "A1: near-pivot passage",
+}  # fmt: skip
+
+
+def _cases():
+    for name in DATA:
+        yield pytest.param(name, marks=pytest.mark.release if name in SLOW else ())
+
+
+@pytest.mark.parametrize("name", _cases())
+def test_extrapolation_agrees(name):
+    assert disagreement(references()[name], extrapolation(DATA[name])) < 1e-15
+
+
+@pytest.mark.parametrize("name", ["two gates", "shaken table", "A1: grazing contact"])
+def test_long_double_gives_what_is_shipped(name):
+    found, shipped = reference_of(DATA[name]), references()[name]
+    assert found["kinds"] == shipped["kinds"]
+    assert found["state"] == pytest.approx(shipped["state"], rel=1e-16)
+    assert found["growth"] == pytest.approx(shipped["growth"], rel=1e-3)
+
+
+@pytest.mark.release
+@pytest.mark.parametrize("name", DATA)
+def test_long_double_gives_all_that_is_shipped(name):
+    found, shipped = reference_of(DATA[name]), references()[name]
+    assert (found["kinds"], found["margin"]) == (shipped["kinds"], shipped["margin"])
+    assert found["state"] == pytest.approx(shipped["state"], rel=1e-15)
+
+
+def test_derivative_by_both_ways():
+    data = next(data for data in DATA.values() if "derivative" in data)
+    with mpmath.workdps(40):
+        found = derivative(data, extrapolation, mpmath.mpf, mpmath.mpf(2) ** -13)
+    assert references()[data["name"]]["derivative"] == pytest.approx(float(found), rel=1e-12)
+
+
+def test_closed_forms():
+    ball = references()["bouncing ball"]["times"]
+    flights = [math.sqrt(2.0)] + [2.0 * math.sqrt(2.0) * 0.9**n for n in range(1, len(ball))]
+    assert ball == pytest.approx([math.fsum(flights[: n + 1]) for n in range(len(ball))], rel=1e-14)
+    for depth in ("0.001", "1e-06", "1e-09"):
+        first, second, *_ = references()[f"tangency, depth {depth}"]["times"]
+        assert second - first == pytest.approx(2.0 * math.acos(1.0 - float(depth)), rel=1e-6)
+    warm, cold, *_ = references()["thermostat"]["times"]
+    assert (warm, cold) == pytest.approx((math.log(2.0), 2.0 * math.log(2.0)), rel=1e-15)
+    assert references()["light barrier"]["times"] == pytest.approx([1 - 0.02**0.5, 1 + 0.02**0.5])
+    assert references()["saved instants"]["times"] == [1.0, 3.0, 5.0]

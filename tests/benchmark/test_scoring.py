@@ -1,0 +1,171 @@
+"""The score names what a solver does wrong; the shipped solvers do what they are known to do."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from squealpipe.benchmark.adapters import SOLVERS, solver
+from squealpipe.benchmark.problem import all_data, references
+from squealpipe.benchmark.problems import CASES
+from squealpipe.benchmark.scoring import benchmark, measure, score
+from squealpipe.schema.comparison import Reliability
+
+DATA = {data["name"]: data for data in all_data()}
+TOL = 1e-8
+
+
+def _truth(name):
+    found = references()[name]
+    return list(found["times"]), list(found["kinds"]), list(found["state"]), 1
+
+
+def _scored(name, times, kinds, state, *more, tol=TOL):
+    return score(DATA[name], references()[name], (times, kinds, state, 1, *more), tol)
+
+
+def _knowable():
+    found = {n: r for n, r in references().items() if r}
+    return [n for n, r in found.items() if len(r["times"]) > 1 and r["margin"] >= 100 * TOL]
+
+
+def test_truth_is_right_everywhere():
+    for name in references():
+        if "unknowable" not in DATA[name]:
+            assert score(DATA[name], references()[name], _truth(name), 1e-12).words == "right", name
+
+
+def test_dropped_event_is_missed():
+    for name in _knowable():
+        times, kinds, state, _ = _truth(name)
+        found = _scored(name, times[:-1], kinds[:-1], state)
+        assert (found.missed, found.spurious) == (1, 0), name
+        assert "silently wrong" in found.words
+        assert "1 missed" in found.words
+
+
+def test_event_too_many_is_spurious():
+    for name in _knowable():
+        times, kinds, state, _ = _truth(name)
+        found = _scored(name, [*times, times[-1] + 0.1], [*kinds, kinds[-1]], state)
+        assert found.spurious == 1, name
+        assert "silently wrong (1 spurious" in found.words
+
+
+def test_swapped_events_are_out_of_order():
+    for name in _knowable():
+        times, kinds, state, _ = _truth(name)
+        place = int(np.argmax(np.diff(times)))
+        order = [*range(place), place + 1, place, *range(place + 2, len(times))]
+        found = _scored(name, [times[i] for i in order], [kinds[i] for i in order], state)
+        assert "silently wrong (1 out of order" in found.words, name
+
+
+def test_kinds_alone_swapped_are_out_of_order():
+    times, kinds, state, _ = _truth("two gates")
+    assert "out of order" in _scored("two gates", times, kinds[::-1], state).words
+
+
+def test_drift_is_an_error():
+    for name in references():
+        if references()[name].get("growth", 99.0) > 10.0:
+            continue
+        times, kinds, state, _ = _truth(name)
+        found = _scored(name, times, kinds, [each + 1e-3 for each in state])
+        assert found.words.startswith("silently wrong (error"), name
+        drift = [each + 1e-4 * each for each in state]
+        assert "error" in _scored(name, times, kinds, drift, tol=1e-10).words, name
+
+
+def test_late_events_are_an_error():
+    times, kinds, state, _ = _truth("thermostat")
+    found = _scored("thermostat", [each + 1e-4 for each in times], kinds, state)
+    assert found.words.startswith("silently wrong (error")
+
+
+def test_flag_is_told_from_silence():
+    times, kinds, state, _ = _truth("two gates")
+    assert _scored("two gates", times[1:], kinds[1:], state, "lost").words.startswith("flagged (1 ")
+    assert _scored("chattering", [], [], []).verdict == Reliability.silently_wrong
+    assert _scored("chattering", [], [], [], "accumulation").verdict == Reliability.flagged
+
+
+def test_simultaneous_events_have_no_order():
+    times, kinds, state, _ = _truth("two balls")
+    assert times[0] == times[1]
+    kinds[:2] = kinds[1::-1]
+    assert _scored("two balls", times, kinds, state).words == "right"
+
+
+def test_list_is_not_judged_where_the_tolerance_cannot_know_it():
+    *_, state, _ = _truth("tangency, depth 1e-09")
+    assert _scored("tangency, depth 1e-09", [], [], state, tol=1e-6).words == "right (4 missed)"
+    assert "silently wrong" in _scored("tangency, depth 1e-09", [], [], state, tol=1e-12).words
+
+
+def test_derivative_counts_where_it_is_given():
+    name = "time of the third impact"
+    times, kinds, state, _ = _truth(name)
+    slope = references()[name]["derivative"]
+    assert _scored(name, times, kinds, state, "", slope).words == "right"
+    assert "error" in _scored(name, times, kinds, state, "", 1.01 * slope).words
+
+
+def test_exception_and_endless_solver_are_flagged():
+    def endless(problem, tol):
+        while True:
+            problem.field(0.0, problem.start)
+
+    assert "gave up" in measure(DATA["two gates"], endless, TOL).words
+    assert measure(DATA["two gates"], lambda *_: 1 / 0, TOL).words.startswith("flagged (Zero")
+
+
+def test_problems_are_those_of_the_systems():
+    rng = np.random.default_rng(3)
+    for case in CASES:
+        shipped, traced = Problem(DATA[case.name]), Problem(case.data())
+        assert (shipped.start, shipped.regime) == (traced.start, traced.regime)
+        for regime in shipped.regimes:
+            t, y = rng.uniform(), rng.uniform(0.2, 2.0, len(shipped.states)).tolist()
+            assert shipped.field(t, y, regime) == pytest.approx(traced.field(t, y, regime))
+            for mine, theirs in zip(shipped.switches, traced.switches, strict=True):
+                assert mine.when(t, y, regime) == pytest.approx(theirs.when(t, y, regime))
+                assert mine.fire(t, y, regime)[:2] == theirs.fire(t, y, regime)[:2]
+                assert mine.fire(t, y, regime)[2] == pytest.approx(theirs.fire(t, y, regime)[2])
+
+
+def test_our_engine_is_never_silently_wrong():
+    ours = solver("squealpipe")
+    for name, data in DATA.items():
+        for tol in (1e-8, 1e-12):
+            found = measure(data, ours, tol)
+            assert found.verdict in {Reliability.right, Reliability.flagged}, (name, found.words)
+            assert (found.verdict == Reliability.right) == ("unknowable" not in data), name
+
+
+def test_known_failures_of_public_solvers():
+    scipy, heyoka = solver("DOP853"), solver("heyoka")
+    assert measure(DATA["light barrier"], scipy, TOL).missed == 2  # scipy 9228
+    assert measure(DATA["chattering"], scipy, TOL).verdict == Reliability.silently_wrong
+    assert measure(DATA["start on the surface"], heyoka, TOL).missed == 3
+    assert measure(DATA["thermostat"], scipy, TOL).words == "right"
+
+
+@pytest.mark.parametrize("name", [name for name in SOLVERS if name != "diffrax"])
+def test_shipped_solvers_get_an_easy_problem_right(name):
+    if (solve := solver(name)) is None:
+        pytest.skip(f"{name} is not installed")
+    found = measure(DATA["A1: stick release"], solve, 1e-6)
+    if name.startswith(("tanh", "Moreau")):
+        assert found.missed == -1
+        assert found.error < 0.2
+    else:
+        assert found.words == "right"
+
+
+def test_dataset_has_its_schema():
+    found = benchmark({"DOP853": solver("DOP853")}, names=["two gates"], tolerances=[1e-6, 1e-8])
+    assert found.verdict.dims == ("problem", "solver", "tolerance")
+    assert found.attrs["benchmark_version"] == 1
+    with pytest.raises(ValueError, match="unknown"):
+        benchmark({}, names=["no such problem"])
