@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from squealpipe.benchmark.adapters import SOLVERS, solver
-from squealpipe.benchmark.problem import all_data, references
+from squealpipe.benchmark.problem import Problem, all_data, references
 from squealpipe.benchmark.problems import CASES
 from squealpipe.benchmark.scoring import benchmark, measure, score
 from squealpipe.schema.comparison import Reliability
