@@ -19,7 +19,6 @@ def explain(
     *,
     config: Configs = None,
     quick: Switch = False,
-    times: Switch = False,
     json_: AsJson = False,
 ) -> int:
     """State what `snakemake` would compute again, why, which figures change and how long it takes.
@@ -29,23 +28,13 @@ def explain(
     Args:
         config: configuration laid over the paper's, as for `snakemake --configfile`; repeatable.
         quick: coarse grids and short horizons, as for `squealpipe run --quick`.
-        times: print instead what each rule took when it last ran, as a Markdown table.
         json_: print JSON.
     """
     from rich.markup import escape
     from rich.table import Table
 
     from squealpipe.execution.explain import explain as plan_of
-    from squealpipe.execution.explain import job_times
 
-    if times:
-        taken = job_times(Path())
-        if not taken:
-            raise FileNotFoundError("no run is recorded here; run snakemake in this folder first")
-        print("| rule | seconds |\n|---|---:|")
-        for rule, seconds in [*taken.items(), ("all", sum(taken.values()))]:
-            print(f"| {rule} | {seconds:.1f} |")
-        return DONE
     with working("explain"):
         plan = plan_of(config or [], quick=quick, root=checkout(), directory=".")
     if json_:

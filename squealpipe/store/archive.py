@@ -11,7 +11,7 @@ import shutil
 import tempfile
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
-from pathlib import Path, PurePosixPath
+from pathlib import Path
 from typing import Any
 
 import yaml
@@ -45,12 +45,11 @@ class Verification:
     changed: list[str] = field(default_factory=list)
     missing: list[str] = field(default_factory=list)
     extra: list[str] = field(default_factory=list)
-    unsafe: list[str] = field(default_factory=list)
 
     @property
     def intact(self) -> bool:
         """Whether every byte is as it was frozen."""
-        return not (self.changed or self.missing or self.extra or self.unsafe)
+        return not (self.changed or self.missing or self.extra)
 
     def lines(self) -> list[str]:
         """The findings, for people."""
@@ -58,7 +57,7 @@ class Verification:
             return [f"{self.folder}: intact, {self.files} files as they were frozen"]
         found = [
             f"  {word}: {name}"
-            for word in ("unsafe", "changed", "missing", "extra")
+            for word in ("changed", "missing", "extra")
             for name in getattr(self, word)
         ]
         return [f"{self.folder}: NOT as it was frozen ({len(found)} findings)", *found]
@@ -132,7 +131,6 @@ def verify(what: str | os.PathLike[str], root: str | os.PathLike[str] = ".") -> 
 
     Raises:
         FileNotFoundError: no such archive.
-        ValueError: its manifest is too large to be one.
     """
     folder = locate(what, root)
     if not (folder / MANIFEST).is_file():
@@ -140,27 +138,20 @@ def verify(what: str | os.PathLike[str], root: str | os.PathLike[str] = ".") -> 
     listed = listed_files(folder)
     if listed is None:
         return Verification(folder=folder, files=0, changed=[f"{MANIFEST} (damaged)"])
-    unsafe = sorted(path for path in listed if not _stays_inside(path))
-    unsafe += sorted(
-        f"{path} (link)" for path in _everything(folder) if (folder / path).is_symlink()
-    )
-    expected = {path: entry for path, entry in listed.items() if _stays_inside(path)}
-    present = {path for path in _everything(folder) if not (folder / path).is_symlink()}
+    present = set(_everything(folder))
     changed = [
         path
-        for path in sorted(present & set(expected))
-        if (folder / path).stat().st_size != expected[path].get("bytes")
-        or checksum(folder / path) != expected[path].get("sha256")
+        for path in sorted(present & set(listed))
+        if (folder / path).is_symlink() or checksum(folder / path) != listed[path].get("sha256")
     ]
     if not seal_fits(folder):
         changed.append(MANIFEST)
     return Verification(
         folder=folder,
-        files=len(expected),
+        files=len(listed),
         changed=changed,
-        missing=sorted(set(expected) - present),
-        extra=sorted(present - set(expected) - {MANIFEST, SEAL}),
-        unsafe=unsafe,
+        missing=sorted(set(listed) - present),
+        extra=sorted(present - set(listed) - {MANIFEST, SEAL}),
     )
 
 
@@ -223,8 +214,3 @@ def _everything(folder: Path) -> list[str]:
         links = [name for name in subfolders if Path(place, name).is_symlink()]
         found.extend(Path(place, name).relative_to(folder).as_posix() for name in names + links)
     return sorted(found)
-
-
-def _stays_inside(name: str) -> bool:
-    path = PurePosixPath(name)
-    return not path.is_absolute() and ".." not in path.parts and "\\" not in name and name != ""

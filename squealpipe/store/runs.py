@@ -17,12 +17,9 @@ MANIFEST = "manifest.json"
 SEAL = "manifest.sha256"
 """Holds the checksum of the manifest, so that an edited manifest is noticed too."""
 NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,79}")
-MOST_FILES = 100_000
-"""A folder with more files is not one of ours."""
 
 
 LEFT_OUT = "left_out"
-LARGEST_MANIFEST = 64 * 2**20
 
 
 def matches_any(name: str, patterns: Iterable[str]) -> bool:
@@ -39,8 +36,6 @@ def read_manifest(folder: Path) -> dict[str, Any]:
     path = folder / MANIFEST
     if not path.is_file():
         return {}
-    if path.stat().st_size > LARGEST_MANIFEST:
-        raise ValueError(f"{path} is larger than {LARGEST_MANIFEST} bytes; it is not one of ours")
     try:
         manifest = json.loads(path.read_text(encoding="utf-8"))
     except ValueError:
@@ -138,19 +133,11 @@ def dataset_files(place: Path) -> dict[str, Path]:
 
 
 def regular_files(base: Path) -> Iterator[Path]:
-    """Files below a folder, sorted, without hidden ones; links are not followed.
-
-    Raises:
-        ValueError: there are too many files.
-    """
-    count = 0
+    """Files below a folder, sorted, without hidden ones; links are not followed."""
     for folder, subfolders, names in os.walk(base, followlinks=False):
         subfolders[:] = sorted(name for name in subfolders if not name.startswith("."))
         for name in sorted(names):
             path = Path(folder, name)
             if name.startswith(".") or path.is_symlink():
                 continue
-            count += 1
-            if count > MOST_FILES:
-                raise ValueError(f"{base} holds more than {MOST_FILES} files; is it a run?")
             yield path

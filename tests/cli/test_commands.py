@@ -96,7 +96,6 @@ def test_help_loads_no_numerics():
         (["simulate", "1", "2", "-c", "nowhere.yaml"], "no configuration nowhere.yaml"),
         (["verify", "nothing"], "no archive, folder or file 'nothing'"),
         (["claims", "--file", "nothing.nc"], "make them with: squealpipe run"),
-        (["explain", "--times"], "run snakemake in this folder first"),
     ],
 )
 def test_wrong_input_is_one_message_with_its_remedy(arguments, message, capsys, tmp_path):

@@ -6,7 +6,6 @@ from enum import IntEnum
 
 import numpy as np
 import pytest
-import xarray as xr
 
 from squealpipe.schema import (
     REMEDIES,
@@ -74,43 +73,6 @@ def test_faulty_data_are_refused(change, message):
     data = {name: values for name, values in {**GOOD, **change}.items() if values is not None}
     with pytest.raises(SchemaError, match=message):
         build(TABLE, data, T)
-
-
-@pytest.mark.parametrize("name", sorted(SCHEMAS))
-def test_built_datasets_are_what_the_constructor_of_xarray_makes(name):
-    """``build`` goes past that constructor, which takes longer than a run."""
-    schema = SCHEMAS[name]
-    sizes: dict[str, int] = {}
-
-    def some(entry):
-        shape = tuple(sizes.setdefault(dim, len(sizes) + 1) for dim in entry.dims)
-        if entry.stored.kind in "US":
-            return np.full(shape, "text")
-        values = np.arange(np.prod(shape, dtype=int)).reshape(shape)
-        fills = list(entry.meanings) or [0, 1]
-        return np.take(fills, values % len(fills)).astype(entry.dtype)
-
-    data = {variable: some(entry) for variable, entry in schema.variables.items()}
-    coords = {variable: some(entry) for variable, entry in schema.coordinates.items()}
-    made = build(schema, data, coords)
-
-    def variable(each, values):
-        entry = schema.lookup(each)
-        return xr.Variable(entry.dims, values, entry.attributes())
-
-    public = xr.Dataset(
-        {each: variable(each, values) for each, values in data.items()},
-        {each: variable(each, values) for each, values in coords.items()},
-        made.attrs,
-    )
-    xr.testing.assert_identical(made, public)
-    assert list(made.variables) == list(public.variables)
-    assert dict(made.sizes) == dict(public.sizes)
-    for index, other in zip(made.xindexes.values(), public.xindexes.values(), strict=True):
-        assert index.equals(other)
-    for each in made.variables:
-        assert made[each].dtype == public[each].dtype
-        assert type(made.variables[each]) is type(public.variables[each])
 
 
 def test_datasets_share_no_attributes():
