@@ -20,6 +20,8 @@ if TYPE_CHECKING:
     from squealpipe.systems.system import Switch, System
     from squealpipe.tasks.backbones.backbone import backbone
     from squealpipe.tasks.backbones.orbit import periodic_orbit
+    from squealpipe.tasks.basins.basin import basin_map
+    from squealpipe.tasks.basins.disturbance import smallest_disturbance
     from squealpipe.tasks.cycles.branch import cycle_branch
     from squealpipe.tasks.cycles.cycle import limit_cycle
     from squealpipe.tasks.dynamics.hammering import hammering_map
@@ -30,9 +32,7 @@ if TYPE_CHECKING:
     from squealpipe.tasks.ladder.choice import choose_model
     from squealpipe.tasks.linear.critical import critical_friction_map
     from squealpipe.tasks.linear.maps import natural_frequencies, quasi_static_map, stability_map
-    from squealpipe.tasks.spread.propensity import propensity
-    from squealpipe.tasks.starts.basin import basin_map
-    from squealpipe.tasks.starts.disturbance import smallest_disturbance
+    from squealpipe.tasks.propensity.propensity import propensity
 
 _HOME = {
     "SCENES": "squealpipe.parameters",
@@ -42,7 +42,7 @@ _HOME = {
     "Switch": "squealpipe.systems.system",
     "System": "squealpipe.systems.system",
     "backbone": "squealpipe.tasks.backbones.backbone",
-    "basin_map": "squealpipe.tasks.starts.basin",
+    "basin_map": "squealpipe.tasks.basins.basin",
     "choose_model": "squealpipe.tasks.ladder.choice",
     "critical_friction_map": "squealpipe.tasks.linear.critical",
     "cycle_branch": "squealpipe.tasks.cycles.branch",
@@ -56,13 +56,13 @@ _HOME = {
     "natural_frequencies": "squealpipe.tasks.linear.maps",
     "periodic_orbit": "squealpipe.tasks.backbones.orbit",
     "plot": "squealpipe.plotting",
-    "propensity": "squealpipe.tasks.spread.propensity",
+    "propensity": "squealpipe.tasks.propensity.propensity",
     "quasi_static_map": "squealpipe.tasks.linear.maps",
     "refine_validity_map": "squealpipe.tasks.dynamics.refinement",
     "run_sweep": "squealpipe.execution.sweep",
     "save": "squealpipe.store.netcdf",
     "simulate": "squealpipe.tasks.dynamics.runs",
-    "smallest_disturbance": "squealpipe.tasks.starts.disturbance",
+    "smallest_disturbance": "squealpipe.tasks.basins.disturbance",
     "stability_map": "squealpipe.tasks.linear.maps",
     "summarize": "squealpipe.tasks.dynamics.summary",
     "validity_map": "squealpipe.tasks.dynamics.runs",

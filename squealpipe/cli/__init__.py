@@ -12,6 +12,7 @@ from cyclopts import App, CycloptsError
 from cyclopts.exceptions import UnusedCliTokensError
 
 from squealpipe.cli import benchmark
+from squealpipe.cli.archives import deposit, find, list_runs
 from squealpipe.cli.arguments import by_name, parameters_from_study
 from squealpipe.cli.backbone import backbone
 from squealpipe.cli.claims import claims
@@ -20,7 +21,6 @@ from squealpipe.cli.cycles import branch, cycle
 from squealpipe.cli.exit_codes import DONE, INTERRUPTED, NOT_DONE
 from squealpipe.cli.files import convert, plot
 from squealpipe.cli.maps import map_angles
-from squealpipe.cli.memory import deposit, find, list_runs
 from squealpipe.cli.models import choose, infer, refine
 from squealpipe.cli.project import init
 from squealpipe.cli.project import run as run_study

@@ -71,7 +71,7 @@ def propensity(
 
     from squealpipe.plotting import picture as draw
     from squealpipe.plotting.style import save_figure
-    from squealpipe.tasks.spread import propensity as task
+    from squealpipe.tasks.propensity import propensity as task
 
     options: dict[str, Any] = {
         "distributions": distributions,
@@ -106,7 +106,7 @@ def _distribution(text: str) -> tuple[str, dict[str, str | float]]:
     Raises:
         ValueError: the text is none.
     """
-    from squealpipe.tasks.spread.distributions import KINDS
+    from squealpipe.tasks.propensity.distributions import KINDS
 
     name, _, words = text.partition("=")
     name, parts = name.strip().replace("-", "_"), words.split(":")

@@ -51,8 +51,8 @@ def sweep(
         force: overwrite a file that exists.
         config: study whose parameters are used where none are typed; repeatable.
     """
+    from squealpipe.execution.counts import lines
     from squealpipe.execution.sweep import planned, run_sweep
-    from squealpipe.execution.tally import lines
 
     varied = _pairs("--vary", vary)
     options = _pairs("--option", option or [])

@@ -13,11 +13,11 @@ import xarray as xr
 from squealpipe.parameters import Parameters
 from squealpipe.tasks.backbones.backbone import backbone
 from squealpipe.tasks.backbones.orbit import periodic_orbit
+from squealpipe.tasks.basins.disturbance import smallest_disturbance
 from squealpipe.tasks.dynamics.hammering import hammering_map
 from squealpipe.tasks.dynamics.runs import simulate, validity_map
 from squealpipe.tasks.linear.critical import critical_friction_map
 from squealpipe.tasks.linear.maps import natural_frequencies, quasi_static_map, stability_map
-from squealpipe.tasks.starts.disturbance import smallest_disturbance
 
 
 @dataclass(frozen=True)

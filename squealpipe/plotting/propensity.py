@@ -18,7 +18,7 @@ from squealpipe.plotting.style import (
     new_figure,
     panel_letter,
 )
-from squealpipe.schema.spread import WIDEST
+from squealpipe.schema.propensity import WIDEST
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -7,7 +7,7 @@ import inspect
 import pytest
 
 from squealpipe.study.figures import declared
-from squealpipe.study.report.places import FIGURES, OWN
+from squealpipe.study.report.sections import FIGURES, OWN
 
 NAMES = [f"simulate/F2{letter}" for letter in "abcd"]
 

@@ -23,8 +23,8 @@ from squealpipe.study.report.content import Made, picture_files
 from squealpipe.study.report.own import boundaries, gather_own
 from squealpipe.tasks.dynamics.runs import simulate, validity_map
 from squealpipe.tasks.own.scenes import own_scenes
-from squealpipe.tasks.spread.distributions import centred
-from squealpipe.tasks.spread.propensity import propensity
+from squealpipe.tasks.propensity.distributions import centred
+from squealpipe.tasks.propensity.propensity import propensity
 from tests.conftest import ROOT
 
 PAD = Parameters(

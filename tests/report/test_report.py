@@ -17,7 +17,7 @@ from squealpipe.study.report import content as contents
 from squealpipe.study.report.build import TEMPLATES, write_document
 from squealpipe.study.report.content import PAPER, picture_files, provenance, title
 from squealpipe.study.report.lineage import lineage
-from squealpipe.study.report.places import BEYOND, COMPARED, FIGURES
+from squealpipe.study.report.sections import BEYOND, COMPARED, FIGURES
 from tests.browser import chromium_path, open_page
 from tests.conftest import ROOT
 

@@ -16,7 +16,7 @@ pytestmark = pytest.mark.release
 TINY = "workflow/config/tiny.yaml"
 EDIT = "inference: {samples: 600}\n"
 STALE = {
-    "infer_parameters", "draw_inference", "judge_reach", "draw_spread", "judge_claims",
+    "infer_parameters", "draw_inference", "judge_reach", "draw_propensity", "judge_claims",
     "write_report",
 }  # fmt: skip
 DATASETS = {"parameter_inference", "verdict_reach", "claims"}

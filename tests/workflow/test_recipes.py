@@ -33,7 +33,7 @@ LINES = {
     ),
     RECORD: ("squealpipe/schema/ladder.py", "    closed_form = ("),
     LAW_NAME: ("squealpipe/laws/friction_laws/__init__.py", None),
-    FIGURE_NAME: ("squealpipe/study/report/places.py", None),
+    FIGURE_NAME: ("squealpipe/study/report/sections.py", None),
 }
 """Where a block goes: before a text, or in place of the line that begins as it does."""
 
@@ -93,7 +93,7 @@ def test_the_steps_are_as_few_as_promised(extended):
         "squealpipe/parameters.py": (3, 0),
         "squealpipe/schema/ladder.py": (1, 0),
         "squealpipe/laws/friction_laws/__init__.py": (1, 1),
-        "squealpipe/study/report/places.py": (1, 1),
+        "squealpipe/study/report/sections.py": (1, 1),
     }
 
 

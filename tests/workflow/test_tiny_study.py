@@ -7,7 +7,7 @@ import re
 from squealpipe.parameters import Parameters
 from squealpipe.study.report.build import write_document
 from squealpipe.study.report.content import Made, gather, picture_files
-from squealpipe.study.report.places import FIGURES
+from squealpipe.study.report.sections import FIGURES
 
 PAPER_FIGURES = [*(f"fig{number:02d}" for number in range(1, 10)), "fig10_to_12", "fig13"]
 

@@ -20,7 +20,7 @@ from squealpipe.schema.claims import Origin
 from squealpipe.study.claims.evidence import Run
 from squealpipe.study.claims.table import rows
 from squealpipe.study.figures import declared
-from squealpipe.study.report import places
+from squealpipe.study.report import sections
 from squealpipe.study.report.numbers import numbers
 from squealpipe.text import RAISED
 
@@ -91,10 +91,10 @@ def gather(
         ],
         "numbers": {} if changed else numbers(run),
         "parameters": parameter_table(parameters),
-        "compared": _parts(places.COMPARED),
-        "beyond": _parts(places.BEYOND),
-        "supplement": _parts(places.SUPPLEMENT),
-        "figures": pictures(places.FIGURES, figures, run),
+        "compared": _parts(sections.COMPARED),
+        "beyond": _parts(sections.BEYOND),
+        "supplement": _parts(sections.SUPPLEMENT),
+        "figures": pictures(sections.FIGURES, figures, run),
         "datasets": {name: link(made.path) for name, made in sorted(datasets.items())},
         "links": [{"words": words, "to": link(to)} for words, to in (links or {}).items()],
         "statements": [row for row in claims if row["origin"] != Origin.misprints.name],
@@ -177,7 +177,7 @@ def made_files(table: Mapping[str, Mapping[str, Any]]) -> dict[str, Made]:
     }
 
 
-def _parts(parts: Mapping[str, places.Part]) -> list[dict[str, Any]]:
+def _parts(parts: Mapping[str, sections.Part]) -> list[dict[str, Any]]:
     return [{"id": name, **part._asdict()} for name, part in parts.items()]
 
 

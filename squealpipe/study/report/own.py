@@ -12,7 +12,7 @@ from squealpipe.parameters import Parameters
 from squealpipe.study.claims.evidence import Run
 from squealpipe.study.figures.comparison.model_ladder import QUESTION_NAMES
 from squealpipe.study.report.content import Made, parameter_table, pictures
-from squealpipe.study.report.places import OWN
+from squealpipe.study.report.sections import OWN
 
 NUMBERS = (
     "separated_fraction",

@@ -14,10 +14,10 @@ from squealpipe.schema import build, meanings
 from squealpipe.schema.ladder import QUESTIONS, Level
 from squealpipe.schema.origin import recorded
 from squealpipe.schema.own import OWN_SCENES
+from squealpipe.tasks.basins.basin import basin_map
 from squealpipe.tasks.dynamics.runs import simulate
 from squealpipe.tasks.dynamics.summary import PEAKS, summarize
 from squealpipe.tasks.ladder.choice import choose_model
-from squealpipe.tasks.starts.basin import basin_map
 
 TOLERANCE = 0.05
 """Relative error that the cheapest level may have."""

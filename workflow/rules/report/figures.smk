@@ -6,7 +6,7 @@ not make is left out.
 
 from squealpipe.study.figures import declared
 from squealpipe.study.report.lineage import lineage
-from squealpipe.study.report.places import FIGURES, OWN as OWN_FIGURES
+from squealpipe.study.report.sections import FIGURES, OWN as OWN_FIGURES
 
 MADE = lineage(workflow.rules, f"{RESULTS}/data/")
 READ_BY = {name: declared.datasets_of(name, MADE) for name in (FIGURES if STUDY.paper else OWN_FIGURES)}

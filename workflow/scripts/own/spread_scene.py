@@ -2,8 +2,8 @@
 
 from squealpipe.parameters import parameters_of
 from squealpipe.store import produce
-from squealpipe.tasks.spread.distributions import centred
-from squealpipe.tasks.spread.propensity import propensity
+from squealpipe.tasks.propensity.distributions import centred
+from squealpipe.tasks.propensity.propensity import propensity
 
 part = snakemake.params.part
 params, scene = parameters_of(part), next(iter(part["scenes"].values()))

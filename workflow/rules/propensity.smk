@@ -9,7 +9,7 @@ rule judge_reach:
     params:
         part=part("parameters", "dynamics.tol", "spread.starts"),
     script:
-        "../scripts/spread/judge_reach.py"
+        "../scripts/propensity/judge_reach.py"
 
 
 rule spread_parameters:
@@ -26,4 +26,4 @@ rule spread_parameters:
         ),
     threads: cores_for(STUDY.spread.samples, enough=1000)
     script:
-        "../scripts/spread/spread_parameters.py"
+        "../scripts/propensity/spread_parameters.py"

@@ -22,11 +22,11 @@ from squealpipe.schema import Outcome, build
 from squealpipe.schema.dynamics.runs import MotionFlag
 from squealpipe.schema.inference import wilson_interval
 from squealpipe.schema.origin import recorded
-from squealpipe.schema.spread import PROPENSITY, WIDEST
+from squealpipe.schema.propensity import PROPENSITY, WIDEST
 from squealpipe.solvers.a1.ensemble import run_ensemble
 from squealpipe.tasks.dynamics.motion import classify_motion
-from squealpipe.tasks.spread.distributions import check_stick, distribution
-from squealpipe.tasks.spread.sobol import REPLICATES, saltelli_matrices, sobol_indices
+from squealpipe.tasks.propensity.distributions import check_stick, distribution
+from squealpipe.tasks.propensity.sobol import REPLICATES, saltelli_matrices, sobol_indices
 from squealpipe.validation import Angle, Number, Positive, Seed, Tolerance, Whole, Workers
 
 QUANTITIES = ("flutter", "contact_loss", "irregular_hammering", "whirl")

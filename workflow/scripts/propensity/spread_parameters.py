@@ -5,8 +5,8 @@ import math
 from squealpipe.parameters import parameters_of
 from squealpipe.reading import for_linear
 from squealpipe.store import produce
-from squealpipe.tasks.spread.distributions import centred
-from squealpipe.tasks.spread.propensity import propensity
+from squealpipe.tasks.propensity.distributions import centred
+from squealpipe.tasks.propensity.propensity import propensity
 
 part = snakemake.params.part
 params = for_linear(parameters_of(part), part["read_as"])

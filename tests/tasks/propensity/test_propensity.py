@@ -9,10 +9,10 @@ from squealpipe import stability_map
 from squealpipe.schema import Outcome
 from squealpipe.schema.inference import of_study
 from squealpipe.tasks.inference.inference import infer_parameters
-from squealpipe.tasks.spread import reach
-from squealpipe.tasks.spread.distributions import distribution
-from squealpipe.tasks.spread.propensity import _indices, _judged_matrices, propensity
-from squealpipe.tasks.spread.reach import _feasible, _share, variants
+from squealpipe.tasks.propensity import reach
+from squealpipe.tasks.propensity.distributions import distribution
+from squealpipe.tasks.propensity.propensity import _indices, _judged_matrices, propensity
+from squealpipe.tasks.propensity.robustness import _feasible, _share, variants
 from tests.former import FORMER
 
 ANGLES = (0.22, 0.96)

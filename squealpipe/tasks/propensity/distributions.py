@@ -11,7 +11,7 @@ from scipy import stats
 from squealpipe.config.ranges import ANGLES, NUMBERS
 from squealpipe.laws.friction_laws import COULOMB, FALLING
 from squealpipe.parameters import Parameters, brief, is_finite_number
-from squealpipe.schema.spread import TRUNCATION
+from squealpipe.schema.propensity import TRUNCATION
 from squealpipe.text import suggestion
 
 KINDS: dict[str, tuple[str, str]] = {

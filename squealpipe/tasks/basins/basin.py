@@ -10,9 +10,9 @@ import xarray as xr
 
 from squealpipe.parameters import Parameters
 from squealpipe.schema import build
+from squealpipe.schema.basins import STARTS, basin_schema
 from squealpipe.schema.dynamics.runs import MotionFlag
 from squealpipe.schema.origin import recorded
-from squealpipe.schema.starts import STARTS, basin_schema
 from squealpipe.solvers.a1.ensemble import Ensemble, run_ensemble
 from squealpipe.tasks.dynamics.motion import classify_motion, predictability, refine_labels
 from squealpipe.validation import Angle, Line, NotNegative, Positive, Tolerance, Workers
@@ -51,7 +51,7 @@ def basin_map(
         workers: processes; None takes all cores.
 
     Returns:
-        Dataset over the starts; see ``schema.starts``.
+        Dataset over the starts; see ``schema.basins``.
 
     Raises:
         ValueError: an argument is not finite, has too many dimensions, or a time is not allowed.

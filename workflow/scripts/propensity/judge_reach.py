@@ -3,7 +3,7 @@
 from squealpipe.parameters import parameters_of
 from squealpipe.reading import for_linear
 from squealpipe.store import load, produce
-from squealpipe.tasks.spread.reach import verdict_reach
+from squealpipe.tasks.propensity.robustness import verdict_reach
 
 part, inferred = snakemake.params.part, snakemake.input.get("inferred")
 produce(

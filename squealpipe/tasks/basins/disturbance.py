@@ -13,8 +13,8 @@ from squealpipe.models.a1_automaton import A1Automaton
 from squealpipe.models.switching import VARIANT_RULES
 from squealpipe.parameters import Parameters
 from squealpipe.schema import Outcome, build
+from squealpipe.schema.basins import SMALLEST_DISTURBANCE, LeadsTo
 from squealpipe.schema.origin import recorded
-from squealpipe.schema.starts import SMALLEST_DISTURBANCE, LeadsTo
 from squealpipe.solvers.a1.ensemble import run_ensemble
 from squealpipe.solvers.a1.jobs import Model
 from squealpipe.solvers.a1.sliding import sliding_equilibrium, sliding_jacobian

@@ -14,7 +14,7 @@ rule map_basins:
         ),
     threads: cores_for(STUDY.spread.basin_points**2, enough=2000)
     script:
-        "../scripts/starts/map_basins.py"
+        "../scripts/basins/map_basins.py"
 
 
 rule measure_disturbances:
@@ -29,4 +29,4 @@ rule measure_disturbances:
             "parameters", "spread.disturbance_horizon", "spread.disturbance_directions"
         ),
     script:
-        "../scripts/starts/measure_disturbances.py"
+        "../scripts/basins/measure_disturbances.py"

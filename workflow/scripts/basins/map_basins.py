@@ -5,7 +5,7 @@ import numpy as np
 from squealpipe.parameters import SCENES, parameters_of
 from squealpipe.reading import for_linear
 from squealpipe.store import produce
-from squealpipe.tasks.starts.basin import basin_map
+from squealpipe.tasks.basins.basin import basin_map
 
 part, out = snakemake.params.part, snakemake.output
 params = for_linear(parameters_of(part), part["read_as"])

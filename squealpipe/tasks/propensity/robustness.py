@@ -12,7 +12,7 @@ from squealpipe.parameters import Parameters
 from squealpipe.schema import Outcome, build
 from squealpipe.schema.inference import of_study, wilson_interval
 from squealpipe.schema.origin import recorded
-from squealpipe.schema.spread import VERDICT_REACH
+from squealpipe.schema.propensity import VERDICT_REACH
 from squealpipe.tasks.inference.candidates import Candidates
 from squealpipe.tasks.inference.consequences import CONSEQUENCES, judge_consequences
 from squealpipe.tasks.inference.constraints import CONSTRAINTS, Stage, measure

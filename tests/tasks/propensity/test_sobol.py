@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from squealpipe.tasks.spread.sobol import REPLICATES, saltelli_matrices, sobol_indices
+from squealpipe.tasks.propensity.sobol import REPLICATES, saltelli_matrices, sobol_indices
 
 
 def ishigami(u):

@@ -3,7 +3,7 @@
 from squealpipe.parameters import SCENES, parameters_of
 from squealpipe.reading import for_linear
 from squealpipe.store import produce
-from squealpipe.tasks.starts.disturbance import smallest_disturbance
+from squealpipe.tasks.basins.disturbance import smallest_disturbance
 
 part = snakemake.params.part
 params = for_linear(parameters_of(part), part["read_as"])
