@@ -45,6 +45,7 @@ bench: export OMP_NUM_THREADS := 1
 bench: dev  ## speed and accuracy beside other tools, as ratios
 	$(BIN)/python -m pip install -q --require-hashes -r requirements-peers.lock
 	for script in tests/benchmarks/bench_*.py; do $(BIN)/python $$script || exit 1; done
+	-$(BIN)/squealpipe benchmark --force -o results/benchmark.nc
 
 lint: dev
 	$(BIN)/ruff check . && $(BIN)/ruff format --check .

@@ -143,32 +143,6 @@ Settings = Annotated[tuple[Positive, ...], Field(min_length=1)]
 Repeats = Annotated[int, Field(ge=1, le=100)]
 
 
-Solvers = Annotated[
-    tuple[Literal["RK45", "DOP853", "LSODA", "Radau", "BDF"], ...], Field(min_length=1)
-]
-
-
-class IntegrationComparison(Section):
-    """Time integration of A1 by all methods: horizon and steps in √(m/k1), σ times l_pre."""
-
-    horizon: Positive = 30.0
-    solvers: Solvers = ("RK45", "DOP853", "LSODA")
-    tolerances: Settings = (1e-4, 1e-6, 1e-8, 1e-10, 1e-14)
-    steps: Settings = (0.1, 0.01, 1e-3)
-    sigmas: Settings = (10.0, 100.0, 1e3, 1e4)
-    repeats: Repeats = 3
-
-
-class ValidityComparison(Section):
-    """The validity map at several tolerances, horizons and grids."""
-
-    points: Points = 91
-    fine_points: Points = 361
-    tolerances: Settings = (1e-3, 1e-6, 1e-12)
-    horizons: Settings = (25.0, 50.0, 100.0, 200.0, 400.0)
-    steps: Settings = (0.1, 0.03)
-
-
 class HarmonicComparison(Section):
     """Harmonic balance over N_h, N/(2 N_h) and σ l_pre."""
 
@@ -200,15 +174,16 @@ class OnsetComparison(Section):
     repeats: Repeats = 3
 
 
-class AtlasComparison(Section):
-    """Hard scenes that scipy's solvers are put on as well; horizons in √(m/k1)."""
+class BenchmarkComparison(Section):
+    """Integrators with events: solvers (those that are not installed are left out), tolerances."""
 
-    solvers: Solvers = ("DOP853", "RK45", "LSODA", "Radau")
+    solvers: Annotated[tuple[str, ...], Field(min_length=1)] = (
+        *("squealpipe", "DOP853", "RK45", "LSODA", "heyoka", "CyRK", "SUNDIALS"),
+        *("tanh, σ = 10", "tanh, σ = 1000", "tanh, σ = 1e+07", "Moreau–Jean"),
+    )
     tolerances: Annotated[
         tuple[Annotated[float, Field(ge=1e-13, lt=1e-2)], ...], Field(min_length=1)
-    ] = (1e-8, 1e-10, 1e-12)
-    chaotic_horizon: Positive = 200.0
-    beyond_horizon: Positive = 600.0
+    ] = (1e-6, 1e-8, 1e-10, 1e-12)
 
 
 class LadderComparison(Section):
@@ -222,11 +197,9 @@ class LadderComparison(Section):
 class ComparisonSection(Section):
     """Work–precision, and the model ladder."""
 
-    integration: IntegrationComparison = IntegrationComparison()
-    validity: ValidityComparison = ValidityComparison()
+    benchmark: BenchmarkComparison = BenchmarkComparison()
     harmonic: HarmonicComparison = HarmonicComparison()
     onset: OnsetComparison = OnsetComparison()
-    atlas: AtlasComparison = AtlasComparison()
     ladder: LadderComparison = LadderComparison()
 
 

@@ -9,16 +9,16 @@ Regimes are those of :class:`squealpipe.codes.Regime`.
 from __future__ import annotations
 
 from enum import IntEnum
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
 from squealpipe.codes import Regime
-from squealpipe.laws.contact import contact_force, regularized_force, unilateral_force
-from squealpipe.laws.friction import regularized_slip_force, slip_force, stick_limit
-from squealpipe.laws.springs import Geometry, elastic_force, geometry
+from squealpipe.laws.contact import contact_force
+from squealpipe.laws.friction import stick_limit
+from squealpipe.laws.springs import Geometry, geometry
 from squealpipe.models.a1 import acceleration, suspension_force
-from squealpipe.parameters import TABLE, Parameters
+from squealpipe.parameters import Parameters
 
 
 class EventKind(IntEnum):
@@ -157,34 +157,3 @@ class A1Automaton:
         return suspension_force(
             x, y, vx, vy, p, g, linear_springs=self.linear_springs, dashpots=self.dashpots
         )
-
-
-def regularized_field(
-    params: Parameters, alpha1: float, alpha2: float, sigma: float, sigma_v: float
-) -> Any:
-    """A1 without regimes: contact and friction as tanh of widths 1/σ (m) and 1/σ_v (m/s)."""
-    g = Geometry(*map(float, geometry(alpha1, alpha2)))
-    inverse_mass, dashpots = 1.0 / params.mass, params.damping1 + params.damping2 > 0.0
-
-    def f(_: float, z: np.ndarray) -> tuple[float, float, float, float]:
-        x, y, vx, vy = z.tolist()
-        fx, fy = suspension_force(x, y, vx, vy, params, g, linear_springs=False, dashpots=dashpots)
-        normal = regularized_force(y, params, sigma)
-        friction = regularized_slip_force(normal, vx, params, sigma_v)
-        return vx, vy, inverse_mass * (fx + friction), inverse_mass * (fy + normal)
-
-    return f
-
-
-PlainParameters: Any = NamedTuple(  # type: ignore[misc]
-    "PlainParameters", [(name, float) for name, row in TABLE.items() if not row.extension]
-)
-"""The parameters of the paper's model as compiled code takes them."""
-
-
-def smooth_forces(x: Any, y: Any, data: tuple[Any, Geometry]) -> tuple[Any, Any, Any]:
-    """(x-force of the springs, y-force of springs and contact, friction bound μN), N; Coulomb."""
-    p, g = data
-    fx, fy = elastic_force(x, y, p, g)
-    normal = unilateral_force(y, p)
-    return fx, fy + normal, slip_force(normal, 1.0, p.mu)

@@ -45,23 +45,9 @@ WORK_PRECISION = DatasetSchema(
             ),
         ),
         "reference_error": Variable("bound on the error of the reference", dims=RUN, rtol=1.0),
-        "wrong_events": Variable(
-            "contact changes too many or too few, or cells decided wrongly; "
-            "-1 where the method reports none",
-            dims=RUN,
-            dtype="i4",
-        ),
-        "boundary_distance": Variable(
-            "mean distance of a map's boundary from the reference's",
-            "rad",
-            RUN,
-            nan_allowed=True,
-            rtol=1e-3,
-        ),
         "evaluations": Variable(
             dims=RUN,
-            long_name="evaluations of the right-hand side (a Taylor step of order p counts p + 1), "
-            "of the balance's equations, or eigenvalue problems",
+            long_name="evaluations of the balance's equations, or eigenvalue problems",
             # The paper's Newton method has a Jacobian without full rank: from run to run round-off
             # alone changes its number of steps by a quarter.
             rtol=0.5,
@@ -88,7 +74,7 @@ SCENE_SOLVER = ("scene", "solver")
 
 FAILURE_ATLAS = DatasetSchema(
     name="failure_atlas",
-    title="Every method on every hard scene, judged by its error against a reference",
+    title="Methods for frequencies and stability on hard scenes, judged by their errors",
     coordinates={
         "scene": _text("hard scene", "scene"),
         "solver": _text("method (the name xarray keeps for itself)", "solver"),
@@ -103,20 +89,8 @@ FAILURE_ATLAS = DatasetSchema(
             nan_allowed=True,
             rtol=1e-2,
             round_off=magnitude(
-                "the scenes are those where methods fail: beyond the predictability horizon and at "
-                "tight tolerances round-off decides the error; `verdict` holds what it is worth",
+                "the scenes are those where methods fail; `verdict` holds what an answer is worth",
                 floor=1e-9,
-            ),
-        ),
-        "missed_events": Variable(
-            "contact changes reported too few or too many; NaN where none are reported",
-            dims=SCENE_SOLVER,
-            nan_allowed=True,
-            optional=True,
-            round_off=most(
-                "in the scene beyond the predictability horizon round-off decides the events of "
-                "every method; `verdict` holds what an answer is worth",
-                share=0.02,
             ),
         ),
         "flagged": Variable(
@@ -125,12 +99,6 @@ FAILURE_ATLAS = DatasetSchema(
         "message": _text("what the method said", *SCENE_SOLVER),
         "tolerance": Variable("largest error that counts as right", dims=("scene",)),
         "role": Variable("whose method it is", dims=("solver",), dtype="i1", flags=Role),
-        "requested": Variable(
-            "tolerance that the method is given; NaN where it takes none",
-            dims=("solver",),
-            nan_allowed=True,
-            optional=True,
-        ),
     },
 )
 

@@ -5,17 +5,13 @@ import pytest
 import xarray as xr
 
 from squealpipe.schema.comparison import Reliability, Role
-from squealpipe.tasks.comparison.failures.atlas import judge_methods
+from squealpipe.tasks.comparison.failures.frequency import judge_balances
 from squealpipe.tasks.comparison.failures.verdicts import Answer, error_of, verdict_of
-
-SOLVERS = ("DOP853", "RK45", "LSODA")
-TIGHT = "1e-12"
 
 
 @pytest.fixture(scope="module")
 def atlas() -> xr.Dataset:
-    """Without Radau, which takes as long as all others together."""
-    return judge_methods(solvers=SOLVERS)
+    return judge_balances()
 
 
 def cell(atlas: xr.Dataset, scene: str, method: str) -> Reliability:
@@ -32,15 +28,6 @@ def test_our_methods_are_never_silently_wrong(atlas: xr.Dataset) -> None:
     assert where == []
 
 
-def test_our_methods_do_not_cry_wolf(atlas: xr.Dataset) -> None:
-    """Where a run of the engine errs less than its tolerance, the horizon may warn too early."""
-    ours = atlas.isel(solver=atlas.role.values != Role.public)
-    loose = [str(name).endswith("1e-8") for name in ours.solver.values]
-    early = (ours.verdict == Reliability.right) & (ours.flagged > 0)
-    assert not early.isel(solver=~np.array(loose)).any()
-    assert early.sum() <= 1
-
-
 def test_every_scene_is_asked_of_ours_and_of_a_public_method(atlas: xr.Dataset) -> None:
     asked = atlas.verdict != Reliability.not_applicable
     for role in (True, False):
@@ -48,42 +35,9 @@ def test_every_scene_is_asked_of_ours_and_of_a_public_method(atlas: xr.Dataset) 
         assert asked.isel(solver=columns).any("solver").all()
 
 
-@pytest.mark.parametrize("method", SOLVERS)
-@pytest.mark.parametrize("tolerance", ["1e-8", "1e-10", TIGHT])
-def test_step_end_sign_checks_pass_over_a_grazing_pair(
-    atlas: xr.Dataset, method: str, tolerance: str
-) -> None:
-    """Exactly one separation and one contact are missing; the state itself is right."""
-    name = f"{method} + events, {tolerance}"
-    assert cell(atlas, "grazing contact", name) == Reliability.right
-    assert float(atlas.missed_events.sel(scene="grazing contact", solver=name)) == 2.0
-    ours = f"Taylor + events, {tolerance}"
-    assert float(atlas.missed_events.sel(scene="grazing contact", solver=ours)) == 0.0
-
-
-def test_chaotic_hammering_needs_a_tighter_tolerance_than_the_loosest(atlas: xr.Dataset) -> None:
-    verdicts = [
-        cell(atlas, "chaotic hammering", f"DOP853 + events, {tolerance}")
-        for tolerance in ("1e-8", "1e-10", TIGHT)
-    ]
-    assert verdicts == [Reliability.silently_wrong, Reliability.right, Reliability.right]
-
-
-def test_errors_fall_with_the_tolerance_where_the_motion_is_regular(atlas: xr.Dataset) -> None:
-    for scene in ("separation in stick", "stick release", "simultaneous events"):
-        for method in ("DOP853", "RK45", "LSODA"):
-            names = [f"{method} + events, {tolerance}" for tolerance in ("1e-8", TIGHT)]
-            loose, tight = (float(atlas.error.sel(scene=scene, solver=name)) for name in names)
-            assert tight < 0.1 * loose, (scene, method)
-
-
 @pytest.mark.parametrize(
     ("scene", "method"),
     [
-        ("T beyond the horizon", f"DOP853 + events, {TIGHT}"),
-        ("T beyond the horizon", "Moreau–Jean, h = 0.001"),
-        ("very stiff contact", "Moreau–Jean, h = 0.001"),
-        ("σ = 10/m", f"LSODA, tanh, {TIGHT}"),
         ("σ too small (balance)", "tanh balance, sampled"),
         ("σ too large (balance)", "tanh balance, sampled"),
         ("aliasing, N ≈ 2N_h", "cold Newton, sampled"),
@@ -106,7 +60,6 @@ def test_public_methods_fail_silently_where_we_say(
 @pytest.mark.parametrize(
     ("scene", "method"),
     [
-        ("T beyond the horizon", f"Taylor + events, {TIGHT}"),
         ("singular static state", "closed form, exact orbit"),
         ("tongue end", "closed form, exact orbit"),
         ("pole at ω_x/2", "closed-form balance"),

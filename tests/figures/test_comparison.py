@@ -6,6 +6,7 @@ from matplotlib.figure import Figure
 
 from squealpipe.schema import Outcome, build
 from squealpipe.schema.comparison import (
+    BENCHMARK,
     FAILURE_ATLAS,
     WORK_PRECISION,
     Reliability,
@@ -15,10 +16,8 @@ from squealpipe.schema.ladder import MODEL_LADDER, QUESTIONS, Level
 from squealpipe.study.figures.comparison import (
     failure_atlas,
     model_ladder,
-    work_precision_evaluations,
+    work_precision_benchmark,
     work_precision_frequencies,
-    work_precision_time,
-    work_precision_validity,
 )
 from squealpipe.study.figures.parts import work_precision
 
@@ -33,33 +32,12 @@ def rows(entries):
         {
             **columns,
             "reference_error": np.full(count, 1e-17),
-            "wrong_events": np.zeros(count),
-            "boundary_distance": np.abs(columns["error"]),
             "evaluations": np.array(columns["wall_time"]) * 1e6,
             "outcome": np.full(count, Outcome.converged),
         },
         {"run": np.arange(count)},
         {"platform": "a machine", "libraries": '{"scipy": "1.0"}'},
     )
-
-
-@pytest.fixture
-def integration():
-    entries = [
-        ("integration", scene, method, f"tol {tol:g}", role, tol * factor, seconds / tol**0.1)
-        for scene in ("smooth", "hammering", "stick-slip", "whirl")
-        for method, role, factor, seconds in (
-            ("Taylor + events, one run", Role.our_setting, 1e-2, 1e-4),
-            ("DOP853 + events", Role.public, 1.0, 1e-2),
-        )
-        for tol in (1e-4, 1e-8)
-    ]
-    entries += [
-        ("validity", "horizon", "Taylor + events, ensemble", "T 50", Role.ours, 0.01, 0.1),
-        ("validity", "tolerance", "Taylor + events, ensemble", "tol 1", Role.our_setting, 0.0, 1),
-        ("validity", "tolerance", "Moreau–Jean", "h 0.1", Role.public, 1e-3, 1.0),
-    ]
-    return rows(entries)
 
 
 def written(figure: Figure) -> str:
@@ -69,18 +47,39 @@ def written(figure: Figure) -> str:
     )
 
 
-@pytest.mark.parametrize("module", [work_precision_time, work_precision_evaluations])
-def test_integration_charts_name_methods_scenes_and_machine(integration, module) -> None:
-    text = written(module.draw(integration))
-    for expected in ("smooth", "whirl", "DOP853 + events", "our setting", "a machine", "scipy 1.0"):
+@pytest.fixture
+def benchmark():
+    cells = (2, 2, 2)
+    verdict = np.array([[[1, 1], [3, 3]], [[1, 1], [0, 2]]])
+    return build(
+        BENCHMARK,
+        {
+            "group": ["order", "chaos"],
+            "role": [Role.ours, Role.public],
+            "verdict": verdict,
+            "missed": np.where(verdict == 3, 2, 0),
+            "spurious": np.where(verdict == 2, 1, 0),
+            "out_of_order": np.zeros(cells),
+            "time_error": np.zeros(cells),
+            "error": np.where(verdict > 0, 1e-9 * verdict, np.nan),
+            "evaluations": np.full(cells, 1000),
+            "cpu_time": np.ones(cells),
+            "cpu_ratio": np.ones(cells),
+            "message": np.full(cells, ""),
+        },
+        {
+            "problem": ["two gates", "long run"],
+            "solver": ["squealpipe", "theirs"],
+            "tolerance": [1e-6, 1e-12],
+        },
+        {"platform": "a machine", "libraries": '{"scipy": "1.0"}'},
+    )
+
+
+def test_benchmark_chart_names_solvers_classes_and_machine(benchmark) -> None:
+    text = written(work_precision_benchmark.draw(benchmark))
+    for expected in ("order", "chaos", "theirs", "our setting", "a machine", "scipy 1.0"):
         assert expected in text
-
-
-def test_validity_chart_labels_only_maps_with_wrong_cells(integration) -> None:
-    text = written(work_precision_validity.draw(integration))
-    assert "T = 50" in text
-    assert "tol 1" not in text
-    assert "no wrong cell" in text
 
 
 def test_frequency_chart_names_the_forms() -> None:
@@ -99,11 +98,10 @@ def test_pareto_front_keeps_exactly_the_unbeaten() -> None:
 
 
 def test_marks_can_be_told_apart() -> None:
-    for marks in (list(work_precision.MARKS.values()), work_precision.FALLBACK):
-        assert len(set(marks)) == len(marks)
+    assert len(set(work_precision.MARKS)) == len(work_precision.MARKS)
 
 
-def test_atlas_prints_verdicts_and_counts() -> None:
+def test_atlas_prints_verdicts_and_counts(benchmark) -> None:
     verdict = [[1, 3, 0], [2, 1, 0], [0, 0, 1]]
     atlas = build(
         FAILURE_ATLAS,
@@ -112,26 +110,25 @@ def test_atlas_prints_verdicts_and_counts() -> None:
             "error": np.where(np.array(verdict) > 0, 1e-5, np.nan),
             "flagged": [[0, 0, 0], [1, 1, 0], [0, 0, 0]],
             "message": [["", "", ""], ["careful", "careful", ""], ["", "", ""]],
-            "missed_events": [[0, 2, np.nan], [np.nan, 0, np.nan], [np.nan] * 3],
             "tolerance": [1e-3] * 3,
             "role": [Role.ours, Role.public, Role.ours],
-            "requested": [1e-12, 1e-12, np.nan],
         },
         {"scene": ["grazing", "chaos", "onset"], "solver": ["ours", "theirs", "closed form"]},
     )
-    figure = failure_atlas.draw(atlas)
+    figure = failure_atlas.draw(benchmark, atlas)
     text = written(figure)
     for sign, verdict in (("✗", Reliability.silently_wrong), ("✓", Reliability.right)):
         assert text.count(f"{sign}\N{THIN SPACE}10⁻⁵") == int((atlas.verdict == verdict).sum())
-    assert text.count("✗\N{THIN SPACE}10⁻⁵\N{THIN SPACE}(2)") == 1
     assert "✗ silently wrong" in text
+    assert "−2" in text
+    assert "+1" in text
     bold = [
         label.get_text()
         for axes in figure.axes
         for label in axes.get_yticklabels()
         if label.get_fontweight() == "bold"
     ]
-    assert bold == ["ours", "closed form"]
+    assert bold == ["squealpipe", "ours", "closed form"]
 
 
 @pytest.fixture

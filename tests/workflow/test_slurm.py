@@ -50,11 +50,9 @@ TINY = """
 linear: {points: 21}
 inference: {samples: 64}
 comparison:
-  integration: {horizon: 5.0, tolerances: [1.0e-4], steps: [0.1], sigmas: [10.0]}
-  validity: {points: 7, fine_points: 9, horizons: [10.0], tolerances: [1.0e-3]}
+  benchmark: {solvers: [squealpipe, DOP853], tolerances: [1.0e-8]}
   harmonic: {harmonics: [4], oversampling: [1]}
   onset: {halvings: [10]}
-  atlas: {chaotic_horizon: 20.0, beyond_horizon: 100.0}
   ladder: {points: 5, horizon: 20.0}
 dynamics:
   validity_points: 31
@@ -91,7 +89,7 @@ SMALL_RULES = [
     "sweep_harmonic_balance",
     "compare_a1_with_a4",
     "map_orbits",
-    "measure_integration",
+    "run_benchmark",
     "measure_frequencies",
     "check_assumptions",
     "compute_explorer",

@@ -8,16 +8,6 @@ def alone(repeats):
 
 if PAPERS_FRICTION:
 
-    rule measure_integration:
-        output:
-            data("work_precision_integration"),
-        params:
-            part=part("parameters", "comparison.integration", "comparison.validity"),
-        threads: alone(STUDY.comparison.integration.repeats)
-        priority: FIRST
-        script:
-            "../scripts/comparison/measure_integration.py"
-
     rule measure_frequencies:
         output:
             data("work_precision_frequencies"),
@@ -29,11 +19,21 @@ if PAPERS_FRICTION:
             "../scripts/comparison/measure_frequencies.py"
 
 
-rule judge_methods:
+rule run_benchmark:
+    output:
+        data("benchmark"),
+    params:
+        part=part("comparison.benchmark"),
+    priority: FIRST
+    script:
+        "../scripts/comparison/run_benchmark.py"
+
+
+rule judge_balances:
     output:
         data("failure_atlas"),
     params:
-        part=part("comparison.atlas"),
+        part=part(),
     priority: LONG
     script:
-        "../scripts/comparison/judge_methods.py"
+        "../scripts/comparison/judge_balances.py"

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import importlib
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from functools import partial
 from importlib.util import find_spec
 from typing import Any
@@ -31,3 +31,12 @@ def solver(name: str) -> Callable[..., Any] | None:
     if find_spec(needs) is None:
         return None
     return partial(importlib.import_module(f"{__name__}.{module}").solve, **options)
+
+
+def installed(names: Iterable[str]) -> dict[str, Callable[..., Any]]:
+    """Those shipped adapters whose packages are there; the others are named and left out."""
+    found = {name: solver(name) for name in names}
+    for name, solve in found.items():
+        if solve is None:
+            print(f"{name}: {SOLVERS[name][1]} is not installed, left out")
+    return {name: solve for name, solve in found.items() if solve is not None}

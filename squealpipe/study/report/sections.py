@@ -53,9 +53,7 @@ SUPPLEMENT = {
     "speed": Part(
         "Speed against accuracy",
         (
-            "work_precision_time",
-            "work_precision_evaluations",
-            "work_precision_validity",
+            "work_precision_benchmark",
             "work_precision_frequencies",
         ),
     ),

@@ -9,19 +9,19 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
 from squealpipe.plotting import style
+from squealpipe.plotting.style import PAGE, new_figure, panel_letter
 from squealpipe.schema.comparison import Reliability, Role
 from squealpipe.text import number
 
-READS = ("failure_atlas",)
+READS = ("benchmark", "failure_atlas")
 CAPTION = (
-    "The failure atlas: every method on every hard scene, (a) in time and (b) of frequencies and "
-    "stability. Tolerances stand after the names of the methods that take one; our maps use 10⁻¹². "
-    "A cell gives the verdict on the error against a reference (long double, sixty digits, or a "
-    "balance of 128 harmonics), that error, and in brackets the contact changes that the method "
-    "missed; empty: not asked. The last columns count silent errors, right answers that were "
-    "flagged, and missed contact changes. Ours are in bold."
+    "The failure atlas. (a) Integrators on problems with events: each cell is divided by "
+    "tolerance, the loosest on the left; numbers count missed (−) and spurious (+) events at their "
+    "worst; empty: not asked. (b) Methods for frequencies and stability on hard scenes: verdict "
+    "and error against a reference of sixty digits or 128 harmonics. The last columns count silent "
+    "errors. Ours are in bold."
 )
-ALT = "Two tables of coloured verdicts, methods in rows and hard scenes in columns."
+ALT = "Two tables of coloured verdicts, methods in rows and problems in columns."
 
 _COLOURS = [style.WHITE, style.BLUE, style.ORANGE, style.RED]
 _SIGNS = {Reliability.right: "✓", Reliability.flagged: "!", Reliability.silently_wrong: "✗"}
@@ -30,28 +30,20 @@ _WORDS = {
     Reliability.flagged: "wrong, but said so",
     Reliability.silently_wrong: "silently wrong",
 }
-_LONG = 11
-"""Characters from which the text of a cell is set smaller."""
-_ROW = 0.2
-"""Height of a row, inches."""
-_HEADS = 1.0
-"""Height for the names of the scenes, inches."""
+_ROW, _HEADS = 0.2, 1.2
+"""Heights of a row, and of the names of the columns, inches."""
 
 
-def draw(atlas: xr.Dataset) -> Figure:
-    """Both tables, from dataset ``failure_atlas``: rows that share scenes stand together."""
-    asked = atlas.verdict.values > 0
-    last = int(np.flatnonzero(asked[0]).max())
-    in_time = np.arange(atlas.sizes["solver"]) <= last
-    heights = [_ROW * np.count_nonzero(rows) + _HEADS for rows in (in_time, ~in_time)]
-    figure, axes = style.new_figure(style.PAGE, sum(heights) + 0.3, nrows=2, height_ratios=heights)
-    titles = ("motion in time", "frequencies and stability")
-    for panel, letter, title, rows in zip(
-        axes[:, 0], "ab", titles, (in_time, ~in_time), strict=True
+def draw(benchmark: xr.Dataset, atlas: xr.Dataset) -> Figure:
+    """Both tables, from datasets ``benchmark`` and ``failure_atlas``."""
+    heights = [_ROW * each.sizes["solver"] + _HEADS for each in (benchmark, atlas)]
+    figure, axes = new_figure(PAGE, sum(heights) + 0.3, nrows=2, height_ratios=heights)
+    _draw_benchmark(axes[0, 0], benchmark.transpose("solver", "problem", "tolerance"))
+    _draw_atlas(axes[1, 0], atlas.transpose("solver", "scene"))
+    for panel, letter, title in zip(
+        axes[:, 0], "ab", ("integrators with events", "frequencies and stability"), strict=True
     ):
-        part = atlas.isel(solver=rows)
-        _draw(panel, part.isel(scene=(part.verdict.values > 0).any(axis=1)))
-        style.panel_letter(panel, letter, title)
+        panel_letter(panel, letter, title)
     keys = [
         Patch(facecolor=_COLOURS[verdict], alpha=0.75, label=f"{sign} {_WORDS[verdict]}")
         for verdict, sign in _SIGNS.items()
@@ -60,36 +52,56 @@ def draw(atlas: xr.Dataset) -> Figure:
     return figure
 
 
-def _draw(axes: Axes, part: xr.Dataset) -> None:
-    verdict, error = part.verdict.values.T, part.error.values.T
-    flagged = part.flagged.values.T > 0
-    missed = part.missed_events.values.T
-    axes.imshow(verdict, aspect="auto", alpha=0.75, **style.category_colours(_COLOURS))
-    rows, columns = verdict.shape
+def _draw_benchmark(axes: Axes, found: xr.Dataset) -> None:
+    rows, columns, parts = found.verdict.shape
+    strips = found.verdict.values.reshape(rows, columns * parts)
+    _paint(axes, strips, columns)
+    wrong = found.verdict > Reliability.right
+    for name, sign, shift in (("missed", "−", -0.22), ("spurious", "+", 0.22)):
+        worst = found[name].where(wrong, 0).max("tolerance").values
+        for row, column in np.argwhere(worst > 0):
+            axes.text(
+                column, row + shift, f"{sign}{worst[row, column]}", ha="center", va="center",
+                fontsize=4, color=style.BLACK,
+            )  # fmt: skip
+    silent = (found.verdict == Reliability.silently_wrong).sum(["problem", "tolerance"]).values
+    _label(axes, found, found.problem.values.tolist(), silent)
+
+
+def _draw_atlas(axes: Axes, found: xr.Dataset) -> None:
+    verdict, error = found.verdict.values, found.error.values
+    _paint(axes, verdict, verdict.shape[1])
     for row, column in np.argwhere(verdict > 0):
         words = [_SIGNS[Reliability(int(verdict[row, column]))]]
         if 0 < error[row, column] < np.inf:
             words.append(number(error[row, column], 1))
-        if missed[row, column] > 0:
-            words.append(f"({missed[row, column]:.0f})")
         text = "\N{THIN SPACE}".join(words)
-        size = 5 if len(text) < _LONG else 4.4
-        axes.text(column, row, text, ha="center", va="center", fontsize=size, color=style.BLACK)
-    totals = {
-        "silently\nwrong": (verdict == Reliability.silently_wrong).sum(axis=1),
-        "right but\nflagged": ((verdict == Reliability.right) & flagged).sum(axis=1),
-        "contact\nmissed": np.nansum(missed, axis=1).astype(int),
-    }
-    for offset, counts in enumerate(totals.values()):
-        for row, count in enumerate(counts):
-            axes.text(columns + offset, row, str(count), ha="center", va="center", fontsize=7)
+        axes.text(column, row, text, ha="center", va="center", fontsize=5, color=style.BLACK)
+    silent = (verdict == Reliability.silently_wrong).sum(axis=1)
+    _label(axes, found, found.scene.values.tolist(), silent)
+
+
+def _paint(axes: Axes, verdict: np.ndarray, columns: int) -> None:
+    rows = len(verdict)
+    axes.imshow(
+        verdict, aspect="auto", alpha=0.75, extent=(-0.5, columns - 0.5, rows - 0.5, -0.5),
+        interpolation="nearest", **style.category_colours(_COLOURS),
+    )  # fmt: skip
+
+
+def _label(axes: Axes, found: xr.Dataset, names: list[str], silent: np.ndarray) -> None:
+    columns, rows = len(names), len(silent)
+    for row, count in enumerate(silent):
+        axes.text(columns, row, str(count), ha="center", va="center", fontsize=6)
     axes.axvline(columns - 0.5, color=style.GREY, lw=0.8)
-    names = [*map(style.symbols, part.scene.values.tolist()), *totals]
-    axes.set_xticks(range(len(names)), names, rotation=40, ha="right", rotation_mode="anchor")
-    axes.set_yticks(range(rows), list(map(style.symbols, part.solver.values.tolist())))
-    for label, role in zip(axes.get_yticklabels(), part.role.values, strict=True):
+    texts = [*map(style.symbols, names), "silently wrong"]
+    axes.set_xticks(
+        range(columns + 1), texts, rotation=40, ha="right", rotation_mode="anchor", fontsize=5.5
+    )
+    axes.set_yticks(range(rows), [style.symbols(each) for each in found.solver.values.tolist()])
+    for label, role in zip(axes.get_yticklabels(), found.role.values, strict=True):
         label.set_fontweight("bold" if role != Role.public else "normal")
-    axes.set_xlim(-0.5, columns + len(totals) - 0.5)
+    axes.set_xlim(-0.5, columns + 0.5)
     axes.set_xticks(np.arange(columns + 1) - 0.5, minor=True)
     axes.set_yticks(np.arange(rows + 1) - 0.5, minor=True)
     axes.grid(visible=True, which="minor", color=style.WHITE, lw=1.0)

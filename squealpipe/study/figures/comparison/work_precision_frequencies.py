@@ -6,7 +6,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from squealpipe.plotting.style import PAGE, new_figure
-from squealpipe.study.figures.parts.work_precision import FALLBACK, draw_methods, foot
+from squealpipe.study.figures.parts.work_precision import draw_methods, foot
 
 READS = ("work_precision_frequencies",)
 CAPTION = (
@@ -23,9 +23,8 @@ def draw(frequencies: xr.Dataset) -> Figure:
     figure, axes = new_figure(PAGE, 3.4)
     rows = frequencies.isel(run=frequencies.task.values == "harmonic balance")
     methods = list(dict.fromkeys(rows.method.values.tolist()))
-    marks = {method: FALLBACK[i % len(FALLBACK)] for i, method in enumerate(methods)}
     panel = axes[0, 0]
-    draw_methods(panel, rows, "wall_time", 1e3, marks)
+    draw_methods(panel, rows, "wall_time", 1e3, methods)
     panel.set(xlabel="error of ω, relative", ylabel="wall time per point (ms)")
     if panel.get_legend_handles_labels()[0]:
         figure.legend(loc="outside right center", fontsize=6.5)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -23,18 +24,7 @@ class Mark(NamedTuple):
     dash: str = "-"
 
 
-MARKS = {
-    "Taylor + events, ensemble": Mark(style.BLACK, "o"),
-    "Taylor + events, one run": Mark(style.BLUE, "s"),
-    "DOP853 + events": Mark(style.GREEN, "^"),
-    "RK45 + events": Mark(style.ORANGE, "v"),
-    "LSODA + events": Mark(style.RED, "D"),
-    "Radau + events": Mark(style.PURPLE, "P"),
-    "RK45, tanh": Mark(style.ORANGE, "x", ":"),
-    "LSODA, tanh": Mark(style.RED, "+", ":"),
-    "Moreau–Jean": Mark(style.GREY, "*", "--"),
-}
-FALLBACK = [
+MARKS = [
     Mark(colour, marker, dash)
     for markers, dash in (("os^vDP*", "-"), ("xx+x+x+", ":"))
     for colour, marker in zip(
@@ -50,7 +40,7 @@ _SMALLEST = 1e-17
 
 
 def draw_methods(
-    axes: Axes, rows: xr.Dataset, cost: str, scale: float, marks: dict[str, Mark] | None = None
+    axes: Axes, rows: xr.Dataset, cost: str, scale: float, methods: Sequence[str]
 ) -> None:
     """Error against cost, one line for each method, with the Pareto front and our own setting.
 
@@ -59,9 +49,8 @@ def draw_methods(
         rows: runs of one panel.
         cost: variable on the y axis.
         scale: factor from its unit to the axis'.
-        marks: method → mark; those of the integrators by default.
+        methods: in all panels, so that each has its mark.
     """
-    marks = MARKS if marks is None else marks
     error = np.maximum(rows.error.values, _SMALLEST)
     values = rows[cost].values * scale
     fine = np.isfinite(error) & (values > 0)
@@ -77,7 +66,7 @@ def draw_methods(
     for method in dict.fromkeys(rows.method.values.tolist()):
         mine = fine & (rows.method.values == method)
         order = np.argsort(error[mine])
-        mark = marks.get(method, FALLBACK[0])
+        mark = MARKS[methods.index(method) % len(MARKS)]
         axes.plot(
             error[mine][order], values[mine][order], mark.dash, color=mark.colour,
             marker=mark.marker, ms=3.5, lw=0.8, label=style.symbols(method), zorder=2,

@@ -1,4 +1,4 @@
-"""Hard scenes of frequencies and stability, asked of our methods and of public ones."""
+"""The failure atlas of frequencies and stability: hard scenes asked of ours and public methods."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
+import xarray as xr
 from numpy.typing import NDArray
 
 from squealpipe.laws.springs import geometry, linear_stiffness
@@ -23,7 +24,13 @@ from squealpipe.solvers.a4.orbits import find_orbit, linear_orbit
 from squealpipe.solvers.a4.system import ScaledSystem, scaled_system
 from squealpipe.tasks.backbones.backbone import backbone
 from squealpipe.tasks.backbones.orbit import periodic_orbit
-from squealpipe.tasks.comparison.failures.verdicts import BASE, Answer, HardScene, Method
+from squealpipe.tasks.comparison.failures.verdicts import (
+    BASE,
+    Answer,
+    HardScene,
+    Method,
+    failure_atlas,
+)
 from squealpipe.tasks.comparison.work_precision.harmonic import orbit_series
 from squealpipe.tasks.comparison.work_precision.stability import OnsetCase
 from squealpipe.tasks.linear.maps import quasi_static_map
@@ -85,6 +92,11 @@ CASES = (
     BranchCase("tongue end, slow mode", 0.4, 0.55, 1, 3.0),
     BranchCase("cold start, wrong basin", 0.3, 0.8, 1, 3.0),
 )
+
+
+def judge_balances() -> xr.Dataset:
+    """Dataset ``failure_atlas``; the scenes set their own parameters."""
+    return failure_atlas(scenes(), FREQUENCY_METHODS)
 
 
 def scenes() -> list[HardScene]:

@@ -24,27 +24,18 @@ class Answer:
     Attributes:
         value: its answer; NaN or empty where it gave none.
         flag: its warning, empty where it gave none.
-        missed: contact changes that it reports too few or too many; None where it reports none.
     """
 
     value: np.ndarray | float
     flag: str = ""
-    missed: int | None = None
 
 
 @dataclass(frozen=True)
 class Method:
-    """A method of the atlas with its setting.
-
-    Attributes:
-        name: of the method and its setting.
-        role: whose it is.
-        requested: tolerance that it is given; NaN where it takes none.
-    """
+    """A method of the atlas: its name and whose it is."""
 
     name: str
     role: Role = Role.public
-    requested: float = math.nan
 
 
 @dataclass(frozen=True)
@@ -96,7 +87,6 @@ def failure_atlas(scenes: Sequence[HardScene], methods: Sequence[Method]) -> xr.
     shape = (len(scenes), len(methods))
     verdict = np.zeros(shape, dtype=int)
     error = np.full(shape, np.nan)
-    missed = np.full(shape, np.nan)
     messages = np.full(shape, "", dtype="U64")
     for row, scene in enumerate(scenes):
         for column, method in enumerate(methods):
@@ -108,19 +98,15 @@ def failure_atlas(scenes: Sequence[HardScene], methods: Sequence[Method]) -> xr.
                 error[row, column], scene.tolerance, answer.flag, scene.truth
             )
             messages[row, column] = answer.flag[:64]
-            if answer.missed is not None:
-                missed[row, column] = answer.missed
     return build(
         FAILURE_ATLAS,
         {
             "verdict": verdict,
             "error": error,
-            "missed_events": missed,
             "flagged": messages != "",
             "message": messages,
             "tolerance": [scene.tolerance for scene in scenes],
             "role": [method.role for method in methods],
-            "requested": [method.requested for method in methods],
         },
         {
             "scene": [scene.name for scene in scenes],

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import statistics
 import time
 from collections.abc import Callable, Iterable
@@ -34,8 +33,6 @@ class Solution(NamedTuple):
     wall_time: float
     evaluations: float
     reference_error: float
-    wrong_events: int = 0
-    boundary_distance: float = math.nan
     outcome: Outcome = Outcome.converged
 
 
