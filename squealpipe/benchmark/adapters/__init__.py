@@ -25,8 +25,10 @@ def solver(name: str) -> Callable[..., Any] | None:
     """The shipped adapter of a name; None where its package is not installed.
 
     Raises:
-        KeyError: there is no such adapter.
+        ValueError: there is no such adapter.
     """
+    if name not in SOLVERS:
+        raise ValueError(f"solver {name!r} is unknown; one of {', '.join(SOLVERS)}")
     module, needs, options = SOLVERS[name]
     if find_spec(needs) is None:
         return None
