@@ -11,6 +11,7 @@ from scipy.integrate import solve_ivp
 from squealpipe import Switch, System
 from squealpipe.functions import cos
 from squealpipe.schema import Outcome
+from squealpipe.systems.dry_friction import dry_friction_oscillator
 from squealpipe.systems.impact_oscillator import impact_oscillator
 
 T_END, MOST_EVENTS = 15.0, 60
@@ -203,7 +204,8 @@ def hold_against_dop853(seed, draws):
         if growth > np.log(1e6):
             continue  # chaotic: the lists need not agree to the end
         accumulates = int(run.outcome) == Outcome.accumulation
-        for max_step in (0.2, 0.01):  # DOP853 sees two crossings in one of its steps as none
+        # DOP853 sees two crossings in one of its steps as none
+        for max_step in (0.2, 0.01, 0.001):
             events, z = independent_run(system, start, given, max_step)
             if accumulates:  # where it falls through the surface
                 events = [event for event in events if event[0] < float(run.end_time) - 1e-8]
@@ -223,14 +225,14 @@ def hold_against_dop853(seed, draws):
 def test_stick_at_rest_is_left_once():
     """Released where the pull reaches the limit: the speed begins at zero with zero slope.
 
-    Round-off of the rate, not of the speed, which is exactly zero, hides its side.
+    Round-off of the rate hides its side, not that of the speed, which is exactly zero; late in the
+    run the angle of the forcing has lost four digits.
     """
-    run = random_system(3).simulate(T_END)
-    kinds = run.event_kind.attrs["flag_meanings"].split()
-    names = [kinds[int(k)] for k in run.event_kind]
+    run = dry_friction_oscillator.simulate(20000.0, omega=0.5)
     assert int(run.outcome) == Outcome.converged
-    assert names.count("stick") > 3
-    assert (np.diff(run.event_time) > 1e-3).all()
+    sticks = 2.0 * 20000.0 * 0.5 / (2.0 * np.pi)
+    assert run.sizes["event"] == pytest.approx(2.0 * sticks, abs=5)
+    assert (np.diff(run.event_time) > 0.1).all()
 
 
 def test_growth_is_that_of_a_small_difference_through_impacts():

@@ -79,7 +79,9 @@ class _Writer:
                 code = (
                     f"{inner[0]} * {inner[1]} * {inner[2]} + {inner[3]} * {inner[4]} * {inner[5]}"
                 )
-            elif node.kind in {"sin", "cos", "tanh"}:
+            elif node.kind in {"sin", "cos"}:  # of a long time an angle has lost digits
+                code = f"{inner[0]} + abs({value})"
+            elif node.kind == "tanh":
                 code = f"min(1.0, {inner[0]}) + abs({value})"
             elif node.kind == "exp":
                 code = f"abs({value}) * (1.0 + {inner[0]})"
