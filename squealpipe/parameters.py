@@ -287,11 +287,15 @@ class Parameters:
         """Belt speed v = V/(l_pre √(k1/m))."""
         return self.belt_speed * self.time_unit / self.preload
 
+    @property
+    def in_tables(self) -> tuple[str, ...]:
+        """Parameters that a table of a law stands for."""
+        tables = [row for name, row in TABLE.items() if row.laws and is_table(getattr(self, name))]
+        return tuple(name for row in tables for name in row.laws.IN_TABLE)
+
     def with_(self, **changes: Any) -> Parameters:
         """A copy with some fields changed, validated again."""
-        tables = [row for name, row in TABLE.items() if row.laws and is_table(getattr(self, name))]
-        follow = {name: DEFAULTS[name] for row in tables for name in row.laws.IN_TABLE}
-        return replace(self, **{**follow, **changes})
+        return replace(self, **{**{name: DEFAULTS[name] for name in self.in_tables}, **changes})
 
     def as_dict(self) -> dict[str, Any]:
         """Field name → value; extensions of the paper's model only where they differ from none."""

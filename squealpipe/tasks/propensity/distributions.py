@@ -99,10 +99,10 @@ def centred(params: Parameters, alpha1: float, alpha2: float) -> dict[str, dict[
     """Distributions around a study's own parameters, for those who configure none.
 
     Springs within 5 % and the contact spring within 10 % (standard deviation), friction between a
-    third and three times its own, angles within 0.05 rad.
+    third and three times its own, angles within 0.05 rad; what a table stands for is not spread.
     """
     normal = {"distribution": "normal"}
-    return {
+    found: dict[str, dict[str, Any]] = {
         "k1": {**normal, "mean": params.k1, "std": 0.05 * params.k1},
         "k2": {**normal, "mean": params.k2, "std": 0.05 * params.k2},
         "k3": {"distribution": "lognormal", "median": params.k3, "log_std": 0.1},
@@ -110,3 +110,4 @@ def centred(params: Parameters, alpha1: float, alpha2: float) -> dict[str, dict[
         "alpha1": {**normal, "mean": alpha1, "std": 0.05},
         "alpha2": {**normal, "mean": alpha2, "std": 0.05},
     }
+    return {name: given for name, given in found.items() if name not in params.in_tables}

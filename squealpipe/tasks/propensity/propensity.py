@@ -82,6 +82,8 @@ def propensity(
     if samples & (samples - 1):
         raise ValueError(f"samples = {samples!r}: a power of 2 of at least 64 is needed")
     frozen = {name: distribution(name, given) for name, given in distributions.items()}
+    for name in sorted(set(frozen) & set(params.in_tables)):
+        raise ValueError(f"distributions: a table stands for {name}, which cannot be spread")
     check_stick(params, frozen)
     names = list(frozen)
     if spring_correlation and not {"k1", "k2"} <= set(names):

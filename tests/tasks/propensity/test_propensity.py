@@ -10,7 +10,7 @@ from squealpipe.schema import Outcome
 from squealpipe.schema.inference import of_study
 from squealpipe.tasks.inference.inference import infer_parameters
 from squealpipe.tasks.propensity import reach
-from squealpipe.tasks.propensity.distributions import distribution
+from squealpipe.tasks.propensity.distributions import centred, distribution
 from squealpipe.tasks.propensity.propensity import _indices, _judged_matrices, propensity
 from squealpipe.tasks.propensity.robustness import _feasible, _share, variants
 from tests.former import FORMER
@@ -140,6 +140,18 @@ def test_static_friction_below_that_of_sliding_is_for_laws_that_allow_it():
     given["distributions"] = FRICTION
     with pytest.raises(ValueError, match=r"mu_static reaches 0\.31 and mu"):
         propensity(FORMER.with_(mu_static=0.31), *ANGLES, **given)
+
+
+def test_what_a_table_stands_for_is_not_spread(tmp_path):
+    table = tmp_path / "friction.csv"
+    table.write_text("speed,coefficient\n0,0.5\n1,0.4\n2,0.38\n")
+    params = FORMER.with_(friction_law=str(table), belt_speed=1.5)
+    spread = centred(params, *ANGLES)
+    assert set(spread) == {"k1", "k2", "k3", "alpha1", "alpha2"}
+    shares = propensity(params, *ANGLES, distributions=spread, samples=64, t_end=1.0).share
+    assert np.isfinite(shares).all()
+    with pytest.raises(ValueError, match="a table stands for mu, which cannot be spread"):
+        propensity(params, *ANGLES, distributions=FRICTION, samples=64, t_end=1.0)
 
 
 def test_settings_differ_from_the_paper_one_at_a_time():
