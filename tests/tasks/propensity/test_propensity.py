@@ -146,10 +146,7 @@ def test_what_a_table_stands_for_is_not_spread(tmp_path):
     table = tmp_path / "friction.csv"
     table.write_text("speed,coefficient\n0,0.5\n1,0.4\n2,0.38\n")
     params = FORMER.with_(friction_law=str(table), belt_speed=1.5)
-    spread = centred(params, *ANGLES)
-    assert set(spread) == {"k1", "k2", "k3", "alpha1", "alpha2"}
-    shares = propensity(params, *ANGLES, distributions=spread, samples=64, t_end=1.0).share
-    assert np.isfinite(shares).all()
+    assert set(centred(params, *ANGLES)) == {"k1", "k2", "k3", "alpha1", "alpha2"}
     with pytest.raises(ValueError, match="a table stands for mu, which cannot be spread"):
         propensity(params, *ANGLES, distributions=FRICTION, samples=64, t_end=1.0)
 
