@@ -9,6 +9,14 @@ FEWEST = 16
 """Samples from which a motion, and its spectrum, can be seen."""
 
 
+def lasts(force: NDArray[np.float64]) -> bool:
+    """Whether a contact force acts in the second half of its run, so that it has a spectrum.
+
+    That of a force that ends for good shows its end, not an oscillation.
+    """
+    return bool(np.any(force[force.size // 2 :]))
+
+
 def amplitude_spectrum(
     signal: NDArray[np.float64], step: float, *, padding: int = 1
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

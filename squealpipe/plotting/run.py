@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from squealpipe.codes import Regime
-from squealpipe.methods.spectrum import FEWEST, amplitude_spectrum, highest_peaks
+from squealpipe.methods.spectrum import FEWEST, amplitude_spectrum, highest_peaks, lasts
 from squealpipe.plotting.mechanism import SPRING_COLOURS, displaced_springs
 from squealpipe.plotting.style import (
     BLUE,
@@ -107,6 +107,7 @@ def draw_orbit(axes: Axes, run: xr.Dataset) -> None:
     axes.axhline(float(run.preload), color=GREY, linewidth=0.8, linestyle=":")
     axes.set(xlabel="x (m)", ylabel="y (m)")
     axes.set_aspect("equal", adjustable="datalim")
+    axes.locator_params(nbins=5)
 
 
 def draw_spectrum(axes: Axes, dataset: xr.Dataset) -> None:
@@ -127,6 +128,9 @@ def draw_spectrum(axes: Axes, dataset: xr.Dataset) -> None:
             say_instead(axes, "no spectrum:\nthe samples are not uniform in time")
             return
         force = dataset.normalized_contact_force.values[kept]
+        if not lasts(force):
+            say_instead(axes, "no spectrum:\nno contact in the second half of the run")
+            return
         frequency, amplitude = amplitude_spectrum(force, float(steps[0]), padding=PADDING)
     loud = np.flatnonzero(amplitude > LOUD * amplitude.max(initial=0.0))
     if not loud.size:

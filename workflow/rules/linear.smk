@@ -30,7 +30,7 @@ rule map_critical_friction:
             "spread.critical_damping",
             "spread.critical_points",
             "spread.critical_extent",
-            "spread.scene",
+            "spread.scene" if STUDY.paper else "scenes",
         ),
     script:
         "../scripts/linear/map_critical_friction.py"

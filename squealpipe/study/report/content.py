@@ -165,7 +165,7 @@ def title(name: str) -> str:
     if paper := re.fullmatch(r"fig(\d+)(?:_to_(\d+))?", name):
         first, last = int(paper[1]), paper[2]
         return f"Figs. {first}–{int(last)}." if last else f"Fig. {first}."
-    words = name.replace("_", " ").capitalize()
+    words = name.removeprefix("own_").replace("_", " ").capitalize()
     return re.sub(r"\ba\d\b", lambda level: level[0].upper(), words) + "."
 
 

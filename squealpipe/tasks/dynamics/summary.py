@@ -9,7 +9,7 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from squealpipe.codes import Event, Regime
-from squealpipe.methods.spectrum import FEWEST, amplitude_spectrum, highest_peaks
+from squealpipe.methods.spectrum import FEWEST, amplitude_spectrum, highest_peaks, lasts
 from squealpipe.schema import build
 from squealpipe.schema.dynamics.run_summary import RUN_SUMMARY
 from squealpipe.schema.origin import recorded
@@ -33,7 +33,7 @@ def summarize(run: xr.Dataset) -> xr.Dataset:
         Dataset with first_separation_time (s), impact_rate (1/s), separated_fraction,
         stick_fraction, peak_contact_force, return_peak_contact_force, impact_speed (m/s),
         largest_x, largest_y (m), the spectrum of the normalized contact force over ``frequency``
-        (rad/s), and its highest peaks.
+        (rad/s), and its highest peaks (none of a force that ends for good).
 
     Raises:
         ValueError: fewer than ``FEWEST`` samples were reached, or they are not uniform.
@@ -51,7 +51,8 @@ def summarize(run: xr.Dataset) -> xr.Dataset:
     separations = times[kinds == Event.separation]
     force = run.normalized_contact_force.values[: time.size]
     frequency, amplitude = amplitude_spectrum(force, float(steps[0]), padding=PADDING)
-    peak_frequency, peak_amplitude = highest_peaks(frequency, amplitude, PEAKS)
+    kept = PEAKS if lasts(force) else 0
+    peak_frequency, peak_amplitude = highest_peaks(frequency, amplitude, kept)
     return build(
         RUN_SUMMARY,
         {

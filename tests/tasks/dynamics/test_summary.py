@@ -5,7 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from squealpipe import Parameters, plot
 from squealpipe.codes import Event
+from squealpipe.plotting.run import draw_spectrum
 from squealpipe.tasks.dynamics.runs import simulate
 from squealpipe.tasks.dynamics.summary import summarize, summary_lines
 from tests.former import FORMER
@@ -74,3 +76,16 @@ def test_a_run_that_starts_in_the_air_is_separated_from_its_start():
     sampled = float((motion.normalized_contact_force.values <= 0).mean())
     assert float(summarize(motion).separated_fraction) == pytest.approx(sampled, abs=2e-3)
     assert float(summarize(motion).separated_fraction) >= landing / 3.0
+
+
+def test_a_force_that_ends_for_good_has_no_frequency():
+    pad = Parameters(
+        mass=0.5, k1=1e7, k2=1e7, k3=7e6, mu=0.4, belt_speed=2, preload=2e-5, length1=0.02,
+        length2=0.02,
+    )  # fmt: skip
+    motion = simulate(pad, np.radians(35), np.radians(145), t_end=0.0447)
+    assert float(motion.normalized_contact_force[-1]) == 0.0
+    assert summarize(motion).sizes["peak"] == 0
+    ax = plot(motion)
+    draw_spectrum(ax, motion)
+    assert any("no contact in the second half" in text.get_text() for text in ax.texts)

@@ -70,6 +70,8 @@ def draw(angles: xr.Dataset, dashpots: xr.Dataset) -> Figure:
     level = float(dashpots.critical_mu_undamped)
     if values.min() < level < values.max():
         plane.contour(c1, c2, values.T, levels=[level], colors=[style.BLACK], linewidths=1.0)
+    if not finite.size:
+        style.say_instead(plane, "stable at any friction")
     plane.set(xlabel="dashpot c₁ (N s/m)", ylabel="dashpot c₂ (N s/m)", box_aspect=1)
     figure.colorbar(mesh, ax=plane, label="critical μ", extend="max", shrink=0.75)
     style.panel_letter(without, "a", "no dashpots")

@@ -79,4 +79,4 @@ def _draw(panel: Axes, run: xr.Dataset) -> None:
         f"$μ$ = {number(parameter(run, 'mu'))}, $V$ = {number(parameter(run, 'belt_speed'))} m/s"
     )
     panel.text(0.0, 3.2 * belt, below, ha="center", va="top", fontsize=6)
-    panel.set(xlim=(-1.5 * scale, 1.5 * scale), ylim=(-0.65 * scale, 1.15 * scale), aspect="equal")
+    panel.set(xlim=(-1.2 * scale, 1.2 * scale), ylim=(-0.6 * scale, 1.1 * scale), aspect="equal")

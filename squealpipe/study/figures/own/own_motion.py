@@ -14,7 +14,7 @@ READS = ("own/*",)
 CAPTION = (
     "The motion of model A1 from the start of each scene, one row for each. Left: contact force "
     "over its preload in the first tenth of the run; red strips below zero: contact is lost. "
-    "Middle: path of the mass; dashed: contact is lost above. Right: amplitude spectrum of the "
+    "Middle: path of the mass; dotted: contact is lost above. Right: amplitude spectrum of the "
     "contact force over the whole run."
 )
 ALT = "For each scene a force history, the path of the mass, and the spectrum of the force."
