@@ -57,7 +57,7 @@ def shown():
 @pytest.fixture(scope="module")
 def page_file(explorer, shown, tmp_path_factory):
     path = tmp_path_factory.mktemp("explorer") / "explorer.html"
-    write_explorer(explorer, shown, path)
+    write_explorer(explorer, shown, path, {"mine": {"alpha1": 0.7, "alpha2": 4.0}})
     return path
 
 
@@ -119,7 +119,7 @@ def test_page_survives_a_meaning_that_looks_like_markup(explorer, shown, tmp_pat
     write_explorer(hostile, shown, tmp_path / "e.html")
     text = (tmp_path / "e.html").read_text(encoding="utf-8")
     assert "<!--<script>" not in text
-    assert payload(hostile, shown)["outcome"]["meanings"][0] == "<!--<script>"
+    assert payload(hostile, shown, {})["outcome"]["meanings"][0] == "<!--<script>"
 
 
 def cell(explorer, name, i, j):
@@ -245,6 +245,7 @@ class TestInBrowser:
     def test_scenes_open_the_pair_that_they_name(self, opened):
         names = opened.locator("#scenes button").all_inner_texts()
         assert "Fig 2: 5π/6, 5π/6" in names
+        assert names[-1].startswith("mine: ")
         for place, name in enumerate(names):
             opened.locator("#scenes button").nth(place).click()
             shown = [opened.inner_text(f"#alpha{k}-text") for k in (1, 2)]

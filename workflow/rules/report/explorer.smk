@@ -27,6 +27,8 @@ rule write_explorer:
         page=EXPLORER_PAGE,
     output:
         f"{RESULTS}/report/explorer.html",
+    params:
+        part=part("scenes"),
     script:
         "../../scripts/report/write_explorer.py"
 

@@ -10,6 +10,7 @@ write_explorer(
     load(snakemake.input.explorer),
     layers(**{name: load(snakemake.input[name]) for name in maps}),
     snakemake.output[0],
+    snakemake.params.part["scenes"],
 )
 for path in snakemake.output:
     state_key(path, snakemake.params.key)

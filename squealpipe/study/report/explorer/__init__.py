@@ -25,7 +25,10 @@ BRANCHES = ("omega", "x_amplitude", "y_peak", "stability_index")
 
 
 def write_explorer(
-    explorer: xr.Dataset, layers: Mapping[str, Layer], path: str | os.PathLike[str]
+    explorer: xr.Dataset,
+    layers: Mapping[str, Layer],
+    path: str | os.PathLike[str],
+    scenes: Mapping[str, Mapping[str, Any]] | None = None,
 ) -> None:
     """Write the page, whole or not at all.
 
@@ -33,12 +36,15 @@ def write_explorer(
         explorer: dataset ``explorer``.
         layers: what the map can show, by key.
         path: the HTML file; it needs no network and no other file.
+        scenes: those of the study's own, name → ``alpha1``, ``alpha2`` (rad).
     """
     with whole_file(Path(path)) as temporary:
-        temporary.write_text(page(explorer, layers), encoding="utf-8")
+        temporary.write_text(page(explorer, layers, scenes or {}), encoding="utf-8")
 
 
-def page(explorer: xr.Dataset, layers: Mapping[str, Layer]) -> str:
+def page(
+    explorer: xr.Dataset, layers: Mapping[str, Layer], scenes: Mapping[str, Mapping[str, Any]]
+) -> str:
     """The text of the page."""
     environment = Environment(undefined=StrictUndefined, autoescape=True)
     shell = environment.from_string((HERE / "page.html.j2").read_text(encoding="utf-8"))
@@ -47,7 +53,7 @@ def page(explorer: xr.Dataset, layers: Mapping[str, Layer]) -> str:
         script=(HERE / "explorer.js").read_text(encoding="utf-8"),
         chart=(HERE / "chart.js").read_text(encoding="utf-8"),
         layers={key: layer.label for key, layer in layers.items()},
-        payload=in_script(payload(explorer, layers)),
+        payload=in_script(payload(explorer, layers, scenes)),
         blocks=blocks(explorer, layers),
         commit=explorer.attrs.get("commit", "unknown"),
         dataset_id=explorer.attrs.get("dataset_id", "unknown"),
@@ -76,7 +82,9 @@ def blocks(explorer: xr.Dataset, layers: Mapping[str, Layer]) -> dict[str, str]:
     }
 
 
-def payload(explorer: xr.Dataset, layers: Mapping[str, Layer]) -> dict[str, Any]:
+def payload(
+    explorer: xr.Dataset, layers: Mapping[str, Layer], scenes: Mapping[str, Mapping[str, Any]]
+) -> dict[str, Any]:
     """What the script needs at once, ready for JSON."""
     return {
         "angles": [explorer.alpha1.values.tolist(), explorer.alpha2.values.tolist()],
@@ -90,9 +98,19 @@ def payload(explorer: xr.Dataset, layers: Mapping[str, Layer]) -> dict[str, Any]
         "lengths": [float(explorer.length1), float(explorer.length2)],
         "layers": {key: _layer(layer) for key, layer in layers.items()},
         "scenes": [
-            {"name": scene.name, "angles": [scene.alpha1, scene.alpha2], "figure": scene.figure}
-            for scene in SCENES.values()
-            if scene.figure <= 5
+            *(
+                {
+                    "name": f"Fig {scene.figure}",
+                    "angles": [scene.alpha1, scene.alpha2],
+                    "near": 0.03,
+                }
+                for scene in SCENES.values()
+                if scene.figure <= 5
+            ),
+            *(
+                {"name": name, "angles": [scene["alpha1"] % np.pi, scene["alpha2"] % np.pi]}
+                for name, scene in scenes.items()
+            ),
         ],
     }
 

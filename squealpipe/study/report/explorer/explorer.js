@@ -332,11 +332,12 @@
   for (const scene of payload.scenes) {
     const button = document.createElement("button");
     button.type = "button";
-    // The button says the pair that it opens: of the grid, the one nearest to the paper's.
+    // The button names the pair that it opens: of the grid, the nearest one; the paper's only if near.
     const opened = pairAt(scene.angles);
-    button.textContent = `Fig ${scene.figure}: ${opened.map((place, axis) => fraction(angles[axis][place], "π")).join(", ")}`;
+    button.textContent = `${scene.name}: ${opened.map((place, axis) => fraction(angles[axis][place], "π")).join(", ")}`;
     button.addEventListener("click", () => choose(opened));
-    if (opened.every((place, axis) => Math.abs(angles[axis][place] - scene.angles[axis]) < 0.03)) element("scenes").append(button);
+    const apart = opened.map((place, axis) => Math.abs(angles[axis][place] - scene.angles[axis]));
+    if (Math.max(...apart) < (scene.near ?? Infinity)) element("scenes").append(button);
   }
 
   dark.addEventListener("change", () => { readColours(); drawMap(); choose(chosen); });
