@@ -16,7 +16,7 @@ ROOT = Path(__file__).resolve().parents[2]
 TINY = "workflow/config/tiny.yaml"
 EXCEPTIONS = {
     "No log directive defined": "short jobs say nothing unless they fail, and then Snakemake's "
-    "own log has the traceback; every job with progress to tell has a log",
+    "own log has the traceback",
     "Specify a conda environment or container for each rule.": "one environment for all rules, "
     "locked with hashes in requirements.lock and made by `make env`",
     "Mixed rules and functions in same snakefile.": "helpers of one topic stand beside its rules; "

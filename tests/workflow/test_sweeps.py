@@ -49,8 +49,6 @@ def test_parts_equal_the_whole_and_the_command_line(checkout, snakemake, monkeyp
         found = [load(f"results/{place}data/sweeps/{name}.nc") for place in ("", "parts/")]
         assert len({dataset.attrs["dataset_id"] for dataset in found}) == 1
     assert load("runs.nc").attrs["dataset_id"] == load("results/data/sweeps/runs.nc").dataset_id
-    assert "8 of 8 runs" in (checkout / "results/logs/sweeps/runs.log").read_text()
-    assert not list(checkout.glob("results/**/.*.parts"))
 
 
 @pytest.fixture(scope="module")
