@@ -28,6 +28,7 @@ from squealpipe.methods.taylor.loop import (
     ARRAYS,
     FIXED_INTEGERS,
     FIXED_ROWS,
+    LOST_ERROR,
     SIZES,
     STOPPED,
     TABLE,
@@ -44,8 +45,6 @@ from squealpipe.validation import NotNegative, Tolerance, Vector, Workers, check
 if TYPE_CHECKING:
     from squealpipe.systems.system import System
 
-LOST_ERROR = 1e-3
-"""Error, in units of the states' sizes, from which a state says nothing about its run."""
 FIRST_LOG = 256
 """Events kept at first; a run that has more is made again with room for all."""
 SAMPLES_PER_STEP, MOST_SAMPLES = 4, 20_001

@@ -42,6 +42,8 @@ SLACK = 1e-13
 """A surface lies within this of zero where round-off hides its sign, over the terms that cancel."""
 NOISE = 1e-15
 """Round-off of a surface's polynomial and of its rate, likewise."""
+LOST_ERROR = 1e-3
+"""Error, in units of the states' sizes, from which a state says nothing about its run."""
 CHAIN = 64
 """Switches without progress in time that end a run."""
 LATE_BEGINS = -2
@@ -364,9 +366,11 @@ def _enter(t: Any, m: Any, c: Any, lane: int, regime: int, span: float) -> None:
     constants = t.regimes + 8 * regime * t.n_constants
     stride = m.scratch.shape[1] * 8
     call(t.gauge, (t.scratch, t.scratch + stride, parameters, constants, t.scratch + 2 * stride))
+    # where an event was located to the tolerance only, the rate that follows from it is no better
+    located = max(NOISE, LOST_ERROR * math.exp(-m.limits[m.integers[JOB, lane], 4]))
     for surface in range(t.n_surfaces):
         m.noise[surface, 0, lane] = NOISE * out[3 * surface + 1]
-        m.noise[surface, 1, lane] = NOISE * out[3 * surface + 2]
+        m.noise[surface, 1, lane] = located * out[3 * surface + 2]
     # a state is known to round-off of its typical size, however small it has become
     for variable in range(t.n_states):
         sizes[variable] = max(sizes[variable], m.sizes[variable])
