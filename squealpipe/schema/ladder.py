@@ -113,9 +113,6 @@ MODEL_LADDER = DatasetSchema(
             rtol=1e-3,
             atol=1e-9,
         ),
-        "level_cpu_time": Variable(
-            "CPU time of a level over the whole map", "s", ("level",), volatile=True
-        ),
         "always_cpu_time": Variable(
             "CPU time of always A1 over the whole map, stopped at the answer for contact lost",
             "s",

@@ -142,7 +142,6 @@ def ladder():
             "cheapest": np.full(cells, Level.a4_exact),
             "chosen": np.full(cells, Level.a1_short),
             "chosen_error": np.zeros(cells),
-            "level_cpu_time": np.full(len(Level), 1e-3),
             "always_cpu_time": np.full(4, 100.0),
             "chosen_cpu_time": [10.0, 50.0, 50.0, 80.0],
             "tolerance": 0.05,

@@ -67,7 +67,6 @@ def model_ladder(
             "cheapest": np.array(LEVELS)[cheapest].reshape(-1, *shape),
             "chosen": np.stack([entry.level for entry in chosen]).reshape(-1, *shape),
             "chosen_error": np.stack([entry.error for entry in chosen]).reshape(-1, *shape),
-            "level_cpu_time": [found[level].seconds for level in LEVELS],
             "always_cpu_time": [entry.always_seconds for entry in chosen],
             "chosen_cpu_time": [entry.seconds for entry in chosen],
             "belt_reached": reached.reshape(shape),

@@ -53,7 +53,7 @@ def test_chosen_answers_are_within_the_tolerance(ladder, question: str) -> None:
 
 
 def test_cpu_time_is_recorded_and_some_cells_are_answered_below_a1(ladder) -> None:
-    for name in ("level_cpu_time", "always_cpu_time", "chosen_cpu_time"):
+    for name in ("always_cpu_time", "chosen_cpu_time"):
         assert (ladder[name] > 0.0).all()
         assert ladder[name].attrs["volatile"] == "true"
     below = (ladder.chosen != Level.a1).mean(("alpha1", "alpha2"))

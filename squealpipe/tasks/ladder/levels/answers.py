@@ -26,12 +26,10 @@ class Answers(NamedTuple):
         values: in the order of :data:`squealpipe.schema.ladder.QUESTIONS`; NaN: there is none.
         valid: whether they may be trusted.
         seconds: CPU time.
-        time: time integrated, s, all cells.
         belt_reached: whether the mass reaches belt speed in contact.
     """
 
     values: np.ndarray
     valid: np.ndarray
     seconds: float
-    time: float = 0.0
     belt_reached: np.ndarray | None = None

@@ -30,4 +30,4 @@ def answer(level: Level, scenes: Scenes) -> Answers:
     valid = np.broadcast_to(holds, values.shape)
     seconds = cpu_time() - started
     reached = found.sticks + found.slips + found.reversals > 0
-    return Answers(values, valid, seconds, float(found.time.sum()), reached)
+    return Answers(values, valid, seconds, reached)
