@@ -18,23 +18,32 @@ from squealpipe.laws.contact import normal_force
 from squealpipe.laws.contact_laws import LINEAR
 from squealpipe.laws.friction import stick_limit
 from squealpipe.laws.friction_laws import COULOMB
-from squealpipe.laws.springs import Geometry, fixed_ends, squared_distance
+from squealpipe.laws.springs import Geometry, fixed_ends
 from squealpipe.laws.tables import is_table, pieces_of
 from squealpipe.models import a1
 from squealpipe.parameters import NUMBERS_OF_A1, Parameters
 from squealpipe.systems.system import Switch, System
 
 SLIP = {"slip_slower": 1.0, "slip_faster": -1.0}
+ANGLES = ("angle1", "angle2")
 PIVOT_REACH2 = 1e-14
 """Squared distance from a pivot, in free lengths, below which the force's direction is lost."""
 
 
-def brake_of(params: Parameters) -> System:
+def brake_of(params: Parameters, *, observed: bool = False) -> System:
     """The system of some parameters; ``parameters_of_run`` gives its numbers."""
     return brake(
         params.friction_law,
         damped=params.damping1 + params.damping2 > 0,
         contact_law=contact_laws.relative(params.contact_law, params.preload),
+        observed=observed,
+    )
+
+
+def has_own_laws(params: Any) -> bool:
+    """Whether a law is none of the formulas that A1's own loop has."""
+    return isinstance(params, Parameters) and not (
+        params.friction_law in friction_laws.LAWS and params.contact_law == LINEAR
     )
 
 
@@ -45,8 +54,12 @@ def parameters_of_run(params: Parameters, alpha1: float, alpha2: float) -> dict[
 
 
 @cache
-def brake(
-    friction_law: str = COULOMB, *, damped: bool = False, contact_law: str = LINEAR
+def brake(  # noqa: C901 (one short function for each force and surface)
+    friction_law: str = COULOMB,
+    *,
+    damped: bool = False,
+    contact_law: str = LINEAR,
+    observed: bool = False,
 ) -> System:
     """A1 with one friction law and one contact law.
 
@@ -54,6 +67,8 @@ def brake(
         friction_law: its name, or a table.
         damped: with dashpots; without, ``damping1`` and ``damping2`` are not read.
         contact_law: its name, or a table over l_pre and the force there.
+        observed: with what ensembles of A1 report beside the states: the angles around both fixed
+            ends as states, and as outputs the squared distances from there and from r = 0.
     """
     laws = _Laws(friction_law, contact_law)
     default = Parameters(friction_law=friction_law, contact_law=contact_law)
@@ -77,19 +92,31 @@ def brake(
             s.x, s.y, s.vx, s.vy, *laws.of(p, r),
             contact=r.contact, direction=r.direction, stick=r.stick, dashpots=damped,
         )  # fmt: skip
-        return {"x": s.vx, "y": s.vy, "vx": ax, "vy": ay}
+        rates = {"x": s.vx, "y": s.vy, "vx": ax, "vy": ay}
+        if observed:
+            for spring, name in enumerate(ANGLES):
+                x, y = arm(spring, s, p, r)
+                rates[name] = (x * s.vy - y * s.vx) * (x * x + y * y) ** -1.0
+        return rates
 
     def holds(t: Any, s: Any, p: Any, r: Any) -> Any:
         return limit(s, p, r) ** 2 - pull(s, p, r) ** 2
 
-    def pivot(spring: int) -> Any:
-        def near(t: Any, s: Any, p: Any, r: Any) -> Any:
-            q, g = laws.of(p, r)
-            ends, length = fixed_ends(q, g), (p.length1, p.length2)[spring]
-            distance = squared_distance(s.x, s.y, ends[2 * spring], ends[2 * spring + 1])
-            return distance - PIVOT_REACH2 * length * length
+    def arm(spring: int, s: Any, p: Any, r: Any) -> tuple[Any, Any]:
+        ends = fixed_ends(*laws.of(p, r))
+        return s.x - ends[2 * spring], s.y - ends[2 * spring + 1]
 
-        return near
+    def distance2(spring: int) -> Any:
+        """Squared, in free lengths."""
+
+        def of(t: Any, s: Any, p: Any, r: Any) -> Any:
+            x, y = arm(spring, s, p, r)
+            return (x * x + y * y) * ((p.length1, p.length2)[spring]) ** -2.0
+
+        return of
+
+    def pivot(spring: int) -> Any:
+        return lambda t, s, p, r: distance2(spring)(t, s, p, r) - PIVOT_REACH2
 
     def free(t: Any, s: Any, p: Any, r: Any) -> Any:
         return s.y - p.preload
@@ -97,9 +124,16 @@ def brake(
     def on_belt(t: Any, s: Any, p: Any, r: Any) -> Any:
         return p.belt_speed - s.vx
 
+    states: dict[str, Any] = {"x": "m", "y": "m", "vx": "m/s", "vy": "m/s"}
+    outputs = {"contact_force": ("N", force)}
+    if observed:
+        # large sizes: a perturbation's growth is that of the motion
+        states |= dict.fromkeys(ANGLES, ("rad", 1e6))
+        outputs |= {f"distance{i + 1}": ("1", distance2(i)) for i in (0, 1)}
+        outputs["reach"] = ("m2", lambda t, s, p, r: s.x * s.x + s.y * s.y)
     return System(
         "brake",
-        states={"x": "m", "y": "m", "vx": "m/s", "vy": "m/s"},
+        states=states,
         parameters={**defaults, "alpha1": 1.0, "alpha2": 1.0},
         regimes=laws.regimes(),
         field=field,
@@ -108,9 +142,9 @@ def brake(
             *laws.belt_switches(on_belt, holds, limit, pull),
             *laws.knots(),
         ],
-        start={"x": 0.0, "y": 0.0, "vx": 0.0, "vy": 0.0},
-        starts_in=laws.starts(free, on_belt),
-        outputs={"contact_force": ("N", force)},
+        start=dict.fromkeys(states, 0.0),
+        starts_in=laws.starts(free, on_belt, lambda t, s, p, r: pull(s, p, r)),
+        outputs=outputs,
         stops={"pivot1": pivot(0), "pivot2": pivot(1)},
         time_scale=lambda p: (p.mass / p.k1) ** 0.5,
     )
@@ -271,14 +305,19 @@ class _Laws:
                 )
                 yield Switch(f"{there} to {here}", there, past("start"), [(here, None, "knot")])
 
-    def starts(self, free: Any, on_belt: Any) -> list[Any]:
-        """In which regime a run starts: the first whose surfaces are all ≥ 0."""
+    def starts(self, free: Any, on_belt: Any, pull: Any) -> list[Any]:
+        """In which regime a run starts: the first whose surfaces are all ≥ 0.
+
+        At belt speed it is stick, or slip to the side that the springs pull to.
+        """
         found: list[Any] = [("separated", free)]
         found += [(name, None) for name in self.apart[1:]]
         regimes = [self.name(*each) for each in self.in_contact()]
         sticks = [name for name in regimes if name.startswith("stick")]
         slips = [name for name in regimes if name not in sticks]
         found += [(name, None, on_belt) for name in sticks]
+        if len(sticks) == 1:
+            found.append((self.name("slip_faster", 0, 0), pull, on_belt))
         return [*found, *((name, None) for name in slips[:-1]), slips[-1]]
 
 

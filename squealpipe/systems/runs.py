@@ -94,7 +94,7 @@ def integrate(
     t_end: np.ndarray,
     *,
     regime: str | None = None,
-    t_late: float = math.inf,
+    t_late: Any = math.inf,
     times: np.ndarray | None = None,
     tol: float,
     tangent: bool = False,
@@ -130,7 +130,7 @@ def integrate(
     limits = np.column_stack(
         [
             t_end / unit,
-            np.full(size, t_late) / unit,
+            np.broadcast_to(t_late, (size,)) / unit,
             np.full(size, MOST_STEPS),
             np.full(size, MOST_EVENTS),
             np.full(size, math.log(LOST_ERROR / tol)),

@@ -45,3 +45,19 @@ def test_events_and_states_are_those_of_a1(damping):
             scale = max(1.0, float(np.abs(other[name]).max()))
             np.testing.assert_allclose(ours[name], other[name], atol=1e-9 * scale)
     assert events > 50
+
+
+def test_the_late_part_may_begin_at_an_event():
+    """The motion stays the same: the contact at that very instant was lost."""
+    given = {"k3": 0.75, "mu": 0.35, "static_mu": 0.35, "belt_speed": 0.4, "length1": 5.0}
+    given |= {"length2": 5.0, "alpha1": 0.9, "alpha2": 2.0}
+    start = {"y": 1.5, "vy": 0.3}
+    run = brake().simulate(12.0, start=start, **given)
+    plain, late = (
+        brake().ensemble(12.0, start=start, t_late=t, **given)
+        for t in (11.0, float(run.event_time[0]))
+    )
+    assert float(late.first_contact) == float(run.event_time[0])
+    for name in ("contact_force_max", "x", "y", "vx", "vy"):
+        np.testing.assert_allclose(late[name], plain[name], rtol=1e-9)
+    np.testing.assert_allclose(late.late_contact_force_max, late.contact_force_max, rtol=1e-12)

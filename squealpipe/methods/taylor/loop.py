@@ -579,6 +579,8 @@ def _switch_all(t: Any, m: Any, c: Any, special: int, tangent_row: int) -> None:
         hit = m.integers[HIT, lane]
         if hit == LATE_BEGINS:
             m.rows[LATE, lane] = 1.0
+            # a surface may be crossed at this very instant
+            _enter(t, m, c, lane, m.integers[REGIME, lane], m.rows[STEP, lane])
         elif hit >= 0 and m.integers[OUTCOME, lane] == RUNNING:
             _switch(t, m, c, lane, tangent_row)
         m.integers[HIT, lane] = -1

@@ -28,6 +28,7 @@ from squealpipe.parameters import Parameters
 from squealpipe.schema import Outcome
 from squealpipe.solvers.a1.jobs import Jobs, Model
 from squealpipe.solvers.a1.kernel import lane_kernel
+from squealpipe.solvers.a1.own_laws import run_system
 from squealpipe.solvers.a1.records import ARRAYS, IDLE, LANE, MARKS, QUEUE, RESULT, TABLE
 from squealpipe.solvers.a1.system import Dissipation, compiled_system
 from squealpipe.validation import Seed, Tolerance, Workers, checked
@@ -209,7 +210,9 @@ def integrate(
             time, after another second of compilation.
     """
     groups = jobs.groups()
-    if len(groups) == 1:
+    if jobs.own is not None:
+        found = run_system(jobs, jobs.own, set(wanted), tangent, log_events, workers)
+    elif len(groups) == 1:
         (dissipation,) = groups
         found = _run(jobs, dissipation, wanted, tangent, log_events, few, workers)
     else:

@@ -13,6 +13,7 @@ from squealpipe.laws import springs
 from squealpipe.models.refusals import WHY_A4, refuse_extensions
 from squealpipe.models.switching import VARIANT_RULES
 from squealpipe.parameters import Parameters
+from squealpipe.solvers.a1.own_laws import OwnLaws, split
 from squealpipe.solvers.a1.scaling import scaled_parameters
 from squealpipe.solvers.a1.system import DISSIPATIONS, Dissipation
 from squealpipe.validation import one_of, real_array
@@ -39,6 +40,7 @@ class Jobs:
     time_unit: np.ndarray
     length: np.ndarray
     dissipation: np.ndarray
+    own: OwnLaws | None = None
 
     @classmethod
     def build(
@@ -59,6 +61,7 @@ class Jobs:
     ) -> Jobs:
         """Jobs from the arguments of :func:`squealpipe.solvers.a1.ensemble.run_ensemble`."""
         rules = VARIANT_RULES[model]
+        parameters, own = split(parameters, model)
         physical = scaled_parameters(parameters, linear_springs=rules.linear_springs)
         inputs = {
             "alpha1": real_array("alpha1", alpha1),
@@ -104,6 +107,8 @@ class Jobs:
             "max_events": 1e3 + 20 * rate * t_end,
         }.items():
             orders[name] = values
+        if own is not None:
+            own = replace(own, alpha1=flat(inputs["alpha1"]), alpha2=flat(inputs["alpha2"]))
         initial = _spread(state, (*shape, 4)).reshape(-1, 4)
         speed_unit = length / time_unit
         scale = np.array([length, length, speed_unit, speed_unit]).T
@@ -117,6 +122,7 @@ class Jobs:
             time_unit=time_unit,
             length=length,
             dissipation=dissipation,
+            own=own,
         )
 
     def groups(self) -> dict[Dissipation, np.ndarray]:

@@ -80,10 +80,11 @@ def _scaled(given: Mapping[str, np.ndarray], linear_springs: bool) -> ScaledRuns
             + 0.0
             for name, of in NUMBERS_OF_A1.items()
         }
-        if not (
-            np.isin(given["friction_law"], list(LAWS)) & (given["contact_law"] == LINEAR)
-        ).all():
-            raise ValueError("own laws are carried by systems.brake.brake alone so far")
+        formulas = np.isin(given["friction_law"], list(LAWS)) & (given["contact_law"] == LINEAR)
+        if not formulas.all():
+            raise ValueError(
+                "a table, a law in Python or a contact law needs Parameters, the same for all runs"
+            )
         dissipation = _dissipation(given["friction_law"], scaled, linear_springs=linear_springs)
         shape = np.broadcast_shapes(*{array.shape for array in given.values()})
         orders = np.zeros(shape, ORDER)

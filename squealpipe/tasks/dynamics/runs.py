@@ -10,7 +10,7 @@ import numpy as np
 import xarray as xr
 
 from squealpipe.codes import Regime
-from squealpipe.laws.contact import contact_force
+from squealpipe.laws.contact import normal_force
 from squealpipe.models.switching import VARIANT_RULES
 from squealpipe.parameters import HORIZON, Parameters
 from squealpipe.schema import Outcome, build
@@ -101,9 +101,9 @@ def simulate(
         x[0], y[0], vx[0], vy[0] = initial_state
     if VARIANT_RULES[model].separates:
         off = run.sample_regimes == Regime.separated.value
-        normal = np.where(off, 0.0, contact_force(y, params))
+        normal = np.where(off, 0.0, normal_force(y, vy, params))
     else:
-        normal = contact_force(y, params)
+        normal = normal_force(y, vy, params)
     return build(
         SIMULATION,
         {

@@ -1,0 +1,83 @@
+"""Ensembles with laws of the user's own: as A1's own loop where the law is one of its formulas."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+from squealpipe import Parameters, hammering_map, simulate, validity_map
+from squealpipe.codes import Event
+from squealpipe.solvers.a1.ensemble import run_ensemble
+from tests.former import FORMER
+
+LOOSE = {
+    "steps", "mark_state", "mark_separated_time", "mark_stick_time", "mark_log_growth",
+    "early_max_x", "early_max_vx", "late_max_x", "late_max_vx",
+}  # fmt: skip
+"""What A1's own loop takes where its steps end."""
+STARTS = np.array([[0, 0, 0, 0], [0.5, 0, 1.0, 0], [0, 1.5, 0, 0.3], [-1.0, 0.2, 0.4, -1.0]])
+
+
+@pytest.mark.parametrize("damping", [0.0, 0.05])
+def test_a_table_of_one_coefficient_gives_the_ensemble_of_coulombs_law(damping):
+    plain = FORMER.with_(belt_speed=0.4, mu=0.35, damping1=damping, damping2=damping)
+    table = plain.with_(friction_law="linear 0:0.35 0.3:0.35 1:0.35", mu=DEFAULT_MU)
+    t_end = 12.0
+    given = {
+        "t_end": t_end, "t_late": 0.6 * t_end, "initial_state": STARTS, "tangent": True,
+        "log_events": 30, "times": np.linspace(0.0, t_end, 5), "workers": 1,
+    }  # fmt: skip
+    ours, other = (run_ensemble(p, 0.9, 2.0, **given) for p in (table, plain))
+    for field in dataclasses.fields(other):
+        mine, theirs = getattr(ours, field.name), getattr(other, field.name)
+        if field.name not in LOOSE:
+            tolerance = 1e-2 if field.name in ROUGH else 1e-8
+            tolerance = 0.5 if "turns" in field.name else tolerance  # known to half a turn
+            np.testing.assert_allclose(
+                mine, theirs, rtol=tolerance, atol=tolerance, err_msg=field.name
+            )
+    assert all(count.sum() for count in (other.sticks, other.separations, other.contacts))
+
+
+ROUGH = {
+    "max_vx", "log_growth", "nearest_pivot", "predictability_horizon",
+}  # fmt: skip
+"""Extremes that A1's own loop takes at the ends of steps, and growth with another norm."""
+DEFAULT_MU = Parameters().mu
+
+
+def test_simulate_takes_the_parameters_of_a_pad_with_measured_laws():
+    pad = Parameters(
+        mass=0.5, k1=1e7, k2=1.3e7, preload=2e-5, length1=0.02, length2=0.03, belt_speed=0.05,
+        friction_law="linear 0:0.55 0.03:0.5 0.05:0.35 0.2:0.2",
+        contact_law="linear 0:0 1e-5:20 3e-5:140 5e-5:300",
+    )  # fmt: skip
+    run = simulate(pad, 0.1, 1.5, t_end=0.02, initial_state=(3e-5, 0, 0, 0))
+    assert int(run.outcome) == 0
+    knots = np.array([0.0, 1e-5, 3e-5, 5e-5]), np.array([0.0, 20.0, 140.0, 300.0])
+    expected = np.interp(pad.preload - run.y.values, *knots)
+    apart = run.regime.values == 3
+    np.testing.assert_allclose(run.normal_force.values[~apart], expected[~apart], rtol=1e-12)
+    assert Event.stick in run.event_kind.values
+    start = float(run.normalized_contact_force[0])
+    assert start == pytest.approx(1.0, rel=1e-15)
+
+
+def test_maps_take_a_table():
+    table = FORMER.with_(friction_law="cubic 0:0.45 20:0.3 50:0.25", belt_speed=30.0, mu=DEFAULT_MU)
+    angles = np.linspace(0.2, 2.8, 4)
+    lost = validity_map(table, angles, angles, t_end=30.0)
+    hammers = hammering_map(table, angles, angles, t_end=30.0)
+    kept = ~lost.separates.values.astype(bool)
+    assert 0 < kept.sum() < kept.size
+    np.testing.assert_array_equal(hammers.impact_rate.values[kept], 0)
+
+
+def test_what_own_laws_cannot_do_is_refused():
+    table = FORMER.with_(friction_law="linear 0:0.3", mu=DEFAULT_MU)
+    with pytest.raises(ValueError, match="carried by A1 alone, not by its variants"):
+        simulate(table, 1.0, 2.0, t_end=1.0, model="A1-no-stick")
+    with pytest.raises(ValueError, match="no stop at a displacement"):
+        run_ensemble(table, 1.0, 2.0, t_end=1.0, stop_at_x=3.0)
