@@ -67,13 +67,14 @@ def draw_force(axes: Axes, run: xr.Dataset) -> None:
     if _too_short(axes, run):
         return
     time, force = run.time.values, run.normalized_contact_force.values
+    top = max(1.3, 1.1 * float(np.nanmax(force)))
     axes.plot(time, force, color=BLUE)
     axes.fill_between(
-        time, -0.06, 0.0, where=run.regime.values == Regime.separated, color=RED, linewidth=0,
+        time, -0.05 * top, 0.0, where=run.regime.values == Regime.separated, color=RED, linewidth=0,
         step="mid", label="separated",
     )  # fmt: skip
     axes.axhline(0.0, color=GREY, linewidth=0.5)
-    axes.set(xlim=(0.0, float(time[-1])), ylim=(-0.08, max(1.3, 1.1 * np.nanmax(force))))
+    axes.set(xlim=(0.0, float(time[-1])), ylim=(-0.065 * top, top))
     axes.set(xlabel="t (s)", ylabel=FORCE)
 
 
