@@ -1,0 +1,28 @@
+"""The page's example of a solver and its reproducers do what the page says."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+from squealpipe.cli import run
+
+PAGE = (Path(__file__).parents[2] / "docs/benchmark.md").read_text("utf-8")
+BLOCKS = re.findall(r"^```python\n(.*?)^```", PAGE, flags=re.MULTILINE | re.DOTALL)
+
+
+def test_example_of_a_solver_runs(tmp_path, capsys):
+    (tmp_path / "mine.py").write_text(BLOCKS[0])
+    solver = f"{tmp_path / 'mine.py'}:solve"
+    some = ["--problem", "thermostat", "--problem", "light barrier", "--tolerance", "1e-8"]
+    assert run(["benchmark", "--solver", solver, *some, "-o", str(tmp_path / "mine.nc")]) == 1
+    text = capsys.readouterr().out
+    assert "light barrier: 1e-08 silently wrong (2 missed" in text
+    assert "thermostat: 1e-08" in text
+
+
+def test_reproducers_show_the_errors(capsys):
+    exec(BLOCKS[1], {})  # noqa: S102 (our own page)
+    assert capsys.readouterr().out.split() == ["[array([],", "dtype=float64)]"] * 3
+    exec(BLOCKS[2], {})  # noqa: S102
+    assert "time_limit" in capsys.readouterr().out
