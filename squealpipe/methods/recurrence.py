@@ -12,24 +12,25 @@ def repeats_after(times: np.ndarray, kinds: np.ndarray, tolerance: float) -> int
     """The smallest number of events after which kinds and intervals repeat; 0 if none is found.
 
     Event j + p must be of the kind of event j, and the interval that follows it must equal the
-    one after event j within ``tolerance`` of the period, for all events. The sequence must hold
-    three periods, so a period of more than a third of the events is not seen.
+    one after event j within ``tolerance`` of the mean interval, for all events: of the period it
+    would let a long sequence on a torus, which comes back to nearly itself, pass. The sequence must
+    hold three periods, so a period of more than a third of the events is not seen.
 
     Args:
         times: instants of the events, ascending.
         kinds: their kinds.
-        tolerance: largest difference of intervals, over the period.
+        tolerance: largest difference of intervals, over the mean interval.
     """
     intervals, kinds = np.diff(times), kinds[:-1]
     lags = np.arange(1, intervals.size // LEAST_REPEATS + 1)
     if not lags.size:
         return 0
-    allowed = tolerance * (times[lags] - times[0])
+    allowed = tolerance * intervals.mean()
     # the first interval alone leaves few lags to be checked in full
     likely = (kinds[lags] == kinds[0]) & (np.abs(intervals[lags] - intervals[0]) <= allowed)
-    for lag, most in zip(lags[likely], allowed[likely], strict=True):
+    for lag in lags[likely]:
         if (kinds[lag:] == kinds[:-lag]).all() and (
-            np.abs(intervals[lag:] - intervals[:-lag]).max() <= most
+            np.abs(intervals[lag:] - intervals[:-lag]).max() <= allowed
         ):
             return int(lag)
     return 0

@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from squealpipe.plotting.cycles import draw_backbone, draw_branch, draw_cycle
 from squealpipe.plotting.propensity import draw_shares
 from squealpipe.plotting.propensity import figure as propensity_figure
-from squealpipe.plotting.quantities import SHOWN, draw_quantity, shown
+from squealpipe.plotting.quantities import SHOWN, draw_quantity, mark_changed, shown
 from squealpipe.plotting.run import draw_force, draw_spectrum
 from squealpipe.plotting.run import figure as run_figure
 from squealpipe.plotting.style import COLUMN, SETTINGS, new_figure
@@ -93,6 +93,8 @@ def _draw(axes: Axes, dataset: xr.Dataset, variable: str | None) -> None:
         return
     if variable is None and (quantity := shown(dataset)) is not None:
         draw_quantity(axes, quantity)
+        if "motion_changed" in dataset:
+            mark_changed(axes, dataset)
         return
     if variable not in dataset:
         known = ", ".join(sorted([*DRAWN, *SHOWN]))

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from squealpipe.plotting.style import (
+    BLACK,
     BLUE,
     PALETTE,
     REGIME_COLOURS,
@@ -58,10 +59,10 @@ def counts(dataset: xr.Dataset) -> list[str]:
     assert variable is not None, dataset.attrs  # noqa: S101 (maps of the command line are in SHOWN)
     if table := meanings(variable):
         codes, numbers = np.unique(variable.values, return_counts=True)
-        return [
-            f"{number} of {variable.size} cells: {flag_words(table[code])}"
-            for code, number in zip(codes, numbers, strict=True)
-        ]
+        rows = [(n, flag_words(table[code])) for code, n in zip(codes, numbers, strict=True)]
+        if "motion_changed" in dataset:
+            rows.append((int(dataset.motion_changed.sum()), "another kind in the last quarter"))
+        return [f"{number} of {variable.size} cells: {words}" for number, words in rows]
     values = variable.values
     finite = np.isfinite(values)
     return [
@@ -70,6 +71,16 @@ def counts(dataset: xr.Dataset) -> list[str]:
         if finite.any()
         else f"{_words(variable)}: in no cell"
     ]
+
+
+def mark_changed(axes: Axes, dataset: xr.Dataset) -> None:
+    """Dots where the label of a motion still changes within the second half of its run."""
+    changed = dataset.motion_changed
+    x, y = (
+        changed[dim].values[at]
+        for dim, at in zip(changed.dims, np.nonzero(changed.values), strict=True)
+    )
+    axes.plot(x, y, ".", color=BLACK, ms=1.2)
 
 
 def draw_quantity(axes: Axes, variable: xr.DataArray) -> None:

@@ -53,9 +53,10 @@ def hammering_map(
       run, and one for two returns to the belt;
     - irregular hammering: a perturbation has grown by more than 1 + t, t in √(2m/(k1 + k2));
     - periodic hammering: it has not, and the kinds and intervals of the events repeat within 1e-6
-      of the period;
-    - quasi-periodic hammering: they do not repeat, but are distributed alike in both quarters;
-    - undetermined: there are too few events to decide, or they still change.
+      of the mean interval;
+    - quasi-periodic hammering: they do not repeat, but the intervals after each kind are
+      distributed alike in both halves, with at least 30 in each;
+    - undetermined: there are fewer events, or they still change.
 
     ``motion_changed``: the two quarters have different labels. Systems that are mirror images of
     one another get the same labels: the runs are made in the form of

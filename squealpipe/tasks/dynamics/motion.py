@@ -17,18 +17,20 @@ LEAST_TURNS = 3
 """Net turns in a run from which a motion can be a whirl."""
 AT_REST = 1e-3
 """A mass rests that stays this close to where it ends, over its largest displacement."""
-SAME_STATISTICS = 1.63
-"""Largest Kolmogorov–Smirnov distance of both quarters' intervals, over √(1/n + 1/m): 1 % of pairs
-of samples of one distribution lie further apart."""
+SAME_STATISTICS = 0.1
+"""Largest Kolmogorov–Smirnov distance of both halves' intervals on a torus, where it falls like
+1/n; the limit of random samples, 2.3/√n, lets the slow drift of damped motion pass."""
+LEAST_COMPARED = 30
+"""Intervals of each kind in each half from which a torus keeps to that distance."""
 TURNS_PER_RETURN = 0.5
 """Net turns for each return to the belt from which it is one: a pendulum that goes over the top
 and back makes none, however long it lasts."""
 REGULAR_GROWTH_POWER = 2.0
 """A perturbation of a regular motion grows like a power of time, of a chaotic one exponentially."""
 INTERVAL_TOLERANCE = 1e-6
-"""Largest difference of event intervals that counts as a repetition, over the period."""
+"""Largest difference of event intervals that counts as a repetition, over their mean."""
 LEAST_EVENTS = 4 * LEAST_REPEATS
-"""Events in the later half of a run from which a repetition can be recognized."""
+"""Events in the later half of a run from which a repetition is sought."""
 EVENTS_AT_ONCE = 2**20
 """Logged events that are held in memory at once, 48 bytes each."""
 CALM = (MotionFlag.contact_kept, MotionFlag.hammered_then_contact, MotionFlag.at_rest)
@@ -102,7 +104,7 @@ def classify_motion(run: Ensemble | SimpleNamespace, params: Any) -> tuple[Any, 
     Judged from the second half of each run; a label still changes where the two quarters of that
     half have different ones (those in contact without stick are one). Hammering is *irregular*
     where a perturbation has grown by more than a share of the half (or quarter) of
-    :func:`regular_growth`; of other hammering :func:`tell_periodic` says more, and until then it is
+    :func:`regular_growth`; of other hammering :func:`regular_kind` says more, and until then it is
     *undetermined*.
 
     Args:
@@ -162,27 +164,25 @@ def _label(run: Any, params: Any, start: int, end: int) -> np.ndarray:
     )
 
 
-def tell_periodic(times: np.ndarray, kinds: np.ndarray, t_end: float) -> MotionFlag:
-    """The kind of a regular hammering by the events of the later half of a run to ``t_end``.
+def regular_kind(times: np.ndarray, kinds: np.ndarray, t_end: float) -> MotionFlag:
+    """The kind of a regular hammering by the events of a run to ``t_end``.
 
-    *Periodic*: kinds and intervals repeat within 1e-6 of the period, three times at least.
-    *Quasi-periodic*: they do not, and the intervals after each kind of event are distributed alike
-    in both quarters. *Undetermined*: neither, or too few events to decide.
+    *Periodic*: kinds and intervals repeat in the later half within 1e-6 of their mean, three times
+    at least. *Quasi-periodic*: they do not, and the intervals after each kind of event are
+    distributed alike in both halves, at least 30 in each. *Undetermined*: neither, or too few
+    events.
     """
-    late = (times > 0.5 * t_end) & (times <= t_end)
-    times, kinds = times[late], kinds[late]
-    if times.size < LEAST_EVENTS:
+    ran = times <= t_end
+    times, kinds = times[ran], kinds[ran]
+    late = times > 0.5 * t_end
+    if np.count_nonzero(late) < LEAST_EVENTS:
         return MotionFlag.undetermined
-    if repeats_after(times, kinds, INTERVAL_TOLERANCE):
+    if repeats_after(times[late], kinds[late], INTERVAL_TOLERANCE):
         return MotionFlag.periodic_hammering
-    after, early = np.diff(times), times[:-1] < 0.75 * t_end
-    for kind in np.unique(kinds[:-1]):
-        here = kinds[:-1] == kind
-        quarters = after[here & early], after[here & ~early]
-        if min(map(len, quarters)) < LEAST_REPEATS:
-            return MotionFlag.undetermined
-        allowed = SAME_STATISTICS * np.sqrt(sum(1.0 / len(q) for q in quarters))
-        if _distance(*quarters) > allowed:
+    after, kinds, late = np.diff(times), kinds[:-1], late[:-1]
+    for kind in np.unique(kinds):
+        halves = after[(kinds == kind) & ~late], after[(kinds == kind) & late]
+        if min(map(len, halves)) < LEAST_COMPARED or _distance(*halves) > SAME_STATISTICS:
             return MotionFlag.undetermined
     return MotionFlag.quasi_periodic_hammering
 
@@ -202,7 +202,7 @@ def refine_labels(
     again: Callable[[np.ndarray, int], Ensemble],
     t_end: float,
 ) -> np.ndarray:
-    """Labels of the runs with undetermined hammering resolved by its events.
+    """Labels of the runs, undetermined hammering distinguished by its events.
 
     Args:
         motion: labels by :func:`classify_motion`, 1-D.
@@ -215,7 +215,7 @@ def refine_labels(
     for rows in _blocks(np.flatnonzero(undetermined), run.events):
         logged = again(rows, int(run.events[rows].max()))
         motion[rows] = [
-            tell_periodic(times, kinds, t_end)
+            regular_kind(times, kinds, t_end)
             for times, kinds in zip(logged.event_times, logged.event_kinds, strict=True)
         ]
     return motion

@@ -20,18 +20,22 @@ from squealpipe.models.damped import damped_system, stability
 from squealpipe.parameters import DEFAULTS, Parameters, direction_of
 from squealpipe.schema import Outcome, build
 from squealpipe.schema.dynamics.runs import MotionFlag
-from squealpipe.schema.inference import wilson_interval
 from squealpipe.schema.origin import recorded
 from squealpipe.schema.propensity import PROPENSITY, WIDEST
 from squealpipe.solvers.a1.ensemble import run_ensemble
 from squealpipe.tasks.dynamics.motion import classify_motion
 from squealpipe.tasks.propensity.distributions import check_stick, distribution
-from squealpipe.tasks.propensity.sobol import REPLICATES, saltelli_matrices, sobol_indices
+from squealpipe.tasks.propensity.sobol import (
+    LEAST_EVENTS,
+    REPLICATES,
+    saltelli_matrices,
+    scrambled,
+    share_interval,
+    sobol_indices,
+)
 from squealpipe.validation import Angle, Number, Positive, Seed, Tolerance, Whole, Workers
 
 QUANTITIES = ("flutter", "contact_loss", "irregular_hammering", "whirl")
-LEAST_EVENTS = 30
-"""With fewer cases, or fewer non-cases, in the sample no index is given."""
 INDEX_FACTOR = np.array([[4], [1], [1], [1]])
 """Base sample of the indices of each quantity, over that of the shares: flutter needs no run."""
 SIZES = 6
@@ -70,9 +74,9 @@ def propensity(
         workers: processes; None takes all cores.
 
     Returns:
-        Dataset over quantity and input: shares with 95 % intervals (Wilson), the share of growing
-        parts of the sample, first-order and total Sobol indices with 95 % intervals (Student's t
-        over 8 replicates), and the half-width of the widest total by the size of the base sample.
+        Dataset over quantity and input: shares, first-order and total Sobol indices with 95 %
+        intervals (Student's t over 8 replicates; of rare cases Wilson's), the share of growing
+        parts of the sample, and the half-width of the widest total by the size of the base sample.
         An index is NaN, with outcome ``unresolved``, where its half-width is above 0.05 or fewer
         than 30 samples differ.
 
@@ -102,14 +106,12 @@ def propensity(
             return flutters
         return np.concatenate([flutters, _events(fields, *angles, t_end, tol, workers)])
 
-    points = stats.qmc.Sobol(len(names), rng=np.random.default_rng(seed)).random(samples)
-    points = np.clip(points, 1e-12, 1.0 - 1e-12)
+    points = scrambled(len(names), samples, seed)
     if spring_correlation:
         points = _correlate(points, names.index("k1"), names.index("k2"), spring_correlation)
     values = np.array([frozen[name].ppf(points[:, i]) for i, name in enumerate(names)])
     happens = judge(values)
-    counts = happens.sum(axis=1)
-    low, high = np.transpose([wilson_interval(int(count), samples) for count in counts])
+    low, high = np.transpose([share_interval(each) for each in happens])
     sizes = samples >> np.arange(SIZES)[::-1]
     index_samples = INDEX_FACTOR * sizes
     blank = dict.fromkeys(INDICES, np.full((len(QUANTITIES), len(names)), np.nan))
@@ -124,7 +126,7 @@ def propensity(
     return build(
         PROPENSITY,
         {
-            "share": counts / samples,
+            "share": happens.mean(axis=1),
             "share_low": low,
             "share_high": high,
             "share_by_size": np.stack([happens[:, :size].mean(axis=1) for size in sizes], axis=1),

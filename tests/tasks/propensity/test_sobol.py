@@ -5,7 +5,14 @@ import math
 import numpy as np
 import pytest
 
-from squealpipe.tasks.propensity.sobol import REPLICATES, saltelli_matrices, sobol_indices
+from squealpipe.schema.inference import wilson_interval
+from squealpipe.tasks.propensity.sobol import (
+    REPLICATES,
+    saltelli_matrices,
+    scrambled,
+    share_interval,
+    sobol_indices,
+)
 
 
 def ishigami(u):
@@ -63,6 +70,25 @@ def test_intervals_hold_the_closed_form_as_often_as_they_claim(function, exact):
     assert share[:, idle].min(initial=1.0) > 0.9
     assert 0.92 < share[:, ~idle].mean() < 0.98
     assert np.mean(halves) < 0.05
+
+
+@pytest.mark.parametrize(
+    ("corner", "most"), [((0.6, 0.45), 0.985), ((0.5, 0.4, 0.3), 0.985), ((0.3,), 1)]
+)
+def test_intervals_of_shares_hold_them_as_often_as_they_claim(corner, most):
+    """[u < corner] with two idle inputs; Wilson's intervals hold it always, and are wider."""
+    ends = []
+    for seed in range(200):
+        happens = (scrambled(len(corner) + 2, 1024, seed)[:, : len(corner)] < corner).all(axis=1)
+        ends.append((*share_interval(happens), *wilson_interval(int(happens.sum()), 1024)))
+    low, high, wilson_low, wilson_high = np.transpose(ends)
+    exact = np.prod(corner)
+    assert 0.92 < np.mean((low < exact) & (exact < high)) <= most
+    assert np.mean(high - low) < 0.7 * np.mean(wilson_high - wilson_low)
+
+
+def test_rare_shares_have_an_interval_of_some_width():
+    assert share_interval(np.zeros(64, dtype=bool)) == wilson_interval(0, 64)
 
 
 def test_one_quantity_in_other_units_has_the_same_indices():

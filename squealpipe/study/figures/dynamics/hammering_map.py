@@ -37,8 +37,6 @@ def draw(hammering: xr.Dataset) -> Figure:
     figure, axes = style.new_figure(style.PAGE, 6.2, nrows=2, ncols=2)
     angles = hammering.alpha1.values, hammering.alpha2.values
     plot(hammering, ax=axes[0, 0])
-    rows, columns = np.nonzero(hammering.motion_changed.values)
-    axes[0, 0].plot(angles[0][rows], angles[1][columns], ".", color=style.BLACK, ms=1.2)
     style.panel_letter(axes[0, 0], "a", f"motion to t = {number(float(hammering.t_end), 4)} s")
     force = hammering.peak_contact_force.values
     quantities: list[tuple[str, str, np.ndarray, dict[str, Any]]] = [

@@ -19,7 +19,8 @@ CAPTION = (
     "Fig. 3 shows. (b) Largest |x| late in the run over belt speed. Dashed: the line that follows "
     "from the energy at speed V in springs of stiffness k₁ + k₂. Only where the mass whirls: a "
     "full line, fit of the same form, over the speeds that it covers, dotted below them, and a "
-    "grey stroke at the slowest belt found to whirl the mass."
+    "grey stroke at the slowest belt found to whirl the mass. Cross: another kind of motion in the "
+    "last quarter of the run."
 )
 ALT = (
     "Left, x over time with a band over the time of Fig. 3. Right, a log–log chart of the final "
@@ -60,8 +61,18 @@ def _sizes(axes: Axes, sizes: xr.Dataset) -> None:
                 "o" if name == "whirl" else "s",
                 color=style.REGIME_COLOURS[name],
                 markersize=4,
-                label=name.replace("_", " "),
+                label=style.flag_words(name),
             )
+    changed = sizes.motion_changed.values == 1
+    if changed.any():
+        axes.loglog(
+            speed[changed],
+            sizes.amplitude.values[changed],
+            "x",
+            color=style.BLACK,
+            markersize=4,
+            label="another kind in the last quarter",
+        )
     line = np.geomspace(speed[0], speed[-1], 200)
     energy = float(sizes.energy_offset) + float(sizes.energy_slope) * line
     axes.loglog(line, energy, "--", color=style.GREY, label="energy at speed V")

@@ -12,8 +12,8 @@ from squealpipe.plotting.origin import scene_title
 READS = ("basin/F2d", "basin/F3")
 CAPTION = (
     "Kind of motion that starts from r = 0 with a velocity lead to. (a) Scene of Fig. 2(d), "
-    "(b) scene of Fig. 3. Each label is that of the whole run; white: the second half alone would "
-    "get another one, so the run has not settled."
+    "(b) scene of Fig. 3. Each label is that of the second half of the run; white: its quarters "
+    "have different ones, so the run has not settled."
 )
 ALT = "Two maps over the velocity at the start, coloured by the kind of motion."
 

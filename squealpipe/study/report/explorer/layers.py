@@ -10,6 +10,7 @@ import xarray as xr
 
 from squealpipe.plotting.style import REGIME_COLOURS, flag_words
 from squealpipe.schema import meanings
+from squealpipe.schema.dynamics.runs import MotionFlag
 from squealpipe.schema.ladder import Level
 from squealpipe.study.figures.comparison.model_ladder import colour_of
 
@@ -103,8 +104,9 @@ def layers(
         hammering: dataset ``hammering_map``.
         ladder: dataset ``model_ladder``.
     """
+    motion = hammering.motion.where(hammering.motion_changed == 0, MotionFlag.unsettled)
     found = {
-        "motion": category(hammering.motion, "motion (A1)", colours=REGIME_COLOURS),
+        "motion": category(motion, "motion (A1)", colours=REGIME_COLOURS),
         "stability": category(
             stability.regime_linear, "linear stability (A3)", colours=REGIME_COLOURS
         ),
