@@ -123,6 +123,7 @@ def explain(
     with tempfile.NamedTemporaryFile("r", suffix=".json", encoding="utf-8") as plan:
         done = subprocess.run(
             [*command, "--summary"],
+            cwd=root,  # Python looks for the package there first
             env={**os.environ, PLAN: plan.name},
             capture_output=True,
             text=True,

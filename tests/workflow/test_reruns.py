@@ -21,6 +21,7 @@ import yaml
 
 from squealpipe.config.settings import ConfigError, Study, parse_study, read_study
 from squealpipe.config.yaml_files import flat, overlay
+from squealpipe.reading import READINGS
 from squealpipe.rerun.key import PLAN
 from squealpipe.rerun.sources import closure
 
@@ -53,7 +54,7 @@ def candidates(value: Any) -> list[Any]:
         return [value[:-1], *inner, value[::-1]]
     if value is None:
         return [{"mu": {"distribution": "uniform", "low": 0.3, "high": 0.4}}]
-    return ["A1", "A4", "exact", "hbm", "RK45", "LSODA", f"{value}x"]
+    return ["A1", "A4", "exact", *READINGS, "hbm", "RK45", "LSODA", f"{value}x"]
 
 
 @cache

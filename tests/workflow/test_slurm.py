@@ -112,8 +112,10 @@ TWO_PARTS = [
 
 Where nothing ended between two looks the plugin waits 10 s longer for the next.
 """
-SCATTERED = {"map_validity", "map_hammering", "run_sweep_orbits"}
-JOINS = {"join_validity_map", "join_hammering_map", "join_sweep_orbits"}
+SCATTERED = {"map_validity", "map_corrected_validity", "map_hammering", "run_sweep_orbits"}
+JOINS = {
+    "join_validity_map", "join_corrected_validity_map", "join_hammering_map", "join_sweep_orbits",
+}  # fmt: skip
 COMPILE = "from squealpipe.solvers.a1.kernel import lane_kernel; lane_kernel()"
 
 

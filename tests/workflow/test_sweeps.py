@@ -97,7 +97,7 @@ def test_no_sweep_leaves_the_rest_up_to_date(swept, dry_runs):
 def test_code_of_sweeps_touches_sweeps_alone(swept, dry_runs):
     path = swept / "squealpipe/execution/sweep.py"
     text = path.read_text()
-    path.write_text(text + "# edited\n")
+    path.write_text(text + "ANOTHER = 1\n")
     try:
         plan = dry_runs(swept, [["--configfile", TINY, "two.yaml"]])[0]
     finally:

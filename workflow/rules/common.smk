@@ -31,6 +31,11 @@ def data(name):
     return f"{RESULTS}/data/{name}.nc"
 
 
+def rule_name(*parts):
+    """Name of a rule from words and a dataset's place: map, corrected/, linear."""
+    return "_".join(Path(*parts).parts)
+
+
 def from_root(path):
     """A file of the checkout as an input: relative to it, or absolute where the folder is another."""
     whole = ROOT / path

@@ -9,7 +9,7 @@ for folder, reading in SHOWN.items():
 
     rule:
         name:
-            f"simulate_{folder.replace('/', '_')}scenes"
+            rule_name("simulate", folder, "scenes")
         output:
             **{scene.name: data(f"{folder}simulate/{scene.name}") for scene in IN_TIME},
             **{name: data(f"{folder}simulate/{name}") for name in ("F3_long", "F4_long", "F2a_printed")},
@@ -28,7 +28,7 @@ for folder, reading in SHOWN.items():
 
     rule:
         name:
-            f"map_{folder.replace('/', '_')}validity"
+            rule_name("map", folder, "validity")
         output:
             map_output(f"{folder}validity_map", validity),
         params:

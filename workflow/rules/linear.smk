@@ -4,7 +4,7 @@ for folder, reading in SHOWN.items():
 
     rule:
         name:
-            f"map_{folder.replace('/', '_')}linear"
+            rule_name("map", folder, "linear")
         output:
             quasi_static=data(f"{folder}quasi_static_map"),
             stability=data(f"{folder}stability_map"),

@@ -4,7 +4,7 @@ for name, slice_of_study in SCATTERED.items():
 
     rule:
         name:
-            f"join_{name.replace('/', '_')}"
+            rule_name("join", name)
         input:
             parts=gather.maps(f"{RESULTS}/parts/{name}/{{scatteritem}}.nc"),
         output:
