@@ -76,11 +76,9 @@ def counts(dataset: xr.Dataset) -> list[str]:
 def mark_changed(axes: Axes, dataset: xr.Dataset) -> None:
     """Dots where the label of a motion still changes within the second half of its run."""
     changed = dataset.motion_changed
-    x, y = (
-        changed[dim].values[at]
-        for dim, at in zip(changed.dims, np.nonzero(changed.values), strict=True)
-    )
-    axes.plot(x, y, ".", color=BLACK, ms=1.2)
+    x, y = (changed[dim].values for dim in changed.dims)
+    first, second = np.nonzero(changed.values)
+    axes.plot(x[first], y[second], ".", color=BLACK, ms=1.2)
 
 
 def draw_quantity(axes: Axes, variable: xr.DataArray) -> None:
