@@ -8,7 +8,7 @@ from scipy.linalg import expm
 
 from squealpipe.methods.cycles.event_flow import flow
 from squealpipe.models.a1_automaton import A1Automaton
-from squealpipe.parameters import LAW_NAMES
+from squealpipe.parameters import LAW_NAMES, Parameters
 from squealpipe.solvers.a1.ensemble import run_ensemble
 from squealpipe.solvers.a1.flow import A1Flow
 from squealpipe.solvers.a1.scaling import PHYSICAL
@@ -63,6 +63,34 @@ def test_growth_is_that_of_the_variational_equations():
             compared += 1
             assert run.log_growth[job] == pytest.approx(growth, abs=1e-4), job
     assert compared > 12
+
+
+def test_growth_of_a_motion_that_dies_down_through_events():
+    """Started far away, with dashpots: the product of exact pieces and saltations."""
+    rng, size, compared = np.random.default_rng(2), 60, 0
+    parameters = {
+        "k2": rng.uniform(0.4, 2.5, size),
+        "k3": rng.uniform(0.4, 4.0, size),
+        "mu": rng.uniform(0.0, 0.5, size),
+        "belt_speed": rng.choice([-1.0, 1.0], size) * np.geomspace(0.3, 50.0, size),
+        "damping1": np.exp(rng.uniform(-3.5, -0.5, size)),
+        "damping2": np.exp(rng.uniform(-3.5, -0.5, size)),
+    }
+    angles, starts = rng.uniform(0.0, np.pi, (2, size)), rng.normal(scale=2.0, size=(size, 4))
+    run = run_ensemble(parameters, *angles, t_end=90.0, initial_state=starts, tangent=True)
+    for job in np.flatnonzero((run.separations > 0) & (run.log_growth < 0.0)):
+        params = Parameters(**{name: float(values[job]) for name, values in parameters.items()})
+        system, state = A1Flow(params, *angles[:, job]), starts[job]
+        direction, growth = np.full(4, 0.5), 0.0
+        for _ in range(6):
+            passage = flow(system, state, 15.0)
+            state, direction = passage.state, passage.derivative @ direction
+            growth += np.log(np.linalg.norm(direction))
+            direction /= np.linalg.norm(direction)
+        if growth > -30.0:  # beyond it that product is round-off
+            compared += 1
+            assert run.log_growth[job] == pytest.approx(growth, abs=1e-3), job
+    assert compared > 20
 
 
 def resting_runs(count: int, seed: int):
