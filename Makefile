@@ -30,10 +30,10 @@ NUMERICAL := tests/laws tests/methods tests/models tests/solvers tests/tasks tes
 TINY := -q all --cores 2 --configfile workflow/config/tiny.yaml
 AVX2 := tests/processors avx2
 
-# On any x86-64 the C library's fma is software, a hundred times slower: laws, models and methods there.
+# On any x86-64 the C library's fma is software, a hundred times slower: laws, models, methods and linear tasks there.
 test-processors: dev  ## numerical tests and the tiny study as on other processors
 	$(AVX2) $(TESTS) $(NUMERICAL)
-	tests/processors generic $(TESTS) tests/laws tests/models tests/methods
+	tests/processors generic $(TESTS) tests/laws tests/models tests/methods tests/tasks/linear
 	$(BIN)/snakemake $(TINY)
 	$(AVX2) $(BIN)/snakemake $(TINY) --config results=results/avx2
 	$(BIN)/squealpipe compare results/tiny results/avx2
