@@ -9,7 +9,7 @@ from squealpipe import stability_map
 from squealpipe.schema import Outcome
 from squealpipe.schema.inference import of_study
 from squealpipe.tasks.inference.inference import infer_parameters
-from squealpipe.tasks.propensity import reach
+from squealpipe.tasks.propensity import robustness
 from squealpipe.tasks.propensity.distributions import centred, distribution
 from squealpipe.tasks.propensity.propensity import _indices, _judged_matrices, propensity
 from squealpipe.tasks.propensity.robustness import _feasible, _share, variants
@@ -188,8 +188,8 @@ def test_share_counts_only_what_was_judged():
 
 
 def test_statements_without_a_motion_are_no_sample_of_starts(monkeypatch):
-    monkeypatch.setattr(reach, "variants", lambda _: iter(()))
-    found = reach.verdict_reach(FORMER, starts=4, tol=1e-9, workers=1)
+    monkeypatch.setattr(robustness, "variants", lambda _: iter(()))
+    found = robustness.verdict_reach(FORMER, starts=4, tol=1e-9, workers=1)
     judged = found.judged.sel(statement=["F2a", "F3", "F6d", "F13"])
     np.testing.assert_array_equal(judged, [[4, 4, 1, 1]] * 2)
     assert (found.share.sel(statement="F6d") == 1.0).all()
