@@ -24,7 +24,7 @@ def scrambled(inputs: int, size: int, seed: int) -> np.ndarray:
         stats.qmc.Sobol(inputs, rng=rng).random(size // REPLICATES)
         for rng in np.random.default_rng(seed).spawn(REPLICATES)
     ])  # fmt: skip
-    return np.clip(points, 1e-12, 1.0 - 1e-12)
+    return np.asarray(np.clip(points, 1e-12, 1.0 - 1e-12))
 
 
 def share_interval(happens: np.ndarray) -> tuple[float, float]:
