@@ -295,7 +295,13 @@ class Parameters:
 
     def with_(self, **changes: Any) -> Parameters:
         """A copy with some fields changed, validated again."""
-        return replace(self, **{**{name: DEFAULTS[name] for name in self.in_tables}, **changes})
+        follow = {
+            each: DEFAULTS[each]
+            for name, row in TABLE.items()
+            if row.laws and is_table(row.check(name, changes.get(name, getattr(self, name))))
+            for each in row.laws.IN_TABLE
+        }
+        return replace(self, **{**follow, **changes})
 
     def as_dict(self) -> dict[str, Any]:
         """Field name → value; extensions of the paper's model only where they differ from none."""

@@ -32,6 +32,14 @@ def test_the_content_of_a_file_is_the_law(csv):
     assert params.with_(belt_speed=-0.05).drag == pytest.approx(-0.45, rel=1e-15)
 
 
+def test_what_a_table_stood_for_stays_when_it_goes(csv):
+    params = Parameters(friction_law=csv, contact_law="linear 0:0 1:2 2:8", preload=1.5)
+    plain = params.with_(friction_law="coulomb", contact_law="linear")
+    assert (plain.mu, plain.k3) == (0.3, params.k3) == (0.3, 5.0 / 1.5)
+    assert params.with_(preload=1.0).k3 == 2.0
+    assert Parameters(mu=0.7).with_(friction_law=csv).mu == 0.3
+
+
 def test_values_between_and_beyond_the_knots():
     speeds = np.array([0.0, 0.05, 0.1, 0.55, 1.0, 7.0])
     params = Parameters(friction_law=TEXT)

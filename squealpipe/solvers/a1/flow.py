@@ -26,6 +26,7 @@ from squealpipe.methods.cycles.event_flow import (
 )
 from squealpipe.models.a1_automaton import A1Automaton, EventKind
 from squealpipe.models.damped import is_undamped
+from squealpipe.models.refusals import refuse_own_laws
 from squealpipe.parameters import Parameters
 from squealpipe.solvers.a1.reference import (
     PARAMETERS,
@@ -77,6 +78,7 @@ class A1Flow:
         follow: str | None = None,
         unit: float = 1.0,
     ) -> None:
+        refuse_own_laws(params, "a cycle of A1")
         self.params = params
         self.a1 = A1Automaton(params, alpha1, alpha2)
         self.has_families = is_undamped(params)

@@ -14,6 +14,7 @@ from squealpipe.methods.taylor.loop import STOPPED
 from squealpipe.parameters import NUMBERS_OF_A1
 from squealpipe.schema import Outcome
 from squealpipe.solvers.a1.records import MARKS
+from squealpipe.solvers.a1.system import UNITS
 from squealpipe.systems.brake import ANGLES, brake_of, has_own_laws
 from squealpipe.systems.runs import integrate
 from squealpipe.systems.system import System
@@ -23,8 +24,6 @@ if TYPE_CHECKING:
     from squealpipe.solvers.a1.jobs import Jobs
 
 STATE = ("x", "y", "vx", "vy")
-UNITS = {"mass": 1.0, "k1": 1.0, "preload": 1.0}
-ANSWERED = (Outcome.converged, Outcome.separated)
 
 
 @dataclass(frozen=True)
@@ -73,13 +72,12 @@ def run_system(
     jobs: Jobs, own: OwnLaws, wanted: set[str], tangent: bool, log_events: int, workers: int | None
 ) -> dict[str, np.ndarray]:
     """The results of :class:`squealpipe.solvers.a1.ensemble.Ensemble` that are asked for."""
-    orders, names = jobs.orders, orders_names()
+    orders = jobs.orders
     if np.isfinite(orders["stop_at_x"]).any() or np.isfinite(orders["stop_at_turns"]).any():
         raise ValueError("a run with laws of one's own has no stop at a displacement or at turns")
     size, t_end = len(orders), orders["t_end"]
-    values = {name: np.full(size, UNITS[name]) for name in UNITS} | {
-        name: orders[name] for name in names
-    }
+    values = {name: orders[name] for name in NUMBERS_OF_A1 if name in (orders.dtype.names or ())}
+    values |= {name: np.ones(size) for name in UNITS}
     values |= {"damping3": np.full(size, own.damping3), "alpha1": own.alpha1, "alpha2": own.alpha2}
     values |= dict(zip(STATE, jobs.initial.T, strict=True)) | dict.fromkeys(ANGLES, np.zeros(size))
 
@@ -120,11 +118,6 @@ def run_system(
         found["mark_contacts"] = np.stack([each["contacts"] for each in marks], axis=-1)
         found["mark_state"] = np.stack([each["final_state"] for each in marks], axis=-2)
     return {name: found[name] for name in wanted}
-
-
-def orders_names() -> list[str]:
-    """Numbers of A1 that the orders hold in units of m = k1 = l_pre = 1."""
-    return [name for name in NUMBERS_OF_A1 if name not in {*UNITS, "damping3"}]
 
 
 class _Raw:

@@ -10,6 +10,7 @@ from annotated_types import Ge
 
 from squealpipe.methods.smallest_vector import Found, Settings, search, smallest_linear
 from squealpipe.models.a1_automaton import A1Automaton
+from squealpipe.models.refusals import refuse_own_laws
 from squealpipe.models.switching import VARIANT_RULES
 from squealpipe.parameters import Parameters
 from squealpipe.schema import Outcome, build
@@ -82,6 +83,7 @@ def smallest_disturbance(
         ValueError: an argument is not allowed.
     """
     _check_goal(leads_to, model)
+    refuse_own_laws(params, "smallest_disturbance")
     time = linear_time(params)
     horizon = T_END * time if t_end is None else t_end
     goal = LeadsTo[leads_to]

@@ -7,7 +7,14 @@ import dataclasses
 import numpy as np
 import pytest
 
-from squealpipe import Parameters, hammering_map, simulate, validity_map
+from squealpipe import (
+    Parameters,
+    hammering_map,
+    limit_cycle,
+    simulate,
+    smallest_disturbance,
+    validity_map,
+)
 from squealpipe.codes import Event
 from squealpipe.solvers.a1.ensemble import run_ensemble
 from tests.former import FORMER
@@ -81,3 +88,7 @@ def test_what_own_laws_cannot_do_is_refused():
         simulate(table, 1.0, 2.0, t_end=1.0, model="A1-no-stick")
     with pytest.raises(ValueError, match="no stop at a displacement"):
         run_ensemble(table, 1.0, 2.0, t_end=1.0, stop_at_x=3.0)
+    with pytest.raises(ValueError, match=r"a cycle of A1 cannot carry this; .*brake_of\(params\)"):
+        limit_cycle(table, 1.0, 2.0)
+    with pytest.raises(ValueError, match="smallest_disturbance cannot carry this"):
+        smallest_disturbance(Parameters(contact_law="dashpot"), 1.0, 2.0)
