@@ -11,7 +11,7 @@ import xarray as xr
 from scipy.optimize import linear_sum_assignment
 
 from squealpipe.benchmark.adapters.scipy import solve as reference_solver
-from squealpipe.benchmark.problem import Problem, all_data, references
+from squealpipe.benchmark.problems import Problem, all_data, references
 from squealpipe.schema import build
 from squealpipe.schema.comparison import BENCHMARK, Reliability, Role
 

@@ -7,8 +7,8 @@ import math
 import mpmath
 import pytest
 
-from squealpipe.benchmark.problem import all_data, references
-from squealpipe.benchmark.references import derivative, disagreement, extrapolation, reference_of
+from squealpipe.benchmark.problems import all_data, references
+from tests.benchmark.make_references import derivative, disagreement, extrapolation, reference_of
 
 DATA = {data["name"]: data for data in all_data() if "unknowable" not in data}
 SLOW = {

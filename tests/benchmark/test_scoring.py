@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from squealpipe.benchmark.adapters import SOLVERS, solver
-from squealpipe.benchmark.problem import Problem, all_data, references
-from squealpipe.benchmark.problems import CASES
+from squealpipe.benchmark.problems import Problem, all_data, references
 from squealpipe.benchmark.scoring import benchmark, measure, score
 from squealpipe.schema.comparison import Reliability
+from tests.benchmark.make_problems import CASES
 
 DATA = {data["name"]: data for data in all_data()}
 TOL = 1e-8

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from CyRK import pysolve_ivp
 
-from squealpipe.benchmark.problem import Problem, run
+from squealpipe.benchmark.problems import Problem, run
 
 
 def solve(problem: Problem, tol: float) -> Any:

@@ -6,6 +6,7 @@ defaults, and optimistix' Newton, the choice that the page of ``diffrax.Event`` 
 
 from __future__ import annotations
 
+from functools import cache
 from typing import Any
 
 import diffrax
@@ -13,17 +14,16 @@ import jax
 import jax.numpy as jnp
 import optimistix
 
-from squealpipe.benchmark.problem import Problem, run
+from squealpipe.benchmark.problems import Problem, all_data, run
 
 jax.config.update("jax_enable_x64", val=True)
-STAGES = 13
-MOST_STEPS = 2**14
-_MADE: dict[Any, Any] = {}
+STAGES, MOST_STEPS = 13, 2**14
 
 
-def compiled(problem: Problem, regime: str, tol: float) -> Any:
+@cache
+def compiled(name: str, regime: str, tol: float) -> Any:
     """(t, y) → time and state at the stop, steps, and which event fired."""
-    traced = Problem(problem.data, jnp)
+    traced = Problem(next(data for data in all_data() if data["name"] == name), jnp)
     conditions = [
         lambda t, y, args, switch=switch, **kwargs: switch.when(t, y, regime)
         for switch in traced.watched(regime)
@@ -34,7 +34,7 @@ def compiled(problem: Problem, regime: str, tol: float) -> Any:
     def made(t: Any, y: Any) -> Any:
         found = diffrax.diffeqsolve(
             diffrax.ODETerm(lambda t, y, _: jnp.array(traced.field(t, y, regime), float)),
-            diffrax.Dopri8(), t, problem.t_end, None, y, max_steps=MOST_STEPS, throw=False,
+            diffrax.Dopri8(), t, traced.t_end, None, y, max_steps=MOST_STEPS, throw=False,
             stepsize_controller=diffrax.PIDController(rtol=tol, atol=tol),
             event=event if conditions else None,
         )  # fmt: skip
@@ -50,9 +50,8 @@ def solve(problem: Problem, tol: float) -> Any:
 
     def advance(problem: Problem, regime: str, watched: Any, t: float, y: Any) -> Any:
         nonlocal steps, failed
-        key = problem.name, regime, tol
-        _MADE[key] = _MADE.get(key) or compiled(problem, regime, tol)
-        t, y, made, mask, fine = _MADE[key](float(t), jnp.array(y, float))
+        step = compiled(problem.name, regime, tol)
+        t, y, made, mask, fine = step(float(t), jnp.array(y, float))
         steps += int(made)
         fired = [i for i, hit in enumerate(mask or ()) if hit]
         if not fine:

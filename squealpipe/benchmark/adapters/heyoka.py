@@ -6,18 +6,16 @@ that it chooses itself; what changes with the regime are its runtime parameters.
 
 from __future__ import annotations
 
-from types import SimpleNamespace
 from typing import Any
 
 import heyoka as hy
 
-from squealpipe.benchmark.problem import FUNCTIONS, Problem, run
+from squealpipe.benchmark.problems import Problem, run
 
 
 def solve(problem: Problem, tol: float) -> Any:
     """Times, kinds, state, evaluations, flag; a Taylor step of order p counts p + 1."""
-    functions = SimpleNamespace(**{name: getattr(hy, name) for name in FUNCTIONS})
-    symbols = Problem(problem.data, functions, hy.expression)
+    symbols = Problem(problem.data, hy, hy.expression)
     names = sorted(problem.regimes[problem.regime])
     constants = {name: hy.par[i] for i, name in enumerate(names)}
     y = [hy.expression(name) for name in problem.states]
@@ -43,10 +41,8 @@ def solve(problem: Problem, tol: float) -> Any:
         integrator.state[:] = y
         found = integrator.propagate_until(problem.t_end)
         steps += found[3]
-        if found[0] == hy.taylor_outcome.time_limit:
-            return problem.t_end, integrator.state, None
         if found[0].value >= 0 or -found[0].value > len(events):
-            failed = str(found[0])
+            failed = "" if found[0] == hy.taylor_outcome.time_limit else str(found[0])
             return problem.t_end, integrator.state, None
         hit = watched.index(problem.switches[-found[0].value - 1])
         return integrator.time, integrator.state.copy(), hit

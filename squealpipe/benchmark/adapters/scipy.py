@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from squealpipe.benchmark.problem import Problem, run
+from squealpipe.benchmark.problems import Problem, run
 
 SMALLEST = 100 * np.finfo(float).eps
 """solve_ivp refuses a smaller rtol."""

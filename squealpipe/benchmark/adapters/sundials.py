@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from sksundae.cvode import CVODE
 
-from squealpipe.benchmark.problem import Problem, run
+from squealpipe.benchmark.problems import Problem, run
 
 
 def solve(problem: Problem, tol: float) -> Any:

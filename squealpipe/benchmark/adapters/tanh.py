@@ -7,7 +7,7 @@ from typing import Any
 from scipy.integrate import solve_ivp
 
 from squealpipe.benchmark.adapters.scipy import SMALLEST
-from squealpipe.benchmark.problem import Problem
+from squealpipe.benchmark.problems import Problem
 
 
 def solve(problem: Problem, tol: float, sigma: float = 1e3) -> Any:

@@ -2,7 +2,7 @@
 
 One way is a Taylor series in 80-bit long double (heyoka, which finds all roots of a step's
 polynomial), the other Gragg's extrapolated midpoint rule (Gragg 1965) in 34 decimal digits. The
-growth of a perturbation comes from displaced runs. ``python -m squealpipe.benchmark.references``
+growth of a perturbation comes from displaced runs. ``python -m tests.benchmark.make_references``
 writes ``references.json``.
 """
 
@@ -19,9 +19,10 @@ import heyoka
 import mpmath
 import numpy as np
 
-from squealpipe.benchmark.problem import FUNCTIONS, Problem, Transition, all_data
+import squealpipe
+from squealpipe.benchmark.problems import FUNCTIONS, Problem, Transition, all_data
 
-FILE = Path(__file__).with_name("references.json")
+FILE = Path(squealpipe.__file__).parent / "benchmark/references.json"
 DIGITS = 34
 TOLERANCE = np.longdouble(1e-19)
 COLUMNS = 12
