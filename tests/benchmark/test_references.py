@@ -14,7 +14,7 @@ DATA = {data["name"]: data for data in all_data() if "unknowable" not in data}
 SLOW = {
     "relaxation", "long flight", "A1: very stiff contact", "A1: chaotic hammering",
     "A1: stick release", "A1: separation in stick", "A1: simultaneous events", "A1: hammering",
-    "relief valve", "chaotic impacts", "A1: near-pivot passage",
+    "relief valve", "chaotic impacts", "A1: near-pivot passage", "A1: grazing contact",
 }  # fmt: skip
 
 
@@ -44,6 +44,7 @@ def test_long_double_gives_all_that_is_shipped(name):
     assert found["state"] == pytest.approx(shipped["state"], rel=1e-15)
 
 
+@pytest.mark.release
 def test_derivative_by_both_ways():
     data = next(data for data in DATA.values() if "derivative" in data)
     with mpmath.workdps(40):
