@@ -130,7 +130,7 @@ def draw_spectrum(axes: Axes, dataset: xr.Dataset) -> None:
             return
         force = dataset.normalized_contact_force.values[kept]
         if not lasts(force):
-            say_instead(axes, "no spectrum:\nno contact in the second half of the run")
+            say_instead(axes, "no contact in\nthe second half")
             return
         frequency, amplitude = amplitude_spectrum(force, float(steps[0]), padding=PADDING)
     loud = np.flatnonzero(amplitude > LOUD * amplitude.max(initial=0.0))

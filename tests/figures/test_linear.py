@@ -12,6 +12,7 @@ from squealpipe.parameters import SCENES
 from squealpipe.plotting.style import save_figure
 from squealpipe.study.figures.inference import parameter_inference
 from squealpipe.study.figures.linear import (
+    critical_friction,
     fig06,
     fig07,
     fig08,
@@ -21,6 +22,7 @@ from squealpipe.study.figures.linear import (
 )
 from squealpipe.tasks.inference import inference
 from squealpipe.tasks.linear import boundaries as linear_boundaries
+from squealpipe.tasks.linear import critical
 from squealpipe.tasks.linear import maps as linear
 from squealpipe.tasks.linear import mode_coupling as coupling
 from tests.former import FORMER
@@ -101,3 +103,15 @@ def test_extra_figures_are_written(maps: dict[str, xr.Dataset], tmp_path: Path) 
         paths = [tmp_path / f"{name}.png", tmp_path / f"{name}.svg"]
         save_figure(figure, paths)
         assert all(path.stat().st_size > 5000 for path in paths), name
+
+
+def test_round_off_of_a_critical_friction_is_not_drawn():
+    """Opposite springs: it is the same with any dashpots."""
+    pad = FORMER.with_(length1=0.02 / 2e-5, length2=0.02 / 2e-5, k3=0.7)
+    dashpots = np.linspace(0.0, 0.1, 5)
+    angles = np.linspace(0.0, np.pi, 5)
+    figure = critical_friction.draw(
+        critical.critical_friction_map(pad.with_(damping1=0.02, damping2=0.01), angles, angles),
+        critical.critical_damping_map(pad, np.radians(35.0), np.radians(145.0), dashpots, dashpots),
+    )
+    assert figure.axes[2].texts[0].get_text() == "1.43\nwith any dashpots"

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import xarray as xr
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from squealpipe.plotting import style
@@ -13,6 +14,10 @@ from squealpipe.text import number
 READS = ("critical_friction_map", "critical_damping_map")
 LARGEST = 1.5
 """Upper end of the colours of (a)."""
+UNREACHED = 10.0
+"""A critical friction above it is none: no brake has as much, and round-off decides its digits."""
+ALIKE = 1e-9
+"""Share of critical frictions by which round-off alone makes them differ."""
 ALT = (
     "Two maps over both spring angles, of the critical friction and of its change by dashpots, and "
     "one map over both dashpots."
@@ -59,10 +64,26 @@ def draw(angles: xr.Dataset, dashpots: xr.Dataset) -> Figure:
     )  # fmt: skip
     change.set_ylabel("")
     figure.colorbar(mesh, ax=change, label="change of critical μ", extend="both", shrink=0.75)
+    plane.set(xlabel="dashpot c₁ (N s/m)", ylabel="dashpot c₂ (N s/m)", box_aspect=1)
+    _draw_plane(figure, plane, dashpots)
+    style.panel_letter(without, "a", "no dashpots")
+    style.panel_letter(change, "b", "change")
+    style.panel_letter(plane, "c", f"at {angle_pair(dashpots.alpha1, dashpots.alpha2)}")
+    return figure
+
+
+def _draw_plane(figure: Figure, plane: Axes, dashpots: xr.Dataset) -> None:
+    """The critical friction over both dashpots, or that none is reached."""
     c1, c2 = dashpots.damping1.values, dashpots.damping2.values
     values = dashpots.critical_mu.values
-    finite = values[np.isfinite(values)]
-    low, high = np.percentile(finite, [0, 98]) if finite.size else (0.0, 1.0)
+    reached = values[values < UNREACHED]
+    if not reached.size:
+        style.say_instead(plane, f"above {UNREACHED:g}\neverywhere")
+        return
+    low, high = np.percentile(reached, [0, 98])
+    if reached.max() - low < ALIKE * high:
+        style.say_instead(plane, f"{number(high)}\nwith any dashpots")
+        return
     mesh = plane.pcolormesh(
         c1, c2, np.minimum(values, 10 * high).T, shading="nearest", rasterized=True, cmap="viridis",
         vmin=low, vmax=high,
@@ -70,11 +91,4 @@ def draw(angles: xr.Dataset, dashpots: xr.Dataset) -> Figure:
     level = float(dashpots.critical_mu_undamped)
     if values.min() < level < values.max():
         plane.contour(c1, c2, values.T, levels=[level], colors=[style.BLACK], linewidths=1.0)
-    if not finite.size:
-        style.say_instead(plane, "stable at any friction")
-    plane.set(xlabel="dashpot c₁ (N s/m)", ylabel="dashpot c₂ (N s/m)", box_aspect=1)
     figure.colorbar(mesh, ax=plane, label="critical μ", extend="max", shrink=0.75)
-    style.panel_letter(without, "a", "no dashpots")
-    style.panel_letter(change, "b", "change")
-    style.panel_letter(plane, "c", f"at {angle_pair(dashpots.alpha1, dashpots.alpha2)}")
-    return figure
