@@ -5,11 +5,11 @@ from __future__ import annotations
 from enum import IntEnum
 
 from squealpipe.codes import Event
-from squealpipe.methods.cycles.labels import Label
 from squealpipe.parameters import Parameters
 from squealpipe.schema import DatasetSchema, Variable, outcome
 from squealpipe.schema.agreement import Listing, most, unjudged
 from squealpipe.schema.dynamics.runs import REGIMES
+from squealpipe.systems.cycles.labels import Label
 
 
 class Stability(IntEnum):

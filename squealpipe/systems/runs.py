@@ -99,6 +99,8 @@ def integrate(
     tol: float,
     tangent: bool = False,
     log_events: int = 0,
+    most_steps: float = MOST_STEPS,
+    unit_sizes: np.ndarray | None = None,
     workers: int | None = None,
 ) -> dict[str, np.ndarray]:
     """Raw results of some runs, one row each.
@@ -112,6 +114,8 @@ def integrate(
         tol: tolerance.
         tangent: carry a perturbation along.
         log_events: events kept of each run.
+        most_steps: of each run.
+        unit_sizes: of the states; by default the system's.
         workers: processes; None takes all cores.
     """
     t, size = system.integrated, len(t_end)
@@ -131,7 +135,7 @@ def integrate(
         [
             t_end / unit,
             np.broadcast_to(t_late, (size,)) / unit,
-            np.full(size, MOST_STEPS),
+            np.full(size, most_steps),
             np.full(size, MOST_EVENTS),
             np.full(size, math.log(LOST_ERROR / tol)),
         ]
@@ -175,7 +179,7 @@ def integrate(
             "integers": integers,
             "series": aligned(code.series.n_series, terms, LANES),
             "inverses": INVERSES,
-            "sizes": system.sizes,
+            "sizes": system.sizes if unit_sizes is None else unit_sizes,
             "tracked": np.array(tracked, np.int64),
             "regimes": t.regimes,
             "falls": t.falls,
@@ -267,13 +271,15 @@ def single_run(
     times: np.ndarray | None = None,
     tol: float,
     room: int = FIRST_LOG,
+    **options: Any,
 ) -> Motion:
     """Run a system once from states and parameters; ``room`` is that for events at first."""
     given = {name: np.array([value]) for name, value in values.items()}
     while True:
         raw = integrate(
-            system, given, np.array([t_end]), regime=regime, times=times, tol=tol, log_events=room
-        )
+            system, given, np.array([t_end]), regime=regime, times=times, tol=tol, log_events=room,
+            **options,
+        )  # fmt: skip
         _, _, steps, count = (int(value) for value in raw["ends"][0])
         if count <= room or not room:
             break

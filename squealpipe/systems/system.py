@@ -367,21 +367,24 @@ class System:
 
     @cached_property
     def holds(self) -> np.ndarray:
-        """(regime, surface) whether the surface is constant along the motion, as in stick."""
-        traced, rng = self.traced, np.random.default_rng(2)
-        names = [TIME, *self.units, *traced.parameters, *traced.constants]
+        """(regime, surface) whether a surface is constant along the motion, as in stick."""
+        t, rng = self.traced, np.random.default_rng(2)
+        names = [TIME, *self.units, *t.parameters, *t.constants]
         values = {name: rng.uniform(0.3, 1.7, 16) for name in names}
-        rates = [
-            sum((derivative(h, z) * f for z, f in zip(traced.variables, traced.rates, strict=True)),
-                start=symbol(0.0))
-            for h in traced.surfaces
-        ]  # fmt: skip
-        found = np.zeros((len(self.regimes), len(traced.surfaces)), bool)
-        for regime, constants in enumerate(traced.regimes):
-            here = values | dict(zip(traced.constants, constants, strict=True))
+        found = np.zeros((len(self.regimes), len(t.surfaces)), bool)
+
+        def at(roots: Any, regime: int) -> np.ndarray:
+            constants = dict(zip(t.constants, t.regimes[regime], strict=True))
             with np.errstate(all="ignore"):
-                for surface, rate in enumerate(evaluate(rates, here)):
-                    found[regime, surface] = np.all(np.abs(rate) < 1e-14)
+                given = evaluate([symbol(root) for root in roots], values | constants)
+                return np.array([np.broadcast_to(each, 16) for each in given])
+
+        rates = [at(t.rates, regime) for regime in range(len(self.regimes))]
+        for number, surface in enumerate(t.surfaces):
+            # as those see it that watch it
+            watched = (t.falls[:, number] >= 0) | (t.rises[:, number] >= 0)
+            slopes = at([derivative(surface, z) for z in t.variables], int(np.argmax(watched)))
+            found[:, number] = [np.abs((slopes * rate).sum(axis=0)).max() < 1e-14 for rate in rates]
         return found
 
     def first_regimes(

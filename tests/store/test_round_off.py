@@ -10,13 +10,13 @@ from squealpipe import (
     limit_cycle,
     simulate,
 )
-from squealpipe.methods.cycles.labels import Label
 from squealpipe.parameters import SCENES
 from squealpipe.schema import Outcome, Variable, all_schemas
 from squealpipe.schema.agreement import magnitude, most, sampled, unjudged
 from squealpipe.store.comparison.compare import compare_datasets
 from squealpipe.store.comparison.differences import Agreement
 from squealpipe.store.comparison.round_off import judge
+from squealpipe.systems.cycles.labels import Label
 from tests.former import FORMER
 
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from squealpipe.methods.cycles.labels import Label
 from squealpipe.schema import Outcome
 from squealpipe.systems.belt_friction import exponential_oscillator, leine_oscillator
+from squealpipe.systems.cycles.labels import Label
 from squealpipe.systems.dry_friction import dry_friction_oscillator
 from squealpipe.systems.impact_oscillator import impact_oscillator
 from tests.systems.test_random_systems import random_system

@@ -76,7 +76,8 @@ def _scaled(given: Mapping[str, np.ndarray], linear_springs: bool) -> ScaledRuns
         time_unit = np.sqrt(given["mass"] / given["k1"])
         # adding 0 makes −0 to 0: equal parameters have equal bits
         scaled = {
-            name: given[of] / _unit(TABLE[of].units, given["mass"], given["k1"], given["preload"])
+            name: given[of]
+            / unit_value(TABLE[of].units, given["mass"], given["k1"], given["preload"])
             + 0.0
             for name, of in NUMBERS_OF_A1.items()
         }
@@ -99,7 +100,7 @@ def _scaled(given: Mapping[str, np.ndarray], linear_springs: bool) -> ScaledRuns
     return ScaledRuns(orders, time_unit, length, dissipation, np.asarray(rate))
 
 
-def _unit(unit: str, mass: np.ndarray, k1: np.ndarray, length: np.ndarray) -> Any:
+def unit_value(unit: str, mass: np.ndarray, k1: np.ndarray, length: np.ndarray) -> Any:
     """A unit such as "N s m-1" in terms of m, k1 and l_pre; a newton is the unit k1 l_pre."""
     powers = {"kg": 0, "N": 0, "m": 0, "s": 0}
     for base, power in re.findall(r"([A-Za-z]+)(-?\d*)", unit):

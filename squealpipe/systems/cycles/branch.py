@@ -8,8 +8,9 @@ smooth piece where the first margin is zero, and the branch goes on with other e
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -21,7 +22,6 @@ from squealpipe.methods.continuation import (
     ContinuationState,
     PseudoArclength,
 )
-from squealpipe.methods.cycles.labels import Label
 from squealpipe.parameters import is_finite_number
 from squealpipe.schema import Outcome
 from squealpipe.systems import runs
@@ -36,6 +36,7 @@ from squealpipe.systems.cycles.cycle import (
 )
 from squealpipe.systems.cycles.event_map import FREE, Cycle, Event, EventMap, Section
 from squealpipe.systems.cycles.flow import Flow, Vector
+from squealpipe.systems.cycles.labels import Label
 from squealpipe.text import suggestion
 
 if TYPE_CHECKING:
@@ -44,7 +45,7 @@ if TYPE_CHECKING:
 STEPS = ContinuationSettings(
     first_step=1e-3, shortest_step=1e-9, longest_step=0.05, tolerance=1e-11, stagnant=1e-9
 )
-PRECISE = replace(STEPS, tolerance=3e-14, stagnant=1e-10, max_iterations=10)
+PRECISE = replace(STEPS, tolerance=3e-14, max_iterations=10)
 """Of a special point, which is located to round-off."""
 _EASY, _GROWTH = 3, 3.0
 """With no more than so many iterations the next step may grow, by no more than this factor."""
@@ -54,10 +55,14 @@ _CHANGE = 1.0
 """Largest change of a multiplier between neighbouring points."""
 _COARSE = 1e-6
 """Step below which a branch is taken as it is."""
-_WEAK = 0.05
-"""Speed or length of an event, over the cycle's, at which it has only just begun."""
+_WEAK = 0.1
+"""Speed or length of an event, over the least of the others, at which it has only just begun."""
 _AT_REST = 1e-3
 """Size of a cycle, over the largest on its branch, below which one that shrinks comes to rest."""
+_MET = 0.03
+"""Distance from a cycle of a part of the period, over its extent, where a branch ends on it."""
+_GONE = 1e-5
+"""The same where it is not followed any further."""
 _SAME = 1e-3
 """Distance from an older piece of the branch, over that piece, that is on it."""
 _ZERO = 1e-13
@@ -124,23 +129,46 @@ def label_of(cycle: Cycle, zero: dict[Margin, float]) -> Label:
     t, found = system.traced, Label.regular
     for margin in zero:
         event = cycle.map.events[margin.leg]
-        here = bool(system.holds[event.before].any())
-        if margin.kind == Kind.condition:
-            switch = event.switch
-        elif margin.kind == Kind.length:
-            switch = FREE
-        else:
-            falls, rises = t.falls[event.before, margin.which], t.rises[event.before, margin.which]
-            switch = int(max(falls, rises))
-        if 0 <= switch < len(t.switches):
-            surfaces = {s for table in (t.falls, t.rises) for s in np.nonzero(table == switch)[1]}
-            targets = [regime for regime, _, _ in t.switches[switch].targets]
-            here = here or any(system.holds[r, s] for r in targets for s in surfaces)
-        if here:
+        held = bool(system.holds[event.before].any())
+        watched = (t.falls[event.before, margin.which], t.rises[event.before, margin.which])
+        own = margin.kind in {Kind.condition, Kind.length}
+        switch = event.switch if own else int(max(watched))
+        crosses = margin.kind in {Kind.touch, Kind.speed}
+        if (held or crosses or margin.kind == Kind.condition) and _of_hold(system, switch):
             return Label.stick_onset
-        if margin.kind in {Kind.touch, Kind.speed}:
+        if crosses:
             found = Label.grazing
     return found
+
+
+def _of_hold(system: System, switch: int) -> bool:
+    """Whether a switch may lead to where its surface is held, as to stick, or ends that alone."""
+    t = system.traced
+    if not 0 <= switch < len(t.switches):
+        return False
+    leaves, surfaces = np.nonzero((t.falls == switch) | (t.rises == switch))
+    targets = [regime for regime, _, _ in t.switches[switch].targets]
+    held: Any = system.holds.any(axis=1)
+    return bool(system.holds[targets][:, surfaces].any() or held[leaves].all())
+
+
+def _closeness(offset: Vector, parts: int, _: ContinuationState, cycle: Cycle) -> float:
+    return float(offset @ cycle.after_part(parts))
+
+
+def _least_margin(_: ContinuationState, cycle: Cycle) -> float:
+    return min(margins(cycle).values())
+
+
+@dataclass(frozen=True)
+class Step:
+    """What a step has led past, where to, whether that is a point, and whether the branch ends."""
+
+    special: list[Point]
+    state: ContinuationState
+    cycle: Cycle
+    shows: bool = True
+    end: Outcome | None = None
 
 
 class Follower:
@@ -170,23 +198,22 @@ class Follower:
             found = self._advance(state, cycle)
             if found is None:
                 return self._reason()
-            special, state, cycle, on = found
-            for point in special[: self.most - len(self.points)]:
+            for point in found.special[: self.most - len(self.points)]:
                 self._add(point)
+            state, cycle = found.state, found.cycle
             if len(self.points) >= self.most:
                 break
-            if not on:
-                return Outcome.branch_lost
-            if (
-                not special
-                or special[-1].label == Label.regular
-                or special[-1].cycle.map is cycle.map
-            ):
+            if found.end is not None:
+                return found.end
+            if found.shows:
                 self._add(Point(state, cycle))
             if self._is_at_end(self.points[-1].parameter):
                 return Outcome.converged
-            if self._closes():
-                return Outcome.closed
+            if self._has_shrunk(cycle, _GONE):
+                return Outcome.equilibrium
+            met = self._meets()
+            if met is not None:
+                return met
         return Outcome.point_limit
 
     def _is_at_end(self, parameter: float) -> bool:
@@ -203,11 +230,11 @@ class Follower:
         extremes = cycle.extremes[:, : len(first.scale)] / first.scale
         return np.array([state.point[-1], cycle.period / first.time, *extremes.ravel()])
 
-    def _closes(self) -> bool:
-        """Whether the last step lies on an older piece of the branch, in its direction."""
+    def _meets(self) -> Outcome | None:
+        """Whether the last step lies on an older piece of the branch."""
         shapes = np.array(self.shapes)
         if len(shapes) < 6:
-            return False
+            return None
         ahead, pieces = shapes[-1] - shapes[-2], np.diff(shapes[:-3], axis=0)
         squared = np.maximum((pieces**2).sum(axis=1), 1e-300)
         offset = shapes[-1] - shapes[:-4]
@@ -216,14 +243,20 @@ class Follower:
         length = max(float(np.linalg.norm(ahead)), 1e-300)
         cosine = (pieces @ ahead) / np.sqrt(squared) / length
         near = distance < _SAME * np.minimum(np.sqrt(squared), length)
-        return bool((near & (cosine > 0.99)).any())
+        if (near & (cosine > 0.99)).any():
+            return Outcome.closed
+        return Outcome.retraced if (near & (cosine < -0.99)).any() else None
 
     def _reason(self) -> Outcome:
         """Why no step leads on."""
-        shrinks = self._has_shrunk(self.points[-1].cycle)
-        return Outcome.equilibrium if shrinks else Outcome.branch_lost
+        cycle = self.points[-1].cycle
+        if self._has_shrunk(cycle):
+            return Outcome.equilibrium
+        second = float(np.abs(cycle.nontrivial - 1.0).min(initial=1.0))
+        parts = [float(np.linalg.norm(cycle.after_part(n))) for n in (2, 3)]
+        return Outcome.tongue_end if min(parts) < _MET and second < _MET else Outcome.branch_lost
 
-    def _has_shrunk(self, cycle: Cycle) -> bool:
+    def _has_shrunk(self, cycle: Cycle, share: float = _AT_REST) -> bool:
         """Whether a cycle without forcing is next to a state of rest."""
         largest = max(
             float(np.diff(shape[2:].reshape(2, -1), axis=0).max()) for shape in self.shapes
@@ -231,12 +264,10 @@ class Follower:
         size = float(
             np.diff(self._shape(cycle, self.points[-1].state)[2:].reshape(2, -1), axis=0).max()
         )
-        return not cycle.map.periods and size < _AT_REST * largest
+        return not cycle.map.periods and size < share * largest
 
-    def _advance(
-        self, state: ContinuationState, cycle: Cycle
-    ) -> tuple[list[Point], ContinuationState, Cycle, bool] | None:
-        """Special points of the next step, where it leads, and whether it goes on from there."""
+    def _advance(self, state: ContinuationState, cycle: Cycle) -> Step | None:
+        """The next step that is shown to be on the same branch."""
         step, equations = state.step, cycle.map
         while step >= STEPS.shortest_step:
             trial = replace(state, step=step)
@@ -277,7 +308,7 @@ class Follower:
 
     def _examined(
         self, state: ContinuationState, cycle: Cycle, following: ContinuationState, reached: Cycle
-    ) -> tuple[list[Point], ContinuationState, Cycle, bool] | None:
+    ) -> Step | None:
         """A step with what lies in it; None where that is not clear."""
         line = _Line(
             replace(self.algorithm, settings=PRECISE),
@@ -285,34 +316,62 @@ class Follower:
             (state, cycle),
             (following, reached),
         )
-        found: list[tuple[float, Label]] = []
-        last, changes = 1.0, not is_motion(reached)
-        if changes:
-            first_change = line.root(lambda _, here: min(margins(here).values()))
-            if first_change is None:
-                return None
-            last = first_change
-        for label, test in TESTS if not self._has_shrunk(reached) else ():
-            first, end = test(state, cycle), test(following, reached)
-            if np.isfinite(first * end) and first * end < 0.0:
+        last = None if is_motion(reached) else line.root(_least_margin)
+        found = self._smooth(line, 1.0 if last is None else last - _CLOSE)
+        if found is None or (last is None and not is_motion(reached)):
+            return None
+        if last is not None:
+            return self._changed(line, found, last)
+        near, share = self._shorter(line, cycle, reached)
+        if near and share is None and state.step > _COARSE:
+            return None
+        if share is not None:
+            # at a cycle of half the period the parameter turns back, which is no fold
+            special = [Point(*line.at(at), label) for at, label in found if at < share - _CLOSE]
+            there = line.at(share)
+            return Step([*special, Point(*there)], *there, end=Outcome.tongue_end)
+        special = [Point(*line.at(share), label) for share, label in found]
+        following = replace(following, step=self._next_length(state, following))
+        return Step(special, *renewed(following, reached))
+
+    def _smooth(self, line: _Line, last: float) -> list[tuple[float, Label]] | None:
+        """Shares and labels of what happens in a step, in order; None where one is not found."""
+        first, reached, found = line.known[0.0], line.known[1.0], []
+        for label, test in TESTS if not self._has_shrunk(reached[1]) else ():
+            product = test(*first) * test(*reached)
+            if np.isfinite(product) and product < 0.0:
                 share = line.root(test)
                 if share is None:
                     return None
-                if not changes or share < last - _CLOSE:
+                if share < last:
                     found.append((share, label))
-        found.sort()
-        special = [Point(*line.at(share), label) for share, label in found]
-        following = replace(following, step=self._next_length(state, following))
-        if not changes:
-            return special, *renewed(following, reached), True
-        there = line.at(last)
+        return sorted(found)
+
+    def _changed(self, line: _Line, found: list[tuple[float, Label]], last: float) -> Step | None:
+        """A step to where the order of the events changes, and round that; None if unclear."""
+        state, there = line.known[0.0][0], line.at(last)
         zero = {k: v for k, v in margins(there[1]).items() if abs(v) < 1e-7}
-        special.append(Point(*there, label_of(there[1], zero)))
+        label = label_of(there[1], zero)
         turned = _Turn(self.algorithm, line, last, there, zero).way_on()
-        if turned is None:
-            # not a change of the events that is understood: nearer, perhaps
-            return (special, *there, False) if state.step < 1e3 * STEPS.shortest_step else None
-        return special, replace(turned[0], step=state.step), turned[1], True
+        special = [Point(*line.at(share), each) for share, each in found]
+        special += [Point(*there, label)] if label or turned is None else []
+        if turned is not None:
+            return Step(special, replace(turned[0], step=state.step), turned[1], shows=not label)
+        # no change of the events that is understood: nearer, perhaps
+        if state.step > 1e3 * STEPS.shortest_step:
+            return None
+        jumps = label == Label.stick_onset
+        return Step(special, *there, end=Outcome.tangency if jumps else self._reason())
+
+    def _shorter(self, line: _Line, cycle: Cycle, reached: Cycle) -> tuple[bool, float | None]:
+        """Whether a cycle of a part of the period may lie in a step, and where it is met."""
+        for parts in (2, 3):
+            offset, later = cycle.after_part(parts), reached.after_part(parts)
+            if offset @ later < -0.2 * float(offset @ offset):
+                return True, line.root(partial(_closeness, offset, parts))
+            if np.linalg.norm(later - offset) > 0.7 * np.linalg.norm(offset):
+                return True, None
+        return False, None
 
     def _next_length(self, state: ContinuationState, following: ContinuationState) -> float:
         """The step after this one: longer, but not so that the branch turns by too much in it."""
@@ -479,7 +538,11 @@ class _Turn:
         if not np.isfinite(values).all():
             return None
         near = margins(Cycle.at(equations, guess))
-        weak = {k: v for k, v in near.items() if k.kind in {Kind.speed, Kind.length} and v < _WEAK}
+        known = margins(self.there[1]).items()
+        kinds = {Kind.speed, Kind.length}
+        usual = min((v for k, v in known if k.kind in kinds and v > 1e-6), default=1.0)
+        most = _WEAK * min(1.0, usual)
+        weak = {k: v for k, v in near.items() if k.kind in kinds and v < most}
         algorithm = replace(self.algorithm, settings=replace(STEPS, max_iterations=12))
         if weak:
             key = min(weak, key=lambda k: weak[k])
@@ -522,7 +585,7 @@ def run_of(cycle: Cycle) -> tuple[EventMap, Vector] | None:
     equations, parts = cycle.map, cycle.parts
     flow = equations.flow
     state, regime = cycle.start()
-    run = follow(flow.system, parts.values, state, cycle.period, regime=regime)
+    run = follow(flow, parts.values, state, cycle.period, regime=regime)
     if run.outcome or len(run.times) > 4 * equations.legs + 8:
         return None
     found = guess_of(
@@ -614,8 +677,10 @@ def cycle_branch(
     if math.isclose(to, begin, rel_tol=1e-11):
         raise ValueError(f"to = {to!r}: another value than that of the start is needed")
     low, high = (-math.inf, to) if to > begin else (to, math.inf)
-    points, end = follow_branch(cycle, parameter, to, low=low, high=high, n_points=int(n_points))
-    return dataset(system, points, end, parameter)
+    first = first_point(cycle, parameter, to)
+    follower = Follower(low, high, int(n_points))
+    end = Outcome.no_convergence if first is None else follower.run(*first)
+    return dataset(system, follower.points, end, parameter)
 
 
 def started(system: System, start: xr.Dataset) -> Cycle:
@@ -645,24 +710,66 @@ def started(system: System, start: xr.Dataset) -> Cycle:
     return cycle
 
 
-def follow_branch(
-    cycle: Cycle, parameter: str, to: float, *, low: float, high: float, n_points: int
-) -> tuple[list[Point], Outcome]:
-    """Points of a branch and why it ended."""
+def first_point(
+    cycle: Cycle, parameter: str, to: float, *, tied: Mapping[str, str] | None = None
+) -> tuple[ContinuationState, Cycle] | None:
+    """A cycle as a point of its branch, with a tangent towards a value of the parameter."""
     begin = cycle.parts.values[parameter]
-    unit = max(abs(begin), abs(to))
-    flow = Flow(cycle.map.flow.system, (parameter,))
-    equations = cycle.followed_in(flow, np.array([unit]))
+    flow = Flow(cycle.map.flow.system, (parameter,), tied)
+    equations = cycle.followed_in(flow, np.array([max(abs(begin), abs(to))]))
     parts = cycle.parts
     guess = equations.pack(parts.states, parts.durations, parts.start, np.array([begin]))
-    follower = Follower(low, high, n_points)
     normal = np.zeros(len(guess))
     normal[-1] = math.copysign(1.0, to - begin)
-    state = follower.algorithm.solve(equations, guess, normal, STEPS.first_step)
-    if state is None:
-        return [], Outcome.no_convergence
-    end = follower.run(state, Cycle.at(equations, state.point))
-    return follower.points, end
+    algorithm = PseudoArclength(PRECISE, least_iterations=0, own_tangent=True)
+    state = algorithm.solve(equations, guess, normal, STEPS.first_step)
+    return None if state is None else (state, Cycle.at(equations, state.point))
+
+
+def doubled_start(point: Point) -> tuple[ContinuationState, Cycle] | None:
+    """The first point of the branch of twice the period that leaves at a period doubling."""
+    cycle = point.cycle
+    equations, parts, n = cycle.map, cycle.parts, cycle.map.flow.size
+    values, vectors = np.linalg.eig(cycle.monodromy)
+    shift = np.real(vectors[:, int(np.argmin(np.abs(values + 1.0)))]) * equations.scale
+    shifts, delays = [], []
+    for event, slopes, crossing in zip(
+        equations.events, parts.slopes, parts.crossings, strict=True
+    ):
+        shifts.append(shift)
+        moved = slopes[:, :n] @ shift
+        hit = event.switch != FREE
+        delays.append(-float(crossing.height_by_state @ moved) / crossing.speed if hit else 0.0)
+        shift = crossing.saltation @ moved if hit else moved
+    # a leg begins when the event before it comes, which is late by its own delay
+    late = np.array([-delays[-1], *delays])
+    lengths, starts = np.diff(late), []
+    for leg, begun in enumerate(late[:-1]):
+        event = equations.events[leg]
+        rate = equations.flow.field(
+            parts.values, event.before, parts.states[leg], parts.start + cycle.clocks[leg]
+        )
+        starts.append(shifts[leg] + rate * begun)
+    twice = replace(
+        equations, events=equations.events * 2, periods=2 * equations.periods, _latest=None
+    )
+    followed = _followed(cycle)
+    base = twice.pack(
+        np.tile(parts.states, (2, 1)), np.tile(parts.durations, 2), parts.start, followed
+    )
+    direction = twice.pack(
+        np.concatenate([starts, np.negative(starts)]), np.concatenate([lengths, -lengths]),
+        float(late[0]), 0.0 * followed,
+    )  # fmt: skip
+    if twice.section is not None:
+        direction[:n] -= twice.section.normal * (twice.section.normal @ direction[:n])
+    direction /= np.linalg.norm(direction)
+    algorithm = PseudoArclength(STEPS, least_iterations=0, own_tangent=True)
+    for length in (1e-3, 3e-3, 1e-2):
+        state = algorithm.solve(twice, base + length * direction, direction, STEPS.first_step)
+        if state is not None:
+            return state, Cycle.at(twice, state.point)
+    return None
 
 
 def dataset(system: System, points: list[Point], end: int, parameter: str) -> xr.Dataset:

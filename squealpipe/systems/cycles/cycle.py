@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -15,7 +16,6 @@ from squealpipe.systems.cycles.admissible import is_motion
 from squealpipe.systems.cycles.event_map import FREE, Cycle, Event, EventMap, Section, scale_of
 from squealpipe.systems.cycles.flow import Flow, Vector
 from squealpipe.systems.runs import Motion, single_run
-from squealpipe.systems.trace import Names
 
 if TYPE_CHECKING:
     from squealpipe.systems.system import System
@@ -29,6 +29,9 @@ _WINDOWS = (40.0, 160.0, 640.0)
 _NEAR, _FAR = 0.05, 0.3
 """A return this close, over the motion's extent, ends the search; one this far is none."""
 _TRIES, _SAMPLES = 4, 2000
+MOST_ROUNDS = 32
+SETTLE_STEPS = 100_000
+"""Steps after which a run that is to settle is given up."""
 _AT_REST = 1e-9
 SAMPLES = 400
 SETTLED_ON = 200
@@ -36,13 +39,26 @@ SETTLED_ON = 200
 
 
 def follow(
-    system: System, values: Mapping[str, float], state: Vector, duration: float, **options: Any
+    flow: Flow, values: Mapping[str, float], state: Vector, duration: float, **options: Any
 ) -> Motion:
     """Run a system from a state at t = 0 with all events."""
-    regime = options.pop("regime", None)
+    system, regime = flow.system, options.pop("regime", None)
     named = None if regime is None else system.states_of(regime)
     states = dict(zip(system.states, map(float, state), strict=True))
-    return single_run(system, {**values, **states}, duration, regime=named, tol=1e-13, **options)
+    with np.errstate(all="ignore"):
+        return single_run(
+            system, {**values, **states}, duration, regime=named, tol=1e-13,
+            unit_sizes=sizes_at(flow, values, state, regime or 0), **options,
+        )  # fmt: skip
+
+
+def sizes_at(flow: Flow, values: Mapping[str, float], state: Vector, regime: int) -> Vector:
+    """Sizes of the states in a motion that may be far smaller than the system's own sizes."""
+    sizes, unit = flow.system.sizes, flow.unit(values)
+    with np.errstate(all="ignore"):
+        rates = flow.field(values, regime, state, 0.0) * unit
+        largest = max(float(np.abs(each / sizes).max()) for each in (state, rates))
+    return sizes * min(1.0, largest) if 0.0 < largest < np.inf else sizes
 
 
 def events_of(system: System, motion: Motion, first: int, count: int) -> tuple[Event, ...]:
@@ -131,19 +147,31 @@ def find_cycle(
     periods: int = 1,
     t_settle: float | None = None,
     regime: int | None = None,
+    unit: float | None = None,
 ) -> tuple[Cycle | None, int]:
-    """A cycle from a start or near a guess, and an outcome; beyond 200, of so many more periods."""
+    """A cycle from a start or near a guess, and an outcome: above 200, of that many periods more.
+
+    Args:
+        system: the system.
+        values: parameters.
+        state: start or guess.
+        guess: which of the two.
+        periods: of the forcing, or returns to the section; 0 for any number.
+        t_settle: how long a start settles.
+        regime: of the state, if it is known.
+        unit: of time, in which a run settles and returns are looked for; by default the system's.
+    """
     flow = Flow(system)
     if system.period is not None and flow.timed:
         return _forced(flow, values, state, guess, periods, t_settle, regime)
-    unit = system.time_scale
-    unit = float(unit(Names("the system", values)) if callable(unit) else unit)
+    unit = flow.unit(values) if unit is None else unit
     if not guess:
-        run = follow(system, values, state, SETTLE * unit if t_settle is None else t_settle)
+        settle = SETTLE * unit if t_settle is None else t_settle
+        run = follow(flow, values, state, settle, most_steps=SETTLE_STEPS)
         if run.outcome:
             return None, run.outcome
         state, regime = run.final, int(run.regimes[-1])
-    return _free(flow, values, state, regime, unit, periods if not guess else 0)
+    return _free(flow, values, state, regime, unit, 0 if guess else periods)
 
 
 def _forced(
@@ -153,12 +181,12 @@ def _forced(
     system, forcing = flow.system, flow.forcing(values)[0]
     if not guess:
         rounds = SETTLE if t_settle is None else max(1.0, np.ceil(t_settle / forcing))
-        run = follow(system, values, state, rounds * forcing)
+        run = follow(flow, values, state, rounds * forcing)
         if run.outcome:
             return None, run.outcome
         state, regime = run.final, int(run.regimes[-1])
         times = forcing * np.arange(1, MOST_PERIODS + 1)
-        path = follow(system, values, state, times[-1], regime=regime, times=times).path
+        path = follow(flow, values, state, times[-1], regime=regime, times=times).path
         size = np.maximum(np.ptp(path, axis=0), 1e-9 * np.abs(path).max(axis=0) + 1e-300)
         distance = np.abs((path - state) / size).max(axis=1)
         rest = np.abs(path - state).max(axis=0) <= 1e-6 * (np.abs(path).max(axis=0) + 1e-300)
@@ -171,7 +199,7 @@ def _forced(
     duration = periods * forcing
     for _ in range(3):
         run = follow(
-            system, values, state, duration, regime=regime,
+            flow, values, state, duration, regime=regime,
             times=np.linspace(0.0, duration, 200),
         )  # fmt: skip
         if run.outcome or not np.isfinite(run.path).all():
@@ -200,12 +228,12 @@ def _free(
     tried: list[float] = []
     for window in _WINDOWS:
         times = np.linspace(0.0, window * unit, _SAMPLES)
-        run = follow(system, values, state, times[-1], regime=regime, times=times)
+        run = follow(flow, values, state, times[-1], regime=regime, times=times)
         if run.outcome or not np.isfinite(run.path).all():
             return None, run.outcome or Outcome.not_finite
         every = np.concatenate([run.path, run.states])
         extremes = np.array([every.min(axis=0), every.max(axis=0)])
-        if _rests(run.path, system.sizes):
+        if _rests(run.path[len(run.path) // 2 :], sizes_at(flow, values, state, regime or 0)):
             return None, Outcome.equilibrium
         scale = scale_of(extremes, system.sizes)
         for first, count, period, distance in _returns(flow, values, run, times, state, scale):
@@ -220,18 +248,58 @@ def _free(
             cycle = None if found is None else solved(*found)
             if cycle is None or abs(cycle.period - period) > _FAR * period:
                 continue
+            if _rests(cycle.extremes[:, : flow.size], 0.0):
+                return None, Outcome.equilibrium
+            cycle = once_round(cycle)
             number = _least(cycle.events)
             if returns and number > returns:
                 return None, SETTLED_ON + number
             return cycle, Outcome.converged
-    return None, Outcome.no_convergence
+    # only now: a smooth cycle about a stable state of rest may seem to shrink between samples
+    shrinks = not len(run.times) and _comes_to_rest(flow, values, int(run.regimes[0]), run.path)
+    return None, Outcome.equilibrium if shrinks else Outcome.no_convergence
 
 
-def _rests(path: Vector, sizes: Vector) -> bool:
-    late = path[len(path) // 2 :]
-    return bool(
-        (np.ptp(late, axis=0) <= _AT_REST * np.maximum(np.abs(late).max(axis=0), sizes)).all()
-    )
+def once_round(cycle: Cycle) -> Cycle:
+    """The same cycle run through once, where it was found after several rounds."""
+    equations, parts = cycle.map, cycle.parts
+    times = np.arange(8) / 8.0 * cycle.period
+    here, _ = cycle.states_at(times)
+    for rounds in range(MOST_ROUNDS, 1, -1):
+        after, _ = cycle.states_at((times + cycle.period / rounds) % cycle.period)
+        if equations.legs % rounds and cycle.events:
+            continue
+        if (np.abs(here - after) > 1e-6 * equations.scale).any():
+            continue
+        legs = max(equations.legs // rounds, 1)
+        durations = parts.durations[:legs] / (1 if cycle.events else rounds)
+        fewer = replace(equations, events=equations.events[:legs], _latest=None)
+        guess = fewer.pack(parts.states[:legs], durations, parts.start, np.empty(0))
+        return solved(fewer, guess) or cycle
+    return cycle
+
+
+def _comes_to_rest(flow: Flow, values: Mapping[str, float], regime: int, path: Vector) -> bool:
+    """Whether a motion in one regime shrinks towards a stable state of rest."""
+    first, second = (np.ptp(half, axis=0) for half in np.split(path[: len(path) // 2 * 2], 2))
+    place = middle = path[len(path) // 2 :].mean(axis=0)
+    scale = np.maximum(np.abs(path).max(axis=0), 1e-300)
+    with np.errstate(all="ignore"):
+        for _ in range(20):
+            slopes = flow.jacobian(values, regime, place)[:, : flow.size]
+            rate = flow.field(values, regime, place, 0.0)
+            place = place - np.linalg.lstsq(slopes * scale, rate, rcond=None)[0] * scale
+    if not np.isfinite(place).all() or (np.abs(place - middle) > second + 1e-9 * scale).any():
+        return False
+    rates = np.linalg.eigvals(flow.jacobian(values, regime, place)[:, : flow.size])
+    decays = rates.real.max() < -1e-9 * np.abs(rates).max()
+    return bool(decays and (second <= first + 1e-12 * scale).all())
+
+
+def _rests(path: Vector, sizes: Any) -> bool:
+    """Whether a motion is no more than round-off."""
+    largest = np.maximum(np.abs(path).max(axis=0), sizes)
+    return bool((np.ptp(path, axis=0) <= _AT_REST * largest).all())
 
 
 def _least(events: tuple[Event, ...]) -> int:
@@ -403,7 +471,7 @@ def dataset(
         order = [events[i] for i in np.argsort(times)]
         times = np.sort(times)
         instants = np.linspace(0.0, cycle.period, SAMPLES + 1)
-        path = np.array([cycle.state_at((cycle.phase + t) % cycle.period)[0] for t in instants])
+        path, _ = cycle.states_at((cycle.phase + instants) % cycle.period)
         regime = cycle.start()[1]
     chosen = [cycle.map.events[i] for i in order] if cycle else []
     states = np.array([cycle.parts.crossings[i].after for i in order] if cycle else [])

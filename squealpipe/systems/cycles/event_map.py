@@ -18,6 +18,8 @@ from numpy.typing import NDArray
 
 from squealpipe.systems.cycles.flow import Crossing, Flow, Path, Vector
 
+_LEAST = 0.05
+"""Least unit of a state over the largest, both over the states' sizes."""
 FREE = -1
 """Number of the switch of what changes nothing: the section of a cycle without events, a touch."""
 
@@ -109,8 +111,9 @@ class EventMap:
         durations = z[m * n : m * (n + 1)] * self.time
         start = float(z[m * (n + 1)] * self.time) if self.periods else 0.0
         followed = z[self.size :] * self.units
-        names = zip(self.flow.followed, map(float, followed), strict=True)
-        return states, durations, start, {**self.values, **dict(names)}
+        found = dict(zip(self.flow.followed, map(float, followed), strict=True))
+        tied = {name: found[of] for name, of in self.flow.tied.items() if of in found}
+        return states, durations, start, {**self.values, **found, **tied}
 
     def parts(self, z: Vector) -> Parts:
         """The legs at some unknowns."""
@@ -316,20 +319,40 @@ class Cycle:
         return np.array(found).T
 
     @property
+    def closing_error(self) -> float:
+        """Largest jump between a leg's end and the next one's start, over the cycle's extent."""
+        n = self.map.flow.size
+        scale = scale_of(self.extremes[:, :n], self.map.flow.system.sizes)
+        ends = np.array([crossing.after for crossing in self.parts.crossings])
+        return float(np.abs((ends - np.roll(self.parts.states, -1, axis=0)) / scale).max())
+
+    def after_part(self, parts: int) -> Vector:
+        """How far states after a part of the period are from those before, over the extent."""
+        count = 12
+        path, _ = self.states_at(np.arange(count) / count * self.period)
+        n = self.map.flow.size
+        path = path / scale_of(self.extremes[:, :n], self.map.flow.system.sizes)
+        return np.asarray(np.roll(path, count // parts, axis=0) - path).ravel()
+
+    @property
     def clocks(self) -> Vector:
         """When each leg begins after the first state."""
         durations = self.parts.durations
         return np.asarray(np.cumsum(durations) - durations)
 
-    def state_at(self, time: float) -> tuple[Vector, int]:
-        """The state and the regime at a time after the first state, less than a period."""
-        leg = int(np.searchsorted(self.clocks, time, side="right")) - 1
-        found = self.parts.path.at(leg, time - self.clocks[leg])[: self.map.flow.size]
-        return found, self.map.events[leg].before
+    def states_at(self, times: Vector) -> tuple[Vector, NDArray[np.int64]]:
+        """States and regimes at times after the first state, less than a period."""
+        path = self.parts.path
+        begins = self.clocks[path.leg] + path.offsets * path.unit
+        step = np.maximum(np.searchsorted(begins, times, side="right") - 1, 0)
+        powers = ((times - begins[step]) / path.unit)[:, None] ** np.arange(path.series.shape[2])
+        states = np.einsum("tik,tk->ti", path.series[step, : self.map.flow.size], powers)
+        return states, path.regimes[path.leg[step]]
 
     def start(self) -> tuple[Vector, int]:
         """State and regime at t = 0: of the forcing, or far from any event."""
-        return self.state_at(self.phase)
+        states, regimes = self.states_at(np.array([self.phase]))
+        return states[0], int(regimes[0])
 
     @cached_property
     def phase(self) -> float:
@@ -355,6 +378,10 @@ class Cycle:
 
 
 def scale_of(extremes: Vector, sizes: Vector) -> Vector:
-    """Units of the states: their extents in a motion; of a constant one its size."""
-    extent, largest = extremes[1] - extremes[0], np.abs(extremes).max(axis=0)
-    return np.where(extent > 1e-9 * largest, extent, np.where(largest > 0.0, largest, sizes))
+    """Units of the states: their extents in a motion, none far below that of the others.
+
+    A state that hardly moves is known no better than the others.
+    """
+    extent = (extremes[1] - extremes[0]) / sizes
+    largest = float(extent.max()) or float(np.abs(extremes / sizes).max()) or 1.0
+    return np.asarray(sizes * np.maximum(extent, _LEAST * largest))

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from squealpipe.methods.taylor.lanes import INVERSES, Workspace, aligned, drive, taylor_terms
 from squealpipe.methods.taylor.legs import ARRAYS, SIZES, TABLE, run_legs
-from squealpipe.methods.taylor.scalar import evaluate, python_function
+from squealpipe.methods.taylor.scalar import python_function
 from squealpipe.methods.taylor.simd import FEW, LANES
 from squealpipe.methods.taylor.symbols import Symbol, derivative, parameter, symbol
 from squealpipe.systems.runs import compiled
@@ -87,15 +87,6 @@ class Path:
         """The series over the share of each step, from 0 to 1."""
         orders = np.arange(self.series.shape[2])
         return self.series * self.steps[:, None, None] ** orders
-
-    def at(self, leg: int, time: float) -> Vector:
-        """All series at a time since the start of a leg."""
-        inside = np.flatnonzero(self.leg == leg)
-        place = time / self.unit
-        last = int(np.searchsorted(self.offsets[inside], place, side="right")) - 1
-        step = inside[max(last, 0)]
-        orders = np.arange(self.series.shape[2])
-        return np.asarray(self.series[step] @ (place - self.offsets[step]) ** orders)
 
     def ends_of(self, which: int) -> tuple[Vector, Vector]:
         """A series at the start and the end of each leg."""
@@ -187,10 +178,16 @@ class Flow:
     Args:
         system: the system.
         followed: parameters that derivatives are taken by.
+        tied: parameters that have the value of another one.
     """
 
-    def __init__(self, system: System, followed: Sequence[str] = ()) -> None:
-        self.system, self.followed = system, tuple(followed)
+    def __init__(
+        self,
+        system: System,
+        followed: Sequence[str] = (),
+        tied: Mapping[str, str] | None = None,
+    ) -> None:
+        self.system, self.followed, self.tied = system, tuple(followed), dict(tied or {})
         t = system.traced
         self.size, self.timed = t.size, len(t.variables) > t.size
         self.by = [parameter(name) for name in followed]
@@ -200,7 +197,7 @@ class Flow:
         self._functions: dict[Any, Any] = {}
         self._room, self._legs = ROOM, 0
         directions = [*t.variables[: t.size], *self.by, *([self.time] * self.timed)]
-        entries = [(i, j, symbol(derivative(rate, by)))
+        entries = [(i, j, self.slope(rate, by))
                    for i, rate in enumerate(t.rates[: t.size])
                    for j, by in enumerate(directions)]  # fmt: skip
         self._entries = [
@@ -209,7 +206,17 @@ class Flow:
         self._columns = len(directions)
         self._slopes = python_function([e[2] for e in self._entries], self.arguments, np)
         self._field = python_function(t.rates[: t.size], self.arguments, np)
+        names = [*system.parameters, TIME_UNIT]
+        self._derived = python_function(
+            system.integrated.derived, [parameter(name) for name in names], np
+        )
         self._known: tuple[Any, Vector] | None = None
+
+    def slope(self, root: Symbol, by: Any) -> Symbol:
+        """The derivative by a variable or a parameter, with those that are tied to it."""
+        names = [name for name, leader in self.tied.items() if by is parameter(leader)]
+        along = [derivative(root, each) for each in (by, *map(parameter, names))]
+        return sum(along[1:], start=symbol(along[0]))
 
     @cached_property
     def period(self) -> Any:
@@ -217,7 +224,7 @@ class Flow:
         names = {name: parameter(name) for name in self.system.parameters}
         given: Any = self.system.period
         root = symbol(given(Names("the system", names)))
-        roots = [root, *(symbol(derivative(root, by)) for by in self.by)]
+        roots = [root, *(self.slope(root, by) for by in self.by)]
         return python_function(roots, self.arguments, np)
 
     def numbers(self, values: Mapping[str, float], regime: int) -> list[Any]:
@@ -225,6 +232,11 @@ class Flow:
         t = self.system.traced
         given = [np.float64(values[name]) for name in self.system.parameters]
         return [*given, np.float64(1.0), *t.regimes[regime]]
+
+    def unit(self, values: Mapping[str, float]) -> float:
+        """The system's unit of time, s."""
+        scale = self.system.time_scale
+        return float(scale(Names("the system", values)) if callable(scale) else scale)
 
     def forcing(self, values: Mapping[str, float]) -> tuple[float, Vector]:
         """The forcing's period, s, and its derivatives."""
@@ -259,7 +271,7 @@ class Flow:
             targets = [c for _, c, _ in each.targets if c is not None] if each else []
 
             def slopes(roots: Sequence[Any], by: Sequence[Any]) -> list[Symbol]:
-                return [symbol(derivative(r, b)) for r in roots for b in by]
+                return [self.slope(r, b) for r in roots for b in by]
 
             now = [self.time] * self.timed
             roots = [root, *slopes([root], states), *slopes([root], now), *slopes([root], self.by)]
@@ -341,13 +353,10 @@ class Flow:
         """Run legs from states (legs, n), each in its regime for its duration."""
         if self._legs != len(states):
             self._prepare(len(states))
-        t = self.system.integrated
         key = tuple(values[name] for name in self.system.parameters)
         if self._known is None or self._known[0] != key:
-            scale = self.system.time_scale
-            unit = float(scale(Names("the system", values)) if callable(scale) else scale)
-            given = {name: np.float64(value) for name, value in values.items()}
-            derived = evaluate(t.derived, {**given, TIME_UNIT: unit})
+            unit = self.unit(values)
+            derived = self._derived(*map(np.float64, (*key, unit)))
             self._known = key, np.array([*key, *derived, unit], float)
         column = self._known[1]
         unit = float(column[-1])

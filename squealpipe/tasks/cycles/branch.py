@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from dataclasses import replace
 from typing import Annotated, Any
 
 import numpy as np
@@ -12,43 +10,17 @@ import xarray as xr
 from annotated_types import Ge
 from pydantic import BeforeValidator
 
-from squealpipe.methods.continuation import ContinuationSettings, ContinuationState
-from squealpipe.methods.cycles.branch_ends import (
-    BranchEnd,
-    BranchPoint,
-    CycleBranchSettings,
-)
-from squealpipe.methods.cycles.cycle_branch import follow_cycles
-from squealpipe.methods.cycles.cycle_equations import CycleEquations, cycle_algorithm
-from squealpipe.methods.cycles.cycles import Cycle
-from squealpipe.methods.cycles.labels import Label
 from squealpipe.parameters import TABLE, Parameters, is_finite_number
 from squealpipe.schema import Outcome, build
 from squealpipe.schema.cycles import CYCLE_BRANCH, LIMIT_CYCLE
 from squealpipe.schema.origin import recorded
-from squealpipe.solvers.a1.flow import A1Flow
-from squealpipe.tasks.cycles.cycle import (
-    T_SETTLE,
-    cycle_values,
-    find_cycle,
-    settled_state,
-    slow_time,
-)
-from squealpipe.tasks.cycles.onset import find_onset
+from squealpipe.systems.cycles.branch import Follower, Point, doubled_start, first_point
+from squealpipe.systems.cycles.event_map import Cycle
+from squealpipe.systems.cycles.labels import Label
+from squealpipe.tasks.cycles.cycle import cycle_from
+from squealpipe.tasks.cycles.onset import at, find_onset
+from squealpipe.tasks.cycles.scene import STATE, Scene
 from squealpipe.validation import Angle, Number, Whole, state_of
-
-ENDS = {
-    BranchEnd.arrived: Outcome.converged,
-    BranchEnd.returned: Outcome.returned,
-    BranchEnd.lost: Outcome.branch_lost,
-    BranchEnd.point_limit: Outcome.point_limit,
-    BranchEnd.at_rest: Outcome.equilibrium,
-    BranchEnd.closed: Outcome.closed,
-    BranchEnd.retraced: Outcome.retraced,
-    BranchEnd.shorter: Outcome.tongue_end,
-    BranchEnd.singular: Outcome.singular_geometry,
-    BranchEnd.tangency: Outcome.tangency,
-}
 
 
 def _start(value: Any) -> Any:
@@ -63,7 +35,6 @@ def _start(value: Any) -> Any:
 Start = Annotated[Any, BeforeValidator(_start)]
 _SAME_VALUE = 1e-11
 """Two values of a parameter as close as this, relative, are one to a branch."""
-_STATE = ("x", "y", "vx", "vy")
 
 
 @recorded(model="A1", method="pseudo-arclength continuation of the return map")
@@ -109,36 +80,36 @@ def cycle_branch(
     """
     begin = _value(params, alpha1, alpha2, parameter)
     _check(params, parameter, begin, to)
-
-    def system_at(value: float) -> A1Flow:
-        return _system(params, alpha1, alpha2, parameter, value, unit)
-
-    unit = max(abs(begin), abs(to))
-    settings = CycleBranchSettings(low=min(begin, to), high=max(begin, to), max_points=n_points)
-    steps = ContinuationSettings(
-        first_step=1e-3,
-        shortest_step=1e-8,
-        longest_step=0.03,
-        tolerance=1e-11,
-        stagnant=1e-9,
-        max_points=n_points,
-    )
+    scene = Scene(params, alpha1, alpha2, follow=parameter)
+    scale = scene.units[parameter]
+    low, high = sorted((begin / scale, to / scale))
+    follower = Follower(low, high, n_points)
+    outcome = Outcome.no_convergence
     if isinstance(start, str):
-        first = find_onset(system_at, begin, to, unit, steps)
-        outcome = Outcome.no_convergence if first is None else Outcome.converged
+        first = find_onset(scene, begin / scale, to / scale)
     else:
-        cycle, outcome = _first_cycle(system_at(begin), start)
-        first = None if cycle is None else _direction(cycle, system_at, begin, to, unit, steps)
+        cycle, outcome = _first_cycle(scene, start)
+        first = None
+        if cycle is not None:
+            first = first_point(cycle, parameter, to / scale, tied=scene.tied)
+            outcome = Outcome.no_convergence
     if first is None:
-        return _dataset([], outcome, (alpha1, alpha2), parameter)
-    equations, state = first
-    points, end = follow_cycles(equations, state, settings, steps)
+        return _dataset(scene, [], outcome)
+    end = follower.run(*first)
     if doubled:
-        return _dataset(
-            *_doubled(points, system_at, unit, settings, steps),
-            (alpha1, alpha2), parameter,
-        )  # fmt: skip
-    return _dataset(points, ENDS[end], (alpha1, alpha2), parameter)
+        flips = (p for p in follower.points if p.label == Label.period_doubling)
+        first = next((found for p in flips if (found := doubled_start(p))), None)
+        if first is None:
+            return _dataset(scene, [], Outcome.no_doubling)
+        follower = Follower(low, high, n_points)
+        end = follower.run(*first)
+    last = follower.points[-1]
+    there = at(scene, last.parameter)
+    if end == Outcome.branch_lost and there.is_singular(last.cycle.parts.path.series[:, :2, 0]):
+        end = Outcome.singular_geometry
+    elif end == Outcome.converged and math.isclose(last.parameter, begin / scale, rel_tol=1e-11):
+        end = Outcome.returned
+    return _dataset(scene, follower.points, end)
 
 
 def _check(params: Parameters, parameter: str, begin: float, to: float) -> None:
@@ -161,24 +132,8 @@ def _value(params: Parameters, alpha1: float, alpha2: float, parameter: str) -> 
     return float(values[parameter])
 
 
-def _system(
-    params: Parameters, alpha1: float, alpha2: float, parameter: str, value: float, unit: float
-) -> A1Flow:
-    angles = {"alpha1": alpha1, "alpha2": alpha2}
-    if parameter in angles:
-        angles[parameter] = value
-    else:
-        params = params.with_(**{parameter: value})
-    return A1Flow(params, **angles, follow=parameter, unit=unit)
-
-
-def _first_cycle(system: A1Flow, start: Any) -> tuple[Cycle | None, Outcome]:
-    if start is None:
-        settled, outcome = settled_state(system, T_SETTLE * slow_time(system.params))
-        if settled is None:
-            return None, outcome
-        state = settled
-    elif isinstance(start, xr.Dataset):
+def _first_cycle(scene: Scene, start: Any) -> tuple[Cycle | None, Outcome]:
+    if isinstance(start, xr.Dataset):
         if start.attrs.get("schema") != LIMIT_CYCLE.name:
             raise ValueError(
                 f"start holds {', '.join(map(str, start.data_vars)) or 'nothing'}: a dataset of "
@@ -186,79 +141,13 @@ def _first_cycle(system: A1Flow, start: Any) -> tuple[Cycle | None, Outcome]:
             )
         if Outcome(int(start.outcome)) not in {Outcome.converged, Outcome.family_member}:
             return None, Outcome(int(start.outcome))
-        state = np.array([float(start[f"{name}_start"]) for name in _STATE])
-    else:
-        state = start
-    return find_cycle(system, state)
+        start = np.array([float(start[f"{name}_start"]) for name in STATE])
+    return cycle_from(scene, start)
 
 
-def equations_at(cycle: Cycle, system_at: Callable[[float], A1Flow], unit: float) -> CycleEquations:
-    """The return map around a cycle, scaled by it."""
-    return CycleEquations(
-        system_at=system_at,
-        scale=cycle.scale,
-        time=cycle.period,
-        unit=unit,
-        reference=cycle.state,
-        normal=cycle.heading / np.linalg.norm(cycle.heading),
-    )
-
-
-def _direction(
-    cycle: Cycle,
-    system_at: Callable[[float], A1Flow],
-    begin: float,
-    to: float,
-    unit: float,
-    steps: ContinuationSettings,
-) -> tuple[CycleEquations, ContinuationState] | None:
-    """The branch's tangent at its first cycle, towards ``to``."""
-    equations = equations_at(cycle, system_at, unit)
-    point = equations.pack(cycle.state, cycle.period, begin)
-    ahead = np.zeros(6)
-    ahead[5] = math.copysign(1.0, to - begin)
-    state = cycle_algorithm(steps).solve(equations, point, ahead, steps.first_step)
-    return None if state is None else (equations, state)
-
-
-def _doubled(
-    points: list[BranchPoint],
-    system_at: Callable[[float], A1Flow],
-    unit: float,
-    settings: CycleBranchSettings,
-    steps: ContinuationSettings,
-) -> tuple[list[BranchPoint], Outcome]:
-    """The branch of twice the period from the first period doubling."""
-    for point in points:
-        if point.label != Label.period_doubling:
-            continue
-        cycle = replace(point.cycle, period=2.0 * point.cycle.period)
-        values, vectors = np.linalg.eig(
-            point.cycle.passage.derivative * cycle.scale / cycle.scale[:, None]
-        )
-        flip = np.real(vectors[:, int(np.argmin(np.abs(values + 1.0)))])
-        equations = equations_at(cycle, system_at, unit)
-        start = equations.pack(cycle.state, cycle.period, point.parameter)
-        direction = np.zeros(6)
-        direction[:4] = flip - equations.normal * (equations.normal @ flip)
-        direction /= np.linalg.norm(direction)
-        algorithm = cycle_algorithm(steps)
-        for length in (1e-3, 3e-3, 1e-2):
-            guess = start + length * direction
-            state = algorithm.solve(equations, guess, direction, steps.first_step)
-            if state is not None:
-                followed, end = follow_cycles(equations, state, settings, steps)
-                return followed, ENDS[end]
-    return [], Outcome.no_doubling
-
-
-def _dataset(
-    points: list[BranchPoint],
-    end: Outcome,
-    angles: tuple[float, float],
-    parameter: str,
-) -> xr.Dataset:
-    rows = [cycle_values(point.cycle) for point in points]
+def _dataset(scene: Scene, points: list[Point], end: Outcome) -> xr.Dataset:
+    parameter = str(scene.follow)
+    rows = [scene.numbers(point.cycle) for point in points]
     names = ("multiplier_real", "multiplier_imag")
     empty: dict[str, Any] = {name: np.empty((0, 4)) for name in names}
     columns = {name: np.array([row[name] for row in rows]) for name in rows[0]} if rows else empty
@@ -269,11 +158,12 @@ def _dataset(
             if entry.dims == ("point",) and not entry.optional
         ]
         columns |= {name: np.empty(0) for name in scalars}
-    states = np.array([point.cycle.state for point in points]).reshape(-1, 4)
-    followed = np.array([point.parameter for point in points])
-    fixed = {"alpha1": angles[0], "alpha2": angles[1]}
+    starts = [point.cycle.start()[0] * scene.state_units for point in points]
+    states = np.array(starts).reshape(-1, 4)
+    followed = np.array([point.parameter for point in points]) * scene.units[parameter]
+    fixed = {"alpha1": scene.alpha1, "alpha2": scene.alpha2}
     outcomes = [
-        Outcome.family_member if point.cycle.is_family_member else Outcome.converged
+        Outcome.family_member if scene.is_family_member(point.cycle) else Outcome.converged
         for point in points
     ]
     return build(
@@ -283,8 +173,8 @@ def _dataset(
             **{name: np.full(len(points), value) for name, value in fixed.items()},
             parameter: followed,
             "label": [point.label for point in points],
-            "events": [len(point.cycle.passage.event_kinds) for point in points],
-            **{f"{name}_start": states[:, i] for i, name in enumerate(_STATE)},
+            "events": [scene.count(point.cycle) for point in points],
+            **{f"{name}_start": states[:, i] for i, name in enumerate(STATE)},
             "outcome": outcomes,
             "end": end,
         },

@@ -7,31 +7,19 @@ from typing import Annotated, Any
 
 import numpy as np
 import xarray as xr
-from scipy.optimize import root
 
-from squealpipe.codes import Regime
-from squealpipe.methods.cycles.cycles import Cycle, common_scale, find_returns, solve_cycle
-from squealpipe.methods.cycles.event_flow import Vector, flow, sample_path
+from squealpipe.methods.taylor.loop import STOPPED
 from squealpipe.parameters import Parameters
 from squealpipe.schema import Outcome, build
 from squealpipe.schema.cycles import LIMIT_CYCLE
 from squealpipe.schema.origin import recorded
-from squealpipe.solvers.a1.flow import ULP, A1Flow
+from squealpipe.systems.cycles.cycle import SAMPLES, find_cycle
+from squealpipe.systems.cycles.event_map import FREE, Cycle
+from squealpipe.tasks.cycles.scene import STATE, Scene
 from squealpipe.validation import Angle, Positive, State, one_of
 
 T_SETTLE = 2000.0
 """Default time, in units of √(m/min(k1, k2)), after which a run counts as settled."""
-_WINDOWS = (40.0, 160.0)
-"""Times within which a return is looked for, in the same units."""
-_NEAR = 0.05
-"""A return this close, over the extent of the motion, ends the search for a better one."""
-_FAR = 0.3
-"""Newton's method has left the motion that it started from, over its period and extent."""
-_TRIES = 4
-_AT_REST = 1e-9
-_MOST_EVENTS = 1_000_000
-_MOST_ROUNDS = 100
-SAMPLES = 400
 
 SCALARS = (
     "period",
@@ -46,7 +34,7 @@ SCALARS = (
 )
 
 
-@recorded(method="Newton on the return map, events located")
+@recorded(method="Newton on the legs between located events")
 def limit_cycle(
     params: Parameters,
     alpha1: Angle,
@@ -58,9 +46,8 @@ def limit_cycle(
 ) -> xr.Dataset:
     """A periodic motion of A1 with every event located, its stability included.
 
-    Newton's method on the return map; its derivative comes from the variational equations, with
-    the saltation matrix at each event. Without damping cycles come in families: the member nearest
-    to the guess is returned with the outcome ``family_member``.
+    Newton's method on the legs between events, with exact derivatives. Without damping cycles come
+    in families: the member nearest to the guess is returned with the outcome ``family_member``.
 
     Args:
         params: physical parameters.
@@ -79,188 +66,74 @@ def limit_cycle(
     Raises:
         ValueError: an argument is not allowed.
     """
-    system = A1Flow(params, alpha1, alpha2)
-    if guess is None:
-        settle = T_SETTLE * slow_time(params) if t_settle is None else t_settle
-        state, outcome = settled_state(system, settle)
-        if state is None:
-            return cycle_dataset(None, outcome, alpha1, alpha2)
-    else:
-        state = guess
-    cycle, outcome = find_cycle(system, state)
-    return cycle_dataset(cycle, outcome, alpha1, alpha2)
+    scene = Scene(params, alpha1, alpha2)
+    cycle, outcome = cycle_from(scene, guess, t_settle)
+    return cycle_dataset(scene, cycle, outcome)
 
 
-def slow_time(params: Parameters) -> float:
-    """√(m/min(k1, k2)), s: motions of the softer spring settle last, whichever it is."""
-    return math.sqrt(params.mass / min(params.k1, params.k2))
+def cycle_from(
+    scene: Scene, guess: Any = None, t_settle: float | None = None
+) -> tuple[Cycle | None, Outcome]:
+    """A cycle near a state, or from a run from rest (without a guess), and its outcome."""
+    state = np.zeros(4) if guess is None else np.asarray(guess, float) / scene.state_units
+    settle = T_SETTLE * scene.slow_time
+    cycle, outcome = find_cycle(
+        scene.system,
+        scene.values,
+        state,
+        guess=guess is not None,
+        periods=0,
+        t_settle=settle if t_settle is None else t_settle / scene.params.time_unit,
+        unit=scene.slow_time,
+    )
+    if cycle is not None and scene.is_family_member(cycle):
+        return cycle, Outcome.family_member
+    if outcome == Outcome.not_finite and scene.is_singular(state[:2]):
+        outcome = Outcome.singular_geometry
+    return cycle, Outcome.singular_geometry if outcome >= STOPPED else Outcome(outcome)
 
 
-def settled_state(system: A1Flow, time: float) -> tuple[Vector | None, Outcome]:
-    """The state that a run from rest has reached at some time, s; None with the reason."""
-    run = flow(system, np.zeros(4), time, derivative=False, max_events=_MOST_EVENTS)
-    if not np.isfinite(run.state).all():
-        return None, Outcome.not_finite
-    if not run.complete:
-        many = len(run.event_times) >= _MOST_EVENTS
-        return None, Outcome.event_limit if many else Outcome.step_limit
-    return run.state, Outcome.converged
-
-
-def find_cycle(system: A1Flow, state: Vector) -> tuple[Cycle | None, Outcome]:
-    """The cycle near a state, and its outcome."""
-    unit = slow_time(system.params)
-    trial = flow(system, state, unit, derivative=False, keep=True)
-    if not np.isfinite(trial.state).all():
-        at_pivot = system.is_singular(trial)
-        return None, Outcome.singular_geometry if at_pivot else Outcome.not_finite
-    tried: list[float] = []
-    for window in _WINDOWS:
-        returns = find_returns(system, state, window * unit)
-        if returns and returns[0][1] == 0.0:
-            return None, Outcome.equilibrium
-        last = window == _WINDOWS[-1]
-        for time, distance in returns[:_TRIES]:
-            if distance > (_FAR if last else _NEAR):
-                break
-            if any(abs(time - other) < 1e-3 * time for other in tried):
-                continue
-            tried.append(time)
-            cycle = least_cycle(system, state, time)
-            if cycle is None:
-                continue
-            if np.abs(cycle.extent[1] - cycle.extent[0]).max() < _AT_REST * _size(cycle):
-                return None, Outcome.equilibrium
-            return cycle, Outcome.family_member if cycle.is_family_member else Outcome.converged
-    # only now: a smooth cycle about a stable state of rest may seem to shrink from sample to sample
-    rests = any(_comes_to_rest(system, state, window * unit) for window in _WINDOWS)
-    return None, Outcome.equilibrium if rests else Outcome.no_convergence
-
-
-def _comes_to_rest(system: A1Flow, state: Vector, window: float) -> bool:
-    """Whether a motion shrinks towards a stable state of rest, which none does without damping."""
-    passage = flow(system, state, window, derivative=False, keep=True)
-    if passage.event_kinds or system.has_families:
-        return False
-    p, time = system.params, slow_time(system.params)
-    scale = p.preload * np.array([1.0, 1.0, 1.0 / time, 1.0 / time])
-    path = sample_path(passage.segments, np.linspace(0.0, window, 400)) / scale
-    first, second = (np.ptp(half, axis=0).max() for half in np.split(path, 2))
-
-    def state_at(place: Vector) -> Vector:
-        return np.asarray(scale * np.array([place[0], place[1], 0.0, 0.0]))
-
-    def pull(place: Vector) -> Vector:
-        return np.asarray((system.velocity(passage.regime, state_at(place)) * time / scale)[2:])
-
-    middle = path[200:, :2].mean(axis=0)
-    rest = root(pull, middle, tol=1e-13)
-    round_off = ULP * (1.0 + max(p.length1, p.length2) / p.preload)
-    # the solver may deny success of a place that round-off keeps from being better
-    found = np.abs(rest.fun).max() <= 64.0 * round_off + 1e-9 * second
-    near = np.abs(rest.x - middle).max() <= 0.5 * second + 1e-9 * _reach(path)
-    if not (found and near):
-        return False
-    growth = np.linalg.eigvals(system.jacobian(passage.regime, state_at(rest.x))).real.max()
-    return bool(growth < 0.0 and second < first + 1e-12 * _reach(path) + 64.0 * round_off)
-
-
-def _reach(path: Vector) -> float:
-    return float(np.abs(path).max()) + 1e-300
-
-
-def _size(cycle: Cycle) -> float:
-    return float(np.abs(cycle.state[:2]).max()) + 1e-300
-
-
-def least_cycle(system: A1Flow, state: Vector, time: float) -> Cycle | None:
-    """The cycle from a return, described from outside stick and by its least period."""
-    passage = flow(system, state, time, derivative=False, keep=True)
-    free = [part for part in passage.segments if not system.holds(part.regime)]
-    if not free:
-        return None
-    longest = max(free, key=lambda part: part.times[-1] - part.times[0])
-    middle = 0.5 * float(longest.times[0] + longest.times[-1])
-    place = sample_path(passage.segments, np.array([middle]))[0]
-    scale = common_scale(sample_path(passage.segments, np.linspace(0.0, time, 200)))
-    cycle = solve_cycle(system, place, time, scale)
-    if cycle is not None and not (
-        abs(cycle.period - time) < _FAR * time
-        and np.abs((cycle.state - place) / scale).max() < _FAR
-    ):
-        return None
-    rounds = 1 if cycle is None else _rounds(cycle)
-    if cycle is not None and rounds > 1:
-        cycle = solve_cycle(system, cycle.state, cycle.period / rounds, scale) or cycle
-    return cycle
-
-
-def _rounds(cycle: Cycle) -> int:
-    """How many times a cycle runs through a shorter one: 1 if its period is the least."""
-    phases, parts = np.arange(8) / 8, np.arange(2, _MOST_ROUNDS + 1)
-    before = sample_path(cycle.segments, cycle.period * phases)
-    later = (phases + 1.0 / parts[:, None]) % 1.0
-    after = sample_path(cycle.segments, cycle.period * later.ravel()).reshape(len(parts), 8, -1)
-    same = (np.abs(after - before) < 1e-6 * cycle.scale).all(axis=(1, 2))
-    return int(parts[same].max(initial=1))
-
-
-def cycle_values(cycle: Cycle) -> dict[str, Any]:
-    """The scalars of a dataset, and the multipliers."""
-    (x_min, y_min), (x_max, y_max) = cycle.extent
-    times = dict.fromkeys(Regime, 0.0)
-    for part in cycle.segments:
-        times[Regime(part.regime)] += float(part.times[-1] - part.times[0])
-    p = cycle.system.params  # type: ignore[attr-defined]
-    return {
-        "period": cycle.period,
-        "x_min": x_min,
-        "x_max": x_max,
-        "y_min": y_min,
-        "y_max": y_max,
-        "contact_fraction": 1.0 - times[Regime.separated] / cycle.period,
-        "stick_fraction": times[Regime.stick] / cycle.period,
-        "least_contact_force": p.k3 * max(p.preload - y_max, 0.0),
-        "residual": cycle.closing_error,
-        "stable": int(cycle.is_stable and not cycle.is_family_member),
-        "multiplier_real": cycle.multipliers.real,
-        "multiplier_imag": cycle.multipliers.imag,
-    }
-
-
-def cycle_dataset(
-    cycle: Cycle | None, outcome: Outcome, alpha1: float, alpha2: float
-) -> xr.Dataset:
+def cycle_dataset(scene: Scene, cycle: Cycle | None, outcome: Outcome) -> xr.Dataset:
     """A limit cycle, or the reason why there is none, as a dataset."""
-    names = ("x", "y", "vx", "vy")
+    units, clock = scene.state_units, scene.params.time_unit
     if cycle is None:
         values: dict[str, Any] = dict.fromkeys(SCALARS, math.nan)
         values |= {"stable": 0, "multiplier_real": np.full(4, np.nan)}
         values["multiplier_imag"] = np.full(4, np.nan)
         start, times, path = np.full(4, np.nan), np.empty(0), np.empty((0, 4))
-        event_times, kinds, states, regimes = [], [], np.empty((0, 4)), []
-        regime_path = np.empty(0, np.int8)
+        event_times, kinds, states = np.empty(0), [], np.empty((0, 4))
+        regimes, regime_path = [], []
     else:
-        values, start, passage = cycle_values(cycle), cycle.state, cycle.passage
-        event_times, kinds, regimes = passage.event_times, passage.event_kinds, passage.regimes
-        states = np.array(passage.event_states).reshape(-1, 4)
+        values, start = scene.numbers(cycle), cycle.start()[0] * units
         times = np.linspace(0.0, cycle.period, SAMPLES + 1)
-        path = sample_path(cycle.segments, times)
-        regime_path = np.array(regimes)[np.searchsorted(event_times, times, side="right")]
+        path, found = cycle.states_at((cycle.phase + times) % cycle.period)
+        path, regime_path = path * units, [scene.regimes[regime] for regime in found]
+        ends = (cycle.clocks + cycle.parts.durations - cycle.phase) % cycle.period
+        order = [
+            i
+            for i in np.argsort(ends)
+            if cycle.map.events[i].switch != FREE
+            and scene.kinds[cycle.map.events[i].kind] is not None
+        ]
+        event_times = ends[order] * clock
+        kinds = [scene.kinds[cycle.map.events[i].kind] for i in order]
+        states = np.array([cycle.parts.crossings[i].after for i in order]).reshape(-1, 4) * units
+        regimes = [regime_path[0], *(scene.regimes[cycle.map.events[i].after] for i in order)]
+        times = times * clock
     return build(
         LIMIT_CYCLE,
         {
             **values,
             "event_time": event_times,
             "event_kind": kinds,
-            **{f"event_{name}": states[:, i] for i, name in enumerate(names)},
+            **{f"event_{name}": states[:, i] for i, name in enumerate(STATE)},
             "segment_regime": regimes,
-            **{f"{name}_start": start[i] for i, name in enumerate(names)},
+            **{f"{name}_start": start[i] for i, name in enumerate(STATE)},
             "time": times,
-            **{f"{name}_path": path[:, i] for i, name in enumerate(names)},
+            **{f"{name}_path": path[:, i] for i, name in enumerate(STATE)},
             "regime_path": regime_path,
-            "alpha1": alpha1,
-            "alpha2": alpha2,
+            "alpha1": scene.alpha1,
+            "alpha2": scene.alpha2,
             "outcome": outcome,
         },
         {"multiplier": np.arange(1, 5)},

@@ -2,53 +2,45 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import brentq
 
-from squealpipe.methods.continuation import ContinuationSettings, ContinuationState
-from squealpipe.methods.cycles.cycle_equations import CycleEquations, cycle_algorithm
-from squealpipe.methods.cycles.event_flow import Vector
-from squealpipe.solvers.a1.flow import A1Flow
+from squealpipe.methods.continuation import ContinuationState, PseudoArclength
+from squealpipe.models.a1_automaton import A1Automaton
 from squealpipe.solvers.a1.sliding import sliding_equilibrium, sliding_regime
+from squealpipe.systems.cycles.branch import STEPS
+from squealpipe.systems.cycles.event_map import FREE, Cycle, Event, EventMap, Section
+from squealpipe.systems.cycles.flow import Flow, Vector
+from squealpipe.tasks.cycles.scene import Scene
 
 _SCAN = 201
 _FIRST_AMPLITUDE = 0.02
 """Of the first cycle, over the distance of the equilibrium from contact loss."""
 
 
-def sliding_eigenvalues(
-    system: A1Flow, equilibrium: Vector
-) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]:
-    """Eigenvalues and eigenvectors of small motions about steady sliding."""
-    regime = sliding_regime(system.a1)
-    jacobian = system.jacobian(regime, equilibrium)
-    values, vectors = np.linalg.eig(jacobian)
-    return values.astype(np.complex128), vectors.astype(np.complex128)
-
-
-def find_onset(
-    system_at: Callable[[float], A1Flow],
-    begin: float,
-    to: float,
-    unit: float,
-    steps: ContinuationSettings,
-) -> tuple[CycleEquations, ContinuationState] | None:
+def find_onset(scene: Scene, begin: float, to: float) -> tuple[ContinuationState, Cycle] | None:
     """A small cycle on the branch born at the first Hopf point from ``begin`` towards ``to``.
 
-    Returns:
-        The equations around it and a state whose tangent points to larger amplitude, or None where
-        steady sliding keeps its stability, or loses it by divergence.
+    The values are in the scene's units; the tangent points to larger amplitude. None where steady
+    sliding keeps its stability, or loses it by divergence.
     """
+    flow = Flow(scene.system)
+
+    def sliding(value: float) -> tuple[Vector, Vector, int, dict[str, float]] | None:
+        """Equilibrium, slopes, regime and parameters at a value."""
+        here = at(scene, value)
+        a1 = A1Automaton(here.scaled, here.alpha1, here.alpha2)
+        rest = sliding_equilibrium(a1)
+        if rest is None:
+            return None
+        regime = scene.regimes.index(sliding_regime(a1))
+        return rest, flow.jacobian(here.values, regime, rest), regime, here.values
 
     def growth(value: float) -> float:
-        system = system_at(value)
-        equilibrium = sliding_equilibrium(system.a1)
-        if equilibrium is None:
-            return np.nan
-        return float(sliding_eigenvalues(system, equilibrium)[0].real.max())
+        found = sliding(value)
+        return np.nan if found is None else float(np.linalg.eigvals(found[1]).real.max())
 
     grid = np.linspace(begin, to, _SCAN)
     rates = np.array([growth(float(value)) for value in grid])
@@ -56,34 +48,50 @@ def find_onset(
     if not len(crossing):
         return None
     low, high = grid[crossing[0]], grid[crossing[0] + 1]
-    onset = float(brentq(growth, low, high, xtol=1e-14 * unit, rtol=1e-14))
-    system = system_at(onset)
-    equilibrium = sliding_equilibrium(system.a1)
-    if equilibrium is None:
+    onset = float(brentq(growth, low, high, xtol=1e-14 * max(abs(begin), abs(to)), rtol=1e-14))
+    found = sliding(onset)
+    if found is None:
         return None
-    values, vectors = sliding_eigenvalues(system, equilibrium)
-    mode = int(np.argmax(values.real + (values.imag > 0.0)))
-    omega = float(values[mode].imag)
+    rest, slopes, regime, values = found
+    roots, vectors = np.linalg.eig(slopes)
+    mode = int(np.argmax(roots.real + (roots.imag > 0.0)))
+    omega = float(roots[mode].imag)
     if omega <= 0.0:
         return None
     shape = np.real(vectors[:, mode] / np.abs(vectors[:2, mode]).max())
-    room = system.params.preload - equilibrium[1]
-    amplitude = _FIRST_AMPLITUDE * room
+    room = 1.0 - rest[1]
     size = np.array([1.0, 1.0, omega, omega]) * room
-    regime = sliding_regime(system.a1)
-    state = equilibrium + amplitude * shape
-    velocity = system.velocity(regime, state) / size
-    equations = CycleEquations(
-        system_at=system_at,
-        scale=size,
-        time=2.0 * np.pi / omega,
-        unit=unit,
-        reference=state,
-        normal=velocity / np.linalg.norm(velocity),
+    state = rest + _FIRST_AMPLITUDE * room * shape
+    heading = flow.field(values, regime, state, 0.0) / size
+    return _of_amplitude(scene, values, state, (regime, heading, size, shape, omega))
+
+
+def at(scene: Scene, value: float) -> Scene:
+    """The scene at another value, in its units, of what is followed."""
+    name = str(scene.follow)
+    if name == "alpha1":
+        return replace(scene, alpha1=value)
+    if name == "alpha2":
+        return replace(scene, alpha2=value)
+    return replace(scene, params=scene.scaled.with_(**{name: value}))
+
+
+def _of_amplitude(
+    scene: Scene, values: dict[str, float], state: Vector, mode: tuple
+) -> tuple[ContinuationState, Cycle] | None:
+    """The cycle of a given amplitude; its parameter is an unknown."""
+    regime, heading, size, shape, omega = mode
+    name = str(scene.follow)
+    flow = Flow(scene.system, (name,), scene.tied)
+    event = Event(FREE, FREE, 1.0, regime, regime, FREE)
+    section = Section(state, heading / np.linalg.norm(heading))
+    equations = EventMap(
+        flow, (event,), values, size, 2.0 * np.pi / omega, np.array([max(abs(values[name]), 1e-3)]),
+        section=section,
+    )  # fmt: skip
+    guess = equations.pack(state[None], np.array([equations.time]), 0.0, np.array([values[name]]))
+    direction = np.concatenate([shape / size, np.zeros(2)])
+    found = PseudoArclength(STEPS, least_iterations=0, own_tangent=True).solve(
+        equations, guess, direction / np.linalg.norm(direction), 1e-3
     )
-    direction = np.zeros(6)
-    direction[:4] = shape / size
-    direction /= np.linalg.norm(direction)
-    guess = equations.pack(state, equations.time, onset)
-    state = cycle_algorithm(steps).solve(equations, guess, direction, steps.first_step)
-    return None if state is None else (equations, state)
+    return None if found is None else (found, Cycle.at(equations, found.point))

@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 from squealpipe.codes import Regime
-from squealpipe.methods.cycles.event_flow import flow
-from squealpipe.solvers.a1.flow import A1Flow
 from squealpipe.solvers.a1.reference import PARAMETERS, symbolic_automaton
 from tests.former import FORMER
+from tests.oracles.a1_flow import A1Flow
+from tests.oracles.event_flow import flow
 
 FOLLOWED = "k2"
 

@@ -6,14 +6,14 @@ import numpy as np
 import pytest
 from scipy.linalg import expm
 
-from squealpipe.methods.cycles.event_flow import flow
 from squealpipe.models.a1_automaton import A1Automaton
 from squealpipe.parameters import LAW_NAMES, Parameters
 from squealpipe.solvers.a1.ensemble import run_ensemble
-from squealpipe.solvers.a1.flow import A1Flow
 from squealpipe.solvers.a1.scaling import PHYSICAL
 from squealpipe.solvers.a1.sliding import sliding_equilibrium, sliding_jacobian
 from tests.former import FORMER
+from tests.oracles.a1_flow import A1Flow
+from tests.oracles.event_flow import flow
 
 T_END = 50.0
 WORST = {

@@ -8,11 +8,11 @@ import xarray as xr
 from scipy.optimize import root
 
 from squealpipe import cycle_branch, limit_cycle, simulate
-from squealpipe.methods.cycles.event_flow import Touch, flow
-from squealpipe.methods.cycles.labels import Label
 from squealpipe.schema import Outcome
-from squealpipe.solvers.a1.flow import A1Flow
+from squealpipe.systems.cycles.labels import Label
 from tests.former import FORMER
+from tests.oracles.a1_flow import A1Flow
+from tests.oracles.event_flow import Touch, flow
 
 PENDULUM = (0.4 * math.pi, 0.6 * math.pi)
 STICKING = FORMER.with_(belt_speed=1.0, damping1=0.02, damping2=0.02, k2=1.2)

@@ -1,6 +1,7 @@
 """Limit cycles of A1 and their branches, against published oscillators and differences."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -10,13 +11,16 @@ from scipy.optimize import brentq
 
 from squealpipe import cycle_branch, limit_cycle
 from squealpipe.laws.springs import geometry, linear_stiffness
-from squealpipe.methods.cycles.event_flow import flow
-from squealpipe.methods.cycles.labels import Label
 from squealpipe.schema import Outcome
-from squealpipe.solvers.a1.flow import A1Flow
-from squealpipe.tasks.cycles.cycle import least_cycle
+from squealpipe.systems.cycles.cycle import once_round
+from squealpipe.systems.cycles.event_map import Cycle
+from squealpipe.systems.cycles.labels import Label
+from squealpipe.tasks.cycles.cycle import cycle_from
+from squealpipe.tasks.cycles.scene import Scene
 from squealpipe.tasks.normal_form import exchanged
 from tests.former import FORMER
+from tests.oracles.a1_flow import A1Flow
+from tests.oracles.event_flow import flow
 
 ANGLES = (0.5 * math.pi, math.pi)
 
@@ -298,7 +302,11 @@ def test_branch_refuses_what_it_cannot_do(change, named):
 @pytest.mark.parametrize("rounds", [2, 3, 4, 6, 7, 8, 9, 25])
 def test_a_return_after_several_rounds_gives_the_least_period(rounds):
     params, angles = friction_oscillator(1.25, reach=1e4), ANGLES
-    once = limit_cycle(params, *angles, guess=(1.5, 0.25, 1.25, 0.0))
-    start = np.array([float(once[f"{name}_start"]) for name in ("x", "y", "vx", "vy")])
-    cycle = least_cycle(A1Flow(params, *angles), start, rounds * float(once.period))
+    once, _ = cycle_from(Scene(params, *angles), (1.5, 0.25, 1.25, 0.0))
+    parts = once.parts
+    several = replace(once.map, events=once.map.events * rounds, _latest=None)
+    point = several.pack(
+        np.tile(parts.states, (rounds, 1)), np.tile(parts.durations, rounds), 0.0, np.empty(0)
+    )
+    cycle = once_round(Cycle.at(several, point))
     np.testing.assert_allclose(cycle.period, once.period, rtol=1e-9)

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from squealpipe import cycle_branch, limit_cycle, simulate
-from squealpipe.methods.cycles.event_flow import Touch, flow
-from squealpipe.methods.cycles.labels import Label
 from squealpipe.schema import Outcome
-from squealpipe.solvers.a1.flow import A1Flow
+from squealpipe.systems.cycles.labels import Label
 from tests.former import FORMER
+from tests.oracles.a1_flow import A1Flow
+from tests.oracles.event_flow import Touch, flow
 
 STATE = ("x", "y", "vx", "vy")
 ONE_WAY = (FORMER.with_(damping1=0.02, damping2=0.02, belt_speed=1.0), 0.4, 0.6)

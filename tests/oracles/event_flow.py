@@ -1,7 +1,7 @@
 """The flow of a hybrid system with its derivative, through located events.
 
 Between events the derivative by the state and by one parameter is that of
-:mod:`squealpipe.methods.cycles.sensitivity`; at an event it is multiplied by the saltation
+:mod:`tests.oracles.step_derivatives`; at an event it is multiplied by the saltation
 matrix, which accounts for the shift of the event's time.
 """
 
@@ -18,8 +18,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import brentq
 
-from squealpipe.methods.cycles.sensitivity import step_derivatives
 from squealpipe.methods.taylor import taylor_compiler
+from tests.oracles.step_derivatives import step_derivatives
 
 Vector = NDArray[np.float64]
 TOLERANCE = 1e-16

@@ -1,4 +1,4 @@
-"""A1 as a flow with derivative: its automaton under :mod:`squealpipe.methods.cycles`."""
+"""A1 as a flow with derivative: its automaton under :mod:`tests.oracles.event_flow`."""
 
 from __future__ import annotations
 
@@ -12,7 +12,17 @@ from scipy.optimize import minimize_scalar
 from squealpipe.codes import Event, Regime
 from squealpipe.laws.friction_laws import coefficient
 from squealpipe.laws.springs import fixed_ends
-from squealpipe.methods.cycles.event_flow import (
+from squealpipe.models.a1_automaton import A1Automaton, EventKind
+from squealpipe.models.damped import is_undamped
+from squealpipe.parameters import Parameters
+from squealpipe.solvers.a1.reference import (
+    PARAMETERS,
+    SURFACES,
+    VARIED,
+    regime_values,
+    symbolic_automaton,
+)
+from tests.oracles.event_flow import (
     CompiledFlow,
     Passage,
     Segment,
@@ -23,17 +33,6 @@ from squealpipe.methods.cycles.event_flow import (
     compile_flow,
     sample_path,
     turning_points,
-)
-from squealpipe.models.a1_automaton import A1Automaton, EventKind
-from squealpipe.models.damped import is_undamped
-from squealpipe.models.refusals import refuse_own_laws
-from squealpipe.parameters import Parameters
-from squealpipe.solvers.a1.reference import (
-    PARAMETERS,
-    SURFACES,
-    VARIED,
-    regime_values,
-    symbolic_automaton,
 )
 
 ULP = 2.0**-52
@@ -60,7 +59,7 @@ def _compiled(law: str) -> CompiledFlow:
 
 
 class A1Flow:
-    """A1 at given parameters and angles, for :mod:`squealpipe.methods.cycles.event_flow`.
+    """A1 at given parameters and angles, for :mod:`tests.oracles.event_flow`.
 
     Args:
         params: physical parameters.
@@ -78,7 +77,6 @@ class A1Flow:
         follow: str | None = None,
         unit: float = 1.0,
     ) -> None:
-        refuse_own_laws(params, "a cycle of A1")
         self.params = params
         self.a1 = A1Automaton(params, alpha1, alpha2)
         self.has_families = is_undamped(params)

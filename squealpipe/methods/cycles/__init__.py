@@ -1,1 +1,0 @@
-"""Periodic motions of hybrid systems: flow with events, return map, branches."""
