@@ -350,6 +350,8 @@ class Follower:
     def _changed(self, line: _Line, found: list[tuple[float, Label]], last: float) -> Step | None:
         """A step to where the order of the events changes, and round that; None if unclear."""
         state, there = line.known[0.0][0], line.at(last)
+        if self._has_shrunk(there[1]):
+            return Step([Point(*there)], *there, end=Outcome.equilibrium)
         zero = {k: v for k, v in margins(there[1]).items() if abs(v) < 1e-7}
         label = label_of(there[1], zero)
         turned = _Turn(self.algorithm, line, last, there, zero).way_on()

@@ -83,7 +83,7 @@ def test_special_points_do_not_depend_on_units():
     )
     angles, guess = (1.823, 1.037), (-1.51915, 10.9181, 1.45042, -0.12146)
     branches = [
-        cycle_branch(given, *angles, parameter="alpha1", to=1.1, start=start, n_points=30)
+        cycle_branch(given, *angles, parameter="alpha1", to=1.1, start=start, n_points=36)
         for given, start in ((params, guess), (other, np.array(guess) * unit))
     ]
     special = [np.flatnonzero(branch.label > 0)[:-1] for branch in branches]
