@@ -1,8 +1,9 @@
 """The brake pad of A1 as a system: exact springs and dashpots, contact loss, friction with stick.
 
-``brake(law)`` is the system for one friction law and one contact law. Its parameters are those of
-``Parameters`` and both angles; the laws are those of :mod:`squealpipe.laws`. A table of friction or
-contact is regimes whose knots are switches, so that the field is smooth in each.
+``brake(law)`` is the system for one friction law, one contact law and one of A1's variants or A4.
+Its parameters are those of ``Parameters`` and both angles; the laws are those of
+:mod:`squealpipe.laws`. A table of friction or contact is regimes whose knots are switches, so that
+the field is smooth in each.
 """
 
 from __future__ import annotations
@@ -18,9 +19,11 @@ from squealpipe.laws.contact import normal_force
 from squealpipe.laws.contact_laws import LINEAR
 from squealpipe.laws.friction import stick_limit
 from squealpipe.laws.friction_laws import COULOMB
-from squealpipe.laws.springs import Geometry, fixed_ends
+from squealpipe.laws.springs import LONG, Geometry, fixed_ends
 from squealpipe.laws.tables import is_table, pieces_of
 from squealpipe.models import a1
+from squealpipe.models.refusals import WHY_A4, refuse_extensions
+from squealpipe.models.switching import VARIANT_RULES, Rules
 from squealpipe.parameters import NUMBERS_OF_A1, Parameters
 from squealpipe.systems.system import Switch, System
 
@@ -30,12 +33,22 @@ PIVOT_REACH2 = 1e-14
 """Squared distance from a pivot, in free lengths, below which the force's direction is lost."""
 
 
-def brake_of(params: Parameters, *, observed: bool = False) -> System:
+def brake_of(params: Parameters, model: str = "A1", *, observed: bool = False) -> System:
     """The system of some parameters; ``parameters_of_run`` gives its numbers."""
+    if model == "A4":
+        refuse_extensions(params, "model A4", WHY_A4)
+    one_mu = params.static_mu == params.mu
+    falls = params.friction_law in friction_laws.FALLING
     return brake(
-        params.friction_law,
+        COULOMB if one_mu and falls else params.friction_law,
         damped=params.damping1 + params.damping2 > 0,
         contact_law=contact_laws.relative(params.contact_law, params.preload),
+        model=model,
+        one_mu=one_mu,
+        long_springs=(
+            params.length1 > LONG * params.preload,
+            params.length2 > LONG * params.preload,
+        ),
         observed=observed,
     )
 
@@ -59,9 +72,12 @@ def brake(  # noqa: C901 (one short function for each force and surface)
     *,
     damped: bool = False,
     contact_law: str = LINEAR,
+    model: str = "A1",
+    one_mu: bool = False,
+    long_springs: tuple[bool, bool] = (False, False),
     observed: bool = False,
 ) -> System:
-    """A1 with one friction law and one contact law.
+    """A1, or a variant of it, with one friction law and one contact law.
 
     Args:
         friction_law: its name, or a table.
@@ -69,16 +85,25 @@ def brake(  # noqa: C901 (one short function for each force and surface)
         contact_law: its name, or a table over l_pre and the force there.
         observed: with what ensembles of A1 report beside the states: the angles around both fixed
             ends as states, and as outputs the squared distances from there and from r = 0.
+        model: a key of ``VARIANT_RULES``. Without stick, a run ends where the mass would stick, as
+            an accumulation of events.
+        one_mu: ``mu`` holds the mass too; ``static_mu`` is not read.
+        long_springs: which springs are longer than ``springs.LONG`` preload lengths.
+
+    Raises:
+        ValueError: friction as printed with a table.
     """
-    laws = _Laws(friction_law, contact_law)
+    rules = VARIANT_RULES[model]
+    laws = _Laws(friction_law, contact_law, rules, one_mu=one_mu)
     default = Parameters(friction_law=friction_law, contact_law=contact_law)
     defaults = {name: getattr(default, name) for name in NUMBERS_OF_A1}
 
     def pull(s: Any, p: Any, r: Any) -> Any:
         q, g = laws.of(p, r)
         return a1.suspension_force(
-            s.x, s.y, s.vx, s.vy, q, g, linear_springs=False, dashpots=damped
-        )[0]
+            s.x, s.y, s.vx, s.vy, q, g,
+            linear_springs=rules.linear_springs, long_springs=long_springs, dashpots=damped,
+        )[0]  # fmt: skip
 
     def force(t: Any, s: Any, p: Any, r: Any) -> Any:
         return r.contact * normal_force(s.y, s.vy, laws.of(p, r)[0])
@@ -91,6 +116,7 @@ def brake(  # noqa: C901 (one short function for each force and surface)
         ax, ay = a1.acceleration(
             s.x, s.y, s.vx, s.vy, *laws.of(p, r),
             contact=r.contact, direction=r.direction, stick=r.stick, dashpots=damped,
+            linear_springs=rules.linear_springs, long_springs=long_springs,
         )  # fmt: skip
         rates = {"x": s.vx, "y": s.vy, "vx": ax, "vy": ay}
         if observed:
@@ -145,7 +171,7 @@ def brake(  # noqa: C901 (one short function for each force and surface)
         start=dict.fromkeys(states, 0.0),
         starts_in=laws.starts(free, on_belt, lambda t, s, p, r: pull(s, p, r)),
         outputs=outputs,
-        stops={"pivot1": pivot(0), "pivot2": pivot(1)},
+        stops={} if rules.linear_springs else {"pivot1": pivot(0), "pivot2": pivot(1)},
         time_scale=lambda p: (p.mass / p.k1) ** 0.5,
     )
 
@@ -153,8 +179,11 @@ def brake(  # noqa: C901 (one short function for each force and surface)
 class _Laws:
     """Regimes and switches of a friction law and a contact law, one or several pieces each."""
 
-    def __init__(self, friction_law: str, contact_law: str) -> None:
+    def __init__(self, friction_law: str, contact_law: str, rules: Rules, *, one_mu: bool) -> None:
+        if not rules.drags and (is_table(friction_law) or is_table(contact_law)):
+            raise ValueError("friction as printed takes no tables; give a law by its name")
         self.friction_law, self.contact_law = friction_law, contact_law
+        self.rules, self.one_mu = rules, one_mu
         self.frictions: list[dict[str, float]] = [{}]
         self.contacts: list[dict[str, float]] = [{}]
         if is_table(friction_law):
@@ -166,6 +195,10 @@ class _Laws:
         """Parameters as the laws read them, and direction cosines."""
         q = SimpleNamespace(**{name: getattr(p, name) for name in NUMBERS_OF_A1})
         q.friction_law, q.contact_law = self.friction_law, self.contact_law
+        if self.one_mu:
+            q.static_mu = q.mu
+        if not self.rules.drags:
+            q.mu, q.static_mu = -q.mu, -q.static_mu
         if is_table(self.friction_law):
             q.friction_law = friction_laws.Piece(r.mu_start, (r.mu_c0, r.mu_c1, r.mu_c2, r.mu_c3))
         if is_table(self.contact_law):
@@ -183,7 +216,8 @@ class _Laws:
         """Kind and pieces of each regime in contact."""
         for j in range(len(self.contacts)):
             yield from ((kind, i, j) for i in range(len(self.frictions)) for kind in SLIP)
-            yield "stick", 0, j
+            if self.rules.sticks:
+                yield "stick", 0, j
 
     def regimes(self) -> dict[str, dict[str, float]]:
         """Regimes and their constants."""
@@ -201,6 +235,8 @@ class _Laws:
     @property
     def apart(self) -> list[str]:
         """Regimes without contact; with a dashpot also within the spring's free length."""
+        if not self.rules.separates:
+            return []
         return ["separated", *(["released"] * (self.contact_law == "dashpot"))]
 
     def landing(self, kind: str) -> list[Any]:
@@ -208,7 +244,7 @@ class _Laws:
 
         def beyond(name: str, i: int) -> Any:
             def condition(t: Any, s: Any, p: Any, r: Any) -> Any:
-                lag = SLIP[name] * (p.belt_speed - s.vx)
+                lag = SLIP[name] * (p.belt_speed - s.vx * self.rules.reverses)
                 return lag - self.frictions[i]["mu_start"] * p.friction_speed if i else lag
 
             return condition
@@ -219,6 +255,8 @@ class _Laws:
 
     def contact_switches(self, free: Any) -> list[Switch]:
         """Where contact is lost and found."""
+        if not self.rules.separates:
+            return []
         first = [self.name(*each) for each in self.in_contact() if each[2] == 0]
         if self.contact_law != "dashpot":
 
@@ -247,6 +285,8 @@ class _Laws:
 
     def belt_switches(self, on_belt: Any, holds: Any, limit: Any, pull: Any) -> Iterator[Switch]:
         """Where the mass reaches belt speed, and where stick ends."""
+        if not self.rules.reverses:
+            return
         several = len(self.contacts) > 1
         for j in range(len(self.contacts)):
             slower, faster, stick = (
@@ -258,12 +298,14 @@ class _Laws:
                 leaves=(slower, faster),
                 when=lambda t, s, p, r: r.direction * on_belt(t, s, p, r),
                 to=[
-                    (stick, holds, "stick"),
+                    *[(stick, holds, "stick")] * self.rules.sticks,
                     (faster, lambda t, s, p, r: r.direction, "reversal"),
                     (slower, None, "reversal"),
                 ],
                 reset=lambda t, s, p, r: {"vx": p.belt_speed},
             )
+            if not self.rules.sticks:
+                continue
             yield Switch(
                 f"slip{tail}",
                 stick,
@@ -310,13 +352,14 @@ class _Laws:
 
         At belt speed it is stick, or slip to the side that the springs pull to.
         """
-        found: list[Any] = [("separated", free)]
-        found += [(name, None) for name in self.apart[1:]]
+        found: list[Any] = [(name, None if i else free) for i, name in enumerate(self.apart)]
+        if not self.rules.reverses:
+            return [*found, ("slip_slower", lambda t, s, p, r: p.belt_speed), "slip_faster"]
         regimes = [self.name(*each) for each in self.in_contact()]
         sticks = [name for name in regimes if name.startswith("stick")]
         slips = [name for name in regimes if name not in sticks]
         found += [(name, None, on_belt) for name in sticks]
-        if len(sticks) == 1:
+        if len(self.contacts) == 1:
             found.append((self.name("slip_faster", 0, 0), pull, on_belt))
         return [*found, *((name, None) for name in slips[:-1]), slips[-1]]
 
