@@ -51,7 +51,7 @@ LATE_BEGINS = -2
 REST = 2e-4
 """Share of a quantity that the higher orders of its second derivative add to a step's span."""
 PIECES = 8
-"""Pieces of a step in which turning points of a quantity are looked for, one in each."""
+"""Pieces of a step in which turning points are looked for, where there may be several."""
 
 
 class End(IntEnum):
@@ -256,13 +256,22 @@ def _set_end(t: Any, m: Any, c: Any, lane: int) -> None:
 def _extremes(c: Any, index: int, lane: int, step: float) -> Any:
     """Least and largest value at turning points inside a step."""
     low, high = math.inf, -math.inf
-    left, width = 0.0, step / PIECES
-    _, before, _ = evaluate_twice(c, index, lane, 0.0)
-    for _ in range(PIECES):
+    before, bend = c[index, 1, lane], 2.0 * c[index, 2, lane]
+    _, after, last_bend = evaluate_twice(c, index, lane, step)
+    if before * after > 0.0:
+        # a rate that loses its sign in between crosses zero along its tangents
+        plain = before * (before + bend * step) > 0.0 and after * (after - last_bend * step) > 0.0
+        if plain:
+            return low, high
+    else:
+        plain = bend * last_bend > 0.0
+    pieces = 1 if plain else PIECES
+    left, width = 0.0, step / pieces
+    for _ in range(pieces):
         right = left + width
         _, after, _ = evaluate_twice(c, index, lane, right)
         if before * after < 0.0:
-            a, b, time = left, right, 0.5 * (left + right)
+            a, b, time = left, right, left + width * before / (before - after)
             for _ in range(MOST_TURNS):
                 value, slope, bend = evaluate_twice(c, index, lane, time)
                 if slope * before > 0.0:
