@@ -88,7 +88,14 @@ def test_what_own_laws_cannot_do_is_refused():
         simulate(table, 1.0, 2.0, t_end=1.0, model="A1-no-stick")
     with pytest.raises(ValueError, match="no stop at a displacement"):
         run_ensemble(table, 1.0, 2.0, t_end=1.0, stop_at_x=3.0)
-    with pytest.raises(ValueError, match=r"a cycle of A1 cannot carry this; .*brake_of\(params\)"):
-        limit_cycle(table, 1.0, 2.0)
     with pytest.raises(ValueError, match="smallest_disturbance cannot carry this"):
         smallest_disturbance(Parameters(contact_law="dashpot"), 1.0, 2.0)
+
+
+def test_a_cycle_with_a_constant_table_is_that_of_coulomb_friction():
+    params = FORMER.with_(belt_speed=1.0, damping1=0.02, damping2=0.02, k2=1.2)
+    angles = (0.4 * np.pi, 0.6 * np.pi)
+    one = limit_cycle(params, *angles)
+    other = limit_cycle(params.with_(friction_law="linear 0:0.3"), *angles)
+    assert float(other.period) == pytest.approx(float(one.period), rel=1e-12)
+    np.testing.assert_array_equal(other.event_kind, one.event_kind)
