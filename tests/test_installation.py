@@ -18,7 +18,7 @@ import sys
 
 class Without:
     def find_spec(self, name, path=None, target=None):
-        if name.partition(".")[0] in {sorted(STUDY)}:
+        if name.partition(".")[0] in {sorted(STUDY | {"heyoka"})}:
             raise ModuleNotFoundError(name)
 
 sys.meta_path.insert(0, Without())

@@ -19,7 +19,7 @@ import xarray as xr
 from squealpipe.parameters import Parameters
 from squealpipe.validation import checked
 
-LIBRARIES = ("numpy", "scipy", "xarray", "netCDF4", "heyoka", "numba")
+LIBRARIES = ("numpy", "scipy", "xarray", "netCDF4", "numba")
 LONGEST = 8
 """Arguments with more values than this are recorded by first, last and number."""
 INHERITED = ("parameters", "model", "method", "tolerance")

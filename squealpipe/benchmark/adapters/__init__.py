@@ -9,7 +9,7 @@ from importlib.util import find_spec
 from typing import Any
 
 SOLVERS: dict[str, tuple[str, str, dict[str, Any]]] = {
-    "squealpipe": ("squealpipe", "heyoka", {}),
+    "squealpipe": ("squealpipe", "numba", {}),
     **{name: ("scipy", "scipy", {"method": name}) for name in ("DOP853", "RK45", "LSODA", "Radau")},
     "heyoka": ("heyoka", "heyoka", {}),
     "CyRK": ("cyrk", "CyRK", {}),
