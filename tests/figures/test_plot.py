@@ -8,6 +8,7 @@ import pytest
 
 import squealpipe
 from squealpipe.plotting import picture
+from squealpipe.plotting.quantities import counts
 from squealpipe.systems.impact_oscillator import impact_oscillator
 from squealpipe.systems.mode_coupling import mode_coupling
 from tests.former import FORMER
@@ -53,4 +54,15 @@ def test_a_picture_for_every_dataset(name, tmp_path):
     plt.close("all")
     squealpipe.plot(dataset).figure.savefig(tmp_path / "own.png")
     picture(dataset).savefig(tmp_path / "command.png", dpi=150)
+    plt.close("all")
+
+
+def test_labels_that_still_change_are_marked():
+    dataset = DATASETS["hammering"]()
+    dataset.motion_changed[:] = False
+    dataset.motion_changed[1, 4] = True
+    _, ax = plt.subplots()
+    (dots,) = squealpipe.plot(dataset, ax=ax).lines
+    assert dots.get_xydata().tolist() == [[ANGLES[1], ANGLES[4]]]
+    assert counts(dataset)[-1] == "1 of 49 cells: another kind in the last quarter"
     plt.close("all")
