@@ -15,7 +15,7 @@ from squealpipe.plotting.quantities import SHOWN, draw_quantity, mark_changed, s
 from squealpipe.plotting.run import draw_force, draw_spectrum
 from squealpipe.plotting.run import figure as run_figure
 from squealpipe.plotting.style import COLUMN, SETTINGS, new_figure
-from squealpipe.plotting.systems import draw_ensemble, draw_states
+from squealpipe.plotting.systems import draw_ensemble, draw_path, draw_states
 from squealpipe.schema import SYSTEM
 from squealpipe.validation import checked
 
@@ -31,6 +31,8 @@ DRAWN: dict[str, Callable[[Axes, xr.Dataset], None]] = {
     "propensity": draw_shares,
     SYSTEM + "simulate": draw_states,
     SYSTEM + "ensemble": draw_ensemble,
+    SYSTEM + "limit cycle": draw_path,
+    SYSTEM + "cycle branch": draw_branch,
 }
 """Schema → what draws it; :data:`~squealpipe.plotting.quantities.SHOWN` has the others."""
 

@@ -36,6 +36,8 @@ MARKS = {
     "stick_onset": ("v", GREEN, "stick just begins or ends"),
 }
 """Special points of a branch: marker, colour, words."""
+ALONG = " along the branch"
+"""How the long name of the parameter ends that a branch is followed in."""
 
 
 def draw_backbone(axes: Axes, branch: xr.Dataset) -> None:
@@ -71,9 +73,7 @@ def draw_cycle(axes: Axes, cycle: xr.Dataset) -> None:
         cycle: dataset ``limit_cycle``; without a cycle it gives the reason instead.
     """
     axes.set(xlabel="x (m)", ylabel="y (m)")
-    if not cycle.sizes["sample"]:
-        reason = flag_words(meanings(cycle.outcome)[int(cycle.outcome)])
-        say_instead(axes, f"no cycle:\n{reason}")
+    if say_no_cycle(axes, cycle):
         return
     draw_regimes(axes, cycle.x_path.values, cycle.y_path.values, cycle.regime_path)
     preload_line(axes, parameter(cycle, "preload"))
@@ -92,11 +92,11 @@ def draw_regimes(axes: Axes, x: np.ndarray, y: np.ndarray, regimes: xr.DataArray
 
 
 def draw_branch(axes: Axes, branch: xr.Dataset) -> None:
-    """Largest |x| over the parameter, stable and unstable, with marks at special points.
+    """Largest size of the first state over the parameter, stable and unstable, with special points.
 
     Args:
         axes: where to draw.
-        branch: dataset ``cycle_branch``; an empty one gives the reason instead.
+        branch: dataset ``cycle_branch``, also of a system; an empty one gives the reason instead.
     """
     if say_why_empty(axes, branch):
         return
@@ -105,10 +105,14 @@ def draw_branch(axes: Axes, branch: xr.Dataset) -> None:
         axes.plot([], [], color=BLUE, label="stable")[0],
         axes.plot([], [], color=ORANGE, linestyle="--", label="unstable")[0],
     ]
-    size = np.maximum(np.abs(branch.x_min), np.abs(branch.x_max)).values
+    state = next(name for name in map(str, branch.data_vars) if name.endswith("_max"))[:-4]
+    extremes = branch[f"{state}_min"], branch[f"{state}_max"]
+    size = np.maximum(*map(np.abs, extremes)).values
     for marker, colour, words in trace_branch(axes, followed.values, size, branch):
         handles += axes.plot([], [], marker, color=colour, markersize=4, label=words)
-    axes.set(xlabel=label(followed), ylabel="largest |x| (m)")
+    axes.set(
+        xlabel=label(followed).replace(ALONG, ""), ylabel=f"largest |{state}| ({extremes[0].units})"
+    )
     axes.legend(handles=handles)
 
 
@@ -143,6 +147,14 @@ def joined(chosen: np.ndarray) -> np.ndarray:
     near[1:] |= chosen[:-1]
     near[:-1] |= chosen[1:]
     return near
+
+
+def say_no_cycle(axes: Axes, cycle: xr.Dataset) -> bool:
+    """Whether there is no cycle, and then why, in its panel."""
+    if cycle.sizes["sample"]:
+        return False
+    say_instead(axes, f"no cycle:\n{flag_words(meanings(cycle.outcome)[int(cycle.outcome)])}")
+    return True
 
 
 def say_why_empty(axes: Axes, branch: xr.Dataset) -> bool:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from squealpipe.plotting.cycles import say_no_cycle
 from squealpipe.plotting.quantities import draw_quantity, label
 from squealpipe.plotting.style import BLUE, GREY, PALETTE, say_instead
 
@@ -48,6 +49,16 @@ def draw_ensemble(axes: Axes, runs: xr.Dataset) -> None:
     for extreme in (low, high):
         axes.plot(x, extreme, ".", color=BLUE, markersize=3)
     axes.set(xlabel=label(x), ylabel=f"{first}, late extremes ({high.units})")
+
+
+def draw_path(axes: Axes, cycle: xr.Dataset) -> None:
+    """A cycle in the plane of the first two states, or of the only one over time."""
+    if say_no_cycle(axes, cycle):
+        return
+    first, *others = [cycle[f"{name}_path"] for name in _states(cycle)]
+    x, y = (first, others[0]) if others else (cycle.time, first)
+    axes.plot(x, y, color=BLUE)
+    axes.set(xlabel=label(x), ylabel=label(y))
 
 
 def _states(dataset: xr.Dataset) -> list[str]:

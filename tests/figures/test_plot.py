@@ -39,6 +39,13 @@ DATASETS = {
     "system over two": lambda: impact_oscillator.ensemble(
         30.0, amplitude=np.linspace(0.5, 3.0, 9), omega=np.linspace(1.5, 2.5, 8)
     ),
+    "system cycle": lambda: impact_oscillator.limit_cycle(amplitude=2.3, omega=2.0),
+    "system branch": lambda: impact_oscillator.cycle_branch(
+        "amplitude",
+        2.0,
+        start=impact_oscillator.limit_cycle(amplitude=2.3, omega=2.0),
+        n_points=20,
+    ),
     "system basin": lambda: mode_coupling.basin(60.0, start={"x": np.linspace(-2, 2, 6)}),
 }
 

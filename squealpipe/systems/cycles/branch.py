@@ -780,7 +780,7 @@ def dataset(system: System, points: list[Point], end: int, parameter: str) -> xr
     found: dict[str, Any] = describe_columns(system, rows, "point")
     values = points[0].cycle.parts.values if points else {}
     followed = np.array([point.parameter for point in points])
-    found[parameter] = ("point", followed, runs.labels(f"parameter {parameter}", "1"))
+    found[parameter] = ("point", followed, runs.labels(f"{parameter} along the branch", "1"))
     labels = {int(label): label.name for label in Label}
     found["label"] = runs.flag(
         "what is special about the point", "point", [p.label for p in points], labels
