@@ -106,13 +106,11 @@ def draw_branch(axes: Axes, branch: xr.Dataset) -> None:
         axes.plot([], [], color=ORANGE, linestyle="--", label="unstable")[0],
     ]
     state = next(name for name in map(str, branch.data_vars) if name.endswith("_max"))[:-4]
-    extremes = branch[f"{state}_min"], branch[f"{state}_max"]
-    size = np.maximum(*map(np.abs, extremes)).values
+    low, high = branch[f"{state}_min"], branch[f"{state}_max"]
+    size = np.maximum(np.abs(low.values), np.abs(high.values))
     for marker, colour, words in trace_branch(axes, followed.values, size, branch):
         handles += axes.plot([], [], marker, color=colour, markersize=4, label=words)
-    axes.set(
-        xlabel=label(followed).replace(ALONG, ""), ylabel=f"largest |{state}| ({extremes[0].units})"
-    )
+    axes.set(xlabel=label(followed).replace(ALONG, ""), ylabel=f"largest |{state}| ({low.units})")
     axes.legend(handles=handles)
 
 
