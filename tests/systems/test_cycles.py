@@ -10,6 +10,7 @@ from squealpipe.systems.belt_friction import exponential_oscillator, leine_oscil
 from squealpipe.systems.cycles.labels import Label
 from squealpipe.systems.dry_friction import dry_friction_oscillator
 from squealpipe.systems.impact_oscillator import impact_oscillator
+from squealpipe.systems.relief_valve import relief_valve
 from tests.systems.test_random_systems import random_system
 
 V_STAR = 1.83660097221
@@ -92,6 +93,13 @@ def test_motion_without_stick_ends_where_closed_forms_say():
     for to, expected in ((0.5, 0.722679194438), (1.5, 1.235747152322)):
         branch = dry_friction_oscillator.cycle_branch("omega", to, start=start)
         assert special(branch, Label.stick_onset)[0] == pytest.approx(expected, abs=1e-12)
+
+
+def test_the_cycle_of_the_relief_valve_shrinks_to_rest_at_its_hopf_point():
+    start = relief_valve.limit_cycle(q=8.0)
+    branch = relief_valve.cycle_branch("q", 9.0, start=start)
+    assert branch.end == Outcome.equilibrium
+    assert float(branch.q[-1]) == pytest.approx(8.49111763518, abs=1e-9)
 
 
 def test_a_settled_motion_of_more_periods_says_how_many():
