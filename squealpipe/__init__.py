@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from squealpipe.tasks.backbones.orbit import periodic_orbit
     from squealpipe.tasks.basins.basin import basin_map
     from squealpipe.tasks.basins.disturbance import smallest_disturbance
+    from squealpipe.tasks.curves.contact import boundary_distance, contact_boundary
     from squealpipe.tasks.cycles.branch import cycle_branch
     from squealpipe.tasks.cycles.cycle import limit_cycle
     from squealpipe.tasks.dynamics.hammering import hammering_map
@@ -43,7 +44,9 @@ _HOME = {
     "System": "squealpipe.systems.system",
     "backbone": "squealpipe.tasks.backbones.backbone",
     "basin_map": "squealpipe.tasks.basins.basin",
+    "boundary_distance": "squealpipe.tasks.curves.contact",
     "choose_model": "squealpipe.tasks.ladder.choice",
+    "contact_boundary": "squealpipe.tasks.curves.contact",
     "critical_friction_map": "squealpipe.tasks.linear.critical",
     "cycle_branch": "squealpipe.tasks.cycles.branch",
     "hammering_map": "squealpipe.tasks.dynamics.hammering",
@@ -77,7 +80,9 @@ __all__ = [
     "System",
     "backbone",
     "basin_map",
+    "boundary_distance",
     "choose_model",
+    "contact_boundary",
     "convert",
     "critical_friction_map",
     "cycle_branch",

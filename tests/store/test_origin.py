@@ -18,6 +18,9 @@ PARAMS = Parameters(mu=0.21, k1=1.3, belt_speed=-7.0)
 ANGLES = np.linspace(0.3, 2.0, 3)
 RUN = squealpipe.simulate(PARAMS, 0.4, 1.1, t_end=1.0, model="A1-no-stick", tol=1e-9)
 MAP = (PARAMS, ANGLES, ANGLES)
+BOUNDARY = squealpipe.contact_boundary(
+    PARAMS, [0.8, 0.9, 1.0], [2.7, 2.8, 2.9], t_end=5.0, tol=1e-9
+)
 MODEL_AND_TOLERANCE = {
     "simulate": (RUN, "A1-no-stick", 1e-9),
     "validity_map": (squealpipe.validity_map(*MAP, t_end=1), "A1", 1e-12),
@@ -59,6 +62,12 @@ MODEL_AND_TOLERANCE = {
         1e-9,
     ),
     "basin_map": (squealpipe.basin_map(PARAMS, 0.9, 2.8, t_end=5.0), "A1", 1e-12),
+    "contact_boundary": (BOUNDARY, "A1", 1e-9),
+    "boundary_distance": (
+        squealpipe.boundary_distance(BOUNDARY, {"alpha1": 0.9, "alpha2": 2.8}),
+        "A1",
+        1e-9,
+    ),
     "limit_cycle": (
         squealpipe.limit_cycle(PARAMS, 0.9, 2.8, t_settle=20.0),
         "A1",

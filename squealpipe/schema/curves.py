@@ -1,0 +1,95 @@
+"""Boundaries over two parameters as curves."""
+
+from __future__ import annotations
+
+from enum import IntEnum
+
+from squealpipe.parameters import TABLE
+from squealpipe.schema import DatasetSchema, Variable, outcome
+from squealpipe.schema.outcomes import Outcome
+
+
+class PointKind(IntEnum):
+    """What a point of a boundary is."""
+
+    arc = 0
+    corner = 1
+    border = 2
+
+
+RATIOS = {"kappa": "k3/k1", "lambda_": "L1/l_pre, both lengths in their proportion"}
+VARIED = {
+    "alpha1": Variable("angle of spring 1", "rad", ("point",), optional=True),
+    "alpha2": Variable("angle of spring 2", "rad", ("point",), optional=True),
+    **{name: Variable(what, "1", ("point",), optional=True) for name, what in RATIOS.items()},
+    **{
+        name: Variable(row.meaning, row.units, ("point",), optional=True)
+        for name, row in TABLE.items()
+        if row.enters_a1 and row.allowed != "law" and name not in {"mass", "k1", "preload"}
+    },
+}
+"""The two that vary are there."""
+
+_REGION = ("region",)
+PARAMETER = {"parameter": Variable("parameter that varies", dims=("parameter",), dtype="U")}
+
+CONTACT_BOUNDARY = DatasetSchema(
+    name="contact_boundary",
+    title="Where model A1, from rest, just keeps contact: arcs and corners over two parameters",
+    coordinates={
+        "point": Variable("point", dims=("point",), dtype="i4"),
+        **PARAMETER,
+    },
+    variables={
+        **VARIED,
+        "curve": Variable(
+            "connected curve, contact kept on its left (of one that is closed, the first point "
+            "comes again)",
+            dims=("point",), dtype="i4",
+        ),
+        "arc": Variable("arc: one maximum of y touches", dims=("point",), dtype="i4"),
+        "touch_time": Variable("time at which contact is just lost", "s", ("point",), rtol=1e-6),
+        "residual": Variable(
+            "distance of that maximum of y from l_pre, over l_pre, as the last step of Newton's "
+            "method leaves it", dims=("point",), rtol=1.0, atol=1e-8,
+        ),
+        "corner": Variable("whether two maxima touch at once", dims=("point",), dtype="bool"),
+        "kind": Variable("what the point is", dims=("point",), dtype="i1", flags=PointKind),
+        "region_kept": Variable("whether contact is kept there", dims=("region",), dtype="bool"),
+        "region_area": Variable("area, in the units of both parameters", "1", _REGION, rtol=1e-5),
+        "region_area_error": Variable(
+            "error of the area, from the shape of the arcs", "1", _REGION, rtol=1.0
+        ),
+        "outline": Variable(
+            "closed lines around the regions in which contact is kept, and around their holes: "
+            "values of both parameters", dims=("vertex", "parameter"),
+        ),
+        "outline_loop": Variable("line that a vertex belongs to", dims=("vertex",), dtype="i4"),
+        "range": Variable("lowest and highest value", dims=("parameter", "end")),
+        "t_end": Variable("end of each run", "s"),
+        "runs": Variable("runs with derivatives", dtype="i8", volatile=True),
+        "coarse_runs": Variable("runs of the map that the curves start from", dtype="i8"),
+        "smallest_island": Variable(
+            "area of a disc that the map cannot miss: a region that no other curve leads to is "
+            "found for sure from this size on"
+        ),
+        "largest_gap": Variable(
+            "longest straight line that bridges what could not be followed, over the side of the "
+            "range (0: none)", rtol=1.0, atol=1e-2,
+        ),
+        "outcome": outcome(among=(Outcome.converged, Outcome.branch_lost)),
+    },
+)  # fmt: skip
+
+BOUNDARY_DISTANCE = DatasetSchema(
+    name="boundary_distance",
+    title="How far a design is from the boundary of kept contact",
+    coordinates=PARAMETER,
+    variables={
+        "design": Variable("value of the design", dims=("parameter",)),
+        "kept": Variable("whether contact is kept there", dtype="bool"),
+        "distance": Variable("distance of the nearest point, in the units of both parameters"),
+        "nearest": Variable("nearest point of the boundary", dims=("parameter",)),
+        "outcome": outcome(among=(Outcome.converged, Outcome.not_computed)),
+    },
+)

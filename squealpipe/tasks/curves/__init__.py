@@ -1,0 +1,1 @@
+"""Boundaries over two parameters as curves."""

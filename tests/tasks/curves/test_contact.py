@@ -1,0 +1,137 @@
+"""The boundary of kept contact: its slopes, its residuals, and maps that it must agree with."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import squealpipe
+from squealpipe.methods.regions import inside
+from squealpipe.parameters import Parameters
+from squealpipe.tasks.curves.heights import HeightsOfRuns
+
+BASELINE = Parameters()
+SETS = {
+    "baseline": (BASELINE, "A1-as-printed"),
+    "unequal springs": (BASELINE.with_(k2=1.8, length2=12.0, mu=0.45, k3=0.5), "A1"),
+    "slow belt, sticking": (BASELINE.with_(belt_speed=-0.6, k2=0.6, length1=8.0, mu=0.2), "A1"),
+    "dashpots, falling friction": (
+        BASELINE.with_(
+            damping1=0.02, damping2=0.01, belt_speed=2.0, friction_law="exponential", mu_static=0.4
+        ),
+        "A1",
+    ),
+    "a brake in SI units": (
+        Parameters(
+            mass=0.5, k1=1e7, k2=1.2e7, k3=6e6, mu=0.35, belt_speed=3.0, preload=1e-4,
+            length1=1e-3, length2=1.2e-3,
+        ),
+        "A1",
+    ),
+}  # fmt: skip
+
+
+def disagreement(boundary: xr.Dataset, uniform: xr.Dataset) -> tuple[int, float]:
+    """(points of a map with another answer, the largest distance of these from the outlines)."""
+    axes = [uniform[name].values for name in boundary.parameter.values]
+    loops = [
+        boundary.outline.values[boundary.outline_loop.values == i]
+        for i in np.unique(boundary.outline_loop)
+    ]
+    kept = inside(loops, *axes)
+    edge = [np.isclose(axis, axis[[0, -1]][:, None]).any(axis=0) for axis in axes]
+    wrong = (kept != (uniform.separates.values == 0)) & ~(edge[0][:, None] | edge[1])
+    places = np.stack([axis[i] for axis, i in zip(axes, np.nonzero(wrong), strict=True)], axis=1)
+    return int(wrong.sum()), max((_distance(loops, place) for place in places), default=0.0)
+
+
+def _distance(loops: list[np.ndarray], place: np.ndarray) -> float:
+    """From a point to the nearest of closed lines."""
+    nearest = []
+    for line in loops:
+        chord = np.roll(line, -1, axis=0) - line
+        share = ((place - line) * chord).sum(axis=1) / np.maximum((chord**2).sum(axis=1), 1e-300)
+        foot = line + np.clip(share, 0.0, 1.0)[:, None] * chord
+        nearest.append(np.linalg.norm(foot - place, axis=1).min())
+    return float(min(nearest))
+
+
+PAIRS = {
+    "baseline": ("kappa", "lambda_"),
+    "unequal springs": ("alpha1", "alpha2"),
+    "slow belt, sticking": ("mu", "belt_speed"),
+    "dashpots, falling friction": ("alpha1", "alpha2"),
+    "a brake in SI units": ("alpha1", "alpha2"),
+}
+
+
+@pytest.mark.parametrize("name", SETS)
+def test_slopes_of_heights_are_those_of_differences(name: str) -> None:
+    """Through stick, reversal and release too: central differences of values and times."""
+    params, model = SETS[name]
+    middle = {
+        "alpha1": 0.6, "alpha2": 1.1, "mu": params.mu, "belt_speed": params.belt_speed,
+        "kappa": params.kappa, "lambda_": params.length_ratio,
+    }  # fmt: skip
+    pair = PAIRS[name]
+    angles = {k: middle[k] for k in ("alpha1", "alpha2") if k not in pair}
+    heights = HeightsOfRuns(
+        params, angles, pair, t_end=30.0 * params.time_unit, model=model, workers=1
+    )
+    here = np.array([middle[k] for k in pair])
+    step = 1e-6 * np.abs(here)
+    moves = np.array([[0, 0], [1, 0], [-1, 0], [0, 1], [0, -1]]) * step
+    at, *others = heights(here + moves)
+    for axis in (0, 1):
+        up, down = others[2 * axis], others[2 * axis + 1]
+        slope = (up.value - down.value) / (2 * step[axis])
+        drift = ((up.time - down.time) / (2 * step[axis]))[:-1]
+        scale = np.abs(slope).max() + 1e-3 * np.abs(at.value / here[axis]).max()
+        assert np.abs(at.slope[:, axis] - slope).max() < 2e-6 * scale
+        assert np.allclose(at.drift[:-1, axis], drift, rtol=1e-4, atol=1e-4 * abs(drift).max())
+
+
+@pytest.mark.parametrize("name", SETS)
+def test_the_curves_agree_with_a_uniform_map(name: str) -> None:
+    """Every point of a map that is finer than the one the curves start from."""
+    params, model = SETS[name]
+    t_end = 25.0 * params.time_unit
+    coarse, fine = np.linspace(0.0, np.pi, 31), np.linspace(0.0, np.pi, 181)
+    boundary = squealpipe.contact_boundary(params, coarse, coarse, t_end=t_end, model=model)
+    assert boundary.outcome == 0
+    assert boundary.residual.max() < 1e-9
+    assert boundary.region_area.sum() == pytest.approx(np.pi**2, abs=1e-9)
+    uniform = squealpipe.validity_map(params, fine, fine, t_end=t_end, model=model)
+    wrong, distance = disagreement(boundary, uniform)
+    assert wrong <= 2
+    assert distance < 2e-4
+
+
+def test_the_mirrored_regions_have_one_area() -> None:
+    """(α1, α2) and (π − α2, π − α1) are one system: areas agree to the error that is stated."""
+    angles = np.linspace(0.0, np.pi, 31)
+    found = squealpipe.contact_boundary(BASELINE, angles, angles, t_end=20.0, model="A1-as-printed")
+    lost = np.sort(found.region_area.values[~found.region_kept.values.astype(bool)])[:2]
+    assert lost[1] - lost[0] < 2.0 * found.region_area_error.max()
+    assert found.region_area_error.max() < 1e-5
+
+
+def test_two_parameters_under_their_own_names() -> None:
+    """In a case with a closed form: K diagonal and equal, y_max = 2κ/(1 + κ), so κ = 1."""
+    kappa, mu = np.linspace(0.6, 1.4, 9), np.linspace(0.1, 0.5, 7)
+    params = BASELINE.with_(length1=1e5, length2=1e5)
+    found = squealpipe.contact_boundary(params, np.pi / 2, np.pi, t_end=6.0, kappa=kappa, mu=mu)
+    assert found.outcome == 0
+    assert np.abs(found.kappa - 1.0).max() < 1e-4  # springs of 10⁵ l_pre, nearly linear
+    assert found.region_area.values[found.region_kept.values == 1].sum() == pytest.approx(
+        0.16, 1e-3
+    )
+
+
+def test_what_cannot_vary_is_refused() -> None:
+    angles = np.linspace(0.0, 1.0, 5)
+    with pytest.raises(ValueError, match="two arguments"):
+        squealpipe.contact_boundary(BASELINE, angles, 1.0)
+    with pytest.raises(ValueError, match="'mass' cannot vary"):
+        squealpipe.contact_boundary(BASELINE, angles, 1.0, mass=angles + 1.0)
