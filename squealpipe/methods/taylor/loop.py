@@ -42,6 +42,8 @@ SLACK = 1e-13
 """A surface lies within this of zero where round-off hides its sign, over the terms that cancel."""
 NOISE = 1e-15
 """Round-off of a surface's polynomial and of its rate, likewise."""
+NOTHING = 1e-30
+"""Below the round-off of any quantity."""
 LOST_ERROR = 1e-3
 """Error, in units of the states' sizes, from which a state says nothing about its run."""
 CHAIN = 64
@@ -120,14 +122,16 @@ def _reach(series: int, terms: int) -> Any:
     """Longest step of a series that is no state's, from ratios of its orders.
 
     Where the state rests, what depends on the time alone still needs short steps. Its highest
-    order may be left out.
+    order may be left out. Of a quantity that is kept at zero all orders are round-off.
     """
     reach, tiny = splat(0.0), splat(1e-300)
-    for low in (1, 2):
-        base, nearer = larger(magnitude(load(series + low * ROW)), tiny), splat(np.inf)
+    for low in (0, 1, 2):
+        base, nearer = magnitude(load(series + low * ROW)), splat(np.inf)
+        if low == 0:
+            base = splat(NOTHING)
         for high in (terms - 3, terms - 2):
             last = magnitude(load(series + high * ROW))
-            power = rough_power(base / larger(last, tiny), splat(1.0 / (high - low)))
+            power = rough_power(larger(base, tiny) / larger(last, tiny), splat(1.0 / (high - low)))
             nearer = smaller(nearer, choose_below(tiny, last, power, splat(np.inf)))
         reach = larger(reach, nearer)
     return reach * math.exp(-2.0)
