@@ -331,6 +331,8 @@ def simulate(
     if times is None:
         steps = single_run(system, values, t_end, regime=regime, tol=tol, room=0).steps
         times = np.linspace(0.0, t_end, int(np.clip(SAMPLES_PER_STEP * steps, 2, MOST_SAMPLES)))
+    elif min(times) < 0.0:
+        raise ValueError(f"times: {min(times)!r} is before the start; runs begin at 0")
     run = single_run(system, values, t_end, regime=regime, times=times, tol=tol)
     kinds = dict(enumerate(system.traced.kinds))
     names = dict(enumerate(system.regimes))

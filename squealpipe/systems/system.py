@@ -13,6 +13,7 @@ import xarray as xr
 from squealpipe.methods.taylor.scalar import REGIME, SwitchSymbols, evaluate
 from squealpipe.methods.taylor.symbols import Symbol, derivative, parameter, symbol
 from squealpipe.parameters import is_finite_number
+from squealpipe.schema import Outcome
 from squealpipe.systems.trace import (
     TIME,
     TIME_UNIT,
@@ -31,7 +32,8 @@ RESERVED = frozenset(
         *("periods", "t_settle", "to", "n_points", "parameter", "parameters", "label"),
         *("time", "event", "point", "run", "multiplier", "outcome", "regime", "period", "stable"),
         *("residual", "event_time", "event_kind", "event_regime", "end_time"),
-        *("lyapunov_exponent", "predictability_horizon"),
+        *("lyapunov_exponent", "predictability_horizon", "motion", "attractor", "self", "system"),
+        *("events", "end", "start_regime", "multiplier_real", "multiplier_imag", "sample"),
     )
 )
 """Arguments of the methods, dimensions and variables of what they return."""
@@ -163,15 +165,14 @@ class System:
         ):
             if not 1 <= number <= most:
                 raise ValueError(f"{number} {what}; 1 to {most} can be carried")
-        if not (self.sizes > 0).all():
-            raise ValueError("the typical size of a state must be greater than 0")
-        starts = {f"{name}0" for name in self.units}
-        self._check_free("state", self.units, RESERVED)
-        self._check_free("parameter", self.parameters, {*self.units, *starts, *RESERVED})
-        self._check_free("output", self.outputs, {*self.units, *self.parameters, *RESERVED})
-        for name, value in self.parameters.items():
-            if not is_finite_number(value):
-                raise ValueError(f"parameter {name!r} = {value!r}: a finite number is needed")
+        if not ((self.sizes > 0) & np.isfinite(self.sizes)).all():
+            raise ValueError("the typical size of a state must be a number greater than 0")
+        taken = RESERVED | self._results()
+        self._check_free("state", self.units, taken)
+        self._check_free("parameter", self.parameters, {*self.units, *taken})
+        self._check_free("output", self.outputs, {*self.units, *self.parameters, *taken})
+        self._check_free("stop", self.stops, {outcome.name for outcome in Outcome})
+        self._check_numbers()
         if unknown := [name for name in self.start if name not in {*self.units, "regime"}]:
             raise ValueError(
                 f"start: {unknown[0]!r} is unknown; {suggestion(unknown[0], self.units)}"
@@ -182,6 +183,27 @@ class System:
         names = [each.name for each in self.switches]
         if len(set(names)) < len(names):
             raise ValueError(f"two switches share a name: {', '.join(names)}")
+
+    def _check_numbers(self) -> None:
+        if not callable(self.time_scale) and not 0.0 < self.time_scale < np.inf:
+            raise ValueError(f"time_scale = {self.time_scale!r}: a number greater than 0 is needed")
+        start = {name: value for name, value in self.start.items() if name != "regime"}
+        regimes = ((f"regime {name!r}:", each) for name, each in self.regimes.items())
+        for what, given in (("parameter", self.parameters), ("start:", start), *regimes):
+            for name, value in given.items():
+                if not is_finite_number(value):
+                    raise ValueError(f"{what} {name!r} = {value!r}: a finite number is needed")
+
+    def _results(self) -> set[str]:
+        """Names of variables and dimensions that results form from the system's names."""
+        ends = ("_min", "_max")
+        found = {f"{name}{end}" for name in (*self.units, *self.outputs) for end in ends}
+        found |= {f"late_{name}" for name in found}
+        found |= {f"{name}{end}" for name in self.units for end in ("0", "_start", "_path")}
+        found |= {f"event_{name}" for name in self.units}
+        found |= {f"time_in_{name}" for name in self.regimes}
+        names = [each.name for each in self.switches]
+        return found | {f"{which}_{name}" for name in names for which in ("count", "first")}
 
     def check_regime(self, start: Mapping[str, Any]) -> None:
         """Refuse a start in a regime that there is not."""
@@ -277,7 +299,8 @@ class System:
             inside = tracer.one(
                 f"{what}: when", switch.when, tracer.numbers(self.states_of(regime))
             )
-            if not inside.varies:
+            (height,) = evaluate([inside], tracer.samples(np.random.default_rng(0)))
+            if not inside.varies or not np.any(height):
                 raise ValueError(
                     f"{what}: its surface is constant in regime {self.states_of(regime)!r}; leave "
                     "that regime out of `leaves`"

@@ -275,6 +275,24 @@ GOOD = {
         ({"field": lambda t, s, p, r: {"x": s.v, "v": -s.y}}, AttributeError, "has no 'y'"),
         ({"parameters": {"x0": 1.0}}, ValueError, "the name is taken"),
         ({"parameters": {"times": 1.0}}, ValueError, "the name is taken"),
+        ({"parameters": {"gap": 1.0, "x_max": 1.0}}, ValueError, "the name is taken"),
+        ({"parameters": {"gap": 1.0, "count_hit": 1.0}}, ValueError, "the name is taken"),
+        ({"parameters": {"gap": 1.0, "self": 1.0}}, ValueError, "the name is taken"),
+        ({"outputs": {"x0": ("m", lambda t, s, p, r: s.x)}}, ValueError, "the name is taken"),
+        ({"stops": {"converged": lambda t, s, p, r: s.x}}, ValueError, "the name is taken"),
+        ({"time_scale": -1.0}, ValueError, "time_scale = -1.0"),
+        ({"start": {"x": float("nan"), "v": 0.0}}, ValueError, "'x' = nan"),
+        ({"regimes": {"free": {"c": float("inf")}}}, ValueError, "'c' = inf"),
+        (
+            {"field": lambda t, s, p, r: {"x": s.v, "v": -1.0 if s.x == 0.0 else 0.0}},
+            TypeError,
+            "make each side a reg",
+        ),
+        (
+            {"switches": [Switch("hit", "free", lambda t, s, p, r: s.x - s.x, "free")]},
+            ValueError,
+            "constant in regime 'free'",
+        ),
         ({"start": {"x": 0.0}}, ValueError, "lacks the state 'v'"),
         (
             {"switches": [Switch("hit", "fre", lambda t, s, p, r: s.x, "free")]},
@@ -323,6 +341,13 @@ def test_a_wrong_definition_is_refused_before_anything_is_compiled(change, error
 def test_arguments_of_a_run_are_checked(method, options, message):
     with pytest.raises(ValueError, match=message):
         getattr(System("good", **GOOD), method)(**{"t_end": 1.0, "start": {}} | options)
+
+
+def test_instants_before_the_start_and_a_period_below_zero_are_refused():
+    with pytest.raises(ValueError, match="before the start"):
+        System("good", **GOOD).simulate(5.0, times=[-3.0, 4.0])
+    with pytest.raises(ValueError, match="period of its forcing"):
+        impact_oscillator.limit_cycle(omega=-1.9)
 
 
 def test_a_run_starts_in_the_regime_that_it_is_given():

@@ -100,6 +100,12 @@ class Symbol:
         )
 
     __abs__ = __bool__ = __float__ = __int__ = __lt__ = __le__ = __gt__ = __ge__ = _refuse
+    __hash__ = object.__hash__
+
+    def __eq__(self, other: object) -> bool:
+        """Whether it is the same node; compared with a number it is refused."""
+        return self is other if isinstance(other, Symbol) else self._refuse()
+
     __round__ = __floor__ = __ceil__ = __mod__ = __floordiv__ = _refuse
 
 

@@ -179,6 +179,8 @@ def _forced(
     t_settle: float | None, regime: int | None,
 ) -> tuple[Cycle | None, int]:  # fmt: skip
     system, forcing = flow.system, flow.forcing(values)[0]
+    if not 0.0 < forcing < np.inf:
+        raise ValueError(f"{system.name}: the period of its forcing must be greater than 0")
     if not guess:
         rounds = SETTLE if t_settle is None else max(1.0, np.ceil(t_settle / forcing))
         run = follow(flow, values, state, rounds * forcing)
