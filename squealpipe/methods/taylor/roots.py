@@ -158,7 +158,7 @@ def _leaves_zero(
 ) -> Any:
     """When a polynomial that starts from zero first differs from it, and by what; 0 if never."""
     time = step * FINEST
-    while time <= step:
+    while 0.0 < time <= step:
         value, _, _ = evaluate_twice(coefficients, variable, lane, time)
         if abs(value) > noise + drift * time:
             return time, value

@@ -16,6 +16,7 @@ from squealpipe import (
     validity_map,
 )
 from squealpipe.codes import Event
+from squealpipe.schema import Outcome
 from squealpipe.solvers.a1.ensemble import run_ensemble
 from tests.former import FORMER
 
@@ -99,3 +100,15 @@ def test_a_cycle_with_a_constant_table_is_that_of_coulomb_friction():
     other = limit_cycle(params.with_(friction_law="linear 0:0.3"), *angles)
     assert float(other.period) == pytest.approx(float(one.period), rel=1e-12)
     np.testing.assert_array_equal(other.event_kind, one.event_kind)
+
+
+def test_a_table_in_si_units_is_carried_by_runs_side_by_side():
+    """A step of no length, after an event at the very end of another, is one without a crossing."""
+    pad = Parameters(
+        mass=0.5, k1=1e7, k2=1e7, k3=7e6, belt_speed=2.0, preload=2e-5, length1=0.02, length2=0.02,
+        friction_law="linear 0:0.52 0.05:0.47 0.2:0.41 1:0.36 5:0.34",
+    )  # fmt: skip
+    angles = np.linspace(0.1, 3.0, 4)
+    run = run_ensemble(pad, angles[:, None], angles, t_end=25.0 * pad.time_unit, workers=1)
+    assert (run.outcome == Outcome.converged).all()
+    assert run.steps.max() < 100
