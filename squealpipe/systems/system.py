@@ -158,6 +158,12 @@ class System:
 
         return cycle_branch(self, parameter, to, **options)
 
+    def cycle_curve(self, label: str, parameters: Sequence[str], **options: Any) -> xr.Dataset:
+        """A curve in two parameters; see :func:`squealpipe.systems.cycles.curve.cycle_curve`."""
+        from squealpipe.systems.cycles.curve import cycle_curve
+
+        return cycle_curve(self, label, parameters, **options)
+
     def _check_names(self) -> None:
         for number, most, what in (
             (len(self.units), MOST_STATES, "states"),

@@ -1,0 +1,489 @@
+"""Curves of special cycles in two parameters: folds, period doublings, grazings, onsets of stick.
+
+The equations of the cycle's legs and one more, by pseudo-arclength. At a fold their derivative by
+the unknowns is singular, at a period doubling that of a disturbance that returns with the other
+sign; a bordered system gives the equation (Govaerts, Numerical Methods for Bifurcations of
+Dynamical Equilibria, 2000, ch. 3). It is exact; its derivative, which only steers Newton's method,
+is a difference of exact Jacobians along the null vector.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from enum import IntEnum
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import xarray as xr
+from scipy.optimize import brentq
+
+from squealpipe.methods.continuation import ContinuationState, PseudoArclength
+from squealpipe.parameters import is_finite_number
+from squealpipe.systems import runs
+from squealpipe.systems.cycles.admissible import ROUND_OFF, Kind, Margin, margins
+from squealpipe.systems.cycles.branch import PRECISE, STEPS, label_of, started
+from squealpipe.systems.cycles.event_map import FREE, Cycle, Event, EventMap, Section
+from squealpipe.systems.cycles.flow import Crossing, Flow, Vector
+from squealpipe.systems.cycles.labels import Label
+from squealpipe.text import suggestion
+
+if TYPE_CHECKING:
+    from squealpipe.systems.system import System
+
+_DIFFERENCE = 1e-5
+_NEAR = 1e-4
+"""Margin of a start below which it is taken for the one that vanishes."""
+_NO_MARGIN = Margin(Kind.length, -1, FREE)
+RETURNS = {Label.fold: 1.0, Label.period_doubling: -1.0}
+"""What multiplies a disturbance in a period."""
+
+
+Test = Callable[[Vector], float]
+
+
+class Meeting(IntEnum):
+    """What else happens at a point of a curve."""
+
+    regular = 0
+    cusp = 1
+    fold_flip = 2
+    fold_grazing = 3
+    flip_grazing = 4
+    stick_onset = 5
+    end_of_leg = 6
+    end = 7
+
+
+@dataclass
+class Curve:
+    """The equations of a curve.
+
+    Attributes:
+        map: of the cycle, with two followed parameters.
+        label: which curve.
+        own: the margin that vanishes along it, of a grazing or an onset of stick.
+        border: right and left null vector next to the point, of a fold or a period doubling.
+    """
+
+    map: EventMap
+    label: Label
+    own: Margin = _NO_MARGIN
+    border: tuple[Vector, Vector] = (np.empty(0), np.empty(0))
+
+    def returning(self, jacobian: Vector, factor: float) -> Vector:
+        """The derivative by the unknowns for disturbances that a period multiplies by a factor."""
+        n, size = self.map.flow.size, self.map.size
+        found = jacobian[:, :size].copy()
+        last = (self.map.legs - 1) * n
+        found[last : last + n, :n] += (1.0 - factor) * np.eye(n)
+        if self.map.periods:
+            found[-1, -1] += 1.0 - factor
+        return found
+
+    def determinant(self, point: Vector, factor: float) -> float:
+        """Zero where a disturbance returns multiplied by the factor."""
+        return float(np.linalg.det(self.returning(self.map.evaluate(point)[1], factor)))
+
+    def renew(self, point: Vector) -> None:
+        """Take the borders, and the section of a cycle without events, from a point."""
+        if self.map.section is not None:
+            heading = Cycle.at(self.map, point).heading
+            state = self.map.unpack(point)[0][0]
+            section = Section(state, heading / np.linalg.norm(heading))
+            self.map = replace(self.map, section=section, _latest=None)
+        if self.label in RETURNS:
+            matrix = self.returning(self.map.evaluate(point)[1], RETURNS[self.label])
+            left, _, right = np.linalg.svd(matrix)
+            self.border = right[-1], left[:, -1]
+
+    def evaluate(self, point: Vector) -> tuple[Vector, Vector]:
+        """All equations with their Jacobian."""
+        values, jacobian = self.map.evaluate(point)
+        if not np.isfinite(jacobian).all() or not np.isfinite(values).all():
+            return np.append(values, np.nan), np.vstack([jacobian, jacobian[:1]])
+        singular = self.label in RETURNS
+        value, row = self._singular(point, jacobian) if singular else self._margin(point)
+        return np.append(values, value), np.vstack([jacobian, row])
+
+    def _singular(self, point: Vector, jacobian: Vector) -> tuple[float, Vector]:
+        size, (right, left) = self.map.size, self.border
+        matrix = np.zeros((size + 1, size + 1))
+        matrix[:size, :size] = self.returning(jacobian, RETURNS[self.label])
+        matrix[:size, size], matrix[size, :size] = left, right
+        unit = np.eye(size + 1)[-1]
+        null, dual = np.linalg.solve(matrix, unit), np.linalg.solve(matrix.T, unit)
+        step = np.append(null[:size], np.zeros(len(point) - size))
+        step *= _DIFFERENCE / np.linalg.norm(step)
+        change = self.map.evaluate(point + step)[1] - self.map.evaluate(point - step)[1]
+        slope = change * (np.linalg.norm(null[:size]) / (2.0 * _DIFFERENCE))
+        return float(null[-1]), -dual[:size] @ slope
+
+    def _margin(self, point: Vector) -> tuple[float, Vector]:
+        """What a margin is of, as a function of the end of its leg, and its row."""
+        equations, leg = self.map, self.own.leg
+        if self.own.kind == Kind.length:
+            at = equations.legs * equations.flow.size + leg
+            return float(point[at]), np.eye(len(point))[at]
+        parts, event = equations.parts(point), equations.events[leg]
+        time = parts.start + float(parts.durations[: leg + 1].sum())
+        end, flow = parts.path.ends[leg], equations.flow
+
+        def value(state: Vector, time: float, values: Mapping[str, float]) -> float:
+            regimes = (event.before, event.after)
+            return self._quantity(
+                flow.crossing(values, event.switch, event.surface, regimes, state, time)
+            )
+
+        by_end, by_time = equations.by_unknowns(parts, leg)
+        h, row = 1e-6, np.zeros(len(point))
+        for i, size in enumerate(equations.scale):
+            step = h * size * np.eye(len(end))[i]
+            slope = value(end + step, time, parts.values) - value(end - step, time, parts.values)
+            row += slope / (2.0 * h * size) * by_end[i]
+        if flow.timed:
+            step = h * equations.time
+            slope = value(end, time + step, parts.values) - value(end, time - step, parts.values)
+            row += slope / (2.0 * step) * by_time
+        for i, name in enumerate(flow.followed):
+            step, here = h * float(equations.units[i]), parts.values
+            more = value(end, time, {**here, name: here[name] + step})
+            less = value(end, time, {**here, name: here[name] - step})
+            row[equations.size + i] += (more - less) / (2.0 * step)
+        row *= equations.column_units
+        size = max(float(np.abs(row).max()), 1e-300)
+        return value(end, time, parts.values) / size, row / size
+
+    def _quantity(self, crossing: Crossing) -> float:
+        if self.own.kind == Kind.condition:
+            return float(crossing.conditions[self.own.which])
+        return crossing.speed
+
+    def tests(self) -> dict[Meeting, Test]:
+        """What changes sign where something else happens."""
+        if self.label == Label.fold:
+            size = self.map.size
+            return {
+                Meeting.cusp: lambda z: self._cusp(z, size),
+                Meeting.fold_flip: lambda z: self.determinant(z, -1.0),
+            }
+        if self.label == Label.period_doubling:
+            return {Meeting.fold_flip: lambda z: self.determinant(z, 1.0)}
+        if self.label == Label.grazing:
+            return {
+                Meeting.fold_grazing: lambda z: self.determinant(z, 1.0),
+                Meeting.flip_grazing: lambda z: self.determinant(z, -1.0),
+            }
+        return {}
+
+    def _cusp(self, point: Vector, size: int) -> float:
+        _, row = self._singular(point, self.map.evaluate(point)[1])
+        return float(row[:size] @ self.border[0])
+
+    def least_margin(self, point: Vector) -> tuple[float, Margin | None]:
+        """The margin next to zero that is not the curve's own."""
+        found = {k: v for k, v in margins(Cycle.at(self.map, point)).items() if k != self.own}
+        key = min(found, key=lambda k: found[k], default=None)
+        return (np.inf, None) if key is None else (found[key], key)
+
+
+def _curve_of(cycle: Cycle, label: Label) -> tuple[Curve, Vector]:
+    """The equations of the curve through a cycle with two followed parameters, and a guess."""
+    equations = cycle.map
+    if label in RETURNS:
+        return Curve(equations, label), cycle.point
+    near = {k: abs(v) for k, v in margins(cycle).items() if abs(v) < _NEAR and k.kind != Kind.edge}
+    near = {k: v for k, v in near.items() if label_of(cycle, {k: 0.0}) == label}
+    if not near:
+        raise ValueError(f"start: no condition of {label.name} just holds there")
+    own = min(near, key=lambda k: near[k])
+    if own.kind != Kind.touch:
+        return Curve(equations, label, own), cycle.point
+    # the leg is cut where it touches: there the switch's event has no speed, if it stays there
+    parts, leg, event = cycle.parts, own.leg, equations.events[own.leg]
+    first, traced = len(equations.flow.system.traced.variables), equations.flow.system.traced
+    inside = [turn for turn in parts.path.turns([first + own.which])[0] if turn.leg == leg]
+    turn = min(inside, key=lambda each: abs(each.value))
+    falls = traced.falls[event.before, own.which] >= 0
+    number = int((traced.falls if falls else traced.rises)[event.before, own.which])
+    targets = traced.switches[number].targets if number < len(traced.switches) else ()
+    stays = len(targets) == 1 and targets[0][0] == event.before
+    kind = targets[0][2] if stays else FREE
+    touch = Event(
+        number if stays else FREE, own.which, 1.0 if falls else -1.0, event.before, event.before,
+        kind,
+    )  # fmt: skip
+    states = [cycle.states_at(np.array([cycle.clocks[leg] + turn.time]))[0][0]]
+    followed = np.array([parts.values[name] for name in equations.flow.followed])
+    start = parts.start
+    if event.surface == FREE:
+        # without events the section is the touch
+        events: tuple[Event, ...] = (touch,)
+        durations, start, leg = parts.durations, start + turn.time, 0
+    else:
+        events = (*equations.events[:leg], touch, *equations.events[leg:])
+        rest = parts.durations[leg] - turn.time
+        durations = np.concatenate(
+            [parts.durations[:leg], [turn.time, rest], parts.durations[leg + 1 :]]
+        )
+        states = [*parts.states[: leg + 1], states[0], *parts.states[leg + 1 :]]
+    made = replace(equations, events=events, section=None, _latest=None)
+    own = Margin(Kind.speed, leg, own.which)
+    return Curve(made, label, own), made.pack(np.array(states), durations, start, followed)
+
+
+@dataclass(frozen=True)
+class Point:
+    """A point of a curve."""
+
+    cycle: Cycle
+    residual: float
+    label: Meeting = Meeting.regular
+
+
+class _Way:
+    """A curve in one direction."""
+
+    def __init__(self, curve: Curve, limits: Mapping[str, tuple[float, float]]) -> None:
+        self.curve, self.limits = curve, limits
+        self.algorithm = PseudoArclength(PRECISE, least_iterations=0, own_tangent=True)
+        self.end = "point_limit"
+
+    def inside(self, point: Vector) -> float:
+        """Distance from the limits, over the units."""
+        equations = self.curve.map
+        values = dict(zip(equations.flow.followed, point[equations.size :], strict=True))
+        units = dict(zip(equations.flow.followed, equations.units, strict=True))
+        found = [
+            side
+            for name, (low, high) in self.limits.items()
+            for side in (values[name] - low / units[name], high / units[name] - values[name])
+        ]
+        return min(found, default=np.inf)
+
+    def points(self, state: ContinuationState) -> Iterator[Point]:
+        """The points after a first one."""
+        while True:
+            self.curve.renew(state.point)
+            following = self._step(state)
+            if following is None:
+                self.end = "curve_lost"
+                return
+            tests = self.curve.tests()
+            found = [
+                (share, label)
+                for label, test in tests.items()
+                if test(state.point) * test(following.point) < 0.0
+                and (share := self._root(state, following, test)) is not None
+            ]
+            end = self._end(state, following)
+            past = -1.0
+            for share, label in sorted(found):
+                # with two states folds and period doublings meet a grazing at the same point
+                if share > past + 1e-6 and (end is None or share < end[0] - 1e-6):
+                    yield self._point(self._between(state, following, share), label)
+                    past = share
+            if end is not None:
+                self.end = end[2]
+                yield self._point(self._between(state, following, end[0]), end[1])
+                return
+            yield self._point(following, Meeting.regular)
+            state = following
+
+    def _step(self, state: ContinuationState) -> ContinuationState | None:
+        step = state.step
+        while step >= STEPS.shortest_step:
+            following = self.algorithm.attempt(self.curve, replace(state, step=step))
+            if following is not None and Cycle.at(self.curve.map, following.point).period > 0.0:
+                return following
+            step *= 0.5
+        return None
+
+    def _end(
+        self, state: ContinuationState, following: ContinuationState
+    ) -> tuple[float, Meeting, str] | None:
+        """(share of the step, label, reason) where the curve ends."""
+        ends = []
+        if self.inside(following.point) <= 0.0:
+            share = self._root(state, following, self.inside)
+            ends.append((1.0 if share is None else share, Meeting.end, "end_of_range"))
+        least, key = self.curve.least_margin(following.point)
+        if least < -ROUND_OFF and key is not None:
+            share = self._root(state, following, lambda z: self.curve.least_margin(z)[0])
+            share = 0.0 if share is None else share
+            cycle = Cycle.at(self.curve.map, self._between(state, following, share).point)
+            ends.append((share, *self._changed(cycle, self.curve.least_margin(cycle.point)[1])))
+        return min(ends, default=None)
+
+    def _changed(self, cycle: Cycle, key: Margin | None) -> tuple[Meeting, str]:
+        if key is None:
+            return Meeting.end, "curve_lost"
+        label = label_of(cycle, {key: 0.0})
+        met = Meeting.end
+        if key.kind == Kind.length:
+            met = Meeting.end_of_leg
+        elif label == Label.stick_onset:
+            met = Meeting.stick_onset
+        elif label == Label.grazing and self.curve.label == Label.fold:
+            met = Meeting.fold_grazing
+        elif label == Label.grazing and self.curve.label == Label.period_doubling:
+            met = Meeting.flip_grazing
+        system, event = cycle.map.flow.system, cycle.map.events[key.leg]
+        watched = (system.traced.falls, system.traced.rises)
+        number = event.switch
+        if key.kind in {Kind.touch, Kind.edge}:
+            number = int(max(table[event.before, key.which] for table in watched))
+        names = [*(each.name for each in system.switches), *system.stops]
+        return met, f"order_changes_{key.kind.name}_of_{names[number]}".replace(" ", "_")
+
+    def _between(
+        self, state: ContinuationState, following: ContinuationState, share: float
+    ) -> ContinuationState:
+        guess = state.point + share * (following.point - state.point)
+        found = self.algorithm.solve(self.curve, guess, state.tangent, state.step)
+        if found is None:
+            raise ArithmeticError
+        return found
+
+    def _root(
+        self,
+        state: ContinuationState,
+        following: ContinuationState,
+        test: Callable[[Vector], float],
+    ) -> float | None:
+        def value(share: float) -> float:
+            return test(self._between(state, following, share).point)
+
+        try:
+            return float(brentq(value, 0.0, 1.0, xtol=1e-13, rtol=1e-13, maxiter=60))
+        except (ArithmeticError, ValueError, RuntimeError):
+            return None
+
+    def _point(self, state: ContinuationState, label: Meeting) -> Point:
+        return Point(Cycle.at(self.curve.map, state.point), state.residual, label)
+
+
+def _checked(
+    system: System, label: str, parameters: Sequence[str], to: Mapping[str, tuple[float, float]],
+    n_points: int,
+) -> Label:  # fmt: skip
+    names = [each.name for each in (*RETURNS, Label.grazing, Label.stick_onset)]
+    if label not in names:
+        raise ValueError(f"label {label!r}: {suggestion(str(label), names)}")
+    if isinstance(parameters, str) or len(set(parameters)) != 2 or len(parameters) != 2:
+        raise ValueError(f"parameters = {parameters!r}: two names are needed")
+    for name in parameters:
+        if name not in system.parameters:
+            near = suggestion(name, system.parameters)
+            raise ValueError(f"{system.name}: parameter {name!r} is unknown; {near}")
+    for name, limits in to.items():
+        if name not in parameters:
+            raise ValueError(f"to: {name!r} is unknown; {suggestion(name, parameters)}")
+        if not all(map(is_finite_number, limits)) or len(limits) != 2 or limits[0] >= limits[1]:
+            raise ValueError(f"to: {name} = {limits!r}: two numbers that ascend are needed")
+    if isinstance(n_points, bool) or not isinstance(n_points, int | np.integer) or n_points < 2:
+        raise ValueError(f"n_points = {n_points!r}: a whole number from 2 on is needed")
+    return Label[label]
+
+
+def cycle_curve(
+    system: System,
+    label: str,
+    parameters: Sequence[str],
+    *,
+    start: xr.Dataset,
+    to: Mapping[str, tuple[float, float]] | None = None,
+    n_points: int = 200,
+) -> xr.Dataset:
+    """The curve of a special point of a branch, in two parameters, in both directions.
+
+    Args:
+        system: the system.
+        label: ``fold``, ``period_doubling``, ``grazing`` or ``stick_onset``.
+        parameters: names of the two that vary.
+        start: a branch, whose first point of that label is taken, or one point of it.
+        to: parameter → (lowest, highest) value at which the curve ends.
+        n_points: most points, of both directions together.
+
+    Returns:
+        Dataset over ``point``: both parameters by name, ``period``, ``residual`` and ``label``
+        (what else happens there); and over ``side`` (first, last) ``end``, why the curve ended:
+        ``order_changes_…`` names what changes the order of the events.
+
+    Raises:
+        ValueError: an unknown label or parameter, limits that do not ascend, or no such point in
+            ``start``.
+    """
+    limits = dict(to or {})
+    which = _checked(system, label, parameters, limits, n_points)
+    if not isinstance(start, xr.Dataset) or "label" not in start:
+        raise ValueError("start: a branch of cycle_branch or one of its points is needed")
+    at = np.flatnonzero(np.atleast_1d(start["label"].values) == which)
+    if not len(at):
+        raise ValueError(f"start has no point of {label}")
+    cycle = started(system, start.isel(point=int(at[0])) if "point" in start.dims else start)
+    units = np.array([max(abs(cycle.parts.values[name]), 1e-3) for name in parameters])
+    cycle = Cycle.at(*_followed(cycle, Flow(system, tuple(parameters)), units))
+    curve, guess = _curve_of(cycle, which)
+    curve.renew(guess)
+    algorithm = PseudoArclength(replace(PRECISE, max_iterations=20), 0, own_tangent=True)
+    normal = np.eye(len(guess))[-1]
+    first = algorithm.solve(curve, guess, normal, STEPS.first_step) or algorithm.solve(
+        curve, guess, np.eye(len(guess))[-2], STEPS.first_step
+    )
+    if first is None:
+        raise ValueError(f"start: no curve of {label} is found there")
+    ways = [_Way(replace(curve), limits) for _ in range(2)]
+    runs_of = [
+        way.points(replace(first, tangent=sign * first.tangent))
+        for way, sign in zip(ways, (-1.0, 1.0), strict=True)
+    ]
+    found: list[list[Point]] = [[], []]
+    open_ways, count = [0, 1], 1
+    while open_ways and count < n_points:
+        for side in list(open_ways):
+            point = next(runs_of[side], None) if count < n_points else None
+            if point is not None:
+                found[side].append(point)
+                count += 1
+            elif count < n_points:
+                open_ways.remove(side)
+    middle = Point(Cycle.at(curve.map, first.point), first.residual)
+    points = [*found[0][::-1], middle, *found[1]]
+    return _dataset(system, label, points, parameters, [way.end for way in ways])
+
+
+def _followed(cycle: Cycle, flow: Flow, units: Vector) -> tuple[EventMap, Vector]:
+    made, parts = cycle.followed_in(flow, units), cycle.parts
+    values = np.array([parts.values[name] for name in flow.followed])
+    return made, made.pack(parts.states, parts.durations, parts.start, values)
+
+
+def _dataset(
+    system: System, label: str, points: list[Point], parameters: Sequence[str], ends: list[str]
+) -> xr.Dataset:
+    found: dict[str, Any] = {
+        name: (
+            "point", np.array([p.cycle.parts.values[name] for p in points]),
+            runs.labels(f"{name} along the curve", "1"),
+        )
+        for name in parameters
+    }  # fmt: skip
+    period = np.array([point.cycle.period for point in points])
+    found["period"] = ("point", period, runs.labels("period", "s"))
+    residual = np.array([point.residual for point in points])
+    text = "largest equation left over, without units"
+    found["residual"] = ("point", residual, runs.labels(text, "1"))
+    table = {int(each): each.name for each in Meeting}
+    codes = [int(point.label) for point in points]
+    found["label"] = runs.flag("what else happens at the point", "point", codes, table)
+    names = ["point_limit", "end_of_range", "curve_lost"]
+    names += sorted(set(ends) - set(names))
+    found["end"] = runs.flag(
+        "why the curve ended", "side", [names.index(end) for end in ends], dict(enumerate(names))
+    )
+    values = points[0].cycle.parts.values
+    attributes = runs.attributes(system, "cycle curve", values, 1e-14)
+    return xr.Dataset(
+        found, attrs=attributes | {"curve": label, "parameters_followed": " ".join(parameters)}
+    )

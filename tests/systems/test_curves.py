@@ -1,0 +1,146 @@
+"""Curves of special cycles in two parameters against closed forms."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.linalg import expm
+
+from squealpipe.systems.belt_friction import exponential_oscillator
+from squealpipe.systems.cycles.curve import Meeting
+from squealpipe.systems.impact_oscillator import impact_oscillator
+
+DAMPING, GAP, RESTITUTION = 0.1, 1.0, 0.8
+CORNERS = {0.998749217771909: 0.0999062060134404, 1.997498435543818: 2.996664812754339}
+"""Where fold curves end on the grazing curve: frequency and amplitude, from 30 digits."""
+ENDS = {"omega": (0.8, 3.0), "amplitude": (0.0, 20.0)}
+
+
+def one_impact(omega):
+    """Of the cycle with one impact: the flow over a period, and the forced motion at the impact.
+
+    Over the impact velocity v the forced motion is ``fixed + v by_speed``.
+    """
+    flow = expm(np.array([[0.0, 1.0], [-1.0, -DAMPING]]) * 2 * np.pi / omega)
+    inverse = np.linalg.inv(np.eye(2) - flow)
+    fixed = inverse @ ((np.eye(2) - flow) @ [GAP, 0.0])
+    return flow, fixed, inverse @ (np.array([0.0, 1.0]) + flow @ [0.0, RESTITUTION])
+
+
+def amplitude(omega, speed):
+    _, fixed, by_speed = one_impact(omega)
+    forced = (fixed + speed * by_speed) / [1.0, omega]
+    return np.linalg.norm(forced) * np.hypot(1.0 - omega**2, DAMPING * omega)
+
+
+def fold(omega):
+    _, fixed, by_speed = (each / [1.0, omega] if each.ndim == 1 else each
+                          for each in one_impact(omega))  # fmt: skip
+    return amplitude(omega, -(fixed @ by_speed) / (by_speed @ by_speed))
+
+
+def flip(omega):
+    flow, fixed, by_speed = one_impact(omega)
+
+    def determinant(speed):
+        """Of monodromy + 1, times the speed: linear in it."""
+        forced = fixed + speed * by_speed
+        push = (1.0 - omega**2) * forced[0] + DAMPING * forced[1] - GAP
+        before, after = push - DAMPING * speed, push + DAMPING * RESTITUTION * speed
+        fixed_part = -RESTITUTION * flow * speed
+        turned = fixed_part + np.outer([0.0, RESTITUTION * before + after], flow[0])
+        return speed * (1.0 + RESTITUTION**2 * np.linalg.det(flow)) + np.trace(turned)
+
+    none, one = determinant(0.0), determinant(1.0)
+    return amplitude(omega, none / (none - one))
+
+
+@pytest.fixture(scope="module")
+def branch():
+    start = impact_oscillator.limit_cycle(omega=1.9, amplitude=2.2)
+    return impact_oscillator.cycle_branch("amplitude", 4.0, start=start)
+
+
+def curve_of(label, start, **options):
+    return impact_oscillator.cycle_curve(label, ("omega", "amplitude"), start=start, **options)
+
+
+def corners(curve):
+    at = np.flatnonzero(curve.label.values == Meeting.fold_grazing)
+    return dict(zip(curve.omega.values[at], curve.amplitude.values[at], strict=True))
+
+
+def ends(curve):
+    return [curve.end.attrs["flag_meanings"].split()[i] for i in curve.end.values]
+
+
+def test_grazing_curve_and_where_folds_meet_it(branch):
+    curve = curve_of("grazing", branch, to=ENDS)
+    omega = curve.omega.values
+    exact = np.hypot(1.0 - omega**2, DAMPING * omega)
+    np.testing.assert_allclose(curve.amplitude, exact, rtol=1e-12)
+    found = corners(curve)
+    assert list(found) == pytest.approx(list(CORNERS), abs=1e-12)
+    assert list(found.values()) == pytest.approx(list(CORNERS.values()), abs=1e-12)
+    assert ends(curve) == ["end_of_range", "end_of_range"]
+    assert (omega[0], omega[-1]) == pytest.approx(ENDS["omega"], abs=1e-12)
+
+
+def test_fold_curve_ends_on_the_grazing_curve_at_both_sides(branch):
+    curve = curve_of("fold", branch)
+    exact = [fold(omega) for omega in curve.omega.values]
+    np.testing.assert_allclose(curve.amplitude, exact, rtol=1e-10)
+    assert fold(1.9) == pytest.approx(2.073204825805628, abs=1e-13)
+    found = corners(curve)
+    assert list(found) == pytest.approx(list(CORNERS), abs=1e-10)
+    assert list(found.values()) == pytest.approx(list(CORNERS.values()), abs=1e-10)
+    assert ends(curve) == ["order_changes_speed_of_impact"] * 2
+    assert float(curve.residual.max()) < 1e-12
+
+
+def test_curve_of_period_doublings():
+    guess = {"x": -1.5, "v": 0.5}
+    start = impact_oscillator.limit_cycle(omega=2.1, amplitude=4.5, guess=guess)
+    start = impact_oscillator.cycle_branch("amplitude", 2.5, start=start)
+    assert flip(2.1) == pytest.approx(3.506188447846005, abs=1e-12)
+    curve = curve_of("period_doubling", start, to=ENDS)
+    exact = [flip(omega) for omega in curve.omega.values]
+    np.testing.assert_allclose(curve.amplitude, exact, rtol=1e-10)
+    assert Meeting.flip_grazing in curve.label
+    assert set(ends(curve)) == {"order_changes_speed_of_impact", "end_of_range"}
+
+
+def test_the_onset_of_stick_is_followed_in_belt_speed_and_damping():
+    """Against the same onset found on branches in the speed alone, at other dampings."""
+    system = exponential_oscillator
+    start = system.cycle_branch("belt_speed", 1.9, start=system.limit_cycle(belt_speed=1.25))
+    pair = ("belt_speed", "damping")
+    curve = system.cycle_curve("stick_onset", pair, start=start, to={"damping": (0.08, 0.12)})
+    at = int(np.argmin(np.abs(curve.damping.values - 0.1)))
+    assert float(curve.belt_speed[at]) == pytest.approx(1.83660097221, abs=2e-11)
+    assert ends(curve) == ["end_of_range", "end_of_range"]
+    for end in (0, -1):
+        damping = float(curve.damping[end])
+        cycle = system.limit_cycle(belt_speed=1.25, damping=damping)
+        other = system.cycle_branch("belt_speed", 2.6, start=cycle)
+        onset = int(np.argmax(other.label.values == 5))
+        assert float(curve.belt_speed[end]) == pytest.approx(
+            float(other.belt_speed[onset]), abs=1e-10
+        )
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        ({"label": "folds"}, "fold"),
+        ({"parameters": ("omega", "omga")}, "omga"),
+        ({"parameters": ("omega", "omega")}, "two names"),
+        ({"to": {"omega": (2.0, 1.0)}}, "ascend"),
+        ({"n_points": 1}, "n_points = 1"),
+        ({"label": "period_doubling"}, "no point of period_doubling"),
+    ],
+)
+def test_what_cannot_be_followed_is_refused(branch, given, message):
+    call = {"label": "fold", "parameters": ("omega", "amplitude"), "start": branch} | given
+    with pytest.raises(ValueError, match=message):
+        impact_oscillator.cycle_curve(**call)
