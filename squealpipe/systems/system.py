@@ -33,7 +33,7 @@ RESERVED = frozenset(
         *("time", "event", "point", "run", "multiplier", "outcome", "regime", "period", "stable"),
         *("residual", "event_time", "event_kind", "event_regime", "end_time"),
         *("lyapunov_exponent", "predictability_horizon", "motion", "attractor", "self", "system"),
-        *("events", "end", "start_regime", "multiplier_real", "multiplier_imag", "sample"),
+        *("events", "end", "start_regime", "multiplier_real", "multiplier_imag", "sample", "side"),
     )
 )
 """Arguments of the methods, dimensions and variables of what they return."""

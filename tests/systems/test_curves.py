@@ -71,7 +71,7 @@ def corners(curve):
 
 
 def ends(curve):
-    return [curve.end.attrs["flag_meanings"].split()[i] for i in curve.end.values]
+    return [curve.outcome.attrs["flag_meanings"].split()[i] for i in curve.outcome.values]
 
 
 def test_grazing_curve_and_where_folds_meet_it(branch):

@@ -407,7 +407,7 @@ def cycle_curve(
 
     Returns:
         Dataset over ``point``: both parameters by name, ``period``, ``residual`` and ``label``
-        (what else happens there); and over ``side`` (first, last) ``end``, why the curve ended:
+        (what else happens there); and over ``side`` (first, last) ``outcome``, why the curve ended:
         ``order_changes_…`` names what changes the order of the events.
 
     Raises:
@@ -479,7 +479,7 @@ def _dataset(
     found["label"] = runs.flag("what else happens at the point", "point", codes, table)
     names = ["point_limit", "end_of_range", "curve_lost"]
     names += sorted(set(ends) - set(names))
-    found["end"] = runs.flag(
+    found["outcome"] = runs.flag(
         "why the curve ended", "side", [names.index(end) for end in ends], dict(enumerate(names))
     )
     values = points[0].cycle.parts.values
