@@ -136,6 +136,7 @@ def test_the_onset_of_stick_is_followed_in_belt_speed_and_damping():
         ({"parameters": ("omega", "omga")}, "omga"),
         ({"parameters": ("omega", "omega")}, "two names"),
         ({"to": {"omega": (2.0, 1.0)}}, "ascend"),
+        ({"to": {"omega": (2.0, 3.0)}}, "outside"),
         ({"n_points": 1}, "n_points = 1"),
         ({"label": "period_doubling"}, "no point of period_doubling"),
     ],

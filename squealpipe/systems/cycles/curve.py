@@ -352,7 +352,7 @@ class _Way:
         test: Callable[[Vector], float],
     ) -> float | None:
         def value(share: float) -> float:
-            return test(self._between(state, following, share).point)
+            return min(test(self._between(state, following, share).point), 1e300)
 
         try:
             return float(brentq(value, 0.0, 1.0, xtol=1e-13, rtol=1e-13, maxiter=60))
@@ -411,8 +411,8 @@ def cycle_curve(
         ``order_changes_…`` names what changes the order of the events.
 
     Raises:
-        ValueError: an unknown label or parameter, limits that do not ascend, or no such point in
-            ``start``.
+        ValueError: an unknown label or parameter, limits that do not ascend or leave the start out,
+            or no such point in ``start``.
     """
     limits = dict(to or {})
     which = _checked(system, label, parameters, limits, n_points)
@@ -434,6 +434,8 @@ def cycle_curve(
     if first is None:
         raise ValueError(f"start: no curve of {label} is found there")
     ways = [_Way(replace(curve), limits) for _ in range(2)]
+    if ways[0].inside(first.point) < 0.0:
+        raise ValueError(f"to = {to!r}: the start lies outside")
     runs_of = [
         way.points(replace(first, tangent=sign * first.tangent))
         for way, sign in zip(ways, (-1.0, 1.0), strict=True)
