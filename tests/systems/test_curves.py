@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 from scipy.linalg import expm
 
+from squealpipe import Switch, System
+from squealpipe.functions import cos
 from squealpipe.systems.belt_friction import exponential_oscillator
 from squealpipe.systems.cycles.curve import Meeting
 from squealpipe.systems.impact_oscillator import impact_oscillator
@@ -127,6 +129,34 @@ def test_the_onset_of_stick_is_followed_in_belt_speed_and_damping():
         assert float(curve.belt_speed[end]) == pytest.approx(
             float(other.belt_speed[onset]), abs=1e-10
         )
+
+
+def test_folds_of_a_hardening_spring_are_born_in_the_cusp():
+    """On this side of it a branch has no fold, on the other two."""
+    system = System(
+        "hardening spring",
+        states={"x": "m", "v": "m/s"},
+        parameters={"force": 0.3, "omega": 1.8, "damping": 0.2},
+        regimes={"free": {}},
+        field=lambda t, s, p, r: {
+            "x": s.v,
+            "v": p.force * cos(p.omega * t) - p.damping * s.v - s.x - s.x * s.x * s.x,
+        },
+        switches=[Switch("far", leaves="free", when=lambda t, s, p, r: 50.0 - s.x, to="free",
+                         reset=lambda t, s, p, r: {"v": -s.v})],
+        start={"x": 0.0, "v": 0.0},
+        period=lambda p: 2 * np.pi / p.omega,
+    )  # fmt: skip
+
+    def branch_at(force):
+        return system.cycle_branch("omega", 1.0, start=system.limit_cycle(force=force))
+
+    limits = {"omega": (1.0, 2.0), "force": (0.1, 0.5)}
+    curve = system.cycle_curve("fold", ("omega", "force"), start=branch_at(0.3), to=limits)
+    (cusp,) = np.flatnonzero(curve.label.values == Meeting.cusp)
+    force = float(curve.force[cusp])
+    assert force == curve.force.values.min()
+    assert [int((branch_at(f * force).label == 1).sum()) for f in (0.98, 1.02)] == [0, 2]
 
 
 @pytest.mark.parametrize(
