@@ -222,7 +222,7 @@ def test_cycle_and_branch_go_together(capsys):
     assert run(["cycle", *scene, "--guess", state, "-o", "again.nc"]) == 0
     assert float(load("again.nc").period) == pytest.approx(float(found.period), rel=1e-9)
     assert Path("branch.png").stat().st_size > 1000
-    assert plot(branch).get_xlabel() == "belt_speed along the branch (m/s)"
+    assert plot(branch).get_xlabel() == "belt_speed (m/s)"
 
 
 def test_a_scene_without_a_cycle_says_so(capsys):

@@ -256,6 +256,9 @@ def test_derivatives_through_stick_are_those_of_differences():
     ("call", "message"),
     [
         (lambda s: s.limit_cycle(omga=1.0), "omga"),
+        (lambda s: s.limit_cycle(t_settle=""), "t_settle"),
+        (lambda s: s.limit_cycle(t_settle=-(10**400)), "t_settle"),
+        (lambda s: s.limit_cycle(start=3.0), "start = 3.0"),
         (lambda s: s.limit_cycle(periods=0), "periods = 0"),
         (lambda s: s.cycle_branch("omga", 1.0, start=None), "omga"),
         (lambda s: s.cycle_branch("omega", np.nan, start=None), "to = nan"),

@@ -71,7 +71,7 @@ def energy_error(parameters, angles, t_end, panel, model="A1"):
     parameters = {"damping1": 0 * angles[0], "damping2": 0 * angles[0], **parameters}
     law = parameters.get("friction_law", "coulomb")
     run = run_ensemble(parameters, *angles, t_end=t_end, log_events=LOGGED, model=model)
-    p = SimpleNamespace(**parameters)
+    p = SimpleNamespace(**parameters, contact_law="linear")
     unit = np.sqrt(p.mass / p.k1)
     rate = np.sqrt(1 + (p.k2 + p.k3) / p.k1) / unit
     rate += np.abs(p.belt_speed) / np.minimum(p.length1, p.length2)
@@ -87,7 +87,9 @@ def energy_error(parameters, angles, t_end, panel, model="A1"):
     columns = {name: values[:, None] for name, values in parameters.items() if name != LAW}
     if model == "A1-as-printed":
         columns |= {name: -columns[name] for name in ("mu", "mu_static") if name in columns}
-    wide = SimpleNamespace(**columns, friction_law=law, static_mu=columns.get("mu_static"))
+    wide = SimpleNamespace(
+        **columns, friction_law=law, contact_law="linear", static_mu=columns.get("mu_static")
+    )
     x, y, vx, vy = np.moveaxis(seen.samples, -1, 0)
     g, regime = geometry(*angles[:, :, None]), seen.sample_regimes
     contact = (regime != Regime.separated) * 1.0

@@ -6,7 +6,7 @@ from typing import Any
 
 
 def force(compression: Any, closing: Any, p: Any) -> Any:  # noqa: ARG001
-    """Eq. (1c): N = k3 δ."""
+    """N = k3 δ, N."""
     return p.k3 * compression
 
 

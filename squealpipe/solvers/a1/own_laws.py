@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -9,9 +10,9 @@ import numpy as np
 
 from squealpipe.codes import Event, Regime
 from squealpipe.laws.contact_laws import LINEAR
-from squealpipe.laws.friction_laws import FALLING
+from squealpipe.laws.friction_laws import FALLING, LAWS
 from squealpipe.methods.taylor.loop import STOPPED
-from squealpipe.parameters import NUMBERS_OF_A1
+from squealpipe.parameters import NUMBERS_OF_A1, Parameters
 from squealpipe.schema import Outcome
 from squealpipe.solvers.a1.records import MARKS
 from squealpipe.solvers.a1.system import UNITS
@@ -24,6 +25,8 @@ if TYPE_CHECKING:
     from squealpipe.solvers.a1.jobs import Jobs
 
 STATE = ("x", "y", "vx", "vy")
+FORM = ("preload", "length1", "length2", "damping1", "damping2")
+"""Numbers on which the form of the system depends."""
 
 
 @dataclass(frozen=True)
@@ -48,6 +51,8 @@ def split(parameters: Any, model: str) -> tuple[Any, OwnLaws | None]:
     Raises:
         ValueError: a variant of A1 is asked for.
     """
+    if isinstance(parameters, Mapping):
+        return _split_many(parameters, model)
     if not has_own_laws(parameters):
         return parameters, None
     if model != "A1":
@@ -66,6 +71,22 @@ def split(parameters: Any, model: str) -> tuple[Any, OwnLaws | None]:
         damping3=0.0,
     )
     return plain, own
+
+
+def _split_many(parameters: Mapping[str, Any], model: str) -> tuple[Any, OwnLaws | None]:
+    """As :func:`split`, of numbers that vary under one friction law of the user's own."""
+    law = parameters.get("friction_law", FALLING[0])
+    if not isinstance(law, str) or law in LAWS or parameters.get("contact_law", LINEAR) != LINEAR:
+        return parameters, None
+    # The form of the system is that of the largest numbers: with dashpots if any run has one.
+    decisive: dict[str, Any] = {
+        name: float(np.max(value))
+        for name, value in parameters.items()
+        if name in FORM and value is not None
+    }
+    plain, own = split(Parameters(**decisive, friction_law=law), model)
+    frictions = ("mu", "mu_static", "friction_speed", "friction_law")
+    return {**parameters, **{name: getattr(plain, name) for name in frictions}}, own
 
 
 def run_system(

@@ -38,6 +38,7 @@ from squealpipe.systems.cycles.event_map import FREE, Cycle, Event, EventMap, Se
 from squealpipe.systems.cycles.flow import Flow, Vector
 from squealpipe.systems.cycles.labels import Label
 from squealpipe.text import suggestion
+from squealpipe.validation import Natural, Number, checked
 
 if TYPE_CHECKING:
     from squealpipe.systems.system import System
@@ -639,13 +640,14 @@ def _gradient(equations: EventMap, point: Vector, margin: Margin) -> Vector:
     return np.asarray(found / np.linalg.norm(found))
 
 
+@checked
 def cycle_branch(
-    system: System,
+    system: Any,
     parameter: str,
-    to: float,
+    to: Number,
     *,
-    start: xr.Dataset,
-    n_points: int = 100,
+    start: Any,
+    n_points: Natural = 100,
 ) -> xr.Dataset:
     """The branch of cycles through a start, in one parameter, stable and unstable parts.
 

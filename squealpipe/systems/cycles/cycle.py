@@ -16,6 +16,7 @@ from squealpipe.systems.cycles.admissible import is_motion
 from squealpipe.systems.cycles.event_map import FREE, Cycle, Event, EventMap, Section, scale_of
 from squealpipe.systems.cycles.flow import Flow, Vector
 from squealpipe.systems.runs import Motion, single_run
+from squealpipe.validation import Natural, Positive, checked
 
 if TYPE_CHECKING:
     from squealpipe.systems.system import System
@@ -340,14 +341,15 @@ def _returns(
     yield from found[:_TRIES]
 
 
+@checked
 def limit_cycle(
-    system: System,
+    system: Any,
     *,
     start: Mapping[str, Any] | None = None,
     guess: Mapping[str, Any] | None = None,
-    periods: int = 1,
-    t_settle: float | None = None,
-    **parameters: float,
+    periods: Natural = 1,
+    t_settle: Positive | None = None,
+    **parameters: Any,
 ) -> xr.Dataset:
     """A periodic motion with every event located, its stability included.
 

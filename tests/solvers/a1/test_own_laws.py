@@ -112,3 +112,16 @@ def test_a_table_in_si_units_is_carried_by_runs_side_by_side():
     run = run_ensemble(pad, angles[:, None], angles, t_end=25.0 * pad.time_unit, workers=1)
     assert (run.outcome == Outcome.converged).all()
     assert run.steps.max() < 100
+
+
+def test_numbers_may_vary_under_a_table():
+    """As for uncertain parameters: one ensemble, and one run for each set."""
+    table = "linear 0:0.55 0.4:0.35 1:0.2"
+    masses, springs = np.array([0.7, 1.0, 1.6]), np.array([1.0, 2.5, 0.6])
+    given = {"k1": springs, "mass": masses, "belt_speed": 0.4, "friction_law": table}
+    many = run_ensemble(given, 0.9, 2.0, t_end=20.0, workers=1)
+    for i, (mass, k1) in enumerate(zip(masses, springs, strict=True)):
+        one = Parameters(k1=k1, mass=mass, belt_speed=0.4, friction_law=table)
+        run = run_ensemble(one, 0.9, 2.0, t_end=20.0, workers=1)
+        np.testing.assert_allclose(many.final_state[i], run.final_state, rtol=1e-9, atol=1e-12)
+        assert many.separations[i] == run.separations
