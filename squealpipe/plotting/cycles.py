@@ -32,7 +32,7 @@ MARKS = {
     "fold": ("^", RED, "fold"),
     "period_doubling": ("s", PURPLE, "period doubling"),
     "torus": ("D", GREEN, "torus bifurcation"),
-    "grazing": ("o", BLACK, "contact just lost or regained"),
+    "grazing": ("o", BLACK, "grazing"),
     "stick_onset": ("v", GREEN, "stick just begins or ends"),
 }
 """Special points of a branch: marker, colour, words."""

@@ -97,6 +97,7 @@ SMALL_RULES = [
     "trace_backbones",
     "follow_doublings",
     "follow_cycles",
+    "follow_impacts",
     "map_basins",
     "spread_parameters",
     "measure_disturbances",

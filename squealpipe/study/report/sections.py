@@ -34,7 +34,8 @@ BEYOND = {
     "transient": Part("How long the motion of Fig. 4 lasts", ("transient",)),
     "orbits": Part("Periodic motions of A4", ("coupled_backbones", "orbit_atlas", "a1_beside_a4")),
     "cycles": Part(
-        "Limit cycles with damping", ("cycle_branches", "cycle_multipliers", "cycle_path")
+        "Limit cycles with damping",
+        ("cycle_branches", "cycle_multipliers", "cycle_path", "impact_branch"),
     ),
     "damping": Part("Critical friction with dashpots", ("critical_friction",)),
     "starts": Part("Other starts", ("basins", "disturbance")),

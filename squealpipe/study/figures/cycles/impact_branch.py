@@ -1,0 +1,41 @@
+"""Cycles of the impact oscillator over the frequency of its forcing."""
+
+from __future__ import annotations
+
+import xarray as xr
+from matplotlib.figure import Figure
+
+from squealpipe.plotting import style
+from squealpipe.plotting.cycles import trace_branch
+
+READS = ("impact_branch",)
+CAPTION = (
+    "A system beside the brake: cycles of a forced linear oscillator that hits a stop at x = 1 m, of "
+    "one forcing period, as one branch over the forcing's frequency: how far each goes away from "
+    "the stop. Full blue lines: stable; dashed orange: unstable; marks: located special points. "
+    "At a grazing the cycle touches the stop with no speed, so it hits it on one side only."
+)
+ALT = (
+    "A chart of the largest distance on the side away from the stop over frequency: one line with "
+    "stable and unstable parts, with marks at its special points."
+)
+
+
+def draw(branch: xr.Dataset) -> Figure:
+    """One panel.
+
+    Args:
+        branch: dataset of ``cycle_branch`` of the impact oscillator in its ``omega``.
+    """
+    figure, axes = style.new_figure(style.COLUMN, 3.0)
+    panel = axes[0, 0]
+    marks = trace_branch(panel, branch.omega.values, -branch.x_min.values, branch)
+    handles = [
+        panel.plot([], [], color=style.BLUE, label="stable")[0],
+        panel.plot([], [], color=style.ORANGE, linestyle="--", label="unstable")[0],
+    ]
+    for marker, colour, words in marks:
+        handles += panel.plot([], [], marker, color=colour, markersize=4, label=words)
+    panel.set(xlabel="ω (rad/s)", ylabel="−min x (m)", ylim=(0, None))
+    figure.legend(handles=handles, loc="outside lower center", ncols=3)
+    return figure
