@@ -10,10 +10,10 @@ from squealpipe.plotting.cycles import trace_branch
 
 READS = ("impact_branch",)
 CAPTION = (
-    "A system beside the brake: cycles of a forced linear oscillator that hits a stop at x = 1 m, of "
-    "one forcing period, as one branch over the forcing's frequency: how far each goes away from "
-    "the stop. Full blue lines: stable; dashed orange: unstable; marks: located special points. "
-    "At a grazing the cycle touches the stop with no speed, so it hits it on one side only."
+    "A system beside the brake: cycles of a forced linear oscillator that hits a stop at x = 1 m, "
+    "of one forcing period, as one branch over the forcing's frequency: how far each goes away "
+    "from the stop. Full blue lines: stable; dashed orange: unstable; marks: located special "
+    "points. At a grazing the cycle touches the stop with no speed, so it hits it on one side only."
 )
 ALT = (
     "A chart of the largest distance on the side away from the stop over frequency: one line with "
