@@ -220,28 +220,6 @@ class DynamicsSection(Section):
     transient_horizon: Positive = 20_000.0
 
 
-class SeriesSweep(Section):
-    """Harmonic balance against exact orbits; peaks over l_pre, sigmas times l_pre."""
-
-    peaks: Settings = (1.25, 2.0, 3.0)
-    harmonics: Annotated[tuple[Annotated[int, Field(ge=1, le=512)], ...], Field(min_length=1)] = (
-        4,
-        8,
-        16,
-        32,
-        64,
-    )
-    samples: Annotated[tuple[Annotated[int, Field(ge=65, le=2**15)], ...], Field(min_length=1)] = (
-        66,
-        128,
-        256,
-        512,
-        1024,
-        4096,
-    )
-    sigmas: Settings = (10.0, 30.0, 100.0, 300.0, 1000.0)
-
-
 Angle = Annotated[float, Field(ge=-2.0, le=2.0)]
 
 
@@ -255,7 +233,6 @@ class BackbonesSection(Section):
     y_peak_max: Positive = 6.0
     x_amplitude_max: Positive = 3.0
     n_harmonics: Annotated[int, Field(ge=1, le=512)] = 32
-    sweep: SeriesSweep = SeriesSweep()
     length_ratios: Settings = (5.0, 15.0, 100.0)
     atlas_points: Points = 91
     atlas_peak: Positive = 2.0

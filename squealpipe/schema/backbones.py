@@ -177,38 +177,10 @@ ORBIT_ATLAS = DatasetSchema(
 )
 
 SCENE = {"scene": Variable("scene and mode", dims=("scene",), dtype="U")}
-_SWEEP = ("scene", "peak", "harmonics")
 
 
 def _error(*dims: str, long_name: str, units: str = "rad s-1") -> Variable:
     return Variable(long_name, units, dims, nan_allowed=True, rtol=0.05, atol=1e-11)
-
-
-HARMONIC_SWEEP = DatasetSchema(
-    name="harmonic_sweep",
-    title="Errors of harmonic balance against exact orbits over N_h, N, sigma and amplitude",
-    coordinates={
-        **SCENE,
-        "peak": Variable("y_peak over l_pre", dims=("peak",)),
-        "harmonics": Variable("harmonics N_h", dims=("harmonics",), dtype="i4"),
-        "samples": Variable("samples N a period", dims=("samples",), dtype="i4"),
-        "sigma": Variable("regularizing factor times l_pre", dims=("sigma",)),
-    },
-    variables={
-        "omega_error": _error(*_SWEEP, long_name="error of omega at equal y_peak"),
-        "waveform_error": _error(
-            *_SWEEP, units="m", long_name="largest distance in (x, y) at equal y_peak and phase"
-        ),
-        "omega_error_samples": _error(
-            "scene", "peak", "samples", long_name="error of omega with a sampled contact force"
-        ),
-        "omega_error_sigma": _error(
-            "scene", "peak", "sigma", long_name="shift of omega by tanh smoothing"
-        ),
-        "n_harmonics_fixed": Variable("N_h while N or sigma is varied", dtype="i4"),
-        "outcome": outcome(*_SWEEP, among=(Outcome.converged, Outcome.no_convergence)),
-    },
-)
 
 
 class Form(IntEnum):

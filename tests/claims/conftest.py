@@ -9,7 +9,7 @@ import xarray as xr
 from squealpipe.parameters import SCENES, Parameters
 from squealpipe.reading import READINGS, corrected, for_a1, for_linear
 from squealpipe.tasks.backbones.backbone import backbone
-from squealpipe.tasks.backbones.harmonic_sweeps import compare_harmonic_forms
+from squealpipe.tasks.backbones.harmonic_forms import compare_harmonic_forms
 from squealpipe.tasks.dynamics.assumptions import check_assumptions, linear_pull_map
 from squealpipe.tasks.dynamics.hammering import hammering_map
 from squealpipe.tasks.dynamics.runs import simulate, validity_map

@@ -11,12 +11,12 @@ from squealpipe.study.figures.backbones import (
     coupled_backbones,
     fig10_to_12,
     fig13,
-    harmonic_convergence,
     harmonic_forms,
     orbit_atlas,
 )
 from squealpipe.tasks.backbones import a1_beside_a4 as beside_task
-from squealpipe.tasks.backbones import atlas, harmonic_sweeps
+from squealpipe.tasks.backbones import atlas
+from squealpipe.tasks.backbones import harmonic_forms as forms_task
 from squealpipe.tasks.backbones.backbone import backbone
 from squealpipe.tasks.backbones.doubling import doubled_branch as follow_doubling
 from tests.former import FORMER
@@ -76,17 +76,7 @@ def test_an_empty_branch_says_why_in_the_picture():
 
 
 def test_the_other_pictures_are_drawn():
-    sweep = harmonic_sweeps.sweep_harmonic_balance(
-        FORMER,
-        BRANCHES,
-        peaks=(2.0,),
-        harmonics=(4, 8),
-        samples=(66, 128),
-        sigmas=(10.0, 100.0),
-        n_harmonics=8,
-    )
-    assert len(harmonic_convergence.draw(sweep).axes) == 4
-    forms = harmonic_sweeps.compare_harmonic_forms(FORMER, BRANCHES)
+    forms = forms_task.compare_harmonic_forms(FORMER, BRANCHES)
     assert len(harmonic_forms.draw(forms).axes) == 2
     beside = beside_task.a1_beside_a4(FORMER, BRANCHES, peak=2.0, length_ratios=(5.0,))
     assert len(a1_beside_a4.draw(beside).axes) == 2

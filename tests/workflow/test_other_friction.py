@@ -16,7 +16,7 @@ STUDIES = {
     "law": "{friction_law: exponential, mu_static: 0.6, friction_speed: 10.0}",
 }
 NOT_CARRIED = {
-    "trace_backbones", "follow_doublings", "sweep_harmonic_balance", "compare_a1_with_a4",
+    "trace_backbones", "follow_doublings", "compare_harmonic_forms", "compare_a1_with_a4",
     "map_orbits", "infer_parameters", "map_model_ladder",
     "measure_frequencies", "compute_explorer", "write_explorer", "animate_scenes",
     "draw_backbones", "draw_inference", "check_assumptions",

@@ -69,7 +69,6 @@ explorer: {points: 3, history_time: 20.0, spectrum_time: 20.0, samples: 50, bran
 backbones:
   y_peak_max: 2.0
   n_harmonics: 4
-  sweep: {harmonics: [4, 8], samples: [66], sigmas: [10.0]}
   atlas_points: 7
 animation: {frames: 3}
 sweeps:
@@ -86,7 +85,7 @@ SMALL_RULES = [
     "refine_validity",
     "follow_whirl",
     "infer_parameters",
-    "sweep_harmonic_balance",
+    "compare_harmonic_forms",
     "compare_a1_with_a4",
     "map_orbits",
     "run_benchmark",

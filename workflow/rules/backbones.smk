@@ -34,20 +34,13 @@ rule follow_doublings:
         "../scripts/backbones/follow_doublings.py"
 
 
-rule sweep_harmonic_balance:
+rule compare_harmonic_forms:
     output:
-        sweep=data("harmonic_sweep"),
-        forms=data("harmonic_forms"),
+        data("harmonic_forms"),
     params:
-        part=part(
-            "parameters",
-            "backbones.coupled",
-            "backbones.n_harmonics",
-            "backbones.sweep",
-            read_as=READING,
-        ),
+        part=part("parameters", "backbones.coupled", read_as=READING),
     script:
-        "../scripts/backbones/sweep_harmonic_balance.py"
+        "../scripts/backbones/compare_harmonic_forms.py"
 
 
 rule compare_a1_with_a4:

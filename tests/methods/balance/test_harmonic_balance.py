@@ -64,6 +64,21 @@ def test_omega_converges_with_the_fourth_power_and_keeps_the_goals():
     assert -4.8 < rate < -3.4
 
 
+@pytest.mark.parametrize(("peak", "rate"), [(1.0, 1.5), (2.0, 2.0)])
+def test_smoothing_shifts_omega_by_a_power_of_sigma(peak, rate):
+    """σ⁻², at grazing σ^-1.5; at equal harmonics, so that truncation cancels."""
+    scene, orbit, x, y = _exact(peak)
+    guess = np.concatenate([x[:33], y[:33], [orbit.omega]])
+    sharp, first, second = (
+        balance.solve(guess, balance.peak_row, peak)[0][-1]
+        for balance in (
+            CosineBalance(scene.system, contact_of(32, 1.0, None, sigma))
+            for sigma in (None, 100.0, 1000.0)
+        )
+    )
+    assert math.log10(abs(first - sharp) / abs(second - sharp)) == pytest.approx(rate, abs=0.1)
+
+
 def test_a_motion_described_from_its_other_end_solves_the_equations_too():
     scene, orbit, x, y = _exact(2.0)
     balance = CosineBalance(scene.system, contact_of(12, 1.0, None, None))

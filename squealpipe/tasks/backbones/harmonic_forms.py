@@ -1,22 +1,22 @@
-"""Errors of harmonic balance over its settings, and what the paper's own form of it finds."""
+"""What the paper's own form of harmonic balance finds, beside exact orbits."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from squealpipe.methods.balance.harmonic_balance import CosineBalance, contact_of, cosines_of
+from squealpipe.methods.balance.harmonic_balance import cosines_of
 from squealpipe.methods.balance.sampled_balance import SampledBalance
 from squealpipe.methods.orbits.orbit_shape import sample
 from squealpipe.methods.orbits.orbits import Orbit
 from squealpipe.parameters import Parameters
 from squealpipe.schema import Outcome, build
-from squealpipe.schema.backbones import HARMONIC_FORMS, HARMONIC_SWEEP, Form
+from squealpipe.schema.backbones import HARMONIC_FORMS, Form
 from squealpipe.solvers.a4.orbits import find_orbit
 from squealpipe.solvers.a4.system import ScaledSystem, scaled_system
 
@@ -26,7 +26,6 @@ Branches = Mapping[str, tuple[float, float, int]]
 
 _INTERVALS = 2**14
 """Intervals of half a period from which an exact orbit's cosines are taken."""
-_SHAPE_INTERVALS = 512
 _PHASES = 13
 """Phases of the start; not a divisor of the samples, whose own symmetry would hide the spread."""
 
@@ -39,11 +38,6 @@ class ExactMotion:
     orbit: Orbit
     x: Vector
     y: Vector
-
-    def series(self, n_harmonics: int) -> Vector:
-        """Unknowns of :class:`CosineBalance`, truncated."""
-        kept = n_harmonics + 1
-        return np.concatenate([self.x[:kept], self.y[:kept], [self.orbit.omega]])
 
 
 def exact_motion(
@@ -63,94 +57,6 @@ def exact_motion(
         )
     states = sample(scene.system.rows, orbit.point, np.linspace(0.0, math.pi, _INTERVALS + 1))
     return ExactMotion(scene, orbit, cosines_of(states[:, 0]), cosines_of(states[:, 1]))
-
-
-def sweep_harmonic_balance(
-    params: Parameters,
-    branches: Branches,
-    *,
-    peaks: Sequence[float],
-    harmonics: Sequence[int],
-    samples: Sequence[int],
-    sigmas: Sequence[float],
-    n_harmonics: int,
-) -> xr.Dataset:
-    """Errors against exact orbits, each setting varied alone, with fitted rates.
-
-    Args:
-        params: physical parameters.
-        branches: name → (alpha1, alpha2, mode).
-        peaks: y_peak over l_pre; harmonics: N_h.
-        samples: N a period, and sigmas: σ l_pre, varied at ``n_harmonics`` harmonics.
-        n_harmonics: N_h while N or σ is varied.
-    """
-    shape = len(branches), len(peaks)
-    errors = np.full((2, *shape, len(harmonics)), np.nan)
-    by_samples = np.full((*shape, len(samples)), np.nan)
-    by_sigma = np.full((*shape, len(sigmas)), np.nan)
-    units = []
-    for i, (alpha1, alpha2, mode) in enumerate(branches.values()):
-        for j, peak in enumerate(peaks):
-            motion = exact_motion(params, alpha1, alpha2, mode, peak)
-            for k, count in enumerate(harmonics):
-                errors[:, i, j, k] = _series_errors(motion, count)
-            by_samples[i, j] = [_omega_error(motion, n_harmonics, n, None) for n in samples]
-            by_sigma[i, j] = _smoothing_shifts(motion, n_harmonics, sigmas)
-        units.append(motion.scene.frequency)
-    unit = np.array(units)[:, None, None]
-    data = {
-        "omega_error": errors[0] * unit,
-        "waveform_error": errors[1] * params.preload,
-        "omega_error_samples": by_samples * unit,
-        "omega_error_sigma": by_sigma * unit,
-    }
-    return build(
-        HARMONIC_SWEEP,
-        {
-            **data,
-            "n_harmonics_fixed": n_harmonics,
-            "outcome": np.where(
-                np.isfinite(errors).all(axis=0), Outcome.converged, Outcome.no_convergence
-            ),
-        },
-        {
-            "scene": list(branches),
-            "peak": np.asarray(peaks, float),
-            "harmonics": list(harmonics),
-            "samples": list(samples),
-            "sigma": np.asarray(sigmas, float),
-        },
-    )
-
-
-def _series_errors(motion: ExactMotion, count: int) -> tuple[float, float]:
-    """(ω, waveform) at equal peak, NaN where Newton fails."""
-    balance = CosineBalance(motion.scene.system, contact_of(count, 1.0, None, None))
-    solved = balance.solve(motion.series(count), balance.peak_row, float(motion.orbit.point[1]))
-    if solved is None:
-        return math.nan, math.nan
-    theta = np.linspace(0.0, math.pi, _SHAPE_INTERVALS + 1)
-    table = np.cos(np.outer(theta, np.arange(count + 1)))
-    states = sample(motion.scene.system.rows, motion.orbit.point, theta)
-    x, y, omega = balance.split(solved[0])
-    apart = np.hypot(table @ x - states[:, 0], table @ y - states[:, 1])
-    return abs(omega - motion.orbit.omega), float(apart.max())
-
-
-def _omega(motion: ExactMotion, count: int, n_time: int | None, sigma: float | None) -> float:
-    balance = CosineBalance(motion.scene.system, contact_of(count, 1.0, n_time, sigma))
-    solved = balance.solve(motion.series(count), balance.peak_row, float(motion.orbit.point[1]))
-    return math.nan if solved is None else float(solved[0][-1])
-
-
-def _omega_error(motion: ExactMotion, count: int, n_time: int | None, sigma: float | None) -> float:
-    return abs(_omega(motion, count, n_time, sigma) - motion.orbit.omega)
-
-
-def _smoothing_shifts(motion: ExactMotion, count: int, sigmas: Sequence[float]) -> list[float]:
-    """|ω − ω of the sharp law| at the same harmonics, so truncation cancels."""
-    sharp = _omega(motion, count, None, None)
-    return [abs(_omega(motion, count, None, float(sigma)) - sharp) for sigma in sigmas]
 
 
 def compare_harmonic_forms(
