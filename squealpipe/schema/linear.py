@@ -158,36 +158,3 @@ STABILITY_BOUNDARIES = DatasetSchema(
         ),
     },
 )
-
-MODE_COUPLING = DatasetSchema(
-    name="mode_coupling",
-    title="Minimal mode-coupling model of Hoffmann, Fischer, Allgaier and Gaul (2002) by model A3",
-    coordinates={
-        "mu": Variable("friction coefficient", dims=("mu",)),
-        **MODES,
-        "distance": Variable(
-            "relative distance of mu from the onset of flutter", dims=("distance",)
-        ),
-        "side": Variable("side of the onset", dims=("side",), dtype="U"),
-    },
-    variables={
-        "growth_rate": Variable("largest real part by A3", "s-1", ("mu",)),
-        "frequency": Variable("frequency by A3", "rad s-1", ("mu", "mode")),
-        "published_growth_rate": Variable(
-            "largest real part by the published model", "s-1", ("mu",)
-        ),
-        "published_frequency": Variable(
-            "frequency by the published model", "rad s-1", ("mu", "mode")
-        ),
-        "closed_form_error": Variable(
-            "relative error of the eigenvalues by A3, against 60 digits",
-            dims=("side", "distance"),
-            atol=1e-11,
-        ),
-        "numeric_error": Variable(
-            "relative error of numeric eigenvalues, against 60 digits",
-            dims=("side", "distance"),
-            atol=1e-6,
-        ),
-    },
-)

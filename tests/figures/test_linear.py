@@ -18,13 +18,11 @@ from squealpipe.study.figures.linear import (
     fig08,
     fig09,
     frequency_shift,
-    mode_coupling,
 )
 from squealpipe.tasks.inference import inference
 from squealpipe.tasks.linear import boundaries as linear_boundaries
 from squealpipe.tasks.linear import critical
 from squealpipe.tasks.linear import maps as linear
-from squealpipe.tasks.linear import mode_coupling as coupling
 from tests.former import FORMER
 
 ANGLES = np.linspace(0.0, np.pi, 61)
@@ -96,7 +94,6 @@ def test_comparison_counts_every_cell_once() -> None:
 def test_extra_figures_are_written(maps: dict[str, xr.Dataset], tmp_path: Path) -> None:
     figures = {
         "shift": frequency_shift.draw(maps["frequencies"]),
-        "coupling": mode_coupling.draw(coupling.mode_coupling(points=7)),
         "inference": parameter_inference.draw(inference.infer_parameters(BASELINE, samples=64)),
     }
     for name, figure in figures.items():

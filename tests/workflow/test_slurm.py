@@ -81,7 +81,6 @@ sweeps:
 SMALL_RULES = [
     "simulate_scenes",
     "map_linear",
-    "validate_mode_coupling",
     "refine_validity",
     "follow_whirl",
     "infer_parameters",

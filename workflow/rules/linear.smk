@@ -36,8 +36,3 @@ rule map_critical_friction:
         "../scripts/linear/map_critical_friction.py"
 
 
-rule validate_mode_coupling:
-    output:
-        data("mode_coupling"),
-    script:
-        "../scripts/linear/validate_mode_coupling.py"

@@ -48,7 +48,6 @@ BEYOND = {
 SUPPLEMENT = {
     "parameters": Part("How the parameters were inferred", ("parameter_inference",)),
     "harmonics": Part("Harmonic balance against exact orbits", ("harmonic_forms",)),
-    "validation": Part("A published model of mode coupling", ("mode_coupling",)),
     "speed": Part(
         "Speed against accuracy",
         (
