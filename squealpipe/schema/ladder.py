@@ -18,7 +18,7 @@ class Level(IntEnum):
     """All levels, cheapest first; a level is one record.
 
     Its value is its number in files, whatever its place in the order. A level with a ``model`` is
-    that model in time; any other is a module of ``squealpipe/tasks/ladder/levels``, by its name.
+    that model in time; A3 is the sum of its modes.
 
     Attributes:
         label: its name for people.
@@ -36,34 +36,26 @@ class Level(IntEnum):
     model: str
     share: float
 
-    closed_form = (
-        0, "closed form", "all but both modes in contact and their sum",
-        "contact kept, belt not reached, small displacements", "WHITE",
-    )
-    a3_in_contact = (
-        1, "A3 in contact", "contact loss, geometry, reversal of friction",
+    a3 = (
+        0, "A3 in contact", "contact loss, geometry, reversal of friction",
         "contact kept, belt not reached, small displacements", "LIGHT",
     )
-    a4_exact = (
-        2, "A4, closed-form flow", "geometry, reversal of friction",
-        "belt not reached, small displacements", "ORANGE",
-    )
-    a4_in_time = (
-        3, "A4 in time", "geometry, reversal of friction",
+    a4 = (
+        1, "A4", "geometry, reversal of friction",
         "belt not reached, small displacements", "BLUE", "A4", 1.0,
     )
     a1_linear_springs = (
-        4, "A1, linear springs", "geometry", "small displacements", "PURPLE",
+        2, "A1, linear springs", "geometry", "small displacements", "PURPLE",
         "A1-linear-springs", 1.0,
     )
     a1_no_stick = (
-        5, "A1 without stick", "stick", "short spells of stick", "GREEN", "A1-no-stick", 1.0,
+        3, "A1 without stick", "stick", "short spells of stick", "GREEN", "A1-no-stick", 1.0,
     )
     a1_short = (
-        6, "A1, part of the horizon", "the rest of the horizon", "nothing new after that part",
+        4, "A1, part of the horizon", "the rest of the horizon", "nothing new after that part",
         "GREY", "A1", 0.5,
     )
-    a1 = (7, "A1", "nothing", "nothing", "BLACK", "A1", 1.0)
+    a1 = (5, "A1", "nothing", "nothing", "BLACK", "A1", 1.0)
 
     def __new__(
         cls, number: int, label: str = "", drops: str = "", needs: str = "", colour: str = "",

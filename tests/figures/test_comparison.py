@@ -139,7 +139,7 @@ def ladder():
         MODEL_LADDER,
         {
             "error": np.zeros((len(QUESTIONS), len(Level), 5, 5)),
-            "cheapest": np.full(cells, Level.a4_exact),
+            "cheapest": np.full(cells, Level.a4),
             "chosen": np.full(cells, Level.a1_short),
             "chosen_error": np.zeros(cells),
             "always_cpu_time": np.full(4, 100.0),
@@ -158,7 +158,7 @@ def ladder():
 
 def test_ladder_maps_name_only_the_levels_that_occur(ladder) -> None:
     text = written(model_ladder.draw(ladder))
-    assert "A4, closed-form flow" in text
+    assert "A4" in text
     assert "A3 in contact" not in text
 
 

@@ -19,10 +19,9 @@ pytestmark = pytest.mark.release
 
 
 ROOT = Path(__file__).parents[2]
-ROW, LAW, LAW_NAME, RECORD, LEVEL, FIGURE, FIGURE_NAME, SYSTEM = range(8)
+ROW, LAW, LAW_NAME, RECORD, FIGURE, FIGURE_NAME, SYSTEM = range(7)
 FILES = {
     LAW: "squealpipe/laws/friction_laws/rising.py",
-    LEVEL: "squealpipe/tasks/ladder/levels/a2_static.py",
     FIGURE: "squealpipe/study/figures/dynamics/impacts.py",
     SYSTEM: "squealpipe/systems/pendulum.py",
 }
@@ -31,7 +30,7 @@ LINES = {
         "squealpipe/parameters.py",
         "\n    def __post_init__(self) -> None:\n        for name",
     ),
-    RECORD: ("squealpipe/schema/ladder.py", "    closed_form = ("),
+    RECORD: ("squealpipe/schema/ladder.py", "    a1_short = ("),
     LAW_NAME: ("squealpipe/laws/friction_laws/__init__.py", None),
     FIGURE_NAME: ("squealpipe/study/report/sections.py", None),
 }
@@ -204,32 +203,6 @@ np.testing.assert_allclose(energy, float(energy[0]) * 0.81**impacts, rtol=1e-10)
     python(folder, script)
 
 
-LEVEL_ALONE = """
-import numpy as np
-from squealpipe import Parameters, quasi_static_map
-from squealpipe.study.figures.comparison.model_ladder import colour_of
-from squealpipe.schema.ladder import QUESTIONS, Level
-from squealpipe.tasks.ladder.levels import answer
-from squealpipe.tasks.ladder.levels.answers import Scenes
-params = Parameters(k1=1.4, mu=0.6, preload=2.0, mass=0.3)
-angles = np.linspace(0.1, 3.0, 8)
-first, second = (grid.ravel() for grid in np.meshgrid(angles, angles, indexing="ij"))
-found = answer(Level.a2_static, Scenes(params, first, second, 10.0, 1))
-known = quasi_static_map(params, angles, angles)
-force = found.values[QUESTIONS.index("peak_contact_force")]
-np.testing.assert_allclose(force * params.k3 * 2.0, known.reaction_force.values.ravel())
-possible = known.possible.values.ravel()
-assert possible.any() and not possible.all()
-np.testing.assert_array_equal(found.values[0] == 0.0, possible)
-assert list(Level)[0] is Level.a2_static and len({colour_of(level) for level in Level}) == 9
-"""
-
-
-def test_a_level_answers_for_itself(extended):
-    folder, _ = extended
-    python(folder, LEVEL_ALONE)
-
-
 def test_the_ladder_takes_the_new_level(extended):
     folder, _ = extended
     script = """
@@ -238,15 +211,15 @@ from squealpipe import Parameters
 from squealpipe.study.figures import declared
 from squealpipe.tasks.ladder.ladder import model_ladder
 ladder = model_ladder(Parameters(mu=0.5), 8, 0.05, t_end=100.0, workers=1)
-assert ladder.level.values[0] == "a2_static" and ladder.sizes["level"] == 9
-wrong = ladder.error.sel(level="a2_static", question="contact_lost") > 0
+assert "a1_quarter" in ladder.level.values and ladder.sizes["level"] == 7
+wrong = ladder.error.sel(level="a1_quarter", question="contact_lost") > 0
 assert wrong.any() and not wrong.all()
 declared.draw("model_ladder", {"model_ladder": ladder}).savefig("model_ladder.png")
 """
     python(folder, script)
 
 
-def test_workflow_plans_the_new_figure_and_watches_the_new_level(
+def test_workflow_plans_the_new_figure_and_watches_the_new_law(
     extended, snakemake, tmp_path, monkeypatch
 ):
     folder, _ = extended
@@ -257,7 +230,7 @@ def test_workflow_plans_the_new_figure_and_watches_the_new_level(
     plan = json.loads((tmp_path / "plan.json").read_text())
     for name, paths in {
         figure: ("hammering_map.nc", "simulate/F2b.nc", "figures/dynamics/impacts.py"),
-        ladder: ("levels/a2_static.py", "friction_laws/rising.py"),
+        ladder: ("friction_laws/rising.py",),
     }.items():
         read = " ".join(plan[name]["inputs"] + plan[name]["sources"])
         for path in paths:

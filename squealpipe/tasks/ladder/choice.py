@@ -30,7 +30,7 @@ from squealpipe.models.refusals import without_extensions
 from squealpipe.parameters import HORIZON, Parameters
 from squealpipe.schema.ladder import QUESTIONS, Level
 from squealpipe.solvers.a1.ensemble import run_ensemble
-from squealpipe.tasks.ladder.levels.in_contact import contact_motion
+from squealpipe.tasks.ladder.levels import contact_motion
 from squealpipe.tasks.ladder.questions import answer_of, dominant_frequency
 from squealpipe.tasks.normal_form import NormalForm
 from squealpipe.tasks.sampling import sample_times
@@ -175,7 +175,7 @@ def choose_models(
     value = np.full(alpha1.shape, np.nan)
     if coulomb is form.params:  # neither rule holds with dashpots or another friction law
         _answer_below_a1(value, linear, bound, question, tol, coulomb, t_end)
-    level = np.where(np.isnan(value), Level.a1, Level.closed_form)
+    level = np.where(np.isnan(value), Level.a1, Level.a3)
     _run_a1(value, form.params, alpha1, alpha2, question, t_end, workers)
     return Choices(level, value, linear, bound, cpu_time() - started)
 

@@ -15,8 +15,7 @@ from squealpipe.schema import Outcome, build
 from squealpipe.schema.ladder import MODEL_LADDER, QUESTIONS, Level
 from squealpipe.solvers.a1.ensemble import run_ensemble
 from squealpipe.tasks.ladder.choice import choose_models
-from squealpipe.tasks.ladder.levels import answer
-from squealpipe.tasks.ladder.levels.answers import Answers, Scenes
+from squealpipe.tasks.ladder.levels import Answers, Scenes, answer
 from squealpipe.tasks.normal_form import NormalForm
 
 WHY = "its cheaper levels have neither dashpots nor any friction but Coulomb's"

@@ -27,19 +27,7 @@ def test_a_linear_level_answers_nothing_where_nothing_oscillates(ladder) -> None
     linear = stability_map(PARAMS, ladder.alpha1, ladder.alpha2).regime_linear
     grows = linear != LinearRegime.stable
     assert 0 < grows.sum() < grows.size
-    for level in ("closed_form", "a3_in_contact"):
-        silent = np.isinf(ladder.error.sel(level=level))
-        assert (silent == grows).all()
-
-
-def test_both_ways_to_solve_a4_agree(ladder) -> None:
-    """Closed-form flow and Taylor integration of the same model; frequency by sampling alike."""
-    for question in ("contact_lost", "frequency"):
-        first, second = (
-            ladder.error.sel(question=question, level=level).values
-            for level in ("a4_exact", "a4_in_time")
-        )
-        assert np.isclose(first, second, rtol=1e-3, atol=1e-6).mean() > 0.97
+    assert (np.isinf(ladder.error.sel(level="a3")) == grows).all()
 
 
 def test_without_stick_a1_is_the_same_when_the_belt_is_never_reached(ladder) -> None:
