@@ -234,8 +234,6 @@ class BackbonesSection(Section):
     x_amplitude_max: Positive = 3.0
     n_harmonics: Annotated[int, Field(ge=1, le=512)] = 32
     length_ratios: Settings = (5.0, 15.0, 100.0)
-    atlas_points: Points = 91
-    atlas_peak: Positive = 2.0
 
 
 class CyclesSection(Section):

@@ -1,14 +1,12 @@
-"""Datasets of periodic motions of model A4: single orbits, backbones, the atlas."""
+"""Datasets of periodic motions of model A4: single orbits and backbones."""
 
 from __future__ import annotations
 
-from dataclasses import replace
 from enum import IntEnum
 
 from squealpipe.codes import SpecialPoint
 from squealpipe.schema import ORBIT_ENDS, RUN_ENDS, DatasetSchema, Outcome, Variable, outcome
-from squealpipe.schema.agreement import Listing, most
-from squealpipe.schema.linear import ANGLES, MAP, MODES
+from squealpipe.schema.agreement import Listing
 
 
 class Assumption(IntEnum):
@@ -141,38 +139,6 @@ DOUBLED_BRANCH = DatasetSchema(
         "doubling_y_peak": Variable(
             "y_peak of the simple orbit at the doubling", "m", nan_allowed=True
         ),
-    },
-)
-
-_NEXT_TO_ANOTHER = most(
-    "next to where branches meet, round-off decides which of them a cell is led along",
-    share=1e-4,
-)
-
-ORBIT_ATLAS = DatasetSchema(
-    name="orbit_atlas",
-    title="Angular frequency of both modes at one y_peak over both spring angles",
-    coordinates={**ANGLES, **MODES},
-    variables={
-        "omega": Variable(
-            "angular frequency of the periodic motion",
-            "rad s-1",
-            (*MAP, "mode"),
-            nan_allowed=True,
-            round_off=_NEXT_TO_ANOTHER,
-        ),
-        "stability_index": Variable(
-            "trace of the monodromy matrix minus 2",
-            dims=(*MAP, "mode"),
-            nan_allowed=True,
-            atol=1e-7,
-            round_off=_NEXT_TO_ANOTHER,
-        ),
-        "outcome": replace(
-            outcome(*MAP, "mode", among=(*ORBIT_ENDS, Outcome.separated, Outcome.not_computed)),
-            round_off=_NEXT_TO_ANOTHER,
-        ),
-        "y_peak": Variable("y at the symmetric instant", "m"),
     },
 )
 

@@ -12,10 +12,8 @@ from squealpipe.study.figures.backbones import (
     fig10_to_12,
     fig13,
     harmonic_forms,
-    orbit_atlas,
 )
 from squealpipe.tasks.backbones import a1_beside_a4 as beside_task
-from squealpipe.tasks.backbones import atlas
 from squealpipe.tasks.backbones import harmonic_forms as forms_task
 from squealpipe.tasks.backbones.backbone import backbone
 from squealpipe.tasks.backbones.doubling import doubled_branch as follow_doubling
@@ -80,8 +78,7 @@ def test_the_other_pictures_are_drawn():
     assert len(harmonic_forms.draw(forms).axes) == 2
     beside = beside_task.a1_beside_a4(FORMER, BRANCHES, peak=2.0, length_ratios=(5.0,))
     assert len(a1_beside_a4.draw(beside).axes) == 2
-    angles = np.linspace(0, PI, 9)
-    assert len(orbit_atlas.draw(atlas.orbit_atlas(FORMER, angles, angles)).axes) == 6
+
 
 
 def test_doubled_branches_are_drawn_at_twice_their_frequency():

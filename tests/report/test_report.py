@@ -201,7 +201,7 @@ def test_provenance_names_rule_id_and_checksum_of_every_dataset(small_report) ->
 def test_headings_of_pictures() -> None:
     assert title("fig01") == "Fig. 1."
     assert title("fig10_to_12") == "Figs. 10–12."
-    assert title("orbit_atlas") == "Orbit atlas."
+    assert title("hammering_map") == "Hammering map."
     assert title("a1_beside_a4") == "A1 beside A4."
 
 

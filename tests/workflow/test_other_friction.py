@@ -17,7 +17,7 @@ STUDIES = {
 }
 NOT_CARRIED = {
     "trace_backbones", "follow_doublings", "compare_harmonic_forms", "compare_a1_with_a4",
-    "map_orbits", "infer_parameters", "map_model_ladder",
+    "infer_parameters", "map_model_ladder",
     "measure_frequencies", "compute_explorer", "write_explorer", "animate_scenes",
     "draw_backbones", "draw_inference", "check_assumptions",
 }  # fmt: skip

@@ -69,7 +69,6 @@ explorer: {points: 3, history_time: 20.0, spectrum_time: 20.0, samples: 50, bran
 backbones:
   y_peak_max: 2.0
   n_harmonics: 4
-  atlas_points: 7
 animation: {frames: 3}
 sweeps:
   orbits:
@@ -86,7 +85,6 @@ SMALL_RULES = [
     "infer_parameters",
     "compare_harmonic_forms",
     "compare_a1_with_a4",
-    "map_orbits",
     "run_benchmark",
     "measure_frequencies",
     "check_assumptions",

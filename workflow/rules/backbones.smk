@@ -1,4 +1,4 @@
-"""Periodic motions of model A4: backbones, harmonic balance against exact orbits, the atlas."""
+"""Periodic motions of model A4: backbones, harmonic balance against exact orbits."""
 
 BACKBONE_SCENES = ["F10", "F11", "F12", "F13", *STUDY.backbones.coupled]
 BACKBONES = [f"{scene}_mode{mode}" for scene in BACKBONE_SCENES for mode in (1, 2)]
@@ -48,20 +48,7 @@ rule compare_a1_with_a4:
         data("a1_beside_a4"),
     params:
         part=part(
-            "parameters", "backbones.coupled", "backbones.length_ratios", "backbones.atlas_peak"
+            "parameters", "backbones.coupled", "backbones.length_ratios"
         ),
     script:
         "../scripts/backbones/compare_a1_with_a4.py"
-
-
-rule map_orbits:
-    output:
-        data("orbit_atlas"),
-    params:
-        part=part(
-            "parameters", "backbones.atlas_points", "backbones.atlas_peak", read_as=READING
-        ),
-    threads: cores_for(STUDY.backbones.atlas_points**2, enough=4000)
-    priority: LONG
-    script:
-        "../scripts/backbones/map_orbits.py"
