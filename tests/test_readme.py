@@ -48,7 +48,7 @@ def study(tiny_study, tmp_path_factory) -> Path:
         part.rename(copy / "results" / part.name)
     made = [path for part in PARTS for path in (copy / "results" / part).rglob("*.*")]
     keys = {str(path.relative_to(copy)): stated_key(path) for path in made}
-    archive("reference", keys=keys, root=copy, leave_out=[".svg", ".html", ".gif"])
+    archive("reference", keys=keys, root=copy, leave_out=[".svg", ".html"])
     return copy
 
 

@@ -297,12 +297,6 @@ class ExplorerSection(Section):
     branch_points: Annotated[int, Field(ge=2, le=200)] = 24
 
 
-class AnimationSection(Section):
-    """Short animations of hammering and of the whirl."""
-
-    frames: Annotated[int, Field(ge=2, le=500)] = 60
-
-
 Name = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]*$")]
 
 

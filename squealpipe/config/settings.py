@@ -16,7 +16,6 @@ from pydantic import Field, ValidationError, field_validator, model_validator
 from squealpipe.config.mistakes import ConfigError, mistakes
 from squealpipe.config.ranges import sweep_config
 from squealpipe.config.sections import (
-    AnimationSection,
     BackbonesSection,
     ComparisonSection,
     CyclesSection,
@@ -67,7 +66,6 @@ class Study(Section):
     cycles: CyclesSection = CyclesSection()
     spread: SpreadSection = SpreadSection()
     explorer: ExplorerSection = ExplorerSection()
-    animation: AnimationSection = AnimationSection()
     sweeps: dict[Name, SweepSection] = Field(default={})
 
     @field_validator("results")

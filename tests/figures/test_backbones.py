@@ -80,7 +80,6 @@ def test_the_other_pictures_are_drawn():
     assert len(a1_beside_a4.draw(beside).axes) == 2
 
 
-
 def test_doubled_branches_are_drawn_at_twice_their_frequency():
     """A scene with a doubling has an inset, one without has none."""
     scenes = {"one": 4.5, "none": 3.0}

@@ -9,12 +9,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import xarray as xr
-from PIL import Image
 
 from squealpipe.plotting import picture
 from squealpipe.plotting.mechanism import draw_mechanism
 from squealpipe.plotting.style import new_figure, save_figure
-from squealpipe.study.figures.dynamics.animation import animate
 from squealpipe.study.figures.model import fig01
 from squealpipe.tasks.dynamics.runs import simulate
 from squealpipe.tasks.linear.maps import stability_map
@@ -64,25 +62,6 @@ def test_branch_with_unstable_part():
     attributes = {"schema": "backbone", "parameters": '{"preload": 1.0}'}
     orbits = {name: ("point", values) for name, values in points.items()}
     return picture(xr.Dataset(orbits, attrs=attributes))
-
-
-def test_animation_moves_and_stays_small(tmp_path):
-    motion = simulate(PARAMS, 5 * np.pi / 6, 5 * np.pi / 6, t_end=20.0)
-    path = tmp_path / "hammering.gif"
-    animate(motion, path, start=0.0, end=20.0, frames=10)
-    with Image.open(path) as picture:
-        assert picture.n_frames == 10
-        first = np.asarray(picture.convert("RGB"), int)
-        picture.seek(5)
-        moved = np.abs(np.asarray(picture.convert("RGB"), int) - first).max(axis=2) > 50
-    assert 0.001 < moved.mean() < 0.2
-    assert path.stat().st_size < 100_000
-
-
-def test_animation_refuses_more_frames_than_samples(tmp_path):
-    motion = simulate(PARAMS, 1.0, 2.0, t_end=1.0, times=np.linspace(0, 1, 5))
-    with pytest.raises(ValueError, match="at most so many frames"):
-        animate(motion, tmp_path / "no.gif", start=0.0, end=1.0, frames=50)
 
 
 def test_all_files_of_a_figure_have_the_layout_of_the_first(tmp_path):

@@ -69,7 +69,6 @@ explorer: {points: 3, history_time: 20.0, spectrum_time: 20.0, samples: 50, bran
 backbones:
   y_peak_max: 2.0
   n_harmonics: 4
-animation: {frames: 3}
 sweeps:
   orbits:
     task: periodic_orbit

@@ -24,10 +24,7 @@ if STUDY.paper:
         "rules, checksums and configuration": f"{RESULTS}/report/provenance.json",
     }
     if PAPERS_FRICTION:
-        LINKS |= {
-            "the explorer of all angles": f"{RESULTS}/report/explorer.html",
-            **{f"animation of {what}": path for what, path in ANIMATIONS.items()},
-        }
+        LINKS["the explorer of all angles"] = f"{RESULTS}/report/explorer.html"
 
 
     rule write_report:
