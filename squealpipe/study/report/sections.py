@@ -33,10 +33,7 @@ BEYOND = {
     "whirl": Part("Where the growth of Fig. 3 ends", ("whirl",)),
     "transient": Part("How long the motion of Fig. 4 lasts", ("transient",)),
     "orbits": Part("Periodic motions of A4", ("coupled_backbones", "a1_beside_a4")),
-    "cycles": Part(
-        "Limit cycles with damping",
-        ("cycle_branches", "cycle_multipliers", "cycle_path", "impact_branch"),
-    ),
+    "cycles": Part("Limit cycles with damping", ("cycle_branches", "cycle_path", "impact_branch")),
     "damping": Part("Critical friction with dashpots", ("critical_friction",)),
     "starts": Part("Other starts", ("basins", "disturbance")),
     "spread": Part("Uncertain parameters", ("propensity",)),

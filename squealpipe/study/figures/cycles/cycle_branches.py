@@ -45,7 +45,7 @@ def draw(down: xr.Dataset, up: xr.Dataset, flutter: xr.Dataset, extremes: xr.Dat
     unit = parameter(extremes, "preload")
     panels = {
         "F3": (scene_title("F3"), (down, up)),
-        "flutter": (flutter_title(flutter), (flutter,)),
+        "flutter": (_flutter_title(flutter), (flutter,)),
         "F2d": (scene_title("F2d"), ()),
     }
     sizes = {name: extremes.late_max_x.sel(scene=name).values / unit for name in panels}
@@ -77,7 +77,7 @@ def draw(down: xr.Dataset, up: xr.Dataset, flutter: xr.Dataset, extremes: xr.Dat
     return figure
 
 
-def flutter_title(branch: xr.Dataset) -> str:
+def _flutter_title(branch: xr.Dataset) -> str:
     """The scene of the branch from the flutter onset by its angles, from its configuration."""
     angles = json.loads(branch.attrs["config"])["cycles"]["flutter"]
     onset = "flutter onset" if branch.sizes["point"] else "no branch"
