@@ -38,13 +38,11 @@ test-processors: dev  ## numerical tests and the tiny study as on other processo
 	$(AVX2) $(BIN)/snakemake $(TINY) --config results=results/avx2
 	$(BIN)/squealpipe compare results/tiny results/avx2
 
-# One thread for linear algebra, since one core is what is told: where others are at work, threads that
-# wait for one another made the peer of the backbones forty times slower.
+# One thread for linear algebra: with more, small solvers wait for one another.
 bench: export OPENBLAS_NUM_THREADS := 1
 bench: export OMP_NUM_THREADS := 1
-bench: dev  ## speed and accuracy beside other tools, as ratios
+bench: dev  ## integrators with events beside one another
 	$(BIN)/python -m pip install -q --require-hashes -r requirements-peers.lock
-	for script in tests/benchmarks/bench_*.py; do $(BIN)/python $$script || exit 1; done
 	-$(BIN)/squealpipe benchmark --force -o results/benchmark.nc
 
 lint: dev
