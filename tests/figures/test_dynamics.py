@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import json
-
 import numpy as np
 import pytest
 import xarray as xr
@@ -20,7 +18,6 @@ from squealpipe.study.figures.dynamics import (
     hammering_map,
     predictability,
     refined_boundary,
-    transient,
     whirl,
 )
 from squealpipe.study.figures.linear import fig07
@@ -51,9 +48,7 @@ def test_all_are_drawn_for_any_study(params, tmp_path):
         "hammering": hammering_task.hammering_map(params, ANGLES, ANGLES, t_end=50.0),
         "refined": refinement.refine_validity_map(params, resolution=61, coarse=16, t_end=50.0),
         "whirl": whirl_task.whirl_sizes(params, [0.5, 5.0, 50.0], t_end=200.0),
-        "transient": whirl_task.transient_lifetimes(params, samples=5, t_end=400.0),
     }
-    own = json.dumps(params.as_dict())
     runs = {name: scene(name, params) for name in ("F2a", "F2b", "F2c", "F2d", "F3", "F4", "F5a")}
     figures = {
         "fig02": fig02.draw(*(runs[name] for name in ("F2a", "F2b", "F2c", "F2d"))),
@@ -65,7 +60,6 @@ def test_all_are_drawn_for_any_study(params, tmp_path):
         "predictability": predictability.draw(maps["hammering"]),
         "refined": refined_boundary.draw(maps["refined"]),
         "whirl": whirl.draw(runs["F3"], maps["whirl"]),
-        "transient": transient.draw(maps["transient"].assign_attrs(parameters=own)),
     }
     for name, figure in figures.items():
         save_figure(figure, [tmp_path / f"{name}.png"])

@@ -81,7 +81,6 @@ _WHY_CHAOTIC = (
     "distribution of its lifetimes is a result"
 )
 _CHAOTIC = sampled("sample", _WHY_CHAOTIC)
-_CHAOTIC_AGE = magnitude(_WHY_CHAOTIC, factor=1.5, floor=0.05)
 TRANSIENT = DatasetSchema(
     name="transient",
     title="How long the bounded motion at (0.2 pi, 0.8 pi) lasts",
@@ -93,21 +92,6 @@ TRANSIENT = DatasetSchema(
             ("sample",),
             nan_allowed=True,
             round_off=_CHAOTIC,
-        ),
-        "survival_time": Variable("age", "s", ("age",)),
-        **{
-            name: Variable(text, dims=("age",), round_off=_CHAOTIC_AGE)
-            for name, text in (
-                ("survival", "share still bounded at that age, Kaplan-Meier"),
-                ("survival_low", "lower end of its 95 % confidence band, log-log"),
-                ("survival_high", "upper end of its 95 % confidence band, log-log"),
-            )
-        },
-        "median_lifetime": Variable(
-            "median lifetime of all runs, and its 95 % interval (infinite: not seen)",
-            "s",
-            ("bound",),
-            round_off=magnitude(_WHY_CHAOTIC, factor=1.5),
         ),
         "belt_speed": Variable("belt speed V", "m s-1"),
         "t_end": Variable("end of each run", "s"),

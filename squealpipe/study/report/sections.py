@@ -31,7 +31,7 @@ COMPARED = {
 
 BEYOND = {
     "whirl": Part("Where the growth of Fig. 3 ends", ("whirl",)),
-    "transient": Part("How long the motion of Fig. 4 lasts", ("transient",)),
+    "transient": Part("How long the motion of Fig. 4 lasts", ()),
     "orbits": Part("Periodic motions of A4", ("coupled_backbones", "a1_beside_a4")),
     "cycles": Part("Limit cycles with damping", ("cycle_branches", "cycle_path", "impact_branch")),
     "damping": Part("Critical friction with dashpots", ("critical_friction",)),

@@ -12,7 +12,6 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from squealpipe.methods.survival import survival
 from squealpipe.parameters import SCENES, Parameters
 from squealpipe.schema import Outcome, build
 from squealpipe.schema.dynamics.long_runs import TRANSIENT, WHIRL
@@ -28,8 +27,6 @@ FAR = 4.0
 LEAST_FITTED = 3
 ONSET_ROUNDS, ONSET_SPEEDS = 2, 15
 """Each round divides the interval that holds the onset by the number of speeds + 1."""
-AGES = 201
-"""Ages at which the share of survivors is stated."""
 ESCAPE_TURNS = 10.0
 """Net turns that a pendulum swinging back and forth over the top never makes."""
 LARGEST_PERTURBATION = 1e-9
@@ -163,9 +160,7 @@ def transient_lifetimes(
     """Lifetimes of the bounded motion at (0.2π, 0.8π) over tiny perturbations of its start.
 
     The samples start at rest at y = 0 and evenly spaced x up to ±1e-9 l_pre. A run ends with its
-    tenth net turn around the fixed ends: from there on it whirls. The lifetimes give a Kaplan–Meier
-    estimate of survival, in which runs that have not ended count as longer than they were followed,
-    and its median.
+    tenth net turn around the fixed ends: from there on it whirls.
 
     Args:
         params: physical parameters.
@@ -192,20 +187,11 @@ def transient_lifetimes(
         stop_at_turns=ESCAPE_TURNS,
         workers=workers,
     )
-    # runs that have not ended, for whatever reason, were followed for the time that they lasted
     ended = run.outcome == Outcome.amplitude_reached
-    estimate = survival(run.time, ended)
-    ages = np.linspace(0.0, t_end, AGES)
-    share, low, high = estimate.at(ages)
     return build(
         TRANSIENT,
         {
             "lifetime": np.where(ended, run.time, np.nan),
-            "survival_time": ages,
-            "survival": share,
-            "survival_low": low,
-            "survival_high": high,
-            "median_lifetime": estimate.median(),
             "belt_speed": params.belt_speed,
             "t_end": t_end,
             "outcome": run.outcome,

@@ -167,19 +167,6 @@ def test_lifetimes_are_the_same_when_belt_speed_is_never_reached():
     np.testing.assert_array_equal(results[0].lifetime, results[1].lifetime)
 
 
-def test_survival_counts_the_runs_that_have_not_ended():
-    result = transient_lifetimes(BASELINE.with_(belt_speed=50.0), samples=24, t_end=6000.0)
-    lifetimes = result.lifetime.values
-    ended = np.isfinite(lifetimes)
-    assert 0 < ended.sum() < ended.size
-    middle, low, high = result.median_lifetime.values
-    assert middle == np.sort(np.where(ended, lifetimes, np.inf))[11]
-    assert low < middle < high
-    # cut off at one time alone, the estimate is the plain share
-    shares = [(~(lifetimes <= age)).mean() for age in result.survival_time.values]
-    np.testing.assert_allclose(result.survival, shares)
-
-
 def test_fit_of_the_whirl_tells_its_range_and_the_onset_is_bracketed():
     speeds = [0.4, 0.7, 2.0, 40.0, 80.0, 160.0]
     result = whirl_sizes(BASELINE, speeds, t_end=3000.0)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-import xarray as xr
 
 from squealpipe.codes import Event
 from squealpipe.schema.claims import Verdict
@@ -175,7 +174,7 @@ def limit_cycle_is_bounded(run: Run) -> Finding:
         evidence += (
             f" Beyond, {ended.size} of {lifetimes.size} runs from starts at most a billionth of "
             f"l_pre apart end in the whirl before t = {horizon:g} √(m/k1), the first after "
-            f"{ended.min():.3g}{_median(transient, run.parameters.time_unit)}."
+            f"{ended.min():.3g}."
             if ended.size
             else f" None of {lifetimes.size} runs ends in the whirl before t = {horizon:g} √(m/k1)."
         )
@@ -187,14 +186,6 @@ def limit_cycle_is_bounded(run: Run) -> Finding:
         also=late < GROWTH_THRESHOLD * early,
         passed=Verdict.holds_only_as_printed if ended.size or later >= LONGEST else Verdict.holds,
     )
-
-
-def _median(transient: xr.Dataset, unit: float) -> str:
-    """The median of all runs with its interval, as a clause; nothing where it was not seen."""
-    if not np.isfinite(transient.median_lifetime[0]):
-        return ""
-    middle, low, high = transient.median_lifetime.values / unit
-    return f", half of all before {middle:.4g} (95 % interval {low:.4g} to {high:.4g})"
 
 
 @rows.add(

@@ -15,8 +15,7 @@ READS = ("simulate/F4",)
 CAPTION = (
     "Orbit of model A1, started at rest at α₁ = 0.2π, α₂ = 0.8π, coloured by time, with both "
     "springs drawn at the start (grey) and at the end of the run. Dotted: l_pre, above which "
-    "contact is lost. The figure of the transient shows how long runs from nearby starts stay "
-    "bounded."
+    "contact is lost."
 )
 ALT = (
     "Path of the mass in the x–y plane, to scale and coloured by time, with the springs at two "
