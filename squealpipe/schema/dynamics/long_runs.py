@@ -37,36 +37,12 @@ WHIRL = DatasetSchema(
         "fitted": Variable("whether the speed is in the fit", dims=("belt_speed",), dtype="bool"),
         "slope": Variable("fitted growth of the amplitude with |V|", "s", nan_allowed=True),
         "offset": Variable("fitted amplitude at V = 0", "m", nan_allowed=True),
-        "residual": Variable(
-            "amplitude over the fitted line, less 1 (NaN: no line, or no whirl)",
-            dims=("belt_speed",),
-            nan_allowed=True,
-            optional=True,
-            round_off=_LONG_SAMPLE,
-        ),
         "fit_range": Variable(
             "speed of the slowest and of the fastest belt in the fit",
             "m s-1",
             ("end",),
             nan_allowed=True,
             optional=True,
-        ),
-        "fit_residual": Variable(
-            "largest |residual| of the speeds in the fit",
-            nan_allowed=True,
-            optional=True,
-            round_off=magnitude(_IRREGULAR, factor=1.25, floor=5e-3),
-        ),
-        "onset": Variable(
-            "|V| without a whirl, and the next faster one, with a whirl, by bisection",
-            "m s-1",
-            ("end",),
-            nan_allowed=True,
-            optional=True,
-            round_off=_LONG_RUN,
-        ),
-        "onset_outcome": replace(
-            outcome(among=(Outcome.converged, Outcome.unresolved)), optional=True
         ),
         "fit_outcome": outcome(among=(Outcome.converged, Outcome.unresolved)),
         "energy_slope": Variable("sqrt(m/(k1 + k2)): the slope if the top speed were V", "s"),

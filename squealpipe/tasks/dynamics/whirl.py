@@ -6,7 +6,6 @@ each pass over the belt adds energy until the mass is as fast as the belt.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -25,8 +24,6 @@ LATE_SHARE = 0.8
 FAR = 4.0
 """Amplitude, in free lengths, from which the springs' free length is a small correction."""
 LEAST_FITTED = 3
-ONSET_ROUNDS, ONSET_SPEEDS = 2, 15
-"""Each round divides the interval that holds the onset by the number of speeds + 1."""
 ESCAPE_TURNS = 10.0
 """Net turns that a pendulum swinging back and forth over the top never makes."""
 LARGEST_PERTURBATION = 1e-9
@@ -46,9 +43,7 @@ def whirl_sizes(
     Far from the fixed end both springs pull as one of stiffness k1 + k2, so a mass that passes
     the belt at speed V swings out to x = (1 + c1) L + V √(m/(k1 + k2)), L the mean of both free
     lengths weighted by stiffness. The fit takes this line's form, over all speeds with a whirl
-    larger than four free lengths; ``fit_range`` and ``residual`` say how far and how well it
-    holds. The onset of the whirl is bracketed below the slowest belt that whirls the mass, in two
-    rounds of 15 speeds each.
+    larger than four free lengths; ``fit_range`` says how far it holds.
 
     Args:
         params: physical parameters; of the belt speed only the direction is kept.
@@ -81,17 +76,12 @@ def whirl_sizes(
             **options,
         )
 
-    def whirling(tried: np.ndarray) -> np.ndarray:
-        motion, _ = classify_motion(runs(tried), form.params)
-        return np.asarray(motion == MotionFlag.whirl)
-
     run = runs(speeds)
     motion, changed = classify_motion(run, form.params)
     motion = refine_labels(
         motion, run, lambda rows, room: runs(speeds[rows], log_events=room), t_end
     )
     whirls = motion == MotionFlag.whirl
-    onset = _onset(whirling, speeds, whirls)
     p = params
     fitted = whirls & (run.late_max_x > FAR * max(p.length1, p.length2))
     # of the one spring that both are together from afar
@@ -100,8 +90,6 @@ def whirl_sizes(
     if np.count_nonzero(fitted) >= LEAST_FITTED:
         weights = 1.0 / run.late_max_x[fitted]
         slope, offset = np.polyfit(speeds[fitted], run.late_max_x[fitted], 1, w=weights)
-    residual = np.where(whirls, run.late_max_x / (offset + slope * speeds) - 1.0, np.nan)
-    in_fit = np.abs(residual[fitted]) if np.isfinite(slope) else np.array([np.nan])
     return build(
         WHIRL,
         {
@@ -110,13 +98,9 @@ def whirl_sizes(
             "motion": motion,
             "motion_changed": changed,
             "fitted": fitted,
-            "residual": residual,
             "fit_range": [speeds[fitted].min(), speeds[fitted].max()]
             if np.isfinite(slope)
             else [np.nan, np.nan],
-            "fit_residual": in_fit.max(),
-            "onset": onset,
-            "onset_outcome": Outcome.converged if np.isfinite(onset).all() else Outcome.unresolved,
             "slope": slope,
             "offset": offset,
             "energy_slope": np.sqrt(params.mass / (params.k1 + params.k2)),
@@ -127,26 +111,6 @@ def whirl_sizes(
         },
         {"belt_speed": form.sign * speeds},
     )
-
-
-def _onset(
-    whirls_at: Callable[[np.ndarray], np.ndarray], speeds: np.ndarray, whirls: np.ndarray
-) -> list[float]:
-    """The slowest speed found to whirl the mass, after the next slower one tried.
-
-    Their interval is divided again and again; NaN where all or none of the speeds whirl.
-    """
-    order = np.argsort(speeds)
-    speeds, whirls = speeds[order], whirls[order]
-    if whirls.all() or not whirls.any() or whirls[0] or speeds[0] <= 0.0:
-        return [np.nan, np.nan]
-    for _ in range(ONSET_ROUNDS):
-        first = int(whirls.argmax())
-        tried = np.geomspace(speeds[first - 1], speeds[first], ONSET_SPEEDS + 2)[1:-1]
-        speeds = np.insert(speeds, first, tried)
-        whirls = np.insert(whirls, first, whirls_at(tried))
-    first = int(whirls.argmax())
-    return [float(speeds[first - 1]), float(speeds[first])]
 
 
 def transient_lifetimes(

@@ -9,7 +9,6 @@ from scipy.optimize import brentq
 from squealpipe.codes import Regime
 from squealpipe.parameters import SCENES
 from squealpipe.schema import Outcome
-from squealpipe.schema.dynamics.runs import MotionFlag
 from squealpipe.store import load, save
 from squealpipe.tasks.dynamics.hammering import hammering_map
 from squealpipe.tasks.dynamics.refinement import refine_validity_map
@@ -167,21 +166,12 @@ def test_lifetimes_are_the_same_when_belt_speed_is_never_reached():
     np.testing.assert_array_equal(results[0].lifetime, results[1].lifetime)
 
 
-def test_fit_of_the_whirl_tells_its_range_and_the_onset_is_bracketed():
-    speeds = [0.4, 0.7, 2.0, 40.0, 80.0, 160.0]
-    result = whirl_sizes(BASELINE, speeds, t_end=3000.0)
+def test_fit_of_the_whirl_states_its_range():
+    result = whirl_sizes(BASELINE, [0.4, 0.7, 2.0, 40.0, 80.0, 160.0], t_end=3000.0)
     np.testing.assert_array_equal(result.fit_range, [40.0, 160.0])
-    line = float(result.offset) + float(result.slope) * np.array(speeds)
-    inside = result.amplitude.values[3:] / line[3:] - 1.0
-    assert float(result.fit_residual) == pytest.approx(np.abs(inside).max())
-    outside = abs(float(result.residual[2]))
-    assert outside > 5 * float(result.fit_residual)
-    low, high = result.onset.values
-    assert 0.4 <= low < high <= 2.0
-    assert high / low < 1.02
-    for speed, whirls in ((low, False), (high, True)):
-        again = whirl_sizes(BASELINE, [speed], t_end=3000.0)
-        assert (int(again.motion[0]) == MotionFlag.whirl) == whirls
+    line = result.offset + result.slope * result.belt_speed
+    apart = np.abs(result.amplitude / line - 1.0)
+    assert apart[2] > 5 * apart[3:].max()
 
 
 @pytest.mark.parametrize("speed", [20.0, -20.0])

@@ -18,8 +18,8 @@ CAPTION = (
     "The response of Fig. 3 followed further. (a) x at (0.4π, 0.6π); the band marks the time that "
     "Fig. 3 shows. (b) Largest |x| late in the run over belt speed. Dashed: the line that follows "
     "from the energy at speed V in springs of stiffness k₁ + k₂. Only where the mass whirls: a "
-    "full line, fit of the same form, over the speeds that it covers, dotted below them, and a "
-    "grey stroke at the slowest belt found to whirl the mass. Cross: another kind of motion in the "
+    "full line, fit of the same form, over the speeds that it covers, dotted below them. "
+    "Cross: another kind of motion in the "
     "last quarter of the run."
 )
 ALT = (
@@ -83,14 +83,6 @@ def _sizes(axes: Axes, sizes: xr.Dataset) -> None:
         inside = (line >= low) & (line <= high)
         axes.loglog(line[inside], fit[inside], color=style.BLACK, linewidth=0.8, label=label)
         axes.loglog(line[line <= low], fit[line <= low], ":", color=style.BLACK, linewidth=0.8)
-    if np.isfinite(sizes.onset).all():
-        axes.axvline(
-            float(sizes.onset[1]),
-            ymax=0.4,
-            color=style.GREY,
-            linewidth=0.6,
-            label="slowest whirl found",
-        )
     axes.set(xlabel="belt speed |V| (m/s)", ylabel="largest |x|, late (m)")
     axes.legend(loc="upper left")
     style.panel_letter(axes, "b", "size over belt speed")
