@@ -57,12 +57,10 @@ def test_verdicts_at_the_baseline_are_those_recorded(
 def test_what_changes_where_the_sign_is_mended(
     evidence: dict[str, xr.Dataset], baseline: Parameters
 ) -> None:
-    """F3 has a bound with one sign throughout, and Fig. 7 no black region; E1 says so."""
+    """F3 has a bound with one sign throughout, and Fig. 7 no black region."""
     judged = rows(judge(baseline, evidence, "as_printed"))
     changed = {row["id"]: row["corrected_verdict"] for row in judged if row["changes"]}
     assert changed == CHANGED
-    said = next(row["evidence"] for row in judged if row["id"] == "E1")
-    assert f"the verdicts on {', '.join(changed)} change" in said
     plain = {name: data for name, data in evidence.items() if not name.startswith("corrected/")}
     assert not any(row["changes"] for row in rows(judge(baseline, plain, "as_printed")))
 
@@ -230,4 +228,3 @@ def test_where_the_modes_switch_is_read_from_the_map(
     split = 2.0 * np.cos(sums) * np.cos(differences)
     exact = ((split > 0) & (split < baseline.k3)).mean()
     assert float(row.value) == pytest.approx(exact, abs=0.02)
-    assert "0.2π to 0.225π and 0.775π to 0.8π" in str(row.evidence.item())

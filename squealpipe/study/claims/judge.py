@@ -53,8 +53,6 @@ def judge(
     second = Run(corrected(parameters, reading), {**sources, **mended}) if mended else run
     rows = [_row(statement, run, second) for statement in STATEMENTS]
     names = [statement.id for statement in STATEMENTS]
-    if mended:
-        rows[names.index("E1")]["evidence"] += _what_changes(rows, names)
     data = {key: np.array([row[key] for row in rows]) for key in rows[0]}
     shipped = parameters == Parameters() and reading == "as_printed"
     return build(CLAIMS, data, {"claim": names}, {"shipped": int(shipped), "reading": reading})
@@ -112,19 +110,3 @@ def _found(statement: Statement, run: Run) -> dict[str, Any]:
         "margin": found.margin,
         "evidence": found.evidence,
     }
-
-
-def _what_changes(rows: list[dict[str, Any]], names: list[str]) -> str:
-    """Which verdicts and figures depend on the sign, as a sentence."""
-    changed = [
-        (name, row["figure"])
-        for name, row in zip(names, rows, strict=True)
-        if row["corrected_verdict"] != row["verdict"]
-    ]
-    if not changed:
-        return " With one sign throughout no verdict changes."
-    figures = dict.fromkeys(figure for _, figure in changed if figure)
-    return (
-        f" With one sign throughout the verdicts on {', '.join(name for name, _ in changed)} "
-        f"change; {', '.join(figures)} show them."
-    )

@@ -96,7 +96,7 @@ def responses_differ_little(run: Run) -> Finding:
     extremes = np.array([[float(force.min()), float(force.max())] for force in forces])
     spread = float(np.ptp(extremes[:3], axis=0).max())
     apart = float(np.abs(extremes[:3] - extremes[3]).max(axis=1).min())
-    little, closer = spread <= LITTLE, spread < apart
+    closer = spread < apart
     undecided = Verdict.cannot_be_decided
     return finding(
         spread,
@@ -104,9 +104,7 @@ def responses_differ_little(run: Run) -> Finding:
         LITTLE,
         f"The lowest forces are {_listed(extremes[:3, 0])} of the preload, the highest "
         f"{_listed(extremes[:3, 1])}: a spread of {spread:.3g}, and at least {apart:.3g} from the "
-        f"fourth response. The text has no number for “minimal”: the spread is "
-        f"{'within' if little else 'beyond'} the {LITTLE:g} of the preload that the inference "
-        f"took, and {'smaller' if closer else 'larger'} than the distance from the fourth.",
+        f"fourth response. The text has no number for “minimal”; the inference took {LITTLE:g}.",
         passed=Verdict.holds if closer else undecided,
         otherwise=undecided if closer else Verdict.fails,
     )
@@ -130,9 +128,8 @@ def unstable_response_grows(run: Run) -> Finding:
     saturates = end < SATURATED * before
     evidence = (
         f"|x| reaches {early:.3g} l_pre in the first half of the run to "
-        f"{until(run, scene(run, 'F3'))} and {late:.3g} l_pre in the second. At the end of a run "
-        f"to {until(run, longer)} it {'does not grow' if saturates else 'grows'}: "
-        f"{end:.3g} l_pre in the last fifth, {before:.3g} before."
+        f"{until(run, scene(run, 'F3'))} and {late:.3g} l_pre in the second. Of a run to "
+        f"{until(run, longer)} it reaches {end:.3g} l_pre in the last fifth, {before:.3g} before."
     )
     return finding(
         late / early,
