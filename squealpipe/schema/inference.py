@@ -63,10 +63,6 @@ def _limit(side: str, of: str, dims: tuple[str, ...]) -> Variable:
     return Variable(name, dims=dims, nan_allowed=True)
 
 
-def _verdict(dims: tuple[str, ...], long_name: str) -> Variable:
-    return Variable(long_name, dims=dims, dtype="i1", flags=Holds)
-
-
 def _which_reading(long_name: str) -> Variable:
     return Variable(long_name, dtype="i1", flags=dict(enumerate(READINGS)))
 
@@ -88,12 +84,11 @@ PARAMETER_INFERENCE = DatasetSchema(
         "mu": _group("friction coefficient"),
         "length_ratio": _group("free length of the springs over l_pre"),
         "speed_ratio": _group("belt speed over l_pre √(k/m)"),
-        "holds": _verdict(
-            (*JUDGED, *STATEMENT),
+        "holds": Variable(
             "whether the statement holds; not judged where other statements had failed",
-        ),
-        "smallest_margin": Variable(
-            "smallest margin of the statements that were judged", dims=JUDGED, rtol=1e-6, atol=1e-6
+            dims=(*JUDGED, *STATEMENT),
+            dtype="i1",
+            flags=Holds,
         ),
         "feasible": Variable("all statements hold", dims=JUDGED, dtype="bool"),
         "outcome": outcome(
@@ -106,7 +101,6 @@ PARAMETER_INFERENCE = DatasetSchema(
         "judged": Variable(
             "number of samples that the statement was judged at", dims=BY_READING, dtype="i4"
         ),
-        "share_holding": Variable("share of those in which the statement holds", dims=BY_READING),
         "share_cut_alone": Variable(
             "share of the samples that this statement alone excludes", dims=BY_READING
         ),
@@ -121,15 +115,6 @@ PARAMETER_INFERENCE = DatasetSchema(
         "baseline_reading": _which_reading("the study's reading"),
         "baseline_margin": Variable(
             "margin at the parameters of the study", dims=BY_READING, rtol=1e-6, atol=1e-6
-        ),
-        "baseline_holds": _verdict(
-            BY_READING, "whether the statement holds at the parameters of the study"
-        ),
-        "baseline_consequence": Variable(
-            "the consequence holds at the parameters of the study", dims=PREDICTED, dtype="bool"
-        ),
-        "consequence_check": Variable(
-            "what was checked of the consequence", dims=CONSEQUENCE, dtype="U"
         ),
         "feasible_share": Variable(
             "share of the feasible samples in which the consequence holds; NaN where "

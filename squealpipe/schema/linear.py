@@ -150,8 +150,6 @@ STABILITY_BOUNDARIES = DatasetSchema(
             )
             for i in (1, 2)
         },
-        "z_real": Variable("Re(k1 exp(2i alpha1) + k2 exp(-2i alpha2))", "N m-1", ("point",)),
-        "z_imag": Variable("Im(k1 exp(2i alpha1) + k2 exp(-2i alpha2))", "N m-1", ("point",)),
         "boundary": Variable("which boundary", dims=("point",), dtype="i1", flags=Boundary),
         "segment": Variable(
             "points of one number are joined by a line", dims=("point",), dtype="i4"

@@ -94,7 +94,11 @@ def test_comparison_counts_every_cell_once() -> None:
 def test_extra_figures_are_written(maps: dict[str, xr.Dataset], tmp_path: Path) -> None:
     figures = {
         "shift": frequency_shift.draw(maps["frequencies"]),
-        "inference": parameter_inference.draw(inference.infer_parameters(BASELINE, samples=64)),
+        "inference": parameter_inference.draw(
+            inference.infer_parameters(
+                BASELINE, samples=64, kappa=(0.6, 0.65), mu=(0.3, 0.35), length_ratio=(12.0, 15.0)
+            )
+        ),
     }
     for name, figure in figures.items():
         paths = [tmp_path / f"{name}.png", tmp_path / f"{name}.svg"]

@@ -6,8 +6,6 @@ from dataclasses import replace
 from enum import IntEnum
 from typing import Any
 
-import xarray as xr
-
 from squealpipe.codes import Event, Regime
 from squealpipe.schema import RUN_ENDS, DatasetSchema, Outcome, Variable, outcome
 from squealpipe.schema.agreement import Listing, beyond_horizon, grown, magnitude
@@ -114,18 +112,10 @@ VALIDITY_MAP = DatasetSchema(
             dims=MAP,
             nan_allowed=True,
         ),
-        "growth_threshold": Variable(
-            "response_growth from which a response grows: that of |x| ∝ t", optional=True
-        ),
         "t_end": Variable("end of each run", "s"),
         "outcome": outcome(*MAP, among=(*RUN_ENDS, Outcome.separated)),
     },
 )
-
-
-def growth_threshold(validity: xr.Dataset) -> float:
-    """The threshold that a ``validity_map`` carries; today's where an older file has none."""
-    return float(validity.get("growth_threshold", GROWTH_THRESHOLD))
 
 
 HAMMERING_MAP = DatasetSchema(
@@ -185,27 +175,24 @@ REFINED_VALIDITY_MAP = DatasetSchema(
         ),
         "computed": Variable("whether the cell was run, not inherited", dims=MAP, dtype="bool"),
         "inherited_checked": Variable(
-            "inherited cells of a random sample that were run", dtype="i8", optional=True
+            "inherited cells of a random sample that were run", dtype="i8"
         ),
         "inherited_wrong": Variable(
-            "of these, cells that were wrong (put right since)", dtype="i8", optional=True
+            "of these, cells that were wrong (put right since)", dtype="i8"
         ),
         "inherited_error": Variable(
             "share of inherited cells that are wrong, from the sample (NaN: no sample)",
             nan_allowed=True,
-            optional=True,
         ),
         "inherited_error_interval": Variable(
             "95 % Wilson interval of inherited_error",
             dims=("end",),
             nan_allowed=True,
-            optional=True,
         ),
         "t_end": Variable("end of each run", "s"),
         "outcome": outcome(
-            # not_computed: inherited cells of files from before they had an outcome of their own
             *MAP,
-            among=(*RUN_ENDS, Outcome.separated, Outcome.inherited, Outcome.not_computed),
+            among=(*RUN_ENDS, Outcome.separated, Outcome.inherited),
         ),
     },
 )

@@ -223,11 +223,6 @@ def _variable(name: str, a: xr.Dataset, b: xr.Dataset, schema: DatasetSchema) ->
     if entry is None or name not in a.variables or name not in b.variables:
         side = "first" if name in a.variables else "second"
         reason = f"only in the {side}"
-        if entry is not None and entry.optional and entry.round_off is not None:
-            # what only says how far round-off reaches, as older datasets do not
-            return VariableDifference(
-                name=name, verdict=Agreement.within_tolerance, reason=f"optional, {reason}"
-            )
         return VariableDifference(name=name, verdict=Agreement.different, reason=reason)
     return judge(name, a, b, entry)
 

@@ -14,7 +14,7 @@ from squealpipe.laws.contact import normal_force
 from squealpipe.models.switching import VARIANT_RULES
 from squealpipe.parameters import HORIZON, Parameters
 from squealpipe.schema import Outcome, build
-from squealpipe.schema.dynamics.runs import GROWTH_THRESHOLD, SIMULATION, VALIDITY_MAP
+from squealpipe.schema.dynamics.runs import SIMULATION, VALIDITY_MAP
 from squealpipe.schema.origin import recorded
 from squealpipe.solvers.a1.ensemble import integrate, run_map
 from squealpipe.solvers.a1.jobs import Jobs, Model
@@ -191,7 +191,6 @@ def validity_map(
             "separates": lost,
             "response_growth": np.where(lost, np.nan, growth),
             "regime_linear": stability_map(params, alpha1, alpha2)["regime_linear"],
-            "growth_threshold": GROWTH_THRESHOLD,
             "t_end": t_end,
             "outcome": run.outcome,
         },

@@ -21,7 +21,7 @@ from squealpipe.schema.inference import PARAMETER_INFERENCE, Holds, wilson_inter
 from squealpipe.schema.origin import recorded
 from squealpipe.tasks.inference.candidates import Candidates
 from squealpipe.tasks.inference.consequences import CONSEQUENCES, judge_consequences
-from squealpipe.tasks.inference.constraints import CONSTRAINTS, Stage, judge, measure, verdicts
+from squealpipe.tasks.inference.constraints import CONSTRAINTS, Stage, judge, measure
 from squealpipe.tasks.inference.simple_sets import rank_simple_sets, sets_of
 from squealpipe.validation import Natural, Number, Seed, Tolerance, Workers
 
@@ -81,7 +81,7 @@ def infer_parameters(
     joined: dict[str, Any] = {name: np.stack([each[name] for each in found]) for name in found[0]}
     most = list(READINGS)[int(joined["feasible_count"].argmax())]
     ranked = rank_simple_sets(ranges, most, tol=tol, workers=workers)
-    for name in ("holds", "feasible", "outcome", "smallest_margin"):
+    for name in ("holds", "feasible", "outcome"):
         joined[name] = joined[name].swapaxes(0, 1)
     margins = [list(measure(own.read(name)).values()) for name in READINGS]
     return build(
@@ -95,14 +95,8 @@ def infer_parameters(
             "baseline_speed_ratio": params.speed_ratio,
             "baseline_reading": list(READINGS).index(reading),
             "baseline_margin": [[float(each.margin[0]) for each in row] for row in margins],
-            "baseline_holds": [[int(verdicts(each)[0]) for each in row] for row in margins],
-            "baseline_consequence": [
-                [bool(held[0]) for held in judge_consequences(own.read(name)).values()]
-                for name in READINGS
-            ],
             "criterion": [constraint.criterion for constraint in CONSTRAINTS],
             "horizon": [constraint.horizon for constraint in CONSTRAINTS],
-            "consequence_check": list(CONSEQUENCES.values()),
             "simple_reading": list(READINGS).index(most),
             **{f"simple_{name}": values for name, values in ranked.items()},
         },
@@ -118,9 +112,9 @@ def infer_parameters(
 
 def _over_samples(sets: Candidates) -> dict[str, Any]:
     """Verdicts on all samples in one reading, and their shares."""
-    margin, holds = judge(sets)
+    _, holds = judge(sets)
     shown = np.arange(0, sets.size, FULLY_JUDGED)
-    margin[shown], holds[shown] = judge(sets.subset(shown), failures=1)
+    _, holds[shown] = judge(sets.subset(shown), failures=1)
     met, failed = holds == Holds.yes, holds == Holds.no
     feasible, judged = met.all(axis=1), holds != Holds.not_judged
     alone = failed & (met.sum(axis=1, keepdims=True) == len(CONSTRAINTS) - 1)
@@ -132,7 +126,6 @@ def _over_samples(sets: Candidates) -> dict[str, Any]:
     low, high = wilson_interval(count, sets.size)
     return {
         "holds": holds,
-        "smallest_margin": np.nanmin(np.where(judged, margin, np.inf), axis=1),
         "feasible": feasible,
         "outcome": np.select(
             [feasible, failed.any(axis=1)],
@@ -144,7 +137,6 @@ def _over_samples(sets: Candidates) -> dict[str, Any]:
         "share_low": low,
         "share_high": high,
         "judged": judged.sum(axis=0),
-        "share_holding": met.sum(axis=0) / np.maximum(judged.sum(axis=0), 1),
         "share_cut_alone": np.where(on_maps, alone.mean(axis=0), alone[shown].mean(axis=0)),
         "feasible_share": np.array(held) / count if count else np.full(len(held), np.nan),
         "feasible_share_low": intervals[:, 0],

@@ -24,7 +24,7 @@ def stability_boundaries(params: Parameters, *, points: int = 400) -> xr.Dataset
 
     Returns:
         Dataset over point: alpha1, alpha2 (rad, continuous along a segment, hence not confined
-        to 0 … π; the map has period π in either angle), z_real, z_imag (N/m), boundary, segment.
+        to 0 … π; the map has period π in either angle), boundary, segment.
     """
     refuse_extensions(params, "stability_boundaries", WHY_CIRCLES)
     total = params.k1 + params.k2
@@ -50,14 +50,11 @@ def stability_boundaries(params: Parameters, *, points: int = 400) -> xr.Dataset
         ]
     count = points * len(segments)
     alpha1, alpha2 = (np.concatenate([segment[i] for segment in segments]) for i in (1, 2))
-    z = a3.plane(params, alpha1, alpha2)
     return build(
         STABILITY_BOUNDARIES,
         {
             "alpha1": alpha1,
             "alpha2": alpha2,
-            "z_real": z.real,
-            "z_imag": z.imag,
             "boundary": np.repeat([segment[0] for segment in segments], points),
             "segment": np.repeat(np.arange(len(segments)), points),
         },

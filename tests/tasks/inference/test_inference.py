@@ -205,20 +205,19 @@ def test_samples_cover_the_ranges_evenly(inference: object) -> None:
 def test_shares_follow_from_verdicts(inference: object, tmp_path: Path) -> None:
     held = inference.holds.values == Holds.yes
     np.testing.assert_array_equal(inference.feasible, held.all(axis=2))
-    np.testing.assert_array_equal(inference.feasible, inference.smallest_margin.values > 0)
     np.testing.assert_array_equal(inference.feasible_count, held.all(axis=2).sum(axis=0))
     for i, count in enumerate(inference.feasible_count.values):
         low, high = wilson_interval(int(count), 256)
         assert (inference.share_low[i], inference.share_high[i]) == (low, high)
     assert (inference.judged.sel(statement="F6d") == 256).all()
     assert (inference.judged.sel(statement="F7a") < 64).all()
-    assert (of_study(inference).baseline_holds == Holds.yes).all()
+    assert (of_study(inference).baseline_margin > 0).all()
     assert load(save(inference, tmp_path / "inference.nc")).equals(inference)
 
 
 def test_what_a_statement_excludes_alone_is_known_however_late_it_comes() -> None:
     """Stages leave out no set that one statement alone refutes."""
-    points = np.random.default_rng(4).uniform(size=(4, 300))
+    points = np.random.default_rng(4).uniform(size=(4, 120))
     groups = {
         "kappa": 0.3 + 0.6 * points[0],
         "mu": 0.1 + 0.4 * points[1],
@@ -230,7 +229,7 @@ def test_what_a_statement_excludes_alone_is_known_however_late_it_comes() -> Non
     staged = judge(sets, failures=1)[1] == Holds.yes
     last = len(CONSTRAINTS) - 1
     alone = whole.sum(axis=1) == last
-    assert alone.sum() > 20
+    assert alone.sum() > 8
     np.testing.assert_array_equal(staged.sum(axis=1) == last, alone)
     np.testing.assert_array_equal(whole[alone], staged[alone])
     np.testing.assert_array_equal((judge(sets)[1] == Holds.yes).all(axis=1), whole.all(axis=1))
@@ -248,8 +247,11 @@ def test_simple_sets_come_by_falling_smallest_margin(inference: object) -> None:
     np.testing.assert_allclose(best.simple_margin, own, atol=1e-6)
 
 
-def test_the_number_of_processes_changes_nothing(inference: object) -> None:
-    assert infer_parameters(STUDY, samples=256, workers=1).identical(inference)
+def test_the_number_of_processes_changes_nothing() -> None:
+    few = {"samples": 32, "kappa": (0.6, 0.65), "mu": (0.3, 0.35), "length_ratio": (12.0, 15.0)}
+    one, two = (infer_parameters(STUDY, **few, workers=workers) for workers in (1, 2))
+    assert one.identical(two)
+    assert one.sizes["simple"] > 0
 
 
 def test_wilsons_interval_as_in_closed_form() -> None:

@@ -101,9 +101,10 @@ def first_is_largest_on_lines(run: Run) -> Finding:
         max(excess.values()),
         "≤",
         SAME_OMEGA,
-        f"Separated, the largest ω1² exceeds that on α1 + α2 = π/2 and 3π/2 by "
+        "Separated, the largest ω1² exceeds that on α1 + α2 = π/2 and 3π/2 by "
         f"{excess['separated']:.1g} of it. In contact it is {largest / unit:.4g} k1/m at "
-        f"({first_angle:.3g}π, {second_angle:.3g}π), against {line / unit:.4g} k1/m on those lines. For even n ω1 = 0 there when separated.",
+        f"({first_angle:.3g}π, {second_angle:.3g}π), against {line / unit:.4g} k1/m on "
+        "those lines. For even n ω1 = 0 there when separated.",
         otherwise=Verdict.holds_only_as_printed
         if excess["separated"] <= SAME_OMEGA
         else Verdict.fails,

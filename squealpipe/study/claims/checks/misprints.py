@@ -7,7 +7,7 @@ import numpy as np
 from squealpipe.schema import Outcome
 from squealpipe.schema.backbones import Form
 from squealpipe.schema.claims import Verdict
-from squealpipe.schema.dynamics.runs import growth_threshold
+from squealpipe.schema.dynamics.runs import GROWTH_THRESHOLD
 from squealpipe.study.claims.checks import frequencies, sliding
 from squealpipe.study.claims.checks.motions import scene
 from squealpipe.study.claims.evidence import Finding, MissingDataError, Run, finding
@@ -240,16 +240,15 @@ def black_region_is_there(run: Run) -> Finding:
     validity = run["validity_map"]
     unstable = on_grid_of(run["stability_map"], validity).regime_linear > 0
     black = unstable & (validity.separates == 0)
-    limit = growth_threshold(validity)
-    growing = int((validity.response_growth >= limit).sum())
+    growing = int((validity.response_growth >= GROWTH_THRESHOLD).sum())
     return finding(
         max(int(black.sum()), growing),
         ">",
         0,
         f"Of the {int((validity.separates == 0).sum())} cells that keep contact in A1, "
         f"{int(black.sum())} are unstable by A3 (the text's reading), and in {growing} |x| grows "
-        f"as fast as time or faster, {limit:g} times from the first half of the run to the second "
-        "(the caption's reading).",
+        f"as fast as time or faster, {GROWTH_THRESHOLD:g} times from the first half of the run to "
+        "the second (the caption's reading).",
     )
 
 

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
 from squealpipe.plotting import style
-from squealpipe.schema.dynamics.runs import growth_threshold
+from squealpipe.schema.dynamics.runs import GROWTH_THRESHOLD
 from squealpipe.study.figures.linear.linear_overlay import mark_scene
 
 READS = ("[cv]*alidity_map",)
@@ -35,14 +35,14 @@ def caption(maps: Mapping[str, xr.Dataset]) -> str:
         f"({letter}) {TITLES[_kind(name)]}" for letter, name in zip("ab", maps, strict=False)
     )
     growing = _listed(np.count_nonzero(grows(validity)) for validity in maps.values())
-    threshold = growth_threshold(next(iter(maps.values())))
     return (
         f"Where the linear model A3 is valid{f': {several}' if len(maps) > 1 else ''}. White: A1, "
         "started at rest, loses contact although A3 is stable; orange: it does and A3 is unstable. "
         "Grey: contact is kept and A3 is stable; black: kept and unstable by the eigenvalues of "
         "A3, as the paper's text says. By A1's own response, as its caption says (|x| grows "
-        f"{threshold:g} times or more from the first half of the run to the second), {growing} of "
-        "the cells that keep contact are unstable. Numbers of cells are in the titles and the key."
+        f"{GROWTH_THRESHOLD:g} times or more from the first half of the run to the second), "
+        f"{growing} of the cells that keep contact are unstable. Numbers of cells are in the titles "
+        "and the key."
     )
 
 
@@ -58,7 +58,7 @@ def kinds_of_cells(validity: xr.Dataset) -> np.ndarray:
 def grows(validity: xr.Dataset) -> np.ndarray:
     """Cells that keep contact and grow by A1's own response."""
     growth = np.nan_to_num(validity.response_growth.values)
-    return np.asarray((validity.separates.values == 0) & (growth >= growth_threshold(validity)))
+    return np.asarray((validity.separates.values == 0) & (growth >= GROWTH_THRESHOLD))
 
 
 def draw_kinds(panel: Axes, validity: xr.Dataset) -> np.ndarray:
