@@ -41,8 +41,8 @@ def caption(maps: Mapping[str, xr.Dataset]) -> str:
         "Grey: contact is kept and A3 is stable; black: kept and unstable by the eigenvalues of "
         "A3, as the paper's text says. By A1's own response, as its caption says (|x| grows "
         f"{GROWTH_THRESHOLD:g} times or more from the first half of the run to the second), "
-        f"{growing} of the cells that keep contact are unstable. Numbers of cells are in the titles "
-        "and the key."
+        f"{growing} of the cells that keep contact are unstable. Numbers of cells are in the "
+        "titles and the key."
     )
 
 
