@@ -4,7 +4,6 @@ import json
 
 import pytest
 
-from squealpipe.config.settings import PAPER
 from squealpipe.execution.explain import (
     Explanation,
     Job,
@@ -13,7 +12,6 @@ from squealpipe.execution.explain import (
     job_times,
     snakemake_command,
 )
-from squealpipe.store.checkout import ROOT
 
 
 def job(rule, seconds, outputs=(), reasons=(), follows=()):
@@ -61,17 +59,14 @@ def test_a_quick_study_goes_beside_the_full_one(tmp_path, text, results):
     """Also where the overlay names a folder of its own."""
     mine = tmp_path / "mine.yaml"
     mine.write_text(text)
-    command, study = snakemake_command([mine], quick=True, root=ROOT)
+    command, study = snakemake_command([mine], quick=True)
     assert study.results == results
     assert f"results={results}" in command
     assert (str(mine) in command) == bool(text), "Snakemake takes no empty file"
 
 
-def test_what_cannot_be_planned_is_one_message(tmp_path):
-    with pytest.raises(FileNotFoundError, match="no Snakefile"):
-        explain(root=tmp_path)
+def test_what_cannot_be_planned_is_one_message(tmp_path, monkeypatch):
     (tmp_path / "Snakefile").write_text("raise ValueError('broken')\n")
-    (tmp_path / PAPER).parent.mkdir(parents=True)
-    (tmp_path / PAPER).write_text("")
+    monkeypatch.setattr("squealpipe.execution.explain.WORKFLOW", tmp_path)
     with pytest.raises(WorkflowError, match="broken"):
-        explain(root=tmp_path)
+        explain(directory=tmp_path)

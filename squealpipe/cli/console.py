@@ -100,16 +100,24 @@ def answer(*lines: str) -> None:
 
 @contextmanager
 def working(what: str) -> Iterator[None]:
-    """A terminal sees that a command works, and for how long it has."""
+    """A terminal sees that a command works, and how long it has and will; a pipe nothing."""
     from rich.console import Console as RichConsole
-    from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
+    from rich.progress import Progress, SpinnerColumn, TimeElapsedColumn
+
+    from squealpipe.methods.progress import shown
 
     console = RichConsole(stderr=True)
-    columns = (SpinnerColumn(), TextColumn("{task.description}"), TimeElapsedColumn())
+    columns: tuple[Any, ...] = (
+        SpinnerColumn(),
+        *Progress.get_default_columns(),
+        "after",
+        TimeElapsedColumn(),
+    )
     off = SESSION.quiet or not console.is_terminal
     with Progress(*columns, console=console, transient=True, disable=off) as progress:
-        progress.add_task(what, total=None)
-        yield
+        task = progress.add_task(what, total=None)
+        with shown(lambda share: progress.update(task, completed=share, total=1.0)):
+            yield
 
 
 def console() -> Console:

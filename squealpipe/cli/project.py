@@ -68,7 +68,7 @@ def init(
 
     check_output(file, force=force, kinds=(".yaml", ".yml"), option="FILE")
     folder = results or f"results/{file.stem}"
-    paper = (checkout() / PAPER).read_text(encoding="utf-8")
+    paper = PAPER.read_text(encoding="utf-8")
     text = (
         OWN.format(file=file, results=folder)
         if own
@@ -76,7 +76,7 @@ def init(
     )
     file.parent.mkdir(parents=True, exist_ok=True)
     file.write_text(text, encoding="utf-8")
-    read_study(checkout() / PAPER, file)
+    read_study(PAPER, file)
     say(f"wrote {file}; edit it, then: squealpipe run --config {file}")
     return DONE
 
@@ -100,22 +100,6 @@ def _commented(name: str, row: Row) -> str:
     )
 
 
-def checkout() -> Path:
-    """The checkout with the workflow: this folder, or the one that the package runs from.
-
-    Raises:
-        FileNotFoundError: neither is one.
-    """
-    from squealpipe.config.settings import PAPER
-
-    for folder in (Path(), Path(__file__).resolve().parents[2]):
-        if (folder / "Snakefile").is_file() and (folder / PAPER).is_file():
-            return folder
-    raise FileNotFoundError(
-        f"no Snakefile in {Path.cwd()}; run this in a checkout of the repository"
-    )
-
-
 def run(*, config: Configs = None, quick: Switch = False, cores: Whole | None = None) -> int:
     """Compute a study, with Snakemake's account of the steps, and of what failed with its log.
 
@@ -130,8 +114,7 @@ def run(*, config: Configs = None, quick: Switch = False, cores: Whole | None = 
     """
     from squealpipe.execution.explain import snakemake_command
 
-    root = checkout()
-    command, study = snakemake_command(config or [], quick=quick, root=root)
+    command, study = snakemake_command(config or [], quick=quick)
     started = time.perf_counter()
     quiet = ["--quiet", "all"] if SESSION.quiet else ["--quiet", "host", "rules"]
     code = _to_its_end([*command, "--cores", str(cores or "all"), *quiet])

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from pathlib import Path
 from typing import Annotated
 
 from cyclopts import Parameter
@@ -11,7 +10,6 @@ from cyclopts import Parameter
 from squealpipe.cli.arguments import AsJson, Configs, Switch
 from squealpipe.cli.console import console, working
 from squealpipe.cli.exit_codes import ANSWER_IS_NO, DONE
-from squealpipe.cli.project import checkout
 from squealpipe.text import duration
 
 
@@ -36,7 +34,7 @@ def explain(
     from squealpipe.execution.explain import explain as plan_of
 
     with working("explain"):
-        plan = plan_of(config or [], quick=quick, root=checkout(), directory=".")
+        plan = plan_of(config or [], quick=quick)
     if json_:
         print(json.dumps(plan.as_dict(), indent=1))
         return DONE
@@ -78,9 +76,7 @@ def archive(
         # a configuration that was given whole may be the paper's own
         overlays = [path for path in config or [] if not path.samefile(PAPER)]
         plan = plan_of(overlays)
-        folder = freeze(
-            name, keys=plan.keys, configs=[Path(PAPER), *overlays], leave_out=leave_out or []
-        )
+        folder = freeze(name, keys=plan.keys, configs=[PAPER, *overlays], leave_out=leave_out or [])
     size = sum(path.stat().st_size for path in folder.rglob("*") if path.is_file())
     print(f"froze the run in {folder} ({size / 1e6:.1f} MB)")
     return DONE

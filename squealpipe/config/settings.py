@@ -34,6 +34,7 @@ from squealpipe.config.yaml_files import Lines, flat, overlay, read_yaml
 from squealpipe.laws.tables import is_table, named
 from squealpipe.parameters import TABLE, Row
 from squealpipe.rerun.key import PARTS
+from squealpipe.rerun.sources import WORKFLOW
 
 __all__ = [
     "PAPER",
@@ -46,7 +47,7 @@ __all__ = [
 ]
 
 
-PAPER = "workflow/config/paper.yaml"
+PAPER = WORKFLOW / "config/paper.yaml"
 """The paper's study, over which other configurations are laid."""
 
 
@@ -269,4 +270,4 @@ def json_schema() -> str:
 
 
 if __name__ == "__main__":
-    Path("workflow/config/schema.json").write_text(json_schema(), encoding="utf-8")
+    PAPER.with_name("schema.json").write_text(json_schema(), encoding="utf-8")

@@ -20,11 +20,12 @@ from typing import Any
 from squealpipe.config.settings import PAPER, Study, read_study
 from squealpipe.config.yaml_files import flat, read_yaml
 from squealpipe.rerun.key import PLAN
+from squealpipe.rerun.sources import WORKFLOW
 from squealpipe.store.keys import misfits
 from squealpipe.store.netcdf import StoreError, attributes
 from squealpipe.text import duration
 
-QUICK = Path("workflow/config/quick.yaml")
+QUICK = PAPER.with_name("quick.yaml")
 FIGURE = re.compile(r"figures/([\w-]+)\.\w+$")
 MOST_NAMES = 4
 """Files or keys that a line names."""
@@ -102,28 +103,26 @@ def explain(
     configs: Iterable[str | os.PathLike[str]] = (),
     *,
     quick: bool = False,
-    root: str | os.PathLike[str] = ".",
-    directory: str | os.PathLike[str] | None = None,
+    directory: str | os.PathLike[str] = ".",
 ) -> Explanation:
     """Ask Snakemake what it would do and put it in terms of keys and sources.
 
     Args:
         configs: YAML files laid over the paper's configuration, as with ``--configfile``.
         quick: coarse grids and short horizons.
-        root: the checkout.
-        directory: where the study runs; the checkout by default.
+        directory: where the study runs.
 
     Raises:
-        FileNotFoundError: no Snakefile, or a configuration that is missing.
+        FileNotFoundError: a configuration that is missing.
         ConfigError: mistakes in the configuration.
         WorkflowError: Snakemake could not plan.
     """
-    there = Path(root if directory is None else directory)
-    command, _ = snakemake_command(configs, quick=quick, root=root, directory=there)
+    there = Path(directory)
+    command, _ = snakemake_command(configs, quick=quick, directory=there)
     with tempfile.NamedTemporaryFile("r", suffix=".json", encoding="utf-8") as plan:
         done = subprocess.run(
             [*command, "--summary"],
-            cwd=root,  # Python looks for the package there first
+            cwd=there,
             env={**os.environ, PLAN: plan.name},
             capture_output=True,
             text=True,
@@ -131,8 +130,10 @@ def explain(
         )
         if done.returncode:
             raise WorkflowError(f"snakemake could not plan:\n{(done.stdout + done.stderr).strip()}")
-        made: dict[str, dict[str, Any]] = json.load(plan)
+        planned: dict[str, dict[str, Any]] = json.load(plan)
     rows = [line.split("\t") for line in done.stdout.splitlines()[1:]]
+    # rules that the report of a study of one's own does not need are no part of it
+    made = {row[0]: planned[row[0]] for row in rows if row[0] in planned}
     pending = {row[0]: row[4] for row in rows if row[-1] == "update pending" and row[0] in made}
     kept = {path: made[path]["key"] for path in made if path not in pending}
     pending |= dict.fromkeys((line.partition(": ")[0] for line in misfits(kept, there)), "misfit")
@@ -167,7 +168,6 @@ def snakemake_command(
     configs: Iterable[str | os.PathLike[str]] = (),
     *,
     quick: bool = False,
-    root: str | os.PathLike[str] = ".",
     directory: str | os.PathLike[str] = ".",
 ) -> tuple[list[str], Study]:
     """Snakemake's command for a study, and the study, which is validated before anything runs.
@@ -177,19 +177,16 @@ def snakemake_command(
     Raises:
         FileNotFoundError, ConfigError: as :func:`explain`.
     """
-    base = Path(root)
-    if not (base / "Snakefile").is_file():
-        raise FileNotFoundError(f"no Snakefile in {base.resolve()}; run this in the checkout")
     given = [Path(path).absolute() for path in configs]
-    full = read_study(base / PAPER, *given)
-    paths = [*([(base / QUICK).absolute()] if quick else []), *given]
+    full = read_study(PAPER, *given)
+    paths = [*([QUICK] if quick else []), *given]
     changes = {}
     if quick:
         beside = full.results == Study().results
         changes["results"] = f"{full.results}{'/quick' if beside else '-quick'}"
-    study = read_study(base / PAPER, *paths, changes=changes)
+    study = read_study(PAPER, *paths, changes=changes)
     command = [sys.executable, "-m", "snakemake", "--nocolor"]
-    command += ["--snakefile", str((base / "Snakefile").absolute())]
+    command += ["--snakefile", str(WORKFLOW / "Snakefile")]
     command += ["--directory", str(Path(directory).absolute())]
     filled = [str(path) for path in paths if read_yaml(path)[0]]
     if filled:  # Snakemake takes no empty file

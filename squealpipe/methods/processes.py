@@ -18,6 +18,8 @@ from typing import Any
 
 import numpy as np
 
+from squealpipe.methods.progress import shown
+
 Work = Callable[[dict[str, np.ndarray], int, int], None]
 MINIMUM_JOBS = 64
 """Below this many jobs a process a fork costs more than it saves."""
@@ -98,7 +100,8 @@ def leave_interrupts_to_the_parent() -> None:
 
 def _in_child(work: Work, arrays: dict[str, np.ndarray], first: int, stride: int) -> None:
     leave_interrupts_to_the_parent()
-    work(arrays, first, stride)
+    with shown(None):
+        work(arrays, first, stride)
 
 
 def _can_fork() -> bool:

@@ -21,7 +21,7 @@ from squealpipe.rerun.sources import PACKAGE, closure, read_source
 PARTS = ("data", "figures", "report")
 """Folders of a run that hold results."""
 
-WATCHERS = frozenset({"sources.py", "key.py"})
+WATCHERS = frozenset({"sources.py", "key.py", "progress.py"})
 """Modules that watch jobs: no result depends on them."""
 
 STARTED = "SQUEALPIPE_STARTED"

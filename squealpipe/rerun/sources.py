@@ -10,6 +10,8 @@ from pathlib import Path
 from typing import NamedTuple
 
 PACKAGE = Path(__file__).resolve().parents[1]
+WORKFLOW = (PACKAGE / "workflow").resolve()
+"""Rules, scripts and configurations: in a checkout a folder of its own, in a wheel within."""
 
 
 class Source(NamedTuple):

@@ -102,11 +102,9 @@ def _row(config: dict[str, Any]) -> dict[str, Any]:
     return row | {key: value for key, value in given.items() if "parameters." not in key}
 
 
-def paper_configuration(root: str | os.PathLike[str] = ".") -> dict[str, Any]:
-    """Dotted key → value of the paper's study, or of the defaults where it is not kept."""
-    path = Path(root) / PAPER
-    study = read_study(path) if path.is_file() else Study()
-    return flat(study.model_dump(mode="json"))
+def paper_configuration() -> dict[str, Any]:
+    """Dotted key → value of the paper's study."""
+    return flat(read_study(PAPER).model_dump(mode="json"))
 
 
 def _archives(base: Path) -> Iterator[Path]:

@@ -22,15 +22,19 @@ from squealpipe.methods.taylor.lanes import (
     aligned,
     compile_system,
     drive,
+    share_of,
     taylor_terms,
 )
 from squealpipe.methods.taylor.loop import (
     ARRAYS,
+    CLOCK,
     FIXED_INTEGERS,
     FIXED_ROWS,
+    JOB,
     LOST_ERROR,
     SIZES,
     STOPPED,
+    T_END,
     TABLE,
     loop,
 )
@@ -222,7 +226,9 @@ def integrate(
         }
         # a view of nothing has no address
         held = {k: v if v.size else np.zeros(1, v.dtype) for k, v in held.items() if k in ARRAYS}
-        drive(loop(), Workspace(TABLE, held, {name: sizes[name] for name in SIZES}))
+        table = Workspace(TABLE, held, {name: sizes[name] for name in SIZES})
+        at = integers[JOB], lanes[CLOCK], lanes[T_END], held["queue"]
+        drive(loop(), table, lambda: share_of(*at))
 
     arrays = run_shared(work, shapes, jobs=size, workers=workers)
     for name in ("durations", "event_times", "firsts"):

@@ -75,7 +75,7 @@ def test_list_tells_what_differs(memory, capsys):
     assert [line.split()[0] for line in lines] == ["name", "first", "second", "results"]
     found = json.loads("\n".join(told(capsys, "list", "--json")[1]))
     assert [run["faults"] for run in found] == [[], [], []]
-    assert found[0]["changed"] == {"parameters.mu": 0.3}, "here the paper's is 0.25"
+    assert found[0]["changed"] == {"linear.points": 13}
     assert found[2]["config"] == {**found[2]["config"], "parameters.mu": 0.25, "linear.points": 13}
 
 

@@ -17,19 +17,20 @@ TINY = "workflow/config/tiny.yaml"
 @pytest.fixture
 def finished(study_copy, monkeypatch):
     monkeypatch.setenv("PYTHONPATH", str(study_copy))
+    monkeypatch.setattr("squealpipe.execution.explain.WORKFLOW", study_copy / "workflow")
     return study_copy
 
 
 def reasons(checkout, *configs):
-    plan = explain([checkout / TINY, *configs], root=checkout)
+    plan = explain([checkout / TINY, *configs], directory=checkout)
     return {job.rule: job.reasons for job in plan.jobs}
 
 
 def test_changed_key_is_named_with_what_follows(finished, tmp_path):
-    assert explain([finished / TINY], root=finished).jobs == []
+    assert explain([finished / TINY], directory=finished).jobs == []
     mine = tmp_path / "mine.yaml"
     mine.write_text("linear: {points: 71}\n")
-    plan = explain([finished / TINY, mine], root=finished)
+    plan = explain([finished / TINY, mine], directory=finished)
     jobs = {job.rule: job for job in plan.jobs}
     assert [reason.partition(":")[0] for reason in jobs["map_linear"].reasons] == ["linear.points"]
     assert "map_linear" in jobs["draw_linear"].follows

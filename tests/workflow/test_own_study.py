@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from squealpipe.execution.explain import explain
+
 OWN = """
 paper: false
 results: results/own
@@ -13,8 +15,9 @@ RULES = {
 }  # fmt: skip
 
 
-def test_only_the_rules_of_its_report_run(one_checkout, dry_runs, tmp_path):
+def test_only_the_rules_of_its_report_run_and_only_their_results_are_archived(tmp_path):
     path = tmp_path / "own.yaml"
     path.write_text(OWN)
-    (plan,) = dry_runs(one_checkout, [["--configfile", path]])
-    assert plan.rules - {"all"} == RULES
+    plan = explain([path], directory=tmp_path)
+    assert {job.rule for job in plan.jobs} == RULES
+    assert {made for job in plan.jobs for made in job.outputs} == set(plan.keys)

@@ -23,6 +23,7 @@ from squealpipe.methods.orbits.shooting import (
     solve_constrained,
     stability_index,
 )
+from squealpipe.methods.progress import report
 
 _MOST_HALVINGS = 100
 _MOST_SPLITS = 6
@@ -232,6 +233,8 @@ def _trace(
             system.rows, motion, pace, control, y_stop, spacing, table, switches
         )
         parts.append(table[:count].copy())
+        if spacing:
+            report(lambda: motion[0, 1] / y_stop)
     return np.concatenate(parts), switches, TraceEnd(end)
 
 

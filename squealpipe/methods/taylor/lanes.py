@@ -26,6 +26,7 @@ from numba.core import cgutils
 from numba.extending import intrinsic
 
 from squealpipe.methods.compiled import compiled_entry, part
+from squealpipe.methods.progress import report
 from squealpipe.methods.taylor import simd
 from squealpipe.methods.taylor.series import (
     HybridSystem,
@@ -165,13 +166,25 @@ def compile_advance(advance: Callable[..., Any], sources: Iterable[Path]) -> Any
     return function
 
 
-def drive(advance: Any, workspace: Workspace) -> None:
+def drive(advance: Any, workspace: Workspace, share: Callable[[], float] = lambda: 0.0) -> None:
     """Call ``advance``, which returns every ``ROUNDS`` steps, until it reports no lane busy.
 
-    Between two calls an interrupt is heard.
+    Between two calls an interrupt is heard, and ``share`` says how much of the work is done.
     """
     while advance(workspace.pointer):
-        pass
+        report(share)
+
+
+def share_of(job: np.ndarray, clock: np.ndarray, t_end: np.ndarray, left: np.ndarray) -> float:
+    """How much of their jobs the lanes of a process have done.
+
+    Args:
+        job, clock, t_end: of each lane; the job is negative in an idle one.
+        left: next job of this process, number of all jobs, number of processes.
+    """
+    following, count, stride = left.tolist()
+    busy = float((1.0 - clock / t_end)[job >= 0].sum())
+    return float(1.0 - (max(count - following, 0) / stride + busy) / max(count / stride, 1.0))
 
 
 def taylor_terms(tol: float) -> int:

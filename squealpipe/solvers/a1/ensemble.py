@@ -20,6 +20,7 @@ from squealpipe.methods.taylor.lanes import (
     Workspace,
     aligned,
     drive,
+    share_of,
     taylor_terms,
 )
 from squealpipe.methods.taylor.simd import FEW, LANES
@@ -338,7 +339,9 @@ def _run_lanes(
         "perturb": system.perturb,
         "longest": system.longest,
     }
-    drive(lane_kernel(), Workspace(TABLE, {name: arrays[name] for name in ARRAYS}, sizes))
+    table = Workspace(TABLE, {name: arrays[name] for name in ARRAYS}, sizes)
+    queue, row = arrays["queue"].view("i8"), lanes[0]
+    drive(lane_kernel(), table, lambda: share_of(row["job"], row["clock"], row["t_end"], queue))
     if lanes["job"].max() != IDLE or arrays["queue"][0]["next"] < len(jobs.orders):
         raise RuntimeError(
             "an exception in compiled code, reported above, ended the integration before its runs "

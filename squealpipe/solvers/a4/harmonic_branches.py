@@ -17,6 +17,7 @@ from squealpipe.methods.continuation import (
 )
 from squealpipe.methods.orbits.orbit_shape import sample
 from squealpipe.methods.orbits.orbits import decoupled_half_period, index_from_switches, solve_orbit
+from squealpipe.methods.progress import report
 from squealpipe.schema import Outcome
 from squealpipe.solvers.a4.exact_branches import (
     LINEAR_POINTS,
@@ -151,6 +152,7 @@ def coupled_branch(
 
     def stop(state: ContinuationState) -> bool:
         nonlocal ended
+        report(lambda: _peak(balance, state.point) / y_max)
         odd = state.point * (balance.shift_signs < 0.0)
         reach = state.step * (1.0 + float(np.linalg.norm(state.point)))
         if _peak(balance, state.point) >= y_max:

@@ -22,6 +22,7 @@ from squealpipe.methods.continuation import (
     ContinuationState,
     PseudoArclength,
 )
+from squealpipe.methods.progress import alone
 from squealpipe.parameters import is_finite_number
 from squealpipe.schema import Outcome
 from squealpipe.systems import runs
@@ -191,13 +192,17 @@ class Follower:
 
     def run(self, state: ContinuationState, cycle: Cycle) -> Outcome:
         """Follow the branch to its end, and label it."""
-        end = self._run(state, cycle)
+        with alone() as show:
+            end = self._run(state, cycle, show)
         self.points[-1] = replace(self.points[-1], label=Label.end)
         return end
 
-    def _run(self, state: ContinuationState, cycle: Cycle) -> Outcome:
+    def _run(
+        self, state: ContinuationState, cycle: Cycle, show: Callable[[float], None]
+    ) -> Outcome:
         self._add(Point(state, cycle))
         while len(self.points) < self.most:
+            show(self._share())
             found = self._advance(state, cycle)
             if found is None:
                 return self._reason()
@@ -218,6 +223,13 @@ class Follower:
             if met is not None:
                 return met
         return Outcome.point_limit
+
+    def _share(self) -> float:
+        """How much of the way to the end of the range is gone, or of the points."""
+        first, here = (self.points[i].parameter for i in (0, -1))
+        rooms = (self.high - first, first - self.low)
+        way = max(abs(here - first) / room for room in rooms if room > 0)
+        return max(min(way, 1.0), len(self.points) / self.most)
 
     def _is_at_end(self, parameter: float) -> bool:
         return any(abs(parameter - edge) <= 1e-12 * max(abs(edge), 1e-300)

@@ -14,6 +14,7 @@ from scipy import stats
 
 from squealpipe.codes import LinearRegime
 from squealpipe.laws.friction_laws import coefficient, slope
+from squealpipe.methods.progress import parts
 from squealpipe.models import a3
 from squealpipe.models.contact_system import contact_system
 from squealpipe.models.damped import damped_system, stability
@@ -93,6 +94,7 @@ def propensity(
     if spring_correlation and not {"k1", "k2"} <= set(names):
         raise ValueError("spring_correlation: distributions of k1 and k2 are needed for it")
     fixed = {**params.as_dict(), "alpha1": alpha1, "alpha2": alpha2}
+    turns = parts(range(1 if spring_correlation else len(names) + 3))
 
     def judge(values: np.ndarray, *, runs: bool = True) -> np.ndarray:
         size = values.shape[-1]
@@ -104,6 +106,7 @@ def propensity(
         flutters = _flutters(fields, *angles)[None]
         if not runs:
             return flutters
+        next(turns)
         return np.concatenate([flutters, _events(fields, *angles, t_end, tol, workers)])
 
     points = scrambled(len(names), samples, seed)

@@ -1,0 +1,55 @@
+"""How far a long computation is, for whoever shows it; nobody does unless asked."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from typing import TypeVar
+
+Item = TypeVar("Item")
+
+
+class _Progress:
+    """The part of the whole that is computed now, and what takes the share that is done."""
+
+    low, size = 0.0, 1.0
+    show: Callable[[float], None] | None = None
+
+
+_NOW = _Progress()
+
+
+def report(share: Callable[[], float]) -> None:
+    """Show how much of the present part is done; ``share`` is not called where nobody asked."""
+    if _NOW.show is not None:
+        _NOW.show(_NOW.low + _NOW.size * min(max(float(share()), 0.0), 1.0))
+
+
+def parts(items: Sequence[Item]) -> Iterator[Item]:
+    """The items one after another, each an equal part of the work."""
+    low, size = _NOW.low, _NOW.size
+    try:
+        for place, item in enumerate(items):
+            _NOW.low, _NOW.size = low + size * place / len(items), size / len(items)
+            report(lambda: 0.0)
+            yield item
+    finally:
+        _NOW.low, _NOW.size = low, size
+
+
+@contextmanager
+def alone() -> Iterator[Callable[[float], None]]:
+    """Take over: what is computed meanwhile shows nothing, and its caller shows its own share."""
+    show = _NOW.show
+    with shown(None):
+        yield lambda share: None if show is None else show(_NOW.low + _NOW.size * share)
+
+
+@contextmanager
+def shown(show: Callable[[float], None] | None) -> Iterator[None]:
+    """Give the share of the whole that is done to ``show`` meanwhile; None: to nobody."""
+    before, _NOW.show = _NOW.show, show
+    try:
+        yield
+    finally:
+        _NOW.show = before
