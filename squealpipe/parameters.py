@@ -108,6 +108,15 @@ def brief(value: object) -> str:
     return reprlib.repr(value)
 
 
+def law_in_words(law: str) -> str:
+    """The name of a law, the values of its table, or that it is a Python file."""
+    if is_table(law):
+        knots = zip(*knots_of(law), strict=True)
+        values = ", ".join(f"{value:g} at {knot:g}" for knot, value in knots)
+        return f"table, {law.split(maxsplit=1)[0]}: {values}"
+    return law if law.isidentifier() else "Python file"
+
+
 def _row(default: Any, units: str, symbol: str, meaning: str, **further: Any) -> Any:
     return field(default=default, metadata={"row": Row(units, symbol, meaning, **further)})
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import math
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from squealpipe.parameters import DEFAULTS, SCENES, TABLE, Scene
 from squealpipe.plotting.style import pi_label
@@ -13,8 +13,8 @@ if TYPE_CHECKING:
     import xarray as xr
 
 
-def parameter(dataset: xr.Dataset, name: str) -> float:
-    """A parameter of the run, from the attributes of its dataset, which leave out what is not used.
+def parameter(dataset: xr.Dataset, name: str) -> Any:
+    """A parameter of the run, a number or a law, from the attributes of its dataset.
 
     Raises:
         ValueError: the dataset carries none.
@@ -25,7 +25,8 @@ def parameter(dataset: xr.Dataset, name: str) -> float:
         study = {name: DEFAULTS[name], **study}
     if name not in own | study:
         raise ValueError(f"the dataset carries no parameter {name}; save it with its configuration")
-    return float((study | own)[name])
+    value = (study | own)[name]
+    return value if isinstance(value, str) else float(value)
 
 
 def time_unit(dataset: xr.Dataset) -> float:

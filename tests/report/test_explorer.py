@@ -287,3 +287,40 @@ class TestInBrowser:
             page.wait_for_function("document.body.dataset.ready === 'true'")
             assert page.inner_text("#command") == f"squealpipe simulate pi/2 pi {OPTIONS}"
             assert faults == []
+
+
+@pytest.fixture(scope="module")
+def own_page(tmp_path_factory):
+    """Of a study without the paper, with a friction law that A4 does not carry."""
+    pad = Parameters(
+        mass=0.5, k1=1e7, k2=1e7, k3=7e6, belt_speed=2.0, preload=2e-5, length1=0.02,
+        length2=0.02, friction_law="linear 0.0:0.48 1.0:0.36",
+    )  # fmt: skip
+    times = {"history_time": 30.0, "spectrum_time": 60.0, "samples": 151, "branch_points": 8}
+    validity = validity_map(pad, ANGLES, ANGLES, t_end=50 * pad.time_unit)
+    path = tmp_path_factory.mktemp("own") / "explorer.html"
+    scenes = {"mine": {"alpha1": 0.5, "alpha2": 2.1 + np.pi}, "other": {"alpha1": 1.0, "alpha2": 2}}
+    maps = layers(validity=validity)
+    write_explorer(explorer_data(pad, ANGLES, **times), maps, path, scenes, paper=False)
+    return path
+
+
+def test_a_study_without_the_paper_has_its_own_scenes_and_no_backbones(own_page):
+    text = own_page.read_text()
+    words = re.sub(r"<(script|style).*?</\1>", "", text, flags=re.DOTALL)
+    for absent in ("Fig ", "paper", "Backbones"):
+        assert absent not in words
+    shown = json.loads(text.partition('id="payload">')[2].partition("</script>")[0])
+    assert [scene["name"] for scene in shown["scenes"]] == ["mine", "other"]
+    assert shown["scenes"][0]["angles"] == pytest.approx([0.5, 2.1])
+    assert "--friction-law 'linear 0.0:0.48 1.0:0.36'" in shown["options"]
+
+
+@pytest.mark.release
+@pytest.mark.skipif(chromium_path() is None, reason="no chromium on this machine")
+def test_a_study_without_the_paper_opens_at_its_first_scene(own_page):
+    with open_page(own_page.as_uri()) as (page, faults):
+        page.wait_for_function("document.body.dataset.ready === 'true'")
+        assert page.locator("#scenes button").count() == 2
+        assert page.locator("#alpha1-text").inner_text() == "= π/6"
+        assert faults == []

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -19,7 +20,7 @@ from squealpipe.store.netcdf import save
 from squealpipe.store.provenance import stamp
 from squealpipe.study.figures.declared import draw, reads
 from squealpipe.study.report.build import write_document
-from squealpipe.study.report.content import Made, picture_files
+from squealpipe.study.report.content import Made, parameter_table, picture_files
 from squealpipe.study.report.own import boundaries, gather_own
 from squealpipe.tasks.dynamics.runs import simulate, validity_map
 from squealpipe.tasks.own.scenes import own_scenes
@@ -130,6 +131,20 @@ def test_report_has_pages_without_the_paper(found, tmp_path) -> None:
     for present in ("pushed off the belt", "mine", "N m", "Nearest angles"):
         assert present in words
     assert text.count("<img") == len(figures)
+
+
+def test_a_table_of_friction_stands_for_the_coefficient(found, tmp_path) -> None:
+    """In the table of parameters and in the picture of the model, below a title that is whole."""
+    pad = replace(PAD, mu=Parameters().mu, friction_law="linear 0.0:0.48 1.0:0.36")
+    rows = {row["meaning"]: row for row in parameter_table(pad, of_a1=True)}
+    assert "sliding friction coefficient" not in rows
+    assert rows["friction law"]["value"] == "table, linear: 0.48 at 0, 0.36 at 1"
+    assert rows["friction law"]["unit"] == ""
+    figure = draw("own_model", {"own/mine": simulate(pad, 0.5, 2.4, t_end=20 * pad.time_unit)})
+    (panel,) = figure.axes
+    assert any("$μ$: table" in text.get_text() for text in panel.texts)
+    figure.draw_without_rendering()
+    assert panel._left_title.get_window_extent().y1 <= figure.bbox.y1
 
 
 def test_a_study_without_the_paper_needs_a_scene() -> None:

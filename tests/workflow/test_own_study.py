@@ -11,7 +11,8 @@ scenes: {mine: {alpha1: 30deg, alpha2: 140deg}}
 """
 RULES = {
     "run_scenes", "map_validity", "spread_scene", "map_critical_friction", "draw_own",
-    "draw_linear", "draw_propensity", "write_own_report",
+    "draw_linear", "draw_propensity", "write_own_report", "compute_explorer",
+    "write_explorer",
 }  # fmt: skip
 
 

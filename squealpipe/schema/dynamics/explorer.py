@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from squealpipe.schema import ORBIT_ENDS, RUN_ENDS, DatasetSchema, Variable, outcome
 from squealpipe.schema.dynamics.runs import TIME
 from squealpipe.schema.linear import ANGLES, MAP, MODES
@@ -17,7 +19,9 @@ def _motion(units: str, long_name: str) -> Variable:
 
 
 def _branch(units: str, long_name: str) -> Variable:
-    return Variable(long_name, units, BRANCH, dtype="f4", nan_allowed=True, rtol=1e-5, atol=1e-6)
+    return Variable(
+        long_name, units, BRANCH, dtype="f4", nan_allowed=True, rtol=1e-5, atol=1e-6, optional=True
+    )
 
 
 EXPLORER = DatasetSchema(
@@ -25,10 +29,10 @@ EXPLORER = DatasetSchema(
     title="Motions from rest (A1), their spectra, and exact backbones (A4) over both angles",
     coordinates={
         **ANGLES,
-        **MODES,
+        **{name: replace(entry, optional=True) for name, entry in MODES.items()},
         "time": TIME,
         "frequency": FREQUENCY,
-        "point": Variable("point along the branch", dims=("point",), dtype="i4"),
+        "point": Variable("point along the branch", dims=("point",), dtype="i4", optional=True),
     },
     variables={
         "x": _motion("m", "displacement along the belt"),
@@ -52,6 +56,7 @@ EXPLORER = DatasetSchema(
             dims=(*MAP, "mode"),
             dtype="i1",
             flags=outcome(among=ORBIT_ENDS).flags,
+            optional=True,
         ),
         "preload": Variable("precompression l_pre of the contact spring", "m"),
         "length1": Variable("free length of spring 1", "m"),

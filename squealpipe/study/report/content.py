@@ -15,7 +15,7 @@ from typing import Any
 import netCDF4
 from PIL import Image
 
-from squealpipe.parameters import TABLE, Parameters
+from squealpipe.parameters import TABLE, Parameters, law_in_words
 from squealpipe.schema.claims import Origin
 from squealpipe.study.claims.evidence import Run
 from squealpipe.study.claims.table import rows
@@ -147,16 +147,22 @@ def picture_files(content: Mapping[str, Any], figures: Mapping[str, Made]) -> di
 
 
 def parameter_table(parameters: Parameters, *, of_a1: bool = False) -> list[dict[str, Any]]:
-    """Symbol, meaning, value and unit of each parameter, or of those that enter A1 alone."""
+    """Symbol, meaning, value and unit of each parameter, or of those that enter A1 alone.
+
+    A parameter for which a table of a law stands has no row.
+    """
     return [
         {
             "symbol": TABLE[name].symbol,
-            "meaning": TABLE[name].meaning,
-            "value": value,
-            "unit": re.sub(r"-\d", lambda found: found[0].translate(RAISED), TABLE[name].units),
+            "meaning": TABLE[name].meaning.partition(":")[0] if law else TABLE[name].meaning,
+            "value": law_in_words(value) if law else value,
+            "unit": ""
+            if law
+            else re.sub(r"-\d", lambda found: found[0].translate(RAISED), TABLE[name].units),
         }
         for name, value in parameters.as_dict().items()
-        if TABLE[name].enters_a1 or not of_a1
+        for law in [TABLE[name].laws]
+        if (TABLE[name].enters_a1 or not of_a1) and name not in parameters.in_tables
     ]
 
 

@@ -110,7 +110,9 @@ def boundaries(validity: xr.Dataset, alpha1: float, alpha2: float) -> dict[str, 
 
 
 def _leading(row: xr.Dataset) -> str:
-    """The parameter with the largest total index, or a dash."""
+    """The parameter with the largest total index, or why there is none."""
+    if float(row.share) in {0.0, 1.0}:
+        return "the same in the whole sample"
     total = row.total_order.values
     if not np.isfinite(total).any():
         return "not resolved by this sample"

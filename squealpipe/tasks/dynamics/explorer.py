@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from squealpipe.methods.processes import run_shared
 from squealpipe.methods.spectrum import amplitude_spectrum
+from squealpipe.models.refusals import without_extensions
 from squealpipe.parameters import Parameters
 from squealpipe.schema import build
 from squealpipe.schema.dynamics.explorer import EXPLORER
@@ -46,7 +47,8 @@ def explorer_data(
 
     Returns:
         Dataset over (alpha1, alpha2) with histories over ``time``, the spectrum over
-        ``frequency``, and branches over (``mode``, ``point``).
+        ``frequency``, and branches over (``mode``, ``point``) where model A4 carries the
+        parameters.
 
     Raises:
         ValueError: the spectrum's time is shorter than the history's.
@@ -61,24 +63,24 @@ def explorer_data(
     )
     frequency, _ = amplitude_spectrum(np.zeros(times.size), step)
     lines = int(np.searchsorted(frequency * params.time_unit, HIGHEST_FREQUENCY, side="right"))
-    count = angles.size
+    count, modes = angles.size, MODES if without_extensions(params) is params else ()
 
     def fill(arrays: dict[str, NDArray[Any]], first: int, stride: int) -> None:
         for cell in range(first, count * count, stride):
             alpha1, alpha2 = float(angles[cell // count]), float(angles[cell % count])
             _motion(arrays, cell, params, alpha1, alpha2, times)
-            for place, mode in enumerate(MODES):
+            for place, mode in enumerate(modes):
                 _branch(arrays, (cell, place), backbone(params, alpha1, alpha2, mode=mode))
 
-    history, branch = (count * count, samples), (count * count, len(MODES), branch_points)
+    history, branch = (count * count, samples), (count * count, len(modes), branch_points)
     arrays = run_shared(
         fill,
         {
             **dict.fromkeys(("x", "y", "normalized_contact_force"), (history, np.float32)),
             "force_spectrum": ((count * count, lines), np.float32),
             "outcome": ((count * count,), np.int8),
-            **dict.fromkeys(BRANCH, (branch, np.float32)),
-            "end": ((count * count, len(MODES)), np.int8),
+            **(dict.fromkeys(BRANCH, (branch, np.float32)) if modes else {}),
+            **({"end": ((count * count, len(modes)), np.int8)} if modes else {}),
         },
         jobs=count * count,
         workers=workers,
@@ -98,10 +100,9 @@ def explorer_data(
         {
             "alpha1": angles,
             "alpha2": angles,
-            "mode": MODES,
             "time": times[:samples],
             "frequency": frequency[:lines],
-            "point": np.arange(branch_points),
+            **({"mode": modes, "point": np.arange(branch_points)} if modes else {}),
         },
         {
             "parameters": json.dumps(params.as_dict()),

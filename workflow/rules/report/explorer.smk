@@ -14,21 +14,26 @@ rule compute_explorer:
 EXPLORER_PAGE = [
     from_root(f"squealpipe/study/report/explorer/{name}") for name in ("page.html.j2", "explorer.css", "chart.js", "explorer.js")
 ]
+EXPLORER_MAPS = {"validity": f"{BEYOND}validity_map"}
+if STUDY.paper:
+    EXPLORER_MAPS |= {
+        "stability": f"{BEYOND}stability_map",
+        "frequencies": f"{BEYOND}natural_frequencies",
+        "hammering": "hammering_map",
+        "ladder": "model_ladder",
+    }
 
 
 rule write_explorer:
     input:
         explorer=data("explorer"),
-        stability=data(f"{BEYOND}stability_map"),
-        frequencies=data(f"{BEYOND}natural_frequencies"),
-        validity=data(f"{BEYOND}validity_map"),
-        hammering=data("hammering_map"),
-        ladder=data("model_ladder"),
         page=EXPLORER_PAGE,
+        **{name: data(made) for name, made in EXPLORER_MAPS.items()},
     output:
         f"{RESULTS}/report/explorer.html",
     params:
-        part=part("scenes"),
+        part=part("scenes", "paper"),
+        maps=list(EXPLORER_MAPS),
     script:
         "../../scripts/report/write_explorer.py"
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
+from matplotlib.patheffects import withStroke
 
 from squealpipe.plotting.style import BLUE, PAGE, new_figure
 from squealpipe.study.figures.linear.fig07 import draw_kinds, key
@@ -26,7 +27,16 @@ def draw(validity: xr.Dataset, scenes: xr.Dataset) -> Figure:
     for scene in scenes.scene.values:
         here = scenes.sel(scene=scene)
         at = float(here.alpha1) % np.pi, float(here.alpha2) % np.pi
+        panel.plot(*at, "x", color="white", markersize=10, markeredgewidth=4)
         panel.plot(*at, "x", color=BLUE, markersize=8, markeredgewidth=2)
-        panel.annotate(str(scene), at, (5, 5), textcoords="offset points", color=BLUE, fontsize=8)
+        panel.annotate(
+            str(scene),
+            at,
+            (5, 5),
+            textcoords="offset points",
+            color=BLUE,
+            fontsize=8,
+            path_effects=[withStroke(linewidth=2, foreground="white")],
+        )
     figure.legend(handles=key(), loc="outside lower center", ncols=2)
     return figure

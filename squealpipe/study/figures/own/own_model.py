@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle, FancyArrowPatch
 
-from squealpipe.parameters import direction_of
+from squealpipe.parameters import direction_of, law_in_words
 from squealpipe.plotting.mechanism import SPRING_COLOURS, displaced_springs
 from squealpipe.plotting.origin import parameter
 from squealpipe.plotting.style import GREY, PAGE, RED, new_figure, panel_letter
@@ -56,11 +56,11 @@ def _draw(panel: Axes, run: xr.Dataset) -> None:
             f"$k_{index}$ = {number(stiffness)} N/m\n$L_{index}$ = {number(length)} m\n"
             f"$α_{index}$ = {number(angle)}°"
         )
-        side = "left" if end[0] >= 0 else "right"
-        along = 0.95 if index == 2 and one_side else 0.5
+        inner = one_side and end[1] == max(each[-1, 1] for each in springs)
+        side = "left" if (end[0] >= 0) != inner else "right"
         panel.annotate(
-            words, along * end, (8 if side == "left" else -8, -4), ha=side, va="top", fontsize=6,
-            textcoords="offset points", color=colour,
+            words, 0.5 * end, (8 if side == "left" else -8, -4), ha=side, fontsize=6,
+            va="bottom" if inner else "top", textcoords="offset points", color=colour,
         )  # fmt: skip
     mass = Circle((0.0, 0.0), 0.05 * scale, facecolor="white", edgecolor="black", zorder=4)
     panel.add_patch(mass)
@@ -73,10 +73,13 @@ def _draw(panel: Axes, run: xr.Dataset) -> None:
             arrowstyle="-|>", mutation_scale=9, color=RED,
         )
     )  # fmt: skip
+    law = law_in_words(parameter(run, "friction_law")).partition(",")[0]
+    own = law in {"table", "Python file"}
+    friction = f"$μ$: {law}" if own else f"$μ$ = {number(parameter(run, 'mu'))}"
     below = (
         f"$m$ = {number(parameter(run, 'mass'))} kg, $k_3$ = {number(parameter(run, 'k3'))} N/m\n"
         f"$l_\\mathrm{{pre}}$ = {number(parameter(run, 'preload'))} m, "
-        f"$μ$ = {number(parameter(run, 'mu'))}, $V$ = {number(parameter(run, 'belt_speed'))} m/s"
+        f"{friction}, $V$ = {number(parameter(run, 'belt_speed'))} m/s"
     )
     panel.text(0.0, 3.2 * belt, below, ha="center", va="top", fontsize=6)
     panel.set(xlim=(-1.2 * scale, 1.2 * scale), ylim=(-0.6 * scale, 1.1 * scale), aspect="equal")

@@ -8,6 +8,7 @@ import os
 from collections.abc import Mapping
 from importlib.resources import files
 from pathlib import Path
+from shlex import quote
 from typing import Any
 
 import numpy as np
@@ -29,6 +30,8 @@ def write_explorer(
     layers: Mapping[str, Layer],
     path: str | os.PathLike[str],
     scenes: Mapping[str, Mapping[str, Any]] | None = None,
+    *,
+    paper: bool = True,
 ) -> None:
     """Write the page, whole or not at all.
 
@@ -37,9 +40,15 @@ def write_explorer(
         layers: what the map can show, by key.
         path: the HTML file; it needs no network and no other file.
         scenes: those of the study's own, name → ``alpha1``, ``alpha2`` (rad).
+        paper: show the paper's scenes too.
     """
+    papers = {
+        f"Fig {scene.figure}": {"alpha1": scene.alpha1, "alpha2": scene.alpha2, "near": 0.03}
+        for scene in SCENES.values()
+        if paper and scene.figure <= 5
+    }
     with whole_file(Path(path)) as temporary:
-        temporary.write_text(page(explorer, layers, scenes or {}), encoding="utf-8")
+        temporary.write_text(page(explorer, layers, papers | dict(scenes or {})), encoding="utf-8")
 
 
 def page(
@@ -53,6 +62,7 @@ def page(
         script=(HERE / "explorer.js").read_text(encoding="utf-8"),
         chart=(HERE / "chart.js").read_text(encoding="utf-8"),
         layers={key: layer.label for key, layer in layers.items()},
+        branches="end" in explorer,
         payload=in_script(payload(explorer, layers, scenes)),
         blocks=blocks(explorer, layers),
         commit=explorer.attrs.get("commit", "unknown"),
@@ -74,6 +84,7 @@ def blocks(explorer: xr.Dataset, layers: Mapping[str, Layer]) -> dict[str, str]:
                 np.asarray(explorer[name].values, "<f4").reshape(explorer.outcome.size, -1)
             )
             for name in BRANCHES
+            if name in explorer
         },
         **{
             f"layer-{key}": _encode(layer.values.astype("i1" if layer.meanings else "<f4"))
@@ -90,27 +101,19 @@ def payload(
         "angles": [explorer.alpha1.values.tolist(), explorer.alpha2.values.tolist()],
         "time": _single(explorer.time.values),
         "frequency": _single(explorer.frequency.values),
-        "points": explorer.sizes["point"],
         "options": run_options(explorer),
         "outcome": _meanings(explorer.outcome),
-        "end": _meanings(explorer.end),
+        **({"end": _meanings(explorer.end)} if "end" in explorer else {}),
         "preload": float(explorer.preload),
         "lengths": [float(explorer.length1), float(explorer.length2)],
         "layers": {key: _layer(layer) for key, layer in layers.items()},
         "scenes": [
-            *(
-                {
-                    "name": f"Fig {scene.figure}",
-                    "angles": [scene.alpha1, scene.alpha2],
-                    "near": 0.03,
-                }
-                for scene in SCENES.values()
-                if scene.figure <= 5
-            ),
-            *(
-                {"name": name, "angles": [scene["alpha1"] % np.pi, scene["alpha2"] % np.pi]}
-                for name, scene in scenes.items()
-            ),
+            {
+                "name": name,
+                "angles": [scene[angle] % np.pi for angle in ("alpha1", "alpha2")],
+                "near": scene.get("near"),
+            }
+            for name, scene in scenes.items()
         ],
     }
 
@@ -127,7 +130,9 @@ def run_options(explorer: xr.Dataset) -> str:
     end = stated.get("run_t_end", explorer.time.values[-1])
     points = stated.get("run_points", explorer.sizes["time"])
     options = {"t_end": float(end), "points": int(points), **values}
-    return " ".join(f"--{key.replace('_', '-')} {_plain(value)}" for key, value in options.items())
+    return " ".join(
+        f"--{key.replace('_', '-')} {quote(_plain(value))}" for key, value in options.items()
+    )
 
 
 def _plain(value: object) -> str:

@@ -38,7 +38,7 @@
     return layer.categories.length ? new Int8Array(data) : new Float32Array(data);
   };
   const outcomes = new Int8Array(buffer(payload.outcome.values));
-  const ends = new Int8Array(buffer(payload.end.values));
+  const ends = payload.end && new Int8Array(buffer(payload.end.values));
 
   const cellOf = (pair) => pair[0] * angles[1].length + pair[1];
   const history = (name, cell) => {
@@ -48,7 +48,7 @@
   };
   const branch = (name, cell, mode) => {
     const both = new Float32Array(record(name, cell));
-    return Array.from(both.subarray(mode * payload.points, (mode + 1) * payload.points));
+    return Array.from(both.subarray(mode * both.length / 2, (mode + 1) * both.length / 2));
   };
   const nearest = (grid, value) => {
     let best = 0;
@@ -81,7 +81,7 @@
   };
 
   // ---- plots ------------------------------------------------------------------------------
-  const charts = Object.fromEntries(["map", "force", "orbit", "spectrum", "backbones"].map((id) => [id, chart(element(id))]));
+  const charts = Object.fromEntries(["map", "force", "orbit", "spectrum", "backbones"].filter(element).map((id) => [id, chart(element(id))]));
   const axesOf = (x, y) => [x, { ...y, fromZero: true }];
   const draw = (id, content) => charts[id].draw({ ...content, colours: { ink: INK, line: LINE, paper: PAPER } });
   const dot = (color, x, y, size = 4.5) => ({ x: [x], y: [y], color, marks: [true], size, width: 0, quiet: true });
@@ -288,7 +288,7 @@
     window.history.replaceState(null, "", `#${picked.map((a) => +(a / Math.PI).toFixed(4)).join(",")}`);
     element("instant").value = 0;
     drawForce(cell); drawOrbit(cell);
-    drawSpectrum(cell); drawBackbones(cell);
+    drawSpectrum(cell); if (ends) drawBackbones(cell);
     [0, 1].forEach((ring) => charts.map.move(ring, mark()));
   }
 
@@ -343,7 +343,8 @@
   dark.addEventListener("change", () => { readColours(); drawMap(); choose(chosen); });
 
   const fromAddress = window.location.hash.slice(1).split(",").map((part) => Number(part) * Math.PI);
-  const start = fromAddress.length === 2 && fromAddress.every(Number.isFinite) ? fromAddress : [5 * Math.PI / 6, 5 * Math.PI / 6];
+  const start = fromAddress.length === 2 && fromAddress.every(Number.isFinite) ? fromAddress
+    : payload.scenes[0]?.near === null ? payload.scenes[0].angles : [5 * Math.PI / 6, 5 * Math.PI / 6];
   chosen = pairAt(start);
   drawMap();
   // The browser shows the map before the panels are drawn.

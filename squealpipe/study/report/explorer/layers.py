@@ -89,45 +89,51 @@ def cheapest(ladder: xr.Dataset, question: str) -> Layer:
 
 def layers(
     *,
-    stability: xr.Dataset,
-    frequencies: xr.Dataset,
     validity: xr.Dataset,
-    hammering: xr.Dataset,
-    ladder: xr.Dataset,
+    stability: xr.Dataset | None = None,
+    frequencies: xr.Dataset | None = None,
+    hammering: xr.Dataset | None = None,
+    ladder: xr.Dataset | None = None,
 ) -> dict[str, Layer]:
-    """All layers, in the order of the chooser.
+    """All layers, in the order of the chooser; those of datasets that a study lacks are left out.
 
     Args:
+        validity: dataset ``validity_map``.
         stability: dataset ``stability_map``.
         frequencies: dataset ``natural_frequencies``.
-        validity: dataset ``validity_map``.
         hammering: dataset ``hammering_map``.
         ladder: dataset ``model_ladder``.
     """
-    motion = hammering.motion.where(hammering.motion_changed == 0, MotionFlag.unsettled)
-    found = {
-        "motion": category(motion, "motion (A1)", colours=REGIME_COLOURS),
-        "stability": category(
-            stability.regime_linear, "linear stability (A3)", colours=REGIME_COLOURS
-        ),
-        "first_separation": quantity(
-            validity.first_separation_time,
-            "first separation",
-            note="blank: contact is kept to the end of the run",
-        ),
-        "peak_force": quantity(hammering.peak_contact_force, "peak contact force / (k₃ lₚᵣₑ)"),
-        "impact_rate": quantity(hammering.impact_rate, "impacts per time"),
-        "predictability": quantity(
-            hammering.predictability_horizon,
-            "predictable until",
-            note="beyond it a single run means nothing; the largest value is the end of the runs",
-        ),
-        "growth_rate": quantity(stability.growth_rate, "growth rate (A3)"),
-    }
-    for state, words in (("contact", "in contact"), ("separated", "separated")):
-        for mode in (1, 2):
-            chosen = frequencies.omega.sel(mode=mode, contact_state=state)
-            found[f"omega{mode}_{state}"] = quantity(chosen, f"ω{'₁₂'[mode - 1]} {words}")
-    for question in ladder.question.values:
-        found[f"cheapest_{question}"] = cheapest(ladder, str(question))
+    found = {}
+    if hammering is not None:
+        motion = hammering.motion.where(hammering.motion_changed == 0, MotionFlag.unsettled)
+        found["motion"] = category(motion, "motion (A1)", colours=REGIME_COLOURS)
+    regime = (validity if stability is None else stability).regime_linear
+    found["stability"] = category(regime, "linear stability (A3)", colours=REGIME_COLOURS)
+    found["first_separation"] = quantity(
+        validity.first_separation_time,
+        "first separation",
+        note="blank: contact is kept to the end of the run",
+    )
+    if hammering is not None:
+        found |= {
+            "peak_force": quantity(hammering.peak_contact_force, "peak contact force / (k₃ lₚᵣₑ)"),
+            "impact_rate": quantity(hammering.impact_rate, "impacts per time"),
+            "predictability": quantity(
+                hammering.predictability_horizon,
+                "predictable until",
+                note="beyond it a single run means nothing; the largest value is the end of the "
+                "runs",
+            ),
+        }
+    if stability is not None:
+        found["growth_rate"] = quantity(stability.growth_rate, "growth rate (A3)")
+    if frequencies is not None:
+        for state, words in (("contact", "in contact"), ("separated", "separated")):
+            for mode in (1, 2):
+                chosen = frequencies.omega.sel(mode=mode, contact_state=state)
+                found[f"omega{mode}_{state}"] = quantity(chosen, f"ω{'₁₂'[mode - 1]} {words}")
+    if ladder is not None:
+        for question in ladder.question.values:
+            found[f"cheapest_{question}"] = cheapest(ladder, str(question))
     return found
