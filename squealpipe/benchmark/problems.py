@@ -5,10 +5,9 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
-from typing import Any
+from typing import Any, NamedTuple
 
 import yaml
 
@@ -23,8 +22,7 @@ class OutOfPatienceError(RuntimeError):
     """A solver has called the field more often than a problem allows."""
 
 
-@dataclass(frozen=True)
-class Transition:
+class Transition(NamedTuple):
     """What ends a regime: a surface, and what happens where it falls through zero.
 
     Attributes:
@@ -38,6 +36,15 @@ class Transition:
     leaves: tuple[str, ...]
     when: Callable[[Any, Any, str], Any]
     fire: Callable[[Any, Any, str], tuple[str, str, list[Any]]]
+
+    def event(self, regime: str) -> Callable[[float, Any], float]:
+        """The surface in a regime as scipy takes it: it stops the run where it falls."""
+
+        def watched(t: float, y: Any) -> float:
+            return float(self.when(t, y.tolist(), regime))
+
+        watched.terminal, watched.direction = True, -1  # type: ignore[attr-defined]
+        return watched
 
 
 class Problem:
@@ -57,8 +64,7 @@ class Problem:
         switches: see :class:`Transition`; each falls through zero where it fires.
         derivative: None, or the event's number (from 0) and the parameter by which the derivative
             of its time is asked.
-        smoothed: None, or the regime constants as smooth functions of the state and of ``sigma``.
-        stepping: None, or what Moreau–Jean time stepping needs.
+        rates: texts of the field; ``fields``: what they became, by the regime.
         calls: how often the field was called.
     """
 
@@ -73,10 +79,10 @@ class Problem:
         self.parameters = {name: number(value) for name, value in data["parameters"].items()}
         self.regimes: dict[str, dict[str, float]] = data["regimes"]
         self.derivative = data.get("derivative")
-        self.smoothed, self.stepping = data.get("smoothed"), data.get("stepping")
         self.calls, self.patience = 0, PATIENCE
         self._names = {name: getattr(functions, name) for name in FUNCTIONS} | self.parameters
-        self._fields = self.per_regime(list(data["field"].values()))
+        self.rates = list(data["field"].values())
+        self.fields = self.per_regime(self.rates)
         self.switches = [self._transition(switch) for switch in data["switches"]]
 
     def field(self, t: Any, y: Any, regime: str = "") -> Any:
@@ -88,12 +94,14 @@ class Problem:
         self.calls += 1
         if self.calls > self.patience:
             raise OutOfPatienceError(f"gave up after {self.patience} evaluations")
-        return self._fields[regime or self.regime](t, y)
+        return self.fields[regime or self.regime](t, y)
 
     def function(self, texts: Any, constants: Mapping[str, Any]) -> Any:
-        """A Python function (t, y) of one text, or of a list of texts."""
+        """A Python function (t, y) of one text, or of a list; constants may be texts, too."""
         body = texts if isinstance(texts, str) else f"[{', '.join(texts)}]"
-        source = f"def made(time, y):\n {', '.join(self.states)}, = y\n return {body}"
+        lines = [f"{', '.join(self.states)}, = y"]
+        lines += [f"{name} = {text}" for name, text in constants.items() if isinstance(text, str)]
+        source = "\n ".join(["def made(time, y):", *lines, f"return {body}"])
         scope = {**self._names, **constants}
         exec(source, scope)  # noqa: S102 (equations of this package)
         return scope["made"]
@@ -154,7 +162,10 @@ def run(problem: Problem, advance: Callable[..., Any], most_events: int = 2000) 
         most_events: events after which the run is given up.
 
     Returns:
-        Times, kinds, final state, evaluations, flag.
+        Times, kinds, final state, evaluations.
+
+    Raises:
+        OutOfPatienceError: there are more events.
     """
     t, y, regime = 0.0, problem.start, problem.regime
     times: list[float] = []
@@ -163,8 +174,8 @@ def run(problem: Problem, advance: Callable[..., Any], most_events: int = 2000) 
         watched = problem.watched(regime)
         t, y, fired = advance(problem, regime, watched, t, y)
         if fired is None:
-            return times, kinds, list(map(float, y)), problem.calls, ""
+            return times, kinds, list(y), problem.calls
         kind, regime, y = watched[fired].fire(t, [*map(float, y)], regime)
         times.append(float(t))
         kinds.append(kind)
-    return times, kinds, list(y), problem.calls, f"gave up after {most_events} events"
+    raise OutOfPatienceError(f"gave up after {most_events} events")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -20,6 +20,8 @@ BENCHMARK_VERSION = 1
 TOLERANCES = (1e-6, 1e-8, 1e-10, 1e-12)
 ALLOWED = 100.0
 """Error over growth, in tolerances, up to which an answer is right."""
+APART = 0.1
+"""An event is known whose time the allowed error moves by less of the way to the next one."""
 REFERENCE_TOLERANCE = 1e-8
 """Of DOP853, whose CPU time is the unit of ``cpu_ratio``."""
 
@@ -41,15 +43,8 @@ class Score(NamedTuple):
     @property
     def words(self) -> str:
         """The score as text: the verdict, then what is wrong."""
-        found = [
-            f"{count} {name}"
-            for count, name in (
-                (self.missed, "missed"),
-                (self.spurious, "spurious"),
-                (self.out_of_order, "out of order"),
-            )
-            if count > 0
-        ]
+        counts = {n: getattr(self, n) for n in ("missed", "spurious", "out_of_order")}
+        found = [f"{count} {name.replace('_', ' ')}" for name, count in counts.items() if count > 0]
         if self.verdict > Reliability.right and np.isfinite(self.error):
             found.append(f"error {self.error:.1e}")
         found += [self.message] * bool(self.message)
@@ -70,29 +65,28 @@ def score(
         tol: what was asked for.
     """
     times, kinds, state, evaluations, *more = answer
-    flag, slope = more[0] if more else "", more[1] if len(more) > 1 else None
+    flag = more[0] if more else ""
+    slope = more[1] if more[1:] else None
+    unlike_right = Reliability.flagged if flag else Reliability.silently_wrong
     if "unknowable" in data:
-        verdict = Reliability.flagged if flag else Reliability.silently_wrong
-        return Score(verdict, message=flag, evaluations=evaluations)
+        return Score(unlike_right, message=flag, evaluations=evaluations)
     error = largest(state, reference["state"], reference["growth"])
     missed = spurious = swapped = -1
-    time_error, wrong = np.nan, False
+    time_error, wrong, allowed = np.nan, False, ALLOWED * tol
     if times is not None:
-        pairs, missed, spurious = matched(reference, times, kinds)
-        mine, truth, growth = (
-            np.array(each, float) for each in (times, reference["times"], reference["time_growth"])
-        )
-        swapped = out_of_order(pairs, truth, ALLOWED * tol * growth)
-        found = [(mine[j], truth[i], growth[i]) for i, j in pairs]
-        time_error = max((largest([a], [b], 1.0) for a, b, _ in found), default=0.0)
-        if knowable := ALLOWED * tol <= reference["margin"]:
-            error = max([error, *(largest([a], [b], g) for a, b, g in found)])
-        wrong = knowable and max(missed, spurious, swapped) > 0
+        mine, truth, growth = map(np.array, (times, reference["times"], reference["time_growth"]))
+        i, j = matched(reference, mine, kinds).T
+        missed, spurious = len(truth) - len(i), len(mine) - len(j)
+        swapped = out_of_order(j, truth[i], allowed * growth[i])
+        judged = allowed <= reference["margin"]
+        known = judged | (allowed * growth <= APART * spacing(truth))
+        errors = np.abs(mine[j] - truth[i]) / np.maximum(1.0, truth[i])
+        time_error = errors.max(initial=0.0)
+        error = (errors / growth[i]).max(initial=error, where=known[i])
+        wrong = known.sum() > known[i].sum() or (judged and max(spurious, swapped) > 0)
     if slope is not None and data.get("derivative"):
         error = max(error, largest([slope], [reference["derivative"]], reference["growth"]))
-    right = not wrong and error <= ALLOWED * tol
-    wrong_verdict = Reliability.flagged if flag else Reliability.silently_wrong
-    verdict = Reliability.right if right else wrong_verdict
+    verdict = Reliability.right if error <= allowed and not wrong else unlike_right
     return Score(verdict, missed, spurious, swapped, time_error, error, flag, evaluations)
 
 
@@ -104,27 +98,29 @@ def largest(found: Sequence[float], truth: Sequence[float], growth: float) -> fl
     return float(np.max(np.abs(a - b) / np.maximum(1.0, np.abs(b)), initial=0.0) / growth)
 
 
-def matched(
-    reference: Mapping[str, Any], times: Sequence[float], kinds: Sequence[str]
-) -> tuple[list[tuple[int, int]], int, int]:
-    """Pairs (event of the reference, event found) of one kind, nearest first; missed; spurious."""
+def matched(reference: Mapping[str, Any], times: np.ndarray, kinds: Sequence[str]) -> np.ndarray:
+    """Pairs (event of the reference, event found) of one kind, nearest first."""
     pairs: list[tuple[int, int]] = []
-    for kind in {*kinds, *reference["kinds"]}:
+    for kind in {*reference["kinds"]}:
         mine = [j for j, each in enumerate(kinds) if each == kind]
         theirs = [i for i, each in enumerate(reference["kinds"]) if each == kind]
-        ours, truth = np.array(times, float)[mine], np.array(reference["times"])[theirs]
-        rows, columns = linear_sum_assignment(np.abs(truth[:, None] - ours[None, :]) ** 0.5)
+        apart = np.array(reference["times"])[theirs, None] - times[mine]
+        rows, columns = linear_sum_assignment(np.abs(apart) ** 0.5)
         pairs += [(theirs[i], mine[j]) for i, j in zip(rows, columns, strict=True)]
-    return sorted(pairs), len(reference["kinds"]) - len(pairs), len(kinds) - len(pairs)
+    return np.array(sorted(pairs), int).reshape(-1, 2)
 
 
-def out_of_order(pairs: Sequence[tuple[int, int]], truth: np.ndarray, resolved: np.ndarray) -> int:
+def out_of_order(found: np.ndarray, truth: np.ndarray, resolved: np.ndarray) -> int:
     """Events found before one that they follow, by more time than the tolerance resolves."""
-    late = [
-        any(j > k and truth[i] - truth[before] > resolved[i] for before, j in pairs[:place])
-        for place, (i, k) in enumerate(pairs)
-    ]
-    return sum(late)
+    later = (found[:, None] < found) & (truth[:, None] - truth > resolved[:, None])
+    return int(later.any(axis=1).sum())
+
+
+def spacing(times: np.ndarray) -> np.ndarray:
+    """Time from each event to the nearest other one that does not come at once."""
+    gaps = np.diff(times, prepend=-np.inf, append=np.inf)
+    gaps[gaps == 0.0] = np.inf
+    return np.minimum(gaps[:-1], gaps[1:])
 
 
 def measure(data: Mapping[str, Any], solve: Callable[..., Any], tol: float) -> Score:
@@ -136,9 +132,8 @@ def measure(data: Mapping[str, Any], solve: Callable[..., Any], tol: float) -> S
     except NotImplementedError as refusal:
         return Score(Reliability.not_applicable, message=str(refusal)[:64])
     except Exception as failure:  # noqa: BLE001 (whatever a solver raises is its flag)
-        flag = f"{type(failure).__name__}: {failure}"[:64]
-        nowhere = [np.nan] * len(problem.states)
-        answer = None, None, nowhere, problem.calls, flag
+        flag = f"{type(failure).__name__}: {failure}"
+        answer = None, None, [], problem.calls, flag
     spent = time.process_time() - started
     found = score(data, references()[data["name"]], answer, tol)
     return found._replace(cpu_time=spent, message=found.message[:64])
@@ -160,60 +155,39 @@ def benchmark(
         done: called with problem, solver and its scores.
 
     Raises:
-        ValueError: a problem is unknown.
+        ValueError: a problem is unknown, or there is no solver.
     """
     known = {data["name"]: data for data in all_data()}
     if unknown := [name for name in names if name not in known]:
         raise ValueError(f"problem {unknown[0]!r} is unknown; known: {', '.join(known)}")
+    if not solvers:
+        raise ValueError("no solver that is asked for is installed")
     chosen = [known[name] for name in names or known]
-    rows: list[list[list[Score]]] = []
+    cells: list[list[list[Score]]] = []
     for data in chosen:
         unit = measure(data, reference_solver, REFERENCE_TOLERANCE).cpu_time
-        rows.append([])
+        cells.append([])
         for name, solve in solvers.items():
             measure(data, solve, tolerances[0])  # compiles before any stopwatch runs
             found = [measure(data, solve, tol) for tol in tolerances]
-            rows[-1].append([each._replace(cpu_ratio=each.cpu_time / unit) for each in found])
-            done(data["name"], name, rows[-1][-1])
-    columns = {
-        field: [[[getattr(s, field) for s in row] for row in rows_of] for rows_of in rows]
-        for field in Score._fields
+            cells[-1].append([each._replace(cpu_ratio=each.cpu_time / unit) for each in found])
+            done(data["name"], name, cells[-1][-1])
+    table = np.array(cells, dtype=object)
+    columns = {name: table[..., i].tolist() for i, name in enumerate(Score._fields)}
+    coordinates = {
+        "problem": [data["name"] for data in chosen],
+        "solver": list(solvers),
+        "tol": list(tolerances),
     }
     groups = [data["class"] for data in chosen]
-    ours = [Role.ours if name == "squealpipe" else Role.public for name in solvers]
-    return build(
-        BENCHMARK,
-        {**columns, "group": groups, "role": ours},
-        {
-            "problem": [data["name"] for data in chosen],
-            "solver": list(solvers),
-            "tolerance": list(tolerances),
-        },
-        {"benchmark_version": BENCHMARK_VERSION},
+    role = [Role.ours if name == "squealpipe" else Role.public for name in solvers]
+    columns |= {"group": groups, "role": role}
+    return build(BENCHMARK, columns, coordinates, {"benchmark_version": BENCHMARK_VERSION})
+
+
+def verdicts(row: xr.Dataset) -> str:
+    """Those of all solvers on one problem, as text."""
+    return "; ".join(
+        f"{solver}: {', '.join(Reliability(v).name.replace('_', ' ') for v in verdict)}"
+        for solver, verdict in zip(row.solver.values, row.verdict.values.tolist(), strict=True)
     )
-
-
-def silently_wrong(dataset: xr.Dataset) -> int:
-    """Answers that are wrong without a flag."""
-    return int((dataset.verdict == Reliability.silently_wrong).sum())
-
-
-def differences(one: xr.Dataset, other: xr.Dataset) -> Iterable[tuple[str, str, str]]:
-    """Problem, and the verdicts of two datasets at each tolerance that both have."""
-    for problem in one.problem.values:
-        if problem not in other.problem.values:
-            continue
-        yield (
-            problem,
-            *(
-                "; ".join(
-                    f"{solver}: {_verdicts(d.sel(problem=problem, solver=solver))}"
-                    for solver in d.solver.values
-                )
-                for d in (one, other)
-            ),
-        )
-
-
-def _verdicts(row: xr.Dataset) -> str:
-    return ", ".join(Reliability(int(v)).name.replace("_", " ") for v in row.verdict.values)

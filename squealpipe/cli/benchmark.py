@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
 
@@ -11,8 +11,6 @@ from squealpipe.cli.arguments import Output, Switch
 from squealpipe.cli.exit_codes import ANSWER_IS_NO, DONE
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from squealpipe.benchmark.scoring import Score
 
 Names = Annotated[list[str] | None, Parameter(negative="")]
@@ -37,17 +35,13 @@ def run(
         output: dataset to write.
         force: overwrite a file that exists.
     """
-    from squealpipe.benchmark.adapters import SOLVERS
-    from squealpipe.benchmark.scoring import TOLERANCES, benchmark, silently_wrong
+    from squealpipe.benchmark.adapters import SOLVERS, installed
+    from squealpipe.benchmark.scoring import TOLERANCES, benchmark
     from squealpipe.cli.output import check_output, write
+    from squealpipe.schema.comparison import Reliability
 
     check_output(output, force=force)
-    chosen = {name.rpartition("/")[2]: _solver(name) for name in solver or SOLVERS}
-    solvers = {name: solve for name, solve in chosen.items() if solve is not None}
-    for name in chosen.keys() - solvers.keys():
-        print(f"{name}: not installed, left out")
-    if not solvers:
-        raise ValueError(f"nothing to run: {', '.join(chosen)} is not installed")
+    solvers = installed(solver or SOLVERS)
     tolerances = sorted(tolerance or TOLERANCES, reverse=True)
 
     def done(problem: str, name: str, scores: list[Score]) -> None:
@@ -59,7 +53,7 @@ def run(
         output,
         config={"solvers": list(solvers), "problems": problem or [], "tolerances": tolerances},
     )
-    wrong = silently_wrong(found)
+    wrong = int((found.verdict == Reliability.silently_wrong).sum())
     print(f"{wrong} of {found.verdict.size} answers silently wrong; wrote {output}")
     return ANSWER_IS_NO if wrong else DONE
 
@@ -73,28 +67,13 @@ def compare(one: Path, other: Path, /) -> int:
         one: a dataset of `squealpipe benchmark`.
         other: another.
     """
-    from squealpipe.benchmark.scoring import differences
+    from squealpipe.benchmark.scoring import verdicts
     from squealpipe.store import load
 
+    found, others = load(one), load(other)
     same = True
-    for name, left, right in differences(load(one), load(other)):
-        print(f"{name}\n  {one.name}: {left}\n  {other.name}: {right}")
+    for problem in [name for name in found.problem.values if name in others.problem.values]:
+        left, right = (verdicts(each.sel(problem=problem)) for each in (found, others))
+        print(f"{problem}\n  {one.name}: {left}\n  {other.name}: {right}")
         same &= left.partition(": ")[2] == right.partition(": ")[2]
     return DONE if same else ANSWER_IS_NO
-
-
-def _solver(name: str) -> Callable[..., Any] | None:
-    """The function that a name or FILE.py:FUNCTION means; None where its package is missing."""
-    import runpy
-
-    from squealpipe.benchmark.adapters import solver
-
-    path, colon, function = name.rpartition(":")
-    if not colon:
-        return solver(name)
-    if not Path(path).is_file():
-        raise ValueError(f"solver {name!r}: there is no file {path}")
-    found = runpy.run_path(path)
-    if not callable(found.get(function)):
-        raise ValueError(f"solver {name!r}: {path} has no function {function}")  # noqa: TRY004
-    return found[function]  # type: ignore[no-any-return]

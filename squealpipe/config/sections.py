@@ -160,20 +160,6 @@ class HarmonicComparison(Section):
     repeats: Repeats = 3
 
 
-class OnsetComparison(Section):
-    """Eigenvalues at distances 1 − μ/μ_c = 2⁻ⁿ from flutter onset."""
-
-    halvings: Annotated[tuple[Annotated[int, Field(ge=1, le=50)], ...], Field(min_length=1)] = (
-        4,
-        10,
-        20,
-        30,
-        40,
-        50,
-    )
-    repeats: Repeats = 3
-
-
 class BenchmarkComparison(Section):
     """Integrators with events: solvers (those that are not installed are left out), tolerances."""
 
@@ -199,7 +185,6 @@ class ComparisonSection(Section):
 
     benchmark: BenchmarkComparison = BenchmarkComparison()
     harmonic: HarmonicComparison = HarmonicComparison()
-    onset: OnsetComparison = OnsetComparison()
     ladder: LadderComparison = LadderComparison()
 
 

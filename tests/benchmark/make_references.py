@@ -252,7 +252,8 @@ def _displaced(run: LongDouble, motion: Motion, size: float) -> list[tuple[int, 
 def growth_of(run: LongDouble, motion: Motion) -> tuple[float, list[float], float]:
     """How a disturbance grows: of the final state, of each event's time; and the margin.
 
-    The margin is the largest of 1e-2, 1e-3, … whose displacement leaves the events what they are.
+    The margin is the largest of 1e-2, 1e-3, … whose displacement leaves the events what they are;
+    0 where an event that may or may not be seen comes at the instant of another, a ``tie``.
     """
     margin, growth, of_times = 0.0, 1.0, np.ones(len(motion.times))
     for exponent in range(-17, -1):
@@ -305,7 +306,7 @@ def reference_of(data: Mapping[str, Any]) -> dict[str, Any]:
         "kinds": motion.kinds,
         "growth": growth,
         "time_growth": of_times,
-        "margin": margin,
+        "margin": 0.0 if "tie" in data else margin,
     }
     if "derivative" in data:
         found["derivative"] = float(

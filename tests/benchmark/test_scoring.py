@@ -38,10 +38,10 @@ def test_truth_is_right_everywhere():
 def test_dropped_event_is_missed():
     for name in _knowable():
         times, kinds, state, _ = _truth(name)
-        found = _scored(name, times[:-1], kinds[:-1], state)
-        assert (found.missed, found.spurious) == (1, 0), name
-        assert "silently wrong" in found.words
-        assert "1 missed" in found.words
+        for i in range(len(times)):
+            found = _scored(name, times[:i] + times[i + 1 :], kinds[:i] + kinds[i + 1 :], state)
+            assert (found.missed, found.spurious) == (1, 0), (name, i)
+            assert found.words.startswith("silently wrong (1 missed"), (name, i)
 
 
 def test_event_too_many_is_spurious():
@@ -55,10 +55,11 @@ def test_event_too_many_is_spurious():
 def test_swapped_events_are_out_of_order():
     for name in _knowable():
         times, kinds, state, _ = _truth(name)
-        place = int(np.argmax(np.diff(times)))
-        order = [*range(place), place + 1, place, *range(place + 2, len(times))]
-        found = _scored(name, [times[i] for i in order], [kinds[i] for i in order], state)
-        assert "silently wrong (1 out of order" in found.words, name
+        apart = np.diff(times) > 200 * TOL * np.array(references()[name]["time_growth"][1:])
+        for i in np.flatnonzero(apart):
+            order = [*range(i), i + 1, i, *range(i + 2, len(times))]
+            found = _scored(name, [times[j] for j in order], [kinds[j] for j in order], state)
+            assert "silently wrong (1 out of order" in found.words, (name, i)
 
 
 def test_kinds_alone_swapped_are_out_of_order():
@@ -73,17 +74,19 @@ def test_drift_is_an_error():
         times, kinds, state, _ = _truth(name)
         found = _scored(name, times, kinds, [each + 1e-3 for each in state])
         assert found.words.startswith("silently wrong (error"), name
-        drift = [each + 1e-4 * each for each in state]
+        drift = [each + 1e-4 * max(1.0, abs(each)) for each in state]
         assert "error" in _scored(name, times, kinds, drift, tol=1e-10).words, name
 
 
 def test_late_events_are_an_error():
-    times, kinds, state, _ = _truth("thermostat")
-    found = _scored("thermostat", [each + 1e-4 for each in times], kinds, state)
-    assert found.words.startswith("silently wrong (error")
+    for name in _knowable():
+        if references()[name]["growth"] < 100.0:
+            times, kinds, state, _ = _truth(name)
+            found = _scored(name, [each * (1.0 + 1e-4) for each in times], kinds, state)
+            assert found.words.startswith("silently wrong (error"), name
 
 
-def test_flag_is_told_from_silence():
+def test_flag_is_not_silence():
     times, kinds, state, _ = _truth("two gates")
     assert _scored("two gates", times[1:], kinds[1:], state, "lost").words.startswith("flagged (1 ")
     assert _scored("chattering", [], [], []).verdict == Reliability.silently_wrong
@@ -103,10 +106,19 @@ def test_list_is_not_judged_where_the_tolerance_cannot_know_it():
     assert "silently wrong" in _scored("tangency, depth 1e-09", [], [], state, tol=1e-12).words
 
 
+def test_known_events_are_judged_where_later_ones_are_not():
+    """Errors of 1e-4 decide the last impacts of a chaotic motion, not the first twelve."""
+    times, kinds, state, _ = _truth("chaotic impacts")
+    assert "right" in _scored("chaotic impacts", times[:-1], kinds[:-1], state, tol=1e-6).words
+    found = _scored("chaotic impacts", times[1:], kinds[1:], state, tol=1e-6)
+    assert found.words.startswith("silently wrong (1 missed")
+
+
 def test_derivative_counts_where_it_is_given():
     name = "time of the third impact"
     times, kinds, state, _ = _truth(name)
     slope = references()[name]["derivative"]
+    assert solver("squealpipe")(Problem(DATA[name]), TOL)[5] == pytest.approx(slope, rel=1e-10)
     assert _scored(name, times, kinds, state, "", slope).words == "right"
     assert "error" in _scored(name, times, kinds, state, "", 1.01 * slope).words
 
@@ -172,7 +184,7 @@ def test_shipped_solvers_get_an_easy_problem_right(name):
 
 def test_dataset_has_its_schema():
     found = benchmark({"DOP853": solver("DOP853")}, names=["two gates"], tolerances=[1e-6, 1e-8])
-    assert found.verdict.dims == ("problem", "solver", "tolerance")
+    assert found.verdict.dims == ("problem", "solver", "tol")
     assert found.attrs["benchmark_version"] == 1
     with pytest.raises(ValueError, match="unknown"):
         benchmark({}, names=["no such problem"])

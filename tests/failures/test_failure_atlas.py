@@ -5,8 +5,7 @@ import pytest
 import xarray as xr
 
 from squealpipe.schema.comparison import Reliability, Role
-from squealpipe.tasks.comparison.failures.frequency import judge_balances
-from squealpipe.tasks.comparison.failures.verdicts import Answer, error_of, verdict_of
+from squealpipe.tasks.comparison.failures import Answer, judge_balances, verdict_of
 
 
 @pytest.fixture(scope="module")
@@ -87,5 +86,4 @@ def test_ours_say_where_there_is_no_answer(atlas: xr.Dataset, scene: str, method
 def test_verdicts_follow_from_errors_and_flags(
     value: float, flag: str, truth: float, expected: Reliability
 ) -> None:
-    error = error_of(Answer(value, flag), truth)
-    assert verdict_of(error, 1e-3, flag, truth) == expected
+    assert verdict_of(Answer(value, flag), truth, 1e-3)[0] == expected

@@ -22,24 +22,6 @@ from squealpipe.study.figures.comparison import (
 from squealpipe.study.figures.parts import work_precision
 
 
-def rows(entries):
-    """Dataset ``work_precision`` from (task, scene, method, setting, role, error, seconds)."""
-    names = ("task", "scene", "method", "setting", "role", "error", "wall_time")
-    columns = dict(zip(names, map(list, zip(*entries, strict=True)), strict=True))
-    count = len(entries)
-    return build(
-        WORK_PRECISION,
-        {
-            **columns,
-            "reference_error": np.full(count, 1e-17),
-            "evaluations": np.array(columns["wall_time"]) * 1e6,
-            "outcome": np.full(count, Outcome.converged),
-        },
-        {"run": np.arange(count)},
-        {"platform": "a machine", "libraries": '{"scipy": "1.0"}'},
-    )
-
-
 def written(figure: Figure) -> str:
     figure.draw_without_rendering()
     return "\n".join(
@@ -70,7 +52,7 @@ def benchmark():
         {
             "problem": ["two gates", "long run"],
             "solver": ["squealpipe", "theirs"],
-            "tolerance": [1e-6, 1e-12],
+            "tol": [1e-6, 1e-12],
         },
         {"platform": "a machine", "libraries": '{"scipy": "1.0"}'},
     )
@@ -83,10 +65,17 @@ def test_benchmark_chart_names_solvers_classes_and_machine(benchmark) -> None:
 
 
 def test_frequency_chart_names_the_forms() -> None:
-    dataset = rows(
-        [
-            ("harmonic balance", "coupled", "cosines", "N_h 8", Role.ours, 1e-6, 1e-3),
-        ]
+    dataset = build(
+        WORK_PRECISION,
+        {
+            "method": ["cosines"],
+            "setting": ["N_h 8"],
+            "role": [Role.ours],
+            "error": [1e-6],
+            "wall_time": [1e-3],
+            "outcome": [Outcome.converged],
+        },
+        {"run": [0]},
     )
     assert "cosines" in written(work_precision_frequencies.draw(dataset))
 
@@ -108,7 +97,6 @@ def test_atlas_prints_verdicts_and_counts(benchmark) -> None:
         {
             "verdict": verdict,
             "error": np.where(np.array(verdict) > 0, 1e-5, np.nan),
-            "flagged": [[0, 0, 0], [1, 1, 0], [0, 0, 0]],
             "message": [["", "", ""], ["careful", "careful", ""], ["", "", ""]],
             "tolerance": [1e-3] * 3,
             "role": [Role.ours, Role.public, Role.ours],

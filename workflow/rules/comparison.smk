@@ -12,7 +12,7 @@ if PAPERS_FRICTION:
         output:
             data("work_precision_frequencies"),
         params:
-            part=part("parameters", "comparison.harmonic", "comparison.onset"),
+            part=part("parameters", "comparison.harmonic"),
         threads: alone(STUDY.comparison.harmonic.repeats)
         priority: FIRST
         script:

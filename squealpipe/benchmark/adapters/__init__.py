@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import importlib
+import runpy
 from collections.abc import Callable, Iterable
 from functools import partial
 from importlib.util import find_spec
+from pathlib import Path
 from typing import Any
 
 SOLVERS: dict[str, tuple[str, str, dict[str, Any]]] = {
@@ -22,11 +24,19 @@ SOLVERS: dict[str, tuple[str, str, dict[str, Any]]] = {
 
 
 def solver(name: str) -> Callable[..., Any] | None:
-    """The shipped adapter of a name; None where its package is not installed.
+    """The function that a name or FILE.py:FUNCTION means; None where its package is missing.
 
     Raises:
-        ValueError: there is no such adapter.
+        ValueError: there is no such adapter, file or function.
     """
+    path, colon, function = name.rpartition(":")
+    if colon:
+        if not Path(path).is_file():
+            raise ValueError(f"solver {name!r}: there is no file {path}")
+        found = runpy.run_path(path)
+        if function not in found:
+            raise ValueError(f"solver {name!r}: {path} has no function {function}")
+        return found[function]  # type: ignore[no-any-return]
     if name not in SOLVERS:
         raise ValueError(f"solver {name!r} is unknown; one of {', '.join(SOLVERS)}")
     module, needs, options = SOLVERS[name]
@@ -36,8 +46,8 @@ def solver(name: str) -> Callable[..., Any] | None:
 
 
 def installed(names: Iterable[str]) -> dict[str, Callable[..., Any]]:
-    """Those shipped adapters whose packages are there; the others are named and left out."""
-    found = {name: solver(name) for name in names}
+    """Solvers by name (without folders); those that are not installed are left out, and said so."""
+    found = {name.rpartition("/")[2]: solver(name) for name in names}
     for name, solve in found.items():
         if solve is None:
             print(f"{name}: {SOLVERS[name][1]} is not installed, left out")

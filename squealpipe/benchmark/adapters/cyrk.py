@@ -11,18 +11,9 @@ from squealpipe.benchmark.problems import Problem, run
 
 
 def solve(problem: Problem, tol: float) -> Any:
-    """Times, kinds, state, evaluations, flag."""
-    failed: list[str] = []
+    """Times, kinds, state, evaluations."""
 
     def advance(problem: Problem, regime: str, watched: Any, t: float, y: Any) -> Any:
-        events = []
-        for switch in watched:
-
-            def event(t: float, y: Any, switch: Any = switch) -> float:
-                return float(switch.when(t, y.tolist(), regime))
-
-            event.terminal, event.direction = True, -1  # type: ignore[attr-defined]
-            events.append(event)
         found = pysolve_ivp(
             lambda t, y: np.array(problem.field(t, y.tolist(), regime)),
             (t, problem.t_end),
@@ -30,14 +21,14 @@ def solve(problem: Problem, tol: float) -> Any:
             method="DOP853",
             rtol=tol,
             atol=tol,
-            events=events,
+            events=[switch.event(regime) for switch in watched],
             t_eval=np.array([*(each for each in problem.times if each > t), problem.t_end]),
         )
         if found.event_terminated:
             hit = found.event_terminate_index
             return found.t_events[hit][-1], found.y_events[hit].reshape(len(y), -1)[:, -1], hit
-        failed.extend([str(found.message)] * (not found.success))
+        if not found.success:
+            raise RuntimeError(found.message)
         return problem.t_end, found.y[:, -1], None
 
-    times, kinds, state, evaluations, flag = run(problem, advance)
-    return times, kinds, state, evaluations, flag or "".join(failed)
+    return run(problem, advance)

@@ -14,38 +14,31 @@ from squealpipe.benchmark.problems import Problem, run
 
 
 def solve(problem: Problem, tol: float) -> Any:
-    """Times, kinds, state, evaluations, flag; a Taylor step of order p counts p + 1."""
+    """Times, kinds, state, evaluations; a Taylor step of order p counts p + 1."""
     symbols = Problem(problem.data, hy, hy.expression)
     names = sorted(problem.regimes[problem.regime])
     constants = {name: hy.par[i] for i, name in enumerate(names)}
     y = [hy.expression(name) for name in problem.states]
-    rates = symbols.function(list(problem.data["field"].values()), constants)(hy.time, y)
+    rates = symbols.function(problem.rates, constants)(hy.time, y)
     events = []
     for i, switch in enumerate(problem.data["switches"]):
         watched = hy.par[len(names) + i]  # 1 where it can fire, else the surface is the constant 1
-        surface = symbols.function(switch["when"], constants)(hy.time, y)
-        events.append(
-            hy.t_event(watched * surface + 1.0 - watched, direction=hy.event_direction.negative)
-        )
-    integrator = hy.taylor_adaptive(
-        [(a, hy.expression(b)) for a, b in zip(y, rates, strict=True)],
-        problem.start, tol=tol, t_events=events,
-    )  # fmt: skip
-    steps, failed = 0, ""
+        surface = watched * symbols.function(switch["when"], constants)(hy.time, y) + 1.0 - watched
+        events.append(hy.t_event(surface, direction=hy.event_direction.negative))
+    equations = [(a, hy.expression(b)) for a, b in zip(y, rates, strict=True)]
+    integrator = hy.taylor_adaptive(equations, problem.start, tol=tol, t_events=events)
 
     def advance(problem: Problem, regime: str, watched: Any, t: float, y: Any) -> Any:
-        nonlocal steps, failed
-        integrator.pars[:] = [problem.regimes[regime][name] for name in names] + [
-            float(switch in watched) for switch in problem.switches
-        ]
+        can_fire = [float(switch in watched) for switch in problem.switches]
+        integrator.pars[:] = [problem.regimes[regime][name] for name in names] + can_fire
         integrator.state[:] = y
-        found = integrator.propagate_until(problem.t_end)
-        steps += found[3]
-        if found[0].value >= 0 or -found[0].value > len(events):
-            failed = "" if found[0] == hy.taylor_outcome.time_limit else str(found[0])
+        outcome, *_, steps = integrator.propagate_until(problem.t_end)[:4]
+        problem.calls += steps * (integrator.order + 1)
+        if outcome == hy.taylor_outcome.time_limit:
             return problem.t_end, integrator.state, None
-        hit = watched.index(problem.switches[-found[0].value - 1])
+        if not 0 < -outcome.value <= len(events):
+            raise RuntimeError(outcome)
+        hit = watched.index(problem.switches[-outcome.value - 1])
         return integrator.time, integrator.state.copy(), hit
 
-    times, kinds, state, _, flag = run(problem, advance)
-    return times, kinds, state, steps * (integrator.order + 1), flag or failed
+    return run(problem, advance)

@@ -18,41 +18,31 @@ def solve(problem: Problem, tol: float) -> Any:
     Raises:
         NotImplementedError: the problem is none of friction or impact in these terms.
     """
-    data = problem.stepping
-    if data is None:
+    if "stepping" not in problem.data:
         raise NotImplementedError("no friction or impact")
-    velocities = [problem.states.index(name) for name in data["velocities"]]
-    others = [i for i in range(len(problem.states)) if i not in velocities]
-    names = [*data["constants"]]
-    constants = problem.function([*data["constants"].values()], {})
-    rates = problem.function([*problem.data["field"].values()], {})
-    law = [*data.get("friction", ()), *data.get("impact", ())]
-    place = problem.states.index(law[0])
-    values = problem.function(law[1:], {})
+    data = problem.data["stepping"]
+    moves = [problem.states.index(name) for name in data["velocities"]]
+    rates = problem.function(problem.rates, data["constants"])
+    velocity, *law = data.get("friction") or data["impact"]
+    place, values = problem.states.index(velocity), problem.function(law, {})
     n_steps = math.ceil(problem.t_end / tol**0.25)
-    h = problem.t_end / n_steps
-    y = list(problem.start)
+    h, y = problem.t_end / n_steps, list(problem.start)
 
     def half(t: float) -> None:
-        now = rates(t, y)
-        for i in others:
-            y[i] += 0.5 * h * now[i]
+        for i, rate in enumerate(rates(t, y)):
+            y[i] += 0.5 * h * rate * (i not in moves)
 
     for step in range(n_steps):
         t = step * h
         gap = values(t, y)[0]
-        rates.__globals__.update(zip(names, constants(t, y), strict=True))
         half(t)
         t += 0.5 * h
-        rates.__globals__.update(zip(names, constants(t, y), strict=True))
-        now = rates(t, y)
-        a, b = values(t, y)
-        before = y[place]
-        for i in velocities:
+        now, (a, b), before = rates(t, y), values(t, y), y[place]
+        for i in moves:
             y[i] += h * now[i]
         if "friction" in data:
             y[place] += min(max(a - y[place], -b * h), b * h)
         elif a <= min(0.0, gap):
             y[place] = -b * before
         half(t)
-    return None, None, y, n_steps, ""
+    return None, None, y, n_steps

@@ -17,26 +17,24 @@ MOST_EVENTS = 1000
 
 
 def solve(problem: Problem, tol: float) -> Any:
-    """Times, kinds, state, evaluations, flag; a Taylor step of order p counts p + 1."""
+    """Times, kinds, state, evaluations, flag, derivative; a Taylor step of order p counts p + 1."""
     system = _KNOWN.setdefault(problem.name, system_of(problem))
-    values = {
-        name: np.array([value])
-        for name, value in {**system.parameters, **problem.data["start"]}.items()
-    }
+    given = {**system.parameters, **problem.data["start"]}
     raw = integrate(
-        system, values, np.array([problem.t_end]), times=np.array(problem.times), tol=tol,
+        system, {name: np.array([value]) for name, value in given.items()},
+        np.array([problem.t_end]), times=np.array(problem.times), tol=tol,
         tangent=True, log_events=MOST_EVENTS, workers=1,
     )  # fmt: skip
-    outcome, _, steps, count = raw["ends"][0]
+    outcome, _, steps, count = raw["ends"][0].tolist()
     flag = "" if outcome == Outcome.converged else Outcome(outcome).name
     if np.isfinite(raw["summary"][0, 1]):
         flag = "beyond the horizon of predictability"
+    slope = None
+    if problem.derivative:
+        event, name = problem.derivative
+        run = system.simulate(problem.t_end, tol=tol, sensitivity=(name,))
+        slope = float(run[f"event_time_by_{name}"][event])
+    times = raw["event_times"][0, :count].tolist()
     kinds = [system.traced.kinds[kind] for kind in raw["event_kinds"][0, :count]]
-    evaluations = int(steps) * (math.ceil(1.0 - 0.5 * math.log(tol)) + 1)
-    return (
-        raw["event_times"][0, :count].tolist(),
-        kinds,
-        raw["final"][0].tolist(),
-        evaluations,
-        flag,
-    )
+    evaluations = steps * (math.ceil(1.0 - 0.5 * math.log(tol)) + 1)
+    return times, kinds, raw["final"][0].tolist(), evaluations, flag, slope

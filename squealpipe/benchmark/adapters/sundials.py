@@ -15,8 +15,7 @@ from squealpipe.benchmark.problems import Problem, run
 
 
 def solve(problem: Problem, tol: float) -> Any:
-    """Times, kinds, state, evaluations, flag."""
-    failed: list[str] = []
+    """Times, kinds, state, evaluations."""
 
     def advance(problem: Problem, regime: str, watched: Any, t: float, y: Any) -> Any:
         def rates(t: float, y: Any, out: Any) -> None:
@@ -34,8 +33,8 @@ def solve(problem: Problem, tol: float) -> Any:
         if found.status == 2:
             hit = int(np.flatnonzero(found.i_events[-1])[0])
             return found.t_events[-1], found.y_events[-1], hit
-        failed.extend([str(found.message)] * (not found.success))
+        if not found.success:
+            raise RuntimeError(found.message)
         return problem.t_end, found.y[-1], None
 
-    times, kinds, state, evaluations, flag = run(problem, advance)
-    return times, kinds, state, evaluations, flag or "".join(failed)
+    return run(problem, advance)

@@ -9,7 +9,7 @@ from squealpipe.methods.balance.harmonic_balance import CosineBalance, contact_o
 from squealpipe.methods.balance.hill import hill_multipliers, sampled_share_above
 from squealpipe.solvers.a4.orbits import find_orbit
 from squealpipe.solvers.a4.system import scaled_system
-from squealpipe.tasks.comparison.work_precision.harmonic import orbit_series
+from squealpipe.tasks.comparison.work_precision import orbit_series
 from tests.former import FORMER
 
 SCENE = scaled_system(FORMER, 0.3 * math.pi, 0.9 * math.pi)

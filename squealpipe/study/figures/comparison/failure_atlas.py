@@ -38,7 +38,7 @@ def draw(benchmark: xr.Dataset, atlas: xr.Dataset) -> Figure:
     """Both tables, from datasets ``benchmark`` and ``failure_atlas``."""
     heights = [_ROW * each.sizes["solver"] + _HEADS for each in (benchmark, atlas)]
     figure, axes = new_figure(PAGE, sum(heights) + 0.3, nrows=2, height_ratios=heights)
-    _draw_benchmark(axes[0, 0], benchmark.transpose("solver", "problem", "tolerance"))
+    _draw_benchmark(axes[0, 0], benchmark.transpose("solver", "problem", "tol"))
     _draw_atlas(axes[1, 0], atlas.transpose("solver", "scene"))
     for panel, letter, title in zip(
         axes[:, 0], "ab", ("integrators with events", "frequencies and stability"), strict=True
@@ -58,13 +58,13 @@ def _draw_benchmark(axes: Axes, found: xr.Dataset) -> None:
     _paint(axes, strips, columns)
     wrong = found.verdict > Reliability.right
     for name, sign, shift in (("missed", "−", -0.22), ("spurious", "+", 0.22)):
-        worst = found[name].where(wrong, 0).max("tolerance").values
+        worst = found[name].where(wrong, 0).max("tol").values
         for row, column in np.argwhere(worst > 0):
             axes.text(
                 column, row + shift, f"{sign}{worst[row, column]}", ha="center", va="center",
-                fontsize=4, color=style.BLACK,
+                fontsize=5, color=style.BLACK,
             )  # fmt: skip
-    silent = (found.verdict == Reliability.silently_wrong).sum(["problem", "tolerance"]).values
+    silent = (found.verdict == Reliability.silently_wrong).sum(["problem", "tol"]).values
     _label(axes, found, found.problem.values.tolist(), silent)
 
 

@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 
 from squealpipe.plotting.style import PAGE, new_figure, panel_letter
 from squealpipe.schema.comparison import Role
-from squealpipe.study.figures.parts.work_precision import draw_methods, foot, legend_above
+from squealpipe.study.figures.parts.work_precision import draw_methods, foot
 
 READS = ("benchmark",)
 CAPTION = (
@@ -26,7 +26,7 @@ COLUMNS = 4
 
 def draw(benchmark: xr.Dataset) -> Figure:
     """The charts, from dataset ``benchmark``."""
-    known = np.isfinite(benchmark.error).any(["solver", "tolerance"]).values
+    known = np.isfinite(benchmark.error).any(["solver", "tol"]).values
     groups = list(dict.fromkeys(benchmark.group.values[known].tolist()))
     rows = -(-len(groups) // COLUMNS)
     figure, axes = new_figure(PAGE, 1.6 * rows + 1.0, nrows=rows, ncols=COLUMNS, sharex=True)
@@ -41,7 +41,8 @@ def draw(benchmark: xr.Dataset) -> Figure:
     figure.supylabel("evaluations of the field", fontsize=7)
     for panel in axes[-1]:
         panel.set_xlabel("error over growth")
-    legend_above(figure, axes[0, 0], 5)
+    handles, labels = axes[0, 0].get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside upper center", ncols=5, fontsize=6.5)
     foot(figure, benchmark)
     return figure
 
@@ -50,9 +51,9 @@ def _medians(benchmark: xr.Dataset) -> xr.Dataset:
     """Medians over problems, a run for each solver and tolerance."""
     fine = benchmark[["error", "evaluations"]].where(np.isfinite(benchmark.error))
     fine["error"] = fine.error.clip(max=1.0)  # above, an answer says nothing
-    found = fine.median("problem").stack(run=("solver", "tolerance"))
-    ours = (found.solver == "squealpipe") & (found.tolerance == OUR_TOLERANCE)
+    found = fine.median("problem").stack(run=("solver", "tol"))
+    ours = (found.solver == "squealpipe") & (found.tol == OUR_TOLERANCE)
     method = found.solver.values.tolist()
     role = np.where(ours, Role.our_setting, Role.public)
-    plain = found.drop_vars(["run", "solver", "tolerance"])
+    plain = found.drop_vars(["run", "solver", "tol"])
     return plain.assign(method=("run", method), role=("run", role))

@@ -21,10 +21,9 @@ ALT = "Chart of frequency error against time for forms of harmonic balance."
 def draw(frequencies: xr.Dataset) -> Figure:
     """The chart, from dataset ``work_precision_frequencies``."""
     figure, axes = new_figure(PAGE, 3.4)
-    rows = frequencies.isel(run=frequencies.task.values == "harmonic balance")
-    methods = list(dict.fromkeys(rows.method.values.tolist()))
+    methods = list(dict.fromkeys(frequencies.method.values.tolist()))
     panel = axes[0, 0]
-    draw_methods(panel, rows, "wall_time", 1e3, methods)
+    draw_methods(panel, frequencies, "wall_time", 1e3, methods)
     panel.set(xlabel="error of ω, relative", ylabel="wall time per point (ms)")
     if panel.get_legend_handles_labels()[0]:
         figure.legend(loc="outside right center", fontsize=6.5)

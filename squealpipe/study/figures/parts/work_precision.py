@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
-from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -15,17 +14,8 @@ from matplotlib.ticker import FormatStrFormatter, LogLocator
 from squealpipe.plotting import style
 from squealpipe.schema.comparison import Role
 
-
-class Mark(NamedTuple):
-    """How a method is drawn."""
-
-    colour: str
-    marker: str
-    dash: str = "-"
-
-
 MARKS = [
-    Mark(colour, marker, dash)
+    (colour, marker, dash)
     for markers, dash in (("os^vDP*", "-"), ("xx+x+x+", ":"))
     for colour, marker in zip(
         (style.BLACK, style.BLUE, style.GREEN, style.ORANGE, style.RED, style.PURPLE, style.GREY),
@@ -33,6 +23,7 @@ MARKS = [
         strict=True,
     )
 ]
+"""How each method is drawn."""
 _FEW_DECADES = 100.0
 """Ratio of costs below which decades alone would leave an axis with hardly a number."""
 _SMALLEST = 1e-17
@@ -66,10 +57,10 @@ def draw_methods(
     for method in dict.fromkeys(rows.method.values.tolist()):
         mine = fine & (rows.method.values == method)
         order = np.argsort(error[mine])
-        mark = MARKS[methods.index(method) % len(MARKS)]
+        colour, marker, dash = MARKS[methods.index(method) % len(MARKS)]
         axes.plot(
-            error[mine][order], values[mine][order], mark.dash, color=mark.colour,
-            marker=mark.marker, ms=3.5, lw=0.8, label=style.symbols(method), zorder=2,
+            error[mine][order], values[mine][order], dash, color=colour, marker=marker, ms=3.5,
+            lw=0.8, label=style.symbols(method), zorder=2,
         )  # fmt: skip
     ours = fine & (rows.role.values == Role.our_setting)
     axes.plot(
@@ -95,20 +86,9 @@ def _pareto(error: np.ndarray, cost: np.ndarray) -> np.ndarray:
     return np.array(kept, dtype=int)
 
 
-def legend_above(figure: Figure, axes: Axes, columns: int) -> None:
-    """One legend for all panels, above them."""
-    handles, labels = axes.get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside upper center", ncols=columns, fontsize=6.5)
-
-
-def machine(dataset: xr.Dataset) -> str:
-    """Platform and versions of a run, for the foot of a chart."""
+def foot(figure: Figure, dataset: xr.Dataset) -> None:
+    """Platform and versions of a run, below all panels."""
     libraries = json.loads(dataset.attrs.get("libraries", "{}"))
     versions = ", ".join(f"{name} {libraries[name]}" for name in sorted(libraries))
     platform = dataset.attrs.get("platform", "platform unknown")
-    return f"{platform}\n{versions}"
-
-
-def foot(figure: Figure, dataset: xr.Dataset) -> None:
-    """The machine below all panels."""
-    figure.supxlabel(machine(dataset), fontsize=5.5, color=style.GREY)
+    figure.supxlabel(f"{platform}\n{versions}", fontsize=5.5, color=style.GREY)
