@@ -352,8 +352,8 @@ CASES = (
     a1("hammering", "transversal", "the brake pad loses contact again and again", (1.0, 1.0), 30.0),
     a1("grazing contact", "tangency", "it leaves by a hair", (0.5, 1.0), 4.0, k3=GRAZING_K3),
     a1(
-        "separation in stick", "stick", "contact lost in stick, and friction with it", (0.95, 0.95), 9.0,
-        more={"tie": "where contact ends, so does friction"}, belt_speed=0,
+        "separation in stick", "stick", "contact lost in stick, and friction with it",
+        (0.95, 0.95), 9.0, more={"tie": "where contact ends, so does friction"}, belt_speed=0,
     ),
     a1("stick release", "stick", "on a slow disc", (0.3, 0.9), 30.0, belt_speed=0.05),
     a1(
