@@ -291,20 +291,6 @@ def test_critical_friction_where_a_mode_moves_hardly_a_dashpot(angles, dashpots,
     assert found == pytest.approx(_onset_by_bisection(params, *angles), rel=1e-6)
 
 
-@pytest.mark.parametrize(
-    ("change", "named"),
-    [
-        ({"alpha1": math.nan}, "alpha1 = nan"),
-        ({"damping1": [-0.1]}, r"damping1 = \[-0.1\]: numbers of 0 or greater"),
-        ({"damping2": [[0.1]]}, "damping2 = .* a 1-D array is needed"),
-    ],
-)
-def test_the_map_over_dashpots_refuses_what_is_no_dashpot(change, named) -> None:
-    given = {"alpha1": 1.0, "alpha2": 2.0, "damping1": [0.1], "damping2": [0.1]} | change
-    with pytest.raises(ValueError, match=named):
-        critical_damping_map(FORMER, **given)
-
-
 def test_critical_friction_is_of_coulombs_law() -> None:
     with pytest.raises(ValueError, match=r"friction_law = 'exponential'.*use stability_map"):
         critical_friction_map(

@@ -159,24 +159,16 @@ def test_instants_past_a_stop_hold_nan_and_a_flag():
 @pytest.mark.parametrize(
     ("changes", "message"),
     [
-        ({"alpha1": np.nan}, "alpha1"),
-        ({"alpha2": "0.5pi"}, "alpha2"),
-        ({"t_end": -1.0}, "t_end"),
-        ({"t_end": np.inf}, "t_end"),
         ({"model": "A1-nostick"}, "A1-no-stick"),
-        ({"tol": 0.0}, "tol"),
-        ({"tol": "tight"}, "tol"),
         ({"times": [1.0, 0.5]}, "ascend"),
         ({"times": [-1.0, 0.5]}, "0 or later"),
         ({"times": [0.0, 11.0]}, "beyond t_end"),
         ({"times": 3.0}, "sequence"),
         ({"initial_state": (0.0, 1.0)}, "vx"),
-        ({"initial_state": (0.0, 1.0, np.inf, 0.0)}, "initial_state"),
         ({"parameters": {"mass": [1.0, -1.0]}}, "mass"),
         ({"parameters": {"mu": -0.1}}, "mu"),
         ({"parameters": {"beltspeed": 1.0}}, "belt_speed"),
         ({"parameters": {"k3": np.nan}}, "k3"),
-        ({"workers": 0}, "workers"),
     ],
 )
 def test_refusals_name_the_argument(changes, message):

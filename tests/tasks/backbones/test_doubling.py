@@ -148,12 +148,6 @@ def test_without_a_doubling_the_dataset_is_empty_with_its_reason():
     assert int(singular.end) == Outcome.singular_static_state
 
 
-@pytest.mark.parametrize("wrong", [{"doubling": 0}, {"doubling": 1.0}, {"mode": 3}])
-def test_wrong_arguments_are_named(wrong):
-    with pytest.raises(ValueError, match=next(iter(wrong))):
-        doubled_branch(BASE, *SCENE, **{"mode": 1, **wrong})
-
-
 def test_branch_without_a_doubling_tells_so_and_survives_the_store(tmp_path):
     empty = doubled_branch(BASE, 2.0, 2.6, mode=1, doubling=2, y_peak_max=1.2)
     assert empty.end == Outcome.no_doubling

@@ -198,24 +198,6 @@ def test_scenes_without_such_a_motion_say_why(alpha1, alpha2, mode, outcome):
     assert math.isnan(float(found.x_at_peak))
 
 
-@pytest.mark.parametrize(
-    "wrong",
-    [
-        {"mode": 3},
-        {"mode": "first"},
-        {"y_peak": -1.0},
-        {"y_peak": math.nan},
-        {"y_peak": "2"},
-        {"alpha1": math.inf},
-        {"alpha2": "0.4pi"},
-    ],
-)
-def test_arguments_out_of_range_are_named(wrong):
-    name = next(iter(wrong))
-    with pytest.raises(ValueError, match=name):
-        periodic_orbit(BASE, **{"alpha1": 1.0, "alpha2": 2.0, "mode": 1, "y_peak": 2.0, **wrong})
-
-
 def test_a_peak_below_the_equilibrium_is_refused():
     with pytest.raises(ValueError, match="equilibrium"):
         _orbit(0.5, 1.0, 2, 0.2)

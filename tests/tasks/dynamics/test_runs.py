@@ -75,25 +75,6 @@ def test_models_differ_as_they_should(model):
     assert (run.normal_force.values < 0).any() == (model == "A1-no-separation")
 
 
-@pytest.mark.parametrize(
-    ("changes", "message"),
-    [
-        ({"model": "a1"}, "did you mean 'A1'"),
-        ({"t_end": -1.0}, "t_end"),
-        ({"t_end": float("nan")}, "t_end"),
-        ({"t_end": [1.0, 2.0]}, "one number"),
-        ({"alpha1": "0.4pi"}, "alpha1"),
-        ({"times": [[0.0]]}, "times"),
-        ({"times": [0.0, 99.0]}, "beyond t_end"),
-        ({"initial_state": (0, 0, 0)}, "initial_state"),
-    ],
-)
-def test_refusals(changes, message):
-    arguments = {"alpha1": 1.0, "alpha2": 1.0, "t_end": 10.0, **changes}
-    with pytest.raises(ValueError, match=message):
-        simulate(BASELINE, **arguments)
-
-
 def test_validity_map_agrees_with_single_runs():
     result = validity_map(BASELINE, ANGLES, ANGLES, t_end=60.0)
     for i, j in ((0, 0), (3, 5), (6, 2), (12, 7), (5, 11)):

@@ -131,14 +131,6 @@ def test_reason_says_why_a_run_was_needed() -> None:
     assert "cheapest level whose answer is certain" in found.reason
 
 
-@pytest.mark.parametrize(
-    ("question", "tol", "text"), [("colour", 0.1, "question = 'colour'"), (QUESTIONS[0], 0, "tol")]
-)
-def test_bad_arguments_are_named(question: str, tol: float, text: str) -> None:
-    with pytest.raises(ValueError, match=text):
-        choose_model(FORMER, 1.0, 1.0, question, tol)
-
-
 def test_dominant_frequency_of_two_tones() -> None:
     times = np.linspace(0.0, 200.0, 1001)
     samples = np.cos(1.2345 * times) + 0.4 * np.cos(0.7 * times)
