@@ -50,8 +50,8 @@ CONTACT_BOUNDARY = DatasetSchema(
         "arc": Variable("arc: one maximum of y touches", dims=("point",), dtype="i4"),
         "touch_time": Variable("time at which contact is just lost", "s", ("point",), rtol=1e-6),
         "residual": Variable(
-            "distance of that maximum of y from l_pre, over l_pre, as the last step of Newton's "
-            "method leaves it", dims=("point",), rtol=1.0, atol=1e-8,
+            "distance of that maximum of y from l_pre, over l_pre", dims=("point",), rtol=1.0,
+            atol=1e-8,
         ),
         "corner": Variable("whether two maxima touch at once", dims=("point",), dtype="bool"),
         "kind": Variable("what the point is", dims=("point",), dtype="i1", flags=PointKind),
@@ -67,17 +67,12 @@ CONTACT_BOUNDARY = DatasetSchema(
         "outline_loop": Variable("line that a vertex belongs to", dims=("vertex",), dtype="i4"),
         "range": Variable("lowest and highest value", dims=("parameter", "end")),
         "t_end": Variable("end of each run", "s"),
-        "runs": Variable("runs with derivatives", dtype="i8", volatile=True),
-        "coarse_runs": Variable("runs of the map that the curves start from", dtype="i8"),
+        "runs": Variable("runs", dtype="i8", volatile=True),
         "smallest_island": Variable(
             "area of a disc that the map cannot miss: a region that no other curve leads to is "
             "found for sure from this size on"
         ),
-        "largest_gap": Variable(
-            "longest straight line that bridges what could not be followed, over the side of the "
-            "range (0: none)", rtol=1.0, atol=1e-2,
-        ),
-        "outcome": outcome(among=(Outcome.converged, Outcome.branch_lost)),
+        "outcome": outcome(among=(Outcome.converged, Outcome.unresolved)),
     },
 )  # fmt: skip
 

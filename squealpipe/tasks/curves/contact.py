@@ -3,70 +3,85 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from itertools import pairwise
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 import xarray as xr
 
-from squealpipe.methods.regions import Curve, gathered, inside, link, loops_around
-from squealpipe.methods.union_boundary import (
-    Front,
-    Heights,
-    Kind,
-    Reached,
-    Settings,
-    Vector,
-    follow_all,
-    passed,
-    start_on,
-)
+from squealpipe.laws.contact_laws import LINEAR
+from squealpipe.methods.zero_lines import Vector, ZeroLines, gathered, inside
 from squealpipe.parameters import HORIZON, TABLE, Parameters
 from squealpipe.schema import Outcome, build
-from squealpipe.schema.curves import BOUNDARY_DISTANCE, CONTACT_BOUNDARY
+from squealpipe.schema.curves import BOUNDARY_DISTANCE, CONTACT_BOUNDARY, VARIED, PointKind
 from squealpipe.schema.origin import recorded
-from squealpipe.solvers.a1.ensemble import run_ensemble
-from squealpipe.solvers.a1.jobs import Model
-from squealpipe.tasks.curves.heights import HeightsOfRuns
-from squealpipe.validation import Line, Positive, Tolerance, Workers
+from squealpipe.solvers.a1.ensemble import Ensemble, run_ensemble
+from squealpipe.text import suggestion
+from squealpipe.validation import Line, Positive, Tolerance, Workers, one_of
 
-EVERY = 3
-"""Every so many crossings of the coarse map a front starts; others where one is missed."""
-ROUNDS = 4
+FINEST = 900
+"""Cells per side, at least, of the grid on whose edges the curves begin."""
+BESIDE = 1e-8
+"""How far beside the boundary contact is lost in the run that says when."""
+JUMP = 0.1
+"""Of the touch time along a curve, over √(m/k1): another maximum of y is the first to touch."""
 
 
 class _Square:
-    """Two ranges as the unit square, and the functions over it."""
+    """Two ranges as the unit square, and runs of A1 over it."""
 
-    def __init__(self, names: list[str], ranges: list[Vector], heights: HeightsOfRuns) -> None:
-        self.names, self.heights = names, heights
-        self.low = np.array([each[0] for each in ranges])
-        self.width = np.array([each[-1] - each[0] for each in ranges])
-        self.grid = [(each - each[0]) / (each[-1] - each[0]) for each in ranges]
+    def __init__(
+        self,
+        params: Parameters,
+        fixed: Mapping[str, float],
+        axes: Mapping[str, Vector],
+        options: Mapping[str, Any],
+        model: str,
+    ) -> None:
+        self.params, self.fixed, self.names = params, fixed, list(axes)
+        self.options, self.model, self.runs = options, model, 0
+        self.low = np.array([each[0] for each in axes.values()])
+        self.width = np.array([each[-1] - each[0] for each in axes.values()])
 
     def values(self, places: Vector) -> Vector:
         """The two parameters at places of the square, (places, 2)."""
-        return np.asarray(self.low + places * self.width)
+        return np.asarray(self.low + np.clip(places, 0.0, 1.0) * self.width)
 
-    def __call__(self, places: Vector) -> list[Heights]:
-        return [
-            h._replace(
-                slope=h.slope * self.width,
-                drift=h.drift * self.width,
-                rate_slope=h.rate_slope * self.width,
-            )
-            for h in self.heights(self.values(places))
-        ]
+    def _run(self, places: Vector, model: str, **options: Any) -> Ensemble:
+        self.runs += len(places)
+        fields: dict[str, Any] = {
+            name: getattr(self.params, name) for name in TABLE if TABLE[name].enters_a1
+        }
+        fields |= {**self.fixed, **dict(zip(self.names, self.values(places).T, strict=True))}
+        alpha1, alpha2 = fields.pop("alpha1"), fields.pop("alpha2")
+        if "kappa" in fields:
+            fields["k3"] = fields.pop("kappa") * self.params.k1
+        if "lambda_" in fields:
+            fields["length1"] = fields.pop("lambda_") * self.params.preload
+            fields["length2"] = fields["length1"] * self.params.length2 / self.params.length1
+        options |= self.options
+        return run_ensemble(fields, alpha1, alpha2, model=model, **options)
+
+    def reserve(self, places: Vector) -> Vector:
+        """The lowest contact force over the preload's, in runs in which k3 pulls too."""
+        lowest = self._run(places, f"{self.model}-no-separation").lowest_contact_force
+        return np.asarray(np.clip(np.nan_to_num(lowest, nan=-1.0), -1.0, 1.0))
+
+    def touch_time(self, places: Vector, slope: Vector) -> Vector:
+        """When contact is lost next to the boundary, over √(m/k1)."""
+        beside = places - BESIDE * slope / np.linalg.norm(slope, axis=1)[:, None]
+        run = self._run(beside, self.model, stop_at_first_separation=True)
+        time = np.where(run.outcome == Outcome.separated, run.first_separation_time, run.time)
+        return np.asarray(time / self.params.time_unit)
 
 
-@recorded(method="curves of exact maxima by Newton's method from a coarse map")
+@recorded(method="zeros of the lowest contact force, joined from an adaptive grid")
 def contact_boundary(
     params: Parameters,
     alpha1: Line,
     alpha2: Line,
     *,
     t_end: Positive | None = None,
-    model: Model = "A1",
+    model: Annotated[str, one_of(("A1", "A1-as-printed"))] = "A1",
     tol: Tolerance = 1e-12,
     workers: Workers = None,
     **ranges: Line,
@@ -75,17 +90,18 @@ def contact_boundary(
 
     Two of the arguments are arrays: both angles, or others under their own names, as ``mu``,
     ``belt_speed`` or the ratios ``kappa`` = k3/k1 and ``lambda_`` = L1/l_pre (L2 keeps its
-    proportion). An array's ends are the range, its points the coarse map that the curves start
-    from. Contact is kept where the largest y stays below l_pre. So the boundary is made of arcs, on
-    each of which one maximum of y is the first to touch, and corners, where two touch at once;
-    where a maximum comes at t_end, y(t_end) goes on in its place. The curves are checked against
-    the coarse map, and fronts are added where that differs.
+    proportion). An array's ends are the range; as many points per side as the longer one has
+    make the coarse map, which is made finer where contact is nearly lost. Contact is kept
+    where the largest y stays below l_pre, in runs in which the contact spring pulls, too, which
+    are the same until then. So the boundary is made of arcs, on each of which one maximum of y is
+    the first to touch, and corners, where two touch at once; where a maximum comes at t_end,
+    y(t_end) goes on in its place.
 
     Args:
         params: physical parameters.
         alpha1, alpha2: angles, rad.
         t_end: end of each run, s; 200 √(m/k1) by default.
-        model: "A1" or a variant of it that loses contact.
+        model: "A1" or "A1-as-printed".
         tol: tolerance of the Taylor integrator.
         workers: processes; None takes all cores.
         ranges: parameters that vary.
@@ -98,24 +114,29 @@ def contact_boundary(
     """
     given = {"alpha1": np.asarray(alpha1), "alpha2": np.asarray(alpha2)}
     given |= {name: np.asarray(values) for name, values in ranges.items()}
-    names = [name for name, values in given.items() if values.ndim]
-    if len(names) != 2 or any((np.diff(given[n]) <= 0).any() or given[n].size < 3 for n in names):
+    axes = {name: values for name, values in given.items() if values.ndim}
+    if len(axes) != 2 or any((np.diff(a) <= 0).any() or a.size < 3 for a in axes.values()):
         raise ValueError(
-            f"{', '.join(names) or 'no argument'}: two arguments must be ascending arrays of three "
+            f"{', '.join(axes) or 'no argument'}: two arguments must be ascending arrays of three "
             "or more values, the others numbers"
         )
+    for name in axes:
+        if name not in VARIED:
+            raise ValueError(f"{name!r} cannot vary; {suggestion(name, VARIED)}")
     fixed = {name: float(values) for name, values in given.items() if not values.ndim}
     if set(fixed) - {"alpha1", "alpha2"}:
         raise ValueError("what does not vary belongs into params")
+    if params.contact_law != LINEAR:
+        raise ValueError(
+            f"contact_law = {params.contact_law!r}: contact is followed with the linear law"
+        )
     t_end = HORIZON * params.time_unit if t_end is None else t_end
-    axes = [given[name] for name in names]
-    heights = HeightsOfRuns(
-        params, fixed, names, t_end=t_end, model=model, tol=tol, workers=workers
-    )
-    square = _Square(names, axes, heights)
-    coarse = _coarse(params, fixed, dict(zip(names, axes, strict=True)), t_end, model, tol, workers)
-    curves, all_kept = _trace(square, coarse)
-    return _dataset(params, square, curves, all_kept, t_end, coarse.size)
+    options = {"t_end": t_end, "tol": tol, "workers": workers}
+    square = _Square(params, fixed, axes, options, model)
+    coarse = max(each.size for each in axes.values())
+    finer = 2 ** max(0, int(np.ceil(np.log2(FINEST / (coarse - 1)))))
+    lines = ZeroLines(square.reserve, square.touch_time, coarse=coarse, finer=finer, jump=JUMP)
+    return _dataset(square, lines, coarse)
 
 
 @recorded(method="nearest point of the outlines of a contact_boundary")
@@ -163,169 +184,42 @@ def boundary_distance(boundary: xr.Dataset, design: Mapping[str, float]) -> xr.D
     )
 
 
-def _coarse(
-    params: Parameters,
-    fixed: Mapping[str, float],
-    axes: Mapping[str, Vector],
-    t_end: float,
-    model: str,
-    tol: float,
-    workers: int | None,
-) -> np.ndarray:
-    """Where contact is kept on the coarse map, over both arrays."""
-    fields: dict[str, Any] = {
-        name: getattr(params, name) for name in TABLE if TABLE[name].enters_a1
-    }
-    angles: dict[str, Any] = dict(fixed)
-    for (name, values), shape in zip(axes.items(), ((-1, 1), (1, -1)), strict=True):
-        column = values.reshape(shape)
-        if name in {"alpha1", "alpha2"}:
-            angles[name] = column
-        elif name == "kappa":
-            fields["k3"] = column * params.k1
-        elif name == "lambda_":
-            fields["length1"] = column * params.preload
-            fields["length2"] = fields["length1"] * params.length2 / params.length1
-        else:
-            fields[name] = column
-    run = run_ensemble(
-        fields, angles["alpha1"], angles["alpha2"], t_end=t_end, model=model, tol=tol,
-        stop_at_first_separation=True, workers=workers,
-    )  # fmt: skip
-    size = tuple(values.size for values in axes.values())
-    return np.asarray(np.broadcast_to(run.outcome != Outcome.separated, size))
-
-
-def _trace(square: _Square, coarse: np.ndarray) -> tuple[list[Curve], bool]:
-    """All curves that separate the coarse map's points, and whether it is kept without them."""
-    settings = Settings()
-    within = [np.clip(each, 1e-9, 1.0 - 1e-9) for each in square.grid]
-    starts: list[Reached] = []
-    fronts: list[Front] = []
-    wrong = np.full(coarse.shape, coarse.min() != coarse.max())
-    curves: list[Curve] = []
-    for number in range(ROUNDS):
-        if not wrong.any():
-            break
-        kept, lost, border = _crossings(square.grid, coarse, wrong)
-        some = border | (np.arange(len(kept)) % (EVERY if number == 0 else 1) == 0)
-        new = [each for each in start_on(square, kept[some], lost[some], settings) if each]
-        new = [
-            each for each in new if all(np.abs(each.place - s.place).max() > 1e-9 for s in starts)
-        ]
-        entering = [each for each in new if _enters(each)]
-        added = [Front(each) for each in entering]
-        starts += entering
-        fronts += added
-        follow_all(square, added, starts, settings)
-        led_to = {front.joins for front in fronts}
-        alone = [
-            f for i, f in enumerate(fronts) if i not in led_to and not _on_border(f.start.place)
-        ]
-        back = [Front(front.start, direction=-1.0) for front in alone]
-        follow_all(square, back, [], settings)
-        curves = link(fronts, back)
-        loops = loops_around(curves, below=True, all_below=bool(coarse.flat[0]))
-        wrong = inside([loop.outline for loop in loops], *within) != coarse
-    return curves, bool(coarse.flat[0])
-
-
-def _crossings(
-    grid: list[Vector], coarse: np.ndarray, wrong: np.ndarray
-) -> tuple[Vector, Vector, np.ndarray]:
-    """Neighbours that differ, and of which one is wrong by the curves.
-
-    Returns:
-        (kept, lost, on the border): both places of each pair, (pairs, 2).
-    """
-    found = []
-    for axis in (0, 1):
-        labels, doubt = np.moveaxis(coarse, axis, 0), np.moveaxis(wrong, axis, 0)
-        i, j = np.nonzero((labels[1:] != labels[:-1]) & (doubt[1:] | doubt[:-1]))
-        border = (j == 0) | (j == labels.shape[1] - 1)
-        up = labels[i, j]
-        for row, side in ((i + ~up, j), (i + up, j)):
-            pair = (row, side) if axis == 0 else (side, row)
-            found.append(np.stack([grid[0][pair[0]], grid[1][pair[1]]], axis=1))
-        found.append(border)
-    return tuple(np.concatenate([found[k], found[k + 3]]) for k in range(3))  # type: ignore[return-value]
-
-
-def _is_followed(start: Reached, fronts: list[Front]) -> bool:
-    """Whether a point lies on what fronts have followed."""
-    return any(
-        passed(here, there, [start]) >= 0
-        for front in fronts
-        for here, there in pairwise(front.points)
-    )
-
-
-def _on_border(place: Vector) -> bool:
-    return bool((np.abs(place - 0.5) >= 0.5 - 1e-12).any())
-
-
-def _enters(start: Reached) -> bool:
-    """Whether a front from there goes into the square."""
-    way = Front(start).tangent(start)
-    low, high = start.place <= 1e-12, start.place >= 1.0 - 1e-12
-    return not ((low & (way <= 0.0)) | (high & (way >= 0.0))).any()
-
-
-def _dataset(
-    params: Parameters,
-    square: _Square,
-    curves: list[Curve],
-    all_kept: bool,
-    t_end: float,
-    coarse_runs: int,
-) -> xr.Dataset:
-    points = [(c, p) for c, curve in enumerate(curves) for p in _closed(curve)]
-    places = np.array([p.place for _, p in points]).reshape(-1, 2)
-    curve = np.array([c for c, _ in points], int)
-    corner = np.array([p.kind == Kind.corner for _, p in points], bool)
-    begins = np.ones(len(points), bool)
+def _dataset(square: _Square, lines: ZeroLines, coarse: int) -> xr.Dataset:
+    chains = lines.chains()
+    at = np.array([point for chain in chains for point in chain], int)
+    curve = np.repeat(np.arange(len(chains)), [len(chain) for chain in chains])
+    corner = np.isnan(lines.slope[at, 0])
+    border = ~corner & np.isin(lines.place[at], (0.0, 1.0)).any(axis=1)
+    begins = np.ones(len(at), bool)
     begins[1:] = corner[1:] | (curve[1:] != curve[:-1])
-    areas, errors, kept, outlines = [], [], [], []
-    scale = float(np.prod(square.width))
-    for below in (True, False):
-        loops = loops_around(curves, below=below, all_below=all_kept)
-        outlines += [square.values(loop.outline) for loop in loops] if below else []
+    regions, outlines = [], []
+    for kept in (True, False):
+        loops = lines.loops(positive=kept)
+        outlines += [square.values(loop.outline) for loop in loops] if kept else []
         for group in gathered(loops):
-            areas.append(scale * sum(loops[i].area for i in group))
-            errors.append(scale * sum(loops[i].error for i in group))
-            kept.append(below)
-    gap = max((each.gap for each in curves), default=0.0)
-    lost = gap > 0.0 or any(not c.closed and c.points[-1].kind != Kind.border for c in curves)
-    steps = [
-        np.diff(each).max() * width for each, width in zip(square.grid, square.width, strict=True)
-    ]
-    values = square.values(places)
+            area, error = (sum(loops[i][k] for i in group) for k in (1, 2))
+            regions.append((kept, area * np.prod(square.width), error * np.prod(square.width)))
+    kept, areas, errors = np.array(regions).T
     return build(
         CONTACT_BOUNDARY,
         {
-            **{name: values[:, i] for i, name in enumerate(square.names)},
+            **dict(zip(square.names, square.values(lines.place[at]).T, strict=True)),
             "curve": curve,
             "arc": np.cumsum(begins) - 1,
-            "touch_time": [p.heights.time[p.on] * params.time_unit for _, p in points],
-            "residual": [abs(p.heights.value[p.on]) for _, p in points],
+            "touch_time": lines.mark[at] * square.params.time_unit,
+            "residual": lines.residual[at],
             "corner": corner,
-            "kind": [int(p.kind) for _, p in points],
+            "kind": np.where(corner, PointKind.corner, np.where(border, PointKind.border, 0)),
             "region_kept": kept,
             "region_area": areas,
             "region_area_error": errors,
             "outline": np.concatenate([*outlines, np.empty((0, 2))]),
             "outline_loop": np.repeat(np.arange(len(outlines)), [len(each) for each in outlines]),
             "range": np.stack([square.low, square.low + square.width], axis=1),
-            "t_end": t_end,
-            "runs": square.heights.runs,
-            "coarse_runs": coarse_runs,
-            "smallest_island": 0.25 * np.pi * (steps[0] ** 2 + steps[1] ** 2),
-            "largest_gap": gap,
-            "outcome": Outcome.branch_lost if lost else Outcome.converged,
+            "t_end": square.options["t_end"],
+            "runs": square.runs,
+            "smallest_island": 0.5 * np.pi * np.prod(square.width) / (coarse - 1) ** 2,
+            "outcome": Outcome.unresolved if lines.unresolved else Outcome.converged,
         },
-        {"point": np.arange(len(points)), "parameter": square.names},
+        {"point": np.arange(len(at)), "parameter": square.names},
     )
-
-
-def _closed(curve: Curve) -> list[Reached]:
-    return [*curve.points, curve.points[0]] if curve.closed else curve.points

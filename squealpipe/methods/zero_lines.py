@@ -1,0 +1,402 @@
+"""Lines over the unit square on which a function is zero, and the regions that they bound.
+
+The function may have kinks, as the largest of many maxima has. Where its sign changes on an
+adaptive grid, its zero on each edge of the grid is found, and neighbours are joined. Each chord
+between two of them is divided until the cubic over it, from the tangents at its ends, predicts the
+zero beside it. It is divided where the tangents meet: in the middle of a smooth arc, and next to a
+kink, which is so enclosed in a few steps.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from itertools import pairwise
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from squealpipe.methods.adaptive_grid import refine_grid
+
+Vector = NDArray[np.float64]
+Indices = NDArray[np.int64]
+Function = Callable[[Vector], Vector]
+"""Places, (places, 2) → values."""
+Mark = Callable[[Vector, Vector], Vector]
+"""Places and slopes there → what jumps from one branch of a function to another."""
+
+AREA_ERROR = 1e-10
+"""Of a piece of a line beyond which it is divided."""
+RESIDUAL = 1e-11
+"""Of the function at a point."""
+SHORTEST = 1e-6
+"""Chord beside a kink above which the tangents meet in the corner."""
+MOST_DIVISIONS = 30
+CLOSED = 1e-14
+"""Share of a line that encloses a zero."""
+STEP = 1e-8
+"""Of the differences that give tangents."""
+FLAT = 1e-6
+"""Distance of a polygon from a line."""
+RUNGS = np.array([-3.0, -1.0, -0.3, -0.1, -0.03, -0.01, 0.0, 0.01, 0.03, 0.1, 0.3, 1.0, 3.0])
+"""Distances from a chord, over its length, between which a zero is looked for."""
+FLATTISH, STEEPEST = 0.5, 3.0
+"""Slope over a chord up to which a line is taken for a cubic; largest in the area beside it."""
+CORNERS = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
+
+
+class Loop(NamedTuple):
+    """A closed line around a region, counter-clockwise, or around a hole of it, clockwise.
+
+    Attributes:
+        outline: a polygon within :data:`FLAT` of it.
+        area: enclosed, negative for a hole; with its error.
+    """
+
+    outline: Vector
+    area: float
+    error: float
+
+
+class ZeroLines:
+    """The lines on which a function is zero.
+
+    Args:
+        value: the function, of order one.
+        mark: of points on the lines.
+        coarse: points per side of the grid that sees the whole square.
+        finer: how many times finer the grid is where the sign changes, a power of two.
+        jump: least jump of the mark.
+
+    Attributes:
+        place: (points, 2).
+        slope: derivatives of the function, (points, 2); NaN at a corner, where two branches meet.
+        residual, mark: of the points.
+        chords: indices of first and last points, (chords, 2), the positive side on their left.
+        error: of the area beside each chord.
+        positive: whether the function is so at the square's origin.
+        unresolved: length of the longest chord beside which no zero was found, or 0.
+    """
+
+    def __init__(
+        self,
+        value: Function,
+        mark: Mark,
+        *,
+        coarse: int,
+        finer: int,
+        jump: float,
+    ) -> None:
+        self.value, self._mark, self.jump = value, mark, jump
+        self.place, self.slope = np.empty((0, 2)), np.empty((0, 2))
+        self.residual, self.mark = np.empty(0), np.empty(0)
+        self.chords, self.error, self.unresolved = np.empty((0, 2), int), np.empty(0), 0.0
+        self._trace(self._on_grid((coarse - 1) * finer + 1, coarse))
+
+    def _on_grid(self, size: int, coarse: int) -> Indices:
+        """Zeros on the edges of a grid as points, and the chords between them."""
+        known = np.zeros((size, size))
+
+        def look(rows: Indices, columns: Indices) -> tuple[Any, Any, Any]:
+            found = self.value(np.stack([rows, columns], axis=1) / (size - 1))
+            known[rows, columns] = found
+            return found > 0.0, np.zeros(found.shape, bool), np.abs(found)
+
+        positive = refine_grid(look, size, coarse).labels
+        self.positive = bool(positive[0, 0])
+        count, numbers, up, down = 0, [], [], []
+        for axis in (0, 1):
+            labels = np.moveaxis(positive, axis, 0)
+            changes = np.argwhere(labels[1:] != labels[:-1])
+            ends = changes[:, None, :] + np.array([[0, 0], [1, 0]])
+            falls = labels[tuple(changes.T)]
+            ends = np.where(falls[:, None, None], ends, ends[:, ::-1])
+            number = np.full((size - 1, size), -1)
+            number[tuple(changes.T)] = count + np.arange(len(changes))
+            count += len(changes)
+            up.append(ends[:, 0, :: 1 - 2 * axis])
+            down.append(ends[:, 1, :: 1 - 2 * axis])
+            numbers.append(np.moveaxis(number, 0, axis))
+        high, low = np.concatenate(up), np.concatenate(down)
+        before, after = known[tuple(high.T)], known[tuple(low.T)]
+        start, way = high / (size - 1), (low - high) / (size - 1)
+        share = _roots(self.value, start, way, before / (before - after), after - before)
+        self._add(start + share[:, None] * way)
+        return self._joined(positive, *numbers)
+
+    def _joined(self, positive: NDArray[np.bool_], along: Indices, up: Indices) -> Indices:
+        """Chords across the cells, from where the sign falls along a cell's edge to its rise."""
+        corners = [positive[:-1, :-1], positive[1:, :-1], positive[1:, 1:], positive[:-1, 1:]]
+        sides = np.stack([along[:, :-1], up[1:], along[:, 1:], up[:-1]], axis=-1)
+        around = np.stack(corners, axis=-1)
+        falls = around & ~np.roll(around, -1, axis=-1)
+        rises = ~around & np.roll(around, -1, axis=-1)
+        once = falls.sum(axis=-1) == 1
+        chords = [np.stack([sides[once][falls[once]], sides[once][rises[once]]], axis=1)]
+        saddles = np.argwhere(falls.sum(axis=-1) == 2)
+        if len(saddles):
+            through = self.value((saddles + 0.5) / (len(positive) - 1)) > 0.0
+            for (i, j), joins in zip(saddles, through, strict=True):
+                for side in np.flatnonzero(falls[i, j]):
+                    other = (side + (1 if joins else -1)) % 4
+                    chords.append(sides[i, j][[[side, other]]])
+        return np.concatenate(chords)
+
+    def _add(self, places: Vector) -> Indices:
+        """New points of one branch; their indices."""
+        step = STEP * np.where(places > 0.5, -1.0, 1.0)
+        there = places[:, None, :] + step[:, None, :] * np.eye(2)
+        value = self.value(places)
+        slope = (self.value(there.reshape(-1, 2)).reshape(-1, 2) - value[:, None]) / step
+        return self._append(places, slope, value, self._mark(places, slope))
+
+    def _append(self, place: Vector, slope: Vector, residual: Vector, mark: Vector) -> Indices:
+        self.place = np.concatenate([self.place, place])
+        self.slope = np.concatenate([self.slope, slope])
+        self.residual = np.concatenate([self.residual, np.abs(residual)])
+        self.mark = np.concatenate([self.mark, mark])
+        return len(self.place) - len(place) + np.arange(len(place))
+
+    def _trace(self, chords: Indices) -> None:
+        """Divide chords until their areas are known."""
+        for _ in range(MOST_DIVISIONS):
+            if not len(chords):
+                return
+            new, error = self._divided(chords)
+            lost = np.isnan(new[:, 0])
+            self._keep(chords[lost], self._length(chords[lost]) ** 2)
+            self.unresolved = max([self.unresolved, *self._length(chords[lost])])
+            chords = _split(chords[~lost], self._add(new[~lost]))
+            error = np.repeat(0.5 * error[~lost], 2)
+            jumps = np.abs(np.diff(self.mark[chords], axis=1)[:, 0]) > self.jump
+            going = ((error > AREA_ERROR) | jumps) & (self._length(chords) > SHORTEST)
+            self._keep(chords[~going & ~jumps], error[~going & ~jumps])
+            around = chords[~going & jumps]
+            place, none = self._meeting(around)[1], np.full((len(around), 2), np.nan)
+            place = np.where(np.isnan(place), self.place[around].mean(axis=1), place)
+            corner = self._append(place, none, self.value(place), self.mark[around[:, 0]])
+            self._keep(_split(around, corner), np.repeat(0.5 * error[~going & jumps], 2))
+            chords = chords[going]
+        self.unresolved = max([self.unresolved, *self._length(chords)])
+        self._keep(chords, self._length(chords) ** 2)
+
+    def _keep(self, chords: Indices, error: Vector) -> None:
+        self.chords = np.concatenate([self.chords, chords])
+        self.error = np.concatenate([self.error, error])
+
+    def _length(self, chords: Indices) -> Vector:
+        return np.asarray(np.linalg.norm(np.diff(self.place[chords], axis=1)[:, 0], axis=1))
+
+    def _slopes(self, chords: Indices) -> tuple[Vector, Vector, Vector]:
+        """Chords as vectors, those to their left, and slopes of the lines at both ends."""
+        chord = np.diff(self.place[chords], axis=1)
+        left = np.stack([-chord[..., 1], chord[..., 0]], axis=-1)
+        # the line goes where the slope is turned to, clockwise
+        forward, aside = ((self.slope[chords] * way).sum(axis=-1) for way in (left, -chord))
+        with np.errstate(all="ignore"):
+            slopes = np.clip(aside / np.maximum(forward, 0.0), -STEEPEST, STEEPEST)
+        return chord[:, 0], left[:, 0], np.where(np.isnan(forward), 0.0, slopes)
+
+    def _meeting(self, chords: Indices) -> tuple[Vector, Vector]:
+        """Where the tangent at the first end, forwards, meets that at the last, backwards.
+
+        Returns:
+            The share of its way from end to end, 0.5 where there is none, and the place, NaN there.
+        """
+        chord, (first, last) = np.diff(self.place[chords], axis=1)[:, 0], self._tangents(chords)
+        with np.errstate(all="ignore"):
+            along = _cross(chord, last) / _cross(first, last)
+            back = _cross(first, chord) / _cross(first, last)
+            share = np.where((along > 0.0) & (back > 0.0), along / (along + back), np.nan)
+        meeting = np.where(np.isnan(share), np.nan, along)[:, None] * first
+        return np.nan_to_num(share, nan=0.5), self.place[chords[:, 0]] + meeting
+
+    def _tangents(self, chords: Indices) -> Vector:
+        """Unit vectors along the lines at both ends, (2, chords, 2)."""
+        slope = np.moveaxis(self.slope[chords], 1, 0)
+        slope = slope / np.linalg.norm(slope, axis=-1)[..., None]
+        return np.stack([slope[..., 1], -slope[..., 0]], axis=-1)
+
+    def _divided(self, chords: Indices) -> tuple[Vector, Vector]:
+        """A zero beside each chord, and how far the area there is to be doubted; NaN: none."""
+        chord, left, slopes = self._slopes(chords)
+        length = self._length(chords)
+        share, meeting = self._meeting(chords)
+        at = 0.05 + 0.9 * share
+        foot = self.place[chords[:, 0]] + at[:, None] * chord
+        height, doubt = _cubic(at, slopes), length**2 / 8.0
+        steep = (np.abs(slopes) > FLATTISH).any(axis=1)
+        height[steep] = _lower(at * slopes[:, 0], (at - 1.0) * slopes[:, 1])[steep]
+        reach = 0.3 * np.minimum(at, 1.0 - at) + np.abs(height)
+        # a tongue is crossed between the chord and where the tangents meet
+        axis = meeting - self.place[chords[:, 0]] - share[:, None] * chord
+        long = np.linalg.norm(axis, axis=1)
+        side = np.sign((axis * left).sum(axis=1))
+        tongue = steep & (long > 0.3 * length)
+        axis = np.where(tongue[:, None], side[:, None] * axis, left)
+        height, reach = np.where(tongue, 0.7 * side, height), np.where(tongue, 1.0, reach)
+        doubt[steep] = length[steep] * np.fmax(length, long)[steep]
+        start, way = foot + (height + reach)[:, None] * axis, -2.0 * reach[:, None] * axis
+        rate = (self.slope[chords].mean(axis=1) * way).sum(axis=1)
+        off = reach * (1.0 - 2.0 * _roots(self.value, start, way, np.full(len(at), 0.5), rate))
+        new = foot + (height + off)[:, None] * axis
+        lost = np.isnan(off)
+        new[lost] = self._sought(foot[lost], left[lost])
+        return new, np.where(steep | lost, 1.0, np.abs(off)) * doubt
+
+    def _sought(self, foot: Vector, left: Vector) -> Vector:
+        """The zeros next to chords among those between rungs of a ladder across; NaN: none."""
+        places = foot[:, None] + RUNGS[:, None] * left[:, None]
+        signs = self.value(places.reshape(-1, 2)).reshape(-1, RUNGS.size) > 0.0
+        middle = 0.5 * np.abs(RUNGS[1:] + RUNGS[:-1])
+        far = np.where(signs[:, 1:] & ~signs[:, :-1], middle, np.inf)
+        rung, found = far.argmin(axis=1), np.isfinite(far.min(axis=1))
+        start = foot + RUNGS[rung + 1, None] * left
+        way = (RUNGS[rung] - RUNGS[rung + 1])[:, None] * left
+        start, way = np.where(found[:, None], start, foot), np.where(found[:, None], way, 0.0)
+        share = _roots(self.value, start, way, np.full(len(foot), 0.5), np.full(len(foot), np.nan))
+        return np.asarray(start + np.where(found, share, np.nan)[:, None] * way)
+
+    def chains(self) -> list[list[int]]:
+        """Points of each line in order; of a closed one the first comes again."""
+        return _chains(self.chords)
+
+    def loops(self, *, positive: bool) -> list[Loop]:
+        """Closed lines around the regions in which the function is positive, or around others."""
+        chord, left, slopes = self._slopes(self.chords)
+        length = np.linalg.norm(chord, axis=1)
+        bulge = length**2 * (slopes[:, 0] - slopes[:, 1]) / 12.0
+        count = np.ceil(np.sqrt(length * np.abs(slopes).sum(axis=1) / (8.0 * FLAT)))
+        between = {}
+        for k in np.flatnonzero(count > 1):
+            t = np.arange(1, count[k]) / count[k]
+            height = _cubic(t, slopes[k : k + 1])
+            start, end = self.chords[k]
+            inner = self.place[start] + t[:, None] * chord[k] + height[:, None] * left[k]
+            between[start, end] = inner
+            between[end, start] = inner[::-1]
+        chords = self.chords if positive else self.chords[:, ::-1]
+        place = np.concatenate([self.place, CORNERS])
+        sign, number = (-1.0 if positive else 1.0), {(i, j): k for k, (i, j) in enumerate(chords)}
+        found = []
+        for chain in _chains(np.concatenate([chords, self._border(positive)])):
+            pairs = list(pairwise(chain))
+            on = [number[pair] for pair in pairs if pair in number]
+            none = np.empty((0, 2))
+            line = [each for i, j in pairs for each in (place[[i]], between.get((i, j), none))]
+            x, y = place[chain].T
+            area = 0.5 * np.sum(x[:-1] * y[1:] - x[1:] * y[:-1]) + sign * bulge[on].sum()
+            found.append(Loop(np.concatenate(line), float(area), float(self.error[on].sum())))
+        return found
+
+    def _border(self, positive: bool) -> Indices:
+        """Pieces of the square's border with one sign, counter-clockwise, as pairs of points."""
+        place = np.concatenate([self.place, CORNERS])
+        on = np.flatnonzero(np.isin(place, (0.0, 1.0)).any(axis=1))
+        x, y = place[on].T
+        around = np.select([y == 0.0, x == 1.0, y == 1.0], [x, 1.0 + y, 3.0 - x], 4.0 - y)
+        on = on[np.lexsort((on < len(self.place), np.where(on == len(self.place), 0.0, around)))]
+        changes = np.cumsum(on < len(self.place))
+        has = changes % 2 == (self.positive != positive)
+        return np.asarray(np.stack([on, np.roll(on, -1)], axis=1)[has])
+
+
+def _split(chords: Indices, middle: Indices) -> Indices:
+    return np.stack([chords[:, 0], middle, middle, chords[:, 1]], axis=1).reshape(-1, 2)
+
+
+def _cross(a: Vector, b: Vector) -> Vector:
+    return np.asarray(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0])
+
+
+def _lower(a: Vector, b: Vector) -> Vector:
+    """Of two numbers the one next to 0, or 0 if that lies between them."""
+    return np.where(a * b > 0.0, np.where(np.abs(a) < np.abs(b), a, b), 0.0)
+
+
+def _cubic(at: Vector, slopes: Vector) -> Vector:
+    """Height over a chord, in its lengths, of the cubic with some slopes at its ends."""
+    return np.asarray(at * (1.0 - at) * ((1.0 - at) * slopes[:, 0] - at * slopes[:, 1]))
+
+
+def _roots(value: Function, start: Vector, way: Vector, share: Vector, rate: Vector) -> Vector:
+    """Shares of lines at which a function is zero; NaN where none is found.
+
+    The secant method, within what the signs enclose.
+
+    Args:
+        value: the function.
+        start, way: lines from where it is positive to where it is not, (lines, 2).
+        share, rate: guesses of the shares, and of the function's derivatives by them.
+    """
+    low, high, now = np.zeros(len(start)), np.ones(len(start)), share.copy()
+    found, rate = np.full(len(start), np.nan), rate.copy()
+    old, before, left = now.copy(), np.full(len(start), np.nan), np.arange(len(start))
+    for iteration in range(60):
+        here, at = value(start[left] + now[left, None] * way[left]), now[left]
+        low[left] = np.where(here > 0.0, at, low[left])
+        high[left] = np.where(here > 0.0, high[left], at)
+        with np.errstate(all="ignore"):
+            secant = (here - before[left]) / (at - old[left])
+            rate[left] = np.where(np.isfinite(secant), secant, rate[left])
+            new = at - here / rate[left]
+        old[left], before[left] = at, here
+        enclosed = (new > low[left]) & (new < high[left]) & (iteration % 8 < 6)
+        now[left] = np.where(enclosed, new, 0.5 * (low[left] + high[left]))
+        enclosed = (low[left] > 0.0) & (high[left] < 1.0)
+        closed = high[left] - low[left] < CLOSED
+        zero = (np.abs(here) <= RESIDUAL) | (closed & enclosed)
+        found[left[zero]] = at[zero]
+        left = left[~zero & ~closed]
+    return found
+
+
+def _chains(pairs: Indices) -> list[list[int]]:
+    """Pairs (before, after) as lines; of a closed one the first point comes again."""
+    after = dict(pairs.tolist())
+    found = []
+    for first in [*(set(after) - set(after.values())), *after]:
+        if first in after:
+            chain = [first]
+            while chain[-1] in after:
+                chain.append(after.pop(chain[-1]))
+            found.append(chain)
+    return found
+
+
+def inside(loops: Sequence[Vector], x: Vector, y: Vector) -> np.ndarray:
+    """Whether the points of a grid lie inside closed lines, (x, y): an odd number around them."""
+    odd = np.zeros((len(x), len(y)), bool)
+    for line in loops:
+        after = np.roll(line, -1, axis=0)
+        low, high = np.minimum(line[:, 0], after[:, 0]), np.maximum(line[:, 0], after[:, 0])
+        first, last = np.searchsorted(x, low), np.searchsorted(x, high)
+        which = np.repeat(np.arange(len(line)), last - first)
+        column = np.arange(which.size) - np.repeat(
+            np.cumsum(last - first) - (last - first), last - first
+        )
+        column += first[which]
+        share = (x[column] - line[which, 0]) / (after[which, 0] - line[which, 0])
+        height = line[which, 1] + share * (after[which, 1] - line[which, 1])
+        flips = np.zeros((len(x), len(y) + 1), int)
+        np.add.at(flips, (column, np.searchsorted(y, height)), 1)
+        odd ^= flips.cumsum(axis=1)[:, :-1] % 2 == 1
+    return odd
+
+
+def gathered(loops: Sequence[Loop]) -> list[list[int]]:
+    """Indices of loops by region: the one around it, and those of its holes."""
+    outer = [i for i in np.argsort([loop.area for loop in loops]) if loops[i].area > 0.0]
+    low = np.array([loops[o].outline.min(axis=0) for o in outer]).reshape(-1, 2)
+    high = np.array([loops[o].outline.max(axis=0) for o in outer]).reshape(-1, 2)
+    regions = {i: [i] for i in outer}
+    for i, loop in enumerate(loops):
+        if loop.area > 0.0:
+            continue
+        place = loop.outline[:2].mean(axis=0)
+        for k in np.flatnonzero(((low < place) & (place < high)).all(axis=1)):
+            around = loops[outer[k]]
+            if around.area > -loop.area and inside([around.outline], *place[:, None])[0, 0]:
+                regions[outer[k]].append(i)
+                break
+    return list(regions.values())
