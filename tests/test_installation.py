@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shutil
 import subprocess
 import sys
 import tomllib
@@ -73,27 +72,35 @@ def test_citation_is_valid():
     assert f"version: {project['version']}" in (ROOT / "CITATION.cff").read_text(encoding="utf-8")
 
 
+PAD = """
+results: results/pad
+paper: false
+scenes: {mine: {alpha1: 30deg, alpha2: 140deg, start: {vx: 0.001}}}
+parameters:
+  {mass: 0.5, k1: 1.0e+7, k2: 1.0e+7, k3: 7.0e+6, preload: 2.0e-5, length1: 0.02, length2: 0.02}
+"""
+
+
 @pytest.mark.release
-def test_wheel_in_a_bare_environment(tmp_path):
-    """Sdist and wheel checked by twine, installed with the core dependencies alone."""
-    here = Path(sys.executable).parent
-    source = tmp_path / "source"
-    shutil.copytree(ROOT / "squealpipe", source / "squealpipe")
-    for name in ("pyproject.toml", "README.md", "LICENSE"):
-        shutil.copy(ROOT / name, source / name)
-    run(here / "python", "-m", "build", "--no-isolation", "-o", tmp_path / "dist", cwd=source)
-    built = list((tmp_path / "dist").iterdir())
-    assert {path.suffix for path in built} == {".whl", ".gz"}
-    run(here / "twine", "check", "--strict", *built, cwd=tmp_path)
-    bare = tmp_path / "bare"
-    run(here / "uv", "venv", "-q", "--python", sys.executable, bare, cwd=tmp_path)
-    python = bare / "bin/python"
-    for path in sorted(built):  # the sdist, then the wheel
-        install = ("pip", "install", "-q", "--reinstall-package", "squealpipe", "--python", python)
-        run(here / "uv", *install, path, cwd=tmp_path)
-        assert run(bare / "bin/squealpipe", "--version", cwd=tmp_path).strip()
+def test_wheel_in_a_bare_environment(checkout, tmp_path):
+    """Sdist and wheel checked by twine; the core alone, then a study from an empty folder."""
+    uv, dist, bare = Path(sys.executable).parent / "uv", tmp_path / "dist", tmp_path / "bare"
+    run(uv, "build", "-q", "-o", dist, checkout, cwd=tmp_path)
+    sdist, wheel = sorted(dist.glob("*.*z")) + sorted(dist.glob("*.whl"))
+    run(uv, "tool", "run", "twine", "check", "--strict", sdist, wheel, cwd=tmp_path)
+    run(uv, "venv", "-q", "--python", sys.executable, bare, cwd=tmp_path)
+    install = (uv, "pip", "install", "-q", "--reinstall-package", "squealpipe", "--python", bare)
+    command, folder = bare / "bin/squealpipe", tmp_path / "empty"
+    folder.mkdir()
+    for path in (sdist, wheel):
+        run(*install, path, cwd=folder)
+        assert run(command, "--version", cwd=folder).strip()
     script = "import importlib.util as u; print(u.find_spec('snakemake'))"
-    assert run(bare / "bin/python", "-c", script, cwd=tmp_path).strip() == "None"
-    run(bare / "bin/squealpipe", "simulate", "5pi/6", "5pi/6", "--t-end", "5", cwd=tmp_path)
+    assert run(bare / "bin/python", "-c", script, cwd=folder).strip() == "None"
+    run(command, "simulate", "5pi/6", "5pi/6", "--t-end", "5", cwd=folder)
     assert list(bare.glob("lib/*/site-packages/squealpipe/py.typed"))
-    assert list(bare.glob("lib/*/site-packages/squealpipe/study/report/templates/*"))
+    run(*install, f"{wheel}[study]", cwd=folder)
+    (folder / "mine.yaml").write_text(PAD)
+    run(command, "run", "--config", "mine.yaml", "--quick", cwd=folder)
+    assert "What the mass does" in (folder / "results/pad-quick/report/index.html").read_text()
+    run(command, "archive", "first", "--config", "mine.yaml", cwd=folder)

@@ -48,10 +48,14 @@ def choose(
         config: study whose parameters are used where none are typed; repeatable.
     """
     from squealpipe import choose_model
+    from squealpipe.schema.ladder import Level
 
     with working("choose"):
         found = choose_model(params, alpha1, alpha2, question, tol, t_end=t_end)
-    answer(f"{question.replace('_', ' ')}: {found.value:.6g}", f"by {found.model}: {found.reason}")
+    answer(
+        f"{question.replace('_', ' ')}: {found.value:.6g}",
+        f"by {Level[found.model].label}: {found.reason}",
+    )
     return DONE
 
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import xarray as xr
 from matplotlib.axes import Axes
 
-from squealpipe.plotting.cycles import draw_backbone, draw_branch, draw_cycle
+from squealpipe.plotting.cycles import draw_backbone, draw_branch, draw_cycle, draw_orbit
 from squealpipe.plotting.propensity import draw_shares
 from squealpipe.plotting.propensity import figure as propensity_figure
 from squealpipe.plotting.quantities import SHOWN, draw_quantity, mark_changed, shown
@@ -27,6 +27,7 @@ DRAWN: dict[str, Callable[[Axes, xr.Dataset], None]] = {
     "run_summary": draw_spectrum,
     "backbone": draw_backbone,
     "limit_cycle": draw_cycle,
+    "periodic_orbit": draw_orbit,
     "cycle_branch": draw_branch,
     "propensity": draw_shares,
     SYSTEM + "simulate": draw_states,

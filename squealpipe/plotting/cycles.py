@@ -22,7 +22,7 @@ from squealpipe.plotting.style import (
     preload_line,
     say_instead,
 )
-from squealpipe.schema import meanings
+from squealpipe.schema import labels, meanings
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -77,6 +77,25 @@ def draw_cycle(axes: Axes, cycle: xr.Dataset) -> None:
         return
     draw_regimes(axes, cycle.x_path.values, cycle.y_path.values, cycle.regime_path)
     preload_line(axes, parameter(cycle, "preload"))
+    axes.set(aspect="equal", adjustable="datalim")
+    axes.legend(loc="lower right", bbox_to_anchor=(1, 1), borderaxespad=0, ncols=2)
+
+
+def draw_orbit(axes: Axes, orbit: xr.Dataset) -> None:
+    """Path of the mass along an orbit of A4, there and back, red where contact is lost.
+
+    Args:
+        axes: where to draw.
+        orbit: dataset ``periodic_orbit``; without an orbit it gives the reason instead.
+    """
+    axes.set(xlabel="x (m)", ylabel="y (m)")
+    x, y, preload = orbit.x_path.values, orbit.y_path.values, parameter(orbit, "preload")
+    if not x.size:
+        say_instead(axes, f"no periodic motion: {labels(orbit.outcome).item()}")
+        return
+    for part, colour, words in ((y > preload, RED, "separated"), (y <= preload, BLUE, "contact")):
+        axes.plot(x, np.where(joined(part), y, np.nan), color=colour, label=words)
+    preload_line(axes, preload)
     axes.set(aspect="equal", adjustable="datalim")
     axes.legend(loc="lower right", bbox_to_anchor=(1, 1), borderaxespad=0, ncols=2)
 

@@ -50,6 +50,9 @@ PERIODIC_ORBIT = DatasetSchema(
             "s",
             ("switch",),
         ),
+        "time": Variable("instant of a sample of the half period after the peak", "s", ("sample",)),
+        "x_path": Variable("displacement along the belt from the peak on", "m", ("sample",)),
+        "y_path": Variable("displacement away from the belt from the peak on", "m", ("sample",)),
         "residual": Variable(
             "largest velocity after half a period, over l_pre and the frequency unit",
             nan_allowed=True,

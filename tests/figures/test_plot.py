@@ -26,6 +26,9 @@ DATASETS = {
     "critical friction": lambda: squealpipe.critical_friction_map(FORMER, ANGLES, ANGLES),
     "frequencies": lambda: squealpipe.natural_frequencies(FORMER, ANGLES, ANGLES),
     "backbone": lambda: squealpipe.backbone(FORMER, 0.3 * np.pi, 0.9 * np.pi, mode=1),
+    "periodic orbit": lambda: squealpipe.periodic_orbit(
+        FORMER, 0.3 * np.pi, 0.9 * np.pi, mode=1, y_peak=2.0
+    ),
     "basin, one start": lambda: squealpipe.basin_map(
         FORMER, *SCENE, vx=np.linspace(-1, 1, 5), t_end=20.0
     ),

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from squealpipe.methods.orbits.orbit_shape import sample
 from squealpipe.parameters import Parameters, brief
 from squealpipe.schema import build
 from squealpipe.schema.backbones import PERIODIC_ORBIT, Assumption
@@ -16,6 +17,8 @@ from squealpipe.solvers.a4.orbits import SHAPE, find_orbit, orbit_values
 from squealpipe.solvers.a4.system import scaled_system
 from squealpipe.validation import Angle, Mode, Positive
 
+PHASES = np.linspace(0.0, math.pi, 201)
+"""Where the path of an orbit is kept."""
 MOST_PRELOADS = 1e100
 """Lengths over l_pre beyond which squares overflow."""
 
@@ -41,8 +44,9 @@ def periodic_orbit(
 
     Returns:
         Dataset with omega (rad/s), x_at_peak (m), switching_times (s, within the half period
-        after the peak), stability_index, residual, outcome and the orbit's shape. NaN with the
-        reason in ``outcome`` where there is no such motion.
+        after the peak), stability_index, residual, outcome, the orbit's shape and its path in that
+        half period; in the other the mass goes back along it. NaN with the reason in ``outcome``
+        where there is no such motion.
 
     Raises:
         ValueError: mode is not 1 or 2, or y_peak is not a finite number above the equilibrium.
@@ -50,15 +54,25 @@ def periodic_orbit(
     check_length("y_peak", y_peak, params.preload)
     scene = scaled_system(params, alpha1, alpha2)
     found, outcome = find_orbit(scene, mode, y_peak / scene.length, across=True)
-    values, switches = _empty_values(), np.empty(0)
+    values, switches, path = _empty_values(), np.empty(0), np.empty((0, 4))
     if found is not None:
         values = orbit_values(scene, params, found.point)
         values["stability_index"] = found.stability_index
         values["residual"] = found.residual
         switches = found.switches / scene.frequency
+        path = sample(scene.system.rows, found.point, PHASES) * scene.length
     return build(
         PERIODIC_ORBIT,
-        {**values, "y_peak": y_peak, "mode": mode, "switching_times": switches, "outcome": outcome},
+        {
+            **values,
+            "y_peak": y_peak,
+            "mode": mode,
+            "switching_times": switches,
+            "time": PHASES[: len(path)] / values["omega"],
+            "x_path": path[:, 0],
+            "y_path": path[:, 1],
+            "outcome": outcome,
+        },
         {"switch": np.arange(1, len(switches) + 1)},
         {"alpha1": alpha1, "alpha2": alpha2},
     )

@@ -10,10 +10,11 @@ import numpy as np
 
 from squealpipe.codes import Event, Regime
 from squealpipe.laws import contact_laws
+from squealpipe.laws.friction_laws import FALLING
 from squealpipe.models.damped import is_undamped
 from squealpipe.parameters import TABLE, Parameters
 from squealpipe.solvers.a1.scaling import PHYSICAL, unit_value
-from squealpipe.systems.brake import brake, parameters_of_run
+from squealpipe.systems.brake import brake, has_own_laws, parameters_of_run
 from squealpipe.systems.cycles.event_map import Cycle
 from squealpipe.systems.system import System
 
@@ -56,11 +57,14 @@ class Scene:
 
     @cached_property
     def scaled(self) -> Parameters:
-        """The parameters in these units."""
-        values = {name: getattr(self.params, name) for name in self.units if name in TABLE}
-        return self.params.with_(
-            **{n: v if v is None else v / self.units[n] for n, v in values.items()}
-        )
+        """The parameters in these units; of laws of the user's own the numbers alone."""
+        p = self.params
+        if has_own_laws(p):  # under laws for which no table stands
+            numbers = {name: getattr(p, name) for name in ("mu", "k3", "friction_speed")}
+            laws = {"friction_law": FALLING[0], "contact_law": contact_laws.LINEAR}
+            p = p.with_(**numbers, **laws, mu_static=p.static_mu, damping3=0.0)
+        values = {name: getattr(p, name) for name in self.units if name in TABLE}
+        return p.with_(**{n: v if v is None else v / self.units[n] for n, v in values.items()})
 
     @cached_property
     def system(self) -> System:
@@ -75,7 +79,8 @@ class Scene:
     @property
     def values(self) -> dict[str, float]:
         """What a run of the system is given."""
-        return parameters_of_run(self.scaled, self.alpha1, self.alpha2)
+        damping3 = self.params.damping3 / self.units["damping3"]
+        return parameters_of_run(self.scaled, self.alpha1, self.alpha2) | {"damping3": damping3}
 
     @cached_property
     def tied(self) -> dict[str, str]:

@@ -126,6 +126,7 @@ def test_an_independent_integrator_closes_the_orbit(alpha1, alpha2, mode, y_peak
     )
     np.testing.assert_allclose(run.y[:, -1], start, atol=2e-8)
     np.testing.assert_allclose(run.sol(period / 2)[2:], 0.0, atol=2e-8)
+    np.testing.assert_allclose([found.x_path, found.y_path], run.sol(found.time)[:2], atol=2e-8)
     energy = first_integral_value(*run.y, BASE, stiffness)
     assert np.ptp(energy) < 1e-8
     assert float(found.x_amplitude) == pytest.approx(0.5 * np.ptp(run.y[0]), rel=1e-4)

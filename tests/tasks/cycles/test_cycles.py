@@ -9,7 +9,7 @@ from scipy.integrate import quad
 from scipy.interpolate import CubicSpline
 from scipy.optimize import brentq
 
-from squealpipe import cycle_branch, limit_cycle
+from squealpipe import Parameters, cycle_branch, limit_cycle
 from squealpipe.laws.springs import geometry, linear_stiffness
 from squealpipe.schema import Outcome
 from squealpipe.systems.cycles.cycle import once_round
@@ -307,3 +307,26 @@ def test_a_return_after_several_rounds_gives_the_least_period(rounds):
     )
     cycle = once_round(Cycle.at(several, point))
     np.testing.assert_allclose(cycle.period, once.period, rtol=1e-9)
+
+
+def test_a_cycle_under_a_table_of_friction_does_not_depend_on_the_units():
+    """Stick–slip of a pad in SI numbers and of the same in units of m = k1 = l_pre = 1."""
+    mass, k1, preload = 0.5, 1e7, 2e-5
+    time = math.sqrt(mass / k1)
+    speed = preload / time
+    table = ((0.0, 0.6), (0.5, 0.45), (1.0, 0.4), (3.0, 0.35))
+    one = Parameters(
+        k3=0.7, belt_speed=0.2, damping1=0.02, damping2=0.02, length1=1000.0, length2=1000.0,
+        friction_law="linear " + " ".join(f"{v}:{mu}" for v, mu in table),
+    )  # fmt: skip
+    pad = Parameters(
+        mass=mass, k1=k1, k2=k1, k3=0.7 * k1, preload=preload, length1=0.02, length2=0.02,
+        belt_speed=0.2 * speed, damping1=0.02 * mass / time, damping2=0.02 * mass / time,
+        friction_law="linear " + " ".join(f"{v * speed!r}:{mu}" for v, mu in table),
+    )  # fmt: skip
+    angles = 0.1 * math.pi, 0.5 * math.pi
+    here, there = limit_cycle(one, *angles), limit_cycle(pad, *angles)
+    assert here.outcome == there.outcome == Outcome.converged
+    assert float(here.stick_fraction) > 0.1
+    for name, unit in (("period", time), ("x_max", preload), ("stick_fraction", 1.0)):
+        assert float(there[name]) == pytest.approx(float(here[name]) * unit, rel=1e-8)
