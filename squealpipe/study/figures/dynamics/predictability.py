@@ -16,12 +16,12 @@ CAPTION = (
     "tolerance has grown to l_pre/1000, from the tangent map through all events; white: not within "
     "the time run. Beyond it only statistics mean something. (b) Share of the cells of each kind "
     "of motion in which a perturbation grows less than that over the run; cells are counted in "
-    "the key; dashed: growth by the square of time, which no regular motion exceeds."
+    "the key; dashed: growth by the square of time."
 )
 ALT = (
     "Left, a map over both angles of the predictability horizon, white where it is not reached. "
     "Right, cumulative shares of the growth for each kind of motion with a dashed line at "
-    "the most of a regular motion."
+    "growth by the square of time."
 )
 
 
@@ -62,7 +62,7 @@ def draw(hammering: xr.Dataset) -> Figure:
         color=style.GREY,
         linestyle="--",
         linewidth=1.0,
-        label="regular to irregular",
+        label="square of time",
     )
     panel.set(
         xlabel=f"ln of the growth over t = {number(t_end, 4)} s", ylabel="share of the cells below"

@@ -25,7 +25,7 @@ WORDS = {
     "F7_black": "F7†",
     "F8c_separated": "F8c‡",
 }
-NOTE = "* Eq. (11) as printed   † black region empty   ‡ separated"
+NOTE = "* Eq. (11) as printed   † black region of Fig. 7   ‡ separated"
 
 
 def draw(reach: xr.Dataset) -> Figure:
