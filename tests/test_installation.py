@@ -78,6 +78,9 @@ paper: false
 scenes: {mine: {alpha1: 30deg, alpha2: 140deg, start: {vx: 0.001}}}
 parameters:
   {mass: 0.5, k1: 1.0e+7, k2: 1.0e+7, k3: 7.0e+6, preload: 2.0e-5, length1: 0.02, length2: 0.02}
+dynamics: {validity_points: 13}
+explorer: {points: 3}
+spread: {samples: 64, critical_points: 7}
 """
 
 
@@ -101,6 +104,6 @@ def test_wheel_in_a_bare_environment(checkout, tmp_path):
     assert list(bare.glob("lib/*/site-packages/squealpipe/py.typed"))
     run(*install, f"{wheel}[study]", cwd=folder)
     (folder / "mine.yaml").write_text(PAD)
-    run(command, "run", "--config", "mine.yaml", "--quick", cwd=folder)
-    assert "What the mass does" in (folder / "results/pad-quick/report/index.html").read_text()
+    run(command, "run", "--config", "mine.yaml", cwd=folder)
+    assert "What the mass does" in (folder / "results/pad/report/index.html").read_text()
     run(command, "archive", "first", "--config", "mine.yaml", cwd=folder)
