@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from squealpipe.tasks.backbones.orbit import periodic_orbit
     from squealpipe.tasks.basins.basin import basin_map
     from squealpipe.tasks.basins.disturbance import smallest_disturbance
+    from squealpipe.tasks.curves.chart import regime_chart
     from squealpipe.tasks.curves.contact import boundary_distance, contact_boundary
     from squealpipe.tasks.cycles.branch import cycle_branch
     from squealpipe.tasks.cycles.cycle import limit_cycle
@@ -62,6 +63,7 @@ _HOME = {
     "propensity": "squealpipe.tasks.propensity.propensity",
     "quasi_static_map": "squealpipe.tasks.linear.maps",
     "refine_validity_map": "squealpipe.tasks.dynamics.refinement",
+    "regime_chart": "squealpipe.tasks.curves.chart",
     "run_sweep": "squealpipe.execution.sweep",
     "save": "squealpipe.store.netcdf",
     "simulate": "squealpipe.tasks.dynamics.runs",
@@ -98,6 +100,7 @@ __all__ = [
     "propensity",
     "quasi_static_map",
     "refine_validity_map",
+    "regime_chart",
     "run_sweep",
     "save",
     "simulate",

@@ -31,8 +31,9 @@ RESIDUAL = 1e-11
 """Of the function at a point."""
 SHORTEST = 1e-6
 """Chord beside a kink above which the tangents meet in the corner."""
-MOST_DIVISIONS = 30
-CLOSED = 1e-14
+MOST_DIVISIONS, MOST_POINTS = 30, 25_000
+"""Where motions last long a line may have corners without end: its error then says what is left."""
+CLOSED = 1e-12
 """Share of a line that encloses a zero."""
 STEP = 1e-8
 """Of the differences that give tangents."""
@@ -75,7 +76,7 @@ class ZeroLines:
         chords: indices of first and last points, (chords, 2), the positive side on their left.
         error: of the area beside each chord.
         positive: whether the function is so at the square's origin.
-        unresolved: length of the longest chord beside which no zero was found, or 0.
+        unresolved: length of the longest chord that could not be divided as far as it should, or 0.
     """
 
     def __init__(
@@ -159,9 +160,10 @@ class ZeroLines:
 
     def _trace(self, chords: Indices) -> None:
         """Divide chords until their areas are known."""
+        error = self._length(chords) ** 2
         for _ in range(MOST_DIVISIONS):
-            if not len(chords):
-                return
+            if not len(chords) or len(self.place) > MOST_POINTS:
+                break
             new, error = self._divided(chords)
             lost = np.isnan(new[:, 0])
             self._keep(chords[lost], self._length(chords[lost]) ** 2)
@@ -176,9 +178,9 @@ class ZeroLines:
             place = np.where(np.isnan(place), self.place[around].mean(axis=1), place)
             corner = self._append(place, none, self.value(place), self.mark[around[:, 0]])
             self._keep(_split(around, corner), np.repeat(0.5 * error[~going & jumps], 2))
-            chords = chords[going]
+            chords, error = chords[going], error[going]
         self.unresolved = max([self.unresolved, *self._length(chords)])
-        self._keep(chords, self._length(chords) ** 2)
+        self._keep(chords, error)
 
     def _keep(self, chords: Indices, error: Vector) -> None:
         self.chords = np.concatenate([self.chords, chords])
@@ -289,6 +291,10 @@ class ZeroLines:
             found.append(Loop(np.concatenate(line), float(area), float(self.error[on].sum())))
         return found
 
+    def holds(self, x: Vector, y: Vector) -> np.ndarray:
+        """Whether the function is positive at the points of a grid, (x, y)."""
+        return inside([loop.outline for loop in self.loops(positive=True)], x, y)
+
     def _border(self, positive: bool) -> Indices:
         """Pieces of the square's border with one sign, counter-clockwise, as pairs of points."""
         place = np.concatenate([self.place, CORNERS])
@@ -341,7 +347,7 @@ def _roots(value: Function, start: Vector, way: Vector, share: Vector, rate: Vec
             rate[left] = np.where(np.isfinite(secant), secant, rate[left])
             new = at - here / rate[left]
         old[left], before[left] = at, here
-        enclosed = (new > low[left]) & (new < high[left]) & (iteration % 8 < 6)
+        enclosed = (new > low[left]) & (new < high[left]) & (iteration % 8 < 6) & (iteration < 20)
         now[left] = np.where(enclosed, new, 0.5 * (low[left] + high[left]))
         enclosed = (low[left] > 0.0) & (high[left] < 1.0)
         closed = high[left] - low[left] < CLOSED

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from enum import IntEnum
 
+from squealpipe.codes import LinearRegime
 from squealpipe.parameters import TABLE
 from squealpipe.schema import DatasetSchema, Variable, outcome
 from squealpipe.schema.outcomes import Outcome
@@ -15,6 +16,14 @@ class PointKind(IntEnum):
     arc = 0
     corner = 1
     border = 2
+
+
+class ChartLine(IntEnum):
+    """What changes across a line of a regime chart."""
+
+    flutter = 0
+    divergence = 1
+    contact_lost = 2
 
 
 RATIOS = {"kappa": "k3/k1", "lambda_": "L1/l_pre, both lengths in their proportion"}
@@ -88,3 +97,37 @@ BOUNDARY_DISTANCE = DatasetSchema(
         "outcome": outcome(among=(Outcome.converged, Outcome.not_computed)),
     },
 )
+
+REGIME_CHART = DatasetSchema(
+    name="regime_chart",
+    title="Lines over two parameters across which A3 is unstable or A1, from rest, loses contact",
+    coordinates={
+        "point": Variable("point", dims=("point",), dtype="i4"),
+        **PARAMETER,
+        "boundary": Variable("what changes", dims=("boundary",), dtype="U"),
+    },
+    variables={
+        **VARIED,
+        "line": Variable("what changes across the line", dims=("point",), dtype="i1",
+                         flags=ChartLine),
+        "curve": Variable("connected line", dims=("point",), dtype="i4"),
+        "residual": Variable(
+            "of the function that is zero on the line", dims=("point",), rtol=1.0, atol=1e-8
+        ),
+        "region_regime": Variable(
+            "what A3 does there", dims=_REGION, dtype="i1", flags=LinearRegime
+        ),
+        "region_kept": Variable("whether contact is kept there", dims=_REGION, dtype="bool"),
+        "region_place": Variable("a place well inside", dims=("region", "parameter")),
+        "region_share": Variable("share of the chart", dims=_REGION),
+        "design": Variable("value of the design", dims=("parameter",), optional=True),
+        "distance": Variable(
+            "distance of the nearest point, in the units of both parameters; infinite: none",
+            dims=("boundary",), optional=True,
+        ),
+        "range": Variable("lowest and highest value", dims=("parameter", "end")),
+        "t_end": Variable("end of each run", "s"),
+        "runs": Variable("runs", dtype="i8", volatile=True),
+        "outcome": outcome("boundary", among=(Outcome.converged, Outcome.unresolved)),
+    },
+)  # fmt: skip

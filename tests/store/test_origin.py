@@ -63,6 +63,11 @@ MODEL_AND_TOLERANCE = {
     ),
     "basin_map": (squealpipe.basin_map(PARAMS, 0.9, 2.8, t_end=5.0), "A1", 1e-12),
     "contact_boundary": (BOUNDARY, "A1", 1e-9),
+    "regime_chart": (
+        squealpipe.regime_chart(PARAMS, [0.8, 0.9, 1.0], [2.7, 2.8, 2.9], t_end=5.0, tol=1e-9),
+        "A1",
+        1e-9,
+    ),
     "boundary_distance": (
         squealpipe.boundary_distance(BOUNDARY, {"alpha1": 0.9, "alpha2": 2.8}),
         "A1",

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Annotated, Any
 
 import numpy as np
@@ -26,7 +26,7 @@ JUMP = 0.1
 """Of the touch time along a curve, over √(m/k1): another maximum of y is the first to touch."""
 
 
-class _Square:
+class Square:
     """Two ranges as the unit square, and runs of A1 over it."""
 
     def __init__(
@@ -46,19 +46,23 @@ class _Square:
         """The two parameters at places of the square, (places, 2)."""
         return np.asarray(self.low + np.clip(places, 0.0, 1.0) * self.width)
 
-    def _run(self, places: Vector, model: str, **options: Any) -> Ensemble:
-        self.runs += len(places)
+    def fields(self, places: Vector) -> dict[str, Any]:
+        """Parameters of A1 by name, and both angles."""
         fields: dict[str, Any] = {
             name: getattr(self.params, name) for name in TABLE if TABLE[name].enters_a1
         }
         fields |= {**self.fixed, **dict(zip(self.names, self.values(places).T, strict=True))}
-        alpha1, alpha2 = fields.pop("alpha1"), fields.pop("alpha2")
         if "kappa" in fields:
             fields["k3"] = fields.pop("kappa") * self.params.k1
         if "lambda_" in fields:
             fields["length1"] = fields.pop("lambda_") * self.params.preload
             fields["length2"] = fields["length1"] * self.params.length2 / self.params.length1
-        options |= self.options
+        return fields
+
+    def _run(self, places: Vector, model: str, **options: Any) -> Ensemble:
+        self.runs += len(places)
+        fields, options = self.fields(places), {**options, **self.options}
+        alpha1, alpha2 = fields.pop("alpha1"), fields.pop("alpha2")
         return run_ensemble(fields, alpha1, alpha2, model=model, **options)
 
     def reserve(self, places: Vector) -> Vector:
@@ -72,6 +76,37 @@ class _Square:
         run = self._run(beside, self.model, stop_at_first_separation=True)
         time = np.where(run.outcome == Outcome.separated, run.first_separation_time, run.time)
         return np.asarray(time / self.params.time_unit)
+
+
+def two_axes(
+    params: Parameters, alpha1: Any, alpha2: Any, ranges: Mapping[str, Any]
+) -> tuple[dict[str, Vector], dict[str, float]]:
+    """The two arguments that are arrays, and the angles that are not; others are refused."""
+    given = {"alpha1": np.asarray(alpha1), "alpha2": np.asarray(alpha2)}
+    given |= {name: np.asarray(values) for name, values in ranges.items()}
+    axes = {name: values for name, values in given.items() if values.ndim}
+    if len(axes) != 2 or any((np.diff(a) <= 0).any() or a.size < 3 for a in axes.values()):
+        raise ValueError(
+            f"{', '.join(axes) or 'no argument'}: two arguments must be ascending arrays of three "
+            "or more values, the others numbers"
+        )
+    for name in axes:
+        if name not in VARIED:
+            raise ValueError(f"{name!r} cannot vary; {suggestion(name, VARIED)}")
+    fixed = {name: float(values) for name, values in given.items() if not values.ndim}
+    if set(fixed) - {"alpha1", "alpha2"}:
+        raise ValueError("what does not vary belongs into params")
+    if params.contact_law != LINEAR:
+        raise ValueError(
+            f"contact_law = {params.contact_law!r}: contact is followed with the linear law"
+        )
+    return axes, fixed
+
+
+def contact_lines(square: Square, coarse: int) -> ZeroLines:
+    """The boundary of kept contact."""
+    finer = 2 ** max(0, int(np.ceil(np.log2(FINEST / (coarse - 1)))))
+    return ZeroLines(square.reserve, square.touch_time, coarse=coarse, finer=finer, jump=JUMP)
 
 
 @recorded(method="zeros of the lowest contact force, joined from an adaptive grid")
@@ -112,31 +147,29 @@ def contact_boundary(
     Raises:
         ValueError: not two arguments are ascending arrays, or a parameter cannot vary.
     """
-    given = {"alpha1": np.asarray(alpha1), "alpha2": np.asarray(alpha2)}
-    given |= {name: np.asarray(values) for name, values in ranges.items()}
-    axes = {name: values for name, values in given.items() if values.ndim}
-    if len(axes) != 2 or any((np.diff(a) <= 0).any() or a.size < 3 for a in axes.values()):
-        raise ValueError(
-            f"{', '.join(axes) or 'no argument'}: two arguments must be ascending arrays of three "
-            "or more values, the others numbers"
-        )
-    for name in axes:
-        if name not in VARIED:
-            raise ValueError(f"{name!r} cannot vary; {suggestion(name, VARIED)}")
-    fixed = {name: float(values) for name, values in given.items() if not values.ndim}
-    if set(fixed) - {"alpha1", "alpha2"}:
-        raise ValueError("what does not vary belongs into params")
-    if params.contact_law != LINEAR:
-        raise ValueError(
-            f"contact_law = {params.contact_law!r}: contact is followed with the linear law"
-        )
+    axes, fixed = two_axes(params, alpha1, alpha2, ranges)
     t_end = HORIZON * params.time_unit if t_end is None else t_end
     options = {"t_end": t_end, "tol": tol, "workers": workers}
-    square = _Square(params, fixed, axes, options, model)
+    square = Square(params, fixed, axes, options, model)
     coarse = max(each.size for each in axes.values())
-    finer = 2 ** max(0, int(np.ceil(np.log2(FINEST / (coarse - 1)))))
-    lines = ZeroLines(square.reserve, square.touch_time, coarse=coarse, finer=finer, jump=JUMP)
-    return _dataset(square, lines, coarse)
+    return _dataset(square, contact_lines(square, coarse), coarse)
+
+
+def nearest_on(loops: Sequence[Vector], place: Vector, limits: Vector) -> tuple[Vector, float]:
+    """The point of closed lines next to a place, and its distance; infinite where there is none."""
+    nearest, distance = place, np.inf
+    for line in loops:
+        after = np.roll(line, -1, axis=0)
+        chord = after - line
+        share = ((place - line) * chord).sum(axis=1) / np.maximum((chord**2).sum(axis=1), 1e-300)
+        foot = line + np.clip(share, 0.0, 1.0)[:, None] * chord
+        far = np.linalg.norm(foot - place, axis=1)
+        # what runs along the end of a range is no arc
+        for limit in limits.T:
+            far[((line == limit) & (after == limit)).any(axis=1)] = np.inf
+        if far.min() < distance:
+            nearest, distance = foot[far.argmin()], float(far.min())
+    return nearest, distance
 
 
 @recorded(method="nearest point of the outlines of a contact_boundary")
@@ -159,18 +192,7 @@ def boundary_distance(boundary: xr.Dataset, design: Mapping[str, float]) -> xr.D
     place = np.array([design[name] for name in names])
     owner, vertices = boundary.outline_loop.values, boundary.outline.values
     loops = [vertices[owner == loop] for loop in np.unique(owner)]
-    nearest, distance = place, np.inf
-    for line in loops:
-        after = np.roll(line, -1, axis=0)
-        chord = after - line
-        share = ((place - line) * chord).sum(axis=1) / np.maximum((chord**2).sum(axis=1), 1e-300)
-        foot = line + np.clip(share, 0.0, 1.0)[:, None] * chord
-        far = np.linalg.norm(foot - place, axis=1)
-        # what runs along the end of a range is no arc
-        for limit in boundary.range.values.T:
-            far[((line == limit) & (after == limit)).any(axis=1)] = np.inf
-        if far.min() < distance:
-            nearest, distance = foot[far.argmin()], float(far.min())
+    nearest, distance = nearest_on(loops, place, boundary.range.values)
     return build(
         BOUNDARY_DISTANCE,
         {
@@ -184,7 +206,7 @@ def boundary_distance(boundary: xr.Dataset, design: Mapping[str, float]) -> xr.D
     )
 
 
-def _dataset(square: _Square, lines: ZeroLines, coarse: int) -> xr.Dataset:
+def _dataset(square: Square, lines: ZeroLines, coarse: int) -> xr.Dataset:
     chains = lines.chains()
     at = np.array([point for chain in chains for point in chain], int)
     curve = np.repeat(np.arange(len(chains)), [len(chain) for chain in chains])

@@ -1,0 +1,153 @@
+"""What separates the regimes of a design over two parameters, as lines."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from scipy.ndimage import distance_transform_edt, label
+
+from squealpipe.laws.friction_laws import coefficient
+from squealpipe.methods.zero_lines import Vector, ZeroLines
+from squealpipe.models import a3
+from squealpipe.models.contact_system import contact_system
+from squealpipe.parameters import HORIZON, Parameters
+from squealpipe.schema import Outcome, build
+from squealpipe.schema.curves import REGIME_CHART, ChartLine
+from squealpipe.schema.origin import recorded
+from squealpipe.tasks.curves.contact import Square, contact_lines, nearest_on, two_axes
+from squealpipe.validation import Line, Positive, Tolerance, Workers
+
+GRID = 241
+"""Cells per side by which regions are told apart, and points on which closed forms are seen."""
+
+
+@recorded(model="A1", method="zeros of closed forms and of the lowest contact force")
+def regime_chart(
+    params: Parameters,
+    alpha1: Line,
+    alpha2: Line,
+    *,
+    design: Mapping[str, float] | None = None,
+    t_end: Positive | None = None,
+    tol: Tolerance = 1e-12,
+    workers: Workers = None,
+    **ranges: Line,
+) -> xr.Dataset:
+    """The lines over two parameters across which A3 becomes unstable or A1 loses contact.
+
+    Flutter and divergence of the linear model A3 (undamped) are closed forms; contact is that of A1
+    from rest until t_end, as in :func:`contact_boundary`, whose two arrays are given likewise.
+
+    Args:
+        params: physical parameters.
+        alpha1, alpha2: angles, rad.
+        design: the two parameters by their names; by default their values in ``params``, where both
+            are there. Its distance to each line is given.
+        t_end: end of each run, s; 200 √(m/k1) by default.
+        tol: tolerance of the Taylor integrator.
+        workers: processes; None takes all cores.
+        ranges: parameters that vary.
+
+    Returns:
+        Dataset ``regime_chart`` over ``point`` and ``region``.
+
+    Raises:
+        ValueError: as :func:`contact_boundary`, or the design names other parameters.
+    """
+    axes, fixed = two_axes(params, alpha1, alpha2, ranges)
+    if design is not None and set(design) != set(axes):
+        raise ValueError(f"design = {dict(design)!r}: {' and '.join(axes)} are needed")
+    if design is None and not {"alpha1", "alpha2"} & set(axes):
+        own = {"kappa": params.kappa, "lambda_": params.length_ratio}
+        design = {name: own.get(name) or getattr(params, name) for name in axes}
+    t_end = HORIZON * params.time_unit if t_end is None else t_end
+    options = {"t_end": t_end, "tol": tol, "workers": workers}
+    square = Square(params, fixed, axes, options, "A1")
+
+    def invariants(places: Vector) -> Any:
+        fields = square.fields(places)
+        p = SimpleNamespace(**fields)
+        p.static_mu, p.drag = p.mu, np.sign(p.belt_speed) * coefficient(np.abs(p.belt_speed), p)
+        return contact_system(p, p.alpha1, p.alpha2).invariants
+
+    def closed(quantity: str) -> ZeroLines:
+        def value(places: Vector) -> Vector:
+            found = invariants(places)
+            scale = found.half_trace**2
+            return np.broadcast_to(getattr(found, quantity) / scale, len(places)).copy()
+
+        return ZeroLines(
+            value, lambda places, _: 0.0 * places[:, 0], coarse=GRID, finer=1, jump=1.0
+        )
+
+    coarse = max(each.size for each in axes.values())
+    lines = {
+        ChartLine.flutter: closed("discriminant"),
+        ChartLine.divergence: closed("determinant"),
+        ChartLine.contact_lost: contact_lines(square, coarse),
+    }
+    centres = (np.arange(GRID) + 0.5) / GRID
+    cells = np.stack(np.meshgrid(centres, centres, indexing="ij"), axis=-1).reshape(-1, 2)
+    regime = np.broadcast_to(a3.regime(invariants(cells)), len(cells)).reshape(GRID, GRID)
+    kept = lines[ChartLine.contact_lost].holds(centres, centres)
+    regions = [
+        (code, state, places[k - 1], size)
+        for code in np.unique(regime)
+        for state in (True, False)
+        for places, sizes in [_parts((regime == code) & (kept == state))]
+        for k, size in enumerate(sizes, start=1)
+    ]
+    data: dict[str, Any] = {}
+    if design is not None:
+        place = np.array([design[name] for name in axes])
+        limits = np.stack([square.low, square.low + square.width], axis=1)
+        loops = {
+            which: [square.values(loop.outline) for loop in each.loops(positive=True)]
+            for which, each in lines.items()
+        }
+        distances = [nearest_on(each, place, limits)[1] for each in loops.values()]
+        data = {"design": place, "distance": distances}
+    chains = [(which, each, c) for which, each in lines.items() for c in each.chains()]
+    places = np.concatenate([each.place[c] for _, each, c in chains] or [np.empty((0, 2))])
+    lengths = [len(c) for _, _, c in chains]
+    return build(
+        REGIME_CHART,
+        data
+        | {
+            **dict(zip(square.names, square.values(places).T, strict=True)),
+            "line": np.repeat([int(which) for which, _, _ in chains], lengths),
+            "curve": np.repeat(np.arange(len(chains)), lengths),
+            "residual": np.concatenate([e.residual[c] for _, e, c in chains] or [np.empty(0)]),
+            "region_regime": [code for code, *_ in regions],
+            "region_kept": [state for _, state, _, _ in regions],
+            "region_place": square.values(np.array([at for _, _, at, _ in regions])),
+            "region_share": [size / GRID**2 for *_, size in regions],
+            "range": np.stack([square.low, square.low + square.width], axis=1),
+            "t_end": t_end,
+            "runs": square.runs,
+            "outcome": [
+                Outcome.unresolved if each.unresolved else Outcome.converged
+                for each in lines.values()
+            ],
+        },
+        {
+            "point": np.arange(len(places)),
+            "parameter": square.names,
+            "boundary": [which.name for which in lines],
+        },
+    )
+
+
+def _parts(where: np.ndarray) -> tuple[Vector, np.ndarray]:
+    """Connected parts of a grid's points: the place farthest from its edge, and points, of each."""
+    numbers, count = label(where)
+    inner = distance_transform_edt(np.pad(where, 1))[1:-1, 1:-1]
+    at = [
+        np.unravel_index(np.argmax(inner * (numbers == k)), where.shape)
+        for k in range(1, count + 1)
+    ]
+    return (np.array(at).reshape(-1, 2) + 0.5) / GRID, np.bincount(numbers.ravel())[1:]

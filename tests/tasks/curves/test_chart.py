@@ -1,0 +1,72 @@
+"""The regime chart: its lines against closed forms, its regions against runs in them."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import squealpipe
+from squealpipe.codes import LinearRegime
+from squealpipe.models import a3
+from squealpipe.parameters import Parameters
+from squealpipe.schema.curves import ChartLine
+
+PARAMS = Parameters(length1=15.0, length2=15.0)
+ANGLES = np.linspace(0.0, np.pi, 31)
+
+
+@pytest.fixture(scope="module")
+def chart():
+    design = {"alpha1": 0.305 * np.pi, "alpha2": 0.07 * np.pi}
+    return squealpipe.regime_chart(PARAMS, ANGLES, ANGLES, design=design, t_end=15.0)
+
+
+def test_linear_lines_are_circles_of_the_plane(chart):
+    z = a3.plane(PARAMS, chart.alpha1.values, chart.alpha2.values)
+    for which, circle in (
+        (ChartLine.flutter, a3.flutter_circle),
+        (ChartLine.divergence, a3.divergence_circle),
+    ):
+        on = chart.line.values == which
+        centre, radius = circle(PARAMS, PARAMS.k3)
+        assert on.any()
+        np.testing.assert_allclose(np.abs(z[on] - centre), radius, atol=1e-8)
+
+
+def test_regions_are_what_runs_and_eigenvalues_say(chart):
+    places = chart.region_place.values
+    assert float(chart.region_share.sum()) == pytest.approx(1.0, abs=1e-12)
+    for place, regime, kept in zip(
+        places, chart.region_regime.values, chart.region_kept.values, strict=True
+    ):
+        here = squealpipe.stability_map(PARAMS, place[:1], place[1:])
+        run = squealpipe.validity_map(PARAMS, place[:1], place[1:], t_end=15.0)
+        assert int(here.regime_linear.item()) == regime
+        assert bool(run.separates.item()) != bool(kept)
+    assert set(chart.region_regime.values) == set(LinearRegime)
+
+
+def test_distances_of_a_design(chart):
+    """From points of the lines, for which the polygon of the distance is not used."""
+    for which, distance in zip(ChartLine, chart.distance.values, strict=True):
+        on = chart.line.values == which
+        far = np.hypot(chart.alpha1[on] - chart.design[0], chart.alpha2[on] - chart.design[1])
+        assert distance == pytest.approx(float(far.min()), abs=2e-4)
+        assert distance < float(far.min()) + 1e-12
+
+
+def test_parameters_under_their_own_names():
+    """The design is that of the parameters; flutter begins on a circle for each κ."""
+    kappa, mu = np.linspace(0.3, 1.3, 9), np.linspace(0.02, 0.8, 9)
+    angles = 0.4 * np.pi, 0.1 * np.pi
+    chart = squealpipe.regime_chart(PARAMS, *angles, t_end=10.0, kappa=kappa, mu=mu)
+    assert chart.design.values.tolist() == [PARAMS.kappa, PARAMS.mu]
+    on = chart.line.values == ChartLine.flutter
+    for k, m in zip(chart.kappa.values[on], chart.mu.values[on], strict=True):
+        there = PARAMS.with_(k3=float(k), mu=float(m))
+        centre, radius = a3.flutter_circle(there, there.k3)
+        assert abs(a3.plane(there, *angles) - centre) == pytest.approx(radius, abs=1e-8)
+    with pytest.raises(ValueError, match="kappa and mu are needed"):
+        squealpipe.regime_chart(
+            PARAMS, *angles, t_end=10.0, design={"kappa": 1.0}, kappa=kappa, mu=mu
+        )
