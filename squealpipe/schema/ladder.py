@@ -106,7 +106,7 @@ MODEL_LADDER = DatasetSchema(
             atol=1e-9,
         ),
         "always_cpu_time": Variable(
-            "CPU time of always A1 over the whole map, stopped at the answer for contact lost",
+            "CPU time of A1 over the whole map, run for the question alone",
             "s",
             ("question",),
             volatile=True,

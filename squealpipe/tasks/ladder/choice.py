@@ -176,7 +176,7 @@ def choose_models(
     if coulomb is form.params:  # neither rule holds with dashpots or another friction law
         _answer_below_a1(value, linear, bound, question, tol, coulomb, t_end)
     level = np.where(np.isnan(value), Level.a1, Level.a3)
-    _run_a1(value, form.params, alpha1, alpha2, question, t_end, workers)
+    run_a1(value, form.params, alpha1, alpha2, question, t_end, workers)
     return Choices(level, value, linear, bound, cpu_time() - started)
 
 
@@ -258,7 +258,7 @@ def _answer_below_a1(
         value[~cells & (bound <= tol)] = 1.0
 
 
-def _run_a1(
+def run_a1(
     value: np.ndarray,
     params: Parameters,
     alpha1: np.ndarray,

@@ -8,7 +8,6 @@ import numpy as np
 
 from squealpipe.laws.friction import slides
 from squealpipe.methods.modal_bounds import ModalMotion, modal_motion
-from squealpipe.methods.processes import cpu_time
 from squealpipe.models import a3, a4
 from squealpipe.models.contact_system import contact_system
 from squealpipe.parameters import Parameters
@@ -30,18 +29,16 @@ class Scenes(NamedTuple):
 
 
 class Answers(NamedTuple):
-    """Answers (question, cell) of one level, where its own assumptions hold, and what they cost.
+    """Answers (question, cell) of one level and where its own assumptions hold.
 
     Attributes:
         values: in the order of :data:`squealpipe.schema.ladder.QUESTIONS`; NaN: there is none.
         valid: whether they may be trusted.
-        seconds: CPU time.
         belt_reached: whether the mass reaches belt speed in contact.
     """
 
     values: np.ndarray
     valid: np.ndarray
-    seconds: float
     belt_reached: np.ndarray | None = None
 
 
@@ -69,7 +66,6 @@ def _in_contact(scenes: Scenes) -> Answers:
 
     Only contact lost may be asked of a motion that leaves contact.
     """
-    started = cpu_time()
     params = scenes.params
     motion = contact_motion(params, scenes.alpha1, scenes.alpha2)
     times = sample_times(params, scenes.horizon)
@@ -78,12 +74,11 @@ def _in_contact(scenes: Scenes) -> Answers:
     slow = motion.oscillates & slides(motion.fastest(), params)
     stays = slow & (motion.highest() < params.preload)
     valid = np.stack([slow, *[stays] * (len(QUESTIONS) - 1)])
-    return Answers(np.where(motion.oscillates, values, np.nan), valid, cpu_time() - started)
+    return Answers(np.where(motion.oscillates, values, np.nan), valid)
 
 
 def _in_time(level: Level, scenes: Scenes) -> Answers:
     """Answers of ``level.model`` over ``level.share`` of the horizon."""
-    started = cpu_time()
     params, alpha1, alpha2, horizon, workers = scenes
     end = level.share * horizon
     times = sample_times(params, end)
@@ -95,4 +90,4 @@ def _in_time(level: Level, scenes: Scenes) -> Answers:
     if level.model == "A4":
         holds &= slides(found.max_vx, params)
     reached = found.sticks + found.slips + found.reversals > 0
-    return Answers(values, np.broadcast_to(holds, values.shape), cpu_time() - started, reached)
+    return Answers(values, np.broadcast_to(holds, values.shape), reached)
