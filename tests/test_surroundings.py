@@ -4,12 +4,9 @@ import os
 import shutil
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import pytest
-
-from squealpipe.plotting.style import new_figure, save_figure
 
 ROOT = Path(__file__).resolve().parents[1]
 NO_HOME = {**os.environ, "HOME": "/proc/none"}
@@ -43,21 +40,6 @@ def test_make_gives_snakemake_a_cache_where_there_is_no_home(tmp_path):
         file.write("\nshow:\n\t@echo cache=$$XDG_CACHE_HOME\n")
     shown = run(["make", "--no-print-directory", "show"], cwd=tmp_path, env=NO_HOME).stdout
     assert shown.startswith(f"cache={tmp_path}")
-
-
-def test_pictures_left_by_a_killed_process_are_cleared(tmp_path):
-    old, new, other = (tmp_path / f".{name}.png" for name in ("fig.123", "fig.456", "another.123"))
-    for path in (old, new, other):
-        path.write_bytes(b"half a picture")
-    before = time.time() - 7200
-    for path in (old, other):
-        os.utime(path, (before, before))
-    save_figure(new_figure(3.0, 3.0)[0], [tmp_path / "fig.png"])
-    assert sorted(path.name for path in tmp_path.iterdir()) == [
-        ".another.123.png",
-        ".fig.456.png",
-        "fig.png",
-    ]
 
 
 @pytest.mark.release

@@ -12,7 +12,6 @@ from matplotlib.colors import BoundaryNorm, ListedColormap
 from matplotlib.figure import Figure
 from matplotlib.ticker import ScalarFormatter
 
-from squealpipe.store.netcdf import clear_leftovers
 from squealpipe.store.whole_files import whole_file
 from squealpipe.text import as_people_write
 
@@ -217,7 +216,6 @@ def save_figure(figure: Figure, paths: Sequence[str | os.PathLike[str]]) -> None
         engine.execute(figure)
         figure.set_layout_engine(None)
     for path in map(Path, paths):
-        clear_leftovers(path.parent, f".{path.stem}.*{path.suffix}")
         metadata = {"Date": None} if path.suffix == ".svg" else {"Software": "squealpipe"}
         with whole_file(path) as temporary:
             figure.savefig(temporary, metadata=metadata)

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import contextlib
 import datetime
 import hashlib
 import os
-import time
 from pathlib import Path
 from typing import Any
 
@@ -27,9 +25,6 @@ class StoreError(ValueError):
 
 
 MARK = b"\n# squealpipe sha256 "
-
-LEFT_AFTER_S = 3600.0
-"""Age from which a temporary file belongs to no process that still runs."""
 
 DAMAGED = (OSError, RuntimeError, ValueError, LookupError, AttributeError, TypeError, MemoryError)
 """What netCDF-4 and Xarray raise on files with damaged bytes."""
@@ -63,7 +58,6 @@ def save(dataset: xr.Dataset, path: AnyPath) -> Path:
         if variable.dtype.kind in "fiu":
             encoding[str(name)]["_FillValue"] = None
     try:
-        clear_leftovers(target.parent, f".{target.stem}.*{target.suffix}")
         with whole_file(target) as temporary:
             dataset.to_netcdf(temporary, engine="netcdf4", format="NETCDF4", encoding=encoding)
             with temporary.open("ab") as file:
@@ -138,14 +132,6 @@ def refuse_target(target: Path) -> None:
     archive = archive_around(target)
     if archive is not None:
         raise StoreError(f"{target} is part of the archive {archive}, which never changes")
-
-
-def clear_leftovers(folder: Path, pattern: str) -> None:
-    """Delete temporary files that a killed process left; those of the last hour may be in use."""
-    for path in folder.glob(pattern):
-        with contextlib.suppress(FileNotFoundError):  # another process clears them too
-            if time.time() - path.stat().st_mtime > LEFT_AFTER_S:
-                path.unlink()
 
 
 def made_now() -> str:

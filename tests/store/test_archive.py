@@ -1,6 +1,5 @@
 """An archive is whole, sealed, and every changed, missing or extra byte is found."""
 
-import os
 import shutil
 from pathlib import Path
 
@@ -127,18 +126,6 @@ def test_suffixes_can_be_left_out(run, keys_of):
     frozen = archive("small", keys=keys_of(run), root=run, leave_out=[".png"])
     assert not (frozen / "figures/fig06.png").exists()
     assert verify(frozen).intact
-
-
-@pytest.mark.parametrize("mask", [0o022, 0o077, 0o002])
-def test_archives_obey_the_umask(run, mask, keys_of):
-    before = os.umask(mask)
-    try:
-        frozen = archive("first", keys=keys_of(run), root=run)
-    finally:
-        os.umask(before)
-    for path in [frozen, *frozen.rglob("*")]:
-        allowed = 0o777 if path.is_dir() else 0o444
-        assert path.stat().st_mode & 0o777 == allowed & ~mask, path
 
 
 def spoil_figure(path):

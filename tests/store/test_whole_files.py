@@ -7,16 +7,6 @@ import subprocess
 from squealpipe import Parameters, save, stability_map
 from squealpipe.store.checkout import commit
 from squealpipe.store.provenance import stamped
-from squealpipe.store.whole_files import whole_file
-
-
-def test_no_waiting_link_is_written_to(tmp_path, monkeypatch):
-    monkeypatch.setattr("os.getpid", lambda: 7)
-    (tmp_path / ".page.7.html").symlink_to(tmp_path / "victim")
-    with whole_file(tmp_path / "page.html") as temporary:
-        temporary.write_text("whole")
-    assert (tmp_path / "page.html").read_text() == "whole"
-    assert not (tmp_path / "victim").exists()
 
 
 def test_ids_of_inputs_are_those_of_the_files_that_the_task_read(tmp_path):
