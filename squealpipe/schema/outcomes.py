@@ -52,7 +52,7 @@ class Outcome(IntEnum):
 REMEDIES: dict[Outcome, str] = {
     Outcome.converged: "none needed",
     Outcome.separated: "none needed: contact was lost and the question is answered",
-    Outcome.not_computed: "the cell was decided without a run; see `computed`",
+    Outcome.not_computed: "nothing was asked of it",
     Outcome.step_limit: "too many steps: shorten t_end (cycles: t_settle; branches: y_peak_max)",
     Outcome.event_limit: "events accumulate (Zeno-like chatter); shorten t_end (cycles: t_settle)",
     Outcome.singular_geometry: "the mass met a pivot (d = 0), where the spring force is undefined",

@@ -12,7 +12,7 @@ Check = Callable[[Run], Finding]
 """Reads datasets only."""
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True)
 class Statement:
     """One statement, how it is checked, and what came out at the shipped baseline.
 
@@ -56,16 +56,7 @@ class Rows(list[Statement]):
 
         def keep(check: Check) -> Check:
             self.append(
-                Statement(
-                    id=name,
-                    section=section,
-                    text=text,
-                    measure=measure,
-                    figure=figure,
-                    recorded=recorded,
-                    check=check,
-                    consequence=consequence,
-                )
+                Statement(name, section, text, measure, figure, recorded, check, consequence)
             )
             return check
 
