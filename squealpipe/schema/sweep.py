@@ -16,7 +16,7 @@ from squealpipe.config.ranges import NUMBERS
 from squealpipe.parameters import Parameters
 from squealpipe.schema import ABSENT, DatasetSchema, SchemaError, Variable, find, flag_table
 
-RAGGED = ("event", "point", "switch", "harmonic")
+RAGGED = ("event", "point", "switch", "sample", "harmonic")
 """Dimensions whose length may differ from run to run of a sweep."""
 
 OPTIONS = {
