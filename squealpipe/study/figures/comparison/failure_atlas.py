@@ -15,7 +15,7 @@ from squealpipe.text import number
 
 READS = ("benchmark", "failure_atlas")
 CAPTION = (
-    "The failure atlas. (a) Integrators on problems with events: each cell is divided by "
+    "(a) Integrators on problems with events: each cell is divided by "
     "tolerance, the loosest on the left; numbers count missed (−) and spurious (+) events at their "
     "worst; empty: not asked. Chattering and the run beyond the horizon have no answer: a flag is "
     "right there. (b) Methods for frequencies and stability on hard scenes: verdict "

@@ -12,7 +12,7 @@ READS = ("work_precision_frequencies",)
 CAPTION = (
     "Harmonic balance on model A4: median error of ω at equal peak of y against exact orbits, over "
     "the wall time of a point; points of a line run over N_h or σ. The exact orbit itself is shown "
-    "with the velocity left after half a period. Grey band: Pareto front; red rings: our settings. "
+    "with the velocity left after half a period. Red rings: our settings. "
     "Machine and versions are named below."
 )
 ALT = "Chart of frequency error against time for forms of harmonic balance."
