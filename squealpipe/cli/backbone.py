@@ -15,9 +15,9 @@ from squealpipe.cli.arguments import (
     Switch,
     Whole,
 )
-from squealpipe.cli.console import answer, say, working
+from squealpipe.cli.console import answer
 from squealpipe.cli.exit_codes import ANSWER_IS_NO, DONE
-from squealpipe.cli.output import check_outputs, write
+from squealpipe.cli.output import check_outputs, compute
 
 
 def backbone(
@@ -62,27 +62,19 @@ def backbone(
     }
     picture = check_outputs(output, picture, force=force)
 
-    from squealpipe.plotting import picture as draw
-    from squealpipe.plotting.style import save_figure
+    branch = compute("backbone", params, alpha1, alpha2, output=output, picture=picture, **options)
     from squealpipe.schema import REMEDIES, Outcome
-    from squealpipe.tasks.backbones.backbone import backbone as task
 
-    settings = {"parameters": params.as_dict(), "alpha1": alpha1, "alpha2": alpha2, **options}
-    with working("backbone"):
-        branch = write(lambda: task(params, alpha1, alpha2, **options), output, config=settings)
-    save_figure(draw(branch), [picture])
     end = Outcome(int(branch.end))
     if not branch.sizes["point"]:
         answer(
             f"mode {mode} has no periodic motions here: {end.name} ({REMEDIES[end]}); "
             "try other angles or parameters"
         )
-        say(f"wrote {output} and {picture}")
         return ANSWER_IS_NO
     answer(
         f"mode {mode}: {branch.sizes['point']} points, ω from {float(branch.omega[0]):.6g} "
         f"to {float(branch.omega[-1]):.6g} rad/s",
         f"the branch ends: {end.name} ({REMEDIES[end]})",
     )
-    say(f"wrote {output} and {picture}")
     return DONE

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Literal
+from typing import Any, Literal
 
 from squealpipe.cli.arguments import (
     BASELINE,
@@ -15,9 +15,9 @@ from squealpipe.cli.arguments import (
     Picture,
     Switch,
 )
-from squealpipe.cli.console import answer, say, working
+from squealpipe.cli.console import answer
 from squealpipe.cli.exit_codes import DONE
-from squealpipe.cli.output import check_outputs, write
+from squealpipe.cli.output import check_outputs, compute
 from squealpipe.parameters import HORIZON
 
 Kind = Literal[
@@ -60,20 +60,11 @@ def map_angles(
         raise ValueError("a map needs 2 or more angles of each spring; write for instance 0:pi:31")
     t_end = HORIZON * params.time_unit if t_end is None else t_end
     name = {"frequencies": "natural_frequencies"}.get(kind, f"{kind.replace('-', '_')}_map")
-    options = {"t_end": t_end, "tol": tol} if kind in TIMED else {}
+    options: dict[str, Any] = {"t_end": t_end, "tol": tol} if kind in TIMED else {}
     picture = check_outputs(output, picture, force=force)
 
-    from squealpipe.execution.catalogue import run_task
-    from squealpipe.plotting import picture as draw
+    found = compute(name, params, alpha1, alpha2, output=output, picture=picture, **options)
     from squealpipe.plotting.quantities import counts
-    from squealpipe.plotting.style import save_figure
 
-    settings = {"parameters": params.as_dict(), "alpha1": alpha1, "alpha2": alpha2, **options}
-    with working(f"{kind} map"):
-        dataset = write(
-            lambda: run_task(name, params, alpha1, alpha2, **options), output, config=settings
-        )
-    save_figure(draw(dataset), [picture])
-    answer(*counts(dataset))
-    say(f"wrote {output} and {picture}")
+    answer(*counts(found))
     return DONE

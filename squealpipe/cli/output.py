@@ -89,7 +89,7 @@ def write(make: Callable[[], xr.Dataset], output: Path, *, config: Mapping[str, 
 def compute(
     function: str,
     params: Parameters,
-    *angles: float,
+    *angles: Any,
     output: Path,
     picture: Path | None,
     drawn: bool = True,

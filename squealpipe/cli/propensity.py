@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 from cyclopts import Parameter
 
@@ -17,9 +17,9 @@ from squealpipe.cli.arguments import (
     Switch,
     Whole,
 )
-from squealpipe.cli.console import SESSION, answer, say, working
+from squealpipe.cli.console import SESSION, answer
 from squealpipe.cli.exit_codes import DONE
-from squealpipe.cli.output import check_outputs, write
+from squealpipe.cli.output import check_outputs, compute
 from squealpipe.config.ranges import ANGLES, parse_angle, parse_number
 from squealpipe.parameters import HORIZON
 
@@ -69,23 +69,11 @@ def propensity(
     t_end = HORIZON * params.time_unit if t_end is None else t_end
     picture = check_outputs(output, picture, force=force)
 
-    from squealpipe.plotting import picture as draw
-    from squealpipe.plotting.style import save_figure
-    from squealpipe.tasks.propensity import propensity as task
-
-    options: dict[str, Any] = {
-        "distributions": distributions,
-        "samples": samples,
-        "t_end": t_end,
-        "spring_correlation": spring_correlation,
-        "seed": seed,
-    }
-    settings = {"parameters": params.as_dict(), "alpha1": alpha1, "alpha2": alpha2, **options}
-    with working("propensity"):
-        dataset = write(
-            lambda: task.propensity(params, alpha1, alpha2, **options), output, config=settings
-        )
-    save_figure(draw(dataset), [picture])
+    dataset = compute(
+        "propensity", params, alpha1, alpha2, output=output, picture=picture,
+        distributions=distributions, samples=samples, t_end=t_end,
+        spring_correlation=spring_correlation, seed=seed,
+    )  # fmt: skip
     answer(
         *(
             f"{str(name).replace('_', ' '):<20} {100 * share:6.2f} %  "
@@ -96,7 +84,6 @@ def propensity(
             )
         ),
     )  # fmt: skip
-    say(f"wrote {output} and {picture}")
     return DONE
 
 

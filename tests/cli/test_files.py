@@ -137,7 +137,7 @@ def test_unexpected_errors_are_one_line_and_a_traceback_on_request(capsys, monke
         warnings.warn("internal", RuntimeWarning, stacklevel=2)
         return {}["nothing"]
 
-    monkeypatch.setattr("squealpipe.execution.catalogue.run_task", broken)
+    monkeypatch.setattr("squealpipe.tasks.linear.maps.stability_map", broken)
     assert run(STABILITY) == 2
     assert capsys.readouterr().err == (
         "squealpipe: unexpected error (KeyError: 'nothing'); "
