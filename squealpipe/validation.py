@@ -4,16 +4,25 @@ from __future__ import annotations
 
 import functools
 import inspect
+import keyword
 import math
 import os
 import sys
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import Annotated, Any, ParamSpec, TypeVar, cast
 
 import numpy as np
 from annotated_types import Ge, Gt, Interval
-from pydantic import AfterValidator, BeforeValidator, ConfigDict, ValidationError, validate_call
+from pydantic import (
+    AfterValidator,
+    BeforeValidator,
+    ConfigDict,
+    ValidationError,
+    WrapValidator,
+    validate_call,
+)
+from xarray import Dataset
 
 from squealpipe.parameters import BEYOND_A_TURN, FULL_TURN, brief, is_whole_number
 from squealpipe.text import in_words, suggestion
@@ -48,21 +57,22 @@ def checked(function: Callable[Given, Result]) -> Callable[Given, Result]:
         try:
             return call(*args, **kwargs)
         except ValidationError as error:
-            if error.title != function.__name__:
+            if error.title not in (function.__name__, function.__qualname__):
                 raise
-            raise _refusal(error, names) from None
+            title = function.__qualname__.removesuffix(".__init__")
+            raise _refusal(error, title, names) from None
 
     return cast("Callable[Given, Result]", run)
 
 
-def _refusal(error: ValidationError, names: list[str]) -> Exception:
+def _refusal(error: ValidationError, title: str, names: list[str]) -> Exception:
     found = error.errors(include_url=False)
     first = next((each for each in found if "unexpected" in each["type"]), found[0])
     place, *inside = first["loc"]
     name = names[place] if isinstance(place, int) and place < len(names) else place
     if "argument" in first["type"]:
         near = f"; {suggestion(name, names)}" if first["type"].startswith("unexpected") else ""
-        return TypeError(f"{error.title}: {name}: {first['msg'].lower()}{near}")
+        return TypeError(f"{title}: {name}: {first['msg'].lower()}{near}")
     where = "".join(f"[{step!r}]" for step in inside if step != "[key]")
     return ValueError(f"{name}{where} = {brief(first['input'])}: {in_words(first)}")
 
@@ -158,9 +168,39 @@ def within_a_turn(angles: Any) -> Any:
 
 
 def _path(value: Any) -> Path:
-    if not isinstance(value, str | os.PathLike):
-        raise ValueError("a path is needed")  # noqa: TRY004 (pydantic lets other errors through)
+    if not isinstance(value, str | os.PathLike) or "\0" in os.fspath(value):
+        raise ValueError("a path is needed")
     return Path(value)
+
+
+def _values(value: Any) -> Any:
+    if isinstance(value, Dataset):
+        raise ValueError("names and values are needed, not a dataset")  # noqa: TRY004
+    return value
+
+
+def _identifier(value: str) -> str:
+    if not value.isidentifier() or keyword.iskeyword(value):
+        raise ValueError("letters, digits and _ are needed, as for a variable of Python")
+    return value
+
+
+def _word(value: str) -> str:
+    if not value.strip() or not value.isprintable() or "/" in value:
+        raise ValueError("a name without / is needed")
+    return value
+
+
+def needed(what: str) -> WrapValidator:
+    """Words for what a type with several forms allows."""
+
+    def check(value: Any, handler: Callable[[Any], Any]) -> Any:
+        try:
+            return handler(value)
+        except ValidationError:
+            raise ValueError(f"{what} needed") from None
+
+    return WrapValidator(check)
 
 
 def one_of(names: Iterable[str]) -> BeforeValidator:
@@ -182,6 +222,7 @@ NotNegative = Annotated[Number, Ge(0)]
 Tolerance = Annotated[Number, Interval(gt=1e-18, lt=1e-2)]
 Whole = Annotated[int, BeforeValidator(_whole)]
 Natural = Annotated[Whole, Ge(1)]
+Several = Annotated[Whole, Ge(2)]
 Workers = Natural | None
 Seed = Annotated[Whole, Ge(0)]
 Mode = Annotated[int, BeforeValidator(_mode)]
@@ -197,4 +238,10 @@ Angles = Annotated[Vector, AfterValidator(within_a_turn)]
 """A 1-D array of angles, rad."""
 State = Annotated[Any, BeforeValidator(state_of)]
 """x, y, vx, vy."""
+Values = Annotated[Mapping[str, Any], BeforeValidator(_values)]
+"""Names → values; each is checked where its name is known."""
+Identifier = Annotated[str, AfterValidator(_identifier)]
+"""A name that is used as an attribute or a keyword."""
+Word = Annotated[str, AfterValidator(_word)]
+"""A name that becomes part of the names of variables."""
 AnyPath = Annotated[Any, BeforeValidator(_path)]

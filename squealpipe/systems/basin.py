@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from enum import IntEnum
 from types import SimpleNamespace
 from typing import Any
@@ -21,7 +21,7 @@ from squealpipe.systems.runs import (
     outcome,
     outer_product,
 )
-from squealpipe.validation import NotNegative, Tolerance, Workers, checked
+from squealpipe.validation import NotNegative, Tolerance, Values, Workers, checked
 
 AT_REST = 1e-3
 """A motion rests whose states stay this close together, over their ranges in the whole run."""
@@ -48,7 +48,7 @@ def basin(
     system: Any,
     t_end: NotNegative,
     *,
-    start: Mapping[str, Any],
+    start: Values,
     tol: Tolerance = 1e-12,
     workers: Workers = None,
     **parameters: Any,
@@ -125,7 +125,8 @@ def basin(
                 silent = not late.any() and (alike[row] <= REPEATED * spans[row]).all()
                 repeats[row] = lag > 0 or silent
     motion = np.select([rests, repeats], [Motion.rest, Motion.cycle], Motion.unsettled)
-    motion[whole["ends"][:, 0] != Outcome.converged] = Motion.unsettled
+    ended = np.isfinite(quarters[1]).all(axis=(1, 2)) & (whole["ends"][:, 0] == Outcome.converged)
+    motion[~ended] = Motion.unsettled
     over, shape = tuple(grid.coordinates), grid.shape
     numbers = _numbered(motion, quarters[1][..., 2:])
     found: dict[str, Any] = {

@@ -44,7 +44,15 @@ from squealpipe.methods.taylor.simd import FEW, LANES
 from squealpipe.schema import SYSTEM, Outcome, flag_table, in_words
 from squealpipe.systems.trace import TIME, TIME_UNIT
 from squealpipe.text import suggestion
-from squealpipe.validation import NotNegative, Tolerance, Vector, Workers, checked, real_array
+from squealpipe.validation import (
+    NotNegative,
+    Tolerance,
+    Values,
+    Vector,
+    Workers,
+    checked,
+    real_array,
+)
 
 if TYPE_CHECKING:
     from squealpipe.systems.system import System
@@ -128,6 +136,12 @@ def integrate(
     unit = np.broadcast_to(
         scale(_Given(values, names)) if callable(scale) else float(scale), (size,)
     ).astype(float)
+    with np.errstate(over="ignore"):
+        fits = (unit > 0.0) & (t_end / unit < math.inf)
+    if not fits.all():
+        raise ValueError(
+            f"{system.name}: time_scale = {unit.min()}: it is not a unit of time"
+        )
     derived = evaluate(t.derived, {**values, TIME_UNIT: unit})
     columns = [*(values[name] for name in names), *derived, unit]
     parameters = np.stack([np.broadcast_to(each, (size,)) for each in columns], axis=1)
@@ -307,7 +321,7 @@ def simulate(
     t_end: NotNegative,
     *,
     times: Vector | None = None,
-    start: Mapping[str, Any] | None = None,
+    start: Values | None = None,
     tol: Tolerance = 1e-12,
     sensitivity: Sequence[str] = (),
     **parameters: Any,
@@ -365,7 +379,7 @@ def ensemble(
     system: Any,
     t_end: NotNegative,
     *,
-    start: Mapping[str, Any] | None = None,
+    start: Values | None = None,
     t_late: NotNegative | None = None,
     tol: Tolerance = 1e-12,
     horizon: bool = False,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import Annotated, Any, cast
 
 import numpy as np
 import xarray as xr
@@ -17,14 +17,31 @@ from squealpipe.schema import Outcome
 from squealpipe.systems.trace import (
     TIME,
     TIME_UNIT,
+    Names,
     Traced,
     Tracer,
     check_progress,
     depends_on_time,
 )
 from squealpipe.text import suggestion
+from squealpipe.validation import Identifier, Number, Positive, Word, checked, needed
 
 Function = Callable[..., Any]
+Size = Annotated[
+    str | tuple[str, Positive], needed("a unit, or (unit, typical size greater than 0), is")
+]
+StartValue = Annotated[Number | str, needed("a finite number, or the name of a regime, is")]
+Field = Annotated[
+    Function | Mapping[str, Function], needed("a function, or one for each regime, is")
+]
+Target = str | tuple[str, Function | None] | tuple[str, Function | None, Word]
+Targets = Annotated[
+    str | Sequence[Target], needed("a regime, or a list of (regime, condition) and a regime, is")
+]
+Begin = str | tuple[str, Function | None] | tuple[str, Function | None, Function | None]
+Begins = Annotated[
+    Sequence[Begin], needed("a list of (regime, condition, equality) and a regime is")
+]
 MOST_STATES, MOST_SURFACES, MOST_REGIMES = 24, 16, 256
 RESERVED = frozenset(
     (
@@ -56,11 +73,14 @@ class Switch:
     regime that is left.
     """
 
-    name: str
-    leaves: str | Sequence[str]
+    name: Word
+    leaves: Annotated[str | Sequence[str], needed("a regime, or a list of them, is")]
     when: Function
-    to: str | Sequence[Any]
+    to: Targets
     reset: Function | None = None
+
+
+Switch.__init__ = checked(Switch.__init__)  # type: ignore[method-assign]
 
 
 class System:
@@ -89,21 +109,24 @@ class System:
         TypeError: a function is not smooth (a comparison, a branch), or gives what is not a number.
     """
 
+    @checked
     def __init__(
         self,
         name: str,
         *,
-        states: Mapping[str, Any],
-        parameters: Mapping[str, float],
-        regimes: Mapping[str, Mapping[str, float]],
-        field: Function | Mapping[str, Function],
+        states: Mapping[Identifier, Size],
+        parameters: Mapping[Identifier, Number],
+        regimes: Mapping[Word, Mapping[Identifier, Number]],
+        field: Field,
         switches: Sequence[Switch] = (),
-        start: Mapping[str, Any],
-        starts_in: Sequence[Any] = (),
+        start: Mapping[str, StartValue],
+        starts_in: Begins = (),
         period: Function | None = None,
-        outputs: Mapping[str, tuple[str, Function]] | None = None,
-        stops: Mapping[str, Function] | None = None,
-        time_scale: float | Function = 1.0,
+        outputs: Mapping[Identifier, tuple[str, Function]] | None = None,
+        stops: Mapping[Word, Function] | None = None,
+        time_scale: Annotated[
+            Positive | Function, needed("a number greater than 0, or a function, is")
+        ] = 1.0,
     ) -> None:
         self.name = name
         self.units = {
@@ -117,6 +140,11 @@ class System:
         self.period, self.time_scale = period, time_scale
         self.outputs, self.stops = dict(outputs or {}), dict(stops or {})
         self._check_names()
+        for what, function in (("period", period), ("time_scale", time_scale)):
+            if callable(function):
+                value = function(Names("the system", self.parameters))
+                if not is_finite_number(value):
+                    raise ValueError(f"{what} gives {value!r}; a number is needed")
         self.traced = self._trace()
 
     @property
@@ -171,14 +199,11 @@ class System:
         ):
             if not 1 <= number <= most:
                 raise ValueError(f"{number} {what}; 1 to {most} can be carried")
-        if not ((self.sizes > 0) & np.isfinite(self.sizes)).all():
-            raise ValueError("the typical size of a state must be a number greater than 0")
         taken = RESERVED | self._results()
         self._check_free("state", self.units, taken)
         self._check_free("parameter", self.parameters, {*self.units, *taken})
         self._check_free("output", self.outputs, {*self.units, *self.parameters, *taken})
         self._check_free("stop", self.stops, {outcome.name for outcome in Outcome})
-        self._check_numbers()
         if unknown := [name for name in self.start if name not in {*self.units, "regime"}]:
             raise ValueError(
                 f"start: {unknown[0]!r} is unknown; {suggestion(unknown[0], self.units)}"
@@ -189,16 +214,6 @@ class System:
         names = [each.name for each in self.switches]
         if len(set(names)) < len(names):
             raise ValueError(f"two switches share a name: {', '.join(names)}")
-
-    def _check_numbers(self) -> None:
-        if not callable(self.time_scale) and not 0.0 < self.time_scale < np.inf:
-            raise ValueError(f"time_scale = {self.time_scale!r}: a number greater than 0 is needed")
-        start = {name: value for name, value in self.start.items() if name != "regime"}
-        regimes = ((f"regime {name!r}:", each) for name, each in self.regimes.items())
-        for what, given in (("parameter", self.parameters), ("start:", start), *regimes):
-            for name, value in given.items():
-                if not is_finite_number(value):
-                    raise ValueError(f"{what} {name!r} = {value!r}: a finite number is needed")
 
     def _results(self) -> set[str]:
         """Names of variables and dimensions that results form from the system's names."""
@@ -214,7 +229,7 @@ class System:
     def check_regime(self, start: Mapping[str, Any]) -> None:
         """Refuse a start in a regime that there is not."""
         given = start.get("regime")
-        if given is not None and given not in self.regimes:
+        if given is not None and not (isinstance(given, str) and given in self.regimes):
             raise ValueError(f"start: regime {given!r}: {suggestion(str(given), self.regimes)}")
 
     @staticmethod
@@ -429,7 +444,7 @@ class System:
         Raises:
             ValueError: no regime fits a start.
         """
-        given = given or self.start.get("regime")
+        given = given or cast("str | None", self.start.get("regime"))
         if given is not None:
             return np.full(size, list(self.regimes).index(given), np.int64)
         traced = self.traced

@@ -8,7 +8,9 @@ import time
 from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from functools import cache, partial
 from random import Random
+from types import NoneType, UnionType
 from typing import Any
 
 import numpy as np
@@ -17,6 +19,7 @@ import xarray as xr
 import squealpipe as sp
 from squealpipe.config.ranges import parse_angle, parse_range
 from squealpipe.config.settings import parse_study
+from squealpipe.functions import cos
 from squealpipe.parameters import LAW_NAMES, TABLE
 from squealpipe.schema.ladder import QUESTIONS
 from squealpipe.solvers.a1.ensemble import run_ensemble
@@ -98,6 +101,7 @@ TURNS = Kind(
 MANY = Kind(ANGLE.good, NO_ANGLES[2:17])
 HORIZON = number(0.05, 8.0)
 MAYBE = Kind(HORIZON.good, [bad for bad in HORIZON.bad if bad is not None])
+LIMITED = number(0.05, 8.0, zero=True, extremes=False)
 FROM_NOW = number(0.05, 8.0, zero=True)
 LATER = Kind(FROM_NOW.good, [bad for bad in FROM_NOW.bad if bad is not None])
 TOL = Kind(lambda rng: 10.0 ** rng.uniform(-17, -3), [*NO_NUMBER, 0.0, -1e-6, 1.0, 1e-19, 1e-300])
@@ -116,7 +120,9 @@ ONE = Kind(lambda _: 1, [0, -1, 1.0, "1", True, 10**400])
 LEAST_ONE = Kind(lambda rng: rng.choice([1, 2, np.int64(3)]), [0, -1, 1.5, "1", True, [], 10**400])
 SEED = Kind(lambda rng: rng.randrange(10**6), [None, -1, 0.5, "1", True, [1], 10**400, object()])
 TRUTH = Kind(lambda rng: rng.random() < 0.5, [None, 0, 1.0, "yes", "", [], object()])
-PLACE = Kind(lambda _: "no-such-folder/no-such-file.nc", [None, 1, 1.5, True, object(), [], {}, 1j])
+PLACE = Kind(
+    lambda _: "no-such-folder/no-such-file.nc", [None, 1, 1.5, True, object(), [], {}, 1j, "\0"]
+)
 MAPPING = [None, 1, "mu", [], ["mu"], object(), {1: 2}, {"mu": None}, {"mu": "uniform"}]
 NO_PARAMETERS = [None, {"nu": 0.3}, "baseline", 1.0, sp.Parameters, [sp.Parameters()]]
 
@@ -139,6 +145,65 @@ WRITTEN = {
 """What a YAML file can hold."""
 SCENE = {"alpha1": ANGLE, "alpha2": ANGLE}
 MAP = {"alpha1": ANGLES, "alpha2": ANGLES}
+
+
+OSCILLATOR: dict[str, Any] = {
+    "states": {"x": "m", "v": ("m/s", 2.0)},
+    "parameters": {"amplitude": 0.5, "gap": 1.0},
+    "regimes": {"free": {"stiffness": 1.0}},
+    "field": lambda t, s, p, r: {
+        "x": s.v, "v": p.amplitude * cos(2.0 * t) - 0.1 * s.v - r.stiffness * s.x
+    },
+    "start": {"x": 0.0, "v": 0.1, "regime": "free"},
+    "starts_in": ["free"],
+    "period": lambda _: math.pi,
+    "outputs": {"energy": ("m2/s2", lambda t, s, p, r: s.x * s.x + s.v * s.v)},
+    "stops": {"far": lambda t, s, p, r: 50.0 - s.x},
+    "time_scale": 1.0,
+}  # fmt: skip
+IMPACT: dict[str, Any] = {
+    "name": "impact",
+    "leaves": "free",
+    "when": lambda t, s, p, r: p.gap - s.x,
+    "to": [("free", lambda t, s, p, r: s.v, "touch"), "free"],
+    "reset": lambda t, s, p, r: {"v": -0.8 * s.v},
+}
+NO_PIECES = [
+    None, 1, -1.0, 5e-324, "1e3", b"1", True, object(), 1j, [1], (None,), {"x": None}, {1: 2},
+    {"x": {"r": "1"}}, {"x": ("m", -1.0)}, {"": 1.0}, {"x": [0.1]}, np.ones(2),
+]  # fmt: skip
+NO_START = [1, "x", b"1", True, object(), [1], {"y": 0.0}, {"x": None}, {"x": "1"}, {"x": math.nan},
+            {"regime": "y"}, {"regime": ["free"]}, {"regime": 1}, {1: 2}, xr.Dataset()]  # fmt: skip
+SYSTEM_STARTS = Kind(lambda rng: {"x": rng.uniform(-1.0, 0.9)}, NO_START)
+AMPLITUDE = {
+    "amplitude": Kind(
+        lambda rng: rng.choice([0, 0.5, np.float32(2.0), -1.0]),
+        ["1", b"1", None, True, 1j, math.nan, math.inf, 10**400, {}, object(), np.ones((2, 2))],
+    )
+}
+
+
+def pieces(known: dict[str, Any], **allowed: type | UnionType) -> dict[str, Kind]:
+    """The arguments of a definition, and which other types they may have."""
+    return {
+        name: Kind(
+            lambda _, good=value: good,
+            [each for each in NO_PIECES if not isinstance(each, allowed.get(name, set))],
+        )
+        for name, value in known.items()
+    }
+
+
+@cache
+def oscillator(*, hits: bool = True) -> sp.System:
+    """A forced oscillator, with a stop or without."""
+    return sp.System("oscillator", **OSCILLATOR, switches=[sp.Switch(**IMPACT)] * hits)
+
+
+@cache
+def oscillators_cycle() -> xr.Dataset:
+    """Where a branch begins."""
+    return oscillator().limit_cycle(amplitude=0.2)
 
 
 CALLS: dict[str, tuple[float, Callable[..., Any], dict[str, Kind]]] = {
@@ -220,6 +285,44 @@ CALLS: dict[str, tuple[float, Callable[..., Any], dict[str, Kind]]] = {
              lambda _: {"mu": [0.1, 0.2]},
              [*MAPPING, {}, {"mu": []}, {"mu": ["a"]}, {"mu": [0.1, 0.1]}, {"mu": [-1.0]}])},
     ),
+    "System": (
+        2.0, partial(sp.System, "oscillator"),
+        pieces(OSCILLATOR, period=NoneType, outputs=NoneType, stops=NoneType,
+               time_scale=int | float),
+    ),
+    "Switch": (1.0, sp.Switch, pieces(IMPACT, reset=NoneType, name=str, leaves=str, to=str)),
+    "System.simulate": (
+        1.5, lambda hits, **given: oscillator(hits=hits).simulate(**given),
+        {"hits": Kind(TRUTH.good, []), "t_end": LIMITED, "start": SYSTEM_STARTS,
+         "tol": TOL, **AMPLITUDE},
+    ),
+    "System.ensemble": (
+        1.0, lambda **given: oscillator().ensemble(**given),
+        {"t_end": LIMITED, "start": SYSTEM_STARTS, "t_late": LATER, "horizon": TRUTH,
+         "workers": ONE, **AMPLITUDE},
+    ),
+    "System.basin": (
+        0.7, lambda **given: oscillator().basin(**given),
+        {"t_end": LIMITED, "start": SYSTEM_STARTS, "workers": ONE, **AMPLITUDE},
+    ),
+    "System.limit_cycle": (
+        0.7, lambda hits, **given: oscillator(hits=hits).limit_cycle(**given),
+        {"hits": Kind(TRUTH.good, []), "guess": SYSTEM_STARTS,
+         "start": Kind(lambda _: None, NO_START), "periods": LEAST_ONE, "t_settle": MAYBE,
+         **AMPLITUDE},
+    ),
+    "System.cycle_branch": (
+        0.5, lambda **given: oscillator().cycle_branch(**{"start": oscillators_cycle(), **given}),
+        {"parameter": one_of("amplitude", "gap"),
+         "to": Kind(lambda rng: rng.uniform(0.3, 0.5), NO_NUMBER),
+         "n_points": Kind(lambda _: 3, [*NO_NUMBER, 0, 1, -3, 2.0])},
+    ),
+    "System.cycle_curve": (
+        0.4, lambda **given: oscillator().cycle_curve(**{"start": oscillators_cycle(), **given}),
+        {"label": one_of("fold"), "parameters": Kind(lambda _: ("amplitude", "gap"), NO_PIECES),
+         "start": Kind(lambda _: oscillators_cycle(), NO_PIECES),
+         "n_points": Kind(lambda _: 3, [*NO_NUMBER, 0, 1, 2.0])},
+    ),
     "load": (0.4, lambda **given: sp.load(given["path"]), {"path": PLACE}),
     "save": (
         0.4, lambda **given: sp.save(given["dataset"], given["path"]),
@@ -254,10 +357,12 @@ class Findings:
 
 
 EXPENSIVE = {
-    "infer_parameters", "propensity", "smallest_disturbance", "limit_cycle", "cycle_branch"
+    "infer_parameters", "propensity", "smallest_disturbance", "limit_cycle", "cycle_branch",
+    "System.cycle_curve",
 }  # fmt: skip
 """Always called with an argument that makes no sense."""
 NO_PARAMS = {"Parameters", "parse_study", "parse_range", "Scene", "load", "save", "open_results"}
+NO_PARAMS |= {name for name in CALLS if name.startswith(("System", "Switch"))}
 
 
 class TooLongError(Exception):
@@ -307,7 +412,7 @@ def fault_of(name: str, given: dict[str, Any], wrong: set[str], params: Any) -> 
     except FileNotFoundError:
         return "" if "path" in given or "name_or_path" in given else "no path was given"
     except ValueError as error:
-        named = any(argument in str(error) for argument in ("param", *given, *TABLE))
+        named = any(argument in str(error) for argument in ("param", "x = ", *given, *TABLE))
         return "" if named or name == "parse_range" else f"names no argument: {error}"
     except Exception as error:  # noqa: BLE001  whatever it is, it is the finding
         return f"raw {type(error).__name__}: {error}"

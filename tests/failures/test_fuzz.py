@@ -54,8 +54,8 @@ def test_a_sample_of_flipped_bits(tmp_path):
 
 
 @pytest.mark.release
-def test_four_thousand_random_calls():
-    judge(4_000, seed=1)
+def test_six_thousand_random_calls():
+    judge(6_000, seed=1)
 
 
 @pytest.mark.release

@@ -6,6 +6,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+import xarray as xr
 from scipy.integrate import solve_ivp
 
 from squealpipe import Switch, System
@@ -281,8 +282,8 @@ GOOD = {
         ({"outputs": {"x0": ("m", lambda t, s, p, r: s.x)}}, ValueError, "the name is taken"),
         ({"stops": {"converged": lambda t, s, p, r: s.x}}, ValueError, "the name is taken"),
         ({"time_scale": -1.0}, ValueError, "time_scale = -1.0"),
-        ({"start": {"x": float("nan"), "v": 0.0}}, ValueError, "'x' = nan"),
-        ({"regimes": {"free": {"c": float("inf")}}}, ValueError, "'c' = inf"),
+        ({"start": {"x": float("nan"), "v": 0.0}}, ValueError, "'x'. = nan"),
+        ({"regimes": {"free": {"c": float("inf")}}}, ValueError, "'c'. = inf"),
         (
             {"field": lambda t, s, p, r: {"x": s.v, "v": -1.0 if s.x == 0.0 else 0.0}},
             TypeError,
@@ -294,6 +295,14 @@ GOOD = {
             "constant in regime 'free'",
         ),
         ({"start": {"x": 0.0}}, ValueError, "lacks the state 'v'"),
+        ({"states": "1e3"}, ValueError, "states = '1e3': names and values"),
+        ({"states": {"x": ("m", -1.0), "v": "m/s"}}, ValueError, "a unit, or .unit, typical size"),
+        ({"regimes": -1}, ValueError, "regimes = -1"),
+        ({"regimes": {"a/b": {}}}, ValueError, "a name without /"),
+        ({"parameters": {"1st gap": 1.0}}, ValueError, "letters, digits and _"),
+        ({"switches": 5e-324}, ValueError, "switches = 5e-324"),
+        ({"field": 1.0}, ValueError, "a function, or one for each regime"),
+        ({"time_scale": lambda _: None}, ValueError, "time_scale gives None"),
         (
             {"switches": [Switch("hit", "fre", lambda t, s, p, r: s.x, "free")]},
             ValueError,
@@ -333,6 +342,8 @@ def test_a_wrong_definition_is_refused_before_anything_is_compiled(change, error
         ({"start": {"y": 1.0}}, "'y' is unknown"),
         ({"start": {"regime": "fre"}}, "did you mean 'free'"),
         ({"start": 1.0}, "start = 1.0"),
+        ({"start": xr.Dataset({"x": 1.0})}, "not a dataset"),
+        ({"start": {"regime": ["free"]}}, "did you mean 'free'"),
         ({"gap": float("nan")}, "gap = nan"),
         ({"tol": 0.0}, "tol = 0.0"),
         ({"t_end": -1.0}, "t_end = -1.0"),
@@ -341,6 +352,24 @@ def test_a_wrong_definition_is_refused_before_anything_is_compiled(change, error
 def test_arguments_of_a_run_are_checked(method, options, message):
     with pytest.raises(ValueError, match=message):
         getattr(System("good", **GOOD), method)(**{"t_end": 1.0, "start": {}} | options)
+
+
+@pytest.mark.parametrize(("name", "value"), [("leaves", 1), ("when", None), ("to", [1])])
+def test_a_wrong_switch_is_refused(name, value):
+    switch = {"name": "hit", "leaves": "free", "when": lambda t, s, p, r: s.x, "to": "free"}
+    with pytest.raises(ValueError, match=f"{name} = "):
+        Switch(**{**switch, name: value})
+
+
+def test_a_guess_serves_a_forced_system_without_switches_and_excludes_a_start():
+    def field(t, s, p, r):
+        return {"x": s.v, "v": cos(np.pi * t) - 0.2 * s.v - s.x}
+
+    system = System("forced", **GOOD | {"switches": (), "field": field}, period=lambda _: 2.0)
+    cycle = system.limit_cycle(guess={"x": 0.1})
+    assert float(cycle.x_max) == pytest.approx(1.0 / np.hypot(1.0 - np.pi**2, 0.2 * np.pi))
+    with pytest.raises(ValueError, match="start, guess"):
+        system.limit_cycle(start={}, guess={})
 
 
 def test_instants_before_the_start_and_a_period_below_zero_are_refused():

@@ -23,7 +23,6 @@ from squealpipe.methods.continuation import (
     PseudoArclength,
 )
 from squealpipe.methods.progress import alone
-from squealpipe.parameters import is_finite_number
 from squealpipe.schema import Outcome
 from squealpipe.systems import runs
 from squealpipe.systems.cycles.admissible import ROUND_OFF, Kind, Margin, is_motion, margins
@@ -39,7 +38,7 @@ from squealpipe.systems.cycles.event_map import FREE, Cycle, Event, EventMap, Se
 from squealpipe.systems.cycles.flow import Flow, Vector
 from squealpipe.systems.cycles.labels import Label
 from squealpipe.text import suggestion
-from squealpipe.validation import Natural, Number, checked
+from squealpipe.validation import Number, Several, checked
 
 if TYPE_CHECKING:
     from squealpipe.systems.system import System
@@ -661,7 +660,7 @@ def cycle_branch(
     to: Number,
     *,
     start: Any,
-    n_points: Natural = 100,
+    n_points: Several = 100,
 ) -> xr.Dataset:
     """The branch of cycles through a start, in one parameter, stable and unstable parts.
 
@@ -686,17 +685,13 @@ def cycle_branch(
     if parameter not in system.parameters:
         near = suggestion(parameter, system.parameters)
         raise ValueError(f"{system.name}: parameter {parameter!r} is unknown; {near}")
-    if not is_finite_number(to):
-        raise ValueError(f"to = {to!r}: a finite number is needed")
-    if isinstance(n_points, bool) or not isinstance(n_points, int | np.integer) or n_points < 2:
-        raise ValueError(f"n_points = {n_points!r}: a whole number from 2 on is needed")
     cycle = started(system, start)
     begin = cycle.parts.values[parameter]
     if math.isclose(to, begin, rel_tol=1e-11):
         raise ValueError(f"to = {to!r}: another value than that of the start is needed")
     low, high = (-math.inf, to) if to > begin else (to, math.inf)
     first = first_point(cycle, parameter, to)
-    follower = Follower(low, high, int(n_points))
+    follower = Follower(low, high, n_points)
     end = Outcome.no_convergence if first is None else follower.run(*first)
     return dataset(system, follower.points, end, parameter)
 

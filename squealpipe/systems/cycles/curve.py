@@ -19,7 +19,6 @@ import xarray as xr
 from scipy.optimize import brentq
 
 from squealpipe.methods.continuation import ContinuationState, PseudoArclength
-from squealpipe.parameters import is_finite_number
 from squealpipe.systems import runs
 from squealpipe.systems.cycles.admissible import ROUND_OFF, Kind, Margin, margins
 from squealpipe.systems.cycles.branch import PRECISE, STEPS, label_of, started
@@ -27,6 +26,7 @@ from squealpipe.systems.cycles.event_map import FREE, Cycle, Event, EventMap, Se
 from squealpipe.systems.cycles.flow import Crossing, Flow, Vector
 from squealpipe.systems.cycles.labels import Label
 from squealpipe.text import suggestion
+from squealpipe.validation import Number, Several, checked
 
 if TYPE_CHECKING:
     from squealpipe.systems.system import System
@@ -361,14 +361,13 @@ class _Way:
         return Point(Cycle.at(self.curve.map, state.point), state.residual, label)
 
 
-def _checked(
-    system: System, label: str, parameters: Sequence[str], to: Mapping[str, tuple[float, float]],
-    n_points: int,
-) -> Label:  # fmt: skip
+def _label(
+    system: System, label: str, parameters: Sequence[str], to: Mapping[str, tuple[float, float]]
+) -> Label:
     names = [each.name for each in (*RETURNS, Label.grazing, Label.stick_onset)]
     if label not in names:
         raise ValueError(f"label {label!r}: {suggestion(str(label), names)}")
-    if isinstance(parameters, str) or len(set(parameters)) != 2 or len(parameters) != 2:
+    if len(set(parameters)) != 2 or len(parameters) != 2:
         raise ValueError(f"parameters = {parameters!r}: two names are needed")
     for name in parameters:
         if name not in system.parameters:
@@ -377,21 +376,20 @@ def _checked(
     for name, limits in to.items():
         if name not in parameters:
             raise ValueError(f"to: {name!r} is unknown; {suggestion(name, parameters)}")
-        if not all(map(is_finite_number, limits)) or len(limits) != 2 or limits[0] >= limits[1]:
+        if limits[0] >= limits[1]:
             raise ValueError(f"to: {name} = {limits!r}: two numbers that ascend are needed")
-    if isinstance(n_points, bool) or not isinstance(n_points, int | np.integer) or n_points < 2:
-        raise ValueError(f"n_points = {n_points!r}: a whole number from 2 on is needed")
     return Label[label]
 
 
+@checked
 def cycle_curve(
-    system: System,
+    system: Any,
     label: str,
     parameters: Sequence[str],
     *,
     start: xr.Dataset,
-    to: Mapping[str, tuple[float, float]] | None = None,
-    n_points: int = 200,
+    to: Mapping[str, tuple[Number, Number]] | None = None,
+    n_points: Several = 200,
 ) -> xr.Dataset:
     """The curve of a special point of a branch, in two parameters, in both directions.
 
@@ -413,8 +411,8 @@ def cycle_curve(
             or no such point in ``start``.
     """
     limits = dict(to or {})
-    which = _checked(system, label, parameters, limits, n_points)
-    if not isinstance(start, xr.Dataset) or "label" not in start:
+    which = _label(system, label, parameters, limits)
+    if "label" not in start:
         raise ValueError("start: a branch of cycle_branch or one of its points is needed")
     at = np.flatnonzero(np.atleast_1d(start["label"].values) == which)
     if not len(at):

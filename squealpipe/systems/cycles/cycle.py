@@ -16,7 +16,7 @@ from squealpipe.systems.cycles.admissible import is_motion
 from squealpipe.systems.cycles.event_map import FREE, Cycle, Event, EventMap, Section, scale_of
 from squealpipe.systems.cycles.flow import Flow, Vector
 from squealpipe.systems.runs import Motion, single_run
-from squealpipe.validation import Natural, Positive, checked
+from squealpipe.validation import Natural, Positive, Values, checked
 
 if TYPE_CHECKING:
     from squealpipe.systems.system import System
@@ -345,8 +345,8 @@ def _returns(
 def limit_cycle(
     system: Any,
     *,
-    start: Mapping[str, Any] | None = None,
-    guess: Mapping[str, Any] | None = None,
+    start: Values | None = None,
+    guess: Values | None = None,
     periods: Natural = 1,
     t_settle: Positive | None = None,
     **parameters: Any,
@@ -377,12 +377,12 @@ def limit_cycle(
             time without a period.
     """
     values, state = given(system, guess if guess is not None else start, parameters)
-    if isinstance(periods, bool) or not isinstance(periods, int | np.integer) or periods < 1:
-        raise ValueError(f"periods = {periods!r}: a whole number from 1 on is needed")
+    if start is not None and guess is not None:
+        raise ValueError("start, guess: give one of them")
     cycle, outcome = find_cycle(
-        system, values, state, guess=guess is not None, periods=int(periods), t_settle=t_settle
+        system, values, state, guess=guess is not None, periods=periods, t_settle=t_settle
     )
-    return dataset(system, cycle, outcome, values, int(periods))
+    return dataset(system, cycle, outcome, values, periods)
 
 
 def given(

@@ -208,7 +208,8 @@ class EventMap:
         for _ in range(most):
             values, jacobian = self.evaluate(z)
             residual = float(np.abs(values).max())
-            if not np.isfinite(residual) or residual > 1e6:
+            # LAPACK does not return from matrices that are not finite
+            if not (residual <= 1e6 and np.isfinite(jacobian).all()):
                 return None
             stagnates = residual >= 0.5 * previous and previous < 1e-9
             if residual < previous:

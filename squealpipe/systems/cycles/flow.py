@@ -261,12 +261,13 @@ class Flow:
         return found
 
     def _crossing_function(self, switch: int, surface: int) -> Any:
-        """All numbers of a switch, or of a surface alone where ``switch`` is −1."""
+        """All numbers of a switch, of a surface alone (−1 as ``switch``), or of neither."""
         if (switch, surface) not in self._functions:
             t = self.system.traced
             states = t.variables[: t.size]
             each = t.switches[switch] if switch >= 0 else None
-            root = each.surface if each else t.surfaces[surface]
+            alone = t.surfaces[surface] if surface >= 0 else symbol(0.0)
+            root = each.surface if each else alone
             after = [each.reset.get(i, z) if each else z for i, z in enumerate(states)]
             targets = [c for _, c, _ in each.targets if c is not None] if each else []
 
