@@ -139,9 +139,7 @@ def integrate(
     with np.errstate(over="ignore"):
         fits = (unit > 0.0) & (t_end / unit < math.inf)
     if not fits.all():
-        raise ValueError(
-            f"{system.name}: time_scale = {unit.min()}: it is not a unit of time"
-        )
+        raise ValueError(f"{system.name}: time_scale = {unit.min()}: it is not a unit of time")
     derived = evaluate(t.derived, {**values, TIME_UNIT: unit})
     columns = [*(values[name] for name in names), *derived, unit]
     parameters = np.stack([np.broadcast_to(each, (size,)) for each in columns], axis=1)

@@ -240,7 +240,8 @@ CALLS: dict[str, tuple[float, Callable[..., Any], dict[str, Kind]]] = {
     ),
     "run_ensemble": (
         1.0, run_ensemble,
-        {"alpha1": MANY, "alpha2": MANY, "t_end": FROM_NOW, "model": MODEL, "tol": TOL,
+        {"alpha1": MANY, "alpha2": MANY, "t_end": Kind(FROM_NOW.good, [*MANY.bad, -1.0]),
+         "model": MODEL, "tol": TOL,
          "tangent": TRUTH,
          "log_events": Kind(lambda _: 3, SEED.bad), "stop_at_first_separation": TRUTH,
          "stop_at_turns": TURNS,
