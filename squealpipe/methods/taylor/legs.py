@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 import numba
 import numpy as np
 
-from squealpipe.methods.compiled import part
+from squealpipe.methods.compiled import compiled, part
 from squealpipe.methods.taylor.lanes import call, compile_advance, view
 from squealpipe.methods.taylor.loop import _reach, _step_length
 from squealpipe.methods.taylor.simd import FEW, LANES, ROW, smaller, store
@@ -22,6 +22,8 @@ from squealpipe.methods.taylor.taylor_polynomial import evaluate
 from squealpipe.rerun.sources import closure
 
 _numba: Any = numba
+_SWEEPS = 19
+"""Picard's iterations for a step whose length times the rate is 1: 1/19! is round-off."""
 ARRAYS = (
     "rows", "series", "inverses", "sizes", "regimes", "initial", "regime", "starts", "durations",
     "kept", "steps", "counts", "lanes",
@@ -131,3 +133,62 @@ def _advance(table: Any) -> int:
 def run_legs() -> Any:
     """The compiled loop, built once a process."""
     return compile_advance(_advance, [Path(__file__), *closure(__file__)])
+
+
+@part
+def _integrate(rates: Any, up_to: Any, states: Any) -> None:
+    """States at the nodes from their rates there; identities at the start of the step."""
+    nodes, n, columns, steps = rates.shape
+    for node in range(nodes):
+        for i in range(n):
+            for c in range(columns):
+                state = states[node, i, c]
+                state[:] = 1.0 if i == c else 0.0
+                for other in range(nodes):
+                    share, rate = up_to[node, other], rates[other, i, c]
+                    for s in range(steps):
+                        state[s] += share * rate[s]
+
+
+@part
+def _multiply(slopes: Any, lengths: Any, states: Any, rates: Any) -> None:
+    """Rates at the nodes from the states there, over the step."""
+    nodes, n, columns, steps = rates.shape
+    for i in range(n):
+        for c in range(columns):
+            for node in range(nodes):
+                rates[node, i, c] = slopes[i, c, node] if c >= n else np.zeros(steps)
+    for i in range(n):
+        for j in range(n):
+            if slopes[i, j].any():
+                for node in range(nodes):
+                    slope = slopes[i, j, node]
+                    for c in range(columns):
+                        rate, state = rates[node, i, c], states[node, j, c]
+                        for s in range(steps):
+                            rate[s] += slope[s] * state[s]
+    rates *= lengths
+
+
+@compiled
+def transfer(slopes: Any, lengths: Any, leg: Any, up_to: Any, weights: Any, found: Any) -> None:
+    """Derivatives along legs from their slopes at the nodes of each step, by collocation.
+
+    Args:
+        slopes: (states, columns, nodes, steps) of the rates by states and parameters.
+        lengths, leg: (steps,) length of each step, at most 1 over the rate, and its leg.
+        up_to: (nodes, nodes) integrals of Lagrange's polynomials up to each node.
+        weights: (nodes,) of the quadrature.
+        found: (legs, columns, columns), identities at first; the last rows keep parameters.
+    """
+    n, columns, nodes, steps = slopes.shape
+    rates, states = np.zeros((nodes, n, columns, steps)), np.empty((nodes, n, columns, steps))
+    for _ in range(_SWEEPS):
+        _integrate(rates, up_to, states)
+        _multiply(slopes, lengths, states, rates)
+    for s in range(steps):
+        growth = np.zeros((n, columns))
+        for node in range(nodes):
+            growth += weights[node] * rates[node, :, :, s]
+        total = found[leg[s]]
+        total[:n] += growth @ total

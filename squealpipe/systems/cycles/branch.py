@@ -68,7 +68,7 @@ _GONE = 1e-5
 """The same where it is not followed any further."""
 _SAME = 1e-3
 """Distance from an older piece of the branch, over that piece, that is on it."""
-_ZERO = 1e-13
+_ZERO = 1e-12
 _CLOSE = 1e-5
 """Share of a step before a change of the events in which a fold is that change."""
 
@@ -330,11 +330,11 @@ class Follower:
             (state, cycle),
             (following, reached),
         )
-        last = None if is_motion(reached) else line.root(_least_margin)
-        found = self._smooth(line, 1.0 if last is None else last - _CLOSE)
-        if found is None or (last is None and not is_motion(reached)):
+        last = 1.0 if is_motion(reached) else line.root(_least_margin)
+        found = None if last is None else self._smooth(line, last - _CLOSE * (last < 1.0))
+        if found is None or last is None:
             return None
-        if last is not None:
+        if last < 1.0:
             return self._changed(line, found, last)
         near, share = self._shorter(line, cycle, reached)
         if near and share is None and state.step > _COARSE:
@@ -376,8 +376,7 @@ class Follower:
         # no change of the events that is understood: nearer, perhaps
         if state.step > 1e3 * STEPS.shortest_step:
             return None
-        jumps = label == Label.stick_onset
-        return Step(special, *there, end=Outcome.tangency if jumps else self._reason())
+        return Step(special, *there, end=Outcome.tangency if label else self._reason())
 
     def _shorter(self, line: _Line, cycle: Cycle, reached: Cycle) -> tuple[bool, float | None]:
         """Whether a cycle of a part of the period may lie in a step, and where it is met."""
@@ -484,7 +483,7 @@ class _Line:
             first = value(0.0)
             if first <= 0.0 and value(1.0) < 0.0:
                 return 0.0 if first > -ROUND_OFF else None
-            return float(brentq(value, 0.0, 1.0, xtol=_ZERO, rtol=1e-13, maxiter=60))
+            return float(brentq(value, 0.0, 1.0, xtol=_ZERO, rtol=_ZERO, maxiter=60))
         except (ArithmeticError, ValueError, RuntimeError):
             return None
 

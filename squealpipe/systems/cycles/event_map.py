@@ -8,7 +8,7 @@ the system is a question of its own (:mod:`squealpipe.systems.cycles.admissible`
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple
@@ -85,7 +85,7 @@ class EventMap:
     units: Vector
     periods: int = 0
     section: Section | None = None
-    _latest: tuple[Vector, Parts] | None = None
+    _latest: tuple[Vector, Parts, Vector, Vector] | None = None
 
     @property
     def legs(self) -> int:
@@ -117,8 +117,23 @@ class EventMap:
 
     def parts(self, z: Vector) -> Parts:
         """The legs at some unknowns."""
-        if self._latest is not None and np.array_equal(self._latest[0], z):
-            return self._latest[1]
+        return self._solved(z)[1]
+
+    def evaluate(self, z: Vector) -> tuple[Vector, Vector]:
+        """F, (size,), and its Jacobian, (size, size + parameters); NaN where there is none."""
+        if not np.isfinite(z).all():
+            return np.full(self.size, np.nan), np.zeros((self.size, len(z)))
+        return self._solved(z)[2:]
+
+    def _solved(self, z: Vector) -> tuple[Vector, Parts, Vector, Vector]:
+        """The unknowns, their legs, F and its Jacobian."""
+        if self._latest is None or not np.array_equal(self._latest[0], z):
+            with np.errstate(all="ignore"):
+                parts = self._legs_at(z)
+                self._latest = z.copy(), parts, *self._equations(parts, len(z))
+        return self._latest
+
+    def _legs_at(self, z: Vector) -> Parts:
         states, durations, start, values = self.unpack(z)
         starts = start + np.cumsum(durations) - durations
         regimes = [event.before for event in self.events]
@@ -130,36 +145,47 @@ class EventMap:
             )
             for event, end, time in zip(self.events, path.ends, starts + durations, strict=True)
         )
-        parts = Parts(states, durations, start, values, path, slopes, crossings)
-        self._latest = z.copy(), parts
-        return parts
+        return Parts(states, durations, start, values, path, slopes, crossings)
 
-    def evaluate(self, z: Vector) -> tuple[Vector, Vector]:
-        """F, (size,), and its Jacobian, (size, size + parameters); NaN where there is none."""
+    def _equations(self, parts: Parts, columns: int) -> tuple[Vector, Vector]:
         size, n, m = self.size, self.flow.size, self.legs
-        values, jacobian = np.full(size, np.nan), np.zeros((size, len(z)))
-        if not np.isfinite(z).all():
-            return values, jacobian
-        with np.errstate(all="ignore"):
-            parts = self.parts(z)
-            for leg, crossing in enumerate(parts.crossings):
-                here, following = slice(leg * n, leg * n + n), (leg + 1) % m
-                by_end, by_time = self.by_unknowns(parts, leg)
-                rows = crossing.after_by_state @ by_end + np.outer(crossing.after_by_time, by_time)
-                rows[:, size:] += crossing.after_by
-                rows[:, following * n : following * n + n] -= np.eye(n)
-                values[here] = (crossing.after - parts.states[following]) / self.scale
-                jacobian[here] = rows / self.scale[:, None]
-                values[m * n + leg], jacobian[m * n + leg] = self._surface(
-                    parts, leg, by_end, by_time
-                )
-            if self.periods:
-                period, by = self.flow.forcing(parts.values)
-                values[-1] = (parts.durations.sum() - self.periods * period) / self.time
-                jacobian[-1, m * n : m * (n + 1)] = 1.0 / self.time
-                jacobian[-1, size:] = -self.periods * by / self.time
-        jacobian *= self.column_units
-        return values, jacobian
+        values, jacobian = np.empty(size), np.zeros((size, columns))
+        for leg, crossing in enumerate(parts.crossings):
+            here, following = slice(leg * n, leg * n + n), (leg + 1) % m
+            by_end, by_time = self.by_unknowns(parts, leg)
+            rows = crossing.after_by_state @ by_end + np.outer(crossing.after_by_time, by_time)
+            rows[:, size:] += crossing.after_by
+            rows[:, following * n : following * n + n] -= np.eye(n)
+            values[here] = (crossing.after - parts.states[following]) / self.scale
+            jacobian[here] = rows / self.scale[:, None]
+            values[m * n + leg], jacobian[m * n + leg] = self._surface(parts, leg, by_end, by_time)
+        for height, gradient in self.held(parts):
+            values[:n] -= gradient * height
+            jacobian[:n, :n] -= np.outer(gradient, gradient) / self.scale
+        if self.periods:
+            period, by = self.flow.forcing(parts.values)
+            values[-1] = (parts.durations.sum() - self.periods * period) / self.time
+            jacobian[-1, m * n : m * (n + 1)] = 1.0 / self.time
+            jacobian[-1, size:] = -self.periods * by / self.time
+        return values, jacobian * self.column_units
+
+    def held(self, parts: Parts) -> Iterator[tuple[float, Vector]]:
+        """Surfaces on which the motion stays for ever, as in stick: height and unit normal.
+
+        Over the scales. No event puts the motion there, so that the equations have to.
+        """
+        system, state = self.flow.system, parts.states[0]
+        regimes = [event.before for event in self.events]
+        for surface in np.flatnonzero(system.holds[regimes].all(axis=0)):
+            # as those see it that watch it
+            watched = system.traced.falls[:, surface] >= 0
+            seen = int(np.argmax(watched | (system.traced.rises[:, surface] >= 0)))
+            here = self.flow.crossing(
+                parts.values, FREE, int(surface), (seen, seen), state, parts.start
+            )
+            gradient = here.height_by_state * self.scale
+            size = np.linalg.norm(gradient)
+            yield here.height / size, gradient / size
 
     @cached_property
     def column_units(self) -> Vector:
@@ -264,7 +290,10 @@ class Cycle:
             if event.switch != FREE:
                 with np.errstate(all="ignore"):
                     total = crossing.saltation @ total
-        return np.asarray(total * self.map.scale / self.map.scale[:, None])
+        total = total * self.map.scale / self.map.scale[:, None]
+        for _, normal in self.map.held(self.parts):  # what leaves the surface is forgotten
+            total -= np.outer(total @ normal, normal)
+        return np.asarray(total)
 
     @cached_property
     def multipliers(self) -> NDArray[np.complex128]:

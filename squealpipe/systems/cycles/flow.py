@@ -2,7 +2,7 @@
 
 The legs' Taylor series are the integrator's. Along them the variational equations
 δż = A δz + b are collocated in Gauss's points of each step, all steps at once: a step is a small
-part of the distance to the next singularity, so that order fourteen leaves no more than round-off.
+part of the distance to the next singularity, so that order twelve leaves no more than round-off.
 """
 
 from __future__ import annotations
@@ -11,13 +11,14 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import chain
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from squealpipe.methods.taylor.lanes import INVERSES, Workspace, aligned, drive, taylor_terms
-from squealpipe.methods.taylor.legs import ARRAYS, SIZES, TABLE, run_legs
+from squealpipe.methods.taylor.legs import ARRAYS, SIZES, TABLE, run_legs, transfer
 from squealpipe.methods.taylor.scalar import python_function
 from squealpipe.methods.taylor.simd import FEW, LANES
 from squealpipe.methods.taylor.symbols import Symbol, derivative, parameter, symbol
@@ -31,7 +32,7 @@ Vector = NDArray[np.float64]
 TOLERANCE = 1e-16
 ROOM = 48
 """Steps of a leg kept at first; one that has more is run again with room for all."""
-LONGEST = 1.6
+LONGEST = 1.0
 """Longest step of the variational equations times a bound of its rate."""
 
 
@@ -45,7 +46,7 @@ def _gauss(points: int) -> tuple[Vector, Vector, Vector]:
     return nodes, 0.5 * weights, up_to
 
 
-_NODES, _WEIGHTS, _UP_TO = _gauss(7)
+_NODES, _WEIGHTS, _UP_TO = _gauss(6)
 _PLACES = np.linspace(0.0, 1.0, 9)
 
 
@@ -107,10 +108,10 @@ class Path:
         step, series, left = hits
         low, high, first = _PLACES[left], _PLACES[left + 1], values[hits]
         slopes = rates[step, series]
-        place = 0.5 * (low + high)
+        place = low + (high - low) * first / (first - values[step, series, left + 1])
         bends = slopes[:, 1:] * orders[:-1]
         for _ in range(60):
-            powers = place[:, None] ** (orders - 1)
+            powers = np.vander(place, len(orders), increasing=True)
             rate = (slopes * powers).sum(axis=1)
             same = rate * first > 0.0
             low, high = np.where(same, place, low), np.where(same, high, place)
@@ -119,15 +120,14 @@ class Path:
             inside = (following >= low) & (following <= high)
             following = np.where(inside, following, 0.5 * (low + high))
             change, place = np.abs(following - place).max(), following
-            if change < 1e-15:
+            if change < 1e-6:  # the height is quadratic in it
                 break
-        height = (scaled[step, series] * place[:, None] ** np.arange(scaled.shape[2])).sum(axis=1)
+        powers = np.vander(place, scaled.shape[2], increasing=True)
+        height = (scaled[step, series] * powers).sum(axis=1)
         time = (self.offsets[step] + place * self.steps[step]) * self.unit
-        for i, number in enumerate(series):
-            turn = Turn(
-                int(self.leg[step[i]]), float(time[i]), float(height[i]), bool(first[i] < 0)
-            )
-            found[number].append(turn)
+        each = (series, self.leg[step], time, height, first < 0)
+        for number, *turn in zip(*(values.tolist() for values in each), strict=True):
+            found[number].append(Turn(*turn))
         return found
 
 
@@ -271,15 +271,10 @@ class Flow:
             after = [each.reset.get(i, z) if each else z for i, z in enumerate(states)]
             targets = [c for _, c, _ in each.targets if c is not None] if each else []
 
-            def slopes(roots: Sequence[Any], by: Sequence[Any]) -> list[Symbol]:
-                return [self.slope(r, b) for r in roots for b in by]
-
-            now = [self.time] * self.timed
-            roots = [root, *slopes([root], states), *slopes([root], now), *slopes([root], self.by)]
-            roots += [*after, *slopes(after, states), *slopes(after, now), *slopes(after, self.by)]
-            self._functions[switch, surface] = python_function(
-                [*roots, *targets], self.arguments, np
-            )
+            by = [*states, *[self.time] * self.timed, *self.by]
+            rows = [[each, *(self.slope(each, b) for b in by)] for each in (root, *after)]
+            roots = [*chain(*rows), *t.rates[: t.size], *targets]
+            self._functions[switch, surface] = python_function(roots, self.arguments, np)
         return self._functions[switch, surface]
 
     def crossing(
@@ -292,25 +287,25 @@ class Flow:
         time: float,
     ) -> Crossing:
         """A switch from one regime to another at a state."""
-        n, p = self.size, len(self.by)
         numbers = self.numbers(values, regimes[0])
         at = [*state, *([np.float64(time)] * self.timed)]
         flat = np.array(self._crossing_function(switch, surface)(*at, *numbers), float)
-        sizes = [1, n, int(self.timed), p, n, n * n, n * self.timed, n * p]
-        parts = np.split(flat, np.cumsum(sizes))
-        after = parts[4]
+        n, width = self.size, 1 + self.size + self.timed + len(self.by)
+        # values, and slopes by states, the time and parameters: of the surface and what comes after
+        rows, rest = flat[: (n + 1) * width].reshape(n + 1, width), flat[(n + 1) * width :]
+        after, last = rows[1:, 0], n + 1 + self.timed
         return Crossing(
-            height=float(parts[0][0]),
-            height_by_state=parts[1],
-            height_by_time=float(parts[2].sum()),
-            height_by=parts[3],
+            height=float(rows[0, 0]),
+            height_by_state=rows[0, 1 : n + 1],
+            height_by_time=float(rows[0, n + 1]) if self.timed else 0.0,
+            height_by=rows[0, last:],
             after=after,
-            after_by_state=parts[5].reshape(n, n),
-            after_by_time=parts[6] if self.timed else np.zeros(n),
-            after_by=parts[7].reshape(n, p),
-            rate=np.array(self._field(*at, *numbers), float),
+            after_by_state=rows[1:, 1 : n + 1],
+            after_by_time=rows[1:, n + 1] if self.timed else np.zeros(n),
+            after_by=rows[1:, last:],
+            rate=rest[:n],
             rate_after=self.field(values, regimes[1], after, time),
-            conditions=parts[8],
+            conditions=rest[n:],
         )
 
     def _prepare(self, legs: int) -> None:
@@ -395,49 +390,37 @@ class Flow:
         pieces = 1
         while True:
             slopes = self._slopes_along(values, path, pieces)
-            middle = np.abs(slopes[:, len(_NODES) // 2, :, : self.size])
+            middle = np.abs(slopes[:, : self.size, len(_NODES) // 2]).transpose(2, 0, 1)
             power = np.linalg.matrix_power(middle, 4).sum(axis=2).max(axis=1) ** 0.25
-            h = np.abs(np.repeat(path.steps, pieces)) * path.unit / pieces
+            lengths = np.repeat(path.steps, pieces) * path.unit / pieces
             with np.errstate(invalid="ignore"):
-                needed = pieces * float(np.nanmax(h * power, initial=0.0)) / LONGEST
+                needed = pieces * float(np.nanmax(np.abs(lengths) * power, initial=0.0)) / LONGEST
             if needed <= pieces or pieces >= 64 or not math.isfinite(needed):
                 break
             pieces = min(64, math.ceil(needed))
-        factors = _collocated(slopes, np.repeat(path.steps, pieces) * path.unit / pieces, self.size)
-        leg = np.repeat(path.leg, pieces)
         found = np.zeros((len(path.regimes), self._columns, self._columns))
         found[:] = np.eye(self._columns)
-        for number, factor in zip(leg, factors, strict=True):
-            found[number] = factor @ found[number]
+        transfer(slopes, lengths, np.repeat(path.leg, pieces), _UP_TO, _WEIGHTS, found)
         return found[:, : self.size]
 
     def _slopes_along(self, values: Mapping[str, float], path: Path, pieces: int) -> Vector:
-        """∂f/∂(states, parameters, time) at the nodes of each piece of each step."""
-        count = len(_NODES)
-        nodes = ((np.arange(pieces)[:, None] + _NODES) / pieces).ravel()
+        """∂f/∂(states, parameters, time) at the nodes of each piece of each step.
+
+        (states, columns, nodes, pieces)
+        """
+        count, steps = len(_NODES), len(path.steps)
+        nodes = (np.arange(pieces) + _NODES[:, None]).ravel() / pieces
         variables = len(self.system.traced.variables)
-        orders = np.arange(path.series.shape[2])
-        states = path.scaled[:, :variables] @ nodes ** orders[:, None]
-        flat = states.transpose(1, 0, 2).reshape(variables, -1)
-        constants = np.repeat(self.system.traced.regimes[path.regimes[path.leg]].T, len(nodes), 1)
+        powers = nodes ** np.arange(path.series.shape[2])[:, None]
+        states = (path.scaled[:, :variables] @ powers).reshape(steps, variables, count, pieces)
+        flat = states.transpose(1, 2, 0, 3).reshape(variables, count, -1)
+        regimes = np.repeat(path.regimes[path.leg], pieces)
+        constants = self.system.traced.regimes[regimes].T
         numbers = self.numbers(values, 0)[: len(self.system.traced.parameters)]
-        found = np.zeros((flat.shape[1], self.size, self._columns))
+        found = np.zeros((self.size, self._columns, *flat.shape[1:]))
         with np.errstate(all="ignore"):
             for (i, j, _), value in zip(
                 self._entries, self._slopes(*flat, *numbers, *constants), strict=True
             ):
-                found[:, i, j] = value
-        return found.reshape(-1, count, self.size, self._columns)
-
-
-def _collocated(slopes: Vector, durations: Vector, size: int) -> Vector:
-    """The derivative over each step, (steps, columns, columns); the last rows keep parameters."""
-    steps, count, _, columns = slopes.shape
-    scaled = slopes * durations[:, None, None, None]
-    system = -np.einsum("sjab,jl->sjalb", scaled[..., :size], _UP_TO)
-    system = system.reshape(steps, count * size, count * size)
-    system += np.eye(count * size)
-    stages = np.linalg.solve(system, scaled.reshape(steps, count * size, columns))
-    result = np.tile(np.eye(columns), (steps, 1, 1))
-    result[:, :size] += np.einsum("j,sjab->sab", _WEIGHTS, stages.reshape(steps, count, size, -1))
-    return result
+                found[i, j] = value
+        return found
