@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from squealpipe.schema import Outcome
 from squealpipe.systems.belt_friction import exponential_oscillator, leine_oscillator
+from squealpipe.systems.cycles import branch as branch_module
 from squealpipe.systems.cycles.labels import Label
 from squealpipe.systems.dry_friction import dry_friction_oscillator
 from squealpipe.systems.impact_oscillator import impact_oscillator
@@ -174,6 +177,53 @@ def test_multipliers_of_random_systems_are_those_of_differences():
 @pytest.mark.parametrize("seed", range(6, 60))
 def test_multipliers_of_many_random_systems_are_those_of_differences(seed):
     compare_with_differences(seed)
+
+
+def test_a_motion_that_sticks_for_ever_has_a_branch():
+    """No event puts it on the held surface: the equations do, and what leaves it is forgotten."""
+    system = random_system(11)
+    cycle = system.limit_cycle(drive=0.367, omega=1.49)
+    assert cycle.sizes["event"] == 0
+    assert 0.0 in cycle.multiplier_real
+    branch = system.cycle_branch("drive", 0.4, start=cycle)
+    assert branch.end == Outcome.converged
+
+
+def test_a_touch_after_which_the_motion_jumps_ends_a_branch():
+    """A stop whose reset is a jump even at no speed."""
+    system = random_system(30)
+    cycle = system.limit_cycle(drive=0.5065384462562926, omega=1.572767496664528)
+    branch = system.cycle_branch("drive", 0.8104615140100683, start=cycle)
+    assert branch.end == Outcome.tangency
+
+
+SNAKING = pytest.mark.xfail(reason="touches within a step of each other: long and short steps part")
+
+
+@pytest.mark.release
+@pytest.mark.parametrize(
+    "seed", [pytest.param(seed, marks=[SNAKING] * (seed in {30, 31})) for seed in range(100)]
+)
+def test_no_label_of_a_random_branch_is_lost_between_dense_samples(seed, monkeypatch):
+    """Labels are those of steps a tenth as long, and each change between those has one."""
+    system, rng = random_system(seed), np.random.default_rng(seed)
+    values = {"drive": float(rng.uniform(0.2, 1.5)), "omega": float(rng.uniform(0.5, 3.0))}
+    start = system.limit_cycle(**values)
+    if start.outcome != Outcome.converged:
+        pytest.skip("no cycle of one period")
+    to = 1.2 * values["drive"]
+    coarse = system.cycle_branch("drive", to, start=start)
+    monkeypatch.setattr(branch_module, "STEPS", replace(branch_module.STEPS, longest_step=0.005))
+    dense = system.cycle_branch("drive", to, start=start, n_points=2000)
+    for label in (Label.fold, Label.period_doubling, Label.torus, Label.grazing, Label.stick_onset):
+        np.testing.assert_allclose(special(coarse, label), special(dense, label), atol=1e-10)
+    multipliers = dense.multiplier_real.values + 1j * dense.multiplier_imag.values
+    flips, labels = np.prod(multipliers + 1.0, axis=1).real, dense.label.values
+    alike = (np.diff(dense.events) == 0) & (labels[:-1] == 0) & (labels[1:] == 0)
+    assert (flips[:-1] * flips[1:] > 0.0)[alike].all()
+    turns = np.diff(dense.drive[:-1])  # the last point is where it ends
+    inner = (labels[:-3] == 0) & (labels[1:-2] == 0) & (labels[2:-1] == 0)
+    assert (turns[:-1] * turns[1:] > 0.0)[inner].all()
 
 
 def long_double_run(amplitude, omega, x, v, t_end):
