@@ -185,7 +185,7 @@ class EventMap:
             )
             gradient = here.height_by_state * self.scale
             size = np.linalg.norm(gradient)
-            yield here.height / size, gradient / size
+            yield here.height / float(size), gradient / size
 
     @cached_property
     def column_units(self) -> Vector:
