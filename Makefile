@@ -67,7 +67,7 @@ $(STUDY): requirements.lock pyproject.toml
 	test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
 	$(BIN)/python -m pip install -q --no-compile --disable-pip-version-check --require-hashes -r requirements.lock
 	$(BIN)/python -m pip install -q --disable-pip-version-check --no-deps --no-build-isolation -e .
-	$(BIN)/python -c "from squealpipe.solvers.a1.kernel import lane_kernel; lane_kernel()"
+	$(BIN)/python -c "from squealpipe.methods.taylor.loop import loop; loop()"
 	$(BIN)/python -c "import squealpipe as s; s.periodic_orbit(s.Parameters(), 0.9, 2.8, mode=1, y_peak=2)"
 	touch $@
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from squealpipe.models.switching import VARIANT_RULES
+from squealpipe.models.variants import VARIANT_RULES
 from squealpipe.parameters import Parameters
 from squealpipe.reading import READINGS, corrected, for_a1, for_linear
 

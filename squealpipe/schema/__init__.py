@@ -179,7 +179,7 @@ RUN_ENDS = (
     Outcome.event_limit,
     Outcome.singular_geometry,
     Outcome.not_finite,
-    Outcome.unresolved,
+    Outcome.accumulation,
 )
 """Outcomes of a run in time that is to reach its end."""
 

@@ -84,14 +84,15 @@ def basin(
         ends = np.full(values[system.states[0]].size, share * t_end)
         return integrate(
             system, values, ends, t_late=late * t_end, tol=tol, regime=grid.regime,
-            workers=workers, **options,
+            workers=workers, tracked=system.states, **options,
         )  # fmt: skip
 
     whole = run(slice(None), late=0.75)
-    quarters = [each["extremes"][:, : len(system.states)] for each in
-                (run(slice(None), 0.75, 0.5), whole)]  # fmt: skip
-    spans = np.maximum(quarters[1][..., 1] - quarters[1][..., 0], np.finfo(float).tiny)
-    (low, high), (last_low, last_high) = [(q[..., 2], q[..., 3]) for q in quarters]
+    third = run(slice(None), 0.75, 0.5)
+    spans = np.maximum(np.ptp(whole["extremes"], axis=-1), np.finfo(float).tiny)
+    (low, high), (last_low, last_high) = (
+        np.moveaxis(each["late_extremes"], -1, 0) for each in (third, whole)
+    )
     stays = np.maximum(high, last_high) - np.minimum(low, last_low)
     rests = (stays <= AT_REST * spans).all(axis=1)
     with np.errstate(invalid="ignore"):  # infinite where a run ended before
@@ -128,7 +129,7 @@ def basin(
     ended = np.isfinite(quarters[1]).all(axis=(1, 2)) & (whole["ends"][:, 0] == Outcome.converged)
     motion[~ended] = Motion.unsettled
     over, shape = tuple(grid.coordinates), grid.shape
-    numbers = _numbered(motion, quarters[1][..., 2:])
+    numbers = _numbered(motion, whole["late_extremes"])
     found: dict[str, Any] = {
         "motion": flag(
             "what the motion has become", over, motion.reshape(shape), flag_table(Motion)

@@ -23,17 +23,20 @@ from squealpipe.laws.springs import LONG, Geometry, fixed_ends
 from squealpipe.laws.tables import is_table, pieces_of
 from squealpipe.models import a1
 from squealpipe.models.refusals import WHY_A4, refuse_extensions
-from squealpipe.models.switching import VARIANT_RULES, Rules
+from squealpipe.models.variants import VARIANT_RULES, Rules
 from squealpipe.parameters import NUMBERS_OF_A1, Parameters
 from squealpipe.systems.system import Switch, System
 
 SLIP = {"slip_slower": 1.0, "slip_faster": -1.0}
-ANGLES = ("angle1", "angle2")
 PIVOT_REACH2 = 1e-14
 """Squared distance from a pivot, in free lengths, below which the force's direction is lost."""
+ROUND_OFF = 1e-14
+"""Over k1 l_pre: a mass that friction lacks no more than this to hold sticks."""
+FIRST = 1e150
+"""Weight of what decides before anything else is asked."""
 
 
-def brake_of(params: Parameters, model: str = "A1", *, observed: bool = False) -> System:
+def brake_of(params: Parameters, model: str = "A1") -> System:
     """The system of some parameters; ``parameters_of_run`` gives its numbers."""
     if model == "A4":
         refuse_extensions(params, "model A4", WHY_A4)
@@ -49,7 +52,6 @@ def brake_of(params: Parameters, model: str = "A1", *, observed: bool = False) -
             params.length1 > LONG * params.preload,
             params.length2 > LONG * params.preload,
         ),
-        observed=observed,
     )
 
 
@@ -75,7 +77,6 @@ def brake(  # noqa: C901 (one short function for each force and surface)
     model: str = "A1",
     one_mu: bool = False,
     long_springs: tuple[bool, bool] = (False, False),
-    observed: bool = False,
 ) -> System:
     """A1, or a variant of it, with one friction law and one contact law.
 
@@ -83,8 +84,6 @@ def brake(  # noqa: C901 (one short function for each force and surface)
         friction_law: its name, or a table.
         damped: with dashpots; without, ``damping1`` and ``damping2`` are not read.
         contact_law: its name, or a table over l_pre and the force there.
-        observed: with what ensembles of A1 report beside the states: the angles around both fixed
-            ends as states, and as outputs the squared distances from there and from r = 0.
         model: a key of ``VARIANT_RULES``. Without stick, a run ends where the mass would stick, as
             an accumulation of events.
         one_mu: ``mu`` holds the mass too; ``static_mu`` is not read.
@@ -98,12 +97,18 @@ def brake(  # noqa: C901 (one short function for each force and surface)
     default = Parameters(friction_law=friction_law, contact_law=contact_law)
     defaults = {name: getattr(default, name) for name in NUMBERS_OF_A1}
 
-    def pull(s: Any, p: Any, r: Any) -> Any:
+    def suspension(s: Any, p: Any, r: Any) -> tuple[Any, Any]:
         q, g = laws.of(p, r)
         return a1.suspension_force(
             s.x, s.y, s.vx, s.vy, q, g,
             linear_springs=rules.linear_springs, long_springs=long_springs, dashpots=damped,
-        )[0]  # fmt: skip
+        )  # fmt: skip
+
+    def pull(s: Any, p: Any, r: Any) -> Any:
+        return suspension(s, p, r)[0]
+
+    def rises(t: Any, s: Any, p: Any, r: Any) -> Any:
+        return FIRST * s.vy + suspension(s, p, r)[1]
 
     def force(t: Any, s: Any, p: Any, r: Any) -> Any:
         return r.contact * normal_force(s.y, s.vy, laws.of(p, r)[0])
@@ -118,31 +123,19 @@ def brake(  # noqa: C901 (one short function for each force and surface)
             contact=r.contact, direction=r.direction, stick=r.stick, dashpots=damped,
             linear_springs=rules.linear_springs, long_springs=long_springs,
         )  # fmt: skip
-        rates = {"x": s.vx, "y": s.vy, "vx": ax, "vy": ay}
-        if observed:
-            for spring, name in enumerate(ANGLES):
-                x, y = arm(spring, s, p, r)
-                rates[name] = (x * s.vy - y * s.vx) * (x * x + y * y) ** -1.0
-        return rates
+        return {"x": s.vx, "y": s.vy, "vx": ax, "vy": ay}
 
     def holds(t: Any, s: Any, p: Any, r: Any) -> Any:
-        return limit(s, p, r) ** 2 - pull(s, p, r) ** 2
-
-    def arm(spring: int, s: Any, p: Any, r: Any) -> tuple[Any, Any]:
-        ends = fixed_ends(*laws.of(p, r))
-        return s.x - ends[2 * spring], s.y - ends[2 * spring + 1]
-
-    def distance2(spring: int) -> Any:
-        """Squared, in free lengths."""
-
-        def of(t: Any, s: Any, p: Any, r: Any) -> Any:
-            x, y = arm(spring, s, p, r)
-            return (x * x + y * y) * ((p.length1, p.length2)[spring]) ** -2.0
-
-        return of
+        slack = ROUND_OFF * p.k1 * p.preload
+        return limit(s, p, r) ** 2 + slack**2 - pull(s, p, r) ** 2
 
     def pivot(spring: int) -> Any:
-        return lambda t, s, p, r: distance2(spring)(t, s, p, r) - PIVOT_REACH2
+        def distance2(t: Any, s: Any, p: Any, r: Any) -> Any:
+            ends = fixed_ends(*laws.of(p, r))
+            x, y = s.x - ends[2 * spring], s.y - ends[2 * spring + 1]
+            return (x * x + y * y) * ((p.length1, p.length2)[spring]) ** -2.0 - PIVOT_REACH2
+
+        return distance2
 
     def free(t: Any, s: Any, p: Any, r: Any) -> Any:
         return s.y - p.preload
@@ -150,13 +143,8 @@ def brake(  # noqa: C901 (one short function for each force and surface)
     def on_belt(t: Any, s: Any, p: Any, r: Any) -> Any:
         return p.belt_speed - s.vx
 
-    states: dict[str, Any] = {"x": "m", "y": "m", "vx": "m/s", "vy": "m/s"}
-    outputs = {"contact_force": ("N", force)}
-    if observed:
-        # large sizes: a perturbation's growth is that of the motion
-        states |= dict.fromkeys(ANGLES, ("rad", 1e6))
-        outputs |= {f"distance{i + 1}": ("1", distance2(i)) for i in (0, 1)}
-        outputs["reach"] = ("m2", lambda t, s, p, r: s.x * s.x + s.y * s.y)
+    states = {"x": "m", "y": "m", "vx": "m/s", "vy": "m/s"}
+    reach = ("m2", lambda t, s, p, r: s.x * s.x + s.y * s.y)
     return System(
         "brake",
         states=states,
@@ -164,13 +152,13 @@ def brake(  # noqa: C901 (one short function for each force and surface)
         regimes=laws.regimes(),
         field=field,
         switches=[
-            *laws.contact_switches(free),
+            *laws.contact_switches(free, on_belt, holds),
             *laws.belt_switches(on_belt, holds, limit, pull),
             *laws.knots(),
         ],
         start=dict.fromkeys(states, 0.0),
-        starts_in=laws.starts(free, on_belt, lambda t, s, p, r: pull(s, p, r)),
-        outputs=outputs,
+        starts_in=laws.starts(free, rises, on_belt, lambda t, s, p, r: pull(s, p, r)),
+        outputs={"contact_force": ("N", force), "reach": reach},
         stops={} if rules.linear_springs else {"pivot1": pivot(0), "pivot2": pivot(1)},
         time_scale=lambda p: (p.mass / p.k1) ** 0.5,
     )
@@ -239,8 +227,11 @@ class _Laws:
             return []
         return ["separated", *(["released"] * (self.contact_law == "dashpot"))]
 
-    def landing(self, kind: str) -> list[Any]:
+    def landing(self, kind: str, on_belt: Any, holds: Any) -> list[Any]:
         """Where a contact that begins leads, by the sliding speed: targets of a switch."""
+
+        def stays(t: Any, s: Any, p: Any, r: Any) -> Any:
+            return holds(t, s, p, r) - (FIRST * on_belt(t, s, p, r)) ** 2
 
         def beyond(name: str, i: int) -> Any:
             def condition(t: Any, s: Any, p: Any, r: Any) -> Any:
@@ -251,9 +242,10 @@ class _Laws:
 
         order = [(name, i) for name in SLIP for i in reversed(range(len(self.frictions)))]
         found = [(self.name(name, i, 0), beyond(name, i), kind) for name, i in order]
-        return [*found[:-1], (found[-1][0], None, kind)]
+        sticks = [(self.name("stick", 0, 0), stays, kind)] * self.rules.sticks
+        return [*sticks, *found[:-1], (found[-1][0], None, kind)]
 
-    def contact_switches(self, free: Any) -> list[Switch]:
+    def contact_switches(self, free: Any, on_belt: Any, holds: Any) -> list[Switch]:
         """Where contact is lost and found."""
         if not self.rules.separates:
             return []
@@ -265,7 +257,7 @@ class _Laws:
 
             return [
                 Switch("separation", first, pressed, "separated"),
-                Switch("contact", "separated", free, self.landing("contact")),
+                Switch("contact", "separated", free, self.landing("contact", on_belt, holds)),
             ]
 
         def force(t: Any, s: Any, p: Any, r: Any) -> Any:
@@ -273,12 +265,12 @@ class _Laws:
 
         return [
             Switch("separation", first, force, "released"),
-            Switch("contact", "separated", free, self.landing("contact")),
+            Switch("contact", "separated", free, self.landing("contact", on_belt, holds)),
             Switch(
                 "pressing",
                 "released",
                 lambda t, s, p, r: -force(t, s, p, r),
-                self.landing("contact"),
+                self.landing("contact", on_belt, holds),
             ),
             Switch("clearance", "released", lambda t, s, p, r: -free(t, s, p, r), "separated"),
         ]
@@ -347,12 +339,19 @@ class _Laws:
                 )
                 yield Switch(f"{there} to {here}", there, past("start"), [(here, None, "knot")])
 
-    def starts(self, free: Any, on_belt: Any, pull: Any) -> list[Any]:
+    def starts(self, free: Any, rises: Any, on_belt: Any, pull: Any) -> list[Any]:
         """In which regime a run starts: the first whose surfaces are all ≥ 0.
 
-        At belt speed it is stick, or slip to the side that the springs pull to.
+        Where the contact spring is just free the velocity decides, then the force. At belt speed it
+        is stick, or slip to the side that the springs pull to.
         """
-        found: list[Any] = [(name, None if i else free) for i, name in enumerate(self.apart)]
+
+        def above(t: Any, s: Any, p: Any, r: Any) -> Any:
+            return FIRST * free(t, s, p, r) - p.preload
+
+        found: list[Any] = []
+        for i, name in enumerate(self.apart):
+            found += [(name, None)] if i else [(name, rises, free), (name, above)]
         if not self.rules.reverses:
             return [*found, ("slip_slower", lambda t, s, p, r: p.belt_speed), "slip_faster"]
         regimes = [self.name(*each) for each in self.in_contact()]

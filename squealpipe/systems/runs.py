@@ -38,7 +38,7 @@ from squealpipe.methods.taylor.loop import (
     TABLE,
     loop,
 )
-from squealpipe.methods.taylor.scalar import ScalarSource, compile_scalar, evaluate
+from squealpipe.methods.taylor.scalar import ScalarSource, compile_scalar
 from squealpipe.methods.taylor.series import HybridSystem
 from squealpipe.methods.taylor.simd import FEW, LANES
 from squealpipe.schema import SYSTEM, Outcome, flag_table, in_words
@@ -105,14 +105,22 @@ def integrate(
     values: Mapping[str, np.ndarray],
     t_end: np.ndarray,
     *,
-    regime: str | None = None,
+    regime: str | np.ndarray | None = None,
     t_late: Any = math.inf,
+    late_from: str | None = None,
+    until: str | None = None,
+    around: np.ndarray | None = None,
+    most_turns: Any = math.inf,
+    tracked: Sequence[str] | None = None,
     times: np.ndarray | None = None,
+    sums: bool = False,
     tol: float,
     tangent: bool = False,
     log_events: int = 0,
-    most_steps: float = MOST_STEPS,
+    most_steps: Any = MOST_STEPS,
+    most_events: Any = MOST_EVENTS,
     unit_sizes: np.ndarray | None = None,
+    few: bool | None = None,
     workers: int | None = None,
 ) -> dict[str, np.ndarray]:
     """Raw results of some runs, one row each.
@@ -121,14 +129,31 @@ def integrate(
         system: what is run.
         values: each state and parameter as an array, (runs,).
         t_end, t_late: in the system's unit of time.
-        regime: in which all start; by default what fits each.
+        late_from: kind of event whose first begins the late part, if ``t_late`` does not.
+        until: kind of event whose first ends a run, as ``BY_EVENT``.
+        around: points (runs, points, 2) in the plane of the first two states around which half
+            turns are counted, counterclockwise.
+        most_turns: net turns around all of them that end a run, as ``BY_TURNS``.
+        regime: in which all start, or the number of each; by default what fits each.
+        tracked: states and outputs whose extremes are kept; by default all.
         times: instants at which the state is kept, (instants,) or (runs, instants).
+        sums: keep there what has added up, too.
         tol: tolerance.
         tangent: carry a perturbation along.
         log_events: events kept of each run.
-        most_steps: of each run.
+        most_steps, most_events: of each run.
         unit_sizes: of the states; by default the system's.
+        few: compute few lanes, in half of the time; by default where they suffice.
         workers: processes; None takes all cores.
+
+    Returns:
+        One row a run: ``final``; ``extremes``, ``early_extremes`` and ``late_extremes`` (runs,
+        tracked, smallest and largest; infinite of a part that was not reached); ``counts``,
+        ``firsts`` (NaN: never) and ``peaks`` (largest magnitude of each state before the event)
+        of each kind of event; ``durations`` of regimes; ``ends``: outcome, regime, steps,
+        events; ``summary``: growth, horizon, time; ``half_turns``; ``samples`` and
+        ``sample_regimes``; ``sample_growth``, ``sample_durations``, ``sample_half_turns`` and
+        ``sample_counts``; ``event_times``, ``event_kinds``, ``event_regimes``, ``event_states``.
     """
     t, size = system.integrated, len(t_end)
     scale = system.time_scale
@@ -140,29 +165,40 @@ def integrate(
         fits = (unit > 0.0) & (t_end / unit < math.inf)
     if not fits.all():
         raise ValueError(f"{system.name}: time_scale = {unit.min()}: it is not a unit of time")
-    derived = evaluate(t.derived, {**values, TIME_UNIT: unit})
+    derive, given = system.derived
+    known = {**values, TIME_UNIT: unit}
+    derived = derive(*(known[name] for name in given))
     columns = [*(values[name] for name in names), *derived, unit]
     parameters = np.stack([np.broadcast_to(each, (size,)) for each in columns], axis=1)
     initial = np.stack([values[name] for name in system.states], axis=1)
-    regimes = system.first_regimes({TIME: np.zeros(size), **values}, size, regime)
-    tracked = [*range(t.size)]
-    tracked += [len(t.variables) + len(t.surfaces) + i for i in range(len(t.outputs))]
+    regimes = regime
+    if not isinstance(regimes, np.ndarray):
+        regimes = system.first_regimes({TIME: np.zeros(size), **values}, size, regimes)
+    places = [*range(t.size)]
+    places += [len(t.variables) + len(t.surfaces) + i for i in range(len(t.outputs))]
+    quantities = [*system.states, *system.outputs]
+    chosen = quantities if tracked is None else tracked
+    watched = [places[quantities.index(each)] for each in chosen]
     limits = np.column_stack(
         [
             t_end / unit,
             np.broadcast_to(t_late, (size,)) / unit,
-            np.full(size, most_steps),
-            np.full(size, MOST_EVENTS),
+            np.broadcast_to(most_steps, (size,)),
+            np.broadcast_to(most_events, (size,)),
             np.full(size, math.log(LOST_ERROR / tol)),
+            np.broadcast_to(most_turns, (size,)),
         ]
     )
     samples = np.empty((1, 0)) if times is None else np.atleast_2d(times)
     sample_times = np.ascontiguousarray(samples / unit[:, None])
     n_samples = samples.shape[1]
     n_kinds, n_regimes = max(1, len(t.kinds)), len(system.regimes)
+    points = np.empty((size, 0, 2)) if around is None else np.ascontiguousarray(around, float)
+    n_points = points.shape[1]
+    n_sums = (1 + n_regimes + n_points + n_kinds) * sums
     shapes: dict[str, Any] = {
         "final": ((size, t.size), "f8"),
-        "extremes": ((size, len(tracked), 4), "f8"),
+        "extremes": ((size, len(watched), 2, 2), "f8"),
         "counts": ((size, n_kinds), "i8"),
         "firsts": ((size, n_kinds), "f8"),
         "durations": ((size, n_regimes), "f8"),
@@ -170,21 +206,25 @@ def integrate(
         "summary": ((size, 3), "f8"),
         "samples": ((size, n_samples, t.size), "f8"),
         "sample_regimes": ((size, n_samples), "i8"),
+        "sample_sums": ((size, n_samples, n_sums), "f8"),
+        "peaks": ((size, n_kinds, t.size), "f8"),
+        "half_turns": ((size, n_points), "f8"),
         "event_times": ((size, log_events), "f8"),
         "event_kinds": ((size, log_events), "i8"),
         "event_regimes": ((size, log_events), "i8"),
         "event_states": ((size, log_events, t.size), "f8"),
     }
-    code = compiled(system, tangent=tangent, few=size <= FEW)
+    code = compiled(system, tangent=tangent, few=size <= FEW and few is not False)
     loop()
     terms = taylor_terms(tol)
-    n_rows = FIXED_ROWS + len(t.variables) + t.size + 4 * len(tracked) + n_regimes
-    n_rows += len(t.parameters) + len(t.constants)
+    n_rows = FIXED_ROWS + len(t.variables) + t.size + 2 * len(watched) + n_regimes
+    n_rows += 3 * n_points + len(t.parameters) + len(t.constants)
     width = max(3 * len(t.surfaces), len(t.variables)) + 2
 
     def work(arrays: dict[str, np.ndarray], first: int, stride: int) -> None:
-        for name in ("samples", "event_times", "event_states", "firsts"):
+        for name in ("samples", "sample_sums", "event_times", "event_states", "firsts"):
             arrays[name][first::stride] = np.nan
+        arrays["extremes"][first::stride] = [np.inf, -np.inf]
         for name in ("sample_regimes", "event_kinds", "event_regimes"):
             arrays[name][first::stride] = -1
         integers = np.full((FIXED_INTEGERS, LANES), -1, np.int64)
@@ -196,7 +236,8 @@ def integrate(
             "series": aligned(code.series.n_series, terms, LANES),
             "inverses": INVERSES,
             "sizes": system.sizes if unit_sizes is None else unit_sizes,
-            "tracked": np.array(tracked, np.int64),
+            "tracked": np.array(watched, np.int64),
+            "points": points,
             "regimes": t.regimes,
             "falls": t.falls,
             "rises": t.rises,
@@ -217,13 +258,17 @@ def integrate(
             "n_states": t.size,
             "n_variables": len(t.variables),
             "n_surfaces": len(t.surfaces),
-            "n_tracked": len(tracked),
+            "n_tracked": len(watched),
             "n_parameters": len(t.parameters),
             "n_constants": len(t.constants),
             "n_regimes": n_regimes,
             "n_kinds": n_kinds,
             "n_samples": n_samples,
+            "n_sums": n_sums,
             "n_logged": log_events,
+            "n_points": n_points,
+            "until": t.kinds.index(until) if until in t.kinds else -1,
+            "late_from": t.kinds.index(late_from) if late_from in t.kinds else -1,
             "n_rounds": ROUNDS,
             "tangent": int(tangent),
             "take_step": code.series.series,
@@ -241,10 +286,27 @@ def integrate(
         table = Workspace(TABLE, held, {name: sizes[name] for name in SIZES})
         at = integers[JOB], lanes[CLOCK], lanes[T_END], held["queue"]
         drive(loop(), table, lambda: share_of(*at))
+        if integers[JOB].max() >= 0 or held["queue"][0] < size:
+            raise RuntimeError(
+                "an exception in compiled code, reported above, ended the integration before its "
+                "runs were finished; please report the parameters"
+            )
 
     arrays = run_shared(work, shapes, jobs=size, workers=workers)
+    arrays["early_extremes"], arrays["late_extremes"] = np.moveaxis(arrays["extremes"], 2, 0)
+    low, high = arrays["extremes"][..., 0].min(axis=2), arrays["extremes"][..., 1].max(axis=2)
+    arrays["extremes"] = np.stack([low, high], axis=-1)
+    ends = np.cumsum([1, n_regimes, n_points])
+    for name, part in zip(
+        ("growth", "durations", "half_turns", "counts"),
+        np.split(arrays.pop("sample_sums"), ends, axis=-1) if sums else (),
+        strict=False,
+    ):
+        arrays[f"sample_{name}"] = part
     for name in ("durations", "event_times", "firsts"):
         arrays[name] = arrays[name] * unit[:, None]
+    if sums:
+        arrays["sample_durations"] = arrays["sample_durations"] * unit[:, None, None]
     arrays["summary"][:, 1:] *= unit[:, None]
     return arrays
 
@@ -426,7 +488,7 @@ def ensemble(
             label = f"{('smallest', 'largest')[j]} {name}"
             found[name + which] = field(label, units[name], raw["extremes"][:, i, j])
             found[f"late_{name}{which}"] = field(
-                f"{label} from t_late on", units[name], _finite(raw["extremes"][:, i, 2 + j])
+                f"{label} from t_late on", units[name], _finite(raw["late_extremes"][:, i, j])
             )
     for i, name in enumerate(system.traced.kinds):
         found[f"count_{name}"] = field(f"number of events {name}", "1", raw["counts"][:, i])

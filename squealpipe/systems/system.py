@@ -10,7 +10,7 @@ from typing import Annotated, Any, cast
 import numpy as np
 import xarray as xr
 
-from squealpipe.methods.taylor.scalar import REGIME, SwitchSymbols, evaluate
+from squealpipe.methods.taylor.scalar import REGIME, SwitchSymbols, evaluate, numpy_function
 from squealpipe.methods.taylor.symbols import Symbol, derivative, parameter, symbol
 from squealpipe.parameters import is_finite_number
 from squealpipe.schema import Outcome
@@ -403,6 +403,11 @@ class System:
         return self.traced.with_derived()
 
     @cached_property
+    def derived(self) -> tuple[Any, list[str]]:
+        """What computes the derived parameters of runs, and the names that it is given."""
+        return numpy_function(self.integrated.derived)
+
+    @cached_property
     def text(self) -> dict[str, str]:
         """What the system is, as text: for the attributes of its datasets."""
         from squealpipe.systems.text import describe
@@ -431,6 +436,29 @@ class System:
             found[:, number] = [np.abs((slopes * rate).sum(axis=0)).max() < 1e-14 for rate in rates]
         return found
 
+    @cached_property
+    def _starts(self) -> list[tuple[int, dict[str, float], list[tuple[Any, list[str], float]]]]:
+        """Regimes that a run may start in, their constants, and what is asked of the state.
+
+        Each is a function, the names that it is given, and the sign that it must not have the
+        opposite of; 0 where it must vanish.
+        """
+        traced = self.traced
+        found = []
+        entries = traced.starts or tuple((i, None, None) for i in range(len(self.regimes)))
+        for place, (regime, condition, equality) in enumerate(entries):
+            asked = [] if equality is None else [(equality, 0.0)]
+            if condition is not None:
+                asked.append((condition, 1.0))
+            elif place != len(traced.starts) - 1:
+                for table, sign in ((traced.falls[regime], 1.0), (traced.rises[regime], -1.0)):
+                    watched = np.flatnonzero((table >= 0) & (table < len(self.switches)))
+                    asked += [(traced.surfaces[index], sign) for index in watched]
+            constants = dict(zip(traced.constants, traced.regimes[regime].tolist(), strict=True))
+            checks = [(*numpy_function([root]), sign) for root, sign in asked]
+            found.append((regime, constants, checks))
+        return found
+
     def first_regimes(
         self, values: Mapping[str, Any], size: int, given: str | None = None
     ) -> np.ndarray:
@@ -447,26 +475,19 @@ class System:
         given = given or cast("str | None", self.start.get("regime"))
         if given is not None:
             return np.full(size, list(self.regimes).index(given), np.int64)
-        traced = self.traced
         chosen = np.full(size, -1, np.int64)
-        entries = traced.starts or tuple((i, None, None) for i in range(len(self.regimes)))
-        for place, (regime, condition, equality) in enumerate(entries):
-            constants = dict(zip(traced.constants, traced.regimes[regime], strict=True))
-            known = {TIME_UNIT: np.ones(size), **values, **constants}
-            fits = np.ones(size, bool)
-            if condition is not None:
-                (value,) = evaluate([condition], known)
-                fits &= np.asarray(value >= 0.0)
-            if equality is not None:
-                (value,) = evaluate([equality], known)
-                fits &= np.asarray(np.abs(value) <= 1e-15 * max(map(_largest, values.values())))
-            if condition is None and place != len(traced.starts) - 1:
-                sides = [(traced.falls[regime], 1.0), (traced.rises[regime], -1.0)]
-                for table, sign in sides:
-                    for index in np.flatnonzero((table >= 0) & (table < len(self.switches))):
-                        (value,) = evaluate([traced.surfaces[index]], known)
-                        fits &= np.asarray(sign * value >= 0.0)
-            chosen = np.where((chosen < 0) & fits, regime, chosen)
+        known = {TIME_UNIT: np.ones(size), **values}
+        for regime, constants, checks in self._starts:
+            fits = chosen < 0
+            known |= constants
+            for function, names, sign in checks:
+                if not fits.any():
+                    break
+                arguments = [np.asarray(known[name]) for name in names]
+                (value,) = function(*arguments)
+                terms = sum(np.abs(each) for each in arguments)
+                fits &= np.asarray(sign * value >= 0.0 if sign else np.abs(value) <= 1e-15 * terms)
+            chosen = np.where(fits, regime, chosen)
         if (chosen < 0).any():
             raise ValueError(
                 "no regime fits the start: in each, some surface is below zero; give "
@@ -477,7 +498,3 @@ class System:
 
 def _indicator(regime: str) -> str:
     return f"is {regime}"
-
-
-def _largest(value: Any) -> float:
-    return float(np.max(np.abs(value), initial=0.0))

@@ -222,7 +222,7 @@ def test_without_stick_the_sliding_mode_has_no_solution():
         initial_state=(-0.1, REST, 0, 0),
     )
     sticks = simulate(FRICTION, 0.5 * np.pi, np.pi, t_end=8.0, initial_state=(-0.1, REST, 0, 0))
-    assert run.outcome == Outcome.event_limit
+    assert run.outcome == Outcome.accumulation
     first = sticks.event_time.values[sticks.event_kind.values == STICK][0]
     np.testing.assert_allclose(run.time_reached, first, atol=1e-12)
     assert np.isnan(run.x.values[run.time.values > first]).all()
@@ -244,8 +244,6 @@ def test_a_mass_that_meets_a_pivot_says_so(offset):
     assert run.outcome == (Outcome.singular_geometry if offset < 1e-7 else Outcome.converged)
     if offset < 1e-7:
         assert run.time < 2.0
-    else:
-        assert run.nearest_pivot < 1e-3
 
 
 def test_start_on_a_pivot():

@@ -95,7 +95,7 @@ def test_bounded_to_500_and_a_transient_beyond():
     starts = np.zeros((24, 4))
     starts[:, 0] = np.linspace(-1e-9, 1e-9, 24)
     long = run_ensemble(
-        BASELINE, scene.alpha1, scene.alpha2, t_end=9000.0, initial_state=starts, stop_at_x=80.0
+        BASELINE, scene.alpha1, scene.alpha2, t_end=9000.0, initial_state=starts, stop_at_turns=10
     )
     left = long.outcome == Outcome.amplitude_reached
     assert left.mean() > 0.5

@@ -101,7 +101,6 @@ import numpy as np
 from squealpipe import Parameters, stability_map
 from squealpipe.config.settings import parse_study
 from squealpipe.models.a1_automaton import A1Automaton
-from squealpipe.models.switching import ScaledParameters
 from squealpipe.solvers.a1.jobs import Jobs
 from squealpipe.solvers.a1.peers import simulate_scipy
 from squealpipe.solvers.a1.reference import simulate_reference
@@ -119,12 +118,10 @@ params = Parameters(
     friction_slope=0.4, mu=0.2,
 )
 assert parse_study({"parameters": params.as_dict()}).parameters.friction_slope == 0.4
-assert ScaledParameters.of(params).friction_slope == 0.4
-order = Jobs.build(
+jobs = Jobs.build(
     params, 1.0, 2.0, t_end=1.0, model="A1", tol=1e-12, initial_state=np.zeros(4), times=None,
-    stop_at_first_separation=False, stop_at_x=np.inf, stop_at_turns=np.inf, t_late=np.inf,
-).orders[0]
-assert np.isclose(order["friction_slope"], 0.4 * 2.0 / np.sqrt(1.7 / 0.8), rtol=1e-14)
+)
+assert np.isclose(jobs.values["friction_slope"], 0.4 * 2.0 / np.sqrt(1.7 / 0.8), rtol=1e-14)
 
 # the law: symbols of the reference against floats with public solvers, stick and slip
 for mu_static in (None, 0.35):

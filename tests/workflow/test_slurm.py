@@ -111,7 +111,7 @@ SCATTERED = {"map_validity", "map_corrected_validity", "map_hammering", "run_swe
 JOINS = {
     "join_validity_map", "join_corrected_validity_map", "join_hammering_map", "join_sweep_orbits",
 }  # fmt: skip
-COMPILE = "from squealpipe.solvers.a1.kernel import lane_kernel; lane_kernel()"
+COMPILE = "from squealpipe.methods.taylor.loop import loop; loop()"
 
 
 def ready() -> bool:

@@ -68,28 +68,31 @@ class End(IntEnum):
 
 
 STOPPED = 100
+BY_EVENT, BY_TURNS = 98, 99
+"""Ends of runs that were to end at the first event of a kind, or after so many turns."""
 RUNNING, CONVERGED, STEP_LIMIT = int(End.running), int(End.converged), int(End.step_limit)
 EVENT_LIMIT, NOT_FINITE = int(End.event_limit), int(End.not_finite)
 ACCUMULATION = int(End.accumulation)
 
 (
-    CLOCK, CORRECTION, STEP, LONGEST, T_END, T_LATE, LATE, NEXT_SAMPLE, STEPS, MOST_STEPS,
+    CLOCK, CORRECTION, STEP, LONGEST, T_END, T_LATE, NEXT_SAMPLE, STEPS, MOST_STEPS, ENTERED, LOST,
     FIXED_ROWS,
-) = range(11)  # fmt: skip
+) = range(12)  # fmt: skip
 """Rows of numbers of the lanes that every system has; those of a system follow."""
-JOB, OUTCOME, SAMPLE, REGIME, EVENTS, CHAINED, HIT, FIXED_INTEGERS = range(8)
+JOB, OUTCOME, SAMPLE, REGIME, EVENTS, CHAINED, HIT, LATE, FIXED_INTEGERS = range(9)
 """Rows of integers of the lanes."""
 
 ARRAYS = (
     "rows", "integers", "series", "inverses", "sizes", "tracked", "regimes", "falls", "rises",
     "active", "fresh", "noise", "scratch", "initial", "parameters", "first_regime", "limits",
     "final", "extremes", "counts", "firsts", "durations", "ends", "summary", "sample_times",
-    "samples", "sample_regimes", "event_times", "event_kinds", "event_regimes", "event_states",
-    "queue",
+    "samples", "sample_regimes", "sample_sums", "event_times", "event_kinds", "event_regimes",
+    "event_states", "peaks", "points", "half_turns", "queue",
 )  # fmt: skip
 SIZES = (
     "n_terms", "n_jobs", "n_states", "n_variables", "n_surfaces", "n_tracked", "n_parameters",
-    "n_constants", "n_regimes", "n_kinds", "n_samples", "n_logged", "n_rounds", "tangent",
+    "n_constants", "n_regimes", "n_kinds", "n_samples", "n_sums", "n_logged", "n_points",
+    "n_rounds", "until", "late_from", "tangent",
     "take_step", "perturb", "longest", "gauge", "change", "jump", "n_series", "n_rows",
     "n_switches",
 )  # fmt: skip
@@ -227,7 +230,8 @@ def _cut(t: Any, m: Any, c: Any, lane: int) -> None:
     if not math.isfinite(total):
         rows[STEP, lane] = 0.0
         integers[OUTCOME, lane] = NOT_FINITE
-        _set_end(t, m, c, lane)
+        for variable in range(t.n_variables):  # of its series higher orders may be no numbers
+            rows[FIXED_ROWS + variable, lane] = c[variable, 0, lane]
         return
     done = rows[CLOCK, lane]
     remaining = (rows[T_END, lane] - done) - rows[CORRECTION, lane]
@@ -294,8 +298,19 @@ def _extremes(c: Any, index: int, lane: int, step: float) -> Any:
 
 
 @inline
+def _end_of(series: int, terms: int, step: Any) -> Any:
+    """A series at the end of its step, its rate, and half of that one's."""
+    value, slope, bend = load(series + (terms - 1) * ROW), splat(0.0), splat(0.0)
+    for k in range(terms - 2, -1, -1):
+        bend = fma(bend, step, slope)
+        slope = fma(slope, step, value)
+        value = fma(value, step, load(series + k * ROW))
+    return value, slope, bend
+
+
+@inline
 def _observe(t: Any, m: Any, c: Any, first_extreme: int, busy: int) -> None:
-    """Extremes of the tracked quantities over one step of all lanes, and times in regimes.
+    """Extremes of the tracked quantities over one step of all lanes.
 
     Inside a step a quantity leaves the span of its ends by at most h²/8 times its second
     derivative, of which the first orders are nearly all: only where that could be a record are
@@ -303,18 +318,11 @@ def _observe(t: Any, m: Any, c: Any, first_extreme: int, busy: int) -> None:
     """
     at, terms = t.rows, t.n_terms
     step, zero = load(at + STEP * ROW), splat(0.0)
-    late = load(at + LATE * ROW)
-    first_time = first_extreme + 4 * t.n_tracked
-    for lane in range(LANES):
-        m.rows[first_time + m.integers[REGIME, lane], lane] += m.rows[STEP, lane]
     for index in range(t.n_tracked):
         variable = m.tracked[index]
-        series, r = t.series + variable * terms * ROW, first_extreme + 4 * index
-        if variable < t.n_variables:
-            end = load(at + (FIXED_ROWS + variable) * ROW)
-        else:
-            end = _at_end(series, terms, step)
-        start = load(series)
+        series, r = t.series + variable * terms * ROW, first_extreme + 2 * index
+        end, last, half_bend = _end_of(series, terms, step)
+        start, first = load(series), load(series + ROW)
         low, high = smaller(start, end), larger(start, end)
         bend = 0.75 * magnitude(load(series + 3 * ROW)) + 1.5 * step * magnitude(
             load(series + 4 * ROW)
@@ -322,33 +330,55 @@ def _observe(t: Any, m: Any, c: Any, first_extreme: int, busy: int) -> None:
         bend = step * step * (0.25 * magnitude(load(series + 2 * ROW)) + step * bend)
         beyond = bend + REST * larger(magnitude(start), magnitude(end))
         row = at + r * ROW
-        store(row, smaller(low, load(row)))
-        store(row + ROW, larger(high, load(row + ROW)))
-        store(
-            row + 2 * ROW,
-            choose_below(zero, late, smaller(low, load(row + 2 * ROW)), load(row + 2 * ROW)),
-        )
-        store(
-            row + 3 * ROW,
-            choose_below(zero, late, larger(high, load(row + 3 * ROW)), load(row + 3 * ROW)),
-        )
-        least = choose_below(zero, late, load(row + 2 * ROW), load(row))
-        most = choose_below(zero, late, load(row + 3 * ROW), load(row + ROW))
+        least, most = smaller(low, load(row)), larger(high, load(row + ROW))
+        store(row, least)
+        store(row + ROW, most)
         bits = (bits_below(most, high + beyond) | bits_below(low - beyond, least)) & busy
+        # a rate that loses its sign in between crosses zero along its tangents
+        onwards = first + load(series + 2 * ROW) * step * splat(2.0)
+        back = last - half_bend * step * splat(2.0)
+        bits &= ~(
+            bits_below(zero, first * last)
+            & bits_below(zero, first * onwards)
+            & bits_below(zero, last * back)
+        )
         while bits:
             lane = first_bit(bits)
             bits ^= 1 << lane
             inner_low, inner_high = _extremes(c, variable, lane, m.rows[STEP, lane])
             m.rows[r, lane] = min(m.rows[r, lane], inner_low)
             m.rows[r + 1, lane] = max(m.rows[r + 1, lane], inner_high)
-            if m.rows[LATE, lane] > 0.0:
-                m.rows[r + 2, lane] = min(m.rows[r + 2, lane], inner_low)
-                m.rows[r + 3, lane] = max(m.rows[r + 3, lane], inner_high)
+
+
+@inline
+def _turn(t: Any, m: Any, first_turn: int, busy: int) -> int:
+    """Count half turns around the points over one step of all lanes; returns those that ended."""
+    at, zero, ended = t.rows, splat(0.0), 0
+    for point in range(t.n_points):
+        row = at + (first_turn + 3 * point) * ROW
+        left = bits_below(load(at + FIXED_ROWS * ROW), load(row))
+        crossed = (bits_below(load(t.series), load(row)) ^ left) & busy
+        if not crossed:
+            continue
+        y = load(at + (FIXED_ROWS + 1) * ROW) - load(row + ROW)
+        same = ~(bits_below(zero, y) ^ left)
+        while crossed:
+            lane = first_bit(crossed)
+            crossed ^= 1 << lane
+            turned = 1.0 if same & (1 << lane) else -1.0
+            m.rows[first_turn + 3 * point + 2, lane] += turned
+            least = math.inf
+            for each in range(t.n_points):
+                least = min(least, abs(m.rows[first_turn + 3 * each + 2, lane]))
+            if 0.5 * least >= m.limits[m.integers[JOB, lane], 5]:
+                m.integers[OUTCOME, lane] = BY_TURNS
+                ended |= 1 << lane
+    return ended
 
 
 @part
-def _sample(t: Any, m: Any, c: Any, lane: int) -> None:
-    """States at the asked instants of one job that fall into this step."""
+def _sample(t: Any, m: Any, c: Any, lane: int, first_time: int) -> None:
+    """States, and sums, at the asked instants of one job that fall into this step."""
     rows, job = m.rows, m.integers[JOB, lane]
     following, times = m.integers[SAMPLE, lane], m.sample_times[job]
     while following < times.size:
@@ -358,9 +388,49 @@ def _sample(t: Any, m: Any, c: Any, lane: int) -> None:
         for variable in range(t.n_states):
             m.samples[job, following, variable] = evaluate(c, variable, lane, offset)
         m.sample_regimes[job, following] = m.integers[REGIME, lane]
+        if t.n_sums:
+            _sum(t, m, lane, m.sample_sums[job, following], first_time, times[following])
         following += 1
     m.integers[SAMPLE, lane] = following
     rows[NEXT_SAMPLE, lane] = times[following] if following < times.size else math.inf
+
+
+@part
+def _sum(t: Any, m: Any, lane: int, sums: Any, first_time: int, time: float) -> None:
+    """What has added up: growth (to the last step's end), times in regimes, half turns, events."""
+    job, rows = m.integers[JOB, lane], m.rows
+    sums[0] = m.summary[job, 0] + _log_norm(t, m, lane, first_time - 2 * t.n_tracked - t.n_states)
+    for regime in range(t.n_regimes):
+        sums[1 + regime] = rows[first_time + regime, lane]
+    sums[1 + m.integers[REGIME, lane]] += time - rows[ENTERED, lane]
+    place = 1 + t.n_regimes
+    for point in range(t.n_points):
+        sums[place + point] = rows[first_time + t.n_regimes + 3 * point + 2, lane]
+    place += t.n_points
+    for kind in range(t.n_kinds):
+        sums[place + kind] = m.counts[job, kind]
+
+
+@part
+def _log_norm(t: Any, m: Any, lane: int, tangent_row: int) -> float:
+    """ln of the size of a lane's perturbation."""
+    square = 0.0
+    for variable in range(t.n_states):
+        square += (m.rows[tangent_row + variable, lane] / m.sizes[variable]) ** 2
+    return -math.inf if square == 0.0 else 0.5 * math.log(square)
+
+
+@part
+def _begin_late(t: Any, m: Any, lane: int, first_extreme: int) -> None:
+    """From here on extremes are those of the late part."""
+    job = m.integers[JOB, lane]
+    for index in range(t.n_tracked):
+        for each in range(2):
+            r = first_extreme + 2 * index + each
+            m.extremes[job, index, 0, each] = m.rows[r, lane]
+            m.rows[r, lane] = -math.inf if each else math.inf
+    m.integers[LATE, lane] = 1
+    m.rows[T_LATE, lane] = math.inf
 
 
 @part
@@ -409,8 +479,13 @@ def _log(t: Any, m: Any, lane: int, kind: int, regime: int) -> int:
             m.event_states[job, count, variable] = after[variable]
     integers[EVENTS, lane] = count + 1
     m.counts[job, kind] += 1
+    before, peaks = m.scratch[0], m.peaks[job, kind]
+    for variable in range(t.n_states):
+        peaks[variable] = max(peaks[variable], abs(before[variable]))
     if math.isnan(m.firsts[job, kind]):
         m.firsts[job, kind] = m.rows[CLOCK, lane]
+        if kind == t.late_from:
+            _begin_late(t, m, lane, FIXED_ROWS + t.n_variables + t.n_states)
     return int(count + 1)
 
 
@@ -458,8 +533,13 @@ def _switch(t: Any, m: Any, c: Any, lane: int, tangent_row: int) -> None:
     if span > 4.0 * 2.0**-52 * abs(clock):
         integers[CHAINED, lane] = 0
     count = _log(t, m, lane, kind, regime)
+    first_time = FIXED_ROWS + t.n_variables + t.n_states + 2 * t.n_tracked
+    rows[first_time + before, lane] += clock - rows[ENTERED, lane]
+    rows[ENTERED, lane] = clock
     _enter(t, m, c, lane, regime, span)
-    if integers[CHAINED, lane] >= CHAIN:
+    if kind == t.until:
+        integers[OUTCOME, lane] = BY_EVENT
+    elif integers[CHAINED, lane] >= CHAIN:
         integers[OUTCOME, lane] = ACCUMULATION
     elif count >= m.limits[job, 3]:
         integers[OUTCOME, lane] = EVENT_LIMIT
@@ -467,20 +547,42 @@ def _switch(t: Any, m: Any, c: Any, lane: int, tangent_row: int) -> None:
 
 @part
 def _grow(t: Any, m: Any, lane: int, tangent_row: int) -> None:
-    """Add to the growth of a perturbation, note the horizon, and scale it back."""
-    job, square = m.integers[JOB, lane], 0.0
-    for variable in range(t.n_states):
-        square += (m.rows[tangent_row + variable, lane] / m.sizes[variable]) ** 2
-    if square == 0.0:
-        m.summary[job, 0] = -math.inf
+    """Note the horizon when it is passed, and scale a perturbation back."""
+    job, size = m.integers[JOB, lane], _log_norm(t, m, lane, tangent_row)
+    if size == -math.inf:
         return
-    growth = m.summary[job, 0] + 0.5 * math.log(square)
+    growth = m.summary[job, 0] + size
     if math.isnan(m.summary[job, 1]) and growth > m.limits[job, 4]:
         m.summary[job, 1] = m.rows[CLOCK, lane]
-    if not 1e-6 < square < 1e6:
+    if not 1e-6 < math.exp(2.0 * size) < 1e6:
         for variable in range(t.n_states):
-            m.rows[tangent_row + variable, lane] /= math.sqrt(square)
+            m.rows[tangent_row + variable, lane] /= math.exp(size)
         m.summary[job, 0] = growth
+    _limit_growth(m, lane)
+
+
+@part
+def _limit_growth(m: Any, lane: int) -> None:
+    """The squared size of a perturbation at which the horizon is passed."""
+    job = m.integers[JOB, lane]
+    left = m.limits[job, 4] - m.summary[job, 0]
+    waits = math.isnan(m.summary[job, 1]) and left < 300.0
+    m.rows[LOST, lane] = math.exp(2.0 * left) if waits else math.inf
+
+
+@inline
+def _grow_all(t: Any, m: Any, tangent_row: int, busy: int) -> None:
+    """Look at perturbations that have grown or shrunk a thousandfold, or passed what is lost."""
+    square = splat(0.0)
+    for variable in range(t.n_states):
+        part = load(t.rows + (tangent_row + variable) * ROW) * splat(1.0 / m.sizes[variable])
+        square = square + part * part
+    usual = bits_below(splat(1e-6), square) & bits_below(square, splat(1e6))
+    bits = ~(usual & bits_below(square, load(t.rows + LOST * ROW))) & busy
+    while bits:
+        lane = first_bit(bits)
+        bits ^= 1 << lane
+        _grow(t, m, lane, tangent_row)
 
 
 @part
@@ -493,15 +595,17 @@ def _finish(t: Any, m: Any, c: Any, lane: int, tangent_row: int, first_extreme: 
     for variable in range(t.n_states):
         m.final[job, variable] = c[variable, 0, lane]
     for index in range(t.n_tracked):
-        for each in range(4):
-            m.extremes[job, index, each] = rows[first_extreme + 4 * index + each, lane]
+        for each in range(2):
+            found = rows[first_extreme + 2 * index + each, lane]
+            m.extremes[job, index, m.integers[LATE, lane], each] = found
+    first_time = first_extreme + 2 * t.n_tracked
+    rows[first_time + m.integers[REGIME, lane], lane] += rows[CLOCK, lane] - rows[ENTERED, lane]
     for regime in range(t.n_regimes):
-        m.durations[job, regime] = rows[first_extreme + 4 * t.n_tracked + regime, lane]
+        m.durations[job, regime] = rows[first_time + regime, lane]
+    for point in range(t.n_points):
+        m.half_turns[job, point] = rows[first_time + t.n_regimes + 3 * point + 2, lane]
     if t.tangent:
-        square = 0.0
-        for variable in range(t.n_states):
-            square += (rows[tangent_row + variable, lane] / m.sizes[variable]) ** 2
-        m.summary[job, 0] += 0.5 * math.log(square) if square > 0.0 else 0.0
+        m.summary[job, 0] += _log_norm(t, m, lane, tangent_row)
 
 
 @part
@@ -510,14 +614,13 @@ def _start(t: Any, m: Any, c: Any, lane: int, job: int, tangent_row: int, first:
     rows, integers = m.rows, m.integers
     integers[:, lane] = 0
     integers[JOB, lane], integers[OUTCOME, lane], integers[HIT, lane] = job, RUNNING, -1
-    for row in (CLOCK, CORRECTION, STEPS, STEP):
+    for row in (CLOCK, CORRECTION, STEPS, STEP, ENTERED):
         rows[row, lane] = 0.0
     rows[LONGEST, lane] = math.inf
     rows[T_END, lane], rows[T_LATE, lane] = m.limits[job, 0], m.limits[job, 1]
     rows[MOST_STEPS, lane] = m.limits[job, 2]
-    rows[LATE, lane] = 0.0
     if m.limits[job, 1] <= 0.0:
-        rows[T_LATE, lane], rows[LATE, lane] = math.inf, 1.0
+        rows[T_LATE, lane], integers[LATE, lane] = math.inf, 1
     times = m.sample_times[job]
     rows[NEXT_SAMPLE, lane] = times[0] if times.size else math.inf
     first_parameter = t.n_rows - t.n_constants - t.n_parameters
@@ -528,11 +631,15 @@ def _start(t: Any, m: Any, c: Any, lane: int, job: int, tangent_row: int, first:
         c[variable, 0, lane] = m.initial[job, variable]
         rows[tangent_row + variable, lane] = m.sizes[variable] / math.sqrt(t.n_states)
     for index in range(t.n_tracked):
-        for each in range(4):
-            rows[first + 4 * index + each, lane] = math.inf if each % 2 == 0 else -math.inf
-    for regime in range(t.n_regimes):
-        rows[first + 4 * t.n_tracked + regime, lane] = 0.0
+        rows[first + 2 * index, lane], rows[first + 2 * index + 1, lane] = math.inf, -math.inf
+    row = first + 2 * t.n_tracked
+    rows[row : row + t.n_regimes, lane] = 0.0
+    for point in range(t.n_points):
+        row = first + 2 * t.n_tracked + t.n_regimes + 3 * point
+        rows[row, lane], rows[row + 1, lane] = m.points[job, point, 0], m.points[job, point, 1]
+        rows[row + 2, lane] = 0.0
     m.summary[job, 0], m.summary[job, 1] = 0.0, math.nan
+    _limit_growth(m, lane)
     _enter(t, m, c, lane, m.first_regime[job], 0.0)
 
 
@@ -591,7 +698,7 @@ def _switch_all(t: Any, m: Any, c: Any, special: int, tangent_row: int) -> None:
         special ^= 1 << lane
         hit = m.integers[HIT, lane]
         if hit == LATE_BEGINS:
-            m.rows[LATE, lane] = 1.0
+            _begin_late(t, m, lane, tangent_row + t.n_states)
             # a surface may be crossed at this very instant
             _enter(t, m, c, lane, m.integers[REGIME, lane], m.rows[STEP, lane])
         elif hit >= 0 and m.integers[OUTCOME, lane] == RUNNING:
@@ -600,15 +707,14 @@ def _switch_all(t: Any, m: Any, c: Any, special: int, tangent_row: int) -> None:
 
 
 @inline
-def _ended(t: Any, m: Any, busy: int, tangent_row: int) -> int:
-    """Lanes whose run has ended."""
-    ended = 0
-    for lane in range(LANES):
-        if not busy & (1 << lane):
-            continue
-        if t.tangent:
-            _grow(t, m, lane, tangent_row)
-        if m.integers[OUTCOME, lane] == RUNNING and m.rows[STEPS, lane] >= m.rows[MOST_STEPS, lane]:
+def _ended(t: Any, m: Any, special: int, busy: int) -> int:
+    """Lanes whose run has ended, among those that ended their step and those out of steps."""
+    spent = ~bits_below(load(t.rows + STEPS * ROW), load(t.rows + MOST_STEPS * ROW))
+    bits, ended = (special | spent) & busy, 0
+    while bits:
+        lane = first_bit(bits)
+        bits ^= 1 << lane
+        if m.integers[OUTCOME, lane] == RUNNING and spent & (1 << lane):
             m.integers[OUTCOME, lane] = STEP_LIMIT
         if m.integers[OUTCOME, lane] != RUNNING:
             ended |= 1 << lane
@@ -620,6 +726,7 @@ def _rounds(t: Any, m: Any, c: Any) -> int:
     """Steps of all lanes until none is busy, or there were enough."""
     tangent_row = FIXED_ROWS + t.n_variables
     first_extreme = tangent_row + t.n_states
+    first_time = first_extreme + 2 * t.n_tracked
     first_parameter = t.n_rows - t.n_constants - t.n_parameters
     parameters = t.rows + first_parameter * ROW
     time_unit = first_parameter + t.n_parameters - 1
@@ -645,8 +752,9 @@ def _rounds(t: Any, m: Any, c: Any) -> int:
         while due:
             lane = first_bit(due)
             due ^= 1 << lane
-            _sample(t, m, c, lane)
+            _sample(t, m, c, lane, first_time)
         _observe(t, m, c, first_extreme, busy)
+        turned = _turn(t, m, first_time + t.n_regimes, busy)
         if t.tangent:
             step, at = t.rows + STEP * ROW, t.rows + tangent_row * ROW
             call(t.perturb, (t.series, parameters, step, at, t.n_terms))
@@ -656,7 +764,9 @@ def _rounds(t: Any, m: Any, c: Any) -> int:
             now = clock * load(t.rows + time_unit * ROW)
             store(t.series + t.n_states * t.n_terms * ROW, now)
         _switch_all(t, m, c, special, tangent_row)
-        ended = _ended(t, m, busy, tangent_row)
+        if t.tangent:
+            _grow_all(t, m, tangent_row, busy)
+        ended = _ended(t, m, special | turned, busy)
     return int(busy)
 
 
@@ -680,9 +790,9 @@ def _advance(table: Any) -> int:
         initial=view(t.initial, (t.n_jobs, size), np.float64),
         parameters=view(t.parameters, (t.n_jobs, t.n_parameters), np.float64),
         first_regime=view(t.first_regime, (t.n_jobs,), np.int64),
-        limits=view(t.limits, (t.n_jobs, 5), np.float64),
+        limits=view(t.limits, (t.n_jobs, 6), np.float64),
         final=view(t.final, (t.n_jobs, size), np.float64),
-        extremes=view(t.extremes, (t.n_jobs, t.n_tracked, 4), np.float64),
+        extremes=view(t.extremes, (t.n_jobs, t.n_tracked, 2, 2), np.float64),
         counts=view(t.counts, (t.n_jobs, t.n_kinds), np.int64),
         firsts=view(t.firsts, (t.n_jobs, t.n_kinds), np.float64),
         durations=view(t.durations, (t.n_jobs, t.n_regimes), np.float64),
@@ -691,10 +801,14 @@ def _advance(table: Any) -> int:
         sample_times=view(t.sample_times, (t.n_jobs, t.n_samples), np.float64),
         samples=view(t.samples, (t.n_jobs, t.n_samples, size), np.float64),
         sample_regimes=view(t.sample_regimes, (t.n_jobs, t.n_samples), np.int64),
+        sample_sums=view(t.sample_sums, (t.n_jobs, t.n_samples, t.n_sums), np.float64),
         event_times=view(t.event_times, (t.n_jobs, t.n_logged), np.float64),
         event_kinds=view(t.event_kinds, (t.n_jobs, t.n_logged), np.int64),
         event_regimes=view(t.event_regimes, (t.n_jobs, t.n_logged), np.int64),
         event_states=view(t.event_states, (t.n_jobs, t.n_logged, size), np.float64),
+        peaks=view(t.peaks, (t.n_jobs, t.n_kinds, size), np.float64),
+        points=view(t.points, (t.n_jobs, t.n_points, 2), np.float64),
+        half_turns=view(t.half_turns, (t.n_jobs, t.n_points), np.float64),
         queue=view(t.queue, (3,), np.int64),
     )
     c = view(t.series, (t.n_series, t.n_terms, LANES), np.float64)

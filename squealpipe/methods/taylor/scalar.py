@@ -250,3 +250,9 @@ def python_function(roots: Sequence[Symbol], arguments: Sequence[Symbol], module
     scope: dict[str, Any] = {"math": module}
     exec(source, scope)  # noqa: S102
     return scope["function"]
+
+
+def numpy_function(roots: Sequence[Symbol]) -> tuple[Any, list[str]]:
+    """The values of symbols as a function of arrays, and the names of its arguments."""
+    nodes = [n for n in in_order(list(roots)) if n.kind in {"variable", "parameter"}]
+    return python_function(roots, nodes, np), [n.arguments[0] for n in nodes]

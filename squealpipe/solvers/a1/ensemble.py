@@ -1,118 +1,277 @@
-"""Ensembles of nonlinear runs: any number of lanes, each with its own parameters and angles."""
+"""Ensembles of nonlinear runs: any number of runs, each with its own parameters and angles."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from functools import cached_property
 from types import SimpleNamespace
-from typing import Annotated, Any, NamedTuple
+from typing import Annotated, Any
 
 import numpy as np
 from pydantic import BeforeValidator
 
-from squealpipe.codes import Event
-from squealpipe.methods.processes import run_shared
-from squealpipe.methods.taylor.lanes import (
-    INVERSES,
-    ROUNDS,
-    CompiledSystem,
-    Workspace,
-    aligned,
-    drive,
-    share_of,
-    taylor_terms,
-)
-from squealpipe.methods.taylor.simd import FEW, LANES
-from squealpipe.models.switching import VARIANT_RULES
+from squealpipe.codes import Event, Regime
+from squealpipe.laws.springs import fixed_ends, geometry
+from squealpipe.methods.taylor.loop import BY_EVENT, BY_TURNS, STOPPED
 from squealpipe.parameters import Parameters
 from squealpipe.schema import Outcome
 from squealpipe.solvers.a1.jobs import Jobs, Model
-from squealpipe.solvers.a1.kernel import lane_kernel
-from squealpipe.solvers.a1.own_laws import run_system
-from squealpipe.solvers.a1.records import ARRAYS, IDLE, LANE, MARKS, QUEUE, RESULT, TABLE
-from squealpipe.solvers.a1.system import Dissipation, compiled_system
+from squealpipe.systems import runs
+from squealpipe.systems.system import System
+from squealpipe.systems.trace import TIME
 from squealpipe.validation import Seed, Tolerance, Workers, checked
 
-__all__ = ["MARKS", "Ensemble", "integrate", "run_ensemble", "run_map"]
 BLOCK = 2**17
 """Runs of a map that are held in memory at once, about 1 kB each."""
+NEAR_PIVOT = 1e-3
+"""Distance from a pivot, in free lengths, from which an overflow is its doing."""
+TRACKED = ("x", "vx", "contact_force", "reach")
+"""Quantities of the system whose extremes an :class:`Ensemble` may hold."""
 
 
-@dataclass(frozen=True)
 class Ensemble:
-    """Results of an ensemble; arrays have the broadcast shape of its inputs, SI units.
+    """Results of an ensemble; arrays have the broadcast shape of its inputs, SI units."""
 
-    Attributes:
-        outcome: ``schema.Outcome`` of each run.
-        time: time reached, s.
-        first_separation_time: s, NaN where contact was never lost.
-        separated_time, stick_time: total time in those regimes, s.
-        peak_contact_force, lowest_contact_force: extremes of N/(k3 l_pre) while in contact.
-        return_peak_contact_force: the largest from the first return to the belt on; NaN: none.
-        impact_speed: largest |ẏ| at a return to the belt, m/s; NaN: none.
-        max_displacement: largest √(x² + y²), m.
-        early_max_x, late_max_x: largest |x| in integration steps that begin before ``t_late``, and
-            from there on, m.
-        early_max_vx, late_max_vx: largest |ẋ|, likewise, m/s.
-        max_vx: largest ẋ at the ends of integration steps, m/s.
-        nearest_pivot: smallest distance to a fixed end at step ends, in free lengths.
-        turns: net turns around both fixed ends, counterclockwise positive; counted by half turns,
-            so that the angle is known to half a turn.
-        separations, contacts, sticks, slips, reversals: event counts; ``events`` their sum.
-        steps: integration steps.
-        final_state: (…, 4) x, y, vx, vy at ``time``, m and m/s; final_regime its regime.
-        log_growth: ln of the growth of a perturbation (0 without ``tangent``).
-        predictability_horizon: time at which an error of ``tol`` has grown to l_pre/1000, s;
-            NaN: not before the end.
-        mark_separated_time, mark_stick_time, mark_turns, mark_log_growth, mark_separations,
-            mark_contacts, mark_state: what held at the ends of the steps that reached the shares
-            :data:`MARKS` of the run, in a last axis (of the state, the last but one).
-        samples, sample_regimes: states (…, n, 4) at ``times``; NaN and −1 past ``time``.
-        event_times, event_kinds, event_states: the first ``log_events`` events; NaN and −1 after
-            the last one.
-    """
+    def __init__(self, jobs: Jobs, raw: dict[str, np.ndarray], tracked: Sequence[str]) -> None:
+        self._jobs, self._raw, self._tracked = jobs, raw, list(tracked)
+        system = jobs.systems[0]
+        names = [next((r for r in Regime if name.startswith(r.name)), Regime.separated)
+                 for name in system.regimes]  # fmt: skip
+        self._regimes = np.array([*names, -1])
+        kinds = [Event.__members__.get(name, -1) for name in system.traced.kinds]
+        self._kinds = np.array([*kinds, -1])
 
-    outcome: np.ndarray
-    time: np.ndarray
-    first_separation_time: np.ndarray
-    separated_time: np.ndarray
-    stick_time: np.ndarray
-    peak_contact_force: np.ndarray
-    lowest_contact_force: np.ndarray
-    return_peak_contact_force: np.ndarray
-    impact_speed: np.ndarray
-    max_displacement: np.ndarray
-    early_max_x: np.ndarray
-    late_max_x: np.ndarray
-    early_max_vx: np.ndarray
-    late_max_vx: np.ndarray
-    max_vx: np.ndarray
-    nearest_pivot: np.ndarray
-    turns: np.ndarray
-    separations: np.ndarray
-    contacts: np.ndarray
-    sticks: np.ndarray
-    slips: np.ndarray
-    reversals: np.ndarray
-    events: np.ndarray
-    steps: np.ndarray
-    final_state: np.ndarray
-    final_regime: np.ndarray
-    log_growth: np.ndarray
-    predictability_horizon: np.ndarray
-    mark_separated_time: np.ndarray
-    mark_stick_time: np.ndarray
-    mark_turns: np.ndarray
-    mark_log_growth: np.ndarray
-    mark_separations: np.ndarray
-    mark_contacts: np.ndarray
-    mark_state: np.ndarray
-    samples: np.ndarray
-    sample_regimes: np.ndarray
-    event_times: np.ndarray
-    event_kinds: np.ndarray
-    event_states: np.ndarray
+    def _shaped(self, values: Any, unit: Any = None) -> np.ndarray:
+        """Values of the runs in the caller's shape, times a unit that each run has."""
+        values = np.asarray(values)
+        if unit is not None:
+            values = values * unit.reshape(-1, *(1,) * (values.ndim - 1))
+        return np.asarray(values.reshape(self._jobs.shape + values.shape[1:]))
+
+    def _states(self, values: np.ndarray) -> np.ndarray:
+        length, time = self._jobs.length, self._jobs.time_unit
+        units = np.stack([length, length, length / time, length / time], axis=-1)
+        return self._shaped(values * units.reshape(len(units), *(1,) * (values.ndim - 2), 4))
+
+    def _extremes(self, name: str, part: str = "") -> tuple[np.ndarray, np.ndarray]:
+        """Smallest and largest value of a tracked quantity."""
+        values = self._raw[f"{part}extremes"][:, self._tracked.index(name)]
+        return values[:, 0], values[:, 1]
+
+    def _largest(self, name: str, part: str = "") -> np.ndarray:
+        """Largest magnitude of x or ẋ; 0 of a part that was not reached."""
+        ends = np.abs(self._extremes(name, part)).max(axis=0)
+        unit = self._jobs.length if name == "x" else self._jobs.length / self._jobs.time_unit
+        return self._shaped(np.where(np.isfinite(ends), ends, 0.0), unit)
+
+    def _count(self, kind: Event, counts: str = "counts") -> np.ndarray:
+        return self._shaped(self._raw[counts][..., self._kinds[:-1] == kind].sum(axis=-1))
+
+    def _spent(self, regime: Regime, durations: str = "durations") -> np.ndarray:
+        found = self._raw[durations][..., self._regimes[:-1] == regime].sum(axis=-1)
+        return self._shaped(found, self._jobs.time_unit)
+
+    @cached_property
+    def outcome(self) -> np.ndarray:
+        """``schema.Outcome`` of each run."""
+        codes = self._raw["ends"][:, 0]
+        # a state that is lost next to a pivot is so by its doing
+        away = self._raw["final"][:, None, :2] - self._raw["points"]
+        lengths = np.stack([self._jobs.values[name] for name in ("length1", "length2")], axis=-1)
+        near = (np.linalg.norm(away, axis=-1) < NEAR_PIVOT * lengths).any(axis=1)
+        lost = (codes >= STOPPED) | ((codes == Outcome.not_finite) & near)
+        found = np.where(lost, Outcome.singular_geometry, codes)
+        found[codes == BY_EVENT] = Outcome.separated
+        found[codes == BY_TURNS] = Outcome.amplitude_reached
+        if self._jobs.stop_at_first_separation:
+            found[self._raw["starts_apart"]] = Outcome.separated
+        return self._shaped(found.astype(np.int8))
+
+    @cached_property
+    def time(self) -> np.ndarray:
+        """Time reached, s."""
+        return self._shaped(self._raw["summary"][:, 2], self._jobs.time_unit)
+
+    @cached_property
+    def first_separation_time(self) -> np.ndarray:
+        """s, NaN where contact was never lost."""
+        firsts = self._raw["firsts"][:, self._kinds[:-1] == Event.separation]
+        lost = np.where(self._raw["starts_apart"], 0.0, np.fmin.reduce(firsts, 1, initial=np.nan))
+        return self._shaped(lost, self._jobs.time_unit)
+
+    @property
+    def separated_time(self) -> np.ndarray:
+        """Total time without contact, s."""
+        return self._spent(Regime.separated)
+
+    @property
+    def stick_time(self) -> np.ndarray:
+        """Total time in stick, s."""
+        return self._spent(Regime.stick)
+
+    @property
+    def peak_contact_force(self) -> np.ndarray:
+        """Largest N/(k3 l_pre)."""
+        return self._shaped(self._extremes("contact_force")[1] / self._jobs.values["k3"])
+
+    @property
+    def lowest_contact_force(self) -> np.ndarray:
+        """Smallest N/(k3 l_pre); 0 where contact was lost."""
+        lowest = self._extremes("contact_force")[0] / self._jobs.values["k3"]
+        kept = np.isnan(self.first_separation_time.reshape(-1))
+        return self._shaped(np.where(kept, lowest, 0.0))
+
+    @property
+    def return_peak_contact_force(self) -> np.ndarray:
+        """The largest from the first return to the belt on; NaN: none."""
+        peak = self._extremes("contact_force", "late_")[1] / self._jobs.values["k3"]
+        return self._shaped(np.where(np.isfinite(peak), peak, np.nan))
+
+    @property
+    def impact_speed(self) -> np.ndarray:
+        """Largest |ẏ| at a return to the belt, m/s; NaN: none."""
+        fastest = self._raw["peaks"][:, self._kinds[:-1] == Event.contact, 3].max(axis=1, initial=0)
+        speed = np.where(self.contacts.reshape(-1) > 0, fastest, np.nan)
+        return self._shaped(speed, self._jobs.length / self._jobs.time_unit)
+
+    @property
+    def max_displacement(self) -> np.ndarray:
+        """Largest √(x² + y²), m."""
+        return self._shaped(np.sqrt(self._extremes("reach")[1]), self._jobs.length)
+
+    @property
+    def early_max_x(self) -> np.ndarray:
+        """Largest |x| before ``t_late``, m."""
+        return self._largest("x", "early_")
+
+    @property
+    def late_max_x(self) -> np.ndarray:
+        """Largest |x| from ``t_late`` on, m."""
+        return self._largest("x", "late_")
+
+    @property
+    def late_max_vx(self) -> np.ndarray:
+        """Largest |ẋ| from ``t_late`` on, m/s."""
+        return self._largest("vx", "late_")
+
+    @property
+    def max_vx(self) -> np.ndarray:
+        """Largest ẋ, m/s."""
+        return self._shaped(self._extremes("vx")[1], self._jobs.length / self._jobs.time_unit)
+
+    def _turns(self, half_turns: np.ndarray) -> np.ndarray:
+        """Turns around both fixed ends; 0 where they turn against one another."""
+        first, second = half_turns[..., 0], half_turns[..., 1]
+        least = 0.5 * np.sign(first) * np.minimum(np.abs(first), np.abs(second))
+        return self._shaped(np.where(first * second > 0, least, 0.0))
+
+    @property
+    def turns(self) -> np.ndarray:
+        """Net turns around both fixed ends, counterclockwise positive, to half a turn."""
+        return self._turns(self._raw["half_turns"])
+
+    @property
+    def separations(self) -> np.ndarray:
+        """Number of events; likewise the following."""
+        return self._count(Event.separation)
+
+    @property
+    def contacts(self) -> np.ndarray:  # noqa: D102
+        return self._count(Event.contact)
+
+    @property
+    def sticks(self) -> np.ndarray:  # noqa: D102
+        return self._count(Event.stick)
+
+    @property
+    def slips(self) -> np.ndarray:  # noqa: D102
+        return self._count(Event.slip)
+
+    @property
+    def reversals(self) -> np.ndarray:  # noqa: D102
+        return self._count(Event.reversal)
+
+    @cached_property
+    def events(self) -> np.ndarray:
+        """Their sum."""
+        return self._shaped(self._raw["counts"][:, self._kinds[:-1] >= 0].sum(axis=1))
+
+    @property
+    def steps(self) -> np.ndarray:
+        """Integration steps."""
+        return self._shaped(self._raw["ends"][:, 2])
+
+    @property
+    def final_state(self) -> np.ndarray:
+        """(…, 4) x, y, ẋ, ẏ at ``time``, m and m/s."""
+        return self._states(self._raw["final"])
+
+    @property
+    def final_regime(self) -> np.ndarray:
+        """The regime then."""
+        return self._shaped(self._regimes[self._raw["ends"][:, 1]].astype(np.int8))
+
+    @property
+    def log_growth(self) -> np.ndarray:
+        """ln of the growth of a perturbation; 0 without ``tangent``."""
+        return self._shaped(self._raw["summary"][:, 0])
+
+    @property
+    def predictability_horizon(self) -> np.ndarray:
+        """Time at which an error of ``tol`` has grown to l_pre/1000, s; NaN: not before the end."""
+        return self._shaped(self._raw["summary"][:, 1], self._jobs.time_unit)
+
+    @property
+    def samples(self) -> np.ndarray:
+        """States (…, n, 4) at ``times``; NaN past ``time``."""
+        return self._states(self._raw["samples"])
+
+    @property
+    def sample_regimes(self) -> np.ndarray:
+        """Regimes there; −1 past ``time``."""
+        return self._shaped(self._regimes[self._raw["sample_regimes"]].astype(np.int8))
+
+    @property
+    def sample_separated_time(self) -> np.ndarray:
+        """What has added up there, with ``sums``: ``separated_time``; likewise the following."""
+        return self._spent(Regime.separated, "sample_durations")
+
+    @property
+    def sample_stick_time(self) -> np.ndarray:  # noqa: D102
+        return self._spent(Regime.stick, "sample_durations")
+
+    @property
+    def sample_separations(self) -> np.ndarray:  # noqa: D102
+        return self._count(Event.separation, "sample_counts")
+
+    @property
+    def sample_contacts(self) -> np.ndarray:  # noqa: D102
+        return self._count(Event.contact, "sample_counts")
+
+    @property
+    def sample_turns(self) -> np.ndarray:  # noqa: D102
+        return self._turns(self._raw["sample_half_turns"])
+
+    @property
+    def sample_log_growth(self) -> np.ndarray:
+        """``log_growth`` at the end of the step before."""
+        return self._shaped(self._raw["sample_growth"][..., 0])
+
+    @property
+    def event_times(self) -> np.ndarray:
+        """The first ``log_events`` events, s; NaN after the last one."""
+        return self._shaped(self._raw["event_times"], self._jobs.time_unit)
+
+    @property
+    def event_kinds(self) -> np.ndarray:
+        """Their kinds; −1 after the last one."""
+        return self._shaped(self._kinds[self._raw["event_kinds"]].astype(np.int8))
+
+    @property
+    def event_states(self) -> np.ndarray:
+        """The states (…, n, 4) after them; NaN after the last one."""
+        return self._states(self._raw["event_states"])
 
 
 def _fields(value: Any) -> Any:
@@ -137,20 +296,20 @@ def run_ensemble(
     tol: Tolerance = 1e-12,
     initial_state: Any = (0.0, 0.0, 0.0, 0.0),
     times: Any = None,
+    sums: bool = False,
     stop_at_first_separation: bool = False,
-    stop_at_x: Any = math.inf,
     stop_at_turns: float = math.inf,
     t_late: Any = math.inf,
+    tracked: Sequence[str] = TRACKED,
     tangent: bool = False,
     log_events: Seed = 0,
     workers: Workers = None,
 ) -> Ensemble:
     """Integrate many runs at once; every argument may differ from run to run.
 
-    ``parameters`` (values of the mapping), ``alpha1``, ``alpha2``, ``t_end``, ``stop_at_x`` and
-    ``t_late`` are broadcast against one another; the results have that shape. Units of mass,
-    stiffness and length may differ between runs too: each is integrated in units of
-    m = k1 = l_pre = 1.
+    ``parameters`` (values of the mapping), ``alpha1``, ``alpha2``, ``t_end`` and ``t_late`` are
+    broadcast against one another; the results have that shape. Units of mass, stiffness and length
+    may differ between runs too: each is integrated in units of m = k1 = l_pre = 1.
 
     Args:
         parameters: ``Parameters``, or a mapping of its field names to arrays; fields left out
@@ -162,10 +321,13 @@ def run_ensemble(
         tol: tolerance of the Taylor integrator.
         initial_state: (x, y, vx, vy) in m and m/s, broadcast over the runs (last axis 4).
         times: instants (last axis), the same for all runs or one row per run, s, ascending.
+        sums: keep what has added up at these instants, too.
         stop_at_first_separation: end a run there with outcome ``separated``.
-        stop_at_x: end a run when |x| exceeds this, m, with outcome ``amplitude_reached``.
-        stop_at_turns: end a run at this many net turns around both fixed ends, likewise.
-        t_late: where ``early_max_x`` ends and ``late_max_x`` starts, at the end of a step, s.
+        stop_at_turns: end a run at this many net turns around both fixed ends, with outcome
+            ``amplitude_reached``.
+        t_late: where early extremes end and late ones begin, s; "return" stands for the first
+            return to the belt, and ``return_peak_contact_force`` asks for it.
+        tracked: of :data:`TRACKED`, those whose extremes are read.
         tangent: carry one perturbation along (for the predictability horizon).
         log_events: number of events a run to keep.
         workers: processes; None takes all cores. The results are the same bit for bit.
@@ -184,90 +346,101 @@ def run_ensemble(
         initial_state=initial_state,
         times=times,
         stop_at_first_separation=stop_at_first_separation,
-        stop_at_x=stop_at_x,
         stop_at_turns=stop_at_turns,
         t_late=t_late,
     )
-    found = integrate(jobs, RESULTS, tangent=tangent, log_events=log_events, workers=workers)
-    return Ensemble(**found)
+    return integrate(
+        jobs, tracked, sums=sums, tangent=tangent, log_events=log_events, workers=workers
+    )
 
 
 def integrate(
     jobs: Jobs,
-    wanted: Iterable[str],
+    tracked: Sequence[str],
     *,
-    tangent: bool = False,
     log_events: int = 0,
     few: bool = False,
-    workers: int | None = None,
-) -> dict[str, np.ndarray]:
-    """The results of some runs that are asked for, by their names in :class:`Ensemble`.
+    **options: Any,
+) -> Ensemble:
+    """The results of some runs.
 
     Args:
         jobs: the runs.
-        wanted: attributes of :class:`Ensemble`.
-        tangent, log_events, workers: as in :func:`run_ensemble`.
-        few: compute few lanes only, for at most ``simd.FEW`` runs: the same bits in half of the
-            time, after another second of compilation.
+        tracked, log_events, options: as in :func:`run_ensemble`.
+        few: compute few lanes only, for at most ``simd.FEW`` runs: in half of the time, after
+            another second of compilation.
     """
-    groups = jobs.groups()
-    if jobs.own is not None:
-        found = run_system(jobs, jobs.own, set(wanted), tangent, log_events, workers)
-    elif len(groups) == 1:
-        (dissipation,) = groups
-        found = _run(jobs, dissipation, wanted, tangent, log_events, few, workers)
-    else:
-        parts = [
-            (rows, _run(jobs.subset(rows), dissipation, wanted, tangent, log_events, few, workers))
-            for dissipation, rows in groups.items()
-        ]
-        found = {name: _joined([(rows, part[name]) for rows, part in parts]) for name in wanted}
-    return {name: values.reshape(jobs.shape + values.shape[1:]) for name, values in found.items()}
+    parts = [
+        (rows, _run(jobs, system, rows, tracked, log_events, few=few, **options))
+        for system, rows in jobs.groups()
+    ]
+    _, raw = parts[0]
+    if len(parts) > 1:
+        size = len(jobs.t_end)
+        raw = {key: np.empty((size, *first.shape[1:]), first.dtype) for key, first in raw.items()}
+        for rows, part in parts:
+            for key, values in part.items():
+                raw[key][rows] = values
+    return Ensemble(jobs, raw, tracked)
 
 
 def _run(
-    jobs: Jobs,
-    dissipation: Dissipation,
-    wanted: Iterable[str],
-    tangent: bool,
-    log_events: int,
-    few: bool,
-    workers: int | None,
+    jobs: Jobs, system: System, rows: Any, tracked: Sequence[str], log_events: int, **options: Any
 ) -> dict[str, np.ndarray]:
-    """Runs that share one compiled system; results in the caller's units, one row per run."""
-    size = len(jobs.orders)
-    shapes = {
-        "results": ((size,), RESULT),
-        "samples": ((size, jobs.times.shape[1], 4), np.float64),
-        "sample_regimes": ((size, jobs.times.shape[1]), np.int64),
-        "event_times": ((size, log_events), np.float64),
-        "event_kinds": ((size, log_events), np.int64),
-        "event_states": ((size, log_events, 4), np.float64),
+    """Raw results of the runs of one system, one row each."""
+    values = {name: each[rows] for name, each in jobs.values.items()}
+    t_end, t_late = jobs.t_end[rows], jobs.t_late[rows]
+    starts = system.first_regimes({TIME: np.zeros(len(t_end)), **values}, len(t_end))
+    apart = np.array([name in {"separated", "released"} for name in system.regimes])[starts]
+    g = geometry(values["alpha1"], values["alpha2"])
+    points = np.stack(fixed_ends(SimpleNamespace(**values), g), axis=-1).reshape(-1, 2, 2)
+    until = "separation" if jobs.stop_at_first_separation else None
+    most_steps, most_events = jobs.most
+    room = log_events
+    while True:
+        raw = runs.integrate(
+            system,
+            values,
+            np.where(apart, 0.0, t_end) if until else t_end,
+            regime=starts,
+            t_late=t_late,
+            late_from="contact" if jobs.late_from_return else None,
+            until=until,
+            around=points,
+            most_turns=jobs.stop_at_turns,
+            tracked=tracked,
+            times=jobs.times[rows],
+            tol=jobs.tol,
+            log_events=room,
+            most_steps=most_steps[rows],
+            most_events=most_events[rows],
+            **options,
+        )
+        raw |= {"starts_apart": apart, "points": points}
+        others = np.array([name not in Event.__members__ for name in system.traced.kinds])
+        if not log_events or not others.any():
+            return raw
+        # knots of a law's table are no events of A1
+        most = int(raw["ends"][:, 3].max(initial=0))
+        if most <= room:
+            return raw | _without(others, raw, log_events)
+        room = most
+
+
+def _without(others: np.ndarray, raw: dict[str, np.ndarray], room: int) -> dict[str, np.ndarray]:
+    """The first logged events of each run without those of other kinds."""
+    kinds = raw["event_kinds"]
+    gone = (kinds < 0) | others[kinds]
+    order = np.argsort(gone, axis=1, kind="stable")[:, :room]
+    gone = np.take_along_axis(gone, order, axis=1)
+    times, states = raw["event_times"], raw["event_states"]
+    return {
+        "event_kinds": np.where(gone, -1, np.take_along_axis(kinds, order, axis=1)),
+        "event_times": np.where(gone, np.nan, np.take_along_axis(times, order, axis=1)),
+        "event_states": np.where(
+            gone[..., None], np.nan, np.take_along_axis(states, order[..., None], axis=1)
+        ),
     }
-    # Compiled before the processes fork, so that all share one copy.
-    system = compiled_system(
-        linear_springs=VARIANT_RULES[jobs.model].linear_springs,
-        dissipation=dissipation,
-        tangent=tangent,
-        few=few and size <= FEW,
-    )
-    lane_kernel()
-
-    def work(arrays: dict[str, np.ndarray], first: int, stride: int) -> None:
-        _run_lanes(system, jobs, arrays, (first, stride), tangent=tangent)
-
-    arrays = run_shared(work, shapes, jobs=size, workers=workers)
-    raw, units = SimpleNamespace(**arrays), _Units.of(jobs)
-    return {name: RESULTS[name](raw, units) for name in wanted}
-
-
-def _joined(parts: Sequence[tuple[np.ndarray, np.ndarray]]) -> np.ndarray:
-    """An array over all runs from those over parts of the rows."""
-    _, first = parts[0]
-    whole = np.empty((sum(rows.size for rows, _ in parts), *first.shape[1:]), first.dtype)
-    for rows, array in parts:
-        whole[rows] = array
-    return whole
 
 
 def run_map(
@@ -295,131 +468,3 @@ def run_map(
         for name in wanted:
             parts[name].append(getattr(run, name))
     return SimpleNamespace(**{name: np.concatenate(arrays) for name, arrays in parts.items()})
-
-
-def _run_lanes(
-    system: CompiledSystem,
-    jobs: Jobs,
-    arrays: dict[str, np.ndarray],
-    share: tuple[int, int],
-    *,
-    tangent: bool,
-) -> None:
-    """Run the jobs first, first + stride, … in one process."""
-    first, stride = share
-    for name, fill in (("samples", np.nan), ("event_times", np.nan), ("event_states", np.nan)):
-        arrays[name][first::stride] = fill
-    for name in ("sample_regimes", "event_kinds"):
-        arrays[name][first::stride] = -1
-    # A run that never ends has failed.
-    arrays["results"]["outcome"][first::stride] = Outcome.not_finite
-    terms = taylor_terms(jobs.tol)
-    # An idle lane keeps its last job's numbers, or these: no distance is zero.
-    numbers = aligned(LANE.itemsize // 8)
-    numbers[:] = 1.0
-    lanes = np.ndarray(1, LANE, numbers)
-    lanes["job"], lanes["longest_step"] = IDLE, np.inf
-    arrays = arrays | {
-        "lanes": lanes,
-        "series": aligned(system.n_series, terms, LANES),
-        "inverses": INVERSES,
-        "orders": jobs.orders,
-        "initial": jobs.initial,
-        "sample_times": jobs.times,
-        "queue": np.array([(first, len(jobs.orders), stride)], QUEUE),
-    }
-    sizes = {
-        "n_terms": terms,
-        "n_jobs": len(jobs.orders),
-        "n_samples": jobs.times.shape[1],
-        "n_logged": arrays["event_times"].shape[1],
-        "n_rounds": ROUNDS,
-        "tangent": tangent,
-        "take_step": system.series,
-        "perturb": system.perturb,
-        "longest": system.longest,
-    }
-    table = Workspace(TABLE, {name: arrays[name] for name in ARRAYS}, sizes)
-    queue, row = arrays["queue"].view("i8"), lanes[0]
-    drive(lane_kernel(), table, lambda: share_of(row["job"], row["clock"], row["t_end"], queue))
-    if lanes["job"].max() != IDLE or arrays["queue"][0]["next"] < len(jobs.orders):
-        raise RuntimeError(
-            "an exception in compiled code, reported above, ended the integration before its runs "
-            "were finished; please report the parameters"
-        )
-
-
-class _Units(NamedTuple):
-    """The caller's units, one row per run."""
-
-    t: np.ndarray
-    length: np.ndarray
-    speed: np.ndarray
-    state: np.ndarray
-
-    @classmethod
-    def of(cls, jobs: Jobs) -> _Units:
-        length, speed = jobs.length, jobs.length / jobs.time_unit
-        state = np.array([length, length, speed, speed]).T
-        return cls(jobs.time_unit, length, speed, state)
-
-
-def _force(raw: Any, row: str) -> Any:
-    """N/(k3 l_pre) at an extreme of y; 0 where a run was never in contact."""
-    separated = raw.results["lowest_y"] == np.inf
-    return np.where(separated, 0.0, 1.0 - raw.results[row])
-
-
-def _common_turns(first: np.ndarray, second: np.ndarray) -> np.ndarray:
-    """Turns around both points from half turns around each; 0 where they turn against another."""
-    least = np.minimum(np.abs(first), np.abs(second))
-    return np.where(first * second > 0, 0.5 * np.sign(first) * least, 0.0)
-
-
-def _count(kind: int) -> Callable[[Any, _Units], Any]:
-    return lambda raw, _: raw.results["kinds"][:, kind]
-
-
-RESULTS: dict[str, Callable[[Any, _Units], Any]] = {
-    "outcome": lambda raw, _: raw.results["outcome"].astype(np.int8),
-    "time": lambda raw, u: raw.results["time"] * u.t,
-    "first_separation_time": lambda raw, u: raw.results["first_separation"] * u.t,
-    "separated_time": lambda raw, u: raw.results["separated_time"] * u.t,
-    "stick_time": lambda raw, u: raw.results["stick_time"] * u.t,
-    "peak_contact_force": lambda raw, _: _force(raw, "lowest_y"),
-    "lowest_contact_force": lambda raw, _: _force(raw, "highest_y"),
-    "return_peak_contact_force": lambda raw, _: 1.0 - raw.results["return_lowest_y"],
-    "impact_speed": lambda raw, u: raw.results["impact_speed"] * u.speed,
-    "max_displacement": lambda raw, u: np.sqrt(raw.results["largest_r2"]) * u.length,
-    "early_max_x": lambda raw, u: raw.results["early_largest_x"] * u.length,
-    "late_max_x": lambda raw, u: raw.results["late_largest_x"] * u.length,
-    "early_max_vx": lambda raw, u: raw.results["early_largest_vx"] * u.speed,
-    "late_max_vx": lambda raw, u: raw.results["late_largest_vx"] * u.speed,
-    "max_vx": lambda raw, u: raw.results["largest_speed"] * u.speed,
-    "nearest_pivot": lambda raw, _: np.sqrt(raw.results["nearest_pivot2"]),
-    "turns": lambda raw, _: _common_turns(*raw.results["half_turns"].T),
-    "separations": _count(Event.separation),
-    "contacts": _count(Event.contact),
-    "sticks": _count(Event.stick),
-    "slips": _count(Event.slip),
-    "reversals": _count(Event.reversal),
-    "events": lambda raw, _: raw.results["events"],
-    "steps": lambda raw, _: raw.results["steps"],
-    "final_state": lambda raw, u: raw.results["final_state"] * u.state,
-    "final_regime": lambda raw, _: raw.results["regime"].astype(np.int8),
-    "log_growth": lambda raw, _: raw.results["log_growth"],
-    "predictability_horizon": lambda raw, u: raw.results["horizon"] * u.t,
-    "mark_separated_time": lambda raw, u: raw.results["mark_separated_time"] * u.t[:, None],
-    "mark_stick_time": lambda raw, u: raw.results["mark_stick_time"] * u.t[:, None],
-    "mark_turns": lambda raw, _: _common_turns(*np.moveaxis(raw.results["mark_half_turns"], -1, 0)),
-    "mark_log_growth": lambda raw, _: raw.results["mark_growth"],
-    "mark_separations": lambda raw, _: raw.results["mark_kinds"][..., Event.separation],
-    "mark_contacts": lambda raw, _: raw.results["mark_kinds"][..., Event.contact],
-    "mark_state": lambda raw, u: raw.results["mark_state"] * u.state[:, None],
-    "samples": lambda raw, u: raw.samples * u.state[:, None],
-    "sample_regimes": lambda raw, _: raw.sample_regimes.astype(np.int8),
-    "event_times": lambda raw, u: raw.event_times * u.t[:, None],
-    "event_kinds": lambda raw, _: raw.event_kinds.astype(np.int8),
-    "event_states": lambda raw, u: raw.event_states * u.state[:, None],
-}
-"""Each attribute of :class:`Ensemble` from the kernel's records, in the caller's units."""

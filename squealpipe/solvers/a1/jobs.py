@@ -3,44 +3,53 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 from typing import Annotated, Any
 
 import numpy as np
 
-from squealpipe.laws import springs
 from squealpipe.models.refusals import WHY_A4, refuse_extensions
-from squealpipe.models.switching import VARIANT_RULES
-from squealpipe.parameters import Parameters
-from squealpipe.solvers.a1.own_laws import OwnLaws, split
-from squealpipe.solvers.a1.scaling import scaled_parameters
-from squealpipe.solvers.a1.system import DISSIPATIONS, Dissipation
+from squealpipe.models.variants import VARIANT_RULES
+from squealpipe.parameters import NUMBERS_OF_A1, Parameters
+from squealpipe.solvers.a1.scaling import scaled_runs
+from squealpipe.systems.system import System
 from squealpipe.validation import one_of, real_array
 
 Model = Annotated[str, one_of(VARIANT_RULES)]
 """A nonlinear model, or a variant of it."""
 MOST_TIME_UNITS = 1e9
 """Longest run; beyond it, one takes hours."""
-
-LOST_ERROR = 1e-3
-"""Error, in l_pre, from which a state says nothing about its run."""
+STATE = ("x", "y", "vx", "vy")
 
 
 @dataclass(frozen=True)
 class Jobs:
-    """Runs in units of m = k1 = l_pre = 1, one row each, and the units to go back."""
+    """Runs in units of m = k1 = l_pre = 1, one row each, and the units to go back.
 
-    model: str
+    Attributes:
+        systems, which: A1 with the forces of some runs, and the index of that of each.
+        values: states at the start and parameters of the system by name, (runs,).
+        t_end, t_late: instants.
+        late_from_return: late extremes begin with the first return to the belt.
+        stop_at_first_separation, stop_at_turns: what else ends a run.
+        most: steps, and events, that end a run.
+    """
+
     tol: float
     shape: tuple[int, ...]
-    orders: np.ndarray
-    initial: np.ndarray
+    systems: tuple[System, ...]
+    which: np.ndarray
+    values: dict[str, np.ndarray]
+    t_end: np.ndarray
+    t_late: np.ndarray
+    late_from_return: bool
     times: np.ndarray
+    stop_at_first_separation: bool
+    stop_at_turns: float
+    most: tuple[np.ndarray, np.ndarray]
     time_unit: np.ndarray
     length: np.ndarray
-    dissipation: np.ndarray
-    own: OwnLaws | None = None
 
     @classmethod
     def build(
@@ -55,21 +64,19 @@ class Jobs:
         initial_state: Any,
         times: Any,
         stop_at_first_separation: bool = False,
-        stop_at_x: Any = math.inf,
         stop_at_turns: float = math.inf,
         t_late: Any = math.inf,
     ) -> Jobs:
         """Jobs from the arguments of :func:`squealpipe.solvers.a1.ensemble.run_ensemble`."""
-        rules = VARIANT_RULES[model]
-        parameters, own = split(parameters, model)
-        physical = scaled_parameters(parameters, linear_springs=rules.linear_springs)
+        if model == "A4" and isinstance(parameters, Parameters):
+            refuse_extensions(parameters, "model A4", WHY_A4)
+        physical = scaled_runs(parameters, model)
+        late_from_return = isinstance(t_late, str) and t_late == "return"
         inputs = {
             "alpha1": real_array("alpha1", alpha1),
             "alpha2": real_array("alpha2", alpha2),
             "t_end": real_array("t_end", t_end),
-            "stop_at_x": real_array("stop_at_x", stop_at_x, infinite=True),
-            "t_late": real_array("t_late", t_late, infinite=True),
-            "stop_at_turns": real_array("stop_at_turns", stop_at_turns, infinite=True),
+            "t_late": real_array("t_late", math.inf if late_from_return else t_late, infinite=True),
         }
         state = real_array("initial_state", initial_state)
         if state.shape[-1:] != (4,):
@@ -82,61 +89,39 @@ class Jobs:
         def flat(array: np.ndarray) -> np.ndarray:
             return _spread(array, shape).reshape(-1)
 
-        time_unit, ends = flat(physical.time_unit), flat(inputs["t_end"])
+        time_unit, ends, length = (
+            flat(a) for a in (physical.time_unit, inputs["t_end"], physical.length)
+        )
         _refuse_too_long(ends, time_unit)
-        length, dissipation = flat(physical.length), flat(physical.dissipation)
-        if model == "A4" and isinstance(parameters, Parameters):
-            refuse_extensions(parameters, "model A4", WHY_A4)
-        if model == "A4" and dissipation.any():
-            raise ValueError(f"model A4 carries no damping and Coulomb's law with one μ: {WHY_A4}")
-        orders = flat(physical.orders).copy()
-        if not rules.drags:
-            for name in ("mu", "static_mu", "onset_mu"):
-                orders[name] *= -1.0
         t_end, rate = ends / time_unit, flat(physical.rate)
-        for name, values in {
-            **springs.geometry(flat(inputs["alpha1"]), flat(inputs["alpha2"]))._asdict(),
-            **rules._asdict(),
-            "t_end": t_end,
-            "t_late": flat(inputs["t_late"]) / time_unit,
-            "stop_at_x": flat(inputs["stop_at_x"]) / length,
-            "stop_at_separation": stop_at_first_separation,
-            "stop_at_turns": flat(inputs["stop_at_turns"]),
-            "lost_growth": math.log(LOST_ERROR / tol),
-            "max_steps": 1e4 + 200 * rate * t_end,
-            "max_events": 1e3 + 20 * rate * t_end,
-        }.items():
-            orders[name] = values
-        if own is not None:
-            own = replace(own, alpha1=flat(inputs["alpha1"]), alpha2=flat(inputs["alpha2"]))
-        initial = _spread(state, (*shape, 4)).reshape(-1, 4)
-        speed_unit = length / time_unit
-        scale = np.array([length, length, speed_unit, speed_unit]).T
+        speed = length / time_unit
+        units = (length, length, speed, speed)
+        columns = np.moveaxis(_spread(state, (*shape, 4)).reshape(-1, 4), -1, 0)
+        values = {name: flat(physical.numbers[name]) for name in NUMBERS_OF_A1}
+        values |= {name: flat(inputs[name]) for name in ("alpha1", "alpha2")}
+        values |= {n: c / u for n, c, u in zip(STATE, columns, units, strict=True)}
         return cls(
-            model=model,
             tol=tol,
             shape=shape,
-            orders=orders,
-            initial=np.ascontiguousarray(initial / scale),
+            systems=physical.systems,
+            which=flat(physical.which),
+            values=values,
+            t_end=t_end,
+            t_late=flat(inputs["t_late"]) / time_unit,
+            late_from_return=late_from_return,
             times=_sample_times(times, shape, ends, time_unit),
+            stop_at_first_separation=stop_at_first_separation,
+            stop_at_turns=stop_at_turns,
+            most=(1e4 + 200 * rate * t_end, 1e3 + 20 * rate * t_end),
             time_unit=time_unit,
             length=length,
-            dissipation=dissipation,
-            own=own,
         )
 
-    def groups(self) -> dict[Dissipation, np.ndarray]:
-        """Rows of the runs of each system that is to be compiled."""
-        return {
-            DISSIPATIONS[code]: np.flatnonzero(self.dissipation == code)
-            for code in sorted(set(self.dissipation.tolist())) or [0]
-        }
-
-    def subset(self, rows: np.ndarray) -> Jobs:
-        """Some of the runs."""
-        per_run = ("orders", "initial", "times", "time_unit", "length", "dissipation")
-        chosen = {name: getattr(self, name)[rows] for name in per_run}
-        return replace(self, shape=rows.shape, **chosen)
+    def groups(self) -> Iterator[tuple[System, Any]]:
+        """Each system and the rows of its runs."""
+        for index, system in enumerate(self.systems):
+            alone = len(self.systems) == 1
+            yield system, slice(None) if alone else np.flatnonzero(self.which == index)
 
 
 def _spread(array: np.ndarray, shape: tuple[int, ...]) -> np.ndarray:

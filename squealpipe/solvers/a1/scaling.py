@@ -1,4 +1,4 @@
-"""Parameters of runs in units of m = k1 = l_pre = 1."""
+"""A1 as a system, and the parameters of its runs in units of m = k1 = l_pre = 1."""
 
 from __future__ import annotations
 
@@ -6,7 +6,6 @@ import math
 import re
 from collections.abc import Mapping
 from functools import lru_cache
-from types import SimpleNamespace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -14,68 +13,107 @@ import numpy as np
 from squealpipe.laws import springs
 from squealpipe.laws.contact_laws import LINEAR
 from squealpipe.laws.friction_laws import COULOMB, FALLING, LAWS
+from squealpipe.models.refusals import WHY_A4
 from squealpipe.parameters import DEFAULTS, NUMBERS_OF_A1, TABLE, Parameters
-from squealpipe.solvers.a1.records import ORDER
-from squealpipe.solvers.a1.system import DISSIPATIONS, EXTENSIONS
+from squealpipe.systems.brake import brake, brake_of, has_own_laws
+from squealpipe.systems.system import System
 from squealpipe.text import suggestion
 from squealpipe.validation import real_array
 
 PHYSICAL = tuple(name for name, row in TABLE.items() if row.enters_a1)
 """Parameters of a run of A1."""
-
-_CODES = np.zeros((len(LAWS), 2, 2, 2, 2), np.int64)
-"""Index into ``DISSIPATIONS`` by law, damped, static_apart, long1 and long2."""
-for _code, _kind in enumerate(DISSIPATIONS):
-    _CODES[(list(LAWS).index(_kind.law), *map(int, _kind[1:]))] = _code
+FORM = ("preload", "length1", "length2", "damping1", "damping2")
+"""Numbers on which the form of a system with laws of the user's own depends."""
 
 
 class ScaledRuns(NamedTuple):
     """Parameters in units of m = k1 = l_pre = 1, of the shape that they were given in.
 
     Attributes:
-        orders: ``records.ORDER`` with its parameters filled in.
+        numbers: those of ``NUMBERS_OF_A1``.
         time_unit, length: √(m/k1), s, and l_pre, m.
-        dissipation: index into ``system.DISSIPATIONS``.
+        systems: A1, or its variant, with the forces that some run has.
+        which: index into ``systems``.
         rate: a bound on the frequencies of the motion, for limits of steps and events.
     """
 
-    orders: np.ndarray
+    numbers: dict[str, np.ndarray]
     time_unit: np.ndarray
     length: np.ndarray
-    dissipation: np.ndarray
+    systems: tuple[System, ...]
+    which: np.ndarray
     rate: np.ndarray
 
 
-def scaled_parameters(
-    parameters: Parameters | Mapping[str, Any], *, linear_springs: bool
-) -> ScaledRuns:
-    """Checked parameters in the engine's units.
+def scaled_runs(parameters: Parameters | Mapping[str, Any], model: str) -> ScaledRuns:
+    """Checked parameters in the engine's units, and the systems that they are of.
 
     Raises:
-        ValueError: an unknown parameter, or a value that is not allowed.
+        ValueError: an unknown parameter, a value that is not allowed, or a variant of A1 with laws
+            of the user's own.
     """
     if isinstance(parameters, Parameters):
-        return _scaled_once(parameters, linear_springs)
-    return _scaled(_parameter_arrays(parameters), linear_springs)
+        return _scaled_once(parameters, model)
+    law = parameters.get("friction_law", COULOMB)
+    if isinstance(law, str) and law not in LAWS and parameters.get("contact_law", LINEAR) == LINEAR:
+        # the form of the system is that of the largest numbers: with dashpots if any run has one
+        largest: dict[str, Any] = {
+            name: float(np.max(parameters[name]))
+            for name in FORM
+            if parameters.get(name) is not None
+        }
+        decisive = Parameters(**largest, friction_law=law)
+        plain = _plain(decisive)
+        given = _parameter_arrays({
+            **parameters,
+            **{name: getattr(plain, name) for name in ("mu", "mu_static", "friction_speed")},
+            "friction_law": plain.friction_law,
+        })  # fmt: skip
+        return _scaled(given, (_own_system(decisive, model),))
+    return _scaled(_parameter_arrays(parameters), model)
 
 
 @lru_cache(maxsize=64)
-def _scaled_once(parameters: Parameters, linear_springs: bool) -> ScaledRuns:
+def _scaled_once(parameters: Parameters, model: str) -> ScaledRuns:
     """One set of parameters, which was checked when it was made; for many single runs."""
-    given = {name: getattr(parameters, name) for name in PHYSICAL}
-    given["mu_static"] = parameters.static_mu
-    scaled = _scaled({name: np.asarray(value) for name, value in given.items()}, linear_springs)
-    for array in scaled:
-        array.flags.writeable = False
-    return scaled
+    own = has_own_laws(parameters)
+    plain = _plain(parameters) if own else parameters
+    given = {name: np.asarray(getattr(plain, name)) for name in PHYSICAL}
+    given["mu_static"] = np.asarray(plain.static_mu)
+    if not own:
+        return _scaled(given, model)
+    given["damping3"] = np.asarray(parameters.damping3)
+    return _scaled(given, (_own_system(parameters, model),))
 
 
-def _scaled(given: Mapping[str, np.ndarray], linear_springs: bool) -> ScaledRuns:
+def _own_system(parameters: Parameters, model: str) -> System:
+    if model != "A1":
+        raise ValueError(
+            f"model = {model!r}: a table, a law in Python or a contact law is carried by A1 "
+            "alone, not by its variants"
+        )
+    return brake_of(parameters)
+
+
+def _plain(parameters: Parameters) -> Parameters:
+    """The numbers that a law of the user's own stands for, under laws that have formulas."""
+    numbers = {name: getattr(parameters, name) for name in ("mu", "k3", "friction_speed")}
+    return parameters.with_(
+        **numbers,
+        mu_static=parameters.static_mu,
+        friction_law=FALLING[0],
+        contact_law=LINEAR,
+        damping3=0.0,
+    )
+
+
+def _scaled(given: Mapping[str, np.ndarray], form: str | tuple[System, ...]) -> ScaledRuns:
+    """Of a model, or of a system that is known."""
     # Units of time that overflow are refused with the runs.
     with np.errstate(all="ignore"):
         time_unit = np.sqrt(given["mass"] / given["k1"])
         # adding 0 makes −0 to 0: equal parameters have equal bits
-        scaled = {
+        numbers = {
             name: given[of]
             / unit_value(TABLE[of].units, given["mass"], given["k1"], given["preload"])
             + 0.0
@@ -86,18 +124,43 @@ def _scaled(given: Mapping[str, np.ndarray], linear_springs: bool) -> ScaledRuns
             raise ValueError(
                 "a table, a law in Python or a contact law needs Parameters, the same for all runs"
             )
-        dissipation = _dissipation(given["friction_law"], scaled, linear_springs=linear_springs)
+        systems, which = form, np.zeros((), int)
+        if isinstance(systems, str):
+            systems, which = _systems(given["friction_law"], numbers, systems)
         shape = np.broadcast_shapes(*{array.shape for array in given.values()})
-        orders = np.zeros(shape, ORDER)
-        for name, values in scaled.items():
-            orders[name] = values
-        dissipation = np.broadcast_to(dissipation, shape).copy()
-        orders["onset_mu"] = _onset_mu(dissipation, orders)
-        rate = np.sqrt(1 + orders["k2"] + orders["k3"]) + np.abs(orders["belt_speed"]) / np.minimum(
-            orders["length1"], orders["length2"]
+        rate = np.sqrt(1 + numbers["k2"] + numbers["k3"]) + np.abs(
+            numbers["belt_speed"]
+        ) / np.minimum(numbers["length1"], numbers["length2"])
+    time_unit, length, which = (
+        np.broadcast_to(a, shape) for a in (time_unit, given["preload"], which)
+    )
+    return ScaledRuns(numbers, time_unit, length, systems, which, np.asarray(rate))
+
+
+def _systems(
+    laws: np.ndarray, numbers: Mapping[str, np.ndarray], model: str
+) -> tuple[tuple[System, ...], np.ndarray]:
+    """The systems of some runs, and which is whose; one μ makes falling laws Coulomb's."""
+    damped = (numbers["damping1"] > 0) | (numbers["damping2"] > 0)
+    one_mu = numbers["static_mu"] == numbers["mu"]
+    laws = np.where(one_mu & np.isin(laws, FALLING), COULOMB, laws)
+    forms = np.broadcast_arrays(
+        laws, damped, one_mu & (laws == COULOMB),
+        *(numbers[name] > springs.LONG for name in ("length1", "length2")),
+    )  # fmt: skip
+    code = sum(np.unique(each, return_inverse=True)[1].reshape(each.shape) * 8**i
+               for i, each in enumerate(forms))  # fmt: skip
+    _, first, which = np.unique(code, return_index=True, return_inverse=True)
+    systems = []
+    for at in first:
+        law, damps, same, *long = (each.reshape(-1)[at].item() for each in forms)
+        if model == "A4" and (law != COULOMB or damps or not same):
+            raise ValueError(f"model A4 carries no damping and Coulomb's law with one μ: {WHY_A4}")
+        springs_long = (long[0], long[1])
+        systems.append(
+            brake(law, damped=damps, model=model, one_mu=same, long_springs=springs_long)
         )
-    time_unit, length = (np.array(np.broadcast_to(a, shape)) for a in (time_unit, given["preload"]))
-    return ScaledRuns(orders, time_unit, length, dissipation, np.asarray(rate))
+    return tuple(systems), which.reshape(forms[0].shape)
 
 
 def unit_value(unit: str, mass: np.ndarray, k1: np.ndarray, length: np.ndarray) -> Any:
@@ -141,28 +204,3 @@ def _checked(name: str, values: Any) -> np.ndarray:
     if row.allowed == "not negative" and not (array >= 0).all():
         raise ValueError(f"{name} holds {float(array.min())!r}: must be 0 or greater")
     return array
-
-
-def _dissipation(
-    laws: np.ndarray, scaled: Mapping[str, np.ndarray], *, linear_springs: bool
-) -> np.ndarray:
-    """Index into ``DISSIPATIONS`` of each run; one μ makes falling laws Coulomb's."""
-    damped = (scaled["damping1"] > 0) | (scaled["damping2"] > 0)
-    apart = scaled["static_mu"] != scaled["mu"]
-    laws = np.where(~apart & np.isin(laws, FALLING), COULOMB, laws)
-    apart = apart | (laws != COULOMB)
-    long1, long2 = (
-        (scaled[name] > springs.LONG) & (not linear_springs) for name in ("length1", "length2")
-    )
-    law = sum(index * (laws == name) for index, name in enumerate(LAWS))
-    return np.asarray(_CODES[law, damped * 1, apart * 1, long1 * 1, long2 * 1])
-
-
-def _onset_mu(dissipation: np.ndarray, orders: np.ndarray) -> np.ndarray:
-    """μ of slip as the sliding speed goes to 0."""
-    found = np.empty(dissipation.shape)
-    for code in np.unique(dissipation):
-        rows = dissipation == code
-        p = SimpleNamespace(**{name: orders[name][rows] for name in ("mu", *EXTENSIONS)})
-        found[rows] = LAWS[DISSIPATIONS[code].law].coefficient(0.0, p)
-    return found

@@ -15,7 +15,12 @@ from squealpipe.schema.basins import STARTS, basin_schema
 from squealpipe.schema.dynamics.runs import MotionFlag
 from squealpipe.schema.origin import recorded
 from squealpipe.solvers.a1.ensemble import Ensemble, run_ensemble
-from squealpipe.tasks.dynamics.motion import classify_motion, predictability, refine_labels
+from squealpipe.tasks.dynamics.motion import (
+    as_judged,
+    classify_motion,
+    predictability,
+    refine_labels,
+)
 from squealpipe.validation import Angle, Line, NotNegative, Positive, Tolerance, Workers
 
 RUNS_AT_ONCE = 2000
@@ -96,19 +101,19 @@ def _block(
 
     def runs(rows: Any, **options: Any) -> Ensemble:
         return run_ensemble(
-            params, alpha1, alpha2, t_end=t_end, initial_state=starts[rows], tol=tol, tangent=True,
+            params, alpha1, alpha2, **as_judged(t_end), initial_state=starts[rows], tol=tol,
             workers=workers, **options,
         )  # fmt: skip
 
-    run = runs(slice(None), t_late=t_late, times=[t_late])
+    run = runs(slice(None), t_late=t_late)
     motion, changed = classify_motion(run, params)
-    motion = refine_labels(motion, run, lambda rows, room: runs(rows, log_events=room), t_end)
-    # the engine's own extrema start with the first step that begins after t_late
-    begins = np.abs(run.samples[:, 0])
+    motion = refine_labels(
+        motion, run, lambda rows, room: runs(rows, tracked=(), log_events=room), t_end
+    )
     return {
         "motion": np.where(changed, MotionFlag.unsettled, motion),
-        "late_max_x": np.fmax(run.late_max_x, begins[:, 0]),
-        "late_max_vx": np.fmax(run.late_max_vx, begins[:, 2]),
+        "late_max_x": run.late_max_x,
+        "late_max_vx": run.late_max_vx,
         "separates": np.isfinite(run.first_separation_time),
         "first_separation_time": run.first_separation_time,
         "peak_contact_force": run.peak_contact_force,

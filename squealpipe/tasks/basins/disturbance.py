@@ -11,7 +11,7 @@ from annotated_types import Ge
 from squealpipe.methods.smallest_vector import Found, Settings, search, smallest_linear
 from squealpipe.models.a1_automaton import A1Automaton
 from squealpipe.models.refusals import refuse_own_laws
-from squealpipe.models.switching import VARIANT_RULES
+from squealpipe.models.variants import VARIANT_RULES
 from squealpipe.parameters import Parameters
 from squealpipe.schema import Outcome, build
 from squealpipe.schema.basins import SMALLEST_DISTURBANCE, LeadsTo
@@ -141,7 +141,7 @@ def smallest_disturbance(
         run = run_ensemble(
             params, alpha1, alpha2, t_end=horizon, model=model, tol=tol, workers=workers,
             initial_state=rest + scale * vectors,
-            stop_at_first_separation=goal == LeadsTo.contact_lost,
+            stop_at_first_separation=goal == LeadsTo.contact_lost, tracked=(),
         )  # fmt: skip
         unfinished += int(
             np.sum((run.outcome != Outcome.converged) & (run.outcome != Outcome.separated))

@@ -60,6 +60,7 @@ def settled_extremes(
         angles[:, 1][:, None, None],
         t_end=t_end,
         t_late=0.8 * t_end,
+        tracked=("x",),
         tol=tol,
         initial_state=np.broadcast_to(state, (len(scenes), len(mu), starts, 4)),
         workers=workers,

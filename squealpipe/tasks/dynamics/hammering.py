@@ -14,6 +14,7 @@ from squealpipe.schema.origin import recorded
 from squealpipe.solvers.a1.ensemble import Ensemble, run_ensemble, run_map
 from squealpipe.tasks.dynamics import motion
 from squealpipe.tasks.dynamics.motion import (
+    as_judged,
     classify_motion,
     linear_time,
     predictability,
@@ -84,9 +85,10 @@ def hammering_map(
         rows,
         columns,
         USED,
-        t_end=t_end,
+        **as_judged(t_end),
         tol=tol,
-        tangent=True,
+        t_late="return",
+        tracked=("contact_force", "reach"),
         workers=workers,
     )
     shape = run.outcome.shape
@@ -101,7 +103,7 @@ def hammering_map(
     def again(some: np.ndarray, room: int) -> Ensemble:
         return run_ensemble(
             form.params, *(angles[some] for angles in cells), t_end=t_end, tol=tol, tangent=True,
-            log_events=room, workers=workers,
+            tracked=(), log_events=room, workers=workers,
         )  # fmt: skip
 
     kinds, changed = classify_motion(flat, form.params)

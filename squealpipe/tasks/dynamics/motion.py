@@ -11,8 +11,10 @@ import numpy as np
 from squealpipe.methods.recurrence import LEAST_REPEATS, repeats_after
 from squealpipe.schema import Outcome
 from squealpipe.schema.dynamics.runs import MotionFlag
-from squealpipe.solvers.a1.ensemble import MARKS, Ensemble
+from squealpipe.solvers.a1.ensemble import Ensemble
 
+MARKS = (0.5, 0.75)
+"""Shares of a run between which, and its end, its quarters are judged."""
 LEAST_TURNS = 3
 """Net turns in a run from which a motion can be a whirl."""
 AT_REST = 1e-3
@@ -46,20 +48,21 @@ USED = (
     "log_growth",
     "final_state",
     "max_displacement",
-    *(
-        f"mark_{name}"
-        for name in (
-            "separations",
-            "contacts",
-            "separated_time",
-            "stick_time",
-            "turns",
-            "log_growth",
-            "state",
-        )
-    ),
+    "samples",
+    "sample_separations",
+    "sample_contacts",
+    "sample_separated_time",
+    "sample_stick_time",
+    "sample_turns",
+    "sample_log_growth",
 )
 """Results of the runs that a label is made from."""
+
+
+def as_judged(t_end: Any) -> dict[str, Any]:
+    """Arguments of ``run_ensemble`` for runs that :func:`classify_motion` is given."""
+    times = np.multiply.outer(np.asarray(t_end, float), MARKS)
+    return {"t_end": t_end, "times": times, "sums": True, "tangent": True}
 
 
 def linear_time(params: Any) -> Any:
@@ -99,7 +102,7 @@ def predictability(run: Ensemble | SimpleNamespace) -> dict[str, np.ndarray]:
 
 
 def classify_motion(run: Ensemble | SimpleNamespace, params: Any) -> tuple[Any, np.ndarray]:
-    """(``MotionFlag`` of each run of an ensemble with ``tangent=True``, whether it still changes).
+    """(``MotionFlag`` of each run of an ensemble, whether it still changes).
 
     Judged from the second half of each run; a label still changes where the two quarters of that
     half have different ones (those in contact without stick are one). Hammering is *irregular*
@@ -108,7 +111,8 @@ def classify_motion(run: Ensemble | SimpleNamespace, params: Any) -> tuple[Any, 
     *undetermined*.
 
     Args:
-        run: the runs; ``final_state`` decides their shape.
+        run: the runs, with ``max_displacement`` tracked and made :func:`as_judged`;
+            ``final_state`` decides their shape.
         params: their parameters, numbers or arrays.
     """
     first, second, last = range(len(MARKS) + 1)
@@ -124,8 +128,9 @@ def _label(run: Any, params: Any, start: int, end: int) -> np.ndarray:
     def at(name: str, mark: int) -> np.ndarray:
         if mark == len(MARKS):
             return np.asarray(getattr(run, "final_state" if name == "state" else name))
-        values = np.asarray(getattr(run, f"mark_{name}"))
-        return np.asarray(values[..., mark, :] if name == "state" else values[..., mark])
+        if name == "state":
+            return np.asarray(run.samples[..., mark, :])
+        return np.asarray(getattr(run, f"sample_{name}")[..., mark])
 
     def during(name: str) -> np.ndarray:
         return np.asarray(at(name, end) - at(name, start))

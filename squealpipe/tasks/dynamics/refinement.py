@@ -73,6 +73,7 @@ def refine_validity_map(
             model=model,
             tol=tol,
             stop_at_first_separation=True,
+            tracked=("contact_force",),
             workers=workers,
         )
         time[rows, columns] = run.first_separation_time

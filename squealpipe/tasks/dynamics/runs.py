@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import math
 import warnings
-from types import SimpleNamespace
 
 import numpy as np
 import xarray as xr
 
 from squealpipe.codes import Regime
 from squealpipe.laws.contact import normal_force
-from squealpipe.models.switching import VARIANT_RULES
+from squealpipe.models.variants import VARIANT_RULES
 from squealpipe.parameters import HORIZON, Parameters
 from squealpipe.schema import Outcome, build
 from squealpipe.schema.dynamics.runs import SIMULATION, VALIDITY_MAP
@@ -24,19 +23,6 @@ from squealpipe.validation import Angle, Angles, NotNegative, State, Tolerance, 
 
 FIRST_LOG = 256
 """Events kept at first; a run that has more is made again with room for all."""
-WANTED = (
-    "samples",
-    "sample_regimes",
-    "event_times",
-    "event_kinds",
-    "events",
-    "time",
-    "steps",
-    "outcome",
-    "return_peak_contact_force",
-    "impact_speed",
-)
-"""Results that ``simulate`` reports."""
 
 
 @recorded(method="Taylor series with located events")
@@ -58,7 +44,7 @@ def simulate(
         params: physical parameters.
         alpha1, alpha2: spring angles, rad.
         t_end: end of the run, s.
-        model: "A1", "A1-no-stick" (ends at the first stick, with outcome ``event_limit``),
+        model: "A1", "A1-no-stick" (ends at the first stick, with outcome ``accumulation``),
             "A1-no-separation" (k3 also pulls), "A1-linear-springs", "A1-as-printed" (Eq. (4)
             literally: friction pushes against the belt) or "A4" (which goes on past ẋ = V, where it
             does not hold; compare ``vx`` with the belt speed).
@@ -88,13 +74,14 @@ def simulate(
         tol=tol,
         times=times,
         initial_state=initial_state,
+        t_late="return",
     )
-    wanted = (*WANTED, *(("log_growth",) if growth else ()))
     room, logged = 0, FIRST_LOG
     while room < logged:
         room = logged
-        found = integrate(job, wanted, tangent=growth, log_events=room, few=not growth, workers=1)
-        run = SimpleNamespace(**found)
+        run = integrate(
+            job, ("contact_force",), tangent=growth, log_events=room, few=not growth, workers=1
+        )
         logged = int(run.events)
     x, y, vx, vy = run.samples.T
     if times.size and times[0] == 0.0:
@@ -179,6 +166,7 @@ def validity_map(
         tol=tol,
         stop_at_first_separation=True,
         t_late=0.5 * t_end,
+        tracked=("x",),
         workers=workers,
     )
     lost = run.outcome == Outcome.separated

@@ -16,7 +16,7 @@ from squealpipe.schema import Outcome, build
 from squealpipe.schema.dynamics.long_runs import TRANSIENT, WHIRL
 from squealpipe.schema.dynamics.runs import MotionFlag
 from squealpipe.solvers.a1.ensemble import Ensemble, run_ensemble
-from squealpipe.tasks.dynamics.motion import classify_motion, refine_labels
+from squealpipe.tasks.dynamics.motion import as_judged, classify_motion, refine_labels
 from squealpipe.tasks.normal_form import NormalForm
 
 LATE_SHARE = 0.8
@@ -68,10 +68,10 @@ def whirl_sizes(
             {**form.params.as_dict(), "belt_speed": tried},
             alpha1,
             alpha2,
-            t_end=t_end,
+            **as_judged(t_end),
             tol=tol,
             t_late=LATE_SHARE * t_end,
-            tangent=True,
+            tracked=("x", "reach"),
             workers=workers,
             **options,
         )
@@ -149,6 +149,7 @@ def transient_lifetimes(
         tol=tol,
         initial_state=state,
         stop_at_turns=ESCAPE_TURNS,
+        tracked=(),
         workers=workers,
     )
     ended = run.outcome == Outcome.amplitude_reached

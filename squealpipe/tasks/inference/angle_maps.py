@@ -75,6 +75,7 @@ def _outcome(candidates: Candidates, alpha1: np.ndarray, alpha2: np.ndarray) -> 
         t_end=HORIZON * candidates.time_unit,
         model=candidates.model,
         stop_at_first_separation=True,
+        tracked=(),
         tol=candidates.tol,
         workers=candidates.workers,
     )

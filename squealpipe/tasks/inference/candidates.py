@@ -80,6 +80,7 @@ class Candidates:
             scene.alpha2,
             t_end=t_end,
             t_late=0.5 * t_end,
+            tracked=("x", "contact_force"),
             model=self.model + variant,
             tol=self.tol,
             workers=self.workers,

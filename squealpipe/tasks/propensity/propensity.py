@@ -24,7 +24,7 @@ from squealpipe.schema.dynamics.runs import MotionFlag
 from squealpipe.schema.origin import recorded
 from squealpipe.schema.propensity import PROPENSITY, WIDEST
 from squealpipe.solvers.a1.ensemble import run_ensemble
-from squealpipe.tasks.dynamics.motion import classify_motion
+from squealpipe.tasks.dynamics.motion import as_judged, classify_motion
 from squealpipe.tasks.propensity.distributions import check_stick, distribution
 from squealpipe.tasks.propensity.sobol import (
     LEAST_EVENTS,
@@ -164,7 +164,9 @@ def _events(
     workers: int | None,
 ) -> np.ndarray:
     """Whether each quantity that needs a run occurs, (quantities − 1, size)."""
-    run = run_ensemble(fields, alpha1, alpha2, t_end=t_end, tol=tol, tangent=True, workers=workers)
+    run = run_ensemble(
+        fields, alpha1, alpha2, **as_judged(t_end), tol=tol, tracked=("reach",), workers=workers
+    )
     motion, _ = classify_motion(run, SimpleNamespace(**fields))
     return np.array(
         [

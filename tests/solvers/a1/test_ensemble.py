@@ -3,20 +3,15 @@
 from __future__ import annotations
 
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import fields, replace
 from functools import partial
 
 import numpy as np
 import pytest
 
-from squealpipe.laws.springs import Geometry
 from squealpipe.methods.taylor.simd import FEW
-from squealpipe.models.switching import Rules, ScaledParameters
 from squealpipe.schema import Outcome
 from squealpipe.solvers.a1 import ensemble
-from squealpipe.solvers.a1.ensemble import RESULTS, Ensemble, run_ensemble
-from squealpipe.solvers.a1.records import LANE, ORDER
-from squealpipe.solvers.a1.system import EXTENSIONS, PARAMETERS, PHYSICAL
+from squealpipe.solvers.a1.ensemble import Ensemble, run_ensemble
 from tests.former import FORMER
 
 RNG = np.random.default_rng(3)
@@ -45,10 +40,15 @@ def _run(order=slice(None), *, tangent=True, **options) -> Ensemble:
     )
 
 
-def assert_identical(first: Ensemble, second: Ensemble) -> None:
-    for item in fields(Ensemble):
-        a, b = getattr(first, item.name), getattr(second, item.name)
-        assert a.tobytes() == b.tobytes(), item.name
+def _results(run: Ensemble, rows=slice(None)) -> dict[str, np.ndarray]:
+    return {name: values[rows] for name, values in run._raw.items()}
+
+
+def assert_identical(first: Ensemble, second: Ensemble, rows=slice(None), but=()) -> None:
+    ours, others = _results(first), _results(second, rows)
+    assert ours.keys() == others.keys()
+    for name, values in ours.items():
+        assert name in but or values.tobytes() == others[name].tobytes(), name
 
 
 @pytest.fixture(scope="module")
@@ -64,20 +64,13 @@ def test_any_number_of_workers_gives_the_same_bits(reference, workers):
 def test_any_order_of_jobs_gives_the_same_bits(reference):
     order = np.random.default_rng(0).permutation(SIZE)
     shuffled = _run(order, workers=1)
-    back = Ensemble(
-        **{f.name: getattr(shuffled, f.name)[np.argsort(order)] for f in fields(Ensemble)}
-    )
-    assert_identical(back, reference)
-
-
-def _rows(run: Ensemble, rows: slice) -> Ensemble:
-    return Ensemble(**{f.name: getattr(run, f.name)[rows] for f in fields(Ensemble)})
+    assert_identical(shuffled, reference, order)
 
 
 @pytest.mark.parametrize("job", [0, 1, SIZE - 1])
 def test_a_run_alone_gives_the_same_bits(reference, job):
     rows = slice(job, job + 1)
-    assert_identical(_run(rows, workers=1), _rows(reference, rows))
+    assert_identical(_run(rows, workers=1), reference, rows)
 
 
 @pytest.mark.parametrize("model", ["A1", "A1-linear-springs"])
@@ -86,7 +79,7 @@ def test_few_lanes_give_the_same_bits(monkeypatch, model):
     monkeypatch.setattr(ensemble, "integrate", partial(ensemble.integrate, few=True))
     for size in range(1, FEW + 2):  # one more than there are lanes takes all of them
         rows = slice(7 * size, 8 * size)
-        assert_identical(_run(rows, model=model, tangent=False, workers=1), _rows(whole, rows))
+        assert_identical(_run(rows, model=model, tangent=False, workers=1), whole, rows)
 
 
 def test_repeating_gives_the_same_bits(reference):
@@ -113,8 +106,7 @@ def test_asked_instants_do_not_change_a_run(model):
     assert located.size > 4
     instants = np.sort(np.append(np.linspace(0, 40, 999), located))
     asked = run_ensemble(FORMER.with_(belt_speed=1.0), *angles, **given, times=instants)
-    sampled = {"samples": plain.samples, "sample_regimes": plain.sample_regimes}
-    assert_identical(replace(asked, **sampled), plain)
+    assert_identical(asked, plain, but=("samples", "sample_regimes", "sample_sums"))
 
 
 def test_results_have_the_shape_of_the_inputs():
@@ -139,9 +131,6 @@ def test_stops_say_so():
     first = run_ensemble(FORMER, np.pi, np.pi, t_end=50.0, stop_at_first_separation=True)
     assert first.outcome == Outcome.separated
     assert first.time == first.first_separation_time
-    far = run_ensemble(FORMER, 0.4 * np.pi, 0.6 * np.pi, t_end=600.0, stop_at_x=20.0)
-    assert far.outcome == Outcome.amplitude_reached
-    assert 20.0 < far.early_max_x < 35.0
     turned = run_ensemble(FORMER, 0.4 * np.pi, 0.6 * np.pi, t_end=600.0, stop_at_turns=5)
     assert turned.outcome == Outcome.amplitude_reached
     assert abs(turned.turns) == 5
@@ -184,19 +173,6 @@ def test_maps_in_blocks_are_the_same(monkeypatch):
     parts = ensemble.run_map(FORMER, alpha1, alpha2, ("max_displacement",), t_end=20.0)
     assert whole.max_displacement.shape == (9, 7)
     assert whole.max_displacement.tobytes() == parts.max_displacement.tobytes()
-
-
-def test_a_physical_parameter_is_one_name():
-    """Jobs, lanes and series take the names, and their order, from one place."""
-    assert {*PHYSICAL, *EXTENSIONS} < set(ORDER.names)
-    first = LANE.names.index(PARAMETERS[0])
-    assert LANE.names[first : first + len(PARAMETERS)] == PARAMETERS
-    laws = {*ScaledParameters._fields, *Geometry._fields, *Rules._fields}
-    assert laws < set(ORDER.names)
-
-
-def test_what_an_ensemble_reports_has_a_row_each():
-    assert [*RESULTS] == [item.name for item in fields(Ensemble)]
 
 
 def test_parameters_in_other_forms_give_the_same_bits():

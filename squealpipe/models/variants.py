@@ -1,0 +1,36 @@
+"""What each variant of A1, and A4, leaves out of it."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+
+class Rules(NamedTuple):
+    """What a variant leaves out (True: the variant has it).
+
+    Friction that does not drag is Eq. (4) as printed: both coefficients change their sign. Belt
+    speed then repels: it is never held, and a mass exactly at it with |x-force of the springs| < μN
+    could leave to either side. It leaves to the side that the springs pull to, below belt speed
+    where they do not.
+    """
+
+    separates: bool
+    reverses: bool
+    sticks: bool
+    linear_springs: bool
+    drags: bool = True
+
+
+VARIANT_RULES: dict[str, Rules] = {
+    "A1": Rules(separates=True, reverses=True, sticks=True, linear_springs=False),
+    "A1-no-stick": Rules(separates=True, reverses=True, sticks=False, linear_springs=False),
+    "A1-no-separation": Rules(separates=False, reverses=True, sticks=True, linear_springs=False),
+    "A1-linear-springs": Rules(separates=True, reverses=True, sticks=True, linear_springs=True),
+    "A1-as-printed": Rules(
+        separates=True, reverses=True, sticks=False, linear_springs=False, drags=False
+    ),
+    "A1-as-printed-no-separation": Rules(
+        separates=False, reverses=True, sticks=False, linear_springs=False, drags=False
+    ),
+    "A4": Rules(separates=True, reverses=False, sticks=False, linear_springs=True),
+}
