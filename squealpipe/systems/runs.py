@@ -59,6 +59,7 @@ if TYPE_CHECKING:
 
 FIRST_LOG = 256
 """Events kept at first; a run that has more is made again with room for all."""
+LARGEST = "largest "
 SAMPLES_PER_STEP, MOST_SAMPLES = 4, 20_001
 MOST_STEPS, MOST_EVENTS = 1e7, 1e7
 
@@ -135,7 +136,8 @@ def integrate(
             turns are counted, counterclockwise.
         most_turns: net turns around all of them that end a run, as ``BY_TURNS``.
         regime: in which all start, or the number of each; by default what fits each.
-        tracked: states and outputs whose extremes are kept; by default all.
+        tracked: states and outputs whose extremes are kept, by default all; after ``LARGEST`` the
+            largest value alone.
         times: instants at which the state is kept, (instants,) or (runs, instants).
         sums: keep there what has added up, too.
         tol: tolerance.
@@ -178,7 +180,10 @@ def integrate(
     places += [len(t.variables) + len(t.surfaces) + i for i in range(len(t.outputs))]
     quantities = [*system.states, *system.outputs]
     chosen = quantities if tracked is None else tracked
-    watched = [places[quantities.index(each)] for each in chosen]
+    watched = [
+        (places[quantities.index(each.removeprefix(LARGEST))], each.startswith(LARGEST))
+        for each in chosen
+    ]
     limits = np.column_stack(
         [
             t_end / unit,

@@ -319,7 +319,7 @@ def _observe(t: Any, m: Any, c: Any, first_extreme: int, busy: int) -> None:
     at, terms = t.rows, t.n_terms
     step, zero = load(at + STEP * ROW), splat(0.0)
     for index in range(t.n_tracked):
-        variable = m.tracked[index]
+        variable = m.tracked[index, 0]
         series, r = t.series + variable * terms * ROW, first_extreme + 2 * index
         end, last, half_bend = _end_of(series, terms, step)
         start, first = load(series), load(series + ROW)
@@ -421,6 +421,14 @@ def _log_norm(t: Any, m: Any, lane: int, tangent_row: int) -> float:
 
 
 @part
+def _clear(m: Any, lane: int, index: int, first_extreme: int) -> None:
+    """No extremes yet; the smallest is not looked for where the largest alone is asked for."""
+    r, largest_alone = first_extreme + 2 * index, m.tracked[index, 1]
+    m.rows[r, lane] = -math.inf if largest_alone else math.inf
+    m.rows[r + 1, lane] = -math.inf
+
+
+@part
 def _begin_late(t: Any, m: Any, lane: int, first_extreme: int) -> None:
     """From here on extremes are those of the late part."""
     job = m.integers[JOB, lane]
@@ -428,7 +436,7 @@ def _begin_late(t: Any, m: Any, lane: int, first_extreme: int) -> None:
         for each in range(2):
             r = first_extreme + 2 * index + each
             m.extremes[job, index, 0, each] = m.rows[r, lane]
-            m.rows[r, lane] = -math.inf if each else math.inf
+        _clear(m, lane, index, first_extreme)
     m.integers[LATE, lane] = 1
     m.rows[T_LATE, lane] = math.inf
 
@@ -631,7 +639,7 @@ def _start(t: Any, m: Any, c: Any, lane: int, job: int, tangent_row: int, first:
         c[variable, 0, lane] = m.initial[job, variable]
         rows[tangent_row + variable, lane] = m.sizes[variable] / math.sqrt(t.n_states)
     for index in range(t.n_tracked):
-        rows[first + 2 * index, lane], rows[first + 2 * index + 1, lane] = math.inf, -math.inf
+        _clear(m, lane, index, first)
     row = first + 2 * t.n_tracked
     rows[row : row + t.n_regimes, lane] = 0.0
     for point in range(t.n_points):
@@ -779,7 +787,7 @@ def _advance(table: Any) -> int:
         rows=view(t.rows, (t.n_rows, LANES), np.float64),
         integers=view(t.integers, (FIXED_INTEGERS, LANES), np.int64),
         sizes=view(t.sizes, (size,), np.float64),
-        tracked=view(t.tracked, (t.n_tracked,), np.int64),
+        tracked=view(t.tracked, (t.n_tracked, 2), np.int64),
         regimes=view(t.regimes, (t.n_regimes, t.n_constants), np.float64),
         falls=view(t.falls, (t.n_regimes, t.n_surfaces), np.int64),
         rises=view(t.rises, (t.n_regimes, t.n_surfaces), np.int64),

@@ -26,15 +26,20 @@ BLOCK = 2**17
 """Runs of a map that are held in memory at once, about 1 kB each."""
 NEAR_PIVOT = 1e-3
 """Distance from a pivot, in free lengths, from which an overflow is its doing."""
-TRACKED = ("x", "vx", "contact_force", "reach")
-"""Quantities of the system whose extremes an :class:`Ensemble` may hold."""
+REACH, PEAK = f"{runs.LARGEST}reach", f"{runs.LARGEST}contact_force"
+TRACKED = ("x", "vx", "contact_force", REACH)
+"""Quantities of the system whose extremes an :class:`Ensemble` may hold, or ``PEAK`` of them."""
 
 
 class Ensemble:
     """Results of an ensemble; arrays have the broadcast shape of its inputs, SI units."""
 
     def __init__(self, jobs: Jobs, raw: dict[str, np.ndarray], tracked: Sequence[str]) -> None:
-        self._jobs, self._raw, self._tracked = jobs, raw, list(tracked)
+        self._jobs, self._raw, self._tracked = (
+            jobs,
+            raw,
+            [each.removeprefix(runs.LARGEST) for each in tracked],
+        )
         system = jobs.systems[0]
         names = [next((r for r in Regime if name.startswith(r.name)), Regime.separated)
                  for name in system.regimes]  # fmt: skip

@@ -11,7 +11,7 @@ from squealpipe.parameters import Parameters
 from squealpipe.schema import build
 from squealpipe.schema.dynamics.runs import HAMMERING_MAP
 from squealpipe.schema.origin import recorded
-from squealpipe.solvers.a1.ensemble import Ensemble, run_ensemble, run_map
+from squealpipe.solvers.a1.ensemble import PEAK, REACH, Ensemble, run_ensemble, run_map
 from squealpipe.tasks.dynamics import motion
 from squealpipe.tasks.dynamics.motion import (
     as_judged,
@@ -88,7 +88,7 @@ def hammering_map(
         **as_judged(t_end),
         tol=tol,
         t_late="return",
-        tracked=("contact_force", "reach"),
+        tracked=(PEAK, REACH),
         workers=workers,
     )
     shape = run.outcome.shape

@@ -15,7 +15,7 @@ from squealpipe.parameters import HORIZON, Parameters
 from squealpipe.schema import Outcome, build
 from squealpipe.schema.dynamics.runs import SIMULATION, VALIDITY_MAP
 from squealpipe.schema.origin import recorded
-from squealpipe.solvers.a1.ensemble import integrate, run_map
+from squealpipe.solvers.a1.ensemble import PEAK, integrate, run_map
 from squealpipe.solvers.a1.jobs import Jobs, Model
 from squealpipe.tasks.linear.maps import stability_map
 from squealpipe.tasks.sampling import default_times, unresolved
@@ -79,9 +79,7 @@ def simulate(
     room, logged = 0, FIRST_LOG
     while room < logged:
         room = logged
-        run = integrate(
-            job, ("contact_force",), tangent=growth, log_events=room, few=not growth, workers=1
-        )
+        run = integrate(job, (PEAK,), tangent=growth, log_events=room, few=not growth, workers=1)
         logged = int(run.events)
     x, y, vx, vy = run.samples.T
     if times.size and times[0] == 0.0:

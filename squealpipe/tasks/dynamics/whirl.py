@@ -15,7 +15,7 @@ from squealpipe.parameters import SCENES, Parameters
 from squealpipe.schema import Outcome, build
 from squealpipe.schema.dynamics.long_runs import TRANSIENT, WHIRL
 from squealpipe.schema.dynamics.runs import MotionFlag
-from squealpipe.solvers.a1.ensemble import Ensemble, run_ensemble
+from squealpipe.solvers.a1.ensemble import REACH, Ensemble, run_ensemble
 from squealpipe.tasks.dynamics.motion import as_judged, classify_motion, refine_labels
 from squealpipe.tasks.normal_form import NormalForm
 
@@ -71,7 +71,7 @@ def whirl_sizes(
             **as_judged(t_end),
             tol=tol,
             t_late=LATE_SHARE * t_end,
-            tracked=("x", "reach"),
+            tracked=("x", REACH),
             workers=workers,
             **options,
         )

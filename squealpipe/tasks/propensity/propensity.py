@@ -23,7 +23,7 @@ from squealpipe.schema import Outcome, build
 from squealpipe.schema.dynamics.runs import MotionFlag
 from squealpipe.schema.origin import recorded
 from squealpipe.schema.propensity import PROPENSITY, WIDEST
-from squealpipe.solvers.a1.ensemble import run_ensemble
+from squealpipe.solvers.a1.ensemble import REACH, run_ensemble
 from squealpipe.tasks.dynamics.motion import as_judged, classify_motion
 from squealpipe.tasks.propensity.distributions import check_stick, distribution
 from squealpipe.tasks.propensity.sobol import (
@@ -165,7 +165,7 @@ def _events(
 ) -> np.ndarray:
     """Whether each quantity that needs a run occurs, (quantities − 1, size)."""
     run = run_ensemble(
-        fields, alpha1, alpha2, **as_judged(t_end), tol=tol, tracked=("reach",), workers=workers
+        fields, alpha1, alpha2, **as_judged(t_end), tol=tol, tracked=(REACH,), workers=workers
     )
     motion, _ = classify_motion(run, SimpleNamespace(**fields))
     return np.array(
