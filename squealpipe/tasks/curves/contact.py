@@ -149,7 +149,7 @@ def contact_boundary(
     """
     axes, fixed = two_axes(params, alpha1, alpha2, ranges)
     t_end = HORIZON * params.time_unit if t_end is None else t_end
-    options = {"t_end": t_end, "tol": tol, "workers": workers}
+    options = {"t_end": t_end, "tol": tol, "workers": workers, "tracked": ("contact_force",)}
     square = Square(params, fixed, axes, options, model)
     coarse = max(each.size for each in axes.values())
     return _dataset(square, contact_lines(square, coarse), coarse)

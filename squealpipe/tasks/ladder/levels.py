@@ -13,7 +13,7 @@ from squealpipe.models.contact_system import contact_system
 from squealpipe.parameters import Parameters
 from squealpipe.schema import Outcome
 from squealpipe.schema.ladder import QUESTIONS, Level
-from squealpipe.solvers.a1.ensemble import run_ensemble
+from squealpipe.solvers.a1.ensemble import PEAK, REACH, run_ensemble
 from squealpipe.tasks.ladder.questions import answer_of, answer_of_samples
 from squealpipe.tasks.sampling import sample_times
 
@@ -83,7 +83,14 @@ def _in_time(level: Level, scenes: Scenes) -> Answers:
     end = level.share * horizon
     times = sample_times(params, end)
     found = run_ensemble(
-        params, alpha1, alpha2, t_end=end, model=level.model, times=times, workers=workers
+        params,
+        alpha1,
+        alpha2,
+        t_end=end,
+        model=level.model,
+        times=times,
+        tracked=("vx", PEAK, REACH),
+        workers=workers,
     )
     values = np.stack([answer_of(found, question, times) for question in QUESTIONS])
     holds = found.outcome == Outcome.converged
