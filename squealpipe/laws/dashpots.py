@@ -37,31 +37,6 @@ def damping_force(
     return f1x + f2x, f1y + f2y
 
 
-def damping_x_slopes(
-    x: Scalar, y: Scalar, vx: Scalar, vy: Scalar, p: Any, g: Geometry
-) -> tuple[Scalar, Scalar, Scalar, Scalar]:
-    """Derivatives by x, y, ẋ and ẏ of the x-force of :func:`damping_force`, N/m and N s/m."""
-    x1, y1, x2, y2 = fixed_ends(p, g)
-    a1, b1, c1, d1 = dashpot_x_slopes(p.damping1, x - x1, y - y1, vx, vy)
-    a2, b2, c2, d2 = dashpot_x_slopes(p.damping2, x - x2, y - y2, vx, vy)
-    return a1 + a2, b1 + b2, c1 + c2, d1 + d2
-
-
-def dashpot_x_slopes(
-    c: Scalar, rx: Scalar, ry: Scalar, vx: Scalar, vy: Scalar
-) -> tuple[Scalar, Scalar, Scalar, Scalar]:
-    """Derivatives of the x-force of one dashpot, r − r_f away from its fixed end."""
-    inverse2 = (rx * rx + ry * ry) ** -1.0
-    rate, share = c * inverse2, 2.0 * rx * inverse2
-    moving = rx * vx + ry * vy
-    return (
-        -(rate * (vx * rx + moving - moving * rx * share)),
-        -(rate * (vy * rx - moving * ry * share)),
-        -(rate * rx * rx),
-        -(rate * rx * ry),
-    )
-
-
 def linear_damping(p: Any, g: Geometry) -> Stiffness:
     """C11, C12, C22, N s/m: the stiffness matrix with c_i for k_i."""
     return inclined_pair(p.damping1, p.damping2, g)

@@ -88,21 +88,6 @@ def elastic_force(
     return f1x + f2x, f1y + f2y
 
 
-def elastic_x_slopes(x: Scalar, y: Scalar, p: Any, g: Geometry) -> tuple[Scalar, Scalar]:
-    """Derivatives by x and y of the x-force of :func:`elastic_force`, N/m."""
-    x1, y1, x2, y2 = fixed_ends(p, g)
-    first_x, first_y = spring_x_slopes(p.k1, p.length1, x - x1, y - y1)
-    second_x, second_y = spring_x_slopes(p.k2, p.length2, x - x2, y - y2)
-    return first_x + second_x, first_y + second_y
-
-
-def spring_x_slopes(k: Scalar, length: Scalar, rx: Scalar, ry: Scalar) -> tuple[Scalar, Scalar]:
-    """Derivatives by x and y of the x-force of one spring, r − r_f away from its fixed end, N/m."""
-    d2 = rx * rx + ry * ry
-    ratio = length * d2**-0.5
-    return -(k * (1.0 - ratio * ry * ry * d2**-1.0)), -(k * ratio * rx * ry * d2**-1.0)
-
-
 def elastic_energy(x: Scalar, y: Scalar, p: Any, g: Geometry) -> Scalar:
     """½ Σ k_i (d_i − L_i)², J: the potential of :func:`elastic_force`."""
     x1, y1, x2, y2 = fixed_ends(p, g)

@@ -6,8 +6,7 @@ A function is compiled by who calls it:
 - :func:`compiled_entry`: its address is called: a whole loop, or source text made at run time;
 - ``part``: other compiled code calls it, so there are no wrappers to compile;
 - ``inline``: likewise in every step, where passing a dozen arrays costs as much as the work;
-- ``polynomial``: likewise with fused multiply-add, which halves the time of a Horner chain;
-- ``also_compiled``: a law or rule in plain Python, which compiled code calls as it stands.
+- ``polynomial``: likewise with fused multiply-add, which halves the time of a Horner chain.
 
 Only the first two are stored, each with all that it calls, in the user's cache folder: one store
 for all checkouts. numba decides by a function's own file whether its stored code is current, but
@@ -29,7 +28,6 @@ from typing import Any, TypeVar, cast
 
 import numba
 from numba.core import config
-from numba.extending import register_jitable
 
 _numba: Any = numba
 _settings: Any = config  # numba's untyped settings, the home of CACHE_DIR
@@ -44,7 +42,6 @@ _MARK = b"from squealpipe.methods.compiled import compiled\n"
 part = _numba.njit(**_PART)
 inline = _numba.njit(forceinline=True, **_PART)
 polynomial = _numba.njit(fastmath={"contract"}, **_PART)
-also_compiled: Any = register_jitable(**_PART)
 
 
 def kernel_sources() -> list[Path]:

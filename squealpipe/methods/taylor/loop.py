@@ -34,7 +34,7 @@ from squealpipe.methods.taylor.simd import (
     splat,
     store,
 )
-from squealpipe.methods.taylor.taylor_polynomial import MOST_TURNS, evaluate, evaluate_with_slope
+from squealpipe.methods.taylor.taylor_polynomial import evaluate, evaluate_with_slope
 from squealpipe.rerun.sources import closure
 
 _numba: Any = numba
@@ -52,6 +52,8 @@ LATE_BEGINS = -2
 """What ends a step where the late part of a run begins."""
 REST = 2e-4
 """Share of a quantity that the higher orders of its second derivative add to a step's span."""
+MOST_TURNS = 60
+"""Newton iterations for an extremum; two do where the step is short beside the oscillation."""
 PIECES = 8
 """Pieces of a step in which turning points are looked for, where there may be several."""
 
