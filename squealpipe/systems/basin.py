@@ -126,7 +126,9 @@ def basin(
                 silent = not late.any() and (alike[row] <= REPEATED * spans[row]).all()
                 repeats[row] = lag > 0 or silent
     motion = np.select([rests, repeats], [Motion.rest, Motion.cycle], Motion.unsettled)
-    ended = np.isfinite(quarters[1]).all(axis=(1, 2)) & (whole["ends"][:, 0] == Outcome.converged)
+    ended = np.isfinite(whole["late_extremes"]).all(axis=(1, 2)) & (
+        whole["ends"][:, 0] == Outcome.converged
+    )
     motion[~ended] = Motion.unsettled
     over, shape = tuple(grid.coordinates), grid.shape
     numbers = _numbered(motion, whole["late_extremes"])
