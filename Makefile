@@ -45,8 +45,9 @@ test-processors: dev  ## numerical tests and the tiny study as on other processo
 # One thread for linear algebra: with more, small solvers wait for one another.
 bench: export OPENBLAS_NUM_THREADS := 1
 bench: export OMP_NUM_THREADS := 1
-bench: dev  ## integrators with events beside one another
+bench: dev  ## speed beside other tools, as ratios; integrators with events beside one another
 	$(BIN)/python -m pip install -q --require-hashes -r requirements-peers.lock
+	for script in tests/benchmarks/bench_*.py; do $(BIN)/python $$script || exit 1; done
 	-$(BIN)/squealpipe benchmark --force -o results/benchmark.nc
 
 lint: dev
