@@ -17,9 +17,9 @@ import numpy as np
 
 from squealpipe.parameters import Parameters
 from squealpipe.solvers.a1.ensemble import run_ensemble
-from squealpipe.solvers.a1.peers import simulate_scipy
 from squealpipe.tasks.dynamics.refinement import refine_validity_map
 from squealpipe.tasks.dynamics.runs import validity_map
+from tests.oracles.a1_scipy import simulate_scipy
 
 BASELINE = Parameters()
 COLD = """

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from squealpipe.solvers.a1.ensemble import run_ensemble
-from squealpipe.solvers.a1.reference import simulate_reference
 from tests.former import FORMER
+from tests.oracles.a1_long_double import simulate_reference
 
 TOLERANCES = np.array([1e-5, 1e-7, 1e-9, 1e-11, 1e-13])
 

@@ -15,7 +15,7 @@ from squealpipe.laws.springs import fixed_ends
 from squealpipe.models.a1_automaton import A1Automaton, EventKind
 from squealpipe.models.damped import is_undamped
 from squealpipe.parameters import Parameters
-from squealpipe.solvers.a1.reference import (
+from tests.oracles.a1_long_double import (
     PARAMETERS,
     SURFACES,
     VARIED,

@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import brentq
 
-from squealpipe.methods.taylor import taylor_compiler
+from tests.oracles import taylor_compiler
 from tests.oracles.step_derivatives import step_derivatives
 
 Vector = NDArray[np.float64]

@@ -102,8 +102,8 @@ from squealpipe import Parameters, stability_map
 from squealpipe.config.settings import parse_study
 from squealpipe.models.a1_automaton import A1Automaton
 from squealpipe.solvers.a1.jobs import Jobs
-from squealpipe.solvers.a1.peers import simulate_scipy
-from squealpipe.solvers.a1.reference import simulate_reference
+from tests.oracles.a1_scipy import simulate_scipy
+from tests.oracles.a1_long_double import simulate_reference
 
 # a row: in no id where it has its default, refused where it makes no sense, known everywhere
 assert "friction_slope" not in Parameters().as_dict()
@@ -166,7 +166,7 @@ def test_the_engine_integrates_the_new_law(extended):
 import numpy as np
 from squealpipe import Parameters
 from squealpipe.solvers.a1.ensemble import run_ensemble
-from squealpipe.solvers.a1.reference import simulate_reference
+from tests.oracles.a1_long_double import simulate_reference
 rng = np.random.default_rng(7)
 for _ in range(12):
     values = {name: rng.uniform(0.5, 2.0) for name in ("mass", "k1", "k2", "k3", "preload")}

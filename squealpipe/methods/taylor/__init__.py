@@ -1,1 +1,1 @@
-"""Taylor series of hybrid systems: symbols, recurrences, lanes, roots; heyoka for references."""
+"""Taylor series of hybrid systems: symbols, recurrences, lanes, roots."""

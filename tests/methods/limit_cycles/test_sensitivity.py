@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from squealpipe.codes import Regime
-from squealpipe.solvers.a1.reference import PARAMETERS, symbolic_automaton
 from tests.former import FORMER
 from tests.oracles.a1_flow import A1Flow
+from tests.oracles.a1_long_double import PARAMETERS, symbolic_automaton
 from tests.oracles.event_flow import flow
 
 FOLLOWED = "k2"

@@ -11,9 +11,9 @@ from squealpipe.codes import Event
 from squealpipe.laws.friction_laws import FALLING
 from squealpipe.parameters import LAW_NAMES, Parameters
 from squealpipe.solvers.a1.ensemble import run_ensemble
-from squealpipe.solvers.a1.peers import simulate_scipy
-from squealpipe.solvers.a1.reference import simulate_reference
 from tests.former import FORMER
+from tests.oracles.a1_long_double import simulate_reference
+from tests.oracles.a1_scipy import simulate_scipy
 
 ALPHA1, ALPHA2 = np.array([0.5, 1.4, 2.2, 2.9]), np.array([1.9, 2.6, 0.7, 2.4])
 

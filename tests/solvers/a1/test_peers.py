@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from squealpipe.models.a1_automaton import EventKind
-from squealpipe.solvers.a1.peers import simulate_scipy
 from tests.former import FORMER
+from tests.oracles.a1_scipy import simulate_scipy
 
 
 def test_first_separation_has_the_closed_form_time() -> None:

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from squealpipe.models.a1_automaton import EventKind
-from squealpipe.solvers.a1.peers import simulate_scipy
-from squealpipe.solvers.a1.reference import simulate_reference
 from tests.former import FORMER
+from tests.oracles.a1_long_double import simulate_reference
+from tests.oracles.a1_scipy import simulate_scipy
 
 
 @pytest.mark.parametrize(

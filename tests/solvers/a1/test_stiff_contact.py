@@ -7,8 +7,8 @@ import pytest
 
 from squealpipe.schema import Outcome
 from squealpipe.solvers.a1.ensemble import run_ensemble
-from squealpipe.solvers.a1.reference import simulate_reference
 from tests.former import FORMER
+from tests.oracles.a1_long_double import simulate_reference
 
 COUNT = 40
 

@@ -6,11 +6,11 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from squealpipe.methods.hybrid import Guard, HybridAutomaton, HybridRun, integrate_hybrid
 from squealpipe.models.a1_automaton import (
     A1Automaton,
 )
 from squealpipe.parameters import Parameters
+from tests.oracles.hybrid import Guard, HybridAutomaton, HybridRun, integrate_hybrid
 
 AT_REST = (0.0, 0.0, 0.0, 0.0)
 

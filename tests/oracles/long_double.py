@@ -13,8 +13,8 @@ from typing import Any
 import heyoka
 import numpy as np
 
-from squealpipe.methods.hybrid import HybridRun
-from squealpipe.methods.taylor import taylor_compiler
+from tests.oracles import taylor_compiler
+from tests.oracles.hybrid import HybridRun
 
 TOLERANCE = 1e-19
 LONG_ULP = 2.0**-62

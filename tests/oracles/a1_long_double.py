@@ -15,15 +15,15 @@ from squealpipe.laws.contact import contact_force
 from squealpipe.laws.contact_laws import LINEAR
 from squealpipe.laws.friction import stick_limit
 from squealpipe.laws.springs import Geometry
-from squealpipe.methods.hybrid import HybridRun
-from squealpipe.methods.taylor.long_double import (
+from squealpipe.models.a1 import acceleration, suspension_force
+from squealpipe.models.a1_automaton import A1Automaton, EventKind
+from squealpipe.parameters import NUMBERS_OF_A1, Parameters
+from tests.oracles.hybrid import HybridRun
+from tests.oracles.long_double import (
     LONG_ULP,
     compile_long_double,
     integrate_long_double,
 )
-from squealpipe.models.a1 import acceleration, suspension_force
-from squealpipe.models.a1_automaton import A1Automaton, EventKind
-from squealpipe.parameters import NUMBERS_OF_A1, Parameters
 
 _REGIME = ("contact", "direction", "stick", "slips")
 PARAMETERS = (*NUMBERS_OF_A1, *Geometry._fields, *_REGIME)
@@ -77,7 +77,7 @@ def simulate_reference(
     initial_state: Sequence[float] = (0.0, 0.0, 0.0, 0.0),
     stop_at: int | None = None,
 ) -> HybridRun:
-    """A1 by :mod:`squealpipe.methods.taylor.long_double`; errors about 1e-17 outside chaos.
+    """A1 by :mod:`tests.oracles.long_double`; errors about 1e-17 outside chaos.
 
     Args:
         params: physical parameters; alpha1, alpha2: angles, rad.
