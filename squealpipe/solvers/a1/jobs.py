@@ -111,7 +111,7 @@ class Jobs:
             late_from_return=late_from_return,
             times=_sample_times(times, shape, ends, time_unit),
             stop_at_first_separation=stop_at_first_separation,
-            stop_at_turns=stop_at_turns,
+            stop_at_turns=float(real_array("stop_at_turns", stop_at_turns, infinite=True)),
             most=(1e4 + 200 * rate * t_end, 1e3 + 20 * rate * t_end),
             time_unit=time_unit,
             length=length,

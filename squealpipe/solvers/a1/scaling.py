@@ -150,6 +150,8 @@ def _systems(
     )  # fmt: skip
     code = sum(np.unique(each, return_inverse=True)[1].reshape(each.shape) * 8**i
                for i, each in enumerate(forms))  # fmt: skip
+    if not code.size:
+        return (brake(model=model, one_mu=True),), code
     _, first, which = np.unique(code, return_index=True, return_inverse=True)
     systems = []
     for at in first:

@@ -118,6 +118,12 @@ def test_results_have_the_shape_of_the_inputs():
 
 def test_no_runs():
     assert run_ensemble(FORMER, np.zeros(0), 1.0, t_end=1.0).outcome.shape == (0,)
+    assert run_ensemble({"mu": np.zeros(0)}, 1.0, 1.0, t_end=1.0).outcome.shape == (0,)
+
+
+def test_turns_that_are_not_a_number_are_refused():
+    with pytest.raises(ValueError, match="stop_at_turns"):
+        run_ensemble(FORMER, 1.0, 1.0, t_end=1.0, stop_at_turns=np.nan)
 
 
 def test_t_end_zero_is_the_start():
