@@ -90,5 +90,5 @@ REMEDIES: dict[Outcome, str] = {
     Outcome.closed: "the branch is a closed curve, followed once round",
     Outcome.accumulation: "events accumulate: the limit is the time reached; end there, or add a "
     "regime of rest",
-    Outcome.tangency: "a surface is just touched, or stick ends so: beyond, the motion jumps",
+    Outcome.tangency: "a surface is just touched, or stick ends so: no motion like it follows",
 }
