@@ -157,7 +157,7 @@ def brake(  # noqa: C901 (one short function for each force and surface)
             *laws.knots(),
         ],
         start=dict.fromkeys(states, 0.0),
-        starts_in=laws.starts(free, rises, on_belt, lambda t, s, p, r: pull(s, p, r)),
+        starts_in=laws.starts(free, rises, on_belt, limit, pull),
         outputs={"contact_force": ("N", force), "reach": reach},
         stops={} if rules.linear_springs else {"pivot1": pivot(0), "pivot2": pivot(1)},
         time_scale=lambda p: (p.mass / p.k1) ** 0.5,
@@ -339,11 +339,12 @@ class _Laws:
                 )
                 yield Switch(f"{there} to {here}", there, past("start"), [(here, None, "knot")])
 
-    def starts(self, free: Any, rises: Any, on_belt: Any, pull: Any) -> list[Any]:
+    def starts(self, free: Any, rises: Any, on_belt: Any, limit: Any, pull: Any) -> list[Any]:
         """In which regime a run starts: the first whose surfaces are all ≥ 0.
 
         Where the contact spring is just free the velocity decides, then the force. At belt speed it
-        is stick, or slip to the side that the springs pull to.
+        is stick where friction can hold, or slip to the side that the springs pull to, below belt
+        speed where they do not.
         """
 
         def above(t: Any, s: Any, p: Any, r: Any) -> Any:
@@ -357,9 +358,17 @@ class _Laws:
         regimes = [self.name(*each) for each in self.in_contact()]
         sticks = [name for name in regimes if name.startswith("stick")]
         slips = [name for name in regimes if name not in sticks]
+        several = len(self.contacts) > 1
+
+        def falls_back(t: Any, s: Any, p: Any, r: Any) -> Any:
+            return -pull(s, p, r) - (FIRST * limit(s, p, r) if sticks else 0.0)
+
+        if not several:
+            found.append((self.name("slip_slower", 0, 0), falls_back, on_belt))
         found += [(name, None, on_belt) for name in sticks]
-        if len(self.contacts) == 1:
-            found.append((self.name("slip_faster", 0, 0), pull, on_belt))
+        if not several:
+            faster = self.name("slip_faster", 0, 0)
+            found.append((faster, lambda t, s, p, r: pull(s, p, r), on_belt))
         return [*found, *((name, None) for name in slips[:-1]), slips[-1]]
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import pytest
 
@@ -102,3 +104,21 @@ def test_springs_of_a_million_preload_lengths_keep_their_force():
 def test_friction_as_printed_takes_no_table():
     with pytest.raises(ValueError, match="no tables"):
         brake("linear 0:0.4 1:0.3", model="A1-as-printed")
+
+
+def test_a_mass_at_belt_speed_that_nothing_holds_or_pulls_slides_below_it():
+    """Eq. (4) as printed repels from belt speed; without friction nothing happens there."""
+    at_belt = {"initial_state": (0.0, 0.0, 3.0, 0.0), "times": np.array([0.0, 0.01])}
+    printed = simulate(
+        Parameters(belt_speed=3.0),
+        math.pi / 2,
+        math.pi / 2,
+        t_end=1.0,
+        model="A1-as-printed",
+        **at_belt,
+    )
+    assert printed.vx[1] < 3.0
+    assert (printed.event_time > 0.0).all()
+    at_belt["initial_state"] = (0.0, 0.5, 3.0, 0.0)
+    smooth = simulate(Parameters(mu=0.0, belt_speed=3.0), 1.0, 1.0, t_end=1.0, **at_belt)
+    assert (smooth.event_time > 0.0).all()
