@@ -37,7 +37,7 @@ _PART: dict[str, Any] = {
     "no_cpython_wrapper": True,
     "no_cfunc_wrapper": True,
 }
-_MARK = b"from squealpipe.methods.compiled import compiled\n"
+_MARK = b"from squealpipe.methods.compiled import "
 
 part = _numba.njit(**_PART)
 inline = _numba.njit(forceinline=True, **_PART)
@@ -45,7 +45,7 @@ polynomial = _numba.njit(fastmath={"contract"}, **_PART)
 
 
 def kernel_sources() -> list[Path]:
-    """This file and every module beside or below it that compiles kernels."""
+    """This file and every module beside or below it that compiles kernels or their parts."""
     here = Path(__file__)
     users = [path for path in sorted(here.parent.rglob("*.py")) if _MARK in path.read_bytes()]
     return [here, *(path for path in users if path != here)]
