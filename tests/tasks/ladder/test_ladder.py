@@ -44,9 +44,8 @@ def test_cpu_time_is_recorded_and_some_cells_are_answered_below_a1(ladder) -> No
     for name in ("always_cpu_time", "chosen_cpu_time"):
         assert (ladder[name] > 0.0).all()
         assert ladder[name].attrs["volatile"] == "true"
+        assert ladder[name].dims == ("question",)  # each beside A1 run for that question alone
     below = (ladder.chosen != Level.a1).mean(("alpha1", "alpha2"))
-    alike = ladder.sel(question="max_displacement")  # A1 everywhere: both run the same
-    assert float(alike.chosen_cpu_time) > 0.75 * float(alike.always_cpu_time)
     assert float(below.sel(question="contact_lost")) > 0.05
 
 
