@@ -77,6 +77,9 @@ def test_branch_of_the_impact_oscillator_has_its_closed_form_points():
     )
     assert special(branch, Label.fold) == pytest.approx(2.073204825805628, abs=1e-12)
     np.testing.assert_array_equal(branch.events[[0, -1]], [0, 1])
+    touches = branch.label == Label.grazing
+    np.testing.assert_array_equal(branch.multiplier_real.isnull().all("multiplier"), touches)
+    np.testing.assert_array_equal(branch.stable[touches], branch.stable.shift(point=1)[touches])
     assert float(branch.amplitude[-1]) == 4.0
     assert branch.end == Outcome.converged
     middle = (branch.events == 1) & (branch.label == Label.regular)

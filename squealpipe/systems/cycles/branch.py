@@ -676,6 +676,8 @@ def cycle_branch(
     Returns:
         Dataset over ``point`` with what :func:`limit_cycle` gives of a cycle, a variable of the
         parameter's name, ``label``, ``events`` (their number) and ``end``, why the branch ended.
+        A grazing and an onset of sticking have no multipliers, NaN, and the stability of the
+        point before: the return map has no derivative there.
 
     Raises:
         ValueError: an unknown parameter, a value that is no finite number, or no cycle to start
@@ -784,9 +786,25 @@ def doubled_start(point: Point) -> tuple[ContinuationState, Cycle] | None:
     return None
 
 
+def in_rows(
+    points: list[Point], numbers: Callable[[Cycle], dict[str, Any]]
+) -> list[dict[str, Any]]:
+    """The numbers of each point of a branch.
+
+    The return map has no derivative where a surface is just touched, or where sticking begins:
+    such a point has no multipliers, and the stability of the point before it.
+    """
+    rows = [numbers(point.cycle) for point in points]
+    for i, (row, point) in enumerate(zip(rows, points, strict=True)):
+        if point.label in {Label.grazing, Label.stick_onset}:
+            row |= {name: row[name] * np.nan for name in ("multiplier_real", "multiplier_imag")}
+            row["stable"] = rows[max(i - 1, 0)]["stable"]
+    return rows
+
+
 def dataset(system: System, points: list[Point], end: int, parameter: str) -> xr.Dataset:
     """A branch as a dataset."""
-    rows = [columns(point.cycle, system) for point in points]
+    rows = in_rows(points, lambda cycle: columns(cycle, system))
     found: dict[str, Any] = describe_columns(system, rows, "point")
     values = points[0].cycle.parts.values if points else {}
     followed = np.array([point.parameter for point in points])

@@ -14,7 +14,7 @@ from squealpipe.parameters import TABLE, Parameters, is_finite_number
 from squealpipe.schema import Outcome, build
 from squealpipe.schema.cycles import CYCLE_BRANCH, LIMIT_CYCLE
 from squealpipe.schema.origin import recorded
-from squealpipe.systems.cycles.branch import Follower, Point, doubled_start, first_point
+from squealpipe.systems.cycles.branch import Follower, Point, doubled_start, first_point, in_rows
 from squealpipe.systems.cycles.event_map import Cycle
 from squealpipe.systems.cycles.labels import Label
 from squealpipe.tasks.cycles.cycle import cycle_from
@@ -147,7 +147,7 @@ def _first_cycle(scene: Scene, start: Any) -> tuple[Cycle | None, Outcome]:
 
 def _dataset(scene: Scene, points: list[Point], end: Outcome) -> xr.Dataset:
     parameter = str(scene.follow)
-    rows = [scene.numbers(point.cycle) for point in points]
+    rows = in_rows(points, scene.numbers)
     names = ("multiplier_real", "multiplier_imag")
     empty: dict[str, Any] = {name: np.empty((0, 4)) for name in names}
     columns = {name: np.array([row[name] for row in rows]) for name in rows[0]} if rows else empty
