@@ -676,8 +676,8 @@ def cycle_branch(
     Returns:
         Dataset over ``point`` with what :func:`limit_cycle` gives of a cycle, a variable of the
         parameter's name, ``label``, ``events`` (their number) and ``end``, why the branch ended.
-        A grazing and an onset of sticking have no multipliers, NaN, and the stability of the
-        point before: the return map has no derivative there.
+        A special point has the stability of the point before it; a grazing and an onset of
+        sticking, where the return map has no derivative, have no multipliers (NaN).
 
     Raises:
         ValueError: an unknown parameter, a value that is no finite number, or no cycle to start
@@ -791,14 +791,16 @@ def in_rows(
 ) -> list[dict[str, Any]]:
     """The numbers of each point of a branch.
 
-    The return map has no derivative where a surface is just touched, or where sticking begins:
-    such a point has no multipliers, and the stability of the point before it.
+    A special point has the stability of the point before it, as round-off would decide where a
+    multiplier is on the unit circle. At a grazing and at an onset of sticking the return map has no
+    derivative, so there are no multipliers.
     """
     rows = [numbers(point.cycle) for point in points]
     for i, (row, point) in enumerate(zip(rows, points, strict=True)):
+        if point.label not in {Label.regular, Label.end}:
+            row["stable"] = rows[max(i - 1, 0)]["stable"]
         if point.label in {Label.grazing, Label.stick_onset}:
             row |= {name: row[name] * np.nan for name in ("multiplier_real", "multiplier_imag")}
-            row["stable"] = rows[max(i - 1, 0)]["stable"]
     return rows
 
 
