@@ -200,13 +200,8 @@ def test_a_touch_after_which_the_motion_jumps_ends_a_branch():
     assert branch.end == Outcome.tangency
 
 
-SNAKING = pytest.mark.xfail(reason="long and short steps part on the way")
-
-
 @pytest.mark.release
-@pytest.mark.parametrize(
-    "seed", [pytest.param(seed, marks=[SNAKING] * (seed in {30, 31, 80})) for seed in range(100)]
-)
+@pytest.mark.parametrize("seed", range(100))
 def test_no_label_of_a_random_branch_is_lost_between_dense_samples(seed, monkeypatch):
     """Labels are those of steps a tenth as long, and each change between those has one."""
     system, rng = random_system(seed), np.random.default_rng(seed)

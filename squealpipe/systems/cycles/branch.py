@@ -60,6 +60,8 @@ _COARSE = 1e-6
 """Step below which a branch is taken as it is."""
 _WEAK = 0.1
 """Speed or length of an event, over the least of the others, at which it has only just begun."""
+_JUMP = 1e-2
+"""Change of the extremes, over the extent, beyond which a solution is not next to the change."""
 _AT_REST = 1e-3
 """Size of a cycle, over the largest on its branch, below which one that shrinks comes to rest."""
 _MET = 0.03
@@ -502,9 +504,15 @@ class _Turn:
         """The first point beyond, with a tangent that leads away."""
         for equations, guess in (*self._runs(), *self._without()):
             found = self._started(equations, guess)
-            if found is not None:
+            if found is not None and not self._jumps(found[1]):
                 return found
         return None
+
+    def _jumps(self, cycle: Cycle) -> bool:
+        """Whether a solution is not next to the change: a reset of the state may end the branch."""
+        change = self.there[1]
+        moved = (cycle.extremes - change.extremes)[:, : len(change.map.scale)] / change.map.scale
+        return bool(np.abs(moved).max() > _JUMP)
 
     def _runs(self) -> Iterator[tuple[EventMap, Vector]]:
         """Motions of the system from just beyond, with the events that they have."""
