@@ -10,6 +10,7 @@ def main() -> None:
     try:
         from squealpipe.cli import main as command
     except KeyboardInterrupt:
+        exec("")  # noqa: S102 (see cli.run)
         print("squealpipe: interrupted; nothing was written", file=sys.stderr)
         sys.exit(130)
     command()

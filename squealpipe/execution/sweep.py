@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import itertools
-import signal
 from collections.abc import Iterable, Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, replace
 from functools import partial
-from multiprocessing import get_all_start_methods, get_context
+from multiprocessing import active_children, get_all_start_methods, get_context
 from typing import Any
 
 import numpy as np
@@ -20,7 +19,7 @@ from squealpipe.config.ranges import NUMBERS, PHYSICAL, longest
 from squealpipe.execution.catalogue import TASKS, run_task
 from squealpipe.execution.parts import scattered_rows
 from squealpipe.execution.system_sweep import SystemSweep, is_system
-from squealpipe.methods.processes import available_cores
+from squealpipe.methods.processes import available_cores, leave_interrupts_to_the_parent
 from squealpipe.parameters import Parameters, parameters_of
 from squealpipe.schema import DatasetSchema, Variable, build, find
 from squealpipe.schema.origin import origin
@@ -172,6 +171,10 @@ def _run(sweep: Sweep, workers: int | None, point: tuple[float, ...]) -> Arrays:
     return {str(name): variable.values for name, variable in made.variables.items()}
 
 
+def _run_several(sweep: Sweep, points: Sequence[tuple[float, ...]]) -> list[Arrays]:
+    return [_run(sweep, 1, point) for point in points]
+
+
 @checked
 def run_sweep(
     sweep: Sweep | SystemSweep, *, workers: Workers = None, progress: bool = False
@@ -196,16 +199,21 @@ def run_sweep(
     if number == 1 or "fork" not in get_all_start_methods():
         runs = _tracked(map(partial(_run, sweep, workers), points), sweep, progress=progress)
     else:
-        # Ctrl-C reaches the whole group: processes end at once, and the parent says so.
+        others = set(active_children())
         with ProcessPoolExecutor(
-            number, get_context("fork"), signal.signal, (signal.SIGINT, signal.SIG_DFL)
+            number, get_context("fork"), leave_interrupts_to_the_parent
         ) as pool:
             size = -(-len(points) // (16 * number))
-            made = pool.map(partial(_run, sweep, 1), points, chunksize=size)
+            parts = [
+                pool.submit(_run_several, sweep, points[first : first + size])
+                for first in range(0, len(points), size)
+            ]
+            made = (run for part in parts for run in part.result())
             try:
                 runs = _tracked(made, sweep, progress=progress)
             except BaseException:
-                pool.shutdown(wait=False, cancel_futures=True)
+                for process in set(active_children()) - others:
+                    process.terminate()  # the pool is broken then and waits for no other run
                 raise
     return _merge(sweep, runs)
 

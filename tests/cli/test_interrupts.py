@@ -15,12 +15,12 @@ from squealpipe.cli.project import _to_its_end
 
 LONG = {
     "simulate": ["simulate", "0.4pi", "0.6pi", "--t-end", "1e6"],
-    "map": ["map", "hammering", "--t-end", "100000", "--alpha1", "0:pi:41", "--alpha2", "0:pi:41"],
+    "map": ["map", "hammering", "--t-end", "1e6", "--alpha1", "0:pi:41", "--alpha2", "0:pi:41"],
     "backbone": ["backbone", "0.3pi", "0.9pi", "--method", "hbm", "--n-harmonics", "512",
-                 "--y-peak-max", "100"],
+                 "--y-peak-max", "10000"],
     "sweep": [
         "sweep", "simulate", "--vary", "mu=0.1:0.6:60", "--alpha1", "5pi/6", "--alpha2", "5pi/6",
-        "--option", "t_end=200000", "--option", "times=0:200000:11", "--workers", "2",
+        "--option", "t_end=1e6", "--option", "times=0:1e6:11", "--workers", "2",
     ],
 }  # fmt: skip
 
@@ -42,20 +42,22 @@ def test_interrupt_stops_the_command_and_its_processes(name, tmp_path):
 
 
 EARLY = """
-import runpy, sys
+import sys
 class Interrupt:
     def find_spec(self, name, *_):
         if name == 'cyclopts':
-            raise KeyboardInterrupt
+            exec('raise KeyboardInterrupt')
 sys.meta_path.insert(0, Interrupt())
-runpy.run_module('squealpipe', run_name='__main__')
 """
 
 
-def test_interrupt_while_the_command_is_loaded_is_quiet_too():
+def test_interrupt_while_the_command_is_loaded_is_quiet_too(tmp_path):
+    (tmp_path / "sitecustomize.py").write_text(EARLY)
+    path = os.pathsep.join([str(tmp_path), os.environ.get("PYTHONPATH", "")])
     done = subprocess.run(
-        [sys.executable, "-c", EARLY], capture_output=True, text=True, timeout=60, check=False
-    )
+        [sys.executable, "-m", "squealpipe"], capture_output=True, text=True, timeout=60,
+        check=False, env={**os.environ, "PYTHONPATH": path},
+    )  # fmt: skip
     assert done.returncode == INTERRUPTED
     assert done.stderr == "squealpipe: interrupted; nothing was written\n"
 
