@@ -1,7 +1,5 @@
 """The site builds without warnings, holds what is public, and opens page by page."""
 
-from __future__ import annotations
-
 import subprocess
 import sys
 import threading
@@ -25,7 +23,7 @@ class Quiet(SimpleHTTPRequestHandler):
 
 
 @pytest.fixture(scope="module")
-def site(tmp_path_factory) -> Path:
+def site(tmp_path_factory):
     folder = tmp_path_factory.mktemp("site")
     done = subprocess.run(
         [sys.executable, "-m", "mkdocs", "build", "--strict", "-q", "-d", str(folder)],

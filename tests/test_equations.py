@@ -26,7 +26,7 @@ REFERENCE = re.compile(r"\bof Eqs?\. \(\d+[a-g]?\)(?:(?:, |–| and )\(\d+[a-g]?
 NUMBER = re.compile(r"\((\d+)([a-g]?)\)(?:–\((\d+)([a-g]?)\))?")
 
 
-def numbers(text: str) -> set[str]:
+def numbers(text):
     """Equation numbers in a text, ranges such as (8a)–(8c) and (31)–(34) spelled out."""
     found = set()
     for first, letter, last, last_letter in NUMBER.findall(text):
@@ -39,7 +39,7 @@ def numbers(text: str) -> set[str]:
     return found
 
 
-def homes() -> dict[str, set[str]]:
+def homes():
     """Equation → ``path: name`` of its homes."""
     found = defaultdict(set)
     for layer in ("laws", "models", "methods", "solvers", "tasks"):
@@ -55,7 +55,7 @@ def homes() -> dict[str, set[str]]:
     return found
 
 
-def table() -> dict[str, set[str]]:
+def table():
     """Equation → ``path: name`` as docs/equations.md has it."""
     found = defaultdict(set)
     for line in (ROOT / "docs/equations.md").read_text(encoding="utf-8").splitlines():

@@ -52,8 +52,7 @@ def test_times_come_from_snakemakes_records(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("text", "results"),
-    [("", "results/quick"), ("results: results/mine\n", "results/mine-quick")],
+    ("text", "results"), [("", "results/quick"), ("results: results/mine\n", "results/mine-quick")]
 )
 def test_a_quick_study_goes_beside_the_full_one(tmp_path, text, results):
     """Also where the overlay names a folder of its own."""

@@ -1,7 +1,5 @@
 """The package as a stranger installs it: core dependencies alone, types shipped, metadata valid."""
 
-from __future__ import annotations
-
 import subprocess
 import sys
 import tomllib
@@ -33,7 +31,7 @@ assert run(["map", "stability", "--alpha1", "0:pi:3", "--alpha2", "0:pi:3"]) == 
 """
 
 
-def run(*command, cwd) -> str:
+def run(*command, cwd):
     done = subprocess.run(
         [str(word) for word in command], cwd=cwd, capture_output=True, text=True, check=False
     )

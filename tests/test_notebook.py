@@ -1,7 +1,5 @@
 """The example notebook runs, and shows what was stored in it."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import nbformat
@@ -10,7 +8,7 @@ from nbclient import NotebookClient
 NOTEBOOK = Path(__file__).resolve().parents[1] / "docs/example.ipynb"
 
 
-def printed(notebook) -> list[str]:
+def printed(notebook):
     """Text that each cell printed."""
     return [
         "".join(one.text for one in cell.get("outputs", []) if one.output_type == "stream")

@@ -1,7 +1,5 @@
 """Parameters and scenes: what is allowed, and the dimensionless groups."""
 
-from __future__ import annotations
-
 import dataclasses
 import math
 
@@ -19,43 +17,43 @@ positive = st.floats(1e-3, 1e3)
 
 @pytest.mark.parametrize("field", POSITIVE)
 @pytest.mark.parametrize("value", [0.0, -1.0])
-def test_sizes_must_be_positive(field: str, value: float) -> None:
+def test_sizes_must_be_positive(field, value):
     with pytest.raises(ValueError, match=rf"{field} = -?{abs(value)}: must be greater than 0"):
         Parameters(**{field: value})
 
 
 @pytest.mark.parametrize("field", [name for name in TABLE if not TABLE[name].laws])
 @pytest.mark.parametrize("value", [math.nan, math.inf, "1", None, True, 1j, [1.0]])
-def test_only_finite_numbers_are_taken(field: str, value: object) -> None:
+def test_only_finite_numbers_are_taken(field, value):
     if value is None and TABLE[field].optional:
         return
     with pytest.raises(ValueError, match=f"{field} = .*: a finite number is needed"):
         Parameters(**{field: value})
 
 
-def test_friction_may_vanish_but_not_be_negative() -> None:
+def test_friction_may_vanish_but_not_be_negative():
     assert Parameters(mu=0).mu == 0.0
     with pytest.raises(ValueError, match=r"mu = -0\.1: must be 0 or greater"):
         Parameters(mu=-0.1)
 
 
-def test_whole_and_numpy_numbers_become_floats() -> None:
+def test_whole_and_numpy_numbers_become_floats():
     params = Parameters(mass=2, k3=np.float32(0.5), belt_speed=np.int64(-3))
     assert [type(value) for value in params.as_dict().values()] == [float] * 10
     assert params.belt_speed == -3.0
 
 
-def test_parameters_cannot_be_changed_in_place() -> None:
+def test_parameters_cannot_be_changed_in_place():
     params = Parameters()
     with pytest.raises(dataclasses.FrozenInstanceError):
-        params.mu = 0.1  # type: ignore[misc]
+        params.mu = 0.1
     assert params.with_(mu=0.1).mu == 0.1
     with pytest.raises(ValueError, match="mass"):
         params.with_(mass=-1.0)
 
 
 @given(mass=positive, stiffness=positive, length=positive)
-def test_groups_do_not_depend_on_the_units(mass: float, stiffness: float, length: float) -> None:
+def test_groups_do_not_depend_on_the_units(mass, stiffness, length):
     plain = Parameters()
     speed = length * math.sqrt(stiffness / mass)
     scaled = Parameters(
@@ -72,17 +70,17 @@ def test_groups_do_not_depend_on_the_units(mass: float, stiffness: float, length
         assert math.isclose(getattr(scaled, group), getattr(plain, group), rel_tol=1e-14)
 
 
-def test_groups_of_equal_springs() -> None:
+def test_groups_of_equal_springs():
     params = Parameters(k3=0.6, mu=0.2, length1=4.0, length2=4.0, belt_speed=-7.0)
     groups = (params.kappa, params.mu, params.length_ratio, params.speed_ratio)
     assert groups == (0.6, 0.2, 4.0, -7.0)
 
 
-def test_parameters_of_a_slice() -> None:
+def test_parameters_of_a_slice():
     assert parameters_of({"parameters": {"mu": 0.1}}) == Parameters(mu=0.1)
 
 
-def test_scenes_are_those_of_the_paper() -> None:
+def test_scenes_are_those_of_the_paper():
     printed = {
         "F2a": (0.5, 1), "F2b": (1, 0.5), "F2c": (0.75, 0.75), "F2d": (0.83, 0.83),
         "F3": (0.4, 0.6), "F4": (0.2, 0.8), "F5a": (1, 1), "F5b": (0, 0),
@@ -98,7 +96,7 @@ def test_scenes_are_those_of_the_paper() -> None:
     ("change", "message"),
     [({"alpha1": math.nan}, "alpha1 = nan"), ({"t_end": 0.0}, "t_end = 0.0: must be greater")],
 )
-def test_a_scene_refuses_what_is_no_scene(change: dict[str, float], message: str) -> None:
+def test_a_scene_refuses_what_is_no_scene(change, message):
     fields = {"alpha1": 0.0, "alpha2": 0.0, "t_end": 1.0, **change}
     with pytest.raises(ValueError, match=f"scene X: {message}"):
         Scene(name="X", figure=1, statement="", **fields)
@@ -137,14 +135,14 @@ EXTENSIONS = {
         ({"friction_law": 3}, "friction_law = 3: unknown"),
     ],
 )
-def test_extensions_refuse_what_makes_no_sense(change: dict[str, object], message: str) -> None:
+def test_extensions_refuse_what_makes_no_sense(change, message):
     with pytest.raises(ValueError, match=message):
         Parameters(**change)
     with pytest.raises(ConfigError, match=next(iter(change))):
         parse_study({"parameters": change})
 
 
-def test_extensions_are_written_down_only_where_they_are_used() -> None:
+def test_extensions_are_written_down_only_where_they_are_used():
     """Ids of datasets are made of these mappings, so those of the paper's model stay."""
     known = [name for name, row in TABLE.items() if not row.extension]
     assert list(Parameters().as_dict()) == known
@@ -160,7 +158,7 @@ def test_extensions_are_written_down_only_where_they_are_used() -> None:
     assert parameters_of(full) == params
 
 
-def test_drag_follows_the_law_at_the_speed_of_the_belt() -> None:
+def test_drag_follows_the_law_at_the_speed_of_the_belt():
     for law, factor in (("exponential", math.exp(-1.5)), ("hyperbolic", 1 / 2.5)):
         params = Parameters(
             mu=0.2, mu_static=0.5, friction_law=law, friction_speed=2.0, belt_speed=-3.0
@@ -169,7 +167,7 @@ def test_drag_follows_the_law_at_the_speed_of_the_belt() -> None:
         assert params.with_(mu_static=0.2).drag == -0.2
 
 
-def test_every_row_says_what_tables_and_help_need() -> None:
+def test_every_row_says_what_tables_and_help_need():
     for name, row in TABLE.items():
         assert row.meaning
         assert row.symbol

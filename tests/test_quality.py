@@ -1,7 +1,5 @@
 """The code keeps its own rules: lint, format, types, and imports that point one way."""
 
-from __future__ import annotations
-
 import subprocess
 import sys
 from pathlib import Path
@@ -21,7 +19,7 @@ ROOT = Path(__file__).resolve().parents[1]
     ],
     ids=lambda command: " ".join(command[:2]),
 )
-def test_tool_finds_nothing(command: tuple[str, ...]) -> None:
+def test_tool_finds_nothing(command):
     tool = Path(sys.executable).with_name(command[0])
     run = subprocess.run(
         [str(tool), *command[1:]], cwd=ROOT, capture_output=True, text=True, check=False

@@ -1,7 +1,5 @@
 """Angles, numbers, ranges and sweeps as people write them."""
 
-from __future__ import annotations
-
 import math
 
 import pytest

@@ -1,7 +1,5 @@
 """The three readings of the sign of friction."""
 
-from __future__ import annotations
-
 import pytest
 
 from squealpipe.models.variants import VARIANT_RULES

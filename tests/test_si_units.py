@@ -1,7 +1,5 @@
 """A brake in SI units gets the answers of the same brake in units of its own, without options."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """``squealpipe benchmark`` and ``squealpipe benchmark compare``."""
 
-from __future__ import annotations
-
 import pytest
 
 from squealpipe.cli import run

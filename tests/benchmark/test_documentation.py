@@ -1,7 +1,5 @@
 """The page's example of a solver and its reproducers do what the page says."""
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 

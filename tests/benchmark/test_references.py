@@ -1,7 +1,5 @@
 """Two independent ways agree on every reference to 15 digits over the growth."""
 
-from __future__ import annotations
-
 import math
 
 import mpmath

@@ -1,7 +1,5 @@
 """The score names what a solver does wrong; the shipped solvers do what they are known to do."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

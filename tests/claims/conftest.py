@@ -1,10 +1,7 @@
 """One run's datasets at the shipped baseline, on a coarse grid."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
-import xarray as xr
 
 from squealpipe.parameters import SCENES, Parameters
 from squealpipe.reading import READINGS, corrected, for_a1, for_linear
@@ -22,13 +19,11 @@ POINTS = 41
 
 
 @pytest.fixture(scope="session")
-def baseline() -> Parameters:
+def baseline():
     return Parameters()
 
 
-def compute_evidence(
-    params: Parameters, reading: str = "along_plus_x", *, beside: bool = False
-) -> dict[str, xr.Dataset]:
+def compute_evidence(params, reading="along_plus_x", *, beside=False):
     """All datasets that the checks read, at any parameters; times and speeds scale with them.
 
     Args:
@@ -53,7 +48,7 @@ def compute_evidence(
     return found | of_one_sign(corrected(params, reading)) | of_a4(for_linear(params, reading))
 
 
-def of_the_paper(params: Parameters, model: str) -> dict[str, xr.Dataset]:
+def of_the_paper(params, model):
     """The scenes of Figs. 2–5, and the maps."""
     unit = params.time_unit
     angles = np.linspace(0.0, np.pi, POINTS)
@@ -75,7 +70,7 @@ def of_the_paper(params: Parameters, model: str) -> dict[str, xr.Dataset]:
     return found
 
 
-def of_one_sign(params: Parameters) -> dict[str, xr.Dataset]:
+def of_one_sign(params):
     """What goes beyond the paper."""
     unit = params.time_unit
     angles = np.linspace(0.0, np.pi, POINTS)[::4]
@@ -86,7 +81,7 @@ def of_one_sign(params: Parameters) -> dict[str, xr.Dataset]:
     }
 
 
-def of_a4(params: Parameters) -> dict[str, xr.Dataset]:
+def of_a4(params):
     """Periodic motions of A4."""
     scenes = {"F10": (0.5 * np.pi, np.pi, 2), "coupled": (0.3 * np.pi, 0.9 * np.pi, 2)}
     return {"harmonic_forms": compare_harmonic_forms(params, scenes)} | {
@@ -98,6 +93,6 @@ def of_a4(params: Parameters) -> dict[str, xr.Dataset]:
 
 
 @pytest.fixture(scope="session")
-def evidence(baseline: Parameters) -> dict[str, xr.Dataset]:
+def evidence(baseline):
     """What the paper shows as printed, and the corrected physics beside it."""
     return compute_evidence(baseline, "as_printed", beside=True)

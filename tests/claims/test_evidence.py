@@ -1,7 +1,5 @@
 """Findings: comparisons, margins and how numbers are written."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 
@@ -22,20 +20,18 @@ from squealpipe.text import as_people_write
         (2.0, "≥", 2.0, Verdict.holds, 0.0),
     ],
 )
-def test_comparison_and_margin(
-    value: float, relation: str, threshold: float, verdict: Verdict, margin: float
-) -> None:
+def test_comparison_and_margin(value, relation, threshold, verdict, margin):
     found = finding(value, relation, threshold, "")
     assert found.verdict == verdict
     assert found.margin == margin
 
 
-def test_a_further_condition_can_only_turn_a_verdict_down() -> None:
+def test_a_further_condition_can_only_turn_a_verdict_down():
     assert finding(1, "<", 2, "", also=False).verdict == Verdict.fails
     assert finding(3, "<", 2, "", also=True).verdict == Verdict.fails
 
 
-def test_no_number_no_verdict() -> None:
+def test_no_number_no_verdict():
     with pytest.raises(MissingDataError, match="nothing to compare"):
         finding(np.nan, "<", 2, "an empty map")
 
@@ -52,5 +48,5 @@ def test_no_number_no_verdict() -> None:
         ("sets 2-4 of A1-no-stick, backbone/F10-1", "sets 2-4 of A1-no-stick, backbone/F10-1"),
     ],
 )
-def test_numbers_are_written_as_people_write(text: str, written: str) -> None:
+def test_numbers_are_written_as_people_write(text, written):
     assert as_people_write(text) == written

@@ -1,10 +1,7 @@
 """Every statement has a row; verdicts follow from the data, and a row says when it cannot."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
-import xarray as xr
 
 from squealpipe.parameters import Parameters
 from squealpipe.schema.claims import Basis, Verdict
@@ -34,29 +31,25 @@ CHANGED = {
 """Verdicts in the corrected physics that differ from those of the paper as printed."""
 
 
-def verdicts(claims: xr.Dataset) -> dict[str, Verdict]:
+def verdicts(claims):
     return {
         str(name): Verdict(int(value))
         for name, value in zip(claims.claim.values, claims.verdict.values, strict=True)
     }
 
 
-def test_every_statement_of_the_list_has_its_row_in_order() -> None:
+def test_every_statement_of_the_list_has_its_row_in_order():
     assert [statement.id for statement in STATEMENTS] == CLAIMS
 
 
-def test_verdicts_at_the_baseline_are_those_recorded(
-    evidence: dict[str, xr.Dataset], baseline: Parameters
-) -> None:
+def test_verdicts_at_the_baseline_are_those_recorded(evidence, baseline):
     claims = judge(baseline, evidence, "as_printed")
     differing = claims.claim.values[(claims.verdict_here != claims.recorded).values]
     assert list(differing) == []
     assert np.isfinite(claims.value).all()
 
 
-def test_what_changes_where_the_sign_is_mended(
-    evidence: dict[str, xr.Dataset], baseline: Parameters
-) -> None:
+def test_what_changes_where_the_sign_is_mended(evidence, baseline):
     """F3 has a bound with one sign throughout, and Fig. 7 no black region."""
     judged = rows(judge(baseline, evidence, "as_printed"))
     changed = {row["id"]: row["corrected_verdict"] for row in judged if row["changes"]}
@@ -65,9 +58,7 @@ def test_what_changes_where_the_sign_is_mended(
     assert not any(row["changes"] for row in rows(judge(baseline, plain, "as_printed")))
 
 
-def test_without_datasets_nothing_is_decided_and_the_reason_names_what_is_missing(
-    baseline: Parameters,
-) -> None:
+def test_without_datasets_nothing_is_decided_and_the_reason_names_what_is_missing(baseline):
     claims = judge(baseline, {}, "as_printed")
     assert (claims.verdict == Verdict.cannot_be_decided).all()
     for text in claims.evidence.values:
@@ -75,15 +66,13 @@ def test_without_datasets_nothing_is_decided_and_the_reason_names_what_is_missin
         assert "not computed yet" in str(text)
 
 
-def test_what_a_study_with_dashpots_leaves_out_gives_that_reason(baseline: Parameters) -> None:
+def test_what_a_study_with_dashpots_leaves_out_gives_that_reason(baseline):
     claims = judge(baseline.with_(damping1=0.02), {})
     for text in claims.evidence.values:
         assert str(text).endswith("leaves out what cannot carry damping1.")
 
 
-def test_the_list_of_datasets_read_is_complete(
-    evidence: dict[str, xr.Dataset], baseline: Parameters
-) -> None:
+def test_the_list_of_datasets_read_is_complete(evidence, baseline):
     used = {
         name.split(" (")[0]
         for row in rows(judge(baseline, evidence, "as_printed"))
@@ -92,21 +81,14 @@ def test_the_list_of_datasets_read_is_complete(
     assert used == set(READ)
 
 
-def test_a_grid_without_the_cell_gives_a_reason(
-    evidence: dict[str, xr.Dataset], baseline: Parameters
-) -> None:
-    coarse = {
-        **evidence,
-        "stability_map": evidence["stability_map"].isel(alpha1=slice(0, None, 3)),
-    }
+def test_a_grid_without_the_cell_gives_a_reason(evidence, baseline):
+    coarse = {**evidence, "stability_map": evidence["stability_map"].isel(alpha1=slice(0, None, 3))}
     claims = judge(baseline, coarse, "as_printed").sel(claim="F6d")
     assert int(claims.verdict) == Verdict.cannot_be_decided
     assert "no cell (0.4π, 0.6π)" in str(claims.evidence.item())
 
 
-def test_rows_name_the_datasets_that_were_read(
-    evidence: dict[str, xr.Dataset], baseline: Parameters
-) -> None:
+def test_rows_name_the_datasets_that_were_read(evidence, baseline):
     named = {row["id"]: row["dataset"] for row in rows(judge(baseline, evidence, "as_printed"))}
     assert named["F5a"].startswith("simulate/F5a (")
     assert "simulate/F5b (" in named["F5a"]
@@ -116,20 +98,10 @@ def test_rows_name_the_datasets_that_were_read(
 
 @pytest.mark.parametrize(
     ("parameters", "change", "code"),
-    [
-        (Parameters(), False, 0),
-        (Parameters(), True, 1),
-        (Parameters(mu=0.2), True, 0),
-    ],
+    [(Parameters(), False, 0), (Parameters(), True, 1), (Parameters(mu=0.2), True, 0)],
     ids=["as recorded", "differs at the baseline", "differs elsewhere"],
 )
-def test_exit_code(
-    tmp_path,
-    evidence: dict[str, xr.Dataset],
-    parameters: Parameters,
-    change: bool,
-    code: int,
-) -> None:
+def test_exit_code(tmp_path, evidence, parameters, change, code):
     claims = judge(parameters, evidence, "as_printed")
     claims["verdict_here"] = claims.recorded.copy().assign_attrs(claims.verdict.attrs)
     if change:
@@ -150,9 +122,7 @@ def test_exit_code(
     }
 
 
-def test_a_statement_that_divides_the_feasible_set_depends_on_the_parameters(
-    evidence: dict[str, xr.Dataset], baseline: Parameters
-) -> None:
+def test_a_statement_that_divides_the_feasible_set_depends_on_the_parameters(evidence, baseline):
     inference = evidence["parameter_inference"].copy(deep=True)
     inference.feasible_share[:, list(inference.consequence.values).index("S3")] = 0.7
     data = {**evidence, "parameter_inference": inference}
@@ -162,9 +132,7 @@ def test_a_statement_that_divides_the_feasible_set_depends_on_the_parameters(
     assert float(claims.feasible_share) == pytest.approx(0.7)
 
 
-def test_each_row_says_whether_it_was_fitted_or_is_predicted(
-    evidence: dict[str, xr.Dataset], baseline: Parameters
-) -> None:
+def test_each_row_says_whether_it_was_fitted_or_is_predicted(evidence, baseline):
     """What defined the feasible set is no evidence for it: only predictions get a share."""
     claims = judge(baseline, evidence, "as_printed")
     constraints = [str(name) for name in evidence["parameter_inference"].statement.values]
@@ -186,9 +154,7 @@ def test_each_row_says_whether_it_was_fitted_or_is_predicted(
     assert (judge(baseline, alone, "as_printed").basis == Basis.unknown).all()
 
 
-def test_the_papers_statements_and_the_misprints_are_told_apart(
-    evidence: dict[str, xr.Dataset], baseline: Parameters
-) -> None:
+def test_the_papers_statements_and_the_misprints_are_told_apart(evidence, baseline):
     table_ = rows(judge(baseline, evidence, "as_printed"))
     assert {row["id"] for row in table_ if row["origin"] == "misprints"} == {
         f"E{number}" for number in range(1, 13)
@@ -196,9 +162,7 @@ def test_the_papers_statements_and_the_misprints_are_told_apart(
     assert sum(row["origin"] == "paper" for row in table_) == len(CLAIMS) - 12
 
 
-def test_one_threshold_of_growth_for_the_figure_and_the_verdict(
-    evidence: dict[str, xr.Dataset], baseline: Parameters
-) -> None:
+def test_one_threshold_of_growth_for_the_figure_and_the_verdict(evidence, baseline):
     """The reproducer: growth of 1.5 to 2 was black in Fig. 7 and none in E10."""
     validity = evidence["validity_map"]
     kept = validity.separates.values == 0
@@ -218,9 +182,7 @@ def test_one_threshold_of_growth_for_the_figure_and_the_verdict(
         assert f"second), {black} of the cells" in caption
 
 
-def test_where_the_modes_switch_is_read_from_the_map(
-    evidence: dict[str, xr.Dataset], baseline: Parameters
-) -> None:
+def test_where_the_modes_switch_is_read_from_the_map(evidence, baseline):
     """C1 against the closed form on α1 = α2 = α: K11 − K22 = 2k cos 2α between 0 and k3."""
     row = judge(baseline, evidence, "as_printed").sel(claim="C1")
     angles = np.linspace(0.0, np.pi, 1201)

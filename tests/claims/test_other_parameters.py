@@ -1,12 +1,9 @@
 """Other parameters: the same physics in other units, and verdicts that may rightly differ."""
 
-from __future__ import annotations
-
 import re
 
 import numpy as np
 import pytest
-import xarray as xr
 
 from squealpipe.parameters import Parameters
 from squealpipe.schema.claims import Verdict
@@ -22,9 +19,7 @@ SENTENCES = ("F2a", "F2b", "F2c", "F2d", "F2e", "F5b", "F10b", "F12b", "E1", "E2
 """Evidence that is the same to the letter in other units, but for frequencies in rad/s."""
 
 
-def test_verdicts_and_dimensionless_values_do_not_depend_on_the_units(
-    evidence: dict[str, xr.Dataset], baseline: Parameters
-) -> None:
+def test_verdicts_and_dimensionless_values_do_not_depend_on_the_units(evidence, baseline):
     params = Parameters(
         mass=4.0,
         k1=100.0,
@@ -50,9 +45,7 @@ def test_verdicts_and_dimensionless_values_do_not_depend_on_the_units(
         assert plain[0] == plain[1]
 
 
-def test_without_friction_nothing_flutters_and_every_row_is_still_judged(
-    evidence: dict[str, xr.Dataset],
-) -> None:
+def test_without_friction_nothing_flutters_and_every_row_is_still_judged(evidence):
     params = Parameters(mu=0.0)
     claims = judge(params, compute_evidence(params))
     verdicts = dict(zip(claims.claim.values, claims.verdict_here.values, strict=True))
@@ -69,7 +62,7 @@ OTHERS = {
 
 
 @pytest.mark.parametrize("params", OTHERS.values(), ids=OTHERS)
-def test_evidence_states_its_data(params: Parameters) -> None:
+def test_evidence_states_its_data(params):
     data = compute_evidence(params)
     table = {row["id"]: row for row in rows(judge(params, data))}
     text = {name: row["evidence"] for name, row in table.items()}

@@ -1,7 +1,5 @@
 """Error against tolerance, through located events."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Sweeps against the task run point by point; ragged runs; joined from parts."""
 
-from __future__ import annotations
-
 import re
 import subprocess
 import sys

@@ -2,16 +2,9 @@
 
 import numpy as np
 import pytest
-from matplotlib.figure import Figure
 
 from squealpipe.schema import Outcome, build
-from squealpipe.schema.comparison import (
-    BENCHMARK,
-    FAILURE_ATLAS,
-    WORK_PRECISION,
-    Reliability,
-    Role,
-)
+from squealpipe.schema.comparison import BENCHMARK, FAILURE_ATLAS, WORK_PRECISION, Reliability, Role
 from squealpipe.schema.ladder import MODEL_LADDER, QUESTIONS, Level
 from squealpipe.study.figures.comparison import (
     failure_atlas,
@@ -22,7 +15,7 @@ from squealpipe.study.figures.comparison import (
 from squealpipe.study.figures.parts import work_precision
 
 
-def written(figure: Figure) -> str:
+def written(figure):
     figure.draw_without_rendering()
     return "\n".join(
         text.get_text() for text in figure.findobj(lambda item: hasattr(item, "get_text"))
@@ -58,13 +51,13 @@ def benchmark():
     )
 
 
-def test_benchmark_chart_names_solvers_classes_and_machine(benchmark) -> None:
+def test_benchmark_chart_names_solvers_classes_and_machine(benchmark):
     text = written(work_precision_benchmark.draw(benchmark))
     for expected in ("order", "chaos", "theirs", "our setting", "a machine", "scipy 1.0"):
         assert expected in text
 
 
-def test_frequency_chart_names_the_forms() -> None:
+def test_frequency_chart_names_the_forms():
     dataset = build(
         WORK_PRECISION,
         {
@@ -80,17 +73,17 @@ def test_frequency_chart_names_the_forms() -> None:
     assert "cosines" in written(work_precision_frequencies.draw(dataset))
 
 
-def test_pareto_front_keeps_exactly_the_unbeaten() -> None:
+def test_pareto_front_keeps_exactly_the_unbeaten():
     error = np.array([1e-2, 1e-4, 1e-6, 1e-5, 1e-4])
     cost = np.array([1.0, 2.0, 9.0, 10.0, 3.0])
     assert set(work_precision._pareto(error, cost)) == {0, 1, 2}
 
 
-def test_marks_can_be_told_apart() -> None:
+def test_marks_can_be_told_apart():
     assert len(set(work_precision.MARKS)) == len(work_precision.MARKS)
 
 
-def test_atlas_prints_verdicts_and_counts(benchmark) -> None:
+def test_atlas_prints_verdicts_and_counts(benchmark):
     verdict = [[1, 3, 0], [2, 1, 0], [0, 0, 1]]
     atlas = build(
         FAILURE_ATLAS,
@@ -144,13 +137,13 @@ def ladder():
     )
 
 
-def test_ladder_maps_name_only_the_levels_that_occur(ladder) -> None:
+def test_ladder_maps_name_only_the_levels_that_occur(ladder):
     text = written(model_ladder.draw(ladder))
     assert "A4" in text
     assert "A3 in contact" not in text
 
 
-def test_ladder_cost_is_the_share_of_time(ladder) -> None:
+def test_ladder_cost_is_the_share_of_time(ladder):
     text = written(model_ladder.draw(ladder))
     assert "contact lost?: 10 %" in text
     assert "100.0 % right, 0 % below A1" in text

@@ -1,7 +1,5 @@
 """Figures declare what they read, and speak for themselves."""
 
-from __future__ import annotations
-
 import inspect
 
 import pytest
@@ -13,7 +11,7 @@ NAMES = [f"simulate/F2{letter}" for letter in "abcd"]
 
 
 @pytest.mark.parametrize("name", [*FIGURES, *OWN])
-def test_every_figure_of_the_report_can_be_drawn_from_what_it_declares(name: str) -> None:
+def test_every_figure_of_the_report_can_be_drawn_from_what_it_declares(name):
     module = declared._import(name)
     takes = inspect.signature(module.draw)
     takes.bind(*declared.reads(name))
@@ -25,26 +23,26 @@ def test_every_figure_of_the_report_can_be_drawn_from_what_it_declares(name: str
             assert 40 < len(text) < 900
 
 
-def test_no_module_is_left_without_a_place() -> None:
+def test_no_module_is_left_without_a_place():
     declaring = {
         path.stem for path in declared.FOLDER.glob("*/*.py") if "\nREADS = " in path.read_text()
     }
     assert declaring == {*FIGURES, *OWN}
 
 
-def test_a_wildcard_stands_for_all_that_match() -> None:
+def test_a_wildcard_stands_for_all_that_match():
     known = ["backbone/F10_mode1", "backbone/F11_mode1", "backbone/coupled_mode1"]
     assert declared.datasets_of("fig10_to_12", known) == known[:2]
     datasets = {name: number for number, name in enumerate(known)}
     assert declared.arguments("fig10_to_12", datasets) == [{known[0]: 0, known[1]: 1}]
 
 
-def test_plain_names_keep_their_order() -> None:
+def test_plain_names_keep_their_order():
     assert declared.datasets_of("fig02", reversed(NAMES)) == NAMES
     assert declared.arguments("fig02", {name: name for name in NAMES}) == NAMES
 
 
-def test_what_is_missing_is_said() -> None:
+def test_what_is_missing_is_said():
     assert declared.datasets_of("fig02", NAMES[:3]) is None
     with pytest.raises(ValueError, match="the figure fig02 reads the dataset simulate/F2d"):
         declared.arguments("fig02", dict.fromkeys(NAMES[:3]))

@@ -1,7 +1,5 @@
 """Figures of the dynamics show what their datasets hold, also where a part of it is empty."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import xarray as xr

@@ -1,9 +1,5 @@
 """Figures of the linear topic show what their datasets hold."""
 
-from __future__ import annotations
-
-from pathlib import Path
-
 import numpy as np
 import pytest
 import xarray as xr
@@ -30,7 +26,7 @@ BASELINE = FORMER
 
 
 @pytest.fixture(scope="module")
-def maps() -> dict[str, xr.Dataset]:
+def maps():
     return {
         "stability": linear.stability_map(BASELINE, ANGLES, ANGLES),
         "quasi_static": linear.quasi_static_map(BASELINE, ANGLES, ANGLES),
@@ -39,12 +35,12 @@ def maps() -> dict[str, xr.Dataset]:
     }
 
 
-def mesh_values(axes: object) -> np.ndarray:
+def mesh_values(axes):
     """Values of a panel's map, indexed by (alpha1, alpha2)."""
     return np.asarray(axes.collections[0].get_array()).reshape(ANGLES.size, ANGLES.size).T
 
 
-def test_fig06_tones_are_the_two_readings(maps: dict[str, xr.Dataset]) -> None:
+def test_fig06_tones_are_the_two_readings(maps):
     figure = fig06.draw(maps["stability"], maps["quasi_static"], maps["boundaries"])
     unstable = maps["stability"].regime_linear.values > 0
     readings = (maps["quasi_static"].possible_as_printed, maps["quasi_static"].possible)
@@ -59,9 +55,7 @@ def test_fig06_tones_are_the_two_readings(maps: dict[str, xr.Dataset]) -> None:
 
 
 @pytest.mark.parametrize(("module", "mode"), [(fig08, 1), (fig09, 2)])
-def test_frequency_maps_show_both_states(
-    maps: dict[str, xr.Dataset], module: object, mode: int
-) -> None:
+def test_frequency_maps_show_both_states(maps, module, mode):
     figure = module.draw(maps["frequencies"])
     for axes, state in zip(figure.axes[:2], ("contact", "separated"), strict=True):
         omega = maps["frequencies"].omega.sel(mode=mode, contact_state=state)
@@ -69,7 +63,7 @@ def test_frequency_maps_show_both_states(
     assert figure.axes[0].collections[0].get_clim() == figure.axes[1].collections[0].get_clim()
 
 
-def test_boundaries_are_drawn_inside_the_map(maps: dict[str, xr.Dataset]) -> None:
+def test_boundaries_are_drawn_inside_the_map(maps):
     """Curves that leave the map come in again: each flutter island has its outline."""
     figure = fig06.draw(maps["stability"], maps["quasi_static"], maps["boundaries"])
     axes = figure.axes[0]
@@ -81,7 +75,7 @@ def test_boundaries_are_drawn_inside_the_map(maps: dict[str, xr.Dataset]) -> Non
         assert gap.min() < 0.06
 
 
-def test_comparison_counts_every_cell_once() -> None:
+def test_comparison_counts_every_cell_once():
     regimes = np.array([[0, 0, 1, 2]] * 2, np.int8)
     separates = np.array([[False, True, True, False]] * 2)
     validity = xr.Dataset(
@@ -91,7 +85,7 @@ def test_comparison_counts_every_cell_once() -> None:
     np.testing.assert_array_equal(kinds, [[2, 0, 1, 3]] * 2)
 
 
-def test_extra_figures_are_written(maps: dict[str, xr.Dataset], tmp_path: Path) -> None:
+def test_extra_figures_are_written(maps, tmp_path):
     figures = {
         "shift": frequency_shift.draw(maps["frequencies"]),
         "inference": parameter_inference.draw(

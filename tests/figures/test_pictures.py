@@ -4,8 +4,6 @@ When a change is meant, look at it and renew the baselines:
 python -m pytest tests/figures --mpl-generate-path=tests/figures/baseline
 """
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import xarray as xr

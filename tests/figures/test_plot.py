@@ -1,7 +1,5 @@
 """``squealpipe.plot`` draws what every function returns, or says why there is nothing to draw."""
 
-from __future__ import annotations
-
 import matplotlib.pyplot as plt
 import numpy as np
 import pytest
@@ -44,10 +42,7 @@ DATASETS = {
     ),
     "system cycle": lambda: impact_oscillator.limit_cycle(amplitude=2.3, omega=2.0),
     "system branch": lambda: impact_oscillator.cycle_branch(
-        "amplitude",
-        2.0,
-        start=impact_oscillator.limit_cycle(amplitude=2.3, omega=2.0),
-        n_points=20,
+        "amplitude", 2.0, start=impact_oscillator.limit_cycle(amplitude=2.3, omega=2.0), n_points=20
     ),
     "system basin": lambda: mode_coupling.basin(60.0, start={"x": np.linspace(-2, 2, 6)}),
 }

@@ -1,7 +1,5 @@
 """The contact spring: sharp, regularized, and its linearization of Eq. (8d)."""
 
-from __future__ import annotations
-
 import math
 
 import mpmath
@@ -9,7 +7,6 @@ import numpy as np
 import pytest
 
 from squealpipe.laws import contact
-from squealpipe.parameters import Parameters
 from tests import symbols
 from tests.former import FORMER
 
@@ -18,28 +15,26 @@ ENERGY = symbols.function(symbols.CONTACT_ENERGY)
 
 
 @pytest.mark.parametrize(("params", "state"), symbols.draws(10))
-def test_force_is_minus_the_slope_of_the_energy(
-    params: Parameters, state: dict[str, float]
-) -> None:
+def test_force_is_minus_the_slope_of_the_energy(params, state):
     y = state["y"]
     assert contact.contact_force(y, params) == pytest.approx(float(FORCE(params, y=y)), rel=1e-14)
     assert contact.contact_energy(y, params) == pytest.approx(float(ENERGY(params, y=y)), rel=1e-14)
 
 
-def test_the_belt_pushes_and_never_pulls() -> None:
+def test_the_belt_pushes_and_never_pulls():
     params = FORMER.with_(k3=2.0, preload=0.5)
     y = np.array([-1.0, 0.0, 0.25, 0.5, 0.75])
     np.testing.assert_array_equal(contact.unilateral_force(y, params), [3.0, 1.0, 0.5, 0.0, 0.0])
 
 
 @pytest.mark.parametrize("y", [-1.0, 0.0, 0.99, 1.0, 1.01, 3.0])
-def test_regularized_force_is_the_printed_one(y: float) -> None:
+def test_regularized_force_is_the_printed_one(y):
     params, sigma = FORMER.with_(k3=0.7), 3.0
     printed = -0.5 * 0.7 * (y - 1.0) * (1.0 + math.tanh(sigma * (1.0 - y)))
     assert contact.regularized_force(y, params, sigma) == pytest.approx(printed, rel=1e-14)
 
 
-def test_regularized_force_tends_to_the_sharp_one_like_one_over_sigma() -> None:
+def test_regularized_force_tends_to_the_sharp_one_like_one_over_sigma():
     params = FORMER
     errors = []
     for sigma in (1e1, 1e2, 1e3):
@@ -51,7 +46,7 @@ def test_regularized_force_tends_to_the_sharp_one_like_one_over_sigma() -> None:
 
 @pytest.mark.parametrize("y", [-0.7, 0.0, 0.9, 1.0, 1.2])
 @pytest.mark.parametrize("sigma", [0.5, 4.0, 30.0])
-def test_regularized_stiffness_is_minus_the_slope(y: float, sigma: float) -> None:
+def test_regularized_stiffness_is_minus_the_slope(y, sigma):
     params = FORMER
     with mpmath.workdps(40):
         slope = mpmath.diff(lambda u: (1 - u) * (1 + mpmath.tanh(sigma * (1 - u))) * 0.75 / 2, y)
@@ -60,7 +55,7 @@ def test_regularized_stiffness_is_minus_the_slope(y: float, sigma: float) -> Non
 
 
 @pytest.mark.parametrize("reach", [0.01, 0.5, 1.2, 5.0, 40.0])
-def test_linearized_stiffness_is_the_printed_k3(reach: float) -> None:
+def test_linearized_stiffness_is_the_printed_k3(reach):
     params = FORMER.with_(k3=0.8, preload=2.0)
     sigma = reach / 2.0
     t = math.tanh(reach)
@@ -68,7 +63,7 @@ def test_linearized_stiffness_is_the_printed_k3(reach: float) -> None:
     assert contact.linearized_contact_stiffness(params, sigma) == pytest.approx(printed, rel=1e-13)
 
 
-def test_linearized_stiffness_overshoots_and_then_settles() -> None:
+def test_linearized_stiffness_overshoots_and_then_settles():
     params = FORMER.with_(k3=1.0)
     ratio = [contact.linearized_contact_stiffness(params, s) for s in (1e-9, 1.2, 20.0)]
     np.testing.assert_allclose(ratio, [0.5, 1.0998, 1.0], atol=1e-4)

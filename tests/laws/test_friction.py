@@ -1,7 +1,5 @@
 """Coulomb friction: direction, sticking, and the regularized form."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 
@@ -12,25 +10,25 @@ PARAMS = Parameters(mu=0.4, belt_speed=2.0)
 
 
 @pytest.mark.parametrize(("vx", "expected"), [(0.0, 2.0), (1.9, 2.0), (2.1, -2.0), (-5.0, 2.0)])
-def test_the_belt_drags_the_mass_along(vx: float, expected: float) -> None:
+def test_the_belt_drags_the_mass_along(vx, expected):
     direction = np.sign(PARAMS.belt_speed - vx)
     assert friction.slip_force(5.0, direction, PARAMS.mu) == pytest.approx(expected)
 
 
-def test_friction_does_work_towards_belt_speed() -> None:
+def test_friction_does_work_towards_belt_speed():
     for vx in (-1.0, 1.0, 3.0):
         force = friction.slip_force(1.0, np.sign(PARAMS.belt_speed - vx), PARAMS.mu)
         assert force * (PARAMS.belt_speed - vx) > 0
 
 
-def test_regularized_friction_agrees_away_from_belt_speed_and_vanishes_there() -> None:
+def test_regularized_friction_agrees_away_from_belt_speed_and_vanishes_there():
     vx = np.array([1.0, 2.0, 3.0])
     force = friction.regularized_slip_force(5.0, vx, PARAMS, 50.0)
     np.testing.assert_allclose(force, [2.0, 0.0, -2.0], atol=1e-12)
 
 
 @pytest.mark.parametrize("belt_speed", [2.0, -2.0])
-def test_sliding_is_judged_along_the_belt(belt_speed: float) -> None:
+def test_sliding_is_judged_along_the_belt(belt_speed):
     """Friction keeps its sign along a motion exactly where ``slides`` says so."""
     params = PARAMS.with_(belt_speed=belt_speed)
     phase = np.linspace(0.0, 2.0 * np.pi, 1001)

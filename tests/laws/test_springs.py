@@ -1,7 +1,5 @@
 """Spring laws against forces derived symbolically from the potential energy."""
 
-from __future__ import annotations
-
 import math
 
 import mpmath
@@ -18,12 +16,12 @@ FORCE = symbols.function(symbols.SPRING_FORCE)
 STIFFNESS = symbols.function(symbols.STIFFNESS)
 
 
-def geometry(state: dict[str, float]) -> springs.Geometry:
+def geometry(state):
     return springs.geometry(state["alpha1"], state["alpha2"])
 
 
 @pytest.mark.parametrize(("params", "state"), DRAWS)
-def test_force_is_the_gradient_of_the_energy(params: Parameters, state: dict[str, float]) -> None:
+def test_force_is_the_gradient_of_the_energy(params, state):
     force = springs.elastic_force(state["x"], state["y"], params, geometry(state))
     np.testing.assert_allclose(force, FORCE(params, **state), rtol=1e-12, atol=1e-13)
     energy = springs.elastic_energy(state["x"], state["y"], params, geometry(state))
@@ -31,9 +29,7 @@ def test_force_is_the_gradient_of_the_energy(params: Parameters, state: dict[str
 
 
 @pytest.mark.parametrize(("params", "state"), DRAWS)
-def test_stiffness_is_the_hessian_of_the_energy(
-    params: Parameters, state: dict[str, float]
-) -> None:
+def test_stiffness_is_the_hessian_of_the_energy(params, state):
     k = springs.linear_stiffness(params, geometry(state))
     hessian = STIFFNESS(params, **state)
     np.testing.assert_allclose([[k.k11, k.k12], [k.k12, k.k22]], hessian, rtol=1e-13, atol=1e-13)
@@ -41,7 +37,7 @@ def test_stiffness_is_the_hessian_of_the_energy(
     assert determinant == pytest.approx(np.linalg.det(hessian), rel=1e-11, abs=1e-13)
 
 
-def test_force_approaches_the_linear_one_in_second_order() -> None:
+def test_force_approaches_the_linear_one_in_second_order():
     params, state = DRAWS[0]
     g = geometry(state)
     k = springs.linear_stiffness(params, g)
@@ -57,21 +53,21 @@ def test_force_approaches_the_linear_one_in_second_order() -> None:
     np.testing.assert_allclose(orders, 2.0, atol=0.05)
 
 
-def test_linear_force_is_the_gradient_of_its_energy() -> None:
+def test_linear_force_is_the_gradient_of_its_energy():
     params, state = DRAWS[1]
     k = springs.linear_stiffness(params, geometry(state))
     x, y = state["x"], state["y"]
     force = springs.linear_elastic_force(x, y, k)
 
     # The energy is quadratic, so central differences of any step are exact but for round-off.
-    def energy(x: float, y: float) -> float:
+    def energy(x, y):
         return 0.5 * k.k11 * x * x + k.k12 * x * y + 0.5 * k.k22 * y * y
 
     slopes = (energy(x + 1, y) - energy(x - 1, y), energy(x, y + 1) - energy(x, y - 1))
     np.testing.assert_allclose(force, [-slope / 2 for slope in slopes], rtol=1e-13)
 
 
-def test_springs_are_unloaded_at_the_start_and_rest_on_their_fixed_ends() -> None:
+def test_springs_are_unloaded_at_the_start_and_rest_on_their_fixed_ends():
     params, state = DRAWS[2]
     g = geometry(state)
     np.testing.assert_allclose(springs.elastic_force(0.0, 0.0, params, g), 0.0, atol=1e-14)
@@ -84,7 +80,7 @@ def test_springs_are_unloaded_at_the_start_and_rest_on_their_fixed_ends() -> Non
 
 @pytest.mark.parametrize("nearby", [0.0, 1e-15, 1e-12, 1e-8, 1e-3, 1.0])
 @pytest.mark.parametrize("turn", [0, 1, 2])
-def test_sine_of_the_sum_keeps_all_digits_next_to_its_zeros(turn: int, nearby: float) -> None:
+def test_sine_of_the_sum_keeps_all_digits_next_to_its_zeros(turn, nearby):
     first = 0.4 * math.pi
     second = turn * math.pi - first + nearby
     with mpmath.workdps(50):
@@ -92,14 +88,14 @@ def test_sine_of_the_sum_keeps_all_digits_next_to_its_zeros(turn: int, nearby: f
     assert springs.sine_of_sum(first, second) == pytest.approx(exact, rel=1e-15, abs=0)
 
 
-def _in_60_digits(length: float, x: float, y: float, cosine: object, sine: object) -> np.ndarray:
+def _in_60_digits(length, x, y, cosine, sine):
     with mpmath.workdps(60):
         rx, ry = mpmath.mpf(x) - length * cosine, mpmath.mpf(y) - length * sine
         stretch = 1 - length / mpmath.sqrt(rx * rx + ry * ry)
         return np.array([float(-stretch * rx), float(-stretch * ry)])
 
 
-def _worst(form: object, length: float, near: float | None = None) -> float:
+def _worst(form, length, near=None):
     """Largest error of a form over 60 random states: about the start, or so near to the pivot."""
     rng, worst = np.random.default_rng(6), 0.0
     for _ in range(60):
@@ -112,26 +108,26 @@ def _worst(form: object, length: float, near: float | None = None) -> float:
         if near is not None:
             x, y = length * (c + near * np.cos(around)), length * (s + near * np.sin(around))
         exact = _in_60_digits(length, x, y, cosine, sine)
-        found = np.array(form(1.0, length, x, y, length * c, length * s))  # type: ignore[operator]
+        found = np.array(form(1.0, length, x, y, length * c, length * s))
         worst = max(worst, np.hypot(*(found - exact)) / max(1.0, np.hypot(*exact)))
     return float(worst)
 
 
 @pytest.mark.parametrize("length", [1e3, 1e5, 1e7, 1e9])
-def test_long_springs_lose_no_digits(length: float) -> None:
+def test_long_springs_lose_no_digits(length):
     """Against 60 digits; the usual form loses as many digits as the length has."""
     assert _worst(springs.long_spring_force, length) < 3e-15
     assert _worst(springs.spring_force, length) > 1e-17 * length
 
 
-def test_next_to_its_fixed_end_a_spring_takes_the_usual_form() -> None:
+def test_next_to_its_fixed_end_a_spring_takes_the_usual_form():
     """There q → −L² and d² = L² + q cancels; a mass is that far out beyond 1e3 l_pre only."""
     for near in (1e-1, 1e-3, 1e-6):
         assert _worst(springs.spring_force, 5.0, near) < 1e-15 / near
         assert _worst(springs.long_spring_force, 1e4, near) < 1e-15 / near**2
 
 
-def test_both_forms_agree_where_one_takes_over() -> None:
+def test_both_forms_agree_where_one_takes_over():
     params = Parameters(length1=2 * springs.LONG, length2=0.7 * springs.LONG, k2=1.3)
     g = springs.geometry(0.7, 2.1)
     usual = springs.elastic_force(0.3, -0.8, params, g)

@@ -1,7 +1,5 @@
 """Laws from files: what a table may hold, and that its content is the law."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

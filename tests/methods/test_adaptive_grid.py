@@ -1,7 +1,5 @@
 """The refined grid finds thin shapes where a uniform one would, at a share of the points."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -5,11 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from squealpipe.methods.continuation import (
-    Continuation,
-    ContinuationEnd,
-    ContinuationSettings,
-)
+from squealpipe.methods.continuation import Continuation, ContinuationEnd, ContinuationSettings
 from squealpipe.methods.orbits.branch_tracing import COLUMNS
 from squealpipe.methods.orbits.orbits import trace_branch
 from squealpipe.methods.orbits.shooting import MAX_SEGMENTS, rest_conditions

@@ -1,7 +1,5 @@
 """The recurrence against matrix exponentials and closed forms, also for awkward matrices."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from scipy.linalg import expm
@@ -21,7 +19,7 @@ LOAD = np.array([0.3, 0.75])
 STEP, STEPS = 0.05, 200
 
 
-def by_exponential(matrix: np.ndarray) -> np.ndarray:
+def by_exponential(matrix):
     """The same motion as a first-order system (r, ṙ, 1), stepped by its matrix exponential."""
     whole = np.zeros((5, 5))
     whole[:2, 2:4] = np.eye(2)
@@ -36,7 +34,7 @@ def by_exponential(matrix: np.ndarray) -> np.ndarray:
 
 
 @pytest.mark.parametrize("name", MATRICES)
-def test_agrees_with_the_matrix_exponential(name: str) -> None:
+def test_agrees_with_the_matrix_exponential(name):
     matrix = np.array(MATRICES[name])
     found = np.array(list(response_from_rest(matrix, LOAD, STEP, STEPS)))
     expected = by_exponential(matrix)
@@ -44,7 +42,7 @@ def test_agrees_with_the_matrix_exponential(name: str) -> None:
     np.testing.assert_allclose(found, expected, rtol=0, atol=1e-11 * np.abs(expected).max())
 
 
-def test_many_systems_at_once_are_the_same_as_one_by_one() -> None:
+def test_many_systems_at_once_are_the_same_as_one_by_one():
     stack = np.array(list(MATRICES.values()))
     loads = np.broadcast_to(LOAD, (len(stack), 2))
     together = np.array(list(response_from_rest(stack, loads, STEP, STEPS)))
@@ -53,6 +51,6 @@ def test_many_systems_at_once_are_the_same_as_one_by_one() -> None:
         np.testing.assert_allclose(together[:, index], alone, rtol=1e-12, atol=1e-12)
 
 
-def test_a_step_too_long_for_the_series_is_refused() -> None:
+def test_a_step_too_long_for_the_series_is_refused():
     with pytest.raises(ValueError, match=r"step = 2\.0: must be at most 0\.5"):
         next(response_from_rest(np.eye(2), LOAD, 2.0, 1))

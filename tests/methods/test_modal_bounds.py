@@ -21,7 +21,7 @@ def motion():
     )
 
 
-def test_positions_are_the_exact_response() -> None:
+def test_positions_are_the_exact_response():
     a, found = motion()
     step, count = 0.2, 2000
     exact = np.array(list(response_from_rest(a, LOAD, step, count)))
@@ -29,7 +29,7 @@ def test_positions_are_the_exact_response() -> None:
     np.testing.assert_allclose(np.stack([x[0], y[0]], axis=-1), exact, atol=1e-9)
 
 
-def test_bounds_hold_and_are_nearly_reached() -> None:
+def test_bounds_hold_and_are_nearly_reached():
     _, found = motion()
     times = np.linspace(0.0, 5000.0, 200_001)
     x, y = found.positions(times)
@@ -40,7 +40,7 @@ def test_bounds_hold_and_are_nearly_reached() -> None:
 
 
 @pytest.mark.parametrize("squared", [(1 - 0.1j, 1 + 0.1j), (-0.2 + 0j, 1 + 0j)])
-def test_flutter_and_divergence_have_no_bound(squared: tuple[complex, complex]) -> None:
+def test_flutter_and_divergence_have_no_bound(squared):
     found = modal_motion(
         tuple(np.array([value]) for value in MATRIX),
         tuple(np.array([value]) for value in squared),

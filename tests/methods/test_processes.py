@@ -1,7 +1,5 @@
 """Worker processes: same results, clear ends, no hang."""
 
-from __future__ import annotations
-
 import multiprocessing
 import os
 import subprocess

@@ -1,7 +1,5 @@
 """Progress of long commands: how much is done, and where it is shown."""
 
-from __future__ import annotations
-
 import contextlib
 import os
 import pty

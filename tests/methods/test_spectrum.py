@@ -1,7 +1,5 @@
 """Spectrum and its peaks against signals whose lines are known."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

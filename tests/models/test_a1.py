@@ -1,14 +1,11 @@
 """A1: accelerations from the symbolic energies in each regime, and the energy balance."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 
 from squealpipe.codes import Regime
 from squealpipe.laws.springs import elastic_force, geometry
 from squealpipe.models import a1
-from squealpipe.parameters import Parameters
 from tests import symbols
 from tests.former import FORMER
 
@@ -18,12 +15,7 @@ LINEAR_FORCE = symbols.function(symbols.LINEAR_FORCE)
 CONTACT_FORCE = symbols.function(symbols.CONTACT_FORCE)
 
 
-def acceleration(
-    params: Parameters,
-    state: dict[str, float],
-    velocity: tuple[float, float] = (0.3, -0.2),
-    **regime: object,
-) -> np.ndarray:
+def acceleration(params, state, velocity=(0.3, -0.2), **regime):
     g = geometry(state["alpha1"], state["alpha2"])
     return np.array(a1.acceleration(state["x"], state["y"], *velocity, params, g, **regime))
 
@@ -31,7 +23,7 @@ def acceleration(
 @pytest.mark.parametrize(("params", "state"), DRAWS)
 @pytest.mark.parametrize("direction", [1.0, -1.0])
 @pytest.mark.parametrize("linear", [False, True])
-def test_slip(params: Parameters, state: dict[str, float], direction: float, linear: bool) -> None:
+def test_slip(params, state, direction, linear):
     force = (LINEAR_FORCE if linear else SPRING_FORCE)(params, **state)
     normal = CONTACT_FORCE(params, **state)
     expected = (force + normal * np.array([direction * params.mu, 1.0])) / params.mass
@@ -40,9 +32,7 @@ def test_slip(params: Parameters, state: dict[str, float], direction: float, lin
 
 
 @pytest.mark.parametrize(("params", "state"), DRAWS)
-def test_stick_keeps_the_belt_speed_and_leaves_y_alone(
-    params: Parameters, state: dict[str, float]
-) -> None:
+def test_stick_keeps_the_belt_speed_and_leaves_y_alone(params, state):
     slip = acceleration(params, state, contact=1.0, direction=1.0)
     stick = acceleration(params, state, contact=1.0, direction=0.0, stick=1.0)
     assert stick[0] == 0.0
@@ -50,7 +40,7 @@ def test_stick_keeps_the_belt_speed_and_leaves_y_alone(
 
 
 @pytest.mark.parametrize(("params", "state"), DRAWS)
-def test_separated_only_the_springs_act(params: Parameters, state: dict[str, float]) -> None:
+def test_separated_only_the_springs_act(params, state):
     found = acceleration(params, state, contact=0.0, direction=1.0)
     expected = SPRING_FORCE(params, **state) / params.mass
     np.testing.assert_allclose(found, expected, rtol=1e-12, atol=1e-12)
@@ -58,9 +48,7 @@ def test_separated_only_the_springs_act(params: Parameters, state: dict[str, flo
 
 @pytest.mark.parametrize(("params", "state"), DRAWS)
 @pytest.mark.parametrize("regime", Regime)
-def test_energy_changes_by_the_power_of_friction(
-    params: Parameters, state: dict[str, float], regime: Regime
-) -> None:
+def test_energy_changes_by_the_power_of_friction(params, state, regime):
     """dE/dt along the flow, by a central difference over the flow's tangent."""
     g = geometry(state["alpha1"], state["alpha2"])
     sticking = regime is Regime.stick
@@ -73,7 +61,7 @@ def test_energy_changes_by_the_power_of_friction(
     here = np.array([state["x"], state["y"], vx, vy])
     rate = np.array([vx, vy, ax, ay])
 
-    def energy(step: float) -> float:
+    def energy(step):
         moved = here + step * rate
         return float(a1.mechanical_energy(*moved, params, g, contact=contact))
 
@@ -88,15 +76,12 @@ def test_energy_changes_by_the_power_of_friction(
     assert slope == pytest.approx(power, rel=1e-7, abs=1e-7)
 
 
-def test_mirror_images_move_alike() -> None:
+def test_mirror_images_move_alike():
     """Equal springs: (α1, α2, V) and (π − α2, π − α1, V) are one system, and −x gives (α2, α1)."""
     params, state = FORMER, {"x": 0.7, "y": -0.4}
     here = acceleration(params, {**state, "alpha1": 0.3, "alpha2": 1.9}, contact=1.0, direction=1.0)
     same = acceleration(
-        params,
-        {**state, "alpha1": np.pi - 1.9, "alpha2": np.pi - 0.3},
-        contact=1.0,
-        direction=1.0,
+        params, {**state, "alpha1": np.pi - 1.9, "alpha2": np.pi - 0.3}, contact=1.0, direction=1.0
     )
     np.testing.assert_allclose(same, here, rtol=1e-13)
     mirrored = {"x": -0.7, "y": -0.4, "alpha1": 1.9, "alpha2": 0.3}

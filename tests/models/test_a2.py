@@ -1,7 +1,5 @@
 """A2: the linearization of Eqs. (6), (7) and the condition for quasi-static sliding."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
@@ -10,7 +8,6 @@ import sympy as sp
 
 from squealpipe.laws.springs import Stiffness, geometry, linear_stiffness
 from squealpipe.models import a2
-from squealpipe.parameters import Parameters
 from tests import symbols
 from tests.former import FORMER
 
@@ -22,7 +19,7 @@ REGULARIZED = (
 )
 
 
-def first_order(force: sp.Expr) -> sp.Expr:
+def first_order(force):
     """Taylor polynomial of degree 1 in x and y about the start."""
     at_start = {symbols.X: 0, symbols.Y: 0}
     slopes = [sp.diff(force, variable).subs(at_start) for variable in (symbols.X, symbols.Y)]
@@ -39,15 +36,13 @@ LINEARIZED = symbols.function(
 
 
 @pytest.mark.parametrize(("params", "state"), symbols.draws(20))
-def test_it_is_the_taylor_polynomial_of_the_regularized_model(
-    params: Parameters, state: dict[str, float]
-) -> None:
+def test_it_is_the_taylor_polynomial_of_the_regularized_model(params, state):
     stiffness = linear_stiffness(params, geometry(state["alpha1"], state["alpha2"]))
     found = a2.acceleration(state["x"], state["y"], params, stiffness, params.sigma)
     np.testing.assert_allclose(found, LINEARIZED(params, **state), rtol=1e-12, atol=1e-12)
 
 
-def test_without_sigma_it_is_the_limit() -> None:
+def test_without_sigma_it_is_the_limit():
     params, state = symbols.draws(1)[0]
     stiffness = linear_stiffness(params, geometry(state["alpha1"], state["alpha2"]))
     sharp = a2.acceleration(state["x"], state["y"], params, stiffness)
@@ -55,7 +50,7 @@ def test_without_sigma_it_is_the_limit() -> None:
     np.testing.assert_allclose(sharp, steep, rtol=1e-12)
 
 
-def test_reaction_solves_the_balance_of_eq_10() -> None:
+def test_reaction_solves_the_balance_of_eq_10():
     x, y, reaction, load = sp.symbols("x y R F")
     k11, k12, k22, mu = sp.symbols("k11 k12 k22 mu")
     balance = [k11 * x + k12 * y - mu * reaction, k12 * x + k22 * y + load - reaction]
@@ -77,9 +72,7 @@ def test_reaction_solves_the_balance_of_eq_10() -> None:
         (0.0, 0.0, 0.3, False, False),  # nothing balances friction
     ],
 )
-def test_both_readings_of_eq_11(
-    k11: float, k12: float, mu: float, printed: bool, physical: bool
-) -> None:
+def test_both_readings_of_eq_11(k11, k12, mu, printed, physical):
     stiffness = Stiffness(np.array(k11), np.array(k12), np.array(2.0))
     assert bool(a2.possible_as_printed(stiffness, mu)) is printed
     assert bool(a2.reaction_force(stiffness, mu, 1.0) > 0) is physical
@@ -88,13 +81,13 @@ def test_both_readings_of_eq_11(
 @pytest.mark.parametrize(
     ("over_pi1", "over_pi2"), [(0.3, 0.3), (0.2, 0.3), (0.9, 0.6), (0.5, 1.0), (0.0, 0.5)]
 )
-def test_equal_springs_decouple_on_three_lines(over_pi1: float, over_pi2: float) -> None:
+def test_equal_springs_decouple_on_three_lines(over_pi1, over_pi2):
     """α1 = α2 and α1 + α2 = π/2, 3π/2, where round-off must not decide Eq. (11)."""
     stiffness = linear_stiffness(FORMER, geometry(over_pi1 * math.pi, over_pi2 * math.pi))
     assert bool(a2.coupling_is_zero(stiffness))
     assert bool(a2.possible_as_printed(stiffness, 10.0))
 
 
-def test_no_state_where_nothing_balances_friction() -> None:
+def test_no_state_where_nothing_balances_friction():
     stiffness = linear_stiffness(FORMER, geometry(math.pi / 2, math.pi / 2))
     assert np.isnan(a2.reaction_force(stiffness, 0.3, 0.75))

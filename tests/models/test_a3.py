@@ -1,7 +1,5 @@
 """A3: nondimensional form, static state, eigenvalues and the plane of Z."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import scipy.linalg
@@ -11,22 +9,19 @@ from squealpipe.codes import LinearRegime
 from squealpipe.laws.springs import geometry, linear_stiffness, stiffness_determinant
 from squealpipe.models import a2, a3
 from squealpipe.models.a4 import spectrum
-from squealpipe.parameters import Parameters
 from tests import symbols
 from tests.former import FORMER
 
 DRAWS = symbols.draws(40)
 
 
-def stiffness_of(params: Parameters, state: dict[str, float]) -> tuple[object, float]:
+def stiffness_of(params, state):
     g = geometry(state["alpha1"], state["alpha2"])
     return linear_stiffness(params, g), stiffness_determinant(params, g)
 
 
 @pytest.mark.parametrize(("params", "state"), DRAWS)
-def test_nondimensional_form_is_the_linear_model_in_other_units(
-    params: Parameters, state: dict[str, float]
-) -> None:
+def test_nondimensional_form_is_the_linear_model_in_other_units(params, state):
     """x = l_pre X and t = τ/ω11 turn Eqs. (6), (7) into (13), (14)."""
     stiffness, _ = stiffness_of(params, state)
     expected = a2.acceleration(state["x"], state["y"], params, stiffness)
@@ -41,7 +36,7 @@ def test_nondimensional_form_is_the_linear_model_in_other_units(
     np.testing.assert_allclose(np.array(found) * unit, expected, rtol=1e-12, atol=1e-12)
 
 
-def test_jacobian_is_the_derivative_of_the_accelerations() -> None:
+def test_jacobian_is_the_derivative_of_the_accelerations():
     x, y, mu, load, coupling, vertical, contact = sp.symbols("x y mu load c v k")
     ratios = a3.Groups(coupling, vertical, contact)
     accelerations = sp.Matrix(a3.acceleration(x, y, ratios, mu, load))
@@ -50,24 +45,20 @@ def test_jacobian_is_the_derivative_of_the_accelerations() -> None:
 
 
 @pytest.mark.parametrize(("params", "state"), DRAWS)
-def test_static_state_is_at_rest(params: Parameters, state: dict[str, float]) -> None:
+def test_static_state_is_at_rest(params, state):
     """Eq. (15) solves Eqs. (6), (7) without acceleration, for the sharp and the smooth law."""
     stiffness, determinant = stiffness_of(params, state)
     for sigma in (None, params.sigma):
         k3, load = a2.contact_stiffness(params, sigma), a2.actuation(params, sigma)
         x, y, force = a3.static_state(stiffness, determinant, k3=k3, mu=params.drag, actuation=load)
         np.testing.assert_allclose(
-            a2.acceleration(x, y, params, stiffness, sigma),
-            0.0,
-            atol=1e-11 * (1 + abs(x) + abs(y)),
+            a2.acceleration(x, y, params, stiffness, sigma), 0.0, atol=1e-11 * (1 + abs(x) + abs(y))
         )
         assert force == pytest.approx(load - k3 * y, rel=1e-9, abs=1e-11 * (1 + abs(y)))
 
 
 @pytest.mark.parametrize(("params", "state"), DRAWS)
-def test_eigenvalues_are_those_of_the_first_order_system(
-    params: Parameters, state: dict[str, float]
-) -> None:
+def test_eigenvalues_are_those_of_the_first_order_system(params, state):
     stiffness, determinant = stiffness_of(params, state)
     invariants = spectrum(stiffness, determinant, k3=params.k3, mu=params.mu, mass=params.mass)
     rows = np.array(
@@ -86,7 +77,7 @@ def test_eigenvalues_are_those_of_the_first_order_system(
     assert bool(a3.regime(invariants) != LinearRegime.stable) == (growth > 1e-6)
 
 
-def test_regimes_are_told_apart() -> None:
+def test_regimes_are_told_apart():
     params = FORMER
     cells = {
         (0.15, 0.23): LinearRegime.flutter,
@@ -102,7 +93,7 @@ def test_regimes_are_told_apart() -> None:
 
 
 @pytest.mark.parametrize(("params", "state"), DRAWS)
-def test_the_plane_holds_the_stiffnesses(params: Parameters, state: dict[str, float]) -> None:
+def test_the_plane_holds_the_stiffnesses(params, state):
     stiffness, determinant = stiffness_of(params, state)
     total = params.k1 + params.k2
     z = a3.plane(params, state["alpha1"], state["alpha2"])
@@ -115,7 +106,7 @@ def test_the_plane_holds_the_stiffnesses(params: Parameters, state: dict[str, fl
 
 
 @pytest.mark.parametrize(("params", "state"), DRAWS)
-def test_angles_come_back_from_the_plane(params: Parameters, state: dict[str, float]) -> None:
+def test_angles_come_back_from_the_plane(params, state):
     z = a3.plane(params, state["alpha1"], state["alpha2"])
     alpha1, alpha2 = a3.angles_from_plane(z, params)
     np.testing.assert_allclose(a3.plane(params, alpha1, alpha2), z, atol=1e-12)
@@ -124,9 +115,7 @@ def test_angles_come_back_from_the_plane(params: Parameters, state: dict[str, fl
 
 
 @pytest.mark.parametrize(("params", "state"), DRAWS)
-def test_circles_in_the_plane_decide_as_the_invariants_do(
-    params: Parameters, state: dict[str, float]
-) -> None:
+def test_circles_in_the_plane_decide_as_the_invariants_do(params, state):
     stiffness, determinant = stiffness_of(params, state)
     invariants = spectrum(stiffness, determinant, k3=params.k3, mu=params.drag, mass=params.mass)
     z = a3.plane(params, state["alpha1"], state["alpha2"])

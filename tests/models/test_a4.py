@@ -1,7 +1,5 @@
 """A4: both linear states against the symbolic model, natural frequencies, the first integral."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import scipy.integrate
@@ -9,7 +7,6 @@ import sympy as sp
 
 from squealpipe.laws.springs import Stiffness, geometry, linear_stiffness, stiffness_determinant
 from squealpipe.models import a4
-from squealpipe.parameters import Parameters
 from squealpipe.schema import Outcome
 from squealpipe.solvers.a1.ensemble import run_ensemble
 from squealpipe.tasks.dynamics.runs import simulate
@@ -28,7 +25,7 @@ PRINTED_ROOT = (
 
 @pytest.mark.parametrize(("params", "state"), DRAWS)
 @pytest.mark.parametrize("contact", [0.0, 1.0])
-def test_accelerations(params: Parameters, state: dict[str, float], contact: float) -> None:
+def test_accelerations(params, state, contact):
     g = geometry(state["alpha1"], state["alpha2"])
     found = a4.acceleration(state["x"], state["y"], params, g, contact=contact)
     normal = contact * CONTACT_FORCE(params, **state)
@@ -36,7 +33,7 @@ def test_accelerations(params: Parameters, state: dict[str, float], contact: flo
     np.testing.assert_allclose(found, expected, rtol=1e-12, atol=1e-12)
 
 
-def test_spectrum_is_the_printed_one() -> None:
+def test_spectrum_is_the_printed_one():
     """Half trace and discriminant of Eqs. (22a), (22b), identically."""
     determinant = K11 * K22 - K12**2
     invariants = a4.spectrum(Stiffness(K11, K12, K22), determinant, k3=K3, mu=MU, mass=M)
@@ -48,9 +45,7 @@ def test_spectrum_is_the_printed_one() -> None:
 
 @pytest.mark.parametrize(("params", "state"), DRAWS)
 @pytest.mark.parametrize("in_contact", [False, True])
-def test_frequencies_are_eigenvalues_of_the_stiffness(
-    params: Parameters, state: dict[str, float], in_contact: bool
-) -> None:
+def test_frequencies_are_eigenvalues_of_the_stiffness(params, state, in_contact):
     g = geometry(state["alpha1"], state["alpha2"])
     stiffness = linear_stiffness(params, g)
     k3 = params.k3 if in_contact else 0.0
@@ -66,7 +61,7 @@ def test_frequencies_are_eigenvalues_of_the_stiffness(
 
 
 @pytest.mark.parametrize("total", np.linspace(0.05, 1.95, 9))
-def test_separated_frequencies_of_equal_springs(total: float) -> None:
+def test_separated_frequencies_of_equal_springs(total):
     """ω² = (k/m)(1 ∓ |cos(α1 + α2)|), whatever the difference of the angles."""
     params = FORMER.with_(mass=2.0, k1=3.0, k2=3.0)
     for first in (0.1, 0.9, 2.5):
@@ -86,14 +81,12 @@ def test_separated_frequencies_of_equal_springs(total: float) -> None:
 
 
 @pytest.mark.parametrize(("params", "state"), DRAWS[:8])
-def test_first_integral_is_kept_across_contact_loss(
-    params: Parameters, state: dict[str, float]
-) -> None:
+def test_first_integral_is_kept_across_contact_loss(params, state):
     """Integrated by an independent code over several switches."""
     g = geometry(state["alpha1"], state["alpha2"])
     stiffness = linear_stiffness(params, g)
 
-    def field(_: float, u: np.ndarray) -> list[float]:
+    def field(_, u):
         contact = float(u[1] < params.preload)
         return [u[2], u[3], *a4.acceleration(u[0], u[1], params, g, contact=contact)]
 
@@ -104,7 +97,7 @@ def test_first_integral_is_kept_across_contact_loss(
     assert np.ptp(values) < 1e-6 * scale * max(params.k1, params.k2, params.k3, params.mass, 1.0)
 
 
-def test_first_integral_changes_by_nothing_symbolically() -> None:
+def test_first_integral_changes_by_nothing_symbolically():
     """dH/dt = 0 in both states, identically in all symbols."""
     x, y, vx, vy = sp.symbols("x y vx vy")
     s11, s12, s22, weight = a4.first_integral(Stiffness(K11, K12, K22), MU)
@@ -126,7 +119,7 @@ def test_first_integral_changes_by_nothing_symbolically() -> None:
         assert sp.simplify(rate) == 0
 
 
-def test_a_definite_first_integral_bounds_motion_and_force_across_contact_loss() -> None:
+def test_a_definite_first_integral_bounds_motion_and_force_across_contact_loss():
     """On random A4 runs from rest, integrated by the independent engine of the ensembles."""
     rng = np.random.default_rng(8)
     size = 400

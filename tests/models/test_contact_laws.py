@@ -1,7 +1,5 @@
 """What the linear levels know of a contact law: its slope at the preload, and its dashpot."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

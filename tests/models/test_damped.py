@@ -1,9 +1,6 @@
 """A3 with dashpots and falling friction: eigenvalues in 60 digits, Routh–Hurwitz, limits."""
 
-from __future__ import annotations
-
 import math
-from typing import Any
 
 import mpmath as mp
 import numpy as np
@@ -18,7 +15,7 @@ from tests.former import FORMER
 RNG = np.random.default_rng(41)
 
 
-def random_parameters() -> Parameters:
+def random_parameters():
     """Unequal springs, both belt directions, any law, damping from none to overcritical."""
     mu = RNG.uniform(0, 1)
     return FORMER.with_(
@@ -37,7 +34,7 @@ def random_parameters() -> Parameters:
     )
 
 
-def eigenvalues_in_60_digits(p: Parameters, alpha1: float, alpha2: float) -> list[complex]:
+def eigenvalues_in_60_digits(p, alpha1, alpha2):
     """From C and K as they are defined, by an independent route: a 4×4 matrix."""
     with mp.workdps(60):
         f = mp.mpf
@@ -68,7 +65,7 @@ def eigenvalues_in_60_digits(p: Parameters, alpha1: float, alpha2: float) -> lis
         return [complex(value) for value in mp.eig(whole, right=False)]
 
 
-def test_eigenvalues_of_200_random_sets_to_1e_12() -> None:
+def test_eigenvalues_of_200_random_sets_to_1e_12():
     for _ in range(200):
         params = random_parameters()
         alpha1, alpha2 = RNG.uniform(0, np.pi, 2)
@@ -79,7 +76,7 @@ def test_eigenvalues_of_200_random_sets_to_1e_12() -> None:
 
 
 @pytest.mark.parametrize("stiff", [1e5, 1e8])
-def test_one_stiff_dashpot_costs_no_digit(stiff: float) -> None:
+def test_one_stiff_dashpot_costs_no_digit(stiff):
     """det C is no difference of two products of its square."""
     for _ in range(20):
         params = random_parameters().with_(damping1=stiff)
@@ -89,7 +86,7 @@ def test_one_stiff_dashpot_costs_no_digit(stiff: float) -> None:
             assert np.abs(found - value).min() <= 1e-13 * abs(value)
 
 
-def test_the_map_is_that_of_the_eigenvalues_and_mirrors_with_the_belt() -> None:
+def test_the_map_is_that_of_the_eigenvalues_and_mirrors_with_the_belt():
     params = random_parameters().with_(friction_law="exponential")
     alpha1, alpha2 = np.sort(RNG.uniform(0, np.pi, (2, 4)))
     found = stability_map(params, alpha1, alpha2)
@@ -110,7 +107,7 @@ def test_the_map_is_that_of_the_eigenvalues_and_mirrors_with_the_belt() -> None:
     np.testing.assert_allclose(other.growth_rate, found.growth_rate, rtol=1e-10, atol=1e-12)
 
 
-def test_vanishing_damping_is_the_closed_form() -> None:
+def test_vanishing_damping_is_the_closed_form():
     params = FORMER.with_(k2=1.4, belt_speed=-0.7)
     angles = np.linspace(0.1, 3.0, 12)
     plain = stability_map(params, angles, angles)
@@ -127,7 +124,7 @@ def test_vanishing_damping_is_the_closed_form() -> None:
     )
 
 
-def test_routh_hurwitz_agrees_with_the_eigenvalues_on_either_side() -> None:
+def test_routh_hurwitz_agrees_with_the_eigenvalues_on_either_side():
     """Stable just below the critical friction and from 0 on, unstable just above."""
     judged = 0
     for _ in range(150):
@@ -144,7 +141,7 @@ def test_routh_hurwitz_agrees_with_the_eigenvalues_on_either_side() -> None:
     assert judged >= 40
 
 
-def test_undamped_critical_friction_is_the_onset_of_the_closed_form() -> None:
+def test_undamped_critical_friction_is_the_onset_of_the_closed_form():
     judged = 0
     for _ in range(100):
         params = random_parameters().with_(
@@ -161,7 +158,7 @@ def test_undamped_critical_friction_is_the_onset_of_the_closed_form() -> None:
     assert judged >= 40
 
 
-def test_hoffmann_and_gaul_damping_destabilizes() -> None:
+def test_hoffmann_and_gaul_damping_destabilizes():
     """Their minimal model: y reversed, K = [[2, −1 + μk3], [−1, 2]], undamped onset μ = 0.75.
 
     With C vanishing at the ratio c1:c2, the onset is where p3/p1 meets one of ω² = 2 ∓ √(1 − μk3),
@@ -199,7 +196,7 @@ def test_hoffmann_and_gaul_damping_destabilizes() -> None:
                                  ).regime_linear.item() == 0  # fmt: skip
 
 
-def test_the_map_over_dashpots_is_that_over_the_angles_cell_by_cell() -> None:
+def test_the_map_over_dashpots_is_that_over_the_angles_cell_by_cell():
     """Unequal springs, a belt against x, and stability just below and above by eigenvalues."""
     params = FORMER.with_(mass=1.7, k1=2.0, k2=0.6, k3=1.1, belt_speed=-0.4, preload=0.5)
     angles, c1, c2 = (2.1, 2.6), np.array([0.0, 0.03, 0.4]), np.array([0.0, 0.2])
@@ -217,7 +214,7 @@ def test_the_map_over_dashpots_is_that_over_the_angles_cell_by_cell() -> None:
     assert float(found.critical_mu_undamped) == found.critical_mu[0, 0]
 
 
-def test_round_off_of_the_coupling_gives_no_critical_friction() -> None:
+def test_round_off_of_the_coupling_gives_no_critical_friction():
     """K12 = 0 along α1 = α2 with equal springs: without dashpots no friction destabilizes."""
     angles = np.linspace(0.1, 3.0, 30)
     found = critical_friction_map(FORMER, angles, angles)
@@ -226,7 +223,7 @@ def test_round_off_of_the_coupling_gives_no_critical_friction() -> None:
 
 
 @pytest.mark.parametrize("springs", [{}, {"k2": 1.3, "length2": 7.0, "belt_speed": -40.0}])
-def test_round_off_of_the_dashpots_coupling_gives_no_critical_friction(springs) -> None:
+def test_round_off_of_the_dashpots_coupling_gives_no_critical_friction(springs):
     """C12 = K12 = 0 for springs along the axes, and wherever C is proportional to such a K."""
     angles = np.linspace(0.0, np.pi, 61)
     unlike = critical_friction_map(
@@ -241,20 +238,20 @@ def test_round_off_of_the_dashpots_coupling_gives_no_critical_friction(springs) 
     assert np.isinf(found.critical_mu.where(free, np.inf)).all()
 
 
-def _onset_by_bisection(params: Parameters, alpha1: float, alpha2: float) -> float:
+def _onset_by_bisection(params, alpha1, alpha2):
     """The critical friction from eigenvalues of forty digits."""
     with mp.workdps(40):
         cos1, sin1 = mp.cos(alpha1), mp.sin(alpha1)
         cos2, sin2 = mp.cos(alpha2), mp.sin(alpha2)
 
-        def inclined(one: float, two: float) -> list[Any]:
+        def inclined(one, two):
             coupling = one * cos1 * sin1 - two * cos2 * sin2
             return [one * cos1**2 + two * cos2**2, coupling, one * sin1**2 + two * sin2**2]
 
         k11, k12, k22 = inclined(mp.mpf(params.k1), mp.mpf(params.k2))
         c11, c12, c22 = inclined(mp.mpf(params.damping1), mp.mpf(params.damping2))
 
-        def grows(mu: Any) -> bool:
+        def grows(mu):
             push = mu * params.k3 * params.belt_direction
             matrix = mp.matrix(
                 [
@@ -282,7 +279,7 @@ def _onset_by_bisection(params: Parameters, alpha1: float, alpha2: float) -> flo
         ((0.8562937104837142, 0.6322501818389592), (0.0, 1e7), 1.0),
     ],
 )
-def test_critical_friction_where_a_mode_moves_hardly_a_dashpot(angles, dashpots, speed) -> None:
+def test_critical_friction_where_a_mode_moves_hardly_a_dashpot(angles, dashpots, speed):
     """Round-off once gave 0, which says unstable at any friction, or a few digits."""
     springs = {"k2": 2.3, "k3": 0.6} if max(dashpots) < 1 else {"k2": 0.2, "k3": 0.18}
     damping1, damping2 = dashpots
@@ -291,7 +288,7 @@ def test_critical_friction_where_a_mode_moves_hardly_a_dashpot(angles, dashpots,
     assert found == pytest.approx(_onset_by_bisection(params, *angles), rel=1e-6)
 
 
-def test_critical_friction_is_of_coulombs_law() -> None:
+def test_critical_friction_is_of_coulombs_law():
     with pytest.raises(ValueError, match=r"friction_law = 'exponential'.*use stability_map"):
         critical_friction_map(
             FORMER.with_(friction_law="exponential", mu_static=0.5, belt_speed=1.0), [1.0], [2.0]
@@ -299,7 +296,7 @@ def test_critical_friction_is_of_coulombs_law() -> None:
 
 
 @pytest.mark.parametrize("scale", [1.0, 0.3, 7.1])
-def test_where_sliding_diverges_first_dashpots_lower_nothing(scale: float) -> None:
+def test_where_sliding_diverges_first_dashpots_lower_nothing(scale):
     """There the critical friction is that of det K = 0, which has no dashpots in it."""
     params = Parameters(mass=scale, k1=scale, k2=scale, k3=0.75 * scale, belt_speed=-100.0,
                         damping1=0.05 * scale, damping2=0.05 * scale)  # fmt: skip

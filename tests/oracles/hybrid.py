@@ -149,6 +149,6 @@ def _terminal(guard: Guard) -> Callable[[float, np.ndarray], float]:
     def event(_: float, state: np.ndarray) -> float:
         return guard.value(state)
 
-    event.terminal = True  # type: ignore[attr-defined]
-    event.direction = guard.direction  # type: ignore[attr-defined]
+    event.terminal = True
+    event.direction = guard.direction
     return event

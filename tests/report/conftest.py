@@ -36,7 +36,7 @@ class SmallReport:
 
 
 @pytest.fixture(scope="session")
-def small_report(tmp_path_factory: pytest.TempPathFactory) -> SmallReport:
+def small_report(tmp_path_factory):
     folder = tmp_path_factory.mktemp("run")
     parameters, angles = Parameters(), np.linspace(0.0, np.pi, POINTS)
     datasets = {

@@ -1,7 +1,5 @@
 """The explorer page: what it holds, and that it works in a real browser."""
 
-from __future__ import annotations
-
 import base64
 import json
 import re
@@ -135,9 +133,7 @@ class TestInBrowser:
 
     def test_first_pair_is_shown_and_matches_the_dataset(self, opened, explorer):
         np.testing.assert_allclose(
-            self.curve(opened, "force"),
-            cell(explorer, "normalized_contact_force", 5, 5),
-            atol=5e-5,
+            self.curve(opened, "force"), cell(explorer, "normalized_contact_force", 5, 5), atol=5e-5
         )
         assert opened.inner_text("#command") == f"squealpipe simulate 5pi/6 5pi/6 {OPTIONS}"
 

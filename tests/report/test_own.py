@@ -1,7 +1,5 @@
 """The report of a study of one's own, with the numbers of a real pad."""
 
-from __future__ import annotations
-
 import math
 import re
 from dataclasses import replace
@@ -38,20 +36,17 @@ SAME = Parameters(
 REST = {"x": 0.0, "y": 0.0, "vx": 0.0, "vy": 0.0}
 
 
-def scenes(speed: float) -> dict:
+def scenes(speed):
     angles = {"alpha1": math.radians(30), "alpha2": math.radians(140), "t_end": 40.0}
-    return {
-        "mine": {**angles, "start": {**REST, "vx": speed}},
-        "rest": {**angles, "start": REST},
-    }
+    return {"mine": {**angles, "start": {**REST, "vx": speed}}, "rest": {**angles, "start": REST}}
 
 
 @pytest.fixture(scope="module")
-def found() -> xr.Dataset:
+def found():
     return own_scenes(PAD, scenes(1e-3))
 
 
-def test_si_numbers_give_what_the_dimensionless_groups_give(found) -> None:
+def test_si_numbers_give_what_the_dimensionless_groups_give(found):
     speed = PAD.preload / PAD.time_unit
     same = own_scenes(SAME, scenes(1e-3 / speed))
     for name, unit in (
@@ -66,12 +61,12 @@ def test_si_numbers_give_what_the_dimensionless_groups_give(found) -> None:
     assert (found.motion == same.motion).all()
 
 
-def test_a_start_from_rest_alone_asks_for_a_cheaper_level(found) -> None:
+def test_a_start_from_rest_alone_asks_for_a_cheaper_level(found):
     assert (found.model.sel(scene="mine") == "A1").all()
     assert set(found.model.sel(scene="rest").values.tolist()) - {""}
 
 
-def test_distance_to_the_nearest_other_cell() -> None:
+def test_distance_to_the_nearest_other_cell():
     angles = np.radians([0.0, 10.0, 20.0, 30.0])
     lost = np.zeros((4, 4))
     lost[3, 1] = 1
@@ -88,7 +83,7 @@ def test_distance_to_the_nearest_other_cell() -> None:
     assert at["unstable_boundary"] is None
 
 
-def test_distributions_are_centred_on_the_study() -> None:
+def test_distributions_are_centred_on_the_study():
     given = centred(PAD, 0.5, 2.4)
     assert given["k1"]["mean"] == PAD.k1
     assert given["k3"]["median"] == PAD.k3
@@ -96,7 +91,7 @@ def test_distributions_are_centred_on_the_study() -> None:
     assert given["alpha2"]["mean"] == 2.4
 
 
-def test_report_has_pages_without_the_paper(found, tmp_path) -> None:
+def test_report_has_pages_without_the_paper(found, tmp_path):
     angles = np.linspace(0.0, math.pi, 13)
     end = 20 * PAD.time_unit
     datasets = {
@@ -133,7 +128,7 @@ def test_report_has_pages_without_the_paper(found, tmp_path) -> None:
     assert text.count("<img") == len(figures)
 
 
-def test_a_table_of_friction_stands_for_the_coefficient(found, tmp_path) -> None:
+def test_a_table_of_friction_stands_for_the_coefficient(found, tmp_path):
     pad = replace(PAD, mu=Parameters().mu, friction_law="linear 0.0:0.48 1.0:0.36")
     rows = {row["meaning"]: row for row in parameter_table(pad, of_a1=True)}
     assert "sliding friction coefficient" not in rows
@@ -144,7 +139,7 @@ def test_a_table_of_friction_stands_for_the_coefficient(found, tmp_path) -> None
     assert any("$μ$: table" in text.get_text() for text in panel.texts)
 
 
-def test_a_study_without_the_paper_needs_a_scene() -> None:
+def test_a_study_without_the_paper_needs_a_scene():
     with pytest.raises(ConfigError, match=r"scenes: \{mine"):
         parse_study({"paper": False})
     study = parse_study({"paper": False, "scenes": {"a": {"alpha1": "30deg", "alpha2": "0.75pi"}}})
@@ -153,7 +148,7 @@ def test_a_study_without_the_paper_needs_a_scene() -> None:
         parse_study({"scenes": {"a": {"alpha1": "thirty", "alpha2": 1.0}}})
 
 
-def test_init_own_writes_a_study_that_is_valid(tmp_path) -> None:
+def test_init_own_writes_a_study_that_is_valid(tmp_path):
     file = tmp_path / "mine.yaml"
     assert run(["init", str(file), "--own"]) == 0
     study = read_study(ROOT / PAPER, file)

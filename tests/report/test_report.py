@@ -6,7 +6,6 @@ import hashlib
 import re
 from collections import Counter
 from html.parser import HTMLParser
-from pathlib import Path
 
 import pytest
 import yaml
@@ -22,20 +21,14 @@ from tests.browser import chromium_path, open_page
 from tests.conftest import ROOT
 
 VOID = {"meta", "img", "br", "link", "hr", "input"}
-FETCHING = {
-    "src",
-    "srcset",
-    "poster",
-    "data",
-    "action",
-}
+FETCHING = {"src", "srcset", "poster", "data", "action"}
 """Attributes from which a browser fetches on its own."""
 
 
 class Page(HTMLParser):
     """What the tests ask of a page."""
 
-    def __init__(self, text: str) -> None:
+    def __init__(self, text):
         super().__init__()
         self.ids: Counter[str] = Counter()
         self.links: list[str] = []
@@ -73,28 +66,26 @@ class Page(HTMLParser):
         assert self.open.pop() == tag
 
 
-def prose(text: str) -> str:
+def prose(text):
     """The words of a page."""
     return " ".join(re.sub(r"<style>.*?</style>|<[^>]+>", " ", text, flags=re.DOTALL).split())
 
 
 @pytest.fixture(scope="module")
-def text(small_report) -> str:
+def text(small_report):
     return small_report.page.read_text(encoding="utf-8")
 
 
 @pytest.fixture(scope="module")
-def page(text: str) -> Page:
+def page(text):
     return Page(text)
 
 
-def test_every_tag_is_closed(page: Page) -> None:
+def test_every_tag_is_closed(page):
     assert page.open == []
 
 
-def test_links_lead_to_places_in_the_pages_and_to_files_beside_them(
-    page: Page, small_report
-) -> None:
+def test_links_lead_to_places_in_the_pages_and_to_files_beside_them(page, small_report):
     behind = Page(small_report.supplement.read_text(encoding="utf-8"))
     for one in (page, behind):
         inside = [link[1:] for link in one.links if link.startswith("#")]
@@ -106,29 +97,29 @@ def test_links_lead_to_places_in_the_pages_and_to_files_beside_them(
     assert "../data/stability_map.nc" in behind.links
 
 
-def test_ids_are_unique(page: Page) -> None:
+def test_ids_are_unique(page):
     assert [name for name, times in page.ids.items() if times > 1] == []
 
 
-def test_nothing_is_fetched_from_elsewhere(page: Page, text: str) -> None:
+def test_nothing_is_fetched_from_elsewhere(page, text):
     assert all(source.startswith("data:image/png;base64,") for source in page.fetched)
     assert "@import" not in text
     assert not re.search(r"url\((?!data:)", text)
     assert page.tags["script"] == page.tags["iframe"] == page.tags["link"] == 0
 
 
-def test_every_picture_has_an_alt_text_and_stands_once(page: Page, small_report) -> None:
+def test_every_picture_has_an_alt_text_and_stands_once(page, small_report):
     expected = [item["alt"] for item in small_report.content["figures"].values()]
     assert sorted(image["alt"] for image in page.images) == sorted(expected)
     assert all(len(alt) > 20 for alt in expected)
 
 
-def test_every_statement_has_its_place(page: Page, small_report) -> None:
+def test_every_statement_has_its_place(page, small_report):
     behind = Page(small_report.supplement.read_text(encoding="utf-8"))
     assert {f"claim-{statement.id}" for statement in STATEMENTS} <= set(page.ids | behind.ids)
 
 
-def test_after_an_edit_the_page_shows_changes_and_no_narrative(text: str, small_report) -> None:
+def test_after_an_edit_the_page_shows_changes_and_no_narrative(text, small_report):
     words = prose(text)
     assert "linear.points 181 21" in words
     assert "as printed nothing ends this" not in words
@@ -136,26 +127,26 @@ def test_after_an_edit_the_page_shows_changes_and_no_narrative(text: str, small_
     assert not re.search(r"\bnan\b", words)
 
 
-def test_verdicts_that_differ_from_the_recorded_ones_are_listed(small_report) -> None:
+def test_verdicts_that_differ_from_the_recorded_ones_are_listed(small_report):
     changed = {row["id"] for row in small_report.content["changed_verdicts"]}
     claims = [*small_report.content["statements"], *small_report.content["misprints"]]
     assert changed == {row["id"] for row in claims if row["verdict_here"] != row["recorded"]}
 
 
-def test_narrative_has_words_for_every_part() -> None:
+def test_narrative_has_words_for_every_part():
     words = (TEMPLATES / "narrative.typ").read_text(encoding="utf-8")
     written = set(re.findall(r"^  (\w+): \(\) => \[", words, flags=re.MULTILINE))
     assert written == {*COMPARED, *BEYOND} - {"model"}
 
 
-def test_the_front_has_at_most_400_words() -> None:
+def test_the_front_has_at_most_400_words():
     words = (TEMPLATES / "narrative.typ").read_text(encoding="utf-8")
     front = words[words.index("#let asked") : words.index("#let compared")]
     assert len(front.split()) <= 400
     assert not re.search(r"\b[A-Z]\d+[a-z]?\b", re.sub(r"\bA[1-4]\b|n\(.*?\)", "", front))
 
 
-def test_heading_levels_are_never_skipped(page: Page) -> None:
+def test_heading_levels_are_never_skipped(page):
     assert page.headings[0] == 1
     steps = [
         later - earlier for earlier, later in zip(page.headings, page.headings[1:], strict=False)
@@ -163,17 +154,17 @@ def test_heading_levels_are_never_skipped(page: Page) -> None:
     assert max(steps) <= 1
 
 
-def test_formulas_are_mathml(page: Page, text: str) -> None:
+def test_formulas_are_mathml(page, text):
     assert page.tags["math"] > 10
     assert "$" not in re.sub(r"<style>.*?</style>|data:image[^\"]*", "", text, flags=re.DOTALL)
 
 
-def test_both_colour_schemes_print_and_narrow_screens_are_provided_for(text: str) -> None:
+def test_both_colour_schemes_print_and_narrow_screens_are_provided_for(text):
     for query in ("prefers-color-scheme: dark", "@media print", "max-width: 40rem"):
         assert query in text
 
 
-def test_equal_content_gives_equal_files(small_report, tmp_path: Path) -> None:
+def test_equal_content_gives_equal_files(small_report, tmp_path):
     page, pdf = tmp_path / "index.html", tmp_path / "report.pdf"
     pictures = picture_files(small_report.content, small_report.figures)
     write_document("paper", small_report.content, pictures, page=page, pdf=pdf)
@@ -182,7 +173,7 @@ def test_equal_content_gives_equal_files(small_report, tmp_path: Path) -> None:
     assert pdf.read_bytes().startswith(b"%PDF-")
 
 
-def test_provenance_names_rule_id_and_checksum_of_every_dataset(small_report) -> None:
+def test_provenance_names_rule_id_and_checksum_of_every_dataset(small_report):
     made = {
         name: contents.Made(
             path=small_report.page.parents[1] / f"data/{name}.nc", rule=f"make_{name}"
@@ -198,14 +189,14 @@ def test_provenance_names_rule_id_and_checksum_of_every_dataset(small_report) ->
     assert found["figures"]["fig06"]["rule"] == "draw_topic"
 
 
-def test_headings_of_pictures() -> None:
+def test_headings_of_pictures():
     assert title("fig01") == "Fig. 1."
     assert title("fig10_to_12") == "Figs. 10–12."
     assert title("hammering_map") == "Hammering map."
     assert title("a1_beside_a4") == "A1 beside A4."
 
 
-def test_lineage_follows_files_from_rule_to_rule() -> None:
+def test_lineage_follows_files_from_rule_to_rule():
     class Rule:
         def __init__(self, name, inputs, outputs):
             self.name, self.input, self.output = name, inputs, outputs
@@ -220,7 +211,7 @@ def test_lineage_follows_files_from_rule_to_rule() -> None:
     assert found == {"c": {"path": "r/data/c.nc", "rule": "make", "datasets": ["a/b"]}}
 
 
-def test_no_measured_number_is_typed_into_the_narrative() -> None:
+def test_no_measured_number_is_typed_into_the_narrative():
     """Decimals belong to datasets; the angles of scenes may stand."""
     words = (TEMPLATES / "narrative.typ").read_text(encoding="utf-8")
     prose = re.sub(r"\$[^$]*\$", "", words)
@@ -230,7 +221,7 @@ def test_no_measured_number_is_typed_into_the_narrative() -> None:
 @pytest.mark.parametrize("width", [1100, 390])
 @pytest.mark.release
 @pytest.mark.skipif(chromium_path() is None, reason="no chromium on this machine")
-def test_page_in_a_browser(small_report, width: int) -> None:
+def test_page_in_a_browser(small_report, width):
     with open_page(small_report.page.as_uri(), width=width) as (page, faults):
         assert page.evaluate("document.documentElement.scrollWidth") <= width
         assert page.evaluate(
@@ -242,11 +233,11 @@ def test_page_in_a_browser(small_report, width: int) -> None:
         assert faults == []
 
 
-def test_statements_point_to_figures_that_are_drawn() -> None:
+def test_statements_point_to_figures_that_are_drawn():
     assert {statement.figure for statement in STATEMENTS} - {""} <= set(FIGURES)
 
 
-def test_paper_is_cited_as_in_the_citation_file() -> None:
+def test_paper_is_cited_as_in_the_citation_file():
     cited = yaml.safe_load((ROOT / "CITATION.cff").read_text("utf-8"))["references"][0]
     assert cited["title"] == PAPER["title"]
     assert (cited["journal"], cited["year"]) == (PAPER["journal"], PAPER["year"])
@@ -255,12 +246,12 @@ def test_paper_is_cited_as_in_the_citation_file() -> None:
 
 
 @pytest.mark.parametrize("template", sorted(TEMPLATES.glob("*.typ")))
-def test_no_semicolon_is_lost_behind_a_condition(template: Path) -> None:
+def test_no_semicolon_is_lost_behind_a_condition(template):
     """Typst takes a semicolon behind an expression for its end; as text it needs a backslash."""
     assert "];" not in template.read_text(encoding="utf-8")
 
 
-def test_changed_keys_are_those_that_differ() -> None:
+def test_changed_keys_are_those_that_differ():
     shipped = parse_study({})
     edited = parse_study({"parameters": {"mu": 0.4}, "results": "results/mine"})
     assert edited.changes_of(shipped) == [("parameters.mu", shipped.parameters.mu, 0.4)]

@@ -1,7 +1,5 @@
 """What another person needs from a file alone: title, references, licence, words, CF."""
 
-from __future__ import annotations
-
 import importlib.util
 import subprocess
 import sys

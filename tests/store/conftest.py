@@ -1,7 +1,5 @@
 """A small run to freeze, verify and compare."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 import yaml
@@ -15,13 +13,13 @@ from squealpipe.tasks.linear.maps import stability_map
 KEY = "0123456789abcdef"
 
 
-def keys_of(root: Path, results: str = "results") -> dict[str, str]:
+def keys_of(root, results="results"):
     """File → the key that it must state, as the workflow would give it."""
     names = ("data/stability_map.nc", "figures/fig06.png")
     return {f"{results}/{name}": file_key(KEY, name) for name in names}
 
 
-def write_run(root: Path, *, points: int = 13, mu: float = 0.3, results: str = "results") -> Path:
+def write_run(root, *, points=13, mu=0.3, results="results"):
     """A checkout with a configuration and one dataset and figure made with it."""
     config = root / "workflow/config/paper.yaml"
     config.parent.mkdir(parents=True, exist_ok=True)

@@ -47,16 +47,7 @@ def test_find_tells_by_its_exit_code_that_there_is_none(memory, capsys):
 
 
 @pytest.mark.parametrize(
-    "expression",
-    [
-        "mu = 0.25",
-        "mu",
-        "1",
-        "muu == 1",
-        "mu < 'a'",
-        "",
-        "f'{mu}' == '0.3'",
-    ],
+    "expression", ["mu = 0.25", "mu", "1", "muu == 1", "mu < 'a'", "", "f'{mu}' == '0.3'"]
 )
 def test_what_is_no_condition_is_one_message(memory, capsys, expression):
     assert command(["find", expression]) == 2

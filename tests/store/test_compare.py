@@ -7,13 +7,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from squealpipe import (
-    Parameters,
-    Sweep,
-    backbone,
-    run_sweep,
-    simulate,
-)
+from squealpipe import Parameters, Sweep, backbone, run_sweep, simulate
 from squealpipe.schema import DatasetSchema, Variable, build
 from squealpipe.schema.claims import CLAIMS
 from squealpipe.store import load, save

@@ -38,11 +38,7 @@ MODEL_AND_TOLERANCE = {
         "A4",
         "round-off",
     ),
-    "backbone": (
-        squealpipe.backbone(PARAMS, 0.9, 2.8, mode=1, y_peak_max=1.2),
-        "A4",
-        "round-off",
-    ),
+    "backbone": (squealpipe.backbone(PARAMS, 0.9, 2.8, mode=1, y_peak_max=1.2), "A4", "round-off"),
     "critical_friction_map": (squealpipe.critical_friction_map(*MAP), "A3", "round-off"),
     "smallest_disturbance": (
         squealpipe.smallest_disturbance(PARAMS, 0.9, 2.8, t_end=5.0, directions=8),
@@ -73,11 +69,7 @@ MODEL_AND_TOLERANCE = {
         "A1",
         1e-9,
     ),
-    "limit_cycle": (
-        squealpipe.limit_cycle(PARAMS, 0.9, 2.8, t_settle=20.0),
-        "A1",
-        "round-off",
-    ),
+    "limit_cycle": (squealpipe.limit_cycle(PARAMS, 0.9, 2.8, t_settle=20.0), "A1", "round-off"),
     "cycle_branch": (
         squealpipe.cycle_branch(
             PARAMS, 0.9, 2.8, parameter="mu", to=PARAMS.mu + 0.1, start="onset", n_points=2

@@ -4,12 +4,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from squealpipe import (
-    cycle_branch,
-    hammering_map,
-    limit_cycle,
-    simulate,
-)
+from squealpipe import cycle_branch, hammering_map, limit_cycle, simulate
 from squealpipe.parameters import SCENES
 from squealpipe.schema import Outcome, Variable, all_schemas
 from squealpipe.schema.agreement import magnitude, most, sampled, unjudged

@@ -1,7 +1,5 @@
 """Datasets for other programs, read back by the libraries that read them elsewhere."""
 
-from __future__ import annotations
-
 import numpy as np
 import pandas as pd
 import pytest

@@ -1,7 +1,5 @@
 """Files appear whole, from a name that nobody could prepare."""
 
-from __future__ import annotations
-
 import subprocess
 
 from squealpipe import Parameters, save, stability_map

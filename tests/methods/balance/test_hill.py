@@ -15,7 +15,7 @@ from tests.former import FORMER
 SCENE = scaled_system(FORMER, 0.3 * math.pi, 0.9 * math.pi)
 
 
-def share_above(contact_angles: np.ndarray, n_harmonics: int) -> np.ndarray:
+def share_above(contact_angles, n_harmonics):
     """Cosine means of the part of the period spent above, 0 … 2 H, in closed form.
 
     Args:
@@ -32,7 +32,7 @@ def share_above(contact_angles: np.ndarray, n_harmonics: int) -> np.ndarray:
     return share
 
 
-def solved(y_peak: float, n_harmonics: int) -> tuple[CosineBalance, np.ndarray, float, float]:
+def solved(y_peak, n_harmonics):
     orbit, _ = find_orbit(SCENE, 1, y_peak)
     assert orbit is not None
     balance = CosineBalance(SCENE.system, contact_of(n_harmonics, 1.0, None, None))
@@ -43,7 +43,7 @@ def solved(y_peak: float, n_harmonics: int) -> tuple[CosineBalance, np.ndarray, 
 
 
 @pytest.mark.parametrize("y_peak", [4.0, 4.5, 5.0])
-def test_closed_form_coefficients_give_the_true_doubling_multiplier(y_peak: float) -> None:
+def test_closed_form_coefficients_give_the_true_doubling_multiplier(y_peak):
     balance, y, omega, index = solved(y_peak, 16)
     share = share_above(balance.contact.angles(y), 16)
     largest = np.abs(hill_multipliers(SCENE.system, share, omega)).max()
@@ -51,14 +51,14 @@ def test_closed_form_coefficients_give_the_true_doubling_multiplier(y_peak: floa
     assert largest == pytest.approx((-index + math.sqrt(index * index - 4.0)) / 2.0, abs=2e-3)
 
 
-def test_sampled_coefficients_call_a_doubled_motion_stable() -> None:
+def test_sampled_coefficients_call_a_doubled_motion_stable():
     _, y, omega, index = solved(4.0, 16)
     largest = np.abs(hill_multipliers(SCENE.system, sampled_share_above(y, 1.0, 80), omega)).max()
     assert index < -2.0
     assert largest == pytest.approx(1.0, abs=1e-6)
 
 
-def test_sampled_shares_tend_to_the_closed_form() -> None:
+def test_sampled_shares_tend_to_the_closed_form():
     balance, y, _, _ = solved(3.0, 8)
     exact = share_above(balance.contact.angles(y), 8)
     errors = [np.abs(sampled_share_above(y, 1.0, n) - exact).max() for n in (100, 100_000)]

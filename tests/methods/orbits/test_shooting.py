@@ -39,8 +39,7 @@ def test_flow_runs_backwards_by_turning_velocities(scene):
     """From the state after half a period, velocities turned, the start comes back."""
     rows = scaled_system(FORMER, scene[0] * math.pi, scene[1] * math.pi).system.rows
     found = solve_orbit(
-        scaled_system(FORMER, scene[0] * math.pi, scene[1] * math.pi).system,
-        np.array(scene[2:]),
+        scaled_system(FORMER, scene[0] * math.pi, scene[1] * math.pi).system, np.array(scene[2:])
     )
     assert found is not None
     final, again = np.empty(4), np.empty(4)

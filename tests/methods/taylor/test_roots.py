@@ -1,7 +1,5 @@
 """The first root of a step's polynomial: known roots, grazing pairs, near misses."""
 
-from __future__ import annotations
-
 import numba
 import numpy as np
 import pytest

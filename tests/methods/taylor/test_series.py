@@ -1,7 +1,5 @@
 """Taylor series written from symbols, against closed forms; perturbations, against theirs."""
 
-from __future__ import annotations
-
 import ctypes
 from math import factorial
 
