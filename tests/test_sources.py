@@ -93,6 +93,13 @@ def test_comments_and_docstrings_are_not_code(tmp_path, edit, same):
     assert (found[0] == found[1]) == same
 
 
+def test_docstrings_that_the_table_of_statements_shows_are_code(tmp_path, monkeypatch):
+    monkeypatch.setattr("squealpipe.rerun.sources.STATEMENTS", tmp_path)
+    for words in ("share of cells", "number of cells"):
+        (tmp_path / f"{words}.py").write_text(f'def check():\n    """{words}"""\n')
+    assert len({read_source(path).code for path in tmp_path.iterdir()}) == 2
+
+
 def test_key_changes_with_slice_inputs_and_files_that_the_slice_names(tmp_path):
     table = tmp_path / "friction.csv"
     table.write_text("0,0.3")

@@ -41,19 +41,13 @@ def _text(meaning: str, *, volatile: bool = False) -> Variable:
     return Variable(meaning, dims=("claim",), dtype="U", volatile=volatile)
 
 
-def _number(meaning: str, *, optional: bool = False) -> Variable:
+def _number(meaning: str) -> Variable:
     # Some values come from long runs, whose last digits differ from machine to machine.
-    return Variable(
-        meaning, dims=("claim",), nan_allowed=True, rtol=1e-3, atol=1e-6, optional=optional
-    )
+    return Variable(meaning, dims=("claim",), nan_allowed=True, rtol=1e-3, atol=1e-6)
 
 
-def _flag(flags: type[IntEnum], meaning: str) -> Variable:
-    return Variable(meaning, dims=("claim",), dtype="i1", flags=flags, optional=True)
-
-
-def _verdict(meaning: str) -> Variable:
-    return Variable(meaning, dims=("claim",), dtype="i1", flags=Verdict)
+def _flag(meaning: str, flags: type[IntEnum]) -> Variable:
+    return Variable(meaning, dims=("claim",), dtype="i1", flags=flags)
 
 
 CLAIMS = DatasetSchema(
@@ -64,19 +58,19 @@ CLAIMS = DatasetSchema(
         "statement": _text("the statement in our words"),
         "section": _text("where the paper says it"),
         "check": _text("what is measured"),
-        "verdict": _verdict("what the data say, over the inferred feasible set as well"),
-        "verdict_here": _verdict("what the data say at the parameters of the run"),
-        "recorded": _verdict("verdict_here recorded for the shipped baseline"),
-        "corrected_verdict": _verdict(
+        "verdict": _flag("what the data say, over the inferred feasible set as well", Verdict),
+        "verdict_here": _flag("what the data say at the parameters of the run", Verdict),
+        "recorded": _flag("verdict_here recorded for the shipped baseline", Verdict),
+        "corrected_verdict": _flag(
             "verdict in the corrected physics, friction of one sign throughout; that of the "
-            "reading where nothing differs"
+            "reading where nothing differs",
+            Verdict,
         ),
         "corrected_value": _number("measured value in the corrected physics"),
         "corrected_evidence": _text("one line of evidence there", volatile=True),
         "value": _number("measured value; NaN where nothing was measured"),
         "relation": _text("relation of value and threshold under which the check passes"),
         "threshold": _number("threshold of the check; NaN as in value"),
-        "margin": _number("distance of the value from the threshold, positive where it passes"),
         "feasible_share": _number(
             "share of the inferred feasible parameters in which the statement holds; NaN where it "
             "was fitted and where the inference does not judge it"
@@ -85,12 +79,9 @@ CLAIMS = DatasetSchema(
             "feasible parameter sets behind feasible_share; 0 where there is none",
             dims=("claim",),
             dtype="i4",
-            optional=True,
         ),
-        "feasible_share_low": _number("lower end of its 95 % Wilson interval", optional=True),
-        "feasible_share_high": _number("upper end of its 95 % Wilson interval", optional=True),
-        "basis": _flag(Basis, "whether the statement was fitted by the inference or is predicted"),
-        "origin": _flag(Origin, "the paper's own statement, or one of our list of its misprints"),
+        "basis": _flag("whether the statement was fitted by the inference or is predicted", Basis),
+        "origin": _flag("the paper's own statement, or one of our list of its misprints", Origin),
         "evidence": _text("one line of evidence", volatile=True),
         "dataset": _text("datasets read, with their ids", volatile=True),
         "figure": _text("picture that shows it"),

@@ -8,9 +8,8 @@ from squealpipe.schema.claims import Basis, Verdict
 from squealpipe.schema.inference import of_study
 from squealpipe.store.netcdf import save
 from squealpipe.store.provenance import stamp
-from squealpipe.study.claims.datasets import READ
 from squealpipe.study.claims.judge import judge
-from squealpipe.study.claims.statements import STATEMENTS
+from squealpipe.study.claims.statements import READ, STATEMENTS
 from squealpipe.study.claims.table import rows, table
 from squealpipe.study.figures.linear import fig07
 
@@ -147,9 +146,6 @@ def test_each_row_says_whether_it_was_fitted_or_is_predicted(evidence, baseline)
     assert set(shared.claim.values) == {"S3", "F6b", "F6c", "F8c", "C2", "E8"}
     size = int(of_study(evidence["parameter_inference"]).feasible_count)
     assert (shared.feasible_count == size).all()
-    assert (shared.feasible_share_low <= shared.feasible_share).all()
-    assert (shared.feasible_share <= shared.feasible_share_high).all()
-    assert (shared.feasible_share_high - shared.feasible_share_low > 1 / size).all()
     alone = {name: data for name, data in evidence.items() if name != "parameter_inference"}
     assert (judge(baseline, alone, "as_printed").basis == Basis.unknown).all()
 

@@ -268,8 +268,9 @@ def test_statements_that_changed_are_told_with_verdict_and_value(tmp_path):
     }
     judged = {"a": ([0, 0, 2], [1, 2, np.nan]), "b": ([0, 2, 2], [1.1, 2, np.nan])}
     for place, (verdict, value) in judged.items():
-        numbers = dict.fromkeys(("threshold", "margin", "feasible_share"), [1.0] * 3)
-        flags = {"verdict": verdict, "verdict_here": verdict, "recorded": [0] * 3}
+        numbers = dict.fromkeys(("threshold", "feasible_share"), [1.0] * 3)
+        flags = dict.fromkeys(("recorded", "basis", "origin", "feasible_count"), [0] * 3)
+        flags |= {"verdict": verdict, "verdict_here": verdict}
         flags |= {"corrected_verdict": verdict, "corrected_value": value}
         text["corrected_evidence"] = ["t"] * 3
         data = {**text, **numbers, **flags, "value": value, "figure": ["fig02", "fig03", ""]}

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
+from operator import ge, gt, le, lt
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -69,8 +71,7 @@ class Run(Mapping[str, xr.Dataset]):
         return names
 
 
-@dataclass(frozen=True, kw_only=True)
-class Finding:
+class Finding(NamedTuple):
     """What one check found.
 
     Attributes:
@@ -85,25 +86,10 @@ class Finding:
     threshold: float
     evidence: str
 
-    @property
-    def margin(self) -> float:
-        """Distance of the value from the threshold, positive where the check passes."""
-        return margin(self.value, self.relation, self.threshold)
-
 
 def passes(value: float, relation: str, threshold: float) -> bool:
     """Whether the comparison is true; an equality includes its tolerance in the threshold."""
-    return {
-        "<": value < threshold,
-        "≤": value <= threshold,
-        ">": value > threshold,
-        "≥": value >= threshold,
-    }[relation]
-
-
-def margin(value: float, relation: str, threshold: float) -> float:
-    """Signed distance from the threshold, positive where the comparison is true."""
-    return threshold - value if relation in "<≤" else value - threshold
+    return bool({"<": lt, "≤": le, ">": gt, "≥": ge}[relation](value, threshold))
 
 
 def finding(
@@ -129,11 +115,5 @@ def finding(
     """
     if np.isnan(value):
         raise MissingDataError(f"nothing to compare: {evidence}")
-    decided = passes(float(value), relation, threshold) and also
-    return Finding(
-        verdict=passed if decided else otherwise,
-        value=float(value),
-        relation=relation,
-        threshold=float(threshold),
-        evidence=as_people_write(evidence),
-    )
+    verdict = passed if passes(value, relation, threshold) and also else otherwise
+    return Finding(verdict, float(value), relation, float(threshold), as_people_write(evidence))

@@ -13,14 +13,16 @@ import xarray as xr
 from squealpipe.parameters import Parameters
 from squealpipe.reading import corrected, for_linear
 from squealpipe.schema import build
-from squealpipe.schema.claims import CLAIMS, Origin, Verdict
-from squealpipe.study.claims.checks.feasible import standing
-from squealpipe.study.claims.evidence import MissingDataError, Run
+from squealpipe.schema.claims import CLAIMS, Basis, Origin, Verdict
+from squealpipe.schema.inference import of_study
+from squealpipe.study.claims.evidence import Finding, MissingDataError, Run
 from squealpipe.study.claims.statement import Statement
 from squealpipe.study.claims.statements import PAPER, STATEMENTS
 
 BESIDE = "corrected/"
 """Folder of the datasets of the corrected physics, where it differs from the reading."""
+DECIDED = 0.1
+"""Share of the feasible set, or of its rest, below which exceptions are at the set's margin."""
 
 
 def judge(
@@ -38,11 +40,7 @@ def judge(
             :data:`squealpipe.reading.READINGS`.
 
     Returns:
-        Dataset over claim: statement, section, check, verdict, recorded, value, relation,
-        threshold, margin, evidence, dataset, figure; corrected_verdict, corrected_value and
-        corrected_evidence; origin (the paper's statement or our list of misprints), basis (fitted
-        or predicted) and, for predictions that the inference judges, feasible_share with its
-        sample feasible_count and its interval.
+        Dataset ``claims`` over claim.
     """
     run = Run(for_linear(parameters, reading), sources)
     mended = {
@@ -59,54 +57,63 @@ def judge(
 
 
 def _row(statement: Statement, run: Run, second: Run) -> dict[str, Any]:
-    stands = standing(statement, run)
+    basis, share, count = standing(statement, run)
     run.forget()
-    row: dict[str, Any] = {
+    here = _found(statement, run)
+    datasets = "; ".join(run.forget())
+    mended = here if second is run else _found(statement, second)
+    verdict, corrected_verdict = here.verdict, mended.verdict
+    # The paper prints no parameters: what divides the feasible set depends on those one takes.
+    if DECIDED < share < 1.0 - DECIDED and verdict != Verdict.cannot_be_decided:
+        verdict = Verdict.depends_on_the_parameters
+        if mended.verdict == here.verdict:
+            corrected_verdict = verdict
+    return {
         "statement": statement.text,
         "section": statement.section,
         "check": statement.measure,
-        "recorded": statement.recorded,
         "figure": statement.figure,
-        "feasible_share": stands.share,
-        "feasible_count": stands.count,
-        "feasible_share_low": stands.low,
-        "feasible_share_high": stands.high,
-        "basis": stands.basis,
+        "recorded": statement.recorded,
         "origin": Origin.paper if statement in PAPER else Origin.misprints,
-        **_found(statement, run),
+        "basis": basis,
+        "feasible_share": share,
+        "feasible_count": count,
+        "verdict": verdict,
+        "verdict_here": here.verdict,
+        "value": here.value,
+        "relation": here.relation,
+        "threshold": here.threshold,
+        "evidence": here.evidence,
+        "dataset": datasets,
+        "corrected_verdict": corrected_verdict,
+        "corrected_value": mended.value,
+        "corrected_evidence": mended.evidence,
     }
-    row["dataset"] = "; ".join(run.forget())
-    mended = row if second is run else _found(statement, second)
-    row |= {
-        "corrected_verdict": mended["verdict_here"],
-        "corrected_value": mended["value"],
-        "corrected_evidence": mended["evidence"],
-        "verdict": row["verdict_here"],
-    }
-    if stands.divides and row["verdict"] != Verdict.cannot_be_decided:
-        row["verdict"] = Verdict.depends_on_the_parameters
-        if row["corrected_verdict"] == row["verdict_here"]:
-            row["corrected_verdict"] = row["verdict"]
-    return row
 
 
-def _found(statement: Statement, run: Run) -> dict[str, Any]:
+def standing(statement: Statement, run: Run) -> tuple[Basis, float, int]:
+    """How a statement stands to the inference of a run.
+
+    Returns:
+        Whether it was fitted or is predicted (unknown without an inference), the share of the
+        feasible sets in which it holds, NaN where the inference does not judge it, and their
+        number.
+    """
+    if "parameter_inference" not in run:
+        return Basis.unknown, nan, 0
+    inference = of_study(run["parameter_inference"])
+    if {statement.id, statement.consequence} & set(inference.statement.values.tolist()):
+        return Basis.fitted, nan, 0
+    count = int(inference.feasible_count)
+    if not count or statement.consequence not in inference.consequence.values:
+        return Basis.predicted, nan, 0
+    share = inference.feasible_share.sel(consequence=statement.consequence)
+    return Basis.predicted, float(share), count
+
+
+def _found(statement: Statement, run: Run) -> Finding:
     try:
-        found = statement.check(run)
+        return statement.check(run)
     except MissingDataError as error:
-        return {
-            "verdict_here": Verdict.cannot_be_decided,
-            "value": nan,
-            "relation": "",
-            "threshold": nan,
-            "margin": nan,
-            "evidence": f"Not decided: {error}.",
-        }
-    return {
-        "verdict_here": found.verdict,
-        "value": found.value,
-        "relation": found.relation,
-        "threshold": found.threshold,
-        "margin": found.margin,
-        "evidence": found.evidence,
-    }
+        undecided = Verdict.cannot_be_decided
+        return Finding(undecided, nan, "", nan, f"Not decided: {error}.")

@@ -101,10 +101,3 @@ def order_turns_over(run: Run) -> xr.DataArray:
 def stiffness(run: Run, name: str) -> xr.DataArray:
     """K11 (``stiffness_x``), K12 (``stiffness_xy``) or K22 (``stiffness_y``) over the map, N/m."""
     return run["quasi_static_map"][name]
-
-
-def unstable_and_lost(run: Run) -> tuple[xr.DataArray, xr.DataArray]:
-    """Cells that A3 calls unstable, and those that lose contact in A1, on the grid of A1."""
-    validity = run["validity_map"]
-    unstable = on_grid_of(run["stability_map"], validity).regime_linear > 0
-    return unstable, validity.separates == 1

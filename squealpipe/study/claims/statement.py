@@ -20,7 +20,6 @@ class Statement:
         id: row of the claims table.
         section: where the paper says it.
         text: the statement in our own words.
-        measure: what the check measures, in words.
         figure: picture that shows it; empty where none does.
         recorded: what its check finds at the shipped baseline; anything else is a regression.
         check: reads datasets only.
@@ -31,33 +30,41 @@ class Statement:
     id: str
     section: str
     text: str
-    measure: str
     figure: str
     recorded: Verdict
     check: Check
-    consequence: str = ""
+    consequence: str
+
+    @property
+    def measure(self) -> str:
+        """What the check measures, in words: the first sentence of its docstring."""
+        words = " ".join(str(self.check.__doc__).partition("\n\n")[0].split())
+        return words[0].lower() + words[1:].removesuffix(".")
 
 
 class Rows(list[Statement]):
     """The statements of one module, in the paper's order: each is added where its check stands."""
 
+    def __init__(self, section: str = "") -> None:
+        """With the section of the paper that most of them are from."""
+        super().__init__()
+        self.section = section
+
     def add(
         self,
         name: str,
-        section: str,
         text: str,
-        measure: str,
-        figure: str,
-        recorded: Verdict,
+        figure: str = "",
         *,
+        section: str = "",
+        recorded: Verdict = Verdict.holds,
         consequence: str = "",
     ) -> Callable[[Check], Check]:
         """Decorator of a check; the arguments are those of :class:`Statement`."""
 
         def keep(check: Check) -> Check:
-            self.append(
-                Statement(name, section, text, measure, figure, recorded, check, consequence)
-            )
+            place = section or self.section
+            self.append(Statement(name, place, text, figure, recorded, check, consequence))
             return check
 
         return keep

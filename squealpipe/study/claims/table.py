@@ -2,63 +2,37 @@
 
 from __future__ import annotations
 
-import math
 import os
 from typing import Any
 
 import xarray as xr
 
-from squealpipe.schema.claims import Basis, Origin, Verdict
+from squealpipe.schema import meanings
 from squealpipe.store import load
 from squealpipe.study.claims.evidence import passes
 
-TEXT = (
-    "statement",
-    "section",
-    "check",
-    "relation",
-    "evidence",
-    "corrected_evidence",
-    "dataset",
-    "figure",
-)
-VERDICTS = ("verdict", "corrected_verdict", "verdict_here", "recorded")
-NUMBERS = (
-    "value",
-    "corrected_value",
-    "threshold",
-    "margin",
-    "feasible_share",
-    "feasible_share_low",
-    "feasible_share_high",
-)
-FLAGS = {"basis": Basis, "origin": Origin}
-
 
 def rows(claims: xr.Dataset) -> list[dict[str, Any]]:
-    """One mapping per statement; numbers that do not exist are None.
+    """One mapping per statement: its id and the variables of dataset ``claims``, flags in words.
 
-    Args:
-        claims: dataset ``claims``.
+    Numbers that do not exist are None. ``changes``: the sign of friction changes the verdict;
+    ``as_recorded``: the verdict here is the recorded one; ``unmet``: the statement fails here
+    though its deciding comparison is true.
     """
-    table_ = []
-    for index, name in enumerate(claims.claim.values):
-        row = claims.isel(claim=index)
-        verdicts = {key: Verdict(int(row[key])).words for key in VERDICTS}
-        table_.append(
+    found = []
+    for name in claims.claim.values.tolist():
+        row = {str(key): _plain(value) for key, value in claims.sel(claim=name).data_vars.items()}
+        fails = row["verdict_here"] == "fails" and row["value"] is not None
+        found.append(
             {
-                "id": str(name),
-                **{key: str(row[key].item()) for key in TEXT},
-                **{key: _number(row[key].item()) for key in NUMBERS},
-                **verdicts,
-                "changes": verdicts["corrected_verdict"] != verdicts["verdict"],
-                "as_recorded": verdicts["verdict_here"] == verdicts["recorded"],
-                "unmet": _fails_by_a_further_condition(row),
-                "feasible_count": int(row.feasible_count),
-                **{key: flags(int(row[key])).name for key, flags in FLAGS.items()},
+                "id": name,
+                **row,
+                "changes": row["corrected_verdict"] != row["verdict"],
+                "as_recorded": row["verdict_here"] == row["recorded"],
+                "unmet": fails and passes(row["value"], row["relation"], row["threshold"]),
             }
         )
-    return table_
+    return found
 
 
 def table(path: str | os.PathLike[str]) -> tuple[list[dict[str, Any]], int]:
@@ -77,12 +51,8 @@ def table(path: str | os.PathLike[str]) -> tuple[list[dict[str, Any]], int]:
     return found, int(shipped and not all(row["as_recorded"] for row in found))
 
 
-def _fails_by_a_further_condition(row: xr.Dataset) -> bool:
-    """Whether the statement fails here though its deciding comparison is true."""
-    value, relation, threshold = (row[key].item() for key in ("value", "relation", "threshold"))
-    fails = int(row.verdict_here) == Verdict.fails
-    return fails and relation != "" and passes(value, relation, threshold)
-
-
-def _number(value: float) -> float | None:
-    return None if math.isnan(value) else float(value)
+def _plain(variable: xr.DataArray) -> Any:
+    value, words = variable.item(), meanings(variable)
+    if words:
+        return words[value].replace("_", " ")
+    return value if value == value else None

@@ -28,15 +28,14 @@ PRINTED = "F2a_printed"
 
 @rows.add(
     "E1",
-    "4, Eq. (4)",
     "friction with μ(V_r) = μ sgn(V_r), V_r = ẋ − V, drags the mass along, as in Eqs."
     " (6), (9), (18), (20)",
-    "mean x with the printed sign, in the direction of the static state, over l_pre",
     "fig01",
-    Verdict.fails,
+    section="4, Eq. (4)",
+    recorded=Verdict.fails,
 )
 def friction_drags_along(run: Run) -> Finding:
-    """E1: mean x with the friction as printed, against the static state of Eq. (15)."""
+    """Mean x with the printed sign, in the direction of the static state, over l_pre."""
     printed = float(scene(run, PRINTED).x.mean() / run.parameters.preload)
     static = float(cell(run["quasi_static_map"], 0.5, 1.0).x_static / run.parameters.preload)
     return finding(
@@ -50,14 +49,13 @@ def friction_drags_along(run: Run) -> Finding:
 
 @rows.add(
     "E2",
-    "7, Eq. (34)",
     "with K11·a + K12·b, Eq. (34) is the residual of Eq. (32)",
-    "largest relative error of ω with the printed residual",
     "harmonic_forms",
-    Verdict.fails,
+    section="7, Eq. (34)",
+    recorded=Verdict.fails,
 )
 def printed_residual_converges_right(run: Run) -> Finding:
-    """E2: ω found with Eq. (34) as printed and corrected, against the exact orbit."""
+    """Largest relative error of ω with the printed residual."""
     forms = run["harmonic_forms"]
     error = abs(forms.omega / forms.omega_exact - 1)
     converged = forms.outcome.sel(form=Form.as_printed) == Outcome.converged
@@ -80,24 +78,22 @@ def printed_residual_converges_right(run: Run) -> Finding:
 
 rows.add(
     "E3",
-    "5, Eq. (11)",
     "as printed, Eq. (11) is the condition for a positive contact force",
-    "cells in which the printed condition and the sign of the reaction force differ",
     "fig06",
-    Verdict.holds_only_as_printed,
+    section="5, Eq. (11)",
+    recorded=Verdict.holds_only_as_printed,
 )(sliding.printed_bound_is_physical)
 
 
 @rows.add(
     "E4",
-    "6, before Eq. (16)",
     "X + X* moves the origin to the static state",
-    "distance of the mean y from −y*, against its distance from y*",
     "fig02",
-    Verdict.fails,
+    section="6, before Eq. (16)",
+    recorded=Verdict.fails,
 )
 def shift_is_added(run: Run) -> Finding:
-    """E4: mean y in contact against y* and −y*, the rest positions of X − X* and X + X*."""
+    """Distance of the mean y from −y*, against its distance from y*."""
     motion = scene(run, "F2a")
     preload = run.parameters.preload
     static = float(cell(run["quasi_static_map"], 0.5, 1.0).y_static / preload)
@@ -111,16 +107,9 @@ def shift_is_added(run: Run) -> Finding:
     )
 
 
-@rows.add(
-    "E5",
-    "6, Eq. (12b)",
-    "ω12 is a real frequency",
-    "share of cells with K12 < 0",
-    "fig06",
-    Verdict.fails,
-)
+@rows.add("E5", "ω12 is a real frequency", "fig06", section="6, Eq. (12b)", recorded=Verdict.fails)
 def coupling_frequency_is_real(run: Run) -> Finding:
-    """E5: where K12 < 0, ω12 of Eq. (12b) is imaginary."""
+    """Share of cells with K12 < 0."""
     negative = coupling_is_negative(run)
     return finding(
         share(negative),
@@ -133,14 +122,13 @@ def coupling_frequency_is_real(run: Run) -> Finding:
 
 @rows.add(
     "E6",
-    "7, Eq. (29)",
     "N ≥ 2N_h samples are enough for Γ",
-    "columns of Γ minus its rank at N = 2N_h",
     "harmonic_forms",
-    Verdict.fails,
+    section="7, Eq. (29)",
+    recorded=Verdict.fails,
 )
 def samples_suffice(run: Run) -> Finding:
-    """E6: rank of Γ at N = 2N_h, and how far the answer still depends on the phase."""
+    """Columns of Γ minus its rank at N = 2N_h."""
     forms = run["harmonic_forms"]
     columns, harmonics = int(forms.fourier_columns), int(forms.n_harmonics)
     ranks = {int(row.samples): int(row) for row in forms.fourier_rank}
@@ -164,14 +152,13 @@ def samples_suffice(run: Run) -> Finding:
 
 @rows.add(
     "E7",
-    "7, Eqs. (31)–(36)",
     "Newton's method of Eq. (35) has a regular Jacobian",
-    "columns of the Jacobian minus its rank",
     "harmonic_forms",
-    Verdict.fails,
+    section="7, Eqs. (31)–(36)",
+    recorded=Verdict.fails,
 )
 def jacobian_is_regular(run: Run) -> Finding:
-    """E7: columns of the Jacobian of Eq. (36) minus its rank at the solutions."""
+    """Columns of the Jacobian minus its rank."""
     forms = run["harmonic_forms"]
     deficits = forms.rank_deficit.sel(form=Form.mended)
     return finding(
@@ -188,25 +175,23 @@ def jacobian_is_regular(run: Run) -> Finding:
 
 rows.add(
     "E8",
-    "7",
     "ω1 is maximal at α1 + α2 = 0.5nπ, for every n and in both contact states",
-    "excess of the largest ω1² over that on the lines",
     "fig08",
-    Verdict.holds_only_as_printed,
+    section="7",
+    recorded=Verdict.holds_only_as_printed,
     consequence="F8c",
 )(frequencies.first_is_largest_on_lines)
 
 
 @rows.add(
     "E9",
-    "all",
     "the paper prints the parameters that its results need",
-    "parameter sets that agree with all statements, in the reading with most",
     "parameter_inference",
-    Verdict.fails,
+    section="all",
+    recorded=Verdict.fails,
 )
 def parameters_are_printed(run: Run) -> Finding:
-    """E9: how much of the parameter space shows what the paper shows."""
+    """Parameter sets that agree with all statements, in the reading with most."""
     inference = run["parameter_inference"]
     best = inference.isel(reading=int(inference.feasible_count.values.argmax()))
     number = int(best.feasible_count)
@@ -228,15 +213,13 @@ def parameters_are_printed(run: Run) -> Finding:
 
 @rows.add(
     "E10",
-    "6, Fig. 7",
     "Fig. 7 has a region of unstable motion without separation (black)",
-    "cells that keep contact in A1 and are unstable in A3",
     "fig07",
-    Verdict.holds,
+    section="6, Fig. 7",
     consequence="F7_black",
 )
 def black_region_is_there(run: Run) -> Finding:
-    """E10: cells of Fig. 7 that keep contact and are unstable, in both readings."""
+    """Cells that keep contact in A1 and are unstable in A3."""
     validity = run["validity_map"]
     unstable = on_grid_of(run["stability_map"], validity).regime_linear > 0
     black = unstable & (validity.separates == 0)
@@ -254,14 +237,13 @@ def black_region_is_there(run: Run) -> Finding:
 
 @rows.add(
     "E11",
-    "5 and 6",
     "A2's reaction force decides about the equilibrium of Eq. (15)",
-    "cells in which A2's R_n and the equilibrium's N* differ in sign",
     "fig06",
-    Verdict.fails,
+    section="5 and 6",
+    recorded=Verdict.fails,
 )
 def reaction_is_that_of_equilibrium(run: Run) -> Finding:
-    """E11: A2's verdict (y = 0) against the contact force of the equilibrium of Eq. (15)."""
+    """Cells in which A2's R_n and the equilibrium's N* differ in sign."""
     sliding = run["quasi_static_map"]
     pushes = sliding.contact_force_static > 1e-12 * sliding.contact_force_static.max()
     known = sliding.outcome == 0
@@ -281,14 +263,13 @@ def reaction_is_that_of_equilibrium(run: Run) -> Finding:
 
 @rows.add(
     "E12",
-    "6, Eq. (12g)",
     "the nondimensional equations exist at every pair of angles",
-    "cells with K11 = 0",
     "fig06",
-    Verdict.fails,
+    section="6, Eq. (12g)",
+    recorded=Verdict.fails,
 )
 def nondimensional_time_exists(run: Run) -> Finding:
-    """E12: cells where K11 = 0, so that τ = ω11·t and Eqs. (13)–(17) do not exist."""
+    """Cells with K11 = 0."""
     k11 = stiffness(run, "stiffness_x")
     undefined = k11 <= FEW_ULPS * (run.parameters.k1 + run.parameters.k2)
     return finding(

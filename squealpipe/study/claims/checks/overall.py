@@ -12,7 +12,7 @@ from squealpipe.study.claims.evidence import Finding, Run, finding
 from squealpipe.study.claims.maps import share
 from squealpipe.study.claims.statement import Rows
 
-rows = Rows()
+rows = Rows("abstract")
 
 LEVELS = ("A1", "A2", "A3", "A4")
 
@@ -25,15 +25,13 @@ IMPULSE = 0.5
 
 @rows.add(
     "T1",
-    "Table 1",
     "four model levels, each with its assumptions; where each assumption holds along the computed "
     "motions",
-    "smallest share of scenes, over the levels, in which all of a level's assumptions held",
-    "",
-    Verdict.holds_only_as_printed,
+    section="Table 1",
+    recorded=Verdict.holds_only_as_printed,
 )
 def levels_have_assumptions(run: Run) -> Finding:
-    """T1: how often each level's own assumptions held along the motion that it computes."""
+    """Smallest share of scenes, over the levels, in which all of a level's assumptions held."""
     table = run["assumptions"].sel(level=list(LEVELS))
     broken = ((table.needed == 1) & (table.held == 0)).any("assumption")
     scenes = table.sizes["scene"]
@@ -54,14 +52,14 @@ def levels_have_assumptions(run: Run) -> Finding:
 
 @rows.add(
     "S1",
-    "abstract, 3",
     "the pad loses contact and excites the disc with impulsive forces (hammering)",
-    "largest contact force after the first return to the belt at (0.83π, 0.83π), over the preload",
     "fig02",
-    Verdict.holds,
+    section="abstract, 3",
 )
 def hammering_occurs(run: Run) -> Finding:
-    """S1: returns after a loss of contact, how widespread they are, and how hard they strike."""
+    """Largest contact force after the first return to the belt at (0.83π, 0.83π), over the
+    preload.
+    """
     motion = scene(run, "F2d")
     lost, found = events(motion, Event.separation).size, events(motion, Event.contact).size
     force = float(motion.return_peak_contact_force)
@@ -90,14 +88,12 @@ def hammering_occurs(run: Run) -> Finding:
 
 @rows.add(
     "S2",
-    "abstract, 4",
     "assumptions of earlier models (permanent contact, fixed spring angles) are not valid",
-    "scenes in which A1 breaks each of the two, the smaller number",
     "fig02",
-    Verdict.holds,
+    section="abstract, 4",
 )
 def earlier_assumptions_fail(run: Run) -> Finding:
-    """S2: scenes in which A1's motion loses contact or turns its springs."""
+    """Scenes in which A1 breaks each of the two, the smaller number."""
     motion = run["assumptions"].sel(level="A1")
     lost = motion.held.sel(assumption="contact is kept") == 0
     turn = motion.measure.sel(assumption="angles are constant")
@@ -115,15 +111,13 @@ def earlier_assumptions_fail(run: Run) -> Finding:
 
 @rows.add(
     "S3",
-    "abstract, 6",
     "the linear model has coupled modes (eigenvalues merge)",
-    "cells that flutter with both frequencies equal",
     "fig06",
-    Verdict.holds,
+    section="abstract, 6",
     consequence="S3",
 )
 def modes_couple(run: Run) -> Finding:
-    """S3: frequencies merge in cells that flutter; negative damping makes flutter without it."""
+    """Cells that flutter with both frequencies equal."""
     stability = run["stability_map"]
     flutter = stability.regime_linear == LinearRegime.flutter
     frequency = stability.frequency.transpose(..., "mode")
