@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from enum import IntEnum
 from typing import TYPE_CHECKING
 
@@ -22,7 +23,6 @@ JUDGED = ("sample", "reading")
 BY_READING = ("reading", "statement")
 CONSEQUENCE = ("consequence",)
 PREDICTED = ("reading", "consequence")
-SIMPLE = ("simple",)
 
 
 class Holds(IntEnum):
@@ -32,6 +32,35 @@ class Holds(IntEnum):
     yes = 1
     undecided = 2
     not_judged = 3
+
+
+WORDS = {
+    "F6d": "linearly stable at Fig. 3's angles",
+    "F13": "modes switched",
+    "F2a": "contact kept in (a)",
+    "F2b": "contact kept in (b)",
+    "F2c": "contact kept in (c)",
+    "F2d": "contact lost in (d)",
+    "F2e": "(a) to (c) differ little",
+    "F3": "|x| grows",
+    "F4": "|x| stays bounded",
+    "F5a": "both forces identical",
+    "F5b": "mass jumps again and again",
+    "F6b_printed": "unstable only where Eq. (11) forbids",
+    "F7a": "contact lost in most cells",
+    "F7_black": "kept and unstable somewhere",
+    "S3": "modes couple",
+    "F6b": "unstable only where R ≤ 0",
+    "F8c": "ω₁ largest on lines, in contact",
+    "F8c_separated": "ω₁ largest on lines, separated",
+}
+"""Statements in few words, for figures."""
+
+
+def in_words(statement: str) -> str:
+    """A statement by the paper's figure, and in few words: ``Fig. 3: |x| grows``."""
+    figure = re.match(r"F(\d+)", statement)
+    return (f"Fig. {figure[1]}: " if figure else "") + WORDS[statement]
 
 
 LITTLE = 0.1
@@ -63,10 +92,6 @@ def _limit(side: str, of: str, dims: tuple[str, ...]) -> Variable:
     return Variable(name, dims=dims, nan_allowed=True)
 
 
-def _which_reading(long_name: str) -> Variable:
-    return Variable(long_name, dtype="i1", flags=dict(enumerate(READINGS)))
-
-
 PARAMETER_INFERENCE = DatasetSchema(
     name="parameter_inference",
     title="Which parameters agree with the paper's statements, in which reading of its friction",
@@ -77,7 +102,6 @@ PARAMETER_INFERENCE = DatasetSchema(
         "consequence": Variable(
             "id of a statement that was not a constraint", dims=CONSEQUENCE, dtype="U"
         ),
-        "simple": Variable("rank of a set of simple numbers", dims=SIMPLE, dtype="i4"),
     },
     variables={
         "kappa": _group("contact stiffness k3/k"),
@@ -98,21 +122,17 @@ PARAMETER_INFERENCE = DatasetSchema(
         "share": Variable("share of the samples that are feasible", dims=READING),
         "share_low": _limit("lower", "share", READING),
         "share_high": _limit("upper", "share", READING),
-        "judged": Variable(
-            "number of samples that the statement was judged at", dims=BY_READING, dtype="i4"
-        ),
         "share_cut_alone": Variable(
             "share of the samples that this statement alone excludes", dims=BY_READING
         ),
         "criterion": Variable("what was checked", dims=STATEMENT, dtype="U"),
-        "horizon": Variable(
-            "horizon over √(m/k); NaN for statements without time", dims=STATEMENT, nan_allowed=True
-        ),
         "baseline_kappa": Variable("k3/k1 of the study"),
         "baseline_mu": Variable("friction coefficient of the study"),
         "baseline_length_ratio": Variable("L1/l_pre of the study"),
         "baseline_speed_ratio": Variable("V/(l_pre √(k1/m)) of the study, signed"),
-        "baseline_reading": _which_reading("the study's reading"),
+        "baseline_reading": Variable(
+            "the study's reading", dtype="i1", flags=dict(enumerate(READINGS))
+        ),
         "baseline_margin": Variable(
             "margin at the parameters of the study", dims=BY_READING, rtol=1e-6, atol=1e-6
         ),
@@ -124,17 +144,6 @@ PARAMETER_INFERENCE = DatasetSchema(
         ),
         "feasible_share_low": _limit("lower", "feasible_share", PREDICTED),
         "feasible_share_high": _limit("upper", "feasible_share", PREDICTED),
-        "simple_reading": _which_reading("the reading that simple sets were judged in"),
-        "simple_kappa": Variable("contact stiffness k3/k of a simple set", dims=SIMPLE),
-        "simple_mu": Variable("friction coefficient of a simple set", dims=SIMPLE),
-        "simple_length_ratio": Variable("L/l_pre of a simple set", dims=SIMPLE),
-        "simple_speed_ratio": Variable("belt speed over l_pre √(k/m), simple set", dims=SIMPLE),
-        "simple_margin": Variable(
-            "margin of the statement at a simple set",
-            dims=("simple", "statement"),
-            rtol=1e-6,
-            atol=1e-6,
-        ),
     },
 )
 

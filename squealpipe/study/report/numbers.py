@@ -9,6 +9,7 @@ import xarray as xr
 
 from squealpipe.schema import meanings
 from squealpipe.schema.claims import Origin, Verdict
+from squealpipe.schema.inference import of_study
 from squealpipe.study.claims.evidence import Run
 from squealpipe.study.claims.maps import unstable_yet_sliding
 
@@ -39,8 +40,7 @@ def _inferred(run: Run) -> dict[str, Any]:
     }
     return {
         "sets": found.sizes["sample"],
-        "simple_sets": found.sizes["simple"],
-        "margin": found.simple_margin.min("statement").max(),
+        "margin": of_study(found).baseline_margin.min(),
         **shares,
     }
 

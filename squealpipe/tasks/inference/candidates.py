@@ -129,3 +129,20 @@ class Candidates:
     def unstable(self) -> list[Unstable]:
         """Angles at which A3 is unstable, of each set."""
         return [unstable_cells(params) for params in self.sets]
+
+
+def sets_of(groups: dict[str, np.ndarray], *, tol: float, workers: int | None) -> Candidates:
+    """Candidates with equal springs, in units of m = k = l_pre = 1."""
+    ones = np.ones(len(groups["mu"]))
+    fields = {
+        "mass": ones,
+        "k1": ones,
+        "k2": ones,
+        "k3": groups["kappa"],
+        "mu": groups["mu"],
+        "preload": ones,
+        "length1": groups["length_ratio"],
+        "length2": groups["length_ratio"],
+        "belt_speed": groups["speed_ratio"],
+    }
+    return Candidates(fields, tol, workers)

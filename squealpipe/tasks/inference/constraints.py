@@ -1,16 +1,15 @@
 """The paper's statements as constraints on the parameters, each with a margin.
 
 A margin is positive where the statement holds and dimensionless. Motions are those of A1 from
-rest; horizons are the scenes' ``t_end`` in units of √(m/k1).
+rest over the scenes' ``t_end``, on maps over :data:`squealpipe.tasks.inference.angle_maps.HORIZON`.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
 from enum import IntEnum
 from types import SimpleNamespace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -24,7 +23,7 @@ from squealpipe.parameters import SCENES, Scene
 from squealpipe.schema import Outcome
 from squealpipe.schema.dynamics.runs import GROWTH_THRESHOLD
 from squealpipe.schema.inference import LITTLE, Holds
-from squealpipe.tasks.inference.angle_maps import HORIZON, keeping_share, separating_share
+from squealpipe.tasks.inference.angle_maps import keeping_share, separating_share
 from squealpipe.tasks.inference.candidates import Candidates, Margin
 
 SAMENESS = 1e-10
@@ -44,72 +43,44 @@ class Stage(IntEnum):
     maps = 5
 
 
-@dataclass(frozen=True, kw_only=True)
-class Constraint:
+class Constraint(NamedTuple):
     """One statement as a constraint on the parameters.
 
     Attributes:
         name: its id, as in the claims table.
-        criterion: what is checked, in words, with thresholds.
         stage: with which others it is judged.
-        horizon: in units of √(m/k1); NaN where no motion is computed.
+        criterion: what is checked, in words, with thresholds.
         check: the function that measures the margin.
     """
 
     name: str
-    criterion: str
     stage: Stage
-    horizon: float
+    criterion: str
     check: Callable[[Candidates], Margin]
 
 
-def _keeps_contact(name: str) -> Callable[[Candidates], Margin]:
-    return lambda candidates: candidates.contact[name]
+CONSTRAINTS: list[Constraint] = []
+"""What the paper says of its figures, where it constrains the parameters: the functions below."""
+
+Check = Callable[[Candidates], Margin]
 
 
-def _loses_contact(candidates: Candidates) -> Margin:
-    lowest = candidates.contact["F2d"]
-    return Margin(-lowest.margin, lowest.outcome)
+def constrains(name: str, stage: Stage, criterion: str) -> Callable[[Check], Check]:
+    """Decorator of a check; the arguments are those of :class:`Constraint`."""
+
+    def keep(check: Check) -> Check:
+        CONSTRAINTS.append(Constraint(name, stage, criterion, check))
+        return check
+
+    return keep
 
 
-def _alike(candidates: Candidates) -> Margin:
-    runs = [candidates.contact[name] for name in ("F2a", "F2b", "F2c")]
-    lowest = np.stack([np.maximum(run.margin, 0.0) for run in runs])
-    return Margin(LITTLE - np.ptp(lowest, axis=0), np.max([run.outcome for run in runs], axis=0))
-
-
-def _same_levels(candidates: Candidates) -> Margin:
-    first, second = candidates.level, candidates.run(SCENES["F5b"])
-    force = np.abs(first.peak_contact_force - second.peak_contact_force)
-    share = np.abs(first.separated_time - second.separated_time) / first.time
-    difference = np.maximum(force, share)
-    margin = (SAMENESS - difference) / (SAMENESS + difference)
-    return Margin(margin, np.maximum(first.outcome, second.outcome))
-
-
-def _jumps(candidates: Candidates) -> Margin:
-    run = candidates.level
-    return Margin((run.separations - (JUMPS - 0.5)) / JUMPS, run.outcome)
-
-
-def _growth_and_size(candidates: Candidates, scene: Scene) -> tuple[Any, Any, np.ndarray]:
-    """ln of late over early |x| and of |x| over 2L, and how the runs ended."""
-    run = candidates.run(scene)
-    reach = 2.0 * np.maximum(candidates.fields["length1"], candidates.fields["length2"])
-    size = np.maximum(run.early_max_x, run.late_max_x) / reach
-    return np.log(run.late_max_x / run.early_max_x), np.log(size), run.outcome
-
-
-def _grows(candidates: Candidates) -> Margin:
-    growth, size, outcome = _growth_and_size(candidates, SCENES["F3"])
-    return Margin(np.minimum(growth - np.log(GROWTH_THRESHOLD), size), outcome)
-
-
-def _stays_bounded(candidates: Candidates) -> Margin:
-    growth, size, outcome = _growth_and_size(candidates, SCENES["F4"])
-    return Margin(np.minimum(np.log(GROWTH_THRESHOLD) - growth, -size), outcome)
-
-
+@constrains(
+    "F6d",
+    Stage.linear,
+    "A3 stable at (0.4π, 0.6π): undamped, μ sgn V < cot 0.4π and no flutter; margin det/(K11 k3), "
+    "or disc/(trace/2)² in flutter; damped, less the growth rate times √(m/k1)",
+)
 def _linearly_stable(candidates: Candidates) -> Margin:
     stiffness, _, invariants = candidates.linear(SCENES["F3"])
     fields = candidates.fields
@@ -128,6 +99,13 @@ def _linearly_stable(candidates: Candidates) -> Margin:
     return _closed(margin)
 
 
+@constrains(
+    "F13",
+    Stage.linear,
+    "isolated x mode first at (3π/4, 3π/4) and second at (5π/6, 5π/6); margin of K11 against "
+    "K22 + k3, over k1: 1 − κ at the latter; if coupled, −|K12|/k1 or, by unequal dashpots, "
+    "−|C12|/√(m k1)",
+)
 def _modes_switched(candidates: Candidates) -> Margin:
     fields = candidates.fields
     before = candidates.linear(SCENES["F12"]).stiffness
@@ -141,14 +119,98 @@ def _modes_switched(candidates: Candidates) -> Margin:
     return _closed(margin / fields["k1"])
 
 
-def _coupling_by_dashpots(fields: Mapping[str, np.ndarray]) -> np.ndarray:
-    """Largest |C12| √(k1/m) at the scenes of Figs. 12 and 13, N/m: as stiff as K12 at √(k1/m)."""
-    p = SimpleNamespace(**{"damping1": 0.0, "damping2": 0.0, **fields})
-    scenes = SCENES["F12"], SCENES["F13"]
-    c12 = [linear_damping(p, geometry(scene.alpha1, scene.alpha2)).k12 for scene in scenes]
-    return np.asarray(np.max(np.abs(c12), axis=0) * np.sqrt(p.k1 / p.mass))
+def _keeps_contact(name: str) -> Check:
+    return lambda candidates: candidates.contact[name]
 
 
+for _name in ("F2a", "F2b", "F2c"):
+    constrains(_name, Stage.contact, "contact is kept; margin lowest N/(k3 l_pre)")(
+        _keeps_contact(_name)
+    )
+
+
+@constrains(
+    "F2d",
+    Stage.contact,
+    "contact is lost; margin −lowest N/(k3 l_pre) if the contact spring could pull",
+)
+def _loses_contact(candidates: Candidates) -> Margin:
+    lowest = candidates.contact["F2d"]
+    return Margin(-lowest.margin, lowest.outcome)
+
+
+@constrains(
+    "F2e",
+    Stage.contact,
+    f"lowest N/(k3 l_pre) of F2a to F2c within {LITTLE}; margin {LITTLE} − spread",
+)
+def _alike(candidates: Candidates) -> Margin:
+    runs = [candidates.contact[name] for name in ("F2a", "F2b", "F2c")]
+    lowest = np.stack([np.maximum(run.margin, 0.0) for run in runs])
+    return Margin(LITTLE - np.ptp(lowest, axis=0), np.max([run.outcome for run in runs], axis=0))
+
+
+def _growth_and_size(candidates: Candidates, scene: Scene) -> tuple[Any, Any, np.ndarray]:
+    """ln of late over early |x| and of |x| over 2L, and how the runs ended."""
+    run = candidates.run(scene)
+    reach = 2.0 * np.maximum(candidates.fields["length1"], candidates.fields["length2"])
+    size = np.maximum(run.early_max_x, run.late_max_x) / reach
+    return np.log(run.late_max_x / run.early_max_x), np.log(size), run.outcome
+
+
+@constrains(
+    "F3",
+    Stage.growth,
+    f"|x| exceeds 2L and its second half is {GROWTH_THRESHOLD:g} times the first; "
+    f"margin min(ln(|x|/2L), ln(growth/{GROWTH_THRESHOLD:g}))",
+)
+def _grows(candidates: Candidates) -> Margin:
+    growth, size, outcome = _growth_and_size(candidates, SCENES["F3"])
+    return Margin(np.minimum(growth - np.log(GROWTH_THRESHOLD), size), outcome)
+
+
+@constrains(
+    "F4",
+    Stage.bound,
+    f"|x| stays below 2L and its second half below {GROWTH_THRESHOLD:g} times the first; "
+    f"margin min(ln(2L/|x|), ln({GROWTH_THRESHOLD:g}/growth))",
+)
+def _stays_bounded(candidates: Candidates) -> Margin:
+    growth, size, outcome = _growth_and_size(candidates, SCENES["F4"])
+    return Margin(np.minimum(np.log(GROWTH_THRESHOLD) - growth, -size), outcome)
+
+
+@constrains(
+    "F5a",
+    Stage.level,
+    f"peak force and time off the belt at (π, π) and (0, 0) differ by d < {SAMENESS}; "
+    f"margin ({SAMENESS} − d)/({SAMENESS} + d)",
+)
+def _same_levels(candidates: Candidates) -> Margin:
+    first, second = candidates.level, candidates.run(SCENES["F5b"])
+    force = np.abs(first.peak_contact_force - second.peak_contact_force)
+    share = np.abs(first.separated_time - second.separated_time) / first.time
+    difference = np.maximum(force, share)
+    margin = (SAMENESS - difference) / (SAMENESS + difference)
+    return Margin(margin, np.maximum(first.outcome, second.outcome))
+
+
+@constrains(
+    "F5b",
+    Stage.level,
+    f"at least {JUMPS} separations at (π, π); margin (separations − {JUMPS - 0.5})/{JUMPS}",
+)
+def _jumps(candidates: Candidates) -> Margin:
+    run = candidates.level
+    return Margin((run.separations - (JUMPS - 0.5)) / JUMPS, run.outcome)
+
+
+@constrains(
+    "F6b_printed",
+    Stage.maps,
+    "no unstable cell fulfils Eq. (11) taken literally, μ < K11/K12; margin 1, or −their share of "
+    "the unstable cells",
+)
 def _unstable_only_without_sliding(candidates: Candidates) -> Margin:
     shares = []
     for params, cells in zip(candidates.sets, candidates.unstable, strict=True):
@@ -158,123 +220,34 @@ def _unstable_only_without_sliding(candidates: Candidates) -> Margin:
     return _closed(-np.array(shares))
 
 
+@constrains(
+    "F7a", Stage.maps, "A1 separates in more than half of the angle map; margin share/½ − 1"
+)
 def _separates_mostly(candidates: Candidates) -> Margin:
     return _closed(2.0 * separating_share(candidates) - 1.0)
 
 
+@constrains(
+    "F7_black",
+    Stage.maps,
+    "A1 keeps contact in an unstable cell of A3, the black region; margin share of such cells "
+    "around the disc of flutter, 5 % inside, or −1",
+)
 def _unstable_in_contact(candidates: Candidates) -> Margin:
     share = keeping_share(candidates)
     return _closed(np.where(share > 0, share, -1.0))
 
 
+def _coupling_by_dashpots(fields: Mapping[str, np.ndarray]) -> np.ndarray:
+    """Largest |C12| √(k1/m) at the scenes of Figs. 12 and 13, N/m: as stiff as K12 at √(k1/m)."""
+    p = SimpleNamespace(**{"damping1": 0.0, "damping2": 0.0, **fields})
+    scenes = SCENES["F12"], SCENES["F13"]
+    c12 = [linear_damping(p, geometry(scene.alpha1, scene.alpha2)).k12 for scene in scenes]
+    return np.asarray(np.max(np.abs(c12), axis=0) * np.sqrt(p.k1 / p.mass))
+
+
 def _closed(margin: np.ndarray) -> Margin:
     return Margin(margin, np.full(np.shape(margin), int(Outcome.converged), np.int8))
-
-
-def _in_scene(
-    stage: Stage,
-    name: str,
-    criterion: str,
-    check: Callable[[Candidates], Margin],
-    scene: str = "",
-) -> Constraint:
-    horizon = SCENES[scene or name].t_end
-    return Constraint(name=name, criterion=criterion, stage=stage, horizon=horizon, check=check)
-
-
-CONSTRAINTS: tuple[Constraint, ...] = (
-    Constraint(
-        name="F6d",
-        criterion="A3 stable at (0.4π, 0.6π): undamped, μ sgn V < cot 0.4π and no flutter; margin "
-        "det/(K11 k3), or disc/(trace/2)² in flutter; damped, less the growth rate times √(m/k1)",
-        stage=Stage.linear,
-        horizon=np.nan,
-        check=_linearly_stable,
-    ),
-    Constraint(
-        name="F13",
-        criterion="isolated x mode first at (3π/4, 3π/4) and second at (5π/6, 5π/6); margin of "
-        "K11 against K22 + k3, over k1: 1 − κ at the latter; if coupled, −|K12|/k1 or, by unequal "
-        "dashpots, −|C12|/√(m k1)",
-        stage=Stage.linear,
-        horizon=np.nan,
-        check=_modes_switched,
-    ),
-    *(
-        _in_scene(
-            Stage.contact,
-            name,
-            "contact is kept; margin lowest N/(k3 l_pre)",
-            _keeps_contact(name),
-        )
-        for name in ("F2a", "F2b", "F2c")
-    ),
-    _in_scene(
-        Stage.contact,
-        "F2d",
-        "contact is lost; margin −lowest N/(k3 l_pre) if the contact spring could pull",
-        _loses_contact,
-    ),
-    _in_scene(
-        Stage.contact,
-        "F2e",
-        f"lowest N/(k3 l_pre) of F2a to F2c within {LITTLE}; margin {LITTLE} − spread",
-        _alike,
-        "F2a",
-    ),
-    _in_scene(
-        Stage.growth,
-        "F3",
-        f"|x| exceeds 2L and its second half is {GROWTH_THRESHOLD:g} times the first; "
-        f"margin min(ln(|x|/2L), ln(growth/{GROWTH_THRESHOLD:g}))",
-        _grows,
-    ),
-    _in_scene(
-        Stage.bound,
-        "F4",
-        f"|x| stays below 2L and its second half below {GROWTH_THRESHOLD:g} times the first; "
-        f"margin min(ln(2L/|x|), ln({GROWTH_THRESHOLD:g}/growth))",
-        _stays_bounded,
-    ),
-    _in_scene(
-        Stage.level,
-        "F5a",
-        f"peak force and time off the belt at (π, π) and (0, 0) differ by d < {SAMENESS}; "
-        f"margin ({SAMENESS} − d)/({SAMENESS} + d)",
-        _same_levels,
-    ),
-    _in_scene(
-        Stage.level,
-        "F5b",
-        f"at least {JUMPS} separations at (π, π); margin (separations − {JUMPS - 0.5})/{JUMPS}",
-        _jumps,
-        "F5a",
-    ),
-    Constraint(
-        name="F6b_printed",
-        criterion="no unstable cell fulfils Eq. (11) taken literally, μ < K11/K12; margin 1, or "
-        "−their share of the unstable cells",
-        stage=Stage.maps,
-        horizon=np.nan,
-        check=_unstable_only_without_sliding,
-    ),
-    Constraint(
-        name="F7a",
-        criterion="A1 separates in more than half of the angle map; margin share/½ − 1",
-        stage=Stage.maps,
-        horizon=HORIZON,
-        check=_separates_mostly,
-    ),
-    Constraint(
-        name="F7_black",
-        criterion="A1 keeps contact in an unstable cell of A3, the black region; margin share of "
-        "such cells around the disc of flutter, 5 % inside, or −1",
-        stage=Stage.maps,
-        horizon=HORIZON,
-        check=_unstable_in_contact,
-    ),
-)
-"""What the paper says of its figures, where it constrains the parameters."""
 
 
 def measure(candidates: Candidates, stages: Iterable[Stage] = Stage) -> dict[str, Margin]:

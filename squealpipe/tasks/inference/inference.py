@@ -19,10 +19,9 @@ from squealpipe.reading import READINGS, reading_of
 from squealpipe.schema import Outcome, build
 from squealpipe.schema.inference import PARAMETER_INFERENCE, Holds, wilson_interval
 from squealpipe.schema.origin import recorded
-from squealpipe.tasks.inference.candidates import Candidates
+from squealpipe.tasks.inference.candidates import Candidates, sets_of
 from squealpipe.tasks.inference.consequences import CONSEQUENCES, judge_consequences
 from squealpipe.tasks.inference.constraints import CONSTRAINTS, Stage, judge, measure
-from squealpipe.tasks.inference.simple_sets import rank_simple_sets, sets_of
 from squealpipe.validation import Natural, Number, Seed, Tolerance, Workers
 
 Range = Annotated[tuple[Number, Number], Strict(strict=False)]  # a list of a configuration too
@@ -63,9 +62,7 @@ def infer_parameters(
 
     Returns:
         Dataset over (sample, reading, statement), see the schema ``parameter_inference``; over
-        consequence, the shares of the feasible samples in which further statements hold; and over
-        ``simple``, the sets of simple numbers that meet all statements in the reading with the most
-        feasible samples, by falling smallest margin.
+        consequence, the shares of the feasible samples in which further statements hold.
 
     Raises:
         ValueError: an unknown reading; dashpots or a friction law that the paper does not have.
@@ -79,8 +76,6 @@ def infer_parameters(
     sets, own = sets_of(groups, tol=tol, workers=workers), Candidates.of(params, tol=tol)
     found = [_over_samples(sets.read(name)) for name in READINGS]
     joined: dict[str, Any] = {name: np.stack([each[name] for each in found]) for name in found[0]}
-    most = list(READINGS)[int(joined["feasible_count"].argmax())]
-    ranked = rank_simple_sets(ranges, most, tol=tol, workers=workers)
     for name in ("holds", "feasible", "outcome"):
         joined[name] = joined[name].swapaxes(0, 1)
     margins = [list(measure(own.read(name)).values()) for name in READINGS]
@@ -96,16 +91,12 @@ def infer_parameters(
             "baseline_reading": list(READINGS).index(reading),
             "baseline_margin": [[float(each.margin[0]) for each in row] for row in margins],
             "criterion": [constraint.criterion for constraint in CONSTRAINTS],
-            "horizon": [constraint.horizon for constraint in CONSTRAINTS],
-            "simple_reading": list(READINGS).index(most),
-            **{f"simple_{name}": values for name, values in ranked.items()},
         },
         {
             "sample": np.arange(samples),
             "reading": list(READINGS),
             "statement": [constraint.name for constraint in CONSTRAINTS],
             "consequence": list(CONSEQUENCES),
-            "simple": np.arange(1, len(ranked["mu"]) + 1),
         },
     )
 
@@ -116,7 +107,7 @@ def _over_samples(sets: Candidates) -> dict[str, Any]:
     shown = np.arange(0, sets.size, FULLY_JUDGED)
     _, holds[shown] = judge(sets.subset(shown), failures=1)
     met, failed = holds == Holds.yes, holds == Holds.no
-    feasible, judged = met.all(axis=1), holds != Holds.not_judged
+    feasible = met.all(axis=1)
     alone = failed & (met.sum(axis=1, keepdims=True) == len(CONSTRAINTS) - 1)
     on_maps = [constraint.stage == Stage.maps for constraint in CONSTRAINTS]
     consequences = judge_consequences(sets.subset(np.flatnonzero(feasible)))
@@ -136,7 +127,6 @@ def _over_samples(sets: Candidates) -> dict[str, Any]:
         "share": count / sets.size,
         "share_low": low,
         "share_high": high,
-        "judged": judged.sum(axis=0),
         "share_cut_alone": np.where(on_maps, alone.mean(axis=0), alone[shown].mean(axis=0)),
         "feasible_share": np.array(held) / count if count else np.full(len(held), np.nan),
         "feasible_share_low": intervals[:, 0],

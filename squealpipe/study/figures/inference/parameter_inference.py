@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, NullFormatter
 
 from squealpipe.plotting import style
-from squealpipe.schema.inference import of_study
+from squealpipe.schema.inference import in_words, of_study
 from squealpipe.text import number
 
 READS = ("parameter_inference",)
@@ -54,27 +54,21 @@ def draw(inference: xr.Dataset) -> Figure:
         if letter == "a":
             panel.axhline(1 / np.tan(0.4 * np.pi), color=style.GREY, ls="--", lw=0.8)
     upper.legend(*panel.get_legend_handles_labels(), loc="outside lower center", ncols=3)
-    shares, margins = lower.subplots(1, 2)
-    _bars(shares, inference)
-    lower.legend(*shares.get_legend_handles_labels(), loc="outside lower left", ncols=3)
-    style.panel_letter(shares, "d", "excluded by one statement alone")
-    names = inference.statement.values
+    shares, margins = lower.subplots(1, 2, sharey=True)
+    places = np.arange(inference.sizes["statement"])
+    for row, (label, colour, _) in enumerate(LOOKS):
+        alone = 100 * inference.share_cut_alone.values[row]
+        shares.barh(places + 0.27 * (row - 1), alone, color=colour, height=0.25, label=label)
+    shares.set_yticks(places, map(in_words, inference.statement.values))
+    shares.invert_yaxis()
+    shares.set(xlabel="share of the samples, %")
+    lower.legend(*shares.get_legend_handles_labels(), loc="outside lower center", ncols=3)
+    style.panel_letter(shares, "d", "excluded by one alone")
     values = np.maximum(of_study(inference).baseline_margin.values, -1.0)
-    colours = [style.GREEN if value > 0 else style.ORANGE for value in values]
-    margins.barh(names, values, color=colours, height=0.6)
+    bars = margins.barh(places, values, color=np.where(values > 0, style.GREEN, style.ORANGE))
+    margins.bar_label(bars, [number(value, 2) for value in values], padding=3, size=6)
     margins.axvline(0, color=style.BLACK, lw=0.6)
     margins.set(xlabel="margin at the study's parameters")
-    margins.invert_yaxis()
-    for name, value in zip(names, values, strict=True):
-        margins.annotate(
-            number(value, 2),
-            (max(value, 0.0), name),
-            (3, 0),
-            textcoords="offset points",
-            va="center",
-            size=6,
-        )
-    margins.set_xlim(right=1.12 * max(values.max(), 0.1))
     style.panel_letter(margins, "e", "margins of this study")
     return figure
 
@@ -86,27 +80,11 @@ def _scatter(
         one = inference.isel(reading=row)
         chosen = one.feasible.values == 1
         panel.plot(
-            one[x].values[chosen],
-            one[y].values[chosen],
-            marker,
-            ms=2.6,
-            mew=0.5,
-            mfc="none",
-            color=colour,
-            ls="none",
-            label=f"{label} ({int(one.feasible_count)})",
-        )
-    panel.plot(
-        abs(float(inference[f"baseline_{x}"])),
-        abs(float(inference[f"baseline_{y}"])),
-        "*",
-        ms=9,
-        mew=0.8,
-        mfc="white",
-        color=style.BLACK,
-        ls="none",
-        label="this study",
-    )
+            one[x].values[chosen], one[y].values[chosen], marker, ms=2.6, mew=0.5, mfc="none",
+            color=colour, label=f"{label} ({int(one.feasible_count)})",
+        )  # fmt: skip
+    own = [abs(float(inference[f"baseline_{name}"])) for name in (x, y)]
+    panel.plot(*own, "*", ms=9, mew=0.8, mfc="white", color=style.BLACK, label="this study")
     for name, axis, scale, limits in (
         (x, panel.xaxis, panel.set_xscale, panel.set_xlim),
         (y, panel.yaxis, panel.set_yscale, panel.set_ylim),
@@ -119,13 +97,3 @@ def _scatter(
         values = inference[name].values
         limits(values.min(), values.max())
     panel.set(xlabel=x_label, ylabel=y_label)
-
-
-def _bars(panel: Axes, inference: xr.Dataset) -> None:
-    places = np.arange(inference.sizes["statement"])
-    for row, (label, colour, _) in enumerate(LOOKS):
-        alone = 100 * inference.share_cut_alone.values[row]
-        panel.barh(places + 0.27 * (row - 1), alone, color=colour, height=0.25, label=label)
-    panel.set_yticks(places, inference.statement.values)
-    panel.invert_yaxis()
-    panel.set(xlabel="share of the samples, %")

@@ -7,25 +7,19 @@ import xarray as xr
 from matplotlib.colors import LinearSegmentedColormap
 from matplotlib.figure import Figure
 
-from squealpipe.plotting.style import BLACK, BLUE, GREY, PAGE, RED, new_figure
-from squealpipe.schema.inference import DAMPED_GRID
+from squealpipe.plotting.style import BLACK, BLUE, PAGE, RED, new_figure
+from squealpipe.schema.inference import DAMPED_GRID, in_words
 
 READS = ("verdict_reach",)
 CAPTION = (
     "The paper's statements in settings that it leaves out, by the criteria of the inference. "
     "Blue: the statement holds; red: it fails; numbers: share of random starts, or of the feasible "
     "parameters, in which it holds, with half of its 95 % interval; grey: not judged there. "
-    "Statements with a suffix are readings of the row of that id. With dashpots, or friction that "
-    "depends on speed, S3, F6b and F7† are judged in the unstable cells of a grid of "
-    f"{DAMPED_GRID} × {DAMPED_GRID} angles; F8c is of undamped frequencies."
+    "R is the reaction force. With dashpots, or friction that depends on speed, coupled modes and "
+    f"unstable cells are looked for on a grid of {DAMPED_GRID} × {DAMPED_GRID} angles; ω₁ is "
+    "without damping."
 )
 ALT = "A table of settings by statements, blue where a statement holds and red where it fails."
-WORDS = {
-    "F6b_printed": "F6b*",
-    "F7_black": "F7†",
-    "F8c_separated": "F8c‡",
-}
-NOTE = "* Eq. (11) as printed   † black region of Fig. 7   ‡ separated"
 
 
 def draw(reach: xr.Dataset) -> Figure:
@@ -35,7 +29,7 @@ def draw(reach: xr.Dataset) -> Figure:
         reach: dataset ``verdict_reach``.
     """
     share = reach.share.values
-    figure, axes = new_figure(PAGE, 0.24 * len(share) + 1.1)
+    figure, axes = new_figure(PAGE, 0.24 * len(share) + 2.2)
     panel = axes[0, 0]
     panel.set_facecolor("#E8E8E8")
     colours = LinearSegmentedColormap.from_list("verdict", [RED, "#FFFFFF", BLUE])
@@ -52,14 +46,13 @@ def draw(reach: xr.Dataset) -> Figure:
             column + 0.5, row + 0.5, text, ha="center", va="center", linespacing=0.9,
             fontsize=7 if single else 5, color="white" if dark else BLACK,
         )  # fmt: skip
-    names = [WORDS.get(name, name) for name in reach.statement.values.tolist()]
+    names = list(map(in_words, reach.statement.values.tolist()))
     rows = [name.replace("l_pre", r"$l_\mathrm{pre}$") for name in reach.variant.values.tolist()]
-    panel.set_xticks(np.arange(len(names)) + 0.5, names, rotation=45, ha="left")
+    panel.set_xticks(np.arange(len(names)) + 0.5, names, rotation=90)
     panel.set_yticks(np.arange(len(share)) + 0.5, rows)
     panel.xaxis.tick_top()
     panel.invert_yaxis()
     panel.tick_params(length=0)
-    panel.set_xlabel(NOTE, color=GREY, fontsize=7)
     for side in panel.spines.values():
         side.set_visible(False)
     return figure
