@@ -1,7 +1,5 @@
 """The study's parameters by their rule: the simple numbers whose smallest margin is the largest."""
 
-from __future__ import annotations
-
 from itertools import product
 
 import numpy as np
@@ -22,7 +20,7 @@ SIMPLE = {
 
 
 @pytest.mark.release
-def test_no_set_of_simple_numbers_has_a_larger_smallest_margin() -> None:
+def test_no_set_of_simple_numbers_has_a_larger_smallest_margin():
     """Of sets that differ after six digits the fastest belt wins: A3 takes ẋ < V for granted."""
     groups = dict(zip(SIMPLE, np.array(list(product(*SIMPLE.values()))).T, strict=True))
     margin, holds = judge(sets_of(groups, tol=1e-9, workers=None).read("as_printed"))
