@@ -187,7 +187,7 @@ def test_events_of_random_systems_are_those_of_dop853():
 @pytest.mark.release
 @pytest.mark.parametrize("seed", range(6, 60))
 def test_events_of_sixty_random_systems_are_those_of_dop853(seed):
-    hold_against_dop853(seed, draws=4)
+    hold_against_dop853(seed, draws=35)
 
 
 def hold_against_dop853(seed, draws):
@@ -205,15 +205,16 @@ def hold_against_dop853(seed, draws):
         if growth > np.log(1e6):
             continue  # chaotic: the lists need not agree to the end
         accumulates = int(run.outcome) == Outcome.accumulation
-        # DOP853 sees two crossings in one of its steps as none
-        for max_step in (0.2, 0.01, 0.001):
+        # DOP853 sees two crossings in one of its steps as none, or as one at its start
+        for max_step in (0.2, 0.01, 0.001, 1e-4):
             events, z = independent_run(system, start, given, max_step)
             if accumulates:  # where it falls through the surface
                 events = [event for event in events if event[0] < float(run.end_time) - 1e-8]
-            if mine[: len(events)] == [kind for _, kind in events]:
+            ends = accumulates or len(events) == MOST_EVENTS
+            if mine[: len(events) if ends else None] == [kind for _, kind in events]:
                 break
         if accumulates:
-            assert len(events) > 5
+            assert len(events) > 2
         elif len(events) < MOST_EVENTS:
             assert len(mine) == len(events)
         assert mine[: len(events)] == [kind for _, kind in events]
