@@ -25,7 +25,10 @@ from squealpipe.plotting.style import (
 from squealpipe.schema import labels, meanings
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     import xarray as xr
+    from matplotlib.artist import Artist
     from matplotlib.axes import Axes
 
 MARKS = {
@@ -120,42 +123,49 @@ def draw_branch(axes: Axes, branch: xr.Dataset) -> None:
     if say_why_empty(axes, branch):
         return
     followed = branch[branch.attrs["parameter"]]
-    handles = [
-        axes.plot([], [], color=BLUE, label="stable")[0],
-        axes.plot([], [], color=ORANGE, linestyle="--", label="unstable")[0],
-    ]
     state = next(name for name in map(str, branch.data_vars) if name.endswith("_max"))[:-4]
-    low, high = branch[f"{state}_min"], branch[f"{state}_max"]
-    size = np.maximum(np.abs(low.values), np.abs(high.values))
-    for marker, colour, words in trace_branch(axes, followed.values, size, branch):
-        handles += axes.plot([], [], marker, color=colour, markersize=4, label=words)
-    axes.set(xlabel=label(followed).replace(ALONG, ""), ylabel=f"largest |{state}| ({low.units})")
-    axes.legend(handles=handles)
+    trace_branch(axes, followed.values, largest(branch, state), branch)
+    units = branch[f"{state}_max"].units
+    axes.set(xlabel=label(followed).replace(ALONG, ""), ylabel=f"largest |{state}| ({units})")
+    handles, words = key_entries([axes])
+    axes.legend(handles, words)
 
 
-def trace_branch(
-    axes: Axes, parameters: np.ndarray, sizes: np.ndarray, branch: xr.Dataset
-) -> list[tuple[str, str, str]]:
-    """Draw one branch as lines of two looks; returns the marks that it has."""
+def largest(branch: xr.Dataset, state: str) -> np.ndarray:
+    """Largest absolute value of a state along each cycle."""
+    ends = [np.abs(branch[f"{state}_{end}"].values) for end in ("min", "max")]
+    return np.asarray(np.maximum(*ends))
+
+
+def trace_branch(axes: Axes, parameters: np.ndarray, sizes: np.ndarray, branch: xr.Dataset) -> None:
+    """Draw one branch as lines of two looks, with its special points, all with labels."""
     if branch.sizes["point"] < 2:
-        return []
+        return
     stable = branch.stable.values.astype(bool)
     # the line between two points is unstable if either is
     steady = stable[:-1] & stable[1:]
     ends = np.flatnonzero(np.diff(steady)) + 1
     for piece in np.split(np.arange(len(steady)), ends):
-        colour, dash = (BLUE, "-") if steady[piece[0]] else (ORANGE, "--")
+        colour, dash, words = (
+            (BLUE, "-", "stable") if steady[piece[0]] else (ORANGE, "--", "unstable")
+        )
         points = slice(piece[0], piece[-1] + 2)
-        axes.plot(parameters[points], sizes[points], dash, color=colour, linewidth=1.2)
-    found = []
+        axes.plot(parameters[points], sizes[points], dash, color=colour, lw=1.2, label=words)
     for value, name in meanings(branch.label).items():
         points = branch.label.values == value
         if name in MARKS and points.any():
-            marker, colour, _ = MARKS[name]
+            marker, colour, words = MARKS[name]
             here = parameters[points], sizes[points]
-            axes.plot(*here, marker, color=colour, markersize=4, zorder=4)
-            found.append(MARKS[name])
-    return found
+            axes.plot(*here, marker, color=colour, markersize=4, zorder=4, label=words)
+
+
+def key_entries(panels: Iterable[Axes]) -> tuple[list[Artist], list[str]]:
+    """Each label once, over all panels."""
+    found: dict[str, Artist] = {}
+    for panel in panels:
+        for handle, words in zip(*panel.get_legend_handles_labels(), strict=True):
+            found.setdefault(words, handle)
+    return list(found.values()), list(found)
 
 
 def joined(chosen: np.ndarray) -> np.ndarray:

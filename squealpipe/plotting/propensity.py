@@ -17,6 +17,7 @@ from squealpipe.plotting.style import (
     flag_words,
     new_figure,
     panel_letter,
+    say_instead,
 )
 from squealpipe.schema.propensity import WIDEST
 
@@ -45,9 +46,7 @@ def figure(spread: xr.Dataset) -> Figure:
     for row, colour in zip(spread.share_by_size.values, COLOURS, strict=False):
         sizes.plot(spread["size"], row, ".-", color=colour)
     sizes.set(xlabel="sample size", xscale="log", ylim=(0, 1.02), ylabel="share")
-    ends = spread["size"].values[[0, -1]]
-    sizes.set_xticks(ends, [f"{end}" for end in ends])
-    sizes.minorticks_off()
+    _ends(sizes, spread["size"].values)
     inputs = [SYMBOLS.get(name, name) for name in spread.input.values.tolist()]
     shown = [i for i in range(len(names)) if np.isfinite(spread.total_order.values[i]).all()]
     width = 0.8 / max(len(shown), 1)
@@ -65,7 +64,7 @@ def figure(spread: xr.Dataset) -> Figure:
     if shown:
         indices.legend()
     else:
-        indices.text(0.5, 0.5, "none supported", transform=indices.transAxes, ha="center")
+        say_instead(indices, "none supported")
     for row, colour in zip(spread.half_width_by_size, COLOURS, strict=False):
         if np.isfinite(row).any():
             base = spread.index_samples.sel(quantity=row.quantity)
@@ -76,15 +75,22 @@ def figure(spread: xr.Dataset) -> Figure:
         xlabel="base sample", xscale="log", ylabel="half-width of total index", ylim=(0, None)
     )
     if not np.isfinite(spread.half_width_by_size).any():
-        widths.text(
-            0.5, 0.5, "too few of the sample differ", transform=widths.transAxes, ha="center"
-        )
-        widths.set_xticks([], minor=True)
-        widths.set_xticks([])
+        say_instead(widths, "too few of the sample differ")
+        widths.minorticks_off()
+    else:
+        known = np.isfinite(spread.half_width_by_size)
+        _ends(widths, spread.index_samples.where(known).values)
     titles = ("propensity", "convergence of shares", "sensitivity", "convergence of indices")
     for letter, panel, title in zip("abcd", axes.ravel(), titles, strict=True):
         panel_letter(panel, letter, title)
     return drawn
+
+
+def _ends(axes: Axes, numbers: np.ndarray) -> None:
+    """The smallest and the largest number as the labels of a logarithmic axis."""
+    ends = [int(np.nanmin(numbers)), int(np.nanmax(numbers))]
+    axes.set_xticks(ends, map(str, ends))
+    axes.minorticks_off()
 
 
 def draw_shares(axes: Axes, spread: xr.Dataset) -> None:

@@ -10,14 +10,16 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.colors import BoundaryNorm, ListedColormap
 from matplotlib.figure import Figure
+from matplotlib.patches import Patch
 from matplotlib.ticker import ScalarFormatter
 
 from squealpipe.store.whole_files import whole_file
 from squealpipe.text import as_people_write
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterable, Sequence
 
+    import xarray as xr
     from matplotlib.axes import Axes
 
 COLUMN = 3.5
@@ -44,6 +46,7 @@ SMALL = 1e-3
 
 WHITE, LIGHT, BLACK = "#FFFFFF", "#BDBDBD", "#1A1A1A"
 """The paper's three tones."""
+HATCH = "//////"
 
 REGIME_COLOURS = {
     "slip_slower": BLUE,
@@ -144,22 +147,27 @@ def angle_map_axes(axes: Axes, upper: float = np.pi) -> None:
         axes.spines[side].set_visible(True)
 
 
-def draw_map(
-    axes: Axes, alpha1: np.ndarray, alpha2: np.ndarray, values: np.ndarray, **kwargs: object
-) -> Any:
-    """``pcolormesh`` of values over (alpha1, alpha2): α1 on x, α2 on y; rasterized in SVG."""
-    mesh = axes.pcolormesh(
-        alpha1,
-        alpha2,
-        np.asarray(values).T,
-        shading="nearest",
-        rasterized=True,
-        **kwargs,  # type: ignore[arg-type]
-    )
-    angle_map_axes(axes, float(alpha1[-1]))
-    axes.set_xlim(alpha1[0], alpha1[-1])
-    axes.set_ylim(alpha2[0], alpha2[-1])
+def draw_map(axes: Axes, dataset: xr.Dataset, values: Any, **kwargs: Any) -> Any:
+    """``pcolormesh`` of values over the dataset's angles: α1 on x, α2 on y; rasterized in SVG."""
+    x, y = dataset.alpha1.values, dataset.alpha2.values
+    mesh = axes.pcolormesh(x, y, np.asarray(values).T, shading="nearest", rasterized=True, **kwargs)
+    angle_map_axes(axes, float(x[-1]))
+    axes.set(xlim=(x[0], x[-1]), ylim=(y[0], y[-1]))
     return mesh
+
+
+def hatch(axes: Axes, dataset: xr.Dataset, mask: np.ndarray) -> None:
+    """Hatch cells (alpha1, alpha2) of a map, which can be told in greyscale too."""
+    if mask.any():
+        angles = dataset.alpha1.values, dataset.alpha2.values
+        cells = mask.T.astype(float)
+        axes.contourf(*angles, cells, levels=[0.5, 1.5], colors="none", hatches=[HATCH])
+
+
+def patches(tones: Iterable[tuple[Any, str]], **look: Any) -> list[Patch]:
+    """Entries of a legend: colour and words."""
+    look = {"edgecolor": BLACK, "linewidth": 0.5, **look}
+    return [Patch(facecolor=colour, label=words, **look) for colour, words in tones]
 
 
 def category_colours(colours: Sequence[Any]) -> dict[str, Any]:

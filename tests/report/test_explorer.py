@@ -196,9 +196,10 @@ class TestInBrowser:
             pen.drawImage(image, 0, 0);
             return Array.from(pen.getImageData(0, 0, image.width, image.height).data); })()"""
         )
-        seen = np.array(pixels).reshape(*layer.values.T.shape, 4)[::-1, :, :3]
+        seen = np.array(pixels).reshape(*layer.map.values.T.shape, 4)[::-1, :, :3]
         wanted = [
-            [list(bytes.fromhex(layer.colours[code][1:])) for code in row] for row in layer.values.T
+            [list(bytes.fromhex(layer.colours[code][1:])) for code in row]
+            for row in layer.map.values.T
         ]
         np.testing.assert_array_equal(seen, wanted)
 

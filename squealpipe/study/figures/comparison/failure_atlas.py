@@ -6,7 +6,6 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.patches import Patch
 
 from squealpipe.plotting import style
 from squealpipe.plotting.style import PAGE, new_figure, panel_letter
@@ -45,10 +44,8 @@ def draw(benchmark: xr.Dataset, atlas: xr.Dataset) -> Figure:
         axes[:, 0], "ab", ("integrators with events", "frequencies and stability"), strict=True
     ):
         panel_letter(panel, letter, title)
-    keys = [
-        Patch(facecolor=_COLOURS[verdict], alpha=0.75, label=f"{sign} {_WORDS[verdict]}")
-        for verdict, sign in _SIGNS.items()
-    ]
+    tones = [(_COLOURS[verdict], f"{sign} {_WORDS[verdict]}") for verdict, sign in _SIGNS.items()]
+    keys = style.patches(tones, alpha=0.75, edgecolor="none")
     figure.legend(handles=keys, loc="outside upper right", ncols=3)
     return figure
 

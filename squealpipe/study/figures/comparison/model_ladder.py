@@ -5,7 +5,6 @@ from __future__ import annotations
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.patches import Patch
 
 from squealpipe.plotting import style
 from squealpipe.schema.ladder import Level
@@ -49,16 +48,13 @@ def draw(ladder: xr.Dataset) -> Figure:
         panel = axes[letter]
         levels = ladder.cheapest.sel(question=question).values
         present |= set(levels.ravel().tolist())
-        style.draw_map(panel, ladder.alpha1.values, ladder.alpha2.values, levels, **colours)
+        style.draw_map(panel, ladder, levels, **colours)
         style.panel_letter(panel, letter, QUESTION_NAMES[question])
     _draw_cost(axes["e"], ladder)
     style.panel_letter(axes["e"], "e", "cost of choosing")
-    patches = [
-        Patch(facecolor=colour_of(level), edgecolor=style.GREY, lw=0.5, label=level.label)
-        for level in Level
-        if level in present
-    ]
-    figure.legend(handles=patches, loc="outside upper center", ncols=min(len(patches), 4))
+    tones = [(colour_of(level), level.label) for level in Level if level in present]
+    keys = style.patches(tones)
+    figure.legend(handles=keys, loc="outside upper center", ncols=min(len(keys), 4))
     foot(figure, ladder)
     return figure
 

@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from squealpipe.plotting import style
-from squealpipe.plotting.cycles import trace_branch
+from squealpipe.plotting.cycles import key_entries, largest, trace_branch
 from squealpipe.plotting.origin import angle_pair, parameter, scene_title
 
 READS = (
@@ -22,9 +22,9 @@ READS = (
 CAPTION = (
     "Limit cycles of the full model with dashpots over the friction coefficient: largest |x| of "
     "the cycle, one panel for each spring arrangement in which cycles or different ends of long "
-    "runs were found. Full blue lines: stable; dashed orange: unstable; marks: located special "
-    "points. Grey dots: largest |x| in the last fifth of long runs from starts near and far, "
-    "cycles and states of rest alike."
+    "runs were found. Full blue lines: stable; dashed orange: unstable, if there are any; marks: "
+    "located special points. Grey dots: largest |x| in the last fifth of long runs from starts "
+    "near and far, cycles and states of rest alike."
 )
 ALT = (
     "Charts of largest |x| over friction. Lines, if any, show branches of cycles with marks at "
@@ -55,25 +55,19 @@ def draw(down: xr.Dataset, up: xr.Dataset, flutter: xr.Dataset, extremes: xr.Dat
         if np.ptp(sizes[name]) > AT_REST or any(branch.sizes["point"] for branch in branches)
     ] or ["F3"]
     figure, axes = style.new_figure(style.PAGE, 3.1, ncols=len(moving))
-    shown: list[tuple[str, str, str]] = []
     for letter, panel, name in zip("abc", axes[0], moving, strict=False):
         title, branches = panels[name]
         friction = np.broadcast_to(extremes.mu.values[:, None], sizes[name].shape)
-        panel.plot(friction, sizes[name], ".", color=style.GREY, markersize=2.5, zorder=1)
+        runs = panel.plot(friction, sizes[name], ".", color=style.GREY, markersize=2.5, zorder=1)
+        runs[0].set_label("long runs")
         for branch in branches:
-            shown += _branch(panel, branch, unit)
+            trace_branch(panel, branch.mu.values, largest(branch, "x") / unit, branch)
         _enlarge(panel, branches, unit)
         panel.set(xlabel="μ", ylim=(0, None))
         style.panel_letter(panel, letter, title)
     axes[0, 0].set_ylabel(r"largest |x| / $l_\mathrm{pre}$")
-    handles = [
-        axes[0, 0].plot([], [], color=style.BLUE, label="stable cycle")[0],
-        axes[0, 0].plot([], [], color=style.ORANGE, linestyle="--", label="unstable cycle")[0],
-        axes[0, 0].plot([], [], ".", color=style.GREY, label="long runs")[0],
-    ]
-    for marker, colour, words in dict.fromkeys(shown):
-        handles += axes[0, 0].plot([], [], marker, color=colour, markersize=4, label=words)
-    figure.legend(handles=handles, loc="outside lower center", ncols=min(len(handles), 4))
+    handles, words = key_entries(axes[0])
+    figure.legend(handles, words, loc="outside lower center", ncols=4)
     return figure
 
 
@@ -87,16 +81,10 @@ def _flutter_title(branch: xr.Dataset) -> str:
 def _enlarge(panel: Axes, branches: tuple[xr.Dataset, ...], unit: float) -> None:
     """An inset of branches that would lie on the axis."""
     drawn = [branch for branch in branches if branch.sizes["point"] > 1]
-    largest = max((float(np.abs(branch.x_max).max()) / unit for branch in drawn), default=0.0)
-    if not 0.0 < largest < 0.1 * panel.get_ylim()[1]:
+    top = max((float(np.abs(branch.x_max).max()) / unit for branch in drawn), default=0.0)
+    if not 0.0 < top < 0.1 * panel.get_ylim()[1]:
         return
     inset = panel.inset_axes((0.12, 0.62, 0.45, 0.34))
     for branch in drawn:
-        _branch(inset, branch, unit)
+        trace_branch(inset, branch.mu.values, largest(branch, "x") / unit, branch)
     inset.tick_params(labelsize=5)
-
-
-def _branch(panel: Axes, branch: xr.Dataset, unit: float) -> list[tuple[str, str, str]]:
-    """Draw one branch over friction, with sizes over a unit; returns the marks that it has."""
-    size = np.maximum(np.abs(branch.x_min), np.abs(branch.x_max)).values / unit
-    return trace_branch(panel, branch.mu.values, size, branch)

@@ -6,9 +6,8 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from squealpipe.plotting import style
-from squealpipe.plotting.cycles import draw_regimes
+from squealpipe.plotting.cycles import draw_regimes, key_entries
 from squealpipe.plotting.origin import parameter
-from squealpipe.study.figures.parts.backbone_panels import key_entries
 
 READS = ("cycles/limit_F3",)
 CAPTION = (

@@ -6,7 +6,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from squealpipe.plotting import style
-from squealpipe.plotting.cycles import trace_branch
+from squealpipe.plotting.cycles import key_entries, trace_branch
 
 READS = ("impact_branch",)
 CAPTION = (
@@ -29,13 +29,7 @@ def draw(branch: xr.Dataset) -> Figure:
     """
     figure, axes = style.new_figure(style.COLUMN, 3.0)
     panel = axes[0, 0]
-    marks = trace_branch(panel, branch.omega.values, -branch.x_min.values, branch)
-    handles = [
-        panel.plot([], [], color=style.BLUE, label="stable")[0],
-        panel.plot([], [], color=style.ORANGE, linestyle="--", label="unstable")[0],
-    ]
-    for marker, colour, words in marks:
-        handles += panel.plot([], [], marker, color=colour, markersize=4, label=words)
+    trace_branch(panel, branch.omega.values, -branch.x_min.values, branch)
     panel.set(xlabel="ω (rad/s)", ylabel="−min x (m)", ylim=(0, None))
-    figure.legend(handles=handles, loc="outside lower center", ncols=3)
+    figure.legend(*key_entries([panel]), loc="outside lower center", ncols=3)
     return figure

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from typing import Any
 
-import numpy as np
 import xarray as xr
 from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
+from matplotlib.patheffects import withStroke
 
-from squealpipe.parameters import SCENES
 from squealpipe.plotting import plot, style
+from squealpipe.study.figures.linear.linear_overlay import mark_scene
 from squealpipe.text import number
 
 READS = ("hammering_map",)
@@ -35,30 +35,24 @@ def draw(hammering: xr.Dataset) -> Figure:
         hammering: dataset ``hammering_map``.
     """
     figure, axes = style.new_figure(style.PAGE, 6.2, nrows=2, ncols=2)
-    angles = hammering.alpha1.values, hammering.alpha2.values
     plot(hammering, ax=axes[0, 0])
     style.panel_letter(axes[0, 0], "a", f"motion to t = {number(float(hammering.t_end), 4)} s")
-    force = hammering.peak_contact_force.values
-    quantities: list[tuple[str, str, np.ndarray, dict[str, Any]]] = [
-        ("b", "impacts per time (1/s)", hammering.impact_rate.values, {}),
-        ("c", "share of time separated", hammering.separated_fraction.values, {"vmin": 0}),
-        (
-            "d",
-            r"peak force over $k_3 l_\mathrm{pre}$",
-            force,
-            {"norm": LogNorm(1.0, max(2.0, force.max()))},
-        ),
+    force = hammering.peak_contact_force
+    scale = {"norm": LogNorm(1.0, max(2.0, float(force.max())))}
+    quantities: list[tuple[str, str, xr.DataArray, dict[str, Any]]] = [
+        ("b", "impacts per time (1/s)", hammering.impact_rate, {}),
+        ("c", "share of time separated", hammering.separated_fraction, {"vmin": 0}),
+        ("d", r"peak force over $k_3 l_\mathrm{pre}$", force, scale),
     ]
     for panel, (letter, title, values, scale) in zip(axes.flat[1:], quantities, strict=True):
-        mesh = style.draw_map(panel, *angles, values, cmap="viridis", **scale)
+        mesh = style.draw_map(panel, hammering, values, cmap="viridis", **scale)
         bar = figure.colorbar(mesh, ax=panel, shrink=0.85)
         if letter == "d":
             ticks = [tick for tick in FORCE_TICKS if tick <= mesh.norm.vmax]
             bar.set_ticks(ticks, labels=[f"{tick:g}" for tick in ticks], minor=False)
             bar.minorticks_off()
         style.panel_letter(panel, letter, title)
-    scene = SCENES["F3"]
+    halo = [withStroke(linewidth=3.2, foreground="white")]
     for panel in axes.flat:
-        for colour, width in (("white", 3.2), (style.BLACK, 1.6)):
-            panel.plot(scene.alpha1, scene.alpha2, "x", color=colour, ms=7, mew=width)
+        mark_scene(panel, "F3", style.BLACK, path_effects=halo)
     return figure

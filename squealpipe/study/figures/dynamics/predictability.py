@@ -36,37 +36,22 @@ def draw(hammering: xr.Dataset) -> Figure:
     horizon = hammering.predictability_horizon.values
     shown = np.where(horizon < t_end, horizon, np.nan)
     low = np.nanmin(shown) if np.isfinite(shown).any() else 0.1 * t_end
-    mesh = style.draw_map(
-        axes[0, 0],
-        hammering.alpha1.values,
-        hammering.alpha2.values,
-        shown,
-        cmap="viridis_r",
-        vmin=low,
-        vmax=t_end,
-    )
+    mesh = style.draw_map(axes[0, 0], hammering, shown, cmap="viridis_r", vmin=low, vmax=t_end)
     figure.colorbar(mesh, ax=axes[0, 0], label="predictability horizon (s)", shrink=0.85)
     style.panel_letter(
         axes[0, 0], "a", f"reached in {np.count_nonzero(horizon < t_end)} of {horizon.size}"
     )
     growth = hammering.lyapunov_exponent.values * t_end
     names = meanings(hammering.motion)
-    present = [k for k in names if np.any(hammering.motion.values == k)]
     panel = axes[0, 1]
-    for code in present:
+    for code in np.unique(hammering.motion.values).tolist():
         chosen = growth[hammering.motion.values == code]
         label = f"{style.flag_words(names[code])} ({chosen.size})"
         panel.ecdf(chosen, color=style.REGIME_COLOURS[names[code]], label=label)
-    panel.axvline(
-        float(hammering.attrs["regular_growth"]),
-        color=style.GREY,
-        linestyle="--",
-        linewidth=1.0,
-        label="square of time",
-    )
-    panel.set(
-        xlabel=f"ln of the growth over t = {number(t_end, 4)} s", ylabel="share of the cells below"
-    )
+    regular = float(hammering.attrs["regular_growth"])
+    panel.axvline(regular, color=style.GREY, ls="--", label="square of time")
+    panel.set_xlabel(f"ln of the growth over t = {number(t_end, 4)} s")
+    panel.set_ylabel("share of the cells below")
     figure.legend(loc="outside lower right", ncols=3)
     style.panel_letter(panel, "b", "growth of a perturbation")
     return figure

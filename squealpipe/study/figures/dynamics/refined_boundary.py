@@ -6,7 +6,8 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.patches import Patch, Rectangle
+from matplotlib.patches import Rectangle
+from scipy.ndimage import uniform_filter
 
 from squealpipe.plotting import style
 
@@ -19,6 +20,12 @@ CAPTION = (
     "that were run in colour; above it how many of a random sample of the others were wrong."
 )
 ALT = "A map of kept contact with the cells that were run in colour, and a magnified part of it."
+TONES = {
+    style.WHITE: "contact lost",
+    style.LIGHT: "contact kept",
+    style.ORANGE: "lost, run",
+    style.BLUE: "kept, run",
+}
 WINDOW = 0.12
 """Side of the window of panel (b) over that of the map."""
 
@@ -28,20 +35,10 @@ def draw(refined: xr.Dataset) -> Figure:
     figure, axes = style.new_figure(style.PAGE, 3.9, ncols=2)
     _map(axes[0, 0], refined.assign(computed=_clustered(refined.computed)))
     window = _intricate(refined)
-    axes[0, 0].add_patch(
-        Rectangle(
-            (window[0], window[2]),
-            window[1] - window[0],
-            window[3] - window[2],
-            fill=False,
-            edgecolor=style.RED,
-            linewidth=1.2,
-        )
-    )
-    size = refined.alpha1.size
-    style.panel_letter(
-        axes[0, 0], "a", f"{size} × {size}, {100 * float(refined.computed.mean()):.1f} % run"
-    )
+    corner, sides = window[::2], (window[1] - window[0], window[3] - window[2])
+    axes[0, 0].add_patch(Rectangle(corner, *sides, fill=False, edgecolor=style.RED, linewidth=1.2))
+    size, run = refined.alpha1.size, 100 * float(refined.computed.mean())
+    style.panel_letter(axes[0, 0], "a", f"{size} × {size}, {run:.1f} % run")
     part = refined.sel(alpha1=slice(*window[:2]), alpha2=slice(*window[2:]))
     _map(axes[0, 1], part)
     for axis in (axes[0, 1].xaxis, axes[0, 1].yaxis):
@@ -49,16 +46,8 @@ def draw(refined: xr.Dataset) -> Figure:
     axes[0, 1].set(xlim=window[:2], ylim=window[2:])
     wrong, checked = int(refined.inherited_wrong), int(refined.inherited_checked)
     style.panel_letter(axes[0, 1], "b", f"magnified; {wrong} of {checked} others wrong")
-    figure.legend(
-        handles=[
-            Patch(facecolor=style.LIGHT, label="contact kept"),
-            Patch(facecolor=style.BLUE, label="kept, run"),
-            Patch(facecolor=style.WHITE, edgecolor=style.LIGHT, label="contact lost"),
-            Patch(facecolor=style.ORANGE, label="lost, run"),
-        ],
-        loc="outside lower center",
-        ncols=4,
-    )
+    key = style.patches(TONES.items())
+    figure.legend(handles=key, loc="outside lower center", ncols=4)
     return figure
 
 
@@ -82,24 +71,10 @@ def _intricate(refined: xr.Dataset) -> tuple[float, float, float, float]:
 def _clustered(computed: xr.DataArray) -> xr.DataArray:
     """Cells that were run beside another one: the lone points of the coarse grid make moiré."""
     ran = computed.values.astype(bool)
-    around = np.pad(ran.astype(int), 1)
-    rows, columns = ran.shape
-    count = sum(
-        around[i : i + rows, j : j + columns]
-        for i in range(3)
-        for j in range(3)
-        if (i, j) != (1, 1)
-    )
-    return computed.copy(data=ran & (count > 0))
+    return computed.copy(data=ran & (uniform_filter(9.0 * ran, 3, mode="constant") > 1.5))
 
 
 def _map(axes: Axes, refined: xr.Dataset) -> None:
     kept = refined.separates.values == 0
     tones = np.where(kept, 1, 0) + 2 * (refined.computed.values != 0)
-    style.draw_map(
-        axes,
-        refined.alpha1.values,
-        refined.alpha2.values,
-        tones,
-        **style.category_colours([style.WHITE, style.LIGHT, style.ORANGE, style.BLUE]),
-    )
+    style.draw_map(axes, refined, tones, **style.category_colours([*TONES]))

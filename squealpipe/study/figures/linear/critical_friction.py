@@ -48,10 +48,9 @@ def draw(angles: xr.Dataset, dashpots: xr.Dataset) -> Figure:
     """
     figure, axes = style.new_figure(style.PAGE, 2.4, ncols=3)
     without, change, plane = axes[0]
-    grid = angles.alpha1.values, angles.alpha2.values
     undamped, damped = angles.critical_mu_undamped.values, angles.critical_mu.values
     mesh = style.draw_map(
-        without, *grid, np.minimum(undamped, 2 * LARGEST), cmap="viridis", vmin=0.0, vmax=LARGEST
+        without, angles, np.minimum(undamped, 2 * LARGEST), cmap="viridis", vmin=0.0, vmax=LARGEST
     )
     figure.colorbar(mesh, ax=without, label="critical μ", extend="max", shrink=0.75)
     shown = np.fmin(undamped, damped) < LARGEST
@@ -59,7 +58,7 @@ def draw(angles: xr.Dataset, dashpots: xr.Dataset) -> Figure:
     limit = float(np.percentile(abs(moved[shown]), 95)) if shown.any() else 0.0
     change.set_facecolor(style.LIGHT)
     mesh = style.draw_map(
-        change, *grid, np.where(shown, moved, np.nan), cmap="RdBu", vmin=-limit or -1.0,
+        change, angles, np.where(shown, moved, np.nan), cmap="RdBu", vmin=-limit or -1.0,
         vmax=limit or 1.0,
     )  # fmt: skip
     change.set_ylabel("")

@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
-from matplotlib.patches import Patch
 
 from squealpipe.parameters import direction_of
 from squealpipe.plotting import style
@@ -20,6 +19,11 @@ CAPTION_ALONG_X = (
     "Eq. (11) as printed, μ < K₁₁/K₁₂, and (b) by the sign of the reaction force, μK₁₂ < K₁₁. "
     "Lines are the exact boundaries; the cross is the configuration of Fig. 3."
 )
+TONES = {
+    style.WHITE: "sliding possible",
+    style.LIGHT: "sliding not possible",
+    style.BLACK: "linearly unstable",
+}
 ALT = (
     "Two square maps over both spring angles in white, grey and black with boundary curves, one "
     "map for each reading of Eq. (11)."
@@ -55,24 +59,12 @@ def draw(stability: xr.Dataset, quasi_static: xr.Dataset, boundaries: xr.Dataset
     for panel, letter, (title, possible, extra) in zip(axes[0], "ab", readings, strict=True):
         tones = np.where(possible.values, 0, 1)
         tones[stability.regime_linear.values > 0] = 2
-        style.draw_map(
-            panel,
-            stability.alpha1.values,
-            stability.alpha2.values,
-            tones,
-            **style.category_colours([style.WHITE, style.LIGHT, style.BLACK]),
-        )
+        style.draw_map(panel, stability, tones, **style.category_colours([*TONES]))
         curves = [Boundary.flutter, Boundary.divergence, Boundary.reaction_changes_sign]
         draw_boundaries(panel, boundaries, curves if extra is None else [*curves, extra])
         mark_scene(panel, "F3")
         style.panel_letter(panel, letter, title)
-    patches = [
-        Patch(
-            facecolor=style.WHITE, edgecolor=style.BLACK, linewidth=0.6, label="sliding possible"
-        ),
-        Patch(facecolor=style.LIGHT, label="sliding not possible"),
-        Patch(facecolor=style.BLACK, label="linearly unstable"),
-    ]
     lines = axes[0, 0].get_legend_handles_labels()[0]
-    figure.legend(handles=[*patches, *lines], loc="outside lower center", ncols=4)
+    keys = [*style.patches(TONES.items()), *lines]
+    figure.legend(handles=keys, loc="outside lower center", ncols=4)
     return figure

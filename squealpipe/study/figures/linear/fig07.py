@@ -16,10 +16,10 @@ from squealpipe.study.figures.linear.linear_overlay import mark_scene
 
 READS = ("[cv]*alidity_map",)
 KINDS = (
-    ("A3 stable, A1 loses contact", style.WHITE),
-    ("A3 unstable, A1 loses contact", style.ORANGE),
-    ("A3 stable, contact kept", style.LIGHT),
-    ("A3 unstable, contact kept", style.BLACK),
+    (style.WHITE, "A3 stable, A1 loses contact"),
+    (style.ORANGE, "A3 unstable, A1 loses contact"),
+    (style.LIGHT, "A3 stable, contact kept"),
+    (style.BLACK, "A3 unstable, contact kept"),
 )
 ALT = (
     "Square maps over both spring angles in white, orange, grey and black: where model A1 loses "
@@ -64,23 +64,16 @@ def grows(validity: xr.Dataset) -> np.ndarray:
 def draw_kinds(panel: Axes, validity: xr.Dataset) -> np.ndarray:
     """The four kinds of cells, orange ones hatched for reading in greyscale."""
     kinds = kinds_of_cells(validity)
-    angles = validity.alpha1.values, validity.alpha2.values
-    style.draw_map(panel, *angles, kinds, **style.category_colours([colour for _, colour in KINDS]))
-    if (kinds == 1).any():
-        cells = (kinds == 1).T.astype(float)
-        panel.contourf(*angles, cells, levels=[0.5, 1.5], colors="none", hatches=["//////"])
+    style.draw_map(panel, validity, kinds, **style.category_colours([tone for tone, _ in KINDS]))
+    style.hatch(panel, validity, kinds == 1)
     return kinds
 
 
 def key() -> list[Patch]:
     """What the tones mean."""
-    return [
-        Patch(
-            facecolor=colour, edgecolor=style.BLACK, linewidth=0.5, label=label,
-            hatch="//////" if colour == style.ORANGE else None,
-        )
-        for label, colour in KINDS
-    ]  # fmt: skip
+    found = style.patches(KINDS)
+    found[1].set_hatch(style.HATCH)
+    return found
 
 
 def draw(maps: Mapping[str, xr.Dataset]) -> Figure:

@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 
 from squealpipe.plotting.style import PAGE, draw_map, new_figure, panel_letter
 from squealpipe.schema import Outcome
-from squealpipe.study.figures.parts.frequency_map import HATCH, outline
+from squealpipe.study.figures.parts.frequency_map import HATCH, isoline, outline
 
 READS = ("natural_frequencies",)
 CAPTION = (
@@ -28,15 +28,12 @@ def draw(frequencies: xr.Dataset) -> Figure:
     shift = frequencies.omega.sel(contact_state="separated") - frequencies.omega.sel(
         contact_state="contact"
     )
-    angles = frequencies.alpha1.values, frequencies.alpha2.values
     for panel, letter, mode in zip(axes[0], "ab", (1, 2), strict=True):
         values = shift.sel(mode=mode).values
         low, high = min(float(values.min()), -NO_SHIFT), max(float(values.max()), NO_SHIFT)
         scale = TwoSlopeNorm(0.0, low, high)
-        mesh = draw_map(panel, *angles, values, cmap="RdBu_r", norm=scale)
-        panel.contour(
-            *angles, values.T, levels=[NO_SHIFT], colors="black", linewidths=0.7
-        )  # fmt: skip
+        mesh = draw_map(panel, frequencies, values, cmap="RdBu_r", norm=scale)
+        isoline(panel, frequencies, values, NO_SHIFT, "black")
         outcome = frequencies.outcome.sel(mode=mode, contact_state="contact").values
         outline(panel, frequencies, outcome == Outcome.complex_pair)
         panel_letter(panel, letter, f"shift of ω{'₁₂'[mode - 1]}")

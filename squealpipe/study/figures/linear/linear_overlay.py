@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -13,7 +14,7 @@ from squealpipe.plotting.origin import scene_title
 from squealpipe.plotting.style import BLUE, GREEN, GREY, ORANGE, RED
 from squealpipe.schema.linear import Boundary
 
-LINES = {
+LINES: dict[Boundary, tuple[str, dict[str, Any]]] = {
     Boundary.flutter: ("flutter boundary", {"color": BLUE, "linestyle": "-"}),
     Boundary.divergence: ("divergence boundary", {"color": ORANGE, "linestyle": (0, (4, 1))}),
     Boundary.reaction_changes_sign: ("K₁₁ = μK₁₂", {"color": GREEN, "linestyle": (0, (1, 1))}),
@@ -33,21 +34,11 @@ def draw_boundaries(axes: Axes, boundaries: xr.Dataset, kinds: Iterable[Boundary
                 y = alpha2[chosen] + (shift2 - 2) * np.pi
                 inside = (x >= 0) & (x <= np.pi) & (y >= 0) & (y <= np.pi)
                 if inside.any():
-                    axes.plot(x, y, linewidth=0.9, label=label, **look)  # type: ignore[arg-type]
+                    axes.plot(x, y, linewidth=0.9, label=label, **look)
                     label = ""
 
 
-def mark_scene(axes: Axes, name: str) -> None:
-    """The red × of the paper at a named scene."""
-    scene = SCENES[name]
-    axes.plot(
-        scene.alpha1,
-        scene.alpha2,
-        "x",
-        color=RED,
-        markersize=7,
-        markeredgewidth=1.8,
-        linestyle="none",
-        label=scene_title(name),
-        clip_on=False,
-    )
+def mark_scene(axes: Axes, name: str, colour: str = RED, **look: Any) -> None:
+    """The × of the paper at a named scene."""
+    look = {"ms": 7, "mew": 1.8, "label": scene_title(name), "clip_on": False, **look}
+    axes.plot(SCENES[name].alpha1, SCENES[name].alpha2, "x", color=colour, **look)

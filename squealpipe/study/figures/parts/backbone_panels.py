@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 
 import numpy as np
 import xarray as xr
-from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from squealpipe.plotting import style
-from squealpipe.plotting.cycles import joined, say_why_empty
+from squealpipe.plotting.cycles import joined, key_entries, say_why_empty
 from squealpipe.plotting.origin import angle_pair, parameter
 
 CROSSES = 24
@@ -109,12 +108,3 @@ def _evenly(series: xr.Dataset) -> np.ndarray:
     length = np.concatenate([[0.0], np.cumsum(steps)])
     wanted = np.linspace(0.0, length[-1], CROSSES)
     return np.unique(np.searchsorted(length, wanted).clip(0, len(length) - 1))
-
-
-def key_entries(panels: Iterable[Axes]) -> tuple[list[Artist], list[str]]:
-    """Each label once, over all panels."""
-    found: dict[str, Artist] = {}
-    for panel in panels:
-        for handle, label in zip(*panel.get_legend_handles_labels(), strict=True):
-            found.setdefault(label, handle)
-    return list(found.values()), list(found)

@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.patches import Patch
 
 from squealpipe.plotting import style
 from squealpipe.schema import Outcome
 
-STATES = ("contact", "separated")
-FREQUENCY_COLOURS = "cividis"
 CAPTION = (
     "Dashed: α₁ + α₂ = nπ, where det K = 0; dotted: α₁ + α₂ = nπ/2, n odd. Hatched: flutter, a "
     "complex pair, of which the common frequency is shown."
@@ -20,9 +19,7 @@ CAPTION = (
 """What the lines mean."""
 
 
-HATCH = Patch(
-    facecolor="white", edgecolor=style.BLACK, hatch="//////", label="flutter: common frequency"
-)
+(HATCH,) = style.patches([(style.WHITE, "flutter: common frequency")], hatch=style.HATCH)
 """Key to what :func:`outline` draws."""
 
 
@@ -37,20 +34,16 @@ def draw_mode(frequencies: xr.Dataset, mode: int) -> Figure:
     omega = frequencies.omega.sel(mode=mode)
     upper = float(omega.max())
     lower = 0.0 if mode == 1 else float(omega.min())
-    for panel, letter, state in zip(axes[0], "ab", STATES, strict=True):
+    for panel, letter, state in zip(axes[0], "ab", ("contact", "separated"), strict=True):
         values = omega.sel(contact_state=state).values
-        mesh = style.draw_map(
-            panel,
-            frequencies.alpha1.values,
-            frequencies.alpha2.values,
-            values,
-            cmap=FREQUENCY_COLOURS,
-            vmin=lower,
-            vmax=upper,
-        )
+        scale = {"cmap": "cividis", "vmin": lower, "vmax": upper}
+        mesh = style.draw_map(panel, frequencies, values, **scale)
         flutter = frequencies.outcome.sel(mode=mode, contact_state=state) == Outcome.complex_pair
         shown = np.where(flutter, np.nan, values)
-        draw_isolines(panel, frequencies, shown, 0.2 if mode == 1 else 0.1)
+        step = 0.2 if mode == 1 else 0.1
+        levels = np.arange(step, float(np.nanmax(shown)), step)
+        lines = isoline(panel, frequencies, shown, levels, "white", 0.5)  # to read in greyscale
+        panel.clabel(lines, fontsize=5.5, fmt="%.1f")
         outline(panel, frequencies, flutter.values)
         style.panel_letter(panel, letter, "in contact" if state == "contact" else state)
     draw_sums(axes[0, 1])
@@ -78,35 +71,16 @@ def draw_sums(axes: Axes) -> None:
     axes.set(xlim=limits[0], ylim=limits[1])
 
 
-def draw_isolines(axes: Axes, frequencies: xr.Dataset, values: np.ndarray, step: float) -> None:
-    """Thin labelled isolines, for reading in greyscale."""
-    lines = axes.contour(
-        frequencies.alpha1.values,
-        frequencies.alpha2.values,
-        values.T,
-        levels=np.arange(step, float(np.nanmax(values)), step),
-        colors="white",
-        linewidths=0.5,
-    )
-    axes.clabel(lines, fontsize=5.5, fmt="%.1f")
+def isoline(
+    axes: Axes, dataset: xr.Dataset, values: Any, levels: Any, colour: str, width: float = 0.7
+) -> Any:
+    """Lines on which values (alpha1, alpha2) are those of ``levels``."""
+    angles, levels = (dataset.alpha1.values, dataset.alpha2.values), np.atleast_1d(levels)
+    return axes.contour(*angles, values.T, levels=levels, colors=colour, linewidths=width)
 
 
-def outline(axes: Axes, frequencies: xr.Dataset, mask: np.ndarray) -> None:
-    """Hatch the cells of a mask."""
+def outline(axes: Axes, dataset: xr.Dataset, mask: np.ndarray) -> None:
+    """Hatch the cells of a mask, with a line around them."""
+    style.hatch(axes, dataset, mask)
     if mask.any():
-        axes.contourf(
-            frequencies.alpha1.values,
-            frequencies.alpha2.values,
-            mask.T.astype(float),
-            levels=[0.5, 1.5],
-            colors="none",
-            hatches=["//////"],
-        )
-        axes.contour(
-            frequencies.alpha1.values,
-            frequencies.alpha2.values,
-            mask.T.astype(float),
-            levels=[0.5],
-            colors=style.RED,
-            linewidths=0.8,
-        )
+        isoline(axes, dataset, mask.astype(float), 0.5, style.RED)

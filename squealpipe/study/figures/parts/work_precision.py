@@ -46,8 +46,7 @@ def draw_methods(
     values = rows[cost].values * scale
     fine = np.isfinite(error) & (values > 0)
     if not fine.any():
-        axes.text(0.5, 0.5, "no such motion\nat these parameters", ha="center", va="center")
-        axes.set(xticks=[], yticks=[])
+        style.say_instead(axes, "no such motion\nat these parameters")
         return
     front = _pareto(error[fine], values[fine])
     axes.step(

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import xarray as xr
 from matplotlib.figure import Figure
-from matplotlib.patches import Patch
 
 from squealpipe.plotting import style
 from squealpipe.plotting.origin import scene_title
@@ -39,14 +38,6 @@ def draw(kept: xr.Dataset, growing: xr.Dataset) -> Figure:
         panel.set(xlabel="velocity along the belt (m/s)", aspect="equal")
         style.panel_letter(panel, letter, title)
     axes[0, 0].set_ylabel("velocity away from the belt (m/s)")
-    handles = [
-        Patch(
-            facecolor=colours[value],
-            edgecolor=style.BLACK,
-            lw=0.4,
-            label=style.flag_words(names[value]),
-        )
-        for value in sorted(shown)
-    ]
+    handles = style.patches((colours[k], style.flag_words(names[k])) for k in sorted(shown))
     figure.legend(handles=handles, loc="outside lower center", ncols=min(len(handles), 4))
     return figure

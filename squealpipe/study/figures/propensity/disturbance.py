@@ -12,13 +12,7 @@ from squealpipe.plotting import style
 from squealpipe.plotting.origin import scene_title
 
 READS = ("disturbance/*",)
-MARKS = tuple(
-    zip(
-        (style.BLUE, style.ORANGE, style.GREEN, style.RED, style.PURPLE, style.BLACK),
-        "osv^DP",
-        strict=True,
-    )
-)
+MARKS = list(zip(style.PALETTE, "osv^DP", strict=True))
 """Colour and marker by scene."""
 CAPTION = (
     "Smallest disturbance of steady sliding that leads to (a) loss of contact, (b) the whirl, over "
@@ -60,16 +54,12 @@ def draw(found: Mapping[str, xr.Dataset]) -> Figure:
         panel.set(xlabel="random directions", xscale="log", ylim=(0, None))
         if panel.lines:
             panel.set_xticks([*number, 1.6 * number[-1]], [*map(str, number), "local\nsearch"])
-            panel.minorticks_off()
-        if not panel.lines:
-            panel.text(0.5, 0.5, "none found", transform=panel.transAxes, ha="center")
+        else:
+            style.say_instead(panel, "none found")
+        panel.minorticks_off()
         style.panel_letter(panel, letter, title)
     axes[0, 0].set_ylabel("smallest disturbance")
     if handles:
-        figure.legend(
-            handles.values(),
-            [scene_title(scene) for scene in handles],
-            loc="outside lower center",
-            ncols=min(len(handles), 4),
-        )
+        names = map(scene_title, handles)
+        figure.legend(handles.values(), names, loc="outside lower center", ncols=4)
     return figure

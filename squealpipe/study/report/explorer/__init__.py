@@ -87,7 +87,7 @@ def blocks(explorer: xr.Dataset, layers: Mapping[str, Layer]) -> dict[str, str]:
             if name in explorer
         },
         **{
-            f"layer-{key}": _encode(layer.values.astype("i1" if layer.meanings else "<f4"))
+            f"layer-{key}": _encode(layer.map.values.astype("i1" if layer.meanings else "<f4"))
             for key, layer in layers.items()
         },
     }
@@ -140,14 +140,14 @@ def _plain(value: object) -> str:
 
 
 def _layer(layer: Layer) -> dict[str, Any]:
+    values = layer.map
+    unit = values.attrs.get("units", "1")
     return {
-        "label": layer.label,
-        "unit": layer.unit,
-        "angles": [layer.alpha1.tolist(), layer.alpha2.tolist()],
-        "range": _colour_range(layer.values),
-        "meanings": layer.meanings,
-        "colours": layer.colours,
-        "note": layer.note,
+        **layer._asdict(),
+        "unit": "" if unit == "1" else unit.replace(" s-1", "/s").replace("s-1", "1/s"),
+        "angles": [values.alpha1.values.tolist(), values.alpha2.values.tolist()],
+        "map": None,  # in a block of its own
+        "range": _colour_range(values.values.astype(float)),
     }
 
 
