@@ -8,7 +8,6 @@ import shutil
 import signal
 import subprocess
 import sys
-from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -25,7 +24,7 @@ NOT_COPIED = shutil.ignore_patterns(
 signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
-def copy_checkout(target: Path) -> Path:
+def copy_checkout(target):
     """A copy of the project without its environment, history and results."""
     shutil.copytree(ROOT, target, ignore=NOT_COPIED, symlinks=True)
     shutil.rmtree(target / "results")
@@ -33,9 +32,7 @@ def copy_checkout(target: Path) -> Path:
     return target
 
 
-def run_snakemake(
-    directory: Path, *arguments: str, timeout: float = 500
-) -> subprocess.CompletedProcess[str]:
+def run_snakemake(directory, *arguments, timeout=500):
     """Run snakemake in a copy, with the package of that copy."""
     return subprocess.run(
         [sys.executable, "-m", "snakemake", *arguments],
@@ -48,7 +45,7 @@ def run_snakemake(
     )
 
 
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+def pytest_collection_modifyitems(items):
     """The long files first, so that two processes end at about the same time."""
     items.sort(key=lambda item: "workflow" not in item.path.parts)
 
@@ -63,13 +60,13 @@ class TinyStudy:
 
 
 @pytest.fixture
-def checkout(tmp_path: Path) -> Path:
+def checkout(tmp_path):
     """A fresh copy of the project."""
     return copy_checkout(tmp_path / "squealpipe")
 
 
 @pytest.fixture(scope="session")
-def tiny_study(tmp_path_factory: pytest.TempPathFactory, worker_id: str) -> TinyStudy:
+def tiny_study(tmp_path_factory, worker_id):
     """The tiny study, run once for all test processes, each of which has a copy to itself."""
     own = tmp_path_factory.getbasetemp()
     shared = own if worker_id == "master" else own.parent
@@ -88,19 +85,19 @@ def tiny_study(tmp_path_factory: pytest.TempPathFactory, worker_id: str) -> Tiny
 
 
 @pytest.fixture(scope="session")
-def snakemake() -> Callable[..., subprocess.CompletedProcess[str]]:
+def snakemake():
     """:func:`run_snakemake`, for tests in other folders."""
     return run_snakemake
 
 
 @pytest.fixture(scope="session")
-def new_checkout() -> Callable[[Path], Path]:
+def new_checkout():
     """:func:`copy_checkout`, for fixtures of other folders that outlive one test."""
     return copy_checkout
 
 
 @contextlib.contextmanager
-def read_only_folder(folder: Path) -> Iterator[None]:
+def read_only_folder(folder):
     """A folder that nobody may write to; root is stopped by a read-only mount only."""
     if os.geteuid():
         folder.chmod(0o555)
@@ -117,6 +114,6 @@ def read_only_folder(folder: Path) -> Iterator[None]:
 
 
 @pytest.fixture(scope="session")
-def read_only() -> Callable[[Path], contextlib.AbstractContextManager[None]]:
+def read_only():
     """:func:`read_only_folder`, for tests in other folders."""
     return read_only_folder

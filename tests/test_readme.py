@@ -4,8 +4,6 @@ There the tiny study stands for the paper's: its configuration takes the place o
 `make` and `snakemake`, which other tests run in earnest, are asked for their plan.
 """
 
-from __future__ import annotations
-
 import os
 import re
 import shutil
@@ -35,7 +33,7 @@ ANSWERS = {"claims": {0, 1}, "compare": {0, 1}}
 
 
 @pytest.fixture(scope="module")
-def study(tiny_study, tmp_path_factory) -> Path:
+def study(tiny_study, tmp_path_factory):
     """A checkout in which the tiny study is the study."""
     copy = tmp_path_factory.mktemp("readme") / "squealpipe"
     shutil.copytree(tiny_study.checkout, copy, symlinks=True)
@@ -52,7 +50,7 @@ def study(tiny_study, tmp_path_factory) -> Path:
     return copy
 
 
-def planned(command: str) -> str:
+def planned(command):
     """The command, with pip, make and snakemake asked for their plan only."""
     if command.startswith("pip "):
         return f"{command} --dry-run --no-deps --no-build-isolation"
@@ -63,7 +61,7 @@ def planned(command: str) -> str:
     return command
 
 
-def run(step: str, language: str, place: Path) -> subprocess.CompletedProcess[str]:
+def run(step, language, place):
     environment = {
         **os.environ,
         "PATH": f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}",

@@ -1,7 +1,5 @@
 """``squealpipe claims``: one line each at any width, details by id, filters and JSON."""
 
-from __future__ import annotations
-
 import json
 
 import numpy as np
@@ -19,7 +17,7 @@ SCENE = SCENES["F2d"]
 
 
 @pytest.fixture(scope="module")
-def file(tmp_path_factory) -> str:
+def file(tmp_path_factory):
     """Verdicts on what two datasets can decide."""
     angles = np.linspace(0.0, np.pi, 41)
     params = Parameters()

@@ -1,7 +1,5 @@
 """The command line as a user meets it: help, errors in a sentence, exit codes, files."""
 
-from __future__ import annotations
-
 import json
 import re
 import subprocess

@@ -1,7 +1,5 @@
 """Files that commands write, and parameters that they take from a study."""
 
-from __future__ import annotations
-
 import json
 import os
 import signal

@@ -1,7 +1,5 @@
 """Ctrl-C: a command stops within two seconds, quietly, and leaves no file."""
 
-from __future__ import annotations
-
 import os
 import signal
 import subprocess

@@ -1,7 +1,5 @@
 """What reaches a terminal: its own letters, no file's control characters, always the answer."""
 
-from __future__ import annotations
-
 import os
 import subprocess
 import sys

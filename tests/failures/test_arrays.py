@@ -6,10 +6,7 @@ import numpy as np
 import pytest
 
 from squealpipe import Parameters, simulate
-from squealpipe.tasks.linear.maps import (
-    quasi_static_map,
-    stability_map,
-)
+from squealpipe.tasks.linear.maps import quasi_static_map, stability_map
 from squealpipe.validation import real_array
 
 GOOD = np.array([0.3, 2.0])

@@ -4,8 +4,6 @@ At (π/2, π) with equal springs the linearized stiffness is k times the identit
 harmonic within each regime and every event time has a closed form (units of m = k = l_pre = 1).
 """
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -2,22 +2,21 @@
 
 import numpy as np
 import pytest
-import xarray as xr
 
 from squealpipe.schema.comparison import Reliability, Role
 from squealpipe.tasks.comparison.failures import Answer, judge_balances, verdict_of
 
 
 @pytest.fixture(scope="module")
-def atlas() -> xr.Dataset:
+def atlas():
     return judge_balances()
 
 
-def cell(atlas: xr.Dataset, scene: str, method: str) -> Reliability:
+def cell(atlas, scene, method):
     return Reliability(int(atlas.verdict.sel(scene=scene, solver=method)))
 
 
-def test_our_methods_are_never_silently_wrong(atlas: xr.Dataset) -> None:
+def test_our_methods_are_never_silently_wrong(atlas):
     ours = atlas.isel(solver=atlas.role.values != Role.public)
     silent = ours.verdict == Reliability.silently_wrong
     where = [
@@ -27,7 +26,7 @@ def test_our_methods_are_never_silently_wrong(atlas: xr.Dataset) -> None:
     assert where == []
 
 
-def test_every_scene_is_asked_of_ours_and_of_a_public_method(atlas: xr.Dataset) -> None:
+def test_every_scene_is_asked_of_ours_and_of_a_public_method(atlas):
     asked = atlas.verdict != Reliability.not_applicable
     for role in (True, False):
         columns = (atlas.role.values != Role.public) == role
@@ -50,9 +49,7 @@ def test_every_scene_is_asked_of_ours_and_of_a_public_method(atlas: xr.Dataset) 
         ("flutter onset", "numpy.linalg"),
     ],
 )
-def test_public_methods_fail_silently_where_we_say(
-    atlas: xr.Dataset, scene: str, method: str
-) -> None:
+def test_public_methods_fail_silently_where_we_say(atlas, scene, method):
     assert cell(atlas, scene, method) == Reliability.silently_wrong
 
 
@@ -64,7 +61,7 @@ def test_public_methods_fail_silently_where_we_say(
         ("pole at ω_x/2", "closed-form balance"),
     ],
 )
-def test_ours_say_where_there_is_no_answer(atlas: xr.Dataset, scene: str, method: str) -> None:
+def test_ours_say_where_there_is_no_answer(atlas, scene, method):
     assert cell(atlas, scene, method) == Reliability.flagged
     assert atlas.message.sel(scene=scene, solver=method).item() != ""
 
@@ -83,7 +80,5 @@ def test_ours_say_where_there_is_no_answer(atlas: xr.Dataset, scene: str, method
         (np.nan, "", np.nan, Reliability.silently_wrong),
     ],
 )
-def test_verdicts_follow_from_errors_and_flags(
-    value: float, flag: str, truth: float, expected: Reliability
-) -> None:
+def test_verdicts_follow_from_errors_and_flags(value, flag, truth, expected):
     assert verdict_of(Answer(value, flag), truth, 1e-3)[0] == expected

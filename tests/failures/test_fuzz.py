@@ -1,9 +1,6 @@
 """No call is silent, raw or endless, whatever it is given; no flipped bit goes unseen."""
 
-from __future__ import annotations
-
 import warnings
-from pathlib import Path
 from random import Random
 
 import numpy as np
@@ -16,7 +13,7 @@ from squealpipe.store import StoreError
 from tests.failures.fuzz import fuzz, warm_up
 
 
-def judge(calls: int, seed: int) -> None:
+def judge(calls, seed):
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RuntimeWarning)  # extremes overflow on their way to NaN
         verdict = fuzz(calls, seed)
@@ -25,7 +22,7 @@ def judge(calls: int, seed: int) -> None:
     assert 0.3 * calls < sum(verdict.refused.values()) < 0.7 * calls
 
 
-def flip(folder: Path, flips: int, seed: int) -> None:
+def flip(folder, flips, seed):
     """Files with one bit flipped are refused, or hold what they held."""
     rng = Random(seed)  # noqa: S311
     good = simulate(Parameters(), 5 * np.pi / 6, 5 * np.pi / 6, t_end=3.0)

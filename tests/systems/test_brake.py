@@ -1,7 +1,5 @@
 """The brake as a system: the same motion as A1's own loop, event by event."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

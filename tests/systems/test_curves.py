@@ -1,7 +1,5 @@
 """Curves of special cycles in two parameters against closed forms."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from scipy.linalg import expm

@@ -1,7 +1,5 @@
 """Cycles, branches and derivatives of systems against closed forms and differences."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

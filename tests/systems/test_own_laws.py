@@ -1,7 +1,5 @@
 """Friction and contact from tables: against scipy's DOP853, energy, and the laws they sample."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
@@ -29,11 +27,11 @@ def coefficient(speed, p):
 """
 
 
-def table(law, knots: np.ndarray) -> str:
+def table(law, knots):
     return "linear " + " ".join(f"{float(w)!r}:{float(law(w))!r}" for w in knots)
 
 
-def run(params: Parameters, t_end: float, times: np.ndarray, angles=ANGLES, **start: float):
+def run(params, t_end, times, angles=ANGLES, **start):
     found = brake_of(params).simulate(
         t_end, times=times, start=start, **parameters_of_run(params, *angles)
     )
@@ -41,7 +39,7 @@ def run(params: Parameters, t_end: float, times: np.ndarray, angles=ANGLES, **st
     return found
 
 
-def reference(params: Parameters, angles, times: np.ndarray, start, friction, contact):
+def reference(params, angles, times, start, friction, contact):
     """DOP853 on the forces themselves, in units of l_pre and √(m/k1)."""
     unit, time, g = params.preload, params.time_unit, geometry(*angles)
 
@@ -67,7 +65,7 @@ def reference(params: Parameters, angles, times: np.ndarray, start, friction, co
     return found.y * np.array([[unit], [unit], [unit / time], [unit / time]])
 
 
-def compared(params: Parameters, start: dict[str, float], friction, contact, tol, angles=ANGLES):
+def compared(params, start, friction, contact, tol, angles=ANGLES):
     """Our run and the largest difference from the reference, over each state's size."""
     t_end = 12.0 * params.time_unit
     times = np.linspace(0.0, t_end, 25)
@@ -79,7 +77,7 @@ def compared(params: Parameters, start: dict[str, float], friction, contact, tol
     return ours
 
 
-def kinds(found) -> list[str]:
+def kinds(found):
     names = found.event_kind.attrs["flag_meanings"].split()
     return [names[kind] for kind in found.event_kind.values]
 
@@ -126,7 +124,7 @@ def test_tables_of_the_stribeck_law_converge_with_the_square_of_their_spacing():
     assert errors[0] > 3.0 * errors[1] > 9.0 * errors[2], errors
 
 
-def balance(params: Parameters, t_end: float, **start: float) -> float:
+def balance(params, t_end, **start):
     """Largest residual of the energy balance from event to event, over the energy at the start."""
     g = geometry(*ANGLES)
     events = run(params, t_end, np.array([0.0]), **start).event_time.values

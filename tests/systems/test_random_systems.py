@@ -1,7 +1,5 @@
 """Systems from a generator, event by event against DOP853, and what is refused."""
 
-from __future__ import annotations
-
 from types import SimpleNamespace
 
 import numpy as np

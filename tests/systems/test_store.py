@@ -1,7 +1,5 @@
 """Datasets of systems in files, and two of them compared."""
 
-from __future__ import annotations
-
 import json
 
 import numpy as np

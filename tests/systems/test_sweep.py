@@ -1,7 +1,5 @@
 """Systems as tasks of sweeps: from a file, in parts, with a key that follows the file."""
 
-from __future__ import annotations
-
 import shutil
 from pathlib import Path
 

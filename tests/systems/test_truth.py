@@ -1,7 +1,5 @@
 """Shipped systems against published numbers and closed forms."""
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 from types import SimpleNamespace

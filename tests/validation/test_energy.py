@@ -1,8 +1,6 @@
 """A1's exact energy balance on random runs: kinetic, spring and contact energy change by the work
 of friction and dashpots alone. The work is integrated here, by Gauss quadrature between events."""
 
-from __future__ import annotations
-
 from types import SimpleNamespace
 
 import numpy as np
@@ -23,7 +21,7 @@ LOGGED = 300
 LAW = "friction_law"
 
 
-def random_runs(count: int, seed: int):
+def random_runs(count, seed):
     """Parameters, angles and time units; almost a third at special angles, speeds from 0 to 100."""
     rng = np.random.default_rng(seed)
 
@@ -50,7 +48,7 @@ def random_runs(count: int, seed: int):
     return parameters, angles, time_unit
 
 
-def with_dissipation(parameters, law: str, seed: int):
+def with_dissipation(parameters, law, seed):
     """The same runs, damped and under a friction law."""
     rng = np.random.default_rng(seed)
     count = parameters["mass"].size
@@ -123,9 +121,7 @@ def part(parameters, rows):
     }
 
 
-def check(
-    count: int, seed: int, duration: float, law: str | None = None, model: str = "A1"
-) -> None:
+def check(count, seed, duration, law=None, model="A1"):
     parameters, angles, unit = random_runs(count, seed)
     if law is not None:
         parameters = with_dissipation(parameters, law, seed)
@@ -183,7 +179,7 @@ def test_random_runs_end_truthfully(count, seed):
         assert distance_to_pivot(run, job, params, angles[:, job]) < 0.02
 
 
-def distance_to_pivot(run, job, params, angles) -> float:
+def distance_to_pivot(run, job, params, angles):
     """Distance of the last state's straight continuation from a fixed end, in free lengths."""
     g = geometry(*angles)
     x, y, vx, vy = run.final_state[job]

@@ -9,15 +9,12 @@ A1 holds both as the limit of long springs and a soft contact under a large prel
 vertical and carries N, spring 2 lies along the belt. What is left is of order 1/length.
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
 import pytest
 
 from squealpipe.codes import Event
-from squealpipe.parameters import Parameters
 from squealpipe.schema import Outcome
 from squealpipe.solvers.a1.ensemble import run_ensemble
 from squealpipe.tasks.linear.maps import stability_map
@@ -27,7 +24,7 @@ STEADY = 0.25
 """y at which spring 1 of stiffness 4 balances N = 1."""
 
 
-def oscillator(length: float, belt_speed: float, **friction: object) -> Parameters:
+def oscillator(length, belt_speed, **friction):
     """The oscillator's limit: N = 1 to 1/length, k = 1 along the belt."""
     return FORMER.with_(
         k1=4.0, k2=1.0, k3=1.0 / length, preload=length, length1=length, length2=length,
@@ -35,7 +32,7 @@ def oscillator(length: float, belt_speed: float, **friction: object) -> Paramete
     )  # fmt: skip
 
 
-def stick_slip_cycle(params: Parameters, x: float, tol: float) -> tuple[float, float]:
+def stick_slip_cycle(params, x, tol):
     """(period, slip time) of the cycle that a run settles on; the last three cycles agree."""
     run = run_ensemble(
         params, math.pi / 2, math.pi, t_end=300.0, log_events=400,
@@ -72,14 +69,12 @@ CYCLES = [
 
 @pytest.mark.parametrize("direction", [1.0, -1.0])
 @pytest.mark.parametrize(("speed", "friction", "period", "slip"), CYCLES)
-def test_stick_slip_cycles(
-    speed: float, friction: dict[str, object], period: float, slip: float, direction: float
-) -> None:
+def test_stick_slip_cycles(speed, friction, period, slip, direction):
     """Where springs are 1e6 long, both times agree to 1e-6; what is missing halves with the length
     doubled, and without it they agree to 1e-9."""
     exact = np.array([period, slip])
 
-    def missing(length: float, tol: float) -> np.ndarray:
+    def missing(length, tol):
         params = oscillator(length, direction * speed, **friction)
         return np.array(stick_slip_cycle(params, direction, tol)) / exact - 1.0
 
@@ -89,7 +84,7 @@ def test_stick_slip_cycles(
     np.testing.assert_allclose(2.0 * far - near, 0.0, atol=1e-9)
 
 
-def test_fast_belts_leave_the_sliding_state_alone() -> None:
+def test_fast_belts_leave_the_sliding_state_alone():
     """bSTAB: from V = 1.85 on every start ends in x* = 0.5 + 0.5 exp(−2 V)."""
     params = oscillator(1e6, 2.0, **BSTAB)
     rng = np.random.default_rng(3)
@@ -102,7 +97,7 @@ def test_fast_belts_leave_the_sliding_state_alone() -> None:
     np.testing.assert_allclose(run.final_state[:, 2], 0.0, atol=1e-6)
 
 
-def test_the_sliding_state_of_the_oscillator_is_that_of_the_linear_model() -> None:
+def test_the_sliding_state_of_the_oscillator_is_that_of_the_linear_model():
     """Growth of a small motion along x: −c/2 + exp(−2 V)/2, by A3 damped."""
     angles = np.array([math.pi / 2]), np.array([math.pi])
     for speed in (0.9, 1.1, 1.2, 1.5):

@@ -1,7 +1,5 @@
 """What was computed of the baseline independently of this project."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Agreement with 80-bit integration and with scipy, both with switching rules of their own."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -6,8 +6,6 @@ Communications 29 (2002) 197–205. With y reversed, its matrix [[2, −1 + 4μ/
 ours for equal angles of π/6 and the stiffnesses below: s² = −2 ± √(1 − 4μ/3).
 """
 
-from __future__ import annotations
-
 import math
 
 import mpmath
@@ -25,19 +23,19 @@ ONSET = 0.75
 """The published friction coefficient at which the modes merge."""
 
 
-def published(mu: float) -> Parameters:
+def published(mu):
     """Our parameters that give the published stiffness matrix."""
     return Parameters(k1=2 / 3 * (2 - math.sqrt(3)), k2=2 / 3 * (2 + math.sqrt(3)), k3=4 / 3, mu=mu)
 
 
-def eigenvalues(mu: float) -> np.ndarray:
+def eigenvalues(mu):
     """The two s of A3 in the upper right quarter plane."""
     cell = stability_map(published(mu), [ANGLE], [ANGLE]).isel(alpha1=0, alpha2=0)
     return np.asarray(cell.growth_rate.values + 1j * cell.frequency.values)
 
 
 @pytest.mark.parametrize("mu", [0.0, 0.4, 0.75, 1.2])
-def test_our_matrix_is_the_published_one(mu: float) -> None:
+def test_our_matrix_is_the_published_one(mu):
     params = published(mu)
     stiffness = linear_stiffness(params, geometry(ANGLE, ANGLE))
     matrix = contact_matrix(stiffness, params.k3, params.mu)
@@ -45,27 +43,27 @@ def test_our_matrix_is_the_published_one(mu: float) -> None:
 
 
 @pytest.mark.parametrize("mu", [0.0, 0.1, 0.5, 0.7, 0.749, 0.751, 0.8, 1.0, 1.5])
-def test_frequencies_and_growth_follow_the_published_formula(mu: float) -> None:
+def test_frequencies_and_growth_follow_the_published_formula(mu):
     root = np.sqrt(1 - 4 / 3 * mu + 0j)
     s = np.sqrt([-2 + root, -2 - root])
     expected = np.abs(s.real) + 1j * np.abs(s.imag)
     np.testing.assert_allclose(eigenvalues(mu), expected, rtol=1e-13, atol=1e-14)
 
 
-def test_the_modes_merge_at_the_published_friction() -> None:
+def test_the_modes_merge_at_the_published_friction():
     for mu, regime in ((ONSET * (1 - 1e-12), 0), (ONSET * (1 + 1e-12), 1)):
         cell = stability_map(published(mu), [ANGLE], [ANGLE]).isel(alpha1=0, alpha2=0)
         assert int(cell.regime_linear) == regime
         np.testing.assert_allclose(cell.frequency, math.sqrt(2), rtol=1e-6)
 
 
-def test_growth_beyond_the_onset_is_a_square_root() -> None:
+def test_growth_beyond_the_onset_is_a_square_root():
     growth = [eigenvalues(ONSET * (1 + gap)).real.max() for gap in (1e-8, 1e-6, 1e-4)]
     np.testing.assert_allclose(np.diff(np.log10(growth)), 1.0, atol=1e-3)
 
 
 @pytest.mark.parametrize("side", [-1, 1])
-def test_closed_form_keeps_its_digits_where_numeric_eigenvalues_lose_half(side: int) -> None:
+def test_closed_form_keeps_its_digits_where_numeric_eigenvalues_lose_half(side):
     """Against 60 digits, next to the onset, where the matrix is defective."""
     for gap in (1e-15, 1e-14, 1e-8, 0.1):
         params = published(ONSET * (1 + side * gap))
@@ -79,12 +77,12 @@ def test_closed_form_keeps_its_digits_where_numeric_eigenvalues_lose_half(side: 
         assert _distance(numeric, reference) > 1e-10 or gap > 1e-14
 
 
-def _first_order(matrix: tuple) -> list:
+def _first_order(matrix):
     a11, a12, a21, a22 = matrix
     return [[0, 0, 1, 0], [0, 0, 0, 1], [-a11, -a12, 0, 0], [-a21, -a22, 0, 0]]
 
 
-def _exact(params: Parameters) -> list[complex]:
+def _exact(params):
     cosine, sine = mpmath.cos_sin(mpmath.mpf(ANGLE))
     stiffness = linear_stiffness(params, Geometry(cosine, sine, cosine, sine))
     matrix = contact_matrix(stiffness, mpmath.mpf(params.k3), params.mu)
@@ -92,7 +90,7 @@ def _exact(params: Parameters) -> list[complex]:
     return [complex(value) for value in exact if value.imag > 0]
 
 
-def _distance(found: np.ndarray, reference: list[complex]) -> float:
+def _distance(found, reference):
     """Largest over the reference of the relative distance to the nearest found eigenvalue."""
     mirrored = np.concatenate([found, -np.conj(found)])
     return max(float(np.abs(mirrored - value).min() / abs(value)) for value in reference)

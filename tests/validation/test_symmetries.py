@@ -1,7 +1,5 @@
 """Symmetries of A1 and A4 that no code can have by accident."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -7,7 +7,6 @@ import os
 import re
 import subprocess
 import sys
-from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -25,11 +24,11 @@ class Plan:
     text: str = ""
 
     @property
-    def rules(self) -> set[str]:
+    def rules(self):
         return set(self.reasons) - {"all"}
 
 
-def read(text: str) -> Plan:
+def read(text):
     """Rules, reasons, inputs and outputs from the text of a dry run."""
     blocks = re.split(r"^(?:local)?rule (\w+):$", text, flags=re.MULTILINE)[1:]
     reasons, files = {}, []
@@ -43,10 +42,10 @@ def read(text: str) -> Plan:
 
 
 @pytest.fixture(scope="session")
-def dry_runs() -> Callable[[Path, Sequence[Sequence[str]]], list[Plan]]:
+def dry_runs():
     """Plans of several dry runs in one checkout, each with its own arguments."""
 
-    def run(checkout: Path, arguments: Sequence[Sequence[str]]) -> list[Plan]:
+    def run(checkout, arguments):
         process = subprocess.run(
             [sys.executable, str(Path(__file__).with_name("dry_runs.py"))],
             input=json.dumps([list(map(str, words)) for words in arguments]),
@@ -65,13 +64,13 @@ def dry_runs() -> Callable[[Path, Sequence[Sequence[str]]], list[Plan]]:
 
 
 @pytest.fixture(scope="module")
-def one_checkout(new_checkout, tmp_path_factory) -> Path:
+def one_checkout(new_checkout, tmp_path_factory):
     """One for all tests of a file: in each new one the engine is compiled anew."""
     return new_checkout(tmp_path_factory.mktemp("one") / "squealpipe")
 
 
 @pytest.fixture(scope="module")
-def study_copy(tiny_study, tmp_path_factory) -> Path:
+def study_copy(tiny_study, tmp_path_factory):
     """A finished tiny study whose files may be edited; dates are kept."""
     copy = tmp_path_factory.mktemp("edited") / "squealpipe"
     subprocess.run(["cp", "-a", tiny_study.checkout, copy], check=True)

@@ -1,7 +1,5 @@
 """The workflow from other folders, through `squealpipe run`, and before Snakemake's own linter."""
 
-from __future__ import annotations
-
 import re
 import subprocess
 import sys

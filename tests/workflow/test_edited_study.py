@@ -1,7 +1,5 @@
 """An edit really run and taken back: what depends on it changes, the rest stays as it is."""
 
-from __future__ import annotations
-
 import hashlib
 import re
 from pathlib import Path
@@ -27,7 +25,7 @@ DRAWN = {"parameter_inference", "verdict_reach", "basins", "disturbance", "prope
 """The figures of the two rules that draw."""
 
 
-def files(results: Path) -> dict[str, tuple[str, int]]:
+def files(results):
     """Path → digest and date of every file."""
     return {
         str(path.relative_to(results)): (
@@ -39,7 +37,7 @@ def files(results: Path) -> dict[str, tuple[str, int]]:
     }
 
 
-def ids(results: Path) -> dict[str, str]:
+def ids(results):
     """Dataset → its id."""
     base = results / "data"
     return {
@@ -51,7 +49,7 @@ def ids(results: Path) -> dict[str, str]:
 def test_an_edit_is_run_and_taken_back(study_copy, snakemake):
     results = study_copy / "results/tiny"
 
-    def run(*configs: str) -> tuple[set[str], set[str]]:
+    def run(*configs):
         """Rules that ran, and files whose bytes or date changed."""
         before = files(results)
         done = snakemake(study_copy, "--configfile", TINY, *configs)

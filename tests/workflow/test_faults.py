@@ -4,14 +4,11 @@ After each fault the next plain `snakemake`, or the one command that its message
 the results equal an undisturbed run, and no half-written file was ever read as whole.
 """
 
-from __future__ import annotations
-
 import os
 import shutil
 import subprocess
 import sys
 import time
-from pathlib import Path
 
 import pytest
 
@@ -30,11 +27,11 @@ RUN = [
 ]
 
 
-def environment(checkout: Path) -> dict[str, str]:
+def environment(checkout):
     return {**os.environ, "PYTHONPATH": str(checkout)}
 
 
-def start(checkout: Path) -> subprocess.Popen[str]:
+def start(checkout):
     return subprocess.Popen(
         RUN,
         cwd=checkout,
@@ -46,7 +43,7 @@ def start(checkout: Path) -> subprocess.Popen[str]:
     )
 
 
-def run(checkout: Path, *words: str, **options) -> subprocess.CompletedProcess[str]:
+def run(checkout, *words, **options):
     return subprocess.run(
         [*RUN[:3], *words, *RUN[3:]],
         cwd=checkout,
@@ -59,7 +56,7 @@ def run(checkout: Path, *words: str, **options) -> subprocess.CompletedProcess[s
     )
 
 
-def complete(checkout: Path) -> None:
+def complete(checkout):
     """Plain `snakemake`, or first the command that its message names."""
     again = run(checkout)
     if again.returncode and "--unlock" in again.stderr:
@@ -68,19 +65,19 @@ def complete(checkout: Path) -> None:
     assert again.returncode == 0, again.stderr[-4000:]
 
 
-def ids(checkout: Path) -> dict[str, str]:
+def ids(checkout):
     return {
         name: load(checkout / f"results/data/{name}.nc").attrs["dataset_id"] for name in DATASETS
     }
 
 
-def check_files(checkout: Path) -> None:
+def check_files(checkout):
     """Every dataset that has its final name is whole."""
     for path in (checkout / "results/data").glob("*.nc"):
         load(path)
 
 
-def discard_results(checkout: Path) -> None:
+def discard_results(checkout):
     for folder in ("results", ".snakemake"):
         shutil.rmtree(checkout / folder, ignore_errors=True)
 

@@ -1,7 +1,5 @@
 """A study with dashpots or another law: what cannot carry them is left out, and named."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

@@ -1,7 +1,5 @@
 """A study of one's own runs the rules that its report needs, and no others."""
 
-from __future__ import annotations
-
 from squealpipe.execution.explain import explain
 
 OWN = """

@@ -1,7 +1,5 @@
 """The recipes of CONTRIBUTING.md, followed to the letter in a copy of the project."""
 
-from __future__ import annotations
-
 import difflib
 import json
 import os
@@ -26,10 +24,7 @@ FILES = {
     SYSTEM: "squealpipe/systems/pendulum.py",
 }
 LINES = {
-    ROW: (
-        "squealpipe/parameters.py",
-        "\n    def __post_init__(self) -> None:\n        for name",
-    ),
+    ROW: ("squealpipe/parameters.py", "\n    def __post_init__(self) -> None:\n        for name"),
     RECORD: ("squealpipe/schema/ladder.py", "    a1_short = ("),
     LAW_NAME: ("squealpipe/laws/friction_laws/__init__.py", None),
     FIGURE_NAME: ("squealpipe/study/report/sections.py", None),
@@ -37,7 +32,7 @@ LINES = {
 """Where a block goes: before a text, or in place of the line that begins as it does."""
 
 
-def write_down(folder: Path) -> dict[str, tuple[int, int]]:
+def write_down(folder):
     """Take every step; path → lines added and removed in the files that were there before."""
     text = (folder / "CONTRIBUTING.md").read_text()
     recipes = text[text.index("## Recipes") : text.index("## Rules")]
@@ -72,7 +67,7 @@ def extended(new_checkout, tmp_path_factory):
     return folder, write_down(folder)
 
 
-def python(folder: Path, script: str) -> str:
+def python(folder, script):
     """Run a script with the package of the copy."""
     run = subprocess.run(
         [sys.executable, "-c", script],

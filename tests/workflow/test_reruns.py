@@ -14,7 +14,6 @@ from copy import deepcopy
 from functools import cache, reduce
 from operator import getitem
 from pathlib import Path
-from typing import Any
 
 import pytest
 import yaml
@@ -35,13 +34,13 @@ FIX = "SQUEALPIPE_FIX=1 python -m pytest -m release tests/workflow/test_reruns.p
 KEYS = sorted(set(flat(Study().model_dump(mode="json"))) - {"results", "paper"})
 
 
-def nested(key: str, value: Any) -> dict[str, Any]:
+def nested(key, value):
     for name in reversed(key.split(".")):
         value = {name: value}
     return value
 
 
-def candidates(value: Any) -> list[Any]:
+def candidates(value):
     """Other values near one; the first that the types allow is used."""
     if isinstance(value, bool):
         return [not value]
@@ -58,12 +57,12 @@ def candidates(value: Any) -> list[Any]:
 
 
 @cache
-def quick_config() -> dict[str, Any]:
+def quick_config():
     return read_study(ROOT / "workflow/config/paper.yaml", ROOT / TINY).model_dump(mode="json")
 
 
 @cache
-def another_value(key: str) -> dict[str, Any]:
+def another_value(key):
     """An overlay that changes one key of the tiny study to another allowed value."""
     current = quick_config()
     present = reduce(getitem, key.split("."), current)
@@ -81,7 +80,7 @@ def another_value(key: str) -> dict[str, Any]:
     raise AssertionError(f"no other value of {key} is allowed; extend `candidates`")
 
 
-def feeds(plan) -> dict[str, set[str]]:
+def feeds(plan):
     """Rule → rules that read its output, from a dry run of everything."""
     maker = {path: rule for rule, _, outputs in plan.files for path in outputs}
     table: dict[str, set[str]] = {}
@@ -92,7 +91,7 @@ def feeds(plan) -> dict[str, set[str]]:
     return table
 
 
-def downstream(rules: set[str], table: dict[str, set[str]]) -> set[str]:
+def downstream(rules, table):
     reached, waiting = set(), set(rules)
     while waiting:
         rule = waiting.pop()
@@ -106,7 +105,7 @@ def everything(study_copy, dry_runs):
     return dry_runs(study_copy, [["--configfile", TINY, "--forceall"]])[0]
 
 
-def plans(study_copy, dry_runs, folder) -> list:
+def plans(study_copy, dry_runs, folder):
     """What Snakemake would run for each changed key."""
     arguments = []
     for index, key in enumerate(KEYS):
@@ -116,7 +115,7 @@ def plans(study_copy, dry_runs, folder) -> list:
     return dry_runs(study_copy, arguments)
 
 
-def direct(plan) -> list[str]:
+def direct(plan):
     return sorted(rule for rule in plan.rules if "Params have changed" in plan.reasons[rule])
 
 

@@ -4,8 +4,6 @@ A running cluster is used where there is one. Otherwise, where Slurm is installe
 are root's, a cluster of one node is started on loopback for the session.
 """
 
-from __future__ import annotations
-
 import os
 import re
 import shutil
@@ -15,9 +13,7 @@ import sys
 import tempfile
 import time
 from collections import Counter
-from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
 
 import pytest
 import yaml
@@ -114,7 +110,7 @@ JOINS = {
 COMPILE = "from squealpipe.methods.taylor.loop import loop; loop()"
 
 
-def ready() -> bool:
+def ready():
     answer = subprocess.run(
         ["sinfo", "-h", "-o", "%t"], capture_output=True, text=True, check=False
     )
@@ -142,17 +138,15 @@ def slurm():
     shutil.rmtree(base, ignore_errors=True)
 
 
-def command(*arguments: str, profile: Sequence[str] = PROFILE) -> list[str]:
+def command(*arguments, profile=PROFILE):
     return [sys.executable, "-m", "snakemake", *arguments, *profile, "--configfile", "mine.yaml"]
 
 
-def environment(checkout: Path) -> dict[str, str]:
+def environment(checkout):
     return {**os.environ, "PYTHONPATH": str(checkout)}
 
 
-def on_slurm(
-    checkout: Path, *arguments: str, profile: Sequence[str] = PROFILE
-) -> subprocess.CompletedProcess[str]:
+def on_slurm(checkout, *arguments, profile=PROFILE):
     return subprocess.run(
         command(*arguments, profile=profile),
         cwd=checkout,
@@ -164,7 +158,7 @@ def on_slurm(
     )
 
 
-def jobs(state: str = "") -> list[str]:
+def jobs(state=""):
     """Ids of jobs in the queue."""
     wanted = ["-t", state] if state else []
     answer = subprocess.run(
@@ -173,7 +167,7 @@ def jobs(state: str = "") -> list[str]:
     return answer.stdout.split()
 
 
-def wait(condition, seconds: float = 120.0):
+def wait(condition, seconds=120.0):
     """The first true answer of a condition."""
     limit = time.monotonic() + seconds
     while time.monotonic() < limit:
@@ -185,7 +179,7 @@ def wait(condition, seconds: float = 120.0):
 
 
 @pytest.fixture(scope="module")
-def undisturbed(one_checkout, snakemake) -> Path:
+def undisturbed(one_checkout, snakemake):
     """The same map made on this machine, in another results folder."""
     (one_checkout / "local.yaml").write_text(SMALL + "results: results/local\n")
     target = "results/local/data/validity_map.nc"
@@ -202,7 +196,7 @@ def cluster_checkout(one_checkout, slurm):
     return one_checkout
 
 
-def study_laid_over_quick(checkout: Path, text: str) -> dict[str, Any]:
+def study_laid_over_quick(checkout, text):
     """The quick study with other numbers."""
     content = yaml.safe_load((checkout / "workflow/config/quick.yaml").read_text())
     overlay(content, yaml.safe_load(text))

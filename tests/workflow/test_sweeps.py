@@ -1,7 +1,5 @@
 """Sweeps of the study: in parts or whole the same bits, and an edit touches its own sweep alone."""
 
-from __future__ import annotations
-
 import re
 
 import pytest

@@ -4,8 +4,6 @@ One file, hence one test process: the other has files of its own while the study
 Its grids are coarse, but the scenes run to the paper study's full horizons.
 """
 
-from __future__ import annotations
-
 import re
 
 import numpy as np

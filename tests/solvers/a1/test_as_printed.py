@@ -1,7 +1,5 @@
 """Friction as Eq. (4) prints it, against equations of its own under DOP853."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 import pytest
 
 from squealpipe.codes import Event
 from squealpipe.laws.friction_laws import FALLING
-from squealpipe.parameters import LAW_NAMES, Parameters
+from squealpipe.parameters import LAW_NAMES
 from squealpipe.solvers.a1.ensemble import run_ensemble
 from tests.former import FORMER
 from tests.oracles.a1_long_double import simulate_reference
@@ -18,9 +16,7 @@ from tests.oracles.a1_scipy import simulate_scipy
 ALPHA1, ALPHA2 = np.array([0.5, 1.4, 2.2, 2.9]), np.array([1.9, 2.6, 0.7, 2.4])
 
 
-def random_cases(
-    count: int, seed: int, **fixed: Any
-) -> list[tuple[Parameters, float, float, tuple[float, float, float, float]]]:
+def random_cases(count, seed, **fixed):
     """Unequal springs, both belt directions, slow and fast, other units, any start."""
     rng = np.random.default_rng(seed)
     cases = []
@@ -52,7 +48,7 @@ def random_cases(
 
 
 @pytest.mark.parametrize("law", LAW_NAMES)
-def test_runs_agree_with_long_double(law: str) -> None:
+def test_runs_agree_with_long_double(law):
     """States, regimes and event times, through slip, stick, release, flight and contact."""
     seen: set[int] = set()
     for params, alpha1, alpha2, start in random_cases(12, seed=31, friction_law=law):
@@ -63,9 +59,7 @@ def test_runs_agree_with_long_double(law: str) -> None:
         times = run.event_times[np.isfinite(run.event_times)]
         assert len(times) == len(exact.event_times)
         np.testing.assert_allclose(
-            times / params.time_unit,
-            np.float64(exact.event_times) / params.time_unit,
-            atol=1e-9,
+            times / params.time_unit, np.float64(exact.event_times) / params.time_unit, atol=1e-9
         )
         speed = params.preload / params.time_unit
         scale = np.array([params.preload, params.preload, speed, speed])
@@ -76,7 +70,7 @@ def test_runs_agree_with_long_double(law: str) -> None:
     assert seen == set(map(int, Event))
 
 
-def test_scipy_agrees_too() -> None:
+def test_scipy_agrees_too():
     for params, alpha1, alpha2, start in random_cases(4, seed=33):
         t_end = 6.0 * params.time_unit
         exact = simulate_reference(params, alpha1, alpha2, t_end=t_end, initial_state=start)
@@ -85,7 +79,7 @@ def test_scipy_agrees_too() -> None:
         np.testing.assert_allclose(public.state, np.float64(exact.state), rtol=1e-7, atol=1e-8)
 
 
-def test_falling_laws_are_coulombs_where_both_coefficients_agree() -> None:
+def test_falling_laws_are_coulombs_where_both_coefficients_agree():
     options = {"t_end": 30.0, "tangent": True, "log_events": 50}
     angles = np.linspace(0.1, 3.0, 5)
     plain = run_ensemble({"belt_speed": 0.4}, angles[:, None], angles, **options)
@@ -108,12 +102,12 @@ def test_falling_laws_are_coulombs_where_both_coefficients_agree() -> None:
     ],
     ids=str,
 )
-def test_small_extensions_move_a_run_in_proportion(change: dict[str, Any]) -> None:
+def test_small_extensions_move_a_run_in_proportion(change):
     """Half the extension, half the difference: the limit is the paper's model."""
     base = FORMER.with_(belt_speed=0.4, mu=0.3)
     times = np.linspace(0.5, 6.0, 12)
 
-    def run(share: float) -> np.ndarray:
+    def run(share):
         scaled = {
             name: value if isinstance(value, str) else start + share * (value - start)
             for name, value in change.items()
@@ -133,7 +127,7 @@ def test_small_extensions_move_a_run_in_proportion(change: dict[str, Any]) -> No
 
 
 @pytest.mark.parametrize("law", LAW_NAMES)
-def test_mirror_image_on_a_reversed_belt(law: str) -> None:
+def test_mirror_image_on_a_reversed_belt(law):
     """x → −x gives (π − α1, π − α2, −V), for unequal springs, any law, damped or not."""
     for params, alpha1, alpha2, start in random_cases(20, seed=35, friction_law=law):
         t_end = 10.0 * params.time_unit
@@ -154,7 +148,7 @@ def test_mirror_image_on_a_reversed_belt(law: str) -> None:
         )
 
 
-def test_mixed_runs_equal_those_alone() -> None:
+def test_mixed_runs_equal_those_alone():
     """Runs of several systems in one call: each is what it is alone, bit for bit."""
     mixed = {
         "friction_law": np.array(["coulomb", "exponential", "hyperbolic", "coulomb"]),
@@ -173,7 +167,7 @@ def test_mixed_runs_equal_those_alone() -> None:
 
 
 @pytest.mark.parametrize("law", LAW_NAMES)
-def test_growth_of_a_perturbation_is_that_of_a_nearby_run(law: str) -> None:
+def test_growth_of_a_perturbation_is_that_of_a_nearby_run(law):
     """The variational equations, velocity derivatives and saltations included.
 
     The tangent starts along (1, 1, 1, 1)/2 in units of l_pre and √(m/k1); a central difference
@@ -215,13 +209,13 @@ def test_growth_of_a_perturbation_is_that_of_a_nearby_run(law: str) -> None:
         ({"friction_law": ["coulomb", "exponentail"]}, "did you mean 'exponential'"),
     ],
 )
-def test_ensembles_refuse_what_makes_no_sense(change: dict[str, Any], message: str) -> None:
+def test_ensembles_refuse_what_makes_no_sense(change, message):
     with pytest.raises(ValueError, match=message):
         run_ensemble(change, 1.0, 2.0, t_end=1.0)
 
 
 @pytest.mark.parametrize(("length1", "length2"), [(1e7, 1e7), (1e6, 4.0)])
-def test_very_long_springs_keep_their_digits(length1: float, length2: float) -> None:
+def test_very_long_springs_keep_their_digits(length1, length2):
     """Against long double, whose own loss is 1e-12 at these lengths; it was 2e-8."""
     for params, alpha1, alpha2, _ in random_cases(4, seed=39, friction_law="coulomb"):
         plain = FORMER.with_(

@@ -1,7 +1,5 @@
 """Ensembles: bitwise independence of how they are run, units, limits, refusals."""
 
-from __future__ import annotations
-
 from concurrent.futures import ThreadPoolExecutor
 from functools import partial
 
@@ -11,7 +9,7 @@ import pytest
 from squealpipe.methods.taylor.simd import FEW
 from squealpipe.schema import Outcome
 from squealpipe.solvers.a1 import ensemble
-from squealpipe.solvers.a1.ensemble import Ensemble, run_ensemble
+from squealpipe.solvers.a1.ensemble import run_ensemble
 from tests.former import FORMER
 
 RNG = np.random.default_rng(3)
@@ -27,7 +25,7 @@ ANGLES = RNG.uniform(0, np.pi, (2, SIZE))
 ENDS = RNG.uniform(1.0, 60.0, SIZE)
 
 
-def _run(order=slice(None), *, tangent=True, **options) -> Ensemble:
+def _run(order=slice(None), *, tangent=True, **options):
     return run_ensemble(
         {name: values[order] for name, values in MIXED.items()},
         ANGLES[0][order],
@@ -40,11 +38,11 @@ def _run(order=slice(None), *, tangent=True, **options) -> Ensemble:
     )
 
 
-def _results(run: Ensemble, rows=slice(None)) -> dict[str, np.ndarray]:
+def _results(run, rows=slice(None)):
     return {name: values[rows] for name, values in run._raw.items()}
 
 
-def assert_identical(first: Ensemble, second: Ensemble, rows=slice(None), but=()) -> None:
+def assert_identical(first, second, rows=slice(None), but=()):
     ours, others = _results(first), _results(second, rows)
     assert ours.keys() == others.keys()
     for name, values in ours.items():
@@ -52,7 +50,7 @@ def assert_identical(first: Ensemble, second: Ensemble, rows=slice(None), but=()
 
 
 @pytest.fixture(scope="module")
-def reference() -> Ensemble:
+def reference():
     return _run(workers=1)
 
 

@@ -1,7 +1,5 @@
 """Growth of a perturbation against the full variational equations with saltation matrices."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from scipy.linalg import expm
@@ -93,7 +91,7 @@ def test_growth_of_a_motion_that_dies_down_through_events():
     assert compared > 20
 
 
-def resting_runs(count: int, seed: int):
+def resting_runs(count, seed):
     """Damped runs next to steady sliding, which they reach: all laws, units and belts."""
     rng = np.random.default_rng(seed)
     while count:

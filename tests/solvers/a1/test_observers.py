@@ -1,7 +1,5 @@
 """Extrema inside integration steps, against harmonic motions in closed form."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from squealpipe.codes import Event, Regime

@@ -1,7 +1,5 @@
 """Ensembles with laws of the user's own: as A1's own loop where the law is one of its formulas."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

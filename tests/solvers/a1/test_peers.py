@@ -8,7 +8,7 @@ from tests.former import FORMER
 from tests.oracles.a1_scipy import simulate_scipy
 
 
-def test_first_separation_has_the_closed_form_time() -> None:
+def test_first_separation_has_the_closed_form_time():
     """K = diag(k, k): y = κ/(1+κ)(1 − cos √(1+κ) t) meets l_pre at a known time."""
     p = FORMER.with_(k3=2.0)
     run = simulate_scipy(
@@ -24,7 +24,7 @@ def test_first_separation_has_the_closed_form_time() -> None:
     assert run.event_times == pytest.approx([np.arccos(1 - 1.5) / omega], abs=1e-9)
 
 
-def test_stick_and_release_have_closed_form_times() -> None:
+def test_stick_and_release_have_closed_form_times():
     """V small: x is caught at ẋ = V and carried until k x = μN (y at rest at its equilibrium)."""
     p = FORMER.with_(k3=0.75, mu=0.3, belt_speed=0.05)
     y = 0.75 / 1.75
@@ -47,7 +47,7 @@ def test_stick_and_release_have_closed_form_times() -> None:
 
 
 @pytest.mark.parametrize("method", ["RK45", "LSODA", "Radau"])
-def test_methods_agree_with_one_another(method: str) -> None:
+def test_methods_agree_with_one_another(method):
     run = {
         name: simulate_scipy(FORMER, np.pi, np.pi, t_end=10.0, tol=1e-9, method=name)
         for name in ("DOP853", method)

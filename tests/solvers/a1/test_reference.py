@@ -14,7 +14,7 @@ from tests.oracles.a1_scipy import simulate_scipy
     [((0.5, 1.0), 100.0), ((1.0, 1.0), 100.0), ((0.3, 0.9), 0.05), ((0.4, 0.6), 100.0)],
     ids=["smooth", "hammering", "stick-slip", "whirl"],
 )
-def test_reference_agrees_with_scipy_at_its_limit(angles, speed) -> None:
+def test_reference_agrees_with_scipy_at_its_limit(angles, speed):
     params = FORMER.with_(belt_speed=speed)
     found = simulate_reference(params, *np.pi * np.array(angles), t_end=30.0)
     public = simulate_scipy(params, *np.pi * np.array(angles), t_end=30.0, tol=1e-13)
@@ -27,7 +27,7 @@ def test_reference_agrees_with_scipy_at_its_limit(angles, speed) -> None:
     np.testing.assert_allclose(public.state, np.float64(found.state), atol=1e-10)
 
 
-def test_reference_is_long_double() -> None:
+def test_reference_is_long_double():
     """At rest from y = 0 the first separation has a closed form for K = diag(k, k), L → ∞."""
     run = simulate_reference(
         FORMER.with_(k3=2.0, mu=0.0, length1=1e12, length2=1e12),
@@ -38,7 +38,7 @@ def test_reference_is_long_double() -> None:
 
 
 @pytest.mark.parametrize(("initial", "first"), [((0, 1, 0, 0.5), 3), ((0, 1, 0, -0.5), 0)])
-def test_a_start_on_the_threshold_goes_where_its_velocity_points(initial, first) -> None:
+def test_a_start_on_the_threshold_goes_where_its_velocity_points(initial, first):
     params = FORMER
     for run in (
         simulate_reference(params, 0.9, 2.0, t_end=3.0, initial_state=initial),

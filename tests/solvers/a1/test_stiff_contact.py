@@ -1,7 +1,5 @@
 """Stiff contacts stick and release: the friction limit is the largest term of the stick margin."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 
@@ -13,7 +11,7 @@ from tests.oracles.a1_long_double import simulate_reference
 COUNT = 40
 
 
-def runs(kappa: float) -> tuple[dict[str, np.ndarray], np.ndarray]:
+def runs(kappa):
     """Unequal springs on slow belts of both directions."""
     rng = np.random.default_rng(5)
     parameters = {
@@ -28,7 +26,7 @@ def runs(kappa: float) -> tuple[dict[str, np.ndarray], np.ndarray]:
 
 
 @pytest.mark.parametrize("kappa", [5e4, 1e6, 1e8])
-def test_no_run_ends_in_steps_of_length_zero(kappa: float) -> None:
+def test_no_run_ends_in_steps_of_length_zero(kappa):
     parameters, angles = runs(kappa)
     found = run_ensemble(parameters, *angles, t_end=20.0)
     assert (found.outcome == Outcome.converged).all()
@@ -36,7 +34,7 @@ def test_no_run_ends_in_steps_of_length_zero(kappa: float) -> None:
     assert found.steps.max() < 2000
 
 
-def test_releases_are_where_long_double_has_them() -> None:
+def test_releases_are_where_long_double_has_them():
     """First releases of contacts 1e5 times as stiff as the springs, to the round-off of y k3."""
     parameters, angles = runs(1e5)
     found = run_ensemble(parameters, *angles, t_end=2.0, log_events=4)

@@ -4,8 +4,6 @@ There K is the identity for equal springs, so in contact y oscillates about κ/(
 in units of m = k = l_pre = 1.
 """
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

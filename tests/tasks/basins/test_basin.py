@@ -79,10 +79,7 @@ def test_a_run_that_came_to_rest_has_settled():
 
 @pytest.mark.parametrize(
     ("change", "named"),
-    [
-        ({"t_late": 60.0}, "t_late = 60.0"),
-        ({"x": [[1.0]]}, r"x = .*: a 1-D array"),
-    ],
+    [({"t_late": 60.0}, "t_late = 60.0"), ({"x": [[1.0]]}, r"x = .*: a 1-D array")],
 )
 def test_refuses_what_it_cannot_do(change, named):
     with pytest.raises(ValueError, match=named):

@@ -9,7 +9,7 @@ from squealpipe.tasks.comparison.work_precision import timed, work_precision
 from tests.former import FORMER
 
 
-def test_harmonic_balance_converges_as_published() -> None:
+def test_harmonic_balance_converges_as_published():
     """ω falls about like N_h^-4 with closed-form integrals; the printed Eq. (34) is just wrong."""
     found = work_precision(FORMER, harmonics=(8, 32), oversampling=(1,), sigmas=(10.0,), repeats=1)
     errors = dict(
@@ -28,12 +28,12 @@ def test_harmonic_balance_converges_as_published() -> None:
     assert (printed.outcome == Outcome.converged).all()
 
 
-def test_time_of_a_known_wait() -> None:
+def test_time_of_a_known_wait():
     _, seconds = timed(lambda: time.sleep(0.01), repeats=3)
     assert 0.01 <= seconds < 0.2
 
 
-def test_a_long_run_is_called_twice() -> None:
+def test_a_long_run_is_called_twice():
     calls: list[None] = []
     timed(lambda: calls.append(time.sleep(0.11)), repeats=5)
     assert len(calls) == 2

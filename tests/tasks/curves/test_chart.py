@@ -1,7 +1,5 @@
 """The regime chart: its lines against closed forms, its regions against runs in them."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,10 +1,7 @@
 """The boundary of kept contact: its slopes, its residuals, and maps that it must agree with."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
-import xarray as xr
 
 import squealpipe
 from squealpipe.methods.zero_lines import ZeroLines, inside
@@ -32,7 +29,7 @@ SETS = {
 }  # fmt: skip
 
 
-def disagreement(boundary: xr.Dataset, uniform: xr.Dataset) -> tuple[int, float]:
+def disagreement(boundary, uniform):
     """(points of a map with another answer, the largest distance of these from the outlines)."""
     axes = [uniform[name].values for name in boundary.parameter.values]
     loops = [
@@ -46,7 +43,7 @@ def disagreement(boundary: xr.Dataset, uniform: xr.Dataset) -> tuple[int, float]
     return int(wrong.sum()), max((_distance(loops, place) for place in places), default=0.0)
 
 
-def _distance(loops: list[np.ndarray], place: np.ndarray) -> float:
+def _distance(loops, place):
     """From a point to the nearest of closed lines."""
     nearest = []
     for line in loops:
@@ -58,7 +55,7 @@ def _distance(loops: list[np.ndarray], place: np.ndarray) -> float:
 
 
 @pytest.mark.parametrize("name", SETS)
-def test_the_curves_agree_with_a_uniform_map(name: str) -> None:
+def test_the_curves_agree_with_a_uniform_map(name):
     """Every point of a map that is finer than the one the curves start from."""
     params, model = SETS[name]
     t_end = 25.0 * params.time_unit
@@ -75,7 +72,7 @@ def test_the_curves_agree_with_a_uniform_map(name: str) -> None:
     assert wrong == 0, distance
 
 
-def test_the_mirrored_regions_have_one_area() -> None:
+def test_the_mirrored_regions_have_one_area():
     """(α1, α2) and (π − α2, π − α1) are one system: areas agree to the error that is stated."""
     angles = np.linspace(0.0, np.pi, 31)
     found = squealpipe.contact_boundary(BASELINE, angles, angles, t_end=20.0, model="A1-as-printed")
@@ -84,7 +81,7 @@ def test_the_mirrored_regions_have_one_area() -> None:
     assert found.region_area_error.max() < 2e-7
 
 
-def test_two_parameters_under_their_own_names() -> None:
+def test_two_parameters_under_their_own_names():
     """In a case with a closed form: K diagonal and equal, y_max = 2κ/(1 + κ), so κ = 1."""
     kappa, mu = np.linspace(0.6, 1.4, 9), np.linspace(0.1, 0.5, 7)
     params = BASELINE.with_(length1=1e5, length2=1e5)
@@ -96,17 +93,17 @@ def test_two_parameters_under_their_own_names() -> None:
     )
 
 
-def two_discs(place: np.ndarray) -> np.ndarray:
+def two_discs(place):
     """Positive in the lens that two discs of radius 0.3 share, whose centres are 0.2 apart."""
     return np.asarray(0.09 - squares(place).max(axis=0))
 
 
-def squares(place: np.ndarray) -> np.ndarray:
+def squares(place):
     return np.array([((place - [x, 0.5]) ** 2).sum(axis=1) for x in (0.41, 0.61)])
 
 
-def test_a_lens_has_its_area_and_its_corners() -> None:
-    def mark(place: np.ndarray, slope: np.ndarray) -> np.ndarray:
+def test_a_lens_has_its_area_and_its_corners():
+    def mark(place, slope):
         return np.asarray(squares(place).argmax(axis=0))
 
     lines = ZeroLines(two_discs, mark, coarse=11, finer=2, jump=0.5)
@@ -120,7 +117,7 @@ def test_a_lens_has_its_area_and_its_corners() -> None:
     assert corners[:, 0] == pytest.approx([0.51, 0.51])
 
 
-def test_what_cannot_vary_is_refused() -> None:
+def test_what_cannot_vary_is_refused():
     angles = np.linspace(0.0, 1.0, 5)
     with pytest.raises(ValueError, match="two arguments"):
         squealpipe.contact_boundary(BASELINE, angles, 1.0)

@@ -1,10 +1,7 @@
 """What the levels take for granted, against closed forms, bounds and each other."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
-import xarray as xr
 
 from squealpipe.parameters import SCENES
 from squealpipe.tasks.dynamics.assumptions import LEVELS, NEEDS, check_assumptions, linear_pull_map
@@ -16,26 +13,24 @@ DECOUPLED = ("F2a", "F2b", "F2c")
 
 
 @pytest.fixture(scope="module")
-def table() -> xr.Dataset:
+def table():
     return check_assumptions(FORMER)
 
 
-def measure(table: xr.Dataset, level: str, scene: str, assumption: str) -> float:
+def measure(table, level, scene, assumption):
     return float(table.measure.sel(level=level, scene=scene, assumption=assumption))
 
 
 @pytest.mark.parametrize("scene", DECOUPLED)
 @pytest.mark.parametrize("level", ["A3", "A4"])
-def test_lowest_force_of_the_decoupled_scenes_is_the_closed_form(
-    table: xr.Dataset, level: str, scene: str
-) -> None:
+def test_lowest_force_of_the_decoupled_scenes_is_the_closed_form(table, level, scene):
     kappa = FORMER.kappa
     lowest = measure(table, level, scene, "contact is kept")
     assert lowest == pytest.approx((1 - kappa) / (1 + kappa), abs=1e-3)
     assert bool(table.held.sel(level=level, scene=scene, assumption="contact is kept"))
 
 
-def test_the_linear_contact_pulls_where_the_real_one_lets_go(table: xr.Dataset) -> None:
+def test_the_linear_contact_pulls_where_the_real_one_lets_go(table):
     lowest = table.lowest_contact_force
     for scene in ("F2d", "F3", "F4", "F5a", "F13"):
         assert float(lowest.sel(level="A3", scene=scene)) < 0
@@ -43,13 +38,13 @@ def test_the_linear_contact_pulls_where_the_real_one_lets_go(table: xr.Dataset) 
         assert float(lowest.sel(level="A1-no-separation", scene=scene)) < 0
 
 
-def test_without_separation_nothing_changes_where_contact_is_kept(table: xr.Dataset) -> None:
+def test_without_separation_nothing_changes_where_contact_is_kept(table):
     for name in ("largest_x", "largest_y", "lowest_contact_force"):
         pair = table[name].sel(scene=list(DECOUPLED), level=["A1", "A1-no-separation"])
         np.testing.assert_allclose(pair[0], pair[1], rtol=1e-9)
 
 
-def test_sliding_state_is_the_force_balance_along_the_belt(table: xr.Dataset) -> None:
+def test_sliding_state_is_the_force_balance_along_the_belt(table):
     """At F2a K11 = k and K12 = 0: x = μ k3 l_pre/k, and the reaction is the actuation."""
     p = FORMER
     row = table.sel(level="A2", scene="F2a")
@@ -57,7 +52,7 @@ def test_sliding_state_is_the_force_balance_along_the_belt(table: xr.Dataset) ->
     assert float(row.peak_contact_force) == pytest.approx(1.0, rel=1e-12)
 
 
-def test_turn_of_a_spring_is_that_of_the_motion(table: xr.Dataset) -> None:
+def test_turn_of_a_spring_is_that_of_the_motion(table):
     """At F5a both springs lie along x, so the largest turn follows from the highest point."""
     p, scene = FORMER, SCENES["F5a"]
     run = simulate(p, scene.alpha1, scene.alpha2, t_end=scene.t_end)
@@ -67,7 +62,7 @@ def test_turn_of_a_spring_is_that_of_the_motion(table: xr.Dataset) -> None:
     )
 
 
-def test_longer_springs_turn_less_and_are_more_linear() -> None:
+def test_longer_springs_turn_less_and_are_more_linear():
     short, long = (
         check_assumptions(FORMER.with_(length1=length, length2=length), [SCENES["F2a"]])
         for length in (5.0, 500.0)
@@ -77,14 +72,14 @@ def test_longer_springs_turn_less_and_are_more_linear() -> None:
         assert small < 0.02 * large
 
 
-def test_each_level_needs_what_the_paper_lists(table: xr.Dataset) -> None:
+def test_each_level_needs_what_the_paper_lists(table):
     assert list(table.level.values) == list(LEVELS)
     for level in LEVELS:
         needed = table.assumption.values[table.needed.sel(level=level).values == 1]
         assert set(needed) == set(NEEDS[level])
 
 
-def test_linear_pull_map_is_the_closed_form_where_x_and_y_are_decoupled() -> None:
+def test_linear_pull_map_is_the_closed_form_where_x_and_y_are_decoupled():
     kappa = FORMER.kappa
     pull = linear_pull_map(FORMER, [0.5 * np.pi, np.pi], [0.5 * np.pi, np.pi], t_end=50.0)
     lowest = pull.lowest_contact_force.values
@@ -98,7 +93,7 @@ def test_linear_pull_map_is_the_closed_form_where_x_and_y_are_decoupled() -> Non
     )
 
 
-def test_units_scale() -> None:
+def test_units_scale():
     """Ten times the length, four times the mass: the same numbers, twice the time."""
     base, scaled = (
         FORMER,

@@ -1,7 +1,5 @@
 """The explorer's dataset against the tasks that it collects."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

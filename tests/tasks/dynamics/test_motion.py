@@ -1,7 +1,5 @@
 """Labels of motions say what was tested, last as long as they say, and know no left and right."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from scipy.stats import ks_2samp

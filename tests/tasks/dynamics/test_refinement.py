@@ -1,11 +1,8 @@
 """The refined map at many parameters: what is inherited is right, or measured to be wrong."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 
-from squealpipe.parameters import Parameters
 from squealpipe.schema import Outcome
 from squealpipe.tasks.dynamics import refinement
 from squealpipe.tasks.dynamics.refinement import refine_validity_map
@@ -20,7 +17,7 @@ OTHERS = {
 }
 
 
-def compared(params: Parameters, points: int, coarse: int, t_end: float) -> tuple[int, float]:
+def compared(params, points, coarse, t_end):
     """(cells that differ from the uniform map, share of cells that were run)."""
     angles = np.linspace(0.0, np.pi, points)
     refined = refine_validity_map(params, resolution=points, coarse=coarse, t_end=t_end)
@@ -36,7 +33,7 @@ def compared(params: Parameters, points: int, coarse: int, t_end: float) -> tupl
 
 
 @pytest.mark.parametrize("params", OTHERS.values(), ids=OTHERS)
-def test_inherited_cells_are_as_wrong_as_measured(params: Parameters) -> None:
+def test_inherited_cells_are_as_wrong_as_measured(params):
     wrong, share = compared(params, 121, 16, 100.0)
     assert wrong <= 2
     assert share < 0.35
@@ -44,13 +41,13 @@ def test_inherited_cells_are_as_wrong_as_measured(params: Parameters) -> None:
 
 @pytest.mark.release
 @pytest.mark.parametrize("params", OTHERS.values(), ids=OTHERS)
-def test_inherited_cells_at_241_points(params: Parameters) -> None:
+def test_inherited_cells_at_241_points(params):
     wrong, share = compared(params, 241, 31, 200.0)
     assert wrong <= 2
     assert share < 0.2
 
 
-def test_an_island_that_the_sample_finds_is_followed(monkeypatch) -> None:
+def test_an_island_that_the_sample_finds_is_followed(monkeypatch):
     """Neither reserve nor late separation is told: some islands are missed by the grid alone."""
     refine, samples = refinement.refine_grid, []
 

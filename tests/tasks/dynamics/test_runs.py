@@ -1,7 +1,5 @@
 """simulate, validity_map, hammering_map, refine_validity_map as users and rules call them."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from scipy.optimize import brentq

@@ -1,7 +1,5 @@
 """Summary of a run against closed forms and against its own events."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

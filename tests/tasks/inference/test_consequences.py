@@ -1,14 +1,11 @@
 """What follows for a candidate beyond the constraints: fine maps, random cells, resolutions."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
-import xarray as xr
 
 from squealpipe.models import a3
 from squealpipe.models.contact_system import contact_system
-from squealpipe.parameters import SCENES, Parameters
+from squealpipe.parameters import SCENES
 from squealpipe.schema import Outcome
 from squealpipe.tasks.dynamics.runs import validity_map
 from squealpipe.tasks.inference.angle_maps import (
@@ -27,7 +24,7 @@ from tests.former import FORMER
 from tests.tasks.inference.parameter_sets import random_sets
 
 
-def judged(params: Parameters) -> dict[str, bool]:
+def judged(params):
     """Whether statements on all angles hold at one parameter set."""
     candidates = Candidates.of(params, tol=1e-9)
     margins = {name: found.margin for name, found in measure(candidates, [Stage.maps]).items()}
@@ -35,7 +32,7 @@ def judged(params: Parameters) -> dict[str, bool]:
     return linear | {name: bool(margin[0] > 0) for name, margin in margins.items()}
 
 
-def test_consequences_at_the_baseline() -> None:
+def test_consequences_at_the_baseline():
     """What is known of the former baseline: F6b as printed only, Fig. 7 without black cells."""
     assert judged(FORMER) == {
         "S3": True,
@@ -48,7 +45,7 @@ def test_consequences_at_the_baseline() -> None:
     }
 
 
-def test_consequences_can_come_out_otherwise() -> None:
+def test_consequences_can_come_out_otherwise():
     """Without friction nothing is unstable; a soft contact on short springs is hardly left."""
     held = judged(FORMER.with_(mu=0.0, k3=0.05))
     assert not held["S3"]
@@ -56,13 +53,13 @@ def test_consequences_can_come_out_otherwise() -> None:
     assert not held["F7a"]
 
 
-def linear(params: Parameters) -> dict[str, bool]:
+def linear(params):
     """What is said of linear stability, sliding and frequencies at one parameter set."""
     found = judge_consequences(Candidates.of(params, tol=1e-9))
     return {key: bool(held[0]) for key, held in found.items()}
 
 
-def literally(params: Parameters, sliding: xr.Dataset) -> np.ndarray:
+def literally(params, sliding):
     """Where Eq. (11) as printed allows sliding, whatever the belt's direction."""
     k11, k12 = sliding.stiffness_x.values, sliding.stiffness_xy.values
     coupled = np.abs(k12) > 1e-12 * params.k1
@@ -70,7 +67,7 @@ def literally(params: Parameters, sliding: xr.Dataset) -> np.ndarray:
 
 
 @pytest.mark.parametrize("equal", [True, False])
-def test_exact_conditions_agree_with_fine_maps(equal: bool) -> None:
+def test_exact_conditions_agree_with_fine_maps(equal):
     """The plane of Z against maps over the angles, at random parameters."""
     generator = np.random.default_rng(5)
     angles = np.linspace(0.0, np.pi, 241)
@@ -102,7 +99,7 @@ def test_exact_conditions_agree_with_fine_maps(equal: bool) -> None:
 
 
 @pytest.fixture(scope="module")
-def likely() -> dict[str, np.ndarray]:
+def likely():
     """Parameter sets from where the feasible ones lie, belt either way."""
     generator = np.random.default_rng(7)
     count = 24
@@ -117,7 +114,7 @@ def likely() -> dict[str, np.ndarray]:
     }
 
 
-def test_the_black_region_is_where_a_map_shows_it(likely: dict[str, np.ndarray]) -> None:
+def test_the_black_region_is_where_a_map_shows_it(likely):
     """Cells along the rim of the disc of flutter, against the cells of a map of 121 angles."""
     candidates = Candidates(likely, 1e-9)
     share = keeping_share(candidates)
@@ -134,7 +131,7 @@ def test_the_black_region_is_where_a_map_shows_it(likely: dict[str, np.ndarray])
     assert np.corrcoef(share, seen)[0, 1] > 0.9
 
 
-def test_the_separating_share_has_converged(likely: dict[str, np.ndarray]) -> None:
+def test_the_separating_share_has_converged(likely):
     """Twice the resolution leaves the shares within a spacing's error, and F7a within one set."""
     coarse = separating_share(Candidates(likely, 1e-9))
     fine = separating_share(Candidates(likely, 1e-9), angles=tuple(2 * number for number in ANGLES))
@@ -156,7 +153,7 @@ def test_the_separating_share_has_converged(likely: dict[str, np.ndarray]) -> No
         {"friction_law": "exponential", "mu_static": 0.6, "friction_speed": 3.0},
     ],
 )
-def test_damped_settings_are_judged_by_the_damped_problem(beyond: dict[str, object]) -> None:
+def test_damped_settings_are_judged_by_the_damped_problem(beyond):
     """Against maps on other angles, at random parameters; dashpots alone make K12 = 0 flutter."""
     angles = np.linspace(0.0, np.pi, 240)
     changed = 0
@@ -190,7 +187,7 @@ def test_damped_settings_are_judged_by_the_damped_problem(beyond: dict[str, obje
 
 
 @pytest.mark.parametrize("name", ["damping1", "damping2"])
-def test_unequal_dashpots_have_no_mirror_image(name: str) -> None:
+def test_unequal_dashpots_have_no_mirror_image(name):
     """Cells (α1, α2) and (π − α2, π − α1) then move differently: share against the whole map."""
     params = FORMER.with_(**{name: 0.1})
     axis = (np.arange(12) + 0.5) * (np.pi / 12)

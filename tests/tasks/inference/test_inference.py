@@ -1,9 +1,6 @@
 """Statements as constraints: closed forms, independent integration, the shipped baseline."""
 
-from __future__ import annotations
-
 import math
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -28,11 +25,11 @@ FORCE = symbols.function(symbols.SPRING_FORCE)
 
 
 @pytest.fixture(scope="module")
-def inference() -> object:
+def inference():
     return infer_parameters(STUDY, samples=256)
 
 
-def long_springs(**arrays: object) -> Candidates:
+def long_springs(**arrays):
     """Candidates in the limit of linear springs, with the given fields."""
     count = max(np.size(values) for values in arrays.values())
     fields = {
@@ -42,7 +39,7 @@ def long_springs(**arrays: object) -> Candidates:
     return Candidates(fields, 1e-9)
 
 
-def test_the_studys_parameters_agree_as_printed_alone() -> None:
+def test_the_studys_parameters_agree_as_printed_alone():
     """Which statements speak against the other readings, at the study's parameters."""
     own, failing = Candidates.of(STUDY, tol=1e-12), {}
     for name in READINGS:
@@ -59,7 +56,7 @@ def test_the_studys_parameters_agree_as_printed_alone() -> None:
     }
 
 
-def test_readings_do_not_depend_on_units() -> None:
+def test_readings_do_not_depend_on_units():
     """A brake pad in SI units has the margins of its dimensionless groups."""
     speed = 100.0 * 1e-4 * math.sqrt(1e7 / 0.5)
     brake = Parameters(
@@ -75,7 +72,7 @@ def test_readings_do_not_depend_on_units() -> None:
         np.testing.assert_allclose(plain[0], scaled[0], atol=1e-4)
 
 
-def test_contact_with_long_springs_as_the_closed_form_says() -> None:
+def test_contact_with_long_springs_as_the_closed_form_says():
     """(π/2, π) and its like: y = κ/(1+κ)(1 − cos √(1+κ) t), lowest force (1 − κ)/(1 + κ)."""
     kappa = np.array([0.3, 0.7, 0.99, 1.01, 1.3])
     verdicts = measure(long_springs(k3=kappa))
@@ -83,33 +80,33 @@ def test_contact_with_long_springs_as_the_closed_form_says() -> None:
         np.testing.assert_allclose(verdicts[name].margin, (1 - kappa) / (1 + kappa), atol=1e-4)
 
 
-def test_contact_is_lost_beyond_the_known_stiffness() -> None:
+def test_contact_is_lost_beyond_the_known_stiffness():
     """F2d with long springs: lost if and only if κ > 0.518 at 0.83π."""
     verdicts = measure(long_springs(k3=[0.51, 0.526], mu=0.3))
     assert verdicts["F2d"].margin[0] < 0 < verdicts["F2d"].margin[1]
 
 
 @pytest.mark.parametrize("mu", [0.1, 0.32, 0.33, 0.7])
-def test_linear_stability_of_the_scene_of_fig_3(mu: float) -> None:
+def test_linear_stability_of_the_scene_of_fig_3(mu):
     margin = measure(long_springs(mu=[mu]))["F6d"].margin[0]
     assert margin == pytest.approx(1 - mu * math.tan(0.4 * math.pi), abs=1e-12)
 
 
 @pytest.mark.parametrize("kappa", [0.4, 1.2])
-def test_the_modes_are_switched_while_the_contact_is_softer(kappa: float) -> None:
+def test_the_modes_are_switched_while_the_contact_is_softer(kappa):
     """(5π/6, 5π/6): K11 = 1.5 against K22 + k3 = 0.5 + κ."""
     margin = measure(long_springs(k3=[kappa]))["F13"].margin[0]
     assert margin == pytest.approx(min(1 - kappa, kappa), abs=1e-12)
 
 
-def test_unequal_springs_break_what_needs_equal_ones() -> None:
+def test_unequal_springs_break_what_needs_equal_ones():
     """A user's k2 ≠ k1: (π, π) differs from (0, 0), and no x mode is isolated."""
     verdicts = measure(Candidates.of(FORMER.with_(k2=1.1, length2=6.0), tol=1e-12))
     assert verdicts["F5a"].margin[0] < 0
     assert verdicts["F13"].margin[0] == pytest.approx(-0.5 * 0.1, rel=1e-12)
 
 
-def test_unequal_dashpots_couple_the_x_mode() -> None:
+def test_unequal_dashpots_couple_the_x_mode():
     """(3π/4, 3π/4), (5π/6, 5π/6): C12 = (c1 − c2) sin α cos α, 0 for equal dashpots alone."""
     own = FORMER.with_(mass=2.0, k1=3.0, k2=3.0)
     unequal = measure(Candidates.of(own.with_(damping1=0.4), tol=1e-12))["F13"]
@@ -119,7 +116,7 @@ def test_unequal_dashpots_couple_the_x_mode() -> None:
     assert margins[0] == margins[1] > 0
 
 
-def test_margins_do_not_depend_on_units() -> None:
+def test_margins_do_not_depend_on_units():
     plain = measure(Candidates.of(FORMER, tol=1e-12))
     speed = 3.0 * math.sqrt(7.0 / 2.0)
     scaled = FORMER.with_(
@@ -140,7 +137,7 @@ def test_margins_do_not_depend_on_units() -> None:
         )
 
 
-def test_the_pulling_contact_loses_exactly_what_a1_loses() -> None:
+def test_the_pulling_contact_loses_exactly_what_a1_loses():
     """A margin of Fig. 2 is negative if and only if A1 itself separates."""
     generator = np.random.default_rng(8)
     fields = {
@@ -158,12 +155,12 @@ def test_the_pulling_contact_loses_exactly_what_a1_loses() -> None:
         np.testing.assert_array_equal(contact[name].margin < 0, run.separations > 0)
 
 
-def test_lowest_force_agrees_with_an_independent_integration() -> None:
+def test_lowest_force_agrees_with_an_independent_integration():
     """Scipy on the symbolic forces, while the mass slips behind the belt in contact."""
     scene = SCENES["F2a"]
     angles = {"alpha1": scene.alpha1, "alpha2": scene.alpha2}
 
-    def field(_: float, u: np.ndarray) -> list[float]:
+    def field(_, u):
         fx, fy = FORCE(FORMER, x=u[0], y=u[1], **angles)
         normal = FORMER.k3 * (FORMER.preload - u[1])
         return [u[2], u[3], fx + FORMER.mu * normal, fy + normal]
@@ -176,7 +173,7 @@ def test_lowest_force_agrees_with_an_independent_integration() -> None:
     assert found == pytest.approx(lowest, abs=2e-5)
 
 
-def test_growth_of_fig_3_and_bound_of_fig_4() -> None:
+def test_growth_of_fig_3_and_bound_of_fig_4():
     """The criteria, measured again from sampled motions."""
     verdicts = measure(Candidates.of(FORMER, tol=1e-12))
     for name, sign in (("F3", 1), ("F4", -1)):
@@ -190,7 +187,7 @@ def test_growth_of_fig_3_and_bound_of_fig_4() -> None:
         assert float(verdicts[name].margin[0]) == pytest.approx(expected, abs=1e-4)
 
 
-def test_samples_cover_the_ranges_evenly(inference: object) -> None:
+def test_samples_cover_the_ranges_evenly(inference):
     ranges = {"kappa": (0.3, 1.3), "mu": (0.02, 0.8)}
     logarithmic = {"length_ratio": (2, 100), "speed_ratio": (0.1, 316)}
     for name, (low, high) in ranges.items():
@@ -201,7 +198,7 @@ def test_samples_cover_the_ranges_evenly(inference: object) -> None:
         assert abs(np.histogram(share, 8, (0, 1))[0] - 32).max() <= 3
 
 
-def test_shares_follow_from_verdicts(inference: object, tmp_path: Path) -> None:
+def test_shares_follow_from_verdicts(inference, tmp_path):
     held = inference.holds.values == Holds.yes
     np.testing.assert_array_equal(inference.feasible, held.all(axis=2))
     np.testing.assert_array_equal(inference.feasible_count, held.all(axis=2).sum(axis=0))
@@ -215,7 +212,7 @@ def test_shares_follow_from_verdicts(inference: object, tmp_path: Path) -> None:
     assert load(save(inference, tmp_path / "inference.nc")).equals(inference)
 
 
-def test_what_a_statement_excludes_alone_is_known_however_late_it_comes() -> None:
+def test_what_a_statement_excludes_alone_is_known_however_late_it_comes():
     """Stages leave out no set that one statement alone refutes."""
     points = np.random.default_rng(4).uniform(size=(4, 120))
     groups = {
@@ -235,13 +232,13 @@ def test_what_a_statement_excludes_alone_is_known_however_late_it_comes() -> Non
     np.testing.assert_array_equal((judge(sets)[1] == Holds.yes).all(axis=1), whole.all(axis=1))
 
 
-def test_the_number_of_processes_changes_nothing() -> None:
+def test_the_number_of_processes_changes_nothing():
     few = {"samples": 32, "kappa": (0.6, 0.65), "mu": (0.3, 0.35), "length_ratio": (12.0, 15.0)}
     one, two = (infer_parameters(STUDY, **few, workers=workers) for workers in (1, 2))
     assert one.identical(two)
 
 
-def test_wilsons_interval_as_in_closed_form() -> None:
+def test_wilsons_interval_as_in_closed_form():
     count, size, z = 7, 40, 1.959963984540054
     share = count / size
     middle = (share + z * z / (2 * size)) / (1 + z * z / size)
@@ -250,7 +247,7 @@ def test_wilsons_interval_as_in_closed_form() -> None:
     assert np.isnan(wilson_interval(0, 0)).all()
 
 
-def test_samples_and_maps_are_judged_alike() -> None:
+def test_samples_and_maps_are_judged_alike():
     """F6d at random parameters, belt either way: stable exactly where ``stability_map`` is."""
     generator = np.random.default_rng(13)
     sets = random_sets(generator, 150, equal=True) + random_sets(generator, 150, equal=False)
@@ -263,7 +260,7 @@ def test_samples_and_maps_are_judged_alike() -> None:
     assert 0.1 < (margin > 0).mean() < 0.9
 
 
-def test_a_belt_along_minus_x_passes_beyond_the_bound_of_the_other() -> None:
+def test_a_belt_along_minus_x_passes_beyond_the_bound_of_the_other():
     """The reproducer: μ above cot 0.4π is unstable with the belt along +x only."""
     margins = measure(long_springs(mu=[0.5, 0.5], belt_speed=[100.0, -100.0]))["F6d"].margin
     slope = 0.5 * math.tan(0.4 * math.pi)
@@ -271,7 +268,7 @@ def test_a_belt_along_minus_x_passes_beyond_the_bound_of_the_other() -> None:
 
 
 @pytest.mark.release
-def test_the_feasible_set_of_the_study() -> None:
+def test_the_feasible_set_of_the_study():
     """Our own counts are 120, 11 and 0; round-off decides a few chaotic runs."""
     found = infer_parameters(STUDY, samples=20_480)
     as_printed, along, against = found.feasible_count.values
@@ -280,7 +277,7 @@ def test_the_feasible_set_of_the_study() -> None:
     assert against == 0
 
 
-def test_ranges_are_lists_in_a_configuration() -> None:
+def test_ranges_are_lists_in_a_configuration():
     given = {"kappa": [0.6, 0.7], "mu": [0.1, 0.2], "length_ratio": [3, 4], "speed_ratio": [5, 6]}
     found = infer_parameters(FORMER, samples=2, **given, workers=1)
     assert ((found.kappa >= 0.6) & (found.kappa <= 0.7)).all()

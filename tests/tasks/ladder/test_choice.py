@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 from squealpipe.methods.processes import cpu_time
-from squealpipe.parameters import Parameters
 from squealpipe.schema.ladder import QUESTIONS, Level
 from squealpipe.solvers.a1.ensemble import run_ensemble
 from squealpipe.tasks.ladder.choice import choose_model, choose_models, linear_motion
@@ -15,12 +14,12 @@ from tests.former import FORMER
 CELLS, HORIZON, TOLERANCE = 500, 200.0, 0.05
 
 
-def random_cells(seed: int, count: int = CELLS) -> tuple[np.ndarray, np.ndarray]:
+def random_cells(seed, count=CELLS):
     alpha1, alpha2 = np.random.default_rng(seed).uniform(0.0, np.pi, (2, count))
     return alpha1, alpha2
 
 
-def judged(params: Parameters, question: str, seed: int) -> tuple[np.ndarray, float]:
+def judged(params, question, seed):
     """(whether each cell is within tolerance of A1, share of cells answered below A1)."""
     cells = random_cells(seed)
     times = sample_times(params, HORIZON)
@@ -39,7 +38,7 @@ def judged(params: Parameters, question: str, seed: int) -> tuple[np.ndarray, fl
 
 
 @pytest.mark.parametrize("length", [15.0, 300.0])
-def test_contact_is_decided_rightly_and_below_a1_in_a_share_of_the_cells(length: float) -> None:
+def test_contact_is_decided_rightly_and_below_a1_in_a_share_of_the_cells(length):
     params = FORMER.with_(k3=0.65, length1=length, length2=length)
     right, below = judged(params, "contact_lost", 2021)
     assert right.all()
@@ -48,13 +47,13 @@ def test_contact_is_decided_rightly_and_below_a1_in_a_share_of_the_cells(length:
 
 @pytest.mark.parametrize("question", QUESTIONS[1:])
 @pytest.mark.parametrize("length", [5.0, 300.0])
-def test_every_question_is_answered_within_the_tolerance(question: str, length: float) -> None:
+def test_every_question_is_answered_within_the_tolerance(question, length):
     right, _ = judged(FORMER.with_(length1=length, length2=length), question, 3)
     assert right.mean() >= 0.99
 
 
 @pytest.mark.parametrize("changes", [{}, {"k2": 1.7, "mu": 0.5}])
-def test_peak_force_on_long_springs_mostly_follows_from_the_first_integral(changes) -> None:
+def test_peak_force_on_long_springs_mostly_follows_from_the_first_integral(changes):
     right, below = judged(
         FORMER.with_(length1=300.0, length2=300.0, **changes), "peak_contact_force", 12
     )
@@ -62,7 +61,7 @@ def test_peak_force_on_long_springs_mostly_follows_from_the_first_integral(chang
     assert below > 0.6
 
 
-def test_rules_cost_less_than_a1() -> None:
+def test_rules_cost_less_than_a1():
     """CPU time of choosing for one cell after another, beside that of A1 where no rule answers."""
     params = FORMER.with_(length1=300.0, length2=300.0)
     cells = random_cells(5, 200)
@@ -78,7 +77,7 @@ def test_rules_cost_less_than_a1() -> None:
     assert seconds["chosen"] < 1.2 * seconds["A1"], seconds
 
 
-def test_first_integral_is_named_where_it_answers() -> None:
+def test_first_integral_is_named_where_it_answers():
     long = FORMER.with_(length1=300.0, length2=300.0)
     found = choose_model(long, 0.2 * np.pi, 0.6 * np.pi, "peak_contact_force", TOLERANCE)
     assert found.model == "a3"
@@ -96,7 +95,7 @@ def test_first_integral_is_named_where_it_answers() -> None:
 )
 def test_first_integral_does_not_answer_where_geometry_makes_sliding_unstable(
     k2, k3, mu, lengths, angles
-) -> None:
+):
     """A4 keeps N ≤ k3 l_pre there, but A1 reaches 1.4 to 3.3 times that by growing."""
     params = FORMER.with_(
         k2=k2, k3=k3, mu=mu, length1=lengths[0], length2=lengths[1], belt_speed=1e3
@@ -107,7 +106,7 @@ def test_first_integral_does_not_answer_where_geometry_makes_sliding_unstable(
 
 
 @pytest.mark.parametrize("speed", [0.05, -0.05])
-def test_a_level_is_never_taken_when_its_assumption_is_broken(speed: float) -> None:
+def test_a_level_is_never_taken_when_its_assumption_is_broken(speed):
     """A slow belt is reached by the mass: only A1 may answer."""
     slow = FORMER.with_(belt_speed=speed)
     found = choose_models(slow, *random_cells(4, 200), "contact_lost", TOLERANCE, t_end=50.0)
@@ -116,7 +115,7 @@ def test_a_level_is_never_taken_when_its_assumption_is_broken(speed: float) -> N
     assert (found.level[outrun] == Level.a1).all()
 
 
-def test_long_springs_need_no_run_where_contact_is_kept() -> None:
+def test_long_springs_need_no_run_where_contact_is_kept():
     params = FORMER.with_(length1=1e4, length2=1e4)
     found = choose_model(params, 0.5 * np.pi, np.pi, "peak_contact_force", 0.01)
     # K = diag(k, k): y = κ/(1+κ)(1 − cos √(1+κ) t) ≥ 0, so the largest force is the first one
@@ -124,14 +123,14 @@ def test_long_springs_need_no_run_where_contact_is_kept() -> None:
     assert found.value == pytest.approx(1.0, rel=2e-4)
 
 
-def test_reason_says_why_a_run_was_needed() -> None:
+def test_reason_says_why_a_run_was_needed():
     found = choose_model(FORMER, 0.2 * np.pi, 0.8 * np.pi, "max_displacement", 0.05)
     assert found.model == "a1"
     assert found.cost > 0.0
     assert "cheapest level whose answer is certain" in found.reason
 
 
-def test_dominant_frequency_of_two_tones() -> None:
+def test_dominant_frequency_of_two_tones():
     times = np.linspace(0.0, 200.0, 1001)
     samples = np.cos(1.2345 * times) + 0.4 * np.cos(0.7 * times)
     assert dominant_frequency(samples, times) == pytest.approx(1.2345, abs=1e-3)
@@ -159,10 +158,10 @@ def test_no_cheaper_level_answers_for_other_friction(change, question):
     assert other.level[0] == Level.a1
 
 
-def random_parameters(generator: np.random.Generator) -> tuple[Parameters, float]:
+def random_parameters(generator):
     """Unequal springs, both belt directions, slow and fast belts, other units; and a horizon."""
 
-    def between(low: float, high: float) -> float:
+    def between(low, high):
         return float(np.exp(generator.uniform(np.log(low), np.log(high))))
 
     mass, stiffness, length = between(1e-2, 1e2), between(1e-3, 1e6), between(1e-4, 10.0)
@@ -177,7 +176,7 @@ def random_parameters(generator: np.random.Generator) -> tuple[Parameters, float
     return params, between(30.0, 400.0) * unit
 
 
-def test_no_cheap_answer_is_wrong_at_random_parameters() -> None:
+def test_no_cheap_answer_is_wrong_at_random_parameters():
     """Against A1 over the whole horizon, at the tolerance that was asked for."""
     generator = np.random.default_rng(20)
     answered = dict.fromkeys(QUESTIONS[:3], 0)
@@ -202,7 +201,7 @@ def test_no_cheap_answer_is_wrong_at_random_parameters() -> None:
 
 
 @pytest.mark.parametrize("question", QUESTIONS[:3])
-def test_reason_of_what_is_not_proved_names_its_sample(question: str) -> None:
+def test_reason_of_what_is_not_proved_names_its_sample(question):
     params = FORMER.with_(length1=100.0, length2=100.0)
     found = choose_model(params, 0.5 * np.pi, 0.9 * np.pi, question, TOLERANCE)
     assert found.model == "a3"
@@ -224,7 +223,7 @@ def test_reason_of_what_is_not_proved_names_its_sample(question: str) -> None:
         ),
     ],
 )  # fmt: skip
-def test_a_far_swing_of_a_short_spring_is_left_to_a1(springs, mu, speed, angles) -> None:
+def test_a_far_swing_of_a_short_spring_is_left_to_a1(springs, mu, speed, angles):
     """Found by a directed search; both were answered below A1 once."""
     k2, k3, length1, length2 = springs
     params = FORMER.with_(
@@ -256,9 +255,7 @@ def test_a_far_swing_of_a_short_spring_is_left_to_a1(springs, mu, speed, angles)
         ),
     ],
 )  # fmt: skip
-def test_cells_that_were_answered_wrongly_once(
-    params: Parameters, alpha1: float, alpha2: float
-) -> None:
+def test_cells_that_were_answered_wrongly_once(params, alpha1, alpha2):
     run = run_ensemble(params, alpha1, alpha2, t_end=240.0, workers=1)
     assert run.separations > 0
     found = choose_model(params, alpha1, alpha2, "contact_lost", 0.05, t_end=240.0)
@@ -266,7 +263,7 @@ def test_cells_that_were_answered_wrongly_once(
     assert found.model == "a1"
 
 
-def test_no_rule_outside_the_range_of_the_sample() -> None:
+def test_no_rule_outside_the_range_of_the_sample():
     sure = np.array([0.5 * np.pi]), np.array([np.pi])
     inside = FORMER.with_(length1=100.0, length2=100.0)
     assert linear_motion(inside, *sure, 200.0).keeps

@@ -18,29 +18,29 @@ def ladder():
     return model_ladder(PARAMS, 14, 0.05, t_end=100.0)
 
 
-def test_a1_is_adequate_everywhere_and_errs_nowhere(ladder) -> None:
+def test_a1_is_adequate_everywhere_and_errs_nowhere(ladder):
     assert not ladder.error.sel(level="a1").any()
     assert (ladder.cheapest <= Level.a1).all()
 
 
-def test_a_linear_level_answers_nothing_where_nothing_oscillates(ladder) -> None:
+def test_a_linear_level_answers_nothing_where_nothing_oscillates(ladder):
     linear = stability_map(PARAMS, ladder.alpha1, ladder.alpha2).regime_linear
     grows = linear != LinearRegime.stable
     assert 0 < grows.sum() < grows.size
     assert (np.isinf(ladder.error.sel(level="a3")) == grows).all()
 
 
-def test_without_stick_a1_is_the_same_when_the_belt_is_never_reached(ladder) -> None:
+def test_without_stick_a1_is_the_same_when_the_belt_is_never_reached(ladder):
     assert float(ladder.error.sel(level="a1_no_stick").max()) < 1e-6
 
 
 @pytest.mark.parametrize("question", QUESTIONS)
-def test_chosen_answers_are_within_the_tolerance(ladder, question: str) -> None:
+def test_chosen_answers_are_within_the_tolerance(ladder, question):
     error = ladder.chosen_error.sel(question=question)
     assert float((error <= ladder.tolerance).mean()) >= 0.97
 
 
-def test_cpu_time_is_recorded_and_some_cells_are_answered_below_a1(ladder) -> None:
+def test_cpu_time_is_recorded_and_some_cells_are_answered_below_a1(ladder):
     for name in ("always_cpu_time", "chosen_cpu_time"):
         assert (ladder[name] > 0.0).all()
         assert ladder[name].attrs["volatile"] == "true"
@@ -49,7 +49,7 @@ def test_cpu_time_is_recorded_and_some_cells_are_answered_below_a1(ladder) -> No
     assert float(below.sel(question="contact_lost")) > 0.05
 
 
-def test_a_level_counts_only_where_what_it_drops_mattered(ladder) -> None:
+def test_a_level_counts_only_where_what_it_drops_mattered(ladder):
     """At V = 100 the belt is never reached; at V = 0.3 it is, and stick matters in some cells."""
     assert not ladder.belt_reached.any()
     assert not (ladder.cheapest == Level.a1_no_stick).any()
@@ -60,7 +60,7 @@ def test_a_level_counts_only_where_what_it_drops_mattered(ladder) -> None:
 
 
 @pytest.mark.parametrize("speed", [0.4, 50.0])
-def test_a_reversed_belt_and_its_mirror_image_have_the_same_ladder(speed: float) -> None:
+def test_a_reversed_belt_and_its_mirror_image_have_the_same_ladder(speed):
     params = FORMER.with_(k2=1.4, length2=9.0, mu=0.45, belt_speed=speed)
     image = FORMER.with_(k1=1.4, length1=9.0, mu=0.45, belt_speed=-speed)
     # both horizons are the same, √(m/k1) is not
@@ -71,18 +71,18 @@ def test_a_reversed_belt_and_its_mirror_image_have_the_same_ladder(speed: float)
         np.testing.assert_array_equal(here[name].values, swapped, err_msg=name)
 
 
-def test_levels_differ_by_number_and_name() -> None:
+def test_levels_differ_by_number_and_name():
     for key in ("label", "colour"):
         assert len({getattr(level, key) for level in Level}) == len(Level)
     assert list(Level)[-1] == Level.a1
 
 
-def test_extensions_are_refused() -> None:
+def test_extensions_are_refused():
     with pytest.raises(ValueError, match="damping1"):
         model_ladder(FORMER.with_(damping1=0.1), 2, 0.05, t_end=1.0)
 
 
-def test_a_short_unit_of_time_is_no_long_run() -> None:
+def test_a_short_unit_of_time_is_no_long_run():
     """The run that compiles is a share of the horizon, not one second."""
     params = FORMER.with_(belt_speed=1.0)
     fast = params.with_(mass=1e-20, belt_speed=1e10)

@@ -1,14 +1,11 @@
 """Boundary curves lie where the symbolic model says; areas follow from exact integrals."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
 import pytest
 import scipy.integrate
 
-from squealpipe.parameters import Parameters
 from squealpipe.schema.linear import Boundary
 from squealpipe.tasks.linear.boundaries import stability_boundaries
 from squealpipe.tasks.linear.maps import quasi_static_map, stability_map
@@ -24,7 +21,7 @@ UNEQUAL = FORMER.with_(k1=0.9, k2=0.6, k3=1.1, mu=0.7)
 
 
 @pytest.mark.parametrize("params", [BASELINE, UNEQUAL])
-def test_every_point_lies_on_its_curve(params: Parameters) -> None:
+def test_every_point_lies_on_its_curve(params):
     curves = stability_boundaries(params, points=101)
     angles = {"alpha1": curves.alpha1.values, "alpha2": curves.alpha2.values}
     k11, k12, k22 = STIFFNESS(params, **angles)
@@ -42,7 +39,7 @@ def test_every_point_lies_on_its_curve(params: Parameters) -> None:
 
 
 @pytest.mark.parametrize("params", [BASELINE, UNEQUAL])
-def test_curves_are_continuous(params: Parameters) -> None:
+def test_curves_are_continuous(params):
     curves = stability_boundaries(params, points=201)
     step = np.hypot(np.diff(curves.alpha1), np.diff(curves.alpha2))
     inside = np.diff(curves.segment) == 0
@@ -51,9 +48,7 @@ def test_curves_are_continuous(params: Parameters) -> None:
 
 @pytest.mark.parametrize("params", [BASELINE, UNEQUAL])
 @pytest.mark.parametrize(("kind", "regime"), [(Boundary.flutter, 1), (Boundary.divergence, 2)])
-def test_the_regime_changes_across_the_curve(
-    params: Parameters, kind: Boundary, regime: int
-) -> None:
+def test_the_regime_changes_across_the_curve(params, kind, regime):
     curves = stability_boundaries(params, points=41)
     chosen = curves.boundary.values == kind
     for alpha1, alpha2 in zip(
@@ -65,16 +60,16 @@ def test_the_regime_changes_across_the_curve(
         assert (regimes != regime).any()
 
 
-def test_no_curve_where_there_is_no_friction() -> None:
+def test_no_curve_where_there_is_no_friction():
     curves = stability_boundaries(BASELINE.with_(mu=0.0), points=21)
     assert not np.isin(curves.boundary, (Boundary.flutter,)).any()
 
 
 @pytest.mark.parametrize("mu", [0.3, 1.0])
-def test_share_without_sliding_by_an_integral_along_one_angle(mu: float) -> None:
+def test_share_without_sliding_by_an_integral_along_one_angle(mu):
     """Equal springs: 1 + cos p cos q < μ cos p sin q, with p the sum and q the difference."""
 
-    def part(p: float) -> float:
+    def part(p):
         bound = -1.0 / (math.cos(p) * math.hypot(1.0, mu))
         if abs(bound) >= 1.0:
             return 0.0
@@ -88,7 +83,7 @@ def test_share_without_sliding_by_an_integral_along_one_angle(mu: float) -> None
     assert float(found.mean()) == pytest.approx(exact, rel=5e-3)
 
 
-def test_printed_condition_fails_for_half_of_the_map_without_friction() -> None:
+def test_printed_condition_fails_for_half_of_the_map_without_friction():
     sliding = quasi_static_map(BASELINE.with_(mu=0.0), MIDPOINTS, MIDPOINTS)
     assert float(sliding.possible_as_printed.mean()) == pytest.approx(0.5, abs=2e-3)
     assert sliding.possible.all()

@@ -1,7 +1,5 @@
 """Linear maps against high-precision eigenvalues, numeric eigenvalues and algebra."""
 
-from __future__ import annotations
-
 import math
 
 import mpmath
@@ -10,7 +8,6 @@ import pytest
 import scipy.linalg
 import scipy.optimize
 
-from squealpipe.parameters import Parameters
 from squealpipe.schema import Outcome
 from squealpipe.store import load, save
 from squealpipe.tasks.linear.maps import natural_frequencies, quasi_static_map, stability_map
@@ -23,7 +20,7 @@ UNEQUAL = FORMER.with_(mass=1.7, k1=1.4, k2=0.6, k3=0.9, mu=0.45, preload=0.5)
 SEED = 11
 
 
-def reference_matrix(params: Parameters, alpha1: float, alpha2: float) -> mpmath.matrix:
+def reference_matrix(params, alpha1, alpha2):
     """Stiffness over mass in contact, from the paper's Eqs. (8), (20), (21) in high precision."""
     p = {name: mpmath.mpf(value) for name, value in params.as_dict().items()}
     (c1, s1), (c2, s2) = (mpmath.cos_sin(mpmath.mpf(a)) for a in (alpha1, alpha2))
@@ -34,7 +31,7 @@ def reference_matrix(params: Parameters, alpha1: float, alpha2: float) -> mpmath
     return mpmath.matrix(rows) / p["mass"]
 
 
-def reference_eigenvalues(params: Parameters, alpha1: float, alpha2: float) -> list[complex]:
+def reference_eigenvalues(params, alpha1, alpha2):
     """All s with s² = −ω², by mpmath's general eigenvalue solver."""
     with mpmath.workdps(60):
         squares = mpmath.eig(reference_matrix(params, alpha1, alpha2), right=False)
@@ -42,7 +39,7 @@ def reference_eigenvalues(params: Parameters, alpha1: float, alpha2: float) -> l
         return [complex(sign * root) for root in roots for sign in (1, -1)]
 
 
-def own_eigenvalues(params: Parameters, alpha1: float, alpha2: float) -> np.ndarray:
+def own_eigenvalues(params, alpha1, alpha2):
     cell = stability_map(params, [alpha1], [alpha2]).isel(alpha1=0, alpha2=0)
     if cell.regime_linear == 2:
         growing = [float(cell.growth_rate), 1j * float(cell.frequency[1])]
@@ -52,23 +49,23 @@ def own_eigenvalues(params: Parameters, alpha1: float, alpha2: float) -> np.ndar
     return np.concatenate([upper, -upper, upper.conj(), -upper.conj()])
 
 
-def relative_error(params: Parameters, alpha1: float, alpha2: float) -> float:
+def relative_error(params, alpha1, alpha2):
     own = own_eigenvalues(params, alpha1, alpha2)
     reference = reference_eigenvalues(params, alpha1, alpha2)
     return max(float(np.abs(own - value).min() / abs(value)) for value in reference)
 
 
 @pytest.mark.parametrize("params", [BASELINE, UNEQUAL, BASELINE.with_(mu=0.8, k3=1.3)])
-def test_eigenvalues_to_thirteen_digits(params: Parameters) -> None:
+def test_eigenvalues_to_thirteen_digits(params):
     generator = np.random.default_rng(SEED)
     worst = max(relative_error(params, *generator.uniform(0, np.pi, 2)) for _ in range(60))
     assert worst < 1e-13
 
 
-def onset(params: Parameters, alpha2: float, low: float, high: float) -> float:
+def onset(params, alpha2, low, high):
     """The α1 of flutter onset, where the two squares of the high-precision matrix meet."""
 
-    def discriminant(alpha1: float) -> float:
+    def discriminant(alpha1):
         m = reference_matrix(params, alpha1, alpha2)
         return float(((m[0, 0] - m[1, 1]) / 2) ** 2 + m[0, 1] * m[1, 0])
 
@@ -77,7 +74,7 @@ def onset(params: Parameters, alpha2: float, low: float, high: float) -> float:
 
 
 @pytest.mark.parametrize("ulps", [-40, -3, -1, 0, 1, 3, 40])
-def test_eigenvalues_to_twelve_digits_at_the_onset_of_flutter(ulps: int) -> None:
+def test_eigenvalues_to_twelve_digits_at_the_onset_of_flutter(ulps):
     """The nearest floating-point angles to the onset, where numeric eigenvalues fail."""
     alpha2 = 0.23 * math.pi
     alpha1 = onset(BASELINE, alpha2, 0.05 * math.pi, 0.14 * math.pi)
@@ -93,12 +90,12 @@ def test_eigenvalues_to_twelve_digits_at_the_onset_of_flutter(ulps: int) -> None
 
 
 @pytest.mark.parametrize("distance", [1e-14, 1e-10, 1e-6, 1e-3])
-def test_growth_rates_next_to_both_boundaries(distance: float) -> None:
+def test_growth_rates_next_to_both_boundaries(distance):
     """Growth itself keeps twelve digits, though it is a small difference of large numbers."""
     alpha2 = 0.23 * math.pi
     flutter = onset(BASELINE, alpha2, 0.05 * math.pi, 0.14 * math.pi) + distance
 
-    def determinant(alpha1: float) -> float:
+    def determinant(alpha1):
         m = reference_matrix(BASELINE, alpha1, 0.55 * math.pi)
         return float(m[0, 0] * m[1, 1] - m[0, 1] * m[1, 0])
 
@@ -111,7 +108,7 @@ def test_growth_rates_next_to_both_boundaries(distance: float) -> None:
         assert found == pytest.approx(exact, rel=1e-12)
 
 
-def test_the_map_agrees_with_numeric_eigenvalues_everywhere() -> None:
+def test_the_map_agrees_with_numeric_eigenvalues_everywhere():
     angles = np.linspace(0.0, np.pi, 61)
     result = stability_map(UNEQUAL, angles, angles)
     for i, j in np.ndindex(61, 61):
@@ -122,7 +119,7 @@ def test_the_map_agrees_with_numeric_eigenvalues_everywhere() -> None:
         np.testing.assert_allclose(np.sort(result.frequency[i, j]), expected, atol=2e-7)
 
 
-def test_cell_counts_at_the_baseline() -> None:
+def test_cell_counts_at_the_baseline():
     """Counts stated in the project's brief, found there by an independent code."""
     stability = stability_map(BASELINE, ANGLES, ANGLES)
     sliding = quasi_static_map(BASELINE, ANGLES, ANGLES)
@@ -136,7 +133,7 @@ def test_cell_counts_at_the_baseline() -> None:
     assert (~sliding.possible.values & pressed).sum() == 212
 
 
-def test_flutter_needs_negative_coupling_and_divergence_positive() -> None:
+def test_flutter_needs_negative_coupling_and_divergence_positive():
     k = symbols.function(symbols.STIFFNESS)
     stability = stability_map(UNEQUAL.with_(k1=0.9, mu=0.8), ANGLES, ANGLES)
     for kind, sign in ((1, -1), (2, 1)):
@@ -146,7 +143,7 @@ def test_flutter_needs_negative_coupling_and_divergence_positive() -> None:
             assert sign * k(params, alpha1=ANGLES[i], alpha2=ANGLES[j])[0, 1] > 0
 
 
-def test_mass_scales_rates_and_friction_vanishes() -> None:
+def test_mass_scales_rates_and_friction_vanishes():
     heavy = stability_map(BASELINE.with_(mass=4.0), ANGLES[::9], ANGLES[::9])
     light = stability_map(BASELINE, ANGLES[::9], ANGLES[::9])
     np.testing.assert_allclose(heavy.growth_rate, light.growth_rate / 2, rtol=1e-14)
@@ -155,7 +152,7 @@ def test_mass_scales_rates_and_friction_vanishes() -> None:
     assert (without.growth_rate == 0).all()
 
 
-def test_sigma_matters_only_where_the_contact_law_is_blunt() -> None:
+def test_sigma_matters_only_where_the_contact_law_is_blunt():
     sharp = stability_map(BASELINE, ANGLES[::5], ANGLES[::5])
     steep = stability_map(BASELINE, ANGLES[::5], ANGLES[::5], sigma=1000.0)
     np.testing.assert_allclose(steep.frequency, sharp.frequency, rtol=1e-14)
@@ -165,7 +162,7 @@ def test_sigma_matters_only_where_the_contact_law_is_blunt() -> None:
     np.testing.assert_allclose(blunt.frequency, same.frequency, atol=1e-4)
 
 
-def test_static_state_of_the_scene_of_fig_3_sits_at_the_edge_of_contact() -> None:
+def test_static_state_of_the_scene_of_fig_3_sits_at_the_edge_of_contact():
     cell = quasi_static_map(BASELINE, [0.4 * math.pi], [0.6 * math.pi]).isel(alpha1=0, alpha2=0)
     assert bool(cell.possible)
     assert bool(cell.possible_as_printed)
@@ -174,7 +171,7 @@ def test_static_state_of_the_scene_of_fig_3_sits_at_the_edge_of_contact() -> Non
     assert float(cell.contact_force_static) == 0.0
 
 
-def test_no_static_state_where_both_springs_are_vertical() -> None:
+def test_no_static_state_where_both_springs_are_vertical():
     cell = quasi_static_map(BASELINE, [math.pi / 2], [math.pi / 2]).isel(alpha1=0, alpha2=0)
     assert int(cell.outcome) == Outcome.singular_static_state
     assert np.isnan(cell.reaction_force)
@@ -182,7 +179,7 @@ def test_no_static_state_where_both_springs_are_vertical() -> None:
     assert not bool(cell.possible_as_printed)
 
 
-def test_static_state_balances_the_forces() -> None:
+def test_static_state_balances_the_forces():
     force = symbols.function(symbols.LINEAR_FORCE)
     result = quasi_static_map(UNEQUAL, ANGLES[::20], ANGLES[::20])
     for i, j in np.ndindex(result.x_static.shape):
@@ -195,7 +192,7 @@ def test_static_state_balances_the_forces() -> None:
         assert float(cell.contact_force_static) == pytest.approx(normal, abs=1e-11 * (1 + abs(y)))
 
 
-def test_frequencies_in_both_states() -> None:
+def test_frequencies_in_both_states():
     """Largest ω1², rigid modes along α1 + α2 = nπ, and flags for what is no oscillation."""
     result = natural_frequencies(BASELINE, ANGLES, ANGLES)
     first, second = np.meshgrid(np.arange(181), np.arange(181), indexing="ij")
@@ -218,7 +215,7 @@ def test_frequencies_in_both_states() -> None:
 
 
 @pytest.mark.parametrize("nearby", [1e-3, 1e-6, 1e-9, 1e-12])
-def test_a_small_separated_frequency_keeps_its_digits(nearby: float) -> None:
+def test_a_small_separated_frequency_keeps_its_digits(nearby):
     """ω1² = (k/m)(1 − |cos(α1 + α2)|) = 2 (k/m) sin²((α1 + α2)/2) near α1 + α2 = π."""
     first, second = 0.3, math.pi - 0.3 + nearby
     with mpmath.workdps(50):
@@ -230,7 +227,7 @@ def test_a_small_separated_frequency_keeps_its_digits(nearby: float) -> None:
 
 
 @pytest.mark.parametrize("task", [quasi_static_map, stability_map, natural_frequencies])
-def test_maps_survive_the_store(task: object, tmp_path: object) -> None:
+def test_maps_survive_the_store(task, tmp_path):
     result = task(BASELINE, ANGLES[::15], ANGLES[::20])
     path = save(result, tmp_path / "map.nc")
     assert load(path).equals(result)
