@@ -10,7 +10,8 @@ from tests.benchmark.make_references import derivative, disagreement, extrapolat
 
 DATA = {data["name"]: data for data in all_data() if "unknowable" not in data}
 SLOW = {
-    "relaxation", "long flight", "A1: very stiff contact", "A1: chaotic hammering",
+    "relaxation", "long flight", "dry friction", "stick–slip", "bouncing ball",
+    "A1: very stiff contact", "A1: chaotic hammering",
     "A1: stick release", "A1: separation in stick", "A1: simultaneous events", "A1: hammering",
     "relief valve", "chaotic impacts", "A1: near-pivot passage", "A1: grazing contact",
 }  # fmt: skip

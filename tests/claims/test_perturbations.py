@@ -10,7 +10,7 @@ import pytest
 import xarray as xr
 
 from squealpipe.schema.claims import Verdict
-from squealpipe.study.claims.judge import judge
+from squealpipe.study.claims import judge as judging
 from squealpipe.study.claims.statements import STATEMENTS
 
 HOLDS, PRINTED, FAILS = Verdict.holds, Verdict.holds_only_as_printed, Verdict.fails
@@ -199,11 +199,12 @@ FLIPS = [
 
 
 @pytest.mark.parametrize("flip", FLIPS, ids=[f"{flip.claim}-{flip.dataset}" for flip in FLIPS])
-def test_the_verdict_flips(flip, evidence, baseline):
-    recorded = {statement.id: statement.recorded for statement in STATEMENTS}
-    assert flip.verdict != recorded[flip.claim]
+def test_the_verdict_flips(flip, evidence, baseline, monkeypatch):
+    (statement,) = (statement for statement in STATEMENTS if statement.id == flip.claim)
+    assert flip.verdict != statement.recorded
+    monkeypatch.setattr(judging, "STATEMENTS", [statement])
     changed = {**evidence, flip.dataset: flip.change(evidence[flip.dataset])}
-    found = judge(baseline, changed, "as_printed").sel(claim=flip.claim)
+    found = judging.judge(baseline, changed, "as_printed").sel(claim=flip.claim)
     assert Verdict(int(found.verdict_here)) == flip.verdict, str(found.evidence.item())
 
 

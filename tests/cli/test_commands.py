@@ -234,7 +234,7 @@ def test_a_scene_without_a_cycle_says_so(capsys):
         (["basin", "1", "2", "--vx", "-3:3:3", "--vy", "0,1", "--t-end", "20"], "of 6 cells"),
         (["disturbance", "0.75pi", "0.75pi", "--t-end", "20", "--directions", "8"], "found: 0."),
         (["choose", "0.75pi", "0.75pi", "max_displacement", "--t-end", "20"], "displacement: 0."),
-        (["infer", "--samples", "16", "--kappa", "0.5,0.8"], "of 16 sets meet every"),
+        (["infer", "--samples", "16", "--kappa", "0.64,0.66"], "of 16 sets meet every"),
         (["refine", "--resolution", "17", "--coarse", "9", "--t-end", "5"], "of 289 cells"),
     ],
 )

@@ -23,7 +23,10 @@ LONG = {
 }  # fmt: skip
 
 
-@pytest.mark.parametrize("name", LONG)
+SLOW = [pytest.param(name, marks=pytest.mark.release) for name in ("map", "backbone")]
+
+
+@pytest.mark.parametrize("name", ["simulate", "sweep", *SLOW])
 def test_interrupt_stops_the_command_and_its_processes(name, tmp_path):
     """As a terminal sends it: to the whole group."""
     command = [sys.executable, "-m", "squealpipe", *LONG[name]]

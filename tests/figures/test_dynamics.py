@@ -25,9 +25,8 @@ from squealpipe.tasks.dynamics import runs as dynamics
 from squealpipe.tasks.dynamics import whirl as whirl_task
 from tests.former import FORMER
 
-ANGLES = np.linspace(0, np.pi, 31)
+ANGLES = np.linspace(0, np.pi, 16)
 STUDIES = {
-    "baseline": Parameters(),
     "never separates": Parameters(k3=1e-3),
     "always separates": Parameters(k3=50.0, belt_speed=-2.0),
     "belt at rest": Parameters(belt_speed=0.0),
@@ -43,9 +42,9 @@ def scene(name, params):
 def test_all_are_drawn_for_any_study(params, tmp_path):
     maps = {
         "validity": dynamics.validity_map(params, ANGLES, ANGLES, t_end=50.0),
-        "hammering": hammering_task.hammering_map(params, ANGLES, ANGLES, t_end=50.0),
+        "hammering": hammering_task.hammering_map(params, ANGLES, ANGLES, t_end=20.0),
         "refined": refinement.refine_validity_map(params, resolution=61, coarse=16, t_end=50.0),
-        "whirl": whirl_task.whirl_sizes(params, [0.5, 5.0, 50.0], t_end=200.0),
+        "whirl": whirl_task.whirl_sizes(params, [0.5, 5.0, 50.0], t_end=100.0),
     }
     runs = {name: scene(name, params) for name in ("F2a", "F2b", "F2c", "F2d", "F3", "F4", "F5a")}
     figures = {

@@ -2,8 +2,6 @@
 
 import multiprocessing
 import os
-import subprocess
-import sys
 
 import numpy as np
 import pytest
@@ -69,20 +67,6 @@ def test_inside_a_daemonic_worker_the_work_runs_there():
     process.start()
     assert queue.get(timeout=60) == np.sum(np.arange(1000.0) ** 2)
     process.join()
-
-
-def test_a_script_without_main_guard_ends():
-    script = (
-        "import numpy as np\n"
-        "from squealpipe.parameters import Parameters\n"
-        "from squealpipe.tasks.dynamics.runs import validity_map\n"
-        "a = np.linspace(0, np.pi, 15)\n"
-        "print(int((validity_map(Parameters(), a, a, t_end=20.0, workers=2).separates).sum()))\n"
-    )
-    done = subprocess.run(
-        [sys.executable, "-c", script], capture_output=True, text=True, timeout=120, check=True
-    )
-    assert int(done.stdout) > 0
 
 
 def test_cores():

@@ -52,7 +52,7 @@ def test_parts_share_the_whole_and_who_works_alone_shows_for_all():
 
 
 COMMAND = [
-    sys.executable, "-m", "squealpipe", "basin", "0.4pi", "0.6pi", "--vx=-5:5:300",
+    sys.executable, "-m", "squealpipe", "basin", "0.4pi", "0.6pi", "--vx=-5:5:100",
     "--t-end", "600", "--workers", "2", "-o", "b.nc", "--force",
 ]  # fmt: skip
 

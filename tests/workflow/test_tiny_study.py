@@ -72,6 +72,7 @@ def test_log_of_a_run_has_one_line_a_job(tiny_study):
     assert not re.search(r"^ +(input|output): ", text, flags=re.MULTILINE)
 
 
+@pytest.mark.release
 def test_snakemake_writes_its_own_report(tiny_study, snakemake):
     config = ("--configfile", "workflow/config/tiny.yaml")
     done = snakemake(tiny_study.checkout, *config, "--report", "own.html")

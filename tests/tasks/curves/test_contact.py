@@ -54,7 +54,12 @@ def _distance(loops, place):
     return float(min(nearest))
 
 
-@pytest.mark.parametrize("name", SETS)
+SLOW = [
+    pytest.param(name, marks=pytest.mark.release) for name in ("baseline", "a brake in SI units")
+]
+
+
+@pytest.mark.parametrize("name", [*list(SETS)[1:4], *SLOW])
 def test_the_curves_agree_with_a_uniform_map(name):
     """Every point of a map that is finer than the one the curves start from."""
     params, model = SETS[name]

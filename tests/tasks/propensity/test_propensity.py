@@ -156,7 +156,8 @@ def test_settings_differ_from_the_paper_one_at_a_time():
 
 
 def test_feasible_sets_are_judged_by_what_was_predicted_alone():
-    inferred = of_study(infer_parameters(FORMER, samples=512, tol=1e-6))
+    near = {"kappa": (0.55, 0.75), "mu": (0.2, 0.32), "length_ratio": (4.0, 16.0)}
+    inferred = of_study(infer_parameters(FORMER, samples=64, tol=1e-6, **near))
     count = int(inferred.feasible_count)
     names = ["F2a", *inferred.consequence.values.tolist()]
     fitted, *predicted = _feasible(inferred, names)
