@@ -20,6 +20,8 @@ BENCHMARK_VERSION = 1
 TOLERANCES = (1e-6, 1e-8, 1e-10, 1e-12)
 ALLOWED = 100.0
 """Error over growth, in tolerances, up to which an answer is right."""
+NEVER = 1e300
+"""Stands for an event time that is not a finite number."""
 APART = 0.1
 """An event is known whose time the allowed error moves by less of the way to the next one."""
 REFERENCE_TOLERANCE = 1e-8
@@ -45,7 +47,8 @@ class Score(NamedTuple):
         """The score as text: the verdict, then what is wrong."""
         counts = {n: getattr(self, n) for n in ("missed", "spurious", "out_of_order")}
         found = [f"{count} {name.replace('_', ' ')}" for name, count in counts.items() if count > 0]
-        if self.verdict > Reliability.right and np.isfinite(self.error):
+        unanswered = np.isinf(self.error) and self.message
+        if self.verdict > Reliability.right and not (np.isnan(self.error) or unanswered):
             found.append(f"error {self.error:.1e}")
         found += [self.message] * bool(self.message)
         verdict = self.verdict.name.replace("_", " ")
@@ -63,9 +66,13 @@ def score(
         answer: times, kinds, state, evaluations, and optionally a flag and a derivative; times and
             kinds are None where a method reports no events.
         tol: what was asked for.
+
+    Raises:
+        ValueError: the answer has fewer parts, or kinds and times differ in number.
     """
     times, kinds, state, evaluations, *more = answer
-    flag = more[0] if more else ""
+    evaluations = int(evaluations)
+    flag = str(more[0] or "") if more else ""
     slope = more[1] if more[1:] else None
     unlike_right = Reliability.flagged if flag else Reliability.silently_wrong
     if "unknowable" in data:
@@ -74,7 +81,10 @@ def score(
     missed = spurious = swapped = -1
     time_error, wrong, allowed = np.nan, False, ALLOWED * tol
     if times is not None:
-        mine, truth, growth = map(np.array, (times, reference["times"], reference["time_growth"]))
+        if len(times) != len(kinds):
+            raise ValueError(f"{len(times)} times, but {len(kinds)} kinds of events")
+        truth, growth = np.array(reference["times"]), np.array(reference["time_growth"])
+        mine = np.nan_to_num(np.array(times, float), nan=NEVER, posinf=NEVER, neginf=-NEVER)
         i, j = matched(reference, mine, kinds).T
         missed, spurious = len(truth) - len(i), len(mine) - len(j)
         swapped = out_of_order(j, truth[i], allowed * growth[i])
@@ -83,7 +93,8 @@ def score(
         errors = np.abs(mine[j] - truth[i]) / np.maximum(1.0, truth[i])
         time_error = errors.max(initial=0.0)
         error = (errors / growth[i]).max(initial=error, where=known[i])
-        wrong = known.sum() > known[i].sum() or (judged and max(spurious, swapped) > 0)
+        order = out_of_order(j[known[i]], truth[i][known[i]], (allowed * growth)[i][known[i]])
+        wrong = known.sum() > known[i].sum() or order > 0 or (judged and spurious > 0)
     if slope is not None and data.get("derivative"):
         error = max(error, largest([slope], [reference["derivative"]], reference["growth"]))
     verdict = Reliability.right if error <= allowed and not wrong else unlike_right
@@ -126,16 +137,18 @@ def spacing(times: np.ndarray) -> np.ndarray:
 def measure(data: Mapping[str, Any], solve: Callable[..., Any], tol: float) -> Score:
     """Ask one solver one problem; an exception flags its answer."""
     problem = Problem(data)
+    reference = references()[data["name"]]
     started = time.process_time()
     try:
         answer = solve(problem, tol)
+        spent = time.process_time() - started
+        found = score(data, reference, answer, tol)
     except NotImplementedError as refusal:
         return Score(Reliability.not_applicable, message=str(refusal)[:64])
     except Exception as failure:  # noqa: BLE001 (whatever a solver raises is its flag)
+        spent = time.process_time() - started
         flag = f"{type(failure).__name__}: {failure}"
-        answer = None, None, [], problem.calls, flag
-    spent = time.process_time() - started
-    found = score(data, references()[data["name"]], answer, tol)
+        found = score(data, reference, (None, None, [], problem.calls, flag), tol)
     return found._replace(cpu_time=spent, message=found.message[:64])
 
 
@@ -159,7 +172,9 @@ def benchmark(
     """
     known = {data["name"]: data for data in all_data()}
     if unknown := [name for name in names if name not in known]:
-        raise ValueError(f"problem {unknown[0]!r} is unknown; known: {', '.join(known)}")
+        raise ValueError(f"problem {unknown[0]!r} is unknown; one of {'; '.join(known)}")
+    if min(tolerances) <= 0.0:
+        raise ValueError(f"tolerance {min(tolerances):g}: has to be above 0")
     if not solvers:
         raise ValueError("no solver that is asked for is installed")
     chosen = [known[name] for name in names or known]

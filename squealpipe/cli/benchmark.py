@@ -42,7 +42,7 @@ def run(
 
     check_output(output, force=force)
     solvers = installed(solver or SOLVERS)
-    tolerances = sorted(tolerance or TOLERANCES, reverse=True)
+    tolerances = sorted({*(tolerance or TOLERANCES)}, reverse=True)
 
     def done(problem: str, name: str, scores: list[Score]) -> None:
         found = "; ".join(f"{t:g} {s.words}" for t, s in zip(tolerances, scores, strict=True))
@@ -59,7 +59,7 @@ def run(
 
 
 def compare(one: Path, other: Path, /) -> int:
-    """Set the verdicts of two results side by side; exit code 1: they differ.
+    """Set the verdicts of two results on what both have side by side; exit code 1: they differ.
 
     Example: `squealpipe benchmark compare mine.nc theirs.nc`
 
@@ -67,12 +67,21 @@ def compare(one: Path, other: Path, /) -> int:
         one: a dataset of `squealpipe benchmark`.
         other: another.
     """
+    import xarray as xr
+
     from squealpipe.benchmark.scoring import verdicts
     from squealpipe.store import load
 
     found, others = load(one), load(other)
+    for path, each in ((one, found), (other, others)):
+        if each.attrs["schema"] != "benchmark":
+            raise ValueError(f"{path} is a dataset {each.attrs['schema']!r}, not of the benchmark")
+    found, others = xr.align(found, others, exclude="solver")
+    if not found.verdict.size:
+        raise ValueError(f"{one} and {other} have no problem at the same tolerance")
+    print("tolerances: " + ", ".join(f"{tol:g}" for tol in found.tol.values))
     same = True
-    for problem in [name for name in found.problem.values if name in others.problem.values]:
+    for problem in found.problem.values:
         left, right = (verdicts(each.sel(problem=problem)) for each in (found, others))
         print(f"{problem}\n  {one.name}: {left}\n  {other.name}: {right}")
         same &= left.partition(": ")[2] == right.partition(": ")[2]

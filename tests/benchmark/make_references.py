@@ -308,10 +308,10 @@ def reference_of(data: Mapping[str, Any]) -> dict[str, Any]:
         "time_growth": of_times,
         "margin": 0.0 if "tie" in data else margin,
     }
-    if "derivative" in data:
-        found["derivative"] = float(
-            derivative(data, lambda d: LongDouble(d)(), np.longdouble, np.longdouble(2.0**-13))
-        )
+    if "derivative" in data:  # a difference of long doubles has no 15 digits left
+        with mpmath.workdps(DIGITS):
+            slope = derivative(data, extrapolation, mpmath.mpf, mpmath.mpf(2) ** -13)
+        found["derivative"] = float(slope)
     return found
 
 

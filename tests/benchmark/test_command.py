@@ -47,6 +47,26 @@ def test_right_solver_gives_exit_code_zero_and_two_are_compared(mine, tmp_path, 
     assert run(["benchmark", "compare", theirs, theirs]) == 0
 
 
+def test_results_with_nothing_in_common_are_not_the_same(tmp_path, capsys):
+    one, other = str(tmp_path / "a.nc"), str(tmp_path / "b.nc")
+    for tol, output in (("1e-6", one), ("1e-8", other)):
+        some = ["--problem", "thermostat", "--tolerance", tol, "-o", output]
+        assert run(["benchmark", "--solver", "DOP853", *some]) == 0
+    assert run(["benchmark", "compare", one, other]) == 2
+    assert "no problem at the same tolerance" in capsys.readouterr().err
+
+
+def test_solvers_of_one_name_and_tolerance_zero_are_refused(mine, tmp_path, capsys):
+    (tmp_path / "other").mkdir()
+    (tmp_path / "other/mine.py").write_text(MINE)
+    two = ["--solver", mine, "--solver", f"{tmp_path / 'other/mine.py'}:solve"]
+    some = ["--problem", "two gates", "-o", str(tmp_path / "x.nc")]
+    assert run(["benchmark", *two, *some]) == 2
+    assert "the same name" in capsys.readouterr().err
+    assert run(["benchmark", "--solver", "DOP853", "--tolerance", "0", *some]) == 2
+    assert "above 0" in capsys.readouterr().err
+
+
 @pytest.mark.parametrize(
     ("solver", "message"),
     [("nobody", "one of"), ("nowhere.py:solve", "no file"), ("{here}:other", "no function")],

@@ -60,6 +60,14 @@ def test_swapped_events_are_out_of_order():
             assert "silently wrong (1 out of order" in found.words, (name, i)
 
 
+def test_swap_of_known_events_is_judged_where_later_ones_are_not():
+    """At 1e-6 the last impacts of the bouncing ball cannot be known; the first two can."""
+    times, kinds, state, _ = _truth("bouncing ball")
+    times[:2] = times[1::-1]
+    found = _scored("bouncing ball", times, kinds, state, tol=1e-6)
+    assert found.words.startswith("silently wrong (1 out of order")
+
+
 def test_kinds_alone_swapped_are_out_of_order():
     times, kinds, state, _ = _truth("two gates")
     assert "out of order" in _scored("two gates", times, kinds[::-1], state).words
@@ -128,6 +136,28 @@ def test_exception_and_endless_solver_are_flagged():
 
     assert "gave up" in measure(DATA["two gates"], endless, TOL).words
     assert measure(DATA["two gates"], lambda *_: 1 / 0, TOL).words.startswith("flagged (Zero")
+
+
+@pytest.mark.parametrize("time", [np.nan, np.inf, -np.inf])
+def test_event_time_that_is_no_number_is_an_error(time):
+    times, kinds, *rest = _truth("two gates")
+    found = measure(DATA["two gates"], lambda *_: ([times[0], time], kinds, *rest), TOL)
+    assert found.words.startswith("silently wrong (error")
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (lambda times, kinds, state, n: (times, kinds, state), "flagged (ValueError"),
+        (lambda times, kinds, state, n: (times, kinds[:1], state, n), "flagged (ValueError: 2 tim"),
+        (lambda times, kinds, state, n: (times, kinds, state, None), "flagged (TypeError"),
+        (lambda times, kinds, state, n: (times, kinds, state, n, None), "right"),
+        (lambda times, kinds, state, n: (times, kinds, [np.nan] * 2, n), "silently wrong (error"),
+    ],
+)
+def test_malformed_answer_does_not_end_the_run(change, words):
+    answer = change(*_truth("two gates"))
+    assert measure(DATA["two gates"], lambda *_: answer, TOL).words.startswith(words)
 
 
 def test_problems_are_those_of_the_systems():

@@ -38,7 +38,8 @@ def solver(name: str) -> Callable[..., Any] | None:
             raise ValueError(f"solver {name!r}: {path} has no function {function}")
         return found[function]  # type: ignore[no-any-return]
     if name not in SOLVERS:
-        raise ValueError(f"solver {name!r} is unknown; one of {', '.join(SOLVERS)}")
+        known = "; ".join(SOLVERS)
+        raise ValueError(f"solver {name!r} is unknown; one of {known}; or FILE.py:FUNCTION")
     module, needs, options = SOLVERS[name]
     if find_spec(needs) is None:
         return None
@@ -46,8 +47,15 @@ def solver(name: str) -> Callable[..., Any] | None:
 
 
 def installed(names: Iterable[str]) -> dict[str, Callable[..., Any]]:
-    """Solvers by name (without folders); those that are not installed are left out, and said so."""
+    """Solvers by name (without folders); those that are not installed are left out, and said so.
+
+    Raises:
+        ValueError: see :func:`solver`; or two files have the same name.
+    """
+    names = dict.fromkeys(names)
     found = {name.rpartition("/")[2]: solver(name) for name in names}
+    if len(found) < len(names):
+        raise ValueError(f"two solvers have the same name: {', '.join(names)}")
     for name, solve in found.items():
         if solve is None:
             print(f"{name}: {SOLVERS[name][1]} is not installed, left out")
