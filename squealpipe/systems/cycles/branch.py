@@ -274,13 +274,12 @@ class Follower:
 
     def _has_shrunk(self, cycle: Cycle, share: float = _AT_REST) -> bool:
         """Whether a cycle without forcing is next to a state of rest."""
-        largest = max(
-            float(np.diff(shape[2:].reshape(2, -1), axis=0).max()) for shape in self.shapes
-        )
-        size = float(
-            np.diff(self._shape(cycle, self.points[-1].state)[2:].reshape(2, -1), axis=0).max()
-        )
-        return not cycle.map.periods and size < share * largest
+        if cycle.map.periods:
+            return False
+        last = self._shape(cycle, self.points[-1].state)
+        lowest, highest = np.split(np.array([*self.shapes, last])[:, 2:], 2, axis=1)
+        sizes = (highest - lowest).max(axis=1)
+        return bool(sizes[-1] < share * sizes[:-1].max())
 
     def _advance(self, state: ContinuationState, cycle: Cycle) -> Step | None:
         """The next step that is shown to be on the same branch."""

@@ -358,11 +358,14 @@ class Cycle:
 
     def after_part(self, parts: int) -> Vector:
         """How far states after a part of the period are from those before, over the extent."""
-        count = 12
-        path, _ = self.states_at(np.arange(count) / count * self.period)
+        path = self._twelfths
+        return np.asarray(np.roll(path, len(path) // parts, axis=0) - path).ravel()
+
+    @cached_property
+    def _twelfths(self) -> Vector:
+        path, _ = self.states_at(np.arange(12) / 12 * self.period)
         n = self.map.flow.size
-        path = path / scale_of(self.extremes[:, :n], self.map.flow.system.sizes)
-        return np.asarray(np.roll(path, count // parts, axis=0) - path).ravel()
+        return np.asarray(path / scale_of(self.extremes[:, :n], self.map.flow.system.sizes))
 
     @property
     def clocks(self) -> Vector:
