@@ -9,7 +9,6 @@ from hypothesis import strategies as st
 from squealpipe.config.ranges import (
     longest,
     parse_angle,
-    parse_number,
     parse_range,
     read_fixed,
     read_values,
@@ -53,12 +52,6 @@ def test_radians_are_read_exactly_up_to_a_full_turn(value):
                 parse_angle(text)
         elif abs(value) < 6.2831:
             assert parse_angle(text) == value
-
-
-@pytest.mark.parametrize("text", ["", "x", "nan", "inf"])
-def test_what_is_no_number_is_refused(text):
-    with pytest.raises(ValueError, match="is not a number"):
-        parse_number(text)
 
 
 def test_linear_range_has_both_ends():

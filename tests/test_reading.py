@@ -33,8 +33,3 @@ def test_the_correction_has_one_sign_and_is_its_own():
         mended = READINGS[reading.corrected]
         assert mended.a1_model == "A1"
         assert READINGS[mended.corrected] == mended
-
-
-def test_an_unknown_reading_is_refused():
-    with pytest.raises(ValueError, match="did you mean 'as_printed'"):
-        for_a1(PARAMS, "as_print")

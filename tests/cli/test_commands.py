@@ -32,13 +32,6 @@ def test_help_explains_with_an_example(command, capsys):
     assert max(out) < "\U0001f000"  # "KIND:A:B" would be drawn as an emoji
 
 
-def test_overview_names_every_command_and_the_exit_codes(capsys):
-    assert run(["--help"]) == 0
-    out = capsys.readouterr().out
-    assert all(command in out for command in COMMANDS)
-    assert "Exit codes" in out
-
-
 def test_version(capsys):
     assert run(["--version"]) == 0
     assert capsys.readouterr().out.strip() == __version__
@@ -62,20 +55,15 @@ def test_help_loads_no_numerics():
         (["simulate", "0.4pi"], "ALPHA2 requires an argument"),
         (["simulate", "0.4pi", "sixty"], "write 0.4pi, 2pi/5, 72deg or radians"),
         (["simulate", "1", "2", "--mu", "-3"], "mu = -3.0: must be 0 or greater"),
-        (["simulate", "1", "2", "--mass", "nan"], "a finite number is needed"),
-        (["simulate", "1", "2", "--points", "100.5"], "--points: '100.5' is not a whole number"),
         (["simulate", "1", "2", "--muu", "3"], "Did you mean --mu"),
         (["simulate", "1", "2", "--t-end", "0"], "--t-end 0.0 must be greater than 0"),
         (["simulate", "1", "2", "--points", "3"], "give 16 or more"),
-        (["simulate", "1", "2", "-o", "run.png"], "end the name in .nc or .csv"),
         (["map", "stability", "-p", "map.txt"], "end the name in .png, .svg or .pdf"),
-        (["map", "sound"], "validity"),
         (["map", "stability", "--alpha1", "1"], "2 or more angles of each spring"),
         (["sweep", "stability_map", "--vary", "mu"], "write for instance mu=0:0.6:13"),
         (["sweep", "anything", "--vary", "mu=1,2"], "choose from simulate"),
         ([*SWEPT, "--vary", "mu=1,2", "--vary", "mu=3,4"], "--vary mu is a duplicate"),
         ([*SWEPT, "--vary", "mu=1,2", "--mu", "0.3"], "mu is both fixed and varied"),
-        ([*SWEPT, "--vary", "alpha1=0:1:3"], "alpha1 is both fixed and varied"),
         (["propensity", "1", "2", "--spread", "mu=uniform:0.1"], "mu=uniform:0.1:0.9"),
         (["propensity", "1", "2", "--spread", "muu=uniform:0:1"], "did you mean 'mu'"),
         (

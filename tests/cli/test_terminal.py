@@ -32,13 +32,6 @@ def test_simulate_works_where_the_terminal_is_ascii():
     assert "omega = " in done.stdout.decode("ascii")
 
 
-def test_simulate_answers_under_quiet(capsys):
-    assert run([*SHORT, "-q"]) == 0
-    out = capsys.readouterr().out
-    assert "first separation   t = " in out
-    assert "wrote" not in out
-
-
 def test_control_characters_are_shown_and_colours_obeyed():
     assert visible("a\x1b[31mb\x1b[0m\n") == "a\x1b[31mb\x1b[0m\n"
     assert visible("\x1b]0;title\x07\r\u202e\x9b2J") == r"\x1b]0;title\x07\r\u202e\x9b2J"
@@ -64,11 +57,6 @@ def test_symbols_of_the_paper_are_understood_or_name_their_key(tmp_path, capsys)
     with pytest.raises(ConfigError, match=r"parameters\.V: unknown key; did you mean 'belt_speed'"):
         read_study(tmp_path / "mine.yaml")
     capsys.readouterr()
-
-
-def test_claims_outside_a_study_say_what_makes_them(capsys):
-    assert run(["claims"]) == 2
-    assert "squealpipe run" in capsys.readouterr().err
 
 
 def test_labels_are_words():

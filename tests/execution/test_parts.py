@@ -32,11 +32,6 @@ def test_malformed_parts_are_refused(item):
         scattered_rows(21, item)
 
 
-def test_more_parts_than_rows_are_refused():
-    with pytest.raises(ValueError, match="at most 21 parts"):
-        scattered_rows(21, "1-of-30")
-
-
 def test_foreign_parts_are_not_joined():
     a = stability_map(FORMER, ANGLES[:3], ANGLES)
     with pytest.raises(ValueError, match="not blocks of rows of one map"):

@@ -3,14 +3,11 @@
 import numpy as np
 import pytest
 
-from squealpipe.schema import Outcome, build
-from squealpipe.schema.comparison import BENCHMARK, FAILURE_ATLAS, WORK_PRECISION, Reliability, Role
-from squealpipe.schema.ladder import MODEL_LADDER, QUESTIONS, Level
+from squealpipe.schema import build
+from squealpipe.schema.comparison import BENCHMARK, FAILURE_ATLAS, Reliability, Role
 from squealpipe.study.figures.comparison import (
     failure_atlas,
-    model_ladder,
     work_precision_benchmark,
-    work_precision_frequencies,
 )
 from squealpipe.study.figures.parts import work_precision
 
@@ -57,30 +54,10 @@ def test_benchmark_chart_names_solvers_classes_and_machine(benchmark):
         assert expected in text
 
 
-def test_frequency_chart_names_the_forms():
-    dataset = build(
-        WORK_PRECISION,
-        {
-            "method": ["cosines"],
-            "setting": ["N_h 8"],
-            "role": [Role.ours],
-            "error": [1e-6],
-            "wall_time": [1e-3],
-            "outcome": [Outcome.converged],
-        },
-        {"run": [0]},
-    )
-    assert "cosines" in written(work_precision_frequencies.draw(dataset))
-
-
 def test_pareto_front_keeps_exactly_the_unbeaten():
     error = np.array([1e-2, 1e-4, 1e-6, 1e-5, 1e-4])
     cost = np.array([1.0, 2.0, 9.0, 10.0, 3.0])
     assert set(work_precision._pareto(error, cost)) == {0, 1, 2}
-
-
-def test_marks_can_be_told_apart():
-    assert len(set(work_precision.MARKS)) == len(work_precision.MARKS)
 
 
 def test_atlas_prints_verdicts_and_counts(benchmark):
@@ -110,40 +87,3 @@ def test_atlas_prints_verdicts_and_counts(benchmark):
         if label.get_fontweight() == "bold"
     ]
     assert bold == ["squealpipe", "ours", "closed form"]
-
-
-@pytest.fixture
-def ladder():
-    angles = np.linspace(0.1, 3.0, 5)
-    cells = (len(QUESTIONS), 5, 5)
-    return build(
-        MODEL_LADDER,
-        {
-            "error": np.zeros((len(QUESTIONS), len(Level), 5, 5)),
-            "cheapest": np.full(cells, Level.a4),
-            "chosen": np.full(cells, Level.a1_short),
-            "chosen_error": np.zeros(cells),
-            "always_cpu_time": np.full(4, 100.0),
-            "chosen_cpu_time": [10.0, 50.0, 50.0, 80.0],
-            "tolerance": 0.05,
-            "outcome": np.zeros((5, 5)),
-        },
-        {
-            "alpha1": angles,
-            "alpha2": angles,
-            "question": list(QUESTIONS),
-            "level": [level.name for level in Level],
-        },
-    )
-
-
-def test_ladder_maps_name_only_the_levels_that_occur(ladder):
-    text = written(model_ladder.draw(ladder))
-    assert "A4" in text
-    assert "A3 in contact" not in text
-
-
-def test_ladder_cost_is_the_share_of_time(ladder):
-    text = written(model_ladder.draw(ladder))
-    assert "contact lost?: 10 %" in text
-    assert "100.0 % right, 0 % below A1" in text

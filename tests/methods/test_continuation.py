@@ -73,21 +73,6 @@ def test_the_number_of_points_is_bounded():
     assert len(result.states) == 7
 
 
-@pytest.mark.parametrize(
-    "wrong",
-    [
-        {"first_step": 0.2, "longest_step": 0.1},
-        {"shortest_step": 0.0},
-        {"tolerance": -1.0},
-        {"least_cosine": 1.5},
-        {"max_points": 0},
-    ],
-)
-def test_settings_that_contradict_each_other_are_named(wrong):
-    with pytest.raises(ValueError, match=next(iter(wrong))):
-        ContinuationSettings(**wrong)
-
-
 def test_the_compiled_trace_follows_the_same_branch():
     scene = scaled_system(FORMER, 0.2 * math.pi, 0.7 * math.pi)
     seed = grazing_start(scene, 1)

@@ -14,7 +14,7 @@ from squealpipe.config.settings import parse_study
 from squealpipe.study.claims.statements import STATEMENTS
 from squealpipe.study.report import content as contents
 from squealpipe.study.report.build import TEMPLATES, write_document
-from squealpipe.study.report.content import PAPER, picture_files, provenance, title
+from squealpipe.study.report.content import PAPER, picture_files, provenance
 from squealpipe.study.report.lineage import lineage
 from squealpipe.study.report.sections import BEYOND, COMPARED, FIGURES
 from tests.browser import chromium_path, open_page
@@ -159,11 +159,6 @@ def test_formulas_are_mathml(page, text):
     assert "$" not in re.sub(r"<style>.*?</style>|data:image[^\"]*", "", text, flags=re.DOTALL)
 
 
-def test_both_colour_schemes_print_and_narrow_screens_are_provided_for(text):
-    for query in ("prefers-color-scheme: dark", "@media print", "max-width: 40rem"):
-        assert query in text
-
-
 def test_equal_content_gives_equal_files(small_report, tmp_path):
     page, pdf = tmp_path / "index.html", tmp_path / "report.pdf"
     pictures = picture_files(small_report.content, small_report.figures)
@@ -187,13 +182,6 @@ def test_provenance_names_rule_id_and_checksum_of_every_dataset(small_report):
         assert row["sha256"] == hashlib.sha256(one.path.read_bytes()).hexdigest()
         assert row["dataset_id"]
     assert found["figures"]["fig06"]["rule"] == "draw_topic"
-
-
-def test_headings_of_pictures():
-    assert title("fig01") == "Fig. 1."
-    assert title("fig10_to_12") == "Figs. 10–12."
-    assert title("hammering_map") == "Hammering map."
-    assert title("a1_beside_a4") == "A1 beside A4."
 
 
 def test_lineage_follows_files_from_rule_to_rule():

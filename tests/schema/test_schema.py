@@ -83,11 +83,6 @@ def test_datasets_share_no_attributes():
     assert second.x.attrs["units"] == "m"
 
 
-def test_shapes_that_do_not_fit_are_refused():
-    with pytest.raises(ValueError, match="conflicting sizes"):
-        build(TABLE, {**GOOD, "x": [1.0]}, T)
-
-
 def test_all_faults_are_told_at_once():
     made = build(TABLE, GOOD, T).drop_vars("gap").assign(extra=1.0)
     made["x"] = made.x.astype(int)

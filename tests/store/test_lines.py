@@ -7,7 +7,7 @@ from squealpipe.parameters import Parameters
 from squealpipe.store import produce
 from squealpipe.store.comparison.compare import Comparison, DatasetDifference, compare
 from squealpipe.store.comparison.differences import Agreement, VariableDifference
-from squealpipe.store.comparison.lines import lines, statement_line, verdict_line
+from squealpipe.store.comparison.lines import lines
 from squealpipe.store.comparison.statements import StatementChange
 from squealpipe.tasks.linear.maps import stability_map
 
@@ -34,12 +34,6 @@ def test_the_answer_comes_first_then_changed_parameters_then_what_differs(pair):
     assert "parameters.mu: 0.3 → 0.5" in text
     assert text.index("parameters.mu") < text.index("growth_rate")
     assert "stable → flutter" in text
-
-
-def test_equal_datasets_are_counted_but_not_listed(pair):
-    found = compare(pair[0], pair[0])
-    assert printed(found) == "equal: 1 dataset (equal 1)"
-    assert any("growth_rate: equal" in line for line in lines(found, every=True))
 
 
 def difference(name, share, **more):
@@ -75,22 +69,3 @@ def test_worst_comes_first_and_a_screenful_is_enough():
     assert "d39.mild" in shown[at + 3]
     assert shown[-1] == "  and 76 more; --all shows them"
     assert len(lines(found, every=True)) > 100
-
-
-def test_statements_that_changed_show_verdicts_and_values():
-    changed = StatementChange(
-        claim="F3", statement="x grows", verdicts=("holds", "fails"), values=(32.3, 12.0)
-    )
-    bare = StatementChange(
-        claim="F4", statement="bounded", verdicts=("holds", ""), values=(1.0, None)
-    )
-    found = Comparison(a="one", b="two", statements=[changed, bare])
-    assert statement_line(changed) == "F3: holds → fails, value 32.3 → 12"
-    assert statement_line(bare) == "F4: holds → not judged, value 1 → –"
-    assert any("2 changed their verdict" in line for line in lines(found))
-
-
-def test_table_of_what_cannot_be_compared_tells_why(pair, tmp_path):
-    found = compare(pair[0], tmp_path / "nowhere")
-    assert "no archive, folder or file" in printed(found)
-    assert verdict_line(found).startswith("not comparable")

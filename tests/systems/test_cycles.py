@@ -299,22 +299,3 @@ def test_derivatives_through_stick_are_those_of_differences():
             [run[f"event_time_by_{name}"], run[f"x_by_{name}"][1:], run[f"v_by_{name}"][1:]]
         )
         np.testing.assert_allclose(ours, slopes, atol=2e-7 * np.abs(slopes).max())
-
-
-@pytest.mark.parametrize(
-    ("call", "message"),
-    [
-        (lambda s: s.limit_cycle(omga=1.0), "omga"),
-        (lambda s: s.limit_cycle(t_settle=""), "t_settle"),
-        (lambda s: s.limit_cycle(t_settle=-(10**400)), "t_settle"),
-        (lambda s: s.limit_cycle(start=3.0), "start = 3.0"),
-        (lambda s: s.limit_cycle(periods=0), "periods = 0"),
-        (lambda s: s.cycle_branch("omga", 1.0, start=None), "omga"),
-        (lambda s: s.cycle_branch("omega", np.nan, start=None), "to = nan"),
-        (lambda s: s.cycle_branch("omega", 2.0, start=None), "start: a dataset of limit_cycle"),
-        (lambda s: s.simulate(1.0, sensitivity=("omga",)), "'omga' is unknown"),
-    ],
-)
-def test_arguments_are_named_that_cannot_be_used(call, message):
-    with pytest.raises(ValueError, match=message):
-        call(impact_oscillator)

@@ -94,22 +94,6 @@ def test_a_table_of_friction_agrees_with_scipy_across_its_knots():
     assert kinds(found).count("knot") >= 4
 
 
-@pytest.mark.parametrize("text", ["linear 0:0.4", "linear 0:0.4 0.2:0.4 1:0.4"])
-def test_a_table_of_one_coefficient_is_coulombs_law(text):
-    plain = Parameters(**PAD, k3=7e6, belt_speed=0.1, mu=0.4)
-    t_end = 40.0 * plain.time_unit
-    times = np.linspace(0.0, t_end, 41)
-    mine, other = (
-        run(params, t_end, times, STICKING, x=3e-5)
-        for params in (plain.with_(friction_law=text, mu=0.3), plain)
-    )
-    assert "stick" in kinds(other)
-    assert [kind for kind in kinds(mine) if kind != "knot"] == kinds(other)
-    for name in ("x", "y", "vx", "vy"):
-        scale = float(np.abs(other[name]).max())
-        assert np.abs(mine[name] - other[name]).max() <= 1e-9 * scale
-
-
 def test_tables_of_the_stribeck_law_converge_with_the_square_of_their_spacing():
     law = {"mu": 0.2, "mu_static": 0.6, "friction_speed": 0.3}
     smooth = Parameters(**PAD, k3=7e6, belt_speed=0.6, friction_law="exponential", **law)

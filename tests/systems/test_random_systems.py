@@ -4,7 +4,6 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-import xarray as xr
 from scipy.integrate import solve_ivp
 
 from squealpipe import Switch, System
@@ -263,6 +262,14 @@ GOOD = {
 }
 
 
+NOTHING = {"field": lambda t, s, p, r: {"x": s.v, "v": -1.0 if s.x == 0.0 else 0.0}}
+LAST = [("free", GOOD["field"])]
+
+
+def hit(when, leaves="free", to="free"):
+    return {"switches": [Switch("hit", leaves, when, to)]}
+
+
 @pytest.mark.parametrize(
     ("change", "error", "message"),
     [
@@ -273,59 +280,22 @@ GOOD = {
             "make each side a reg",
         ),
         ({"field": lambda t, s, p, r: {"x": s.v, "v": -s.y}}, AttributeError, "has no 'y'"),
+        (NOTHING, TypeError, "make each side a reg"),
         ({"parameters": {"x0": 1.0}}, ValueError, "the name is taken"),
-        ({"parameters": {"times": 1.0}}, ValueError, "the name is taken"),
         ({"parameters": {"gap": 1.0, "x_max": 1.0}}, ValueError, "the name is taken"),
         ({"parameters": {"gap": 1.0, "count_hit": 1.0}}, ValueError, "the name is taken"),
         ({"parameters": {"gap": 1.0, "self": 1.0}}, ValueError, "the name is taken"),
         ({"outputs": {"x0": ("m", lambda t, s, p, r: s.x)}}, ValueError, "the name is taken"),
         ({"stops": {"converged": lambda t, s, p, r: s.x}}, ValueError, "the name is taken"),
-        ({"time_scale": -1.0}, ValueError, "time_scale = -1.0"),
-        ({"start": {"x": float("nan"), "v": 0.0}}, ValueError, "'x'. = nan"),
         ({"regimes": {"free": {"c": float("inf")}}}, ValueError, "'c'. = inf"),
-        (
-            {"field": lambda t, s, p, r: {"x": s.v, "v": -1.0 if s.x == 0.0 else 0.0}},
-            TypeError,
-            "make each side a reg",
-        ),
-        (
-            {"switches": [Switch("hit", "free", lambda t, s, p, r: s.x - s.x, "free")]},
-            ValueError,
-            "constant in regime 'free'",
-        ),
-        ({"start": {"x": 0.0}}, ValueError, "lacks the state 'v'"),
-        ({"states": "1e3"}, ValueError, "states = '1e3': names and values"),
-        ({"states": {"x": ("m", -1.0), "v": "m/s"}}, ValueError, "a unit, or .unit, typical size"),
-        ({"regimes": -1}, ValueError, "regimes = -1"),
         ({"regimes": {"a/b": {}}}, ValueError, "a name without /"),
         ({"parameters": {"1st gap": 1.0}}, ValueError, "letters, digits and _"),
-        ({"switches": 5e-324}, ValueError, "switches = 5e-324"),
-        ({"field": 1.0}, ValueError, "a function, or one for each regime"),
-        ({"time_scale": lambda _: None}, ValueError, "time_scale gives None"),
-        (
-            {"switches": [Switch("hit", "fre", lambda t, s, p, r: s.x, "free")]},
-            ValueError,
-            "'free'",
-        ),
-        (
-            {"switches": [Switch("hit", "free", lambda t, s, p, r: p.gap - 1.0, "free")]},
-            ValueError,
-            "constant in regime 'free'",
-        ),
-        (
-            {
-                "switches": [
-                    Switch("hit", "free", lambda t, s, p, r: s.x, [("free", GOOD["field"])])
-                ]
-            },
-            ValueError,
-            "no last resort",
-        ),
-        (
-            {"switches": [Switch("hit", "free", lambda t, s, p, r: p.gap - s.x, "free")]},
-            ValueError,
-            "fire again at once",
-        ),
+        ({"start": {"x": 0.0}}, ValueError, "lacks the state 'v'"),
+        (hit(lambda t, s, p, r: s.x, leaves="fre"), ValueError, "'free'"),
+        (hit(lambda t, s, p, r: s.x - s.x), ValueError, "constant in regime 'free'"),
+        (hit(lambda t, s, p, r: p.gap - 1.0), ValueError, "constant in regime 'free'"),
+        (hit(lambda t, s, p, r: s.x, to=LAST), ValueError, "no last resort"),
+        (hit(lambda t, s, p, r: p.gap - s.x), ValueError, "fire again at once"),
     ],
 )
 def test_a_wrong_definition_is_refused_before_anything_is_compiled(change, error, message):
@@ -340,24 +310,12 @@ def test_a_wrong_definition_is_refused_before_anything_is_compiled(change, error
         ({"gpa": 1.0}, "did you mean 'gap'"),
         ({"start": {"y": 1.0}}, "'y' is unknown"),
         ({"start": {"regime": "fre"}}, "did you mean 'free'"),
-        ({"start": 1.0}, "start = 1.0"),
-        ({"start": xr.Dataset({"x": 1.0})}, "not a dataset"),
         ({"start": {"regime": ["free"]}}, "did you mean 'free'"),
-        ({"gap": float("nan")}, "gap = nan"),
-        ({"tol": 0.0}, "tol = 0.0"),
-        ({"t_end": -1.0}, "t_end = -1.0"),
     ],
 )
 def test_arguments_of_a_run_are_checked(method, options, message):
     with pytest.raises(ValueError, match=message):
         getattr(System("good", **GOOD), method)(**{"t_end": 1.0, "start": {}} | options)
-
-
-@pytest.mark.parametrize(("name", "value"), [("leaves", 1), ("when", None), ("to", [1])])
-def test_a_wrong_switch_is_refused(name, value):
-    switch = {"name": "hit", "leaves": "free", "when": lambda t, s, p, r: s.x, "to": "free"}
-    with pytest.raises(ValueError, match=f"{name} = "):
-        Switch(**{**switch, name: value})
 
 
 def test_a_guess_serves_a_forced_system_without_switches_and_excludes_a_start():

@@ -83,15 +83,6 @@ def test_scales_drop_out(model):
     np.testing.assert_allclose(second.peak_contact_force, first.peak_contact_force, rtol=1e-10)
 
 
-def test_powers_of_two_scale_to_the_bit():
-    first = run(FORMER.with_(belt_speed=0.5), ALPHA1, ALPHA2)
-    scaled = FORMER.with_(
-        mass=4.0, k1=16.0, k2=16.0, k3=12.0, belt_speed=2.0, preload=2.0, length1=10.0, length2=10.0
-    )
-    second = run_ensemble(scaled, ALPHA1, ALPHA2, t_end=6.0, times=TIMES / 2, log_events=30)
-    assert (second.samples / [2, 2, 4, 4]).tobytes() == first.samples.tobytes()
-
-
 def test_linear_maps_mirror_with_the_belt():
     # No special angles: there a unit of round-off decides.
     angles = np.sort(RNG.uniform(0.0, np.pi, 13))

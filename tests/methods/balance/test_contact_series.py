@@ -78,8 +78,3 @@ def test_samples_converge_to_the_closed_form():
     ]
     rate = np.polyfit(np.log([64, 256, 1024, 4096]), np.log(errors), 1)[0]
     assert rate < -1.7
-
-
-def test_too_few_samples_are_refused_with_the_least_number():
-    with pytest.raises(ValueError, match="2 n_harmonics \\+ 1 = 17"):
-        SampledContact(8, 1.0, 16)

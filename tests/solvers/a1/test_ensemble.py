@@ -119,11 +119,6 @@ def test_no_runs():
     assert run_ensemble({"mu": np.zeros(0)}, 1.0, 1.0, t_end=1.0).outcome.shape == (0,)
 
 
-def test_turns_that_are_not_a_number_are_refused():
-    with pytest.raises(ValueError, match="stop_at_turns"):
-        run_ensemble(FORMER, 1.0, 1.0, t_end=1.0, stop_at_turns=np.nan)
-
-
 def test_t_end_zero_is_the_start():
     run = run_ensemble(FORMER, 1.0, 1.0, t_end=0.0, initial_state=(0.1, 0.2, 0.3, 0.4), times=[0.0])
     assert run.outcome == Outcome.converged

@@ -5,11 +5,9 @@ import pytest
 
 from squealpipe import (
     Parameters,
-    hammering_map,
     limit_cycle,
     simulate,
     smallest_disturbance,
-    validity_map,
 )
 from squealpipe.codes import Event
 from squealpipe.schema import Outcome
@@ -55,16 +53,6 @@ def test_simulate_takes_the_parameters_of_a_pad_with_measured_laws():
     assert Event.stick in run.event_kind.values
     start = float(run.normalized_contact_force[0])
     assert start == pytest.approx(1.0, rel=1e-15)
-
-
-def test_maps_take_a_table():
-    table = FORMER.with_(friction_law="cubic 0:0.45 20:0.3 50:0.25", belt_speed=30.0, mu=DEFAULT_MU)
-    angles = np.linspace(0.2, 2.8, 4)
-    lost = validity_map(table, angles, angles, t_end=30.0)
-    hammers = hammering_map(table, angles, angles, t_end=30.0)
-    kept = ~lost.separates.values.astype(bool)
-    assert 0 < kept.sum() < kept.size
-    np.testing.assert_array_equal(hammers.impact_rate.values[kept], 0)
 
 
 def test_what_own_laws_cannot_do_is_refused():

@@ -170,19 +170,6 @@ def test_mirror_image_moves_alike():
     assert float(one.stability_index) == pytest.approx(float(other.stability_index), abs=1e-10)
 
 
-def test_units_scale():
-    """Millimetres, tonnes and megahertz: the same motion in other numbers."""
-    scaled = FORMER.with_(
-        mass=2e-3, k1=8e5, k2=8e5, k3=6e5, preload=1e-4, length1=5e-4, length2=5e-4
-    )
-    found = _orbit(0.3, 0.9, 1, 3e-4, scaled)
-    reference = _orbit(0.3, 0.9, 1, 3.0)
-    unit = math.sqrt(8e5 / 2e-3)
-    assert float(found.omega) == pytest.approx(unit * float(reference.omega), rel=1e-12)
-    assert float(found.x_at_peak) == pytest.approx(1e-4 * float(reference.x_at_peak), rel=1e-10)
-    assert float(found.residual) <= 1e-14
-
-
 @pytest.mark.parametrize(
     ("alpha1", "alpha2", "mode", "outcome"),
     [

@@ -4,7 +4,6 @@ import math
 
 import numpy as np
 import pytest
-import xarray as xr
 from scipy.optimize import root
 
 from squealpipe import cycle_branch, limit_cycle, simulate
@@ -182,21 +181,6 @@ def test_a_hammering_cycle_shrinks_to_rest_at_the_edge_of_contact():
     extent = max(float(last.x_max - last.x_min), float(last.y_max - last.y_min))
     # both are round-off: the cycle has shrunk to it
     assert last.residual >= 0.5 * np.abs(end - start_of(last))[:2].max() / extent
-
-
-@pytest.mark.parametrize(
-    ("given", "named"),
-    [
-        ({"start": xr.Dataset()}, "start holds nothing: a dataset of limit_cycle"),
-        ({"start": 3}, "start = 3: a state"),
-        ({"start": np.array(3.0)}, r"start = array\(3.*: a state"),
-        ({"to": 0.3 + 1e-15}, "to = 0.3.*a finite value other than mu = 0.3"),
-        ({"parameter": "sigma"}, r"parameter = 'sigma' \(A1 does not read it\): one of mass"),
-    ],
-)
-def test_branch_names_what_it_cannot_start_from(given, named):
-    with pytest.raises(ValueError, match=named):
-        cycle_branch(FORMER, 1.0, 2.0, **({"parameter": "mu", "to": 0.5} | given))
 
 
 def test_a_number_of_points_may_be_of_numpy(sticking):

@@ -91,18 +91,3 @@ def test_linear_pull_map_is_the_closed_form_where_x_and_y_are_decoupled():
     assert float(pull.first_pull_time[1, 1]) == pytest.approx(
         0.5 * np.pi / np.sqrt(FORMER.k3), abs=0.05
     )
-
-
-def test_units_scale():
-    """Ten times the length, four times the mass: the same numbers, twice the time."""
-    base, scaled = (
-        FORMER,
-        FORMER.with_(
-            mass=4.0, preload=10.0, length1=50.0, length2=50.0, belt_speed=500.0, sigma=100.0
-        ),
-    )
-    scenes = [SCENES["F2d"]]
-    first, second = check_assumptions(base, scenes), check_assumptions(scaled, scenes)
-    np.testing.assert_allclose(first.measure, second.measure, rtol=1e-6, atol=1e-9)
-    np.testing.assert_allclose(10 * first.largest_y, second.largest_y, rtol=1e-6)
-    np.testing.assert_allclose(2 * first.t_end, second.t_end, rtol=1e-12)

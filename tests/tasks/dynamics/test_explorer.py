@@ -45,8 +45,3 @@ def test_a_pair_without_a_mode_says_why(explorer):
 
 def test_processes_change_nothing(explorer):
     assert explorer.identical(explorer_data(FORMER, ANGLES, workers=2, **OPTIONS))
-
-
-def test_spectrum_needs_the_longer_time():
-    with pytest.raises(ValueError, match="must be at least history_time"):
-        explorer_data(FORMER, ANGLES, **{**OPTIONS, "spectrum_time": 1.0})

@@ -109,20 +109,6 @@ def test_impossible_distributions_are_refused(name, given, words):
         distribution(name, given)
 
 
-@pytest.mark.parametrize(
-    ("change", "words"),
-    [
-        ({"samples": 100}, "samples = 100"),
-        ({"spring_correlation": 1.0}, "spring_correlation = 1.0"),
-        ({"spring_correlation": 0.5}, "distributions of k1 and k2"),
-    ],
-)
-def test_propensity_refuses_what_it_cannot_do(change, words):
-    given = {"distributions": FRICTION, "samples": 64, "t_end": 10.0} | change
-    with pytest.raises(ValueError, match=words):
-        propensity(FORMER, *ANGLES, **given)
-
-
 def test_static_friction_below_that_of_sliding_is_for_laws_that_allow_it():
     static = {"mu_static": {"distribution": "uniform", "low": 0.1, "high": 0.2}}
     given = {"distributions": static, "samples": 64, "t_end": 1.0, "workers": 1}
