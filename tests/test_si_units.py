@@ -71,7 +71,7 @@ def test_answers_scale(name):
 @pytest.mark.parametrize("question", ["contact_lost", "frequency", "max_displacement"])
 def test_choices_scale(question):
     unit = {"frequency": 1 / TIME, "max_displacement": LENGTH}.get(question, 1.0)
-    real, scaled = (sp.choose_model(p, A, B, question, 0.05) for p in (SI, UNIT))
+    real, scaled = (sp.choose_model(p, A, B, question) for p in (SI, UNIT))
     assert real.model == scaled.model
     assert float(real.value) / unit == pytest.approx(float(scaled.value), rel=1e-6)
 

@@ -30,20 +30,18 @@ def choose(
     question: Question,
     /,
     *,
-    tol: float = 0.05,
     t_end: float | None = None,
     config: Configs = None,  # noqa: ARG001 (read by `parameters_from_study`)
     params: Physical = BASELINE,
 ) -> int:
     """Print the cheapest model that answers a question as A1 does, its answer and the reason.
 
-    Example: `squealpipe choose 0.75pi 0.75pi peak_contact_force --tol 0.01`
+    Example: `squealpipe choose 0.75pi 0.75pi contact_lost`
 
     Args:
         alpha1: angle of spring 1: 0.4pi, 2pi/5, 72deg or radians.
         alpha2: angle of spring 2.
         question: what is asked.
-        tol: relative error that is allowed.
         t_end: horizon, s; 200 √(mass/k1) by default.
         config: study whose parameters are used where none are typed; repeatable.
     """
@@ -51,7 +49,7 @@ def choose(
     from squealpipe.schema.ladder import Level
 
     with working("choose"):
-        found = choose_model(params, alpha1, alpha2, question, tol, t_end=t_end)
+        found = choose_model(params, alpha1, alpha2, question, t_end=t_end)
     answer(
         f"{question.replace('_', ' ')}: {found.value:.6g}",
         f"by {Level[found.model].label}: {found.reason}",

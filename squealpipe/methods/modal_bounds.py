@@ -31,10 +31,6 @@ class ModalMotion(NamedTuple):
         """Bound above all y, m."""
         return np.asarray(self.rest[..., 1] + np.abs(self.y_mode).sum(axis=-1))
 
-    def lowest(self) -> np.ndarray:
-        """Bound below all y, m."""
-        return np.asarray(self.rest[..., 1] - np.abs(self.y_mode).sum(axis=-1))
-
     def farthest(self) -> np.ndarray:
         """Bound on √(x² + y²), m: the distance is convex, so largest at a corner ±z1 ± z2."""
         signs = np.array([-1.0, 1.0])

@@ -97,22 +97,15 @@ MODEL_LADDER = DatasetSchema(
             dtype="i1",
             flags=Level,
         ),
-        "chosen": Variable("level that choose_model takes", dims=_CELL, dtype="i1", flags=Level),
-        "chosen_error": Variable(
-            "error of the chosen answer against A1",
-            dims=_CELL,
-            nan_allowed=True,
-            rtol=1e-3,
-            atol=1e-9,
+        "chosen": Variable(
+            "level that choose_model takes for contact lost", dims=MAP, dtype="i1", flags=Level
         ),
+        "chosen_wrong": Variable("whether its answer is not A1's", dims=MAP, dtype="bool"),
         "always_cpu_time": Variable(
-            "CPU time of A1 over the whole map, run for the question alone",
-            "s",
-            ("question",),
-            volatile=True,
+            "CPU time of A1 over the whole map, up to the first loss of contact", "s", volatile=True
         ),
         "chosen_cpu_time": Variable(
-            "CPU time of choose_model over the whole map", "s", ("question",), volatile=True
+            "CPU time of choose_model over the whole map", "s", volatile=True
         ),
         "belt_reached": Variable(
             "whether the mass of A1 reaches belt speed in contact",

@@ -231,7 +231,7 @@ CALLS: dict[str, tuple[float, Callable[..., Any], dict[str, Kind]]] = {
     ),
     "choose_model": (
         0.7, sp.choose_model,
-        {**SCENE, "question": one_of(*QUESTIONS), "tol": number(1e-3, 0.5), "t_end": MAYBE},
+        {**SCENE, "question": one_of(*QUESTIONS), "t_end": MAYBE},
     ),
     "refine_validity_map": (
         0.3, sp.refine_validity_map,

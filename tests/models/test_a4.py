@@ -8,7 +8,6 @@ import sympy as sp
 from squealpipe.laws.springs import Stiffness, geometry, linear_stiffness, stiffness_determinant
 from squealpipe.models import a4
 from squealpipe.schema import Outcome
-from squealpipe.solvers.a1.ensemble import run_ensemble
 from squealpipe.tasks.dynamics.runs import simulate
 from tests import symbols
 from tests.former import FORMER
@@ -117,26 +116,6 @@ def test_first_integral_changes_by_nothing_symbolically():
             for variable, speed in zip((x, y, vx, vy), (vx, vy, *(force / M)), strict=True)
         )
         assert sp.simplify(rate) == 0
-
-
-def test_a_definite_first_integral_bounds_motion_and_force_across_contact_loss():
-    """On random A4 runs from rest, integrated by the independent engine of the ensembles."""
-    rng = np.random.default_rng(8)
-    size = 400
-    alpha1, alpha2 = rng.uniform(0.0, np.pi, (2, size))
-    params = FORMER.with_(k2=1.6, mu=0.4, mass=1.3, preload=0.7)
-    reach = a4.reach_from_rest(
-        linear_stiffness(params, geometry(alpha1, alpha2)), params.mu, params
-    )
-    bound = np.isfinite(reach.distance)
-    assert 0.5 < bound.mean() < 0.95
-    run = run_ensemble(params, alpha1, alpha2, t_end=100.0, model="A4")
-    assert (run.separations[bound] > 0).sum() > 50
-    assert run.peak_contact_force[bound].max() <= 1.0 + 1e-10
-    assert (run.max_displacement[bound] <= reach.distance[bound] * (1.0 + 1e-10)).all()
-    assert (run.max_vx[bound] <= reach.speed[bound] * (1.0 + 1e-10)).all()
-    # The bound is no empty one: outside, the force does grow beyond that of the start.
-    assert run.peak_contact_force[~bound].max() > 1.1
 
 
 def test_lengths_that_a4_does_not_know_change_nothing():

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -15,7 +14,7 @@ from squealpipe.schema import Outcome, build
 from squealpipe.schema.ladder import MODEL_LADDER, QUESTIONS, Level
 from squealpipe.solvers.a1.ensemble import run_ensemble
 from squealpipe.tasks.ladder.choice import choose_models, run_a1
-from squealpipe.tasks.ladder.levels import Answers, Scenes, answer
+from squealpipe.tasks.ladder.levels import Scenes, answer
 from squealpipe.tasks.normal_form import NormalForm
 
 WHY = "its cheaper levels have neither dashpots nor any friction but Coulomb's"
@@ -57,17 +56,21 @@ def model_ladder(
     # where the belt is never reached, A1 without stick is A1
     valid[:, LEVELS.index(Level.a1_no_stick)] &= reached
     cheapest = (valid & (error <= tol)).argmax(axis=1)
-    chosen = [_chosen(scenes, question, tol, found[Level.a1]) for question in QUESTIONS]
+    asked = params, alpha1, alpha2, "contact_lost"
+    started = cpu_time()  # as choose_model runs it: the answers to all questions at once cost more
+    run_a1(np.full(alpha1.shape, np.nan), *asked, horizon, workers)
+    always = cpu_time() - started
+    chosen = choose_models(*asked, t_end=horizon, workers=workers)
     shape = (points, points)
     return build(
         MODEL_LADDER,
         {
             "error": error.reshape(len(QUESTIONS), len(LEVELS), *shape),
             "cheapest": np.array(LEVELS)[cheapest].reshape(-1, *shape),
-            "chosen": np.stack([entry.level for entry in chosen]).reshape(-1, *shape),
-            "chosen_error": np.stack([entry.error for entry in chosen]).reshape(-1, *shape),
-            "always_cpu_time": [entry.always_seconds for entry in chosen],
-            "chosen_cpu_time": [entry.seconds for entry in chosen],
+            "chosen": chosen.level.reshape(shape),
+            "chosen_wrong": (chosen.value != truth[0]).reshape(shape),
+            "always_cpu_time": always,
+            "chosen_cpu_time": chosen.cost,
             "belt_reached": reached.reshape(shape),
             "tolerance": tol,
             "outcome": np.full(shape, Outcome.converged),
@@ -87,23 +90,3 @@ def _errors(values: np.ndarray, truth: np.ndarray) -> np.ndarray:
     error[0] = values[0] != truth[0]
     error[1:] = np.abs(values[1:] / truth[1:] - 1.0)
     return np.where(np.isfinite(values), error, np.inf)
-
-
-class _Chosen(NamedTuple):
-    level: np.ndarray
-    error: np.ndarray
-    seconds: float
-    always_seconds: float
-
-
-def _chosen(scenes: Scenes, question: str, tol: float, always: Answers) -> _Chosen:
-    """What choose_model takes, its error, and its CPU time beside that of always A1."""
-    params, alpha1, alpha2, horizon, workers = scenes
-    truth = always.values[QUESTIONS.index(question)]
-    started = cpu_time()  # as choose_model runs it: the answers to all questions at once cost more
-    run_a1(np.full(alpha1.shape, np.nan), params, alpha1, alpha2, question, horizon, workers)
-    always_seconds = cpu_time() - started
-    choices = choose_models(params, alpha1, alpha2, question, tol, t_end=horizon, workers=workers)
-    wrong = choices.value != truth
-    error = wrong.astype(float) if question == "contact_lost" else abs(choices.value / truth - 1.0)
-    return _Chosen(choices.level, error, choices.cost, always_seconds)

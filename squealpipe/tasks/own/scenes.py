@@ -19,7 +19,6 @@ from squealpipe.tasks.dynamics.runs import simulate
 from squealpipe.tasks.dynamics.summary import PEAKS, summarize
 from squealpipe.tasks.ladder.choice import choose_model
 
-TOLERANCE = 0.05
 """Relative error that the cheapest level may have."""
 DAMPING = (0.02, 0.1)
 """Dashpots of the variants, over √(k m) of their spring."""
@@ -148,4 +147,4 @@ def _level(
     """The level that ``choose_model`` takes; A1 where it cannot be asked."""
     if any(start) or without_extensions(params) is not params:
         return Level.a1.label
-    return Level[choose_model(params, *angles, question, TOLERANCE, t_end=t_end).model].label
+    return Level[choose_model(params, *angles, question, t_end=t_end).model].label

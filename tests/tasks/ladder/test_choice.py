@@ -1,17 +1,17 @@
-"""choose_model against A1 itself: right and cheap."""
+"""choose_model against A1 itself."""
 
 import numpy as np
 import pytest
 
-from squealpipe.methods.processes import cpu_time
-from squealpipe.schema.ladder import QUESTIONS, Level
+from squealpipe.schema.ladder import Level
 from squealpipe.solvers.a1.ensemble import run_ensemble
-from squealpipe.tasks.ladder.choice import choose_model, choose_models, linear_motion
-from squealpipe.tasks.ladder.questions import answer_of, dominant_frequency
-from squealpipe.tasks.sampling import sample_times
+from squealpipe.tasks.ladder.choice import choose_model, choose_models, keeps_contact
+from squealpipe.tasks.ladder.levels import contact_motion
+from squealpipe.tasks.ladder.questions import dominant_frequency
+from squealpipe.tasks.normal_form import NormalForm
 from tests.former import FORMER
 
-CELLS, HORIZON, TOLERANCE = 500, 200.0, 0.05
+CELLS, HORIZON = 500, 200.0
 
 
 def random_cells(seed, count=CELLS):
@@ -19,112 +19,29 @@ def random_cells(seed, count=CELLS):
     return alpha1, alpha2
 
 
-def judged(params, question, seed):
-    """(whether each cell is within tolerance of A1, share of cells answered below A1)."""
-    cells = random_cells(seed)
-    times = sample_times(params, HORIZON)
-    always = run_ensemble(
-        params, *cells, t_end=HORIZON, times=times if question == "frequency" else None,
-        stop_at_first_separation=question == "contact_lost",
-    )  # fmt: skip
-    truth = answer_of(always, question, times)
-    chosen = choose_models(params, *cells, question, TOLERANCE, t_end=HORIZON)
-    right = (
-        chosen.value == truth
-        if question == "contact_lost"
-        else np.abs(chosen.value / truth - 1.0) <= TOLERANCE
-    )
-    return right, float((chosen.level != Level.a1).mean())
-
-
 @pytest.mark.parametrize("length", [15.0, 300.0])
 def test_contact_is_decided_rightly_and_below_a1_in_a_share_of_the_cells(length):
     params = FORMER.with_(k3=0.65, length1=length, length2=length)
-    right, below = judged(params, "contact_lost", 2021)
-    assert right.all()
-    assert below > 0.1
-
-
-@pytest.mark.parametrize("question", QUESTIONS[1:])
-@pytest.mark.parametrize("length", [5.0, 300.0])
-def test_every_question_is_answered_within_the_tolerance(question, length):
-    right, _ = judged(FORMER.with_(length1=length, length2=length), question, 3)
-    assert right.mean() >= 0.99
-
-
-@pytest.mark.parametrize("changes", [{}, {"k2": 1.7, "mu": 0.5}])
-def test_peak_force_on_long_springs_mostly_follows_from_the_first_integral(changes):
-    right, below = judged(
-        FORMER.with_(length1=300.0, length2=300.0, **changes), "peak_contact_force", 12
-    )
-    assert right.mean() >= 0.99
-    assert below > 0.6
-
-
-def test_rules_cost_less_than_a1():
-    """CPU time of choosing for one cell after another, beside that of A1 where no rule answers."""
-    params = FORMER.with_(length1=300.0, length2=300.0)
-    cells = random_cells(5, 200)
-    seconds = {}
-    for model in ("chosen", "A1"):
-        started = cpu_time()
-        for cell in np.transpose(cells):
-            if model == "A1":
-                run_ensemble(params, *cell[:, None], t_end=HORIZON, workers=1)
-            else:
-                choose_model(params, *cell, "peak_contact_force", TOLERANCE)
-        seconds[model] = cpu_time() - started
-    assert seconds["chosen"] < 1.2 * seconds["A1"], seconds
-
-
-def test_first_integral_is_named_where_it_answers():
-    long = FORMER.with_(length1=300.0, length2=300.0)
-    found = choose_model(long, 0.2 * np.pi, 0.6 * np.pi, "peak_contact_force", TOLERANCE)
-    assert found.model == "a3"
-    assert found.value == 1.0
-    assert "first integral" in found.reason
-
-
-@pytest.mark.parametrize(
-    ("k2", "k3", "mu", "lengths", "angles"),
-    [
-        (1.63, 0.8, 0.62, (55.0, 26.0), (1.39, 0.34)),
-        (1.83, 0.89, 0.36, (23.0, 48.0), (0.82, 0.55)),
-        (1.82, 0.82, 0.27, (26.0, 28.0), (1.2, 0.33)),
-    ],
-)
-def test_first_integral_does_not_answer_where_geometry_makes_sliding_unstable(
-    k2, k3, mu, lengths, angles
-):
-    """A4 keeps N ≤ k3 l_pre there, but A1 reaches 1.4 to 3.3 times that by growing."""
-    params = FORMER.with_(
-        k2=k2, k3=k3, mu=mu, length1=lengths[0], length2=lengths[1], belt_speed=1e3
-    )
-    found = choose_model(params, *angles, "peak_contact_force", 0.1, t_end=HORIZON)
-    assert found.model == "a1"
-    assert found.value > 1.3
+    cells = random_cells(2021)
+    always = run_ensemble(params, *cells, t_end=HORIZON, stop_at_first_separation=True)
+    chosen = choose_models(params, *cells, "contact_lost", t_end=HORIZON)
+    np.testing.assert_array_equal(chosen.value, always.separations > 0)
+    assert (chosen.level != Level.a1).mean() > 0.1
 
 
 @pytest.mark.parametrize("speed", [0.05, -0.05])
 def test_a_level_is_never_taken_when_its_assumption_is_broken(speed):
     """A slow belt is reached by the mass: only A1 may answer."""
     slow = FORMER.with_(belt_speed=speed)
-    found = choose_models(slow, *random_cells(4, 200), "contact_lost", TOLERANCE, t_end=50.0)
-    outrun = found.linear.motion.fastest() >= abs(speed)
+    form, cells = NormalForm.of(slow), random_cells(4, 200)
+    found = choose_models(slow, *cells, "contact_lost", t_end=50.0)
+    outrun = contact_motion(form.params, *form.angles(*cells)).fastest() >= abs(speed)
     assert outrun.any()
     assert (found.level[outrun] == Level.a1).all()
 
 
-def test_long_springs_need_no_run_where_contact_is_kept():
-    params = FORMER.with_(length1=1e4, length2=1e4)
-    found = choose_model(params, 0.5 * np.pi, np.pi, "peak_contact_force", 0.01)
-    # K = diag(k, k): y = κ/(1+κ)(1 − cos √(1+κ) t) ≥ 0, so the largest force is the first one
-    assert found.model == "a3"
-    assert found.value == pytest.approx(1.0, rel=2e-4)
-
-
 def test_reason_says_why_a_run_was_needed():
-    found = choose_model(FORMER, 0.2 * np.pi, 0.8 * np.pi, "max_displacement", 0.05)
+    found = choose_model(FORMER, 0.2 * np.pi, 0.8 * np.pi, "max_displacement")
     assert found.model == "a1"
     assert found.cost > 0.0
     assert "cheapest level whose answer is certain" in found.reason
@@ -145,13 +62,12 @@ def test_dominant_frequency_of_two_tones():
     ],
     ids=str,
 )
-@pytest.mark.parametrize("question", QUESTIONS[:3])
-def test_no_cheaper_level_answers_for_other_friction(change, question):
+def test_no_cheaper_level_answers_for_other_friction(change):
     """Where a closed form answers for the paper's friction, A1 answers for any other."""
     cell = np.array([0.5 * np.pi]), np.array([1.0 * np.pi])
     long = FORMER.with_(length1=300.0, length2=300.0)
     plain, other = (
-        choose_models(long.with_(**more), *cell, question, 0.2, t_end=200.0, workers=1)
+        choose_models(long.with_(**more), *cell, "contact_lost", t_end=200.0, workers=1)
         for more in ({}, change)
     )
     assert plain.level[0] != Level.a1
@@ -177,33 +93,22 @@ def random_parameters(generator):
 
 
 def test_no_cheap_answer_is_wrong_at_random_parameters():
-    """Against A1 over the whole horizon, at the tolerance that was asked for."""
-    generator = np.random.default_rng(20)
-    answered = dict.fromkeys(QUESTIONS[:3], 0)
+    """Against A1 over the whole horizon."""
+    generator, answered = np.random.default_rng(20), 0
     for _ in range(60):
         params, horizon = random_parameters(generator)
-        tol = float(generator.choice([0.01, 0.02, 0.05, 0.1, 0.2]))
         cells = generator.uniform(0.0, np.pi, (2, 40))
-        times = sample_times(params, horizon)
-        run = run_ensemble(params, *cells, t_end=horizon, times=times, workers=1)
-        for question in answered:
-            found = choose_models(params, *cells, question, tol, t_end=horizon, workers=1)
-            below = found.level != Level.a1
-            truth = answer_of(run, question, times)
-            error = (
-                found.value != truth
-                if question == "contact_lost"
-                else np.abs(found.value / truth - 1.0)
-            )
-            assert not (error > tol)[below].any(), (params, question, tol)
-            answered[question] += below.sum()
-    assert min(answered.values()) > 0.1 * 60 * 40, answered
+        run = run_ensemble(params, *cells, t_end=horizon, stop_at_first_separation=True, workers=1)
+        found = choose_models(params, *cells, "contact_lost", t_end=horizon, workers=1)
+        below = found.level != Level.a1
+        assert not run.separations[below].any(), params
+        answered += below.sum()
+    assert answered > 0.1 * 60 * 40
 
 
-@pytest.mark.parametrize("question", QUESTIONS[:3])
-def test_reason_of_what_is_not_proved_names_its_sample(question):
+def test_reason_of_what_is_not_proved_names_its_sample():
     params = FORMER.with_(length1=100.0, length2=100.0)
-    found = choose_model(params, 0.5 * np.pi, 0.9 * np.pi, question, TOLERANCE)
+    found = choose_model(params, 0.5 * np.pi, 0.9 * np.pi, "contact_lost")
     assert found.model == "a3"
     assert "measured, not proved" in found.reason
 
@@ -230,7 +135,7 @@ def test_a_far_swing_of_a_short_spring_is_left_to_a1(springs, mu, speed, angles)
         k2=k2, k3=k3, length1=length1, length2=length2, mu=mu, belt_speed=speed
     )  # fmt: skip
     for question in ("contact_lost", "max_displacement"):
-        assert choose_model(params, *angles, question, 0.05, t_end=300.0).model == "a1"
+        assert choose_model(params, *angles, question, t_end=300.0).model == "a1"
 
 
 @pytest.mark.parametrize(
@@ -258,7 +163,7 @@ def test_a_far_swing_of_a_short_spring_is_left_to_a1(springs, mu, speed, angles)
 def test_cells_that_were_answered_wrongly_once(params, alpha1, alpha2):
     run = run_ensemble(params, alpha1, alpha2, t_end=240.0, workers=1)
     assert run.separations > 0
-    found = choose_model(params, alpha1, alpha2, "contact_lost", 0.05, t_end=240.0)
+    found = choose_model(params, alpha1, alpha2, "contact_lost", t_end=240.0)
     assert found.value is True
     assert found.model == "a1"
 
@@ -266,9 +171,9 @@ def test_cells_that_were_answered_wrongly_once(params, alpha1, alpha2):
 def test_no_rule_outside_the_range_of_the_sample():
     sure = np.array([0.5 * np.pi]), np.array([np.pi])
     inside = FORMER.with_(length1=100.0, length2=100.0)
-    assert linear_motion(inside, *sure, 200.0).keeps
+    assert keeps_contact(inside, *sure, 200.0)
     for changes in (
         {"mu": 0.81}, {"k3": 0.04}, {"k3": 5.1}, {"length1": 2.9}, {"k1": 6.0}, {"k2": 0.19},
     ):  # fmt: skip
-        assert not linear_motion(inside.with_(**changes), *sure, 200.0).keeps
-    assert not linear_motion(inside, *sure, 401.0).keeps
+        assert not keeps_contact(inside.with_(**changes), *sure, 200.0)
+    assert not keeps_contact(inside, *sure, 401.0)

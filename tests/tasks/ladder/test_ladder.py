@@ -5,7 +5,7 @@ import pytest
 
 from squealpipe.codes import LinearRegime
 from squealpipe.parameters import Parameters
-from squealpipe.schema.ladder import QUESTIONS, Level
+from squealpipe.schema.ladder import Level
 from squealpipe.tasks.ladder.ladder import model_ladder
 from squealpipe.tasks.linear.maps import stability_map
 from tests.former import FORMER
@@ -34,19 +34,12 @@ def test_without_stick_a1_is_the_same_when_the_belt_is_never_reached(ladder):
     assert float(ladder.error.sel(level="a1_no_stick").max()) < 1e-6
 
 
-@pytest.mark.parametrize("question", QUESTIONS)
-def test_chosen_answers_are_within_the_tolerance(ladder, question):
-    error = ladder.chosen_error.sel(question=question)
-    assert float((error <= ladder.tolerance).mean()) >= 0.97
-
-
-def test_cpu_time_is_recorded_and_some_cells_are_answered_below_a1(ladder):
+def test_what_is_chosen_is_right_and_below_a1_in_some_cells(ladder):
+    assert not ladder.chosen_wrong.any()
+    assert float((ladder.chosen != Level.a1).mean()) > 0.05
     for name in ("always_cpu_time", "chosen_cpu_time"):
-        assert (ladder[name] > 0.0).all()
+        assert ladder[name] > 0.0
         assert ladder[name].attrs["volatile"] == "true"
-        assert ladder[name].dims == ("question",)  # each beside A1 run for that question alone
-    below = (ladder.chosen != Level.a1).mean(("alpha1", "alpha2"))
-    assert float(below.sel(question="contact_lost")) > 0.05
 
 
 def test_a_level_counts_only_where_what_it_drops_mattered(ladder):
