@@ -21,6 +21,8 @@ ALT = (
     "Time histories of x and y with a drawing of the springs and a dotted line at the "
     "precompression, and below them x over a much longer time in one or two readings of the paper."
 )
+WIDTH = 4.4
+"""Inches: on page one it is beside Fig. 7, where the text of a wider one would be too small."""
 TITLES = {"x": "x, along the belt", "y": r"y, away from the belt (dotted: $l_\mathrm{pre}$)"}
 READINGS = (
     ("simulate/F3_long", style.X_COLOUR, "as printed"),
@@ -36,7 +38,8 @@ def draw(runs: Mapping[str, xr.Dataset]) -> Figure:
     """
     run = runs["simulate/F3"]
     long = [(runs[name], colour, words) for name, colour, words in READINGS if name in runs]
-    figure, axes = style.new_figure(style.PAGE, 3.6 + 1.6 * bool(long), nrows=2 + bool(long))
+    rows = 2 + bool(long)
+    figure, axes = style.new_figure(WIDTH, 1.5 * rows, nrows=rows)
     for panel, letter, name, colour in zip(
         axes[:2, 0], "ab", ("x", "y"), (style.X_COLOUR, style.Y_COLOUR), strict=True
     ):
@@ -52,5 +55,5 @@ def draw(runs: Mapping[str, xr.Dataset]) -> Figure:
     if len(long) > 1:
         axes[2, 0].legend(loc="upper left", ncols=2)
     axes[-1, 0].set_xlabel("t (s)")
-    inset_mechanism(axes[0, 0], run, (1.0, 0.3, 0.14, 0.4))
+    inset_mechanism(axes[0, 0], run, (1.0, 0.2, 0.24, 0.7))
     return figure
