@@ -64,12 +64,6 @@ LINEAR_PULL = DatasetSchema(
         "pulling_fraction": Variable(
             "fraction of the time during which the spring pulls", dims=MAP
         ),
-        "first_pull_time": Variable(
-            "first instant at which the spring pulls (NaN: never, outcome converged)",
-            "s",
-            MAP,
-            nan_allowed=True,
-        ),
         "t_end": Variable("end of the motion", "s"),
         "outcome": outcome(*MAP, among=(Outcome.converged, Outcome.separated)),
     },

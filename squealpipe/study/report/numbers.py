@@ -47,57 +47,42 @@ def _inferred(run: Run) -> dict[str, Any]:
 
 def _growth(run: Run) -> dict[str, Any]:
     unit, preload = run.parameters.time_unit, run.parameters.preload
-    whirl = run["whirl"]
-    own = whirl.sel(belt_speed=abs(run.parameters.belt_speed), method="nearest")
-    if (whirl.belt_speed < 0).all():
-        own = whirl.sel(belt_speed=-abs(run.parameters.belt_speed), method="nearest")
+    whirl = run["whirl"].sortby(abs(abs(run["whirl"].belt_speed) - abs(run.parameters.belt_speed)))
+    short, long = run["simulate/F3"], run["simulate/F3_long"]
     return {
-        "F3_size": abs(run["simulate/F3"].x).max() / preload,
-        "F3_time": run["simulate/F3"].time[-1] / unit,
-        "whirl_size": own.amplitude / preload,
-        "whirl_time": whirl.t_end / unit,
+        "F3_size": abs(short.x).max() / preload,
+        "F3_time": short.time[-1] / unit,
+        "whirl_size": whirl.amplitude[0] / preload,
         "whirl_slope": whirl.slope,
-        **_long_runs(run, preload, unit),
-    }
-
-
-def _long_runs(run: Run, preload: float, unit: float) -> dict[str, Any]:
-    long = run["simulate/F3_long"]
-    mended = run["corrected/simulate/F3_long"]
-    return {
         "F3_long_size": abs(long.x).max() / preload,
         "F3_long_time": long.time[-1] / unit,
-        "mended_F3_long_size": abs(mended.x).max() / preload,
+        "mended_F3_long_size": abs(run["corrected/simulate/F3_long"].x).max() / preload,
     }
 
 
 def _linear(run: Run) -> dict[str, Any]:
     regime = run["stability_map"].regime_linear
-    printed, physical = unstable_yet_sliding(run)
+    _, physical = unstable_yet_sliding(run)
     mended, sliding = run["corrected/stability_map"], run["corrected/quasi_static_map"]
+    printed = (mended.regime_linear > 0) & (sliding.possible_as_printed == 1)
     return {
-        "mended_sliding_printed": (
-            (mended.regime_linear > 0) & (sliding.possible_as_printed == 1)
-        ).sum(),
-        "cells": regime.size,
+        "mended_sliding_printed": printed.sum(),
         "points": regime.sizes["alpha1"],
         "flutter": (regime == 1).sum(),
         "divergence": (regime == 2).sum(),
-        "sliding_printed": printed.sum(),
         "sliding_physical": physical.sum(),
     }
 
 
 def _valid(run: Run) -> dict[str, Any]:
-    found = {}
-    for prefix, name in (("", "validity_map"), ("mended_", "corrected/validity_map")):
-        if name in run:
-            validity = run[name]
-            unstable = validity.regime_linear > 0
-            found[f"{prefix}black"] = (unstable & (validity.separates == 0)).sum()
-            found[f"{prefix}unstable"] = unstable.sum()
-            found[f"{prefix}lost"] = 100 * validity.separates.mean()
-    return found
+    unstable, mended = (run[f"{at}validity_map"].regime_linear > 0 for at in ("", "corrected/"))
+    lost = run["validity_map"].separates
+    return {
+        "black": (unstable & (lost == 0)).sum(),
+        "unstable": unstable.sum(),
+        "lost": 100 * lost.mean(),
+        "mended_black": (mended & (run["corrected/validity_map"].separates == 0)).sum(),
+    }
 
 
 def _bounded(run: Run) -> dict[str, Any]:
@@ -113,13 +98,9 @@ def _bounded(run: Run) -> dict[str, Any]:
 
 
 def _periodic(run: Run) -> dict[str, Any]:
-    first = run["backbone/F10_mode2"]
-    return {
-        "F10_low": first.omega.min(),
-        "F10_linear": first.omega[0],
-        "F13_linear": run["backbone/F13_mode1"].omega[0],
-        "F13_low": run["backbone/F13_mode1"].omega.min(),
-    }
+    branches = {"F10": "backbone/F10_mode2", "F13": "backbone/F13_mode1"}
+    low = {f"{name}_low": run[branch].omega.min() for name, branch in branches.items()}
+    return low | {f"{name}_linear": run[branch].omega[0] for name, branch in branches.items()}
 
 
 def _spread(run: Run) -> dict[str, Any]:

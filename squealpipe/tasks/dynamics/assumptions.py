@@ -125,7 +125,7 @@ def linear_pull_map(
 
     Returns:
         Dataset over (alpha1, alpha2): lowest_contact_force (over k3 l_pre), pulling_fraction,
-        first_pull_time (s), outcome.
+        outcome.
 
     Raises:
         ValueError: dashpots or a friction law that these equations do not have.
@@ -136,21 +136,17 @@ def linear_pull_map(
     step, steps = _steps(params, t_end)
     lowest = np.full(stiffness.k11.shape, np.inf)
     pulling = np.zeros(lowest.shape)
-    first = np.full(lowest.shape, np.nan)
-    for index, state in enumerate(_linear_response(params, stiffness, step, steps)):
+    for state in _linear_response(params, stiffness, step, steps):
         force = 1.0 - state[..., 1] / params.preload
         lowest = np.minimum(lowest, force)
-        pulls = force < 0
-        pulling += pulls
-        first = np.where(pulls & np.isnan(first), index * step, first)
+        pulling += force < 0
     return build(
         LINEAR_PULL,
         {
             "lowest_contact_force": lowest,
             "pulling_fraction": pulling / (steps + 1),
-            "first_pull_time": first,
             "t_end": t_end,
-            "outcome": np.where(np.isnan(first), Outcome.converged, Outcome.separated),
+            "outcome": np.where(pulling, Outcome.separated, Outcome.converged),
         },
         {"alpha1": alpha1, "alpha2": alpha2},
     )

@@ -88,6 +88,3 @@ def test_linear_pull_map_is_the_closed_form_where_x_and_y_are_decoupled():
     # Springs along x: y'' = k3 (l_pre − y)/m, so the force is l_pre k3 cos(√(k3/m) t).
     assert lowest[1, 1] == pytest.approx(-1.0, abs=1e-3)
     assert float(pull.pulling_fraction[1, 1]) == pytest.approx(0.5, abs=0.03)
-    assert float(pull.first_pull_time[1, 1]) == pytest.approx(
-        0.5 * np.pi / np.sqrt(FORMER.k3), abs=0.05
-    )

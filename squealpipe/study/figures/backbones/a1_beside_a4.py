@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import cycle
+
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
@@ -17,8 +19,7 @@ CAPTION = (
 )
 ALT = "Rows of two panels: time histories of y of both models, and their spectra."
 KINDS = {"period": "y in time", "order": "spectrum of y"}
-COLOURS = (style.RED, style.ORANGE, style.GREEN, style.BLUE)
-DASHES = ("-", "--", "-.", ":")
+LOOKS = ((style.RED, "-"), (style.ORANGE, "--"), (style.GREEN, "-."), (style.BLUE, ":"))
 
 
 def draw(beside: xr.Dataset) -> Figure:
@@ -44,16 +45,8 @@ def draw(beside: xr.Dataset) -> Figure:
 
 def _draw(panel: Axes, part: xr.Dataset, axis: str) -> None:
     kind = "y" if axis == "period" else "spectrum"
-    panel.plot(
-        part[axis], part[f"{kind}_a4"], color=style.GREY, linewidth=2.6, alpha=0.6, label="A4"
-    )
-    for index, ratio in enumerate(part.length_ratio.values):
-        panel.plot(
-            part[axis],
-            part[f"{kind}_a1"].sel(length_ratio=ratio),
-            color=COLOURS[index % len(COLOURS)],
-            linestyle=DASHES[index % len(DASHES)],
-            linewidth=0.9,
-            label=f"A1, L = {ratio:g} $l_\\mathrm{{pre}}$",
-        )
+    panel.plot(part[axis], part[f"{kind}_a4"], color=style.GREY, lw=2.6, alpha=0.6, label="A4")
+    for ratio, (colour, dash) in zip(part.length_ratio.values, cycle(LOOKS), strict=False):
+        one, label = part.sel(length_ratio=ratio), f"A1, L = {ratio:g} $l_\\mathrm{{pre}}$"
+        panel.plot(one[axis], one[f"{kind}_a1"], dash, color=colour, lw=0.9, label=label)
     panel.set_xlim(0, float(np.ceil(part[axis].values[-1])))

@@ -9,6 +9,7 @@ from matplotlib.figure import Figure
 
 from squealpipe.plotting import style
 from squealpipe.plotting.origin import scene_name
+from squealpipe.schema.backbones import Form
 
 READS = ("harmonic_forms",)
 CAPTION = (
@@ -36,54 +37,26 @@ def draw(forms: xr.Dataset) -> Figure:
 
 def _frequencies(panel: Axes, forms: xr.Dataset) -> None:
     places = np.arange(forms.sizes["scene"])
-    panel.plot(
-        places,
-        forms.omega_exact,
-        "_",
-        color=style.GREY,
-        markersize=22,
-        markeredgewidth=2,
-        label="exact",
-    )
+    panel.plot(places, forms.omega_exact, "_", color=style.GREY, ms=22, mew=2, label="exact")
     for form, colour, marker, name in (
-        (0, style.BLUE, "x", "corrected"),
-        (1, style.RED, "o", "as printed"),
+        (Form.mended, style.BLUE, "x", "Eq. (34) corrected"),
+        (Form.as_printed, style.RED, "o", "Eq. (34) as printed"),
     ):
-        panel.plot(
-            places,
-            forms.omega.sel(form=form).values,
-            linestyle="none",
-            marker=marker,
-            markerfacecolor="none",
-            color=colour,
-            label=f"Eq. (34) {name}",
-        )
-    panel.set_xticks(
-        places,
-        [scene_name(forms, str(name)).replace(", ", ",\n") for name in forms.scene.values],
-    )
-    panel.set(ylabel="ω (rad/s)")
-    panel.set_ylim(bottom=-0.05)
+        omega = forms.omega.sel(form=form).values
+        panel.plot(places, omega, marker, mfc="none", color=colour, label=name)
+    names = [scene_name(forms, name).replace(", ", ",\n") for name in forms.scene.values.tolist()]
+    panel.set_xticks(places, names)
+    panel.set(ylabel="ω (rad/s)", ylim=(-0.05, None))
     panel.margins(x=0.12)
     panel.legend(loc="upper center", bbox_to_anchor=(0.5, -0.27), ncols=3, handlelength=3.2)
 
 
 def _spread(panel: Axes, forms: xr.Dataset) -> None:
     panel.plot(forms.samples, forms.phase_spread_y, marker="s", color=style.ORANGE, markersize=4)
-    lacking = forms.fourier_rank.values < int(forms.fourier_columns)
-    panel.plot(
-        forms.samples.values[lacking],
-        forms.phase_spread_y.values[lacking],
-        linestyle="none",
-        marker="o",
-        markersize=9,
-        markerfacecolor="none",
-        color=style.RED,
-        label="Γ lacks full rank",
-    )
-    panel.set(
-        xscale="log", yscale="log", xlabel="samples $N$", ylabel="spread of the largest y (m)"
-    )
+    lacking = forms.phase_spread_y.where(forms.fourier_rank < forms.fourier_columns)
+    look = {"ms": 9, "mfc": "none", "color": style.RED, "label": "Γ lacks full rank"}
+    panel.loglog(forms.samples, lacking, "o", **look)
+    panel.set(xlabel="samples $N$", ylabel="spread of the largest y (m)")
     panel.set_xticks(forms.samples.values[[0, 3, 4, 5]], forms.samples.values[[0, 3, 4, 5]])
     panel.xaxis.minorticks_off()
     if np.ptp(np.log10(panel.get_ylim())) > DECADES:

@@ -33,13 +33,8 @@ def draw(run: xr.Dataset) -> Figure:
     panel = axes[0, 0]
     x, y = run.x.values, run.y.values
     points = np.stack([x, y], axis=-1)
-    orbit = LineCollection(
-        list(np.stack([points[:-1], points[1:]], axis=1)),
-        cmap="viridis",
-        array=run.time.values[:-1],
-        linewidths=0.5,
-        rasterized=True,
-    )
+    pieces, time = list(np.stack([points[:-1], points[1:]], axis=1)), run.time.values[:-1]
+    orbit = LineCollection(pieces, cmap="viridis", array=time, linewidths=0.5, rasterized=True)
     panel.add_collection(orbit)
     _springs(panel, run, 0.0, 0.0, (LIGHT, LIGHT))
     _springs(panel, run, x[-1], y[-1], SPRING_COLOURS)

@@ -34,16 +34,11 @@ def draw(first: xr.Dataset, second: xr.Dataset) -> Figure:
     panel = axes[0, 0]
     draw_force(panel, first)
     panel.get_lines()[0].set_label(f"α₁ = α₂ = {style.pi_label(float(first.alpha1))}")
-    every = slice(None, None, max(1, first.time.size // 125))
+    few = second.isel(time=slice(None, None, max(1, first.time.size // 125)))
     panel.plot(
-        second.time.values[every],
-        second.normalized_contact_force.values[every],
-        "o",
-        color=style.ORANGE,
-        fillstyle="none",
-        markersize=4,
+        few.time, few.normalized_contact_force, "o", color=style.ORANGE, mfc="none", ms=4,
         label=f"α₁ = α₂ = {style.pi_label(float(second.alpha1))}",
-    )
+    )  # fmt: skip
     difference = np.abs(first.normalized_contact_force - second.normalized_contact_force).max()
     panel.set_title(f"largest difference {number(float(difference), 2)}", loc="right")
     inset_mechanism(panel, first, (1.0, 0.3, 0.16, 0.7))

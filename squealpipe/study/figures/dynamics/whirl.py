@@ -52,27 +52,17 @@ def draw(run: xr.Dataset, sizes: xr.Dataset) -> Figure:
 
 def _sizes(axes: Axes, sizes: xr.Dataset) -> None:
     speed = np.abs(sizes.belt_speed.values)
-    for k, name in meanings(sizes.motion).items():
-        chosen = sizes.motion.values == k
-        if chosen.any():
-            axes.loglog(
-                speed[chosen],
-                sizes.amplitude.values[chosen],
-                "o" if name == "whirl" else "s",
-                color=style.REGIME_COLOURS[name],
-                markersize=4,
-                label=style.flag_words(name),
-            )
+    kinds = [
+        (sizes.motion.values == k, "o" if name == "whirl" else "s", style.REGIME_COLOURS[name],
+         style.flag_words(name))
+        for k, name in meanings(sizes.motion).items()
+    ]  # fmt: skip
     changed = sizes.motion_changed.values == 1
-    if changed.any():
-        axes.loglog(
-            speed[changed],
-            sizes.amplitude.values[changed],
-            "x",
-            color=style.BLACK,
-            markersize=4,
-            label="another kind in the last quarter",
-        )
+    kinds.append((changed, "x", style.BLACK, "another kind in the last quarter"))
+    for chosen, marker, colour, words in kinds:
+        if chosen.any():
+            here = speed[chosen], sizes.amplitude.values[chosen]
+            axes.loglog(*here, marker, color=colour, markersize=4, label=words)
     line = np.geomspace(speed[0], speed[-1], 200)
     energy = float(sizes.energy_offset) + float(sizes.energy_slope) * line
     axes.loglog(line, energy, "--", color=style.GREY, label="energy at speed V")

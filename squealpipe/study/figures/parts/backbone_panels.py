@@ -78,16 +78,8 @@ def draw_branch(panel: Axes, exact: xr.Dataset, series: xr.Dataset, preload: flo
             if chosen.any():
                 drawn = np.where(joined(chosen), values, np.nan)
                 panel.plot(omega, drawn, dash, color=shade, linewidth=1.4, label=words)
-        panel.plot(
-            series.omega.values[shown],
-            series[name].values[shown],
-            linestyle="none",
-            marker="x",
-            markersize=4.5,
-            markeredgewidth=0.9,
-            color=colour,
-            label=f"{label}, harmonic balance",
-        )
+        here, words = series.isel(point=shown), f"{label}, harmonic balance"
+        panel.plot(here.omega, here[name], "x", ms=4.5, mew=0.9, color=colour, label=words)
     _frame(panel, np.concatenate([omega, series.omega.values[shown]]))
 
 
