@@ -1,11 +1,7 @@
 """Headless Chromium for tests of pages, without access to a network."""
 
-from __future__ import annotations
-
 import shutil
-from collections.abc import Iterator
 from contextlib import contextmanager
-from typing import Any
 
 FLAGS = [
     "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run",
@@ -13,20 +9,13 @@ FLAGS = [
 ]  # fmt: skip
 
 
-def chromium_path() -> str | None:
+def chromium_path():
     """Chromium on this machine, if there is one."""
     return shutil.which("chromium") or shutil.which("chromium-browser")
 
 
 @contextmanager
-def open_page(
-    address: str,
-    *,
-    width: int = 1280,
-    height: int = 900,
-    scheme: Any = "light",
-    site: str = "data:",
-) -> Iterator[tuple[Any, Any]]:
+def open_page(address, *, width=1280, height=900, scheme="light", site="data:"):
     """A page in a new browser, and the list of what went wrong on it: errors, other addresses.
 
     Addresses that begin with ``site`` belong to it.

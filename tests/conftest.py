@@ -1,7 +1,5 @@
 """Shared fixtures: a copy of the checkout, and one run of the tiny study for all tests."""
 
-from __future__ import annotations
-
 import contextlib
 import os
 import shutil
@@ -35,14 +33,10 @@ def copy_checkout(target):
 def run_snakemake(directory, *arguments, timeout=500):
     """Run snakemake in a copy, with the package of that copy."""
     return subprocess.run(
-        [sys.executable, "-m", "snakemake", *arguments],
-        cwd=directory,
-        env={**os.environ, "PYTHONPATH": str(directory)},
-        capture_output=True,
-        text=True,
-        timeout=timeout,
-        check=False,
-    )
+        [sys.executable, "-m", "snakemake", *arguments], cwd=directory,
+        env={**os.environ, "PYTHONPATH": str(directory)}, capture_output=True, text=True,
+        timeout=timeout, check=False,
+    )  # fmt: skip
 
 
 def pytest_collection_modifyitems(items):

@@ -4,11 +4,7 @@ Springs are given by their potential energy and fixed ends alone; forces, the st
 Jacobians follow by differentiation.
 """
 
-from __future__ import annotations
-
-from collections.abc import Callable
 from types import SimpleNamespace
-from typing import Any
 
 import numpy as np
 import sympy as sp
@@ -24,7 +20,7 @@ FIXED1 = (P.length1 * sp.cos(ALPHA1), P.length1 * sp.sin(ALPHA1))
 FIXED2 = (-P.length2 * sp.cos(ALPHA2), P.length2 * sp.sin(ALPHA2))
 
 
-def _stretch_energy(stiffness: sp.Expr, length: sp.Expr, end: tuple[sp.Expr, sp.Expr]) -> sp.Expr:
+def _stretch_energy(stiffness, length, end):
     distance = sp.sqrt((X - end[0]) ** 2 + (Y - end[1]) ** 2)
     return stiffness * (distance - length) ** 2 / 2
 
@@ -37,19 +33,17 @@ STIFFNESS = sp.simplify(sp.hessian(SPRING_ENERGY, (X, Y)).subs({X: 0, Y: 0}))
 LINEAR_FORCE = tuple(-(STIFFNESS * sp.Matrix([X, Y])))
 
 
-def evaluate(expression: Any, params: Parameters, **values: float) -> np.ndarray:
+def evaluate(expression, params, **values):
     """A symbolic expression as numbers."""
     return function(expression)(params, **values)
 
 
-def function(expression: Any) -> Callable[..., np.ndarray]:
+def function(expression):
     """A symbolic expression as a function of parameters and x, y, alpha1, alpha2."""
     symbols = [X, Y, ALPHA1, ALPHA2, *vars(P).values()]
     compiled = sp.lambdify(symbols, expression, "numpy")
 
-    def call(
-        params: Parameters, *, x: Any = 0.0, y: Any = 0.0, alpha1: Any = 0.0, alpha2: Any = 0.0
-    ) -> np.ndarray:
+    def call(params, *, x=0.0, y=0.0, alpha1=0.0, alpha2=0.0):
         numbers = [getattr(params, name) for name in NAMES]
         return np.asarray(compiled(x, y, alpha1, alpha2, *numbers), dtype=float)
 
@@ -59,23 +53,18 @@ def function(expression: Any) -> Callable[..., np.ndarray]:
 RNG_SEED = 4
 
 
-def random_parameters(generator: np.random.Generator) -> Parameters:
+def random_parameters(generator):
     """Parameters without any symmetry."""
     return Parameters(
-        mass=generator.uniform(0.3, 3),
-        k1=generator.uniform(0.3, 3),
-        k2=generator.uniform(0.3, 3),
-        k3=generator.uniform(0.3, 3),
-        mu=generator.uniform(0, 1),
-        belt_speed=generator.uniform(-5, 5),
-        preload=generator.uniform(0.3, 3),
-        length1=generator.uniform(3, 8),
-        length2=generator.uniform(3, 8),
+        mass=generator.uniform(0.3, 3), k1=generator.uniform(0.3, 3), k2=generator.uniform(0.3, 3),
+        k3=generator.uniform(0.3, 3), mu=generator.uniform(0, 1),
+        belt_speed=generator.uniform(-5, 5), preload=generator.uniform(0.3, 3),
+        length1=generator.uniform(3, 8), length2=generator.uniform(3, 8),
         sigma=generator.uniform(0.3, 5),
-    )
+    )  # fmt: skip
 
 
-def draws(count: int) -> list[tuple[Parameters, dict[str, float]]]:
+def draws(count):
     """Random parameters with a random state and random angles."""
     generator = np.random.default_rng(RNG_SEED)
     cases = []

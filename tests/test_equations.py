@@ -4,8 +4,6 @@ A home is a function or class below laws, models, methods, solvers or tasks whos
 with ``Eq. (n)`` or ``Eqs. (m), (n)``. References, ``of Eq. (n)``, and words before it do not count.
 """
 
-from __future__ import annotations
-
 import ast
 import re
 from collections import defaultdict

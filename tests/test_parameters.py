@@ -40,15 +40,10 @@ def test_groups_do_not_depend_on_the_units(mass, stiffness, length):
     plain = Parameters()
     speed = length * math.sqrt(stiffness / mass)
     scaled = Parameters(
-        mass=mass,
-        k1=stiffness,
-        k2=stiffness,
-        k3=plain.k3 * stiffness,
-        preload=length,
-        length1=plain.length1 * length,
-        length2=plain.length2 * length,
+        mass=mass, k1=stiffness, k2=stiffness, k3=plain.k3 * stiffness, preload=length,
+        length1=plain.length1 * length, length2=plain.length2 * length,
         belt_speed=plain.belt_speed * speed,
-    )
+    )  # fmt: skip
     for group in ("kappa", "length_ratio", "speed_ratio"):
         assert math.isclose(getattr(scaled, group), getattr(plain, group), rel_tol=1e-14)
 

@@ -70,14 +70,9 @@ def run(step, language, place):
     }
     command = [sys.executable, "-c", step] if language == "python" else ["bash", "-c", step]
     return subprocess.run(
-        command,
-        cwd=place,
-        env=environment,
-        capture_output=True,
-        text=True,
-        check=False,
+        command, cwd=place, env=environment, capture_output=True, text=True, check=False,
         timeout=300,
-    )
+    )  # fmt: skip
 
 
 @pytest.mark.release

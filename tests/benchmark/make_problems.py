@@ -1,9 +1,7 @@
 """The problems as systems; ``python -m tests.benchmark.make_problems`` writes ``problems.yaml``."""
 
-from __future__ import annotations
-
 import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from math import pi
 from pathlib import Path
@@ -54,7 +52,7 @@ class Case:
     start: Changes = field(default_factory=dict)
     more: Changes = field(default_factory=dict)
 
-    def data(self) -> dict[str, Any]:
+    def data(self):
         """The problem as plain data, its equations those of the traced system."""
         system, traced = self.system, self.system.traced
         unit = {id(parameter(TIME_UNIT)): symbol(1.0)}
@@ -62,7 +60,7 @@ class Case:
         start = {name: float(self.start.get(name, system.start[name])) for name in system.states}
         given = {key: np.array([v]) for key, v in {**values, **start, TIME: 0.0}.items()}
 
-        def text(root: Any) -> str | None:
+        def text(root):
             return None if root is None else expression(substituted(root, unit))
 
         switches = [
@@ -101,7 +99,7 @@ class Case:
         }
 
 
-def barrier(name: str, rates: Callable[[Any, Any], Any], parameters: Changes, x: float) -> System:
+def barrier(name, rates, parameters, x):
     """States x and v; the events are the passages of x through the parameter ``level``."""
     return System(
         name,
@@ -117,7 +115,7 @@ def barrier(name: str, rates: Callable[[Any, Any], Any], parameters: Changes, x:
     )
 
 
-def _fall(s: Any, p: Any) -> Any:
+def _fall(s, p):
     return {"x": s.v, "v": -p.gravity}
 
 
@@ -185,7 +183,7 @@ two_balls = System(
 )  # fmt: skip
 
 
-def _table(t: Any, p: Any) -> Any:
+def _table(t, p):
     return p.amplitude * sin(t)
 
 
@@ -238,17 +236,17 @@ _STEPPING = {
 }
 
 
-def impact(velocity: str, gap: str, restitution: str) -> Changes:
+def impact(velocity, gap, restitution):
     """What Moreau–Jean stepping needs of a system with one stop."""
     stop = [velocity, gap, restitution]
     return {"stepping": {"velocities": [velocity], "constants": {}, "impact": stop}}
 
 
 def a1(
-    name: str, group: str, purpose: str, angles: tuple[float, float], t_end: float,
-    start: Sequence[float] = (0.0, 0.0, 0.0, 0.0), more: Changes = MappingProxyType({}),
-    **changed: float,
-) -> Case:  # fmt: skip
+    name, group, purpose, angles, t_end,
+    start = (0.0, 0.0, 0.0, 0.0), more = MappingProxyType({}),
+    **changed,
+):  # fmt: skip
     """A scene of the brake pad A1, angles over π."""
     values = parameters_of_run(BASE.with_(**changed), angles[0] * pi, angles[1] * pi)
     states = dict(zip(("x", "y", "vx", "vy"), start, strict=True))
@@ -256,7 +254,7 @@ def a1(
     return Case(f"A1: {name}", group, purpose, brake(), t_end, values, states, more)
 
 
-def tangency(distance: float, purpose: str) -> Case:
+def tangency(distance, purpose):
     """An oscillator of amplitude 1 whose barrier is at 1 − distance."""
     where = f"tangency, depth {distance:g}" if distance > 0 else "near miss"
     return Case(where, "tangency", purpose, harmonic, 12.0, {"level": 1.0 - distance})
@@ -376,7 +374,7 @@ CASES = (
 )  # fmt: skip
 
 
-def entries() -> list[dict[str, Any]]:
+def entries():
     """All problems as plain data; equations that an earlier one has are given by its name."""
     found: list[dict[str, Any]] = []
     for case in CASES:
@@ -390,7 +388,7 @@ def entries() -> list[dict[str, Any]]:
     return found
 
 
-def main() -> None:
+def main():
     """Write ``problems.yaml``."""
     style: dict[str, Any] = {
         "sort_keys": False,

@@ -6,11 +6,8 @@ growth of a perturbation comes from displaced runs. ``python -m tests.benchmark.
 writes ``references.json``.
 """
 
-from __future__ import annotations
-
 import json
 from collections import Counter
-from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any, NamedTuple
@@ -20,7 +17,7 @@ import mpmath
 import numpy as np
 
 import squealpipe
-from squealpipe.benchmark.problems import FUNCTIONS, Problem, Transition, all_data
+from squealpipe.benchmark.problems import FUNCTIONS, Problem, all_data
 
 FILE = Path(squealpipe.__file__).parent / "benchmark/references.json"
 DIGITS = 34
@@ -37,9 +34,6 @@ MOST_PLACES = 4
 """Instants at which a run is displaced."""
 
 
-Flow = Callable[[Any], Any]
-
-
 class Motion(NamedTuple):
     """Final state, the events, and (time, state, regime) at the start and after each event."""
 
@@ -52,7 +46,7 @@ class Motion(NamedTuple):
 class LongDouble:
     """A problem by heyoka's Taylor series in long double."""
 
-    def __init__(self, data: Mapping[str, Any]) -> None:
+    def __init__(self, data):
         symbols = Problem(data, _heyoka(), lambda v: heyoka.expression(np.longdouble(v)))
         self.problem = Problem(data, np, np.longdouble)
         self.problem.patience = NO_LIMIT
@@ -66,18 +60,18 @@ class LongDouble:
                 equations, zeros, fp_type=np.longdouble, tol=TOLERANCE
             )
 
-    def __call__(self, t: Any = 0.0, y: Any = None, regime: str = "", t_end: Any = None) -> Motion:
+    def __call__(self, t=0.0, y=None, regime="", t_end=None):
         """From a state, by default the start, to ``t_end``."""
         problem = self.problem
         t, t_end = np.longdouble(t), problem.t_end if t_end is None else np.longdouble(t_end)
         y = np.array(problem.start) if y is None else y
 
-        def step(regime: str, t: Any, y: Any) -> tuple[Any, Flow, Any]:
+        def step(regime, t, y):
             run = self.runs[regime]
             run.time, run.state[:] = t, y
             run.step(max_delta_t=t_end - t, write_tc=True)
 
-            def flow(span: Any) -> Any:
+            def flow(span):
                 return run.update_d_output(t + span).copy() if span else y
 
             h = run.time - t
@@ -86,13 +80,11 @@ class LongDouble:
         return _motion(problem, step, t, y, regime or problem.regime, t_end)
 
 
-def _heyoka() -> Any:
+def _heyoka():
     return SimpleNamespace(**{name: getattr(heyoka, name) for name in FUNCTIONS})
 
 
-def extrapolated(
-    field: Callable[[Any, Any], Any], t: Any, y: Sequence[Any], h: Any
-) -> tuple[Any, Any, Any]:
+def extrapolated(field, t, y, h):
     """One step of Gragg's method: the state, its relative error, the states of the finest rule."""
     first, path = field(t, y), []
     rows: list[Any] = []
@@ -116,17 +108,17 @@ def extrapolated(
     return rows[-1][-1], error, path
 
 
-def extrapolation(data: Mapping[str, Any]) -> Motion:
+def extrapolation(data):
     """A problem by Gragg's method in 34 digits."""
     with mpmath.workdps(DIGITS):
         problem = Problem(data, mpmath, mpmath.mpf)
         problem.patience = NO_LIMIT
         h = mpmath.mpf("0.25")
 
-        def step(regime: str, t: Any, y: Any) -> tuple[Any, Flow, Any]:
+        def step(regime, t, y):
             nonlocal h
 
-            def field(t: Any, y: Any) -> Any:
+            def field(t, y):
                 return problem.field(t, y, regime)
 
             made = min(h, problem.t_end - t)
@@ -141,7 +133,7 @@ def extrapolation(data: Mapping[str, Any]) -> Motion:
         return _motion(problem, step, mpmath.mpf(0), problem.start, problem.regime, problem.t_end)
 
 
-def _motion(problem: Problem, step: Any, t: Any, y: Any, regime: str, t_end: Any) -> Motion:
+def _motion(problem, step, t, y, regime, t_end):
     """Step from event to event; ``step`` gives the length, the flow within it, and samples."""
     motion = Motion(None, [], [], [(t, y, regime)])
     while t < t_end:
@@ -161,10 +153,10 @@ def _motion(problem: Problem, step: Any, t: Any, y: Any, regime: str, t_end: Any
     return motion._replace(state=np.array(y))
 
 
-def _along(problem: Problem, switch: Transition, t: Any, regime: str) -> Callable[..., Any]:
+def _along(problem, switch, t, regime):
     """A surface's value some span after t, and with ``nudge`` that a little later."""
 
-    def surface(span: Any, y: Any, nudge: float = 0.0) -> Any:
+    def surface(span, y, nudge=0.0):
         if nudge:
             rates = problem.field(t + span, y, regime)
             y = [a + nudge * b for a, b in zip(y, rates, strict=True)]
@@ -173,7 +165,7 @@ def _along(problem: Problem, switch: Transition, t: Any, regime: str) -> Callabl
     return surface
 
 
-def _first_root(surface: Any, h: Any, flow: Flow, samples: Sequence[Any]) -> Any:  # noqa: C901
+def _first_root(surface, h, flow, samples):  # noqa: C901
     """The earliest fall of a surface through zero within a step, from its start; None: none."""
     part = h / (len(samples) - 1)
     values = [surface(k * part, y) for k, y in enumerate(samples)]
@@ -181,10 +173,10 @@ def _first_root(surface: Any, h: Any, flow: Flow, samples: Sequence[Any]) -> Any
     largest = max(map(abs, values))
     eps = (h * 0 + 10) ** (-6)
 
-    def at(span: Any) -> Any:
+    def at(span):
         return surface(span, flow(span))
 
-    def slope(span: Any) -> Any:
+    def slope(span):
         return (at(span + eps * h) - at(span - eps * h)) / eps
 
     if abs(values[0]) <= ON_SURFACE * largest and slopes[0] < -FALLING * largest:
@@ -209,7 +201,7 @@ def _first_root(surface: Any, h: Any, flow: Flow, samples: Sequence[Any]) -> Any
     return None
 
 
-def _root(function: Callable[[Any], Any], low: Any, high: Any) -> Any:
+def _root(function, low, high):
     """Where a function falls through zero, by Illinois' rule."""
     a, b = function(low), function(high)
     if a < 0 or b > 0:
@@ -227,7 +219,7 @@ def _root(function: Callable[[Any], Any], low: Any, high: Any) -> Any:
     return high
 
 
-def _displaced(run: LongDouble, motion: Motion, size: float) -> list[tuple[int, Motion]]:
+def _displaced(run, motion, size):
     """Runs displaced in each moving state between events, with the events that went before."""
     problem = run.problem
     places = np.unique(np.linspace(0, len(motion.passed) - 1, MOST_PLACES).astype(int))
@@ -249,7 +241,7 @@ def _displaced(run: LongDouble, motion: Motion, size: float) -> list[tuple[int, 
     return found
 
 
-def growth_of(run: LongDouble, motion: Motion) -> tuple[float, list[float], float]:
+def growth_of(run, motion):
     """How a disturbance grows: of the final state, of each event's time; and the margin.
 
     The margin is the largest of 1e-2, 1e-3, … whose displacement leaves the events what they are;
@@ -278,9 +270,7 @@ def growth_of(run: LongDouble, motion: Motion) -> tuple[float, list[float], floa
     return growth, of_times.tolist(), margin
 
 
-def derivative(
-    data: Mapping[str, Any], solve: Callable[..., Motion], number: Any, step: Any
-) -> Any:
+def derivative(data, solve, number, step):
     """That of an event's time by a parameter, by central differences of order six."""
     event, name = data["derivative"]
     total = number(0)
@@ -293,7 +283,7 @@ def derivative(
     return total
 
 
-def reference_of(data: Mapping[str, Any]) -> dict[str, Any]:
+def reference_of(data):
     """Final state, events, growth and margin of a problem, from the long-double way."""
     run = LongDouble(data)
     if "unknowable" in data:
@@ -315,7 +305,7 @@ def reference_of(data: Mapping[str, Any]) -> dict[str, Any]:
     return found
 
 
-def disagreement(reference: Mapping[str, Any], motion: Motion) -> float:
+def disagreement(reference, motion):
     """Largest difference of the second way from the shipped reference, over the growth.
 
     Raises:
@@ -338,7 +328,7 @@ def disagreement(reference: Mapping[str, Any], motion: Motion) -> float:
     return float(max(found))
 
 
-def main() -> None:
+def main():
     """Write ``references.json``."""
     lines = [f"{json.dumps(data['name'])}: {json.dumps(reference_of(data))}" for data in all_data()]
     FILE.write_text("{\n" + ",\n".join(lines) + "\n}\n", "utf-8")

@@ -4,14 +4,11 @@ Prints medians and ratios; the ratios are what to compare between machines. What
 process alone is timed by its CPU time, so that others at work on the machine disturb less.
 """
 
-from __future__ import annotations
-
 import resource
 import statistics
 import subprocess
 import sys
 import time
-from collections.abc import Callable
 
 import numpy as np
 
@@ -33,9 +30,7 @@ print(time.process_time())
 """
 
 
-def median(
-    work: Callable[[], object], repeats: int = 5, clock: Callable[[], float] = time.process_time
-) -> float:
+def median(work, repeats=5, clock=time.process_time):
     """Median time of a few repeats, s."""
     times = []
     for _ in range(repeats):
@@ -45,7 +40,7 @@ def median(
     return statistics.median(times)
 
 
-def main() -> None:
+def main():
     """Print the tables."""
     angles = np.linspace(0, np.pi, 24)
     pairs = np.random.default_rng(0).uniform(0, np.pi, (5, 2))

@@ -3,10 +3,7 @@
 Prints seconds (smallest of three) and ratios; the ratios are what to compare between machines.
 """
 
-from __future__ import annotations
-
 import time
-from collections.abc import Callable
 
 import numpy as np
 
@@ -22,7 +19,7 @@ PARAMS = Parameters()
 ANGLES = np.linspace(0.0, np.pi, POINTS)
 
 
-def best(work: Callable[[], object], repeats: int = 3) -> float:
+def best(work, repeats=3):
     """Smallest wall time, s."""
     times = []
     for _ in range(repeats):
@@ -32,7 +29,7 @@ def best(work: Callable[[], object], repeats: int = 3) -> float:
     return min(times)
 
 
-def numeric_eigenvalues() -> np.ndarray:
+def numeric_eigenvalues():
     """All cells by LAPACK, one stack of 2 × 2 matrices."""
     stiffness = linear_stiffness(PARAMS, geometry(ANGLES[:, None], ANGLES[None, :]))
     entries = np.broadcast_arrays(*contact_matrix(stiffness, PARAMS.k3, PARAMS.mu))
@@ -40,7 +37,7 @@ def numeric_eigenvalues() -> np.ndarray:
     return np.linalg.eigvals(matrices)
 
 
-def main() -> None:
+def main():
     """Print a table."""
     numeric = best(numeric_eigenvalues, repeats=1)
     print(f"{'numeric eigenvalues':24} {numeric:8.3f} s")

@@ -4,8 +4,6 @@ Prints the tables of docs/cluster.md. CPU time is measured, of this process and 
 that other work on the machine disturbs little. `--large` adds the map of a million cells.
 """
 
-from __future__ import annotations
-
 import resource
 import sys
 import tempfile
@@ -20,12 +18,12 @@ from squealpipe.tasks.dynamics.hammering import hammering_map
 from squealpipe.tasks.dynamics.runs import validity_map
 
 
-def cpu_seconds() -> float:
+def cpu_seconds():
     used = [resource.getrusage(who) for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)]
     return sum(item.ru_utime + item.ru_stime for item in used)
 
 
-def measured(task, params: Parameters, points: int, t_end: float):
+def measured(task, params, points, t_end):
     """CPU seconds, wall seconds and the map."""
     angles = np.linspace(0.0, np.pi, points)
     cpu, wall = cpu_seconds(), time.perf_counter()
@@ -33,7 +31,7 @@ def measured(task, params: Parameters, points: int, t_end: float):
     return cpu_seconds() - cpu, time.perf_counter() - wall, made
 
 
-def row(name: str, task, params: Parameters, points: int, t_end: float) -> None:
+def row(name, task, params, points, t_end):
     cpu, wall, made = measured(task, params, points, t_end)
     cells = points**2
     with tempfile.TemporaryDirectory() as folder:
@@ -45,7 +43,7 @@ def row(name: str, task, params: Parameters, points: int, t_end: float) -> None:
     )
 
 
-def main() -> None:
+def main():
     base = Parameters()
     angles = np.linspace(0.0, np.pi, 9)
     for task in (validity_map, hammering_map):

@@ -36,15 +36,9 @@ def compute_evidence(params, reading="along_plus_x", *, beside=False):
         mended = of_the_paper(*for_a1(params, READINGS[reading].corrected))
         found |= {f"corrected/{name}": dataset for name, dataset in mended.items()}
     found["parameter_inference"] = infer_parameters(
-        params,
-        samples=24,
-        reading=reading,
-        kappa=(0.55, 0.7),
-        mu=(0.28, 0.31),
-        length_ratio=(8.0, 16.0),
-        speed_ratio=(90.0, 110.0),
-        workers=1,
-    )
+        params, samples=24, reading=reading, kappa=(0.55, 0.7), mu=(0.28, 0.31),
+        length_ratio=(8.0, 16.0), speed_ratio=(90.0, 110.0), workers=1,
+    )  # fmt: skip
     return found | of_one_sign(corrected(params, reading)) | of_a4(for_linear(params, reading))
 
 

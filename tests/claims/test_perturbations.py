@@ -1,7 +1,5 @@
 """Checks are strict enough to fail: each statement flips when the data say something else."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import NamedTuple
 

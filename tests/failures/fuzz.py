@@ -1,7 +1,5 @@
 """Random calls of the public functions, with arguments that make sense and others that do not."""
 
-from __future__ import annotations
-
 import math
 import signal
 import time
@@ -10,7 +8,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cache, partial
 from random import Random
-from types import NoneType, UnionType
+from types import NoneType
 from typing import Any
 
 import numpy as np
@@ -49,10 +47,10 @@ class Kind:
     bad: list[Any]
 
 
-def number(low: float, high: float, *, zero: bool = False, extremes: bool = True) -> Kind:
+def number(low, high, *, zero=False, extremes=True):
     """A positive number, mostly of ordinary size; ``zero`` allows 0."""
 
-    def draw(rng: Random) -> Any:
+    def draw(rng):
         if extremes and rng.random() < 0.03:
             return rng.choice(EXTREMES)
         if zero and rng.random() < 0.1:
@@ -63,12 +61,12 @@ def number(low: float, high: float, *, zero: bool = False, extremes: bool = True
     return Kind(draw, [*NO_NUMBER, -1.0, -5e-324, *([] if zero else [0, 0.0, -0.0])])
 
 
-def one_of(*values: Any) -> Kind:
+def one_of(*values):
     """One of a few values."""
     return Kind(lambda rng: rng.choice(values), ["", "x", None, 1.5, [], object(), "A1 "])
 
 
-def whole(*values: int) -> Kind:
+def whole(*values):
     """A whole number."""
     return Kind(
         lambda rng: rng.choice([*values, np.int64(values[0])]), [*NO_NUMBER, 0, -1, 1.5, 1.0]
@@ -95,8 +93,7 @@ ANGLES = Kind(
     NO_ANGLES,
 )
 TURNS = Kind(
-    lambda rng: rng.uniform(1, 9),
-    ["1", True, np.bool_(True), 1j, math.nan, None, object(), b"1"],
+    lambda rng: rng.uniform(1, 9), ["1", True, np.bool_(True), 1j, math.nan, None, object(), b"1"]
 )
 MANY = Kind(ANGLE.good, NO_ANGLES[2:17])
 HORIZON = number(0.05, 8.0)
@@ -183,7 +180,7 @@ AMPLITUDE = {
 }
 
 
-def pieces(known: dict[str, Any], **allowed: type | UnionType) -> dict[str, Kind]:
+def pieces(known, **allowed):
     """The arguments of a definition, and which other types they may have."""
     return {
         name: Kind(
@@ -195,13 +192,13 @@ def pieces(known: dict[str, Any], **allowed: type | UnionType) -> dict[str, Kind
 
 
 @cache
-def oscillator(*, hits: bool = True) -> sp.System:
+def oscillator(*, hits=True):
     """A forced oscillator, with a stop or without."""
     return sp.System("oscillator", **OSCILLATOR, switches=[sp.Switch(**IMPACT)] * hits)
 
 
 @cache
-def oscillators_cycle() -> xr.Dataset:
+def oscillators_cycle():
     """Where a branch begins."""
     return oscillator().limit_cycle(amplitude=0.2)
 
@@ -370,11 +367,11 @@ class TooLongError(Exception):
     """A call that does not end."""
 
 
-def _ring(*_: Any) -> None:
+def _ring(*_):
     raise TooLongError
 
 
-def physical(rng: Random) -> sp.Parameters:
+def physical(rng):
     """Parameters that make sense, the paper's or any others."""
     if rng.random() < 0.2:
         return sp.Parameters()
@@ -386,7 +383,7 @@ def physical(rng: Random) -> sp.Parameters:
             continue
 
 
-def draw(rng: Random) -> tuple[str, dict[str, Any], set[str]]:
+def draw(rng):
     """A call: function, arguments, and the names of those that make no sense."""
     name = rng.choices(list(CALLS), [weight for weight, *_ in CALLS.values()])[0]
     kinds = CALLS[name][2]
@@ -402,7 +399,7 @@ def draw(rng: Random) -> tuple[str, dict[str, Any], set[str]]:
     return name, given, wrong
 
 
-def fault_of(name: str, given: dict[str, Any], wrong: set[str], params: Any) -> str:
+def fault_of(name, given, wrong, params):
     """What is wrong with what a call did; empty where nothing is."""
     function = CALLS[name][1]
     takes_params = name not in NO_PARAMS
@@ -422,7 +419,7 @@ def fault_of(name: str, given: dict[str, Any], wrong: set[str], params: Any) -> 
     return unearned(found) if isinstance(found, xr.Dataset) else ""
 
 
-def unearned(found: xr.Dataset) -> str:
+def unearned(found):
     """A converged outcome beside numbers that are none."""
     if "outcome" not in found:
         return ""
@@ -435,7 +432,7 @@ def unearned(found: xr.Dataset) -> str:
     return ""
 
 
-def warm_up() -> None:
+def warm_up():
     """Compile what the calls need; each law and form of springs is a system of its own."""
     for law in LAW_NAMES:
         for model in ("A1", "A1-linear-springs"):
@@ -448,7 +445,7 @@ def warm_up() -> None:
     sp.periodic_orbit(sp.Parameters(), 0.5, 3.0, mode=2, y_peak=2.0)
 
 
-def fuzz(calls: int, seed: int) -> Findings:
+def fuzz(calls, seed):
     """Make random calls and judge each, once all that is compiled is there."""
     warm_up()
     rng, verdict = Random(seed), Findings()  # noqa: S311

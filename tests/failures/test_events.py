@@ -212,13 +212,9 @@ def test_two_springs_on_one_side_and_a_belt_at_rest():
 
 def test_without_stick_the_sliding_mode_has_no_solution():
     run = simulate(
-        FRICTION,
-        0.5 * np.pi,
-        np.pi,
-        t_end=8.0,
-        model="A1-no-stick",
+        FRICTION, 0.5 * np.pi, np.pi, t_end=8.0, model="A1-no-stick",
         initial_state=(-0.1, REST, 0, 0),
-    )
+    )  # fmt: skip
     sticks = simulate(FRICTION, 0.5 * np.pi, np.pi, t_end=8.0, initial_state=(-0.1, REST, 0, 0))
     assert run.outcome == Outcome.accumulation
     first = sticks.event_time.values[sticks.event_kind.values == STICK][0]

@@ -5,10 +5,7 @@ import pytest
 
 from squealpipe.schema import build
 from squealpipe.schema.comparison import BENCHMARK, FAILURE_ATLAS, Reliability, Role
-from squealpipe.study.figures.comparison import (
-    failure_atlas,
-    work_precision_benchmark,
-)
+from squealpipe.study.figures.comparison import failure_atlas, work_precision_benchmark
 from squealpipe.study.figures.parts import work_precision
 
 

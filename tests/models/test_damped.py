@@ -19,19 +19,12 @@ def random_parameters():
     """Unequal springs, both belt directions, any law, damping from none to overcritical."""
     mu = RNG.uniform(0, 1)
     return FORMER.with_(
-        mass=RNG.uniform(0.2, 5),
-        k1=RNG.uniform(0.2, 5),
-        k2=RNG.uniform(0.2, 5),
-        k3=RNG.uniform(0.2, 5),
-        mu=mu,
-        belt_speed=RNG.choice([-1, 1]) * RNG.uniform(0.1, 5),
-        preload=RNG.uniform(0.3, 3),
-        damping1=RNG.choice([0.0, 1e-6, 0.1, 5.0]),
-        damping2=RNG.uniform(0, 2),
-        friction_law=str(RNG.choice(LAW_NAMES)),
-        mu_static=mu + RNG.uniform(0, 1),
-        friction_speed=RNG.uniform(0.1, 5),
-    )
+        mass=RNG.uniform(0.2, 5), k1=RNG.uniform(0.2, 5), k2=RNG.uniform(0.2, 5),
+        k3=RNG.uniform(0.2, 5), mu=mu, belt_speed=RNG.choice([-1, 1]) * RNG.uniform(0.1, 5),
+        preload=RNG.uniform(0.3, 3), damping1=RNG.choice([0.0, 1e-6, 0.1, 5.0]),
+        damping2=RNG.uniform(0, 2), friction_law=str(RNG.choice(LAW_NAMES)),
+        mu_static=mu + RNG.uniform(0, 1), friction_speed=RNG.uniform(0.1, 5),
+    )  # fmt: skip
 
 
 def eigenvalues_in_60_digits(p, alpha1, alpha2):

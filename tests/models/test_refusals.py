@@ -1,7 +1,5 @@
 """A4, its orbits and the balances refuse what would break their first integral."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np

@@ -1,12 +1,8 @@
 """A1 as a flow with derivative: its automaton under :mod:`tests.oracles.event_flow`."""
 
-from __future__ import annotations
-
-from collections.abc import Sequence
 from functools import cache
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import minimize_scalar
 
 from squealpipe.codes import Event, Regime
@@ -14,7 +10,6 @@ from squealpipe.laws.friction_laws import coefficient
 from squealpipe.laws.springs import fixed_ends
 from squealpipe.models.a1_automaton import A1Automaton, EventKind
 from squealpipe.models.damped import is_undamped
-from squealpipe.parameters import Parameters
 from tests.oracles.a1_long_double import (
     PARAMETERS,
     SURFACES,
@@ -22,18 +17,7 @@ from tests.oracles.a1_long_double import (
     regime_values,
     symbolic_automaton,
 )
-from tests.oracles.event_flow import (
-    CompiledFlow,
-    Passage,
-    Segment,
-    Switched,
-    Touch,
-    TurningPoint,
-    Vector,
-    compile_flow,
-    sample_path,
-    turning_points,
-)
+from tests.oracles.event_flow import Switched, Touch, compile_flow, sample_path, turning_points
 
 ULP = 2.0**-52
 _PIVOT = 1e-3
@@ -54,7 +38,7 @@ _TOUCHES: dict[tuple[tuple[int, ...], tuple[int, ...]], Touch] = {
 
 
 @cache
-def _compiled(law: str) -> CompiledFlow:
+def _compiled(law):
     return compile_flow(*symbolic_automaton(law), len(PARAMETERS), VARIED)
 
 
@@ -68,15 +52,7 @@ class A1Flow:
         unit: of that parameter.
     """
 
-    def __init__(
-        self,
-        params: Parameters,
-        alpha1: float,
-        alpha2: float,
-        *,
-        follow: str | None = None,
-        unit: float = 1.0,
-    ) -> None:
+    def __init__(self, params, alpha1, alpha2, *, follow=None, unit=1.0):
         self.params = params
         self.a1 = A1Automaton(params, alpha1, alpha2)
         self.has_families = is_undamped(params)
@@ -86,7 +62,7 @@ class A1Flow:
         behind = [*(unit * self._changes(follow)), 0.0]
         self._behind = np.array([[*self._values[regime], *behind] for regime in Regime])
 
-    def _changes(self, follow: str | None) -> Vector:
+    def _changes(self, follow):
         """Change of :data:`PARAMETERS` with one parameter or angle."""
         g = self.a1.geometry
         changes: dict[str | None, dict[str, float]] = {
@@ -99,16 +75,16 @@ class A1Flow:
         change = changes.get(follow, {str(follow): 1.0})
         return np.array([change.get(name, 0.0) for name in PARAMETERS[:VARIED]])
 
-    def parameters(self, regime: int) -> Sequence[float]:
+    def parameters(self, regime):
         """Values of the symbolic parameters in a regime."""
         return self._values[Regime(regime)]
 
-    def start(self, state: Vector) -> tuple[int, Vector]:
+    def start(self, state):
         """The regime of a state, and the state off any surface."""
         regime = self.a1.start(state)
         return regime, self.a1.leave(regime, state, ULP)
 
-    def switch(self, surface: int, regime: int, state: Vector) -> Switched:
+    def switch(self, surface, regime, state):
         """What follows when a surface is met."""
         kind = SURFACES[surface]
         if kind == EventKind.separation and regime == Regime.separated:
@@ -122,29 +98,29 @@ class A1Flow:
             int(_event(kind, after)), after, self.a1.leave(after, on_surface, ULP), gradient
         )
 
-    def velocity(self, regime: int, state: Vector) -> Vector:
+    def velocity(self, regime, state):
         """The field of a regime."""
         return np.array(self.a1.field(regime)(0.0, state))
 
-    def slopes(self, regimes: NDArray[np.intp], states: Vector) -> Vector:
+    def slopes(self, regimes, states):
         """Derivatives of ẍ and ÿ by state and parameter, (2, 5, n), at states (4, n)."""
         values = self._slopes(states, pars=np.ascontiguousarray(self._behind[regimes].T))
         return np.asarray(values).reshape(2, 5, -1)
 
-    def jacobian(self, regime: int, state: Vector) -> Vector:
+    def jacobian(self, regime, state):
         """∂f/∂z of a regime, (4, 4)."""
         slopes = self.slopes(np.array([regime]), state[:, None])
         return np.vstack([np.eye(2, 4, 2), slopes[:, :4, 0]])
 
-    def holds(self, regime: int) -> bool:
+    def holds(self, regime):
         """Whether a regime fixes a component of the state: stick."""
         return regime == Regime.stick
 
-    def touch_of(self, extra: tuple[int, ...], missing: tuple[int, ...]) -> Touch | None:
+    def touch_of(self, extra, missing):
         """What has happened where the kinds ``extra`` stand in place of ``missing``."""
         return _TOUCHES.get((extra, missing))
 
-    def clearance(self, touch: Touch, passage: Passage) -> float:
+    def clearance(self, touch, passage):
         """How far a motion that was kept is from a touch; infinite where none is near.
 
         In m for contact, m/s for belt speed, N for the limit of stick.
@@ -169,14 +145,14 @@ class A1Flow:
                     distances.append(abs(self.a1.lag(state)))
         return min(distances, default=np.inf)
 
-    def unit_of(self, touch: Touch) -> float:
+    def unit_of(self, touch):
         """The unit of a clearance: l_pre, l_pre √(k1/m) or μs k3 l_pre."""
         p = self.params
         if touch in {Touch.split, Touch.passing}:
             return max(p.static_mu * p.k3 * p.preload, 1e-300)
         return p.preload if touch == Touch.graze else p.preload / p.time_unit
 
-    def overlap(self, touch: Touch, passage: Passage, first: int) -> float:
+    def overlap(self, touch, passage, first):
         """How far a motion is beyond a touch whose first event has the index ``first``.
 
         A depth over :meth:`unit_of`, or the time between the events over √(m/k1) (squared where it
@@ -199,7 +175,7 @@ class A1Flow:
         ]
         return max(depths) / self.unit_of(touch) if depths else duration * duration
 
-    def is_singular(self, passage: Passage) -> bool:
+    def is_singular(self, passage):
         """Whether a motion that was kept comes next to a pivot, where d = 0."""
         p, ends = self.params, fixed_ends(self.params, self.a1.geometry)
         for part in passage.segments:
@@ -209,7 +185,7 @@ class A1Flow:
                     return True
         return False
 
-    def is_tangent(self, passage: Passage) -> bool:
+    def is_tangent(self, passage):
         """Whether a motion that was kept touches stick, or a release from it, at a tangent."""
         p, parts = self.params, passage.segments
         duration = parts[-1].times[-1]
@@ -235,7 +211,7 @@ class A1Flow:
                 return True
         return False
 
-    def _least_margin(self, segment: Segment) -> float:
+    def _least_margin(self, segment):
         """Smallest μs N − |x-force| of a stick away from its end, N; infinite where it falls."""
         inside = np.linspace(segment.times[0], segment.times[-1], 8 * len(segment.times) + 1)
         path = sample_path([segment], inside)
@@ -251,18 +227,18 @@ class A1Flow:
             least = min(least, float(found.fun))
         return least
 
-    def _margin(self, segment: Segment, time: float) -> float:
+    def _margin(self, segment, time):
         state = sample_path([segment], np.array([time]))[0]
         return self.a1.grip(state) - abs(self.a1.pull(state))
 
 
-def _is_inside(point: TurningPoint, part: Segment) -> bool:
+def _is_inside(point, part):
     """Whether a turning point is in slip and not its first instant, after a stick."""
     late = point.time - part.times[0] > 1e-6 * (part.times[-1] - part.times[0])
     return late and part.regime in {Regime.slip_slower, Regime.slip_faster}
 
 
-def _event(kind: EventKind, after: int) -> Event:
+def _event(kind, after):
     if kind == EventKind.separation:
         return Event.separation
     if kind == EventKind.contact:

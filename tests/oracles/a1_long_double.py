@@ -1,11 +1,7 @@
 """A1 in long double: what every other integration of A1 is judged by."""
 
-from __future__ import annotations
-
-from collections.abc import Sequence
 from functools import cache, partial
 from types import SimpleNamespace
-from typing import Any
 
 import heyoka
 import numpy as np
@@ -17,13 +13,8 @@ from squealpipe.laws.friction import stick_limit
 from squealpipe.laws.springs import Geometry
 from squealpipe.models.a1 import acceleration, suspension_force
 from squealpipe.models.a1_automaton import A1Automaton, EventKind
-from squealpipe.parameters import NUMBERS_OF_A1, Parameters
-from tests.oracles.hybrid import HybridRun
-from tests.oracles.long_double import (
-    LONG_ULP,
-    compile_long_double,
-    integrate_long_double,
-)
+from squealpipe.parameters import NUMBERS_OF_A1
+from tests.oracles.long_double import LONG_ULP, compile_long_double, integrate_long_double
 
 _REGIME = ("contact", "direction", "stick", "slips")
 PARAMETERS = (*NUMBERS_OF_A1, *Geometry._fields, *_REGIME)
@@ -33,7 +24,7 @@ VARIED = len(NUMBERS_OF_A1) + len(Geometry._fields)
 SURFACES = (EventKind.separation, EventKind.belt_speed, EventKind.release, EventKind.release)
 
 
-def symbolic_automaton(law: str) -> tuple[list[tuple[Any, Any]], list[Any]]:
+def symbolic_automaton(law):
     """Equations and surfaces of A1 as heyoka expressions; :func:`regime_values` fills them."""
     x, y, vx, vy = heyoka.make_vars("x", "y", "vx", "vy")
     value = {name: heyoka.par[index] for index, name in enumerate(PARAMETERS)}
@@ -54,7 +45,7 @@ def symbolic_automaton(law: str) -> tuple[list[tuple[Any, Any]], list[Any]]:
     return [(x, vx), (y, vy), (vx, ax), (vy, ay)], surfaces
 
 
-def regime_values(a1: A1Automaton, regime: int) -> list[float]:
+def regime_values(a1, regime):
     """Values of the symbolic parameters in a regime."""
     physical = [getattr(a1.params, name) for name in NUMBERS_OF_A1]
     contact = float(regime != Regime.separated)
@@ -64,19 +55,13 @@ def regime_values(a1: A1Automaton, regime: int) -> list[float]:
 
 
 @cache
-def _integrator(law: str) -> Any:
+def _integrator(law):
     return compile_long_double(*symbolic_automaton(law))
 
 
 def simulate_reference(
-    params: Parameters,
-    alpha1: float,
-    alpha2: float,
-    *,
-    t_end: float,
-    initial_state: Sequence[float] = (0.0, 0.0, 0.0, 0.0),
-    stop_at: int | None = None,
-) -> HybridRun:
+    params, alpha1, alpha2, *, t_end, initial_state=(0.0, 0.0, 0.0, 0.0), stop_at=None
+):
     """A1 by :mod:`tests.oracles.long_double`; errors about 1e-17 outside chaos.
 
     Args:
@@ -87,7 +72,7 @@ def simulate_reference(
     """
     a1 = A1Automaton(params, alpha1, alpha2)
 
-    def switch(surface: int, regime: int, z: np.ndarray) -> tuple[int, int, np.ndarray]:
+    def switch(surface, regime, z):
         kind = SURFACES[surface]
         if kind == EventKind.separation and regime == Regime.separated:
             kind = EventKind.contact

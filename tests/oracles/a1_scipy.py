@@ -1,34 +1,27 @@
 """A1 by scipy with located events: an independent judge of our own runs."""
 
-from __future__ import annotations
-
-from collections.abc import Sequence
-
 import numpy as np
 
-from squealpipe.models.a1_automaton import (
-    A1Automaton,
-)
-from squealpipe.parameters import Parameters
-from tests.oracles.hybrid import Guard, HybridAutomaton, HybridRun, integrate_hybrid
+from squealpipe.models.a1_automaton import A1Automaton
+from tests.oracles.hybrid import Guard, HybridAutomaton, integrate_hybrid
 
 AT_REST = (0.0, 0.0, 0.0, 0.0)
 
 
 def simulate_scipy(
-    params: Parameters,
-    alpha1: float,
-    alpha2: float,
+    params,
+    alpha1,
+    alpha2,
     *,
-    t_end: float,
-    method: str = "DOP853",
-    tol: float = 1e-10,
-    times: Sequence[float] | np.ndarray = (),
-    initial_state: Sequence[float] = AT_REST,
-    stop_at: int | None = None,
-    stick: bool = True,
-    linear_springs: bool = False,
-) -> HybridRun:
+    t_end,
+    method="DOP853",
+    tol=1e-10,
+    times=(),
+    initial_state=AT_REST,
+    stop_at=None,
+    stick=True,
+    linear_springs=False,
+):
     """A1 by scipy's ``solve_ivp`` with terminal events, restarted at each.
 
     Args:
@@ -43,7 +36,7 @@ def simulate_scipy(
     """
     a1 = A1Automaton(params, alpha1, alpha2, stick=stick, linear_springs=linear_springs)
 
-    def switch(kind: int, regime: int, z: np.ndarray) -> tuple[int, np.ndarray]:
+    def switch(kind, regime, z):
         after, z = a1.switch(kind, regime, z)
         return after, a1.leave(after, z, float(np.finfo(float).eps))
 

@@ -5,9 +5,6 @@ Between events the derivative by the state and by one parameter is that of
 matrix, which accounts for the shift of the event's time.
 """
 
-from __future__ import annotations
-
-from collections.abc import Sequence
 from dataclasses import dataclass, field
 from enum import IntEnum
 from itertools import zip_longest
@@ -58,40 +55,40 @@ class HybridSystem(Protocol):
     has_families: bool
     jumps: bool
 
-    def parameters(self, regime: int) -> Sequence[float]:
+    def parameters(self, regime):
         """Values of the symbolic parameters in a regime."""
 
-    def start(self, state: Vector) -> tuple[int, Vector]:
+    def start(self, state):
         """The regime of a state, and the state off any surface."""
 
-    def switch(self, surface: int, regime: int, state: Vector) -> Switched:
+    def switch(self, surface, regime, state):
         """What follows when a surface is met."""
 
-    def velocity(self, regime: int, state: Vector) -> Vector:
+    def velocity(self, regime, state):
         """The field of a regime."""
 
-    def slopes(self, regimes: NDArray[np.intp], states: Vector) -> Vector:
+    def slopes(self, regimes, states):
         """Derivatives of the accelerations at many states, as ``step_derivatives`` takes them."""
 
-    def holds(self, regime: int) -> bool:
+    def holds(self, regime):
         """Whether a regime fixes a component of the state."""
 
-    def is_singular(self, passage: Passage) -> bool:
+    def is_singular(self, passage):
         """Whether a motion that was kept comes next to where the field is not defined."""
 
-    def is_tangent(self, passage: Passage) -> bool:
+    def is_tangent(self, passage):
         """Whether a motion that was kept touches a hold, or the end of one, at a tangent."""
 
-    def touch_of(self, extra: tuple[int, ...], missing: tuple[int, ...]) -> Touch | None:
+    def touch_of(self, extra, missing):
         """What has happened where the kinds ``extra`` stand in place of ``missing``."""
 
-    def clearance(self, touch: Touch, passage: Passage) -> float:
+    def clearance(self, touch, passage):
         """How far a motion that was kept is from a touch; infinite where none is near."""
 
-    def unit_of(self, touch: Touch) -> float:
+    def unit_of(self, touch):
         """The unit of a clearance."""
 
-    def overlap(self, touch: Touch, passage: Passage, first: int) -> float:
+    def overlap(self, touch, passage, first):
         """How far a motion is beyond a touch whose first event is ``first``; without a unit."""
 
 
@@ -124,9 +121,7 @@ class CompiledFlow(NamedTuple):
     gradients: Any
 
 
-def compile_flow(
-    equations: Sequence[tuple[Any, Any]], surfaces: Sequence[Any], parameters: int, varied: int
-) -> CompiledFlow:
+def compile_flow(equations, surfaces, parameters, varied):
     """heyoka's integrator, stopping at the surfaces, and what its derivatives are made of.
 
     Compact mode costs a factor of two in speed and saves seconds of compilation.
@@ -146,7 +141,7 @@ def compile_flow(
     }
     variables = [variable for variable, _ in equations]
 
-    def derivatives(functions: Sequence[Any]) -> Any:
+    def derivatives(functions):
         moved = heyoka.subs(list(functions), along)
         by = (*variables, offset)
         return heyoka.cfunc([heyoka.diff(f, v) for f in moved for v in by], vars=variables)
@@ -207,15 +202,8 @@ class Passage:
 
 
 def flow(
-    system: HybridSystem,
-    state: Vector,
-    duration: float,
-    *,
-    derivative: bool = True,
-    keep: bool = False,
-    max_events: int = 2000,
-    max_steps: int = 100_000,
-) -> Passage:
+    system, state, duration, *, derivative=True, keep=False, max_events=2000, max_steps=100_000
+):
     """Follow a state for some time through all events.
 
     Args:
@@ -263,9 +251,7 @@ def flow(
     return passage
 
 
-def _propagate(
-    integrator: Any, regime: int, duration: float, max_steps: int, passage: Passage, keep: bool
-) -> tuple[Any, int]:
+def _propagate(integrator, regime, duration, max_steps, passage, keep):
     """To the end or the next surface: (heyoka's outcome, steps).
 
     heyoka's own continuous output is compiled anew each time, which takes ten times longer than
@@ -290,7 +276,7 @@ def _propagate(
     return outcome, len(coefficients)
 
 
-def _saltation(system: HybridSystem, state: Vector, before: int, switched: Switched) -> Vector:
+def _saltation(system, state, before, switched):
     """I + (f₊ − f₋)(∇hᵀ, ∂h/∂p)/(∇h·f₋), (states + 1, states + 1)."""
     size = len(state)
     matrix = np.eye(size + 1)
@@ -302,9 +288,7 @@ def _saltation(system: HybridSystem, state: Vector, before: int, switched: Switc
     return matrix
 
 
-def _derivative(
-    system: HybridSystem, segments: Sequence[Segment], saltations: Sequence[Vector]
-) -> Vector:
+def _derivative(system, segments, saltations):
     """The product of the steps' derivatives and the saltations, (states + 1, states + 1)."""
     lengths = [len(part.coefficients) for part in segments]
     regimes = np.repeat([part.regime for part in segments], lengths)
@@ -340,7 +324,7 @@ class TurningPoint(NamedTuple):
     is_maximum: bool
 
 
-def turning_points(segments: Sequence[Segment], component: int) -> list[TurningPoint]:
+def turning_points(segments, component):
     """Extrema of a component between events."""
     found = []
     for index, segment in enumerate(segments):
@@ -357,12 +341,12 @@ def turning_points(segments: Sequence[Segment], component: int) -> list[TurningP
     return found
 
 
-def _root(polynomial: Vector, left: float, right: float) -> float:
+def _root(polynomial, left, right):
     """The root of a polynomial that changes its sign once between two places."""
     return float(brentq(lambda at: np.polynomial.polynomial.polyval(at, polynomial), left, right))
 
 
-def sample_path(segments: Sequence[Segment], times: Vector) -> Vector:
+def sample_path(segments, times):
     """The state at ascending times of a passage that was kept, (times, states)."""
     segments = [part for part in segments if len(part.coefficients)]
     bounds = np.concatenate([part.times[:-1] for part in segments])

@@ -6,8 +6,6 @@ it is here to be compared with. Its known weakness is scipy's: guards are looked
 ends of steps, so a pair of crossings inside one step is passed over without a word.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import NamedTuple
@@ -79,16 +77,8 @@ class HybridRun:
 
 
 def integrate_hybrid(
-    system: HybridAutomaton,
-    initial_state: Sequence[float],
-    t_end: float,
-    *,
-    method: str,
-    tol: float,
-    times: Sequence[float] | np.ndarray = (),
-    stop_at: int | None = None,
-    max_events: int = 10_000,
-) -> HybridRun:
+    system, initial_state, t_end, *, method, tol, times=(), stop_at=None, max_events=10_000
+):
     """Integrate from 0 to ``t_end``, restarting ``solve_ivp`` at each event.
 
     Args:
@@ -109,15 +99,10 @@ def integrate_hybrid(
         guards = system.guards(regime)
         wanted = np.flatnonzero((times >= run.time) & (times <= t_end))
         solution = solve_ivp(
-            system.fields(regime),
-            (run.time, t_end),
-            run.state,
-            method=method,
-            rtol=max(tol, 100 * np.finfo(float).eps),
-            atol=tol,
-            events=[_terminal(guard) for guard in guards],
-            dense_output=len(wanted) > 0,
-        )
+            system.fields(regime), (run.time, t_end), run.state, method=method,
+            rtol=max(tol, 100 * np.finfo(float).eps), atol=tol,
+            events=[_terminal(guard) for guard in guards], dense_output=len(wanted) > 0,
+        )  # fmt: skip
         run.evaluations += solution.nfev
         if method in IMPLICIT:
             run.evaluations += len(state) * solution.njev
@@ -145,8 +130,8 @@ def integrate_hybrid(
     return run
 
 
-def _terminal(guard: Guard) -> Callable[[float, np.ndarray], float]:
-    def event(_: float, state: np.ndarray) -> float:
+def _terminal(guard):
+    def event(_, state):
         return guard.value(state)
 
     event.terminal = True

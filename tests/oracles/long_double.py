@@ -5,11 +5,6 @@ Taylor polynomial of each step, so no pair of crossings is passed over. Slow, an
 the others by: its error is thousands of times below that of any double-precision method.
 """
 
-from __future__ import annotations
-
-from collections.abc import Callable, Sequence
-from typing import Any
-
 import heyoka
 import numpy as np
 
@@ -21,7 +16,7 @@ LONG_ULP = 2.0**-62
 """A state on a surface is moved by this (times its scale), so that its root is not found again."""
 
 
-def compile_long_double(equations: Sequence[tuple[Any, Any]], surfaces: Sequence[Any]) -> Any:
+def compile_long_double(equations, surfaces):
     """heyoka's integrator in long double, stopping at the roots of the surfaces."""
     taylor_compiler.set_up()
     return heyoka.taylor_adaptive(
@@ -37,15 +32,8 @@ def compile_long_double(equations: Sequence[tuple[Any, Any]], surfaces: Sequence
 
 
 def integrate_long_double(
-    integrator: Any,
-    parameters: Callable[[int], Sequence[float]],
-    start: tuple[int, np.ndarray],
-    switch: Callable[[int, int, np.ndarray], tuple[int, int, np.ndarray]],
-    t_end: float,
-    *,
-    stop_at: int | None = None,
-    max_events: int = 100_000,
-) -> HybridRun:
+    integrator, parameters, start, switch, t_end, *, stop_at=None, max_events=100_000
+):
     """Integrate from 0 to ``t_end`` through all events.
 
     Args:

@@ -5,17 +5,13 @@ of the motion, all steps at once. A step is a small part of the distance to the 
 so that the order of twice seven leaves no more than round-off.
 """
 
-from __future__ import annotations
-
-from collections.abc import Callable
-
 import numpy as np
 from numpy.typing import NDArray
 
 Vector = NDArray[np.float64]
 
 
-def _gauss(points: int) -> tuple[Vector, Vector, Vector]:
+def _gauss(points):
     """Nodes in (0, 1), weights, and the integrals of Lagrange's polynomials up to each node."""
     places, weights = np.polynomial.legendre.leggauss(points)
     nodes = 0.5 * (places + 1.0)
@@ -29,9 +25,7 @@ _NODES, _WEIGHTS, _ONCE = _gauss(7)
 _TWICE, _LAST = _ONCE @ _ONCE, _WEIGHTS @ _ONCE
 
 
-def step_derivatives(
-    slopes: Callable[[Vector], Vector], durations: Vector, coefficients: Vector
-) -> Vector:
+def step_derivatives(slopes, durations, coefficients):
     """The derivative of the state after each step by the state before it and the parameter.
 
     Args:

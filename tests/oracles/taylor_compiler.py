@@ -1,7 +1,5 @@
 """heyoka as it is used here: it compiles in each process, leaves no file and prints no notes."""
 
-from __future__ import annotations
-
 import heyoka
 
 from squealpipe.laws.functions import exp
@@ -9,7 +7,7 @@ from squealpipe.laws.functions import exp
 exp.register(heyoka.expression, heyoka.exp)
 
 
-def set_up() -> None:
+def set_up():
     """Switch off heyoka's notes and its store of compiled code in the user's home.
 
     Compiling takes half a second. For that a result shall not depend on a file outside the

@@ -1,7 +1,5 @@
 """A small run: a few datasets, figures, and the report made of them."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from pathlib import Path
 

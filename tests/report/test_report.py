@@ -1,7 +1,5 @@
 """The report: self-contained, complete, with links that lead somewhere and texts for pictures."""
 
-from __future__ import annotations
-
 import hashlib
 import re
 from collections import Counter

@@ -143,16 +143,6 @@ def test_a_dataset_of_zeros_can_be_made_from_the_table(name):
     assert made.attrs["schema"] == name
 
 
-def test_importing_one_table_does_not_import_the_others():
-    code = (
-        "import sys, squealpipe.schema.linear as _; "
-        "print(*sorted(n for n in sys.modules if n.startswith('squealpipe.schema.')))"
-    )
-    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    tables = [f"squealpipe.schema.{name}" for name in ("agreement", "linear", "outcomes")]
-    assert run.stdout.split() == tables
-
-
 def test_reading_a_dataset_loads_no_heavy_library():
     """Every job looks for its schema in all tables: what one of them imports costs all jobs."""
     code = (

@@ -53,15 +53,9 @@ def reference(params, angles, times, start, friction, contact):
 
     z = np.array(start) / [unit, unit, unit / time, unit / time]
     found = solve_ivp(
-        rates,
-        (0.0, times[-1] / time),
-        z,
-        "DOP853",
-        times / time,
-        rtol=1e-12,
-        atol=1e-12,
+        rates, (0.0, times[-1] / time), z, "DOP853", times / time, rtol=1e-12, atol=1e-12,
         max_step=0.02,
-    )
+    )  # fmt: skip
     return found.y * np.array([[unit], [unit], [unit / time], [unit / time]])
 
 

@@ -122,13 +122,9 @@ def test_a4_from_rest_where_the_springs_act_as_one():
     times = np.linspace(0, 50, 501)
     for scene in ("F2a", "F2b", "F2c"):
         run = simulate(
-            BASELINE,
-            SCENES[scene].alpha1,
-            SCENES[scene].alpha2,
-            t_end=50.0,
-            model="A4",
+            BASELINE, SCENES[scene].alpha1, SCENES[scene].alpha2, t_end=50.0, model="A4",
             times=times,
-        )
+        )  # fmt: skip
         y = 0.75 / 1.75 * (1 - np.cos(np.sqrt(1.75) * times))
         np.testing.assert_allclose(run.y, y, atol=1e-12)
         np.testing.assert_allclose(run.x, 0.3 * y, atol=1e-12)

@@ -6,7 +6,6 @@ import pytest
 from squealpipe.solvers.a1.ensemble import run_ensemble
 from tests.former import FORMER
 from tests.oracles.a1_long_double import simulate_reference
-from tests.oracles.a1_scipy import simulate_scipy
 
 T_END = 50.0
 
@@ -27,14 +26,3 @@ def test_states_events_and_first_separations(speed, seed):
         if run.log_growth[job] < np.log(100):
             error = np.abs(run.final_state[job] - np.asarray(exact.state, float)).max()
             assert error < 1e-9
-
-
-@pytest.mark.parametrize("speed", [100.0, 0.3])
-def test_scipy_agrees(speed):
-    params = FORMER.with_(belt_speed=speed)
-    for alpha1, alpha2 in np.random.default_rng(4).uniform(0, np.pi, (4, 2)):
-        peer = simulate_scipy(params, alpha1, alpha2, t_end=20.0, tol=1e-11)
-        run = run_ensemble(params, alpha1, alpha2, t_end=20.0, log_events=60)
-        kept = np.isfinite(run.event_times)
-        np.testing.assert_allclose(run.event_times[kept], peer.event_times, atol=1e-7)
-        np.testing.assert_allclose(run.final_state, peer.state, atol=1e-6)

@@ -58,25 +58,14 @@ def test_scales_drop_out(model):
     base = FORMER.with_(belt_speed=0.3)
     unit = np.sqrt(mass / stiffness)
     scaled = FORMER.with_(
-        mass=mass,
-        k1=stiffness,
-        k2=stiffness,
-        k3=0.75 * stiffness,
-        belt_speed=0.3 * length / unit,
-        preload=length,
-        length1=5 * length,
-        length2=5 * length,
-    )
+        mass=mass, k1=stiffness, k2=stiffness, k3=0.75 * stiffness, belt_speed=0.3 * length / unit,
+        preload=length, length1=5 * length, length2=5 * length,
+    )  # fmt: skip
     first = run(base, ALPHA1, ALPHA2, model)
     second = run_ensemble(
-        scaled,
-        ALPHA1,
-        ALPHA2,
-        t_end=12 * unit,
-        model=model,
-        times=TIMES * unit * (1 - 1e-15),
+        scaled, ALPHA1, ALPHA2, t_end=12 * unit, model=model, times=TIMES * unit * (1 - 1e-15),
         log_events=30,
-    )
+    )  # fmt: skip
     units = np.array([length, length, length / unit, length / unit])
     np.testing.assert_array_equal(first.event_kinds, second.event_kinds)
     np.testing.assert_allclose(second.samples / units, first.samples, atol=1e-9)

@@ -1,7 +1,5 @@
 """Dry runs of a finished tiny study, many at a time."""
 
-from __future__ import annotations
-
 import json
 import os
 import re

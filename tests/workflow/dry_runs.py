@@ -19,7 +19,7 @@ import squealpipe.study.report.lineage  # noqa: F401
 from squealpipe.rerun.sources import closure, read_source
 
 
-def dry_run(arguments: list[str]) -> tuple[int, str]:
+def dry_run(arguments):
     with tempfile.NamedTemporaryFile() as file:
         child = os.fork()
         if child == 0:

@@ -31,29 +31,11 @@ def environment(checkout):
     return {**os.environ, "PYTHONPATH": str(checkout)}
 
 
-def start(checkout):
-    return subprocess.Popen(
-        RUN,
-        cwd=checkout,
-        env=environment(checkout),
-        stdout=subprocess.DEVNULL,
-        stderr=subprocess.PIPE,
-        text=True,
-        start_new_session=True,
-    )
-
-
 def run(checkout, *words, **options):
     return subprocess.run(
-        [*RUN[:3], *words, *RUN[3:]],
-        cwd=checkout,
-        env=environment(checkout),
-        capture_output=True,
-        text=True,
-        timeout=300,
-        check=False,
-        **options,
-    )
+        [*RUN[:3], *words, *RUN[3:]], cwd=checkout, env=environment(checkout), capture_output=True,
+        text=True, timeout=300, check=False, **options,
+    )  # fmt: skip
 
 
 def complete(checkout):

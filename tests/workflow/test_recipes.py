@@ -6,7 +6,6 @@ import os
 import re
 import subprocess
 import sys
-from pathlib import Path
 from textwrap import indent
 
 import pytest
@@ -16,7 +15,6 @@ from squealpipe.rerun.key import PLAN
 pytestmark = pytest.mark.release
 
 
-ROOT = Path(__file__).parents[2]
 ROW, LAW, LAW_NAME, RECORD, FIGURE, FIGURE_NAME, SYSTEM = range(7)
 FILES = {
     LAW: "squealpipe/laws/friction_laws/rising.py",
@@ -70,13 +68,9 @@ def extended(new_checkout, tmp_path_factory):
 def python(folder, script):
     """Run a script with the package of the copy."""
     run = subprocess.run(
-        [sys.executable, "-c", script],
-        cwd=folder,
-        env={**os.environ, "PYTHONPATH": str(folder)},
-        capture_output=True,
-        text=True,
-        check=False,
-    )
+        [sys.executable, "-c", script], cwd=folder, env={**os.environ, "PYTHONPATH": str(folder)},
+        capture_output=True, text=True, check=False,
+    )  # fmt: skip
     assert run.returncode == 0, run.stderr[-4000:]
     return run.stdout
 

@@ -4,8 +4,6 @@
 those rules feed follows from the files that they exchange. Snakemake is asked by dry runs.
 """
 
-from __future__ import annotations
-
 import json
 import os
 import subprocess

@@ -129,14 +129,9 @@ def environment(checkout):
 
 def on_slurm(checkout, *arguments, profile=PROFILE):
     return subprocess.run(
-        command(*arguments, profile=profile),
-        cwd=checkout,
-        env=environment(checkout),
-        capture_output=True,
-        text=True,
-        timeout=1500,
-        check=False,
-    )
+        command(*arguments, profile=profile), cwd=checkout, env=environment(checkout),
+        capture_output=True, text=True, timeout=1500, check=False,
+    )  # fmt: skip
 
 
 def jobs(state=""):
@@ -224,13 +219,9 @@ def test_whole_study_equals_one_machine_bit_for_bit(cluster_checkout, snakemake)
 def test_cancelled_job_fails_and_the_next_run_completes(cluster_checkout, undisturbed):
     (cluster_checkout / "mine.yaml").write_text(LONG)
     head = subprocess.Popen(
-        command(MAP),
-        cwd=cluster_checkout,
-        env=environment(cluster_checkout),
-        stdout=subprocess.DEVNULL,
-        stderr=subprocess.PIPE,
-        text=True,
-    )
+        command(MAP), cwd=cluster_checkout, env=environment(cluster_checkout),
+        stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True,
+    )  # fmt: skip
     first = wait(lambda: jobs("R"))[0]
     subprocess.run(["scancel", first], check=True)
     _, errors = head.communicate(timeout=300)

@@ -1,7 +1,5 @@
 """Dashpots and friction laws in the engine: against long double, limits, mirror, growth."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

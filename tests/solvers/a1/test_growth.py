@@ -99,21 +99,16 @@ def resting_runs(count, seed):
         unit = np.sqrt(mass / k1)
         mu = rng.uniform(0.0, 0.6)
         params = FORMER.with_(
-            mass=mass,
-            k1=k1,
-            k2=k1 * np.exp(rng.uniform(-2.0, 2.0)),
-            k3=k1 * np.exp(rng.uniform(-1.5, 4.0)),
-            mu=mu,
+            mass=mass, k1=k1, k2=k1 * np.exp(rng.uniform(-2.0, 2.0)),
+            k3=k1 * np.exp(rng.uniform(-1.5, 4.0)), mu=mu,
             belt_speed=rng.choice([-1, 1]) * np.exp(rng.uniform(-2.0, 4.0)) * length / unit,
-            preload=length,
-            length1=length * rng.uniform(1.0, 20.0),
+            preload=length, length1=length * rng.uniform(1.0, 20.0),
             length2=length * rng.uniform(1.0, 20.0),
             damping1=np.exp(rng.uniform(-4.0, 1.0)) * k1 * unit,
             damping2=np.exp(rng.uniform(-4.0, 1.0)) * k1 * unit,
-            friction_law=str(rng.choice(LAW_NAMES)),
-            mu_static=mu + rng.uniform(0.0, 0.6),
+            friction_law=str(rng.choice(LAW_NAMES)), mu_static=mu + rng.uniform(0.0, 0.6),
             friction_speed=np.exp(rng.uniform(-3.0, 1.0)) * length / unit,
-        )
+        )  # fmt: skip
         angles = rng.uniform(0.0, np.pi, 2)
         a1 = A1Automaton(params, *angles)
         rest = sliding_equilibrium(a1)

@@ -68,14 +68,9 @@ def test_no_sample_exceeds_an_extremum():
     kept = [*FOUND_BY_SEARCH, *range(200)]
     times = np.linspace(0.0, 30.0, 6001)
     run = run_ensemble(
-        {name: values[kept] for name, values in ratio.items()},
-        alpha1[kept],
-        alpha2[kept],
-        t_end=30.0,
-        model="A1-linear-springs",
-        times=times,
-        t_late=15.0,
-    )
+        {name: values[kept] for name, values in ratio.items()}, alpha1[kept], alpha2[kept],
+        t_end=30.0, model="A1-linear-springs", times=times, t_late=15.0,
+    )  # fmt: skip
     done = run.outcome == Outcome.converged
     assert done[: len(FOUND_BY_SEARCH)].all()
     x, y = run.samples[done, :, 0], run.samples[done, :, 1]

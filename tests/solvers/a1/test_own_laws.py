@@ -3,12 +3,7 @@
 import numpy as np
 import pytest
 
-from squealpipe import (
-    Parameters,
-    limit_cycle,
-    simulate,
-    smallest_disturbance,
-)
+from squealpipe import Parameters, limit_cycle, simulate, smallest_disturbance
 from squealpipe.codes import Event
 from squealpipe.schema import Outcome
 from squealpipe.solvers.a1.ensemble import Ensemble, run_ensemble

@@ -115,15 +115,9 @@ def test_an_independent_integrator_closes_the_orbit(alpha1, alpha2, mode, y_peak
     start = [float(found.x_at_peak), y_peak, 0.0, 0.0]
     period = 2 * PI / float(found.omega)
     run = solve_ivp(
-        field,
-        (0.0, period),
-        start,
-        method="DOP853",
-        rtol=1e-12,
-        atol=1e-13,
-        max_step=period / 800,
-        dense_output=True,
-    )
+        field, (0.0, period), start, method="DOP853", rtol=1e-12, atol=1e-13,
+        max_step=period / 800, dense_output=True,
+    )  # fmt: skip
     np.testing.assert_allclose(run.y[:, -1], start, atol=2e-8)
     np.testing.assert_allclose(run.sol(period / 2)[2:], 0.0, atol=2e-8)
     np.testing.assert_allclose([found.x_path, found.y_path], run.sol(found.time)[:2], atol=2e-8)

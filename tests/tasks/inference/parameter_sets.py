@@ -1,13 +1,11 @@
 """Random parameter sets for the tests of this folder."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from squealpipe.parameters import Parameters
 
 
-def random_sets(generator: np.random.Generator, count: int, *, equal: bool) -> list[Parameters]:
+def random_sets(generator, count, *, equal):
     """Parameter sets of either direction of the belt, in units of their own."""
     sets = []
     for _ in range(count):
@@ -30,7 +28,7 @@ def random_sets(generator: np.random.Generator, count: int, *, equal: bool) -> l
     return sets
 
 
-def fields_of(sets: list[Parameters]) -> dict[str, np.ndarray]:
+def fields_of(sets):
     return {
         name: np.array([params.as_dict()[name] for params in sets])
         for name in Parameters().as_dict()

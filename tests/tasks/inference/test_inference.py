@@ -120,15 +120,9 @@ def test_margins_do_not_depend_on_units():
     plain = measure(Candidates.of(FORMER, tol=1e-12))
     speed = 3.0 * math.sqrt(7.0 / 2.0)
     scaled = FORMER.with_(
-        mass=2.0,
-        k1=7.0,
-        k2=7.0,
-        k3=7.0 * FORMER.k3,
-        preload=3.0,
-        length1=15.0,
-        length2=15.0,
+        mass=2.0, k1=7.0, k2=7.0, k3=7.0 * FORMER.k3, preload=3.0, length1=15.0, length2=15.0,
         belt_speed=speed * FORMER.belt_speed,
-    )
+    )  # fmt: skip
     for name, verdict in measure(Candidates.of(scaled, tol=1e-12)).items():
         # F3 and F4 are chaotic: only the other margins keep their digits.
         tolerance = 0.5 if name in {"F3", "F4"} else 1e-9
