@@ -83,22 +83,21 @@ def draw(maps: Mapping[str, xr.Dataset]) -> Figure:
         maps: dataset ``validity_map``, and ``corrected/validity_map``.
     """
     names = sorted(maps, key=len)
-    figure, axes = style.new_figure(
-        style.PAGE if len(names) > 1 else 0.62 * style.PAGE, 3.9, ncols=len(names)
-    )
+    size = (5.6, 3.4) if len(names) > 1 else (4.3, 3.9)  # for text large enough on page one
+    figure, axes = style.new_figure(*size, ncols=len(names))
     counts = []
     for panel, letter, name in zip(axes[0], "ab", names, strict=False):
         kinds = draw_kinds(panel, maps[name])
         mark_scene(panel, "F3")
         counts.append(np.bincount(kinds.ravel(), minlength=len(KINDS)))
         title = f"{TITLES[_kind(name)]}: " if len(names) > 1 else ""
-        style.panel_letter(panel, letter, f"{title}{counts[-1][3]} black cells of {kinds.size}")
+        style.panel_letter(panel, letter, f"{title}{counts[-1][3]} black cells")
     handles = key()
     for index, handle in enumerate(handles):
         numbers = " | ".join(str(count[index]) for count in counts)
         handle.set_label(f"{handle.get_label()}: {numbers}")
     cross = axes[0, 0].get_legend_handles_labels()[0]
-    figure.legend(handles=[*handles, *cross], loc="outside lower center", ncols=len(names) + 1)
+    figure.legend(handles=[*handles, *cross], loc="outside lower center", ncols=2)
     return figure
 
 
