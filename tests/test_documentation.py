@@ -59,8 +59,3 @@ def test_every_page_opens(site, scheme):
             assert page.evaluate(empty) == []
     server.shutdown()
     assert faults == []
-
-
-def test_public_names_are_documented():
-    for name in set(squealpipe.__all__) - {"SCENES"}:
-        assert (getattr(squealpipe, name).__doc__ or "").strip(), name

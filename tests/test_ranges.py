@@ -71,23 +71,6 @@ def test_list():
 
 
 @pytest.mark.parametrize(
-    ("text", "part"),
-    [
-        ("0:1", "not a range"),
-        ("0:1:2:cube", "not a range"),
-        ("0:1:x", "not a range"),
-        ("0:1:1", "ask for 2 to 100000"),
-        ("0:1:1000000", "ask for 2 to 100000"),
-        ("0:1:3:log", "neither 0"),
-        ("1,,2", "not a number"),
-    ],
-)
-def test_bad_ranges_name_the_form(text, part):
-    with pytest.raises(ValueError, match=part):
-        parse_range(text)
-
-
-@pytest.mark.parametrize(
     ("name", "given_", "values"),
     [
         ("mu", "0:0.6:3", [0.0, 0.3, 0.6]),

@@ -1,39 +1,9 @@
 """What people see of a comparison: parameters first, the place, the worst first."""
 
-import numpy as np
-import pytest
-
-from squealpipe.parameters import Parameters
-from squealpipe.store import produce
-from squealpipe.store.comparison.compare import Comparison, DatasetDifference, compare
+from squealpipe.store.comparison.compare import Comparison, DatasetDifference
 from squealpipe.store.comparison.differences import Agreement, VariableDifference
 from squealpipe.store.comparison.lines import lines
 from squealpipe.store.comparison.statements import StatementChange
-from squealpipe.tasks.linear.maps import stability_map
-
-
-@pytest.fixture
-def pair(tmp_path):
-    angles = np.linspace(0, np.pi, 13)
-    for name, mu in (("a", 0.3), ("b", 0.5)):
-        produce(
-            lambda mu=mu: stability_map(Parameters(mu=mu), angles, angles),
-            config={"parameters": {"mu": mu}},
-            output=tmp_path / name / "stability_map.nc",
-        )
-    return tmp_path / "a", tmp_path / "b"
-
-
-def printed(comparison):
-    return "\n".join(lines(comparison))
-
-
-def test_the_answer_comes_first_then_changed_parameters_then_what_differs(pair):
-    text = printed(compare(*pair))
-    assert text.startswith("different: 1 dataset (different 1)\nchanged parameters\n")
-    assert "parameters.mu: 0.3 → 0.5" in text
-    assert text.index("parameters.mu") < text.index("growth_rate")
-    assert "stable → flutter" in text
 
 
 def difference(name, share, **more):
