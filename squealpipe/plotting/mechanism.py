@@ -64,26 +64,10 @@ def draw_mechanism(
     axes.plot(*contact.T, color=GREY, linewidth=line, zorder=1)
     axes.add_patch(Circle((0.0, 0.0), radius, facecolor="white", edgecolor="black", zorder=4))
     half = 1.25 if labels else 0.8
-    axes.add_patch(
-        Rectangle(
-            (-half, belt_top - 0.12),
-            2 * half,
-            0.12,
-            facecolor="#E8E8E8",
-            edgecolor="black",
-            linewidth=0.6,
-            hatch="////" if labels else None,
-        )
-    )
-    axes.add_patch(
-        FancyArrowPatch(
-            (direction * 0.30 * half, belt_top - 0.27),
-            (direction * 0.85 * half, belt_top - 0.27),
-            arrowstyle="-|>",
-            mutation_scale=11 if labels else 6,
-            color=RED,
-        )
-    )
+    look: dict[str, Any] = {"facecolor": "#E8E8E8", "hatch": "////" if labels else None}
+    axes.add_patch(Rectangle((-half, belt_top - 0.12), 2 * half, 0.12, lw=0.6, ec="black", **look))
+    start, end = ((direction * share * half, belt_top - 0.27) for share in (0.30, 0.85))
+    arrow(axes, start, end, 11 if labels else 6, RED)
     if labels:
         _label(axes, directions, (alpha1, alpha2), belt_top)
     axes.set_aspect("equal")
@@ -107,10 +91,8 @@ def _label(
     span = 0.42
     axes.plot([-0.62, 0.62], [0, 0], color=GREY, linewidth=0.6, linestyle=":")
     degrees = np.degrees(angles)
-    axes.add_patch(Arc((0, 0), 2 * span, 2 * span, theta1=0, theta2=degrees[0], linewidth=0.8))
-    axes.add_patch(
-        Arc((0, 0), 2 * span, 2 * span, theta1=180 - degrees[1], theta2=180, linewidth=0.8)
-    )
+    for ends in ((0, degrees[0]), (180 - degrees[1], 180)):
+        axes.add_patch(Arc((0, 0), 2 * span, 2 * span, theta1=ends[0], theta2=ends[1], lw=0.8))
     for index, mid in ((1, angles[0] / 2), (2, np.pi - angles[1] / 2)):
         place = 1.3 * span * np.array([np.cos(mid), np.sin(mid)])
         axes.text(place[0], place[1], f"$\\alpha_{index}$", **text)
@@ -120,13 +102,15 @@ def _label(
     origin = np.array([-1.2, 0.02])
     for step, name in (((0.3, 0.0), "x"), ((0.0, 0.3), "y")):
         tip = origin + step
-        axes.add_patch(
-            FancyArrowPatch(
-                tuple(origin), tuple(tip), arrowstyle="-|>", mutation_scale=8, color="black"
-            )
-        )
+        arrow(axes, origin, tip, 8, "black")
         label = tip + 0.3 * np.subtract(tip, origin)
         axes.text(label[0], label[1], f"${name}$", **text)
+
+
+def arrow(axes: Axes, start: Any, end: Any, size: float, colour: str) -> None:
+    """A full arrow head at ``end``."""
+    look: dict[str, Any] = {"arrowstyle": "-|>", "mutation_scale": size, "color": colour}
+    axes.add_patch(FancyArrowPatch(tuple(start), tuple(end), **look))
 
 
 def displaced_springs(

@@ -8,6 +8,7 @@ import xarray as xr
 from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 from matplotlib.patheffects import withStroke
+from matplotlib.ticker import LogLocator
 
 from squealpipe.plotting import plot, style
 from squealpipe.study.figures.linear.linear_overlay import mark_scene
@@ -24,8 +25,6 @@ ALT = (
     "Four square maps over both angles: kind of motion, impacts per time, share of time separated, "
     "and peak contact force."
 )
-
-FORCE_TICKS = (1, 2, 5, 10, 20, 50, 100, 200, 500)
 
 
 def draw(hammering: xr.Dataset) -> Figure:
@@ -48,8 +47,8 @@ def draw(hammering: xr.Dataset) -> Figure:
         mesh = style.draw_map(panel, hammering, values, cmap="viridis", **scale)
         bar = figure.colorbar(mesh, ax=panel, shrink=0.85)
         if letter == "d":
-            ticks = [tick for tick in FORCE_TICKS if tick <= mesh.norm.vmax]
-            bar.set_ticks(ticks, labels=[f"{tick:g}" for tick in ticks], minor=False)
+            bar.ax.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+            bar.ax.yaxis.set_major_formatter("{x:g}")
             bar.minorticks_off()
         style.panel_letter(panel, letter, title)
     halo = [withStroke(linewidth=3.2, foreground="white")]
