@@ -9,10 +9,11 @@ import scipy.integrate
 from squealpipe.parameters import SCENES, Parameters
 from squealpipe.reading import READINGS
 from squealpipe.schema.dynamics.runs import GROWTH_THRESHOLD
-from squealpipe.schema.inference import Holds, of_study, wilson_interval
+from squealpipe.schema.inference import WORDS, Holds, of_study, wilson_interval
 from squealpipe.solvers.a1.ensemble import run_ensemble
 from squealpipe.store import load, save
 from squealpipe.tasks.inference.candidates import Candidates, sets_of
+from squealpipe.tasks.inference.consequences import CONSEQUENCES
 from squealpipe.tasks.inference.constraints import CONSTRAINTS, judge, measure
 from squealpipe.tasks.inference.inference import infer_parameters
 from squealpipe.tasks.linear.maps import stability_map
@@ -230,6 +231,10 @@ def test_the_number_of_processes_changes_nothing():
     few = {"samples": 32, "kappa": (0.6, 0.65), "mu": (0.3, 0.35), "length_ratio": (12.0, 15.0)}
     one, two = (infer_parameters(STUDY, **few, workers=workers) for workers in (1, 2))
     assert one.identical(two)
+
+
+def test_figures_have_words_for_every_statement():
+    assert [*WORDS] == [constraint.name for constraint in CONSTRAINTS] + [*CONSEQUENCES]
 
 
 def test_wilsons_interval_as_in_closed_form():
