@@ -5,12 +5,8 @@ import subprocess
 import sys
 
 RUN = """
-import numpy as np
-from squealpipe.parameters import Parameters
-from squealpipe.tasks.dynamics.runs import simulate
 from tests.oracles.a1_long_double import simulate_reference
 from tests.former import FORMER
-simulate(FORMER, 1.0, 2.0, t_end=1.0)
 simulate_reference(FORMER, 1.0, 2.0, t_end=1.0)
 """
 
