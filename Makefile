@@ -61,7 +61,7 @@ env: $(STUDY)  ## what a study needs
 
 dev: $(DEV)  ## and what tests, checks and docs need
 
-# The last two steps compile the event loop (6 s) and the tracer of orbits (9 s) into the user's cache,
+# The last two steps compile the event loop (22 s) and the tracer of orbits (9 s) into the user's cache,
 # which several first jobs would otherwise do at once.
 $(STUDY): requirements.lock pyproject.toml
 	@case "$(CURDIR)" in *[[:space:]]*) echo "make env: the path '$(CURDIR)' has a space, which the first lines of installed scripts cannot hold; move the checkout" >&2; exit 1;; esac
