@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import ctypes
 import math
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -156,9 +156,9 @@ def _address_of(array: np.ndarray) -> int:
     return ctypes.addressof(_START.from_buffer(buffer))
 
 
-def compile_advance(advance: Callable[..., Any], sources: Iterable[Path]) -> Any:
-    """A C function from ``advance(table) -> busy lanes``, stored under a digest of ``sources``."""
-    content = b"".join(source.read_bytes() for source in sorted(sources))
+def compile_advance(advance: Callable[..., Any]) -> Any:
+    """A C function from ``advance(table) -> busy lanes``, stored under a digest of this folder."""
+    content = b"".join(path.read_bytes() for path in sorted(Path(__file__).parent.glob("*.py")))
     compiled = compiled_entry(advance, types.intp(types.voidptr), content)
     function: Any = ctypes.CFUNCTYPE(ctypes.c_ssize_t, ctypes.c_void_p)(compiled.address)
     # The wrapper does not own the machine code.

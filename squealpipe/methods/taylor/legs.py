@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import math
 from functools import cache
-from pathlib import Path
 from typing import Any, NamedTuple
 
 import numba
@@ -19,7 +18,6 @@ from squealpipe.methods.taylor.lanes import call, compile_advance, view
 from squealpipe.methods.taylor.loop import _reach, _step_length
 from squealpipe.methods.taylor.simd import FEW, LANES, ROW, smaller, store
 from squealpipe.methods.taylor.taylor_polynomial import evaluate
-from squealpipe.rerun.sources import closure
 
 _numba: Any = numba
 _SWEEPS = 19
@@ -132,7 +130,7 @@ def _advance(table: Any) -> int:
 @cache
 def run_legs() -> Any:
     """The compiled loop, built once a process."""
-    return compile_advance(_advance, [Path(__file__), *closure(__file__)])
+    return compile_advance(_advance)
 
 
 @part

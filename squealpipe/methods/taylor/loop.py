@@ -10,7 +10,6 @@ from __future__ import annotations
 import math
 from enum import IntEnum
 from functools import cache
-from pathlib import Path
 from typing import Any, NamedTuple
 
 import numba
@@ -35,7 +34,6 @@ from squealpipe.methods.taylor.simd import (
     store,
 )
 from squealpipe.methods.taylor.taylor_polynomial import evaluate, evaluate_with_slope
-from squealpipe.rerun.sources import closure
 
 _numba: Any = numba
 SLACK = 1e-13
@@ -828,4 +826,4 @@ def _advance(table: Any) -> int:
 @cache
 def loop() -> Any:
     """The compiled loop, built once a process."""
-    return compile_advance(_advance, [Path(__file__), *closure(__file__)])
+    return compile_advance(_advance)
