@@ -33,10 +33,6 @@ WORDS = {
 """What is allowed, by the kind of fault that pydantic names."""
 
 
-CONTROLS = re.compile(
-    r"(\x1b\[[\d;]*m)|[\x00-\x08\x0b-\x1f\x7f-\x9f\u200e\u200f\u202a-\u202e\u2066-\u2069]"
-)
-"""Colours, or what moves the cursor, rings or turns the writing around."""
 RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 """Digits and sign of an exponent in plain text."""
 LONGEST_PLAIN = 6
@@ -50,11 +46,6 @@ def in_words(fault: Mapping[str, Any]) -> str:
         return message
     known = WORDS.get(fault["type"], message[0].lower() + message[1:])
     return known.format(**fault.get("ctx", {}))
-
-
-def visible(text: str) -> str:
-    """A text whose control characters do nothing to a terminal; line ends and colours stay."""
-    return CONTROLS.sub(lambda found: found[1] or repr(found[0])[1:-1], text)
 
 
 def number(value: float, digits: int = 3) -> str:

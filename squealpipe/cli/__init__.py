@@ -14,22 +14,17 @@ from cyclopts.exceptions import UnusedCliTokensError
 from squealpipe.cli import benchmark
 from squealpipe.cli.archives import deposit, find, list_runs
 from squealpipe.cli.arguments import by_name, parameters_from_study
-from squealpipe.cli.backbone import backbone
 from squealpipe.cli.claims import claims
 from squealpipe.cli.console import SESSION, TRACEBACK, session
-from squealpipe.cli.cycles import branch, cycle
 from squealpipe.cli.exit_codes import DONE, INTERRUPTED, NOT_DONE
 from squealpipe.cli.files import convert, plot
-from squealpipe.cli.maps import map_angles
-from squealpipe.cli.models import choose, infer, refine
+from squealpipe.cli.maps import basin, disturbance, map_angles, propensity, refine
+from squealpipe.cli.models import choose, infer
+from squealpipe.cli.motions import backbone, branch, cycle, simulate
 from squealpipe.cli.project import init
 from squealpipe.cli.project import run as run_study
-from squealpipe.cli.propensity import propensity
-from squealpipe.cli.simulate import simulate
-from squealpipe.cli.starts import basin, disturbance
 from squealpipe.cli.study import archive, compare, explain, verify
 from squealpipe.cli.sweep import sweep
-from squealpipe.text import visible
 
 HELP = """Friction-induced vibration with contact loss: from one run to the whole study.
 
@@ -122,7 +117,7 @@ def run(arguments: Sequence[str]) -> int:
             with contextlib.suppress(BrokenPipeError):  # nobody reads it
                 if SESSION.verbose:
                     traceback.print_exc()
-                print(f"squealpipe: {visible(_told(error))}", file=sys.stderr)
+                print(f"squealpipe: {_told(error)}", file=sys.stderr)
             return NOT_DONE
         return code
 
@@ -139,4 +134,5 @@ def _told(error: Exception) -> str:
 
 def main() -> None:
     """Entry point of the command ``squealpipe``."""
+    sys.stdout.reconfigure(errors="replace")  # type: ignore[union-attr]  # no Greek: question marks
     sys.exit(run(sys.argv[1:]))

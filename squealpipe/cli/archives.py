@@ -4,12 +4,9 @@ from __future__ import annotations
 
 import json
 import sys
-from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Any
 
-from cyclopts import Parameter
-
-from squealpipe.cli.arguments import AsJson
+from squealpipe.cli.arguments import AsJson, OutputElsewhere
 from squealpipe.cli.console import working
 from squealpipe.cli.exit_codes import ANSWER_IS_NO, DONE
 
@@ -76,12 +73,7 @@ def find(expression: str, /, *, json_: AsJson = False) -> int:
     return DONE if names else ANSWER_IS_NO
 
 
-def deposit(
-    name: str,
-    /,
-    *,
-    output: Annotated[Path | None, Parameter(name=["--output", "-o"])] = None,
-) -> int:
+def deposit(name: str, /, *, output: OutputElsewhere = None) -> int:
     """Bundle an archive for others: data, figures, report, code, lock and citation.
 
     Example: `squealpipe deposit reference`

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import fields
+from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -42,7 +42,14 @@ Numbers = Annotated[
 """A number, a list of them or first:last:count."""
 Whole = Annotated[int, Parameter(converter=_whole, metavar="INT", n_tokens=1)]
 Angle = Annotated[
-    float, Parameter(converter=_angle, metavar="ANGLE", allow_leading_hyphen=True, n_tokens=1)
+    float,
+    Parameter(
+        converter=_angle,
+        metavar="ANGLE",
+        allow_leading_hyphen=True,
+        n_tokens=1,
+        help="angle of this spring: 0.4pi, 2pi/5, 72deg or radians.",
+    ),
 ]
 AngleRange = Annotated[
     list[float],
@@ -53,17 +60,73 @@ AngleRange = Annotated[
         n_tokens=1,
         negative="",
         show_default="0:pi:61",
+        help="angles of this spring, first:last:count or a list.",
     ),
 ]
-PHYSICAL_GROUP = Group("Physical parameters", sort_key=10)
-Physical = Annotated[Parameters, Parameter(name="*", group=PHYSICAL_GROUP)]
+Tolerance = Annotated[float, Parameter(help="tolerance of the integration.")]
+Workers = Annotated[
+    int | None,
+    Parameter(converter=_whole, metavar="INT", help="processes; all cores by default."),
+]
 Configs = Annotated[list[Path] | None, Parameter(name=["--config", "-c"], negative="")]
-Output = Annotated[Path, Parameter(name=["--output", "-o"], allow_leading_hyphen=True)]
-Picture = Annotated[Path | None, Parameter(name=["--picture", "-p"])]
+Output = Annotated[
+    Path,
+    Parameter(
+        name=["--output", "-o"],
+        allow_leading_hyphen=True,
+        help="dataset to write: NetCDF (.nc) or CSV (.csv).",
+    ),
+]
+OutputElsewhere = Annotated[Path | None, Parameter(name=["--output", "-o"])]
 AsJson = Annotated[bool, Parameter(name="--json", negative="")]
 Switch = Annotated[bool, Parameter(negative="")]
+Force = Annotated[bool, Parameter(negative="", help="overwrite files that exist.")]
+Texts = Annotated[list[str] | None, Parameter(negative="")]
 
 BASELINE = Parameters()
+
+
+@Parameter(name="*")
+@dataclass(frozen=True, kw_only=True)
+class Brake:
+    """The brake of a command."""
+
+    config: Annotated[
+        list[Path] | None,
+        Parameter(
+            name=["--config", "-c"],
+            negative="",
+            help="study whose parameters are used where none are typed; repeatable.",
+        ),
+    ] = None
+    params: Annotated[
+        Parameters, Parameter(name="*", group=Group("Physical parameters", sort_key=10))
+    ] = BASELINE
+
+
+@Parameter(name="*")
+@dataclass(frozen=True, kw_only=True)
+class Written(Brake):
+    """The brake of a command that writes a dataset."""
+
+    force: Force = False
+
+
+@Parameter(name="*")
+@dataclass(frozen=True, kw_only=True)
+class Drawn(Written):
+    """The brake of a command that writes a dataset and its picture."""
+
+    picture: Annotated[
+        Path | None,
+        Parameter(
+            name=["--picture", "-p"],
+            help="picture to write (png, svg or pdf); by default beside the output.",
+        ),
+    ] = None
+
+
+BRAKE, WRITTEN, DRAWN = Brake(), Written(), Drawn()
 FULL_RANGE = parse_range("0:pi:61", parse_angle)
 """Both spring angles from 0 to π."""
 

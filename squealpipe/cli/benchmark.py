@@ -7,22 +7,20 @@ from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
 
-from squealpipe.cli.arguments import Output, Switch
+from squealpipe.cli.arguments import Force, Output, Texts
 from squealpipe.cli.exit_codes import ANSWER_IS_NO, DONE
 
 if TYPE_CHECKING:
     from squealpipe.benchmark.scoring import Score
 
-Names = Annotated[list[str] | None, Parameter(negative="")]
-
 
 def run(
     *,
-    solver: Names = None,
-    problem: Names = None,
+    solver: Texts = None,
+    problem: Texts = None,
     tolerance: Annotated[list[float] | None, Parameter(negative="")] = None,
     output: Output = Path("benchmark.nc"),
-    force: Switch = False,
+    force: Force = False,
 ) -> int:
     """Run solvers on problems with events; exit code 1: an answer is silently wrong.
 
@@ -32,8 +30,6 @@ def run(
         solver: a shipped one, or FILE.py:FUNCTION; all that are installed by default.
         problem: names of problems; all by default.
         tolerance: by default 1e-6, 1e-8, 1e-10 and 1e-12.
-        output: dataset to write.
-        force: overwrite a file that exists.
     """
     from squealpipe.benchmark.adapters import SOLVERS, installed
     from squealpipe.benchmark.scoring import TOLERANCES, benchmark

@@ -12,10 +12,6 @@ from squealpipe.cli.arguments import AsJson
 from squealpipe.cli.exit_codes import DONE
 
 MADE = Path("results/data/claims.nc")
-NARROW = 40
-"""Columns below which a terminal is taken to have as many."""
-ROOM_FOR_A_NUMBER = 60
-"""Columns from which on a line has the deciding number too."""
 
 
 def claims(*ids: str, only: str | None = None, json_: AsJson = False, file: Path = MADE) -> int:
@@ -43,13 +39,12 @@ def claims(*ids: str, only: str | None = None, json_: AsJson = False, file: Path
         for row in rows:
             print(*_details(row), "", sep="\n")
     else:
-        width = max(shutil.get_terminal_size().columns, NARROW)
-        print(*(_line(row, width) for row in rows), sep="\n")
+        print(*map(_line, rows), sep="\n")
         if rows:
             print(f"{len(rows)} statements; `squealpipe claims {rows[0]['id']}` shows one in full")
         if changed := [row for row in rows if row["changes"]]:
             print("\nWith friction of one sign throughout these change:")
-            print(*(_line({**row, **_corrected(row)}, width) for row in changed), sep="\n")
+            print(*(_line({**row, **_corrected(row)}) for row in changed), sep="\n")
     return code if rows else DONE
 
 
@@ -76,11 +71,10 @@ def _corrected(row: Mapping[str, Any]) -> dict[str, Any]:
     return {"verdict": row["corrected_verdict"], "value": row["corrected_value"]}
 
 
-def _line(row: Mapping[str, Any], width: int) -> str:
+def _line(row: Mapping[str, Any]) -> str:
     value = "" if row["value"] is None else f"{row['value']:.4g}"
-    # Where the line is too short for words beside it, a number is better left out than cut.
-    number = "" if width < ROOM_FOR_A_NUMBER else f"{value:>10}  "
-    text = f"{row['id']:<5}{row['verdict']:<26}{number}{row['statement']}"
+    text = f"{row['id']:<5}{row['verdict']:<26}{value:>10}  {row['statement']}"
+    width = shutil.get_terminal_size().columns
     return text if len(text) <= width else f"{text[: width - 1]}…"
 
 

@@ -6,22 +6,15 @@ import os
 import sys
 import warnings
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager, redirect_stdout
+from contextlib import contextmanager
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, TextIO, cast
-
-from squealpipe.text import visible
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from rich.console import Console
 
 TRACEBACK = "SQUEALPIPE_TRACEBACK"
 """Environment variable that asks for tracebacks, as -v does."""
-SPELLED = str.maketrans(
-    {"ω": "omega", "α": "alpha", "κ": "kappa", "λ": "lambda", "μ": "mu", "π": "pi", "√": "sqrt",
-     "−": "-", "–": "-", "…": "...", "·": "*", "²": "^2", "₀": "0", "ẋ": "x'", "≤": "<=", "≥": ">="}
-)  # fmt: skip
-"""What a terminal without these letters shows."""
 SWITCHES = {"-q": "quiet", "--quiet": "quiet", "-v": "verbose", "--verbose": "verbose"}
 
 
@@ -43,26 +36,6 @@ class _Session:
 SESSION = _Session()
 
 
-class _Terminal:
-    """The standard output: control characters of a file's text are shown, not obeyed, and a
-    terminal that knows no Greek gets it in letters.
-    """
-
-    def __init__(self, stream: TextIO) -> None:
-        self._stream = stream
-
-    def write(self, text: str) -> int:
-        encoding, text = self._stream.encoding or "utf-8", visible(text)
-        try:
-            text.encode(encoding)
-        except UnicodeEncodeError:
-            text = text.translate(SPELLED).encode(encoding, "replace").decode(encoding)
-        return self._stream.write(text)
-
-    def __getattr__(self, name: str) -> Any:
-        return getattr(self._stream, name)
-
-
 @contextmanager
 def session(arguments: Sequence[str]) -> Iterator[list[str]]:
     """Apply -q and -v, which every command takes, and give the other arguments."""
@@ -79,8 +52,7 @@ def session(arguments: Sequence[str]) -> Iterator[list[str]]:
     SESSION.quiet = "quiet" in found
     SESSION.verbose = "verbose" in found or os.environ.get(TRACEBACK, "0") not in {"", "0"}
     SESSION.typed = set()
-    terminal = redirect_stdout(cast("TextIO", _Terminal(sys.stdout)))
-    with warnings.catch_warnings(), terminal:
+    with warnings.catch_warnings():
         if not SESSION.verbose and not sys.warnoptions:
             warnings.simplefilter("ignore")
         yield kept

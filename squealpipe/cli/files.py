@@ -7,7 +7,7 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
-from squealpipe.cli.arguments import Switch
+from squealpipe.cli.arguments import Force, OutputElsewhere
 from squealpipe.cli.console import say
 from squealpipe.cli.exit_codes import DONE
 from squealpipe.cli.output import PICTURES, TABLES, check_output
@@ -17,9 +17,9 @@ def plot(
     file: Path,
     /,
     *,
-    output: Annotated[Path | None, Parameter(name=["--output", "-o"])] = None,
+    output: OutputElsewhere = None,
     variable: str | None = None,
-    force: Switch = False,
+    force: Force = False,
 ) -> int:
     """Draw a dataset: a run, a map, a branch, a cycle, an ensemble of a system.
 
@@ -29,7 +29,6 @@ def plot(
         file: dataset that a command or `squealpipe.save` wrote.
         output: picture to write (png, svg or pdf); by default FILE.png.
         variable: draw this variable instead of the usual picture.
-        force: overwrite files that exist.
     """
     target = file.with_suffix(".png") if output is None else output
     check_output(target, force=force, kinds=PICTURES)
@@ -48,7 +47,7 @@ def convert(
     /,
     *,
     output: Annotated[Path, Parameter(name=["--output", "-o"])],
-    force: Switch = False,
+    force: Force = False,
 ) -> int:
     """Write a dataset for another program: CSV, MATLAB, Excel or Parquet, units in the header.
 
@@ -57,7 +56,6 @@ def convert(
     Args:
         file: dataset that a command or `squealpipe.save` wrote.
         output: file that ends in .csv, .mat, .xlsx or .parquet.
-        force: overwrite files that exist.
     """
     check_output(output, force=force, kinds=TABLES)
 

@@ -1,30 +1,40 @@
-"""``squealpipe map``: one quantity over both spring angles, as a dataset and a picture."""
+"""``map``, ``refine``, ``basin``, ``disturbance``, ``propensity``: many runs in one picture."""
 
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
+
+from cyclopts import Parameter
 
 from squealpipe.cli.arguments import (
-    BASELINE,
+    DRAWN,
     FULL_RANGE,
+    Angle,
     AngleRange,
-    Configs,
+    Drawn,
+    Numbers,
     Output,
-    Physical,
-    Picture,
-    Switch,
+    Tolerance,
+    Whole,
+    Workers,
 )
-from squealpipe.cli.console import answer
-from squealpipe.cli.exit_codes import DONE
-from squealpipe.cli.output import check_outputs, compute
+from squealpipe.cli.console import SESSION, answer
+from squealpipe.cli.exit_codes import ANSWER_IS_NO, DONE
+from squealpipe.cli.motions import Model
+from squealpipe.cli.output import compute, ending
+from squealpipe.config.ranges import ANGLES, parse_angle, parse_number
 from squealpipe.parameters import HORIZON
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 Kind = Literal[
     "validity", "hammering", "quasi-static", "stability", "critical-friction", "frequencies"
 ]
 TIMED = ("validity", "hammering")
 """Maps that take a horizon."""
+DISTRIBUTIONS = "write for instance mu=uniform:0.1:0.9, k1=normal:1:0.05 or k3=lognormal:0.65:0.1"
 
 
 def map_angles(
@@ -34,12 +44,9 @@ def map_angles(
     alpha1: AngleRange = FULL_RANGE,
     alpha2: AngleRange = FULL_RANGE,
     t_end: float | None = None,
-    tol: float = 1e-12,
+    tol: Tolerance = 1e-12,
     output: Output = Path("map.nc"),
-    picture: Picture = None,
-    force: Switch = False,
-    config: Configs = None,  # noqa: ARG001 (read by `parameters_from_study`)
-    params: Physical = BASELINE,
+    brake: Drawn = DRAWN,
 ) -> int:
     """Compute a map over both spring angles; write a dataset and a picture.
 
@@ -47,24 +54,199 @@ def map_angles(
 
     Args:
         kind: what to map.
-        alpha1: angles of spring 1, first:last:count or a list.
-        alpha2: angles of spring 2.
         t_end: horizon of validity and hammering maps, s; 200 √(mass/k1) by default.
-        tol: tolerance of their integration.
-        output: dataset to write: NetCDF (.nc) or CSV (.csv).
-        picture: picture to write; by default beside the output.
-        force: overwrite files that exist.
-        config: study whose parameters are used where none are typed; repeatable.
     """
     if min(len(alpha1), len(alpha2)) < 2:
         raise ValueError("a map needs 2 or more angles of each spring; write for instance 0:pi:31")
-    t_end = HORIZON * params.time_unit if t_end is None else t_end
+    t_end = HORIZON * brake.params.time_unit if t_end is None else t_end
     name = {"frequencies": "natural_frequencies"}.get(kind, f"{kind.replace('-', '_')}_map")
     options: dict[str, Any] = {"t_end": t_end, "tol": tol} if kind in TIMED else {}
-    picture = check_outputs(output, picture, force=force)
+    return _counted(compute(name, brake, alpha1, alpha2, output=output, **options))
 
-    found = compute(name, params, alpha1, alpha2, output=output, picture=picture, **options)
+
+def refine(
+    *,
+    resolution: Whole = 361,
+    coarse: Whole = 46,
+    t_end: float | None = None,
+    model: Model = "A1",
+    tol: Tolerance = 1e-12,
+    workers: Workers = None,
+    output: Output = Path("refined.nc"),
+    brake: Drawn = DRAWN,
+) -> int:
+    """Map where contact is kept at high resolution, running the boundaries alone.
+
+    Example: `squealpipe refine --resolution 181 --coarse 46 --t-end 50 -o refined.nc`
+
+    Args:
+        resolution: points per side of the finest grid; one less is 2^n (coarse - 1).
+        coarse: points per side of the first grid.
+        t_end: end of each run, s; 200 √(mass/k1) by default.
+        model: level of the model.
+    """
+    found = compute(
+        "refine_validity_map", brake, output=output, resolution=resolution, coarse=coarse,
+        t_end=t_end, model=model, tol=tol, workers=workers,
+    )  # fmt: skip
+    low, high = found.inherited_error_interval.values
+    answer(
+        f"contact is lost in {int(found.separates.sum())} of {found.separates.size} cells",
+        f"{int(found.computed.sum())} cells were run; of the others {float(low):.2%} to "
+        f"{float(high):.2%} are wrong (95 %)",
+    )
+    return DONE
+
+
+def basin(
+    alpha1: Angle,
+    alpha2: Angle,
+    /,
+    *,
+    x: Numbers = None,
+    y: Numbers = None,
+    vx: Numbers = None,
+    vy: Numbers = None,
+    t_end: float,
+    t_late: float | None = None,
+    tol: Tolerance = 1e-12,
+    workers: Workers = None,
+    output: Output = Path("basin.nc"),
+    brake: Drawn = DRAWN,
+) -> int:
+    """Run A1 from a grid of starts; write the kind of motion of each and a picture.
+
+    Example: `squealpipe basin 0.4pi 0.6pi --vx -5:5:21 --vy -5:5:21 --t-end 200 -o basin.nc`
+
+    Args:
+        x: displacement along the belt at the start, a number or first:last:count, m.
+        y: displacement away from the belt, m.
+        vx: speed along the belt, m/s.
+        vy: speed away from the belt, m/s.
+        t_end: end of each run, s.
+        t_late: from where the late extrema count, s; 0.8 of t_end by default.
+    """
+    given = {"x": x, "y": y, "vx": vx, "vy": vy}
+    starts: dict[str, Any] = {
+        name: values[0] if len(values) == 1 else values for name, values in given.items() if values
+    }
+    if sum(isinstance(each, list) for each in starts.values()) not in {1, 2}:
+        raise ValueError("give a range of one or two of x, y, vx, vy, like --vx -5:5:21")
+    options: dict[str, Any] = {"t_end": t_end, "t_late": t_late, "tol": tol, "workers": workers}
+    return _counted(compute("basin_map", brake, alpha1, alpha2, output=output, **starts, **options))
+
+
+def _counted(found: xr.Dataset) -> int:
+    """State how many cells have which answer."""
     from squealpipe.plotting.quantities import counts
 
     answer(*counts(found))
     return DONE
+
+
+def disturbance(
+    alpha1: Angle,
+    alpha2: Angle,
+    /,
+    *,
+    leads_to: Literal["contact_lost", "whirl"] = "contact_lost",
+    model: Model = "A1",
+    t_end: float | None = None,
+    bound: float | None = None,
+    directions: Whole = 128,
+    seed: Whole = 1,
+    tol: Tolerance = 1e-9,
+    workers: Workers = None,
+    output: Output = Path("disturbance.nc"),
+    brake: Drawn = DRAWN,
+) -> int:
+    """Find the smallest disturbance of steady sliding that leads to contact loss or to the whirl.
+
+    Example: `squealpipe disturbance 0.75pi 0.75pi --leads-to contact_lost --t-end 50`
+
+    Args:
+        leads_to: what it is to lead to.
+        model: level of the model.
+        t_end: time within which that happens, s; 200 √(2 mass/(k1 + k2)) by default.
+        bound: largest disturbance tried, in preload lengths; 3 for contact loss, 15 for the whirl.
+        directions: random directions.
+        seed: of the directions.
+    """
+    found = compute(
+        "smallest_disturbance", brake, alpha1, alpha2, output=output, leads_to=leads_to,
+        model=model, t_end=t_end, bound=bound, directions=directions, seed=seed, tol=tol,
+        workers=workers,
+    )  # fmt: skip
+    from squealpipe.schema import Outcome
+
+    outcome, why = ending(found.outcome)
+    if outcome is not Outcome.converged:
+        answer(f"no disturbance: {why}")
+        return ANSWER_IS_NO
+    answer(
+        f"smallest disturbance found: {float(found.distance):.6g}, in l_pre and l_pre ω",
+        f"by the linear motion: {float(found.linear_distance):.6g}; "
+        f"the start at rest: {float(found.rest_distance):.6g}",
+    )
+    return DONE
+
+
+def propensity(
+    alpha1: Angle,
+    alpha2: Angle,
+    /,
+    *,
+    spread: Annotated[list[str], Parameter(metavar="NAME=KIND:LOW:HIGH", negative="")],
+    samples: Whole = 1024,
+    t_end: float | None = None,
+    spring_correlation: float = 0.0,
+    seed: Whole = 1,
+    output: Output = Path("propensity.nc"),
+    brake: Drawn = DRAWN,
+) -> int:
+    """Shares of flutter, contact loss, irregular hammering and whirl over uncertain parameters.
+
+    Example: `squealpipe propensity 0.07pi 0.305pi --spread mu=uniform:0.1:0.9
+    --spread k1=normal:1:0.05 -o propensity.nc`
+
+    Args:
+        spread: a parameter or angle with its distribution: uniform:low:high, normal:mean:std or
+            lognormal:median:log_std; repeat for more.
+        samples: size of the sample, a power of 2.
+        t_end: end of each run, s; 200 √(mass/k1) by default.
+        spring_correlation: of k1 and k2; no Sobol indices are given with it.
+        seed: of the sample.
+    """
+    distributions = dict(map(_distribution, spread))
+    if len(distributions) < len(spread):
+        raise ValueError("--spread: a duplicate name; keep one")
+    for name in sorted(set(distributions) & SESSION.typed):
+        raise ValueError(f"{name} is both fixed and spread; keep one")
+    t_end = HORIZON * brake.params.time_unit if t_end is None else t_end
+    found = compute(
+        "propensity", brake, alpha1, alpha2, output=output, distributions=distributions,
+        samples=samples, t_end=t_end, spring_correlation=spring_correlation, seed=seed,
+    )  # fmt: skip
+    shares = zip(found.quantity.values, found.share.values, found.share_low.values,
+                 found.share_high.values, strict=True)  # fmt: skip
+    for name, share, low, high in shares:
+        words = str(name).replace("_", " ")
+        answer(f"{words:<20} {share:8.2%}  (95 %: {low:.2%} to {high:.2%})")
+    return DONE
+
+
+def _distribution(text: str) -> tuple[str, dict[str, str | float]]:
+    """Name and distribution of NAME=KIND:A:B.
+
+    Raises:
+        ValueError: the text is none.
+    """
+    from squealpipe.tasks.propensity.distributions import KINDS
+
+    name, _, words = text.partition("=")
+    name, parts = name.strip().replace("-", "_"), words.split(":")
+    if len(parts) != 3 or parts[0] not in KINDS:
+        raise ValueError(f"--spread {text!r} is not a distribution; {DISTRIBUTIONS}")
+    one = parse_angle if name in ANGLES else parse_number
+    numbers = dict(zip(KINDS[parts[0]], map(one, parts[1:]), strict=True))
+    return name, {"distribution": parts[0], **numbers}

@@ -7,12 +7,13 @@ from glob import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from squealpipe.cli.arguments import Drawn, Written
 from squealpipe.cli.console import say, working
 
 if TYPE_CHECKING:
     import xarray as xr
 
-    from squealpipe.parameters import Parameters
+    from squealpipe.schema import Outcome
 
 DATA = (".nc", ".csv")
 TABLES = (".csv", ".mat", ".xlsx", ".parquet")
@@ -25,23 +26,13 @@ def check_output(
     """Refuse a name that cannot or must not be written, before anything is computed.
 
     Raises:
-        ValueError: the standard output, a folder, a device, an ending that says no known kind, or
-            a file that exists and is not to be overwritten.
+        ValueError: an ending that says no known kind, or what exists and is not to be overwritten.
     """
-    endings = ", ".join(kinds[:-1]) + f" or {kinds[-1]}"
-    if str(path) == "-":
-        raise ValueError(f"{option} -: give a file that ends in {endings}; nothing is streamed")
-    if path.is_dir():
-        raise ValueError(
-            f"{option} {path} is a folder; give a file in it, {path / f'NAME{kinds[0]}'}"
-        )
-    if path.exists() and not path.is_file():
-        raise ValueError(f"{option} {path} is a device or pipe, not a file; it is left alone")
     if path.suffix not in kinds:
+        endings = ", ".join(kinds[:-1]) + f" or {kinds[-1]}"
         raise ValueError(f"{option} {path}: end the name in {endings}")
-    above = next(folder for folder in path.absolute().parents if folder.exists())
-    if not above.is_dir():
-        raise ValueError(f"{option} {path}: {above} is a file, not a folder")
+    if path.exists() and not path.is_file():
+        raise ValueError(f"{option} {path} is a folder, device or pipe, not a file")
     if path.exists() and not force:
         raise ValueError(f"{option} {path} exists; add --force to overwrite it, or change the name")
     if path.suffix in {".csv", ".parquet"} and not force:
@@ -50,18 +41,6 @@ def check_output(
                 f"{option} {path} writes further tables beside it, and {other} exists; add --force "
                 "to overwrite it, or change the name"
             )
-
-
-def check_outputs(output: Path, picture: Path | None, *, force: bool) -> Path:
-    """Check both files of a command; the picture's name, by default beside the dataset.
-
-    Raises:
-        ValueError: as :func:`check_output`.
-    """
-    check_output(output, force=force)
-    chosen = output.with_suffix(".png") if picture is None else picture
-    check_output(chosen, force=force, kinds=PICTURES, option="--picture")
-    return chosen
 
 
 def write(make: Callable[[], xr.Dataset], output: Path, *, config: Mapping[str, Any]) -> xr.Dataset:
@@ -87,39 +66,53 @@ def write(make: Callable[[], xr.Dataset], output: Path, *, config: Mapping[str, 
 
 
 def compute(
-    function: str,
-    params: Parameters,
-    *angles: Any,
-    output: Path,
-    picture: Path | None,
-    drawn: bool = True,
-    **options: Any,
+    function: str, brake: Written, *angles: Any, output: Path, **options: Any
 ) -> xr.Dataset:
-    """Run a function of the package; write its dataset and, if there is one, the picture of it.
+    """Run a function of the package; write its dataset and, where a command has one, its picture.
 
     Args:
         function: its name in ``squealpipe``.
-        params, angles: what it is called with.
-        output, picture: files, checked before.
-        drawn: whether there is a picture.
+        brake: parameters and files.
+        angles: what it is called with beside the parameters.
+        output: dataset to write.
         options: its keywords; those that are None are left to their defaults.
+
+    Raises:
+        ValueError: as :func:`check_output`, before anything is computed.
     """
+    check_output(output, force=brake.force)
+    written = [output]
+    if isinstance(brake, Drawn):
+        written.append(brake.picture or output.with_suffix(".png"))
+        check_output(written[1], force=brake.force, kinds=PICTURES, option="--picture")
+
     import squealpipe
+    from squealpipe.schema.origin import plain
     from squealpipe.store.identity import dataset_id
 
     given = {name: value for name, value in options.items() if value is not None}
-    place: dict[str, Any] = dict(zip(("alpha1", "alpha2"), angles, strict=False))
-    place |= {k: dataset_id(v) if hasattr(v, "data_vars") else v for k, v in given.items()}
+    stated = dict(zip(("alpha1", "alpha2"), angles, strict=False)) | {
+        name: dataset_id(value) if hasattr(value, "data_vars") else plain(value)
+        for name, value in given.items()
+    }
     with working(function.replace("_", " ")):
         dataset = write(
-            lambda: getattr(squealpipe, function)(params, *angles, **given),
+            lambda: getattr(squealpipe, function)(brake.params, *angles, **given),
             output,
-            config={"parameters": params.as_dict(), **place},
+            config={"parameters": brake.params.as_dict(), **stated},
         )
-    if drawn and picture is not None:
-        from squealpipe.plotting import picture as draw
+    if written[1:]:
+        from squealpipe.plotting import picture
         from squealpipe.plotting.style import save_figure
 
-        save_figure(draw(dataset), [picture])
-    say(f"wrote {output}" + (f" and {picture}" if drawn else ""))
+        save_figure(picture(dataset), written[1:])
+    say(f"wrote {' and '.join(map(str, written))}")
     return dataset
+
+
+def ending(outcome: xr.DataArray) -> tuple[Outcome, str]:
+    """An outcome, and the words for it with its remedy."""
+    from squealpipe.schema import REMEDIES, Outcome
+
+    found = Outcome(int(outcome))
+    return found, f"{found.name} ({REMEDIES[found]})"

@@ -9,7 +9,7 @@ import sys
 import time
 from pathlib import Path
 
-from squealpipe.cli.arguments import Configs, Switch, Whole
+from squealpipe.cli.arguments import Configs, Force, Switch, Whole
 from squealpipe.cli.console import SESSION, say
 from squealpipe.cli.exit_codes import DONE, NOT_DONE
 from squealpipe.cli.output import check_output
@@ -52,7 +52,7 @@ def init(
     *,
     results: str | None = None,
     own: Switch = False,
-    force: Switch = False,
+    force: Force = False,
 ) -> int:
     """Write a configuration to edit: the paper's parameters, and every other key as a comment.
 
@@ -62,7 +62,6 @@ def init(
         file: configuration to write (.yaml).
         results: folder of its results; results/NAME of the file by default.
         own: a short study of scenes of your own in SI units instead, without the paper.
-        force: overwrite a file that exists.
     """
     from squealpipe.config.settings import PAPER, read_study
 

@@ -7,7 +7,7 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
-from squealpipe.cli.arguments import AsJson, Configs, Switch
+from squealpipe.cli.arguments import AsJson, Configs, Switch, Texts
 from squealpipe.cli.console import console, working
 from squealpipe.cli.exit_codes import ANSWER_IS_NO, DONE
 from squealpipe.text import duration
@@ -55,7 +55,7 @@ def archive(
     /,
     *,
     config: Configs = None,
-    leave_out: Annotated[list[str] | None, Parameter(negative="")] = None,
+    leave_out: Texts = None,
 ) -> int:
     """Freeze a run: data, figures, report, configuration, environment and checksums.
 

@@ -9,7 +9,7 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
-from squealpipe.cli.arguments import BASELINE, Angle, Configs, Output, Physical, Switch, Whole
+from squealpipe.cli.arguments import WRITTEN, Angle, Output, Workers, Written
 from squealpipe.cli.console import SESSION, answer, say
 from squealpipe.cli.exit_codes import DONE
 from squealpipe.cli.output import check_output, write
@@ -25,11 +25,9 @@ def sweep(
     alpha1: Angle | None = None,
     alpha2: Angle | None = None,
     option: Annotated[list[str] | None, Parameter(metavar="NAME=VALUE", negative="")] = None,
-    workers: Whole | None = None,
+    workers: Workers = None,
     output: Output = Path("sweep.nc"),
-    force: Switch = False,
-    config: Configs = None,  # noqa: ARG001 (read by `parameters_from_study`)
-    params: Physical = BASELINE,
+    brake: Written = WRITTEN,
 ) -> int:
     """Run a task at every combination of values; write one dataset with the names as dimensions.
 
@@ -43,13 +41,7 @@ def sweep(
         vary: a parameter, angle or option, or a start of a system (x0), with its values:
             mu=0:0.6:13, alpha1=0:pi:31, belt_speed=0.1:100:7:log or k3=0.5,0.75; repeat for
             further dimensions.
-        alpha1: angle of spring 1 where it is not varied.
-        alpha2: angle of spring 2 where it is not varied.
         option: a further keyword of the task, for instance t_end=100; repeat for more.
-        workers: processes; all cores by default.
-        output: dataset to write: NetCDF (.nc) or CSV (.csv).
-        force: overwrite a file that exists.
-        config: study whose parameters are used where none are typed; repeatable.
     """
     from squealpipe.execution.counts import lines
     from squealpipe.execution.sweep import planned, run_sweep
@@ -57,17 +49,16 @@ def sweep(
     varied = _pairs("--vary", vary)
     options = _pairs("--option", option or [])
     angles = {name: v for name, v in (("alpha1", alpha1), ("alpha2", alpha2)) if v is not None}
-    typed = SESSION.typed if params is not BASELINE else set()
-    for name in sorted(set(varied) & (set(options) | set(angles) | typed)):
+    for name in sorted(set(varied) & (set(options) | set(angles) | SESSION.typed)):
         raise ValueError(f"{name} is both fixed and varied; keep one")
     settings = sweep_config(
         task=task,
         vary={name: read_values(name, text) for name, text in varied.items()},
         fixed={**{name: read_fixed(name, value) for name, value in options.items()}, **angles},
-        parameters=params.as_dict(),
+        parameters=brake.params.as_dict(),
     )
     plan = planned(settings)
-    check_output(output, force=force)
+    check_output(output, force=brake.force)
     runs = prod(len(plan.vary[name]) for name in plan.names)
     say(f"{runs} runs of {task} over {', '.join(plan.names)}")
     dataset = write(

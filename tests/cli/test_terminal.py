@@ -1,4 +1,4 @@
-"""What reaches a terminal: its own letters, no file's control characters, always the answer."""
+"""What reaches a terminal: always the answer, in its own letters."""
 
 import os
 import subprocess
@@ -11,7 +11,6 @@ from squealpipe import Parameters, load, stability_map
 from squealpipe.cli import run
 from squealpipe.config.mistakes import ConfigError
 from squealpipe.config.settings import read_study
-from squealpipe.text import visible
 
 SHORT = ["simulate", "5pi/6", "5pi/6", "--t-end", "5"]
 
@@ -29,18 +28,7 @@ def test_simulate_works_where_the_terminal_is_ascii():
         check=False,
     )  # fmt: skip
     assert done.returncode == 0, done.stderr
-    assert "omega = " in done.stdout.decode("ascii")
-
-
-def test_control_characters_are_shown_and_colours_obeyed():
-    assert visible("a\x1b[31mb\x1b[0m\n") == "a\x1b[31mb\x1b[0m\n"
-    assert visible("\x1b]0;title\x07\r\u202e\x9b2J") == r"\x1b]0;title\x07\r\u202e\x9b2J"
-
-
-def test_control_characters_of_a_file_do_not_reach_the_terminal(tmp_path, capsys):
-    (tmp_path / "bad\x1b]0;name\x07.nc").write_bytes(b"no dataset")
-    assert run(["compare", str(next(tmp_path.iterdir())), "nothing"]) == 2
-    assert "\x1b" not in "".join(capsys.readouterr())
+    assert "impacts" in done.stdout.decode("ascii")
 
 
 def test_symbols_of_the_paper_are_understood_or_name_their_key(tmp_path, capsys):

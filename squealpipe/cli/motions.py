@@ -1,0 +1,224 @@
+"""``simulate``, ``backbone``, ``cycle`` and ``branch``: single motions and families of them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal
+
+from squealpipe.cli.arguments import DRAWN, Angle, Drawn, Numbers, Output, Switch, Tolerance, Whole
+from squealpipe.cli.console import answer
+from squealpipe.cli.exit_codes import ANSWER_IS_NO, DONE
+from squealpipe.cli.output import compute, ending
+from squealpipe.config.ranges import parse_range
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+Model = Literal["A1", "A1-no-stick", "A1-no-separation", "A1-linear-springs", "A1-as-printed", "A4"]
+
+
+def simulate(
+    alpha1: Angle,
+    alpha2: Angle,
+    /,
+    *,
+    t_end: float | None = None,
+    model: Model = "A1",
+    tol: Tolerance = 1e-12,
+    points: Whole | None = None,
+    x0: float = 0.0,
+    y0: float = 0.0,
+    vx0: float = 0.0,
+    vy0: float = 0.0,
+    output: Output = Path("run.nc"),
+    brake: Drawn = DRAWN,
+) -> int:
+    """Integrate one configuration, from rest unless given otherwise; write a dataset and a picture.
+
+    Example: `squealpipe simulate 5pi/6 5pi/6 --t-end 100 --mu 0.2 -o hammering.nc`
+
+    Args:
+        t_end: horizon, s; 50 √(mass/k1) by default.
+        model: level of the model.
+        points: instants at which the state is kept; by default enough for the fastest oscillation.
+        x0: displacement along the belt at the start.
+        y0: displacement away from the belt at the start.
+        vx0: speed along the belt at the start.
+        vy0: speed away from the belt at the start.
+    """
+    if points is not None and points < 16:
+        raise ValueError(f"--points {points} is too few to show a motion; give 16 or more")
+    t_end = 50.0 * brake.params.time_unit if t_end is None else t_end
+    if not 0 < t_end < float("inf"):
+        raise ValueError(f"--t-end {t_end!r} must be greater than 0 and finite")
+
+    import numpy as np
+
+    from squealpipe.methods.spectrum import FEWEST
+    from squealpipe.schema import Outcome
+    from squealpipe.tasks.dynamics.summary import summarize, summary_lines
+    from squealpipe.tasks.sampling import default_times, unresolved
+
+    times = np.linspace(0.0, t_end, points) if points else default_times(brake.params, t_end)
+    run = compute(
+        "simulate", brake, alpha1, alpha2, output=output, t_end=t_end, model=model, tol=tol,
+        times=times, initial_state=[x0, y0, vx0, vy0],
+    )  # fmt: skip
+    if np.isfinite(run.x).sum() >= FEWEST:
+        answer(*summary_lines(run, summarize(run)))
+        if missed := unresolved(brake.params, times):
+            answer(f"note: {missed}")
+    outcome, why = ending(run.outcome)
+    if outcome is Outcome.converged:
+        return DONE
+    answer(f"the run ended early: {why}")
+    return ANSWER_IS_NO
+
+
+def backbone(
+    alpha1: Angle,
+    alpha2: Angle,
+    /,
+    *,
+    mode: Literal[1, 2] = 1,
+    method: Literal["exact", "hbm"] = "exact",
+    y_peak_max: float | None = None,
+    x_amplitude_max: float | None = None,
+    n_harmonics: Whole = 16,
+    output: Output = Path("backbone.nc"),
+    brake: Drawn = DRAWN,
+) -> int:
+    """Follow a family of free periodic motions of model A4; write a dataset and a picture.
+
+    Example: `squealpipe backbone 0.3pi 0.9pi --mode 1 --method hbm --n-harmonics 32`
+
+    Args:
+        mode: mode, by ascending frequency in contact.
+        method: exact orbits, or harmonic balance judged by them.
+        y_peak_max: largest y at the symmetric instant; 3 preload lengths by default.
+        x_amplitude_max: largest x amplitude of an isolated x mode; 3 preload lengths by default.
+        n_harmonics: harmonics kept by harmonic balance.
+    """
+    branch = compute(
+        "backbone", brake, alpha1, alpha2, output=output, mode=mode, method=method,
+        y_peak_max=y_peak_max, x_amplitude_max=x_amplitude_max,
+        n_harmonics=n_harmonics if method == "hbm" else None,
+    )  # fmt: skip
+    _, why = ending(branch.end)
+    if not branch.sizes["point"]:
+        answer(f"mode {mode} has no periodic motions here: {why}; try other angles or parameters")
+        return ANSWER_IS_NO
+    answer(
+        f"mode {mode}: {branch.sizes['point']} points, ω from {float(branch.omega[0]):.6g} "
+        f"to {float(branch.omega[-1]):.6g} rad/s",
+        f"the branch ends: {why}",
+    )
+    return DONE
+
+
+def cycle(
+    alpha1: Angle,
+    alpha2: Angle,
+    /,
+    *,
+    guess: Numbers = None,
+    t_settle: float | None = None,
+    output: Output = Path("cycle.nc"),
+    brake: Drawn = DRAWN,
+) -> int:
+    """Find a periodic motion of A1, its events and its stability; write a dataset and a picture.
+
+    Example: `squealpipe cycle 0.1pi 0.5pi --friction-law exponential --mu-static 0.6
+    --belt-speed 0.5 --damping1 0.02 --damping2 0.02`
+
+    Args:
+        guess: state x,y,vx,vy near the cycle, which may be unstable; by default what a run from
+            rest settles to.
+        t_settle: after which that run counts as settled, s; 2000 √(mass/min(k1, k2)) by default.
+    """
+    found = compute(
+        "limit_cycle", brake, alpha1, alpha2, output=output, guess=guess, t_settle=t_settle
+    )
+    from squealpipe.schema import Outcome
+
+    outcome, why = ending(found.outcome)
+    if outcome not in {Outcome.converged, Outcome.family_member}:
+        answer(f"no periodic motion was found: {why}")
+        return ANSWER_IS_NO
+    answer(
+        f"period {float(found.period):.9g} s, {'stable' if found.stable == 1 else 'not stable'}, "
+        f"{found.sizes['event']} events",
+        f"x from {float(found.x_min):.6g} to {float(found.x_max):.6g} m, "
+        f"y from {float(found.y_min):.6g} to {float(found.y_max):.6g} m",
+        f"in contact for {float(found.contact_fraction):.1%} of it, in stick for "
+        f"{float(found.stick_fraction):.1%}",
+    )
+    if outcome is Outcome.family_member:
+        answer(f"note: {why}")
+    return DONE
+
+
+def branch(
+    alpha1: Angle,
+    alpha2: Angle,
+    /,
+    *,
+    parameter: str,
+    to: float,
+    start: str | None = None,
+    n_points: Whole = 200,
+    doubled: Switch = False,
+    output: Output = Path("branch.nc"),
+    brake: Drawn = DRAWN,
+) -> int:
+    """Follow periodic motions of A1 in a parameter, stable or not; write a dataset and a picture.
+
+    Example: `squealpipe branch 0.1pi 0.5pi --parameter belt_speed --to 1.5 --friction-law
+    exponential --mu-static 0.6 --belt-speed 0.5 --damping1 0.02 --damping2 0.02`
+
+    Args:
+        parameter: a physical parameter, alpha1 or alpha2.
+        to: value at which the branch ends; angles in rad.
+        start: a file written by `squealpipe cycle`, a state x,y,vx,vy near the first cycle, or
+            onset (the loss of stability of steady sliding); by default what a run from rest
+            settles to.
+        n_points: largest number of points.
+        doubled: follow the branch that leaves at the first period doubling instead.
+    """
+    name = parameter.replace("-", "_")
+    found = compute(
+        "cycle_branch", brake, alpha1, alpha2, output=output, parameter=name, to=to,
+        start=_start(start), n_points=n_points, doubled=doubled,
+    )  # fmt: skip
+    _, why = ending(found.end)
+    if not found.sizes["point"]:
+        answer(f"no point of a branch was found: {why}")
+        return ANSWER_IS_NO
+    values = found[name]
+    answer(
+        f"{found.sizes['point']} points, {parameter} from {float(values[0]):.6g} to "
+        f"{float(values[-1]):.6g}",
+        *_special(found, values),
+        f"the branch ends: {why}",
+    )
+    return DONE
+
+
+def _start(text: str | None) -> Any:
+    """A dataset, a state, or the word."""
+    if text is None or text == "onset":
+        return text
+    if Path(text).is_file():
+        from squealpipe.store import load
+
+        return load(text)
+    return parse_range(text)
+
+
+def _special(found: xr.Dataset, values: xr.DataArray) -> Iterator[str]:
+    from squealpipe.schema import labels
+
+    for word, value in zip(labels(found.label).values, values.values, strict=True):
+        if word not in {"regular", "end"}:
+            yield f"{word} at {values.name} = {value:.9g}"
