@@ -77,10 +77,13 @@ def test_distance_to_the_nearest_other_cell():
         },
         {"alpha1": angles, "alpha2": angles},
     )
-    at = boundaries(validity, math.radians(10), math.radians(10) + math.pi)
-    assert not at["lost"]
+    at = boundaries(validity, math.radians(10), math.radians(10))
+    assert at["lost"] is False
     assert at["lost_boundary"] == pytest.approx(20.0)
     assert at["unstable_boundary"] is None
+    # half a turn further the springs come from the other side: another map
+    at = boundaries(validity, math.radians(10), math.radians(10) + math.pi)
+    assert at["lost"] is at["lost_boundary"] is None
 
 
 def test_distributions_are_centred_on_the_study():

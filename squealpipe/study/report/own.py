@@ -86,15 +86,14 @@ def _scene(table: xr.Dataset, run: Run) -> dict[str, Any]:
 def boundaries(validity: xr.Dataset, alpha1: float, alpha2: float) -> dict[str, Any]:
     """What the map says at a pair of angles, and how far the nearest cell is that says otherwise.
 
-    Distances are in degrees in the plane of both angles, of which the map has period π.
+    Distances are in degrees in the plane of both angles; None: no such cell. Outside the map
+    nothing is said: A1 moves otherwise where a spring comes from the opposite side.
     """
-    period = np.pi
-    gaps = [
-        np.abs((validity[name].values - angle + period / 2) % period - period / 2)
-        for name, angle in (("alpha1", alpha1), ("alpha2", alpha2))
-    ]
+    centres = [validity[name].values for name in ("alpha1", "alpha2")]
+    gaps = [grid - angle for grid, angle in zip(centres, (alpha1, alpha2), strict=True)]
     distance = np.degrees(np.hypot(gaps[0][:, None], gaps[1][None, :]))
     nearest = np.unravel_index(int(distance.argmin()), distance.shape)
+    inside = all(gap.min() <= 0.0 <= gap.max() for gap in gaps)
     found: dict[str, Any] = {}
     for name, cells in (
         ("lost", validity.separates.values == 1),
@@ -102,8 +101,8 @@ def boundaries(validity: xr.Dataset, alpha1: float, alpha2: float) -> dict[str, 
     ):
         here = bool(cells[nearest])
         others = distance[cells != here]
-        found[name] = here
-        found[f"{name}_boundary"] = float(others.min()) if others.size else None
+        found[name] = here if inside else None
+        found[f"{name}_boundary"] = float(others.min()) if inside and others.size else None
     found["lost_share"] = float(100 * validity.separates.mean())
     found["cell"] = float(np.degrees(validity.alpha1.values[1] - validity.alpha1.values[0]))
     return found

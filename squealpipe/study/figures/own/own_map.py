@@ -14,7 +14,7 @@ READS = ("validity_map", "own_scenes")
 CAPTION = (
     "Where the mass, started at rest, loses contact (white; orange where steady sliding is "
     "unstable too) and keeps it (grey; black where steady sliding is unstable), over both spring "
-    "angles. Blue crosses: the scenes."
+    "angles. Blue crosses: the scenes whose angles lie in the map."
 )
 ALT = "A map over both spring angles in white, orange, grey and black with crosses at the scenes."
 
@@ -26,7 +26,9 @@ def draw(validity: xr.Dataset, scenes: xr.Dataset) -> Figure:
     draw_kinds(panel, validity)
     for scene in scenes.scene.values:
         here = scenes.sel(scene=scene)
-        at = float(here.alpha1) % np.pi, float(here.alpha2) % np.pi
+        at = float(here.alpha1), float(here.alpha2)
+        if not all(0.0 <= angle <= np.pi for angle in at):
+            continue
         panel.plot(*at, "x", color="white", markersize=10, markeredgewidth=4)
         panel.plot(*at, "x", color=BLUE, markersize=8, markeredgewidth=2)
         panel.annotate(
