@@ -110,10 +110,11 @@ def payload(
         "scenes": [
             {
                 "name": name,
-                "angles": [scene[angle] % np.pi for angle in ("alpha1", "alpha2")],
+                "angles": [scene["alpha1"], scene["alpha2"]],
                 "near": scene.get("near"),
             }
             for name, scene in scenes.items()
+            if all(0.0 <= scene[angle] <= np.pi for angle in ("alpha1", "alpha2"))
         ],
     }
 
