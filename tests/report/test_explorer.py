@@ -296,7 +296,12 @@ def own_page(tmp_path_factory):
     times = {"history_time": 30.0, "spectrum_time": 60.0, "samples": 151, "branch_points": 8}
     validity = validity_map(pad, ANGLES, ANGLES, t_end=50 * pad.time_unit)
     path = tmp_path_factory.mktemp("own") / "explorer.html"
-    scenes = {"mine": {"alpha1": 0.5, "alpha2": 2.1 + np.pi}, "other": {"alpha1": 1.0, "alpha2": 2}}
+    # half a turn further the spring comes from the other side, which the explorer's map has not
+    scenes = {
+        "behind": {"alpha1": 0.5, "alpha2": 2.1 + np.pi},
+        "mine": {"alpha1": 0.5, "alpha2": 2.1},
+        "other": {"alpha1": 1.0, "alpha2": 2},
+    }
     maps = layers(validity=validity)
     write_explorer(explorer_data(pad, ANGLES, **times), maps, path, scenes, paper=False)
     return path
