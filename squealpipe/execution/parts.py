@@ -13,13 +13,8 @@ import numpy as np
 import xarray as xr
 
 from squealpipe.parameters import Parameters
-from squealpipe.schema import build, schema_of
-from squealpipe.schema.sweep import fill_up
+from squealpipe.schema.sweep import RAGGED, fill_up
 from squealpipe.store import produce
-
-OWN_ATTRIBUTES = frozenset(
-    {"Conventions", "title", "schema", "schema_version", "license", "references", "comment"}
-)
 
 
 def scattered_rows(rows: int, item: str) -> slice:
@@ -87,28 +82,31 @@ def join(parts: Sequence[xr.Dataset], along: str = "alpha1") -> xr.Dataset:
     """
     if not parts:
         raise ValueError("no parts to join")
-    first = parts[0]
-    schema = schema_of(first)
-    shared = [name for name in first.coords if along not in first[name].dims]
-    for part in parts[1:]:
-        same_kind = part.attrs["schema"] == first.attrs["schema"]
-        if not same_kind or any(not np.array_equal(part[name], first[name]) for name in shared):
-            raise ValueError(f"the parts are not blocks of rows of one map, cut along {along}")
-    arrays = {
-        str(name): _joined([part[name] for part in parts], along)
-        if along in variable.dims
-        else variable.values
-        for name, variable in first.variables.items()
+    longest = {
+        dim: max(part.sizes[dim] for part in parts)
+        for dim in RAGGED
+        if dim != along and all(dim in part.dims for part in parts)
     }
-    attributes = {key: first.attrs[key] for key in first.attrs if key not in OWN_ATTRIBUTES}
-    data = {name: arrays[name] for name in arrays if name in schema.variables}
-    coordinates = {name: arrays[name] for name in arrays if name in schema.coordinates}
-    return build(schema, data, coordinates, attributes)
+    try:
+        return xr.concat(
+            [_filled(part, longest) for part in parts],
+            along,
+            data_vars="minimal",
+            coords="minimal",
+            compat="override",
+            join="exact",
+            combine_attrs="override",
+        )
+    except ValueError as error:
+        raise ValueError(
+            f"the parts are not blocks of rows of one map, cut along {along}: {error}"
+        ) from error
 
 
-def _joined(arrays: Sequence[xr.DataArray], along: str) -> np.ndarray:
-    axis = arrays[0].dims.index(along)
-    longest = np.max([array.shape for array in arrays], axis=0)
-    full = [(*longest[:axis], array.shape[axis], *longest[axis + 1 :]) for array in arrays]
-    filled = [fill_up(array.values, shape) for array, shape in zip(arrays, full, strict=True)]
-    return np.concatenate(filled, axis=axis)
+def _filled(part: xr.Dataset, longest: Mapping[str, int]) -> xr.Dataset:
+    """A part whose runs are as long as the longest of all."""
+    variables = {}
+    for name, variable in part.variables.items():
+        shape = tuple(longest.get(str(dim), size) for dim, size in variable.sizes.items())
+        variables[name] = (variable.dims, fill_up(variable.values, shape), variable.attrs)
+    return xr.Dataset(variables, attrs=part.attrs).set_coords([*part.coords])

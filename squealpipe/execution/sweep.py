@@ -171,10 +171,6 @@ def _run(sweep: Sweep, workers: int | None, point: tuple[float, ...]) -> Arrays:
     return {str(name): variable.values for name, variable in made.variables.items()}
 
 
-def _run_several(sweep: Sweep, points: Sequence[tuple[float, ...]]) -> list[Arrays]:
-    return [_run(sweep, 1, point) for point in points]
-
-
 @checked
 def run_sweep(
     sweep: Sweep | SystemSweep, *, workers: Workers = None, progress: bool = False
@@ -204,11 +200,7 @@ def run_sweep(
             number, get_context("fork"), leave_interrupts_to_the_parent
         ) as pool:
             size = -(-len(points) // (16 * number))
-            parts = [
-                pool.submit(_run_several, sweep, points[first : first + size])
-                for first in range(0, len(points), size)
-            ]
-            made = (run for part in parts for run in part.result())
+            made = pool.map(partial(_run, sweep, 1), points, chunksize=size)
             try:
                 runs = _tracked(made, sweep, progress=progress)
             except BaseException:

@@ -6,8 +6,7 @@ import json
 import math
 import os
 import re
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -93,35 +92,8 @@ class Comparison:
 
     def as_dict(self) -> dict[str, Any]:
         """Plain values for JSON: no NaN, no infinity."""
-        return {
-            "a": self.a,
-            "b": self.b,
-            "verdict": self.verdict.name,
-            "exit_code": self.exit_code,
-            "reason": self.reason,
-            "skipped": self.skipped,
-            "parameters": {key: list(pair) for key, pair in self.parameters.items()},
-            "environment": {key: list(pair) for key, pair in self.environment.items()},
-            "statements": [
-                {
-                    "claim": change.claim,
-                    "statement": change.statement,
-                    "verdicts": list(change.verdicts),
-                    "values": list(change.values),
-                }
-                for change in self.statements
-            ],
-            "datasets": [
-                {
-                    "name": item.name,
-                    "verdict": item.verdict.name,
-                    "reason": item.reason,
-                    "notes": item.notes,
-                    "variables": [_plain(vars(entry)) for entry in item.variables],
-                }
-                for item in self.datasets
-            ],
-        }
+        whole = {**asdict(self), "verdict": self.verdict, "exit_code": self.exit_code}
+        return _plain(whole)  # type: ignore[no-any-return]
 
 
 def compare(
@@ -275,13 +247,12 @@ def _changes(a: dict[str, Any], b: dict[str, Any]) -> dict[str, tuple[Any, Any]]
     }
 
 
-def _plain(entry: Mapping[str, Any]) -> dict[str, Any]:
-    plain: dict[str, Any] = {}
-    for key, value in entry.items():
-        if isinstance(value, Agreement):
-            plain[key] = value.name
-        elif isinstance(value, dict):
-            plain[key] = _plain(value)
-        else:
-            plain[key] = None if isinstance(value, float) and not math.isfinite(value) else value
-    return plain
+def _plain(value: Any) -> Any:
+    """A value as JSON takes it."""
+    if isinstance(value, Agreement):
+        return value.name
+    if isinstance(value, dict):
+        return {key: _plain(item) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [_plain(item) for item in value]
+    return None if isinstance(value, float) and not math.isfinite(value) else value
