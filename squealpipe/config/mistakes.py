@@ -5,7 +5,7 @@ from __future__ import annotations
 import fnmatch
 import re
 import typing
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 from pydantic import BaseModel, ValidationError
@@ -29,22 +29,19 @@ class ConfigError(ValueError):
 def mistakes(
     error: ValidationError,
     model: type[BaseModel],
-    place: Callable[[tuple[str, ...]], str] = lambda _: "",
 ) -> Iterator[str]:
     """One line for each fault that validation of ``model`` found.
 
     Args:
         error: what validation raised.
         model: what was validated.
-        place: keys from the outermost on → the words that say where that is.
     """
     faults = error.errors(include_url=False)
     inner = {fault["loc"][:-1] for fault in faults}
     for fault in faults:
         if fault["type"] == "too_short" and fault["loc"] in inner:
             continue  # its items were refused one by one
-        keys = tuple(map(str, fault["loc"]))
-        path = place(keys) + (".".join(keys) or "the configuration")
+        path = ".".join(map(str, fault["loc"])) or "the configuration"
         if fault["type"] == "extra_forbidden":
             yield f"{path}: unknown key; {_nearest(fault['loc'], model)}"
         elif fault["type"] == "missing":

@@ -7,7 +7,7 @@ Snakemake; :func:`read_study` does the same for the command line.
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path, PurePosixPath
 from typing import Annotated, Any, Literal
 
@@ -30,7 +30,7 @@ from squealpipe.config.sections import (
     SpreadSection,
     SweepSection,
 )
-from squealpipe.config.yaml_files import Lines, flat, overlay, read_yaml
+from squealpipe.config.yaml_files import flat, overlay, read_yaml
 from squealpipe.laws.tables import is_table, named
 from squealpipe.parameters import TABLE, Row
 from squealpipe.rerun.key import PARTS
@@ -135,32 +135,30 @@ def read_study(*paths: str | Path, changes: Mapping[str, Any] | None = None) -> 
 
     Raises:
         FileNotFoundError: a file is missing.
-        ConfigError: every mistake found, with its file and line, key, value and what is allowed.
+        ConfigError: every mistake found, with its key, value and what is allowed.
     """
     merged: dict[str, Any] = {}
     faults: list[str] = []
-    tables: dict[str, Lines] = {}
     for path in map(Path, paths):
-        content, tables[str(path)], found = read_yaml(path)
-        faults.extend([*found, *_read_laws(path, content, tables[str(path)])])
+        content = read_yaml(path)
+        faults.extend(_read_laws(path, content))
         overlay(merged, content)
     overlay(merged, changes or {})
-    return parse_study(merged, faults, place=lambda keys: _place(keys, tables, changes or {}))
+    return parse_study(merged, faults)
 
 
-def _read_laws(path: Path, content: dict[str, Any], lines: Lines) -> Iterator[str]:
+def _read_laws(path: Path, content: dict[str, Any]) -> Iterator[str]:
     """Put the content of the files that a configuration names as laws in their place; faults."""
     section = content.get("parameters") or {}
     for name, given, row in laws_in(section):
-        place = _place(("parameters", name), {str(path): lines}, {}) + f"parameters.{name}"
         try:
             section[name] = named(given, row.laws.COLUMNS, path.parent)
         except (OSError, ValueError) as error:
-            yield f"{place}: {error}"
+            yield f"parameters.{name}: {error}"
             continue
         taken = ", ".join(other for other in row.laws.IN_TABLE if other in section)
         if is_table(section[name]) and section[name] != given and taken:
-            yield f"{place}: the table stands for {taken}; leave that out"
+            yield f"parameters.{name}: the table stands for {taken}; leave that out"
 
 
 def laws_in(section: Any) -> Iterator[tuple[str, Any, Row]]:
@@ -172,7 +170,7 @@ def laws_in(section: Any) -> Iterator[tuple[str, Any, Row]]:
 
 def files_of_laws(path: Path) -> list[Path]:
     """The files that a configuration names as laws, as it names them."""
-    entries = [given for _, given, _ in laws_in(read_yaml(path)[0].get("parameters"))]
+    entries = [given for _, given, _ in laws_in(read_yaml(path).get("parameters"))]
     named_in = [
         file
         for given in entries
@@ -210,29 +208,15 @@ def _stranger(folder: Path) -> Path | None:
     return None
 
 
-def _place(keys: tuple[str, ...], tables: dict[str, Lines], changes: Mapping[str, Any]) -> str:
-    """File and line of a key, or of the nearest one above it: of the last file that has it."""
-    if keys and keys[0] in changes:
-        return ""
-    for length in range(len(keys), 0, -1):
-        for path in reversed(tables):
-            if line := tables[path].get(keys[:length]):
-                return f"{path}, line {line}: "
-    return ""
-
-
 def parse_study(
     content: Mapping[str, Any],
     faults: Sequence[str] = (),
-    *,
-    place: Callable[[tuple[str, ...]], str] = lambda _: "",
 ) -> Study:
     """Validate a configuration mapping.
 
     Args:
         content: keys and values.
         faults: mistakes found before, in the text; reported together with those of the values.
-        place: keys from the outermost on → the words that say where that is.
 
     Raises:
         ConfigError: as :func:`read_study`.
@@ -240,7 +224,7 @@ def parse_study(
     try:
         study = Study.model_validate(_plain(_without_empty_sections(content)))
     except ValidationError as error:
-        raise ConfigError([*faults, *mistakes(error, Study, place)]) from error
+        raise ConfigError([*faults, *mistakes(error, Study)]) from error
     if faults:
         raise ConfigError(faults)
     return study

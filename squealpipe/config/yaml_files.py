@@ -1,21 +1,30 @@
-"""YAML files as plain data, with the line of every key: no code, no alias, no duplicate key."""
+"""YAML files as plain data: no code, no duplicate key."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 import yaml
 
-Lines = dict[tuple[str, ...], int]
+from squealpipe.config.mistakes import ConfigError
 
 
 class _Loader(yaml.SafeLoader):
     """Numbers and words of YAML 1.2: 1e-9 is a number; 1:3:20 and 2020-01-01 are text."""
 
     yaml_implicit_resolvers = {}  # noqa: RUF012 (as the parent class has it)
+
+    def construct_mapping(self, node: yaml.MappingNode, deep: bool = False) -> dict[Any, Any]:
+        seen = set()
+        for key, _ in node.value:
+            if key.value in seen:
+                what = f"key {key.value!r} is a duplicate; keep one"
+                raise yaml.MarkedYAMLError(problem=what, problem_mark=key.start_mark)
+            seen.add(key.value)
+        return super().construct_mapping(node, deep=deep)
 
 
 for _kind, _form, _first in (
@@ -33,53 +42,27 @@ for _kind, _form, _first in (
     )
 
 
-def read_yaml(path: Path) -> tuple[dict[str, Any], Lines, list[str]]:
-    """Content of a file, key with those above it → line, and faults; list items by their place.
+def read_yaml(path: Path) -> dict[str, Any]:
+    """Content of a file.
 
     Raises:
         FileNotFoundError: no such file.
+        ConfigError: it is not plain YAML with keys and values.
     """
     if not path.is_file():
         raise FileNotFoundError(f"no configuration {path}; give a YAML file that exists")
-    lines: Lines = {}
     try:
-        loader = _Loader(path.read_text(encoding="utf-8"))
-        root = loader.get_single_node()
-        if root is None:
-            return {}, lines, []
-        faults = [f"{path}, line {line}: {what}" for line, what in _walk(root, (), lines, set())]
-        content = loader.construct_document(root)
+        content = yaml.load(path.read_text(encoding="utf-8"), _Loader)  # noqa: S506 (a safe one)
     except yaml.MarkedYAMLError as error:
         line = "" if error.problem_mark is None else f", line {error.problem_mark.line + 1}"
         hint = "; indent with spaces" if "\\t" in str(error.problem) else ""
-        return {}, lines, [f"{path}{line} is not plain YAML: {error.problem}{hint}"]
-    except (yaml.YAMLError, ValueError, RecursionError) as error:
-        return {}, lines, [f"{path} is not plain YAML: {' '.join(str(error).split())}"]
-    if not isinstance(content, dict):
-        return {}, lines, [f"{path} must hold keys and values, not {type(content).__name__}"]
-    return content, lines, faults
-
-
-def _walk(
-    node: yaml.Node, above: tuple[str, ...], lines: Lines, seen: set[int]
-) -> Iterator[tuple[int, str]]:
-    """Note the line of each key, and give line and fault of what a configuration cannot hold."""
-    if id(node) in seen:  # aliases of aliases would grow without bound
-        problem = "an alias refers to this; write the value out there too"
-        raise yaml.MarkedYAMLError(problem=problem, problem_mark=node.start_mark)
-    seen.add(id(node))
-    if isinstance(node, yaml.MappingNode):
-        for key, value in node.value:
-            here, line = (*above, str(key.value)), key.start_mark.line + 1
-            if here in lines:
-                yield line, f"key {key.value!r} is a duplicate; keep one"
-            lines[here] = line
-            yield from _walk(value, here, lines, seen)
-    elif isinstance(node, yaml.SequenceNode):
-        for place, item in enumerate(node.value):
-            here = (*above, str(place))
-            lines[here] = item.start_mark.line + 1
-            yield from _walk(item, here, lines, seen)
+        raise ConfigError([f"{path}{line} is not plain YAML: {error.problem}{hint}"]) from error
+    except (yaml.YAMLError, ValueError) as error:
+        raise ConfigError([f"{path} is not plain YAML: {' '.join(str(error).split())}"]) from error
+    if not isinstance(content, dict | None):
+        kind = type(content).__name__
+        raise ConfigError([f"{path} must hold keys and values, not {kind}"])
+    return content or {}
 
 
 def overlay(base: dict[str, Any], top: Mapping[str, Any]) -> None:

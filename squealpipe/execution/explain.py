@@ -188,7 +188,7 @@ def snakemake_command(
     command = [sys.executable, "-m", "snakemake", "--nocolor"]
     command += ["--snakefile", str(WORKFLOW / "Snakefile")]
     command += ["--directory", str(Path(directory).absolute())]
-    filled = [str(path) for path in paths if read_yaml(path)[0]]
+    filled = [str(path) for path in paths if read_yaml(path)]
     if filled:  # Snakemake takes no empty file
         command += ["--configfile", *filled]
     if changes:
