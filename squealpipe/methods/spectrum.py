@@ -46,9 +46,9 @@ def highest_peaks(
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Frequency and height of the highest local maxima, highest first; fewer if there are fewer.
 
-    Each is refined by the parabola through its three highest lines, so the spectrum should be
-    padded (by 4 or more). Maxima below a twentieth of the highest are left out: the window's
-    own side lobes reach a thirty-fifth.
+    Each is refined by the parabola through the logarithms of its three highest lines, so the
+    spectrum should be padded (by 4 or more). Maxima below a twentieth of the highest are left out:
+    the window's own side lobes reach a thirty-fifth.
 
     Args:
         frequency: uniform grid (n,).
@@ -59,7 +59,7 @@ def highest_peaks(
     places = 1 + np.flatnonzero((middle > amplitude[:-2]) & (middle >= amplitude[2:]))
     places = places[amplitude[places] > 0.05 * amplitude.max(initial=0.0)]
     places = places[np.argsort(-amplitude[places], kind="stable")][:count]
-    left, centre, right = (amplitude[places + k] for k in (-1, 0, 1))
+    left, centre, right = (np.log(amplitude[places + k] + 1e-300) for k in (-1, 0, 1))
     shift = 0.5 * (left - right) / (left - 2.0 * centre + right)
-    height = centre - 0.25 * (left - right) * shift
+    height = np.exp(centre - 0.25 * (left - right) * shift)
     return frequency[places] + shift * (frequency[1] - frequency[0]), height

@@ -271,6 +271,19 @@ def build(
     return dataset
 
 
+def blank(schema: DatasetSchema, **sizes: int) -> dict[str, np.ndarray]:
+    """Its variables where there is no result: NaN, 0 or, along dimensions not named, nothing."""
+    return {
+        name: np.full(
+            [sizes.get(dim, 0) for dim in entry.dims],
+            np.nan if entry.stored.kind == "f" else 0,
+            entry.stored,
+        )
+        for name, entry in schema.variables.items()
+        if not entry.optional
+    }
+
+
 def validate(dataset: xr.Dataset, schema: DatasetSchema) -> None:
     """Check a dataset against its schema, all faults at once.
 

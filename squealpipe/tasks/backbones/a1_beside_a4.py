@@ -10,6 +10,7 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from squealpipe.methods.orbits.orbit_shape import sample
+from squealpipe.methods.spectrum import amplitude_spectrum, highest_peaks
 from squealpipe.parameters import Parameters
 from squealpipe.schema import Outcome, build
 from squealpipe.schema.backbones import A1_BESIDE_A4
@@ -51,11 +52,16 @@ def a1_beside_a4(
     phases = np.arange(_PERIODS * _SAMPLES) / _SAMPLES
     kept = phases < _SHOWN
     orders = np.arange(_ORDERS * _PERIODS * _PADDING) / (_PERIODS * _PADDING)
+    near = np.abs(orders - 1.0) < _NEIGHBOURHOOD
     shape = len(branches), len(length_ratios)
     histories = np.full((*shape, int(kept.sum())), np.nan)
     spectra = np.full((*shape, len(orders)), np.nan)
     dominant, outcome = np.full(shape, np.nan), np.full(shape, Outcome.converged, dtype=int)
     omegas, references = [], []
+
+    def spectrum(history: Vector) -> Vector:
+        return amplitude_spectrum(history, 1.0, padding=_PADDING)[1][..., : len(orders)]
+
     for i, (name, (alpha1, alpha2, mode)) in enumerate(branches.items()):
         scene = scaled_system(params, alpha1, alpha2)
         orbit, why = find_orbit(scene, mode, peak)
@@ -77,15 +83,16 @@ def a1_beside_a4(
             outcome[i, j] = int(run.outcome)
             histories[i, j] = run.y.values[kept]
             if np.isfinite(run.y.values).all():
-                spectra[i, j] = _spectrum(run.y.values, len(orders))
-                dominant[i, j] = omega * _peak_order(orders, spectra[i, j])
+                spectra[i, j] = spectrum(run.y.values)
+                peaks, _ = highest_peaks(orders[near], spectra[i, j, near], 1)
+                dominant[i, j] = omega * next(iter(peaks), np.nan)
     return build(
         A1_BESIDE_A4,
         {
             "omega": omegas,
             "y_a4": np.array([history[kept] for history in references]),
             "y_a1": histories,
-            "spectrum_a4": np.array([_spectrum(h, len(orders)) for h in references]),
+            "spectrum_a4": spectrum(np.array(references)),
             "spectrum_a1": spectra,
             "omega_a1": dominant,
             "y_peak": peak * params.preload,
@@ -104,21 +111,3 @@ def _repeated(rows: Vector, point: Vector) -> Vector:
     """y over all periods of the run, from half a period by symmetry."""
     half = sample(rows, point, np.linspace(0.0, math.pi, _SAMPLES // 2 + 1))[:, 1]
     return np.tile(np.concatenate([half, half[-2:0:-1]]), _PERIODS)
-
-
-def _spectrum(history: Vector, count: int) -> Vector:
-    """Single-sided amplitude spectrum without the mean, Hann window, zero padded."""
-    window = np.hanning(len(history) + 1)[:-1]
-    moving = (history - history.mean()) * window
-    lines = np.abs(np.fft.rfft(moving, _PADDING * len(history))) * 2.0 / window.sum()
-    return np.asarray(lines[:count])
-
-
-def _peak_order(orders: Vector, spectrum: Vector) -> float:
-    """Order of the largest line around 1, refined by a parabola through its neighbours."""
-    near = np.flatnonzero(np.abs(orders - 1.0) < _NEIGHBOURHOOD)
-    top = int(near[spectrum[near].argmax()])
-    before, here, after = np.log(np.maximum(spectrum[top - 1 : top + 2], 1e-300))
-    curvature = after - 2.0 * here + before
-    shift = 0.5 * (before - after) / curvature if curvature < 0.0 else 0.0
-    return float(orders[top] + shift * (orders[1] - orders[0]))

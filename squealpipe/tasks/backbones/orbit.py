@@ -10,10 +10,10 @@ import xarray as xr
 
 from squealpipe.methods.orbits.orbit_shape import sample
 from squealpipe.parameters import Parameters, brief
-from squealpipe.schema import build
+from squealpipe.schema import blank, build
 from squealpipe.schema.backbones import PERIODIC_ORBIT, Assumption
 from squealpipe.schema.origin import recorded
-from squealpipe.solvers.a4.orbits import SHAPE, find_orbit, orbit_values
+from squealpipe.solvers.a4.orbits import find_orbit, orbit_values
 from squealpipe.solvers.a4.system import scaled_system
 from squealpipe.validation import Angle, Mode, Positive
 
@@ -54,9 +54,10 @@ def periodic_orbit(
     check_length("y_peak", y_peak, params.preload)
     scene = scaled_system(params, alpha1, alpha2)
     found, outcome = find_orbit(scene, mode, y_peak / scene.length, across=True)
-    values, switches, path = _empty_values(), np.empty(0), np.empty((0, 4))
+    values: dict[str, Any] = {**blank(PERIODIC_ORBIT), "sliding_assumption": Assumption.holds}
+    switches, path = np.empty(0), np.empty((0, 4))
     if found is not None:
-        values = orbit_values(scene, params, found.point)
+        values |= orbit_values(scene, params, found.point)
         values["stability_index"] = found.stability_index
         values["residual"] = found.residual
         switches = found.switches / scene.frequency
@@ -85,8 +86,3 @@ def check_length(name: str, value: float, preload: float) -> None:
             f"{name} = {brief(value)}: more than {MOST_PRELOADS:g} times preload = {preload!r}; "
             "give lengths in one system of units"
         )
-
-
-def _empty_values() -> dict[str, Any]:
-    blank: dict[str, Any] = dict.fromkeys((*SHAPE, "stability_index", "residual"), math.nan)
-    return {**blank, "sliding_assumption": Assumption.holds}

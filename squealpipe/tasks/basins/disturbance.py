@@ -13,7 +13,7 @@ from squealpipe.models.a1_automaton import A1Automaton
 from squealpipe.models.refusals import refuse_own_laws
 from squealpipe.models.variants import VARIANT_RULES
 from squealpipe.parameters import Parameters
-from squealpipe.schema import Outcome, build
+from squealpipe.schema import Outcome, blank, build
 from squealpipe.schema.basins import SMALLEST_DISTURBANCE, LeadsTo
 from squealpipe.schema.origin import recorded
 from squealpipe.solvers.a1.ensemble import run_ensemble
@@ -92,12 +92,9 @@ def smallest_disturbance(
     rest = sliding_equilibrium(a1) if params.belt_speed != 0.0 else None
     numbers = np.unique(np.append(2 ** np.arange(3, directions.bit_length()), directions))
     numbers = numbers[numbers <= directions]
-    nothing = {
-        **dict.fromkeys(_SCALARS, np.nan),
-        "distance_by_number": np.full(numbers.size, np.nan),
-        "improved_distance": np.full(Settings(directions).improved, np.nan),
-        "reached": 0,
-        "unfinished": 0,
+    improved = Settings(directions).improved
+    nothing: dict[str, Any] = {
+        **blank(SMALLEST_DISTURBANCE, directions=numbers.size, improved=improved),
         "leads_to": goal,
         "regime_linear": stability_map(params, [alpha1], [alpha2]).regime_linear.item(),
         "alpha1": alpha1,
@@ -105,10 +102,7 @@ def smallest_disturbance(
         "t_end": horizon,
         "bound": largest,
     }
-    coordinates = {
-        "directions": numbers,
-        "improved": np.arange(1, Settings(directions).improved + 1),
-    }
+    coordinates = {"directions": numbers, "improved": np.arange(1, improved + 1)}
 
     def result(outcome: Outcome, **found: Any) -> xr.Dataset:
         return build(SMALLEST_DISTURBANCE, {**nothing, **found, "outcome": outcome}, coordinates)
@@ -155,21 +149,6 @@ def smallest_disturbance(
     reached = int(np.isfinite(found.radius).sum())
     outcome = Outcome.converged if reached else Outcome.not_reached
     return result(outcome, **known, reached=reached, unfinished=unfinished)
-
-
-_SCALARS = (
-    "x_rest",
-    "y_rest",
-    "growth_rate",
-    "rest_distance",
-    "linear_distance",
-    "distance",
-    "x_disturbance",
-    "y_disturbance",
-    "vx_disturbance",
-    "vy_disturbance",
-    "share_below",
-)
 
 
 def _described(found: Found, numbers: np.ndarray, scale: np.ndarray) -> dict[str, Any]:

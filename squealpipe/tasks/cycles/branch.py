@@ -11,7 +11,7 @@ from annotated_types import Ge
 from pydantic import BeforeValidator
 
 from squealpipe.parameters import TABLE, Parameters, is_finite_number
-from squealpipe.schema import Outcome, build
+from squealpipe.schema import Outcome, blank, build
 from squealpipe.schema.cycles import CYCLE_BRANCH, LIMIT_CYCLE
 from squealpipe.schema.origin import recorded
 from squealpipe.systems.cycles.branch import Follower, Point, doubled_start, first_point, in_rows
@@ -148,16 +148,9 @@ def _first_cycle(scene: Scene, start: Any) -> tuple[Cycle | None, Outcome]:
 def _dataset(scene: Scene, points: list[Point], end: Outcome) -> xr.Dataset:
     parameter = str(scene.follow)
     rows = in_rows(points, scene.numbers)
-    names = ("multiplier_real", "multiplier_imag")
-    empty: dict[str, Any] = {name: np.empty((0, 4)) for name in names}
-    columns = {name: np.array([row[name] for row in rows]) for name in rows[0]} if rows else empty
-    if not rows:
-        scalars = [
-            name
-            for name, entry in CYCLE_BRANCH.variables.items()
-            if entry.dims == ("point",) and not entry.optional
-        ]
-        columns |= {name: np.empty(0) for name in scalars}
+    columns: dict[str, Any] = blank(CYCLE_BRANCH, multiplier=4)
+    if rows:
+        columns |= {name: np.array([row[name] for row in rows]) for name in rows[0]}
     starts = [point.cycle.start()[0] * scene.state_units for point in points]
     states = np.array(starts).reshape(-1, 4)
     followed = np.array([point.parameter for point in points]) * scene.units[parameter]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from typing import Annotated, Any
 
 import numpy as np
@@ -10,7 +9,7 @@ import xarray as xr
 
 from squealpipe.methods.taylor.loop import STOPPED
 from squealpipe.parameters import Parameters
-from squealpipe.schema import Outcome, build
+from squealpipe.schema import Outcome, blank, build
 from squealpipe.schema.cycles import LIMIT_CYCLE
 from squealpipe.schema.origin import recorded
 from squealpipe.systems.cycles.cycle import SAMPLES, find_cycle
@@ -20,18 +19,6 @@ from squealpipe.validation import Angle, Positive, State, one_of
 
 T_SETTLE = 2000.0
 """Default time, in units of √(m/min(k1, k2)), after which a run counts as settled."""
-
-SCALARS = (
-    "period",
-    "x_min",
-    "x_max",
-    "y_min",
-    "y_max",
-    "contact_fraction",
-    "stick_fraction",
-    "least_contact_force",
-    "residual",
-)
 
 
 @recorded(method="Newton on the legs between located events")
@@ -95,46 +82,37 @@ def cycle_from(
 
 def cycle_dataset(scene: Scene, cycle: Cycle | None, outcome: Outcome) -> xr.Dataset:
     """A limit cycle, or the reason why there is none, as a dataset."""
+    found = blank(LIMIT_CYCLE, multiplier=4) if cycle is None else _described(scene, cycle)
+    angles = {"alpha1": scene.alpha1, "alpha2": scene.alpha2}
+    multiplier = {"multiplier": np.arange(1, 5)}
+    return build(LIMIT_CYCLE, {**found, **angles, "outcome": outcome}, multiplier)
+
+
+def _described(scene: Scene, cycle: Cycle) -> dict[str, Any]:
+    """The variables of a cycle."""
     units, clock = scene.state_units, scene.params.time_unit
-    if cycle is None:
-        values: dict[str, Any] = dict.fromkeys(SCALARS, math.nan)
-        values |= {"stable": 0, "multiplier_real": np.full(4, np.nan)}
-        values["multiplier_imag"] = np.full(4, np.nan)
-        start, times, path = np.full(4, np.nan), np.empty(0), np.empty((0, 4))
-        event_times, kinds, states = np.empty(0), [], np.empty((0, 4))
-        regimes, regime_path = [], []
-    else:
-        values, start = scene.numbers(cycle), cycle.start()[0] * units
-        times = np.linspace(0.0, cycle.period, SAMPLES + 1)
-        path, found = cycle.states_at((cycle.phase + times) % cycle.period)
-        path, regime_path = path * units, [scene.regimes[regime] for regime in found]
-        ends = (cycle.clocks + cycle.parts.durations - cycle.phase) % cycle.period
-        order = [
-            i
-            for i in np.argsort(ends)
-            if cycle.map.events[i].switch != FREE
-            and scene.kinds[cycle.map.events[i].kind] is not None
-        ]
-        event_times = ends[order] * clock
-        kinds = [scene.kinds[cycle.map.events[i].kind] for i in order]
-        states = np.array([cycle.parts.crossings[i].after for i in order]).reshape(-1, 4) * units
-        regimes = [regime_path[0], *(scene.regimes[cycle.map.events[i].after] for i in order)]
-        times = times * clock
-    return build(
-        LIMIT_CYCLE,
-        {
-            **values,
-            "event_time": event_times,
-            "event_kind": kinds,
-            **{f"event_{name}": states[:, i] for i, name in enumerate(STATE)},
-            "segment_regime": regimes,
-            **{f"{name}_start": start[i] for i, name in enumerate(STATE)},
-            "time": times,
-            **{f"{name}_path": path[:, i] for i, name in enumerate(STATE)},
-            "regime_path": regime_path,
-            "alpha1": scene.alpha1,
-            "alpha2": scene.alpha2,
-            "outcome": outcome,
-        },
-        {"multiplier": np.arange(1, 5)},
-    )
+    start = cycle.start()[0] * units
+    times = np.linspace(0.0, cycle.period, SAMPLES + 1)
+    path, found = cycle.states_at((cycle.phase + times) % cycle.period)
+    path, regime_path = path * units, [scene.regimes[regime] for regime in found]
+    ends = (cycle.clocks + cycle.parts.durations - cycle.phase) % cycle.period
+    order = [
+        i
+        for i in np.argsort(ends)
+        if cycle.map.events[i].switch != FREE and scene.kinds[cycle.map.events[i].kind] is not None
+    ]
+    states = np.array([cycle.parts.crossings[i].after for i in order]).reshape(-1, 4) * units
+    return {
+        **scene.numbers(cycle),
+        "event_time": ends[order] * clock,
+        "event_kind": [scene.kinds[cycle.map.events[i].kind] for i in order],
+        **{f"event_{name}": states[:, i] for i, name in enumerate(STATE)},
+        "segment_regime": [
+            regime_path[0],
+            *(scene.regimes[cycle.map.events[i].after] for i in order),
+        ],
+        **{f"{name}_start": start[i] for i, name in enumerate(STATE)},
+        "time": times * clock,
+        **{f"{name}_path": path[:, i] for i, name in enumerate(STATE)},
+        "regime_path": regime_path,
+    }
