@@ -6,15 +6,14 @@ what is made at once bit for bit.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
-from squealpipe.parameters import Parameters
+from squealpipe.execution.job import Job
 from squealpipe.schema.sweep import RAGGED, fill_up
-from squealpipe.store import produce
 
 
 def scattered_rows(rows: int, item: str) -> slice:
@@ -36,36 +35,20 @@ def scattered_rows(rows: int, item: str) -> slice:
     return slice(edges[int(index) - 1], edges[int(index)])
 
 
-def make_map(
-    task: Callable[..., xr.Dataset],
-    params: Parameters,
-    name: str,
-    part: Mapping[str, Any],
-    *,
-    output: str,
-    key: str,
-    item: str = "1-of-1",
-) -> None:
-    """Make and save a map of model A1 over both angles from 0 to π, or the rows of one part.
+def over_angles(job: Job, name: str) -> dict[str, Any]:
+    """Angles from 0 to π, horizon and tolerance of a map; of a scattered one a part's rows.
 
     Args:
-        task: makes the map from parameters, angles, ``t_end`` and ``tol``.
-        params: physical parameters.
-        name: of the map; its keys are ``dynamics.<name>_points`` and ``dynamics.<name>_horizon``.
-        part: slice of the configuration.
-        output: dataset to write.
-        key: of the rule.
-        item: part of a scattered map, "i-of-n".
+        job: of the map's rule.
+        name: of the map, whose keys are ``dynamics.<name>_points`` and ``…_horizon``.
     """
-    angles = np.linspace(0.0, np.pi, part[f"dynamics.{name}_points"])
-    horizon, tol = part[f"dynamics.{name}_horizon"] * params.time_unit, part["dynamics.tol"]
-    rows = angles[scattered_rows(len(angles), item)]
-    produce(
-        lambda: task(params, rows, angles, t_end=horizon, tol=tol),
-        config=part,
-        output=output,
-        key=key,
-    )
+    angles = np.linspace(0.0, np.pi, job.part[f"dynamics.{name}_points"])
+    return {
+        "alpha1": angles[scattered_rows(angles.size, job.item)],
+        "alpha2": angles,
+        "t_end": job.part[f"dynamics.{name}_horizon"] * job.params.time_unit,
+        "tol": job.part["dynamics.tol"],
+    }
 
 
 def join(parts: Sequence[xr.Dataset], along: str = "alpha1") -> xr.Dataset:

@@ -1,12 +1,10 @@
 """Backbones of the paper's scenes and of coupled ones, exact and by harmonic balance."""
 
-from squealpipe.parameters import parameters_of
-from squealpipe.reading import for_linear
-from squealpipe.store import produce
+from squealpipe.execution.job import Job
 from squealpipe.tasks.backbones.backbone import backbone, named_scenes
 
-part = snakemake.params.part
-params = for_linear(parameters_of(part), part["read_as"])
+job = Job(snakemake)
+part, params = job.part, job.params
 limits = {
     "y_peak_max": part["backbones.y_peak_max"] * params.preload,
     "x_amplitude_max": part["backbones.x_amplitude_max"] * params.preload,
@@ -18,8 +16,8 @@ methods = {
 for name, angles in named_scenes(part["backbones.coupled"]).items():
     for mode in (1, 2):
         for ending, options in methods.items():
-            produce(
+            job.make(
                 lambda: backbone(params, *angles, mode=mode, **limits, **options),
-                config={**part, "scene": name, "mode": mode, **options}, key=snakemake.params.key,
-                output=snakemake.output[f"{name}_mode{mode}{ending}"],
+                job.out[f"{name}_mode{mode}{ending}"],
+                scene=name, mode=mode, **options,
             )

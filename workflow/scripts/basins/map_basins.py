@@ -2,18 +2,17 @@
 
 import numpy as np
 
-from squealpipe.parameters import SCENES, parameters_of
-from squealpipe.reading import for_linear
-from squealpipe.store import produce
+from squealpipe.execution.job import Job
+from squealpipe.parameters import SCENES
 from squealpipe.tasks.basins.basin import basin_map
 
-part, out = snakemake.params.part, snakemake.output
-params = for_linear(parameters_of(part), part["read_as"])
+job = Job(snakemake)
+part, out, params = job.part, job.out, job.params
 speed = part["spread.basin_extent"] * params.preload / params.time_unit
 axis = np.linspace(-speed, speed, part["spread.basin_points"])
 for name, path in out.items():
     scene = SCENES[name]
-    produce(
+    job.make(
         lambda scene=scene: basin_map(
             params,
             scene.alpha1,
@@ -23,7 +22,5 @@ for name, path in out.items():
             t_end=part["spread.basin_horizon"] * params.time_unit,
             workers=snakemake.threads,
         ),
-        config=part,
-        key=snakemake.params.key,
-        output=path,
+        path,
     )

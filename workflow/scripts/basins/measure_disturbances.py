@@ -1,15 +1,14 @@
 """Smallest disturbances of steady sliding in the paper's scenes."""
 
-from squealpipe.parameters import SCENES, parameters_of
-from squealpipe.reading import for_linear
-from squealpipe.store import produce
+from squealpipe.execution.job import Job
+from squealpipe.parameters import SCENES
 from squealpipe.tasks.basins.disturbance import smallest_disturbance
 
-part = snakemake.params.part
-params = for_linear(parameters_of(part), part["read_as"])
-for name, path in snakemake.output.items():
+job = Job(snakemake)
+part, params = job.part, job.params
+for name, path in job.out.items():
     scene, _, goal = name.partition("_")
-    produce(
+    job.make(
         lambda scene=SCENES[scene], goal=goal: smallest_disturbance(
             params,
             scene.alpha1,
@@ -19,7 +18,5 @@ for name, path in snakemake.output.items():
             directions=part["spread.disturbance_directions"],
             workers=snakemake.threads,
         ),
-        config=part,
-        key=snakemake.params.key,
-        output=path,
+        path,
     )

@@ -5,7 +5,7 @@ import os
 # threads cost small matrices more than they save
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
-from squealpipe.store import produce
+from squealpipe.execution.job import Job
 from squealpipe.tasks.comparison.failures import judge_balances
 
-produce(judge_balances, config=snakemake.params.part, key=snakemake.params.key, output=snakemake.output[0])
+Job(snakemake).make(judge_balances)

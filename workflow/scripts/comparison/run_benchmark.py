@@ -2,11 +2,8 @@
 
 from squealpipe.benchmark.adapters import installed
 from squealpipe.benchmark.scoring import benchmark
-from squealpipe.store import produce
+from squealpipe.execution.job import Job
 
-part = snakemake.params.part
-study = part["comparison.benchmark"]
-produce(
-    lambda: benchmark(installed(study["solvers"]), tolerances=study["tolerances"]),
-    config=part, key=snakemake.params.key, output=snakemake.output[0],
-)
+job = Job(snakemake)
+study = job.part["comparison.benchmark"]
+job.make(lambda: benchmark(installed(study["solvers"]), tolerances=study["tolerances"]))

@@ -4,15 +4,16 @@ import math
 
 import numpy as np
 
-from squealpipe.parameters import SCENES, parameters_of
-from squealpipe.reading import for_linear
-from squealpipe.store import load, produce
+from squealpipe.execution.job import Job
+from squealpipe.parameters import SCENES
+from squealpipe.store import load
 from squealpipe.tasks.cycles.branch import cycle_branch
 from squealpipe.tasks.cycles.cycle import limit_cycle
 from squealpipe.tasks.cycles.extremes import settled_extremes
 
-part, out = snakemake.params.part, snakemake.output
-paper, cycles = for_linear(parameters_of(part), part["read_as"]), part["cycles"]
+job = Job(snakemake)
+part, out = job.part, job.out
+paper, cycles = job.params, part["cycles"]
 damping = cycles["damping"] * math.sqrt(paper.k1 * paper.mass)
 params = paper.with_(damping1=damping, damping2=damping)
 settle = cycles["settle"] * params.time_unit
@@ -21,21 +22,19 @@ scenes = {name: (SCENES[name].alpha1, SCENES[name].alpha2) for name in ("F3", "F
 scenes["flutter"] = tuple(math.pi * angle for angle in cycles["flutter"])
 
 for name in ("F3", "F2d"):
-    produce(
+    job.make(
         lambda name=name: limit_cycle(params, *scenes[name], t_settle=settle),
-        config=part, key=snakemake.params.key,
-        output=out[f"limit_{name}"],
+        out[f"limit_{name}"],
     )
 first = load(out.limit_F3)
 for way, to in (("down", low), ("up", high)):
-    produce(
+    job.make(
         lambda to=to: cycle_branch(
             params, *scenes["F3"], parameter="mu", to=to, start=first, n_points=cycles["points"]
         ),
-        config=part, key=snakemake.params.key,
-        output=out[f"branch_F3_{way}"],
+        out[f"branch_F3_{way}"],
     )
-produce(
+job.make(
     lambda: cycle_branch(
         params.with_(mu=low),
         *scenes["flutter"],
@@ -44,10 +43,9 @@ produce(
         start="onset",
         n_points=cycles["points"],
     ),
-    config=part, key=snakemake.params.key,
-    output=out.branch_flutter,
+    out.branch_flutter,
 )
-produce(
+job.make(
     lambda: settled_extremes(
         params,
         scenes,
@@ -56,6 +54,5 @@ produce(
         t_end=cycles["extremes_horizon"] * params.time_unit,
         workers=snakemake.threads,
     ),
-    config=part, key=snakemake.params.key,
-    output=out.extremes,
+    out.extremes,
 )

@@ -2,39 +2,36 @@
 
 import numpy as np
 
-from squealpipe.parameters import SCENES, parameters_of
-from squealpipe.reading import for_linear
-from squealpipe.store import produce
+from squealpipe.execution.job import Job
+from squealpipe.parameters import SCENES
 from squealpipe.tasks.dynamics.runs import simulate
 from squealpipe.tasks.dynamics.whirl import transient_lifetimes, whirl_sizes
 
-part, out = snakemake.params.part, snakemake.output
-params, scene = for_linear(parameters_of(part), part["read_as"]), SCENES["F3"]
+job = Job(snakemake)
+part, out = job.part, job.out
+params, scene = job.params, SCENES["F3"]
 tol, second = part["dynamics.tol"], params.time_unit
 speeds = np.geomspace(*part["dynamics.whirl_speeds"], part["dynamics.whirl_count"])
 t_end = 0.1 * part["dynamics.whirl_horizon"] * second
-produce(
+job.make(
     lambda: simulate(params, scene.alpha1, scene.alpha2, t_end=t_end, tol=tol),
-    config=part, key=snakemake.params.key,
-    output=out.run,
+    out.run,
 )
-produce(
+job.make(
     lambda: whirl_sizes(
         params,
         np.union1d(speeds * params.preload / second, [abs(params.belt_speed)] if params.belt_speed else []),
         t_end=part["dynamics.whirl_horizon"] * second,
         tol=tol,
     ),
-    config=part, key=snakemake.params.key,
-    output=out.whirl,
+    out.whirl,
 )
-produce(
+job.make(
     lambda: transient_lifetimes(
         params,
         samples=part["dynamics.transient_samples"],
         t_end=part["dynamics.transient_horizon"] * second,
         tol=tol,
     ),
-    config=part, key=snakemake.params.key,
-    output=out.transient,
+    out.transient,
 )

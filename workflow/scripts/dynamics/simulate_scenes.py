@@ -2,32 +2,32 @@
 
 from dataclasses import replace
 
-from squealpipe.parameters import SCENES, parameters_of
-from squealpipe.reading import READINGS, for_a1
-from squealpipe.store import produce
+from squealpipe.execution.job import Job
+from squealpipe.parameters import SCENES
+from squealpipe.reading import READINGS
 from squealpipe.tasks.dynamics.runs import simulate
 
 LONG = 3000.0  # √(m/k1)
 
-part = snakemake.params.part
-params, model = for_a1(parameters_of(part), part["read_as"])
+job = Job(snakemake)
+params, model = job.params, job.model
 runs = {name: (scene, model) for name, scene in SCENES.items()} | {
     "F3_long": (replace(SCENES["F3"], t_end=LONG), model),
     "F4_long": (replace(SCENES["F4"], t_end=LONG), model),
     "F2a_printed": (SCENES["F2a"], READINGS["as_printed"].a1_model),
 }
-for name, path in snakemake.output.items():
+for name, path in job.out.items():
     scene, of_model = runs[name]
-    produce(
+    job.make(
         lambda: simulate(
             params,
             scene.alpha1,
             scene.alpha2,
             t_end=scene.t_end * params.time_unit,
             model=of_model,
-            tol=part["dynamics.tol"],
+            tol=job.part["dynamics.tol"],
             growth=name in SCENES,
         ),
-        config={**part, "scene": name}, key=snakemake.params.key,
-        output=path,
+        path,
+        scene=name,
     )

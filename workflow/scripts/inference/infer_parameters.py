@@ -1,14 +1,13 @@
 """Which parameters agree with the paper's statements."""
 
+from squealpipe.execution.job import Job
 from squealpipe.parameters import parameters_of
-from squealpipe.store import produce
 from squealpipe.tasks.inference.inference import infer_parameters
 
-part = snakemake.params.part
-produce(
+job = Job(snakemake)
+part = job.part
+job.make(
     lambda: infer_parameters(
         parameters_of(part), reading=part["reading"], **part["inference"]
-    ),
-    config=part, key=snakemake.params.key,
-    output=snakemake.output[0],
+    )
 )

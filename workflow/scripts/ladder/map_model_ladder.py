@@ -1,13 +1,11 @@
 """The cheapest adequate model over both spring angles."""
 
-from squealpipe.parameters import parameters_of
-from squealpipe.reading import for_linear
-from squealpipe.store import produce
+from squealpipe.execution.job import Job
 from squealpipe.tasks.ladder.ladder import model_ladder
 
-part = snakemake.params.part
-params, ladder = for_linear(parameters_of(part), part["read_as"]), part["comparison.ladder"]
-produce(
+job = Job(snakemake)
+params, ladder = job.params, job.part["comparison.ladder"]
+job.make(
     lambda: model_ladder(
         params,
         ladder["points"],
@@ -15,6 +13,4 @@ produce(
         t_end=ladder["horizon"] * params.time_unit,
         workers=snakemake.threads,
     ),
-    config=part, key=snakemake.params.key,
-    output=snakemake.output[0],
 )

@@ -4,14 +4,13 @@ import math
 
 import numpy as np
 
+from squealpipe.execution.job import Job
 from squealpipe.models.refusals import without_extensions
-from squealpipe.parameters import parameters_of
-from squealpipe.reading import for_linear
-from squealpipe.store import produce
 from squealpipe.tasks.linear.critical import critical_damping_map, critical_friction_map
 
-part, out = snakemake.params.part, snakemake.output
-params = without_extensions(for_linear(parameters_of(part), part["read_as"]))
+job = Job(snakemake)
+part, out = job.part, job.out
+params = without_extensions(job.params)
 unit = math.sqrt(params.k1 * params.mass)
 damping1, damping2 = (unit * share for share in part["spread.critical_damping"])
 angles = np.linspace(0.0, math.pi, part["linear.points"])
@@ -26,4 +25,4 @@ for task, path in (
     (lambda: critical_friction_map(damped, angles, angles), out.angles),
     (lambda: critical_damping_map(params, *scene, dashpots, dashpots), out.dashpots),
 ):
-    produce(task, config=part, key=snakemake.params.key, output=path)
+    job.make(task, path)

@@ -2,16 +2,13 @@
 
 import numpy as np
 
-from squealpipe.parameters import parameters_of
-from squealpipe.reading import for_linear
-from squealpipe.store import produce
+from squealpipe.execution.job import Job
 from squealpipe.tasks.dynamics.assumptions import linear_pull_map
 from squealpipe.tasks.linear.boundaries import stability_boundaries
 from squealpipe.tasks.linear.maps import natural_frequencies, quasi_static_map, stability_map
 
-part = snakemake.params.part
-out = snakemake.output
-params = for_linear(parameters_of(part), part["read_as"])
+job = Job(snakemake)
+params, part = job.params, job.part
 angles = np.linspace(0.0, np.pi, part["linear.points"])
 tasks = {
     "quasi_static": lambda: quasi_static_map(params, angles, angles),
@@ -20,5 +17,5 @@ tasks = {
     "stability_boundaries": lambda: stability_boundaries(params),
     "linear_pull": lambda: linear_pull_map(params, angles, angles),
 }
-for name, path in out.items():
-    produce(tasks[name], config=part, key=snakemake.params.key, output=path)
+for name, path in job.out.items():
+    job.make(tasks[name], path)

@@ -1,21 +1,18 @@
 """The paper's statements in settings that it leaves out."""
 
-from squealpipe.parameters import parameters_of
-from squealpipe.reading import for_linear
-from squealpipe.store import load, produce
+from squealpipe.execution.job import Job
+from squealpipe.store import load
 from squealpipe.tasks.propensity.robustness import verdict_reach
 
-part, inferred = snakemake.params.part, snakemake.input.get("inferred")
-produce(
+job = Job(snakemake)
+part, inferred = job.part, snakemake.input.get("inferred")
+job.make(
     lambda: verdict_reach(
-        for_linear(parameters_of(part), part["read_as"]),
+        job.params,
         starts=part["spread.starts"],
         inferred=load(inferred) if inferred else None,
         tol=part["dynamics.tol"],
         workers=snakemake.threads,
     ),
-    config=part,
-    key=snakemake.params.key,
     inputs=[inferred] if inferred else [],
-    output=snakemake.output[0],
 )

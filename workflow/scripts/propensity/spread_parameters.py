@@ -2,16 +2,14 @@
 
 import math
 
-from squealpipe.parameters import parameters_of
-from squealpipe.reading import for_linear
-from squealpipe.store import produce
+from squealpipe.execution.job import Job
 from squealpipe.tasks.propensity.distributions import centred
 from squealpipe.tasks.propensity.propensity import propensity
 
-part = snakemake.params.part
-params = for_linear(parameters_of(part), part["read_as"])
+job = Job(snakemake)
+part, params = job.part, job.params
 angles = [math.pi * angle for angle in part["spread.scene"]]
-produce(
+job.make(
     lambda: propensity(
         params,
         *angles,
@@ -21,7 +19,4 @@ produce(
         t_end=part["spread.horizon"] * params.time_unit,
         workers=snakemake.threads,
     ),
-    config=part,
-    key=snakemake.params.key,
-    output=snakemake.output[0],
 )

@@ -2,16 +2,10 @@
 
 import numpy as np
 
-from squealpipe.parameters import parameters_of
-from squealpipe.reading import for_linear
-from squealpipe.store import produce
+from squealpipe.execution.job import Job
 from squealpipe.tasks.dynamics.explorer import explorer_data
 
-part = snakemake.params.part
-options = dict(part["explorer"])
+job = Job(snakemake)
+options = dict(job.part["explorer"])
 angles = np.linspace(0.0, np.pi, options.pop("points"))
-produce(
-    lambda: explorer_data(for_linear(parameters_of(part), part["read_as"]), angles, **options),
-    config=part, key=snakemake.params.key,
-    output=snakemake.output[0],
-)
+job.make(lambda: explorer_data(job.params, angles, **options))

@@ -1,14 +1,13 @@
 """The verdict on every statement of the paper."""
 
+from squealpipe.execution.job import Job
 from squealpipe.study.claims.judge import judge
 from squealpipe.parameters import parameters_of
-from squealpipe.store import produce
 
-part, paths = snakemake.params.part, snakemake.input.datasets
+job = Job(snakemake)
+part, paths = job.part, snakemake.input.datasets
 sources = dict(zip(snakemake.params.names, paths, strict=True))
-produce(
+job.make(
     lambda: judge(parameters_of(part), sources, part["reading"]),
-    config=part, key=snakemake.params.key,
-    output=snakemake.output[0],
     inputs=paths,
 )

@@ -1,0 +1,58 @@
+"""What a rule of the workflow gives its script: a slice of the study, parameters, files."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from functools import cached_property
+from typing import Any
+
+import xarray as xr
+
+from squealpipe.parameters import Parameters, parameters_of
+from squealpipe.reading import for_linear, reading_of
+from squealpipe.store import produce
+
+
+class Job:
+    """One job of a rule.
+
+    Attributes:
+        part: slice of the configuration.
+        out: files to write.
+        item: part of what is scattered, "i-of-n".
+    """
+
+    def __init__(self, snakemake: Any) -> None:
+        """From the object of that name in a script."""
+        self.part, self.out = snakemake.params.get("part", {}), snakemake.output
+        self._key = snakemake.params.key
+        self.item = snakemake.wildcards.get("scatteritem", "1-of-1")
+
+    @cached_property
+    def params(self) -> Parameters:
+        """Physical parameters in the rule's reading of the sign of friction."""
+        return for_linear(parameters_of(self.part), self.part["read_as"])
+
+    @property
+    def model(self) -> str:
+        """The model that A1 stands for in that reading."""
+        return reading_of(self.part["read_as"]).a1_model
+
+    def make(
+        self,
+        task: Callable[[], xr.Dataset],
+        output: str | None = None,
+        *,
+        inputs: Iterable[str] = (),
+        **further: Any,
+    ) -> None:
+        """Run a task and save what it returns, with its provenance.
+
+        Args:
+            task: ready to call.
+            output: dataset to write; the rule's first by default.
+            inputs: datasets that the task reads.
+            further: what it is given beside the slice.
+        """
+        config, target = {**self.part, **further}, output or self.out[0]
+        produce(task, config=config, output=target, inputs=inputs, key=self._key)
