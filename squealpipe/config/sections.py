@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from functools import partial
-from typing import TYPE_CHECKING, Annotated, Any, Literal, get_args
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import (
     AfterValidator,
@@ -26,35 +26,22 @@ from squealpipe.laws.tables import BETWEEN
 from squealpipe.parameters import DEFAULTS, TABLE, Parameters, Row, without_defaults
 
 
-def _plain_types(annotation: Any) -> set[type]:
-    """The types that occur in an annotation, at any depth."""
-    inner = [kind for part in get_args(annotation) for kind in _plain_types(part)]
-    return {annotation, *inner} if isinstance(annotation, type) else set(inner)
-
-
-def _as_integers(value: Any) -> Any:
-    if isinstance(value, tuple):
-        return tuple(map(_as_integers, value))
-    return int(value) if isinstance(value, float) and value.is_integer() else value
-
-
 class Section(BaseModel):
     """A part of the configuration: unknown keys and text for numbers are mistakes."""
 
     model_config = ConfigDict(extra="forbid", strict=True, frozen=True, allow_inf_nan=False)
 
-    @field_validator("*", mode="before")
-    @classmethod
-    def _whole_numbers(cls, value: Any, info: ValidationInfo) -> Any:
-        """181.0 is 181 where a whole number is asked for, so that rewriting it changes nothing."""
-        kinds = _plain_types(cls.model_fields[str(info.field_name)].annotation)
-        return _as_integers(value) if int in kinds and float not in kinds else value
+
+def _as_integer(value: Any) -> Any:
+    return int(value) if isinstance(value, float) and value.is_integer() else value
 
 
+WHOLE = BeforeValidator(_as_integer)
+"""181.0 is 181, so that rewriting it changes nothing."""
 Number = Annotated[float, Field(strict=True)]
 Positive = Annotated[float, Field(gt=0)]
 NotNegative = Annotated[float, Field(ge=0)]
-Points = Annotated[int, Field(ge=3, le=4001)]
+Points = Annotated[int, Field(ge=3, le=4001), WHOLE]
 
 
 class _ParametersBase(Section):
@@ -131,8 +118,8 @@ Range = Annotated[tuple[Positive, Positive], AfterValidator(_ascending)]
 class InferenceSection(Section):
     """Quasi-random parameter sets that are judged by the paper's statements."""
 
-    samples: Annotated[int, Field(ge=16, le=1_000_000)] = 20_480
-    seed: Annotated[int, Field(ge=0)] = 2021
+    samples: Annotated[int, Field(ge=16, le=1_000_000), WHOLE] = 20_480
+    seed: Annotated[int, Field(ge=0), WHOLE] = 2021
     kappa: Range = (0.3, 1.3)
     mu: Range = (0.02, 0.8)
     length_ratio: Range = (2.0, 100.0)
@@ -140,21 +127,16 @@ class InferenceSection(Section):
 
 
 Settings = Annotated[tuple[Positive, ...], Field(min_length=1)]
-Repeats = Annotated[int, Field(ge=1, le=100)]
+Harmonics = Annotated[int, Field(ge=1, le=512), WHOLE]
+Repeats = Annotated[int, Field(ge=1, le=100), WHOLE]
 
 
 class HarmonicComparison(Section):
     """Harmonic balance over N_h, N/(2 N_h) and σ l_pre."""
 
-    harmonics: Annotated[tuple[Annotated[int, Field(ge=1, le=512)], ...], Field(min_length=1)] = (
-        4,
-        8,
-        16,
-        32,
-        64,
-    )
+    harmonics: Annotated[tuple[Harmonics, ...], Field(min_length=1)] = (4, 8, 16, 32, 64)
     oversampling: Annotated[
-        tuple[Annotated[int, Field(ge=1, le=256)], ...], Field(min_length=1)
+        tuple[Annotated[int, Field(ge=1, le=256), WHOLE], ...], Field(min_length=1)
     ] = (1, 4, 16)
     sigmas: Settings = (10.0, 100.0, 1e3)
     repeats: Repeats = 3
@@ -175,7 +157,7 @@ class BenchmarkComparison(Section):
 class LadderComparison(Section):
     """The cheapest adequate model over both angles; horizon in √(m/k1)."""
 
-    points: Annotated[int, Field(ge=3, le=361)] = 46
+    points: Annotated[int, Field(ge=3, le=361), WHOLE] = 46
     tolerance: Annotated[float, Field(gt=0, lt=1)] = 0.05
     horizon: Positive = 200.0
 
@@ -199,9 +181,9 @@ class DynamicsSection(Section):
     hammering_horizon: Positive = 500.0
     hammering_points: Points = 91
     whirl_speeds: Range = (0.3, 300.0)
-    whirl_count: Annotated[int, Field(ge=2, le=1000)] = 31
+    whirl_count: Annotated[int, Field(ge=2, le=1000), WHOLE] = 31
     whirl_horizon: Positive = 10_000.0
-    transient_samples: Annotated[int, Field(ge=2, le=100_000)] = 400
+    transient_samples: Annotated[int, Field(ge=2, le=100_000), WHOLE] = 400
     transient_horizon: Positive = 20_000.0
 
 
@@ -217,7 +199,7 @@ class BackbonesSection(Section):
     }
     y_peak_max: Positive = 6.0
     x_amplitude_max: Positive = 3.0
-    n_harmonics: Annotated[int, Field(ge=1, le=512)] = 32
+    n_harmonics: Harmonics = 32
     length_ratios: Settings = (5.0, 15.0, 100.0)
 
 
@@ -230,10 +212,10 @@ class CyclesSection(Section):
     damping: Positive = 0.02
     mu: Range = (0.01, 1.0)
     flutter: tuple[Angle, Angle] = (0.305, 0.07)
-    points: Annotated[int, Field(ge=2, le=5000)] = 150
+    points: Annotated[int, Field(ge=2, le=5000), WHOLE] = 150
     settle: Positive = 6000.0
-    extremes_mu: Annotated[int, Field(ge=2, le=1000)] = 17
-    extremes_starts: Annotated[int, Field(ge=1, le=1000)] = 6
+    extremes_mu: Annotated[int, Field(ge=2, le=1000), WHOLE] = 17
+    extremes_starts: Annotated[int, Field(ge=1, le=1000), WHOLE] = 6
     extremes_horizon: Positive = 2000.0
 
 
@@ -256,17 +238,17 @@ class Distribution(Section):
 class SpreadSection(Section):
     """How far verdicts carry, and propensities over uncertain parameters; angles over π."""
 
-    starts: Annotated[int, Field(ge=2, le=100_000)] = 200
-    basin_points: Annotated[int, Field(ge=2, le=2001)] = 41
+    starts: Annotated[int, Field(ge=2, le=100_000), WHOLE] = 200
+    basin_points: Annotated[int, Field(ge=2, le=2001), WHOLE] = 41
     basin_extent: Positive = 12.0
     basin_horizon: Positive = 300.0
-    disturbance_directions: Annotated[int, Field(ge=8, le=100_000)] = 64
+    disturbance_directions: Annotated[int, Field(ge=8, le=100_000), WHOLE] = 64
     disturbance_horizon: Positive = 100.0
     critical_damping: tuple[NotNegative, NotNegative] = (0.02, 0.01)
     critical_points: Points = 61
     critical_extent: Positive = 0.1
     scene: tuple[Angle, Angle] = (0.305, 0.07)
-    samples: Annotated[int, Field(ge=64, le=2**20)] = 4096
+    samples: Annotated[int, Field(ge=64, le=2**20), WHOLE] = 4096
     horizon: Positive = 200.0
     spring_correlation: Annotated[float, Field(gt=-1, lt=1)] = 0.0
     distributions: Annotated[dict[str, Distribution], Field(min_length=1)] | None = None
@@ -275,11 +257,11 @@ class SpreadSection(Section):
 class ExplorerSection(Section):
     """The click grid of the explorer page; times in √(m/k1)."""
 
-    points: Annotated[int, Field(ge=3, le=61)] = 31
+    points: Annotated[int, Field(ge=3, le=61), WHOLE] = 31
     history_time: Positive = 60.0
     spectrum_time: Positive = 180.0
-    samples: Annotated[int, Field(ge=16, le=2000)] = 400
-    branch_points: Annotated[int, Field(ge=2, le=200)] = 24
+    samples: Annotated[int, Field(ge=16, le=2000), WHOLE] = 400
+    branch_points: Annotated[int, Field(ge=2, le=200), WHOLE] = 24
 
 
 Name = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]*$")]

@@ -24,15 +24,12 @@ def scattered_rows(rows: int, item: str) -> slice:
         item: "i-of-n", Snakemake's name of a part.
 
     Raises:
-        ValueError: another form, i is not within 1 … n, or there are more parts than rows.
+        ValueError: there are more parts than rows.
     """
-    index, _, count = item.partition("-of-")
-    if not (index.isdigit() and count.isdigit() and 1 <= int(index) <= int(count)):
-        raise ValueError(f"part {item!r}: i-of-n with 1 ≤ i ≤ n is needed")
-    if int(count) > rows:
+    index, count = map(int, item.split("-of-"))
+    if count > rows:
         raise ValueError(f"{count} parts of {rows} rows: scatter into at most {rows} parts")
-    edges = [rows * k // int(count) for k in range(int(count) + 1)]
-    return slice(edges[int(index) - 1], edges[int(index)])
+    return slice(rows * (index - 1) // count, rows * index // count)
 
 
 def over_angles(job: Job, name: str) -> dict[str, Any]:

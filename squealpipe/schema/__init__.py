@@ -39,8 +39,8 @@ class Variable:
         long_name: what it is, for people.
         units: CF unit; "1" where dimensionless.
         dims: dimension names, in order.
-        dtype: NumPy dtype it is stored in.
-        flags: value → meaning for flag variables (an IntEnum or a mapping).
+        dtype: NumPy dtype it is stored in; 8-byte numbers by default.
+        flags: value → meaning for flag variables (an IntEnum or a mapping), stored as bytes.
         rtol, atol: what counts as "within tolerance" when two datasets are compared.
         nan_allowed: whether NaN may appear; its reason must then be in an outcome variable.
         volatile: differs from run to run by nature (wall times); never part of a verdict.
@@ -52,7 +52,7 @@ class Variable:
     units: str = "1"
     dims: tuple[str, ...] = ()
     _: KW_ONLY
-    dtype: str = "f8"
+    dtype: str = ""
     flags: Any = None
     rtol: float = 1e-9
     atol: float = 1e-12
@@ -60,6 +60,10 @@ class Variable:
     volatile: bool = False
     optional: bool = False
     round_off: RoundOff | None = None
+
+    def __post_init__(self) -> None:
+        if not self.dtype:
+            object.__setattr__(self, "dtype", "f8" if self.flags is None else "i1")
 
     def attributes(self) -> dict[str, Any]:
         """CF attributes of this variable, a new copy each time."""
@@ -170,7 +174,7 @@ ANGLE_CONVENTION = (
 ABSENT = -1
 """Flag of places beyond the end of a run that is shorter than the longest of its sweep."""
 
-OUTCOME = Variable(dtype="i1", flags=Outcome, long_name="why the values are what they are")
+OUTCOME = Variable(flags=Outcome, long_name="why the values are what they are")
 
 
 RUN_ENDS = (
@@ -219,7 +223,7 @@ LINEAR_ENDS = (
 def outcome(*dims: str, among: Iterable[Outcome] = Outcome) -> Variable:
     """The outcome variable over some dimensions, with the outcomes that it can have."""
     flags = {int(item): item.name for item in sorted(among)}
-    return Variable(dims=dims, dtype="i1", flags=flags, long_name=OUTCOME.long_name)
+    return Variable(dims=dims, flags=flags, long_name=OUTCOME.long_name)
 
 
 def build(

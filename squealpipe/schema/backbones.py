@@ -29,7 +29,7 @@ def _orbit_variables(*dims: str) -> dict[str, Variable]:
         "y_amplitude": real("m", "half of the peak-to-peak of y over a period"),
         "largest_speed": real("m s-1", "largest speed of the mass along the belt, |x'|"),
         "sliding_assumption": Variable(
-            "whether x' stays below belt speed", dims=dims, dtype="i1", flags=Assumption
+            "whether x' stays below belt speed", dims=dims, flags=Assumption
         ),
         "stability_index": real("1", "trace of the monodromy matrix minus 2", atol=1e-7),
         "outcome": outcome(*dims, among=ORBIT_ENDS),
@@ -114,12 +114,10 @@ BACKBONE = DatasetSchema(
             optional=True,
             rtol=1e-4,
         ),
-        "special_kind": Variable(
-            "kind of special point", dims=("special",), dtype="i1", flags=SpecialPoint
-        ),
+        "special_kind": Variable("kind of special point", dims=("special",), flags=SpecialPoint),
         "special_y_peak": Variable("y_peak at which it lies", "m", ("special",), rtol=1e-8),
         "special_omega": Variable("angular frequency there", "rad s-1", ("special",), rtol=1e-8),
-        "end": Variable("why the branch ends", dtype="i1", flags=outcome(among=ORBIT_ENDS).flags),
+        "end": Variable("why the branch ends", flags=outcome(among=ORBIT_ENDS).flags),
     },
 )
 
@@ -131,7 +129,6 @@ DOUBLED_BRANCH = DatasetSchema(
         **{name: entry for name, entry in BACKBONE.variables.items() if not entry.optional},
         "end": Variable(
             "why the branch ends",
-            dtype="i1",
             flags=outcome(among=(*ORBIT_ENDS, Outcome.no_doubling)).flags,
         ),
         "y_largest": Variable("largest y over a period", "m", ("point",)),

@@ -32,7 +32,6 @@ def basin_schema(swept: tuple[str, ...]) -> DatasetSchema:
             "motion": Variable(
                 "kind of motion in the second half of the run; unsettled: its quarters disagree",
                 dims=swept,
-                dtype="i1",
                 flags=MotionFlag,
                 **IN_MAP,
             ),
@@ -90,11 +89,11 @@ SMALLEST_DISTURBANCE = DatasetSchema(
         ),
     },
     variables={
-        "leads_to": Variable("what it leads to", dtype="i1", flags=LeadsTo),
+        "leads_to": Variable("what it leads to", flags=LeadsTo),
         "x_rest": _scalar("m", "x of steady sliding"),
         "y_rest": _scalar("m", "y of steady sliding"),
         "growth_rate": _scalar("s-1", "largest real part of small motions about it"),
-        "regime_linear": Variable("stability regime of model A3", dtype="i1", flags=LinearRegime),
+        "regime_linear": Variable("stability regime of model A3", flags=LinearRegime),
         "rest_distance": _scalar("1", "norm of the start at rest at r = 0"),
         "linear_distance": _scalar("1", "smallest norm with which the linear motion loses contact"),
         "distance": Variable("smallest norm found, an upper bound", nan_allowed=True, rtol=1e-6),

@@ -47,7 +47,7 @@ def _number(meaning: str) -> Variable:
 
 
 def _flag(meaning: str, flags: type[IntEnum]) -> Variable:
-    return Variable(meaning, dims=("claim",), dtype="i1", flags=flags)
+    return Variable(meaning, dims=("claim",), flags=flags)
 
 
 CLAIMS = DatasetSchema(

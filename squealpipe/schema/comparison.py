@@ -30,7 +30,7 @@ WORK_PRECISION = DatasetSchema(
     variables={
         "method": _text("method", *RUN),
         "setting": _text("its setting", *RUN),
-        "role": Variable("public method, ours, or our default", dims=RUN, dtype="i1", flags=Role),
+        "role": Variable("public method, ours, or our default", dims=RUN, flags=Role),
         "error": Variable(
             "relative error of ω against the exact orbit, median over peaks",
             dims=RUN, nan_allowed=True, rtol=1e-3,
@@ -65,9 +65,7 @@ FAILURE_ATLAS = DatasetSchema(
         "solver": _text("method (the name xarray keeps for itself)", "solver"),
     },
     variables={
-        "verdict": Variable(
-            "verdict on the answer", dims=SCENE_SOLVER, dtype="i1", flags=Reliability
-        ),
+        "verdict": Variable("verdict on the answer", dims=SCENE_SOLVER, flags=Reliability),
         "error": Variable(
             "largest error of the answer; infinite where there is none",
             dims=SCENE_SOLVER,
@@ -80,7 +78,7 @@ FAILURE_ATLAS = DatasetSchema(
         ),
         "message": _text("what the method said", *SCENE_SOLVER),
         "tolerance": Variable("largest error that counts as right", dims=("scene",)),
-        "role": Variable("whose method it is", dims=("solver",), dtype="i1", flags=Role),
+        "role": Variable("whose method it is", dims=("solver",), flags=Role),
     },
 )
 
@@ -98,11 +96,11 @@ BENCHMARK = DatasetSchema(
     },
     variables={
         "group": _text("class of the problem", "problem"),
-        "role": Variable("whose solver it is", dims=("solver",), dtype="i1", flags=Role),
+        "role": Variable("whose solver it is", dims=("solver",), flags=Role),
         "verdict": Variable(
             "right; flagged: wrong or without an answer, and said so; silently wrong: another list "
             "of events, or an error over growth above 100 tolerances",
-            dims=_CELL, dtype="i1", flags=Reliability, round_off=_NEAR,
+            dims=_CELL, flags=Reliability, round_off=_NEAR,
         ),
         "missed": Variable(f"events missed{_COUNT}", dims=_CELL, dtype="i4", round_off=_NEAR),
         "spurious": Variable(f"events too many{_COUNT}", dims=_CELL, dtype="i4", round_off=_NEAR),

@@ -63,7 +63,7 @@ CONTACT_BOUNDARY = DatasetSchema(
             atol=1e-8,
         ),
         "corner": Variable("whether two maxima touch at once", dims=("point",), dtype="bool"),
-        "kind": Variable("what the point is", dims=("point",), dtype="i1", flags=PointKind),
+        "kind": Variable("what the point is", dims=("point",), flags=PointKind),
         "region_kept": Variable("whether contact is kept there", dims=("region",), dtype="bool"),
         "region_area": Variable("area, in the units of both parameters", "1", _REGION, rtol=1e-5),
         "region_area_error": Variable(
@@ -108,14 +108,14 @@ REGIME_CHART = DatasetSchema(
     },
     variables={
         **VARIED,
-        "line": Variable("what changes across the line", dims=("point",), dtype="i1",
+        "line": Variable("what changes across the line", dims=("point",),
                          flags=ChartLine),
         "curve": Variable("connected line", dims=("point",), dtype="i4"),
         "residual": Variable(
             "of the function that is zero on the line", dims=("point",), rtol=1.0, atol=1e-8
         ),
         "region_regime": Variable(
-            "what A3 does there", dims=_REGION, dtype="i1", flags=LinearRegime
+            "what A3 does there", dims=_REGION, flags=LinearRegime
         ),
         "region_kept": Variable("whether contact is kept there", dims=_REGION, dtype="bool"),
         "region_place": Variable("a place well inside", dims=("region", "parameter")),

@@ -46,7 +46,6 @@ def _cycle_variables(*dims: str) -> dict[str, Variable]:
         "stable": Variable(
             "whether small disturbances decay; no for a member of a family",
             dims=dims,
-            dtype="i1",
             flags=Stability,
         ),
         "multiplier_real": multiplier("real"),
@@ -76,7 +75,7 @@ LIMIT_CYCLE = DatasetSchema(
     variables={
         **_cycle_variables(),
         "event_time": Variable(dims=("event",), units="s", long_name="instant of an event"),
-        "event_kind": Variable("kind of the event", dims=("event",), dtype="i1", flags=Event),
+        "event_kind": Variable("kind of the event", dims=("event",), flags=Event),
         **{
             f"event_{name}": Variable(f"{words} at the event", units, ("event",))
             for name, (units, words) in _STATE.items()
@@ -84,7 +83,6 @@ LIMIT_CYCLE = DatasetSchema(
         "segment_regime": Variable(
             "regime from the start and after each event",
             dims=("segment",),
-            dtype="i1",
             flags=REGIMES,
         ),
         **{
@@ -96,9 +94,7 @@ LIMIT_CYCLE = DatasetSchema(
             f"{name}_path": Variable(f"{words} along the cycle", units, ("sample",))
             for name, (units, words) in _STATE.items()
         },
-        "regime_path": Variable(
-            "regime along the cycle", dims=("sample",), dtype="i1", flags=REGIMES
-        ),
+        "regime_path": Variable("regime along the cycle", dims=("sample",), flags=REGIMES),
         "alpha1": Variable(units="rad", long_name="angle of spring 1"),
         "alpha2": Variable(units="rad", long_name="angle of spring 2"),
     },
@@ -124,9 +120,7 @@ CYCLE_BRANCH = DatasetSchema(
     },
     variables={
         **_cycle_variables("point"),
-        "label": Variable(
-            "what is special about the point", dims=("point",), dtype="i1", flags=Label
-        ),
+        "label": Variable("what is special about the point", dims=("point",), flags=Label),
         "events": Variable(
             "events per period",
             dims=("point",),

@@ -111,7 +111,6 @@ PARAMETER_INFERENCE = DatasetSchema(
         "holds": Variable(
             "whether the statement holds; not judged where other statements had failed",
             dims=(*JUDGED, *STATEMENT),
-            dtype="i1",
             flags=Holds,
         ),
         "feasible": Variable("all statements hold", dims=JUDGED, dtype="bool"),
@@ -130,9 +129,7 @@ PARAMETER_INFERENCE = DatasetSchema(
         "baseline_mu": Variable("friction coefficient of the study"),
         "baseline_length_ratio": Variable("L1/l_pre of the study"),
         "baseline_speed_ratio": Variable("V/(l_pre √(k1/m)) of the study, signed"),
-        "baseline_reading": Variable(
-            "the study's reading", dtype="i1", flags=dict(enumerate(READINGS))
-        ),
+        "baseline_reading": Variable("the study's reading", flags=dict(enumerate(READINGS))),
         "baseline_margin": Variable(
             "margin at the parameters of the study", dims=BY_READING, rtol=1e-6, atol=1e-6
         ),
@@ -142,8 +139,6 @@ PARAMETER_INFERENCE = DatasetSchema(
             dims=PREDICTED,
             nan_allowed=True,
         ),
-        "feasible_share_low": _limit("lower", "feasible_share", PREDICTED),
-        "feasible_share_high": _limit("upper", "feasible_share", PREDICTED),
     },
 )
 

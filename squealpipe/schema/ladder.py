@@ -94,12 +94,9 @@ MODEL_LADDER = DatasetSchema(
         "cheapest": Variable(
             "cheapest level within the tolerance that drops something that mattered",
             dims=_CELL,
-            dtype="i1",
             flags=Level,
         ),
-        "chosen": Variable(
-            "level that choose_model takes for contact lost", dims=MAP, dtype="i1", flags=Level
-        ),
+        "chosen": Variable("level that choose_model takes for contact lost", dims=MAP, flags=Level),
         "chosen_wrong": Variable("whether its answer is not A1's", dims=MAP, dtype="bool"),
         "always_cpu_time": Variable(
             "CPU time of A1 over the whole map, up to the first loss of contact", "s", volatile=True

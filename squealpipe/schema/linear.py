@@ -28,7 +28,7 @@ def merge(frequency: Any) -> Any:
     return fast - slow <= MERGED * fast
 
 
-REGIME_LINEAR = Variable("stability regime of model A3", dims=MAP, dtype="i1", flags=LinearRegime)
+REGIME_LINEAR = Variable("stability regime of model A3", dims=MAP, flags=LinearRegime)
 
 STABILITY_MAP = DatasetSchema(
     name="stability_map",
@@ -150,7 +150,7 @@ STABILITY_BOUNDARIES = DatasetSchema(
             )
             for i in (1, 2)
         },
-        "boundary": Variable("which boundary", dims=("point",), dtype="i1", flags=Boundary),
+        "boundary": Variable("which boundary", dims=("point",), flags=Boundary),
         "segment": Variable(
             "points of one number are joined by a line", dims=("point",), dtype="i4"
         ),

@@ -29,7 +29,6 @@ ASSUMPTIONS = DatasetSchema(
         "needed": Variable(
             "whether the level makes the assumption",
             dims=("level", "assumption"),
-            dtype="i1",
             flags=YES_NO,
         ),
         "measure": Variable(
@@ -39,7 +38,6 @@ ASSUMPTIONS = DatasetSchema(
         "held": Variable(
             "whether the assumption held along the whole motion",
             dims=(*TABLE, "assumption"),
-            dtype="i1",
             flags=YES_NO,
         ),
         "largest_x": _largest("m", "largest |x|"),

@@ -54,7 +54,6 @@ EXPLORER = DatasetSchema(
         "end": Variable(
             "why the branch ends",
             dims=(*MAP, "mode"),
-            dtype="i1",
             flags=outcome(among=ORBIT_ENDS).flags,
             optional=True,
         ),

@@ -29,7 +29,6 @@ WHIRL = DatasetSchema(
         "motion": Variable(
             "kind of motion in the second half of the run",
             dims=("belt_speed",),
-            dtype="i1",
             flags=MotionFlag,
             round_off=_LONG_SAMPLE,
         ),

@@ -84,8 +84,7 @@ def difference(name: str, a: xr.DataArray, b: xr.DataArray, entry: Variable) -> 
             name=name,
             verdict=Agreement.different,
             volatile=entry.volatile,
-            reason=f"lists of different length: {lengths or f'{a.dims} against {b.dims}'}"
-            + _ranges(a.values, b.values),
+            reason=f"lists of different length: {lengths or f'{a.dims} against {b.dims}'}",
         )
     if entry.round_off is not None and entry.round_off.compared is ComparedAs.sample:
         return _sampled(name, a, b, entry, entry.round_off)
@@ -111,14 +110,6 @@ def _same_magnitude(a: np.ndarray, b: np.ndarray, how: RoundOff) -> np.ndarray:
     sizes = [np.maximum(np.abs(side), how.floor) for side in (a, b)]
     with np.errstate(invalid="ignore", over="ignore"):
         return np.asarray(np.maximum(*sizes) <= how.factor * np.minimum(*sizes))
-
-
-def _ranges(left: np.ndarray, right: np.ndarray) -> str:
-    """What lists that cannot be matched hold, in short."""
-    if left.dtype.kind not in "fiu" or not (np.isfinite(left).any() and np.isfinite(right).any()):
-        return ""
-    stated = [f"{np.nanmin(side):.4g} to {np.nanmax(side):.4g}" for side in (left, right)]
-    return f"; from {stated[0]} against {stated[1]}"
 
 
 def _sampled(

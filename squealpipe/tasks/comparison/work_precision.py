@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import statistics
 import time
+import timeit
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 from typing import Any
@@ -159,14 +160,10 @@ def timed(run: Callable[[], Any], repeats: int) -> tuple[Any, float]:
     The median drops what the first run compiles or allocates, from three repeats on; of two runs,
     as many as long ones get, the shorter counts.
     """
-    result, first = _clocked(run, 1)
+    started = time.perf_counter()
+    result = run()
+    first = time.perf_counter() - started
     calls = 1 if first > _SHORT else 5
     others = (min(repeats, 2) if first > _LONG else repeats) - 1
-    return result, statistics.median_low([first, *(_clocked(run, calls)[1] for _ in range(others))])
-
-
-def _clocked(run: Callable[[], Any], calls: int) -> tuple[Any, float]:
-    started = time.perf_counter()
-    for _ in range(calls):
-        result = run()
-    return result, (time.perf_counter() - started) / calls
+    spent = [each / calls for each in timeit.repeat(run, number=calls, repeat=others)]
+    return result, statistics.median_low([first, *spent])

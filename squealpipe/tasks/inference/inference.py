@@ -113,7 +113,6 @@ def _over_samples(sets: Candidates) -> dict[str, Any]:
     consequences = judge_consequences(sets.subset(np.flatnonzero(feasible)))
     count = int(feasible.sum())
     held = [int(values.sum()) for values in consequences.values()]
-    intervals = np.array([wilson_interval(number, count) for number in held])
     low, high = wilson_interval(count, sets.size)
     return {
         "holds": holds,
@@ -129,8 +128,6 @@ def _over_samples(sets: Candidates) -> dict[str, Any]:
         "share_high": high,
         "share_cut_alone": np.where(on_maps, alone.mean(axis=0), alone[shown].mean(axis=0)),
         "feasible_share": np.array(held) / count if count else np.full(len(held), np.nan),
-        "feasible_share_low": intervals[:, 0],
-        "feasible_share_high": intervals[:, 1],
     }
 
 

@@ -111,39 +111,21 @@ def stability_map(
         singular_static_state where friction depends on speed and no static contact force exists.
     """
     refuse_scales(params)
-    if not is_undamped(params):
-        return _damped_stability(params, alpha1, alpha2, sigma)
-    invariants = _spectrum(params, alpha1, alpha2, a2.contact_stiffness(params, sigma))
-    s = np.stack(a3.eigenvalues(invariants), axis=-1)
-    regime = a3.regime(invariants)
+    if is_undamped(params):
+        invariants = _spectrum(params, alpha1, alpha2, a2.contact_stiffness(params, sigma))
+        s = np.stack(a3.eigenvalues(invariants), axis=-1)
+        growth, frequency, regime = s.real.max(axis=-1), s.imag, a3.regime(invariants)
+    else:
+        pair = alpha1.astype(np.longdouble)[:, None], alpha2.astype(np.longdouble)[None, :]
+        growth, frequency, regime = stability(damped_system(params, *pair, sigma=sigma))
     outcomes = np.array([Outcome.converged, Outcome.complex_pair, Outcome.divergence])
     return build(
         STABILITY_MAP,
         {
-            "growth_rate": s.real.max(axis=-1),
-            "frequency": s.imag,
+            "growth_rate": growth,
+            "frequency": frequency,
             "regime_linear": regime,
-            "outcome": outcomes[regime],
-        },
-        {"alpha1": alpha1, "alpha2": alpha2, "mode": [1, 2]},
-    )
-
-
-def _damped_stability(
-    params: Parameters, alpha1: np.ndarray, alpha2: np.ndarray, sigma: float | None
-) -> xr.Dataset:
-    precise = alpha1.astype(np.longdouble)[:, None], alpha2.astype(np.longdouble)[None, :]
-    found = stability(damped_system(params, *precise, sigma=sigma))
-    outcomes = np.array([Outcome.converged, Outcome.complex_pair, Outcome.divergence])
-    return build(
-        STABILITY_MAP,
-        {
-            "growth_rate": found.growth_rate,
-            "frequency": found.frequency,
-            "regime_linear": found.regime,
-            "outcome": np.where(
-                np.isnan(found.growth_rate), Outcome.singular_static_state, outcomes[found.regime]
-            ),
+            "outcome": np.where(np.isnan(growth), Outcome.singular_static_state, outcomes[regime]),
         },
         {"alpha1": alpha1, "alpha2": alpha2, "mode": [1, 2]},
     )

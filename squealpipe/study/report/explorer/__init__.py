@@ -122,15 +122,8 @@ def payload(
 def run_options(explorer: xr.Dataset) -> str:
     """Options of ``squealpipe simulate`` that repeat the runs shown: times and all parameters."""
     stated = explorer.attrs
-    parameters = stated.get("parameters") or json.loads(stated.get("config", "{}")).get(
-        "parameters"
-    )
-    if parameters is None:
-        return ""
-    values = json.loads(parameters) if isinstance(parameters, str) else parameters
-    end = stated.get("run_t_end", explorer.time.values[-1])
-    points = stated.get("run_points", explorer.sizes["time"])
-    options = {"t_end": float(end), "points": int(points), **values}
+    times = {"t_end": float(stated["run_t_end"]), "points": int(stated["run_points"])}
+    options = times | json.loads(stated["parameters"])
     return " ".join(
         f"--{key.replace('_', '-')} {quote(_plain(value))}" for key, value in options.items()
     )
