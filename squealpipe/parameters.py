@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 import reprlib
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, replace
@@ -332,8 +333,9 @@ NUMBERS_OF_A1: dict[str, str] = {
 }
 """What laws and engine read → the parameter that it is, for all numbers that enter A1."""
 
-SYMBOLS = {"m": "mass", "V": "belt_speed", "l_pre": "preload", "L1": "length1", "L2": "length2"}
-"""The paper's symbols for parameters that have another name here."""
+SYMBOLS = {re.sub(r"\W", "", row.symbol): name for name, row in TABLE.items()}
+SYMBOLS |= {symbol.replace("_", ""): name for symbol, name in SYMBOLS.items()}
+"""The paper's symbols (``V``, ``L1``) for parameters that have another name here."""
 
 DEFAULTS: dict[str, Any] = {item.name: item.default for item in fields(Parameters)}
 

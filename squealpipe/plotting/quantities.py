@@ -13,8 +13,8 @@ from squealpipe.plotting.style import (
     BLUE,
     PALETTE,
     REGIME_COLOURS,
-    angle_map_axes,
     category_colours,
+    draw_map,
     flag_words,
     say_instead,
 )
@@ -121,11 +121,11 @@ def _draw_map(axes: Axes, variable: xr.DataArray, values: np.ndarray, names: lis
     else:
         low, high = np.percentile(values[np.isfinite(values)], [1, 99])
         scale = {"cmap": "viridis", "vmin": low, "vmax": high}
-    mesh = axes.pcolormesh(x, y, values.T, shading="nearest", rasterized=True, **scale)
-    axes.set_ylabel(label(y))
     if variable.dims == ANGLES:
-        angle_map_axes(axes, float(x[-1]))
-        axes.set(xlim=(x[0], x[-1]), ylim=(y[0], y[-1]))
+        mesh = draw_map(axes, variable, values, **scale)
+    else:
+        mesh = axes.pcolormesh(x, y, values.T, shading="nearest", rasterized=True, **scale)
+        axes.set_ylabel(label(y))
     figure = axes.get_figure(root=False)
     assert figure is not None  # noqa: S101 (axes that can be drawn on are in a figure)
     if not names:

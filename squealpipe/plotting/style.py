@@ -147,7 +147,7 @@ def angle_map_axes(axes: Axes, upper: float = np.pi) -> None:
         axes.spines[side].set_visible(True)
 
 
-def draw_map(axes: Axes, dataset: xr.Dataset, values: Any, **kwargs: Any) -> Any:
+def draw_map(axes: Axes, dataset: xr.Dataset | xr.DataArray, values: Any, **kwargs: Any) -> Any:
     """``pcolormesh`` of values over the dataset's angles: α1 on x, α2 on y; rasterized in SVG."""
     x, y = dataset.alpha1.values, dataset.alpha2.values
     mesh = axes.pcolormesh(x, y, np.asarray(values).T, shading="nearest", rasterized=True, **kwargs)

@@ -16,7 +16,7 @@ import pandas as pd
 
 from squealpipe.config.settings import PAPER, Study, read_study
 from squealpipe.config.yaml_files import flat
-from squealpipe.parameters import DEFAULTS, TABLE
+from squealpipe.parameters import DEFAULTS, SYMBOLS, TABLE
 from squealpipe.store.archive import verify
 from squealpipe.store.netcdf import attributes
 from squealpipe.store.runs import ARCHIVES, MANIFEST, dataset_files, read_manifest
@@ -25,10 +25,6 @@ from squealpipe.text import nearest
 EXAMPLE = "write for instance 'mu == 0.25 and L1 > 4'"
 NOT_COMPARED = ("results",)
 """Configuration keys that say where, not what."""
-
-SYMBOLS = {re.sub(r"\W", "", row.symbol): name for name, row in TABLE.items()}
-SYMBOLS |= {symbol.replace("_", ""): name for symbol, name in SYMBOLS.items()}
-"""The paper's symbols (``V``, ``L1``) for parameters that have another name here."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import json
 import mimetypes
 from pathlib import Path
@@ -13,6 +12,7 @@ from rocrate.rocrate import ROCrate
 
 from squealpipe.store.netcdf import load
 from squealpipe.store.runs import regular_files
+from squealpipe.store.whole_files import checksum
 
 METADATA = "ro-crate-metadata.json"
 TYPES = {".nc": "application/x-netcdf", ".yaml": "application/yaml", ".lock": "text/plain"}
@@ -75,11 +75,10 @@ def describe(folder: Path, name: str, frozen_at: str) -> str:
 
 def file_properties(path: Path) -> dict[str, Any]:
     """Size, checksum and type of a file; of a dataset also title and id."""
-    content = path.read_bytes()
     kind = TYPES.get(path.suffix) or mimetypes.guess_type(path.name)[0]
     properties: dict[str, Any] = {
-        "contentSize": str(len(content)),
-        "sha256": hashlib.sha256(content).hexdigest(),
+        "contentSize": str(path.stat().st_size),
+        "sha256": checksum(path),
         "encodingFormat": kind or "application/octet-stream",
     }
     if path.suffix == ".nc":

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import json
 import os
 import re
@@ -12,11 +11,12 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
-import netCDF4
 from PIL import Image
 
 from squealpipe.parameters import TABLE, Parameters, law_in_words
 from squealpipe.schema.claims import Origin
+from squealpipe.store.netcdf import attributes
+from squealpipe.store.whole_files import checksum
 from squealpipe.study.claims.evidence import Run
 from squealpipe.study.claims.table import rows
 from squealpipe.study.figures import declared
@@ -108,20 +108,21 @@ def provenance(datasets: Mapping[str, Made], figures: Mapping[str, Made]) -> dic
     configuration: dict[str, Any] = {}
     environment: dict[str, set[str]] = {"squealpipe": {version("squealpipe")}}
     for name, made in sorted(datasets.items()):
-        attributes = _attributes(made.path)
+        stated = attributes(made.path)
         records[name] = {
             "rule": made.rule,
             "made_from": list(made.datasets),
-            "sha256": hashlib.sha256(made.path.read_bytes()).hexdigest(),
+            "sha256": checksum(made.path),
             **{
-                key: attributes[key]
+                key: stated[key]
                 for key in ("title", "dataset_id", "config_hash", "wall_time_s")
-                if key in attributes
+                if key in stated
             },
         }
-        configuration |= json.loads(attributes.get("config", "{}"))
-        stated = {key: attributes.get(key, "unknown") for key in ("commit", "platform")}
-        for what, value in {**stated, **json.loads(attributes.get("libraries", "{}"))}.items():
+        configuration |= json.loads(stated.get("config", "{}"))
+        made_with = {key: stated.get(key, "unknown") for key in ("commit", "platform")}
+        made_with |= json.loads(stated.get("libraries", "{}"))
+        for what, value in made_with.items():
             environment.setdefault(what, set()).add(value)
     return {
         "datasets": records,
@@ -201,12 +202,6 @@ def _picture(name: str, made: Made, run: Mapping[str, Any]) -> dict[str, Any]:
         "rule": made.rule,
         "datasets": list(made.datasets),
     }
-
-
-def _attributes(path: Path) -> dict[str, Any]:
-    """Global attributes of a NetCDF file, without its data."""
-    with netCDF4.Dataset(path) as file:
-        return {name: file.getncattr(name) for name in file.ncattrs()}
 
 
 def _written(value: Any) -> str:
