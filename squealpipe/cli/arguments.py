@@ -92,12 +92,7 @@ class Brake:
     """The brake of a command."""
 
     config: Annotated[
-        list[Path] | None,
-        Parameter(
-            name=["--config", "-c"],
-            negative="",
-            help="study whose parameters are used where none are typed; repeatable.",
-        ),
+        Configs, Parameter(help="study whose parameters are used where none are typed; repeatable.")
     ] = None
     params: Annotated[
         Parameters, Parameter(name="*", group=Group("Physical parameters", sort_key=10))

@@ -227,11 +227,10 @@ def propensity(
         "propensity", brake, alpha1, alpha2, output=output, distributions=distributions,
         samples=samples, t_end=t_end, spring_correlation=spring_correlation, seed=seed,
     )  # fmt: skip
-    shares = zip(found.quantity.values, found.share.values, found.share_low.values,
-                 found.share_high.values, strict=True)  # fmt: skip
-    for name, share, low, high in shares:
-        words = str(name).replace("_", " ")
-        answer(f"{words:<20} {share:8.2%}  (95 %: {low:.2%} to {high:.2%})")
+    for name in found.quantity.values:
+        one = found.sel(quantity=name)
+        share, low, high = (float(one[f"share{end}"]) for end in ("", "_low", "_high"))
+        answer(f"{name.replace('_', ' '):<20} {share:8.2%}  (95 %: {low:.2%} to {high:.2%})")
     return DONE
 
 

@@ -26,10 +26,7 @@ class ConfigError(ValueError):
         )
 
 
-def mistakes(
-    error: ValidationError,
-    model: type[BaseModel],
-) -> Iterator[str]:
+def mistakes(error: ValidationError, model: type[BaseModel]) -> Iterator[str]:
     """One line for each fault that validation of ``model`` found.
 
     Args:
