@@ -178,6 +178,7 @@ class DynamicsSection(Section):
     validity_points: Points = 181
     refined_points: Points = 1441
     refined_coarse: Points = 91
+    chart_horizon: Positive = 25.0
     hammering_horizon: Positive = 500.0
     hammering_points: Points = 91
     whirl_speeds: Range = (0.3, 300.0)

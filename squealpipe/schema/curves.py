@@ -114,16 +114,21 @@ REGIME_CHART = DatasetSchema(
         "residual": Variable(
             "of the function that is zero on the line", dims=("point",), rtol=1.0, atol=1e-8
         ),
+        "cell_regime": Variable(
+            "what A3 does in cells of equal size", dims=("row", "column"), dtype="i1",
+            flags=LinearRegime,
+        ),
+        "cell_kept": Variable("whether contact is kept", dims=("row", "column"), dtype="bool"),
         "region_regime": Variable(
             "what A3 does there", dims=_REGION, flags=LinearRegime
         ),
         "region_kept": Variable("whether contact is kept there", dims=_REGION, dtype="bool"),
         "region_place": Variable("a place well inside", dims=("region", "parameter")),
         "region_share": Variable("share of the chart", dims=_REGION),
-        "design": Variable("value of the design", dims=("parameter",), optional=True),
+        "design": Variable("values of designs", dims=("place", "parameter"), optional=True),
         "distance": Variable(
             "distance of the nearest point, in the units of both parameters; infinite: none",
-            dims=("boundary",), optional=True,
+            dims=("place", "boundary"), optional=True, rtol=1e-5,
         ),
         "range": Variable("lowest and highest value", dims=("parameter", "end")),
         "t_end": Variable("end of each run", "s"),

@@ -20,6 +20,7 @@ from squealpipe.study.figures.declared import draw, reads
 from squealpipe.study.report.build import write_document
 from squealpipe.study.report.content import Made, parameter_table, picture_files
 from squealpipe.study.report.own import boundaries, gather_own
+from squealpipe.tasks.curves.chart import regime_chart
 from squealpipe.tasks.dynamics.runs import simulate, validity_map
 from squealpipe.tasks.own.scenes import own_scenes
 from squealpipe.tasks.propensity.distributions import centred
@@ -103,6 +104,12 @@ def test_report_has_pages_without_the_paper(found, tmp_path):
         "propensity": propensity(
             PAD, 0.5, 2.4, distributions=centred(PAD, 0.5, 2.4), samples=64, t_end=end
         ),
+        "angle_chart": regime_chart(
+            PAD, angles, angles, design={"alpha1": [0.5], "alpha2": [2.4]}, t_end=end / 10
+        ),
+        "friction_chart/mine": regime_chart(
+            PAD, 0.5, 2.4, kappa=angles[1:], mu=angles[1:] / 5, t_end=end / 10
+        ),
         **{
             f"own/{name}": simulate(PAD, *(scene[key] for key in ("alpha1", "alpha2")), t_end=end)
             for name, scene in scenes(0.0).items()
@@ -114,7 +121,7 @@ def test_report_has_pages_without_the_paper(found, tmp_path):
         path = save(stamp(dataset, config=config, wall_time=0.1), tmp_path / f"data/{name}.nc")
         made[name] = Made(path=path, rule="some")
         datasets[name] = load(path)
-    for name in ("own_model", "own_motion", "own_map", "propensity"):
+    for name in ("own_model", "own_motion", "own_map", "propensity", "regime_charts"):
         path = tmp_path / f"{name}.png"
         save_figure(draw(name, datasets), [path])
         figures[name] = Made(path=path, rule="some", datasets=reads(name))

@@ -70,6 +70,25 @@ rule refine_validity:
         "../scripts/dynamics/refine_validity.py"
 
 
+if PAPERS_FRICTION:
+    CHARTED = ["F2d", "F3", "F4"] if STUDY.paper else sorted(STUDY.scenes)[:3]
+
+    rule chart_regimes:
+        output:
+            angles=data("angle_chart"),
+            friction=[data(f"friction_chart/{name}") for name in CHARTED],
+        params:
+            part=part(
+                "parameters",
+                "dynamics.tol",
+                "dynamics.chart_horizon",
+                *([] if STUDY.paper else ["scenes"]),
+            ),
+        threads: cores_for(1, enough=1)
+        script:
+            "../scripts/dynamics/chart_regimes.py"
+
+
 rule follow_whirl:
     output:
         run=data("simulate/whirl"),

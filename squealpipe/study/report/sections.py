@@ -30,6 +30,7 @@ COMPARED = {
 """The paper, figure by figure."""
 
 BEYOND = {
+    "charts": Part("How far each scene is from a boundary", ("regime_charts",)),
     "whirl": Part("Where the growth of Fig. 3 ends", ("whirl",)),
     "transient": Part("How long the motion of Fig. 4 lasts", ()),
     "orbits": Part("Periodic motions of A4", ("coupled_backbones", "a1_beside_a4")),
@@ -65,5 +66,5 @@ FIGURES = tuple(
 )
 """All figures, in order."""
 
-OWN = ("own_model", "own_motion", "own_map", "propensity", "critical_friction")
+OWN = ("own_model", "own_motion", "own_map", "regime_charts", "propensity", "critical_friction")
 """Figures of the report of a study of one's own."""

@@ -31,7 +31,7 @@ def regime_chart(
     alpha1: Line,
     alpha2: Line,
     *,
-    design: Mapping[str, float] | None = None,
+    design: Mapping[str, float | Line] | None = None,
     t_end: Positive | None = None,
     tol: Tolerance = 1e-12,
     workers: Workers = None,
@@ -45,8 +45,8 @@ def regime_chart(
     Args:
         params: physical parameters.
         alpha1, alpha2: angles, rad.
-        design: the two parameters by their names; by default their values in ``params``, where both
-            are there. Its distance to each line is given.
+        design: the two parameters by their names, numbers or arrays of several designs; by default
+            their values in ``params``, where both are there. Distances to each line are given.
         t_end: end of each run, s; 200 √(m/k1) by default.
         tol: tolerance of the Taylor integrator.
         workers: processes; None takes all cores.
@@ -103,14 +103,14 @@ def regime_chart(
     ]
     data: dict[str, Any] = {}
     if design is not None:
-        place = np.array([design[name] for name in axes])
+        places = np.stack([np.atleast_1d(design[name]) for name in axes], axis=1)
         limits = np.stack([square.low, square.low + square.width], axis=1)
         loops = {
             which: [square.values(loop.outline) for loop in each.loops(positive=True)]
             for which, each in lines.items()
         }
-        distances = [nearest_on(each, place, limits)[1] for each in loops.values()]
-        data = {"design": place, "distance": distances}
+        far = [[nearest_on(each, at, limits)[1] for each in loops.values()] for at in places]
+        data = {"design": places, "distance": far}
     chains = [(which, each, c) for which, each in lines.items() for c in each.chains()]
     places = np.concatenate([each.place[c] for _, each, c in chains] or [np.empty((0, 2))])
     lengths = [len(c) for _, _, c in chains]
@@ -122,6 +122,8 @@ def regime_chart(
             "line": np.repeat([int(which) for which, _, _ in chains], lengths),
             "curve": np.repeat(np.arange(len(chains)), lengths),
             "residual": np.concatenate([e.residual[c] for _, e, c in chains] or [np.empty(0)]),
+            "cell_regime": regime,
+            "cell_kept": kept,
             "region_regime": [code for code, *_ in regions],
             "region_kept": [state for _, state, _, _ in regions],
             "region_place": square.values(np.array([at for _, _, at, _ in regions])),

@@ -15,7 +15,7 @@ ANGLES = np.linspace(0.0, np.pi, 31)
 
 @pytest.fixture(scope="module")
 def chart():
-    design = {"alpha1": 0.305 * np.pi, "alpha2": 0.07 * np.pi}
+    design = {"alpha1": np.pi * np.array([0.305, 0.83]), "alpha2": np.pi * np.array([0.07, 0.83])}
     return squealpipe.regime_chart(PARAMS, ANGLES, ANGLES, design=design, t_end=15.0)
 
 
@@ -46,11 +46,12 @@ def test_regions_are_what_runs_and_eigenvalues_say(chart):
 
 def test_distances_of_a_design(chart):
     """From points of the lines, for which the polygon of the distance is not used."""
-    for which, distance in zip(ChartLine, chart.distance.values, strict=True):
-        on = chart.line.values == which
-        far = np.hypot(chart.alpha1[on] - chart.design[0], chart.alpha2[on] - chart.design[1])
-        assert distance == pytest.approx(float(far.min()), abs=2e-4)
-        assert distance < float(far.min()) + 1e-12
+    for design, distances in zip(chart.design.values, chart.distance.values, strict=True):
+        for which, distance in zip(ChartLine, distances, strict=True):
+            on = chart.line.values == which
+            far = np.hypot(chart.alpha1[on] - design[0], chart.alpha2[on] - design[1])
+            assert distance == pytest.approx(float(far.min()), abs=2e-4)
+            assert distance < float(far.min()) + 1e-12
 
 
 def test_parameters_under_their_own_names():
@@ -58,7 +59,7 @@ def test_parameters_under_their_own_names():
     kappa, mu = np.linspace(0.3, 1.3, 9), np.linspace(0.02, 0.8, 9)
     angles = 0.4 * np.pi, 0.1 * np.pi
     chart = squealpipe.regime_chart(PARAMS, *angles, t_end=10.0, kappa=kappa, mu=mu)
-    assert chart.design.values.tolist() == [PARAMS.kappa, PARAMS.mu]
+    assert chart.design.values.tolist() == [[PARAMS.kappa, PARAMS.mu]]
     on = chart.line.values == ChartLine.flutter
     for k, m in zip(chart.kappa.values[on], chart.mu.values[on], strict=True):
         there = PARAMS.with_(k3=float(k), mu=float(m))

@@ -1,0 +1,118 @@
+"""Charts of regimes: what a design is next to, over both angles, and over κ and μ."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from string import ascii_lowercase
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.patheffects import withStroke
+
+from squealpipe.parameters import SCENES
+from squealpipe.plotting import style
+from squealpipe.plotting.origin import scene_title, time_unit
+from squealpipe.schema.curves import ChartLine
+from squealpipe.study.figures.linear.fig07 import KINDS
+from squealpipe.text import number
+
+READS = ("angle_chart", "friction_chart/*")
+LOOKS = {
+    ChartLine.contact_lost: ("contact is lost", {"color": style.BLACK}),
+    ChartLine.flutter: ("A3 flutters", {"color": style.BLUE, "linestyle": "--"}),
+    ChartLine.divergence: ("A3 diverges", {"color": style.GREEN, "linestyle": ":"}),
+}
+HALO = [withStroke(linewidth=2, foreground="white")]
+ALT = (
+    "A chart over both spring angles and one over stiffness ratio and friction for each scene, "
+    "with lines where contact is lost and sliding turns unstable, and crosses at the scenes."
+)
+
+
+def caption(angles: xr.Dataset, scenes: Mapping[str, xr.Dataset]) -> str:
+    """What the lines mean, and the distances of each scene."""
+    horizon = number(float(angles.t_end) / time_unit(angles))
+    rows = zip(sorted(scenes), np.degrees(angles.distance.values), strict=True)
+    distances = "; ".join(
+        f"{_title(name)}: {_listed(around)} deg; {_listed(scenes[name].distance.values[0])}"
+        for name, around in rows
+    )
+    return (
+        "Charts of regimes: where A1, from rest, loses contact up to t = "
+        f"{horizon} √(m/k1), and where A3 without damping flutters and diverges, as curves. "
+        "(a) Over both spring angles, with the scenes as crosses; then over κ = k₃/k₁ and μ at "
+        "each scene's angles, with the study's own values as a cross. Distances of the crosses "
+        "to the nearest lines (loss of contact, flutter, divergence), first in (a), then in "
+        f"(κ, μ): {distances}."
+    )
+
+
+CAPTION = caption
+
+
+def draw(angles: xr.Dataset, scenes: Mapping[str, xr.Dataset]) -> Figure:
+    """One panel for each chart.
+
+    Args:
+        angles: dataset ``regime_chart`` over both angles.
+        scenes: those over κ and μ by scene.
+    """
+    names = sorted(scenes)
+    rows = (len(names) + 2) // 2
+    figure, axes = style.new_figure(style.PAGE, 0.6 + 2.6 * rows, ncols=2, nrows=rows)
+    panels = axes.ravel()
+    _draw(panels[0], angles)
+    for axis in (panels[0].xaxis, panels[0].yaxis):
+        style.angle_ticks(axis)
+    panels[0].set(xlabel="α₁ (rad)", ylabel="α₂ (rad)")
+    style.panel_letter(panels[0], "a", "both angles")
+    for name, at in zip(names, angles.design.values, strict=True):
+        panels[0].annotate(
+            _title(name).rpartition(", ")[2], at, (5, 5), textcoords="offset points",
+            color=style.RED, path_effects=HALO,
+        )  # fmt: skip
+    for panel, letter, name in zip(panels[1:], ascii_lowercase[1:], names, strict=False):
+        _draw(panel, scenes[name])
+        panel.set(xlabel="κ", ylabel="μ")
+        style.panel_letter(panel, letter, _title(name))
+    for panel in panels[1 + len(names) :]:
+        panel.remove()
+    handles = panels[0].get_legend_handles_labels()[0]
+    figure.legend(handles=[*style.patches(KINDS), *handles], loc="outside lower center", ncols=4)
+    return figure
+
+
+def _draw(panel: Axes, chart: xr.Dataset) -> None:
+    x, y = (chart[str(name)].values for name in chart.parameter.values)
+    kinds = 2 * chart.cell_kept.values + (chart.cell_regime.values > 0)
+    tones = style.category_colours([tone for tone, _ in KINDS])
+    extent = chart.range.values.ravel()
+    panel.imshow(kinds.T, origin="lower", extent=extent, interpolation="none", **tones)
+    for which, (label, look) in LOOKS.items():
+        on = chart.line.values == which
+        ends = np.flatnonzero(np.diff(chart.curve.values[on])) + 1
+        line = [np.insert(each[on], ends, np.nan) for each in (x, y)]
+        panel.plot(*line, label=label, **look)
+    panel.plot(
+        *chart.design.values.T,
+        "x",
+        color=style.RED,
+        ms=7,
+        mew=1.8,
+        label="scene",
+        path_effects=HALO,
+    )
+    panel.set(xlim=extent[:2], ylim=extent[2:], aspect="auto", box_aspect=1)
+
+
+def _title(name: str) -> str:
+    scene = name.rpartition("/")[2]
+    return scene_title(scene) if scene in SCENES else scene
+
+
+def _listed(distances: np.ndarray) -> str:
+    by_line = dict(zip(ChartLine, distances, strict=True))
+    found = (by_line[which] for which in LOOKS)
+    return ", ".join(number(far, 3) if np.isfinite(far) else "none" for far in found)

@@ -1,0 +1,40 @@
+"""Charts of regimes: over both angles, and over κ and μ at the angles of each scene."""
+
+from pathlib import Path
+
+import numpy as np
+
+from squealpipe.execution.job import Job
+from squealpipe.parameters import SCENES
+from squealpipe.tasks.curves.chart import regime_chart
+
+COARSE = 31
+SMALLEST, LARGEST = 0.1, 2.0  # of κ and μ over those of the study
+
+job = Job(snakemake)
+part, params = job.part, job.params
+files = {Path(path).stem: path for path in job.out.friction}
+if "scenes" in part:  # of a study of one's own
+    angles = {name: [part["scenes"][name][f"alpha{i}"] for i in (1, 2)] for name in files}
+else:
+    angles = {name: [SCENES[name].alpha1, SCENES[name].alpha2] for name in files}
+alpha1, alpha2 = np.array(list(angles.values())).T
+ranges = [np.linspace(min(0.0, *each), max(np.pi, *each), COARSE) for each in (alpha1, alpha2)]
+kappa, mu = (
+    np.linspace(SMALLEST, LARGEST, COARSE) * (value or 1.0) for value in (params.kappa, params.mu)
+)
+options = {
+    "t_end": part["dynamics.chart_horizon"] * params.time_unit,
+    "tol": part["dynamics.tol"],
+    "workers": snakemake.threads,
+}
+job.make(
+    lambda: regime_chart(params, *ranges, design={"alpha1": alpha1, "alpha2": alpha2}, **options),
+    job.out.angles,
+)
+for name, path in files.items():
+    job.make(
+        lambda: regime_chart(params, *angles[name], kappa=kappa, mu=mu, **options),
+        path,
+        scene=name,
+    )
