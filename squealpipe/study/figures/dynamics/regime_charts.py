@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from string import ascii_lowercase
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -19,7 +20,7 @@ from squealpipe.study.figures.linear.fig07 import KINDS
 from squealpipe.text import number
 
 READS = ("angle_chart", "friction_chart/*")
-LOOKS = {
+LOOKS: dict[ChartLine, tuple[str, dict[str, Any]]] = {
     ChartLine.contact_lost: ("contact is lost", {"color": style.BLACK}),
     ChartLine.flutter: ("A3 flutters", {"color": style.BLUE, "linestyle": "--"}),
     ChartLine.divergence: ("A3 diverges", {"color": style.GREEN, "linestyle": ":"}),
