@@ -9,7 +9,7 @@ from squealpipe.parameters import SCENES
 from squealpipe.tasks.curves.chart import regime_chart
 
 COARSE = 31
-SMALLEST, LARGEST = 0.1, 2.0  # of κ and μ over those of the study
+SMALLEST, LARGEST = 0.002, 2.0  # of κ and μ over those of the study
 
 job = Job(snakemake)
 part, params = job.part, job.params

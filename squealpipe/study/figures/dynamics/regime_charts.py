@@ -70,8 +70,10 @@ def draw(angles: xr.Dataset, scenes: Mapping[str, xr.Dataset]) -> Figure:
     panels[0].set(xlabel="α₁ (rad)", ylabel="α₂ (rad)")
     style.panel_letter(panels[0], "a", "both angles")
     for name, at in zip(names, angles.design.values, strict=True):
+        left = at[0] < float(angles.range[0].mean())
         panels[0].annotate(
-            _title(name).rpartition(", ")[2], at, (5, 5), textcoords="offset points",
+            _title(name).rpartition(", ")[2], at, (-5 if left else 5, 5),
+            textcoords="offset points", ha="right" if left else "left",
             color=style.RED, path_effects=HALO,
         )  # fmt: skip
     for panel, letter, name in zip(panels[1:], ascii_lowercase[1:], names, strict=False):
@@ -105,6 +107,10 @@ def _draw(panel: Axes, chart: xr.Dataset) -> None:
         label="scene",
         path_effects=HALO,
     )
+    kind, counts = np.unique(kinds, return_counts=True)
+    if counts.max() > 0.99 * kinds.size:
+        everywhere = f"{KINDS[kind[counts.argmax()]][1]}\n(nearly everywhere)"
+        panel.text(0.5, 0.25, everywhere, ha="center", transform=panel.transAxes)
     panel.set(xlim=extent[:2], ylim=extent[2:], aspect="auto", box_aspect=1)
 
 
