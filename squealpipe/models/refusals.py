@@ -4,7 +4,6 @@ dashpots.
 
 from __future__ import annotations
 
-from squealpipe.laws.contact_laws import LINEAR
 from squealpipe.laws.friction_laws import COULOMB, LAWS
 from squealpipe.parameters import DEFAULTS, TABLE, Parameters, brief
 
@@ -55,20 +54,6 @@ def refuse_extensions(params: Parameters, who: str, why: str) -> None:
         found = ", ".join(f"{name} = {brief(given[name])}" for name in wrong)
         remedy = ", ".join(f"{name} = {carried[name]!r}" for name in wrong)
         raise ValueError(f"{found}: {who} cannot carry this ({why}); use model A1, or {remedy}")
-
-
-def refuse_own_laws(params: Parameters, who: str) -> None:
-    """Stop what knows the formulas of friction and the linear contact alone.
-
-    Raises:
-        ValueError: a table, a law in Python or another contact law.
-    """
-    for name, known in {"friction_law": list(LAWS), "contact_law": [LINEAR]}.items():
-        if (given := getattr(params, name)) not in known:
-            raise ValueError(
-                f"{name} = {brief(given)}: {who} cannot carry this; take the brake as a system, "
-                "squealpipe.systems.brake.brake_of(params), or one of " + ", ".join(known)
-            )
 
 
 def refuse_scales(params: Parameters) -> None:

@@ -12,8 +12,8 @@ from squealpipe.laws.contact_laws import LINEAR
 from squealpipe.laws.friction import stick_limit
 from squealpipe.laws.springs import Geometry
 from squealpipe.models.a1 import acceleration, suspension_force
-from squealpipe.models.a1_automaton import A1Automaton, EventKind
 from squealpipe.parameters import NUMBERS_OF_A1
+from tests.oracles.a1_automaton import A1Automaton, EventKind
 from tests.oracles.long_double import LONG_ULP, compile_long_double, integrate_long_double
 
 _REGIME = ("contact", "direction", "stick", "slips")
@@ -68,7 +68,7 @@ def simulate_reference(
         params: physical parameters; alpha1, alpha2: angles, rad.
         t_end: horizon, s.
         initial_state: (x, y, ẋ, ẏ) at t = 0.
-        stop_at: an :class:`squealpipe.models.a1_automaton.EventKind` to stop at.
+        stop_at: an :class:`tests.oracles.a1_automaton.EventKind` to stop at.
     """
     a1 = A1Automaton(params, alpha1, alpha2)
 

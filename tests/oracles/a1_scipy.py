@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from squealpipe.models.a1_automaton import A1Automaton
+from tests.oracles.a1_automaton import A1Automaton
 from tests.oracles.hybrid import Guard, HybridAutomaton, integrate_hybrid
 
 AT_REST = (0.0, 0.0, 0.0, 0.0)
@@ -31,7 +31,7 @@ def simulate_scipy(
         tol: relative and absolute tolerance.
         times: instants at which the state is wanted (``samples`` of the result).
         initial_state: (x, y, ẋ, ẏ) at t = 0.
-        stop_at: an :class:`squealpipe.models.a1_automaton.EventKind` to stop at.
+        stop_at: an :class:`tests.oracles.a1_automaton.EventKind` to stop at.
         stick, linear_springs: the variants of A1.
     """
     a1 = A1Automaton(params, alpha1, alpha2, stick=stick, linear_springs=linear_springs)

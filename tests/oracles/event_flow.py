@@ -6,9 +6,8 @@ matrix, which accounts for the shift of the event's time.
 """
 
 from dataclasses import dataclass, field
-from enum import IntEnum
 from itertools import zip_longest
-from typing import Any, NamedTuple, Protocol
+from typing import Any, NamedTuple
 
 import heyoka
 import numpy as np
@@ -40,71 +39,6 @@ class Switched(NamedTuple):
     regime: int
     state: Vector
     gradient: Vector | None
-
-
-class HybridSystem(Protocol):
-    """A hybrid system at fixed parameters.
-
-    Attributes:
-        integrator: of :func:`compile_flow`, made once for all parameters.
-        has_families: whether cycles need not be isolated, as without damping.
-        jumps: whether the motion jumps where a hold just begins.
-    """
-
-    integrator: Any
-    has_families: bool
-    jumps: bool
-
-    def parameters(self, regime):
-        """Values of the symbolic parameters in a regime."""
-
-    def start(self, state):
-        """The regime of a state, and the state off any surface."""
-
-    def switch(self, surface, regime, state):
-        """What follows when a surface is met."""
-
-    def velocity(self, regime, state):
-        """The field of a regime."""
-
-    def slopes(self, regimes, states):
-        """Derivatives of the accelerations at many states, as ``step_derivatives`` takes them."""
-
-    def holds(self, regime):
-        """Whether a regime fixes a component of the state."""
-
-    def is_singular(self, passage):
-        """Whether a motion that was kept comes next to where the field is not defined."""
-
-    def is_tangent(self, passage):
-        """Whether a motion that was kept touches a hold, or the end of one, at a tangent."""
-
-    def touch_of(self, extra, missing):
-        """What has happened where the kinds ``extra`` stand in place of ``missing``."""
-
-    def clearance(self, touch, passage):
-        """How far a motion that was kept is from a touch; infinite where none is near."""
-
-    def unit_of(self, touch):
-        """The unit of a clearance."""
-
-    def overlap(self, touch, passage, first):
-        """How far a motion is beyond a touch whose first event is ``first``; without a unit."""
-
-
-class Touch(IntEnum):
-    """How the events of a motion change along a family of motions."""
-
-    graze = 0
-    """a surface across which the field is continuous is just touched"""
-    touch = 1
-    """a surface on which the motion may be held is just touched"""
-    split = 2
-    """a hold is just interrupted"""
-    passing = 3
-    """a surface is crossed after a hold of no length"""
-    meeting = 4
-    """two events coincide, one of which is none on the other side"""
 
 
 class CompiledFlow(NamedTuple):
@@ -207,7 +141,7 @@ def flow(
     """Follow a state for some time through all events.
 
     Args:
-        system: the hybrid system.
+        system: as :class:`tests.oracles.a1_flow.A1Flow`.
         state: initial state.
         duration: time to go, positive.
         derivative: compute that of the end state; the motion is kept for it.
@@ -308,26 +242,10 @@ def _derivative(system, segments, saltations):
     return total
 
 
-class TurningPoint(NamedTuple):
-    """Where a component of the state has an extremum between events.
-
-    Attributes:
-        segment: index of the segment.
-        time: of the extremum.
-        value: there.
-        is_maximum: or a minimum.
-    """
-
-    segment: int
-    time: float
-    value: float
-    is_maximum: bool
-
-
-def turning_points(segments, component):
-    """Extrema of a component between events."""
+def extrema(segments, component):
+    """Values of a component at its extrema between events."""
     found = []
-    for index, segment in enumerate(segments):
+    for segment in segments:
         steps = np.diff(segment.times)
         powers = np.arange(segment.coefficients.shape[2])
         scaled = segment.coefficients * steps[:, None, None] ** powers
@@ -335,22 +253,10 @@ def turning_points(segments, component):
         values = rates @ _NODES ** powers[:-1, None]
         for step, left in zip(*np.nonzero(values[:, :-1] * values[:, 1:] < 0.0), strict=True):
             root = _root(rates[step], _NODES[left], _NODES[left + 1])
-            time = segment.times[step] + root * steps[step]
-            value = float(np.polynomial.polynomial.polyval(root, scaled[step, component]))
-            found.append(TurningPoint(index, float(time), value, bool(values[step, left] > 0.0)))
+            found.append(float(np.polynomial.polynomial.polyval(root, scaled[step, component])))
     return found
 
 
 def _root(polynomial, left, right):
     """The root of a polynomial that changes its sign once between two places."""
     return float(brentq(lambda at: np.polynomial.polynomial.polyval(at, polynomial), left, right))
-
-
-def sample_path(segments, times):
-    """The state at ascending times of a passage that was kept, (times, states)."""
-    segments = [part for part in segments if len(part.coefficients)]
-    bounds = np.concatenate([part.times[:-1] for part in segments])
-    coefficients = np.concatenate([part.coefficients for part in segments])
-    step = np.clip(np.searchsorted(bounds, times, side="right") - 1, 0, len(bounds) - 1)
-    powers = (times - bounds[step])[:, None] ** np.arange(coefficients.shape[2])
-    return np.asarray(np.einsum("tik,tk->ti", coefficients[step], powers))

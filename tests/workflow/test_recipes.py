@@ -89,7 +89,7 @@ PARAMETER_AND_LAW = """
 import numpy as np
 from squealpipe import Parameters, stability_map
 from squealpipe.config.settings import parse_study
-from squealpipe.models.a1_automaton import A1Automaton
+from tests.oracles.a1_automaton import A1Automaton
 from squealpipe.solvers.a1.jobs import Jobs
 from tests.oracles.a1_scipy import simulate_scipy
 from tests.oracles.a1_long_double import simulate_reference

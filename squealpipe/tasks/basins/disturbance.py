@@ -9,8 +9,6 @@ import xarray as xr
 from annotated_types import Ge
 
 from squealpipe.methods.smallest_vector import Found, Settings, search, smallest_linear
-from squealpipe.models.a1_automaton import A1Automaton
-from squealpipe.models.refusals import refuse_own_laws
 from squealpipe.models.variants import VARIANT_RULES
 from squealpipe.parameters import Parameters
 from squealpipe.schema import Outcome, blank, build
@@ -18,7 +16,8 @@ from squealpipe.schema.basins import SMALLEST_DISTURBANCE, LeadsTo
 from squealpipe.schema.origin import recorded
 from squealpipe.solvers.a1.ensemble import run_ensemble
 from squealpipe.solvers.a1.jobs import Model
-from squealpipe.solvers.a1.sliding import sliding_equilibrium, sliding_jacobian
+from squealpipe.tasks.cycles.scene import Scene
+from squealpipe.tasks.cycles.sliding import steady_sliding
 from squealpipe.tasks.dynamics.motion import linear_time, whirls
 from squealpipe.tasks.linear.maps import stability_map
 from squealpipe.validation import Angle, Positive, Seed, Tolerance, Whole, Workers, one_of
@@ -83,13 +82,12 @@ def smallest_disturbance(
         ValueError: an argument is not allowed.
     """
     _check_goal(leads_to, model)
-    refuse_own_laws(params, "smallest_disturbance")
     time = linear_time(params)
     horizon = T_END * time if t_end is None else t_end
     goal = LeadsTo[leads_to]
     largest = BOUNDS[goal] if bound is None else bound
-    a1 = A1Automaton(params, alpha1, alpha2, linear_springs=VARIANT_RULES[model].linear_springs)
-    rest = sliding_equilibrium(a1) if params.belt_speed != 0.0 else None
+    scene = Scene(params, alpha1, alpha2, model=model)
+    sliding = steady_sliding(scene) if params.belt_speed != 0.0 else None
     numbers = np.unique(np.append(2 ** np.arange(3, directions.bit_length()), directions))
     numbers = numbers[numbers <= directions]
     improved = Settings(directions).improved
@@ -107,10 +105,12 @@ def smallest_disturbance(
     def result(outcome: Outcome, **found: Any) -> xr.Dataset:
         return build(SMALLEST_DISTURBANCE, {**nothing, **found, "outcome": outcome}, coordinates)
 
-    if rest is None:
+    if sliding is None:
         return result(Outcome.no_sliding_state)
     scale = params.preload * np.array([1.0, 1.0, 1.0 / time, 1.0 / time])
-    jacobian = sliding_jacobian(a1, rest)
+    units = scene.state_units
+    rest = sliding.state * units
+    jacobian = sliding.jacobian * units[:, None] / (units * params.time_unit)
     values = np.linalg.eigvals(jacobian)
     growth = float(values.real.max())
     known = {

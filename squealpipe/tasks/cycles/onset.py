@@ -8,12 +8,11 @@ import numpy as np
 from scipy.optimize import brentq
 
 from squealpipe.methods.continuation import ContinuationState, PseudoArclength
-from squealpipe.models.a1_automaton import A1Automaton
-from squealpipe.solvers.a1.sliding import sliding_equilibrium, sliding_regime
 from squealpipe.systems.cycles.branch import STEPS
 from squealpipe.systems.cycles.event_map import FREE, Cycle, Event, EventMap, Section
 from squealpipe.systems.cycles.flow import Flow, Vector
 from squealpipe.tasks.cycles.scene import Scene
+from squealpipe.tasks.cycles.sliding import steady_sliding
 
 _SCAN = 201
 _FIRST_AMPLITUDE = 0.02
@@ -28,19 +27,9 @@ def find_onset(scene: Scene, begin: float, to: float) -> tuple[ContinuationState
     """
     flow = Flow(scene.system)
 
-    def sliding(value: float) -> tuple[Vector, Vector, int, dict[str, float]] | None:
-        """Equilibrium, slopes, regime and parameters at a value."""
-        here = at(scene, value)
-        a1 = A1Automaton(here.scaled, here.alpha1, here.alpha2)
-        rest = sliding_equilibrium(a1)
-        if rest is None:
-            return None
-        regime = scene.regimes.index(sliding_regime(a1))
-        return rest, flow.jacobian(here.values, regime, rest), regime, here.values
-
     def growth(value: float) -> float:
-        found = sliding(value)
-        return np.nan if found is None else float(np.linalg.eigvals(found[1]).real.max())
+        found = steady_sliding(at(scene, value), flow)
+        return np.nan if found is None else float(np.linalg.eigvals(found.jacobian).real.max())
 
     grid = np.linspace(begin, to, _SCAN)
     rates = np.array([growth(float(value)) for value in grid])
@@ -49,11 +38,11 @@ def find_onset(scene: Scene, begin: float, to: float) -> tuple[ContinuationState
         return None
     low, high = grid[crossing[0]], grid[crossing[0] + 1]
     onset = float(brentq(growth, low, high, xtol=1e-14 * max(abs(begin), abs(to)), rtol=1e-14))
-    found = sliding(onset)
+    found = steady_sliding(at(scene, onset), flow)
     if found is None:
         return None
-    rest, slopes, regime, values = found
-    roots, vectors = np.linalg.eig(slopes)
+    rest, regime, values = found.state, found.regime, at(scene, onset).values
+    roots, vectors = np.linalg.eig(found.jacobian)
     mode = int(np.argmax(roots.real + (roots.imag > 0.0)))
     omega = float(roots[mode].imag)
     if omega <= 0.0:

@@ -33,12 +33,14 @@ class Scene:
         params: physical parameters.
         alpha1, alpha2: angles, rad.
         follow: the parameter or angle that changes, if any.
+        model: "A1" or one of its variants.
     """
 
     params: Parameters
     alpha1: float
     alpha2: float
     follow: str | None = None
+    model: str = "A1"
 
     @cached_property
     def units(self) -> dict[str, float]:
@@ -74,6 +76,7 @@ class Scene:
             self.params.friction_law,
             damped=not is_undamped(self.params) or self.follow in dashpots,
             contact_law=contact_laws.relative(self.params.contact_law, self.params.preload),
+            model=self.model,
         )
 
     @property

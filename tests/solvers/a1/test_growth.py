@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 from scipy.linalg import expm
 
-from squealpipe.models.a1_automaton import A1Automaton
 from squealpipe.parameters import LAW_NAMES, Parameters
 from squealpipe.solvers.a1.ensemble import run_ensemble
 from squealpipe.solvers.a1.scaling import PHYSICAL
-from squealpipe.solvers.a1.sliding import sliding_equilibrium, sliding_jacobian
+from squealpipe.tasks.cycles.scene import Scene
+from squealpipe.tasks.cycles.sliding import steady_sliding
 from tests.former import FORMER
 from tests.oracles.a1_flow import A1Flow
 from tests.oracles.event_flow import flow
@@ -110,12 +110,11 @@ def resting_runs(count, seed):
             friction_speed=np.exp(rng.uniform(-3.0, 1.0)) * length / unit,
         )  # fmt: skip
         angles = rng.uniform(0.0, np.pi, 2)
-        a1 = A1Automaton(params, *angles)
-        rest = sliding_equilibrium(a1)
-        if rest is None:
+        found = steady_sliding(Scene(params, *angles))
+        if found is None:
             continue
         scale = np.array([length, length, length / unit, length / unit])
-        matrix = sliding_jacobian(a1, rest) * scale / scale[:, None] * unit
+        rest, matrix = found.state * scale, found.jacobian
         if np.linalg.eigvals(matrix).real.max() > -1e-3:
             continue
         start = rest + scale * rng.normal(size=4) * 10.0 ** rng.uniform(-14.0, -7.0)
@@ -141,10 +140,8 @@ def test_growth_of_a_motion_that_dies_out_is_that_of_the_linear_system():
 
 
 def test_growth_of_undamped_steady_sliding():
-    a1 = A1Automaton(FORMER.with_(k3=0.75, length1=5.0, length2=5.0), 0.83 * np.pi, 0.83 * np.pi)
-    rest = sliding_equilibrium(a1)
-    run = run_ensemble(
-        a1.params, 0.83 * np.pi, 0.83 * np.pi, t_end=200.0, initial_state=rest, tangent=True
-    )
-    growth = np.linalg.norm(expm(200.0 * sliding_jacobian(a1, rest)) @ np.full(4, 0.5))
+    place = FORMER.with_(k3=0.75, length1=5.0, length2=5.0), 0.83 * np.pi, 0.83 * np.pi
+    found = steady_sliding(Scene(*place))
+    run = run_ensemble(*place, t_end=200.0, initial_state=found.state, tangent=True)
+    growth = np.linalg.norm(expm(200.0 * found.jacobian) @ np.full(4, 0.5))
     assert run.log_growth == pytest.approx(np.log(growth), abs=1e-4)

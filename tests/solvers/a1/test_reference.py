@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from squealpipe.models.a1_automaton import EventKind
 from tests.former import FORMER
+from tests.oracles.a1_automaton import EventKind
 from tests.oracles.a1_long_double import simulate_reference
 from tests.oracles.a1_scipy import simulate_scipy
 

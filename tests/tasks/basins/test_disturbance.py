@@ -7,11 +7,11 @@ import pytest
 
 from squealpipe import simulate, smallest_disturbance
 from squealpipe.laws.springs import geometry, linear_stiffness
-from squealpipe.models.a1_automaton import A1Automaton
 from squealpipe.models.damped import critical_friction
 from squealpipe.schema import Outcome
 from squealpipe.solvers.a1.ensemble import run_ensemble
-from squealpipe.solvers.a1.sliding import sliding_equilibrium
+from squealpipe.tasks.cycles.scene import Scene
+from squealpipe.tasks.cycles.sliding import steady_sliding
 from squealpipe.tasks.dynamics.motion import linear_time
 from tests.former import FORMER
 
@@ -170,12 +170,39 @@ def test_steady_sliding_is_found_in_any_units():
             mass=params.mass * 1e4, preload=params.preload * unit,
             length1=1e6 * unit, length2=1e6 * unit, belt_speed=params.belt_speed * unit,
         )  # fmt: skip
-        found = sliding_equilibrium(A1Automaton(params, alpha1, alpha2))
+        found = steady_sliding(Scene(params, alpha1, alpha2))
         assert found is not None
         expected = steady_state(params, alpha1, alpha2)
-        np.testing.assert_allclose(found[:2], expected, atol=1e-3 * np.abs(expected).max())
+        np.testing.assert_allclose(
+            found.state[:2] * params.preload, expected, atol=1e-3 * np.abs(expected).max()
+        )
 
 
 def test_a_dashpot_too_stiff_for_the_horizon_is_refused():
     with pytest.raises(ValueError, match="shorten t_end, or weaken a dashpot"):
         smallest_disturbance(FORMER.with_(mu=0.1, damping1=1e8), 2.0, 1.9)
+
+
+def test_a_table_that_is_the_formula_gives_the_same_disturbance():
+    """Friction and contact as tables of many pieces, and as the laws that they list."""
+    law = FORMER.with_(mu=0.1, damping1=0.05, damping2=0.02, belt_speed=2.0)
+    table = law.with_(
+        friction_law="linear 0.0:0.1 1.0:0.1 3.0:0.1", contact_law=f"linear 0.0:0.0 1.0:{law.k3}"
+    )
+    expected, found = (
+        smallest_disturbance(p, 2.0, 1.9, directions=16, t_end=50.0, workers=1)
+        for p in (law, table)
+    )
+    for name in ("x_rest", "y_rest", "growth_rate", "distance", "linear_distance"):
+        np.testing.assert_allclose(found[name], expected[name], rtol=1e-6, err_msg=name)
+
+
+def test_where_steady_sliding_lies_in_a_later_piece_of_the_contact_law():
+    """Its force balances the springs' there; the first piece alone has another equilibrium."""
+    soft = FORMER.with_(mu=0.1, contact_law="linear 0.0:0.0 0.5:0.1 1.0:0.6")
+    scene = Scene(soft, 2.0, 1.9)
+    found = steady_sliding(scene)
+    start = tuple(found.state * scene.state_units)
+    run = simulate(soft, 2.0, 1.9, t_end=20.0, initial_state=start)
+    assert 0.0 < found.state[1] < 1.0
+    assert max(np.ptp(run.x.values), np.ptp(run.y.values)) < 1e-9

@@ -7,11 +7,12 @@ import pytest
 from scipy.optimize import root
 
 from squealpipe import cycle_branch, limit_cycle, simulate
+from squealpipe.codes import Event, Regime
 from squealpipe.schema import Outcome
 from squealpipe.systems.cycles.labels import Label
 from tests.former import FORMER
 from tests.oracles.a1_flow import A1Flow
-from tests.oracles.event_flow import Touch, flow
+from tests.oracles.event_flow import flow
 
 PENDULUM = (0.4 * math.pi, 0.6 * math.pi)
 STICKING = FORMER.with_(belt_speed=1.0, damping1=0.02, damping2=0.02, k2=1.2)
@@ -52,10 +53,10 @@ def located_crossings(branch, parameter):
         here = branch.isel(point=point)
         system = A1Flow(STICKING.with_(**{parameter: float(here[parameter])}), *PENDULUM)
         passage = flow(system, start_of(here), float(here.period), keep=True)
-        excess = abs(system.clearance(Touch.passing, passage))
-        stick = [part for part in passage.segments if system.holds(part.regime)]
-        shortest = min((part.times[-1] - part.times[0] for part in stick), default=np.inf)
-        assert min(excess, shortest) < 1e-7
+        a1, events = system.a1, zip(passage.event_kinds, passage.event_states, strict=True)
+        excess = [abs(abs(a1.pull(z)) - a1.grip(z)) for kind, z in events if kind == Event.reversal]
+        stick = [part.times for part in passage.segments if part.regime == Regime.stick]
+        assert min(*excess, *(times[-1] - times[0] for times in stick), np.inf) < 1e-7
         found.append(float(here[parameter]))
     return found
 

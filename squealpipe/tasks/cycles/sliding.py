@@ -1,0 +1,64 @@
+"""Steady sliding of A1 in contact, and small motions about it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.optimize import root
+
+from squealpipe.systems.cycles.flow import Flow, Vector
+from squealpipe.systems.trace import TIME
+from squealpipe.tasks.cycles.scene import STATE, Scene
+
+_BALANCE = 1e-8
+"""Largest force left over at an equilibrium, over the preload's."""
+_MOST_PIECES = 20
+"""Pieces of a law's table that are tried one after the other."""
+
+
+@dataclass(frozen=True)
+class Sliding:
+    """The state of steady sliding in contact, in the scene's units.
+
+    Attributes:
+        state: (4,).
+        regime: number of the system's regime there.
+        jacobian: ∂f/∂z there, (4, 4).
+    """
+
+    state: Vector
+    regime: int
+    jacobian: Vector
+
+
+def steady_sliding(scene: Scene, flow: Flow | None = None) -> Sliding | None:
+    """The equilibrium that a Newton method from r = 0 leads to; None where it finds none.
+
+    Args:
+        scene: parameters and angles.
+        flow: of the scene's system, where there is one.
+    """
+    flow, values = flow or Flow(scene.system), scene.values
+    force = 0.5 * (scene.scaled.k1 + scene.scaled.k2)
+    state, regime = np.zeros(4), _regime(scene, np.zeros(4))
+    for _ in range(_MOST_PIECES):
+
+        def pull(place: Vector, regime: int = regime) -> Vector:
+            return flow.field(values, regime, np.array([*place, 0.0, 0.0]), 0.0)[2:] / force
+
+        found = root(pull, state[:2], tol=1e-13)
+        unbalanced = float(np.abs(pull(found.x)).max()) * force / scene.scaled.k3
+        if not unbalanced < _BALANCE or found.x[1] >= 1.0:
+            return None
+        state, before = np.array([*found.x, 0.0, 0.0]), regime
+        regime = _regime(scene, state)
+        if regime == before:
+            return Sliding(state, regime, flow.jacobian(values, regime, state))
+    return None
+
+
+def _regime(scene: Scene, state: Vector) -> int:
+    """The regime of the system at a state."""
+    given = {name: np.array([value]) for name, value in zip(STATE, state, strict=True)}
+    return int(scene.system.first_regimes({**scene.values, **given, TIME: np.zeros(1)}, 1)[0])
