@@ -7,9 +7,6 @@ import mimetypes
 from pathlib import Path
 from typing import Any
 
-from rocrate.model.contextentity import ContextEntity
-from rocrate.rocrate import ROCrate
-
 from squealpipe.store.netcdf import load
 from squealpipe.store.runs import regular_files
 from squealpipe.store.whole_files import checksum
@@ -26,6 +23,10 @@ def describe(folder: Path, name: str, frozen_at: str) -> str:
         name: of the archive.
         frozen_at: ISO date.
     """
+    # of the extra [study]; other commands on archives do without
+    from rocrate.model.contextentity import ContextEntity
+    from rocrate.rocrate import ROCrate
+
     crate = ROCrate()
     crate.name = f"squealpipe archive {name}"
     crate.description = (

@@ -55,7 +55,7 @@ def shown():
 @pytest.fixture(scope="module")
 def page_file(explorer, shown, tmp_path_factory):
     path = tmp_path_factory.mktemp("explorer") / "explorer.html"
-    write_explorer(explorer, shown, path, {"mine": {"alpha1": 0.7, "alpha2": 4.0}})
+    write_explorer(explorer, shown, path, {"mine": {"alpha1": 0.7, "alpha2": 2.4}})
     return path
 
 
@@ -165,7 +165,8 @@ class TestInBrowser:
     def test_every_layer_can_be_chosen_and_tells_its_value_under_the_mouse(self, opened, shown):
         def told(i, j, layer):
             x, y = opened.evaluate(
-                f"document.getElementById('map').chart.pixel({layer.alpha1[i]}, {layer.alpha2[j]})"
+                f"document.getElementById('map').chart.pixel({layer.map.alpha1.values[i]}, "
+                f"{layer.map.alpha2.values[j]})"
             )
             opened.mouse.move(x + 1, y + 1)
             return opened.inner_text("#map .tip").split("\n")
@@ -174,12 +175,12 @@ class TestInBrowser:
             opened.select_option("#layer", key)
             for i, j in ((3, 2), (1, 5), (0, 0)):
                 where, value = told(i, j, layer)
-                if not layer.meanings and np.isfinite(layer.values[i, j]):
+                if not layer.meanings and np.isfinite(layer.map.values[i, j]):
                     assert float(value.split()[0].replace("−", "-")) == pytest.approx(
-                        layer.values[i, j], rel=1e-3, abs=1e-9
+                        layer.map.values[i, j], rel=1e-3, abs=1e-9
                     )
                 else:
-                    assert value == layer.meanings.get(layer.values[i, j], "none")
+                    assert value == layer.meanings.get(layer.map.values[i, j], "none")
             assert re.fullmatch("α₁ = .*0|α₁ = π/14, α₂ = π/14", where)
         rows = opened.locator("#facts tr").all_inner_texts()
         assert [row.split("\t")[0] for row in rows][:-1] == [one.label for one in shown.values()]

@@ -121,6 +121,16 @@ def part(parameters, rows):
     }
 
 
+def ends_truthfully(outcome, parameters, angles):
+    """At least 98 % converge; events accumulate only where round-off alone moves the mass along x:
+    both springs vertical and the belt at rest."""
+    assert np.mean(outcome == Outcome.converged) >= 0.98
+    vertical = (np.abs(np.cos(angles)) < 1e-12).all(axis=0) & (parameters["belt_speed"] == 0.0)
+    expected = {Outcome.converged, Outcome.singular_geometry}
+    assert set(np.unique(outcome[~vertical])) <= expected
+    assert set(np.unique(outcome[vertical])) <= expected | {Outcome.accumulation}
+
+
 def check(count, seed, duration, law=None, model="A1"):
     parameters, angles, unit = random_runs(count, seed)
     if law is not None:
@@ -140,8 +150,7 @@ def check(count, seed, duration, law=None, model="A1"):
         some = part(parameters, [job])
         worst[[job]], _ = energy_error(some, angles[:, [job]], duration * unit[[job]], 0.01, model)
     assert worst[outcome == Outcome.converged].max() <= 1e-9
-    assert np.mean(outcome == Outcome.converged) >= 0.98
-    assert set(np.unique(outcome)) <= {Outcome.converged, Outcome.singular_geometry}
+    ends_truthfully(outcome, parameters, angles)
 
 
 def test_energy_balance_of_random_runs():
@@ -171,8 +180,7 @@ def test_random_runs_end_truthfully(count, seed):
     """At least 98 % converge; the rest met a pivot, which a run without events confirms."""
     parameters, angles, unit = random_runs(count, seed)
     run = run_ensemble(parameters, *angles, t_end=50 * unit)
-    assert set(np.unique(run.outcome)) <= {Outcome.converged, Outcome.singular_geometry}
-    assert np.mean(run.outcome == Outcome.converged) >= 0.98
+    ends_truthfully(run.outcome, parameters, angles)
     singular = np.flatnonzero(run.outcome == Outcome.singular_geometry)
     for job in singular:
         params = FORMER.with_(**{name: values[job] for name, values in parameters.items()})

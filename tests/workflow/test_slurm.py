@@ -72,7 +72,12 @@ sweeps:
 """
 """Laid over the quick study: everything that it has, and a sweep."""
 SMALL_RULES = [
-
+    "simulate_scenes", "simulate_corrected_scenes", "map_linear", "map_corrected_linear",
+    "refine_validity", "follow_whirl", "infer_parameters", "compare_harmonic_forms",
+    "compare_a1_with_a4", "follow_cycles", "follow_doublings", "follow_impacts", "map_basins",
+    "measure_disturbances", "measure_frequencies", "check_assumptions", "compute_explorer",
+    "map_critical_friction", "map_model_ladder", "trace_backbones", "judge_balances",
+    "run_benchmark", "chart_regimes", "spread_parameters", "judge_reach",
 ]  # fmt: skip
 TWO_PARTS = [
     *PROFILE,

@@ -117,8 +117,9 @@ class Ensemble:
 
     @property
     def peak_contact_force(self) -> np.ndarray:
-        """Largest N/(k3 l_pre)."""
-        return self._shaped(self._extremes("contact_force")[1] / self._jobs.values["k3"])
+        """Largest N/(k3 l_pre); 0 where no step was made."""
+        largest = np.maximum(self._extremes("contact_force")[1], 0.0)
+        return self._shaped(largest / self._jobs.values["k3"])
 
     @property
     def lowest_contact_force(self) -> np.ndarray:
@@ -142,8 +143,9 @@ class Ensemble:
 
     @property
     def max_displacement(self) -> np.ndarray:
-        """Largest √(x² + y²), m."""
-        return self._shaped(np.sqrt(self._extremes("reach")[1]), self._jobs.length)
+        """Largest √(x² + y²), m; 0 where no step was made."""
+        square = np.maximum(self._extremes("reach")[1], 0.0)
+        return self._shaped(np.sqrt(square), self._jobs.length)
 
     @property
     def early_max_x(self) -> np.ndarray:

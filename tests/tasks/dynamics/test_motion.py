@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from scipy.stats import ks_2samp
 
+from squealpipe.schema import Outcome
 from squealpipe.schema.dynamics.runs import MotionFlag
 from squealpipe.tasks.dynamics.hammering import hammering_map
 from squealpipe.tasks.dynamics.motion import _distance, linear_time, regular_kind
@@ -178,3 +179,11 @@ def test_the_distance_of_two_samples_is_that_of_scipy():
     for sizes in ((3, 3), (7, 40), (200, 150)):
         first, second = (rng.normal(size=size).round(1) for size in sizes)
         assert _distance(first, second) == pytest.approx(ks_2samp(first, second).statistic)
+
+
+def test_a_map_of_runs_that_make_no_step_gives_their_reason():
+    """A dashpot whose force leaves the range of doubles at the start."""
+    stiff = FORMER.with_(damping2=1e155)
+    found = hammering_map(stiff, [0.2, 1.0], [1.0, 2.0], t_end=1.0, workers=1)
+    assert (found.outcome == Outcome.not_finite).all()
+    assert (found.max_displacement == 0.0).all()
