@@ -155,6 +155,7 @@ def _read_laws(path: Path, content: dict[str, Any]) -> Iterator[str]:
             section[name] = named(given, row.laws.COLUMNS, path.parent)
         except (OSError, ValueError) as error:
             yield f"parameters.{name}: {error}"
+            del section[name]
             continue
         taken = ", ".join(other for other in row.laws.IN_TABLE if other in section)
         if is_table(section[name]) and section[name] != given and taken:

@@ -76,7 +76,7 @@ def read_table(path: str | PathLike[str], columns: tuple[str, str], between: str
 
     Args:
         path: file whose first line names the columns.
-        columns: those of knots and values.
+        columns: those of knots and values; of two columns that of values may have any name.
         between: "linear" or "cubic".
 
     Raises:
@@ -90,6 +90,8 @@ def read_table(path: str | PathLike[str], columns: tuple[str, str], between: str
         rows = csv.DictReader(file, skipinitialspace=True)
         names = [name.strip() for name in rows.fieldnames or []]
         rows.fieldnames = names
+        if len(names) == 2 and columns[0] in names:
+            columns = columns[0], names[1 - names.index(columns[0])]
         for name in columns:
             if name not in names:
                 raise ValueError(f"{path} has no column {name!r}; its columns: {', '.join(names)}")

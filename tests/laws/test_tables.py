@@ -68,7 +68,7 @@ def test_cubic_tables_are_monotone_and_smooth():
         ("speed,coefficient\n0,-0.5\n", r"-0.5 in the table"),
         ("speed,coefficient\n0,nan\n", r"nan in the table"),
         ("speed,coefficient\n0,0.5\n1\n", r"line 3: no numbers: 1, None"),
-        ("speed,mu\n0,0.5\n", r"has no column 'coefficient'; its columns: speed, mu"),
+        ("v,mu\n0,0.5\n", r"has no column 'speed'; its columns: v, mu"),
         ("speed,coefficient\n", r"has no rows"),
     ],
 )
@@ -77,6 +77,12 @@ def test_a_table_that_is_no_function_is_refused(tmp_path, text, message):
     path.write_text(text)
     with pytest.raises(ValueError, match=message):
         Parameters(friction_law=path)
+
+
+def test_the_column_of_values_may_have_any_name(tmp_path):
+    path = tmp_path / "friction.csv"
+    path.write_text("mu, speed\n0.5,0\n0.4,0.1\n")
+    assert Parameters(friction_law=path).friction_law == "linear 0.0:0.5 0.1:0.4"
 
 
 @pytest.mark.parametrize("other", [{"mu": 0.2}, {"mu_static": 0.5}, {"friction_speed": 2.0}])
