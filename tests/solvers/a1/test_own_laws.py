@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from squealpipe import Parameters, limit_cycle, simulate, smallest_disturbance
+from squealpipe import Parameters, limit_cycle, simulate
 from squealpipe.codes import Event
 from squealpipe.schema import Outcome
 from squealpipe.solvers.a1.ensemble import Ensemble, run_ensemble
@@ -54,8 +54,6 @@ def test_what_own_laws_cannot_do_is_refused():
     table = FORMER.with_(friction_law="linear 0:0.3", mu=DEFAULT_MU)
     with pytest.raises(ValueError, match="carried by A1 alone, not by its variants"):
         simulate(table, 1.0, 2.0, t_end=1.0, model="A1-no-stick")
-    with pytest.raises(ValueError, match="smallest_disturbance cannot carry this"):
-        smallest_disturbance(Parameters(contact_law="dashpot"), 1.0, 2.0)
 
 
 def test_a_cycle_with_a_constant_table_is_that_of_coulomb_friction():

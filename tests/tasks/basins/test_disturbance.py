@@ -183,18 +183,19 @@ def test_a_dashpot_too_stiff_for_the_horizon_is_refused():
         smallest_disturbance(FORMER.with_(mu=0.1, damping1=1e8), 2.0, 1.9)
 
 
-def test_a_table_that_is_the_formula_gives_the_same_disturbance():
-    """Friction and contact as tables of many pieces, and as the laws that they list."""
+def test_laws_of_the_same_forces_have_the_same_disturbance():
+    """Friction and contact as tables of many pieces, or a contact dashpot of size zero."""
     law = FORMER.with_(mu=0.1, damping1=0.05, damping2=0.02, belt_speed=2.0)
     table = law.with_(
         friction_law="linear 0.0:0.1 1.0:0.1 3.0:0.1", contact_law=f"linear 0.0:0.0 1.0:{law.k3}"
     )
-    expected, found = (
+    expected, *others = (
         smallest_disturbance(p, 2.0, 1.9, directions=16, t_end=50.0, workers=1)
-        for p in (law, table)
+        for p in (law, table, law.with_(contact_law="dashpot"))
     )
-    for name in ("x_rest", "y_rest", "growth_rate", "distance", "linear_distance"):
-        np.testing.assert_allclose(found[name], expected[name], rtol=1e-6, err_msg=name)
+    for found in others:
+        for name in ("x_rest", "y_rest", "growth_rate", "distance", "linear_distance"):
+            np.testing.assert_allclose(found[name], expected[name], rtol=1e-6, err_msg=name)
 
 
 def test_where_steady_sliding_lies_in_a_later_piece_of_the_contact_law():

@@ -24,15 +24,16 @@ ALT = (
 )
 
 
-def caption(angles: xr.Dataset, _: xr.Dataset) -> str:
-    """What is shown, with the dashpots of the maps."""
+def caption(angles: xr.Dataset, dashpots: xr.Dataset) -> str:
+    """What is shown, with the dashpots and the angles of the maps."""
     c1, c2 = (number(parameter(angles, f"damping{i}")) for i in (1, 2))
     return (
         "Friction coefficient of Coulomb's law at which steady sliding turns unstable by A3 "
         "(Routh–Hurwitz). (a) Over both spring angles without dashpots. (b) Its change by dashpots "
         f"c₁ = {c1} and c₂ = {c2} N s/m: red, they lower it and make sliding unstable sooner; "
         f"blue, they raise it; grey, it is above {LARGEST:g} with them and without. (c) Over both "
-        "dashpots at one pair of angles, on a scale of its own; black line: as without dashpots."
+        f"dashpots at {angle_pair(dashpots.alpha1, dashpots.alpha2)}, on a scale of its own; black "
+        "line: as without dashpots."
     )
 
 
@@ -47,6 +48,7 @@ def draw(angles: xr.Dataset, dashpots: xr.Dataset) -> Figure:
         dashpots: dataset ``critical_damping_map``.
     """
     figure, axes = style.new_figure(style.PAGE, 2.4, ncols=3)
+    figure.get_layout_engine().set(wspace=0.08)
     without, change, plane = axes[0]
     undamped, damped = angles.critical_mu_undamped.values, angles.critical_mu.values
     mesh = style.draw_map(
@@ -67,7 +69,7 @@ def draw(angles: xr.Dataset, dashpots: xr.Dataset) -> Figure:
     _draw_plane(figure, plane, dashpots)
     style.panel_letter(without, "a", "no dashpots")
     style.panel_letter(change, "b", "change")
-    style.panel_letter(plane, "c", f"at {angle_pair(dashpots.alpha1, dashpots.alpha2)}")
+    style.panel_letter(plane, "c", "over dashpots")
     return figure
 
 

@@ -58,9 +58,14 @@ def _draw(panel: Axes, run: xr.Dataset) -> None:
         )
         inner = one_side and end[1] == max(each[-1, 1] for each in springs)
         side = "left" if (end[0] >= 0) != inner else "right"
+        place, offset, va = 0.5 * end, (8 if side == "left" else -8, -4), "top"
+        if inner:
+            va = "bottom"
+        elif end[1] < 0.5 * scale:  # beside a flat spring the words would reach the belt
+            place, offset, side, va = end, (0, 6), "center", "bottom"
         panel.annotate(
-            words, 0.5 * end, (8 if side == "left" else -8, -4), ha=side, fontsize=6,
-            va="bottom" if inner else "top", textcoords="offset points", color=colour,
+            words, place, offset, ha=side, va=va, fontsize=6, textcoords="offset points",
+            color=colour,
         )  # fmt: skip
     mass = Circle((0.0, 0.0), 0.05 * scale, facecolor="white", edgecolor="black", zorder=4)
     panel.add_patch(mass)
