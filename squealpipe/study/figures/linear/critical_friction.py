@@ -48,7 +48,7 @@ def draw(angles: xr.Dataset, dashpots: xr.Dataset) -> Figure:
         dashpots: dataset ``critical_damping_map``.
     """
     figure, axes = style.new_figure(style.PAGE, 2.4, ncols=3)
-    figure.get_layout_engine().set(wspace=0.08)
+    figure.set_layout_engine("constrained", wspace=0.08)
     without, change, plane = axes[0]
     undamped, damped = angles.critical_mu_undamped.values, angles.critical_mu.values
     mesh = style.draw_map(
