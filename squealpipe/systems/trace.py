@@ -147,7 +147,9 @@ class Tracer:
         try:
             return function(self.time, self.s, self.p, self.r if r is None else r)
         except (TypeError, AttributeError) as error:
-            raise type(error)(f"{what}: {error}") from error
+            remedy = "; for cos, exp and the like take squealpipe.functions"
+            wants = remedy if isinstance(error, TypeError) else ""
+            raise type(error)(f"{what}: {error}{wants}") from error
 
     def _symbol(self, what: str, value: Any) -> Symbol:
         try:

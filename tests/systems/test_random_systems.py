@@ -279,6 +279,11 @@ def hit(when, leaves="free", to="free"):
             TypeError,
             "make each side a reg",
         ),
+        (
+            {"field": lambda t, s, p, r: {"x": s.v, "v": -np.cos(s.x)}},
+            TypeError,
+            "take squealpipe.functions",
+        ),
         ({"field": lambda t, s, p, r: {"x": s.v, "v": -s.y}}, AttributeError, "has no 'y'"),
         (NOTHING, TypeError, "make each side a reg"),
         ({"parameters": {"x0": 1.0}}, ValueError, "the name is taken"),
