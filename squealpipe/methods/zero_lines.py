@@ -25,8 +25,6 @@ Function = Callable[[Vector], Vector]
 Mark = Callable[[Vector, Vector], Vector]
 """Places and slopes there → what jumps from one branch of a function to another."""
 
-AREA_ERROR = 1e-10
-"""Of a piece of a line beyond which it is divided."""
 RESIDUAL = 1e-11
 """Of the function at a point."""
 SHORTEST = 1e-6
@@ -68,6 +66,7 @@ class ZeroLines:
         coarse: points per side of the grid that sees the whole square.
         finer: how many times finer the grid is where the sign changes, a power of two.
         jump: least jump of the mark.
+        area_error: of a piece of a line beyond which it is divided.
 
     Attributes:
         place: (points, 2).
@@ -87,8 +86,9 @@ class ZeroLines:
         coarse: int,
         finer: int,
         jump: float,
+        area_error: float = 1e-10,
     ) -> None:
-        self.value, self._mark, self.jump = value, mark, jump
+        self.value, self._mark, self.jump, self.area_error = value, mark, jump, area_error
         self.place, self.slope = np.empty((0, 2)), np.empty((0, 2))
         self.residual, self.mark = np.empty(0), np.empty(0)
         self.chords, self.error, self.unresolved = np.empty((0, 2), int), np.empty(0), 0.0
@@ -171,7 +171,7 @@ class ZeroLines:
             chords = _split(chords[~lost], self._add(new[~lost]))
             error = np.repeat(0.5 * error[~lost], 2)
             jumps = np.abs(np.diff(self.mark[chords], axis=1)[:, 0]) > self.jump
-            going = ((error > AREA_ERROR) | jumps) & (self._length(chords) > SHORTEST)
+            going = ((error > self.area_error) | jumps) & (self._length(chords) > SHORTEST)
             self._keep(chords[~going & ~jumps], error[~going & ~jumps])
             around = chords[~going & jumps]
             place, none = self._meeting(around)[1], np.full((len(around), 2), np.nan)

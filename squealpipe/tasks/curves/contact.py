@@ -103,10 +103,12 @@ def two_axes(
     return axes, fixed
 
 
-def contact_lines(square: Square, coarse: int) -> ZeroLines:
-    """The boundary of kept contact."""
-    finer = 2 ** max(0, int(np.ceil(np.log2(FINEST / (coarse - 1)))))
-    return ZeroLines(square.reserve, square.touch_time, coarse=coarse, finer=finer, jump=JUMP)
+def contact_lines(square: Square, coarse: int, finest: int, **options: float) -> ZeroLines:
+    """The boundary of kept contact, begun on a grid of at least ``finest`` cells per side."""
+    finer = 2 ** max(0, int(np.ceil(np.log2(finest / (coarse - 1)))))
+    return ZeroLines(
+        square.reserve, square.touch_time, coarse=coarse, finer=finer, jump=JUMP, **options
+    )
 
 
 @recorded(method="zeros of the lowest contact force, joined from an adaptive grid")
@@ -152,7 +154,7 @@ def contact_boundary(
     options = {"t_end": t_end, "tol": tol, "workers": workers, "tracked": ("contact_force",)}
     square = Square(params, fixed, axes, options, model)
     coarse = max(each.size for each in axes.values())
-    return _dataset(square, contact_lines(square, coarse), coarse)
+    return _dataset(square, contact_lines(square, coarse, FINEST), coarse)
 
 
 def nearest_on(loops: Sequence[Vector], place: Vector, limits: Vector) -> tuple[Vector, float]:

@@ -60,6 +60,7 @@ def test_parameters_under_their_own_names():
     angles = 0.4 * np.pi, 0.1 * np.pi
     chart = squealpipe.regime_chart(PARAMS, *angles, t_end=10.0, kappa=kappa, mu=mu)
     assert chart.design.values.tolist() == [[PARAMS.kappa, PARAMS.mu]]
+    assert int(chart.runs) < 0.01 * 1000**2  # a uniform grid that resolves as much as a thousandth
     on = chart.line.values == ChartLine.flutter
     for k, m in zip(chart.kappa.values[on], chart.mu.values[on], strict=True):
         there = PARAMS.with_(k3=float(k), mu=float(m))
