@@ -5,6 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from squealpipe import Switch, System
+from squealpipe.functions import cos
 from squealpipe.schema import Outcome
 from squealpipe.systems.belt_friction import exponential_oscillator, leine_oscillator
 from squealpipe.systems.cycles import branch as branch_module
@@ -121,6 +123,40 @@ def test_a_settled_motion_of_more_periods_says_how_many():
     )
     assert longer.outcome == Outcome.converged
     assert float(longer.period) == pytest.approx(number * 2.0 * np.pi / 2.1, rel=1e-12)
+
+
+@pytest.mark.parametrize("amplitude", [3.5065, 3.508])
+def test_a_motion_that_settles_to_and_fro_is_one_of_the_shorter_period(amplitude):
+    """Next to its flip at 3.50619 a multiplier of the one-impact cycle is just above −1."""
+    cycle = impact_oscillator.limit_cycle(omega=2.1, amplitude=amplitude, start={"x": 0.0})
+    assert cycle.outcome == Outcome.converged
+    assert float(cycle.period) == pytest.approx(2.0 * np.pi / 2.1, rel=1e-12)
+    assert -1.0 < cycle.multiplier_real.min() < -0.85
+
+
+def test_samples_of_a_cycle_resolve_its_impacts():
+    """Straight lines between samples of a stiff stop's cycle leave out no turn of the motion."""
+    stop = System(
+        "stiff stop",
+        states={"x": "m", "v": "m/s"},
+        parameters={"stiffness": 1e8, "omega": 1.9},
+        regimes={"free": {"touch": 0.0}, "contact": {"touch": 1.0}},
+        field=lambda t, s, p, r: {
+            "x": s.v, "v": cos(p.omega * t) - s.x - 0.1 * s.v - r.touch * p.stiffness * (s.x - 0.2),
+        },
+        switches=[
+            Switch("hit", leaves="free", when=lambda t, s, p, r: 0.2 - s.x, to="contact"),
+            Switch("left", leaves="contact", when=lambda t, s, p, r: s.x - 0.2, to="free"),
+        ],
+        start={"x": 0.0, "v": 0.0},
+        period=lambda p: 2.0 * np.pi / p.omega,
+    )  # fmt: skip
+    cycle = next(
+        c for n in (1, 2, 3, 4, 5) if np.isfinite((c := stop.limit_cycle(periods=n)).period)
+    )
+    assert cycle.sizes["event"] >= 2
+    deepest = float(cycle.x_path.max()) - 0.2
+    assert deepest == pytest.approx(float(cycle.x_max) - 0.2, rel=0.05)
 
 
 def stroboscopic_map(system, values, period):

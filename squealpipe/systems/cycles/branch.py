@@ -25,14 +25,16 @@ from squealpipe.methods.continuation import (
 from squealpipe.methods.progress import alone
 from squealpipe.schema import Outcome
 from squealpipe.systems import runs
-from squealpipe.systems.cycles.admissible import ROUND_OFF, Kind, Margin, is_motion, margins
+from squealpipe.systems.cycles.admissible import ROUND_OFF, Kind, Margin, margins
 from squealpipe.systems.cycles.cycle import (
     columns,
     describe_columns,
     find_cycle,
     follow,
     guess_of,
+    merged,
     outcome_of,
+    without_brief_legs,
 )
 from squealpipe.systems.cycles.event_map import FREE, Cycle, Event, EventMap, Section
 from squealpipe.systems.cycles.flow import Flow, Vector
@@ -73,6 +75,8 @@ _SAME = 1e-3
 _ZERO = 1e-12
 _CLOSE = 1e-5
 """Share of a step before a change of the events in which a fold is that change."""
+_BEFORE = 1e-9
+"""Share before it up to which multipliers are followed."""
 
 Test = Callable[[ContinuationState, Cycle], float]
 
@@ -195,7 +199,8 @@ class Follower:
         """Follow the branch to its end, and label it."""
         with alone() as show:
             end = self._run(state, cycle, show)
-        self.points[-1] = replace(self.points[-1], label=Label.end)
+        if not self.points[-1].label:
+            self.points[-1] = replace(self.points[-1], label=Label.end)
         return end
 
     def _run(
@@ -331,11 +336,13 @@ class Follower:
             (state, cycle),
             (following, reached),
         )
-        last = 1.0 if is_motion(reached) else line.root(_least_margin)
-        found = None if last is None else self._smooth(line, last - _CLOSE * (last < 1.0))
+        before, after = (min(margins(each).values()) for each in (cycle, reached))
+        last = 1.0 if after >= -ROUND_OFF else line.root(_least_margin)
+        found = None if last is None else self._smooth(line, last)
         if found is None or last is None:
             return None
-        if last < 1.0:
+        # a step that ends at the change to round-off may not lead past it
+        if last < 1.0 or after < ROUND_OFF < 0.5 * before:
             return self._changed(line, found, last)
         near, share = self._shorter(line, cycle, reached)
         if near and share is None and state.step > _COARSE:
@@ -352,13 +359,22 @@ class Follower:
     def _smooth(self, line: _Line, last: float) -> list[tuple[float, Label]] | None:
         """Shares and labels of what happens in a step, in order; None where one is not found."""
         first, reached, found = line.known[0.0], line.known[1.0], []
-        for label, test in TESTS if not self._has_shrunk(reached[1]) else ():
-            product = test(*first) * test(*reached)
+        if self._has_shrunk(reached[1]):
+            return []
+        for label, test in TESTS:
+            # a grazing takes multipliers through infinity: they are followed up to it alone
+            end = 1.0 if label == Label.fold or last >= 1.0 else last - _BEFORE
+            if end <= 0.0:
+                continue
+            try:
+                product = test(*first) * test(*line.at(end))
+            except ArithmeticError:
+                return None
             if np.isfinite(product) and product < 0.0:
-                share = line.root(test)
+                share = line.root(test, end)
                 if share is None:
                     return None
-                if share < last:
+                if share < last - _CLOSE * (label == Label.fold and last < 1.0):
                     found.append((share, label))
         return sorted(found)
 
@@ -473,8 +489,8 @@ class _Line:
             self.known[share] = state, Cycle.at(self.equations, state.point)
         return self.known[share]
 
-    def root(self, test: Test) -> float | None:
-        """Where a test is zero; None where it is not found."""
+    def root(self, test: Test, end: float = 1.0) -> float | None:
+        """Where a test is zero before a share of the step; None where it is not found."""
 
         def value(share: float) -> float:
             found = test(*self.at(share))
@@ -482,9 +498,9 @@ class _Line:
 
         try:
             first = value(0.0)
-            if first <= 0.0 and value(1.0) < 0.0:
+            if first <= 0.0 and value(end) < 0.0:
                 return 0.0 if first > -ROUND_OFF else None
-            return float(brentq(value, 0.0, 1.0, xtol=_ZERO, rtol=_ZERO, maxiter=60))
+            return float(brentq(value, 0.0, end, xtol=_ZERO, rtol=_ZERO, maxiter=60))
         except (ArithmeticError, ValueError, RuntimeError):
             return None
 
@@ -531,26 +547,13 @@ class _Turn:
                 yield found
 
     def _without(self) -> Iterator[tuple[EventMap, Vector]]:
-        """The same motion without an event that has come to nothing."""
+        """The same motion without events that have come to nothing, one or two at once."""
         cycle = self.there[1]
-        equations, parts = cycle.map, cycle.parts
         for margin in self.zero:
-            event = equations.events[margin.leg]
-            if margin.kind != Kind.speed or event.before != event.after:
-                continue
-            leg, followed = margin.leg, np.array([parts.values[n] for n in equations.flow.followed])
-            if equations.legs == 1:
-                yield _eventless(cycle, event, followed)
-                continue
-            following = (leg + 1) % equations.legs
-            durations = parts.durations.copy()
-            durations[leg] += durations[following]
-            keep = [i for i in range(equations.legs) if i != following]
-            events = [equations.events[i] for i in range(equations.legs)]
-            events[leg] = events[following]
-            fewer = replace(equations, events=tuple(events[i] for i in keep), _latest=None)
-            start = parts.start + (parts.durations[0] if following == 0 else 0.0)
-            yield fewer, fewer.pack(parts.states[keep], durations[keep], start, followed)
+            event = cycle.map.events[margin.leg]
+            if margin.kind == Kind.speed and event.before == event.after:
+                yield merged(cycle, margin.leg, 1)
+        yield from without_brief_legs(cycle)
 
     def _started(
         self, equations: EventMap, guess: Vector
@@ -617,23 +620,7 @@ def run_of(cycle: Cycle) -> tuple[EventMap, Vector] | None:
     if found is None:
         return None
     made = replace(found[0], time=equations.time, units=equations.units)
-    return made, made.pack(*found[0].unpack(found[1])[:3], _followed(cycle))
-
-
-def _followed(cycle: Cycle) -> Vector:
-    return np.array([cycle.parts.values[name] for name in cycle.map.flow.followed])
-
-
-def _eventless(cycle: Cycle, event: Event, followed: Vector) -> tuple[EventMap, Vector]:
-    equations = cycle.map
-    state, regime = cycle.start()
-    section = None
-    if not equations.periods:
-        heading = equations.flow.field(cycle.parts.values, regime, state, 0.0) / equations.scale
-        section = Section(state, heading / np.linalg.norm(heading))
-    free = Event(FREE, FREE, 1.0, event.before, event.before, FREE)
-    made = replace(equations, events=(free,), section=section, _latest=None)
-    return made, made.pack(state[None], np.array([cycle.period]), 0.0, followed)
+    return made, made.pack(*found[0].unpack(found[1])[:3], cycle.followed)
 
 
 def _gradient(equations: EventMap, point: Vector, margin: Margin) -> Vector:
@@ -774,7 +761,7 @@ def doubled_start(point: Point) -> tuple[ContinuationState, Cycle] | None:
     twice = replace(
         equations, events=equations.events * 2, periods=2 * equations.periods, _latest=None
     )
-    followed = _followed(cycle)
+    followed = cycle.followed
     base = twice.pack(
         np.tile(parts.states, (2, 1)), np.tile(parts.durations, 2), parts.start, followed
     )

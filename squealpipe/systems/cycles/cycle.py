@@ -29,12 +29,15 @@ _WINDOWS = (40.0, 160.0, 640.0)
 """Times, in units, within which a return is looked for without forcing."""
 _NEAR, _FAR = 0.05, 0.3
 """A return this close, over the motion's extent, ends the search; one this far is none."""
+_NEARER = 0.99
+"""Distance from a cycle after all those periods, over the one before, of what settles on it."""
 _TRIES, _SAMPLES = 4, 2000
 MOST_ROUNDS = 32
 SETTLE_STEPS = 100_000
 """Steps after which a run that is to settle is given up."""
+_BRIEF = 1e-3
+"""Share of the period below which a leg may have come to nothing."""
 _AT_REST = 1e-9
-SAMPLES = 400
 SETTLED_ON = 200
 """Outcome of a settled motion of k periods, less k."""
 
@@ -133,10 +136,53 @@ def guess_of(
 def solved(equations: EventMap, guess: Vector) -> Cycle | None:
     """The cycle near a guess, if it is a motion of the system."""
     point = equations.solve(guess)
-    if point is None:
-        return None
-    cycle = Cycle.at(equations, point)
-    return cycle if cycle.period > 0.0 and is_motion(cycle) else None
+    return None if point is None else as_motion(Cycle.at(equations, point))
+
+
+def as_motion(cycle: Cycle) -> Cycle | None:
+    """A solution if it is a motion of the system, perhaps without a pair of events.
+
+    Next to a touch round-off decides whether a run has a pair there.
+    """
+    if cycle.period > 0.0 and is_motion(cycle):
+        return cycle
+    found = (solved(*fewer) for fewer in without_brief_legs(cycle))
+    return next((each for each in found if each is not None), None)
+
+
+def without_brief_legs(cycle: Cycle) -> Iterator[tuple[EventMap, Vector]]:
+    """Equations and guess without one of the legs that may have come to nothing."""
+    events = cycle.map.events
+    for leg in np.flatnonzero(cycle.parts.durations < _BRIEF * cycle.period).tolist():
+        if events[leg - 1].before == events[leg].after and len(events) > 1:
+            yield merged(cycle, (leg - 1) % len(events), 2)
+
+
+def merged(cycle: Cycle, leg: int, count: int) -> tuple[EventMap, Vector]:
+    """Equations and guess in which a leg goes on through the next ones, without events between."""
+    equations, parts = cycle.map, cycle.parts
+    if count >= equations.legs:
+        return _eventless(cycle, equations.events[leg])
+    absorbed = [(leg + k) % equations.legs for k in range(1, count + 1)]
+    keep = [i for i in range(equations.legs) if i not in absorbed]
+    events, durations = list(equations.events), parts.durations.copy()
+    events[leg] = events[absorbed[-1]]
+    durations[leg] += durations[absorbed].sum()
+    fewer = replace(equations, events=tuple(events[i] for i in keep), _latest=None)
+    start = parts.start + float(cycle.clocks[keep[0]])
+    return fewer, fewer.pack(parts.states[keep], durations[keep], start, cycle.followed)
+
+
+def _eventless(cycle: Cycle, event: Event) -> tuple[EventMap, Vector]:
+    equations = cycle.map
+    state, regime = cycle.start()
+    section = None
+    if not equations.periods:
+        heading = equations.flow.field(cycle.parts.values, regime, state, 0.0) / equations.scale
+        section = Section(state, heading / np.linalg.norm(heading))
+    free = Event(FREE, FREE, 1.0, event.before, event.before, FREE)
+    made = replace(equations, events=(free,), section=section, _latest=None)
+    return made, made.pack(state[None], np.array([cycle.period]), 0.0, cycle.followed)
 
 
 def find_cycle(
@@ -179,27 +225,43 @@ def _forced(
     flow: Flow, values: Mapping[str, float], state: Vector, guess: bool, periods: int,
     t_settle: float | None, regime: int | None,
 ) -> tuple[Cycle | None, int]:  # fmt: skip
-    system, forcing = flow.system, flow.forcing(values)[0]
+    forcing = flow.forcing(values)[0]
     if not 0.0 < forcing < np.inf:
-        raise ValueError(f"{system.name}: the period of its forcing must be greater than 0")
-    if not guess:
-        rounds = SETTLE if t_settle is None else max(1.0, np.ceil(t_settle / forcing))
-        run = follow(flow, values, state, rounds * forcing)
-        if run.outcome:
-            return None, run.outcome
-        state, regime = run.final, int(run.regimes[-1])
-        times = forcing * np.arange(1, MOST_PERIODS + 1)
-        path = follow(flow, values, state, times[-1], regime=regime, times=times).path
-        size = np.maximum(np.ptp(path, axis=0), 1e-9 * np.abs(path).max(axis=0) + 1e-300)
-        distance = np.abs((path - state) / size).max(axis=1)
-        rest = np.abs(path - state).max(axis=0) <= 1e-6 * (np.abs(path).max(axis=0) + 1e-300)
-        near = distance < 3.0 * distance.min() + 1e-6
-        least = 1 if rest.all() else int(np.flatnonzero(near)[0]) + 1
-        if distance[least - 1] > _FAR and not rest.all():
-            return None, Outcome.no_convergence
-        if periods % least:
-            return None, SETTLED_ON + least
-    duration = periods * forcing
+        raise ValueError(f"{flow.system.name}: the period of its forcing must be greater than 0")
+    if guess:
+        return _near(flow, values, state, regime, periods)
+    rounds = SETTLE if t_settle is None else max(1.0, np.ceil(t_settle / forcing))
+    run = follow(flow, values, state, rounds * forcing)
+    if run.outcome:
+        return None, run.outcome
+    state, regime = run.final, int(run.regimes[-1])
+    times = forcing * np.arange(1, MOST_PERIODS + 1)
+    path = follow(flow, values, state, times[-1], regime=regime, times=times).path
+    largest = np.abs(path).max(axis=0) + 1e-300
+    size = np.maximum(np.ptp(path, axis=0), 1e-9 * largest)
+    distance = np.abs((path - state) / size).max(axis=1)
+    rests = bool((np.abs(path - state).max(axis=0) <= 1e-6 * largest).all())
+    near = distance < 3.0 * distance.min() + 1e-6
+    least = 1 if rests else int(np.flatnonzero(near)[0]) + 1
+    if distance[least - 1] > _FAR and not rests:
+        return None, Outcome.no_convergence
+    if periods % least == 0:
+        return _near(flow, values, state, regime, periods)
+    # it may still settle to and fro, on the cycle that is asked for
+    cycle, outcome = _near(flow, values, path[:least].mean(axis=0), regime, periods)
+    if cycle is not None and cycle.is_stable:
+        place, _ = cycle.start()
+        before, after = (np.abs((at - place) / size).max() for at in (state, path[-1]))
+        if after < _NEARER * before:
+            return cycle, outcome
+    return None, SETTLED_ON + least
+
+
+def _near(
+    flow: Flow, values: Mapping[str, float], state: Vector, regime: int | None, periods: int
+) -> tuple[Cycle | None, int]:
+    """A cycle of some forcing periods near a state."""
+    duration = periods * flow.forcing(values)[0]
     for _ in range(3):
         run = follow(
             flow, values, state, duration, regime=regime,
@@ -208,7 +270,7 @@ def _forced(
         if run.outcome or not np.isfinite(run.path).all():
             return None, run.outcome or Outcome.not_finite
         every = np.concatenate([run.path, run.states])
-        scale = scale_of(np.array([every.min(axis=0), every.max(axis=0)]), system.sizes)
+        scale = scale_of(np.array([every.min(axis=0), every.max(axis=0)]), flow.system.sizes)
         found = guess_of(flow, values, run, state, duration, periods=periods, scale=scale)
         point = None if found is None else found[0].solve(found[1])
         if found is None or point is None:
@@ -216,8 +278,9 @@ def _forced(
             state, regime = run.final, int(run.regimes[-1])
             continue
         cycle = Cycle.at(found[0], point)
-        if is_motion(cycle):
-            return cycle, Outcome.converged
+        motion = as_motion(cycle)
+        if motion is not None:
+            return motion, Outcome.converged
         state, regime = cycle.start()
     return None, Outcome.no_convergence
 
@@ -474,7 +537,7 @@ def dataset(
         times = np.array([(ends[i] - cycle.phase) % cycle.period for i in events])
         order = [events[i] for i in np.argsort(times)]
         times = np.sort(times)
-        instants = np.linspace(0.0, cycle.period, SAMPLES + 1)
+        instants = cycle.instants
         path, _ = cycle.states_at((cycle.phase + instants) % cycle.period)
         regime = cycle.start()[1]
     chosen = [cycle.map.events[i] for i in order] if cycle else []

@@ -20,6 +20,8 @@ from squealpipe.systems.cycles.flow import Crossing, Flow, Path, Vector
 
 _LEAST = 0.05
 """Least unit of a state over the largest, both over the states' sizes."""
+_SAMPLES, _INSIDE = 400, 4
+"""Samples of a cycle, evenly, and in each step of the integrator."""
 FREE = -1
 """Number of the switch of what changes nothing: the section of a cycle without events, a touch."""
 
@@ -275,6 +277,11 @@ class Cycle:
         return float(self.parts.durations.sum())
 
     @property
+    def followed(self) -> Vector:
+        """Values of the followed parameters."""
+        return np.array([self.parts.values[name] for name in self.map.flow.followed])
+
+    @property
     def events(self) -> tuple[Event, ...]:
         """Its events, without the section."""
         return tuple(event for event in self.map.events if event.switch != FREE)
@@ -357,15 +364,36 @@ class Cycle:
         return float(np.abs((ends - np.roll(self.parts.states, -1, axis=0)) / scale).max())
 
     def after_part(self, parts: int) -> Vector:
-        """How far states after a part of the period are from those before, over the extent."""
-        path = self._twelfths
-        return np.asarray(np.roll(path, len(path) // parts, axis=0) - path).ravel()
+        """How far a part of the period is from the one before, by means over twelfths."""
+        means = self._means
+        return np.asarray(np.roll(means, len(means) // parts, axis=0) - means).ravel()
 
     @cached_property
-    def _twelfths(self) -> Vector:
-        path, _ = self.states_at(np.arange(12) / 12 * self.period)
-        n = self.map.flow.size
-        return np.asarray(path / scale_of(self.extremes[:, :n], self.map.flow.system.sizes))
+    def _means(self) -> Vector:
+        """Of the states over each twelfth of the period, over the extent.
+
+        Unlike states at instants they are continuous where an event passes from one to the next.
+        """
+        path, n = self.parts.path, self.map.flow.size
+        orders = np.arange(1, path.series.shape[2] + 1)
+        integrals = path.series[:, :n] / orders
+        whole = (integrals * path.steps[:, None, None] ** orders).sum(axis=2)
+        times = np.arange(13) / 12 * self.period
+        step = self._step_at(times)
+        powers = ((times - self.step_begins[step]) / path.unit)[:, None] ** orders
+        before = np.cumsum(whole, axis=0) - whole
+        up_to = before[step] + np.einsum("tik,tk->ti", integrals[step], powers)
+        scale = scale_of(self.extremes[:, :n], self.map.flow.system.sizes)
+        return np.asarray(np.diff(up_to, axis=0) * (12 * path.unit / self.period) / scale)
+
+    @cached_property
+    def step_begins(self) -> Vector:
+        """When each step of the integrator begins after the first state."""
+        path = self.parts.path
+        return np.asarray(self.clocks[path.leg] + path.offsets * path.unit)
+
+    def _step_at(self, times: Vector) -> NDArray[np.int64]:
+        return np.maximum(np.searchsorted(self.step_begins, times, side="right") - 1, 0)
 
     @property
     def clocks(self) -> Vector:
@@ -376,9 +404,8 @@ class Cycle:
     def states_at(self, times: Vector) -> tuple[Vector, NDArray[np.int64]]:
         """States and regimes at times after the first state, less than a period."""
         path = self.parts.path
-        begins = self.clocks[path.leg] + path.offsets * path.unit
-        step = np.maximum(np.searchsorted(begins, times, side="right") - 1, 0)
-        powers = ((times - begins[step]) / path.unit)[:, None] ** np.arange(path.series.shape[2])
+        step, orders = self._step_at(times), np.arange(path.series.shape[2])
+        powers = ((times - self.step_begins[step]) / path.unit)[:, None] ** orders
         states = np.einsum("tik,tk->ti", path.series[step, : self.map.flow.size], powers)
         return states, path.regimes[path.leg[step]]
 
@@ -401,6 +428,17 @@ class Cycle:
         if self.map.events[longest].switch == FREE:
             return 0.0
         return float(self.clocks[longest] + 0.5 * self.parts.durations[longest])
+
+    @property
+    def instants(self) -> Vector:
+        """Times from 0 to the period that resolve the motion.
+
+        Even ones, and some in each of the integrator's steps, which are short where it is fast.
+        """
+        path = self.parts.path
+        inside = np.outer(np.arange(_INSIDE) / _INSIDE, path.steps * path.unit)
+        steps = (self.step_begins + inside - self.phase) % self.period
+        return np.union1d(np.linspace(0.0, self.period, _SAMPLES + 1), steps)
 
     def followed_in(self, flow: Flow, units: Vector) -> EventMap:
         """Its equations with other followed parameters, scaled by it."""

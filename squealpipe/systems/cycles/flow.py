@@ -32,6 +32,10 @@ Vector = NDArray[np.float64]
 TOLERANCE = 1e-16
 ROOM = 48
 """Steps of a leg kept at first; one that has more is run again with room for all."""
+MOST_STEPS = 3000
+"""Of a leg; one that needs more has no end, so that Newton's method gives up."""
+MOST_PIECES, FINEST = 200_000, 64
+"""Pieces of all steps, and of one step, that the variational equations are solved on."""
 LONGEST = 1.0
 """Longest step of the variational equations times a bound of its rate."""
 
@@ -365,13 +369,14 @@ class Flow:
         arrays["starts"][:], arrays["durations"][:] = starts / unit, durations / unit
         drive(run_legs(), self._work)
         counts = arrays["counts"]
-        if counts.max() > self._room:
-            if self._room > 100_000:
-                counts = np.minimum(counts, self._room)
-            else:
-                self._room *= 4
-                self._legs = 0
-                return self.run(values, states, regimes, starts, durations)
+        more = counts.max() > self._room
+        endless = more and self._room >= MOST_STEPS
+        if endless:
+            counts = np.ones_like(counts)
+        elif more:
+            self._room *= 4
+            self._legs = 0
+            return self.run(values, states, regimes, starts, durations)
         used = np.arange(self._room) < counts[:, None]
         steps, series = arrays["steps"][used], arrays["kept"][used]
         leg = np.repeat(np.arange(len(states)), counts)
@@ -380,6 +385,8 @@ class Flow:
         last = first + counts - 1
         orders = np.arange(series.shape[2])
         ends = (series[last, : self.size] * steps[last, None, None] ** orders).sum(axis=2)
+        if endless:
+            ends[:] = np.nan
         return Path(
             leg, steps, total - total[first][leg], series, np.array(regimes), np.array(starts),
             np.array(durations), ends, unit,
@@ -387,7 +394,7 @@ class Flow:
 
     def derivatives(self, values: Mapping[str, float], path: Path) -> Vector:
         """Of each leg's end by its start, followed parameters and the time: (legs, n, n + p)."""
-        pieces = 1
+        pieces, most = 1, max(1, min(FINEST, MOST_PIECES // len(path.steps)))
         while True:
             slopes = self._slopes_along(values, path, pieces)
             middle = np.abs(slopes[:, : self.size, len(_NODES) // 2]).transpose(2, 0, 1)
@@ -395,9 +402,9 @@ class Flow:
             lengths = np.repeat(path.steps, pieces) * path.unit / pieces
             with np.errstate(invalid="ignore"):
                 needed = pieces * float(np.nanmax(np.abs(lengths) * power, initial=0.0)) / LONGEST
-            if needed <= pieces or pieces >= 64 or not math.isfinite(needed):
+            if needed <= pieces or pieces >= most or not math.isfinite(needed):
                 break
-            pieces = min(64, math.ceil(needed))
+            pieces = min(most, math.ceil(needed))
         found = np.zeros((len(path.regimes), self._columns, self._columns))
         found[:] = np.eye(self._columns)
         transfer(slopes, lengths, np.repeat(path.leg, pieces), _UP_TO, _WEIGHTS, found)

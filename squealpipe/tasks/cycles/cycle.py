@@ -12,7 +12,7 @@ from squealpipe.parameters import Parameters
 from squealpipe.schema import Outcome, blank, build
 from squealpipe.schema.cycles import LIMIT_CYCLE
 from squealpipe.schema.origin import recorded
-from squealpipe.systems.cycles.cycle import SAMPLES, find_cycle
+from squealpipe.systems.cycles.cycle import find_cycle
 from squealpipe.systems.cycles.event_map import FREE, Cycle
 from squealpipe.tasks.cycles.scene import STATE, Scene
 from squealpipe.validation import Angle, Positive, State, one_of
@@ -92,7 +92,7 @@ def _described(scene: Scene, cycle: Cycle) -> dict[str, Any]:
     """The variables of a cycle."""
     units, clock = scene.state_units, scene.params.time_unit
     start = cycle.start()[0] * units
-    times = np.linspace(0.0, cycle.period, SAMPLES + 1)
+    times = cycle.instants
     path, found = cycle.states_at((cycle.phase + times) % cycle.period)
     path, regime_path = path * units, [scene.regimes[regime] for regime in found]
     ends = (cycle.clocks + cycle.parts.durations - cycle.phase) % cycle.period

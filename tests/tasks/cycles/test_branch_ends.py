@@ -110,7 +110,7 @@ def test_a_touch_of_stick_that_would_jump_ends_the_branch():
     guess = (-0.0007415, 0.5437495, -0.1917294, -0.1816512)
     branch = cycle_branch(params, *angles, parameter="belt_speed", to=0.27, start=guess)
     assert branch.end == Outcome.tangency
-    assert branch.label[-1] == Label.end
+    assert branch.label[-1] == Label.stick_onset
     jumps = []
     for point in (0, -1):
         place = branch.isel(point=point)
