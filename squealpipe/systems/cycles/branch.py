@@ -100,16 +100,22 @@ def flip(cycle: Cycle) -> float:
     return float(np.real(np.prod(cycle.nontrivial + 1.0)))
 
 
-def modulus(cycle: Cycle) -> float:
-    """Largest |λ| − 1 of the complex pairs: zero at a torus bifurcation; NaN without a pair."""
-    pairs = cycle.nontrivial[np.abs(cycle.nontrivial.imag) > 1e-9]
-    return float(np.abs(pairs).max() - 1.0) if len(pairs) else np.nan
+def pairs(cycle: Cycle) -> float:
+    """∏ (λi λj − 1) over pairs of multipliers: zero at a torus, and where real ones are inverse."""
+    first, second = np.triu_indices(len(cycle.nontrivial), 1)
+    return float(np.real(np.prod(cycle.nontrivial[first] * cycle.nontrivial[second] - 1.0)))
+
+
+def is_torus(cycle: Cycle) -> bool:
+    """Whether, where :func:`pairs` is zero, a complex pair is on the unit circle."""
+    rest = cycle.nontrivial
+    return bool(((np.abs(np.abs(rest) - 1.0) < 1e-6) & (np.abs(rest.imag) > 1e-9)).any())
 
 
 TESTS: tuple[tuple[Label, Test], ...] = (
     (Label.fold, lambda state, _: float(state.tangent[-1])),
     (Label.period_doubling, lambda _, cycle: flip(cycle)),
-    (Label.torus, lambda _, cycle: modulus(cycle)),
+    (Label.torus, lambda _, cycle: pairs(cycle)),
 )
 
 
@@ -199,6 +205,12 @@ class Follower:
         """Follow the branch to its end, and label it."""
         with alone() as show:
             end = self._run(state, cycle, show)
+        if end == Outcome.tongue_end:
+            # at a cycle of a part of the period the parameter turns back, which is no fold
+            self.points[-2:] = [
+                replace(point, label=Label.regular) if self._is_met(point) else point
+                for point in self.points[-2:]
+            ]
         if not self.points[-1].label:
             self.points[-1] = replace(self.points[-1], label=Label.end)
         return end
@@ -267,6 +279,11 @@ class Follower:
         if (near & (cosine > 0.99)).any():
             return Outcome.closed
         return Outcome.retraced if (near & (cosine < -0.99)).any() else None
+
+    def _is_met(self, point: Point) -> bool:
+        """Whether a fold is where the branch ends on a cycle of a part of the period."""
+        near = min(float(np.linalg.norm(point.cycle.after_part(n))) for n in (2, 3)) < _MET
+        return near and point.label == Label.fold
 
     def _reason(self) -> Outcome:
         """Why no step leads on."""
@@ -348,7 +365,6 @@ class Follower:
         if near and share is None and state.step > _COARSE:
             return None
         if share is not None:
-            # at a cycle of half the period the parameter turns back, which is no fold
             special = [Point(*line.at(at), label) for at, label in found if at < share - _CLOSE]
             there = line.at(share)
             return Step([*special, Point(*there)], *there, end=Outcome.tongue_end)
@@ -374,6 +390,8 @@ class Follower:
                 share = line.root(test, end)
                 if share is None:
                     return None
+                if label == Label.torus and not is_torus(line.at(share)[1]):
+                    continue
                 if share < last - _CLOSE * (label == Label.fold and last < 1.0):
                     found.append((share, label))
         return sorted(found)

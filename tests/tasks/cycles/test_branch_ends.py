@@ -88,6 +88,7 @@ def test_branch_ends_on_the_cycle_of_half_the_period():
     branch = cycle_branch(params, *angles, parameter="belt_speed", to=-1.0, start=first)
     assert branch.end == Outcome.tongue_end
     assert branch.label[-1] == Label.end
+    assert (branch.label == Label.stick_onset).sum() == 1
     last = branch.isel(point=-1)
     system = A1Flow(params.with_(belt_speed=float(last.belt_speed)), *angles)
     half = flow(system, start_of(last), 0.5 * float(last.period), derivative=False).state
