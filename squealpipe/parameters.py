@@ -33,11 +33,8 @@ class Row:
     """What the project knows about one parameter; everything else derives from it.
 
     Attributes:
-        units: CF unit.
         symbol: symbol as Typst mathematics.
-        meaning: in words, for tables.
         allowed: which values make sense; "law" is a name in ``laws``, or a file.
-        laws: package of laws.
         enters_a1: it enters the integration of A1 and its variants.
         extension: it goes beyond the paper; at its default it is not written down, so that
             configurations and the ids of datasets stay what they were without it.

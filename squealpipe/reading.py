@@ -21,8 +21,6 @@ class Reading(NamedTuple):
     """One reading of the sign of friction.
 
     Attributes:
-        meaning: in words.
-        a1_model: model that stands for A1.
         direction: of the belt along x. The linear models are dragged along it, and so is A1 but for
             its model that is as printed.
         corrected: the reading that is the corrected physics beside it.

@@ -26,8 +26,6 @@ class Transition(NamedTuple):
     """What ends a regime: a surface, and what happens where it falls through zero.
 
     Attributes:
-        name: of the switch.
-        leaves: the regimes in which it can fire.
         when: (t, y, regime) → the surface's value.
         fire: (t, y, regime) → kind of the event, next regime, state after it.
     """
@@ -56,12 +54,8 @@ class Problem:
         number: what parameters become: float, mpmath.mpf, …
 
     Attributes:
-        name, group, purpose: what it is called, the class that it belongs to, what it tests.
-        states: names, in order.
         start: values of the states at t = 0; ``regime``: the regime there.
         t_end: end of the run; ``times``: instants at which output is asked on the way.
-        parameters: name → number.
-        switches: see :class:`Transition`; each falls through zero where it fires.
         derivative: None, or the event's number (from 0) and the parameter by which the derivative
             of its time is asked.
         rates: texts of the field; ``fields``: what they became, by the regime.
@@ -156,10 +150,8 @@ def run(problem: Problem, advance: Callable[..., Any], most_events: int = 2000) 
     """Drive a solver that stops at events: restart it after each, in the regime that follows.
 
     Args:
-        problem: what is solved.
         advance: (problem, regime, surfaces, t, y) → the time and state at which it stopped, and
             the number of the surface that fired, None at ``t_end``.
-        most_events: events after which the run is given up.
 
     Returns:
         Times, kinds, final state, evaluations.

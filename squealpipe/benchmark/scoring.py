@@ -61,11 +61,9 @@ def score(
     """Judge one answer.
 
     Args:
-        data: the problem.
         reference: its final state, events, growth and margin.
         answer: times, kinds, state, evaluations, and optionally a flag and a derivative; times and
             kinds are None where a method reports no events.
-        tol: what was asked for.
 
     Raises:
         ValueError: the answer has fewer parts, or kinds and times differ in number.
@@ -163,8 +161,6 @@ def benchmark(
 
     Args:
         solvers: name → ``solve(problem, tol)``.
-        names: of the problems; all by default.
-        tolerances: each solver gets the same.
         done: called with problem, solver and its scores.
 
     Raises:

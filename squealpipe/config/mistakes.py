@@ -27,12 +27,7 @@ class ConfigError(ValueError):
 
 
 def mistakes(error: ValidationError, model: type[BaseModel]) -> Iterator[str]:
-    """One line for each fault that validation of ``model`` found.
-
-    Args:
-        error: what validation raised.
-        model: what was validated.
-    """
+    """One line for each fault that validation of ``model`` found."""
     faults = error.errors(include_url=False)
     inner = {fault["loc"][:-1] for fault in faults}
     for fault in faults:

@@ -74,7 +74,6 @@ def parse_range(text: str, one: Callable[[str], float] = parse_number) -> list[f
     """Values from a list ``0.1,0.2,0.4``, a range ``0:pi:31`` or ``1:100:7:log`` (ends included).
 
     Args:
-        text: what was typed.
         one: reads a single value, for instance :func:`parse_angle`.
 
     Raises:
@@ -103,7 +102,6 @@ def read_values(name: str, given: object) -> list[float]:
     """Values over which a name is swept.
 
     Args:
-        name: an angle, which may be written like ``0.3pi``, a parameter or an option.
         given: text as :func:`parse_range` reads it, a number, or a list of such.
 
     Raises:
@@ -133,7 +131,6 @@ def read_fixed(name: str, given: object) -> Any:
     """A value that stays the same: an angle, a parameter, or an option of a task.
 
     Args:
-        name: what is fixed.
         given: a value or text; an option may also be a range like ``0:20:50``, a list, a word or
             None.
 
@@ -165,12 +162,6 @@ def sweep_config(
     parameters: Mapping[str, float],
 ) -> dict[str, Any]:
     """The configuration of a sweep in its one form; no parameter that it names is a duplicate.
-
-    Args:
-        task: name of the task.
-        vary: name → values.
-        fixed: angles, options and parameters that stay the same.
-        parameters: physical parameters where the sweep names none.
 
     Raises:
         ValueError: a name is both fixed and varied.

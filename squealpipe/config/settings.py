@@ -130,7 +130,6 @@ def read_study(*paths: str | Path, changes: Mapping[str, Any] | None = None) -> 
     """A validated study from one or several YAML files, later ones laid over earlier ones.
 
     Args:
-        paths: YAML files.
         changes: keys and values laid over all of them.
 
     Raises:
@@ -216,7 +215,6 @@ def parse_study(
     """Validate a configuration mapping.
 
     Args:
-        content: keys and values.
         faults: mistakes found before, in the text; reported together with those of the values.
 
     Raises:

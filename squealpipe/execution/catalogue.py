@@ -25,8 +25,6 @@ class Task:
     """A task by name.
 
     Attributes:
-        run: the function.
-        schema: name of the schema of what it returns.
         maps_angles: it takes arrays of angles and maps them; else it takes one pair.
     """
 
@@ -71,14 +69,7 @@ TASKS: dict[str, Task] = {
 
 
 def run_task(name: str, params: Parameters, alpha1: Any, alpha2: Any, **options: Any) -> xr.Dataset:
-    """Run a task by name; single angles become arrays of one where the task maps angles.
-
-    Args:
-        name: key of :data:`TASKS`.
-        params: physical parameters.
-        alpha1, alpha2: angles, rad.
-        options: keywords of the task.
-    """
+    """Run a task by name; single angles become arrays of one where the task maps angles."""
     task = TASKS[name]
     if task.maps_angles:
         alpha1, alpha2 = np.atleast_1d(alpha1), np.atleast_1d(alpha2)

@@ -12,10 +12,6 @@ def lines(dataset: xr.Dataset, names: list[str]) -> list[str]:
     """Outcomes counted, then the remedy of each that is not converged.
 
     Nothing of a task that always has an answer, and so no outcome.
-
-    Args:
-        dataset: result of a sweep.
-        names: its swept names.
     """
     if "outcome" not in dataset:
         return []

@@ -40,8 +40,6 @@ class Job:
     """A rule that would run.
 
     Attributes:
-        rule: its name.
-        outputs: files that it would make.
         reasons: why, in words, for instance ``parameters.mu: 0.3 → 0.4``.
         follows: rules whose new results it reads.
         seconds: duration of its last run, or None if it never ran.
@@ -64,9 +62,7 @@ class Explanation:
     """The plan.
 
     Attributes:
-        jobs: in the order of the workflow.
         keys: file of the study → the key that it must state.
-        cores: used for the estimate.
     """
 
     jobs: list[Job] = field(default_factory=list)
@@ -106,11 +102,6 @@ def explain(
     directory: str | os.PathLike[str] = ".",
 ) -> Explanation:
     """Ask Snakemake what it would do and put it in terms of keys and sources.
-
-    Args:
-        configs: YAML files laid over the paper's configuration, as with ``--configfile``.
-        quick: coarse grids and short horizons.
-        directory: where the study runs.
 
     Raises:
         FileNotFoundError: a configuration that is missing.

@@ -18,7 +18,6 @@ class Job:
 
     Attributes:
         part: slice of the configuration.
-        out: files to write.
         item: part of what is scattered, "i-of-n".
     """
 
@@ -49,9 +48,7 @@ class Job:
         """Run a task and save what it returns, with its provenance.
 
         Args:
-            task: ready to call.
             output: dataset to write; the rule's first by default.
-            inputs: datasets that the task reads.
             further: what it is given beside the slice.
         """
         config, target = {**self.part, **further}, output or self.out[0]

@@ -20,7 +20,6 @@ def scattered_rows(rows: int, item: str) -> slice:
     """Rows of one part of a scattered map.
 
     Args:
-        rows: rows of the whole map.
         item: "i-of-n", Snakemake's name of a part.
 
     Raises:
@@ -36,7 +35,6 @@ def over_angles(job: Job, name: str) -> dict[str, Any]:
     """Angles from 0 to π, horizon and tolerance of a map; of a scattered one a part's rows.
 
     Args:
-        job: of the map's rule.
         name: of the map, whose keys are ``dynamics.<name>_points`` and ``…_horizon``.
     """
     angles = np.linspace(0.0, np.pi, job.part[f"dynamics.{name}_points"])
@@ -55,7 +53,6 @@ def join(parts: Sequence[xr.Dataset], along: str = "alpha1") -> xr.Dataset:
 
     Args:
         parts: datasets that differ in ``along`` alone.
-        along: the dimension that was cut.
 
     Raises:
         ValueError: there are none, or they are not of one kind and grid.

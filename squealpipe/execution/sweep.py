@@ -138,9 +138,6 @@ class Sweep:
     def part(self, item: str) -> Sweep:
         """One part of a scattered sweep: some of the values of the longest name.
 
-        Args:
-            item: "i-of-n", Snakemake's name of a part.
-
         Raises:
             ValueError: another form, or there are more parts than values.
         """

@@ -49,6 +49,5 @@ def slides(speed: Any, p: Any) -> Any:
     Args:
         speed: largest sgn(V) ẋ of a motion, m/s; of a motion that is symmetric
             in time the largest |ẋ|, which for any other one is a bound.
-        p: parameters; the belt may run either way.
     """
     return np.less(speed, np.abs(p.belt_speed))

@@ -75,9 +75,7 @@ def read_table(path: str | PathLike[str], columns: tuple[str, str], between: str
     """The text of a table in a CSV file.
 
     Args:
-        path: file whose first line names the columns.
         columns: those of knots and values; of two columns that of values may have any name.
-        between: "linear" or "cubic".
 
     Raises:
         FileNotFoundError: no such file.
@@ -160,7 +158,6 @@ def pieces_of(text: str, *, goes_on: bool = False) -> Pieces:
     """The pieces of a table, from 0 on.
 
     Args:
-        text: of the table.
         goes_on: beyond the last knot with the last slope, not constant.
     """
     import numpy as np
@@ -187,8 +184,6 @@ def named(given: Any, columns: tuple[str, str], folder: Path = Path()) -> Any:
     Args:
         given: a name; the path of a CSV or Python file; or ``{"table": path, "between": "cubic"}``
             or ``{"python": path}``.
-        columns: of the table.
-        folder: from which paths lead.
 
     Raises:
         OSError: the file cannot be read.

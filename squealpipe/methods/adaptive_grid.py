@@ -36,7 +36,6 @@ def refine_grid(evaluate: Evaluate, resolution: int, coarse: int) -> RefinedGrid
     Args:
         evaluate: (rows, columns) of points → (labels, whether each is a suspect, reserve); the
             reserve is NaN where none is known.
-        resolution: points per side.
         coarse: points per side of the first grid; (resolution − 1)/(coarse − 1) must be a power
             of two.
 

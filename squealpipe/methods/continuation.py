@@ -35,7 +35,6 @@ class ContinuationSettings:
         max_iterations: Newton iterations of a step; with more, the step is halved.
         easy_iterations: with no more than these, the next step grows.
         least_cosine: of the angle between tangents before and after a step.
-        max_points: states after which the iteration stops.
     """
 
     first_step: float = 0.01
@@ -75,9 +74,6 @@ class ContinuationState:
         point: z with F(z) = 0.
         tangent: unit direction of the branch.
         curvature: its change per arclength, by differences.
-        step: length of the next step.
-        iterations: Newton iterations spent on this point.
-        residual: largest component of F.
     """
 
     point: Vector
@@ -109,7 +105,6 @@ class PseudoArclength:
     """The algorithm: predict along the bending tangent, correct in the plane normal to it.
 
     Attributes:
-        settings: step control.
         least_iterations: of Newton's method; 0 accepts a guess as it is where it is a solution.
         own_tangent: take it from the Jacobian at the point; else, for one solution of the linear
             system less, from the one before.
@@ -174,8 +169,6 @@ class PseudoArclength:
         """One step of the state's own length; None where it is not accepted.
 
         Args:
-            problem: the equations.
-            state: where it starts.
             least_cosine: instead of that of the settings.
         """
         settings = self.settings
@@ -210,10 +203,8 @@ class Continuation:
     """A branch to be iterated over, from a solution and a direction.
 
     Attributes:
-        problem: the equations.
         start: a solution (n + 1,).
         direction: where to go from it (n + 1,).
-        settings: step control.
         adapt: applied to each new state before it is yielded (to describe it otherwise).
     """
 

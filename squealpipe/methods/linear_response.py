@@ -27,7 +27,6 @@ def response_from_rest(
         matrix: (…, n, n), A in 1/s².
         load: (…, n), b in m/s².
         step: h, s.
-        steps: number of steps after t = 0.
 
     Yields:
         Arrays (…, n), m.

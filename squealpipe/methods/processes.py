@@ -50,11 +50,7 @@ def run_shared(
     Args:
         work: handles the jobs first, first + stride, … and writes their rows of the arrays.
         shapes: name → (shape, dtype) of the arrays, zero at the start.
-        jobs: number of jobs.
         workers: processes; None takes all cores, at most one a ``MINIMUM_JOBS`` jobs.
-
-    Returns:
-        The arrays.
 
     Raises:
         ValueError: ``workers`` is not a positive integer.

@@ -17,8 +17,6 @@ def repeats_after(times: np.ndarray, kinds: np.ndarray, tolerance: float) -> int
     hold three periods, so a period of more than a third of the events is not seen.
 
     Args:
-        times: instants of the events, ascending.
-        kinds: their kinds.
         tolerance: largest difference of intervals, over the mean interval.
     """
     intervals, kinds = np.diff(times), kinds[:-1]

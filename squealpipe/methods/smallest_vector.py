@@ -81,10 +81,6 @@ def search(
     """The smallest vector of Euclidean norm up to ``bound`` for which something happens.
 
     Args:
-        happens: asked of vectors of dimension ``size``.
-        size: dimension.
-        bound: largest radius.
-        settings: how hard to search.
         generator: of the directions, which are uniform on the sphere and independent, and of the
             steps.
     """
@@ -166,8 +162,6 @@ def smallest_linear(matrix: Array, row: Array, level: float, t_end: float) -> fl
     Args:
         matrix: A, (n, n).
         row: c, (n,).
-        level: above 0.
-        t_end: horizon.
 
     Raises:
         ValueError: the fastest motion is too fast for the horizon.

@@ -26,7 +26,6 @@ def amplitude_spectrum(
 
     Args:
         signal: samples, (..., n).
-        step: time between samples.
         padding: zeros are added up to ``padding`` n samples, for a finer grid.
 
     Returns:
@@ -52,8 +51,6 @@ def highest_peaks(
 
     Args:
         frequency: uniform grid (n,).
-        amplitude: (n,).
-        count: how many at most.
     """
     middle = amplitude[1:-1]
     places = 1 + np.flatnonzero((middle > amplitude[:-2]) & (middle >= amplitude[2:]))

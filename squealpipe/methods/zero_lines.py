@@ -65,7 +65,6 @@ class ZeroLines:
         mark: of points on the lines.
         coarse: points per side of the grid that sees the whole square.
         finer: how many times finer the grid is where the sign changes, a power of two.
-        jump: least jump of the mark.
         area_error: of a piece of a line beyond which it is divided.
 
     Attributes:
@@ -331,7 +330,6 @@ def _roots(value: Function, start: Vector, way: Vector, share: Vector, rate: Vec
     The secant method, within what the signs enclose.
 
     Args:
-        value: the function.
         start, way: lines from where it is positive to where it is not, (lines, 2).
         share, rate: guesses of the shares, and of the function's derivatives by them.
     """

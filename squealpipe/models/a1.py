@@ -79,13 +79,11 @@ def acceleration(
 
     Args:
         x, y: displacement, m; vx, vy: velocity, m/s.
-        p: parameters; g: direction cosines.
         contact: 1 in contact, 0 separated.
         direction: sgn(V − ẋ).
         stick: 1 while sticking, when friction balances the other x-forces and ẍ = 0.
         linear_springs: use K r and C ṙ instead of the exact geometry.
         long_springs: which of the springs take the form for long ones.
-        dashpots: whether there are any.
     """
     fx, fy = suspension_force(
         x, y, vx, vy, p, g,

@@ -95,7 +95,6 @@ def static_state(
     Args:
         stiffness, spring_determinant: K11, K12, K22, N/m, and det K.
         k3: K3 of Eq. (8d), or its sharp limit k3, N/m.
-        mu: friction coefficient.
         actuation: right-hand side of Eq. (7), k3 l_pre in the sharp limit, N.
 
     Not finite where the contact stiffness is singular.
@@ -121,7 +120,6 @@ def angles_from_plane(z: Any, p: Any) -> tuple[np.ndarray, np.ndarray]:
 
     Args:
         z: complex array, N/m, within the reach |k1 − k2| ≤ |z| ≤ k1 + k2 and not 0.
-        p: parameters.
 
     Returns:
         Two arrays of shape (2, *z.shape).

@@ -63,7 +63,6 @@ def damped_system(p: Any, alpha1: Any, alpha2: Any, *, sigma: Any = None) -> Dam
     depends on speed and there is no static contact force N0.
 
     Args:
-        p: parameters.
         alpha1, alpha2: angles, rad, which broadcast.
         sigma: regularizing factor of the contact law, 1/m; None means the sharp law.
     """

@@ -30,11 +30,6 @@ def without_extensions(params: Parameters) -> Parameters:
 def refuse_extensions(params: Parameters, who: str, why: str) -> None:
     """Stop a level that carries neither dashpots nor any friction but Coulomb's with one μ.
 
-    Args:
-        params: physical parameters.
-        who: the level or method, for the message.
-        why: the reason.
-
     Raises:
         ValueError: names the parameters that it cannot carry, with the remedy.
     """

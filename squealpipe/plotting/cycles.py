@@ -47,7 +47,6 @@ def draw_backbone(axes: Axes, branch: xr.Dataset) -> None:
     """Peak of y and amplitude of x over the frequency; open marks are unstable.
 
     Args:
-        axes: where to draw.
         branch: dataset ``backbone``; an empty one gives the reason instead.
     """
     if say_why_empty(axes, branch):
@@ -72,7 +71,6 @@ def draw_cycle(axes: Axes, cycle: xr.Dataset) -> None:
     """Path of the mass along a cycle, its regimes coloured.
 
     Args:
-        axes: where to draw.
         cycle: dataset ``limit_cycle``; without a cycle it gives the reason instead.
     """
     axes.set(xlabel="x (m)", ylabel="y (m)")
@@ -88,7 +86,6 @@ def draw_orbit(axes: Axes, orbit: xr.Dataset) -> None:
     """Path of the mass along an orbit of A4, there and back, red where contact is lost.
 
     Args:
-        axes: where to draw.
         orbit: dataset ``periodic_orbit``; without an orbit it gives the reason instead.
     """
     axes.set(xlabel="x (m)", ylabel="y (m)")
@@ -117,7 +114,6 @@ def draw_branch(axes: Axes, branch: xr.Dataset) -> None:
     """Largest size of the first state over the parameter, stable and unstable, with special points.
 
     Args:
-        axes: where to draw.
         branch: dataset ``cycle_branch``, also of a system; an empty one gives the reason instead.
     """
     if say_why_empty(axes, branch):

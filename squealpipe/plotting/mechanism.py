@@ -44,7 +44,6 @@ def draw_mechanism(
     Args:
         axes: where to draw; its frame is switched off.
         alpha1, alpha2: spring angles, rad.
-        labels: name the parts with the paper's symbols.
         direction: of the belt, +1 or −1.
     """
     radius = 0.12

@@ -34,11 +34,7 @@ COLOURS = (BLUE, ORANGE, RED, PURPLE, GREEN)
 
 
 def figure(spread: xr.Dataset) -> Figure:
-    """Four panels.
-
-    Args:
-        spread: dataset ``propensity``.
-    """
+    """Four panels."""
     drawn, axes = new_figure(PAGE, 4.8, nrows=2, ncols=2)
     (bars, sizes), (indices, widths) = axes
     names = [flag_words(name) for name in spread.quantity.values.tolist()]

@@ -39,11 +39,7 @@ LOUD = 0.01
 
 
 def figure(run: xr.Dataset) -> Figure:
-    """Four panels of one run.
-
-    Args:
-        run: dataset ``simulation``.
-    """
+    """Four panels of one run."""
     drawn, axes = new_figure(PAGE, 4.8, nrows=2, ncols=2)
     panels = (
         (draw_force, "contact force"),
@@ -115,7 +111,6 @@ def draw_spectrum(axes: Axes, dataset: xr.Dataset) -> None:
     """Amplitude spectrum of the contact force.
 
     Args:
-        axes: where to draw.
         dataset: ``run_summary``, or ``simulation``, whose spectrum is then computed.
     """
     if "force_spectrum" in dataset:

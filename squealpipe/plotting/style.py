@@ -100,7 +100,6 @@ def new_figure(
 
     Args:
         width, height: inches; use COLUMN or PAGE for the width.
-        subplots: passed to ``Figure.subplots`` (nrows, ncols, sharex, …).
     """
     mpl.rcParams.update(SETTINGS)
     figure = Figure(figsize=(width, height), layout="constrained")

@@ -36,15 +36,12 @@ class Variable:
     """One variable of a dataset: what it is, its unit, its dimensions.
 
     Attributes:
-        long_name: what it is, for people.
         units: CF unit; "1" where dimensionless.
-        dims: dimension names, in order.
         dtype: NumPy dtype it is stored in; 8-byte numbers by default.
         flags: value → meaning for flag variables (an IntEnum or a mapping), stored as bytes.
         rtol, atol: what counts as "within tolerance" when two datasets are compared.
         nan_allowed: whether NaN may appear; its reason must then be in an outcome variable.
         volatile: differs from run to run by nature (wall times); never part of a verdict.
-        optional: may be absent.
         round_off: why round-off decides its digits, and what is compared instead.
     """
 
@@ -235,10 +232,8 @@ def build(
     """A labelled dataset from plain arrays.
 
     Args:
-        schema: the table that names dims, units and meanings.
         data: variable → array with the schema's dims.
         coords: coordinate → 1-D array (or an array with the schema's dims).
-        attrs: further global attributes.
 
     Raises:
         SchemaError: something is missing, unknown, of the wrong shape, or NaN without leave.

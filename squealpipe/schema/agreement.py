@@ -22,8 +22,6 @@ class RoundOff:
     """A variable whose digits round-off decides, and what is compared instead.
 
     Attributes:
-        compared: as what.
-        reason: why no digit can be expected to agree.
         factor: magnitudes that differ by no more than this agree.
         floor: magnitudes below this are all the same.
         sample: the dimension along which the values are a sample.

@@ -21,10 +21,8 @@ class Level(IntEnum):
     that model in time; A3 is the sum of its modes.
 
     Attributes:
-        label: its name for people.
         drops: what it drops from A1.
         needs: what must hold for its answer to be trusted.
-        colour: name of its colour in :mod:`squealpipe.plotting.style`.
         model: the model that it integrates in time; "" where it does not.
         share: part of the horizon that it integrates.
     """

@@ -74,15 +74,9 @@ def archive(
     """Freeze a run under ``results/archive/NAME``; the folder appears whole or not at all.
 
     Args:
-        name: of the archive.
         keys: every file that the rules make → the key that it must state.
-        configs: the configuration files of the run, later ones laid over earlier ones.
-        root: the checkout.
         leave_out: what is not frozen: suffixes (``".svg"``) or patterns of paths in the archive
             (``"data/simulate/*"``); the manifest lists them, and a comparison skips them.
-
-    Returns:
-        The folder of the archive.
 
     Raises:
         FileNotFoundError: there is no run.
@@ -124,10 +118,6 @@ def archive(
 
 def verify(what: str | os.PathLike[str], root: str | os.PathLike[str] = ".") -> Verification:
     """Compare every byte of an archive with its manifest.
-
-    Args:
-        what: name or folder of an archive.
-        root: the checkout.
 
     Raises:
         FileNotFoundError: no such archive.

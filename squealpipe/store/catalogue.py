@@ -32,11 +32,8 @@ class Run:
     """One archive or folder of results.
 
     Attributes:
-        name: of the archive, or the folder.
-        kind: "archive" or "results".
         date: when it was frozen or last changed, ISO.
         commit: of the code that froze or made it; empty if not stated.
-        size: bytes.
         config: dotted key → value of what made it.
         faults: what is wrong with it, file by file; none: it is intact.
     """

@@ -16,13 +16,7 @@ TYPES = {".nc": "application/x-netcdf", ".yaml": "application/yaml", ".lock": "t
 
 
 def describe(folder: Path, name: str, frozen_at: str) -> str:
-    """Text of ``ro-crate-metadata.json`` for a folder whose files are all in place.
-
-    Args:
-        folder: of the archive.
-        name: of the archive.
-        frozen_at: ISO date.
-    """
+    """Text of ``ro-crate-metadata.json`` for a folder whose files are all in place."""
     # of the extra [study]; other commands on archives do without
     from rocrate.model.contextentity import ContextEntity
     from rocrate.rocrate import ROCrate

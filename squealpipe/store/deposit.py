@@ -37,11 +37,6 @@ def bundle(
 ) -> Path:
     """Write ``results/deposit/NAME.zip``; it appears whole or not at all.
 
-    Args:
-        name: of an archive.
-        output: the file to write.
-        root: the checkout.
-
     Raises:
         FileNotFoundError: there is no such archive, or no ``CITATION.cff``.
         ValueError: the archive is not intact; every file that is not.

@@ -26,7 +26,6 @@ def misfits(keys: Mapping[str, str], root: Path = Path()) -> list[str]:
 
     Args:
         keys: file → the key that it must state.
-        root: where the files are looked up.
     """
     found = []
     for path, key in keys.items():

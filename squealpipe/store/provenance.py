@@ -45,9 +45,7 @@ def produce(
     """Run a task, stamp the result with its provenance, and save it.
 
     Args:
-        make: the task, ready to call.
         config: exactly the configuration that the task was given.
-        output: where the dataset goes.
         inputs: NetCDF files that the task read.
         key: of the rule (see :mod:`squealpipe.rerun.key`).
 

@@ -20,7 +20,6 @@ class NormalForm:
     the same for a system and all its images, bit for bit.
 
     Attributes:
-        params: parameters of the normal form.
         swaps: whether the springs changed places.
         mirrored: whether x changed its sign.
     """

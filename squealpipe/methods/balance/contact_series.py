@@ -26,8 +26,6 @@ def contact_angles(cosine: Vector, threshold: float, grid: Vector, table: Vector
     """Zeros of threshold − y(θ) in (0, π), ascending, to machine precision.
 
     Args:
-        cosine: coefficients of y.
-        threshold: level.
         grid: ascending θ from 0 to π, fine enough to part neighbouring extremes.
         table: cos nθ on the grid, (len(grid), len(cosine)).
 
@@ -162,7 +160,6 @@ class SampledContact:
     """Contact force from N samples per period, sharp or smoothed by tanh: the paper's way.
 
     Attributes:
-        n_harmonics: N_h.
         threshold: level of y at which contact ends.
         n_time: N, at least 2 N_h + 1.
         sigma: regularizing factor of tanh(σ(threshold − y)); None: sharp.

@@ -49,10 +49,8 @@ class SampledSolution:
 
     Attributes:
         x, y: Fourier coefficients (2 N_h + 1,), constant first, then sine, cosine pairs.
-        omega: angular frequency.
         residual: largest component of R.
         rank_deficit: unknowns minus the numerical rank of the Jacobian there.
-        converged: whether the residual fell below the tolerance.
     """
 
     x: Vector

@@ -65,7 +65,6 @@ def trace(
     the caller can be interrupted. The steps do not depend on ``y_stop`` or ``spacing``.
 
     Args:
-        rows: state rows.
         motion: (2, 3) a point of the branch and its direction, moved on in place.
         pace: (6,) :data:`STEP` to :data:`EXTENT`, kept between calls.
         control: (7,) :data:`LONGEST_STEP` to :data:`LINEAR_SLOPE`.

@@ -50,11 +50,9 @@ class TraceSettings:
     """Step control of a trace, in arclength over 1 + |z| of z = (x0, y0, T/2).
 
     Attributes:
-        first_step, longest_step: steps.
         least_cosine: of the angle between branch directions before and after a step.
         strict: whether a step must keep the sense of the branch; without it a trace crosses
             narrow resonances, so it may leave its branch.
-        max_points: points after which the trace gives up.
         largest_x: |x0| over y0 and the linear mode's x0 together, beyond which the branch
             follows an internal resonance to infinity.
         linear_x, linear_slope: |x0| of the linear mode at the threshold and its growth with y0.
@@ -102,7 +100,6 @@ class Orbit:
 
     Attributes:
         point: (3,) x0, y0, T/2, the orbit's state at rest with the larger y.
-        switches: times of the switches within the half period.
         stability_index: trace of the monodromy matrix − 2.
         residual: largest velocity after the half period.
     """
@@ -189,10 +186,8 @@ def trace_branch(
     """Points of a branch and why it ended.
 
     Args:
-        system: the system.
         start, direction: (3,) a solution and the way to go; neither needs to be regular.
         y_stop: larger y of the instants of rest at which the trace ends.
-        settings: step control.
         spacing: largest distance of the points, over 1 + |z|; the steps do not depend on it.
 
     Returns:
@@ -280,11 +275,7 @@ def _same_rest(system: PiecewiseLinearSystem, first: Orbit, second: Orbit) -> ND
 
 @dataclass(frozen=True)
 class _OnChord:
-    """The orbit on the plane across a chord at a share of its length.
-
-    Attributes:
-        tangent: the branch's direction along the chord.
-    """
+    """The orbit on the plane across a chord at a share of its length."""
 
     share: float
     orbit: Orbit

@@ -325,7 +325,6 @@ def run_ensemble(
         t_end: end of each run, s.
         model: "A1", "A1-no-stick", "A1-no-separation", "A1-linear-springs", "A1-as-printed" or
             "A4".
-        tol: tolerance of the Taylor integrator.
         initial_state: (x, y, vx, vy) in m and m/s, broadcast over the runs (last axis 4).
         times: instants (last axis), the same for all runs or one row per run, s, ascending.
         sums: keep what has added up at these instants, too.
@@ -372,8 +371,6 @@ def integrate(
     """The results of some runs.
 
     Args:
-        jobs: the runs.
-        tracked, log_events, options: as in :func:`run_ensemble`.
         few: compute few lanes only, for at most ``simd.FEW`` runs: in half of the time, after
             another second of compilation.
     """
@@ -460,10 +457,8 @@ def run_map(
     """Some results of an ensemble over both angles, in blocks of rows, so that memory stays small.
 
     Args:
-        parameters: physical parameters.
         alpha1, alpha2: 1-D arrays of angles, rad.
         wanted: attributes of :class:`Ensemble` to keep.
-        options: further arguments of :func:`run_ensemble`.
 
     Returns:
         The wanted arrays, each (alpha1, alpha2).

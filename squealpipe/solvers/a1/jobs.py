@@ -30,9 +30,7 @@ class Jobs:
     Attributes:
         systems, which: A1 with the forces of some runs, and the index of that of each.
         values: states at the start and parameters of the system by name, (runs,).
-        t_end, t_late: instants.
         late_from_return: late extremes begin with the first return to the belt.
-        stop_at_first_separation, stop_at_turns: what else ends a run.
         most: steps, and events, that end a run.
     """
 

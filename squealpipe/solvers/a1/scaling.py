@@ -33,7 +33,6 @@ class ScaledRuns(NamedTuple):
         numbers: those of ``NUMBERS_OF_A1``.
         time_unit, length: √(m/k1), s, and l_pre, m.
         systems: A1, or its variant, with the forces that some run has.
-        which: index into ``systems``.
         rate: a bound on the frequencies of the motion, for limits of steps and events.
     """
 

@@ -44,8 +44,6 @@ class HarmonicPoint:
 
     Attributes:
         z: unknowns of :class:`CosineBalance`.
-        residual: of the balance.
-        outcome: of the point.
         switches: contact times over the unit of time, in the half period.
         stability_index: trace − 2 of the monodromy along the series' contact times.
         omega_exact: ω of the exact orbit of equal peak, NaN without one.

@@ -60,10 +60,8 @@ class Comparison:
     """Comparison of two places.
 
     Attributes:
-        a, b: what was compared, as named.
         parameters: changed configuration key → values in a and b (None: the key is absent).
         environment: what else differs in how they were made: commit, versions, platform.
-        datasets: one entry for each name found on either side.
         statements: statements of the paper whose verdict or value changed.
         skipped: datasets that one side, an archive, deliberately left out.
         reason: why nothing could be compared, if so.
@@ -102,10 +100,6 @@ def compare(
     """Compare two archives, runs, folders or files, dataset by dataset.
 
     Bad input gives a verdict, not an exception:, ``not_comparable``, with its reason.
-
-    Args:
-        a, b: a path, or the name of an archive.
-        root: the checkout, where archives are looked up by name.
     """
     try:
         places = locate(a, root), locate(b, root)

@@ -33,15 +33,10 @@ class VariableDifference:
     """Where and by how much a variable differs.
 
     Attributes:
-        name: of the variable.
         verdict: equal, within tolerance, different; not judged further if volatile.
-        compared: number of values on both sides.
-        differing: number of values outside the tolerance.
         largest_absolute, largest_relative: largest differences; 0 where all are equal.
         where: coordinate → value at the largest absolute difference.
         flips: "a → b" → count, for flags.
-        rtol, atol: the schema's tolerance.
-        volatile: differs by nature; no part of the verdict.
         compared_as: what was compared where round-off decides the digits; empty: the values.
         reason: in words, where numbers do not say it.
     """
@@ -67,13 +62,7 @@ class VariableDifference:
 
 
 def difference(name: str, a: xr.DataArray, b: xr.DataArray, entry: Variable) -> VariableDifference:
-    """Compare one variable of two aligned datasets.
-
-    Args:
-        name: of the variable.
-        a, b: both sides.
-        entry: its line in the schema.
-    """
+    """Compare one variable of two aligned datasets."""
     if a.shape != b.shape:
         lengths = ", ".join(
             f"{a.sizes[dim]} against {b.sizes[dim]} along {dim}"

@@ -20,7 +20,6 @@ def lines(comparison: Comparison, *, every: bool = False) -> list[str]:
     """The answer, changed parameters, changed statements, what differs (worst first); for people.
 
     Args:
-        comparison: of two places.
         every: all of it, with what is equal and where each side was made; else a screenful.
     """
     stated = [verdict_line(comparison)]

@@ -16,8 +16,6 @@ class StatementChange:
     """One statement in two runs.
 
     Attributes:
-        claim: id of the statement.
-        statement: in our words.
         verdicts: in the first and the second run; empty where it is not judged.
         values: what was measured; None where there is not a number.
     """
@@ -34,11 +32,7 @@ class StatementChange:
 
 
 def changed_statements(a: xr.Dataset, b: xr.Dataset) -> list[StatementChange]:
-    """Statements whose verdict or value differs; changed verdicts first.
-
-    Args:
-        a, b: datasets ``claims`` of two runs.
-    """
+    """Statements whose verdict or value differs; changed verdicts first."""
     rows = [_rows(dataset) for dataset in (a, b)]
     found = []
     for claim in dict.fromkeys([*rows[0], *rows[1]]):

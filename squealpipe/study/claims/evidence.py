@@ -26,7 +26,6 @@ class Run(Mapping[str, xr.Dataset]):
     """The datasets of one run by name; each that is looked at is noted in ``used``.
 
     Attributes:
-        parameters: those of the study.
         sources: dataset name → file, or the dataset itself.
         used: names looked at since the last :meth:`forget`.
     """
@@ -75,9 +74,7 @@ class Finding(NamedTuple):
     """What one check found.
 
     Attributes:
-        verdict: what follows for the statement.
         value, relation, threshold: the deciding number and the comparison that it passes or not.
-        evidence: one line with the numbers that a reader would ask for.
     """
 
     verdict: Verdict
@@ -105,8 +102,6 @@ def finding(
     """A finding from one comparison.
 
     Args:
-        value, relation, threshold: the deciding comparison.
-        evidence: one line.
         otherwise, passed: verdicts when the comparison is false and true.
         also: further conditions, all of which must be true as well.
 

@@ -33,14 +33,10 @@ def judge(
     """The verdict on every statement, in the study's reading and in the corrected physics.
 
     Args:
-        parameters: those of the study.
         sources: dataset name → NetCDF file, or the dataset itself; under ``corrected/`` those of
             the corrected physics.
         reading: in which the other datasets were computed; a name of
             :data:`squealpipe.reading.READINGS`.
-
-    Returns:
-        Dataset ``claims`` over claim.
     """
     run = Run(for_linear(parameters, reading), sources)
     mended = {

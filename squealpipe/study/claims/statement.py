@@ -17,9 +17,7 @@ class Statement:
     """One statement, how it is checked, and what came out at the shipped baseline.
 
     Attributes:
-        id: row of the claims table.
         section: where the paper says it.
-        text: the statement in our own words.
         figure: picture that shows it; empty where none does.
         recorded: what its check finds at the shipped baseline; anything else is a regression.
         check: reads datasets only.

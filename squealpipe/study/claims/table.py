@@ -38,9 +38,6 @@ def rows(claims: xr.Dataset) -> list[dict[str, Any]]:
 def table(path: str | os.PathLike[str]) -> tuple[list[dict[str, Any]], int]:
     """The judged statements of a run and the exit code for a command line.
 
-    Args:
-        path: the dataset ``claims`` of a run, for instance ``results/data/claims.nc``.
-
     Returns:
         The rows, and 1 if a verdict differs from the one recorded for the shipped baseline,
         else 0. A run with other parameters only reports: its code is 0.

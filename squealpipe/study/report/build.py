@@ -45,11 +45,8 @@ def write_document(
     """Typeset one document and write both files, each whole or not at all.
 
     Args:
-        template: name of the Typst source in ``templates``, without suffix.
-        content: what the template shows.
         pictures: path inside the source (``content["figures"][name]["path"]``) → PNG file.
         page: HTML; needs no network and no other file.
-        pdf: PDF.
     """
     with _source(template, content, pictures) as main, ThreadPoolExecutor(2) as pool:
         made = pool.submit(_typeset, main, "html")

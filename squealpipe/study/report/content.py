@@ -37,13 +37,7 @@ PAPER = {
 
 @dataclass(frozen=True, kw_only=True)
 class Made:
-    """How one file of the run came to be.
-
-    Attributes:
-        path: the file.
-        rule: name of the workflow rule.
-        datasets: names of the datasets that the rule reads.
-    """
+    """How one file of the run came to be."""
 
     path: Path
     rule: str
@@ -63,8 +57,6 @@ def gather(
 
     Args:
         datasets: name (path below ``data/`` without suffix) → NetCDF file.
-        figures: name → PNG file.
-        parameters: those of the study.
         changed: keys of the configuration that differ from the shipped one, with both values. The
             narrative is shown only where there are none.
         links: further files of the run, by the words that lead to them.

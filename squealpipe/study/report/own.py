@@ -29,13 +29,7 @@ NUMBERS = (
 def gather_own(
     datasets: Mapping[str, Made], figures: Mapping[str, Made], parameters: Parameters
 ) -> dict[str, Any]:
-    """Content of ``templates/study.typ``.
-
-    Args:
-        datasets: name → file; those of the rules for scenes and maps.
-        figures: name → PNG file.
-        parameters: those of the study.
-    """
+    """Content of ``templates/study.typ``."""
     run = Run(parameters, {name: made.path for name, made in datasets.items()})
     table, spread = run["own_scenes"], run["propensity"]
     return {

@@ -44,7 +44,6 @@ def doubled_branch(
     those of ``backbone``, and are followed in the same steps.
 
     Args:
-        params: physical parameters.
         alpha1, alpha2: angles, rad.
         mode: 1 or 2, by ascending ω of the contact state.
         doubling: which period doubling along the backbone, from 1.

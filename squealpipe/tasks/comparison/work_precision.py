@@ -58,11 +58,9 @@ def work_precision(
     """Dataset ``work_precision``: medians over the peaks of the coupled scene.
 
     Args:
-        params: physical parameters.
         harmonics: N_h.
         sigmas: regularizing factors, times l_pre.
         oversampling: N over 2 N_h; 1 is the fewest samples that keep the columns independent.
-        repeats: runs of which the median time is taken.
     """
     scene = scaled_system(params, *COUPLED_SCENE)
     found = [[find_orbit(scene, MODE, peak - d)[0] for d in (0.0, _STEP)] for peak in PEAKS]

@@ -68,10 +68,6 @@ class Motion(NamedTuple):
 def check_assumptions(params: Parameters, scenes: Iterable[Scene] = ()) -> xr.Dataset:
     """Table 1 of the paper, extended: which assumptions held, by level and scene.
 
-    Args:
-        params: physical parameters.
-        scenes: scenes to look at; all named ones by default.
-
     Returns:
         Dataset over (level, scene, assumption); see ``schema.dynamics.assumptions.ASSUMPTIONS``.
     """
@@ -119,7 +115,6 @@ def linear_pull_map(
     """How far the linear model (Eqs. 6, 7) lets the contact spring pull, started at rest.
 
     Args:
-        params: physical parameters.
         alpha1, alpha2: 1-D arrays of angles, rad.
         t_end: end of the motion, s; 50 √(m/k1) by default.
 

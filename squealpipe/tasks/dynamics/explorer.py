@@ -37,13 +37,10 @@ def explorer_data(
     """Motions from rest, spectra of the contact force and backbones on a grid of angles.
 
     Args:
-        params: physical parameters.
         angles: values of both spring angles, rad.
         history_time: time for which the motion is kept, in units of √(m/k1).
         spectrum_time: time from which the spectrum is made, in the same units.
-        samples: instants kept of each motion.
         branch_points: points kept of each backbone; shorter ones repeat their last point.
-        workers: processes; all cores by default.
 
     Returns:
         Dataset over (alpha1, alpha2) with histories over ``time``, the spectrum over

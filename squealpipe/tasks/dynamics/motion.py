@@ -211,9 +211,7 @@ def refine_labels(
 
     Args:
         motion: labels by :func:`classify_motion`, 1-D.
-        run: the runs to ``t_end``.
         again: runs some of them again, by their rows, with so many events logged.
-        t_end: end of the runs, s.
     """
     motion = motion.copy()
     undetermined = (motion == MotionFlag.undetermined) & (run.outcome == Outcome.converged)

@@ -82,11 +82,7 @@ def _share(run: xr.Dataset, begins: Event, regime: Regime, end: float) -> float:
 
 
 def summary_lines(run: xr.Dataset, summary: xr.Dataset) -> Iterator[str]:
-    """The summary for people, one line per finding.
-
-    Args:
-        run: dataset ``simulation``; summary: what :func:`summarize` made of it.
-    """
+    """The summary for people, one line per finding."""
     first = float(summary.first_separation_time)
     yield f"regime             {_regime(summary)}"
     yield "first separation   " + (

@@ -49,8 +49,6 @@ def whirl_sizes(
         params: physical parameters; of the belt speed only the direction is kept.
         belt_speeds: 1-D array, m/s, without sign.
         t_end: end of each run, s; the last fifth gives the size.
-        tol: tolerance of the Taylor integrator.
-        workers: processes; None takes all cores.
 
     Returns:
         Dataset over belt_speed; see ``schema.dynamics.long_runs.WHIRL``. Without three such speeds
@@ -127,11 +125,7 @@ def transient_lifetimes(
     tenth net turn around the fixed ends: from there on it whirls.
 
     Args:
-        params: physical parameters.
-        samples: number of runs.
         t_end: end of the runs, s.
-        tol: tolerance of the Taylor integrator.
-        workers: processes; None takes all cores.
 
     Raises:
         ValueError: as :func:`run_ensemble`.

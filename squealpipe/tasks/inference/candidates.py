@@ -32,10 +32,7 @@ class Candidates:
 
     Attributes:
         fields: names of ``Parameters`` → 1-D arrays of one length.
-        tol: tolerance of the integrator.
-        workers: processes, as in ``run_ensemble``.
         initial_state: (x, y, ẋ, ẏ) of the scenes' runs, (4,) or one for each set, m and m/s.
-        model: model that stands for A1.
     """
 
     fields: Mapping[str, np.ndarray]

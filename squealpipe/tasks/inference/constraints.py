@@ -47,10 +47,8 @@ class Constraint(NamedTuple):
     """One statement as a constraint on the parameters.
 
     Attributes:
-        name: its id, as in the claims table.
         stage: with which others it is judged.
         criterion: what is checked, in words, with thresholds.
-        check: the function that measures the margin.
     """
 
     name: str

@@ -32,11 +32,9 @@ def model_ladder(
     """Dataset ``model_ladder`` over both angles from 0 to π.
 
     Args:
-        params: physical parameters.
         points: cells along each angle, at the centres of equal intervals.
         tol: relative error that is allowed.
         t_end: horizon, s; 200 √(m/k1) by default.
-        workers: processes; None takes all cores.
     """
     refuse_extensions(params, "the model ladder", WHY)
     horizon = HORIZON * params.time_unit if t_end is None else t_end

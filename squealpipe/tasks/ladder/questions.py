@@ -15,8 +15,6 @@ def answer_of(run: Any, question: str, times: np.ndarray) -> np.ndarray:
 
     Args:
         run: :class:`squealpipe.solvers.a1.ensemble.Ensemble`; for "frequency" sampled at ``times``.
-        question: of :data:`squealpipe.schema.ladder.QUESTIONS`.
-        times: equal steps.
     """
     if question == "contact_lost":
         return np.asarray(run.separations > 0, dtype=float)

@@ -19,7 +19,6 @@ def stability_boundaries(params: Parameters, *, points: int = 400) -> xr.Dataset
     where the angles follow in closed form, so each point is exact to round-off.
 
     Args:
-        params: physical parameters.
         points: points of each arc; every arc gives two segments.
 
     Returns:

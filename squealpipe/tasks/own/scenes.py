@@ -68,13 +68,8 @@ def own_scenes(
     """Runs of A1 in each scene, as configured and with one thing changed.
 
     Args:
-        params: physical parameters.
         scenes: name → ``alpha1``, ``alpha2`` (rad), ``start`` (``x``, ``y``, ``vx``, ``vy``; m
             and m/s) and ``t_end`` (√(m/k1)).
-        tol: tolerance of the Taylor integrator.
-
-    Returns:
-        Dataset over scene and variant; see ``schema.own``.
     """
     rows = [_scene(params, scene, tol) for scene in scenes.values()]
     columns = {name: np.stack([row[name] for row in rows]) for name in rows[0]}

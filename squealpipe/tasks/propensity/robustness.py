@@ -74,13 +74,8 @@ def verdict_reach(
     the last variants, where a share of random starts is given with its 95 % interval (Wilson).
 
     Args:
-        params: physical parameters as configured.
-        starts: random starts of each of the last variants.
         inferred: dataset ``parameter_inference``; its feasible parameter sets become a variant, in
             which statements that were fitted are not judged, for they hold by construction.
-        seed: of the starts.
-        tol: tolerance of the integrator.
-        workers: processes; None takes all cores.
 
     Returns:
         Dataset over (variant, statement): share (0 or 1 for a single setting), its interval, the

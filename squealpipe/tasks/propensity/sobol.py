@@ -52,9 +52,7 @@ def saltelli_matrices(inputs: int, size: int, seed: int) -> np.ndarray:
     """Points A, B and A with one input of B each, (2 + inputs, inputs, size), in the unit cube.
 
     Args:
-        inputs: number of inputs.
         size: of each matrix, a power of 2; equal parts follow one another, one a scrambling.
-        seed: of the scramblings.
     """
     first, second = np.split(scrambled(2 * inputs, size, seed).T, 2)
     matrices = np.stack([first, second, *[first] * inputs])

@@ -34,12 +34,7 @@ SHOWN = 1.25
 
 
 def draw(branches: Mapping[str, xr.Dataset], doubled: Mapping[str, xr.Dataset]) -> Figure:
-    """One row for each scene; see ``parts.backbone_panels.draw_scenes``.
-
-    Args:
-        branches: datasets ``backbone/<scene>_mode<n>`` of the scenes that the study names.
-        doubled: datasets ``doubled_branch/<scene>_<number>``.
-    """
+    """One row for each scene; see ``parts.backbone_panels.draw_scenes``."""
     scenes = dict.fromkeys(
         name.removeprefix("backbone/").rsplit("_mode", 1)[0] for name in branches
     )

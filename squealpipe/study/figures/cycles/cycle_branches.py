@@ -35,13 +35,7 @@ AT_REST = 0.5
 
 
 def draw(down: xr.Dataset, up: xr.Dataset, flutter: xr.Dataset, extremes: xr.Dataset) -> Figure:
-    """A panel for each scene that moves at all.
-
-    Args:
-        down, up: branches of the scene of Fig. 3 from the study's friction to its limits.
-        flutter: branch from the onset of flutter.
-        extremes: settled amplitudes by brute force.
-    """
+    """A panel for each scene that moves at all."""
     unit = parameter(extremes, "preload")
     panels = {
         "F3": (scene_title("F3"), (down, up)),

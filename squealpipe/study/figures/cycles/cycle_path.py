@@ -22,11 +22,7 @@ ALT = (
 
 
 def draw(cycle: xr.Dataset) -> Figure:
-    """Two panels.
-
-    Args:
-        cycle: dataset of ``limit_cycle``.
-    """
+    """Two panels."""
     figure, axes = style.new_figure(style.PAGE, 3.0, ncols=2)
     path, rate = axes[0]
     if not cycle.sizes["sample"]:

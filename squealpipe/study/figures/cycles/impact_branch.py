@@ -22,11 +22,7 @@ ALT = (
 
 
 def draw(branch: xr.Dataset) -> Figure:
-    """One panel.
-
-    Args:
-        branch: dataset of ``cycle_branch`` of the impact oscillator in its ``omega``.
-    """
+    """One panel."""
     figure, axes = style.new_figure(style.COLUMN, 3.0)
     panel = axes[0, 0]
     trace_branch(panel, branch.omega.values, -branch.x_min.values, branch)

@@ -24,11 +24,7 @@ ALT = (
 
 
 def draw(*runs: xr.Dataset) -> Figure:
-    """Four panels in the order of the paper.
-
-    Args:
-        runs: datasets ``simulate/F2a`` … ``simulate/F2d``.
-    """
+    """Four panels in the order of the paper."""
     figure, axes = style.new_figure(style.PAGE, 4.3, nrows=2, ncols=2, sharex=True, sharey=True)
     for panel, letter, run in zip(axes.flat, "abcd", runs, strict=True):
         draw_force(panel, run)

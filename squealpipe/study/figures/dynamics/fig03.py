@@ -31,11 +31,7 @@ READINGS = (
 
 
 def draw(runs: Mapping[str, xr.Dataset]) -> Figure:
-    """Two panels, and a third one where the study has long runs.
-
-    Args:
-        runs: dataset ``simulate/F3``, ``simulate/F3_long``, and both of ``corrected/``.
-    """
+    """Two panels, and a third one where the study has long runs."""
     run = runs["simulate/F3"]
     long = [(runs[name], colour, words) for name, colour, words in READINGS if name in runs]
     rows = 2 + bool(long)

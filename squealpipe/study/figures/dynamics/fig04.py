@@ -24,11 +24,7 @@ ALT = (
 
 
 def draw(run: xr.Dataset) -> Figure:
-    """The plane of motion, to scale.
-
-    Args:
-        run: dataset ``simulate/F4``.
-    """
+    """The plane of motion, to scale."""
     figure, axes = new_figure(PAGE, 3.9)
     panel = axes[0, 0]
     x, y = run.x.values, run.y.values

@@ -24,12 +24,7 @@ ALT = (
 
 
 def draw(first: xr.Dataset, second: xr.Dataset) -> Figure:
-    """One panel, line and circles.
-
-    Args:
-        first: dataset ``simulate/F5a``, (π, π).
-        second: dataset ``simulate/F5b``, (0, 0).
-    """
+    """One panel, line and circles."""
     figure, axes = style.new_figure(style.PAGE, 2.5)
     panel = axes[0, 0]
     draw_force(panel, first)

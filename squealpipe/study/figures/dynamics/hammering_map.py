@@ -28,11 +28,7 @@ ALT = (
 
 
 def draw(hammering: xr.Dataset) -> Figure:
-    """Four maps.
-
-    Args:
-        hammering: dataset ``hammering_map``.
-    """
+    """Four maps."""
     figure, axes = style.new_figure(style.PAGE, 6.2, nrows=2, ncols=2)
     plot(hammering, ax=axes[0, 0])
     style.panel_letter(axes[0, 0], "a", f"motion to t = {number(float(hammering.t_end), 4)} s")

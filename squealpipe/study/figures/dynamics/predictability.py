@@ -26,11 +26,7 @@ ALT = (
 
 
 def draw(hammering: xr.Dataset) -> Figure:
-    """A map of the horizon and the distribution of the growth.
-
-    Args:
-        hammering: dataset ``hammering_map``.
-    """
+    """A map of the horizon and the distribution of the growth."""
     figure, axes = style.new_figure(style.PAGE, 3.2, ncols=2)
     t_end = float(hammering.t_end)
     horizon = hammering.predictability_horizon.values

@@ -54,12 +54,7 @@ CAPTION = caption
 
 
 def draw(angles: xr.Dataset, scenes: Mapping[str, xr.Dataset]) -> Figure:
-    """One panel for each chart.
-
-    Args:
-        angles: dataset ``regime_chart`` over both angles.
-        scenes: those over κ and μ by scene.
-    """
+    """One panel for each chart."""
     names = sorted(scenes)
     rows = (len(names) + 2) // 2
     figure, axes = style.new_figure(style.PAGE, 0.6 + 2.6 * rows, ncols=2, nrows=rows)

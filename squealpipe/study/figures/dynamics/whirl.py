@@ -29,12 +29,7 @@ ALT = (
 
 
 def draw(run: xr.Dataset, sizes: xr.Dataset) -> Figure:
-    """Two panels.
-
-    Args:
-        run: dataset ``simulate/whirl``.
-        sizes: dataset ``whirl``.
-    """
+    """Two panels."""
     figure, axes = style.new_figure(style.PAGE, 2.9, ncols=2, width_ratios=(1.3, 1))
     panel = axes[0, 0]
     panel.plot(run.time, run.x, color=style.X_COLOUR, linewidth=0.25, rasterized=True)

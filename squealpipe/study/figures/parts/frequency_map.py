@@ -24,12 +24,7 @@ CAPTION = (
 
 
 def draw_mode(frequencies: xr.Dataset, mode: int) -> Figure:
-    """Two panels, in contact and separated, with one colour scale.
-
-    Args:
-        frequencies: dataset ``natural_frequencies``.
-        mode: 1 or 2.
-    """
+    """Two panels, in contact and separated, with one colour scale."""
     figure, axes = style.new_figure(style.PAGE, 3.45, ncols=2)
     omega = frequencies.omega.sel(mode=mode)
     upper = float(omega.max())

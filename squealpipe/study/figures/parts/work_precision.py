@@ -36,9 +36,6 @@ def draw_methods(
     """Error against cost, one line for each method, with the Pareto front and our own setting.
 
     Args:
-        axes: where.
-        rows: runs of one panel.
-        cost: variable on the y axis.
         scale: factor from its unit to the axis'.
         methods: in all panels, so that each has its mark.
     """

@@ -18,12 +18,7 @@ ALT = "Two maps over the velocity at the start, coloured by the kind of motion."
 
 
 def draw(kept: xr.Dataset, growing: xr.Dataset) -> Figure:
-    """Two maps.
-
-    Args:
-        kept: basin of the scene of Fig. 2(d).
-        growing: basin of the scene of Fig. 3.
-    """
+    """Two maps."""
     figure, axes = style.new_figure(style.PAGE, 3.5, ncols=2)
     shown: set[int] = set()
     names = str(kept.motion.attrs["flag_meanings"]).split()

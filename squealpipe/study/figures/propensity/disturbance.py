@@ -26,11 +26,7 @@ ALT = "Two panels of falling lines over the number of directions, with crosses b
 
 
 def draw(found: Mapping[str, xr.Dataset]) -> Figure:
-    """Two panels.
-
-    Args:
-        found: name → dataset ``smallest_disturbance``.
-    """
+    """Two panels."""
     figure, axes = style.new_figure(style.PAGE, 3.0, ncols=2)
     scenes = sorted({name.split("/")[1].partition("_")[0] for name in found})
     marks = dict(zip(scenes, MARKS, strict=False))

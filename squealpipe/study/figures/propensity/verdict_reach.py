@@ -23,11 +23,7 @@ ALT = "A table of settings by statements, blue where a statement holds and red w
 
 
 def draw(reach: xr.Dataset) -> Figure:
-    """One table.
-
-    Args:
-        reach: dataset ``verdict_reach``.
-    """
+    """One table."""
     share = reach.share.values
     figure, axes = new_figure(PAGE, 0.24 * len(share) + 2.2)
     panel = axes[0, 0]

@@ -36,11 +36,8 @@ def write_explorer(
     """Write the page, whole or not at all.
 
     Args:
-        explorer: dataset ``explorer``.
-        layers: what the map can show, by key.
         path: the HTML file; it needs no network and no other file.
         scenes: those of the study's own, name → ``alpha1``, ``alpha2`` (rad).
-        paper: show the paper's scenes too.
     """
     papers = {
         f"Fig {scene.figure}": {"alpha1": scene.alpha1, "alpha2": scene.alpha2, "near": 0.03}

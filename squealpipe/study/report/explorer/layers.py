@@ -18,11 +18,9 @@ class Layer(NamedTuple):
     """A quantity over both angles.
 
     Attributes:
-        label: its name in the chooser.
         map: over alpha1 and alpha2; NaN where there is none.
         note: what NaN means, or what else to know.
         meanings: code → name, for categories.
-        colours: code → colour, for categories.
     """
 
     label: str
@@ -56,15 +54,7 @@ def layers(
     hammering: xr.Dataset | None = None,
     ladder: xr.Dataset | None = None,
 ) -> dict[str, Layer]:
-    """All layers, in the order of the chooser; those of datasets that a study lacks are left out.
-
-    Args:
-        validity: dataset ``validity_map``.
-        stability: dataset ``stability_map``.
-        frequencies: dataset ``natural_frequencies``.
-        hammering: dataset ``hammering_map``.
-        ladder: dataset ``model_ladder``.
-    """
+    """All layers, in the order of the chooser; those of missing datasets are left out."""
     found = {}
     levels = {int(level): level.label for level in Level}
     colours = {int(level): colour_of(level) for level in Level}
