@@ -1,7 +1,5 @@
 """Entry point of the command ``squealpipe``, which loads it so that Ctrl-C is quiet even then."""
 
-from __future__ import annotations
-
 import sys
 
 

@@ -1,7 +1,5 @@
 """The codes that models, methods and datasets share."""
 
-from __future__ import annotations
-
 from enum import IntEnum
 
 

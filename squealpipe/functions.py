@@ -1,7 +1,5 @@
 """cos, sin, exp, log, sqrt and tanh of floats, arrays and the symbols of a system."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

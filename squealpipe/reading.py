@@ -9,8 +9,6 @@ that keeps A1's figures lets the belt run that way in all models.
 With a negative ``belt_speed`` all of it is mirrored.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 from squealpipe.parameters import Parameters

@@ -1,7 +1,5 @@
 """Words for people: numbers in sentences, labels and tables, and the name that was meant."""
 
-from __future__ import annotations
-
 import difflib
 import re
 from collections.abc import Iterable, Mapping

@@ -1,7 +1,5 @@
 """The gate for arguments: annotations say what a function takes; all else is refused by name."""
 
-from __future__ import annotations
-
 import functools
 import inspect
 import keyword

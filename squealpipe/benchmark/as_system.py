@@ -1,7 +1,5 @@
 """A problem's texts as a ``System``."""
 
-from __future__ import annotations
-
 from functools import partial
 from typing import Any
 

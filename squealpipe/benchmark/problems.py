@@ -1,7 +1,5 @@
 """A benchmark problem as plain data, and the Python functions generated from its equations."""
 
-from __future__ import annotations
-
 import json
 import math
 from collections.abc import Callable, Mapping

@@ -1,7 +1,5 @@
 """What an answer is worth: its events against the reference's, its error over the growth."""
 
-from __future__ import annotations
-
 import time
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, NamedTuple

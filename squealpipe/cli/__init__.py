@@ -1,7 +1,5 @@
 """The command line. Commands import numerics only when they run, so help comes at once."""
 
-from __future__ import annotations
-
 import contextlib
 import os
 import sys

@@ -1,7 +1,5 @@
 """The option types that every command shares, and parameters taken from a study."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
 from pathlib import Path

@@ -1,7 +1,5 @@
 """``squealpipe claims``: the paper's statements with their verdicts, in one line each."""
 
-from __future__ import annotations
-
 import json
 import shutil
 from collections.abc import Mapping, Sequence

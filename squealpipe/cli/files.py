@@ -1,7 +1,5 @@
 """Commands about one dataset file: its picture, and its tables for other programs."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Annotated
 

@@ -1,7 +1,5 @@
 """``squealpipe choose`` and ``squealpipe infer``: which model, and which parameters."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Literal
 

@@ -1,7 +1,5 @@
 """``squealpipe init`` and ``squealpipe run``: a study of one's own, begun and computed."""
 
-from __future__ import annotations
-
 import os
 import signal
 import subprocess

@@ -1,7 +1,5 @@
 """Commands about a whole study: what would run, what was found, frozen and compared."""
 
-from __future__ import annotations
-
 import json
 from typing import Annotated
 

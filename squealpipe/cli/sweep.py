@@ -1,7 +1,5 @@
 """``squealpipe sweep``: any task over ranges, to one dataset."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from math import prod
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Mistakes in a configuration, in words: key path, value, what is allowed, the nearest key."""
 
-from __future__ import annotations
-
 import fnmatch
 import re
 import typing

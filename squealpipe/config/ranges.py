@@ -3,8 +3,6 @@
 Both are read into one canonical form, so a sweep has one meaning wherever it stands.
 """
 
-from __future__ import annotations
-
 import math
 import re
 from collections.abc import Callable, Mapping, Sequence

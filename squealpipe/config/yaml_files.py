@@ -1,7 +1,5 @@
 """YAML files as plain data: no code, no duplicate key."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Mapping
 from pathlib import Path

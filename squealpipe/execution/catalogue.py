@@ -1,7 +1,5 @@
 """Every task that the command line and sweeps can call by name."""
 
-from __future__ import annotations
-
 import inspect
 from collections.abc import Callable
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """How the runs of a sweep ended, in a few lines."""
 
-from __future__ import annotations
-
 import numpy as np
 import xarray as xr
 

@@ -4,8 +4,6 @@ Snakemake gives its summary of every file and its records of earlier runs; the w
 each file should be made from. Nothing is read from text that Snakemake writes for people.
 """
 
-from __future__ import annotations
-
 import json
 import os
 import re

@@ -1,7 +1,5 @@
 """What a rule of the workflow gives its script: a slice of the study, parameters, files."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable
 from functools import cached_property
 from typing import Any

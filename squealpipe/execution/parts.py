@@ -4,8 +4,6 @@ A cell of a map does not know its neighbours, nor does a run of a sweep, so what
 what is made at once bit for bit.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from typing import Any
 

@@ -1,7 +1,5 @@
 """The unilateral contact spring k3, sharp and regularized."""
 
-from __future__ import annotations
-
 from typing import Any, cast
 
 import numpy as np

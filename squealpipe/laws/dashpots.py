@@ -3,8 +3,6 @@
 The contact has none: with one, N would vanish before y = l_pre.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 from squealpipe.laws.springs import (

@@ -4,8 +4,6 @@ How the coefficient depends on the sliding speed is a law of its own
 (:mod:`squealpipe.laws.friction_laws`); the limit of stick and the sign of slip are common to all.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

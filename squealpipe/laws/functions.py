@@ -1,7 +1,5 @@
 """Functions that laws need besides + − × and ``**``, for every kind of number."""
 
-from __future__ import annotations
-
 import math
 from functools import singledispatch
 from typing import Any

@@ -1,7 +1,5 @@
 """The two inclined springs: exact geometry, and its linearization at x = y = 0."""
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 import numpy as np

@@ -5,8 +5,6 @@ monotone cubics of Fritsch and Carlson. The content is the law: it stands in par
 datasets as the name of a formula does, so nothing depends on a file that was read once.
 """
 
-from __future__ import annotations
-
 import csv
 import math
 from collections.abc import Mapping

@@ -9,8 +9,6 @@ of their answer from the other one, is less than half of what it changes by betw
 that it may be used up before the next point.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import NamedTuple
 

@@ -16,8 +16,6 @@ again, and none is ever stale. (heyoka compiles expressions of its own, in
 :mod:`tests.oracles.taylor_compiler`, and stores nothing.)
 """
 
-from __future__ import annotations
-
 import hashlib
 import os
 from collections.abc import Callable

@@ -4,8 +4,6 @@ Settings, algorithm, state and result are separate; a :class:`Continuation` is i
 yields one state after the other, so the caller decides when to stop.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from enum import IntEnum

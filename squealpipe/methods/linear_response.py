@@ -5,8 +5,6 @@ r(t + h) = 2 cos(√A h) r(t) − r(t − h) + 2 (I − cos(√A h)) A⁻¹ b. B
 of A: no eigenvalues are needed, and singular, defective and unstable matrices are not an exception.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 import numpy as np

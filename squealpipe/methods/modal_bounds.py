@@ -4,8 +4,6 @@ With A = λ1 P1 + λ2 P2 the motion is u* − Σ cos(ω_i t) P_i u*, so each coo
 its equilibrium plus and minus the sum of its modal amplitudes, whatever the time.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

@@ -5,8 +5,6 @@ guard. Where forking is not possible (other systems, or inside a daemonic worker
 this process.
 """
 
-from __future__ import annotations
-
 import mmap
 import multiprocessing
 import os

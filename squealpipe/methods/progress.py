@@ -1,7 +1,5 @@
 """How far a long computation is, for whoever shows it; nobody does unless asked."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import TypeVar

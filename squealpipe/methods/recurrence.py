@@ -1,7 +1,5 @@
 """Whether a sequence of events repeats itself."""
 
-from __future__ import annotations
-
 import numpy as np
 
 LEAST_REPEATS = 3

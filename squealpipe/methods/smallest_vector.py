@@ -9,8 +9,6 @@ What the directions themselves say of the minimum is order statistics: of n inde
 probability 1 − p at most a share 1 − p^(1/n) of all directions has a smaller radius.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import NamedTuple

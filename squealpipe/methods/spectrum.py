@@ -1,7 +1,5 @@
 """Amplitude spectrum of a uniformly sampled signal, and its highest peaks."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 

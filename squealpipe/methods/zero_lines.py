@@ -7,8 +7,6 @@ zero beside it. It is divided where the tangents meet: in the middle of a smooth
 kink, which is so enclosed in a few steps.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from itertools import pairwise
 from typing import Any, NamedTuple

@@ -17,8 +17,6 @@ exact geometry). ``A1-as-printed`` is Eq. (4) taken literally: friction μ N sgn
 slower mass back and a faster one on, and nothing sticks (see :mod:`squealpipe.reading`).
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 from squealpipe.laws.contact import contact_energy, normal_force

@@ -4,8 +4,6 @@ Drops from A1 the exact geometry, contact loss, inertia and the belt's reversal,
 mass at y = 0. Valid while a sliding state with positive reaction exists and is approached slowly.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -9,8 +9,6 @@ is two circles about c = k3 (1 − iμ) and a line: flutter inside |Z − c| = �
 outside |Z − c|² = (S + k3)² + μ²k3², and Eq. (11) at Re(Z (1 + iμ)) = −S.
 """
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 import numpy as np

@@ -5,8 +5,6 @@ are small against the spring lengths and ẋ < V. Piecewise linear and, being au
 undamped with forces that depend on position alone, time-reversible.
 """
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 import numpy as np

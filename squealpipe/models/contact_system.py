@@ -1,7 +1,5 @@
 """The linear chain: angles → stiffness → spectrum of the mass in contact, for A2, A3 and A4."""
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 import numpy as np

@@ -12,8 +12,6 @@ fixed ratio, that becomes ω1² < p3/p1 < ω2², so the onset jumps away from th
 ratios but one: damping-induced destabilization (Hoffmann and Gaul, ZAMM 83 (2003) 524–534).
 """
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 import numpy as np

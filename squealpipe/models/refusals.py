@@ -2,8 +2,6 @@
 dashpots.
 """
 
-from __future__ import annotations
-
 from squealpipe.laws.friction_laws import COULOMB, LAWS
 from squealpipe.parameters import DEFAULTS, TABLE, Parameters, brief
 

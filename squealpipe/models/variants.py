@@ -1,7 +1,5 @@
 """What each variant of A1, and A4, leaves out of it."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 

@@ -6,8 +6,6 @@ parameter, so Snakemake runs the rule again when it changes; the results state i
 and archives can hold each file against what it should be.
 """
 
-from __future__ import annotations
-
 import hashlib
 import json
 import os

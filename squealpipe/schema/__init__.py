@@ -4,8 +4,6 @@ The tables are in the modules below, one per topic; a task imports its own table
 :func:`build`. :func:`find` gets a schema by name, for readers of files.
 """
 
-from __future__ import annotations
-
 import importlib
 import math
 import pkgutil

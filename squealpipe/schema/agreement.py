@@ -1,7 +1,5 @@
 """How two datasets of one schema are held against each other where numbers alone do not do."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from enum import Enum
 

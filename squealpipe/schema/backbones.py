@@ -1,7 +1,5 @@
 """Datasets of periodic motions of model A4: single orbits and backbones."""
 
-from __future__ import annotations
-
 from enum import IntEnum
 
 from squealpipe.codes import SpecialPoint

@@ -1,7 +1,5 @@
 """Datasets of runs from other starts than rest."""
 
-from __future__ import annotations
-
 from enum import IntEnum
 
 from squealpipe.codes import LinearRegime

@@ -1,7 +1,5 @@
 """The verdicts on the paper's statements."""
 
-from __future__ import annotations
-
 from enum import IntEnum
 
 from squealpipe.schema import DatasetSchema, Variable

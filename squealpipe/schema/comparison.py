@@ -1,7 +1,5 @@
 """Datasets that compare methods: work–precision and the failure atlas."""
 
-from __future__ import annotations
-
 from enum import IntEnum
 
 from squealpipe.schema import DatasetSchema, Outcome, Variable, outcome

@@ -1,7 +1,5 @@
 """Boundaries over two parameters as curves."""
 
-from __future__ import annotations
-
 from enum import IntEnum
 
 from squealpipe.codes import LinearRegime

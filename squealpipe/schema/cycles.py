@@ -1,7 +1,5 @@
 """Datasets of limit cycles of the full model A1."""
 
-from __future__ import annotations
-
 from enum import IntEnum
 
 from squealpipe.codes import Event

@@ -1,7 +1,5 @@
 """The levels of the model ladder, one record each, and the dataset that compares them."""
 
-from __future__ import annotations
-
 from enum import IntEnum
 from typing import Self
 

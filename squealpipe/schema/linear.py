@@ -1,7 +1,5 @@
 """Datasets of the linear models A2, A3 and of the natural frequencies."""
 
-from __future__ import annotations
-
 from enum import IntEnum
 from typing import Any
 

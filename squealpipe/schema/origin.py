@@ -4,8 +4,6 @@ Every public task carries :func:`recorded`, so a dataset that is saved from a no
 parameters as one of the study does. None of these attributes enters the dataset's id.
 """
 
-from __future__ import annotations
-
 import functools
 import importlib.metadata
 import inspect

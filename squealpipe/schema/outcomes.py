@@ -1,7 +1,5 @@
 """Why a cell, point or run holds what it holds, and what helps."""
 
-from __future__ import annotations
-
 from enum import IntEnum
 
 

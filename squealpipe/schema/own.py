@@ -1,7 +1,5 @@
 """What a user's own scenes do, as configured and with one thing changed."""
 
-from __future__ import annotations
-
 from squealpipe.schema import RUN_ENDS, DatasetSchema, Variable, outcome
 from squealpipe.schema.dynamics.runs import IMPACT_SPEED, RETURN_FORCE
 

@@ -1,7 +1,5 @@
 """Datasets on how far verdicts carry and how parameters spread into results."""
 
-from __future__ import annotations
-
 from squealpipe.schema import DatasetSchema, Outcome, Variable, outcome
 
 WIDEST = 0.05

@@ -4,8 +4,6 @@ Their schema follows from that of the task, so it is derived from its name, for 
 ``sweep of stability_map over mu, k3``, instead of being listed.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Sequence
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """Frozen runs: everything that made a result and the result itself, with checksums."""
 
-from __future__ import annotations
-
 import datetime
 import importlib.metadata
 import json

@@ -1,7 +1,5 @@
 """What runs there are: archives and folders of results, found again by their parameters."""
 
-from __future__ import annotations
-
 import contextlib
 import datetime
 import json

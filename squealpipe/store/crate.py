@@ -1,7 +1,5 @@
 """RO-Crate metadata of an archive: what each file is and what made it, for other tools."""
 
-from __future__ import annotations
-
 import json
 import mimetypes
 from pathlib import Path

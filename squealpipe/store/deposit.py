@@ -1,7 +1,5 @@
 """A bundle of one archived run that another person can use alone: the archive and its code."""
 
-from __future__ import annotations
-
 import os
 import zipfile
 from pathlib import Path

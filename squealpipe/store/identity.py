@@ -1,7 +1,5 @@
 """What makes two datasets the same: one hash of schema, configuration and values."""
 
-from __future__ import annotations
-
 import hashlib
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Whether files of a run are what they should be: whole, there, and made from this and no other."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from pathlib import Path
 

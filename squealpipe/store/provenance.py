@@ -1,7 +1,5 @@
 """Where a dataset comes from: configuration slice, code, libraries, inputs, and its own id."""
 
-from __future__ import annotations
-
 import os
 import platform
 import sys

@@ -1,7 +1,5 @@
 """What a name on the command line stands for: an archive, a run, a folder or one file."""
 
-from __future__ import annotations
-
 import fnmatch
 import json
 import os

@@ -1,7 +1,5 @@
 """At which instants a motion is looked at, and whether these resolve it."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -4,8 +4,6 @@ A law is a module of this folder, and its name in the import below; or a table o
 (:mod:`squealpipe.laws.tables`). Contact ends where the force has fallen to zero: no law pulls.
 """
 
-from __future__ import annotations
-
 from functools import lru_cache
 from types import ModuleType
 from typing import Any, Protocol, cast

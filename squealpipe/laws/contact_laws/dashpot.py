@@ -4,8 +4,6 @@ N = k3 δ + c3 δ̇ vanishes before the mass has left the spring's free length: 
 begins again where the force would be positive. It jumps up by c3 δ̇ where the mass strikes at δ = 0.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 from squealpipe.laws.contact_laws.linear import energy, stiffness

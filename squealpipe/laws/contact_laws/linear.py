@@ -1,7 +1,5 @@
 """The linear contact spring, the paper's."""
 
-from __future__ import annotations
-
 from typing import Any
 
 

@@ -4,8 +4,6 @@ A law is a module of this folder, and its name in the import below; or a table o
 or a Python file with ``coefficient(speed, p)`` (:mod:`squealpipe.laws.tables`).
 """
 
-from __future__ import annotations
-
 from functools import lru_cache
 from types import ModuleType, SimpleNamespace
 from typing import Any, Protocol, cast

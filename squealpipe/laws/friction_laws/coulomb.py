@@ -1,7 +1,5 @@
 """Coulomb's law, the paper's: friction does not depend on speed."""
 
-from __future__ import annotations
-
 from typing import Any
 
 PARAMETERS = ("mu", "mu_static")

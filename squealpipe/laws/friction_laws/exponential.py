@@ -1,7 +1,5 @@
 """The exponential (Stribeck) law: friction falls from its static value over a speed v0."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from squealpipe.laws.functions import exp

@@ -1,7 +1,5 @@
 """The hyperbolic law: friction falls from its static value like 1/(1 + w/v0)."""
 
-from __future__ import annotations
-
 from typing import Any
 
 PARAMETERS = ("mu", "mu_static", "friction_speed")

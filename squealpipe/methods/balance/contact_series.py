@@ -3,8 +3,6 @@
 In closed form between located contact times, or from samples (alternating frequency–time).
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from functools import cached_property

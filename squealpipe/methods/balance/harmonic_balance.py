@@ -6,8 +6,6 @@ coefficients of x and y, and ω; the system is autonomous, so there is one unkno
 equations and the solutions form a branch.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from functools import cached_property

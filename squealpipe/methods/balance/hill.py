@@ -6,8 +6,6 @@ It is as good as the coefficients of A(t), which jumps at each switch: from samp
 alternating frequency–time codes, a motion in a period-doubling window may look stable.
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -6,8 +6,6 @@ time solves the equations too, it loses rank at a solution; Newton's method with
 pseudo-inverse lands somewhere on a two-parameter family. Samples of a kinked force alias.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from functools import cached_property

@@ -9,8 +9,6 @@ sense: a step to a point where it runs the other way has left the branch across 
 perfect or not, and is taken again at half its length.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Tracing a branch of symmetric orbits by pseudo-arclength up to a given peak, compiled."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -9,8 +9,6 @@ A *state row* holds λm, B11, B12, B21, δ² = −det B, Re ω1, Im ω1, Re ω2,
 threshold of y (see :class:`squealpipe.methods.orbits.piecewise_linear.PiecewiseLinearSystem`).
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

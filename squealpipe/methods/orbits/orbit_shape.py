@@ -1,7 +1,5 @@
 """Shape of a symmetric orbit: its waveform, its extremes and its largest speed."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Piecewise-linear systems of two degrees of freedom with one switching line y = threshold."""
 
-from __future__ import annotations
-
 import cmath
 from dataclasses import dataclass
 from functools import cached_property

@@ -5,8 +5,6 @@ rest again after T/2 closes after T. The flow between switches is exact, the fie
 across a switch, and the tangent map is therefore the plain product of the segments' maps.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Where a branch of symmetric orbits meets shorter ones, of half the period down to a seventh."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Datasets on what the model levels take for granted (Table 1 and section 6 of the paper)."""
 
-from __future__ import annotations
-
 from squealpipe.schema import RUN_ENDS, DatasetSchema, Outcome, Variable, outcome
 from squealpipe.schema.linear import ANGLES, MAP
 

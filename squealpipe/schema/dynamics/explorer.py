@@ -1,7 +1,5 @@
 """The dataset behind the explorer page: motions, spectra and backbones on a grid of angles."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 from squealpipe.schema import ORBIT_ENDS, RUN_ENDS, DatasetSchema, Variable, outcome

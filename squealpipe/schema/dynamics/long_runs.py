@@ -1,7 +1,5 @@
 """Datasets of the long runs: the size of the whirl, and how long the bounded motion lasts."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 from squealpipe.schema import RUN_ENDS, DatasetSchema, Outcome, Variable, outcome

@@ -1,7 +1,5 @@
 """What one run says in a few numbers, with the spectrum of its contact force."""
 
-from __future__ import annotations
-
 from squealpipe.schema import RUN_ENDS, DatasetSchema, Variable, outcome
 from squealpipe.schema.agreement import Listing
 from squealpipe.schema.dynamics.explorer import FREQUENCY

@@ -1,7 +1,5 @@
 """Datasets of the nonlinear models A1 and A4 in time."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from enum import IntEnum
 from typing import Any

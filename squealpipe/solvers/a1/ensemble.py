@@ -1,7 +1,5 @@
 """Ensembles of nonlinear runs: any number of runs, each with its own parameters and angles."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from functools import cached_property

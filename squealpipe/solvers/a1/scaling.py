@@ -1,7 +1,5 @@
 """A1 as a system, and the parameters of its runs in units of m = k1 = l_pre = 1."""
 
-from __future__ import annotations
-
 import math
 import re
 from collections.abc import Mapping

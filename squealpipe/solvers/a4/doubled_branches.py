@@ -1,7 +1,5 @@
 """Branches of doubled period that leave a branch of A4 at a period doubling, in scaled units."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Branches of exact periodic motions of model A4, in scaled units."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

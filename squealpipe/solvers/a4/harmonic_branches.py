@@ -1,7 +1,5 @@
 """Branches of model A4 by harmonic balance in cosines, each point judged by the exact orbit."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, replace
 

@@ -1,7 +1,5 @@
 """Exact orbits of A4 from cold: the linear mode, the start of its branch, the way to a peak."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, replace
 from typing import Any

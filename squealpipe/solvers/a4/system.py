@@ -1,7 +1,5 @@
 """Model A4 at one pair of angles as a scaled piecewise-linear system with its linear modes."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

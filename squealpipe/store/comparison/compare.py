@@ -1,7 +1,5 @@
 """Two archives, runs, folders or files: what is equal, within tolerance or different; where."""
 
-from __future__ import annotations
-
 import json
 import math
 import os

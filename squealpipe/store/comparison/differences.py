@@ -1,7 +1,5 @@
 """How one variable of two datasets differs, judged by the tolerance that its schema states."""
 
-from __future__ import annotations
-
 from collections import Counter
 from dataclasses import dataclass, field
 from enum import IntEnum

@@ -1,7 +1,5 @@
 """A comparison for people: a screenful in the terminal."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 from typing import Any

@@ -1,7 +1,5 @@
 """Two datasets brought onto what they share: grid points by value, entries of lists by meaning."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Variables whose digits round-off decides: what of them two datasets must share."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Which of the paper's statements changed their verdict or their value between two runs."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """What a check may look at: the datasets of one run, loaded on demand and noted down."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from operator import ge, gt, le, lt

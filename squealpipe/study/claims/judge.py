@@ -1,7 +1,5 @@
 """Judging: every statement's check is run on one run's datasets."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from math import nan
 from pathlib import Path

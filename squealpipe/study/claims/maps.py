@@ -1,7 +1,5 @@
 """Looking things up in maps over both spring angles."""
 
-from __future__ import annotations
-
 import numpy as np
 import xarray as xr
 

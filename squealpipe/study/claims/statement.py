@@ -1,7 +1,5 @@
 """A statement of the paper as data: one row, beside the check that judges it."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 

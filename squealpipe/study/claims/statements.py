@@ -1,7 +1,5 @@
 """Every statement, in the paper's order: the paper's own, then our list of its misprints."""
 
-from __future__ import annotations
-
 from squealpipe.study.claims.checks import (
     backbones,
     conclusions,

@@ -1,7 +1,5 @@
 """The judged statements as plain rows, for the terminal, for machines and for the report."""
 
-from __future__ import annotations
-
 import os
 from typing import Any
 

@@ -5,8 +5,6 @@ It holds ``READS``, the names of its datasets; ``draw``, which takes them in tha
 a wildcard (``backbone/F10_*``) stands for all datasets that match, as a mapping by name.
 """
 
-from __future__ import annotations
-
 import ast
 from collections.abc import Iterable, Mapping
 from fnmatch import fnmatchcase

@@ -1,7 +1,5 @@
 """A Typst source gives two files: a self-contained page (HTML with MathML) and a PDF."""
 
-from __future__ import annotations
-
 import json
 import re
 import shutil

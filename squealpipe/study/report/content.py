@@ -1,7 +1,5 @@
 """What the pages show, gathered from the files of one run as plain data."""
 
-from __future__ import annotations
-
 import json
 import os
 import re

@@ -3,8 +3,6 @@
 Knows no workflow engine: a rule is anything with ``name``, ``input`` and ``output``.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from typing import Any
 

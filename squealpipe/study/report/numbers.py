@@ -1,7 +1,5 @@
 """Numbers of the shipped study that its narrative inserts, read off the datasets."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

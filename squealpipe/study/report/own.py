@@ -1,7 +1,5 @@
 """What the report of a study of one's own shows, as plain data."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import Any
 

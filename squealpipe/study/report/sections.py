@@ -3,8 +3,6 @@
 The workflow draws exactly these figures.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 

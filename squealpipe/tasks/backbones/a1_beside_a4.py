@@ -1,7 +1,5 @@
 """What model A1 does when it starts on a periodic motion of model A4."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 

@@ -1,7 +1,5 @@
 """The branch of doubled period that leaves a backbone of model A4 at a period doubling."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """What the paper's own form of harmonic balance finds, beside exact orbits."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass

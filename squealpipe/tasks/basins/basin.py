@@ -1,7 +1,5 @@
 """What model A1 does from many starts at one configuration."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from typing import Any
 

@@ -1,7 +1,5 @@
 """The failure atlas of frequencies and stability: hard scenes asked of ours and public methods."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple

@@ -1,7 +1,5 @@
 """Work–precision of harmonic balance on A4, judged by exact orbits of equal peak."""
 
-from __future__ import annotations
-
 import math
 import statistics
 import time

@@ -1,7 +1,5 @@
 """What each model level takes for granted, checked along the motion that it computes itself."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from typing import Any, NamedTuple
 

@@ -1,7 +1,5 @@
 """What the explorer page shows of each pair of angles: a motion, its spectrum, two backbones."""
 
-from __future__ import annotations
-
 import json
 from typing import Any
 

@@ -1,7 +1,5 @@
 """What a motion of model A1 has become, judged from the second half of its run."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from types import SimpleNamespace
 from typing import Any

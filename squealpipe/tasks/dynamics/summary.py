@@ -1,7 +1,5 @@
 """One run in a few numbers: separation, impacts, forces, dominant frequencies."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 import numpy as np

@@ -4,8 +4,6 @@ At (0.4π, 0.6π) and (0.2π, 0.8π) both springs share one fixed end. The mass 
 each pass over the belt adds energy until the mass is as fast as the belt.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Whether A1 keeps contact from rest, over all angles or at those where A3 is unstable."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Statements on the linear models that do not enter the inference, judged at parameter sets."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from squealpipe.models import a2, a3

@@ -4,8 +4,6 @@ A margin is positive where the statement holds and dimensionless. Motions are th
 rest over the scenes' ``t_end``, on maps over :data:`squealpipe.tasks.inference.angle_maps.HORIZON`.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Mapping
 from enum import IntEnum
 from types import SimpleNamespace

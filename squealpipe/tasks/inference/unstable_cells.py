@@ -4,8 +4,6 @@ Whatever can be said of all angles is said in the plane of Z (see :mod:`squealpi
 flutter fills one disc there, so a search along its rim finds unstable cells.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from functools import lru_cache
 from typing import NamedTuple

@@ -1,7 +1,5 @@
 """Every level of the model ladder over the angle map, judged by A1, and what choosing saves."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """How each level of the model ladder answers over a map."""
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The questions of the model ladder, answered from runs and from samples of a motion."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

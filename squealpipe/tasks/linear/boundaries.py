@@ -1,7 +1,5 @@
 """Exact boundary curves of the linear maps."""
 
-from __future__ import annotations
-
 import numpy as np
 import xarray as xr
 

@@ -1,7 +1,5 @@
 """What the scenes of a study do, which model is enough for them, and what changes them."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Distributions of uncertain parameters, from their words in the configuration."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import Any
 

@@ -1,7 +1,5 @@
 """How far each verdict carries: the paper's statements with damping, other laws, other starts."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Iterator
 

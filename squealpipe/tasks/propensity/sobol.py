@@ -5,8 +5,6 @@ resampling them, makes intervals several times too wide. Independent scramblings
 estimates, whose spread is the error (Owen's randomized quasi-Monte Carlo).
 """
 
-from __future__ import annotations
-
 import numpy as np
 from scipy import stats
 

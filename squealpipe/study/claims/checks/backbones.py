@@ -1,7 +1,5 @@
 """Statements on the nonlinear frequency responses (Figs. 10–13)."""
 
-from __future__ import annotations
-
 import numpy as np
 import xarray as xr
 

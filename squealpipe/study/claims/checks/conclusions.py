@@ -1,7 +1,5 @@
 """The paper's conclusions (sections 7 and 9)."""
 
-from __future__ import annotations
-
 import numpy as np
 import xarray as xr
 

@@ -1,7 +1,5 @@
 """Statements on the natural frequencies (Figs. 8 and 9)."""
 
-from __future__ import annotations
-
 import numpy as np
 import xarray as xr
 

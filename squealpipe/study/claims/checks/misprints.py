@@ -1,7 +1,5 @@
 """The paper's misprints and gaps: each printed form as a statement, with what it changes."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from squealpipe.schema import Outcome

@@ -1,7 +1,5 @@
 """Looking things up in the A1 motions of the paper's scenes."""
 
-from __future__ import annotations
-
 import numpy as np
 import xarray as xr
 

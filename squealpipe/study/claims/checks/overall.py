@@ -1,7 +1,5 @@
 """Statements of the abstract and of Table 1: levels, hammering, earlier models, coupled modes."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from squealpipe.codes import Event, LinearRegime

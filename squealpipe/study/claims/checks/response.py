@@ -1,7 +1,5 @@
 """Statements on the time histories of model A1 (Figs. 2–5)."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from squealpipe.codes import Event

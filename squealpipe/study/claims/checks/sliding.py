@@ -1,7 +1,5 @@
 """Statements on quasi-static sliding and linear stability (Figs. 6 and 7)."""
 
-from __future__ import annotations
-
 from squealpipe.schema.claims import Verdict
 from squealpipe.schema.dynamics.runs import GROWTH_THRESHOLD
 from squealpipe.study.claims.checks.motions import halves, scene

@@ -1,7 +1,5 @@
 """Model A1 in time, started on periodic motions of A4."""
 
-from __future__ import annotations
-
 from itertools import cycle
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Backbones of further scenes, with branches of doubled period as insets."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 import numpy as np

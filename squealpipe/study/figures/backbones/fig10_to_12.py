@@ -1,7 +1,5 @@
 """Figs. 10–12: backbones of both modes at (π/2, π), (π, π/2) and (3π/4, 3π/4)."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 import xarray as xr

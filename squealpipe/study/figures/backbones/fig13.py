@@ -1,7 +1,5 @@
 """Fig. 13: backbones of both modes at (5π/6, 5π/6)."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 import xarray as xr

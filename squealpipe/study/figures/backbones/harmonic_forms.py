@@ -1,7 +1,5 @@
 """What the paper's own form of harmonic balance finds, against the exact orbits."""
 
-from __future__ import annotations
-
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes

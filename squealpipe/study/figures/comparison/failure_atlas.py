@@ -1,7 +1,5 @@
 """The failure atlas: verdicts of every method on every hard scene."""
 
-from __future__ import annotations
-
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes

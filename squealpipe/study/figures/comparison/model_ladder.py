@@ -1,7 +1,5 @@
 """The cheapest adequate model over both spring angles, one map for each question."""
 
-from __future__ import annotations
-
 import xarray as xr
 from matplotlib.figure import Figure
 

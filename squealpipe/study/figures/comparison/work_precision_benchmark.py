@@ -1,7 +1,5 @@
 """Work–precision of integrators with events, a panel for each class of problems."""
 
-from __future__ import annotations
-
 import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure

@@ -1,7 +1,5 @@
 """Work–precision of harmonic balance against exact orbits."""
 
-from __future__ import annotations
-
 import xarray as xr
 from matplotlib.figure import Figure
 

@@ -1,7 +1,5 @@
 """Amplitude of limit cycles over friction, stable and unstable, beside long runs."""
 
-from __future__ import annotations
-
 import json
 
 import numpy as np

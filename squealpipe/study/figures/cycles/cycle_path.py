@@ -1,7 +1,5 @@
 """One limit cycle in the plane and in time, its regimes coloured."""
 
-from __future__ import annotations
-
 import xarray as xr
 from matplotlib.figure import Figure
 

@@ -1,7 +1,5 @@
 """Cycles of the impact oscillator over the frequency of its forcing."""
 
-from __future__ import annotations
-
 import xarray as xr
 from matplotlib.figure import Figure
 

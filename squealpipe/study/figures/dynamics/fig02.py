@@ -1,7 +1,5 @@
 """Fig. 2: contact force of model A1 in four spring arrangements."""
 
-from __future__ import annotations
-
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure

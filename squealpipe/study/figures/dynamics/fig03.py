@@ -1,7 +1,5 @@
 """Fig. 3: x(t) and y(t) at (0.4π, 0.6π)."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 import xarray as xr

@@ -1,7 +1,5 @@
 """Fig. 4: orbit and displaced springs at (0.2π, 0.8π)."""
 
-from __future__ import annotations
-
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes

@@ -1,7 +1,5 @@
 """Fig. 5: contact forces at (π, π) and (0, 0)."""
 
-from __future__ import annotations
-
 import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure

@@ -1,7 +1,5 @@
 """Kinds of motion of model A1 over both spring angles, with impacts and forces."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import xarray as xr

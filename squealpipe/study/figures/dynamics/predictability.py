@@ -1,7 +1,5 @@
 """How long a run of model A1 can be computed point by point."""
 
-from __future__ import annotations
-
 import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure

@@ -1,7 +1,5 @@
 """Charts of regimes: what a design is next to, over both angles, and over κ and μ."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from string import ascii_lowercase
 from typing import Any

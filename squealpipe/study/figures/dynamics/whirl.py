@@ -1,7 +1,5 @@
 """The paper's growing response until it saturates, and the size of the whirl over belt speed."""
 
-from __future__ import annotations
-
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes

@@ -1,7 +1,5 @@
 """Extra figure: the parameters that agree with the paper's statements."""
 
-from __future__ import annotations
-
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes

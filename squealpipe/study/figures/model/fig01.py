@@ -1,7 +1,5 @@
 """Fig. 1: the mechanism."""
 
-from __future__ import annotations
-
 import numpy as np
 from matplotlib.figure import Figure
 

@@ -1,7 +1,5 @@
 """Where contact is lost and sliding is unstable around the scenes of a study."""
 
-from __future__ import annotations
-
 import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure

@@ -1,7 +1,5 @@
 """The model of each scene at its true angles and lengths, with its numbers."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 import numpy as np

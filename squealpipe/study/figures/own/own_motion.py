@@ -1,7 +1,5 @@
 """What the mass does in each scene: contact force, path and spectrum."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 import xarray as xr

@@ -1,7 +1,5 @@
 """Backbones over the frequency, one panel for each mode."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Maps of one natural frequency in both contact states: the paper's Figs. 8 and 9."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

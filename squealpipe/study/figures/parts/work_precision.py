@@ -1,7 +1,5 @@
 """What all work–precision charts share: marks of the methods, Pareto front, and the machine."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Sequence
 

@@ -1,7 +1,5 @@
 """Kind of motion over the velocity at the start, in two scenes."""
 
-from __future__ import annotations
-
 import xarray as xr
 from matplotlib.figure import Figure
 

@@ -1,7 +1,5 @@
 """Smallest disturbances of steady sliding over the number of directions that were tried."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 import numpy as np

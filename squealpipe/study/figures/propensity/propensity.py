@@ -1,7 +1,5 @@
 """Propensities over uncertain parameters, and what they depend on."""
 
-from __future__ import annotations
-
 from squealpipe.plotting.propensity import figure as draw
 
 READS = ("propensity",)

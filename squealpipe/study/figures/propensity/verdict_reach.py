@@ -1,7 +1,5 @@
 """How far each verdict carries: statements by settings."""
 
-from __future__ import annotations
-
 import numpy as np
 import xarray as xr
 from matplotlib.colors import LinearSegmentedColormap

@@ -1,7 +1,5 @@
 """The explorer: one self-contained page on which a pair of angles shows its motion."""
 
-from __future__ import annotations
-
 import base64
 import json
 import os

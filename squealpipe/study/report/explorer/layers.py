@@ -1,7 +1,5 @@
 """What the explorer's map can show: one quantity over both angles, from a stored dataset."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import NamedTuple
 
