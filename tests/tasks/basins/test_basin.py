@@ -29,7 +29,7 @@ def friction_oscillator(belt_speed, reach=1e4):
     [
         (1.25, 1000),
         (1.55, 1000),
-        *(pytest.param(v, 20_000, marks=pytest.mark.release) for v in SHARES),
+        *(pytest.param(v, 5_000, marks=pytest.mark.release) for v in SHARES),
     ],
 )
 def test_basin_shares_of_a_published_oscillator(speed, starts):
