@@ -56,8 +56,8 @@ def test_two_thousand_random_calls():
 
 
 @pytest.mark.release
-def test_three_hundred_flipped_bits(tmp_path):
-    flip(tmp_path, 300, seed=1)
+def test_six_hundred_flipped_bits(tmp_path):
+    flip(tmp_path, 600, seed=1)
 
 
 def test_faults_are_found(monkeypatch):

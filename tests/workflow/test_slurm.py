@@ -18,7 +18,6 @@ from pathlib import Path
 import pytest
 import yaml
 
-from squealpipe.config.yaml_files import overlay
 from squealpipe.store import load
 from squealpipe.store.comparison.compare import compare
 
@@ -42,35 +41,14 @@ LACKS_RANK = {"work_precision_frequencies"}
 """Datasets of the paper's Newton method, whose Jacobian lacks rank: round-off alone may change them
 from run to run, within the tolerance of the schema."""
 
-TINY = """
-linear: {points: 21}
-inference: {samples: 64}
-comparison:
-  benchmark: {solvers: [squealpipe, DOP853], tolerances: [1.0e-8]}
-  harmonic: {harmonics: [4], oversampling: [1]}
-  ladder: {points: 5, horizon: 20.0}
-dynamics:
-  validity_points: 31
-  validity_horizon: 20.0
-  refined_points: 41
-  refined_coarse: 11
-  hammering_points: 9
-  hammering_horizon: 50.0
-  whirl_count: 3
-  whirl_horizon: 1000.0
-  transient_samples: 4
-  transient_horizon: 1000.0
-explorer: {points: 3, history_time: 20.0, spectrum_time: 20.0, samples: 50, branch_points: 4}
-backbones:
-  y_peak_max: 2.0
-  n_harmonics: 4
+SWEEP = """
 sweeps:
   orbits:
     task: periodic_orbit
     vary: {mu: "0.1,0.3", y_peak: "1.1:3:5"}
     fixed: {alpha1: 0.3pi, alpha2: 0.9pi, mode: 1}
 """
-"""Laid over the quick study: everything that it has, and a sweep."""
+"""Laid over the tiny study."""
 SMALL_RULES = [
     "simulate_scenes", "simulate_corrected_scenes", "map_linear", "map_corrected_linear",
     "refine_validity", "follow_whirl", "infer_parameters", "compare_harmonic_forms",
@@ -93,7 +71,6 @@ SCATTERED = {"map_validity", "map_corrected_validity", "map_hammering", "run_swe
 JOINS = {
     "join_validity_map", "join_corrected_validity_map", "join_hammering_map", "join_sweep_orbits",
 }  # fmt: skip
-COMPILE = "from squealpipe.methods.taylor.loop import loop; loop()"
 
 
 def ready():
@@ -177,27 +154,12 @@ def cluster_checkout(one_checkout, slurm):
     return one_checkout
 
 
-def study_laid_over_quick(checkout, text):
-    """The quick study with other numbers."""
-    content = yaml.safe_load((checkout / "workflow/config/quick.yaml").read_text())
-    overlay(content, yaml.safe_load(text))
-    return content
-
-
-@pytest.mark.release
 @pytest.mark.timeout(1800)
-def test_whole_study_equals_one_machine_bit_for_bit(cluster_checkout, snakemake):
-    """Datasets, figures, report and explorer of a tiny study, maps and sweep in parts."""
-    study = study_laid_over_quick(cluster_checkout, TINY)
-    for place, name in (("slurm", "mine.yaml"), ("local", "local.yaml")):
-        study["results"] = f"results/{place}"
-        (cluster_checkout / name).write_text(yaml.safe_dump(study, sort_keys=False))
-    subprocess.run(
-        [sys.executable, "-c", COMPILE],
-        cwd=cluster_checkout,
-        env=environment(cluster_checkout),
-        check=True,
-    )
+def test_whole_study_equals_one_machine_bit_for_bit(cluster_checkout, tiny_study):
+    """Datasets, figures, report and explorer of the tiny study, maps and a sweep in parts."""
+    study = yaml.safe_load((cluster_checkout / "workflow/config/tiny.yaml").read_text())
+    study |= {"results": "results/slurm"} | yaml.safe_load(SWEEP)
+    (cluster_checkout / "mine.yaml").write_text(yaml.safe_dump(study, sort_keys=False))
     run = on_slurm(cluster_checkout, profile=TWO_PARTS)
     assert run.returncode == 0, run.stderr[-4000:]
     sent = Counter(re.findall(r"has been submitted .*/rule_(\w+)/", run.stderr))
@@ -210,13 +172,11 @@ def test_whole_study_equals_one_machine_bit_for_bit(cluster_checkout, snakemake)
     assert len(list((results / "figures").glob("*.svg"))) >= 30
     assert "Nothing to be done" in on_slurm(cluster_checkout, profile=TWO_PARTS).stderr
 
-    datasets = [path.relative_to(results) for path in (results / "data").rglob("*.nc")]
-    targets = [f"results/local/{path}" for path in datasets]
-    alone = snakemake(cluster_checkout, *targets, "--configfile", "local.yaml")
-    assert alone.returncode == 0, alone.stderr[-4000:]
-    here = cluster_checkout / "results/local"
+    assert load(results / "data/sweeps/orbits.nc").sizes["mu"] == 2
+    shutil.rmtree(results / "data/sweeps")  # in parts or whole: test_sweeps.py
+    here = tiny_study.results
     assert compare(here, results).exit_code == 0
-    for path in datasets:
+    for path in (path.relative_to(results) for path in (results / "data").rglob("*.nc")):
         if path.stem not in LACKS_RANK:
             assert load(results / path).dataset_id == load(here / path).dataset_id, path
 
