@@ -8,6 +8,7 @@ Regimes are those of :class:`squealpipe.codes.Regime`.
 
 from __future__ import annotations
 
+from dataclasses import dataclass, field
 from enum import IntEnum
 from typing import Any
 
@@ -30,6 +31,26 @@ class EventKind(IntEnum):
     release = 3
 
 
+@dataclass
+class HybridRun:
+    """What an integration from event to event gave.
+
+    Attributes:
+        state: at the end.
+        time: reached; less than asked where it failed.
+        event_times, event_kinds: in order.
+        regimes: the regime at the start and after each event.
+        message: empty where it ran to the end.
+    """
+
+    state: np.ndarray
+    time: float = 0.0
+    event_times: list[float] = field(default_factory=list)
+    event_kinds: list[int] = field(default_factory=list)
+    regimes: list[int] = field(default_factory=list)
+    message: str = ""
+
+
 _DIRECTION = {Regime.slip_slower: 1.0, Regime.slip_faster: -1.0, Regime.stick: 0.0}
 
 
@@ -43,12 +64,10 @@ class A1Automaton:
         alpha2: float,
         *,
         linear_springs: bool = False,
-        stick: bool = True,
     ) -> None:
         self.params = params
         self.geometry = Geometry(*map(float, geometry(alpha1, alpha2)))
         self.linear_springs = linear_springs
-        self.stick = stick
         self.dashpots = params.damping1 + params.damping2 > 0.0
 
     def field(self, regime: int) -> Any:
@@ -104,7 +123,7 @@ class A1Automaton:
             return self._sliding(z)
         return Regime.separated
 
-    def switch(self, kind: int, regime: int, z: np.ndarray) -> tuple[int, np.ndarray]:
+    def switch(self, kind: int, z: np.ndarray) -> tuple[int, np.ndarray]:
         """The next regime, and the state put exactly onto the guard that it met."""
         z = z.copy()
         if kind in (EventKind.separation, EventKind.contact):
@@ -115,9 +134,6 @@ class A1Automaton:
         z[2] = self.params.belt_speed
         if kind == EventKind.release:
             return (Regime.slip_faster if self.pull(z) > 0 else Regime.slip_slower), z
-        if not self.stick:
-            slower = regime == Regime.slip_slower
-            return (Regime.slip_faster if slower else Regime.slip_slower), z
         return self._sliding(z), z
 
     def leave(self, regime: int, z: np.ndarray, round_off: float) -> np.ndarray:
@@ -147,7 +163,7 @@ class A1Automaton:
         lag = self.lag(z)
         if lag != 0.0:
             return Regime.slip_slower if lag > 0.0 else Regime.slip_faster
-        if self.stick and abs(self.pull(z)) <= self.grip(z):
+        if abs(self.pull(z)) <= self.grip(z):
             return Regime.stick
         return Regime.slip_faster if self.pull(z) > 0.0 else Regime.slip_slower
 

@@ -67,7 +67,7 @@ class A1Flow:
         kind = SURFACES[surface]
         if kind == EventKind.separation and regime == Regime.separated:
             kind = EventKind.contact
-        after, on_surface = self.a1.switch(kind, regime, state)
+        after, on_surface = self.a1.switch(kind, state)
         gradient = None
         if kind in {EventKind.belt_speed, EventKind.release}:
             values = self._gradients(on_surface, pars=self._behind[regime])

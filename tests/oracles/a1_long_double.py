@@ -59,16 +59,13 @@ def _integrator(law):
     return compile_long_double(*symbolic_automaton(law))
 
 
-def simulate_reference(
-    params, alpha1, alpha2, *, t_end, initial_state=(0.0, 0.0, 0.0, 0.0), stop_at=None
-):
+def simulate_reference(params, alpha1, alpha2, *, t_end, initial_state=(0.0, 0.0, 0.0, 0.0)):
     """A1 by :mod:`tests.oracles.long_double`; errors about 1e-17 outside chaos.
 
     Args:
         params: physical parameters; alpha1, alpha2: angles, rad.
         t_end: horizon, s.
         initial_state: (x, y, ẋ, ẏ) at t = 0.
-        stop_at: an :class:`tests.oracles.a1_automaton.EventKind` to stop at.
     """
     a1 = A1Automaton(params, alpha1, alpha2)
 
@@ -76,7 +73,7 @@ def simulate_reference(
         kind = SURFACES[surface]
         if kind == EventKind.separation and regime == Regime.separated:
             kind = EventKind.contact
-        after, z = a1.switch(kind, regime, z)
+        after, z = a1.switch(kind, z)
         return kind, after, a1.leave(after, z, LONG_ULP)
 
     state = np.asarray(initial_state, dtype=np.longdouble)
@@ -85,5 +82,5 @@ def simulate_reference(
         state[2] = params.belt_speed
     return integrate_long_double(
         _integrator(params.friction_law), partial(regime_values, a1),
-        (regime, a1.leave(regime, state, LONG_ULP)), switch, t_end, stop_at=stop_at,
+        (regime, a1.leave(regime, state, LONG_ULP)), switch, t_end,
     )  # fmt: skip

@@ -9,7 +9,7 @@ import heyoka
 import numpy as np
 
 from tests.oracles import taylor_compiler
-from tests.oracles.hybrid import HybridRun
+from tests.oracles.a1_automaton import HybridRun
 
 TOLERANCE = 1e-19
 LONG_ULP = 2.0**-62
@@ -31,9 +31,7 @@ def compile_long_double(equations, surfaces):
     )
 
 
-def integrate_long_double(
-    integrator, parameters, start, switch, t_end, *, stop_at=None, max_events=100_000
-):
+def integrate_long_double(integrator, parameters, start, switch, t_end, *, max_events=100_000):
     """Integrate from 0 to ``t_end`` through all events.
 
     Args:
@@ -42,7 +40,6 @@ def integrate_long_double(
         start: the regime and the state at the start.
         switch: (surface, regime, state) → (kind, next regime, state off the surface).
         t_end: end of the run.
-        stop_at: kind of event at which to stop.
         max_events: events after which the run is given up, with a message.
     """
     regime, state = start
@@ -65,6 +62,4 @@ def integrate_long_double(
         run.event_times.append(run.time)
         run.event_kinds.append(kind)
         run.regimes.append(regime)
-        if kind == stop_at:
-            break
     return run
