@@ -26,7 +26,8 @@ test: dev  ## the tests of each change, minutes
 test-release: dev  ## the rest: whole studies, cluster, faults, browser, recipes, large samples
 	$(TESTS) -m release --timeout 3000
 
-NUMERICAL := tests/laws tests/methods tests/models tests/solvers tests/systems tests/tasks tests/validation
+# Closed forms run on the generic processor below.
+NUMERICAL := tests/methods tests/solvers tests/systems tests/tasks tests/validation
 TINY := -q all --cores 2 --configfile workflow/config/tiny.yaml
 AVX2 := tests/processors avx2
 

@@ -30,12 +30,12 @@ def copy_checkout(target):
     return target
 
 
-def run_snakemake(directory, *arguments, timeout=500):
+def run_snakemake(directory, *arguments):
     """Run snakemake in a copy, with the package of that copy."""
     return subprocess.run(
         [sys.executable, "-m", "snakemake", *arguments], cwd=directory,
         env={**os.environ, "PYTHONPATH": str(directory)}, capture_output=True, text=True,
-        timeout=timeout, check=False,
+        check=False,
     )  # fmt: skip
 
 

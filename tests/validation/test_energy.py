@@ -153,8 +153,11 @@ def check(count, seed, duration, law=None, model="A1"):
     ends_truthfully(outcome, parameters, angles)
 
 
-def test_energy_balance_of_random_runs():
-    check(100, seed=7, duration=6.0)
+@pytest.mark.parametrize(
+    ("count", "seed"), [(100, 7), pytest.param(2_500, 11, marks=pytest.mark.release)]
+)
+def test_energy_balance_of_random_runs(count, seed):
+    check(count, seed, duration=6.0)
 
 
 @pytest.mark.parametrize("law", LAW_NAMES)
@@ -168,13 +171,8 @@ def test_energy_balance_of_friction_as_printed(law):
     check(60, seed=9, duration=6.0, law=law, model="A1-as-printed")
 
 
-@pytest.mark.release
-def test_energy_balance_of_very_many_random_runs():
-    check(2_500, seed=11, duration=6.0)
-
-
 @pytest.mark.parametrize(
-    ("count", "seed"), [(500, 1), pytest.param(2_500, 2, marks=[pytest.mark.release])]
+    ("count", "seed"), [(500, 1), pytest.param(10_000, 2, marks=pytest.mark.release)]
 )
 def test_random_runs_end_truthfully(count, seed):
     """At least 98 % converge; the rest met a pivot, which a run without events confirms."""

@@ -18,26 +18,25 @@ def _map(points, **options):
     return validity_map(BASELINE, angles, angles, **options)
 
 
+@pytest.mark.parametrize(
+    ("options", "kept"),
+    [
+        ({"tol": 1e-15}, 2694),
+        ({"t_end": 100.0}, 2706),
+        *(pytest.param({"t_end": t}, 2694, marks=pytest.mark.release) for t in (400.0, 1600.0)),
+    ],
+    ids=str,
+)
+def test_cells_that_keep_contact_at_other_tolerances_and_horizons(options, kept):
+    assert int((~_map(91, **options).separates).sum()) == kept
+
+
 def test_2694_of_91_by_91_cells_keep_contact():
     result = _map(91)
     assert int((~result.separates).sum()) == 2694
     first = result.first_separation_time.values
     assert np.nanmedian(first) == pytest.approx(2.2, abs=0.05)
     assert np.nanmax(first) == pytest.approx(197.6, abs=0.05)
-
-
-def test_tighter_tolerance_keeps_the_same_cells():
-    assert int((~_map(91, tol=1e-15).separates).sum()) == 2694
-
-
-def test_shorter_horizon_keeps_2706():
-    assert int((~_map(91, t_end=100.0).separates).sum()) == 2706
-
-
-@pytest.mark.release
-def test_longer_horizons_keep_the_same_cells():
-    for t_end in (400.0, 1600.0):
-        assert int((~_map(91, t_end=t_end).separates).sum()) == 2694
 
 
 def test_10710_of_181_by_181_cells_keep_contact():

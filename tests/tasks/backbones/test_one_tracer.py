@@ -177,6 +177,7 @@ def test_lengths_beyond_doubles_are_named():
         periodic_orbit(FORMER.with_(preload=5e-324), 1.0, 2.0, mode=1, y_peak=1.0)
 
 
+@pytest.mark.release
 def test_a_trace_can_be_interrupted():
     """Ctrl-C ends a long series of traces within 2 s: each compiled call is short."""
     program = (
