@@ -1,12 +1,10 @@
 """Pictures of datasets: one panel of any of them, and what a command draws."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
-from typing import TYPE_CHECKING
 
 import xarray as xr
 from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
 from squealpipe.plotting.cycles import draw_backbone, draw_branch, draw_cycle, draw_orbit
 from squealpipe.plotting.propensity import draw_shares
@@ -18,9 +16,6 @@ from squealpipe.plotting.style import COLUMN, SETTINGS, new_figure
 from squealpipe.plotting.systems import draw_ensemble, draw_path, draw_states
 from squealpipe.schema import SYSTEM
 from squealpipe.validation import checked
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 DRAWN: dict[str, Callable[[Axes, xr.Dataset], None]] = {
     "simulation": draw_force,

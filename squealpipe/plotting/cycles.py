@@ -1,42 +1,23 @@
 """Periodic motions: one cycle, branches of cycles, backbones."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
+from collections.abc import Iterable
 
 import numpy as np
+import xarray as xr
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
 
+from squealpipe.plotting import style
 from squealpipe.plotting.origin import parameter
 from squealpipe.plotting.quantities import label
-from squealpipe.plotting.style import (
-    BLACK,
-    BLUE,
-    GREEN,
-    ORANGE,
-    PURPLE,
-    RED,
-    REGIME_COLOURS,
-    X_COLOUR,
-    Y_COLOUR,
-    flag_words,
-    preload_line,
-    say_instead,
-)
 from squealpipe.schema import labels, meanings
 
-if TYPE_CHECKING:
-    from collections.abc import Iterable
-
-    import xarray as xr
-    from matplotlib.artist import Artist
-    from matplotlib.axes import Axes
-
 MARKS = {
-    "fold": ("^", RED, "fold"),
-    "period_doubling": ("s", PURPLE, "period doubling"),
-    "torus": ("D", GREEN, "torus bifurcation"),
-    "grazing": ("o", BLACK, "grazing"),
-    "stick_onset": ("v", GREEN, "stick just begins or ends"),
+    "fold": ("^", style.RED, "fold"),
+    "period_doubling": ("s", style.PURPLE, "period doubling"),
+    "torus": ("D", style.GREEN, "torus bifurcation"),
+    "grazing": ("o", style.BLACK, "grazing"),
+    "stick_onset": ("v", style.GREEN, "stick just begins or ends"),
 }
 """Special points of a branch: marker, colour, words."""
 ALONG = " along the branch"
@@ -53,15 +34,15 @@ def draw_backbone(axes: Axes, branch: xr.Dataset) -> None:
         return
     unstable = np.abs(branch.stability_index.values) > 2
     for values, colour, dash, words in (
-        (branch.y_peak, Y_COLOUR, "-", "y peak"),
-        (branch.x_amplitude, X_COLOUR, "--", "x amplitude"),
+        (branch.y_peak, style.Y_COLOUR, "-", "y peak"),
+        (branch.x_amplitude, style.X_COLOUR, "--", "x amplitude"),
     ):
         axes.plot(branch.omega, values, color=colour, linestyle=dash, label=words)
         axes.plot(
             branch.omega[unstable], values[unstable], linestyle="none", marker="o",
             markerfacecolor="white", markeredgecolor=colour, markersize=3,
         )  # fmt: skip
-    preload_line(axes, parameter(branch, "preload"))
+    style.preload_line(axes, parameter(branch, "preload"))
     axes.set(xlabel="ω (rad/s)", ylabel="displacement (m)")
     axes.set_ylim(bottom=0)
     axes.legend(loc="lower right", bbox_to_anchor=(1, 1), ncols=2, borderaxespad=0)
@@ -77,7 +58,7 @@ def draw_cycle(axes: Axes, cycle: xr.Dataset) -> None:
     if say_no_cycle(axes, cycle):
         return
     draw_regimes(axes, cycle.x_path.values, cycle.y_path.values, cycle.regime_path)
-    preload_line(axes, parameter(cycle, "preload"))
+    style.preload_line(axes, parameter(cycle, "preload"))
     axes.set(aspect="equal", adjustable="datalim")
     axes.legend(loc="lower right", bbox_to_anchor=(1, 1), borderaxespad=0, ncols=2)
 
@@ -91,11 +72,14 @@ def draw_orbit(axes: Axes, orbit: xr.Dataset) -> None:
     axes.set(xlabel="x (m)", ylabel="y (m)")
     x, y, preload = orbit.x_path.values, orbit.y_path.values, parameter(orbit, "preload")
     if not x.size:
-        say_instead(axes, f"no periodic motion: {labels(orbit.outcome).item()}")
+        style.say_instead(axes, f"no periodic motion: {labels(orbit.outcome).item()}")
         return
-    for part, colour, words in ((y > preload, RED, "separated"), (y <= preload, BLUE, "contact")):
+    for part, colour, words in (
+        (y > preload, style.RED, "separated"),
+        (y <= preload, style.BLUE, "contact"),
+    ):
         axes.plot(x, np.where(joined(part), y, np.nan), color=colour, label=words)
-    preload_line(axes, preload)
+    style.preload_line(axes, preload)
     axes.set(aspect="equal", adjustable="datalim")
     axes.legend(loc="lower right", bbox_to_anchor=(1, 1), borderaxespad=0, ncols=2)
 
@@ -107,7 +91,7 @@ def draw_regimes(axes: Axes, x: np.ndarray, y: np.ndarray, regimes: xr.DataArray
         name = flags[int(value)]
         drawn = np.where(joined(regimes.values == value), y, np.nan)
         words = name.replace("_", ", ")
-        axes.plot(x, drawn, color=REGIME_COLOURS[name], linewidth=1.4, label=words)
+        axes.plot(x, drawn, color=style.REGIME_COLOURS[name], linewidth=1.4, label=words)
 
 
 def draw_branch(axes: Axes, branch: xr.Dataset) -> None:
@@ -143,7 +127,7 @@ def trace_branch(axes: Axes, parameters: np.ndarray, sizes: np.ndarray, branch: 
     ends = np.flatnonzero(np.diff(steady)) + 1
     for piece in np.split(np.arange(len(steady)), ends):
         colour, dash, words = (
-            (BLUE, "-", "stable") if steady[piece[0]] else (ORANGE, "--", "unstable")
+            (style.BLUE, "-", "stable") if steady[piece[0]] else (style.ORANGE, "--", "unstable")
         )
         points = slice(piece[0], piece[-1] + 2)
         axes.plot(parameters[points], sizes[points], dash, color=colour, lw=1.2, label=words)
@@ -176,7 +160,8 @@ def say_no_cycle(axes: Axes, cycle: xr.Dataset) -> bool:
     """Whether there is no cycle, and then why, in its panel."""
     if cycle.sizes["sample"]:
         return False
-    say_instead(axes, f"no cycle:\n{flag_words(meanings(cycle.outcome)[int(cycle.outcome)])}")
+    reason = style.flag_words(meanings(cycle.outcome)[int(cycle.outcome)])
+    style.say_instead(axes, f"no cycle:\n{reason}")
     return True
 
 
@@ -184,6 +169,6 @@ def say_why_empty(axes: Axes, branch: xr.Dataset) -> bool:
     """Whether a branch has no points, and then why, in its panel."""
     if branch.sizes["point"]:
         return False
-    reason = flag_words(meanings(branch.end)[int(branch.end)])
-    say_instead(axes, f"no periodic motions:\n{reason}")
+    reason = style.flag_words(meanings(branch.end)[int(branch.end)])
+    style.say_instead(axes, f"no periodic motions:\n{reason}")
     return True

@@ -1,16 +1,12 @@
 """The mechanism as a schematic: mass, two inclined springs, contact spring, belt."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.patches import Arc, Circle, FancyArrowPatch, Rectangle
 
 from squealpipe.plotting.style import BLUE, GREY, ORANGE, RED
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 SPRING_COLOURS = (BLUE, ORANGE)
 """Springs 1 and 2, here and in every schematic."""

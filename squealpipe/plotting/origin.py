@@ -1,16 +1,13 @@
 """What a stored dataset says about the run that made it."""
 
-from __future__ import annotations
-
 import json
 import math
-from typing import TYPE_CHECKING, Any
+from typing import Any
+
+import xarray as xr
 
 from squealpipe.parameters import DEFAULTS, SCENES, TABLE, Scene
 from squealpipe.plotting.style import pi_label
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 
 def parameter(dataset: xr.Dataset, name: str) -> Any:

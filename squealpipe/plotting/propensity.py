@@ -1,43 +1,25 @@
 """Propensities over uncertain parameters, and what they depend on."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
-
 import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
-from squealpipe.plotting.style import (
-    BLUE,
-    GREEN,
-    GREY,
-    ORANGE,
-    PAGE,
-    PURPLE,
-    RED,
-    flag_words,
-    new_figure,
-    panel_letter,
-    say_instead,
-)
+from squealpipe.plotting import style
 from squealpipe.schema.propensity import WIDEST
-
-if TYPE_CHECKING:
-    import xarray as xr
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 SYMBOLS = {
     "k1": "k₁", "k2": "k₂", "k3": "k₃", "mu": "μ", "alpha1": "α₁", "alpha2": "α₂",
     "length1": "L₁", "length2": "L₂", "belt_speed": "V", "mass": "m", "mu_static": "μs",
 }  # fmt: skip
-COLOURS = (BLUE, ORANGE, RED, PURPLE, GREEN)
+COLOURS = (style.BLUE, style.ORANGE, style.RED, style.PURPLE, style.GREEN)
 
 
 def figure(spread: xr.Dataset) -> Figure:
     """Four panels."""
-    drawn, axes = new_figure(PAGE, 4.8, nrows=2, ncols=2)
+    drawn, axes = style.new_figure(style.PAGE, 4.8, nrows=2, ncols=2)
     (bars, sizes), (indices, widths) = axes
-    names = [flag_words(name) for name in spread.quantity.values.tolist()]
+    names = [style.flag_words(name) for name in spread.quantity.values.tolist()]
     draw_shares(bars, spread)
     for row, colour in zip(spread.share_by_size.values, COLOURS, strict=False):
         sizes.plot(spread["size"], row, ".-", color=colour)
@@ -51,7 +33,7 @@ def figure(spread: xr.Dataset) -> Figure:
         total = spread.total_order.values[i]
         limits = np.stack([spread.total_order_low.values[i], spread.total_order_high.values[i]])
         indices.bar(
-            at, total, width, yerr=np.abs(limits - total), color=COLOURS[i], ecolor=GREY,
+            at, total, width, yerr=np.abs(limits - total), color=COLOURS[i], ecolor=style.GREY,
             label=names[i],
         )  # fmt: skip
         indices.plot(at, spread.first_order.values[i], "k.", markersize=3)
@@ -60,25 +42,25 @@ def figure(spread: xr.Dataset) -> Figure:
     if shown:
         indices.legend()
     else:
-        say_instead(indices, "none supported")
+        style.say_instead(indices, "none supported")
     for row, colour in zip(spread.half_width_by_size, COLOURS, strict=False):
         if np.isfinite(row).any():
             base = spread.index_samples.sel(quantity=row.quantity)
             widths.plot(base, row, ".-", color=colour)
-    widths.axhline(WIDEST, color=GREY, ls="--", lw=0.8, label="widest that is given")
+    widths.axhline(WIDEST, color=style.GREY, ls="--", lw=0.8, label="widest that is given")
     widths.legend()
     widths.set(
         xlabel="base sample", xscale="log", ylabel="half-width of total index", ylim=(0, None)
     )
     if not np.isfinite(spread.half_width_by_size).any():
-        say_instead(widths, "too few of the sample differ")
+        style.say_instead(widths, "too few of the sample differ")
         widths.minorticks_off()
     else:
         known = np.isfinite(spread.half_width_by_size)
         _ends(widths, spread.index_samples.where(known).values)
     titles = ("propensity", "convergence of shares", "sensitivity", "convergence of indices")
     for letter, panel, title in zip("abcd", axes.ravel(), titles, strict=True):
-        panel_letter(panel, letter, title)
+        style.panel_letter(panel, letter, title)
     return drawn
 
 
@@ -91,11 +73,11 @@ def _ends(axes: Axes, numbers: np.ndarray) -> None:
 
 def draw_shares(axes: Axes, spread: xr.Dataset) -> None:
     """Share of the sample in which each quantity occurs, with its 95 % interval."""
-    names = [flag_words(name) for name in spread.quantity.values.tolist()]
+    names = [style.flag_words(name) for name in spread.quantity.values.tolist()]
     place = np.arange(len(names))
     share = spread.share.values
     error = np.abs(np.stack([spread.share_low.values, spread.share_high.values]) - share)
-    axes.barh(place, share, xerr=error, color=COLOURS[: len(names)], ecolor=GREY, height=0.6)
+    axes.barh(place, share, xerr=error, color=COLOURS[: len(names)], ecolor=style.GREY, height=0.6)
     axes.set_yticks(place, names)
     axes.invert_yaxis()
     axes.set(xlabel="share", xlim=(0, 1))

@@ -1,28 +1,14 @@
 """One variable over one or two dimensions: curves, maps, and maps of kinds."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from textwrap import fill
-from typing import TYPE_CHECKING
 
 import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
 
-from squealpipe.plotting.style import (
-    BLACK,
-    BLUE,
-    PALETTE,
-    REGIME_COLOURS,
-    category_colours,
-    draw_map,
-    flag_words,
-    say_instead,
-)
+from squealpipe.plotting import style
 from squealpipe.schema import SYSTEM, meanings
-
-if TYPE_CHECKING:
-    import xarray as xr
-    from matplotlib.axes import Axes
 
 ANGLES = ("alpha1", "alpha2")
 UNITS = {"s-1": "1/s", "rad s-1": "rad/s", "m s-1": "m/s"}
@@ -59,7 +45,7 @@ def counts(dataset: xr.Dataset) -> list[str]:
     assert variable is not None, dataset.attrs  # noqa: S101 (maps of the command line are in SHOWN)
     if table := meanings(variable):
         codes, numbers = np.unique(variable.values, return_counts=True)
-        rows = [(n, flag_words(table[code])) for code, n in zip(codes, numbers, strict=True)]
+        rows = [(n, style.flag_words(table[code])) for code, n in zip(codes, numbers, strict=True)]
         if "motion_changed" in dataset:
             rows.append((int(dataset.motion_changed.sum()), "another kind in the last quarter"))
         return [f"{number} of {variable.size} cells: {words}" for number, words in rows]
@@ -78,7 +64,7 @@ def mark_changed(axes: Axes, dataset: xr.Dataset) -> None:
     changed = dataset.motion_changed
     x, y = (changed[dim].values for dim in changed.dims)
     first, second = np.nonzero(changed.values)
-    axes.plot(x[first], y[second], ".", color=BLACK, ms=1.2)
+    axes.plot(x[first], y[second], ".", color=style.BLACK, ms=1.2)
 
 
 def draw_quantity(axes: Axes, variable: xr.DataArray) -> None:
@@ -100,16 +86,16 @@ def draw_quantity(axes: Axes, variable: xr.DataArray) -> None:
         names = [table[int(code)] for code in present]
         values = places.reshape(variable.shape).astype(float)
     if not np.isfinite(values).any():
-        say_instead(axes, f"{_words(variable)}:\nno value anywhere")
+        style.say_instead(axes, f"{_words(variable)}:\nno value anywhere")
         return
     chosen = [f"{name} {at.item()}" for name, at in variable.coords.items() if not at.ndim]
     axes.set_title(", ".join(chosen), loc="left")
     axes.set_xlabel(label(x))
     if variable.ndim == 1:
-        axes.plot(x, values, "." if names else "-", color=BLUE)
+        axes.plot(x, values, "." if names else "-", color=style.BLUE)
         axes.set_ylabel(label(variable))
         if names:
-            axes.set_yticks(range(len(names)), list(map(flag_words, names)))
+            axes.set_yticks(range(len(names)), list(map(style.flag_words, names)))
         return
     _draw_map(axes, variable, values, names)
 
@@ -117,12 +103,12 @@ def draw_quantity(axes: Axes, variable: xr.DataArray) -> None:
 def _draw_map(axes: Axes, variable: xr.DataArray, values: np.ndarray, names: list[str]) -> None:
     x, y = (variable[dim] for dim in variable.dims)
     if names:
-        scale = category_colours(colours_of(names))
+        scale = style.category_colours(colours_of(names))
     else:
         low, high = np.percentile(values[np.isfinite(values)], [1, 99])
         scale = {"cmap": "viridis", "vmin": low, "vmax": high}
     if variable.dims == ANGLES:
-        mesh = draw_map(axes, variable, values, **scale)
+        mesh = style.draw_map(axes, variable, values, **scale)
     else:
         mesh = axes.pcolormesh(x, y, values.T, shading="nearest", rasterized=True, **scale)
         axes.set_ylabel(label(y))
@@ -134,13 +120,13 @@ def _draw_map(axes: Axes, variable: xr.DataArray, values: np.ndarray, names: lis
         return
     axes.set_title(fill(_words(variable), 32), loc="left")
     bar = figure.colorbar(mesh, ax=axes, ticks=range(len(names)), shrink=0.85)
-    bar.ax.set_yticklabels([flag_words(name).replace(" ", "\n", 1) for name in names])
+    bar.ax.set_yticklabels([style.flag_words(name).replace(" ", "\n", 1) for name in names])
 
 
 def colours_of(names: list[str]) -> list[str]:
     """One colour for each flag: its own where it has one, else the next of the palette."""
-    free = iter(PALETTE * len(names))
-    return [REGIME_COLOURS.get(name) or next(free) for name in names]
+    free = iter(style.PALETTE * len(names))
+    return [style.REGIME_COLOURS.get(name) or next(free) for name in names]
 
 
 def _words(variable: xr.DataArray) -> str:

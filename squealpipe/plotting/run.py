@@ -1,33 +1,15 @@
 """One run: contact force, displacements, orbit and spectrum."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
-
 import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
 from squealpipe.codes import Regime
 from squealpipe.methods.spectrum import FEWEST, amplitude_spectrum, highest_peaks, lasts
+from squealpipe.plotting import style
 from squealpipe.plotting.mechanism import SPRING_COLOURS, displaced_springs
-from squealpipe.plotting.style import (
-    BLUE,
-    GREY,
-    PAGE,
-    RED,
-    X_COLOUR,
-    Y_COLOUR,
-    new_figure,
-    panel_letter,
-    pi_label,
-    preload_line,
-    say_instead,
-)
 from squealpipe.schema import meanings
-
-if TYPE_CHECKING:
-    import xarray as xr
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 FORCE = r"$N\,/\,(k_3\,l_\mathrm{pre})$"
 PADDING = 8
@@ -40,7 +22,7 @@ LOUD = 0.01
 
 def figure(run: xr.Dataset) -> Figure:
     """Four panels of one run."""
-    drawn, axes = new_figure(PAGE, 4.8, nrows=2, ncols=2)
+    drawn, axes = style.new_figure(style.PAGE, 4.8, nrows=2, ncols=2)
     panels = (
         (draw_force, "contact force"),
         (draw_displacements, "displacements"),
@@ -49,9 +31,9 @@ def figure(run: xr.Dataset) -> Figure:
     )
     for letter, panel, (draw, title) in zip("abcd", axes.flat, panels, strict=True):
         draw(panel, run)
-        panel_letter(panel, letter, title)
+        style.panel_letter(panel, letter, title)
     drawn.suptitle(
-        f"α₁ = {pi_label(float(run.alpha1))}, α₂ = {pi_label(float(run.alpha2))}, "
+        f"α₁ = {style.pi_label(float(run.alpha1))}, α₂ = {style.pi_label(float(run.alpha2))}, "
         f"model {run.attrs.get('model', 'A1')}",
         fontsize=9,
     )
@@ -64,12 +46,12 @@ def draw_force(axes: Axes, run: xr.Dataset) -> None:
         return
     time, force = run.time.values, run.normalized_contact_force.values
     top = max(1.3, 1.1 * float(np.nanmax(force)))
-    axes.plot(time, force, color=BLUE)
+    axes.plot(time, force, color=style.BLUE)
     axes.fill_between(
-        time, -0.05 * top, 0.0, where=run.regime.values == Regime.separated, color=RED, linewidth=0,
-        step="mid", label="separated",
+        time, -0.05 * top, 0.0, where=run.regime.values == Regime.separated, color=style.RED,
+        linewidth=0, step="mid", label="separated",
     )  # fmt: skip
-    axes.axhline(0.0, color=GREY, linewidth=0.5)
+    axes.axhline(0.0, color=style.GREY, linewidth=0.5)
     axes.set(xlim=(0.0, float(time[-1])), ylim=(-0.065 * top, top))
     axes.set(xlabel="t (s)", ylabel=FORCE)
 
@@ -78,9 +60,9 @@ def draw_displacements(axes: Axes, run: xr.Dataset) -> None:
     """Both displacements over time."""
     if _too_short(axes, run):
         return
-    axes.plot(run.time, run.x, color=X_COLOUR, label="x")
-    axes.plot(run.time, run.y, color=Y_COLOUR, linestyle="--", label="y")
-    preload_line(axes, float(run.preload))
+    axes.plot(run.time, run.x, color=style.X_COLOUR, label="x")
+    axes.plot(run.time, run.y, color=style.Y_COLOUR, linestyle="--", label="y")
+    style.preload_line(axes, float(run.preload))
     axes.set(xlabel="t (s)", ylabel="displacement (m)", xlim=(0, float(run.time_reached)))
     axes.legend(loc="lower right", bbox_to_anchor=(1, 1), borderaxespad=0, ncols=2)
 
@@ -89,7 +71,7 @@ def draw_orbit(axes: Axes, run: xr.Dataset) -> None:
     """The path of the mass, with the springs at its end unless they dwarf it."""
     if _too_short(axes, run):
         return
-    axes.plot(run.x, run.y, color=GREY, linewidth=0.6)
+    axes.plot(run.x, run.y, color=style.GREY, linewidth=0.6)
     path = np.stack([run.x.values, run.y.values])
     path = path[:, np.isfinite(path[0])]
     x, y = path[:, -1]
@@ -101,7 +83,7 @@ def draw_orbit(axes: Axes, run: xr.Dataset) -> None:
             axes.plot(*spring.T, color=colour, linewidth=0.9)
             axes.plot(*spring[-1], "s", color="black", markersize=3)
     axes.plot(x, y, "o", color="black", markersize=5)
-    axes.axhline(float(run.preload), color=GREY, linewidth=0.8, linestyle=":")
+    axes.axhline(float(run.preload), color=style.GREY, linewidth=0.8, linestyle=":")
     axes.set(xlabel="x (m)", ylabel="y (m)")
     axes.set_aspect("equal", adjustable="datalim")
     axes.locator_params(nbins=5)
@@ -121,19 +103,19 @@ def draw_spectrum(axes: Axes, dataset: xr.Dataset) -> None:
         kept = np.isfinite(dataset.x.values)
         steps = np.diff(dataset.time.values[kept])
         if np.ptp(steps) > 1e-6 * steps[0]:
-            say_instead(axes, "no spectrum:\nthe samples are not uniform in time")
+            style.say_instead(axes, "no spectrum:\nthe samples are not uniform in time")
             return
         force = dataset.normalized_contact_force.values[kept]
         if not lasts(force):
-            say_instead(axes, "no contact in\nthe second half")
+            style.say_instead(axes, "no contact in\nthe second half")
             return
         frequency, amplitude = amplitude_spectrum(force, float(steps[0]), padding=PADDING)
     loud = np.flatnonzero(amplitude > LOUD * amplitude.max(initial=0.0))
     if not loud.size:
-        say_instead(axes, "the contact force does not oscillate")
+        style.say_instead(axes, "the contact force does not oscillate")
         return
-    axes.plot(frequency, amplitude, color=BLUE)
-    axes.plot(*highest_peaks(frequency, amplitude, 3), "v", color=RED, markersize=4)
+    axes.plot(frequency, amplitude, color=style.BLUE)
+    axes.plot(*highest_peaks(frequency, amplitude, 3), "v", color=style.RED, markersize=4)
     axes.set(xlim=(0, 1.2 * frequency[loud[-1]]), ylim=(0, None))
     axes.set(xlabel="ω (rad/s)", ylabel=f"amplitude of {FORCE}")
 
@@ -144,5 +126,5 @@ def _too_short(axes: Axes, run: xr.Dataset) -> bool:
     if reached >= FEWEST:
         return False
     end = meanings(run.outcome)[int(run.outcome)].replace("_", " ")
-    say_instead(axes, f"too short for a picture:\n{reached} samples, then {end}")
+    style.say_instead(axes, f"too short for a picture:\n{reached} samples, then {end}")
     return True

@@ -1,13 +1,14 @@
 """One look for every figure: sizes, colours, angle axes, and how files are written."""
 
-from __future__ import annotations
-
 import os
+from collections.abc import Iterable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import matplotlib as mpl
 import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
 from matplotlib.colors import BoundaryNorm, ListedColormap
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
@@ -15,12 +16,6 @@ from matplotlib.ticker import ScalarFormatter
 
 from squealpipe.store.whole_files import whole_file
 from squealpipe.text import as_people_write
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
-
-    import xarray as xr
-    from matplotlib.axes import Axes
 
 COLUMN = 3.5
 PAGE = 7.0

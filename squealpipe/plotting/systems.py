@@ -1,19 +1,14 @@
 """Runs and ensembles of systems."""
 
-from __future__ import annotations
-
 import json
-from typing import TYPE_CHECKING
 
 import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
 
 from squealpipe.plotting.cycles import say_no_cycle
 from squealpipe.plotting.quantities import draw_quantity, label
 from squealpipe.plotting.style import BLUE, GREY, PALETTE, say_instead
-
-if TYPE_CHECKING:
-    import xarray as xr
-    from matplotlib.axes import Axes
 
 FEW_EVENTS = 60
 """Events up to which each is marked."""

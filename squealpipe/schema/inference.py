@@ -1,17 +1,13 @@
 """Dataset of the parameter inference: samples, the paper's statements, and their margins."""
 
-from __future__ import annotations
-
 import math
 import re
 from enum import IntEnum
-from typing import TYPE_CHECKING
+
+import xarray as xr
 
 from squealpipe.reading import READINGS
 from squealpipe.schema import DatasetSchema, Outcome, Variable, outcome
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 CONFIDENCE = 0.95
 """Confidence of every interval that is given for a share."""

@@ -6,7 +6,6 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from squealpipe.plotting import style
-from squealpipe.plotting.style import PAGE, new_figure, panel_letter
 from squealpipe.schema.comparison import Reliability, Role
 from squealpipe.text import number
 
@@ -35,13 +34,13 @@ _ROW, _HEADS = 0.2, 1.2
 def draw(benchmark: xr.Dataset, atlas: xr.Dataset) -> Figure:
     """Both tables, from datasets ``benchmark`` and ``failure_atlas``."""
     heights = [_ROW * each.sizes["solver"] + _HEADS for each in (benchmark, atlas)]
-    figure, axes = new_figure(PAGE, sum(heights) + 0.3, nrows=2, height_ratios=heights)
+    figure, axes = style.new_figure(style.PAGE, sum(heights) + 0.3, nrows=2, height_ratios=heights)
     _draw_benchmark(axes[0, 0], benchmark.transpose("solver", "problem", "tol"))
     _draw_atlas(axes[1, 0], atlas.transpose("solver", "scene"))
     for panel, letter, title in zip(
         axes[:, 0], "ab", ("integrators with events", "frequencies and stability"), strict=True
     ):
-        panel_letter(panel, letter, title)
+        style.panel_letter(panel, letter, title)
     tones = [(_COLOURS[verdict], f"{sign} {_WORDS[verdict]}") for verdict, sign in _SIGNS.items()]
     keys = style.patches(tones, alpha=0.75, edgecolor="none")
     figure.legend(handles=keys, loc="outside upper right", ncols=3)
