@@ -6,7 +6,9 @@ workflow depend on, the others.
 
 from __future__ import annotations
 
+import ast
 import importlib
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -37,41 +39,12 @@ if TYPE_CHECKING:
     from squealpipe.tasks.propensity.propensity import propensity
 
 _HOME = {
-    "SCENES": "squealpipe.parameters",
-    "Parameters": "squealpipe.parameters",
-    "Scene": "squealpipe.parameters",
-    "Sweep": "squealpipe.execution.sweep",
-    "Switch": "squealpipe.systems.system",
-    "System": "squealpipe.systems.system",
-    "backbone": "squealpipe.tasks.backbones.backbone",
-    "basin_map": "squealpipe.tasks.basins.basin",
-    "boundary_distance": "squealpipe.tasks.curves.contact",
-    "choose_model": "squealpipe.tasks.ladder.choice",
-    "contact_boundary": "squealpipe.tasks.curves.contact",
-    "critical_friction_map": "squealpipe.tasks.linear.critical",
-    "cycle_branch": "squealpipe.tasks.cycles.branch",
-    "hammering_map": "squealpipe.tasks.dynamics.hammering",
-    "infer_parameters": "squealpipe.tasks.inference.inference",
-    "convert": "squealpipe.store.tables",
-    "labels": "squealpipe.schema",
-    "limit_cycle": "squealpipe.tasks.cycles.cycle",
-    "load": "squealpipe.store.netcdf",
-    "open_results": "squealpipe.store.results",
-    "natural_frequencies": "squealpipe.tasks.linear.maps",
-    "periodic_orbit": "squealpipe.tasks.backbones.orbit",
-    "plot": "squealpipe.plotting",
-    "propensity": "squealpipe.tasks.propensity.propensity",
-    "quasi_static_map": "squealpipe.tasks.linear.maps",
-    "refine_validity_map": "squealpipe.tasks.dynamics.refinement",
-    "regime_chart": "squealpipe.tasks.curves.chart",
-    "run_sweep": "squealpipe.execution.sweep",
-    "save": "squealpipe.store.netcdf",
-    "simulate": "squealpipe.tasks.dynamics.runs",
-    "smallest_disturbance": "squealpipe.tasks.basins.disturbance",
-    "stability_map": "squealpipe.tasks.linear.maps",
-    "summarize": "squealpipe.tasks.dynamics.summary",
-    "validity_map": "squealpipe.tasks.dynamics.runs",
+    alias.name: str(node.module)
+    for node in ast.walk(ast.parse(Path(__file__).read_bytes()))
+    if isinstance(node, ast.ImportFrom) and str(node.module).startswith("squealpipe.")
+    for alias in node.names
 }
+"""Public name → its module, read off the imports above, which only type checkers run."""
 
 __all__ = [
     "SCENES",

@@ -13,8 +13,7 @@ from squealpipe.cli import benchmark
 from squealpipe.cli.archives import deposit, find, list_runs
 from squealpipe.cli.arguments import by_name, parameters_from_study
 from squealpipe.cli.claims import claims
-from squealpipe.cli.console import SESSION, TRACEBACK, session
-from squealpipe.cli.exit_codes import DONE, INTERRUPTED, NOT_DONE
+from squealpipe.cli.console import DONE, INTERRUPTED, NOT_DONE, SESSION, TRACEBACK, session
 from squealpipe.cli.files import convert, plot
 from squealpipe.cli.maps import basin, disturbance, map_angles, propensity, refine
 from squealpipe.cli.models import choose, infer

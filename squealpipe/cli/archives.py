@@ -7,8 +7,7 @@ import sys
 from typing import TYPE_CHECKING, Any
 
 from squealpipe.cli.arguments import AsJson, OutputElsewhere
-from squealpipe.cli.console import working
-from squealpipe.cli.exit_codes import ANSWER_IS_NO, DONE
+from squealpipe.cli.console import ANSWER_IS_NO, DONE, working
 
 if TYPE_CHECKING:
     from squealpipe.store.catalogue import Run

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 from cyclopts import Parameter
 
 from squealpipe.cli.arguments import Force, Output, Texts
-from squealpipe.cli.exit_codes import ANSWER_IS_NO, DONE
+from squealpipe.cli.console import ANSWER_IS_NO, DONE
 
 if TYPE_CHECKING:
     from squealpipe.benchmark.scoring import Score

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from squealpipe.cli.arguments import AsJson
-from squealpipe.cli.exit_codes import DONE
+from squealpipe.cli.console import DONE
 
 MADE = Path("results/data/claims.nc")
 

@@ -1,4 +1,4 @@
-"""What a command says, and how much of it: quiet, normal, or with tracebacks."""
+"""What a command says, and how much of it; the exit codes of every command."""
 
 from __future__ import annotations
 
@@ -12,6 +12,13 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from rich.console import Console
+
+DONE = 0
+ANSWER_IS_NO = 1
+"""Done, and the answer is no: a difference, a changed file, another verdict, no convergence."""
+NOT_DONE = 2
+"""Wrong input, a missing file, nothing to compare."""
+INTERRUPTED = 130
 
 TRACEBACK = "SQUEALPIPE_TRACEBACK"
 """Environment variable that asks for tracebacks, as -v does."""

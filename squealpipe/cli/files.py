@@ -6,8 +6,7 @@ from typing import Annotated
 from cyclopts import Parameter
 
 from squealpipe.cli.arguments import Force, OutputElsewhere
-from squealpipe.cli.console import say
-from squealpipe.cli.exit_codes import DONE
+from squealpipe.cli.console import DONE, say
 from squealpipe.cli.output import PICTURES, TABLES, check_output
 
 

@@ -19,8 +19,7 @@ from squealpipe.cli.arguments import (
     Whole,
     Workers,
 )
-from squealpipe.cli.console import SESSION, answer
-from squealpipe.cli.exit_codes import ANSWER_IS_NO, DONE
+from squealpipe.cli.console import ANSWER_IS_NO, DONE, SESSION, answer
 from squealpipe.cli.motions import Model
 from squealpipe.cli.output import compute, ending
 from squealpipe.config.ranges import ANGLES, parse_angle, parse_number

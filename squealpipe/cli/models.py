@@ -15,8 +15,7 @@ from squealpipe.cli.arguments import (
     Workers,
     Written,
 )
-from squealpipe.cli.console import answer, working
-from squealpipe.cli.exit_codes import DONE
+from squealpipe.cli.console import DONE, answer, working
 from squealpipe.cli.output import compute
 
 Question = Literal["contact_lost", "frequency", "peak_contact_force", "max_displacement"]

@@ -7,8 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 from squealpipe.cli.arguments import DRAWN, Angle, Drawn, Numbers, Output, Switch, Tolerance, Whole
-from squealpipe.cli.console import answer
-from squealpipe.cli.exit_codes import ANSWER_IS_NO, DONE
+from squealpipe.cli.console import ANSWER_IS_NO, DONE, answer
 from squealpipe.cli.output import compute, ending
 from squealpipe.config.ranges import parse_range
 

@@ -88,7 +88,7 @@ def compute(
 
     import squealpipe
     from squealpipe.schema.origin import plain
-    from squealpipe.store.identity import dataset_id
+    from squealpipe.store.netcdf import dataset_id
 
     given = {name: value for name, value in options.items() if value is not None}
     stated = dict(zip(("alpha1", "alpha2"), angles, strict=False)) | {

@@ -8,8 +8,7 @@ import time
 from pathlib import Path
 
 from squealpipe.cli.arguments import Configs, Force, Switch, Whole
-from squealpipe.cli.console import SESSION, say
-from squealpipe.cli.exit_codes import DONE, NOT_DONE
+from squealpipe.cli.console import DONE, NOT_DONE, SESSION, say
 from squealpipe.cli.output import check_output
 from squealpipe.parameters import DEFAULTS, TABLE, Row
 from squealpipe.text import duration

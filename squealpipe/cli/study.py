@@ -6,8 +6,7 @@ from typing import Annotated
 from cyclopts import Parameter
 
 from squealpipe.cli.arguments import AsJson, Configs, Switch, Texts
-from squealpipe.cli.console import console, working
-from squealpipe.cli.exit_codes import ANSWER_IS_NO, DONE
+from squealpipe.cli.console import ANSWER_IS_NO, DONE, console, working
 from squealpipe.text import duration
 
 

@@ -8,8 +8,7 @@ from typing import Annotated
 from cyclopts import Parameter
 
 from squealpipe.cli.arguments import WRITTEN, Angle, Output, Workers, Written
-from squealpipe.cli.console import SESSION, answer, say
-from squealpipe.cli.exit_codes import DONE
+from squealpipe.cli.console import DONE, SESSION, answer, say
 from squealpipe.cli.output import check_output, write
 from squealpipe.config.ranges import read_fixed, read_values, sweep_config
 from squealpipe.parameters import SYMBOLS
@@ -41,8 +40,7 @@ def sweep(
             further dimensions.
         option: a further keyword of the task, for instance t_end=100; repeat for more.
     """
-    from squealpipe.execution.counts import lines
-    from squealpipe.execution.sweep import planned, run_sweep
+    from squealpipe.execution.sweep import outcome_lines, planned, run_sweep
 
     varied = _pairs("--vary", vary)
     options = _pairs("--option", option or [])
@@ -64,7 +62,7 @@ def sweep(
         output,
         config=settings,
     )
-    answer(*lines(dataset, plan.names))
+    answer(*outcome_lines(dataset, plan.names))
     say(f"wrote {output}")
     return DONE
 

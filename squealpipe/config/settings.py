@@ -13,23 +13,10 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field, ValidationError, field_validator, model_validator
 
+from squealpipe.config import sections
 from squealpipe.config.mistakes import ConfigError, mistakes
 from squealpipe.config.ranges import sweep_config
-from squealpipe.config.sections import (
-    BackbonesSection,
-    ComparisonSection,
-    CyclesSection,
-    DynamicsSection,
-    ExplorerSection,
-    InferenceSection,
-    LinearSection,
-    Name,
-    OwnScene,
-    ParametersSection,
-    Section,
-    SpreadSection,
-    SweepSection,
-)
+from squealpipe.config.sections import Name, Section
 from squealpipe.config.yaml_files import flat, overlay, read_yaml
 from squealpipe.laws.tables import is_table, named
 from squealpipe.parameters import TABLE, Row
@@ -57,17 +44,17 @@ class Study(Section):
     results: Annotated[str, Field(pattern=r"^[\w./-]+$")] = "results"
     paper: bool = True
     reading: Literal["as_printed", "along_plus_x", "along_minus_x"] = "as_printed"
-    scenes: dict[Name, OwnScene] = Field(default={})
-    parameters: ParametersSection = ParametersSection()
-    linear: LinearSection = LinearSection()
-    inference: InferenceSection = InferenceSection()
-    comparison: ComparisonSection = ComparisonSection()
-    dynamics: DynamicsSection = DynamicsSection()
-    backbones: BackbonesSection = BackbonesSection()
-    cycles: CyclesSection = CyclesSection()
-    spread: SpreadSection = SpreadSection()
-    explorer: ExplorerSection = ExplorerSection()
-    sweeps: dict[Name, SweepSection] = Field(default={})
+    scenes: dict[Name, sections.OwnScene] = Field(default={})
+    parameters: sections.ParametersSection = sections.ParametersSection()
+    linear: sections.LinearSection = sections.LinearSection()
+    inference: sections.InferenceSection = sections.InferenceSection()
+    comparison: sections.ComparisonSection = sections.ComparisonSection()
+    dynamics: sections.DynamicsSection = sections.DynamicsSection()
+    backbones: sections.BackbonesSection = sections.BackbonesSection()
+    cycles: sections.CyclesSection = sections.CyclesSection()
+    spread: sections.SpreadSection = sections.SpreadSection()
+    explorer: sections.ExplorerSection = sections.ExplorerSection()
+    sweeps: dict[Name, sections.SweepSection] = Field(default={})
 
     @field_validator("results")
     @classmethod

@@ -21,7 +21,16 @@ from squealpipe.execution.parts import scattered_rows
 from squealpipe.execution.system_sweep import SystemSweep, is_system
 from squealpipe.methods.processes import available_cores, leave_interrupts_to_the_parent
 from squealpipe.parameters import Parameters, parameters_of
-from squealpipe.schema import DatasetSchema, Variable, build, find
+from squealpipe.schema import (
+    ABSENT,
+    REMEDIES,
+    DatasetSchema,
+    Outcome,
+    Variable,
+    build,
+    find,
+    meanings,
+)
 from squealpipe.schema.origin import origin
 from squealpipe.schema.sweep import OPTIONS, fill_up, is_ragged, ragged_dims, sweep_name
 from squealpipe.text import suggestion
@@ -252,3 +261,27 @@ def _length(run: Arrays, dim: str, base: DatasetSchema) -> int:
         if name in run and dim in entry.dims:
             return int(run[name].shape[entry.dims.index(dim)])
     return 0
+
+
+def outcome_lines(dataset: xr.Dataset, names: list[str]) -> list[str]:
+    """Outcomes of the runs of a sweep counted, then the remedy of each that is not converged.
+
+    Nothing of a task that always has an answer, and so no outcome.
+    """
+    if "outcome" not in dataset:
+        return []
+    words = meanings(dataset.outcome)
+    present = dataset.outcome.values[dataset.outcome.values != ABSENT]
+    values, counts = np.unique(present, return_counts=True)
+    order = np.argsort(-counts)
+    stated = [f"{words[int(values[k])]} {counts[k]}" for k in order]
+    unit = "runs" if dataset.outcome.ndim == len(names) else "points"
+    remedies = {int(item): remedy for item, remedy in REMEDIES.items()}
+    return [
+        f"outcome of {present.size} {unit}: {', '.join(stated)}",
+        *(
+            f"{words[int(value)]}: {remedies.get(int(value), 'a stop of the system')}"
+            for value in values[order]
+            if value != Outcome.converged
+        ),
+    ]

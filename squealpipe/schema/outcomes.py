@@ -20,7 +20,6 @@ class Outcome(IntEnum):
     linear_mode = 11
     isolated_mode = 12
     no_convergence = 13
-    wrong_basin = 14
     branch_lost = 15
     pole = 16
     tongue_end = 17
@@ -29,7 +28,6 @@ class Outcome(IntEnum):
     beyond_horizon = 20
     infeasible = 21
     unresolved = 22
-    free_flight = 23
     amplitude_reached = 24
     unconfirmed = 25
     other_branch = 26
@@ -62,7 +60,6 @@ REMEDIES: dict[Outcome, str] = {
     Outcome.linear_mode: "below contact loss: the orbit is the linear mode",
     Outcome.isolated_mode: "the x mode is decoupled: y is constant and the branch is vertical",
     Outcome.no_convergence: "Newton did not converge; try a smaller step or another start",
-    Outcome.wrong_basin: "Newton left the branch; continue from a neighbouring orbit",
     Outcome.branch_lost: "continuation could not go on; reduce its smallest step",
     Outcome.pole: "an internal resonance ω = ω_x/n ends the branch; ask for its other side",
     Outcome.tongue_end: "the branch closes on another one here",
@@ -71,7 +68,6 @@ REMEDIES: dict[Outcome, str] = {
     Outcome.beyond_horizon: "chaotic beyond the predictability horizon: trust statistics only",
     Outcome.infeasible: "the sample breaks a statement of the paper",
     Outcome.unresolved: "the check could not decide; refine the grid or the horizon",
-    Outcome.free_flight: "the mass left the belt and does not come back within t_end",
     Outcome.amplitude_reached: "the asked amplitude was reached",
     Outcome.unconfirmed: "no exact orbit is close to the series; more harmonics or method=exact",
     Outcome.no_doubling: "no such period doubling on the branch; follow it further",

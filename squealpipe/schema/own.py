@@ -5,6 +5,17 @@ from squealpipe.schema.dynamics.runs import IMPACT_SPEED, RETURN_FORCE
 
 _RUN = ("scene", "variant")
 
+NUMBERS = (
+    "first_separation_time",
+    "separated_fraction",
+    "stick_fraction",
+    "return_peak_contact_force",
+    "impact_speed",
+    "largest_x",
+    "largest_y",
+)
+"""What is given of each run, as in its summary."""
+
 
 def _text(meaning: str, *dims: str) -> Variable:
     return Variable(meaning, dims=dims, dtype="U")

@@ -10,9 +10,9 @@ import netCDF4
 import numpy as np
 import xarray as xr
 
+from squealpipe.rerun.key import canonical
 from squealpipe.schema import SchemaError, schema_of, validate
 from squealpipe.store.checkout import commit
-from squealpipe.store.identity import dataset_id
 from squealpipe.store.runs import archive_around
 from squealpipe.store.whole_files import checksum, whole_file
 from squealpipe.validation import AnyPath, checked
@@ -89,6 +89,23 @@ def load(path: AnyPath, *, schema: str | None = None) -> xr.Dataset:
         raise SchemaError(f"{source} holds {found!r}, {schema!r} was expected; pass the right file")
     validate(dataset, schema_of(dataset))
     return dataset
+
+
+def dataset_id(dataset: xr.Dataset) -> str:
+    """Hash of what was computed: schema, configuration and all values that are not volatile."""
+    schema = schema_of(dataset)
+    total = hashlib.sha256()
+    total.update(canonical([schema.name, schema.version, dataset.attrs.get("config", "")]).encode())
+    for name in sorted(map(str, dataset.variables)):
+        entry = schema.lookup(name)
+        if entry is not None and entry.volatile:
+            continue
+        values = np.ascontiguousarray(dataset[name].values)
+        total.update(f"{name}{values.shape}{values.dtype.kind}".encode())
+        total.update(
+            repr(values.tolist()).encode() if values.dtype.kind in "UO" else values.tobytes()
+        )
+    return total.hexdigest()[:16]
 
 
 def attributes(path: str | os.PathLike[str]) -> dict[str, Any]:

@@ -8,7 +8,7 @@ import time
 
 import pytest
 
-from squealpipe.cli.exit_codes import INTERRUPTED
+from squealpipe.cli.console import INTERRUPTED
 from squealpipe.cli.project import _to_its_end
 
 LONG = {

@@ -15,7 +15,7 @@ from squealpipe.execution.parts import join
 from squealpipe.execution.sweep import Sweep, planned, run_sweep
 from squealpipe.schema import find
 from squealpipe.store import load, save
-from squealpipe.store.identity import dataset_id
+from squealpipe.store.netcdf import dataset_id
 from squealpipe.tasks.backbones.backbone import backbone
 from squealpipe.tasks.dynamics.runs import simulate
 from squealpipe.tasks.linear.maps import stability_map

@@ -77,7 +77,7 @@ def test_the_compiled_trace_follows_the_same_branch():
     scene = scaled_system(FORMER, 0.2 * math.pi, 0.7 * math.pi)
     seed = grazing_start(scene, 1)
     control = seed.settings()
-    table, _ = trace_branch(scene.system, seed.point, seed.direction, 3.0, control, 0.05)
+    table, _, _ = trace_branch(scene.system, seed.point, seed.direction, 3.0, control, 0.05)
     settings = ContinuationSettings(first_step=control.first_step, longest_step=0.05)
     general = Continuation(Shooting(scene.system), seed.point, seed.direction, settings)
     result = general.run(lambda state: bool(state.point[1] > 3.0))

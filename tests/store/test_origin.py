@@ -12,7 +12,7 @@ import squealpipe
 from squealpipe import Parameters, Sweep, load, run_sweep, save
 from squealpipe.schema.origin import plain
 from squealpipe.store.checkout import ROOT, commit
-from squealpipe.store.identity import dataset_id
+from squealpipe.store.netcdf import dataset_id
 
 PARAMS = Parameters(mu=0.21, k1=1.3, belt_speed=-7.0)
 ANGLES = np.linspace(0.3, 2.0, 3)

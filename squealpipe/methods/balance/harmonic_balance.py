@@ -102,13 +102,6 @@ class CosineBalance:
         return np.concatenate([np.zeros(count), np.ones(count), [0.0]])
 
     @cached_property
-    def first_harmonic_row(self) -> Vector:
-        """The linear form z → y_1."""
-        row = np.zeros(2 * self.contact.n_harmonics + 3)
-        row[self.contact.n_harmonics + 2] = 1.0
-        return row
-
-    @cached_property
     def shift_signs(self) -> Vector:
         """Signs that describe a motion from its other instant of rest, θ → θ + π."""
         alternating = (-1.0) ** np.arange(self.contact.n_harmonics + 1)

@@ -175,28 +175,6 @@ def is_primitive(system: PiecewiseLinearSystem, orbit: Orbit) -> bool:
     return bool(shorter_orbits.times_run_through(system.rows, orbit.point) == 1)
 
 
-def trace_branch(
-    system: PiecewiseLinearSystem,
-    start: NDArray[np.float64],
-    direction: NDArray[np.float64],
-    y_stop: float,
-    settings: TraceSettings,
-    spacing: float,
-) -> tuple[NDArray[np.float64], TraceEnd]:
-    """Points of a branch and why it ended.
-
-    Args:
-        start, direction: (3,) a solution and the way to go; neither needs to be regular.
-        y_stop: larger y of the instants of rest at which the trace ends.
-        spacing: largest distance of the points, over 1 + |z|; the steps do not depend on it.
-
-    Returns:
-        (n, 8) points (columns: ``branch_tracing.COLUMNS``) and the end.
-    """
-    table, _, end = _trace(system, start, direction, y_stop, settings, spacing)
-    return table, end
-
-
 def orbit_on_branch(
     system: PiecewiseLinearSystem,
     start: NDArray[np.float64],
@@ -205,11 +183,11 @@ def orbit_on_branch(
     settings: TraceSettings,
 ) -> tuple[Orbit | None, TraceEnd]:
     """The branch's orbit at y0 = y_stop, and why the trace ended; None where it is not met."""
-    table, switches, end = _trace(system, start, direction, y_stop, settings, 0.0)
+    table, switches, end = trace_branch(system, start, direction, y_stop, settings, 0.0)
     return (_orbit(table[-1], switches) if len(table) else None), end
 
 
-def _trace(
+def trace_branch(
     system: PiecewiseLinearSystem,
     start: NDArray[np.float64],
     direction: NDArray[np.float64],
@@ -217,7 +195,16 @@ def _trace(
     settings: TraceSettings,
     spacing: float,
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], TraceEnd]:
-    """Points, switching times of the last one, and the end; interruptible between calls."""
+    """Points of a branch, the switching times of the last, and why it ended.
+
+    Args:
+        start, direction: (3,) a solution and the way to go; neither needs to be regular.
+        y_stop: larger y of the instants of rest at which the trace ends.
+        spacing: largest distance of the points, over 1 + |z|; the steps do not depend on it.
+
+    Returns:
+        (n, 8) points (columns: ``branch_tracing.COLUMNS``), times, and the end.
+    """
     motion = np.array([start, direction / np.linalg.norm(direction)], dtype=float)
     pace, control = np.array([settings.first_step, *[0.0] * 5]), settings.control()
     table = np.empty((_ROWS_PER_CALL if spacing else 1, len(branch_tracing.COLUMNS)))

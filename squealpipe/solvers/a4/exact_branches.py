@@ -13,17 +13,10 @@ from squealpipe.methods.orbits.orbits import (
     trace_branch,
 )
 from squealpipe.schema import Outcome
-from squealpipe.solvers.a4.orbits import grazing_start, linear_orbit
+from squealpipe.solvers.a4.orbits import TRACE_OUTCOMES, grazing_start, linear_orbit
 from squealpipe.solvers.a4.system import ScaledSystem
 
-BRANCH_ENDS = {
-    TraceEnd.reached: Outcome.amplitude_reached,
-    TraceEnd.returned: Outcome.retraced,
-    TraceEnd.tongue_end: Outcome.tongue_end,
-    TraceEnd.lost: Outcome.branch_lost,
-    TraceEnd.step_limit: Outcome.step_limit,
-    TraceEnd.diverged: Outcome.pole,
-}
+BRANCH_ENDS = TRACE_OUTCOMES | {TraceEnd.reached: Outcome.amplitude_reached}
 """Outcome of a branch that was followed upwards."""
 
 LINEAR_POINTS = 6
@@ -54,7 +47,7 @@ def exact_branch(
         beyond, end = _decoupled_branch(scene, y_max, cross_poles=cross_poles)
     else:
         seed = grazing_start(scene, mode)
-        table, why = trace_branch(
+        table, _, why = trace_branch(
             scene.system, seed.point, seed.direction, y_max, seed.settings(), _SPACING
         )
         beyond = [Orbit(row[:3], np.empty(int(row[7])), row[5], row[6]) for row in table]

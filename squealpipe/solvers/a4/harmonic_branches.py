@@ -82,7 +82,10 @@ def harmonic_branch(
     if scene.obstacle != Outcome.converged:
         return balance, [], scene.obstacle
     if scene.isolated_mode == mode:
-        swings = [linear_series(scene, mode, n_harmonics, x) for x in _isolated(scene, mode, x_max)]
+        swings = [
+            linear_series(scene, mode, n_harmonics, orbit.point)
+            for orbit in isolated_orbits(scene, mode, x_max)
+        ]
         points = [_judged(scene, balance, z, Outcome.isolated_mode) for z in swings]
         return balance, points, Outcome.amplitude_reached
     if not math.isfinite(scene.slope(mode)):
@@ -113,10 +116,6 @@ def linear_series(scene: ScaledSystem, mode: int, n_harmonics: int, point: Vecto
     z[1], z[n_harmonics + 2] = point[:2] - scene.rest
     z[-1] = scene.omega(mode)
     return z
-
-
-def _isolated(scene: ScaledSystem, mode: int, x_max: float) -> list[Vector]:
-    return [orbit.point for orbit in isolated_orbits(scene, mode, x_max)]
 
 
 def coupled_branch(

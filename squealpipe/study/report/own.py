@@ -7,21 +7,11 @@ import numpy as np
 import xarray as xr
 
 from squealpipe.parameters import Parameters
+from squealpipe.schema.own import NUMBERS
 from squealpipe.study.claims.evidence import Run
 from squealpipe.study.figures.comparison.model_ladder import QUESTION_NAMES
 from squealpipe.study.report.content import Made, parameter_table, pictures
 from squealpipe.study.report.sections import OWN
-
-NUMBERS = (
-    "separated_fraction",
-    "stick_fraction",
-    "return_peak_contact_force",
-    "impact_speed",
-    "largest_x",
-    "largest_y",
-    "first_separation_time",
-    "predictability_horizon",
-)
 
 
 def gather_own(
@@ -54,7 +44,7 @@ def _scene(table: xr.Dataset, run: Run) -> dict[str, Any]:
     runs = [
         {
             "motion": str(here.motion.item()),
-            **{name: _finite(here[name]) for name in NUMBERS},
+            **{name: _finite(here[name]) for name in (*NUMBERS, "predictability_horizon")},
             "frequencies": [value for value in here.dominant_frequency.values if value > 0],
         }
         for here in (table.isel(variant=index) for index in range(table.sizes["variant"]))

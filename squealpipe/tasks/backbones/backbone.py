@@ -78,7 +78,14 @@ def backbone(
         orbits, outcomes, end = exact_branch(
             scene, mode, y_max / scene.length, x_max / scene.length, cross_poles=cross_poles
         )
-        return _exact_dataset(scene, params, orbits, outcomes, end, attrs)
+        beyond = special_beyond_contact(scene, orbits, outcomes)
+        variables = exact_variables(scene, params, orbits, outcomes, end)
+        return build(
+            BACKBONE,
+            variables | special_variables(scene, beyond),
+            {"point": np.arange(len(orbits)), "special": np.arange(len(beyond))},
+            attrs,
+        )
     balance, points, end = harmonic_branch(
         scene,
         mode,
@@ -157,26 +164,6 @@ def _check_sampling(n_harmonics: int, n_time: int | None) -> None:
             f"{least} and, with {n_harmonics} harmonics, at most {most} samples; leave it out for "
             "contact integrals without sampling error"
         )
-
-
-def _exact_dataset(
-    scene: ScaledSystem,
-    params: Parameters,
-    orbits: list[Orbit],
-    outcomes: list[Outcome],
-    end: Outcome,
-    attrs: dict[str, Any],
-) -> xr.Dataset:
-    beyond = special_beyond_contact(scene, orbits, outcomes)
-    return build(
-        BACKBONE,
-        {
-            **exact_variables(scene, params, orbits, outcomes, end),
-            **special_variables(scene, beyond),
-        },
-        {"point": np.arange(len(orbits)), "special": np.arange(len(beyond))},
-        attrs,
-    )
 
 
 def exact_variables(

@@ -11,28 +11,18 @@ from squealpipe.parameters import Parameters
 from squealpipe.schema import build, meanings
 from squealpipe.schema.ladder import QUESTIONS, Level
 from squealpipe.schema.origin import recorded
-from squealpipe.schema.own import OWN_SCENES
+from squealpipe.schema.own import NUMBERS, OWN_SCENES
 from squealpipe.tasks.basins.basin import basin_map
 from squealpipe.tasks.dynamics.runs import simulate
 from squealpipe.tasks.dynamics.summary import PEAKS, summarize
 from squealpipe.tasks.ladder.choice import choose_model
 
-"""Relative error that the cheapest level may have."""
 DAMPING = (0.02, 0.1)
 """Dashpots of the variants, over √(k m) of their spring."""
 STATIC = 1.5
 """Static over sliding friction of the falling law."""
 PUSH = 0.5
 """Further velocity along y of the pushed start, over l_pre √(k1/m)."""
-NUMBERS = (
-    "first_separation_time",
-    "separated_fraction",
-    "stick_fraction",
-    "return_peak_contact_force",
-    "impact_speed",
-    "largest_x",
-    "largest_y",
-)
 
 
 def variants(params: Parameters, start: tuple[float, ...]) -> dict[str, tuple[Parameters, Any]]:

@@ -52,7 +52,8 @@ def test_omega_converges_with_the_fourth_power_and_keeps_the_goals():
             balance = CosineBalance(scene.system, contact_of(count, 1.0, None, None))
             guess = np.concatenate([x[: count + 1], y[: count + 1], [orbit.omega]])
             same_peak = balance.solve(guess, balance.peak_row, peak)
-            same_first = balance.solve(guess, balance.first_harmonic_row, float(y[1]))
+            first_harmonic = np.eye(2 * count + 3)[count + 2]
+            same_first = balance.solve(guess, first_harmonic, float(y[1]))
             unit = scene.frequency
             at_peak.append(abs(same_peak[0][-1] - orbit.omega) * unit)
             at_first.append(abs(same_first[0][-1] - orbit.omega) * unit)
