@@ -112,7 +112,7 @@ def compute(
 
 def ending(outcome: xr.DataArray) -> tuple[Outcome, str]:
     """An outcome, and the words for it with its remedy."""
-    from squealpipe.schema import REMEDIES, Outcome
+    from squealpipe.schema import Outcome
 
     found = Outcome(int(outcome))
-    return found, f"{found.name} ({REMEDIES[found]})"
+    return found, f"{found.name} ({found.remedy})"

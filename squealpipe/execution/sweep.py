@@ -23,7 +23,6 @@ from squealpipe.methods.processes import available_cores, leave_interrupts_to_th
 from squealpipe.parameters import Parameters, parameters_of
 from squealpipe.schema import (
     ABSENT,
-    REMEDIES,
     DatasetSchema,
     Outcome,
     Variable,
@@ -276,7 +275,7 @@ def outcome_lines(dataset: xr.Dataset, names: list[str]) -> list[str]:
     order = np.argsort(-counts)
     stated = [f"{words[int(values[k])]} {counts[k]}" for k in order]
     unit = "runs" if dataset.outcome.ndim == len(names) else "points"
-    remedies = {int(item): remedy for item, remedy in REMEDIES.items()}
+    remedies = {int(item): item.remedy for item in Outcome}
     return [
         f"outcome of {present.size} {unit}: {', '.join(stated)}",
         *(

@@ -17,7 +17,6 @@ import numpy as np
 import xarray as xr
 
 from squealpipe.schema.agreement import Listing, RoundOff
-from squealpipe.schema.outcomes import REMEDIES as REMEDIES
 from squealpipe.schema.outcomes import Outcome as Outcome
 from squealpipe.validation import checked
 
@@ -121,7 +120,7 @@ def flag_table(flags: Any) -> dict[int, str]:
 
 def in_words(table: Mapping[int, str]) -> str:
     """Flags for people: ``0: converged; 9: divergence (ω² < 0: there is no oscillation …)``."""
-    remedies = {item.name: text for item, text in REMEDIES.items() if text != "none needed"}
+    remedies = {item.name: item.remedy for item in Outcome if item is not Outcome.converged}
     return "; ".join(
         f"{value}: {name.replace('_', ' ')}" + (f" ({remedies[name]})" if name in remedies else "")
         for value, name in table.items()

@@ -1,5 +1,7 @@
 """Ensembles of nonlinear runs: any number of runs, each with its own parameters and angles."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Mapping, Sequence
 from functools import cached_property
@@ -29,8 +31,48 @@ TRACKED = ("x", "vx", "contact_force", REACH)
 """Quantities of the system whose extremes an :class:`Ensemble` may hold, or ``PEAK`` of them."""
 
 
+def _count(kind: Event, counts: str = "counts") -> Any:
+    """Number of events of a kind."""
+    return property(
+        lambda self: self._shaped(self._raw[counts][..., self._kinds[:-1] == kind].sum(axis=-1))
+    )
+
+
+def _spent(regime: Regime, durations: str = "durations") -> Any:
+    """Total time in a regime, s."""
+
+    def time(self: Ensemble) -> np.ndarray:
+        found = self._raw[durations][..., self._regimes[:-1] == regime].sum(axis=-1)
+        return self._shaped(found, self._jobs.time_unit)
+
+    return property(time)
+
+
+def _largest(name: str, part: str) -> Any:
+    """Largest |x| or |ẋ|, m or m/s; 0 of a part that was not reached."""
+
+    def size(self: Ensemble) -> np.ndarray:
+        ends = np.abs(self._extremes(name, part)).max(axis=0)
+        unit = self._jobs.length if name == "x" else self._jobs.length / self._jobs.time_unit
+        return self._shaped(np.where(np.isfinite(ends), ends, 0.0), unit)
+
+    return property(size)
+
+
 class Ensemble:
     """Results of an ensemble; arrays have the broadcast shape of its inputs, SI units."""
+
+    separations, contacts = _count(Event.separation), _count(Event.contact)
+    sticks, slips, reversals = _count(Event.stick), _count(Event.slip), _count(Event.reversal)
+    separated_time, stick_time = _spent(Regime.separated), _spent(Regime.stick)
+    early_max_x = _largest("x", "early_")
+    """Before ``t_late``; those that are late from there on."""
+    late_max_x, late_max_vx = _largest("x", "late_"), _largest("vx", "late_")
+    sample_separations = _count(Event.separation, "sample_counts")
+    """What has added up at the samples, with ``sums``; likewise the following."""
+    sample_contacts = _count(Event.contact, "sample_counts")
+    sample_separated_time = _spent(Regime.separated, "sample_durations")
+    sample_stick_time = _spent(Regime.stick, "sample_durations")
 
     def __init__(self, jobs: Jobs, raw: dict[str, np.ndarray], tracked: Sequence[str]) -> None:
         self._jobs, self._raw, self._tracked = (
@@ -62,19 +104,6 @@ class Ensemble:
         values = self._raw[f"{part}extremes"][:, self._tracked.index(name)]
         return values[:, 0], values[:, 1]
 
-    def _largest(self, name: str, part: str = "") -> np.ndarray:
-        """Largest magnitude of x or ẋ; 0 of a part that was not reached."""
-        ends = np.abs(self._extremes(name, part)).max(axis=0)
-        unit = self._jobs.length if name == "x" else self._jobs.length / self._jobs.time_unit
-        return self._shaped(np.where(np.isfinite(ends), ends, 0.0), unit)
-
-    def _count(self, kind: Event, counts: str = "counts") -> np.ndarray:
-        return self._shaped(self._raw[counts][..., self._kinds[:-1] == kind].sum(axis=-1))
-
-    def _spent(self, regime: Regime, durations: str = "durations") -> np.ndarray:
-        found = self._raw[durations][..., self._regimes[:-1] == regime].sum(axis=-1)
-        return self._shaped(found, self._jobs.time_unit)
-
     @cached_property
     def outcome(self) -> np.ndarray:
         """``schema.Outcome`` of each run."""
@@ -102,16 +131,6 @@ class Ensemble:
         firsts = self._raw["firsts"][:, self._kinds[:-1] == Event.separation]
         lost = np.where(self._raw["starts_apart"], 0.0, np.fmin.reduce(firsts, 1, initial=np.nan))
         return self._shaped(lost, self._jobs.time_unit)
-
-    @property
-    def separated_time(self) -> np.ndarray:
-        """Total time without contact, s."""
-        return self._spent(Regime.separated)
-
-    @property
-    def stick_time(self) -> np.ndarray:
-        """Total time in stick, s."""
-        return self._spent(Regime.stick)
 
     @property
     def peak_contact_force(self) -> np.ndarray:
@@ -146,21 +165,6 @@ class Ensemble:
         return self._shaped(np.sqrt(square), self._jobs.length)
 
     @property
-    def early_max_x(self) -> np.ndarray:
-        """Largest |x| before ``t_late``, m."""
-        return self._largest("x", "early_")
-
-    @property
-    def late_max_x(self) -> np.ndarray:
-        """Largest |x| from ``t_late`` on, m."""
-        return self._largest("x", "late_")
-
-    @property
-    def late_max_vx(self) -> np.ndarray:
-        """Largest |ẋ| from ``t_late`` on, m/s."""
-        return self._largest("vx", "late_")
-
-    @property
     def max_vx(self) -> np.ndarray:
         """Largest ẋ, m/s."""
         return self._shaped(self._extremes("vx")[1], self._jobs.length / self._jobs.time_unit)
@@ -175,27 +179,6 @@ class Ensemble:
     def turns(self) -> np.ndarray:
         """Net turns around both fixed ends, counterclockwise positive, to half a turn."""
         return self._turns(self._raw["half_turns"])
-
-    @property
-    def separations(self) -> np.ndarray:
-        """Number of events; likewise the following."""
-        return self._count(Event.separation)
-
-    @property
-    def contacts(self) -> np.ndarray:  # noqa: D102
-        return self._count(Event.contact)
-
-    @property
-    def sticks(self) -> np.ndarray:  # noqa: D102
-        return self._count(Event.stick)
-
-    @property
-    def slips(self) -> np.ndarray:  # noqa: D102
-        return self._count(Event.slip)
-
-    @property
-    def reversals(self) -> np.ndarray:  # noqa: D102
-        return self._count(Event.reversal)
 
     @cached_property
     def events(self) -> np.ndarray:
@@ -236,23 +219,6 @@ class Ensemble:
     def sample_regimes(self) -> np.ndarray:
         """Regimes there; −1 past ``time``."""
         return self._shaped(self._regimes[self._raw["sample_regimes"]].astype(np.int8))
-
-    @property
-    def sample_separated_time(self) -> np.ndarray:
-        """What has added up there, with ``sums``: ``separated_time``; likewise the following."""
-        return self._spent(Regime.separated, "sample_durations")
-
-    @property
-    def sample_stick_time(self) -> np.ndarray:  # noqa: D102
-        return self._spent(Regime.stick, "sample_durations")
-
-    @property
-    def sample_separations(self) -> np.ndarray:  # noqa: D102
-        return self._count(Event.separation, "sample_counts")
-
-    @property
-    def sample_contacts(self) -> np.ndarray:  # noqa: D102
-        return self._count(Event.contact, "sample_counts")
 
     @property
     def sample_turns(self) -> np.ndarray:  # noqa: D102

@@ -17,7 +17,7 @@ from squealpipe.methods.continuation import Continuation, ContinuationSettings
 from squealpipe.methods.orbits.orbits import Orbit
 from squealpipe.models import a3, a4
 from squealpipe.parameters import Parameters
-from squealpipe.schema import REMEDIES, Outcome, build
+from squealpipe.schema import Outcome, build
 from squealpipe.schema.comparison import FAILURE_ATLAS, Reliability, Role
 from squealpipe.solvers.a4.harmonic_branches import linear_series
 from squealpipe.solvers.a4.orbits import find_orbit, linear_orbit
@@ -230,7 +230,7 @@ def _arc_length(scene: ScaledSystem, case: BranchCase, balance: CosineBalance) -
 
 def _flag(outcome: Any) -> str:
     outcome = Outcome(int(outcome))
-    return "" if outcome in _REACHED else f"{outcome.name}: {REMEDIES[outcome]}"
+    return "" if outcome in _REACHED else f"{outcome.name}: {outcome.remedy}"
 
 
 def _period_doubling() -> HardScene:
