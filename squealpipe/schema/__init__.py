@@ -220,6 +220,11 @@ def outcome(*dims: str, among: Iterable[Outcome] = Outcome) -> Variable:
     return Variable(dims=dims, flags=flags, long_name=OUTCOME.long_name)
 
 
+def text(long_name: str, *dims: str) -> Variable:
+    """A variable of texts over some dimensions."""
+    return Variable(long_name, dims=dims, dtype="U")
+
+
 def build(
     schema: DatasetSchema,
     data: Mapping[str, Any],

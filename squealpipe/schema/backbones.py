@@ -3,7 +3,7 @@
 from enum import IntEnum
 
 from squealpipe.codes import SpecialPoint
-from squealpipe.schema import ORBIT_ENDS, RUN_ENDS, DatasetSchema, Outcome, Variable, outcome
+from squealpipe.schema import ORBIT_ENDS, RUN_ENDS, DatasetSchema, Outcome, Variable, outcome, text
 from squealpipe.schema.agreement import Listing
 
 
@@ -140,7 +140,7 @@ DOUBLED_BRANCH = DatasetSchema(
     },
 )
 
-SCENE = {"scene": Variable("scene and mode", dims=("scene",), dtype="U")}
+SCENE = {"scene": text("scene and mode", "scene")}
 
 
 def _error(*dims: str, long_name: str, units: str = "rad s-1") -> Variable:

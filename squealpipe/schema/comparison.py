@@ -2,7 +2,7 @@
 
 from enum import IntEnum
 
-from squealpipe.schema import DatasetSchema, Outcome, Variable, outcome
+from squealpipe.schema import DatasetSchema, Outcome, Variable, outcome, text
 from squealpipe.schema.agreement import Listing, magnitude, most
 
 RUN = ("run",)
@@ -16,18 +16,14 @@ class Role(IntEnum):
     our_setting = 2
 
 
-def _text(long_name: str, *dims: str) -> Variable:
-    return Variable(long_name, dims=dims, dtype="U64")
-
-
 WORK_PRECISION = DatasetSchema(
     name="work_precision",
     title="Error of a method against its cost, one run a row",
     lists={"run": Listing(kinds=("method", "setting"))},
     coordinates={"run": Variable("one method at one setting", dims=RUN, dtype="i4")},
     variables={
-        "method": _text("method", *RUN),
-        "setting": _text("its setting", *RUN),
+        "method": text("method", *RUN),
+        "setting": text("its setting", *RUN),
         "role": Variable("public method, ours, or our default", dims=RUN, flags=Role),
         "error": Variable(
             "relative error of ω against the exact orbit, median over peaks",
@@ -59,8 +55,8 @@ FAILURE_ATLAS = DatasetSchema(
     name="failure_atlas",
     title="Methods for frequencies and stability on hard scenes, judged by their errors",
     coordinates={
-        "scene": _text("hard scene", "scene"),
-        "solver": _text("method (the name xarray keeps for itself)", "solver"),
+        "scene": text("hard scene", "scene"),
+        "solver": text("method (the name xarray keeps for itself)", "solver"),
     },
     variables={
         "verdict": Variable("verdict on the answer", dims=SCENE_SOLVER, flags=Reliability),
@@ -74,7 +70,7 @@ FAILURE_ATLAS = DatasetSchema(
                 floor=1e-9,
             ),
         ),
-        "message": _text("what the method said", *SCENE_SOLVER),
+        "message": text("what the method said", *SCENE_SOLVER),
         "tolerance": Variable("largest error that counts as right", dims=("scene",)),
         "role": Variable("whose method it is", dims=("solver",), flags=Role),
     },
@@ -88,12 +84,12 @@ BENCHMARK = DatasetSchema(
     name="benchmark",
     title="Integrators with events: every solver on every problem at every tolerance",
     coordinates={
-        "problem": _text("problem", "problem"),
-        "solver": _text("solver", "solver"),
+        "problem": text("problem", "problem"),
+        "solver": text("solver", "solver"),
         "tol": Variable("tolerance asked for (xarray keeps the longer name)", dims=("tol",)),
     },
     variables={
-        "group": _text("class of the problem", "problem"),
+        "group": text("class of the problem", "problem"),
         "role": Variable("whose solver it is", dims=("solver",), flags=Role),
         "verdict": Variable(
             "right; flagged: wrong or without an answer, and said so; silently wrong: another list "

@@ -4,7 +4,7 @@ from enum import IntEnum
 
 from squealpipe.codes import LinearRegime
 from squealpipe.parameters import TABLE
-from squealpipe.schema import DatasetSchema, Variable, outcome
+from squealpipe.schema import DatasetSchema, Variable, outcome, text
 from squealpipe.schema.outcomes import Outcome
 
 
@@ -38,7 +38,7 @@ VARIED = {
 """The two that vary are there."""
 
 _REGION = ("region",)
-PARAMETER = {"parameter": Variable("parameter that varies", dims=("parameter",), dtype="U")}
+PARAMETER = {"parameter": text("parameter that varies", "parameter")}
 
 CONTACT_BOUNDARY = DatasetSchema(
     name="contact_boundary",
@@ -102,7 +102,7 @@ REGIME_CHART = DatasetSchema(
     coordinates={
         "point": Variable("point", dims=("point",), dtype="i4"),
         **PARAMETER,
-        "boundary": Variable("what changes", dims=("boundary",), dtype="U"),
+        "boundary": text("what changes", "boundary"),
     },
     variables={
         **VARIED,

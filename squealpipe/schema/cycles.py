@@ -4,7 +4,7 @@ from enum import IntEnum
 
 from squealpipe.codes import Event
 from squealpipe.parameters import Parameters
-from squealpipe.schema import DatasetSchema, Variable, outcome
+from squealpipe.schema import DatasetSchema, Variable, outcome, text
 from squealpipe.schema.agreement import Listing, most, unjudged
 from squealpipe.schema.dynamics.runs import REGIMES
 from squealpipe.systems.cycles.labels import Label
@@ -144,7 +144,7 @@ SETTLED_EXTREMES = DatasetSchema(
     name="settled_extremes",
     title="Largest displacement late in runs of model A1 from many starts",
     coordinates={
-        "scene": Variable(dims=("scene",), dtype="U", long_name="scene"),
+        "scene": text("scene", "scene"),
         "mu": Variable(dims=("mu",), long_name="friction coefficient"),
         "start": Variable(dims=("start",), dtype="i4", long_name="number of the start"),
     },

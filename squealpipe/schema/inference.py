@@ -7,7 +7,7 @@ from enum import IntEnum
 import xarray as xr
 
 from squealpipe.reading import READINGS
-from squealpipe.schema import DatasetSchema, Outcome, Variable, outcome
+from squealpipe.schema import DatasetSchema, Outcome, Variable, outcome, text
 
 CONFIDENCE = 0.95
 """Confidence of every interval that is given for a share."""
@@ -93,11 +93,9 @@ PARAMETER_INFERENCE = DatasetSchema(
     title="Which parameters agree with the paper's statements, in which reading of its friction",
     coordinates={
         "sample": Variable("number of the sample", dims=SAMPLE, dtype="i4"),
-        "reading": Variable("reading of the sign of friction", dims=READING, dtype="U"),
-        "statement": Variable("id of the statement", dims=STATEMENT, dtype="U"),
-        "consequence": Variable(
-            "id of a statement that was not a constraint", dims=CONSEQUENCE, dtype="U"
-        ),
+        "reading": text("reading of the sign of friction", *READING),
+        "statement": text("id of the statement", *STATEMENT),
+        "consequence": text("id of a statement that was not a constraint", *CONSEQUENCE),
     },
     variables={
         "kappa": _group("contact stiffness k3/k"),
@@ -120,7 +118,7 @@ PARAMETER_INFERENCE = DatasetSchema(
         "share_cut_alone": Variable(
             "share of the samples that this statement alone excludes", dims=BY_READING
         ),
-        "criterion": Variable("what was checked", dims=STATEMENT, dtype="U"),
+        "criterion": text("what was checked", *STATEMENT),
         "baseline_kappa": Variable("k3/k1 of the study"),
         "baseline_mu": Variable("friction coefficient of the study"),
         "baseline_length_ratio": Variable("L1/l_pre of the study"),

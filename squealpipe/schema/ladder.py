@@ -3,12 +3,8 @@
 from enum import IntEnum
 from typing import Self
 
-from squealpipe.schema import DatasetSchema, Outcome, Variable, outcome
+from squealpipe.schema import DatasetSchema, Outcome, Variable, outcome, text
 from squealpipe.schema.linear import ANGLES, MAP
-
-
-def _text(long_name: str, *dims: str) -> Variable:
-    return Variable(long_name, dims=dims, dtype="U64")
 
 
 # fmt: off
@@ -76,8 +72,8 @@ MODEL_LADDER = DatasetSchema(
     title="The cheapest adequate model over both spring angles",
     coordinates={
         **ANGLES,
-        "question": _text("question asked of a cell", "question"),
-        "level": _text("level of the ladder", "level"),
+        "question": text("question asked of a cell", "question"),
+        "level": text("level of the ladder", "level"),
     },
     variables={
         "error": Variable(

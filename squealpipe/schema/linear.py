@@ -4,7 +4,7 @@ from enum import IntEnum
 from typing import Any
 
 from squealpipe.codes import LinearRegime
-from squealpipe.schema import LINEAR_ENDS, DatasetSchema, Variable, outcome
+from squealpipe.schema import LINEAR_ENDS, DatasetSchema, Variable, outcome, text
 from squealpipe.schema.agreement import Listing
 
 MAP = ("alpha1", "alpha2")
@@ -113,7 +113,7 @@ NATURAL_FREQUENCIES = DatasetSchema(
     coordinates={
         **ANGLES,
         **MODES,
-        "contact_state": Variable("state of the contact", dims=("contact_state",), dtype="U"),
+        "contact_state": text("state of the contact", "contact_state"),
     },
     variables={
         "omega": Variable("natural frequency", "rad s-1", (*MAP, "mode", "contact_state")),

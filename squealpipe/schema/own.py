@@ -1,6 +1,6 @@
 """What a user's own scenes do, as configured and with one thing changed."""
 
-from squealpipe.schema import RUN_ENDS, DatasetSchema, Variable, outcome
+from squealpipe.schema import RUN_ENDS, DatasetSchema, Variable, outcome, text
 from squealpipe.schema.dynamics.runs import IMPACT_SPEED, RETURN_FORCE
 
 _RUN = ("scene", "variant")
@@ -17,10 +17,6 @@ NUMBERS = (
 """What is given of each run, as in its summary."""
 
 
-def _text(meaning: str, *dims: str) -> Variable:
-    return Variable(meaning, dims=dims, dtype="U")
-
-
 def _number(meaning: str, units: str = "1") -> Variable:
     return Variable(meaning, units, _RUN, nan_allowed=True, rtol=1e-3, atol=1e-9)
 
@@ -29,13 +25,13 @@ OWN_SCENES = DatasetSchema(
     name="own_scenes",
     title="What the scenes of a study do, as configured and with one thing changed",
     coordinates={
-        "scene": _text("name of the scene", "scene"),
-        "variant": _text("what is changed", "variant"),
-        "question": _text("question asked of a scene", "question"),
+        "scene": text("name of the scene", "scene"),
+        "variant": text("what is changed", "variant"),
+        "question": text("question asked of a scene", "question"),
         "peak": Variable("peak of the spectrum, by height", dims=("peak",), dtype="i4"),
     },
     variables={
-        "motion": _text("kind of motion", *_RUN),
+        "motion": text("kind of motion", *_RUN),
         "first_separation_time": _number("time of the first loss of contact", "s"),
         "separated_fraction": _number("share of the time without contact"),
         "stick_fraction": _number("share of the time in stick"),
@@ -48,7 +44,7 @@ OWN_SCENES = DatasetSchema(
             "angular frequencies of the contact force", "rad s-1", (*_RUN, "peak"),
             nan_allowed=True, rtol=1e-3,
         ),
-        "model": _text("cheapest level that answers", "scene", "question"),
+        "model": text("cheapest level that answers", "scene", "question"),
         "alpha1": Variable("angle of spring 1", "rad", ("scene",)),
         "alpha2": Variable("angle of spring 2", "rad", ("scene",)),
         "t_end": Variable("end of the runs", "s", ("scene",)),

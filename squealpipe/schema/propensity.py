@@ -1,6 +1,6 @@
 """Datasets on how far verdicts carry and how parameters spread into results."""
 
-from squealpipe.schema import DatasetSchema, Outcome, Variable, outcome
+from squealpipe.schema import DatasetSchema, Outcome, Variable, outcome, text
 
 WIDEST = 0.05
 """A Sobol index whose 95 % interval is wider than twice this is not given."""
@@ -13,8 +13,8 @@ VERDICT_REACH = DatasetSchema(
     name="verdict_reach",
     title="Statements of the paper in settings that it leaves out",
     coordinates={
-        "variant": Variable(dims=("variant",), dtype="U", long_name="setting"),
-        "statement": Variable(dims=("statement",), dtype="U", long_name="statement, by its id"),
+        "variant": text("setting", "variant"),
+        "statement": text("statement, by its id", "statement"),
     },
     variables={
         "share": Variable(
@@ -37,8 +37,8 @@ PROPENSITY = DatasetSchema(
     name="propensity",
     title="Propensity for instability, and what it depends on, over a spread of parameters",
     coordinates={
-        "quantity": Variable(dims=_QUANTITY, dtype="U", long_name="what happens"),
-        "input": Variable(dims=("input",), dtype="U", long_name="uncertain parameter"),
+        "quantity": text("what happens", *_QUANTITY),
+        "input": text("uncertain parameter", "input"),
         "size": Variable(dims=("size",), dtype="i4", long_name="size of a part of the sample"),
     },
     variables={

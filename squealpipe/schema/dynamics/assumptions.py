@@ -1,14 +1,10 @@
 """Datasets on what the model levels take for granted (Table 1 and section 6 of the paper)."""
 
-from squealpipe.schema import RUN_ENDS, DatasetSchema, Outcome, Variable, outcome
+from squealpipe.schema import RUN_ENDS, DatasetSchema, Outcome, Variable, outcome, text
 from squealpipe.schema.linear import ANGLES, MAP
 
 YES_NO = {0: "no", 1: "yes"}
 TABLE = ("level", "scene")
-
-
-def _names(dimension: str, meaning: str) -> Variable:
-    return Variable(meaning, dims=(dimension,), dtype="U")
 
 
 def _largest(units: str, meaning: str) -> Variable:
@@ -19,9 +15,9 @@ ASSUMPTIONS = DatasetSchema(
     name="assumptions",
     title="Which assumptions held along the motion that each model level computes for each scene",
     coordinates={
-        "level": _names("level", "model level"),
-        "scene": _names("scene", "scene of the paper"),
-        "assumption": _names("assumption", "assumption"),
+        "level": text("model level", "level"),
+        "scene": text("scene of the paper", "scene"),
+        "assumption": text("assumption", "assumption"),
     },
     variables={
         "needed": Variable(

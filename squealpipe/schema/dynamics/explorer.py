@@ -3,10 +3,9 @@
 from dataclasses import replace
 
 from squealpipe.schema import ORBIT_ENDS, RUN_ENDS, DatasetSchema, Variable, outcome
-from squealpipe.schema.dynamics.runs import TIME
+from squealpipe.schema.dynamics.runs import FREQUENCY, TIME
 from squealpipe.schema.linear import ANGLES, MAP, MODES
 
-FREQUENCY = Variable("angular frequency", "rad s-1", ("frequency",))
 RUN = (*MAP, "time")
 BRANCH = (*MAP, "mode", "point")
 

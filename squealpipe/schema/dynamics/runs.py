@@ -53,6 +53,7 @@ def _series(units: str, long_name: str) -> Variable:
 
 
 TIME = Variable("time", "s", ("time",))
+FREQUENCY = Variable("angular frequency", "rad s-1", ("frequency",))
 
 SIMULATION = DatasetSchema(
     name="simulation",
@@ -84,6 +85,37 @@ SIMULATION = DatasetSchema(
             optional=True,
             round_off=magnitude("at the end of a long run it is itself a result of grown errors"),
         ),
+        "outcome": outcome(among=RUN_ENDS),
+    },
+)
+
+RUN_SUMMARY = DatasetSchema(
+    name="run_summary",
+    title="Summary of one run",
+    lists={"peak": Listing()},
+    coordinates={
+        "frequency": FREQUENCY,
+        "peak": Variable("peak of the spectrum, by height", dims=("peak",), dtype="i4"),
+    },
+    variables={
+        "first_separation_time": Variable(
+            "time of the first loss of contact", "s", nan_allowed=True
+        ),
+        "impact_rate": Variable("contacts regained per time", "s-1"),
+        "separated_fraction": Variable("share of the time without contact"),
+        "stick_fraction": Variable("share of the time in stick"),
+        "peak_contact_force": Variable("largest sampled contact force over k3 l_pre"),
+        "return_peak_contact_force": RETURN_FORCE,
+        "impact_speed": IMPACT_SPEED,
+        "largest_x": Variable("largest |x| among the samples", "m"),
+        "largest_y": Variable("largest |y| among the samples", "m"),
+        "force_spectrum": Variable(
+            "amplitude spectrum of the normalized contact force", dims=("frequency",)
+        ),
+        "dominant_frequency": Variable(
+            "angular frequencies of its highest peaks", "rad s-1", ("peak",)
+        ),
+        "dominant_amplitude": Variable("heights of these peaks", dims=("peak",)),
         "outcome": outcome(among=RUN_ENDS),
     },
 )

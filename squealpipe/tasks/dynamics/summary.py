@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from squealpipe.codes import Event, Regime
 from squealpipe.methods.spectrum import FEWEST, amplitude_spectrum, highest_peaks, lasts
 from squealpipe.schema import build
-from squealpipe.schema.dynamics.run_summary import RUN_SUMMARY
+from squealpipe.schema.dynamics.runs import RUN_SUMMARY
 from squealpipe.schema.origin import recorded
 
 PEAKS = 3
