@@ -161,16 +161,9 @@ class PseudoArclength:
         point, tangent, iterations, residual = found
         return ContinuationState(point, tangent, np.zeros_like(point), step, iterations, residual)
 
-    def attempt(
-        self, problem: Problem, state: ContinuationState, *, least_cosine: float | None = None
-    ) -> ContinuationState | None:
-        """One step of the state's own length; None where it is not accepted.
-
-        Args:
-            least_cosine: instead of that of the settings.
-        """
+    def attempt(self, problem: Problem, state: ContinuationState) -> ContinuationState | None:
+        """One step of the state's own length; None where it is not accepted."""
         settings = self.settings
-        turn = settings.least_cosine if least_cosine is None else least_cosine
         length = state.step * (1.0 + float(np.linalg.norm(state.point)))
         guess = state.point + length * state.tangent + 0.5 * length * length * state.curvature
         corrected = self.correct(problem, guess, state.tangent)
@@ -178,7 +171,7 @@ class PseudoArclength:
             return None
         point, tangent, iterations, residual = corrected
         near = float(np.linalg.norm(point - guess)) < 0.3 * length
-        if not (near and float(tangent @ state.tangent) > turn):
+        if not (near and float(tangent @ state.tangent) > settings.least_cosine):
             return None
         easy = iterations <= settings.easy_iterations
         following = min(state.step * (1.5 if easy else 1.0), settings.longest_step)

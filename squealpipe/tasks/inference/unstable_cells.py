@@ -34,7 +34,7 @@ class Unstable(NamedTuple):
     couples: np.ndarray
 
 
-def unstable_cells(params: Parameters, *, rim: int = RIM, inside: float = INSIDE) -> Unstable:
+def unstable_cells(params: Parameters, *, inside: float = INSIDE) -> Unstable:
     """Cells along the edge of every region in which A3 is unstable; there may be none.
 
     Dashpots, and friction that depends on speed, leave no such edge in closed form: there, all
@@ -42,7 +42,7 @@ def unstable_cells(params: Parameters, *, rim: int = RIM, inside: float = INSIDE
     """
     if not is_undamped(params):
         return _on_grid(params)
-    alpha1, alpha2 = _along_edges(params, rim, inside)
+    alpha1, alpha2 = _along_edges(params, inside)
     regime = np.asarray(a3.regime(contact_system(params, alpha1, alpha2).invariants))
     return _where(regime, alpha1, alpha2, regime == LinearRegime.flutter)
 
@@ -78,16 +78,16 @@ def springs_are_equal(fields: Mapping[str, np.ndarray | float]) -> bool:
     )
 
 
-def _along_edges(params: Parameters, rim: int, inside: float) -> tuple[np.ndarray, np.ndarray]:
+def _along_edges(params: Parameters, inside: float) -> tuple[np.ndarray, np.ndarray]:
     """Angles, rad, that are unstable if any are, undamped.
 
-    Flutter is searched at ``rim`` directions, just inside of its disc in the plane of Z. For
+    Flutter is searched at ``RIM`` directions, just inside of its disc in the plane of Z. For
     divergence, outside of a circle that ends at |Z| = k1 + k2, the search goes along the middle
     between the two.
     """
     farthest, nearest = params.k1 + params.k2, abs(params.k1 - params.k2)
     centre, radius = a3.flutter_circle(params, params.k3)
-    turn = (np.arange(rim) + 0.5) * (2.0 * np.pi / rim)
+    turn = (np.arange(RIM) + 0.5) * (2.0 * np.pi / RIM)
     flutter = centre + inside * radius * np.exp(1j * turn)
     arcs = a3.circle_arcs(params, *a3.divergence_circle(params, params.k3), DIVERGENT)
     edge = np.concatenate([np.zeros(0, complex), *(arc[1:-1] for arc in arcs)])
