@@ -5,6 +5,7 @@ import pytest
 
 import squealpipe as sp
 from squealpipe.cli import run
+from tests.calls import CALLS, A, B
 
 SI = sp.Parameters(
     mass=0.5, k1=1e7, k2=1e7, k3=7e6, mu=0.3, belt_speed=5.0, preload=1e-3, length1=0.05,
@@ -18,37 +19,6 @@ UNIT = sp.Parameters(
 UNITS = {
     "s": TIME, "s-1": 1 / TIME, "rad s-1": 1 / TIME, "m": LENGTH, "m s-1": LENGTH / TIME,
     "N": FORCE, "N m-1": SI.k1,
-}  # fmt: skip
-A, B = 5 * np.pi / 6, 0.8 * np.pi
-AXIS = np.linspace(0.1, 3.0, 7)
-CALLS = {
-    "simulate": lambda p: sp.simulate(p, A, B, t_end=30 * p.time_unit),
-    "summarize": lambda p: sp.summarize(sp.simulate(p, A, B, t_end=30 * p.time_unit)),
-    "validity_map": lambda p: sp.validity_map(p, AXIS, AXIS),
-    "refine_validity_map": lambda p: sp.refine_validity_map(p, resolution=9, coarse=5),
-    "hammering_map": lambda p: sp.hammering_map(p, AXIS, AXIS, t_end=30 * p.time_unit),
-    "basin_map": lambda p: sp.basin_map(
-        p, A, B, x=[0.0, 0.3 * p.preload], t_end=30 * p.time_unit
-    ),
-    "smallest_disturbance": lambda p: sp.smallest_disturbance(p, 0.4, 1.0, directions=8),
-    "quasi_static_map": lambda p: sp.quasi_static_map(p, AXIS, AXIS),
-    "stability_map": lambda p: sp.stability_map(p, AXIS, AXIS),
-    "critical_friction_map": lambda p: sp.critical_friction_map(p, AXIS, AXIS),
-    "natural_frequencies": lambda p: sp.natural_frequencies(p, AXIS, AXIS),
-    "periodic_orbit": lambda p: sp.periodic_orbit(
-        p, 0.3 * np.pi, 0.9 * np.pi, mode=1, y_peak=2 * p.preload
-    ),
-    "backbone": lambda p: sp.backbone(p, A, A, mode=1),
-    "backbone by harmonics": lambda p: sp.backbone(
-        p, 0.3 * np.pi, 0.9 * np.pi, mode=2, y_peak_max=1.5 * p.preload, method="hbm"
-    ),
-    "limit_cycle": lambda p: sp.limit_cycle(
-        p, 0.07 * np.pi, 0.305 * np.pi, t_settle=20 * p.time_unit
-    ),
-    "propensity": lambda p: sp.propensity(
-        p, 0.3, 1.0, samples=64, t_end=20 * p.time_unit,
-        distributions={"mu": {"distribution": "uniform", "low": 0.1, "high": 0.9}},
-    ),
 }  # fmt: skip
 
 

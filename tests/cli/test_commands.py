@@ -6,7 +6,6 @@ import subprocess
 import sys
 from pathlib import Path
 
-import numpy as np
 import pytest
 
 from squealpipe import __version__, load, plot
@@ -124,12 +123,6 @@ def test_map_writes_dataset_and_picture(kind, capsys, tmp_path):
     assert "cells" in capsys.readouterr().out
     assert load("map.nc").sizes["alpha1"] == 5
     assert (tmp_path / "map.png").is_file()
-
-
-def test_map_of_natural_frequencies_obeys_the_parameters():
-    assert run(["map", "frequencies", "--alpha1", "pi/2,1", "--alpha2", "2,pi", "--k3", "3"]) == 0
-    omega = load("map.nc").omega.sel(contact_state="contact")[0, 1]
-    np.testing.assert_allclose(omega, [1.0, 2.0], rtol=1e-14)
 
 
 def test_backbone_follows_the_linear_mode_first(capsys):

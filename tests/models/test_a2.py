@@ -86,8 +86,3 @@ def test_equal_springs_decouple_on_three_lines(over_pi1, over_pi2):
     stiffness = linear_stiffness(FORMER, geometry(over_pi1 * math.pi, over_pi2 * math.pi))
     assert bool(a2.coupling_is_zero(stiffness))
     assert bool(a2.possible_as_printed(stiffness, 10.0))
-
-
-def test_no_state_where_nothing_balances_friction():
-    stiffness = linear_stiffness(FORMER, geometry(math.pi / 2, math.pi / 2))
-    assert np.isnan(a2.reaction_force(stiffness, 0.3, 0.75))

@@ -10,7 +10,6 @@ from squealpipe.laws.springs import geometry, linear_stiffness, stiffness_determ
 from squealpipe.models import a2, a3
 from squealpipe.models.a4 import spectrum
 from tests import symbols
-from tests.former import FORMER
 
 DRAWS = symbols.draws(40)
 
@@ -75,21 +74,6 @@ def test_eigenvalues_are_those_of_the_first_order_system(params, state):
         assert np.abs(own - value).min() < 1e-7 * np.abs(numeric).max()
     growth = numeric.real.max()
     assert bool(a3.regime(invariants) != LinearRegime.stable) == (growth > 1e-6)
-
-
-def test_regimes_are_told_apart():
-    params = FORMER
-    cells = {
-        (0.15, 0.23): LinearRegime.flutter,
-        (0.45, 0.55): LinearRegime.divergence,
-        (0.4, 0.6): LinearRegime.stable,
-        (0.5, 1.0): LinearRegime.stable,
-    }
-    for (first, second), expected in cells.items():
-        state = {"alpha1": first * np.pi, "alpha2": second * np.pi}
-        stiffness, determinant = stiffness_of(params, state)
-        invariants = spectrum(stiffness, determinant, k3=params.k3, mu=params.mu, mass=1.0)
-        assert a3.regime(invariants) == expected
 
 
 @pytest.mark.parametrize(("params", "state"), DRAWS)

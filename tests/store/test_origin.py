@@ -13,78 +13,25 @@ from squealpipe import Parameters, Sweep, load, run_sweep, save
 from squealpipe.schema.origin import plain
 from squealpipe.store.checkout import ROOT, commit
 from squealpipe.store.netcdf import dataset_id
+from tests.calls import CALLS
 
 PARAMS = Parameters(mu=0.21, k1=1.3, belt_speed=-7.0)
-ANGLES = np.linspace(0.3, 2.0, 3)
-RUN = squealpipe.simulate(PARAMS, 0.4, 1.1, t_end=1.0, model="A1-no-stick", tol=1e-9)
-MAP = (PARAMS, ANGLES, ANGLES)
-BOUNDARY = squealpipe.contact_boundary(
-    PARAMS, [0.8, 0.9, 1.0], [2.7, 2.8, 2.9], t_end=5.0, tol=1e-9
-)
-MODEL_AND_TOLERANCE = {
-    "simulate": (RUN, "A1-no-stick", 1e-9),
-    "validity_map": (squealpipe.validity_map(*MAP, t_end=1), "A1", 1e-12),
-    "hammering_map": (squealpipe.hammering_map(*MAP, t_end=1), "A1", 1e-12),
-    "refine_validity_map": (
-        squealpipe.refine_validity_map(PARAMS, resolution=5, coarse=3, t_end=1),
-        "A1",
-        1e-12,
-    ),
-    "quasi_static_map": (squealpipe.quasi_static_map(*MAP), "A2", "round-off"),
-    "stability_map": (squealpipe.stability_map(*MAP), "A3", "round-off"),
-    "natural_frequencies": (squealpipe.natural_frequencies(*MAP), "A4", "round-off"),
-    "periodic_orbit": (
-        squealpipe.periodic_orbit(PARAMS, 0.9, 2.8, mode=1, y_peak=1.5),
-        "A4",
-        "round-off",
-    ),
-    "backbone": (squealpipe.backbone(PARAMS, 0.9, 2.8, mode=1, y_peak_max=1.2), "A4", "round-off"),
-    "critical_friction_map": (squealpipe.critical_friction_map(*MAP), "A3", "round-off"),
-    "smallest_disturbance": (
-        squealpipe.smallest_disturbance(PARAMS, 0.9, 2.8, t_end=5.0, directions=8),
-        "A1",
-        1e-9,
-    ),
-    "propensity": (
-        squealpipe.propensity(
-            PARAMS,
-            0.9,
-            2.8,
-            samples=64,
-            t_end=1.0,
-            distributions={"mu": {"distribution": "uniform", "low": 0.1, "high": 0.2}},
-        ),
-        "A1, A3",
-        1e-9,
-    ),
-    "basin_map": (squealpipe.basin_map(PARAMS, 0.9, 2.8, t_end=5.0), "A1", 1e-12),
-    "contact_boundary": (BOUNDARY, "A1", 1e-9),
-    "regime_chart": (
-        squealpipe.regime_chart(PARAMS, [0.8, 0.9, 1.0], [2.7, 2.8, 2.9], t_end=5.0, tol=1e-9),
-        "A1",
-        1e-9,
-    ),
-    "boundary_distance": (
-        squealpipe.boundary_distance(BOUNDARY, {"alpha1": 0.9, "alpha2": 2.8}),
-        "A1",
-        1e-9,
-    ),
-    "limit_cycle": (squealpipe.limit_cycle(PARAMS, 0.9, 2.8, t_settle=20.0), "A1", "round-off"),
-    "cycle_branch": (
-        squealpipe.cycle_branch(
-            PARAMS, 0.9, 2.8, parameter="mu", to=PARAMS.mu + 0.1, start="onset", n_points=2
-        ),
-        "A1",
-        "round-off",
-    ),
-    "summarize": (squealpipe.summarize(RUN), "A1-no-stick", 1e-9),
-    "infer_parameters": (squealpipe.infer_parameters(PARAMS, samples=2, workers=1), "A1", 1e-9),
+MADE_BY = {
+    ("A1", 1e-12): "simulate summarize validity_map refine_validity_map hammering_map basin_map",
+    ("A1", 1e-9): "contact_boundary boundary_distance regime_chart smallest_disturbance "
+    "infer_parameters",
+    ("A1", "round-off"): "limit_cycle cycle_branch",
+    ("A1, A3", 1e-9): "propensity",
+    ("A2", "round-off"): "quasi_static_map",
+    ("A3", "round-off"): "stability_map critical_friction_map",
+    ("A4", "round-off"): "natural_frequencies periodic_orbit backbone",
 }
+MODEL_AND_TOLERANCE = {name: made for made, names in MADE_BY.items() for name in names.split()}
 
 
 @pytest.mark.parametrize("name", MODEL_AND_TOLERANCE)
 def test_attributes_tell_what_made_it_and_survive_the_file(name, tmp_path):
-    made, model, tolerance = MODEL_AND_TOLERANCE[name]
+    made, (model, tolerance) = CALLS[name](PARAMS), MODEL_AND_TOLERANCE[name]
     back = load(save(made, tmp_path / "made.nc"))
     for dataset in (made, back):
         assert dataset.attrs["made_by"] == f"squealpipe.{name}"
@@ -108,8 +55,9 @@ def test_every_public_function_that_returns_a_dataset_is_covered():
 
 
 def test_arguments_are_told_and_long_ones_by_their_ends():
-    assert json.loads(RUN.attrs["arguments"])["alpha2"] == 1.1
-    assert json.loads(MODEL_AND_TOLERANCE["backbone"][0].attrs["arguments"])["y_peak_max"] == 1.2
+    run = squealpipe.simulate(PARAMS, 0.4, 1.1, t_end=1.0, model="A1-no-stick", tol=1e-9).attrs
+    assert json.loads(run["arguments"])["alpha2"] == 1.1
+    assert (run["model"], run["tolerance"]) == ("A1-no-stick", 1e-9)
     assert plain(np.linspace(0, 1, 9)) == {"first": 0.0, "last": 1.0, "number": 9}
     assert json.dumps(plain(np.longdouble(1.5))) == "1.5"
     assert plain({"a": (1, 2.5, "x")}) == {"a": ["1", "2.5", "x"]}
