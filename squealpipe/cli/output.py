@@ -44,13 +44,7 @@ def check_output(
 
 
 def write(make: Callable[[], xr.Dataset], output: Path, *, config: Mapping[str, Any]) -> xr.Dataset:
-    """Make a dataset, write it in the form that the name asks for, and give it back.
-
-    Args:
-        make: makes it.
-        output: file that ends in ``.nc`` or ``.csv``.
-        config: what it was asked for, for its provenance.
-    """
+    """Make a dataset, write it as ``.nc`` or ``.csv`` with its provenance, and give it back."""
     from squealpipe.store import load, produce
 
     if output.suffix == ".nc":
@@ -72,9 +66,7 @@ def compute(
 
     Args:
         function: its name in ``squealpipe``.
-        brake: parameters and files.
         angles: what it is called with beside the parameters.
-        output: dataset to write.
         options: its keywords; those that are None are left to their defaults.
 
     Raises:

@@ -220,6 +220,13 @@ def outcome(*dims: str, among: Iterable[Outcome] = Outcome) -> Variable:
     return Variable(dims=dims, flags=flags, long_name=OUTCOME.long_name)
 
 
+def or_nan(
+    long_name: str, units: str = "1", dims: tuple[str, ...] = (), **further: Any
+) -> Variable:
+    """A variable of numbers, or NaN with the reason in an outcome variable."""
+    return Variable(long_name, units, dims, nan_allowed=True, **further)
+
+
 def text(long_name: str, *dims: str) -> Variable:
     """A variable of texts over some dimensions."""
     return Variable(long_name, dims=dims, dtype="U")

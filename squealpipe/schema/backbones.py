@@ -3,7 +3,16 @@
 from enum import IntEnum
 
 from squealpipe.codes import SpecialPoint
-from squealpipe.schema import ORBIT_ENDS, RUN_ENDS, DatasetSchema, Outcome, Variable, outcome, text
+from squealpipe.schema import (
+    ORBIT_ENDS,
+    RUN_ENDS,
+    DatasetSchema,
+    Outcome,
+    Variable,
+    or_nan,
+    outcome,
+    text,
+)
 from squealpipe.schema.agreement import Listing
 
 
@@ -18,7 +27,7 @@ def _orbit_variables(*dims: str) -> dict[str, Variable]:
     """What one periodic orbit carries, over some dimensions."""
 
     def real(units: str, long_name: str, **kwargs: object) -> Variable:
-        return Variable(dims=dims, units=units, long_name=long_name, nan_allowed=True, **kwargs)  # type: ignore[arg-type]
+        return or_nan(dims=dims, units=units, long_name=long_name, **kwargs)  # type: ignore[arg-type]
 
     return {
         "omega": real("rad s-1", "angular frequency of the periodic motion"),
@@ -51,10 +60,8 @@ PERIODIC_ORBIT = DatasetSchema(
         "time": Variable("instant of a sample of the half period after the peak", "s", ("sample",)),
         "x_path": Variable("displacement along the belt from the peak on", "m", ("sample",)),
         "y_path": Variable("displacement away from the belt from the peak on", "m", ("sample",)),
-        "residual": Variable(
-            "largest velocity after half a period, over l_pre and the frequency unit",
-            nan_allowed=True,
-            atol=1e-13,
+        "residual": or_nan(
+            "largest velocity after half a period, over l_pre and the frequency unit", atol=1e-13
         ),
     },
 )
@@ -79,36 +86,29 @@ BACKBONE = DatasetSchema(
         **_orbit_variables("point"),
         "y_peak": Variable("y at the symmetric instant with the larger y", "m", ("point",)),
         "switches": Variable("switches of contact in half a period", dims=("point",), dtype="i4"),
-        "residual": Variable(
-            "residual of the method's equations, scaled",
-            "1",
-            ("point",),
-            nan_allowed=True,
-            atol=1e-9,
+        "residual": or_nan(
+            "residual of the method's equations, scaled", "1", ("point",), atol=1e-9
         ),
         "x_cosine": Variable("cosine coefficients of x", "m", ("point", "harmonic"), optional=True),
         "y_cosine": Variable("cosine coefficients of y", "m", ("point", "harmonic"), optional=True),
-        "omega_exact": Variable(
+        "omega_exact": or_nan(
             "angular frequency of the exact orbit of equal y_peak",
             "rad s-1",
             ("point",),
-            nan_allowed=True,
             optional=True,
         ),
-        "waveform_error": Variable(
+        "waveform_error": or_nan(
             "largest distance in (x, y) from the exact orbit of equal y_peak, at equal phase",
             "m",
             ("point",),
-            nan_allowed=True,
             optional=True,
             rtol=1e-4,
         ),
-        "integration_error": Variable(
+        "integration_error": or_nan(
             "largest distance in (x, y) from A4 integrated in time over one period from "
             "the peak of the series",
             "m",
             ("point",),
-            nan_allowed=True,
             optional=True,
             rtol=1e-4,
         ),
@@ -131,12 +131,10 @@ DOUBLED_BRANCH = DatasetSchema(
         ),
         "y_largest": Variable("largest y over a period", "m", ("point",)),
         "first_integral": Variable("first integral H of model A4", "N J m-1", ("point",)),
-        "doubling_omega": Variable(
-            "angular frequency of the simple orbit at the doubling", "rad s-1", nan_allowed=True
+        "doubling_omega": or_nan(
+            "angular frequency of the simple orbit at the doubling", "rad s-1"
         ),
-        "doubling_y_peak": Variable(
-            "y_peak of the simple orbit at the doubling", "m", nan_allowed=True
-        ),
+        "doubling_y_peak": or_nan("y_peak of the simple orbit at the doubling", "m"),
     },
 )
 
@@ -144,7 +142,7 @@ SCENE = {"scene": text("scene and mode", "scene")}
 
 
 def _error(*dims: str, long_name: str, units: str = "rad s-1") -> Variable:
-    return Variable(long_name, units, dims, nan_allowed=True, rtol=0.05, atol=1e-11)
+    return or_nan(long_name, units, dims, rtol=0.05, atol=1e-11)
 
 
 class Form(IntEnum):
@@ -199,23 +197,19 @@ A1_BESIDE_A4 = DatasetSchema(
     variables={
         "omega": Variable("angular frequency of A4", "rad s-1", ("scene",)),
         "y_a4": Variable("y of A4", "m", ("scene", "period")),
-        "y_a1": Variable(
-            "y of A1", "m", ("scene", "length_ratio", "period"), nan_allowed=True, rtol=1e-6
-        ),
+        "y_a1": or_nan("y of A1", "m", ("scene", "length_ratio", "period"), rtol=1e-6),
         "spectrum_a4": Variable("amplitude spectrum of y, A4", "m", ("scene", "order"), rtol=1e-6),
-        "spectrum_a1": Variable(
+        "spectrum_a1": or_nan(
             "amplitude spectrum of y, A1",
             "m",
             ("scene", "length_ratio", "order"),
-            nan_allowed=True,
             rtol=1e-3,
             atol=1e-6,
         ),
-        "omega_a1": Variable(
+        "omega_a1": or_nan(
             "angular frequency of the largest line of y near omega of A4, A1",
             "rad s-1",
             ("scene", "length_ratio"),
-            nan_allowed=True,
             rtol=1e-4,
         ),
         "y_peak": Variable("y at the symmetric instant", "m"),

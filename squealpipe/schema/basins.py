@@ -3,7 +3,7 @@
 from enum import IntEnum
 
 from squealpipe.codes import LinearRegime
-from squealpipe.schema import RUN_ENDS, DatasetSchema, Outcome, Variable, outcome
+from squealpipe.schema import RUN_ENDS, DatasetSchema, Outcome, Variable, or_nan, outcome
 from squealpipe.schema.dynamics.runs import IN_MAP, MotionFlag
 
 STARTS = ("x0", "y0", "vx0", "vy0")
@@ -39,11 +39,10 @@ def basin_schema(swept: tuple[str, ...]) -> DatasetSchema:
             "first_separation_time": real("s", "first loss of contact (NaN: none before t_end)"),
             "peak_contact_force": real("1", "largest contact force over k3 l_pre"),
             "lyapunov_exponent": real("s-1", "rate of growth of a perturbation over the run"),
-            "predictability_horizon": Variable(
+            "predictability_horizon": or_nan(
                 "time at which an error of the tolerance has grown to l_pre/1000, or the end",
                 "s",
                 swept,
-                nan_allowed=True,
                 rtol=1e-6,
             ),
             "outcome": outcome(*swept, among=(*RUN_ENDS, Outcome.beyond_horizon)),
@@ -70,11 +69,11 @@ class LeadsTo(IntEnum):
 
 
 def _scalar(units: str, long_name: str) -> Variable:
-    return Variable(long_name, units, nan_allowed=True)
+    return or_nan(long_name, units)
 
 
 def _distance(dim: str, long_name: str) -> Variable:
-    return Variable(long_name, dims=(dim,), nan_allowed=True, rtol=1e-6)
+    return or_nan(long_name, dims=(dim,), rtol=1e-6)
 
 
 SMALLEST_DISTURBANCE = DatasetSchema(
@@ -94,9 +93,9 @@ SMALLEST_DISTURBANCE = DatasetSchema(
         "regime_linear": Variable("stability regime of model A3", flags=LinearRegime),
         "rest_distance": _scalar("1", "norm of the start at rest at r = 0"),
         "linear_distance": _scalar("1", "smallest norm with which the linear motion loses contact"),
-        "distance": Variable("smallest norm found, an upper bound", nan_allowed=True, rtol=1e-6),
+        "distance": or_nan("smallest norm found, an upper bound", rtol=1e-6),
         **{
-            f"{name}_disturbance": Variable(f"its {words}", units, nan_allowed=True, rtol=1e-4)
+            f"{name}_disturbance": or_nan(f"its {words}", units, rtol=1e-4)
             for name, units, words in (
                 ("x", "m", "part along the belt"),
                 ("y", "m", "part away from the belt"),

@@ -2,7 +2,7 @@
 
 from enum import IntEnum
 
-from squealpipe.schema import DatasetSchema, Variable
+from squealpipe.schema import DatasetSchema, Variable, or_nan
 
 
 class Verdict(IntEnum):
@@ -41,7 +41,7 @@ def _text(meaning: str, *, volatile: bool = False) -> Variable:
 
 def _number(meaning: str) -> Variable:
     # Some values come from long runs, whose last digits differ from machine to machine.
-    return Variable(meaning, dims=("claim",), nan_allowed=True, rtol=1e-3, atol=1e-6)
+    return or_nan(meaning, dims=("claim",), rtol=1e-3, atol=1e-6)
 
 
 def _flag(meaning: str, flags: type[IntEnum]) -> Variable:

@@ -4,7 +4,7 @@ from enum import IntEnum
 
 from squealpipe.codes import Event
 from squealpipe.parameters import Parameters
-from squealpipe.schema import DatasetSchema, Variable, outcome, text
+from squealpipe.schema import DatasetSchema, Variable, or_nan, outcome, text
 from squealpipe.schema.agreement import Listing, most, unjudged
 from squealpipe.schema.dynamics.runs import REGIMES
 from squealpipe.systems.cycles.labels import Label
@@ -21,13 +21,12 @@ def _cycle_variables(*dims: str) -> dict[str, Variable]:
     """What one cycle carries, over some dimensions."""
 
     def real(units: str, long_name: str) -> Variable:
-        return Variable(long_name, units, dims, nan_allowed=True, rtol=1e-7, atol=1e-9)
+        return or_nan(long_name, units, dims, rtol=1e-7, atol=1e-9)
 
     def multiplier(part: str) -> Variable:
-        return Variable(
+        return or_nan(
             f"{part} part of the Floquet multipliers, the trivial one first",
             dims=(*dims, "multiplier"),
-            nan_allowed=True,
             rtol=1e-6,
             atol=1e-6,
         )
@@ -84,7 +83,7 @@ LIMIT_CYCLE = DatasetSchema(
             flags=REGIMES,
         ),
         **{
-            f"{name}_start": Variable(f"{words} at time 0 of the cycle", units, nan_allowed=True)
+            f"{name}_start": or_nan(f"{words} at time 0 of the cycle", units)
             for name, (units, words) in _STATE.items()
         },
         "time": Variable(dims=("sample",), units="s", long_name="instant of a sample"),
@@ -126,12 +125,8 @@ CYCLE_BRANCH = DatasetSchema(
             round_off=most("where a contact is just touched, round-off decides", share=0.5),
         ),
         **{
-            f"{name}_start": Variable(
-                f"{words} at time 0 of the cycle",
-                units,
-                ("point",),
-                nan_allowed=True,
-                round_off=_PHASE,
+            f"{name}_start": or_nan(
+                f"{words} at time 0 of the cycle", units, ("point",), round_off=_PHASE
             )
             for name, (units, words) in _STATE.items()
         },
@@ -149,18 +144,11 @@ SETTLED_EXTREMES = DatasetSchema(
         "start": Variable(dims=("start",), dtype="i4", long_name="number of the start"),
     },
     variables={
-        "late_max_x": Variable(
-            "largest |x| in the last fifth of the run",
-            "m",
-            ("scene", "mu", "start"),
-            nan_allowed=True,
-            rtol=1e-5,
+        "late_max_x": or_nan(
+            "largest |x| in the last fifth of the run", "m", ("scene", "mu", "start"), rtol=1e-5
         ),
-        "separated_fraction": Variable(
-            "share of the time without contact",
-            dims=("scene", "mu", "start"),
-            nan_allowed=True,
-            rtol=1e-5,
+        "separated_fraction": or_nan(
+            "share of the time without contact", dims=("scene", "mu", "start"), rtol=1e-5
         ),
         "outcome": outcome("scene", "mu", "start"),
         "x0": Variable(dims=("start",), units="m", long_name="x at the start"),

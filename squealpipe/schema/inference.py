@@ -7,7 +7,7 @@ from enum import IntEnum
 import xarray as xr
 
 from squealpipe.reading import READINGS
-from squealpipe.schema import DatasetSchema, Outcome, Variable, outcome, text
+from squealpipe.schema import DatasetSchema, Outcome, Variable, or_nan, outcome, text
 
 CONFIDENCE = 0.95
 """Confidence of every interval that is given for a share."""
@@ -85,7 +85,7 @@ def _group(long_name: str) -> Variable:
 
 def _limit(side: str, of: str, dims: tuple[str, ...]) -> Variable:
     name = f"{side} end of the {CONFIDENCE:.0%} Wilson interval of {of}"
-    return Variable(name, dims=dims, nan_allowed=True)
+    return or_nan(name, dims=dims)
 
 
 PARAMETER_INFERENCE = DatasetSchema(
@@ -127,11 +127,10 @@ PARAMETER_INFERENCE = DatasetSchema(
         "baseline_margin": Variable(
             "margin at the parameters of the study", dims=BY_READING, rtol=1e-6, atol=1e-6
         ),
-        "feasible_share": Variable(
+        "feasible_share": or_nan(
             "share of the feasible samples in which the consequence holds; NaN where "
             "feasible_count is 0",
             dims=PREDICTED,
-            nan_allowed=True,
         ),
     },
 )

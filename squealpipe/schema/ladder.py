@@ -3,7 +3,7 @@
 from enum import IntEnum
 from typing import Self
 
-from squealpipe.schema import DatasetSchema, Outcome, Variable, outcome, text
+from squealpipe.schema import DatasetSchema, Outcome, Variable, or_nan, outcome, text
 from squealpipe.schema.linear import ANGLES, MAP
 
 
@@ -76,10 +76,9 @@ MODEL_LADDER = DatasetSchema(
         "level": text("level of the ladder", "level"),
     },
     variables={
-        "error": Variable(
+        "error": or_nan(
             "error of a level against A1, relative (0 or 1 for contact lost; inf: no answer)",
             dims=("question", "level", *MAP),
-            nan_allowed=True,
             rtol=1e-3,
             atol=1e-9,
         ),

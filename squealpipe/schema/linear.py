@@ -4,7 +4,7 @@ from enum import IntEnum
 from typing import Any
 
 from squealpipe.codes import LinearRegime
-from squealpipe.schema import LINEAR_ENDS, DatasetSchema, Variable, outcome, text
+from squealpipe.schema import LINEAR_ENDS, DatasetSchema, Variable, or_nan, outcome, text
 from squealpipe.schema.agreement import Listing
 
 MAP = ("alpha1", "alpha2")
@@ -33,12 +33,8 @@ STABILITY_MAP = DatasetSchema(
     title="Linear stability (model A3) over both spring angles",
     coordinates={**ANGLES, **MODES},
     variables={
-        "growth_rate": Variable(
-            "largest real part of the eigenvalues", "s-1", MAP, nan_allowed=True
-        ),
-        "frequency": Variable(
-            "imaginary part of the eigenvalues", "rad s-1", (*MAP, "mode"), nan_allowed=True
-        ),
+        "growth_rate": or_nan("largest real part of the eigenvalues", "s-1", MAP),
+        "frequency": or_nan("imaginary part of the eigenvalues", "rad s-1", (*MAP, "mode")),
         "regime_linear": REGIME_LINEAR,
         "outcome": outcome(*MAP, among=LINEAR_ENDS),
     },
@@ -91,14 +87,11 @@ QUASI_STATIC_MAP = DatasetSchema(
     variables={
         "possible_as_printed": Variable("Eq. (11) as printed holds", dims=MAP, dtype="bool"),
         "possible": Variable("reaction force of model A2 is positive", dims=MAP, dtype="bool"),
-        "reaction_force": Variable("reaction force of model A2, y = 0", "N", MAP, nan_allowed=True),
-        "x_static": Variable("x of the static state of Eq. (15)", "m", MAP, nan_allowed=True),
-        "y_static": Variable("y of the static state of Eq. (15)", "m", MAP, nan_allowed=True),
-        "contact_force_static": Variable(
-            "contact force of the static state of Eq. (15), negative where k3 pulls",
-            "N",
-            MAP,
-            nan_allowed=True,
+        "reaction_force": or_nan("reaction force of model A2, y = 0", "N", MAP),
+        "x_static": or_nan("x of the static state of Eq. (15)", "m", MAP),
+        "y_static": or_nan("y of the static state of Eq. (15)", "m", MAP),
+        "contact_force_static": or_nan(
+            "contact force of the static state of Eq. (15), negative where k3 pulls", "N", MAP
         ),
         "stiffness_x": _stiffness("K11"),
         "stiffness_xy": _stiffness("K12"),

@@ -1,6 +1,6 @@
 """Datasets on how far verdicts carry and how parameters spread into results."""
 
-from squealpipe.schema import DatasetSchema, Outcome, Variable, outcome, text
+from squealpipe.schema import DatasetSchema, Outcome, Variable, or_nan, outcome, text
 
 WIDEST = 0.05
 """A Sobol index whose 95 % interval is wider than twice this is not given."""
@@ -17,13 +17,11 @@ VERDICT_REACH = DatasetSchema(
         "statement": text("statement, by its id", "statement"),
     },
     variables={
-        "share": Variable(
-            "share of the runs in which the statement holds; 1 or 0 for a single one",
-            dims=_CELL,
-            nan_allowed=True,
+        "share": or_nan(
+            "share of the runs in which the statement holds; 1 or 0 for a single one", dims=_CELL
         ),
-        "share_low": Variable("lower end of its 95 % interval", dims=_CELL, nan_allowed=True),
-        "share_high": Variable("upper end of its 95 % interval", dims=_CELL, nan_allowed=True),
+        "share_low": or_nan("lower end of its 95 % interval", dims=_CELL),
+        "share_high": or_nan("upper end of its 95 % interval", dims=_CELL),
         "judged": Variable(dims=_CELL, dtype="i4", long_name="number of runs judged"),
         "outcome": outcome(
             *_CELL, among=(Outcome.converged, Outcome.unresolved, Outcome.not_computed)
@@ -49,9 +47,7 @@ PROPENSITY = DatasetSchema(
             "the same share from a part of the sample", dims=("quantity", "size")
         ),
         **{
-            f"{order}{end}": Variable(
-                f"Sobol index, {words}{of}", dims=_INPUT, nan_allowed=True, rtol=1e-6
-            )
+            f"{order}{end}": or_nan(f"Sobol index, {words}{of}", dims=_INPUT, rtol=1e-6)
             for order, words in (("first_order", "first order"), ("total_order", "total"))
             for end, of in (
                 ("", ""),
@@ -59,10 +55,9 @@ PROPENSITY = DatasetSchema(
                 ("_high", ", upper end of its 95 % interval"),
             )
         },
-        "half_width_by_size": Variable(
+        "half_width_by_size": or_nan(
             "half-width of the widest total index",
             dims=("quantity", "size"),
-            nan_allowed=True,
             optional=True,
             rtol=1e-6,
         ),

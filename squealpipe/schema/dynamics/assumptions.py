@@ -1,6 +1,6 @@
 """Datasets on what the model levels take for granted (Table 1 and section 6 of the paper)."""
 
-from squealpipe.schema import RUN_ENDS, DatasetSchema, Outcome, Variable, outcome, text
+from squealpipe.schema import RUN_ENDS, DatasetSchema, Outcome, Variable, or_nan, outcome, text
 from squealpipe.schema.linear import ANGLES, MAP
 
 YES_NO = {0: "no", 1: "yes"}
@@ -8,7 +8,7 @@ TABLE = ("level", "scene")
 
 
 def _largest(units: str, meaning: str) -> Variable:
-    return Variable(meaning, units, TABLE, nan_allowed=True, rtol=1e-6)
+    return or_nan(meaning, units, TABLE, rtol=1e-6)
 
 
 ASSUMPTIONS = DatasetSchema(
@@ -25,9 +25,7 @@ ASSUMPTIONS = DatasetSchema(
             dims=("level", "assumption"),
             flags=YES_NO,
         ),
-        "measure": Variable(
-            "the number that decides", dims=(*TABLE, "assumption"), nan_allowed=True, rtol=1e-6
-        ),
+        "measure": or_nan("the number that decides", dims=(*TABLE, "assumption"), rtol=1e-6),
         "limit": Variable("limit of the measure", dims=("assumption",)),
         "held": Variable(
             "whether the assumption held along the whole motion",

@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 
-from squealpipe.schema import ORBIT_ENDS, RUN_ENDS, DatasetSchema, Variable, outcome
+from squealpipe.schema import ORBIT_ENDS, RUN_ENDS, DatasetSchema, Variable, or_nan, outcome
 from squealpipe.schema.dynamics.runs import FREQUENCY, TIME
 from squealpipe.schema.linear import ANGLES, MAP, MODES
 
@@ -16,9 +16,7 @@ def _motion(units: str, long_name: str) -> Variable:
 
 
 def _branch(units: str, long_name: str) -> Variable:
-    return Variable(
-        long_name, units, BRANCH, dtype="f4", nan_allowed=True, rtol=1e-5, atol=1e-6, optional=True
-    )
+    return or_nan(long_name, units, BRANCH, dtype="f4", rtol=1e-5, atol=1e-6, optional=True)
 
 
 EXPLORER = DatasetSchema(

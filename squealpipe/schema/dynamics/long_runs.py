@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 
-from squealpipe.schema import RUN_ENDS, DatasetSchema, Outcome, Variable, outcome
+from squealpipe.schema import RUN_ENDS, DatasetSchema, Outcome, Variable, or_nan, outcome
 from squealpipe.schema.agreement import magnitude, sampled
 from squealpipe.schema.dynamics.runs import MOTION_CHANGED, MotionFlag
 
@@ -32,13 +32,12 @@ WHIRL = DatasetSchema(
         ),
         "motion_changed": replace(MOTION_CHANGED, dims=("belt_speed",), round_off=_LONG_SAMPLE),
         "fitted": Variable("whether the speed is in the fit", dims=("belt_speed",), dtype="bool"),
-        "slope": Variable("fitted growth of the amplitude with |V|", "s", nan_allowed=True),
-        "offset": Variable("fitted amplitude at V = 0", "m", nan_allowed=True),
-        "fit_range": Variable(
+        "slope": or_nan("fitted growth of the amplitude with |V|", "s"),
+        "offset": or_nan("fitted amplitude at V = 0", "m"),
+        "fit_range": or_nan(
             "speed of the slowest and of the fastest belt in the fit",
             "m s-1",
             ("end",),
-            nan_allowed=True,
             optional=True,
         ),
         "fit_outcome": outcome(among=(Outcome.converged, Outcome.unresolved)),
@@ -59,11 +58,10 @@ TRANSIENT = DatasetSchema(
     title="How long the bounded motion at (0.2 pi, 0.8 pi) lasts",
     coordinates={"sample": Variable("number of the perturbation", dims=("sample",), dtype="i4")},
     variables={
-        "lifetime": Variable(
+        "lifetime": or_nan(
             "time of the tenth net turn around both fixed ends (NaN: not before t_end)",
             "s",
             ("sample",),
-            nan_allowed=True,
             round_off=_CHAOTIC,
         ),
         "belt_speed": Variable("belt speed V", "m s-1"),

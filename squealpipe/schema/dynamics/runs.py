@@ -5,7 +5,7 @@ from enum import IntEnum
 from typing import Any
 
 from squealpipe.codes import Event, Regime
-from squealpipe.schema import RUN_ENDS, DatasetSchema, Outcome, Variable, outcome
+from squealpipe.schema import RUN_ENDS, DatasetSchema, Outcome, Variable, or_nan, outcome
 from squealpipe.schema.agreement import Listing, beyond_horizon, grown, magnitude
 from squealpipe.schema.linear import ANGLES, MAP, REGIME_LINEAR
 
@@ -39,17 +39,14 @@ IN_MAP: dict[str, Any] = {"rtol": 1e-5, "atol": 1e-7, "round_off": _LOST}
 
 
 MOTION_CHANGED = Variable("whether the quarters of that half have other labels", dtype="bool")
-RETURN_FORCE = Variable(
-    "largest contact force after the first return to the belt, over k3 l_pre (NaN: no return)",
-    nan_allowed=True,
+RETURN_FORCE = or_nan(
+    "largest contact force after the first return to the belt, over k3 l_pre (NaN: no return)"
 )
-IMPACT_SPEED = Variable(
-    "largest speed towards the belt at a return to it (NaN: no return)", "m s-1", nan_allowed=True
-)
+IMPACT_SPEED = or_nan("largest speed towards the belt at a return to it (NaN: no return)", "m s-1")
 
 
 def _series(units: str, long_name: str) -> Variable:
-    return Variable(long_name, units, ("time",), nan_allowed=True, round_off=_GROWN)
+    return or_nan(long_name, units, ("time",), round_off=_GROWN)
 
 
 TIME = Variable("time", "s", ("time",))
@@ -79,9 +76,8 @@ SIMULATION = DatasetSchema(
         "n_steps": Variable("Taylor steps of the run", dtype="i8"),
         "return_peak_contact_force": replace(RETURN_FORCE, round_off=_GROWN),
         "impact_speed": replace(IMPACT_SPEED, round_off=_GROWN),
-        "growth": Variable(
+        "growth": or_nan(
             "factor by which a small perturbation of the start has grown at the end",
-            nan_allowed=True,
             optional=True,
             round_off=magnitude("at the end of a long run it is itself a result of grown errors"),
         ),
@@ -98,9 +94,7 @@ RUN_SUMMARY = DatasetSchema(
         "peak": Variable("peak of the spectrum, by height", dims=("peak",), dtype="i4"),
     },
     variables={
-        "first_separation_time": Variable(
-            "time of the first loss of contact", "s", nan_allowed=True
-        ),
+        "first_separation_time": or_nan("time of the first loss of contact", "s"),
         "impact_rate": Variable("contacts regained per time", "s-1"),
         "separated_fraction": Variable("share of the time without contact"),
         "stick_fraction": Variable("share of the time in stick"),
@@ -132,15 +126,14 @@ VALIDITY_MAP = DatasetSchema(
     title="Where model A1 keeps contact, and the regime of the linear model A3",
     coordinates=ANGLES,
     variables={
-        "first_separation_time": Variable(
-            "first loss of contact from rest (NaN: none before t_end)", "s", MAP, nan_allowed=True
+        "first_separation_time": or_nan(
+            "first loss of contact from rest (NaN: none before t_end)", "s", MAP
         ),
         "separates": Variable("whether contact is lost before t_end", dims=MAP, dtype="bool"),
         "regime_linear": REGIME_LINEAR,
-        "response_growth": Variable(
+        "response_growth": or_nan(
             "largest |x| of the second half of a run over that of the first (NaN: separated)",
             dims=MAP,
-            nan_allowed=True,
         ),
         "t_end": Variable("end of each run", "s"),
         "outcome": outcome(*MAP, among=(*RUN_ENDS, Outcome.separated)),
@@ -165,12 +158,8 @@ HAMMERING_MAP = DatasetSchema(
             "largest distance from the start position", "m", MAP, **IN_MAP
         ),
         "turns": Variable("net turns around both fixed ends", dims=MAP, **IN_MAP),
-        "lyapunov_exponent": Variable(
-            "finite-time growth rate of a small perturbation",
-            "s-1",
-            MAP,
-            nan_allowed=True,
-            **IN_MAP,
+        "lyapunov_exponent": or_nan(
+            "finite-time growth rate of a small perturbation", "s-1", MAP, **IN_MAP
         ),
         "predictability_horizon": Variable(
             "time at which an error of tol has grown to l_pre/1000 (t_end: not before)",
@@ -196,11 +185,8 @@ REFINED_VALIDITY_MAP = DatasetSchema(
     coordinates=ANGLES,
     variables={
         "separates": Variable("whether contact is lost before t_end", dims=MAP, dtype="bool"),
-        "first_separation_time": Variable(
-            "first loss of contact from rest (NaN: none before t_end, or not computed)",
-            "s",
-            MAP,
-            nan_allowed=True,
+        "first_separation_time": or_nan(
+            "first loss of contact from rest (NaN: none before t_end, or not computed)", "s", MAP
         ),
         "computed": Variable("whether the cell was run, not inherited", dims=MAP, dtype="bool"),
         "inherited_checked": Variable(
@@ -209,14 +195,11 @@ REFINED_VALIDITY_MAP = DatasetSchema(
         "inherited_wrong": Variable(
             "of these, cells that were wrong (put right since)", dtype="i8"
         ),
-        "inherited_error": Variable(
-            "share of inherited cells that are wrong, from the sample (NaN: no sample)",
-            nan_allowed=True,
+        "inherited_error": or_nan(
+            "share of inherited cells that are wrong, from the sample (NaN: no sample)"
         ),
-        "inherited_error_interval": Variable(
-            "95 % Wilson interval of inherited_error",
-            dims=("end",),
-            nan_allowed=True,
+        "inherited_error_interval": or_nan(
+            "95 % Wilson interval of inherited_error", dims=("end",)
         ),
         "t_end": Variable("end of each run", "s"),
         "outcome": outcome(

@@ -45,7 +45,6 @@ def backbone(
     """The family of periodic motions that grows out of a linear mode of model A4.
 
     Args:
-        params: physical parameters.
         alpha1, alpha2: angles, rad.
         mode: 1 or 2, by ascending ω of the contact state.
         y_peak_max: peak at which the branch ends, m; 3 l_pre by default.

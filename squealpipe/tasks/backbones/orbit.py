@@ -34,7 +34,6 @@ def periodic_orbit(
     ``other_branch``.
 
     Args:
-        params: physical parameters.
         alpha1, alpha2: angles, rad.
         mode: 1 or 2, by ascending ω of the contact state.
         y_peak: larger y of the two instants of rest, m. An isolated x mode (K12 = 0) has

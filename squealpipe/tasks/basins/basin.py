@@ -45,7 +45,6 @@ def basin_map(
     quarters of that half have different labels, it is ``unsettled``.
 
     Args:
-        params: physical parameters.
         alpha1, alpha2: angles, rad.
         x, y, vx, vy: start, each a number or a 1-D array, m and m/s; the arrays become the
             dimensions x0, y0, vx0, vy0.

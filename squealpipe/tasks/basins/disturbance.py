@@ -54,7 +54,6 @@ def smallest_disturbance(
     directions that can have a smaller one (95 %, order statistics).
 
     Args:
-        params: physical parameters.
         alpha1, alpha2: angles, rad.
         leads_to: "contact_lost" (a start out of contact counts) or "whirl" (three turns or more
             around both fixed ends, counted by half turns, so that 2½ may do).

@@ -62,7 +62,6 @@ def hammering_map(
     :class:`squealpipe.tasks.normal_form.NormalForm`.
 
     Args:
-        params: physical parameters.
         alpha1, alpha2: 1-D arrays of angles, rad.
         t_end: end of each run, s.
         tol: tolerance of the Taylor integrator.

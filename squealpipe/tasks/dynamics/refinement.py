@@ -39,7 +39,6 @@ def refine_validity_map(
     boundaries around these are followed too, and a new sample shows what is left.
 
     Args:
-        params: physical parameters.
         resolution, coarse: points per side of the finest and the first grid; (resolution − 1) must
             be (coarse − 1) times a power of two.
         t_end: end of each run, s; 200 √(m/k1) by default.

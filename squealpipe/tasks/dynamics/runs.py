@@ -39,7 +39,6 @@ def simulate(
     """One run of a nonlinear model, with every regime change located.
 
     Args:
-        params: physical parameters.
         alpha1, alpha2: spring angles, rad.
         t_end: end of the run, s.
         model: "A1", "A1-no-stick" (ends at the first stick, with outcome ``accumulation``),
@@ -136,7 +135,6 @@ def validity_map(
     A cell's run stops at its first separation, so a map of mostly separating cells is cheap.
 
     Args:
-        params: physical parameters.
         alpha1, alpha2: 1-D arrays of angles, rad.
         t_end: end of each run, s; 200 √(m/k1) by default.
         model: "A1" or one of its variants.

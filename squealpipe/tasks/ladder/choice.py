@@ -76,7 +76,6 @@ def choose_model(
     round-off decides beyond its predictability horizon, that is another sample than a run as given.
 
     Args:
-        params: physical parameters.
         alpha1, alpha2: spring angles, rad.
         question: "contact_lost", "frequency" (dominant ω of y), "peak_contact_force"
             (N_max/(k3 l_pre)) or "max_displacement" (largest √(x² + y²)).

@@ -39,7 +39,6 @@ def quasi_static_map(
     """Where quasi-static sliding exists (A2), in both readings, and the state of Eq. (15).
 
     Args:
-        params: physical parameters.
         alpha1, alpha2: 1-D arrays of angles, rad.
         sigma: regularizing factor of the contact law, 1/m; None means the sharp law.
 
@@ -96,7 +95,6 @@ def stability_map(
     (:mod:`squealpipe.models.damped`).
 
     Args:
-        params: physical parameters.
         alpha1, alpha2: 1-D arrays of angles, rad.
         sigma: regularizing factor in K3 of Eq. (8d), 1/m; None means the sharp law, K3 = k3.
 
@@ -134,7 +132,6 @@ def natural_frequencies(params: Parameters, alpha1: Angles, alpha2: Angles) -> x
     """Natural frequencies of model A4 in both of its states, Eqs. (22) and (25).
 
     Args:
-        params: physical parameters.
         alpha1, alpha2: 1-D arrays of angles, rad.
 
     Returns:
