@@ -21,18 +21,18 @@ from squealpipe.text import as_people_write
     ],
 )
 def test_comparison(value, relation, threshold, verdict):
-    found = finding(value, relation, threshold, "")
+    found = finding((value, relation, threshold), "")
     assert found.verdict == verdict
 
 
 def test_a_further_condition_can_only_turn_a_verdict_down():
-    assert finding(1, "<", 2, "", also=False).verdict == Verdict.fails
-    assert finding(3, "<", 2, "", also=True).verdict == Verdict.fails
+    assert finding((1, "<", 2), "", also=False).verdict == Verdict.fails
+    assert finding((3, "<", 2), "", also=True).verdict == Verdict.fails
 
 
 def test_no_number_no_verdict():
     with pytest.raises(MissingDataError, match="nothing to compare"):
-        finding(np.nan, "<", 2, "an empty map")
+        finding((np.nan, "<", 2), "an empty map")
 
 
 @pytest.mark.parametrize(

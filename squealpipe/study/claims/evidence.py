@@ -88,9 +88,7 @@ def passes(value: float, relation: str, threshold: float) -> bool:
 
 
 def finding(
-    value: float,
-    relation: str,
-    threshold: float,
+    compared: tuple[float, str, float],
     evidence: str,
     *,
     otherwise: Verdict = Verdict.fails,
@@ -100,13 +98,15 @@ def finding(
     """A finding from one comparison.
 
     Args:
+        compared: value, relation and threshold.
         otherwise, passed: verdicts when the comparison is false and true.
         also: further conditions, all of which must be true as well.
 
     Raises:
         MissingDataError: the value is NaN, so there is nothing to compare.
     """
+    value, relation, threshold = compared
     if np.isnan(value):
         raise MissingDataError(f"nothing to compare: {evidence}")
-    verdict = passed if passes(value, relation, threshold) and also else otherwise
+    verdict = passed if passes(*compared) and also else otherwise
     return Finding(verdict, float(value), relation, float(threshold), as_people_write(evidence))

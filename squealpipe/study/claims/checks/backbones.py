@@ -37,9 +37,7 @@ def first_mode_is_isolated(run: Run) -> Finding:
     x, y = (amplitude / run.parameters.preload for amplitude in both)
     omega1, omega2 = (linear_omega(branch(run, "F10", mode)) for mode in (1, 2))
     return finding(
-        alone[1] / alone[0],
-        "≤",
-        ALONE,
+        (alone[1] / alone[0], "≤", ALONE),
         f"Near ω1 = {omega1:.4g} rad/s the y amplitude is {alone[1] / alone[0]:.1g} of that of x; "
         f"near ω2 = {omega2:.4g} rad/s the amplitude of x reaches {x:.3g} l_pre and that of y "
         f"{y:.3g} l_pre.",
@@ -58,9 +56,7 @@ def same_as_first(scene: str) -> Check:
         amplitude = _largest_difference(reference, other, "x_amplitude") / run.parameters.preload
         first = abs(linear_omega(branch(run, scene, 1)) / linear_omega(branch(run, "F10", 1)) - 1)
         return finding(
-            max(difference, first),
-            "≤",
-            NEARLY_THE_SAME,
+            (max(difference, first), "≤", NEARLY_THE_SAME),
             f"Against (0.5π, π), ω1 differs by {first:.2g} of itself, ω2 along the branch by at "
             f"most {difference:.2g} and the x amplitude by at most {amplitude:.2g} l_pre.",
         )
@@ -85,9 +81,7 @@ def bends_down(scene: str) -> Check:
         below = points.omega.where(points.y_peak < preload)
         flat = float(abs(below / linear - 1).max())
         return finding(
-            drop,
-            ">",
-            BENDS,
+            (drop, ">", BENDS),
             f"While y stays below l_pre, ω is {linear:.4g} rad/s (to {flat:.1g} of itself); where "
             "y reaches its "
             f"largest value, {reached:.3g} l_pre, it is lower by {100 * drop:.3g} %.",
@@ -117,9 +111,7 @@ def modes_are_switched(run: Run) -> Finding:
     x_amplitude, y_amplitude = _participation(second)
     reached = float(first.y_peak.max() / run.parameters.preload)
     return finding(
-        y_amplitude / x_amplitude,
-        "≤",
-        ALONE,
+        (y_amplitude / x_amplitude, "≤", ALONE),
         f"Mode 1 (ω = {linear_omega(first):.4g} rad/s) reaches y = {reached:.3g} l_pre; in mode 2 "
         f"(ω = {linear_omega(second):.4g} rad/s) the y amplitude is "
         f"{y_amplitude / x_amplitude:.1g} of that of x.",

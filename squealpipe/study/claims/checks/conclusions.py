@@ -33,9 +33,7 @@ def modes_switch_at_separation(run: Run) -> Finding:
     """
     switched = order_turns_over(run)
     return finding(
-        share(switched),
-        ">",
-        0,
+        (share(switched), ">", 0),
         f"The order of the directions turns over in {100 * share(switched):.3g} % of the cells, "
         "those with 0 < K11 − K22 < k3; in the others it is the same in contact and separated.",
         passed=Verdict.holds if bool(switched.all()) else Verdict.depends_on_the_parameters,
@@ -63,9 +61,7 @@ def time_and_frequency_agree(run: Run) -> Finding:
     lost = events(scene(run, "F2d"), Event.separation).size
     reached = float(branch(run, "F13", 1).y_peak.max()) / run.parameters.preload
     return finding(
-        max(differences),
-        "≤",
-        SAME_TREND,
+        (max(differences), "≤", SAME_TREND),
         f"Frequency of the contact force in A1 and ω2 of A4, in rad/s: {'; '.join(lines)} "
         f"(Figs. 2a–c and 10–12). In the fourth configuration A1 loses contact {lost} times "
         f"(Fig. 2d), and y reaches {reached:.3g} l_pre on A4's first mode (Fig. 13).",
@@ -82,15 +78,13 @@ def contact_loss_matters(run: Run) -> Finding:
         [_relative_change(table[name]) for name in ("largest_y", "largest_x")], "extreme"
     ).max("extreme")
     if not lost.any():
-        return finding(0, ">", 0, "No scene loses contact.")
+        return finding((0, ">", 0), "No scene loses contact.")
     changed = changes.values[lost]
     kept = changes.values[~lost]
     names = table.scene.values[lost]
     worst = int(np.argmax(changed))
     return finding(
-        float(np.median(changed)),
-        ">",
-        DIFFERENCE,
+        (float(np.median(changed)), ">", DIFFERENCE),
         f"Without contact loss the largest displacement changes by {100 * changed.min():.2g} to "
         f"{100 * changed.max():.3g} % in the {lost.sum()} scenes that lose contact (most in "
         f"{names[worst]}), and by at most {100 * kept.max(initial=0.0):.1g} % in the others.",
@@ -104,9 +98,7 @@ def directions_decide(run: Run) -> Finding:
     unstable = unstable_cells(run)
     smaller = min(share(lost), 1 - share(lost))
     return finding(
-        smaller,
-        ">",
-        0.05,
+        (smaller, ">", 0.05),
         f"At equal parameters the angles alone decide: contact is kept in "
         f"{100 * (1 - share(lost)):.3g} % of the cells and lost in the rest; A3 is unstable in "
         f"{100 * share(unstable):.2g} %.",

@@ -30,9 +30,7 @@ def first_vanishes_in_contact(run: Run) -> Finding:
     zeros = (first <= VANISHING * first.max()).sum()
     divergent = (contact.outcome.sel(mode=1) == Outcome.divergence).sum()
     return finding(
-        here,
-        "≤",
-        VANISHING,
+        (here, "≤", VANISHING),
         f"ω1 at (0.5π, 0.5π) is {here:.2g} of its largest value. In all, ω1 is zero in "
         f"{int(zeros)} cells, {int(divergent)} of them by divergence.",
     )
@@ -47,9 +45,7 @@ def first_vanishes_on_lines(run: Run) -> Finding:
     largest = float(first.where(on_line).max() / first.max())
     elsewhere = float(first.where(~on_line).min() / first.max())
     return finding(
-        largest,
-        "≤",
-        VANISHING,
+        (largest, "≤", VANISHING),
         f"On the {int(on_line.sum())} cells with α1 + α2 = nπ, ω1 is at most {largest:.2g} of its "
         f"largest value; elsewhere at least {elsewhere:.2g} of it.",
         also=elsewhere > VANISHING,
@@ -80,9 +76,7 @@ def first_is_largest_on_lines(run: Run) -> Finding:
     excess = {name: largest / line - 1 for name, (largest, line, _) in found.items()}
     largest, line, (first_angle, second_angle) = found["contact"]
     return finding(
-        max(excess.values()),
-        "≤",
-        SAME_OMEGA,
+        (max(excess.values()), "≤", SAME_OMEGA),
         "Separated, the largest ω1² exceeds that on α1 + α2 = π/2 and 3π/2 by "
         f"{excess['separated']:.1g} of it. In contact it is {largest / unit:.4g} k1/m at "
         f"({first_angle:.3g}π, {second_angle:.3g}π), against {line / unit:.4g} k1/m on "
@@ -99,9 +93,7 @@ def vanishing_region_grows(run: Run) -> Finding:
     first = run["natural_frequencies"].omega.sel(mode=1)
     areas = _shares(first <= SMALL * first.max(["alpha1", "alpha2"]))
     return finding(
-        areas["separated"] / max(areas["contact"], 1e-12),
-        ">",
-        1.0,
+        (areas["separated"] / max(areas["contact"], 1e-12), ">", 1.0),
         f"ω1 is below {SMALL:g} of its largest value in {100 * areas['contact']:.3g} % of the map "
         f"in contact and in {100 * areas['separated']:.3g} % when separated.",
     )
@@ -119,9 +111,7 @@ def second_is_largest_where_first_vanishes(run: Run) -> Finding:
     at_centre = float(cell(contact, 0.5, 0.5).omega.sel(mode=2) / in_contact.max())
     first_angle, second_angle = place(contact, in_contact)
     return finding(
-        min(on_lines, at_centre),
-        "≥",
-        LARGE,
+        (min(on_lines, at_centre), "≥", LARGE),
         f"Where ω1 = 0, ω2 is {on_lines:.4g} of its largest value when separated (α1 + α2 = nπ) "
         f"and {at_centre:.4g} in contact at (0.5π, 0.5π); there the largest is at "
         f"({first_angle:.3g}π, {second_angle:.3g}π).",
@@ -146,9 +136,7 @@ def shifts_are_opposite(run: Run) -> Finding:
             raise MissingDataError(f"the natural frequencies do not vary ({name})")
         shares[name] = float((products[moving] < 0).mean())
     return finding(
-        min(shares.values()),
-        "≥",
-        0.999,
+        (min(shares.values()), "≥", 0.999),
         f"From cell to cell ω1 and ω2 move in opposite directions in "
         f"{100 * shares['contact']:.4g} % of the steps in contact and "
         f"{100 * shares['separated']:.4g} % when separated: ω1² + ω2² is the same at all angles.",
@@ -161,9 +149,7 @@ def largest_region_grows(run: Run) -> Finding:
     second = run["natural_frequencies"].omega.sel(mode=2)
     areas = _shares(second >= LARGE * second.max(["alpha1", "alpha2"]))
     return finding(
-        areas["separated"] / max(areas["contact"], 1e-12),
-        ">",
-        1.0,
+        (areas["separated"] / max(areas["contact"], 1e-12), ">", 1.0),
         f"ω2 is above {LARGE:g} of its largest value in {100 * areas['contact']:.3g} % of the map "
         f"in contact and in {100 * areas['separated']:.3g} % when separated.",
     )

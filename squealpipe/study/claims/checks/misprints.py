@@ -37,9 +37,7 @@ def friction_drags_along(run: Run) -> Finding:
     printed = float(scene(run, PRINTED).x.mean() / run.parameters.preload)
     static = float(cell(run["quasi_static_map"], 0.5, 1.0).x_static / run.parameters.preload)
     return finding(
-        printed * np.sign(static),
-        ">",
-        0,
+        (printed * np.sign(static), ">", 0),
         f"At (0.5π, π) the mass rests on average at x = {printed:.3g} l_pre with the printed sign; "
         f"Eq. (15), from the paper's own linear equations, has {static:.3g} l_pre.",
     )
@@ -65,9 +63,7 @@ def printed_residual_converges_right(run: Run) -> Finding:
         )
     )
     return finding(
-        float(error.sel(form=Form.as_printed).max()),
-        "≤",
-        WRONG_FREQUENCY,
+        (float(error.sel(form=Form.as_printed).max()), "≤", WRONG_FREQUENCY),
         f"As printed, ω √(m/k1) converges in {int(converged.sum())} of {converged.size} scenes, "
         f"to {pairs}; with K12·a + K22·b it is right to "
         f"{float(error.sel(form=Form.mended).max()):.1g}.",
@@ -97,9 +93,7 @@ def shift_is_added(run: Run) -> Finding:
     static = float(cell(run["quasi_static_map"], 0.5, 1.0).y_static / preload)
     mean = float(motion.y.mean() / preload)
     return finding(
-        abs(mean + static),
-        "<",
-        abs(mean - static),
+        (abs(mean + static), "<", abs(mean - static)),
         f"With X + X* the motion would rest at y = {-static:.3g} l_pre, with X − X* at "
         f"{static:.3g} l_pre; in A1 at (0.5π, π) y oscillates about {mean:.3g} l_pre.",
     )
@@ -110,9 +104,7 @@ def coupling_frequency_is_real(run: Run) -> Finding:
     """Share of cells with K12 < 0."""
     negative = coupling_is_negative(run)
     return finding(
-        share(negative),
-        "≤",
-        0,
+        (share(negative), "≤", 0),
         f"K12 is negative in {100 * share(negative):.3g} % of the cells, and ω12 imaginary there; "
         "only its square enters Eqs. (13)–(17).",
     )
@@ -139,9 +131,7 @@ def samples_suffice(run: Run) -> Finding:
         for number in (enough, int(spreads.samples.max()))
     )
     return finding(
-        columns - ranks[2 * harmonics],
-        "≤",
-        0,
+        (columns - ranks[2 * harmonics], "≤", 0),
         f"At N_h = {harmonics}, Γ has {columns} columns but rank {ranks[2 * harmonics]} at "
         f"N = {2 * harmonics}; the rank is full at N = {enough}. Aliasing stays: shifting the "
         f"start's phase changes the largest y by {spread}.",
@@ -160,9 +150,7 @@ def jacobian_is_regular(run: Run) -> Finding:
     forms = run["harmonic_forms"]
     deficits = forms.rank_deficit.sel(form=Form.mended)
     return finding(
-        int(deficits.min()),
-        "≤",
-        0,
+        (int(deficits.min()), "≤", 0),
         f"At the solutions the Jacobian of Eq. (36) has more columns than its rank, by "
         f"{int(deficits.min())} or more in all {deficits.size} scenes: ω is one unknown too many "
         "and J has no inverse. Nor is the phase fixed: starts shifted in time end in solutions "
@@ -200,9 +188,7 @@ def parameters_are_printed(run: Run) -> Finding:
         )
     )
     return finding(
-        number,
-        "≤",
-        1,
+        (number, "≤", 1),
         f"No number is printed. Of {inference.sizes['sample']} parameter sets tried, those that "
         f"agree with every statement are, by the reading of the sign of friction: {counts}.",
         otherwise=Verdict.fails if number else Verdict.cannot_be_decided,
@@ -223,9 +209,7 @@ def black_region_is_there(run: Run) -> Finding:
     black = unstable & (validity.separates == 0)
     growing = int((validity.response_growth >= GROWTH_THRESHOLD).sum())
     return finding(
-        max(int(black.sum()), growing),
-        ">",
-        0,
+        (max(int(black.sum()), growing), ">", 0),
         f"Of the {int((validity.separates == 0).sum())} cells that keep contact in A1, "
         f"{int(black.sum())} are unstable by A3 (the text's reading), and in {growing} |x| grows "
         f"as fast as time or faster, {GROWTH_THRESHOLD:g} times from the first half of the run to "
@@ -249,9 +233,7 @@ def reaction_is_that_of_equilibrium(run: Run) -> Finding:
     allowed = int((known & (sliding.possible == 1) & ~pushes).sum())
     scene, load = cell(sliding, 0.4, 0.6), run.parameters.k3 * run.parameters.preload
     return finding(
-        refused + allowed,
-        "≤",
-        0,
+        (refused + allowed, "≤", 0),
         f"{refused} cells are not possible by A2 though the equilibrium of Eq. (15) presses on "
         f"the belt; {allowed} are possible though it does not. At (0.4π, 0.6π) "
         f"R_n = {float(scene.reaction_force) / load:.3g} and "
@@ -271,9 +253,7 @@ def nondimensional_time_exists(run: Run) -> Finding:
     k11 = stiffness(run, "stiffness_x")
     undefined = k11 <= FEW_ULPS * (run.parameters.k1 + run.parameters.k2)
     return finding(
-        int(undefined.sum()),
-        "≤",
-        0,
+        (int(undefined.sum()), "≤", 0),
         f"K11 = 0, by which Eqs. (12)–(17) divide, in {int(undefined.sum())} of {undefined.size} "
         "cells.",
     )

@@ -37,9 +37,7 @@ def levels_have_assumptions(run: Run) -> Finding:
     counts = ", ".join(f"{level} {number}" for level, number in whole.items())
     turned = table.sel(assumption="angles are constant", level="A4")
     return finding(
-        min(whole.values()) / scenes,
-        "≥",
-        1.0,
+        (min(whole.values()) / scenes, "≥", 1.0),
         f"Of {scenes} scenes, the own assumptions of a level held along the motion it computes in: "
         f"{counts}. In A4, which takes the angles as constant to {float(turned.limit):g} rad, a "
         f"spring turns by {float(turned.measure.min()):.2g} to {float(turned.measure.max()):.2g} "
@@ -80,8 +78,8 @@ def hammering_occurs(run: Run) -> Finding:
             f"{forces.max():.3g} at most, and exceeds it in {100 * harder:.3g} %"
         )
     if not found:
-        return finding(0.0, "≥", IMPULSE, evidence + ".")
-    return finding(force, "≥", IMPULSE, evidence + ".", also=found >= 2)
+        return finding((0.0, "≥", IMPULSE), evidence + ".")
+    return finding((force, "≥", IMPULSE), evidence + ".", also=found >= 2)
 
 
 @rows.add(
@@ -98,9 +96,7 @@ def earlier_assumptions_fail(run: Run) -> Finding:
     limit = float(motion.limit.sel(assumption="angles are constant"))
     turned = turn > limit
     return finding(
-        min(int(lost.sum()), int(turned.sum())),
-        ">",
-        0,
+        (min(int(lost.sum()), int(turned.sum())), ">", 0),
         f"In A1 contact is lost in {int(lost.sum())} of {lost.size} scenes, and a spring turns by "
         f"more than {limit:g} rad in {int(turned.sum())}, at least by {float(turn.min()):.2g} and "
         f"at most by {float(turn.max()):.3g} rad.",
@@ -124,4 +120,4 @@ def modes_couple(run: Run) -> Finding:
         f"{int(flutter.sum())} of {flutter.size} cells flutter ({100 * share(flutter):.2g} %); in "
         f"{int(merged.sum())} of them the two eigenvalues have merged into a pair of one frequency."
     )
-    return finding(int(merged.sum()), ">", 0, evidence)
+    return finding((int(merged.sum()), ">", 0), evidence)

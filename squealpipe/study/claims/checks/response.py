@@ -31,9 +31,7 @@ def contact_is_kept(name: str) -> Check:
         lowest = float(motion.normalized_contact_force.min())
         lost = events(motion, Event.separation).size
         return finding(
-            lowest,
-            ">",
-            0,
+            (lowest, ">", 0),
             f"The lowest contact force is {lowest:.4g} of the preload; {lost} separations up to "
             f"{until(run, motion)}.",
             also=lost == 0,
@@ -52,11 +50,9 @@ def contact_is_lost(run: Run) -> Finding:
     motion = scene(run, "F2d")
     lost = events(motion, Event.separation)
     if not lost.size:
-        return finding(0, ">", 0, "Contact is never lost.")
+        return finding((0, ">", 0), "Contact is never lost.")
     return finding(
-        lost.size,
-        ">",
-        0,
+        (lost.size, ">", 0),
         f"{lost.size} separations up to {until(run, motion)}, the first at "
         f"{lost[0] / run.parameters.time_unit:.4g}; the contact force of the run peaks at "
         f"{float(motion.normalized_contact_force.max()):.3g} of the preload.",
@@ -77,9 +73,7 @@ def responses_differ_little(run: Run) -> Finding:
     closer = spread < apart
     undecided = Verdict.cannot_be_decided
     return finding(
-        spread,
-        "≤",
-        LITTLE,
+        (spread, "≤", LITTLE),
         f"The lowest forces are {_listed(extremes[:3, 0])} of the preload, the highest "
         f"{_listed(extremes[:3, 1])}: a spread of {spread:.3g}, and at least {apart:.3g} from the "
         f"fourth response. The text has no number for “minimal”; the inference took {LITTLE:g}.",
@@ -103,9 +97,7 @@ def unstable_response_grows(run: Run) -> Finding:
         f"{until(run, longer)} it reaches {end:.3g} l_pre in the last fifth, {before:.3g} before."
     )
     return finding(
-        late / early,
-        ">",
-        GROWTH_THRESHOLD,
+        (late / early, ">", GROWTH_THRESHOLD),
         evidence,
         passed=Verdict.holds_only_as_printed if saturates else Verdict.holds,
     )
@@ -140,9 +132,7 @@ def limit_cycle_is_bounded(run: Run) -> Finding:
             else f" None of {lifetimes.size} runs ends in the whirl before t = {horizon:g} √(m/k1)."
         )
     return finding(
-        largest,
-        "<",
-        LONGEST,
+        (largest, "<", LONGEST),
         evidence,
         also=late < GROWTH_THRESHOLD * early,
         passed=Verdict.holds_only_as_printed if ended.size or later >= LONGEST else Verdict.holds,
@@ -155,9 +145,7 @@ def runs_are_identical(run: Run) -> Finding:
     first, second = (scene(run, name).normalized_contact_force for name in ("F5a", "F5b"))
     difference = float(np.abs(first.values - second.values).max())
     return finding(
-        difference,
-        "≤",
-        SAME_FORCE,
+        (difference, "≤", SAME_FORCE),
         f"The contact forces differ by at most {difference:.1g} of the preload.",
     )
 
@@ -169,9 +157,7 @@ def mass_jumps(run: Run) -> Finding:
     flights = events(motion, Event.separation).size
     height = float(motion.y.max() / run.parameters.preload)
     return finding(
-        flights,
-        "≥",
-        2,
+        (flights, "≥", 2),
         f"{flights} flights up to {until(run, motion)}, up to y = {height:.3g} l_pre; "
         "the springs lie along x and have no vertical stiffness to first order.",
     )

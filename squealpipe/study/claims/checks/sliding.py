@@ -37,9 +37,7 @@ def printed_bound_is_physical(run: Run) -> Finding:
     pushes = run.parameters.belt_direction * stiffness(run, "stiffness_xy")
     outside = int((differ & (pushes >= 0)).sum())
     return finding(
-        int(differ.sum()),
-        "≤",
-        0,
+        (int(differ.sum()), "≤", 0),
         f"As printed, sliding is possible in {100 * share(sliding.possible_as_printed == 1):.3g} % "
         f"of the cells; the reaction force is positive in {100 * share(sliding.possible == 1):.3g} "
         f"%. The two differ in {int(differ.sum())} cells, {outside} of them with K12 sgn V ≥ 0.",
@@ -58,9 +56,7 @@ def unstable_only_without_sliding(run: Run) -> Finding:
     """Unstable cells with a positive reaction force."""
     printed, physical = (int(cells.sum()) for cells in unstable_yet_sliding(run))
     return finding(
-        physical,
-        "≤",
-        0,
+        (physical, "≤", 0),
         f"Of {int(unstable_cells(run).sum())} unstable cells, {printed} lie where Eq. (11) as "
         f"printed allows sliding, but {physical} where the reaction force is positive.",
         otherwise=Verdict.fails if printed else Verdict.holds_only_as_printed,
@@ -84,9 +80,7 @@ def stable_where_sliding(run: Run) -> Finding:
         )
     )
     return finding(
-        physical,
-        "≤",
-        0,
+        (physical, "≤", 0),
         f"Unstable are {100 * printed:.2g} % of the cells that Eq. (11) as printed allows, and "
         f"{100 * physical:.2g} % of those with a positive reaction force.",
         otherwise=Verdict.fails if printed > 0 else Verdict.holds_only_as_printed,
@@ -99,9 +93,7 @@ def linearly_stable_but_not(run: Run) -> Finding:
     rate = float(cell(run["stability_map"], 0.4, 0.6).growth_rate) * run.parameters.time_unit
     early, late = halves(scene(run, "F3"))
     return finding(
-        rate,
-        "≤",
-        1e-9,
+        (rate, "≤", 1e-9),
         f"A3's largest growth rate there is {rate:.1g}; in A1 |x| reaches {early:.3g} l_pre in "
         f"the first half of the run and {late:.3g} l_pre in the second"
         f" ({GROWTH_THRESHOLD:g} times as far counts as growth).",
@@ -120,13 +112,11 @@ def spring_pulls(run: Run) -> Finding:
     stable = on_grid_of(run["stability_map"], pull).regime_linear == 0
     pulls = pull.lowest_contact_force < 0
     if not pulls.any():
-        return finding(0, ">", 0, "From rest the linear model's k3 pulls in none of the cells.")
+        return finding((0, ">", 0), "From rest the linear model's k3 pulls in none of the cells.")
     strongest = max(0.0, -float(pull.lowest_contact_force.where(stable).min()))
     fraction = float(pull.pulling_fraction.where(pulls).median())
     return finding(
-        share(pulls),
-        ">",
-        0,
+        (share(pulls), ">", 0),
         f"From rest the linear model's k3 pulls in {100 * share(pulls):.3g} % of the cells, there "
         f"for {100 * fraction:.2g} % of the time (median), with up to {strongest:.3g} times the "
         "preload in linearly stable cells.",
@@ -140,9 +130,7 @@ def invalid_where_separated(run: Run) -> Finding:
     """Share of cells in which A1 separates."""
     lost = run["validity_map"].separates == 1
     return finding(
-        share(lost),
-        ">",
-        LARGE_REGION,
+        (share(lost), ">", LARGE_REGION),
         f"A1 loses contact in {int(lost.sum())} of {lost.size} cells and keeps it in "
         f"{int((~lost).sum())}.",
     )
@@ -158,9 +146,7 @@ def linear_analysis_misleads(run: Run) -> Finding:
     unstable = on_grid_of(run["stability_map"], validity).regime_linear > 0
     agree = share(unstable == lost)
     return finding(
-        agree,
-        "<",
-        ADEQUATE_AGREEMENT,
+        (agree, "<", ADEQUATE_AGREEMENT),
         f"A3 and A1 agree in {100 * agree:.3g} % of the cells: A3 calls "
         f"{int((~unstable & lost).sum())} cells stable that lose contact in A1, and "
         f"{int((unstable & ~lost).sum())} unstable that keep it.",
