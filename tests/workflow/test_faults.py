@@ -97,7 +97,7 @@ def test_damaged_dataset_is_named_with_its_remedy(small, undisturbed):
 
 def test_full_disk_is_told_and_the_next_run_completes(small, undisturbed):
     results = small / "results"
-    mount = ["mount", "-t", "tmpfs", "-o", "size=64k", "tmpfs", results]
+    mount = ["mount", "-t", "tmpfs", "-o", "size=16k", "tmpfs", results]
     if subprocess.run(mount, capture_output=True, check=False).returncode:
         pytest.skip("a small file system cannot be mounted here (needs root)")
     try:

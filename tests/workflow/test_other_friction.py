@@ -17,7 +17,7 @@ NOT_CARRIED = {
     "trace_backbones", "follow_doublings", "compare_harmonic_forms", "compare_a1_with_a4",
     "infer_parameters", "map_model_ladder",
     "measure_frequencies", "compute_explorer", "write_explorer",
-    "draw_backbones", "draw_inference", "check_assumptions",
+    "draw_backbones", "draw_inference", "check_assumptions", "chart_regimes",
 }  # fmt: skip
 """Rules of levels with the paper's friction alone, and what reads nothing but their datasets."""
 
