@@ -6,7 +6,7 @@ from typing import Any
 
 import xarray as xr
 
-from squealpipe.parameters import Parameters, parameters_of
+from squealpipe.parameters import SCENES, Parameters, parameters_of
 from squealpipe.reading import for_linear, reading_of
 from squealpipe.store import produce
 
@@ -29,6 +29,11 @@ class Job:
     def params(self) -> Parameters:
         """Physical parameters in the rule's reading of the sign of friction."""
         return for_linear(parameters_of(self.part), self.part["read_as"])
+
+    def angles(self, scene: str) -> dict[str, float]:
+        """Angles of a scene, of the paper or of a study of one's own."""
+        given = self.part["scenes"][scene] if "scenes" in self.part else vars(SCENES[scene])
+        return {name: given[name] for name in ("alpha1", "alpha2")}
 
     @property
     def model(self) -> str:

@@ -150,6 +150,12 @@ def draw_map(axes: Axes, dataset: xr.Dataset | xr.DataArray, values: Any, **kwar
     return mesh
 
 
+def draw_lines(axes: Axes, lines: Sequence[np.ndarray], curve: np.ndarray, **look: Any) -> None:
+    """Lines, (x, y), with a gap wherever another curve begins."""
+    ends = np.flatnonzero(np.diff(curve)) + 1
+    axes.plot(*(np.insert(each, ends, np.nan) for each in lines), **look)
+
+
 def hatch(axes: Axes, dataset: xr.Dataset, mask: np.ndarray) -> None:
     """Hatch cells (alpha1, alpha2) of a map, which can be told in greyscale too."""
     if mask.any():

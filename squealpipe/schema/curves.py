@@ -46,9 +46,15 @@ CONTACT_BOUNDARY = DatasetSchema(
     coordinates={
         "point": Variable("point", dims=("point",), dtype="i4"),
         **PARAMETER,
+        "row": Variable("given values of the first parameter", dims=("row",)),
+        "column": Variable("given values of the second parameter", dims=("column",)),
     },
     variables={
         **VARIED,
+        "kept": Variable(
+            "whether contact is kept, by the side of the curves", dims=("row", "column"),
+            dtype="bool",
+        ),
         "curve": Variable(
             "connected curve, contact kept on its left (of one that is closed, the first point "
             "comes again)",
@@ -67,6 +73,8 @@ CONTACT_BOUNDARY = DatasetSchema(
         "region_area_error": Variable(
             "error of the area, from the shape of the arcs", "1", _REGION, rtol=1.0
         ),
+        "kept_share": Variable("share of the rectangle in which contact is kept"),
+        "kept_share_error": Variable("error of that share", rtol=1.0),
         "outline": Variable(
             "closed lines around the regions in which contact is kept, and around their holes: "
             "values of both parameters", dims=("vertex", "parameter"),

@@ -7,6 +7,7 @@ from squealpipe.parameters import SCENES, Parameters
 from squealpipe.reading import READINGS, corrected, for_a1, for_linear
 from squealpipe.tasks.backbones.backbone import backbone
 from squealpipe.tasks.backbones.harmonic_forms import compare_harmonic_forms
+from squealpipe.tasks.curves.contact import contact_boundary
 from squealpipe.tasks.dynamics.assumptions import check_assumptions, linear_pull_map
 from squealpipe.tasks.dynamics.hammering import hammering_map
 from squealpipe.tasks.dynamics.runs import simulate, validity_map
@@ -53,6 +54,9 @@ def of_the_paper(params, model):
         "linear_pull": linear_pull_map(params, angles, angles, t_end=50.0 * unit),
         "validity_map": validity_map(
             params, angles, angles, t_end=200.0 * unit, model=model, workers=1
+        ),
+        "validity_boundary": contact_boundary(
+            params, angles, angles, t_end=25.0 * unit, model=model, workers=1
         ),
     }
     runs = {name: (name, scene.t_end, model) for name, scene in SCENES.items() if scene.figure <= 5}

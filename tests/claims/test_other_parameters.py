@@ -60,8 +60,8 @@ def test_evidence_states_its_data(params):
     text = {name: row["evidence"] for name, row in table.items()}
     assert not [name for name, words in text.items() if re.search(r"\b(nan|inf)\b", words)]
     assert all(row["value"] is not None for row in table.values())
-    validity = data["validity_map"]
-    black = (validity.separates == 0) & (validity.regime_linear > 0)
+    unstable = data["stability_map"].regime_linear.values > 0
+    black = data["validity_boundary"].kept.values & unstable
     assert f"{int(black.sum())} are unstable by A3" in text["E10"]
     k12 = data["quasi_static_map"].stiffness_xy
     negative = 100 * float((k12 < -1e-15 * params.k1).mean())

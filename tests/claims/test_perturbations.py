@@ -118,7 +118,7 @@ FLIPS = [
     Flip("F6d", "stability_map", put("growth_rate", lambda d: 0 * d.growth_rate + 1e-3), FAILS),
     Flip("F6d", "simulate/F3", no_growth, FAILS),
     Flip("F6e", "linear_pull", put("lowest_contact_force", lambda _: 0.1), FAILS),
-    Flip("F7a", "validity_map", put("separates", lambda d: d.separates & False), FAILS),
+    Flip("F7a", "validity_boundary", put("kept_share", lambda _: 1.0), FAILS),
     Flip("F7b", "validity_map", put("separates", lambda d: d.separates & False), FAILS),
     Flip("F8a", "natural_frequencies", put("omega", lambda d: d.omega + 0.1), FAILS),
     Flip("F8b", "natural_frequencies", put("omega", lambda d: d.omega + 0.1), FAILS),
@@ -185,7 +185,7 @@ FLIPS = [
         HOLDS,
     ),
     Flip("E10", "stability_map", REGIME, FAILS),
-    Flip("E10", "validity_map", put("separates", lambda d: d.separates | True), FAILS),
+    Flip("E10", "validity_boundary", put("kept", lambda d: d.kept & False), FAILS),
     Flip(
         "E11",
         "quasi_static_map",

@@ -19,6 +19,7 @@ from squealpipe.study.figures.dynamics import (
     whirl,
 )
 from squealpipe.study.figures.linear import fig07
+from squealpipe.tasks.curves.contact import boundary_distance, contact_boundary
 from squealpipe.tasks.dynamics import hammering as hammering_task
 from squealpipe.tasks.dynamics import refinement
 from squealpipe.tasks.dynamics import runs as dynamics
@@ -46,18 +47,26 @@ def test_all_are_drawn_for_any_study(params, tmp_path):
         "refined": refinement.refine_validity_map(params, resolution=61, coarse=16, t_end=50.0),
         "whirl": whirl_task.whirl_sizes(params, [0.5, 5.0, 50.0], t_end=100.0),
     }
+    boundary = contact_boundary(params, ANGLES, ANGLES, t_end=10.0)
+    distance = boundary_distance(boundary, {"alpha1": 0.3, "alpha2": 0.9})
+    of_fig07 = {
+        "validity_map": maps["validity"],
+        "validity_boundary": boundary,
+        "validity_distance/F3": distance,
+    }
     runs = {name: scene(name, params) for name in ("F2a", "F2b", "F2c", "F2d", "F3", "F4", "F5a")}
     figures = {
         "fig02": fig02.draw(*(runs[name] for name in ("F2a", "F2b", "F2c", "F2d"))),
         "fig03": fig03.draw({"simulate/F3": runs["F3"]}),
         "fig04": fig04.draw(runs["F4"]),
         "fig05": fig05.draw(runs["F5a"], runs["F5a"]),
-        "fig07": fig07.draw({"validity_map": maps["validity"]}),
+        "fig07": fig07.draw(of_fig07),
         "hammering": hammering_map.draw(maps["hammering"]),
         "predictability": predictability.draw(maps["hammering"]),
-        "refined": refined_boundary.draw(maps["refined"]),
+        "refined": refined_boundary.draw(maps["refined"], boundary),
         "whirl": whirl.draw(runs["F3"], maps["whirl"]),
     }
+    assert "nan" not in fig07.caption(of_fig07)
     for name, figure in figures.items():
         save_figure(figure, [tmp_path / f"{name}.png"])
         assert (tmp_path / f"{name}.png").stat().st_size > 5000

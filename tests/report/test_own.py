@@ -21,6 +21,7 @@ from squealpipe.study.report.build import write_document
 from squealpipe.study.report.content import Made, parameter_table, picture_files
 from squealpipe.study.report.own import boundaries, gather_own
 from squealpipe.tasks.curves.chart import regime_chart
+from squealpipe.tasks.curves.contact import boundary_distance, contact_boundary
 from squealpipe.tasks.dynamics.runs import simulate, validity_map
 from squealpipe.tasks.own.scenes import own_scenes
 from squealpipe.tasks.propensity.distributions import centred
@@ -78,12 +79,12 @@ def test_distance_to_the_nearest_other_cell():
         },
         {"alpha1": angles, "alpha2": angles},
     )
-    at = boundaries(validity, math.radians(10), math.radians(10))
+    at = boundaries({"validity_map": validity}, "", math.radians(10), math.radians(10))
     assert at["lost"] is False
     assert at["lost_boundary"] == pytest.approx(20.0)
     assert at["unstable_boundary"] is None
     # half a turn further the springs come from the other side: another map
-    at = boundaries(validity, math.radians(10), math.radians(10) + math.pi)
+    at = boundaries({"validity_map": validity}, "", math.radians(10), math.radians(10) + math.pi)
     assert at["lost"] is at["lost_boundary"] is None
 
 
@@ -98,9 +99,14 @@ def test_distributions_are_centred_on_the_study():
 def test_report_has_pages_without_the_paper(found, tmp_path):
     angles = np.linspace(0.0, math.pi, 13)
     end = 20 * PAD.time_unit
+    boundary = contact_boundary(PAD, angles, angles, t_end=end)
+    design = {f"alpha{i}": scenes(0.0)["mine"][f"alpha{i}"] for i in (1, 2)}
+    distance = boundary_distance(boundary, design)
     datasets = {
         "own_scenes": found,
         "validity_map": validity_map(PAD, angles, angles, t_end=end),
+        "validity_boundary": boundary,
+        **{f"validity_distance/{name}": distance for name in scenes(0.0)},
         "propensity": propensity(
             PAD, 0.5, 2.4, distributions=centred(PAD, 0.5, 2.4), samples=64, t_end=end
         ),
@@ -116,6 +122,10 @@ def test_report_has_pages_without_the_paper(found, tmp_path):
         },
     }
     config = {"parameters": PAD.as_dict()}
+    here = boundaries(datasets, "mine", *design.values())
+    other = boundaries({"validity_map": datasets["validity_map"]}, "mine", *design.values())
+    assert here["lost"] is other["lost"]
+    assert abs(here["lost_boundary"] - other["lost_boundary"]) < 1.5 * here["cell"]
     made, figures = {}, {}
     for name, dataset in datasets.items():
         path = save(stamp(dataset, config=config, wall_time=0.1), tmp_path / f"data/{name}.nc")

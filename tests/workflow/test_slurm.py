@@ -56,6 +56,7 @@ SMALL_RULES = [
     "measure_disturbances", "measure_frequencies", "check_assumptions", "compute_explorer",
     "map_critical_friction", "map_model_ladder", "trace_backbones", "judge_balances",
     "run_benchmark", "chart_regimes", "spread_parameters", "judge_reach",
+    "follow_boundary", "follow_corrected_boundary",
 ]  # fmt: skip
 TWO_PARTS = [
     *PROFILE,

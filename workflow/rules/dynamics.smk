@@ -1,7 +1,9 @@
 """Nonlinear runs in time: the scenes of Figs. 2–5, the maps, the whirl."""
 
+from squealpipe.laws.contact_laws import LINEAR
 from squealpipe.parameters import SCENES
 
+PLACED = ["F3"] if STUDY.paper else sorted(STUDY.scenes)  # their distance from the boundary is measured
 IN_TIME = [scene for scene in SCENES.values() if scene.figure <= 5]
 
 
@@ -36,6 +38,20 @@ for folder, reading in SHOWN.items():
         threads: cores_for(STUDY.dynamics.validity_points**2, enough=10_000)
         script:
             "../scripts/dynamics/map_validity.py"
+
+    if _given.contact_law == LINEAR:
+
+        rule:
+            name:
+                rule_name("follow", folder, "boundary")
+            output:
+                boundary=data(f"{folder}validity_boundary"),
+                distances=[data(f"{folder}validity_distance/{name}") for name in PLACED],
+            params:
+                part=validity if STUDY.paper else validity | part("scenes"),
+            threads: cores_for(1, enough=1)
+            script:
+                "../scripts/dynamics/follow_boundary.py"
 
 
 HAMMERING = part(

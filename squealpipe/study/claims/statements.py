@@ -34,6 +34,7 @@ READ = (
     "quasi_static_map",
     "stability_map",
     "transient",
+    "validity_boundary",
     "validity_map",
     *(f"simulate/{name}" for name in ("F2a", "F2b", "F2c", "F2d", "F3", "F4", "F5a", "F5b")),
     *(f"simulate/{name}" for name in ("F3_long", "F4_long", PRINTED)),

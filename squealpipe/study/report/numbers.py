@@ -73,13 +73,15 @@ def _linear(run: Run) -> dict[str, Any]:
 
 
 def _valid(run: Run) -> dict[str, Any]:
-    unstable, mended = (run[f"{at}validity_map"].regime_linear > 0 for at in ("", "corrected/"))
-    lost = run["validity_map"].separates
+    unstable, mended = (
+        run[f"{at}validity_map"].regime_linear.values > 0 for at in ("", "corrected/")
+    )
+    boundary = run["validity_boundary"]
     return {
-        "black": (unstable & (lost == 0)).sum(),
+        "black": (unstable & boundary.kept.values).sum(),
         "unstable": unstable.sum(),
-        "lost": 100 * lost.mean(),
-        "mended_black": (mended & (run["corrected/validity_map"].separates == 0)).sum(),
+        "lost": 100 * (1.0 - float(boundary.kept_share)),
+        "mended_black": (mended & run["corrected/validity_boundary"].kept.values).sum(),
     }
 
 

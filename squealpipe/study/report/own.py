@@ -61,16 +61,20 @@ def _scene(table: xr.Dataset, run: Run) -> dict[str, Any]:
             }
             for name in table.question.values
         ],
-        **boundaries(run["validity_map"], float(table.alpha1), float(table.alpha2)),
+        **boundaries(run, str(table.scene.item()), float(table.alpha1), float(table.alpha2)),
     }
 
 
-def boundaries(validity: xr.Dataset, alpha1: float, alpha2: float) -> dict[str, Any]:
+def boundaries(
+    run: Mapping[str, xr.Dataset], scene: str, alpha1: float, alpha2: float
+) -> dict[str, Any]:
     """What the map says at a pair of angles, and how far the nearest cell is that says otherwise.
 
-    Distances are in degrees in the plane of both angles; None: no such cell. Outside the map
-    nothing is said: A1 moves otherwise where a spring comes from the opposite side.
+    Of contact the boundary as curves says it, where the study has it. Distances are in degrees in
+    the plane of both angles; None: no such cell. Outside the map nothing is said: A1 moves
+    otherwise where a spring comes from the opposite side.
     """
+    validity = run["validity_map"]
     centres = [validity[name].values for name in ("alpha1", "alpha2")]
     gaps = [grid - angle for grid, angle in zip(centres, (alpha1, alpha2), strict=True)]
     distance = np.degrees(np.hypot(gaps[0][:, None], gaps[1][None, :]))
@@ -86,6 +90,12 @@ def boundaries(validity: xr.Dataset, alpha1: float, alpha2: float) -> dict[str, 
         found[name] = here if inside else None
         found[f"{name}_boundary"] = float(others.min()) if inside and others.size else None
     found["lost_share"] = float(100 * validity.separates.mean())
+    if "validity_boundary" in run:
+        found["lost_share"] = 100 * (1.0 - float(run["validity_boundary"].kept_share))
+        if inside:
+            measured = run[f"validity_distance/{scene}"]
+            found["lost"] = not bool(measured.kept)
+            found["lost_boundary"] = _finite(np.degrees(measured.distance))
     found["cell"] = float(np.degrees(validity.alpha1.values[1] - validity.alpha1.values[0]))
     return found
 

@@ -154,7 +154,7 @@ def contact_boundary(
     options = {"t_end": t_end, "tol": tol, "workers": workers, "tracked": ("contact_force",)}
     square = Square(params, fixed, axes, options, model)
     coarse = max(each.size for each in axes.values())
-    return _dataset(square, contact_lines(square, coarse, FINEST), coarse)
+    return _dataset(square, contact_lines(square, coarse, FINEST), axes)
 
 
 def nearest_on(loops: Sequence[Vector], place: Vector, limits: Vector) -> tuple[Vector, float]:
@@ -208,8 +208,10 @@ def boundary_distance(boundary: xr.Dataset, design: Mapping[str, float]) -> xr.D
     )
 
 
-def _dataset(square: Square, lines: ZeroLines, coarse: int) -> xr.Dataset:
-    chains = lines.chains()
+def _dataset(square: Square, lines: ZeroLines, axes: Mapping[str, Vector]) -> xr.Dataset:
+    chains, coarse = lines.chains(), max(each.size for each in axes.values())
+    # on the border itself either side would do
+    shares = [np.clip((a - a[0]) / (a[-1] - a[0]), BESIDE, 1.0 - BESIDE) for a in axes.values()]
     at = np.array([point for chain in chains for point in chain], int)
     curve = np.repeat(np.arange(len(chains)), [len(chain) for chain in chains])
     corner = np.isnan(lines.slope[at, 0])
@@ -224,10 +226,12 @@ def _dataset(square: Square, lines: ZeroLines, coarse: int) -> xr.Dataset:
             area, error = (sum(loops[i][k] for i in group) for k in (1, 2))
             regions.append((kept, area * np.prod(square.width), error * np.prod(square.width)))
     kept, areas, errors = np.array(regions).T
+    inside = kept.astype(bool)
     return build(
         CONTACT_BOUNDARY,
         {
             **dict(zip(square.names, square.values(lines.place[at]).T, strict=True)),
+            "kept": lines.holds(*shares),
             "curve": curve,
             "arc": np.cumsum(begins) - 1,
             "touch_time": lines.mark[at] * square.params.time_unit,
@@ -237,6 +241,8 @@ def _dataset(square: Square, lines: ZeroLines, coarse: int) -> xr.Dataset:
             "region_kept": kept,
             "region_area": areas,
             "region_area_error": errors,
+            "kept_share": areas[inside].sum() / areas.sum(),
+            "kept_share_error": errors[inside].sum() / areas.sum(),
             "outline": np.concatenate([*outlines, np.empty((0, 2))]),
             "outline_loop": np.repeat(np.arange(len(outlines)), [len(each) for each in outlines]),
             "range": np.stack([square.low, square.low + square.width], axis=1),
@@ -245,5 +251,9 @@ def _dataset(square: Square, lines: ZeroLines, coarse: int) -> xr.Dataset:
             "smallest_island": 0.5 * np.pi * np.prod(square.width) / (coarse - 1) ** 2,
             "outcome": Outcome.unresolved if lines.unresolved else Outcome.converged,
         },
-        {"point": np.arange(len(at)), "parameter": square.names},
+        {
+            "point": np.arange(len(at)),
+            "parameter": square.names,
+            **dict(zip(("row", "column"), axes.values(), strict=True)),
+        },
     )

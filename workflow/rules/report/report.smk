@@ -51,7 +51,7 @@ if STUDY.paper:
     TARGETS += rules.write_report.output
 else:
     read = {"own_scenes", "validity_map", "propensity"}
-    own = {name: made for name, made in MADE.items() if name in read or name.startswith("own/")}
+    own = {name: made for name, made in MADE.items() if name in read or name.startswith(("own/", "validity_distance/"))}
     own |= {name: MADE[name] for drawn in DRAWN.values() for name in drawn["datasets"]}
 
     rule write_own_report:

@@ -5,7 +5,6 @@ from pathlib import Path
 import numpy as np
 
 from squealpipe.execution.job import Job
-from squealpipe.parameters import SCENES
 from squealpipe.tasks.curves.chart import regime_chart
 
 COARSE = 31
@@ -14,10 +13,7 @@ SMALLEST, LARGEST = 0.002, 2.0  # of κ and μ over those of the study
 job = Job(snakemake)
 part, params = job.part, job.params
 files = {Path(path).stem: path for path in job.out.friction}
-if "scenes" in part:  # of a study of one's own
-    angles = {name: [part["scenes"][name][f"alpha{i}"] for i in (1, 2)] for name in files}
-else:
-    angles = {name: [SCENES[name].alpha1, SCENES[name].alpha2] for name in files}
+angles = {name: list(job.angles(name).values()) for name in files}
 alpha1, alpha2 = np.array(list(angles.values())).T
 ranges = [np.linspace(min(0.0, *each), max(np.pi, *each), COARSE) for each in (alpha1, alpha2)]
 kappa, mu = (

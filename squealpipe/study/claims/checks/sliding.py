@@ -127,12 +127,15 @@ def spring_pulls(run: Run) -> Finding:
     "F7a", "A3 is invalid wherever A1 separates; the region is large", "fig07", consequence="F7a"
 )
 def invalid_where_separated(run: Run) -> Finding:
-    """Share of cells in which A1 separates."""
-    lost = run["validity_map"].separates == 1
+    """Share of the angles at which A1 separates, within curves."""
+    boundary = run["validity_boundary"]
+    lost, error = 1.0 - float(boundary.kept_share), float(boundary.kept_share_error)
+    cells = run["validity_map"].separates == 1
     return finding(
-        (share(lost), ">", LARGE_REGION),
-        f"A1 loses contact in {int(lost.sum())} of {lost.size} cells and keeps it in "
-        f"{int((~lost).sum())}.",
+        (lost, ">", LARGE_REGION),
+        f"By the curves of its boundary A1 loses contact in {100 * lost:.4g} % of the square of "
+        f"angles, right to {100 * error:.1g} %; in the map in {int(cells.sum())} of {cells.size} "
+        "cells.",
     )
 
 

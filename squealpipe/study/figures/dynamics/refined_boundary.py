@@ -9,13 +9,14 @@ from scipy.ndimage import uniform_filter
 
 from squealpipe.plotting import style
 
-READS = ("refined_validity_map",)
+READS = ("refined_validity_map", "validity_boundary")
 CAPTION = (
     "Where model A1 keeps contact (grey), at high resolution. (a) In colour the cells that were "
     "run along the boundaries and where a thin region may hide: around late separations and where "
     "little contact force is left; lone points of the coarse grid are not shown, and all other "
     "cells inherit their neighbour's answer. (b) The window with most of the boundary, all cells "
-    "that were run in colour; above it how many of a random sample of the others were wrong."
+    "that were run in colour; above it how many of a random sample of the others were wrong. The "
+    "black line is the boundary as curves, traced apart from this map."
 )
 ALT = "A map of kept contact with the cells that were run in colour, and a magnified part of it."
 TONES = {
@@ -28,8 +29,13 @@ WINDOW = 0.12
 """Side of the window of panel (b) over that of the map."""
 
 
-def draw(refined: xr.Dataset) -> Figure:
-    """A map and a magnified part of it, from dataset ``refined_validity_map``."""
+def draw(refined: xr.Dataset, boundary: xr.Dataset) -> Figure:
+    """A map and a magnified part of it, with the boundary as curves.
+
+    Args:
+        refined: dataset ``refined_validity_map``.
+        boundary: dataset ``contact_boundary``.
+    """
     figure, axes = style.new_figure(style.PAGE, 3.9, ncols=2)
     _map(axes[0, 0], refined.assign(computed=_clustered(refined.computed)))
     window = _intricate(refined)
@@ -39,6 +45,8 @@ def draw(refined: xr.Dataset) -> Figure:
     style.panel_letter(axes[0, 0], "a", f"{size} × {size}, {run:.1f} % run")
     part = refined.sel(alpha1=slice(*window[:2]), alpha2=slice(*window[2:]))
     _map(axes[0, 1], part)
+    curves = (boundary.alpha1.values, boundary.alpha2.values), boundary.curve.values
+    style.draw_lines(axes[0, 1], *curves, color=style.BLACK, linewidth=0.7)
     for axis in (axes[0, 1].xaxis, axes[0, 1].yaxis):
         style.angle_ticks(axis, np.pi, np.pi / 25)
     axes[0, 1].set(xlim=window[:2], ylim=window[2:])

@@ -88,9 +88,7 @@ def _draw(panel: Axes, chart: xr.Dataset) -> None:
     panel.imshow(kinds.T, origin="lower", extent=extent, interpolation="none", **tones)
     for which, (label, look) in LOOKS.items():
         on = chart.line.values == which
-        ends = np.flatnonzero(np.diff(chart.curve.values[on])) + 1
-        line = [np.insert(each[on], ends, np.nan) for each in (x, y)]
-        panel.plot(*line, label=label, **look)
+        style.draw_lines(panel, (x[on], y[on]), chart.curve.values[on], label=label, **look)
     panel.plot(
         *chart.design.values.T,
         "x",

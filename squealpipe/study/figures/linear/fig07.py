@@ -14,7 +14,7 @@ from squealpipe.plotting import style
 from squealpipe.schema.dynamics.runs import GROWTH_THRESHOLD
 from squealpipe.study.figures.linear.linear_overlay import mark_scene
 
-READS = ("[cv]*alidity_map",)
+READS = ("[cv]*alidity_[bdm]*",)
 KINDS = (
     (style.WHITE, "A3 stable, A1 loses contact"),
     (style.ORANGE, "A3 unstable, A1 loses contact"),
@@ -24,17 +24,24 @@ KINDS = (
 ALT = (
     "Square maps over both spring angles in white, orange, grey and black: where model A1 loses "
     "contact, where it keeps it, and in each whether the linear model is stable. A cross near the "
-    "middle marks the configuration of Fig. 3."
+    "middle marks the configuration of Fig. 3, and lines the boundary of kept contact."
+)
+LINES, DISTANCE = "validity_boundary", "validity_distance/F3"
+BLUE_LINES = (
+    "the boundary of kept contact as curves; the share of all angles that it encloses, and the "
+    "distance of the cross from it:"
 )
 TITLES = {"": "as printed", "corrected/": "sign of Eq. (4) mended"}
 
 
-def caption(maps: Mapping[str, xr.Dataset]) -> str:
+def caption(found: Mapping[str, xr.Dataset]) -> str:
     """What the tones mean, with the numbers of cells."""
+    maps = _maps(found)
     several = "; ".join(
         f"({letter}) {TITLES[_kind(name)]}" for letter, name in zip("ab", maps, strict=False)
     )
     growing = _listed(np.count_nonzero(grows(validity)) for validity in maps.values())
+    lines = [_inside(found, _kind(name)) for name in maps if f"{_kind(name)}{LINES}" in found]
     return (
         f"Where the linear model A3 is valid{f': {several}' if len(maps) > 1 else ''}. White: A1, "
         "started at rest, loses contact although A3 is stable; orange: it does and A3 is unstable. "
@@ -42,8 +49,15 @@ def caption(maps: Mapping[str, xr.Dataset]) -> str:
         "A3, as the paper's text says. By A1's own response, as its caption says (|x| grows "
         f"{GROWTH_THRESHOLD:g} times or more from the first half of the run to the second), "
         f"{growing} of the cells that keep contact are unstable. Numbers of cells are in the "
-        "titles and the key."
+        f"titles and the key.{f' Blue: {BLUE_LINES} {_listed(lines)}.' if lines else ''}"
     )
+
+
+def _inside(found: Mapping[str, xr.Dataset], kind: str) -> str:
+    """What the boundary encloses, and how far the scene is from it."""
+    boundary, scene = found[f"{kind}{LINES}"], found[f"{kind}{DISTANCE}"]
+    share, error = 100.0 * float(boundary.kept_share), 100.0 * float(boundary.kept_share_error)
+    return f"{share:.2f} ± {error:.1g} % and {np.degrees(float(scene.distance)):.2g}°"
 
 
 CAPTION = caption
@@ -61,8 +75,17 @@ def grows(validity: xr.Dataset) -> np.ndarray:
     return np.asarray((validity.separates.values == 0) & (growth >= GROWTH_THRESHOLD))
 
 
-def draw_kinds(panel: Axes, validity: xr.Dataset) -> np.ndarray:
-    """The four kinds of cells, orange ones hatched for reading in greyscale."""
+def draw_kinds(panel: Axes, validity: xr.Dataset, boundary: xr.Dataset | None = None) -> np.ndarray:
+    """The four kinds of cells, orange ones hatched for reading in greyscale.
+
+    With the boundary as curves it is drawn too, and contact is kept or lost by its side.
+    """
+    if boundary is not None:
+        lost = (~boundary.kept.values).astype("i1")
+        validity = validity.assign(separates=(validity.separates.dims, lost))
+        angles = boundary.alpha1.values, boundary.alpha2.values
+        look = {"color": style.BLUE, "linewidth": 0.5, "label": "boundary of kept contact"}
+        style.draw_lines(panel, angles, boundary.curve.values, **look)
     kinds = kinds_of_cells(validity)
     style.draw_map(panel, validity, kinds, **style.category_colours([tone for tone, _ in KINDS]))
     style.hatch(panel, validity, kinds == 1)
@@ -76,18 +99,20 @@ def key() -> list[Patch]:
     return found
 
 
-def draw(maps: Mapping[str, xr.Dataset]) -> Figure:
+def draw(found: Mapping[str, xr.Dataset]) -> Figure:
     """One map, and beside it that of the mended sign if the study has it.
 
     Args:
-        maps: dataset ``validity_map``, and ``corrected/validity_map``.
+        found: dataset ``validity_map``, and ``corrected/validity_map``, and as ``contact_boundary``
+            the boundary in each.
     """
+    maps = _maps(found)
     names = sorted(maps, key=len)
     size = (5.6, 3.4) if len(names) > 1 else (4.3, 3.9)  # for text large enough on page one
     figure, axes = style.new_figure(*size, ncols=len(names))
     counts = []
     for panel, letter, name in zip(axes[0], "ab", names, strict=False):
-        kinds = draw_kinds(panel, maps[name])
+        kinds = draw_kinds(panel, maps[name], found.get(f"{_kind(name)}{LINES}"))
         mark_scene(panel, "F3")
         counts.append(np.bincount(kinds.ravel(), minlength=len(KINDS)))
         title = f"{TITLES[_kind(name)]}: " if len(names) > 1 else ""
@@ -96,9 +121,13 @@ def draw(maps: Mapping[str, xr.Dataset]) -> Figure:
     for index, handle in enumerate(handles):
         numbers = " | ".join(str(count[index]) for count in counts)
         handle.set_label(f"{handle.get_label()}: {numbers}")
-    cross = axes[0, 0].get_legend_handles_labels()[0]
-    figure.legend(handles=[*handles, *cross], loc="outside lower center", ncols=2)
+    marks = axes[0, 0].get_legend_handles_labels()[0]
+    figure.legend(handles=[*handles, *marks], loc="outside lower center", ncols=2)
     return figure
+
+
+def _maps(found: Mapping[str, xr.Dataset]) -> dict[str, xr.Dataset]:
+    return {name: each for name, each in found.items() if name.endswith("validity_map")}
 
 
 def _kind(name: str) -> str:

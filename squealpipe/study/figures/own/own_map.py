@@ -1,5 +1,7 @@
 """Where contact is lost and sliding is unstable around the scenes of a study."""
 
+from collections.abc import Mapping
+
 import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
@@ -8,20 +10,21 @@ from matplotlib.patheffects import withStroke
 from squealpipe.plotting.style import BLUE, PAGE, new_figure
 from squealpipe.study.figures.linear.fig07 import draw_kinds, key
 
-READS = ("validity_map", "own_scenes")
+READS = ("validity_[bm]*", "own_scenes")
 CAPTION = (
     "Where the mass, started at rest, loses contact (white; orange where steady sliding is "
     "unstable too) and keeps it (grey; black where steady sliding is unstable), over both spring "
-    "angles. Blue crosses: the scenes whose angles lie in the map."
+    "angles. Blue: the boundary of kept contact as curves, and as crosses the scenes whose angles "
+    "lie in the map."
 )
 ALT = "A map over both spring angles in white, orange, grey and black with crosses at the scenes."
 
 
-def draw(validity: xr.Dataset, scenes: xr.Dataset) -> Figure:
-    """The map with the scenes."""
+def draw(found: Mapping[str, xr.Dataset], scenes: xr.Dataset) -> Figure:
+    """The map, with the boundary where the study has it, and the scenes."""
     figure, axes = new_figure(0.7 * PAGE, 3.9)
     panel = axes[0, 0]
-    draw_kinds(panel, validity)
+    draw_kinds(panel, found["validity_map"], found.get("validity_boundary"))
     for scene in scenes.scene.values:
         here = scenes.sel(scene=scene)
         at = float(here.alpha1), float(here.alpha2)
@@ -38,5 +41,7 @@ def draw(validity: xr.Dataset, scenes: xr.Dataset) -> Figure:
             fontsize=8,
             path_effects=[withStroke(linewidth=2, foreground="white")],
         )
-    figure.legend(handles=key(), loc="outside lower center", ncols=2)
+    figure.legend(
+        handles=[*key(), *panel.get_legend_handles_labels()[0]], loc="outside lower center", ncols=2
+    )
     return figure

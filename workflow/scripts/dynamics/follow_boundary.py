@@ -1,0 +1,25 @@
+"""The boundary of kept contact as curves, and how far scenes are from it."""
+
+from pathlib import Path
+
+import numpy as np
+
+from squealpipe.execution.job import Job
+from squealpipe.tasks.curves.contact import boundary_distance, contact_boundary
+
+job = Job(snakemake)
+part, params = job.part, job.params
+angles = np.linspace(0.0, np.pi, part["dynamics.validity_points"])
+boundary = contact_boundary(
+    params,
+    angles,
+    angles,
+    t_end=part["dynamics.validity_horizon"] * params.time_unit,
+    model=job.model,
+    tol=part["dynamics.tol"],
+    workers=snakemake.threads,
+)
+job.make(lambda: boundary, job.out.boundary)
+for path in job.out.distances:
+    scene = Path(path).stem
+    job.make(lambda: boundary_distance(boundary, job.angles(scene)), path, scene=scene)
