@@ -5,6 +5,7 @@ import sys
 import threading
 from functools import partial
 from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
+from inspect import signature
 from pathlib import Path
 
 import pytest
@@ -34,6 +35,13 @@ def site(tmp_path_factory):
     )
     assert done.returncode == 0, done.stderr[-3000:]
     return folder
+
+
+def test_signatures_are_shown_as_they_are_written():
+    """What ``help`` and a notebook show: Angle, not the checks behind it."""
+    called = {name: getattr(squealpipe, name) for name in squealpipe.__all__}
+    shown = {name: str(signature(each)) for name, each in called.items() if callable(each)}
+    assert [name for name, text in shown.items() if "Validator" in text] == []
 
 
 @pytest.mark.release

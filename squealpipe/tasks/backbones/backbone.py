@@ -1,5 +1,7 @@
 """Backbones of model A4: exact, or by harmonic balance and judged by the exact orbits."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Mapping, Sequence
 from typing import Annotated, Any, Literal

@@ -1,5 +1,7 @@
 """Exact periodic motions of model A4: one orbit, found from cold."""
 
+from __future__ import annotations
+
 import math
 from typing import Any
 

@@ -1,5 +1,7 @@
 """What model A1 does from many starts at one configuration."""
 
+from __future__ import annotations
+
 from collections.abc import Iterator
 from typing import Any
 

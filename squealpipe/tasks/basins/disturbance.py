@@ -1,5 +1,7 @@
 """The smallest disturbance of steady sliding that leads to contact loss, or to the whirl."""
 
+from __future__ import annotations
+
 from typing import Annotated, Any
 
 import numpy as np

@@ -1,5 +1,7 @@
 """Map of what model A1 does after its first separation: impacts, forces, kind of motion."""
 
+from __future__ import annotations
+
 from types import SimpleNamespace
 
 import numpy as np

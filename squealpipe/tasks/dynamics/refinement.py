@@ -1,5 +1,7 @@
 """The map of kept contact at high resolution."""
 
+from __future__ import annotations
+
 import numpy as np
 import xarray as xr
 

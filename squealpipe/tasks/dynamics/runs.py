@@ -1,5 +1,7 @@
 """Nonlinear runs in time, and the map of where model A1 keeps contact."""
 
+from __future__ import annotations
+
 import math
 import warnings
 

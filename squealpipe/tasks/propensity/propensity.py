@@ -1,5 +1,7 @@
 """Propensities over distributed parameters, and Sobol indices of what they depend on."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping, Sequence
 from functools import partial
 from types import SimpleNamespace
