@@ -53,11 +53,6 @@ def reading_of(name: str) -> Reading:
     return READINGS[name]
 
 
-def for_a1(params: Parameters, reading: str) -> tuple[Parameters, str]:
-    """Parameters and model that A1 is computed with."""
-    return for_linear(params, reading), reading_of(reading).a1_model
-
-
 def for_linear(params: Parameters, reading: str) -> Parameters:
     """Parameters that A2, A3, A4 and the natural frequencies are computed with."""
     return params.with_(belt_speed=reading_of(reading).direction * params.belt_speed)

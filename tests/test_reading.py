@@ -4,25 +4,24 @@ import pytest
 
 from squealpipe.models.variants import VARIANT_RULES
 from squealpipe.parameters import Parameters
-from squealpipe.reading import READINGS, corrected, for_a1, for_linear
+from squealpipe.reading import READINGS, corrected, for_linear
 
 PARAMS = Parameters(belt_speed=100.0)
 
 
 @pytest.mark.parametrize(
-    ("reading", "a1", "linear", "mended"),
+    ("reading", "model", "belt", "mended"),
     [
-        ("as_printed", (100.0, "A1-as-printed"), 100.0, -100.0),
-        ("along_plus_x", (100.0, "A1"), 100.0, 100.0),
-        ("along_minus_x", (-100.0, "A1"), -100.0, -100.0),
+        ("as_printed", "A1-as-printed", 100.0, -100.0),
+        ("along_plus_x", "A1", 100.0, 100.0),
+        ("along_minus_x", "A1", -100.0, -100.0),
     ],
 )
 @pytest.mark.parametrize("sign", [1.0, -1.0])
-def test_each_reading_has_its_belt_and_model(reading, a1, linear, mended, sign):
+def test_each_reading_has_its_belt_and_model(reading, model, belt, mended, sign):
     params = PARAMS.with_(belt_speed=sign * 100.0)
-    moved, model = for_a1(params, reading)
-    assert (sign * moved.belt_speed, model) == a1
-    assert sign * for_linear(params, reading).belt_speed == linear
+    assert READINGS[reading].a1_model == model
+    assert sign * for_linear(params, reading).belt_speed == belt
     assert sign * corrected(params, reading).belt_speed == mended
 
 

@@ -21,19 +21,9 @@ def contact_force(y: Any, p: Any) -> Any:
     """Eq. (1c): N = k3 (l_pre − y) while in contact, N: the foot of k3 follows the mass in x.
 
     The caller owns the state of contact; this law is linear, so it may be integrated across
-    the switch without a kink. See :func:`unilateral_force` for the law with its switch.
+    the switch without a kink.
     """
     return p.k3 * (p.preload - y)
-
-
-def unilateral_force(y: Any, p: Any) -> Any:
-    """N = k3 max(l_pre − y, 0), N (floats and arrays): contact term with sign(l_pre − y)."""
-    return p.k3 * np.maximum(p.preload - y, 0.0)
-
-
-def contact_energy(y: Any, p: Any) -> Any:
-    """The potential of :func:`normal_force` while in contact, J; ½ k3 (l_pre − y)² if linear."""
-    return law(p).energy(p.preload - y, p)
 
 
 def smoothed_compression(compression: Any, sigma: Any) -> Any:

@@ -1,4 +1,4 @@
-"""Friction against the moving belt: slip, stick, and the regularized form.
+"""Friction against the moving belt: slip and stick.
 
 How the coefficient depends on the sliding speed is a law of its own
 (:mod:`squealpipe.laws.friction_laws`); the limit of stick and the sign of slip are common to all.
@@ -7,8 +7,6 @@ How the coefficient depends on the sliding speed is a law of its own
 from typing import Any
 
 import numpy as np
-
-from squealpipe.laws.friction_laws import coefficient
 
 
 def slip_force(normal_force: Any, direction: Any, mu: Any) -> Any:
@@ -20,7 +18,7 @@ def slip_force(normal_force: Any, direction: Any, mu: Any) -> Any:
     Args:
         normal_force: N, N.
         direction: sgn(V − ẋ).
-        mu: :func:`coefficient` at the sliding speed.
+        mu: the coefficient at the sliding speed.
     """
     return mu * normal_force * direction
 
@@ -33,12 +31,6 @@ def dragging_force(normal_force: Any, p: Any) -> Any:
 def stick_limit(normal_force: Any, p: Any) -> Any:
     """μs N, N: the largest friction force on a mass that sticks."""
     return p.static_mu * normal_force
-
-
-def regularized_slip_force(normal_force: Any, vx: Any, p: Any, sigma_v: Any) -> Any:
-    """μ(|V − ẋ|) N tanh(σ_v (V − ẋ)), N: the smooth form used by codes without events."""
-    lag = p.belt_speed - vx
-    return coefficient(np.abs(lag), p) * normal_force * np.tanh(sigma_v * lag)
 
 
 def slides(speed: Any, p: Any) -> Any:

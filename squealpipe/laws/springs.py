@@ -68,31 +68,17 @@ def long_spring_force(
 
 
 def elastic_force(
-    x: Scalar, y: Scalar, p: Any, g: Geometry, long1: bool = False, long2: bool = False
+    x: Scalar, y: Scalar, p: Any, g: Geometry, long: tuple[bool, bool] = (False, False)
 ) -> tuple[Scalar, Scalar]:
     """Spring terms of Eqs. (4) and (5): total force of both springs on the mass, N.
 
-    ``long1`` and ``long2`` choose :func:`long_spring_force` for a spring.
+    ``long`` says which of the springs take :func:`long_spring_force`.
     """
     x1, y1, x2, y2 = fixed_ends(p, g)
-    if long1:
-        f1x, f1y = long_spring_force(p.k1, p.length1, x, y, x1, y1)
-    else:
-        f1x, f1y = spring_force(p.k1, p.length1, x, y, x1, y1)
-    if long2:
-        f2x, f2y = long_spring_force(p.k2, p.length2, x, y, x2, y2)
-    else:
-        f2x, f2y = spring_force(p.k2, p.length2, x, y, x2, y2)
+    first, second = (long_spring_force if each else spring_force for each in long)
+    f1x, f1y = first(p.k1, p.length1, x, y, x1, y1)
+    f2x, f2y = second(p.k2, p.length2, x, y, x2, y2)
     return f1x + f2x, f1y + f2y
-
-
-def elastic_energy(x: Scalar, y: Scalar, p: Any, g: Geometry) -> Scalar:
-    """½ Σ k_i (d_i − L_i)², J: the potential of :func:`elastic_force`."""
-    x1, y1, x2, y2 = fixed_ends(p, g)
-    d1 = squared_distance(x, y, x1, y1) ** 0.5
-    d2 = squared_distance(x, y, x2, y2) ** 0.5
-    e1, e2 = d1 - p.length1, d2 - p.length2
-    return 0.5 * (p.k1 * e1 * e1 + p.k2 * e2 * e2)
 
 
 def linear_stiffness(p: Any, g: Geometry) -> Stiffness:

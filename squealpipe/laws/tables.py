@@ -35,21 +35,6 @@ class Pieces(NamedTuple):
         piece = np.maximum(np.searchsorted(self.starts, np.real(at), side="right") - 1, 0)
         return polynomial(self.coefficients[piece].T, at - self.starts[piece], derivative)
 
-    def integral(self, at: Any) -> Any:
-        """The integral from 0 to floats or arrays."""
-        import numpy as np
-
-        powers = np.array([1.0, 2.0, 3.0, 4.0])
-
-        def within(piece: Any, distance: Any) -> Any:
-            terms = self.coefficients[piece] / powers
-            return distance * polynomial(terms.T, distance)
-
-        whole = within(np.arange(len(self.starts) - 1), np.diff(self.starts))
-        before = np.append(0.0, np.cumsum(whole))
-        piece = np.maximum(np.searchsorted(self.starts, at, side="right") - 1, 0)
-        return before[piece] + within(piece, at - self.starts[piece])
-
     def constants(self, prefix: str) -> list[dict[str, float]]:
         """Start, end and coefficients of each piece by name; the last ends nowhere."""
         ends = [*self.starts[1:], self.starts[-1]]

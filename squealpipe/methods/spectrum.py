@@ -3,6 +3,8 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from squealpipe.methods.parabola import vertex
+
 FEWEST = 16
 """Samples from which a motion, and its spectrum, can be seen."""
 
@@ -54,7 +56,5 @@ def highest_peaks(
     places = 1 + np.flatnonzero((middle > amplitude[:-2]) & (middle >= amplitude[2:]))
     places = places[amplitude[places] > 0.05 * amplitude.max(initial=0.0)]
     places = places[np.argsort(-amplitude[places], kind="stable")][:count]
-    left, centre, right = (np.log(amplitude[places + k] + 1e-300) for k in (-1, 0, 1))
-    shift = 0.5 * (left - right) / (left - 2.0 * centre + right)
-    height = np.exp(centre - 0.25 * (left - right) * shift)
-    return frequency[places] + shift * (frequency[1] - frequency[0]), height
+    shift, height = vertex(*(np.log(amplitude[places + k] + 1e-300) for k in (-1, 0, 1)))
+    return frequency[places] + shift * (frequency[1] - frequency[0]), np.exp(height)

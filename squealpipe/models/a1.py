@@ -19,13 +19,12 @@ slower mass back and a faster one on, and nothing sticks (see :mod:`squealpipe.r
 
 from typing import Any
 
-from squealpipe.laws.contact import contact_energy, normal_force
+from squealpipe.laws.contact import normal_force
 from squealpipe.laws.dashpots import damping_force, linear_damping_force
 from squealpipe.laws.friction import slip_force
 from squealpipe.laws.friction_laws import coefficient
 from squealpipe.laws.springs import (
     Geometry,
-    elastic_energy,
     elastic_force,
     linear_elastic_force,
     linear_stiffness,
@@ -48,7 +47,7 @@ def suspension_force(
     if linear_springs:
         fx, fy = linear_elastic_force(x, y, linear_stiffness(p, g))
     else:
-        fx, fy = elastic_force(x, y, p, g, *long_springs)
+        fx, fy = elastic_force(x, y, p, g, long_springs)
     if not dashpots:
         return fx, fy
     if linear_springs:
@@ -92,20 +91,3 @@ def acceleration(
     inverse_mass = p.mass**-1.0
     ax = (1.0 - stick) * inverse_mass * (fx + friction)
     return ax, inverse_mass * (fy + normal)
-
-
-def mechanical_energy(
-    x: Any, y: Any, vx: Any, vy: Any, p: Any, g: Geometry, *, contact: Any
-) -> Any:
-    """Kinetic + spring + contact energy, J; changes by :func:`friction_power` and the dashpots."""
-    kinetic = 0.5 * p.mass * (vx * vx + vy * vy)
-    return kinetic + elastic_energy(x, y, p, g) + contact * contact_energy(y, p)
-
-
-def friction_power(
-    vx: Any, suspension_x: Any, normal_force: Any, p: Any, *, direction: Any, stick: Any = 0.0
-) -> Any:
-    """Power of the belt on the mass, W: μNẋ sgn(V − ẋ) in slip, −V·(other x-forces) in stick."""
-    mu = coefficient(direction * (p.belt_speed - vx), p)
-    slipping = slip_force(normal_force, direction, mu) * vx
-    return (1.0 - stick) * slipping - stick * p.belt_speed * suspension_x

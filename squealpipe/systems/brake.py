@@ -13,6 +13,7 @@ from functools import cache
 from types import SimpleNamespace
 from typing import Any
 
+from squealpipe.codes import Regime
 from squealpipe.functions import cos, sin
 from squealpipe.laws import contact_laws, friction_laws
 from squealpipe.laws.contact import normal_force
@@ -22,7 +23,6 @@ from squealpipe.laws.friction_laws import COULOMB
 from squealpipe.laws.springs import LONG, Geometry, fixed_ends
 from squealpipe.laws.tables import is_table, pieces_of
 from squealpipe.models import a1
-from squealpipe.models.refusals import WHY_A4, refuse_extensions
 from squealpipe.models.variants import VARIANT_RULES, Rules
 from squealpipe.parameters import NUMBERS_OF_A1, Parameters
 from squealpipe.systems.system import Switch, System
@@ -36,17 +36,14 @@ FIRST = 1e150
 """Weight of what decides before anything else is asked."""
 
 
-def brake_of(params: Parameters, model: str = "A1") -> System:
-    """The system of some parameters; ``parameters_of_run`` gives its numbers."""
-    if model == "A4":
-        refuse_extensions(params, "model A4", WHY_A4)
+def brake_of(params: Parameters) -> System:
+    """A1 with some parameters, whose numbers ``parameters_of_run`` gives."""
     one_mu = params.static_mu == params.mu
     falls = params.friction_law in friction_laws.FALLING
     return brake(
         COULOMB if one_mu and falls else params.friction_law,
         damped=params.damping1 + params.damping2 > 0,
         contact_law=contact_laws.relative(params.contact_law, params.preload),
-        model=model,
         one_mu=one_mu,
         long_springs=(
             params.length1 > LONG * params.preload,
@@ -60,6 +57,14 @@ def has_own_laws(params: Any) -> bool:
     return isinstance(params, Parameters) and not (
         params.friction_law in friction_laws.LAWS and params.contact_law == LINEAR
     )
+
+
+def regimes_of(system: System) -> list[Regime]:
+    """A1's regime of each regime of the system, which may have several of a kind."""
+    return [
+        next((r for r in Regime if name.startswith(r.name)), Regime.separated)
+        for name in system.regimes
+    ]
 
 
 def parameters_of_run(params: Parameters, alpha1: float, alpha2: float) -> dict[str, float]:

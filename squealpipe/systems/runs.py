@@ -42,7 +42,7 @@ from squealpipe.methods.taylor.scalar import ScalarSource, compile_scalar
 from squealpipe.methods.taylor.series import HybridSystem
 from squealpipe.methods.taylor.simd import FEW, LANES
 from squealpipe.schema import SYSTEM, Outcome, flag_table, in_words
-from squealpipe.systems.trace import TIME, TIME_UNIT
+from squealpipe.systems.trace import TIME, TIME_UNIT, Names
 from squealpipe.text import suggestion
 from squealpipe.validation import (
     NotNegative,
@@ -161,7 +161,7 @@ def integrate(
     scale = system.time_scale
     names = list(system.parameters)
     unit = np.broadcast_to(
-        scale(_Given(values, names)) if callable(scale) else float(scale), (size,)
+        scale(Names("the system", values)) if callable(scale) else float(scale), (size,)
     ).astype(float)
     with np.errstate(over="ignore"):
         fits = (unit > 0.0) & (t_end / unit < math.inf)
@@ -314,13 +314,6 @@ def integrate(
         arrays["sample_durations"] = arrays["sample_durations"] * unit[:, None, None]
     arrays["summary"][:, 1:] *= unit[:, None]
     return arrays
-
-
-class _Given:
-    """Parameters as attributes, for a time scale that depends on them."""
-
-    def __init__(self, values: Mapping[str, Any], names: list[str]) -> None:
-        self.__dict__.update({name: values[name] for name in names})
 
 
 @dataclass(frozen=True)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from squealpipe.parameters import SCENES, Parameters
-from squealpipe.reading import READINGS, corrected, for_a1, for_linear
+from squealpipe.reading import READINGS, corrected, for_linear
 from squealpipe.tasks.backbones.backbone import backbone
 from squealpipe.tasks.backbones.harmonic_forms import compare_harmonic_forms
 from squealpipe.tasks.curves.contact import contact_boundary
@@ -32,9 +32,10 @@ def compute_evidence(params, reading="along_plus_x", *, beside=False):
         reading: in which what the paper shows is computed.
         beside: the corrected physics too.
     """
-    found = of_the_paper(*for_a1(params, reading))
+    found = of_the_paper(for_linear(params, reading), READINGS[reading].a1_model)
     if beside:
-        mended = of_the_paper(*for_a1(params, READINGS[reading].corrected))
+        other = READINGS[reading].corrected
+        mended = of_the_paper(for_linear(params, other), READINGS[other].a1_model)
         found |= {f"corrected/{name}": dataset for name, dataset in mended.items()}
     found["parameter_inference"] = infer_parameters(
         params, samples=24, reading=reading, kappa=(0.55, 0.7), mu=(0.28, 0.31),

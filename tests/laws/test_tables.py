@@ -5,7 +5,6 @@ import pytest
 
 from squealpipe import Parameters
 from squealpipe.config.settings import ConfigError, read_study
-from squealpipe.laws.contact_laws import law_of
 from squealpipe.laws.friction_laws import coefficient, slope
 from squealpipe.models.refusals import refuse_extensions
 from squealpipe.rerun.key import rule_key
@@ -103,18 +102,6 @@ def test_laws_that_cannot_be_carried_say_why():
     for given in ({"friction_law": TEXT}, {"contact_law": "dashpot"}):
         with pytest.raises(ValueError, match="A4 cannot carry this"):
             refuse_extensions(Parameters(**given), "A4", "")
-
-
-def test_energy_of_a_contact_table_is_the_integral_of_its_force():
-    params = Parameters(contact_law="linear 0:0 0.5:1 1.5:6", preload=1.2)
-    law = law_of(params.contact_law, params.preload)
-    squeezed = np.array([0.3, 0.5, 1.1, 2.0])
-    for each, found in zip(squeezed, law.energy(squeezed, params), strict=True):
-        places = np.unique(np.append(np.linspace(0.0, each, 7), np.clip([0.5, 1.5], 0.0, each)))
-        middle = 0.5 * (places[1:] + places[:-1])
-        expected = (law.force(middle, 0.0, params) * np.diff(places)).sum()
-        assert found == pytest.approx(expected, rel=1e-14)
-    assert law.force(2.0, 0.0, params) == pytest.approx(8.5, rel=1e-15)
 
 
 def test_a_law_in_python_needs_its_file_alone(tmp_path):

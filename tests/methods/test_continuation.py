@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from squealpipe.methods.continuation import Continuation, ContinuationEnd, ContinuationSettings
-from squealpipe.methods.orbits.branch_tracing import COLUMNS
 from squealpipe.methods.orbits.orbits import trace_branch
 from squealpipe.methods.orbits.shooting import MAX_SEGMENTS, rest_conditions
 from squealpipe.solvers.a4.orbits import grazing_start
@@ -77,14 +76,14 @@ def test_the_compiled_trace_follows_the_same_branch():
     scene = scaled_system(FORMER, 0.2 * math.pi, 0.7 * math.pi)
     seed = grazing_start(scene, 1)
     control = seed.settings()
-    table, _, _ = trace_branch(scene.system, seed.point, seed.direction, 3.0, control, 0.05)
+    orbits, _ = trace_branch(scene.system, seed.point, seed.direction, 3.0, control, 0.05)
+    traced = np.array([orbit.point for orbit in orbits])
     settings = ContinuationSettings(first_step=control.first_step, longest_step=0.05)
     general = Continuation(Shooting(scene.system), seed.point, seed.direction, settings)
     result = general.run(lambda state: bool(state.point[1] > 3.0))
     points = np.array([state.point for state in result.states])
-    place = COLUMNS.index("half_period")
-    inside = (points[:, 1] > table[0, 1]) & (points[:, 1] < table[-1, 1])
+    inside = (points[:, 1] > traced[0, 1]) & (points[:, 1] < traced[-1, 1])
     # linear interpolation between traced points bounds the agreement, not either method
-    between = np.interp(points[inside, 1], table[:, 1], table[:, place])
+    between = np.interp(points[inside, 1], traced[:, 1], traced[:, 2])
     np.testing.assert_allclose(points[inside, 2], between, rtol=2e-3)
     assert inside.sum() > 10

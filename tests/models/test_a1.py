@@ -8,6 +8,7 @@ from squealpipe.laws.springs import elastic_force, geometry
 from squealpipe.models import a1
 from tests import symbols
 from tests.former import FORMER
+from tests.oracles.energy import friction_power, mechanical_energy
 
 DRAWS = symbols.draws(30)
 SPRING_FORCE = symbols.function(symbols.SPRING_FORCE)
@@ -63,7 +64,7 @@ def test_energy_changes_by_the_power_of_friction(params, state, regime):
 
     def energy(step):
         moved = here + step * rate
-        return float(a1.mechanical_energy(*moved, params, g, contact=contact))
+        return float(mechanical_energy(*moved, params, g, contact))
 
     step = 1e-4
     # Fourth-order difference: truncation and round-off are both far below the tolerance.
@@ -72,7 +73,7 @@ def test_energy_changes_by_the_power_of_friction(params, state, regime):
     )
     elastic_x, _ = elastic_force(state["x"], state["y"], params, g)
     normal = contact * float(CONTACT_FORCE(params, **state))
-    power = a1.friction_power(vx, elastic_x, normal, params, direction=direction, stick=stick)
+    power = friction_power(vx, elastic_x, normal, params, direction, stick)
     assert slope == pytest.approx(power, rel=1e-7, abs=1e-7)
 
 

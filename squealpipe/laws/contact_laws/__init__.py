@@ -32,9 +32,6 @@ class ContactLaw(Protocol):
     def stiffness(self, compression: Any, p: Any) -> Any:
         """∂N/∂δ, N/m."""
 
-    def energy(self, compression: Any, p: Any) -> Any:
-        """The work that compresses it slowly from 0, J."""
-
 
 LINEAR = "linear"
 LAWS = {
@@ -61,10 +58,6 @@ class Table:
     def stiffness(self, compression: Any, p: Any) -> Any:
         """∂N/∂δ, N/m; at a knot that of larger compressions."""
         return p.k3 * self.pieces.value(compression * p.preload**-1.0, derivative=True)
-
-    def energy(self, compression: Any, p: Any) -> Any:
-        """The integral of the pieces, J."""
-        return p.k3 * p.preload**2 * self.pieces.integral(compression * p.preload**-1.0)
 
 
 class Piece:

@@ -6,9 +6,9 @@ begins again where the force would be positive. It jumps up by c3 δ̇ where the
 
 from typing import Any
 
-from squealpipe.laws.contact_laws.linear import energy, stiffness
+from squealpipe.laws.contact_laws.linear import stiffness
 
-__all__ = ["energy", "force", "stiffness"]
+__all__ = ["force", "stiffness"]
 
 
 def force(compression: Any, closing: Any, p: Any) -> Any:

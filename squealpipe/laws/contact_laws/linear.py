@@ -11,8 +11,3 @@ def force(compression: Any, closing: Any, p: Any) -> Any:  # noqa: ARG001
 def stiffness(compression: Any, p: Any) -> Any:  # noqa: ARG001
     """∂N/∂δ = k3, N/m."""
     return p.k3
-
-
-def energy(compression: Any, p: Any) -> Any:
-    """½ k3 δ², J."""
-    return 0.5 * p.k3 * compression * compression

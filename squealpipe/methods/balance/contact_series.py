@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from squealpipe.laws.contact import smoothed_compression, smoothed_compression_slope
+from squealpipe.methods.parabola import vertex
 
 Vector = NDArray[np.float64]
 
@@ -64,11 +65,7 @@ def _hidden_dips(gap: Vector, above: NDArray[np.bool_], grid: Vector) -> Vector:
     if not inner.size:
         return np.empty(0)
     before, here, after = gap[inner], gap[inner + 1], gap[inner + 2]
-    curvature = after - 2.0 * here + before
-    shift = np.where(
-        curvature == 0.0, 0.0, 0.5 * (before - after) / np.where(curvature, curvature, 1.0)
-    )
-    lowest = here - 0.25 * (before - after) * shift
+    shift, lowest = vertex(before, here, after)
     crossing = (lowest * here <= 0.0) & (shift != 0.0)
     turns: Vector = grid[inner + 1] + shift * (grid[1] - grid[0])
     return np.asarray(turns[crossing])
@@ -167,14 +164,6 @@ class SampledContact:
     threshold: float
     n_time: int
     sigma: float | None = None
-
-    def __post_init__(self) -> None:
-        least = 2 * self.n_harmonics + 1
-        if self.n_time < least:
-            raise ValueError(
-                f"n_time = {self.n_time!r}: at least 2 n_harmonics + 1 = {least} samples are "
-                "needed for independent columns (the paper's 2 n_harmonics are not enough)"
-            )
 
     @cached_property
     def _tables(self) -> tuple[Vector, Vector]:

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from squealpipe.methods.balance.contact_series import ClosedFormContact, SampledContact
 from squealpipe.methods.continuation import ContinuationSettings, PseudoArclength
 from squealpipe.methods.orbits.piecewise_linear import PiecewiseLinearSystem
+from squealpipe.methods.parabola import largest
 
 Vector = NDArray[np.float64]
 _AUTOMATIC_SAMPLES = 16
@@ -131,34 +132,16 @@ def cosines_of(samples: Vector) -> Vector:
 def series_extremes(cosine: Vector) -> Vector:
     """Half of the peak-to-peak of each cosine series (n, N_h + 1)."""
     table = np.cos(np.outer(_shape_grid(cosine.shape[1]), np.arange(cosine.shape[1])))
-    lowest, highest = _parabolic_extremes(cosine @ table.T)
-    return 0.5 * (highest - lowest)
+    waves = cosine @ table.T
+    return np.asarray(0.5 * (largest(waves) + largest(-waves)))
 
 
 def series_speed(cosine: Vector) -> Vector:
     """Largest |d/dθ| of each cosine series (n, N_h + 1)."""
     order = np.arange(cosine.shape[1])
     table = np.sin(np.outer(_shape_grid(cosine.shape[1]), order)) * order
-    lowest, highest = _parabolic_extremes(cosine @ table.T)
-    return np.maximum(np.abs(lowest), np.abs(highest))
+    return np.asarray(largest(np.abs(cosine @ table.T)))
 
 
 def _shape_grid(count: int) -> Vector:
     return np.linspace(0.0, math.pi, 16 * count + 1)
-
-
-def _parabolic_extremes(samples: Vector) -> tuple[Vector, Vector]:
-    """Least and largest value of rows of samples, between samples by parabolas."""
-    if not samples.size:
-        return np.zeros(len(samples)), np.zeros(len(samples))
-    rows = np.arange(len(samples))
-    extremes = []
-    for sign in (-1.0, 1.0):
-        values = sign * samples
-        top = values.argmax(axis=1)
-        inner = np.clip(top, 1, samples.shape[1] - 2)
-        before, here, after = (values[rows, inner + step] for step in (-1, 0, 1))
-        curvature = after - 2.0 * here + before
-        rise = 0.125 * (after - before) ** 2 / np.where(curvature < 0.0, -curvature, np.inf)
-        extremes.append(sign * np.where(top == inner, here + rise, values[rows, top]))
-    return extremes[0], extremes[1]

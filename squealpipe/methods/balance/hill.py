@@ -26,7 +26,7 @@ def hill_multipliers(system: PiecewiseLinearSystem, share: np.ndarray, omega: fl
     """The four Floquet multipliers of a symmetric motion.
 
     Args:
-        share: of :func:`share_above` or :func:`sampled_share_above`.
+        share: of :func:`sampled_share_above`.
     """
     below, above = np.array(system.below.matrix), np.array(system.above.matrix)
     coefficients = share[:, None, None] * (above - below)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import astuple, dataclass, replace
 from enum import IntEnum
 from itertools import pairwise
 
@@ -67,31 +67,9 @@ class TraceSettings:
     linear_x: float = 0.0
     linear_slope: float = 0.0
 
-    def __post_init__(self) -> None:
-        if not (0.0 < self.first_step <= self.longest_step < 1.0):
-            raise ValueError(
-                f"first_step = {self.first_step!r}, longest_step = {self.longest_step!r}: "
-                "0 < first_step <= longest_step < 1 is needed"
-            )
-        if not (0.0 < self.least_cosine < 1.0 and self.max_points > 0):
-            raise ValueError(
-                f"least_cosine = {self.least_cosine!r}, max_points = {self.max_points!r}: "
-                "a cosine between 0 and 1 and at least one point are needed"
-            )
-
     def control(self) -> NDArray[np.float64]:
-        """The array that the compiled kernels read."""
-        return np.array(
-            [
-                self.longest_step,
-                self.least_cosine,
-                float(self.strict),
-                float(self.max_points),
-                self.largest_x,
-                self.linear_x,
-                self.linear_slope,
-            ]
-        )
+        """All but the first step, as the compiled kernels read it."""
+        return np.array(astuple(self)[1:], dtype=float)
 
 
 @dataclass(frozen=True)
@@ -183,8 +161,8 @@ def orbit_on_branch(
     settings: TraceSettings,
 ) -> tuple[Orbit | None, TraceEnd]:
     """The branch's orbit at y0 = y_stop, and why the trace ended; None where it is not met."""
-    table, switches, end = trace_branch(system, start, direction, y_stop, settings, 0.0)
-    return (_orbit(table[-1], switches) if len(table) else None), end
+    orbits, end = trace_branch(system, start, direction, y_stop, settings, 0.0)
+    return (orbits[-1] if orbits else None), end
 
 
 def trace_branch(
@@ -194,30 +172,29 @@ def trace_branch(
     y_stop: float,
     settings: TraceSettings,
     spacing: float,
-) -> tuple[NDArray[np.float64], NDArray[np.float64], TraceEnd]:
-    """Points of a branch, the switching times of the last, and why it ended.
+) -> tuple[list[Orbit], TraceEnd]:
+    """Orbits of a branch, of which the last alone has known switching times, and why it ended.
 
     Args:
         start, direction: (3,) a solution and the way to go; neither needs to be regular.
         y_stop: larger y of the instants of rest at which the trace ends.
         spacing: largest distance of the points, over 1 + |z|; the steps do not depend on it.
-
-    Returns:
-        (n, 8) points (columns: ``branch_tracing.COLUMNS``), times, and the end.
     """
     motion = np.array([start, direction / np.linalg.norm(direction)], dtype=float)
     pace, control = np.array([settings.first_step, *[0.0] * 5]), settings.control()
     table = np.empty((_ROWS_PER_CALL if spacing else 1, len(branch_tracing.COLUMNS)))
-    switches, parts = np.empty(MAX_SEGMENTS), []
+    switches, orbits = np.empty(MAX_SEGMENTS), []
     end = branch_steps.GOES_ON
     while end == branch_steps.GOES_ON:
         count, end = branch_tracing.trace(
             system.rows, motion, pace, control, y_stop, spacing, table, switches
         )
-        parts.append(table[:count].copy())
+        orbits += [_orbit(row, np.full(MAX_SEGMENTS, np.nan)) for row in table[:count]]
         if spacing:
             report(lambda: motion[0, 1] / y_stop)
-    return np.concatenate(parts), switches, TraceEnd(end)
+    if orbits:
+        orbits[-1] = replace(orbits[-1], switches=switches[: len(orbits[-1].switches)].copy())
+    return orbits, TraceEnd(end)
 
 
 def _orbit(row: NDArray[np.float64], switches: NDArray[np.float64]) -> Orbit:

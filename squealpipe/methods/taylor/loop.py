@@ -8,7 +8,6 @@ nothing ends, no surface may be crossed and no sample is due takes no path of it
 from __future__ import annotations
 
 import math
-from enum import IntEnum
 from functools import cache
 from typing import Any, NamedTuple
 
@@ -56,24 +55,12 @@ PIECES = 8
 """Pieces of a step in which turning points are looked for, where there may be several."""
 
 
-class End(IntEnum):
-    """How a run ends; a stop of the system's own is ``STOPPED`` plus its number."""
-
-    running = -1
-    converged = 0
-    step_limit = 3
-    event_limit = 4
-    not_finite = 6
-    accumulation = 38
-
-
+RUNNING, CONVERGED, STEP_LIMIT, EVENT_LIMIT, NOT_FINITE, ACCUMULATION = -1, 0, 3, 4, 6, 38
+"""How a run ends, by the numbers of ``schema.Outcome``."""
 STOPPED = 100
+"""A stop of the system's own is this plus its number."""
 BY_EVENT, BY_TURNS = 98, 99
 """Ends of runs that were to end at the first event of a kind, or after so many turns."""
-RUNNING, CONVERGED, STEP_LIMIT = int(End.running), int(End.converged), int(End.step_limit)
-EVENT_LIMIT, NOT_FINITE = int(End.event_limit), int(End.not_finite)
-ACCUMULATION = int(End.accumulation)
-
 (
     CLOCK, CORRECTION, STEP, LONGEST, T_END, T_LATE, NEXT_SAMPLE, STEPS, MOST_STEPS, ENTERED, LOST,
     FIXED_ROWS,

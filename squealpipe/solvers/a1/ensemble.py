@@ -18,6 +18,7 @@ from squealpipe.parameters import Parameters
 from squealpipe.schema import Outcome
 from squealpipe.solvers.a1.jobs import Jobs, Model
 from squealpipe.systems import runs
+from squealpipe.systems.brake import regimes_of
 from squealpipe.systems.system import System
 from squealpipe.systems.trace import TIME
 from squealpipe.validation import Seed, Tolerance, Workers, checked
@@ -75,15 +76,10 @@ class Ensemble:
     sample_stick_time = _spent(Regime.stick, "sample_durations")
 
     def __init__(self, jobs: Jobs, raw: dict[str, np.ndarray], tracked: Sequence[str]) -> None:
-        self._jobs, self._raw, self._tracked = (
-            jobs,
-            raw,
-            [each.removeprefix(runs.LARGEST) for each in tracked],
-        )
+        self._jobs, self._raw = jobs, raw
+        self._tracked = [each.removeprefix(runs.LARGEST) for each in tracked]
         system = jobs.systems[0]
-        names = [next((r for r in Regime if name.startswith(r.name)), Regime.separated)
-                 for name in system.regimes]  # fmt: skip
-        self._regimes = np.array([*names, -1])
+        self._regimes = np.array([*regimes_of(system), -1])
         kinds = [Event.__members__.get(name, -1) for name in system.traced.kinds]
         self._kinds = np.array([*kinds, -1])
 
@@ -194,11 +190,6 @@ class Ensemble:
     def final_state(self) -> np.ndarray:
         """(…, 4) x, y, ẋ, ẏ at ``time``, m and m/s."""
         return self._states(self._raw["final"])
-
-    @property
-    def final_regime(self) -> np.ndarray:
-        """The regime then."""
-        return self._shaped(self._regimes[self._raw["ends"][:, 1]].astype(np.int8))
 
     @property
     def log_growth(self) -> np.ndarray:

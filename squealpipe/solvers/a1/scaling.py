@@ -60,12 +60,11 @@ def scaled_runs(parameters: Parameters | Mapping[str, Any], model: str) -> Scale
             if parameters.get(name) is not None
         }
         decisive = Parameters(**largest, friction_law=law)
-        plain = _plain(decisive)
-        given = _parameter_arrays({
-            **parameters,
-            **{name: getattr(plain, name) for name in ("mu", "mu_static", "friction_speed")},
-            "friction_law": plain.friction_law,
-        })  # fmt: skip
+        stands_for = ("mu", "mu_static", "friction_speed", "friction_law")
+        numbers = plain(decisive)
+        given = _parameter_arrays(
+            {**parameters, **{name: getattr(numbers, name) for name in stands_for}}
+        )
         return _scaled(given, (_own_system(decisive, model),))
     return _scaled(_parameter_arrays(parameters), model)
 
@@ -73,11 +72,10 @@ def scaled_runs(parameters: Parameters | Mapping[str, Any], model: str) -> Scale
 @lru_cache(maxsize=64)
 def _scaled_once(parameters: Parameters, model: str) -> ScaledRuns:
     """One set of parameters, which was checked when it was made; for many single runs."""
-    own = has_own_laws(parameters)
-    plain = _plain(parameters) if own else parameters
-    given = {name: np.asarray(getattr(plain, name)) for name in PHYSICAL}
-    given["mu_static"] = np.asarray(plain.static_mu)
-    if not own:
+    numbers = plain(parameters)
+    given = {name: np.asarray(getattr(numbers, name)) for name in PHYSICAL}
+    given["mu_static"] = np.asarray(numbers.static_mu)
+    if numbers is parameters:
         return _scaled(given, model)
     given["damping3"] = np.asarray(parameters.damping3)
     return _scaled(given, (_own_system(parameters, model),))
@@ -92,8 +90,10 @@ def _own_system(parameters: Parameters, model: str) -> System:
     return brake_of(parameters)
 
 
-def _plain(parameters: Parameters) -> Parameters:
+def plain(parameters: Parameters) -> Parameters:
     """The numbers that a law of the user's own stands for, under laws that have formulas."""
+    if not has_own_laws(parameters):
+        return parameters
     numbers = {name: getattr(parameters, name) for name in ("mu", "k3", "friction_speed")}
     return parameters.with_(
         **numbers,

@@ -61,6 +61,5 @@ def doubled_branch_from(
         orbits.append(found)
     away = orbits[-1].point - start
     settings = replace(TraceSettings(), first_step=OFFSETS[-1], linear_x=abs(float(start[0])))
-    table, _, end = trace_branch(scene.system, orbits[-1].point, away, y_max, settings, _SPACING)
-    orbits += [Orbit(row[:3], np.empty(int(row[7])), row[5], row[6]) for row in table]
-    return orbits, end
+    beyond, end = trace_branch(scene.system, orbits[-1].point, away, y_max, settings, _SPACING)
+    return orbits + beyond, end

@@ -3,7 +3,6 @@
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from squealpipe.methods.orbits.orbits import (
     Orbit,
@@ -31,6 +30,30 @@ def exact_branch(
     scene: ScaledSystem, mode: int, y_max: float, x_max: float, *, cross_poles: bool = False
 ) -> tuple[list[Orbit], list[Outcome], Outcome]:
     """Orbits of a branch in scaled units, their outcomes, and why it ends."""
+    orbits, outcomes, end = linear_part(scene, mode, y_max, x_max)
+    if end is not None:
+        return orbits, outcomes, end
+    if scene.system.decoupled:
+        steps, end = decoupled_steps(scene, y_max, cross_poles=cross_poles)
+        guesses = [np.array([scene.rest[0], peak, half_period]) for peak, half_period in steps]
+        found = [solve_orbit(scene.system, guess) for guess in guesses]
+        beyond = [orbit for orbit in found if orbit is not None]
+    else:
+        seed = grazing_start(scene, mode)
+        beyond, why = trace_branch(
+            scene.system, seed.point, seed.direction, y_max, seed.settings(), _SPACING
+        )
+        end = BRANCH_ENDS[why]
+    return orbits + beyond, outcomes + [Outcome.converged] * len(beyond), end
+
+
+def linear_part(
+    scene: ScaledSystem, mode: int, y_max: float, x_max: float
+) -> tuple[list[Orbit], list[Outcome], Outcome | None]:
+    """Orbits in closed form with which a branch begins, their outcomes, and why it ends there.
+
+    None where it goes on beyond grazing.
+    """
     if scene.obstacle != Outcome.converged:
         return [], [], scene.obstacle
     if scene.isolated_mode == mode:
@@ -38,26 +61,10 @@ def exact_branch(
         return orbits, [Outcome.isolated_mode] * len(orbits), Outcome.amplitude_reached
     if not math.isfinite(scene.slope(mode)):
         return [], [], Outcome.pole
-    peaks = np.linspace(scene.rest[1], min(1.0, y_max), LINEAR_POINTS + 1)[1:]
-    orbits = [linear_orbit(scene, mode, float(peak)) for peak in peaks]
-    outcomes = [linear_outcome(float(peak)) for peak in peaks]
-    if y_max <= 1.0:
-        return orbits, outcomes, Outcome.amplitude_reached
-    if scene.system.decoupled:
-        beyond, end = _decoupled_branch(scene, y_max, cross_poles=cross_poles)
-    else:
-        seed = grazing_start(scene, mode)
-        table, _, why = trace_branch(
-            scene.system, seed.point, seed.direction, y_max, seed.settings(), _SPACING
-        )
-        beyond = [Orbit(row[:3], np.empty(int(row[7])), row[5], row[6]) for row in table]
-        end = BRANCH_ENDS[why]
-    return orbits + beyond, outcomes + [Outcome.converged] * len(beyond), end
-
-
-def linear_outcome(peak: float) -> Outcome:
-    """Outcome of a point on the linear mode, with its scaled peak."""
-    return Outcome.grazing if peak == 1.0 else Outcome.linear_mode
+    peaks = np.linspace(scene.rest[1], min(1.0, y_max), LINEAR_POINTS + 1)[1:].tolist()
+    outcomes = [Outcome.grazing if peak == 1.0 else Outcome.linear_mode for peak in peaks]
+    end = Outcome.amplitude_reached if y_max <= 1.0 else None
+    return [linear_orbit(scene, mode, peak) for peak in peaks], outcomes, end
 
 
 def isolated_orbits(scene: ScaledSystem, mode: int, x_max: float) -> list[Orbit]:
@@ -76,25 +83,20 @@ def pole_number(scene: ScaledSystem, half_period: float) -> int:
     return int(half_period * math.sqrt(scene.system.below.matrix[0][0]) / math.pi)
 
 
-def decoupled_peaks(y_max: float) -> NDArray[np.float64]:
-    """Peaks from just above grazing to y_max at which a decoupled branch is computed."""
-    count = max(8, math.ceil((y_max - 1.0) / _DECOUPLED_SPACING))
-    return 1.0 + (y_max - 1.0) * np.linspace(0.0, 1.0, count + 1)[1:] ** 1.5
-
-
-def _decoupled_branch(
+def decoupled_steps(
     scene: ScaledSystem, y_max: float, *, cross_poles: bool
-) -> tuple[list[Orbit], Outcome]:
-    """The y mode where K12 = 0: y is known in closed form and drives x, up to a pole."""
-    peaks = decoupled_peaks(y_max)
-    orbits: list[Orbit] = []
+) -> tuple[list[tuple[float, float]], Outcome]:
+    """Peaks and half periods of the y mode where K12 = 0, from just above grazing, and its end.
+
+    y is known in closed form and drives x, up to a pole.
+    """
+    count = max(8, math.ceil((y_max - 1.0) / _DECOUPLED_SPACING))
+    peaks = 1.0 + (y_max - 1.0) * np.linspace(0.0, 1.0, count + 1)[1:] ** 1.5
     first = pole_number(scene, math.pi / math.sqrt(scene.system.below.matrix[1][1]))
-    for peak in map(float, peaks):
+    found: list[tuple[float, float]] = []
+    for peak in peaks.tolist():
         half_period = decoupled_half_period(scene.system, peak)
         if pole_number(scene, half_period) != first and not cross_poles:
-            return orbits, Outcome.pole
-        guess = np.array([scene.rest[0], peak, half_period])
-        found = solve_orbit(scene.system, guess)
-        if found is not None:
-            orbits.append(found)
-    return orbits, Outcome.amplitude_reached
+            return found, Outcome.pole
+        found.append((peak, half_period))
+    return found, Outcome.amplitude_reached

@@ -14,17 +14,11 @@ from squealpipe.methods.continuation import (
     ContinuationState,
 )
 from squealpipe.methods.orbits.orbit_shape import sample
-from squealpipe.methods.orbits.orbits import decoupled_half_period, index_from_switches, solve_orbit
+from squealpipe.methods.orbits.orbits import index_from_switches, solve_orbit
 from squealpipe.methods.progress import report
 from squealpipe.schema import Outcome
-from squealpipe.solvers.a4.exact_branches import (
-    LINEAR_POINTS,
-    decoupled_peaks,
-    isolated_orbits,
-    linear_outcome,
-    pole_number,
-)
-from squealpipe.solvers.a4.orbits import grazing_start, linear_orbit
+from squealpipe.solvers.a4.exact_branches import decoupled_steps, linear_part
+from squealpipe.solvers.a4.orbits import grazing_start
 from squealpipe.solvers.a4.system import ScaledSystem
 
 Vector = NDArray[np.float64]
@@ -79,33 +73,15 @@ def harmonic_branch(
         cross_poles: go on beyond ω = ω_x/n where K12 = 0.
     """
     balance = CosineBalance(scene.system, contact_of(n_harmonics, 1.0, n_time, sigma))
-    if scene.obstacle != Outcome.converged:
-        return balance, [], scene.obstacle
-    if scene.isolated_mode == mode:
-        swings = [
-            linear_series(scene, mode, n_harmonics, orbit.point)
-            for orbit in isolated_orbits(scene, mode, x_max)
-        ]
-        points = [_judged(scene, balance, z, Outcome.isolated_mode) for z in swings]
-        return balance, points, Outcome.amplitude_reached
-    if not math.isfinite(scene.slope(mode)):
-        return balance, [], Outcome.pole
-    peaks = np.linspace(scene.rest[1], min(1.0, y_max), LINEAR_POINTS + 1)[1:]
-    series = [
-        linear_series(scene, mode, n_harmonics, linear_orbit(scene, mode, float(peak)).point)
-        for peak in peaks
-    ]
-    points = [
-        _judged(scene, balance, z, linear_outcome(float(peak)))
-        for z, peak in zip(series, peaks, strict=True)
-    ]
-    if y_max <= 1.0:
-        return balance, points, Outcome.amplitude_reached
+    orbits, outcomes, end = linear_part(scene, mode, y_max, x_max)
+    series = [linear_series(scene, mode, n_harmonics, orbit.point) for orbit in orbits]
+    points = [_judged(scene, balance, *each) for each in zip(series, outcomes, strict=True)]
+    if end is not None:
+        return balance, points, end
     if scene.system.decoupled:
         beyond, end = _decoupled_branch(scene, balance, series[-1], y_max, cross_poles=cross_poles)
     else:
-        settings = ContinuationSettings()
-        beyond, end = coupled_branch(scene, balance, mode, series[-1], y_max, settings)
+        beyond, end = _coupled_branch(scene, balance, mode, series[-1], y_max)
     return balance, points + [_judged(scene, balance, z, Outcome.converged) for z in beyond], end
 
 
@@ -118,16 +94,11 @@ def linear_series(scene: ScaledSystem, mode: int, n_harmonics: int, point: Vecto
     return z
 
 
-def coupled_branch(
-    scene: ScaledSystem,
-    balance: CosineBalance,
-    mode: int,
-    start: Vector,
-    y_max: float,
-    settings: ContinuationSettings,
+def _coupled_branch(
+    scene: ScaledSystem, balance: CosineBalance, mode: int, start: Vector, y_max: float
 ) -> tuple[list[Vector], Outcome]:
     """Solutions beyond grazing, followed by pseudo-arclength, and why the branch ends."""
-    seed = grazing_start(scene, mode)
+    seed, settings = grazing_start(scene, mode), ContinuationSettings()
     direction = np.zeros_like(start)
     direction[1], direction[balance.contact.n_harmonics + 2] = seed.direction[:2]
     first = min(settings.first_step, 0.1 * seed.room / (1.0 + float(np.linalg.norm(start))))
@@ -135,9 +106,9 @@ def coupled_branch(
     ended = Outcome.converged
 
     def from_higher_end(state: ContinuationState) -> ContinuationState:
-        if _other_end(balance, state.point) <= _peak(balance, state.point):
-            return state
         signs = balance.shift_signs
+        if _peak(balance, signs * state.point) <= _peak(balance, state.point):
+            return state
         return replace(
             state,
             point=signs * state.point,
@@ -174,28 +145,21 @@ def _peak(balance: CosineBalance, z: Vector) -> float:
     return float(balance.peak_row @ z)
 
 
-def _other_end(balance: CosineBalance, z: Vector) -> float:
-    return float(balance.peak_row @ (balance.shift_signs * z))
-
-
 def _decoupled_branch(
     scene: ScaledSystem, balance: CosineBalance, start: Vector, y_max: float, *, cross_poles: bool
 ) -> tuple[list[Vector], Outcome]:
     """The y mode where K12 = 0, at given peaks, up to a pole of x."""
     found: list[Vector] = []
     guess = start
-    first = pole_number(scene, math.pi / start[-1])
-    for peak in map(float, decoupled_peaks(y_max)):
-        half_period = decoupled_half_period(scene.system, peak)
-        if pole_number(scene, half_period) != first and not cross_poles:
-            return found, Outcome.pole
+    steps, end = decoupled_steps(scene, y_max, cross_poles=cross_poles)
+    for peak, half_period in steps:
         guess = guess.copy()
         guess[-1] = math.pi / half_period
         solved = balance.solve(guess, balance.peak_row, peak)
         if solved is not None:
             guess = solved[0]
             found.append(guess)
-    return found, Outcome.amplitude_reached
+    return found, end
 
 
 def _judged(

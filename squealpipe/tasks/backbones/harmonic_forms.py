@@ -24,6 +24,9 @@ Branches = Mapping[str, tuple[float, float, int]]
 
 _INTERVALS = 2**14
 """Intervals of half a period from which an exact orbit's cosines are taken."""
+PEAK = 2.0
+"""y_peak of the orbits, over l_pre."""
+N_HARMONICS, N_TIME = 8, 34
 _PHASES = 13
 """Phases of the start; not a divisor of the samples, whose own symmetry would hide the spread."""
 
@@ -57,20 +60,12 @@ def exact_motion(
     return ExactMotion(scene, orbit, cosines_of(states[:, 0]), cosines_of(states[:, 1]))
 
 
-def compare_harmonic_forms(
-    params: Parameters,
-    branches: Branches,
-    *,
-    peak: float = 2.0,
-    n_harmonics: int = 8,
-    n_time: int = 34,
-) -> xr.Dataset:
+def compare_harmonic_forms(params: Parameters, branches: Branches) -> xr.Dataset:
     """The paper's balance, corrected and with Eq. (34) as printed, started at the exact orbit.
 
     Args:
         params: physical parameters; σ is ``params.sigma``.
         branches: name → (alpha1, alpha2, mode).
-        peak: y_peak over l_pre of the orbits; n_harmonics: N_h; n_time: N.
 
     Returns:
         Per branch and form what was found; per N the rank of Γ and the spread over the phase
@@ -78,11 +73,11 @@ def compare_harmonic_forms(
     """
     forms = (Form.mended, Form.as_printed)
     sigma = params.sigma * params.preload
-    motions = [exact_motion(params, *branch, peak) for branch in branches.values()]
+    motions = [exact_motion(params, *branch, PEAK) for branch in branches.values()]
     found = [
         [
             SampledBalance(
-                motion.scene.system, n_harmonics, n_time, sigma, as_printed=form == Form.as_printed
+                motion.scene.system, N_HARMONICS, N_TIME, sigma, as_printed=form == Form.as_printed
             )
             for form in forms
         ]
@@ -100,24 +95,24 @@ def compare_harmonic_forms(
         [balance.peak(solution) for balance, solution in zip(*pair, strict=True)]
         for pair in zip(found, solved, strict=True)
     ]
-    counts = [2 * n_harmonics + extra for extra in (0, 1, 2)] + [4 * n_harmonics + 2]
-    counts += [16 * n_harmonics, 64 * n_harmonics]
-    spreads = [_phase_spread(motions[-1], n_harmonics, n, sigma) for n in counts]
+    counts = [2 * N_HARMONICS + extra for extra in (0, 1, 2)] + [4 * N_HARMONICS + 2]
+    counts += [16 * N_HARMONICS, 64 * N_HARMONICS]
+    spreads = [_phase_spread(motions[-1], n, sigma) for n in counts]
     return build(
         HARMONIC_FORMS,
         {
             "omega": np.array([[s.omega for s in row] for row in solved]) * unit[:, None],
             "omega_exact": np.array([motion.orbit.omega for motion in motions]) * unit,
             "y_largest": np.array(peaks) * params.preload,
-            "y_peak": peak * params.preload,
+            "y_peak": PEAK * params.preload,
             "residual": [[s.residual for s in row] for row in solved],
             "rank_deficit": [[s.rank_deficit for s in row] for row in solved],
             "outcome": [
                 [Outcome.converged if s.converged else Outcome.no_convergence for s in row]
                 for row in solved
             ],
-            "n_harmonics": n_harmonics,
-            "fourier_columns": 2 * n_harmonics + 1,
+            "n_harmonics": N_HARMONICS,
+            "fourier_columns": 2 * N_HARMONICS + 1,
             "fourier_rank": [rank for _, _, rank in spreads],
             "phase_spread_y": np.array([y for y, _, _ in spreads]) * params.preload,
             "phase_spread_omega": np.array([omega for _, omega, _ in spreads]) * unit[-1],
@@ -127,11 +122,9 @@ def compare_harmonic_forms(
     )
 
 
-def _phase_spread(
-    motion: ExactMotion, n_harmonics: int, n_time: int, sigma: float
-) -> tuple[float, float, int]:
+def _phase_spread(motion: ExactMotion, n_time: int, sigma: float) -> tuple[float, float, int]:
     """(spread of the largest y, spread of ω, rank of Γ) over the phase of the start."""
-    balance = SampledBalance(motion.scene.system, n_harmonics, n_time, sigma)
+    balance = SampledBalance(motion.scene.system, N_HARMONICS, n_time, sigma)
     peaks, omegas = [], []
     for phase in 2.0 * math.pi * np.arange(_PHASES) / _PHASES:
         start = balance.start_from_cosines(motion.x, motion.y, motion.orbit.omega, float(phase))

@@ -10,11 +10,10 @@ import numpy as np
 
 from squealpipe.codes import Event, Regime
 from squealpipe.laws import contact_laws
-from squealpipe.laws.friction_laws import FALLING
 from squealpipe.models.damped import is_undamped
 from squealpipe.parameters import TABLE, Parameters
-from squealpipe.solvers.a1.scaling import PHYSICAL, unit_value
-from squealpipe.systems.brake import brake, has_own_laws, parameters_of_run
+from squealpipe.solvers.a1.scaling import PHYSICAL, plain, unit_value
+from squealpipe.systems.brake import brake, parameters_of_run, regimes_of
 from squealpipe.systems.cycles.event_map import Cycle
 from squealpipe.systems.system import System
 
@@ -60,11 +59,7 @@ class Scene:
     @cached_property
     def scaled(self) -> Parameters:
         """The parameters in these units; of laws of the user's own the numbers alone."""
-        p = self.params
-        if has_own_laws(p):  # under laws for which no table stands
-            numbers = {name: getattr(p, name) for name in ("mu", "k3", "friction_speed")}
-            laws = {"friction_law": FALLING[0], "contact_law": contact_laws.LINEAR}
-            p = p.with_(**numbers, **laws, mu_static=p.static_mu, damping3=0.0)
+        p = plain(self.params)
         values = {name: getattr(p, name) for name in self.units if name in TABLE}
         return p.with_(**{n: v if v is None else v / self.units[n] for n, v in values.items()})
 
@@ -98,11 +93,7 @@ class Scene:
     @cached_property
     def regimes(self) -> list[Regime]:
         """A1's regime of each regime of the system, which may have several of a kind."""
-        names = [*Regime.__members__]
-        return [
-            Regime[next((n for n in names if name.startswith(n)), "separated")]
-            for name in self.system.regimes
-        ]
+        return regimes_of(self.system)
 
     @cached_property
     def kinds(self) -> list[Event | None]:

@@ -4,13 +4,12 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from squealpipe.parameters import HORIZON
 from squealpipe.schema import Outcome
 from squealpipe.solvers.a1.ensemble import run_ensemble
 from squealpipe.tasks.inference.candidates import Candidates
 from squealpipe.tasks.inference.unstable_cells import midpoints, springs_are_equal, unstable_cells
 
-HORIZON = 200.0
-"""Horizon of the runs, in units of √(m/k1)."""
 VISIBLE = 0.95
 """Distance of the cells from the centre of the disc of flutter, in radii: a region that is thinner
 than the rest shows on no map, and next to the edge nothing grows within ``HORIZON``."""

@@ -1,7 +1,7 @@
 """The paper's statements as constraints on the parameters, each with a margin.
 
 A margin is positive where the statement holds and dimensionless. Motions are those of A1 from
-rest over the scenes' ``t_end``, on maps over :data:`squealpipe.tasks.inference.angle_maps.HORIZON`.
+rest over the scenes' ``t_end``, on maps over :data:`squealpipe.parameters.HORIZON`.
 """
 
 from collections.abc import Callable, Iterable, Mapping

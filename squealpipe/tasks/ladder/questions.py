@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 
+from squealpipe.methods.parabola import largest, neighbours, vertex
 from squealpipe.parameters import Parameters
 
 
@@ -28,11 +29,11 @@ def answer_of_samples(
 ) -> np.ndarray:
     """The answer from samples (…, n) of a motion, extremes sharpened by parabolas."""
     if question == "contact_lost":
-        return np.asarray(_highest(y) > params.preload, dtype=float)
+        return np.asarray(largest(y) > params.preload, dtype=float)
     if question == "peak_contact_force":
-        return np.asarray(1.0 + _highest(-y) / params.preload)
+        return np.asarray(1.0 + largest(-y) / params.preload)
     if question == "max_displacement":
-        return np.asarray(np.sqrt(_highest(x * x + y * y)))
+        return np.asarray(np.sqrt(largest(x * x + y * y)))
     return dominant_frequency(y, times)
 
 
@@ -46,29 +47,7 @@ def dominant_frequency(samples: np.ndarray, times: np.ndarray) -> np.ndarray:
     mean = samples.mean(axis=-1, keepdims=True)
     spectrum = np.abs(np.fft.rfft((samples - mean) * window, axis=-1))
     top = np.clip(spectrum[..., 1:-1].argmax(axis=-1) + 1, 1, spectrum.shape[-1] - 2)
-    before, here, after = (
-        np.log(np.take_along_axis(spectrum, (top + step)[..., None], axis=-1)[..., 0] + 1e-300)
-        for step in (-1, 0, 1)
-    )
-    curvature = before - 2.0 * here + after
-    offset = _over_curvature(0.5 * (before - after), curvature)
+    offset, _ = vertex(*neighbours(np.log(spectrum + 1e-300), top))
     bin_width = 2.0 * math.pi / (samples.shape[-1] * (times[1] - times[0]))
     found = (top + np.clip(offset, -0.5, 0.5)) * bin_width
     return np.asarray(np.where(np.isfinite(samples).all(axis=-1), found, np.nan))
-
-
-def _highest(values: np.ndarray) -> np.ndarray:
-    """Largest of (…, n) samples, raised to the vertex of the parabola around it."""
-    top = np.clip(values.argmax(axis=-1), 1, values.shape[-1] - 2)
-    before, here, after = (
-        np.take_along_axis(values, (top + step)[..., None], axis=-1)[..., 0] for step in (-1, 0, 1)
-    )
-    rise = _over_curvature(0.125 * (after - before) ** 2, before - 2.0 * here + after)
-    return np.asarray(np.maximum(values.max(axis=-1), here - rise))
-
-
-def _over_curvature(share: np.ndarray, curvature: np.ndarray) -> np.ndarray:
-    """share/curvature at a maximum, 0 where there is none."""
-    return np.asarray(
-        np.divide(share, curvature, out=np.zeros(np.shape(share)), where=curvature < 0.0)
-    )
