@@ -393,34 +393,23 @@ class Scene:
         )
 
 
-def _scene(
-    name: str, over_pi: tuple[float, float], t_end: float, figure: int, statement: str
-) -> Scene:
-    return Scene(
-        name=name,
-        alpha1=over_pi[0] * math.pi,
-        alpha2=over_pi[1] * math.pi,
-        t_end=t_end,
-        figure=figure,
-        statement=statement,
-    )
-
-
 SCENES: dict[str, Scene] = {
-    scene.name: scene
-    for scene in (
-        _scene("F2a", (0.5, 1.0), 50, 2, "contact is kept throughout"),
-        _scene("F2b", (1.0, 0.5), 50, 2, "contact is kept throughout"),
-        _scene("F2c", (0.75, 0.75), 50, 2, "contact is kept throughout"),
-        _scene("F2d", (0.83, 0.83), 50, 2, "contact is lost"),
-        _scene("F3", (0.4, 0.6), 500, 3, "the x oscillation grows without bound"),
-        _scene("F4", (0.2, 0.8), 500, 4, "a bounded limit cycle"),
-        _scene("F5a", (1.0, 1.0), 50, 5, "repeated jumps, identical to (0, 0)"),
-        _scene("F5b", (0.0, 0.0), 50, 5, "repeated jumps, identical to (π, π)"),
-        _scene("F10", (0.5, 1.0), 50, 10, "x alone near ω1; x and y near ω2"),
-        _scene("F11", (1.0, 0.5), 50, 11, "nearly the same response as F10"),
-        _scene("F12", (0.75, 0.75), 50, 12, "nearly the same response as F10"),
-        _scene("F13", (5 / 6, 5 / 6), 50, 13, "contact is lost at the first mode"),
+    name: Scene(
+        name=name, alpha1=a * math.pi, alpha2=b * math.pi, t_end=t, figure=n, statement=says
+    )
+    for name, a, b, t, n, says in (
+        ("F2a", 0.5, 1.0, 50, 2, "contact is kept throughout"),
+        ("F2b", 1.0, 0.5, 50, 2, "contact is kept throughout"),
+        ("F2c", 0.75, 0.75, 50, 2, "contact is kept throughout"),
+        ("F2d", 0.83, 0.83, 50, 2, "contact is lost"),
+        ("F3", 0.4, 0.6, 500, 3, "the x oscillation grows without bound"),
+        ("F4", 0.2, 0.8, 500, 4, "a bounded limit cycle"),
+        ("F5a", 1.0, 1.0, 50, 5, "repeated jumps, identical to (0, 0)"),
+        ("F5b", 0.0, 0.0, 50, 5, "repeated jumps, identical to (π, π)"),
+        ("F10", 0.5, 1.0, 50, 10, "x alone near ω1; x and y near ω2"),
+        ("F11", 1.0, 0.5, 50, 11, "nearly the same response as F10"),
+        ("F12", 0.75, 0.75, 50, 12, "nearly the same response as F10"),
+        ("F13", 5 / 6, 5 / 6, 50, 13, "contact is lost at the first mode"),
     )
 }
 """The paper's named scenes (its figures 2–5 and 10–13)."""

@@ -52,7 +52,8 @@ def refine_grid(evaluate: Evaluate, resolution: int, coarse: int) -> RefinedGrid
     while spacing > 1:
         spacing //= 2
         doubtful = _spread(suspects | _nearly_used_up(reserve), False)
-        labels, computed = _halve(labels), _spread(computed, False)
+        labels = labels.repeat(2, 0).repeat(2, 1)[:-1, :-1]  # new points take those before them
+        computed = _spread(computed, False)
         suspects, reserve = _spread(suspects, False), _spread(reserve, np.nan)
         suspected_here = binary_dilation(doubtful, np.ones((3, 3)))
         while True:
@@ -78,12 +79,6 @@ def follow_boundaries(evaluate: Evaluate, grid: RefinedGrid) -> None:
 def _changes(labels: np.ndarray) -> np.ndarray:
     """Points with another label next to them."""
     return np.asarray(maximum_filter(labels, 3) != minimum_filter(labels, 3))
-
-
-def _halve(labels: np.ndarray) -> np.ndarray:
-    """The same labels at half the spacing, new points taking those before them."""
-    parent = np.arange(2 * len(labels) - 1) // 2
-    return labels[np.ix_(parent, parent)]
 
 
 def _spread(values: np.ndarray, between: object) -> np.ndarray:

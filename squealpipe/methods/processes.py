@@ -41,7 +41,7 @@ def run_shared(
     shapes: Mapping[str, tuple[tuple[int, ...], Any]],
     *,
     jobs: int,
-    workers: int | None = None,
+    workers: int | None,
 ) -> dict[str, np.ndarray]:
     """Call ``work(arrays, first, stride)`` in several processes for interleaved jobs.
 
@@ -51,13 +51,10 @@ def run_shared(
         workers: processes; None takes all cores, at most one a ``MINIMUM_JOBS`` jobs.
 
     Raises:
-        ValueError: ``workers`` is not a positive integer.
         RuntimeError: a worker process died.
     """
     if workers is None:
         workers = max(1, min(available_cores(), jobs // MINIMUM_JOBS))
-    elif isinstance(workers, bool) or not isinstance(workers, int) or workers < 1:
-        raise ValueError(f"workers = {workers!r}: a positive integer or None is needed")
     workers = min(workers, max(1, jobs))
     if workers == 1 or not _can_fork():
         arrays = {name: np.zeros(shape, dtype) for name, (shape, dtype) in shapes.items()}

@@ -1,9 +1,13 @@
 """Whether a sequence of events repeats itself."""
 
+from collections.abc import Iterator
+
 import numpy as np
 
 LEAST_REPEATS = 3
 """Whole periods that a sequence must show."""
+EVENTS_AT_ONCE = 2**20
+"""Logged events that are held in memory at once, 48 bytes each."""
 
 
 def repeats_after(times: np.ndarray, kinds: np.ndarray, tolerance: float) -> int:
@@ -30,3 +34,12 @@ def repeats_after(times: np.ndarray, kinds: np.ndarray, tolerance: float) -> int
         ):
             return int(lag)
     return 0
+
+
+def in_blocks(rows: np.ndarray, events: np.ndarray) -> Iterator[np.ndarray]:
+    """Rows, so many at a time that their logs fit; the busiest first, so that few are wide."""
+    rows = rows[np.argsort(-events[rows], kind="stable")]
+    while rows.size:
+        count = max(1, EVENTS_AT_ONCE // max(1, int(events[rows[0]])))
+        yield rows[:count]
+        rows = rows[count:]

@@ -10,7 +10,6 @@ probability 1 − p at most a share 1 − p^(1/n) of all directions has a smalle
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -28,35 +27,17 @@ SHRINK = 0.5
 FIRST_STEP = 0.5
 """Length of the first random steps on the unit sphere."""
 
-FINE = 2
-"""Times the halvings of a direction that is being improved."""
+RADII, HALVINGS = 16, 8
+"""Evenly spaced radii at which each direction is tried; halvings of the interval below."""
+IMPROVED, ROUNDS = 4, 14
+"""How many of the best directions are improved, and in how many rounds of random steps."""
+TRIES, FOLLOWED, FINE = 16, 3, 2
+"""Steps from each of them in a round, how many of those that are better are bisected, and times
+as many halvings as for a direction."""
 PHASE = 0.02
 """Step of the scan in time of :func:`smallest_linear`, over the shortest time scale."""
 MOST_STEPS = 5e6
 """Of that scan: 160 MB of rows, and seconds."""
-
-
-@dataclass(frozen=True)
-class Settings:
-    """How hard to search.
-
-    Attributes:
-        directions: random directions.
-        radii: evenly spaced radii at which each is tried.
-        halvings: of the interval along a direction; FINE times as many for improved ones.
-        improved: of the best directions, how many are improved.
-        tries: random steps from each of them in a round.
-        followed: how many of those that are better are bisected.
-        rounds: of such steps.
-    """
-
-    directions: int
-    radii: int = 16
-    halvings: int = 8
-    improved: int = 4
-    tries: int = 16
-    followed: int = 3
-    rounds: int = 14
 
 
 class Found(NamedTuple):
@@ -74,22 +55,23 @@ class Found(NamedTuple):
 
 
 def search(
-    happens: Happens, size: int, bound: float, settings: Settings, generator: np.random.Generator
+    happens: Happens, size: int, bound: float, count: int, generator: np.random.Generator
 ) -> Found:
     """The smallest vector of Euclidean norm up to ``bound`` for which something happens.
 
     Args:
+        count: random directions.
         generator: of the directions, which are uniform on the sphere and independent, and of the
             steps.
     """
-    unit = _normalized(generator.standard_normal((settings.directions, size)))
-    radius = _along(happens, unit, bound, settings)
-    best = np.argsort(radius, kind="stable")[: settings.improved]
+    unit = _normalized(generator.standard_normal((count, size)))
+    radius = _along(happens, unit, bound)
+    best = np.argsort(radius, kind="stable")[:IMPROVED]
     best = best[np.isfinite(radius[best])]
-    improved = np.full(settings.improved, np.inf)
+    improved = np.full(IMPROVED, np.inf)
     if not best.size:
         return Found(radius, improved, np.full(size, np.nan))
-    directions, radii = _improve(happens, unit[best], radius[best], settings, generator)
+    directions, radii = _improve(happens, unit[best], radius[best], generator)
     improved[: best.size] = radii
     smallest = int(np.argmin(radii))
     return Found(radius, improved, directions[smallest] * radii[smallest])
@@ -99,18 +81,16 @@ def _normalized(vectors: Array) -> Array:
     return np.asarray(vectors / np.linalg.norm(vectors, axis=-1, keepdims=True))
 
 
-def _along(happens: Happens, unit: Array, bound: float, settings: Settings) -> Array:
+def _along(happens: Happens, unit: Array, bound: float) -> Array:
     """Radius along each direction at which it first happens, to the last halving, or ∞."""
-    levels = bound * np.arange(1, settings.radii + 1) / settings.radii
+    levels = bound * np.arange(1, RADII + 1) / RADII
     first = np.full(len(unit), np.inf)
     for level in levels:
         left = np.flatnonzero(np.isinf(first))
         if left.size:
             first[left[happens(level * unit[left])]] = level
     rows = np.flatnonzero(np.isfinite(first))
-    first[rows] = _bisect(
-        happens, unit[rows], first[rows] - levels[0], first[rows], settings.halvings
-    )
+    first[rows] = _bisect(happens, unit[rows], first[rows] - levels[0], first[rows], HALVINGS)
     return first
 
 
@@ -125,21 +105,20 @@ def _bisect(happens: Happens, unit: Array, low: Array, high: Array, halvings: in
 
 
 def _improve(
-    happens: Happens, unit: Array, radius: Array, settings: Settings, generator: np.random.Generator
+    happens: Happens, unit: Array, radius: Array, generator: np.random.Generator
 ) -> tuple[Array, Array]:
     """Directions moved by random steps to smaller radii, all of them side by side."""
     unit, radius = unit.copy(), radius.copy()
     step = np.full(len(unit), FIRST_STEP)
-    count = settings.tries
-    for _ in range(settings.rounds):
-        moves = generator.standard_normal((len(unit), count, unit.shape[1]))
+    for _ in range(ROUNDS):
+        moves = generator.standard_normal((len(unit), TRIES, unit.shape[1]))
         tried = _normalized(unit[:, None] + step[:, None, None] * _normalized(moves))
         below = (1.0 - GAIN * step / FIRST_STEP) * radius
         works = happens((below[:, None, None] * tried).reshape(-1, unit.shape[1]))
-        works = works.reshape(len(unit), count)
-        owner, which = np.nonzero(works & (np.cumsum(works, axis=1) <= settings.followed))
+        works = works.reshape(len(unit), TRIES)
+        owner, which = np.nonzero(works & (np.cumsum(works, axis=1) <= FOLLOWED))
         found = _bisect(
-            happens, tried[owner, which], 0.5 * below[owner], below[owner], FINE * settings.halvings
+            happens, tried[owner, which], 0.5 * below[owner], below[owner], FINE * HALVINGS
         )
         for row in range(len(unit)):
             mine = np.flatnonzero(owner == row)

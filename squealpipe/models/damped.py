@@ -89,32 +89,18 @@ def damped_system(p: Any, alpha1: Any, alpha2: Any, *, sigma: Any = None) -> Dam
     return DampedSystem._make(entry / mass for entry in entries)
 
 
-class Quartic(NamedTuple):
-    """Coefficients of the characteristic polynomial (module docstring)."""
-
-    p1: Any
-    p2: Any
-    p3: Any
-    p4: Any
-
-
-def quartic(s: DampedSystem) -> Quartic:
-    """The characteristic polynomial of C and K."""
-    return Quartic(
-        s.c11 + s.c22,
-        s.k11 + s.k22 + s.damping_determinant,
-        s.c11 * s.k22 + s.c22 * s.k11 - s.c12 * s.k21 - s.c21 * s.k12,
-        s.determinant,
-    )
-
-
 def eigenvalues(s: DampedSystem) -> np.ndarray:
     """The four s of each cell, complex, 1/s, in a new last axis; imaginary parts descend.
 
     From the double companion matrix, polished on the polynomial in the system's precision, which
     long double carries through coalescing pairs.
     """
-    p = quartic(s)
+    p = (
+        s.c11 + s.c22,
+        s.k11 + s.k22 + s.damping_determinant,
+        s.c11 * s.k22 + s.c22 * s.k11 - s.c12 * s.k21 - s.c21 * s.k12,
+        s.determinant,
+    )
     unit = np.sqrt(np.abs(s.k11) + np.abs(s.k22))
     scaled = [np.asarray(c / unit**n) for n, c in enumerate(p, 1)]
     known = np.all([np.isfinite(c) for c in scaled], axis=0)

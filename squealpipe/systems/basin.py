@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 from enum import IntEnum
 from types import SimpleNamespace
 from typing import Any
@@ -11,7 +10,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from squealpipe.methods.recurrence import LEAST_REPEATS, repeats_after
+from squealpipe.methods.recurrence import LEAST_REPEATS, in_blocks, repeats_after
 from squealpipe.schema import Outcome, flag_table
 from squealpipe.systems.runs import (
     attributes,
@@ -31,8 +30,6 @@ MOST_PERIODS = 32
 """Periods of the forcing up to which a cycle is sought."""
 SAME_ATTRACTOR = 1e-3
 """Extremes of one attractor from two starts differ by less, over those of all attractors."""
-EVENTS_AT_ONCE = 2**20
-"""Logged events that are held at once."""
 
 
 class Motion(IntEnum):
@@ -115,7 +112,7 @@ def basin(
             period[moving[off <= REPEATED]] = (lag * forcing[moving])[off <= REPEATED]
         repeats = np.isfinite(period)
     else:
-        for rows in _blocks(moving, counts):
+        for rows in in_blocks(moving, counts):
             logged = run(rows, log_events=max(1, int(counts[rows].max())))
             for row, at, kinds in zip(
                 rows, logged["event_times"], logged["event_kinds"], strict=True
@@ -146,15 +143,6 @@ def basin(
             label = labels(f"{word} {name} in the last quarter", unit)
             found[f"{name}_{which}"] = (over, column.reshape(shape), label)
     return xr.Dataset(found, grid.coordinates, attributes(system, "basin", grid.fixed, tol))
-
-
-def _blocks(rows: np.ndarray, events: np.ndarray) -> Iterator[np.ndarray]:
-    """The rows, so many at a time that their logs fit; the busiest first."""
-    rows = rows[np.argsort(-events[rows], kind="stable")]
-    while rows.size:
-        count = max(1, EVENTS_AT_ONCE // max(1, int(events[rows[0]])))
-        yield rows[:count]
-        rows = rows[count:]
 
 
 def _numbered(motion: np.ndarray, extremes: np.ndarray) -> np.ndarray:

@@ -11,7 +11,7 @@ import numpy as np
 import xarray as xr
 
 from squealpipe.methods.taylor.scalar import REGIME, SwitchSymbols, evaluate, numpy_function
-from squealpipe.methods.taylor.symbols import Symbol, derivative, parameter, symbol
+from squealpipe.methods.taylor.symbols import Symbol, derivative, in_order, parameter, symbol
 from squealpipe.parameters import is_finite_number
 from squealpipe.schema import Outcome
 from squealpipe.systems.trace import (
@@ -21,7 +21,6 @@ from squealpipe.systems.trace import (
     Traced,
     Tracer,
     check_progress,
-    depends_on_time,
 )
 from squealpipe.text import suggestion
 from squealpipe.validation import Identifier, Number, Positive, Word, checked, needed
@@ -280,7 +279,7 @@ class System:
         every = [*rates, *stops, *outputs, *(each.surface for each in switches)]
         every += [value for each in switches for value in each.reset.values()]
         every += [c for each in switches for _, c, _ in each.targets if c is not None]
-        timed = depends_on_time(tracer, every)
+        timed = any(node is tracer.time for node in in_order(every))
         unit = parameter(TIME_UNIT)
         if callable(self.time_scale) or self.time_scale != 1.0:
             rates = [rate * unit for rate in rates]

@@ -13,7 +13,6 @@ from squealpipe.methods.taylor.symbols import (
     Symbol,
     constant_parts,
     derivative,
-    in_order,
     parameter,
     substituted,
     symbol,
@@ -218,8 +217,3 @@ def check_progress(
                 "the state where the surface goes on falling: it would fire again at once, without "
                 "end; reset a state that turns it, or lead to another regime"
             )
-
-
-def depends_on_time(tracer: Tracer, roots: Iterable[Symbol]) -> bool:
-    """Whether any expression holds the time."""
-    return any(node is tracer.time for node in in_order(list(roots)))

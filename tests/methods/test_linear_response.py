@@ -49,8 +49,3 @@ def test_many_systems_at_once_are_the_same_as_one_by_one():
     for index, matrix in enumerate(stack):
         alone = np.array(list(response_from_rest(matrix, LOAD, STEP, STEPS)))
         np.testing.assert_allclose(together[:, index], alone, rtol=1e-12, atol=1e-12)
-
-
-def test_a_step_too_long_for_the_series_is_refused():
-    with pytest.raises(ValueError, match=r"step = 2\.0: must be at most 0\.5"):
-        next(response_from_rest(np.eye(2), LOAD, 2.0, 1))

@@ -7,7 +7,7 @@ import pytest
 from scipy.integrate import solve_ivp
 from scipy.optimize import minimize
 
-from squealpipe.methods.smallest_vector import Settings, search, smallest_linear
+from squealpipe.methods.smallest_vector import search, smallest_linear
 
 RNG = np.random.default_rng(7)
 
@@ -17,7 +17,7 @@ def test_half_space_and_two_balls(size):
     """Distances of a plane, and of the nearer of two balls, which no ray from 0 need hit."""
     normal = RNG.standard_normal(size)
     normal /= np.linalg.norm(normal)
-    found = search(lambda z: z @ normal > 0.37, size, 2.0, Settings(64), np.random.default_rng(1))
+    found = search(lambda z: z @ normal > 0.37, size, 2.0, 64, np.random.default_rng(1))
     assert math.isclose(np.linalg.norm(found.vector), 0.37, rel_tol=1e-3)
     assert np.linalg.norm(found.vector) >= 0.37
     np.testing.assert_allclose(found.vector, 0.37 * normal, atol=0.03)
@@ -27,12 +27,12 @@ def test_half_space_and_two_balls(size):
     def in_a_ball(z):
         return (np.linalg.norm(z - near, axis=1) < 0.4) | (np.linalg.norm(z - far, axis=1) < 0.8)
 
-    found = search(in_a_ball, size, 3.0, Settings(256), np.random.default_rng(2))
+    found = search(in_a_ball, size, 3.0, 256, np.random.default_rng(2))
     assert 0.6 <= np.linalg.norm(found.vector) < 0.6 * 1.002
 
 
 def test_nothing_within_the_bound_is_said_so():
-    found = search(lambda z: z[:, 0] > 2.0, 3, 1.5, Settings(16), np.random.default_rng(3))
+    found = search(lambda z: z[:, 0] > 2.0, 3, 1.5, 16, np.random.default_rng(3))
     assert np.isinf(found.radius).all()
     assert np.isinf(found.improved).all()
     assert np.isnan(found.vector).all()
@@ -40,7 +40,7 @@ def test_nothing_within_the_bound_is_said_so():
 
 def test_radii_are_those_of_the_plane_along_each_direction():
     """∞ where the ray leaves the bound first; the share within it is that of a spherical cap."""
-    found = search(lambda z: z[:, 0] > 0.5, 3, 1.0, Settings(4000), np.random.default_rng(4))
+    found = search(lambda z: z[:, 0] > 0.5, 3, 1.0, 4000, np.random.default_rng(4))
     reached = np.isfinite(found.radius)
     assert abs(reached.mean() - 0.25) < 4 * math.sqrt(0.25 * 0.75 / 4000)
     assert found.radius[reached].min() >= 0.5

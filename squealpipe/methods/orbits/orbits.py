@@ -10,6 +10,7 @@ from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.optimize import brentq
 
 from squealpipe.codes import SpecialPoint
 from squealpipe.methods.orbits import branch_steps, branch_tracing, shorter_orbits
@@ -25,7 +26,6 @@ from squealpipe.methods.orbits.shooting import (
 )
 from squealpipe.methods.progress import report
 
-_MOST_HALVINGS = 100
 _MOST_SPLITS = 6
 _CLEAR = 1e-9
 """Below it a sign is left to round-off: where a tongue ends, the index tends to 2."""
@@ -312,25 +312,21 @@ def _locate(
     last: _OnChord,
     kind: SpecialPoint,
 ) -> Orbit | None:
-    """Regula falsi (Illinois) along the chord; None where an orbit in between is not found."""
-    left, right = first.share, last.share
-    low, high = first.measures[kind], last.measures[kind]
-    kept, orbit = 0, last.orbit
-    for _ in range(_MOST_HALVINGS):
-        share = right - high * (right - left) / (high - low)
+    """The zero of a measure along the chord; None where an orbit in between is not found."""
+
+    def at(share: float) -> _OnChord:
         found = _on_chord(system, start, chord, share)
         if found is None:
-            return None
-        orbit, value = found.orbit, found.measures[kind]
-        if value == 0.0 or right - left <= 4e-16:
-            break
-        if value * low > 0.0:
-            left, low, high, kept = share, value, high * (0.5 if kept == 1 else 1.0), 1
-        else:
-            right, high, low, kept = share, value, low * (0.5 if kept == 2 else 1.0), 2
-        if abs(value) <= 1e-13:
-            break
-    return orbit
+            raise ArithmeticError
+        return found
+
+    try:
+        share = brentq(
+            lambda share: at(share).measures[kind], first.share, last.share, xtol=1e-16, rtol=1e-15
+        )
+        return at(share).orbit
+    except ArithmeticError:
+        return None
 
 
 def decoupled_half_period(system: PiecewiseLinearSystem, y_peak: float) -> float:

@@ -14,6 +14,8 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+
 from squealpipe.methods.taylor import simd
 from squealpipe.methods.taylor.symbols import (
     FUNCTIONS,
@@ -27,32 +29,22 @@ from squealpipe.methods.taylor.symbols import (
 Name = Callable[[Symbol], str]
 SWEEPS = 5
 """Gauss–Seidel sweeps over the stages of the perturbation; each gains a digit or two."""
-_ROOT = 30.0**0.5
-_INNER, _OUTER = (((525.0 + side * 70.0 * _ROOT) ** 0.5) / 70.0 for side in (-1.0, 1.0))
-GAUSS = (0.5 - _OUTER, 0.5 - _INNER, 0.5 + _INNER, 0.5 + _OUTER)
-"""Four-point Gauss collocation: order 8, and neither damps nor excites an oscillation."""
 LONGEST = 0.8
 """Longest step of the perturbation times a bound of its rate: the sweeps leave 1e-7 of it, and few
 steps of a moving state are longer."""
 
 
-def collocation_weights(nodes: tuple[float, ...], end: float) -> tuple[float, ...]:
-    """Weights of the integral from 0 to ``end`` of the polynomial through values at the nodes."""
-    weights = []
-    for node in nodes:
-        powers = [1.0]  # of the Lagrange polynomial that is 1 there
-        for other in nodes:
-            if other != node:
-                above, below = [0.0, *powers], [*powers, 0.0]
-                powers = [
-                    (a - other * b) / (node - other) for a, b in zip(above, below, strict=True)
-                ]
-        weights.append(sum(p * end ** (k + 1) / (k + 1) for k, p in enumerate(powers)))
-    return tuple(weights)
+def gauss(points: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Nodes in (0, 1), weights, and the integrals of Lagrange's polynomials up to each node."""
+    places, weights = np.polynomial.legendre.leggauss(points)
+    nodes = 0.5 * (places + 1.0)
+    powers = nodes[:, None] ** np.arange(points)
+    integrals = powers * nodes[:, None] / np.arange(1, points + 1)
+    return nodes, 0.5 * weights, np.linalg.solve(powers.T, integrals.T).T
 
 
-GAUSS_WEIGHTS = collocation_weights(GAUSS, 1.0)
-GAUSS_MATRIX = tuple(collocation_weights(GAUSS, node) for node in GAUSS)
+GAUSS, GAUSS_WEIGHTS, GAUSS_MATRIX = (each.tolist() for each in gauss(4))
+"""Four-point Gauss collocation: order 8, and neither damps nor excites an oscillation."""
 PARTNERS: dict[str, Callable[[Symbol], Symbol]] = {
     "sin": lambda node: function("cos", node.arguments[0]),
     "cos": lambda node: function("sin", node.arguments[0]),

@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 from squealpipe.methods.taylor.lanes import INVERSES, Workspace, aligned, drive, taylor_terms
 from squealpipe.methods.taylor.legs import ARRAYS, SIZES, TABLE, run_legs, transfer
 from squealpipe.methods.taylor.scalar import python_function
+from squealpipe.methods.taylor.series import gauss
 from squealpipe.methods.taylor.simd import FEW, LANES
 from squealpipe.methods.taylor.symbols import Symbol, derivative, parameter, symbol
 from squealpipe.systems.runs import compiled
@@ -40,17 +41,7 @@ LONGEST = 1.0
 """Longest step of the variational equations times a bound of its rate."""
 
 
-def _gauss(points: int) -> tuple[Vector, Vector, Vector]:
-    """Nodes in (0, 1), weights, and the integrals of Lagrange's polynomials up to each node."""
-    places, weights = np.polynomial.legendre.leggauss(points)
-    nodes = 0.5 * (places + 1.0)
-    powers = nodes[:, None] ** np.arange(points)
-    integrals = powers * nodes[:, None] / np.arange(1, points + 1)
-    up_to = np.asarray(np.linalg.solve(powers.T, integrals.T).T, dtype=np.float64)
-    return nodes, 0.5 * weights, up_to
-
-
-_NODES, _WEIGHTS, _UP_TO = _gauss(6)
+_NODES, _WEIGHTS, _UP_TO = gauss(6)
 _PLACES = np.linspace(0.0, 1.0, 9)
 
 

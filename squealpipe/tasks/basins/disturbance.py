@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 from annotated_types import Ge
 
-from squealpipe.methods.smallest_vector import Found, Settings, search, smallest_linear
+from squealpipe.methods.smallest_vector import IMPROVED, Found, search, smallest_linear
 from squealpipe.models.variants import VARIANT_RULES
 from squealpipe.parameters import Parameters
 from squealpipe.schema import Outcome, blank, build
@@ -89,9 +89,8 @@ def smallest_disturbance(
     sliding = steady_sliding(scene) if params.belt_speed != 0.0 else None
     numbers = np.unique(np.append(2 ** np.arange(3, directions.bit_length()), directions))
     numbers = numbers[numbers <= directions]
-    improved = Settings(directions).improved
     nothing: dict[str, Any] = {
-        **blank(SMALLEST_DISTURBANCE, directions=numbers.size, improved=improved),
+        **blank(SMALLEST_DISTURBANCE, directions=numbers.size, improved=IMPROVED),
         "leads_to": goal,
         "regime_linear": stability_map(params, [alpha1], [alpha2]).regime_linear.item(),
         "alpha1": alpha1,
@@ -99,7 +98,7 @@ def smallest_disturbance(
         "t_end": horizon,
         "bound": largest,
     }
-    coordinates = {"directions": numbers, "improved": np.arange(1, improved + 1)}
+    coordinates = {"directions": numbers, "improved": np.arange(1, IMPROVED + 1)}
 
     def result(outcome: Outcome, **found: Any) -> xr.Dataset:
         return build(SMALLEST_DISTURBANCE, {**nothing, **found, "outcome": outcome}, coordinates)
@@ -143,7 +142,7 @@ def smallest_disturbance(
             return np.asarray(np.isfinite(run.first_separation_time))
         return whirls(run)
 
-    found = search(happens, 4, largest, Settings(directions), np.random.default_rng(seed))
+    found = search(happens, 4, largest, directions, np.random.default_rng(seed))
     known |= _described(found, numbers, scale)
     reached = int(np.isfinite(found.radius).sum())
     outcome = Outcome.converged if reached else Outcome.not_reached

@@ -55,7 +55,10 @@ def limit_cycle(
     """
     scene = Scene(params, alpha1, alpha2)
     cycle, outcome = cycle_from(scene, guess, t_settle)
-    return cycle_dataset(scene, cycle, outcome)
+    found = blank(LIMIT_CYCLE, multiplier=4) if cycle is None else _described(scene, cycle)
+    angles = {"alpha1": alpha1, "alpha2": alpha2}
+    multiplier = {"multiplier": np.arange(1, 5)}
+    return build(LIMIT_CYCLE, {**found, **angles, "outcome": outcome}, multiplier)
 
 
 def cycle_from(
@@ -78,14 +81,6 @@ def cycle_from(
     if outcome == Outcome.not_finite and scene.is_singular(state[:2]):
         outcome = Outcome.singular_geometry
     return cycle, Outcome.singular_geometry if outcome >= STOPPED else Outcome(outcome)
-
-
-def cycle_dataset(scene: Scene, cycle: Cycle | None, outcome: Outcome) -> xr.Dataset:
-    """A limit cycle, or the reason why there is none, as a dataset."""
-    found = blank(LIMIT_CYCLE, multiplier=4) if cycle is None else _described(scene, cycle)
-    angles = {"alpha1": scene.alpha1, "alpha2": scene.alpha2}
-    multiplier = {"multiplier": np.arange(1, 5)}
-    return build(LIMIT_CYCLE, {**found, **angles, "outcome": outcome}, multiplier)
 
 
 def _described(scene: Scene, cycle: Cycle) -> dict[str, Any]:

@@ -1,12 +1,12 @@
 """What a motion of model A1 has become, judged from the second half of its run."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 
-from squealpipe.methods.recurrence import LEAST_REPEATS, repeats_after
+from squealpipe.methods.recurrence import LEAST_REPEATS, in_blocks, repeats_after
 from squealpipe.schema import Outcome
 from squealpipe.schema.dynamics.runs import MotionFlag
 from squealpipe.solvers.a1.ensemble import Ensemble
@@ -31,8 +31,6 @@ INTERVAL_TOLERANCE = 1e-6
 """Largest difference of event intervals that counts as a repetition, over their mean."""
 LEAST_EVENTS = 4 * LEAST_REPEATS
 """Events in the later half of a run from which a repetition is sought."""
-EVENTS_AT_ONCE = 2**20
-"""Logged events that are held in memory at once, 48 bytes each."""
 CALM = (MotionFlag.contact_kept, MotionFlag.hammered_then_contact, MotionFlag.at_rest)
 USED = (
     "outcome",
@@ -213,20 +211,10 @@ def refine_labels(
     """
     motion = motion.copy()
     undetermined = (motion == MotionFlag.undetermined) & (run.outcome == Outcome.converged)
-    for rows in _blocks(np.flatnonzero(undetermined), run.events):
+    for rows in in_blocks(np.flatnonzero(undetermined), run.events):
         logged = again(rows, int(run.events[rows].max()))
         motion[rows] = [
             regular_kind(times, kinds, t_end)
             for times, kinds in zip(logged.event_times, logged.event_kinds, strict=True)
         ]
     return motion
-
-
-def _blocks(cells: np.ndarray, events: np.ndarray) -> Iterator[np.ndarray]:
-    """The cells by number of events, in blocks that hold about EVENTS_AT_ONCE of them."""
-    cells = cells[np.argsort(events[cells], kind="stable")]
-    while cells.size:
-        # as many of the busiest as fit, so that no block is wider than it needs to be
-        size = max(1, EVENTS_AT_ONCE // max(1, int(events[cells[-1]])))
-        yield cells[-size:]
-        cells = cells[:-size]
