@@ -1,6 +1,5 @@
 """A problem's texts as a ``System``."""
 
-from functools import partial
 from typing import Any
 
 from squealpipe import functions
@@ -18,7 +17,9 @@ def system_of(problem: Problem) -> System:
             return lambda *args: {name: part(*args) for name, part in parts.items()}
         code = compile(text, problem.name, "eval")
         known = {name: getattr(functions, name) for name in FUNCTIONS}
-        return partial(_value, code, known)
+        return lambda t, s, p, r: eval(  # noqa: S307 (equations of this package)
+            code, {**known, "time": t, **vars(s), **vars(p), **vars(r)}
+        )
 
     return System(
         problem.name,
@@ -36,7 +37,3 @@ def system_of(problem: Problem) -> System:
         ],
         start={**data["start"], "regime": problem.regime},
     )  # fmt: skip
-
-
-def _value(code: Any, known: Any, t: Any, s: Any, p: Any, r: Any) -> Any:
-    return eval(code, {**known, "time": t, **vars(s), **vars(p), **vars(r)})  # noqa: S307

@@ -111,14 +111,9 @@ def pair_determinant(first: Scalar, second: Scalar, sine: Scalar) -> Scalar:
     return first * second * sine * sine
 
 
-def determinant_from_sine(p: Any, sine: Scalar) -> Scalar:
-    """K11 K22 − K12² of Eqs. (8a)–(8c), N²/m²."""
-    return pair_determinant(p.k1, p.k2, sine)
-
-
 def stiffness_determinant(p: Any, g: Geometry) -> Scalar:
-    """:func:`determinant_from_sine` from direction cosines, N²/m²."""
-    return determinant_from_sine(p, g.s1 * g.c2 + g.c1 * g.s2)
+    """K11 K22 − K12² from direction cosines, N²/m²."""
+    return pair_determinant(p.k1, p.k2, g.s1 * g.c2 + g.c1 * g.s2)
 
 
 def linear_elastic_force(x: Scalar, y: Scalar, stiffness: Stiffness) -> tuple[Scalar, Scalar]:

@@ -1,18 +1,30 @@
 """The linear chain: angles → stiffness → spectrum of the mass in contact, for A2, A3 and A4."""
 
+from collections.abc import Mapping
+from types import SimpleNamespace
 from typing import Any, NamedTuple
 
 import numpy as np
 
+from squealpipe.laws.friction_laws import coefficient
 from squealpipe.laws.springs import (
     Stiffness,
-    determinant_from_sine,
     geometry,
     linear_stiffness,
+    pair_determinant,
     sine_of_sum,
 )
 from squealpipe.models.a2 import FEW_ULPS
 from squealpipe.models.a4 import Spectrum, spectrum
+from squealpipe.parameters import direction_of
+
+
+def with_drag(fields: Mapping[str, Any]) -> SimpleNamespace:
+    """Parameters, each of which may be an array, with μs and the drag that follow from them."""
+    p = SimpleNamespace(**fields)
+    p.static_mu = p.mu if p.mu_static is None else p.mu_static
+    p.drag = direction_of(p.belt_speed) * coefficient(np.abs(p.belt_speed), p)
+    return p
 
 
 class ContactSystem(NamedTuple):
@@ -39,14 +51,9 @@ def contact_system(p: Any, alpha1: Any, alpha2: Any, *, k3: Any = None) -> Conta
         k3: contact stiffness in place of ``p.k3``, N/m: 0 when separated.
     """
     stiffness = linear_stiffness(p, geometry(alpha1, alpha2))
-    determinant = spring_determinant(p, alpha1, alpha2)
+    sine = sine_of_sum(alpha1, alpha2)
+    determinant = pair_determinant(p.k1, p.k2, np.where(np.abs(sine) <= FEW_ULPS, 0.0, sine))
     invariants = spectrum(
         stiffness, determinant, k3=p.k3 if k3 is None else k3, mu=p.drag, mass=p.mass
     )
     return ContactSystem(stiffness, determinant, invariants)
-
-
-def spring_determinant(p: Any, alpha1: Any, alpha2: Any) -> Any:
-    """det K, N²/m²; 0 where α1 + α2 is a multiple of π but for the rounding of π."""
-    sine = sine_of_sum(alpha1, alpha2)
-    return determinant_from_sine(p, np.where(np.abs(sine) <= FEW_ULPS, 0.0, sine))

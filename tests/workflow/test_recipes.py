@@ -90,7 +90,7 @@ import numpy as np
 from squealpipe import Parameters, stability_map
 from squealpipe.config.settings import parse_study
 from tests.oracles.a1_automaton import A1Automaton
-from squealpipe.solvers.a1.jobs import Jobs
+from squealpipe.solvers.a1.jobs import jobs_of
 from tests.oracles.a1_scipy import simulate_scipy
 from tests.oracles.a1_long_double import simulate_reference
 
@@ -107,7 +107,7 @@ params = Parameters(
     friction_slope=0.4, mu=0.2,
 )
 assert parse_study({"parameters": params.as_dict()}).parameters.friction_slope == 0.4
-jobs = Jobs.build(
+jobs = jobs_of(
     params, 1.0, 2.0, t_end=1.0, model="A1", tol=1e-12, initial_state=np.zeros(4), times=None,
 )
 assert np.isclose(jobs.values["friction_slope"], 0.4 * 2.0 / np.sqrt(1.7 / 0.8), rtol=1e-14)

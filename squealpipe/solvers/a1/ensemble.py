@@ -2,26 +2,24 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 from functools import cached_property
 from types import SimpleNamespace
-from typing import Annotated, Any
+from typing import Any
 
 import numpy as np
-from pydantic import BeforeValidator
 
 from squealpipe.codes import Event, Regime
 from squealpipe.laws.springs import fixed_ends, geometry
 from squealpipe.methods.taylor.loop import BY_EVENT, BY_TURNS, STOPPED
 from squealpipe.parameters import Parameters
 from squealpipe.schema import Outcome
-from squealpipe.solvers.a1.jobs import Jobs, Model
+from squealpipe.solvers.a1.jobs import Jobs, jobs_of
 from squealpipe.systems import runs
 from squealpipe.systems.brake import regimes_of
 from squealpipe.systems.system import System
 from squealpipe.systems.trace import TIME
-from squealpipe.validation import Seed, Tolerance, Workers, checked
+from squealpipe.validation import Seed, Workers, checked
 
 BLOCK = 2**17
 """Runs of a map that are held in memory at once, about 1 kB each."""
@@ -236,80 +234,34 @@ class Ensemble:
         return self._states(self._raw["event_states"])
 
 
-def _fields(value: Any) -> Any:
-    if not isinstance(value, Parameters | Mapping):
-        raise ValueError(  # noqa: TRY004 (pydantic lets other errors through)
-            "Parameters(...) or a mapping of their names to arrays is needed"
-        )
-    return value
-
-
-Fields = Annotated[Any, BeforeValidator(_fields)]
-
-
 @checked
 def run_ensemble(
-    parameters: Fields,
+    parameters: Parameters | Mapping[str, Any],
     alpha1: Any,
     alpha2: Any,
     *,
-    t_end: Any,
-    model: Model = "A1",
-    tol: Tolerance = 1e-12,
-    initial_state: Any = (0.0, 0.0, 0.0, 0.0),
-    times: Any = None,
-    sums: bool = False,
-    stop_at_first_separation: bool = False,
-    stop_at_turns: float = math.inf,
-    t_late: Any = math.inf,
     tracked: Sequence[str] = TRACKED,
+    sums: bool = False,
     tangent: bool = False,
     log_events: Seed = 0,
     workers: Workers = None,
+    **options: Any,
 ) -> Ensemble:
-    """Integrate many runs at once; every argument may differ from run to run.
-
-    ``parameters`` (values of the mapping), ``alpha1``, ``alpha2``, ``t_end`` and ``t_late`` are
-    broadcast against one another; the results have that shape. Units of mass, stiffness and length
-    may differ between runs too: each is integrated in units of m = k1 = l_pre = 1.
+    """Integrate many runs at once, each in units of m = k1 = l_pre = 1.
 
     Args:
-        parameters: ``Parameters``, or a mapping of its field names to arrays; fields left out
-            take the baseline's value.
-        alpha1, alpha2: spring angles, rad.
-        t_end: end of each run, s.
-        model: "A1", "A1-no-stick", "A1-no-separation", "A1-linear-springs", "A1-as-printed" or
-            "A4".
-        initial_state: (x, y, vx, vy) in m and m/s, broadcast over the runs (last axis 4).
-        times: instants (last axis), the same for all runs or one row per run, s, ascending.
-        sums: keep what has added up at these instants, too.
-        stop_at_first_separation: end a run there with outcome ``separated``.
-        stop_at_turns: end a run at this many net turns around both fixed ends, with outcome
-            ``amplitude_reached``.
-        t_late: where early extremes end and late ones begin, s; "return" stands for the first
-            return to the belt, and ``return_peak_contact_force`` asks for it.
+        parameters, alpha1, alpha2, options: as :func:`squealpipe.solvers.a1.jobs.jobs_of` has
+            them; the results have the shape to which they are broadcast.
         tracked: of :data:`TRACKED`, those whose extremes are read.
+        sums: keep what has added up at ``times``, too.
         tangent: carry one perturbation along (for the predictability horizon).
         log_events: number of events a run to keep.
         workers: processes; None takes all cores. The results are the same bit for bit.
 
     Raises:
-        ValueError: an unknown model or parameter, a value that is not finite or not allowed, or
-            shapes that do not broadcast.
+        ValueError: as ``jobs_of``.
     """
-    jobs = Jobs.build(
-        parameters,
-        alpha1,
-        alpha2,
-        t_end=t_end,
-        model=model,
-        tol=tol,
-        initial_state=initial_state,
-        times=times,
-        stop_at_first_separation=stop_at_first_separation,
-        stop_at_turns=stop_at_turns,
-        t_late=t_late,
-    )
+    jobs = jobs_of(parameters, alpha1, alpha2, **options)
     return integrate(
         jobs, tracked, sums=sums, tangent=tangent, log_events=log_events, workers=workers
     )

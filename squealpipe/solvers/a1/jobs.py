@@ -8,16 +8,28 @@ from dataclasses import dataclass
 from typing import Annotated, Any
 
 import numpy as np
+from pydantic import BeforeValidator
 
 from squealpipe.models.refusals import WHY_A4, refuse_extensions
 from squealpipe.models.variants import VARIANT_RULES
 from squealpipe.parameters import NUMBERS_OF_A1, Parameters
 from squealpipe.solvers.a1.scaling import scaled_runs
 from squealpipe.systems.system import System
-from squealpipe.validation import one_of, real_array
+from squealpipe.validation import Tolerance, checked, one_of, real_array
 
 Model = Annotated[str, one_of(VARIANT_RULES)]
 """A nonlinear model, or a variant of it."""
+
+
+def _fields(value: Any) -> Any:
+    if not isinstance(value, Parameters | Mapping):
+        raise ValueError(  # noqa: TRY004 (pydantic lets other errors through)
+            "Parameters(...) or a mapping of their names to arrays is needed"
+        )
+    return value
+
+
+Fields = Annotated[Any, BeforeValidator(_fields)]
 MOST_TIME_UNITS = 1e9
 """Longest run; beyond it, one takes hours."""
 STATE = ("x", "y", "vx", "vy")
@@ -49,77 +61,99 @@ class Jobs:
     time_unit: np.ndarray
     length: np.ndarray
 
-    @classmethod
-    def build(
-        cls,
-        parameters: Parameters | Mapping[str, Any],
-        alpha1: Any,
-        alpha2: Any,
-        *,
-        t_end: Any,
-        model: str,
-        tol: float,
-        initial_state: Any,
-        times: Any,
-        stop_at_first_separation: bool = False,
-        stop_at_turns: float = math.inf,
-        t_late: Any = math.inf,
-    ) -> Jobs:
-        """Jobs from the arguments of :func:`squealpipe.solvers.a1.ensemble.run_ensemble`."""
-        if model == "A4" and isinstance(parameters, Parameters):
-            refuse_extensions(parameters, "model A4", WHY_A4)
-        physical = scaled_runs(parameters, model)
-        late_from_return = isinstance(t_late, str) and t_late == "return"
-        inputs = {
-            "alpha1": real_array("alpha1", alpha1),
-            "alpha2": real_array("alpha2", alpha2),
-            "t_end": real_array("t_end", t_end),
-            "t_late": real_array("t_late", math.inf if late_from_return else t_late, infinite=True),
-        }
-        state = real_array("initial_state", initial_state)
-        if state.shape[-1:] != (4,):
-            raise ValueError(f"initial_state has shape {state.shape}: x, y, vx, vy are needed last")
-        if not (inputs["t_end"] >= 0).all():
-            raise ValueError(f"t_end = {inputs['t_end'].min()!r}: must be 0 or greater")
-        shapes = {array.shape for array in inputs.values()}
-        shape = np.broadcast_shapes(physical.time_unit.shape, *shapes, state.shape[:-1])
-
-        def flat(array: np.ndarray) -> np.ndarray:
-            return _spread(array, shape).reshape(-1)
-
-        time_unit, ends, length = (
-            flat(a) for a in (physical.time_unit, inputs["t_end"], physical.length)
-        )
-        _refuse_too_long(ends, time_unit)
-        t_end, rate = ends / time_unit, flat(physical.rate)
-        speed = length / time_unit
-        units = (length, length, speed, speed)
-        columns = np.moveaxis(_spread(state, (*shape, 4)).reshape(-1, 4), -1, 0)
-        values = {name: flat(physical.numbers[name]) for name in NUMBERS_OF_A1}
-        values |= {name: flat(inputs[name]) for name in ("alpha1", "alpha2")}
-        values |= {n: c / u for n, c, u in zip(STATE, columns, units, strict=True)}
-        return cls(
-            tol=tol,
-            shape=shape,
-            systems=physical.systems,
-            which=flat(physical.which),
-            values=values,
-            t_end=t_end,
-            t_late=flat(inputs["t_late"]) / time_unit,
-            late_from_return=late_from_return,
-            times=_sample_times(times, shape, ends, time_unit),
-            stop_at_first_separation=stop_at_first_separation,
-            stop_at_turns=float(real_array("stop_at_turns", stop_at_turns, infinite=True)),
-            most=(1e4 + 200 * rate * t_end, 1e3 + 20 * rate * t_end),
-            time_unit=time_unit,
-            length=length,
-        )
-
     def groups(self) -> Iterator[tuple[System, Any]]:
         """Each system and the rows of its runs."""
         for index, system in enumerate(self.systems):
             alone = len(self.systems) == 1
             yield system, slice(None) if alone else np.flatnonzero(self.which == index)
+
+
+@checked
+def jobs_of(
+    parameters: Fields,
+    alpha1: Any,
+    alpha2: Any,
+    *,
+    t_end: Any,
+    model: Model = "A1",
+    tol: Tolerance = 1e-12,
+    initial_state: Any = (0.0, 0.0, 0.0, 0.0),
+    times: Any = None,
+    stop_at_first_separation: bool = False,
+    stop_at_turns: float = math.inf,
+    t_late: Any = math.inf,
+) -> Jobs:
+    """Jobs whose arguments may each differ from run to run.
+
+    ``parameters`` (values of the mapping), ``alpha1``, ``alpha2``, ``t_end`` and ``t_late`` are
+    broadcast against one another. Units of mass, stiffness and length may differ too.
+
+    Args:
+        parameters: ``Parameters``, or a mapping of its field names to arrays; fields left out
+            take the baseline's value.
+        alpha1, alpha2: spring angles, rad.
+        t_end: end of each run, s.
+        model: a key of ``VARIANT_RULES``.
+        initial_state: (x, y, vx, vy) in m and m/s, broadcast over the runs (last axis 4).
+        times: instants (last axis), the same for all runs or one row per run, s, ascending.
+        stop_at_first_separation: end a run there with outcome ``separated``.
+        stop_at_turns: end a run at this many net turns around both fixed ends, with outcome
+            ``amplitude_reached``.
+        t_late: where early extremes end and late ones begin, s; "return" stands for the first
+            return to the belt, and ``return_peak_contact_force`` asks for it.
+
+    Raises:
+        ValueError: an unknown model or parameter, a value that is not finite or not allowed, or
+            shapes that do not broadcast.
+    """
+    if model == "A4" and isinstance(parameters, Parameters):
+        refuse_extensions(parameters, "model A4", WHY_A4)
+    physical = scaled_runs(parameters, model)
+    late_from_return = isinstance(t_late, str) and t_late == "return"
+    inputs = {
+        "alpha1": real_array("alpha1", alpha1),
+        "alpha2": real_array("alpha2", alpha2),
+        "t_end": real_array("t_end", t_end),
+        "t_late": real_array("t_late", math.inf if late_from_return else t_late, infinite=True),
+    }
+    state = real_array("initial_state", initial_state)
+    if state.shape[-1:] != (4,):
+        raise ValueError(f"initial_state has shape {state.shape}: x, y, vx, vy are needed last")
+    if not (inputs["t_end"] >= 0).all():
+        raise ValueError(f"t_end = {inputs['t_end'].min()!r}: must be 0 or greater")
+    shapes = {array.shape for array in inputs.values()}
+    shape = np.broadcast_shapes(physical.time_unit.shape, *shapes, state.shape[:-1])
+
+    def flat(array: np.ndarray) -> np.ndarray:
+        return _spread(array, shape).reshape(-1)
+
+    time_unit, ends, length = (
+        flat(a) for a in (physical.time_unit, inputs["t_end"], physical.length)
+    )
+    _refuse_too_long(ends, time_unit)
+    t_end, rate = ends / time_unit, flat(physical.rate)
+    speed = length / time_unit
+    units = (length, length, speed, speed)
+    columns = np.moveaxis(_spread(state, (*shape, 4)).reshape(-1, 4), -1, 0)
+    values = {name: flat(physical.numbers[name]) for name in NUMBERS_OF_A1}
+    values |= {name: flat(inputs[name]) for name in ("alpha1", "alpha2")}
+    values |= {n: c / u for n, c, u in zip(STATE, columns, units, strict=True)}
+    return Jobs(
+        tol=tol,
+        shape=shape,
+        systems=physical.systems,
+        which=flat(physical.which),
+        values=values,
+        t_end=t_end,
+        t_late=flat(inputs["t_late"]) / time_unit,
+        late_from_return=late_from_return,
+        times=_sample_times(times, shape, ends, time_unit),
+        stop_at_first_separation=stop_at_first_separation,
+        stop_at_turns=float(real_array("stop_at_turns", stop_at_turns, infinite=True)),
+        most=(1e4 + 200 * rate * t_end, 1e3 + 20 * rate * t_end),
+        time_unit=time_unit,
+        length=length,
+    )
 
 
 def _spread(array: np.ndarray, shape: tuple[int, ...]) -> np.ndarray:

@@ -3,17 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import xarray as xr
 from scipy.ndimage import distance_transform_edt, label
 
-from squealpipe.laws.friction_laws import coefficient
 from squealpipe.methods.zero_lines import Vector, ZeroLines
 from squealpipe.models import a3
-from squealpipe.models.contact_system import contact_system
+from squealpipe.models.contact_system import contact_system, with_drag
 from squealpipe.parameters import HORIZON, Parameters
 from squealpipe.schema import Outcome, build
 from squealpipe.schema.curves import REGIME_CHART, ChartLine
@@ -71,9 +69,7 @@ def regime_chart(
     square = Square(params, fixed, axes, options, "A1")
 
     def invariants(places: Vector) -> Any:
-        fields = square.fields(places)
-        p = SimpleNamespace(**fields)
-        p.static_mu, p.drag = p.mu, np.sign(p.belt_speed) * coefficient(np.abs(p.belt_speed), p)
+        p = with_drag(square.fields(places))
         return contact_system(p, p.alpha1, p.alpha2).invariants
 
     def closed(quantity: str) -> ZeroLines:

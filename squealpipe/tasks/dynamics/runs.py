@@ -16,7 +16,7 @@ from squealpipe.schema import Outcome, build
 from squealpipe.schema.dynamics.runs import SIMULATION, VALIDITY_MAP
 from squealpipe.schema.origin import recorded
 from squealpipe.solvers.a1.ensemble import PEAK, integrate, run_map
-from squealpipe.solvers.a1.jobs import Jobs, Model
+from squealpipe.solvers.a1.jobs import Model, jobs_of
 from squealpipe.tasks.linear.maps import stability_map
 from squealpipe.tasks.sampling import default_times, unresolved
 from squealpipe.validation import Angle, Angles, NotNegative, State, Tolerance, Vector, Workers
@@ -64,7 +64,7 @@ def simulate(
         times = default_times(params, t_end)
     elif missed := unresolved(params, times):
         warnings.warn(missed, stacklevel=6)
-    job = Jobs.build(
+    job = jobs_of(
         params,
         alpha1,
         alpha2,

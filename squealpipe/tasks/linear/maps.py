@@ -8,11 +8,7 @@ import mpmath
 import numpy as np
 import xarray as xr
 
-from squealpipe.laws.springs import (
-    Geometry,
-    determinant_from_sine,
-    linear_stiffness,
-)
+from squealpipe.laws.springs import Geometry, linear_stiffness, pair_determinant
 from squealpipe.models import a2, a3
 from squealpipe.models.a4 import Spectrum, natural_frequencies_squared, spectrum
 from squealpipe.models.contact_system import contact_system
@@ -194,7 +190,7 @@ def _spectrum(params: Parameters, alpha1: np.ndarray, alpha2: np.ndarray, k3: fl
         )
         precise = spectrum(
             linear_stiffness(p, g),
-            determinant_from_sine(p, sine),
+            pair_determinant(p.k1, p.k2, sine),
             k3=_precise(k3),
             mu=_precise(params.drag),
             mass=p.mass,

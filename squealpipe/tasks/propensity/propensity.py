@@ -13,12 +13,12 @@ from annotated_types import Ge, Interval, MinLen
 from scipy import stats
 
 from squealpipe.codes import LinearRegime
-from squealpipe.laws.friction_laws import coefficient, slope
+from squealpipe.laws.friction_laws import slope
 from squealpipe.methods.progress import parts
 from squealpipe.models import a3
-from squealpipe.models.contact_system import contact_system
+from squealpipe.models.contact_system import contact_system, with_drag
 from squealpipe.models.damped import damped_system, stability
-from squealpipe.parameters import DEFAULTS, Parameters, direction_of
+from squealpipe.parameters import DEFAULTS, Parameters
 from squealpipe.schema import Outcome, build
 from squealpipe.schema.dynamics.runs import MotionFlag
 from squealpipe.schema.origin import recorded
@@ -178,9 +178,7 @@ def _events(
 
 
 def _flutters(fields: Mapping[str, Any], alpha1: np.ndarray, alpha2: np.ndarray) -> np.ndarray:
-    p = SimpleNamespace(**(DEFAULTS | dict(fields)))
-    p.static_mu = p.mu if p.mu_static is None else p.mu_static
-    p.drag = direction_of(p.belt_speed) * coefficient(np.abs(p.belt_speed), p)
+    p = with_drag(DEFAULTS | dict(fields))
     damped = (p.damping1 != 0) | (p.damping2 != 0) | (slope(np.abs(p.belt_speed), p) != 0)
     if not np.any(damped):
         system = contact_system(p, alpha1, alpha2)
