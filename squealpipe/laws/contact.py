@@ -42,11 +42,6 @@ def regularized_force(y: Any, p: Any, sigma: Any) -> Any:
     return p.k3 * smoothed_compression(p.preload - y, sigma)
 
 
-def regularized_stiffness(y: Any, p: Any, sigma: Any) -> Any:
-    """−d/dy of :func:`regularized_force`, N/m."""
-    return p.k3 * smoothed_compression_slope(p.preload - y, sigma)
-
-
 def linearized_contact_stiffness(p: Any, sigma: Any) -> Any:
-    """Eq. (8d): K3, the regularized stiffness at y = 0, N/m; tends to k3 for large σ l_pre."""
-    return regularized_stiffness(0.0, p, sigma)
+    """Eq. (8d): K3, N/m, by which the regularized force falls at y = 0; k3 for large σ l_pre."""
+    return p.k3 * smoothed_compression_slope(p.preload, sigma)

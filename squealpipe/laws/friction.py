@@ -14,11 +14,6 @@ def slip_force(normal_force: Any, direction: Any, mu: Any) -> Any:
 
     The paper prints μ(V_r) = μ sgn(V_r) below Eq. (5), which pushes the mass against the belt;
     Eqs. (6), (9), (18), (20) drag it along, as here (E1).
-
-    Args:
-        normal_force: N, N.
-        direction: sgn(V − ẋ).
-        mu: the coefficient at the sliding speed.
     """
     return mu * normal_force * direction
 

@@ -178,12 +178,17 @@ class PseudoArclength:
         curvature = (tangent - state.tangent) / length
         return ContinuationState(point, tangent, curvature, following, iterations, residual)
 
-    def advance(self, problem: Problem, state: ContinuationState) -> ContinuationState | None:
-        """The next state; None where no step down to the shortest one is accepted."""
+    def advance(
+        self,
+        problem: Problem,
+        state: ContinuationState,
+        accepts: Callable[[ContinuationState], bool] = lambda _: True,
+    ) -> ContinuationState | None:
+        """The next state that is accepted; None where no step down to the shortest one is."""
         step = state.step
         while step >= self.settings.shortest_step:
             following = self.attempt(problem, replace(state, step=step))
-            if following is not None:
+            if following is not None and accepts(following):
                 return following
             step *= 0.5
         return None

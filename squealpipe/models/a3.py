@@ -40,8 +40,6 @@ def acceleration(x: Any, y: Any, ratios: Groups, mu: Any, load: Any) -> tuple[An
     Args:
         x, y: X = x/l_pre, Y = y/l_pre of Eqs. (12e), (12f), about the unloaded state, or about
             the static state where ``load`` is 0: the change of variable is X − X* (E4).
-        ratios: see :func:`groups`.
-        mu: friction coefficient.
         load: ½ (k3/K11)(1 + tanh σ l_pre), which tends to k3/K11.
     """
     return (

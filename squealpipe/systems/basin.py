@@ -58,10 +58,7 @@ def basin(
     quarters have the same extremes. All else is *unsettled*.
 
     Args:
-        system: what is run.
-        t_end: end of each run.
         start: states that differ from the system's start, numbers or 1-D arrays, and ``regime``.
-        tol: tolerance of the Taylor integrator.
         workers: processes; None takes all cores.
         parameters: those that differ from the system's, numbers or 1-D arrays.
 

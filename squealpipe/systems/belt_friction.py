@@ -29,11 +29,9 @@ def belt_oscillator(
     """A mass of 1 on a spring of 1 and a dashpot, on a belt.
 
     Args:
-        name: of the system.
         parameters: with ``belt_speed`` and ``damping``.
         friction: the friction force over (sliding speed, parameters); its limit in stick is that
             at speed 0.
-        start: x and v.
     """
 
     def pull(s: Any, p: Any) -> Any:

@@ -255,14 +255,11 @@ class _Laws:
         if not self.rules.separates:
             return []
         first = [self.name(*each) for each in self.in_contact() if each[2] == 0]
+        landing = self.landing("contact", on_belt, holds)
         if self.contact_law != "dashpot":
-
-            def pressed(t: Any, s: Any, p: Any, r: Any) -> Any:
-                return -free(t, s, p, r)
-
             return [
-                Switch("separation", first, pressed, "separated"),
-                Switch("contact", "separated", free, self.landing("contact", on_belt, holds)),
+                Switch("separation", first, _negative(free), "separated"),
+                Switch("contact", "separated", free, landing),
             ]
 
         def force(t: Any, s: Any, p: Any, r: Any) -> Any:
@@ -270,14 +267,9 @@ class _Laws:
 
         return [
             Switch("separation", first, force, "released"),
-            Switch("contact", "separated", free, self.landing("contact", on_belt, holds)),
-            Switch(
-                "pressing",
-                "released",
-                lambda t, s, p, r: -force(t, s, p, r),
-                self.landing("contact", on_belt, holds),
-            ),
-            Switch("clearance", "released", lambda t, s, p, r: -free(t, s, p, r), "separated"),
+            Switch("contact", "separated", free, landing),
+            Switch("pressing", "released", _negative(force), landing),
+            Switch("clearance", "released", _negative(free), "separated"),
         ]
 
     def belt_switches(self, on_belt: Any, holds: Any, limit: Any, pull: Any) -> Iterator[Switch]:

@@ -127,7 +127,6 @@ def integrate(
     """Raw results of some runs, one row each.
 
     Args:
-        system: what is run.
         values: each state and parameter as an array, (runs,).
         t_end, t_late: in the system's unit of time.
         late_from: kind of event whose first begins the late part, if ``t_late`` does not.
@@ -140,9 +139,6 @@ def integrate(
             largest value alone.
         times: instants at which the state is kept, (instants,) or (runs, instants).
         sums: keep there what has added up, too.
-        tol: tolerance.
-        tangent: carry a perturbation along.
-        log_events: events kept of each run.
         most_steps, most_events: of each run.
         unit_sizes: of the states; by default the system's.
         few: compute few lanes, in half of the time; by default where they suffice.
@@ -184,16 +180,9 @@ def integrate(
         (places[quantities.index(each.removeprefix(LARGEST))], each.startswith(LARGEST))
         for each in chosen
     ]
-    limits = np.column_stack(
-        [
-            t_end / unit,
-            np.broadcast_to(t_late, (size,)) / unit,
-            np.broadcast_to(most_steps, (size,)),
-            np.broadcast_to(most_events, (size,)),
-            np.full(size, math.log(LOST_ERROR / tol)),
-            np.broadcast_to(most_turns, (size,)),
-        ]
-    )
+    lost = math.log(LOST_ERROR / tol)
+    each = (t_end / unit, t_late / unit, most_steps, most_events, lost, most_turns)
+    limits = np.stack(np.broadcast_arrays(*each), axis=-1)
     samples = np.empty((1, 0)) if times is None else np.atleast_2d(times)
     sample_times = np.ascontiguousarray(samples / unit[:, None])
     n_samples = samples.shape[1]
@@ -387,8 +376,6 @@ def simulate(
     """One run of a system, with every switch located.
 
     Args:
-        system: what is run.
-        t_end: end of the run.
         times: instants, ascending; by default four a step of the integrator, evenly spaced.
         start: states that differ from the system's start, and ``regime`` if it is to be given.
         tol: tolerance of the Taylor integrator, relative to the states' sizes.
@@ -447,12 +434,9 @@ def ensemble(
     """Many runs: an outer product over all starts and parameters that are given as 1-D arrays.
 
     Args:
-        system: what is run.
-        t_end: end of each run.
         start: states that differ from the system's start, and ``regime`` if it is to be given; an
             array of ``x`` has dimension ``x0``.
         t_late: from when the ``late_…`` extremes are kept; 0.8 t_end by default.
-        tol: tolerance of the Taylor integrator.
         horizon: with the growth of a perturbation and the horizon of predictability.
         workers: processes; None takes all cores. The result is the same bit for bit.
         parameters: those that differ from the system's.

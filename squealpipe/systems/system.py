@@ -92,7 +92,6 @@ class System:
         parameters: name → default.
         regimes: name → constants ``r`` that field and surfaces read; the same names in each.
         field: (t, s, p, r) → rates of all states, or one such function for each regime.
-        switches: see :class:`Switch`.
         start: state → value, and ``regime`` if it is to be given.
         starts_in: [(regime, condition) or (regime, condition, equality), …, regime], the first
             whose condition is ≥ 0 and whose equality is 0; a condition of None, as one left out,
@@ -465,7 +464,6 @@ class System:
 
         Args:
             values: states, parameters and ``time`` as arrays of that size.
-            size: number of runs.
             given: its name; by default that of the system's start, or what fits.
 
         Raises:

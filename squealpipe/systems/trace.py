@@ -48,8 +48,6 @@ class Traced:
         regimes: (regime, constant) their values.
         surfaces: functions whose roots switch or stop, no two the same but for sign.
         falls, rises: (regime, surface) the switch that fires there, or −1; stops follow switches.
-        switches: what each does.
-        kinds: names of the events.
         outputs: tracked quantities beside the states.
         starts: (regime, condition or None, equality or None).
         derived: what holds parameters alone, computed once a run: parameters after the given ones.

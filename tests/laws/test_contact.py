@@ -39,11 +39,10 @@ def test_regularized_force_tends_to_the_sharp_one_like_one_over_sigma():
 
 @pytest.mark.parametrize("y", [-0.7, 0.0, 0.9, 1.0, 1.2])
 @pytest.mark.parametrize("sigma", [0.5, 4.0, 30.0])
-def test_regularized_stiffness_is_minus_the_slope(y, sigma):
-    params = FORMER
+def test_slope_of_the_regularized_force(y, sigma):
     with mpmath.workdps(40):
         slope = mpmath.diff(lambda u: (1 - u) * (1 + mpmath.tanh(sigma * (1 - u))) * 0.75 / 2, y)
-    stiffness = contact.regularized_stiffness(y, params, sigma)
+    stiffness = 0.75 * contact.smoothed_compression_slope(1.0 - y, sigma)
     assert stiffness == pytest.approx(-float(slope), rel=1e-12, abs=1e-13)
 
 

@@ -12,12 +12,12 @@ from numpy.typing import NDArray
 
 from squealpipe.laws.contact import smoothed_compression, smoothed_compression_slope
 from squealpipe.methods.parabola import vertex
+from squealpipe.methods.zeros import bracketed
 
 Vector = NDArray[np.float64]
 
-_NEWTON = 60
-_NEWTON_LAST_STEP = 1e-9
-"""Its square, the error that quadratic convergence leaves, is below round-off."""
+_LAST_STEP = 1e-9
+"""Of Newton's method; its square, the error that is left, is below round-off."""
 _SAMPLES_PER_HARMONIC = 8
 
 
@@ -50,7 +50,14 @@ def contact_angles(cosine: Vector, threshold: float, grid: Vector, table: Vector
         )
         sort = np.argsort(left)
         left, right, ends = left[sort], right[sort], (ends[0][sort], ends[1][sort])
-    return _refine(cosine, threshold, (left, right), ends)
+    order = np.arange(len(cosine))
+    rate = order * cosine
+
+    def gap_at(theta: Vector) -> tuple[Vector, Vector]:
+        phase = np.outer(theta, order)
+        return threshold - np.cos(phase) @ cosine, np.sin(phase) @ rate
+
+    return bracketed(gap_at, (left, right), ends, _LAST_STEP)
 
 
 def _hidden_dips(gap: Vector, above: NDArray[np.bool_], grid: Vector) -> Vector:
@@ -69,35 +76,6 @@ def _hidden_dips(gap: Vector, above: NDArray[np.bool_], grid: Vector) -> Vector:
     crossing = (lowest * here <= 0.0) & (shift != 0.0)
     turns: Vector = grid[inner + 1] + shift * (grid[1] - grid[0])
     return np.asarray(turns[crossing])
-
-
-def _refine(
-    cosine: Vector,
-    threshold: float,
-    bracket: tuple[Vector, Vector],
-    ends: tuple[Vector, Vector],
-) -> Vector:
-    """Safeguarded Newton for one zero in each bracket, all together, from the secant's zero."""
-    left, right = bracket
-    if not left.size:
-        return left
-    order = np.arange(len(cosine))
-    rate = order * cosine
-    rising = ends[0] <= 0.0
-    theta = left + (right - left) * ends[0] / (ends[0] - ends[1])
-    for _ in range(_NEWTON):
-        phase = np.outer(theta, order)
-        gap = threshold - np.cos(phase) @ cosine
-        slope = np.sin(phase) @ rate
-        before = (gap <= 0.0) == rising
-        left, right = np.where(before, theta, left), np.where(before, right, theta)
-        newton = theta - gap / np.where(slope == 0.0, np.inf, slope)
-        inside = (newton >= left) & (newton <= right)
-        following = np.where(inside, newton, 0.5 * (left + right))
-        if np.abs(following - theta).max() <= _NEWTON_LAST_STEP:
-            return following
-        theta = following
-    return theta
 
 
 @dataclass(frozen=True)

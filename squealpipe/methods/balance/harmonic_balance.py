@@ -58,18 +58,12 @@ class CosineBalance:
     def _order_squared(self) -> Vector:
         return np.arange(self.contact.n_harmonics + 1, dtype=float) ** 2
 
-    @cached_property
-    def push(self) -> tuple[float, float]:
-        """Acceleration by a unit of the gap."""
-        below, above = self.system.below.matrix, self.system.above.matrix
-        return below[0][1] - above[0][1], below[1][1] - above[1][1]
-
     def evaluate(self, z: Vector) -> tuple[Vector, Vector]:
         """Residuals (2 N_h + 2,) and Jacobian (2 N_h + 2, 2 N_h + 3)."""
         count = self.contact.n_harmonics + 1
         x, y, omega = z[:count], z[count:-1], z[-1]
         (a11, a12), (a21, a22) = self.system.above.matrix
-        push_x, push_y = self.push
+        push_x, push_y = self.system.push
         inertia = omega * omega * self._order_squared
         gap, gap_by_y = self.contact.gap(y)
 

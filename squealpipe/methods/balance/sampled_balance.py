@@ -100,24 +100,23 @@ class SampledBalance:
         """Eqs. (31)–(34): R, (4 N_h + 2,), and Eq. (36): J, (4 N_h + 2, 4 N_h + 3)."""
         count = 2 * self.n_harmonics + 1
         a, b, omega = eta[:count], eta[count:-1], eta[-1]
-        below, above = self.system.below.matrix, self.system.above.matrix
-        push = below[0][1] - above[0][1], below[1][1] - above[1][1]
+        push_x, push_y = self.system.push
         distance = self.system.threshold - self.fourier @ b
         gap = self._projection @ smoothed_compression(distance, self.sigma)
         slope = smoothed_compression_slope(distance, self.sigma)
         gap_by_b = -(self._projection * slope) @ self.fourier
-        identity = np.eye(count)
-        values, blocks = [], []
-        for row, (of_x, of_y) in enumerate(self._stiffness):
-            own = a if row == 0 else b
-            values.append(omega**2 * self._curvature @ own + of_x * a + of_y * b - push[row] * gap)
-            by_a, by_b = of_x * identity, of_y * identity - push[row] * gap_by_b
-            if row == 0:
-                by_a = by_a + omega**2 * self._curvature
-            else:
-                by_b = by_b + omega**2 * self._curvature
-            blocks.append(np.column_stack([by_a, by_b, 2.0 * omega * self._curvature @ own]))
-        return np.concatenate(values), np.vstack(blocks)
+        (k11, k12), (k21, k22) = self._stiffness
+        one, inertia = np.eye(count), omega**2 * self._curvature
+        by_omega = 2.0 * omega * self._curvature @ np.stack([a, b], axis=1)
+        values = (
+            inertia @ a + k11 * a + k12 * b - push_x * gap,
+            inertia @ b + k21 * a + k22 * b - push_y * gap,
+        )
+        jacobian = [
+            [inertia + k11 * one, k12 * one - push_x * gap_by_b, by_omega[:, :1]],
+            [k21 * one, inertia + k22 * one - push_y * gap_by_b, by_omega[:, 1:]],
+        ]
+        return np.concatenate(values), np.block(jacobian)
 
     def solve(
         self, start: Vector, *, tolerance: float = 1e-10, max_iterations: int = 60

@@ -57,6 +57,12 @@ class PiecewiseLinearSystem:
         return np.array([self.below.row(self.threshold), self.above.row(self.threshold)])
 
     @property
+    def push(self) -> tuple[float, float]:
+        """Acceleration by a unit of the gap, threshold − y, below."""
+        below, above = self.below.matrix, self.above.matrix
+        return below[0][1] - above[0][1], below[1][1] - above[1][1]
+
+    @property
     def decoupled(self) -> bool:
         """Whether y moves independently of x in both states."""
         return self.below.matrix[1][0] == 0.0 and self.above.matrix[1][0] == 0.0

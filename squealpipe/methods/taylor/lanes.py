@@ -56,7 +56,6 @@ class CompiledSystem:
     Attributes:
         series: address of :func:`squealpipe.methods.taylor.series.series_source`, compiled.
         perturb, longest: likewise of ``perturbation_source`` and ``longest_source``, 0 if left out.
-        code: keeps them in memory.
         n_series: number of series that the former keeps.
     """
 
@@ -71,8 +70,6 @@ def compile_system(system: HybridSystem, *, tangent: bool, few: bool = False) ->
     """Write and compile the functions of a system, or take them from the store.
 
     Args:
-        system: the symbolic system.
-        tangent: with its perturbation.
         few: compute the first ``simd.FEW`` lanes only.
     """
     source, n_series = series_source(system)

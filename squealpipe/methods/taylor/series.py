@@ -67,8 +67,6 @@ class HybridSystem:
     """A vector field with switched parameters and the functions whose roots switch them.
 
     Attributes:
-        variables: the state.
-        rates: its time derivatives.
         events: a root of one of these may end a step.
         parameters: names of the parameters, in the order of their rows.
         explicit_time: the last variable is the time, which is not perturbed.

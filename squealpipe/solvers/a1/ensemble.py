@@ -365,7 +365,6 @@ def run_map(
 
     Args:
         alpha1, alpha2: 1-D arrays of angles, rad.
-        wanted: attributes of :class:`Ensemble` to keep.
 
     Returns:
         The wanted arrays, each (alpha1, alpha2).

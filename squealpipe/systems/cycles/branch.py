@@ -187,13 +187,7 @@ class Step:
 
 
 class Follower:
-    """A branch as it is followed.
-
-    Attributes:
-        low, high: range of the parameter.
-        most: points after which the branch ends.
-        points: of the branch so far.
-    """
+    """A branch as it is followed."""
 
     def __init__(self, low: float, high: float, most: int) -> None:
         self.low, self.high, self.most = low, high, most
@@ -679,11 +673,8 @@ def cycle_branch(
     bifurcations, grazings and onsets of stick are located and are points of their own.
 
     Args:
-        system: the system.
-        parameter: its name.
         to: value at which the branch ends.
         start: a dataset of ``limit_cycle`` or one point of a branch; the other parameters are its.
-        n_points: most points.
 
     Returns:
         Dataset over ``point`` with what :func:`limit_cycle` gives of a cycle, a variable of the
@@ -742,9 +733,7 @@ def first_point(
     """A cycle as a point of its branch, with a tangent towards a value of the parameter."""
     begin = cycle.parts.values[parameter]
     flow = Flow(cycle.map.flow.system, (parameter,), tied)
-    equations = cycle.followed_in(flow, np.array([max(abs(begin), abs(to))]))
-    parts = cycle.parts
-    guess = equations.pack(parts.states, parts.durations, parts.start, np.array([begin]))
+    equations, guess = cycle.followed_in(flow, np.array([max(abs(begin), abs(to))]))
     normal = np.zeros(len(guess))
     normal[-1] = math.copysign(1.0, to - begin)
     algorithm = PseudoArclength(PRECISE, least_iterations=0, own_tangent=True)

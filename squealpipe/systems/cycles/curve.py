@@ -61,7 +61,6 @@ class Curve:
 
     Attributes:
         map: of the cycle, with two followed parameters.
-        label: which curve.
         own: the margin that vanishes along it, of a grazing or an onset of stick.
         border: right and left null vector next to the point, of a fold or a period doubling.
     """
@@ -265,7 +264,7 @@ class _Way:
         """The points after a first one."""
         while True:
             self.curve.renew(state.point)
-            following = self._step(state)
+            following = self.algorithm.advance(self.curve, state, self._is_cycle)
             if following is None:
                 self.end = "curve_lost"
                 return
@@ -288,14 +287,8 @@ class _Way:
             yield self._point(following, Meeting.regular)
             state = following
 
-    def _step(self, state: ContinuationState) -> ContinuationState | None:
-        step = state.step
-        while step >= STEPS.shortest_step:
-            following = self.algorithm.attempt(self.curve, replace(state, step=step))
-            if following is not None and Cycle.at(self.curve.map, following.point).period > 0.0:
-                return following
-            step *= 0.5
-        return None
+    def _is_cycle(self, state: ContinuationState) -> bool:
+        return Cycle.at(self.curve.map, state.point).period > 0.0
 
     def _end(
         self, state: ContinuationState, following: ContinuationState
@@ -394,7 +387,6 @@ def cycle_curve(
     """The curve of a special point of a branch, in two parameters, in both directions.
 
     Args:
-        system: the system.
         label: ``fold``, ``period_doubling``, ``grazing`` or ``stick_onset``.
         parameters: names of the two that vary.
         start: a branch, whose first point of that label is taken, or one point of it.
@@ -419,7 +411,7 @@ def cycle_curve(
         raise ValueError(f"start has no point of {label}")
     cycle = started(system, start.isel(point=int(at[0])) if "point" in start.dims else start)
     units = np.array([max(abs(cycle.parts.values[name]), 1e-3) for name in parameters])
-    cycle = Cycle.at(*_followed(cycle, Flow(system, tuple(parameters)), units))
+    cycle = Cycle.at(*cycle.followed_in(Flow(system, tuple(parameters)), units))
     curve, guess = _curve_of(cycle, which)
     curve.renew(guess)
     algorithm = PseudoArclength(replace(PRECISE, max_iterations=20), 0, own_tangent=True)
@@ -449,12 +441,6 @@ def cycle_curve(
     middle = Point(Cycle.at(curve.map, first.point), first.residual)
     points = [*found[0][::-1], middle, *found[1]]
     return _dataset(system, label, points, parameters, [way.end for way in ways])
-
-
-def _followed(cycle: Cycle, flow: Flow, units: Vector) -> tuple[EventMap, Vector]:
-    made, parts = cycle.followed_in(flow, units), cycle.parts
-    values = np.array([parts.values[name] for name in flow.followed])
-    return made, made.pack(parts.states, parts.durations, parts.start, values)
 
 
 def _dataset(

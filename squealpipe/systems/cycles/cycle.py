@@ -99,14 +99,9 @@ def guess_of(
     """Equations and guess from a run that is nearly periodic; None where its regimes are not.
 
     Args:
-        flow: of the system.
-        values: parameters.
-        motion: the run.
-        state: its first state.
         period: after which it nearly repeats, s.
         periods: of the forcing in it; 0 without.
         first, count: events of one period; all by default.
-        scale: of the states.
     """
     count = len(motion.times) if count is None else count
     units = np.array([max(abs(values[name]), 1e-300) for name in flow.followed])
@@ -199,13 +194,7 @@ def find_cycle(
     """A cycle from a start or near a guess, and an outcome: above 200, of that many periods more.
 
     Args:
-        system: the system.
-        values: parameters.
-        state: start or guess.
-        guess: which of the two.
         periods: of the forcing, or returns to the section; 0 for any number.
-        t_settle: how long a start settles.
-        regime: of the state, if it is known.
         unit: of time, in which a run settles and returns are looked for; by default the system's.
     """
     flow = Flow(system)
@@ -420,7 +409,6 @@ def limit_cycle(
     the forcing's phase.
 
     Args:
-        system: the system.
         start: from where to settle, states that differ from the system's start.
         guess: a state near the cycle, which may be unstable; at t = 0 of the forcing.
         periods: of the forcing; without it, returns to the section, which is the event that is

@@ -440,12 +440,14 @@ class Cycle:
         steps = (self.step_begins + inside - self.phase) % self.period
         return np.union1d(np.linspace(0.0, self.period, _SAMPLES + 1), steps)
 
-    def followed_in(self, flow: Flow, units: Vector) -> EventMap:
-        """Its equations with other followed parameters, scaled by it."""
-        return replace(
+    def followed_in(self, flow: Flow, units: Vector) -> tuple[EventMap, Vector]:
+        """Its equations with other followed parameters, scaled by it, and its unknowns there."""
+        made, parts = replace(
             self.map, flow=flow, values=self.parts.values, units=units, time=self.period,
             scale=scale_of(self.extremes[:, : flow.size], flow.system.sizes), _latest=None,
-        )  # fmt: skip
+        ), self.parts  # fmt: skip
+        followed = np.array([parts.values[name] for name in flow.followed])
+        return made, made.pack(parts.states, parts.durations, parts.start, followed)
 
 
 def scale_of(extremes: Vector, sizes: Vector) -> Vector:

@@ -23,6 +23,7 @@ from squealpipe.methods.taylor.scalar import python_function
 from squealpipe.methods.taylor.series import gauss
 from squealpipe.methods.taylor.simd import FEW, LANES
 from squealpipe.methods.taylor.symbols import Symbol, derivative, parameter, symbol
+from squealpipe.methods.zeros import bracketed
 from squealpipe.systems.runs import compiled
 from squealpipe.systems.trace import TIME_UNIT, Names
 
@@ -101,22 +102,16 @@ class Path:
         if not len(hits[0]):
             return found
         step, series, left = hits
-        low, high, first = _PLACES[left], _PLACES[left + 1], values[hits]
+        first, last = values[hits], values[step, series, left + 1]
         slopes = rates[step, series]
-        place = low + (high - low) * first / (first - values[step, series, left + 1])
         bends = slopes[:, 1:] * orders[:-1]
-        for _ in range(60):
+
+        def rate_at(place: Vector) -> tuple[Vector, Vector]:
             powers = np.vander(place, len(orders), increasing=True)
-            rate = (slopes * powers).sum(axis=1)
-            same = rate * first > 0.0
-            low, high = np.where(same, place, low), np.where(same, high, place)
-            with np.errstate(all="ignore"):
-                following = place - rate / (bends * powers[:, :-1]).sum(axis=1)
-            inside = (following >= low) & (following <= high)
-            following = np.where(inside, following, 0.5 * (low + high))
-            change, place = np.abs(following - place).max(), following
-            if change < 1e-6:  # the height is quadratic in it
-                break
+            return (slopes * powers).sum(axis=1), (bends * powers[:, :-1]).sum(axis=1)
+
+        ends = (_PLACES[left], _PLACES[left + 1])
+        place = bracketed(rate_at, ends, (first, last), 1e-6)  # the height is quadratic in it
         powers = np.vander(place, scaled.shape[2], increasing=True)
         height = (scaled[step, series] * powers).sum(axis=1)
         time = (self.offsets[step] + place * self.steps[step]) * self.unit
@@ -171,8 +166,6 @@ class Flow:
     """A system's legs and switches as functions of states and parameters.
 
     Args:
-        system: the system.
-        followed: parameters that derivatives are taken by.
         tied: parameters that have the value of another one.
     """
 

@@ -32,11 +32,9 @@ def sensitivities(
     The derivative of a state is at a fixed instant; an event's that of its time.
 
     Args:
-        system: that was run.
         names: of parameters, and ``<state>0`` for starts.
         values: of states at t = 0 and parameters.
         motion: the run, with its states at ``times``.
-        times: ascending.
 
     Raises:
         ValueError: an unknown name.

@@ -53,7 +53,6 @@ def backbone(
         x_amplitude_max: amplitude at which the vertical branch of an isolated x mode
             (K12 = 0) ends, m; 3 l_pre by default.
         method: ``"exact"`` or ``"hbm"`` (symmetric cosine series).
-        n_harmonics: harmonics of the series.
         n_time: samples per period of the contact force; None: contact integrals in closed form.
         sigma: regularizing factor of the contact law, 1/m; None: the sharp law.
         cross_poles: go on beyond internal resonances ω = ω_x/n where K12 = 0.

@@ -52,7 +52,6 @@ def basin_map(
             dimensions x0, y0, vx0, vy0.
         t_end: end of each run, s.
         t_late: from where the late extrema count, s; default 0.8 t_end.
-        tol: tolerance of the Taylor integrator.
         workers: processes; None takes all cores.
 
     Returns:

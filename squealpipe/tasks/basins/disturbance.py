@@ -64,9 +64,6 @@ def smallest_disturbance(
         t_end: time within which it is to happen, s; default 200 √(2m/(k1 + k2)).
         bound: largest disturbance tried, in the norm above; default 3 for contact loss, 15 for
             the whirl.
-        directions: random directions.
-        seed: of the directions.
-        tol: tolerance of the Taylor integrator.
         workers: processes; None takes all cores.
 
     Returns:

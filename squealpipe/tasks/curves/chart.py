@@ -43,12 +43,10 @@ def regime_chart(
     from rest until t_end, as in :func:`contact_boundary`, whose two arrays are given likewise.
 
     Args:
-        params: physical parameters.
         alpha1, alpha2: angles, rad.
         design: the two parameters by their names, numbers or arrays of several designs; by default
             their values in ``params``, where both are there. Distances to each line are given.
         t_end: end of each run, s; 200 √(m/k1) by default.
-        tol: tolerance of the Taylor integrator.
         workers: processes; None takes all cores.
         ranges: parameters that vary.
 

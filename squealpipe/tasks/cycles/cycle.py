@@ -37,9 +37,7 @@ def limit_cycle(
     in families: the member nearest to the guess is returned with the outcome ``family_member``.
 
     Args:
-        params: physical parameters.
         alpha1, alpha2: angles, rad.
-        model: "A1".
         guess: state (x, y, ẋ, ẏ) in m and m/s near the cycle, which may be unstable. Without it,
             the state that a run from rest has reached at ``t_settle``.
         t_settle: s; default 2000 √(m/min(k1, k2)). A run that takes too many steps for it ends with

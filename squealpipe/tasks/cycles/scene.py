@@ -29,7 +29,6 @@ class Scene:
     """Parameters and angles, and the units of what a cycle of them is made of.
 
     Attributes:
-        params: physical parameters.
         alpha1, alpha2: angles, rad.
         follow: the parameter or angle that changes, if any.
         model: "A1" or one of its variants.

@@ -33,12 +33,7 @@ class Sliding:
 
 
 def steady_sliding(scene: Scene, flow: Flow | None = None) -> Sliding | None:
-    """The equilibrium that a Newton method from r = 0 leads to; None where it finds none.
-
-    Args:
-        scene: parameters and angles.
-        flow: of the scene's system, where there is one.
-    """
+    """The equilibrium that a Newton method from r = 0 leads to; None where it finds none."""
     flow, values = flow or Flow(scene.system), scene.values
     force = 0.5 * (scene.scaled.k1 + scene.scaled.k2)
     state, regime = np.zeros(4), _regime(scene, np.zeros(4))

@@ -66,7 +66,6 @@ def hammering_map(
     Args:
         alpha1, alpha2: 1-D arrays of angles, rad.
         t_end: end of each run, s.
-        tol: tolerance of the Taylor integrator.
         workers: processes; None takes all cores.
 
     Returns:

@@ -33,25 +33,11 @@ LEAST_EVENTS = 4 * LEAST_REPEATS
 """Events in the later half of a run from which a repetition is sought."""
 CALM = (MotionFlag.contact_kept, MotionFlag.hammered_then_contact, MotionFlag.at_rest)
 USED = (
-    "outcome",
-    "time",
-    "separations",
-    "contacts",
-    "separated_time",
-    "stick_time",
-    "turns",
-    "events",
-    "log_growth",
-    "final_state",
-    "max_displacement",
-    "samples",
-    "sample_separations",
-    "sample_contacts",
-    "sample_separated_time",
-    "sample_stick_time",
-    "sample_turns",
+    "outcome", "time", "separations", "contacts", "separated_time", "stick_time", "turns", "events",
+    "log_growth", "final_state", "max_displacement", "samples", "sample_separations",
+    "sample_contacts", "sample_separated_time", "sample_stick_time", "sample_turns",
     "sample_log_growth",
-)
+)  # fmt: skip
 """Results of the runs that a label is made from."""
 
 

@@ -45,7 +45,6 @@ def refine_validity_map(
             be (coarse − 1) times a power of two.
         t_end: end of each run, s; 200 √(m/k1) by default.
         model: "A1" or one of its variants.
-        tol: tolerance of the Taylor integrator.
         workers: processes; None takes all cores.
 
     Returns:

@@ -140,7 +140,6 @@ def validity_map(
         alpha1, alpha2: 1-D arrays of angles, rad.
         t_end: end of each run, s; 200 √(m/k1) by default.
         model: "A1" or one of its variants.
-        tol: tolerance of the Taylor integrator.
         workers: processes; None takes all cores.
 
     Returns:

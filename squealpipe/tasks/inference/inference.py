@@ -53,11 +53,8 @@ def infer_parameters(
 
     Args:
         params: the study's parameters, whose margins are the baseline's.
-        samples: number of parameter sets.
-        reading: the study's reading.
         kappa, mu, length_ratio, speed_ratio: ranges of k3/k, μ, L/l_pre, |V|/(l_pre √(k/m)).
         seed: of the scrambling.
-        tol: tolerance of the integrator.
         workers: processes; None takes all cores. The result is the same bit for bit.
 
     Returns:

@@ -43,7 +43,6 @@ class Choice:
     Attributes:
         model: name of the level, of :class:`squealpipe.schema.ladder.Level`.
         value: the answer: truth value, rad/s, N_max/(k3 l_pre), or m.
-        reason: why this level.
         cost: CPU time of the rule and of A1 where it ran, s.
     """
 

@@ -71,7 +71,6 @@ def propensity(
         spring_correlation: of k1 and k2 (Gaussian copula). Sobol indices assume independent
             inputs and are not given with it.
         seed: of the scrambled Sobol sequence.
-        tol: tolerance of the integrator.
         workers: processes; None takes all cores.
 
     Returns:
