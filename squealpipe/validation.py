@@ -218,10 +218,12 @@ Number = Annotated[float, BeforeValidator(_number)]
 Positive = Annotated[Number, Gt(0)]
 NotNegative = Annotated[Number, Ge(0)]
 Tolerance = Annotated[Number, Interval(gt=1e-18, lt=1e-2)]
+"""Of the Taylor integrator, over the sizes of the states."""
 Whole = Annotated[int, BeforeValidator(_whole)]
 Natural = Annotated[Whole, Ge(1)]
 Several = Annotated[Whole, Ge(2)]
 Workers = Natural | None
+"""Processes; None takes all cores."""
 Seed = Annotated[Whole, Ge(0)]
 Mode = Annotated[int, BeforeValidator(_mode)]
 """1 or 2, by ascending frequency in contact."""

@@ -59,16 +59,12 @@ def basin(
 
     Args:
         start: states that differ from the system's start, numbers or 1-D arrays, and ``regime``.
-        workers: processes; None takes all cores.
         parameters: those that differ from the system's, numbers or 1-D arrays.
 
     Returns:
         Dataset over the arrays' dimensions, starts first: ``motion``; ``attractor``, which numbers
         rests and cycles by their extremes (-1: unsettled); ``period`` (NaN: none is known);
         ``<state>_min`` and ``<state>_max`` of the last quarter; ``outcome``.
-
-    Raises:
-        ValueError: an unknown state or parameter, or a value that is not a finite number.
     """
     grid = outer_product(system, start, parameters)
     size = math.prod(grid.shape)

@@ -142,7 +142,6 @@ def integrate(
         most_steps, most_events: of each run.
         unit_sizes: of the states; by default the system's.
         few: compute few lanes, in half of the time; by default where they suffice.
-        workers: processes; None takes all cores.
 
     Returns:
         One row a run: ``final``; ``extremes``, ``early_extremes`` and ``late_extremes`` (runs,
@@ -387,9 +386,6 @@ def simulate(
         Dataset over ``time`` and ``event``: each state, ``regime``, ``event_time``, ``event_kind``,
         ``event_regime`` (entered), ``outcome``; ``<state>_by_<name>`` (at fixed instants) and
         ``event_time_by_<name>``. Instants that the run did not reach hold NaN.
-
-    Raises:
-        ValueError: an unknown state or parameter, or a value that is not a finite number.
     """
     values = {n: scalar(n, v) for n, v in call_values(system, start, parameters).items()}
     regime = (start or {}).get("regime")
@@ -445,9 +441,6 @@ def ensemble(
         Dataset over the arrays' dimensions, starts first: final states, ``<name>_min``,
         ``<name>_max``, ``late_<name>_min``, ``late_<name>_max`` of states and outputs,
         ``count_<event>``, ``first_<event>`` (NaN: never), ``time_in_<regime>``, ``outcome``.
-
-    Raises:
-        ValueError: an unknown state or parameter, or a value that is not a finite number.
     """
     grid = outer_product(system, start, parameters)
     shape, size = grid.shape, math.prod(grid.shape)
@@ -509,11 +502,7 @@ class Grid:
 def outer_product(
     system: System, start: Mapping[str, Any] | None, parameters: Mapping[str, Any]
 ) -> Grid:
-    """The grid of what a call gives as 1-D arrays, starts first.
-
-    Raises:
-        ValueError: an unknown state or parameter, or a value that is not a finite number.
-    """
+    """The grid of what a call gives as 1-D arrays, starts first."""
     given = {
         name: real_array(name, v) for name, v in call_values(system, start, parameters).items()
     }

@@ -257,9 +257,6 @@ def run_ensemble(
         tangent: carry one perturbation along (for the predictability horizon).
         log_events: number of events a run to keep.
         workers: processes; None takes all cores. The results are the same bit for bit.
-
-    Raises:
-        ValueError: as ``jobs_of``.
     """
     jobs = jobs_of(parameters, alpha1, alpha2, **options)
     return integrate(

@@ -681,10 +681,6 @@ def cycle_branch(
         parameter's name, ``label``, ``events`` (their number) and ``end``, why the branch ended.
         A special point has the stability of the point before it; a grazing and an onset of
         sticking, where the return map has no derivative, have no multipliers (NaN).
-
-    Raises:
-        ValueError: an unknown parameter, a value that is no finite number, or no cycle to start
-            from.
     """
     if parameter not in system.parameters:
         near = suggestion(parameter, system.parameters)

@@ -35,9 +35,6 @@ def sensitivities(
         names: of parameters, and ``<state>0`` for starts.
         values: of states at t = 0 and parameters.
         motion: the run, with its states at ``times``.
-
-    Raises:
-        ValueError: an unknown name.
     """
     starts = [f"{state}0" for state in system.states]
     known = [*system.parameters, *starts]

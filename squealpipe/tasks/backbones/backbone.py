@@ -58,14 +58,9 @@ def backbone(
         cross_poles: go on beyond internal resonances ω = ω_x/n where K12 = 0.
 
     Returns:
-        Dataset over ``point``: omega (rad/s), x_amplitude, y_amplitude, y_peak, x_at_peak (m),
-        stability_index, switches, residual, outcome; ``end`` says why the branch ends. An exact
-        branch also has its period doublings and folds, located (``special_…``). For
-        ``"hbm"`` also the cosine coefficients and each point's distance from the exact orbit
-        of equal y_peak and from a time integration over one period.
-
-    Raises:
-        ValueError: an argument is out of its range; the message names it.
+        Dataset ``backbone`` over ``point``; ``end`` says why the branch ends. An exact branch also
+        has its period doublings and folds, located; a harmonic one the distance of each point from
+        the exact orbit of equal y_peak and from a time integration over one period.
     """
     y_max = 3.0 * params.preload if y_peak_max is None else y_peak_max
     x_max = 3.0 * params.preload if x_amplitude_max is None else x_amplitude_max

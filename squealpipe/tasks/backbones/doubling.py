@@ -51,12 +51,7 @@ def doubled_branch(
 
     Returns:
         Dataset over ``point`` as from ``backbone``, the doubling first (run through twice, index
-        2), with y_largest (m), first_integral (N J/m) and, of the doubling,
-        doubling_omega (rad/s, of the simple orbit) and doubling_y_peak (m). ``end`` says why the
-        branch ends, or why there is none: ``no_doubling`` or the end of an empty backbone.
-
-    Raises:
-        ValueError: an argument is out of its range; the message names it.
+        2). ``end`` is ``no_doubling``, or the end of an empty backbone, where there is no branch.
     """
     y_max = 6.0 * params.preload if y_peak_max is None else y_peak_max
     check_length("y_peak_max", y_max, params.preload)

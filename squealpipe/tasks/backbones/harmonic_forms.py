@@ -44,11 +44,7 @@ class ExactMotion:
 def exact_motion(
     params: Parameters, alpha1: float, alpha2: float, mode: int, peak: float
 ) -> ExactMotion:
-    """The exact orbit of a mode at y_peak = peak·l_pre.
-
-    Raises:
-        ValueError: there is none; the message says why.
-    """
+    """The exact orbit of a mode at y_peak = peak·l_pre."""
     scene = scaled_system(params, alpha1, alpha2)
     orbit, outcome = find_orbit(scene, mode, peak)
     if orbit is None:

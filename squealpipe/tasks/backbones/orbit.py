@@ -42,13 +42,9 @@ def periodic_orbit(
             constant y and only the peak of its equilibrium; use ``backbone`` for it.
 
     Returns:
-        Dataset with omega (rad/s), x_at_peak (m), switching_times (s, within the half period
-        after the peak), stability_index, residual, outcome, the orbit's shape and its path in that
-        half period; in the other the mass goes back along it. NaN with the reason in ``outcome``
-        where there is no such motion.
-
-    Raises:
-        ValueError: mode is not 1 or 2, or y_peak is not a finite number above the equilibrium.
+        Dataset ``periodic_orbit``; its path is that of the half period after the peak, along which
+        the mass goes back in the other. NaN with the reason in ``outcome`` where there is no such
+        motion.
     """
     check_length("y_peak", y_peak, params.preload)
     scene = scaled_system(params, alpha1, alpha2)

@@ -52,13 +52,9 @@ def basin_map(
             dimensions x0, y0, vx0, vy0.
         t_end: end of each run, s.
         t_late: from where the late extrema count, s; default 0.8 t_end.
-        workers: processes; None takes all cores.
 
     Returns:
         Dataset over the starts; see ``schema.basins``.
-
-    Raises:
-        ValueError: an argument is not finite, has too many dimensions, or a time is not allowed.
     """
     late = 0.8 * t_end if t_late is None else t_late
     if not late < t_end:

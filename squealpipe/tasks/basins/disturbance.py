@@ -64,18 +64,12 @@ def smallest_disturbance(
         t_end: time within which it is to happen, s; default 200 √(2m/(k1 + k2)).
         bound: largest disturbance tried, in the norm above; default 3 for contact loss, 15 for
             the whirl.
-        workers: processes; None takes all cores.
 
     Returns:
-        Dataset: the steady state (m), its growth rate in this model beside the regime of model A3,
-        ``distance`` and its disturbance, ``distance_by_number`` over growing numbers of
-        directions, ``linear_distance`` (contact loss by the linear motion about the steady state,
-        closed form), ``rest_distance`` (the start at rest at r = 0). Outcomes: converged,
-        not_reached (by none within the bound), already_unstable (any disturbance grows: none is
-        looked for), no_sliding_state.
-
-    Raises:
-        ValueError: an argument is not allowed.
+        Dataset ``smallest_disturbance``; its ``linear_distance`` is in closed form,
+        ``rest_distance`` that of a start at rest at r = 0. Outcomes: converged, not_reached (by
+        none within the bound), already_unstable (any disturbance grows: none is looked for),
+        no_sliding_state.
     """
     _check_goal(leads_to, model)
     time = linear_time(params)

@@ -47,7 +47,6 @@ def regime_chart(
         design: the two parameters by their names, numbers or arrays of several designs; by default
             their values in ``params``, where both are there. Distances to each line are given.
         t_end: end of each run, s; 200 √(m/k1) by default.
-        workers: processes; None takes all cores.
         ranges: parameters that vary.
 
     Returns:

@@ -74,9 +74,6 @@ def cycle_branch(
     Returns:
         Dataset over ``point``, with a variable named like the parameter; ``label`` says what is
         special about a point, "end" at the last one, and ``end`` why the branch ended there.
-
-    Raises:
-        ValueError: an argument is not allowed.
     """
     begin = _value(params, alpha1, alpha2, parameter)
     _check(params, parameter, begin, to)

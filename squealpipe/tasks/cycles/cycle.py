@@ -47,9 +47,6 @@ def limit_cycle(
         Dataset with period (s), extrema (m), fractions in contact and stick, Floquet multipliers
         (the trivial one first), events, and the motion at 401 instants. NaN with the reason in
         ``outcome`` where no cycle is found.
-
-    Raises:
-        ValueError: an argument is not allowed.
     """
     scene = Scene(params, alpha1, alpha2)
     cycle, outcome = cycle_from(scene, guess, t_settle)

@@ -42,7 +42,6 @@ def settled_extremes(
         starts: runs per scene and friction.
         t_end: s.
         seed: of the random starts, which all scenes and frictions share.
-        workers: processes; None takes all cores.
     """
     generator = np.random.default_rng(seed)
     low, high = np.log(AMPLITUDES)

@@ -117,8 +117,7 @@ def linear_pull_map(
         t_end: end of the motion, s; 50 √(m/k1) by default.
 
     Returns:
-        Dataset over (alpha1, alpha2): lowest_contact_force (over k3 l_pre), pulling_fraction,
-        outcome.
+        Dataset ``linear_pull`` over (alpha1, alpha2).
 
     Raises:
         ValueError: dashpots or a friction law that these equations do not have.

@@ -41,12 +41,7 @@ def explorer_data(
         branch_points: points kept of each backbone; shorter ones repeat their last point.
 
     Returns:
-        Dataset over (alpha1, alpha2) with histories over ``time``, the spectrum over
-        ``frequency``, and branches over (``mode``, ``point``) where model A4 carries the
-        parameters.
-
-    Raises:
-        ValueError: the spectrum's time is shorter than the history's.
+        Dataset ``explorer``; it has branches where model A4 carries the parameters.
     """
     if spectrum_time < history_time:
         raise ValueError(

@@ -66,15 +66,11 @@ def hammering_map(
     Args:
         alpha1, alpha2: 1-D arrays of angles, rad.
         t_end: end of each run, s.
-        workers: processes; None takes all cores.
 
     Returns:
         Dataset over (alpha1, alpha2); see ``schema.dynamics.runs.HAMMERING_MAP``. ``outcome`` is
         ``beyond_horizon`` where an error of ``tol`` decides the state before t_end: there only
         statistics mean something.
-
-    Raises:
-        ValueError: an argument is not a finite number, or t_end is not positive.
     """
     form = NormalForm.of(params)
     rows, columns = form.angles(alpha1, alpha2)

@@ -45,15 +45,11 @@ def refine_validity_map(
             be (coarse − 1) times a power of two.
         t_end: end of each run, s; 200 √(m/k1) by default.
         model: "A1" or one of its variants.
-        workers: processes; None takes all cores.
 
     Returns:
-        Dataset over (alpha1, alpha2): separates, first_separation_time (s), computed, outcome
-        (``inherited`` for cells that were not run), and the error rate of inherited cells with
-        its 95 % interval. Cells of a sample that were wrong are put right.
-
-    Raises:
-        ValueError: the grids do not nest, or t_end is not positive.
+        Dataset over (alpha1, alpha2); cells that were not run have the outcome ``inherited``, and
+        the error rate of these is given with its 95 % interval. Cells of a sample that were wrong
+        are put right.
     """
     t_end = HORIZON * params.time_unit if t_end is None else t_end
     angles = np.linspace(0.0, np.pi, resolution)

@@ -56,9 +56,6 @@ def simulate(
     Returns:
         Dataset over ``time`` and ``event``; see ``schema.dynamics.runs.SIMULATION``. Instants
         that a run with another outcome than ``converged`` did not reach hold NaN.
-
-    Raises:
-        ValueError: an argument is not a finite number, is negative, or names no model.
     """
     if times is None:
         times = default_times(params, t_end)
@@ -140,15 +137,10 @@ def validity_map(
         alpha1, alpha2: 1-D arrays of angles, rad.
         t_end: end of each run, s; 200 √(m/k1) by default.
         model: "A1" or one of its variants.
-        workers: processes; None takes all cores.
 
     Returns:
-        Dataset over (alpha1, alpha2): first_separation_time (s; NaN: none), separates,
-        regime_linear (A3), response_growth (late over early |x|, for the stability that A1 itself
-        shows), outcome (``separated`` or ``converged`` where the run was decided).
-
-    Raises:
-        ValueError: an argument is not a finite number or is negative.
+        Dataset over (alpha1, alpha2); ``response_growth`` is late over early |x|, for the stability
+        that A1 itself shows.
     """
     t_end = HORIZON * params.time_unit if t_end is None else t_end
     run = run_map(

@@ -28,10 +28,7 @@ def summarize(run: xr.Dataset) -> xr.Dataset:
         run: dataset ``simulation``.
 
     Returns:
-        Dataset with first_separation_time (s), impact_rate (1/s), separated_fraction,
-        stick_fraction, peak_contact_force, return_peak_contact_force, impact_speed (m/s),
-        largest_x, largest_y (m), the spectrum of the normalized contact force over ``frequency``
-        (rad/s), and its highest peaks (none of a force that ends for good).
+        Dataset ``run_summary``; a force that ends for good has no dominant frequency.
 
     Raises:
         ValueError: fewer than ``FEWEST`` samples were reached, or they are not uniform.

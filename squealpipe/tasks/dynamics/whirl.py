@@ -51,9 +51,6 @@ def whirl_sizes(
     Returns:
         Dataset over belt_speed; see ``schema.dynamics.long_runs.WHIRL``. Without three such speeds
         slope and offset are NaN and ``fit_outcome`` is ``unresolved``.
-
-    Raises:
-        ValueError: as :func:`run_ensemble`.
     """
     form, scene = NormalForm.of(params), SCENES["F3"]
     alpha1, alpha2 = form.angles(scene.alpha1, scene.alpha2)
@@ -124,9 +121,6 @@ def transient_lifetimes(
 
     Args:
         t_end: end of the runs, s.
-
-    Raises:
-        ValueError: as :func:`run_ensemble`.
     """
     form, scene = NormalForm.of(params), SCENES["F4"]
     alpha1, alpha2 = form.angles(scene.alpha1, scene.alpha2)

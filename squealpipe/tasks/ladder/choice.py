@@ -81,9 +81,6 @@ def choose_model(
         question: "contact_lost", "frequency" (dominant ω of y), "peak_contact_force"
             (N_max/(k3 l_pre)) or "max_displacement" (largest √(x² + y²)).
         t_end: horizon, s; 200 √(m/k1) by default.
-
-    Raises:
-        ValueError: the question is unknown.
     """
     horizon = HORIZON * params.time_unit if t_end is None else t_end
     cells = np.array([alpha1]), np.array([alpha2])

@@ -25,10 +25,9 @@ def critical_friction_map(params: Parameters, alpha1: Angles, alpha2: Angles) ->
         alpha1, alpha2: 1-D arrays of angles, rad.
 
     Returns:
-        Dataset over (alpha1, alpha2): critical_mu, critical_mu_undamped (without dashpots),
-        critical_mu_vanishing (the limit of both dashpots going to 0 at their ratio; that without
-        dashpots where there are none), each ∞ where no friction destabilizes; destabilized: the
-        dashpots lower the critical friction.
+        Dataset over (alpha1, alpha2): the critical friction with dashpots, without them, and in the
+        limit of both going to 0 at their ratio (without them where there are none), each ∞ where no
+        friction destabilizes.
 
     Raises:
         ValueError: the friction law depends on speed, so that its slope counts beside μ.
@@ -65,12 +64,7 @@ def critical_damping_map(
         damping1, damping2: 1-D arrays of dashpots along springs 1 and 2, N·s/m, 0 or greater.
 
     Returns:
-        Dataset over (damping1, damping2): critical_mu, ∞ where no friction destabilizes;
-        destabilized: below critical_mu_undamped, a scalar.
-
-    Raises:
-        ValueError: as :func:`critical_friction_map`, an angle that is not a number, or a negative
-            dashpot.
+        Dataset over (damping1, damping2), ∞ where no friction destabilizes.
     """
     _refuse_slope(params)
     given = {name: getattr(params, name) for name in ("mass", "k1", "k2", "k3", "drag")}

@@ -41,11 +41,9 @@ def quasi_static_map(
         sigma: regularizing factor of the contact law, 1/m; None means the sharp law.
 
     Returns:
-        Dataset over (alpha1, alpha2): possible_as_printed (Eq. 11), possible (reaction_force
-        > 0), reaction_force (N, model A2: y = 0); x_static, y_static (m) and
-        contact_force_static (N) of the equilibrium of Eq. (15), which has y ≠ 0 (E11);
-        stiffness_x, stiffness_xy, stiffness_y (K11, K12, K22, N/m); outcome.
-        NaN with outcome singular_static_state where there is no such state.
+        Dataset over (alpha1, alpha2): Eq. (11) as printed, the reaction force of A2 (y = 0), and
+        the equilibrium of Eq. (15), which has y ≠ 0 (E11). NaN with outcome singular_static_state
+        where there is no such state.
     """
     refuse_scales(params)
     k3, load = a2.contact_stiffness(params, sigma), a2.actuation(params, sigma)
@@ -97,11 +95,10 @@ def stability_map(
         sigma: regularizing factor in K3 of Eq. (8d), 1/m; None means the sharp law, K3 = k3.
 
     Returns:
-        Dataset over (alpha1, alpha2, mode): growth_rate (largest real part, 1/s), frequency
-        (rad/s; common to both modes in flutter, 0 for a divergent mode), regime_linear,
-        outcome. Relative error below 1e-13, also next to the boundaries, where the eigenvalues
-        of the rounded matrix are good to half of the digits only; damped, below 1e-12 but where
-        eigenvalues coalesce, for they are polished in long double, and NaN with outcome
+        Dataset over (alpha1, alpha2, mode); a frequency is common to both modes in flutter, 0 for a
+        divergent mode. Relative error below 1e-13, also next to the boundaries, where the
+        eigenvalues of the rounded matrix are good to half of the digits only; damped, below 1e-12
+        but where eigenvalues coalesce, for they are polished in long double, and NaN with outcome
         singular_static_state where friction depends on speed and no static contact force exists.
     """
     refuse_scales(params)

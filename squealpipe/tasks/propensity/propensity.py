@@ -71,7 +71,6 @@ def propensity(
         spring_correlation: of k1 and k2 (Gaussian copula). Sobol indices assume independent
             inputs and are not given with it.
         seed: of the scrambled Sobol sequence.
-        workers: processes; None takes all cores.
 
     Returns:
         Dataset over quantity and input: shares, first-order and total Sobol indices with 95 %
@@ -79,9 +78,6 @@ def propensity(
         parts of the sample, and the half-width of the widest total by the size of the base sample.
         An index is NaN, with outcome ``unresolved``, where its half-width is above 0.05 or fewer
         than 30 samples differ.
-
-    Raises:
-        ValueError: a distribution or another argument is not allowed.
     """
     if samples & (samples - 1):
         raise ValueError(f"samples = {samples!r}: a power of 2 of at least 64 is needed")
