@@ -8,6 +8,7 @@ conditions that chose the regime entered. Where one falls to zero the order of t
 from __future__ import annotations
 
 from enum import IntEnum
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -43,6 +44,7 @@ class Margin(NamedTuple):
     which: int
 
 
+@lru_cache(maxsize=8)
 def margins(cycle: Cycle) -> dict[Margin, float]:
     """All margins of a cycle, over the size of each quantity in it; infinite where none is near."""
     system, events = cycle.map.flow.system, cycle.map.events
@@ -51,7 +53,6 @@ def margins(cycle: Cycle) -> dict[Margin, float]:
     found: dict[Margin, float] = {}
     surfaces = path.series[:, first : first + count, 0]
     size = np.maximum(np.abs(surfaces).max(axis=0, initial=0.0), 1e-300)
-    turns = path.turns(range(first, first + count))
     bounds = [path.ends_of(first + s) for s in range(count)]
     for leg, event in enumerate(events):
         entry, duration = events[leg - 1], float(parts.durations[leg])
@@ -61,7 +62,7 @@ def margins(cycle: Cycle) -> dict[Margin, float]:
                 begin = _LATE * duration if fresh else 0.0
                 inside = [
                     sign * turn.value
-                    for turn in turns[s]
+                    for turn in path.turns[first + s]
                     if turn.leg == leg and turn.is_minimum == (sign > 0) and turn.time > begin
                 ]
                 found[Margin(Kind.touch, leg, int(s))] = min(inside, default=np.inf) / size[s]

@@ -20,6 +20,7 @@ from scipy.optimize import brentq
 from squealpipe.methods.continuation import (
     ContinuationSettings,
     ContinuationState,
+    Problem,
     PseudoArclength,
 )
 from squealpipe.methods.progress import alone
@@ -341,11 +342,12 @@ class Follower:
         self, state: ContinuationState, cycle: Cycle, following: ContinuationState, reached: Cycle
     ) -> Step | None:
         """A step with what lies in it; None where that is not clear."""
-        line = _Line(
+        line = Line(
             replace(self.algorithm, settings=PRECISE),
             cycle.map,
             (state, cycle),
             (following, reached),
+            partial(Cycle.at, cycle.map),
         )
         before, after = (min(margins(each).values()) for each in (cycle, reached))
         last = 1.0 if after >= -ROUND_OFF else line.root(_least_margin)
@@ -366,7 +368,7 @@ class Follower:
         following = replace(following, step=self._next_length(state, following))
         return Step(special, *renewed(following, reached))
 
-    def _smooth(self, line: _Line, last: float) -> list[tuple[float, Label]] | None:
+    def _smooth(self, line: Line, last: float) -> list[tuple[float, Label]] | None:
         """Shares and labels of what happens in a step, in order; None where one is not found."""
         first, reached, found = line.known[0.0], line.known[1.0], []
         if self._has_shrunk(reached[1]):
@@ -390,7 +392,7 @@ class Follower:
                     found.append((share, label))
         return sorted(found)
 
-    def _changed(self, line: _Line, found: list[tuple[float, Label]], last: float) -> Step | None:
+    def _changed(self, line: Line, found: list[tuple[float, Label]], last: float) -> Step | None:
         """A step to where the order of the events changes, and round that; None if unclear."""
         state, there = line.known[0.0][0], line.at(last)
         if self._has_shrunk(there[1]):
@@ -407,7 +409,7 @@ class Follower:
             return None
         return Step(special, *there, end=Outcome.tangency if label else self._reason())
 
-    def _shorter(self, line: _Line, cycle: Cycle, reached: Cycle) -> tuple[bool, float | None]:
+    def _shorter(self, line: Line, cycle: Cycle, reached: Cycle) -> tuple[bool, float | None]:
         """Whether a cycle of a part of the period may lie in a step, and where it is met."""
         for parts in (2, 3):
             offset, later = cycle.after_part(parts), reached.after_part(parts)
@@ -460,14 +462,15 @@ def renewed(state: ContinuationState, cycle: Cycle) -> tuple[ContinuationState, 
     return state, replace(cycle, map=made)
 
 
-class _Line:
-    """The branch of one event map between two points of it, and a little beyond."""
+class Line:
+    """A branch, or a curve, of one event map between two points of it, and a little beyond."""
 
     def __init__(
-        self, algorithm: PseudoArclength, equations: EventMap,
+        self, algorithm: PseudoArclength, equations: Problem,
         first: tuple[ContinuationState, Cycle], last: tuple[ContinuationState, Cycle],
+        cycle_at: Callable[[Vector], Cycle],
     ) -> None:  # fmt: skip
-        self.algorithm, self.equations = algorithm, equations
+        self.algorithm, self.equations, self.cycle_at = algorithm, equations, cycle_at
         self.known = {0.0: first, 1.0: last}
         self.normal = first[0].tangent
         self.reach = float(self.normal @ (last[0].point - first[0].point))
@@ -498,7 +501,7 @@ class _Line:
             )
             if state is None:
                 raise ArithmeticError
-            self.known[share] = state, Cycle.at(self.equations, state.point)
+            self.known[share] = state, self.cycle_at(state.point)
         return self.known[share]
 
     def root(self, test: Test, end: float = 1.0) -> float | None:
@@ -522,7 +525,7 @@ class _Turn:
     """How a branch goes on from where the order of its events changes."""
 
     algorithm: PseudoArclength
-    line: _Line
+    line: Line
     share: float
     there: tuple[ContinuationState, Cycle]
     zero: dict[Margin, float]
@@ -643,18 +646,9 @@ def _gradient(equations: EventMap, point: Vector, margin: Margin) -> Vector:
     parts, leg = equations.parts(point), margin.leg
     event, end = equations.events[leg], parts.path.ends[leg]
     time = parts.start + float(parts.durations[: leg + 1].sum())
-
-    def speed(state: Vector) -> float:
-        regimes = (event.before, event.after)
-        here = equations.flow.crossing(
-            parts.values, event.switch, event.surface, regimes, state, time
-        )
-        return -here.speed
-
+    slopes = equations.flow.quantity(parts.values, event, None, end, time)[1 : n + 1]
     by_end, _ = equations.by_unknowns(parts, leg)
-    steps = 1e-6 * np.diag(equations.scale)
-    slope = [(speed(end + s) - speed(end - s)) / 2e-6 for s in steps]
-    found = (np.array(slope) / equations.scale) @ by_end * equations.column_units
+    found = -slopes @ by_end * equations.column_units
     return np.asarray(found / np.linalg.norm(found))
 
 
@@ -761,9 +755,7 @@ def doubled_start(point: Point) -> tuple[ContinuationState, Cycle] | None:
             parts.values, event.before, parts.states[leg], parts.start + cycle.clocks[leg]
         )
         starts.append(shifts[leg] + rate * begun)
-    twice = replace(
-        equations, events=equations.events * 2, periods=2 * equations.periods, _latest=None
-    )
+    twice = replace(equations, events=equations.events * 2, periods=2 * equations.periods)
     followed = cycle.followed
     base = twice.pack(
         np.tile(parts.states, (2, 1)), np.tile(parts.durations, 2), parts.start, followed

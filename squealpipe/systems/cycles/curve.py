@@ -12,18 +12,18 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from enum import IntEnum
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import xarray as xr
-from scipy.optimize import brentq
 
 from squealpipe.methods.continuation import ContinuationState, PseudoArclength
 from squealpipe.systems import runs
 from squealpipe.systems.cycles.admissible import ROUND_OFF, Kind, Margin, margins
-from squealpipe.systems.cycles.branch import PRECISE, STEPS, label_of, started
+from squealpipe.systems.cycles.branch import PRECISE, STEPS, Line, label_of, started
 from squealpipe.systems.cycles.event_map import FREE, Cycle, Event, EventMap, Section
-from squealpipe.systems.cycles.flow import Crossing, Flow, Vector
+from squealpipe.systems.cycles.flow import Flow, Vector
 from squealpipe.systems.cycles.labels import Label
 from squealpipe.text import suggestion
 from squealpipe.validation import Number, Several, checked
@@ -90,7 +90,7 @@ class Curve:
             heading = Cycle.at(self.map, point).heading
             state = self.map.unpack(point)[0][0]
             section = Section(state, heading / np.linalg.norm(heading))
-            self.map = replace(self.map, section=section, _latest=None)
+            self.map = replace(self.map, section=section)
         if self.label in RETURNS:
             matrix = self.returning(self.map.evaluate(point)[1], RETURNS[self.label])
             left, _, right = np.linalg.svd(matrix)
@@ -126,37 +126,17 @@ class Curve:
             return float(point[at]), np.eye(len(point))[at]
         parts, event = equations.parts(point), equations.events[leg]
         time = parts.start + float(parts.durations[: leg + 1].sum())
-        end, flow = parts.path.ends[leg], equations.flow
-
-        def value(state: Vector, time: float, values: Mapping[str, float]) -> float:
-            regimes = (event.before, event.after)
-            return self._quantity(
-                flow.crossing(values, event.switch, event.surface, regimes, state, time)
-            )
-
+        flow, n = equations.flow, equations.flow.size
+        condition = self.own.which if self.own.kind == Kind.condition else None
+        value, *slopes = flow.quantity(parts.values, event, condition, parts.path.ends[leg], time)
         by_end, by_time = equations.by_unknowns(parts, leg)
-        h, row = 1e-6, np.zeros(len(point))
-        for i, size in enumerate(equations.scale):
-            step = h * size * np.eye(len(end))[i]
-            slope = value(end + step, time, parts.values) - value(end - step, time, parts.values)
-            row += slope / (2.0 * h * size) * by_end[i]
+        row = slopes[:n] @ by_end
         if flow.timed:
-            step = h * equations.time
-            slope = value(end, time + step, parts.values) - value(end, time - step, parts.values)
-            row += slope / (2.0 * step) * by_time
-        for i, name in enumerate(flow.followed):
-            step, here = h * float(equations.units[i]), parts.values
-            more = value(end, time, {**here, name: here[name] + step})
-            less = value(end, time, {**here, name: here[name] - step})
-            row[equations.size + i] += (more - less) / (2.0 * step)
+            row += slopes[n] * by_time
+        row[equations.size :] += slopes[n + flow.timed :]
         row *= equations.column_units
         size = max(float(np.abs(row).max()), 1e-300)
-        return value(end, time, parts.values) / size, row / size
-
-    def _quantity(self, crossing: Crossing) -> float:
-        if self.own.kind == Kind.condition:
-            return float(crossing.conditions[self.own.which])
-        return crossing.speed
+        return value / size, row / size
 
     def tests(self) -> dict[Meeting, Test]:
         """What changes sign where something else happens."""
@@ -176,8 +156,7 @@ class Curve:
         return {}
 
     def _cusp(self, point: Vector, size: int) -> float:
-        _, row = self._singular(point, self.map.evaluate(point)[1])
-        return float(row[:size] @ self.border[0])
+        return float(self.evaluate(point)[1][-1, :size] @ self.border[0])
 
     def least_margin(self, point: Vector) -> tuple[float, Margin | None]:
         """The margin next to zero that is not the curve's own."""
@@ -201,7 +180,7 @@ def _curve_of(cycle: Cycle, label: Label) -> tuple[Curve, Vector]:
     # the leg is cut where it touches: there the switch's event has no speed, if it stays there
     parts, leg, event = cycle.parts, own.leg, equations.events[own.leg]
     first, traced = len(equations.flow.system.traced.variables), equations.flow.system.traced
-    inside = [turn for turn in parts.path.turns([first + own.which])[0] if turn.leg == leg]
+    inside = [turn for turn in parts.path.turns[first + own.which] if turn.leg == leg]
     turn = min(inside, key=lambda each: abs(each.value))
     falls = traced.falls[event.before, own.which] >= 0
     number = int((traced.falls if falls else traced.rises)[event.before, own.which])
@@ -226,7 +205,7 @@ def _curve_of(cycle: Cycle, label: Label) -> tuple[Curve, Vector]:
             [parts.durations[:leg], [turn.time, rest], parts.durations[leg + 1 :]]
         )
         states = [*parts.states[: leg + 1], states[0], *parts.states[leg + 1 :]]
-    made = replace(equations, events=events, section=None, _latest=None)
+    made = replace(equations, events=events, section=None)
     own = Margin(Kind.speed, leg, own.which)
     return Curve(made, label, own), made.pack(np.array(states), durations, start, followed)
 
@@ -238,6 +217,10 @@ class Point:
     cycle: Cycle
     residual: float
     label: Meeting = Meeting.regular
+
+
+def _at_point(test: Test, state: ContinuationState, _: Cycle) -> float:
+    return test(state.point)
 
 
 class _Way:
@@ -270,19 +253,23 @@ class _Way:
                 return
             tests = self.curve.tests()
             found: dict[float, Meeting] = {}
+            line = Line(
+                self.algorithm, self.curve, (state, self._cycle(state)),
+                (following, self._cycle(following)), partial(Cycle.at, self.curve.map),
+            )  # fmt: skip
             for label, test in tests.items():
                 if test(state.point) * test(following.point) < 0.0:
-                    share = self._root(state, following, test)
+                    share = line.root(partial(_at_point, test))
                     # with two states folds and period doublings meet a grazing at the same point
                     if share is not None and all(abs(share - other) > 1e-6 for other in found):
                         found[share] = label
-            end = self._end(state, following)
+            end = self._end(line)
             for share in sorted(found):
                 if end is None or share < end[0] - 1e-6:
-                    yield self._point(self._between(state, following, share), found[share])
+                    yield self._point(line.at(share)[0], found[share])
             if end is not None:
                 self.end = end[2]
-                yield self._point(self._between(state, following, end[0]), end[1])
+                yield self._point(line.at(end[0])[0], end[1])
                 return
             yield self._point(following, Meeting.regular)
             state = following
@@ -290,19 +277,17 @@ class _Way:
     def _is_cycle(self, state: ContinuationState) -> bool:
         return Cycle.at(self.curve.map, state.point).period > 0.0
 
-    def _end(
-        self, state: ContinuationState, following: ContinuationState
-    ) -> tuple[float, Meeting, str] | None:
+    def _end(self, line: Line) -> tuple[float, Meeting, str] | None:
         """(share of the step, label, reason) where the curve ends."""
-        ends = []
-        if self.inside(following.point) <= 0.0:
-            share = self._root(state, following, self.inside)
+        ends, point = [], line.known[1.0][0].point
+        if self.inside(point) <= 0.0:
+            share = line.root(partial(_at_point, self.inside))
             ends.append((1.0 if share is None else share, Meeting.end, "end_of_range"))
-        least, key = self.curve.least_margin(following.point)
+        least, key = self.curve.least_margin(point)
         if least < -ROUND_OFF and key is not None:
-            share = self._root(state, following, lambda z: self.curve.least_margin(z)[0])
+            share = line.root(lambda there, _: self.curve.least_margin(there.point)[0])
             share = 0.0 if share is None else share
-            cycle = Cycle.at(self.curve.map, self._between(state, following, share).point)
+            cycle = line.at(share)[1]
             ends.append((share, *self._changed(cycle, self.curve.least_margin(cycle.point)[1])))
         return min(ends, default=None)
 
@@ -327,31 +312,11 @@ class _Way:
         names = [*(each.name for each in system.switches), *system.stops]
         return met, f"order_changes_{key.kind.name}_of_{names[number]}".replace(" ", "_")
 
-    def _between(
-        self, state: ContinuationState, following: ContinuationState, share: float
-    ) -> ContinuationState:
-        guess = state.point + share * (following.point - state.point)
-        found = self.algorithm.solve(self.curve, guess, state.tangent, state.step)
-        if found is None:
-            raise ArithmeticError
-        return found
-
-    def _root(
-        self,
-        state: ContinuationState,
-        following: ContinuationState,
-        test: Callable[[Vector], float],
-    ) -> float | None:
-        def value(share: float) -> float:
-            return min(test(self._between(state, following, share).point), 1e300)
-
-        try:
-            return float(brentq(value, 0.0, 1.0, xtol=1e-13, rtol=1e-13, maxiter=60))
-        except (ArithmeticError, ValueError, RuntimeError):
-            return None
+    def _cycle(self, state: ContinuationState) -> Cycle:
+        return Cycle.at(self.curve.map, state.point)
 
     def _point(self, state: ContinuationState, label: Meeting) -> Point:
-        return Point(Cycle.at(self.curve.map, state.point), state.residual, label)
+        return Point(self._cycle(state), state.residual, label)
 
 
 def _label(

@@ -163,7 +163,7 @@ def merged(cycle: Cycle, leg: int, count: int) -> tuple[EventMap, Vector]:
     events, durations = list(equations.events), parts.durations.copy()
     events[leg] = events[absorbed[-1]]
     durations[leg] += durations[absorbed].sum()
-    fewer = replace(equations, events=tuple(events[i] for i in keep), _latest=None)
+    fewer = replace(equations, events=tuple(events[i] for i in keep))
     start = parts.start + float(cycle.clocks[keep[0]])
     return fewer, fewer.pack(parts.states[keep], durations[keep], start, cycle.followed)
 
@@ -176,7 +176,7 @@ def _eventless(cycle: Cycle, event: Event) -> tuple[EventMap, Vector]:
         heading = equations.flow.field(cycle.parts.values, regime, state, 0.0) / equations.scale
         section = Section(state, heading / np.linalg.norm(heading))
     free = Event(FREE, FREE, 1.0, event.before, event.before, FREE)
-    made = replace(equations, events=(free,), section=section, _latest=None)
+    made = replace(equations, events=(free,), section=section)
     return made, made.pack(state[None], np.array([cycle.period]), 0.0, cycle.followed)
 
 
@@ -328,7 +328,7 @@ def once_round(cycle: Cycle) -> Cycle:
             continue
         legs = max(equations.legs // rounds, 1)
         durations = parts.durations[:legs] / (1 if cycle.events else rounds)
-        fewer = replace(equations, events=equations.events[:legs], _latest=None)
+        fewer = replace(equations, events=equations.events[:legs])
         guess = fewer.pack(parts.states[:legs], durations, parts.start, np.empty(0))
         return solved(fewer, guess) or cycle
     return cycle

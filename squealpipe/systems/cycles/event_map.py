@@ -9,7 +9,7 @@ the system is a question of its own (:mod:`squealpipe.systems.cycles.admissible`
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import NamedTuple
 
@@ -22,6 +22,8 @@ _LEAST = 0.05
 """Least unit of a state over the largest, both over the states' sizes."""
 _SAMPLES, _INSIDE = 400, 4
 """Samples of a cycle, evenly, and in each step of the integrator."""
+_KEPT = 8
+"""Points whose legs are kept."""
 FREE = -1
 """Number of the switch of what changes nothing: the section of a cycle without events, a touch."""
 
@@ -87,7 +89,7 @@ class EventMap:
     units: Vector
     periods: int = 0
     section: Section | None = None
-    _latest: tuple[Vector, Parts, Vector, Vector] | None = None
+    _latest: dict[bytes, tuple[Parts, Vector, Vector]] = field(default_factory=dict, init=False)
 
     @property
     def legs(self) -> int:
@@ -119,21 +121,24 @@ class EventMap:
 
     def parts(self, z: Vector) -> Parts:
         """The legs at some unknowns."""
-        return self._solved(z)[1]
+        return self._solved(z)[0]
 
     def evaluate(self, z: Vector) -> tuple[Vector, Vector]:
         """F, (size,), and its Jacobian, (size, size + parameters); NaN where there is none."""
         if not np.isfinite(z).all():
             return np.full(self.size, np.nan), np.zeros((self.size, len(z)))
-        return self._solved(z)[2:]
+        return self._solved(z)[1:]
 
-    def _solved(self, z: Vector) -> tuple[Vector, Parts, Vector, Vector]:
-        """The unknowns, their legs, F and its Jacobian."""
-        if self._latest is None or not np.array_equal(self._latest[0], z):
+    def _solved(self, z: Vector) -> tuple[Parts, Vector, Vector]:
+        """The legs at some unknowns, F and its Jacobian; those of the last points are kept."""
+        key = z.tobytes()
+        if key not in self._latest:
+            if len(self._latest) >= _KEPT:
+                del self._latest[next(iter(self._latest))]
             with np.errstate(all="ignore"):
                 parts = self._legs_at(z)
-                self._latest = z.copy(), parts, *self._equations(parts, len(z))
-        return self._latest
+                self._latest[key] = parts, *self._equations(parts, len(z))
+        return self._latest[key]
 
     def _legs_at(self, z: Vector) -> Parts:
         states, durations, start, values = self.unpack(z)
@@ -347,11 +352,10 @@ class Cycle:
         n, path = self.map.flow.size, self.parts.path
         first = path.series.shape[1] - len(self.map.flow.system.traced.outputs)
         which = [*range(n), *range(first, path.series.shape[1])]
-        turns = path.turns(which)
         found = []
-        for number, inside in zip(which, turns, strict=True):
-            values = [*path.ends_of(number)[0], *path.ends_of(number)[1]]
-            values += [turn.value for turn in inside]
+        for number in which:
+            values = np.concatenate(path.ends_of(number)).tolist()
+            values += [turn.value for turn in path.turns[number]]
             found.append((min(values), max(values)))
         return np.array(found).T
 
@@ -444,7 +448,7 @@ class Cycle:
         """Its equations with other followed parameters, scaled by it, and its unknowns there."""
         made, parts = replace(
             self.map, flow=flow, values=self.parts.values, units=units, time=self.period,
-            scale=scale_of(self.extremes[:, : flow.size], flow.system.sizes), _latest=None,
+            scale=scale_of(self.extremes[:, : flow.size], flow.system.sizes),
         ), self.parts  # fmt: skip
         followed = np.array([parts.values[name] for name in flow.followed])
         return made, made.pack(parts.states, parts.durations, parts.start, followed)

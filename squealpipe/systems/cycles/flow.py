@@ -28,6 +28,7 @@ from squealpipe.systems.runs import compiled
 from squealpipe.systems.trace import TIME_UNIT, Names
 
 if TYPE_CHECKING:
+    from squealpipe.systems.cycles.event_map import Event
     from squealpipe.systems.system import System
 
 Vector = NDArray[np.float64]
@@ -91,13 +92,14 @@ class Path:
         last = np.append(first[1:], len(self.leg)) - 1
         return self.series[first, which, 0], self.scaled[last, which].sum(axis=-1)
 
-    def turns(self, which: Sequence[int]) -> list[list[Turn]]:
-        """Extrema of some series inside the legs."""
-        scaled = self.scaled[:, which]
+    @cached_property
+    def turns(self) -> list[list[Turn]]:
+        """Extrema of each series inside the legs."""
+        scaled = self.scaled
         orders = np.arange(1, scaled.shape[2])
         rates = scaled[..., 1:] * orders
         values = rates @ _PLACES ** (orders[:, None] - 1)
-        found: list[list[Turn]] = [[] for _ in which]
+        found: list[list[Turn]] = [[] for _ in range(scaled.shape[1])]
         hits = np.nonzero(values[..., :-1] * values[..., 1:] < 0.0)
         if not len(hits[0]):
             return found
@@ -295,6 +297,34 @@ class Flow:
             rate_after=self.field(values, regimes[1], after, time),
             conditions=rest[n:],
         )
+
+    def quantity(
+        self,
+        values: Mapping[str, float],
+        event: Event,
+        condition: int | None,
+        state: Vector,
+        time: float,
+    ) -> Vector:
+        """How fast an event's surface changes before it, or a condition of its switch.
+
+        With its derivatives by the states, the time if it is explicit, and the followed parameters.
+        """
+        key = event.switch, event.surface, condition
+        if key not in self._functions:
+            t = self.system.traced
+            states, by = t.variables[: t.size], [self.time] * self.timed
+            switch = t.switches[event.switch] if event.switch >= 0 else None
+            if switch and condition is not None:
+                root = [c for _, c, _ in switch.targets if c is not None][condition]
+            else:
+                surface = switch.surface if switch else t.surfaces[event.surface]
+                along = zip([*states, *by], [*t.rates[: t.size], *[1.0] * self.timed], strict=True)
+                root = sum((self.slope(surface, z) * rate for z, rate in along), symbol(0.0))
+            roots = [root, *(self.slope(root, each) for each in (*states, *by, *self.by))]
+            self._functions[key] = python_function(roots, self.arguments, np)
+        at = [*state, *([np.float64(time)] * self.timed)]
+        return np.array(self._functions[key](*at, *self.numbers(values, event.before)), float)
 
     def _prepare(self, legs: int) -> None:
         t, code = self.system.integrated, compiled(self.system, tangent=False, few=True).series

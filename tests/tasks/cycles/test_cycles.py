@@ -273,7 +273,7 @@ def test_a_return_after_several_rounds_gives_the_least_period(rounds):
     params, angles = friction_oscillator(1.25, reach=1e4), ANGLES
     once, _ = cycle_from(Scene(params, *angles), (1.5, 0.25, 1.25, 0.0))
     parts = once.parts
-    several = replace(once.map, events=once.map.events * rounds, _latest=None)
+    several = replace(once.map, events=once.map.events * rounds)
     point = several.pack(
         np.tile(parts.states, (rounds, 1)), np.tile(parts.durations, rounds), 0.0, np.empty(0)
     )
