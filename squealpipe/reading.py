@@ -43,11 +43,7 @@ READINGS: dict[str, Reading] = {
 
 
 def reading_of(name: str) -> Reading:
-    """The reading of that name.
-
-    Raises:
-        ValueError: it is unknown; the nearest name is suggested.
-    """
+    """The reading of that name."""
     if name not in READINGS:
         raise ValueError(f"reading = {name!r}: unknown; {suggestion(name, READINGS)}")
     return READINGS[name]

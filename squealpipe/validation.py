@@ -155,11 +155,7 @@ def state_of(value: Any) -> np.ndarray:
 
 
 def within_a_turn(angles: Any) -> Any:
-    """An angle or an array of them, rad.
-
-    Raises:
-        ValueError: one lies beyond a full turn.
-    """
+    """An angle or an array of them, rad."""
     if np.any(np.abs(angles) > FULL_TURN):
         raise ValueError(BEYOND_A_TURN)
     return angles

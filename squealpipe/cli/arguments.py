@@ -132,11 +132,7 @@ def by_name(argument: str) -> str:
 
 
 def parameters_from_study(_: App, __: tuple[str, ...], arguments: ArgumentCollection) -> None:
-    """Give the parameters that were not typed the values of the study in ``--config``.
-
-    Raises:
-        FileNotFoundError, ConfigError: as :func:`squealpipe.config.settings.read_study`.
-    """
+    """Give the parameters that were not typed the values of the study in ``--config``."""
     found = {argument.name: argument for argument in arguments}
     physical = {
         item.name: found[f"--{item.name.replace('_', '-')}"]

@@ -234,11 +234,7 @@ def propensity(
 
 
 def _distribution(text: str) -> tuple[str, dict[str, str | float]]:
-    """Name and distribution of NAME=KIND:A:B.
-
-    Raises:
-        ValueError: the text is none.
-    """
+    """Name and distribution of NAME=KIND:A:B."""
     from squealpipe.tasks.propensity.distributions import KINDS
 
     name, _, words = text.partition("=")

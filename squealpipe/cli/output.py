@@ -23,11 +23,7 @@ PICTURES = (".png", ".svg", ".pdf")
 def check_output(
     path: Path, *, force: bool, kinds: tuple[str, ...] = DATA, option: str = "--output"
 ) -> None:
-    """Refuse a name that cannot or must not be written, before anything is computed.
-
-    Raises:
-        ValueError: an ending that says no known kind, or what exists and is not to be overwritten.
-    """
+    """Refuse a name that cannot or must not be written, before anything is computed."""
     if path.suffix not in kinds:
         endings = ", ".join(kinds[:-1]) + f" or {kinds[-1]}"
         raise ValueError(f"{option} {path}: end the name in {endings}")

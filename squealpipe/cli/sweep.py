@@ -68,11 +68,7 @@ def sweep(
 
 
 def _pairs(flag: str, texts: Sequence[str]) -> dict[str, str]:
-    """Name → value of each NAME=VALUE.
-
-    Raises:
-        ValueError: a text is none, or a duplicate name.
-    """
+    """Name → value of each NAME=VALUE."""
     found: dict[str, str] = {}
     for text in texts:
         name, equals, value = text.partition("=")

@@ -29,11 +29,7 @@ MOST_VALUES = 100_000
 
 
 def parse_angle(text: str) -> float:
-    """An angle in rad from ``0.4pi``, ``2pi/5``, ``72deg`` or plain radians.
-
-    Raises:
-        ValueError: the text is none of these; the message lists them.
-    """
+    """An angle in rad from ``0.4pi``, ``2pi/5``, ``72deg`` or plain radians."""
     value = _angle_in(text.strip().lower())
     if value is None or not math.isfinite(value):
         raise ValueError(f"{text!r} is not a valid angle; {ANGLE_FORMS}")
@@ -54,11 +50,7 @@ def _angle_in(text: str) -> float | None:
 
 
 def parse_number(text: str) -> float:
-    """A finite number.
-
-    Raises:
-        ValueError: it is something else.
-    """
+    """A finite number."""
     try:
         value = float(text)
     except ValueError:
@@ -69,14 +61,7 @@ def parse_number(text: str) -> float:
 
 
 def parse_range(text: str, one: Callable[[str], float] = parse_number) -> list[float]:
-    """Values from a list ``0.1,0.2,0.4``, a range ``0:pi:31`` or ``1:100:7:log`` (ends included).
-
-    Args:
-        one: reads a single value, for instance :func:`parse_angle`.
-
-    Raises:
-        ValueError: the text is neither, with the form to use.
-    """
+    """Values from a list ``0.1,0.2``, a range ``0:pi:31`` or ``1:100:7:log``, ends included."""
     if ":" not in text:
         return [one(part) for part in text.split(",")]
     parts = text.split(":")
@@ -97,14 +82,7 @@ def parse_range(text: str, one: Callable[[str], float] = parse_number) -> list[f
 
 
 def read_values(name: str, given: object) -> list[float]:
-    """Values over which a name is swept.
-
-    Args:
-        given: text as :func:`parse_range` reads it, a number, or a list of such.
-
-    Raises:
-        ValueError: a value is none of these, or no whole number where one is needed.
-    """
+    """Values over which a name is swept."""
     if name in TABLE and name not in NUMBERS:
         raise ValueError(
             f"{name} cannot be varied, for its values are words; sweep once for each, with {name} "
@@ -131,9 +109,6 @@ def read_fixed(name: str, given: object) -> Any:
     Args:
         given: a value or text; an option may also be a range like ``0:20:50``, a list, a word or
             None.
-
-    Raises:
-        ValueError: an angle or parameter that is none, or no value at all.
     """
     if not isinstance(given, str | int | float | Sequence | None):
         raise ValueError(f"{given!r} is not a value; write a number, a word or a list of numbers")  # noqa: TRY004
@@ -159,11 +134,7 @@ def sweep_config(
     fixed: Mapping[str, Any],
     parameters: Mapping[str, float],
 ) -> dict[str, Any]:
-    """The configuration of a sweep in its one form; no parameter that it names is a duplicate.
-
-    Raises:
-        ValueError: a name is both fixed and varied.
-    """
+    """The configuration of a sweep in its one form; no parameter that it names is a duplicate."""
     for name in sorted(set(vary) & set(fixed)):
         raise ValueError(f"{name} is both fixed and varied; keep one")
     named = {*vary, *fixed}

@@ -4,12 +4,10 @@ An overlay (``--configfile mine.yaml``) is merged over ``workflow/config/paper.y
 Snakemake; :func:`read_study` does the same for the command line.
 """
 
-from __future__ import annotations
-
 import json
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path, PurePosixPath
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, Self
 
 from pydantic import Field, ValidationError, field_validator, model_validator
 
@@ -22,17 +20,6 @@ from squealpipe.laws.tables import is_table, named
 from squealpipe.parameters import TABLE, Row
 from squealpipe.rerun.key import PARTS
 from squealpipe.rerun.sources import WORKFLOW
-
-__all__ = [
-    "PAPER",
-    "ConfigError",
-    "Section",
-    "Study",
-    "json_schema",
-    "parse_study",
-    "read_study",
-]
-
 
 PAPER = WORKFLOW / "config/paper.yaml"
 """The paper's study, over which other configurations are laid."""
@@ -69,7 +56,7 @@ class Study(Section):
         return value
 
     @model_validator(mode="after")
-    def _has_something_to_show(self) -> Study:
+    def _has_something_to_show(self) -> Self:
         if not self.paper and not self.scenes:
             raise ValueError(
                 "paper: false makes a report of scenes of your own and needs one; write for "
@@ -92,7 +79,7 @@ class Study(Section):
             part[path] = value
         return json.loads(json.dumps(part, sort_keys=True))  # type: ignore[no-any-return]
 
-    def changes_of(self, other: Study) -> list[tuple[str, Any, Any]]:
+    def changes_of(self, other: Self) -> list[tuple[str, Any, Any]]:
         """Dotted keys that differ from another study, with its value and that of this one.
 
         Folders of results and sweeps do not count.
@@ -168,11 +155,7 @@ def files_of_laws(path: Path) -> list[Path]:
 
 
 def check_results_folder(results: str) -> None:
-    """Refuse a folder of results in which Snakemake could overwrite or delete anything else.
-
-    Raises:
-        ConfigError: it, or a part of it, leads into an archive, or it holds other files.
-    """
+    """Refuse a folder of results in which Snakemake could overwrite or delete anything else."""
     folder = Path(results)
     for part in (folder, *(folder / name for name in PARTS)):
         inside = [part.resolve(), *part.resolve().parents]
@@ -203,9 +186,6 @@ def parse_study(
 
     Args:
         faults: mistakes found before, in the text; reported together with those of the values.
-
-    Raises:
-        ConfigError: as :func:`read_study`.
     """
     try:
         study = Study.model_validate(_plain(_without_empty_sections(content)))

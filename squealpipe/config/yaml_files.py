@@ -41,12 +41,7 @@ for _kind, _form, _first in (
 
 
 def read_yaml(path: Path) -> dict[str, Any]:
-    """Content of a file.
-
-    Raises:
-        FileNotFoundError: no such file.
-        ConfigError: it is not plain YAML with keys and values.
-    """
+    """Content of a file."""
     if not path.is_file():
         raise FileNotFoundError(f"no configuration {path}; give a YAML file that exists")
     try:

@@ -162,9 +162,6 @@ def snakemake_command(
     """Snakemake's command for a study, and the study, which is validated before anything runs.
 
     A quick study goes beside the full one: ``results/mine-quick`` beside ``results/mine``.
-
-    Raises:
-        FileNotFoundError, ConfigError: as :func:`explain`.
     """
     given = [Path(path).absolute() for path in configs]
     full = read_study(PAPER, *given)

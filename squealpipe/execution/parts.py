@@ -15,14 +15,7 @@ from squealpipe.schema.sweep import RAGGED, fill_up
 
 
 def scattered_rows(rows: int, item: str) -> slice:
-    """Rows of one part of a scattered map.
-
-    Args:
-        item: "i-of-n", Snakemake's name of a part.
-
-    Raises:
-        ValueError: there are more parts than rows.
-    """
+    """Rows of one part, "i-of-n", of a scattered map."""
     index, count = map(int, item.split("-of-"))
     if count > rows:
         raise ValueError(f"{count} parts of {rows} rows: scatter into at most {rows} parts")
@@ -45,15 +38,9 @@ def over_angles(job: Job, name: str) -> dict[str, Any]:
 
 
 def join(parts: Sequence[xr.Dataset], along: str = "alpha1") -> xr.Dataset:
-    """One map or sweep from its parts, in order.
+    """One map or sweep from its parts, in order; they differ in ``along`` alone.
 
     Runs of a sweep that are shorter than the longest of all parts are filled up.
-
-    Args:
-        parts: datasets that differ in ``along`` alone.
-
-    Raises:
-        ValueError: there are none, or they are not of one kind and grid.
     """
     if not parts:
         raise ValueError("no parts to join")

@@ -1,14 +1,12 @@
 """Any task over ranges of parameters, angles and options, as one labelled dataset."""
 
-from __future__ import annotations
-
 import itertools
 from collections.abc import Iterable, Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, replace
 from functools import partial
 from multiprocessing import active_children, get_all_start_methods, get_context
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 import xarray as xr
@@ -143,23 +141,15 @@ class Sweep:
         fixed = {name: value for name, value in given.items() if name not in self.vary}
         return origin(self.task, {"params": self.params.with_(**physical), **fixed})
 
-    def part(self, item: str) -> Sweep:
-        """One part of a scattered sweep: some of the values of the longest name.
-
-        Raises:
-            ValueError: another form, or there are more parts than values.
-        """
+    def part(self, item: str) -> Self:
+        """One part of a scattered sweep: some of the values of the longest name."""
         cut = longest(self.vary)
         values = self.vary[cut]
         return replace(self, vary={**self.vary, cut: values[scattered_rows(len(values), item)]})
 
 
 def planned(config: Mapping[str, Any]) -> Sweep | SystemSweep:
-    """The sweep of a configuration as :func:`squealpipe.config.ranges.sweep_config` makes it.
-
-    Raises:
-        ValueError: as :class:`Sweep` or :class:`SystemSweep`.
-    """
+    """The sweep of a configuration as :func:`squealpipe.config.ranges.sweep_config` makes it."""
     if is_system(config["task"]):
         return SystemSweep(task=config["task"], vary=config["vary"], fixed=config["fixed"])
     return Sweep(

@@ -1,13 +1,11 @@
 """A sweep of a system of the user's own: ``FILE.py:NAME``, over its starts and parameters."""
 
-from __future__ import annotations
-
 import importlib.util
 import inspect
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, Self
 
 import xarray as xr
 
@@ -26,14 +24,7 @@ def is_system(task: str) -> bool:
 
 
 def find_system(place: str) -> System:
-    """The system that a file defines under a name.
-
-    Args:
-        place: ``FILE.py:NAME``.
-
-    Raises:
-        ValueError: no such file, or none of its systems has the name.
-    """
+    """The system of ``FILE.py:NAME``."""
     file, _, name = place.partition(":")
     if not Path(file).is_file():
         raise ValueError(f"no file {file!r}; a system is named like impact.py:impact_oscillator")
@@ -57,9 +48,6 @@ class SystemSweep:
         vary: name → values, of parameters and of starts (``x0``).
         fixed: further ones, ``t_end``, and ``run``: ensemble (by default) or basin, with its
             options.
-
-    Raises:
-        ValueError: an unknown file, system, way to run it, name or option.
     """
 
     task: str
@@ -89,7 +77,7 @@ class SystemSweep:
         """Swept names in the order given."""
         return list(self.vary)
 
-    def part(self, item: str) -> SystemSweep:
+    def part(self, item: str) -> Self:
         """One part of a scattered sweep, ``i-of-n`` along its longest name."""
         cut = longest(self.vary)
         values = self.vary[cut]

@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from squealpipe.plotting import style
 from squealpipe.plotting.origin import parameter
 from squealpipe.plotting.quantities import label
-from squealpipe.schema import labels, meanings
+from squealpipe.schema import meanings
 
 MARKS = {
     "fold": ("^", style.RED, "fold"),
@@ -25,11 +25,7 @@ ALONG = " along the branch"
 
 
 def draw_backbone(axes: Axes, branch: xr.Dataset) -> None:
-    """Peak of y and amplitude of x over the frequency; open marks are unstable.
-
-    Args:
-        branch: dataset ``backbone``; an empty one gives the reason instead.
-    """
+    """Peak of y and amplitude of x over the frequency; open marks are unstable."""
     if say_why_empty(axes, branch):
         return
     unstable = np.abs(branch.stability_index.values) > 2
@@ -49,13 +45,9 @@ def draw_backbone(axes: Axes, branch: xr.Dataset) -> None:
 
 
 def draw_cycle(axes: Axes, cycle: xr.Dataset) -> None:
-    """Path of the mass along a cycle, its regimes coloured.
-
-    Args:
-        cycle: dataset ``limit_cycle``; without a cycle it gives the reason instead.
-    """
+    """Path of the mass along a cycle, its regimes coloured; or why there is none."""
     axes.set(xlabel="x (m)", ylabel="y (m)")
-    if say_no_cycle(axes, cycle):
+    if say_why_empty(axes, cycle):
         return
     draw_regimes(axes, cycle.x_path.values, cycle.y_path.values, cycle.regime_path)
     style.preload_line(axes, parameter(cycle, "preload"))
@@ -64,16 +56,11 @@ def draw_cycle(axes: Axes, cycle: xr.Dataset) -> None:
 
 
 def draw_orbit(axes: Axes, orbit: xr.Dataset) -> None:
-    """Path of the mass along an orbit of A4, there and back, red where contact is lost.
-
-    Args:
-        orbit: dataset ``periodic_orbit``; without an orbit it gives the reason instead.
-    """
+    """Path of the mass along an orbit of A4, red where contact is lost; or why there is none."""
     axes.set(xlabel="x (m)", ylabel="y (m)")
-    x, y, preload = orbit.x_path.values, orbit.y_path.values, parameter(orbit, "preload")
-    if not x.size:
-        style.say_instead(axes, f"no periodic motion: {labels(orbit.outcome).item()}")
+    if say_why_empty(axes, orbit):
         return
+    x, y, preload = orbit.x_path.values, orbit.y_path.values, parameter(orbit, "preload")
     for part, colour, words in (
         (y > preload, style.RED, "separated"),
         (y <= preload, style.BLUE, "contact"),
@@ -95,11 +82,7 @@ def draw_regimes(axes: Axes, x: np.ndarray, y: np.ndarray, regimes: xr.DataArray
 
 
 def draw_branch(axes: Axes, branch: xr.Dataset) -> None:
-    """Largest size of the first state over the parameter, stable and unstable, with special points.
-
-    Args:
-        branch: dataset ``cycle_branch``, also of a system; an empty one gives the reason instead.
-    """
+    """Largest size of the first state over the parameter, with special points."""
     if say_why_empty(axes, branch):
         return
     followed = branch[branch.attrs["parameter"]]
@@ -156,19 +139,12 @@ def joined(chosen: np.ndarray) -> np.ndarray:
     return near
 
 
-def say_no_cycle(axes: Axes, cycle: xr.Dataset) -> bool:
-    """Whether there is no cycle, and then why, in its panel."""
-    if cycle.sizes["sample"]:
+def say_why_empty(axes: Axes, motions: xr.Dataset) -> bool:
+    """Whether there is no cycle or point of a branch, and then why, in its panel."""
+    branch = "point" in motions.sizes
+    if motions.sizes["point" if branch else "sample"]:
         return False
-    reason = style.flag_words(meanings(cycle.outcome)[int(cycle.outcome)])
-    style.say_instead(axes, f"no cycle:\n{reason}")
-    return True
-
-
-def say_why_empty(axes: Axes, branch: xr.Dataset) -> bool:
-    """Whether a branch has no points, and then why, in its panel."""
-    if branch.sizes["point"]:
-        return False
-    reason = style.flag_words(meanings(branch.end)[int(branch.end)])
-    style.say_instead(axes, f"no periodic motions:\n{reason}")
+    why = motions.end if branch else motions.outcome
+    reason = style.flag_words(meanings(why)[int(why)])
+    style.say_instead(axes, f"no periodic motion:\n{reason}")
     return True

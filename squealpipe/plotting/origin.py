@@ -11,11 +11,7 @@ from squealpipe.plotting.style import pi_label
 
 
 def parameter(dataset: xr.Dataset, name: str) -> Any:
-    """A parameter of the run, a number or a law, from the attributes of its dataset.
-
-    Raises:
-        ValueError: the dataset carries none.
-    """
+    """A parameter of the run, a number or a law, from the attributes of its dataset."""
     own = json.loads(dataset.attrs.get("parameters", "{}"))
     study = json.loads(dataset.attrs.get("config", "{}")).get("parameters", {})
     if TABLE[name].extension:

@@ -68,11 +68,7 @@ def mark_changed(axes: Axes, dataset: xr.Dataset) -> None:
 
 
 def draw_quantity(axes: Axes, variable: xr.DataArray) -> None:
-    """A curve over one dimension or a map over two, the first one along x.
-
-    Raises:
-        ValueError: it has no or more than two dimensions, or holds texts.
-    """
+    """A curve over one dimension or a map over two, the first one along x."""
     if variable.ndim not in (1, 2) or variable.dtype.kind not in "biuf":
         raise ValueError(
             f"{variable.name} has dimensions {tuple(variable.dims)} and dtype {variable.dtype}; "

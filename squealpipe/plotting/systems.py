@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 
-from squealpipe.plotting.cycles import say_no_cycle
+from squealpipe.plotting.cycles import say_why_empty
 from squealpipe.plotting.quantities import draw_quantity, label
 from squealpipe.plotting.style import BLUE, GREY, PALETTE, say_instead
 
@@ -48,7 +48,7 @@ def draw_ensemble(axes: Axes, runs: xr.Dataset) -> None:
 
 def draw_path(axes: Axes, cycle: xr.Dataset) -> None:
     """A cycle in the plane of the first two states, or of the only one over time."""
-    if say_no_cycle(axes, cycle):
+    if say_why_empty(axes, cycle):
         return
     first, *others = [cycle[f"{name}_path"] for name in _states(cycle)]
     x, y = (first, others[0]) if others else (cycle.time, first)

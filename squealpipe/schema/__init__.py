@@ -293,11 +293,7 @@ def blank(schema: DatasetSchema, **sizes: int) -> dict[str, np.ndarray]:
 
 
 def validate(dataset: xr.Dataset, schema: DatasetSchema) -> None:
-    """Check a dataset against its schema, all faults at once.
-
-    Raises:
-        SchemaError: the list of faults.
-    """
+    """Check a dataset against its schema, all faults at once."""
     faults = [
         f"{name} has dims {variable.dims}, {entry.dims} expected"
         for name, variable in dataset.variables.items()
@@ -350,11 +346,7 @@ def _faults_of_values(name: str, given: np.ndarray | xr.Variable, entry: Variabl
 
 
 def find(name: str) -> DatasetSchema:
-    """The schema of that name, from the tables beside this module.
-
-    Raises:
-        SchemaError: no table has it.
-    """
+    """The schema of that name, from the tables beside this module."""
     schemas = all_schemas()
     if name in schemas:
         return schemas[name]
@@ -364,11 +356,7 @@ def find(name: str) -> DatasetSchema:
 
 
 def schema_of(dataset: xr.Dataset) -> DatasetSchema:
-    """The schema that a dataset states; that of a system of the user's own is the dataset itself.
-
-    Raises:
-        SchemaError: it states none, or an unknown one.
-    """
+    """The schema that a dataset states; of a system of the user's own it is the dataset itself."""
     name = str(dataset.attrs.get("schema"))
     if not name.startswith(SYSTEM):
         return find(name)

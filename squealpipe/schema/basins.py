@@ -19,8 +19,8 @@ WORDS = {
 def basin_schema(swept: tuple[str, ...]) -> DatasetSchema:
     """The schema of a basin map whose dimensions are the ``swept`` ones of STARTS."""
 
-    def real(units: str, long_name: str, *, nan_allowed: bool = True) -> Variable:
-        return Variable(long_name, units, swept, nan_allowed=nan_allowed, **IN_MAP)
+    def real(units: str, long_name: str) -> Variable:
+        return or_nan(long_name, units, swept, **IN_MAP)
 
     return DatasetSchema(
         name="basin_map" + "".join(f"_{name}" for name in swept),
@@ -68,10 +68,6 @@ class LeadsTo(IntEnum):
     whirl = 1
 
 
-def _scalar(units: str, long_name: str) -> Variable:
-    return or_nan(long_name, units)
-
-
 def _distance(dim: str, long_name: str) -> Variable:
     return or_nan(long_name, dims=(dim,), rtol=1e-6)
 
@@ -87,12 +83,12 @@ SMALLEST_DISTURBANCE = DatasetSchema(
     },
     variables={
         "leads_to": Variable("what it leads to", flags=LeadsTo),
-        "x_rest": _scalar("m", "x of steady sliding"),
-        "y_rest": _scalar("m", "y of steady sliding"),
-        "growth_rate": _scalar("s-1", "largest real part of small motions about it"),
+        "x_rest": or_nan("x of steady sliding", "m"),
+        "y_rest": or_nan("y of steady sliding", "m"),
+        "growth_rate": or_nan("largest real part of small motions about it", "s-1"),
         "regime_linear": Variable("stability regime of model A3", flags=LinearRegime),
-        "rest_distance": _scalar("1", "norm of the start at rest at r = 0"),
-        "linear_distance": _scalar("1", "smallest norm with which the linear motion loses contact"),
+        "rest_distance": or_nan("norm of the start at rest at r = 0"),
+        "linear_distance": or_nan("smallest norm with which the linear motion loses contact"),
         "distance": or_nan("smallest norm found, an upper bound", rtol=1e-6),
         **{
             f"{name}_disturbance": or_nan(f"its {words}", units, rtol=1e-4)
@@ -105,8 +101,8 @@ SMALLEST_DISTURBANCE = DatasetSchema(
         },
         "distance_by_number": _distance("directions", "smallest norm along the first directions"),
         "improved_distance": _distance("improved", "norm after the local search from a direction"),
-        "share_below": _scalar(
-            "1", "most of all directions that can have a smaller norm than those tried, 95 %"
+        "share_below": or_nan(
+            "most of all directions that can have a smaller norm than those tried, 95 %"
         ),
         "reached": Variable(
             "number of directions along which it happens within the bound", dtype="i4"

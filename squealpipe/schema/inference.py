@@ -79,10 +79,6 @@ def wilson_interval(count: int, size: int) -> tuple[float, float]:
     return float(interval.low), float(interval.high)
 
 
-def _group(long_name: str) -> Variable:
-    return Variable(long_name, dims=SAMPLE)
-
-
 def _limit(side: str, of: str, dims: tuple[str, ...]) -> Variable:
     name = f"{side} end of the {CONFIDENCE:.0%} Wilson interval of {of}"
     return or_nan(name, dims=dims)
@@ -98,10 +94,10 @@ PARAMETER_INFERENCE = DatasetSchema(
         "consequence": text("id of a statement that was not a constraint", *CONSEQUENCE),
     },
     variables={
-        "kappa": _group("contact stiffness k3/k"),
-        "mu": _group("friction coefficient"),
-        "length_ratio": _group("free length of the springs over l_pre"),
-        "speed_ratio": _group("belt speed over l_pre √(k/m)"),
+        "kappa": Variable("contact stiffness k3/k", dims=SAMPLE),
+        "mu": Variable("friction coefficient", dims=SAMPLE),
+        "length_ratio": Variable("free length of the springs over l_pre", dims=SAMPLE),
+        "speed_ratio": Variable("belt speed over l_pre √(k/m)", dims=SAMPLE),
         "holds": Variable(
             "whether the statement holds; not judged where other statements had failed",
             dims=(*JUDGED, *STATEMENT),

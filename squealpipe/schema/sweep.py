@@ -34,11 +34,7 @@ def sweep_name(task: str, names: Sequence[str]) -> str:
 
 
 def swept_coordinate(name: str) -> Variable:
-    """Table entry of a swept name.
-
-    Raises:
-        SchemaError: nothing of that name can be swept.
-    """
+    """Table entry of a swept name."""
     if name in {"alpha1", "alpha2"}:
         return Variable(f"angle of spring {name[-1]}", "rad", (name,))
     if name in OPTIONS:

@@ -98,7 +98,10 @@ def archive(
         target.parent.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryDirectory(dir=target.parent, prefix=f".{name}.") as folder:
             draft = Path(folder) / name
-            _copy_run(run, [names[path] for path in kept], draft)
+            for path in kept:
+                copy = draft / names[path]
+                copy.parent.mkdir(parents=True, exist_ok=True)
+                shutil.copyfile(run / names[path], copy)
             _copy_setting(config_files, study, base, draft)
             frozen_at = datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds")
             (draft / METADATA).write_text(describe(draft, name, frozen_at), encoding="utf-8")
@@ -141,13 +144,6 @@ def verify(what: str | os.PathLike[str], root: str | os.PathLike[str] = ".") -> 
         missing=sorted(set(listed) - present),
         extra=sorted(present - set(listed) - {MANIFEST, SEAL}),
     )
-
-
-def _copy_run(run: Path, names: Iterable[str], draft: Path) -> None:
-    for name in names:
-        copy = draft / name
-        copy.parent.mkdir(parents=True, exist_ok=True)
-        shutil.copyfile(run / name, copy)
 
 
 def _copy_setting(configs: list[Path], study: Study, base: Path, draft: Path) -> None:

@@ -5,7 +5,6 @@ import datetime
 import json
 import os
 import re
-from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -56,7 +55,16 @@ class Run:
 def runs(root: str | os.PathLike[str] = ".") -> list[Run]:
     """All archives and folders of results of a checkout, by name; each file is verified."""
     base = Path(root)
-    return [*map(_archived, _archives(base)), *(_results(at, base) for at in _folders(base))]
+    archives = base / ARCHIVES
+    results = [archives.parent, *sorted(archives.parent.glob("[!.]*"))]
+    return [
+        *(_archived(at) for at in sorted(archives.glob("[!.]*")) if (at / MANIFEST).is_file()),
+        *(
+            _results(at, base)
+            for at in results
+            if at != archives and any((at / "data").rglob("*.nc"))
+        ),
+    ]
 
 
 def matching(expression: str, found: list[Run]) -> list[str]:
@@ -96,19 +104,6 @@ def _row(config: dict[str, Any]) -> dict[str, Any]:
 def paper_configuration() -> dict[str, Any]:
     """Dotted key → value of the paper's study."""
     return flat(read_study(PAPER).model_dump(mode="json"))
-
-
-def _archives(base: Path) -> Iterator[Path]:
-    for place in sorted((base / ARCHIVES).glob("[!.]*")):
-        if (place / MANIFEST).is_file():
-            yield place
-
-
-def _folders(base: Path) -> Iterator[Path]:
-    results = base / ARCHIVES.parent
-    for place in [results, *sorted(results.glob("[!.]*"))]:
-        if place != base / ARCHIVES and any((place / "data").rglob("*.nc")):
-            yield place
 
 
 def _archived(place: Path) -> Run:

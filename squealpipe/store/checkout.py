@@ -10,12 +10,9 @@ UNKNOWN = "unknown"
 
 @cache
 def commit(root: Path = ROOT) -> str:
-    """Our own commit, with a mark if there are changes; never that of a surrounding repository.
+    """Our own commit, with a mark if there are changes; "unknown" outside of our checkout.
 
     Archives below ``results`` are not code: one that takes the place of another marks nothing.
-
-    Args:
-        root: the checkout; "unknown" if it is none, or a folder inside another repository.
     """
     package = "squealpipe/__init__.py"
     if _git(root, "rev-parse", "--show-prefix") or _git(root, "ls-files", package) != package:

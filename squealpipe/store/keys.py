@@ -8,11 +8,7 @@ from squealpipe.store.netcdf import StoreError, attributes
 
 
 def stated_key(path: str | Path) -> str | None:
-    """The key that a dataset, figure or page states; None if it states none.
-
-    Raises:
-        StoreError: the dataset is damaged.
-    """
+    """The key that a dataset, figure or page states; None if it states none."""
     if Path(path).suffix == ".nc":
         key = attributes(path).get("key")
         return None if key is None else str(key)
@@ -44,11 +40,7 @@ def misfits(keys: Mapping[str, str], root: Path = Path()) -> list[str]:
 
 
 def refuse_misfits(keys: Mapping[str, str], root: Path = Path()) -> None:
-    """Raise if a file is not what it should be.
-
-    Raises:
-        StoreError: names each such file.
-    """
+    """Raise if a file is not what it should be."""
     found = misfits(keys, root)
     if found:
         raise StoreError(

@@ -1,7 +1,5 @@
 """NetCDF files that are either whole and valid or absent."""
 
-from __future__ import annotations
-
 import datetime
 import hashlib
 import os
@@ -111,21 +109,13 @@ def dataset_id(dataset: xr.Dataset) -> str:
 
 
 def attributes(path: str | os.PathLike[str]) -> dict[str, Any]:
-    """Global attributes of a dataset file.
-
-    Raises:
-        FileNotFoundError, StoreError: as :func:`load`.
-    """
+    """Global attributes of a dataset file."""
     with netCDF4.Dataset(verified(path)) as file:
         return {name: file.getncattr(name) for name in file.ncattrs()}
 
 
 def verified(path: str | os.PathLike[str]) -> Path:
-    """The path of a dataset file whose bytes are those that were written, before HDF5 opens it.
-
-    Raises:
-        FileNotFoundError, StoreError: as :func:`load`.
-    """
+    """The path of a dataset file whose bytes are those that were written, before HDF5 opens it."""
     source = Path(path)
     if not source.is_file():
         raise FileNotFoundError(f"no dataset {source}; make it with snakemake, or check the path")
@@ -139,11 +129,7 @@ def verified(path: str | os.PathLike[str]) -> Path:
 
 
 def refuse_target(target: Path) -> None:
-    """Refuse to write what must not be replaced.
-
-    Raises:
-        StoreError: a device, pipe, socket or folder of that name exists, or it is in an archive.
-    """
+    """Refuse to write what must not be replaced."""
     if target.exists() and not target.is_file():
         raise StoreError(f"{target} is not a regular file; choose another name to write to")
     archive = archive_around(target)

@@ -26,11 +26,7 @@ def matches_any(name: str, patterns: Iterable[str]) -> bool:
 
 
 def read_manifest(folder: Path) -> dict[str, Any]:
-    """Manifest of an archive; empty where it is damaged or the folder is not an archive.
-
-    Raises:
-        ValueError: it is too large to be one.
-    """
+    """Manifest of an archive; empty where it is damaged or the folder is not an archive."""
     path = folder / MANIFEST
     if not path.is_file():
         return {}
@@ -74,11 +70,7 @@ def left_out(place: Path) -> list[str]:
 
 
 def archive_folder(name: str, root: str | os.PathLike[str] = ".") -> Path:
-    """Folder of an archive of that name.
-
-    Raises:
-        ValueError: the name could lead out of the folder of archives, or is not a name.
-    """
+    """Folder of an archive of that name."""
     if not NAME.fullmatch(name):
         raise ValueError(
             f"archive name {name!r}: use up to 80 letters, digits, '.', '_' and '-', "
@@ -113,9 +105,6 @@ def dataset_files(place: Path) -> dict[str, Path]:
 
     Args:
         place: an archive or a run (both have ``data/``), a folder of datasets, or one file.
-
-    Raises:
-        ValueError: the place holds no dataset.
     """
     if place.is_file():
         return {place.stem: place}

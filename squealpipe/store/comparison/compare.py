@@ -126,15 +126,17 @@ def compare(
         except ValueError as error:
             datasets.append(_refused(name, str(error)))
             continue
-        parameters.update(changed_configuration(*pair))
-        environment.update(changed_environment(*pair))
+        parameters |= _changes(*map(configuration, pair))
+        environment |= _changes(*map(_environment, pair))
         datasets.append(compare_datasets(name, *pair))
         if pair[0].attrs["schema"] == pair[1].attrs["schema"] == CLAIMS.name:
             statements = changed_statements(*pair)
     return Comparison(
         a=str(a),
         b=str(b),
-        parameters={key: parameters[key] for key in sorted(parameters, key=_physical_first)},
+        parameters=dict(
+            sorted(parameters.items(), key=lambda item: (not PHYSICAL_KEY.match(item[0]), item[0]))
+        ),
         statements=statements,
         environment=dict(sorted(environment.items())),
         datasets=datasets,
@@ -195,42 +197,19 @@ def _refused(name: str, reason: str) -> DatasetDifference:
     return DatasetDifference(name=name, verdict=Agreement.not_comparable, reason=reason)
 
 
-def changed_configuration(a: xr.Dataset, b: xr.Dataset) -> dict[str, tuple[Any, Any]]:
-    """Configuration keys whose values differ between the makers of two datasets."""
-    return _changes(configuration(a), configuration(b))
-
-
-def changed_environment(a: xr.Dataset, b: xr.Dataset) -> dict[str, tuple[Any, Any]]:
-    """Commit, versions and platform where they differ."""
-    stated = VOLATILE_ATTRIBUTES - {"history", "wall_time_s", "inputs"}
-    left = {key: a.attrs[key] for key in stated if key in a.attrs}
-    right = {key: b.attrs[key] for key in stated if key in b.attrs}
-    return _changes(_opened(left), _opened(right))
-
-
-def _physical_first(key: str) -> tuple[bool, str]:
-    """Sorts numbers of grids and methods after what they are used on."""
-    return not PHYSICAL_KEY.match(key), key
-
-
 def configuration(dataset: xr.Dataset) -> dict[str, Any]:
     """Dotted key → value of what made a dataset: of the study's slice, else of the call."""
     stated = dataset.attrs
-    try:
-        if "config" in stated:
-            return flat(json.loads(stated["config"]))
-        return flat({"parameters": json.loads(stated.get("parameters", "{}"))})
-    except ValueError:
-        return {"config": stated.get("config", stated.get("parameters"))}
+    if "config" in stated:
+        return flat(json.loads(stated["config"]))
+    return flat({"parameters": json.loads(stated.get("parameters", "{}"))})
 
 
-def _opened(attributes: dict[str, Any]) -> dict[str, Any]:
-    """Attributes with the versions of libraries one by one."""
-    text = attributes.pop("libraries", "{}")
-    try:
-        return {**attributes, **flat({"libraries": json.loads(text)})}
-    except ValueError:
-        return {**attributes, "libraries": text}
+def _environment(dataset: xr.Dataset) -> dict[str, Any]:
+    """Commit, platform and the versions of the libraries one by one."""
+    shown = VOLATILE_ATTRIBUTES - {"history", "wall_time_s", "inputs", "libraries"}
+    stated = {key: dataset.attrs[key] for key in shown if key in dataset.attrs}
+    return stated | flat({"libraries": json.loads(dataset.attrs.get("libraries", "{}"))})
 
 
 def _changes(a: dict[str, Any], b: dict[str, Any]) -> dict[str, tuple[Any, Any]]:

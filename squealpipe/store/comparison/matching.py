@@ -18,11 +18,7 @@ ALIGNED = 1e-9
 def align(
     a: xr.Dataset, b: xr.Dataset, schema: DatasetSchema | None = None
 ) -> tuple[xr.Dataset, xr.Dataset, list[str]]:
-    """Both datasets on what they share, and notes on what was left out.
-
-    Raises:
-        ValueError: a grid shares fewer than two points with the other.
-    """
+    """Both datasets on what they share, and notes on what was left out."""
     notes = []
     lists = {} if schema is None else schema.lists
     for dim in sorted(map(str, set(a.dims) & set(b.dims))):
@@ -102,11 +98,7 @@ def _pairs(left: np.ndarray, right: np.ndarray) -> list[tuple[int, int]]:
 def on_shared_points(
     a: xr.Dataset, b: xr.Dataset, dim: str
 ) -> tuple[xr.Dataset, xr.Dataset, list[str]]:
-    """Both datasets on the points of one grid that they share, and a note on what was left out.
-
-    Raises:
-        ValueError: they share fewer than two points.
-    """
+    """Both datasets on the points of one grid that they share, and a note on what was left out."""
     left, right = a[dim].values, b[dim].values
     if left.shape == right.shape and np.array_equal(left, right):
         return a, b, []

@@ -101,9 +101,6 @@ def finding(
         compared: value, relation and threshold.
         otherwise, passed: verdicts when the comparison is false and true.
         also: further conditions, all of which must be true as well.
-
-    Raises:
-        MissingDataError: the value is NaN, so there is nothing to compare.
     """
     value, relation, threshold = compared
     if np.isnan(value):

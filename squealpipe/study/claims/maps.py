@@ -10,11 +10,7 @@ SAME_STIFFNESS = 1e-12
 
 
 def cell(dataset: xr.Dataset, alpha1_over_pi: float, alpha2_over_pi: float) -> xr.Dataset:
-    """The cell of a map at a pair of angles.
-
-    Raises:
-        MissingDataError: the grid has no point within a millionth of π.
-    """
+    """The cell of a map at a pair of angles."""
     wanted = {"alpha1": alpha1_over_pi * np.pi, "alpha2": alpha2_over_pi * np.pi}
     try:
         return dataset.sel(wanted, method="nearest", tolerance=1e-6 * np.pi)
@@ -26,11 +22,7 @@ def cell(dataset: xr.Dataset, alpha1_over_pi: float, alpha2_over_pi: float) -> x
 
 
 def on_grid_of(dataset: xr.Dataset, other: xr.Dataset) -> xr.Dataset:
-    """The cells of a map that are also cells of another one.
-
-    Raises:
-        MissingDataError: the other grid has points that this one lacks.
-    """
+    """The cells of a map that are also cells of another one."""
     try:
         found = dataset.sel(
             alpha1=other.alpha1, alpha2=other.alpha2, method="nearest", tolerance=1e-6 * np.pi

@@ -22,11 +22,7 @@ Item = TypeVar("Item")
 
 
 def find_module(name: str) -> Path:
-    """The module of a figure.
-
-    Raises:
-        ValueError: not exactly one module has that name.
-    """
+    """The module of a figure."""
     found = list(FOLDER.glob(f"*/{name}.py"))
     if len(found) != 1:
         raise ValueError(f"{len(found)} modules figures/<topic>/{name}.py; one is needed")
@@ -35,11 +31,7 @@ def find_module(name: str) -> Path:
 
 @cache
 def reads(name: str) -> tuple[str, ...]:
-    """``READS`` of a figure's module, read without importing it: the workflow asks often.
-
-    Raises:
-        ValueError: there is no such module, or its READS is not a tuple of texts.
-    """
+    """``READS`` of a figure's module, read without importing it: the workflow asks often."""
     path = find_module(name)
     for node in ast.parse(path.read_bytes()).body:
         if isinstance(node, ast.Assign) and ast.unparse(node.targets[0]) == "READS":
@@ -57,11 +49,7 @@ def datasets_of(name: str, known: Iterable[str]) -> list[str] | None:
 
 
 def arguments(name: str, datasets: Mapping[str, Item]) -> list[Item | dict[str, Item]]:
-    """The datasets of a figure in the order in which it declares them.
-
-    Raises:
-        ValueError: a dataset is missing.
-    """
+    """The datasets of a figure in the order in which it declares them."""
     given: list[Item | dict[str, Item]] = []
     for entry in reads(name):
         found = {match: datasets[match] for match in _matches(entry, datasets)}
@@ -78,11 +66,7 @@ def draw(name: str, datasets: Mapping[str, Any]) -> Figure:
 
 
 def texts(name: str, datasets: Mapping[str, Any]) -> tuple[str, str]:
-    """Caption and alternative text of a figure.
-
-    Raises:
-        ValueError: a text is missing or empty.
-    """
+    """Caption and alternative text of a figure."""
     module, found = _import(name), []
     for constant in ("CAPTION", "ALT"):
         text = getattr(module, constant, "")

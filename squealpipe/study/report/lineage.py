@@ -8,12 +8,7 @@ from typing import Any
 
 
 def lineage(rules: Iterable[Any], folder: str) -> dict[str, dict[str, Any]]:
-    """Datasets by name, each with its path, rule and the datasets that it was made from.
-
-    Args:
-        rules: objects with ``name``, ``input`` and ``output`` (iterables of paths).
-        folder: where datasets are, ending in ``/``.
-    """
+    """Datasets by name, each with its path, rule and the datasets that it was made from."""
     found: dict[str, dict[str, Any]] = {}
     for rule in rules:
         read = sorted(set(_names(rule.input, folder)))

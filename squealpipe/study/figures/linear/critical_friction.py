@@ -1,7 +1,5 @@
 """Critical friction over the angles, what dashpots change of it, and over both dashpots."""
 
-from __future__ import annotations
-
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
@@ -41,12 +39,7 @@ CAPTION = caption
 
 
 def draw(angles: xr.Dataset, dashpots: xr.Dataset) -> Figure:
-    """Three maps.
-
-    Args:
-        angles: dataset ``critical_friction_map``.
-        dashpots: dataset ``critical_damping_map``.
-    """
+    """Three maps."""
     figure, axes = style.new_figure(style.PAGE, 2.4, ncols=3)
     figure.set_layout_engine("constrained", wspace=0.08)
     without, change, plane = axes[0]

@@ -1,7 +1,5 @@
 """Fig. 6: quasi-static sliding (A2) and stability (A3) over both spring angles."""
 
-from __future__ import annotations
-
 import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
@@ -44,13 +42,7 @@ CAPTION = caption
 
 
 def draw(stability: xr.Dataset, quasi_static: xr.Dataset, boundaries: xr.Dataset) -> Figure:
-    """The paper's three tones in both readings of Eq. (11).
-
-    Args:
-        stability: dataset ``stability_map``.
-        quasi_static: dataset ``quasi_static_map`` on the same angles.
-        boundaries: dataset ``stability_boundaries``.
-    """
+    """The paper's three tones in both readings of Eq. (11)."""
     figure, axes = style.new_figure(style.PAGE, 3.95, ncols=2)
     readings = (
         ("Eq. (11) as printed", quasi_static.possible_as_printed, Boundary.no_coupling),

@@ -1,7 +1,5 @@
 """Fig. 9: the second natural frequency over both spring angles."""
 
-from __future__ import annotations
-
 from functools import partial
 
 from squealpipe.study.figures.parts.frequency_map import CAPTION as KEY

@@ -1,7 +1,5 @@
 """Extra figure: how far the natural frequencies shift when contact is lost."""
 
-from __future__ import annotations
-
 import numpy as np
 import xarray as xr
 from matplotlib.colors import TwoSlopeNorm

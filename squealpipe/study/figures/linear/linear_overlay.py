@@ -1,7 +1,5 @@
 """Curves and marks that several maps over both angles share."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from typing import Any
 
