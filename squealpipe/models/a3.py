@@ -61,12 +61,8 @@ def eigenvalues(invariants: Spectrum) -> tuple[Any, Any]:
 
     Flutter gives both modes the same growth and frequency; divergence gives mode 1 s > 0.
     """
-    first, second = natural_frequencies_squared(invariants)
-    return tuple(_right_half(np.sqrt(-squared)) for squared in (first, second))  # type: ignore[return-value]
-
-
-def _right_half(s: Any) -> Any:
-    return np.abs(s.real) + 1j * np.abs(s.imag)
+    first, second = (np.sqrt(-squared) for squared in natural_frequencies_squared(invariants))
+    return abs(first.real) + 1j * abs(first.imag), abs(second.real) + 1j * abs(second.imag)
 
 
 def regime(invariants: Spectrum) -> Any:

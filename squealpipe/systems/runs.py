@@ -546,9 +546,7 @@ def call_values(
         if name not in system.units:
             raise ValueError(f"start: {name!r} is unknown; {suggestion(str(name), system.units)}")
     for name in parameters:
-        if name not in system.parameters:
-            near = suggestion(name, system.parameters)
-            raise ValueError(f"{system.name}: parameter {name!r} is unknown; {near}")
+        system.check_parameter(name)
     states = {name: system.start[name] for name in system.units}
     return {**states, **system.parameters, **start, **parameters}
 

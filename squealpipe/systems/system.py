@@ -230,6 +230,12 @@ class System:
         if given is not None and not (isinstance(given, str) and given in self.regimes):
             raise ValueError(f"start: regime {given!r}: {suggestion(str(given), self.regimes)}")
 
+    def check_parameter(self, name: str) -> None:
+        """Refuse a parameter that there is not."""
+        if name not in self.parameters:
+            near = suggestion(name, self.parameters)
+            raise ValueError(f"{self.name}: parameter {name!r} is unknown; {near}")
+
     @staticmethod
     def _check_free(what: str, names: Mapping[str, Any], taken: Any) -> None:
         for name in names:

@@ -72,14 +72,7 @@ def take_step(
         for index in range(3):
             trial[index] = here[index] + length * ahead[index]
         legs, iterations, _ = solve_constrained(
-            rows,
-            trial,
-            ahead,
-            TRACE_TOLERANCE,
-            segments,
-            switches,
-            final,
-            tangent,
+            rows, trial, ahead, TRACE_TOLERANCE, segments, switches, final, tangent
         )
         pace[WORK] += (iterations + 1) * (_WORK_PER_SHOT + fastest(rows) * here[2])
         flight = time_in_flight(trial, segments, switches, legs)

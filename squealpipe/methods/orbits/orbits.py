@@ -136,15 +136,8 @@ def orbit_across(
 def rest_jacobian(system: PiecewiseLinearSystem, point: NDArray[np.float64]) -> NDArray[np.float64]:
     """(2, 3) derivatives of the velocities after half a period by (x0, y0, T/2)."""
     jacobian = np.empty((2, 3))
-    rest_conditions(
-        system.rows,
-        point,
-        np.empty((MAX_SEGMENTS, 9)),
-        np.empty(MAX_SEGMENTS),
-        np.empty(2),
-        jacobian,
-        np.empty(4),
-    )
+    work = np.empty((MAX_SEGMENTS, 9)), np.empty(MAX_SEGMENTS), np.empty(2)
+    rest_conditions(system.rows, point, *work, jacobian, np.empty(4))
     return jacobian
 
 

@@ -167,7 +167,9 @@ def solve_constrained(
         if error < previous:
             best0, best1, best2 = point[0], point[1], point[2]
         if stagnant or error <= tolerance:
-            _normalize(tangent)
+            size = norm(tangent)
+            for index in range(3):
+                tangent[index] /= size
             if error > previous:
                 point[0], point[1], point[2] = best0, best1, best2
                 count = shoot(rows, best0, best1, best2, segments, switches, final)
@@ -195,10 +197,3 @@ def _cross(left: Any, right: Any, out: Any) -> None:
     out[0] = left[1] * right[2] - left[2] * right[1]
     out[1] = left[2] * right[0] - left[0] * right[2]
     out[2] = left[0] * right[1] - left[1] * right[0]
-
-
-@compiled
-def _normalize(vector: Any) -> None:
-    size = norm(vector)
-    for index in range(3):
-        vector[index] /= size

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import hashlib
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -218,26 +218,11 @@ def compile_scalar(source: str) -> Any:
     return compiled_entry(scope[name], signature, digest)
 
 
-def evaluate(roots: Sequence[Symbol], values: dict[str, Any]) -> Iterator[Any]:
+def evaluate(roots: Sequence[Symbol], values: Mapping[str, Any]) -> tuple[Any, ...]:
     """Symbols as floats or arrays, from those of variables and parameters by name."""
-    found: dict[int, Any] = {}
-    for node in in_order(list(roots)):
-        inner = [found[id(a)] if isinstance(a, Symbol) else a for a in node.arguments]
-        if node.kind in {"variable", "parameter"}:
-            found[id(node)] = values[node.arguments[0]]
-        elif node.kind == "number":
-            found[id(node)] = inner[0]
-        elif node.kind == "joined":
-            found[id(node)] = inner[0] * inner[1] * inner[2] + inner[3] * inner[4] * inner[5]
-        elif node.kind in FUNCTIONS:
-            found[id(node)] = getattr(np, node.kind)(inner[0])
-        elif node.kind == "+":
-            found[id(node)] = inner[0] + inner[1]
-        elif node.kind == "*":
-            found[id(node)] = inner[0] * inner[1]
-        else:
-            found[id(node)] = inner[0] ** inner[1]
-    return (found[id(root)] for root in roots)
+    function, names = numpy_function(roots)
+    found: tuple[Any, ...] = function(*(values[name] for name in names))
+    return found
 
 
 def python_function(roots: Sequence[Symbol], arguments: Sequence[Symbol], module: Any) -> Any:

@@ -24,6 +24,7 @@ from squealpipe.methods.taylor.symbols import (
     function,
     in_order,
     moving_part,
+    symbol,
 )
 
 Name = Callable[[Symbol], str]
@@ -145,7 +146,11 @@ class _SeriesWriter:
     def source(self) -> tuple[str, int]:
         """The function and the number of its series."""
         body = [f"s{i} = base + {i} * stride" for i in range(self.count)]
-        body += [f"{self._v(n)} = {constant(self.system, n, self._v)}" for n in self._fixed()]
+        body += [
+            f"{self._v(n)} = {constant(self.system, n, self._v)}"
+            for n in self.nodes
+            if not n.varies
+        ]
         for node in self.moving:
             body += self._first(node)
         body += self._outputs("0")
@@ -161,9 +166,6 @@ class _SeriesWriter:
         body += [f"r = (terms - 1) * {simd.ROW}", *self._last_events()]
         head = ["def series(base, parameters, inverses, terms):", f" stride = terms * {simd.ROW}"]
         return "\n".join(head + [f" {line}" for line in body]) + "\n", self.count
-
-    def _fixed(self) -> list[Symbol]:
-        return [node for node in self.nodes if not node.varies]
 
     def _v(self, node: Symbol) -> str:
         return f"{'v' if node.varies else 'c'}{self.number[id(node)]}"
@@ -406,7 +408,7 @@ def _collocation(
 
     def rate(i: int, stage: int) -> str:
         terms = [
-            f"w{j}_{stage}" if _is_one(entry) else f"{at(stage)(entry)} * w{j}_{stage}"
+            f"w{j}_{stage}" if entry is symbol(1.0) else f"{at(stage)(entry)} * w{j}_{stage}"
             for (row, j), entry in slopes.items()
             if row == i
         ]
@@ -425,10 +427,6 @@ def _collocation(
         row = zip(stages, GAUSS_WEIGHTS, strict=True)
         total = " + ".join(f"k{i}_{s} * splat({weight!r})" for s, weight in row)
         yield f"store(tangent + {i * simd.ROW}, fma(h, {total}, z{i}))"
-
-
-def _is_one(entry: Symbol) -> bool:
-    return entry.kind == "number" and entry.arguments[0] == 1.0
 
 
 def pointwise(node: Symbol, name: Name) -> str:

@@ -40,7 +40,6 @@ from squealpipe.systems.cycles.cycle import (
 from squealpipe.systems.cycles.event_map import FREE, Cycle, Event, EventMap, Section
 from squealpipe.systems.cycles.flow import Flow, Vector
 from squealpipe.systems.cycles.labels import Label
-from squealpipe.text import suggestion
 from squealpipe.validation import Number, Several, checked
 
 if TYPE_CHECKING:
@@ -676,9 +675,7 @@ def cycle_branch(
         A special point has the stability of the point before it; a grazing and an onset of
         sticking, where the return map has no derivative, have no multipliers (NaN).
     """
-    if parameter not in system.parameters:
-        near = suggestion(parameter, system.parameters)
-        raise ValueError(f"{system.name}: parameter {parameter!r} is unknown; {near}")
+    system.check_parameter(parameter)
     cycle = started(system, start)
     begin = cycle.parts.values[parameter]
     if math.isclose(to, begin, rel_tol=1e-11):

@@ -328,9 +328,7 @@ def _label(
     if len(set(parameters)) != 2 or len(parameters) != 2:
         raise ValueError(f"parameters = {parameters!r}: two names are needed")
     for name in parameters:
-        if name not in system.parameters:
-            near = suggestion(name, system.parameters)
-            raise ValueError(f"{system.name}: parameter {name!r} is unknown; {near}")
+        system.check_parameter(name)
     for name, limits in to.items():
         if name not in parameters:
             raise ValueError(f"to: {name!r} is unknown; {suggestion(name, parameters)}")

@@ -4,7 +4,6 @@ from collections.abc import Iterator
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
 
 from squealpipe.codes import Event, Regime
 from squealpipe.methods.spectrum import FEWEST, amplitude_spectrum, highest_peaks, lasts
@@ -96,7 +95,9 @@ def summary_lines(run: xr.Dataset, summary: xr.Dataset) -> Iterator[str]:
         f"largest motion     |x| = {float(summary.largest_x):.5g} m, "
         f"|y| = {float(summary.largest_y):.5g} m"
     )
-    yield f"dominant           {_peaks(summary.dominant_frequency.values)}"
+    peaks = ", ".join(f"{value:.4g}" for value in summary.dominant_frequency.values)
+    none = "no oscillation of the contact force"
+    yield f"dominant           {f'ω = {peaks} rad/s' if peaks else none}"
 
 
 def _regime(summary: xr.Dataset) -> str:
@@ -107,9 +108,3 @@ def _regime(summary: xr.Dataset) -> str:
     if stuck:
         parts.append(f"stuck to the belt {stuck:.1%}")
     return "; ".join(parts) if parts else "contact is kept, sliding throughout"
-
-
-def _peaks(frequencies: NDArray[np.float64]) -> str:
-    if not frequencies.size:
-        return "no oscillation of the contact force"
-    return "ω = " + ", ".join(f"{value:.4g}" for value in frequencies) + " rad/s"
