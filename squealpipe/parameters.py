@@ -1,7 +1,5 @@
 """The physical parameters, their dimensionless groups, and the paper's named scenes."""
 
-from __future__ import annotations
-
 import math
 import re
 import reprlib
@@ -9,7 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, replace
 from numbers import Integral, Real
 from types import SimpleNamespace
-from typing import Any, Literal
+from typing import Any, Literal, Self
 
 from squealpipe.laws import contact_laws, friction_laws
 from squealpipe.laws.contact_laws import LINEAR
@@ -300,7 +298,7 @@ class Parameters:
         tables = [row for name, row in TABLE.items() if row.laws and is_table(getattr(self, name))]
         return tuple(name for row in tables for name in row.laws.IN_TABLE)
 
-    def with_(self, **changes: Any) -> Parameters:
+    def with_(self, **changes: Any) -> Self:
         """A copy with some fields changed, validated again."""
         follow = {
             each: DEFAULTS[each]

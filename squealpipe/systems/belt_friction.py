@@ -5,8 +5,6 @@ speed. :data:`leine_oscillator` is that of Leine, van Campen, de Kraker and van 
 :data:`exponential_oscillator` the case study of bSTAB.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from typing import Any
 

@@ -1,7 +1,5 @@
 """A ball that bounces on the floor; its impacts accumulate."""
 
-from __future__ import annotations
-
 from squealpipe.systems.system import Switch, System
 
 bouncing_ball = System(

@@ -6,8 +6,6 @@ Its parameters are those of ``Parameters`` and both angles; the laws are those o
 the field is smooth in each.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from functools import cache
 from types import SimpleNamespace

@@ -1,7 +1,5 @@
 """A forced oscillator with dry friction: ẍ + 2ζẋ + x + sgn ẋ = f cos ωt, with stick."""
 
-from __future__ import annotations
-
 from math import pi
 from typing import Any
 

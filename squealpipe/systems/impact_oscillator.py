@@ -1,7 +1,5 @@
 """A forced oscillator that hits a stop: ẍ + c ẋ + x = A cos ωt, x ≤ gap."""
 
-from __future__ import annotations
-
 from math import pi
 
 from squealpipe.functions import cos

@@ -6,8 +6,6 @@ y = −approach, where the force kc (y + approach) is zero. The modes merge, and
 μ = 0.75.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 from squealpipe.systems.system import Switch, System

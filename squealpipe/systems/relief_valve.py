@@ -3,8 +3,6 @@
 ẏ1 = y2, ẏ2 = −κ y2 − (y1 + δ) + y3, ẏ3 = β (q − y1 √y3); impact at y1 = 0.
 """
 
-from __future__ import annotations
-
 from squealpipe.functions import sqrt
 from squealpipe.systems.system import Switch, System
 

@@ -6,8 +6,6 @@ each upper edge from a fixed point above it. The belt is faster than any edge, s
 both along +x; ``work`` is what friction has done since the start.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 from squealpipe.functions import cos, sin, sqrt

@@ -1,10 +1,8 @@
 """A system's functions as symbols: traced once, checked before anything is compiled."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 
@@ -68,7 +66,7 @@ class Traced:
     starts: tuple[tuple[int, Symbol | None, Symbol | None], ...]
     derived: tuple[Symbol, ...] = ()
 
-    def with_derived(self) -> Traced:
+    def with_derived(self) -> Self:
         """The same with its constant parts as parameters, for the integrator."""
         roots = [*self.rates, *self.surfaces, *self.outputs]
         for switch in self.switches:

@@ -1,10 +1,8 @@
 """One system for all its mirror images, so that what is computed of them is the same."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, fields
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 
@@ -29,7 +27,7 @@ class NormalForm:
     mirrored: bool
 
     @classmethod
-    def of(cls, params: Parameters) -> NormalForm:
+    def of(cls, params: Parameters) -> Self:
         """The normal form of a system."""
         first, second = (params.k1, params.length1), (params.k2, params.length2)
         mirrored = params.belt_speed < 0.0

@@ -1,7 +1,5 @@
 """One module a solver, each with ``solve(problem, tol)``; see ``docs/benchmark.md``."""
 
-from __future__ import annotations
-
 import importlib
 import runpy
 from collections.abc import Callable, Iterable

@@ -1,7 +1,5 @@
 """CyRK's ``pysolve_ivp`` with terminal events, which follows scipy's interface (its README)."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -4,8 +4,6 @@ Dopri8, which "How to choose a solver" suggests at tight tolerances, a PID contr
 defaults, and optimistix' Newton, the choice that the page of ``diffrax.Event`` calls typical.
 """
 
-from __future__ import annotations
-
 from functools import cache
 from typing import Any
 

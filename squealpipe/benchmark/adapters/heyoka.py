@@ -4,8 +4,6 @@ As its notebook "Event detection" has it: one integrator, a direction for each e
 that it chooses itself; what changes with the regime are its runtime parameters.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import heyoka as hy

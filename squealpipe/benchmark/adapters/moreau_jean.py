@@ -4,8 +4,6 @@ Acary and Brogliato (2008), section 10.1: forces at the midpoint, friction as an
 bound, found from the velocity at the end, impacts by Newton's law where the midpoint has no gap.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

@@ -4,8 +4,6 @@ Settings of its page (``scipy.integrate.solve_ivp``): rtol and atol, ``terminal`
 of each event; ``max_step`` is left at infinity, its default.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

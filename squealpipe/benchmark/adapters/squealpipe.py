@@ -1,7 +1,5 @@
 """Our own engine: the problem's texts become a ``System``, run with its predictability horizon."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

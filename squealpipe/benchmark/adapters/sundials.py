@@ -4,8 +4,6 @@ Adams' method, which the page of ``sksundae.cvode.CVODE`` suggests for problems 
 ``max_num_steps`` above its default of 500, which a whole flight needs at tight tolerances.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

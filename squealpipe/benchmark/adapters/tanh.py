@@ -1,7 +1,5 @@
 """Regularization: a regime's constants become tanh of width 1/σ, and LSODA sees no events."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from scipy.integrate import solve_ivp

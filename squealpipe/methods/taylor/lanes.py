@@ -9,8 +9,6 @@ Lanes share nothing and each carries its own time, so a result does not depend o
 neighbours, the order of the jobs or the number of processes.
 """
 
-from __future__ import annotations
-
 import ctypes
 import math
 from collections.abc import Callable, Mapping

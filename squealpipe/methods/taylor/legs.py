@@ -4,8 +4,6 @@ Nothing is watched here: a leg may run on beyond a surface, or backwards by as m
 so that what solves for a sequence of events is smooth.
 """
 
-from __future__ import annotations
-
 import math
 from functools import cache
 from typing import Any, NamedTuple

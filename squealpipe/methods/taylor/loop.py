@@ -5,8 +5,6 @@ computes is called by address. After each step all lanes are looked at side by s
 nothing ends, no surface may be crossed and no sample is due takes no path of its own.
 """
 
-from __future__ import annotations
-
 import math
 from functools import cache
 from typing import Any, NamedTuple

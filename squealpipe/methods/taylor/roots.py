@@ -5,8 +5,6 @@ a monotone one has a root where its ends differ in sign, and one that is convex 
 most one extremum. An interval where none of this decides is halved.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 from squealpipe.methods.compiled import part, polynomial

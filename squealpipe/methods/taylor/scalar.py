@@ -4,8 +4,6 @@ Arguments are addresses: ``z`` of the state (with the time last, if it is explic
 lane's parameters, ``r`` of a regime's constants, ``out`` of the results.
 """
 
-from __future__ import annotations
-
 import hashlib
 import math
 from collections.abc import Callable, Mapping, Sequence

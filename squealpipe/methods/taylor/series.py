@@ -7,8 +7,6 @@ next to nothing. Another carries a perturbation along these polynomials, in step
 rate limits: near rest those of the state are as long as one likes.
 """
 
-from __future__ import annotations
-
 import functools
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass

@@ -7,8 +7,6 @@ IEEE 754 defines them and lanes never mix, so a result depends neither on the la
 processor.
 """
 
-from __future__ import annotations
-
 import operator
 from collections.abc import Callable
 from typing import Any

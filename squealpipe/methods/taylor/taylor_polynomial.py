@@ -3,8 +3,6 @@
 Coefficients are an array [variable, order, lane].
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 from squealpipe.methods.compiled import polynomial

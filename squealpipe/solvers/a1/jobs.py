@@ -1,7 +1,5 @@
 """The runs of an ensemble: checked inputs, broadcast, in units of m = k1 = l_pre = 1."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass

@@ -5,8 +5,6 @@ its ends, the speed at which each event's surface is crossed, the length of each
 conditions that chose the regime entered. Where one falls to zero the order of the events changes.
 """
 
-from __future__ import annotations
-
 from enum import IntEnum
 from functools import lru_cache
 from typing import NamedTuple

@@ -1,7 +1,5 @@
 """Where steady sliding loses its stability and a branch of cycles is born."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """A1 as a system of cycles: its parameters in units of m = k1 = l_pre = 1."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any

@@ -1,7 +1,5 @@
 """Steady sliding of A1 in contact, and small motions about it."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

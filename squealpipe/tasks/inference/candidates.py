@@ -1,12 +1,10 @@
 """Parameter sets that the paper's statements are measured at, and their motions."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from types import SimpleNamespace
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 
@@ -42,19 +40,19 @@ class Candidates:
     model: str = "A1"
 
     @classmethod
-    def of(cls, params: Parameters, *, tol: float, workers: int | None = 1) -> Candidates:
+    def of(cls, params: Parameters, *, tol: float, workers: int | None = 1) -> Self:
         """One candidate."""
         fields = {name: np.array([value]) for name, value in params.as_dict().items()}
         return cls(fields, tol, workers)
 
-    def read(self, name: str) -> Candidates:
+    def read(self, name: str) -> Self:
         """The same sets in one reading of the sign of friction."""
         reading = reading_of(name)
         speed = reading.direction * self.fields["belt_speed"]
         fields = {**self.fields, "belt_speed": speed}
         return replace(self, fields=fields, model=reading.a1_model)
 
-    def subset(self, rows: np.ndarray) -> Candidates:
+    def subset(self, rows: np.ndarray) -> Self:
         """Some of the sets, which all start alike."""
         return replace(self, fields={name: each[rows] for name, each in self.fields.items()})
 
