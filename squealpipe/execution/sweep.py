@@ -1,5 +1,7 @@
 """Any task over ranges of parameters, angles and options, as one labelled dataset."""
 
+from __future__ import annotations
+
 import itertools
 from collections.abc import Iterable, Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor

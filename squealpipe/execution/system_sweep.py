@@ -1,5 +1,7 @@
 """A sweep of a system of the user's own: ``FILE.py:NAME``, over its starts and parameters."""
 
+from __future__ import annotations
+
 import importlib.util
 import inspect
 from collections.abc import Mapping, Sequence

@@ -1,5 +1,7 @@
 """A whole run as one tree of datasets."""
 
+from __future__ import annotations
+
 import os
 from pathlib import Path
 

@@ -1,5 +1,7 @@
 """Datasets as tables for other programs: CSV, MATLAB, Excel, Parquet."""
 
+from __future__ import annotations
+
 from importlib.util import find_spec
 from pathlib import Path
 
