@@ -59,10 +59,6 @@ def read_table(path: str | PathLike[str], columns: tuple[str, str], between: str
 
     Args:
         columns: those of knots and values; of two columns that of values may have any name.
-
-    Raises:
-        FileNotFoundError: no such file.
-        ValueError: a column is missing, or a value is not a number; names the line.
     """
     if between not in BETWEEN:
         raise ValueError(f"between = {between!r}: choose from {', '.join(BETWEEN)}")
@@ -89,11 +85,7 @@ def read_table(path: str | PathLike[str], columns: tuple[str, str], between: str
 
 @lru_cache(maxsize=64)
 def knots_of(text: str) -> tuple[tuple[float, ...], tuple[float, ...]]:
-    """Knots and values of the text of a table.
-
-    Raises:
-        ValueError: it is none, or no function: a knot is a duplicate, negative, or out of order.
-    """
+    """Knots and values of the text of a table."""
     try:
         pairs = [tuple(map(float, pair.split(":"))) for pair in text.split()[1:]]
         knots, values = (tuple(each) for each in zip(*pairs, strict=True))
@@ -118,11 +110,7 @@ def scaled(text: str, knot: float, value: float) -> str:
 
 
 def functions_of(source: str) -> dict[str, Any]:
-    """What the source of a law in Python defines; its own code, run as a script is.
-
-    Raises:
-        ValueError: it is not Python.
-    """
+    """What the source of a law in Python defines; its own code, run as a script is."""
     found: dict[str, Any] = {}
     try:
         exec(compile(source, "<law>", "exec"), found)  # noqa: S102 (the user's own file)
@@ -167,10 +155,6 @@ def named(given: Any, columns: tuple[str, str], folder: Path = Path()) -> Any:
     Args:
         given: a name; the path of a CSV or Python file; or ``{"table": path, "between": "cubic"}``
             or ``{"python": path}``.
-
-    Raises:
-        OSError: the file cannot be read.
-        ValueError: as :func:`read_table`, or the mapping is another one.
     """
     if isinstance(given, PathLike) or (isinstance(given, str) and given.endswith((".csv", ".py"))):
         given = {"python" if fspath(given).endswith(".py") else "table": fspath(given)}

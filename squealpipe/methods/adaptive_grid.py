@@ -36,9 +36,6 @@ def refine_grid(evaluate: Evaluate, resolution: int, coarse: int) -> RefinedGrid
             reserve is NaN where none is known.
         coarse: points per side of the first grid; (resolution − 1)/(coarse − 1) must be a power
             of two.
-
-    Raises:
-        ValueError: the two grids do not nest.
     """
     spacing, rest = divmod(resolution - 1, max(coarse - 1, 1))
     if coarse < 2 or rest or spacing < 1 or spacing & (spacing - 1):

@@ -49,9 +49,6 @@ def run_shared(
         work: handles the jobs first, first + stride, … and writes their rows of the arrays.
         shapes: name → (shape, dtype) of the arrays, zero at the start.
         workers: processes; None takes all cores, at most one a ``MINIMUM_JOBS`` jobs.
-
-    Raises:
-        RuntimeError: a worker process died.
     """
     if workers is None:
         workers = max(1, min(available_cores(), jobs // MINIMUM_JOBS))

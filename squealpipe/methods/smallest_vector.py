@@ -139,9 +139,6 @@ def smallest_linear(matrix: Array, row: Array, level: float, t_end: float) -> fl
     Args:
         matrix: A, (n, n).
         row: c, (n,).
-
-    Raises:
-        ValueError: the fastest motion is too fast for the horizon.
     """
     rate = max(float(np.abs(np.linalg.eigvals(matrix)).max()), 1.0 / t_end)
     if not rate * t_end <= MOST_STEPS * PHASE:

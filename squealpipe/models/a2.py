@@ -33,11 +33,7 @@ def acceleration(
 
 
 def contact_stiffness(p: Any, sigma: Any = None) -> Any:
-    """K3 of Eq. (8d), N/m; without ``sigma`` the slope of the contact law at l_pre, k3 if linear.
-
-    Raises:
-        ValueError: ``sigma`` beside a contact law that it does not regularize.
-    """
+    """K3 of Eq. (8d), N/m; without ``sigma`` the slope of the contact law at l_pre."""
     if sigma is None:
         return law(p).stiffness(p.preload, p)
     if p.contact_law != LINEAR:

@@ -26,11 +26,7 @@ def without_extensions(params: Parameters) -> Parameters:
 
 
 def refuse_extensions(params: Parameters, who: str, why: str) -> None:
-    """Stop a level that carries neither dashpots nor any friction but Coulomb's with one μ.
-
-    Raises:
-        ValueError: names the parameters that it cannot carry, with the remedy.
-    """
+    """Stop a level that carries neither dashpots nor any friction but Coulomb's with one μ."""
     of_other_laws = {name for law in LAWS.values() for name in law.PARAMETERS} - set(
         LAWS[COULOMB].PARAMETERS
     )
@@ -50,11 +46,7 @@ def refuse_extensions(params: Parameters, who: str, why: str) -> None:
 
 
 def refuse_scales(params: Parameters) -> None:
-    """Stop linear models whose characteristic polynomial leaves the range of a double.
-
-    Raises:
-        ValueError: names the parameter, with the remedy.
-    """
+    """Stop linear models whose characteristic polynomial leaves the range of a double."""
     mass, stiffest = params.mass, max(params.k1, params.k2, params.k3)
     squares = {name: (getattr(params, name), 1e-140) for name in ("k1", "k2", "k3")}
     squares["mu"] = (max(abs(params.drag), params.static_mu) * stiffest, 0.0)

@@ -12,23 +12,19 @@ class Rules(NamedTuple):
     where they do not.
     """
 
-    separates: bool
-    reverses: bool
-    sticks: bool
-    linear_springs: bool
+    separates: bool = True
+    reverses: bool = True
+    sticks: bool = True
+    linear_springs: bool = False
     drags: bool = True
 
 
 VARIANT_RULES: dict[str, Rules] = {
-    "A1": Rules(separates=True, reverses=True, sticks=True, linear_springs=False),
-    "A1-no-stick": Rules(separates=True, reverses=True, sticks=False, linear_springs=False),
-    "A1-no-separation": Rules(separates=False, reverses=True, sticks=True, linear_springs=False),
-    "A1-linear-springs": Rules(separates=True, reverses=True, sticks=True, linear_springs=True),
-    "A1-as-printed": Rules(
-        separates=True, reverses=True, sticks=False, linear_springs=False, drags=False
-    ),
-    "A1-as-printed-no-separation": Rules(
-        separates=False, reverses=True, sticks=False, linear_springs=False, drags=False
-    ),
-    "A4": Rules(separates=True, reverses=False, sticks=False, linear_springs=True),
+    "A1": Rules(),
+    "A1-no-stick": Rules(sticks=False),
+    "A1-no-separation": Rules(separates=False),
+    "A1-linear-springs": Rules(linear_springs=True),
+    "A1-as-printed": Rules(sticks=False, drags=False),
+    "A1-as-printed-no-separation": Rules(separates=False, sticks=False, drags=False),
+    "A4": Rules(reverses=False, sticks=False, linear_springs=True),
 }

@@ -91,9 +91,6 @@ def brake(  # noqa: C901 (one short function for each force and surface)
             an accumulation of events.
         one_mu: ``mu`` holds the mass too; ``static_mu`` is not read.
         long_springs: which springs are longer than ``springs.LONG`` preload lengths.
-
-    Raises:
-        ValueError: friction as printed with a table.
     """
     rules = VARIANT_RULES[model]
     laws = _Laws(friction_law, contact_law, rules, one_mu=one_mu)

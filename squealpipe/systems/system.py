@@ -471,9 +471,6 @@ class System:
         Args:
             values: states, parameters and ``time`` as arrays of that size.
             given: its name; by default that of the system's start, or what fits.
-
-        Raises:
-            ValueError: no regime fits a start.
         """
         given = given or cast("str | None", self.start.get("regime"))
         if given is not None:

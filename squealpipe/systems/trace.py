@@ -155,11 +155,7 @@ class Tracer:
             ) from None
 
     def regime(self, what: str, name: Any) -> int:
-        """The number of a regime.
-
-        Raises:
-            ValueError: there is none of that name.
-        """
+        """The number of a regime."""
         if name not in self.regimes:
             raise ValueError(
                 f"{what}: regime {name!r} is unknown; {suggestion(name, self.regimes)}"
@@ -183,8 +179,7 @@ def check_progress(
 ) -> None:
     """Refuse a switch back into its own regime whose reset leaves it on, or behind, its surface.
 
-    Raises:
-        ValueError: at every one of many random states the surface goes on falling after the reset.
+    At every one of many random states the surface goes on falling after the reset.
     """
     rng = np.random.default_rng(0)
     values = {TIME: 0.3, **tracer.samples(rng, 400)}

@@ -55,12 +55,6 @@ class NormalForm:
 
 def exchanged(params: Parameters) -> Parameters:
     """The same parameters with the properties of springs 1 and 2 exchanged."""
-    names = [item.name for item in fields(params)]
-    pairs = [(name, f"{name[:-1]}2") for name in names if name.endswith("1")]
-    return params.with_(
-        **{
-            here: getattr(params, there)
-            for one, two in pairs
-            for here, there in ((one, two), (two, one))
-        }
-    )
+    other = {"1": "2", "2": "1"}
+    names = [item.name for item in fields(params) if item.name[-1] in other]
+    return params.with_(**{n: getattr(params, n[:-1] + other[n[-1]]) for n in names})

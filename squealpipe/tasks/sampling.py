@@ -15,11 +15,7 @@ MOST_SAMPLES = 1e7
 
 
 def sample_times(params: Parameters, t_end: float) -> np.ndarray:
-    """Instants at equal steps from 0 to ``t_end`` that resolve the fastest oscillation, s.
-
-    Raises:
-        ValueError: they are too many.
-    """
+    """Instants at equal steps from 0 to ``t_end`` that resolve the fastest oscillation, s."""
     wanted = COARSE * params.fastest * t_end
     if not wanted <= MOST_SAMPLES:
         raise ValueError(

@@ -22,11 +22,7 @@ SOLVERS: dict[str, tuple[str, str, dict[str, Any]]] = {
 
 
 def solver(name: str) -> Callable[..., Any] | None:
-    """The function that a name or FILE.py:FUNCTION means; None where its package is missing.
-
-    Raises:
-        ValueError: there is no such adapter, file or function.
-    """
+    """The function that a name or FILE.py:FUNCTION means; None where its package is missing."""
     path, colon, function = name.rpartition(":")
     if colon:
         if not Path(path).is_file():
@@ -45,11 +41,7 @@ def solver(name: str) -> Callable[..., Any] | None:
 
 
 def installed(names: Iterable[str]) -> dict[str, Callable[..., Any]]:
-    """Solvers by name (without folders); those that are not installed are left out, and said so.
-
-    Raises:
-        ValueError: see :func:`solver`; or two files have the same name.
-    """
+    """Solvers by name (without folders); those that are not installed are left out, and said so."""
     names = dict.fromkeys(names)
     found = {name.rpartition("/")[2]: solver(name) for name in names}
     if len(found) < len(names):

@@ -74,11 +74,7 @@ class Piece:
 
 @lru_cache(maxsize=64)
 def relative(name: str, preload: float) -> str:
-    """A law in units of l_pre and the force there: a table is rescaled, other names stay.
-
-    Raises:
-        ValueError: the table's first force is not 0 at compression 0, or it has none at l_pre.
-    """
+    """A law in units of l_pre and the force there: a table is rescaled, other names stay."""
     if not is_table(name):
         return name
     knots, forces = knots_of(name)

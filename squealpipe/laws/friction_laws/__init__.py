@@ -78,11 +78,7 @@ class Piece:
 
 @lru_cache(maxsize=64)
 def _own(name: str) -> FrictionLaw | None:
-    """A law of the user's own; None if the name is none.
-
-    Raises:
-        ValueError: a table that is no function, or a file without a law.
-    """
+    """A law of the user's own; None if the name is none."""
     if is_table(name):
         return Table(pieces_of(name))
     if "\n" not in name:

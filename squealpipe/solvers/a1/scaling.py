@@ -43,12 +43,7 @@ class ScaledRuns(NamedTuple):
 
 
 def scaled_runs(parameters: Parameters | Mapping[str, Any], model: str) -> ScaledRuns:
-    """Checked parameters in the engine's units, and the systems that they are of.
-
-    Raises:
-        ValueError: an unknown parameter, a value that is not allowed, or a variant of A1 with laws
-            of the user's own.
-    """
+    """Checked parameters in the engine's units, and the systems that they are of."""
     if isinstance(parameters, Parameters):
         return _scaled_once(parameters, model)
     law = parameters.get("friction_law", COULOMB)

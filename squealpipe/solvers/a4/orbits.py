@@ -45,9 +45,6 @@ def find_orbit(
 
     Where the branch ends before the peak and ``across`` is given, :func:`orbit_across` looks for
     an orbit of another branch.
-
-    Raises:
-        ValueError: the peak is below the equilibrium.
     """
     if scene.obstacle != Outcome.converged:
         return None, scene.obstacle

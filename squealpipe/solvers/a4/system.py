@@ -74,10 +74,6 @@ def scaled_system(params: Parameters, alpha1: float, alpha2: float) -> ScaledSys
 
     K12 counts as zero where only round-off keeps it from it, so that decoupled scenes such as
     (π/2, π) are decoupled.
-
-    Raises:
-        ValueError: a mass or stiffness too large or small, or
-            damping or friction that A4 cannot carry.
     """
     refuse_extensions(params, "model A4", WHY_A4)
     for name in ("mass", "k1", "k2", "k3"):

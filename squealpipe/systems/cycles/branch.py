@@ -475,11 +475,7 @@ class Line:
         self.reach = float(self.normal @ (last[0].point - first[0].point))
 
     def at(self, share: float) -> tuple[ContinuationState, Cycle]:
-        """The point over a share of the step.
-
-        Raises:
-            ArithmeticError: there is none.
-        """
+        """The point over a share of the step; an ArithmeticError where there is none."""
         if share not in self.known:
             shares = sorted(self.known)
             high = next((s for s in shares if s > share), shares[-1])
@@ -688,11 +684,7 @@ def cycle_branch(
 
 
 def started(system: System, start: xr.Dataset) -> Cycle:
-    """The cycle of a dataset.
-
-    Raises:
-        ValueError: it holds none.
-    """
+    """The cycle of a dataset."""
     import json
 
     names = [f"{name}_start" for name in system.states]

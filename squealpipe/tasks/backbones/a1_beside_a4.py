@@ -43,9 +43,6 @@ def a1_beside_a4(
         params: physical parameters; the spring lengths are replaced.
         branches: name → (alpha1, alpha2, mode).
         peak: y_peak over l_pre; length_ratios: spring lengths over l_pre.
-
-    Raises:
-        ValueError: a branch has no orbit at the peak.
     """
     phases = np.arange(_PERIODS * _SAMPLES) / _SAMPLES
     kept = phases < _SHOWN

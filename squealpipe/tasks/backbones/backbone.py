@@ -126,9 +126,6 @@ def with_orbits(
     Args:
         branches: name → (alpha1, alpha2, mode).
         peaks: y_peak over l_pre.
-
-    Raises:
-        ValueError: none is left.
     """
     kept, reasons = {}, []
     for name, (alpha1, alpha2, mode) in branches.items():

@@ -14,12 +14,13 @@ from squealpipe.parameters import TABLE, Parameters, is_finite_number
 from squealpipe.schema import Outcome, blank, build
 from squealpipe.schema.cycles import CYCLE_BRANCH, LIMIT_CYCLE
 from squealpipe.schema.origin import recorded
+from squealpipe.solvers.a1.jobs import STATE
 from squealpipe.systems.cycles.branch import Follower, Point, doubled_start, first_point, in_rows
 from squealpipe.systems.cycles.event_map import Cycle
 from squealpipe.systems.cycles.labels import Label
 from squealpipe.tasks.cycles.cycle import cycle_from
 from squealpipe.tasks.cycles.onset import at, find_onset
-from squealpipe.tasks.cycles.scene import STATE, Scene
+from squealpipe.tasks.cycles.scene import Scene
 from squealpipe.validation import Angle, Number, Whole, state_of
 
 

@@ -8,18 +8,17 @@ import numpy as np
 
 from squealpipe.codes import Event, Regime
 from squealpipe.laws import contact_laws
+from squealpipe.laws.springs import fixed_ends, geometry
 from squealpipe.models.damped import is_undamped
 from squealpipe.parameters import TABLE, Parameters
+from squealpipe.solvers.a1.ensemble import NEAR_PIVOT
 from squealpipe.solvers.a1.scaling import PHYSICAL, plain, unit_value
 from squealpipe.systems.brake import brake, parameters_of_run, regimes_of
 from squealpipe.systems.cycles.event_map import Cycle
 from squealpipe.systems.system import System
 
-STATE = ("x", "y", "vx", "vy")
 FAMILY = 1e-6
 """A second multiplier this close to 1 belongs to a family of cycles."""
-_PIVOT = 1e-3
-"""A distance from a pivot over the spring's length at which a cycle counts as meeting it."""
 
 
 @dataclass(frozen=True)
@@ -111,15 +110,11 @@ class Scene:
     def is_singular(self, places: np.ndarray) -> bool:
         """Whether one of some places, (…, 2), is next to a pivot, where d = 0."""
         p = self.scaled
-        pivots = (
-            (p.length1, self.alpha1, 1.0),
-            (p.length2, self.alpha2, -1.0),
-        )
+        x1, y1, x2, y2 = fixed_ends(p, geometry(self.alpha1, self.alpha2))
         return any(
-            bool((np.hypot(*(places - length * np.array([side * np.cos(angle), np.sin(angle)])).T)
-                  < _PIVOT * length).any())
-            for length, angle, side in pivots
-        )  # fmt: skip
+            bool((np.hypot(*(places - [x, y]).T) < NEAR_PIVOT * length).any())
+            for x, y, length in ((x1, y1, p.length1), (x2, y2, p.length2))
+        )
 
     def numbers(self, cycle: Cycle) -> dict[str, Any]:
         """The scalars of a dataset, and the multipliers."""

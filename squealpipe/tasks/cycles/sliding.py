@@ -5,9 +5,10 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import root
 
+from squealpipe.solvers.a1.jobs import STATE
 from squealpipe.systems.cycles.flow import Flow, Vector
 from squealpipe.systems.trace import TIME
-from squealpipe.tasks.cycles.scene import STATE, Scene
+from squealpipe.tasks.cycles.scene import Scene
 
 _BALANCE = 1e-8
 """Largest force left over at an equilibrium, over the preload's."""

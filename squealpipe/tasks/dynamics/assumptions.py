@@ -118,9 +118,6 @@ def linear_pull_map(
 
     Returns:
         Dataset ``linear_pull`` over (alpha1, alpha2).
-
-    Raises:
-        ValueError: dashpots or a friction law that these equations do not have.
     """
     refuse_extensions(params, "linear_pull_map", "Eqs. (6), (7) have neither")
     t_end = 50.0 * params.time_unit if t_end is None else t_end

@@ -21,12 +21,7 @@ KINDS: dict[str, tuple[str, str]] = {
 
 
 def distribution(name: str, given: Mapping[str, Any]) -> Any:
-    """A frozen scipy distribution of one parameter.
-
-    Raises:
-        ValueError: an unknown name or kind, no mapping, a missing number, or a support that the
-            parameter may not have.
-    """
+    """A frozen scipy distribution of one parameter."""
     if not isinstance(name, str) or name not in (*ANGLES, *NUMBERS):
         raise ValueError(f"{name}: no parameter or angle; {suggestion(name, (*ANGLES, *NUMBERS))}")
     if not isinstance(given, Mapping):
@@ -77,11 +72,7 @@ def _check_support(name: str, kind: str, frozen: Any) -> None:
 
 
 def check_stick(params: Parameters, frozen: Mapping[str, Any]) -> None:
-    """Stop distributions that let static friction be below that of sliding with Coulomb's law.
-
-    Raises:
-        ValueError: names both ends.
-    """
+    """Stop distributions that let static friction be below that of sliding with Coulomb's law."""
     if params.friction_law != COULOMB or ("mu_static" not in frozen and params.mu_static is None):
         return
     least = frozen["mu_static"].support()[0] if "mu_static" in frozen else params.static_mu
