@@ -108,13 +108,10 @@ def plane(p: Any, alpha1: Any, alpha2: Any) -> Any:
 
 
 def angles_from_plane(z: Any, p: Any) -> tuple[np.ndarray, np.ndarray]:
-    """Both pairs (α1, α2) in [0, π) with :func:`plane` = z, rad.
+    """Both pairs (α1, α2) in [0, π) with :func:`plane` = z, rad, as two arrays (2, *z.shape).
 
     Args:
         z: complex array, N/m, within the reach |k1 − k2| ≤ |z| ≤ k1 + k2 and not 0.
-
-    Returns:
-        Two arrays of shape (2, *z.shape).
     """
     length = np.abs(z)
     cosine = (length * length + p.k1 * p.k1 - p.k2 * p.k2) / (2.0 * p.k1 * length)

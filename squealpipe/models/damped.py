@@ -150,7 +150,8 @@ def critical_friction(
 ) -> tuple[Any, Any]:
     """The smallest μ ≥ 0 at which the sliding state of Coulomb friction is unstable, ∞: none.
 
-    Unstable is what grows exponentially; a double frequency, where motions grow like t, is not.
+    The second number is that of the same system without dashpots. Unstable is what grows
+    exponentially; a double frequency, where motions grow like t, is not.
     Routh–Hurwitz is a quadratic in μ, because p3 and p4 are linear in it and p1 and p2 free of it.
     Without friction it is, with C_i the damping of the modes of K of eigenvalues κ_i,
     p1 det C p3 + C_1 C_2 (κ1 − κ2)², which loses no digit where a mode moves hardly a dashpot.
@@ -159,9 +160,6 @@ def critical_friction(
         p: parameters, whose ``mu`` is not looked at and whose belt gives the direction.
         alpha1, alpha2: angles, rad, which broadcast.
         vanishing: the limit of both dashpots going to 0 at their ratio.
-
-    Returns:
-        μ of the first loss of stability, and μ of the same system without dashpots.
     """
     stiffness, determinant, _ = contact_system(p, alpha1, alpha2)
     stiffness = _without_round_off(stiffness)

@@ -35,14 +35,14 @@ _ROWS_PER_CALL = 512
 
 
 class TraceEnd(IntEnum):
-    """Why a trace ended (:mod:`squealpipe.methods.orbits.branch_steps`)."""
+    """Why a trace ended, in the words of ``schema.Outcome``."""
 
-    reached = branch_steps.REACHED
-    returned = branch_steps.RETURNED
+    amplitude_reached = branch_steps.REACHED
+    retraced = branch_steps.RETURNED
     tongue_end = branch_steps.TONGUE_END
-    lost = branch_steps.BRANCH_LOST
+    branch_lost = branch_steps.BRANCH_LOST
     step_limit = branch_steps.STEP_LIMIT
-    diverged = branch_steps.DIVERGED
+    pole = branch_steps.DIVERGED
 
 
 @dataclass(frozen=True)

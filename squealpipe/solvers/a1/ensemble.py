@@ -358,14 +358,7 @@ def run_map(
     wanted: Sequence[str],
     **options: Any,
 ) -> SimpleNamespace:
-    """Some results of an ensemble over both angles, in blocks of rows, so that memory stays small.
-
-    Args:
-        alpha1, alpha2: 1-D arrays of angles, rad.
-
-    Returns:
-        The wanted arrays, each (alpha1, alpha2).
-    """
+    """Some results over 1-D arrays of both angles, rad, in blocks of rows that memory holds."""
     rows = max(1, BLOCK // alpha2.size)
     parts: dict[str, list[np.ndarray]] = {name: [] for name in wanted}
     for first in range(0, alpha1.size, rows):

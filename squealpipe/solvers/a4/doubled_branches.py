@@ -28,9 +28,7 @@ def doubled_start(
 
     With two periods as one the conditions of rest lose rank at one of the two instants of rest:
     there, and with both instants moving apart at constant period, the new orbits begin.
-
-    Returns:
-        (x, y, T) of that instant with the half of the doubled period, and a unit direction.
+    Both are of (x, y, T), with the half of the doubled period.
     """
     candidates = []
     for rest in (orbit.point[:2], orbit.other_rest(scene.system)):
@@ -57,7 +55,7 @@ def doubled_branch_from(
     for offset in OFFSETS:
         found = orbit_across(scene.system, start + offset * size * direction, direction)
         if found is None:
-            return orbits, TraceEnd.lost
+            return orbits, TraceEnd.branch_lost
         orbits.append(found)
     away = orbits[-1].point - start
     settings = replace(TraceSettings(), first_step=OFFSETS[-1], linear_x=abs(float(start[0])))

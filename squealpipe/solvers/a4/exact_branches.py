@@ -6,17 +6,13 @@ import numpy as np
 
 from squealpipe.methods.orbits.orbits import (
     Orbit,
-    TraceEnd,
     decoupled_half_period,
     solve_orbit,
     trace_branch,
 )
 from squealpipe.schema import Outcome
-from squealpipe.solvers.a4.orbits import TRACE_OUTCOMES, grazing_start, linear_orbit
+from squealpipe.solvers.a4.orbits import grazing_start, linear_orbit
 from squealpipe.solvers.a4.system import ScaledSystem
-
-BRANCH_ENDS = TRACE_OUTCOMES | {TraceEnd.reached: Outcome.amplitude_reached}
-"""Outcome of a branch that was followed upwards."""
 
 LINEAR_POINTS = 6
 """Points on the linear mode, from rest to grazing, with which a backbone begins."""
@@ -43,7 +39,7 @@ def exact_branch(
         beyond, why = trace_branch(
             scene.system, seed.point, seed.direction, y_max, seed.settings(), _SPACING
         )
-        end = BRANCH_ENDS[why]
+        end = Outcome[why.name]
     return orbits + beyond, outcomes + [Outcome.converged] * len(beyond), end
 
 

@@ -23,19 +23,9 @@ from squealpipe.schema import Outcome
 from squealpipe.schema.backbones import Assumption
 from squealpipe.solvers.a4.system import ScaledSystem
 
-_SHORT_OF_THE_PEAK = (TraceEnd.returned, TraceEnd.tongue_end, TraceEnd.diverged)
+_SHORT_OF_THE_PEAK = (TraceEnd.retraced, TraceEnd.tongue_end, TraceEnd.pole)
 """Ends that leave no doubt that the branch does not reach the peak."""
 _MOST_POINTS_ACROSS = 80
-
-TRACE_OUTCOMES = {
-    TraceEnd.reached: Outcome.converged,
-    TraceEnd.returned: Outcome.retraced,
-    TraceEnd.tongue_end: Outcome.tongue_end,
-    TraceEnd.lost: Outcome.branch_lost,
-    TraceEnd.step_limit: Outcome.step_limit,
-    TraceEnd.diverged: Outcome.pole,
-}
-"""Outcome of a trace that was to reach a given y_peak."""
 
 
 def find_orbit(
@@ -69,7 +59,8 @@ def find_orbit(
         other = orbit_across(scene, mode, y_peak)
         if other is not None:
             return other, Outcome.other_branch
-    return found, TRACE_OUTCOMES[end]
+    reached = end is TraceEnd.amplitude_reached
+    return found, Outcome.converged if reached else Outcome[end.name]
 
 
 def orbit_across(scene: ScaledSystem, mode: int, y_peak: float) -> Orbit | None:

@@ -13,7 +13,7 @@ from squealpipe.parameters import Parameters
 from squealpipe.schema import Outcome, build
 from squealpipe.schema.backbones import DOUBLED_BRANCH
 from squealpipe.solvers.a4.doubled_branches import OFFSETS, doubled_branch_from
-from squealpipe.solvers.a4.exact_branches import BRANCH_ENDS, exact_branch
+from squealpipe.solvers.a4.exact_branches import exact_branch
 from squealpipe.solvers.a4.system import ScaledSystem, scaled_system
 from squealpipe.tasks.backbones.backbone import (
     exact_variables,
@@ -65,7 +65,7 @@ def doubled_branch(
         return _dataset(scene, params, [], None, Outcome.no_doubling if simple else end, attrs)
     start = found[doubling - 1]
     orbits, why = doubled_branch_from(scene, start, peak)
-    return _dataset(scene, params, orbits, start, BRANCH_ENDS[why], attrs)
+    return _dataset(scene, params, orbits, start, Outcome[why.name], attrs)
 
 
 def _dataset(

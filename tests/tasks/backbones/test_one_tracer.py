@@ -92,7 +92,7 @@ def test_single_orbits_agree_with_branches_in_random_cells():
 
 def test_steps_twenty_times_finer_follow_the_same_branches():
     """Where both arrive ω agrees; no trace arrives where the other meets an end for sure."""
-    sure = (TraceEnd.tongue_end, TraceEnd.returned)
+    sure = (TraceEnd.tongue_end, TraceEnd.retraced)
     for _, _, mode, peak, scene in _random_cells(60, seed=11):
         if scene.system.decoupled:
             continue
@@ -115,7 +115,7 @@ def test_steps_twenty_times_finer_follow_the_same_branches():
         if None not in orbits:
             assert orbits[0].omega == pytest.approx(orbits[1].omega, rel=1e-10)
         else:
-            assert not (TraceEnd.reached in ends and set(ends) & set(sure)), (ends, peak)
+            assert not (TraceEnd.amplitude_reached in ends and set(ends) & set(sure)), (ends, peak)
 
 
 def test_the_first_integral_and_the_larger_peak_hold_along_a_tongue():
