@@ -48,18 +48,13 @@ def refuse_extensions(params: Parameters, who: str, why: str) -> None:
 def refuse_scales(params: Parameters) -> None:
     """Stop linear models whose characteristic polynomial leaves the range of a double."""
     mass, stiffest = params.mass, max(params.k1, params.k2, params.k3)
-    squares = {name: (getattr(params, name), 1e-140) for name in ("k1", "k2", "k3")}
-    squares["mu"] = (max(abs(params.drag), params.static_mu) * stiffest, 0.0)
-    squares["preload"] = (params.preload * stiffest, 0.0)
-    for name, (value, least) in squares.items():
-        if not least <= value / mass < 1e140:
+    friction = max(abs(params.drag), params.static_mu) * stiffest
+    limits = {name: (getattr(params, name), 1e-140, 1e140) for name in ("k1", "k2", "k3")}
+    limits |= {"mu": (friction, 0.0, 1e140), "preload": (params.preload * stiffest, 0.0, 1e140)}
+    limits |= {name: (getattr(params, name), 0.0, 1e70) for name in ("damping1", "damping2")}
+    for name, (value, least, most) in limits.items():
+        if not least <= value / mass < most:
             raise ValueError(
                 f"{name} = {getattr(params, name)!r} with mass = {mass!r}: over the mass it is "
-                f"{value / mass:.3g}, whose square a number cannot hold; use other units"
-            )
-    for name in ("damping1", "damping2"):
-        if not getattr(params, name) / mass < 1e70:
-            raise ValueError(
-                f"{name} = {getattr(params, name)!r} with mass = {mass!r}: over the mass it is "
-                "more than 1e70 per second, whose powers a number cannot hold; use other units"
+                f"{value / mass:.3g}, whose powers a number cannot hold; use other units"
             )
