@@ -1,7 +1,8 @@
 """The option types that every command shares, and parameters taken from a study."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields
+from functools import partial
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -12,29 +13,29 @@ from squealpipe.config.ranges import parse_angle, parse_number, parse_range
 from squealpipe.parameters import SYMBOLS, Parameters
 
 
-def _angle(_: Any, tokens: Sequence[Any]) -> float:
-    return parse_angle(tokens[0].value)
+def _reader(read: Callable[[str], Any]) -> Callable[[Any, Sequence[Any]], Any]:
+    """What gives cyclopts the value of one text."""
+    return lambda _, tokens: read(tokens[0].value)
 
 
-def _angles(_: Any, tokens: Sequence[Any]) -> list[float]:
-    return parse_range(tokens[0].value, parse_angle)
-
-
-def _whole(_: Any, tokens: Sequence[Any]) -> int:
-    number = parse_number(tokens[0].value)
+def _parse_whole(text: str) -> int:
+    number = parse_number(text)
     if not number.is_integer():
-        raise ValueError(f"{tokens[0].value!r} is not a whole number")
+        raise ValueError(f"{text!r} is not a whole number")
     return int(number)
 
 
-def _numbers(_: Any, tokens: Sequence[Any]) -> list[float]:
-    return parse_range(tokens[0].value)
+_whole = _reader(_parse_whole)
 
 
 Numbers = Annotated[
     list[float] | None,
     Parameter(
-        converter=_numbers, metavar="RANGE", allow_leading_hyphen=True, n_tokens=1, negative=""
+        converter=_reader(parse_range),
+        metavar="RANGE",
+        allow_leading_hyphen=True,
+        n_tokens=1,
+        negative="",
     ),
 ]
 """A number, a list of them or first:last:count."""
@@ -42,7 +43,7 @@ Whole = Annotated[int, Parameter(converter=_whole, metavar="INT", n_tokens=1)]
 Angle = Annotated[
     float,
     Parameter(
-        converter=_angle,
+        converter=_reader(parse_angle),
         metavar="ANGLE",
         allow_leading_hyphen=True,
         n_tokens=1,
@@ -52,7 +53,7 @@ Angle = Annotated[
 AngleRange = Annotated[
     list[float],
     Parameter(
-        converter=_angles,
+        converter=_reader(partial(parse_range, one=parse_angle)),
         metavar="RANGE",
         allow_leading_hyphen=True,
         n_tokens=1,

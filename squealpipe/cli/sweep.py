@@ -8,7 +8,7 @@ from typing import Annotated
 from cyclopts import Parameter
 
 from squealpipe.cli.arguments import WRITTEN, Angle, Output, Workers, Written
-from squealpipe.cli.console import DONE, SESSION, answer, say
+from squealpipe.cli.console import DONE, SESSION, answer, say, working
 from squealpipe.cli.output import check_output, write
 from squealpipe.config.ranges import read_fixed, read_values, sweep_config
 from squealpipe.parameters import SYMBOLS
@@ -57,11 +57,8 @@ def sweep(
     check_output(output, force=brake.force)
     runs = prod(len(plan.vary[name]) for name in plan.names)
     say(f"{runs} runs of {task} over {', '.join(plan.names)}")
-    dataset = write(
-        lambda: run_sweep(plan, workers=workers, progress=not SESSION.quiet),
-        output,
-        config=settings,
-    )
+    with working(f"sweep of {task}"):
+        dataset = write(lambda: run_sweep(plan, workers=workers), output, config=settings)
     answer(*outcome_lines(dataset, plan.names))
     say(f"wrote {output}")
     return DONE

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from squealpipe.config.ranges import longest
 from squealpipe.execution.job import Job
 from squealpipe.schema.sweep import RAGGED, fill_up
 
@@ -20,6 +21,12 @@ def scattered_rows(rows: int, item: str) -> slice:
     if count > rows:
         raise ValueError(f"{count} parts of {rows} rows: scatter into at most {rows} parts")
     return slice(rows * (index - 1) // count, rows * index // count)
+
+
+def scattered_values(vary: Mapping[str, Sequence[float]], item: str) -> dict[str, Sequence[float]]:
+    """What a part of a scattered sweep varies: all, with some of the values of the longest name."""
+    cut = longest(vary)
+    return {**vary, cut: vary[cut][scattered_rows(len(vary[cut]), item)]}
 
 
 def over_angles(job: Job, name: str) -> dict[str, Any]:
@@ -44,14 +51,14 @@ def join(parts: Sequence[xr.Dataset], along: str = "alpha1") -> xr.Dataset:
     """
     if not parts:
         raise ValueError("no parts to join")
-    longest = {
+    sizes = {
         dim: max(part.sizes[dim] for part in parts)
         for dim in RAGGED
         if dim != along and all(dim in part.dims for part in parts)
     }
     try:
         return xr.concat(
-            [_filled(part, longest) for part in parts],
+            [_filled(part, sizes) for part in parts],
             along,
             data_vars="minimal",
             coords="minimal",
@@ -65,10 +72,10 @@ def join(parts: Sequence[xr.Dataset], along: str = "alpha1") -> xr.Dataset:
         ) from error
 
 
-def _filled(part: xr.Dataset, longest: Mapping[str, int]) -> xr.Dataset:
+def _filled(part: xr.Dataset, sizes: Mapping[str, int]) -> xr.Dataset:
     """A part whose runs are as long as the longest of all."""
     variables = {}
     for name, variable in part.variables.items():
-        shape = tuple(longest.get(str(dim), size) for dim, size in variable.sizes.items())
+        shape = tuple(sizes.get(str(dim), size) for dim, size in variable.sizes.items())
         variables[name] = (variable.dims, fill_up(variable.values, shape), variable.attrs)
     return xr.Dataset(variables, attrs=part.attrs).set_coords([*part.coords])

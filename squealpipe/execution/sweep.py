@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, replace
 from functools import partial
@@ -12,14 +12,13 @@ from typing import Any, Self
 
 import numpy as np
 import xarray as xr
-from rich.console import Console
-from rich.progress import track
 
-from squealpipe.config.ranges import NUMBERS, PHYSICAL, longest
+from squealpipe.config.ranges import NUMBERS, PHYSICAL
 from squealpipe.execution.catalogue import TASKS, run_task
-from squealpipe.execution.parts import scattered_rows
+from squealpipe.execution.parts import scattered_values
 from squealpipe.execution.system_sweep import SystemSweep, is_system
 from squealpipe.methods.processes import available_cores, leave_interrupts_to_the_parent
+from squealpipe.methods.progress import alone
 from squealpipe.parameters import Parameters, parameters_of
 from squealpipe.schema import (
     ABSENT,
@@ -145,9 +144,7 @@ class Sweep:
 
     def part(self, item: str) -> Self:
         """One part of a scattered sweep: some of the values of the longest name."""
-        cut = longest(self.vary)
-        values = self.vary[cut]
-        return replace(self, vary={**self.vary, cut: values[scattered_rows(len(values), item)]})
+        return replace(self, vary=scattered_values(self.vary, item))
 
 
 def planned(config: Mapping[str, Any]) -> Sweep | SystemSweep:
@@ -169,16 +166,13 @@ def _run(sweep: Sweep, workers: int | None, point: tuple[float, ...]) -> Arrays:
 
 
 @checked
-def run_sweep(
-    sweep: Sweep | SystemSweep, *, workers: Workers = None, progress: bool = False
-) -> xr.Dataset:
+def run_sweep(sweep: Sweep | SystemSweep, *, workers: Workers = None) -> xr.Dataset:
     """Run a sweep.
 
     Args:
         sweep: what to run.
         workers: processes that share the runs, all cores by default. They are forked, so a script
             needs no main guard; where the system cannot fork, the runs stay here.
-        progress: show a bar on a terminal.
 
     Returns:
         The task's variables with the swept names as leading dimensions. Runs that are shorter
@@ -187,31 +181,29 @@ def run_sweep(
     """
     if isinstance(sweep, SystemSweep):
         return sweep.run(workers)  # an ensemble shares its runs by itself
-    points = sweep.points
-    number = min(workers or available_cores(), len(points))
-    if number == 1 or "fork" not in get_all_start_methods():
-        runs = _tracked(map(partial(_run, sweep, workers), points), sweep, progress=progress)
-    else:
-        others = set(active_children())
-        with ProcessPoolExecutor(
-            number, get_context("fork"), leave_interrupts_to_the_parent
-        ) as pool:
-            size = -(-len(points) // (16 * number))
-            made = pool.map(partial(_run, sweep, 1), points, chunksize=size)
-            try:
-                runs = _tracked(made, sweep, progress=progress)
-            except BaseException:
-                for process in set(active_children()) - others:
-                    process.terminate()  # the pool is broken then and waits for no other run
-                raise
+    with alone() as show:
+        runs = []
+        for run in _runs(sweep, workers):
+            runs.append(run)
+            show(len(runs) / len(sweep.points))
     return _merge(sweep, runs)
 
 
-def _tracked(runs: Iterable[Arrays], sweep: Sweep, *, progress: bool) -> list[Arrays]:
-    console = Console(stderr=True)
-    off = not (progress and console.is_terminal)
-    label = f"sweep of {sweep.task}"
-    return list(track(runs, label, len(sweep.points), console=console, disable=off))
+def _runs(sweep: Sweep, workers: int | None) -> Iterator[Arrays]:
+    points = sweep.points
+    number = min(workers or available_cores(), len(points))
+    if number == 1 or "fork" not in get_all_start_methods():
+        yield from map(partial(_run, sweep, workers), points)
+        return
+    others = set(active_children())
+    with ProcessPoolExecutor(number, get_context("fork"), leave_interrupts_to_the_parent) as pool:
+        size = -(-len(points) // (16 * number))
+        try:
+            yield from pool.map(partial(_run, sweep, 1), points, chunksize=size)
+        except BaseException:
+            for process in set(active_children()) - others:
+                process.terminate()  # the pool is broken then and waits for no other run
+            raise
 
 
 def _merge(sweep: Sweep, runs: Sequence[Arrays]) -> xr.Dataset:

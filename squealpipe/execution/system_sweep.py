@@ -11,8 +11,7 @@ from typing import Any, Self
 
 import xarray as xr
 
-from squealpipe.config.ranges import longest
-from squealpipe.execution.parts import scattered_rows
+from squealpipe.execution.parts import scattered_values
 from squealpipe.systems import basin, runs
 from squealpipe.systems.system import System
 from squealpipe.text import suggestion
@@ -81,9 +80,7 @@ class SystemSweep:
 
     def part(self, item: str) -> Self:
         """One part of a scattered sweep, ``i-of-n`` along its longest name."""
-        cut = longest(self.vary)
-        values = self.vary[cut]
-        return replace(self, vary={**self.vary, cut: values[scattered_rows(len(values), item)]})
+        return replace(self, vary=scattered_values(self.vary, item))
 
     def run(self, workers: int | None = None) -> xr.Dataset:
         """The dataset, its dimensions starts first."""

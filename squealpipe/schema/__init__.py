@@ -181,14 +181,19 @@ RUN_ENDS = (
 )
 """Outcomes of a run in time that is to reach its end."""
 
-ORBIT_ENDS = (
+LINEAR_ENDS = (
     Outcome.converged,
-    Outcome.step_limit,
-    Outcome.not_finite,
     Outcome.singular_static_state,
     Outcome.complex_pair,
     Outcome.divergence,
     Outcome.rigid_mode,
+)
+"""Outcomes of a linear model."""
+
+ORBIT_ENDS = (
+    *LINEAR_ENDS,
+    Outcome.step_limit,
+    Outcome.not_finite,
     Outcome.linear_mode,
     Outcome.isolated_mode,
     Outcome.no_convergence,
@@ -203,15 +208,6 @@ ORBIT_ENDS = (
     Outcome.other_branch,
 )
 """Outcomes of periodic motions of model A4 and of their branches."""
-
-LINEAR_ENDS = (
-    Outcome.converged,
-    Outcome.singular_static_state,
-    Outcome.complex_pair,
-    Outcome.divergence,
-    Outcome.rigid_mode,
-)
-"""Outcomes of a linear model."""
 
 
 def outcome(*dims: str, among: Iterable[Outcome] = Outcome) -> Variable:

@@ -24,9 +24,9 @@ from squealpipe.store.runs import (
     MANIFEST,
     SEAL,
     archive_folder,
-    listed_files,
     locate,
     matches_any,
+    read_manifest,
     regular_files,
     seal_fits,
     seal_text,
@@ -126,8 +126,8 @@ def verify(what: str | os.PathLike[str], root: str | os.PathLike[str] = ".") -> 
     folder = locate(what, root)
     if not (folder / MANIFEST).is_file():
         raise FileNotFoundError(f"{folder} has no {MANIFEST}; it is not an archive")
-    listed = listed_files(folder)
-    if listed is None:
+    listed = read_manifest(folder).get("files", {})
+    if not listed:
         return Verification(folder=folder, files=0, changed=[f"{MANIFEST} (damaged)"])
     present = set(_everything(folder))
     changed = [

@@ -110,14 +110,13 @@ def _archived(place: Path) -> Run:
     found = verify(place)
     manifest = read_manifest(place)
     config = manifest.get("config")
-    files = manifest.get("files")
     return Run(
         name=place.name,
         kind="archive",
         date=str(manifest.get("frozen", "")),
         commit=str(manifest.get("commit", "")),
         size=sum(path.stat().st_size for path in place.rglob("*") if path.is_file()),
-        config=flat(config) if isinstance(config, dict) and isinstance(files, dict) else {},
+        config=flat(config) if isinstance(config, dict) else {},
         faults=[] if found.intact else [line.strip() for line in found.lines()[1:]],
     )
 

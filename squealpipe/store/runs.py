@@ -27,24 +27,13 @@ def matches_any(name: str, patterns: Iterable[str]) -> bool:
 
 def read_manifest(folder: Path) -> dict[str, Any]:
     """Manifest of an archive; empty where it is damaged or the folder is not an archive."""
-    path = folder / MANIFEST
-    if not path.is_file():
-        return {}
     try:
-        manifest = json.loads(path.read_text(encoding="utf-8"))
-    except ValueError:
+        manifest = json.loads((folder / MANIFEST).read_text(encoding="utf-8"))
+    except (OSError, ValueError):
         return {}
-    return manifest if isinstance(manifest, dict) else {}
-
-
-def listed_files(folder: Path) -> dict[str, dict[str, Any]] | None:
-    """File name → entry of an archive's manifest; None if it is damaged."""
-    manifest = read_manifest(folder)
-    try:
-        files = manifest["files"]
-        return {str(name): dict(entry) for name, entry in files.items()}
-    except (KeyError, TypeError, AttributeError, ValueError):
-        return None
+    files = manifest.get("files") if isinstance(manifest, dict) else None
+    whole = isinstance(files, dict) and all(isinstance(entry, dict) for entry in files.values())
+    return manifest if whole else {}
 
 
 def seal_fits(folder: Path) -> bool:
@@ -65,8 +54,7 @@ def archive_around(path: Path) -> Path | None:
 
 def left_out(place: Path) -> list[str]:
     """Patterns of what an archive deliberately does not hold."""
-    patterns = read_manifest(place).get(LEFT_OUT, []) if place.is_dir() else []
-    return [str(item) for item in patterns] if isinstance(patterns, list) else []
+    return list(read_manifest(place).get(LEFT_OUT, []))
 
 
 def archive_folder(name: str, root: str | os.PathLike[str] = ".") -> Path:

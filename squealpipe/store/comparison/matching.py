@@ -3,6 +3,7 @@
 from collections.abc import Iterable
 
 import numpy as np
+import pandas as pd
 import xarray as xr
 
 from squealpipe.schema import DatasetSchema
@@ -134,13 +135,8 @@ def _shared(left: np.ndarray, right: np.ndarray) -> tuple[np.ndarray, np.ndarray
         _, at_left, at_right = np.intersect1d(left, right, return_indices=True)
         order = np.argsort(at_left)
         return at_left[order], at_right[order]
-    extent = max(np.ptp(left), np.ptp(right)) if left.size and right.size else 0.0
+    close = ALIGNED * max((np.ptp(side) for side in (left, right) if side.size), default=0.0)
     order = np.argsort(right, kind="stable")
-    if not right.size:
-        return np.array([], int), np.array([], int)
-    place = np.clip(np.searchsorted(right[order], left), 1, max(len(right) - 1, 1))
-    near = np.clip(np.stack([place - 1, place]), 0, len(right) - 1)
-    distance = np.abs(right[order][near] - left)
-    nearest = order[near[distance.argmin(axis=0), np.arange(len(left))]]
-    close = distance.min(axis=0) <= ALIGNED * extent
-    return np.flatnonzero(close), nearest[close]
+    sorted_right = pd.Index(right[order].astype(float))
+    nearest = sorted_right.get_indexer(left.astype(float), method="nearest", tolerance=close)
+    return np.flatnonzero(nearest >= 0), order[nearest[nearest >= 0]]
