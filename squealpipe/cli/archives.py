@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import sys
+from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
 from squealpipe.cli.arguments import AsJson, OutputElsewhere
@@ -28,7 +29,9 @@ def list_runs(*, json_: AsJson = False) -> int:
 
     found, paper = runs(), paper_configuration()
     if json_:
-        print(json.dumps([_plain(run, paper) for run in found], indent=1))
+        print(
+            json.dumps([asdict(run) | {"changed": run.changed(paper)} for run in found], indent=1)
+        )
         return DONE
     if not found:
         print("no archives and no results yet; run snakemake, then squealpipe archive NAME")
@@ -101,8 +104,3 @@ def _changes(changed: dict[str, Any]) -> str:
     stated = [f"{key.removeprefix('parameters.')}={changed[key]}" for key in physical[:SHOWN]]
     more = len(physical) - len(stated)
     return ", ".join([*stated, *([f"and {more} more"] if more else [])]) or "nothing"
-
-
-def _plain(run: Run, paper: dict[str, Any]) -> dict[str, Any]:
-    stated = {name: getattr(run, name) for name in ("name", "kind", "date", "commit", "size")}
-    return {**stated, "faults": run.faults, "changed": run.changed(paper), "config": run.config}

@@ -82,7 +82,6 @@ def refine(
         resolution: points per side of the finest grid; one less is 2^n (coarse - 1).
         coarse: points per side of the first grid.
         t_end: end of each run, s; 200 √(mass/k1) by default.
-        model: level of the model.
     """
     found = compute(
         "refine_validity_map", brake, output=output, resolution=resolution, coarse=coarse,
@@ -165,7 +164,6 @@ def disturbance(
 
     Args:
         leads_to: what it is to lead to.
-        model: level of the model.
         t_end: time within which that happens, s; 200 √(2 mass/(k1 + k2)) by default.
         bound: largest disturbance tried, in preload lengths; 3 for contact loss, 15 for the whirl.
         directions: random directions.

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
+
+from cyclopts import Parameter
 
 from squealpipe.cli.arguments import DRAWN, Angle, Drawn, Numbers, Output, Switch, Tolerance, Whole
 from squealpipe.cli.console import ANSWER_IS_NO, DONE, answer
@@ -14,7 +16,10 @@ from squealpipe.config.ranges import parse_range
 if TYPE_CHECKING:
     import xarray as xr
 
-Model = Literal["A1", "A1-no-stick", "A1-no-separation", "A1-linear-springs", "A1-as-printed", "A4"]
+Model = Annotated[
+    Literal["A1", "A1-no-stick", "A1-no-separation", "A1-linear-springs", "A1-as-printed", "A4"],
+    Parameter(help="level of the model."),
+]
 
 
 def simulate(
@@ -39,7 +44,6 @@ def simulate(
 
     Args:
         t_end: horizon, s; 50 √(mass/k1) by default.
-        model: level of the model.
         points: instants at which the state is kept; by default enough for the fastest oscillation.
         x0: displacement along the belt at the start.
         y0: displacement away from the belt at the start.

@@ -64,9 +64,6 @@ def compute(
         function: its name in ``squealpipe``.
         angles: what it is called with beside the parameters.
         options: its keywords; those that are None are left to their defaults.
-
-    Raises:
-        ValueError: as :func:`check_output`, before anything is computed.
     """
     check_output(output, force=brake.force)
     written = [output]

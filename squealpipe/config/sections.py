@@ -32,11 +32,9 @@ class Section(BaseModel):
     model_config = ConfigDict(extra="forbid", strict=True, frozen=True, allow_inf_nan=False)
 
 
-def _as_integer(value: Any) -> Any:
-    return int(value) if isinstance(value, float) and value.is_integer() else value
-
-
-WHOLE = BeforeValidator(_as_integer)
+WHOLE = BeforeValidator(
+    lambda value: int(value) if isinstance(value, float) and value.is_integer() else value
+)
 """181.0 is 181, so that rewriting it changes nothing."""
 Number = Annotated[float, Field(strict=True)]
 Positive = Annotated[float, Field(gt=0)]

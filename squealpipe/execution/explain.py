@@ -99,13 +99,7 @@ def explain(
     quick: bool = False,
     directory: str | os.PathLike[str] = ".",
 ) -> Explanation:
-    """Ask Snakemake what it would do and put it in terms of keys and sources.
-
-    Raises:
-        FileNotFoundError: a configuration that is missing.
-        ConfigError: mistakes in the configuration.
-        WorkflowError: Snakemake could not plan.
-    """
+    """Ask Snakemake what it would do and put it in terms of keys and sources."""
     there = Path(directory)
     command, _ = snakemake_command(configs, quick=quick, directory=there)
     with tempfile.NamedTemporaryFile("r", suffix=".json", encoding="utf-8") as plan:

@@ -90,8 +90,7 @@ def draw_branch(axes: Axes, branch: xr.Dataset) -> None:
     trace_branch(axes, followed.values, largest(branch, state), branch)
     units = branch[f"{state}_max"].units
     axes.set(xlabel=label(followed).replace(ALONG, ""), ylabel=f"largest |{state}| ({units})")
-    handles, words = key_entries([axes])
-    axes.legend(handles, words)
+    axes.legend(*key_entries([axes]))
 
 
 def largest(branch: xr.Dataset, state: str) -> np.ndarray:

@@ -99,7 +99,9 @@ def draw_quantity(axes: Axes, variable: xr.DataArray) -> None:
 def _draw_map(axes: Axes, variable: xr.DataArray, values: np.ndarray, names: list[str]) -> None:
     x, y = (variable[dim] for dim in variable.dims)
     if names:
-        scale = style.category_colours(colours_of(names))
+        free = iter(style.PALETTE * len(names))  # for flags without a colour of their own
+        colours = [style.REGIME_COLOURS.get(name) or next(free) for name in names]
+        scale = style.category_colours(colours)
     else:
         low, high = np.percentile(values[np.isfinite(values)], [1, 99])
         scale = {"cmap": "viridis", "vmin": low, "vmax": high}
@@ -117,12 +119,6 @@ def _draw_map(axes: Axes, variable: xr.DataArray, values: np.ndarray, names: lis
     axes.set_title(fill(_words(variable), 32), loc="left")
     bar = figure.colorbar(mesh, ax=axes, ticks=range(len(names)), shrink=0.85)
     bar.ax.set_yticklabels([style.flag_words(name).replace(" ", "\n", 1) for name in names])
-
-
-def colours_of(names: list[str]) -> list[str]:
-    """One colour for each flag: its own where it has one, else the next of the palette."""
-    free = iter(style.PALETTE * len(names))
-    return [style.REGIME_COLOURS.get(name) or next(free) for name in names]
 
 
 def _words(variable: xr.DataArray) -> str:

@@ -223,9 +223,9 @@ def or_nan(
     return Variable(long_name, units, dims, nan_allowed=True, **further)
 
 
-def text(long_name: str, *dims: str) -> Variable:
+def text(long_name: str, *dims: str, volatile: bool = False) -> Variable:
     """A variable of texts over some dimensions."""
-    return Variable(long_name, dims=dims, dtype="U")
+    return Variable(long_name, dims=dims, dtype="U", volatile=volatile)
 
 
 def build(
@@ -239,9 +239,6 @@ def build(
     Args:
         data: variable → array with the schema's dims.
         coords: coordinate → 1-D array (or an array with the schema's dims).
-
-    Raises:
-        SchemaError: something is missing, unknown, of the wrong shape, or NaN without leave.
     """
     arrays: dict[str, np.ndarray] = {}
     variables: dict[Any, xr.Variable] = {}

@@ -2,7 +2,7 @@
 
 from enum import IntEnum
 
-from squealpipe.schema import DatasetSchema, Variable, or_nan
+from squealpipe.schema import DatasetSchema, Variable, or_nan, text
 
 
 class Verdict(IntEnum):
@@ -35,10 +35,6 @@ class Origin(IntEnum):
     misprints = 1
 
 
-def _text(meaning: str, *, volatile: bool = False) -> Variable:
-    return Variable(meaning, dims=("claim",), dtype="U", volatile=volatile)
-
-
 def _number(meaning: str) -> Variable:
     # Some values come from long runs, whose last digits differ from machine to machine.
     return or_nan(meaning, dims=("claim",), rtol=1e-3, atol=1e-6)
@@ -51,11 +47,11 @@ def _flag(meaning: str, flags: type[IntEnum]) -> Variable:
 CLAIMS = DatasetSchema(
     name="claims",
     title="The paper's statements, judged",
-    coordinates={"claim": _text("id of the statement")},
+    coordinates={"claim": text("id of the statement", "claim")},
     variables={
-        "statement": _text("the statement in our words"),
-        "section": _text("where the paper says it"),
-        "check": _text("what is measured"),
+        "statement": text("the statement in our words", "claim"),
+        "section": text("where the paper says it", "claim"),
+        "check": text("what is measured", "claim"),
         "verdict": _flag("what the data say, over the inferred feasible set as well", Verdict),
         "verdict_here": _flag("what the data say at the parameters of the run", Verdict),
         "recorded": _flag("verdict_here recorded for the shipped baseline", Verdict),
@@ -65,9 +61,9 @@ CLAIMS = DatasetSchema(
             Verdict,
         ),
         "corrected_value": _number("measured value in the corrected physics"),
-        "corrected_evidence": _text("one line of evidence there", volatile=True),
+        "corrected_evidence": text("one line of evidence there", "claim", volatile=True),
         "value": _number("measured value; NaN where nothing was measured"),
-        "relation": _text("relation of value and threshold under which the check passes"),
+        "relation": text("relation of value and threshold under which the check passes", "claim"),
         "threshold": _number("threshold of the check; NaN as in value"),
         "feasible_share": _number(
             "share of the inferred feasible parameters in which the statement holds; NaN where it "
@@ -80,8 +76,8 @@ CLAIMS = DatasetSchema(
         ),
         "basis": _flag("whether the statement was fitted by the inference or is predicted", Basis),
         "origin": _flag("the paper's own statement, or one of our list of its misprints", Origin),
-        "evidence": _text("one line of evidence", volatile=True),
-        "dataset": _text("datasets read, with their ids", volatile=True),
-        "figure": _text("picture that shows it"),
+        "evidence": text("one line of evidence", "claim", volatile=True),
+        "dataset": text("datasets read, with their ids", "claim", volatile=True),
+        "figure": text("picture that shows it", "claim"),
     },
 )

@@ -118,11 +118,7 @@ def archive(
 
 
 def verify(what: str | os.PathLike[str], root: str | os.PathLike[str] = ".") -> Verification:
-    """Compare every byte of an archive with its manifest.
-
-    Raises:
-        FileNotFoundError: no such archive.
-    """
+    """Compare every byte of an archive with its manifest."""
     folder = locate(what, root)
     if not (folder / MANIFEST).is_file():
         raise FileNotFoundError(f"{folder} has no {MANIFEST}; it is not an archive")

@@ -72,9 +72,6 @@ def matching(expression: str, found: list[Run]) -> list[str]:
 
     Names are parameters (``mu``, ``length1``), the paper's symbols (``L1``), or keys of the
     configuration with their section (``linear.points``).
-
-    Raises:
-        ValueError: it is not a condition, or names an unknown key.
     """
     known = [run for run in found if run.config]
     rows = [_row(run.config) for run in known] or [_row({})]

@@ -28,12 +28,7 @@ states whether you find the same.
 
 
 def bundle(name: str | os.PathLike[str], *, output: str | os.PathLike[str] | None = None) -> Path:
-    """Write ``results/deposit/NAME.zip``; it appears whole or not at all.
-
-    Raises:
-        FileNotFoundError: there is no such archive, or no ``CITATION.cff``.
-        ValueError: the archive is not intact; every file that is not.
-    """
+    """Write ``results/deposit/NAME.zip``; it appears whole or not at all."""
     base, archive = Path(), locate(name)
     found = verify(archive)
     if not found.intact:

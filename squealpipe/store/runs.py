@@ -68,11 +68,7 @@ def archive_folder(name: str, root: str | os.PathLike[str] = ".") -> Path:
 
 
 def locate(what: str | os.PathLike[str], root: str | os.PathLike[str] = ".") -> Path:
-    """The folder or file that is meant: a path that exists, or the name of an archive.
-
-    Raises:
-        FileNotFoundError: neither exists.
-    """
+    """The folder or file that is meant: a path that exists, or the name of an archive."""
     path = Path(what)
     if path.exists():
         return path

@@ -32,7 +32,11 @@ def lines(comparison: Comparison, *, every: bool = False) -> list[str]:
         ("differences", "differences, worst first", listed),
     ):
         most = len(part) if every else SCREEN[name]
-        shown = part if len(part) <= most else [*part[: most - 1], _more(len(part) - most + 1)]
+        shown = (
+            part
+            if len(part) <= most
+            else [*part[: most - 1], f"and {len(part) - most + 1} more; --all shows them"]
+        )
         stated += [heading, *(f"  {line}" for line in shown)] if part else []
     if every and comparison.environment:
         stated += [
@@ -70,10 +74,6 @@ def _dataset_lines(item: DatasetDifference, *, every: bool) -> Iterator[str]:
         kind = "volatile " if entry.volatile else verdict
         at = f" at {where(entry)}" if entry.where else ""
         yield f"{item.name}.{entry.name}: {kind}{how_much(entry)}{at}"
-
-
-def _more(count: int) -> str:
-    return f"and {count} more; --all shows them"
 
 
 def _shortened(line: str, width: int = WIDTH) -> str:

@@ -35,19 +35,19 @@ class Run(Mapping[str, xr.Dataset]):
 
     def __getitem__(self, name: str) -> xr.Dataset:
         if name not in self.sources:
-            raise MissingDataError(f"the run has no dataset {name}: {self._why_missing()}")
+            given = [key for key in self.parameters.as_dict() if TABLE[key].extension]
+            why = (
+                f"the study leaves out what cannot carry {', '.join(given)}"
+                if given
+                else "it is not part of this study, or not computed yet"
+            )
+            raise MissingDataError(f"the run has no dataset {name}: {why}")
         if name not in self.used:
             self.used.append(name)
         if name not in self._loaded:
             source = self.sources[name]
             self._loaded[name] = source if isinstance(source, xr.Dataset) else load(source)
         return self._loaded[name]
-
-    def _why_missing(self) -> str:
-        given = [name for name in self.parameters.as_dict() if TABLE[name].extension]
-        if not given:
-            return "it is not part of this study, or not computed yet"
-        return f"the study leaves out what cannot carry {', '.join(given)}"
 
     def __contains__(self, name: object) -> bool:
         return name in self.sources

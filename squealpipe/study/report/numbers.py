@@ -16,7 +16,7 @@ def numbers(run: Run) -> dict[str, float | str]:
     """Name in ``templates/narrative.typ`` → number; percentages are between 0 and 100."""
     return {
         key: value.item() if isinstance(value, np.generic | xr.DataArray) else value
-        for part in (_verdicts, _inferred, _growth, _linear, _valid, _bounded, _periodic, _spread)
+        for part in (_verdicts, _inferred, _growth, _linear, _valid, _bounded, _spread)
         for key, value in part(run).items()
     }
 
@@ -89,18 +89,15 @@ def _bounded(run: Run) -> dict[str, Any]:
     transient, unit = run["transient"], run.parameters.time_unit
     lifetimes = transient.lifetime.values
     ended = np.isfinite(lifetimes)
+    branches = {name: run[f"backbone/{name}_mode{i}"].omega for name, i in (("F10", 2), ("F13", 1))}
     return {
         "F4_size": abs(run["simulate/F4"].x).max() / run.parameters.preload,
         "transient_runs": lifetimes.size,
         "transient_ended": int(ended.sum()),
         "transient_time": transient.t_end / unit,
+        **{f"{name}_low": omega.min() for name, omega in branches.items()},
+        **{f"{name}_linear": omega[0] for name, omega in branches.items()},
     }
-
-
-def _periodic(run: Run) -> dict[str, Any]:
-    branches = {"F10": "backbone/F10_mode2", "F13": "backbone/F13_mode1"}
-    low = {f"{name}_low": run[branch].omega.min() for name, branch in branches.items()}
-    return low | {f"{name}_linear": run[branch].omega[0] for name, branch in branches.items()}
 
 
 def _spread(run: Run) -> dict[str, Any]:

@@ -39,8 +39,9 @@ def draw(benchmark: xr.Dataset) -> Figure:
     figure.supylabel("evaluations of the field", fontsize=7)
     for panel in axes[-1]:
         panel.set_xlabel("error over growth")
-    handles, labels = axes[0, 0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside upper center", ncols=5, fontsize=6.5)
+    figure.legend(
+        *axes[0, 0].get_legend_handles_labels(), loc="outside upper center", ncols=5, fontsize=6.5
+    )
     foot(figure, benchmark)
     return figure
 

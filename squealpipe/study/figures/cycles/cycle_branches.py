@@ -58,8 +58,7 @@ def draw(down: xr.Dataset, up: xr.Dataset, flutter: xr.Dataset, extremes: xr.Dat
         panel.set(xlabel="μ", ylim=(0, None))
         style.panel_letter(panel, letter, title)
     axes[0, 0].set_ylabel(r"largest |x| / $l_\mathrm{pre}$")
-    handles, words = key_entries(axes[0])
-    figure.legend(handles, words, loc="outside lower center", ncols=4)
+    figure.legend(*key_entries(axes[0]), loc="outside lower center", ncols=4)
     return figure
 
 

@@ -46,8 +46,7 @@ def draw_scenes(branches: Mapping[str, xr.Dataset], height: float) -> Figure:
                 panel, next(letters), f"{_angles(exact)}, vicinity of ω{'₁₂'[mode - 1]}"
             )
         row[0].set_ylabel("y, x (m)")
-    handles, labels = key_entries(axes.ravel())
-    figure.legend(handles, labels, loc="outside lower center", ncols=3)
+    figure.legend(*key_entries(axes.ravel()), loc="outside lower center", ncols=3)
     return figure
 
 

@@ -94,8 +94,8 @@ def payload(
     """What the script needs at once, ready for JSON."""
     return {
         "angles": [explorer.alpha1.values.tolist(), explorer.alpha2.values.tolist()],
-        "time": _single(explorer.time.values),
-        "frequency": _single(explorer.frequency.values),
+        "time": _encode(explorer.time.values.astype("<f4")),
+        "frequency": _encode(explorer.frequency.values.astype("<f4")),
         "options": run_options(explorer),
         "outcome": _meanings(explorer.outcome),
         **({"end": _meanings(explorer.end)} if "end" in explorer else {}),
@@ -152,10 +152,6 @@ def _meanings(flag: xr.DataArray) -> dict[str, Any]:
         "values": _encode(np.asarray(flag.values, "i1")),
         "meanings": {key: table[key].replace("_", " ") for key in np.unique(flag.values).tolist()},
     }
-
-
-def _single(values: np.ndarray) -> str:
-    return _encode(np.asarray(values, "<f4"))
 
 
 def packed_curves(values: np.ndarray) -> str:
