@@ -19,16 +19,11 @@ slower mass back and a faster one on, and nothing sticks (see :mod:`squealpipe.r
 
 from typing import Any
 
+from squealpipe.laws import springs
 from squealpipe.laws.contact import normal_force
 from squealpipe.laws.dashpots import damping_force, linear_damping_force
 from squealpipe.laws.friction import slip_force
 from squealpipe.laws.friction_laws import coefficient
-from squealpipe.laws.springs import (
-    Geometry,
-    elastic_force,
-    linear_elastic_force,
-    linear_stiffness,
-)
 
 
 def suspension_force(
@@ -37,7 +32,7 @@ def suspension_force(
     vx: Any,
     vy: Any,
     p: Any,
-    g: Geometry,
+    g: springs.Geometry,
     *,
     linear_springs: bool,
     long_springs: tuple[bool, bool] = (False, False),
@@ -45,9 +40,9 @@ def suspension_force(
 ) -> tuple[Any, Any]:
     """Force of both springs and their dashpots, if any, on the mass, exact or linearized, N."""
     if linear_springs:
-        fx, fy = linear_elastic_force(x, y, linear_stiffness(p, g))
+        fx, fy = springs.linear_elastic_force(x, y, springs.linear_stiffness(p, g))
     else:
-        fx, fy = elastic_force(x, y, p, g, long_springs)
+        fx, fy = springs.elastic_force(x, y, p, g, long_springs)
     if not dashpots:
         return fx, fy
     if linear_springs:
@@ -63,7 +58,7 @@ def acceleration(
     vx: Any,
     vy: Any,
     p: Any,
-    g: Geometry,
+    g: springs.Geometry,
     *,
     contact: Any,
     direction: Any,

@@ -6,14 +6,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from squealpipe.laws import springs
 from squealpipe.laws.friction_laws import coefficient
-from squealpipe.laws.springs import (
-    Stiffness,
-    geometry,
-    linear_stiffness,
-    pair_determinant,
-    sine_of_sum,
-)
 from squealpipe.models.a2 import FEW_ULPS
 from squealpipe.models.a4 import Spectrum, spectrum
 from squealpipe.parameters import direction_of
@@ -36,7 +30,7 @@ class ContactSystem(NamedTuple):
         invariants: of the matrix whose eigenvalues are ω², with the signed friction μ sgn V.
     """
 
-    stiffness: Stiffness
+    stiffness: springs.Stiffness
     spring_determinant: Any
     invariants: Spectrum
 
@@ -50,9 +44,11 @@ def contact_system(p: Any, alpha1: Any, alpha2: Any, *, k3: Any = None) -> Conta
         alpha1, alpha2: angles, rad.
         k3: contact stiffness in place of ``p.k3``, N/m: 0 when separated.
     """
-    stiffness = linear_stiffness(p, geometry(alpha1, alpha2))
-    sine = sine_of_sum(alpha1, alpha2)
-    determinant = pair_determinant(p.k1, p.k2, np.where(np.abs(sine) <= FEW_ULPS, 0.0, sine))
+    stiffness = springs.linear_stiffness(p, springs.geometry(alpha1, alpha2))
+    sine = springs.sine_of_sum(alpha1, alpha2)
+    determinant = springs.pair_determinant(
+        p.k1, p.k2, np.where(np.abs(sine) <= FEW_ULPS, 0.0, sine)
+    )
     invariants = spectrum(
         stiffness, determinant, k3=p.k3 if k3 is None else k3, mu=p.drag, mass=p.mass
     )

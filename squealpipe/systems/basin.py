@@ -12,14 +12,7 @@ import xarray as xr
 
 from squealpipe.methods.recurrence import LEAST_REPEATS, in_blocks, repeats_after
 from squealpipe.schema import Outcome, flag_table
-from squealpipe.systems.runs import (
-    attributes,
-    flag,
-    integrate,
-    labels,
-    outcome,
-    outer_product,
-)
+from squealpipe.systems import runs
 from squealpipe.validation import NotNegative, Tolerance, Values, Workers, checked
 
 AT_REST = 1e-3
@@ -66,13 +59,13 @@ def basin(
         rests and cycles by their extremes (-1: unsettled); ``period`` (NaN: none is known);
         ``<state>_min`` and ``<state>_max`` of the last quarter; ``outcome``.
     """
-    grid = outer_product(system, start, parameters)
+    grid = runs.outer_product(system, start, parameters)
     size = math.prod(grid.shape)
 
     def run(rows: Any, share: float = 1.0, late: float = 1.0, **options: Any) -> Any:
         values = {name: value[rows] for name, value in grid.values.items()}
         ends = np.full(values[system.states[0]].size, share * t_end)
-        return integrate(
+        return runs.integrate(
             system, values, ends, t_late=late * t_end, tol=tol, regime=grid.regime,
             workers=workers, tracked=system.states, **options,
         )  # fmt: skip
@@ -123,19 +116,19 @@ def basin(
     over, shape = tuple(grid.coordinates), grid.shape
     numbers = _numbered(motion, whole["late_extremes"])
     found: dict[str, Any] = {
-        "motion": flag(
+        "motion": runs.flag(
             "what the motion has become", over, motion.reshape(shape), flag_table(Motion)
         ),
-        "attractor": (over, numbers.reshape(shape), labels("number of the attractor", "1")),
-        "period": (over, period.reshape(shape), labels("period of the cycle", "s")),
-        "outcome": outcome(system, over, whole["ends"][:, 0].reshape(shape)),
+        "attractor": (over, numbers.reshape(shape), runs.labels("number of the attractor", "1")),
+        "period": (over, period.reshape(shape), runs.labels("period of the cycle", "s")),
+        "outcome": runs.outcome(system, over, whole["ends"][:, 0].reshape(shape)),
     }
     for i, (name, unit) in enumerate(system.units.items()):
         for which, word, values in (("min", "smallest", last_low), ("max", "largest", last_high)):
             column = np.where(np.isfinite(values[:, i]), values[:, i], np.nan)
-            label = labels(f"{word} {name} in the last quarter", unit)
+            label = runs.labels(f"{word} {name} in the last quarter", unit)
             found[f"{name}_{which}"] = (over, column.reshape(shape), label)
-    return xr.Dataset(found, grid.coordinates, attributes(system, "basin", grid.fixed, tol))
+    return xr.Dataset(found, grid.coordinates, runs.attributes(system, "basin", grid.fixed, tol))
 
 
 def _numbered(motion: np.ndarray, extremes: np.ndarray) -> np.ndarray:

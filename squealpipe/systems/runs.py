@@ -14,30 +14,7 @@ import numpy as np
 import xarray as xr
 
 from squealpipe.methods.processes import run_shared
-from squealpipe.methods.taylor.lanes import (
-    INVERSES,
-    ROUNDS,
-    CompiledSystem,
-    Workspace,
-    aligned,
-    compile_system,
-    drive,
-    share_of,
-    taylor_terms,
-)
-from squealpipe.methods.taylor.loop import (
-    ARRAYS,
-    CLOCK,
-    FIXED_INTEGERS,
-    FIXED_ROWS,
-    JOB,
-    LOST_ERROR,
-    SIZES,
-    STOPPED,
-    T_END,
-    TABLE,
-    loop,
-)
+from squealpipe.methods.taylor import lanes, loop
 from squealpipe.methods.taylor.scalar import ScalarSource, compile_scalar
 from squealpipe.methods.taylor.series import HybridSystem
 from squealpipe.methods.taylor.simd import FEW, LANES
@@ -66,7 +43,7 @@ MOST_STEPS, MOST_EVENTS = 1e7, 1e7
 
 @dataclass(frozen=True, eq=False)
 class _Compiled:
-    series: CompiledSystem
+    series: lanes.CompiledSystem
     gauge: Any
     change: Any
     jump: Any
@@ -93,7 +70,7 @@ def compiled(system: System, *, tangent: bool, few: bool) -> _Compiled:
             t.variables, t.rates, t.parameters, t.constants, t.surfaces, t.switches, t.size
         )
         known[tangent, few] = _Compiled(
-            compile_system(symbolic, tangent=tangent, few=few),
+            lanes.compile_system(symbolic, tangent=tangent, few=few),
             compile_scalar(scalar.gauge()),
             compile_scalar(scalar.change()),
             compile_scalar(scalar.jump()) if tangent else None,
@@ -179,7 +156,7 @@ def integrate(
         (places[quantities.index(each.removeprefix(LARGEST))], each.startswith(LARGEST))
         for each in chosen
     ]
-    lost = math.log(LOST_ERROR / tol)
+    lost = math.log(loop.LOST_ERROR / tol)
     each = (t_end / unit, t_late / unit, most_steps, most_events, lost, most_turns)
     limits = np.stack(np.broadcast_arrays(*each), axis=-1)
     samples = np.empty((1, 0)) if times is None else np.atleast_2d(times)
@@ -208,9 +185,9 @@ def integrate(
         "event_states": ((size, log_events, t.size), "f8"),
     }
     code = compiled(system, tangent=tangent, few=size <= FEW and few is not False)
-    loop()
-    terms = taylor_terms(tol)
-    n_rows = FIXED_ROWS + len(t.variables) + t.size + 2 * len(watched) + n_regimes
+    loop.loop()
+    terms = lanes.taylor_terms(tol)
+    n_rows = loop.FIXED_ROWS + len(t.variables) + t.size + 2 * len(watched) + n_regimes
     n_rows += 3 * n_points + len(t.parameters) + len(t.constants)
     width = max(3 * len(t.surfaces), len(t.variables)) + 2
 
@@ -220,14 +197,14 @@ def integrate(
         arrays["extremes"][first::stride] = [np.inf, -np.inf]
         for name in ("sample_regimes", "event_kinds", "event_regimes"):
             arrays[name][first::stride] = -1
-        integers = np.full((FIXED_INTEGERS, LANES), -1, np.int64)
+        integers = np.full((loop.FIXED_INTEGERS, LANES), -1, np.int64)
         integers[1] = 0  # every lane asks for a job
-        lanes = aligned(n_rows, LANES)
+        rows = lanes.aligned(n_rows, LANES)
         held = arrays | {
-            "rows": lanes,
+            "rows": rows,
             "integers": integers,
-            "series": aligned(code.series.n_series, terms, LANES),
-            "inverses": INVERSES,
+            "series": lanes.aligned(code.series.n_series, terms, LANES),
+            "inverses": lanes.INVERSES,
             "sizes": system.sizes if unit_sizes is None else unit_sizes,
             "tracked": np.array(watched, np.int64),
             "points": points,
@@ -262,7 +239,7 @@ def integrate(
             "n_points": n_points,
             "until": t.kinds.index(until) if until in t.kinds else -1,
             "late_from": t.kinds.index(late_from) if late_from in t.kinds else -1,
-            "n_rounds": ROUNDS,
+            "n_rounds": lanes.ROUNDS,
             "tangent": int(tangent),
             "take_step": code.series.series,
             "perturb": code.series.perturb,
@@ -275,11 +252,13 @@ def integrate(
             "n_switches": len(t.switches),
         }
         # a view of nothing has no address
-        held = {k: v if v.size else np.zeros(1, v.dtype) for k, v in held.items() if k in ARRAYS}
-        table = Workspace(TABLE, held, {name: sizes[name] for name in SIZES})
-        at = integers[JOB], lanes[CLOCK], lanes[T_END], held["queue"]
-        drive(loop(), table, lambda: share_of(*at))
-        if integers[JOB].max() >= 0 or held["queue"][0] < size:
+        held = {
+            k: v if v.size else np.zeros(1, v.dtype) for k, v in held.items() if k in loop.ARRAYS
+        }
+        table = lanes.Workspace(loop.TABLE, held, {name: sizes[name] for name in loop.SIZES})
+        at = integers[loop.JOB], rows[loop.CLOCK], rows[loop.T_END], held["queue"]
+        lanes.drive(loop.loop(), table, lambda: lanes.share_of(*at))
+        if integers[loop.JOB].max() >= 0 or held["queue"][0] < size:
             raise RuntimeError(
                 "an exception in compiled code, reported above, ended the integration before its "
                 "runs were finished; please report the parameters"
@@ -573,7 +552,7 @@ def flag(long_name: str, dims: Any, values: Any, table: Mapping[int, str]) -> An
 
 def outcome(system: System, dims: Any, values: Any) -> Any:
     """The flag variable that says how runs ended."""
-    table = flag_table(Outcome) | {STOPPED + i: name for i, name in enumerate(system.stops)}
+    table = flag_table(Outcome) | {loop.STOPPED + i: name for i, name in enumerate(system.stops)}
     dims, values, attributes = flag("how the run ended", dims, values, table)
     return dims, values, attributes | {"comment": in_words(table)}
 

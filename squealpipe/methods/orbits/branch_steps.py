@@ -14,15 +14,7 @@ from typing import Any
 import numpy as np
 
 from squealpipe.methods.compiled import compiled
-from squealpipe.methods.orbits.shooting import (
-    MAX_SEGMENTS,
-    dot,
-    fastest,
-    norm,
-    push,
-    shoot,
-    solve_constrained,
-)
+from squealpipe.methods.orbits import shooting
 from squealpipe.methods.orbits.shorter_orbits import about_to_meet, shorter_orbit_between
 
 REACHED, RETURNED, TONGUE_END, BRANCH_LOST, STEP_LIMIT, DIVERGED, GOES_ON = range(7)
@@ -71,13 +63,13 @@ def take_step(
         length = _length(rows, motion, pace, control)
         for index in range(3):
             trial[index] = here[index] + length * ahead[index]
-        legs, iterations, _ = solve_constrained(
+        legs, iterations, _ = shooting.solve_constrained(
             rows, trial, ahead, TRACE_TOLERANCE, segments, switches, final, tangent
         )
-        pace[WORK] += (iterations + 1) * (_WORK_PER_SHOT + fastest(rows) * here[2])
+        pace[WORK] += (iterations + 1) * (_WORK_PER_SHOT + shooting.fastest(rows) * here[2])
         flight = time_in_flight(trial, segments, switches, legs)
         if legs > 0 and _close_by(rows, motion, pace, control, work, length, flight):
-            cosine = dot(tangent, ahead)
+            cosine = shooting.dot(tangent, ahead)
             sense = 1.0 if cosine > 0.0 else -1.0
             meets = control[STRICT] != 0.0 and (
                 sense * pace[SENSE] < 0.0 or about_to_meet(rows, trial, segments, switches, legs)
@@ -103,10 +95,10 @@ def take_step(
 def _length(rows: Any, motion: Any, pace: Any, control: Any) -> float:
     """Arclength of the next step: neither the period nor the extent changes by much."""
     here, ahead = motion[0], motion[1]
-    length = pace[STEP] * (1.0 + norm(here))
+    length = pace[STEP] * (1.0 + shooting.norm(here))
     if control[STRICT] == 0.0:
         return float(length)
-    turn = fastest(rows) * abs(ahead[2]) * length
+    turn = shooting.fastest(rows) * abs(ahead[2]) * length
     if turn > _LARGEST_TURN:
         length *= _LARGEST_TURN / turn
     change = length * np.sqrt(ahead[0] * ahead[0] + ahead[1] * ahead[1])
@@ -124,9 +116,11 @@ def _close_by(
     off = 0.0
     for index in range(3):
         off += (trial[index] - here[index] - length * ahead[index]) ** 2
-    if not (abs(dot(tangent, ahead)) > control[LEAST_COSINE] and off < 0.09 * length * length):
+    if not (
+        abs(shooting.dot(tangent, ahead)) > control[LEAST_COSINE] and off < 0.09 * length * length
+    ):
         return False
-    change = fastest(rows) * abs(flight - pace[FLIGHT])
+    change = shooting.fastest(rows) * abs(flight - pace[FLIGHT])
     return control[STRICT] == 0.0 or bool(change < _LARGEST_TURN)
 
 
@@ -144,8 +138,12 @@ def time_in_flight(point: Any, segments: Any, switches: Any, legs: int) -> float
 @compiled
 def measure(rows: Any, point: Any, pace: Any) -> None:
     """Note time in flight and extent of the orbit at the start of a trace."""
-    segments, switches, final = np.empty((MAX_SEGMENTS, 9)), np.empty(MAX_SEGMENTS), np.empty(4)
-    legs = shoot(rows, point[0], point[1], point[2], segments, switches, final)
+    segments, switches, final = (
+        np.empty((shooting.MAX_SEGMENTS, 9)),
+        np.empty(shooting.MAX_SEGMENTS),
+        np.empty(4),
+    )
+    legs = shooting.shoot(rows, point[0], point[1], point[2], segments, switches, final)
     pace[FLIGHT] = time_in_flight(point, segments, switches, legs)
     pace[EXTENT] = np.sqrt((final[0] - point[0]) ** 2 + (final[1] - point[1]) ** 2)
 
@@ -155,17 +153,17 @@ def change_end(rows: Any, motion: Any, pace: Any, work: Any, segments: Any, legs
     """Describe point and direction from the other instant of rest."""
     here, ahead, final, vector = motion[0], motion[1], work[2], np.zeros(4)
     vector[0], vector[1] = ahead[0], ahead[1]
-    push(rows, segments, legs, vector)
+    shooting.push(rows, segments, legs, vector)
     ahead[0], ahead[1] = vector[0], vector[1]
     here[0], here[1] = final[0], final[1]
-    size = norm(ahead)
+    size = shooting.norm(ahead)
     for index in range(3):
         ahead[index] /= size
     # the sense of the tangent depends on the description: take it anew
     trial, tangent, end = work[0], work[1], np.empty(4)
     for index in range(3):
         trial[index] = here[index]
-    legs, _, _ = solve_constrained(
-        rows, trial, ahead, TRACE_TOLERANCE, segments, np.empty(MAX_SEGMENTS), end, tangent
+    legs, _, _ = shooting.solve_constrained(
+        rows, trial, ahead, TRACE_TOLERANCE, segments, np.empty(shooting.MAX_SEGMENTS), end, tangent
     )
-    pace[SENSE] = 0.0 if legs == 0 else (1.0 if dot(tangent, ahead) > 0.0 else -1.0)
+    pace[SENSE] = 0.0 if legs == 0 else (1.0 if shooting.dot(tangent, ahead) > 0.0 else -1.0)

@@ -5,35 +5,8 @@ from typing import Any
 import numpy as np
 
 from squealpipe.methods.compiled import compiled
-from squealpipe.methods.orbits.branch_steps import (
-    BRANCH_LOST,
-    DIVERGED,
-    EXTENT,
-    GOES_ON,
-    LARGEST_X,
-    LINEAR_SLOPE,
-    LINEAR_X,
-    LONGEST_STEP,
-    MOST_POINTS,
-    POINTS,
-    REACHED,
-    RETURNED,
-    STEP_LIMIT,
-    TRACE_TOLERANCE,
-    WORK,
-    change_end,
-    measure,
-    take_step,
-)
-from squealpipe.methods.orbits.shooting import (
-    LONGEST_PHASE,
-    MAX_SEGMENTS,
-    dot,
-    fastest,
-    norm,
-    solve_constrained,
-    stability_index,
-)
+from squealpipe.methods.orbits import branch_steps as steps
+from squealpipe.methods.orbits import shooting
 
 COLUMNS = ("x0", "y0", "half_period", "end_x", "end_y", "index", "residual", "switches")
 """Columns of a traced point; (x0, y0) is the instant of rest with the larger y."""
@@ -73,22 +46,22 @@ def trace(
     Returns:
         (number of points kept, why it ended).
     """
-    pieces = 1 if spacing == 0.0 else int(np.ceil(control[LONGEST_STEP] / spacing))
-    count, work_before = 0, pace[WORK]
-    if pace[EXTENT] == 0.0:
-        measure(rows, motion[0], pace)
+    pieces = 1 if spacing == 0.0 else int(np.ceil(control[steps.LONGEST_STEP] / spacing))
+    count, work_before = 0, pace[steps.WORK]
+    if pace[steps.EXTENT] == 0.0:
+        steps.measure(rows, motion[0], pace)
     while count + pieces < len(table) or count == 0:
-        if pace[POINTS] >= control[MOST_POINTS] or pace[WORK] > _MOST_WORK:
-            return count, STEP_LIMIT
-        if not fastest(rows) * motion[0, 2] < LONGEST_PHASE:
-            return count, STEP_LIMIT
-        if pace[WORK] > work_before + _WORK_PER_CALL:
-            return count, GOES_ON
+        if pace[steps.POINTS] >= control[steps.MOST_POINTS] or pace[steps.WORK] > _MOST_WORK:
+            return count, steps.STEP_LIMIT
+        if not shooting.fastest(rows) * motion[0, 2] < shooting.LONGEST_PHASE:
+            return count, steps.STEP_LIMIT
+        if pace[steps.WORK] > work_before + _WORK_PER_CALL:
+            return count, steps.GOES_ON
         kept, end = _stretch(rows, motion, pace, control, y_stop, spacing, table[count:], switches)
         count += kept
-        if end != GOES_ON:
+        if end != steps.GOES_ON:
             return count, end
-    return count, GOES_ON
+    return count, steps.GOES_ON
 
 
 @compiled
@@ -103,37 +76,37 @@ def _stretch(
     switches: Any,
 ) -> tuple[int, int]:
     """One step of a trace with its recorded points: (points kept, why it ended)."""
-    segments, work = np.empty((MAX_SEGMENTS, 9)), np.empty((3, 4))
+    segments, work = np.empty((shooting.MAX_SEGMENTS, 9)), np.empty((3, 4))
     before, here, final, kept = motion.copy(), motion[0], work[2], 0
-    length, legs, end = take_step(rows, motion, pace, control, work, segments, switches)
-    if end != GOES_ON:
+    length, legs, end = steps.take_step(rows, motion, pace, control, work, segments, switches)
+    if end != steps.GOES_ON:
         return 0, end
-    pace[POINTS] += 1
+    pace[steps.POINTS] += 1
     reach = _way_to_peak(rows, before, motion, length, max(here[1], final[1]), y_stop)
     if reach >= 0.0:
         reach = _locate(rows, before, reach, y_stop, work[0])
         if spacing > 0.0:
             kept = _record(rows, before, reach, spacing, table, switches, 1)
         found = reach > 0.0 and _settle(rows, work[0], y_stop, table[kept], switches)
-        return (kept + 1, REACHED) if found else (kept, BRANCH_LOST)
+        return (kept + 1, steps.REACHED) if found else (kept, steps.BRANCH_LOST)
     if spacing > 0.0:
         kept = _record(rows, before, length, spacing, table, switches, 0)
     if here[1] <= rows[0, 11] and legs == 1:
-        return kept, RETURNED
+        return kept, steps.RETURNED
     if _diverges(here, control):
-        return kept, DIVERGED
+        return kept, steps.DIVERGED
     if final[1] > here[1]:
         # the other instant of rest is the higher one from here on: count from there
-        change_end(rows, motion, pace, work, segments, legs)
-    return kept, GOES_ON
+        steps.change_end(rows, motion, pace, work, segments, legs)
+    return kept, steps.GOES_ON
 
 
 @compiled
 def _diverges(here: Any, control: Any) -> bool:
     """Whether x0 is many times as large as y0 and as x0 of the linear mode."""
     peak = max(here[1], 1.0)
-    linear = control[LINEAR_X] + control[LINEAR_SLOPE] * (peak - 1.0)
-    return bool(abs(here[0]) > control[LARGEST_X] * (peak + linear))
+    linear = control[steps.LINEAR_X] + control[steps.LINEAR_SLOPE] * (peak - 1.0)
+    return bool(abs(here[0]) > control[steps.LARGEST_X] * (peak + linear))
 
 
 @compiled
@@ -146,7 +119,7 @@ def _record(
     Returns their number.
     """
     point, kept = np.empty(3), 0
-    pieces = max(1, int(np.ceil(length / (spacing * (1.0 + norm(before[0]))))))
+    pieces = max(1, int(np.ceil(length / (spacing * (1.0 + shooting.norm(before[0]))))))
     for piece in range(1, pieces + 1 - leave):
         for index in range(3):
             point[index] = before[0, index] + length * piece / pieces * before[1, index]
@@ -183,7 +156,7 @@ def _way_to_peak(
             return -1.0
         if max(point[1], final[1]) >= y_stop:
             return middle
-        if dot(tangent, before[1]) * tangent[1] > 0.0:
+        if shooting.dot(tangent, before[1]) * tangent[1] > 0.0:
             left = middle
         else:
             right = middle
@@ -195,9 +168,9 @@ def _on_step(rows: Any, before: Any, distance: float, point: Any, final: Any, ta
     """The branch's point on the plane across a step at a distance; 0 where none is found."""
     for index in range(3):
         point[index] = before[0, index] + distance * before[1, index]
-    segments, switches = np.empty((MAX_SEGMENTS, 9)), np.empty(MAX_SEGMENTS)
-    legs, _, _ = solve_constrained(
-        rows, point, before[1], TRACE_TOLERANCE, segments, switches, final, tangent
+    segments, switches = np.empty((shooting.MAX_SEGMENTS, 9)), np.empty(shooting.MAX_SEGMENTS)
+    legs, _, _ = shooting.solve_constrained(
+        rows, point, before[1], steps.TRACE_TOLERANCE, segments, switches, final, tangent
     )
     return int(legs)
 
@@ -240,7 +213,7 @@ def _settle(rows: Any, point: Any, y_stop: float, out: Any, switches: Any) -> bo
     if not orbit_at(rows, point, out, switches):
         return False
     moved = abs(point[0] - x0) + abs(point[2] - half_period)
-    return bool(moved < _NEAR * (1.0 + norm(point)))
+    return bool(moved < _NEAR * (1.0 + shooting.norm(point)))
 
 
 @compiled
@@ -257,14 +230,14 @@ def orbit_at(rows: Any, point: Any, out: Any, switches: Any) -> bool:
 @compiled
 def _orbit_across(rows: Any, point: Any, normal: Any, out: Any, switches: Any) -> bool:
     """As :func:`orbit_at`, on the plane through ``point`` across ``normal``."""
-    segments, final, tangent = np.empty((MAX_SEGMENTS, 9)), np.empty(4), np.empty(3)
-    count, _, residual = solve_constrained(
+    segments, final, tangent = np.empty((shooting.MAX_SEGMENTS, 9)), np.empty(4), np.empty(3)
+    count, _, residual = shooting.solve_constrained(
         rows, point, normal, 0.0, segments, switches, final, tangent
     )
     if count == 0:
         return False
     out[0], out[1], out[2] = point[0], point[1], point[2]
     out[3], out[4] = final[0], final[1]
-    out[5] = stability_index(rows, segments, count)
+    out[5] = shooting.stability_index(rows, segments, count)
     out[6], out[7] = residual, count - 1
     return True

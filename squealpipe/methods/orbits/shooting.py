@@ -10,14 +10,7 @@ from typing import Any
 import numpy as np
 
 from squealpipe.methods.compiled import compiled
-from squealpipe.methods.orbits.modal_flow import (
-    GIVEN_UP,
-    acceleration,
-    advance,
-    apply,
-    next_crossing,
-    propagator,
-)
+from squealpipe.methods.orbits import modal_flow
 
 MAX_SEGMENTS = 64
 """Segments in half a period beyond which a shot is given up."""
@@ -67,13 +60,13 @@ def shoot(
     time = 0.0
     for count in range(MAX_SEGMENTS):
         row = rows[side]
-        crossing = next_crossing(row, final, 2.0 * side - 1.0, half_period - time)
-        if crossing == GIVEN_UP:
+        crossing = modal_flow.next_crossing(row, final, 2.0 * side - 1.0, half_period - time)
+        if crossing == modal_flow.GIVEN_UP:
             return 0
         duration = half_period - time if crossing < 0.0 else crossing
-        propagator(row, duration, segments[count])
+        modal_flow.propagator(row, duration, segments[count])
         segments[count, _COEFFICIENTS] = side
-        advance(row, segments[count], final)
+        modal_flow.advance(row, segments[count], final)
         time += duration
         if crossing < 0.0:
             return count + 1
@@ -87,7 +80,7 @@ def shoot(
 def push(rows: Any, segments: Any, count: int, vector: Any) -> None:
     """Carry a tangent vector through the segments of a shot, in place."""
     for index in range(count):
-        apply(rows[int(segments[index, _COEFFICIENTS])], segments[index], vector)
+        modal_flow.apply(rows[int(segments[index, _COEFFICIENTS])], segments[index], vector)
 
 
 @compiled
@@ -100,7 +93,7 @@ def stability_index(rows: Any, segments: Any, count: int) -> float:
             vector[index] = 1.0 if index == column else 0.0
         push(rows, segments, count, vector)
         for index in range(count - 1, -1, -1):
-            apply(rows[int(segments[index, _COEFFICIENTS])], segments[index], vector)
+            modal_flow.apply(rows[int(segments[index, _COEFFICIENTS])], segments[index], vector)
         trace += vector[column]
     return trace - 2.0
 
@@ -124,7 +117,7 @@ def rest_conditions(
         push(rows, segments, count, vector)
         jacobian[0, column], jacobian[1, column] = vector[2], vector[3]
     last = rows[int(segments[count - 1, _COEFFICIENTS])]
-    jacobian[0, 2], jacobian[1, 2] = acceleration(last, final[0], final[1])
+    jacobian[0, 2], jacobian[1, 2] = modal_flow.acceleration(last, final[0], final[1])
     return count
 
 

@@ -6,13 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from squealpipe.laws.springs import (
-    Geometry,
-    Stiffness,
-    geometry,
-    linear_stiffness,
-    stiffness_determinant,
-)
+from squealpipe.laws import springs
 from squealpipe.methods.orbits.piecewise_linear import LinearState, PiecewiseLinearSystem
 from squealpipe.models import a2, a4
 from squealpipe.models.refusals import WHY_A4, refuse_extensions
@@ -82,11 +76,13 @@ def scaled_system(params: Parameters, alpha1: float, alpha2: float) -> ScaledSys
                 f"{name} = {getattr(params, name)!r}: between {1.0 / _LARGEST:g} and {_LARGEST:g} "
                 "is needed, where squares neither vanish nor overflow; choose other units"
             )
-    g = Geometry(*map(float, geometry(float(alpha1), float(alpha2))))  # NumPy's scalars are slow
-    stiffness = linear_stiffness(params, g)
+    g = springs.Geometry(
+        *map(float, springs.geometry(float(alpha1), float(alpha2)))
+    )  # NumPy's scalars are slow
+    stiffness = springs.linear_stiffness(params, g)
     if a2.coupling_is_zero(stiffness):
-        stiffness = Stiffness(stiffness.k11, 0.0, stiffness.k22)
-    determinant, drag = float(stiffness_determinant(params, g)), params.drag
+        stiffness = springs.Stiffness(stiffness.k11, 0.0, stiffness.k22)
+    determinant, drag = float(springs.stiffness_determinant(params, g)), params.drag
     invariants = a4.spectrum(stiffness, determinant, k3=params.k3, mu=drag, mass=params.mass)
     unit = float(invariants.half_trace)
     larger, smaller = (value / unit for value in a4.natural_frequencies_squared(invariants)[::-1])

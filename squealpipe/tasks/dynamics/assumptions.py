@@ -6,16 +6,8 @@ from typing import Any, NamedTuple
 import numpy as np
 import xarray as xr
 
+from squealpipe.laws import springs
 from squealpipe.laws.contact import contact_force
-from squealpipe.laws.springs import (
-    Stiffness,
-    elastic_force,
-    fixed_ends,
-    geometry,
-    linear_elastic_force,
-    linear_stiffness,
-    squared_distance,
-)
 from squealpipe.methods.linear_response import response_from_rest
 from squealpipe.models import a2
 from squealpipe.models.a4 import contact_matrix
@@ -121,7 +113,7 @@ def linear_pull_map(
     """
     refuse_extensions(params, "linear_pull_map", "Eqs. (6), (7) have neither")
     t_end = 50.0 * params.time_unit if t_end is None else t_end
-    stiffness = linear_stiffness(params, geometry(alpha1[:, None], alpha2[None, :]))
+    stiffness = springs.linear_stiffness(params, springs.geometry(alpha1[:, None], alpha2[None, :]))
     step, steps = _steps(params, t_end)
     lowest = np.full(stiffness.k11.shape, np.inf)
     pulling = np.zeros(lowest.shape)
@@ -156,7 +148,7 @@ def _motion(params: Parameters, scene: Scene, level: str) -> Motion:
 
 def _sliding_state(params: Parameters, scene: Scene) -> Motion:
     """A2: one state, at y = 0, with the friction of its reaction force."""
-    stiffness = linear_stiffness(params, geometry(scene.alpha1, scene.alpha2))
+    stiffness = springs.linear_stiffness(params, springs.geometry(scene.alpha1, scene.alpha2))
     reaction = float(a2.reaction_force(stiffness, params.drag, a2.actuation(params)))
     if np.isnan(reaction) or stiffness.k11 == 0:
         nothing = np.array([])
@@ -168,14 +160,16 @@ def _sliding_state(params: Parameters, scene: Scene) -> Motion:
 
 def _linear_motion(params: Parameters, scene: Scene, t_end: float) -> Motion:
     """A3 in time: Eqs. (6) and (7) from rest; velocities by central differences."""
-    stiffness = linear_stiffness(params, geometry(scene.alpha1, scene.alpha2))
+    stiffness = springs.linear_stiffness(params, springs.geometry(scene.alpha1, scene.alpha2))
     step, steps = _steps(params, t_end)
     states = np.array(list(_linear_response(params, stiffness, step, steps)))
     x, y = states[:, 0], states[:, 1]
     return Motion(x, y, np.gradient(x, step), contact_force(y, params), Outcome.converged)
 
 
-def _linear_response(params: Parameters, stiffness: Stiffness, step: float, steps: int) -> Any:
+def _linear_response(
+    params: Parameters, stiffness: springs.Stiffness, step: float, steps: int
+) -> Any:
     a11, a12, a21, a22 = contact_matrix(stiffness, params.k3, params.drag)
     matrix = np.stack([np.stack([a11, a12], -1), np.stack([a21, a22], -1)], -2) / params.mass
     actuation = a2.actuation(params) / params.mass
@@ -192,17 +186,19 @@ def _steps(params: Parameters, t_end: float) -> tuple[float, int]:
 
 def _measures(params: Parameters, scene: Scene, motion: Motion) -> list[float]:
     """The number that decides about each assumption, in the order of ``LIMITS``."""
-    g = geometry(scene.alpha1, scene.alpha2)
-    x1, y1, x2, y2 = fixed_ends(params, g)
-    exact = np.stack(elastic_force(motion.x, motion.y, params, g))
-    linear = np.stack(linear_elastic_force(motion.x, motion.y, linear_stiffness(params, g)))
+    g = springs.geometry(scene.alpha1, scene.alpha2)
+    x1, y1, x2, y2 = springs.fixed_ends(params, g)
+    exact = np.stack(springs.elastic_force(motion.x, motion.y, params, g))
+    linear = np.stack(
+        springs.linear_elastic_force(motion.x, motion.y, springs.linear_stiffness(params, g))
+    )
     largest = np.hypot(*exact).max()
     turns, lengths = [], []
     for x_fixed, y_fixed, length in ((x1, y1, params.length1), (x2, y2, params.length2)):
         turn = np.arctan2(motion.y - y_fixed, motion.x - x_fixed) - np.arctan2(-y_fixed, -x_fixed)
         turns.append(np.abs(np.angle(np.exp(1j * turn))).max())
         lengths.append(
-            np.sqrt(squared_distance(motion.x, motion.y, x_fixed, y_fixed)).min() / length
+            np.sqrt(springs.squared_distance(motion.x, motion.y, x_fixed, y_fixed)).min() / length
         )
     belt = params.belt_speed
     return [

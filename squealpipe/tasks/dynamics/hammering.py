@@ -13,14 +13,6 @@ from squealpipe.schema.dynamics.runs import HAMMERING_MAP
 from squealpipe.schema.origin import recorded
 from squealpipe.solvers.a1.ensemble import PEAK, REACH, Ensemble, run_ensemble, run_map
 from squealpipe.tasks.dynamics import motion
-from squealpipe.tasks.dynamics.motion import (
-    as_judged,
-    classify_motion,
-    linear_time,
-    predictability,
-    refine_labels,
-    regular_growth,
-)
 from squealpipe.tasks.normal_form import NormalForm
 from squealpipe.validation import Angles, Positive, Tolerance, Workers
 
@@ -79,7 +71,7 @@ def hammering_map(
         rows,
         columns,
         USED,
-        **as_judged(t_end),
+        **motion.as_judged(t_end),
         tol=tol,
         t_late="return",
         tracked=(PEAK, REACH),
@@ -100,8 +92,8 @@ def hammering_map(
             tracked=(), log_events=room, workers=workers,
         )  # fmt: skip
 
-    kinds, changed = classify_motion(flat, form.params)
-    kinds = refine_labels(kinds, flat, again, t_end)
+    kinds, changed = motion.classify_motion(flat, form.params)
+    kinds = motion.refine_labels(kinds, flat, again, t_end)
     # A run that ended early is averaged over the time that it lasted.
     time = np.maximum(run.time, np.finfo(float).tiny)
     maps = {
@@ -115,11 +107,11 @@ def hammering_map(
         "turns": form.sign * run.turns,
         "motion": kinds.reshape(shape),
         "motion_changed": changed.reshape(shape),
-        **predictability(run),
+        **motion.predictability(run),
     }
     return build(
         HAMMERING_MAP,
         {**{name: form.back(values) for name, values in maps.items()}, "t_end": t_end},
         {"alpha1": alpha1, "alpha2": alpha2},
-        {"regular_growth": float(regular_growth(t_end / linear_time(params)))},
+        {"regular_growth": float(motion.regular_growth(t_end / motion.linear_time(params)))},
     )

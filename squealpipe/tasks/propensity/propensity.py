@@ -25,15 +25,8 @@ from squealpipe.schema.origin import recorded
 from squealpipe.schema.propensity import PROPENSITY, WIDEST
 from squealpipe.solvers.a1.ensemble import REACH, run_ensemble
 from squealpipe.tasks.dynamics.motion import as_judged, classify_motion
+from squealpipe.tasks.propensity import sobol
 from squealpipe.tasks.propensity.distributions import check_stick, distribution
-from squealpipe.tasks.propensity.sobol import (
-    LEAST_EVENTS,
-    REPLICATES,
-    saltelli_matrices,
-    scrambled,
-    share_interval,
-    sobol_indices,
-)
 from squealpipe.validation import Angle, Number, Positive, Seed, Tolerance, Whole, Workers
 
 QUANTITIES = ("flutter", "contact_loss", "irregular_hammering", "whirl")
@@ -104,12 +97,12 @@ def propensity(
         next(turns)
         return np.concatenate([flutters, _events(fields, *angles, t_end, tol, workers)])
 
-    points = scrambled(len(names), samples, seed)
+    points = sobol.scrambled(len(names), samples, seed)
     if spring_correlation:
         points = _correlate(points, names.index("k1"), names.index("k2"), spring_correlation)
     values = np.array([frozen[name].ppf(points[:, i]) for i, name in enumerate(names)])
     happens = judge(values)
-    low, high = np.transpose([share_interval(each) for each in happens])
+    low, high = np.transpose([sobol.share_interval(each) for each in happens])
     sizes = samples >> np.arange(SIZES)[::-1]
     index_samples = INDEX_FACTOR * sizes
     blank = dict.fromkeys(INDICES, np.full((len(QUANTITIES), len(names)), np.nan))
@@ -200,13 +193,13 @@ def _indices(judged: Sequence[np.ndarray], parts: int) -> dict[str, np.ndarray]:
     found = {key: np.full(shape, np.nan) for key in INDICES}
     widest = np.full((len(judged), parts), np.nan)
     for row, flat in enumerate(judged):
-        whole = flat.reshape(len(flat), REPLICATES, -1)
+        whole = flat.reshape(len(flat), sobol.REPLICATES, -1)
         for column in range(parts):
             part = whole[..., : whole.shape[-1] >> (parts - 1 - column)]
             count = part[0].sum()
-            if min(count, part[0].size - count) < LEAST_EVENTS:
+            if min(count, part[0].size - count) < sobol.LEAST_EVENTS:
                 continue
-            value, half = sobol_indices(part)
+            value, half = sobol.sobol_indices(part)
             widest[row, column] = half[1].max()
             if column < parts - 1:
                 continue
@@ -222,5 +215,5 @@ def _judged_matrices(judge: Any, frozen: Mapping[str, Any], size: int, seed: int
     """What is judged at Saltelli's samples, (2 + inputs, quantities, size)."""
     return np.stack([
         judge(np.array([each.ppf(u) for each, u in zip(frozen.values(), matrix, strict=True)]))
-        for matrix in saltelli_matrices(len(frozen), size, seed)
+        for matrix in sobol.saltelli_matrices(len(frozen), size, seed)
     ]).astype(float)  # fmt: skip
