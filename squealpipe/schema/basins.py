@@ -1,18 +1,15 @@
 """Datasets of runs from other starts than rest."""
 
+from dataclasses import replace
 from enum import IntEnum
 
 from squealpipe.codes import LinearRegime
 from squealpipe.schema import RUN_ENDS, DatasetSchema, Outcome, Variable, or_nan, outcome
-from squealpipe.schema.dynamics.runs import IN_MAP, MotionFlag
+from squealpipe.schema.dynamics.runs import IN_MAP, STATE, MotionFlag
+from squealpipe.schema.linear import ONE_PAIR
 
-STARTS = ("x0", "y0", "vx0", "vy0")
-UNITS = {"x0": "m", "y0": "m", "vx0": "m s-1", "vy0": "m s-1"}
-WORDS = {
-    "x0": "x at the start",
-    "y0": "y at the start",
-    "vx0": "velocity along the belt at the start",
-    "vy0": "velocity away from the belt at the start",
+STARTS = {
+    f"{name}0": Variable(f"{words} at the start", units) for name, (units, words) in STATE.items()
 }
 
 
@@ -25,7 +22,7 @@ def basin_schema(swept: tuple[str, ...]) -> DatasetSchema:
     return DatasetSchema(
         name="basin_map" + "".join(f"_{name}" for name in swept),
         title="Kind of motion of model A1 over its starts",
-        coordinates={name: Variable(WORDS[name], UNITS[name], (name,)) for name in swept},
+        coordinates={name: replace(STARTS[name], dims=(name,)) for name in swept},
         variables={
             "motion": Variable(
                 "kind of motion in the second half of the run; unsettled: its quarters disagree",
@@ -46,9 +43,8 @@ def basin_schema(swept: tuple[str, ...]) -> DatasetSchema:
                 rtol=1e-6,
             ),
             "outcome": outcome(*swept, among=(*RUN_ENDS, Outcome.beyond_horizon)),
-            **{name: Variable(WORDS[name], UNITS[name]) for name in STARTS if name not in swept},
-            "alpha1": Variable("angle of spring 1", "rad"),
-            "alpha2": Variable("angle of spring 2", "rad"),
+            **{name: STARTS[name] for name in STARTS if name not in swept},
+            **ONE_PAIR,
             "t_end": Variable("end of each run", "s"),
         },
     )
@@ -116,8 +112,7 @@ SMALLEST_DISTURBANCE = DatasetSchema(
                 Outcome.no_sliding_state,
             )
         ),
-        "alpha1": Variable("angle of spring 1", "rad"),
-        "alpha2": Variable("angle of spring 2", "rad"),
+        **ONE_PAIR,
         "t_end": Variable("end of each run", "s"),
         "bound": Variable("largest norm tried"),
     },

@@ -6,7 +6,8 @@ from squealpipe.codes import Event
 from squealpipe.parameters import Parameters
 from squealpipe.schema import DatasetSchema, Variable, or_nan, outcome, text
 from squealpipe.schema.agreement import Listing, most, unjudged
-from squealpipe.schema.dynamics.runs import REGIMES
+from squealpipe.schema.dynamics.runs import REGIMES, STATE
+from squealpipe.schema.linear import ONE_PAIR
 from squealpipe.systems.cycles.labels import Label
 
 
@@ -52,13 +53,6 @@ def _cycle_variables(*dims: str) -> dict[str, Variable]:
     }
 
 
-_STATE = {
-    "x": ("m", "x"),
-    "y": ("m", "y"),
-    "vx": ("m s-1", "velocity along the belt"),
-    "vy": ("m s-1", "velocity away from the belt"),
-}
-
 _PHASE = unjudged(
     "where on a cycle its description starts follows from the way on which it was found"
 )
@@ -75,7 +69,7 @@ LIMIT_CYCLE = DatasetSchema(
         "event_kind": Variable("kind of the event", dims=("event",), flags=Event),
         **{
             f"event_{name}": Variable(f"{words} at the event", units, ("event",))
-            for name, (units, words) in _STATE.items()
+            for name, (units, words) in STATE.items()
         },
         "segment_regime": Variable(
             "regime from the start and after each event",
@@ -84,16 +78,15 @@ LIMIT_CYCLE = DatasetSchema(
         ),
         **{
             f"{name}_start": or_nan(f"{words} at time 0 of the cycle", units)
-            for name, (units, words) in _STATE.items()
+            for name, (units, words) in STATE.items()
         },
         "time": Variable(dims=("sample",), units="s", long_name="instant of a sample"),
         **{
             f"{name}_path": Variable(f"{words} along the cycle", units, ("sample",))
-            for name, (units, words) in _STATE.items()
+            for name, (units, words) in STATE.items()
         },
         "regime_path": Variable("regime along the cycle", dims=("sample",), flags=REGIMES),
-        "alpha1": Variable(units="rad", long_name="angle of spring 1"),
-        "alpha2": Variable(units="rad", long_name="angle of spring 2"),
+        **ONE_PAIR,
     },
 )
 
@@ -128,7 +121,7 @@ CYCLE_BRANCH = DatasetSchema(
             f"{name}_start": or_nan(
                 f"{words} at time 0 of the cycle", units, ("point",), round_off=_PHASE
             )
-            for name, (units, words) in _STATE.items()
+            for name, (units, words) in STATE.items()
         },
         **_followed(),
         "end": outcome(),

@@ -1,5 +1,6 @@
 """Datasets of the linear models A2, A3 and of the natural frequencies."""
 
+from dataclasses import replace
 from enum import IntEnum
 from typing import Any
 
@@ -13,6 +14,8 @@ ANGLES = {
     "alpha1": Variable("angle of spring 1", "rad", ("alpha1",)),
     "alpha2": Variable("angle of spring 2", "rad", ("alpha2",)),
 }
+ONE_PAIR = {name: replace(entry, dims=()) for name, entry in ANGLES.items()}
+"""The angles of a dataset that is of one pair."""
 MODES = {"mode": Variable("mode, by ascending frequency", dims=("mode",), dtype="i4")}
 
 
@@ -70,8 +73,7 @@ CRITICAL_DAMPING_MAP = DatasetSchema(
         "destabilized": Variable(
             "dashpots lower the critical friction", dims=("damping1", "damping2"), dtype="bool"
         ),
-        "alpha1": Variable("angle of spring 1", "rad"),
-        "alpha2": Variable("angle of spring 2", "rad"),
+        **ONE_PAIR,
     },
 )
 

@@ -1,7 +1,10 @@
 """What a user's own scenes do, as configured and with one thing changed."""
 
+from dataclasses import replace
+
 from squealpipe.schema import RUN_ENDS, DatasetSchema, Variable, outcome, text
 from squealpipe.schema.dynamics.runs import IMPACT_SPEED, RETURN_FORCE
+from squealpipe.schema.linear import ONE_PAIR
 
 _RUN = ("scene", "variant")
 
@@ -45,8 +48,7 @@ OWN_SCENES = DatasetSchema(
             nan_allowed=True, rtol=1e-3,
         ),
         "model": text("cheapest level that answers", "scene", "question"),
-        "alpha1": Variable("angle of spring 1", "rad", ("scene",)),
-        "alpha2": Variable("angle of spring 2", "rad", ("scene",)),
+        **{name: replace(entry, dims=("scene",)) for name, entry in ONE_PAIR.items()},
         "t_end": Variable("end of the runs", "s", ("scene",)),
         "outcome": outcome(*_RUN, among=RUN_ENDS),
     },

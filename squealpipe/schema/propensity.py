@@ -1,6 +1,7 @@
 """Datasets on how far verdicts carry and how parameters spread into results."""
 
 from squealpipe.schema import DatasetSchema, Outcome, Variable, or_nan, outcome, text
+from squealpipe.schema.linear import ONE_PAIR
 
 WIDEST = 0.05
 """A Sobol index whose 95 % interval is wider than twice this is not given."""
@@ -66,8 +67,7 @@ PROPENSITY = DatasetSchema(
         ),
         "judged": Variable(dtype="i4", long_name="number of parameter sets"),
         "outcome": outcome(*_QUANTITY, among=(Outcome.converged, Outcome.unresolved)),
-        "alpha1": Variable(units="rad", long_name="angle of spring 1"),
-        "alpha2": Variable(units="rad", long_name="angle of spring 2"),
+        **ONE_PAIR,
         "t_end": Variable(units="s", long_name="end of each run"),
     },
 )

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 from squealpipe.schema import RUN_ENDS, DatasetSchema, Outcome, Variable, or_nan, outcome
 from squealpipe.schema.agreement import magnitude, sampled
-from squealpipe.schema.dynamics.runs import MOTION_CHANGED, MotionFlag
+from squealpipe.schema.dynamics.runs import MOTION, MOTION_CHANGED
 
 _IRREGULAR = (
     "one long run, irregular where the belt is slow: the last bit of the belt speed, which the "
@@ -24,12 +24,7 @@ WHIRL = DatasetSchema(
         "stick_fraction": Variable(
             "share of the time sticking to the belt", dims=("belt_speed",), round_off=_LONG_SAMPLE
         ),
-        "motion": Variable(
-            "kind of motion in the second half of the run",
-            dims=("belt_speed",),
-            flags=MotionFlag,
-            round_off=_LONG_SAMPLE,
-        ),
+        "motion": replace(MOTION, dims=("belt_speed",), round_off=_LONG_SAMPLE),
         "motion_changed": replace(MOTION_CHANGED, dims=("belt_speed",), round_off=_LONG_SAMPLE),
         "fitted": Variable("whether the speed is in the fit", dims=("belt_speed",), dtype="bool"),
         "slope": or_nan("fitted growth of the amplitude with |V|", "s"),

@@ -7,7 +7,7 @@ from typing import Any
 from squealpipe.codes import Event, Regime
 from squealpipe.schema import RUN_ENDS, DatasetSchema, Outcome, Variable, or_nan, outcome
 from squealpipe.schema.agreement import Listing, beyond_horizon, grown, magnitude
-from squealpipe.schema.linear import ANGLES, MAP, REGIME_LINEAR
+from squealpipe.schema.linear import ANGLES, MAP, ONE_PAIR, REGIME_LINEAR
 
 REGIMES = {**{int(each): each.name for each in Regime}, -1: "not_reached"}
 """Meaning of regime."""
@@ -38,6 +38,14 @@ IN_MAP: dict[str, Any] = {"rtol": 1e-5, "atol": 1e-7, "round_off": _LOST}
 """Up to the horizon an error of the last digit may have grown to nearly l_pre/1000."""
 
 
+STATE = {
+    "x": ("m", "x"),
+    "y": ("m", "y"),
+    "vx": ("m s-1", "velocity along the belt"),
+    "vy": ("m s-1", "velocity away from the belt"),
+}
+"""Unit of each state and words for it."""
+MOTION = Variable("kind of motion in the second half of the run", flags=MotionFlag)
 MOTION_CHANGED = Variable("whether the quarters of that half have other labels", dtype="bool")
 RETURN_FORCE = or_nan(
     "largest contact force after the first return to the belt, over k3 l_pre (NaN: no return)"
@@ -67,8 +75,7 @@ SIMULATION = DatasetSchema(
         "regime": Variable("regime", dims=("time",), flags=REGIMES),
         "event_time": Variable("instant of a regime change", "s", ("event",), round_off=_GROWN),
         "event_kind": Variable("kind of regime change", dims=("event",), flags=Event),
-        "alpha1": Variable("angle of spring 1", "rad"),
-        "alpha2": Variable("angle of spring 2", "rad"),
+        **ONE_PAIR,
         "preload": Variable("precompression l_pre of the contact spring", "m"),
         "length1": Variable("free length L1 of spring 1", "m"),
         "length2": Variable("free length L2 of spring 2", "m"),
@@ -167,12 +174,7 @@ HAMMERING_MAP = DatasetSchema(
             MAP,
             rtol=1e-6,
         ),
-        "motion": Variable(
-            "kind of motion in the second half of the run",
-            dims=MAP,
-            flags=MotionFlag,
-            **IN_MAP,
-        ),
+        "motion": replace(MOTION, dims=MAP, **IN_MAP),
         "motion_changed": replace(MOTION_CHANGED, dims=MAP, **IN_MAP),
         "t_end": Variable("end of each run", "s"),
         "outcome": outcome(*MAP, among=(*RUN_ENDS, Outcome.beyond_horizon)),
