@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 import squealpipe
-from tests.browser import open_page
+from tests.browser import chromium_path, open_page
 
 ROOT = Path(__file__).resolve().parents[1]
 
@@ -51,6 +51,7 @@ def test_reference_holds_what_is_public(site):
 
 
 @pytest.mark.release
+@pytest.mark.skipif(chromium_path() is None, reason="no chromium on this machine")
 @pytest.mark.parametrize("scheme", ["light", "dark"])
 def test_every_page_opens(site, scheme):
     server = ThreadingHTTPServer(("127.0.0.1", 0), partial(Quiet, directory=str(site)))

@@ -82,7 +82,8 @@ def test_trivial_multiplier_and_differences_of_the_return_map(wanted):
             continue
         checked += 1
         multipliers = cycle.multiplier_real.values + 1j * cycle.multiplier_imag.values
-        assert abs(multipliers[0] - 1.0) < 1e-9
+        # round-off grows by the strongest multiplier on the way round
+        assert abs(multipliers[0] - 1.0) < max(1e-9, 1e-13 * np.abs(multipliers).max())
         system = A1Flow(params, *angles)
         start = np.array([float(cycle[f"{name}_start"]) for name in ("x", "y", "vx", "vy")])
         errors = []
