@@ -189,6 +189,13 @@ def test_alignment_is_by_value_not_by_position():
     np.testing.assert_array_equal(left.x, right.x)
 
 
+def test_a_grid_may_hold_a_point_twice():
+    grids = [0.0, 1.0, 2.0], [0.0, 1.0, 1.0, 2.0]
+    both = (xr.Dataset({"x": ("t", grid)}, {"t": grid}) for grid in grids)
+    _, shared, _ = align(*both)
+    assert shared.x.values.tolist() == grids[0]
+
+
 def test_events_are_matched_by_order_and_kind():
     """A run with other parameters has other events; the n-th of a kind means the n-th."""
     runs = [simulate(Parameters(mu=mu), 2.6, 2.6, t_end=30) for mu in (0.3, 0.1)]

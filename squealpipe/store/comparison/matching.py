@@ -136,7 +136,6 @@ def _shared(left: np.ndarray, right: np.ndarray) -> tuple[np.ndarray, np.ndarray
         order = np.argsort(at_left)
         return at_left[order], at_right[order]
     close = ALIGNED * max((np.ptp(side) for side in (left, right) if side.size), default=0.0)
-    order = np.argsort(right, kind="stable")
-    sorted_right = pd.Index(right[order].astype(float))
-    nearest = sorted_right.get_indexer(left.astype(float), method="nearest", tolerance=close)
+    points, order = np.unique(right.astype(float), return_index=True)  # a point may be there twice
+    nearest = pd.Index(points).get_indexer(left.astype(float), method="nearest", tolerance=close)
     return np.flatnonzero(nearest >= 0), order[nearest[nearest >= 0]]
