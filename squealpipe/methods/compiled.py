@@ -13,7 +13,7 @@ for all checkouts. numba decides by a function's own file whether its stored cod
 that code contains what it calls from other files. Each store is therefore keyed by a digest of
 every source and numba's version (numba adds the processor): an edit of any source compiles all
 again, and none is ever stale. (heyoka compiles expressions of its own, in
-:mod:`tests.oracles.taylor_compiler`, and stores nothing.)
+:mod:`tests.oracles.a1_long_double`, and stores nothing.)
 """
 
 import hashlib

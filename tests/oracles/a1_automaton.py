@@ -2,15 +2,10 @@
 
 Written from the definition of A1 (see :mod:`squealpipe.models.a1`) and nothing else, so that
 public integrators can run it and our own engine has an independent counterpart.
-
-Regimes are those of :class:`squealpipe.codes.Regime`.
 """
-
-from __future__ import annotations
 
 from dataclasses import dataclass, field
 from enum import IntEnum
-from typing import Any
 
 import numpy as np
 
@@ -19,75 +14,58 @@ from squealpipe.laws.contact import contact_force
 from squealpipe.laws.friction import stick_limit
 from squealpipe.laws.springs import Geometry, geometry
 from squealpipe.models.a1 import acceleration, suspension_force
-from squealpipe.parameters import Parameters
 
-
-class EventKind(IntEnum):
-    """What ends a regime."""
-
-    separation = 0
-    contact = 1
-    belt_speed = 2
-    release = 3
+EventKind = IntEnum("EventKind", "separation contact belt_speed release", start=0)
+DIRECTION = {Regime.slip_slower: 1.0, Regime.slip_faster: -1.0, Regime.stick: 0.0}
 
 
 @dataclass
 class HybridRun:
-    """What an integration from event to event gave.
+    """State at the end, and events in order; ``regimes`` begins with the one at the start.
 
-    Attributes:
-        state: at the end.
-        time: reached; less than asked where it failed.
-        event_times, event_kinds: in order.
-        regimes: the regime at the start and after each event.
-        message: empty where it ran to the end.
+    ``time`` is less than asked, and ``message`` not empty, where the integration failed.
     """
 
     state: np.ndarray
     time: float = 0.0
     event_times: list[float] = field(default_factory=list)
     event_kinds: list[int] = field(default_factory=list)
+    event_states: list[np.ndarray] = field(default_factory=list)
     regimes: list[int] = field(default_factory=list)
     message: str = ""
 
-
-_DIRECTION = {Regime.slip_slower: 1.0, Regime.slip_faster: -1.0, Regime.stick: 0.0}
+    def add(self, kind, regime):
+        """An event at the present time, and the regime behind it."""
+        self.event_times.append(self.time)
+        self.event_kinds.append(kind)
+        self.event_states.append(self.state)
+        self.regimes.append(regime)
 
 
 class A1Automaton:
     """A1 at given parameters and angles; states are (x, y, ẋ, ẏ)."""
 
-    def __init__(
-        self,
-        params: Parameters,
-        alpha1: float,
-        alpha2: float,
-        *,
-        linear_springs: bool = False,
-    ) -> None:
+    def __init__(self, params, alpha1, alpha2, *, linear_springs=False):
         self.params = params
         self.geometry = Geometry(*map(float, geometry(alpha1, alpha2)))
-        self.linear_springs = linear_springs
-        self.dashpots = params.damping1 + params.damping2 > 0.0
+        dashpots = params.damping1 + params.damping2 > 0.0
+        self.options = {"linear_springs": linear_springs, "dashpots": dashpots}
 
-    def field(self, regime: int) -> Any:
+    def field(self, regime):
         """The field f(t, z) of a regime."""
-        p, g = self.params, self.geometry
-        contact = 0.0 if regime == Regime.separated else 1.0
-        stick = 1.0 if regime == Regime.stick else 0.0
-        direction = _DIRECTION.get(Regime(regime), 0.0)
+        regime = Regime(regime)
+        part = {
+            "contact": float(regime != Regime.separated),
+            "stick": float(regime == Regime.stick),
+        }
+        part |= {"direction": DIRECTION.get(regime, 0.0), **self.options}
 
-        def f(_: float, z: np.ndarray) -> tuple[float, float, float, float]:
-            x, y, vx, vy = z.tolist()
-            ax, ay = acceleration(
-                x, y, vx, vy, p, g, contact=contact, direction=direction, stick=stick,
-                linear_springs=self.linear_springs, dashpots=self.dashpots,
-            )  # fmt: skip
-            return vx, vy, ax, ay
+        def f(_, z):
+            return *z[2:].tolist(), *acceleration(*z.tolist(), self.params, self.geometry, **part)
 
         return f
 
-    def guards(self, regime: int) -> list[tuple[EventKind, Any, int]]:
+    def guards(self, regime):
         """(kind, function of the state, direction of the crossing) of a regime's guards."""
         if regime == Regime.separated:
             return [(EventKind.contact, self.gap, 1)]
@@ -98,45 +76,42 @@ class A1Automaton:
                 (EventKind.release, lambda z: self.grip(z) - self.pull(z), -1),
                 (EventKind.release, lambda z: self.grip(z) + self.pull(z), -1),
             ]
-        direction = -1 if regime == Regime.slip_slower else 1
-        return [leave, (EventKind.belt_speed, self.lag, direction)]
+        return [leave, (EventKind.belt_speed, self.lag, -DIRECTION[regime])]
 
-    def gap(self, z: np.ndarray) -> float:
+    def gap(self, z):
         """l_pre − y, m: positive in contact."""
         return float(self.params.preload - z[1])
 
-    def lag(self, z: np.ndarray) -> float:
+    def lag(self, z):
         """V − ẋ, m/s."""
         return float(self.params.belt_speed - z[2])
 
-    def grip(self, z: np.ndarray) -> float:
+    def grip(self, z):
         """μs N, N: what friction can hold."""
         return float(stick_limit(contact_force(float(z[1]), self.params), self.params))
 
-    def pull(self, z: np.ndarray) -> float:
+    def pull(self, z, axis=0):
         """x-force of springs and dashpots, N."""
-        return float(self._suspension(z)[0])
+        return float(
+            suspension_force(*z.tolist(), self.params, self.geometry, **self.options)[axis]
+        )
 
-    def start(self, z: np.ndarray) -> int:
-        """The regime of a state, also of one that lies on guards."""
-        if self._in_contact(z):
-            return self._sliding(z)
-        return Regime.separated
+    def start(self, z):
+        """The regime of a state; on the threshold the velocity decides, then the force."""
+        gap = self.gap(z)
+        apart = gap < 0.0 if gap else z[3] > 0.0 if z[3] else self.pull(z, 1) > 0.0
+        return Regime.separated if apart else self._sliding(z)
 
-    def switch(self, kind: int, z: np.ndarray) -> tuple[int, np.ndarray]:
+    def switch(self, kind, z):
         """The next regime, and the state put exactly onto the guard that it met."""
         z = z.copy()
-        if kind in (EventKind.separation, EventKind.contact):
+        if kind in {EventKind.separation, EventKind.contact}:
             z[1] = self.params.preload
-            if kind == EventKind.separation:
-                return Regime.separated, z
-            return self._sliding(z), z
+            return (Regime.separated if kind == EventKind.separation else self._sliding(z)), z
         z[2] = self.params.belt_speed
-        if kind == EventKind.release:
-            return (Regime.slip_faster if self.pull(z) > 0 else Regime.slip_slower), z
-        return self._sliding(z), z
+        return self._sliding(z, held=kind != EventKind.release), z
 
-    def leave(self, regime: int, z: np.ndarray, round_off: float) -> np.ndarray:
+    def leave(self, regime, z, round_off):
         """A state that lies on a surface, moved off it into its regime by a unit of round-off.
 
         A guard that starts at exactly zero is found again at once, or hides the next crossing.
@@ -146,30 +121,12 @@ class A1Automaton:
             shift = round_off * max(1.0, self.params.preload)
             z[1] += shift if regime == Regime.separated else -shift
         if self.lag(z) == 0.0 and regime in {Regime.slip_slower, Regime.slip_faster}:
-            shift = round_off * max(1.0, abs(self.params.belt_speed))
-            z[2] += shift if regime == Regime.slip_faster else -shift
+            z[2] -= DIRECTION[regime] * round_off * max(1.0, abs(self.params.belt_speed))
         return z
 
-    def _in_contact(self, z: np.ndarray) -> bool:
-        """On the threshold the velocity decides, then the force."""
-        if self.gap(z) != 0.0:
-            return self.gap(z) > 0.0
-        if z[3] != 0.0:
-            return bool(z[3] < 0.0)
-        return bool(self._suspension(z)[1] <= 0.0)
-
-    def _sliding(self, z: np.ndarray) -> int:
+    def _sliding(self, z, *, held=True):
         """Slip or stick in contact; at belt speed the force decides."""
-        lag = self.lag(z)
-        if lag != 0.0:
-            return Regime.slip_slower if lag > 0.0 else Regime.slip_faster
-        if abs(self.pull(z)) <= self.grip(z):
+        lag, pull = self.lag(z), self.pull(z)
+        if lag == 0.0 and held and abs(pull) <= self.grip(z):
             return Regime.stick
-        return Regime.slip_faster if self.pull(z) > 0.0 else Regime.slip_slower
-
-    def _suspension(self, z: np.ndarray) -> tuple[float, float]:
-        x, y, vx, vy = z.tolist()
-        p, g = self.params, self.geometry
-        return suspension_force(
-            x, y, vx, vy, p, g, linear_springs=self.linear_springs, dashpots=self.dashpots
-        )
+        return Regime.slip_faster if (lag or -pull) < 0.0 else Regime.slip_slower

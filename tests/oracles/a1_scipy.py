@@ -9,16 +9,11 @@ from scipy.integrate import solve_ivp
 
 from tests.oracles.a1_automaton import A1Automaton, HybridRun
 
+EPS = float(np.finfo(float).eps)
+
 
 def simulate_scipy(params, alpha1, alpha2, *, t_end, tol=1e-10, initial_state=(0.0, 0.0, 0.0, 0.0)):
-    """A1 by scipy's DOP853 with terminal events.
-
-    Args:
-        params: physical parameters; alpha1, alpha2: angles, rad.
-        t_end: horizon, s.
-        tol: relative and absolute tolerance.
-        initial_state: (x, y, ẋ, ẏ) at t = 0.
-    """
+    """A1 from (x, y, ẋ, ẏ) by scipy's DOP853 with terminal events, to a tolerance."""
     a1 = A1Automaton(params, alpha1, alpha2)
     state = np.asarray(initial_state, dtype=float)
     regime = a1.start(state)
@@ -27,7 +22,7 @@ def simulate_scipy(params, alpha1, alpha2, *, t_end, tol=1e-10, initial_state=(0
         guards = a1.guards(regime)
         solution = solve_ivp(
             a1.field(regime), (run.time, t_end), run.state, method="DOP853",
-            rtol=max(tol, 100 * np.finfo(float).eps), atol=tol,
+            rtol=max(tol, 100 * EPS), atol=tol,
             events=[_terminal(value, direction) for _, value, direction in guards],
         )  # fmt: skip
         run.time, run.state = float(solution.t[-1]), solution.y[:, -1]
@@ -36,10 +31,8 @@ def simulate_scipy(params, alpha1, alpha2, *, t_end, tol=1e-10, initial_state=(0
             break
         kind = guards[next(i for i, found in enumerate(solution.t_events) if len(found))][0]
         regime, state = a1.switch(kind, run.state)
-        run.state = a1.leave(regime, state, float(np.finfo(float).eps))
-        run.event_times.append(run.time)
-        run.event_kinds.append(kind)
-        run.regimes.append(regime)
+        run.state = a1.leave(regime, state, EPS)
+        run.add(kind, regime)
     return run
 
 

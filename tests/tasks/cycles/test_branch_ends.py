@@ -7,16 +7,17 @@ import pytest
 from scipy.optimize import root
 
 from squealpipe import cycle_branch, limit_cycle, simulate
-from squealpipe.codes import Event, Regime
+from squealpipe.codes import Regime
 from squealpipe.schema import Outcome
 from squealpipe.systems.cycles.labels import Label
 from tests.former import FORMER
-from tests.oracles.a1_flow import A1Flow
-from tests.oracles.event_flow import flow
+from tests.oracles.a1_automaton import A1Automaton, EventKind
+from tests.oracles.a1_long_double import simulate_reference
 
 PENDULUM = (0.4 * math.pi, 0.6 * math.pi)
 STICKING = FORMER.with_(belt_speed=1.0, damping1=0.02, damping2=0.02, k2=1.2)
 STATE = ("x", "y", "vx", "vy")
+TURN = (EventKind.belt_speed, True)
 
 
 def start_of(dataset):
@@ -28,35 +29,18 @@ def sticking():
     return limit_cycle(STICKING, *PENDULUM)
 
 
-@pytest.mark.parametrize(
-    "name", ["mu", "belt_speed", "alpha1", "alpha2", "k3", "preload", "length2", "mass", "damping1"]
-)
-def test_slope_by_a_parameter_agrees_with_differences(name, sticking):
-    state, period = start_of(sticking), float(sticking.period)
-
-    def system(offset):
-        values = {"alpha1": PENDULUM[0], "alpha2": PENDULUM[1], **STICKING.as_dict()}
-        values[name] += offset
-        angles = values.pop("alpha1"), values.pop("alpha2")
-        return A1Flow(FORMER.with_(**values), *angles, follow=name)
-
-    ends = [flow(system(h), state, period, derivative=False).state for h in (1e-5, -1e-5)]
-    differences = (ends[0] - ends[1]) / 2e-5
-    slope = flow(system(0.0), state, period).slope
-    np.testing.assert_allclose(slope, differences, atol=1e-6 * np.abs(differences).max())
-
-
 def located_crossings(branch, parameter):
     """Points where a crossing of belt speed becomes stick: μs N holds the x-force to round-off."""
     found = []
     for point in np.flatnonzero(branch.label == Label.stick_onset):
         here = branch.isel(point=point)
-        system = A1Flow(STICKING.with_(**{parameter: float(here[parameter])}), *PENDULUM)
-        passage = flow(system, start_of(here), float(here.period), keep=True)
-        a1, events = system.a1, zip(passage.event_kinds, passage.event_states, strict=True)
-        excess = [abs(abs(a1.pull(z)) - a1.grip(z)) for kind, z in events if kind == Event.reversal]
-        stick = [part.times for part in passage.segments if part.regime == Regime.stick]
-        assert min(*excess, *(times[-1] - times[0] for times in stick), np.inf) < 1e-7
+        scene = STICKING.with_(**{parameter: float(here[parameter])}), *PENDULUM
+        period, a1 = float(here.period), A1Automaton(*scene)
+        run = simulate_reference(*scene, t_end=period, initial_state=start_of(here))
+        places = zip(run.event_kinds, run.event_states, run.regimes[1:], strict=True)
+        passed = [z for kind, z, regime in places if (kind, regime != Regime.stick) == TURN]
+        spans = np.diff([0.0, *run.event_times, period])[np.equal(run.regimes, Regime.stick)]
+        assert min([abs(abs(a1.pull(z)) - a1.grip(z)) for z in passed] + spans.tolist()) < 1e-7
         found.append(float(here[parameter]))
     return found
 
@@ -90,9 +74,9 @@ def test_branch_ends_on_the_cycle_of_half_the_period():
     assert branch.label[-1] == Label.end
     assert (branch.label == Label.stick_onset).sum() == 1
     last = branch.isel(point=-1)
-    system = A1Flow(params.with_(belt_speed=float(last.belt_speed)), *angles)
-    half = flow(system, start_of(last), 0.5 * float(last.period), derivative=False).state
-    assert np.abs(half - start_of(last)).max() < 0.02
+    given = {"t_end": 0.5 * float(last.period), "initial_state": start_of(last)}
+    half = simulate_reference(params.with_(belt_speed=float(last.belt_speed)), *angles, **given)
+    assert np.abs(half.state - start_of(last)).max() < 0.02
     assert abs(last.multiplier_real[1] - 1.0) < 1e-3
     parameter = branch.belt_speed.values
     folds = np.flatnonzero(branch.label == Label.fold)
@@ -178,8 +162,8 @@ def test_a_hammering_cycle_shrinks_to_rest_at_the_edge_of_contact():
     np.testing.assert_allclose(branch.alpha2[-1], alpha2, rtol=1e-4)
     np.testing.assert_allclose(branch.x_max[-1], x, rtol=1e-3)
     last = branch.isel(point=-1)
-    system = A1Flow(params, angles[0], float(last.alpha2))
-    end = flow(system, start_of(last), float(last.period), derivative=False).state
+    given = {"t_end": float(last.period), "initial_state": start_of(last)}
+    end = simulate_reference(params, angles[0], float(last.alpha2), **given).state
     extent = max(float(last.x_max - last.x_min), float(last.y_max - last.y_min))
     # both are round-off: the cycle has shrunk to it
     assert last.residual >= 0.5 * np.abs(end - start_of(last))[:2].max() / extent

@@ -17,12 +17,9 @@ from squealpipe.tasks.cycles.cycle import cycle_from
 from squealpipe.tasks.cycles.scene import Scene
 from squealpipe.tasks.normal_form import exchanged
 from tests.former import FORMER
-from tests.oracles.a1_flow import A1Flow
-from tests.oracles.event_flow import flow
+from tests.oracles.a1_long_double import derivative_along
 
 ANGLES = (0.5 * math.pi, math.pi)
-STRONG = 100.0
-"""Largest multiplier of a cycle for which differences over a period have seven digits."""
 
 
 def friction_oscillator(belt_speed, reach=1e6):
@@ -84,42 +81,11 @@ def test_trivial_multiplier_and_differences_of_the_return_map(wanted):
         multipliers = cycle.multiplier_real.values + 1j * cycle.multiplier_imag.values
         # round-off grows by the strongest multiplier on the way round
         assert abs(multipliers[0] - 1.0) < max(1e-9, 1e-13 * np.abs(multipliers).max())
-        system = A1Flow(params, *angles)
         start = np.array([float(cycle[f"{name}_start"]) for name in ("x", "y", "vx", "vy")])
-        errors = []
-        for matrix in derivatives(system, start, float(cycle.period), cycle, multipliers):
-            found = np.linalg.eigvals(matrix) if np.isfinite(matrix).all() else np.full(4, np.inf)
-            distance = np.abs(found[:, None] - multipliers).min(axis=0)
-            errors.append(distance.max() / max(1.0, np.abs(multipliers).max()))
-            if errors[-1] < 1e-7:
-                break
-        assert min(errors) < 1e-7
-
-
-def derivatives(system, start, period, cycle, multipliers):
-    """Differences of several steps; of a strong cycle, where none is short enough, the oracle's."""
-    kinds = cycle.event_kind.values.tolist()
-    if np.abs(multipliers).max() > STRONG:
-        yield flow(system, start, period).derivative
-    else:
-        for shift in np.array([3e-5, 1e-5, 3e-6, 1e-4]) * (1.0 + np.abs(start).max()):
-            yield differences(system, start, period, shift, kinds)
-
-
-def differences(system, start, period, shift, kinds):
-    """The return map's derivative to fourth order; NaN where an end has other events."""
-    matrix = np.empty((4, 4))
-    for column in range(4):
-        offset = shift * np.eye(4)[column]
-        passages = [
-            flow(system, start + steps * offset, period, derivative=False)
-            for steps in (2.0, 1.0, -1.0, -2.0)
-        ]
-        if any(passage.event_kinds != kinds for passage in passages):
-            return np.full((4, 4), np.nan)
-        far, near, back, last = (passage.state for passage in passages)
-        matrix[:, column] = (8.0 * (near - back) - (far - last)) / (12.0 * shift)
-    return matrix
+        given = {"t_end": float(cycle.period), "initial_state": start}
+        found = [derivative_along(params, *angles, unit, **given) for unit in np.eye(4)]
+        distance = np.abs(np.linalg.eigvals(found)[:, None] - multipliers).min(axis=0)
+        assert distance.max() < 1e-7 * max(1.0, np.abs(multipliers).max())
 
 
 def test_mirrored_system_has_the_mirrored_cycle():
