@@ -49,7 +49,7 @@ bench: export OMP_NUM_THREADS := 1
 bench: dev  ## speed beside other tools, as ratios; integrators with events beside one another
 	$(BIN)/python -m pip install -q --require-hashes -r requirements-peers.lock
 	for script in tests/benchmarks/bench_*.py; do PYTHONPATH=. $(BIN)/python $$script || exit 1; done
-	-$(BIN)/squealpipe benchmark --force -o results/benchmark.nc
+	-$(BIN)/squealpipe benchmark --force -o build/benchmark.nc
 
 lint: dev
 	$(BIN)/ruff check . && $(BIN)/ruff format --check .

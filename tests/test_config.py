@@ -270,9 +270,15 @@ def test_a_folder_of_results_holds_nothing_else(tmp_path, monkeypatch):
         check_results_folder(name)
     with pytest.raises(ConfigError, match=r"holds docs/store\.md, which is not a result"):
         check_results_folder("docs")
+    (tmp_path / "theirs/data").mkdir(parents=True)
+    (tmp_path / "theirs/data/measured.csv").touch()
+    with pytest.raises(ConfigError, match=r"holds theirs/data/measured\.csv"):
+        check_results_folder("theirs")
     (tmp_path / "link").symlink_to("results/archive/first")
     (tmp_path / "mine").mkdir()
     (tmp_path / "mine/data").symlink_to(tmp_path / "results/archive/first/data")
-    for name in ("link", "link/data", "mine"):
+    (tmp_path / "deep/data").mkdir(parents=True)
+    (tmp_path / "deep/data/own").symlink_to(tmp_path / "results/archive/first/data")
+    for name in ("link", "link/data", "mine", "deep"):
         with pytest.raises(ConfigError, match="leads into the archive"):
             check_results_folder(name)

@@ -1,5 +1,6 @@
 """The import closure: every way to import counts, types-only imports do not."""
 
+import json
 import time
 from pathlib import Path
 
@@ -7,8 +8,6 @@ import pytest
 
 from squealpipe.rerun.key import STARTED, key_behind, rule_key, sources, state_key
 from squealpipe.rerun.sources import PACKAGE, closure, read_source
-from squealpipe.store import StoreError
-from squealpipe.store.provenance import refuse_edited
 
 
 def named(*modules):
@@ -112,24 +111,32 @@ def test_key_changes_with_slice_inputs_and_files_that_the_slice_names(tmp_path):
     assert rule_key(part, [], {"data/a.nc": "1"}) != first
 
 
-def test_figures_and_pages_state_their_key(tmp_path):
-    for name in (
-        "figures/fig01.svg",
-        "figures/fig01.png",
-        "report/index.html",
-        "report/report.pdf",
-    ):
-        path = tmp_path / name
-        path.parent.mkdir(exist_ok=True)
-        path.write_bytes(b"content" if path.suffix != ".json" else b'{"a": 1}')
-        assert key_behind(path) is None
-        state_key(path, "0" * 16)
-        assert key_behind(path) == f"{'0' * 16} {name}"
+@pytest.mark.parametrize("end", ["a.svg", "a.png", "a.html", "a.json"])
+def test_figures_and_pages_end_with_their_key_and_any_change_is_noticed(tmp_path, end):
+    path = tmp_path / end
+    path.write_bytes(b"content of a picture" if path.suffix != ".json" else b'{"a": {"b": 1}}\n')
+    assert key_behind(path) is None
+    state_key(path, "0" * 16)
+    assert key_behind(path) == f"{'0' * 16} {end}"
+    if path.suffix == ".json":
+        assert json.loads(path.read_text())["a"] == {"b": 1}
+    whole = path.read_bytes()
+    for at in range(len(whole)):
+        for changed in (
+            whole[:at],
+            whole[at + 1 :],
+            whole[:at] + bytes([whole[at] ^ 1]) + whole[at + 1 :],
+            whole + whole[: at + 1],
+        ):
+            path.write_bytes(changed)
+            assert key_behind(path) != f"{'0' * 16} {end}"
 
 
 def test_result_of_code_that_changed_meanwhile_is_not_published(tmp_path, monkeypatch):
+    picture = tmp_path / "fig06.png"
+    picture.write_bytes(b"picture")
     monkeypatch.setenv(STARTED, "0")
-    with pytest.raises(StoreError, match=r"springs\.py.*changed while it was computed"):
-        refuse_edited(tmp_path / "map.nc")
+    with pytest.raises(RuntimeError, match=r"key\.py.*changed while it was computed"):
+        state_key(picture, "0" * 16)
     monkeypatch.setenv(STARTED, str(time.time()))
-    refuse_edited(tmp_path / "map.nc")
+    state_key(picture, "0" * 16)

@@ -87,7 +87,7 @@ def verify(name: str, /) -> int:
     Args:
         name: name or folder of the archive.
     """
-    from squealpipe.store.archive import verify as check
+    from squealpipe.store.runs import verify as check
 
     with working("verify"):
         found = check(name)

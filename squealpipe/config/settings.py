@@ -21,6 +21,10 @@ from squealpipe.parameters import TABLE, Row
 from squealpipe.rerun.key import PARTS
 from squealpipe.rerun.sources import WORKFLOW
 
+KINDS = dict(zip(PARTS, ((".nc",), (".png", ".svg"), (".html", ".pdf", ".json")), strict=True))
+"""Endings of the files in each folder of results."""
+OTHERS = {"logs", "parts", "archive", "deposit"}
+
 PAPER = WORKFLOW / "config/paper.yaml"
 """The paper's study, over which other configurations are laid."""
 
@@ -157,25 +161,19 @@ def files_of_laws(path: Path) -> list[Path]:
 def check_results_folder(results: str) -> None:
     """Refuse a folder of results in which Snakemake could overwrite or delete anything else."""
     folder = Path(results)
-    for part in (folder, *(folder / name for name in PARTS)):
+    below = sorted(folder.rglob("*"))
+    for part in (folder, *(path for path in below if path.is_symlink())):
         inside = [part.resolve(), *part.resolve().parents]
         if any((at / "manifest.json").is_file() for at in inside):
             raise ConfigError([f"results = {results!r}: {part} leads into the archive {inside[0]}"])
-    if (stranger := _stranger(folder)) is not None:
-        what = f"it holds {stranger}, which is not a result; a run needs a folder of its own"
-        raise ConfigError([f"results = {results!r}: {what}, for instance results/mine"])
-
-
-def _stranger(folder: Path) -> Path | None:
-    """The first file of a folder that no run puts there, if there is one."""
-    for path in sorted(folder.glob("[!.]*")):
-        if path.name in {*PARTS, "logs", "parts", "archive", "deposit", "README.md"}:
+    for path in below:
+        *above, name = path.relative_to(folder).parts
+        hidden = any(part.startswith(".") for part in (*above, name))
+        if path.is_dir() or hidden or name == "README.md" or OTHERS.intersection(above):
             continue
-        if not path.is_dir():
-            return path
-        if (found := _stranger(path)) is not None:
-            return found
-    return None
+        if not any(path.suffix in KINDS.get(part, ()) for part in above):
+            what = f"it holds {path}, which is not a result; a run needs a folder of its own"
+            raise ConfigError([f"results = {results!r}: {what}, for instance results/mine"])
 
 
 def parse_study(

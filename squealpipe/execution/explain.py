@@ -20,7 +20,8 @@ from squealpipe.config.yaml_files import flat, read_yaml
 from squealpipe.rerun.key import PLAN
 from squealpipe.rerun.sources import WORKFLOW
 from squealpipe.store.keys import misfits
-from squealpipe.store.netcdf import StoreError, attributes
+from squealpipe.store.netcdf import attributes
+from squealpipe.store.whole_files import StoreError
 from squealpipe.text import duration
 
 QUICK = PAPER.with_name("quick.yaml")

@@ -10,6 +10,7 @@ import hashlib
 import json
 import os
 import re
+import sys
 from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
@@ -29,6 +30,10 @@ PLAN = "SQUEALPIPE_PLAN"
 """Environment variable with the file into which the workflow writes what its results should be."""
 
 MARK = b"squealpipe key: "
+
+COMMENTS = dict.fromkeys((".svg", ".html"), (b"\n<!-- ", b" -->\n"))
+COMMENTS[".json"] = (b',\n "made": "', b'"\n}\n')
+"""Ending of a file's name → what stands around its key; else it is a line behind the content."""
 
 
 def canonical(config: Any) -> str:
@@ -78,22 +83,36 @@ def file_key(key: str, path: str | os.PathLike[str]) -> str:
     return f"{key} {'/'.join(parts[place:])}"
 
 
+def refuse_edited(output: str | os.PathLike[str]) -> None:
+    """Raise if a module that this process has loaded is younger than the workflow's reading."""
+    started = float(os.environ.get(STARTED, "inf"))
+    files = {str(getattr(module, "__file__", "")) for module in list(sys.modules.values())}
+    own = sorted(Path(file) for file in files if file.startswith(str(PACKAGE)))
+    edited = [path.name for path in own if not path.exists() or path.stat().st_mtime > started]
+    if edited:
+        raise RuntimeError(
+            f"{output} is not written: {', '.join(edited)} changed while it was computed; "
+            "run snakemake again"
+        )
+
+
 def state_key(path: str | Path, key: str) -> None:
-    """Add the key to a finished figure, page or JSON file, as a comment behind its content."""
-    target, line = Path(path), MARK + file_key(key, path).encode()
+    """End a finished figure, page or JSON file with its key and the digest of all before."""
+    refuse_edited(path)
+    target = Path(path)
+    before, after = COMMENTS.get(target.suffix, (b"\n% ", b"\n"))
+    content = target.read_bytes()
     if target.suffix == ".json":
-        content = json.loads(target.read_text(encoding="utf-8"))
-        target.write_text(json.dumps({**content, "made": line.decode()}, indent=1), "utf-8")
-        return
-    with target.open("ab") as file:
-        markup = target.suffix in {".svg", ".html"}
-        file.write(b"\n<!-- " + line + b" -->\n" if markup else b"\n% " + line + b"\n")
+        content = content.rstrip().removesuffix(b"}").rstrip()
+    content += before + MARK
+    target.write_bytes(content + f"{file_key(key, path)} {digest(content)}".encode() + after)
 
 
 def key_behind(path: str | Path) -> str | None:
-    """The key that :func:`state_key` added to a file; None if it states none."""
-    found = re.search(MARK + rb"([0-9a-f]{16} [\w./-]+)", Path(path).read_bytes()[-400:])
-    return found[1].decode() if found else None
+    """The key that a file ends with; None if it states none, or was changed since."""
+    content, mark, line = Path(path).read_bytes().rpartition(MARK)
+    found = re.fullmatch(rb'([0-9a-f]{16} [\w./-]+) ([0-9a-f]{16})(\n| -->\n|"\n}\n)', line)
+    return found[1].decode() if found and found[2].decode() == digest(content + mark) else None
 
 
 def _files_named_in(value: Any) -> Iterator[str]:

@@ -8,7 +8,6 @@ import platform
 import shutil
 import tempfile
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -18,47 +17,15 @@ from squealpipe.config.settings import Study, files_of_laws, read_study
 from squealpipe.store.checkout import commit
 from squealpipe.store.crate import METADATA, describe
 from squealpipe.store.keys import refuse_misfits
-from squealpipe.store.netcdf import StoreError
 from squealpipe.store.runs import (
     LEFT_OUT,
-    MANIFEST,
     SEAL,
     archive_folder,
-    locate,
     matches_any,
-    read_manifest,
     regular_files,
-    seal_fits,
     seal_text,
 )
-from squealpipe.store.whole_files import checksum, sync
-
-
-@dataclass(frozen=True)
-class Verification:
-    """What differs between an archive and its manifest; nothing: it is intact."""
-
-    folder: Path
-    files: int
-    changed: list[str] = field(default_factory=list)
-    missing: list[str] = field(default_factory=list)
-    extra: list[str] = field(default_factory=list)
-
-    @property
-    def intact(self) -> bool:
-        """Whether every byte is as it was frozen."""
-        return not (self.changed or self.missing or self.extra)
-
-    def lines(self) -> list[str]:
-        """The findings, for people."""
-        if self.intact:
-            return [f"{self.folder}: intact, {self.files} files as they were frozen"]
-        found = [
-            f"  {word}: {name}"
-            for word in ("changed", "missing", "extra")
-            for name in getattr(self, word)
-        ]
-        return [f"{self.folder}: NOT as it was frozen ({len(found)} findings)", *found]
+from squealpipe.store.whole_files import MANIFEST, StoreError, checksum, sync
 
 
 def archive(
@@ -117,31 +84,6 @@ def archive(
     return target
 
 
-def verify(what: str | os.PathLike[str], root: str | os.PathLike[str] = ".") -> Verification:
-    """Compare every byte of an archive with its manifest."""
-    folder = locate(what, root)
-    if not (folder / MANIFEST).is_file():
-        raise FileNotFoundError(f"{folder} has no {MANIFEST}; it is not an archive")
-    listed = read_manifest(folder).get("files", {})
-    if not listed:
-        return Verification(folder=folder, files=0, changed=[f"{MANIFEST} (damaged)"])
-    present = set(_everything(folder))
-    changed = [
-        path
-        for path in sorted(present & set(listed))
-        if (folder / path).is_symlink() or checksum(folder / path) != listed[path].get("sha256")
-    ]
-    if not seal_fits(folder):
-        changed.append(MANIFEST)
-    return Verification(
-        folder=folder,
-        files=len(listed),
-        changed=changed,
-        missing=sorted(set(listed) - present),
-        extra=sorted(present - set(listed) - {MANIFEST, SEAL}),
-    )
-
-
 def _copy_setting(configs: list[Path], study: Study, base: Path, draft: Path) -> None:
     """Configuration as written and as resolved, lock, and environment."""
     folder = draft / "config"
@@ -185,12 +127,3 @@ def _seal(draft: Path, about: dict[str, Any]) -> None:
     for path in regular_files(draft):
         path.chmod(path.stat().st_mode & 0o444)
         sync(path)
-
-
-def _everything(folder: Path) -> list[str]:
-    """Every file and link below the folder, hidden ones too."""
-    found: list[str] = []
-    for place, subfolders, names in os.walk(folder, followlinks=False):
-        links = [name for name in subfolders if Path(place, name).is_symlink()]
-        found.extend(Path(place, name).relative_to(folder).as_posix() for name in names + links)
-    return sorted(found)

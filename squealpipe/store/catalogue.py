@@ -14,9 +14,10 @@ import pandas as pd
 from squealpipe.config.settings import PAPER, Study, read_study
 from squealpipe.config.yaml_files import flat
 from squealpipe.parameters import DEFAULTS, SYMBOLS, TABLE
-from squealpipe.store.archive import verify
 from squealpipe.store.netcdf import attributes
-from squealpipe.store.runs import ARCHIVES, MANIFEST, dataset_files, read_manifest
+from squealpipe.store.results import refuse_copy
+from squealpipe.store.runs import ARCHIVES, dataset_files, read_manifest, verify
+from squealpipe.store.whole_files import MANIFEST
 from squealpipe.text import nearest
 
 EXAMPLE = "write for instance 'mu == 0.25 and L1 > 4'"
@@ -123,18 +124,22 @@ def _results(place: Path, base: Path) -> Run:
     config: dict[str, Any] = {}
     commits: set[str] = set()
     faults: list[str] = []
-    files = list(dataset_files(place).values())
-    for path in files:
+    files = dataset_files(place)
+    for name, path in files.items():
         try:
             stated = attributes(path)
+            refuse_copy(name, path, stated)
         except ValueError as error:
             faults.append(str(error))
             continue
         part = json.loads(stated.get("config", "{}"))
-        config |= {key: part[key] for key in part if key in Study.model_fields or "." in key}
+        found = flat({key: part[key] for key in part if key in Study.model_fields or "." in key})
+        mixed = [key for key in found if config.get(key, found[key]) != found[key]]
+        faults += [f"{path}: {key} = {found[key]}, elsewhere {config[key]}" for key in mixed]
+        config |= found
         commits.add(str(stated.get("commit", "")))
     newest = 0.0
-    for path in files:
+    for path in files.values():
         with contextlib.suppress(FileNotFoundError):  # a run that goes on replaces its files
             newest = max(newest, path.stat().st_mtime)
     return Run(
@@ -142,7 +147,7 @@ def _results(place: Path, base: Path) -> Run:
         kind="results",
         date=datetime.datetime.fromtimestamp(newest, datetime.UTC).isoformat(timespec="seconds"),
         commit=", ".join(sorted(commits - {""})),
-        size=sum(path.stat().st_size for path in files if path.is_file()),
-        config=flat(config),
+        size=sum(path.stat().st_size for path in files.values() if path.is_file()),
+        config=config,
         faults=faults,
     )

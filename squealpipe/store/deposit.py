@@ -4,10 +4,8 @@ import os
 import zipfile
 from pathlib import Path
 
-from squealpipe.store.archive import verify
-from squealpipe.store.netcdf import StoreError
-from squealpipe.store.runs import locate
-from squealpipe.store.whole_files import whole_file
+from squealpipe.store.runs import locate, verify
+from squealpipe.store.whole_files import StoreError, whole_file
 
 SOURCES = (
     "squealpipe", "workflow", "Snakefile", "pyproject.toml", "requirements.lock", "LICENSE",

@@ -4,11 +4,12 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from squealpipe.rerun.key import key_behind
-from squealpipe.store.netcdf import StoreError, attributes
+from squealpipe.store.netcdf import attributes
+from squealpipe.store.whole_files import StoreError
 
 
 def stated_key(path: str | Path) -> str | None:
-    """The key that a dataset, figure or page states; None if it states none."""
+    """The key that a dataset, figure or page states; None if it states none, or was changed."""
     if Path(path).suffix == ".nc":
         key = attributes(path).get("key")
         return None if key is None else str(key)
@@ -31,7 +32,7 @@ def misfits(keys: Mapping[str, str], root: Path = Path()) -> list[str]:
             found.append(f"{path}: {error}")
         else:
             if stated is None:
-                found.append(f"{path}: does not state what it was made from")
+                found.append(f"{path}: changed, or does not state what it was made from")
             elif stated.partition(" ")[2] != key.partition(" ")[2]:
                 found.append(f"{path}: is a copy of {stated.partition(' ')[2]}")
             elif stated != key:

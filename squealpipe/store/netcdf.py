@@ -15,14 +15,8 @@ import xarray as xr
 from squealpipe.rerun.key import canonical
 from squealpipe.schema import SchemaError, schema_of, validate
 from squealpipe.store.checkout import commit
-from squealpipe.store.runs import archive_around
-from squealpipe.store.whole_files import checksum, whole_file
+from squealpipe.store.whole_files import StoreError, archive_around, checksum, whole_file
 from squealpipe.validation import AnyPath, checked
-
-
-class StoreError(ValueError):
-    """A file cannot be read or written as a dataset; the message names it and the remedy."""
-
 
 MARK = b"\n# squealpipe sha256 "
 

@@ -2,7 +2,6 @@
 
 import os
 import platform
-import sys
 import time
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
@@ -11,11 +10,10 @@ from typing import Any
 
 import xarray as xr
 
-from squealpipe.rerun.key import STARTED, canonical, digest, file_key
-from squealpipe.rerun.sources import PACKAGE
+from squealpipe.rerun.key import canonical, digest, file_key, refuse_edited
 from squealpipe.schema.origin import versions
 from squealpipe.store.checkout import commit
-from squealpipe.store.netcdf import StoreError, load, made_now, save
+from squealpipe.store.netcdf import load, made_now, save
 
 VOLATILE_ATTRIBUTES = frozenset(
     {
@@ -48,27 +46,14 @@ def produce(
         key: of the rule (see :mod:`squealpipe.rerun.key`).
 
     Raises:
-        StoreError: the code was edited while the study ran, so the key may be another's; what is
+        RuntimeError: the code was edited while the study ran, so the key may be another's; what is
             there stays.
     """
     dataset = stamped(make, config=config, inputs=inputs)
     if key is not None:
-        refuse_edited(Path(output))
+        refuse_edited(output)
         dataset = dataset.assign_attrs(key=file_key(key, output))
     return save(dataset, output)
-
-
-def refuse_edited(output: Path) -> None:
-    """Raise if a module that this process has loaded is younger than the workflow's reading."""
-    started = float(os.environ.get(STARTED, "inf"))
-    files = {str(getattr(module, "__file__", "")) for module in list(sys.modules.values())}
-    own = sorted(Path(file) for file in files if file.startswith(str(PACKAGE)))
-    edited = [path.name for path in own if not path.exists() or path.stat().st_mtime > started]
-    if edited:
-        raise StoreError(
-            f"{output} is not written: {', '.join(edited)} changed while it was computed; "
-            "run snakemake again"
-        )
 
 
 def stamped(

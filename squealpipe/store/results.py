@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 import xarray as xr
 
-from squealpipe.store.netcdf import StoreError, read
+from squealpipe.store.netcdf import read
 from squealpipe.store.runs import dataset_files, locate
+from squealpipe.store.whole_files import StoreError
 from squealpipe.validation import AnyPath, checked
 
 
@@ -36,7 +39,12 @@ def open_results(name_or_path: AnyPath, *, root: str | os.PathLike[str] = ".") -
 
 def _load(name: str, path: Path) -> xr.Dataset:
     dataset = read(path)
-    stated = str(dataset.attrs.get("key", "")).partition(" ")[2]
-    if stated not in {"", f"data/{name}.nc"}:
-        raise StoreError(f"{path} is a copy of {stated}; delete it and run snakemake again")
+    refuse_copy(name, path, dataset.attrs)
     return dataset
+
+
+def refuse_copy(name: str, path: Path, stated: Mapping[str, Any]) -> None:
+    """Raise if the attributes of a dataset state that it was made under another name."""
+    made_as = str(stated.get("key", "")).partition(" ")[2]
+    if made_as not in {"", f"data/{name}.nc"}:
+        raise StoreError(f"{path} is a copy of {made_as}; delete it and run snakemake again")

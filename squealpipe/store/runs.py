@@ -4,20 +4,47 @@ import fnmatch
 import json
 import os
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from squealpipe.store.whole_files import checksum
+from squealpipe.store.whole_files import MANIFEST, StoreError, checksum
 
 ARCHIVES = Path("results/archive")
-MANIFEST = "manifest.json"
 SEAL = "manifest.sha256"
 """Holds the checksum of the manifest, so that an edited manifest is noticed too."""
 NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,79}")
 
 
 LEFT_OUT = "left_out"
+
+
+@dataclass(frozen=True)
+class Verification:
+    """What differs between an archive and its manifest; nothing: it is intact."""
+
+    folder: Path
+    files: int
+    changed: list[str] = field(default_factory=list)
+    missing: list[str] = field(default_factory=list)
+    extra: list[str] = field(default_factory=list)
+
+    @property
+    def intact(self) -> bool:
+        """Whether every byte is as it was frozen."""
+        return not (self.changed or self.missing or self.extra)
+
+    def lines(self) -> list[str]:
+        """The findings, for people."""
+        if self.intact:
+            return [f"{self.folder}: intact, {self.files} files as they were frozen"]
+        found = [
+            f"  {word}: {name}"
+            for word in ("changed", "missing", "extra")
+            for name in getattr(self, word)
+        ]
+        return [f"{self.folder}: NOT as it was frozen ({len(found)} findings)", *found]
 
 
 def matches_any(name: str, patterns: Iterable[str]) -> bool:
@@ -45,11 +72,6 @@ def seal_fits(folder: Path) -> bool:
 def seal_text(folder: Path) -> str:
     """The line that seals the manifest of an archive, as `sha256sum` writes and checks it."""
     return f"{checksum(folder / MANIFEST)}  {MANIFEST}\n"
-
-
-def archive_around(path: Path) -> Path | None:
-    """The archive that a file is part of, if any."""
-    return next((at for at in path.resolve().parents if (at / MANIFEST).is_file()), None)
 
 
 def left_out(place: Path) -> list[str]:
@@ -84,14 +106,50 @@ def locate(what: str | os.PathLike[str], root: str | os.PathLike[str] = ".") -> 
     )
 
 
+def verify(
+    what: str | os.PathLike[str], root: str | os.PathLike[str] = ".", part: str = ""
+) -> Verification:
+    """Compare every byte of an archive, or of a folder in it, with its manifest."""
+    folder = locate(what, root)
+    if not (folder / MANIFEST).is_file():
+        raise FileNotFoundError(f"{folder} has no {MANIFEST}; it is not an archive")
+    files = read_manifest(folder).get("files", {})
+    if not files:
+        return Verification(folder=folder, files=0, changed=[f"{MANIFEST} (damaged)"])
+    listed = {path: files[path] for path in files if path.startswith(part)}
+    there = (path for path in folder.rglob("*") if path.is_symlink() or not path.is_dir())
+    names = (path.relative_to(folder).as_posix() for path in there)
+    present = {name for name in names if name.startswith(part)}
+    changed = [
+        path
+        for path in sorted(present & set(listed))
+        if (folder / path).is_symlink() or checksum(folder / path) != listed[path].get("sha256")
+    ]
+    if not seal_fits(folder):
+        changed.append(MANIFEST)
+    return Verification(
+        folder=folder,
+        files=len(listed),
+        changed=changed,
+        missing=sorted(set(listed) - present),
+        extra=sorted(present - set(listed) - {MANIFEST, SEAL}),
+    )
+
+
 def dataset_files(place: Path) -> dict[str, Path]:
     """Dataset name (path below the data folder, without suffix) → file.
 
     Args:
         place: an archive or a run (both have ``data/``), a folder of datasets, or one file.
+
+    Raises:
+        ValueError: there is none.
+        StoreError: those of an archive are not as they were frozen.
     """
     if place.is_file():
         return {place.stem: place}
+    if (place / MANIFEST).is_file() and not (frozen := verify(place, part="data/")).intact:
+        raise StoreError("\n".join(frozen.lines()))
     base = place / "data" if (place / "data").is_dir() else place
     found = {
         path.relative_to(base).with_suffix("").as_posix(): path
@@ -103,12 +161,12 @@ def dataset_files(place: Path) -> dict[str, Path]:
     return found
 
 
-def regular_files(base: Path) -> Iterator[Path]:
+def regular_files(base: Path) -> list[Path]:
     """Files below a folder, sorted, without hidden ones; links are not followed."""
-    for folder, subfolders, names in os.walk(base, followlinks=False):
-        subfolders[:] = sorted(name for name in subfolders if not name.startswith("."))
-        for name in sorted(names):
-            path = Path(folder, name)
-            if name.startswith(".") or path.is_symlink():
-                continue
-            yield path
+    return sorted(
+        path
+        for path in base.rglob("*")
+        if path.is_file()
+        and not path.is_symlink()
+        and not any(name.startswith(".") for name in path.relative_to(base).parts)
+    )

@@ -7,6 +7,17 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+MANIFEST = "manifest.json"
+
+
+class StoreError(ValueError):
+    """A file cannot be read or written as a dataset; the message names it and the remedy."""
+
+
+def archive_around(path: Path) -> Path | None:
+    """The archive that a file is part of, if any."""
+    return next((at for at in path.resolve().parents if (at / MANIFEST).is_file()), None)
+
 
 @contextmanager
 def whole_file(path: Path) -> Iterator[Path]:

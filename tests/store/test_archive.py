@@ -9,8 +9,9 @@ from rocrate.rocrate import ROCrate
 from squealpipe.config.settings import read_study
 from squealpipe.rerun.key import file_key
 from squealpipe.store import StoreError, load, produce, save
-from squealpipe.store.archive import archive, verify
+from squealpipe.store.archive import archive
 from squealpipe.store.comparison.compare import compare
+from squealpipe.store.runs import verify
 from squealpipe.store.whole_files import checksum
 
 

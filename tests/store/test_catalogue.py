@@ -1,12 +1,14 @@
 """Runs are found again by their parameters; one odd file hides no other."""
 
 import json
+import shutil
 
 import pytest
 import yaml
 
 from squealpipe.cli import run as command
 from squealpipe.config.yaml_files import flat
+from squealpipe.store import load, save
 from squealpipe.store.archive import archive
 
 
@@ -87,3 +89,16 @@ def test_an_odd_file_is_named_and_hides_no_run(memory, capsys, name):
         captured = capsys.readouterr()
         assert all(run in captured.out for run in ("first", "second", "results"))
         assert path.name in captured.err
+
+
+def test_copies_and_datasets_of_another_study_are_named(memory, write_run, capsys):
+    """Each is whole by itself; together they are no run."""
+    data = memory / "results/data"
+    shutil.copy(data / "stability_map.nc", data / "whirl.nc")
+    other = write_run(memory / "other", mu=0.4) / "results/data/stability_map.nc"
+    (data / "simulate").mkdir()
+    save(load(other).assign_attrs(key=""), data / "simulate/F3.nc")
+    assert command(["list"]) == 0
+    error = capsys.readouterr().err
+    assert "whirl.nc is a copy of data/stability_map.nc" in error
+    assert "parameters.mu = 0.25, elsewhere 0.4" in error

@@ -6,9 +6,10 @@ import zipfile
 import pytest
 
 from squealpipe.cli import run as command
-from squealpipe.store.archive import archive, verify
+from squealpipe.store.archive import archive
 from squealpipe.store.checkout import ROOT
 from squealpipe.store.deposit import bundle
+from squealpipe.store.runs import verify
 
 
 @pytest.fixture

@@ -1,5 +1,7 @@
 """A run as one tree; damaged, swapped and foreign files are refused."""
 
+import shutil
+
 import numpy as np
 import pytest
 import xarray as xr
@@ -84,6 +86,19 @@ def test_files_that_were_swapped_are_refused(run, tmp_path):
     (tmp_path / "aside.nc").rename(folder / "second.nc")
     with pytest.raises(StoreError, match=r"first\.nc is a copy of data/second\.nc"):
         open_results(run / "results")
+
+
+@pytest.mark.parametrize("other", [True, False])
+def test_an_archive_with_a_dataset_of_another_or_without_one_is_refused(
+    run, write_run, keys_of, other
+):
+    """Each file is whole by itself."""
+    path = archive("first", keys=keys_of(run), root=run) / "data/stability_map.nc"
+    path.unlink()
+    if other:
+        shutil.copy(write_run(run, mu=0.4) / "results/data/stability_map.nc", path)
+    with pytest.raises(StoreError, match=r"(changed|missing): data/stability_map\.nc"):
+        open_results("first", root=run)
 
 
 def test_the_reference_opens_whatever_schemas_have_become_since():

@@ -74,7 +74,7 @@ def test_replaced_and_damaged_results_are_named(finished, snakemake):
             assert refused.returncode != 0
             told = refused.stdout + refused.stderr
             assert "quasi_static_map.nc: made with another configuration or other code" in told
-            assert "fig07.png: does not state what it was made from" in told
+            assert "fig07.png: changed, or does not state what it was made from" in told
     finally:
         if (finished / "aside").exists():
             shutil.rmtree(records, ignore_errors=True)
