@@ -12,7 +12,7 @@ from typing import Any, Literal, Self
 from squealpipe.laws import contact_laws, friction_laws
 from squealpipe.laws.contact_laws import LINEAR
 from squealpipe.laws.friction_laws import COULOMB, LAWS, coefficient
-from squealpipe.laws.tables import is_table, knots_of, named
+from squealpipe.laws.tables import is_table, knots_of, named, stood_for
 from squealpipe.text import suggestion
 
 LAW_NAMES = tuple(LAWS)
@@ -200,12 +200,20 @@ class Parameters:
                 f"friction_speed = {self.friction_speed!r}: must be 1e-300 or greater, for the "
                 "laws divide by it"
             )
+        follow = {}
         if is_table(self.friction_law):
-            self._take("friction_law", "mu", knots_of(self.friction_law)[1][-1])
+            follow["mu"] = knots_of(self.friction_law)[1][-1]
         if is_table(self.contact_law):
-            load = contact_laws.preload_force(self.contact_law, self.preload)
-            self._take("contact_law", "k3", load / self.preload)
+            follow["k3"] = contact_laws.preload_force(self.contact_law, self.preload) / self.preload
             contact_laws.relative(self.contact_law, self.preload)
+        for name in self.in_laws:
+            given = getattr(self, name)
+            if given not in (DEFAULTS[name], follow.get(name)):
+                raise ValueError(
+                    f"{name} = {given!r}: the file of a law stands for it; leave {name} out"
+                )
+        for name, value in follow.items():
+            object.__setattr__(self, name, value)
         if self.damping3 and self.contact_law != "dashpot":
             raise ValueError(
                 f"damping3 = {self.damping3!r}: contact_law = 'dashpot' alone reads it; give that "
@@ -217,16 +225,6 @@ class Parameters:
                 f"mu_static = {self.mu_static!r}: it must be {onset!r}, the coefficient at speed "
                 "0, or greater, for below that a mass at belt speed could neither stick nor slip"
             )
-
-    def _take(self, law: str, parameter: str, value: float) -> None:
-        """Give a parameter the value that follows from a table, which stands for others too."""
-        for name in TABLE[law].laws.IN_TABLE:
-            given = getattr(self, name)
-            if given not in (DEFAULTS[name], value if name == parameter else None):
-                raise ValueError(
-                    f"{name} = {given!r}: {law} is a table that stands for it; leave {name} out"
-                )
-        object.__setattr__(self, parameter, value)
 
     def __repr__(self) -> str:
         """The call that makes it, and as a comment its dimensionless groups."""
@@ -289,18 +287,18 @@ class Parameters:
         return self.belt_speed * self.time_unit / self.preload
 
     @property
-    def in_tables(self) -> tuple[str, ...]:
-        """Parameters that a table of a law stands for."""
-        tables = [row for name, row in TABLE.items() if row.laws and is_table(getattr(self, name))]
-        return tuple(name for row in tables for name in row.laws.IN_TABLE)
+    def in_laws(self) -> tuple[str, ...]:
+        """Parameters that the file of a law stands for."""
+        laws = {name: row.laws for name, row in TABLE.items() if row.laws}
+        return tuple(each for name in laws for each in stood_for(getattr(self, name), laws[name]))
 
     def with_(self, **changes: Any) -> Self:
         """A copy with some fields changed, validated again."""
         follow = {
             each: DEFAULTS[each]
             for name, row in TABLE.items()
-            if row.laws and is_table(row.check(name, changes.get(name, getattr(self, name))))
-            for each in row.laws.IN_TABLE
+            if row.laws
+            for each in stood_for(row.check(name, changes.get(name, getattr(self, name))), row.laws)
         }
         return replace(self, **{**follow, **changes})
 

@@ -16,7 +16,7 @@ from squealpipe.config.mistakes import ConfigError, mistakes
 from squealpipe.config.ranges import sweep_config
 from squealpipe.config.sections import Name, Section
 from squealpipe.config.yaml_files import flat, overlay, read_yaml
-from squealpipe.laws.tables import is_table, named
+from squealpipe.laws.tables import named, stood_for
 from squealpipe.parameters import TABLE, Row
 from squealpipe.rerun.key import PARTS
 from squealpipe.rerun.sources import WORKFLOW
@@ -134,9 +134,9 @@ def _read_laws(path: Path, content: dict[str, Any]) -> Iterator[str]:
             yield f"parameters.{name}: {error}"
             del section[name]
             continue
-        taken = ", ".join(other for other in row.laws.IN_TABLE if other in section)
-        if is_table(section[name]) and section[name] != given and taken:
-            yield f"parameters.{name}: the table stands for {taken}; leave that out"
+        taken = ", ".join(other for other in stood_for(section[name], row.laws) if other in section)
+        if section[name] != given and taken:
+            yield f"parameters.{name}: the file stands for {taken}; leave that out"
 
 
 def laws_in(section: Any) -> Iterator[tuple[str, Any, Row]]:

@@ -124,6 +124,13 @@ def is_table(name: object) -> bool:
     return isinstance(name, str) and name.partition(" ")[0] in BETWEEN and ":" in name
 
 
+def stood_for(law: Any, laws: Any) -> tuple[str, ...]:
+    """Parameters in whose place a law of a package of laws stands."""
+    if is_table(law):
+        return tuple(laws.IN_TABLE)
+    return tuple(laws.IN_SOURCE) if "\n" in str(law) else ()
+
+
 @lru_cache(maxsize=64)
 def pieces_of(text: str, *, goes_on: bool = False) -> Pieces:
     """The pieces of a table, from 0 on.

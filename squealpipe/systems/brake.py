@@ -36,7 +36,7 @@ FIRST = 1e150
 
 def brake_of(params: Parameters) -> System:
     """A1 with some parameters, whose numbers ``parameters_of_run`` gives."""
-    one_mu = params.static_mu == params.mu
+    one_mu = params.friction_law in friction_laws.LAWS and params.static_mu == params.mu
     falls = params.friction_law in friction_laws.FALLING
     return brake(
         COULOMB if one_mu and falls else params.friction_law,

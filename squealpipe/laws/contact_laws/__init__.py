@@ -21,6 +21,7 @@ REFUSED = {
 """Laws that cannot be carried, with the reason."""
 IN_TABLE = ("k3",)
 """Parameters that a table stands in for."""
+IN_SOURCE = ()
 
 
 class ContactLaw(Protocol):

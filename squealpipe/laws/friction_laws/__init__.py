@@ -1,7 +1,8 @@
 """The friction laws by name: how the coefficient depends on the sliding speed w = |V − ẋ|.
 
 A law is a module of this folder, and its name in the import below; or a table of the user's own
-or a Python file with ``coefficient(speed, p)`` (:mod:`squealpipe.laws.tables`).
+or a Python file with ``coefficient(speed, p)``, of m/s and ``p.mu``
+(:mod:`squealpipe.laws.tables`).
 """
 
 from functools import lru_cache
@@ -18,6 +19,8 @@ REFUSED: dict[str, str] = {}
 """Laws that cannot be carried, with the reason."""
 IN_TABLE = ("mu", "mu_static", "friction_speed")
 """Parameters that a table stands in for."""
+IN_SOURCE = ("friction_speed",)
+"""Those that a Python file stands in for: its speeds are in m/s, 1 m/s in the engine's units."""
 
 
 class FrictionLaw(Protocol):
@@ -87,11 +90,14 @@ def _own(name: str) -> FrictionLaw | None:
     if "coefficient" not in found:
         raise ValueError("the file has no function coefficient(speed, p)")
 
+    def coefficient(speed: Any, p: Any) -> Any:
+        return found["coefficient"](speed * p.friction_speed**-1.0, SimpleNamespace(mu=p.mu))
+
     def slope(speed: Any, p: Any) -> Any:
         # a complex step is exact for a smooth law
-        return found["coefficient"](speed + 1e-30j, p).imag / 1e-30
+        return coefficient(speed + 1e-30j, p).imag / 1e-30
 
-    return cast("FrictionLaw", SimpleNamespace(**{"PARAMETERS": (), "slope": slope, **found}))
+    return cast("FrictionLaw", SimpleNamespace(PARAMETERS=(), coefficient=coefficient, slope=slope))
 
 
 def law_of(name: Any) -> FrictionLaw | None:

@@ -4,13 +4,15 @@ import math
 import re
 from collections.abc import Mapping
 from functools import lru_cache
+from types import SimpleNamespace
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from squealpipe.laws import springs
 from squealpipe.laws.contact_laws import LINEAR
-from squealpipe.laws.friction_laws import COULOMB, FALLING, LAWS
+from squealpipe.laws.friction_laws import COULOMB, FALLING, LAWS, coefficient
+from squealpipe.laws.tables import is_table
 from squealpipe.models.refusals import WHY_A4
 from squealpipe.parameters import DEFAULTS, NUMBERS_OF_A1, TABLE, Parameters
 from squealpipe.systems.brake import brake, brake_of, has_own_laws
@@ -46,22 +48,32 @@ def scaled_runs(parameters: Parameters | Mapping[str, Any], model: str) -> Scale
     """Checked parameters in the engine's units, and the systems that they are of."""
     if isinstance(parameters, Parameters):
         return _scaled_once(parameters, model)
-    law = parameters.get("friction_law", COULOMB)
-    if isinstance(law, str) and law not in LAWS and parameters.get("contact_law", LINEAR) == LINEAR:
-        # the form of the system is that of the largest numbers: with dashpots if any run has one
-        largest: dict[str, Any] = {
-            name: float(np.max(parameters[name]))
-            for name in FORM
-            if parameters.get(name) is not None
-        }
-        decisive = Parameters(**largest, friction_law=law)
-        stands_for = ("mu", "mu_static", "friction_speed", "friction_law")
-        numbers = plain(decisive)
-        given = _parameter_arrays(
-            {**parameters, **{name: getattr(numbers, name) for name in stands_for}}
-        )
-        return _scaled(given, (_own_system(decisive, model),))
-    return _scaled(_parameter_arrays(parameters), model)
+    friction, contact = laws = [
+        parameters.get(name, DEFAULTS[name]) for name in ("friction_law", "contact_law")
+    ]
+    if not all(isinstance(law, str) for law in laws) or (friction in LAWS and contact == LINEAR):
+        return _scaled(_parameter_arrays(parameters), model)
+    if is_table(contact) and np.ptp(parameters.get("preload", 0.0)):
+        raise ValueError("preload: under a table of contact it must be the same for all runs")
+    # the form of the system is that of the largest numbers: with dashpots if any run has one
+    largest: dict[str, Any] = {
+        name: float(np.max(parameters[name])) for name in FORM if parameters.get(name) is not None
+    }
+    if friction in FALLING:
+        largest |= {"mu": 0.0, "mu_static": 1.0}
+    elif friction == COULOMB:
+        largest["mu_static"] = 1.0
+    decisive = Parameters(**largest, friction_law=friction, contact_law=contact)
+    numbers = {name: getattr(decisive, name) for name in decisive.in_laws}
+    if is_table(friction):
+        numbers["mu_static"] = decisive.static_mu
+    elif friction not in LAWS and parameters.get("mu_static") is None:
+        mu = real_array("mu", parameters.get("mu", DEFAULTS["mu"]))
+        numbers["mu_static"] = coefficient(0.0, SimpleNamespace(**vars(decisive) | {"mu": mu}))
+    if friction not in LAWS:
+        numbers["friction_law"] = FALLING[0]
+    given = _parameter_arrays({**parameters, **numbers, "contact_law": LINEAR})
+    return _scaled(given, (_own_system(decisive, model),))
 
 
 @lru_cache(maxsize=64)
@@ -114,7 +126,7 @@ def _scaled(given: Mapping[str, np.ndarray], form: str | tuple[System, ...]) -> 
         formulas = np.isin(given["friction_law"], list(LAWS)) & (given["contact_law"] == LINEAR)
         if not formulas.all():
             raise ValueError(
-                "a table, a law in Python or a contact law needs Parameters, the same for all runs"
+                "a table, a law in Python or a contact law must be the same for all runs"
             )
         systems, which = form, np.zeros((), int)
         if isinstance(systems, str):

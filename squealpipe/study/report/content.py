@@ -140,7 +140,7 @@ def picture_files(content: Mapping[str, Any], figures: Mapping[str, Made]) -> di
 def parameter_table(parameters: Parameters, *, of_a1: bool = False) -> list[dict[str, Any]]:
     """Symbol, meaning, value and unit of each parameter, or of those that enter A1 alone.
 
-    A parameter for which a table of a law stands has no row.
+    A parameter for which the file of a law stands has no row.
     """
     return [
         {
@@ -153,7 +153,7 @@ def parameter_table(parameters: Parameters, *, of_a1: bool = False) -> list[dict
         }
         for name, value in parameters.as_dict().items()
         for law in [TABLE[name].laws]
-        if (TABLE[name].enters_a1 or not of_a1) and name not in parameters.in_tables
+        if (TABLE[name].enters_a1 or not of_a1) and name not in parameters.in_laws
     ]
 
 

@@ -99,4 +99,4 @@ def centred(params: Parameters, alpha1: float, alpha2: float) -> dict[str, dict[
         "alpha1": {**normal, "mean": alpha1, "std": 0.05},
         "alpha2": {**normal, "mean": alpha2, "std": 0.05},
     }
-    return {name: given for name, given in found.items() if name not in params.in_tables}
+    return {name: given for name, given in found.items() if name not in params.in_laws}

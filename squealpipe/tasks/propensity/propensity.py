@@ -13,6 +13,7 @@ from annotated_types import Ge, Interval, MinLen
 from scipy import stats
 
 from squealpipe.codes import LinearRegime
+from squealpipe.laws.contact_laws import LINEAR
 from squealpipe.laws.friction_laws import slope
 from squealpipe.methods.progress import parts
 from squealpipe.models import a3
@@ -75,8 +76,8 @@ def propensity(
     if samples & (samples - 1):
         raise ValueError(f"samples = {samples!r}: a power of 2 of at least 64 is needed")
     frozen = {name: distribution(name, given) for name, given in distributions.items()}
-    for name in sorted(set(frozen) & set(params.in_tables)):
-        raise ValueError(f"distributions: a table stands for {name}, which cannot be spread")
+    for name in sorted(set(frozen) & set(params.in_laws)):
+        raise ValueError(f"distributions: a law's file stands for {name}, which cannot be spread")
     check_stick(params, frozen)
     names = list(frozen)
     if spring_correlation and not {"k1", "k2"} <= set(names):
@@ -168,7 +169,7 @@ def _events(
 def _flutters(fields: Mapping[str, Any], alpha1: np.ndarray, alpha2: np.ndarray) -> np.ndarray:
     p = with_drag(DEFAULTS | dict(fields))
     damped = (p.damping1 != 0) | (p.damping2 != 0) | (slope(np.abs(p.belt_speed), p) != 0)
-    if not np.any(damped):
+    if p.contact_law == LINEAR and not np.any(damped):
         system = contact_system(p, alpha1, alpha2)
         return np.asarray(a3.regime(system.invariants) == LinearRegime.flutter)
     names = [name for name, value in fields.items() if isinstance(value, np.ndarray)]

@@ -7,6 +7,7 @@ from squealpipe import Parameters, limit_cycle, simulate
 from squealpipe.codes import Event
 from squealpipe.schema import Outcome
 from squealpipe.solvers.a1.ensemble import Ensemble, run_ensemble
+from squealpipe.systems.brake import brake_of, parameters_of_run
 from tests.former import FORMER
 
 STEPWISE = ("steps", "sample_log_growth")
@@ -77,14 +78,59 @@ def test_a_table_in_si_units_is_carried_by_runs_side_by_side():
     assert run.steps.max() < 100
 
 
-def test_numbers_may_vary_under_a_table():
+OWN = """\
+def coefficient(speed, p):
+    return p.mu * (0.6 + 0.4 / (1.0 + 3.0 * speed))
+"""
+CONTACT = "linear 0:0 0.5:0.1 1:0.65 2:3"
+
+
+@pytest.mark.parametrize(
+    "laws",
+    [
+        {"friction_law": "linear 0:0.55 0.4:0.35 1:0.2"},
+        {"friction_law": OWN, "mu": np.array([0.3, 0.5, 0.8])},
+        {"contact_law": "dashpot", "damping3": np.array([0.1, 0.0, 0.4])},
+        {"contact_law": CONTACT, "mu": np.array([0.3, 0.5, 0.8])},
+        {"contact_law": "dashpot", "damping3": 0.2, "friction_law": "exponential",
+         "mu_static": np.array([0.4, 0.3, 0.6])},
+        {"contact_law": CONTACT, "friction_law": OWN},
+    ],
+    ids=["table", "python", "dashpot", "contact table", "falling and dashpot", "both"],
+)  # fmt: skip
+def test_numbers_may_vary_under_laws_of_the_users_own(laws):
     """As for uncertain parameters: one ensemble, and one run for each set."""
-    table = "linear 0:0.55 0.4:0.35 1:0.2"
-    masses, springs = np.array([0.7, 1.0, 1.6]), np.array([1.0, 2.5, 0.6])
-    given = {"k1": springs, "mass": masses, "belt_speed": 0.4, "friction_law": table}
-    many = run_ensemble(given, 0.9, 2.0, t_end=20.0, workers=1)
-    for i, (mass, k1) in enumerate(zip(masses, springs, strict=True)):
-        one = Parameters(k1=k1, mass=mass, belt_speed=0.4, friction_law=table)
-        run = run_ensemble(one, 0.9, 2.0, t_end=20.0, workers=1)
+    given = {
+        "k1": np.array([1.0, 2.5, 0.6]), "mass": np.array([0.7, 1.0, 1.6]), "belt_speed": 0.4,
+        **laws,
+    }  # fmt: skip
+    start = (0.0, 0.3, 0.5, -0.2)
+    many = run_ensemble(given, 0.9, 2.0, t_end=20.0, initial_state=start, workers=1)
+    assert (many.outcome == Outcome.converged).all()
+    for i in range(3):
+        own = {name: v[i] if isinstance(v, np.ndarray) else v for name, v in given.items()}
+        run = run_ensemble(Parameters(**own), 0.9, 2.0, t_end=20.0, initial_state=start, workers=1)
         np.testing.assert_allclose(many.final_state[i], run.final_state, rtol=1e-9, atol=1e-12)
         assert many.separations[i] == run.separations
+
+
+def test_under_a_table_of_contact_the_preload_is_one():
+    with pytest.raises(ValueError, match="preload: under a table of contact"):
+        run_ensemble({"preload": [1.0, 1.1], "contact_law": CONTACT}, 0.9, 2.0, t_end=1.0)
+
+
+def test_a_law_in_python_reads_speeds_in_si_units():
+    """In the engine's units it gives what the system in SI units gives, and a table of it."""
+    pad = Parameters(
+        mass=0.5, k1=1e7, k2=1.3e7, k3=7e6, preload=2e-5, length1=0.02, length2=0.03,
+        belt_speed=0.4, mu=0.5, friction_law=OWN,
+    )  # fmt: skip
+    t_end = 30.0 * pad.time_unit
+    times = np.linspace(0.0, t_end, 7)
+    run = simulate(pad, 1.0, 2.2, t_end=t_end, times=times, initial_state=(0, 0, 0.1, 0))
+    whole = brake_of(pad).simulate(
+        t_end, times=times, start={"vx": 0.1}, **parameters_of_run(pad, 1.0, 2.2)
+    )
+    np.testing.assert_allclose(run.x, whole.x, rtol=1e-8, atol=1e-12)
+    with pytest.raises(ValueError, match=r"friction_speed = 2\.0: the file of a law stands for it"):
+        pad.with_(friction_speed=2.0)

@@ -126,7 +126,7 @@ def test_what_a_table_stands_for_is_not_spread(tmp_path):
     table.write_text("speed,coefficient\n0,0.5\n1,0.4\n2,0.38\n")
     params = FORMER.with_(friction_law=str(table), belt_speed=1.5)
     assert set(centred(params, *ANGLES)) == {"k1", "k2", "k3", "alpha1", "alpha2"}
-    with pytest.raises(ValueError, match="a table stands for mu, which cannot be spread"):
+    with pytest.raises(ValueError, match="a law's file stands for mu, which cannot be spread"):
         propensity(params, *ANGLES, distributions=FRICTION, samples=64, t_end=1.0)
 
 
