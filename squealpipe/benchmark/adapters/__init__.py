@@ -14,6 +14,7 @@ SOLVERS: dict[str, tuple[str, str, dict[str, Any]]] = {
     "heyoka": ("heyoka", "heyoka", {}),
     "CyRK": ("cyrk", "CyRK", {}),
     "SUNDIALS": ("sundials", "sksundae", {}),
+    "Assimulo": ("assimulo", "assimulo", {}),
     "diffrax": ("diffrax", "diffrax", {}),
     **{f"tanh, σ = {s:g}": ("tanh", "scipy", {"sigma": s}) for s in (10.0, 1e3, 1e7)},
     "Moreau–Jean": ("moreau_jean", "numpy", {}),

@@ -29,7 +29,7 @@ COUPLED_SCENE = (0.3 * math.pi, 0.9 * math.pi)
 """Angles at which mode 1 moves in x and y and loses contact, rad."""
 PEAKS = (1.25, 1.75, 2.25, 2.75, 3.5)
 """y_peak over l_pre; none close to the period doubling at 3.9."""
-CORRECTED, PRINTED = "paper's form, Eq. (34) corrected", "paper, Eq. (34) as printed"
+CORRECTED, PRINTED = "paper, Eq. (34) corrected", "paper, Eq. (34) as printed"
 PAPER_SIGMA = 1e3
 PAPER_HARMONICS = 16
 """Most harmonics of the paper's form here: its pseudo-inverse costs the cube of their number."""

@@ -20,7 +20,8 @@ CAPTION = (
 )
 ALT = "Two tables of coloured verdicts, methods in rows and problems in columns."
 
-_COLOURS = [style.WHITE, style.BLUE, style.ORANGE, style.RED]
+_COLOURS = [style.WHITE, (style.BLUE, 0.25), style.ORANGE, style.RED]
+"""The worse, the darker: greyscale tells them apart."""
 _SIGNS = {Reliability.right: "✓", Reliability.flagged: "!", Reliability.silently_wrong: "✗"}
 _WORDS = {
     Reliability.right: "right",
@@ -42,7 +43,7 @@ def draw(benchmark: xr.Dataset, atlas: xr.Dataset) -> Figure:
     ):
         style.panel_letter(panel, letter, title)
     tones = [(_COLOURS[verdict], f"{sign} {_WORDS[verdict]}") for verdict, sign in _SIGNS.items()]
-    keys = style.patches(tones, alpha=0.75, edgecolor="none")
+    keys = style.patches(tones, edgecolor="none")
     figure.legend(handles=keys, loc="outside upper right", ncols=3)
     return figure
 
@@ -79,7 +80,7 @@ def _draw_atlas(axes: Axes, found: xr.Dataset) -> None:
 def _paint(axes: Axes, verdict: np.ndarray, columns: int) -> None:
     rows = len(verdict)
     axes.imshow(
-        verdict, aspect="auto", alpha=0.75, extent=(-0.5, columns - 0.5, rows - 0.5, -0.5),
+        verdict, aspect="auto", extent=(-0.5, columns - 0.5, rows - 0.5, -0.5),
         interpolation="nearest", **style.category_colours(_COLOURS),
     )  # fmt: skip
 

@@ -12,8 +12,9 @@ READS = ("benchmark",)
 CAPTION = (
     "Error of the final state and of event times, over the growth of a perturbation, against "
     "evaluations of the field, which do not depend on machine or language: medians over the "
-    "problems of a class. Points of a line run over the tolerance, the same for all solvers; a "
-    "Taylor step of order p counts as p + 1 evaluations, a Moreau–Jean step as one. An error says "
+    "problems of a class that a method can be asked; no answer, or an error above 1, counts as 1. "
+    "Points of a line run over the tolerance, the same for all solvers; a Taylor step of order p "
+    "counts as p + 1 evaluations, a Moreau–Jean step as one. An error says "
     "nothing about missed events: those are in the failure atlas. Grey band: Pareto front; red "
     "ring: the setting that our maps use. Machine and versions are named below the panels."
 )
@@ -24,7 +25,7 @@ COLUMNS = 4
 
 def draw(benchmark: xr.Dataset) -> Figure:
     """The charts, from dataset ``benchmark``."""
-    known = np.isfinite(benchmark.error).any(["solver", "tol"]).values
+    known = benchmark.error.notnull().any(["solver", "tol"]).values
     groups = list(dict.fromkeys(benchmark.group.values[known].tolist()))
     rows = -(-len(groups) // COLUMNS)
     figure, axes = new_figure(PAGE, 1.6 * rows + 1.0, nrows=rows, ncols=COLUMNS, sharex=True)
@@ -48,7 +49,7 @@ def draw(benchmark: xr.Dataset) -> Figure:
 
 def _medians(benchmark: xr.Dataset) -> xr.Dataset:
     """Medians over problems, a run for each solver and tolerance."""
-    fine = benchmark[["error", "evaluations"]].where(np.isfinite(benchmark.error))
+    fine = benchmark[["error", "evaluations"]].where(benchmark.error.notnull())
     fine["error"] = fine.error.clip(max=1.0)  # above, an answer says nothing
     found = fine.median("problem").stack(run=("solver", "tol"))
     ours = (found.solver == "squealpipe") & (found.tol == OUR_TOLERANCE)

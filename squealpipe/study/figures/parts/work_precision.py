@@ -14,7 +14,7 @@ from squealpipe.schema.comparison import Role
 
 MARKS = [
     (colour, marker, dash)
-    for markers, dash in (("os^vDP*", "-"), ("xx+x+x+", ":"))
+    for markers, dash in (("os^vDP*", "-"), ("x+<>dhp", ":"))
     for colour, marker in zip(
         (style.BLACK, style.BLUE, style.GREEN, style.ORANGE, style.RED, style.PURPLE, style.GREY),
         markers,
@@ -50,10 +50,9 @@ def draw_methods(
     )  # fmt: skip
     for method in dict.fromkeys(rows.method.values.tolist()):
         mine = fine & (rows.method.values == method)
-        order = np.argsort(error[mine])
         colour, marker, dash = MARKS[methods.index(method) % len(MARKS)]
         axes.plot(
-            error[mine][order], values[mine][order], dash, color=colour, marker=marker, ms=3.5,
+            error[mine], values[mine], dash, color=colour, marker=marker, ms=3.5,
             lw=0.8, label=style.symbols(method), zorder=2,
         )  # fmt: skip
     ours = fine & (rows.role.values == Role.our_setting)
