@@ -31,8 +31,6 @@ class Holds(IntEnum):
 
 
 WORDS = {
-    "F6d": "linearly stable at Fig. 3's angles",
-    "F13": "modes switched",
     "F2a": "contact kept in (a)",
     "F2b": "contact kept in (b)",
     "F2c": "contact kept in (c)",
@@ -42,21 +40,28 @@ WORDS = {
     "F4": "|x| stays bounded",
     "F5a": "both forces identical",
     "F5b": "mass jumps again and again",
+    "F6d": "linearly stable at Fig. 3's angles",
     "F6b_printed": "unstable only where Eq. (11) forbids",
+    "F6b": "unstable only where R ≤ 0",
     "F7a": "contact lost in most cells",
     "F7_black": "kept and unstable somewhere",
-    "S3": "modes couple",
-    "F6b": "unstable only where R ≤ 0",
     "F8c": "ω₁ largest on lines, in contact",
     "F8c_separated": "ω₁ largest on lines, separated",
+    "F13": "modes switched",
+    "S3": "modes couple",
 }
-"""Statements in few words, for figures."""
+"""Statements in few words, for figures, in the paper's order."""
 
 
 def in_words(statement: str) -> str:
     """A statement by the paper's figure, and in few words: ``Fig. 3: |x| grows``."""
     figure = re.match(r"F(\d+)", statement)
     return (f"Fig. {figure[1]}: " if figure else "") + WORDS[statement]
+
+
+def in_order(dataset: xr.Dataset) -> xr.Dataset:
+    """A dataset over statements, in the paper's order."""
+    return dataset.sel(statement=[name for name in WORDS if name in dataset.statement])
 
 
 LITTLE = 0.1

@@ -85,7 +85,7 @@ def test_fig07_tones():
     both = fig07.draw({"corrected/validity_map": validity, "validity_map": validity})
     titles = [axes.get_title(loc="left") for axes in both.axes]
     assert "as printed" in titles[0]
-    assert "mended" in titles[1]
+    assert "one sign" in titles[1]
 
 
 def test_separated_spells_are_marked_where_the_force_is_zero():

@@ -10,6 +10,8 @@ from squealpipe.schema.claims import Origin, Verdict
 from squealpipe.schema.inference import of_study
 from squealpipe.study.claims.evidence import Run
 from squealpipe.study.claims.maps import unstable_yet_sliding
+from squealpipe.study.figures.linear.critical_friction import LARGEST
+from squealpipe.study.figures.linear.frequency_shift import NO_SHIFT
 
 
 def numbers(run: Run) -> dict[str, float | str]:
@@ -26,7 +28,7 @@ def _verdicts(run: Run) -> dict[str, Any]:
     own = claims.isel(claim=(claims.origin != Origin.misprints).values)
     found = {verdict.name: (own.verdict == verdict).sum() for verdict in Verdict}
     changed = (own.corrected_verdict != own.verdict).sum()
-    return {"statements": own.sizes["claim"], "mended_changes": changed, **found}
+    return {"statements": own.sizes["claim"], "one_sign_changes": changed, **found}
 
 
 def _inferred(run: Run) -> dict[str, Any]:
@@ -36,9 +38,11 @@ def _inferred(run: Run) -> dict[str, Any]:
         for reading in found.reading.values
         for end in ("", "_low", "_high")
     }
+    counts = zip(found.reading.values, found.feasible_count.values, strict=True)
     return {
         "sets": found.sizes["sample"],
         "margin": of_study(found).baseline_margin.min(),
+        **{f"sets_{reading}": count for reading, count in counts},
         **shares,
     }
 
@@ -54,17 +58,20 @@ def _growth(run: Run) -> dict[str, Any]:
         "whirl_slope": whirl.slope,
         "F3_long_size": abs(long.x).max() / preload,
         "F3_long_time": long.time[-1] / unit,
-        "mended_F3_long_size": abs(run["corrected/simulate/F3_long"].x).max() / preload,
+        "one_sign_F3_long_size": abs(run["corrected/simulate/F3_long"].x).max() / preload,
     }
 
 
 def _linear(run: Run) -> dict[str, Any]:
     regime = run["stability_map"].regime_linear
     _, physical = unstable_yet_sliding(run)
-    mended, sliding = run["corrected/stability_map"], run["corrected/quasi_static_map"]
-    printed = (mended.regime_linear > 0) & (sliding.possible_as_printed == 1)
+    beside, sliding = run["corrected/stability_map"], run["corrected/quasi_static_map"]
+    printed = (beside.regime_linear > 0) & (sliding.possible_as_printed == 1)
+    omega = run["natural_frequencies"].omega
+    falls = omega.sel(contact_state="separated") - omega.sel(contact_state="contact") < -NO_SHIFT
     return {
-        "mended_sliding_printed": printed.sum(),
+        "one_sign_sliding_printed": printed.sum(),
+        **{f"omega{mode}_falls": 100 * falls.sel(mode=mode).mean() for mode in (1, 2)},
         "points": regime.sizes["alpha1"],
         "flutter": (regime == 1).sum(),
         "divergence": (regime == 2).sum(),
@@ -73,15 +80,12 @@ def _linear(run: Run) -> dict[str, Any]:
 
 
 def _valid(run: Run) -> dict[str, Any]:
-    unstable, mended = (
-        run[f"{at}validity_map"].regime_linear.values > 0 for at in ("", "corrected/")
-    )
+    unstable = run["validity_map"].regime_linear.values > 0
     boundary = run["validity_boundary"]
     return {
         "black": (unstable & boundary.kept.values).sum(),
         "unstable": unstable.sum(),
         "lost": 100 * (1.0 - float(boundary.kept_share)),
-        "mended_black": (mended & run["corrected/validity_boundary"].kept.values).sum(),
     }
 
 
@@ -111,5 +115,18 @@ def _spread(run: Run) -> dict[str, Any]:
         for name in map(str, spread.quantity.values)
     }
     limited = (hammering.predictability_horizon < hammering.t_end).mean()
-    lowered = run["critical_friction_map"].destabilized.mean()
-    return {**kinds, **shares, "unpredictable": 100 * limited, "lowered": 100 * lowered}
+    friction, beside = run["critical_friction_map"], run["a1_beside_a4"]
+    shown = np.fmin(friction.critical_mu, friction.critical_mu_undamped) < LARGEST
+    far = 100 * abs(beside.omega_a1 / beside.omega - 1.0).max("scene")
+    return {
+        **kinds,
+        **shares,
+        "unpredictable": 100 * limited,
+        "shown_friction": LARGEST,
+        "lowered": 100 * friction.destabilized.where(shown).mean(),
+        "softest_kept": max(run[f"friction_chart/{name}"].kappa.max() for name in ("F3", "F4")),
+        "far_short": far[0],
+        "far_long": far[-1],
+        "growing_starts": 100
+        * run["verdict_reach"].share.sel(statement="F3", variant="starts within 1 % of l_pre"),
+    }

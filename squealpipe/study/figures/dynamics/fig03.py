@@ -12,8 +12,8 @@ READS = ("*simulate/F3*",)
 CAPTION = (
     "Displacements of model A1, started at rest at α₁ = 0.4π, α₂ = 0.6π: (a) x, along the belt, "
     "and (b) y, away from it. Dotted: l_pre, above which contact is lost. (c) x much longer, as "
-    "the study reads the paper (orange) and, where that differs, with the sign of friction mended "
-    "(black)."
+    "the study reads the paper (orange) and, where that differs, with friction of one sign in all "
+    "models (black)."
 )
 ALT = (
     "Time histories of x and y with a drawing of the springs and a dotted line at the "
@@ -24,7 +24,7 @@ WIDTH = 4.4
 TITLES = {"x": "x, along the belt", "y": r"y, away from the belt (dotted: $l_\mathrm{pre}$)"}
 READINGS = (
     ("simulate/F3_long", style.X_COLOUR, "as printed"),
-    ("corrected/simulate/F3_long", style.BLACK, "sign mended"),
+    ("corrected/simulate/F3_long", style.BLACK, "one sign"),
 )
 
 

@@ -1,5 +1,7 @@
 """How long a run of model A1 can be computed point by point."""
 
+from itertools import cycle
+
 import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
@@ -9,6 +11,8 @@ from squealpipe.schema import meanings
 from squealpipe.text import number
 
 READS = ("hammering_map",)
+DASHES = ("-", (0, (5, 1)), (0, (1, 1)), "-.", (0, (3, 1, 1, 1, 1, 1)))
+"""Looks of lines that differ in greyscale too."""
 CAPTION = (
     "How far ahead model A1 can be computed. (a) Time at which an error of the integrator's "
     "tolerance has grown to l_pre/1000, from the tangent map through all events; white: not within "
@@ -38,10 +42,10 @@ def draw(hammering: xr.Dataset) -> Figure:
     growth = hammering.lyapunov_exponent.values * t_end
     names = meanings(hammering.motion)
     panel = axes[0, 1]
-    for code in np.unique(hammering.motion.values).tolist():
+    for code, dash in zip(np.unique(hammering.motion.values).tolist(), cycle(DASHES)):
         chosen = growth[hammering.motion.values == code]
         label = f"{style.flag_words(names[code])} ({chosen.size})"
-        panel.ecdf(chosen, color=style.REGIME_COLOURS[names[code]], label=label)
+        panel.ecdf(chosen, color=style.REGIME_COLOURS[names[code]], ls=dash, lw=1.4, label=label)
     regular = float(hammering.attrs["regular_growth"])
     panel.axvline(regular, color=style.GREY, ls="--", label="square of time")
     panel.set_xlabel(f"ln of the growth over t = {number(t_end, 4)} s")

@@ -23,9 +23,13 @@ LOOKS: dict[ChartLine, tuple[str, dict[str, Any]]] = {
     ChartLine.flutter: ("A3 flutters", {"color": style.BLUE, "linestyle": "--"}),
     ChartLine.divergence: ("A3 diverges", {"color": style.GREEN, "linestyle": ":"}),
 }
+NEARLY_ALL = 0.95
+"""Share of a chart beyond which one kind makes it say nothing at a glance."""
+SEEN = 1e-3
+"""Share of a chart below which a kind is not seen in print."""
 HALO = [withStroke(linewidth=2, foreground="white")]
 ALT = (
-    "A chart over both spring angles and one over stiffness ratio and friction for each scene, "
+    "A chart over both spring angles and charts over stiffness ratio and friction for scenes, "
     "with lines where contact is lost and sliding turns unstable, and crosses at the scenes."
 )
 
@@ -41,8 +45,8 @@ def caption(angles: xr.Dataset, scenes: Mapping[str, xr.Dataset]) -> str:
     return (
         "Charts of regimes: where A1, from rest, loses contact up to t = "
         f"{horizon} √(m/k1), and where A3 without damping flutters and diverges, as curves. "
-        "(a) Over both spring angles, with the scenes as crosses; then over κ = k₃/k₁ and μ at "
-        "each scene's angles, with the study's own values as a cross. Distances of the crosses "
+        "(a) Over both spring angles, with the scenes as crosses; then over κ = k₃/k₁ and μ at the "
+        "angles of scenes, with the study's own values as a cross. Distances of the crosses "
         "to the nearest lines (loss of contact, flutter, divergence), first in (a), then in "
         f"(κ, μ): {distances}."
     )
@@ -54,8 +58,9 @@ CAPTION = caption
 def draw(angles: xr.Dataset, scenes: Mapping[str, xr.Dataset]) -> Figure:
     """One panel for each chart."""
     names = sorted(scenes)
-    rows = (len(names) + 2) // 2
-    figure, axes = style.new_figure(style.PAGE, 0.6 + 2.6 * rows, ncols=2, nrows=rows)
+    several = [name for name in names if _counts(scenes[name]).max() < NEARLY_ALL] or names
+    rows = (len(several) + 2) // 2
+    figure, axes = style.new_figure(style.PAGE, 0.8 + 2.6 * rows, ncols=2, nrows=rows)
     panels = axes.ravel()
     _draw(panels[0], angles)
     for axis in (panels[0].xaxis, panels[0].yaxis):
@@ -69,39 +74,40 @@ def draw(angles: xr.Dataset, scenes: Mapping[str, xr.Dataset]) -> Figure:
             textcoords="offset points", ha="right" if left else "left",
             color=style.RED, path_effects=HALO,
         )  # fmt: skip
-    for panel, letter, name in zip(panels[1:], ascii_lowercase[1:], names, strict=False):
+    for panel, letter, name in zip(panels[1:], ascii_lowercase[1:], several, strict=False):
         _draw(panel, scenes[name])
         panel.set(xlabel="κ", ylabel="μ")
         style.panel_letter(panel, letter, _title(name))
-    for panel in panels[1 + len(names) :]:
+    for panel in panels[1 + len(several) :]:
         panel.remove()
     handles = panels[0].get_legend_handles_labels()[0]
-    figure.legend(handles=[*style.patches(KINDS), *handles], loc="outside lower center", ncols=4)
+    charts = [angles, *(scenes[name] for name in several)]
+    shown = np.max([_counts(chart) for chart in charts], axis=0) > SEEN
+    tones = style.patches(kind for kind, there in zip(KINDS, shown, strict=True) if there)
+    figure.legend(handles=[*tones, *handles], loc="outside lower center", ncols=3)
     return figure
+
+
+def _kinds(chart: xr.Dataset) -> np.ndarray:
+    return np.asarray(2 * chart.cell_kept.values + (chart.cell_regime.values > 0))
+
+
+def _counts(chart: xr.Dataset) -> np.ndarray:
+    """Share of the cells of each kind."""
+    kinds = _kinds(chart)
+    return np.bincount(kinds.ravel(), minlength=len(KINDS)) / kinds.size
 
 
 def _draw(panel: Axes, chart: xr.Dataset) -> None:
     x, y = (chart[str(name)].values for name in chart.parameter.values)
-    kinds = 2 * chart.cell_kept.values + (chart.cell_regime.values > 0)
     tones = style.category_colours([tone for tone, _ in KINDS])
     extent = chart.range.values.ravel()
-    panel.imshow(kinds.T, origin="lower", extent=extent, interpolation="none", **tones)
+    panel.imshow(_kinds(chart).T, origin="lower", extent=extent, interpolation="none", **tones)
     for which, (label, look) in LOOKS.items():
         on = chart.line.values == which
         style.draw_lines(panel, (x[on], y[on]), chart.curve.values[on], label=label, **look)
-    panel.plot(
-        *chart.design.values.T,
-        "x",
-        color=style.RED,
-        ms=7,
-        mew=1.8,
-        label="scene",
-        path_effects=HALO,
-    )
-    kind, counts = np.unique(kinds, return_counts=True)
-    if counts.max() > 0.99 * kinds.size:
-        everywhere = f"{KINDS[kind[counts.argmax()]][1]}\n(nearly everywhere)"
-        panel.text(0.5, 0.25, everywhere, ha="center", transform=panel.transAxes)
+    look = {"color": style.RED, "ms": 7, "mew": 1.8, "path_effects": HALO}
+    panel.plot(*chart.design.values.T, "x", label="scene", **look)
     panel.set(xlim=extent[:2], ylim=extent[2:], aspect="auto", box_aspect=1)
 
 

@@ -4,6 +4,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import LogLocator, NullFormatter
 
 from squealpipe.parameters import SCENES
 from squealpipe.plotting import style
@@ -16,9 +17,8 @@ CAPTION = (
     "The response of Fig. 3 followed further. (a) x at (0.4π, 0.6π); the band marks the time that "
     "Fig. 3 shows. (b) Largest |x| late in the run over belt speed. Dashed: the line that follows "
     "from the energy at speed V in springs of stiffness k₁ + k₂. Only where the mass whirls: a "
-    "full line, fit of the same form, over the speeds that it covers, dotted below them. "
-    "Cross: another kind of motion in the "
-    "last quarter of the run."
+    "full line, fit of the same form, over the speeds that it covers, dotted below them. Cross: "
+    "another kind of motion in the last quarter of the run."
 )
 ALT = (
     "Left, x over time with a band over the time of Fig. 3. Right, a log–log chart of the final "
@@ -66,6 +66,10 @@ def _sizes(axes: Axes, sizes: xr.Dataset) -> None:
         inside = (line >= low) & (line <= high)
         axes.loglog(line[inside], fit[inside], color=style.BLACK, linewidth=0.8, label=label)
         axes.loglog(line[line <= low], fit[line <= low], ":", color=style.BLACK, linewidth=0.8)
+    axes.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+    for axis in (axes.xaxis, axes.yaxis):
+        axis.set_major_formatter("{x:g}")
+    axes.yaxis.set_minor_formatter(NullFormatter())
     axes.set(xlabel="belt speed |V| (m/s)", ylabel="largest |x|, late (m)")
     axes.legend(loc="upper left")
     style.panel_letter(axes, "b", "size over belt speed")

@@ -7,17 +7,17 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, NullFormatter
 
 from squealpipe.plotting import style
-from squealpipe.schema.inference import in_words, of_study
+from squealpipe.schema.inference import in_order, in_words, of_study
 from squealpipe.text import number
 
 READS = ("parameter_inference",)
 CAPTION = (
     "Parameters inferred from the paper's own statements. (a)–(c) Samples in which all statements "
     "hold, in each reading of the sign of friction, over the sampled ranges; star: this study, by "
-    "its spring 1; the dashed line in (a) is the bound of F6d where the linear models are dragged "
-    "along +x, μ = cot 0.4π. (d) Share of the samples that each statement alone excludes, by "
-    "reading. (e) Margins of the study's own parameters in its reading: positive where the "
-    "statement holds, cut at −1."
+    "its spring 1; above the dashed line in (a), μ = cot 0.4π, the linear models dragged along "
+    "+x are unstable at the angles of Fig. 3. (d) Share of the samples that each statement alone "
+    "excludes, by reading. (e) Margins of the study's own parameters in its reading: positive "
+    "where the statement holds, cut at −1."
 )
 ALT = "Three scatter plots of feasible parameters and two bar charts over the paper's statements."
 PANELS = (
@@ -42,6 +42,7 @@ LOOKS = (
 
 def draw(inference: xr.Dataset) -> Figure:
     """Five panels, from dataset ``parameter_inference``."""
+    inference = in_order(inference)
     figure, _ = style.new_figure(style.PAGE, 5.4)
     figure.clear()
     grid = figure.add_gridspec(2, 1, height_ratios=(1.15, 1))

@@ -40,14 +40,13 @@ CAPTION = caption
 
 def draw(angles: xr.Dataset, dashpots: xr.Dataset) -> Figure:
     """Three maps."""
-    figure, axes = style.new_figure(style.PAGE, 2.4, ncols=3)
-    figure.set_layout_engine("constrained", wspace=0.08)
+    figure, axes = style.new_figure(style.PAGE, 3.1, ncols=3)
     without, change, plane = axes[0]
     undamped, damped = angles.critical_mu_undamped.values, angles.critical_mu.values
     mesh = style.draw_map(
         without, angles, np.minimum(undamped, 2 * LARGEST), cmap="viridis", vmin=0.0, vmax=LARGEST
     )
-    figure.colorbar(mesh, ax=without, label="critical μ", extend="max", shrink=0.75)
+    figure.colorbar(mesh, ax=without, label="critical μ", extend="max", location="bottom")
     shown = np.fmin(undamped, damped) < LARGEST
     moved = np.minimum(damped, LARGEST) - np.minimum(undamped, LARGEST)
     limit = float(np.percentile(abs(moved[shown]), 95)) if shown.any() else 0.0
@@ -57,7 +56,7 @@ def draw(angles: xr.Dataset, dashpots: xr.Dataset) -> Figure:
         vmax=limit or 1.0,
     )  # fmt: skip
     change.set_ylabel("")
-    figure.colorbar(mesh, ax=change, label="change of critical μ", extend="both", shrink=0.75)
+    figure.colorbar(mesh, ax=change, label="change of critical μ", extend="both", location="bottom")
     plane.set(xlabel="dashpot c₁ (N s/m)", ylabel="dashpot c₂ (N s/m)", box_aspect=1)
     _draw_plane(figure, plane, dashpots)
     style.panel_letter(without, "a", "no dashpots")
@@ -85,4 +84,4 @@ def _draw_plane(figure: Figure, plane: Axes, dashpots: xr.Dataset) -> None:
     level = float(dashpots.critical_mu_undamped)
     if values.min() < level < values.max():
         plane.contour(c1, c2, values.T, levels=[level], colors=[style.BLACK], linewidths=1.0)
-    figure.colorbar(mesh, ax=plane, label="critical μ", extend="max", shrink=0.75)
+    figure.colorbar(mesh, ax=plane, label="critical μ", extend="max", location="bottom")

@@ -31,7 +31,7 @@ BLUE_LINES = (
     "the boundary of kept contact as curves; the share of all angles that it encloses, and the "
     "distance of the cross from it:"
 )
-TITLES = {"": "as printed", "corrected/": "sign of Eq. (4) mended"}
+TITLES = {"": "as printed", "corrected/": "one sign in all models"}
 
 
 def caption(found: Mapping[str, xr.Dataset]) -> str:
@@ -100,7 +100,7 @@ def key() -> list[Patch]:
 
 
 def draw(found: Mapping[str, xr.Dataset]) -> Figure:
-    """One map, and beside it that of the mended sign if the study has it.
+    """One map, and beside it that of friction of one sign if the study has it.
 
     Args:
         found: dataset ``validity_map``, and ``corrected/validity_map``, and as ``contact_boundary``

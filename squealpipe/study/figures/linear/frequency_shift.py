@@ -8,6 +8,7 @@ from matplotlib.figure import Figure
 from squealpipe.plotting.style import PAGE, draw_map, new_figure, panel_letter
 from squealpipe.schema import Outcome
 from squealpipe.study.figures.parts.frequency_map import HATCH, isoline, outline
+from squealpipe.text import number
 
 READS = ("natural_frequencies",)
 CAPTION = (
@@ -37,6 +38,7 @@ def draw(frequencies: xr.Dataset) -> Figure:
         panel_letter(panel, letter, f"shift of ω{'₁₂'[mode - 1]}")
         label = "separated − contact (rad/s)" if mode == 2 else ""
         ticks = [*np.linspace(low, 0, 5), *np.linspace(0, high, 3)[1:]]
-        figure.colorbar(mesh, ax=panel, label=label, shrink=0.8, ticks=ticks, format="%.2g")
+        bar = figure.colorbar(mesh, ax=panel, label=label, shrink=0.8)
+        bar.set_ticks(ticks, labels=[number(float(tick), 2) for tick in ticks])
     figure.legend(handles=[HATCH], loc="outside lower center")
     return figure

@@ -1,6 +1,7 @@
 """The model of each scene at its true angles and lengths, with its numbers."""
 
 from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -43,31 +44,19 @@ def _draw(panel: Axes, run: xr.Dataset) -> None:
     lengths = parameter(run, "length1"), parameter(run, "length2")
     scale = max(lengths)
     springs = displaced_springs(0.0, 0.0, alpha1, alpha2, lengths, 0.03 * scale)
-    one_side = springs[0][-1, 0] * springs[1][-1, 0] > 0
+    belt = -0.07 * scale
     for index, (path, colour) in enumerate(zip(springs, SPRING_COLOURS, strict=True), start=1):
         panel.plot(*path.T, color=colour, linewidth=1.0)
-        end = path[-1]
-        panel.add_patch(Circle(tuple(end), 0.02 * scale, color="black"))
-        stiffness, length = parameter(run, f"k{index}"), lengths[index - 1]
-        angle = np.degrees((alpha1, alpha2)[index - 1])
+        panel.add_patch(Circle(tuple(path[-1]), 0.02 * scale, color="black"))
         words = (
-            f"$k_{index}$ = {number(stiffness)} N/m\n$L_{index}$ = {number(length)} m\n"
-            f"$α_{index}$ = {number(angle)}°"
+            f"$k_{index}$ = {number(parameter(run, f'k{index}'))} N/m, "
+            f"$L_{index}$ = {number(lengths[index - 1])} m, "
+            f"$α_{index}$ = {number(np.degrees((alpha1, alpha2)[index - 1]))}°"
         )
-        inner = one_side and end[1] == max(each[-1, 1] for each in springs)
-        side = "left" if (end[0] >= 0) != inner else "right"
-        place, offset, va = 0.5 * end, (8 if side == "left" else -8, -4), "top"
-        if inner:
-            va = "bottom"
-        elif end[1] < 0.5 * scale:  # beside a flat spring the words would reach the belt
-            place, offset, side, va = end, (0, 6), "center", "bottom"
-        panel.annotate(
-            words, place, offset, ha=side, va=va, fontsize=6, textcoords="offset points",
-            color=colour,
-        )  # fmt: skip
+        below: dict[str, Any] = {"ha": "center", "va": "top", "fontsize": 6}
+        panel.text(0.0, (1.2 + 1.9 * index) * belt, words, color=colour, **below)
     mass = Circle((0.0, 0.0), 0.05 * scale, facecolor="white", edgecolor="black", zorder=4)
     panel.add_patch(mass)
-    belt = -0.07 * scale
     panel.plot([-scale, scale], [belt, belt], color=GREY, linewidth=2.0)
     direction = direction_of(parameter(run, "belt_speed"))
     panel.add_patch(
@@ -79,10 +68,10 @@ def _draw(panel: Axes, run: xr.Dataset) -> None:
     law = law_in_words(parameter(run, "friction_law")).partition(",")[0]
     own = law in {"table", "Python file"}
     friction = f"$μ$: {law}" if own else f"$μ$ = {number(parameter(run, 'mu'))}"
-    below = (
+    words = (
         f"$m$ = {number(parameter(run, 'mass'))} kg, $k_3$ = {number(parameter(run, 'k3'))} N/m\n"
         f"$l_\\mathrm{{pre}}$ = {number(parameter(run, 'preload'))} m, "
         f"{friction}, $V$ = {number(parameter(run, 'belt_speed'))} m/s"
     )
-    panel.text(0.0, 3.2 * belt, below, ha="center", va="top", fontsize=6)
-    panel.set(xlim=(-1.2 * scale, 1.2 * scale), ylim=(-0.6 * scale, 1.1 * scale), aspect="equal")
+    panel.text(0.0, 6.9 * belt, words, **below)
+    panel.set(xlim=(-1.2 * scale, 1.2 * scale), ylim=(-0.75 * scale, 1.1 * scale), aspect="equal")

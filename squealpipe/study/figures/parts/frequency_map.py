@@ -6,6 +6,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.patheffects import withStroke
 
 from squealpipe.plotting import style
 from squealpipe.schema import Outcome
@@ -34,9 +35,14 @@ def draw_mode(frequencies: xr.Dataset, mode: int) -> Figure:
         flutter = frequencies.outcome.sel(mode=mode, contact_state=state) == Outcome.complex_pair
         shown = np.where(flutter, np.nan, values)
         step = 0.2 if mode == 1 else 0.1
-        levels = np.arange(step, float(np.nanmax(shown)), step)
-        lines = isoline(panel, frequencies, shown, levels, "white", 0.5)  # to read in greyscale
-        panel.clabel(lines, fontsize=5.5, fmt="%.1f")
+        levels = np.arange(lower + step, float(np.nanmax(shown)), step)
+        dark = levels < 0.5 * (lower + upper)
+        lines = isoline(  # to read in greyscale
+            panel, frequencies, shown, levels, np.where(dark, style.WHITE, style.BLACK), 0.5
+        )
+        panel.clabel(
+            lines, fontsize=5.5, fmt="%.1f", manual=_on_diagonal(frequencies, shown, levels)
+        )
         outline(panel, frequencies, flutter.values)
         style.panel_letter(panel, letter, "in contact" if state == "contact" else state)
     draw_sums(axes[0, 1])
@@ -50,22 +56,38 @@ def draw_mode(frequencies: xr.Dataset, mode: int) -> Figure:
     return figure
 
 
+def _on_diagonal(
+    frequencies: xr.Dataset, values: np.ndarray, levels: np.ndarray
+) -> list[tuple[float, float]]:
+    """Where isolines cross the diagonal in the upper half, away from gaps: labels lie apart."""
+    angles, along = frequencies.alpha1.values, np.diagonal(values)
+    near = len(along) // 15
+    return [
+        (angles[index], angles[index])
+        for level in levels
+        for index in np.flatnonzero(np.diff(along > level))
+        if len(along) // 2 <= index < len(along) - 3
+        and np.isfinite(values[index - near : index + near, index - near : index + near]).all()
+    ]
+
+
 def draw_sums(axes: Axes) -> None:
     """The exact lines of the separated state: det K = 0, and smallest |Z| for any stiffnesses."""
     along = np.array([-np.pi, 2 * np.pi])
     limits = axes.get_xlim(), axes.get_ylim()
-    for odd, label, colour, dash in (
-        (0, "α₁ + α₂ = nπ", style.ORANGE, "--"),
-        (1, "α₁ + α₂ = nπ/2, n odd", style.BLACK, ":"),
-    ):
+    halo = [withStroke(linewidth=2.2, foreground=style.WHITE)]
+    for odd, label, dash in ((0, "α₁ + α₂ = nπ", "--"), (1, "α₁ + α₂ = nπ/2, n odd", ":")):
         for number in range(odd, 5, 2):
-            axes.plot(along, number * np.pi / 2 - along, color=colour, ls=dash, lw=0.9, label=label)
+            line = number * np.pi / 2 - along
+            axes.plot(
+                along, line, color=style.BLACK, ls=dash, lw=1.1, label=label, path_effects=halo
+            )
             label = "_"
     axes.set(xlim=limits[0], ylim=limits[1])
 
 
 def isoline(
-    axes: Axes, dataset: xr.Dataset, values: Any, levels: Any, colour: str, width: float = 0.7
+    axes: Axes, dataset: xr.Dataset, values: Any, levels: Any, colour: Any, width: float = 0.7
 ) -> Any:
     """Lines on which values (alpha1, alpha2) are those of ``levels``."""
     angles, levels = (dataset.alpha1.values, dataset.alpha2.values), np.atleast_1d(levels)

@@ -6,7 +6,7 @@ from matplotlib.colors import LinearSegmentedColormap
 from matplotlib.figure import Figure
 
 from squealpipe.plotting.style import BLACK, BLUE, PAGE, RED, new_figure
-from squealpipe.schema.inference import DAMPED_GRID, in_words
+from squealpipe.schema.inference import DAMPED_GRID, in_order, in_words
 
 READS = ("verdict_reach",)
 CAPTION = (
@@ -22,6 +22,7 @@ ALT = "A table of settings by statements, blue where a statement holds and red w
 
 def draw(reach: xr.Dataset) -> Figure:
     """One table."""
+    reach = in_order(reach)
     share = reach.share.values
     figure, axes = new_figure(PAGE, 0.24 * len(share) + 2.2)
     panel = axes[0, 0]
