@@ -34,12 +34,14 @@ parameters: # SI units
   mass: 0.5 # kg
   k1: 1.0e+7 # N/m
   k2: 1.0e+7
-  k3: 7.0e+6 # of the contact
-  mu: 0.4
+  k3: 7.0e+6 # of the contact; or measured, contact_law: {{table: contact.csv}}, of m and N
+  mu: 0.4 # or measured, friction_law: {{table: friction.csv}}, of speed (m/s) and coefficient
   belt_speed: 2.0 # m/s
   preload: 2.0e-5 # m, so that the pad is pressed by k3 times it
   length1: 0.02 # m
   length2: 0.02
+  damping1: 0.0 # N s/m, along the springs
+  damping2: 0.0
 """
 
 

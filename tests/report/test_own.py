@@ -23,7 +23,7 @@ from squealpipe.study.report.own import boundaries, gather_own
 from squealpipe.tasks.curves.chart import regime_chart
 from squealpipe.tasks.curves.contact import boundary_distance, contact_boundary
 from squealpipe.tasks.dynamics.runs import simulate, validity_map
-from squealpipe.tasks.own.scenes import own_scenes
+from squealpipe.tasks.own.scenes import own_scenes, variants
 from squealpipe.tasks.propensity.distributions import centred
 from squealpipe.tasks.propensity.propensity import propensity
 from tests.conftest import ROOT
@@ -153,10 +153,18 @@ def test_a_table_of_friction_stands_for_the_coefficient(found, tmp_path):
     rows = {row["meaning"]: row for row in parameter_table(pad, of_a1=True)}
     assert "sliding friction coefficient" not in rows
     assert rows["friction law"]["value"] == "table, linear: 0.48 at 0, 0.36 at 1"
-    assert rows["friction law"]["unit"] == ""
+    assert rows["friction law"]["unit"] == "at m s⁻¹"
     figure = draw("own_model", {"own/mine": simulate(pad, 0.5, 2.4, t_end=20 * pad.time_unit)})
     (panel,) = figure.axes
     assert any("$μ$: table" in text.get_text() for text in panel.texts)
+
+
+def test_a_law_that_depends_on_speed_is_set_beside_its_value_at_belt_speed():
+    pad = replace(PAD, mu=Parameters().mu, friction_law="linear 0.0:0.48 1.0:0.36 3.0:0.3")
+    changed, _ = variants(pad, (0.0,) * 4)["friction as at belt speed, constant"]
+    assert (changed.mu, changed.friction_law) == (pytest.approx(0.33), "coulomb")
+    falling, _ = variants(PAD, (0.0,) * 4)["friction falls with speed"]
+    assert falling.static_mu == pytest.approx(1.5 * PAD.mu)
 
 
 def test_a_study_without_the_paper_needs_a_scene():

@@ -77,11 +77,16 @@ PAPERS_FRICTION = without_extensions(_given) is _given
 
 if not PAPERS_FRICTION and workflow.is_main_process:
     beyond = {k: v for k, v in _given.as_dict().items() if k not in Parameters(mu=_given.mu).as_dict()}
-    print(
-        "Left out, for they carry neither dashpots nor any friction but Coulomb's with one μ: "
+    left_out = (
         "model A4 and harmonic balance (backbones, orbits, natural frequencies, the explorer), the "
         "model ladder, time stepping, exact boundaries of A3, and the inference from the paper's "
-        f"statements. Without {', '.join(f'{k} = {v!r}' for k, v in beyond.items())} they are part "
+        "statements"
+        if STUDY.paper
+        else "charts of regimes, backbones in the explorer, and models that are cheaper than A1"
+    )
+    print(
+        "Left out, for they carry neither dashpots nor any laws but Coulomb's with one μ and a "
+        f"linear contact: {left_out}. Without {', '.join(f'{k} = {v!r}' for k, v in beyond.items())} they are part "
         "of the study.",
         file=sys.stderr,
     )

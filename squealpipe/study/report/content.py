@@ -147,7 +147,7 @@ def parameter_table(parameters: Parameters, *, of_a1: bool = False) -> list[dict
             "symbol": TABLE[name].symbol,
             "meaning": TABLE[name].meaning.partition(":")[0] if law else TABLE[name].meaning,
             "value": law_in_words(value) if law else value,
-            "unit": ""
+            "unit": law.TABLE_UNITS * law_in_words(value).startswith("table")
             if law
             else re.sub(r"-\d", lambda found: found[0].translate(RAISED), TABLE[name].units),
         }

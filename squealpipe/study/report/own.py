@@ -1,5 +1,6 @@
 """What the report of a study of one's own shows, as plain data."""
 
+import json
 from collections.abc import Mapping
 from typing import Any
 
@@ -12,6 +13,7 @@ from squealpipe.study.claims.evidence import Run
 from squealpipe.study.figures.comparison.model_ladder import QUESTION_NAMES
 from squealpipe.study.report.content import Made, parameter_table, pictures
 from squealpipe.study.report.sections import OWN
+from squealpipe.text import number
 
 
 def gather_own(
@@ -27,6 +29,11 @@ def gather_own(
         "variants": [str(name) for name in table.variant.values],
         "scenes": [_scene(table.sel(scene=name), run) for name in table.scene.values],
         "spread_scene": str(table.scene.values[0]),
+        "spread_end": float(spread.t_end),
+        "spread": [
+            {"name": name, "words": f"{given.pop('distribution')}, {_listed(given)}"}
+            for name, given in json.loads(spread.attrs["arguments"])["distributions"].items()
+        ],
         "shares": [
             {
                 "what": str(name).replace("_", " "),
@@ -109,6 +116,10 @@ def _leading(row: xr.Dataset) -> str:
         return "not resolved by this sample"
     best = int(np.nanargmax(total))
     return f"{row.input.values[best]} ({total[best]:.2f})"
+
+
+def _listed(numbers: Mapping[str, float]) -> str:
+    return ", ".join(f"{name.replace('_', ' ')} {number(n)}" for name, n in numbers.items())
 
 
 def _finite(value: Any) -> float | None:

@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from squealpipe.laws.friction_laws import COULOMB, FALLING
 from squealpipe.models.refusals import without_extensions
 from squealpipe.parameters import Parameters
 from squealpipe.schema import build, meanings
@@ -29,11 +30,14 @@ def variants(params: Parameters, start: tuple[float, ...]) -> dict[str, tuple[Pa
     """What is changed → parameters and start."""
     unit = [np.sqrt(stiffness * params.mass) for stiffness in (params.k1, params.k2)]
     speed = params.preload / params.time_unit
-    falling = params.with_(
-        friction_law="exponential",
-        mu_static=max(STATIC * params.mu, params.static_mu),
-        friction_speed=speed,
-    )
+    if params.friction_law == COULOMB:
+        law = "friction falls with speed"
+        static = max(STATIC * params.mu, params.static_mu)
+        changed = params.with_(friction_law=FALLING[0], mu_static=static, friction_speed=speed)
+    else:
+        law = "friction as at belt speed, constant"
+        given = {"mu": abs(params.drag), "mu_static": None, "friction_speed": 1.0}
+        changed = params.with_(friction_law=COULOMB, **given)
     x, y, vx, vy = start
     return {
         "as configured": (params, start),
@@ -44,7 +48,7 @@ def variants(params: Parameters, start: tuple[float, ...]) -> dict[str, tuple[Pa
             )
             for share in DAMPING
         },
-        "friction falls with speed": (falling, start),
+        law: (changed, start),
         "pushed off the belt": (params, (x, y, vx, vy + PUSH * speed)),
     }
 

@@ -26,12 +26,12 @@ def caption(angles: xr.Dataset, dashpots: xr.Dataset) -> str:
     """What is shown, with the dashpots and the angles of the maps."""
     c1, c2 = (number(parameter(angles, f"damping{i}")) for i in (1, 2))
     return (
-        "Friction coefficient of Coulomb's law at which steady sliding turns unstable by A3 "
-        "(Routh–Hurwitz). (a) Over both spring angles without dashpots. (b) Its change by dashpots "
-        f"c₁ = {c1} and c₂ = {c2} N s/m: red, they lower it and make sliding unstable sooner; "
-        f"blue, they raise it; grey, it is above {LARGEST:g} with them and without. (c) Over both "
-        f"dashpots at {angle_pair(dashpots.alpha1, dashpots.alpha2)}, on a scale of its own; black "
-        "line: as without dashpots."
+        "Friction coefficient of Coulomb's law at which steady sliding on a linear contact spring "
+        "turns unstable by A3 (Routh–Hurwitz). (a) Over both spring angles without dashpots. "
+        f"(b) Its change by dashpots c₁ = {c1} and c₂ = {c2} N s/m: red, they lower it "
+        "and make sliding unstable sooner; blue, they raise it; grey, it is above "
+        f"{LARGEST:g} with them and without. (c) Over both dashpots at {angle_pair(dashpots.alpha1, dashpots.alpha2)}, "
+        "on a scale of its own; black line: as without dashpots."
     )
 
 

@@ -11,13 +11,20 @@ from squealpipe.plotting.style import BLUE, PAGE, new_figure
 from squealpipe.study.figures.linear.fig07 import draw_kinds, key
 
 READS = ("validity_[bm]*", "own_scenes")
-CAPTION = (
-    "Where the mass, started at rest, loses contact (white; orange where steady sliding is "
-    "unstable too) and keeps it (grey; black where steady sliding is unstable), over both spring "
-    "angles. Blue: the boundary of kept contact as curves, and as crosses the scenes whose angles "
-    "lie in the map."
-)
 ALT = "A map over both spring angles in white, orange, grey and black with crosses at the scenes."
+
+
+def caption(found: Mapping[str, xr.Dataset], scenes: xr.Dataset) -> str:  # noqa: ARG001
+    """What is shown, with the boundary where the study has it."""
+    lines = " Blue lines: boundary of kept contact." if "validity_boundary" in found else ""
+    return (
+        "Where the mass, started at rest, loses contact (white; orange where steady sliding is "
+        "unstable too) and keeps it (grey; black where steady sliding is unstable), over both "
+        f"spring angles.{lines} Crosses: the scenes whose angles lie in the map."
+    )
+
+
+CAPTION = caption
 
 
 def draw(found: Mapping[str, xr.Dataset], scenes: xr.Dataset) -> Figure:

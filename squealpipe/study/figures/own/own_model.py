@@ -68,8 +68,10 @@ def _draw(panel: Axes, run: xr.Dataset) -> None:
     law = law_in_words(parameter(run, "friction_law")).partition(",")[0]
     own = law in {"table", "Python file"}
     friction = f"$μ$: {law}" if own else f"$μ$ = {number(parameter(run, 'mu'))}"
+    contact = law_in_words(parameter(run, "contact_law")).partition(",")[0]
+    spring = "contact: table" if contact == "table" else f"$k_3$ = {number(parameter(run, 'k3'))} N/m"
     words = (
-        f"$m$ = {number(parameter(run, 'mass'))} kg, $k_3$ = {number(parameter(run, 'k3'))} N/m\n"
+        f"$m$ = {number(parameter(run, 'mass'))} kg, {spring}\n"
         f"$l_\\mathrm{{pre}}$ = {number(parameter(run, 'preload'))} m, "
         f"{friction}, $V$ = {number(parameter(run, 'belt_speed'))} m/s"
     )

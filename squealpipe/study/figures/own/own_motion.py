@@ -12,8 +12,8 @@ READS = ("own/*",)
 CAPTION = (
     "The motion of model A1 from the start of each scene, one row for each. Left: contact force "
     "over its preload at the beginning of the run; red strips below zero: contact is lost. "
-    "Middle: path of the mass; dotted: contact is lost above. Right: amplitude spectrum of the "
-    "contact force over the whole run."
+    "Middle: path of the mass, with its end as a dot; dotted: contact is lost above. Right: "
+    "amplitude spectrum of the contact force over the whole run."
 )
 ALT = "For each scene a force history, the path of the mass, and the spectrum of the force."
 SHOWN = 0.1
