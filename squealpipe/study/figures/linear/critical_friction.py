@@ -30,7 +30,8 @@ def caption(angles: xr.Dataset, dashpots: xr.Dataset) -> str:
         "turns unstable by A3 (Routh–Hurwitz). (a) Over both spring angles without dashpots. "
         f"(b) Its change by dashpots c₁ = {c1} and c₂ = {c2} N s/m: red, they lower it "
         "and make sliding unstable sooner; blue, they raise it; grey, it is above "
-        f"{LARGEST:g} with them and without. (c) Over both dashpots at {angle_pair(dashpots.alpha1, dashpots.alpha2)}, "
+        f"{LARGEST:g} with them and without. (c) Over both dashpots at "
+        f"{angle_pair(dashpots.alpha1, dashpots.alpha2)}, "
         "on a scale of its own; black line: as without dashpots."
     )
 
