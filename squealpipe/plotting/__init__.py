@@ -6,6 +6,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from squealpipe.plotting.curves import draw_curves
 from squealpipe.plotting.cycles import draw_backbone, draw_branch, draw_cycle, draw_orbit
 from squealpipe.plotting.propensity import draw_shares
 from squealpipe.plotting.propensity import figure as propensity_figure
@@ -24,6 +25,10 @@ DRAWN: dict[str, Callable[[Axes, xr.Dataset], None]] = {
     "limit_cycle": draw_cycle,
     "periodic_orbit": draw_orbit,
     "cycle_branch": draw_branch,
+    "doubled_branch": draw_backbone,
+    "contact_boundary": draw_curves,
+    "regime_chart": draw_curves,
+    "stability_boundaries": draw_curves,
     "propensity": draw_shares,
     SYSTEM + "simulate": draw_states,
     SYSTEM + "ensemble": draw_ensemble,
@@ -91,7 +96,7 @@ def _draw(axes: Axes, dataset: xr.Dataset, variable: str | None) -> None:
         return
     if variable is None and (quantity := shown(dataset)) is not None:
         draw_quantity(axes, quantity)
-        if "motion_changed" in dataset:
+        if "motion_changed" in dataset and quantity.ndim == 2:
             mark_changed(axes, dataset)
         return
     if variable not in dataset:

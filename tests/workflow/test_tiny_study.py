@@ -6,9 +6,11 @@ Its grids are coarse, but the scenes run to the paper study's full horizons.
 
 import re
 
+import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 
+from squealpipe import plot
 from squealpipe.codes import Event
 from squealpipe.parameters import SCENES, Parameters
 from squealpipe.store import load
@@ -28,6 +30,19 @@ def test_every_figure_of_the_paper_in_two_forms(tiny_study):
     for name in PAPER_FIGURES:
         for suffix in ("png", "svg"):
             assert (tiny_study.results / "figures" / f"{name}.{suffix}").stat().st_size > 2000
+
+
+def test_a_picture_for_every_kind_of_dataset(tiny_study):
+    drawn = set()
+    for path in sorted((tiny_study.results / "data").rglob("*.nc")):
+        dataset = load(path)
+        if dataset.attrs["schema"] in drawn:
+            continue
+        drawn.add(dataset.attrs["schema"])
+        ax = plot(dataset)
+        assert ax.has_data() or ax.texts, path
+        plt.close("all")
+    assert len(drawn) > 25
 
 
 def test_report_is_written(tiny_study):

@@ -69,7 +69,9 @@ def _draw(panel: Axes, run: xr.Dataset) -> None:
     own = law in {"table", "Python file"}
     friction = f"$μ$: {law}" if own else f"$μ$ = {number(parameter(run, 'mu'))}"
     contact = law_in_words(parameter(run, "contact_law")).partition(",")[0]
-    spring = "contact: table" if contact == "table" else f"$k_3$ = {number(parameter(run, 'k3'))} N/m"
+    spring = (
+        "contact: table" if contact == "table" else f"$k_3$ = {number(parameter(run, 'k3'))} N/m"
+    )
     words = (
         f"$m$ = {number(parameter(run, 'mass'))} kg, {spring}\n"
         f"$l_\\mathrm{{pre}}$ = {number(parameter(run, 'preload'))} m, "

@@ -1,0 +1,32 @@
+"""Curves over two parameters: where contact is lost, and where steady sliding turns unstable."""
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+
+from squealpipe.plotting import style
+from squealpipe.plotting.quantities import label
+from squealpipe.schema import meanings
+
+KINDS = ("line", "boundary")
+"""Variables that say of a point which curve it is on, where a dataset has several kinds."""
+
+
+def draw_curves(axes: Axes, curves: xr.Dataset) -> None:
+    """Each kind of curve in a colour of its own, designs as crosses; or that there is none."""
+    if not curves.sizes["point"]:
+        style.say_instead(axes, "no curve within these ranges")
+        return
+    names = curves.parameter.values if "parameter" in curves else ("alpha1", "alpha2")
+    x, y = (curves[str(name)] for name in names)
+    number = curves["segment" if "segment" in curves else "curve"].values
+    kind = next((curves[name] for name in KINDS if name in curves), xr.zeros_like(x, dtype=int))
+    words = meanings(kind) or {0: "boundary of kept contact"}
+    for colour, code in zip(style.PALETTE * len(words), np.unique(kind.values), strict=False):
+        on = kind.values == code
+        lines = (x.values[on], y.values[on])
+        style.draw_lines(axes, lines, number[on], color=colour, label=style.flag_words(words[code]))
+    if "design" in curves:
+        axes.plot(*curves.design.values.T, "x", color=style.RED, label="design")
+    axes.set(xlabel=label(x), ylabel=label(y))
+    axes.legend(fontsize="small")
