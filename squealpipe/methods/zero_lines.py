@@ -23,18 +23,20 @@ Function = Callable[[Vector], Vector]
 Mark = Callable[[Vector, Vector], Vector]
 """Places and slopes there → what jumps from one branch of a function to another."""
 
-RESIDUAL = 1e-11
-"""Of the function at a point."""
-SHORTEST = 1e-6
-"""Chord beside a kink above which the tangents meet in the corner."""
+SHORTEST = 0.01
+"""Chord beside a kink, over √off, below which the tangents meet in it."""
+BENT = 0.6
+"""Area beside a chord of one arc that is doubted, over its length squared and its turn cubed."""
 MOST_DIVISIONS, MOST_POINTS = 30, 25_000
 """Where motions last long a line may have corners without end: its error then says what is left."""
 CLOSED = 1e-12
 """Share of a line that encloses a zero."""
-STEP = 1e-8
-"""Of the differences that give tangents."""
+STEP, SECANT = 1e-8, (1e-9, 1e-5)
+"""Of the differences that give tangents; of those that a zero's last secant gives."""
 FLAT = 1e-6
 """Distance of a polygon from a line."""
+LONGEST = 10.0
+"""Tongue beyond a chord, over it, that is looked for."""
 RUNGS = np.array([-3.0, -1.0, -0.3, -0.1, -0.03, -0.01, 0.0, 0.01, 0.03, 0.1, 0.3, 1.0, 3.0])
 """Distances from a chord, over its length, between which a zero is looked for."""
 FLATTISH, STEEPEST = 0.5, 3.0
@@ -63,12 +65,14 @@ class ZeroLines:
         mark: of points on the lines.
         coarse: points per side of the grid that sees the whole square.
         finer: how many times finer the grid is where the sign changes, a power of two.
-        area_error: of a piece of a line beyond which it is divided.
+        off: how far lines may be from those that are drawn.
+        residual: of the function at a point.
 
     Attributes:
         place: (points, 2).
         slope: derivatives of the function, (points, 2); NaN at a corner, where two branches meet.
-        residual, mark: of the points.
+        residual: of the points.
+        mark: of the points where it was asked for, else NaN.
         chords: indices of first and last points, (chords, 2), the positive side on their left.
         error: of the area beside each chord.
         positive: whether the function is so at the square's origin.
@@ -83,9 +87,10 @@ class ZeroLines:
         coarse: int,
         finer: int,
         jump: float,
-        area_error: float = 1e-10,
+        off: float = 1e-8,
+        residual: float = 1e-11,
     ) -> None:
-        self.value, self._mark, self.jump, self.area_error = value, mark, jump, area_error
+        self.value, self._mark, self.jump, self.off, self.most = value, mark, jump, off, residual
         self.place, self.slope = np.empty((0, 2)), np.empty((0, 2))
         self.residual, self.mark = np.empty(0), np.empty(0)
         self.chords, self.error, self.unresolved = np.empty((0, 2), int), np.empty(0), 0.0
@@ -118,8 +123,8 @@ class ZeroLines:
         high, low = np.concatenate(up), np.concatenate(down)
         before, after = known[tuple(high.T)], known[tuple(low.T)]
         start, way = high / (size - 1), (low - high) / (size - 1)
-        share = _roots(self.value, start, way, before / (before - after), after - before)
-        self._add(start + share[:, None] * way)
+        found = self._roots(start, way, before / (before - after), after - before)
+        self._add(start + found[0][:, None] * way, way, *found[1:])
         return self._joined(positive, *numbers)
 
     def _joined(self, positive: NDArray[np.bool_], along: Indices, up: Indices) -> Indices:
@@ -140,13 +145,20 @@ class ZeroLines:
                     chords.append(sides[i, j][[[side, other]]])
         return np.concatenate(chords)
 
-    def _add(self, places: Vector) -> Indices:
-        """New points of one branch; their indices."""
-        step = STEP * np.where(places > 0.5, -1.0, 1.0)
-        there = places[:, None, :] + step[:, None, :] * np.eye(2)
-        value = self.value(places)
-        slope = (self.value(there.reshape(-1, 2)).reshape(-1, 2) - value[:, None]) / step
-        return self._append(places, slope, value, self._mark(places, slope))
+    def _add(self, places: Vector, way: Vector, value: Vector, rate: Vector) -> Indices:
+        """New points of one branch, by ways across it with the rates there; their indices."""
+        length = np.linalg.norm(way, axis=1)
+        along, rate = way / length[:, None], rate / length
+        across, rough = along[:, ::-1] * [-1.0, 1.0], np.isnan(rate)
+        rate[rough] = self._change(places[rough], along[rough], value[rough])
+        change = self._change(places, across, value)
+        slope = rate[:, None] * along + change[:, None] * across
+        return self._append(places, slope, value, np.full(len(places), np.nan))
+
+    def _change(self, places: Vector, way: Vector, value: Vector) -> Vector:
+        """How fast the function changes along unit vectors, by a step into the square."""
+        step = np.where((way * (places - 0.5)).sum(axis=1) > 0.0, -STEP, STEP)
+        return np.asarray((self.value(places + step[:, None] * way) - value) / step)
 
     def _append(self, place: Vector, slope: Vector, residual: Vector, mark: Vector) -> Indices:
         self.place = np.concatenate([self.place, place])
@@ -158,17 +170,22 @@ class ZeroLines:
     def _trace(self, chords: Indices) -> None:
         """Divide chords until their areas are known."""
         error = self._length(chords) ** 2
+        self.marks(chords)
         for _ in range(MOST_DIVISIONS):
             if not len(chords) or len(self.place) > MOST_POINTS:
                 break
-            new, error = self._divided(chords)
-            lost = np.isnan(new[:, 0])
+            error, new, *across = self._divided(chords)
+            lost = ~((new >= 0.0) & (new <= 1.0)).all(axis=1)
             self._keep(chords[lost], self._length(chords[lost]) ** 2)
             self.unresolved = max([self.unresolved, *self._length(chords[lost])])
-            chords = _split(chords[~lost], self._add(new[~lost]))
-            error = np.repeat(0.5 * error[~lost], 2)
-            jumps = np.abs(np.diff(self.mark[chords], axis=1)[:, 0]) > self.jump
-            going = ((error > self.area_error) | jumps) & (self._length(chords) > SHORTEST)
+            chords, error = chords[~lost], error[~lost]
+            middle = self._add(new[~lost], *(each[~lost] for each in across))
+            kinked = self._jumps(chords) | (error > self._bent(chords))
+            self.marks(np.concatenate([chords[kinked].ravel(), middle[kinked]]))
+            chords, error = _split(chords, middle), np.repeat(0.5 * error, 2)
+            length, jumps = self._length(chords), self._jumps(chords)
+            error = np.where(jumps, error, np.minimum(error, self._bent(chords)))
+            going = ((error > self.off * length) | jumps) & (length > SHORTEST * self.off**0.5)
             self._keep(chords[~going & ~jumps], error[~going & ~jumps])
             around = chords[~going & jumps]
             place, none = self._meeting(around)[1], np.full((len(around), 2), np.nan)
@@ -178,6 +195,21 @@ class ZeroLines:
             chords, error = chords[going], error[going]
         self.unresolved = max([self.unresolved, *self._length(chords)])
         self._keep(chords, error)
+
+    def _jumps(self, chords: Indices) -> Any:
+        """Whether chords join two branches, as far as the marks of their ends are known."""
+        return np.abs(np.diff(self.mark[chords], axis=1)[:, 0]) > self.jump
+
+    def _bent(self, chords: Indices) -> Vector:
+        """What a cubic leaves beside a chord of one branch: the third power of its turn."""
+        turn = np.abs(self._slopes(chords)[2]).max(axis=1)
+        return np.asarray(BENT * self._length(chords) ** 2 * turn**3)
+
+    def marks(self, points: Indices) -> Vector:
+        """What tells branches apart, at some points."""
+        new = np.unique(points[np.isnan(self.mark[points])])
+        self.mark[new] = self._mark(self.place[new], self.slope[new])
+        return np.asarray(self.mark[points])
 
     def _keep(self, chords: Indices, error: Vector) -> None:
         self.chords = np.concatenate([self.chords, chords])
@@ -216,8 +248,11 @@ class ZeroLines:
         slope = slope / np.linalg.norm(slope, axis=-1)[..., None]
         return np.stack([slope[..., 1], -slope[..., 0]], axis=-1)
 
-    def _divided(self, chords: Indices) -> tuple[Vector, Vector]:
-        """A zero beside each chord, and how far the area there is to be doubted; NaN: none."""
+    def _divided(self, chords: Indices) -> tuple[Vector, ...]:
+        """How far the areas beside chords are to be doubted, and zeros there; NaN: none.
+
+        With each zero the way on which it was found, and the function and its rate there.
+        """
         chord, left, slopes = self._slopes(chords)
         length = self._length(chords)
         share, meeting = self._meeting(chords)
@@ -225,25 +260,32 @@ class ZeroLines:
         foot = self.place[chords[:, 0]] + at[:, None] * chord
         height, doubt = _cubic(at, slopes), length**2 / 8.0
         steep = (np.abs(slopes) > FLATTISH).any(axis=1)
-        height[steep] = _lower(at * slopes[:, 0], (at - 1.0) * slopes[:, 1])[steep]
+        ahead, back = at * slopes[:, 0], (at - 1.0) * slopes[:, 1]
+        kinked = self._jumps(chords)
+        height = np.where(steep | kinked, _lower(ahead, back), height)
         reach = 0.3 * np.minimum(at, 1.0 - at) + np.abs(height)
         # a tongue is crossed between the chord and where the tangents meet
         axis = meeting - self.place[chords[:, 0]] - share[:, None] * chord
         long = np.linalg.norm(axis, axis=1)
         side = np.sign((axis * left).sum(axis=1))
-        tongue = steep & (long > 0.3 * length)
+        tongue = steep & (long > 0.3 * length) & (long < LONGEST * length)
         axis = np.where(tongue[:, None], side[:, None] * axis, left)
         height, reach = np.where(tongue, 0.7 * side, height), np.where(tongue, 1.0, reach)
         doubt[steep] = length[steep] * np.fmax(length, long)[steep]
         start, way = foot + (height + reach)[:, None] * axis, -2.0 * reach[:, None] * axis
-        rate = (self.slope[chords].mean(axis=1) * way).sum(axis=1)
-        off = reach * (1.0 - 2.0 * _roots(self.value, start, way, np.full(len(at), 0.5), rate))
-        new = foot + (height + off)[:, None] * axis
+        rates = (self.slope[chords] * way[:, None]).sum(axis=2)
+        nearer = np.where(np.abs(ahead) < np.abs(back), *rates.T)
+        rate = np.where(kinked, nearer, rates.mean(axis=1))
+        share, *there = self._roots(start, way, np.full(len(at), 0.5), rate)
+        off = reach * (1.0 - 2.0 * share)
         lost = np.isnan(off)
-        new[lost] = self._sought(foot[lost], left[lost])
-        return new, np.where(steep | lost, 1.0, np.abs(off)) * doubt
+        start[lost], way[lost], *sought = self._sought(foot[lost], left[lost])
+        for each, found in zip((share, *there), sought, strict=True):
+            each[lost] = found
+        doubt *= np.where(steep | lost, 1.0, np.abs(off))
+        return doubt, start + share[:, None] * way, way, *there
 
-    def _sought(self, foot: Vector, left: Vector) -> Vector:
+    def _sought(self, foot: Vector, left: Vector) -> tuple[Vector, ...]:
         """The zeros next to chords among those between rungs of a ladder across; NaN: none."""
         places = foot[:, None] + RUNGS[:, None] * left[:, None]
         signs = self.value(places.reshape(-1, 2)).reshape(-1, RUNGS.size) > 0.0
@@ -252,9 +294,49 @@ class ZeroLines:
         rung, found = far.argmin(axis=1), np.isfinite(far.min(axis=1))
         start = foot + RUNGS[rung + 1, None] * left
         way = (RUNGS[rung] - RUNGS[rung + 1])[:, None] * left
-        start, way = np.where(found[:, None], start, foot), np.where(found[:, None], way, 0.0)
-        share = _roots(self.value, start, way, np.full(len(foot), 0.5), np.full(len(foot), np.nan))
-        return np.asarray(start + np.where(found, share, np.nan)[:, None] * way)
+        unknown = np.full(len(foot), np.nan)
+        share, *there = self._roots(start, way, np.full(len(foot), 0.5), unknown)
+        return start, way, np.where(found, share, np.nan), *there
+
+    def _roots(
+        self, start: Vector, way: Vector, share: Vector, rate: Vector
+    ) -> tuple[Vector, Vector, Vector]:
+        """Shares of lines at which the function is zero, and it and its rate there; NaN: none.
+
+        The secant method, within what the signs enclose.
+
+        Args:
+            start, way: lines from where it is positive to where it is not, (lines, 2).
+            share, rate: guesses of the shares, and of the function's derivatives by them.
+        """
+        low, high, now = np.zeros(len(start)), np.ones(len(start)), share.copy()
+        found, last, slope = np.full((3, len(start)), np.nan)
+        old, before, left = now.copy(), np.full(len(start), np.nan), np.arange(len(start))
+        size, rate = np.linalg.norm(way, axis=1), rate.copy()
+        for iteration in range(60):
+            if not left.size:
+                break
+            here, at = self.value(start[left] + now[left, None] * way[left]), now[left]
+            low[left] = np.where(here > 0.0, at, low[left])
+            high[left] = np.where(here > 0.0, high[left], at)
+            with np.errstate(all="ignore"):
+                secant = (here - before[left]) / (at - old[left])
+                rate[left] = np.where(np.isfinite(secant), secant, rate[left])
+                new = at - here / rate[left]
+            step = np.abs(at - old[left]) * size[left]
+            old[left], before[left] = at, here
+            enclosed = (
+                (new > low[left]) & (new < high[left]) & (iteration % 8 < 6) & (iteration < 20)
+            )
+            now[left] = np.where(enclosed, new, 0.5 * (low[left] + high[left]))
+            enclosed = (low[left] > 0.0) & (high[left] < 1.0)
+            closed = high[left] - low[left] < CLOSED
+            zero = (np.abs(here) <= self.most) | (closed & enclosed)
+            found[left[zero]], last[left[zero]] = at[zero], here[zero]
+            good = zero & (step > SECANT[0]) & (step < SECANT[1])
+            slope[left[good]] = secant[good]
+            left = left[~zero & ~closed]
+        return found, last, slope
 
     def chains(self) -> list[list[int]]:
         """Points of each line in order; of a closed one the first comes again."""
@@ -320,37 +402,6 @@ def _lower(a: Vector, b: Vector) -> Vector:
 def _cubic(at: Vector, slopes: Vector) -> Vector:
     """Height over a chord, in its lengths, of the cubic with some slopes at its ends."""
     return np.asarray(at * (1.0 - at) * ((1.0 - at) * slopes[:, 0] - at * slopes[:, 1]))
-
-
-def _roots(value: Function, start: Vector, way: Vector, share: Vector, rate: Vector) -> Vector:
-    """Shares of lines at which a function is zero; NaN where none is found.
-
-    The secant method, within what the signs enclose.
-
-    Args:
-        start, way: lines from where it is positive to where it is not, (lines, 2).
-        share, rate: guesses of the shares, and of the function's derivatives by them.
-    """
-    low, high, now = np.zeros(len(start)), np.ones(len(start)), share.copy()
-    found, rate = np.full(len(start), np.nan), rate.copy()
-    old, before, left = now.copy(), np.full(len(start), np.nan), np.arange(len(start))
-    for iteration in range(60):
-        here, at = value(start[left] + now[left, None] * way[left]), now[left]
-        low[left] = np.where(here > 0.0, at, low[left])
-        high[left] = np.where(here > 0.0, high[left], at)
-        with np.errstate(all="ignore"):
-            secant = (here - before[left]) / (at - old[left])
-            rate[left] = np.where(np.isfinite(secant), secant, rate[left])
-            new = at - here / rate[left]
-        old[left], before[left] = at, here
-        enclosed = (new > low[left]) & (new < high[left]) & (iteration % 8 < 6) & (iteration < 20)
-        now[left] = np.where(enclosed, new, 0.5 * (low[left] + high[left]))
-        enclosed = (low[left] > 0.0) & (high[left] < 1.0)
-        closed = high[left] - low[left] < CLOSED
-        zero = (np.abs(here) <= RESIDUAL) | (closed & enclosed)
-        found[left[zero]] = at[zero]
-        left = left[~zero & ~closed]
-    return found
 
 
 def _chains(pairs: Indices) -> list[list[int]]:

@@ -19,8 +19,8 @@ from squealpipe.schema.origin import recorded
 from squealpipe.tasks.curves.contact import Square, contact_lines, nearest_on, two_axes
 from squealpipe.validation import Line, Positive, Tolerance, Workers
 
-FINEST, AREA_ERROR = 120, 1e-8
-"""As those of a boundary, for lines that are right to 1e-6 of the ranges."""
+FINEST, OFF, RESIDUAL = 60, 1e-6, 1e-8
+"""As those of a boundary, for lines that are right to 1e-6 of the ranges, from few runs."""
 GRID = 241
 """Cells per side by which regions are told apart, and points on which closed forms are seen."""
 
@@ -83,7 +83,7 @@ def regime_chart(
     lines = {
         ChartLine.flutter: closed("discriminant"),
         ChartLine.divergence: closed("determinant"),
-        ChartLine.contact_lost: contact_lines(square, coarse, FINEST, area_error=AREA_ERROR),
+        ChartLine.contact_lost: contact_lines(square, coarse, FINEST, off=OFF, residual=RESIDUAL),
     }
     centres = (np.arange(GRID) + 0.5) / GRID
     cells = np.stack(np.meshgrid(centres, centres, indexing="ij"), axis=-1).reshape(-1, 2)

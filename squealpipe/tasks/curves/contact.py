@@ -234,7 +234,7 @@ def _dataset(square: Square, lines: ZeroLines, axes: Mapping[str, Vector]) -> xr
             "kept": lines.holds(*shares),
             "curve": curve,
             "arc": np.cumsum(begins) - 1,
-            "touch_time": lines.mark[at] * square.params.time_unit,
+            "touch_time": lines.marks(at) * square.params.time_unit,
             "residual": lines.residual[at],
             "corner": corner,
             "kind": np.where(corner, PointKind.corner, np.where(border, PointKind.border, 0)),

@@ -45,13 +45,35 @@ def test_regions_are_what_runs_and_eigenvalues_say(chart):
 
 
 def test_distances_of_a_design(chart):
-    """From points of the lines, for which the polygon of the distance is not used."""
-    for design, distances in zip(chart.design.values, chart.distance.values, strict=True):
-        for which, distance in zip(ChartLine, distances, strict=True):
+    """From points of the closed forms' lines, and from the boundary on a finer grid."""
+    fine = np.linspace(0.0, np.pi, 61)
+    boundary = squealpipe.contact_boundary(PARAMS, fine, fine, t_end=15.0)
+    for design, (*linear, contact) in zip(chart.design.values, chart.distance.values, strict=True):
+        at = dict(zip(("alpha1", "alpha2"), design, strict=True))
+        finer = squealpipe.boundary_distance(boundary, at).distance
+        assert contact == pytest.approx(float(finer), abs=5e-6)
+        for which, distance in zip(ChartLine, linear, strict=False):
             on = chart.line.values == which
             far = np.hypot(chart.alpha1[on] - design[0], chart.alpha2[on] - design[1])
             assert distance == pytest.approx(float(far.min()), abs=2e-4)
             assert distance < float(far.min()) + 1e-12
+
+
+def test_runs_a_millionth_beside_the_line_answer_otherwise(chart):
+    """For less than a hundredth of the runs of a grid that resolves a thousandth of the ranges."""
+    assert int(chart.runs) < 0.01 * 1000**2
+    on = np.flatnonzero(chart.line.values == ChartLine.contact_lost)
+    for point in on[5 : -5 : len(on) // 15]:
+        beside = []
+        for sign in (-1.0, 1.0):
+            ends = chart.isel(point=[point - 1, point + 1])
+            along = np.array([np.diff(ends.alpha1)[0], np.diff(ends.alpha2)[0]])
+            aside = sign * 1e-6 * np.pi * along[::-1] * [-1.0, 1.0] / np.linalg.norm(along)
+            here = chart.isel(point=[point])
+            angles = here.alpha1.values + aside[0], here.alpha2.values + aside[1]
+            run = squealpipe.validity_map(PARAMS, *angles, t_end=15.0)
+            beside.append(bool(run.separates.item()))
+        assert beside == [True, False] or chart.curve[point - 1] != chart.curve[point + 1]
 
 
 def test_parameters_under_their_own_names():
