@@ -114,12 +114,12 @@ def run(arguments: Sequence[str]) -> int:
             with contextlib.suppress(BrokenPipeError):  # nobody reads it
                 if SESSION.verbose:
                     traceback.print_exc()
-                print(f"squealpipe: {_told(error)}", file=sys.stderr)
+                print(f"squealpipe: {_message(error)}", file=sys.stderr)
             return NOT_DONE
         return code
 
 
-def _told(error: Exception) -> str:
+def _message(error: Exception) -> str:
     """An error in a sentence."""
     if isinstance(error, UnusedCliTokensError):
         return f"too many arguments: {' '.join(error.unused_tokens or [])}"

@@ -116,7 +116,7 @@ def explain(
             raise WorkflowError(f"snakemake could not plan:\n{(done.stdout + done.stderr).strip()}")
         planned: dict[str, dict[str, Any]] = json.load(plan)
     rows = [line.split("\t") for line in done.stdout.splitlines()[1:]]
-    # rules that the report of a study of one's own does not need are no part of it
+    # rules that the report of a study of one's own does not need are left out
     made = {row[0]: planned[row[0]] for row in rows if row[0] in planned}
     pending = {row[0]: row[4] for row in rows if row[-1] == "update pending" and row[0] in made}
     kept = {path: made[path]["key"] for path in made if path not in pending}

@@ -1,4 +1,4 @@
-"""How far a long computation is, for whoever shows it; nobody does unless asked."""
+"""Progress of a long computation, for callers that show it."""
 
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
@@ -18,7 +18,7 @@ _NOW = _Progress()
 
 
 def report(share: Callable[[], float]) -> None:
-    """Show how much of the present part is done; ``share`` is not called where nobody asked."""
+    """Show how much of the present part is done; ``share`` is called only where it is shown."""
     if _NOW.show is not None:
         _NOW.show(_NOW.low + _NOW.size * min(max(float(share()), 0.0), 1.0))
 
@@ -45,7 +45,7 @@ def alone() -> Iterator[Callable[[float], None]]:
 
 @contextmanager
 def shown(show: Callable[[float], None] | None) -> Iterator[None]:
-    """Give the share of the whole that is done to ``show`` meanwhile; None: to nobody."""
+    """Give the share of the whole that is done to ``show`` meanwhile; None shows nothing."""
     before, _NOW.show = _NOW.show, show
     try:
         yield

@@ -154,7 +154,7 @@ def critical_friction(
     exponentially; a double frequency, where motions grow like t, is not.
     Routh–Hurwitz is a quadratic in μ, because p3 and p4 are linear in it and p1 and p2 free of it.
     Without friction it is, with C_i the damping of the modes of K of eigenvalues κ_i,
-    p1 det C p3 + C_1 C_2 (κ1 − κ2)², which loses no digit where a mode moves hardly a dashpot.
+    p1 det C p3 + C_1 C_2 (κ1 − κ2)², which loses no digit where a mode hardly moves a dashpot.
 
     Args:
         p: parameters, whose ``mu`` is not looked at and whose belt gives the direction.

@@ -157,7 +157,7 @@ def draw_lines(axes: Axes, lines: Sequence[np.ndarray], curve: np.ndarray, **loo
 
 
 def hatch(axes: Axes, dataset: xr.Dataset, mask: np.ndarray) -> None:
-    """Hatch cells (alpha1, alpha2) of a map, which can be told in greyscale too."""
+    """Hatch cells (alpha1, alpha2) of a map, which greyscale shows too."""
     if mask.any():
         angles = dataset.alpha1.values, dataset.alpha2.values
         cells = mask.T.astype(float)

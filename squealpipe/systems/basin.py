@@ -1,4 +1,4 @@
-"""What the motion of a system has become from each of many starts."""
+"""The kind of motion of a system from each of many starts."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ SAME_ATTRACTOR = 1e-3
 
 
 class Motion(IntEnum):
-    """What a motion has become by the second half of its run."""
+    """Kind of motion in the second half of a run."""
 
     unsettled = 0
     rest = 1
@@ -43,7 +43,7 @@ def basin(
     workers: Workers = None,
     **parameters: Any,
 ) -> xr.Dataset:
-    """Runs from many starts, and what each has become in the second half of its run.
+    """Runs from many starts, and the kind of motion in the second half of each.
 
     At *rest* every state stays within 1e-3 of its range in the whole run. On a *cycle* the motion
     repeats three times at least: with a forcing the states after so many of its periods, else the

@@ -14,7 +14,7 @@ REGIMES = {**{int(each): each.name for each in Regime}, -1: "not_reached"}
 
 
 class MotionFlag(IntEnum):
-    """Meaning of motion: what it has become, judged from the second half of its run."""
+    """Kind of motion, judged from the second half of the run."""
 
     contact_kept = 0
     stick_slip = 1

@@ -328,7 +328,7 @@ def _run(
         others = np.array([name not in Event.__members__ for name in system.traced.kinds])
         if not log_events or not others.any():
             return raw
-        # knots of a law's table are no events of A1
+        # knots of a law's table are not events of A1
         most = int(raw["ends"][:, 3].max(initial=0))
         if most <= room:
             return raw | _without(others, raw, log_events)

@@ -24,9 +24,7 @@ DECIDED = 0.1
 
 
 def judge(
-    parameters: Parameters,
-    sources: Mapping[str, Path | xr.Dataset],
-    reading: str = "along_plus_x",
+    parameters: Parameters, sources: Mapping[str, Path | xr.Dataset], reading: str = "along_plus_x"
 ) -> xr.Dataset:
     """The verdict on every statement, in the study's reading and in the corrected physics.
 

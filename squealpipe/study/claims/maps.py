@@ -1,5 +1,7 @@
 """Looking things up in maps over both spring angles."""
 
+from typing import Any
+
 import numpy as np
 import xarray as xr
 
@@ -11,28 +13,22 @@ SAME_STIFFNESS = 1e-12
 
 def cell(dataset: xr.Dataset, alpha1_over_pi: float, alpha2_over_pi: float) -> xr.Dataset:
     """The cell of a map at a pair of angles."""
-    wanted = {"alpha1": alpha1_over_pi * np.pi, "alpha2": alpha2_over_pi * np.pi}
-    try:
-        return dataset.sel(wanted, method="nearest", tolerance=1e-6 * np.pi)
-    except KeyError as error:
-        raise MissingDataError(
-            f"the grid of {dataset.attrs['schema']} has no cell "
-            f"({alpha1_over_pi:g}π, {alpha2_over_pi:g}π)"
-        ) from error
+    where = f"cell ({alpha1_over_pi:g}π, {alpha2_over_pi:g}π)"
+    return _nearest(dataset, alpha1_over_pi * np.pi, alpha2_over_pi * np.pi, where)
 
 
 def on_grid_of(dataset: xr.Dataset, other: xr.Dataset) -> xr.Dataset:
     """The cells of a map that are also cells of another one."""
-    try:
-        found = dataset.sel(
-            alpha1=other.alpha1, alpha2=other.alpha2, method="nearest", tolerance=1e-6 * np.pi
-        )
-    except KeyError as error:
-        raise MissingDataError(
-            f"the grids of {dataset.attrs['schema']} and {other.attrs['schema']} do not meet"
-        ) from error
+    found = _nearest(dataset, other.alpha1, other.alpha2, f"cells of {other.attrs['schema']}")
     # angles that differ by round-off would be dropped where both maps are compared
     return found.assign_coords(alpha1=other.alpha1, alpha2=other.alpha2)
+
+
+def _nearest(dataset: xr.Dataset, alpha1: Any, alpha2: Any, what: str) -> xr.Dataset:
+    try:
+        return dataset.sel(alpha1=alpha1, alpha2=alpha2, method="nearest", tolerance=1e-6 * np.pi)
+    except KeyError as error:
+        raise MissingDataError(f"the grid of {dataset.attrs['schema']} has no {what}") from error
 
 
 def angle_sum_over_pi(dataset: xr.Dataset) -> xr.DataArray:

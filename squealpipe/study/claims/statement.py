@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 from squealpipe.schema.claims import Verdict
 from squealpipe.study.claims.evidence import Finding, Run
@@ -29,7 +30,7 @@ class Statement:
     figure: str
     recorded: Verdict
     check: Check
-    consequence: str
+    consequence: str = ""
 
     @property
     def measure(self) -> str:
@@ -41,26 +42,18 @@ class Statement:
 class Rows(list[Statement]):
     """The statements of one module, in the paper's order: each is added where its check stands."""
 
-    def __init__(self, section: str = "") -> None:
-        """With the section of the paper that most of them are from."""
+    def __init__(
+        self, section: str = "", figure: str = "", recorded: Verdict = Verdict.holds
+    ) -> None:
+        """With what most of them have."""
         super().__init__()
-        self.section = section
+        self.common = {"section": section, "figure": figure, "recorded": recorded}
 
-    def add(
-        self,
-        name: str,
-        text: str,
-        figure: str = "",
-        *,
-        section: str = "",
-        recorded: Verdict = Verdict.holds,
-        consequence: str = "",
-    ) -> Callable[[Check], Check]:
+    def add(self, name: str, text: str, **more: Any) -> Callable[[Check], Check]:
         """Decorator of a check; the arguments are those of :class:`Statement`."""
 
         def keep(check: Check) -> Check:
-            place = section or self.section
-            self.append(Statement(name, place, text, figure, recorded, check, consequence))
+            self.append(Statement(id=name, text=text, check=check, **{**self.common, **more}))
             return check
 
         return keep

@@ -25,10 +25,7 @@ SPACING_ACCENTS = {0x0307: "\u02d9", 0x0308: "\u00a8"}
 def _typeset(source: Path, target: Literal["html", "pdf"]) -> bytes:
     """The document in one format; the PDF with the fonts that come with Typst."""
     return typst.compile(
-        source,
-        format=target,
-        sys_inputs={"target": target},
-        ignore_system_fonts=target == "pdf",
+        source, format=target, sys_inputs={"target": target}, ignore_system_fonts=target == "pdf"
     )
 
 

@@ -45,11 +45,7 @@ SUPPLEMENT = {
     "parameters": Part("How the parameters were inferred", ("parameter_inference",)),
     "harmonics": Part("Harmonic balance against exact orbits", ("harmonic_forms",)),
     "speed": Part(
-        "Speed against accuracy",
-        (
-            "work_precision_benchmark",
-            "work_precision_frequencies",
-        ),
+        "Speed against accuracy", ("work_precision_benchmark", "work_precision_frequencies")
     ),
     "failures": Part("Where methods fail", ("failure_atlas",)),
     "ladder": Part("No more model than a scene needs", ("model_ladder",)),

@@ -1,7 +1,7 @@
 """Branches of cycles in one parameter, stable and unstable, with located special points.
 
 Pseudo-arclength continuation of an event map. A step is accepted only if the branch does not turn
-round in it and multipliers change by little; a solution that is no motion of the system ends the
+round in it and multipliers change by little; a solution that is not a motion of the system ends the
 smooth piece where the first margin is zero, and the branch goes on with other events from there.
 """
 
@@ -200,7 +200,7 @@ class Follower:
         with alone() as show:
             end = self._run(state, cycle, show)
         if end == Outcome.tongue_end:
-            # at a cycle of a part of the period the parameter turns back, which is no fold
+            # at a cycle of a part of the period the parameter turns back, which is not a fold
             self.points[-2:] = [
                 replace(point, label=Label.regular) if self._is_met(point) else point
                 for point in self.points[-2:]
@@ -557,7 +557,7 @@ class _Turn:
                 yield found
 
     def _without(self) -> Iterator[tuple[EventMap, Vector]]:
-        """The same motion without events that have come to nothing, one or two at once."""
+        """The same motion without events that have vanished, one or two at once."""
         cycle = self.there[1]
         for margin in self.zero:
             event = cycle.map.events[margin.leg]

@@ -36,7 +36,7 @@ MOST_ROUNDS = 32
 SETTLE_STEPS = 100_000
 """Steps after which a run that is to settle is given up."""
 _BRIEF = 1e-3
-"""Share of the period below which a leg may have come to nothing."""
+"""Share of the period below which a leg may have vanished."""
 _AT_REST = 1e-9
 SETTLED_ON = 200
 """Outcome of a settled motion of k periods, less k."""
@@ -146,7 +146,7 @@ def as_motion(cycle: Cycle) -> Cycle | None:
 
 
 def without_brief_legs(cycle: Cycle) -> Iterator[tuple[EventMap, Vector]]:
-    """Equations and guess without one of the legs that may have come to nothing."""
+    """Equations and guess without one of the legs that may have vanished."""
     events = cycle.map.events
     for leg in np.flatnonzero(cycle.parts.durations < _BRIEF * cycle.period).tolist():
         if events[leg - 1].before == events[leg].after and len(events) > 1:
@@ -352,7 +352,7 @@ def _comes_to_rest(flow: Flow, values: Mapping[str, float], regime: int, path: V
 
 
 def _rests(path: Vector, sizes: Any) -> bool:
-    """Whether a motion is no more than round-off."""
+    """Whether a motion is within round-off."""
     largest = np.maximum(np.abs(path).max(axis=0), sizes)
     return bool((np.ptp(path, axis=0) <= _AT_REST * largest).all())
 
@@ -424,7 +424,7 @@ def limit_cycle(
         no cycle is found; ``settled_on_k_periods`` where the settled motion has more than asked.
 
     Raises:
-        ValueError: an unknown state or parameter, a value that is no finite number, or explicit
+        ValueError: an unknown state or parameter, a value that is not a finite number, or explicit
             time without a period.
     """
     values, state = given(system, guess if guess is not None else start, parameters)

@@ -2,7 +2,7 @@
 
 Unknowns are the states after all events, the durations of the legs and, of a forced system, the
 instant of the first state; then the followed parameters. No surface is watched, so the equations
-go on where an event is only just met, or has come to nothing: whether a solution is a motion of
+go on where an event is only just met, or has vanished: whether a solution is a motion of
 the system is a question of its own (:mod:`squealpipe.systems.cycles.admissible`).
 """
 

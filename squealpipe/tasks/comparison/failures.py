@@ -189,7 +189,7 @@ def _paper(
     scene: ScaledSystem, case: BranchCase, z: NDArray[np.float64], exact: Orbit | None, *,
     as_printed: bool,
 ) -> Answer:  # fmt: skip
-    """Newton on Eqs. (31)–(36), whose peak and phase nobody prescribes.
+    """Newton on Eqs. (31)–(36), which prescribe neither peak nor phase.
 
     What is found is therefore compared with the exact orbit of its own peak, where there is one.
     """

@@ -22,7 +22,7 @@ from squealpipe.validation import Line, Positive, Tolerance, Workers
 FINEST, OFF, RESIDUAL = 60, 1e-6, 1e-8
 """As those of a boundary, for lines that are right to 1e-6 of the ranges, from few runs."""
 GRID = 241
-"""Cells per side by which regions are told apart, and points on which closed forms are seen."""
+"""Cells per side by which regions are distinguished, and points on which closed forms are seen."""
 
 
 @recorded(model="A1", method="zeros of closed forms and of the lowest contact force")

@@ -166,7 +166,7 @@ def nearest_on(loops: Sequence[Vector], place: Vector, limits: Vector) -> tuple[
         share = ((place - line) * chord).sum(axis=1) / np.maximum((chord**2).sum(axis=1), 1e-300)
         foot = line + np.clip(share, 0.0, 1.0)[:, None] * chord
         far = np.linalg.norm(foot - place, axis=1)
-        # what runs along the end of a range is no arc
+        # what runs along the end of a range is not an arc
         for limit in limits.T:
             far[((line == limit) & (after == limit)).any(axis=1)] = np.inf
         if far.min() < distance:

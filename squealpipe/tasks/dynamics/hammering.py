@@ -38,7 +38,7 @@ def hammering_map(
 ) -> xr.Dataset:
     """Impacts, forces, extremes, kind of motion and predictability of A1 started at rest.
 
-    ``motion`` says what the motion has become, judged from the second half of the run:
+    ``motion`` is the kind of motion, judged from the second half of the run:
 
     - contact kept in it, or stick–slip in contact; came to rest in contact (within a
       thousandth of its largest displacement); or hammered earlier, then kept contact;

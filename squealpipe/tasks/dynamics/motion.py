@@ -1,4 +1,4 @@
-"""What a motion of model A1 has become, judged from the second half of its run."""
+"""The kind of motion of model A1, judged from the second half of a run."""
 
 from collections.abc import Callable
 from types import SimpleNamespace

@@ -122,8 +122,8 @@ def keeps_contact(p: Any, alpha1: Any, alpha2: Any, t_end: Any) -> np.ndarray:
     """Where the linear motion says that A1, from rest, keeps contact up to ``t_end``.
 
     The springs' geometry changes the slower mode by the reach over the shorter spring, times
-    (ω2/ω1)². Nothing is said where the motion grows, outruns the belt, is near a resonance or lies
-    outside the range of the sample.
+    (ω2/ω1)². No answer is given where the motion grows, outruns the belt, is near a resonance or
+    lies outside the range of the sample.
 
     Args:
         p: ``Parameters``, or an object with its fields and ``drag``; each may be an array.

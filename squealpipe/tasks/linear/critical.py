@@ -89,7 +89,7 @@ def critical_damping_map(
 
 
 def _refuse_slope(params: Parameters) -> None:
-    """Stop a friction law whose slope counts beside μ, and a contact that is no linear spring."""
+    """Stop a friction law whose slope counts beside μ, and a contact that is not linear."""
     if params.contact_law != LINEAR:
         raise ValueError(
             f"contact_law = {brief(params.contact_law)}: critical friction is that of the linear "

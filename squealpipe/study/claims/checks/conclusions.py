@@ -5,8 +5,8 @@ import xarray as xr
 
 from squealpipe.codes import Event
 from squealpipe.schema.claims import Verdict
-from squealpipe.study.claims.checks import sliding
-from squealpipe.study.claims.checks.backbones import branch
+from squealpipe.study.claims.checks import figures_6_and_7
+from squealpipe.study.claims.checks.figures_10_to_13 import branch
 from squealpipe.study.claims.checks.motions import events, frequency, scene
 from squealpipe.study.claims.evidence import Finding, Run, finding
 from squealpipe.study.claims.maps import order_turns_over, share, unstable_cells
@@ -24,7 +24,7 @@ DIFFERENCE = 0.1
 @rows.add(
     "C1",
     "the modes switch when the surfaces separate",
-    "fig13",
+    figure="fig13",
     recorded=Verdict.depends_on_the_parameters,
 )
 def modes_switch_at_separation(run: Run) -> Finding:
@@ -43,13 +43,15 @@ def modes_switch_at_separation(run: Run) -> Finding:
 rows.add(
     "C2",
     "unstable motion occurs only where quasi-static sliding is impossible",
-    "fig06",
+    figure="fig06",
     recorded=Verdict.holds_only_as_printed,
     consequence="F6b",
-)(sliding.unstable_only_without_sliding)
+)(figures_6_and_7.unstable_only_without_sliding)
 
 
-@rows.add("C3", "time and frequency domain show the same trends", "fig10_to_12", section="7, 9")
+@rows.add(
+    "C3", "time and frequency domain show the same trends", figure="fig10_to_12", section="7, 9"
+)
 def time_and_frequency_agree(run: Run) -> Finding:
     """Largest relative difference of the frequency in A1 from ω2 of A4."""
     differences, lines = [], []
@@ -69,7 +71,9 @@ def time_and_frequency_agree(run: Run) -> Finding:
     )
 
 
-@rows.add("C4", "the contact loss must not be left out (A1 against A1 without separation)", "fig02")
+@rows.add(
+    "C4", "the contact loss must not be left out (A1 against A1 without separation)", figure="fig02"
+)
 def contact_loss_matters(run: Run) -> Finding:
     """Median relative change of the largest displacement in scenes that lose contact."""
     table = run["assumptions"]
@@ -91,7 +95,7 @@ def contact_loss_matters(run: Run) -> Finding:
     )
 
 
-@rows.add("C5", "the directions of the constraints decide stability", "fig07")
+@rows.add("C5", "the directions of the constraints decide stability", figure="fig07")
 def directions_decide(run: Run) -> Finding:
     """Smaller of the shares of cells that keep and that lose contact."""
     lost = run["validity_map"].separates == 1

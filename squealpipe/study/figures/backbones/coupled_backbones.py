@@ -10,11 +10,7 @@ from matplotlib.ticker import MaxNLocator
 
 from squealpipe.plotting.cycles import joined
 from squealpipe.plotting.style import BLACK, GREEN, PURPLE, Y_COLOUR
-from squealpipe.study.figures.parts.backbone_panels import (
-    KEY,
-    STABLE_TO_ROUND_OFF,
-    draw_scenes,
-)
+from squealpipe.study.figures.parts.backbone_panels import KEY, STABLE_TO_ROUND_OFF, draw_scenes
 
 READS = ("backbone/[a-z]*", "doubled_branch/*")
 CAPTION = (
@@ -23,10 +19,7 @@ CAPTION = (
     "circles): largest y of the branches of doubled period in green and purple, at twice their "
     "frequency."
 )
-ALT = (
-    "Panels of largest y and amplitude of x over frequency, one row for each spring arrangement, "
-    "one column for each mode; insets enlarge the branches of doubled period."
-)
+ALT = "Panels of largest y and amplitude of x over frequency, with insets of doubled branches."
 SHOWN = 1.25
 """Largest y of a doubled branch shown, over that of the backbone."""
 

@@ -12,10 +12,7 @@ CAPTION = (
     "Periodic motions of model A4 over the frequency, one row for each of Figs. 10, 11 and 12, "
     f"with the mode of the lower frequency on the left. {KEY}"
 )
-ALT = (
-    "Three rows of two panels, one row for each figure of the paper: largest y and amplitude of x "
-    "over frequency near the first and the second natural frequency."
-)
+ALT = "Three rows of two panels: largest y and amplitude of x over frequency near each mode."
 
 
 def draw(branches: Mapping[str, xr.Dataset]) -> Figure:

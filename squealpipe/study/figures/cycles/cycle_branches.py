@@ -11,12 +11,7 @@ from squealpipe.plotting import style
 from squealpipe.plotting.cycles import key_entries, largest, trace_branch
 from squealpipe.plotting.origin import angle_pair, parameter, scene_title
 
-READS = (
-    "cycles/branch_F3_down",
-    "cycles/branch_F3_up",
-    "cycles/branch_flutter",
-    "cycles/extremes",
-)
+READS = ("cycles/branch_F3_down", "cycles/branch_F3_up", "cycles/branch_flutter", "cycles/extremes")
 CAPTION = (
     "Limit cycles of the full model with dashpots over the friction coefficient: largest |x| of "
     "the cycle, one panel for each spring arrangement in which cycles or different ends of long "
@@ -24,10 +19,7 @@ CAPTION = (
     "located special points. Grey dots: largest |x| in the last fifth of long runs from starts "
     "near and far, cycles and states of rest alike."
 )
-ALT = (
-    "Charts of largest |x| over friction. Lines, if any, show branches of cycles with marks at "
-    "special points; dots show where long runs end."
-)
+ALT = "Charts of largest |x| over friction: branches of cycles as lines, ends of runs as dots."
 AT_REST = 0.5
 """Range of late |x|, in l_pre, below which all long runs of a scene end alike."""
 
@@ -35,9 +27,11 @@ AT_REST = 0.5
 def draw(down: xr.Dataset, up: xr.Dataset, flutter: xr.Dataset, extremes: xr.Dataset) -> Figure:
     """A panel for each scene that moves at all."""
     unit = parameter(extremes, "preload")
+    angles = json.loads(flutter.attrs["config"])["cycles"]["flutter"]
+    onset = "flutter onset" if flutter.sizes["point"] else "no branch"
     panels = {
         "F3": (scene_title("F3"), (down, up)),
-        "flutter": (_flutter_title(flutter), (flutter,)),
+        "flutter": (f"{angle_pair(*(angle * np.pi for angle in angles))}, {onset}", (flutter,)),
         "F2d": (scene_title("F2d"), ()),
     }
     sizes = {name: extremes.late_max_x.sel(scene=name).values / unit for name in panels}
@@ -60,13 +54,6 @@ def draw(down: xr.Dataset, up: xr.Dataset, flutter: xr.Dataset, extremes: xr.Dat
     axes[0, 0].set_ylabel(r"largest |x| / $l_\mathrm{pre}$")
     figure.legend(*key_entries(axes[0]), loc="outside lower center", ncols=4)
     return figure
-
-
-def _flutter_title(branch: xr.Dataset) -> str:
-    """The scene of the branch from the flutter onset by its angles, from its configuration."""
-    angles = json.loads(branch.attrs["config"])["cycles"]["flutter"]
-    onset = "flutter onset" if branch.sizes["point"] else "no branch"
-    return f"{angle_pair(*(float(angle) * np.pi for angle in angles))}, {onset}"
 
 
 def _enlarge(panel: Axes, branches: tuple[xr.Dataset, ...], unit: float) -> None:

@@ -13,10 +13,7 @@ CAPTION = (
     "one. (a) Path of the mass; the line is l_pre, above which contact is lost. (b) Velocity along "
     "the belt over one period; the dashed line is belt speed. Colours: the regime."
 )
-ALT = (
-    "Left, the path of the cycle in the plane of x and y, to scale; right, its velocity over one "
-    "period. Regimes differ in colour; a panel without a cycle says so."
-)
+ALT = "Left, the path of the cycle, to scale; right, its velocity; both coloured by regime."
 
 
 def draw(cycle: xr.Dataset) -> Figure:

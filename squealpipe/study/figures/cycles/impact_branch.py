@@ -13,10 +13,7 @@ CAPTION = (
     "from the stop. Full blue lines: stable; dashed orange: unstable; marks: located special "
     "points. At a grazing the cycle touches the stop with no speed, so it hits it on one side only."
 )
-ALT = (
-    "A chart of the largest distance on the side away from the stop over frequency: one line with "
-    "stable and unstable parts, with marks at its special points."
-)
+ALT = "A chart of the largest distance from the stop over frequency: one line in two looks."
 
 
 def draw(branch: xr.Dataset) -> Figure:

@@ -15,10 +15,7 @@ CAPTION = (
     "Contact force of model A1 over its preload, started at rest, in the four spring arrangements "
     "of the paper, each drawn beside its panel. Red strips below zero: contact is lost."
 )
-ALT = (
-    "Four time histories of the normalized contact force, each with a small drawing of its "
-    "springs; red strips below the axis mark the spells off the belt."
-)
+ALT = "Four histories of the contact force with their springs; red strips mark lost contact."
 
 
 def draw(*runs: xr.Dataset) -> Figure:

@@ -15,10 +15,7 @@ CAPTION = (
     "the study reads the paper (orange) and, where that differs, with friction of one sign in all "
     "models (black)."
 )
-ALT = (
-    "Time histories of x and y with a drawing of the springs and a dotted line at the "
-    "precompression, and below them x over a much longer time in one or two readings of the paper."
-)
+ALT = "Time histories of x and y with the springs, and below them x over a much longer time."
 WIDTH = 4.4
 """Inches: on page one it is beside Fig. 7, where the text of a wider one would be too small."""
 TITLES = {"x": "x, along the belt", "y": r"y, away from the belt (dotted: $l_\mathrm{pre}$)"}

@@ -15,10 +15,7 @@ CAPTION = (
     "springs drawn at the start (grey) and at the end of the run. Dotted: l_pre, above which "
     "contact is lost."
 )
-ALT = (
-    "Path of the mass in the x–y plane, to scale and coloured by time, with the springs at two "
-    "instants and a dotted horizontal line at the precompression."
-)
+ALT = "Path of the mass in the x–y plane, coloured by time, with the springs at two instants."
 
 
 def draw(run: xr.Dataset) -> Figure:

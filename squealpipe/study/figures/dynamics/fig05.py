@@ -15,10 +15,7 @@ CAPTION = (
     "α₁ = α₂ = π (line) and α₁ = α₂ = 0 (circles). Their largest difference stands above the "
     "panel. Red strips below zero: contact is lost in the run of the line."
 )
-ALT = (
-    "One time history of the normalized contact force as a line, with circles for the second run "
-    "and red strips where contact is lost."
-)
+ALT = "A history of the contact force, with circles for the second run; red strips off the belt."
 
 
 def draw(first: xr.Dataset, second: xr.Dataset) -> Figure:

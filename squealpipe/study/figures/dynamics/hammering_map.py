@@ -19,10 +19,7 @@ CAPTION = (
     "unit of time. (c) Share of the time off the belt. (d) Largest contact force over the preload. "
     "The cross is the configuration of Fig. 3."
 )
-ALT = (
-    "Four square maps over both angles: kind of motion, impacts per time, share of time separated, "
-    "and peak contact force."
-)
+ALT = "Four maps over both angles: motion, impacts per time, time separated, peak force."
 
 
 def draw(hammering: xr.Dataset) -> Figure:

@@ -20,11 +20,7 @@ CAPTION = (
     "of motion in which a perturbation grows less than that over the run; cells are counted in "
     "the key; dashed: growth by the square of time."
 )
-ALT = (
-    "Left, a map over both angles of the predictability horizon, white where it is not reached. "
-    "Right, cumulative shares of the growth for each kind of motion with a dashed line at "
-    "growth by the square of time."
-)
+ALT = "Left, a map of the predictability horizon; right, shares of the growth by kind of motion."
 
 
 def draw(hammering: xr.Dataset) -> Figure:

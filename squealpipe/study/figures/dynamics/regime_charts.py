@@ -28,10 +28,7 @@ NEARLY_ALL = 0.95
 SEEN = 1e-3
 """Share of a chart below which a kind is not seen in print."""
 HALO = [withStroke(linewidth=2, foreground="white")]
-ALT = (
-    "A chart over both spring angles and charts over stiffness ratio and friction for scenes, "
-    "with lines where contact is lost and sliding turns unstable, and crosses at the scenes."
-)
+ALT = "Charts over both angles and over κ and μ with lines, regions, and crosses at the scenes."
 
 
 def caption(angles: xr.Dataset, scenes: Mapping[str, xr.Dataset]) -> str:

@@ -20,10 +20,7 @@ CAPTION = (
     "full line, fit of the same form, over the speeds that it covers, dotted below them. Cross: "
     "another kind of motion in the last quarter of the run."
 )
-ALT = (
-    "Left, x over time with a band over the time of Fig. 3. Right, a log–log chart of the final "
-    "amplitude over belt speed with two lines."
-)
+ALT = "Left, x over time; right, a log–log chart of its final size over belt speed with two lines."
 
 
 def draw(run: xr.Dataset, sizes: xr.Dataset) -> Figure:

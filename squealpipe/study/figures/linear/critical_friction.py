@@ -16,10 +16,7 @@ UNREACHED = 10.0
 """A critical friction above it is none: no brake has as much, and round-off decides its digits."""
 ALIKE = 1e-9
 """Share of critical frictions by which round-off alone makes them differ."""
-ALT = (
-    "Two maps over both spring angles, of the critical friction and of its change by dashpots, and "
-    "one map over both dashpots."
-)
+ALT = "Two maps over both spring angles and one over both dashpots, of the critical friction."
 
 
 def caption(angles: xr.Dataset, dashpots: xr.Dataset) -> str:

@@ -22,20 +22,14 @@ TONES = {
     style.LIGHT: "sliding not possible",
     style.BLACK: "linearly unstable",
 }
-ALT = (
-    "Two square maps over both spring angles in white, grey and black with boundary curves, one "
-    "map for each reading of Eq. (11)."
-)
+ALT = "Two maps over both spring angles in white, grey and black, one for each reading of Eq. (11)."
 
 
 def caption(stability: xr.Dataset, _: xr.Dataset, __: xr.Dataset) -> str:
     """What the tones mean; how the signs are read where the belt runs along −x."""
     if direction_of(parameter(stability, "belt_speed")) > 0:
         return CAPTION_ALONG_X
-    return CAPTION_ALONG_X + (
-        " The belt runs along −x: μ counts as negative in (b), and (a) judges the mirror image, "
-        "|μ| < −K₁₁/K₁₂."
-    )
+    return f"{CAPTION_ALONG_X} The belt runs along −x: μ counts as negative in (b), not in (a)."
 
 
 CAPTION = caption

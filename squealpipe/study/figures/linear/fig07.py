@@ -21,11 +21,7 @@ KINDS = (
     (style.LIGHT, "A3 stable, contact kept"),
     (style.BLACK, "A3 unstable, contact kept"),
 )
-ALT = (
-    "Square maps over both spring angles in white, orange, grey and black: where model A1 loses "
-    "contact, where it keeps it, and in each whether the linear model is stable. A cross near the "
-    "middle marks the configuration of Fig. 3, and lines the boundary of kept contact."
-)
+ALT = "Maps over both angles in white, orange, grey and black, with the boundary of kept contact."
 LINES, DISTANCE = "validity_boundary", "validity_distance/F3"
 BLUE_LINES = (
     "the boundary of kept contact as curves; the share of all angles that it encloses, and the "

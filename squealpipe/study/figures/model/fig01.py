@@ -12,10 +12,7 @@ CAPTION = (
     "contact spring k₃ on a belt that moves at V. The foot of k₃ slides along with the mass, and "
     "k₃ can only push."
 )
-ALT = (
-    "Sketch of a round mass held by two slanted springs, with a vertical contact spring below it "
-    "that stands on a horizontal belt; an arrow below the belt marks the direction of V > 0."
-)
+ALT = "A round mass on two slanted springs, and a vertical contact spring that stands on a belt."
 
 
 def draw() -> Figure:

@@ -23,7 +23,7 @@ MARKS = [
 ]
 """How each method is drawn."""
 _FEW_DECADES = 100.0
-"""Ratio of costs below which decades alone would leave an axis with hardly a number."""
+"""Ratio of costs below which decades alone would leave an axis with hardly a label."""
 _SMALLEST = 1e-17
 """Errors below are drawn here: they are zero to the reference's last digit."""
 

@@ -103,11 +103,7 @@ def payload(
         "lengths": [float(explorer.length1), float(explorer.length2)],
         "layers": {key: _layer(layer) for key, layer in layers.items()},
         "scenes": [
-            {
-                "name": name,
-                "angles": [scene["alpha1"], scene["alpha2"]],
-                "near": scene.get("near"),
-            }
+            {"name": name, "angles": [scene["alpha1"], scene["alpha2"]], "near": scene.get("near")}
             for name, scene in scenes.items()
             if all(0.0 <= scene[angle] <= np.pi for angle in ("alpha1", "alpha2"))
         ],

@@ -14,7 +14,7 @@ from squealpipe.study.claims.maps import (
 )
 from squealpipe.study.claims.statement import Rows
 
-rows = Rows("6")
+rows = Rows("6", "fig06")
 
 LARGE_REGION = 0.5
 """Share of the angle map from which a region is called large."""
@@ -26,7 +26,6 @@ ADEQUATE_AGREEMENT = 0.95
 @rows.add(
     "F6a",
     "Eq. (11) bounds where quasi-static sliding exists",
-    "fig06",
     section="5",
     recorded=Verdict.holds_only_as_printed,
 )
@@ -48,7 +47,6 @@ def printed_bound_is_physical(run: Run) -> Finding:
 @rows.add(
     "F6b",
     "every linearly unstable cell lies where quasi-static sliding is impossible",
-    "fig06",
     recorded=Verdict.holds_only_as_printed,
     consequence="F6b",
 )
@@ -66,7 +64,6 @@ def unstable_only_without_sliding(run: Run) -> Finding:
 @rows.add(
     "F6c",
     "the system is stable wherever quasi-static sliding persists",
-    "fig06",
     recorded=Verdict.holds_only_as_printed,
     consequence="F6b",
 )
@@ -87,7 +84,7 @@ def stable_where_sliding(run: Run) -> Finding:
     )
 
 
-@rows.add("F6d", "(0.4π, 0.6π) is linearly stable although A1 is not", "fig06")
+@rows.add("F6d", "(0.4π, 0.6π) is linearly stable although A1 is not")
 def linearly_stable_but_not(run: Run) -> Finding:
     """Growth rate of A3 there, times the time unit."""
     rate = float(cell(run["stability_map"], 0.4, 0.6).growth_rate) * run.parameters.time_unit
@@ -104,7 +101,6 @@ def linearly_stable_but_not(run: Run) -> Finding:
 @rows.add(
     "F6e",
     "the linear model lets k3 pull as well as push, which the contact cannot: by how much, where",
-    "fig06",
 )
 def spring_pulls(run: Run) -> Finding:
     """Share of cells in which the linear model's k3 pulls."""
@@ -124,7 +120,10 @@ def spring_pulls(run: Run) -> Finding:
 
 
 @rows.add(
-    "F7a", "A3 is invalid wherever A1 separates; the region is large", "fig07", consequence="F7a"
+    "F7a",
+    "A3 is invalid wherever A1 separates; the region is large",
+    figure="fig07",
+    consequence="F7a",
 )
 def invalid_where_separated(run: Run) -> Finding:
     """Share of the angles at which A1 separates, within curves."""
@@ -140,7 +139,9 @@ def invalid_where_separated(run: Run) -> Finding:
 
 
 @rows.add(
-    "F7b", "the linear analysis cannot be used to decide the stability of this system", "fig07"
+    "F7b",
+    "the linear analysis cannot be used to decide the stability of this system",
+    figure="fig07",
 )
 def linear_analysis_misleads(run: Run) -> Finding:
     """Share of cells in which A3's stability and A1's contact agree."""

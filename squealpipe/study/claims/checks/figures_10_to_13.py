@@ -7,7 +7,7 @@ from squealpipe.schema import Outcome
 from squealpipe.study.claims.evidence import Finding, MissingDataError, Run, finding
 from squealpipe.study.claims.statement import Check, Rows
 
-rows = Rows("7")
+rows = Rows("7", "fig10_to_12")
 
 ALONE = 1e-9
 """Amplitude, as a share of the other one's, below which a direction takes no part."""
@@ -30,7 +30,7 @@ def branch(run: Run, scene: str, mode: int) -> xr.Dataset:
     return points
 
 
-@rows.add("F10", "(π/2, π): near ω1 one peak, in x alone; near ω2 peaks in x and y", "fig10_to_12")
+@rows.add("F10", "(π/2, π): near ω1 one peak, in x alone; near ω2 peaks in x and y")
 def first_mode_is_isolated(run: Run) -> Finding:
     """y amplitude of mode 1, as a share of its x amplitude."""
     alone, both = (_participation(branch(run, "F10", mode)) for mode in (1, 2))
@@ -65,7 +65,7 @@ def same_as_first(scene: str) -> Check:
 
 
 for name, angles in (("F11", "(π, π/2)"), ("F12", "(3π/4, 3π/4)")):
-    rows.add(name, f"{angles}: nearly the same response", "fig10_to_12")(same_as_first(name))
+    rows.add(name, f"{angles}: nearly the same response")(same_as_first(name))
 
 
 def bends_down(scene: str) -> Check:
@@ -96,14 +96,14 @@ for name, text in (
     ("F11", "the same in Fig. 11"),
     ("F12", "the same in Fig. 12"),
 ):
-    rows.add(f"{name}b", text, "fig10_to_12")(bends_down(name))
+    rows.add(f"{name}b", text)(bends_down(name))
 
 
 @rows.add(
     "F13",
     "at (5π/6, 5π/6) the modes are switched: contact is lost at the first, the "
     "isolated x motion is the second",
-    "fig13",
+    figure="fig13",
 )
 def modes_are_switched(run: Run) -> Finding:
     """y amplitude of mode 2, as a share of its x amplitude."""

@@ -9,7 +9,7 @@ from squealpipe.study.claims.evidence import Finding, MissingDataError, Run, fin
 from squealpipe.study.claims.maps import angle_sum_over_pi, cell, is_multiple, place, share
 from squealpipe.study.claims.statement import Rows
 
-rows = Rows("7")
+rows = Rows("7", "fig08")
 
 VANISHING = 1e-6
 """ω1 below this share of its largest value is zero."""
@@ -21,7 +21,7 @@ SMALL, LARGE = 0.1, 0.98
 """Shares of the largest value that bound "the region where ω1 vanishes" and "ω2 is largest"."""
 
 
-@rows.add("F8a", "in contact ω1 → 0 near α1 = α2 = π/2", "fig08")
+@rows.add("F8a", "in contact ω1 → 0 near α1 = α2 = π/2")
 def first_vanishes_in_contact(run: Run) -> Finding:
     """ω1 at (0.5π, 0.5π), as a share of its largest value."""
     contact = _state(run, "contact")
@@ -36,7 +36,7 @@ def first_vanishes_in_contact(run: Run) -> Finding:
     )
 
 
-@rows.add("F8b", "separated, ω1 = 0 along α1 + α2 = nπ", "fig08")
+@rows.add("F8b", "separated, ω1 = 0 along α1 + α2 = nπ")
 def first_vanishes_on_lines(run: Run) -> Finding:
     """Largest ω1 on those lines, as a share of its largest value."""
     separated = _state(run, "separated")
@@ -55,51 +55,42 @@ def first_vanishes_on_lines(run: Run) -> Finding:
 @rows.add(
     "F8c",
     "ω1 is largest at α1 + α2 = nπ/2 (n odd)",
-    "fig08",
     recorded=Verdict.holds_only_as_printed,
     consequence="F8c",
 )
 def first_is_largest_on_lines(run: Run) -> Finding:
     """Excess of the largest ω1² over that on the lines, the larger of both contact states."""
-    found = {}
-    for name in ("separated", "contact"):
-        state = _state(run, name)
-        first = state.omega.sel(mode=1).where(state.outcome.sel(mode=1) == Outcome.converged)
-        on_line = is_multiple(angle_sum_over_pi(state), 0.5, odd=True)
-        filled = first.fillna(0.0)
-        found[name] = (
-            float(filled.max() ** 2),
-            float(filled.where(on_line).max() ** 2),
-            place(state, filled),
-        )
-    unit = run.parameters.k1 / run.parameters.mass
-    excess = {name: largest / line - 1 for name, (largest, line, _) in found.items()}
-    largest, line, (first_angle, second_angle) = found["contact"]
+    state, unit = run["natural_frequencies"].sel(mode=1), run.parameters.k1 / run.parameters.mass
+    square = state.omega.where(state.outcome == Outcome.converged).fillna(0.0) ** 2
+    lines = is_multiple(angle_sum_over_pi(state), 0.5, odd=True)
+    over = ["alpha1", "alpha2"]
+    largest, line = square.max(over), square.where(lines).max(over)
+    separated, contact = (
+        float(largest.sel(contact_state=name) / line.sel(contact_state=name) - 1)
+        for name in ("separated", "contact")
+    )
+    first, second = place(state, square.sel(contact_state="contact"))
     return finding(
-        (max(excess.values()), "≤", SAME_OMEGA),
-        "Separated, the largest ω1² exceeds that on α1 + α2 = π/2 and 3π/2 by "
-        f"{excess['separated']:.1g} of it. In contact it is {largest / unit:.4g} k1/m at "
-        f"({first_angle:.3g}π, {second_angle:.3g}π), against {line / unit:.4g} k1/m on "
-        "those lines. For even n ω1 = 0 there when separated.",
-        otherwise=Verdict.holds_only_as_printed
-        if excess["separated"] <= SAME_OMEGA
-        else Verdict.fails,
+        (max(separated, contact), "≤", SAME_OMEGA),
+        f"Separated, the largest ω1² exceeds that on α1 + α2 = π/2 and 3π/2 by {separated:.1g} of "
+        f"it. In contact it is {float(largest.sel(contact_state='contact')) / unit:.4g} k1/m at "
+        f"({first:.3g}π, {second:.3g}π), against "
+        f"{float(line.sel(contact_state='contact')) / unit:.4g} k1/m on those lines. For even n "
+        "ω1 = 0 there when separated.",
+        otherwise=Verdict.holds_only_as_printed if separated <= SAME_OMEGA else Verdict.fails,
     )
 
 
-@rows.add("F8d", "the region where ω1 vanishes is larger when separated", "fig08", section="9")
+@rows.add("F8d", "the region where ω1 vanishes is larger when separated", section="9")
 def vanishing_region_grows(run: Run) -> Finding:
     """Ratio of the areas where ω1 is small, separated to contact."""
     first = run["natural_frequencies"].omega.sel(mode=1)
-    areas = _shares(first <= SMALL * first.max(["alpha1", "alpha2"]))
-    return finding(
-        (areas["separated"] / max(areas["contact"], 1e-12), ">", 1.0),
-        f"ω1 is below {SMALL:g} of its largest value in {100 * areas['contact']:.3g} % of the map "
-        f"in contact and in {100 * areas['separated']:.3g} % when separated.",
+    return _larger_when_separated(
+        first <= SMALL * first.max(["alpha1", "alpha2"]), f"ω1 is below {SMALL:g}"
     )
 
 
-@rows.add("F9a", "where ω1 = 0, ω2 is largest", "fig09")
+@rows.add("F9a", "where ω1 = 0, ω2 is largest", figure="fig09")
 def second_is_largest_where_first_vanishes(run: Run) -> Finding:
     """ω2 there, as a share of its largest value."""
     separated = _state(run, "separated")
@@ -118,7 +109,7 @@ def second_is_largest_where_first_vanishes(run: Run) -> Finding:
     )
 
 
-@rows.add("F9b", "ω1 and ω2 shift in opposite directions", "fig09")
+@rows.add("F9b", "ω1 and ω2 shift in opposite directions", figure="fig09")
 def shifts_are_opposite(run: Run) -> Finding:
     """Share of steps between cells with opposite signs."""
     shares = {}
@@ -143,22 +134,25 @@ def shifts_are_opposite(run: Run) -> Finding:
     )
 
 
-@rows.add("F9c", "the region where ω2 is largest is larger when separated", "fig09", section="9")
+@rows.add(
+    "F9c", "the region where ω2 is largest is larger when separated", figure="fig09", section="9"
+)
 def largest_region_grows(run: Run) -> Finding:
     """Ratio of the areas where ω2 is near its largest value, separated to contact."""
     second = run["natural_frequencies"].omega.sel(mode=2)
-    areas = _shares(second >= LARGE * second.max(["alpha1", "alpha2"]))
+    return _larger_when_separated(
+        second >= LARGE * second.max(["alpha1", "alpha2"]), f"ω2 is above {LARGE:g}"
+    )
+
+
+def _larger_when_separated(cells: xr.DataArray, what: str) -> Finding:
+    contact, separated = (share(cells.sel(contact_state=name)) for name in ("contact", "separated"))
     return finding(
-        (areas["separated"] / max(areas["contact"], 1e-12), ">", 1.0),
-        f"ω2 is above {LARGE:g} of its largest value in {100 * areas['contact']:.3g} % of the map "
-        f"in contact and in {100 * areas['separated']:.3g} % when separated.",
+        (separated / max(contact, 1e-12), ">", 1.0),
+        f"{what} of its largest value in {100 * contact:.3g} % of the map in contact and in "
+        f"{100 * separated:.3g} % when separated.",
     )
 
 
 def _state(run: Run, name: str) -> xr.Dataset:
     return run["natural_frequencies"].sel(contact_state=name)
-
-
-def _shares(cells: xr.DataArray) -> dict[str, float]:
-    """Share of the map in both contact states."""
-    return {name: share(cells.sel(contact_state=name)) for name in ("contact", "separated")}
