@@ -81,6 +81,13 @@ explorer: {points: 3}
 spread: {samples: 64, critical_points: 7}
 """
 
+MEASURED = """
+results: results/measured
+scenes: {leaning: {alpha1: 65deg, alpha2: 155deg, start: {vy: -0.2}}}
+parameters:
+  {friction_law: {table: friction.csv}, contact_law: dashpot, damping1: 20, damping3: 40}
+"""
+
 
 @pytest.mark.release
 def test_wheel_in_a_bare_environment(checkout, tmp_path):
@@ -104,4 +111,10 @@ def test_wheel_in_a_bare_environment(checkout, tmp_path):
     (folder / "mine.yaml").write_text(PAD)
     run(command, "run", "--config", "mine.yaml", cwd=folder)
     assert "What the mass does" in (folder / "results/pad/report/index.html").read_text()
+    (folder / "friction.csv").write_text("speed,mu\n0,0.5\n1,0.4\n3,0.36\n")
+    (folder / "measured.yaml").write_text(MEASURED)
+    run(command, "run", "--config", "mine.yaml", "--config", "measured.yaml", cwd=folder)
+    text = (folder / "results/measured/report/index.html").read_text()
+    assert "0.5 at 0, 0.4 at 1, 0.36 at 3" in text
+    assert "leaning, with one thing changed" in text
     run(command, "archive", "first", "--config", "mine.yaml", cwd=folder)
