@@ -40,19 +40,16 @@ def draw(branches: Mapping[str, xr.Dataset], doubled: Mapping[str, xr.Dataset]) 
 
 def _draw_doubled(panel: Axes, simple: xr.Dataset, doubled: list[xr.Dataset]) -> None:
     inset = panel.inset_axes((0.5, 0.44, 0.48, 0.5))
-    _line(inset, simple, simple.y_peak.values, 1, Y_COLOUR)
+    inset.margins(0.12)
     top = SHOWN * float(simple.y_peak.max())
-    corners = []
     for branch, colour in zip(doubled, (GREEN, PURPLE), strict=False):
         shown = branch.isel(point=branch.y_largest.values <= top)
         _line(inset, shown, shown.y_largest.values, 2, colour)
-        corners.append((2 * shown.omega.values, shown.y_largest.values))
         at = float(branch.doubling_omega), float(branch.y_largest[0])
         inset.plot(*at, "o", markersize=4, markerfacecolor="white", markeredgecolor=BLACK, zorder=3)
-    omega, y = map(np.concatenate, zip(*corners, strict=True))
-    inset.set_xlim(*_framed(omega))
-    inset.set_ylim(*_framed(y))
-    inset.set_ylim(top=min(inset.get_ylim()[1], panel.get_ylim()[1]))
+    limits = inset.get_xlim(), inset.get_ylim()
+    _line(inset, simple, simple.y_peak.values, 1, Y_COLOUR)
+    inset.set(xlim=limits[0], ylim=(limits[1][0], min(limits[1][1], panel.get_ylim()[1])))
     inset.xaxis.set_major_locator(MaxNLocator(4))
     inset.tick_params(labelsize=5)
     panel.indicate_inset_zoom(inset, edgecolor=BLACK, alpha=0.4)
@@ -65,8 +62,3 @@ def _line(inset: Axes, branch: xr.Dataset, y: np.ndarray, times: int, colour: st
     inset.plot(omega, np.where(unstable, np.nan, y), color=colour, linewidth=1.2)
     if unstable.any():
         inset.plot(omega, np.where(joined(unstable), y, np.nan), ":", color=colour, linewidth=1.2)
-
-
-def _framed(values: np.ndarray) -> tuple[float, float]:
-    margin = 0.12 * float(np.ptp(values))
-    return float(values.min()) - margin, float(values.max()) + margin

@@ -74,16 +74,13 @@ def _on_diagonal(
 def draw_sums(axes: Axes) -> None:
     """The exact lines of the separated state: det K = 0, and smallest |Z| for any stiffnesses."""
     along = np.array([-np.pi, 2 * np.pi])
-    limits = axes.get_xlim(), axes.get_ylim()
+    look: dict[str, Any] = {"color": style.BLACK, "lw": 1.1, "scalex": False, "scaley": False}
     halo = [withStroke(linewidth=2.2, foreground=style.WHITE)]
     for odd, label, dash in ((0, "α₁ + α₂ = nπ", "--"), (1, "α₁ + α₂ = nπ/2, n odd", ":")):
         for number in range(odd, 5, 2):
             line = number * np.pi / 2 - along
-            axes.plot(
-                along, line, color=style.BLACK, ls=dash, lw=1.1, label=label, path_effects=halo
-            )
+            axes.plot(along, line, ls=dash, label=label, path_effects=halo, **look)
             label = "_"
-    axes.set(xlim=limits[0], ylim=limits[1])
 
 
 def isoline(
