@@ -13,8 +13,8 @@ from squealpipe.benchmark.problems import Problem, all_data, references
 from squealpipe.schema import build
 from squealpipe.schema.comparison import BENCHMARK, Reliability, Role
 
-BENCHMARK_VERSION = 1
-"""Goes up with each problem that is added; none is ever changed or removed."""
+BENCHMARK_VERSION = 2
+"""Goes up when problems are added; none is ever changed or removed."""
 TOLERANCES = (1e-6, 1e-8, 1e-10, 1e-12)
 ALLOWED = 100.0
 """Error over growth, in tolerances, up to which an answer is right."""

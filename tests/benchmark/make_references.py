@@ -171,6 +171,8 @@ def _first_root(surface, h, flow, samples):  # noqa: C901
     values = [surface(k * part, y) for k, y in enumerate(samples)]
     slopes = [(surface(k * part, y, NUDGE) - values[k]) / NUDGE for k, y in enumerate(samples)]
     largest = max(map(abs, values))
+    if largest == 0:
+        return None
     eps = (h * 0 + 10) ** (-6)
 
     def at(span):

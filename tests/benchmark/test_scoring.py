@@ -5,7 +5,7 @@ import pytest
 
 from squealpipe.benchmark.adapters import SOLVERS, solver
 from squealpipe.benchmark.problems import Problem, all_data, references
-from squealpipe.benchmark.scoring import benchmark, measure, score
+from squealpipe.benchmark.scoring import BENCHMARK_VERSION, benchmark, measure, score
 from squealpipe.schema.comparison import Reliability
 
 DATA = {data["name"]: data for data in all_data()}
@@ -198,6 +198,6 @@ def test_shipped_solvers_get_an_easy_problem_right(name):
 def test_dataset_has_its_schema():
     found = benchmark({"DOP853": solver("DOP853")}, names=["two gates"], tolerances=[1e-6, 1e-8])
     assert found.verdict.dims == ("problem", "solver", "tol")
-    assert found.attrs["benchmark_version"] == 1
+    assert found.attrs["benchmark_version"] == BENCHMARK_VERSION
     with pytest.raises(ValueError, match="unknown"):
         benchmark({}, names=["no such problem"])
