@@ -2,8 +2,9 @@
 
 import os
 
-# threads cost small matrices more than they save, and make their times uncertain
-os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+# threads cost small matrices more than they save, and make their times uncertain; Snakemake sets as many
+# as the rule has
+os.environ["OPENBLAS_NUM_THREADS"] = "1"
 
 from squealpipe.execution.job import Job
 from squealpipe.tasks.comparison.work_precision import work_precision
