@@ -35,7 +35,7 @@ STEP, SECANT = 1e-8, (1e-9, 1e-5)
 """Of the differences that give tangents; of those that a zero's last secant gives."""
 FLAT = 1e-6
 """Distance of a polygon from a line."""
-LONGEST = 10.0
+LONGEST = 30.0
 """Tongue beyond a chord, over it, that is looked for."""
 RUNGS = np.array([-3.0, -1.0, -0.3, -0.1, -0.03, -0.01, 0.0, 0.01, 0.03, 0.1, 0.3, 1.0, 3.0])
 """Distances from a chord, over its length, between which a zero is looked for."""

@@ -33,6 +33,21 @@ def amplitude(omega, speed):
     return np.linalg.norm(forced) * np.hypot(1.0 - omega**2, DAMPING * omega)
 
 
+def trace(omega, amplitude, damping):
+    """Of the monodromy of the cycle with one impact, which is the faster of the two."""
+    flow = expm(np.array([[0.0, 1.0], [-1.0, -damping]]) * 2 * np.pi / omega)
+    inverse = np.linalg.inv(np.eye(2) - flow)
+    fixed = inverse @ ((np.eye(2) - flow) @ [GAP, 0.0]) / [1.0, omega]
+    by_speed = inverse @ (np.array([0.0, 1.0]) + flow @ [0.0, RESTITUTION]) / [1.0, omega]
+    size = amplitude / np.hypot(1.0 - omega**2, damping * omega)
+    square, cross = by_speed @ by_speed, fixed @ by_speed
+    speed = (-cross + np.sqrt(cross**2 - square * (fixed @ fixed - size**2))) / square
+    forced = (fixed + speed * by_speed) * [1.0, omega]
+    push = (1.0 - omega**2) * forced[0] + damping * forced[1] - GAP
+    jump = RESTITUTION * (push - damping * speed) + push + damping * RESTITUTION * speed
+    return -RESTITUTION * np.trace(flow) + jump * flow[0, 1] / speed
+
+
 def fold(omega):
     _, fixed, by_speed = (each / [1.0, omega] if each.ndim == 1 else each
                           for each in one_impact(omega))  # fmt: skip
@@ -108,6 +123,20 @@ def test_curve_of_period_doublings():
     np.testing.assert_allclose(curve.amplitude, exact, rtol=1e-10)
     assert Meeting.flip_grazing in curve.label
     assert set(ends(curve)) == {"order_changes_speed_of_impact", "end_of_range"}
+
+
+def test_curve_of_tori():
+    """Where multipliers have the modulus 1: r² exp(−2π c/ω) = 1, until they meet at −1."""
+    guess = {"x": -1.5, "v": 0.5}
+    start = impact_oscillator.limit_cycle(omega=2.1, amplitude=4.5, guess=guess)
+    start = impact_oscillator.cycle_branch("damping", -0.25, start=start)
+    curve = impact_oscillator.cycle_curve("torus", ("omega", "damping"), start=start, n_points=60)
+    omega, damping = curve.omega.values, curve.damping.values
+    np.testing.assert_allclose(damping, omega / np.pi * np.log(RESTITUTION), rtol=1e-12)
+    assert set(ends(curve)) == {"multipliers_are_real", "point_limit"}
+    for meeting, angle in (("2", np.pi), ("3", 2 * np.pi / 3), ("4", np.pi / 2)):
+        (at,) = np.flatnonzero(curve.label.values == Meeting[f"resonance_1_{meeting}"])
+        assert trace(omega[at], 4.5, damping[at]) == pytest.approx(2 * np.cos(angle), abs=1e-9)
 
 
 def test_the_onset_of_stick_is_followed_in_belt_speed_and_damping():

@@ -541,7 +541,7 @@ class _Turn:
 
     def _runs(self) -> Iterator[tuple[EventMap, Vector]]:
         """Motions of the system from just beyond, with the events that they have."""
-        old = _order(self.there[1].map.events)
+        old = order_of(self.there[1].map.events)
         seen = set()
         for beyond in (1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2):
             try:
@@ -551,7 +551,7 @@ class _Turn:
             found = run_of(cycle)
             if found is None:
                 continue
-            order = _order(found[0].events)
+            order = order_of(found[0].events)
             if order != old and order not in seen:
                 seen.add(order)
                 yield found
@@ -609,7 +609,7 @@ class _Turn:
         return state, cycle
 
 
-def _order(events: tuple[Event, ...]) -> tuple[tuple[int, ...], ...]:
+def order_of(events: tuple[Event, ...]) -> tuple[tuple[int, ...], ...]:
     """The events from the rotation that sorts first."""
     kinds = [(e.switch, e.before, e.after, e.kind) for e in events]
     return min(tuple(kinds[i:] + kinds[:i]) for i in range(len(kinds)))

@@ -1,15 +1,16 @@
-"""Curves of special cycles in two parameters: folds, period doublings, grazings, onsets of stick.
+"""Curves of special cycles in two parameters: folds, period doublings, tori, grazings, stick.
 
 The equations of the cycle's legs and one more, by pseudo-arclength. At a fold their derivative by
 the unknowns is singular, at a period doubling that of a disturbance that returns with the other
-sign; a bordered system gives the equation (Govaerts, Numerical Methods for Bifurcations of
-Dynamical Equilibria, 2000, ch. 3). It is exact; its derivative, which only steers Newton's method,
-is a difference of exact Jacobians along the null vector.
+sign, at a torus that of one that returns turned by an angle, which is one more unknown; a bordered
+system gives the equation (Govaerts, Numerical Methods for Bifurcations of Dynamical Equilibria,
+2000, ch. 3). It is exact; its derivative, which only steers Newton's method, is a difference of
+exact Jacobians along the null vector.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from enum import IntEnum
 from functools import partial
@@ -20,8 +21,16 @@ import xarray as xr
 
 from squealpipe.methods.continuation import ContinuationState, PseudoArclength
 from squealpipe.systems import runs
-from squealpipe.systems.cycles.admissible import ROUND_OFF, Kind, Margin, margins
-from squealpipe.systems.cycles.branch import PRECISE, STEPS, Line, label_of, started
+from squealpipe.systems.cycles.admissible import ROUND_OFF, Kind, Margin, is_motion, margins
+from squealpipe.systems.cycles.branch import (
+    PRECISE,
+    STEPS,
+    Line,
+    label_of,
+    order_of,
+    run_of,
+    started,
+)
 from squealpipe.systems.cycles.event_map import FREE, Cycle, Event, EventMap, Section
 from squealpipe.systems.cycles.flow import Flow, Vector
 from squealpipe.systems.cycles.labels import Label
@@ -34,9 +43,13 @@ if TYPE_CHECKING:
 _DIFFERENCE = 1e-5
 _NEAR = 1e-4
 """Margin of a start below which it is taken for the one that vanishes."""
+_JUMP = 1.0
+"""Change of the parameters, over a step, beyond which a point is not next to the change."""
+ENDS = ("point_limit", "end_of_range", "curve_lost", "multipliers_are_real")
+"""Why a curve ends where the order of the events does not change."""
 _NO_MARGIN = Margin(Kind.length, -1, FREE)
-RETURNS = {Label.fold: 1.0, Label.period_doubling: -1.0}
-"""What multiplies a disturbance in a period."""
+RETURNS = {Label.fold: 0.0, Label.period_doubling: np.pi, Label.torus: np.nan}
+"""By which angle a disturbance is turned in a period; NaN where it is an unknown."""
 
 
 Test = Callable[[Vector], float]
@@ -53,6 +66,10 @@ class Meeting(IntEnum):
     stick_onset = 5
     end_of_leg = 6
     end = 7
+    resonance_1_1 = 8
+    resonance_1_2 = 9
+    resonance_1_3 = 10
+    resonance_1_4 = 11
 
 
 @dataclass
@@ -70,53 +87,85 @@ class Curve:
     own: Margin = _NO_MARGIN
     border: tuple[Vector, Vector] = (np.empty(0), np.empty(0))
 
-    def returning(self, jacobian: Vector, factor: float) -> Vector:
+    def known(self, point: Vector) -> Vector:
+        """The unknowns of the cycle at a point, without the angle of a torus."""
+        return point[: self.map.size + 2]
+
+    def cycle(self, point: Vector) -> Cycle:
+        """The cycle at a point."""
+        return Cycle.at(self.map, self.known(point))
+
+    def returning(self, jacobian: Vector, factor: complex) -> Vector:
         """The derivative by the unknowns for disturbances that a period multiplies by a factor."""
         n, size = self.map.flow.size, self.map.size
-        found = jacobian[:, :size].copy()
+        found = jacobian[:, :size].astype(type(factor))
         last = (self.map.legs - 1) * n
         found[last : last + n, :n] += (1.0 - factor) * np.eye(n)
         if self.map.periods:
             found[-1, -1] += 1.0 - factor
         return found
 
+    def factor(self, point: Vector) -> complex:
+        """What multiplies a disturbance in a period."""
+        angle = RETURNS[self.label]
+        return complex(np.exp(1j * point[-1])) if np.isnan(angle) else float(np.cos(angle))
+
     def determinant(self, point: Vector, factor: float) -> float:
         """Zero where a disturbance returns multiplied by the factor."""
-        return float(np.linalg.det(self.returning(self.map.evaluate(point)[1], factor)))
+        jacobian = self.map.evaluate(self.known(point))[1]
+        return float(np.linalg.det(self.returning(jacobian, factor)))
 
     def renew(self, point: Vector) -> None:
         """Take the borders, and the section of a cycle without events, from a point."""
         if self.map.section is not None:
-            heading = Cycle.at(self.map, point).heading
-            state = self.map.unpack(point)[0][0]
+            cycle = self.cycle(point)
+            state, heading = cycle.parts.states[0], cycle.heading
             section = Section(state, heading / np.linalg.norm(heading))
             self.map = replace(self.map, section=section)
         if self.label in RETURNS:
-            matrix = self.returning(self.map.evaluate(point)[1], RETURNS[self.label])
-            left, _, right = np.linalg.svd(matrix)
-            self.border = right[-1], left[:, -1]
+            jacobian = self.map.evaluate(self.known(point))[1]
+            left, _, right = np.linalg.svd(self.returning(jacobian, self.factor(point)))
+            self.border = _real(right[-1].conj()), _real(left[:, -1].conj())
 
     def evaluate(self, point: Vector) -> tuple[Vector, Vector]:
         """All equations with their Jacobian."""
-        values, jacobian = self.map.evaluate(point)
+        values, jacobian = self.map.evaluate(self.known(point))
+        more = len(point) - jacobian.shape[1]
+        jacobian = np.pad(jacobian, ((0, 0), (0, more)))
         if not np.isfinite(jacobian).all() or not np.isfinite(values).all():
-            return np.append(values, np.nan), np.vstack([jacobian, jacobian[:1]])
+            nothing = np.full(1 + more, np.nan)
+            return np.append(values, nothing), np.vstack([jacobian, jacobian[: 1 + more]])
         singular = self.label in RETURNS
         value, row = self._singular(point, jacobian) if singular else self._margin(point)
         return np.append(values, value), np.vstack([jacobian, row])
 
-    def _singular(self, point: Vector, jacobian: Vector) -> tuple[float, Vector]:
-        size, (right, left) = self.map.size, self.border
-        matrix = np.zeros((size + 1, size + 1))
-        matrix[:size, :size] = self.returning(jacobian, RETURNS[self.label])
+    def _singular(self, point: Vector, jacobian: Vector) -> tuple[Any, Vector]:
+        size, (right, left), factor = self.map.size, self.border, self.factor(point)
+        matrix: Any = np.zeros((size + 1, size + 1), type(factor))
+        matrix[:size, :size] = self.returning(jacobian, factor)
         matrix[:size, size], matrix[size, :size] = left, right
         unit = np.eye(size + 1)[-1]
-        null, dual = np.linalg.solve(matrix, unit), np.linalg.solve(matrix.T, unit)
-        step = np.append(null[:size], np.zeros(len(point) - size))
-        step *= _DIFFERENCE / np.linalg.norm(step)
-        change = self.map.evaluate(point + step)[1] - self.map.evaluate(point - step)[1]
-        slope = change * (np.linalg.norm(null[:size]) / (2.0 * _DIFFERENCE))
-        return float(null[-1]), -dual[:size] @ slope
+        null, dual = (np.linalg.solve(each, unit) for each in (matrix, matrix.T))
+        row: Any = -dual[:size] @ self._along(point, null[:size].real)
+        if isinstance(factor, float):
+            return float(null[-1]), row
+        row = row - 1j * dual[:size] @ self._along(point, null[:size].imag)
+        turned = 1j * factor * self.returning(np.zeros((size, size)), 0.0)
+        row = np.append(row, dual[:size] @ turned @ null[:size])
+        # an odd function of the angle, which is regular where that is zero or half a turn
+        sine, cosine = np.sin(point[-1]), np.cos(point[-1])
+        odd = row.imag / sine
+        odd[-1] -= null[-1].imag * cosine / sine**2
+        return np.array([null[-1].real, null[-1].imag / sine]), np.array([row.real, odd])
+
+    def _along(self, point: Vector, direction: Vector) -> Vector:
+        """How the Jacobian changes along a direction of the cycle's unknowns."""
+        here = self.known(point)
+        step = np.append(direction, np.zeros(2))
+        size = max(float(np.linalg.norm(step)), 1e-300)
+        step *= _DIFFERENCE / size
+        change = self.map.evaluate(here + step)[1] - self.map.evaluate(here - step)[1]
+        return np.asarray(change * (size / (2.0 * _DIFFERENCE)))
 
     def _margin(self, point: Vector) -> tuple[float, Vector]:
         """What a margin is of, as a function of the end of its leg, and its row."""
@@ -148,6 +197,11 @@ class Curve:
             }
         if self.label == Label.period_doubling:
             return {Meeting.fold_flip: lambda z: self.determinant(z, 1.0)}
+        if self.label == Label.torus:
+            return {
+                Meeting.resonance_1_3: lambda z: z[-1] - 2.0 * np.pi / 3.0,
+                Meeting.resonance_1_4: lambda z: z[-1] - np.pi / 2.0,
+            }
         if self.label == Label.grazing:
             return {
                 Meeting.fold_grazing: lambda z: self.determinant(z, 1.0),
@@ -160,14 +214,23 @@ class Curve:
 
     def least_margin(self, point: Vector) -> tuple[float, Margin | None]:
         """The margin next to zero that is not the curve's own."""
-        found = {k: v for k, v in margins(Cycle.at(self.map, point)).items() if k != self.own}
+        found = {k: v for k, v in margins(self.cycle(point)).items() if k != self.own}
         key = min(found, key=lambda k: found[k], default=None)
         return (np.inf, None) if key is None else (found[key], key)
+
+
+def _real(vector: Vector) -> Vector:
+    """The longest real part of a complex vector, whose phase is free."""
+    part = (vector * np.exp(-0.5j * np.angle(vector @ vector))).real
+    return np.asarray(part / np.linalg.norm(part))
 
 
 def _curve_of(cycle: Cycle, label: Label) -> tuple[Curve, Vector]:
     """The equations of the curve through a cycle with two followed parameters, and a guess."""
     equations = cycle.map
+    if label == Label.torus:
+        first = cycle.nontrivial[np.argmin(np.abs(np.abs(cycle.nontrivial) - 1.0))]
+        return Curve(equations, label), np.append(cycle.point, abs(np.angle(first)))
     if label in RETURNS:
         return Curve(equations, label), cycle.point
     near = {k: abs(v) for k, v in margins(cycle).items() if abs(v) < _NEAR and k.kind != Kind.edge}
@@ -232,16 +295,20 @@ class _Way:
         self.end = "point_limit"
 
     def inside(self, point: Vector) -> float:
-        """Distance from the limits, over the units."""
+        """Distance from the limits, over the units, and of a torus from real multipliers."""
         equations = self.curve.map
-        values = dict(zip(equations.flow.followed, point[equations.size :], strict=True))
+        values = dict(zip(equations.flow.followed, point[equations.size :], strict=False))
         units = dict(zip(equations.flow.followed, equations.units, strict=True))
         found = [
             side
             for name, (low, high) in self.limits.items()
             for side in (values[name] - low / units[name], high / units[name] - values[name])
         ]
-        return min(found, default=np.inf)
+        return float(min([*found, self._turns(point)]))
+
+    def _turns(self, point: Vector) -> float:
+        angle = point[-1] if self.curve.label == Label.torus else np.nan
+        return float(np.fmin(np.inf, min(angle, np.pi - angle)))
 
     def points(self, state: ContinuationState) -> Iterator[Point]:
         """The points after a first one."""
@@ -255,7 +322,7 @@ class _Way:
             found: dict[float, Meeting] = {}
             line = Line(
                 self.algorithm, self.curve, (state, self._cycle(state)),
-                (following, self._cycle(following)), partial(Cycle.at, self.curve.map),
+                (following, self._cycle(following)), self.curve.cycle,
             )  # fmt: skip
             for label, test in tests.items():
                 if test(state.point) * test(following.point) < 0.0:
@@ -268,27 +335,60 @@ class _Way:
                 if end is None or share < end[0] - 1e-6:
                     yield self._point(line.at(share)[0], found[share])
             if end is not None:
-                self.end = end[2]
                 yield self._point(line.at(end[0])[0], end[1])
-                return
+                following = self._goes_on(line, end[0]) if end[2].startswith("order") else None
+                if following is None:
+                    self.end = end[2]
+                    return
             yield self._point(following, Meeting.regular)
             state = following
 
+    def _goes_on(self, line: Line, share: float) -> ContinuationState | None:
+        """The curve's next point with the events that motions have beyond where these change."""
+        here, old = line.at(share), self.curve
+        for beyond in (1e-6, 1e-4, 1e-2) if old.label in RETURNS else ():
+            try:
+                state, cycle = line.at(share + beyond)
+            except ArithmeticError:
+                continue
+            found = run_of(cycle)
+            if found is None or order_of(found[0].events) == order_of(cycle.map.events):
+                continue
+            self.curve = replace(old, map=found[0])
+            angle = state.point[len(old.known(state.point)) :]
+            guess, normal = np.append(found[1], angle), np.zeros(len(found[1]) + len(angle))
+            size = found[0].size
+            normal[size : size + 2] = state.tangent[old.map.size : old.map.size + 2]
+            self.curve.renew(guess)
+            algorithm = replace(self.algorithm, settings=replace(PRECISE, max_iterations=20))
+            new = algorithm.solve(self.curve, guess, normal, STEPS.first_step)
+            if new is not None:
+                moved = new.point[size : size + 2] - here[0].point[old.map.size : old.map.size + 2]
+                near = np.abs(moved).max() < _JUMP * line.reach + 10.0 * beyond
+                if near and self._is_cycle(new) and is_motion(self._cycle(new)):
+                    return new
+        self.curve = old
+        return None
+
     def _is_cycle(self, state: ContinuationState) -> bool:
-        return Cycle.at(self.curve.map, state.point).period > 0.0
+        return self._cycle(state).period > 0.0
 
     def _end(self, line: Line) -> tuple[float, Meeting, str] | None:
         """(share of the step, label, reason) where the curve ends."""
         ends, point = [], line.known[1.0][0].point
         if self.inside(point) <= 0.0:
             share = line.root(partial(_at_point, self.inside))
-            ends.append((1.0 if share is None else share, Meeting.end, "end_of_range"))
+            share, met, why = 1.0 if share is None else share, Meeting.end, "end_of_range"
+            if self._turns(point) <= 0.0:
+                met = Meeting.resonance_1_1 if point[-1] < 1.0 else Meeting.resonance_1_2
+                why = "multipliers_are_real"
+            ends.append((share, met, why))
         least, key = self.curve.least_margin(point)
         if least < -ROUND_OFF and key is not None:
             share = line.root(lambda there, _: self.curve.least_margin(there.point)[0])
             share = 0.0 if share is None else share
-            cycle = line.at(share)[1]
-            ends.append((share, *self._changed(cycle, self.curve.least_margin(cycle.point)[1])))
+            state, cycle = line.at(share)
+            ends.append((share, *self._changed(cycle, self.curve.least_margin(state.point)[1])))
         return min(ends, default=None)
 
     def _changed(self, cycle: Cycle, key: Margin | None) -> tuple[Meeting, str]:
@@ -313,28 +413,42 @@ class _Way:
         return met, f"order_changes_{key.kind.name}_of_{names[number]}".replace(" ", "_")
 
     def _cycle(self, state: ContinuationState) -> Cycle:
-        return Cycle.at(self.curve.map, state.point)
+        return self.curve.cycle(state.point)
 
     def _point(self, state: ContinuationState, label: Meeting) -> Point:
         return Point(self._cycle(state), state.residual, label)
 
 
-def _label(
-    system: System, label: str, parameters: Sequence[str], to: Mapping[str, tuple[float, float]]
-) -> Label:
-    names = [each.name for each in (*RETURNS, Label.grazing, Label.stick_onset)]
+LABELS = (*RETURNS, Label.grazing, Label.stick_onset)
+
+
+def check(
+    known: Iterable[str], label: str, parameters: Sequence[str], to: Mapping[str, Sequence[float]]
+) -> None:
+    """Refuse a curve that there is not."""
+    names = [each.name for each in LABELS]
     if label not in names:
         raise ValueError(f"label {label!r}: {suggestion(str(label), names)}")
     if len(set(parameters)) != 2 or len(parameters) != 2:
         raise ValueError(f"parameters = {parameters!r}: two names are needed")
     for name in parameters:
-        system.check_parameter(name)
+        if name not in known:
+            raise ValueError(f"parameter {name!r} is unknown; {suggestion(name, known)}")
     for name, limits in to.items():
         if name not in parameters:
             raise ValueError(f"to: {name!r} is unknown; {suggestion(name, parameters)}")
         if limits[0] >= limits[1]:
             raise ValueError(f"to: {name} = {limits!r}: two numbers that ascend are needed")
-    return Label[label]
+
+
+def point_of(start: xr.Dataset, label: str) -> xr.Dataset:
+    """The first point of a branch with a label, or the one that is given."""
+    if "label" not in start:
+        raise ValueError("start: a branch of cycle_branch or one of its points is needed")
+    at = np.flatnonzero(np.atleast_1d(start["label"].values) == Label[label])
+    if not len(at):
+        raise ValueError(f"start has no point of {label}")
+    return start.isel(point=int(at[0])) if "point" in start.dims else start
 
 
 @checked
@@ -350,7 +464,7 @@ def cycle_curve(
     """The curve of a special point of a branch, in two parameters, in both directions.
 
     Args:
-        label: ``fold``, ``period_doubling``, ``grazing`` or ``stick_onset``.
+        label: ``fold``, ``period_doubling``, ``torus``, ``grazing`` or ``stick_onset``.
         parameters: names of the two that vary.
         start: a branch, whose first point of that label is taken, or one point of it.
         to: parameter → (lowest, highest) value at which the curve ends.
@@ -358,35 +472,40 @@ def cycle_curve(
 
     Returns:
         Dataset over ``point``: both parameters by name, ``period``, ``residual`` and ``label``
-        (what else happens there); and over ``side`` (first, last) ``outcome``, why the curve ended:
-        ``order_changes_…`` names what changes the order of the events.
+        (what else happens there), ``events`` (their number); and over ``side`` (first, last)
+        ``outcome``, why the curve ended: ``order_changes_…`` names what changes their order where
+        it does not go on with the new one.
 
     Raises:
         ValueError: an unknown label or parameter, limits that do not ascend or leave the start out,
             or no such point in ``start``.
     """
     limits = dict(to or {})
-    which = _label(system, label, parameters, limits)
-    if "label" not in start:
-        raise ValueError("start: a branch of cycle_branch or one of its points is needed")
-    at = np.flatnonzero(np.atleast_1d(start["label"].values) == which)
-    if not len(at):
-        raise ValueError(f"start has no point of {label}")
-    cycle = started(system, start.isel(point=int(at[0])) if "point" in start.dims else start)
+    check(system.parameters, label, parameters, limits)
+    cycle = started(system, point_of(start, label))
+    points, ends = follow_curve(cycle, Label[label], parameters, limits, n_points)
+    return _dataset(system, label, points, parameters, ends)
+
+
+def follow_curve(
+    cycle: Cycle, label: Label, parameters: Sequence[str],
+    limits: Mapping[str, tuple[float, float]], n_points: int,
+    tied: Mapping[str, str] | None = None,
+) -> tuple[list[Point], list[str]]:  # fmt: skip
+    """The points of a curve through a cycle, and why it ended at both sides."""
     units = np.array([max(abs(cycle.parts.values[name]), 1e-3) for name in parameters])
-    cycle = Cycle.at(*cycle.followed_in(Flow(system, tuple(parameters)), units))
-    curve, guess = _curve_of(cycle, which)
+    flow = Flow(cycle.map.flow.system, tuple(parameters), tied)
+    curve, guess = _curve_of(Cycle.at(*cycle.followed_in(flow, units)), label)
     curve.renew(guess)
     algorithm = PseudoArclength(replace(PRECISE, max_iterations=20), 0, own_tangent=True)
-    normal = np.eye(len(guess))[-1]
-    first = algorithm.solve(curve, guess, normal, STEPS.first_step) or algorithm.solve(
-        curve, guess, np.eye(len(guess))[-2], STEPS.first_step
-    )
+    normals = np.eye(len(guess))[[curve.map.size + 1, curve.map.size]]
+    starts = (algorithm.solve(curve, guess, normal, STEPS.first_step) for normal in normals)
+    first = next((found for found in starts if found is not None), None)
     if first is None:
-        raise ValueError(f"start: no curve of {label} is found there")
+        raise ValueError(f"start: no curve of {label.name} is found there")
     ways = [_Way(replace(curve), limits) for _ in range(2)]
     if ways[0].inside(first.point) < 0.0:
-        raise ValueError(f"to = {to!r}: the start lies outside")
+        raise ValueError(f"to = {limits!r}: the start lies outside")
     runs_of = [
         way.points(replace(first, tangent=sign * first.tangent))
         for way, sign in zip(ways, (-1.0, 1.0), strict=True)
@@ -401,9 +520,8 @@ def cycle_curve(
                 count += 1
             elif count < n_points:
                 open_ways.remove(side)
-    middle = Point(Cycle.at(curve.map, first.point), first.residual)
-    points = [*found[0][::-1], middle, *found[1]]
-    return _dataset(system, label, points, parameters, [way.end for way in ways])
+    middle = Point(curve.cycle(first.point), first.residual)
+    return [*found[0][::-1], middle, *found[1]], [way.end for way in ways]
 
 
 def _dataset(
@@ -418,13 +536,16 @@ def _dataset(
     }  # fmt: skip
     period = np.array([point.cycle.period for point in points])
     found["period"] = ("point", period, runs.labels("period", "s"))
+    found["events"] = (
+        "point", [len(p.cycle.events) for p in points], runs.labels("events of the cycle", "1"),
+    )  # fmt: skip
     residual = np.array([point.residual for point in points])
     text = "largest equation left over, without units"
     found["residual"] = ("point", residual, runs.labels(text, "1"))
     table = {int(each): each.name for each in Meeting}
     codes = [int(point.label) for point in points]
     found["label"] = runs.flag("what else happens at the point", "point", codes, table)
-    names = ["point_limit", "end_of_range", "curve_lost"]
+    names = list(ENDS)
     names += sorted(set(ends) - set(names))
     found["outcome"] = runs.flag(
         "why the curve ended", "side", [names.index(end) for end in ends], dict(enumerate(names))

@@ -19,8 +19,11 @@ from squealpipe.schema.origin import recorded
 from squealpipe.tasks.curves.contact import Square, contact_lines, nearest_on, two_axes
 from squealpipe.validation import Line, Positive, Tolerance, Workers
 
-FINEST, OFF, RESIDUAL = 60, 1e-6, 1e-8
-"""As those of a boundary, for lines that are right to 1e-6 of the ranges, from few runs."""
+FINEST, OFF, RESIDUAL = (60, 120), 1e-6, 1e-8
+"""As those of a boundary, for lines that are right to 1e-6 of the ranges, from few runs.
+
+The second grid is taken where the first one cuts a tongue.
+"""
 GRID = 241
 """Cells per side by which regions are distinguished, and points on which closed forms are seen."""
 
@@ -80,15 +83,19 @@ def regime_chart(
         )
 
     coarse = max(each.size for each in axes.values())
+    for finest in FINEST:
+        contact = contact_lines(square, coarse, finest, off=OFF, residual=RESIDUAL)
+        if not contact.unresolved:
+            break
     lines = {
         ChartLine.flutter: closed("discriminant"),
         ChartLine.divergence: closed("determinant"),
-        ChartLine.contact_lost: contact_lines(square, coarse, FINEST, off=OFF, residual=RESIDUAL),
+        ChartLine.contact_lost: contact,
     }
     centres = (np.arange(GRID) + 0.5) / GRID
     cells = np.stack(np.meshgrid(centres, centres, indexing="ij"), axis=-1).reshape(-1, 2)
     regime = np.broadcast_to(a3.regime(invariants(cells)), len(cells)).reshape(GRID, GRID)
-    kept = lines[ChartLine.contact_lost].holds(centres, centres)
+    kept = contact.holds(centres, centres)
     regions = [
         (code, state, places[k - 1], size)
         for code in np.unique(regime)
