@@ -13,7 +13,7 @@ from squealpipe.laws import contact_laws, friction_laws
 from squealpipe.laws.contact_laws import LINEAR
 from squealpipe.laws.friction_laws import COULOMB, LAWS, coefficient
 from squealpipe.laws.tables import is_table, knots_of, named, stood_for
-from squealpipe.text import suggestion
+from squealpipe.text import number, suggestion
 
 LAW_NAMES = tuple(LAWS)
 """Names of the friction laws."""
@@ -104,7 +104,7 @@ def law_in_words(law: str) -> str:
     """The name of a law, the values of its table, or that it is a Python file."""
     if is_table(law):
         knots = zip(*knots_of(law), strict=True)
-        values = ", ".join(f"{value:g} at {knot:g}" for knot, value in knots)
+        values = ", ".join(f"{number(value)} at {number(knot)}" for knot, value in knots)
         return f"table, {law.split(maxsplit=1)[0]}: {values}"
     return law if law.isidentifier() else "Python file"
 

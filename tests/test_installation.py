@@ -117,4 +117,5 @@ def test_wheel_in_a_bare_environment(checkout, tmp_path):
     text = (folder / "results/measured/report/index.html").read_text()
     assert "0.5 at 0, 0.4 at 1, 0.36 at 3" in text
     assert "leaning, with one thing changed" in text
+    assert "c₁ = 20 and c₂ = 0 N s/m" in text
     run(command, "archive", "first", "--config", "mine.yaml", cwd=folder)

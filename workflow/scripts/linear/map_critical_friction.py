@@ -15,7 +15,6 @@ unit = math.sqrt(params.k1 * params.mass)
 damping1, damping2 = (unit * share for share in part["spread.critical_damping"])
 angles = np.linspace(0.0, math.pi, part["linear.points"])
 dashpots = np.linspace(0.0, part["spread.critical_extent"] * unit, part["spread.critical_points"])
-damped = params.with_(damping1=damping1, damping2=damping2)
 if "scenes" in part:  # of a study of one's own: the first, and its own dashpots if it has some
     first = next(iter(part["scenes"].values()))
     scene = [first["alpha1"], first["alpha2"]]
@@ -23,6 +22,7 @@ if "scenes" in part:  # of a study of one's own: the first, and its own dashpots
     damping1, damping2 = given if any(given) else (damping1, damping2)
 else:
     scene = [math.pi * angle for angle in part["spread.scene"]]
+damped = params.with_(damping1=damping1, damping2=damping2)
 for task, path in (
     (lambda: critical_friction_map(damped, angles, angles), out.angles),
     (lambda: critical_damping_map(params, *scene, dashpots, dashpots), out.dashpots),
