@@ -93,9 +93,13 @@ def basin(
         kept = int(np.clip(0.5 * t_end / forcing.max(), 0, LEAST_REPEATS * MOST_PERIODS))
         times = t_end - forcing[moving, None] * np.arange(kept, -1, -1)
         states = run(moving, times=times)["samples"] / spans[moving, None]
+        rounds = np.zeros(moving.size, int)
         for lag in range(kept // LEAST_REPEATS, 0, -1):
-            off = np.abs(states[:, lag:] - states[:, :-lag]).max(axis=(1, 2), initial=0.0)
-            period[moving[off <= REPEATED]] = (lag * forcing[moving])[off <= REPEATED]
+            off = np.abs(states[:, lag:] - states[:, :-lag]).max(axis=2, initial=0.0) <= REPEATED
+            # at first the distance to a cycle may be less after several of its periods
+            again = off.all(axis=1) | ((rounds > 0) & (rounds % lag == 0) & off[:, -1])
+            rounds[again] = lag
+        period[moving] = np.where(rounds, rounds * forcing[moving], np.nan)
         repeats = np.isfinite(period)
     else:
         for rows in in_blocks(moving, counts):

@@ -450,7 +450,10 @@ def ensemble(
     for i, name in enumerate(system.regimes):
         found[f"time_in_{name}"] = field(f"time in regime {name}", "s", raw["durations"][:, i])
     if horizon:
-        rate = raw["summary"][:, 0] / np.maximum(raw["summary"][:, 2], 1e-300)
+        with np.errstate(all="ignore"):  # NaN of a run that ended where it began
+            rate = np.where(
+                raw["summary"][:, 2], raw["summary"][:, 0] / raw["summary"][:, 2], np.nan
+            )
         found["lyapunov_exponent"] = field("growth rate of a perturbation", "s-1", rate)
         found["predictability_horizon"] = field(
             "time at which an error of tol is lost", "s", raw["summary"][:, 1]

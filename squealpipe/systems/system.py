@@ -264,18 +264,21 @@ class System:
     def _complete(self, what: str, found: Mapping[str, Symbol]) -> list[Symbol]:
         for name in self.units:
             if name not in found:
-                raise ValueError(f"{what} lacks the rate of the state {name!r}")
+                raise ValueError(
+                    f"{what} lacks the rate of the state {name!r}; what an algebraic equation "
+                    "gives is no state: solve the equation for it, or differentiate it"
+                )
         return [found[name] for name in self.units]
 
     def _trace(self) -> Traced:
         tracer = Tracer(self.states, self.parameters, self.regimes)
         rates = self._rates(tracer)
         kinds: list[str] = []
-        switches, own = [], []
-        for switch in self.switches:
-            symbols, returns = self._trace_switch(tracer, switch, kinds)
-            switches.append(symbols)
-            own.append(returns)
+        leaves = [self._leaves(tracer, switch) for switch in self.switches]
+        switches = [
+            self._trace_switch(tracer, switch, left, kinds)
+            for switch, left in zip(self.switches, leaves, strict=True)
+        ]
         stops = [tracer.one(f"stop {name!r}", f) for name, f in self.stops.items()]
         outputs = [tracer.one(f"output {name!r}", f) for name, (_, f) in self.outputs.items()]
         starts = [self._trace_start(tracer, each) for each in self.starts_in]
@@ -288,7 +291,7 @@ class System:
         unit = parameter(TIME_UNIT)
         if callable(self.time_scale) or self.time_scale != 1.0:
             rates = [rate * unit for rate in rates]
-        surfaces, falls, rises = self._watch(tracer, switches, stops)
+        surfaces, falls, rises = self._watch(tracer, switches, leaves, stops)
         indicators = [_indicator(name) for name in self.regimes] * isinstance(self.field, Mapping)
         table = [
             [float(self.regimes[name][c]) for c in tracer.constants]
@@ -310,16 +313,14 @@ class System:
             outputs=tuple(outputs),
             starts=tuple(starts),
         )
-        if not indicators:
-            check_progress(tracer, traced, [each.name for each in self.switches], own)
+        check_progress(tracer, traced, [each.name for each in self.switches], leaves)
         return traced
 
     def _trace_switch(
-        self, tracer: Tracer, switch: Switch, kinds: list[str]
-    ) -> tuple[SwitchSymbols, bool]:
+        self, tracer: Tracer, switch: Switch, leaves: Sequence[int], kinds: list[str]
+    ) -> SwitchSymbols:
         what = f"switch {switch.name!r}"
         surface = tracer.one(f"{what}: when", switch.when)
-        leaves = self._leaves(tracer, switch)
         for regime in leaves:
             inside = tracer.one(
                 f"{what}: when", switch.when, tracer.numbers(self.states_of(regime))
@@ -344,8 +345,7 @@ class System:
             targets.append((tracer.regime(what, regime), symbols, kinds.index(kind)))
         reset = tracer.several(f"{what}: reset", switch.reset) if switch.reset else {}
         places = {self.states.index(name): value for name, value in reset.items()}
-        returns = any(regime in leaves for regime, _, _ in targets)
-        return SwitchSymbols(surface, tuple(targets), places), returns
+        return SwitchSymbols(surface, tuple(targets), places)
 
     def states_of(self, regime: int) -> str:
         """The name of a regime."""
@@ -365,15 +365,18 @@ class System:
         return tracer.regime("starts_in", regime), condition, equal
 
     def _watch(
-        self, tracer: Tracer, switches: Sequence[SwitchSymbols], stops: Sequence[Symbol]
+        self,
+        tracer: Tracer,
+        switches: Sequence[SwitchSymbols],
+        leaves: Sequence[Sequence[int]],
+        stops: Sequence[Symbol],
     ) -> tuple[list[Symbol], np.ndarray, np.ndarray]:
         """Surfaces without those that another one is, but for its sign, and who watches them."""
         probe = tracer.samples(np.random.default_rng(1))
         surfaces: list[Symbol] = []
         prints: list[np.ndarray] = []
         watched: list[tuple[int, int, int, int]] = []  # regime, surface, rises, switch
-        everywhere = [*range(len(self.regimes))]
-        places = [self._leaves(tracer, each) for each in self.switches] + [everywhere] * len(stops)
+        places = [*leaves, *[range(len(self.regimes))] * len(stops)]
         every = [*(each.surface for each in switches), *stops]
         for number, (surface, regimes) in enumerate(zip(every, places, strict=True)):
             with np.errstate(all="ignore"):

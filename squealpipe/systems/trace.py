@@ -11,6 +11,7 @@ from squealpipe.methods.taylor.symbols import (
     Symbol,
     constant_parts,
     derivative,
+    in_order,
     parameter,
     substituted,
     symbol,
@@ -148,11 +149,15 @@ class Tracer:
 
     def _symbol(self, what: str, value: Any) -> Symbol:
         try:
-            return symbol(value)
+            found = symbol(value)
         except (TypeError, ValueError):
             raise TypeError(
                 f"{what} gives {value!r}; a number or an expression is needed"
             ) from None
+        for node in in_order([found]):
+            if node.kind == "number" and not np.isfinite(node.arguments[0]):
+                raise ValueError(f"{what} holds {node.arguments[0]}; finite numbers are needed")
+        return found
 
     def regime(self, what: str, name: Any) -> int:
         """The number of a regime."""
@@ -175,34 +180,42 @@ class Tracer:
 
 
 def check_progress(
-    tracer: Tracer, traced: Traced, names: Sequence[str], own: Sequence[bool]
+    tracer: Tracer, traced: Traced, names: Sequence[str], leaves: Sequence[Sequence[int]]
 ) -> None:
-    """Refuse a switch back into its own regime whose reset leaves it on, or behind, its surface.
+    """Refuse a switch that would fire again at once, whatever the state.
 
-    At every one of many random states the surface goes on falling after the reset.
+    At every one of many random states in which its surface falls it leads to a regime that it
+    leaves, and there the surface is on the same height or lower, and goes on falling.
     """
     rng = np.random.default_rng(0)
-    values = {TIME: 0.3, **tracer.samples(rng, 400)}
-    values |= {name: rng.uniform(-2.0, 2.0, 400) for name in tracer.states}
-    for name, switch, returns in zip(names, traced.switches, own, strict=True):
-        if not returns:
+    for name, switch, left in zip(names, traced.switches, leaves, strict=True):
+        if not {regime for regime, _, _ in switch.targets} & set(left):
             continue
         slope: Any = symbol(0.0)
         for variable, rate in zip(traced.variables, traced.rates, strict=True):
             slope = slope + derivative(switch.surface, variable) * rate
+        values = tracer.samples(rng, 400)
+        values |= {state: rng.uniform(-2.0, 2.0, 400) for state in tracer.states}
+
+        def held(regimes: np.ndarray) -> dict[str, np.ndarray]:
+            return dict(zip(traced.constants, traced.regimes[regimes].T, strict=True))
+
+        values |= held(rng.choice(left, 400))
         with np.errstate(all="ignore"):
             height, rate = evaluate([switch.surface, symbol(slope)], values)
-            after = values | {
-                tracer.states[place]: value
-                for place, value in zip(
-                    switch.reset, evaluate(list(switch.reset.values()), values), strict=True
-                )
-            }
+            *ways, (last, _, _) = switch.targets
+            found = evaluate([symbol(condition) for _, condition, _ in ways], values)
+            regimes = np.full(400, last)
+            for value, (regime, _, _) in zip(found[::-1], ways[::-1], strict=True):
+                regimes = np.where(value >= 0.0, regime, regimes)
+            resets = evaluate(list(switch.reset.values()), values)
+            after = {tracer.states[p]: v for p, v in zip(switch.reset, resets, strict=True)}
+            after = values | after | held(regimes)
             later, new_rate = evaluate([switch.surface, symbol(slope)], after)
+        rise = later - height
         falling = np.asarray(rate < 0) & np.isfinite(np.asarray(rate) + np.asarray(new_rate))
-        behind = np.asarray(later - height) < -1e-9
-        same = np.abs(np.asarray(later - height)) <= 1e-9
-        if falling.any() and (behind | (same & np.asarray(new_rate < 0)))[falling].all():
+        again = (rise < -1e-9) | ((np.abs(rise) <= 1e-9) & np.asarray(new_rate < 0))
+        if falling.any() and (again & np.isin(regimes, left))[falling].all():
             raise ValueError(
                 f"switch {name!r} leads back into a regime that it leaves, and its reset leaves "
                 "the state where the surface goes on falling: it would fire again at once, without "

@@ -303,11 +303,44 @@ def hit(when, leaves="free", to="free"):
         (hit(lambda t, s, p, r: p.gap - 1.0), ValueError, "constant in regime 'free'"),
         (hit(lambda t, s, p, r: s.x, to=LAST), ValueError, "no last resort"),
         (hit(lambda t, s, p, r: p.gap - s.x), ValueError, "fire again at once"),
+        (
+            {**hit(lambda t, s, p, r: p.gap - s.x), "field": {"free": GOOD["field"]}},
+            ValueError,
+            "fire again at once",
+        ),
+        ({"field": lambda t, s, p, r: {"x": s.v, "v": np.nan}}, ValueError, "finite numbers"),
+        ({"field": lambda t, s, p, r: {"x": s.v, "v": s.x(t - 1.0)}}, TypeError, "delays"),
     ],
 )
 def test_a_wrong_definition_is_refused_before_anything_is_compiled(change, error, message):
     with pytest.raises(error, match=message):
         System("wrong", **{**GOOD, **change})
+
+
+def test_one_switch_may_lead_on_through_256_regimes():
+    """Each leaves its own interval of a staircase, at its end, for the next."""
+    numbers = range(256)
+
+    def leaves(i):
+        return lambda t, s, p, r: 0.25 - (r.end - 1.0 - i) ** 2
+
+    stairs = System(
+        "stairs",
+        states={"x": "1"},
+        parameters={},
+        regimes={f"r{i}": {"end": i + 1.0} for i in numbers},
+        field=lambda t, s, p, r: {"x": 1.0},
+        switches=[
+            Switch(
+                "up", [f"r{i}" for i in numbers][:-1], lambda t, s, p, r: r.end - s.x,
+                to=[*((f"r{i + 1}", leaves(i)) for i in numbers[:-1]), "r0"],
+            )
+        ],
+        start={"x": 0.0, "regime": "r0"},
+    )  # fmt: skip
+    run = stairs.simulate(300.0)
+    np.testing.assert_array_equal(run.event_time, np.arange(1, 256))
+    np.testing.assert_array_equal(run.event_regime, np.arange(1, 256))
 
 
 @pytest.mark.parametrize("method", ["simulate", "ensemble", "basin"])

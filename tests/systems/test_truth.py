@@ -46,6 +46,9 @@ def test_a_bouncing_ball_comes_to_rest_at_the_closed_form_time(restitution):
     limit = fall * (1.0 + restitution) / (1.0 - restitution)
     assert Outcome(int(run.outcome)) == Outcome.accumulation
     assert float(run.end_time) == pytest.approx(limit, rel=1e-12)
+    rest = bouncing_ball.ensemble(1.0, start={"y": 0.0}, horizon=True)
+    assert Outcome(int(rest.outcome)) == Outcome.accumulation
+    assert np.isnan(rest.lyapunov_exponent), "there is no growth in no time"
 
 
 def test_impacts_without_damping_or_forcing_have_the_period_in_closed_form():
@@ -155,6 +158,9 @@ def test_a_forced_motion_is_a_cycle_of_so_many_periods_or_unsettled():
     amplitude = np.array([3.5, 3.51])
     found = impact_oscillator.basin(4000.0, start={"x": 0.3}, omega=2.1, amplitude=amplitude)
     np.testing.assert_allclose(found.period * 2.1 / (2.0 * np.pi), [2.0, 1.0], rtol=1e-12)
+    # from −1 the motion is still so far from its cycle that three periods differ by less than one
+    found = impact_oscillator.basin(500.0, start={"x": [-1.0, 0.0, 1.0]}, omega=1.4)
+    np.testing.assert_allclose(found.period * 1.4 / (2.0 * np.pi), 1.0, rtol=1e-12)
     early = impact_oscillator.basin(20.0, start={"x": 0.3}, omega=2.1, amplitude=amplitude)
     assert (early.motion == Motion.unsettled).all()
     assert np.isnan(early.period).all()

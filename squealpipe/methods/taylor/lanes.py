@@ -23,7 +23,7 @@ from numba import types
 from numba.core import cgutils
 from numba.extending import intrinsic
 
-from squealpipe.methods.compiled import compiled_entry, part
+from squealpipe.methods.compiled import compiled_entry
 from squealpipe.methods.progress import report
 from squealpipe.methods.taylor import simd
 from squealpipe.methods.taylor.series import (
@@ -118,7 +118,7 @@ def _call(typing_context: Any, function: Any, arguments: Any) -> Any:  # noqa: A
 call: Any = intrinsic(_call)
 
 
-@part
+@_numba.njit
 def view(address: int, shape: Any, dtype: Any) -> Any:
     """The array at an address."""
     return _numba.carray(_address(address), shape, dtype)

@@ -146,7 +146,7 @@ def _integrate(rates: Any, up_to: Any, states: Any) -> None:
                         state[s] += share * rate[s]
 
 
-@part
+@_numba.njit
 def _multiply(slopes: Any, lengths: Any, states: Any, rates: Any) -> None:
     """Rates at the nodes from the states there, over the step."""
     nodes, n, columns, steps = rates.shape

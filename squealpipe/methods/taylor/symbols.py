@@ -106,6 +106,10 @@ class Symbol:
         """Whether it is the same node; compared with a number it is refused."""
         return self is other if isinstance(other, Symbol) else self._refuse()
 
+    def __call__(self, *_: Any) -> Any:
+        """A value at another time is refused."""
+        raise TypeError("a function sees the present state alone: it cannot have delays")
+
     __round__ = __floor__ = __ceil__ = __mod__ = __floordiv__ = _refuse
 
 

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import xarray as xr
+from scipy.interpolate import barycentric_interpolate
 from scipy.optimize import brentq
 
 from squealpipe.methods.continuation import (
@@ -83,15 +84,18 @@ Test = Callable[[ContinuationState, Cycle], float]
 
 @dataclass(frozen=True)
 class Point:
-    """A cycle on a branch."""
+    """A cycle on a branch; ``rest`` is where one that has all but shrunk to rest has no size."""
 
     state: ContinuationState
     cycle: Cycle
     label: Label = Label.regular
+    rest: float | None = None
 
     @property
     def parameter(self) -> float:
         """Value of the followed parameter."""
+        if self.rest is not None:
+            return self.rest
         return self.cycle.parts.values[self.cycle.map.flow.followed[-1]]
 
 
@@ -117,6 +121,12 @@ TESTS: tuple[tuple[Label, Test], ...] = (
     (Label.period_doubling, lambda _, cycle: flip(cycle)),
     (Label.torus, lambda _, cycle: pairs(cycle)),
 )
+
+
+def sizes_of(shapes: list[Vector]) -> Vector:
+    """The largest extent of each cycle."""
+    lowest, highest = np.split(np.array(shapes)[:, 2:], 2, axis=1)
+    return np.asarray((highest - lowest).max(axis=1))
 
 
 def hides_folds(before: ContinuationState, after: ContinuationState) -> bool:
@@ -192,6 +202,7 @@ class Follower:
     def __init__(self, low: float, high: float, most: int) -> None:
         self.low, self.high, self.most = low, high, most
         self.algorithm = PseudoArclength(STEPS, least_iterations=0, own_tangent=True)
+        self.precise = replace(self.algorithm, settings=PRECISE)
         self.points: list[Point] = []
         self.shapes: list[Vector] = []
 
@@ -199,6 +210,8 @@ class Follower:
         """Follow the branch to its end, and label it."""
         with alone() as show:
             end = self._run(state, cycle, show)
+        if end == Outcome.equilibrium:
+            self.points[-1] = replace(self.points[-1], rest=self._rest())
         if end == Outcome.tongue_end:
             # at a cycle of a part of the period the parameter turns back, which is not a fold
             self.points[-2:] = [
@@ -292,10 +305,28 @@ class Follower:
         """Whether a cycle without forcing is next to a state of rest."""
         if cycle.map.periods:
             return False
-        last = self._shape(cycle, self.points[-1].state)
-        lowest, highest = np.split(np.array([*self.shapes, last])[:, 2:], 2, axis=1)
-        sizes = (highest - lowest).max(axis=1)
+        sizes = sizes_of([*self.shapes, self._shape(cycle, self.points[-1].state)])
         return bool(sizes[-1] < share * sizes[:-1].max())
+
+    def _rest(self) -> float | None:
+        """Where a shrinking cycle is at rest: the parameter is smooth in the square of its size.
+
+        Of the smallest cycles round-off decides the parameter.
+        """
+        sizes, last = sizes_of(self.shapes), self.points[-1].parameter
+        fit = np.flatnonzero(sizes > 0.2 * _AT_REST * sizes.max())[-3:]
+        shapes = []
+        for state, equations in ((self.points[i].state, self.points[i].cycle.map) for i in fit):
+            found = self.precise.solve(equations, state.point, state.tangent, 0.0)
+            if found is not None:
+                shapes.append(self._shape(Cycle.at(equations, found.point), found))
+        if len(shapes) < 3:
+            return None
+        squares = (sizes_of(shapes) / sizes.max()) ** 2
+        unit = float(self.points[-1].cycle.map.units[-1])
+        beyond = np.array([shape[0] for shape in shapes]) * unit - last
+        rest = float(barycentric_interpolate(squares, beyond, 0.0))
+        return last + rest if abs(rest) < _AT_REST * np.abs(beyond).max() else None
 
     def _advance(self, state: ContinuationState, cycle: Cycle) -> Step | None:
         """The next step that is shown to be on the same branch."""
@@ -342,7 +373,7 @@ class Follower:
     ) -> Step | None:
         """A step with what lies in it; None where that is not clear."""
         line = Line(
-            replace(self.algorithm, settings=PRECISE),
+            self.precise,
             cycle.map,
             (state, cycle),
             (following, reached),
