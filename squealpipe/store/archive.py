@@ -69,11 +69,24 @@ def archive(
                 copy = draft / names[path]
                 copy.parent.mkdir(parents=True, exist_ok=True)
                 shutil.copyfile(run / names[path], copy)
-            _copy_setting(config_files, study, base, draft)
+            environment = _copy_setting(config_files, study, base, draft)
             frozen_at = datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds")
-            (draft / METADATA).write_text(describe(draft, name, frozen_at), encoding="utf-8")
-            about = {"name": name, "frozen": frozen_at, "commit": commit(), LEFT_OUT: patterns}
-            _seal(draft, {**about, "config": study.model_dump(mode="json")})
+            crate = describe(draft, name, frozen_at, environment, _sums(draft))
+            (draft / METADATA).write_text(crate, encoding="utf-8")
+            manifest = {
+                "format": 1,
+                "name": name,
+                "frozen": frozen_at,
+                "commit": commit(),
+                LEFT_OUT: patterns,
+                "config": study.model_dump(mode="json"),
+                "files": _sums(draft),
+            }
+            (draft / MANIFEST).write_text(json.dumps(manifest, indent=1) + "\n", encoding="utf-8")
+            (draft / SEAL).write_text(seal_text(draft), encoding="utf-8")
+            for file in regular_files(draft):
+                file.chmod(file.stat().st_mode & 0o444)
+                sync(file)
             draft.rename(target)
             sync(target.parent)
     except OSError as error:
@@ -84,8 +97,19 @@ def archive(
     return target
 
 
-def _copy_setting(configs: list[Path], study: Study, base: Path, draft: Path) -> None:
-    """Configuration as written and as resolved, lock, and environment."""
+def _sums(draft: Path) -> dict[str, dict[str, Any]]:
+    """Path of each file → its size and checksum."""
+    return {
+        path.relative_to(draft).as_posix(): {
+            "bytes": path.stat().st_size,
+            "sha256": checksum(path),
+        }
+        for path in regular_files(draft)
+    }
+
+
+def _copy_setting(configs: list[Path], study: Study, base: Path, draft: Path) -> dict[str, Any]:
+    """Configuration as written and as resolved, lock, and environment, which is returned."""
     folder = draft / "config"
     folder.mkdir(parents=True)
     for path in configs:
@@ -111,19 +135,4 @@ def _copy_setting(configs: list[Path], study: Study, base: Path, draft: Path) ->
     }
     text = json.dumps(environment, indent=1, sort_keys=True)
     (draft / "environment.json").write_text(text + "\n", encoding="utf-8")
-
-
-def _seal(draft: Path, about: dict[str, Any]) -> None:
-    files = {
-        path.relative_to(draft).as_posix(): {
-            "bytes": path.stat().st_size,
-            "sha256": checksum(path),
-        }
-        for path in regular_files(draft)
-    }
-    manifest = {"format": 1, **about, "files": files}
-    (draft / MANIFEST).write_text(json.dumps(manifest, indent=1) + "\n", encoding="utf-8")
-    (draft / SEAL).write_text(seal_text(draft), encoding="utf-8")
-    for path in regular_files(draft):
-        path.chmod(path.stat().st_mode & 0o444)
-        sync(path)
+    return environment

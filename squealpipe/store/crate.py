@@ -2,21 +2,26 @@
 
 import json
 import mimetypes
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from squealpipe.store.netcdf import load
-from squealpipe.store.runs import regular_files
-from squealpipe.store.whole_files import checksum
+from squealpipe.store.netcdf import attributes
 
 METADATA = "ro-crate-metadata.json"
-TYPES = {".nc": "application/x-netcdf", ".yaml": "application/yaml", ".lock": "text/plain"}
+TYPES = {".nc": "application/x-netcdf", ".yaml": "application/yaml"}
 
 
-def describe(folder: Path, name: str, frozen_at: str) -> str:
-    """Text of ``ro-crate-metadata.json`` for a folder whose files are all in place."""
+def describe(
+    folder: Path, name: str, frozen_at: str, environment: Mapping[str, Any], sums: Mapping[str, Any]
+) -> str:
+    """Text of ``ro-crate-metadata.json``.
+
+    Args:
+        sums: path in the folder → its checksum and size.
+    """
     # of the extra [study]; other commands on archives do without
-    from rocrate.model.contextentity import ContextEntity
+    from rocrate.model.softwareapplication import SoftwareApplication
     from rocrate.rocrate import ROCrate
 
     crate = ROCrate()
@@ -27,55 +32,26 @@ def describe(folder: Path, name: str, frozen_at: str) -> str:
     )
     crate.license = "https://spdx.org/licenses/MIT"
     crate.root_dataset["datePublished"] = frozen_at
-    environment = json.loads((folder / "environment.json").read_text(encoding="utf-8"))
-    instrument = crate.add(
-        ContextEntity(
-            crate,
-            "#squealpipe",
-            {
-                "@type": "SoftwareApplication",
-                "name": "squealpipe",
-                "softwareVersion": environment["packages"].get("squealpipe", "unknown"),
-                "version": environment["commit"],
-                "softwareRequirements": f"Python {environment['python']}",
-            },
-        )
-    )
-    files = {
-        path.relative_to(folder).as_posix(): crate.add_file(
-            path, path.relative_to(folder).as_posix(), properties=file_properties(path)
-        )
-        for path in regular_files(folder)
+    software = {
+        "name": "squealpipe",
+        "softwareVersion": environment["packages"].get("squealpipe", "unknown"),
+        "version": environment["commit"],
+        "softwareRequirements": f"Python {environment['python']}",
     }
-    made = [entity for path, entity in files.items() if path.startswith(("data/", "figures/"))]
-    given = [entity for path, entity in files.items() if path.startswith("config/")]
-    crate.add(
-        ContextEntity(
-            crate,
-            "#run",
-            {
-                "@type": "CreateAction",
-                "name": "snakemake run of the study",
-                "endTime": frozen_at,
-                "instrument": instrument,
-                "object": given,
-                "result": made,
-            },
-        )
+    files = {}
+    for path, listed in sums.items():
+        kind = TYPES.get(Path(path).suffix) or mimetypes.guess_type(path)[0]
+        about = {"contentSize": str(listed["bytes"]), "sha256": listed["sha256"]}
+        about["encodingFormat"] = kind or "application/octet-stream"
+        if path.endswith(".nc"):
+            stated = attributes(folder / path)
+            about |= {"name": stated["title"], "identifier": stated.get("dataset_id", "")}
+        files[path] = crate.add_file(folder / path, path, properties=about)
+    crate.add_action(
+        crate.add(SoftwareApplication(crate, "#squealpipe", software)),
+        "#run",
+        object=[files[path] for path in files if path.startswith("config/")],
+        result=[files[path] for path in files if path.startswith(("data/", "figures/"))],
+        properties={"name": "snakemake run of the study", "endTime": frozen_at},
     )
     return json.dumps(crate.metadata.generate(), indent=1, sort_keys=True) + "\n"
-
-
-def file_properties(path: Path) -> dict[str, Any]:
-    """Size, checksum and type of a file; of a dataset also title and id."""
-    kind = TYPES.get(path.suffix) or mimetypes.guess_type(path.name)[0]
-    properties: dict[str, Any] = {
-        "contentSize": str(path.stat().st_size),
-        "sha256": checksum(path),
-        "encodingFormat": kind or "application/octet-stream",
-    }
-    if path.suffix == ".nc":
-        attributes = load(path).attrs
-        properties["name"] = str(attributes["title"])
-        properties["identifier"] = str(attributes.get("dataset_id", ""))
-    return properties

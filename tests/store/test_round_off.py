@@ -9,8 +9,7 @@ from squealpipe.parameters import SCENES
 from squealpipe.schema import Outcome, Variable, all_schemas
 from squealpipe.schema.agreement import magnitude, most, sampled, unjudged
 from squealpipe.store.comparison.compare import compare_datasets
-from squealpipe.store.comparison.differences import Agreement
-from squealpipe.store.comparison.round_off import judge
+from squealpipe.store.comparison.differences import Agreement, judge
 from squealpipe.systems.cycles.labels import Label
 from tests.former import FORMER
 

@@ -11,11 +11,10 @@ from typing import Any
 import xarray as xr
 
 from squealpipe.config.yaml_files import flat
-from squealpipe.schema import DatasetSchema, schema_of
+from squealpipe.schema import schema_of
 from squealpipe.schema.claims import CLAIMS
-from squealpipe.store.comparison.differences import Agreement, VariableDifference
+from squealpipe.store.comparison.differences import Agreement, VariableDifference, judge
 from squealpipe.store.comparison.matching import align, judged_length
-from squealpipe.store.comparison.round_off import judge
 from squealpipe.store.comparison.statements import StatementChange, changed_statements
 from squealpipe.store.netcdf import load
 from squealpipe.store.provenance import VOLATILE_ATTRIBUTES
@@ -38,11 +37,8 @@ class DatasetDifference:
     @property
     def differences(self) -> list[VariableDifference]:
         """Variables beyond their tolerance, worst first; volatile ones are not judged."""
-        found = [
-            entry
-            for entry in self.variables
-            if entry.verdict >= Agreement.different and not entry.volatile
-        ]
+        judged = [entry for entry in self.variables if not entry.volatile]
+        found = [entry for entry in judged if entry.verdict >= Agreement.different]
         return sorted(found, key=lambda entry: entry.severity, reverse=True)
 
     @property
@@ -97,7 +93,7 @@ def compare(
 ) -> Comparison:
     """Compare two archives, runs, folders or files, dataset by dataset.
 
-    Bad input gives a verdict, not an exception:, ``not_comparable``, with its reason.
+    Bad input gives a verdict, not an exception: ``not_comparable``, with its reason.
     """
     try:
         places = locate(a, root), locate(b, root)
@@ -111,15 +107,12 @@ def compare(
     environment: dict[str, tuple[Any, Any]] = {}
     datasets = []
     statements: list[StatementChange] = []
-    skipped = [name for name in set(left) ^ set(right) if matches_any(f"data/{name}.nc", absent)]
-    names = sorted((set(left) | set(right)) - set(skipped))
-    for name in names:
+    skipped = {name for name in set(left) ^ set(right) if matches_any(f"data/{name}.nc", absent)}
+    for name in sorted((set(left) | set(right)) - skipped):
         if name not in left or name not in right:
-            side = a if name in left else b
-            reason = f"only in {side}"
-            datasets.append(
-                DatasetDifference(name=name, verdict=Agreement.different, reason=reason)
-            )
+            reason = f"only in {a if name in left else b}"
+            missing = DatasetDifference(name=name, verdict=Agreement.different, reason=reason)
+            datasets.append(missing)
             continue
         try:
             pair = (load(left[name]), load(right[name]))
@@ -131,12 +124,11 @@ def compare(
         datasets.append(compare_datasets(name, *pair))
         if pair[0].attrs["schema"] == pair[1].attrs["schema"] == CLAIMS.name:
             statements = changed_statements(*pair)
+    physical_first = sorted(parameters, key=lambda key: (not PHYSICAL_KEY.match(key), key))
     return Comparison(
         a=str(a),
         b=str(b),
-        parameters=dict(
-            sorted(parameters.items(), key=lambda item: (not PHYSICAL_KEY.match(item[0]), item[0]))
-        ),
+        parameters={key: parameters[key] for key in physical_first},
         statements=statements,
         environment=dict(sorted(environment.items())),
         datasets=datasets,
@@ -153,44 +145,29 @@ def compare_datasets(name: str, a: xr.Dataset, b: xr.Dataset) -> DatasetDifferen
     if kinds[0] != kinds[1]:
         return _refused(name, f"the schemas are {kinds[0]!r} and {kinds[1]!r}")
     schema = schema_of(a)
-    lengths = [
-        (dim, *(judged_length(each, dim, how) for each in (a, b)))
-        for dim, how in schema.lists.items()
-    ]
+    variables = []
+    for dim, how in schema.lists.items():
+        first, second = (judged_length(each, dim, how) for each in (a, b))
+        if first != second:
+            reason = f"{first} entries against {second}"
+            variables.append(_differs(f"number of {dim}", reason))
     try:
         a, b, notes = align(a, b, schema)
     except ValueError as error:
         return _refused(name, str(error))
-    variables = [
-        _variable(variable, a, b, schema)
-        for variable in [*schema.coordinates, *schema.variables]
-        if variable in a.variables or variable in b.variables
-    ]
-    variables += [
-        VariableDifference(
-            name=f"number of {dim}",
-            verdict=Agreement.different,
-            reason=f"{first} entries against {second}",
-        )
-        for dim, first, second in lengths
-        if first != second
-    ]
+    for variable in map(str, [*schema.coordinates, *schema.variables]):
+        entry, sides = schema.lookup(variable), [variable in each.variables for each in (a, b)]
+        if entry is not None and all(sides):
+            variables.append(judge(variable, a, b, entry))
+        elif any(sides):
+            variables.append(_differs(variable, f"only in the {'first' if sides[0] else 'second'}"))
     judged = [entry.verdict for entry in variables if not entry.volatile]
-    return DatasetDifference(
-        name=name,
-        verdict=max(judged, default=Agreement.equal),
-        variables=variables,
-        notes=notes,
-    )
+    verdict = max(judged, default=Agreement.equal)
+    return DatasetDifference(name=name, verdict=verdict, variables=variables, notes=notes)
 
 
-def _variable(name: str, a: xr.Dataset, b: xr.Dataset, schema: DatasetSchema) -> VariableDifference:
-    entry = schema.lookup(name)
-    if entry is None or name not in a.variables or name not in b.variables:
-        side = "first" if name in a.variables else "second"
-        reason = f"only in the {side}"
-        return VariableDifference(name=name, verdict=Agreement.different, reason=reason)
-    return judge(name, a, b, entry)
+def _differs(name: str, reason: str) -> VariableDifference:
+    return VariableDifference(name=name, verdict=Agreement.different, reason=reason)
 
 
 def _refused(name: str, reason: str) -> DatasetDifference:

@@ -1,20 +1,23 @@
 """How one variable of two datasets differs, judged by the tolerance that its schema states."""
 
 from collections import Counter
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from enum import IntEnum
+from typing import Any
 
 import numpy as np
 import xarray as xr
 from scipy.stats import ks_2samp
 
-from squealpipe.schema import Variable, flag_table
+from squealpipe.schema import Outcome, Variable, flag_table
 from squealpipe.schema.agreement import ComparedAs, RoundOff
 
 SMALLEST_CHANCE = 1e-6
 """Two samples of one distribution are taken for different ones at this probability or less."""
 LONGEST = 60
 """Characters of a text that an account of flips quotes."""
+UNIT = 1e-14
+"""Error over the size of a motion at which growth begins: fifty units of round-off."""
 
 
 class Agreement(IntEnum):
@@ -59,133 +62,162 @@ class VariableDifference:
         return self.verdict, self.differing / max(self.compared, 1), self.largest_relative
 
 
+def judge(name: str, a: xr.Dataset, b: xr.Dataset, entry: Variable) -> VariableDifference:
+    """Compare one variable of two aligned datasets, as its line in the schema says."""
+    how = entry.round_off
+    if how is None or how.compared in (ComparedAs.magnitude, ComparedAs.sample):
+        return difference(name, a[name], b[name], entry)
+    entry = replace(entry, round_off=None)
+    stated = how.by in a.variables and how.by in b.variables
+    if how.compared is ComparedAs.beyond_horizon and stated and a[name].dims == a[how.by].dims:
+        return _beyond_horizon(name, a, b, entry, how)
+    if how.compared is ComparedAs.grown and stated:
+        size = max(float(np.abs(side[name]).max()) if side[name].size else 0.0 for side in (a, b))
+        growth = max(float(a[how.by]), float(b[how.by]), 1.0)
+        entry = replace(entry, atol=entry.atol + UNIT * growth * size)
+    found = difference(name, a[name], b[name], entry)
+    allowed = {ComparedAs.unjudged: 1.0, ComparedAs.most: how.share}.get(how.compared, 0.0)
+    if found.verdict == Agreement.different and found.differing <= allowed * found.compared:
+        return replace(found, verdict=Agreement.within_tolerance, reason=how.reason)
+    return found
+
+
 def difference(name: str, a: xr.DataArray, b: xr.DataArray, entry: Variable) -> VariableDifference:
-    """Compare one variable of two aligned datasets."""
+    """Compare one variable of two aligned datasets by its values."""
     if a.shape != b.shape:
         lengths = ", ".join(
             f"{a.sizes[dim]} against {b.sizes[dim]} along {dim}"
             for dim in map(str, a.dims)
             if dim in b.sizes and a.sizes[dim] != b.sizes[dim]
         )
-        return VariableDifference(
-            name=name,
-            verdict=Agreement.different,
-            volatile=entry.volatile,
-            reason=f"lists of different length: {lengths or f'{a.dims} against {b.dims}'}",
-        )
-    if entry.round_off is not None and entry.round_off.compared is ComparedAs.sample:
-        return _sampled(name, a, b, entry, entry.round_off)
-    if entry.flags is not None or a.dtype.kind not in "fc":
-        return _discrete(name, a, b, entry)
-    return _continuous(name, a, b, entry)
+        found: dict[str, Any] = {
+            "verdict": Agreement.different,
+            "reason": f"lists of different length: {lengths or f'{a.dims} against {b.dims}'}",
+        }
+    elif entry.round_off is not None and entry.round_off.compared is ComparedAs.sample:
+        found = _sampled(a, b, entry.round_off)
+    elif _discrete(a.values, entry):
+        found = _flipped(a, b, entry)
+    else:
+        found = _continuous(a, b, entry)
+    return VariableDifference(name=name, volatile=entry.volatile, **found)
 
 
 def outside_tolerance(a: np.ndarray, b: np.ndarray, entry: Variable) -> np.ndarray:
     """Where two arrays differ by more than the schema allows; NaN equals NaN only."""
-    if entry.flags is not None or a.dtype.kind not in "fc":
+    if _discrete(a, entry):
         return np.asarray(a != b)
-    same = (a == b) | (np.isnan(a) & np.isnan(b))
     with np.errstate(invalid="ignore", over="ignore"):
         close = np.abs(a - b) <= entry.atol + entry.rtol * np.maximum(np.abs(a), np.abs(b))
-    if entry.round_off is not None and entry.round_off.compared is ComparedAs.magnitude:
-        close |= _same_magnitude(a, b, entry.round_off)
-    finite = np.isfinite(a) & np.isfinite(b)
-    return np.asarray(~(same | (close & finite)))
+        if entry.round_off is not None and entry.round_off.compared is ComparedAs.magnitude:
+            sizes = [np.maximum(np.abs(side), entry.round_off.floor) for side in (a, b)]
+            close |= np.maximum(*sizes) <= entry.round_off.factor * np.minimum(*sizes)
+    return np.asarray(~(_same(a, b) | (close & np.isfinite(a) & np.isfinite(b))))
 
 
-def _same_magnitude(a: np.ndarray, b: np.ndarray, how: RoundOff) -> np.ndarray:
-    sizes = [np.maximum(np.abs(side), how.floor) for side in (a, b)]
-    with np.errstate(invalid="ignore", over="ignore"):
-        return np.asarray(np.maximum(*sizes) <= how.factor * np.minimum(*sizes))
+def _discrete(values: np.ndarray, entry: Variable) -> bool:
+    return entry.flags is not None or values.dtype.kind not in "fc"
 
 
-def _sampled(
-    name: str, a: xr.DataArray, b: xr.DataArray, entry: Variable, how: RoundOff
-) -> VariableDifference:
+def _same(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    return np.asarray((a == b) | (np.isnan(a) & np.isnan(b)))
+
+
+def _sampled(a: xr.DataArray, b: xr.DataArray, how: RoundOff) -> dict[str, Any]:
     """Both sides as samples along one dimension, by the test of Kolmogorov and Smirnov.
 
     What did not end in time (NaN) counts as longer than all others.
     """
-    left, right = (side.transpose(..., how.sample).values.astype(float) for side in (a, b))
-    rows = [side.reshape(-1, side.shape[-1]) for side in (left, right)]
-    filled = [np.nan_to_num(side, nan=np.inf, posinf=np.inf) for side in rows]
-    chances = np.array([ks_2samp(x, y).pvalue for x, y in zip(*filled, strict=True)])
-    unlikely = chances <= SMALLEST_CHANCE
-    equal = np.array_equal(left, right, equal_nan=True)
-    verdict = Agreement.different if unlikely.any() else Agreement.within_tolerance
-    rest = a.isel({how.sample: 0})
-    return VariableDifference(
-        name=name,
-        verdict=Agreement.equal if equal else verdict,
-        compared=len(chances),
-        differing=int(unlikely.sum()),
-        where=_place(rest, int(chances.argmin())) if chances.size and not equal else {},
-        volatile=entry.volatile,
-        compared_as=how.compared.value,
-        reason=""
-        if equal
-        else f"{len(chances)} samples along {how.sample}, smallest chance that both are "
+    sides = [side.transpose(..., how.sample).values.astype(float) for side in (a, b)]
+    rows = [np.nan_to_num(side, nan=np.inf, posinf=np.inf) for side in sides]
+    rows = [side.reshape(-1, side.shape[-1]) for side in rows]
+    chances = np.array([ks_2samp(x, y).pvalue for x, y in zip(*rows, strict=True)])
+    unlikely = int((chances <= SMALLEST_CHANCE).sum())
+    found: dict[str, Any] = {
+        "compared": len(chances),
+        "differing": unlikely,
+        "compared_as": how.compared.value,
+    }
+    if np.array_equal(sides[0], sides[1], equal_nan=True):
+        return found | {"verdict": Agreement.equal}
+    return found | {
+        "verdict": Agreement.different if unlikely else Agreement.within_tolerance,
+        "where": _place(a.isel({how.sample: 0}), int(chances.argmin())) if chances.size else {},
+        "reason": f"{len(chances)} samples along {how.sample}, smallest chance that both are "
         f"of one distribution {chances.min(initial=1.0):.2g}",
+    }
+
+
+def _beyond_horizon(
+    name: str, a: xr.Dataset, b: xr.Dataset, entry: Variable, how: RoundOff
+) -> VariableDifference:
+    """Cells that are predictable on both sides one by one, the others as one sample."""
+    lost = sum(side[how.by].values == Outcome.beyond_horizon for side in (a, b)) > 0
+    left, right = a[name].values, b[name].values
+    found = difference(name, a[name], b[name].copy(data=np.where(lost, left, right)), entry)
+    samples = [np.nan_to_num(side[lost].astype(float), nan=np.inf) for side in (left, right)]
+    if np.array_equal(*samples):
+        return found
+    chance = float(ks_2samp(*samples, method="asymp").pvalue)
+    verdict = Agreement.different if chance <= SMALLEST_CHANCE else Agreement.within_tolerance
+    stated = (
+        f"{int((samples[0] != samples[1]).sum())} of {lost.sum()} values beyond the predictability "
+        f"horizon differ; chance that both are of one distribution {chance:.2g}"
+    )
+    return replace(
+        found,
+        verdict=max(found.verdict, verdict),
+        compared_as=how.compared.value,
+        reason="; ".join(filter(None, (found.reason, stated))),
     )
 
 
-def _discrete(name: str, a: xr.DataArray, b: xr.DataArray, entry: Variable) -> VariableDifference:
-    left, right = a.values, b.values
-    differing = outside_tolerance(left, right, entry)
+def _flipped(a: xr.DataArray, b: xr.DataArray, entry: Variable) -> dict[str, Any]:
+    differing = outside_tolerance(a.values, b.values, entry)
     count = int(differing.sum())
-    meanings = {} if entry.flags is None else flag_table(entry.flags)
+    words = {} if entry.flags is None else flag_table(entry.flags)
     flips = Counter(
-        f"{_short(meanings.get(old, old))} → {_short(meanings.get(new, new))}"
-        for old, new in zip(left[differing].tolist(), right[differing].tolist(), strict=True)
+        " → ".join(shortened(str(words.get(value, value)), LONGEST) for value in pair)
+        for pair in zip(a.values[differing].tolist(), b.values[differing].tolist(), strict=True)
     )
-    return VariableDifference(
-        name=name,
-        verdict=Agreement.different if count else Agreement.equal,
-        compared=left.size,
-        differing=count,
-        where=_place(a, int(differing.argmax())) if count else {},
-        flips=dict(flips.most_common(12)),
-        volatile=entry.volatile,
-    )
+    return {
+        "verdict": Agreement.different if count else Agreement.equal,
+        "compared": a.size,
+        "differing": count,
+        "where": _place(a, int(differing.argmax())) if count else {},
+        "flips": dict(flips.most_common(12)),
+    }
 
 
-def _short(value: object) -> str:
-    text = str(value)
-    return text if len(text) <= LONGEST else f"{text[: LONGEST - 1]}…"
-
-
-def _continuous(name: str, a: xr.DataArray, b: xr.DataArray, entry: Variable) -> VariableDifference:
+def _continuous(a: xr.DataArray, b: xr.DataArray, entry: Variable) -> dict[str, Any]:
     left, right = a.values, b.values
-    differing = outside_tolerance(left, right, entry)
-    same = (left == right) | (np.isnan(left) & np.isnan(right))
+    differing, same = outside_tolerance(left, right, entry), _same(left, right)
+    found: dict[str, Any] = {"compared": left.size, "rtol": entry.rtol, "atol": entry.atol}
+    if entry.round_off is not None:
+        found["compared_as"] = entry.round_off.compared.value
     if same.all():
-        verdict = Agreement.equal
-    else:
-        verdict = Agreement.different if differing.any() else Agreement.within_tolerance
+        return found | {"verdict": Agreement.equal}
     with np.errstate(invalid="ignore", over="ignore"):
         gap = np.where(same, 0.0, np.abs(left - right))
     one_sided = ~np.isfinite(gap)
-    gap = np.where(one_sided, np.inf, gap)
+    gap[one_sided] = np.inf
     scale = np.maximum(np.abs(left), np.abs(right))
     relative = np.divide(gap, scale, out=np.zeros_like(gap), where=np.isfinite(gap) & (scale > 0))
-    finite = np.where(one_sided, 0.0, gap)
-    worst = int(gap.argmax()) if gap.size else 0
-    return VariableDifference(
-        name=name,
-        verdict=verdict,
-        compared=left.size,
-        differing=int(differing.sum()),
-        largest_absolute=float(finite.max(initial=0.0)),
-        largest_relative=float(relative.max(initial=0.0)),
-        where=_place(a, worst) if verdict != Agreement.equal else {},
-        rtol=entry.rtol,
-        atol=entry.atol,
-        volatile=entry.volatile,
-        compared_as="" if entry.round_off is None else entry.round_off.compared.value,
-        reason=f"{int(one_sided.sum())} values are finite on one side only"
+    return found | {
+        "verdict": Agreement.different if differing.any() else Agreement.within_tolerance,
+        "differing": int(differing.sum()),
+        "largest_absolute": float(gap.max(where=~one_sided, initial=0.0)),
+        "largest_relative": float(relative.max()),
+        "where": _place(a, int(gap.argmax())),
+        "reason": f"{one_sided.sum()} values are finite on one side only"
         if one_sided.any()
         else "",
-    )
+    }
+
+
+def shortened(text: str, width: int) -> str:
+    """A text of at most so many characters."""
+    return text if len(text) <= width else f"{text[: width - 1]}…"
 
 
 def _place(array: xr.DataArray, flat: int) -> dict[str, float | int | str]:

@@ -6,11 +6,9 @@ from typing import Any
 
 from squealpipe.schema.agreement import ComparedAs
 from squealpipe.store.comparison.compare import Comparison, DatasetDifference
-from squealpipe.store.comparison.differences import Agreement, VariableDifference
+from squealpipe.store.comparison.differences import Agreement, VariableDifference, shortened
 from squealpipe.store.comparison.statements import StatementChange
 
-SCREEN = {"parameters": 6, "statements": 5, "differences": 6}
-"""Lines of each part that a terminal shows unless all are asked for."""
 WIDTH = 100
 
 
@@ -20,34 +18,29 @@ def lines(comparison: Comparison, *, every: bool = False) -> list[str]:
     Args:
         every: all of it, with what is equal and where each side was made; else a screenful.
     """
-    stated = [verdict_line(comparison)]
     worst = sorted(comparison.datasets, key=lambda item: item.severity, reverse=True)
-    listed = [line for item in worst for line in _dataset_lines(item, every=every)]
     verdicts = sum(change.verdict_changed for change in comparison.statements)
     values = len(comparison.statements) - verdicts
     title = f"statements of the paper: {verdicts} changed their verdict, {values} only a value"
-    for name, heading, part in (
-        ("parameters", "changed parameters", list(_change_lines(comparison.parameters))),
-        ("statements", title, [statement_line(change) for change in comparison.statements]),
-        ("differences", "differences, worst first", listed),
-    ):
-        most = len(part) if every else SCREEN[name]
-        shown = (
-            part
-            if len(part) <= most
-            else [*part[: most - 1], f"and {len(part) - most + 1} more; --all shows them"]
-        )
-        stated += [heading, *(f"  {line}" for line in shown)] if part else []
-    if every and comparison.environment:
-        stated += [
-            "made elsewhere",
-            *(f"  {line}" for line in _change_lines(comparison.environment)),
-        ]
-    return (
-        stated
-        if every
-        else [_shortened(stated[0], 3 * WIDTH), *(_shortened(x) for x in stated[1:])]
-    )
+    parts = {
+        "changed parameters": (6, _changes(comparison.parameters)),
+        title: (5, [statement_line(change) for change in comparison.statements]),
+        "differences, worst first": (
+            6,
+            [line for item in worst for line in _dataset_lines(item, every=every)],
+        ),
+        "made elsewhere": (0, _changes(comparison.environment)),
+    }
+    stated = [verdict_line(comparison)]
+    for heading, (most, part) in parts.items():
+        shown = part
+        if not every and len(part) > most:
+            more = f"and {len(part) - most + 1} more; --all shows them"
+            shown = [*part[: most - 1], more] if most else []
+        stated += [heading, *(f"  {line}" for line in shown)] if shown else []
+    if every:
+        return stated
+    return [shortened(stated[0], 3 * WIDTH), *(shortened(line, WIDTH) for line in stated[1:])]
 
 
 def statement_line(change: StatementChange) -> str:
@@ -58,9 +51,11 @@ def statement_line(change: StatementChange) -> str:
     return f"{change.claim}: {stated}, value {values[0]} → {values[1]}"
 
 
-def _change_lines(changes: dict[str, tuple[Any, Any]]) -> Iterator[str]:
-    for key, pair in changes.items():
-        yield f"{key}: " + " → ".join("–" if value is None else str(value) for value in pair)
+def _changes(changes: dict[str, tuple[Any, Any]]) -> list[str]:
+    return [
+        f"{key}: " + " → ".join("–" if value is None else str(value) for value in pair)
+        for key, pair in changes.items()
+    ]
 
 
 def _dataset_lines(item: DatasetDifference, *, every: bool) -> Iterator[str]:
@@ -74,10 +69,6 @@ def _dataset_lines(item: DatasetDifference, *, every: bool) -> Iterator[str]:
         kind = "volatile " if entry.volatile else verdict
         at = f" at {where(entry)}" if entry.where else ""
         yield f"{item.name}.{entry.name}: {kind}{how_much(entry)}{at}"
-
-
-def _shortened(line: str, width: int = WIDTH) -> str:
-    return line if len(line) <= width else f"{line[: width - 1]}…"
 
 
 def verdict_line(comparison: Comparison) -> str:
@@ -102,7 +93,15 @@ def words(verdict: Agreement) -> str:
 
 def where(entry: VariableDifference) -> str:
     """The place of the largest difference; angles in multiples of π."""
-    return ", ".join(f"{dim} = {_place(dim, value)}" for dim, value in entry.where.items())
+    places = [
+        f"{dim} = {value}"
+        if isinstance(value, str)
+        else f"{dim} = {value / math.pi:.4g}π"
+        if dim.startswith("alpha")
+        else f"{dim} = {value:.6g}"
+        for dim, value in entry.where.items()
+    ]
+    return ", ".join(places)
 
 
 def how_much(entry: VariableDifference) -> str:
@@ -121,9 +120,3 @@ def how_much(entry: VariableDifference) -> str:
         f"largest {entry.largest_absolute:.3g}, relative {entry.largest_relative:.3g}"
     )
     return f"{stated}; {entry.reason}" if entry.reason else stated
-
-
-def _place(dim: str, value: float | str) -> str:
-    if isinstance(value, str):
-        return value
-    return f"{value / math.pi:.4g}π" if dim.startswith("alpha") else f"{value:.6g}"

@@ -1,7 +1,5 @@
 """Two datasets brought onto what they share: grid points by value, entries of lists by meaning."""
 
-from collections.abc import Iterable
-
 import numpy as np
 import pandas as pd
 import xarray as xr
@@ -24,58 +22,59 @@ def align(
     lists = {} if schema is None else schema.lists
     for dim in sorted(map(str, set(a.dims) & set(b.dims))):
         if dim in lists:
-            a, b, note = match(a, b, dim, lists[dim])
+            at, note = match(a, b, dim, lists[dim])
         elif all(each[dim].dims == (dim,) and dim in each.coords for each in (a, b)):
-            a, b, note = on_shared_points(a, b, dim)
+            at, note = on_shared_points(a[dim].values, b[dim].values, dim)
+        elif dim in RAGGED and a.sizes[dim] != b.sizes[dim]:
+            # lists in a sweep have their lengths beside them; here each is compared by order
+            sizes = a.sizes[dim], b.sizes[dim]
+            at = [np.arange(min(sizes))] * 2
+            note = (
+                f"{dim}: the first {min(sizes)} of up to {sizes[0]} and {sizes[1]} "
+                "compared by order"
+            )
         else:
-            a, b, note = _cut(a, b, dim)
-        notes.extend(note)
+            continue
+        if at:
+            a, b = a.isel({dim: at[0]}), b.isel({dim: at[1]})
+        if dim in lists and dim in a.coords and dim in b.coords and a[dim].dims == (dim,):
+            b = b.assign_coords({dim: a[dim].variable})
+        notes += [note] if note else []
     return a, b, notes
 
 
-def match(
-    a: xr.Dataset, b: xr.Dataset, dim: str, how: Listing
-) -> tuple[xr.Dataset, xr.Dataset, list[str]]:
-    """Entries of a list that mean the same, in the first one's order."""
+def match(a: xr.Dataset, b: xr.Dataset, dim: str, how: Listing) -> tuple[list[np.ndarray], str]:
+    """Places of entries of a list that mean the same, in the first one's order; and a note."""
     sizes = a.sizes[dim], b.sizes[dim]
-    kinds = _kinds(a, dim, how.kinds), _kinds(b, dim, how.kinds)
+    kinds = [
+        list(zip(*(each[name].values.tolist() for name in how.kinds), strict=True))
+        or [()] * each.sizes[dim]
+        for each in (a, b)
+    ]
     if sizes[0] == sizes[1] and kinds[0] == kinds[1] and how.filler is None:
-        return a, b, []
-    at_a: list[int] = []
-    at_b: list[int] = []
+        return [], ""
+    pairs: list[tuple[int, int]] = []
     for kind in dict.fromkeys(kinds[0]):
         places = [np.flatnonzero([item == kind for item in side]) for side in kinds]
-        positions = _positions(a, how, dim, places[0]), _positions(b, how, dim, places[1])
-        found = _pairs(*positions)
-        if kind and kind[0] == how.filler:
-            found = [
-                (i, j)
-                for i, j in found
-                if abs(positions[0][i] - positions[1][j]) <= SAME_PLACE * abs(positions[0][i])
-            ]
-        at_a.extend(places[0][[pair[0] for pair in found]])
-        at_b.extend(places[1][[pair[1] for pair in found]])
-    order = np.argsort(at_a, kind="stable").astype(int)
-    first, second = np.asarray(at_a, int)[order], np.asarray(at_b, int)[order]
+        left, right = (
+            _positions(each, how, dim, at) for each, at in zip((a, b), places, strict=True)
+        )
+        pairs += [
+            (int(places[0][i]), int(places[1][j]))
+            for i, j in _nearest_of_each_other(left, right)
+            if kind[:1] != (how.filler,) or abs(left[i] - right[j]) <= SAME_PLACE * abs(left[i])
+        ]
+    at = np.array(sorted(pairs), int).reshape(-1, 2)
     by = how.position or ("kind and order" if how.kinds else "order")
-    note = f"{dim}: {len(first)} of {sizes[0]} and {sizes[1]} matched by {by}"
-    a, b = a.isel({dim: first}), b.isel({dim: second})
-    if dim in a.coords and dim in b.coords and a[dim].dims == (dim,):
-        b = b.assign_coords({dim: a[dim].variable})
-    return a, b, [note] if max(sizes) > len(first) else []
+    note = f"{dim}: {len(at)} of {sizes[0]} and {sizes[1]} matched by {by}"
+    return [*at.T], note if max(sizes) > len(at) else ""
 
 
 def judged_length(dataset: xr.Dataset, dim: str, how: Listing) -> int | None:
     """Number of entries whose number is a result; None without the dimension."""
     if dim not in dataset.sizes or how.filler is None:
-        return int(dataset.sizes[dim]) if dim in dataset.sizes else None
-    labels = dataset[how.kinds[0]].values
-    return int((labels != how.filler).sum())
-
-
-def _kinds(dataset: xr.Dataset, dim: str, names: Iterable[str]) -> list[tuple]:
-    columns = [dataset[name].values.tolist() for name in names]
-    return list(zip(*columns, strict=True)) if columns else [()] * dataset.sizes[dim]
+        return dataset.sizes.get(dim)
+    return int((dataset[how.kinds[0]].values != how.filler).sum())
 
 
 def _positions(dataset: xr.Dataset, how: Listing, dim: str, places: np.ndarray) -> np.ndarray:
@@ -85,8 +84,7 @@ def _positions(dataset: xr.Dataset, how: Listing, dim: str, places: np.ndarray) 
     return np.where(np.isfinite(values), values, np.inf)
 
 
-def _pairs(left: np.ndarray, right: np.ndarray) -> list[tuple[int, int]]:
-    """Entries that are each other's nearest."""
+def _nearest_of_each_other(left: np.ndarray, right: np.ndarray) -> list[tuple[int, int]]:
     if not left.size or not right.size:
         return []
     with np.errstate(invalid="ignore"):
@@ -96,46 +94,24 @@ def _pairs(left: np.ndarray, right: np.ndarray) -> list[tuple[int, int]]:
     return [(int(i), int(j)) for i, j in enumerate(of_left) if of_right[j] == i]
 
 
-def on_shared_points(
-    a: xr.Dataset, b: xr.Dataset, dim: str
-) -> tuple[xr.Dataset, xr.Dataset, list[str]]:
-    """Both datasets on the points of one grid that they share, and a note on what was left out."""
-    left, right = a[dim].values, b[dim].values
-    if left.shape == right.shape and np.array_equal(left, right):
-        return a, b, []
-    at_left, at_right = _shared(left, right)
-    if len(at_left) < min(2, len(left), len(right)) or not len(at_left):
+def on_shared_points(left: np.ndarray, right: np.ndarray, dim: str) -> tuple[list[np.ndarray], str]:
+    """Places of the points that two one-dimensional grids have in common, and a note."""
+    if np.array_equal(left, right):
+        return [], ""
+    if left.dtype.kind in "fiu" and right.dtype.kind in "fiu":
+        extent = max((np.ptp(side) for side in (left, right) if side.size), default=0.0)
+        left, right = left.astype(float), right.astype(float)
+        how = {"method": "nearest", "tolerance": ALIGNED * extent}
+    else:
+        how = {}
+    points, order = np.unique(right, return_index=True)  # a point may be there twice
+    nearest = pd.Index(points).get_indexer(left, **how)
+    at = [np.flatnonzero(nearest >= 0), order[nearest[nearest >= 0]]]
+    shared, sizes = len(at[0]), (len(left), len(right))
+    if shared < min(2, *sizes) or not shared:
         raise ValueError(
-            f"the grids of {dim} share {len(at_left)} of {len(left)} and {len(right)} points; "
+            f"the grids of {dim} share {shared} of {sizes[0]} and {sizes[1]} points; "
             "compute both on grids of which one holds the other"
         )
-    a, b = a.isel({dim: at_left}), b.isel({dim: at_right})
-    if len(at_left) == max(len(left), len(right)):
-        return a, b, []
-    return (
-        a,
-        b,
-        [f"{dim}: compared on {len(at_left)} shared points of {len(left)} and {len(right)}"],
-    )
-
-
-def _cut(a: xr.Dataset, b: xr.Dataset, dim: str) -> tuple[xr.Dataset, xr.Dataset, list[str]]:
-    """Lists in a sweep have their lengths beside them; here each is compared by order."""
-    sizes = a.sizes[dim], b.sizes[dim]
-    if dim not in RAGGED or sizes[0] == sizes[1]:
-        return a, b, []
-    cut = slice(min(sizes))
-    note = f"{dim}: the first {min(sizes)} of up to {sizes[0]} and {sizes[1]} compared by order"
-    return a.isel({dim: cut}), b.isel({dim: cut}), [note]
-
-
-def _shared(left: np.ndarray, right: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Indices of the points that two one-dimensional grids have in common."""
-    if left.dtype.kind not in "fiu" or right.dtype.kind not in "fiu":
-        _, at_left, at_right = np.intersect1d(left, right, return_indices=True)
-        order = np.argsort(at_left)
-        return at_left[order], at_right[order]
-    close = ALIGNED * max((np.ptp(side) for side in (left, right) if side.size), default=0.0)
-    points, order = np.unique(right.astype(float), return_index=True)  # a point may be there twice
-    nearest = pd.Index(points).get_indexer(left.astype(float), method="nearest", tolerance=close)
-    return np.flatnonzero(nearest >= 0), order[nearest[nearest >= 0]]
+    note = f"{dim}: compared on {shared} shared points of {sizes[0]} and {sizes[1]}"
+    return at, note if shared < max(sizes) else ""

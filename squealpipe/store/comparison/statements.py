@@ -31,40 +31,21 @@ class StatementChange:
 
 def changed_statements(a: xr.Dataset, b: xr.Dataset) -> list[StatementChange]:
     """Statements whose verdict or value differs; changed verdicts first."""
-    rows = [_rows(dataset) for dataset in (a, b)]
+    a, b = xr.align(a, b, join="outer", fill_value={"verdict": -1, "statement": ""})
+    beyond = outside_tolerance(a.value.values, b.value.values, CLAIMS.variables["value"])
     found = []
-    for claim in dict.fromkeys([*rows[0], *rows[1]]):
-        first, second = (side.get(claim) for side in rows)
-        verdicts = _verdict(first), _verdict(second)
-        if verdicts[0] == verdicts[1] and not _value_changed(first, second):
-            continue
-        shown = {**rows[1], **rows[0]}[claim]
-        found.append(
-            StatementChange(
-                claim=claim,
-                statement=str(shown["statement"].item()),
-                verdicts=verdicts,
-                values=(_value(first), _value(second)),
+    for i in range(a.sizes["claim"]):
+        rows = a.isel(claim=i), b.isel(claim=i)
+        codes = [int(row.verdict) for row in rows]
+        if codes[0] != codes[1] or beyond[i]:
+            words = ["" if code < 0 else Verdict(code).words for code in codes]
+            numbers = [value if math.isfinite(value := float(row.value)) else None for row in rows]
+            found.append(
+                StatementChange(
+                    claim=str(rows[0].claim.values),
+                    statement=str(rows[0].statement.values) or str(rows[1].statement.values),
+                    verdicts=(words[0], words[1]),
+                    values=(numbers[0], numbers[1]),
+                )
             )
-        )
     return sorted(found, key=lambda change: not change.verdict_changed)
-
-
-def _rows(dataset: xr.Dataset) -> dict[str, xr.Dataset]:
-    return {str(name): dataset.isel(claim=i) for i, name in enumerate(dataset.claim.values)}
-
-
-def _verdict(row: xr.Dataset | None) -> str:
-    return "" if row is None else Verdict(int(row["verdict"])).words
-
-
-def _value(row: xr.Dataset | None) -> float | None:
-    value = math.nan if row is None else float(row["value"])
-    return value if math.isfinite(value) else None
-
-
-def _value_changed(first: xr.Dataset | None, second: xr.Dataset | None) -> bool:
-    if first is None or second is None:
-        return True
-    entry = CLAIMS.variables["value"]
-    return bool(outside_tolerance(first["value"].values, second["value"].values, entry))
