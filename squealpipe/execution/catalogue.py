@@ -1,14 +1,13 @@
 """Every task that the command line and sweeps can call by name."""
 
 import inspect
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
-import numpy as np
 import xarray as xr
 
-from squealpipe.parameters import Parameters
 from squealpipe.tasks.backbones.backbone import backbone
 from squealpipe.tasks.backbones.orbit import periodic_orbit
 from squealpipe.tasks.basins.disturbance import smallest_disturbance
@@ -27,48 +26,32 @@ class Task:
     """
 
     run: Callable[..., xr.Dataset]
-    schema: str
     maps_angles: bool
 
     @property
-    def options(self) -> dict[str, bool]:
-        """Keyword → whether it must be given; how many processes to use is not among them."""
-        given = inspect.signature(self.run).parameters.values()
-        return {
-            item.name: item.default is item.empty
-            for item in given
-            if item.kind is item.KEYWORD_ONLY and item.name != "workers"
-        }
+    def schema(self) -> str:
+        """Name of the schema of its dataset."""
+        return "simulation" if self.run is simulate else self.run.__name__
+
+    @cached_property
+    def parameters(self) -> Mapping[str, inspect.Parameter]:
+        """What it takes."""
+        return inspect.signature(self.run).parameters
 
     @property
     def defaults(self) -> dict[str, Any]:
-        """Keyword → default, of those that need not be given."""
-        given = inspect.signature(self.run).parameters
-        return {name: given[name].default for name, needed in self.options.items() if not needed}
-
-    @property
-    def uses_workers(self) -> bool:
-        """Whether it can use several processes by itself."""
-        return "workers" in inspect.signature(self.run).parameters
+        """Option → default, :data:`NEEDED` if there is none; but not how many processes it uses."""
+        return {
+            name: item.default
+            for name, item in self.parameters.items()
+            if item.kind is item.KEYWORD_ONLY and name != "workers"
+        }
 
 
-TASKS: dict[str, Task] = {
-    "simulate": Task(simulate, "simulation", maps_angles=False),
-    "validity_map": Task(validity_map, "validity_map", maps_angles=True),
-    "hammering_map": Task(hammering_map, "hammering_map", maps_angles=True),
-    "quasi_static_map": Task(quasi_static_map, "quasi_static_map", maps_angles=True),
-    "stability_map": Task(stability_map, "stability_map", maps_angles=True),
-    "critical_friction_map": Task(critical_friction_map, "critical_friction_map", maps_angles=True),
-    "natural_frequencies": Task(natural_frequencies, "natural_frequencies", maps_angles=True),
-    "periodic_orbit": Task(periodic_orbit, "periodic_orbit", maps_angles=False),
-    "backbone": Task(backbone, "backbone", maps_angles=False),
-    "smallest_disturbance": Task(smallest_disturbance, "smallest_disturbance", maps_angles=False),
-}
-
-
-def run_task(name: str, params: Parameters, alpha1: Any, alpha2: Any, **options: Any) -> xr.Dataset:
-    """Run a task by name; single angles become arrays of one where the task maps angles."""
-    task = TASKS[name]
-    if task.maps_angles:
-        alpha1, alpha2 = np.atleast_1d(alpha1), np.atleast_1d(alpha2)
-    return task.run(params, alpha1, alpha2, **options)
+NEEDED = inspect.Parameter.empty
+ONE_PAIR = (simulate, periodic_orbit, backbone, smallest_disturbance)
+MAPS = (
+    *(validity_map, hammering_map, quasi_static_map, stability_map),
+    *(critical_friction_map, natural_frequencies),
+)
+TASKS = {run.__name__: Task(run, maps_angles=run in MAPS) for run in (*ONE_PAIR, *MAPS)}

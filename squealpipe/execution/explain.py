@@ -118,32 +118,23 @@ def explain(
     rows = [line.split("\t") for line in done.stdout.splitlines()[1:]]
     # rules that the report of a study of one's own does not need are left out
     made = {row[0]: planned[row[0]] for row in rows if row[0] in planned}
-    pending = {row[0]: row[4] for row in rows if row[-1] == "update pending" and row[0] in made}
+    pending = {row[0] for row in rows if row[-1] == "update pending"}
     kept = {path: made[path]["key"] for path in made if path not in pending}
-    pending |= dict.fromkeys((line.partition(": ")[0] for line in misfits(kept, there)), "misfit")
+    pending |= {line.partition(": ")[0] for line in misfits(kept, there)}
     times = job_times(there)
     jobs = []
     for rule in dict.fromkeys(made[path]["rule"] for path in made if path in pending):
-        outputs = [path for path in pending if made[path]["rule"] == rule]
+        outputs = [path for path in made if path in pending and made[path]["rule"] == rule]
         first = made[outputs[0]]
         follows = sorted({made[path]["rule"] for path in first["inputs"] if path in pending})
-        missing = [path for path in outputs if pending[path] == "missing"]
-        reasons = (
-            [f"missing: {_some(missing)}"]
-            if missing
-            else list(
-                dict.fromkeys(what for path in outputs for what in _changes(there / path, first))
-            )
-            or ([] if follows else [_changed_code(there / outputs[0], first["sources"])])
-        )
+        missing = [path for path in outputs if not (there / path).exists()]
+        changes = [what for path in outputs for what in _changes(there / path, first)]
+        reasons = [f"missing: {_some(missing)}"] if missing else list(dict.fromkeys(changes))
+        if not reasons and not follows:
+            reasons = [_changed_code(there / outputs[0], first["sources"])]
+        seconds = times.get(rule)
         jobs.append(
-            Job(
-                rule=rule,
-                outputs=outputs,
-                reasons=reasons,
-                follows=follows,
-                seconds=times.get(rule),
-            )
+            Job(rule=rule, outputs=outputs, reasons=reasons, follows=follows, seconds=seconds)
         )
     return Explanation(jobs=jobs, keys={path: made[path]["key"] for path in made})
 
@@ -192,11 +183,13 @@ def job_times(directory: Path) -> dict[str, float]:
 
 def _changes(path: Path, made: Mapping[str, Any]) -> list[str]:
     """``key: old → new`` for a dataset of another configuration."""
+    if path.suffix != ".nc":
+        return []
     try:
-        old = flat(json.loads(attributes(path).get("config", "{}"))) if path.suffix == ".nc" else {}
+        old = flat(json.loads(attributes(path).get("config", "{}")))
     except (StoreError, FileNotFoundError):
         return [f"{path.name} is damaged"]
-    new = flat(made["part"]) if old else {}
+    new = flat(made["part"])
     return [
         f"{key}: {old.get(key, 'absent')} → {new[key]}" for key in new if old.get(key) != new[key]
     ]

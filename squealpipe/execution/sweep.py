@@ -11,10 +11,11 @@ from multiprocessing import active_children, get_all_start_methods, get_context
 from typing import Any, Self
 
 import numpy as np
+import pandas as pd
 import xarray as xr
 
-from squealpipe.config.ranges import NUMBERS, PHYSICAL
-from squealpipe.execution.catalogue import TASKS, run_task
+from squealpipe.config.ranges import ANGLES, NUMBERS, PHYSICAL
+from squealpipe.execution.catalogue import NEEDED, TASKS
 from squealpipe.execution.parts import scattered_values
 from squealpipe.execution.system_sweep import SystemSweep, is_system
 from squealpipe.methods.processes import available_cores, leave_interrupts_to_the_parent
@@ -24,7 +25,6 @@ from squealpipe.schema import (
     ABSENT,
     DatasetSchema,
     Outcome,
-    Variable,
     build,
     find,
     meanings,
@@ -69,43 +69,35 @@ class Sweep:
         _gate(self.task, self.params, self.vary, self.fixed)
         if self.task not in TASKS:
             raise ValueError(f"no task {self.task!r}; {suggestion(self.task, TASKS)}")
-        self._check_varied()
-        self._check_fixed()
+        options = TASKS[self.task].defaults
+        varied = [*NUMBERS, *ANGLES, *(name for name in options if name in OPTIONS)]
+        for name, values in self.vary.items():
+            if name not in varied:
+                near = suggestion(name, varied)
+                raise ValueError(f"{name!r} cannot be varied for {self.task}; {near}")
+            if not len(values) or len(set(values)) != len(values):
+                raise ValueError(f"{name} needs one or more values, each once, not {values!r}")
+            for value in values:
+                self._with({name: value})
+        for name in set(self.fixed) - {*ANGLES, *options, *PHYSICAL}:
+            known = ", ".join(options) or "none"
+            raise ValueError(f"{self.task} has no option {name!r}; it has {known}")
+        self._with(self.fixed)
+        needed = {*ANGLES, *(name for name in options if options[name] is NEEDED)}
+        for name in sorted(needed | (set(self.vary) & set(self.fixed))):
+            if (name in self.vary) == (name in self.fixed):
+                raise ValueError(f"{self.task} needs {name} once, fixed or varied")
         if not self.names:
             raise ValueError(
                 f"nothing to sweep: {self.task} maps both angles by itself; vary a parameter too"
             )
 
-    def _check_varied(self) -> None:
-        allowed = [*NUMBERS, "alpha1", "alpha2"]
-        allowed += [name for name in TASKS[self.task].options if name in OPTIONS]
-        for name, values in self.vary.items():
-            if name not in allowed:
-                raise ValueError(
-                    f"{name!r} cannot be varied for {self.task}; {suggestion(name, allowed)}"
-                )
-            if not len(values) or len(set(values)) != len(values):
-                raise ValueError(f"{name} needs one or more values, each once, not {values!r}")
-            for value in values if name in self._physical else ():
-                self.params.with_(**{name: value})
-
-    @property
-    def _physical(self) -> list[str]:
-        """Names that mean a parameter, not an option of the task."""
-        return [name for name in PHYSICAL if name not in TASKS[self.task].options]
-
-    def _check_fixed(self) -> None:
-        options = TASKS[self.task].options
-        for name in set(self.fixed) - {"alpha1", "alpha2", *options, *self._physical}:
-            raise ValueError(
-                f"{self.task} has no option {name!r}; it has {', '.join(options) or 'none'}"
-            )
-        for name in set(self.fixed) & set(self._physical):
-            self.params.with_(**{name: self.fixed[name]})
-        needed = {"alpha1", "alpha2", *(name for name in options if options[name])}
-        for name in sorted(needed | (set(self.vary) & set(self.fixed))):
-            if (name in self.vary) == (name in self.fixed):
-                raise ValueError(f"{self.task} needs {name} once, fixed or varied")
+    def _with(self, given: Mapping[str, Any]) -> tuple[Parameters, dict[str, Any]]:
+        """The parameters with what is given of them, and the rest: angles and options."""
+        options = TASKS[self.task].defaults
+        physical = {name for name in given if name in PHYSICAL and name not in options}
+        params = self.params.with_(**{name: given[name] for name in physical})
+        return params, {name: given[name] for name in given if name not in physical}
 
     @property
     def names(self) -> list[str]:
@@ -125,22 +117,22 @@ class Sweep:
 
     def run(self, point: Sequence[float], workers: int | None = None) -> xr.Dataset:
         """The task at one point, in so many processes where it can use several."""
-        given = {**self.fixed, **self.vary, **dict(zip(self.names, point, strict=True))}
-        params = self.params.with_(
-            **{name: given.pop(name) for name in self._physical if name in given}
-        )
-        if TASKS[self.task].uses_workers:
+        point_by_name = dict(zip(self.names, point, strict=True))
+        params, given = self._with({**self.fixed, **self.vary, **point_by_name})
+        angles = [given.pop(name) for name in ANGLES]
+        task = TASKS[self.task]
+        if "workers" in task.parameters:
             given["workers"] = workers
-        return run_task(self.task, params, given.pop("alpha1"), given.pop("alpha2"), **given)
+        return task.run(
+            params, *(map(np.atleast_1d, angles) if task.maps_angles else angles), **given
+        )
 
     @property
     def origin(self) -> dict[str, Any]:
         """Attributes that record what makes the result; swept parameters are its coordinates."""
-        task = TASKS[self.task]
-        given = {**task.defaults, **self.fixed}
-        physical = {name: given.pop(name) for name in self._physical if name in given}
+        params, given = self._with({**TASKS[self.task].defaults, **self.fixed})
         fixed = {name: value for name, value in given.items() if name not in self.vary}
-        return origin(self.task, {"params": self.params.with_(**physical), **fixed})
+        return origin(self.task, {"params": params, **fixed})
 
     def part(self, item: str) -> Self:
         """One part of a scattered sweep: some of the values of the longest name."""
@@ -216,7 +208,11 @@ def _merge(sweep: Sweep, runs: Sequence[Arrays]) -> xr.Dataset:
         if name in schema.coordinates:
             coords[name] = _common(name, [run[name] for run in runs])
             continue
-        stacked = _stack([run[name] for run in runs], entry)
+        arrays = [run[name] for run in runs]
+        if is_ragged(entry):  # shorter ones are filled up
+            longest_run = tuple(np.max([array.shape for array in arrays], axis=0))
+            arrays = [fill_up(array.astype(entry.dtype), longest_run) for array in arrays]
+        stacked = np.stack(arrays)
         data[name] = stacked.reshape(shape + stacked.shape[1:])
     for dim in ragged_dims(base):
         data[f"{dim}_count"] = np.reshape([_length(run, dim, base) for run in runs], shape)
@@ -229,14 +225,6 @@ def _common(name: str, arrays: Sequence[np.ndarray]) -> np.ndarray:
         remedy = "; fix the option 'times', for instance 0:50:1001" if name == "time" else ""
         raise ValueError(f"{name} differs from run to run{remedy}")
     return arrays[0]
-
-
-def _stack(arrays: Sequence[np.ndarray], entry: Variable) -> np.ndarray:
-    """All runs in one array, shorter ones filled up."""
-    if not is_ragged(entry):
-        return np.stack(arrays)
-    longest_run = tuple(np.max([array.shape for array in arrays], axis=0))
-    return np.stack([fill_up(array.astype(entry.dtype), longest_run) for array in arrays])
 
 
 def _length(run: Arrays, dim: str, base: DatasetSchema) -> int:
@@ -253,18 +241,17 @@ def outcome_lines(dataset: xr.Dataset, names: list[str]) -> list[str]:
     """
     if "outcome" not in dataset:
         return []
-    words = meanings(dataset.outcome)
-    present = dataset.outcome.values[dataset.outcome.values != ABSENT]
-    values, counts = np.unique(present, return_counts=True)
-    order = np.argsort(-counts)
-    stated = [f"{words[int(values[k])]} {counts[k]}" for k in order]
+    words, codes = meanings(dataset.outcome), pd.Series(dataset.outcome.values.ravel())
+    counts = codes[codes != ABSENT].value_counts().sort_index()
+    counts = counts.sort_values(ascending=False, kind="stable")
+    stated = [f"{words[code]} {count}" for code, count in counts.items()]
     unit = "runs" if dataset.outcome.ndim == len(names) else "points"
     remedies = {int(item): item.remedy for item in Outcome}
     return [
-        f"outcome of {present.size} {unit}: {', '.join(stated)}",
+        f"outcome of {counts.sum()} {unit}: {', '.join(stated)}",
         *(
-            f"{words[int(value)]}: {remedies.get(int(value), 'a stop of the system')}"
-            for value in values[order]
-            if value != Outcome.converged
+            f"{words[code]}: {remedies.get(code, 'a stop of the system')}"
+            for code in counts.index
+            if code != Outcome.converged
         ),
     ]

@@ -1,7 +1,5 @@
 """What runs there are: archives and folders of results, found again by their parameters."""
 
-import contextlib
-import datetime
 import json
 import os
 import re
@@ -30,7 +28,7 @@ class Run:
     """One archive or folder of results.
 
     Attributes:
-        date: when it was frozen or last changed, ISO.
+        date: when it was frozen, or its last dataset made, ISO.
         commit: of the code that froze or made it; empty if not stated.
         config: dotted key → value of what made it.
         faults: what is wrong with it, file by file; none: it is intact.
@@ -57,15 +55,10 @@ def runs(root: str | os.PathLike[str] = ".") -> list[Run]:
     """All archives and folders of results of a checkout, by name; each file is verified."""
     base = Path(root)
     archives = base / ARCHIVES
-    results = [archives.parent, *sorted(archives.parent.glob("[!.]*"))]
-    return [
-        *(_archived(at) for at in sorted(archives.glob("[!.]*")) if (at / MANIFEST).is_file()),
-        *(
-            _results(at, base)
-            for at in results
-            if at != archives and any((at / "data").rglob("*.nc"))
-        ),
-    ]
+    frozen = [at for at in sorted(archives.glob("[!.]*")) if (at / MANIFEST).is_file()]
+    folders = [archives.parent, *sorted(archives.parent.glob("[!.]*"))]
+    made = [at for at in folders if at != archives and any((at / "data").rglob("*.nc"))]
+    return [*map(_archived, frozen), *(_results(at, base) for at in made)]
 
 
 def matching(expression: str, found: list[Run]) -> list[str]:
@@ -122,8 +115,7 @@ def _archived(place: Path) -> Run:
 def _results(place: Path, base: Path) -> Run:
     """A run that is going on or was edited: what can be read of it, and which files cannot."""
     config: dict[str, Any] = {}
-    commits: set[str] = set()
-    faults: list[str] = []
+    commits, dates, faults = {""}, [""], []
     files = dataset_files(place)
     for name, path in files.items():
         try:
@@ -138,14 +130,11 @@ def _results(place: Path, base: Path) -> Run:
         faults += [f"{path}: {key} = {found[key]}, elsewhere {config[key]}" for key in mixed]
         config |= found
         commits.add(str(stated.get("commit", "")))
-    newest = 0.0
-    for path in files.values():
-        with contextlib.suppress(FileNotFoundError):  # a run that goes on replaces its files
-            newest = max(newest, path.stat().st_mtime)
+        dates.append(str(stated.get("history", "")).partition(" ")[0])
     return Run(
         name=place.relative_to(base).as_posix(),
         kind="results",
-        date=datetime.datetime.fromtimestamp(newest, datetime.UTC).isoformat(timespec="seconds"),
+        date=max(dates),
         commit=", ".join(sorted(commits - {""})),
         size=sum(path.stat().st_size for path in files.values() if path.is_file()),
         config=config,

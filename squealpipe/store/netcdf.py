@@ -38,19 +38,20 @@ def save(dataset: xr.Dataset, path: AnyPath) -> Path:
     """
     target: Path = path
     validate(dataset, schema_of(dataset))
-    refuse_target(target)
+    if target.exists() and not target.is_file():
+        raise StoreError(f"{target} is not a regular file; choose another name to write to")
+    if (frozen := archive_around(target)) is not None:
+        raise StoreError(f"{target} is part of the archive {frozen}, which never changes")
     made = {"commit": commit(), "history": made_now(), **dataset.attrs}
     dataset = dataset.assign_attrs({**made, "dataset_id": dataset_id(dataset)})
-    encoding: dict[str, dict[str, Any]] = {
-        str(name): {"zlib": True, "complevel": 4, "shuffle": True}
-        for name, variable in dataset.variables.items()
-        if variable.ndim and variable.dtype.kind in "fiub"
-    }
-    for name, variable in dataset.variables.items():
-        # Xarray would declare NaN a fill value, though ours are data with a reason beside them.
-        encoding.setdefault(str(name), {})
-        if variable.dtype.kind in "fiu":
-            encoding[str(name)]["_FillValue"] = None
+    encoding: dict[str, dict[str, Any]] = {name: {} for name in map(str, dataset.variables)}
+    for name, how in encoding.items():
+        kind = dataset[name].dtype.kind
+        if kind in "fiu":
+            # Xarray would declare NaN a fill value, though ours are data with a reason beside them.
+            how["_FillValue"] = None
+        if kind in "fiub" and dataset[name].ndim:
+            how |= {"zlib": True, "complevel": 4, "shuffle": True}
     try:
         with whole_file(target) as temporary:
             dataset.to_netcdf(temporary, engine="netcdf4", format="NETCDF4", encoding=encoding)
@@ -124,15 +125,6 @@ def verified(path: str | os.PathLike[str]) -> Path:
     return source
 
 
-def refuse_target(target: Path) -> None:
-    """Refuse to write what must not be replaced."""
-    if target.exists() and not target.is_file():
-        raise StoreError(f"{target} is not a regular file; choose another name to write to")
-    archive = archive_around(target)
-    if archive is not None:
-        raise StoreError(f"{target} is part of the archive {archive}, which never changes")
-
-
 def made_now() -> str:
     """The line of CF's ``history`` for a dataset that is made now."""
     return f"{datetime.datetime.now(datetime.UTC):%Y-%m-%dT%H:%M:%SZ} squealpipe"
@@ -143,7 +135,9 @@ def read(path: str | os.PathLike[str]) -> xr.Dataset:
     source = verified(path)
     try:
         with xr.open_dataset(source, engine="netcdf4", decode_times=False) as opened:
-            _refuse_too_large(opened)
+            memory = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
+            if opened.nbytes > memory:
+                raise ValueError(f"it claims {opened.nbytes} bytes, more than this machine has")
             dataset = opened.load()
     except DAMAGED as error:
         raise StoreError(
@@ -153,9 +147,3 @@ def read(path: str | os.PathLike[str]) -> xr.Dataset:
         if variable.dtype == np.dtype("O"):
             variable.values = variable.values.astype(str)
     return dataset
-
-
-def _refuse_too_large(opened: xr.Dataset) -> None:
-    memory = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
-    if opened.nbytes > memory:
-        raise ValueError(f"it claims {opened.nbytes} bytes, more than this machine's memory")

@@ -5,7 +5,6 @@ import platform
 import time
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
-from types import MappingProxyType
 from typing import Any
 
 import xarray as xr
@@ -67,18 +66,6 @@ def stamped(
     ids = {str(path): load(path).attrs["dataset_id"] for path in inputs}
     started = time.perf_counter()
     dataset = make()
-    wall_time = time.perf_counter() - started
-    return stamp(dataset, config=config, inputs=ids, wall_time=wall_time)
-
-
-def stamp(
-    dataset: xr.Dataset,
-    *,
-    config: Mapping[str, Any],
-    inputs: Mapping[str, str] = MappingProxyType({}),
-    wall_time: float,
-) -> xr.Dataset:
-    """The dataset with provenance attributes; ``inputs`` are the ids of files that were read."""
     text = canonical(config)
     return dataset.assign_attrs(
         config=text,
@@ -86,7 +73,7 @@ def stamp(
         **versions(),
         commit=commit(),
         platform=f"{platform.platform()}, Python {platform.python_version()}",
-        inputs=canonical(dict(inputs)),
-        wall_time_s=wall_time,
+        inputs=canonical(ids),
+        wall_time_s=time.perf_counter() - started,
         history=made_now(),
     )

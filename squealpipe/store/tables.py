@@ -15,8 +15,6 @@ from squealpipe.validation import AnyPath, checked
 
 NEEDS = {".csv": None, ".mat": None, ".xlsx": "openpyxl", ".parquet": "pyarrow"}
 """Form → the library of the extra ``export`` that writes it."""
-MOST_ROWS = 1_048_575
-"""Rows of an Excel sheet below its header."""
 RECORDED = ("title", "config", "parameters", "system", "package_version", "commit")
 """Attributes of a dataset that go with its tables."""
 
@@ -92,12 +90,6 @@ def _write_csv(dataset: xr.Dataset, frame: pd.DataFrame, path: Path, *, with_num
 
 def _write_sheets(dataset: xr.Dataset, path: Path) -> list[Path]:
     tables = _tables(dataset)
-    for dims, frame in tables.items():
-        if len(frame) > MOST_ROWS:
-            raise ValueError(
-                f"{path}: {len(frame)} rows over {', '.join(dims)} are more than a sheet holds "
-                f"({MOST_ROWS}); write .parquet or .csv, or choose a part with dataset.sel"
-            )
     about = {**_numbers(dataset), **_about(dataset)}
     with whole_file(path) as temporary, pd.ExcelWriter(temporary, engine="openpyxl") as book:
         for dims, frame in tables.items():

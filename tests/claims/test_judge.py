@@ -7,7 +7,7 @@ from squealpipe.parameters import Parameters
 from squealpipe.schema.claims import Basis, Verdict
 from squealpipe.schema.inference import of_study
 from squealpipe.store.netcdf import save
-from squealpipe.store.provenance import stamp
+from squealpipe.store.provenance import stamped
 from squealpipe.study.claims.judge import judge
 from squealpipe.study.claims.statements import READ, STATEMENTS
 from squealpipe.study.claims.table import rows, table
@@ -105,7 +105,7 @@ def test_exit_code(tmp_path, evidence, parameters, change, code):
     claims["verdict_here"] = claims.recorded.copy().assign_attrs(claims.verdict.attrs)
     if change:
         claims.verdict_here[0] = Verdict.fails
-    path = save(stamp(claims, config={}, wall_time=0.0), tmp_path / "claims.nc")
+    path = save(stamped(lambda: claims, config={}), tmp_path / "claims.nc")
     found, exit_code = table(path)
     assert exit_code == code
     assert found[0]["as_recorded"] is not change

@@ -8,7 +8,7 @@ import pytest
 from squealpipe.cli import run
 from squealpipe.parameters import SCENES, Parameters
 from squealpipe.store.netcdf import save
-from squealpipe.store.provenance import stamp
+from squealpipe.store.provenance import stamped
 from squealpipe.study.claims.judge import judge
 from squealpipe.tasks.dynamics.runs import simulate
 from squealpipe.tasks.linear.maps import quasi_static_map
@@ -29,7 +29,7 @@ def file(tmp_path_factory):
         ),
     }
     path = tmp_path_factory.mktemp("claims") / "claims.nc"
-    save(stamp(judge(params, found, "as_printed"), config={}, wall_time=0.0), path)
+    save(stamped(lambda: judge(params, found, "as_printed"), config={}), path)
     return str(path)
 
 

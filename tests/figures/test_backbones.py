@@ -1,11 +1,12 @@
 """Pictures of backbones show what the datasets hold."""
 
 import math
+from functools import partial
 
 import numpy as np
 
 from squealpipe.plotting.style import symbols
-from squealpipe.store.provenance import stamp
+from squealpipe.store.provenance import stamped
 from squealpipe.study.figures.backbones import (
     a1_beside_a4,
     coupled_backbones,
@@ -27,10 +28,9 @@ def _branches(alpha1, alpha2, params=None, scene="F10", **limits):
     params = params or FORMER
     options = {"": {"method": "exact"}, "_hbm": {"method": "hbm", "n_harmonics": 8}}
     return {
-        f"backbone/{scene}_mode{mode}{form}": stamp(
-            backbone(params, alpha1 * PI, alpha2 * PI, mode=mode, **option, **limits),
+        f"backbone/{scene}_mode{mode}{form}": stamped(
+            partial(backbone, params, alpha1 * PI, alpha2 * PI, mode=mode, **option, **limits),
             config={"parameters": params.as_dict()},
-            wall_time=0.0,
         )
         for mode in (1, 2)
         for form, option in options.items()

@@ -9,7 +9,7 @@ import pytest
 from squealpipe.parameters import Parameters
 from squealpipe.plotting.style import save_figure
 from squealpipe.store.netcdf import save
-from squealpipe.store.provenance import stamp
+from squealpipe.store.provenance import stamped
 from squealpipe.study.claims.judge import judge
 from squealpipe.study.figures.declared import draw, reads
 from squealpipe.study.report.build import write_document
@@ -47,7 +47,7 @@ def small_report(tmp_path_factory):
     datasets["claims"] = judge(parameters, datasets)
     made = {}
     for name, dataset in datasets.items():
-        path = save(stamp(dataset, config={}, wall_time=0.1), folder / f"data/{name}.nc")
+        path = save(stamped(lambda one=dataset: one, config={}), folder / f"data/{name}.nc")
         made[name] = Made(path=path, rule=f"make_{name}")
     figures = {}
     for name in ("fig01", "fig06"):

@@ -15,7 +15,7 @@ from squealpipe.parameters import Parameters
 from squealpipe.plotting.style import save_figure
 from squealpipe.store import load
 from squealpipe.store.netcdf import save
-from squealpipe.store.provenance import stamp
+from squealpipe.store.provenance import stamped
 from squealpipe.study.figures.declared import draw, reads
 from squealpipe.study.report.build import write_document
 from squealpipe.study.report.content import Made, parameter_table, picture_files
@@ -128,7 +128,7 @@ def test_report_has_pages_without_the_paper(found, tmp_path):
     assert abs(here["lost_boundary"] - other["lost_boundary"]) < 1.5 * here["cell"]
     made, figures = {}, {}
     for name, dataset in datasets.items():
-        path = save(stamp(dataset, config=config, wall_time=0.1), tmp_path / f"data/{name}.nc")
+        path = save(stamped(lambda one=dataset: one, config=config), tmp_path / f"data/{name}.nc")
         made[name] = Made(path=path, rule="some")
         datasets[name] = load(path)
     for name in ("own_model", "own_motion", "own_map", "propensity", "regime_charts"):

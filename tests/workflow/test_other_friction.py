@@ -37,10 +37,7 @@ def plans(dry_runs, tmp_path_factory):
 def test_rules_that_cannot_carry_it_are_left_out_and_all_others_stay(name, plans):
     assert plans["paper"].rules - plans[name].rules == NOT_CARRIED
     assert plans[name].rules < plans["paper"].rules
-    made = {path for _, _, outputs in plans[name].files for path in outputs}
-    assert "results/tiny/data/stability_map.nc" in made
-    assert "results/tiny/data/natural_frequencies.nc" not in made
-    assert "results/tiny/report/index.html" in made
+    assert "results/tiny/data/natural_frequencies.nc" not in plans[name].text
 
 
 def test_they_are_named_with_the_remedy(plans):

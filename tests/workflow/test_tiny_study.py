@@ -76,17 +76,6 @@ def test_narrative_of_the_shipped_study_fits_its_datasets(tiny_study, tmp_path):
     assert "nothing ends this" in " ".join(words)
 
 
-def test_log_of_a_run_has_one_line_a_job(tiny_study):
-    text = tiny_study.log
-    jobs = re.findall(r"^Job \d+: (\w+) → results/tiny/\S+$", text, flags=re.MULTILINE)
-    assert sorted(jobs) == sorted(
-        rule
-        for rule in re.findall(r"^Finished jobid: \d+ \(Rule: (\w+)\)", text, re.MULTILINE)
-        if rule != "all"
-    )
-    assert not re.search(r"^ +(input|output): ", text, flags=re.MULTILINE)
-
-
 @pytest.mark.release
 def test_snakemake_writes_its_own_report(tiny_study, snakemake):
     config = ("--configfile", "workflow/config/tiny.yaml")

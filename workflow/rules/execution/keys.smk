@@ -48,8 +48,17 @@ for known in workflow.rules:
 KEYS = {path: file_key(known.params.key, path) for path, known in MAKERS.items() if known.is_script and "{" not in path}
 """File → the key that it must state."""
 
-if STUDY.paper:  # a study of one's own makes what its report needs
-    TARGETS += KEYS
+
+def behind(paths):
+    """Files, what else their rules make, and all that is read for them."""
+    makers = {maker(str(path)) for path in paths} - {None}
+    made = {str(path) for known in makers for path in known.output}
+    read = {str(path) for known in makers for path in known.input}
+    return made | behind(read - made) if makers else made
+
+
+# a study of one's own makes what its report needs; Snakemake makes again what is missing of it
+TARGETS += KEYS if STUDY.paper else sorted(KEYS.keys() & behind(TARGETS))
 
 for known in workflow.rules:  # the report holds what it shows against the keys
     if known.name in ("write_report", "write_own_report"):
