@@ -54,7 +54,7 @@ def summarize(run: xr.Dataset) -> xr.Dataset:
             "impact_rate": np.count_nonzero(kinds == Event.contact) / end,
             "separated_fraction": _share(run, Event.separation, Regime.separated, end),
             "stick_fraction": _share(run, Event.stick, Regime.stick, end),
-            "peak_contact_force": force.max(),
+            "peak_contact_force": np.fmax(force.max(), run.return_peak_contact_force),
             "return_peak_contact_force": float(run.return_peak_contact_force),
             "impact_speed": float(run.impact_speed),
             "largest_x": np.abs(run.x.values[: time.size]).max(),
