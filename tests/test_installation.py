@@ -78,7 +78,7 @@ parameters:
   {mass: 0.5, k1: 1.0e+7, k2: 1.0e+7, k3: 7.0e+6, preload: 2.0e-5, length1: 0.02, length2: 0.02}
 dynamics: {validity_points: 13}
 explorer: {points: 3}
-spread: {samples: 64, critical_points: 7}
+robustness: {samples: 64, critical_points: 7}
 """
 
 MEASURED = """

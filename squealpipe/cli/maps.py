@@ -193,7 +193,7 @@ def propensity(
     alpha2: Angle,
     /,
     *,
-    spread: Annotated[list[str], Parameter(metavar="NAME=KIND:LOW:HIGH", negative="")],
+    distribution: Annotated[list[str], Parameter(metavar="NAME=KIND:LOW:HIGH", negative="")],
     samples: Whole = 1024,
     t_end: float | None = None,
     spring_correlation: float = 0.0,
@@ -203,22 +203,22 @@ def propensity(
 ) -> int:
     """Shares of flutter, contact loss, irregular hammering and whirl over uncertain parameters.
 
-    Example: `squealpipe propensity 0.07pi 0.305pi --spread mu=uniform:0.1:0.9
-    --spread k1=normal:1:0.05 -o propensity.nc`
+    Example: `squealpipe propensity 0.07pi 0.305pi --distribution mu=uniform:0.1:0.9
+    --distribution k1=normal:1:0.05 -o propensity.nc`
 
     Args:
-        spread: a parameter or angle with its distribution: uniform:low:high, normal:mean:std or
+        distribution: of a parameter or angle: uniform:low:high, normal:mean:std or
             lognormal:median:log_std; repeat for more.
         samples: size of the sample, a power of 2.
         t_end: end of each run, s; 200 √(mass/k1) by default.
         spring_correlation: of k1 and k2; no Sobol indices are given with it.
         seed: of the sample.
     """
-    distributions = dict(map(_distribution, spread))
-    if len(distributions) < len(spread):
-        raise ValueError("--spread: a duplicate name; keep one")
+    distributions = dict(map(_distribution, distribution))
+    if len(distributions) < len(distribution):
+        raise ValueError("--distribution: a duplicate name; keep one")
     for name in sorted(set(distributions) & SESSION.typed):
-        raise ValueError(f"{name} is both fixed and spread; keep one")
+        raise ValueError(f"{name} is both fixed and distributed; keep one")
     t_end = HORIZON * brake.params.time_unit if t_end is None else t_end
     found = compute(
         "propensity", brake, alpha1, alpha2, output=output, distributions=distributions,
@@ -238,7 +238,7 @@ def _distribution(text: str) -> tuple[str, dict[str, str | float]]:
     name, _, words = text.partition("=")
     name, parts = name.strip().replace("-", "_"), words.split(":")
     if len(parts) != 3 or parts[0] not in KINDS:
-        raise ValueError(f"--spread {text!r} is not a distribution; {DISTRIBUTIONS}")
+        raise ValueError(f"--distribution {text!r} is not a distribution; {DISTRIBUTIONS}")
     one = parse_angle if name in ANGLES else parse_number
     numbers = dict(zip(KINDS[parts[0]], map(one, parts[1:]), strict=True))
     return name, {"distribution": parts[0], **numbers}

@@ -234,10 +234,10 @@ class Distribution(Section):
         return {name: value for name, value in write(self).items() if value is not None}
 
 
-class SpreadSection(Section):
+class RobustnessSection(Section):
     """How far verdicts carry, and propensities over uncertain parameters; angles over π."""
 
-    starts: Annotated[int, Field(ge=2, le=100_000), WHOLE] = 200
+    random_starts: Annotated[int, Field(ge=2, le=100_000), WHOLE] = 200
     basin_points: Annotated[int, Field(ge=2, le=2001), WHOLE] = 41
     basin_extent: Positive = 12.0
     basin_horizon: Positive = 300.0

@@ -43,7 +43,7 @@ class Study(Section):
     dynamics: sections.DynamicsSection = sections.DynamicsSection()
     backbones: sections.BackbonesSection = sections.BackbonesSection()
     cycles: sections.CyclesSection = sections.CyclesSection()
-    spread: sections.SpreadSection = sections.SpreadSection()
+    robustness: sections.RobustnessSection = sections.RobustnessSection()
     explorer: sections.ExplorerSection = sections.ExplorerSection()
     sweeps: dict[Name, sections.SweepSection] = Field(default={})
 

@@ -189,7 +189,7 @@ def _changes(path: Path, made: Mapping[str, Any]) -> list[str]:
         old = flat(json.loads(attributes(path).get("config", "{}")))
     except (StoreError, FileNotFoundError):
         return [f"{path.name} is damaged"]
-    new = flat(made["part"])
+    new = flat(made["settings"])
     return [
         f"{key}: {old.get(key, 'absent')} → {new[key]}" for key in new if old.get(key) != new[key]
     ]

@@ -15,30 +15,30 @@ class Job:
     """One job of a rule.
 
     Attributes:
-        part: slice of the configuration.
+        settings: slice of the configuration.
         item: part of what is scattered, "i-of-n".
     """
 
     def __init__(self, snakemake: Any) -> None:
         """From the object of that name in a script."""
-        self.part, self.out = snakemake.params.get("part", {}), snakemake.output
+        self.settings, self.out = snakemake.params.get("settings", {}), snakemake.output
         self._key = snakemake.params.key
         self.item = snakemake.wildcards.get("scatteritem", "1-of-1")
 
     @cached_property
     def params(self) -> Parameters:
         """Physical parameters in the rule's reading of the sign of friction."""
-        return for_linear(parameters_of(self.part), self.part["read_as"])
+        return for_linear(parameters_of(self.settings), self.settings["read_as"])
 
     def angles(self, scene: str) -> dict[str, float]:
         """Angles of a scene, of the paper or of a study of one's own."""
-        given = self.part["scenes"][scene] if "scenes" in self.part else vars(SCENES[scene])
+        given = self.settings["scenes"][scene] if "scenes" in self.settings else vars(SCENES[scene])
         return {name: given[name] for name in ("alpha1", "alpha2")}
 
     @property
     def model(self) -> str:
         """The model that A1 stands for in that reading."""
-        return reading_of(self.part["read_as"]).a1_model
+        return reading_of(self.settings["read_as"]).a1_model
 
     def make(
         self,
@@ -54,5 +54,5 @@ class Job:
             output: dataset to write; the rule's first by default.
             further: what it is given beside the slice.
         """
-        config, target = {**self.part, **further}, output or self.out[0]
+        config, target = {**self.settings, **further}, output or self.out[0]
         produce(task, config=config, output=target, inputs=inputs, key=self._key)

@@ -16,7 +16,7 @@ import xarray as xr
 
 from squealpipe.config.ranges import ANGLES, NUMBERS, PHYSICAL
 from squealpipe.execution.catalogue import NEEDED, TASKS
-from squealpipe.execution.parts import scattered_values
+from squealpipe.execution.scatter import scattered_values
 from squealpipe.execution.system_sweep import SystemSweep, is_system
 from squealpipe.methods.processes import available_cores, leave_interrupts_to_the_parent
 from squealpipe.methods.progress import alone
@@ -134,7 +134,7 @@ class Sweep:
         fixed = {name: value for name, value in given.items() if name not in self.vary}
         return origin(self.task, {"params": params, **fixed})
 
-    def part(self, item: str) -> Self:
+    def scattered(self, item: str) -> Self:
         """One part of a scattered sweep: some of the values of the longest name."""
         return replace(self, vary=scattered_values(self.vary, item))
 

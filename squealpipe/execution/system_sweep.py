@@ -11,7 +11,7 @@ from typing import Any, Self
 
 import xarray as xr
 
-from squealpipe.execution.parts import scattered_values
+from squealpipe.execution.scatter import scattered_values
 from squealpipe.systems import basin, runs
 from squealpipe.systems.system import System
 from squealpipe.text import suggestion
@@ -78,7 +78,7 @@ class SystemSweep:
         """Swept names in the order given."""
         return list(self.vary)
 
-    def part(self, item: str) -> Self:
+    def scattered(self, item: str) -> Self:
         """One part of a scattered sweep, ``i-of-n`` along its longest name."""
         return replace(self, vary=scattered_values(self.vary, item))
 

@@ -48,10 +48,10 @@ def refine_grid(evaluate: Evaluate, resolution: int, coarse: int) -> RefinedGrid
     computed = np.ones_like(suspects)
     while spacing > 1:
         spacing //= 2
-        doubtful = _spread(suspects | _nearly_used_up(reserve), False)
+        doubtful = _refined(suspects | _nearly_used_up(reserve), False)
         labels = labels.repeat(2, 0).repeat(2, 1)[:-1, :-1]  # new points take those before them
-        computed = _spread(computed, False)
-        suspects, reserve = _spread(suspects, False), _spread(reserve, np.nan)
+        computed = _refined(computed, False)
+        suspects, reserve = _refined(suspects, False), _refined(reserve, np.nan)
         suspected_here = binary_dilation(doubtful, np.ones((3, 3)))
         while True:
             rows, columns = np.nonzero((_changes(labels) | suspected_here) & ~computed)
@@ -78,7 +78,7 @@ def _changes(labels: np.ndarray) -> np.ndarray:
     return np.asarray(maximum_filter(labels, 3) != minimum_filter(labels, 3))
 
 
-def _spread(values: np.ndarray, between: object) -> np.ndarray:
+def _refined(values: np.ndarray, between: object) -> np.ndarray:
     """The same values at half the spacing, another one at new points."""
     spread = np.full((2 * values.shape[0] - 1,) * 2, between, values.dtype)
     spread[::2, ::2] = values

@@ -26,10 +26,9 @@ from types import FunctionType
 from typing import Any, TypeVar, cast
 
 import numba
-from numba.core import config
 
 _numba: Any = numba
-_settings: Any = config  # numba's untyped settings, the home of CACHE_DIR
+_settings: Any = numba.config  # untyped, the home of CACHE_DIR
 _Kernel = TypeVar("_Kernel", bound=Callable[..., Any])
 _PART: dict[str, Any] = {
     "error_model": "numpy",

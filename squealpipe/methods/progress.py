@@ -23,7 +23,7 @@ def report(share: Callable[[], float]) -> None:
         _NOW.show(_NOW.low + _NOW.size * min(max(float(share()), 0.0), 1.0))
 
 
-def parts(items: Sequence[Item]) -> Iterator[Item]:
+def with_progress(items: Sequence[Item]) -> Iterator[Item]:
     """The items one after another, each an equal part of the work."""
     low, size = _NOW.low, _NOW.size
     try:

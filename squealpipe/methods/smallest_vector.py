@@ -40,7 +40,7 @@ MOST_STEPS = 5e6
 """Of that scan: 160 MB of rows, and seconds."""
 
 
-class Found(NamedTuple):
+class SearchResult(NamedTuple):
     """Result of a search; ∞ where it does not happen within the bound.
 
     Attributes:
@@ -56,7 +56,7 @@ class Found(NamedTuple):
 
 def search(
     happens: Happens, size: int, bound: float, count: int, generator: np.random.Generator
-) -> Found:
+) -> SearchResult:
     """The smallest vector of Euclidean norm up to ``bound`` for which something happens.
 
     Args:
@@ -70,11 +70,11 @@ def search(
     best = best[np.isfinite(radius[best])]
     improved = np.full(IMPROVED, np.inf)
     if not best.size:
-        return Found(radius, improved, np.full(size, np.nan))
+        return SearchResult(radius, improved, np.full(size, np.nan))
     directions, radii = _improve(happens, unit[best], radius[best], generator)
     improved[: best.size] = radii
     smallest = int(np.argmin(radii))
-    return Found(radius, improved, directions[smallest] * radii[smallest])
+    return SearchResult(radius, improved, directions[smallest] * radii[smallest])
 
 
 def _normalized(vectors: Array) -> Array:

@@ -10,8 +10,8 @@ TRUNCATION = 4.0
 
 _CELL = ("variant", "statement")
 
-VERDICT_REACH = DatasetSchema(
-    name="verdict_reach",
+VERDICT_ROBUSTNESS = DatasetSchema(
+    name="verdict_robustness",
     title="Statements of the paper in settings that it leaves out",
     coordinates={
         "variant": text("setting", "variant"),

@@ -59,11 +59,11 @@ def test_help_loads_no_numerics():
         (["sweep", "anything", "--vary", "mu=1,2"], "choose from simulate"),
         ([*SWEPT, "--vary", "mu=1,2", "--vary", "mu=3,4"], "--vary mu is a duplicate"),
         ([*SWEPT, "--vary", "mu=1,2", "--mu", "0.3"], "mu is both fixed and varied"),
-        (["propensity", "1", "2", "--spread", "mu=uniform:0.1"], "mu=uniform:0.1:0.9"),
-        (["propensity", "1", "2", "--spread", "muu=uniform:0:1"], "did you mean 'mu'"),
+        (["propensity", "1", "2", "--distribution", "mu=uniform:0.1"], "mu=uniform:0.1:0.9"),
+        (["propensity", "1", "2", "--distribution", "muu=uniform:0:1"], "did you mean 'mu'"),
         (
-            ["propensity", "1", "2", "--spread", "mu=uniform:0:1", "--mu", "0.3"],
-            "mu is both fixed and spread",
+            ["propensity", "1", "2", "--distribution", "mu=uniform:0:1", "--mu", "0.3"],
+            "mu is both fixed and distributed",
         ),
         ([*SWEPT, "--vary", "friction_law=coulomb,exponential"], "sweep once for each"),
         (["simulate", "1", "2", "3"], "too many arguments: 3"),
@@ -87,7 +87,7 @@ def test_wrong_input_is_one_message_with_its_remedy(arguments, message, capsys, 
 
 
 def test_propensity_writes_shares_and_a_picture(capsys):
-    spread = ["--spread", "mu=uniform:0.1:0.9", "--spread", "alpha2=normal:55deg:3deg"]
+    spread = ["--distribution", "mu=uniform:0.1:0.9", "--distribution", "alpha2=normal:55deg:3deg"]
     command = ["propensity", "0.07pi", "0.305pi", *spread, "--samples", "64", "--t-end", "20"]
     assert run([*command, "-o", "p.nc"]) == 0
     dataset = load("p.nc")

@@ -11,7 +11,7 @@ import yaml
 
 from squealpipe.config.ranges import longest, parse_range
 from squealpipe.config.settings import parse_study
-from squealpipe.execution.parts import join
+from squealpipe.execution.scatter import join
 from squealpipe.execution.sweep import Sweep, planned, run_sweep
 from squealpipe.schema import find
 from squealpipe.store import load, save
@@ -180,7 +180,7 @@ def test_parts_joined_are_the_whole_bit_for_bit(name, tmp_path):
     cut = longest(plan.vary)
     parts = []
     for k in range(3):
-        path = save(run_sweep(plan.part(f"{k + 1}-of-3")), tmp_path / f"{k}.nc")
+        path = save(run_sweep(plan.scattered(f"{k + 1}-of-3")), tmp_path / f"{k}.nc")
         parts.append(load(path))
     assert sum(part.sizes[cut] for part in parts) == whole.sizes[cut]
     joined = join(parts, cut)
@@ -195,11 +195,11 @@ def test_parts_joined_are_the_whole_bit_for_bit(name, tmp_path):
 
 def test_parts_are_the_values_once_each_and_no_more_than_there_are():
     plan = linear_sweep()
-    parts = [plan.part(f"{k}-of-2").vary for k in (1, 2)]
+    parts = [plan.scattered(f"{k}-of-2").vary for k in (1, 2)]
     assert [value for part in parts for value in part["k3"]] == [0.5, 0.75, 1.0]
     assert all(part["mu"] == plan.vary["mu"] for part in parts)
     with pytest.raises(ValueError, match="at most 3 parts"):
-        plan.part("1-of-4")
+        plan.scattered("1-of-4")
 
 
 def test_runs_at_other_instants_are_not_put_on_one_axis():

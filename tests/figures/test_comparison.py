@@ -6,7 +6,7 @@ import pytest
 from squealpipe.schema import build
 from squealpipe.schema.comparison import BENCHMARK, FAILURE_ATLAS, Reliability, Role
 from squealpipe.study.figures.comparison import failure_atlas, work_precision_benchmark
-from squealpipe.study.figures.parts import work_precision
+from squealpipe.study.figures.panels import work_precision
 
 
 def written(figure):

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from squealpipe import Parameters, backbone, basin_map, cycle_branch, limit_cycle, propensity
-from squealpipe.methods.progress import alone, parts, report, shown
+from squealpipe.methods.progress import alone, report, shown, with_progress
 
 STICK_SLIP = Parameters(
     friction_law="exponential", mu_static=0.6, belt_speed=0.5, damping1=0.02, damping2=0.02
@@ -42,7 +42,7 @@ def test_long_tasks_state_how_far_they_are(name):
 def test_parts_share_the_whole_and_who_works_alone_shows_for_all():
     shares = []
     with shown(shares.append):
-        for _ in parts("ab"):
+        for _ in with_progress("ab"):
             report(lambda: 0.5)
         with alone() as show:
             report(lambda: 0.1)

@@ -7,7 +7,7 @@ import pytest
 import xarray as xr
 
 from squealpipe.config.ranges import sweep_config
-from squealpipe.execution.parts import join
+from squealpipe.execution.scatter import join
 from squealpipe.execution.sweep import planned, run_sweep
 from squealpipe.rerun.key import rule_key
 from squealpipe.systems import impact_oscillator
@@ -36,7 +36,7 @@ def test_a_sweep_of_a_system_is_its_ensemble_whole_or_in_parts(task, run):
     direct = method(20.0, start={"x": [0.0, 0.5]}, omega=[0.8, 1.2, 1.6], amplitude=0.6)
     xr.testing.assert_identical(whole, direct)
     if run == "ensemble":  # which cannot number attractors of another part
-        parts = [run_sweep(plan.part(f"{i}-of-2")) for i in (1, 2)]
+        parts = [run_sweep(plan.scattered(f"{i}-of-2")) for i in (1, 2)]
         xr.testing.assert_equal(join(parts, "omega"), whole)
 
 

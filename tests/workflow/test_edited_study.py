@@ -13,10 +13,10 @@ pytestmark = pytest.mark.release
 TINY = "workflow/config/tiny.yaml"
 EDIT = "inference: {samples: 600}\n"
 STALE = {
-    "infer_parameters", "draw_inference", "judge_reach", "draw_propensity", "judge_claims",
+    "infer_parameters", "draw_inference", "judge_robustness", "draw_propensity", "judge_claims",
     "write_report",
 }  # fmt: skip
-DATASETS = {"parameter_inference", "verdict_reach", "claims"}
+DATASETS = {"parameter_inference", "verdict_robustness", "claims"}
 """What those rules make; the verdicts read the inference, though none may turn over."""
 
 

@@ -11,7 +11,7 @@ results: results/own
 scenes: {mine: {alpha1: 30deg, alpha2: 140deg}}
 """
 RULES = {
-    "run_scenes", "map_validity", "follow_boundary", "chart_regimes", "spread_scene",
+    "run_scenes", "map_validity", "follow_boundary", "chart_regimes", "compute_scene_propensity",
     "map_critical_friction",
     "draw_own", "draw_dynamics",
     "draw_linear", "draw_propensity", "write_own_report", "compute_explorer",

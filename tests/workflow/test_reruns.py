@@ -55,7 +55,7 @@ def planned(study_copy):
 def test_each_key_is_in_the_slices_of_exactly_those_rules_that_read_it(planned):
     found: dict[str, set[str]] = {key: set() for key in KEYS}
     for row in planned.values():
-        part = flat(row["part"])
+        part = flat(row["settings"])
         part |= {"reading": part["read_as"]} if "read_as" in part else {}
         for key in found.keys() & part.keys():
             found[key].add(row["rule"])
@@ -81,7 +81,7 @@ EDITS = {
     "comparison.ladder.horizon": "comparison: {ladder: {horizon: 25.0}}",
     "backbones.coupled.coupled": "backbones: {coupled: {coupled: [0.3, 0.85]}}",
     "cycles.points": "cycles: {points: 31}",
-    "spread.samples": "spread: {samples: 128}",
+    "robustness.samples": "robustness: {samples: 128}",
     "inference.samples": "inference: {samples: 129}",
 }
 

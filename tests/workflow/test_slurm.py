@@ -55,7 +55,7 @@ SMALL_RULES = [
     "compare_a1_with_a4", "follow_cycles", "follow_doublings", "follow_impacts", "map_basins",
     "measure_disturbances", "measure_frequencies", "check_assumptions", "compute_explorer",
     "map_critical_friction", "map_model_ladder", "trace_backbones", "judge_balances",
-    "run_benchmark", "chart_regimes", "spread_parameters", "judge_reach",
+    "run_benchmark", "chart_regimes", "compute_propensity", "judge_robustness",
     "follow_boundary", "follow_corrected_boundary",
 ]  # fmt: skip
 TWO_PARTS = [

@@ -6,6 +6,6 @@ if PAPERS_FRICTION:
         output:
             data("assumptions"),
         params:
-            part=part("parameters"),
+            settings=settings("parameters"),
         script:
             "../scripts/dynamics/check_assumptions.py"

@@ -10,7 +10,7 @@ rule trace_backbones:
     output:
         **{name: data(f"backbone/{name}") for name in BACKBONES + SERIES},
     params:
-        part=part(
+        settings=settings(
             "parameters",
             "backbones.coupled",
             "backbones.y_peak_max",
@@ -27,7 +27,7 @@ rule follow_doublings:
     output:
         **{name: data(f"doubled_branch/{name}") for name in DOUBLED},
     params:
-        part=part(
+        settings=settings(
             "parameters", "backbones.coupled", "backbones.y_peak_max", read_as=READING
         ),
     script:
@@ -38,7 +38,7 @@ rule compare_harmonic_forms:
     output:
         data("harmonic_forms"),
     params:
-        part=part("parameters", "backbones.coupled", read_as=READING),
+        settings=settings("parameters", "backbones.coupled", read_as=READING),
     script:
         "../scripts/backbones/compare_harmonic_forms.py"
 
@@ -47,7 +47,7 @@ rule compare_a1_with_a4:
     output:
         data("a1_beside_a4"),
     params:
-        part=part(
+        settings=settings(
             "parameters", "backbones.coupled", "backbones.length_ratios"
         ),
     script:

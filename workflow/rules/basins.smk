@@ -9,10 +9,10 @@ rule map_basins:
     output:
         **{name: data(f"basin/{name}") for name in BASINS},
     params:
-        part=part(
-            "parameters", "spread.basin_points", "spread.basin_extent", "spread.basin_horizon"
+        settings=settings(
+            "parameters", "robustness.basin_points", "robustness.basin_extent", "robustness.basin_horizon"
         ),
-    threads: cores_for(STUDY.spread.basin_points**2, enough=2000)
+    threads: cores_for(STUDY.robustness.basin_points**2, enough=2000)
     script:
         "../scripts/basins/map_basins.py"
 
@@ -25,8 +25,8 @@ rule measure_disturbances:
             for goal in LEADS_TO
         },
     params:
-        part=part(
-            "parameters", "spread.disturbance_horizon", "spread.disturbance_directions"
+        settings=settings(
+            "parameters", "robustness.disturbance_horizon", "robustness.disturbance_directions"
         ),
     script:
         "../scripts/basins/measure_disturbances.py"

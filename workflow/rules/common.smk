@@ -42,7 +42,7 @@ def from_root(path):
     return str(whole.relative_to(ROOT) if Path.cwd() == ROOT else whole)
 
 
-def part(*paths, read_as=None):
+def settings(*paths, read_as=None):
     """Canonical slice of the study, the only configuration that a script sees.
 
     ``read_as`` is the reading whose belt the parameters get: that of the corrected physics, if

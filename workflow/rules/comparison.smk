@@ -12,7 +12,7 @@ if PAPERS_FRICTION:
         output:
             data("work_precision_frequencies"),
         params:
-            part=part("parameters", "comparison.harmonic"),
+            settings=settings("parameters", "comparison.harmonic"),
         threads: alone(STUDY.comparison.harmonic.repeats)
         priority: FIRST
         script:
@@ -23,7 +23,7 @@ rule run_benchmark:
     output:
         data("benchmark"),
     params:
-        part=part("comparison.benchmark"),
+        settings=settings("comparison.benchmark"),
     priority: FIRST
     script:
         "../scripts/comparison/run_benchmark.py"
@@ -33,7 +33,7 @@ rule judge_balances:
     output:
         data("failure_atlas"),
     params:
-        part=part(),
+        settings=settings(),
     priority: LONG
     script:
         "../scripts/comparison/judge_balances.py"

@@ -7,7 +7,7 @@ rule follow_cycles:
     output:
         **{name: data(f"cycles/{name}") for name in CYCLES},
     params:
-        part=part("parameters", "cycles"),
+        settings=settings("parameters", "cycles"),
     priority: LONG
     script:
         "../scripts/cycles/follow_cycles.py"

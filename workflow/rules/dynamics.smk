@@ -16,11 +16,11 @@ for folder, reading in SHOWN.items():
             **{scene.name: data(f"{folder}simulate/{scene.name}") for scene in IN_TIME},
             **{name: data(f"{folder}simulate/{name}") for name in ("F3_long", "F4_long", "F2a_printed")},
         params:
-            part=part("parameters", "dynamics.tol", read_as=reading),
+            settings=settings("parameters", "dynamics.tol", read_as=reading),
         script:
             "../scripts/dynamics/simulate_scenes.py"
 
-    validity = part(
+    validity = settings(
         "parameters",
         "dynamics.tol",
         "dynamics.validity_horizon",
@@ -34,7 +34,7 @@ for folder, reading in SHOWN.items():
         output:
             map_output(f"{folder}validity_map", validity),
         params:
-            part=validity,
+            settings=validity,
         threads: cores_for(STUDY.dynamics.validity_points**2, enough=10_000)
         script:
             "../scripts/dynamics/map_validity.py"
@@ -48,13 +48,13 @@ for folder, reading in SHOWN.items():
                 boundary=data(f"{folder}validity_boundary"),
                 distances=[data(f"{folder}validity_distance/{name}") for name in PLACED],
             params:
-                part=validity if STUDY.paper else validity | part("scenes"),
+                settings=validity if STUDY.paper else validity | settings("scenes"),
             threads: cores_for(1, enough=1)
             script:
                 "../scripts/dynamics/follow_boundary.py"
 
 
-HAMMERING = part(
+HAMMERING = settings(
     "parameters", "dynamics.tol", "dynamics.hammering_horizon", "dynamics.hammering_points"
 )
 
@@ -63,7 +63,7 @@ rule map_hammering:
     output:
         map_output("hammering_map", HAMMERING),
     params:
-        part=HAMMERING,
+        settings=HAMMERING,
     threads: cores_for(STUDY.dynamics.hammering_points**2, enough=4000)
     script:
         "../scripts/dynamics/map_hammering.py"
@@ -73,7 +73,7 @@ rule refine_validity:
     output:
         data("refined_validity_map"),
     params:
-        part=part(
+        settings=settings(
             "parameters",
             "dynamics.tol",
             "dynamics.validity_horizon",
@@ -94,7 +94,7 @@ if PAPERS_FRICTION:
             angles=data("angle_chart"),
             friction=[data(f"friction_chart/{name}") for name in CHARTED],
         params:
-            part=part(
+            settings=settings(
                 "parameters",
                 "dynamics.tol",
                 "dynamics.chart_horizon",
@@ -111,7 +111,7 @@ rule follow_whirl:
         whirl=data("whirl"),
         transient=data("transient"),
     params:
-        part=part(
+        settings=settings(
             "parameters",
             "dynamics.tol",
             "dynamics.whirl_speeds",

@@ -5,7 +5,7 @@ rule infer_parameters:
     output:
         data("parameter_inference"),
     params:
-        part=STUDY.slice("parameters", "reading", "inference"),
+        settings=STUDY.slice("parameters", "reading", "inference"),
     threads: cores_for(STUDY.inference.samples, enough=4000)
     script:
         "../scripts/inference/infer_parameters.py"

@@ -4,7 +4,7 @@ rule map_model_ladder:
     output:
         data("model_ladder"),
     params:
-        part=part("parameters", "comparison.ladder"),
+        settings=settings("parameters", "comparison.ladder"),
     threads: all_cores_for(STUDY.comparison.ladder.points**2, enough=1000)  # it quotes times
     priority: FIRST
     script:

@@ -14,7 +14,7 @@ for folder, reading in SHOWN.items():
                 if PAPERS_FRICTION
             },
         params:
-            part=part("parameters", "linear.points", read_as=reading),
+            settings=settings("parameters", "linear.points", read_as=reading),
         script:
             "../scripts/linear/map_linear.py"
 
@@ -24,13 +24,13 @@ rule map_critical_friction:
         angles=data("critical_friction_map"),
         dashpots=data("critical_damping_map"),
     params:
-        part=part(
+        settings=settings(
             "parameters",
             "linear.points",
-            "spread.critical_damping",
-            "spread.critical_points",
-            "spread.critical_extent",
-            "spread.scene" if STUDY.paper else "scenes",
+            "robustness.critical_damping",
+            "robustness.critical_points",
+            "robustness.critical_extent",
+            "robustness.scene" if STUDY.paper else "scenes",
         ),
     script:
         "../scripts/linear/map_critical_friction.py"

@@ -8,23 +8,23 @@ rule run_scenes:
         runs=[data(f"own/{name}") for name in OWN],
         scenes=data("own_scenes"),
     params:
-        part=part("parameters", "scenes", "dynamics.tol"),
+        settings=settings("parameters", "scenes", "dynamics.tol"),
     script:
         "../scripts/own/run_scenes.py"
 
 
-rule spread_scene:
+rule compute_scene_propensity:
     output:
         data("propensity"),
     params:
-        part=part(
+        settings=settings(
             "parameters",
             "scenes",
-            "spread.samples",
-            "spread.horizon",
-            "spread.spring_correlation",
-            "spread.distributions",
+            "robustness.samples",
+            "robustness.horizon",
+            "robustness.spring_correlation",
+            "robustness.distributions",
         ),
-    threads: cores_for(STUDY.spread.samples, enough=1000)
+    threads: cores_for(STUDY.robustness.samples, enough=1000)
     script:
-        "../scripts/own/spread_scene.py"
+        "../scripts/own/compute_scene_propensity.py"

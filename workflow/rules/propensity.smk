@@ -1,29 +1,29 @@
 """How far verdicts carry, and what uncertain parameters lead to."""
 
 
-rule judge_reach:
+rule judge_robustness:
     input:
         **({"inferred": data("parameter_inference")} if PAPERS_FRICTION else {}),
     output:
-        data("verdict_reach"),
+        data("verdict_robustness"),
     params:
-        part=part("parameters", "dynamics.tol", "spread.starts"),
+        settings=settings("parameters", "dynamics.tol", "robustness.random_starts"),
     script:
-        "../scripts/propensity/judge_reach.py"
+        "../scripts/propensity/judge_robustness.py"
 
 
-rule spread_parameters:
+rule compute_propensity:
     output:
         data("propensity"),
     params:
-        part=part(
+        settings=settings(
             "parameters",
-            "spread.scene",
-            "spread.samples",
-            "spread.horizon",
-            "spread.spring_correlation",
-            "spread.distributions",
+            "robustness.scene",
+            "robustness.samples",
+            "robustness.horizon",
+            "robustness.spring_correlation",
+            "robustness.distributions",
         ),
-    threads: cores_for(STUDY.spread.samples, enough=1000)
+    threads: cores_for(STUDY.robustness.samples, enough=1000)
     script:
-        "../scripts/propensity/spread_parameters.py"
+        "../scripts/propensity/compute_propensity.py"

@@ -123,7 +123,7 @@ def jobs_of(
     shape = np.broadcast_shapes(physical.time_unit.shape, *shapes, state.shape[:-1])
 
     def flat(array: np.ndarray) -> np.ndarray:
-        return _spread(array, shape).reshape(-1)
+        return _broadcast(array, shape).reshape(-1)
 
     time_unit, ends, length = (
         flat(a) for a in (physical.time_unit, inputs["t_end"], physical.length)
@@ -132,7 +132,7 @@ def jobs_of(
     t_end, rate = ends / time_unit, flat(physical.rate)
     speed = length / time_unit
     units = (length, length, speed, speed)
-    columns = np.moveaxis(_spread(state, (*shape, 4)).reshape(-1, 4), -1, 0)
+    columns = np.moveaxis(_broadcast(state, (*shape, 4)).reshape(-1, 4), -1, 0)
     values = {name: flat(physical.numbers[name]) for name in NUMBERS_OF_A1}
     values |= {name: flat(inputs[name]) for name in ("alpha1", "alpha2")}
     values |= {n: c / u for n, c, u in zip(STATE, columns, units, strict=True)}
@@ -154,7 +154,7 @@ def jobs_of(
     )
 
 
-def _spread(array: np.ndarray, shape: tuple[int, ...]) -> np.ndarray:
+def _broadcast(array: np.ndarray, shape: tuple[int, ...]) -> np.ndarray:
     """``np.broadcast_to``, which a single run would pay for without need."""
     return array if array.shape == shape else np.broadcast_to(array, shape)
 
@@ -183,7 +183,7 @@ def _sample_times(
         raise ValueError("times must be a sequence of instants")
     if array.size and not ((array[..., 1:] >= array[..., :-1]).all() and array.min() >= 0):
         raise ValueError("times must ascend and start at 0 or later")
-    rows = _spread(array, (*shape, array.shape[-1])).reshape(-1, array.shape[-1])
+    rows = _broadcast(array, (*shape, array.shape[-1])).reshape(-1, array.shape[-1])
     if array.size and (rows[:, -1] > t_end).any():
         raise ValueError(f"times reach {rows[:, -1].max()!r}, beyond t_end = {t_end.min()!r}")
     return np.ascontiguousarray(rows / time_unit[:, None])

@@ -51,9 +51,9 @@ def judge(
 def _row(statement: Statement, run: Run, second: Run) -> dict[str, Any]:
     basis, share, count = standing(statement, run)
     run.forget()
-    here = _found(statement, run)
+    here = _judged(statement, run)
     datasets = "; ".join(run.forget())
-    mended = here if second is run else _found(statement, second)
+    mended = here if second is run else _judged(statement, second)
     verdict, corrected_verdict = here.verdict, mended.verdict
     # The paper prints no parameters: what divides the feasible set depends on those one takes.
     if DECIDED < share < 1.0 - DECIDED and verdict != Verdict.cannot_be_decided:
@@ -103,7 +103,7 @@ def standing(statement: Statement, run: Run) -> tuple[Basis, float, int]:
     return Basis.predicted, float(share), count
 
 
-def _found(statement: Statement, run: Run) -> Finding:
+def _judged(statement: Statement, run: Run) -> Finding:
     try:
         return statement.check(run)
     except MissingDataError as error:

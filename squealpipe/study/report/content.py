@@ -81,9 +81,9 @@ def gather(
         ],
         "numbers": {} if changed else numbers(run),
         "parameters": parameter_table(parameters),
-        "compared": _parts(sections.COMPARED),
-        "beyond": _parts(sections.BEYOND),
-        "supplement": _parts(sections.SUPPLEMENT),
+        "compared": _sections(sections.COMPARED),
+        "beyond": _sections(sections.BEYOND),
+        "supplement": _sections(sections.SUPPLEMENT),
         "figures": pictures(sections.FIGURES, figures, run),
         "datasets": {name: link(made.path) for name, made in sorted(datasets.items())},
         "links": [{"words": words, "to": link(to)} for words, to in (links or {}).items()],
@@ -174,7 +174,7 @@ def made_files(table: Mapping[str, Mapping[str, Any]]) -> dict[str, Made]:
     }
 
 
-def _parts(parts: Mapping[str, sections.Part]) -> list[dict[str, Any]]:
+def _sections(parts: Mapping[str, sections.Section]) -> list[dict[str, Any]]:
     return [{"id": name, **part._asdict()} for name, part in parts.items()]
 
 

@@ -18,7 +18,7 @@ def numbers(run: Run) -> dict[str, float | str]:
     """Name in ``templates/narrative.typ`` → number; percentages are between 0 and 100."""
     return {
         key: value.item() if isinstance(value, np.generic | xr.DataArray) else value
-        for part in (_verdicts, _inferred, _growth, _linear, _valid, _bounded, _spread)
+        for part in (_verdicts, _inferred, _growth, _linear, _valid, _bounded, _motions_and_shares)
         for key, value in part(run).items()
     }
 
@@ -104,7 +104,7 @@ def _bounded(run: Run) -> dict[str, Any]:
     }
 
 
-def _spread(run: Run) -> dict[str, Any]:
+def _motions_and_shares(run: Run) -> dict[str, Any]:
     hammering, spread = run["hammering_map"], run["propensity"]
     kinds = {
         f"motion_{name}": 100 * (hammering.motion == code).mean()

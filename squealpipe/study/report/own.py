@@ -28,9 +28,9 @@ def gather_own(
         "figures": pictures(OWN, figures, run),
         "variants": [str(name) for name in table.variant.values],
         "scenes": [_scene(table.sel(scene=name), run) for name in table.scene.values],
-        "spread_scene": str(table.scene.values[0]),
-        "spread_end": float(spread.t_end),
-        "spread": [
+        "propensity_scene": str(table.scene.values[0]),
+        "propensity_end": float(spread.t_end),
+        "distributions": [
             {"name": name, "words": f"{given.pop('distribution')}, {_listed(given)}"}
             for name, given in json.loads(spread.attrs["arguments"])["distributions"].items()
         ],

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from squealpipe.methods.progress import parts
+from squealpipe.methods.progress import with_progress
 from squealpipe.parameters import Parameters
 from squealpipe.schema import build
 from squealpipe.schema.basins import STARTS, basin_schema
@@ -65,7 +65,7 @@ def basin_map(
     starts = np.stack([part.ravel() for part in grid], axis=-1)
     blocks = [
         _block(params, alpha1, alpha2, starts[rows], t_end, late, tol, workers)
-        for rows in parts([*_rows(len(starts))])
+        for rows in with_progress([*_rows(len(starts))])
     ]
     columns = {
         name: np.concatenate([block[name] for block in blocks]).reshape(shape) for name in blocks[0]

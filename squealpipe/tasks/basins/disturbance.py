@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 from annotated_types import Ge
 
-from squealpipe.methods.smallest_vector import IMPROVED, Found, search, smallest_linear
+from squealpipe.methods.smallest_vector import IMPROVED, SearchResult, search, smallest_linear
 from squealpipe.models.variants import VARIANT_RULES
 from squealpipe.parameters import Parameters
 from squealpipe.schema import Outcome, blank, build
@@ -140,7 +140,7 @@ def smallest_disturbance(
     return result(outcome, **known, reached=reached, unfinished=unfinished)
 
 
-def _described(found: Found, numbers: np.ndarray, scale: np.ndarray) -> dict[str, Any]:
+def _described(found: SearchResult, numbers: np.ndarray, scale: np.ndarray) -> dict[str, Any]:
     """The variables of a search."""
     lowest = np.minimum.accumulate(found.radius)[numbers - 1]
     move = scale * found.vector

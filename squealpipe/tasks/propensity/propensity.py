@@ -15,7 +15,7 @@ from scipy import stats
 from squealpipe.codes import LinearRegime
 from squealpipe.laws.contact_laws import LINEAR
 from squealpipe.laws.friction_laws import slope
-from squealpipe.methods.progress import parts
+from squealpipe.methods.progress import with_progress
 from squealpipe.models import a3
 from squealpipe.models.contact_system import contact_system, with_drag
 from squealpipe.models.damped import damped_system, stability
@@ -83,7 +83,7 @@ def propensity(
     if spring_correlation and not {"k1", "k2"} <= set(names):
         raise ValueError("spring_correlation: distributions of k1 and k2 are needed for it")
     fixed = {**params.as_dict(), "alpha1": alpha1, "alpha2": alpha2}
-    turns = parts(range(1 if spring_correlation else len(names) + 3))
+    turns = with_progress(range(1 if spring_correlation else len(names) + 3))
 
     def judge(values: np.ndarray, *, runs: bool = True) -> np.ndarray:
         size = values.shape[-1]

@@ -10,7 +10,7 @@ from squealpipe.parameters import Parameters
 from squealpipe.schema import Outcome, build
 from squealpipe.schema.inference import of_study, wilson_interval
 from squealpipe.schema.origin import recorded
-from squealpipe.schema.propensity import VERDICT_REACH
+from squealpipe.schema.propensity import VERDICT_ROBUSTNESS
 from squealpipe.tasks.inference.candidates import Candidates
 from squealpipe.tasks.inference.consequences import CONSEQUENCES, judge_consequences
 from squealpipe.tasks.inference.constraints import CONSTRAINTS, Stage, measure
@@ -57,7 +57,7 @@ def variants(params: Parameters) -> Iterator[tuple[str, Parameters]]:
 
 
 @recorded(model="A1, A2, A3", method="margins of the statements")
-def verdict_reach(
+def verdict_robustness(
     params: Parameters,
     *,
     starts: Natural,
@@ -107,7 +107,7 @@ def verdict_reach(
         titles.insert(1, "feasible parameters")
     share, low, high, judged, outcome = np.moveaxis(np.array(rows), -1, 0)
     return build(
-        VERDICT_REACH,
+        VERDICT_ROBUSTNESS,
         {
             "share": share,
             "share_low": low,

@@ -170,7 +170,7 @@ def test_share_counts_only_what_was_judged():
 
 def test_statements_without_a_motion_are_no_sample_of_starts(monkeypatch):
     monkeypatch.setattr(robustness, "variants", lambda _: iter(()))
-    found = robustness.verdict_reach(FORMER, starts=4, tol=1e-9, workers=1)
+    found = robustness.verdict_robustness(FORMER, starts=4, tol=1e-9, workers=1)
     judged = found.judged.sel(statement=["F2a", "F3", "F6d", "F13"])
     np.testing.assert_array_equal(judged, [[4, 4, 1, 1]] * 2)
     assert (found.share.sel(statement="F6d") == 1.0).all()

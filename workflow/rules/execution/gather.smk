@@ -10,6 +10,6 @@ for name, slice_of_study in SCATTERED.items():
         output:
             data(name),
         params:
-            part=slice_of_study,
+            settings=slice_of_study,
         script:
             "../../scripts/execution/join_parts.py"

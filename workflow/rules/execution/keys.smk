@@ -37,7 +37,7 @@ def set_key(known):
             parts_of = made_by  # a map that is made in parts has the key of one that is made at once
         else:
             inputs[path.removeprefix(f"{RESULTS}/")] = set_key(made_by)
-    key = set_key(parts_of) if parts_of else rule_key(known.params.get("part", {}), SOURCES[known.name], inputs)
+    key = set_key(parts_of) if parts_of else rule_key(known.params.get("settings", {}), SOURCES[known.name], inputs)
     known.set_params(key=key)
     return key
 
@@ -90,7 +90,7 @@ if ASKED:
                 path: {
                     "rule": MAKERS[path].name,
                     "key": key,
-                    "part": MAKERS[path].params.get("part", {}),
+                    "settings": MAKERS[path].params.get("settings", {}),
                     "sources": list(map(str, SOURCES[MAKERS[path].name])),
                     "inputs": list(map(str, MAKERS[path].input)),
                 }

@@ -46,7 +46,7 @@ for name, sweep in SWEEPS.items():
         output:
             data(f"sweeps/{name}") if whole else temp(parts),
         params:
-            part=sweep,
+            settings=sweep,
         threads: all_cores_for(prod(map(len, sweep["vary"].values())), enough=16)
         script:
             "../../scripts/execution/run_sweep.py"
@@ -61,7 +61,7 @@ for name, sweep in SWEEPS.items():
             output:
                 data(f"sweeps/{name}"),
             params:
-                part=sweep,
+                settings=sweep,
             script:
                 "../../scripts/execution/join_parts.py"
 

@@ -11,7 +11,7 @@ rule judge_claims:
     output:
         data("claims"),
     params:
-        part=STUDY.slice("parameters", "reading"),
+        settings=STUDY.slice("parameters", "reading"),
         names=EVIDENCE,
     script:
         "../../scripts/report/judge_claims.py"

@@ -5,7 +5,7 @@ rule compute_explorer:
     output:
         data("explorer"),
     params:
-        part=part("parameters", "explorer"),
+        settings=settings("parameters", "explorer"),
     threads: cores_for(STUDY.explorer.points**2, enough=200)
     script:
         "../../scripts/report/compute_explorer.py"
@@ -32,7 +32,7 @@ rule write_explorer:
     output:
         f"{RESULTS}/report/explorer.html",
     params:
-        part=part("scenes", "paper"),
+        settings=settings("scenes", "paper"),
         maps=list(EXPLORER_MAPS),
     script:
         "../../scripts/report/write_explorer.py"

@@ -40,7 +40,7 @@ if STUDY.paper:
             provenance=f"{RESULTS}/report/provenance.json",
         params:
             modules=[from_root(declared.find_module(name)) for name in READ_BY],
-            part=STUDY.slice("parameters", "reading"),
+            settings=STUDY.slice("parameters", "reading"),
             made=MADE,
             drawn=DRAWN,
             changed=STUDY.changes_of(SHIPPED),
@@ -65,7 +65,7 @@ else:
             provenance=f"{RESULTS}/report/provenance.json",
         params:
             modules=[from_root(declared.find_module(name)) for name in READ_BY],
-            part=part("parameters"),
+            settings=settings("parameters"),
             made=own,
             drawn=DRAWN,
         script:

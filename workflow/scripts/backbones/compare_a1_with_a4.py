@@ -7,8 +7,8 @@ from squealpipe.tasks.backbones.backbone import contact_losing_branches, with_or
 PEAK = 2.0
 
 job = Job(snakemake)
-part = job.part
-found = contact_losing_branches(part["backbones.coupled"])
+settings = job.settings
+found = contact_losing_branches(settings["backbones.coupled"])
 chosen = {name: found[name] for name in found if not name.endswith("mode 2") or "F10" in name}
 branches, left_out = with_orbits(job.params, chosen, [PEAK])
 job.make(
@@ -16,6 +16,6 @@ job.make(
         job.params,
         branches,
         peak=PEAK,
-        length_ratios=part["backbones.length_ratios"],
+        length_ratios=settings["backbones.length_ratios"],
     ).assign_attrs(left_out=left_out),
 )

@@ -6,9 +6,9 @@ from squealpipe.execution.job import Job
 from squealpipe.tasks.backbones.doubling import doubled_branch
 
 job = Job(snakemake)
-part, params = job.part, job.params
-limit = part["backbones.y_peak_max"] * params.preload
-for scene, over_pi in part["backbones.coupled"].items():
+settings, params = job.settings, job.params
+limit = settings["backbones.y_peak_max"] * params.preload
+for scene, over_pi in settings["backbones.coupled"].items():
     angles = [angle * math.pi for angle in over_pi]
     for doubling in (1, 2):
         job.make(

@@ -4,16 +4,16 @@ from squealpipe.execution.job import Job
 from squealpipe.tasks.backbones.backbone import backbone, named_scenes
 
 job = Job(snakemake)
-part, params = job.part, job.params
+settings, params = job.settings, job.params
 limits = {
-    "y_peak_max": part["backbones.y_peak_max"] * params.preload,
-    "x_amplitude_max": part["backbones.x_amplitude_max"] * params.preload,
+    "y_peak_max": settings["backbones.y_peak_max"] * params.preload,
+    "x_amplitude_max": settings["backbones.x_amplitude_max"] * params.preload,
 }
 methods = {
     "": {"method": "exact"},
-    "_hbm": {"method": "hbm", "n_harmonics": part["backbones.n_harmonics"]},
+    "_hbm": {"method": "hbm", "n_harmonics": settings["backbones.n_harmonics"]},
 }
-for name, angles in named_scenes(part["backbones.coupled"]).items():
+for name, angles in named_scenes(settings["backbones.coupled"]).items():
     for mode in (1, 2):
         for ending, options in methods.items():
             job.make(

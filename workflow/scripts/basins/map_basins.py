@@ -7,9 +7,9 @@ from squealpipe.parameters import SCENES
 from squealpipe.tasks.basins.basin import basin_map
 
 job = Job(snakemake)
-part, out, params = job.part, job.out, job.params
-speed = part["spread.basin_extent"] * params.preload / params.time_unit
-axis = np.linspace(-speed, speed, part["spread.basin_points"])
+settings, out, params = job.settings, job.out, job.params
+speed = settings["robustness.basin_extent"] * params.preload / params.time_unit
+axis = np.linspace(-speed, speed, settings["robustness.basin_points"])
 for name, path in out.items():
     scene = SCENES[name]
     job.make(
@@ -19,7 +19,7 @@ for name, path in out.items():
             scene.alpha2,
             vx=axis,
             vy=axis,
-            t_end=part["spread.basin_horizon"] * params.time_unit,
+            t_end=settings["robustness.basin_horizon"] * params.time_unit,
             workers=snakemake.threads,
         ),
         path,

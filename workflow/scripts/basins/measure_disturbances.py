@@ -5,7 +5,7 @@ from squealpipe.parameters import SCENES
 from squealpipe.tasks.basins.disturbance import smallest_disturbance
 
 job = Job(snakemake)
-part, params = job.part, job.params
+settings, params = job.settings, job.params
 for name, path in job.out.items():
     scene, _, goal = name.partition("_")
     job.make(
@@ -14,8 +14,8 @@ for name, path in job.out.items():
             scene.alpha1,
             scene.alpha2,
             leads_to=goal,
-            t_end=part["spread.disturbance_horizon"] * params.time_unit,
-            directions=part["spread.disturbance_directions"],
+            t_end=settings["robustness.disturbance_horizon"] * params.time_unit,
+            directions=settings["robustness.disturbance_directions"],
             workers=snakemake.threads,
         ),
         path,

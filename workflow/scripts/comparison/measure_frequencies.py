@@ -10,4 +10,4 @@ from squealpipe.execution.job import Job
 from squealpipe.tasks.comparison.work_precision import work_precision
 
 job = Job(snakemake)
-job.make(lambda: work_precision(job.params, **job.part["comparison.harmonic"]))
+job.make(lambda: work_precision(job.params, **job.settings["comparison.harmonic"]))

@@ -5,5 +5,5 @@ from squealpipe.benchmark.scoring import benchmark
 from squealpipe.execution.job import Job
 
 job = Job(snakemake)
-study = job.part["comparison.benchmark"]
+study = job.settings["comparison.benchmark"]
 job.make(lambda: benchmark(installed(study["solvers"]), tolerances=study["tolerances"]))

@@ -12,8 +12,8 @@ from squealpipe.tasks.cycles.cycle import limit_cycle
 from squealpipe.tasks.cycles.extremes import settled_extremes
 
 job = Job(snakemake)
-part, out = job.part, job.out
-paper, cycles = job.params, part["cycles"]
+settings, out = job.settings, job.out
+paper, cycles = job.params, settings["cycles"]
 damping = cycles["damping"] * math.sqrt(paper.k1 * paper.mass)
 params = paper.with_(damping1=damping, damping2=damping)
 settle = cycles["settle"] * params.time_unit

@@ -11,7 +11,7 @@ COARSE = 31
 SMALLEST, LARGEST = 0.002, 2.0  # of κ and μ over those of the study
 
 job = Job(snakemake)
-part, params = job.part, job.params
+settings, params = job.settings, job.params
 files = {Path(path).stem: path for path in job.out.friction}
 angles = {name: list(job.angles(name).values()) for name in files}
 alpha1, alpha2 = np.array(list(angles.values())).T
@@ -20,8 +20,8 @@ kappa, mu = (
     np.linspace(SMALLEST, LARGEST, COARSE) * (value or 1.0) for value in (params.kappa, params.mu)
 )
 options = {
-    "t_end": part["dynamics.chart_horizon"] * params.time_unit,
-    "tol": part["dynamics.tol"],
+    "t_end": settings["dynamics.chart_horizon"] * params.time_unit,
+    "tol": settings["dynamics.tol"],
     "workers": snakemake.threads,
 }
 job.make(

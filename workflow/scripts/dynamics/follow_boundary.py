@@ -8,15 +8,15 @@ from squealpipe.execution.job import Job
 from squealpipe.tasks.curves.contact import boundary_distance, contact_boundary
 
 job = Job(snakemake)
-part, params = job.part, job.params
-angles = np.linspace(0.0, np.pi, part["dynamics.validity_points"])
+settings, params = job.settings, job.params
+angles = np.linspace(0.0, np.pi, settings["dynamics.validity_points"])
 boundary = contact_boundary(
     params,
     angles,
     angles,
-    t_end=part["dynamics.validity_horizon"] * params.time_unit,
+    t_end=settings["dynamics.validity_horizon"] * params.time_unit,
     model=job.model,
-    tol=part["dynamics.tol"],
+    tol=settings["dynamics.tol"],
     workers=snakemake.threads,
 )
 job.make(lambda: boundary, job.out.boundary)

@@ -8,11 +8,11 @@ from squealpipe.tasks.dynamics.runs import simulate
 from squealpipe.tasks.dynamics.whirl import transient_lifetimes, whirl_sizes
 
 job = Job(snakemake)
-part, out = job.part, job.out
+settings, out = job.settings, job.out
 params, scene = job.params, SCENES["F3"]
-tol, second = part["dynamics.tol"], params.time_unit
-speeds = np.geomspace(*part["dynamics.whirl_speeds"], part["dynamics.whirl_count"])
-t_end = 0.1 * part["dynamics.whirl_horizon"] * second
+tol, second = settings["dynamics.tol"], params.time_unit
+speeds = np.geomspace(*settings["dynamics.whirl_speeds"], settings["dynamics.whirl_count"])
+t_end = 0.1 * settings["dynamics.whirl_horizon"] * second
 job.make(
     lambda: simulate(params, scene.alpha1, scene.alpha2, t_end=t_end, tol=tol),
     out.run,
@@ -21,7 +21,7 @@ job.make(
     lambda: whirl_sizes(
         params,
         np.union1d(speeds * params.preload / second, [abs(params.belt_speed)] if params.belt_speed else []),
-        t_end=part["dynamics.whirl_horizon"] * second,
+        t_end=settings["dynamics.whirl_horizon"] * second,
         tol=tol,
     ),
     out.whirl,
@@ -29,8 +29,8 @@ job.make(
 job.make(
     lambda: transient_lifetimes(
         params,
-        samples=part["dynamics.transient_samples"],
-        t_end=part["dynamics.transient_horizon"] * second,
+        samples=settings["dynamics.transient_samples"],
+        t_end=settings["dynamics.transient_horizon"] * second,
         tol=tol,
     ),
     out.transient,

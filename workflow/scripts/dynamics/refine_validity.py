@@ -4,14 +4,14 @@ from squealpipe.execution.job import Job
 from squealpipe.tasks.dynamics.refinement import refine_validity_map
 
 job = Job(snakemake)
-part, params = job.part, job.params
+settings, params = job.settings, job.params
 job.make(
     lambda: refine_validity_map(
         params,
-        resolution=part["dynamics.refined_points"],
-        coarse=part["dynamics.refined_coarse"],
-        t_end=part["dynamics.validity_horizon"] * params.time_unit,
+        resolution=settings["dynamics.refined_points"],
+        coarse=settings["dynamics.refined_coarse"],
+        t_end=settings["dynamics.validity_horizon"] * params.time_unit,
         model=job.model,
-        tol=part["dynamics.tol"],
+        tol=settings["dynamics.tol"],
     ),
 )

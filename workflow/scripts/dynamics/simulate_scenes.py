@@ -25,7 +25,7 @@ for name, path in job.out.items():
             scene.alpha2,
             t_end=scene.t_end * params.time_unit,
             model=of_model,
-            tol=job.part["dynamics.tol"],
+            tol=job.settings["dynamics.tol"],
             growth=name in SCENES,
         ),
         path,

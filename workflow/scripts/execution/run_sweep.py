@@ -4,5 +4,5 @@ from squealpipe.execution.job import Job
 from squealpipe.execution.sweep import planned, run_sweep
 
 job = Job(snakemake)
-sweep = planned(job.part).part(job.item)
+sweep = planned(job.settings).scattered(job.item)
 job.make(lambda: run_sweep(sweep, workers=snakemake.threads))

@@ -5,9 +5,9 @@ from squealpipe.parameters import parameters_of
 from squealpipe.tasks.inference.inference import infer_parameters
 
 job = Job(snakemake)
-part = job.part
+settings = job.settings
 job.make(
     lambda: infer_parameters(
-        parameters_of(part), reading=part["reading"], **part["inference"]
+        parameters_of(settings), reading=settings["reading"], **settings["inference"]
     )
 )

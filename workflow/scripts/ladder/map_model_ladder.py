@@ -4,7 +4,7 @@ from squealpipe.execution.job import Job
 from squealpipe.tasks.ladder.ladder import model_ladder
 
 job = Job(snakemake)
-params, ladder = job.params, job.part["comparison.ladder"]
+params, ladder = job.params, job.settings["comparison.ladder"]
 job.make(
     lambda: model_ladder(
         params,

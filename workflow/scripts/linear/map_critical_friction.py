@@ -9,19 +9,19 @@ from squealpipe.models.refusals import without_extensions
 from squealpipe.tasks.linear.critical import critical_damping_map, critical_friction_map
 
 job = Job(snakemake)
-part, out = job.part, job.out
+settings, out = job.settings, job.out
 params = without_extensions(job.params)
 unit = math.sqrt(params.k1 * params.mass)
-damping1, damping2 = (unit * share for share in part["spread.critical_damping"])
-angles = np.linspace(0.0, math.pi, part["linear.points"])
-dashpots = np.linspace(0.0, part["spread.critical_extent"] * unit, part["spread.critical_points"])
-if "scenes" in part:  # of a study of one's own: the first, and its own dashpots if it has some
-    first = next(iter(part["scenes"].values()))
+damping1, damping2 = (unit * share for share in settings["robustness.critical_damping"])
+angles = np.linspace(0.0, math.pi, settings["linear.points"])
+dashpots = np.linspace(0.0, settings["robustness.critical_extent"] * unit, settings["robustness.critical_points"])
+if "scenes" in settings:  # of a study of one's own: the first, and its own dashpots if it has some
+    first = next(iter(settings["scenes"].values()))
     scene = [first["alpha1"], first["alpha2"]]
     given = job.params.damping1, job.params.damping2
     damping1, damping2 = given if any(given) else (damping1, damping2)
 else:
-    scene = [math.pi * angle for angle in part["spread.scene"]]
+    scene = [math.pi * angle for angle in settings["robustness.scene"]]
 damped = params.with_(damping1=damping1, damping2=damping2)
 for task, path in (
     (lambda: critical_friction_map(damped, angles, angles), out.angles),

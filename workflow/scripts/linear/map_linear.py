@@ -8,8 +8,8 @@ from squealpipe.tasks.linear.boundaries import stability_boundaries
 from squealpipe.tasks.linear.maps import natural_frequencies, quasi_static_map, stability_map
 
 job = Job(snakemake)
-params, part = job.params, job.part
-angles = np.linspace(0.0, np.pi, part["linear.points"])
+params, settings = job.params, job.settings
+angles = np.linspace(0.0, np.pi, settings["linear.points"])
 tasks = {
     "quasi_static": lambda: quasi_static_map(params, angles, angles),
     "stability": lambda: stability_map(params, angles, angles),

@@ -7,8 +7,8 @@ from squealpipe.store import produce
 from squealpipe.tasks.dynamics.runs import simulate
 from squealpipe.tasks.own.scenes import own_scenes, start_of
 
-part, key = snakemake.params.part, snakemake.params.key
-params, scenes = parameters_of(part), part["scenes"]
+settings, key = snakemake.params.settings, snakemake.params.key
+params, scenes = parameters_of(settings), settings["scenes"]
 for path in snakemake.output.runs:
     name = Path(path).stem
     scene = scenes[name]
@@ -19,11 +19,11 @@ for path in snakemake.output.runs:
             scene["alpha2"],
             t_end=scene["t_end"] * params.time_unit,
             initial_state=start_of(scene),
-            tol=part["dynamics.tol"],
+            tol=settings["dynamics.tol"],
         ),
-        config={**part, "scene": name}, key=key, output=path,
+        config={**settings, "scene": name}, key=key, output=path,
     )
 produce(
-    lambda: own_scenes(params, scenes, tol=part["dynamics.tol"]),
-    config=part, key=key, output=snakemake.output.scenes,
+    lambda: own_scenes(params, scenes, tol=settings["dynamics.tol"]),
+    config=settings, key=key, output=snakemake.output.scenes,
 )

@@ -6,6 +6,6 @@ from squealpipe.execution.job import Job
 from squealpipe.tasks.dynamics.explorer import explorer_data
 
 job = Job(snakemake)
-options = dict(job.part["explorer"])
+options = dict(job.settings["explorer"])
 angles = np.linspace(0.0, np.pi, options.pop("points"))
 job.make(lambda: explorer_data(job.params, angles, **options))

@@ -5,9 +5,9 @@ from squealpipe.study.claims.judge import judge
 from squealpipe.parameters import parameters_of
 
 job = Job(snakemake)
-part, paths = job.part, snakemake.input.datasets
+settings, paths = job.settings, snakemake.input.datasets
 sources = dict(zip(snakemake.params.names, paths, strict=True))
 job.make(
-    lambda: judge(parameters_of(part), sources, part["reading"]),
+    lambda: judge(parameters_of(settings), sources, settings["reading"]),
     inputs=paths,
 )

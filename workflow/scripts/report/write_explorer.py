@@ -5,13 +5,13 @@ from squealpipe.study.report.explorer.layers import layers
 from squealpipe.rerun.key import state_key
 from squealpipe.store import load
 
-part, maps = snakemake.params.part, snakemake.params.maps
+settings, maps = snakemake.params.settings, snakemake.params.maps
 write_explorer(
     load(snakemake.input.explorer),
     layers(**{name: load(snakemake.input[name]) for name in maps}),
     snakemake.output[0],
-    part["scenes"],
-    paper=part["paper"],
+    settings["scenes"],
+    paper=settings["paper"],
 )
 for path in snakemake.output:
     state_key(path, snakemake.params.key)

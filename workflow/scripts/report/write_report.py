@@ -16,7 +16,7 @@ datasets, figures = made_files(params.made), made_files(params.drawn)
 content = gather(
     datasets,
     figures,
-    parameters_of(params.part),
+    parameters_of(params.settings),
     changed=params.changed,
     links=params.links,
     page=Path(out.page),

@@ -10,7 +10,7 @@ from matplotlib.ticker import MaxNLocator
 
 from squealpipe.plotting.cycles import joined
 from squealpipe.plotting.style import BLACK, GREEN, PURPLE, Y_COLOUR
-from squealpipe.study.figures.parts.backbone_panels import KEY, STABLE_TO_ROUND_OFF, draw_scenes
+from squealpipe.study.figures.panels.backbone_panels import KEY, STABLE_TO_ROUND_OFF, draw_scenes
 
 READS = ("backbone/[a-z]*", "doubled_branch/*")
 CAPTION = (

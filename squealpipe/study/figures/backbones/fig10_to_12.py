@@ -5,7 +5,7 @@ from collections.abc import Mapping
 import xarray as xr
 from matplotlib.figure import Figure
 
-from squealpipe.study.figures.parts.backbone_panels import KEY, draw_scenes
+from squealpipe.study.figures.panels.backbone_panels import KEY, draw_scenes
 
 READS = ("backbone/F1[012]_*",)
 CAPTION = (

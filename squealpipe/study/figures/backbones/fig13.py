@@ -5,7 +5,7 @@ from collections.abc import Mapping
 import xarray as xr
 from matplotlib.figure import Figure
 
-from squealpipe.study.figures.parts.backbone_panels import KEY, SCENE_ALT, draw_scenes
+from squealpipe.study.figures.panels.backbone_panels import KEY, SCENE_ALT, draw_scenes
 
 READS = ("backbone/F13_*",)
 CAPTION = (

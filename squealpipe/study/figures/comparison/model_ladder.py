@@ -5,7 +5,7 @@ from matplotlib.figure import Figure
 
 from squealpipe.plotting import style
 from squealpipe.schema.ladder import Level
-from squealpipe.study.figures.parts.work_precision import foot
+from squealpipe.study.figures.panels.work_precision import foot
 
 READS = ("model_ladder",)
 MAPS = (

@@ -6,7 +6,7 @@ from matplotlib.figure import Figure
 
 from squealpipe.plotting.style import PAGE, new_figure, panel_letter
 from squealpipe.schema.comparison import Role
-from squealpipe.study.figures.parts.work_precision import draw_methods, foot
+from squealpipe.study.figures.panels.work_precision import draw_methods, foot
 
 READS = ("benchmark",)
 CAPTION = (

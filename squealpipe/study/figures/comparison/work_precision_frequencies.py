@@ -4,7 +4,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from squealpipe.plotting.style import PAGE, new_figure
-from squealpipe.study.figures.parts.work_precision import draw_methods, foot
+from squealpipe.study.figures.panels.work_precision import draw_methods, foot
 
 READS = ("work_precision_frequencies",)
 CAPTION = (

@@ -2,8 +2,8 @@
 
 from functools import partial
 
-from squealpipe.study.figures.parts.frequency_map import CAPTION as KEY
-from squealpipe.study.figures.parts.frequency_map import draw_mode
+from squealpipe.study.figures.panels.frequency_map import CAPTION as KEY
+from squealpipe.study.figures.panels.frequency_map import draw_mode
 
 READS = ("natural_frequencies",)
 CAPTION = (

@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 
 from squealpipe.plotting.style import PAGE, draw_map, new_figure, panel_letter
 from squealpipe.schema import Outcome
-from squealpipe.study.figures.parts.frequency_map import HATCH, isoline, outline
+from squealpipe.study.figures.panels.frequency_map import HATCH, isoline, outline
 from squealpipe.text import number
 
 READS = ("natural_frequencies",)

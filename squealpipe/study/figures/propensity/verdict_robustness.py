@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 from squealpipe.plotting.style import BLACK, BLUE, PAGE, RED, new_figure
 from squealpipe.schema.inference import DAMPED_GRID, in_order, in_words
 
-READS = ("verdict_reach",)
+READS = ("verdict_robustness",)
 CAPTION = (
     "The paper's statements in settings that it leaves out, by the criteria of the inference. "
     "Blue: the statement holds; red: it fails; numbers: share of random starts, or of the feasible "

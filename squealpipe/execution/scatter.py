@@ -35,12 +35,12 @@ def over_angles(job: Job, name: str) -> dict[str, Any]:
     Args:
         name: of the map, whose keys are ``dynamics.<name>_points`` and ``…_horizon``.
     """
-    angles = np.linspace(0.0, np.pi, job.part[f"dynamics.{name}_points"])
+    angles = np.linspace(0.0, np.pi, job.settings[f"dynamics.{name}_points"])
     return {
         "alpha1": angles[scattered_rows(angles.size, job.item)],
         "alpha2": angles,
-        "t_end": job.part[f"dynamics.{name}_horizon"] * job.params.time_unit,
-        "tol": job.part["dynamics.tol"],
+        "t_end": job.settings[f"dynamics.{name}_horizon"] * job.params.time_unit,
+        "tol": job.settings["dynamics.tol"],
     }
 
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from squealpipe.execution.parts import join, scattered_rows
+from squealpipe.execution.scatter import join, scattered_rows
 from squealpipe.tasks.dynamics.runs import validity_map
 from squealpipe.tasks.linear.maps import stability_map
 from tests.former import FORMER

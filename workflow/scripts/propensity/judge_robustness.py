@@ -2,16 +2,16 @@
 
 from squealpipe.execution.job import Job
 from squealpipe.store import load
-from squealpipe.tasks.propensity.robustness import verdict_reach
+from squealpipe.tasks.propensity.robustness import verdict_robustness
 
 job = Job(snakemake)
-part, inferred = job.part, snakemake.input.get("inferred")
+settings, inferred = job.settings, snakemake.input.get("inferred")
 job.make(
-    lambda: verdict_reach(
+    lambda: verdict_robustness(
         job.params,
-        starts=part["spread.starts"],
+        starts=settings["robustness.random_starts"],
         inferred=load(inferred) if inferred else None,
-        tol=part["dynamics.tol"],
+        tol=settings["dynamics.tol"],
         workers=snakemake.threads,
     ),
     inputs=[inferred] if inferred else [],
