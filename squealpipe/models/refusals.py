@@ -14,19 +14,8 @@ WHY_A4 = (
 WHY_CIRCLES = "its curves are circles of the undamped model A3 alone"
 
 
-def without_extensions(params: Parameters) -> Parameters:
-    """The parameters with the paper's friction alone; the same object where they have no other."""
-    try:
-        refuse_extensions(params, "", "")
-    except ValueError:
-        return params.with_(
-            **{name: DEFAULTS[name] for name, row in TABLE.items() if row.extension}
-        )
-    return params
-
-
-def refuse_extensions(params: Parameters, who: str, why: str) -> None:
-    """Stop a level that carries neither dashpots nor any friction but Coulomb's with one μ."""
+def extensions(params: Parameters) -> list[str]:
+    """Parameters that give dashpots or other laws than the paper's, with one μ."""
     of_other_laws = {name for law in LAWS.values() for name in law.PARAMETERS} - set(
         LAWS[COULOMB].PARAMETERS
     )
@@ -37,11 +26,14 @@ def refuse_extensions(params: Parameters, who: str, why: str) -> None:
     }
     if params.static_mu == params.mu:
         given.pop("mu_static")
-    carried = {name: DEFAULTS[name] for name in given}
-    wrong = [name for name, value in given.items() if value != carried[name]]
-    if wrong:
-        found = ", ".join(f"{name} = {brief(given[name])}" for name in wrong)
-        remedy = ", ".join(f"{name} = {carried[name]!r}" for name in wrong)
+    return [name for name, value in given.items() if value != DEFAULTS[name]]
+
+
+def refuse_extensions(params: Parameters, who: str, why: str) -> None:
+    """Stop a level that carries no :func:`extensions`."""
+    if wrong := extensions(params):
+        found = ", ".join(f"{name} = {brief(getattr(params, name))}" for name in wrong)
+        remedy = ", ".join(f"{name} = {DEFAULTS[name]!r}" for name in wrong)
         raise ValueError(f"{found}: {who} cannot carry this ({why}); use model A1, or {remedy}")
 
 

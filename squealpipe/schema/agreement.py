@@ -1,6 +1,6 @@
 """How two datasets of one schema are held against each other where numbers alone do not do."""
 
-from dataclasses import dataclass
+from dataclasses import KW_ONLY, dataclass
 from enum import Enum
 
 
@@ -15,7 +15,7 @@ class ComparedAs(Enum):
     unjudged = "nothing"
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True)
 class RoundOff:
     """A variable whose digits round-off decides, and what is compared instead.
 
@@ -29,6 +29,7 @@ class RoundOff:
 
     compared: ComparedAs
     reason: str
+    _: KW_ONLY
     factor: float = 10.0
     floor: float = 0.0
     sample: str = ""
@@ -51,33 +52,3 @@ class Listing:
     kinds: tuple[str, ...] = ()
     position: str = ""
     filler: int | None = None
-
-
-def magnitude(reason: str, *, floor: float = 0.0, factor: float = 10.0) -> RoundOff:
-    """Compared as an order of magnitude, or within another factor."""
-    return RoundOff(compared=ComparedAs.magnitude, reason=reason, floor=floor, factor=factor)
-
-
-def sampled(dim: str, reason: str) -> RoundOff:
-    """Compared as a sample along a dimension."""
-    return RoundOff(compared=ComparedAs.sample, reason=reason, sample=dim)
-
-
-def grown(by: str, reason: str) -> RoundOff:
-    """Compared to the digits that are left when round-off has grown by the factor in ``by``."""
-    return RoundOff(compared=ComparedAs.grown, reason=reason, by=by)
-
-
-def beyond_horizon(reason: str, by: str = "outcome") -> RoundOff:
-    """Compared as numbers up to the predictability horizon, and as one sample beyond it."""
-    return RoundOff(compared=ComparedAs.beyond_horizon, reason=reason, by=by)
-
-
-def most(reason: str, share: float) -> RoundOff:
-    """Compared as values, of which a share may differ."""
-    return RoundOff(compared=ComparedAs.most, reason=reason, share=share)
-
-
-def unjudged(reason: str) -> RoundOff:
-    """Compared, but no difference counts."""
-    return RoundOff(compared=ComparedAs.unjudged, reason=reason)

@@ -134,7 +134,6 @@ DOUBLED_BRANCH = DatasetSchema(
         "doubling_omega": or_nan(
             "angular frequency of the simple orbit at the doubling", "rad s-1"
         ),
-        "doubling_y_peak": or_nan("y_peak of the simple orbit at the doubling", "m"),
     },
 )
 
@@ -163,11 +162,6 @@ HARMONIC_FORMS = DatasetSchema(
     variables={
         "omega": _error("scene", "form", long_name="angular frequency that was found"),
         "omega_exact": Variable("angular frequency of the exact orbit", "rad s-1", ("scene",)),
-        "y_largest": _error("scene", "form", units="m", long_name="largest y of the series"),
-        "y_peak": Variable("y_peak of the exact orbit it starts from", "m"),
-        "residual": Variable(
-            "largest residual, scaled", dims=("scene", "form"), rtol=1.0, atol=1e-9
-        ),
         "rank_deficit": Variable(
             "columns minus rank of the Jacobian", dims=("scene", "form"), dtype="i4"
         ),
@@ -195,7 +189,6 @@ A1_BESIDE_A4 = DatasetSchema(
         "order": Variable("frequency over omega of A4", dims=("order",)),
     },
     variables={
-        "omega": Variable("angular frequency of A4", "rad s-1", ("scene",)),
         "y_a4": Variable("y of A4", "m", ("scene", "period")),
         "y_a1": or_nan("y of A1", "m", ("scene", "length_ratio", "period"), rtol=1e-6),
         "spectrum_a4": Variable("amplitude spectrum of y, A4", "m", ("scene", "order"), rtol=1e-6),
@@ -206,13 +199,6 @@ A1_BESIDE_A4 = DatasetSchema(
             rtol=1e-3,
             atol=1e-6,
         ),
-        "omega_a1": or_nan(
-            "angular frequency of the largest line of y near omega of A4, A1",
-            "rad s-1",
-            ("scene", "length_ratio"),
-            rtol=1e-4,
-        ),
-        "y_peak": Variable("y at the symmetric instant", "m"),
         "outcome": outcome("scene", "length_ratio", among=RUN_ENDS),
     },
 )

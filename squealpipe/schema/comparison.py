@@ -3,7 +3,7 @@
 from enum import IntEnum
 
 from squealpipe.schema import DatasetSchema, Outcome, Variable, outcome, text
-from squealpipe.schema.agreement import Listing, magnitude, most
+from squealpipe.schema.agreement import ComparedAs, Listing, RoundOff
 
 RUN = ("run",)
 
@@ -28,7 +28,8 @@ WORK_PRECISION = DatasetSchema(
         "error": Variable(
             "relative error of ω against the exact orbit, median over peaks",
             dims=RUN, nan_allowed=True, rtol=1e-3,
-            round_off=magnitude(
+            round_off=RoundOff(
+                ComparedAs.magnitude,
                 "nothing but round-off is left at many harmonics, and the paper's Newton method "
                 "has a Jacobian without full rank",
                 floor=1e-12,
@@ -65,7 +66,8 @@ FAILURE_ATLAS = DatasetSchema(
             dims=SCENE_SOLVER,
             nan_allowed=True,
             rtol=1e-2,
-            round_off=magnitude(
+            round_off=RoundOff(
+                ComparedAs.magnitude,
                 "the scenes are those where methods fail; `verdict` holds what an answer is worth",
                 floor=1e-9,
             ),
@@ -77,7 +79,10 @@ FAILURE_ATLAS = DatasetSchema(
 )
 
 _CELL = ("problem", "solver", "tol")
-_NEAR = most("answers near a limit of the verdict are decided by round-off", share=0.03)
+_NEAR = RoundOff(
+    ComparedAs.most, "answers near a limit of the verdict are decided by round-off", share=0.03
+)
+_STEPS = RoundOff(ComparedAs.magnitude, "errors of adaptive steps follow round-off", floor=1e-9)
 _COUNT = "; -1 where no events are reported or judged"
 
 BENCHMARK = DatasetSchema(
@@ -103,13 +108,11 @@ BENCHMARK = DatasetSchema(
             dims=_CELL, dtype="i4", round_off=_NEAR,
         ),
         "time_error": Variable(
-            "largest error of an event's time", dims=_CELL, nan_allowed=True,
-            round_off=magnitude("errors of adaptive steps follow round-off", floor=1e-9),
+            "largest error of an event's time", dims=_CELL, nan_allowed=True, round_off=_STEPS
         ),
         "error": Variable(
             "largest error of final state and event times over the growth of a perturbation",
-            dims=_CELL, nan_allowed=True,
-            round_off=magnitude("errors of adaptive steps follow round-off", floor=1e-9),
+            dims=_CELL, nan_allowed=True, round_off=_STEPS,
         ),
         "evaluations": Variable(
             "calls of the field; a Taylor step of order p counts p + 1", dims=_CELL, dtype="i8",

@@ -5,7 +5,7 @@ from enum import IntEnum
 from squealpipe.codes import Event
 from squealpipe.parameters import Parameters
 from squealpipe.schema import DatasetSchema, Variable, or_nan, outcome, text
-from squealpipe.schema.agreement import Listing, most, unjudged
+from squealpipe.schema.agreement import ComparedAs, Listing, RoundOff
 from squealpipe.schema.dynamics.runs import REGIMES, STATE
 from squealpipe.schema.linear import ONE_PAIR
 from squealpipe.systems.cycles.labels import Label
@@ -53,8 +53,9 @@ def _cycle_variables(*dims: str) -> dict[str, Variable]:
     }
 
 
-_PHASE = unjudged(
-    "where on a cycle its description starts follows from the way on which it was found"
+_PHASE = RoundOff(
+    ComparedAs.unjudged,
+    "where on a cycle its description starts follows from the way on which it was found",
 )
 
 MULTIPLIER = Variable(dims=("multiplier",), dtype="i4", long_name="number of the multiplier")
@@ -71,11 +72,6 @@ LIMIT_CYCLE = DatasetSchema(
             f"event_{name}": Variable(f"{words} at the event", units, ("event",))
             for name, (units, words) in STATE.items()
         },
-        "segment_regime": Variable(
-            "regime from the start and after each event",
-            dims=("segment",),
-            flags=REGIMES,
-        ),
         **{
             f"{name}_start": or_nan(f"{words} at time 0 of the cycle", units)
             for name, (units, words) in STATE.items()
@@ -115,7 +111,9 @@ CYCLE_BRANCH = DatasetSchema(
             "events per period",
             dims=("point",),
             dtype="i4",
-            round_off=most("where a contact is just touched, round-off decides", share=0.5),
+            round_off=RoundOff(
+                ComparedAs.most, "where a contact is just touched, round-off decides", share=0.5
+            ),
         ),
         **{
             f"{name}_start": or_nan(
@@ -140,12 +138,7 @@ SETTLED_EXTREMES = DatasetSchema(
         "late_max_x": or_nan(
             "largest |x| in the last fifth of the run", "m", ("scene", "mu", "start"), rtol=1e-5
         ),
-        "separated_fraction": or_nan(
-            "share of the time without contact", dims=("scene", "mu", "start"), rtol=1e-5
-        ),
         "outcome": outcome("scene", "mu", "start"),
-        "x0": Variable(dims=("start",), units="m", long_name="x at the start"),
-        "y0": Variable(dims=("start",), units="m", long_name="y at the start"),
         "t_end": Variable(units="s", long_name="length of the runs"),
     },
 )

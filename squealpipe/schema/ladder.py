@@ -96,10 +96,7 @@ MODEL_LADDER = DatasetSchema(
             "CPU time of choose_model over the whole map", "s", volatile=True
         ),
         "belt_reached": Variable(
-            "whether the mass of A1 reaches belt speed in contact",
-            dims=MAP,
-            dtype="bool",
-            optional=True,
+            "whether the mass of A1 reaches belt speed in contact", dims=MAP, dtype="bool"
         ),
         "tolerance": Variable("error that is allowed"),
         "outcome": outcome(*MAP, among=(Outcome.converged,)),

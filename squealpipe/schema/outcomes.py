@@ -42,7 +42,7 @@ class Outcome(IntEnum):
     equilibrium = 27, "at rest: no cycle from this start, or it has shrunk to a point"
     family_member = 28, "one of a family: without damping cycles are not isolated"
     no_doubling = 29, "no such period doubling on the branch; follow it further"
-    inherited = 30, "not run: the answer is a neighbour's; see `inherited_error`"
+    inherited = 30, "not run: the answer is a neighbour's; see `inherited_error_interval`"
     not_reached = 31, "by no disturbance tried within the bound; raise bound or t_end"
     already_unstable = 32, "steady sliding is unstable: any disturbance grows"
     no_sliding_state = (

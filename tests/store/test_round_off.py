@@ -7,7 +7,7 @@ import xarray as xr
 from squealpipe import cycle_branch, hammering_map, limit_cycle, simulate
 from squealpipe.parameters import SCENES
 from squealpipe.schema import Outcome, Variable, all_schemas
-from squealpipe.schema.agreement import magnitude, most, sampled, unjudged
+from squealpipe.schema.agreement import ComparedAs, RoundOff
 from squealpipe.store.comparison.compare import compare_datasets
 from squealpipe.store.comparison.differences import Agreement, judge
 from squealpipe.systems.cycles.labels import Label
@@ -37,7 +37,7 @@ def rounded(a, b, how, **entry):
 )
 def test_errors_at_round_off_are_compared_as_magnitudes(a, b, same):
     for pair in ((a, b), (b, a)):
-        found = rounded([pair[0]], [pair[1]], magnitude("why", floor=1e-12))
+        found = rounded([pair[0]], [pair[1]], RoundOff(ComparedAs.magnitude, "why", floor=1e-12))
         assert (found.verdict < Agreement.different) is same
         assert found.compared_as == "order of magnitude"
 
@@ -46,7 +46,7 @@ def test_chaotic_lifetimes_are_compared_as_samples():
     """Two samples of one exponential law agree; a law of half the mean does not; NaN is late."""
     random = np.random.default_rng(5)
     first, second = random.exponential(1.0, (2, 3, 400))
-    how = sampled("sample", "why")
+    how = RoundOff(ComparedAs.sample, "why", sample="sample")
     first[first > 2], second[second > 2] = np.nan, np.nan
     assert rounded(first, second, how).verdict == Agreement.within_tolerance
     assert rounded(first, first, how).verdict == Agreement.equal
@@ -130,6 +130,10 @@ def test_a_share_of_cells_may_differ_where_branches_meet():
     values = np.zeros(1000)
     few, many = values.copy(), values.copy()
     few[:3], many[:30] = 1.0, 1.0
-    assert rounded(values, few, most("why", share=0.01)).verdict == Agreement.within_tolerance
-    assert rounded(values, many, most("why", share=0.01)).verdict == Agreement.different
-    assert rounded(values, many, unjudged("why")).verdict == Agreement.within_tolerance
+    few_may_differ = RoundOff(ComparedAs.most, "why", share=0.01)
+    assert rounded(values, few, few_may_differ).verdict == Agreement.within_tolerance
+    assert rounded(values, many, few_may_differ).verdict == Agreement.different
+    assert (
+        rounded(values, many, RoundOff(ComparedAs.unjudged, "why")).verdict
+        == Agreement.within_tolerance
+    )

@@ -5,7 +5,7 @@ import sys
 import time
 from pathlib import Path
 
-from squealpipe.models.refusals import without_extensions
+from squealpipe.models.refusals import extensions
 from squealpipe.parameters import Parameters, parameters_of
 from squealpipe.reading import READINGS
 from squealpipe.rerun.key import STARTED
@@ -72,7 +72,7 @@ FIRST, LONG = 20, 5
 
 
 _given = parameters_of(STUDY.slice("parameters"))
-PAPERS_FRICTION = without_extensions(_given) is _given
+PAPERS_FRICTION = not extensions(_given)
 """Whether the levels that carry neither dashpots nor other laws of friction can be part of it."""
 
 if not PAPERS_FRICTION and workflow.is_main_process:

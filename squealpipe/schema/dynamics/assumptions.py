@@ -34,8 +34,6 @@ ASSUMPTIONS = DatasetSchema(
         ),
         "largest_x": _largest("m", "largest |x|"),
         "largest_y": _largest("m", "largest y"),
-        "peak_contact_force": _largest("1", "largest contact force over k3 l_pre"),
-        "lowest_contact_force": _largest("1", "lowest contact force over k3 l_pre"),
         "t_end": Variable("end of the motion", "s", ("scene",)),
         "outcome": outcome(
             *TABLE, among=(*RUN_ENDS, Outcome.separated, Outcome.singular_static_state)

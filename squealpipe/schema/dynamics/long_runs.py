@@ -3,15 +3,15 @@
 from dataclasses import replace
 
 from squealpipe.schema import RUN_ENDS, DatasetSchema, Outcome, Variable, or_nan, outcome
-from squealpipe.schema.agreement import magnitude, sampled
+from squealpipe.schema.agreement import ComparedAs, RoundOff
 from squealpipe.schema.dynamics.runs import MOTION, MOTION_CHANGED
 
 _IRREGULAR = (
     "one long run, irregular where the belt is slow: the last bit of the belt speed, which the "
     "vector instructions of the processor decide, changes when each extreme is reached"
 )
-_LONG_RUN = magnitude(_IRREGULAR, factor=1.1)
-_LONG_SAMPLE = sampled("belt_speed", _IRREGULAR)
+_LONG_RUN = RoundOff(ComparedAs.magnitude, _IRREGULAR, factor=1.1)
+_LONG_SAMPLE = RoundOff(ComparedAs.sample, _IRREGULAR, sample="belt_speed")
 
 WHIRL = DatasetSchema(
     name="whirl",
@@ -27,15 +27,13 @@ WHIRL = DatasetSchema(
         "motion": replace(MOTION, dims=("belt_speed",), round_off=_LONG_SAMPLE),
         "motion_changed": replace(MOTION_CHANGED, dims=("belt_speed",), round_off=_LONG_SAMPLE),
         "fitted": Variable("whether the speed is in the fit", dims=("belt_speed",), dtype="bool"),
-        "slope": or_nan("fitted growth of the amplitude with |V|", "s"),
+        "slope": or_nan("fitted growth of the amplitude with |V| (NaN: too few whirl)", "s"),
         "offset": or_nan("fitted amplitude at V = 0", "m"),
         "fit_range": or_nan(
             "speed of the slowest and of the fastest belt in the fit",
             "m s-1",
             ("end",),
-            optional=True,
         ),
-        "fit_outcome": outcome(among=(Outcome.converged, Outcome.unresolved)),
         "energy_slope": Variable("sqrt(m/(k1 + k2)): the slope if the top speed were V", "s"),
         "energy_offset": Variable("far end of the unstretched springs: the offset if so", "m"),
         "t_end": Variable("end of each run", "s"),
@@ -47,7 +45,7 @@ _WHY_CHAOTIC = (
     "a chaotic transient multiplies round-off by e many times over before it ends: only the "
     "distribution of its lifetimes is a result"
 )
-_CHAOTIC = sampled("sample", _WHY_CHAOTIC)
+_CHAOTIC = RoundOff(ComparedAs.sample, _WHY_CHAOTIC, sample="sample")
 TRANSIENT = DatasetSchema(
     name="transient",
     title="How long the bounded motion at (0.2 pi, 0.8 pi) lasts",

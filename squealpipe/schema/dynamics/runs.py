@@ -6,7 +6,7 @@ from typing import Any
 
 from squealpipe.codes import Event, Regime
 from squealpipe.schema import RUN_ENDS, DatasetSchema, Outcome, Variable, or_nan, outcome
-from squealpipe.schema.agreement import Listing, beyond_horizon, grown, magnitude
+from squealpipe.schema.agreement import ComparedAs, Listing, RoundOff
 from squealpipe.schema.linear import ANGLES, MAP, ONE_PAIR, REGIME_LINEAR
 
 REGIMES = {**{int(each): each.name for each in Regime}, -1: "not_reached"}
@@ -28,10 +28,12 @@ class MotionFlag(IntEnum):
     unsettled = 9
 
 
-_GROWN = grown("growth", "an error of the last digit grows along the run")
-_LOST = beyond_horizon(
+_GROWN = RoundOff(ComparedAs.grown, "an error of the last digit grows along the run", by="growth")
+_LOST = RoundOff(
+    ComparedAs.beyond_horizon,
     "beyond its predictability horizon a run follows the last digits of its start, which differ "
-    "from machine to machine"
+    "from machine to machine",
+    by="outcome",
 )
 
 IN_MAP: dict[str, Any] = {"rtol": 1e-5, "atol": 1e-7, "round_off": _LOST}
@@ -86,7 +88,9 @@ SIMULATION = DatasetSchema(
         "growth": or_nan(
             "factor by which a small perturbation of the start has grown at the end",
             optional=True,
-            round_off=magnitude("at the end of a long run it is itself a result of grown errors"),
+            round_off=RoundOff(
+                ComparedAs.magnitude, "at the end of a long run it is itself a result of errors"
+            ),
         ),
         "outcome": outcome(among=RUN_ENDS),
     },
@@ -197,11 +201,9 @@ REFINED_VALIDITY_MAP = DatasetSchema(
         "inherited_wrong": Variable(
             "of these, cells that were wrong (put right since)", dtype="i8"
         ),
-        "inherited_error": or_nan(
-            "share of inherited cells that are wrong, from the sample (NaN: no sample)"
-        ),
         "inherited_error_interval": or_nan(
-            "95 % Wilson interval of inherited_error", dims=("end",)
+            "95 % Wilson interval of the share of inherited cells that are wrong (NaN: no sample)",
+            dims=("end",),
         ),
         "t_end": Variable("end of each run", "s"),
         "outcome": outcome(

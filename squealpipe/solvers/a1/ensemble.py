@@ -37,6 +37,38 @@ def _count(kind: Event, counts: str = "counts") -> Any:
     )
 
 
+def _column(name: str, place: int | None = None, *, time: bool = False) -> Any:
+    """A column of the raw results, or all of them, perhaps in s."""
+
+    def values(self: Ensemble) -> np.ndarray:
+        found = self._raw[name] if place is None else self._raw[name][..., place]
+        return self._shaped(found, self._jobs.time_unit if time else None)
+
+    return property(values)
+
+
+def _states(name: str) -> Any:
+    """States (…, 4) x, y, ẋ, ẏ, m and m/s."""
+
+    def states(self: Ensemble) -> np.ndarray:
+        values, length, time = self._raw[name], self._jobs.length, self._jobs.time_unit
+        units = np.stack([length, length, length / time, length / time], axis=-1)
+        return self._shaped(values * units.reshape(len(units), *(1,) * (values.ndim - 2), 4))
+
+    return property(states)
+
+
+def _turns(name: str) -> Any:
+    """Net turns around both fixed ends, to half a turn; 0 where they turn against one another."""
+
+    def turns(self: Ensemble) -> np.ndarray:
+        first, second = np.moveaxis(self._raw[name], -1, 0)
+        least = 0.5 * np.sign(first) * np.minimum(np.abs(first), np.abs(second))
+        return self._shaped(np.where(first * second > 0, least, 0.0))
+
+    return property(turns)
+
+
 def _spent(regime: Regime, durations: str = "durations") -> Any:
     """Total time in a regime, s."""
 
@@ -72,6 +104,21 @@ class Ensemble:
     sample_contacts = _count(Event.contact, "sample_counts")
     sample_separated_time = _spent(Regime.separated, "sample_durations")
     sample_stick_time = _spent(Regime.stick, "sample_durations")
+    sample_turns, sample_log_growth = _turns("sample_half_turns"), _column("sample_growth", 0)
+    """The growth is that at the end of the step before."""
+    turns, log_growth = _turns("half_turns"), _column("summary", 0)
+    """Counterclockwise positive; ln of the growth of a perturbation, 0 without ``tangent``."""
+    time, predictability_horizon = (
+        _column("summary", 2, time=True),
+        _column("summary", 1, time=True),
+    )
+    """Time reached, and that at which an error of ``tol`` has grown to l_pre/1000 (NaN: not before
+    the end), s."""
+    steps, final_state = _column("ends", 2), _states("final")
+    samples = _states("samples")
+    """At ``times``; NaN past ``time``."""
+    event_times, event_states = _column("event_times", time=True), _states("event_states")
+    """The first ``log_events`` events, s, and the states after them; NaN after the last one."""
 
     def __init__(self, jobs: Jobs, raw: dict[str, np.ndarray], tracked: Sequence[str]) -> None:
         self._jobs, self._raw = jobs, raw
@@ -87,11 +134,6 @@ class Ensemble:
         if unit is not None:
             values = values * unit.reshape(-1, *(1,) * (values.ndim - 1))
         return np.asarray(values.reshape(self._jobs.shape + values.shape[1:]))
-
-    def _states(self, values: np.ndarray) -> np.ndarray:
-        length, time = self._jobs.length, self._jobs.time_unit
-        units = np.stack([length, length, length / time, length / time], axis=-1)
-        return self._shaped(values * units.reshape(len(units), *(1,) * (values.ndim - 2), 4))
 
     def _extremes(self, name: str, part: str = "") -> tuple[np.ndarray, np.ndarray]:
         """Smallest and largest value of a tracked quantity."""
@@ -113,11 +155,6 @@ class Ensemble:
         if self._jobs.stop_at_first_separation:
             found[self._raw["starts_apart"]] = Outcome.separated
         return self._shaped(found.astype(np.int8))
-
-    @cached_property
-    def time(self) -> np.ndarray:
-        """Time reached, s."""
-        return self._shaped(self._raw["summary"][:, 2], self._jobs.time_unit)
 
     @cached_property
     def first_separation_time(self) -> np.ndarray:
@@ -163,46 +200,10 @@ class Ensemble:
         """Largest ẋ, m/s."""
         return self._shaped(self._extremes("vx")[1], self._jobs.length / self._jobs.time_unit)
 
-    def _turns(self, half_turns: np.ndarray) -> np.ndarray:
-        """Turns around both fixed ends; 0 where they turn against one another."""
-        first, second = half_turns[..., 0], half_turns[..., 1]
-        least = 0.5 * np.sign(first) * np.minimum(np.abs(first), np.abs(second))
-        return self._shaped(np.where(first * second > 0, least, 0.0))
-
-    @property
-    def turns(self) -> np.ndarray:
-        """Net turns around both fixed ends, counterclockwise positive, to half a turn."""
-        return self._turns(self._raw["half_turns"])
-
     @cached_property
     def events(self) -> np.ndarray:
         """Their sum."""
         return self._shaped(self._raw["counts"][:, self._kinds[:-1] >= 0].sum(axis=1))
-
-    @property
-    def steps(self) -> np.ndarray:
-        """Integration steps."""
-        return self._shaped(self._raw["ends"][:, 2])
-
-    @property
-    def final_state(self) -> np.ndarray:
-        """(…, 4) x, y, ẋ, ẏ at ``time``, m and m/s."""
-        return self._states(self._raw["final"])
-
-    @property
-    def log_growth(self) -> np.ndarray:
-        """ln of the growth of a perturbation; 0 without ``tangent``."""
-        return self._shaped(self._raw["summary"][:, 0])
-
-    @property
-    def predictability_horizon(self) -> np.ndarray:
-        """Time at which an error of ``tol`` has grown to l_pre/1000, s; NaN: not before the end."""
-        return self._shaped(self._raw["summary"][:, 1], self._jobs.time_unit)
-
-    @property
-    def samples(self) -> np.ndarray:
-        """States (…, n, 4) at ``times``; NaN past ``time``."""
-        return self._states(self._raw["samples"])
 
     @property
     def sample_regimes(self) -> np.ndarray:
@@ -210,28 +211,9 @@ class Ensemble:
         return self._shaped(self._regimes[self._raw["sample_regimes"]].astype(np.int8))
 
     @property
-    def sample_turns(self) -> np.ndarray:  # noqa: D102
-        return self._turns(self._raw["sample_half_turns"])
-
-    @property
-    def sample_log_growth(self) -> np.ndarray:
-        """``log_growth`` at the end of the step before."""
-        return self._shaped(self._raw["sample_growth"][..., 0])
-
-    @property
-    def event_times(self) -> np.ndarray:
-        """The first ``log_events`` events, s; NaN after the last one."""
-        return self._shaped(self._raw["event_times"], self._jobs.time_unit)
-
-    @property
     def event_kinds(self) -> np.ndarray:
         """Their kinds; −1 after the last one."""
         return self._shaped(self._kinds[self._raw["event_kinds"]].astype(np.int8))
-
-    @property
-    def event_states(self) -> np.ndarray:
-        """The states (…, n, 4) after them; NaN after the last one."""
-        return self._states(self._raw["event_states"])
 
 
 @checked

@@ -128,5 +128,5 @@ def _motions_and_shares(run: Run) -> dict[str, Any]:
         "far_short": far[0],
         "far_long": far[-1],
         "growing_starts": 100
-        * run["verdict_reach"].share.sel(statement="F3", variant="starts within 1 % of l_pre"),
+        * run["verdict_robustness"].share.sel(statement="F3", variant="starts within 1 % of l_pre"),
     }

@@ -91,7 +91,6 @@ def _dataset(
                 rest[:, 0], rest[:, 1], 0.0, 0.0, params, stiffness
             ),
             "doubling_omega": start.omega * scene.frequency if start else np.nan,
-            "doubling_y_peak": start.point[1] * scene.length if start else np.nan,
         },
         {"point": np.arange(len(orbits)), "special": np.arange(len(special))},
         attrs,

@@ -70,27 +70,15 @@ def compare_harmonic_forms(params: Parameters, branches: Branches) -> xr.Dataset
     forms = (Form.mended, Form.as_printed)
     sigma = params.sigma * params.preload
     motions = [exact_motion(params, *branch, PEAK) for branch in branches.values()]
-    found = [
-        [
-            SampledBalance(
-                motion.scene.system, N_HARMONICS, N_TIME, sigma, as_printed=form == Form.as_printed
-            )
+    solved = []
+    for motion in motions:
+        system, omega = motion.scene.system, motion.orbit.omega
+        balances = [
+            SampledBalance(system, N_HARMONICS, N_TIME, sigma, as_printed=form == Form.as_printed)
             for form in forms
         ]
-        for motion in motions
-    ]
-    solved = [
-        [
-            balance.solve(balance.start_from_cosines(motion.x, motion.y, motion.orbit.omega))
-            for balance in row
-        ]
-        for motion, row in zip(motions, found, strict=True)
-    ]
+        solved.append([b.solve(b.start_from_cosines(motion.x, motion.y, omega)) for b in balances])
     unit = np.array([motion.scene.frequency for motion in motions])
-    peaks = [
-        [balance.peak(solution) for balance, solution in zip(*pair, strict=True)]
-        for pair in zip(found, solved, strict=True)
-    ]
     counts = [2 * N_HARMONICS + extra for extra in (0, 1, 2)] + [4 * N_HARMONICS + 2]
     counts += [16 * N_HARMONICS, 64 * N_HARMONICS]
     spreads = [_phase_spread(motions[-1], n, sigma) for n in counts]
@@ -99,9 +87,6 @@ def compare_harmonic_forms(params: Parameters, branches: Branches) -> xr.Dataset
         {
             "omega": np.array([[s.omega for s in row] for row in solved]) * unit[:, None],
             "omega_exact": np.array([motion.orbit.omega for motion in motions]) * unit,
-            "y_largest": np.array(peaks) * params.preload,
-            "y_peak": PEAK * params.preload,
-            "residual": [[s.residual for s in row] for row in solved],
             "rank_deficit": [[s.rank_deficit for s in row] for row in solved],
             "outcome": [
                 [Outcome.converged if s.converged else Outcome.no_convergence for s in row]

@@ -98,10 +98,6 @@ def _described(scene: Scene, cycle: Cycle) -> dict[str, Any]:
         "event_time": ends[order] * clock,
         "event_kind": [scene.kinds[cycle.map.events[i].kind] for i in order],
         **{f"event_{name}": states[:, i] for i, name in enumerate(STATE)},
-        "segment_regime": [
-            regime_path[0],
-            *(scene.regimes[cycle.map.events[i].after] for i in order),
-        ],
         **{f"{name}_start": start[i] for i, name in enumerate(STATE)},
         "time": times * clock,
         **{f"{name}_path": path[:, i] for i, name in enumerate(STATE)},

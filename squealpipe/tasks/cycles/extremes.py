@@ -67,10 +67,7 @@ def settled_extremes(
         SETTLED_EXTREMES,
         {
             "late_max_x": run.late_max_x,
-            "separated_fraction": run.separated_time / run.time,
             "outcome": run.outcome,
-            "x0": state[:, 0],
-            "y0": state[:, 1],
             "t_end": t_end,
         },
         {"scene": list(scenes), "mu": mu, "start": np.arange(starts)},

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from squealpipe.methods.processes import run_shared
 from squealpipe.methods.spectrum import amplitude_spectrum
-from squealpipe.models.refusals import without_extensions
+from squealpipe.models.refusals import extensions
 from squealpipe.parameters import Parameters
 from squealpipe.schema import build
 from squealpipe.schema.dynamics.explorer import EXPLORER
@@ -53,7 +53,7 @@ def explorer_data(
     )
     frequency, _ = amplitude_spectrum(np.zeros(times.size), step)
     lines = int(np.searchsorted(frequency * params.time_unit, HIGHEST_FREQUENCY, side="right"))
-    count, modes = angles.size, MODES if without_extensions(params) is params else ()
+    count, modes = angles.size, () if extensions(params) else MODES
 
     def fill(arrays: dict[str, NDArray[Any]], first: int, stride: int) -> None:
         for cell in range(first, count * count, stride):

@@ -90,7 +90,6 @@ def refine_validity_map(
             "computed": grid.computed,
             "inherited_checked": checked,
             "inherited_wrong": wrong,
-            "inherited_error": wrong / checked if checked else np.nan,
             "inherited_error_interval": wilson_interval(wrong, checked),
             "t_end": t_end,
             "outcome": outcome,

@@ -50,7 +50,7 @@ def whirl_sizes(
 
     Returns:
         Dataset over belt_speed; see ``schema.dynamics.long_runs.WHIRL``. Without three such speeds
-        slope and offset are NaN and ``fit_outcome`` is ``unresolved``.
+        slope and offset are NaN.
     """
     form, scene = NormalForm.of(params), SCENES["F3"]
     alpha1, alpha2 = form.angles(scene.alpha1, scene.alpha2)
@@ -79,8 +79,9 @@ def whirl_sizes(
     fitted = whirls & (run.late_max_x > FAR * max(p.length1, p.length2))
     # of the one spring that both are together from afar
     length = (p.k1 * p.length1 + p.k2 * p.length2) / (p.k1 + p.k2)
-    slope = offset = np.nan
+    slope, offset, fit_range = np.nan, np.nan, [np.nan, np.nan]
     if np.count_nonzero(fitted) >= LEAST_FITTED:
+        fit_range = [speeds[fitted].min(), speeds[fitted].max()]
         weights = 1.0 / run.late_max_x[fitted]
         slope, offset = np.polyfit(speeds[fitted], run.late_max_x[fitted], 1, w=weights)
     return build(
@@ -91,14 +92,11 @@ def whirl_sizes(
             "motion": motion,
             "motion_changed": changed,
             "fitted": fitted,
-            "fit_range": [speeds[fitted].min(), speeds[fitted].max()]
-            if np.isfinite(slope)
-            else [np.nan, np.nan],
+            "fit_range": fit_range,
             "slope": slope,
             "offset": offset,
             "energy_slope": np.sqrt(params.mass / (params.k1 + params.k2)),
             "energy_offset": length * (1.0 + np.cos(scene.alpha1)),
-            "fit_outcome": Outcome.unresolved if np.isnan(slope) else Outcome.converged,
             "t_end": t_end,
             "outcome": run.outcome,
         },

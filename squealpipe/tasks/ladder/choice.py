@@ -15,7 +15,7 @@ import numpy as np
 
 from squealpipe.laws.friction import slides
 from squealpipe.methods.processes import cpu_time
-from squealpipe.models.refusals import without_extensions
+from squealpipe.models.refusals import extensions
 from squealpipe.parameters import HORIZON, Parameters
 from squealpipe.schema.ladder import QUESTIONS, Level
 from squealpipe.solvers.a1.ensemble import run_ensemble
@@ -111,7 +111,7 @@ def choose_models(
     alpha1, alpha2 = form.angles(alpha1, alpha2)
     value = np.full(alpha1.shape, np.nan)
     # the rule holds neither with dashpots nor with another friction law
-    if question == "contact_lost" and without_extensions(form.params) is form.params:
+    if question == "contact_lost" and not extensions(form.params):
         value[keeps_contact(form.params, alpha1, alpha2, t_end)] = 0.0
     level = np.where(np.isnan(value), Level.a1, Level.a3)
     run_a1(value, form.params, alpha1, alpha2, question, t_end, workers)

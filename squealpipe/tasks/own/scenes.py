@@ -7,7 +7,7 @@ import numpy as np
 import xarray as xr
 
 from squealpipe.laws.friction_laws import COULOMB, FALLING
-from squealpipe.models.refusals import without_extensions
+from squealpipe.models.refusals import extensions
 from squealpipe.parameters import Parameters
 from squealpipe.schema import build, meanings
 from squealpipe.schema.ladder import QUESTIONS, Level
@@ -132,6 +132,6 @@ def _level(
     t_end: float,
 ) -> str:
     """The level that ``choose_model`` takes; A1 where it cannot be asked."""
-    if any(start) or without_extensions(params) is not params:
+    if any(start) or extensions(params):
         return Level.a1.label
     return Level[choose_model(params, *angles, question, t_end=t_end).model].label

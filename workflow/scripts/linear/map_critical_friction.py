@@ -5,12 +5,13 @@ import math
 import numpy as np
 
 from squealpipe.execution.job import Job
-from squealpipe.models.refusals import without_extensions
+from squealpipe.models.refusals import extensions
+from squealpipe.parameters import DEFAULTS
 from squealpipe.tasks.linear.critical import critical_damping_map, critical_friction_map
 
 job = Job(snakemake)
 settings, out = job.settings, job.out
-params = without_extensions(job.params)
+params = job.params.with_(**{name: DEFAULTS[name] for name in extensions(job.params)})
 unit = math.sqrt(params.k1 * params.mass)
 damping1, damping2 = (unit * share for share in settings["robustness.critical_damping"])
 angles = np.linspace(0.0, math.pi, settings["linear.points"])
