@@ -180,11 +180,7 @@ def parse_study(
     content: Mapping[str, Any],
     faults: Sequence[str] = (),
 ) -> Study:
-    """Validate a configuration mapping.
-
-    Args:
-        faults: mistakes found before, in the text; reported together with those of the values.
-    """
+    """Validate a configuration mapping."""
     try:
         study = Study.model_validate(_plain(_without_empty_sections(content)))
     except ValidationError as error:

@@ -51,7 +51,6 @@ class Job:
         """Run a task and save what it returns, with its provenance.
 
         Args:
-            output: dataset to write; the rule's first by default.
             further: what it is given beside the slice.
         """
         config, target = {**self.settings, **further}, output or self.out[0]

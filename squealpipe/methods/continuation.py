@@ -199,8 +199,6 @@ class Continuation:
     """A branch to be iterated over, from a solution and a direction.
 
     Attributes:
-        start: a solution (n + 1,).
-        direction: where to go from it (n + 1,).
         adapt: applied to each new state before it is yielded (to describe it otherwise).
     """
 

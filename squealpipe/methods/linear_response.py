@@ -19,12 +19,7 @@ def response_from_rest(
     """Samples of r at t = 0, h, 2h and so on.
 
     Args:
-        matrix: (…, n, n), A in 1/s².
-        load: (…, n), b in m/s².
         step: h, s, at most ½/√‖A‖.
-
-    Yields:
-        Arrays (…, n), m.
     """
     cosine, half_push = _series(matrix * (step * step), step)
     push = 2.0 * np.einsum("...ij,...j->...i", half_push, load)

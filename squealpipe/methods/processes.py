@@ -47,7 +47,6 @@ def run_shared(
 
     Args:
         work: handles the jobs first, first + stride, … and writes their rows of the arrays.
-        shapes: name → (shape, dtype) of the arrays, zero at the start.
         workers: processes; None takes all cores, at most one a ``MINIMUM_JOBS`` jobs.
     """
     if workers is None:

@@ -57,13 +57,7 @@ class SearchResult(NamedTuple):
 def search(
     happens: Happens, size: int, bound: float, count: int, generator: np.random.Generator
 ) -> SearchResult:
-    """The smallest vector of Euclidean norm up to ``bound`` for which something happens.
-
-    Args:
-        count: random directions.
-        generator: of the directions, which are uniform on the sphere and independent, and of the
-            steps.
-    """
+    """The smallest vector of Euclidean norm up to ``bound`` for which something happens."""
     unit = _normalized(generator.standard_normal((count, size)))
     radius = _along(happens, unit, bound)
     best = np.argsort(radius, kind="stable")[:IMPROVED]
@@ -135,10 +129,6 @@ def smallest_linear(matrix: Array, row: Array, level: float, t_end: float) -> fl
 
     At an instant c·z = (c exp(A t))·z0, so the smallest z0 that is at the level then has the length
     level/|c exp(A t)|, and the largest of these rows decides.
-
-    Args:
-        matrix: A, (n, n).
-        row: c, (n,).
     """
     rate = max(float(np.abs(np.linalg.eigvals(matrix)).max()), 1.0 / t_end)
     if not rate * t_end <= MOST_STEPS * PHASE:

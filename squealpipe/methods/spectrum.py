@@ -25,7 +25,6 @@ def amplitude_spectrum(
     A sinusoid of amplitude A on a line of the grid gives a peak of height A.
 
     Args:
-        signal: samples, (..., n).
         padding: zeros are added up to ``padding`` n samples, for a finer grid.
 
     Returns:
@@ -48,9 +47,6 @@ def highest_peaks(
     Each is refined by the parabola through the logarithms of its three highest lines, so the
     spectrum should be padded (by 4 or more). Maxima below a twentieth of the highest are left out:
     the window's own side lobes reach a thirty-fifth.
-
-    Args:
-        frequency: uniform grid (n,).
     """
     middle = amplitude[1:-1]
     places = 1 + np.flatnonzero((middle > amplitude[:-2]) & (middle >= amplitude[2:]))

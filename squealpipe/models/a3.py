@@ -85,7 +85,6 @@ def static_state(
     keeps its sign where it almost vanishes.
 
     Args:
-        stiffness, spring_determinant: K11, K12, K22, N/m, and det K.
         k3: K3 of Eq. (8d), or its sharp limit k3, N/m.
         actuation: right-hand side of Eq. (7), k3 l_pre in the sharp limit, N.
 

@@ -46,9 +46,7 @@ def spectrum(
     neither goes through the difference of the two eigenvalues. Numbers of any precision will do.
 
     Args:
-        stiffness: K11, K12, K22, N/m.
         spring_determinant: det K, from :func:`squealpipe.laws.springs.stiffness_determinant`.
-        k3, mu, mass: contact stiffness (0 when separated), friction coefficient, mass.
     """
     a11, a12, a21, a22 = contact_matrix(stiffness, k3, mu)
     half_difference = 0.5 * (a11 - a22)

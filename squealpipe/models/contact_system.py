@@ -41,7 +41,6 @@ def contact_system(p: Any, alpha1: Any, alpha2: Any, *, k3: Any = None) -> Conta
     Args:
         p: ``Parameters``, or any object with mass, k1, k2, k3 and drag (μ sgn V); each may be
             an array, one entry a parameter set.
-        alpha1, alpha2: angles, rad.
         k3: contact stiffness in place of ``p.k3``, N/m: 0 when separated.
     """
     stiffness = springs.linear_stiffness(p, springs.geometry(alpha1, alpha2))

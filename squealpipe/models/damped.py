@@ -61,7 +61,6 @@ def damped_system(p: Any, alpha1: Any, alpha2: Any, *, sigma: Any = None) -> Dam
     depends on speed and there is no static contact force N0.
 
     Args:
-        alpha1, alpha2: angles, rad, which broadcast.
         sigma: regularizing factor of the contact law, 1/m; None means the sharp law.
     """
     kind = np.result_type(alpha1, alpha2)
@@ -158,7 +157,6 @@ def critical_friction(
 
     Args:
         p: parameters, whose ``mu`` is not looked at and whose belt gives the direction.
-        alpha1, alpha2: angles, rad, which broadcast.
         vanishing: the limit of both dashpots going to 0 at their ratio.
     """
     stiffness, determinant, _ = contact_system(p, alpha1, alpha2)

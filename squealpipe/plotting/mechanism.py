@@ -38,8 +38,6 @@ def draw_mechanism(
     """Draw an arrangement at its true angles; both springs have length 1, the mass radius 0.12.
 
     Args:
-        axes: where to draw; its frame is switched off.
-        alpha1, alpha2: spring angles, rad.
         direction: of the belt, +1 or −1.
     """
     radius = 0.12

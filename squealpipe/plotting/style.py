@@ -91,11 +91,7 @@ SETTINGS: dict[Any, Any] = {
 def new_figure(
     width: float = PAGE, height: float = 3.0, **subplots: object
 ) -> tuple[Figure, np.ndarray]:
-    """A figure with the house style, and its axes as a 2-D array.
-
-    Args:
-        width, height: inches; use COLUMN or PAGE for the width.
-    """
+    """A figure with the house style, and its axes as a 2-D array."""
     mpl.rcParams.update(SETTINGS)
     figure = Figure(figsize=(width, height), layout="constrained")
     axes = figure.subplots(squeeze=False, **subplots)  # type: ignore[call-overload]

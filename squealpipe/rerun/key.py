@@ -60,7 +60,6 @@ def rule_key(
     Args:
         part: its slice of the configuration; files that it names enter with their content.
         code: what :func:`sources` gives.
-        inputs: name → key or digest of what it reads.
     """
     root = PACKAGE.parent
     modules = {

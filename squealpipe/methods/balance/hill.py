@@ -23,11 +23,7 @@ def sampled_share_above(cosine: np.ndarray, threshold: float, n_time: int) -> np
 
 
 def hill_multipliers(system: PiecewiseLinearSystem, share: np.ndarray, omega: float) -> np.ndarray:
-    """The four Floquet multipliers of a symmetric motion.
-
-    Args:
-        share: of :func:`sampled_share_above`.
-    """
+    """The four Floquet multipliers of a symmetric motion."""
     below, above = np.array(system.below.matrix), np.array(system.above.matrix)
     coefficients = share[:, None, None] * (above - below)
     coefficients[0] += below

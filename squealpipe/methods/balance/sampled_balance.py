@@ -64,7 +64,6 @@ class SampledBalance:
     """Residuals and rectangular Jacobian over η = (a, b, ω).
 
     Attributes:
-        system: scaled system; its columns differ by the push of the contact gap.
         n_harmonics, n_time: N_h and N; at least 2 N_h, as the paper allows.
         sigma: regularizing factor of tanh, scaled.
         as_printed: Eq. (34) as printed, with K11 a + K12 b; otherwise K12 a + K22 b.

@@ -39,9 +39,7 @@ def trace(
         motion: (2, 3) a point of the branch and its direction, moved on in place.
         pace: (6,) :data:`STEP` to :data:`EXTENT`, kept between calls.
         control: (7,) :data:`LONGEST_STEP` to :data:`LINEAR_SLOPE`.
-        spacing: largest distance of recorded points, over 1 + |z|; 0 records the last alone.
         table: (n, 8) filled with points (:data:`COLUMNS`); rows left over bound the call too.
-        switches: (MAX_SEGMENTS,) filled with the switching times of the last point.
 
     Returns:
         (number of points kept, why it ended).

@@ -171,7 +171,6 @@ def trace_branch(
     Args:
         start, direction: (3,) a solution and the way to go; neither needs to be regular.
         y_stop: larger y of the instants of rest at which the trace ends.
-        spacing: largest distance of the points, over 1 + |z|; the steps do not depend on it.
     """
     motion = np.array([start, direction / np.linalg.norm(direction)], dtype=float)
     pace, control = np.array([settings.first_step, *[0.0] * 5]), settings.control()

@@ -45,10 +45,8 @@ def shoot(
     """Flow from rest at (x0, y0) over half a period.
 
     Args:
-        rows: (2, 12) state rows: below and above the threshold.
         segments: (MAX_SEGMENTS, 9) filled with coefficients and the state of each segment.
         switches: (MAX_SEGMENTS,) filled with the times of the switches.
-        final: (4,) filled with the state at the end.
 
     Returns:
         The number of segments, or 0 if there were too many or the shot is too long.

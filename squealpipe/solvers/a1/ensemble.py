@@ -236,7 +236,6 @@ def run_ensemble(
             them; the results have the shape to which they are broadcast.
         tracked: of :data:`TRACKED`, those whose extremes are read.
         sums: keep what has added up at ``times``, too.
-        tangent: carry one perturbation along (for the predictability horizon).
         log_events: number of events a run to keep.
         workers: processes; None takes all cores. The results are the same bit for bit.
     """

@@ -89,9 +89,6 @@ def jobs_of(
     Args:
         parameters: ``Parameters``, or a mapping of its field names to arrays; fields left out
             take the baseline's value.
-        alpha1, alpha2: spring angles, rad.
-        t_end: end of each run, s.
-        model: a key of ``VARIANT_RULES``.
         initial_state: (x, y, vx, vy) in m and m/s, broadcast over the runs (last axis 4).
         times: instants (last axis), the same for all runs or one row per run, s, ascending.
         stop_at_first_separation: end a run there with outcome ``separated``.

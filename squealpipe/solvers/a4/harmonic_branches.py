@@ -67,8 +67,6 @@ def harmonic_branch(
     """Points of a branch from the linear mode upwards, and why it ends; all scaled.
 
     Args:
-        scene: the system; mode: 1 or 2; y_max, x_max: scaled ends of the branch.
-        n_harmonics: harmonics; n_time: samples per period, or None for closed forms.
         sigma: scaled regularizing factor, or None for the sharp law.
         cross_poles: go on beyond ω = ω_x/n where K12 = 0.
     """

@@ -98,7 +98,6 @@ def finding(
     """A finding from one comparison.
 
     Args:
-        compared: value, relation and threshold.
         otherwise, passed: verdicts when the comparison is false and true.
         also: further conditions, all of which must be true as well.
     """

@@ -31,8 +31,6 @@ def judge(
     Args:
         sources: dataset name → NetCDF file, or the dataset itself; under ``corrected/`` those of
             the corrected physics.
-        reading: in which the other datasets were computed; a name of
-            :data:`squealpipe.reading.READINGS`.
     """
     run = Run(for_linear(parameters, reading), sources)
     mended = {

@@ -41,7 +41,6 @@ def write_document(
 
     Args:
         pictures: path inside the source (``content["figures"][name]["path"]``) → PNG file.
-        page: HTML; needs no network and no other file.
     """
     with _source(template, content, pictures) as main, ThreadPoolExecutor(2) as pool:
         made = pool.submit(_typeset, main, "html")

@@ -54,11 +54,8 @@ def gather(
     """Content of the paper's report and of its supplement; see ``templates/``.
 
     Args:
-        datasets: name (path below ``data/`` without suffix) → NetCDF file.
         changed: keys of the configuration that differ from the shipped one, with both values. The
             narrative is shown only where there are none.
-        links: further files of the run, by the words that lead to them.
-        page: where the page will be; then it links files beside it.
     """
     run = Run(parameters, {name: made.path for name, made in datasets.items()})
     claims = rows(run["claims"]) if "claims" in run else []

@@ -39,7 +39,6 @@ def a1_beside_a4(
     and friction do at that amplitude.
 
     Args:
-        params: physical parameters; the spring lengths are replaced.
         branches: name → (alpha1, alpha2, mode).
         peak: y_peak over l_pre; length_ratios: spring lengths over l_pre.
     """

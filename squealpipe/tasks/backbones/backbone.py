@@ -124,7 +124,6 @@ def with_orbits(
     branches; the reasons go into the dataset's attribute ``left_out``.
 
     Args:
-        branches: name → (alpha1, alpha2, mode).
         peaks: y_peak over l_pre.
     """
     kept, reasons = {}, []

@@ -42,8 +42,6 @@ def doubled_branch(
     those of ``backbone``, and are followed in the same steps.
 
     Args:
-        alpha1, alpha2: angles, rad.
-        mode: 1 or 2, by ascending ω of the contact state.
         doubling: which period doubling along the backbone, from 1.
         y_peak_max: larger y of the instants of rest, m, to which both branches are followed;
             6 l_pre by default. The new orbits pass the other instant of rest of the old ones

@@ -59,10 +59,6 @@ def exact_motion(
 def compare_harmonic_forms(params: Parameters, branches: Branches) -> xr.Dataset:
     """The paper's balance, corrected and with Eq. (34) as printed, started at the exact orbit.
 
-    Args:
-        params: physical parameters; σ is ``params.sigma``.
-        branches: name → (alpha1, alpha2, mode).
-
     Returns:
         Per branch and form what was found; per N the rank of Γ and the spread over the phase
         of the start on the last branch, for want of a phase condition.

@@ -56,7 +56,6 @@ def work_precision(
     """Dataset ``work_precision``: medians over the peaks of the coupled scene.
 
     Args:
-        sigmas: regularizing factors, times l_pre.
         oversampling: N over 2 N_h; 1 is the fewest samples that keep the columns independent.
     """
     scene = scaled_system(params, *COUPLED_SCENE)

@@ -36,11 +36,7 @@ def settled_extremes(
     distance is evenly spread on a logarithmic scale.
 
     Args:
-        params: physical parameters; ``mu`` replaces theirs.
         scenes: name → angles, rad.
-        mu: friction coefficients, (mu,).
-        starts: runs per scene and friction.
-        t_end: s.
         seed: of the random starts, which all scenes and frictions share.
     """
     generator = np.random.default_rng(seed)

@@ -56,11 +56,7 @@ class Motion(NamedTuple):
 
 
 def check_assumptions(params: Parameters, scenes: Iterable[Scene] = ()) -> xr.Dataset:
-    """Table 1 of the paper, extended: which assumptions held, by level and scene.
-
-    Returns:
-        Dataset over (level, scene, assumption); see ``schema.dynamics.assumptions.ASSUMPTIONS``.
-    """
+    """Table 1 of the paper, extended: which assumptions held, by level and scene."""
     chosen = tuple(scenes) or tuple(SCENES.values())
     names = list(LIMITS)
     measures = np.full((len(LEVELS), len(chosen), len(names)), np.nan)
@@ -100,11 +96,7 @@ def linear_pull_map(
     """How far the linear model (Eqs. 6, 7) lets the contact spring pull, started at rest.
 
     Args:
-        alpha1, alpha2: 1-D arrays of angles, rad.
         t_end: end of the motion, s; 50 √(m/k1) by default.
-
-    Returns:
-        Dataset ``linear_pull`` over (alpha1, alpha2).
     """
     refuse_extensions(params, "linear_pull_map", "Eqs. (6), (7) have neither")
     t_end = 50.0 * params.time_unit if t_end is None else t_end

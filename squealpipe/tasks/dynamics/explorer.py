@@ -35,9 +35,7 @@ def explorer_data(
     """Motions from rest, spectra of the contact force and backbones on a grid of angles.
 
     Args:
-        angles: values of both spring angles, rad.
         history_time: time for which the motion is kept, in units of √(m/k1).
-        spectrum_time: time from which the spectrum is made, in the same units.
         branch_points: points kept of each backbone; shorter ones repeat their last point.
 
     Returns:

@@ -192,7 +192,6 @@ def refine_labels(
     """Labels of the runs, undetermined hammering distinguished by its events.
 
     Args:
-        motion: labels by :func:`classify_motion`, 1-D.
         again: runs some of them again, by their rows, with so many events logged.
     """
     motion = motion.copy()

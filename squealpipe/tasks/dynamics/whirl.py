@@ -45,7 +45,6 @@ def whirl_sizes(
 
     Args:
         params: physical parameters; of the belt speed only the direction is kept.
-        belt_speeds: 1-D array, m/s, without sign.
         t_end: end of each run, s; the last fifth gives the size.
 
     Returns:
@@ -116,9 +115,6 @@ def transient_lifetimes(
 
     The samples start at rest at y = 0 and evenly spaced x up to ±1e-9 l_pre. A run ends with its
     tenth net turn around the fixed ends: from there on it whirls.
-
-    Args:
-        t_end: end of the runs, s.
     """
     form, scene = NormalForm.of(params), SCENES["F4"]
     alpha1, alpha2 = form.angles(scene.alpha1, scene.alpha2)

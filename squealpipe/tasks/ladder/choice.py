@@ -127,8 +127,6 @@ def keeps_contact(p: Any, alpha1: Any, alpha2: Any, t_end: Any) -> np.ndarray:
 
     Args:
         p: ``Parameters``, or an object with its fields and ``drag``; each may be an array.
-        alpha1, alpha2: angles, rad, of one shape.
-        t_end: horizon, s.
     """
     motion = contact_motion(p, alpha1, alpha2)
     reach = motion.farthest()

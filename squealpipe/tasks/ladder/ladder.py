@@ -31,8 +31,6 @@ def model_ladder(
 
     Args:
         points: cells along each angle, at the centres of equal intervals.
-        tol: relative error that is allowed.
-        t_end: horizon, s; 200 √(m/k1) by default.
     """
     refuse_extensions(params, "the model ladder", WHY)
     horizon = HORIZON * params.time_unit if t_end is None else t_end

@@ -10,11 +10,7 @@ from squealpipe.parameters import Parameters
 
 
 def answer_of(run: Any, question: str, times: np.ndarray) -> np.ndarray:
-    """The answer that an ensemble holds.
-
-    Args:
-        run: :class:`squealpipe.solvers.a1.ensemble.Ensemble`; for "frequency" sampled at ``times``.
-    """
+    """The answer that an ensemble holds."""
     if question == "contact_lost":
         return np.asarray(run.separations > 0, dtype=float)
     if question == "peak_contact_force":

@@ -16,9 +16,6 @@ def stability_boundaries(params: Parameters, *, points: int = 400) -> xr.Dataset
     All of them are circles or lines in the plane of Z (see :mod:`squealpipe.models.a3`), from
     where the angles follow in closed form, so each point is exact to round-off.
 
-    Args:
-        points: points of each arc; every arc gives two segments.
-
     Returns:
         Dataset over point: alpha1, alpha2 (rad, continuous along a segment, hence not confined
         to 0 … π; the map has period π in either angle), boundary, segment.

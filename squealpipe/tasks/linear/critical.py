@@ -59,7 +59,6 @@ def critical_damping_map(
     """The critical friction of :func:`critical_friction_map` at one pair of angles, over dashpots.
 
     Args:
-        params: physical parameters, whose dashpots are replaced.
         alpha1, alpha2: angles, rad.
         damping1, damping2: 1-D arrays of dashpots along springs 1 and 2, N·s/m, 0 or greater.
 

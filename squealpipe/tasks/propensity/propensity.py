@@ -187,7 +187,6 @@ def _indices(judged: Sequence[np.ndarray], parts: int) -> dict[str, np.ndarray]:
     """Sobol indices with intervals, and the widest total's half-width by sample size.
 
     Args:
-        judged: of each quantity, as :func:`_judged_matrices`, (2 + inputs, size).
         parts: of the sample, each twice the one before; the last is all of it.
     """
     shape = (len(judged), len(judged[0]) - 2)

@@ -30,12 +30,7 @@ WINDOW = 0.12
 
 
 def draw(refined: xr.Dataset, boundary: xr.Dataset) -> Figure:
-    """A map and a magnified part of it, with the boundary as curves.
-
-    Args:
-        refined: dataset ``refined_validity_map``.
-        boundary: dataset ``contact_boundary``.
-    """
+    """A map and a magnified part of it, with the boundary as curves."""
     figure, axes = style.new_figure(style.PAGE, 3.9, ncols=2)
     _map(axes[0, 0], refined.assign(computed=_clustered(refined.computed)))
     window = _intricate(refined)

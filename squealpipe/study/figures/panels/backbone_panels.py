@@ -33,7 +33,6 @@ def draw_scenes(branches: Mapping[str, xr.Dataset], height: float) -> Figure:
 
     Args:
         branches: datasets ``backbone/<scene>_mode<n>`` (exact) and those that end in ``_hbm``.
-        height: of the figure, inches.
     """
     scenes = list(dict.fromkeys(name.rsplit("_mode", 1)[0] for name in branches))
     figure, axes = style.new_figure(style.PAGE, height, nrows=len(scenes), ncols=2)

@@ -35,7 +35,6 @@ def draw_methods(
 
     Args:
         scale: factor from its unit to the axis'.
-        methods: in all panels, so that each has its mark.
     """
     error = np.maximum(rows.error.values, _SMALLEST)
     values = rows[cost].values * scale

@@ -31,12 +31,7 @@ def write_explorer(
     *,
     paper: bool = True,
 ) -> None:
-    """Write the page, whole or not at all.
-
-    Args:
-        path: the HTML file; it needs no network and no other file.
-        scenes: those of the study's own, name → ``alpha1``, ``alpha2`` (rad).
-    """
+    """Write the page, whole or not at all."""
     papers = {
         f"Fig {scene.figure}": {"alpha1": scene.alpha1, "alpha2": scene.alpha2, "near": 0.03}
         for scene in SCENES.values()
