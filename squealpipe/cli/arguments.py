@@ -28,40 +28,26 @@ def _parse_whole(text: str) -> int:
 _whole = _reader(_parse_whole)
 
 
-Numbers = Annotated[
-    list[float] | None,
-    Parameter(
-        converter=_reader(parse_range),
-        metavar="RANGE",
-        allow_leading_hyphen=True,
-        n_tokens=1,
-        negative="",
-    ),
-]
+def _signed(read: Callable[[str], Any], metavar: str, **further: Any) -> Parameter:
+    """One text, which may begin with a minus sign."""
+    one = {"allow_leading_hyphen": True, "n_tokens": 1}
+    return Parameter(converter=_reader(read), metavar=metavar, **one, **further)
+
+
+Numbers = Annotated[list[float] | None, _signed(parse_range, "RANGE", negative="")]
 """A number, a list of them or first:last:count."""
 Whole = Annotated[int, Parameter(converter=_whole, metavar="INT", n_tokens=1)]
 Angle = Annotated[
     float,
-    Parameter(
-        converter=_reader(parse_angle),
-        metavar="ANGLE",
-        allow_leading_hyphen=True,
-        n_tokens=1,
-        help="angle of this spring: 0.4pi, 2pi/5, 72deg or radians.",
-    ),
+    _signed(parse_angle, "ANGLE", help="angle of this spring: 0.4pi, 2pi/5, 72deg or radians."),
 ]
 AngleRange = Annotated[
     list[float],
-    Parameter(
-        converter=_reader(partial(parse_range, one=parse_angle)),
-        metavar="RANGE",
-        allow_leading_hyphen=True,
-        n_tokens=1,
-        negative="",
-        show_default="0:pi:61",
+    _signed(
+        partial(parse_range, one=parse_angle), "RANGE", negative="", show_default="0:pi:61",
         help="angles of this spring, first:last:count or a list.",
     ),
-]
+]  # fmt: skip
 Tolerance = Annotated[float, Parameter(help="tolerance of the integration.")]
 Workers = Annotated[
     int | None,

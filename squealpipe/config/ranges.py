@@ -11,11 +11,8 @@ from typing import Any
 from squealpipe.parameters import BEYOND_A_TURN, FULL_TURN, TABLE
 
 _NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
-_PI = re.compile(
-    rf"^(?P<sign>[+-])?(?P<head>{_NUMBER})?\s*\*?\s*(?:pi|π)(?:/(?P<below>{_NUMBER}))?$"
-)
-_DEGREES = re.compile(rf"^(?P<value>{_NUMBER})\s*(?:deg|°)$")
-_RADIANS = re.compile(rf"^(?P<value>{_NUMBER})\s*(?:rad)?$")
+_IN_PI = re.compile(rf"([+-]?)({_NUMBER})?\s*\*?\s*(?:pi|π)(?:/({_NUMBER}))?")
+_IN_UNITS = re.compile(rf"({_NUMBER})\s*(deg|°|rad)?")
 ANGLE_FORMS = "write 0.4pi, 2pi/5, 72deg or radians"
 ANGLES = ("alpha1", "alpha2")
 PHYSICAL = tuple(TABLE)
@@ -39,14 +36,14 @@ def parse_angle(text: str) -> float:
 
 
 def _angle_in(text: str) -> float | None:
-    if match := _PI.match(text):
-        head = float(match["head"] or 1) * (-1 if match["sign"] == "-" else 1)
-        below = float(match["below"] or 1)
-        return head * math.pi / below if below else None
-    if match := _DEGREES.match(text):
-        return math.radians(float(match["value"]))
-    match = _RADIANS.match(text)
-    return float(match["value"]) if match else None
+    if match := _IN_PI.fullmatch(text):
+        sign, head, below = match.groups("1")
+        above = float(head) * (-1 if sign == "-" else 1) * math.pi
+        return above / float(below) if float(below) else None
+    if not (match := _IN_UNITS.fullmatch(text)):
+        return None
+    value = float(match[1])
+    return math.radians(value) if match[2] in {"deg", "°"} else value
 
 
 def parse_number(text: str) -> float:

@@ -6,7 +6,7 @@ from typing import Any
 
 import xarray as xr
 
-from squealpipe.parameters import DEFAULTS, SCENES, TABLE, Scene
+from squealpipe.parameters import DEFAULTS, SCENES, TABLE
 from squealpipe.plotting.style import pi_label
 
 
@@ -32,14 +32,10 @@ def angle_pair(alpha1: float, alpha2: float) -> str:
     return f"({pi_label(float(alpha1))}, {pi_label(float(alpha2))})"
 
 
-def angles_of(scene: Scene) -> str:
-    """Both angles of a scene of the paper."""
-    return angle_pair(scene.alpha1, scene.alpha2)
-
-
 def scene_title(name: str) -> str:
     """A scene of the paper by its angles and its figure: ``(0.4π, 0.6π), Fig. 3``."""
-    return f"{angles_of(SCENES[name])}, {SCENES[name].panel}"
+    scene = SCENES[name]
+    return f"{angle_pair(scene.alpha1, scene.alpha2)}, {scene.panel}"
 
 
 def scene_name(dataset: xr.Dataset, scene: str) -> str:
@@ -49,7 +45,7 @@ def scene_name(dataset: xr.Dataset, scene: str) -> str:
     if name in own:
         angles = angle_pair(*(float(angle) * math.pi for angle in own[name]))
     elif name in SCENES:
-        angles = angles_of(SCENES[name])
+        angles = angle_pair(SCENES[name].alpha1, SCENES[name].alpha2)
     else:
         return scene
     return f"{angles}, mode {mode}"
