@@ -105,9 +105,6 @@ def run(arguments: Sequence[str]) -> int:
                 return DONE
             raise
         except KeyboardInterrupt:
-            # Where Ctrl-C left text under exec, as in Numba's compiler, CPython ends by the signal
-            # whatever the exit code, until the next exec of a text.
-            exec("")  # noqa: S102
             print("squealpipe: interrupted; run the same command again", file=sys.stderr)
             return INTERRUPTED
         except Exception as error:  # noqa: BLE001 (one line, not a trace)

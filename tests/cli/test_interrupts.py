@@ -42,27 +42,6 @@ def test_interrupt_stops_the_command_and_its_processes(name, tmp_path):
     assert not list(tmp_path.iterdir())
 
 
-EARLY = """
-import sys
-class Interrupt:
-    def find_spec(self, name, *_):
-        if name == 'cyclopts':
-            exec('raise KeyboardInterrupt')
-sys.meta_path.insert(0, Interrupt())
-"""
-
-
-def test_interrupt_while_the_command_is_loaded_is_quiet_too(tmp_path):
-    (tmp_path / "sitecustomize.py").write_text(EARLY)
-    path = os.pathsep.join([str(tmp_path), os.environ.get("PYTHONPATH", "")])
-    done = subprocess.run(
-        [sys.executable, "-m", "squealpipe"], capture_output=True, text=True, timeout=60,
-        check=False, env={**os.environ, "PYTHONPATH": path},
-    )  # fmt: skip
-    assert done.returncode == INTERRUPTED
-    assert done.stderr == "squealpipe: interrupted; nothing was written\n"
-
-
 def test_a_workflow_is_interrupted_and_waited_for(tmp_path):
     code = (
         "import sys, time\ntry:\n    time.sleep(99)\n"
