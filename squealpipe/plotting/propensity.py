@@ -8,10 +8,6 @@ from matplotlib.figure import Figure
 from squealpipe.plotting import style
 from squealpipe.schema.propensity import WIDEST
 
-SYMBOLS = {
-    "k1": "k₁", "k2": "k₂", "k3": "k₃", "mu": "μ", "alpha1": "α₁", "alpha2": "α₂",
-    "length1": "L₁", "length2": "L₂", "belt_speed": "V", "mass": "m", "mu_static": "μs",
-}  # fmt: skip
 COLOURS = (style.BLUE, style.ORANGE, style.RED, style.PURPLE, style.GREEN)
 
 
@@ -25,7 +21,7 @@ def figure(spread: xr.Dataset) -> Figure:
         sizes.plot(spread["size"], row, ".-", color=colour)
     sizes.set(xlabel="sample size", xscale="log", ylim=(0, 1.02), ylabel="share")
     _ends(sizes, spread["size"].values)
-    inputs = [SYMBOLS.get(name, name) for name in spread.input.values.tolist()]
+    inputs = list(map(style.symbol, spread.input.values.tolist()))
     shown = [i for i in range(len(names)) if np.isfinite(spread.total_order.values[i]).all()]
     width = 0.8 / max(len(shown), 1)
     for position, i in enumerate(shown):

@@ -157,6 +157,6 @@ def _words(variable: xr.DataArray) -> str:
 def label(variable: xr.DataArray) -> str:
     """What a variable is, with its unit, for an axis."""
     unit = UNITS.get(unit := str(variable.attrs.get("units", "1")), unit)
-    symbol = {"alpha1": "α₁", "alpha2": "α₂"}.get(str(variable.name))
-    words = symbol or _words(variable)
+    name = str(variable.name)
+    words = style.symbol(name) if name in ANGLES else _words(variable)
     return words if unit == "1" else f"{words} ({unit})"

@@ -14,6 +14,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 from matplotlib.ticker import ScalarFormatter
 
+from squealpipe.parameters import TABLE
 from squealpipe.store.whole_files import whole_file
 from squealpipe.text import as_people_write
 
@@ -42,6 +43,7 @@ SMALL = 1e-3
 WHITE, LIGHT, BLACK = "#FFFFFF", "#BDBDBD", "#1A1A1A"
 """The paper's three tones."""
 HATCH = "//////"
+GREEK, SUBSCRIPTS = {"alpha": "α", "mu": "μ", "sigma": "σ"}, str.maketrans("0123s", "₀₁₂₃ₛ")
 
 REGIME_COLOURS = {
     "slip_slower": BLUE,
@@ -115,6 +117,14 @@ def pi_label(angle: float) -> str:
             head = "" if numerator == 1 else str(numerator)
             return f"{head}π" + ("" if denominator == 1 else f"/{denominator}")
     return f"{over_pi:.4g}π"
+
+
+def symbol(name: str) -> str:
+    """A parameter or an angle by its symbol: k₁, μ, α₂, l_pre."""
+    known = TABLE[name].symbol if name in TABLE else f"{name[:-1]}_{name[-1]}"
+    head, _, foot = known.replace('"', "").partition("_")
+    below = foot.translate(SUBSCRIPTS) if len(foot) < 2 else f"_{foot}"
+    return GREEK.get(head, head) + below
 
 
 def symbols(text: str) -> str:

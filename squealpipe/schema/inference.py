@@ -65,8 +65,16 @@ def in_order(dataset: xr.Dataset) -> xr.Dataset:
 
 
 LITTLE = 0.1
-"""F2e: spread of the contact force over three scenes, in preloads, that the inference takes for
-"a minimal difference"; the paper gives no number."""
+"""F2e: spread of the contact force over three scenes, in preloads, that is taken for "a minimal
+difference"; the paper gives no number."""
+SAME_FORCE = 1e-10
+"""F5a: difference of normalized contact forces that two identical runs may show."""
+JUMPS = 3
+"""F5b: how many separations count as "again and again"."""
+BOUND = 2.0
+"""F3, F4: |x| over the longer free length up to which the motion is a pendulum's on its springs."""
+LARGE_REGION = 0.5
+"""F7a: share of the angle map from which a region is called large."""
 
 
 DAMPED_GRID = 181

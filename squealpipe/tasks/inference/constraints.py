@@ -20,14 +20,9 @@ from squealpipe.models.damped import damped_system, is_undamped, stability
 from squealpipe.parameters import SCENES, Scene
 from squealpipe.schema import Outcome
 from squealpipe.schema.dynamics.runs import GROWTH_THRESHOLD
-from squealpipe.schema.inference import LITTLE, Holds
+from squealpipe.schema.inference import BOUND, JUMPS, LARGE_REGION, LITTLE, SAME_FORCE, Holds
 from squealpipe.tasks.inference.angle_maps import keeping_share, separating_share
 from squealpipe.tasks.inference.candidates import Candidates, Margin
-
-SAMENESS = 1e-10
-"""F5a: how far the two motions may differ, over k3 l_pre and over the horizon."""
-JUMPS = 3
-"""F5b: how many separations count as "again and again"."""
 
 
 class Stage(IntEnum):
@@ -149,8 +144,8 @@ def _alike(candidates: Candidates) -> Margin:
 def _growth_and_size(candidates: Candidates, scene: Scene) -> tuple[Any, Any, np.ndarray]:
     """ln of late over early |x| and of |x| over 2L, and how the runs ended."""
     run = candidates.run(scene)
-    reach = 2.0 * np.maximum(candidates.fields["length1"], candidates.fields["length2"])
-    size = np.maximum(run.early_max_x, run.late_max_x) / reach
+    bound = BOUND * np.maximum(candidates.fields["length1"], candidates.fields["length2"])
+    size = np.maximum(run.early_max_x, run.late_max_x) / bound
     return np.log(run.late_max_x / run.early_max_x), np.log(size), run.outcome
 
 
@@ -179,15 +174,15 @@ def _stays_bounded(candidates: Candidates) -> Margin:
 @constrains(
     "F5a",
     Stage.level,
-    f"peak force and time off the belt at (π, π) and (0, 0) differ by d < {SAMENESS}; "
-    f"margin ({SAMENESS} − d)/({SAMENESS} + d)",
+    f"peak force and time off the belt at (π, π) and (0, 0) differ by d < {SAME_FORCE}; "
+    f"margin ({SAME_FORCE} − d)/({SAME_FORCE} + d)",
 )
 def _same_levels(candidates: Candidates) -> Margin:
     first, second = candidates.level, candidates.run(SCENES["F5b"])
     force = np.abs(first.peak_contact_force - second.peak_contact_force)
     share = np.abs(first.separated_time - second.separated_time) / first.time
     difference = np.maximum(force, share)
-    margin = (SAMENESS - difference) / (SAMENESS + difference)
+    margin = (SAME_FORCE - difference) / (SAME_FORCE + difference)
     return Margin(margin, np.maximum(first.outcome, second.outcome))
 
 
@@ -220,7 +215,7 @@ def _unstable_only_without_sliding(candidates: Candidates) -> Margin:
     "F7a", Stage.maps, "A1 separates in more than half of the angle map; margin share/½ − 1"
 )
 def _separates_mostly(candidates: Candidates) -> Margin:
-    return _closed(2.0 * separating_share(candidates) - 1.0)
+    return _closed(separating_share(candidates) / LARGE_REGION - 1.0)
 
 
 @constrains(

@@ -5,18 +5,12 @@ import numpy as np
 from squealpipe.codes import Event
 from squealpipe.schema.claims import Verdict
 from squealpipe.schema.dynamics.runs import GROWTH_THRESHOLD
-from squealpipe.schema.inference import LITTLE
+from squealpipe.schema.inference import BOUND, JUMPS, LITTLE, SAME_FORCE
 from squealpipe.study.claims.checks.motions import events, halves, scene, until
 from squealpipe.study.claims.evidence import Finding, Run, finding
 from squealpipe.study.claims.statement import Check, Rows
 
 rows = Rows("4", "fig02")
-
-SAME_FORCE = 1e-10
-"""Difference of normalized contact forces that two identical runs may show."""
-
-LONGEST = 2.0
-"""|x| over the longer free length up to which the motion is that of a pendulum on its springs."""
 
 SATURATED = 1.02
 """Ratio of the late to the earlier size of a whirl below which it has stopped growing."""
@@ -125,10 +119,10 @@ def limit_cycle_is_bounded(run: Run) -> Finding:
             f"t = {float(transient.t_end) / run.parameters.time_unit:g} √(m/k1)."
         )
     return finding(
-        (largest, "<", LONGEST),
+        (largest, "<", BOUND),
         evidence,
         also=late < GROWTH_THRESHOLD * early,
-        passed=Verdict.holds_only_as_printed if ended or later >= LONGEST else Verdict.holds,
+        passed=Verdict.holds_only_as_printed if ended or later >= BOUND else Verdict.holds,
     )
 
 
@@ -152,7 +146,7 @@ def mass_jumps(run: Run) -> Finding:
     flights = events(motion, Event.separation).size
     height = float(motion.y.max() / run.parameters.preload)
     return finding(
-        (flights, "≥", 2),
+        (flights, "≥", JUMPS),
         f"{flights} flights up to {until(run, motion)}, up to y = {height:.3g} l_pre; "
         "the springs lie along x and have no vertical stiffness to first order.",
     )

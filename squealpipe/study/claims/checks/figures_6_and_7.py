@@ -2,6 +2,7 @@
 
 from squealpipe.schema.claims import Verdict
 from squealpipe.schema.dynamics.runs import GROWTH_THRESHOLD
+from squealpipe.schema.inference import LARGE_REGION
 from squealpipe.study.claims.checks.motions import halves, scene
 from squealpipe.study.claims.evidence import Finding, Run, finding
 from squealpipe.study.claims.maps import (
@@ -15,9 +16,6 @@ from squealpipe.study.claims.maps import (
 from squealpipe.study.claims.statement import Rows
 
 rows = Rows("6", "fig06")
-
-LARGE_REGION = 0.5
-"""Share of the angle map from which a region is called large."""
 
 ADEQUATE_AGREEMENT = 0.95
 """Share of cells in which A3 would have to agree with A1 to be of use."""
