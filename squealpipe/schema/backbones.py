@@ -189,6 +189,7 @@ A1_BESIDE_A4 = DatasetSchema(
         "order": Variable("frequency over omega of A4", dims=("order",)),
     },
     variables={
+        "omega": Variable("angular frequency of A4", "rad s-1", ("scene",)),
         "y_a4": Variable("y of A4", "m", ("scene", "period")),
         "y_a1": or_nan("y of A1", "m", ("scene", "length_ratio", "period"), rtol=1e-6),
         "spectrum_a4": Variable("amplitude spectrum of y, A4", "m", ("scene", "order"), rtol=1e-6),
@@ -198,6 +199,12 @@ A1_BESIDE_A4 = DatasetSchema(
             ("scene", "length_ratio", "order"),
             rtol=1e-3,
             atol=1e-6,
+        ),
+        "omega_a1": or_nan(
+            "angular frequency of the largest line of y near omega of A4, A1",
+            "rad s-1",
+            ("scene", "length_ratio"),
+            rtol=1e-4,
         ),
         "outcome": outcome("scene", "length_ratio", among=RUN_ENDS),
     },

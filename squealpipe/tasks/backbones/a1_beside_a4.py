@@ -8,7 +8,7 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from squealpipe.methods.orbits.orbit_shape import sample
-from squealpipe.methods.spectrum import amplitude_spectrum
+from squealpipe.methods.spectrum import amplitude_spectrum, highest_peaks
 from squealpipe.parameters import Parameters
 from squealpipe.schema import Outcome, build
 from squealpipe.schema.backbones import A1_BESIDE_A4
@@ -24,6 +24,7 @@ _SHOWN = 4
 """Periods of the run, samples per period, and periods that are kept as a time history."""
 _ORDERS = 5
 _PADDING = 4
+_NEIGHBOURHOOD = 0.5
 
 
 def a1_beside_a4(
@@ -45,11 +46,12 @@ def a1_beside_a4(
     phases = np.arange(_PERIODS * _SAMPLES) / _SAMPLES
     kept = phases < _SHOWN
     orders = np.arange(_ORDERS * _PERIODS * _PADDING) / (_PERIODS * _PADDING)
+    near = np.abs(orders - 1.0) < _NEIGHBOURHOOD
     shape = len(branches), len(length_ratios)
     histories = np.full((*shape, int(kept.sum())), np.nan)
     spectra = np.full((*shape, len(orders)), np.nan)
-    outcome = np.full(shape, Outcome.converged, dtype=int)
-    references = []
+    dominant, outcome = np.full(shape, np.nan), np.full(shape, Outcome.converged, dtype=int)
+    omegas, references = [], []
 
     def spectrum(history: Vector) -> Vector:
         return amplitude_spectrum(history, 1.0, padding=_PADDING)[1][..., : len(orders)]
@@ -60,6 +62,7 @@ def a1_beside_a4(
         if orbit is None:
             raise ValueError(f"{name}: no orbit of A4 at peak {peak!r} ({why.name})")
         omega = orbit.omega * scene.frequency
+        omegas.append(omega)
         references.append(_repeated(scene.system.rows, orbit.point) * scene.length)
         for j, ratio in enumerate(length_ratios):
             length = ratio * params.preload
@@ -75,13 +78,17 @@ def a1_beside_a4(
             histories[i, j] = run.y.values[kept]
             if np.isfinite(run.y.values).all():
                 spectra[i, j] = spectrum(run.y.values)
+                peaks, _ = highest_peaks(orders[near], spectra[i, j, near], 1)
+                dominant[i, j] = omega * next(iter(peaks), np.nan)
     return build(
         A1_BESIDE_A4,
         {
+            "omega": omegas,
             "y_a4": np.array([history[kept] for history in references]),
             "y_a1": histories,
             "spectrum_a4": spectrum(np.array(references)),
             "spectrum_a1": spectra,
+            "omega_a1": dominant,
             "outcome": outcome,
         },
         {
