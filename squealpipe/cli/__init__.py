@@ -5,6 +5,7 @@ import os
 import sys
 import traceback
 from collections.abc import Callable, Sequence
+from importlib import metadata
 
 from cyclopts import App, CycloptsError
 from cyclopts.exceptions import UnusedCliTokensError
@@ -68,7 +69,7 @@ def application() -> App:
         help_epilogue="`squealpipe simulate 5pi/6 5pi/6` is a good first command; the whole "
         "study is `squealpipe run`.",
         help_format="markdown",
-        version=_version,
+        version=lambda: metadata.version("squealpipe"),
         config=[parameters_from_study],
         exit_on_error=False,
         print_error=False,
@@ -83,12 +84,6 @@ def application() -> App:
     app.command(peers)
     app.register_install_completion_command()
     return app
-
-
-def _version() -> str:
-    from squealpipe import __version__
-
-    return str(__version__)
 
 
 def run(arguments: Sequence[str]) -> int:

@@ -42,7 +42,9 @@ def claims(*ids: str, only: str | None = None, json_: AsJson = False, file: Path
             print(f"{len(rows)} statements; `squealpipe claims {rows[0]['id']}` shows one in full")
         if changed := [row for row in rows if row["changes"]]:
             print("\nWith friction of one sign throughout these change:")
-            print(*(_line({**row, **_corrected(row)}) for row in changed), sep="\n")
+            for row in changed:
+                beside = {key: row[f"corrected_{key}"] for key in ("verdict", "value")}
+                print(_line({**row, **beside}))
     return code if rows else DONE
 
 
@@ -63,10 +65,6 @@ def _chosen(
     if not fitting:
         raise ValueError(f"--only {only}: no statement has this verdict; {', '.join(verdicts)}")
     return [row for row in kept if row["verdict"] in fitting]
-
-
-def _corrected(row: Mapping[str, Any]) -> dict[str, Any]:
-    return {"verdict": row["corrected_verdict"], "value": row["corrected_value"]}
 
 
 def _line(row: Mapping[str, Any]) -> str:

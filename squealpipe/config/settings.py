@@ -182,21 +182,14 @@ def parse_study(
 ) -> Study:
     """Validate a configuration mapping."""
     try:
-        study = Study.model_validate(_plain(_without_empty_sections(content)))
+        known = Study.model_fields  # a section without keys is the default one
+        given = {k: value for k, value in content.items() if value is not None or k not in known}
+        study = Study.model_validate(_plain(given))
     except ValidationError as error:
         raise ConfigError([*faults, *mistakes(error, Study)]) from error
     if faults:
         raise ConfigError(faults)
     return study
-
-
-def _without_empty_sections(content: Mapping[str, Any]) -> dict[str, Any]:
-    """A section without keys is the default one."""
-    return {
-        key: value
-        for key, value in content.items()
-        if value is not None or key not in Study.model_fields
-    }
 
 
 def _plain(value: Any) -> Any:

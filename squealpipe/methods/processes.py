@@ -52,7 +52,8 @@ def run_shared(
     if workers is None:
         workers = max(1, min(available_cores(), jobs // MINIMUM_JOBS))
     workers = min(workers, max(1, jobs))
-    if workers == 1 or not _can_fork():
+    daemon = multiprocessing.current_process().daemon
+    if workers == 1 or daemon or "fork" not in multiprocessing.get_all_start_methods():
         arrays = {name: np.zeros(shape, dtype) for name, (shape, dtype) in shapes.items()}
         work(arrays, 0, 1)
         return arrays
@@ -89,13 +90,6 @@ def _in_child(work: Work, arrays: dict[str, np.ndarray], first: int, stride: int
     leave_interrupts_to_the_parent()
     with shown(None):
         work(arrays, first, stride)
-
-
-def _can_fork() -> bool:
-    return (
-        "fork" in multiprocessing.get_all_start_methods()
-        and not multiprocessing.current_process().daemon
-    )
 
 
 def _shared_array(shape: tuple[int, ...], dtype: Any) -> np.ndarray:

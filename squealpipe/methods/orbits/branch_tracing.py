@@ -122,15 +122,11 @@ def _record(
         for index in range(3):
             point[index] = before[0, index] + length * piece / pieces * before[1, index]
         if _orbit_across(rows, point, before[1], table[kept], switches):
-            _count_from_higher_end(table[kept])
+            row = table[kept]
+            if row[4] > row[1]:  # from the higher end
+                row[0], row[1], row[3], row[4] = row[3], row[4], row[0], row[1]
             kept += 1
     return kept
-
-
-@compiled
-def _count_from_higher_end(row: Any) -> None:
-    if row[4] > row[1]:
-        row[0], row[1], row[3], row[4] = row[3], row[4], row[0], row[1]
 
 
 @compiled

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -64,8 +63,8 @@ def basin_map(
     grid = np.meshgrid(*(np.atleast_1d(axis) for axis in axes.values()), indexing="ij")
     starts = np.stack([part.ravel() for part in grid], axis=-1)
     blocks = [
-        _block(params, alpha1, alpha2, starts[rows], t_end, late, tol, workers)
-        for rows in with_progress([*_rows(len(starts))])
+        _block(params, alpha1, alpha2, starts[at : at + RUNS_AT_ONCE], t_end, late, tol, workers)
+        for at in with_progress(range(0, len(starts), RUNS_AT_ONCE))
     ]
     columns = {
         name: np.concatenate([block[name] for block in blocks]).reshape(shape) for name in blocks[0]
@@ -74,11 +73,6 @@ def basin_map(
     fixed = {name: float(axis) for name, axis in axes.items() if not axis.ndim}
     angles = {"alpha1": alpha1, "alpha2": alpha2}
     return build(basin_schema(tuple(swept)), {**columns, **fixed, **angles, "t_end": t_end}, swept)
-
-
-def _rows(size: int) -> Iterator[slice]:
-    for first in range(0, size, RUNS_AT_ONCE):
-        yield slice(first, min(first + RUNS_AT_ONCE, size))
 
 
 def _block(

@@ -77,7 +77,12 @@ def cycle_branch(
         special about a point, "end" at the last one, and ``end`` why the branch ended there.
     """
     begin = _value(params, alpha1, alpha2, parameter)
-    _check(params, parameter, begin, to)
+    if math.isclose(to, begin, rel_tol=_SAME_VALUE):
+        raise ValueError(
+            f"to = {to!r}: a finite value other than {parameter} = {begin!r}, the start, is needed"
+        )
+    if parameter not in ("alpha1", "alpha2"):
+        params.with_(**{parameter: to})
     scene = Scene(params, alpha1, alpha2, follow=parameter)
     scale = scene.units[parameter]
     low, high = sorted((begin / scale, to / scale))
@@ -108,15 +113,6 @@ def cycle_branch(
     elif end == Outcome.converged and math.isclose(last.parameter, begin / scale, rel_tol=1e-11):
         end = Outcome.returned
     return _dataset(scene, follower.points, end)
-
-
-def _check(params: Parameters, parameter: str, begin: float, to: float) -> None:
-    if math.isclose(to, begin, rel_tol=_SAME_VALUE):
-        raise ValueError(
-            f"to = {to!r}: a finite value other than {parameter} = {begin!r}, the start, is needed"
-        )
-    if parameter not in ("alpha1", "alpha2"):
-        params.with_(**{parameter: to})
 
 
 def _value(params: Parameters, alpha1: float, alpha2: float, parameter: str) -> float:
