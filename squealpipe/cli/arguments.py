@@ -30,8 +30,9 @@ _whole = _reader(_parse_whole)
 
 def _signed(read: Callable[[str], Any], metavar: str, **further: Any) -> Parameter:
     """One text, which may begin with a minus sign."""
-    one = {"allow_leading_hyphen": True, "n_tokens": 1}
-    return Parameter(converter=_reader(read), metavar=metavar, **one, **further)
+    return Parameter(
+        converter=_reader(read), metavar=metavar, allow_leading_hyphen=True, n_tokens=1, **further
+    )
 
 
 Numbers = Annotated[list[float] | None, _signed(parse_range, "RANGE", negative="")]
