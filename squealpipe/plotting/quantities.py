@@ -39,7 +39,7 @@ SHOWN: dict[str, tuple[str, Mapping[str, object]]] = {
     "parameter_inference": ("share", {}),
     "settled_extremes": ("late_max_x", {}),
     "transient": ("lifetime", {}),
-    "verdict_reach": ("share", {}),
+    "verdict_robustness": ("share", {}),
     "whirl": ("amplitude", {}),
     "work_precision": ("error", {}),
 }
