@@ -135,7 +135,7 @@ def test_report_has_pages_without_the_paper(found, tmp_path):
         path = tmp_path / f"{name}.png"
         save_figure(draw(name, datasets), [path])
         figures[name] = Made(path=path, rule="some", datasets=reads(name))
-    content = gather_own(made, figures, PAD)
+    content = gather_own(made, figures, PAD, [("dynamics.validity_points", 181, 13)])
     page = tmp_path / "index.html"
     pictures = picture_files(content, figures)
     write_document("study", content, pictures, page=page, pdf=tmp_path / "report.pdf")
@@ -143,7 +143,13 @@ def test_report_has_pages_without_the_paper(found, tmp_path):
     words = " ".join(re.sub(r"<style>.*?</style>|<[^>]+>", " ", text, flags=re.DOTALL).split())
     for absent in ("paper", "Fig.", "None", " nan"):
         assert absent not in words
-    for present in ("pushed off the belt", "mine", "N m", "Nearest angles"):
+    for present in (
+        "pushed off the belt",
+        "mine",
+        "N m",
+        "Nearest angles",
+        "dynamics.validity_points 181 13",
+    ):
         assert present in words
     assert text.count("<img") == len(figures)
 

@@ -67,10 +67,7 @@ def gather(
         "title": TITLE,
         "paper": PAPER,
         "shipped": not changed,
-        "changed": [
-            {"key": key, "shipped": _written(shipped), "here": _written(here)}
-            for key, shipped, here in changed
-        ],
+        "changed": changed_rows(changed),
         "changed_verdicts": [
             {"id": row["id"], "shipped": row["recorded"], "here": row["verdict_here"]}
             for row in claims
@@ -189,6 +186,14 @@ def _picture(name: str, made: Made, run: Mapping[str, Any]) -> dict[str, Any]:
         "rule": made.rule,
         "datasets": list(made.datasets),
     }
+
+
+def changed_rows(changed: Sequence[tuple[str, Any, Any]]) -> list[dict[str, str]]:
+    """Rows of a table of keys of the configuration, the shipped value and that of this study."""
+    return [
+        {"key": key, "shipped": _written(shipped), "here": _written(here)}
+        for key, shipped, here in changed
+    ]
 
 
 def _written(value: Any) -> str:

@@ -1,7 +1,7 @@
 """What the report of a study of one's own shows, as plain data."""
 
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -11,19 +11,27 @@ from squealpipe.parameters import Parameters
 from squealpipe.schema.own import NUMBERS
 from squealpipe.study.claims.evidence import Run
 from squealpipe.study.figures.comparison.model_ladder import QUESTION_NAMES
-from squealpipe.study.report.content import Made, parameter_table, pictures
+from squealpipe.study.report.content import Made, changed_rows, parameter_table, pictures
 from squealpipe.study.report.sections import OWN
 from squealpipe.text import number
 
 
 def gather_own(
-    datasets: Mapping[str, Made], figures: Mapping[str, Made], parameters: Parameters
+    datasets: Mapping[str, Made],
+    figures: Mapping[str, Made],
+    parameters: Parameters,
+    changed: Sequence[tuple[str, Any, Any]] = (),
 ) -> dict[str, Any]:
-    """Content of ``templates/study.typ``."""
+    """Content of ``templates/study.typ``.
+
+    Args:
+        changed: keys of grids and horizons that are not as shipped, with both values.
+    """
     run = Run(parameters, {name: made.path for name, made in datasets.items()})
     table, spread = run["own_scenes"], run["propensity"]
     return {
         "title": "What the mass does: report of a study",
+        "changed": changed_rows(changed),
         "parameters": parameter_table(parameters, of_a1=True),
         "figures": pictures(OWN, figures, run),
         "variants": [str(name) for name in table.variant.values],

@@ -68,6 +68,7 @@ else:
             settings=settings("parameters"),
             made=own,
             drawn=DRAWN,
+            changed=[row for row in STUDY.changes_of(SHIPPED) if row[0].startswith(("dynamics.", "robustness."))],
         script:
             "../../scripts/own/write_own_report.py"
 

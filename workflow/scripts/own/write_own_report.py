@@ -14,7 +14,7 @@ from squealpipe.study.report.own import gather_own
 params, out = snakemake.params, snakemake.output
 refuse_misfits(params.expected)
 datasets, figures = made_files(params.made), made_files(params.drawn)
-content = gather_own(datasets, figures, parameters_of(params.settings))
+content = gather_own(datasets, figures, parameters_of(params.settings), params.changed)
 pictures = picture_files(content, figures)
 write_document("study", content, pictures, page=Path(out.page), pdf=Path(out.pdf))
 with whole_file(Path(out.provenance)) as temporary:
