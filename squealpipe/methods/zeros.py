@@ -19,7 +19,6 @@ def bracketed(
     """Safeguarded Newton from the secant's zero; a step out of its bracket becomes half of it.
 
     Args:
-        function: places → values and slopes.
         bracket, ends: where each zero lies between, and the values there, of opposite signs.
         last_step: largest step after which the zeros are known.
     """

@@ -74,7 +74,6 @@ def acceleration(
         contact: 1 in contact, 0 separated.
         direction: sgn(V − ẋ).
         stick: 1 while sticking, when friction balances the other x-forces and ẍ = 0.
-        linear_springs: use K r and C ṙ instead of the exact geometry.
         long_springs: which of the springs take the form for long ones.
     """
     fx, fy = suspension_force(

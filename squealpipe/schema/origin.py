@@ -61,7 +61,6 @@ def origin(name: str, arguments: Mapping[str, Any]) -> dict[str, Any]:
     """Attributes that record a call; ``tolerance`` is "round-off" where there is no ``tol``.
 
     Args:
-        name: of a task that is :func:`recorded`.
         arguments: argument → value; of a dataset among them, the attributes are inherited.
     """
     model, method = _HOW[name]

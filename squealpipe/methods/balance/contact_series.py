@@ -24,10 +24,6 @@ _SAMPLES_PER_HARMONIC = 8
 def contact_angles(cosine: Vector, threshold: float, grid: Vector, table: Vector) -> Vector:
     """Zeros of threshold − y(θ) in (0, π), ascending, to machine precision.
 
-    Args:
-        grid: ascending θ from 0 to π, fine enough to part neighbouring extremes.
-        table: cos nθ on the grid, (len(grid), len(cosine)).
-
     A touch that stays between two grid points is found from the parabola through its
     neighbours, so a short contact or flight is not lost.
     """

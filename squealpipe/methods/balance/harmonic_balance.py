@@ -48,7 +48,6 @@ class CosineBalance:
     Attributes:
         system: ``below`` the threshold differs from ``above`` by a force along its column
             that grows with the gap.
-        contact: how the gap's coefficients are found.
     """
 
     system: PiecewiseLinearSystem
@@ -111,11 +110,7 @@ class CosineBalance:
 
 
 def cosines_of(samples: Vector) -> Vector:
-    """Cosine coefficients of an even function from samples at θ = π j/n, j = 0 … n.
-
-    Args:
-        samples: (n + 1, …).
-    """
+    """Cosine coefficients of an even function from samples at θ = π j/n, j = 0 … n."""
     count = len(samples) - 1
     even = np.concatenate([samples, samples[-2:0:-1]])
     spectrum = np.fft.rfft(even, axis=0).real / (2 * count)

@@ -47,7 +47,6 @@ class SampledSolution:
 
     Attributes:
         x, y: Fourier coefficients (2 N_h + 1,), constant first, then sine, cosine pairs.
-        residual: largest component of R.
         rank_deficit: unknowns minus the numerical rank of the Jacobian there.
     """
 

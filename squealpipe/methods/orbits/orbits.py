@@ -79,7 +79,6 @@ class Orbit:
     Attributes:
         point: (3,) x0, y0, T/2, the orbit's state at rest with the larger y.
         stability_index: trace of the monodromy matrix − 2.
-        residual: largest velocity after the half period.
     """
 
     point: NDArray[np.float64]

@@ -30,7 +30,6 @@ class ScaledRuns(NamedTuple):
     """Parameters in units of m = k1 = l_pre = 1, of the shape that they were given in.
 
     Attributes:
-        numbers: those of ``NUMBERS_OF_A1``.
         time_unit, length: √(m/k1), s, and l_pre, m.
         systems: A1, or its variant, with the forces that some run has.
         rate: a bound on the frequencies of the motion, for limits of steps and events.

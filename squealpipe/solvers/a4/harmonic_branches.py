@@ -35,7 +35,6 @@ class HarmonicPoint:
     """A solution of the balance in scaled units, with what the exact orbits say of it.
 
     Attributes:
-        z: unknowns of :class:`CosineBalance`.
         switches: contact times over the unit of time, in the half period.
         stability_index: trace − 2 of the monodromy along the series' contact times.
         omega_exact: ω of the exact orbit of equal peak, NaN without one.

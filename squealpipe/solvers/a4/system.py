@@ -28,7 +28,6 @@ class ScaledSystem:
 
     Attributes:
         system: ``below`` is contact, ``above`` separation; threshold 1.
-        length: l_pre, m.
         frequency: unit of frequency, rad/s.
         rest: equilibrium in contact, scaled; NaN without one.
         squared: (ω1², ω2²) in contact, scaled.

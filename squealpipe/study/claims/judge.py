@@ -26,12 +26,7 @@ DECIDED = 0.1
 def judge(
     parameters: Parameters, sources: Mapping[str, Path | xr.Dataset], reading: str = "along_plus_x"
 ) -> xr.Dataset:
-    """The verdict on every statement, in the study's reading and in the corrected physics.
-
-    Args:
-        sources: dataset name → NetCDF file, or the dataset itself; under ``corrected/`` those of
-            the corrected physics.
-    """
+    """The verdict on every statement, in the study's reading and in the corrected physics."""
     run = Run(for_linear(parameters, reading), sources)
     mended = {
         name.removeprefix(BESIDE): source

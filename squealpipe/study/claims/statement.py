@@ -16,8 +16,6 @@ class Statement:
     """One statement, how it is checked, and what came out at the shipped baseline.
 
     Attributes:
-        section: where the paper says it.
-        figure: picture that shows it; empty where none does.
         recorded: what its check finds at the shipped baseline; anything else is a regression.
         check: reads datasets only.
         consequence: what the inference judges at each feasible parameter set and what decides

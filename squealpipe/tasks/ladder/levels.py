@@ -31,7 +31,6 @@ class Answers(NamedTuple):
 
     Attributes:
         values: in the order of :data:`squealpipe.schema.ladder.QUESTIONS`; NaN: there is none.
-        valid: whether they may be trusted.
         belt_reached: whether the mass reaches belt speed in contact.
     """
 

@@ -74,10 +74,6 @@ def verdict_robustness(
     Args:
         inferred: dataset ``parameter_inference``; its feasible parameter sets become a variant, in
             which statements that were fitted are not judged, for they hold by construction.
-
-    Returns:
-        Dataset over (variant, statement): share (0 or 1 for a single setting), its interval, the
-        number of runs judged, and the outcome.
     """
     names = [constraint.name for constraint in CONSTRAINTS] + list(CONSEQUENCES)
     rows, titles = [], []
