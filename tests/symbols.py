@@ -33,11 +33,6 @@ STIFFNESS = sp.simplify(sp.hessian(SPRING_ENERGY, (X, Y)).subs({X: 0, Y: 0}))
 LINEAR_FORCE = tuple(-(STIFFNESS * sp.Matrix([X, Y])))
 
 
-def evaluate(expression, params, **values):
-    """A symbolic expression as numbers."""
-    return function(expression)(params, **values)
-
-
 def function(expression):
     """A symbolic expression as a function of parameters and x, y, alpha1, alpha2."""
     symbols = [X, Y, ALPHA1, ALPHA2, *vars(P).values()]
@@ -70,11 +65,7 @@ def draws(count):
     cases = []
     for _ in range(count):
         params = random_parameters(generator)
-        state = {
-            "x": generator.uniform(-1, 1),
-            "y": generator.uniform(-1, 1),
-            "alpha1": generator.uniform(0, np.pi),
-            "alpha2": generator.uniform(0, np.pi),
-        }
-        cases.append((params, state))
+        state = zip("xy", generator.uniform(-1, 1, 2), strict=True)
+        angles = zip(("alpha1", "alpha2"), generator.uniform(0, np.pi, 2), strict=True)
+        cases.append((params, dict([*state, *angles])))
     return cases

@@ -1,12 +1,11 @@
 """A configuration: every mistake at once, in words; one meaning, one canonical slice."""
 
-import difflib
 import math
-import textwrap
 from fnmatch import fnmatchcase
 from pathlib import Path
 
 import pytest
+import yaml
 
 from squealpipe.config.mistakes import known_keys
 from squealpipe.config.settings import (
@@ -14,7 +13,6 @@ from squealpipe.config.settings import (
     Study,
     check_results_folder,
     json_schema,
-    parse_study,
     read_study,
 )
 from squealpipe.config.yaml_files import flat
@@ -27,9 +25,8 @@ PAPER = ROOT / "workflow/config/paper.yaml"
 @pytest.fixture
 def written(tmp_path):
     def write(text):
-        path = tmp_path / "mine.yaml"
-        path.write_text(textwrap.dedent(text), encoding="utf-8")
-        return path
+        (tmp_path / "mine.yaml").write_text(text, encoding="utf-8")
+        return tmp_path / "mine.yaml"
 
     return write
 
@@ -41,23 +38,9 @@ def complaint(path):
 
 
 def test_every_mistake_is_told_at_once(written):
-    text = complaint(
-        written(
-            """
-            parameters:
-              mass: -1
-              mu: heavy
-              k3: .nan
-              belt_speed: .inf
-              preload: true
-              lenght1: 5
-            linear:
-              points: 61.5
-            mu: 0.4
-            colour: red
-            """
-        )
-    )
+    numbers = "{mass: -1, mu: heavy, k3: .nan, belt_speed: .inf, preload: true, lenght1: 5}"
+    more = "linear: {points: 61.5}\nmu: 0.4\ncolour: red\n"
+    text = complaint(written(f"parameters: {numbers}\n{more}"))
     for expected in (
         "parameters.mass = -1: it must be greater than 0",
         "parameters.mu = 'heavy': a number is needed",
@@ -79,10 +62,7 @@ def test_every_mistake_is_told_at_once(written):
         ("just text", "must hold keys and values, not str"),
         ("a: [1, 2", "line 1 is not plain YAML: expected ',' or ']'"),
         ("a: 1\nb: b: c", "line 2 is not plain YAML"),
-        (
-            "a:\n\t- b",
-            "line 2 is not plain YAML: found character '\\t' that cannot start any token; indent",
-        ),
+        ("a:\n\t- b", "line 2 is not plain YAML: found character '\\t' that cannot start any"),
         ("linear:\n  points: 2\n  points: 3", "line 3 is not plain YAML: key 'points' is a dupl"),
         ("parameters: 5", "parameters = 5: keys and values are needed"),
         ("parameters: {mass: [1, 2]}", "parameters.mass = (1, 2)"),
@@ -124,10 +104,6 @@ def test_missing_file_and_folder(tmp_path):
             read_study(path)
 
 
-def test_empty_file_is_the_paper_study(written):
-    assert read_study(PAPER, written("")) == read_study(PAPER) == Study()
-
-
 def test_quick_study_differs_in_grids_and_horizons_only():
     quick = flat(read_study(PAPER, ROOT / "workflow/config/quick.yaml").model_dump(mode="json"))
     paper = flat(Study().model_dump(mode="json"))
@@ -151,50 +127,30 @@ def test_overlay_keeps_what_it_does_not_name(written):
     ],
 )
 def test_one_meaning_has_one_slice(written, first, second):
-    slices = [
+    one, other = (
         repr(read_study(written(text)).slice("linear", "parameters")) for text in (first, second)
-    ]
-    assert slices[0] == slices[1]
-
-
-def test_slice_holds_only_what_is_asked_for():
-    assert Study().slice("linear.points") == {"linear.points": Study().linear.points}
-    with pytest.raises(KeyError):
-        Study().slice("linear.nothing")
-
-
-def test_mapping_from_the_command_line_is_checked_too():
-    with pytest.raises(ConfigError, match="parameters = 'mu=-1'"):
-        parse_study({"parameters": "mu=-1"})
+    )
+    assert one == other
 
 
 def test_default_values_are_those_of_the_paper_file():
     assert read_study(PAPER) == Study()
-    written = set(flat(__import__("yaml").safe_load(PAPER.read_text())))
-    keys = set(flat(Study().model_dump(mode="json")))
-    assert written == keys, f"paper.yaml and the types differ in {sorted(written ^ keys)}"
+    written = flat(yaml.safe_load(PAPER.read_text()))
+    assert written.keys() == flat(Study().model_dump(mode="json")).keys()
 
 
 def test_json_schema_is_generated_from_the_types():
-    path = ROOT / "workflow/config/schema.json"
-    stored = path.read_text(encoding="utf-8") if path.is_file() else ""
-    difference = "\n".join(
-        difflib.unified_diff(stored.splitlines(), json_schema().splitlines(), "stored", "types")
-    )
-    assert stored == json_schema(), f"{difference}\n\nrun python -m squealpipe.config.settings"
+    stored = (ROOT / "workflow/config/schema.json").read_text(encoding="utf-8")
+    assert stored == json_schema(), "run python -m squealpipe.config.settings"
 
 
 def test_known_keys_reach_every_value():
+    """Keys of a mapping, like names of scenes, are reached by its own key."""
     known = set(known_keys(Study))
     leaves = flat(Study().model_dump(mode="json"))
+    unknown = {key for key in leaves if not {key, key.rpartition(".")[0]} & known}
     free = [key for key in known if "*" in key]  # sections by names of the user's
-    unreached = {
-        key
-        for key in leaves
-        if not {key, key.rpartition(".")[0]} & known
-        and not any(fnmatchcase(key, pattern) for pattern in free)
-    }
-    assert not unreached  # keys of a mapping, like names of scenes, are reached by its own key
+    assert {key for key in unknown if not any(fnmatchcase(key, each) for each in free)} == set()
 
 
 SWEEP = """
@@ -232,10 +188,7 @@ def test_a_sweep_follows_the_parameters_that_it_does_not_name(written):
 @pytest.mark.parametrize(
     ("section", "expected"),
     [
-        (
-            "{vary: {mu: '0:0.6'}}",
-            "vary = {'mu': '0:0.6'}: mu: '0:0.6' is not a range; write first",
-        ),
+        ("{vary: {mu: '0:0.6'}}", "vary = {'mu': '0:0.6'}: mu: '0:0.6' is not a range; write"),
         ("{vary: {mu: heavy}}", "mu: 'heavy' is not a number; write for instance"),
         ("{vary: {mu: [1, x]}}", "mu: 'x' is not a number"),
         ("{vary: {}}", "sweeps.mine.vary = {}: 1 or more items are needed"),
@@ -252,12 +205,10 @@ def test_mistakes_in_a_sweep_are_named_with_their_remedy(written, section, expec
 
 
 @pytest.mark.parametrize("text", ["", "# nothing yet\n", "parameters:\n", "parameters: {}\n"])
-def test_an_empty_overlay_changes_nothing(text, tmp_path):
+def test_an_empty_overlay_changes_nothing(text, written, tmp_path):
+    assert read_study(PAPER, written(text)) == read_study(PAPER) == Study()
     (tmp_path / "base.yaml").write_text("parameters: {mu: 0.2}\n")
-    (tmp_path / "empty.yaml").write_text(text)
-    study = read_study(tmp_path / "base.yaml", tmp_path / "empty.yaml")
-    assert study == read_study(tmp_path / "base.yaml")
-    assert study.parameters.mu == 0.2
+    assert read_study(tmp_path / "base.yaml", written(text)).parameters.mu == 0.2
 
 
 def test_a_folder_of_results_holds_nothing_else(tmp_path, monkeypatch):

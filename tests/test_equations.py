@@ -10,15 +10,7 @@ from collections import defaultdict
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
-LETTERS: dict[int, str] = {
-    1: "abc",
-    8: "abcd",
-    12: "abcdefg",
-    15: "ab",
-    22: "ab",
-    25: "ab",
-    28: "ab",
-}
+LETTERS = {1: "abc", 8: "abcd", 12: "abcdefg"} | dict.fromkeys((15, 22, 25, 28), "ab")
 PAPER = {f"{number}{letter}" for number in range(1, 37) for letter in LETTERS.get(number) or [""]}
 REFERENCE = re.compile(r"\bof Eqs?\. \(\d+[a-g]?\)(?:(?:, |–| and )\(\d+[a-g]?\))*")
 NUMBER = re.compile(r"\((\d+)([a-g]?)\)(?:–\((\d+)([a-g]?)\))?")

@@ -15,13 +15,8 @@ from squealpipe.execution.explain import (
 
 
 def job(rule, seconds, outputs=(), reasons=(), follows=()):
-    return Job(
-        rule=rule,
-        outputs=list(outputs),
-        reasons=list(reasons),
-        follows=list(follows),
-        seconds=seconds,
-    )
+    lists = {"outputs": list(outputs), "reasons": list(reasons), "follows": list(follows)}
+    return Job(rule=rule, seconds=seconds, **lists)
 
 
 def test_plan_names_figures_and_time():

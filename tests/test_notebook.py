@@ -26,12 +26,7 @@ def test_notebook_runs_and_prints_what_is_stored(tmp_path):
 
 
 def test_stored_notebook_holds_its_pictures():
-    notebook = nbformat.read(NOTEBOOK, as_version=4)
-    pictures = [
-        one
-        for cell in notebook.cells
-        for one in cell.get("outputs", [])
-        if "image/png" in one.get("data", {})
-    ]
-    assert len(pictures) == 3
+    cells = nbformat.read(NOTEBOOK, as_version=4).cells
+    outputs = [one for cell in cells for one in cell.get("outputs", [])]
+    assert sum("image/png" in one.get("data", {}) for one in outputs) == 3
     assert NOTEBOOK.stat().st_size < 300_000

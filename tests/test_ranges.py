@@ -15,27 +15,16 @@ from squealpipe.config.ranges import (
     sweep_config,
 )
 
+FORMS = {
+    "0.4pi": 0.4, "2pi/5": 0.4, "72deg": 0.4, "1.25": 1.25 / math.pi, "1.25rad": 1.25 / math.pi,
+    "pi": 1.0, "-pi/2": -0.5, "-0.5pi": -0.5, "5*pi/6": 5 / 6, "0.83π": 0.83, "90°": 0.5,
+    " 1e-3 ": 1e-3 / math.pi, "0": 0.0,
+}  # fmt: skip
 
-@pytest.mark.parametrize(
-    ("text", "angle"),
-    [
-        ("0.4pi", 0.4 * math.pi),
-        ("2pi/5", 2 * math.pi / 5),
-        ("72deg", 2 * math.pi / 5),
-        ("1.25", 1.25),
-        ("1.25rad", 1.25),
-        ("pi", math.pi),
-        ("-pi/2", -math.pi / 2),
-        ("-0.5pi", -math.pi / 2),
-        ("5*pi/6", 5 * math.pi / 6),
-        ("0.83π", 0.83 * math.pi),
-        ("90°", math.pi / 2),
-        (" 1e-3 ", 1e-3),
-        ("0", 0.0),
-    ],
-)
-def test_angle_forms(text, angle):
-    assert parse_angle(text) == pytest.approx(angle, rel=1e-15)
+
+@pytest.mark.parametrize("text", FORMS)
+def test_angle_forms(text):
+    assert parse_angle(text) == pytest.approx(FORMS[text] * math.pi, rel=1e-15)
 
 
 @pytest.mark.parametrize("text", ["", "abc", "pi/0", "1,2", "0.4pie", "nan", "inf", "1e999", "4 5"])
@@ -54,39 +43,45 @@ def test_radians_are_read_exactly_up_to_a_full_turn(value):
             assert parse_angle(text) == value
 
 
-def test_linear_range_has_both_ends():
+def test_ranges_and_lists():
     values = parse_range("0:pi:31", parse_angle)
     assert (values[0], values[-1], len(values)) == (0.0, math.pi, 31)
     assert values[10] == pytest.approx(math.pi / 3)
-
-
-def test_log_range_has_constant_ratio():
-    values = parse_range("0.1:100:4:log")
-    assert values == pytest.approx([0.1, 1, 10, 100])
+    assert parse_range("0.1:100:4:log") == pytest.approx([0.1, 1, 10, 100])
     assert parse_range("-1:-100:3:log") == pytest.approx([-1, -10, -100])
-
-
-def test_list():
     assert parse_range("0.1,0.2,4") == [0.1, 0.2, 4.0]
+    assert longest({"mu": [1], "k3": [1, 2], "alpha1": [0, 1]}) == "k3"
 
 
 @pytest.mark.parametrize(
-    ("name", "given_", "values"),
+    ("read", "name", "given_", "value"),
     [
-        ("mu", "0:0.6:3", [0.0, 0.3, 0.6]),
-        ("mu", 1, [1.0]),
-        ("mu", (0, 0.5, "0.6"), [0.0, 0.5, 0.6]),
-        ("belt_speed", "1:100:3:log", [1.0, 10.0, 100.0]),
-        ("alpha1", "0:pi:3", [0.0, math.pi / 2, math.pi]),
-        ("alpha1", ["0.5pi", 2], [math.pi / 2, 2.0]),
-        ("mode", "1,2", [1, 2]),
-        ("mode", [1.0, 2], [1, 2]),
+        (read_values, "mu", "0:0.6:3", [0.0, 0.3, 0.6]),
+        (read_values, "mu", 1, [1.0]),
+        (read_values, "mu", (0, 0.5, "0.6"), [0.0, 0.5, 0.6]),
+        (read_values, "belt_speed", "1:100:3:log", [1.0, 10.0, 100.0]),
+        (read_values, "alpha1", "0:pi:3", [0.0, math.pi / 2, math.pi]),
+        (read_values, "alpha1", ["0.5pi", 2], [math.pi / 2, 2.0]),
+        (read_values, "mode", "1,2", [1, 2]),
+        (read_values, "mode", [1.0, 2], [1, 2]),
+        (read_fixed, "alpha1", "0.3pi", 0.3 * math.pi),
+        (read_fixed, "alpha2", 1, 1.0),
+        (read_fixed, "k3", "1", 1.0),
+        (read_fixed, "mode", "1", 1),
+        (read_fixed, "t_end", 100.0, 100),
+        (read_fixed, "tol", "1e-9", 1e-9),
+        (read_fixed, "method", "hbm", "hbm"),
+        (read_fixed, "times", "0:1:3", [0.0, 0.5, 1.0]),
+        (read_fixed, "times", (0, 0.5), [0.0, 0.5]),
+        (read_fixed, "sigma", None, None),
     ],
 )
-def test_values_of_a_sweep_may_be_text_numbers_or_lists(name, given_, values):
-    found = read_values(name, given_)
-    assert found == pytest.approx(values, rel=1e-15)
-    assert list(map(type, found)) == list(map(type, values))
+def test_values_may_be_text_numbers_or_lists_and_keep_their_kind(read, name, given_, value):
+    found = read(name, given_)
+    assert found == (pytest.approx(value, rel=1e-15) if isinstance(value, list) else value)
+    assert type(found) is type(value)
+    if isinstance(value, list):
+        assert list(map(type, found)) == list(map(type, value))
 
 
 @pytest.mark.parametrize(
@@ -106,47 +101,14 @@ def test_what_is_no_value_is_refused(name, given_, part):
         read_values(name, given_)
 
 
-@pytest.mark.parametrize(
-    ("name", "given_", "value"),
-    [
-        ("alpha1", "0.3pi", 0.3 * math.pi),
-        ("alpha2", 1, 1.0),
-        ("k3", "1", 1.0),
-        ("mode", "1", 1),
-        ("t_end", 100.0, 100),
-        ("tol", "1e-9", 1e-9),
-        ("method", "hbm", "hbm"),
-        ("times", "0:1:3", [0.0, 0.5, 1.0]),
-        ("times", (0, 0.5), [0.0, 0.5]),
-        ("sigma", None, None),
-    ],
-)
-def test_fixed_values_keep_their_kind(name, given_, value):
-    found = read_fixed(name, given_)
-    assert found == value
-    assert type(found) is type(value)
-
-
 def test_a_sweep_has_one_form_and_no_parameter_stands_twice_in_it():
     def form(**changes):
-        plan = {
-            "task": "stability_map",
-            "vary": {"mu": [0.1, 0.2]},
-            "fixed": {"alpha1": 1.0, "alpha2": 2.0, "k3": 0.5},
-            "parameters": {"mu": 0.3, "k3": 0.75, "mass": 1.0},
-        }
-        return sweep_config(**{**plan, **changes})
+        numbers = {"mu": 0.3, "k3": 0.75, "mass": 1.0}
+        return sweep_config(**{**plan, "parameters": numbers, **changes})
 
-    assert form() == {
-        "task": "stability_map",
-        "parameters": {"mass": 1.0},
-        "vary": {"mu": [0.1, 0.2]},
-        "fixed": {"alpha1": 1.0, "alpha2": 2.0, "k3": 0.5},
-    }
+    plan = {"task": "stability_map", "vary": {"mu": [0.1, 0.2]}}
+    plan |= {"fixed": {"alpha1": 1.0, "alpha2": 2.0, "k3": 0.5}}
+    assert form() == {**plan, "parameters": {"mass": 1.0}}
     assert form(parameters={"mu": 0.9, "k3": 2.0, "mass": 1.0}) == form()
     with pytest.raises(ValueError, match="mu is both fixed and varied"):
         form(fixed={"mu": 0.1})
-
-
-def test_the_longest_is_the_first_of_the_longest():
-    assert longest({"mu": [1], "k3": [1, 2], "alpha1": [0, 1]}) == "k3"

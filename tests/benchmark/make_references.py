@@ -47,7 +47,8 @@ class LongDouble:
     """A problem by heyoka's Taylor series in long double."""
 
     def __init__(self, data):
-        symbols = Problem(data, _heyoka(), lambda v: heyoka.expression(np.longdouble(v)))
+        functions = SimpleNamespace(**{name: getattr(heyoka, name) for name in FUNCTIONS})
+        symbols = Problem(data, functions, lambda v: heyoka.expression(np.longdouble(v)))
         self.problem = Problem(data, np, np.longdouble)
         self.problem.patience = NO_LIMIT
         y = [heyoka.expression(name) for name in symbols.states]
@@ -78,10 +79,6 @@ class LongDouble:
             return h, flow, [flow(k * h / SAMPLES) for k in range(SAMPLES + 1)]
 
         return _motion(problem, step, t, y, regime or problem.regime, t_end)
-
-
-def _heyoka():
-    return SimpleNamespace(**{name: getattr(heyoka, name) for name in FUNCTIONS})
 
 
 def extrapolated(field, t, y, h):
@@ -262,10 +259,8 @@ def growth_of(run, motion):
             if exponent <= -13:
                 change = np.abs(other.state - motion.state).max() / size
                 growth = max(growth, float(change))
-                times = np.sort(other.times) - np.array(motion.times[place:])
-                np.maximum(
-                    of_times[place:], np.abs(times) / size, out=of_times[place:], casting="unsafe"
-                )
+                times = np.abs(np.sort(other.times) - np.array(motion.times[place:])) / size
+                of_times[place:] = np.maximum(of_times[place:], times.astype(float))
         if alike < len(runs):
             break
         margin = size
@@ -292,14 +287,9 @@ def reference_of(data):
         return {}
     motion = run()
     growth, of_times, margin = growth_of(run, motion)
-    found = {
-        "state": list(map(float, motion.state)),
-        "times": list(map(float, motion.times)),
-        "kinds": motion.kinds,
-        "growth": growth,
-        "time_growth": of_times,
-        "margin": 0.0 if "tie" in data else margin,
-    }
+    found = {"state": list(map(float, motion.state)), "times": list(map(float, motion.times))}
+    found |= {"kinds": motion.kinds, "growth": growth, "time_growth": of_times}
+    found["margin"] = 0.0 if "tie" in data else margin
     if "derivative" in data:  # a difference of long doubles has no 15 digits left
         with mpmath.workdps(DIGITS):
             slope = derivative(data, extrapolation, mpmath.mpf, mpmath.mpf(2) ** -13)

@@ -15,13 +15,10 @@ from squealpipe.systems.text import expression
 from squealpipe.systems.trace import TIME, TIME_UNIT
 
 SYSTEMS = {
-    "bouncing ball": lambda: bouncing_ball,
-    "relief valve": lambda: relief_valve,
-    "dry friction": lambda: dry_friction_oscillator,
-    "stick–slip": lambda: leine_oscillator,
-    "chaotic impacts": lambda: impact_oscillator,
-    "A1: hammering": brake,
-}
+    "bouncing ball": lambda: bouncing_ball, "relief valve": lambda: relief_valve,
+    "dry friction": lambda: dry_friction_oscillator, "stick–slip": lambda: leine_oscillator,
+    "chaotic impacts": lambda: impact_oscillator, "A1: hammering": brake,
+}  # fmt: skip
 """Problem that has the equations → system; the other problems have equations of their own."""
 CASES = {data["name"]: data for data in all_data() if data.get("system", data["name"]) in SYSTEMS}
 
@@ -33,19 +30,16 @@ def traced(data, system):
     def text(root):
         return None if root is None else expression(substituted(root, unit))
 
-    switches = [
-        {
-            "name": switch.name,
-            "leaves": np.atleast_1d(switch.leaves).tolist(),
-            "when": text(symbols.surface),
-            "to": [
+    switches = []
+    for switch, symbols in zip(system.switches, system.traced.switches, strict=True):
+        made = {"name": switch.name, "leaves": np.atleast_1d(switch.leaves).tolist()}
+        made |= {"when": text(symbols.surface), "to": []}
+        for regime, condition, kind in symbols.targets:
+            made["to"].append(
                 [system.states_of(regime), text(condition), system.traced.kinds[kind]]
-                for regime, condition, kind in symbols.targets
-            ],
-            "reset": {system.states[i]: text(value) for i, value in symbols.reset.items()},
-        }
-        for switch, symbols in zip(system.switches, system.traced.switches, strict=True)
-    ]
+            )
+        made["reset"] = {system.states[i]: text(value) for i, value in symbols.reset.items()}
+        switches.append(made)
     rates = zip(system.states, system.traced.rates, strict=False)
     field = {name: text(rate) for name, rate in rates}
     return Problem({**data, "regimes": system.regimes, "field": field, "switches": switches})

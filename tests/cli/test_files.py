@@ -6,6 +6,7 @@ import signal
 import subprocess
 import sys
 import warnings
+from functools import partial
 
 import numpy as np
 import pandas as pd
@@ -16,13 +17,8 @@ from squealpipe import Parameters, convert, load, natural_frequencies, simulate
 from squealpipe.cli import run
 from squealpipe.config.settings import parse_study, read_study
 
+read = partial(pd.read_csv, comment="#", float_precision="round_trip")
 STABILITY = ["map", "stability", "--alpha1", "0:pi:5", "--alpha2", "0:2:3"]
-
-
-@pytest.fixture(autouse=True)
-def elsewhere(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.setenv("COLUMNS", "100")
 
 
 def test_existing_files_are_overwritten_by_force_only(capsys, tmp_path):
@@ -59,9 +55,7 @@ def test_pipes_are_left_alone(tmp_path):
 def test_csv_holds_the_numbers_of_the_dataset(tmp_path):
     assert run([*STABILITY, "-o", "s.nc"]) == 0
     assert run([*STABILITY, "-o", "t.csv"]) == 0
-    table = pd.read_csv("t.csv", comment="#", float_precision="round_trip").set_index(
-        ["alpha1", "alpha2"]
-    )
+    table = read("t.csv").set_index(["alpha1", "alpha2"])
     dataset = load("s.nc")
     for (alpha1, alpha2), row in table.iterrows():
         cell = dataset.sel(alpha1=alpha1, alpha2=alpha2, method="nearest")
@@ -75,10 +69,8 @@ def test_csv_of_a_run_has_its_events_beside_it(tmp_path):
     made = simulate(Parameters(), 5 * np.pi / 6, 5 * np.pi / 6, t_end=20.0)
     files = convert(made, tmp_path / "run.csv")
     assert [path.name for path in files] == ["run.csv", "run.event.csv"]
-    np.testing.assert_array_equal(
-        pd.read_csv(files[0], comment="#", float_precision="round_trip").x, made.x
-    )
-    events = pd.read_csv(files[1], comment="#", float_precision="round_trip")
+    np.testing.assert_array_equal(read(files[0]).x, made.x)
+    events = read(files[1])
     np.testing.assert_array_equal(events.event_time, made.event_time)
     assert events.event_kind[0] == "separation"
     assert "# preload = 1.0 [m]" in files[0].read_text(encoding="utf-8")
@@ -87,7 +79,7 @@ def test_csv_of_a_run_has_its_events_beside_it(tmp_path):
 def test_csv_of_a_sweep_has_the_longest_table_first(tmp_path, capsys):
     swept = ["sweep", "simulate", "--vary", "mu=0.1,0.3", "--alpha1", "2", "--alpha2", "2.5"]
     assert run([*swept, "--option", "t_end=2", "--workers", "1", "-o", "s.csv"]) == 0
-    table = pd.read_csv("s.csv", comment="#", float_precision="round_trip")
+    table = read("s.csv")
     assert list(table.columns[:3]) == ["mu", "time", "x"]
     expected = simulate(Parameters(mu=0.1), 2.0, 2.5, t_end=2.0)
     np.testing.assert_array_equal(table.x[table.mu == 0.1], expected.x)
@@ -100,15 +92,10 @@ def test_parameters_come_from_a_study_unless_they_are_typed(tmp_path):
                 "--alpha2", "0.5,0.7", "-o", "f.nc"]) == 0  # fmt: skip
     expected = natural_frequencies(Parameters(k1=2.0, k3=3.0, mu=0.1), [1.0, 2.0], [0.5, 0.7])
     np.testing.assert_array_equal(load("f.nc").omega, expected.omega)
-
-
-def test_initial_state_is_the_one_given():
     state = ["--x0", "0.2", "--y0=-0.1", "--vx0", "0.3", "--vy0", "0.4"]
     assert run(["simulate", "2", "2.5", "--t-end", "5", "--points", "20", *state]) == 0
-    expected = simulate(
-        Parameters(), 2.0, 2.5, t_end=5.0, times=np.linspace(0, 5, 20),
-        initial_state=(0.2, -0.1, 0.3, 0.4),
-    )  # fmt: skip
+    given = {"times": np.linspace(0, 5, 20), "initial_state": (0.2, -0.1, 0.3, 0.4)}
+    expected = simulate(Parameters(), 2.0, 2.5, t_end=5.0, **given)
     np.testing.assert_array_equal(load("run.nc").y, expected.y)
 
 
@@ -148,27 +135,17 @@ def test_unexpected_errors_are_one_line_and_a_traceback_on_request(capsys, monke
     assert "Traceback" in capsys.readouterr().err
 
 
-def test_nobody_to_read_an_error_leaves_its_exit_code():
-    code = "import sys; from squealpipe.cli import main; sys.argv = ['squealpipe', 'no']; main()"
+@pytest.mark.parametrize(("word", "stream", "code"), [("no", "stderr", 2), ("--help", "stdout", 0)])
+def test_a_reader_that_goes_away_leaves_the_exit_code(word, stream, code):
+    program = "from squealpipe.cli import main; main()"
     reader, writer = os.pipe()
     os.close(reader)
     with os.fdopen(writer, "w") as pipe:
-        done = subprocess.run([sys.executable, "-c", code], stderr=pipe, check=False)
-    assert done.returncode == 2
-
-
-def test_a_reader_that_goes_away_is_no_error():
-    code = (
-        "import sys; from squealpipe.cli import main; sys.argv = ['squealpipe', '--help']; main()"
-    )
-    reader, writer = os.pipe()
-    os.close(reader)
-    with os.fdopen(writer, "w") as pipe:
-        done = subprocess.run(
-            [sys.executable, "-c", code], stdout=pipe, stderr=subprocess.PIPE, check=False,
-            preexec_fn=lambda: signal.signal(signal.SIGPIPE, signal.SIG_IGN),
-        )  # fmt: skip
-    assert (done.returncode, done.stderr) == (0, b"")
+        streams = {"stderr": subprocess.PIPE, stream: pipe}
+        ignore = partial(signal.signal, signal.SIGPIPE, signal.SIG_IGN)
+        command = [sys.executable, "-c", program, word]
+        done = subprocess.run(command, check=False, preexec_fn=ignore, **streams)
+    assert (done.returncode, done.stderr or b"") == (code, b"")
 
 
 def test_init_writes_an_overlay_of_the_paper_to_edit(tmp_path, capsys):

@@ -15,12 +15,6 @@ from squealpipe.config.settings import read_study
 SHORT = ["simulate", "5pi/6", "5pi/6", "--t-end", "5"]
 
 
-@pytest.fixture(autouse=True)
-def elsewhere(tmp_path, monkeypatch):
-    """Commands run in an empty folder."""
-    monkeypatch.chdir(tmp_path)
-
-
 def test_simulate_works_where_the_terminal_is_ascii():
     surroundings = {**os.environ, "PYTHONIOENCODING": "ascii", "LANG": "C"}
     done = subprocess.run(

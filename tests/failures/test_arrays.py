@@ -11,28 +11,21 @@ from squealpipe.validation import real_array
 
 GOOD = np.array([0.3, 2.0])
 BAD = {
-    "complex": np.array([0.3 + 0.1j, 2.0]),
-    "text": np.array(["0.3", "2.0"]),
-    "truth": np.array([True, False]),
-    "durations": np.array([1, 2], "timedelta64[s]"),
+    "complex": np.array([0.3 + 0.1j, 2.0]), "text": np.array(["0.3", "2.0"]),
+    "truth": np.array([True, False]), "durations": np.array([1, 2], "timedelta64[s]"),
     "dates": np.array(["2020-01-01"], "datetime64[s]"),
-    "masked": np.ma.masked_array([0.3, 2.0], [False, True]),
-    "all masked": np.ma.masked_all(2),
-    "objects": [None, 2.0],
-    "ragged": [[0.3], [2.0, 1.0]],
-    "huge": [10**400],
-    "NaN": [0.3, math.nan],
-    "infinite": [0.3, math.inf],
-}
+    "masked": np.ma.masked_array([0.3, 2.0], [False, True]), "all masked": np.ma.masked_all(2),
+    "objects": [None, 2.0], "ragged": [[0.3], [2.0, 1.0]], "huge": [10**400],
+    "NaN": [0.3, math.nan], "infinite": [0.3, math.inf],
+}  # fmt: skip
 
 
 @pytest.mark.parametrize("what", BAD)
 def test_maps_refuse_what_is_no_real_number(what):
     """One function for all: random calls try each of them with such arrays."""
-    with pytest.raises(ValueError, match=r"^alpha1 "):
-        stability_map(Parameters(), BAD[what], GOOD)
-    with pytest.raises(ValueError, match=r"^alpha2 "):
-        stability_map(Parameters(), GOOD, BAD[what])
+    for name in ("alpha1", "alpha2"):
+        with pytest.raises(ValueError, match=rf"^{name} "):
+            stability_map(Parameters(), **{"alpha1": GOOD, "alpha2": GOOD, name: BAD[what]})
 
 
 @pytest.mark.parametrize("values", [[1, 2], np.float32([1, 2]), np.ma.masked_array([1.0, 2.0])])

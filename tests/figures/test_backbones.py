@@ -8,14 +8,10 @@ import numpy as np
 from squealpipe.plotting.style import symbols
 from squealpipe.store.provenance import stamped
 from squealpipe.study.figures.backbones import (
-    a1_beside_a4,
     coupled_backbones,
     fig10_to_12,
     fig13,
-    harmonic_forms,
 )
-from squealpipe.tasks.backbones import a1_beside_a4 as beside_task
-from squealpipe.tasks.backbones import harmonic_forms as forms_task
 from squealpipe.tasks.backbones.backbone import backbone
 from squealpipe.tasks.backbones.doubling import doubled_branch as follow_doubling
 from tests.former import FORMER
@@ -51,33 +47,19 @@ def test_contact_is_lost_at_the_line():
     assert (np.diff(drawn[~kept, 0]) < 0).all()
 
 
-def test_unstable_stretches_are_dotted():
+def test_unstable_stretches_are_dotted_what_a4_does_not_cover_is_grey_and_a_reason_is_written():
     figure = coupled_backbones.draw(_branches(0.3, 0.9, y_peak_max=5.0), {})
     dotted = [line for line in figure.axes[0].get_lines() if line.get_linestyle() == ":"]
     assert any(np.isfinite(np.asarray(line.get_ydata(), float)).any() for line in dotted)
-
-
-def test_what_a4_does_not_cover_is_grey():
     figure = fig13.draw(_branches(5 / 6, 5 / 6, FORMER.with_(belt_speed=0.2)))
-    labels = figure.axes[0].get_legend_handles_labels()[1]
-    assert "mass overtakes the belt" in labels
+    assert "mass overtakes the belt" in figure.axes[0].get_legend_handles_labels()[1]
+    figure = fig10_to_12.draw(_branches(0.4, 0.6))
+    assert "singular static state" in figure.axes[0].texts[0].get_text()
 
 
 def test_symbols_are_set_as_symbols():
     text = "N_h = 8, l_pre, tol 1e-08, DOP853, 1e-10"
     assert symbols(text) == r"$N_\mathrm{h}$ = 8, $l_\mathrm{pre}$, tol 10⁻⁸, DOP853, 10⁻¹⁰"
-
-
-def test_an_empty_branch_says_why_in_the_picture():
-    figure = fig10_to_12.draw(_branches(0.4, 0.6))
-    assert "singular static state" in figure.axes[0].texts[0].get_text()
-
-
-def test_the_other_pictures_are_drawn():
-    forms = forms_task.compare_harmonic_forms(FORMER, BRANCHES)
-    assert len(harmonic_forms.draw(forms).axes) == 2
-    beside = beside_task.a1_beside_a4(FORMER, BRANCHES, peak=2.0, length_ratios=(5.0,))
-    assert len(a1_beside_a4.draw(beside).axes) == 2
 
 
 def test_doubled_branches_are_drawn_at_twice_their_frequency():
@@ -87,9 +69,9 @@ def test_doubled_branches_are_drawn_at_twice_their_frequency():
     for name, peak in scenes.items():
         backbones |= _branches(0.3, 0.9, scene=name, y_peak_max=peak)
         for number in (1, 2):
-            doubled[f"doubled_branch/{name}_{number}"] = follow_doubling(
-                FORMER, 0.3 * PI, 0.9 * PI, mode=1, doubling=number, y_peak_max=peak
-            )
+            given = {"mode": 1, "doubling": number, "y_peak_max": peak}
+            found = follow_doubling(FORMER, 0.3 * PI, 0.9 * PI, **given)
+            doubled[f"doubled_branch/{name}_{number}"] = found
     first, _, second, _ = coupled_backbones.draw(backbones, doubled).axes
     (inset,) = first.child_axes
     branch = doubled["doubled_branch/one_1"]

@@ -18,31 +18,17 @@ def written(figure):
 
 @pytest.fixture
 def benchmark():
-    cells = (2, 2, 2)
     verdict = np.array([[[1, 1], [3, 3]], [[1, 1], [0, 2]]])
-    return build(
-        BENCHMARK,
-        {
-            "group": ["order", "chaos"],
-            "role": [Role.ours, Role.public],
-            "verdict": verdict,
-            "missed": np.where(verdict == 3, 2, 0),
-            "spurious": np.where(verdict == 2, 1, 0),
-            "out_of_order": np.zeros(cells),
-            "time_error": np.zeros(cells),
-            "error": np.where(verdict > 0, 1e-9 * verdict, np.nan),
-            "evaluations": np.full(cells, 1000),
-            "cpu_time": np.ones(cells),
-            "cpu_ratio": np.ones(cells),
-            "message": np.full(cells, ""),
-        },
-        {
-            "problem": ["two gates", "long run"],
-            "solver": ["squealpipe", "theirs"],
-            "tol": [1e-6, 1e-12],
-        },
-        {"platform": "a machine", "libraries": '{"scipy": "1.0"}'},
-    )
+    ones, axes = np.ones((2, 2, 2)), {"problem": ["two gates", "long run"], "tol": [1e-6, 1e-12]}
+    data = {
+        "group": ["order", "chaos"], "role": [Role.ours, Role.public], "verdict": verdict,
+        "missed": np.where(verdict == 3, 2, 0), "spurious": np.where(verdict == 2, 1, 0),
+        "out_of_order": 0 * ones, "time_error": 0 * ones, "evaluations": 1000 * ones,
+        "error": np.where(verdict > 0, 1e-9 * verdict, np.nan), "cpu_time": ones,
+        "cpu_ratio": ones, "message": np.full(ones.shape, ""),
+    }  # fmt: skip
+    attributes = {"platform": "a machine", "libraries": '{"scipy": "1.0"}'}
+    return build(BENCHMARK, data, {**axes, "solver": ["squealpipe", "theirs"]}, attributes)
 
 
 def test_benchmark_chart_names_solvers_classes_and_machine(benchmark):
@@ -59,17 +45,13 @@ def test_pareto_front_keeps_exactly_the_unbeaten():
 
 def test_atlas_prints_verdicts_and_counts(benchmark):
     verdict = [[1, 3, 0], [2, 1, 0], [0, 0, 1]]
-    atlas = build(
-        FAILURE_ATLAS,
-        {
-            "verdict": verdict,
-            "error": np.where(np.array(verdict) > 0, 1e-5, np.nan),
-            "message": [["", "", ""], ["careful", "careful", ""], ["", "", ""]],
-            "tolerance": [1e-3] * 3,
-            "role": [Role.ours, Role.public, Role.ours],
-        },
-        {"scene": ["grazing", "chaos", "onset"], "solver": ["ours", "theirs", "closed form"]},
-    )
+    data = {
+        "verdict": verdict, "error": np.where(np.array(verdict) > 0, 1e-5, np.nan),
+        "message": [[""] * 3, ["careful", "careful", ""], [""] * 3], "tolerance": [1e-3] * 3,
+        "role": [Role.ours, Role.public, Role.ours],
+    }  # fmt: skip
+    axes = {"scene": ["grazing", "chaos", "onset"], "solver": ["ours", "theirs", "closed form"]}
+    atlas = build(FAILURE_ATLAS, data, axes)
     figure = failure_atlas.draw(benchmark, atlas)
     text = written(figure)
     for sign, verdict in (("✗", Reliability.silently_wrong), ("✓", Reliability.right)):
@@ -77,10 +59,6 @@ def test_atlas_prints_verdicts_and_counts(benchmark):
     assert "✗ silently wrong" in text
     assert "−2" in text
     assert "+1" in text
-    bold = [
-        label.get_text()
-        for axes in figure.axes
-        for label in axes.get_yticklabels()
-        if label.get_fontweight() == "bold"
-    ]
+    labels = [label for axes in figure.axes for label in axes.get_yticklabels()]
+    bold = [label.get_text() for label in labels if label.get_fontweight() == "bold"]
     assert bold == ["squealpipe", "ours", "closed form"]

@@ -30,14 +30,11 @@ def test_no_module_is_left_without_a_place():
     assert declaring == {*FIGURES, *OWN}
 
 
-def test_a_wildcard_stands_for_all_that_match():
+def test_a_wildcard_stands_for_all_that_match_and_plain_names_keep_their_order():
     known = ["backbone/F10_mode1", "backbone/F11_mode1", "backbone/coupled_mode1"]
     assert declared.datasets_of("fig10_to_12", known) == known[:2]
     datasets = {name: number for number, name in enumerate(known)}
     assert declared.arguments("fig10_to_12", datasets) == [{known[0]: 0, known[1]: 1}]
-
-
-def test_plain_names_keep_their_order():
     assert declared.datasets_of("fig02", reversed(NAMES)) == NAMES
     assert declared.arguments("fig02", {name: name for name in NAMES}) == NAMES
 

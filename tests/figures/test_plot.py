@@ -15,6 +15,9 @@ ANGLES = np.linspace(0.1, 3.0, 7)
 SCENE = 0.4 * np.pi, 0.6 * np.pi
 
 
+impacts, STARTS = impact_oscillator, np.linspace(-1, 1, 5)
+AT = {"amplitude": 2.3, "omega": 2.0}
+ORBIT = (FORMER, 0.3 * np.pi, 0.9 * np.pi)
 DATASETS = {
     "run": lambda: squealpipe.simulate(FORMER, *SCENE, t_end=20.0),
     "validity": lambda: squealpipe.validity_map(FORMER, ANGLES, ANGLES, t_end=10.0),
@@ -23,26 +26,20 @@ DATASETS = {
     "stability": lambda: squealpipe.stability_map(FORMER, ANGLES, ANGLES),
     "critical friction": lambda: squealpipe.critical_friction_map(FORMER, ANGLES, ANGLES),
     "frequencies": lambda: squealpipe.natural_frequencies(FORMER, ANGLES, ANGLES),
-    "backbone": lambda: squealpipe.backbone(FORMER, 0.3 * np.pi, 0.9 * np.pi, mode=1),
-    "periodic orbit": lambda: squealpipe.periodic_orbit(
-        FORMER, 0.3 * np.pi, 0.9 * np.pi, mode=1, y_peak=2.0
-    ),
-    "basin, one start": lambda: squealpipe.basin_map(
-        FORMER, *SCENE, vx=np.linspace(-1, 1, 5), t_end=20.0
-    ),
+    "backbone": lambda: squealpipe.backbone(*ORBIT, mode=1),
+    "periodic orbit": lambda: squealpipe.periodic_orbit(*ORBIT, mode=1, y_peak=2.0),
+    "basin, one start": lambda: squealpipe.basin_map(FORMER, *SCENE, vx=STARTS, t_end=20.0),
     "basin, two starts": lambda: squealpipe.basin_map(
-        FORMER, *SCENE, vx=np.linspace(-1, 1, 5), vy=np.linspace(-1, 1, 4), t_end=20.0
+        FORMER, *SCENE, vx=STARTS, vy=STARTS[1:], t_end=20.0
     ),
-    "system run": lambda: impact_oscillator.simulate(30.0),
-    "system over one": lambda: impact_oscillator.ensemble(
-        60.0, amplitude=np.linspace(0.5, 3.0, 40)
-    ),
-    "system over two": lambda: impact_oscillator.ensemble(
+    "system run": lambda: impacts.simulate(30.0),
+    "system over one": lambda: impacts.ensemble(60.0, amplitude=np.linspace(0.5, 3.0, 40)),
+    "system over two": lambda: impacts.ensemble(
         30.0, amplitude=np.linspace(0.5, 3.0, 9), omega=np.linspace(1.5, 2.5, 8)
     ),
-    "system cycle": lambda: impact_oscillator.limit_cycle(amplitude=2.3, omega=2.0),
-    "system branch": lambda: impact_oscillator.cycle_branch(
-        "amplitude", 2.0, start=impact_oscillator.limit_cycle(amplitude=2.3, omega=2.0), n_points=20
+    "system cycle": lambda: impacts.limit_cycle(**AT),
+    "system branch": lambda: impacts.cycle_branch(
+        "amplitude", 2.0, start=impacts.limit_cycle(**AT), n_points=20
     ),
     "system basin": lambda: mode_coupling.basin(60.0, start={"x": np.linspace(-2, 2, 6)}),
 }

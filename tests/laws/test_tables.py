@@ -78,12 +78,6 @@ def test_a_table_that_is_no_function_is_refused(tmp_path, text, message):
         Parameters(friction_law=path)
 
 
-def test_the_column_of_values_may_have_any_name(tmp_path):
-    path = tmp_path / "friction.csv"
-    path.write_text("mu, speed\n0.5,0\n0.4,0.1\n")
-    assert Parameters(friction_law=path).friction_law == "linear 0.0:0.5 0.1:0.4"
-
-
 @pytest.mark.parametrize("other", [{"mu": 0.2}, {"mu_static": 0.5}, {"friction_speed": 2.0}])
 def test_what_the_table_stands_for_is_refused_beside_it(other):
     with pytest.raises(ValueError, match=f"{next(iter(other))} = .*leave {next(iter(other))} out"):

@@ -32,13 +32,10 @@ def copy(tmp_path):
 
 def _run(folder, **environment):
     return subprocess.Popen(
-        [sys.executable, "-B", "-c", PROGRAM],
-        cwd=folder,
+        [sys.executable, "-B", "-c", PROGRAM], cwd=folder, stdout=subprocess.PIPE,
         env={**os.environ, "PYTHONPATH": str(folder), **environment},
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-    )
+        stderr=subprocess.PIPE, text=True,
+    )  # fmt: skip
 
 
 def _omega(process):
@@ -49,10 +46,8 @@ def _omega(process):
 
 def test_every_kernel_file_is_part_of_the_digest():
     """A kernel in a file that is not listed would be used stale after an edit."""
-    methods = PACKAGE / "methods"
-    using = {
-        path.name for path in methods.rglob("*.py") if "\n@compiled\n" in path.read_text("utf-8")
-    }
+    files = (PACKAGE / "methods").rglob("*.py")
+    using = {path.name for path in files if "\n@compiled\n" in path.read_text("utf-8")}
     assert len(using) > 4
     assert using <= {path.name for path in compiled.kernel_sources()}
 

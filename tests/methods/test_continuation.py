@@ -47,29 +47,22 @@ def test_a_circle_is_followed_through_its_folds():
     points = np.array([state.point for state in result.states])
     np.testing.assert_allclose(np.hypot(*points.T), 1.0, atol=1e-11)
     assert result.end == ContinuationEnd.stopped
+    for state in result.states[1:]:  # whose tangents are those of the last Newton step but one
+        assert np.linalg.norm(state.tangent) == pytest.approx(1.0, abs=1e-14)
+        assert abs(state.tangent @ state.point) < 1e-3
     assert points[:, 0].min() < -0.99
     assert np.all(np.diff(np.unwrap(np.arctan2(points[:, 1], points[:, 0]))) > 0)
 
 
-def test_tangents_are_unit_vectors_along_the_circle():
-    states = Continuation(Circle(), np.array([1.0, 0.0]), np.array([0.0, 1.0]))
-    for _, state in zip(range(20), states, strict=False):
-        assert np.linalg.norm(state.tangent) == pytest.approx(1.0, abs=1e-14)
-        # the tangent belongs to the last Jacobian, one Newton step before the point
-        assert abs(state.tangent @ state.point) < 1e-3
-
-
-def test_the_end_of_a_curve_is_reported():
+def test_the_end_of_a_curve_and_the_number_of_points_are_reported():
     result = Continuation(Ended(), np.array([0.0, 1.0]), np.array([1.0, -0.5])).run(lambda _: False)
     assert result.end == ContinuationEnd.branch_lost
-
-
-def test_the_number_of_points_is_bounded():
-    settings = ContinuationSettings(max_points=7)
-    branch = Continuation(Circle(), np.array([1.0, 0.0]), np.array([0.0, 1.0]), settings)
-    result = branch.run(lambda _: False)
-    assert result.end == ContinuationEnd.point_limit
-    assert len(result.states) == 7
+    settings, start = (
+        ContinuationSettings(max_points=7),
+        (np.array([1.0, 0.0]), np.array([0.0, 1.0])),
+    )
+    result = Continuation(Circle(), *start, settings).run(lambda _: False)
+    assert (result.end, len(result.states)) == (ContinuationEnd.point_limit, 7)
 
 
 def test_the_compiled_trace_follows_the_same_branch():

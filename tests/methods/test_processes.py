@@ -17,19 +17,13 @@ def _squares(arrays, first, stride):
 SHAPES = {"out": ((1000,), np.float64)}
 
 
-@pytest.mark.parametrize("workers", [1, 2, 3, 7, None])
-def test_every_job_is_done_once_for_any_number_of_workers(workers):
-    out = run_shared(_squares, SHAPES, jobs=1000, workers=workers)["out"]
-    np.testing.assert_array_equal(out, np.arange(1000) ** 2)
-
-
-def test_more_workers_than_jobs():
-    shapes = {"out": ((2,), np.float64)}
-    np.testing.assert_array_equal(run_shared(_squares, shapes, jobs=2, workers=5)["out"], [0, 1])
-
-
-def test_no_jobs():
-    assert run_shared(_squares, {"out": ((0,), np.float64)}, jobs=0, workers=None)["out"].size == 0
+@pytest.mark.parametrize(
+    ("jobs", "workers"), [*((1000, n) for n in (1, 2, 3, 7, None)), (2, 5), (0, None)]
+)
+def test_every_job_is_done_once_for_any_number_of_workers(jobs, workers):
+    out = run_shared(_squares, {"out": ((jobs,), np.float64)}, jobs=jobs, workers=workers)["out"]
+    np.testing.assert_array_equal(out, np.arange(jobs) ** 2)
+    assert 1 <= available_cores() <= (os.cpu_count() or 1)
 
 
 def test_a_dead_worker_is_an_error():
@@ -61,7 +55,3 @@ def test_inside_a_daemonic_worker_the_work_runs_there():
     process.start()
     assert queue.get(timeout=60) == np.sum(np.arange(1000.0) ** 2)
     process.join()
-
-
-def test_cores():
-    assert 1 <= available_cores() <= (os.cpu_count() or 1)

@@ -17,26 +17,14 @@ def test_the_smallest_period_is_found(lag):
     assert repeats_after(times, kinds, 1e-6) == lag
 
 
-def test_kinds_must_repeat_too():
-    times = np.arange(24.0)
-    assert repeats_after(times, np.tile([0, 1], 12), 1e-6) == 2
-    assert repeats_after(times, np.random.default_rng(1).permutation(24), 1e-6) == 0
-
-
-def test_tolerance_decides():
+def test_what_has_no_period_within_the_tolerance_does_not_repeat():
+    """Other kinds, a late offset, two tones, fewer than three periods, nothing."""
+    steady, index = np.arange(24.0), np.arange(300)
+    assert repeats_after(steady, np.tile([0, 1], 12), 1e-6) == 2
+    assert repeats_after(steady, np.random.default_rng(1).permutation(24), 1e-6) == 0
     times, kinds = sequence([1.0, 2.0], [0, 1], 10)
     times[7:] += 1e-4
-    assert repeats_after(times, kinds, 1e-3) == 2
-    assert repeats_after(times, kinds, 1e-6) == 0
-
-
-def test_two_tones_do_not_repeat():
-    index = np.arange(300)
-    times = index + 0.2 * np.sin(np.sqrt(2.0) * index)
-    assert repeats_after(times, np.zeros(300, int), 1e-6) == 0
-
-
-def test_fewer_than_three_periods_are_no_repetition():
-    times, kinds = sequence([1.0, 2.0, 4.0], [0, 1, 2], 3)
-    assert repeats_after(times, kinds, 1e-6) == 0
-    assert repeats_after(np.zeros(0), np.zeros(0, int), 1e-6) == 0
+    assert [repeats_after(times, kinds, tol) for tol in (1e-3, 1e-6)] == [2, 0]
+    tones = index + 0.2 * np.sin(np.sqrt(2.0) * index)
+    for times, kinds in ((tones, 0 * index), sequence([1, 2, 4], [0, 1, 2], 3), ([], [])):
+        assert repeats_after(np.asarray(times), np.asarray(kinds, int), 1e-6) == 0

@@ -11,12 +11,8 @@ from squealpipe.models import a2
 from tests import symbols
 from tests.former import FORMER
 
-REGULARIZED = (
-    symbols.P.k3
-    * (symbols.P.preload - symbols.Y)
-    * (1 + sp.tanh(symbols.P.sigma * (symbols.P.preload - symbols.Y)))
-    / 2
-)
+DEPTH = symbols.P.preload - symbols.Y
+REGULARIZED = symbols.P.k3 * DEPTH * (1 + sp.tanh(symbols.P.sigma * DEPTH)) / 2
 
 
 def first_order(force):
@@ -27,27 +23,19 @@ def first_order(force):
 
 
 DRAG = symbols.P.mu * sp.Piecewise((1, symbols.P.belt_speed >= 0), (-1, True))
-LINEARIZED = symbols.function(
-    [
-        first_order(symbols.SPRING_FORCE[0] + DRAG * REGULARIZED) / symbols.P.mass,
-        first_order(symbols.SPRING_FORCE[1] + REGULARIZED) / symbols.P.mass,
-    ]
-)
+FORCES = (symbols.SPRING_FORCE[0] + DRAG * REGULARIZED, symbols.SPRING_FORCE[1] + REGULARIZED)
+LINEARIZED = symbols.function([first_order(force) / symbols.P.mass for force in FORCES])
 
 
 @pytest.mark.parametrize(("params", "state"), symbols.draws(20))
 def test_it_is_the_taylor_polynomial_of_the_regularized_model(params, state):
+    """And without sigma its limit."""
     stiffness = linear_stiffness(params, geometry(state["alpha1"], state["alpha2"]))
-    found = a2.acceleration(state["x"], state["y"], params, stiffness, params.sigma)
+    place = state["x"], state["y"], params, stiffness
+    found = a2.acceleration(*place, params.sigma)
     np.testing.assert_allclose(found, LINEARIZED(params, **state), rtol=1e-12, atol=1e-12)
-
-
-def test_without_sigma_it_is_the_limit():
-    params, state = symbols.draws(1)[0]
-    stiffness = linear_stiffness(params, geometry(state["alpha1"], state["alpha2"]))
-    sharp = a2.acceleration(state["x"], state["y"], params, stiffness)
-    steep = a2.acceleration(state["x"], state["y"], params, stiffness, 50 / params.preload)
-    np.testing.assert_allclose(sharp, steep, rtol=1e-12)
+    steep = a2.acceleration(*place, 50 / params.preload)
+    np.testing.assert_allclose(a2.acceleration(*place), steep, rtol=1e-12)
 
 
 def test_reaction_solves_the_balance_of_eq_10():

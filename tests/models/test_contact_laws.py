@@ -1,5 +1,7 @@
 """What the linear levels know of a contact law: its slope at the preload, and its dashpot."""
 
+from itertools import product
+
 import numpy as np
 import pytest
 
@@ -18,15 +20,13 @@ def test_growth_rates_are_those_of_the_matrix(laws):
     k3 = params.k3 if "damping3" in laws else 6e6  # of the table: 120 N over 2e-5 m
     c3, mu, mass = params.damping3, params.mu, params.mass
     found = stability_map(params, *ANGLES)
-    for i, first in enumerate(ANGLES[0]):
-        for j, second in enumerate(ANGLES[1]):
-            k11, k12, k22 = linear_stiffness(params, geometry(first, second))
-            stiffness = np.array([[k11, k12 + mu * k3], [k12, k22 + k3]])
-            damping = np.array([[0.0, mu * c3], [0.0, c3]])
-            matrix = np.block([[np.zeros((2, 2)), np.eye(2)], [-stiffness / mass, -damping / mass]])
-            expected = np.linalg.eigvals(matrix).real.max()
-            rate = float(found.growth_rate[i, j])
-            assert abs(rate - expected) < 1e-7 * np.sqrt(params.k1 / mass)
+    for angles, rate in zip(product(*ANGLES), found.growth_rate.values.ravel(), strict=True):
+        k11, k12, k22 = linear_stiffness(params, geometry(*angles))
+        stiffness = np.array([[k11, k12 + mu * k3], [k12, k22 + k3]])
+        damping = np.array([[0.0, mu * c3], [0.0, c3]])
+        matrix = np.block([[np.zeros((2, 2)), np.eye(2)], [-stiffness / mass, -damping / mass]])
+        expected = np.linalg.eigvals(matrix).real.max()
+        assert abs(rate - expected) < 1e-7 * np.sqrt(params.k1 / mass)
 
 
 def test_static_states_have_the_force_of_the_table():

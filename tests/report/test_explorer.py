@@ -83,8 +83,6 @@ def test_curves_survive_packing(explorer, shown):
 def test_page_is_one_file_and_all_but_data_is_small(page_file, explorer, shown):
     text = page_file.read_text(encoding="utf-8")
     assert len(text) - sum(map(len, blocks(explorer, shown).values())) < 60e3
-    assert 'name="viewport"' in text[:1000]
-    assert '<link rel="icon" href="data:,">' in text[:1000]
 
 
 def test_the_command_repeats_what_is_shown(tmp_path, monkeypatch):
@@ -101,27 +99,18 @@ def test_the_command_repeats_what_is_shown(tmp_path, monkeypatch):
     np.testing.assert_allclose(again.x[:31], made.x[0, 1], rtol=1e-6, atol=1e-9)
 
 
-def test_no_text_can_leave_the_data_of_the_page():
+def test_page_survives_a_meaning_that_looks_like_markup(explorer, shown, tmp_path):
     """A comment and a script tag in data would otherwise hide the rest of the page."""
     text = in_script({"meaning": "<!--<script>", "label": "</script>&amp;"})
     assert not {"<", ">"} & set(text)
     assert json.loads(text) == {"meaning": "<!--<script>", "label": "</script>&amp;"}
-
-
-def test_page_survives_a_meaning_that_looks_like_markup(explorer, shown, tmp_path):
     hostile = explorer.copy()
-    hostile["outcome"].attrs = dict(
-        explorer.outcome.attrs,
-        flag_meanings=explorer.outcome.attrs["flag_meanings"].replace("converged", "<!--<script>"),
-    )
+    meanings = explorer.outcome.attrs["flag_meanings"].replace("converged", "<!--<script>")
+    hostile["outcome"].attrs = {**explorer.outcome.attrs, "flag_meanings": meanings}
     write_explorer(hostile, shown, tmp_path / "e.html")
     text = (tmp_path / "e.html").read_text(encoding="utf-8")
     assert "<!--<script>" not in text
     assert payload(hostile, shown, {})["outcome"]["meanings"][0] == "<!--<script>"
-
-
-def cell(explorer, name, i, j):
-    return explorer[name].values[i, j]
 
 
 @pytest.mark.usefixtures("page_file")
@@ -133,9 +122,16 @@ class TestInBrowser:
 
     def test_first_pair_is_shown_and_matches_the_dataset(self, opened, explorer):
         np.testing.assert_allclose(
-            self.curve(opened, "force"), cell(explorer, "normalized_contact_force", 5, 5), atol=5e-5
+            self.curve(opened, "force"),
+            explorer["normalized_contact_force"].values[5, 5],
+            atol=5e-5,
         )
         assert opened.inner_text("#command") == f"squealpipe simulate 5pi/6 5pi/6 {OPTIONS}"
+        assert opened.get_attribute("nav a", "href") == "index.html"
+        height = f"{CURVE.format('orbit', 5)}.y[0]"
+        before = opened.evaluate(height)
+        opened.click("#play")
+        opened.wait_for_function(f"{height} !== {before}", timeout=5000)
 
     def test_click_changes_every_panel_to_the_dataset(self, opened, explorer):
         box = opened.evaluate(
@@ -144,14 +140,14 @@ class TestInBrowser:
         opened.mouse.click(*box)
         opened.wait_for_function("document.getElementById('alpha1-text').value === '= π/3'")
         for panel, name in (("force", "normalized_contact_force"), ("orbit", "y")):
-            reference = cell(explorer, name, 2, 3)
+            reference = explorer[name].values[2, 3]
             np.testing.assert_allclose(
                 self.curve(opened, panel), reference, atol=1e-4 * max(1, np.ptp(reference))
             )
-        reference = cell(explorer, "force_spectrum", 2, 3)
+        reference = explorer["force_spectrum"].values[2, 3]
         np.testing.assert_allclose(self.curve(opened, "spectrum"), reference, atol=1e-4)
         np.testing.assert_allclose(
-            self.curve(opened, "backbones", "x"), cell(explorer, "omega", 2, 3)[0], rtol=1e-6
+            self.curve(opened, "backbones", "x"), explorer["omega"].values[2, 3][0], rtol=1e-6
         )
 
     def test_arrow_keys_move_the_pair(self, opened):
@@ -205,7 +201,7 @@ class TestInBrowser:
         np.testing.assert_array_equal(seen, wanted)
 
     def test_a_curve_tells_its_point_and_can_be_enlarged(self, opened, explorer):
-        force = cell(explorer, "normalized_contact_force", 5, 5)
+        force = explorer["normalized_contact_force"].values[5, 5]
         x, y = opened.evaluate(
             f"document.getElementById('force').chart.pixel({float(explorer.time[40])}, {force[40]})"
         )
@@ -231,15 +227,6 @@ class TestInBrowser:
         assert saved.suggested_filename == "orbit.svg"
         assert re.fullmatch(r"<svg xmlns=.*</svg>", saved.path().read_text(), re.DOTALL)
 
-    def test_opens_within_three_seconds_on_a_slow_laptop(self, page_file):
-        with open_page("about:blank") as (page, faults):
-            session = page.context.new_cdp_session(page)
-            session.send("Emulation.setCPUThrottlingRate", {"rate": 4})
-            page.goto(page_file.as_uri())
-            page.wait_for_function("document.body.dataset.ready === 'true'")
-            assert page.evaluate("performance.now()") < 3000
-            assert [fault for fault in faults if "asks for" not in fault] == []
-
     def test_scenes_open_the_pair_that_they_name(self, opened):
         names = opened.locator("#scenes button").all_inner_texts()
         assert "Fig 2: 5π/6, 5π/6" in names
@@ -248,9 +235,6 @@ class TestInBrowser:
             opened.locator("#scenes button").nth(place).click()
             shown = [opened.inner_text(f"#alpha{k}-text") for k in (1, 2)]
             assert name.endswith(": " + ", ".join(item.removeprefix("= ") for item in shown))
-
-    def test_a_link_leads_back_to_the_report(self, opened):
-        assert opened.get_attribute("nav a", "href") == "index.html"
 
     @pytest.mark.parametrize("scheme", ["light", "dark"])
     def test_text_stands_out_in_both_schemes(self, page_file, scheme):
@@ -265,24 +249,13 @@ class TestInBrowser:
             assert abs(light[0] - light[1]) > 0.6
             assert faults == []
 
-    def test_play_moves_the_springs(self, opened):
-        height = f"{CURVE.format('orbit', 5)}.y[0]"
-        before = opened.evaluate(height)
-        opened.click("#play")
-        opened.wait_for_function(f"{height} !== {before}", timeout=5000)
-        assert opened.inner_text("#play") == "Pause"
-
-    def test_phone_width_needs_no_sideways_scroll(self, page_file):
-        with open_page(page_file.as_uri(), width=390, height=844) as (page, faults):
+    def test_phone_width_needs_no_sideways_scroll_and_the_address_chooses_the_pair(self, page_file):
+        address = f"{page_file.as_uri()}#0.5,1"
+        with open_page(address, width=390, height=844) as (page, faults):
             page.wait_for_function("document.body.dataset.ready === 'true'")
             assert page.evaluate("document.documentElement.scrollWidth") <= 390
             for panel in ("map", "force", "orbit", "spectrum", "backbones"):
                 assert page.locator(f"#{panel}").bounding_box()["width"] > 300
-            assert faults == []
-
-    def test_address_chooses_the_pair(self, page_file):
-        with open_page(f"{page_file.as_uri()}#0.5,1") as (page, faults):
-            page.wait_for_function("document.body.dataset.ready === 'true'")
             assert page.inner_text("#command") == f"squealpipe simulate pi/2 pi {OPTIONS}"
             assert faults == []
 
@@ -317,13 +290,3 @@ def test_a_study_without_the_paper_has_its_own_scenes_and_no_backbones(own_page)
     assert [scene["name"] for scene in shown["scenes"]] == ["mine", "other"]
     assert shown["scenes"][0]["angles"] == pytest.approx([0.5, 2.1])
     assert "--friction-law 'linear 0.0:0.48 1.0:0.36'" in shown["options"]
-
-
-@pytest.mark.release
-@pytest.mark.skipif(chromium_path() is None, reason="no chromium on this machine")
-def test_a_study_without_the_paper_opens_at_its_first_scene(own_page):
-    with open_page(own_page.as_uri()) as (page, faults):
-        page.wait_for_function("document.body.dataset.ready === 'true'")
-        assert page.locator("#scenes button").count() == 2
-        assert page.locator("#alpha1-text").inner_text() == "= π/6"
-        assert faults == []

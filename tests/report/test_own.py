@@ -72,13 +72,9 @@ def test_distance_to_the_nearest_other_cell():
     angles = np.radians([0.0, 10.0, 20.0, 30.0])
     lost = np.zeros((4, 4))
     lost[3, 1] = 1
-    validity = xr.Dataset(
-        {
-            "separates": (("alpha1", "alpha2"), lost),
-            "regime_linear": (("alpha1", "alpha2"), np.zeros((4, 4))),
-        },
-        {"alpha1": angles, "alpha2": angles},
-    )
+    cells = {"separates": lost, "regime_linear": np.zeros((4, 4))}
+    cells = {name: (("alpha1", "alpha2"), values) for name, values in cells.items()}
+    validity = xr.Dataset(cells, {"alpha1": angles, "alpha2": angles})
     at = boundaries({"validity_map": validity}, "", math.radians(10), math.radians(10))
     assert at["lost"] is False
     assert at["lost_boundary"] == pytest.approx(20.0)
@@ -116,10 +112,7 @@ def test_report_has_pages_without_the_paper(found, tmp_path):
         "friction_chart/mine": regime_chart(
             PAD, 0.5, 2.4, kappa=angles[1:], mu=angles[1:] / 5, t_end=end / 10
         ),
-        **{
-            f"own/{name}": simulate(PAD, *(scene[key] for key in ("alpha1", "alpha2")), t_end=end)
-            for name, scene in scenes(0.0).items()
-        },
+        **{f"own/{name}": simulate(PAD, *design.values(), t_end=end) for name in scenes(0.0)},
     }
     config = {"parameters": PAD.as_dict()}
     here = boundaries(datasets, "mine", *design.values())

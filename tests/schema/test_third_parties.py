@@ -1,6 +1,6 @@
 """What another person needs from a file alone: title, references, licence, words, CF."""
 
-import importlib.util
+import runpy
 import subprocess
 import sys
 from pathlib import Path
@@ -17,22 +17,17 @@ ROOT = Path(__file__).resolve().parents[2]
 @pytest.fixture(scope="module")
 def scene(tmp_path_factory):
     """The scene of Fig. 2d, as a file."""
-    angle = 0.83 * np.pi
-    return save(
-        simulate(Parameters(), angle, angle, t_end=20.0), tmp_path_factory.mktemp("cf") / "F2d.nc"
-    )
+    run = simulate(Parameters(), 0.83 * np.pi, 0.83 * np.pi, t_end=20.0)
+    return save(run, tmp_path_factory.mktemp("cf") / "F2d.nc")
 
 
 def test_the_cf_checker_wants_a_date_alone(scene):
     """Time counts from the start of a run, in s; with a date xarray would make dates of it."""
     checker = Path(sys.executable).with_name("compliance-checker")
-    done = subprocess.run(
-        [checker, "--test=cf:1.11", scene], capture_output=True, text=True, check=False
-    )
-    said = {
-        line.strip() for line in done.stdout.splitlines() if line.strip().startswith(("*", "§"))
-    }
-    assert said == {
+    command = [checker, "--test=cf:1.11", scene]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    lines = map(str.strip, done.stdout.splitlines())
+    assert {line for line in lines if line.startswith(("*", "§"))} == {
         "§5.1 Independent Latitude, Longitude, Vertical, and Time Axes",
         "* Coordinate variable 'time' should have standard_name='time', found: 'None'",
     }
@@ -67,10 +62,5 @@ def test_an_outcome_that_cannot_be_is_refused(scene):
 
 
 def test_the_data_dictionary_is_current():
-    path = ROOT / "docs/build_dictionary.py"
-    spec = importlib.util.spec_from_file_location("build_dictionary", path)
-    assert spec is not None
-    assert spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    assert module.TARGET.read_text(encoding="utf-8") == module.page(), "run `make dictionary`"
+    module = runpy.run_path(str(ROOT / "docs/build_dictionary.py"))
+    assert module["TARGET"].read_text("utf-8") == module["page"](), "run `make dictionary`"

@@ -32,9 +32,7 @@ def dataset_file(run):
 def test_two_runs_of_one_configuration_are_equal(tmp_path, write_run):
     a, b = write_run(tmp_path / "a"), write_run(tmp_path / "b")
     found = compare(a / "results", b / "results")
-    assert found.verdict == Agreement.equal
-    assert found.exit_code == 0
-    assert found.parameters == {}
+    assert (found.verdict, found.exit_code, found.parameters) == (Agreement.equal, 0, {})
     assert json.loads(json.dumps(found.as_dict(), allow_nan=False))["verdict"] == "equal"
 
 
@@ -44,38 +42,33 @@ def test_archives_by_name_runs_and_files_can_be_mixed(run, dataset_file, keys_of
         assert compare(a, b, root=run).exit_code == 0
 
 
-def test_round_off_is_within_tolerance(dataset_file):
-    def shift(dataset):
-        dataset["growth_rate"][...] = dataset.growth_rate * (1 + 1e-12)
-
-    found = compare(dataset_file, edited(dataset_file, shift))
-    assert found.verdict == Agreement.within_tolerance
-    assert found.exit_code == 0
+def shifted(dataset):
+    dataset["growth_rate"][...] = dataset.growth_rate * (1 + 1e-12)
 
 
-def test_largest_difference_and_its_place_are_told(dataset_file):
-    def shift(dataset):
-        dataset["growth_rate"][3, 7] += 0.25
-        dataset["growth_rate"][4, 1] -= 0.125
-
-    found = compare(dataset_file, edited(dataset_file, shift))
-    assert found.exit_code == 1
-    entry = next(v for v in found.datasets[0].variables if v.name == "growth_rate")
-    assert entry.differing == 2
-    assert entry.largest_absolute == pytest.approx(0.25)
-    assert entry.where["alpha1"] == pytest.approx(3 * np.pi / 12)
-    assert entry.where["alpha2"] == pytest.approx(7 * np.pi / 12)
+def moved(dataset):
+    dataset["growth_rate"][3, 7] += 0.25
+    dataset["growth_rate"][4, 1] -= 0.125
 
 
-def test_flipped_flags_are_counted(dataset_file):
-    def flip(dataset):
-        stable = dataset.regime_linear.values.ravel() == 0
-        dataset.regime_linear.values.ravel()[np.flatnonzero(stable)[:4]] = 2
+def flipped(dataset):
+    stable = dataset.regime_linear.values.ravel() == 0
+    dataset.regime_linear.values.ravel()[np.flatnonzero(stable)[:4]] = 2
 
-    found = compare(dataset_file, edited(dataset_file, flip))
-    entry = next(v for v in found.datasets[0].variables if v.name == "regime_linear")
-    assert entry.differing == 4
-    assert entry.flips == {"stable → divergence": 4}
+
+def test_round_off_agrees_and_the_largest_difference_its_place_and_flags_are_told(dataset_file):
+    found = compare(dataset_file, edited(dataset_file, shifted))
+    assert (found.verdict, found.exit_code) == (Agreement.within_tolerance, 0)
+    for change, name, count in ((moved, "growth_rate", 2), (flipped, "regime_linear", 4)):
+        found = compare(dataset_file, edited(dataset_file, change))
+        assert found.exit_code == 1
+        entry = next(v for v in found.datasets[0].variables if v.name == name)
+        assert entry.differing == count
+        if change is flipped:
+            assert entry.flips == {"stable → divergence": 4}
+            continue
+        assert entry.largest_absolute == pytest.approx(0.25)
+        assert entry.where == pytest.approx({"alpha1": np.pi / 4, "alpha2": 7 * np.pi / 12})
 
 
 def test_coarse_and_fine_grids_are_aligned(tmp_path, write_run):
@@ -87,9 +80,9 @@ def test_coarse_and_fine_grids_are_aligned(tmp_path, write_run):
 
 
 def test_grids_without_common_points_are_refused(dataset_file):
-    moved = load(dataset_file).assign_coords(alpha1=load(dataset_file).alpha1 + 0.01)
-    moved.alpha1.attrs = load(dataset_file).alpha1.attrs
-    path = save(moved, dataset_file.with_name("moved.nc"))
+    dataset = load(dataset_file)
+    alpha1 = (dataset.alpha1 + 0.01).assign_attrs(dataset.alpha1.attrs)
+    path = save(dataset.assign_coords(alpha1=alpha1), dataset_file.with_name("moved.nc"))
     found = compare(dataset_file, path)
     assert found.exit_code == 2
     assert "the grids of alpha1 share 0 of 13 and 13 points" in found.datasets[0].reason
@@ -237,13 +230,9 @@ def test_branches_of_other_parameters_compare():
 
 def test_ragged_sweeps_compare():
     def swept(values):
-        plan = Sweep(
-            task="backbone",
-            params=Parameters(),
-            vary={"k3": values},
-            fixed={"alpha1": 0.9, "alpha2": 2.8, "mode": 1, "y_peak_max": 1.3},
-        )
-        return run_sweep(plan)
+        fixed = {"alpha1": 0.9, "alpha2": 2.8, "mode": 1, "y_peak_max": 1.3}
+        plan = {"task": "backbone", "vary": {"k3": values}, "fixed": fixed}
+        return run_sweep(Sweep(params=Parameters(), **plan))
 
     first, second = swept([0.6, 0.75]), swept([0.6, 0.75, 0.9])
     assert compare_datasets("sweep", first, first).verdict == Agreement.equal
@@ -265,17 +254,14 @@ def test_physical_keys_come_before_those_of_grids(tmp_path, write_run):
 
 def test_statements_that_changed_are_told_with_verdict_and_value(tmp_path):
     claims = ["A", "B", "C"]
-    text = {
-        name: ["t"] * 3
-        for name in ("statement", "section", "check", "relation", "evidence", "dataset")
-    }
+    names = "statement section check relation evidence dataset corrected_evidence"
+    text = dict.fromkeys(names.split(), ["t"] * 3)
     judged = {"a": ([0, 0, 2], [1, 2, np.nan]), "b": ([0, 2, 2], [1.1, 2, np.nan])}
     for place, (verdict, value) in judged.items():
         numbers = dict.fromkeys(("threshold", "feasible_share"), [1.0] * 3)
         flags = dict.fromkeys(("recorded", "basis", "origin", "feasible_count"), [0] * 3)
         flags |= {"verdict": verdict, "verdict_here": verdict}
         flags |= {"corrected_verdict": verdict, "corrected_value": value}
-        text["corrected_evidence"] = ["t"] * 3
         data = {**text, **numbers, **flags, "value": value, "figure": ["fig02", "fig03", ""]}
         save(build(CLAIMS, data, {"claim": claims}), tmp_path / place / "data/claims.nc")
     found = compare(tmp_path / "a", tmp_path / "b").statements

@@ -64,13 +64,9 @@ def test_arguments_are_told_and_long_ones_by_their_ends():
 
 
 def test_sweeps_tell_their_task_and_what_stays_fixed():
-    sweep = Sweep(
-        task="backbone",
-        params=PARAMS,
-        vary={"k3": [0.5, 0.7]},
-        fixed={"alpha1": 0.9, "alpha2": 2.8, "mode": 1, "y_peak_max": 1.1, "mu": 0.4},
-    )
-    attrs = run_sweep(sweep).attrs
+    fixed = {"alpha1": 0.9, "alpha2": 2.8, "mode": 1, "y_peak_max": 1.1, "mu": 0.4}
+    plan = {"task": "backbone", "vary": {"k3": [0.5, 0.7]}, "fixed": fixed}
+    attrs = run_sweep(Sweep(params=PARAMS, **plan)).attrs
     assert attrs["made_by"] == "squealpipe.backbone"
     assert json.loads(attrs["parameters"]) == PARAMS.with_(mu=0.4).as_dict()
     arguments = json.loads(attrs["arguments"])

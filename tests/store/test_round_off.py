@@ -56,12 +56,8 @@ def test_chaotic_lifetimes_are_compared_as_samples():
 
 
 def test_every_class_of_round_off_states_its_reason():
-    classed = [
-        entry.round_off
-        for schema in all_schemas().values()
-        for entry in schema.variables.values()
-        if entry.round_off is not None
-    ]
+    entries = [one for schema in all_schemas().values() for one in schema.variables.values()]
+    classed = [entry.round_off for entry in entries if entry.round_off is not None]
     assert len(classed) >= 10
     assert all(len(how.reason) > 40 for how in classed)
 
@@ -69,17 +65,9 @@ def test_every_class_of_round_off_states_its_reason():
 def test_runs_agree_to_the_digits_that_growth_leaves():
     """Fig. 4's run from a start that is off by the last digit, and by a thousand of them."""
     scene = SCENES["F4"]
-    runs = [
-        simulate(
-            FORMER,
-            scene.alpha1,
-            scene.alpha2,
-            t_end=500.0,
-            initial_state=(off, 0.0, 0.0, 0.0),
-            growth=True,
-        )
-        for off in (0.0, 2e-16, 1e-12)
-    ]
+    place, given = (FORMER, scene.alpha1, scene.alpha2), {"t_end": 500.0, "growth": True}
+    starts = ((off, 0.0, 0.0, 0.0) for off in (0.0, 2e-16, 1e-12))
+    runs = [simulate(*place, initial_state=start, **given) for start in starts]
     assert float(runs[0].growth) > 1e10
     assert compare_datasets("run", *runs[:2]).verdict == Agreement.within_tolerance
     assert compare_datasets("run", runs[0], runs[2]).verdict == Agreement.different
@@ -101,11 +89,8 @@ def test_cells_beyond_the_horizon_are_one_sample_and_the_others_are_not():
         other = made.copy(deep=True)
         change(other.peak_contact_force.values)
         verdicts[name] = compare_datasets("map", made, other).verdict
-    assert verdicts == {
-        "one lost cell": Agreement.within_tolerance,
-        "all lost cells": Agreement.different,
-        "one sure cell": Agreement.different,
-    }
+    different = dict.fromkeys(("all lost cells", "one sure cell"), Agreement.different)
+    assert verdicts == {"one lost cell": Agreement.within_tolerance, **different}
 
 
 def test_points_that_steps_placed_elsewhere_are_no_difference_but_a_special_point_is():

@@ -28,6 +28,10 @@ def coefficient(speed, p):
 """
 
 
+def knots_of(text):
+    return np.array([tuple(map(float, pair.split(":"))) for pair in text.split()[1:]]).T
+
+
 def table(law, knots):
     return "linear " + " ".join(f"{float(w)!r}:{float(law(w))!r}" for w in knots)
 
@@ -79,13 +83,9 @@ def kinds(found):
 
 def test_a_table_of_friction_agrees_with_scipy_across_its_knots():
     params = Parameters(**PAD, k3=7e6, belt_speed=0.6, friction_law=FRICTION)
-    knots, values = np.array(
-        [tuple(map(float, pair.split(":"))) for pair in FRICTION.split()[1:]]
-    ).T
-    found = compared(
-        params, {"vx": 0.3},
-        lambda w: np.interp(w, knots, values), lambda d, _: 7e6 * max(d, 0.0), 1e-8,
-    )  # fmt: skip
+    knots, values = knots_of(FRICTION)
+    laws = lambda w: np.interp(w, knots, values), lambda d, _: 7e6 * max(d, 0.0)
+    found = compared(params, {"vx": 0.3}, *laws, 1e-8)
     assert kinds(found).count("knot") >= 4
 
 
@@ -148,9 +148,7 @@ def test_energy_changes_by_the_work_of_friction_and_contact(laws):
 
 def test_a_table_of_contact_agrees_with_scipy_across_its_knots():
     params = Parameters(**PAD, belt_speed=50.0, mu=0.4, contact_law=SOFTENING)
-    knots, values = np.array(
-        [tuple(map(float, pair.split(":"))) for pair in SOFTENING.split()[1:]]
-    ).T
+    knots, values = knots_of(SOFTENING)
 
     def force(d, _):
         beyond = max(d - knots[-1], 0.0) * (values[-1] - values[-2]) / (knots[-1] - knots[-2])

@@ -66,12 +66,10 @@ def patches(rng, names):
     if len(keys) > 1:
         back = lambda t, s, p, r: 0.2 - height(t, s, p, r)  # noqa: E731
         switches.append(Switch("back", tuple(keys[1:]), back, to=keys[0]))
+    rates = (random_rates(names, random_linear(rng, len(names)), force) for _ in keys)
     return {
         "regimes": {key: {} for key in keys},
-        "field": {
-            key: field_of(random_rates(names, random_linear(rng, len(names)), force))
-            for key in keys
-        },
+        "field": {key: field_of(each) for key, each in zip(keys, rates, strict=True)},
         "switches": switches,
         "start": {**dict.fromkeys(names, 0.5), "regime": keys[0]},
     }
@@ -122,12 +120,9 @@ def random_system(seed):
     rng = np.random.default_rng(seed)
     names = [f"s{i}" for i in range(int(rng.integers(2, 7)))]
     return System(
-        f"random {seed}",
-        states=dict.fromkeys(names, "1"),
-        parameters={"drive": 1.0, "omega": 1.3},
-        **(patches, stick)[seed % 2](rng, names),
-        period=lambda p: 2.0 * np.pi / p.omega,
-    )
+        f"random {seed}", states=dict.fromkeys(names, "1"), parameters={"drive": 1.0, "omega": 1.3},
+        **(patches, stick)[seed % 2](rng, names), period=lambda p: 2.0 * np.pi / p.omega,
+    )  # fmt: skip
 
 
 def independent_run(system, start, parameters, max_step):
@@ -177,19 +172,12 @@ def independent_run(system, start, parameters, max_step):
     return found, z
 
 
-def test_events_of_random_systems_are_those_of_dop853():
-    """Six structures; the release tier has sixty."""
-    for seed in range(6):
-        hold_against_dop853(seed, draws=1)
-
-
-@pytest.mark.release
-@pytest.mark.parametrize("seed", range(6, 60))
-def test_events_of_sixty_random_systems_are_those_of_dop853(seed):
-    hold_against_dop853(seed, draws=DRAWS)
-
-
-def hold_against_dop853(seed, draws):
+@pytest.mark.parametrize(
+    ("seed", "draws"),
+    [*((n, 1) for n in range(6)),
+     *(pytest.param(n, DRAWS, marks=pytest.mark.release) for n in range(6, 60))],
+)  # fmt: skip
+def test_events_of_random_systems_are_those_of_dop853(seed, draws):
     """Some runs of one structure, event by event."""
     system = random_system(seed)
     rng = np.random.default_rng(100 + seed)
@@ -250,22 +238,25 @@ def test_growth_is_that_of_a_small_difference_through_impacts():
     assert np.exp(12.0 * float(base.lyapunov_exponent)) == pytest.approx(difference, rel=1e-5)
 
 
+def bounce(t, s, p, r):
+    return {"v": -s.v}
+
+
 GOOD = {
     "states": {"x": "m", "v": "m/s"},
     "parameters": {"gap": 1.0},
     "regimes": {"free": {}},
     "field": lambda t, s, p, r: {"x": s.v, "v": -s.x},
-    "switches": [
-        Switch(
-            "hit", "free", lambda t, s, p, r: p.gap - s.x, "free", lambda t, s, p, r: {"v": -s.v}
-        )
-    ],
+    "switches": [Switch("hit", "free", lambda t, s, p, r: p.gap - s.x, "free", bounce)],
     "start": {"x": 0.0, "v": 0.0},
 }
 
 
-NOTHING = {"field": lambda t, s, p, r: {"x": s.v, "v": -1.0 if s.x == 0.0 else 0.0}}
 LAST = [("free", GOOD["field"])]
+
+
+def pull(force):
+    return {"field": lambda t, s, p, r: {"x": s.v, "v": force(s)}}
 
 
 def hit(when, leaves="free", to="free"):
@@ -276,18 +267,10 @@ def hit(when, leaves="free", to="free"):
     ("change", "error", "message"),
     [
         ({"field": lambda t, s, p, r: {"x": s.v}}, ValueError, "lacks the rate of the state 'v'"),
-        (
-            {"field": lambda t, s, p, r: {"x": s.v, "v": abs(s.x)}},
-            TypeError,
-            "make each side a reg",
-        ),
-        (
-            {"field": lambda t, s, p, r: {"x": s.v, "v": -np.cos(s.x)}},
-            TypeError,
-            "take squealpipe.functions",
-        ),
-        ({"field": lambda t, s, p, r: {"x": s.v, "v": -s.y}}, AttributeError, "has no 'y'"),
-        (NOTHING, TypeError, "make each side a reg"),
+        (pull(lambda s: abs(s.x)), TypeError, "make each side a reg"),
+        (pull(lambda s: -np.cos(s.x)), TypeError, "take squealpipe.functions"),
+        (pull(lambda s: -s.y), AttributeError, "has no 'y'"),
+        (pull(lambda s: -1.0 if s.x == 0.0 else 0.0), TypeError, "make each side a reg"),
         ({"parameters": {"x0": 1.0}}, ValueError, "the name is taken"),
         ({"parameters": {"gap": 1.0, "x_max": 1.0}}, ValueError, "the name is taken"),
         ({"parameters": {"gap": 1.0, "count_hit": 1.0}}, ValueError, "the name is taken"),
@@ -379,13 +362,10 @@ def test_instants_before_the_start_and_a_period_below_zero_are_refused():
 def test_a_run_starts_in_the_regime_that_it_is_given():
     """Without surfaces both regimes fit; the first is taken unless another is named."""
     system = System(
-        "growth or decay",
-        states={"x": "1"},
-        parameters={},
+        "growth or decay", states={"x": "1"}, parameters={},
         regimes={"grows": {"rate": 1.0}, "decays": {"rate": -1.0}},
-        field=lambda t, s, p, r: {"x": r.rate * s.x},
-        start={"x": 1.0},
-    )
+        field=lambda t, s, p, r: {"x": r.rate * s.x}, start={"x": 1.0},
+    )  # fmt: skip
     for start, end in (({}, np.e), ({"regime": "decays"}, 1.0 / np.e)):
         assert float(system.ensemble(1.0, start=start).x) == pytest.approx(end, rel=1e-14)
         assert float(system.simulate(1.0, start=start).x[-1]) == pytest.approx(end, rel=1e-14)

@@ -69,10 +69,7 @@ def test_the_forced_oscillator_meets_its_stop_from_the_grazing_amplitude_on(omeg
     grazing = np.sqrt(stiffness**2 + 0.01 * omega**2)
     for factor, hits in ((1.0 - 1e-9, False), (1.0 + 1e-9, True)):
         amplitude = grazing * factor
-        start = {
-            "x": amplitude * stiffness / grazing**2,
-            "v": amplitude * 0.1 * omega**2 / grazing**2,
-        }
+        start = {"x": factor * stiffness / grazing, "v": factor * 0.1 * omega**2 / grazing}
         run = impact_oscillator.ensemble(20.0, start=start, amplitude=amplitude, omega=omega)
         assert (int(run.count_impact) > 0) == hits
 
@@ -117,11 +114,8 @@ def test_a_rigid_pad_lifts_and_lands_when_dop853_says():
 
     def rates(t, z):
         s = SimpleNamespace(**dict(zip(names, z, strict=True)))
-        pressed = {
-            name: float(approach(side, s, p) > 0.0)
-            for name, side in (("leading", LEADING), ("trailing", TRAILING))
-        }
-        found = rigid_pad.field(t, s, p, SimpleNamespace(**pressed))
+        leading, trailing = (float(approach(side, s, p) > 0.0) for side in (LEADING, TRAILING))
+        found = rigid_pad.field(t, s, p, SimpleNamespace(leading=leading, trailing=trailing))
         return [found[name] for name in names]
 
     def gap(side):
@@ -133,9 +127,8 @@ def test_a_rigid_pad_lifts_and_lands_when_dop853_says():
         events=[gap(LEADING), gap(TRAILING)],
     )  # fmt: skip
     for name, times in zip(("leading", "trailing"), own.t_events, strict=True):
-        found = np.sort(
-            np.concatenate([times_of(run, f"{name}_{what}") for what in ("lifts", "lands")])
-        )
+        found = [times_of(run, f"{name}_{what}") for what in ("lifts", "lands")]
+        found = np.sort(np.concatenate(found))
         assert found.size > 2
         np.testing.assert_allclose(found, times, atol=1e-9)
 

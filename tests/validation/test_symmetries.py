@@ -27,22 +27,14 @@ def assert_mirrored(first, second, signs):
 
 @pytest.mark.parametrize("speed", [100.0, 0.3, 0.05])
 @pytest.mark.parametrize("model", MODELS)
-def test_equal_springs_can_be_exchanged(model, speed):
-    """(α1, α2) and (π − α2, π − α1) are the same system."""
-    params = FORMER.with_(belt_speed=speed)
-    first = run(params, ALPHA1, ALPHA2, model)
-    assert_mirrored(first, run(params, np.pi - ALPHA2, np.pi - ALPHA1, model), [1, 1, 1, 1])
-
-
-@pytest.mark.parametrize("speed", [100.0, 0.3, 0.05])
-@pytest.mark.parametrize("model", MODELS)
-def test_mirror_image_runs_on_a_reversed_belt(model, speed):
-    """x → −x gives (α2, α1, −V) for equal springs, and (π − α1, π − α2, −V) for any."""
-    first = run(FORMER.with_(belt_speed=speed), ALPHA1, ALPHA2, model)
-    reversed_belt = FORMER.with_(belt_speed=-speed)
-    mirrored = [-1, 1, -1, 1]
-    assert_mirrored(first, run(reversed_belt, ALPHA2, ALPHA1, model), mirrored)
-    assert_mirrored(first, run(reversed_belt, np.pi - ALPHA1, np.pi - ALPHA2, model), mirrored)
+def test_mirror_images(model, speed):
+    """x → −x gives (π − α1, π − α2, −V), and for equal springs (α2, α1, −V): the same system as
+    (π − α2, π − α1, V)."""
+    belt, other = (FORMER.with_(belt_speed=sign * speed) for sign in (1, -1))
+    first, mirrored = run(belt, ALPHA1, ALPHA2, model), [-1, 1, -1, 1]
+    assert_mirrored(first, run(belt, np.pi - ALPHA2, np.pi - ALPHA1, model), [1, 1, 1, 1])
+    assert_mirrored(first, run(other, ALPHA2, ALPHA1, model), mirrored)
+    assert_mirrored(first, run(other, np.pi - ALPHA1, np.pi - ALPHA2, model), mirrored)
 
 
 def test_swapping_the_angles_on_one_belt_is_no_symmetry():

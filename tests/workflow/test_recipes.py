@@ -143,15 +143,8 @@ assert grown != without
 """
 
 
-def test_a_parameter_and_a_law_reach_every_kind_of_number(extended):
-    folder, _ = extended
-    python(folder, PARAMETER_AND_LAW)
-
-
-def test_the_engine_integrates_the_new_law(extended):
-    """Compiled anew in the copy, at random parameters, against long double."""
-    folder, _ = extended
-    script = """
+ENGINE = """
+# compiled anew in the copy, at random parameters, against long double
 import numpy as np
 from squealpipe import Parameters
 from squealpipe.solvers.a1.ensemble import run_ensemble
@@ -171,13 +164,9 @@ for _ in range(12):
     exact = simulate_reference(p, *angles, t_end=end)
     np.testing.assert_allclose(run.final_state, np.float64(exact.state), rtol=1e-8, atol=1e-9)
 """
-    python(folder, script)
 
-
-def test_a_system_runs(extended):
-    """Between impacts the energy is kept, at each it loses 1 − e² of what it was."""
-    folder, _ = extended
-    script = """
+PENDULUM = """
+# between impacts the energy is kept, at each it loses 1 − e² of what it was
 import numpy as np
 from squealpipe.systems.pendulum import pendulum
 run = pendulum.simulate(12.0)
@@ -186,12 +175,8 @@ impacts = np.searchsorted(run.event_time, run.time, side="right")
 assert run.sizes["event"] > 4
 np.testing.assert_allclose(energy, float(energy[0]) * 0.81**impacts, rtol=1e-10)
 """
-    python(folder, script)
 
-
-def test_the_ladder_takes_the_new_level(extended):
-    folder, _ = extended
-    script = """
+LADDER = """
 import numpy as np
 from squealpipe import Parameters
 from squealpipe.study.figures import declared
@@ -202,7 +187,11 @@ wrong = ladder.error.sel(level="a1_quarter", question="contact_lost") > 0
 assert wrong.any() and not wrong.all()
 declared.draw("model_ladder", {"model_ladder": ladder}).savefig("model_ladder.png")
 """
-    python(folder, script)
+
+
+@pytest.mark.parametrize("script", [PARAMETER_AND_LAW, ENGINE, PENDULUM, LADDER])
+def test_what_was_added_is_right(extended, script):
+    python(extended[0], script)
 
 
 def test_workflow_plans_the_new_figure_and_watches_the_new_law(

@@ -117,6 +117,13 @@ def on_slurm(checkout, *arguments, profile=PROFILE):
     )  # fmt: skip
 
 
+def start(checkout):
+    return subprocess.Popen(
+        command(MAP), cwd=checkout, env=environment(checkout), stdout=subprocess.DEVNULL,
+        stderr=subprocess.PIPE, text=True,
+    )  # fmt: skip
+
+
 def jobs(state=""):
     """Ids of jobs in the queue."""
     wanted = ["-t", state] if state else []
@@ -184,10 +191,7 @@ def test_whole_study_equals_one_machine_bit_for_bit(cluster_checkout, tiny_study
 
 def test_cancelled_job_fails_and_the_next_run_completes(cluster_checkout, undisturbed):
     (cluster_checkout / "mine.yaml").write_text(LONG)
-    head = subprocess.Popen(
-        command(MAP), cwd=cluster_checkout, env=environment(cluster_checkout),
-        stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True,
-    )  # fmt: skip
+    head = start(cluster_checkout)
     first = wait(lambda: jobs("R"))[0]
     subprocess.run(["scancel", first], check=True)
     _, errors = head.communicate(timeout=300)
@@ -202,13 +206,7 @@ def test_cancelled_job_fails_and_the_next_run_completes(cluster_checkout, undist
 
 
 def test_killed_head_loses_nothing(cluster_checkout, undisturbed):
-    head = subprocess.Popen(
-        command(MAP),
-        cwd=cluster_checkout,
-        env=environment(cluster_checkout),
-        stdout=subprocess.DEVNULL,
-        stderr=subprocess.DEVNULL,
-    )
+    head = start(cluster_checkout)
     wait(lambda: len(jobs()) >= 2)
     head.send_signal(signal.SIGKILL)
     head.wait()

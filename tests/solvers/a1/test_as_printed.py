@@ -57,15 +57,22 @@ def dop853(p, alpha1, alpha2, t_end, start):
         (PAPER.with_(belt_speed=-0.4, k2=1.3), (0.0, -0.3, 0.1, 0.0), 1),
         (
             Parameters(
-                mass=0.5, k1=1e7, k2=2e7, k3=7e6, mu=0.3, preload=1e-4, length1=1e-3,
-                length2=2e-3, belt_speed=0.1,
+                mass=0.5,
+                k1=1e7,
+                k2=2e7,
+                k3=7e6,
+                mu=0.3,
+                preload=1e-4,
+                length1=1e-3,
+                length2=2e-3,
+                belt_speed=0.1,
             ),
             (0.0, 0.0, 0.15, 0.0),
             1,
         ),
         (PAPER, (0.0, 0.0, 0.0, 0.0), 0),
     ],
-)  # fmt: skip
+)
 def test_state_and_crossings_of_belt_speed(params, start, least):
     t_end = 12.0 * params.time_unit
     run = simulate(

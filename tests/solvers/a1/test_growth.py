@@ -33,19 +33,12 @@ WORST_ANGLES = (
 def runs():
     """The worst ones, and random ones: belts of either direction and unequal springs."""
     rng, size = np.random.default_rng(12), 12
-    parameters = {
-        "k2": rng.uniform(0.4, 2.5, size),
-        "k3": rng.uniform(0.2, 4.0, size),
-        "mu": rng.uniform(0.0, 0.8, size),
-        "belt_speed": rng.choice([-1.0, 1.0], size) * np.geomspace(0.1, 100.0, size),
-        "length1": rng.uniform(2.0, 30.0, size),
-        "length2": rng.uniform(2.0, 30.0, size),
-    }
-    angles = rng.uniform(0, np.pi, (2, size))
-    return (
-        {name: np.concatenate([WORST[name], values]) for name, values in parameters.items()},
-        np.concatenate([WORST_ANGLES, angles], axis=1),
-    )
+    ranges = {"k2": (0.4, 2.5), "k3": (0.2, 4.0), "mu": (0.0, 0.8)}
+    ranges |= dict.fromkeys(("length1", "length2"), (2.0, 30.0))
+    values = {name: rng.uniform(*each, size) for name, each in ranges.items()}
+    values["belt_speed"] = rng.choice([-1.0, 1.0], size) * np.geomspace(0.1, 100.0, size)
+    angles = np.concatenate([WORST_ANGLES, rng.uniform(0, np.pi, (2, size))], axis=1)
+    return {name: np.concatenate([WORST[name], more]) for name, more in values.items()}, angles
 
 
 def test_growth_is_that_of_the_variational_equations():
@@ -130,12 +123,9 @@ def test_growth_of_a_motion_that_dies_out_is_that_of_the_linear_system():
     """It was exp(+224) for exp(-30): a perturbation has a rate of its own, where nothing moves."""
     params, angles, starts, matrices, times, units = zip(*resting_runs(150, 41), strict=True)
     run = run_ensemble(
-        {name: [getattr(p, name) for p in params] for name in PHYSICAL},
-        *np.transpose(angles),
-        t_end=np.array(times) * units,
-        initial_state=np.array(starts),
-        tangent=True,
-    )
+        {name: [getattr(p, name) for p in params] for name in PHYSICAL}, *np.transpose(angles),
+        t_end=np.array(times) * units, initial_state=np.array(starts), tangent=True,
+    )  # fmt: skip
     assert not run.events.any()
     for job, (matrix, time) in enumerate(zip(matrices, times, strict=True)):
         growth = np.linalg.norm(expm(matrix * time) @ HALVES)

@@ -20,15 +20,9 @@ def test_extrema_between_steps_are_as_exact_as_the_states():
     rest = k3 / omega_y**2
     amplitude_x, phase_x, phase_y = rng.uniform(0.1, 1.0, SIZE), *rng.uniform(0, 6.2, (2, SIZE))
     amplitude_y = 0.9 * (1.0 - rest)
-    state = np.stack(
-        [
-            amplitude_x * np.cos(phase_x),
-            rest + amplitude_y * np.cos(phase_y),
-            -amplitude_x * omega_x * np.sin(phase_x),
-            -amplitude_y * omega_y * np.sin(phase_y),
-        ],
-        axis=-1,
-    )
+    x, vx = amplitude_x * np.cos(phase_x), -amplitude_x * omega_x * np.sin(phase_x)
+    y, vy = rest + amplitude_y * np.cos(phase_y), -amplitude_y * omega_y * np.sin(phase_y)
+    state = np.stack([x, y, vx, vy], axis=-1)
     t_end = PERIODS * 2 * np.pi / omega_x
     parameters = {"k1": 1.0, "k2": 1.0, "k3": k3, "mu": 0.0}
     options = {"model": "A4", "t_end": t_end, "t_late": 0.5 * t_end}

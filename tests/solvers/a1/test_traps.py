@@ -56,18 +56,6 @@ def test_two_crossings_inside_a_step(exponent, phase):
     assert run_ensemble(FRICTIONLESS, **options | {"initial_state": missed}).separations == 0
 
 
-@pytest.mark.parametrize("block", [1, 7, 40])
-def test_blocks_of_any_size_give_the_same_bits(block):
-    parameters, *angles = random_runs(40, 4)
-    whole = run_ensemble(parameters, *angles, t_end=20.0, workers=1, tangent=True)
-    for start in range(0, 40, block):
-        rows = slice(start, start + block)
-        chosen = {name: values[rows] for name, values in parameters.items()}
-        part = run_ensemble(chosen, *(a[rows] for a in angles), t_end=20.0, workers=1, tangent=True)
-        for name, values in part._raw.items():
-            assert values.tobytes() == whole._raw[name][rows].tobytes(), name
-
-
 def test_an_event_at_the_end_and_at_an_asked_instant():
     params = FORMER.with_(k3=2.0)
     time = float(run_ensemble(params, t_end=5.0, log_events=1, **IDENTITY).event_times[0])

@@ -8,7 +8,6 @@ import pytest
 from squealpipe.schema import Outcome
 from squealpipe.schema.backbones import Form
 from squealpipe.tasks.backbones.a1_beside_a4 import a1_beside_a4
-from squealpipe.tasks.backbones.backbone import contact_losing_branches, named_scenes
 from squealpipe.tasks.backbones.harmonic_forms import compare_harmonic_forms
 from tests.former import FORMER
 
@@ -37,15 +36,6 @@ def test_a1_stays_beside_a4_the_longer_the_springs():
     assert shifts[1] < 0.2 * shifts[0] < 2e-3
     apart = np.abs(beside.y_a1 - beside.y_a4).max("period").values[0]
     assert apart[1] < 0.2 * apart[0]
-
-
-def test_scenes_by_name():
-    scenes = named_scenes({"coupled": (0.3, 0.9)})
-    assert list(scenes) == ["F10", "F11", "F12", "F13", "coupled"]
-    assert scenes["coupled"] == pytest.approx((0.3 * PI, 0.9 * PI))
-    branches = contact_losing_branches({"coupled": (0.3, 0.9)})
-    assert branches["F13 mode 1"][2] == 1
-    assert {"coupled mode 1", "coupled mode 2"} <= set(branches)
 
 
 def test_a_scene_without_orbits_is_refused_with_its_reason():

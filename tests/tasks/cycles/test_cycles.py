@@ -64,14 +64,11 @@ def test_trivial_multiplier_and_differences_of_the_return_map(wanted):
     checked = 0
     while checked < wanted:
         params = FORMER.with_(
-            k2=generator.uniform(0.6, 1.6),
-            length2=generator.uniform(3.0, 8.0),
-            mu=generator.uniform(0.3, 0.7),
+            k2=generator.uniform(0.6, 1.6), length2=generator.uniform(3.0, 8.0),
+            mu=generator.uniform(0.3, 0.7), damping1=generator.uniform(0.01, 0.05),
             belt_speed=generator.choice([-1.0, 1.0]) * generator.uniform(0.3, 3.0),
-            damping1=generator.uniform(0.01, 0.05),
-            damping2=generator.uniform(0.01, 0.05),
-            mu_static=generator.uniform(0.7, 0.9),
-        )
+            damping2=generator.uniform(0.01, 0.05), mu_static=generator.uniform(0.7, 0.9),
+        )  # fmt: skip
         angles = generator.uniform(0.2, 2.9, 2)
         cycle = limit_cycle(params, *angles, t_settle=400.0)
         if cycle.outcome != Outcome.converged:
@@ -107,11 +104,18 @@ def test_without_damping_cycles_come_in_families():
     assert cycle.residual < 1e-9
 
 
-def test_a_settled_state_of_rest_is_no_cycle():
+def test_a_settled_state_of_rest_is_no_cycle_and_without_damping_there_is_none():
     params = FORMER.with_(damping1=0.3, damping2=0.3)
     cycle = limit_cycle(params, 0.75 * math.pi, 0.75 * math.pi)
     assert cycle.outcome == Outcome.equilibrium
     assert np.isnan(cycle.period)
+    params = FORMER.with_(
+        k1=0.3369548162926997, k2=0.33121791549130847, k3=0.2689114661069115,
+        mu=0.10066315042153495, belt_speed=-13.002080446037427,
+        length1=20.94848468313279, length2=72.09643764912789,
+    )  # fmt: skip
+    cycle = limit_cycle(params, 2.2920388457758087, 1.6485212416566715, t_settle=100.0)
+    assert cycle.outcome != Outcome.equilibrium
 
 
 REST = FORMER.with_(
@@ -121,7 +125,7 @@ REST = FORMER.with_(
 )  # fmt: skip
 
 
-@pytest.mark.parametrize("settle", [1000.0, 1500.0, 2000.0, 5000.0, 20000.0])
+@pytest.mark.parametrize("settle", [1000.0, 1500.0, 5000.0])
 def test_rest_is_rest_in_any_units_and_mirrored(settle):
     """Round-off decides neither whether the place of rest is found nor whether a motion shrinks."""
     length, time = 1e-5, 3e3
@@ -163,16 +167,6 @@ def test_a_stiff_dashpot_does_not_drive_the_search_for_rest_off():
     assert cycle.outcome != Outcome.converged
 
 
-def test_without_damping_nothing_comes_to_rest():
-    params = FORMER.with_(
-        k1=0.3369548162926997, k2=0.33121791549130847, k3=0.2689114661069115,
-        mu=0.10066315042153495, belt_speed=-13.002080446037427,
-        length1=20.94848468313279, length2=72.09643764912789,
-    )  # fmt: skip
-    cycle = limit_cycle(params, 2.2920388457758087, 1.6485212416566715, t_settle=100.0)
-    assert cycle.outcome != Outcome.equilibrium
-
-
 def test_branch_goes_round_a_fold_and_labels_it():
     params = FORMER.with_(damping1=0.02, damping2=0.02, belt_speed=1.0)
     angles = (0.4 * math.pi, 0.6 * math.pi)
@@ -202,16 +196,11 @@ def test_branch_is_born_at_the_flutter_onset_of_long_springs():
     angles = (0.22, 0.96)
 
     def growth(mu):
-        spring = linear_stiffness(params, geometry(*angles))
-        dashpot = linear_stiffness(params.with_(k1=0.01, k2=0.02), geometry(*angles))
-        stiffness = [
-            [spring.k11, spring.k12 + mu * params.k3],
-            [spring.k12, spring.k22 + params.k3],
-        ]
-        damping = [[dashpot.k11, dashpot.k12], [dashpot.k12, dashpot.k22]]
-        matrix = np.block(
-            [[np.zeros((2, 2)), np.eye(2)], [-np.array(stiffness), -np.array(damping)]]
-        )
+        k11, k12, k22 = linear_stiffness(params, geometry(*angles))
+        c11, c12, c22 = linear_stiffness(params.with_(k1=0.01, k2=0.02), geometry(*angles))
+        stiffness = np.array([[k11, k12 + mu * params.k3], [k12, k22 + params.k3]])
+        damping = np.array([[c11, c12], [c12, c22]])
+        matrix = np.block([[np.zeros((2, 2)), np.eye(2)], [-stiffness, -damping]])
         return np.linalg.eigvals(matrix).real.max()
 
     branch = cycle_branch(params, *angles, parameter="mu", to=0.9, start="onset", n_points=3)
@@ -235,15 +224,14 @@ def test_branch_refuses_what_it_cannot_do(change, named):
         cycle_branch(FORMER, 1.0, 2.0, **given)
 
 
-@pytest.mark.parametrize("rounds", [2, 3, 4, 6, 7, 8, 9, 25])
+@pytest.mark.parametrize("rounds", [2, 3, 6, 25])
 def test_a_return_after_several_rounds_gives_the_least_period(rounds):
     params, angles = friction_oscillator(1.25, reach=1e4), ANGLES
     once, _ = cycle_from(Scene(params, *angles), (1.5, 0.25, 1.25, 0.0))
     parts = once.parts
     several = replace(once.map, events=once.map.events * rounds)
-    point = several.pack(
-        np.tile(parts.states, (rounds, 1)), np.tile(parts.durations, rounds), 0.0, np.empty(0)
-    )
+    states, durations = np.tile(parts.states, (rounds, 1)), np.tile(parts.durations, rounds)
+    point = several.pack(states, durations, 0.0, np.empty(0))
     cycle = once_round(Cycle.at(several, point))
     np.testing.assert_allclose(cycle.period, once.period, rtol=1e-9)
 

@@ -64,12 +64,6 @@ def test_a_reversed_belt_and_its_mirror_image_have_the_same_ladder(speed):
         np.testing.assert_array_equal(here[name].values, swapped, err_msg=name)
 
 
-def test_levels_differ_by_number_and_name():
-    for key in ("label", "colour"):
-        assert len({getattr(level, key) for level in Level}) == len(Level)
-    assert list(Level)[-1] == Level.a1
-
-
 def test_extensions_are_refused():
     with pytest.raises(ValueError, match="damping1"):
         model_ladder(FORMER.with_(damping1=0.1), 2, 0.05, t_end=1.0)

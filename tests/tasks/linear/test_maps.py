@@ -39,20 +39,15 @@ def reference_eigenvalues(params, alpha1, alpha2):
         return [complex(sign * root) for root in roots for sign in (1, -1)]
 
 
-def own_eigenvalues(params, alpha1, alpha2):
-    cell = stability_map(params, [alpha1], [alpha2]).isel(alpha1=0, alpha2=0)
-    if cell.regime_linear == 2:
-        growing = [float(cell.growth_rate), 1j * float(cell.frequency[1])]
-    else:
-        growing = list(float(cell.growth_rate) + 1j * cell.frequency.values)
-    upper = np.array(growing)
-    return np.concatenate([upper, -upper, upper.conj(), -upper.conj()])
-
-
 def relative_error(params, alpha1, alpha2):
-    own = own_eigenvalues(params, alpha1, alpha2)
-    reference = reference_eigenvalues(params, alpha1, alpha2)
-    return max(float(np.abs(own - value).min() / abs(value)) for value in reference)
+    cell = stability_map(params, [alpha1], [alpha2]).isel(alpha1=0, alpha2=0)
+    growth, (low, high) = float(cell.growth_rate), cell.frequency.values
+    pairs = [growth, 1j * high] if cell.regime_linear == 2 else growth + 1j * np.array([low, high])
+    own = np.concatenate(
+        [sign * np.array(each) for each in (pairs, np.conj(pairs)) for sign in (1, -1)]
+    )
+    exact = reference_eigenvalues(params, alpha1, alpha2)
+    return max(float(np.abs(own - value).min() / abs(value)) for value in exact)
 
 
 @pytest.mark.parametrize("params", [BASELINE, UNEQUAL, BASELINE.with_(mu=0.8, k3=1.3)])
@@ -81,9 +76,8 @@ def test_eigenvalues_to_twelve_digits_at_the_onset_of_flutter(ulps):
     alpha1 += ulps * np.spacing(alpha1)
     assert relative_error(BASELINE, alpha1, alpha2) < 1e-12
     m = np.array(reference_matrix(BASELINE, alpha1, alpha2).tolist(), dtype=float)
-    numeric = scipy.linalg.eigvals(
-        np.block([[np.zeros((2, 2)), np.eye(2)], [-m, np.zeros((2, 2))]])
-    )
+    none = np.zeros((2, 2))
+    numeric = scipy.linalg.eigvals(np.block([[none, np.eye(2)], [-m, none]]))
     reference = reference_eigenvalues(BASELINE, alpha1, alpha2)
     lost = max(float(np.abs(numeric - value).min() / abs(value)) for value in reference)
     assert lost > 1e-10
@@ -108,17 +102,6 @@ def test_growth_rates_next_to_both_boundaries(distance):
         assert found == pytest.approx(exact, rel=1e-12)
 
 
-def test_the_map_agrees_with_numeric_eigenvalues_everywhere():
-    angles = np.linspace(0.0, np.pi, 61)
-    result = stability_map(UNEQUAL, angles, angles)
-    for i, j in np.ndindex(61, 61):
-        m = np.array(reference_matrix(UNEQUAL, angles[i], angles[j]).tolist(), dtype=float)
-        s = np.emath.sqrt(-scipy.linalg.eigvals(m))
-        assert float(result.growth_rate[i, j]) == pytest.approx(np.abs(s.real).max(), abs=2e-7)
-        expected = np.sort(np.abs(s.imag))
-        np.testing.assert_allclose(np.sort(result.frequency[i, j]), expected, atol=2e-7)
-
-
 def test_cell_counts_at_the_baseline():
     """Counts stated in the project's brief, found there by an independent code."""
     stability = stability_map(BASELINE, ANGLES, ANGLES)
@@ -134,13 +117,13 @@ def test_cell_counts_at_the_baseline():
 
 
 def test_flutter_needs_negative_coupling_and_divergence_positive():
-    k = symbols.function(symbols.STIFFNESS)
-    stability = stability_map(UNEQUAL.with_(k1=0.9, mu=0.8), ANGLES, ANGLES)
+    params = UNEQUAL.with_(k1=0.9, mu=0.8)
+    regime = stability_map(params, ANGLES, ANGLES).regime_linear.values
+    first, second = np.meshgrid(ANGLES, ANGLES, indexing="ij")
+    coupling = symbols.function(symbols.STIFFNESS[0, 1])(params, alpha1=first, alpha2=second)
     for kind, sign in ((1, -1), (2, 1)):
-        rows, columns = np.nonzero(stability.regime_linear.values == kind)
-        for i, j in zip(rows[::7], columns[::7], strict=True):
-            params = UNEQUAL.with_(k1=0.9, mu=0.8)
-            assert sign * k(params, alpha1=ANGLES[i], alpha2=ANGLES[j])[0, 1] > 0
+        assert (regime == kind).any()
+        assert (sign * coupling[regime == kind] > 0).all()
 
 
 def test_mass_scales_rates_and_friction_vanishes():
@@ -162,21 +145,19 @@ def test_sigma_matters_only_where_the_contact_law_is_blunt():
     np.testing.assert_allclose(blunt.frequency, same.frequency, atol=1e-4)
 
 
-def test_static_state_of_the_scene_of_fig_3_sits_at_the_edge_of_contact():
+def test_static_state_at_the_edge_of_contact_and_where_there_is_none():
+    """In the scene of Fig. 3, and where both springs are vertical."""
     cell = quasi_static_map(BASELINE, [0.4 * math.pi], [0.6 * math.pi]).isel(alpha1=0, alpha2=0)
-    assert bool(cell.possible)
-    assert bool(cell.possible_as_printed)
+    assert cell.possible
+    assert cell.possible_as_printed
     assert float(cell.y_static) == pytest.approx(BASELINE.preload, rel=1e-14)
     assert float(cell.x_static) == pytest.approx(-math.tan(0.4 * math.pi), rel=1e-13)
     assert float(cell.contact_force_static) == 0.0
 
-
-def test_no_static_state_where_both_springs_are_vertical():
     cell = quasi_static_map(BASELINE, [math.pi / 2], [math.pi / 2]).isel(alpha1=0, alpha2=0)
     assert int(cell.outcome) == Outcome.singular_static_state
     assert np.isnan(cell.reaction_force)
-    assert not bool(cell.possible)
-    assert not bool(cell.possible_as_printed)
+    assert not cell.possible | cell.possible_as_printed
 
 
 def test_static_state_balances_the_forces():

@@ -3,16 +3,15 @@
 import numpy as np
 import pytest
 from scipy import stats
-from scipy.optimize import brentq
 
-from squealpipe import stability_map
+from squealpipe import critical_friction_map
 from squealpipe.schema import Outcome
 from squealpipe.schema.inference import of_study, wilson_interval
 from squealpipe.tasks.inference.inference import infer_parameters
 from squealpipe.tasks.propensity import robustness
 from squealpipe.tasks.propensity.distributions import centred, distribution
 from squealpipe.tasks.propensity.propensity import _indices, _judged_matrices, propensity
-from squealpipe.tasks.propensity.robustness import _feasible, _share, variants
+from squealpipe.tasks.propensity.robustness import _feasible, variants
 from tests.former import FORMER
 
 ANGLES = (0.22, 0.96)
@@ -21,24 +20,15 @@ FRICTION = {"mu": {"distribution": "uniform", "low": 0.1, "high": 0.9}}
 
 def onset():
     """The friction above which the undamped linear model flutters."""
-
-    def discriminant(mu):
-        system = stability_map(FORMER.with_(mu=mu), [ANGLES[0]], [ANGLES[1]])
-        return float(system.regime_linear[0, 0]) - 0.5
-
-    return brentq(discriminant, 0.1, 0.9, xtol=1e-9)
+    found = critical_friction_map(FORMER, [ANGLES[0]], [ANGLES[1]])
+    return found.critical_mu_undamped.item()
 
 
 @pytest.mark.parametrize("belt_speed", [100.0, -3.0])
 def test_share_of_flutter_is_that_of_the_frictions_above_onset(belt_speed):
     angles = ANGLES if belt_speed > 0 else (np.pi - ANGLES[0], np.pi - ANGLES[1])
-    spread = propensity(
-        FORMER.with_(belt_speed=belt_speed),
-        *angles,
-        distributions=FRICTION,
-        samples=4096,
-        t_end=1.0,
-    )
+    given = {"distributions": FRICTION, "samples": 4096, "t_end": 1.0}
+    spread = propensity(FORMER.with_(belt_speed=belt_speed), *angles, **given)
     exact = (0.9 - onset()) / 0.8
     found = spread.sel(quantity="flutter")
     # a scrambled Sobol sequence of n points misses an interval's share by about 1/n
@@ -79,10 +69,8 @@ def test_indices_are_those_of_a_product_and_too_wide_ones_are_not_given():
 
 def test_correlated_springs_have_propensities_but_no_indices():
     springs = {name: {"distribution": "normal", "mean": 1.0, "std": 0.05} for name in ("k1", "k2")}
-    spread = propensity(
-        FORMER, *ANGLES, distributions=springs, samples=64, t_end=10.0,
-        spring_correlation=0.9,
-    )  # fmt: skip
+    given = {"samples": 64, "t_end": 10.0, "spring_correlation": 0.9}
+    spread = propensity(FORMER, *ANGLES, distributions=springs, **given)
     assert np.isfinite(spread.share).all()
     assert (spread.outcome == Outcome.unresolved).all()
 
@@ -157,15 +145,6 @@ def test_feasible_sets_are_judged_by_what_was_predicted_alone():
             exact = [one.feasible_share, *wilson_interval(held, count)]
             np.testing.assert_allclose(found[:3], exact, rtol=1e-12)
         assert found[3] == count
-
-
-def test_share_counts_only_what_was_judged():
-    share, low, high, judged, outcome = _share(
-        np.array([True, False, True, True]), np.array([True, True, True, False])
-    )
-    assert (share, judged, outcome) == (2 / 3, 3, Outcome.converged)
-    assert low < share < high
-    assert _share(np.array([True]), np.array([False]))[-1] == Outcome.unresolved
 
 
 def test_statements_without_a_motion_are_no_sample_of_starts(monkeypatch):
