@@ -58,7 +58,8 @@ COMMAND = [
 
 
 def test_a_terminal_gets_the_time_left_and_a_pipe_nothing(tmp_path):
-    done = subprocess.run(COMMAND, cwd=tmp_path, capture_output=True, check=True)
+    short = [word.replace("600", "20") for word in COMMAND]
+    done = subprocess.run(short, cwd=tmp_path, capture_output=True, check=True)
     assert done.stderr == b""
     master, slave = pty.openpty()
     surroundings = {**os.environ, "TERM": "xterm", "COLUMNS": "100"}

@@ -1,10 +1,8 @@
 """A study of one's own runs the rules that its report needs, and no others."""
 
-from pathlib import Path
-
 from squealpipe.execution.explain import explain
+from tests.conftest import ROOT, run_snakemake
 
-ROOT = Path(__file__).resolve().parents[2]
 OWN = """
 paper: false
 results: results/own
@@ -19,12 +17,13 @@ RULES = {
 }  # fmt: skip
 
 
-def test_only_the_rules_of_its_report_run_and_only_their_results_are_archived(tmp_path, dry_runs):
+def test_only_the_rules_of_its_report_run_and_only_their_results_are_archived(tmp_path):
     path = tmp_path / "own.yaml"
     path.write_text(OWN)
     plan = explain([path], directory=tmp_path)
     assert {job.rule for job in plan.jobs} == RULES
     assert {made for job in plan.jobs for made in job.outputs} == set(plan.keys)
-    (run,) = dry_runs(ROOT, [["--directory", tmp_path, "--configfile", path]])
-    wanted = run.text.partition("rule all:\n    input: ")[2].partition("\n")[0]
+    words = ["--directory", str(tmp_path), "--configfile", str(path)]
+    run = run_snakemake(ROOT, *words, "--dry-run", "--nocolor")
+    wanted = run.stdout.partition("rule all:\n    input: ")[2].partition("\n")[0]
     assert set(wanted.split(", ")) == set(plan.keys), "what is missing of it is made again"
