@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from squealpipe.tasks.curves.chart import regime_chart
     from squealpipe.tasks.curves.contact import boundary_distance, contact_boundary
     from squealpipe.tasks.cycles.branch import cycle_branch
+    from squealpipe.tasks.cycles.curve import cycle_curve
     from squealpipe.tasks.cycles.cycle import limit_cycle
     from squealpipe.tasks.dynamics.hammering import hammering_map
     from squealpipe.tasks.dynamics.refinement import refine_validity_map
@@ -61,6 +62,7 @@ __all__ = [
     "convert",
     "critical_friction_map",
     "cycle_branch",
+    "cycle_curve",
     "hammering_map",
     "infer_parameters",
     "labels",

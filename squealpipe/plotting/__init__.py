@@ -27,6 +27,7 @@ DRAWN: dict[str, Callable[[Axes, xr.Dataset], None]] = {
     "cycle_branch": draw_branch,
     "doubled_branch": draw_backbone,
     "contact_boundary": draw_curves,
+    "cycle_curve": draw_curves,
     "regime_chart": draw_curves,
     "stability_boundaries": draw_curves,
     "propensity": draw_shares,

@@ -4,11 +4,11 @@ from enum import IntEnum
 
 from squealpipe.codes import Event
 from squealpipe.parameters import Parameters
-from squealpipe.schema import DatasetSchema, Variable, or_nan, outcome, text
+from squealpipe.schema import DatasetSchema, Outcome, Variable, or_nan, outcome, text
 from squealpipe.schema.agreement import ComparedAs, Listing, RoundOff
 from squealpipe.schema.dynamics.runs import REGIMES, STATE
 from squealpipe.schema.linear import ONE_PAIR
-from squealpipe.systems.cycles.labels import Label
+from squealpipe.systems.cycles.labels import Label, Meeting
 
 
 class Stability(IntEnum):
@@ -125,6 +125,32 @@ CYCLE_BRANCH = DatasetSchema(
         "end": outcome(),
     },
 )
+
+CYCLE_CURVE = DatasetSchema(
+    name="cycle_curve",
+    title="A curve of special periodic motions of model A1 in two parameters",
+    coordinates={
+        "point": Variable(dims=("point",), dtype="i4", long_name="point along the curve"),
+        "parameter": text("parameter that varies", "parameter"),
+    },
+    variables={
+        **_followed(),
+        "period": Variable("period", "s", ("point",), rtol=1e-7),
+        "residual": Variable(
+            "largest equation left over, without units", dims=("point",), rtol=1.0, atol=1e-8
+        ),
+        "label": Variable("what else happens at the point", dims=("point",), flags=Meeting),
+        "events": Variable("events per period", dims=("point",), dtype="i4"),
+        "outcome": outcome(
+            "side",
+            among=(
+                Outcome.converged, Outcome.point_limit, Outcome.branch_lost,
+                Outcome.order_changes, Outcome.real_multipliers,
+            ),
+        ),
+        "change": text("what changes the order of the events where the curve ends", "side"),
+    },
+)  # fmt: skip
 
 SETTLED_EXTREMES = DatasetSchema(
     name="settled_extremes",

@@ -58,6 +58,9 @@ class Outcome(IntEnum):
         "events accumulate: the limit is the time reached; end there, or add a regime of rest",
     )
 
+    order_changes = 39, "the order of the events changes, as `change` says"
+    real_multipliers = 40, "a torus ends where its multipliers meet on the real axis"
+
     def __new__(cls, number: int, remedy: str = "") -> Self:
         """An outcome from its record."""
         outcome = int.__new__(cls, number)

@@ -12,7 +12,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from enum import IntEnum
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
@@ -26,6 +25,7 @@ from squealpipe.systems.cycles.branch import (
     PRECISE,
     STEPS,
     Line,
+    flip,
     label_of,
     order_of,
     run_of,
@@ -33,14 +33,14 @@ from squealpipe.systems.cycles.branch import (
 )
 from squealpipe.systems.cycles.event_map import FREE, Cycle, Event, EventMap, Section
 from squealpipe.systems.cycles.flow import Flow, Vector
-from squealpipe.systems.cycles.labels import Label
+from squealpipe.systems.cycles.labels import Label, Meeting
 from squealpipe.text import suggestion
 from squealpipe.validation import Number, Several, checked
 
 if TYPE_CHECKING:
     from squealpipe.systems.system import System
 
-_DIFFERENCE = 1e-5
+_DIFFERENCE = 1e-7
 _NEAR = 1e-4
 """Margin of a start below which it is taken for the one that vanishes."""
 _JUMP = 1.0
@@ -53,23 +53,6 @@ RETURNS = {Label.fold: 0.0, Label.period_doubling: np.pi, Label.torus: np.nan}
 
 
 Test = Callable[[Vector], float]
-
-
-class Meeting(IntEnum):
-    """What else happens at a point of a curve."""
-
-    regular = 0
-    cusp = 1
-    fold_flip = 2
-    fold_grazing = 3
-    flip_grazing = 4
-    stick_onset = 5
-    end_of_leg = 6
-    end = 7
-    resonance_1_1 = 8
-    resonance_1_2 = 9
-    resonance_1_3 = 10
-    resonance_1_4 = 11
 
 
 @dataclass
@@ -139,13 +122,17 @@ class Curve:
         value, row = self._singular(point, jacobian) if singular else self._margin(point)
         return np.append(values, value), np.vstack([jacobian, row])
 
-    def _singular(self, point: Vector, jacobian: Vector) -> tuple[Any, Vector]:
-        size, (right, left), factor = self.map.size, self.border, self.factor(point)
+    def _null(self, jacobian: Vector, factor: complex) -> Iterator[Any]:
+        """Right and left solution of the bordered system; the last number of both is 0 on it."""
+        size, (right, left) = self.map.size, self.border
         matrix: Any = np.zeros((size + 1, size + 1), type(factor))
         matrix[:size, :size] = self.returning(jacobian, factor)
         matrix[:size, size], matrix[size, :size] = left, right
-        unit = np.eye(size + 1)[-1]
-        null, dual = (np.linalg.solve(each, unit) for each in (matrix, matrix.T))
+        return (np.linalg.solve(each, np.eye(size + 1)[-1]) for each in (matrix, matrix.T))
+
+    def _singular(self, point: Vector, jacobian: Vector) -> tuple[Any, Vector]:
+        size, factor = self.map.size, self.factor(point)
+        null, dual = self._null(jacobian, factor)
         row: Any = -dual[:size] @ self._along(point, null[:size].real)
         if isinstance(factor, float):
             return float(null[-1]), row
@@ -164,8 +151,8 @@ class Curve:
         step = np.append(direction, np.zeros(2))
         size = max(float(np.linalg.norm(step)), 1e-300)
         step *= _DIFFERENCE / size
-        change = self.map.evaluate(here + step)[1] - self.map.evaluate(here - step)[1]
-        return np.asarray(change * (size / (2.0 * _DIFFERENCE)))
+        change = self.map.evaluate(here + step)[1] - self.map.evaluate(here)[1]
+        return np.asarray(change * (size / _DIFFERENCE))
 
     def _margin(self, point: Vector) -> tuple[float, Vector]:
         """What a margin is of, as a function of the end of its leg, and its row."""
@@ -190,18 +177,20 @@ class Curve:
     def tests(self) -> dict[Meeting, Test]:
         """What changes sign where something else happens."""
         if self.label == Label.fold:
-            size = self.map.size
             return {
-                Meeting.cusp: lambda z: self._cusp(z, size),
-                Meeting.fold_flip: lambda z: self.determinant(z, -1.0),
+                Meeting.cusp: self._cusp,
+                Meeting.fold_flip: self._flip,
             }
         if self.label == Label.period_doubling:
-            return {Meeting.fold_flip: lambda z: self.determinant(z, 1.0)}
+            return {Meeting.fold_flip: self._fold}
         if self.label == Label.torus:
             return {
                 Meeting.resonance_1_3: lambda z: z[-1] - 2.0 * np.pi / 3.0,
                 Meeting.resonance_1_4: lambda z: z[-1] - np.pi / 2.0,
             }
+        if self.label == Label.grazing and self.map.events[self.own.leg].switch == FREE:
+            # the touch is the section, or changes nothing: multipliers are those of the motion
+            return {Meeting.fold_grazing: self._fold, Meeting.flip_grazing: self._flip}
         if self.label == Label.grazing:
             return {
                 Meeting.fold_grazing: lambda z: self.determinant(z, 1.0),
@@ -209,8 +198,16 @@ class Curve:
             }
         return {}
 
-    def _cusp(self, point: Vector, size: int) -> float:
-        return float(self.evaluate(point)[1][-1, :size] @ self.border[0])
+    def _fold(self, point: Vector) -> float:
+        return float(np.prod(self.cycle(point).nontrivial - 1.0).real)
+
+    def _flip(self, point: Vector) -> float:
+        return flip(self.cycle(point))
+
+    def _cusp(self, point: Vector) -> float:
+        size, jacobian = self.map.size, self.evaluate(point)[1]
+        null, _ = self._null(jacobian[:size], 1.0)
+        return float(jacobian[-1, :size] @ null[:size])
 
     def least_margin(self, point: Vector) -> tuple[float, Margin | None]:
         """The margin next to zero that is not the curve's own."""
@@ -318,30 +315,38 @@ class _Way:
             if following is None:
                 self.end = "curve_lost"
                 return
-            tests = self.curve.tests()
-            found: dict[float, Meeting] = {}
             line = Line(
                 self.algorithm, self.curve, (state, self._cycle(state)),
                 (following, self._cycle(following)), self.curve.cycle,
             )  # fmt: skip
-            for label, test in tests.items():
-                if test(state.point) * test(following.point) < 0.0:
-                    share = line.root(partial(_at_point, test))
-                    # with two states folds and period doublings meet a grazing at the same point
-                    if share is not None and all(abs(share - other) > 1e-6 for other in found):
-                        found[share] = label
+            found = self._met(line)
             end = self._end(line)
             for share in sorted(found):
                 if end is None or share < end[0] - 1e-6:
                     yield self._point(line.at(share)[0], found[share])
             if end is not None:
-                yield self._point(line.at(end[0])[0], end[1])
+                changed = self._point(line.at(end[0])[0], end[1])
                 following = self._goes_on(line, end[0]) if end[2].startswith("order") else None
+                if following is not None and end[1] == Meeting.end:
+                    changed = replace(changed, label=Meeting.regular)
+                yield changed
                 if following is None:
                     self.end = end[2]
                     return
             yield self._point(following, Meeting.regular)
             state = following
+
+    def _met(self, line: Line) -> dict[float, Meeting]:
+        """Shares of a step at which something else happens."""
+        found: dict[float, Meeting] = {}
+        first, last = (line.known[share][0].point for share in (0.0, 1.0))
+        for label, test in self.curve.tests().items():
+            if test(first) * test(last) < 0.0:
+                share = line.root(partial(_at_point, test))
+                # with two states folds and period doublings meet a grazing at the same point
+                if share is not None and all(abs(share - other) > 1e-6 for other in found):
+                    found[share] = label
+        return found
 
     def _goes_on(self, line: Line, share: float) -> ContinuationState | None:
         """The curve's next point with the events that motions have beyond where these change."""

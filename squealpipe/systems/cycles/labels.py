@@ -1,4 +1,4 @@
-"""What a point of a branch of cycles is; apart from what finds it, which compiles."""
+"""What a point of a branch or curve of cycles is; apart from what finds it, which compiles."""
 
 from enum import IntEnum
 
@@ -13,3 +13,20 @@ class Label(IntEnum):
     grazing = 4
     stick_onset = 5
     end = 6
+
+
+class Meeting(IntEnum):
+    """What else happens at a point of a curve."""
+
+    regular = 0
+    cusp = 1
+    fold_flip = 2
+    fold_grazing = 3
+    flip_grazing = 4
+    stick_onset = 5
+    end_of_leg = 6
+    end = 7
+    resonance_1_1 = 8
+    resonance_1_2 = 9
+    resonance_1_3 = 10
+    resonance_1_4 = 11

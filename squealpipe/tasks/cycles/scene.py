@@ -17,6 +17,7 @@ from squealpipe.systems.brake import brake, parameters_of_run, regimes_of
 from squealpipe.systems.cycles.event_map import Cycle
 from squealpipe.systems.system import System
 
+DASHPOTS = ("damping1", "damping2")
 FAMILY = 1e-6
 """A second multiplier this close to 1 belongs to a family of cycles."""
 
@@ -62,10 +63,9 @@ class Scene:
     @cached_property
     def system(self) -> System:
         """The brake with these laws."""
-        dashpots = {"damping1", "damping2"}
         return brake(
             self.params.friction_law,
-            damped=not is_undamped(self.params) or self.follow in dashpots,
+            damped=not is_undamped(self.params) or self.follow in DASHPOTS,
             contact_law=contact_laws.relative(self.params.contact_law, self.params.preload),
             model=self.model,
         )
@@ -103,9 +103,7 @@ class Scene:
     def is_family_member(self, cycle: Cycle) -> bool:
         """Whether a second multiplier is 1 in a system whose cycles come in families."""
         near = np.abs(cycle.nontrivial - 1.0).min() < FAMILY
-        return bool(
-            near and is_undamped(self.params) and self.follow not in {"damping1", "damping2"}
-        )
+        return bool(near and is_undamped(self.params) and self.follow not in DASHPOTS)
 
     def is_singular(self, places: np.ndarray) -> bool:
         """Whether one of some places, (…, 2), is next to a pivot, where d = 0."""

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from squealpipe import cycle_branch, limit_cycle, simulate
+from squealpipe import cycle_branch, cycle_curve, limit_cycle, simulate
 from squealpipe.schema import Outcome
-from squealpipe.systems.cycles.labels import Label
+from squealpipe.systems.cycles.labels import Label, Meeting
 from tests.former import FORMER
 from tests.oracles.a1_long_double import simulate_reference
 
@@ -103,3 +103,63 @@ def test_special_points_do_not_depend_on_units():
     assert (branches[0].label == Label.stick_onset).any()
     places = [b.alpha1[at] for b, at in zip(branches, special, strict=True)]
     np.testing.assert_allclose(*places, rtol=1e-9)
+    curves = [
+        cycle_curve(given, *angles, label="stick_onset", parameters=("k3", "belt_speed"), start=b,
+                    n_points=4)
+        for given, b in zip((params, other), branches, strict=True)
+    ]  # fmt: skip
+    for name, of in (("k3", scaled["k3"]), ("belt_speed", scaled["belt_speed"]), ("period", 1e3)):
+        np.testing.assert_allclose(of * curves[0][name], curves[1][name], rtol=1e-8)
+
+
+FLUTTER = (FORMER.with_(k3=0.65, mu=0.01, length1=15.0, length2=15.0, belt_speed=-100.0,
+                        damping1=0.02, damping2=0.02), 0.305, 0.07)  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("scene", "label", "other", "ends", "to", "start"),
+    [
+        (ONE_WAY, "fold", "k3", (0.735, 0.77), 0.05, None),
+        (FLUTTER, "grazing", "alpha1", (0.93, 0.97), 0.7, "onset"),
+    ],
+)
+def test_curves_end_where_branches_have_the_special_point(scene, label, other, ends, to, start):
+    """At both limits of the other parameter, on branches in friction alone."""
+    params, *angles = scene[0], scene[1] * math.pi, scene[2] * math.pi
+
+    near = None if start else start_of(limit_cycle(params, *angles))
+
+    def branch_at(params, *angles):
+        first = start or limit_cycle(params, *angles, guess=near)
+        return cycle_branch(params, *angles, parameter="mu", to=to, start=first)
+
+    curve = cycle_curve(
+        params, *angles, label=label, parameters=("mu", other), to={other: ends},
+        start=branch_at(params, *angles),
+    )  # fmt: skip
+    assert list(curve.outcome.values) == [Outcome.converged] * 2
+    assert float(curve.residual.max()) < 1e-9
+    for end in (0, -1):
+        value = float(curve[other][end])
+        assert value == pytest.approx(ends[int(value > np.mean(ends))], abs=1e-12)
+        there = (params, value, angles[1])
+        branch = branch_at(*(there if other == "alpha1" else (params.with_(k3=value), *angles)))
+        mu = branch.mu.values[branch.label.values == Label[label]][0]
+        assert float(curve.mu[end]) == pytest.approx(float(mu), abs=1e-9)
+
+
+def test_a_curve_of_folds_goes_on_with_another_order_of_events():
+    """Round two cusps, until it ends with what changes the order."""
+    params, *angles = ONE_WAY[0], 0.4 * math.pi, 0.6 * math.pi
+    branch = cycle_branch(params, *angles, parameter="mu", to=0.05,
+                          start=limit_cycle(params, *angles))  # fmt: skip
+    curve = cycle_curve(
+        params, *angles, label="fold", parameters=("mu", "k3"), start=branch,
+        to={"mu": (0.05, 1.0), "k3": (0.34, 2.0)},
+    )  # fmt: skip
+    assert len(set(curve.events.values)) > 1
+    assert (curve.label == Meeting.cusp).sum() == 2
+    assert set(curve.outcome.values) == {Outcome.converged, Outcome.order_changes}
+    assert [bool(text) for text in curve.change.values] == [
+        outcome == Outcome.order_changes for outcome in curve.outcome.values
+    ]

@@ -1,0 +1,94 @@
+"""Curves of special periodic motions of model A1 in two parameters or angles."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+import xarray as xr
+
+from squealpipe.parameters import Parameters
+from squealpipe.schema import Outcome, build
+from squealpipe.schema.cycles import CYCLE_CURVE
+from squealpipe.schema.origin import recorded
+from squealpipe.solvers.a1.jobs import STATE
+from squealpipe.systems.cycles.curve import ENDS, check, follow_curve, point_of
+from squealpipe.systems.cycles.labels import Label
+from squealpipe.tasks.cycles.cycle import cycle_from
+from squealpipe.tasks.cycles.scene import DASHPOTS, Scene
+from squealpipe.validation import Angle, Number, Several
+
+REASONS = dict(zip(ENDS, (Outcome.point_limit, Outcome.converged, Outcome.branch_lost,
+                          Outcome.real_multipliers), strict=True))  # fmt: skip
+
+
+@recorded(model="A1", method="pseudo-arclength continuation of the legs and one condition")
+def cycle_curve(
+    params: Parameters,
+    alpha1: Angle,
+    alpha2: Angle,
+    *,
+    label: str,
+    parameters: Sequence[str],
+    start: xr.Dataset,
+    to: Mapping[str, tuple[Number, Number]] | None = None,
+    n_points: Several = 200,
+) -> xr.Dataset:
+    """The curve of a special point of a branch, in two parameters or angles, in both directions.
+
+    It goes on with a new order of events where motions beyond have one, or ends there.
+
+    Args:
+        params: those of the branch.
+        alpha1, alpha2: angles of the branch, rad.
+        label: ``fold``, ``period_doubling``, ``torus``, ``grazing`` or ``stick_onset``.
+        parameters: names of two physical parameters, "alpha1" or "alpha2".
+        start: a dataset of ``cycle_branch``, whose first point of that label is taken, or one
+            point of it.
+        to: parameter → (lowest, highest) value at which the curve ends.
+        n_points: most points, of both directions together.
+
+    Returns:
+        Dataset ``cycle_curve`` over ``point``; ``label`` says what else happens there.
+
+    Raises:
+        ValueError: a label or parameter that there is not, limits that do not ascend or leave the
+            start out, or no such point in ``start``.
+    """
+    own = {"alpha1": alpha1, "alpha2": alpha2}
+    point = point_of(start, label)
+    followed = str(start.attrs["parameter"])
+    if followed in own:
+        own[followed] = float(point[followed])
+    else:
+        params = params.with_(**{followed: float(point[followed])})
+    dashpots = [name for name in parameters if name in DASHPOTS]
+    scene = Scene(params, own["alpha1"], own["alpha2"], follow=dashpots[0] if dashpots else None)
+    limits = dict(to or {})
+    check([name for name in scene.values if name in scene.units], label, parameters, limits)
+    cycle, _ = cycle_from(scene, [float(point[f"{name}_start"]) for name in STATE])
+    if cycle is None:
+        raise ValueError("no cycle is found from start")
+    scaled = {name: tuple(np.array(ends) / scene.units[name]) for name, ends in limits.items()}
+    points, ends = follow_curve(
+        cycle, Label[label], parameters, scaled, n_points, tied=scene.tied
+    )  # fmt: skip
+    values = {
+        name: np.array([each.cycle.parts.values[name] for each in points]) * scene.units[name]
+        for name in {*parameters, "alpha1", "alpha2"}
+    }
+    periods = np.array([each.cycle.period for each in points])
+    return build(
+        CYCLE_CURVE,
+        {
+            **values,
+            "period": periods * scene.params.time_unit,
+            "residual": [each.residual for each in points],
+            "label": [each.label for each in points],
+            "events": [scene.count(each.cycle) for each in points],
+            "outcome": [REASONS.get(end, Outcome.order_changes) for end in ends],
+            "change": ["" if end in REASONS else end for end in ends],
+        },
+        {"point": np.arange(len(points)), "parameter": list(parameters)},
+        {"curve": label},
+    )
