@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 import itertools
 from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor
@@ -15,7 +16,7 @@ import pandas as pd
 import xarray as xr
 
 from squealpipe.config.ranges import ANGLES, NUMBERS, PHYSICAL
-from squealpipe.execution.catalogue import NEEDED, TASKS
+from squealpipe.execution.catalogue import MAPS, NEEDED, TASKS, options_of
 from squealpipe.execution.scatter import scattered_values
 from squealpipe.execution.system_sweep import SystemSweep, is_system
 from squealpipe.methods.processes import available_cores, leave_interrupts_to_the_parent
@@ -33,8 +34,6 @@ from squealpipe.schema.origin import origin
 from squealpipe.schema.sweep import OPTIONS, fill_up, is_ragged, ragged_dims, sweep_name
 from squealpipe.text import suggestion
 from squealpipe.validation import Line, Workers, checked
-
-Arrays = dict[str, np.ndarray]
 
 
 @checked
@@ -69,7 +68,7 @@ class Sweep:
         _gate(self.task, self.params, self.vary, self.fixed)
         if self.task not in TASKS:
             raise ValueError(f"no task {self.task!r}; {suggestion(self.task, TASKS)}")
-        options = TASKS[self.task].defaults
+        options = options_of(self.task)
         varied = [*NUMBERS, *ANGLES, *(name for name in options if name in OPTIONS)]
         for name, values in self.vary.items():
             if name not in varied:
@@ -94,7 +93,7 @@ class Sweep:
 
     def _with(self, given: Mapping[str, Any]) -> tuple[Parameters, dict[str, Any]]:
         """The parameters with what is given of them, and the rest: angles and options."""
-        options = TASKS[self.task].defaults
+        options = options_of(self.task)
         physical = {name for name in given if name in PHYSICAL and name not in options}
         params = self.params.with_(**{name: given[name] for name in physical})
         return params, {name: given[name] for name in given if name not in physical}
@@ -102,7 +101,7 @@ class Sweep:
     @property
     def names(self) -> list[str]:
         """Swept names in the order given; angles that the task itself maps are not among them."""
-        inner = ("alpha1", "alpha2") if TASKS[self.task].maps_angles else ()
+        inner = ("alpha1", "alpha2") if TASKS[self.task] in MAPS else ()
         return [name for name in self.vary if name not in inner]
 
     @property
@@ -113,7 +112,7 @@ class Sweep:
     @property
     def schema(self) -> DatasetSchema:
         """Schema of the result."""
-        return find(sweep_name(TASKS[self.task].schema, self.names))
+        return find(sweep_name(_schema(self.task), self.names))
 
     def run(self, point: Sequence[float], workers: int | None = None) -> xr.Dataset:
         """The task at one point, in so many processes where it can use several."""
@@ -121,16 +120,16 @@ class Sweep:
         params, given = self._with({**self.fixed, **self.vary, **point_by_name})
         angles = [given.pop(name) for name in ANGLES]
         task = TASKS[self.task]
-        if "workers" in task.parameters:
+        if "workers" in inspect.signature(task).parameters:
             given["workers"] = workers
-        return task.run(
-            params, *(map(np.atleast_1d, angles) if task.maps_angles else angles), **given
-        )
+        if task in MAPS:
+            angles = [np.atleast_1d(angle) for angle in angles]
+        return task(params, *angles, **given)
 
     @property
     def origin(self) -> dict[str, Any]:
         """Attributes that record what makes the result; swept parameters are its coordinates."""
-        params, given = self._with({**TASKS[self.task].defaults, **self.fixed})
+        params, given = self._with({**options_of(self.task), **self.fixed})
         fixed = {name: value for name, value in given.items() if name not in self.vary}
         return origin(self.task, {"params": params, **fixed})
 
@@ -149,12 +148,6 @@ def planned(config: Mapping[str, Any]) -> Sweep | SystemSweep:
         vary=config["vary"],
         fixed=config["fixed"],
     )
-
-
-def _run(sweep: Sweep, workers: int | None, point: tuple[float, ...]) -> Arrays:
-    """The arrays of one run; picklable with the sweep, so that a process can compute it."""
-    made = sweep.run(point, workers)
-    return {str(name): variable.values for name, variable in made.variables.items()}
 
 
 @checked
@@ -181,42 +174,46 @@ def run_sweep(sweep: Sweep | SystemSweep, *, workers: Workers = None) -> xr.Data
     return _merge(sweep, runs)
 
 
-def _runs(sweep: Sweep, workers: int | None) -> Iterator[Arrays]:
+def _runs(sweep: Sweep, workers: int | None) -> Iterator[xr.Dataset]:
     points = sweep.points
     number = min(workers or available_cores(), len(points))
     if number == 1 or "fork" not in get_all_start_methods():
-        yield from map(partial(_run, sweep, workers), points)
+        yield from map(partial(sweep.run, workers=workers), points)
         return
     others = set(active_children())
     with ProcessPoolExecutor(number, get_context("fork"), leave_interrupts_to_the_parent) as pool:
         size = -(-len(points) // (16 * number))
         try:
-            yield from pool.map(partial(_run, sweep, 1), points, chunksize=size)
+            yield from pool.map(partial(sweep.run, workers=1), points, chunksize=size)
         except BaseException:
             for process in set(active_children()) - others:
                 process.terminate()  # the pool is broken then and waits for no other run
             raise
 
 
-def _merge(sweep: Sweep, runs: Sequence[Arrays]) -> xr.Dataset:
-    schema, base = sweep.schema, find(TASKS[sweep.task].schema)
+def _merge(sweep: Sweep, runs: Sequence[xr.Dataset]) -> xr.Dataset:
+    schema, base = sweep.schema, find(_schema(sweep.task))
     shape = tuple(len(sweep.vary[name]) for name in sweep.names)
     data, coords = {}, {name: np.asarray(sweep.vary[name]) for name in sweep.names}
     for name, entry in {**base.coordinates, **base.variables}.items():
         if name in sweep.names or name not in runs[0]:
             continue
         if name in schema.coordinates:
-            coords[name] = _common(name, [run[name] for run in runs])
+            coords[name] = _common(name, [run[name].values for run in runs])
             continue
-        arrays = [run[name] for run in runs]
+        arrays = [run[name].values for run in runs]
         if is_ragged(entry):  # shorter ones are filled up
             longest_run = tuple(np.max([array.shape for array in arrays], axis=0))
             arrays = [fill_up(array.astype(entry.dtype), longest_run) for array in arrays]
         stacked = np.stack(arrays)
         data[name] = stacked.reshape(shape + stacked.shape[1:])
     for dim in ragged_dims(base):
-        data[f"{dim}_count"] = np.reshape([_length(run, dim, base) for run in runs], shape)
+        data[f"{dim}_count"] = np.reshape([run.sizes.get(dim, 0) for run in runs], shape)
     return build(schema, data, coords, sweep.origin)
+
+
+def _schema(task: str) -> str:
+    return "simulation" if task == "simulate" else task
 
 
 def _common(name: str, arrays: Sequence[np.ndarray]) -> np.ndarray:
@@ -225,13 +222,6 @@ def _common(name: str, arrays: Sequence[np.ndarray]) -> np.ndarray:
         remedy = "; fix the option 'times', for instance 0:50:1001" if name == "time" else ""
         raise ValueError(f"{name} differs from run to run{remedy}")
     return arrays[0]
-
-
-def _length(run: Arrays, dim: str, base: DatasetSchema) -> int:
-    for name, entry in {**base.variables, **base.coordinates}.items():
-        if name in run and dim in entry.dims:
-            return int(run[name].shape[entry.dims.index(dim)])
-    return 0
 
 
 def outcome_lines(dataset: xr.Dataset, names: list[str]) -> list[str]:

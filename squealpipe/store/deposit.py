@@ -27,21 +27,20 @@ states whether you find the same.
 
 def bundle(name: str | os.PathLike[str], *, output: str | os.PathLike[str] | None = None) -> Path:
     """Write ``results/deposit/NAME.zip``; it appears whole or not at all."""
-    base, archive = Path(), locate(name)
+    archive, citation = locate(name), Path("CITATION.cff")
     found = verify(archive)
     if not found.intact:
         raise ValueError("\n".join(found.lines()))
-    citation = base / "CITATION.cff"
     if not citation.is_file():
         raise FileNotFoundError(f"{citation} is missing: it names authors and licence")
-    target = Path(output) if output else base / f"results/deposit/{archive.name}.zip"
+    target = Path(output) if output else Path(f"results/deposit/{archive.name}.zip")
     contents: dict[str, bytes | Path]
     contents = {"README.md": README.encode(), citation.name: citation.read_bytes()}
     contents |= {f"run/{path.relative_to(archive)}": path for path in archive.rglob("*")}
     contents |= {
-        f"code/{path.relative_to(base)}": path
-        for source in SOURCES
-        for path in [base / source, *(base / source).rglob("*")]
+        f"code/{path}": path
+        for source in map(Path, SOURCES)
+        for path in [source, *source.rglob("*")]
         if "__pycache__" not in path.parts
     }
     try:

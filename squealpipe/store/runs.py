@@ -15,9 +15,8 @@ ARCHIVES = Path("results/archive")
 SEAL = "manifest.sha256"
 """Holds the checksum of the manifest, so that an edited manifest is noticed too."""
 NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,79}")
-
-
 LEFT_OUT = "left_out"
+"""Entry of a manifest with the patterns of what the archive deliberately does not hold."""
 
 
 @dataclass(frozen=True)
@@ -63,20 +62,9 @@ def read_manifest(folder: Path) -> dict[str, Any]:
     return manifest if whole else {}
 
 
-def seal_fits(folder: Path) -> bool:
-    """Whether the manifest of an archive is as it was sealed."""
-    seal = folder / SEAL
-    return seal.is_file() and seal.read_bytes() == seal_text(folder).encode()
-
-
 def seal_text(folder: Path) -> str:
     """The line that seals the manifest of an archive, as `sha256sum` writes and checks it."""
     return f"{checksum(folder / MANIFEST)}  {MANIFEST}\n"
-
-
-def left_out(place: Path) -> list[str]:
-    """Patterns of what an archive deliberately does not hold."""
-    return list(read_manifest(place).get(LEFT_OUT, []))
 
 
 def archive_folder(name: str, root: str | os.PathLike[str] = ".") -> Path:
@@ -125,7 +113,8 @@ def verify(
         for path in sorted(present & set(listed))
         if (folder / path).is_symlink() or checksum(folder / path) != listed[path].get("sha256")
     ]
-    if not seal_fits(folder):
+    seal = folder / SEAL
+    if not seal.is_file() or seal.read_bytes() != seal_text(folder).encode():
         changed.append(MANIFEST)
     return Verification(
         folder=folder,

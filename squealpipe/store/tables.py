@@ -104,20 +104,17 @@ def _write_matlab(dataset: xr.Dataset, path: Path) -> list[Path]:
     from scipy.io import savemat
 
     variables = {str(name): variable for name, variable in dataset.variables.items()}
-    flags = {str(name): meanings(variable) for name, variable in dataset.data_vars.items()}
     content: dict[str, object] = {
         name: variable.values.astype(object) if variable.dtype.kind in "UO" else variable.values
         for name, variable in variables.items()
     }
     content["units"] = {
-        name: variable.attrs["units"]
-        for name, variable in variables.items()
-        if "units" in variable.attrs
+        name: given.attrs["units"] for name, given in variables.items() if "units" in given.attrs
     }
     content["meanings"] = {
         name: ", ".join(f"{value}: {words}" for value, words in table.items())
-        for name, table in flags.items()
-        if table
+        for name in variables
+        if (table := meanings(dataset[name]))
     }
     content["attributes"] = _about(dataset)
     with whole_file(path) as temporary:

@@ -104,14 +104,6 @@ def test_archives_never_change(run, frozen, keys_of):
     assert checksum(frozen / "manifest.json") == before
 
 
-def test_no_run_is_told(tmp_path, run, keys_of):
-    shutil.rmtree(run / "results")
-    with pytest.raises(FileNotFoundError, match="run snakemake first"):
-        archive("first", keys=keys_of(run), root=run)
-    with pytest.raises(FileNotFoundError, match="no archives yet"):
-        verify("first", root=run)
-
-
 def test_a_damaged_manifest_is_found(frozen):
     replace(frozen / "manifest.json", b'{"files": [1, 2]}')
     assert verify(frozen).changed == ["manifest.json (damaged)"]

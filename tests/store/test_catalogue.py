@@ -4,10 +4,8 @@ import json
 import shutil
 
 import pytest
-import yaml
 
 from squealpipe.cli import run as command
-from squealpipe.config.yaml_files import flat
 from squealpipe.store import load, save
 from squealpipe.store.archive import archive
 
@@ -55,12 +53,6 @@ def test_what_is_no_condition_is_one_message(memory, capsys, expression):
     assert command(["find", expression]) == 2
     error = capsys.readouterr().err
     assert "Traceback" not in error
-
-
-def test_configuration_is_that_of_the_manifest(memory):
-    manifest = json.loads((memory / "results/archive/first/manifest.json").read_text())
-    resolved = yaml.safe_load((memory / "results/archive/first/config/resolved.yaml").read_text())
-    assert flat(manifest["config"]) == flat(resolved)
 
 
 def test_list_tells_what_differs(memory, capsys):

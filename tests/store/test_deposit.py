@@ -5,7 +5,6 @@ import zipfile
 
 import pytest
 
-from squealpipe.cli import run as command
 from squealpipe.store.archive import archive
 from squealpipe.store.checkout import ROOT
 from squealpipe.store.deposit import bundle
@@ -42,12 +41,3 @@ def test_a_damaged_archive_is_not_bundled(checkout):
     with pytest.raises(ValueError, match=r"missing: figures/fig06\.png"):
         bundle("first")
     assert not (checkout / "results/deposit").exists()
-
-
-def test_the_command_needs_no_network(checkout, monkeypatch, capsys):
-    def refuse(*_, **__):
-        raise AssertionError("the network was used")
-
-    monkeypatch.setattr("socket.socket.connect", refuse)
-    assert command(["deposit", "first"]) == 0
-    assert "results/deposit/first.zip" in capsys.readouterr().out

@@ -17,6 +17,7 @@ from squealpipe.parameters import Parameters
 from squealpipe.schema import SchemaError
 from squealpipe.store import StoreError, load, save
 from squealpipe.store.netcdf import MARK
+from squealpipe.store.provenance import stamped
 from squealpipe.store.whole_files import checksum
 from squealpipe.tasks.linear.maps import stability_map
 
@@ -66,6 +67,18 @@ def test_what_a_reader_sees_beside_the_values_is_covered_too(path):
         file["growth_rate"].setncattr("units", "h-1")
     with pytest.raises(StoreError, match="was changed or damaged since"):
         load(path)
+
+
+def test_ids_of_inputs_are_those_of_the_files_that_the_task_read(tmp_path):
+    made = [stability_map(Parameters(mu=mu), [1.0], [2.0]) for mu in (0.1, 0.2)]
+    path = save(made[0], tmp_path / "input.nc")
+
+    def task():
+        save(made[1], path)  # another job, meanwhile
+        return made[0]
+
+    before = stamped(lambda: made[0], config={}, inputs=[path]).attrs["inputs"]
+    assert stamped(task, config={}, inputs=[path]).attrs["inputs"] == before
 
 
 @pytest.mark.parametrize("kind", ["device", "pipe", "folder", "link"])

@@ -1,17 +1,14 @@
 """Every public function tells what made its dataset; nothing of that enters the dataset's id."""
 
 import json
-import shutil
 import subprocess
 from pathlib import Path
 
-import numpy as np
 import pytest
 
 import squealpipe
 from squealpipe import Parameters, Sweep, load, run_sweep, save
-from squealpipe.schema.origin import plain
-from squealpipe.store.checkout import ROOT, commit
+from squealpipe.store.checkout import commit
 from squealpipe.store.netcdf import dataset_id
 from tests.calls import CALLS
 
@@ -54,15 +51,6 @@ def test_every_public_function_that_returns_a_dataset_is_covered():
     assert set(squealpipe.__all__) - other == set(MODEL_AND_TOLERANCE)
 
 
-def test_arguments_are_told_and_long_ones_by_their_ends():
-    run = squealpipe.simulate(PARAMS, 0.4, 1.1, t_end=1.0, model="A1-no-stick", tol=1e-9).attrs
-    assert json.loads(run["arguments"])["alpha2"] == 1.1
-    assert (run["model"], run["tolerance"]) == ("A1-no-stick", 1e-9)
-    assert plain(np.linspace(0, 1, 9)) == {"first": 0.0, "last": 1.0, "number": 9}
-    assert json.dumps(plain(np.longdouble(1.5))) == "1.5"
-    assert plain({"a": (1, 2.5, "x")}) == {"a": ["1", "2.5", "x"]}
-
-
 def test_sweeps_tell_their_task_and_what_stays_fixed():
     fixed = {"alpha1": 0.9, "alpha2": 2.8, "mode": 1, "y_peak_max": 1.1, "mu": 0.4}
     plan = {"task": "backbone", "vary": {"k3": [0.5, 0.7]}, "fixed": fixed}
@@ -77,27 +65,28 @@ def test_sweeps_tell_their_task_and_what_stays_fixed():
 
 def git(place, *arguments):
     who = ["-c", "user.name=a", "-c", "user.email=a@b.c"]
-    subprocess.run(["git", *who, *arguments], cwd=place, check=True, capture_output=True)
+    done = subprocess.run(["git", *who, *arguments], cwd=place, check=True, capture_output=True)
+    commit.cache_clear()
+    return done.stdout.decode()
 
 
 def test_commit_is_our_own_or_none(tmp_path):
-    """Not that of a repository around the checkout, nor of one that we are installed into."""
+    """Not that of a repository around the checkout; another archive in a checkout is no change."""
     inside = tmp_path / "theirs/squealpipe-copy"
-    (inside / "squealpipe").mkdir(parents=True)
-    for name in ("Snakefile", "squealpipe/__init__.py"):
-        shutil.copy(ROOT / name, inside / name)
-    git(tmp_path / "theirs", "init")
-    git(tmp_path / "theirs", "add", ".")
-    git(tmp_path / "theirs", "commit", "-m", "theirs")
+    for name in ("Snakefile", "squealpipe/__init__.py", "results/archive/a/manifest.json"):
+        (inside / name).parent.mkdir(parents=True, exist_ok=True)
+        (inside / name).touch()
+    for words in (["init"], ["add", "."], ["commit", "-m", "theirs"]):
+        git(tmp_path / "theirs", *words)
     assert commit(inside) == "unknown"
     git(inside, "init")
-    commit.cache_clear()
     assert commit(inside) == "unknown", "nothing of ours is committed"
-    commit.cache_clear()
     git(inside, "add", ".")
     git(inside, "commit", "-m", "ours")
-    head = subprocess.run(
-        ["git", "rev-parse", "HEAD"], cwd=inside, capture_output=True, text=True, check=True
-    )
-    assert head.stdout.startswith(commit(inside))
+    (inside / "results/archive/a/manifest.json").unlink()
+    assert git(inside, "rev-parse", "HEAD").startswith(commit(inside))
+    (inside / "Snakefile").write_text("rule all:")
+    commit.cache_clear()
+    assert commit(inside).endswith("-dirty")
     assert commit(Path("/")) == "unknown"
+    commit.cache_clear()

@@ -18,7 +18,7 @@ from squealpipe.store.comparison.matching import align, judged_length
 from squealpipe.store.comparison.statements import StatementChange, changed_statements
 from squealpipe.store.netcdf import load
 from squealpipe.store.provenance import VOLATILE_ATTRIBUTES
-from squealpipe.store.runs import dataset_files, left_out, locate, matches_any
+from squealpipe.store.runs import LEFT_OUT, dataset_files, locate, matches_any, read_manifest
 
 PHYSICAL_KEY = re.compile(r"(parameters\.|alpha\d|mode\b|scene\b|vary\.|fixed\.)")
 """Configuration keys that say what is computed; the others say how, and on which grid."""
@@ -98,7 +98,7 @@ def compare(
     try:
         places = locate(a, root), locate(b, root)
         left, right = (dataset_files(place) for place in places)
-        absent = [pattern for place in places for pattern in left_out(place)]
+        absent = [pattern for place in places for pattern in read_manifest(place).get(LEFT_OUT, [])]
     except (FileNotFoundError, ValueError) as error:
         return Comparison(a=str(a), b=str(b), reason=str(error))
     if len(left) == len(right) == 1 and (Path(a).is_file() or Path(b).is_file()):
