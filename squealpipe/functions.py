@@ -7,8 +7,6 @@ import numpy as np
 from squealpipe.laws import functions as of_laws
 from squealpipe.methods.taylor import symbols
 
-of_laws.exp.register(symbols.Symbol, symbols.exp)
-
 
 def _of(name: str, value: Any) -> Any:
     if isinstance(value, symbols.Symbol):
@@ -44,3 +42,6 @@ def tanh(value: Any) -> Any:
 def sqrt(value: Any) -> Any:
     """√x."""
     return value**0.5 if isinstance(value, symbols.Symbol) else np.sqrt(value)
+
+
+of_laws.exp.register(symbols.Symbol, exp)

@@ -143,8 +143,8 @@ def integrate(
     known = {**values, TIME_UNIT: unit}
     derived = derive(*(known[name] for name in given))
     columns = [*(values[name] for name in names), *derived, unit]
-    parameters = np.stack([np.broadcast_to(each, (size,)) for each in columns], axis=1)
-    initial = np.stack([values[name] for name in system.states], axis=1)
+    parameters = _table(size, columns)
+    initial = _table(size, [values[name] for name in system.states])
     regimes = regime
     if not isinstance(regimes, np.ndarray):
         regimes = system.first_regimes({TIME: np.zeros(size), **values}, size, regimes)
@@ -158,7 +158,7 @@ def integrate(
     ]
     lost = math.log(loop.LOST_ERROR / tol)
     each = (t_end / unit, t_late / unit, most_steps, most_events, lost, most_turns)
-    limits = np.stack(np.broadcast_arrays(*each), axis=-1)
+    limits = _table(size, each)
     samples = np.empty((1, 0)) if times is None else np.atleast_2d(times)
     sample_times = np.ascontiguousarray(samples / unit[:, None])
     n_samples = samples.shape[1]
@@ -281,6 +281,14 @@ def integrate(
         arrays["sample_durations"] = arrays["sample_durations"] * unit[:, None, None]
     arrays["summary"][:, 1:] *= unit[:, None]
     return arrays
+
+
+def _table(size: int, columns: Sequence[Any]) -> np.ndarray:
+    """Columns side by side, each a number or an array (size,)."""
+    table = np.empty((size, len(columns)))
+    for place, column in enumerate(columns):
+        table[:, place] = column
+    return table
 
 
 @dataclass(frozen=True)
@@ -441,9 +449,9 @@ def ensemble(
         for j, which in enumerate(("_min", "_max")):
             label = f"{('smallest', 'largest')[j]} {name}"
             found[name + which] = field(label, units[name], raw["extremes"][:, i, j])
-            found[f"late_{name}{which}"] = field(
-                f"{label} from t_late on", units[name], _finite(raw["late_extremes"][:, i, j])
-            )
+            late_one = raw["late_extremes"][:, i, j]
+            reached = np.where(np.isfinite(late_one), late_one, np.nan)  # the outcome says why
+            found[f"late_{name}{which}"] = field(f"{label} from t_late on", units[name], reached)
     for i, name in enumerate(system.traced.kinds):
         found[f"count_{name}"] = field(f"number of events {name}", "1", raw["counts"][:, i])
         found[f"first_{name}"] = field(f"time of the first {name}", "s", raw["firsts"][:, i])
@@ -531,11 +539,6 @@ def call_values(
         system.check_parameter(name)
     states = {name: system.start[name] for name in system.units}
     return {**states, **system.parameters, **start, **parameters}
-
-
-def _finite(array: np.ndarray) -> np.ndarray:
-    """Extremes of a part that a run did not reach are NaN; the outcome says why."""
-    return np.where(np.isfinite(array), array, np.nan)
 
 
 def labels(long_name: str, units: str) -> dict[str, str]:

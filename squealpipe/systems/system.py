@@ -14,6 +14,7 @@ from squealpipe.methods.taylor.scalar import REGIME, SwitchSymbols, evaluate, nu
 from squealpipe.methods.taylor.symbols import Symbol, derivative, in_order, parameter, symbol
 from squealpipe.parameters import is_finite_number
 from squealpipe.schema import Outcome
+from squealpipe.systems import basin, runs
 from squealpipe.systems.trace import (
     TIME,
     TIME_UNIT,
@@ -154,23 +155,7 @@ class System:
         switches = ", ".join(each.name for each in self.switches)
         return f"System({self.name!r}: {', '.join(self.states)}; switches {switches or 'none'})"
 
-    def simulate(self, t_end: float, **options: Any) -> xr.Dataset:
-        """One run with every switch located; see :func:`squealpipe.systems.runs.simulate`."""
-        from squealpipe.systems.runs import simulate
-
-        return simulate(self, t_end, **options)
-
-    def ensemble(self, t_end: float, **options: Any) -> xr.Dataset:
-        """Many runs at once; see :func:`squealpipe.systems.runs.ensemble`."""
-        from squealpipe.systems.runs import ensemble
-
-        return ensemble(self, t_end, **options)
-
-    def basin(self, t_end: float, **options: Any) -> xr.Dataset:
-        """What motions from many starts become; see :func:`squealpipe.systems.basin.basin`."""
-        from squealpipe.systems.basin import basin
-
-        return basin(self, t_end, **options)
+    simulate, ensemble, basin = runs.simulate, runs.ensemble, basin.basin
 
     def limit_cycle(self, **options: Any) -> xr.Dataset:
         """A periodic motion; see :func:`squealpipe.systems.cycles.cycle.limit_cycle`."""

@@ -108,6 +108,25 @@ def test_the_cycle_of_the_relief_valve_shrinks_to_rest_at_its_hopf_point():
     assert float(branch.q[-1]) == pytest.approx(8.491117635183, abs=1e-11)
 
 
+def test_a_system_without_switches_has_branches_with_tori():
+    """A forced van der Pol oscillator loses its lock: a complex pair is on the unit circle."""
+    van_der_pol = System(
+        "van der Pol", states={"x": "1", "v": "1"}, parameters={"force": 3.0}, regimes={"one": {}},
+        field=lambda t, s, p, r: {
+            "x": s.v, "v": 0.3 * (1.0 - s.x * s.x) * s.v - s.x + p.force * cos(1.6 * t),
+        },
+        start={"x": 1.0, "v": 0.0}, period=lambda p: 2.0 * np.pi / 1.6,
+    )  # fmt: skip
+    branch = van_der_pol.cycle_branch("force", 0.2, start=van_der_pol.limit_cycle())
+    (force,) = special(branch, Label.torus)
+    (at,) = np.flatnonzero(branch.label == Label.torus)
+    guess = {name: float(branch[f"{name}_start"][at]) for name in ("x", "v")}
+    cycle = van_der_pol.limit_cycle(guess=guess, force=force)
+    size = np.hypot(cycle.multiplier_real, cycle.multiplier_imag)
+    np.testing.assert_allclose(size, 1.0, atol=1e-10)
+    assert (cycle.multiplier_imag != 0.0).all()
+
+
 def test_a_settled_motion_of_more_periods_says_how_many():
     cycle = impact_oscillator.limit_cycle(omega=2.1, amplitude=3.48, start={"x": 0.5})
     assert np.isnan(cycle.period)

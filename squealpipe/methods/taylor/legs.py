@@ -14,8 +14,8 @@ import numpy as np
 from squealpipe.methods.compiled import compiled, part
 from squealpipe.methods.taylor.lanes import call, compile_advance, view
 from squealpipe.methods.taylor.loop import _reach, _step_length
+from squealpipe.methods.taylor.roots import evaluate
 from squealpipe.methods.taylor.simd import FEW, LANES, ROW, smaller, store
-from squealpipe.methods.taylor.taylor_polynomial import evaluate
 
 _numba: Any = numba
 _SWEEPS = 19

@@ -14,7 +14,7 @@ import numpy as np
 
 from squealpipe.methods.compiled import inline, part
 from squealpipe.methods.taylor.lanes import call, compile_advance, view
-from squealpipe.methods.taylor.roots import evaluate_twice, first_crossing
+from squealpipe.methods.taylor.roots import evaluate, evaluate_twice, first_crossing
 from squealpipe.methods.taylor.simd import (
     LANES,
     ROW,
@@ -30,7 +30,6 @@ from squealpipe.methods.taylor.simd import (
     splat,
     store,
 )
-from squealpipe.methods.taylor.taylor_polynomial import evaluate, evaluate_with_slope
 
 _numba: Any = numba
 SLACK = 1e-13
@@ -195,7 +194,7 @@ def _first_switch(t: Any, m: Any, c: Any, lane: int, step: float) -> float:
         )  # fmt: skip
         if root < 0.0 or root > first + tie:
             continue
-        _, slope = evaluate_with_slope(c, t.n_variables + surface, lane, root)
+        _, slope, _ = evaluate_twice(c, t.n_variables + surface, lane, root)
         which = falls if rises < 0 or (falls >= 0 and slope < 0.0) else rises
         earlier = root < first - tie or integers[HIT, lane] < 0
         # of switches at one instant the first by name goes first, whatever their order

@@ -15,6 +15,16 @@ FINEST = 2.0**-48
 
 
 @polynomial
+def evaluate(coefficients: Any, variable: int, lane: int, step: float) -> Any:
+    """The Taylor polynomial of a variable, [variable, order, lane], so long after its start."""
+    order = coefficients.shape[1] - 1
+    value = coefficients[variable, order, lane]
+    for k in range(order - 1, -1, -1):
+        value = value * step + coefficients[variable, k, lane]
+    return value
+
+
+@polynomial
 def evaluate_twice(coefficients: Any, variable: int, lane: int, step: float) -> Any:
     """A polynomial and its first and second derivatives."""
     order = coefficients.shape[1] - 1

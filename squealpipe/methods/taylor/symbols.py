@@ -140,11 +140,6 @@ def function(name: str, value: Any) -> Symbol:
     return Symbol(name, value)
 
 
-def exp(value: Symbol) -> Symbol:
-    """eˣ."""
-    return function("exp", value)
-
-
 def _is(value: Symbol, number: float) -> bool:
     return value.kind == "number" and value.arguments[0] == number
 

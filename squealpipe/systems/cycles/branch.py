@@ -52,7 +52,10 @@ STEPS = ContinuationSettings(
     first_step=1e-3, shortest_step=1e-9, longest_step=0.05, tolerance=1e-11, stagnant=1e-8
 )
 PRECISE = replace(STEPS, tolerance=3e-14, max_iterations=10)
-"""Of a special point, which is located to round-off."""
+ALONG, AT = (
+    PseudoArclength(steps, least_iterations=0, own_tangent=True) for steps in (STEPS, PRECISE)
+)
+"""Along a branch, and at a special point, which is located to round-off."""
 _EASY, _GROWTH = 3, 3.0
 """With no more than so many iterations the next step may grow, by no more than this factor."""
 _TURN = 0.7
@@ -181,8 +184,8 @@ def _closeness(offset: Vector, parts: int, _: ContinuationState, cycle: Cycle) -
     return float(offset @ cycle.after_part(parts))
 
 
-def _least_margin(_: ContinuationState, cycle: Cycle) -> float:
-    return min(margins(cycle).values())
+def _least_margin(_: ContinuationState | None, cycle: Cycle) -> float:
+    return min(margins(cycle).values(), default=math.inf)
 
 
 @dataclass(frozen=True)
@@ -201,8 +204,6 @@ class Follower:
 
     def __init__(self, low: float, high: float, most: int) -> None:
         self.low, self.high, self.most = low, high, most
-        self.algorithm = PseudoArclength(STEPS, least_iterations=0, own_tangent=True)
-        self.precise = replace(self.algorithm, settings=PRECISE)
         self.points: list[Point] = []
         self.shapes: list[Vector] = []
 
@@ -317,7 +318,7 @@ class Follower:
         fit = np.flatnonzero(sizes > 0.2 * _AT_REST * sizes.max())[-3:]
         shapes = []
         for state, equations in ((self.points[i].state, self.points[i].cycle.map) for i in fit):
-            found = self.precise.solve(equations, state.point, state.tangent, 0.0)
+            found = AT.solve(equations, state.point, state.tangent, 0.0)
             if found is not None:
                 shapes.append(self._shape(Cycle.at(equations, found.point), found))
         if len(shapes) < 3:
@@ -335,7 +336,7 @@ class Follower:
             trial = replace(state, step=step)
             following = self._edge(equations, trial)
             if following is None:
-                following = self.algorithm.attempt(equations, trial)
+                following = ALONG.attempt(equations, trial)
             if following is not None:
                 reached = Cycle.at(equations, following.point)
                 if not self._strays(trial, cycle, following, reached):
@@ -373,13 +374,13 @@ class Follower:
     ) -> Step | None:
         """A step with what lies in it; None where that is not clear."""
         line = Line(
-            self.precise,
+            AT,
             cycle.map,
             (state, cycle),
             (following, reached),
             partial(Cycle.at, cycle.map),
         )
-        before, after = (min(margins(each).values()) for each in (cycle, reached))
+        before, after = (_least_margin(None, each) for each in (cycle, reached))
         last = 1.0 if after >= -ROUND_OFF else line.root(_least_margin)
         found = None if last is None else self._smooth(line, last)
         if found is None or last is None:
@@ -429,7 +430,7 @@ class Follower:
             return Step([Point(*there)], *there, end=Outcome.equilibrium)
         zero = {k: v for k, v in margins(there[1]).items() if abs(v) < 1e-7}
         label = label_of(there[1], zero)
-        turned = _Turn(self.algorithm, line, last, there, zero).way_on()
+        turned = _Turn(line, last, there, zero).way_on()
         special = [Point(*line.at(share), each) for share, each in found]
         special += [Point(*there, label)] if label or turned is None else []
         if turned is not None:
@@ -472,7 +473,7 @@ class Follower:
         guess[-1] = edge / unit
         normal = np.zeros(len(guess))
         normal[-1] = math.copysign(1.0, state.tangent[-1])
-        found = self.algorithm.solve(equations, guess, normal, state.step)
+        found = ALONG.solve(equations, guess, normal, state.step)
         if found is None or float(np.linalg.norm(found.point - guess)) > 0.3 * length:
             return None
         return found
@@ -550,7 +551,6 @@ class Line:
 class _Turn:
     """How a branch goes on from where the order of its events changes."""
 
-    algorithm: PseudoArclength
     line: Line
     share: float
     there: tuple[ContinuationState, Cycle]
@@ -609,7 +609,7 @@ class _Turn:
         usual = min((v for k, v in known if k.kind in kinds and v > 1e-6), default=1.0)
         most = _WEAK * min(1.0, usual)
         weak = {k: v for k, v in near.items() if k.kind in kinds and v < most}
-        algorithm = replace(self.algorithm, settings=replace(STEPS, max_iterations=12))
+        algorithm = replace(ALONG, settings=replace(STEPS, max_iterations=12))
         if weak:
             key = min(weak, key=lambda k: weak[k])
             normal = _gradient(equations, guess, key)
@@ -628,10 +628,10 @@ class _Turn:
         ways = []
         for sign in (1.0, -1.0):
             trial = replace(state, tangent=sign * state.tangent, step=1e-5)
-            ahead = self.algorithm.attempt(equations, trial)
+            ahead = ALONG.attempt(equations, trial)
             if ahead is not None:
                 beyond = Cycle.at(equations, ahead.point)
-                least = min(margins(beyond).values())
+                least = _least_margin(None, beyond)
                 if least >= -ROUND_OFF:
                     ways.append((least, ahead, beyond))
         if not ways:
@@ -746,8 +746,7 @@ def first_point(
     equations, guess = cycle.followed_in(flow, np.array([max(abs(begin), abs(to))]))
     normal = np.zeros(len(guess))
     normal[-1] = math.copysign(1.0, to - begin)
-    algorithm = PseudoArclength(PRECISE, least_iterations=0, own_tangent=True)
-    state = algorithm.solve(equations, guess, normal, STEPS.first_step)
+    state = AT.solve(equations, guess, normal, STEPS.first_step)
     return None if state is None else (state, Cycle.at(equations, state.point))
 
 
@@ -787,9 +786,8 @@ def doubled_start(point: Point) -> tuple[ContinuationState, Cycle] | None:
     if twice.section is not None:
         direction[:n] -= twice.section.normal * (twice.section.normal @ direction[:n])
     direction /= np.linalg.norm(direction)
-    algorithm = PseudoArclength(STEPS, least_iterations=0, own_tangent=True)
     for length in (1e-3, 3e-3, 1e-2):
-        state = algorithm.solve(twice, base + length * direction, direction, STEPS.first_step)
+        state = ALONG.solve(twice, base + length * direction, direction, STEPS.first_step)
         if state is not None:
             return state, Cycle.at(twice, state.point)
     return None

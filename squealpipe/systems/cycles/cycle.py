@@ -65,10 +65,10 @@ def sizes_at(flow: Flow, values: Mapping[str, float], state: Vector, regime: int
     return sizes * min(1.0, largest) if 0.0 < largest < np.inf else sizes
 
 
-def events_of(system: System, motion: Motion, first: int, count: int) -> tuple[Event, ...]:
-    """Some consecutive events of a run, each with its switch."""
+def events_of(system: System, motion: Motion, count: int) -> tuple[Event, ...]:
+    """The first events of a run, each with its switch."""
     t, found = system.traced, []
-    for i in range(first, first + count):
+    for i in range(count):
         before, after, kind = (int(v) for v in (*motion.regimes[i : i + 2], motion.kinds[i]))
         for table, sign in ((t.falls, 1.0), (t.rises, -1.0)):
             for surface, switch in enumerate(table[before]):
@@ -92,7 +92,6 @@ def guess_of(
     period: float,
     *,
     periods: int,
-    first: int = 0,
     count: int | None = None,
     scale: Vector,
 ) -> tuple[EventMap, Vector] | None:
@@ -101,31 +100,37 @@ def guess_of(
     Args:
         period: after which it nearly repeats, s.
         periods: of the forcing in it; 0 without.
-        first, count: events of one period; all by default.
+        count: events of one period; all by default.
     """
     count = len(motion.times) if count is None else count
     units = np.array([max(abs(values[name]), 1e-300) for name in flow.followed])
     followed = np.array([values[name] for name in flow.followed])
-    if motion.regimes[first] != motion.regimes[first + count]:
+    if motion.regimes[0] != motion.regimes[count]:
         return None
+    equations = EventMap(flow, (), values, scale, period, units, periods)
     if count == 0:
-        regime = int(motion.regimes[first])
-        section = None
-        if not periods:
-            heading = flow.field(values, regime, state, 0.0) / scale
-            section = Section(state, heading / np.linalg.norm(heading))
-        events: tuple[Event, ...] = (Event(FREE, FREE, 1.0, regime, regime, FREE),)
-        equations = EventMap(flow, events, values, scale, period, units, periods, section)
-        return equations, equations.pack(state[None], np.array([period]), 0.0, followed)
-    events = events_of(flow.system, motion, first, count)
+        return _eventless(equations, state, int(motion.regimes[0]), period, followed)
+    events = events_of(flow.system, motion, count)
     if len(events) < count:
         return None
-    times = motion.times[first : first + count]
+    times = motion.times[:count]
     durations = np.append(np.diff(times), times[0] + period - times[-1])
     # legs begin after each event: the last ends at the first event
-    equations = EventMap(flow, (*events[1:], events[0]), values, scale, period, units, periods)
-    states = motion.states[first : first + count]
-    return equations, equations.pack(states, durations, float(times[0]), followed)
+    equations = replace(equations, events=(*events[1:], events[0]))
+    return equations, equations.pack(motion.states[:count], durations, float(times[0]), followed)
+
+
+def _eventless(
+    equations: EventMap, state: Vector, regime: int, period: float, followed: Vector
+) -> tuple[EventMap, Vector]:
+    """Equations and guess of a cycle through a state that stays in one regime."""
+    section = None
+    if not equations.periods:
+        heading = equations.flow.field(equations.values, regime, state, 0.0) / equations.scale
+        section = Section(state, heading / np.linalg.norm(heading))
+    free = Event(FREE, FREE, 1.0, regime, regime, FREE)
+    made = replace(equations, events=(free,), section=section)
+    return made, made.pack(state[None], np.array([period]), 0.0, followed)
 
 
 def solved(equations: EventMap, guess: Vector) -> Cycle | None:
@@ -157,7 +162,9 @@ def merged(cycle: Cycle, leg: int, count: int) -> tuple[EventMap, Vector]:
     """Equations and guess in which a leg goes on through the next ones, without events between."""
     equations, parts = cycle.map, cycle.parts
     if count >= equations.legs:
-        return _eventless(cycle, equations.events[leg])
+        state, _ = cycle.start()
+        made, regime = replace(equations, values=parts.values), equations.events[leg].before
+        return _eventless(made, state, regime, cycle.period, cycle.followed)
     absorbed = [(leg + k) % equations.legs for k in range(1, count + 1)]
     keep = [i for i in range(equations.legs) if i not in absorbed]
     events, durations = list(equations.events), parts.durations.copy()
@@ -166,18 +173,6 @@ def merged(cycle: Cycle, leg: int, count: int) -> tuple[EventMap, Vector]:
     fewer = replace(equations, events=tuple(events[i] for i in keep))
     start = parts.start + float(cycle.clocks[keep[0]])
     return fewer, fewer.pack(parts.states[keep], durations[keep], start, cycle.followed)
-
-
-def _eventless(cycle: Cycle, event: Event) -> tuple[EventMap, Vector]:
-    equations = cycle.map
-    state, regime = cycle.start()
-    section = None
-    if not equations.periods:
-        heading = equations.flow.field(cycle.parts.values, regime, state, 0.0) / equations.scale
-        section = Section(state, heading / np.linalg.norm(heading))
-    free = Event(FREE, FREE, 1.0, event.before, event.before, FREE)
-    made = replace(equations, events=(free,), section=section)
-    return made, made.pack(state[None], np.array([cycle.period]), 0.0, cycle.followed)
 
 
 def find_cycle(
@@ -291,15 +286,13 @@ def _free(
         if _rests(run.path[len(run.path) // 2 :], sizes_at(flow, values, state, regime or 0)):
             return None, Outcome.equilibrium
         scale = scale_of(extremes, system.sizes)
-        for first, count, period, distance in _returns(flow, values, run, times, state, scale):
+        for count, period, distance in _returns(flow, values, run, times, state, scale):
             if distance > (_FAR if window == _WINDOWS[-1] else _NEAR):
                 break
             if any(abs(period - other) < 1e-3 * period for other in tried):
                 continue
             tried.append(period)
-            found = guess_of(
-                flow, values, run, state, period, periods=0, first=first, count=count, scale=scale
-            )
+            found = guess_of(flow, values, run, state, period, periods=0, count=count, scale=scale)
             cycle = None if found is None else solved(*found)
             if cycle is None or abs(cycle.period - period) > _FAR * period:
                 continue
@@ -370,16 +363,16 @@ def _returns(
     times: Vector,
     state: Vector,
     scale: Vector,
-) -> Iterator[tuple[int, int, float, float]]:
-    """(first event, events, period, distance) of near returns, the best and earliest first."""
-    found: list[tuple[int, int, float, float]] = []
+) -> Iterator[tuple[int, float, float]]:
+    """(events, period, distance) of near returns, the best and earliest first."""
+    found: list[tuple[int, float, float]] = []
     if len(run.times):
         keys = np.column_stack([run.kinds, run.regimes[:-1], run.regimes[1:]])
         for count in range(1, len(run.times)):
             if (keys[count] != keys[0]).any():
                 continue
             distance = float(np.abs((run.states[count] - run.states[0]) / scale).max())
-            found.append((0, count, float(run.times[count] - run.times[0]), distance))
+            found.append((count, float(run.times[count] - run.times[0]), distance))
     else:
         normal = flow.field(values, int(run.regimes[0]), state, 0.0) / scale
         height = ((run.path - state) / scale) @ normal
@@ -387,9 +380,9 @@ def _returns(
             share = -height[at] / (height[at + 1] - height[at])
             there = run.path[at] + share * (run.path[at + 1] - run.path[at])
             distance = float(np.abs((there - state) / scale).max())
-            found.append((0, 0, float(times[at] + share * times[1]), distance))
-    nearest = 3.0 * min((each[3] for each in found), default=0.0) + 1e-4
-    found.sort(key=lambda each: (each[3] >= nearest, each[2] if each[3] < nearest else each[3]))
+            found.append((0, float(times[at] + share * times[1]), distance))
+    nearest = 3.0 * min((each[2] for each in found), default=0.0) + 1e-4
+    found.sort(key=lambda each: (each[2] >= nearest, each[1] if each[2] < nearest else each[2]))
     yield from found[:_TRIES]
 
 

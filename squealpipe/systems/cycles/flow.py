@@ -236,16 +236,21 @@ class Flow:
 
     def field(self, values: Mapping[str, float], regime: int, state: Vector, time: float) -> Vector:
         """Rates of the states."""
-        at = [*state, *([time] * self.timed)]
-        return np.array(self._field(*at, *self.numbers(values, regime)), float)
+        return self._at(self._field, values, regime, state, time)
+
+    def _at(
+        self, function: Any, values: Mapping[str, float], regime: int, state: Vector, time: float
+    ) -> Vector:
+        """What a function of :attr:`arguments` gives at a state."""
+        at = [*state, *([np.float64(time)] * self.timed)]
+        return np.array(function(*at, *self.numbers(values, regime)), float)
 
     def jacobian(
         self, values: Mapping[str, float], regime: int, state: Vector, time: float = 0.0
     ) -> Vector:
         """∂f/∂(states, followed parameters, time), (n, n + p)."""
         found = np.zeros((self.size, self._columns))
-        at = [*state, *([time] * self.timed)]
-        entries = self._slopes(*at, *self.numbers(values, regime))
+        entries = self._at(self._slopes, values, regime, state, time)
         for (i, j, _), value in zip(self._entries, entries, strict=True):
             found[i, j] = value
         return found
@@ -277,9 +282,8 @@ class Flow:
         time: float,
     ) -> Crossing:
         """A switch from one regime to another at a state."""
-        numbers = self.numbers(values, regimes[0])
-        at = [*state, *([np.float64(time)] * self.timed)]
-        flat = np.array(self._crossing_function(switch, surface)(*at, *numbers), float)
+        function = self._crossing_function(switch, surface)
+        flat = self._at(function, values, regimes[0], state, time)
         n, width = self.size, 1 + self.size + self.timed + len(self.by)
         # values, and slopes by states, the time and parameters: of the surface and what comes after
         rows, rest = flat[: (n + 1) * width].reshape(n + 1, width), flat[(n + 1) * width :]
@@ -323,8 +327,7 @@ class Flow:
                 root = sum((self.slope(surface, z) * rate for z, rate in along), symbol(0.0))
             roots = [root, *(self.slope(root, each) for each in (*states, *by, *self.by))]
             self._functions[key] = python_function(roots, self.arguments, np)
-        at = [*state, *([np.float64(time)] * self.timed)]
-        return np.array(self._functions[key](*at, *self.numbers(values, event.before)), float)
+        return self._at(self._functions[key], values, event.before, state, time)
 
     def _prepare(self, legs: int) -> None:
         t, code = self.system.integrated, compiled(self.system, tangent=False, few=True).series

@@ -48,7 +48,7 @@ def sensitivities(
     states = np.array([values[state] for state in system.states])
     by_time = np.full((len(times), n, len(names)), np.nan)
     delays = np.full((count, len(names)), np.nan)
-    events = events_of(system, motion, 0, count)
+    events = events_of(system, motion, count)
     stops = [(time, 0, i) for i, time in enumerate(motion.times)]
     stops += [(time, 1, i) for i, time in enumerate(times) if time <= motion.reached]
     stops.sort()

@@ -7,6 +7,7 @@ import mpmath
 import numpy as np
 import pytest
 
+from squealpipe.functions import exp
 from squealpipe.methods.taylor import series
 from squealpipe.methods.taylor.lanes import INVERSES, aligned, compile_system, taylor_terms
 from squealpipe.methods.taylor.series import HybridSystem, series_source
@@ -14,7 +15,6 @@ from squealpipe.methods.taylor.simd import LANES
 from squealpipe.methods.taylor.symbols import (
     FUNCTIONS,
     derivative,
-    exp,
     function,
     parameter,
     symbol,
