@@ -52,7 +52,7 @@ def _states(name: str) -> Any:
 
     def states(self: Ensemble) -> np.ndarray:
         values, length, time = self._raw[name], self._jobs.length, self._jobs.time_unit
-        units = np.stack([length, length, length / time, length / time], axis=-1)
+        units = np.array([length, length, length / time, length / time]).T
         return self._shaped(values * units.reshape(len(units), *(1,) * (values.ndim - 2), 4))
 
     return property(states)
