@@ -226,7 +226,7 @@ class ZeroLines:
         forward, aside = ((self.slope[chords] * way).sum(axis=-1) for way in (left, -chord))
         with np.errstate(all="ignore"):
             slopes = np.clip(aside / np.maximum(forward, 0.0), -STEEPEST, STEEPEST)
-        return chord[:, 0], left[:, 0], np.where(np.isnan(forward), 0.0, slopes)
+        return chord[:, 0], left[:, 0], np.nan_to_num(slopes)
 
     def _meeting(self, chords: Indices) -> tuple[Vector, Vector]:
         """Where the tangent at the first end, forwards, meets that at the last, backwards.
