@@ -175,7 +175,7 @@ class ZeroLines:
             if not len(chords) or len(self.place) > MOST_POINTS:
                 break
             error, new, *across = self._divided(chords)
-            lost = ~((new >= 0.0) & (new <= 1.0)).all(axis=1)
+            lost = ~((new >= 0.0) & (new <= 1.0)).all(axis=1) | ~across[0].any(axis=1)
             self._keep(chords[lost], self._length(chords[lost]) ** 2)
             self.unresolved = max([self.unresolved, *self._length(chords[lost])])
             chords, error = chords[~lost], error[~lost]

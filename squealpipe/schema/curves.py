@@ -22,6 +22,8 @@ class ChartLine(IntEnum):
     flutter = 0
     divergence = 1
     contact_lost = 2
+    whirl = 3
+    stick = 4
 
 
 RATIOS = {"kappa": "k3/k1", "lambda_": "L1/l_pre, both lengths in their proportion"}

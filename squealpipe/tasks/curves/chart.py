@@ -35,6 +35,8 @@ def regime_chart(
     alpha2: Line,
     *,
     design: Mapping[str, float | Line] | None = None,
+    whirl: xr.Dataset | None = None,
+    stick: xr.Dataset | None = None,
     t_end: Positive | None = None,
     tol: Tolerance = 1e-12,
     workers: Workers = None,
@@ -49,6 +51,8 @@ def regime_chart(
         alpha1, alpha2: angles, rad.
         design: the two parameters by their names, numbers or arrays of several designs; by default
             their values in ``params``, where both are there. Distances to each line are given.
+        whirl, stick: datasets of :func:`cycle_curve` over the two parameters (k3 for kappa), which
+            become lines too: where a cycle is born, as in a fold, and where it begins to stick.
         t_end: end of each run, s; 200 √(m/k1) by default.
         ranges: parameters that vary.
 
@@ -56,7 +60,7 @@ def regime_chart(
         Dataset ``regime_chart`` over ``point`` and ``region``.
 
     Raises:
-        ValueError: as :func:`contact_boundary`, or the design names other parameters.
+        ValueError: as :func:`contact_boundary`, or design or curves have other parameters.
     """
     axes, fixed = two_axes(params, alpha1, alpha2, ranges)
     if design is not None and set(design) != set(axes):
@@ -103,6 +107,11 @@ def regime_chart(
         for places, sizes in [_parts((regime == code) & (kept == state))]
         for k, size in enumerate(sizes, start=1)
     ]
+    cycles = {
+        which: (_over(square, which.name, curve), curve.residual.values)
+        for which, curve in ((ChartLine.whirl, whirl), (ChartLine.stick, stick))
+        if curve is not None
+    }
     data: dict[str, Any] = {}
     if design is not None:
         places = np.stack([np.atleast_1d(design[name]) for name in axes], axis=1)
@@ -110,20 +119,24 @@ def regime_chart(
         loops = {
             which: [square.values(loop.outline) for loop in each.loops(positive=True)]
             for which, each in lines.items()
-        }
+        } | {which: [np.concatenate([line, line[::-1]])] for which, (line, _) in cycles.items()}
         far = [[nearest_on(each, at, limits)[1] for each in loops.values()] for at in places]
         data = {"design": places, "distance": far}
-    chains = [(which, each, c) for which, each in lines.items() for c in each.chains()]
-    places = np.concatenate([each.place[c] for _, each, c in chains] or [np.empty((0, 2))])
-    lengths = [len(c) for _, _, c in chains]
+    chains = [
+        (which, square.values(each.place[chain]), each.residual[chain])
+        for which, each in lines.items()
+        for chain in each.chains()
+    ] + [(which, *curve) for which, curve in cycles.items()]
+    places = np.concatenate([np.empty((0, 2)), *(line for _, line, _ in chains)])
+    lengths = [len(line) for _, line, _ in chains]
     return build(
         REGIME_CHART,
         data
         | {
-            **dict(zip(square.names, square.values(places).T, strict=True)),
+            **dict(zip(square.names, places.T, strict=True)),
             "line": np.repeat([int(which) for which, _, _ in chains], lengths),
             "curve": np.repeat(np.arange(len(chains)), lengths),
-            "residual": np.concatenate([e.residual[c] for _, e, c in chains] or [np.empty(0)]),
+            "residual": np.concatenate([np.empty(0), *(residual for *_, residual in chains)]),
             "cell_regime": regime,
             "cell_kept": kept,
             "region_regime": [code for code, *_ in regions],
@@ -136,14 +149,24 @@ def regime_chart(
             "outcome": [
                 Outcome.unresolved if each.unresolved else Outcome.converged
                 for each in lines.values()
-            ],
+            ]
+            + [Outcome.converged] * len(cycles),
         },
         {
             "point": np.arange(len(places)),
             "parameter": square.names,
-            "boundary": [which.name for which in lines],
+            "boundary": [which.name for which in (*lines, *cycles)],
         },
     )
+
+
+def _over(square: Square, name: str, curve: xr.Dataset) -> Vector:
+    """A curve of cycles in the chart's parameters, (points, 2)."""
+    names = ["k3" if each == "kappa" else each for each in square.names]
+    if set(names) != set(curve.get("parameter", xr.DataArray([])).values):
+        raise ValueError(f"{name}: a dataset of cycle_curve in {' and '.join(names)} is needed")
+    units = np.where(np.array(square.names) == "kappa", square.params.k1, 1.0)
+    return np.stack([curve[each].values for each in names], axis=1) / units
 
 
 def _parts(where: np.ndarray) -> tuple[Vector, np.ndarray]:

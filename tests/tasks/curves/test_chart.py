@@ -92,3 +92,30 @@ def test_parameters_under_their_own_names():
         squealpipe.regime_chart(
             PARAMS, *angles, t_end=10.0, design={"kappa": 1.0}, kappa=kappa, mu=mu
         )
+
+
+def test_onset_of_the_whirl_and_of_its_stick():
+    """Along the friction of the design the distances are those to the branch's special points."""
+    params = PARAMS.with_(mu=0.15, belt_speed=-100.0, damping1=0.02, damping2=0.02)
+    angles, kappa, mu = (0.4 * np.pi, 0.6 * np.pi), np.linspace(0.6, 0.7, 5), np.linspace(0, 0.3, 5)
+    start = squealpipe.limit_cycle(params.with_(mu=0.3), *angles, t_settle=6000.0)
+    scene = params.with_(mu=0.3), *angles
+    branch = squealpipe.cycle_branch(*scene, parameter="mu", to=0.003, start=start)
+    whirl, stick = (
+        squealpipe.cycle_curve(*scene, label=label, parameters=("mu", "k3"), start=branch,
+                               to={"k3": (0.6, 0.7)}, n_points=400)
+        for label in ("fold", "stick_onset")
+    )  # fmt: skip
+    chart = squealpipe.regime_chart(
+        params, *angles, t_end=5.0, kappa=kappa, mu=mu, whirl=whirl, stick=stick
+    )
+    assert chart.boundary.values[3:].tolist() == ["whirl", "stick"]
+    for which, curve in (("whirl", whirl), ("stick", stick)):
+        on = chart.line.values == ChartLine[which]
+        np.testing.assert_array_equal(chart.mu[on], curve.mu)
+        far = float(np.hypot(curve.k3 - params.k3, curve.mu - params.mu).min())
+        assert float(chart.distance[0, ChartLine[which]]) <= far
+    fold = float(branch.mu[branch.label == 1][0])
+    assert float(chart.distance[0, 3]) <= params.mu - fold < 1.05 * float(chart.distance[0, 3])
+    with pytest.raises(ValueError, match="in k3 and belt_speed is needed"):
+        squealpipe.regime_chart(params, *angles, kappa=kappa, belt_speed=mu + 1.0, whirl=whirl)

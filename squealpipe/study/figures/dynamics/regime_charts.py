@@ -22,6 +22,8 @@ LOOKS: dict[ChartLine, tuple[str, dict[str, Any]]] = {
     ChartLine.contact_lost: ("contact is lost", {"color": style.BLACK}),
     ChartLine.flutter: ("A3 flutters", {"color": style.BLUE, "linestyle": "--"}),
     ChartLine.divergence: ("A3 diverges", {"color": style.GREEN, "linestyle": ":"}),
+    ChartLine.whirl: ("a cycle is born", {"color": style.RED, "linestyle": "-."}),
+    ChartLine.stick: ("its stick begins", {"color": style.ORANGE}),
 }
 NEARLY_ALL = 0.95
 """Share of a chart beyond which one kind makes it say nothing at a glance."""
@@ -102,6 +104,8 @@ def _draw(panel: Axes, chart: xr.Dataset) -> None:
     panel.imshow(_kinds(chart).T, origin="lower", extent=extent, interpolation="none", **tones)
     for which, (label, look) in LOOKS.items():
         on = chart.line.values == which
+        if which.name not in chart.boundary.values:
+            continue
         style.draw_lines(panel, (x[on], y[on]), chart.curve.values[on], label=label, **look)
     look = {"color": style.RED, "ms": 7, "mew": 1.8, "path_effects": HALO}
     panel.plot(*chart.design.values.T, "x", label="scene", **look)
@@ -114,6 +118,6 @@ def _title(name: str) -> str:
 
 
 def _listed(distances: np.ndarray) -> str:
-    by_line = dict(zip(ChartLine, distances, strict=True))
-    found = (by_line[which] for which in LOOKS)
+    by_line = dict(zip(ChartLine, distances, strict=False))
+    found = (by_line[which] for which in LOOKS if which in by_line)
     return ", ".join(number(far, 3) if np.isfinite(far) else "none" for far in found)
