@@ -138,6 +138,7 @@ def test_curves_end_where_branches_have_the_special_point(scene, label, other, e
         start=branch_at(params, *angles),
     )  # fmt: skip
     assert list(curve.outcome.values) == [Outcome.converged] * 2
+    assert (curve.made_by, curve.model) == ("squealpipe.cycle_curve", "A1")
     assert float(curve.residual.max()) < 1e-9
     for end in (0, -1):
         value = float(curve[other][end])
