@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-import importlib.util
 import inspect
+import runpy
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -29,13 +29,10 @@ def find_system(place: str) -> System:
     file, _, name = place.partition(":")
     if not Path(file).is_file():
         raise ValueError(f"no file {file!r}; a system is named like impact.py:impact_oscillator")
-    spec = importlib.util.spec_from_file_location(Path(file).stem, file)
-    assert spec is not None and spec.loader is not None  # noqa: S101, PT018 (a file has both)
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    found = getattr(module, name, None)
+    defined = runpy.run_path(file)
+    found = defined.get(name)
     if not isinstance(found, System):
-        known = [key for key, value in vars(module).items() if isinstance(value, System)]
+        known = [key for key, value in defined.items() if isinstance(value, System)]
         raise ValueError(f"{file} defines no system {name!r}; {suggestion(name, known)}")  # noqa: TRY004
     return found
 

@@ -19,8 +19,6 @@ from squealpipe.store.whole_files import MANIFEST
 from squealpipe.text import nearest
 
 EXAMPLE = "write for instance 'mu == 0.25 and L1 > 4'"
-NOT_COMPARED = ("results",)
-"""Configuration keys that say where, not what."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -35,7 +33,6 @@ class Run:
     """
 
     name: str
-    kind: str
     date: str
     commit: str
     size: int
@@ -47,7 +44,7 @@ class Run:
         return {
             key: value
             for key, value in self.config.items()
-            if key not in NOT_COMPARED and paper.get(key) != value
+            if key != "results" and paper.get(key) != value  # which says where, not what
         }
 
 
@@ -98,17 +95,15 @@ def paper_configuration() -> dict[str, Any]:
 
 
 def _archived(place: Path) -> Run:
-    found = verify(place)
     manifest = read_manifest(place)
     config = manifest.get("config")
     return Run(
         name=place.name,
-        kind="archive",
         date=str(manifest.get("frozen", "")),
         commit=str(manifest.get("commit", "")),
         size=sum(path.stat().st_size for path in place.rglob("*") if path.is_file()),
         config=flat(config) if isinstance(config, dict) else {},
-        faults=[] if found.intact else [line.strip() for line in found.lines()[1:]],
+        faults=verify(place).findings,
     )
 
 
@@ -133,7 +128,6 @@ def _results(place: Path, base: Path) -> Run:
         dates.append(str(stated.get("history", "")).partition(" ")[0])
     return Run(
         name=place.relative_to(base).as_posix(),
-        kind="results",
         date=max(dates),
         commit=", ".join(sorted(commits - {""})),
         size=sum(path.stat().st_size for path in files.values() if path.is_file()),

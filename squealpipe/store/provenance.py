@@ -15,16 +15,8 @@ from squealpipe.store.checkout import commit
 from squealpipe.store.netcdf import load, made_now, save
 
 VOLATILE_ATTRIBUTES = frozenset(
-    {
-        "history",
-        "wall_time_s",
-        "platform",
-        "libraries",
-        "package_version",
-        "commit",
-        "inputs",
-        "key",
-    }
+    ("history", "wall_time_s", "platform", "libraries")
+    + ("package_version", "commit", "inputs", "key")
 )
 """Global attributes that describe the run, not of the result."""
 

@@ -33,14 +33,11 @@ def open_results(name_or_path: AnyPath, *, root: str | os.PathLike[str] = ".") -
         StoreError: a file is damaged, a copy under another name, or no dataset of this package.
     """
     place = locate(name_or_path, root)
-    found = {name: _load(name, path) for name, path in dataset_files(place).items()}
+    found = {}
+    for name, path in dataset_files(place).items():
+        found[name] = read(path)
+        refuse_copy(name, path, found[name].attrs)
     return xr.DataTree.from_dict(found, name=place.name)
-
-
-def _load(name: str, path: Path) -> xr.Dataset:
-    dataset = read(path)
-    refuse_copy(name, path, dataset.attrs)
-    return dataset
 
 
 def refuse_copy(name: str, path: Path, stated: Mapping[str, Any]) -> None:

@@ -5,7 +5,7 @@ import json
 import os
 import re
 from collections.abc import Iterable
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -21,29 +21,23 @@ LEFT_OUT = "left_out"
 
 @dataclass(frozen=True)
 class Verification:
-    """What differs between an archive and its manifest; nothing: it is intact."""
+    """What is changed, missing or extra in an archive by its manifest; nothing: it is intact."""
 
     folder: Path
     files: int
-    changed: list[str] = field(default_factory=list)
-    missing: list[str] = field(default_factory=list)
-    extra: list[str] = field(default_factory=list)
+    findings: list[str]
 
     @property
     def intact(self) -> bool:
         """Whether every byte is as it was frozen."""
-        return not (self.changed or self.missing or self.extra)
+        return not self.findings
 
     def lines(self) -> list[str]:
         """The findings, for people."""
         if self.intact:
             return [f"{self.folder}: intact, {self.files} files as they were frozen"]
-        found = [
-            f"  {word}: {name}"
-            for word in ("changed", "missing", "extra")
-            for name in getattr(self, word)
-        ]
-        return [f"{self.folder}: NOT as it was frozen ({len(found)} findings)", *found]
+        title = f"{self.folder}: NOT as it was frozen ({len(self.findings)} findings)"
+        return [title, *(f"  {line}" for line in self.findings)]
 
 
 def matches_any(name: str, patterns: Iterable[str]) -> bool:
@@ -103,26 +97,22 @@ def verify(
         raise FileNotFoundError(f"{folder} has no {MANIFEST}; it is not an archive")
     files = read_manifest(folder).get("files", {})
     if not files:
-        return Verification(folder=folder, files=0, changed=[f"{MANIFEST} (damaged)"])
+        return Verification(folder, 0, [f"changed: {MANIFEST} (damaged)"])
     listed = {path: files[path] for path in files if path.startswith(part)}
     there = (path for path in folder.rglob("*") if path.is_symlink() or not path.is_dir())
     names = (path.relative_to(folder).as_posix() for path in there)
     present = {name for name in names if name.startswith(part)}
-    changed = [
-        path
+    found = [
+        f"changed: {path}"
         for path in sorted(present & set(listed))
         if (folder / path).is_symlink() or checksum(folder / path) != listed[path].get("sha256")
     ]
     seal = folder / SEAL
     if not seal.is_file() or seal.read_bytes() != seal_text(folder).encode():
-        changed.append(MANIFEST)
-    return Verification(
-        folder=folder,
-        files=len(listed),
-        changed=changed,
-        missing=sorted(set(listed) - present),
-        extra=sorted(present - set(listed) - {MANIFEST, SEAL}),
-    )
+        found.append(f"changed: {MANIFEST}")
+    found += [f"missing: {path}" for path in sorted(set(listed) - present)]
+    found += [f"extra: {path}" for path in sorted(present - set(listed) - {MANIFEST, SEAL})]
+    return Verification(folder, len(listed), found)
 
 
 def dataset_files(place: Path) -> dict[str, Path]:

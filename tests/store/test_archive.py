@@ -75,9 +75,9 @@ def test_missing_extra_truncated_and_hidden_files_are_found(frozen):
     path = frozen / "data/stability_map.nc"
     replace(path, path.read_bytes()[:-1])
     found = verify(frozen)
-    assert found.missing == ["figures/fig06.png"]
-    assert found.extra == ["figures/.note"]
-    assert found.changed == ["data/stability_map.nc"]
+    assert found.findings == [
+        "changed: data/stability_map.nc", "missing: figures/fig06.png", "extra: figures/.note",
+    ]  # fmt: skip
     assert "NOT as it was frozen (3 findings)" in found.lines()[0]
 
 
@@ -88,7 +88,7 @@ def test_links_are_found_beside_files_and_in_their_place(frozen, tmp_path):
     path.unlink()
     path.symlink_to(tmp_path / "same.png")
     found = verify(frozen)
-    assert (found.changed, found.extra) == (["figures/fig06.png"], ["data/link"])
+    assert found.findings == ["changed: figures/fig06.png", "extra: data/link"]
 
 
 @pytest.mark.parametrize("name", ["", "..", "a/b", "/abs", ".hidden", "a" * 81, "a\nb"])
@@ -106,7 +106,7 @@ def test_archives_never_change(run, frozen, keys_of):
 
 def test_a_damaged_manifest_is_found(frozen):
     replace(frozen / "manifest.json", b'{"files": [1, 2]}')
-    assert verify(frozen).changed == ["manifest.json (damaged)"]
+    assert verify(frozen).findings == ["changed: manifest.json (damaged)"]
 
 
 def spoil_figure(path):
