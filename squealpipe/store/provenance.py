@@ -14,10 +14,9 @@ from squealpipe.schema.origin import versions
 from squealpipe.store.checkout import commit
 from squealpipe.store.netcdf import load, made_now, save
 
-VOLATILE_ATTRIBUTES = frozenset(
-    ("history", "wall_time_s", "platform", "libraries")
-    + ("package_version", "commit", "inputs", "key")
-)
+VOLATILE_ATTRIBUTES = frozenset({
+    "history", "wall_time_s", "platform", "libraries", "package_version", "commit", "inputs", "key",
+})  # fmt: skip
 """Global attributes that describe the run, not of the result."""
 
 
