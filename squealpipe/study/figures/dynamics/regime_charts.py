@@ -57,7 +57,12 @@ CAPTION = caption
 def draw(angles: xr.Dataset, scenes: Mapping[str, xr.Dataset]) -> Figure:
     """One panel for each chart."""
     names = sorted(scenes)
-    several = [name for name in names if _counts(scenes[name]).max() < NEARLY_ALL] or names
+    several = [
+        name
+        for name, chart in scenes.items()
+        if _counts(chart).max() < NEARLY_ALL or ChartLine.whirl.name in chart.boundary.values
+    ]
+    several = sorted(several or names)
     rows = (len(several) + 2) // 2
     figure, axes = style.new_figure(style.PAGE, 0.8 + 2.6 * rows, ncols=2, nrows=rows)
     panels = axes.ravel()
@@ -79,11 +84,15 @@ def draw(angles: xr.Dataset, scenes: Mapping[str, xr.Dataset]) -> Figure:
         style.panel_letter(panel, letter, _title(name))
     for panel in panels[1 + len(several) :]:
         panel.remove()
-    handles = panels[0].get_legend_handles_labels()[0]
+    handles = {
+        label: handle
+        for panel in panels[: 1 + len(several)]
+        for handle, label in zip(*panel.get_legend_handles_labels(), strict=True)
+    }
     charts = [angles, *(scenes[name] for name in several)]
     shown = np.max([_counts(chart) for chart in charts], axis=0) > SEEN
     tones = style.patches(kind for kind, there in zip(KINDS, shown, strict=True) if there)
-    figure.legend(handles=[*tones, *handles], loc="outside lower center", ncols=3)
+    figure.legend(handles=[*tones, *handles.values()], loc="outside lower center", ncols=3)
     return figure
 
 
