@@ -25,8 +25,9 @@ Mark = Callable[[Vector, Vector], Vector]
 
 SHORTEST = 0.01
 """Chord beside a kink, over √off, below which the tangents meet in it."""
-BENT = 0.6
-"""Area beside a chord of one arc that is doubted, over its length squared and its turn cubed."""
+BENT, ROUGH = 0.6, 1e-6
+"""Area beside a chord of one arc that is doubted, over its length squared and its turn cubed; what
+the error of the tangents adds to that."""
 MOST_DIVISIONS, MOST_POINTS = 30, 25_000
 """Where motions last long a line may have corners without end: its error then says what is left."""
 CLOSED = 1e-12
@@ -203,7 +204,7 @@ class ZeroLines:
     def _bent(self, chords: Indices) -> Vector:
         """What a cubic leaves beside a chord of one branch: the third power of its turn."""
         turn = np.abs(self._slopes(chords)[2]).max(axis=1)
-        return np.asarray(BENT * self._length(chords) ** 2 * turn**3)
+        return np.asarray(BENT * self._length(chords) ** 2 * (turn**3 + ROUGH))
 
     def marks(self, points: Indices) -> Vector:
         """What tells branches apart, at some points."""
