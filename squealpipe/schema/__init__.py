@@ -14,9 +14,7 @@ from functools import cache, cached_property
 from typing import Any
 
 import numpy as np
-import pandas as pd
 import xarray as xr
-from xarray.indexes import PandasIndex
 
 from squealpipe.schema.agreement import Listing, RoundOff
 from squealpipe.schema.outcomes import Outcome as Outcome
@@ -261,14 +259,7 @@ def build(
             except (TypeError, ValueError, OverflowError) as error:
                 raise SchemaError(f"{schema.name}: {name}: {error}") from error
             arrays[name] = array
-    # The constructor copies and merges, which takes longer than a run in time.
-    indexes: dict[Any, Any] = {}
-    for name in coords:
-        if variables[name].dims == (name,):
-            index = PandasIndex(pd.Index(arrays[name]), name, coord_dtype=arrays[name].dtype)
-            indexes[name] = index
-            variables |= index.create_variables({name: variables[name]})
-    dataset = xr.Dataset._construct_direct(variables, set(coords), indexes=indexes)  # noqa: SLF001
+    dataset = xr.Dataset(variables).set_coords(list(coords))
     dataset.attrs = {
         "Conventions": "CF-1.11",
         "title": schema.title,
