@@ -15,15 +15,11 @@ from squealpipe.laws.friction_laws import COULOMB, LAWS, coefficient
 from squealpipe.laws.tables import is_table, knots_of, named, stood_for
 from squealpipe.text import number, suggestion
 
-LAW_NAMES = tuple(LAWS)
-"""Names of the friction laws."""
 FULL_TURN = 2 * math.pi * (1 + 1e-9)
 """Largest angle, rad; beyond it one meant degrees, or slipped."""
 BEYOND_A_TURN = "more than a full turn; angles are in rad, from −2π to 2π"
 HORIZON = 200.0
 """Default horizon of maps and questions, in units of √(m/k1)."""
-
-Allowed = Literal["finite", "positive", "not negative", "law"]
 
 
 @dataclass(frozen=True)
@@ -42,7 +38,7 @@ class Row:
     units: str
     symbol: str
     meaning: str
-    allowed: Allowed = "positive"
+    allowed: Literal["finite", "positive", "not negative", "law"] = "positive"
     laws: Any = None
     enters_a1: bool = True
     extension: bool = False
@@ -150,47 +146,26 @@ class Parameters:
         0.0, "N s m-1", "c_2", "dashpot along spring 2", allowed="not negative", extension=True
     )
     friction_law: str = _row(
-        COULOMB,
-        "1",
-        '"law"',
-        f"friction law: {', '.join(LAWS)}, {friction_laws.FILES}",
-        allowed="law",
-        laws=friction_laws,
-        extension=True,
-    )
+        COULOMB, "1", '"law"', f"friction law: {', '.join(LAWS)}, {friction_laws.FILES}",
+        allowed="law", laws=friction_laws, extension=True,
+    )  # fmt: skip
     mu_static: float | None = _row(
-        None,
-        "1",
-        "mu_s",
-        "static friction coefficient, that of sliding if none is given",
-        allowed="not negative",
-        extension=True,
-        optional=True,
-    )
+        None, "1", "mu_s", "static friction coefficient, that of sliding if none is given",
+        allowed="not negative", extension=True, optional=True,
+    )  # fmt: skip
     friction_speed: float = _row(
-        1.0,
-        "m s-1",
-        "v_0",
-        "speed over which friction falls towards that of sliding",
+        1.0, "m s-1", "v_0", "speed over which friction falls towards that of sliding",
         extension=True,
-    )
+    )  # fmt: skip
     contact_law: str = _row(
-        LINEAR,
-        "1",
-        '"contact"',
+        LINEAR, "1", '"contact"',
         f"contact law: {', '.join(contact_laws.LAWS)}, {contact_laws.FILES}",
-        allowed="law",
-        laws=contact_laws,
-        extension=True,
-    )
+        allowed="law", laws=contact_laws, extension=True,
+    )  # fmt: skip
     damping3: float = _row(
-        0.0,
-        "N s m-1",
-        "c_3",
-        "dashpot of the contact, of the contact law dashpot",
-        allowed="not negative",
-        extension=True,
-    )
+        0.0, "N s m-1", "c_3", "dashpot of the contact, of the contact law dashpot",
+        allowed="not negative", extension=True,
+    )  # fmt: skip
 
     def __post_init__(self) -> None:
         for name, row in TABLE.items():

@@ -51,8 +51,7 @@ AngleRange = Annotated[
 ]  # fmt: skip
 Tolerance = Annotated[float, Parameter(help="tolerance of the integration.")]
 Workers = Annotated[
-    int | None,
-    Parameter(converter=_whole, metavar="INT", help="processes; all cores by default."),
+    int | None, Parameter(converter=_whole, metavar="INT", help="processes; all cores by default.")
 ]
 Configs = Annotated[list[Path] | None, Parameter(name=["--config", "-c"], negative="")]
 Output = Annotated[

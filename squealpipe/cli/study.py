@@ -10,12 +10,7 @@ from squealpipe.cli.console import ANSWER_IS_NO, DONE, console, working
 from squealpipe.text import duration
 
 
-def explain(
-    *,
-    config: Configs = None,
-    quick: Switch = False,
-    json_: AsJson = False,
-) -> int:
+def explain(*, config: Configs = None, quick: Switch = False, json_: AsJson = False) -> int:
     """State what `snakemake` would compute again, why, which figures change and how long it takes.
 
     Example: `squealpipe explain --config mine.yaml`
@@ -47,13 +42,7 @@ def explain(
     return DONE
 
 
-def archive(
-    name: str,
-    /,
-    *,
-    config: Configs = None,
-    leave_out: Texts = None,
-) -> int:
+def archive(name: str, /, *, config: Configs = None, leave_out: Texts = None) -> int:
     """Freeze a run: data, figures, report, configuration, environment and checksums.
 
     Every result that the rules make must be there, made with this configuration and code.

@@ -176,10 +176,7 @@ def check_results_folder(results: str) -> None:
             raise ConfigError([f"results = {results!r}: {what}, for instance results/mine"])
 
 
-def parse_study(
-    content: Mapping[str, Any],
-    faults: Sequence[str] = (),
-) -> Study:
+def parse_study(content: Mapping[str, Any], faults: Sequence[str] = ()) -> Study:
     """Validate a configuration mapping."""
     try:
         known = Study.model_fields  # a section without keys is the default one

@@ -22,14 +22,7 @@ from squealpipe.execution.system_sweep import SystemSweep, is_system
 from squealpipe.methods.processes import available_cores, leave_interrupts_to_the_parent
 from squealpipe.methods.progress import alone
 from squealpipe.parameters import Parameters, parameters_of
-from squealpipe.schema import (
-    ABSENT,
-    DatasetSchema,
-    Outcome,
-    build,
-    find,
-    meanings,
-)
+from squealpipe.schema import ABSENT, DatasetSchema, Outcome, build, find, meanings
 from squealpipe.schema.origin import origin
 from squealpipe.schema.sweep import OPTIONS, fill_up, is_ragged, ragged_dims, sweep_name
 from squealpipe.text import suggestion

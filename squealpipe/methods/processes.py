@@ -37,11 +37,7 @@ def available_cores() -> int:
 
 
 def run_shared(
-    work: Work,
-    shapes: Mapping[str, tuple[tuple[int, ...], Any]],
-    *,
-    jobs: int,
-    workers: int | None,
+    work: Work, shapes: Mapping[str, tuple[tuple[int, ...], Any]], *, jobs: int, workers: int | None
 ) -> dict[str, np.ndarray]:
     """Call ``work(arrays, first, stride)`` in several processes for interleaved jobs.
 

@@ -94,11 +94,7 @@ def static_state(
     contact_determinant = spring_determinant + k3 * (k11 - mu * k12)
     with np.errstate(divide="ignore", invalid="ignore"):
         scale = actuation / contact_determinant
-        return (
-            scale * (mu * k22 - k12),
-            scale * (k11 - mu * k12),
-            scale * spring_determinant,
-        )
+        return (scale * (mu * k22 - k12), scale * (k11 - mu * k12), scale * spring_determinant)
 
 
 def plane(p: Any, alpha1: Any, alpha2: Any) -> Any:

@@ -28,12 +28,7 @@ def coil(
 
 
 def draw_mechanism(
-    axes: Axes,
-    alpha1: float,
-    alpha2: float,
-    *,
-    labels: bool = False,
-    direction: float = 1.0,
+    axes: Axes, alpha1: float, alpha2: float, *, labels: bool = False, direction: float = 1.0
 ) -> None:
     """Draw an arrangement at its true angles; both springs have length 1, the mass radius 0.12.
 

@@ -168,9 +168,6 @@ ANGLE_CONVENTION = (
 ABSENT = -1
 """Flag of places beyond the end of a run that is shorter than the longest of its sweep."""
 
-OUTCOME = Variable(flags=Outcome, long_name="why the values are what they are")
-
-
 RUN_ENDS = (
     Outcome.converged,
     Outcome.step_limit,
@@ -213,7 +210,7 @@ ORBIT_ENDS = (
 def outcome(*dims: str, among: Iterable[Outcome] = Outcome) -> Variable:
     """The outcome variable over some dimensions, with the outcomes that it can have."""
     flags = {int(item): item.name for item in sorted(among)}
-    return Variable(dims=dims, flags=flags, long_name=OUTCOME.long_name)
+    return Variable(dims=dims, flags=flags, long_name="why the values are what they are")
 
 
 def or_nan(

@@ -126,8 +126,7 @@ DOUBLED_BRANCH = DatasetSchema(
     variables={
         **{name: entry for name, entry in BACKBONE.variables.items() if not entry.optional},
         "end": Variable(
-            "why the branch ends",
-            flags=outcome(among=(*ORBIT_ENDS, Outcome.no_doubling)).flags,
+            "why the branch ends", flags=outcome(among=(*ORBIT_ENDS, Outcome.no_doubling)).flags
         ),
         "y_largest": Variable("largest y over a period", "m", ("point",)),
         "first_integral": Variable("first integral H of model A4", "N J m-1", ("point",)),

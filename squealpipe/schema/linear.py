@@ -105,11 +105,7 @@ QUASI_STATIC_MAP = DatasetSchema(
 NATURAL_FREQUENCIES = DatasetSchema(
     name="natural_frequencies",
     title="Natural frequencies of model A4, in contact and separated",
-    coordinates={
-        **ANGLES,
-        **MODES,
-        "contact_state": text("state of the contact", "contact_state"),
-    },
+    coordinates={**ANGLES, **MODES, "contact_state": text("state of the contact", "contact_state")},
     variables={
         "omega": Variable("natural frequency", "rad s-1", (*MAP, "mode", "contact_state")),
         "outcome": outcome(*MAP, "mode", "contact_state", among=LINEAR_ENDS),
@@ -130,9 +126,7 @@ STABILITY_BOUNDARIES = DatasetSchema(
     name="stability_boundaries",
     title="Exact boundaries of flutter, divergence and quasi-static sliding",
     lists={"point": Listing(kinds=("boundary", "segment"))},
-    coordinates={
-        "point": Variable("number of the point", dims=("point",), dtype="i4"),
-    },
+    coordinates={"point": Variable("number of the point", dims=("point",), dtype="i4")},
     variables={
         **{
             f"alpha{i}": Variable(

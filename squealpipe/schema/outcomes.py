@@ -5,10 +5,7 @@ from typing import Self
 
 
 class Outcome(IntEnum):
-    """Why a cell, point or run holds what it holds, with its remedy.
-
-    No bare NaN: its reason is one of these.
-    """
+    """A reason with its remedy. No bare NaN: its reason is one of these."""
 
     remedy: str
 
@@ -26,7 +23,6 @@ class Outcome(IntEnum):
     linear_mode = 11, "below contact loss: the orbit is the linear mode"
     isolated_mode = 12, "the x mode is decoupled: y is constant and the branch is vertical"
     no_convergence = 13, "Newton did not converge; try a smaller step or another start"
-    wrong_basin = 14, "Newton left the branch; continue from a neighbouring orbit"
     branch_lost = 15, "continuation could not go on; reduce its smallest step"
     pole = 16, "an internal resonance ω = ω_x/n ends the branch; ask for its other side"
     tongue_end = 17, "the branch closes on another one here"
@@ -35,7 +31,6 @@ class Outcome(IntEnum):
     beyond_horizon = 20, "chaotic beyond the predictability horizon: trust statistics only"
     infeasible = 21, "the sample breaks a statement of the paper"
     unresolved = 22, "the check could not decide; refine the grid or the horizon"
-    free_flight = 23, "the mass left the belt and does not come back within t_end"
     amplitude_reached = 24, "the asked amplitude was reached"
     unconfirmed = 25, "no exact orbit is close to the series; more harmonics or method=exact"
     other_branch = 26, "an exact orbit, not reached along the mode's branch; see backbone"
@@ -45,19 +40,12 @@ class Outcome(IntEnum):
     inherited = 30, "not run: the answer is a neighbour's; see `inherited_error_interval`"
     not_reached = 31, "by no disturbance tried within the bound; raise bound or t_end"
     already_unstable = 32, "steady sliding is unstable: any disturbance grows"
-    no_sliding_state = (
-        33,
-        "no steady sliding in contact was found from r = 0 (none with a belt at rest or N* ≤ 0)",
-    )
+    no_sliding_state = 33, "no steady sliding in contact found from r = 0 (belt at rest or N* ≤ 0)"
     point_limit = 34, "the branch goes on: raise n_points"
     returned = 35, "the branch came back to its first parameter value, on another motion"
     closed = 36, "the branch is a closed curve, followed once round"
     tangency = 37, "a surface is just touched, or stick ends so: no motion like it follows"
-    accumulation = (
-        38,
-        "events accumulate: the limit is the time reached; end there, or add a regime of rest",
-    )
-
+    accumulation = 38, "events accumulate at the time reached: end there, or add a regime of rest"
     order_changes = 39, "the order of the events changes, as `change` says"
     real_multipliers = 40, "a torus ends where its multipliers meet on the real axis"
 

@@ -100,10 +100,7 @@ def archive(
 def _sums(draft: Path) -> dict[str, dict[str, Any]]:
     """Path of each file → its size and checksum."""
     return {
-        path.relative_to(draft).as_posix(): {
-            "bytes": path.stat().st_size,
-            "sha256": checksum(path),
-        }
+        path.relative_to(draft).as_posix(): {"bytes": path.stat().st_size, "sha256": checksum(path)}
         for path in regular_files(draft)
     }
 

@@ -324,10 +324,7 @@ class _Laws:
             after += [(self.name(kind, i, j + 1), presses)] * (j + 1 < len(self.contacts))
             for there, past in after:
                 yield Switch(
-                    f"{here} to {there}",
-                    here,
-                    _negative(past("end")),
-                    [(there, None, "knot")],
+                    f"{here} to {there}", here, _negative(past("end")), [(there, None, "knot")]
                 )
                 yield Switch(f"{there} to {here}", there, past("start"), [(here, None, "knot")])
 

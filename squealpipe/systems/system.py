@@ -15,14 +15,7 @@ from squealpipe.methods.taylor.symbols import Symbol, derivative, in_order, para
 from squealpipe.parameters import is_finite_number
 from squealpipe.schema import Outcome
 from squealpipe.systems import basin, runs
-from squealpipe.systems.trace import (
-    TIME,
-    TIME_UNIT,
-    Names,
-    Traced,
-    Tracer,
-    check_progress,
-)
+from squealpipe.systems.trace import TIME, TIME_UNIT, Names, Traced, Tracer, check_progress
 from squealpipe.text import suggestion
 from squealpipe.validation import Identifier, Number, Positive, Word, checked, needed
 

@@ -16,7 +16,8 @@ import squealpipe as sp
 from squealpipe.config.ranges import parse_angle, parse_range
 from squealpipe.config.settings import parse_study
 from squealpipe.functions import cos
-from squealpipe.parameters import LAW_NAMES, TABLE
+from squealpipe.laws.friction_laws import LAWS
+from squealpipe.parameters import TABLE
 from squealpipe.schema.ladder import QUESTIONS
 from squealpipe.solvers.a1.ensemble import run_ensemble
 
@@ -115,7 +116,7 @@ PHYSICAL = {
         "not negative": number(0.01, 3.0, zero=True),
         "finite": Kind(lambda rng: rng.uniform(-5, 5), NO_NUMBER),
         "law": Kind(
-            lambda rng: rng.choice(LAW_NAMES), ["", "columb", None, 3, True, [], object(), b"x"]
+            lambda rng: rng.choice(list(LAWS)), ["", "columb", None, 3, True, [], object(), b"x"]
         ),
     }[row.allowed]
     for name, row in TABLE.items()
@@ -411,7 +412,7 @@ def unearned(found):
 
 def warm_up():
     """Compile what the calls need; each law and form of springs is a system of its own."""
-    for law in LAW_NAMES:
+    for law in LAWS:
         for model in ("A1", "A1-linear-springs"):
             for damping in (0.0, 0.1):
                 params = sp.Parameters(friction_law=law, mu_static=0.5, damping1=damping)

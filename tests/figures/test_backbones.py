@@ -7,11 +7,7 @@ import numpy as np
 
 from squealpipe.plotting.style import symbols
 from squealpipe.store.provenance import stamped
-from squealpipe.study.figures.backbones import (
-    coupled_backbones,
-    fig10_to_12,
-    fig13,
-)
+from squealpipe.study.figures.backbones import coupled_backbones, fig10_to_12, fig13
 from squealpipe.tasks.backbones.backbone import backbone
 from squealpipe.tasks.backbones.doubling import doubled_branch as follow_doubling
 from tests.former import FORMER

@@ -5,13 +5,7 @@ import pytest
 import xarray as xr
 
 from squealpipe.parameters import SCENES
-from squealpipe.study.figures.linear import (
-    critical_friction,
-    fig06,
-    fig07,
-    fig08,
-    fig09,
-)
+from squealpipe.study.figures.linear import critical_friction, fig06, fig07, fig08, fig09
 from squealpipe.tasks.linear import boundaries as linear_boundaries
 from squealpipe.tasks.linear import critical
 from squealpipe.tasks.linear import maps as linear

@@ -6,8 +6,9 @@ import mpmath as mp
 import numpy as np
 import pytest
 
+from squealpipe.laws.friction_laws import LAWS
 from squealpipe.models.damped import critical_friction, damped_system, eigenvalues, stability
-from squealpipe.parameters import LAW_NAMES, Parameters
+from squealpipe.parameters import Parameters
 from squealpipe.tasks.linear.critical import critical_damping_map, critical_friction_map
 from squealpipe.tasks.linear.maps import stability_map
 from tests.former import FORMER
@@ -22,7 +23,7 @@ def random_parameters():
         mass=RNG.uniform(0.2, 5), k1=RNG.uniform(0.2, 5), k2=RNG.uniform(0.2, 5),
         k3=RNG.uniform(0.2, 5), mu=mu, belt_speed=RNG.choice([-1, 1]) * RNG.uniform(0.1, 5),
         preload=RNG.uniform(0.3, 3), damping1=RNG.choice([0.0, 1e-6, 0.1, 5.0]),
-        damping2=RNG.uniform(0, 2), friction_law=str(RNG.choice(LAW_NAMES)),
+        damping2=RNG.uniform(0, 2), friction_law=str(RNG.choice(list(LAWS))),
         mu_static=mu + RNG.uniform(0, 1), friction_speed=RNG.uniform(0.1, 5),
     )  # fmt: skip
 

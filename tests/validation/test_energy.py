@@ -9,9 +9,9 @@ import pytest
 from squealpipe.codes import Regime
 from squealpipe.laws.contact import contact_force
 from squealpipe.laws.dashpots import damping_force
+from squealpipe.laws.friction_laws import LAWS
 from squealpipe.laws.springs import geometry
 from squealpipe.models.a1 import suspension_force
-from squealpipe.parameters import LAW_NAMES
 from squealpipe.schema import Outcome
 from squealpipe.solvers.a1.ensemble import run_ensemble
 from tests.former import FORMER
@@ -143,7 +143,7 @@ def test_energy_balance_of_random_runs(count, seed):
     check(count, seed, duration=6.0)
 
 
-@pytest.mark.parametrize("law", LAW_NAMES)
+@pytest.mark.parametrize("law", LAWS)
 @pytest.mark.parametrize(("seed", "model"), [(8, "A1"), (9, "A1-as-printed")])
 def test_energy_balance_with_dashpots_and_each_law(law, seed, model):
     """Both coefficients change their sign where friction is as printed, and the work does."""

@@ -21,9 +21,7 @@ ASSUMPTIONS = DatasetSchema(
     },
     variables={
         "needed": Variable(
-            "whether the level makes the assumption",
-            dims=("level", "assumption"),
-            flags=YES_NO,
+            "whether the level makes the assumption", dims=("level", "assumption"), flags=YES_NO
         ),
         "measure": or_nan("the number that decides", dims=(*TABLE, "assumption"), rtol=1e-6),
         "limit": Variable("limit of the measure", dims=("assumption",)),

@@ -30,9 +30,7 @@ WHIRL = DatasetSchema(
         "slope": or_nan("fitted growth of the amplitude with |V| (NaN: too few whirl)", "s"),
         "offset": or_nan("fitted amplitude at V = 0", "m"),
         "fit_range": or_nan(
-            "speed of the slowest and of the fastest belt in the fit",
-            "m s-1",
-            ("end",),
+            "speed of the slowest and of the fastest belt in the fit", "m s-1", ("end",)
         ),
         "energy_slope": Variable("sqrt(m/(k1 + k2)): the slope if the top speed were V", "s"),
         "energy_offset": Variable("far end of the unstretched springs: the offset if so", "m"),

@@ -206,9 +206,6 @@ REFINED_VALIDITY_MAP = DatasetSchema(
             dims=("end",),
         ),
         "t_end": Variable("end of each run", "s"),
-        "outcome": outcome(
-            *MAP,
-            among=(*RUN_ENDS, Outcome.separated, Outcome.inherited),
-        ),
+        "outcome": outcome(*MAP, among=(*RUN_ENDS, Outcome.separated, Outcome.inherited)),
     },
 )

@@ -246,12 +246,7 @@ def run_ensemble(
 
 
 def integrate(
-    jobs: Jobs,
-    tracked: Sequence[str],
-    *,
-    log_events: int = 0,
-    few: bool = False,
-    **options: Any,
+    jobs: Jobs, tracked: Sequence[str], *, log_events: int = 0, few: bool = False, **options: Any
 ) -> Ensemble:
     """The results of some runs.
 

@@ -4,12 +4,7 @@ import math
 
 import numpy as np
 
-from squealpipe.methods.orbits.orbits import (
-    Orbit,
-    decoupled_half_period,
-    solve_orbit,
-    trace_branch,
-)
+from squealpipe.methods.orbits.orbits import Orbit, decoupled_half_period, solve_orbit, trace_branch
 from squealpipe.schema import Outcome
 from squealpipe.solvers.a4.orbits import grazing_start, linear_orbit
 from squealpipe.solvers.a4.system import ScaledSystem

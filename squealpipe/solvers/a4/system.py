@@ -93,8 +93,7 @@ def scaled_system(params: Parameters, alpha1: float, alpha2: float) -> ScaledSys
     push = params.k3 / (params.mass * unit)
     contact = LinearState(((a11, a12), (a21, a22)), (drag * push, push))
     separated = LinearState(
-        ((a11, a12 - drag * push), (a21, float(stiffness.k22) / (params.mass * unit))),
-        (0.0, 0.0),
+        ((a11, a12 - drag * push), (a21, float(stiffness.k22) / (params.mass * unit))), (0.0, 0.0)
     )
     system = PiecewiseLinearSystem(contact, separated, 1.0)
     contact_determinant = float(invariants.determinant) / unit**2

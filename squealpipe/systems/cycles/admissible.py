@@ -13,7 +13,7 @@ import numpy as np
 
 from squealpipe.systems.cycles.event_map import FREE, Cycle
 
-ROUND_OFF = 1e-9
+MARGIN_ROUND_OFF = 1e-9
 """Margin below zero that is round-off."""
 _LATE = 1e-6
 """Share of a leg after which a surface that it starts from is watched."""
@@ -100,4 +100,4 @@ def _conditions(cycle: Cycle, leg: int) -> dict[Margin, float]:
 
 def is_motion(cycle: Cycle) -> bool:
     """Whether a solution is a motion of the system, to round-off."""
-    return all(value >= -ROUND_OFF for value in margins(cycle).values())
+    return all(value >= -MARGIN_ROUND_OFF for value in margins(cycle).values())

@@ -27,7 +27,7 @@ from squealpipe.methods.continuation import (
 from squealpipe.methods.progress import alone
 from squealpipe.schema import Outcome
 from squealpipe.systems import runs
-from squealpipe.systems.cycles.admissible import ROUND_OFF, Kind, Margin, margins
+from squealpipe.systems.cycles.admissible import MARGIN_ROUND_OFF, Kind, Margin, margins
 from squealpipe.systems.cycles.cycle import (
     columns,
     describe_columns,
@@ -355,7 +355,7 @@ class Follower:
         section = cycle.map.section
         if section is not None and float(section.normal @ reached.heading) <= 0.0:
             return True  # beyond a state of rest
-        if not self.low - ROUND_OFF <= self._at(reached) <= self.high + ROUND_OFF:
+        if not self.low - MARGIN_ROUND_OFF <= self._at(reached) <= self.high + MARGIN_ROUND_OFF:
             return True
         if state.step < _COARSE:
             return False
@@ -374,19 +374,15 @@ class Follower:
     ) -> Step | None:
         """A step with what lies in it; None where that is not clear."""
         line = Line(
-            AT,
-            cycle.map,
-            (state, cycle),
-            (following, reached),
-            partial(Cycle.at, cycle.map),
+            AT, cycle.map, (state, cycle), (following, reached), partial(Cycle.at, cycle.map)
         )
         before, after = (_least_margin(None, each) for each in (cycle, reached))
-        last = 1.0 if after >= -ROUND_OFF else line.root(_least_margin)
+        last = 1.0 if after >= -MARGIN_ROUND_OFF else line.root(_least_margin)
         found = None if last is None else self._smooth(line, last)
         if found is None or last is None:
             return None
         # a step that ends at the change to round-off may not lead past it
-        if last < 1.0 or after < ROUND_OFF < 0.5 * before:
+        if last < 1.0 or after < MARGIN_ROUND_OFF < 0.5 * before:
             return self._changed(line, found, last)
         near, share = self._shorter(line, cycle, reached)
         if near and share is None and state.step > _COARSE:
@@ -541,7 +537,7 @@ class Line:
         try:
             first = value(0.0)
             if first <= 0.0 and value(end) < 0.0:
-                return 0.0 if first > -ROUND_OFF else None
+                return 0.0 if first > -MARGIN_ROUND_OFF else None
             return float(brentq(value, 0.0, end, xtol=_ZERO, rtol=_ZERO, maxiter=60))
         except (ArithmeticError, ValueError, RuntimeError):
             return None
@@ -623,7 +619,7 @@ class _Turn:
             return None
         if weak:
             here = margins(cycle)
-            good = all(value >= -ROUND_OFF for value in here.values())
+            good = all(value >= -MARGIN_ROUND_OFF for value in here.values())
             return (state, cycle) if good else None
         ways = []
         for sign in (1.0, -1.0):
@@ -632,7 +628,7 @@ class _Turn:
             if ahead is not None:
                 beyond = Cycle.at(equations, ahead.point)
                 least = _least_margin(None, beyond)
-                if least >= -ROUND_OFF:
+                if least >= -MARGIN_ROUND_OFF:
                     ways.append((least, ahead, beyond))
         if not ways:
             return None
@@ -680,12 +676,7 @@ def _gradient(equations: EventMap, point: Vector, margin: Margin) -> Vector:
 
 @checked
 def cycle_branch(
-    system: Any,
-    parameter: str,
-    to: Number,
-    *,
-    start: Any,
-    n_points: Several = 100,
+    system: Any, parameter: str, to: Number, *, start: Any, n_points: Several = 100
 ) -> xr.Dataset:
     """The branch of cycles through a start, in one parameter, stable and unstable parts.
 

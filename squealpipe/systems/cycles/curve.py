@@ -20,7 +20,7 @@ import xarray as xr
 
 from squealpipe.methods.continuation import ContinuationState, PseudoArclength
 from squealpipe.systems import runs
-from squealpipe.systems.cycles.admissible import ROUND_OFF, Kind, Margin, is_motion, margins
+from squealpipe.systems.cycles.admissible import MARGIN_ROUND_OFF, Kind, Margin, is_motion, margins
 from squealpipe.systems.cycles.branch import (
     PRECISE,
     STEPS,
@@ -177,10 +177,7 @@ class Curve:
     def tests(self) -> dict[Meeting, Test]:
         """What changes sign where something else happens."""
         if self.label == Label.fold:
-            return {
-                Meeting.cusp: self._cusp,
-                Meeting.fold_flip: self._flip,
-            }
+            return {Meeting.cusp: self._cusp, Meeting.fold_flip: self._flip}
         if self.label == Label.period_doubling:
             return {Meeting.fold_flip: self._fold}
         if self.label == Label.torus:
@@ -389,7 +386,7 @@ class _Way:
                 why = "multipliers_are_real"
             ends.append((share, met, why))
         least, key = self.curve.least_margin(point)
-        if least < -ROUND_OFF and key is not None:
+        if least < -MARGIN_ROUND_OFF and key is not None:
             share = line.root(lambda there, _: self.curve.least_margin(there.point)[0])
             share = 0.0 if share is None else share
             state, cycle = line.at(share)

@@ -172,10 +172,7 @@ class Flow:
     """
 
     def __init__(
-        self,
-        system: System,
-        followed: Sequence[str] = (),
-        tied: Mapping[str, str] | None = None,
+        self, system: System, followed: Sequence[str] = (), tied: Mapping[str, str] | None = None
     ) -> None:
         self.system, self.followed, self.tied = system, tuple(followed), dict(tied or {})
         t = system.traced

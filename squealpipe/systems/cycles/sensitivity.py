@@ -21,11 +21,7 @@ _TOGETHER = 64
 
 
 def sensitivities(
-    system: System,
-    names: Sequence[str],
-    values: Mapping[str, float],
-    motion: Motion,
-    times: Vector,
+    system: System, names: Sequence[str], values: Mapping[str, float], motion: Motion, times: Vector
 ) -> dict[str, Any]:
     """``<state>_by_<name>`` over ``time`` and ``event_time_by_<name>`` over ``event``.
 

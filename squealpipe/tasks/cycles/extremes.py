@@ -61,10 +61,6 @@ def settled_extremes(
     )
     return build(
         SETTLED_EXTREMES,
-        {
-            "late_max_x": run.late_max_x,
-            "outcome": run.outcome,
-            "t_end": t_end,
-        },
+        {"late_max_x": run.late_max_x, "outcome": run.outcome, "t_end": t_end},
         {"scene": list(scenes), "mu": mu, "start": np.arange(starts)},
     )

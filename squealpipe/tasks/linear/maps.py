@@ -16,11 +16,7 @@ from squealpipe.models.damped import damped_system, is_undamped, stability
 from squealpipe.models.refusals import WHY_A4, refuse_extensions, refuse_scales
 from squealpipe.parameters import NUMBERS_OF_A1, Parameters
 from squealpipe.schema import Outcome, build
-from squealpipe.schema.linear import (
-    NATURAL_FREQUENCIES,
-    QUASI_STATIC_MAP,
-    STABILITY_MAP,
-)
+from squealpipe.schema.linear import NATURAL_FREQUENCIES, QUASI_STATIC_MAP, STABILITY_MAP
 from squealpipe.schema.origin import recorded
 from squealpipe.validation import Angles, Positive
 
@@ -51,11 +47,7 @@ def quasi_static_map(
     stiffness = system.stiffness
     reaction = a2.reaction_force(stiffness, params.drag, load)
     state = a3.static_state(
-        stiffness,
-        system.spring_determinant,
-        k3=k3,
-        mu=params.drag,
-        actuation=load,
+        stiffness, system.spring_determinant, k3=k3, mu=params.drag, actuation=load
     )
     # Farther out than this, the state is the quotient of two round-off errors.
     farthest = load / (a2.FEW_ULPS * (params.k1 + params.k2))

@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 
 from squealpipe.codes import Event
-from squealpipe.laws.friction_laws import FALLING
-from squealpipe.parameters import LAW_NAMES
+from squealpipe.laws.friction_laws import FALLING, LAWS
 from squealpipe.solvers.a1.ensemble import run_ensemble
 from tests.former import FORMER
 from tests.oracles.a1_long_double import simulate_reference
@@ -28,7 +27,7 @@ def random_cases(count, seed, **fixed):
         params = FORMER.with_(
             mass=mass, k1=k1, k2=k2, k3=k3, mu=mu, belt_speed=speed, preload=length,
             length1=length1, length2=length2, damping1=c1, damping2=c2,
-            friction_law=str(rng.choice(LAW_NAMES)), mu_static=mu + rng.uniform(0.0, 0.6),
+            friction_law=str(rng.choice(list(LAWS))), mu_static=mu + rng.uniform(0.0, 0.6),
             friction_speed=rng.uniform(0.05, 2.0) * length / unit,
         )  # fmt: skip
         start = rng.uniform(-0.5, 0.5, 4) * [length, length, length / unit, length / unit]
@@ -42,7 +41,7 @@ def scale_of(params):
     return params.preload / np.array([1.0, 1.0, params.time_unit, params.time_unit])
 
 
-@pytest.mark.parametrize("law", LAW_NAMES)
+@pytest.mark.parametrize("law", LAWS)
 def test_runs_agree_with_long_double(law):
     """States, regimes and event times, through slip, stick, release, flight and contact."""
     seen: set[int] = set()
@@ -117,7 +116,7 @@ def test_small_extensions_move_a_run_in_proportion(change):
     assert first / second == pytest.approx(2.0**order, rel=0.01)
 
 
-@pytest.mark.parametrize("law", LAW_NAMES)
+@pytest.mark.parametrize("law", LAWS)
 def test_mirror_image_on_a_reversed_belt(law):
     """x → −x gives (π − α1, π − α2, −V), for unequal springs, any law, damped or not."""
     for params, alpha1, alpha2, start in random_cases(20, seed=35, friction_law=law):
@@ -154,7 +153,7 @@ def test_mixed_runs_equal_those_alone():
             np.testing.assert_array_equal(whole._raw[name][row], values, err_msg=name)
 
 
-@pytest.mark.parametrize("law", LAW_NAMES)
+@pytest.mark.parametrize("law", LAWS)
 def test_growth_of_a_perturbation_is_that_of_a_nearby_run(law):
     """The variational equations, velocity derivatives and saltations included.
 

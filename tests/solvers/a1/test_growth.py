@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 from scipy.linalg import expm
 
-from squealpipe.parameters import LAW_NAMES, Parameters
+from squealpipe.laws.friction_laws import LAWS
+from squealpipe.parameters import Parameters
 from squealpipe.solvers.a1.ensemble import run_ensemble
 from squealpipe.solvers.a1.scaling import PHYSICAL
 from squealpipe.tasks.cycles.scene import Scene
@@ -103,7 +104,7 @@ def resting_runs(count, seed):
             length2=length * rng.uniform(1.0, 20.0),
             damping1=np.exp(rng.uniform(-4.0, 1.0)) * k1 * unit,
             damping2=np.exp(rng.uniform(-4.0, 1.0)) * k1 * unit,
-            friction_law=str(rng.choice(LAW_NAMES)), mu_static=mu + rng.uniform(0.0, 0.6),
+            friction_law=str(rng.choice(list(LAWS))), mu_static=mu + rng.uniform(0.0, 0.6),
             friction_speed=np.exp(rng.uniform(-3.0, 1.0)) * length / unit,
         )  # fmt: skip
         angles = rng.uniform(0.0, np.pi, 2)
