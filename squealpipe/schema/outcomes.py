@@ -23,6 +23,7 @@ class Outcome(IntEnum):
     linear_mode = 11, "below contact loss: the orbit is the linear mode"
     isolated_mode = 12, "the x mode is decoupled: y is constant and the branch is vertical"
     no_convergence = 13, "Newton did not converge; try a smaller step or another start"
+    order_changes = 14, "the order of the events changes, as `change` says"
     branch_lost = 15, "continuation could not go on; reduce its smallest step"
     pole = 16, "an internal resonance ω = ω_x/n ends the branch; ask for its other side"
     tongue_end = 17, "the branch closes on another one here"
@@ -31,6 +32,7 @@ class Outcome(IntEnum):
     beyond_horizon = 20, "chaotic beyond the predictability horizon: trust statistics only"
     infeasible = 21, "the sample breaks a statement of the paper"
     unresolved = 22, "the check could not decide; refine the grid or the horizon"
+    real_multipliers = 23, "a torus ends where its multipliers meet on the real axis"
     amplitude_reached = 24, "the asked amplitude was reached"
     unconfirmed = 25, "no exact orbit is close to the series; more harmonics or method=exact"
     other_branch = 26, "an exact orbit, not reached along the mode's branch; see backbone"
@@ -46,8 +48,6 @@ class Outcome(IntEnum):
     closed = 36, "the branch is a closed curve, followed once round"
     tangency = 37, "a surface is just touched, or stick ends so: no motion like it follows"
     accumulation = 38, "events accumulate at the time reached: end there, or add a regime of rest"
-    order_changes = 39, "the order of the events changes, as `change` says"
-    real_multipliers = 40, "a torus ends where its multipliers meet on the real axis"
 
     def __new__(cls, number: int, remedy: str = "") -> Self:
         """An outcome from its record."""
