@@ -11,6 +11,7 @@ from squealpipe.rerun.key import file_key
 from squealpipe.store import StoreError, produce
 from squealpipe.store.archive import archive
 from squealpipe.store.checkout import ROOT
+from squealpipe.store.runs import verify
 
 
 def test_nodes_are_the_datasets_by_their_names(run, keys_of):
@@ -105,3 +106,16 @@ def test_the_reference_opens_whatever_schemas_have_become_since():
     tree = open_results("reference", root=ROOT)
     assert tree["whirl"].attrs["schema"] == "whirl"
     assert float(tree["backbone/F10_mode1"].omega[0]) > 0
+
+
+def test_an_archive_of_the_first_release_is_read():
+    """Kept from 1.0.0 on: its bytes, and its datasets by the schemas of today.
+
+    It is a study of one scene of a pad on coarse grids, whose configuration is in it.
+    """
+    folder = ROOT / "tests/store/archives/1.0.0"
+    assert verify(folder).intact
+    for path in sorted((folder / "data").rglob("*.nc")):
+        assert load(path).attrs["package_version"] == "1.0.0"
+    scene = open_results(folder)["own_scenes"].sel(scene="mine", variant="as configured")
+    assert float(scene.impact_speed) == pytest.approx(0.05989646446372935, rel=1e-12)
