@@ -79,8 +79,8 @@ def test_replaced_and_damaged_results_are_named(finished, snakemake):
 
 def test_missing_dataset_is_not_up_to_date(finished):
     path = finished / "results/tiny/data/whirl.nc"
-    path.rename(path.with_suffix(".aside"))
+    path.rename(finished / "aside.nc")
     try:
         assert reasons(finished)["follow_whirl"] == ["missing: results/tiny/data/whirl.nc"]
     finally:
-        path.with_suffix(".aside").rename(path)
+        (finished / "aside.nc").rename(path)
