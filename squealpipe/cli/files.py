@@ -24,10 +24,10 @@ def plot(
 
     Args:
         file: dataset that a command or `squealpipe.save` wrote.
-        output: picture to write (png, svg or pdf); by default FILE.png.
+        output: picture to write (png, svg or pdf); by default FILE.png, here.
         variable: draw this variable instead of the usual picture.
     """
-    target = file.with_suffix(".png") if output is None else output
+    target = Path(file.with_suffix(".png").name) if output is None else output
     check_output(target, force=force, kinds=PICTURES)
 
     from squealpipe.plotting import picture

@@ -54,8 +54,9 @@ def test_an_unknown_ending_is_refused(motion, tmp_path):
 
 def test_command_draws_and_converts_a_system_of_ones_own(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
-    save(impact_oscillator.simulate(20.0), "own.nc")
-    assert command(["plot", "own.nc"]) == 0
+    save(impact_oscillator.simulate(20.0), "results/data/own.nc")
+    assert command(["plot", "results/data/own.nc"]) == 0, "beside it nothing else may be"
+    (tmp_path / "results/data/own.nc").rename("own.nc")
     assert command(["plot", "own.nc"]) == 2
     assert "own.png exists; add --force" in capsys.readouterr().err
     assert command(["plot", "own.nc", "--variable", "v", "-o", "v.svg"]) == 0
