@@ -80,7 +80,9 @@ ANGLES = Kind(
     lambda rng: rng.choice([[rng.uniform(-6, 6) for _ in range(rng.choice([1, 2, 3]))], *LISTS]),
     NO_ANGLES,
 )
-TURNS = Kind(lambda rng: rng.uniform(1, 9), ["1", True, 1j, math.nan, None, object(), b"1"])
+TURNS = Kind(
+    lambda rng: rng.uniform(1, 9), ["1", True, np.bool_(True), 1j, math.nan, None, object(), b"1"]
+)
 MANY = Kind(ANGLE.good, NO_ANGLES[2:17])
 HORIZON = number(0.05, 8.0)
 MAYBE = Kind(HORIZON.good, [bad for bad in HORIZON.bad if bad is not None])

@@ -103,6 +103,8 @@ def test_an_independent_integrator_closes_the_orbit(alpha1, alpha2, mode, y_peak
     end = 2 * PI / float(found.omega)
     z = a4_by_scipy(BASE, angles, found, np.union1d(found.time, end * np.linspace(0, 1, 4001)))
     np.testing.assert_allclose(z[:, -1], z[:, 0], atol=2e-8)
+    half = a4_by_scipy(BASE, angles, found, np.array([0.5, 1.0]) * end)[2:, 0]
+    np.testing.assert_allclose(half, 0.0, atol=2e-8)
     path = a4_by_scipy(BASE, angles, found, np.append(found.time.values, end))[:2, :-1]
     np.testing.assert_allclose([found.x_path, found.y_path], path, atol=2e-8)
     stiffness = linear_stiffness(BASE, geometry(*angles))
