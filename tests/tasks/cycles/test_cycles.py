@@ -80,6 +80,8 @@ def test_trivial_multiplier_and_differences_of_the_return_map(wanted):
         assert abs(multipliers[0] - 1.0) < max(1e-9, 1e-13 * np.abs(multipliers).max())
         start = np.array([float(cycle[f"{name}_start"]) for name in ("x", "y", "vx", "vy")])
         given = {"t_end": float(cycle.period), "initial_state": start}
+        # round-off of the difference counts in a weak cycle, its curvature in a strong one
+        given["step"] = 1e-8 if np.abs(multipliers).max() < 100.0 else 1e-9
         found = [derivative_along(params, *angles, unit, **given) for unit in np.eye(4)]
         distance = np.abs(np.linalg.eigvals(found)[:, None] - multipliers).min(axis=0)
         assert distance.max() < 1e-7 * max(1.0, np.abs(multipliers).max())
