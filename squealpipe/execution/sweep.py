@@ -179,8 +179,10 @@ def _runs(sweep: Sweep, workers: int | None) -> Iterator[xr.Dataset]:
         try:
             yield from pool.map(partial(sweep.run, workers=1), points, chunksize=size)
         except BaseException:
+            # without this the pool may see its processes end before it forgets the runs to come
+            pool.shutdown(wait=False, cancel_futures=True)
             for process in set(active_children()) - others:
-                process.terminate()  # the pool is broken then and waits for no other run
+                process.terminate()
             raise
 
 
