@@ -256,7 +256,8 @@ def build(
             except (TypeError, ValueError, OverflowError) as error:
                 raise SchemaError(f"{schema.name}: {name}: {error}") from error
             arrays[name] = array
-    dataset = xr.Dataset(variables).set_coords(list(coords))
+    of_coordinates = {name: variables.pop(name) for name in coords}
+    dataset = xr.Dataset(variables, of_coordinates)
     dataset.attrs = {
         "Conventions": "CF-1.11",
         "title": schema.title,

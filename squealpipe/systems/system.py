@@ -460,10 +460,10 @@ class System:
         known = {TIME_UNIT: np.ones(size), **values}
         for regime, constants, checks in self._starts:
             fits = chosen < 0
+            if not fits.any():
+                break
             known |= constants
             for function, names, sign in checks:
-                if not fits.any():
-                    break
                 arguments = [np.asarray(known[name]) for name in names]
                 (value,) = function(*arguments)
                 terms = sum(np.abs(each) for each in arguments)
