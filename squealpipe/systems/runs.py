@@ -14,7 +14,8 @@ import numpy as np
 import xarray as xr
 
 from squealpipe.methods.processes import run_shared
-from squealpipe.methods.taylor import lanes, loop
+from squealpipe.methods.taylor import lanes, layout
+from squealpipe.methods.taylor.loop import loop
 from squealpipe.methods.taylor.scalar import ScalarSource, compile_scalar
 from squealpipe.methods.taylor.series import HybridSystem
 from squealpipe.methods.taylor.simd import FEW, LANES
@@ -156,7 +157,7 @@ def integrate(
         (places[quantities.index(each.removeprefix(LARGEST))], each.startswith(LARGEST))
         for each in chosen
     ]
-    lost = math.log(loop.LOST_ERROR / tol)
+    lost = math.log(layout.LOST_ERROR / tol)
     each = (t_end / unit, t_late / unit, most_steps, most_events, lost, most_turns)
     limits = _table(size, each)
     samples = np.empty((1, 0)) if times is None else np.atleast_2d(times)
@@ -185,9 +186,9 @@ def integrate(
         "event_states": ((size, log_events, t.size), "f8"),
     }
     code = compiled(system, tangent=tangent, few=size <= FEW and few is not False)
-    loop.loop()
+    loop()
     terms = lanes.taylor_terms(tol)
-    n_rows = loop.FIXED_ROWS + len(t.variables) + t.size + 2 * len(watched) + n_regimes
+    n_rows = layout.FIXED_ROWS + len(t.variables) + t.size + 2 * len(watched) + n_regimes
     n_rows += 3 * n_points + len(t.parameters) + len(t.constants)
     width = max(3 * len(t.surfaces), len(t.variables)) + 2
 
@@ -197,7 +198,7 @@ def integrate(
         arrays["extremes"][first::stride] = [np.inf, -np.inf]
         for name in ("sample_regimes", "event_kinds", "event_regimes"):
             arrays[name][first::stride] = -1
-        integers = np.full((loop.FIXED_INTEGERS, LANES), -1, np.int64)
+        integers = np.full((layout.FIXED_INTEGERS, LANES), -1, np.int64)
         integers[1] = 0  # every lane asks for a job
         rows = lanes.aligned(n_rows, LANES)
         held = arrays | {
@@ -253,12 +254,12 @@ def integrate(
         }
         # a view of nothing has no address
         held = {
-            k: v if v.size else np.zeros(1, v.dtype) for k, v in held.items() if k in loop.ARRAYS
+            k: v if v.size else np.zeros(1, v.dtype) for k, v in held.items() if k in layout.ARRAYS
         }
-        table = lanes.Workspace(loop.TABLE, held, {name: sizes[name] for name in loop.SIZES})
-        at = integers[loop.JOB], rows[loop.CLOCK], rows[loop.T_END], held["queue"]
-        lanes.drive(loop.loop(), table, lambda: lanes.share_of(*at))
-        if integers[loop.JOB].max() >= 0 or held["queue"][0] < size:
+        table = lanes.Workspace(layout.TABLE, held, {name: sizes[name] for name in layout.SIZES})
+        at = integers[layout.JOB], rows[layout.CLOCK], rows[layout.T_END], held["queue"]
+        lanes.drive(loop(), table, lambda: lanes.share_of(*at))
+        if integers[layout.JOB].max() >= 0 or held["queue"][0] < size:
             raise RuntimeError(
                 "an exception in compiled code, reported above, ended the integration before its "
                 "runs were finished; please report the parameters"
@@ -558,7 +559,7 @@ def flag(long_name: str, dims: Any, values: Any, table: Mapping[int, str]) -> An
 
 def outcome(system: System, dims: Any, values: Any) -> Any:
     """The flag variable that says how runs ended."""
-    table = flag_table(Outcome) | {loop.STOPPED + i: name for i, name in enumerate(system.stops)}
+    table = flag_table(Outcome) | {layout.STOPPED + i: name for i, name in enumerate(system.stops)}
     dims, values, attributes = flag("how the run ended", dims, values, table)
     return dims, values, attributes | {"comment": in_words(table)}
 

@@ -13,9 +13,9 @@ import numpy as np
 
 from squealpipe.methods.compiled import compiled, part
 from squealpipe.methods.taylor.lanes import call, compile_advance, view
-from squealpipe.methods.taylor.loop import _reach, _step_length
 from squealpipe.methods.taylor.roots import evaluate
 from squealpipe.methods.taylor.simd import FEW, LANES, ROW, smaller, store
+from squealpipe.methods.taylor.step import reach, step_length
 
 _numba: Any = numba
 _SWEEPS = 19
@@ -114,10 +114,10 @@ def _advance(table: Any) -> int:
         if busy == 0:
             return 0
         call(t.take_step, (t.series, t.rows + ROW, t.inverses, terms))
-        length = _step_length(t.series, terms, n, sizes)
+        length = step_length(t.series, terms, n, sizes)
         if t.n_variables > n:
             for each in range(t.n_variables, t.n_kept):
-                length = smaller(length, _reach(t.series + each * terms * ROW, terms))
+                length = smaller(length, reach(t.series + each * terms * ROW, terms))
         store(t.rows, length)
         for lane in range(FEW):
             if m.lanes[lane] >= 0 and _keep(t, m, lane, unit):

@@ -11,7 +11,7 @@ import numpy as np
 
 from squealpipe.codes import Event, Regime
 from squealpipe.laws.springs import fixed_ends, geometry
-from squealpipe.methods.taylor.loop import BY_EVENT, BY_TURNS, STOPPED
+from squealpipe.methods.taylor.layout import BY_EVENT, BY_TURNS, STOPPED
 from squealpipe.parameters import Parameters
 from squealpipe.schema import Outcome
 from squealpipe.solvers.a1.jobs import Jobs, jobs_of

@@ -8,7 +8,7 @@ smooth piece where the first margin is zero, and the branch goes on with other e
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import TYPE_CHECKING, Any
@@ -16,46 +16,32 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import xarray as xr
 from scipy.interpolate import barycentric_interpolate
-from scipy.optimize import brentq
 
-from squealpipe.methods.continuation import (
-    ContinuationSettings,
-    ContinuationState,
-    Problem,
-    PseudoArclength,
-)
+from squealpipe.methods.continuation import ContinuationState
 from squealpipe.methods.progress import alone
 from squealpipe.schema import Outcome
 from squealpipe.systems import runs
-from squealpipe.systems.cycles.admissible import MARGIN_ROUND_OFF, Kind, Margin, margins
-from squealpipe.systems.cycles.cycle import (
-    columns,
-    describe_columns,
-    find_cycle,
-    follow,
-    guess_of,
-    merged,
-    outcome_of,
-    without_brief_legs,
-)
-from squealpipe.systems.cycles.event_map import FREE, Cycle, Event, EventMap, Section
+from squealpipe.systems.cycles.admissible import MARGIN_ROUND_OFF, margins
+from squealpipe.systems.cycles.cycle import columns, describe_columns, find_cycle, outcome_of
+from squealpipe.systems.cycles.event_map import FREE, Cycle, EventMap, Section
+from squealpipe.systems.cycles.event_order import Turn, label_of, least_margin
 from squealpipe.systems.cycles.flow import Flow, Vector
 from squealpipe.systems.cycles.labels import Label
+from squealpipe.systems.cycles.line import (
+    ALONG,
+    AT,
+    STEPS,
+    TESTS,
+    Line,
+    hides_folds,
+    is_torus,
+    multiplier_change,
+)
 from squealpipe.validation import Number, Several, checked
 
 if TYPE_CHECKING:
     from squealpipe.systems.system import System
 
-# Round-off in the closing error is eps times the longest length over the cycle's: 3e-9 for
-# springs of 10⁶ and a cycle of one.
-STEPS = ContinuationSettings(
-    first_step=1e-3, shortest_step=1e-9, longest_step=0.05, tolerance=1e-11, stagnant=1e-8
-)
-PRECISE = replace(STEPS, tolerance=3e-14, max_iterations=10)
-ALONG, AT = (
-    PseudoArclength(steps, least_iterations=0, own_tangent=True) for steps in (STEPS, PRECISE)
-)
-"""Along a branch, and at a special point, which is located to round-off."""
 _EASY, _GROWTH = 3, 3.0
 """With no more than so many iterations the next step may grow, by no more than this factor."""
 _TURN = 0.7
@@ -64,10 +50,6 @@ _CHANGE = 1.0
 """Largest change of a multiplier between neighbouring points."""
 _COARSE = 1e-6
 """Step below which a branch is taken as it is."""
-_WEAK = 0.1
-"""Speed or length of an event, over the least of the others, at which it has only just begun."""
-_JUMP = 1e-2
-"""Change of the extremes, over the extent, beyond which a solution is not next to the change."""
 _AT_REST = 1e-3
 """Size of a cycle, over the largest on its branch, below which one that shrinks comes to rest."""
 _MET = 0.03
@@ -76,13 +58,10 @@ _GONE = 1e-5
 """The same where it is not followed any further."""
 _SAME = 1e-3
 """Distance from an older piece of the branch, over that piece, that is on it."""
-_ZERO = 1e-12
 _CLOSE = 1e-5
 """Share of a step before a change of the events in which a fold is that change."""
 _BEFORE = 1e-9
 """Share before it up to which multipliers are followed."""
-
-Test = Callable[[ContinuationState, Cycle], float]
 
 
 @dataclass(frozen=True)
@@ -102,90 +81,14 @@ class Point:
         return self.cycle.parts.values[self.cycle.map.flow.followed[-1]]
 
 
-def flip(cycle: Cycle) -> float:
-    """∏ (λ + 1) over the multipliers: zero at a period doubling."""
-    return float(np.real(np.prod(cycle.nontrivial + 1.0)))
-
-
-def pairs(cycle: Cycle) -> float:
-    """∏ (λi λj − 1) over pairs of multipliers: zero at a torus, and where real ones are inverse."""
-    first, second = np.triu_indices(len(cycle.nontrivial), 1)
-    return float(np.real(np.prod(cycle.nontrivial[first] * cycle.nontrivial[second] - 1.0)))
-
-
-def is_torus(cycle: Cycle) -> bool:
-    """Whether, where :func:`pairs` is zero, a complex pair is on the unit circle."""
-    rest = cycle.nontrivial
-    return bool(((np.abs(np.abs(rest) - 1.0) < 1e-6) & (np.abs(rest.imag) > 1e-9)).any())
-
-
-TESTS: tuple[tuple[Label, Test], ...] = (
-    (Label.fold, lambda state, _: float(state.tangent[-1])),
-    (Label.period_doubling, lambda _, cycle: flip(cycle)),
-    (Label.torus, lambda _, cycle: pairs(cycle)),
-)
-
-
 def sizes_of(shapes: list[Vector]) -> Vector:
     """The largest extent of each cycle."""
     lowest, highest = np.split(np.array(shapes)[:, 2:], 2, axis=1)
     return np.asarray((highest - lowest).max(axis=1))
 
 
-def hides_folds(before: ContinuationState, after: ContinuationState) -> bool:
-    """Whether the parameter, interpolated by Hermite's cubic, turns twice between two points."""
-    step = after.point - before.point
-    first, last = float(before.tangent[-1]), float(after.tangent[-1])
-    mean = float(step[-1] / np.linalg.norm(step))
-    # its slope is first + b s + a s² for s from 0 to 1
-    a, b = 3.0 * (first + last) - 6.0 * mean, 6.0 * mean - 4.0 * first - 2.0 * last
-    if first * last <= 0.0 or a == 0.0 or not 0.0 < -0.5 * b / a < 1.0:
-        return False
-    return (first - 0.25 * b * b / a) * first < 0.0
-
-
-def multiplier_change(one: Cycle, other: Cycle) -> float:
-    """Largest relative distance of a multiplier from the nearest of the other cycle."""
-    first, second = one.multipliers, other.multipliers
-    distance = np.abs(first[:, None] - second) / (1.0 + np.abs(first[:, None]))
-    return float(max(distance.min(axis=0).max(), distance.min(axis=1).max()))
-
-
-def label_of(cycle: Cycle, zero: dict[Margin, float]) -> Label:
-    """What a change of the events is called, from the margins that vanish."""
-    system = cycle.map.flow.system
-    t, found = system.traced, Label.regular
-    for margin in zero:
-        event = cycle.map.events[margin.leg]
-        held = bool(system.holds[event.before].any())
-        watched = (t.falls[event.before, margin.which], t.rises[event.before, margin.which])
-        own = margin.kind in {Kind.condition, Kind.length}
-        switch = event.switch if own else int(max(watched))
-        crosses = margin.kind in {Kind.touch, Kind.speed}
-        if (held or crosses or margin.kind == Kind.condition) and _of_hold(system, switch):
-            return Label.stick_onset
-        if crosses:
-            found = Label.grazing
-    return found
-
-
-def _of_hold(system: System, switch: int) -> bool:
-    """Whether a switch may lead to where its surface is held, as to stick, or ends that alone."""
-    t = system.traced
-    if not 0 <= switch < len(t.switches):
-        return False
-    leaves, surfaces = np.nonzero((t.falls == switch) | (t.rises == switch))
-    targets = [regime for regime, _, _ in t.switches[switch].targets]
-    held: Any = system.holds.any(axis=1)
-    return bool(system.holds[targets][:, surfaces].any() or held[leaves].all())
-
-
 def _closeness(offset: Vector, parts: int, _: ContinuationState, cycle: Cycle) -> float:
     return float(offset @ cycle.after_part(parts))
-
-
-def _least_margin(_: ContinuationState | None, cycle: Cycle) -> float:
-    return min(margins(cycle).values(), default=math.inf)
 
 
 @dataclass(frozen=True)
@@ -376,8 +279,8 @@ class Follower:
         line = Line(
             AT, cycle.map, (state, cycle), (following, reached), partial(Cycle.at, cycle.map)
         )
-        before, after = (_least_margin(None, each) for each in (cycle, reached))
-        last = 1.0 if after >= -MARGIN_ROUND_OFF else line.root(_least_margin)
+        before, after = (least_margin(None, each) for each in (cycle, reached))
+        last = 1.0 if after >= -MARGIN_ROUND_OFF else line.root(least_margin)
         found = None if last is None else self._smooth(line, last)
         if found is None or last is None:
             return None
@@ -426,7 +329,7 @@ class Follower:
             return Step([Point(*there)], *there, end=Outcome.equilibrium)
         zero = {k: v for k, v in margins(there[1]).items() if abs(v) < 1e-7}
         label = label_of(there[1], zero)
-        turned = _Turn(line, last, there, zero).way_on()
+        turned = Turn(line, last, there, zero).way_on()
         special = [Point(*line.at(share), each) for share, each in found]
         special += [Point(*there, label)] if label or turned is None else []
         if turned is not None:
@@ -487,191 +390,6 @@ def renewed(state: ContinuationState, cycle: Cycle) -> tuple[ContinuationState, 
     made = replace(equations, section=section)
     state = replace(state, tangent=tangent / np.linalg.norm(tangent))
     return state, replace(cycle, map=made)
-
-
-class Line:
-    """A branch, or a curve, of one event map between two points of it, and a little beyond."""
-
-    def __init__(
-        self, algorithm: PseudoArclength, equations: Problem,
-        first: tuple[ContinuationState, Cycle], last: tuple[ContinuationState, Cycle],
-        cycle_at: Callable[[Vector], Cycle],
-    ) -> None:  # fmt: skip
-        self.algorithm, self.equations, self.cycle_at = algorithm, equations, cycle_at
-        self.known = {0.0: first, 1.0: last}
-        self.normal = first[0].tangent
-        self.reach = float(self.normal @ (last[0].point - first[0].point))
-
-    def at(self, share: float) -> tuple[ContinuationState, Cycle]:
-        """The point over a share of the step; an ArithmeticError where there is none."""
-        if share not in self.known:
-            shares = sorted(self.known)
-            high = next((s for s in shares if s > share), shares[-1])
-            low = shares[shares.index(high) - 1]
-            (one, _), (other, _) = self.known[low], self.known[high]
-            width, part = high - low, (share - low) / (high - low)
-            step = other.point - one.point
-            slopes = [
-                s.tangent * (width * self.reach / float(self.normal @ s.tangent)) - step
-                for s in (one, other)
-            ]
-            bend = (1.0 - part) * slopes[0] - part * slopes[1]
-            if not np.linalg.norm(bend) < np.linalg.norm(step):
-                bend = np.zeros_like(step)
-            guess = one.point + part * step + part * (1.0 - part) * bend
-            state = self.algorithm.solve(
-                self.equations, guess, self.normal, self.known[0.0][0].step
-            )
-            if state is None:
-                raise ArithmeticError
-            self.known[share] = state, self.cycle_at(state.point)
-        return self.known[share]
-
-    def root(self, test: Test, end: float = 1.0) -> float | None:
-        """Where a test is zero before a share of the step; None where it is not found."""
-
-        def value(share: float) -> float:
-            found = test(*self.at(share))
-            return 1.0 if found == np.inf else found
-
-        try:
-            first = value(0.0)
-            if first <= 0.0 and value(end) < 0.0:
-                return 0.0 if first > -MARGIN_ROUND_OFF else None
-            return float(brentq(value, 0.0, end, xtol=_ZERO, rtol=_ZERO, maxiter=60))
-        except (ArithmeticError, ValueError, RuntimeError):
-            return None
-
-
-@dataclass
-class _Turn:
-    """How a branch goes on from where the order of its events changes."""
-
-    line: Line
-    share: float
-    there: tuple[ContinuationState, Cycle]
-    zero: dict[Margin, float]
-
-    def way_on(self) -> tuple[ContinuationState, Cycle] | None:
-        """The first point beyond, with a tangent that leads away."""
-        for equations, guess in (*self._runs(), *self._without()):
-            found = self._started(equations, guess)
-            if found is not None and not self._jumps(found[1]):
-                return found
-        return None
-
-    def _jumps(self, cycle: Cycle) -> bool:
-        """Whether a solution is not next to the change: a reset of the state may end the branch."""
-        change = self.there[1]
-        moved = (cycle.extremes - change.extremes)[:, : len(change.map.scale)] / change.map.scale
-        return bool(np.abs(moved).max() > _JUMP)
-
-    def _runs(self) -> Iterator[tuple[EventMap, Vector]]:
-        """Motions of the system from just beyond, with the events that they have."""
-        old = order_of(self.there[1].map.events)
-        seen = set()
-        for beyond in (1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2):
-            try:
-                cycle = self.line.at(self.share + beyond)[1]
-            except ArithmeticError:
-                continue
-            found = run_of(cycle)
-            if found is None:
-                continue
-            order = order_of(found[0].events)
-            if order != old and order not in seen:
-                seen.add(order)
-                yield found
-
-    def _without(self) -> Iterator[tuple[EventMap, Vector]]:
-        """The same motion without events that have vanished, one or two at once."""
-        cycle = self.there[1]
-        for margin in self.zero:
-            event = cycle.map.events[margin.leg]
-            if margin.kind == Kind.speed and event.before == event.after:
-                yield merged(cycle, margin.leg, 1)
-        yield from without_brief_legs(cycle)
-
-    def _started(
-        self, equations: EventMap, guess: Vector
-    ) -> tuple[ContinuationState, Cycle] | None:
-        """A solution next to the change, and the direction in which it is a motion."""
-        values, _ = equations.evaluate(guess)
-        if not np.isfinite(values).all():
-            return None
-        near = margins(Cycle.at(equations, guess))
-        known = margins(self.there[1]).items()
-        kinds = {Kind.speed, Kind.length}
-        usual = min((v for k, v in known if k.kind in kinds and v > 1e-6), default=1.0)
-        most = _WEAK * min(1.0, usual)
-        weak = {k: v for k, v in near.items() if k.kind in kinds and v < most}
-        algorithm = replace(ALONG, settings=replace(STEPS, max_iterations=12))
-        if weak:
-            key = min(weak, key=lambda k: weak[k])
-            normal = _gradient(equations, guess, key)
-        else:
-            normal = np.eye(len(guess))[-1]
-        state = algorithm.solve(equations, guess, normal, STEPS.first_step)
-        if state is None:
-            return None
-        cycle = Cycle.at(equations, state.point)
-        if cycle.period <= 0.0 or abs(cycle.period - self.there[1].period) > 0.1 * cycle.period:
-            return None
-        if weak:
-            here = margins(cycle)
-            good = all(value >= -MARGIN_ROUND_OFF for value in here.values())
-            return (state, cycle) if good else None
-        ways = []
-        for sign in (1.0, -1.0):
-            trial = replace(state, tangent=sign * state.tangent, step=1e-5)
-            ahead = ALONG.attempt(equations, trial)
-            if ahead is not None:
-                beyond = Cycle.at(equations, ahead.point)
-                least = _least_margin(None, beyond)
-                if least >= -MARGIN_ROUND_OFF:
-                    ways.append((least, ahead, beyond))
-        if not ways:
-            return None
-        _, state, cycle = max(ways, key=lambda way: way[0])
-        return state, cycle
-
-
-def order_of(events: tuple[Event, ...]) -> tuple[tuple[int, ...], ...]:
-    """The events from the rotation that sorts first."""
-    kinds = [(e.switch, e.before, e.after, e.kind) for e in events]
-    return min(tuple(kinds[i:] + kinds[:i]) for i in range(len(kinds)))
-
-
-def run_of(cycle: Cycle) -> tuple[EventMap, Vector] | None:
-    """Equations and guess from a motion of the system next to a solution."""
-    equations, parts = cycle.map, cycle.parts
-    flow = equations.flow
-    state, regime = cycle.start()
-    run = follow(flow, parts.values, state, cycle.period, regime=regime)
-    if run.outcome or len(run.times) > 4 * equations.legs + 8:
-        return None
-    found = guess_of(
-        flow, parts.values, run, state, cycle.period, periods=equations.periods,
-        scale=equations.scale,
-    )  # fmt: skip
-    if found is None:
-        return None
-    made = replace(found[0], time=equations.time, units=equations.units)
-    return made, made.pack(*found[0].unpack(found[1])[:3], cycle.followed)
-
-
-def _gradient(equations: EventMap, point: Vector, margin: Margin) -> Vector:
-    """The direction in which a length, or the speed of an event, grows."""
-    n, m = equations.flow.size, equations.legs
-    if margin.kind == Kind.length:
-        return np.asarray(np.eye(len(point))[m * n + margin.leg])
-    parts, leg = equations.parts(point), margin.leg
-    event, end = equations.events[leg], parts.path.ends[leg]
-    time = parts.start + float(parts.durations[: leg + 1].sum())
-    slopes = equations.flow.quantity(parts.values, event, None, end, time)[1 : n + 1]
-    by_end, _ = equations.by_unknowns(parts, leg)
-    found = -slopes @ by_end * equations.column_units
-    return np.asarray(found / np.linalg.norm(found))
 
 
 @checked

@@ -21,19 +21,12 @@ import xarray as xr
 from squealpipe.methods.continuation import ContinuationState, PseudoArclength
 from squealpipe.systems import runs
 from squealpipe.systems.cycles.admissible import MARGIN_ROUND_OFF, Kind, Margin, is_motion, margins
-from squealpipe.systems.cycles.branch import (
-    PRECISE,
-    STEPS,
-    Line,
-    flip,
-    label_of,
-    order_of,
-    run_of,
-    started,
-)
+from squealpipe.systems.cycles.branch import started
 from squealpipe.systems.cycles.event_map import FREE, Cycle, Event, EventMap, Section
+from squealpipe.systems.cycles.event_order import label_of, order_of, run_of
 from squealpipe.systems.cycles.flow import Flow, Vector
 from squealpipe.systems.cycles.labels import Label, Meeting
+from squealpipe.systems.cycles.line import PRECISE, STEPS, Line, flip
 from squealpipe.text import suggestion
 from squealpipe.validation import Number, Several, checked
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import xarray as xr
 
-from squealpipe.methods.taylor.loop import STOPPED
+from squealpipe.methods.taylor.layout import STOPPED
 from squealpipe.schema import Outcome, flag_table, in_words
 from squealpipe.systems import runs
 from squealpipe.systems.cycles.admissible import is_motion

@@ -7,7 +7,7 @@ from typing import Annotated, Any
 import numpy as np
 import xarray as xr
 
-from squealpipe.methods.taylor.loop import STOPPED
+from squealpipe.methods.taylor.layout import STOPPED
 from squealpipe.parameters import Parameters
 from squealpipe.schema import Outcome, blank, build
 from squealpipe.schema.cycles import LIMIT_CYCLE

@@ -6,9 +6,9 @@ import numpy as np
 from scipy.optimize import brentq
 
 from squealpipe.methods.continuation import ContinuationState, PseudoArclength
-from squealpipe.systems.cycles.branch import STEPS
 from squealpipe.systems.cycles.event_map import FREE, Cycle, Event, EventMap, Section
 from squealpipe.systems.cycles.flow import Flow, Vector
+from squealpipe.systems.cycles.line import STEPS
 from squealpipe.tasks.cycles.scene import Scene
 from squealpipe.tasks.cycles.sliding import steady_sliding
 

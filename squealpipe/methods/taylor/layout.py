@@ -1,0 +1,43 @@
+"""What the compiled loop works on: addresses, sizes, and the rows that each lane has."""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+LOST_ERROR = 1e-3
+"""Error, in units of the states' sizes, from which a state says nothing about its run."""
+LATE_BEGINS = -2
+"""What ends a step where the late part of a run begins."""
+RUNNING, CONVERGED, STEP_LIMIT, EVENT_LIMIT, NOT_FINITE, ACCUMULATION = -1, 0, 3, 4, 6, 38
+"""How a run ends, by the numbers of ``schema.Outcome``."""
+STOPPED = 100
+"""A stop of the system's own is this plus its number."""
+BY_EVENT, BY_TURNS = 98, 99
+"""Ends of runs that were to end at the first event of a kind, or after so many turns."""
+(
+    CLOCK, CORRECTION, STEP, LONGEST, T_END, T_LATE, NEXT_SAMPLE, STEPS, MOST_STEPS, ENTERED, LOST,
+    FIXED_ROWS,
+) = range(12)  # fmt: skip
+"""Rows of numbers of the lanes that every system has; those of a system follow."""
+JOB, OUTCOME, SAMPLE, REGIME, EVENTS, CHAINED, HIT, LATE, FIXED_INTEGERS = range(9)
+"""Rows of integers of the lanes."""
+
+ARRAYS = (
+    "rows", "integers", "series", "inverses", "sizes", "tracked", "regimes", "falls", "rises",
+    "active", "fresh", "noise", "scratch", "initial", "parameters", "first_regime", "limits",
+    "final", "extremes", "counts", "firsts", "durations", "ends", "summary", "sample_times",
+    "samples", "sample_regimes", "sample_sums", "event_times", "event_kinds", "event_regimes",
+    "event_states", "peaks", "points", "half_turns", "queue",
+)  # fmt: skip
+SIZES = (
+    "n_terms", "n_jobs", "n_states", "n_variables", "n_surfaces", "n_tracked", "n_parameters",
+    "n_constants", "n_regimes", "n_kinds", "n_samples", "n_sums", "n_logged", "n_points",
+    "n_rounds", "until", "late_from", "tangent",
+    "take_step", "perturb", "longest", "gauge", "change", "jump", "n_series", "n_rows",
+    "n_switches",
+)  # fmt: skip
+TABLE = np.dtype([(name, "i8") for name in (*ARRAYS, *SIZES)])
+
+_fields: Any = [(name, Any) for name in ARRAYS if name not in {"series", "inverses"}]
+_named_tuple: Any = NamedTuple
+Memory: Any = _named_tuple("Memory", _fields)

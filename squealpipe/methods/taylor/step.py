@@ -1,0 +1,197 @@
+"""How long a Taylor step of all lanes is, and where it ends in a lane that crosses a surface."""
+
+import math
+from typing import Any
+
+import numpy as np
+
+from squealpipe.methods.compiled import inline, part
+from squealpipe.methods.taylor.layout import (
+    CLOCK,
+    CONVERGED,
+    CORRECTION,
+    FIXED_ROWS,
+    HIT,
+    LATE_BEGINS,
+    LONGEST,
+    NOT_FINITE,
+    OUTCOME,
+    REGIME,
+    STEP,
+    T_END,
+    T_LATE,
+)
+from squealpipe.methods.taylor.roots import evaluate, evaluate_twice, first_crossing
+from squealpipe.methods.taylor.simd import (
+    ROW,
+    bits_below,
+    choose_below,
+    fma,
+    larger,
+    load,
+    magnitude,
+    rough_power,
+    smaller,
+    splat,
+    store,
+)
+
+NOTHING = 1e-30
+"""Below the round-off of any quantity."""
+
+
+@inline
+def step_length(base: int, terms: int, n_states: int, sizes: Any) -> Any:
+    """Lengths of the next steps from the last two orders (Jorba and Zou 2005; Biscani 2021)."""
+    size, last, previous = splat(1.0), splat(1e-300), splat(1e-300)
+    for variable in range(n_states):
+        series, unit = base + variable * terms * ROW, splat(1.0 / sizes[variable])
+        size = larger(magnitude(load(series)) * unit, size)
+        last = larger(magnitude(load(series + (terms - 1) * ROW)) * unit, last)
+        previous = larger(magnitude(load(series + (terms - 2) * ROW)) * unit, previous)
+    order = terms - 1.0
+    reach = smaller(
+        rough_power(size / last, splat(1.0 / order)),
+        rough_power(size / previous, splat(1.0 / (order - 1.0))),
+    )
+    return reach * math.exp(-2.0 - 0.7 / (order - 1.0))
+
+
+@inline
+def reach(series: int, terms: int) -> Any:
+    """Longest step of a series that is no state's, from ratios of its orders.
+
+    Where the state rests, what depends on the time alone still needs short steps. Its highest
+    order may be left out. Of a quantity that is kept at zero all orders are round-off.
+    """
+    reach, tiny = splat(0.0), splat(1e-300)
+    for low in (0, 1, 2):
+        base, nearer = magnitude(load(series + low * ROW)), splat(np.inf)
+        if low == 0:
+            base = splat(NOTHING)
+        for high in (terms - 3, terms - 2):
+            last = magnitude(load(series + high * ROW))
+            power = rough_power(larger(base, tiny) / larger(last, tiny), splat(1.0 / (high - low)))
+            nearer = smaller(nearer, choose_below(tiny, last, power, splat(np.inf)))
+        reach = larger(reach, nearer)
+    return reach * math.exp(-2.0)
+
+
+@inline
+def _at_end(series: int, terms: int, step: Any) -> Any:
+    """A series' value at the end of its step."""
+    value = load(series + (terms - 1) * ROW)
+    for k in range(terms - 2, -1, -1):
+        value = fma(value, step, load(series + k * ROW))
+    return value
+
+
+@inline
+def _free(series: int, terms: int, step: Any) -> Any:
+    """Lanes in which a surface has no root: both ends are further from zero than it bends."""
+    value, bend = load(series + (terms - 1) * ROW), splat(0.0)
+    for k in range(terms - 1, 1, -1):
+        row = load(series + k * ROW)
+        bend = fma(bend, step, magnitude(row) * splat(k * (k - 1.0)))
+        value = fma(value, step, row)
+    value = fma(value, step, load(series + ROW))
+    first = load(series)
+    value = fma(value, step, first)
+    free = bits_below(splat(0.0), first * value)
+    nearest = smaller(magnitude(first), magnitude(value))
+    return free & bits_below(bend * step * step * 0.125, nearest)
+
+
+@inline
+def reaches(rows: int, instant: int) -> Any:
+    """Lanes whose step does not end before the instant in a row."""
+    left = load(rows + instant * ROW) - load(rows + CLOCK * ROW)
+    return ~bits_below(load(rows + STEP * ROW), left - load(rows + CORRECTION * ROW))
+
+
+@inline
+def take_step(t: Any, active: Any, sizes: Any) -> Any:
+    """Ends of all lanes' steps; returns the lanes that need a look of their own."""
+    terms, base, at = t.n_terms, t.series, t.rows
+    step = smaller(step_length(base, terms, t.n_states, sizes), load(at + LONGEST * ROW))
+    if t.n_variables > t.n_states:
+        for each in range(t.n_surfaces + t.n_tracked - t.n_states):
+            step = smaller(step, reach(base + (t.n_variables + each) * terms * ROW, terms))
+    store(at + STEP * ROW, step)
+    lost = step
+    for variable in range(t.n_variables):
+        value = _at_end(base + variable * terms * ROW, terms, step)
+        store(at + (FIXED_ROWS + variable) * ROW, value)
+        lost = lost + value * 0.0
+    plain = bits_below(magnitude(lost), splat(np.inf))
+    for surface in range(t.n_surfaces):
+        if active[surface]:
+            series = base + (t.n_variables + surface) * terms * ROW
+            plain &= _free(series, terms, step) | ~active[surface]
+    return ~plain | reaches(at, T_END) | reaches(at, T_LATE)
+
+
+@part
+def _first_switch(t: Any, m: Any, c: Any, lane: int, step: float) -> float:
+    """When the first watched surface is crossed, whose switch goes into ``HIT``; or the step."""
+    integers = m.integers
+    regime, bit = integers[REGIME, lane], 1 << lane
+    first, tie = step, step * 2.0**-44
+    for surface in range(t.n_surfaces):
+        falls, rises = m.falls[regime, surface], m.rises[regime, surface]
+        if falls < 0 and rises < 0:
+            continue
+        root = first_crossing(
+            c, t.n_variables + surface, lane, step, falls >= 0, rises >= 0,
+            (m.fresh[surface] & bit) != 0, m.noise[surface, 0, lane], m.noise[surface, 1, lane],
+        )  # fmt: skip
+        if root < 0.0 or root > first + tie:
+            continue
+        _, slope, _ = evaluate_twice(c, t.n_variables + surface, lane, root)
+        which = falls if rises < 0 or (falls >= 0 and slope < 0.0) else rises
+        earlier = root < first - tie or integers[HIT, lane] < 0
+        # of switches at one instant the first by name goes first, whatever their order
+        if earlier or which < integers[HIT, lane]:
+            first, integers[HIT, lane] = min(root, first), which
+    return first
+
+
+@part
+def cut(t: Any, m: Any, c: Any, lane: int) -> None:
+    """End a lane's step at the first crossing, at the late time or at the end of its run."""
+    rows, integers = m.rows, m.integers
+    integers[HIT, lane] = -1
+    total = rows[STEP, lane]
+    for variable in range(t.n_variables):
+        total += 0.0 * rows[FIXED_ROWS + variable, lane]
+    if not math.isfinite(total):
+        rows[STEP, lane] = 0.0
+        integers[OUTCOME, lane] = NOT_FINITE
+        for variable in range(t.n_variables):  # of its series higher orders may be no numbers
+            rows[FIXED_ROWS + variable, lane] = c[variable, 0, lane]
+        return
+    done = rows[CLOCK, lane]
+    remaining = (rows[T_END, lane] - done) - rows[CORRECTION, lane]
+    step, ends = min(rows[STEP, lane], remaining), remaining <= rows[STEP, lane]
+    late = (rows[T_LATE, lane] - done) - rows[CORRECTION, lane]
+    turns_late = late <= step
+    if turns_late:
+        step, ends = late, ends and late >= remaining
+    first = _first_switch(t, m, c, lane, step)
+    if integers[HIT, lane] >= 0:
+        step, ends, turns_late = first, False, False
+    if turns_late:
+        rows[T_LATE, lane] = math.inf
+    if step != rows[STEP, lane]:
+        rows[STEP, lane] = step
+        _set_end(t, m, c, lane)
+    if turns_late:
+        integers[HIT, lane] = LATE_BEGINS
+    if ends:
+        integers[OUTCOME, lane] = CONVERGED
+
+
+@part
+def _set_end(t: Any, m: Any, c: Any, lane: int) -> None:
+    for variable in range(t.n_variables):
+        m.rows[FIXED_ROWS + variable, lane] = evaluate(c, variable, lane, m.rows[STEP, lane])

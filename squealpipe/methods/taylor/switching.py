@@ -1,0 +1,177 @@
+"""What a switch does: reset, regime entered, count and log, and a perturbation across it."""
+
+import math
+from typing import Any
+
+from squealpipe.methods.compiled import inline, part
+from squealpipe.methods.taylor.lanes import call
+from squealpipe.methods.taylor.layout import (
+    ACCUMULATION,
+    BY_EVENT,
+    CHAINED,
+    CLOCK,
+    CORRECTION,
+    ENTERED,
+    EVENT_LIMIT,
+    EVENTS,
+    FIXED_ROWS,
+    HIT,
+    JOB,
+    LATE_BEGINS,
+    LOST_ERROR,
+    OUTCOME,
+    REGIME,
+    RUNNING,
+    STEP,
+    STOPPED,
+)
+from squealpipe.methods.taylor.observation import begin_late
+from squealpipe.methods.taylor.simd import ROW, first_bit
+
+SLACK = 1e-13
+"""A surface lies within this of zero where round-off hides its sign, over the terms that cancel."""
+NOISE = 1e-15
+"""Round-off of a surface's polynomial and of its rate, likewise."""
+CHAIN = 64
+"""Switches without progress in time that end a run."""
+
+
+@part
+def enter_regime(t: Any, m: Any, c: Any, lane: int, regime: int, span: float) -> None:
+    """Put a lane into a regime: its constants, which surfaces it watches, which start from zero."""
+    m.integers[REGIME, lane] = regime
+    bit, keep = 1 << lane, ~(1 << lane)
+    first = t.n_rows - t.n_constants
+    for constant in range(t.n_constants):
+        m.rows[first + constant, lane] = m.regimes[regime, constant]
+    z, sizes, out = m.scratch[0], m.scratch[1], m.scratch[2]
+    for variable in range(t.n_variables):
+        z[variable] = c[variable, 0, lane]
+        sizes[variable] = abs(z[variable]) + abs(c[variable, 1, lane]) * span
+    parameters = t.rows + (first - t.n_parameters) * ROW + 8 * lane
+    constants = t.regimes + 8 * regime * t.n_constants
+    stride = m.scratch.shape[1] * 8
+    call(t.gauge, (t.scratch, t.scratch + stride, parameters, constants, t.scratch + 2 * stride))
+    # where an event was located to the tolerance only, the rate that follows from it is no better
+    located = max(NOISE, LOST_ERROR * math.exp(-m.limits[m.integers[JOB, lane], 4]))
+    for surface in range(t.n_surfaces):
+        m.noise[surface, 0, lane] = NOISE * out[3 * surface + 1]
+        m.noise[surface, 1, lane] = located * out[3 * surface + 2]
+    # a state is known to round-off of its typical size, however small it has become
+    for variable in range(t.n_states):
+        sizes[variable] = max(sizes[variable], m.sizes[variable])
+    call(t.gauge, (t.scratch, t.scratch + stride, parameters, constants, t.scratch + 2 * stride))
+    for surface in range(t.n_surfaces):
+        m.active[surface] &= keep
+        m.fresh[surface] &= keep
+        if m.falls[regime, surface] >= 0 or m.rises[regime, surface] >= 0:
+            m.active[surface] |= bit
+            if abs(out[3 * surface]) <= SLACK * out[3 * surface + 1]:
+                m.fresh[surface] |= bit
+
+
+@part
+def _log(t: Any, m: Any, lane: int, kind: int, regime: int) -> int:
+    """Count an event and, where there is room, log it; returns how many there were."""
+    integers, job, after = m.integers, m.integers[JOB, lane], m.scratch[3]
+    count = integers[EVENTS, lane]
+    if count < t.n_logged:
+        m.event_times[job, count] = m.rows[CLOCK, lane] + m.rows[CORRECTION, lane]
+        m.event_kinds[job, count], m.event_regimes[job, count] = kind, regime
+        for variable in range(t.n_states):
+            m.event_states[job, count, variable] = after[variable]
+    integers[EVENTS, lane] = count + 1
+    m.counts[job, kind] += 1
+    before, peaks = m.scratch[0], m.peaks[job, kind]
+    for variable in range(t.n_states):
+        peaks[variable] = max(peaks[variable], abs(before[variable]))
+    if math.isnan(m.firsts[job, kind]):
+        m.firsts[job, kind] = m.rows[CLOCK, lane]
+        if kind == t.late_from:
+            begin_late(t, m, lane, FIXED_ROWS + t.n_variables + t.n_states)
+    return int(count + 1)
+
+
+@part
+def _carry_over(t: Any, m: Any, lane: int, tangent_row: int, regime: int, parameters: int) -> None:
+    """A perturbation across the switch whose states before and after are in the scratch."""
+    d, out, stride = m.scratch[4], m.scratch[2], m.scratch.shape[1] * 8
+    for variable in range(t.n_states):
+        d[variable] = m.rows[tangent_row + variable, lane]
+    before = t.regimes + 8 * m.integers[REGIME, lane] * t.n_constants
+    after = t.regimes + 8 * regime * t.n_constants
+    z, y = t.scratch, t.scratch + 3 * stride
+    at, which = t.scratch + 4 * stride, m.integers[HIT, lane]
+    call(t.jump, (which, z, y, parameters, before, after, at, t.scratch + 2 * stride))
+    for variable in range(t.n_states):
+        m.rows[tangent_row + variable, lane] = out[variable]
+
+
+@part
+def _switch(t: Any, m: Any, c: Any, lane: int, tangent_row: int) -> None:
+    """Carry out the switch that ended a lane's step."""
+    rows, integers, job = m.rows, m.integers, m.integers[JOB, lane]
+    which, before = integers[HIT, lane], integers[REGIME, lane]
+    if which >= t.n_switches:
+        integers[OUTCOME, lane] = STOPPED + which - t.n_switches
+        return
+    span, clock = rows[STEP, lane], rows[CLOCK, lane]
+    z, after, out = m.scratch[0], m.scratch[3], m.scratch[2]
+    for variable in range(t.n_variables):
+        z[variable] = c[variable, 0, lane]
+        after[variable] = z[variable]
+    stride = m.scratch.shape[1] * 8
+    first = t.n_rows - t.n_constants - t.n_parameters
+    parameters = t.rows + first * ROW + 8 * lane
+    constants = t.regimes + 8 * before * t.n_constants
+    call(t.change, (which, t.scratch, parameters, constants, t.scratch + 2 * stride))
+    regime, kind = int(out[0]), int(out[1])
+    for variable in range(t.n_states):
+        after[variable] = out[2 + variable]
+    if t.tangent:
+        _carry_over(t, m, lane, tangent_row, regime, parameters)
+    for variable in range(t.n_states):
+        c[variable, 0, lane] = after[variable]
+    integers[CHAINED, lane] += 1
+    if span > 4.0 * 2.0**-52 * abs(clock):
+        integers[CHAINED, lane] = 0
+    count = _log(t, m, lane, kind, regime)
+    first_time = FIXED_ROWS + t.n_variables + t.n_states + 2 * t.n_tracked
+    rows[first_time + before, lane] += clock - rows[ENTERED, lane]
+    rows[ENTERED, lane] = clock
+    enter_regime(t, m, c, lane, regime, span)
+    if kind == t.until:
+        integers[OUTCOME, lane] = BY_EVENT
+    elif integers[CHAINED, lane] >= CHAIN:
+        integers[OUTCOME, lane] = ACCUMULATION
+    elif count >= m.limits[job, 3]:
+        integers[OUTCOME, lane] = EVENT_LIMIT
+
+
+@inline
+def start_from_zero(t: Any, m: Any, c: Any) -> None:
+    """Surfaces whose sign round-off hides start from exactly zero."""
+    for surface in range(t.n_surfaces):
+        bits = m.fresh[surface]
+        while bits:
+            lane = first_bit(bits)
+            bits ^= 1 << lane
+            c[t.n_variables + surface, 0, lane] = 0.0
+
+
+@inline
+def switch_all(t: Any, m: Any, c: Any, special: int, tangent_row: int) -> None:
+    """Carry out what ended the steps of some lanes."""
+    for surface in range(t.n_surfaces):
+        m.fresh[surface] = 0
+    while special:
+        lane = first_bit(special)
+        special ^= 1 << lane
+        hit = m.integers[HIT, lane]
+        if hit == LATE_BEGINS:
+            begin_late(t, m, lane, tangent_row + t.n_states)
+            # a surface may be crossed at this very instant
+            enter_regime(t, m, c, lane, m.integers[REGIME, lane], m.rows[STEP, lane])
+        elif hit >= 0 and m.integers[OUTCOME, lane] == RUNNING:
+            _switch(t, m, c, lane, tangent_row)
+        m.integers[HIT, lane] = -1

@@ -1,0 +1,191 @@
+"""Where the order of a cycle's events changes: what that is called, and how a branch goes on."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from squealpipe.methods.continuation import ContinuationState
+from squealpipe.systems.cycles.admissible import MARGIN_ROUND_OFF, Kind, Margin, margins
+from squealpipe.systems.cycles.cycle import follow, guess_of, merged, without_brief_legs
+from squealpipe.systems.cycles.event_map import Cycle, Event, EventMap
+from squealpipe.systems.cycles.flow import Vector
+from squealpipe.systems.cycles.labels import Label
+from squealpipe.systems.cycles.line import ALONG, STEPS, Line
+
+if TYPE_CHECKING:
+    from squealpipe.systems.system import System
+
+_WEAK = 0.1
+"""Speed or length of an event, over the least of the others, at which it has only just begun."""
+_JUMP = 1e-2
+"""Change of the extremes, over the extent, beyond which a solution is not next to the change."""
+
+
+def label_of(cycle: Cycle, zero: dict[Margin, float]) -> Label:
+    """What a change of the events is called, from the margins that vanish."""
+    system = cycle.map.flow.system
+    t, found = system.traced, Label.regular
+    for margin in zero:
+        event = cycle.map.events[margin.leg]
+        held = bool(system.holds[event.before].any())
+        watched = (t.falls[event.before, margin.which], t.rises[event.before, margin.which])
+        own = margin.kind in {Kind.condition, Kind.length}
+        switch = event.switch if own else int(max(watched))
+        crosses = margin.kind in {Kind.touch, Kind.speed}
+        if (held or crosses or margin.kind == Kind.condition) and _of_hold(system, switch):
+            return Label.stick_onset
+        if crosses:
+            found = Label.grazing
+    return found
+
+
+def _of_hold(system: System, switch: int) -> bool:
+    """Whether a switch may lead to where its surface is held, as to stick, or ends that alone."""
+    t = system.traced
+    if not 0 <= switch < len(t.switches):
+        return False
+    leaves, surfaces = np.nonzero((t.falls == switch) | (t.rises == switch))
+    targets = [regime for regime, _, _ in t.switches[switch].targets]
+    held: Any = system.holds.any(axis=1)
+    return bool(system.holds[targets][:, surfaces].any() or held[leaves].all())
+
+
+def least_margin(_: ContinuationState | None, cycle: Cycle) -> float:
+    """The least of its margins: below zero it is not a motion of the system."""
+    return min(margins(cycle).values(), default=math.inf)
+
+
+@dataclass
+class Turn:
+    """How a branch goes on from where the order of its events changes."""
+
+    line: Line
+    share: float
+    there: tuple[ContinuationState, Cycle]
+    zero: dict[Margin, float]
+
+    def way_on(self) -> tuple[ContinuationState, Cycle] | None:
+        """The first point beyond, with a tangent that leads away."""
+        for equations, guess in (*self._runs(), *self._without()):
+            found = self._started(equations, guess)
+            if found is not None and not self._jumps(found[1]):
+                return found
+        return None
+
+    def _jumps(self, cycle: Cycle) -> bool:
+        """Whether a solution is not next to the change: a reset of the state may end the branch."""
+        change = self.there[1]
+        moved = (cycle.extremes - change.extremes)[:, : len(change.map.scale)] / change.map.scale
+        return bool(np.abs(moved).max() > _JUMP)
+
+    def _runs(self) -> Iterator[tuple[EventMap, Vector]]:
+        """Motions of the system from just beyond, with the events that they have."""
+        old = order_of(self.there[1].map.events)
+        seen = set()
+        for beyond in (1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2):
+            try:
+                cycle = self.line.at(self.share + beyond)[1]
+            except ArithmeticError:
+                continue
+            found = run_of(cycle)
+            if found is None:
+                continue
+            order = order_of(found[0].events)
+            if order != old and order not in seen:
+                seen.add(order)
+                yield found
+
+    def _without(self) -> Iterator[tuple[EventMap, Vector]]:
+        """The same motion without events that have vanished, one or two at once."""
+        cycle = self.there[1]
+        for margin in self.zero:
+            event = cycle.map.events[margin.leg]
+            if margin.kind == Kind.speed and event.before == event.after:
+                yield merged(cycle, margin.leg, 1)
+        yield from without_brief_legs(cycle)
+
+    def _started(
+        self, equations: EventMap, guess: Vector
+    ) -> tuple[ContinuationState, Cycle] | None:
+        """A solution next to the change, and the direction in which it is a motion."""
+        values, _ = equations.evaluate(guess)
+        if not np.isfinite(values).all():
+            return None
+        near = margins(Cycle.at(equations, guess))
+        known = margins(self.there[1]).items()
+        kinds = {Kind.speed, Kind.length}
+        usual = min((v for k, v in known if k.kind in kinds and v > 1e-6), default=1.0)
+        most = _WEAK * min(1.0, usual)
+        weak = {k: v for k, v in near.items() if k.kind in kinds and v < most}
+        algorithm = replace(ALONG, settings=replace(STEPS, max_iterations=12))
+        if weak:
+            key = min(weak, key=lambda k: weak[k])
+            normal = _gradient(equations, guess, key)
+        else:
+            normal = np.eye(len(guess))[-1]
+        state = algorithm.solve(equations, guess, normal, STEPS.first_step)
+        if state is None:
+            return None
+        cycle = Cycle.at(equations, state.point)
+        if cycle.period <= 0.0 or abs(cycle.period - self.there[1].period) > 0.1 * cycle.period:
+            return None
+        if weak:
+            here = margins(cycle)
+            good = all(value >= -MARGIN_ROUND_OFF for value in here.values())
+            return (state, cycle) if good else None
+        ways = []
+        for sign in (1.0, -1.0):
+            trial = replace(state, tangent=sign * state.tangent, step=1e-5)
+            ahead = ALONG.attempt(equations, trial)
+            if ahead is not None:
+                beyond = Cycle.at(equations, ahead.point)
+                least = least_margin(None, beyond)
+                if least >= -MARGIN_ROUND_OFF:
+                    ways.append((least, ahead, beyond))
+        if not ways:
+            return None
+        _, state, cycle = max(ways, key=lambda way: way[0])
+        return state, cycle
+
+
+def order_of(events: tuple[Event, ...]) -> tuple[tuple[int, ...], ...]:
+    """The events from the rotation that sorts first."""
+    kinds = [(e.switch, e.before, e.after, e.kind) for e in events]
+    return min(tuple(kinds[i:] + kinds[:i]) for i in range(len(kinds)))
+
+
+def run_of(cycle: Cycle) -> tuple[EventMap, Vector] | None:
+    """Equations and guess from a motion of the system next to a solution."""
+    equations, parts = cycle.map, cycle.parts
+    flow = equations.flow
+    state, regime = cycle.start()
+    run = follow(flow, parts.values, state, cycle.period, regime=regime)
+    if run.outcome or len(run.times) > 4 * equations.legs + 8:
+        return None
+    found = guess_of(
+        flow, parts.values, run, state, cycle.period, periods=equations.periods,
+        scale=equations.scale,
+    )  # fmt: skip
+    if found is None:
+        return None
+    made = replace(found[0], time=equations.time, units=equations.units)
+    return made, made.pack(*found[0].unpack(found[1])[:3], cycle.followed)
+
+
+def _gradient(equations: EventMap, point: Vector, margin: Margin) -> Vector:
+    """The direction in which a length, or the speed of an event, grows."""
+    n, m = equations.flow.size, equations.legs
+    if margin.kind == Kind.length:
+        return np.asarray(np.eye(len(point))[m * n + margin.leg])
+    parts, leg = equations.parts(point), margin.leg
+    event, end = equations.events[leg], parts.path.ends[leg]
+    time = parts.start + float(parts.durations[: leg + 1].sum())
+    slopes = equations.flow.quantity(parts.values, event, None, end, time)[1 : n + 1]
+    by_end, _ = equations.by_unknowns(parts, leg)
+    found = -slopes @ by_end * equations.column_units
+    return np.asarray(found / np.linalg.norm(found))
