@@ -143,22 +143,6 @@ def test_start_exactly_at_the_threshold_at_rest():
     )
 
 
-@pytest.mark.parametrize("height", [1e-3, 1e-6, 1e-9, 1e-11, -1e-12])
-def test_grazing_pairs_are_found(height):
-    """A flight of height h above the threshold lasts about 2√(2h/|ÿ|): both ends are found."""
-    rate, amplitude = np.sqrt(1 + KAPPA), 1 - REST + height
-    params, start = FRICTION.with_(belt_speed=100.0), (0, REST - amplitude, 0, 0)
-    if height < 0.0:
-        run = simulate(params, t_end=20.0, initial_state=start, **IDENTITY)
-        assert run.event_time.size == 0
-        return
-    leaves = np.arccos(-(1 - REST) / amplitude) / rate
-    lands = leaves + 2 * np.arctan(amplitude * rate * np.sin(rate * leaves))
-    run = simulate(params, t_end=0.2 * leaves + lands, initial_state=start, **IDENTITY)
-    # A grazing time is as ill-conditioned as the square root of its height.
-    assert_events(run, [(SEPARATION, leaves), (CONTACT, lands)], error=1e-14 / np.sqrt(height))
-
-
 def test_no_friction_never_sticks():
     params, angles = FORMER.with_(mu=0.0, belt_speed=0.2), np.linspace(0, np.pi, 40)
     run = run_ensemble(params, 0.3, angles, t_end=50.0)
@@ -207,11 +191,6 @@ def test_start_on_a_pivot():
     run = run_ensemble(FORMER, 0.7, 1.0, t_end=10.0, initial_state=state)
     assert run.outcome == Outcome.singular_geometry
     assert run.time < 1e-6
-
-
-def test_an_overflow_is_not_silent():
-    run = run_ensemble(FORMER, 0.7, 1.0, t_end=1.0, initial_state=(0, 0, 1e200, 0))
-    assert run.outcome != Outcome.converged
 
 
 def test_an_exact_equilibrium_stays():

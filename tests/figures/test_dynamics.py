@@ -6,7 +6,7 @@ import xarray as xr
 from matplotlib.patches import FancyArrowPatch
 
 from squealpipe.parameters import SCENES, Parameters
-from squealpipe.plotting.mechanism import displaced_springs, draw_mechanism
+from squealpipe.plotting.mechanism import draw_mechanism
 from squealpipe.plotting.style import COLUMN, new_figure, save_figure
 from squealpipe.study.figures.dynamics import (
     fig02,
@@ -94,13 +94,6 @@ def test_the_arrow_of_the_belt_points_where_it_runs():
         draw_mechanism(axes[0, 0], 0.3 * np.pi, 0.2 * np.pi, direction=direction)
         (arrow,) = (part for part in axes[0, 0].patches if isinstance(part, FancyArrowPatch))
         assert direction * arrow.get_path().vertices[:, 0].mean() > 0
-
-
-@pytest.mark.parametrize("lengths", [(5.0, 5.0), (5.0, 7.0)])
-def test_springs_that_share_a_direction_are_drawn_apart(lengths):
-    first, second = displaced_springs(0, 0, 0.2 * np.pi, 0.8 * np.pi, lengths, 0.3)
-    across = np.array([-np.sin(0.2 * np.pi), np.cos(0.2 * np.pi)])
-    assert (first[1:-1] @ across).min() > (second[1:-1] @ across).max()
 
 
 @pytest.mark.parametrize("tip", [(30, 60), (150, 140)])

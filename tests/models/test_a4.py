@@ -55,19 +55,6 @@ def test_frequencies_are_eigenvalues_of_the_stiffness(params, state, in_contact)
     np.testing.assert_allclose(own, numeric, rtol=1e-7, atol=1e-9)
 
 
-@pytest.mark.parametrize("total", np.linspace(0.05, 1.95, 9))
-def test_separated_frequencies_of_equal_springs(total):
-    """ω² = (k/m)(1 ∓ |cos(α1 + α2)|), whatever the difference of the angles."""
-    params = FORMER.with_(mass=2.0, k1=3.0, k2=3.0)
-    for first in (0.1, 0.9, 2.5):
-        g = geometry(first, total * np.pi - first)
-        stiffness = linear_stiffness(params, g), stiffness_determinant(params, g)
-        invariants = a4.spectrum(*stiffness, k3=0.0, mu=params.mu, mass=params.mass)
-        squares = np.real(a4.natural_frequencies_squared(invariants))
-        expected = 1.5 * (1 + abs(np.cos(total * np.pi)) * np.array([-1, 1]))
-        np.testing.assert_allclose(squares, expected, rtol=1e-12, atol=1e-15)
-
-
 def test_first_integral_changes_by_nothing_symbolically():
     """dH/dt = 0 in both states, identically in all symbols."""
     x, y, vx, vy = sp.symbols("x y vx vy")

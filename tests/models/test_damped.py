@@ -12,6 +12,7 @@ from squealpipe.parameters import Parameters
 from squealpipe.tasks.linear.critical import critical_damping_map, critical_friction_map
 from squealpipe.tasks.linear.maps import stability_map
 from tests.former import FORMER
+from tests.oracles import sliding
 
 RNG = np.random.default_rng(41)
 
@@ -28,37 +29,6 @@ def random_parameters():
     )  # fmt: skip
 
 
-def eigenvalues_in_60_digits(p, alpha1, alpha2):
-    """From C and K as they are defined, by an independent route: a 4×4 matrix."""
-    with mp.workdps(60):
-        f = mp.mpf
-        (c1, s1), (c2, s2) = mp.cos_sin(f(alpha1)), mp.cos_sin(f(alpha2))
-        side, speed = (1 if p.belt_speed >= 0 else -1), abs(f(p.belt_speed))
-        fall, v0 = f(p.static_mu) - f(p.mu), f(p.friction_speed)
-        mu, slope = {
-            "coulomb": lambda: (f(p.mu), f(0)),
-            "exponential": lambda: (
-                f(p.mu) + fall * mp.exp(-speed / v0), -fall / v0 * mp.exp(-speed / v0)),
-            "hyperbolic": lambda: (
-                f(p.mu) + fall / (1 + speed / v0), -fall / v0 / (1 + speed / v0) ** 2),
-        }[p.friction_law]()  # fmt: skip
-        e1, e2 = mp.matrix([c1, s1]), mp.matrix([-c2, s2])
-        k = f(p.k1) * e1 * e1.T + f(p.k2) * e2 * e2.T
-        c = f(p.damping1) * e1 * e1.T + f(p.damping2) * e2 * e2.T
-        k3 = f(p.k3)
-        contact = k + mp.matrix([[0, side * mu * k3], [0, k3]])
-        push = k3 * f(p.preload)
-        rest = mp.lu_solve(contact, mp.matrix([side * mu * push, push]))
-        c[0, 0] += k3 * (f(p.preload) - rest[1]) * slope
-        whole = mp.zeros(4)
-        for i in range(2):
-            whole[i, 2 + i] = 1
-            for j in range(2):
-                whole[2 + i, j] = -contact[i, j] / f(p.mass)
-                whole[2 + i, 2 + j] = -c[i, j] / f(p.mass)
-        return [complex(value) for value in mp.eig(whole, right=False)]
-
-
 @pytest.mark.parametrize(
     ("count", "change", "digits"),
     [(60, {}, 1e-12), (20, {"damping1": 1e5}, 1e-13), (20, {"damping1": 1e8}, 1e-13),
@@ -69,7 +39,7 @@ def test_eigenvalues_of_random_sets_to_twelve_digits(count, change, digits):
     for _ in range(count):
         params, alpha = random_parameters().with_(**change), RNG.uniform(0, np.pi, 2)
         found = eigenvalues(damped_system(params, *map(np.longdouble, alpha))).astype(complex)
-        for value in eigenvalues_in_60_digits(params, *alpha):
+        for value in sliding.eigenvalues(params, *alpha):
             assert np.abs(found - value).min() <= digits * abs(value)
 
 
@@ -79,7 +49,7 @@ def test_the_map_is_that_of_the_eigenvalues_and_mirrors_with_the_belt():
     found = stability_map(params, alpha1, alpha2)
     for i, first in enumerate(alpha1):
         for j, second in enumerate(alpha2):
-            exact = eigenvalues_in_60_digits(params, first, second)
+            exact = sliding.eigenvalues(params, first, second)
             cell = found.isel(alpha1=i, alpha2=j)
             growth = max(value.real for value in exact)
             assert float(cell.growth_rate) == pytest.approx(growth, rel=1e-11, abs=1e-13)
@@ -200,32 +170,6 @@ def test_round_off_of_the_dashpots_coupling_gives_no_critical_friction(springs):
     assert np.isinf(found.critical_mu.where(free, np.inf)).all()
 
 
-def _onset_by_bisection(params, alpha1, alpha2):
-    """The critical friction from eigenvalues of forty digits."""
-    with mp.workdps(40):
-        cos1, sin1 = mp.cos(alpha1), mp.sin(alpha1)
-        cos2, sin2 = mp.cos(alpha2), mp.sin(alpha2)
-
-        def inclined(one, two):
-            coupling = one * cos1 * sin1 - two * cos2 * sin2
-            return [one * cos1**2 + two * cos2**2, coupling, one * sin1**2 + two * sin2**2]
-
-        k11, k12, k22 = inclined(mp.mpf(params.k1), mp.mpf(params.k2))
-        c11, c12, c22 = inclined(mp.mpf(params.damping1), mp.mpf(params.damping2))
-
-        def grows(mu):
-            push = mu * params.k3 * params.belt_direction
-            below = [[-k11, -k12 - push, -c11, -c12], [-k12, -k22 - params.k3, -c12, -c22]]
-            matrix = mp.matrix([[0, 0, 1, 0], [0, 0, 0, 1], *below])
-            return bool(max(mp.re(s) for s in mp.eig(matrix)[0]) > mp.mpf("1e-32"))
-
-        low, high = mp.mpf("1e-12"), mp.mpf(1)
-        while high / low > 1 + 1e-9:
-            middle = mp.sqrt(low * high)
-            low, high = (low, middle) if grows(middle) else (middle, high)
-        return float(high)
-
-
 @pytest.mark.parametrize(
     ("angles", "dashpots", "speed"),
     [
@@ -240,8 +184,12 @@ def test_critical_friction_where_a_mode_moves_hardly_a_dashpot(angles, dashpots,
     springs = {"k2": 2.3, "k3": 0.6} if max(dashpots) < 1 else {"k2": 0.2, "k3": 0.18}
     damping1, damping2 = dashpots
     params = FORMER.with_(damping1=damping1, damping2=damping2, belt_speed=speed, **springs)
-    found = float(critical_friction(params, *angles)[0])
-    assert found == pytest.approx(_onset_by_bisection(params, *angles), rel=1e-6)
+    low, high = 1e-12, 1.0
+    while high / low > 1 + 1e-9:
+        middle = math.sqrt(low * high)
+        grows = max(s.real for s in sliding.eigenvalues(params.with_(mu=middle), *angles)) > 1e-32
+        low, high = (low, middle) if grows else (middle, high)
+    assert float(critical_friction(params, *angles)[0]) == pytest.approx(high, rel=1e-6)
 
 
 def test_critical_friction_is_of_coulombs_law():

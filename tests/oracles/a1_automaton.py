@@ -43,10 +43,14 @@ class HybridRun:
 
 
 class A1Automaton:
-    """A1 at given parameters and angles; states are (x, y, ẋ, ẏ)."""
+    """A1 at given parameters and angles; states are (x, y, ẋ, ẏ).
 
-    def __init__(self, params, alpha1, alpha2, *, linear_springs=False):
-        self.params = params
+    ``as_printed``: friction has the sign of Eq. (4), which repels from belt speed, so that nothing
+    sticks.
+    """
+
+    def __init__(self, params, alpha1, alpha2, *, linear_springs=False, as_printed=False):
+        self.params, self.as_printed = params, as_printed
         self.geometry = Geometry(*map(float, geometry(alpha1, alpha2)))
         dashpots = params.damping1 + params.damping2 > 0.0
         self.options = {"linear_springs": linear_springs, "dashpots": dashpots}
@@ -58,7 +62,8 @@ class A1Automaton:
             "contact": float(regime != Regime.separated),
             "stick": float(regime == Regime.stick),
         }
-        part |= {"direction": DIRECTION.get(regime, 0.0), **self.options}
+        sign = -1.0 if self.as_printed else 1.0
+        part |= {"direction": sign * DIRECTION.get(regime, 0.0), **self.options}
 
         def f(_, z):
             return *z[2:].tolist(), *acceleration(*z.tolist(), self.params, self.geometry, **part)
@@ -127,6 +132,7 @@ class A1Automaton:
     def _sliding(self, z, *, held=True):
         """Slip or stick in contact; at belt speed the force decides."""
         lag, pull = self.lag(z), self.pull(z)
+        held = held and not self.as_printed
         if lag == 0.0 and held and abs(pull) <= self.grip(z):
             return Regime.stick
         return Regime.slip_faster if (lag or -pull) < 0.0 else Regime.slip_slower

@@ -12,9 +12,9 @@ from tests.oracles.a1_automaton import A1Automaton, HybridRun
 EPS = float(np.finfo(float).eps)
 
 
-def simulate_scipy(params, alpha1, alpha2, *, t_end, tol=1e-10, initial_state=(0.0, 0.0, 0.0, 0.0)):
+def simulate_scipy(params, *angles, t_end, tol=1e-10, initial_state=(0, 0, 0, 0), **options):
     """A1 from (x, y, ẋ, ẏ) by scipy's DOP853 with terminal events, to a tolerance."""
-    a1 = A1Automaton(params, alpha1, alpha2)
+    a1 = A1Automaton(params, *angles, **options)
     state = np.asarray(initial_state, dtype=float)
     regime = a1.start(state)
     run = HybridRun(state, regimes=[regime])

@@ -67,15 +67,6 @@ def test_sixty_damaged_files_of_each_kind_are_refused_at_open(run, kind):
             open_results(run / "results")
 
 
-def test_values_doubled_by_another_program_are_refused(run):
-    path = run / "results/data/stability_map.nc"
-    dataset = load(path)
-    dataset["growth_rate"] = dataset.growth_rate * 2
-    dataset.to_netcdf(path)
-    with pytest.raises(StoreError, match="another program wrote it"):
-        open_results(run / "results")
-
-
 def test_files_that_were_swapped_are_refused(run, tmp_path):
     folder = run / "results/data"
     made = load(folder / "stability_map.nc")

@@ -268,71 +268,27 @@ def test_no_label_of_a_random_branch_is_lost_between_dense_samples(seed, monkeyp
     assert (turns[:-1] * turns[1:] > 0.0)[inner].all()
 
 
-def long_double_run(amplitude, omega, x, v, t_end):
-    """The impact oscillator by its closed form in long double: impact times, final state."""
-    number = np.longdouble
-    amplitude, omega, x, v = (number(value) for value in (amplitude, omega, x, v))
-    half, ten = number(1) / 20, number(8) / 10
-    own = np.sqrt(1 - half * half)
-    slack, drag = 1 - omega * omega, omega / 10
-    size = slack * slack + drag * drag
-    cosine, sine = amplitude * slack / size, amplitude * drag / size
-
-    def flow(t0, x, v, t):
-        a = x - cosine * np.cos(omega * t0) - sine * np.sin(omega * t0)
-        rate = v + omega * (cosine * np.sin(omega * t0) - sine * np.cos(omega * t0))
-        b, s = (rate + half * a) / own, t - t0
-        decay, c, d = np.exp(-half * s), np.cos(own * s), np.sin(own * s)
-        free = decay * (a * c + b * d)
-        free_rate = decay * ((own * b - half * a) * c - (own * a + half * b) * d)
-        forced = cosine * np.cos(omega * t) + sine * np.sin(omega * t)
-        forced_rate = omega * (sine * np.cos(omega * t) - cosine * np.sin(omega * t))
-        return free + forced, free_rate + forced_rate
-
-    t, times = number(0), []
-    while True:
-        grid = t + np.arange(1, 20001) * number("1e-3")
-        over = np.flatnonzero((flow(t, x, v, grid)[0] > 1) & (grid < t_end))
-        if not len(over):
-            return times, flow(t, x, v, number(t_end))
-        hit = grid[over[0]]
-        for _ in range(8):
-            place, speed = flow(t, x, v, hit)
-            hit = hit - (place - 1) / speed
-        speed = flow(t, x, v, hit)[1]
-        t, x, v = hit, number(1), -ten * speed
-        times.append(hit)
-
-
-def test_derivatives_through_impacts_are_those_of_long_double_differences():
-    names, t_end = ("amplitude", "omega", "x0", "v0"), 15.0
-    run = impact_oscillator.simulate(
-        t_end, times=np.array([0.0, t_end]), sensitivity=names, amplitude=0.6, omega=1.2
-    )
+@pytest.mark.parametrize(
+    ("system", "times", "given", "names"),
+    [
+        (leine_oscillator, (0.0, 17.0, 30.0), {"belt_speed": 0.25}, ("belt_speed", "x0")),
+        (impact_oscillator, (0.0, 15.0), {"amplitude": 0.6, "omega": 1.2},
+         ("amplitude", "omega", "x0", "v0")),
+    ],
+    ids=["stick", "impacts"],
+)  # fmt: skip
+def test_derivatives_through_events_are_those_of_differences(system, times, given, names):
+    """By the belt's speed, to which the reset sets the velocity, by others, and by starts."""
+    options = {"times": np.array(times)}
+    run = system.simulate(times[-1], sensitivity=names, **options, **given)
     assert run.sizes["event"] > 1
-    values = np.array([0.6, 1.2, 0.0, 0.0])
-    for name, unit in zip(names, np.eye(4), strict=True):
-        step = np.longdouble("1e-6")
-        ends = [long_double_run(*(values + k * step * unit), t_end) for k in (2, 1, -1, -2)]
-        far, near, other, last = (np.array([*times, *state]) for times, state in ends)
-        slopes = (8 * (near - other) - (far - last)) / (12 * step)
-        final = [float(run[f"{state}_by_{name}"][-1]) for state in ("x", "v")]
-        ours = [*run[f"event_time_by_{name}"].values, *final]
-        np.testing.assert_allclose(ours, slopes.astype(float), rtol=1e-10, atol=1e-10)
-
-
-def test_derivatives_through_stick_are_those_of_differences():
-    """By the belt's speed, to which the reset sets the velocity, and by a start."""
-    names = ("belt_speed", "x0")
-    given = {"times": np.array([0.0, 17.0, 30.0]), "belt_speed": 0.25}
-    run = leine_oscillator.simulate(30.0, sensitivity=names, **given)
-    for name, shift in (("belt_speed", (1e-6, 0.0)), ("x0", (0.0, 1e-6))):
+    for name in names:
         ends = []
-        for sign in (1.0, -1.0):
-            values = {"belt_speed": 0.25 + sign * shift[0], "start": {"x": 1.0 + sign * shift[1]}}
-            end = leine_oscillator.simulate(30.0, tol=1e-15, **{**given, **values})
+        for step in (1e-6, -1e-6):
+            values, start = dict(given), dict(system.start)
+            (start if name[:-1] in start else values)[name.removesuffix("0")] += step
+            end = system.simulate(times[-1], start=start, tol=1e-15, **options, **values)
             ends.append(np.concatenate([end.event_time, end.x[1:], end.v[1:]]))
         slopes = (ends[0] - ends[1]) / 2e-6
         ours = [run[f"event_time_by_{name}"], *(run[f"{z}_by_{name}"][1:] for z in ("x", "v"))]
-        ours = np.concatenate(ours)
-        np.testing.assert_allclose(ours, slopes, atol=2e-7 * np.abs(slopes).max())
+        np.testing.assert_allclose(np.concatenate(ours), slopes, atol=2e-7 * np.abs(slopes).max())

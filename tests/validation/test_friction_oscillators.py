@@ -4,9 +4,6 @@ Leine, van Campen, de Kraker and van den Steen, "Stick-slip vibrations induced b
 models", Nonlinear Dynamics 16 (1998) 41–54: m = k = 1, no damping, friction 1/(1 + 3 w), V = 0.2.
 The friction oscillator of the case study of bSTAB (Stender and Hoffmann, Nonlinear Dynamics 107
 (2022) 1451–1468): m = k = 1, c = 0.1, N = 1, friction 0.5 + 0.5 exp(−2 w).
-
-A1 holds both as the limit of long springs and a soft contact under a large preload: spring 1 is
-vertical and carries N, spring 2 lies along the belt. What is left is of order 1/length.
 """
 
 import math
@@ -18,24 +15,13 @@ from squealpipe.codes import Event
 from squealpipe.schema import Outcome
 from squealpipe.solvers.a1.ensemble import run_ensemble
 from squealpipe.tasks.linear.maps import stability_map
-from tests.former import FORMER
-
-STEADY = 0.25
-"""y at which spring 1 of stiffness 4 balances N = 1."""
-
-
-def oscillator(length, belt_speed, **friction):
-    """The oscillator's limit: N = 1 to 1/length, k = 1 along the belt."""
-    return FORMER.with_(
-        k1=4.0, k2=1.0, k3=1.0 / length, preload=length, length1=length, length2=length,
-        belt_speed=belt_speed, **friction,
-    )  # fmt: skip
+from tests.oracles.friction_oscillators import ANGLES, BSTAB, LEINE, STEADY, oscillator
 
 
 def stick_slip_cycle(params, x, tol):
     """(period, slip time) of the cycle that a run settles on; the last three cycles agree."""
     run = run_ensemble(
-        params, math.pi / 2, math.pi, t_end=300.0, log_events=400,
+        params, *ANGLES, t_end=300.0, log_events=400,
         initial_state=(x, STEADY, params.belt_speed, 0.0), workers=1, tol=tol,
     )  # fmt: skip
     assert run.outcome == Outcome.converged
@@ -50,14 +36,6 @@ def stick_slip_cycle(params, x, tol):
     return float(periods[-1]), float(slips)
 
 
-LEINE = {
-    "mu": 0.0, "mu_static": 1.0, "friction_speed": 1 / 3, "friction_law": "hyperbolic",
-    "damping1": 0.4,
-}  # fmt: skip
-BSTAB = {
-    "mu": 0.5, "mu_static": 1.0, "friction_speed": 0.5, "friction_law": "exponential",
-    "damping1": 0.4, "damping2": 0.1,
-}  # fmt: skip
 CYCLES = [
     # belt speed, friction, period, slip time: recomputed to nine digits; Leine et al. print
     # 12.00103 and 4.29600
@@ -91,7 +69,7 @@ def test_fast_belts_leave_the_sliding_state_alone():
     starts = np.stack(
         [rng.uniform(-2, 2, 20), np.full(20, STEADY), rng.uniform(0, 2, 20), np.zeros(20)], axis=-1
     )
-    run = run_ensemble(params, math.pi / 2, math.pi, t_end=500.0, initial_state=starts)
+    run = run_ensemble(params, *ANGLES, t_end=500.0, initial_state=starts)
     assert (run.outcome == Outcome.converged).all()
     np.testing.assert_allclose(run.final_state[:, 0], 0.5 + 0.5 * math.exp(-4.0), atol=3e-6)
     np.testing.assert_allclose(run.final_state[:, 2], 0.0, atol=1e-6)
@@ -99,9 +77,8 @@ def test_fast_belts_leave_the_sliding_state_alone():
 
 def test_the_sliding_state_of_the_oscillator_is_that_of_the_linear_model():
     """Growth of a small motion along x: −c/2 + exp(−2 V)/2, by A3 damped."""
-    angles = np.array([math.pi / 2]), np.array([math.pi])
     for speed in (0.9, 1.1, 1.2, 1.5):
-        found = stability_map(oscillator(1e6, speed, **BSTAB), *angles)
+        found = stability_map(oscillator(1e6, speed, **BSTAB), ANGLES[:1], ANGLES[1:])
         expected = 0.5 * (-0.1 + math.exp(-2.0 * speed))
         assert float(found.growth_rate.item()) == pytest.approx(max(expected, -0.05), abs=2e-6)
         assert (int(found.regime_linear.item()) == 1) == (expected > 0)

@@ -110,16 +110,3 @@ def test_springs_along_the_belt():
     assert np.abs(force[0] - force[1]).max() < 1e-10
     long = simulate(BASELINE, 0.0, 0.0, t_end=200.0)
     assert float(long.y.max()) == pytest.approx(3.46, abs=0.01)
-
-
-def test_a4_from_rest_where_the_springs_act_as_one():
-    """K = diag(k, k): y = κ/(1 + κ)(1 − cos √(1 + κ)t), x = μy, lowest force (1 − κ)/(1 + κ)."""
-    times = np.linspace(0, 50, 501)
-    for scene in ("F2a", "F2b", "F2c"):
-        angles = SCENES[scene].alpha1, SCENES[scene].alpha2
-        run = simulate(BASELINE, *angles, t_end=50.0, model="A4", times=times)
-        y = 0.75 / 1.75 * (1 - np.cos(np.sqrt(1.75) * times))
-        np.testing.assert_allclose(run.y, y, atol=1e-12)
-        np.testing.assert_allclose(run.x, 0.3 * y, atol=1e-12)
-        assert run.normalized_contact_force.min() > (1 - 0.75) / 1.75 - 1e-12
-        np.testing.assert_array_equal(run.time, times)

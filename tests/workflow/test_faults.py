@@ -4,14 +4,13 @@ After each fault the next plain `snakemake`, or the one command that its message
 the results equal an undisturbed run, and no half-written file was ever read as whole.
 """
 
-import os
 import shutil
 import subprocess
-import sys
 
 import pytest
 
 from squealpipe.store import StoreError, load
+from tests.conftest import run_snakemake
 
 pytestmark = pytest.mark.release
 
@@ -23,11 +22,7 @@ DATASET = "results/data/validity_map.nc"
 
 
 def run(checkout, target=DATASET):
-    return subprocess.run(
-        [sys.executable, "-m", "snakemake", target, "--configfile", "small.yaml"], cwd=checkout,
-        env={**os.environ, "PYTHONPATH": str(checkout)}, capture_output=True, text=True,
-        timeout=300, check=False,
-    )  # fmt: skip
+    return run_snakemake(checkout, target, "--configfile", "small.yaml")
 
 
 def completed(checkout):

@@ -51,13 +51,6 @@ def test_closed_form_coefficients_give_the_true_doubling_multiplier(y_peak):
     assert largest == pytest.approx((-index + math.sqrt(index * index - 4.0)) / 2.0, abs=2e-3)
 
 
-def test_sampled_coefficients_call_a_doubled_motion_stable():
-    _, y, omega, index = solved(4.0, 16)
-    largest = np.abs(hill_multipliers(SCENE.system, sampled_share_above(y, 1.0, 80), omega)).max()
-    assert index < -2.0
-    assert largest == pytest.approx(1.0, abs=1e-6)
-
-
 def test_sampled_shares_tend_to_the_closed_form():
     balance, y, _, _ = solved(3.0, 8)
     exact = share_above(balance.contact.angles(y), 8)

@@ -5,7 +5,6 @@ from functools import partial
 
 import numpy as np
 import pytest
-from scipy.integrate import solve_ivp
 
 from squealpipe.methods.orbits.orbits import solve_orbit
 from squealpipe.methods.orbits.shooting import MAX_SEGMENTS, rest_conditions, shoot, stability_index
@@ -41,36 +40,6 @@ def test_flow_runs_backwards_by_turning_velocities(scene):
     shoot(rows, final[0], final[1], found.point[2], *work, again)
     np.testing.assert_allclose(again[:2], found.point[:2], atol=1e-13)
     np.testing.assert_allclose(again[2:], 0.0, atol=1e-13)
-
-
-def test_monodromy_has_two_unit_multipliers_and_a_reciprocal_pair():
-    """Its trace − 2 equals λ + 1/λ from a monodromy built by differences of the flow."""
-    scene = scaled_system(FORMER, 0.3 * math.pi, 0.9 * math.pi)
-    found = solve_orbit(scene.system, np.array([-0.9, 2.7, 4.9]))
-    monodromy = _monodromy_by_differences(scene.system.rows, found.point)
-    multipliers = np.linalg.eigvals(monodromy)
-    order = np.argsort(abs(multipliers - 1.0))
-    # the double multiplier is defective: differences leave it the square root of their error
-    np.testing.assert_allclose(multipliers[order[:2]], 1.0, atol=2e-2)
-    assert multipliers[order[2:]].prod() == pytest.approx(1.0, abs=1e-3)
-    assert np.trace(monodromy) - 2.0 == pytest.approx(found.stability_index, abs=1e-3)
-
-
-def _monodromy_by_differences(rows, point, step=1e-6):
-    """From A4 by an independent integrator with dense steps (the field is continuous)."""
-
-    def field(_, u):
-        row = rows[1 if u[1] > rows[0, 11] else 0]
-        ax = row[9] - (row[0] + row[1]) * u[0] - row[2] * u[1]
-        return [u[2], u[3], ax, row[10] - row[3] * u[0] - (row[0] - row[1]) * u[1]]
-
-    def end(start):
-        accuracy = {"method": "DOP853", "rtol": 1e-12, "atol": 1e-13, "max_step": 0.01}
-        return solve_ivp(field, (0.0, 2 * point[2]), start, **accuracy).y[:, -1]
-
-    start = np.array([point[0], point[1], 0.0, 0.0])
-    units = step * np.eye(4)
-    return np.transpose([(end(start + one) - end(start - one)) / (2 * step) for one in units])
 
 
 def test_the_index_is_independent_of_where_the_period_starts():

@@ -1,53 +1,19 @@
-"""Friction as Eq. (4) prints it, against equations of its own under DOP853."""
+"""Friction as Eq. (4) prints it, against DOP853."""
 
 import numpy as np
 import pytest
-from scipy.integrate import solve_ivp
 
 from squealpipe import Parameters, simulate
 from squealpipe.parameters import SCENES
 from squealpipe.solvers.a1.ensemble import run_ensemble
+from tests.oracles.a1_automaton import EventKind
+from tests.oracles.a1_scipy import simulate_scipy
 
 PAPER = Parameters(k3=0.65, mu=0.3, belt_speed=100.0, length1=15.0, length2=15.0)
-
-
-def dop853(p, alpha1, alpha2, t_end, start):
-    """The state at ``t_end`` and how often ẋ crossed V in contact."""
-    pivots = p.length1 * np.array([np.cos(alpha1), np.sin(alpha1)])
-    pivots = (pivots, p.length2 * np.array([-np.cos(alpha2), np.sin(alpha2)]))
-
-    def rates(_, z, contact, faster):
-        force = np.zeros(2)
-        for k, length, pivot in zip((p.k1, p.k2), (p.length1, p.length2), pivots, strict=True):
-            arm = z[:2] - pivot
-            force -= k * (1.0 - length / np.hypot(*arm)) * arm
-        normal = contact * p.k3 * (p.preload - z[1])
-        return [z[2], z[3], (force[0] + faster * p.mu * normal) / p.mass,
-                (force[1] + normal) / p.mass]  # fmt: skip
-
-    def gap(_, z, *__):
-        return z[1] - p.preload
-
-    def speed(_, z, contact, __):
-        return z[2] - p.belt_speed if contact else 1.0
-
-    gap.terminal = speed.terminal = True
-    time, z, contact, crossings = 0.0, np.array(start, float), 1.0, 0
-    faster = float(np.sign(z[2] - p.belt_speed))
-    while True:
-        gap.direction, speed.direction = (1 if contact else -1), -faster
-        run = solve_ivp(
-            rates, (time, t_end), z, method="DOP853", rtol=1e-13, atol=1e-14 * p.preload,
-            events=(gap, speed), args=(contact, faster), max_step=0.02 * t_end,
-        )  # fmt: skip
-        time, z = run.t[-1], run.y[:, -1]
-        if run.status == 0:
-            return z, crossings
-        if run.t_events[0].size:
-            contact = 1.0 - contact
-            faster = float(np.sign(z[2] - p.belt_speed))
-        else:
-            faster, crossings = -faster, crossings + 1
+PAD = Parameters(
+    mass=0.5, k1=1e7, k2=2e7, k3=7e6, mu=0.3, preload=1e-4, length1=1e-3, length2=2e-3,
+    belt_speed=0.1,
+)  # fmt: skip
 
 
 @pytest.mark.parametrize(
@@ -55,21 +21,7 @@ def dop853(p, alpha1, alpha2, t_end, start):
     [
         (PAPER.with_(belt_speed=0.4), (0.0, 0.2, 0.6, 0.0), 1),
         (PAPER.with_(belt_speed=-0.4, k2=1.3), (0.0, -0.3, 0.1, 0.0), 1),
-        (
-            Parameters(
-                mass=0.5,
-                k1=1e7,
-                k2=2e7,
-                k3=7e6,
-                mu=0.3,
-                preload=1e-4,
-                length1=1e-3,
-                length2=2e-3,
-                belt_speed=0.1,
-            ),
-            (0.0, 0.0, 0.15, 0.0),
-            1,
-        ),
+        (PAD, (0.0, 0.0, 0.15, 0.0), 1),
         (PAPER, (0.0, 0.0, 0.0, 0.0), 0),
     ],
 )
@@ -78,10 +30,12 @@ def test_state_and_crossings_of_belt_speed(params, start, least):
     run = simulate(
         params, 0.9, 2.0, t_end=t_end, model="A1-as-printed", initial_state=start, times=[t_end]
     )
-    z, crossings = dop853(params, 0.9, 2.0, t_end, start)
+    given = {"t_end": t_end, "initial_state": start, "tol": 1e-14 * params.preload}
+    exact = simulate_scipy(params, 0.9, 2.0, as_printed=True, **given)
+    crossings = exact.event_kinds.count(EventKind.belt_speed)
     found = np.array([run[name].item() for name in ("x", "y", "vx", "vy")])
     unit = params.preload * np.array([1, 1, 1 / params.time_unit, 1 / params.time_unit])
-    np.testing.assert_allclose(found / unit, z / unit, atol=1e-9)
+    np.testing.assert_allclose(found / unit, exact.state / unit, atol=1e-9)
     assert int((run.event_kind == 4).sum()) == crossings >= least
 
 

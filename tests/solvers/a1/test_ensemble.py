@@ -148,24 +148,6 @@ def test_maps_in_blocks_are_the_same(monkeypatch):
     assert whole.max_displacement.tobytes() == parts.max_displacement.tobytes()
 
 
-def test_parameters_in_other_forms_give_the_same_bits():
-    """One set of parameters is scaled once; arrays of the same values take the other path."""
-    signed = {"damping1": -0.0, "belt_speed": -0.0}
-    for params in (
-        FORMER.with_(mass=2.0, k1=3.0, preload=0.7, k2=1.7, belt_speed=-3.0),
-        FORMER.with_(damping1=0.2, friction_law="exponential", mu_static=0.6, length1=1e7),
-        FORMER.with_(mu_static=0.6),
-        FORMER.with_(**signed),
-        FORMER.with_(**dict.fromkeys(signed, 0.0)),
-    ):
-        given = {name: np.array([value] * 3) for name, value in vars(params).items() if value}
-        alone, rows = (
-            run_ensemble(each, np.full(3, 1.2), 2.6, t_end=9.0, log_events=9, workers=1)
-            for each in (params, {**given, "belt_speed": params.belt_speed})
-        )
-        assert_identical(alone, rows)
-
-
 def test_threads_do_not_disturb_each_other(reference):
     with ThreadPoolExecutor(2) as pool:
         for run in pool.map(lambda _: _run(workers=1), range(4)):

@@ -1,18 +1,17 @@
-"""Exact periodic motions against values known to 14 digits, 30-digit arithmetic, independent
-integration, closed forms and symmetries."""
+"""Exact periodic motions against values known to 14 digits, independent integration, closed forms
+and symmetries."""
 
 import math
 
-import mpmath
 import numpy as np
 import pytest
-from scipy.integrate import solve_ivp
 
 from squealpipe.laws.springs import geometry, linear_stiffness
 from squealpipe.models.a4 import first_integral_value
 from squealpipe.schema import Outcome
 from squealpipe.tasks.backbones.orbit import periodic_orbit
 from tests.former import FORMER
+from tests.oracles.a4_scipy import a4_by_scipy
 
 PI = math.pi
 BASE = FORMER
@@ -38,73 +37,13 @@ def test_known_orbits_are_found_from_cold(alpha1, alpha2, mode, y_peak, omega):
     assert float(found.residual) <= 1e-14
 
 
-@pytest.mark.parametrize(("alpha1", "alpha2", "mode", "y_peak", "omega"), KNOWN[3:])
-def test_omega_agrees_with_thirty_digits(alpha1, alpha2, mode, y_peak, omega):
-    """Newton's method on x0, the switching times and T/2 in 30 digits, from our answer."""
-    found = _orbit(alpha1, alpha2, mode, y_peak)
-    precise = _in_thirty_digits(alpha1, alpha2, y_peak, found)
-    assert abs(float(found.omega) - precise) <= 1e-13
-
-
-def _in_thirty_digits(alpha1, alpha2, y_peak, found):
-    with mpmath.workdps(30):
-        (c1, s1), (c2, s2) = (mpmath.cos_sin(mpmath.mpf(float(a)) * PI) for a in (alpha1, alpha2))
-        k11, k12, k22 = c1**2 + c2**2, c1 * s1 - c2 * s2, s1**2 + s2**2
-        k12 = mpmath.mpf(0) if abs(k12) < 1e-14 else k12
-        k3, mu = mpmath.mpf("0.75"), mpmath.mpf("0.3")
-        states = []
-        for matrix, load in (
-            ([[k11, k12], [k12, k22]], [0, 0]),
-            ([[k11, k12 + mu * k3], [k12, k22 + k3]], [mu * k3, k3]),
-        ):
-            values, vectors = mpmath.eig(mpmath.matrix(matrix))
-            rest = mpmath.matrix(matrix) ** -1 * mpmath.matrix(load)
-            states.append((vectors, vectors**-1, list(map(mpmath.sqrt, values)), rest))
-
-        def advance(u, v, state, time):
-            vectors, inverse, omegas, rest = states[state]
-            modes = list(zip(inverse * (u - rest), inverse * v, omegas, strict=True))
-            turns = [mpmath.cos_sin(w * time) for w in omegas]
-            qt = [q * c + p * s / w for (q, p, w), (c, s) in zip(modes, turns, strict=True)]
-            pt = [p * c - q * w * s for (q, p, w), (c, s) in zip(modes, turns, strict=True)]
-            return rest + vectors * mpmath.matrix(qt), vectors * mpmath.matrix(pt)
-
-        def conditions(x0, *times):
-            u, v, before, state = mpmath.matrix([x0, y_peak]), mpmath.matrix([0, 0]), 0, 0
-            values = []
-            for time in times:
-                u, v = advance(u, v, state, time - before)
-                values.append(mpmath.re(u[1]) - 1)
-                before, state = time, 1 - state
-            return [*values[:-1], mpmath.re(v[0]), mpmath.re(v[1])]
-
-        start = [*map(float, (found.x_at_peak, *found.switching_times)), PI / float(found.omega)]
-        solution = mpmath.findroot(conditions, start, tol=1e-50, maxsteps=30)
-        return float(mpmath.pi / solution[len(start) - 1])
-
-
-def a4_by_scipy(params, angles, orbit, times):
-    """A4 from the peak of an orbit; rates of (x, y, ẋ, ẏ) from the stiffness alone."""
-    k11, k12, k22 = linear_stiffness(params, geometry(*angles))
-
-    def field(_, z):
-        normal = params.k3 * max(1.0 - z[1], 0.0)
-        ax, ay = params.mu * normal - k11 * z[0] - k12 * z[1], normal - k12 * z[0] - k22 * z[1]
-        return [z[2], z[3], ax, ay]
-
-    start = [float(orbit.x_at_peak), float(orbit.y_peak), 0.0, 0.0]
-    accuracy = {"method": "DOP853", "rtol": 1e-12, "atol": 1e-13, "max_step": times[-1] / 800}
-    return solve_ivp(field, (0.0, times[-1]), start, t_eval=times, **accuracy).y
-
-
 @pytest.mark.parametrize(("alpha1", "alpha2", "mode", "y_peak", "omega"), KNOWN)
 def test_an_independent_integrator_closes_the_orbit(alpha1, alpha2, mode, y_peak, omega):
     angles, found = (alpha1 * PI, alpha2 * PI), _orbit(alpha1, alpha2, mode, y_peak)
     end = 2 * PI / float(found.omega)
-    z = a4_by_scipy(BASE, angles, found, np.union1d(found.time, end * np.linspace(0, 1, 4001)))
+    z = a4_by_scipy(BASE, angles, found, end * np.linspace(0, 1, 4001))
     np.testing.assert_allclose(z[:, -1], z[:, 0], atol=2e-8)
-    half = a4_by_scipy(BASE, angles, found, np.array([0.5, 1.0]) * end)[2:, 0]
-    np.testing.assert_allclose(half, 0.0, atol=2e-8)
+    np.testing.assert_allclose(z[2:, 2000], 0.0, atol=2e-8)
     path = a4_by_scipy(BASE, angles, found, np.append(found.time.values, end))[:2, :-1]
     np.testing.assert_allclose([found.x_path, found.y_path], path, atol=2e-8)
     stiffness = linear_stiffness(BASE, geometry(*angles))

@@ -9,19 +9,10 @@ from squealpipe import basin_map, simulate
 from squealpipe.schema import Outcome
 from squealpipe.schema.dynamics.runs import MotionFlag
 from tests.former import FORMER
+from tests.oracles.friction_oscillators import ANGLES, BSTAB, oscillator
 
-ANGLES = (0.5 * math.pi, math.pi)
 SHARES = {1.25: 0.08019692, 1.4: 0.21226526, 1.55: 0.35659639, 1.7: 0.49411159}
 """Exact share of starts that come to rest, by the area of the unstable cycle."""
-
-
-def friction_oscillator(belt_speed, reach=1e4):
-    """m = k = 1, c = 0.1, N = 1 to 1/reach, exponential law 1 → 0.5 over 0.5."""
-    return FORMER.with_(
-        k1=4.0, k2=1.0, k3=1.0 / reach, preload=reach, length1=reach, length2=reach,
-        mu=0.5, mu_static=1.0, friction_speed=0.5, friction_law="exponential",
-        belt_speed=belt_speed, damping2=0.1,
-    )  # fmt: skip
 
 
 @pytest.mark.parametrize(
@@ -38,9 +29,8 @@ def test_basin_shares_of_a_published_oscillator(speed, starts):
     # one random start in each cell of a grid, so that the error is at most that of random starts
     x = -2.0 + 4.0 * (np.arange(side) + generator.uniform(size=side)) / side
     vx = 2.0 * (np.arange(side) + generator.uniform(size=side)) / side
-    basin = basin_map(
-        friction_oscillator(speed), *ANGLES, x=x, vx=vx, y=0.25, t_end=500.0, t_late=400.0
-    )
+    params = oscillator(1e4, speed, **BSTAB | {"damping1": 0.0})
+    basin = basin_map(params, *ANGLES, x=x, vx=vx, y=0.25, t_end=500.0, t_late=400.0)
     assert basin.late_max_vx.dims == ("x0", "vx0")
     rest = basin.late_max_vx.values <= 0.2
     error = math.sqrt(SHARES[speed] * (1.0 - SHARES[speed]) / rest.size)

@@ -18,20 +18,7 @@ from squealpipe.tasks.cycles.scene import Scene
 from squealpipe.tasks.normal_form import exchanged
 from tests.former import FORMER
 from tests.oracles.a1_long_double import derivative_along
-
-ANGLES = (0.5 * math.pi, math.pi)
-
-
-def friction_oscillator(belt_speed, reach=1e6):
-    """m = k = 1, c = 0.1, N = 1, exponential law 1 → 0.5 over 0.5, as the limit of A1.
-
-    Spring 2 is the oscillator's; spring 1 holds the mass on the belt. N = 1 to 1/reach.
-    """
-    return FORMER.with_(
-        k1=4.0, k2=1.0, k3=1.0 / reach, preload=reach, length1=reach, length2=reach,
-        mu=0.5, mu_static=1.0, friction_speed=0.5, friction_law="exponential",
-        belt_speed=belt_speed, damping1=0.4, damping2=0.1,
-    )  # fmt: skip
+from tests.oracles.friction_oscillators import ANGLES, BSTAB, oscillator
 
 
 def equilibrium(belt_speed):
@@ -47,7 +34,7 @@ def test_stick_slip_cycle_of_a_published_oscillator(speed):
     """The error is that of the limit: it falls with the length of the springs."""
     errors = []
     for reach in (1e5, 1e6):
-        cycle = limit_cycle(friction_oscillator(speed, reach), *ANGLES, guess=(1.5, 0.25, speed, 0))
+        cycle = limit_cycle(oscillator(reach, speed, **BSTAB), *ANGLES, guess=(1.5, 0.25, speed, 0))
         assert cycle.outcome == Outcome.converged
         assert cycle.stable == 1
         period = float(cycle.period)
@@ -149,7 +136,7 @@ def test_rest_is_rest_in_any_units_and_mirrored(settle):
 
 @pytest.mark.parametrize("speed", UNSTABLE)
 def test_a_smooth_cycle_around_a_state_of_rest_is_found_from_any_phase(speed):
-    params = friction_oscillator(speed, 1e3)
+    params = oscillator(1e3, speed, **BSTAB)
     guess = (equilibrium(speed) + UNSTABLE[speed][0], 0.25, 0.0, 0.0)
     cycle = limit_cycle(params, *ANGLES, guess=guess)
     path = np.array([cycle[f"{name}_path"] for name in ("x", "y", "vx", "vy")])
@@ -228,7 +215,7 @@ def test_branch_refuses_what_it_cannot_do(change, named):
 
 @pytest.mark.parametrize("rounds", [2, 3, 6, 25])
 def test_a_return_after_several_rounds_gives_the_least_period(rounds):
-    params, angles = friction_oscillator(1.25, reach=1e4), ANGLES
+    params, angles = oscillator(1e4, 1.25, **BSTAB), ANGLES
     once, _ = cycle_from(Scene(params, *angles), (1.5, 0.25, 1.25, 0.0))
     parts = once.parts
     several = replace(once.map, events=once.map.events * rounds)

@@ -4,7 +4,6 @@ import math
 
 import numpy as np
 import pytest
-import scipy.integrate
 
 from squealpipe.parameters import SCENES, Parameters
 from squealpipe.reading import READINGS
@@ -16,12 +15,10 @@ from squealpipe.tasks.inference.candidates import Candidates, sets_of
 from squealpipe.tasks.inference.constraints import CONSTRAINTS, judge, measure
 from squealpipe.tasks.inference.inference import infer_parameters
 from squealpipe.tasks.linear.maps import stability_map
-from tests import symbols
 from tests.former import FORMER
 from tests.tasks.inference.parameter_sets import fields_of, random_sets
 
 STUDY = Parameters()
-FORCE = symbols.function(symbols.SPRING_FORCE)
 
 
 @pytest.fixture(scope="module")
@@ -50,22 +47,6 @@ def test_the_studys_parameters_agree_as_printed_alone():
         "along_plus_x": ["F3", "F7_black"],
         "along_minus_x": ["F6b_printed", "F7_black"],
     }
-
-
-def test_readings_do_not_depend_on_units():
-    """A brake pad in SI units has the margins of its dimensionless groups."""
-    speed = 100.0 * 1e-4 * math.sqrt(1e7 / 0.5)
-    brake = Parameters(
-        mass=0.5, k1=1e7, k2=1e7, k3=6.5e6, mu=0.3, preload=1e-4, length1=1.5e-3, length2=1.5e-3,
-        belt_speed=speed,
-    )  # fmt: skip
-    for name in READINGS:
-        plain, scaled = (
-            judge(Candidates.of(params, tol=1e-9).read(name), failures=99)
-            for params in (STUDY, brake)
-        )
-        np.testing.assert_array_equal(plain[1], scaled[1])
-        np.testing.assert_allclose(plain[0], scaled[0], atol=1e-4)
 
 
 def test_contact_with_long_springs_as_the_closed_form_says():
@@ -126,23 +107,6 @@ def test_the_pulling_contact_loses_exactly_what_a1_loses():
         scene = SCENES[name]
         run = run_ensemble(whole, scene.alpha1, scene.alpha2, t_end=scene.t_end, tol=1e-9)
         np.testing.assert_array_equal(contact[name].margin < 0, run.separations > 0)
-
-
-def test_lowest_force_agrees_with_an_independent_integration():
-    """Scipy on the symbolic forces, while the mass slips behind the belt in contact."""
-    scene = SCENES["F2a"]
-    angles = {"alpha1": scene.alpha1, "alpha2": scene.alpha2}
-
-    def field(_, u):
-        fx, fy = FORCE(FORMER, x=u[0], y=u[1], **angles)
-        normal = FORMER.k3 * (FORMER.preload - u[1])
-        return [u[2], u[3], fx + FORMER.mu * normal, fy + normal]
-
-    accuracy = {"method": "DOP853", "rtol": 1e-10, "atol": 1e-12, "max_step": 0.01}
-    run = scipy.integrate.solve_ivp(field, (0, scene.t_end), np.zeros(4), **accuracy)
-    lowest = 1.0 - run.y[1].max()
-    found = Candidates.of(FORMER, tol=1e-12).contact["F2a"].margin[0]
-    assert found == pytest.approx(lowest, abs=2e-5)
 
 
 def test_growth_of_fig_3_and_bound_of_fig_4():

@@ -13,30 +13,12 @@ from squealpipe.store import load, save
 from squealpipe.tasks.linear.maps import natural_frequencies, quasi_static_map, stability_map
 from tests import symbols
 from tests.former import FORMER
+from tests.oracles import sliding
 
 BASELINE = FORMER
 ANGLES = np.linspace(0.0, np.pi, 181)
 UNEQUAL = FORMER.with_(mass=1.7, k1=1.4, k2=0.6, k3=0.9, mu=0.45, preload=0.5)
 SEED = 11
-
-
-def reference_matrix(params, alpha1, alpha2):
-    """Stiffness over mass in contact, from the paper's Eqs. (8), (20), (21) in high precision."""
-    p = {name: mpmath.mpf(value) for name, value in params.as_dict().items()}
-    (c1, s1), (c2, s2) = (mpmath.cos_sin(mpmath.mpf(a)) for a in (alpha1, alpha2))
-    k11 = p["k1"] * c1**2 + p["k2"] * c2**2
-    k22 = p["k1"] * s1**2 + p["k2"] * s2**2
-    k12 = p["k1"] * c1 * s1 - p["k2"] * c2 * s2
-    rows = [[k11, k12 + p["mu"] * p["k3"]], [k12, k22 + p["k3"]]]
-    return mpmath.matrix(rows) / p["mass"]
-
-
-def reference_eigenvalues(params, alpha1, alpha2):
-    """All s with s² = −ω², by mpmath's general eigenvalue solver."""
-    with mpmath.workdps(60):
-        squares = mpmath.eig(reference_matrix(params, alpha1, alpha2), right=False)
-        roots = [mpmath.sqrt(-value) for value in squares]
-        return [complex(sign * root) for root in roots for sign in (1, -1)]
 
 
 def relative_error(params, alpha1, alpha2):
@@ -46,7 +28,7 @@ def relative_error(params, alpha1, alpha2):
     own = np.concatenate(
         [sign * np.array(each) for each in (pairs, np.conj(pairs)) for sign in (1, -1)]
     )
-    exact = reference_eigenvalues(params, alpha1, alpha2)
+    exact = sliding.eigenvalues(params, alpha1, alpha2)
     return max(float(np.abs(own - value).min() / abs(value)) for value in exact)
 
 
@@ -61,7 +43,7 @@ def onset(params, alpha2, low, high):
     """The α1 of flutter onset, where the two squares of the high-precision matrix meet."""
 
     def discriminant(alpha1):
-        m = reference_matrix(params, alpha1, alpha2)
+        m = sliding.first_order_matrix(params, alpha1, alpha2)[2:, :2]
         return float(((m[0, 0] - m[1, 1]) / 2) ** 2 + m[0, 1] * m[1, 0])
 
     with mpmath.workdps(40):
@@ -75,10 +57,9 @@ def test_eigenvalues_to_twelve_digits_at_the_onset_of_flutter(ulps):
     alpha1 = onset(BASELINE, alpha2, 0.05 * math.pi, 0.14 * math.pi)
     alpha1 += ulps * np.spacing(alpha1)
     assert relative_error(BASELINE, alpha1, alpha2) < 1e-12
-    m = np.array(reference_matrix(BASELINE, alpha1, alpha2).tolist(), dtype=float)
-    none = np.zeros((2, 2))
-    numeric = scipy.linalg.eigvals(np.block([[none, np.eye(2)], [-m, none]]))
-    reference = reference_eigenvalues(BASELINE, alpha1, alpha2)
+    whole = sliding.first_order_matrix(BASELINE, alpha1, alpha2)
+    numeric = np.linalg.eigvals(np.array(whole.tolist(), dtype=float))
+    reference = sliding.eigenvalues(BASELINE, alpha1, alpha2)
     lost = max(float(np.abs(numeric - value).min() / abs(value)) for value in reference)
     assert lost > 1e-10
 
@@ -90,13 +71,13 @@ def test_growth_rates_next_to_both_boundaries(distance):
     flutter = onset(BASELINE, alpha2, 0.05 * math.pi, 0.14 * math.pi) + distance
 
     def determinant(alpha1):
-        m = reference_matrix(BASELINE, alpha1, 0.55 * math.pi)
+        m = sliding.first_order_matrix(BASELINE, alpha1, 0.55 * math.pi)[2:, :2]
         return float(m[0, 0] * m[1, 1] - m[0, 1] * m[1, 0])
 
     with mpmath.workdps(40):
         divergence = scipy.optimize.brentq(determinant, 0.3 * math.pi, 0.45 * math.pi, xtol=1e-16)
     for alpha1, second in ((flutter, alpha2), (divergence + distance, 0.55 * math.pi)):
-        exact = max(s.real for s in reference_eigenvalues(BASELINE, alpha1, second))
+        exact = max(s.real for s in sliding.eigenvalues(BASELINE, alpha1, second))
         found = float(stability_map(BASELINE, [alpha1], [second]).growth_rate[0, 0])
         assert exact > 0
         assert found == pytest.approx(exact, rel=1e-12)
