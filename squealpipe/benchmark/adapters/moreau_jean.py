@@ -20,24 +20,28 @@ def solve(problem: Problem, tol: float) -> Any:
         raise NotImplementedError("no friction or impact")
     data = problem.data["stepping"]
     moves = [problem.states.index(name) for name in data["velocities"]]
-    rates = problem.function(problem.rates, data["constants"])
+    rests = [i for i in range(len(problem.states)) if i not in moves]
+    drift, kick = (
+        problem.function([problem.rates[i] for i in places], data["constants"])
+        for places in (rests, moves)
+    )
     velocity, *law = data.get("friction") or data["impact"]
     place, values = problem.states.index(velocity), problem.function(law, {})
     n_steps = math.ceil(problem.t_end / tol**0.25)
     h, y = problem.t_end / n_steps, list(problem.start)
 
     def half(t: float) -> None:
-        for i, rate in enumerate(rates(t, y)):
-            y[i] += 0.5 * h * rate * (i not in moves)
+        for i, rate in zip(rests, drift(t, y), strict=True):
+            y[i] += 0.5 * h * rate
 
     for step in range(n_steps):
         t = step * h
-        gap = values(t, y)[0]
+        gap = values(t, y)[0] if "impact" in data else 0.0
         half(t)
         t += 0.5 * h
-        now, (a, b), before = rates(t, y), values(t, y), y[place]
-        for i in moves:
-            y[i] += h * now[i]
+        now, (a, b), before = kick(t, y), values(t, y), y[place]
+        for i, rate in zip(moves, now, strict=True):
+            y[i] += h * rate
         if "friction" in data:
             y[place] += min(max(a - y[place], -b * h), b * h)
         elif a <= min(0.0, gap):

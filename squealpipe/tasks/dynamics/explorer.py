@@ -7,17 +7,22 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
+from squealpipe.codes import Regime
+from squealpipe.laws.contact import normal_force
 from squealpipe.methods.processes import run_shared
 from squealpipe.methods.spectrum import amplitude_spectrum
 from squealpipe.models.refusals import extensions
 from squealpipe.parameters import Parameters
 from squealpipe.schema import build
-from squealpipe.schema.dynamics.explorer import EXPLORER
-from squealpipe.tasks.backbones.backbone import backbone
-from squealpipe.tasks.dynamics.runs import simulate
+from squealpipe.schema.dynamics.explorer import EXPLORER, HISTORIES, ORBITS
+from squealpipe.solvers.a1.ensemble import run_ensemble
+from squealpipe.solvers.a4.exact_branches import exact_branch
+from squealpipe.solvers.a4.system import ScaledSystem, scaled_system
+from squealpipe.tasks.backbones.backbone import exact_variables
 
-BRANCH = ("omega", "x_amplitude", "y_amplitude", "y_peak", "stability_index")
 MODES = (1, 2)
+LARGEST, TOLERANCE = 3.0, 1e-12
+"""Peaks and amplitudes over l_pre up to which branches go; of the motions."""
 HIGHEST_FREQUENCY = 6.0
 """Spectra are kept up to here, in units of √(k1/m): four times the highest natural frequency."""
 
@@ -54,23 +59,26 @@ def explorer_data(
     count, modes = angles.size, () if extensions(params) else MODES
 
     def fill(arrays: dict[str, NDArray[Any]], first: int, stride: int) -> None:
-        for cell in range(first, count * count, stride):
-            alpha1, alpha2 = float(angles[cell // count]), float(angles[cell % count])
-            _motion(arrays, cell, params, alpha1, alpha2, times)
-            for place, mode in enumerate(modes):
-                _branch(arrays, (cell, place), backbone(params, alpha1, alpha2, mode=mode))
-
+        for row in range(first, count, stride):
+            cells = slice(row * count, (row + 1) * count)
+            motions = _motions(params, float(angles[row]), angles, times, samples, lines)
+            for name, values in motions.items():
+                arrays[name][cells] = values
+            for column, alpha2 in enumerate(angles.tolist()):
+                scene = scaled_system(params, float(angles[row]), alpha2) if modes else None
+                for place, mode in enumerate(modes):
+                    _branch(arrays, (row * count + column, place), params, scene, mode)
     history, branch = (count * count, samples), (count * count, len(modes), branch_points)
     arrays = run_shared(
         fill,
         {
-            **dict.fromkeys(("x", "y", "normalized_contact_force"), (history, np.float32)),
+            **dict.fromkeys(HISTORIES, (history, np.float32)),
             "force_spectrum": ((count * count, lines), np.float32),
             "outcome": ((count * count,), np.int8),
-            **(dict.fromkeys(BRANCH, (branch, np.float32)) if modes else {}),
+            **(dict.fromkeys(ORBITS, (branch, np.float32)) if modes else {}),
             **({"end": ((count * count, len(modes)), np.int8)} if modes else {}),
         },
-        jobs=count * count,
+        jobs=count,
         workers=workers,
     )
     return build(
@@ -100,34 +108,43 @@ def explorer_data(
     )
 
 
-def _motion(
-    arrays: dict[str, NDArray[Any]],
-    cell: int,
+def _motions(
     params: Parameters,
     alpha1: float,
-    alpha2: float,
+    alpha2: NDArray[np.float64],
     times: NDArray[np.float64],
-) -> None:
-    run = simulate(params, alpha1, alpha2, t_end=float(times[-1]), times=times)
-    for name in ("x", "y", "normalized_contact_force"):
-        kept = run[name].values[: arrays[name].shape[1]]
-        arrays[name][cell, : kept.size] = kept
-        arrays[name][cell, kept.size :] = kept[-1]
-    force = run.normalized_contact_force.values
+    samples: int,
+    lines: int,
+) -> dict[str, NDArray[Any]]:
+    """Motions in one row of the grid, and spectra of their contact forces."""
+    run = run_ensemble(
+        params, alpha1, alpha2, t_end=times[-1], times=times, tracked=(), tol=TOLERANCE, workers=1
+    )
+    x, y, _, vy = np.moveaxis(run.samples, -1, 0)
+    normal = np.where(run.sample_regimes == Regime.separated, 0.0, normal_force(y, vy, params))
+    force = normal / (params.k3 * params.preload)
     _, amplitude = amplitude_spectrum(force, float(times[1]))
-    arrays["force_spectrum"][cell] = amplitude[: arrays["force_spectrum"].shape[1]]
-    arrays["outcome"][cell] = int(run.outcome)
+    return {
+        **dict(zip(HISTORIES, (each[:, :samples] for each in (x, y, force)), strict=True)),
+        "force_spectrum": amplitude[:, :lines],
+        "outcome": run.outcome,
+    }
 
 
-def _branch(arrays: dict[str, NDArray[Any]], place: tuple[int, int], branch: xr.Dataset) -> None:
-    points = branch.sizes["point"]
+def _branch(
+    arrays: dict[str, NDArray[Any]],
+    place: tuple[int, int],
+    params: Parameters,
+    scene: ScaledSystem,
+    mode: int,
+) -> None:
+    orbits, outcomes, end = exact_branch(scene, mode, LARGEST, LARGEST)
     wanted = arrays["omega"].shape[-1]
-    arrays["end"][place] = int(branch.end)
-    if points == 0:
-        for name in BRANCH:
-            arrays[name][place] = np.nan
-        return
-    chosen = np.round(np.linspace(0, points - 1, min(points, wanted))).astype(int)
-    chosen = np.concatenate([chosen, np.full(wanted - chosen.size, points - 1)])
-    for name in BRANCH:
-        arrays[name][place] = branch[name].values[chosen]
+    points = len(orbits)
+    if points:
+        chosen = np.round(np.linspace(0, points - 1, min(points, wanted))).astype(int)
+        chosen = np.concatenate([chosen, np.full(wanted - chosen.size, points - 1)])
+        found = exact_variables(scene, params, [orbits[i] for i in chosen], outcomes, end)
+    for name in ORBITS:
+        arrays[name][place] = found[name] if points else np.nan
+    arrays["end"][place] = int(end)
