@@ -25,7 +25,7 @@ from numba.extending import intrinsic
 
 from squealpipe.methods.compiled import compiled_entry
 from squealpipe.methods.progress import report
-from squealpipe.methods.taylor import simd
+from squealpipe.methods.taylor import simd, writing
 from squealpipe.methods.taylor.series import (
     HybridSystem,
     longest_source,
@@ -80,14 +80,10 @@ def compile_system(system: HybridSystem, *, tangent: bool, few: bool = False) ->
 
 
 def _from_source(name: str, source: str, few: bool) -> Any:
-    names = "load store number fma splat root exponential logarithm sine cosine magnitude larger"
-    scope: dict[str, Any] = {each: getattr(simd, each) for each in names.split()}
-    if few:
-        scope |= {"load": simd.load_few, "splat": simd.splat_few}
-    scope["__name__"] = simd.__name__
-    exec(compile(source, simd.__file__, "exec"), scope)  # noqa: S102
-    content = source.encode() + Path(simd.__file__).read_bytes() + b"few" * few
-    return compiled_entry(scope[name], SIGNATURES[name], content)
+    content = source.encode() + b"few" * few
+    content += b"".join(Path(each.__file__ or "").read_bytes() for each in (simd, writing))
+    function = writing.function_of(source, simd.FEW if few else simd.LANES)
+    return compiled_entry(function, SIGNATURES[name], content)
 
 
 def _to_pointer(typing_context: Any, value: Any) -> Any:  # noqa: ARG001

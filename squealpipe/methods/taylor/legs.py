@@ -146,24 +146,23 @@ def _integrate(rates: Any, up_to: Any, states: Any) -> None:
                         state[s] += share * rate[s]
 
 
-@_numba.njit
+@part
 def _multiply(slopes: Any, lengths: Any, states: Any, rates: Any) -> None:
     """Rates at the nodes from the states there, over the step."""
     nodes, n, columns, steps = rates.shape
-    for i in range(n):
-        for c in range(columns):
-            for node in range(nodes):
-                rates[node, i, c] = slopes[i, c, node] if c >= n else np.zeros(steps)
-    for i in range(n):
-        for j in range(n):
-            if slopes[i, j].any():
-                for node in range(nodes):
-                    slope = slopes[i, j, node]
-                    for c in range(columns):
-                        rate, state = rates[node, i, c], states[node, j, c]
+    for node in range(nodes):
+        for i in range(n):
+            for c in range(columns):
+                rate = rates[node, i, c]
+                for s in range(steps):
+                    rate[s] = slopes[i, c, node, s] if c >= n else 0.0
+                for j in range(n):
+                    slope, state = slopes[i, j, node], states[node, j, c]
+                    if slope.any():
                         for s in range(steps):
                             rate[s] += slope[s] * state[s]
-    rates *= lengths
+                for s in range(steps):
+                    rate[s] *= lengths[s]
 
 
 @compiled
@@ -182,9 +181,17 @@ def transfer(slopes: Any, lengths: Any, leg: Any, up_to: Any, weights: Any, foun
     for _ in range(_SWEEPS):
         _integrate(rates, up_to, states)
         _multiply(slopes, lengths, states, rates)
+    growth, grown = np.empty((n, columns)), np.empty((n, columns))
     for s in range(steps):
-        growth = np.zeros((n, columns))
-        for node in range(nodes):
-            growth += weights[node] * rates[node, :, :, s]
         total = found[leg[s]]
-        total[:n] += growth @ total
+        for i in range(n):
+            for c in range(columns):
+                growth[i, c] = grown[i, c] = 0.0
+                for node in range(nodes):
+                    growth[i, c] += weights[node] * rates[node, i, c, s]
+            for j in range(columns):
+                for c in range(columns):
+                    grown[i, c] += growth[i, j] * total[j, c]
+        for i in range(n):
+            for c in range(columns):
+                total[i, c] += grown[i, c]

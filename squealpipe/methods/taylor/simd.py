@@ -1,7 +1,8 @@
 """One number per lane: vectors of doubles inside compiled code.
 
-A compiled function loads a row of ``LANES`` contiguous doubles, or its first ``FEW``, as one value,
-computes with it as with a float, and stores it. LLVM maps each operation onto what the processor
+A compiled function loads a row of ``LANES`` contiguous doubles as one value, computes with it as
+with a float, and stores it; code of :mod:`squealpipe.methods.taylor.writing` may load its first
+``FEW``. LLVM maps each operation onto what the processor
 has (a row onto two AVX-512 or four AVX2 registers). All operations are exact to the last bit as
 IEEE 754 defines them and lanes never mix, so a result depends neither on the lane nor on the
 processor.
@@ -9,6 +10,7 @@ processor.
 
 import operator
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 from llvmlite import ir
@@ -33,40 +35,37 @@ signature: Any = templates.signature
 _lower_builtin: Any = lower_builtin
 
 
+def doubles(width: int) -> Any:
+    """LLVM's type of a vector."""
+    return ir.VectorType(ir.DoubleType(), width)
+
+
 class _Lanes(_Type):  # type: ignore[misc]
     """numba's type of a vector."""
 
-    def __init__(self, width: int) -> None:
-        super().__init__(name=f"lanes({width})")
-        self.doubles = ir.VectorType(ir.DoubleType(), width)
+    def __init__(self) -> None:
+        super().__init__(name="lanes")
 
 
-lanes = _Lanes(LANES)
-few_lanes = _Lanes(FEW)
+lanes = _Lanes()
 _PrimitiveModel: Any = models.PrimitiveModel
 
 
 @register_model(_Lanes)
 class _Model(_PrimitiveModel):  # type: ignore[misc]
     def __init__(self, manager: Any, kind: Any) -> None:
-        super().__init__(manager, kind, kind.doubles)
+        super().__init__(manager, kind, doubles(LANES))
 
 
 def _intrinsic(result: Any, arguments: tuple[Any, ...], generate: Callable[..., Any]) -> Any:
-    """A function of compiled code from ``generate(builder, *values) -> value``.
-
-    Where it takes ``lanes`` it takes vectors of any width, and returns the same.
-    """
+    """A function of compiled code from ``generate(builder, *values) -> value``."""
 
     def typing(context: Any, *given: Any) -> Any:  # noqa: ARG001
-        width = next((kind for kind in given if isinstance(kind, _Lanes)), lanes)
-        kinds = [width if kind is lanes else kind for kind in (result, *arguments)]
-
         def code(context: Any, builder: Any, signature: Any, values: Any) -> Any:  # noqa: ARG001
             made = generate(builder, *values)
             return context.get_dummy_value() if result is types.void else made
 
-        return kinds[0](*kinds[1:]), code
+        return result(*arguments), code
 
     names = ", ".join("abcdef"[: len(arguments)])
     scope: dict[str, Any] = {"typing": typing}
@@ -78,13 +77,10 @@ def _pointer(builder: Any, address: Any, kind: Any) -> Any:
     return builder.inttoptr(address, kind.as_pointer())
 
 
-def _loads(kind: _Lanes) -> Any:
-    def generate(builder: Any, address: Any) -> Any:
-        row = builder.load(_pointer(builder, address, kind.doubles))
-        row.align = min(ALIGNMENT, 8 * kind.doubles.count)
-        return row
-
-    return _intrinsic(kind, (types.intp,), generate)
+def _load(builder: Any, address: Any, width: int = LANES) -> Any:
+    row = builder.load(_pointer(builder, address, doubles(width)))
+    row.align = min(ALIGNMENT, 8 * width)
+    return row
 
 
 def _store(builder: Any, address: Any, row: Any) -> None:
@@ -100,26 +96,20 @@ def _put(builder: Any, address: Any, value: Any) -> None:
     builder.store(value, _pointer(builder, address, ir.DoubleType()))
 
 
-def _repeated(builder: Any, value: Any, doubles: Any) -> Any:
-    undefined = ir.Constant(doubles, ir.Undefined)
+def _splat(builder: Any, value: Any, width: int = LANES) -> Any:
+    undefined = ir.Constant(doubles(width), ir.Undefined)
     first = builder.insert_element(undefined, value, ir.Constant(ir.IntType(32), 0))
-    zeros = ir.Constant(ir.VectorType(ir.IntType(32), doubles.count), None)
+    zeros = ir.Constant(ir.VectorType(ir.IntType(32), width), None)
     return builder.shuffle_vector(first, undefined, zeros)
-
-
-def _splats(kind: _Lanes) -> Any:
-    return _intrinsic(
-        kind, (types.float64,), lambda builder, value: _repeated(builder, value, kind.doubles)
-    )
 
 
 def _called(name: str) -> Callable[..., Any]:
     """A function of LLVM's own, lane by lane."""
 
     def generate(builder: Any, *values: Any) -> Any:
-        doubles = values[0].type
-        kind = ir.FunctionType(doubles, [doubles] * len(values))
-        name_of_width = f"llvm.{name}.v{doubles.count}f64"
+        row = values[0].type
+        kind = ir.FunctionType(row, [row] * len(values))
+        name_of_width = f"llvm.{name}.v{row.count}f64"
         function = _cgutils.get_or_insert_function(builder.module, kind, name_of_width)
         return builder.call(function, values)
 
@@ -135,24 +125,27 @@ def _choose_below(builder: Any, first: Any, second: Any, then: Any, otherwise: A
     return builder.select(builder.fcmp_ordered("<", first, second), then, otherwise)
 
 
+def _larger(builder: Any, first: Any, second: Any) -> Any:
+    return _choose_below(builder, second, first, first, second)
+
+
 _SHIFT = 2.0**52
 """Its last 52 bits count in ones: integers become doubles, and back, by one addition."""
 
 
 def _power(builder: Any, value: Any, exponent: Any) -> Any:
     """value ** exponent to about 1 %, from the bits of a positive normal number."""
-    doubles = value.type
-    words = ir.VectorType(ir.IntType(64), doubles.count)
+    rows, words = value.type, ir.VectorType(ir.IntType(64), LANES)
 
     def word(each: int) -> Any:
-        return ir.Constant(words, [each] * doubles.count)
+        return ir.Constant(words, [each] * LANES)
 
     def double(each: float) -> Any:
-        return ir.Constant(doubles, [each] * doubles.count)
+        return ir.Constant(rows, [each] * LANES)
 
     high = builder.lshr(builder.bitcast(value, words), word(32))
     high = builder.or_(high, builder.bitcast(double(_SHIFT), words))
-    units = builder.fsub(builder.bitcast(high, doubles), double(_SHIFT))
+    units = builder.fsub(builder.bitcast(high, rows), double(_SHIFT))
     mantissa_log = builder.fsub(builder.fmul(units, double(2.0**-20)), double(1023.0))
     power = builder.fmul(mantissa_log, exponent)
     whole = _called("floor")(builder, power)
@@ -160,7 +153,7 @@ def _power(builder: Any, value: Any, exponent: Any) -> Any:
     curve = builder.fadd(builder.fmul(part, double(0.3431)), double(0.6569))
     curve = builder.fadd(builder.fmul(part, curve), double(1.0))
     shifted = builder.bitcast(builder.fadd(whole, double(_SHIFT + 1023.0)), words)
-    scale = builder.bitcast(builder.shl(shifted, word(52)), doubles)
+    scale = builder.bitcast(builder.shl(shifted, word(52)), rows)
     return builder.fmul(curve, scale)
 
 
@@ -170,27 +163,18 @@ first_bit: Any = _intrinsic(
     lambda builder, bits: builder.cttz(bits, ir.Constant(ir.IntType(1), 0)),
 )
 """Position of the lowest bit that is set."""
-load: Any = _loads(lanes)
+load: Any = _intrinsic(lanes, (types.intp,), _load)
 """The row at an address."""
-load_few: Any = _loads(few_lanes)
-"""The first ``FEW`` numbers of the row at an address."""
 store: Any = _intrinsic(types.void, (types.intp, lanes), _store)
 """Write a row to an address."""
-splat: Any = _splats(lanes)
+splat: Any = _intrinsic(lanes, (types.float64,), _splat)
 """The same number in each lane."""
-splat_few: Any = _splats(few_lanes)
-"""The same number in each of ``FEW`` lanes."""
 put: Any = _intrinsic(types.void, (types.intp, types.float64), _put)
 """Write one double to an address."""
 number: Any = _intrinsic(types.float64, (types.intp,), _number)
 """The one double at an address."""
 fma: Any = _intrinsic(lanes, (lanes, lanes, lanes), _called("fma"))
 """a b + c, rounded once."""
-root: Any = _intrinsic(lanes, (lanes,), _called("sqrt"))
-exponential: Any = _intrinsic(lanes, (lanes,), _called("exp"))
-logarithm: Any = _intrinsic(lanes, (lanes,), _called("log"))
-sine: Any = _intrinsic(lanes, (lanes,), _called("sin"))
-cosine: Any = _intrinsic(lanes, (lanes,), _called("cos"))
 magnitude: Any = _intrinsic(lanes, (lanes,), _called("fabs"))
 bits_below: Any = _intrinsic(types.int64, (lanes, lanes), _bits_below)
 """Bit i is set where a < b in lane i; never for NaN."""
@@ -198,9 +182,7 @@ choose_below: Any = _intrinsic(lanes, (lanes, lanes, lanes, lanes), _choose_belo
 """c where a < b, else d (also for NaN)."""
 rough_power: Any = _intrinsic(lanes, (lanes, lanes), _power)
 """a ** b to about 1 %, for positive normal a: enough for a step size."""
-larger: Any = _intrinsic(
-    lanes, (lanes, lanes), lambda builder, a, b: _choose_below(builder, b, a, a, b)
-)
+larger: Any = _intrinsic(lanes, (lanes, lanes), _larger)
 """The larger of two, lane by lane; b where one is NaN."""
 smaller: Any = _intrinsic(
     lanes, (lanes, lanes), lambda builder, a, b: _choose_below(builder, a, b, a, b)
@@ -208,13 +190,25 @@ smaller: Any = _intrinsic(
 """The smaller of two, lane by lane; b where one is NaN."""
 
 
+def written(width: int) -> dict[str, Any]:
+    """What generates each function of written code, by its name there."""
+    functions = {"fma": "fma", "root": "sqrt", "exponential": "exp", "logarithm": "log"}
+    functions |= {"sine": "sin", "cosine": "cos", "magnitude": "fabs"}
+    return {
+        **{name: _called(each) for name, each in functions.items()},
+        "load": partial(_load, width=width),
+        "splat": partial(_splat, width=width),
+        "store": _store,
+        "number": _number,
+        "larger": _larger,
+    }
+
+
 def _operate(symbol: Any, instruction: str) -> None:
     """An operator between rows, and between a row and a number."""
     number_kind = types.float64
     cases = [
-        (kind, *case)
-        for kind in (lanes, few_lanes)
-        for case in ((kind, kind), (kind, number_kind), (number_kind, kind))
+        (lanes, *case) for case in ((lanes, lanes), (lanes, number_kind), (number_kind, lanes))
     ]
 
     class Typing(ConcreteTemplate):  # type: ignore[misc]
@@ -225,9 +219,8 @@ def _operate(symbol: Any, instruction: str) -> None:
     register(Typing)
 
     def lower(context: Any, builder: Any, sig: Any, values: Any) -> Any:  # noqa: ARG001
-        doubles = sig.return_type.doubles
         rows = [
-            value if isinstance(kind, _Lanes) else _repeated(builder, value, doubles)
+            value if kind is lanes else _splat(builder, value)
             for kind, value in zip(sig.args, values, strict=True)
         ]
         return getattr(builder, instruction)(*rows)

@@ -64,10 +64,11 @@ def explorer_data(
             motions = _motions(params, float(angles[row]), angles, times, samples, lines)
             for name, values in motions.items():
                 arrays[name][cells] = values
-            for column, alpha2 in enumerate(angles.tolist()):
-                scene = scaled_system(params, float(angles[row]), alpha2) if modes else None
+            for cell, alpha2 in enumerate(angles.tolist() if modes else (), row * count):
+                scene = scaled_system(params, float(angles[row]), alpha2)
                 for place, mode in enumerate(modes):
-                    _branch(arrays, (row * count + column, place), params, scene, mode)
+                    _branch(arrays, (cell, place), params, scene, mode)
+
     history, branch = (count * count, samples), (count * count, len(modes), branch_points)
     arrays = run_shared(
         fill,
