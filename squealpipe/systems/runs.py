@@ -99,7 +99,6 @@ def integrate(
     most_steps: Any = MOST_STEPS,
     most_events: Any = MOST_EVENTS,
     unit_sizes: np.ndarray | None = None,
-    few: bool | None = None,
     workers: int | None = None,
 ) -> dict[str, np.ndarray]:
     """Raw results of some runs, one row each.
@@ -119,7 +118,6 @@ def integrate(
         sums: keep there what has added up, too.
         most_steps, most_events: of each run.
         unit_sizes: of the states; by default the system's.
-        few: compute few lanes, in half of the time; by default where they suffice.
 
     Returns:
         One row a run: ``final``; ``extremes``, ``early_extremes`` and ``late_extremes`` (runs,
@@ -185,7 +183,7 @@ def integrate(
         "event_regimes": ((size, log_events), "i8"),
         "event_states": ((size, log_events, t.size), "f8"),
     }
-    code = compiled(system, tangent=tangent, few=size <= FEW and few is not False)
+    code = compiled(system, tangent=tangent, few=size <= FEW)
     loop()
     terms = lanes.taylor_terms(tol)
     n_rows = layout.FIXED_ROWS + len(t.variables) + t.size + 2 * len(watched) + n_regimes

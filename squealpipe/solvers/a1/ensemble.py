@@ -246,16 +246,11 @@ def run_ensemble(
 
 
 def integrate(
-    jobs: Jobs, tracked: Sequence[str], *, log_events: int = 0, few: bool = False, **options: Any
+    jobs: Jobs, tracked: Sequence[str], *, log_events: int = 0, **options: Any
 ) -> Ensemble:
-    """The results of some runs.
-
-    Args:
-        few: compute few lanes only, for at most ``simd.FEW`` runs: in half of the time, after
-            another second of compilation.
-    """
+    """The results of some runs."""
     parts = [
-        (rows, _run(jobs, system, rows, tracked, log_events, few=few, **options))
+        (rows, _run(jobs, system, rows, tracked, log_events, **options))
         for system, rows in jobs.groups()
     ]
     _, raw = parts[0]

@@ -75,7 +75,7 @@ def simulate(
     room, logged = 0, FIRST_LOG
     while room < logged:
         room = logged
-        run = integrate(job, (PEAK,), tangent=growth, log_events=room, few=not growth, workers=1)
+        run = integrate(job, (PEAK,), tangent=growth, log_events=room, workers=1)
         logged = int(run.events)
     x, y, vx, vy = run.samples.T
     if times.size and times[0] == 0.0:
