@@ -1,4 +1,4 @@
-"""Sweeps against the task run point by point; ragged runs; joined from parts."""
+"""Sweeps against the task run point by point; ragged runs; sweeps and maps joined from parts."""
 
 import re
 import subprocess
@@ -11,12 +11,12 @@ import yaml
 
 from squealpipe.config.ranges import longest, parse_range
 from squealpipe.config.settings import parse_study
-from squealpipe.execution.scatter import join
+from squealpipe.execution.scatter import join, scattered_rows
 from squealpipe.execution.sweep import Sweep, planned, run_sweep
 from squealpipe.schema import find
 from squealpipe.store import load, save
 from squealpipe.store.netcdf import dataset_id
-from squealpipe.tasks.dynamics.runs import simulate
+from squealpipe.tasks.dynamics.runs import simulate, validity_map
 from squealpipe.tasks.linear.maps import stability_map
 from tests.former import FORMER
 
@@ -180,3 +180,29 @@ def test_the_sweeps_in_the_page_on_clusters_can_be_planned():
     assert len(plans["orbits_over_friction"].points) == 52
     assert plans["contact_over_stiffness"].names == ["k3"]
     assert longest(plans["contact_over_stiffness"].vary) == "alpha1"
+
+
+GRID = np.linspace(0, np.pi, 21)
+
+
+def test_maps_joined_from_rows_are_the_map_bit_for_bit():
+    for task, options in ((stability_map, {}), (validity_map, {"t_end": 30.0})):
+        rows = [scattered_rows(21, f"{i}-of-3") for i in (1, 2, 3)]
+        parts = [task(FORMER, GRID[chosen], GRID, **options) for chosen in rows]
+        assert join(parts).identical(task(FORMER, GRID, GRID, **options))
+
+
+@pytest.mark.parametrize("count", [1, 2, 3, 7, 21])
+def test_scattered_parts_cover_every_row_once(count):
+    slices = [scattered_rows(21, f"{i}-of-{count}") for i in range(1, count + 1)]
+    assert [row for part in slices for row in range(21)[part]] == list(range(21))
+    sizes = [part.stop - part.start for part in slices]
+    assert max(sizes) - min(sizes) <= 1
+
+
+def test_foreign_parts_are_not_joined():
+    a = stability_map(FORMER, GRID[:3], GRID)
+    with pytest.raises(ValueError, match="not blocks of rows of one map"):
+        join([a, stability_map(FORMER, GRID[3:], GRID[:4])])
+    with pytest.raises(ValueError, match="no parts"):
+        join([])

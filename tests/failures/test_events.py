@@ -114,14 +114,6 @@ def test_belt_at_rest_holds_the_mass():
     assert int(run.event_kind[0]) in {SLIP, SEPARATION}
 
 
-def test_start_in_the_air():
-    fall = np.arccos(1 / 1.5)
-    run = simulate(FORMER, t_end=2.0, initial_state=(0, 1.5, 0, 0), **IDENTITY)
-    assert run.regime[0] == Regime.separated
-    assert run.normal_force[0] == 0.0
-    assert_events(run, [(CONTACT, fall)])
-
-
 @pytest.mark.parametrize(
     ("vy", "regime", "first"), [(0.5, Regime.separated, CONTACT), (-0.5, 0, SEPARATION)]
 )
@@ -169,12 +161,6 @@ def test_without_stick_the_sliding_mode_has_no_solution():
     assert np.isnan(run.x.values[run.time.values > first]).all()
 
 
-def test_without_separation_the_contact_spring_pulls():
-    run = simulate(FORMER.with_(k3=3.0), t_end=20.0, **{**IDENTITY, "model": "A1-no-separation"})
-    assert run.normal_force.min() < 0
-    assert not (run.event_kind.values == SEPARATION).any()
-
-
 @pytest.mark.parametrize("offset", [0.0, 1e-12, 1e-9, 1e-5])
 def test_a_mass_that_meets_a_pivot_says_so(offset):
     """Springs of half the preload's length, straight above: the mass is thrown at their end."""
@@ -184,13 +170,6 @@ def test_a_mass_that_meets_a_pivot_says_so(offset):
     meets = offset < 1e-7
     assert run.outcome == (Outcome.singular_geometry if meets else Outcome.converged)
     assert (run.time < 2.0) == meets
-
-
-def test_start_on_a_pivot():
-    state = (5 * np.cos(0.7), 5 * np.sin(0.7), 0.0, 0.0)
-    run = run_ensemble(FORMER, 0.7, 1.0, t_end=10.0, initial_state=state)
-    assert run.outcome == Outcome.singular_geometry
-    assert run.time < 1e-6
 
 
 def test_an_exact_equilibrium_stays():

@@ -61,20 +61,6 @@ def test_the_map_is_that_of_the_eigenvalues_and_mirrors_with_the_belt():
     np.testing.assert_allclose(mirrored.growth_rate, found.growth_rate, rtol=1e-10, atol=1e-12)
 
 
-def test_vanishing_damping_is_the_closed_form():
-    params = FORMER.with_(k2=1.4, belt_speed=-0.7)
-    angles = np.linspace(0.1, 3.0, 12)
-    plain = stability_map(params, angles, angles)
-    slight = stability_map(params.with_(damping1=1e-10, damping2=1e-10), angles, angles)
-    far = np.abs(plain.growth_rate) > 0.05
-    growth = slight.growth_rate
-    np.testing.assert_allclose(growth.where(far), plain.growth_rate.where(far), rtol=1e-8)
-    assert float(np.abs(growth.where(plain.regime_linear == 0)).max()) < 1e-8
-    law = params.with_(friction_law="hyperbolic", mu_static=params.mu)
-    same = stability_map(law, angles, angles)
-    np.testing.assert_array_equal(same.growth_rate, plain.growth_rate)
-
-
 @pytest.mark.parametrize("damped", [True, False])
 def test_critical_friction_agrees_with_the_eigenvalues_on_either_side(damped):
     """Stable just below it and from 0 on, unstable just above; undamped by the closed form."""

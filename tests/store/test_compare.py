@@ -218,16 +218,6 @@ def test_special_points_of_a_branch_are_matched_with_the_nearest_of_their_kind()
         assert compare_datasets("branch", *pair).verdict < Agreement.not_comparable
 
 
-def test_branches_of_other_parameters_compare():
-    pair = [
-        backbone(Parameters(k3=k3), 0.3 * np.pi, 0.9 * np.pi, mode=1, y_peak_max=top)
-        for k3, top in ((0.75, 6.5), (0.6, 3.0))
-    ]
-    found = compare_datasets("branch", *pair)
-    assert found.verdict == Agreement.different
-    assert found.differences[0].compared or found.differences[0].reason
-
-
 def test_ragged_sweeps_compare():
     def swept(values):
         fixed = {"alpha1": 0.9, "alpha2": 2.8, "mode": 1, "y_peak_max": 1.3}

@@ -32,10 +32,6 @@ def knots_of(text):
     return np.array([tuple(map(float, pair.split(":"))) for pair in text.split()[1:]]).T
 
 
-def table(law, knots):
-    return "linear " + " ".join(f"{float(w)!r}:{float(law(w))!r}" for w in knots)
-
-
 def run(params, t_end, times, angles=ANGLES, **start):
     found = brake_of(params).simulate(
         t_end, times=times, start=start, **parameters_of_run(params, *angles)
@@ -87,20 +83,6 @@ def test_a_table_of_friction_agrees_with_scipy_across_its_knots():
     laws = lambda w: np.interp(w, knots, values), lambda d, _: 7e6 * max(d, 0.0)
     found = compared(params, {"vx": 0.3}, *laws, 1e-8)
     assert kinds(found).count("knot") >= 4
-
-
-def test_tables_of_the_stribeck_law_converge_with_the_square_of_their_spacing():
-    law = {"mu": 0.2, "mu_static": 0.6, "friction_speed": 0.3}
-    smooth = Parameters(**PAD, k3=7e6, belt_speed=0.6, friction_law="exponential", **law)
-    t_end = 3.0 * smooth.time_unit
-    times = np.linspace(0.0, t_end, 13)
-    exact = run(smooth, t_end, times, vx=-1.5)
-    errors = []
-    for count in (16, 32, 64):
-        text = table(lambda w: 0.2 + 0.4 * np.exp(-w / 0.3), np.linspace(0.0, 2.4, count + 1))
-        sampled = smooth.with_(friction_law=text, mu=0.3, mu_static=None, friction_speed=1.0)
-        errors.append(float(np.abs(run(sampled, t_end, times, vx=-1.5).x - exact.x).max()))
-    assert errors[0] > 3.0 * errors[1] > 9.0 * errors[2], errors
 
 
 def balance(params, t_end, **start):

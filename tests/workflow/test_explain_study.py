@@ -33,7 +33,7 @@ def test_changed_key_is_named_with_what_follows(finished, tmp_path):
 
 
 @pytest.mark.parametrize("date", [None, 1e9])
-def test_changed_code_is_noticed_whatever_its_date_and_dates_alone_are_not(finished, date):
+def test_changed_code_is_noticed_whatever_its_date_and_dates_or_other_words_are_not(finished, date):
     path = finished / "squealpipe/study/figures/linear/fig06.py"
     text = path.read_text()
     path.write_text(text + "ANOTHER = 1\n")
@@ -47,6 +47,8 @@ def test_changed_code_is_noticed_whatever_its_date_and_dates_alone_are_not(finis
     assert ("fig06.py" in found["draw_linear"][0]) == (date is None)
     for each in [*finished.glob("squealpipe/**/*.py"), *finished.glob("workflow/**/*.*")]:
         each.touch()
+    law = finished / "squealpipe/models/a1.py"
+    law.write_text('"""In other words."""\n# A remark.\n' + law.read_text().split('"""', 2)[2])
     assert reasons(finished) == {}
 
 

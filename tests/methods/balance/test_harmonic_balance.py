@@ -93,11 +93,3 @@ def test_extremes_and_speed_of_a_series_known_in_closed_form():
     series = np.array([[0.7, 2.0, 0.0], [0.0, 0.0, 1.5]])
     np.testing.assert_allclose(series_extremes(series), [2.0, 1.5], rtol=1e-9)
     np.testing.assert_allclose(series_speed(series), [2.0, 3.0], rtol=1e-3)
-
-
-def test_cosines_of_samples_come_back():
-    theta = np.linspace(0, math.pi, 65)
-    found = cosines_of(0.3 + 0.5 * np.cos(theta) - 0.2 * np.cos(7 * theta))
-    expected = np.zeros(65)
-    expected[[0, 1, 7]] = 0.3, 0.5, -0.2
-    np.testing.assert_allclose(found, expected, atol=1e-15)

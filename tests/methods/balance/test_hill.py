@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from squealpipe.methods.balance.harmonic_balance import CosineBalance, contact_of
-from squealpipe.methods.balance.hill import hill_multipliers, sampled_share_above
+from squealpipe.methods.balance.hill import hill_multipliers
 from squealpipe.solvers.a4.orbits import find_orbit
 from squealpipe.solvers.a4.system import scaled_system
 from squealpipe.tasks.comparison.work_precision import orbit_series
@@ -49,10 +49,3 @@ def test_closed_form_coefficients_give_the_true_doubling_multiplier(y_peak):
     largest = np.abs(hill_multipliers(SCENE.system, share, omega)).max()
     assert index < -2.0
     assert largest == pytest.approx((-index + math.sqrt(index * index - 4.0)) / 2.0, abs=2e-3)
-
-
-def test_sampled_shares_tend_to_the_closed_form():
-    balance, y, _, _ = solved(3.0, 8)
-    exact = share_above(balance.contact.angles(y), 8)
-    errors = [np.abs(sampled_share_above(y, 1.0, n) - exact).max() for n in (100, 100_000)]
-    assert errors[1] < 2e-5 < errors[0]

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from squealpipe.methods.orbits.orbits import solve_orbit
-from squealpipe.methods.orbits.shooting import MAX_SEGMENTS, rest_conditions, shoot, stability_index
+from squealpipe.methods.orbits.shooting import MAX_SEGMENTS, rest_conditions, shoot
 from squealpipe.solvers.a4.system import scaled_system
 from tests.former import FORMER
 from tests.oracles.differences import assert_jacobian
@@ -40,14 +40,3 @@ def test_flow_runs_backwards_by_turning_velocities(scene):
     shoot(rows, final[0], final[1], found.point[2], *work, again)
     np.testing.assert_allclose(again[:2], found.point[:2], atol=1e-13)
     np.testing.assert_allclose(again[2:], 0.0, atol=1e-13)
-
-
-def test_the_index_is_independent_of_where_the_period_starts():
-    scene = scaled_system(FORMER, 0.3 * math.pi, 0.9 * math.pi)
-    found = solve_orbit(scene.system, np.array([-0.9, 2.7, 4.9]))
-    segments, switches, final = np.empty((MAX_SEGMENTS, 9)), np.empty(MAX_SEGMENTS), np.empty(4)
-    count = shoot(scene.system.rows, *found.point, segments, switches, final)
-    count = shoot(scene.system.rows, final[0], final[1], found.point[2], segments, switches, final)
-    assert stability_index(scene.system.rows, segments, count) == pytest.approx(
-        found.stability_index, abs=1e-11
-    )

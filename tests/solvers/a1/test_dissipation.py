@@ -4,11 +4,10 @@ import numpy as np
 import pytest
 
 from squealpipe.codes import Event
-from squealpipe.laws.friction_laws import FALLING, LAWS
+from squealpipe.laws.friction_laws import LAWS
 from squealpipe.solvers.a1.ensemble import run_ensemble
 from tests.former import FORMER
 from tests.oracles.a1_long_double import simulate_reference
-from tests.oracles.a1_scipy import simulate_scipy
 
 
 def random_cases(count, seed, **fixed):
@@ -56,28 +55,6 @@ def test_runs_agree_with_long_double(law):
         np.testing.assert_allclose(apart, 0.0, atol=1e-9)
         seen |= set(run.event_kinds[: len(times)].tolist())
     assert seen == set(map(int, Event))
-
-
-def test_scipy_agrees_too():
-    for params, alpha1, alpha2, start in random_cases(4, seed=33):
-        t_end = 6.0 * params.time_unit
-        exact = simulate_reference(params, alpha1, alpha2, t_end=t_end, initial_state=start)
-        public = simulate_scipy(params, alpha1, alpha2, t_end=t_end, tol=1e-12, initial_state=start)
-        assert public.event_kinds == exact.event_kinds
-        np.testing.assert_allclose(public.state, np.float64(exact.state), rtol=1e-7, atol=1e-8)
-
-
-def test_falling_laws_are_coulombs_where_both_coefficients_agree():
-    options = {"t_end": 30.0, "tangent": True, "log_events": 50}
-    angles = np.linspace(0.1, 3.0, 5)
-    plain = run_ensemble({"belt_speed": 0.4}, angles[:, None], angles, **options)
-    for law in FALLING:
-        same = run_ensemble(
-            {"belt_speed": 0.4, "friction_law": law, "mu_static": 0.3, "friction_speed": 0.1},
-            angles[:, None], angles, **options,
-        )  # fmt: skip
-        for name, values in plain._raw.items():
-            np.testing.assert_array_equal(same._raw[name], values, err_msg=name)
 
 
 def test_mixed_runs_equal_those_alone():

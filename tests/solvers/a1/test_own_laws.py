@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from squealpipe import Parameters, limit_cycle, simulate
+from squealpipe import Parameters, simulate
 from squealpipe.codes import Event
 from squealpipe.schema import Outcome
 from squealpipe.solvers.a1.ensemble import Ensemble, run_ensemble
@@ -49,21 +49,6 @@ def test_simulate_takes_the_parameters_of_a_pad_with_measured_laws():
     assert Event.stick in run.event_kind.values
     start = float(run.normalized_contact_force[0])
     assert start == pytest.approx(1.0, rel=1e-15)
-
-
-def test_what_own_laws_cannot_do_is_refused():
-    table = FORMER.with_(friction_law="linear 0:0.3", mu=DEFAULT_MU)
-    with pytest.raises(ValueError, match="carried by A1 alone, not by its variants"):
-        simulate(table, 1.0, 2.0, t_end=1.0, model="A1-no-stick")
-
-
-def test_a_cycle_with_a_constant_table_is_that_of_coulomb_friction():
-    params = FORMER.with_(belt_speed=1.0, damping1=0.02, damping2=0.02, k2=1.2)
-    angles = (0.4 * np.pi, 0.6 * np.pi)
-    one = limit_cycle(params, *angles)
-    other = limit_cycle(params.with_(friction_law="linear 0:0.3"), *angles)
-    assert float(other.period) == pytest.approx(float(one.period), rel=1e-12)
-    np.testing.assert_array_equal(other.event_kind, one.event_kind)
 
 
 def test_a_table_in_si_units_is_carried_by_runs_side_by_side():

@@ -108,16 +108,6 @@ def test_an_isolated_mode_is_a_vertical_branch_with_its_own_outcome():
     assert float(found.x_amplitude[-1]) == pytest.approx(2.0)
 
 
-@pytest.mark.parametrize(
-    "scene", [(0.5, 1.0, 2), (1.0, 0.5, 2), (0.75, 0.75, 2), (5 / 6, 5 / 6, 1)]
-)
-def test_branches_of_the_figures_bend_to_lower_frequencies(scene):
-    found = _branch(*scene)
-    below = found.y_peak <= BASE.preload
-    np.testing.assert_allclose(found.omega[below], float(found.omega[0]), rtol=1e-14)
-    assert (np.diff(found.omega[~below]) < 0).all()
-
-
 def test_the_point_that_just_touches_the_end_of_contact_is_flagged():
     for method in ("exact", "hbm"):
         found = _branch(0.3, 0.9, 1, method=method)

@@ -79,13 +79,6 @@ def test_a_coupled_motion_does_not_have_the_bilinear_limit():
     assert abs(float(_orbit(0.3, 0.9, 2, 30.0).omega) - bilinear) > 0.02
 
 
-def test_mirror_image_moves_alike():
-    """(α1, α2) and (π − α2, π − α1) are one system where the springs are equal."""
-    one, other = _orbit(0.3, 0.9, 1, 2.5), _orbit(0.1, 0.7, 1, 2.5)
-    assert float(one.omega) == pytest.approx(float(other.omega), rel=1e-13)
-    assert float(one.stability_index) == pytest.approx(float(other.stability_index), abs=1e-10)
-
-
 @pytest.mark.parametrize(
     ("alpha1", "alpha2", "mode", "outcome"),
     [

@@ -171,15 +171,6 @@ def test_branch_goes_round_a_fold_and_labels_it():
     assert not stable[fold + 1 :].any()
 
 
-def test_grazing_points_just_touch():
-    params = FORMER.with_(damping1=0.01, damping2=0.01, mu=0.0)
-    branch = cycle_branch(params, 0.22, 0.96, parameter="mu", to=0.9, start="onset")
-    assert branch.end == Outcome.converged
-    grazing = branch.isel(point=np.flatnonzero(branch.label == Label.grazing))
-    assert grazing.sizes["point"] > 0
-    assert float(grazing.least_contact_force[0]) < 1e-9 * params.k3 * params.preload
-
-
 def test_branch_is_born_at_the_flutter_onset_of_long_springs():
     params = FORMER.with_(damping1=0.01, damping2=0.02, mu=0.0, length1=1e4, length2=1e4, k2=1.1)
     angles = (0.22, 0.96)

@@ -11,14 +11,11 @@ from squealpipe.schema import Outcome
 from squealpipe.systems.cycles.labels import Label, Meeting
 from tests.former import FORMER
 from tests.oracles.a1_long_double import simulate_reference
+from tests.tasks.cycles.test_branch_ends import start_of
 
 STATE = ("x", "y", "vx", "vy")
 ONE_WAY = (FORMER.with_(damping1=0.02, damping2=0.02, belt_speed=1.0), 0.4, 0.6)
 OTHER_WAY = (FORMER.with_(k1=1.005, damping1=0.02, damping2=0.02, belt_speed=-1.0), 0.6, 0.4)
-
-
-def start_of(dataset):
-    return np.array([float(dataset[f"{name}_start"]) for name in STATE])
 
 
 @pytest.mark.parametrize(("params", "alpha1", "alpha2"), [ONE_WAY, OTHER_WAY])

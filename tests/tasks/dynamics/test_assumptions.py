@@ -21,15 +21,6 @@ def measure(table, level, scene, assumption):
     return float(table.measure.sel(level=level, scene=scene, assumption=assumption))
 
 
-@pytest.mark.parametrize("scene", DECOUPLED)
-@pytest.mark.parametrize("level", ["A3", "A4"])
-def test_lowest_force_of_the_decoupled_scenes_is_the_closed_form(table, level, scene):
-    kappa = FORMER.kappa
-    lowest = measure(table, level, scene, "contact is kept")
-    assert lowest == pytest.approx((1 - kappa) / (1 + kappa), abs=1e-3)
-    assert bool(table.held.sel(level=level, scene=scene, assumption="contact is kept"))
-
-
 def test_the_linear_contact_pulls_where_the_real_one_lets_go(table):
     lowest = table.measure.sel(assumption="contact is kept")
     for scene in ("F2d", "F3", "F4", "F5a", "F13"):

@@ -41,7 +41,3 @@ def test_branches_run_from_first_to_last_point_of_the_backbone(explorer):
 def test_a_pair_without_a_mode_says_why(explorer):
     assert np.isnan(explorer.omega[0, 0]).all()
     assert (explorer.end[0, 0] == Outcome.rigid_mode).all()
-
-
-def test_processes_change_nothing(explorer):
-    assert explorer.identical(explorer_data(FORMER, ANGLES, workers=2, **OPTIONS))

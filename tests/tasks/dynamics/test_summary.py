@@ -48,15 +48,6 @@ def test_separation_is_that_of_the_events_and_of_the_samples():
     assert float(summary.impact_rate) == returns / 200.0
 
 
-def test_slow_belt_sticks():
-    params = FORMER.with_(belt_speed=0.05)
-    times = np.linspace(0, 50, 2001)
-    motion = simulate(params, 0.5 * np.pi, np.pi, t_end=50.0, times=times)
-    share = float(summarize(motion).stick_fraction)
-    assert share == pytest.approx(float((motion.regime == 2).mean()), abs=2e-3)
-    assert share > 0.1
-
-
 def test_too_few_or_uneven_samples_are_refused():
     with pytest.raises(ValueError, match="more samples"):
         summarize(run(1.0, 2.0, t_end=10.0, points=8))

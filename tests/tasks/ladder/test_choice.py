@@ -7,7 +7,6 @@ from squealpipe.schema.ladder import Level
 from squealpipe.solvers.a1.ensemble import run_ensemble
 from squealpipe.tasks.ladder.choice import choose_model, choose_models, keeps_contact
 from squealpipe.tasks.ladder.levels import contact_motion
-from squealpipe.tasks.ladder.questions import dominant_frequency
 from squealpipe.tasks.normal_form import NormalForm
 from tests.former import FORMER
 
@@ -48,12 +47,6 @@ def test_reason_says_why_a_run_was_needed_or_that_a_rule_is_measured():
     found = choose_model(long, 0.5 * np.pi, 0.9 * np.pi, "contact_lost")
     assert found.model == "a3"
     assert "measured, not proved" in found.reason
-
-
-def test_dominant_frequency_of_two_tones():
-    times = np.linspace(0.0, 200.0, 1001)
-    samples = np.cos(1.2345 * times) + 0.4 * np.cos(0.7 * times)
-    assert dominant_frequency(samples, times) == pytest.approx(1.2345, abs=1e-3)
 
 
 @pytest.mark.parametrize(

@@ -9,7 +9,6 @@ import scipy.linalg
 import scipy.optimize
 
 from squealpipe.schema import Outcome
-from squealpipe.store import load, save
 from squealpipe.tasks.linear.maps import natural_frequencies, quasi_static_map, stability_map
 from tests import symbols
 from tests.former import FORMER
@@ -107,15 +106,6 @@ def test_flutter_needs_negative_coupling_and_divergence_positive():
         assert (sign * coupling[regime == kind] > 0).all()
 
 
-def test_mass_scales_rates_and_friction_vanishes():
-    heavy = stability_map(BASELINE.with_(mass=4.0), ANGLES[::9], ANGLES[::9])
-    light = stability_map(BASELINE, ANGLES[::9], ANGLES[::9])
-    np.testing.assert_allclose(heavy.growth_rate, light.growth_rate / 2, rtol=1e-14)
-    without = stability_map(BASELINE.with_(mu=0.0), ANGLES, ANGLES)
-    assert (without.regime_linear == 0).all()
-    assert (without.growth_rate == 0).all()
-
-
 def test_sigma_matters_only_where_the_contact_law_is_blunt():
     sharp = stability_map(BASELINE, ANGLES[::5], ANGLES[::5])
     steep = stability_map(BASELINE, ANGLES[::5], ANGLES[::5], sigma=1000.0)
@@ -139,19 +129,6 @@ def test_static_state_at_the_edge_of_contact_and_where_there_is_none():
     assert int(cell.outcome) == Outcome.singular_static_state
     assert np.isnan(cell.reaction_force)
     assert not cell.possible | cell.possible_as_printed
-
-
-def test_static_state_balances_the_forces():
-    force = symbols.function(symbols.LINEAR_FORCE)
-    result = quasi_static_map(UNEQUAL, ANGLES[::20], ANGLES[::20])
-    for i, j in np.ndindex(result.x_static.shape):
-        cell = result.isel(alpha1=i, alpha2=j)
-        angles = {"alpha1": float(cell.alpha1), "alpha2": float(cell.alpha2)}
-        x, y = float(cell.x_static), float(cell.y_static)
-        normal = UNEQUAL.k3 * (UNEQUAL.preload - y)
-        balance = force(UNEQUAL, x=x, y=y, **angles) + normal * np.array([UNEQUAL.mu, 1.0])
-        np.testing.assert_allclose(balance, 0.0, atol=1e-12 * (1 + abs(x) + abs(y)))
-        assert float(cell.contact_force_static) == pytest.approx(normal, abs=1e-11 * (1 + abs(y)))
 
 
 def test_frequencies_in_both_states():
@@ -186,10 +163,3 @@ def test_a_small_separated_frequency_keeps_its_digits(nearby):
     found = natural_frequencies(BASELINE, [first], [second]).isel(alpha1=0, alpha2=0)
     lower = float(found.omega.sel(mode=1, contact_state="separated"))
     assert lower == pytest.approx(exact, rel=1e-13)
-
-
-@pytest.mark.parametrize("task", [quasi_static_map, stability_map, natural_frequencies])
-def test_maps_survive_the_store(task, tmp_path):
-    result = task(BASELINE, ANGLES[::15], ANGLES[::20])
-    path = save(result, tmp_path / "map.nc")
-    assert load(path).equals(result)

@@ -1,10 +1,13 @@
-"""Our methods are never silently wrong on the hard scenes; the public ones' failures are real."""
+"""Methods compared: ours are never silently wrong, and the public ones' failures are real."""
 
 import numpy as np
 import pytest
 
+from squealpipe.schema import Outcome
 from squealpipe.schema.comparison import Reliability, Role
 from squealpipe.tasks.comparison.failures import Answer, judge_balances, verdict_of
+from squealpipe.tasks.comparison.work_precision import work_precision
+from tests.former import FORMER
 
 
 @pytest.fixture(scope="module")
@@ -64,3 +67,17 @@ def test_public_methods_fail_silently_where_we_say_and_ours_say_where_nothing_is
 )
 def test_verdicts_follow_from_errors_and_flags(value, flag, truth, expected):
     assert verdict_of(Answer(value, flag), truth, 1e-3)[0] == expected
+
+
+def test_harmonic_balance_converges_as_published():
+    """ω falls about like N_h^-4 with closed-form integrals; the printed Eq. (34) is just wrong."""
+    found = work_precision(FORMER, harmonics=(8, 32), oversampling=(1,), sigmas=(10.0,), repeats=1)
+    names = zip(found.method.values, found.setting.values, strict=True)
+    errors = dict(zip(names, found.error.values, strict=True))
+    coarse, fine = (errors["cosines, closed-form contact", f"N_h {count}"] for count in (8, 32))
+    assert 3.3 < np.log(coarse / fine) / np.log(4.0) < 4.7
+    assert fine < 1e-7
+    assert errors["exact orbit (shooting)", "with monodromy"] < 1e-12
+    printed = found.isel(run=found.method.values == "paper, Eq. (34) as printed")
+    assert float(printed.error.min()) > 0.1
+    assert (printed.outcome == Outcome.converged).all()
