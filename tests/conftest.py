@@ -44,7 +44,8 @@ def run_snakemake(directory, *arguments):
 
 def pytest_collection_modifyitems(items):
     """The long files first, so that two processes end at about the same time."""
-    items.sort(key=lambda item: "workflow" not in item.path.parts)
+    long = ("workflow", "test_references.py", "test_installation.py", "test_cycles.py")
+    items.sort(key=lambda item: not set(long) & set(item.path.parts))
 
 
 @dataclass(frozen=True)

@@ -38,11 +38,16 @@ QUICK = {"two gates", "shaken table", "A1: grazing contact"}
     "name", [pytest.param(n, marks=[pytest.mark.release] * (n not in QUICK)) for n in DATA]
 )
 def test_long_double_gives_what_is_shipped(name):
-    found, shipped = reference_of(DATA[name]), references()[name]
-    assert (found["kinds"], found["margin"]) == (shipped["kinds"], shipped["margin"])
-    assert found["state"] == pytest.approx(shipped["state"], rel=1e-16 if name in QUICK else 1e-15)
-    if name in QUICK:
-        assert found["growth"] == pytest.approx(shipped["growth"], rel=1e-3)
+    """And where it is not slow, what some hundred displaced runs give."""
+    found, shipped = LongDouble(DATA[name])(), references()[name]
+    assert found.kinds == shipped["kinds"]
+    digits = 1e-16 if name in QUICK else 1e-15
+    assert found.state.astype(float).tolist() == pytest.approx(shipped["state"], rel=digits)
+    if name in QUICK or name not in SLOW:
+        found = reference_of(DATA[name])
+        assert found["margin"] == shipped["margin"]
+        if name in QUICK:
+            assert found["growth"] == pytest.approx(shipped["growth"], rel=1e-3)
 
 
 @pytest.mark.release

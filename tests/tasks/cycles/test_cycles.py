@@ -45,7 +45,7 @@ def test_stick_slip_cycle_of_a_published_oscillator(speed):
     assert np.abs(cycle.multiplier_real).min() < 1e-9, "stick forgets one direction"
 
 
-@pytest.mark.parametrize("wanted", [4, pytest.param(100, marks=pytest.mark.release)])
+@pytest.mark.parametrize("wanted", [4, pytest.param(60, marks=pytest.mark.release)])
 def test_trivial_multiplier_and_differences_of_the_return_map(wanted):
     generator = np.random.default_rng(5)
     checked = 0
@@ -57,7 +57,7 @@ def test_trivial_multiplier_and_differences_of_the_return_map(wanted):
             damping2=generator.uniform(0.01, 0.05), mu_static=generator.uniform(0.7, 0.9),
         )  # fmt: skip
         angles = generator.uniform(0.2, 2.9, 2)
-        cycle = limit_cycle(params, *angles, t_settle=400.0)
+        cycle = limit_cycle(params, *angles, t_settle=6000.0)
         if cycle.outcome != Outcome.converged:
             assert np.isnan(cycle.period)
             continue
