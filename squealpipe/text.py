@@ -6,6 +6,8 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 WORDS = {
+    "callable_type": "a function is needed",
+    "sequence_str": "a list of names is needed",
     "model_type": "keys and values are needed, like `points: 31`",
     "dict_type": "names and values are needed, like `name: [0.3, 0.9]`",
     "tuple_type": "a list is needed, like [0.3, 0.9]",
@@ -93,4 +95,4 @@ def suggestion(wrong: object, names: Iterable[str]) -> str:
     """``did you mean 'mu'?``, or all names where none is near."""
     every = list(names)
     near = nearest(wrong, every)
-    return f"did you mean {near!r}?" if near else f"choose from {', '.join(every)}"
+    return f"did you mean {near!r}?" if near else f"choose from {', '.join(every) or 'none'}"

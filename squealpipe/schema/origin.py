@@ -39,7 +39,8 @@ def recorded(
     """
 
     def decorate(task: Callable[Given, xr.Dataset]) -> Callable[Given, xr.Dataset]:
-        defaults = {each.name: each.default for each in inspect.signature(task).parameters.values()}
+        named = inspect.signature(task).parameters.values()
+        defaults = {each.name: each.default for each in named if each.kind != each.VAR_KEYWORD}
         _HOW[task.__name__] = model, method
 
         @functools.wraps(task)

@@ -19,6 +19,7 @@ from squealpipe.methods.taylor.loop import loop
 from squealpipe.methods.taylor.scalar import ScalarSource, compile_scalar
 from squealpipe.methods.taylor.series import HybridSystem
 from squealpipe.methods.taylor.simd import FEW, LANES
+from squealpipe.parameters import brief
 from squealpipe.schema import SYSTEM, Outcome, flag_table, in_words
 from squealpipe.systems.trace import TIME, TIME_UNIT, Names
 from squealpipe.text import suggestion
@@ -378,8 +379,8 @@ def simulate(
     if times is None:
         steps = single_run(system, values, t_end, regime=regime, tol=tol, room=0).steps
         times = np.linspace(0.0, t_end, int(np.clip(SAMPLES_PER_STEP * steps, 2, MOST_SAMPLES)))
-    elif min(times) < 0.0:
-        raise ValueError(f"times: {min(times)!r} is before the start; runs begin at 0")
+    elif times[0] < 0.0 or times[-1] > t_end or (np.diff(times) < 0.0).any():
+        raise ValueError(f"times = {brief(times)}: they must ascend from 0 to t_end = {t_end!r}")
     run = single_run(system, values, t_end, regime=regime, times=times, tol=tol)
     kinds = dict(enumerate(system.traced.kinds))
     names = dict(enumerate(system.regimes))
@@ -431,6 +432,8 @@ def ensemble(
     grid = outer_product(system, start, parameters)
     shape, size = grid.shape, math.prod(grid.shape)
     late = 0.8 * t_end if t_late is None else t_late
+    if late > t_end:
+        raise ValueError(f"t_late = {t_late!r}: a time up to t_end = {t_end!r} is needed")
     raw = integrate(
         system, grid.values, np.full(size, t_end), t_late=late, tol=tol, tangent=horizon,
         regime=grid.regime, workers=workers,

@@ -23,6 +23,7 @@ Function = Callable[..., Any]
 Size = Annotated[
     str | tuple[str, Positive], needed("a unit, or (unit, typical size greater than 0), is")
 ]
+Output = Annotated[tuple[str, Function], needed("(unit, function) is")]
 StartValue = Annotated[Number | str, needed("a finite number, or the name of a regime, is")]
 Field = Annotated[
     Function | Mapping[str, Function], needed("a function, or one for each regime, is")
@@ -114,7 +115,7 @@ class System:
         start: Mapping[str, StartValue],
         starts_in: Begins = (),
         period: Function | None = None,
-        outputs: Mapping[Identifier, tuple[str, Function]] | None = None,
+        outputs: Mapping[Identifier, Output] | None = None,
         stops: Mapping[Word, Function] | None = None,
         time_scale: Annotated[
             Positive | Function, needed("a number greater than 0, or a function, is")

@@ -83,8 +83,9 @@ class Symbol:
             return symbol(1.0)
         if exponent == 1.0:
             return self
-        if exponent == 2.0:
-            return self * self
+        if exponent > 1.0 and exponent == int(exponent):  # a power's own recurrence divides by base
+            half = self ** (exponent // 2.0)
+            return _multiply(half * half, self ** (exponent % 2.0))
         if self.kind == "number":
             return symbol(self.arguments[0] ** float(exponent))
         return Symbol("**", self, float(exponent))

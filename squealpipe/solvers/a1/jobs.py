@@ -182,5 +182,6 @@ def _sample_times(
         raise ValueError("times must ascend and start at 0 or later")
     rows = _broadcast(array, (*shape, array.shape[-1])).reshape(-1, array.shape[-1])
     if array.size and (rows[:, -1] > t_end).any():
-        raise ValueError(f"times reach {rows[:, -1].max()!r}, beyond t_end = {t_end.min()!r}")
+        reached, end = float(rows[:, -1].max()), float(t_end.min())
+        raise ValueError(f"times reach {reached!r}, beyond t_end = {end!r}")
     return np.ascontiguousarray(rows / time_unit[:, None])

@@ -6,7 +6,7 @@ import numpy as np
 
 from squealpipe.methods.orbits.orbits import Orbit, decoupled_half_period, solve_orbit, trace_branch
 from squealpipe.schema import Outcome
-from squealpipe.solvers.a4.orbits import grazing_start, linear_orbit
+from squealpipe.solvers.a4.orbits import check_peak, grazing_start, linear_orbit
 from squealpipe.solvers.a4.system import ScaledSystem
 
 LINEAR_POINTS = 6
@@ -52,6 +52,7 @@ def linear_part(
         return orbits, [Outcome.isolated_mode] * len(orbits), Outcome.amplitude_reached
     if not math.isfinite(scene.slope(mode)):
         return [], [], Outcome.pole
+    check_peak(scene, "y_peak_max", y_max)
     peaks = np.linspace(scene.rest[1], min(1.0, y_max), LINEAR_POINTS + 1)[1:].tolist()
     outcomes = [Outcome.grazing if peak == 1.0 else Outcome.linear_mode for peak in peaks]
     end = Outcome.amplitude_reached if y_max <= 1.0 else None

@@ -40,11 +40,7 @@ def find_orbit(
         return None, scene.obstacle
     if scene.isolated_mode == mode:
         return None, Outcome.isolated_mode
-    if y_peak <= scene.rest[1]:
-        raise ValueError(
-            f"y_peak = {y_peak * scene.length!r}: a motion peaks above its equilibrium, "
-            f"y = {scene.rest[1] * scene.length!r}"
-        )
+    check_peak(scene, "y_peak", y_peak)
     if not math.isfinite(scene.slope(mode)):
         return None, Outcome.pole
     if y_peak <= 1.0:
@@ -69,6 +65,13 @@ def orbit_across(scene: ScaledSystem, mode: int, y_peak: float) -> Orbit | None:
     lenient = replace(seed.settings(), strict=False, max_points=_MOST_POINTS_ACROSS)
     found, _ = orbit_on_branch(scene.system, seed.point, seed.direction, y_peak, lenient)
     return found if found is not None and is_primitive(scene.system, found) else None
+
+
+def check_peak(scene: ScaledSystem, name: str, y_peak: float) -> None:
+    """Raise ``ValueError`` if a scaled peak is not above the equilibrium."""
+    if y_peak <= (rest := float(scene.rest[1])):
+        peak, lowest = y_peak * scene.length, rest * scene.length
+        raise ValueError(f"{name} = {peak!r}: a motion peaks above its equilibrium, y = {lowest!r}")
 
 
 def linear_orbit(scene: ScaledSystem, mode: int, y_peak: float) -> Orbit:

@@ -34,7 +34,7 @@ def regime_chart(
     alpha1: Line,
     alpha2: Line,
     *,
-    design: Mapping[str, float | Line] | None = None,
+    design: Mapping[str, Line] | None = None,
     whirl: xr.Dataset | None = None,
     stick: xr.Dataset | None = None,
     t_end: Positive | None = None,
@@ -66,8 +66,8 @@ def regime_chart(
     if design is not None and set(design) != set(axes):
         raise ValueError(f"design = {dict(design)!r}: {' and '.join(axes)} are needed")
     if design is None and not {"alpha1", "alpha2"} & set(axes):
-        own = {"kappa": params.kappa, "lambda_": params.length_ratio}
-        design = {name: own.get(name) or getattr(params, name) for name in axes}
+        own = {"lambda_": params.length_ratio, "mu_static": params.static_mu}
+        design = {name: own.get(name, getattr(params, name, None)) for name in axes}
     t_end = HORIZON * params.time_unit if t_end is None else t_end
     options = {"t_end": t_end, "tol": tol, "workers": workers}
     square = Square(params, fixed, axes, options, "A1")
@@ -114,7 +114,8 @@ def regime_chart(
     }
     data: dict[str, Any] = {}
     if design is not None:
-        places = np.stack([np.atleast_1d(design[name]) for name in axes], axis=1)
+        given = np.broadcast_arrays(*(design[name] for name in axes))
+        places = np.atleast_2d(np.stack(given, axis=-1))
         limits = np.stack([square.low, square.low + square.width], axis=1)
         loops = {
             which: [square.values(loop.outline) for loop in each.loops(positive=True)]

@@ -16,7 +16,7 @@ from squealpipe.schema.curves import BOUNDARY_DISTANCE, CONTACT_BOUNDARY, VARIED
 from squealpipe.schema.origin import recorded
 from squealpipe.solvers.a1.ensemble import Ensemble, run_ensemble
 from squealpipe.text import suggestion
-from squealpipe.validation import Line, Positive, Tolerance, Workers, one_of
+from squealpipe.validation import Line, Number, Positive, Tolerance, Workers, one_of
 
 FINEST = 900
 """Cells per side, at least, of the grid on whose edges the curves begin."""
@@ -93,6 +93,9 @@ def two_axes(
     for name in axes:
         if name not in VARIED:
             raise ValueError(f"{name!r} cannot vary; {suggestion(name, VARIED)}")
+    for ratio, same in (("kappa", "k3"), ("lambda_", "length1"), ("lambda_", "length2")):
+        if {ratio, same} <= axes.keys():
+            raise ValueError(f"{ratio} sets {same}: let another parameter vary beside one of them")
     fixed = {name: float(values) for name, values in given.items() if not values.ndim}
     if set(fixed) - {"alpha1", "alpha2"}:
         raise ValueError("what does not vary belongs into params")
@@ -175,7 +178,7 @@ def nearest_on(loops: Sequence[Vector], place: Vector, limits: Vector) -> tuple[
 
 
 @recorded(method="nearest point of the outlines of a contact_boundary")
-def boundary_distance(boundary: xr.Dataset, design: Mapping[str, float]) -> xr.Dataset:
+def boundary_distance(boundary: xr.Dataset, design: Mapping[str, Number]) -> xr.Dataset:
     """How far a design is from losing contact, or from keeping it.
 
     Args:
@@ -188,6 +191,8 @@ def boundary_distance(boundary: xr.Dataset, design: Mapping[str, float]) -> xr.D
     Raises:
         ValueError: the two parameters are others.
     """
+    if "outline_loop" not in boundary:
+        raise ValueError("boundary: a dataset of contact_boundary is needed")
     names = [str(name) for name in boundary.parameter.values]
     if set(design) != set(names):
         raise ValueError(f"design = {dict(design)!r}: {names[0]} and {names[1]} are needed")

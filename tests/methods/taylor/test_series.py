@@ -57,6 +57,15 @@ def test_power_series_in_closed_form():
     np.testing.assert_allclose(rows[3, :, 0], square, atol=1e-15)
 
 
+@pytest.mark.parametrize("power", [2, 3, 4, 7])
+def test_whole_powers_have_their_series_where_the_base_is_zero(power):
+    x, _ = variables(*"xy")
+    _, rows, _ = coefficients((ONE, x**power), (0.0, 0.0))
+    exact = np.zeros(TERMS)
+    exact[power + 1] = 1.0 / (power + 1)
+    np.testing.assert_allclose(rows[1, :, 0], exact, rtol=1e-15)
+
+
 @pytest.mark.parametrize("name", FUNCTIONS)
 def test_each_function_has_the_taylor_series_of_its_closed_form(name):
     """Of u = 1/(1 − t), which turns and bends at every order."""

@@ -9,6 +9,7 @@ import pytest
 from squealpipe.laws.springs import geometry, linear_stiffness
 from squealpipe.models.a4 import first_integral_value
 from squealpipe.schema import Outcome
+from squealpipe.tasks.backbones.backbone import backbone
 from squealpipe.tasks.backbones.orbit import periodic_orbit
 from tests.former import FORMER
 from tests.oracles.a4_scipy import a4_by_scipy
@@ -98,6 +99,9 @@ def test_scenes_without_such_a_motion_say_why(alpha1, alpha2, mode, outcome):
 def test_a_peak_below_the_equilibrium_is_refused():
     with pytest.raises(ValueError, match="equilibrium"):
         _orbit(0.5, 1.0, 2, 0.2)
+    for method in ("exact", "hbm"):
+        with pytest.raises(ValueError, match=r"y_peak_max = .* peaks above"):
+            backbone(FORMER, 0.5 * np.pi, np.pi, mode=2, y_peak_max=0.2, method=method)
 
 
 def test_a_slow_belt_breaks_the_assumption_and_says_so():

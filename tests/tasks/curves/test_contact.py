@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+import xarray as xr
 
 import squealpipe
 from squealpipe.methods.zero_lines import ZeroLines, inside
@@ -132,3 +133,11 @@ def test_what_cannot_vary_is_refused():
         squealpipe.contact_boundary(BASELINE, angles, 1.0)
     with pytest.raises(ValueError, match="'mass' cannot vary"):
         squealpipe.contact_boundary(BASELINE, angles, 1.0, mass=angles + 1.0)
+    ratios, boundary = angles + 0.5, xr.Dataset()
+    for ratio, own in (("kappa", "k3"), ("lambda_", "length2")):
+        with pytest.raises(ValueError, match=f"{ratio} sets {own}"):
+            squealpipe.contact_boundary(BASELINE, 1.0, 1.0, **{ratio: ratios, own: ratios})
+    with pytest.raises(ValueError, match="dataset of contact_boundary"):
+        squealpipe.boundary_distance(boundary, {"kappa": 1.0, "mu": 0.1})
+    with pytest.raises(ValueError, match="finite numbers"):
+        squealpipe.boundary_distance(boundary, {"kappa": np.nan, "mu": 0.1})
