@@ -63,14 +63,16 @@ env: $(STUDY)  ## what a study needs
 dev: $(DEV)  ## and what tests, checks and docs need
 
 # The last two steps compile the event loop (22 s) and the tracer of orbits (9 s) into the user's cache,
-# which several first jobs would otherwise do at once.
+# which several first jobs would otherwise do at once; and byte code of what jobs import, where an
+# environment (many containers') lets no job write it: 2 to 3 s in each.
 $(STUDY): requirements.lock pyproject.toml
 	@case "$(CURDIR)" in *[[:space:]]*) echo "make env: the path '$(CURDIR)' has a space, which the first lines of installed scripts cannot hold; move the checkout" >&2; exit 1;; esac
 	test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
 	$(BIN)/python -m pip install -q --no-compile --disable-pip-version-check --require-hashes -r requirements.lock
 	$(BIN)/python -m pip install -q --disable-pip-version-check --no-deps --no-build-isolation -e .
-	$(BIN)/python -c "from squealpipe.methods.taylor.loop import loop; loop()"
-	$(BIN)/python -c "import squealpipe as s; s.periodic_orbit(s.Parameters(), 0.9, 2.8, mode=1, y_peak=2)"
+	$(BIN)/python -m compileall -q squealpipe
+	PYTHONDONTWRITEBYTECODE= $(BIN)/python -c "from squealpipe.methods.taylor.loop import loop; loop()"
+	PYTHONDONTWRITEBYTECODE= $(BIN)/python -c "import matplotlib.pyplot, netCDF4, snakemake.cli, squealpipe.cli, squealpipe as s; s.periodic_orbit(s.Parameters(), 0.9, 2.8, mode=1, y_peak=2)"
 	touch $@
 
 $(DEV): requirements-dev.lock $(STUDY)

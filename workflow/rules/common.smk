@@ -13,9 +13,6 @@ from squealpipe.rerun.key import STARTED
 # Our matrices are small: several threads of linear algebra in a job only wait for one another,
 # and for the jobs beside it.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
-# Packages are installed without byte code: where none may be written (many containers say so),
-# each job compiles all that it imports, 2 to 3 s.
-os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 
 TARGETS = []
 READING = STUDY.reading if STUDY.paper else "along_plus_x"  # a study of one's own: as given
