@@ -44,8 +44,9 @@ def run_snakemake(directory, *arguments):
 
 def pytest_collection_modifyitems(items):
     """The long files first, so that two processes end at about the same time."""
-    long = ("workflow", "test_references.py", "test_installation.py", "test_cycles.py")
-    items.sort(key=lambda item: not set(long) & set(item.path.parts))
+    long = ("references", "installation", "readme", "random_systems", "cycles")
+    files = [f"test_{name}.py" for name in long]
+    items.sort(key=lambda item: ("workflow" not in item.path.parts, item.path.name not in files))
 
 
 @dataclass(frozen=True)
@@ -64,9 +65,13 @@ def checkout(tmp_path):
 
 @pytest.fixture(scope="session")
 def tiny_study(tmp_path_factory, worker_id):
-    """The tiny study, run once for all test processes, each of which has a copy to itself."""
+    """The tiny study, run once for all test processes, each of which has a copy to itself.
+
+    Where ``SQUEALPIPE_TINY`` names a folder, it is kept there for the tiers that follow.
+    """
     own = tmp_path_factory.getbasetemp()
-    shared = own if worker_id == "master" else own.parent
+    shared = Path(os.environ.get("SQUEALPIPE_TINY", own if worker_id == "master" else own.parent))
+    shared.mkdir(exist_ok=True)
     original, done = shared / "study/squealpipe", shared / "study/done"
     with FileLock(shared / "study.lock"):
         if not done.exists():
