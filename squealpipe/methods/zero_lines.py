@@ -23,11 +23,11 @@ Function = Callable[[Vector], Vector]
 Mark = Callable[[Vector, Vector], Vector]
 """Places and slopes there → what jumps from one branch of a function to another."""
 
-SHORTEST = 0.01
+SHORTEST = 0.04
 """Chord beside a kink, over √off, below which the tangents meet in it."""
-BENT, ROUGH = 0.6, 1e-6
+BENT, SKEW, ROUGH = 0.6, 0.08, 1e-6
 """Area beside a chord of one arc that is doubted, over its length squared and its turn cubed; what
-the error of the tangents adds to that."""
+a curvature that changes along it, and the error of the tangents, add to that."""
 MOST_DIVISIONS, MOST_POINTS = 30, 25_000
 """Where motions last long a line may have corners without end: its error then says what is left."""
 CLOSED = 1e-12
@@ -49,7 +49,7 @@ class Loop(NamedTuple):
     """A closed line around a region, counter-clockwise, or around a hole of it, clockwise.
 
     Attributes:
-        outline: a polygon within :data:`FLAT` of it.
+        outline: a polygon next to it.
         area: enclosed, negative for a hole; with its error.
     """
 
@@ -66,7 +66,7 @@ class ZeroLines:
         mark: of points on the lines.
         coarse: points per side of the grid that sees the whole square.
         finer: how many times finer the grid is where the sign changes, a power of two.
-        off: how far lines may be from those that are drawn.
+        off: how far lines may be on average, over a chord, from those that are drawn.
         residual: of the function at a point.
 
     Attributes:
@@ -184,8 +184,9 @@ class ZeroLines:
             kinked = self._jumps(chords) | (error > self._bent(chords))
             self.marks(np.concatenate([chords[kinked].ravel(), middle[kinked]]))
             chords, error = _split(chords, middle), np.repeat(0.5 * error, 2)
-            length, jumps = self._length(chords), self._jumps(chords)
-            error = np.where(jumps, error, np.minimum(error, self._bent(chords)))
+            length, jumps, bent = self._length(chords), self._jumps(chords), self._bent(chords)
+            # by chance the middle of a chord may be right where the rest is not
+            error = np.where(jumps, error, np.clip(error, 0.5 * bent, bent))
             going = ((error > self.off * length) | jumps) & (length > SHORTEST * self.off**0.5)
             self._keep(chords[~going & ~jumps], error[~going & ~jumps])
             around = chords[~going & jumps]
@@ -203,8 +204,10 @@ class ZeroLines:
 
     def _bent(self, chords: Indices) -> Vector:
         """What a cubic leaves beside a chord of one branch: the third power of its turn."""
-        turn = np.abs(self._slopes(chords)[2]).max(axis=1)
-        return np.asarray(BENT * self._length(chords) ** 2 * (turn**3 + ROUGH))
+        slopes = self._slopes(chords)[2]
+        turn = np.abs(slopes).max(axis=1)
+        skew = SKEW * slopes.sum(axis=1) ** 2 / np.maximum(turn, ROUGH)
+        return np.asarray(BENT * self._length(chords) ** 2 * (turn**3 + skew + ROUGH))
 
     def marks(self, points: Indices) -> Vector:
         """What tells branches apart, at some points."""
@@ -263,7 +266,9 @@ class ZeroLines:
         steep = (np.abs(slopes) > FLATTISH).any(axis=1)
         ahead, back = at * slopes[:, 0], (at - 1.0) * slopes[:, 1]
         kinked = self._jumps(chords)
-        height = np.where(steep | kinked, _lower(ahead, back), height)
+        nearer = np.abs(ahead) < np.abs(back)
+        lower = np.where(ahead * back > 0.0, np.where(nearer, ahead, back), 0.0)
+        height = np.where(steep | kinked, lower, height)
         reach = 0.3 * np.minimum(at, 1.0 - at) + np.abs(height)
         # a tongue is crossed between the chord and where the tangents meet
         axis = meeting - self.place[chords[:, 0]] - share[:, None] * chord
@@ -275,8 +280,7 @@ class ZeroLines:
         doubt[steep] = length[steep] * np.fmax(length, long)[steep]
         start, way = foot + (height + reach)[:, None] * axis, -2.0 * reach[:, None] * axis
         rates = (self.slope[chords] * way[:, None]).sum(axis=2)
-        nearer = np.where(np.abs(ahead) < np.abs(back), *rates.T)
-        rate = np.where(kinked, nearer, rates.mean(axis=1))
+        rate = np.where(kinked, np.where(nearer, *rates.T), rates.mean(axis=1))
         share, *there = self._roots(start, way, np.full(len(at), 0.5), rate)
         off = reach * (1.0 - 2.0 * share)
         lost = np.isnan(off)
@@ -343,12 +347,12 @@ class ZeroLines:
         """Points of each line in order; of a closed one the first comes again."""
         return _chains(self.chords)
 
-    def loops(self, *, positive: bool) -> list[Loop]:
+    def loops(self, *, positive: bool, flat: float = FLAT) -> list[Loop]:
         """Closed lines around the regions in which the function is positive, or around others."""
         chord, left, slopes = self._slopes(self.chords)
         length = np.linalg.norm(chord, axis=1)
         bulge = length**2 * (slopes[:, 0] - slopes[:, 1]) / 12.0
-        count = np.ceil(np.sqrt(length * np.abs(slopes).sum(axis=1) / (8.0 * FLAT)))
+        count = np.ceil(np.sqrt(length * np.abs(slopes).sum(axis=1) / (8.0 * flat)))
         between = {}
         for k in np.flatnonzero(count > 1):
             t = np.arange(1, count[k]) / count[k]
@@ -393,11 +397,6 @@ def _split(chords: Indices, middle: Indices) -> Indices:
 
 def _cross(a: Vector, b: Vector) -> Vector:
     return np.asarray(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0])
-
-
-def _lower(a: Vector, b: Vector) -> Vector:
-    """Of two numbers the one next to 0, or 0 if that lies between them."""
-    return np.where(a * b > 0.0, np.where(np.abs(a) < np.abs(b), a, b), 0.0)
 
 
 def _cubic(at: Vector, slopes: Vector) -> Vector:

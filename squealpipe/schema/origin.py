@@ -71,7 +71,7 @@ def origin(name: str, arguments: Mapping[str, Any]) -> dict[str, Any]:
         if isinstance(value, Parameters):
             stated["parameters"] = _as_json(given.pop(key))
         elif isinstance(value, xr.Dataset):
-            stated |= {key: value.attrs[key] for key in INHERITED if key in value.attrs}
+            stated = {k: value.attrs[k] for k in INHERITED if k in value.attrs} | stated
             del given[key]
     stated["model"] = given.pop("model", model or stated.get("model", ""))
     stated["method"] = given.pop("method", method or stated.get("method", ""))
@@ -87,8 +87,12 @@ def _as_json(parameters: Parameters) -> str:
 
 def plain(value: Any) -> Any:
     """A value as JSON takes it; of a long array only first, last and number of values."""
+    if isinstance(value, xr.Dataset):
+        return {key: value.attrs[key] for key in ("curve", "parameters") if key in value.attrs}
     if isinstance(value, Mapping):
         return {str(key): plain(item) for key, item in value.items()}
+    if isinstance(value, list) and any(isinstance(item, xr.Dataset) for item in value):
+        return [plain(item) for item in value]
     if value is None or isinstance(value, str | int | float):
         return value
     array = np.asarray(value)

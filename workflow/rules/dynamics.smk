@@ -98,7 +98,7 @@ if PAPERS_FRICTION:
                 "parameters",
                 "dynamics.tol",
                 "dynamics.chart_horizon",
-                *([] if STUDY.paper else ["scenes"]),
+                *(["cycles.damping", "cycles.settle"] if STUDY.paper else ["scenes"]),
             ),
         threads: cores_for(1, enough=1)
         script:

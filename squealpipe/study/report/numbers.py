@@ -7,6 +7,7 @@ import xarray as xr
 
 from squealpipe.schema import meanings
 from squealpipe.schema.claims import Origin, Verdict
+from squealpipe.schema.curves import ChartLine
 from squealpipe.schema.inference import of_study
 from squealpipe.study.claims.evidence import Run
 from squealpipe.study.claims.maps import unstable_yet_sliding
@@ -116,6 +117,7 @@ def _motions_and_shares(run: Run) -> dict[str, Any]:
     }
     limited = (hammering.predictability_horizon < hammering.t_end).mean()
     friction, beside = run["critical_friction_map"], run["a1_beside_a4"]
+    charts = [run[f"friction_chart/{name}"] for name in ("F3", "F4")]
     shown = np.fmin(friction.critical_mu, friction.critical_mu_undamped) < LARGEST
     far = 100 * abs(beside.omega_a1 / beside.omega - 1.0).max("scene")
     return {
@@ -124,7 +126,9 @@ def _motions_and_shares(run: Run) -> dict[str, Any]:
         "unpredictable": 100 * limited,
         "shown_friction": LARGEST,
         "lowered": 100 * friction.destabilized.where(shown).mean(),
-        "softest_kept": max(run[f"friction_chart/{name}"].kappa.max() for name in ("F3", "F4")),
+        "softest_kept": max(
+            chart.kappa[chart.line == ChartLine.contact_lost].max() for chart in charts
+        ),
         "far_short": far[0],
         "far_long": far[-1],
         "growing_starts": 100

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
 import xarray as xr
+from scipy.interpolate import CubicSpline
 from scipy.ndimage import distance_transform_edt, label
 
 from squealpipe.methods.zero_lines import Vector, ZeroLines
@@ -19,10 +21,11 @@ from squealpipe.schema.origin import recorded
 from squealpipe.tasks.curves.contact import Square, contact_lines, nearest_on, two_axes
 from squealpipe.validation import Line, Positive, Tolerance, Workers
 
-FINEST, OFF, RESIDUAL = (60, 120), 1e-6, 1e-8
+FINEST, OFF, FLAT, RESIDUAL = (60, 120), 6e-7, 3e-7, 4e-8
 """As those of a boundary, for lines that are right to 1e-6 of the ranges, from few runs.
 
-The second grid is taken where the first one cuts a tongue.
+In the middle of a chord a line is off by about twice as much as on average. The second grid is
+taken where the first one cuts a tongue.
 """
 GRID = 241
 """Cells per side by which regions are distinguished, and points on which closed forms are seen."""
@@ -35,8 +38,8 @@ def regime_chart(
     alpha2: Line,
     *,
     design: Mapping[str, Line] | None = None,
-    whirl: xr.Dataset | None = None,
-    stick: xr.Dataset | None = None,
+    whirl: xr.Dataset | Sequence[xr.Dataset] | None = None,
+    stick: xr.Dataset | Sequence[xr.Dataset] | None = None,
     t_end: Positive | None = None,
     tol: Tolerance = 1e-12,
     workers: Workers = None,
@@ -51,8 +54,9 @@ def regime_chart(
         alpha1, alpha2: angles, rad.
         design: the two parameters by their names, numbers or arrays of several designs; by default
             their values in ``params``, where both are there. Distances to each line are given.
-        whirl, stick: datasets of :func:`cycle_curve` over the two parameters (k3 for kappa), which
-            become lines too: where a cycle is born, as in a fold, and where it begins to stick.
+        whirl, stick: one or several datasets of :func:`cycle_curve` over the two parameters (k3 for
+            kappa), which become lines too: where a cycle is born, as in a fold, and where it begins
+            to stick. An empty list says that there is none: its distance is infinite.
         t_end: end of each run, s; 200 √(m/k1) by default.
         ranges: parameters that vary.
 
@@ -69,8 +73,7 @@ def regime_chart(
         own = {"lambda_": params.length_ratio, "mu_static": params.static_mu}
         design = {name: own.get(name, getattr(params, name, None)) for name in axes}
     t_end = HORIZON * params.time_unit if t_end is None else t_end
-    options = {"t_end": t_end, "tol": tol, "workers": workers}
-    square = Square(params, fixed, axes, options, "A1")
+    square = Square(params, fixed, axes, {"t_end": t_end, "tol": tol, "workers": workers}, "A1")
 
     def invariants(places: Vector) -> Any:
         p = with_drag(square.fields(places))
@@ -79,8 +82,8 @@ def regime_chart(
     def closed(quantity: str) -> ZeroLines:
         def value(places: Vector) -> Vector:
             found = invariants(places)
-            scale = found.half_trace**2
-            return np.broadcast_to(getattr(found, quantity) / scale, len(places)).copy()
+            scaled = getattr(found, quantity) / found.half_trace**2
+            return np.broadcast_to(scaled, len(places)).copy()
 
         return ZeroLines(
             value, lambda places, _: 0.0 * places[:, 0], coarse=GRID, finer=1, jump=1.0
@@ -107,27 +110,31 @@ def regime_chart(
         for places, sizes in [_parts((regime == code) & (kept == state))]
         for k, size in enumerate(sizes, start=1)
     ]
-    cycles = {
-        which: (_over(square, which.name, curve), curve.residual.values)
-        for which, curve in ((ChartLine.whirl, whirl), (ChartLine.stick, stick))
-        if curve is not None
+    given = {ChartLine.whirl: whirl, ChartLine.stick: stick}
+    asked = {
+        which: [curves] if isinstance(curves, xr.Dataset) else curves
+        for which, curves in given.items()
+        if curves is not None
     }
+    cycles = [(which, _over(square, which.name, x), x) for which in asked for x in asked[which]]
     data: dict[str, Any] = {}
     if design is not None:
         given = np.broadcast_arrays(*(design[name] for name in axes))
         places = np.atleast_2d(np.stack(given, axis=-1))
         limits = np.stack([square.low, square.low + square.width], axis=1)
         loops = {
-            which: [square.values(loop.outline) for loop in each.loops(positive=True)]
+            which: [square.values(loop.outline) for loop in each.loops(positive=True, flat=FLAT)]
             for which, each in lines.items()
-        } | {which: [np.concatenate([line, line[::-1]])] for which, (line, _) in cycles.items()}
+        } | {which: [] for which in asked}
+        for which, line, curve in cycles:
+            loops[which].append(_smooth(line, square.width, curve.label.values))
         far = [[nearest_on(each, at, limits)[1] for each in loops.values()] for at in places]
         data = {"design": places, "distance": far}
     chains = [
         (which, square.values(each.place[chain]), each.residual[chain])
         for which, each in lines.items()
         for chain in each.chains()
-    ] + [(which, *curve) for which, curve in cycles.items()]
+    ] + [(which, line, curve.residual.values) for which, line, curve in cycles]
     places = np.concatenate([np.empty((0, 2)), *(line for _, line, _ in chains)])
     lengths = [len(line) for _, line, _ in chains]
     return build(
@@ -151,12 +158,12 @@ def regime_chart(
                 Outcome.unresolved if each.unresolved else Outcome.converged
                 for each in lines.values()
             ]
-            + [Outcome.converged] * len(cycles),
+            + [Outcome.converged] * len(asked),
         },
         {
             "point": np.arange(len(places)),
             "parameter": square.names,
-            "boundary": [which.name for which in (*lines, *cycles)],
+            "boundary": [which.name for which in (*lines, *asked)],
         },
     )
 
@@ -168,6 +175,18 @@ def _over(square: Square, name: str, curve: xr.Dataset) -> Vector:
         raise ValueError(f"{name}: a dataset of cycle_curve in {' and '.join(names)} is needed")
     units = np.where(np.array(square.names) == "kappa", square.params.k1, 1.0)
     return np.stack([curve[each].values for each in names], axis=1) / units
+
+
+def _smooth(line: Vector, width: Vector, label: Vector) -> Vector:
+    """There and back along a curve by splines, which end where something else happens."""
+    steps = np.linalg.norm(np.diff(line, axis=0) / width, axis=1)
+    way = np.append(0.0, np.cumsum(np.maximum(steps, 1e-12)))
+    found = [line[:1]]
+    for i, j in pairwise(np.unique([0, *np.flatnonzero(label), len(line) - 1])):
+        at = np.interp(np.arange(0.0, j - i + 1e-9, 0.01), np.arange(j - i + 1), way[i : j + 1])
+        found.append(CubicSpline(way[i : j + 1], line[i : j + 1])(at))
+    there = np.concatenate(found)
+    return np.concatenate([there, there[::-1]])
 
 
 def _parts(where: np.ndarray) -> tuple[Vector, np.ndarray]:

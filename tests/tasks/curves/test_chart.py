@@ -1,5 +1,7 @@
 """The regime chart: its lines against closed forms, its regions against runs in them."""
 
+import json
+
 import numpy as np
 import pytest
 
@@ -115,6 +117,12 @@ def test_onset_of_the_whirl_and_of_its_stick():
         np.testing.assert_array_equal(chart.mu[on], curve.mu)
         far = float(np.hypot(curve.k3 - params.k3, curve.mu - params.mu).min())
         assert float(chart.distance[0, ChartLine[which]]) <= far
+    short = squealpipe.regime_chart(
+        params, *angles, t_end=5.0, kappa=kappa, mu=mu, whirl=[], stick=[whirl, stick]
+    )
+    assert short.distance[0, 3:].values.tolist() == [np.inf, min(chart.distance[0, 3:].values)]
+    assert short.attrs["parameters"] == chart.attrs["parameters"]
+    assert json.loads(short.attrs["parameters"])["mu"] == params.mu
     fold = float(branch.mu[branch.label == 1][0])
     assert float(chart.distance[0, 3]) <= params.mu - fold < 1.05 * float(chart.distance[0, 3])
     with pytest.raises(ValueError, match="in k3 and belt_speed is needed"):

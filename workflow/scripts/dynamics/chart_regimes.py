@@ -1,14 +1,27 @@
-"""Charts of regimes: over both angles, and over κ and μ at the angles of each scene."""
+"""Charts of regimes: over both angles, and over κ and μ at the angles of each scene.
+
+In the paper's study they have the onset of the whirl and of its stick too, of A1 with the dashpots
+of the branches of cycles: the whirl of Fig. 3, found from rest, leads to those at other angles.
+"""
 
 from pathlib import Path
 
 import numpy as np
 
 from squealpipe.execution.job import Job
+from squealpipe.parameters import SCENES
+from squealpipe.schema import Outcome
+from squealpipe.systems.cycles.labels import Label
 from squealpipe.tasks.curves.chart import regime_chart
+from squealpipe.tasks.cycles.branch import cycle_branch
+from squealpipe.tasks.cycles.curve import cycle_curve
+from squealpipe.tasks.cycles.cycle import limit_cycle
 
 COARSE = 31
 SMALLEST, LARGEST = 0.002, 2.0  # of κ and μ over those of the study
+INSIDE = 0.01  # of the range: branches along its ends are followed so far from them
+NO_STICK = 1e-9  # share of the period in a cycle that only begins to stick
+STATE = ("x_start", "y_start", "vx_start", "vy_start")
 
 job = Job(snakemake)
 settings, params = job.settings, job.params
@@ -24,13 +37,72 @@ options = {
     "tol": settings["dynamics.tol"],
     "workers": snakemake.threads,
 }
+damping = settings.get("cycles.damping", 0.0) * (params.k1 * params.mass) ** 0.5
+damped = params.with_(damping1=damping, damping2=damping)
+
+
+def onsets(at, branches, limits):
+    """The curves of folds and of beginning stick through the special points of branches."""
+    found = {"whirl": ("fold", []), "stick": ("stick_onset", [])}
+    for branch in branches:
+        for label, curves in found.values():
+            for point in np.flatnonzero((branch.label == Label[label]) & (branch.stick_fraction < NO_STICK)):
+                start = branch.isel(point=point)
+                curves.append(
+                    cycle_curve(damped, *at, label=label, parameters=[*limits], start=start, to=limits)
+                )
+    return {name: curves for name, (_, curves) in found.items()}
+
+
+def around_friction(at, state):
+    """Over κ and μ at two angles."""
+    cycle = limit_cycle(damped, *at, guess=state)
+    if cycle.outcome != Outcome.converged:
+        return {}
+    branch = cycle_branch(damped, *at, parameter="mu", to=mu[0], start=cycle)
+    limits = {"mu": (mu[0], mu[-1]), "k3": (kappa[0] * params.k1, kappa[-1] * params.k1)}
+    return onsets(at, [branch], limits)
+
+
+def around_angles(at, state):
+    """Over both angles, along the sides of their square."""
+    found = {"whirl": [], "stick": []}
+    limits = {f"alpha{i}": (each[0], each[-1]) for i, each in enumerate(ranges, start=1)}
+    low, high = limits["alpha1"]
+    inner = INSIDE * (high - low)
+    for side in (low + inner, high - inner):
+        across = cycle_branch(damped, *at, parameter="alpha1", to=side, start=state)
+        if across.end != Outcome.converged:
+            return {}
+        state_there = [float(across[name][-1]) for name in STATE]
+        branches = [
+            cycle_branch(damped, side, at[1], parameter="alpha2", to=end, start=state_there)
+            for end in limits["alpha2"]
+        ]
+        for name, curves in onsets((side, at[1]), branches, limits).items():
+            found[name] += curves
+    return found
+
+
+over_angles, over_friction = {}, dict.fromkeys(files, {})
+if damping:
+    whirl_at = SCENES["F3"].alpha1, SCENES["F3"].alpha2
+    first = limit_cycle(damped, *whirl_at, t_settle=settings["cycles.settle"] * params.time_unit)
+    if first.outcome == Outcome.converged:
+        state = [float(first[name]) for name in STATE]
+        over_angles = around_angles(whirl_at, state)
+        over_friction = {name: around_friction(at, state) for name, at in angles.items()}
 job.make(
-    lambda: regime_chart(params, *ranges, design={"alpha1": alpha1, "alpha2": alpha2}, **options),
+    lambda: regime_chart(
+        params, *ranges, design={"alpha1": alpha1, "alpha2": alpha2}, **over_angles, **options
+    ),
     job.out.angles,
 )
 for name, path in files.items():
     job.make(
-        lambda: regime_chart(params, *angles[name], kappa=kappa, mu=mu, **options),
+        lambda: regime_chart(
+            params, *angles[name], kappa=kappa, mu=mu, **over_friction[name], **options
+        ),
         path,
         scene=name,
     )

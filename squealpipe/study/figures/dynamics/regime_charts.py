@@ -1,6 +1,7 @@
 """Charts of regimes: what a design is next to, over both angles, and over κ and μ."""
 
-from collections.abc import Mapping
+import json
+from collections.abc import Iterable, Mapping
 from string import ascii_lowercase
 from typing import Any
 
@@ -22,11 +23,9 @@ LOOKS: dict[ChartLine, tuple[str, dict[str, Any]]] = {
     ChartLine.contact_lost: ("contact is lost", {"color": style.BLACK}),
     ChartLine.flutter: ("A3 flutters", {"color": style.BLUE, "linestyle": "--"}),
     ChartLine.divergence: ("A3 diverges", {"color": style.GREEN, "linestyle": ":"}),
-    ChartLine.whirl: ("a cycle is born", {"color": style.RED, "linestyle": "-."}),
+    ChartLine.whirl: ("the whirl is born", {"color": style.RED, "linestyle": "-."}),
     ChartLine.stick: ("its stick begins", {"color": style.ORANGE}),
 }
-NEARLY_ALL = 0.95
-"""Share of a chart beyond which one kind makes it say nothing at a glance."""
 SEEN = 1e-3
 """Share of a chart below which a kind is not seen in print."""
 HALO = [withStroke(linewidth=2, foreground="white")]
@@ -36,18 +35,26 @@ ALT = "Charts over both angles and over κ and μ with lines, regions, and cross
 def caption(angles: xr.Dataset, scenes: Mapping[str, xr.Dataset]) -> str:
     """What the lines mean, and the distances of each scene."""
     horizon = number(float(angles.t_end) / time_unit(angles))
-    rows = zip(sorted(scenes), np.degrees(angles.distance.values), strict=True)
+    charts = [angles, *scenes.values()]
+    known = [which for which in LOOKS if any(which.name in each.boundary for each in charts)]
     distances = "; ".join(
-        f"{_title(name)}: {_listed(around)} deg; {_listed(scenes[name].distance.values[0])}"
-        for name, around in rows
+        f"{_title(name)}: {_listed(known, angles, place, np.degrees(1.0))} deg; "
+        f"{_listed(known, scenes[name], 0, 1.0)}"
+        for place, name in enumerate(sorted(scenes))
+    )
+    dashpots = json.loads(angles.attrs["config"]).get("cycles.damping", 0.0)
+    cycles = (
+        "The whirl, a fast cycle around the fixed ends of the springs, is that of A1 with dashpots "
+        f"of {number(dashpots)} √(k1 m): it is born in a fold. "
     )
     return (
         "Charts of regimes: where A1, from rest, loses contact up to t = "
         f"{horizon} √(m/k1), and where A3 without damping flutters and diverges, as curves. "
         "(a) Over both spring angles, with the scenes as crosses; then over κ = k₃/k₁ and μ at the "
-        "angles of scenes, with the study's own values as a cross. Distances of the crosses "
-        "to the nearest lines (loss of contact, flutter, divergence), first in (a), then in "
-        f"(κ, μ): {distances}."
+        "angles of scenes, with the study's own values as a cross. "
+        f"{cycles if ChartLine.whirl in known else ''}Distances of the crosses to the nearest "
+        f"lines ({', '.join(LOOKS[which][0] for which in known)}; none: no such line in "
+        f"the range), first in (a), then in (κ, μ): {distances}."
     )
 
 
@@ -57,13 +64,7 @@ CAPTION = caption
 def draw(angles: xr.Dataset, scenes: Mapping[str, xr.Dataset]) -> Figure:
     """One panel for each chart."""
     names = sorted(scenes)
-    several = [
-        name
-        for name, chart in scenes.items()
-        if _counts(chart).max() < NEARLY_ALL or ChartLine.whirl.name in chart.boundary.values
-    ]
-    several = sorted(several or names)
-    rows = (len(several) + 2) // 2
+    rows = (len(names) + 2) // 2
     figure, axes = style.new_figure(style.PAGE, 0.8 + 2.6 * rows, ncols=2, nrows=rows)
     panels = axes.ravel()
     _draw(panels[0], angles)
@@ -78,19 +79,19 @@ def draw(angles: xr.Dataset, scenes: Mapping[str, xr.Dataset]) -> Figure:
             textcoords="offset points", ha="right" if left else "left",
             color=style.RED, path_effects=HALO,
         )  # fmt: skip
-    for panel, letter, name in zip(panels[1:], ascii_lowercase[1:], several, strict=False):
+    for panel, letter, name in zip(panels[1:], ascii_lowercase[1:], names, strict=False):
         _draw(panel, scenes[name])
         panel.set(xlabel="κ", ylabel="μ")
         style.panel_letter(panel, letter, _title(name))
-    for panel in panels[1 + len(several) :]:
+    for panel in panels[1 + len(names) :]:
         panel.remove()
     handles = {
         label: handle
-        for panel in panels[: 1 + len(several)]
+        for panel in panels[: 1 + len(names)]
         for handle, label in zip(*panel.get_legend_handles_labels(), strict=True)
     }
-    charts = [angles, *(scenes[name] for name in several)]
-    shown = np.max([_counts(chart) for chart in charts], axis=0) > SEEN
+    charts = [angles, *scenes.values()]
+    shown = [max((_kinds(each) == k).mean() for each in charts) > SEEN for k in range(len(KINDS))]
     tones = style.patches(kind for kind, there in zip(KINDS, shown, strict=True) if there)
     figure.legend(handles=[*tones, *handles.values()], loc="outside lower center", ncols=3)
     return figure
@@ -98,12 +99,6 @@ def draw(angles: xr.Dataset, scenes: Mapping[str, xr.Dataset]) -> Figure:
 
 def _kinds(chart: xr.Dataset) -> np.ndarray:
     return np.asarray(2 * chart.cell_kept.values + (chart.cell_regime.values > 0))
-
-
-def _counts(chart: xr.Dataset) -> np.ndarray:
-    """Share of the cells of each kind."""
-    kinds = _kinds(chart)
-    return np.bincount(kinds.ravel(), minlength=len(KINDS)) / kinds.size
 
 
 def _draw(panel: Axes, chart: xr.Dataset) -> None:
@@ -126,7 +121,7 @@ def _title(name: str) -> str:
     return scene_title(scene) if scene in SCENES else scene
 
 
-def _listed(distances: np.ndarray) -> str:
-    by_line = dict(zip(ChartLine, distances, strict=False))
-    found = (by_line[which] for which in LOOKS if which in by_line)
+def _listed(known: Iterable[ChartLine], chart: xr.Dataset, place: int, unit: float) -> str:
+    by_line = dict(zip(chart.boundary.values, unit * chart.distance.values[place], strict=True))
+    found = (by_line.get(which.name, np.inf) for which in known)
     return ", ".join(number(far, 3) if np.isfinite(far) else "none" for far in found)
