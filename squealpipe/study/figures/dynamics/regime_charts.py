@@ -53,8 +53,8 @@ def caption(angles: xr.Dataset, scenes: Mapping[str, xr.Dataset]) -> str:
         "(a) Over both spring angles, with the scenes as crosses; then over κ = k₃/k₁ and μ at the "
         "angles of scenes, with the study's own values as a cross. "
         f"{cycles if ChartLine.whirl in known else ''}Distances of the crosses to the nearest "
-        f"lines ({', '.join(LOOKS[which][0] for which in known)}; none: no such line in "
-        f"the range), first in (a), then in (κ, μ): {distances}."
+        f"lines ({', '.join(LOOKS[which][0] for which in known)}; none: no line found "
+        f"in the range), first in (a), then in (κ, μ): {distances}."
     )
 
 
