@@ -110,10 +110,10 @@ def regime_chart(
         for places, sizes in [_parts((regime == code) & (kept == state))]
         for k, size in enumerate(sizes, start=1)
     ]
-    given = {ChartLine.whirl: whirl, ChartLine.stick: stick}
+    onsets = {ChartLine.whirl: whirl, ChartLine.stick: stick}
     asked = {
         which: [curves] if isinstance(curves, xr.Dataset) else curves
-        for which, curves in given.items()
+        for which, curves in onsets.items()
         if curves is not None
     }
     cycles = [(which, _over(square, which.name, x), x) for which in asked for x in asked[which]]
