@@ -87,11 +87,11 @@ def refine(
         "refine_validity_map", brake, output=output, resolution=resolution, coarse=coarse,
         t_end=t_end, model=model, tol=tol, workers=workers,
     )  # fmt: skip
-    low, high = found.inherited_error_interval.values
+    (low, high), run = found.inherited_error_interval.values, int(found.computed.sum())
+    wrong = f"; of the others {low:.2%} to {high:.2%} are wrong (95 %)"
     answer(
         f"contact is lost in {int(found.separates.sum())} of {found.separates.size} cells",
-        f"{int(found.computed.sum())} cells were run; of the others {float(low):.2%} to "
-        f"{float(high):.2%} are wrong (95 %)",
+        f"{run} cells were run{wrong if run < found.computed.size else ''}",
     )
     return DONE
 

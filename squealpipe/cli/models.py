@@ -43,9 +43,9 @@ def choose(
 
     with working("choose"):
         found = choose_model(brake.params, alpha1, alpha2, question, t_end=t_end)
+    value = f"{found.value:.6g}" if question != "contact_lost" else ("no", "yes")[int(found.value)]
     answer(
-        f"{question.replace('_', ' ')}: {found.value:.6g}",
-        f"by {Level[found.model].label}: {found.reason}",
+        f"{question.replace('_', ' ')}: {value}", f"by {Level[found.model].label}: {found.reason}"
     )
     return DONE
 

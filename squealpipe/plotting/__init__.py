@@ -35,6 +35,7 @@ DRAWN: dict[str, Callable[[Axes, xr.Dataset], None]] = {
     SYSTEM + "ensemble": draw_ensemble,
     SYSTEM + "limit cycle": draw_path,
     SYSTEM + "cycle branch": draw_branch,
+    SYSTEM + "cycle curve": draw_curves,
 }
 """Schema → what draws it; :data:`~squealpipe.plotting.quantities.SHOWN` has the others."""
 

@@ -10,6 +10,8 @@ from squealpipe.schema import meanings
 
 KINDS = ("line", "boundary")
 """Variables that say of a point which curve it is on, where a dataset has several kinds."""
+NUMBERS = ("segment", "curve")
+"""Variables that number the curves of a kind, where there are several."""
 
 
 def draw_curves(axes: Axes, curves: xr.Dataset) -> None:
@@ -17,11 +19,13 @@ def draw_curves(axes: Axes, curves: xr.Dataset) -> None:
     if not curves.sizes["point"]:
         style.say_instead(axes, "no curve within these ranges")
         return
-    names = curves.parameter.values if "parameter" in curves else ("alpha1", "alpha2")
+    followed = curves.attrs.get("parameters_followed", "alpha1 alpha2").split()
+    names = curves.parameter.values if "parameter" in curves else followed
     x, y = (curves[str(name)] for name in names)
-    number = curves["segment" if "segment" in curves else "curve"].values
-    kind = next((curves[name] for name in KINDS if name in curves), xr.zeros_like(x, dtype=int))
-    words = meanings(kind) or {0: "boundary of kept contact"}
+    one = xr.zeros_like(x, dtype=int)
+    number = next((curves[name] for name in NUMBERS if name in curves), one).values
+    kind = next((curves[name] for name in KINDS if name in curves), one)
+    words = meanings(kind) or {0: curves.attrs.get("curve", "boundary of kept contact")}
     for colour, code in zip(style.PALETTE * len(words), np.unique(kind.values), strict=False):
         on = kind.values == code
         lines = (x.values[on], y.values[on])

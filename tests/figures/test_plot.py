@@ -18,6 +18,24 @@ SCENE = 0.4 * np.pi, 0.6 * np.pi
 impacts, STARTS = impact_oscillator, np.linspace(-1, 1, 5)
 AT = {"amplitude": 2.3, "omega": 2.0}
 ORBIT = (FORMER, 0.3 * np.pi, 0.9 * np.pi)
+
+
+def a1_curve():
+    """Of the scene on a slow belt, where its cycle grazes."""
+    slow = FORMER.with_(belt_speed=1.0)
+    branch = squealpipe.cycle_branch(slow, *SCENE, parameter="belt_speed", to=1.1, n_points=12)
+    pair = "belt_speed", "mu"
+    return squealpipe.cycle_curve(
+        slow, *SCENE, label="grazing", parameters=pair, start=branch, n_points=5
+    )
+
+
+def system_curve():
+    cycle = impacts.limit_cycle(omega=1.9, amplitude=2.2)
+    branch = impacts.cycle_branch("amplitude", 4.0, start=cycle)
+    return impacts.cycle_curve("fold", ("omega", "amplitude"), start=branch, n_points=9)
+
+
 DATASETS = {
     "hammering": lambda: squealpipe.hammering_map(FORMER, ANGLES, ANGLES, t_end=20.0),
     "backbone": lambda: squealpipe.backbone(*ORBIT, mode=1),
@@ -35,6 +53,8 @@ DATASETS = {
     "system branch": lambda: impacts.cycle_branch(
         "amplitude", 2.0, start=impacts.limit_cycle(**AT), n_points=20
     ),
+    "cycle curve": a1_curve,
+    "system curve": system_curve,
     "system basin": lambda: mode_coupling.basin(60.0, start={"x": np.linspace(-2, 2, 6)}),
 }
 

@@ -21,6 +21,9 @@ from squealpipe.validation import Angle, Number, Several
 REASONS = dict(zip(ENDS, (Outcome.point_limit, Outcome.converged, Outcome.branch_lost,
                           Outcome.real_multipliers), strict=True))  # fmt: skip
 
+BESIDE = (0.0, -1e-9, 1e-9)
+"""Where a cycle is looked for: at the very onset of stick, round-off decides how a run goes on."""
+
 
 @recorded(model="A1", method="pseudo-arclength continuation of the legs and one condition")
 def cycle_curve(
@@ -58,16 +61,22 @@ def cycle_curve(
     own = {"alpha1": alpha1, "alpha2": alpha2}
     point = point_of(start, label)
     followed = str(start.attrs["parameter"])
-    if followed in own:
-        own[followed] = float(point[followed])
-    else:
-        params = params.with_(**{followed: float(point[followed])})
     dashpots = [name for name in parameters if name in DASHPOTS]
-    scene = Scene(params, own["alpha1"], own["alpha2"], follow=dashpots[0] if dashpots else None)
     limits = dict(to or {})
-    check([name for name in scene.values if name in scene.units], label, parameters, limits)
-    cycle, _ = cycle_from(scene, [float(point[f"{name}_start"]) for name in STATE])
-    if cycle is None:
+    for beside in BESIDE:
+        at = {followed: float(point[followed]) * (1.0 + beside)}
+        if followed in own:
+            own |= at
+        else:
+            params = params.with_(**at)
+        scene = Scene(
+            params, own["alpha1"], own["alpha2"], follow=dashpots[0] if dashpots else None
+        )
+        check([name for name in scene.values if name in scene.units], label, parameters, limits)
+        cycle, _ = cycle_from(scene, [float(point[f"{name}_start"]) for name in STATE])
+        if cycle is not None:
+            break
+    else:
         raise ValueError("no cycle is found from start")
     scaled = {name: tuple(np.array(ends) / scene.units[name]) for name, ends in limits.items()}
     points, ends = follow_curve(

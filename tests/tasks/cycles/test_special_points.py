@@ -109,6 +109,22 @@ def test_special_points_do_not_depend_on_units():
         np.testing.assert_allclose(of * curves[0][name], curves[1][name], rtol=1e-8)
 
 
+def test_a_curve_goes_through_each_located_onset_of_stick():
+    """Where runs from the point itself end in reversals without end, or lack a leg."""
+    slow, angles = FORMER.with_(belt_speed=1.0), (0.4 * math.pi, 0.6 * math.pi)
+    branch = cycle_branch(slow, *angles, parameter="belt_speed", to=1.25, n_points=40)
+    onsets = np.flatnonzero(branch.label == Label.stick_onset)
+    assert len(onsets) > 2
+    for speed, point in zip(branch.belt_speed.values[onsets], onsets, strict=True):
+        curve = cycle_curve(
+            slow, *angles, label="stick_onset", parameters=("belt_speed", "mu"),
+            start=branch.isel(point=point), n_points=3,
+        )  # fmt: skip
+        there = int(np.abs(curve.mu.values - slow.mu).argmin())
+        assert float(curve.mu[there]) == slow.mu
+        assert float(curve.belt_speed[there]) == pytest.approx(speed, rel=1e-9)
+
+
 FLUTTER = (FORMER.with_(k3=0.65, mu=0.01, length1=15.0, length2=15.0, belt_speed=-100.0,
                         damping1=0.02, damping2=0.02), 0.305, 0.07)  # fmt: skip
 
