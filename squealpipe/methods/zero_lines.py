@@ -23,8 +23,8 @@ Function = Callable[[Vector], Vector]
 Mark = Callable[[Vector, Vector], Vector]
 """Places and slopes there → what jumps from one branch of a function to another."""
 
-SHORTEST = 0.04
-"""Chord beside a kink, over √off, below which the tangents meet in it."""
+SHORTEST = 50.0
+"""Chord beside a kink, over off, below which the tangents meet in it."""
 BENT, SKEW, ROUGH = 0.6, 0.08, 1e-6
 """Area beside a chord of one arc that is doubted, over its length squared and its turn cubed; what
 a curvature that changes along it, and the error of the tangents, add to that."""
@@ -185,9 +185,11 @@ class ZeroLines:
             self.marks(np.concatenate([chords[kinked].ravel(), middle[kinked]]))
             chords, error = _split(chords, middle), np.repeat(0.5 * error, 2)
             length, jumps, bent = self._length(chords), self._jumps(chords), self._bent(chords)
+            error = np.where(jumps, error, np.minimum(error, bent))
             # by chance the middle of a chord may be right where the rest is not
-            error = np.where(jumps, error, np.clip(error, 0.5 * bent, bent))
-            going = ((error > self.off * length) | jumps) & (length > SHORTEST * self.off**0.5)
+            going = ((np.maximum(error, 0.5 * bent) > self.off * length) | jumps) & (
+                length > SHORTEST * self.off
+            )
             self._keep(chords[~going & ~jumps], error[~going & ~jumps])
             around = chords[~going & jumps]
             place, none = self._meeting(around)[1], np.full((len(around), 2), np.nan)
