@@ -23,7 +23,7 @@ from squealpipe.tasks.ladder.levels import contact_motion
 from squealpipe.tasks.ladder.questions import answer_of
 from squealpipe.tasks.normal_form import NormalForm
 from squealpipe.tasks.sampling import sample_times
-from squealpipe.validation import Angle, Positive, checked, one_of
+from squealpipe.validation import Angle, Positive, Tolerance, checked, one_of
 
 SAMPLE = "measured, not proved: wrong in none of 89,687 random cells that met the rule"
 LARGEST_ERROR = 0.15
@@ -43,12 +43,14 @@ class Choice:
     Attributes:
         model: name of the level, of :class:`squealpipe.schema.ladder.Level`.
         value: the answer: truth value, rad/s, N_max/(k3 l_pre), or m.
+        checks: what was asked in turn: "linear motion" (:func:`keeps_contact`), "A1".
         cost: CPU time of the rule and of A1 where it ran, s.
     """
 
     model: str
     value: float | bool
     reason: str
+    checks: tuple[str, ...]
     cost: float
 
 
@@ -67,6 +69,7 @@ def choose_model(
     alpha1: Angle,
     alpha2: Angle,
     question: Annotated[str, one_of(QUESTIONS)],
+    tol: Tolerance = 1e-12,
     *,
     t_end: Positive | None = None,
 ) -> Choice:
@@ -80,18 +83,21 @@ def choose_model(
         alpha1, alpha2: spring angles, rad.
         question: "contact_lost", "frequency" (dominant ω of y), "peak_contact_force"
             (N_max/(k3 l_pre)) or "max_displacement" (largest √(x² + y²)).
+        tol: tolerance of A1's integrator where it runs, relative to l_pre.
         t_end: horizon, s; 200 √(m/k1) by default.
     """
     horizon = HORIZON * params.time_unit if t_end is None else t_end
     cells = np.array([alpha1]), np.array([alpha2])
-    found = choose_models(params, *cells, question, t_end=horizon, workers=1)
+    found = choose_models(params, *cells, question, t_end=horizon, tol=tol, workers=1)
     level, value = Level(int(found.level[0])), float(found.value[0])
+    ruled = _has_rule(params, question)
     return Choice(
         model=level.name,
         value=bool(value) if question == "contact_lost" else value,
         reason="A1 is the cheapest level whose answer is certain here"
         if level == Level.a1
         else f"the linear motion keeps clear of l_pre by a margin ({SAMPLE})",
+        checks=("linear motion",) * ruled + ("A1",) * (level == Level.a1),
         cost=found.cost,
     )
 
@@ -103,6 +109,7 @@ def choose_models(
     question: str,
     *,
     t_end: float,
+    tol: float = 1e-12,
     workers: int | None = None,
 ) -> Choices:
     """:func:`choose_model` for arrays of cells at once; ``alpha1`` and ``alpha2`` of one shape."""
@@ -110,12 +117,16 @@ def choose_models(
     form = NormalForm.of(params)
     alpha1, alpha2 = form.angles(alpha1, alpha2)
     value = np.full(alpha1.shape, np.nan)
-    # the rule holds neither with dashpots nor with another friction law
-    if question == "contact_lost" and not extensions(form.params):
+    if _has_rule(form.params, question):
         value[keeps_contact(form.params, alpha1, alpha2, t_end)] = 0.0
     level = np.where(np.isnan(value), Level.a1, Level.a3)
-    run_a1(value, form.params, alpha1, alpha2, question, t_end, workers)
+    run_a1(value, form.params, alpha1, alpha2, question, t_end, tol=tol, workers=workers)
     return Choices(level, value, cpu_time() - started)
+
+
+def _has_rule(params: Parameters, question: str) -> bool:
+    """Whether a rule may answer: it holds neither with dashpots nor with another friction law."""
+    return question == "contact_lost" and not extensions(params)
 
 
 def keeps_contact(p: Any, alpha1: Any, alpha2: Any, t_end: Any) -> np.ndarray:
@@ -159,7 +170,9 @@ def run_a1(
     alpha2: np.ndarray,
     question: str,
     t_end: float,
-    workers: int | None,
+    *,
+    tol: float = 1e-12,
+    workers: int | None = None,
 ) -> None:
     """A1 where nothing cheaper has answered; to the first loss of contact where that is asked."""
     open_ = np.isnan(value)
@@ -167,7 +180,7 @@ def run_a1(
         return
     times = sample_times(params, t_end)
     run = run_ensemble(
-        params, alpha1[open_], alpha2[open_], t_end=t_end,
+        params, alpha1[open_], alpha2[open_], t_end=t_end, tol=tol,
         times=times if question == "frequency" else None,
         stop_at_first_separation=question == "contact_lost", workers=workers,
     )  # fmt: skip

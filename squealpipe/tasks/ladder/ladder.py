@@ -52,7 +52,7 @@ def model_ladder(
     cheapest = (valid & (error <= tol)).argmax(axis=1)
     asked = params, alpha1, alpha2, "contact_lost"
     started = cpu_time()  # as choose_model runs it: the answers to all questions at once cost more
-    run_a1(np.full(alpha1.shape, np.nan), *asked, horizon, workers)
+    run_a1(np.full(alpha1.shape, np.nan), *asked, horizon, workers=workers)
     always = cpu_time() - started
     chosen = choose_models(*asked, t_end=horizon, workers=workers)
     shape = (points, points)

@@ -41,11 +41,11 @@ def test_a_level_is_never_taken_when_its_assumption_is_broken(speed):
 
 def test_reason_says_why_a_run_was_needed_or_that_a_rule_is_measured():
     found = choose_model(FORMER, 0.2 * np.pi, 0.8 * np.pi, "max_displacement")
-    assert (found.model, found.cost > 0.0) == ("a1", True)
+    assert (found.model, found.cost > 0.0, found.checks) == ("a1", True, ("A1",))
     assert "cheapest level whose answer is certain" in found.reason
     long = FORMER.with_(length1=100.0, length2=100.0)
     found = choose_model(long, 0.5 * np.pi, 0.9 * np.pi, "contact_lost")
-    assert found.model == "a3"
+    assert (found.model, found.checks) == ("a3", ("linear motion",))
     assert "measured, not proved" in found.reason
 
 
