@@ -13,6 +13,7 @@ import numpy as np
 import xarray as xr
 
 import squealpipe as sp
+from squealpipe.config.ranges import parse_angle, parse_range
 from squealpipe.config.settings import parse_study
 from squealpipe.functions import cos
 from squealpipe.laws.friction_laws import LAWS
@@ -310,6 +311,14 @@ CALLS: dict[str, tuple[float, Callable[..., Any], dict[str, Kind]]] = {
     ),
     "open_results": (0.4, sp.open_results, {"name_or_path": PLACE}),
     "parse_study": (1.0, lambda **given: parse_study({"parameters": given}), WRITTEN),
+    "parse_range": (
+        0.7, lambda **given: parse_range(given["text"], parse_angle),
+        {"text": Kind(
+            lambda rng: rng.choice(["0:pi:5", "1,2", ".5pi", "0.1:10:4:log", "5pi/6"]),
+            ["", ":", "0:1", "0:1:0", "0:1:-3", "a", "nan", "inf", "1:2:3:4", "0:1:5:log", "1,,2",
+             "pipi", "1e999", "0:1:1e9", "0:1:2.5"],
+        )},
+    ),
     "Scene": (
         0.5, lambda **given: sp.Scene(name="X", figure=1, statement="", **given),
         {**SCENE, "t_end": number(0.1, 100.0)},
@@ -330,7 +339,7 @@ EXPENSIVE = {
     "System.cycle_curve",
 }  # fmt: skip
 """Always called with an argument that makes no sense."""
-NO_PARAMS = {"Parameters", "parse_study", "Scene", "load", "save", "open_results"}
+NO_PARAMS = {"Parameters", "parse_study", "parse_range", "Scene", "load", "save", "open_results"}
 NO_PARAMS |= {name for name in CALLS if name.startswith(("System", "Switch"))}
 
 
@@ -382,7 +391,7 @@ def fault_of(name, given, wrong, params):
         return "" if "path" in given or "name_or_path" in given else "no path was given"
     except ValueError as error:
         named = any(argument in str(error) for argument in ("param", "x = ", *given, *TABLE))
-        return "" if named else f"names no argument: {error}"
+        return "" if named or name == "parse_range" else f"names no argument: {error}"
     except Exception as error:  # noqa: BLE001  whatever it is, it is the finding
         return f"raw {type(error).__name__}: {error}"
     if wrong:

@@ -7,7 +7,7 @@ from matplotlib.patches import FancyArrowPatch
 
 from squealpipe.parameters import SCENES, Parameters
 from squealpipe.plotting.mechanism import draw_mechanism
-from squealpipe.plotting.style import COLUMN, new_figure, save_figure
+from squealpipe.plotting.style import new_figure, save_figure
 from squealpipe.study.figures.dynamics import (
     fig02,
     fig03,
@@ -111,13 +111,3 @@ def test_the_window_is_where_the_boundary_is_most_intricate(tip):
     assert low1 < angles[tip[0]] < high1
     assert low2 < angles[tip[1]] < high2
     assert high1 - low1 == pytest.approx(refined_boundary.WINDOW * np.pi, rel=0.06)
-
-
-def test_axes_of_small_numbers_carry_a_power_of_ten(tmp_path):
-    """A study in metres: 0.0002, 0.0003, … ran into one another; others stay as they are."""
-    for size, power in ((5e-4, "10^{−4}"), (0.5, ""), (50.0, "")):
-        figure, axes = new_figure(COLUMN, 2.0)
-        axes[0, 0].plot([0.0, size], [0.0, 2 * size])
-        save_figure(figure, [tmp_path / "small.png"])
-        assert power in axes[0, 0].xaxis.get_offset_text().get_text()
-        assert bool(axes[0, 0].xaxis.get_offset_text().get_text()) == bool(power)
