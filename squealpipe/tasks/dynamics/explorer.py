@@ -79,7 +79,7 @@ def explorer_data(
             **(dict.fromkeys(ORBITS, (branch, np.float32)) if modes else {}),
             **({"end": ((count * count, len(modes)), np.int8)} if modes else {}),
         },
-        jobs=count,
+        jobs=count * count,
         workers=workers,
     )
     return build(

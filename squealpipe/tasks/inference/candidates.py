@@ -9,7 +9,7 @@ from typing import Any, Self
 import numpy as np
 
 from squealpipe.models.contact_system import ContactSystem, contact_system
-from squealpipe.parameters import SCENES, Parameters, Scene
+from squealpipe.parameters import SCENES, TABLE, Parameters, Scene, direction_of
 from squealpipe.reading import reading_of
 from squealpipe.schema import Outcome
 from squealpipe.solvers.a1.ensemble import Ensemble, run_ensemble
@@ -116,9 +116,16 @@ class Candidates:
         return [Parameters(**dict(zip(self.fields, row, strict=True))) for row in rows]
 
     @cached_property
+    def extended(self) -> list[Parameters]:
+        """The sets if they may go beyond the paper's model; else none."""
+        return self.sets if any(TABLE[name].extension for name in self.fields) else []
+
+    @cached_property
     def drag(self) -> np.ndarray:
         """Friction over normal force along +x in the linear models."""
-        return np.array([params.drag for params in self.sets])
+        if self.extended:
+            return np.array([params.drag for params in self.extended])
+        return np.asarray(direction_of(self.fields["belt_speed"]) * self.fields["mu"])
 
     @cached_property
     def unstable(self) -> list[Unstable]:

@@ -79,7 +79,7 @@ def _linearly_stable(candidates: Candidates) -> Margin:
     flutter = invariants.discriminant / invariants.half_trace**2
     margin = np.minimum(divergence, np.where(flutter < 0, flutter, np.inf))
     scene = np.array([SCENES["F3"].alpha1]), np.array([SCENES["F3"].alpha2])
-    for i, params in enumerate(candidates.sets):
+    for i, params in enumerate(candidates.extended):
         if is_undamped(params):
             continue
         found = stability(damped_system(params, *scene))
