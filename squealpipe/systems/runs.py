@@ -16,9 +16,10 @@ import xarray as xr
 from squealpipe.methods.processes import run_shared
 from squealpipe.methods.taylor import lanes, layout
 from squealpipe.methods.taylor.loop import loop
-from squealpipe.methods.taylor.scalar import ScalarSource, compile_scalar
+from squealpipe.methods.taylor.scalar import ScalarSource
 from squealpipe.methods.taylor.series import HybridSystem
 from squealpipe.methods.taylor.simd import FEW, LANES
+from squealpipe.methods.taylor.writing import compile_source
 from squealpipe.parameters import brief
 from squealpipe.schema import SYSTEM, Outcome, flag_table, in_words
 from squealpipe.systems.trace import TIME, TIME_UNIT, Names
@@ -73,9 +74,9 @@ def compiled(system: System, *, tangent: bool, few: bool) -> _Compiled:
         )
         known[tangent, few] = _Compiled(
             lanes.compile_system(symbolic, tangent=tangent, few=few),
-            compile_scalar(scalar.gauge()),
-            compile_scalar(scalar.change()),
-            compile_scalar(scalar.jump()) if tangent else None,
+            compile_source(scalar.gauge()),
+            compile_source(scalar.change()),
+            compile_source(scalar.jump()) if tangent else None,
         )
     return known[tangent, few]
 

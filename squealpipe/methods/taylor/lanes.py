@@ -25,21 +25,17 @@ from numba.extending import intrinsic
 
 from squealpipe.methods.compiled import compiled_entry
 from squealpipe.methods.progress import report
-from squealpipe.methods.taylor import simd, writing
+from squealpipe.methods.taylor import simd
 from squealpipe.methods.taylor.series import (
     HybridSystem,
     longest_source,
     perturbation_source,
     series_source,
 )
+from squealpipe.methods.taylor.writing import compile_source
 
 _numba: Any = numba
 _cgutils: Any = cgutils
-SIGNATURES = {
-    "series": types.void(types.intp, types.intp, types.intp, types.intp),
-    "perturb": types.void(types.intp, types.intp, types.intp, types.intp, types.intp),
-    "longest": types.void(types.intp, types.intp, types.intp, types.intp),
-}
 ROUNDS = 4096
 """Steps of all lanes between two returns from compiled code: some ten milliseconds."""
 MOST_TERMS = 64
@@ -74,16 +70,11 @@ def compile_system(system: HybridSystem, *, tangent: bool, few: bool = False) ->
     sources = {"series": source}
     if tangent:
         sources |= {"perturb": perturbation_source(system), "longest": longest_source(system)}
-    code = {name: _from_source(name, text, few) for name, text in sources.items()}
-    at = {name: code[name].address if name in code else 0 for name in SIGNATURES}
-    return CompiledSystem(**at, code=tuple(code.values()), n_series=n_series)
-
-
-def _from_source(name: str, source: str, few: bool) -> Any:
-    content = source.encode() + b"few" * few
-    content += b"".join(Path(each.__file__ or "").read_bytes() for each in (simd, writing))
-    function = writing.function_of(source, simd.FEW if few else simd.LANES)
-    return compiled_entry(function, SIGNATURES[name], content)
+    width = simd.FEW if few else simd.LANES
+    code = {name: compile_source(text, width) for name, text in sources.items()}
+    at = {name: code[name].address if name in code else 0 for name in ("perturb", "longest")}
+    series = code["series"].address
+    return CompiledSystem(series, **at, code=tuple(code.values()), n_series=n_series)
 
 
 def _to_pointer(typing_context: Any, value: Any) -> Any:  # noqa: ARG001

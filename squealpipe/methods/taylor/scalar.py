@@ -4,16 +4,12 @@ Arguments are addresses: ``z`` of the state (with the time last, if it is explic
 lane's parameters, ``r`` of a regime's constants, ``out`` of the results.
 """
 
-import hashlib
-import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
-from numba import types
 
-from squealpipe.methods.compiled import compiled_entry
 from squealpipe.methods.taylor import simd
 from squealpipe.methods.taylor.symbols import FUNCTIONS, Symbol, derivative, in_order, symbol
 
@@ -202,18 +198,6 @@ class ScalarSource:
 
 def _function(head: str, lines: Sequence[str]) -> str:
     return "\n".join([f"def {head}:", *(f" {line}" for line in lines), " return\n"])
-
-
-def compile_scalar(source: str) -> Any:
-    """A C function of addresses and sizes from source text; stored under its digest."""
-    name, _, rest = source[4:].partition("(")
-    scope: dict[str, Any] = {"number": simd.number, "put": simd.put, "math": math}
-    scope["__name__"] = simd.__name__
-    exec(compile(source, simd.__file__, "exec"), scope)  # noqa: S102
-    arguments = rest[: rest.index(")")].count(",") + 1
-    signature = types.void(*[types.intp] * arguments)
-    digest = hashlib.sha256(source.encode()).hexdigest().encode()
-    return compiled_entry(scope[name], signature, digest)
 
 
 def evaluate(roots: Sequence[Symbol], values: Mapping[str, Any]) -> tuple[Any, ...]:

@@ -50,13 +50,7 @@ PARTNERS: dict[str, Callable[[Symbol], Symbol]] = {
     "tanh": lambda node: Symbol("*", node, node),
 }
 """Whose lower orders the recurrence of a function reads in place of its own."""
-IN_CODE = {
-    "exp": "exponential({})",
-    "log": "logarithm({})",
-    "sin": "sine({})",
-    "cos": "cosine({})",
-    "tanh": "(splat(1.0) - splat(2.0) / (exponential({0} + {0}) + splat(1.0)))",
-}
+TANH = "(splat(1.0) - splat(2.0) / (exp({0} + {0}) + splat(1.0)))"
 TOGETHER = 2
 """Convolutions in one loop: their sums fill the registers of AVX2."""
 
@@ -355,9 +349,7 @@ def longest_source(system: HybridSystem) -> str:
     sums = ["splat(1.0)"] * size
     for power in range(4):
         for i in range(size):
-            terms = [
-                f"magnitude({at(n)}) * {sums[j]}" for (row, j), n in slopes.items() if row == i
-            ]
+            terms = [f"abs({at(n)}) * {sums[j]}" for (row, j), n in slopes.items() if row == i]
             lines.append(f"r{i}_{power} = {' + '.join(terms) or 'splat(0.0)'}")
         sums = [f"r{i}_{power}" for i in range(size)]
     bound = functools.reduce(lambda a, b: f"larger({a}, {b})", sums)
@@ -435,8 +427,9 @@ def pointwise(node: Symbol, name: Name) -> str:
     if node.kind == "joined":
         c1, a1, b1, c2, a2, b2 = (name(each) for each in node.arguments)
         return f"{c1} * ({a1} * {b1}) + {c2} * ({a2} * {b2})"
-    if node.kind in IN_CODE:
-        return IN_CODE[node.kind].format(name(node.arguments[0]))
+    if node.kind in FUNCTIONS:
+        code = TANH if node.kind == "tanh" else f"{node.kind}({{0}})"
+        return code.format(name(node.arguments[0]))
     base, exponent = node.arguments
     value = name(base) if exponent > 0.0 else f"(splat(1.0) / {name(base)})"
     whole, half = divmod(abs(exponent), 1.0)

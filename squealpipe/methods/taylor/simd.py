@@ -109,11 +109,17 @@ def _called(name: str) -> Callable[..., Any]:
     def generate(builder: Any, *values: Any) -> Any:
         row = values[0].type
         kind = ir.FunctionType(row, [row] * len(values))
-        name_of_width = f"llvm.{name}.v{row.count}f64"
+        lanes_of = f"v{row.count}" if isinstance(row, ir.VectorType) else ""
+        name_of_width = f"llvm.{name}.{lanes_of}f64"
         function = _cgutils.get_or_insert_function(builder.module, kind, name_of_width)
         return builder.call(function, values)
 
     return generate
+
+
+def _tanh(builder: Any, value: Any) -> Any:
+    kind = ir.FunctionType(value.type, [value.type])
+    return builder.call(_cgutils.get_or_insert_function(builder.module, kind, "tanh"), [value])
 
 
 def _bits_below(builder: Any, first: Any, second: Any) -> Any:
@@ -192,10 +198,13 @@ smaller: Any = _intrinsic(
 
 def written(width: int) -> dict[str, Any]:
     """What generates each function of written code, by its name there."""
-    functions = {"fma": "fma", "root": "sqrt", "exponential": "exp", "logarithm": "log"}
-    functions |= {"sine": "sin", "cosine": "cos", "magnitude": "fabs"}
     return {
-        **{name: _called(each) for name, each in functions.items()},
+        **{name: _called(name) for name in ("fma", "exp", "log", "sin", "cos", "pow")},
+        "root": _called("sqrt"),
+        "abs": _called("fabs"),
+        "tanh": _tanh,
+        "min": lambda builder, a, b: _choose_below(builder, b, a, b, a),
+        "put": _put,
         "load": partial(_load, width=width),
         "splat": partial(_splat, width=width),
         "store": _store,

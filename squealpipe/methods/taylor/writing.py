@@ -1,11 +1,12 @@
-"""Compiled functions from source text over rows of doubles, written as LLVM's code at once.
+"""Compiled functions from source text, written as LLVM's code at once.
 
-The text is Python over addresses, numbers and rows: assignments, calls, loops over ranges, and one
-branch. numba would compile it too, but takes ten times as long to find the types of its hundreds of
-lines; here it compiles a call of what is written.
+The text is Python over addresses, numbers and rows of them: assignments, calls, branches, loops.
+numba would compile it too, but takes ten times as long to find the types of its hundreds of lines;
+here it compiles a call of what is written.
 """
 
 import ast
+from pathlib import Path
 from typing import Any
 
 from llvmlite import ir
@@ -13,62 +14,74 @@ from numba import types
 from numba.core import cgutils
 from numba.extending import intrinsic
 
-from squealpipe.methods.taylor.simd import written
+from squealpipe.methods.compiled import compiled_entry
+from squealpipe.methods.taylor import simd
 
 _cgutils: Any = cgutils
 _WORD, _DOUBLE = ir.IntType(64), ir.DoubleType()
 _INTEGERS = {ast.Add: "add", ast.Sub: "sub", ast.Mult: "mul", ast.FloorDiv: "sdiv", ast.Mod: "srem"}
 """Those of integers that are not negative."""
 _DOUBLES = {ast.Add: "fadd", ast.Sub: "fsub", ast.Mult: "fmul", ast.Div: "fdiv"}
+_TESTS = {ast.Eq: "==", ast.NotEq: "!=", ast.GtE: ">="}
 
 
-def function_of(source: str, width: int) -> Any:
-    """A function for ``numba.cfunc`` of addresses and sizes, from its text.
+def compile_source(source: str, width: int = simd.LANES) -> Any:
+    """A C function of addresses and sizes from its text, stored under a digest of it.
 
     Args:
-        width: lanes that it computes.
+        width: lanes of the rows that it computes.
     """
     definition: Any = ast.parse(source).body[0]
     names = [each.arg for each in definition.args.args]
-    listed = ", ".join(names)
+    listed, words = ", ".join(names), [types.intp] * len(names)
 
     def typing(context: Any, *given: Any) -> Any:  # noqa: ARG001
         def code(context: Any, builder: Any, signature: Any, values: Any) -> Any:  # noqa: ARG001
-            _Writer(builder, width, dict(zip(names, values, strict=True))).run(definition.body)
+            writer = _Writer(builder, width, dict(zip(names, values, strict=True)))
+            writer.finish(definition.body)
             return context.get_dummy_value()
 
-        return types.void(*[types.intp] * len(names)), code
+        return types.void(*words), code
 
     scope: dict[str, Any] = {"typing": typing, "__name__": __name__}
     exec(f"def body(context, {listed}): return typing(context, {listed})", scope)  # noqa: S102
     scope["body"] = intrinsic(scope["body"])
     call = f"def {definition.name}({listed}): body({listed})"
     exec(compile(call, __file__, "exec"), scope)  # noqa: S102
-    return scope[definition.name]
+    content = b"".join(Path(path or "").read_bytes() for path in (simd.__file__, __file__))
+    content += f"{source}{width}".encode()
+    return compiled_entry(scope[definition.name], types.void(*words), content)
 
 
 class _Writer:
     """Writes statements; each name is a place on the stack, which LLVM turns into registers."""
 
     def __init__(self, builder: Any, width: int, arguments: dict[str, Any]) -> None:
-        self.builder, self.functions = builder, written(width)
+        self.builder, self.functions = builder, simd.written(width)
+        self.end = builder.append_basic_block("end")
         self.places: dict[str, Any] = {}
         for name, value in arguments.items():
             self._assign(name, value)
 
-    def run(self, statements: list[Any]) -> None:
-        """Assignments, calls, branches where two integers are equal, and loops over a range."""
+    def finish(self, statements: list[Any]) -> None:
+        """The whole body."""
+        self._run(statements)
+        if not self.builder.block.is_terminated:
+            self.builder.branch(self.end)
+        self.builder.position_at_end(self.end)
+
+    def _run(self, statements: list[Any]) -> None:
         for each in statements:
             if isinstance(each, ast.Assign):
                 target: Any = each.targets[0]
                 self._assign(target.id, self._value(each.value))
             elif isinstance(each, ast.Expr):
                 self._value(each.value)
+            elif isinstance(each, ast.Return):
+                self.builder.branch(self.end)
             elif isinstance(each, ast.If):
-                test: Any = each.test
-                pair = self._value(test.left), self._value(test.comparators[0])
-                with self.builder.if_then(self.builder.icmp_signed("==", *pair)):
-                    self.run(each.body)
+                with self.builder.if_then(self._test(each.test)):
+                    self._run(each.body)
             else:
                 bounds = [self._value(bound) for bound in each.iter.args]
                 start, stop, step = ([_WORD(0)] * (len(bounds) == 1) + bounds + [_WORD(1)])[:3]
@@ -76,23 +89,35 @@ class _Writer:
                 loop = _cgutils.for_range_slice(self.builder, start, stop, step, _WORD, inc=up)
                 with loop as (index, _):
                     self._assign(each.target.id, index)
-                    self.run(each.body)
+                    self._run(each.body)
 
     def _assign(self, name: str, value: Any) -> None:
         if name not in self.places:
             self.places[name] = _cgutils.alloca_once(self.builder, value.type)
         self.builder.store(value, self.places[name])
 
+    def _test(self, node: Any) -> Any:
+        pair = self._value(node.left), self._value(node.comparators[0])
+        symbol = _TESTS[type(node.ops[0])]
+        if pair[0].type == _WORD:
+            return self.builder.icmp_signed(symbol, *pair)
+        unlike = self.builder.fcmp_unordered  # NaN is unlike anything
+        return (unlike if symbol == "!=" else self.builder.fcmp_ordered)(symbol, *pair)
+
     def _value(self, node: Any) -> Any:
         if isinstance(node, ast.Name):
             return self.builder.load(self.places[node.id])
-        if isinstance(node, ast.UnaryOp):
-            return self._value(ast.Constant(-node.operand.value))  # type: ignore[attr-defined]
         if isinstance(node, ast.Constant):
             return (_WORD if isinstance(node.value, int) else _DOUBLE)(node.value)
+        if isinstance(node, ast.UnaryOp):
+            operand: Any = node.operand
+            if isinstance(operand, ast.Constant):
+                return self._value(ast.Constant(-operand.value))  # type: ignore[operator]
+            return self.builder.fneg(self._value(operand))
         if isinstance(node, ast.Call):
             function: Any = node.func
-            return self.functions[function.id](self.builder, *map(self._value, node.args))
+            name = getattr(function, "id", None) or function.attr  # also of the module math
+            return self.functions[name](self.builder, *map(self._value, node.args))
         operands = [self._value(node.left), self._value(node.right)]
         kinds = {each.type for each in operands}
         if kinds == {_WORD}:
@@ -102,4 +127,6 @@ class _Writer:
                 self.builder.sitofp(each, _DOUBLE) if each.type == _WORD else each
                 for each in operands
             ]
+        if isinstance(node.op, ast.Pow):
+            return self.functions["pow"](self.builder, *operands)
         return getattr(self.builder, _DOUBLES[type(node.op)])(*operands)
