@@ -8,10 +8,7 @@ import warnings
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
-
-if TYPE_CHECKING:
-    from rich.console import Console
+from typing import Any
 
 DONE = 0
 ANSWER_IS_NO = 1
@@ -80,12 +77,12 @@ def answer(*lines: str) -> None:
 @contextmanager
 def working(what: str) -> Iterator[None]:
     """A terminal sees that a command works, and how long it has and will; a pipe nothing."""
-    from rich.console import Console as RichConsole
+    from rich.console import Console
     from rich.progress import Progress, SpinnerColumn, TimeElapsedColumn
 
     from squealpipe.methods.progress import shown
 
-    console = RichConsole(stderr=True)
+    console = Console(stderr=True)
     columns: tuple[Any, ...] = (
         SpinnerColumn(),
         *Progress.get_default_columns(),
@@ -97,14 +94,3 @@ def working(what: str) -> Iterator[None]:
         task = progress.add_task(what, total=None)
         with shown(lambda share: progress.update(task, completed=share, total=1.0)):
             yield
-
-
-def console() -> Console:
-    """A console for tables, which ends as quietly as ``print`` when its reader goes away."""
-    from rich.console import Console as RichConsole
-
-    class _Console(RichConsole):
-        def on_broken_pipe(self) -> None:
-            raise BrokenPipeError
-
-    return _Console()

@@ -6,7 +6,7 @@ from typing import Annotated
 from cyclopts import Parameter
 
 from squealpipe.cli.arguments import AsJson, Configs, Switch, Texts
-from squealpipe.cli.console import ANSWER_IS_NO, DONE, console, working
+from squealpipe.cli.console import ANSWER_IS_NO, DONE, working
 from squealpipe.text import duration
 
 
@@ -20,6 +20,7 @@ def explain(*, config: Configs = None, quick: Switch = False, json_: AsJson = Fa
         quick: coarse grids and short horizons, as for `squealpipe run --quick`.
         json_: print JSON.
     """
+    from rich.console import Console
     from rich.markup import escape
     from rich.table import Table
 
@@ -37,7 +38,7 @@ def explain(*, config: Configs = None, quick: Switch = False, json_: AsJson = Fa
     for job in plan.jobs:
         time = "never run" if job.seconds is None else duration(job.seconds)
         grid.add_row(job.rule, escape(job.why()), time)
-    console().print(grid)
+    Console().print(grid)
     print(f"figures that change: {', '.join(plan.figures) or 'none'}\n{plan.estimate()}")
     return DONE
 
