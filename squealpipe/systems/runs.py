@@ -19,7 +19,6 @@ from squealpipe.methods.taylor.loop import loop
 from squealpipe.methods.taylor.scalar import ScalarSource
 from squealpipe.methods.taylor.series import HybridSystem
 from squealpipe.methods.taylor.simd import FEW, LANES
-from squealpipe.methods.taylor.writing import compile_source
 from squealpipe.parameters import brief
 from squealpipe.schema import SYSTEM, Outcome, flag_table, in_words
 from squealpipe.systems.trace import TIME, TIME_UNIT, Names
@@ -44,20 +43,12 @@ SAMPLES_PER_STEP, MOST_SAMPLES = 4, 20_001
 MOST_STEPS, MOST_EVENTS = 1e7, 1e7
 
 
-@dataclass(frozen=True, eq=False)
-class _Compiled:
-    series: lanes.CompiledSystem
-    gauge: Any
-    change: Any
-    jump: Any
-
-
-_COMPILED: weakref.WeakKeyDictionary[Any, dict[tuple[bool, bool], _Compiled]] = (
+_COMPILED: weakref.WeakKeyDictionary[Any, dict[tuple[bool, bool], lanes.CompiledSystem]] = (
     weakref.WeakKeyDictionary()
 )
 
 
-def compiled(system: System, *, tangent: bool, few: bool) -> _Compiled:
+def compiled(system: System, *, tangent: bool, few: bool) -> lanes.CompiledSystem:
     """The machine code of a system, built once a process and kept on disk."""
     known = _COMPILED.setdefault(system, {})
     if (tangent, few) not in known:
@@ -72,12 +63,10 @@ def compiled(system: System, *, tangent: bool, few: bool) -> _Compiled:
         scalar = ScalarSource(
             t.variables, t.rates, t.parameters, t.constants, t.surfaces, t.switches, t.size
         )
-        known[tangent, few] = _Compiled(
-            lanes.compile_system(symbolic, tangent=tangent, few=few),
-            compile_source(scalar.gauge()),
-            compile_source(scalar.change()),
-            compile_source(scalar.jump()) if tangent else None,
-        )
+        sources = {"gauge": scalar.gauge(), "change": scalar.change()}
+        if tangent:
+            sources["jump"] = scalar.jump()
+        known[tangent, few] = lanes.compile_system(symbolic, sources, tangent=tangent, few=few)
     return known[tangent, few]
 
 
@@ -204,7 +193,7 @@ def integrate(
         held = arrays | {
             "rows": rows,
             "integers": integers,
-            "series": lanes.aligned(code.series.n_series, terms, LANES),
+            "series": lanes.aligned(code.n_series, terms, LANES),
             "inverses": lanes.INVERSES,
             "sizes": system.sizes if unit_sizes is None else unit_sizes,
             "tracked": np.array(watched, np.int64),
@@ -242,13 +231,9 @@ def integrate(
             "late_from": t.kinds.index(late_from) if late_from in t.kinds else -1,
             "n_rounds": lanes.ROUNDS,
             "tangent": int(tangent),
-            "take_step": code.series.series,
-            "perturb": code.series.perturb,
-            "longest": code.series.longest,
-            "gauge": code.gauge.address,
-            "change": code.change.address,
-            "jump": code.jump.address if code.jump else 0,
-            "n_series": code.series.n_series,
+            "take_step": code.address("series"),
+            **{name: code.address(name) for name in layout.FUNCTIONS},
+            "n_series": code.n_series,
             "n_rows": n_rows,
             "n_switches": len(t.switches),
         }

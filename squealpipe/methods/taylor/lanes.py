@@ -14,6 +14,7 @@ import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 import numba
@@ -45,36 +46,37 @@ INVERSES = 1.0 / np.maximum(1.0, np.arange(MOST_TERMS))
 
 @dataclass(frozen=True, eq=False)
 class CompiledSystem:
-    """The compiled series of a system.
+    """The compiled functions of a system by name, and the number of series that it keeps."""
 
-    Attributes:
-        series: address of :func:`squealpipe.methods.taylor.series.series_source`, compiled.
-        perturb, longest: likewise of ``perturbation_source`` and ``longest_source``, 0 if left out.
-        n_series: number of series that the former keeps.
-    """
-
-    series: int
-    perturb: int
-    longest: int
-    code: tuple[Any, ...]
+    code: dict[str, Any]
     n_series: int
 
+    def address(self, name: str) -> int:
+        """Of a function; 0 of one that is left out."""
+        return self.code[name].address if name in self.code else 0
 
-def compile_system(system: HybridSystem, *, tangent: bool, few: bool = False) -> CompiledSystem:
+
+def compile_system(
+    system: HybridSystem,
+    further: Mapping[str, str] = MappingProxyType({}),
+    *,
+    tangent: bool,
+    few: bool = False,
+) -> CompiledSystem:
     """Write and compile the functions of a system, or take them from the store.
 
     Args:
+        further: sources of its functions of one state.
         few: compute the first ``simd.FEW`` lanes only.
     """
-    source, n_series = series_source(system)
-    sources = {"series": source}
+    series, n_series = series_source(system)
+    sources = {"series": series}
     if tangent:
         sources |= {"perturb": perturbation_source(system), "longest": longest_source(system)}
     width = simd.FEW if few else simd.LANES
     code = {name: compile_source(text, width) for name, text in sources.items()}
-    at = {name: code[name].address if name in code else 0 for name in ("perturb", "longest")}
-    series = code["series"].address
-    return CompiledSystem(series, **at, code=tuple(code.values()), n_series=n_series)
+    code |= {name: compile_source(text) for name, text in further.items()}
+    return CompiledSystem(code, n_series)
 
 
 def _to_pointer(typing_context: Any, value: Any) -> Any:  # noqa: ARG001

@@ -29,11 +29,12 @@ ARRAYS = (
     "samples", "sample_regimes", "sample_sums", "event_times", "event_kinds", "event_regimes",
     "event_states", "peaks", "points", "half_turns", "queue",
 )  # fmt: skip
+FUNCTIONS = ("perturb", "longest", "gauge", "change", "jump")
 SIZES = (
     "n_terms", "n_jobs", "n_states", "n_variables", "n_surfaces", "n_tracked", "n_parameters",
     "n_constants", "n_regimes", "n_kinds", "n_samples", "n_sums", "n_logged", "n_points",
     "n_rounds", "until", "late_from", "tangent",
-    "take_step", "perturb", "longest", "gauge", "change", "jump", "n_series", "n_rows",
+    "take_step", *FUNCTIONS, "n_series", "n_rows",
     "n_switches",
 )  # fmt: skip
 TABLE = np.dtype([(name, "i8") for name in (*ARRAYS, *SIZES)])

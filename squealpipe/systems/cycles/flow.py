@@ -327,7 +327,7 @@ class Flow:
         return self._at(self._functions[key], values, event.before, state, time)
 
     def _prepare(self, legs: int) -> None:
-        t, code = self.system.integrated, compiled(self.system, tangent=False, few=True).series
+        t, code = self.system.integrated, compiled(self.system, tangent=False, few=True)
         terms, constants = taylor_terms(TOLERANCE), len(t.constants)
         kept = len(t.variables) + len(t.surfaces) + len(t.outputs)
         self._legs = legs
@@ -335,7 +335,7 @@ class Flow:
             "n_terms": terms, "n_legs": legs, "n_states": t.size,
             "n_variables": len(t.variables), "n_kept": kept, "n_parameters": len(t.parameters),
             "n_constants": constants, "n_regimes": len(t.regimes), "n_series": code.n_series,
-            "n_steps": self._room, "take_step": code.series,
+            "n_steps": self._room, "take_step": code.address("series"),
         }  # fmt: skip
         arrays = {
             "rows": aligned(1 + len(t.parameters) + constants, LANES),

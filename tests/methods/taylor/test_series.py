@@ -38,7 +38,7 @@ def coefficients(rates, start, events=(ONE, ONE, ONE), parameters=()):
     for row, (_, value) in zip(values, parameters, strict=False):
         row[:] = value
     addresses = rows.ctypes.data, values.ctypes.data
-    Words(compiled.series)(*addresses, INVERSES.ctypes.data, TERMS)
+    Words(compiled.address("series"))(*addresses, INVERSES.ctypes.data, TERMS)
     assert (rows == rows[:, :, :1]).all()
     return compiled, rows, values
 
@@ -106,7 +106,7 @@ def test_a_perturbation_follows_the_variational_equation(step):
     compiled, rows, values = coefficients((-(x * x), x * y), (1.0, 1.0))
     length, tangent = aligned(LANES), aligned(2, LANES)
     length[:], tangent[0], tangent[1] = step, 0.7, -0.4
-    FiveWords(compiled.perturb)(
+    FiveWords(compiled.address("perturb"))(
         rows.ctypes.data, values.ctypes.data, length.ctypes.data, tangent.ctypes.data, TERMS
     )
     exact = [0.7 / (1.0 + step) ** 2, -0.4 * (1.0 + step) + 0.7 * step]
