@@ -181,17 +181,9 @@ def transfer(slopes: Any, lengths: Any, leg: Any, up_to: Any, weights: Any, foun
     for _ in range(_SWEEPS):
         _integrate(rates, up_to, states)
         _multiply(slopes, lengths, states, rates)
-    growth, grown = np.empty((n, columns)), np.empty((n, columns))
     for s in range(steps):
+        growth = np.zeros((n, columns))
+        for node in range(nodes):
+            growth += weights[node] * rates[node, :, :, s]
         total = found[leg[s]]
-        for i in range(n):
-            for c in range(columns):
-                growth[i, c] = grown[i, c] = 0.0
-                for node in range(nodes):
-                    growth[i, c] += weights[node] * rates[node, i, c, s]
-            for j in range(columns):
-                for c in range(columns):
-                    grown[i, c] += growth[i, j] * total[j, c]
-        for i in range(n):
-            for c in range(columns):
-                total[i, c] += grown[i, c]
+        total[:n] += growth @ total
