@@ -123,22 +123,6 @@ def test_backbone_follows_the_linear_mode_first(capsys):
     assert float(branch.y_peak.max()) == pytest.approx(1.5)
 
 
-@pytest.mark.parametrize("method", ["exact", "hbm"])
-@pytest.mark.parametrize(
-    ("angles", "reason"),
-    [(("0.4pi", "0.6pi"), "singular_static_state"), (("0.5pi", "0.5pi"), "rigid_mode")],
-)
-def test_an_empty_backbone_gives_its_reason_in_one_line(angles, reason, method, capsys, tmp_path):
-    assert run(["backbone", *angles, "--method", method, "-o", "b.nc"]) == 1
-    told = capsys.readouterr()
-    assert told.out.count("\n") == 2
-    assert reason in told.out
-    assert "try other angles" in told.out
-    assert not told.err
-    assert load("b.nc").sizes["point"] == 0
-    assert (tmp_path / "b.png").is_file()
-
-
 def test_sweep_writes_one_dataset(capsys):
     assert run([
         "sweep", "stability_map", "--vary", "mu=0:0.6:3", "--vary", "alpha1=0:pi:5",

@@ -178,12 +178,6 @@ def test_critical_friction_where_a_mode_moves_hardly_a_dashpot(angles, dashpots,
     assert float(critical_friction(params, *angles)[0]) == pytest.approx(high, rel=1e-6)
 
 
-def test_critical_friction_is_of_coulombs_law():
-    falling = FORMER.with_(friction_law="exponential", mu_static=0.5, belt_speed=1.0)
-    with pytest.raises(ValueError, match=r"friction_law = 'exponential'.*use stability_map"):
-        critical_friction_map(falling, [1.0], [2.0])
-
-
 @pytest.mark.parametrize("scale", [1.0, 0.3, 7.1])
 def test_where_sliding_diverges_first_dashpots_lower_nothing(scale):
     """There the critical friction is that of det K = 0, which has no dashpots in it."""

@@ -36,14 +36,6 @@ def test_without_separation_nothing_changes_where_contact_is_kept(table):
         np.testing.assert_allclose(pair[0], pair[1], rtol=1e-9)
 
 
-def test_sliding_state_is_the_force_balance_along_the_belt(table):
-    """At F2a K11 = k and K12 = 0: x = μ k3 l_pre/k, and the reaction is the actuation."""
-    p = FORMER
-    x = float(table.largest_x.sel(level="A2", scene="F2a"))
-    assert x == pytest.approx(p.mu * p.k3 * p.preload / p.k1, rel=1e-12)
-    assert measure(table, "A2", "F2a", "contact is kept") == pytest.approx(1.0, rel=1e-12)
-
-
 def test_turn_of_a_spring_is_that_of_the_motion(table):
     """At F5a both springs lie along x, so the largest turn follows from the highest point."""
     p, scene = FORMER, SCENES["F5a"]
