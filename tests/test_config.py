@@ -59,7 +59,6 @@ def test_every_mistake_is_told_at_once(written):
     ("text", "expected"),
     [
         ("- 1\n- 2", "must hold keys and values, not list"),
-        ("just text", "must hold keys and values, not str"),
         ("a: [1, 2", "line 1 is not plain YAML: expected ',' or ']'"),
         ("a: 1\nb: b: c", "line 2 is not plain YAML"),
         ("a:\n\t- b", "line 2 is not plain YAML: found character '\\t' that cannot start any"),
@@ -67,7 +66,6 @@ def test_every_mistake_is_told_at_once(written):
         ("parameters: 5", "parameters = 5: keys and values are needed"),
         ("parameters: {mass: [1, 2]}", "parameters.mass = (1, 2)"),
         ("parameters: {mass: null}", "parameters.mass = None"),
-        ("parameters: {mass: {a: 1}}", "parameters.mass = {'a': 1}"),
         ("parameters: {mass: 2020-01-01}", "parameters.mass = '2020-01-01'"),
         ("1: 2", "1: unknown key"),
         ("results: a b; rm -rf x", "results = "),
@@ -75,7 +73,6 @@ def test_every_mistake_is_told_at_once(written):
         ("results: results/./archive", "outside results/archive"),
         ("results: ../elsewhere", "a folder of its own"),
         ("results: /", "a folder of its own"),
-        ("results: .", "a folder of its own"),
     ],
 )
 def test_text_that_is_no_configuration(written, text, expected):
