@@ -34,7 +34,9 @@ def test_exception_in_compiled_code_reaches_the_caller(monkeypatch, workers):
 
 @pytest.mark.parametrize("model", ["A1", "A4", "A1-linear-springs"])
 @pytest.mark.parametrize("length", ["length1", "length2"])
-def test_vanishing_length_earns_no_success_without_states(model, length):
-    found = simulate(Parameters(**{length: 1e-170}), 2.0, 2.6, t_end=2.0, model=model)
+@pytest.mark.parametrize("size", [1e-155, 1e-170])  # at the first, surfaces without a bound
+def test_vanishing_length_earns_no_success_without_states(model, length, size):
+    away, params = (0.0, 0.4, 0.0, 0.0), Parameters(**{length: size})
+    found = simulate(params, 0.0, 1.0, t_end=2.0, model=model, initial_state=away)
     whole = all(np.isfinite(found[name]).all() for name in ("x", "y", "vx", "vy"))
     assert (found.outcome == Outcome.converged) == whole

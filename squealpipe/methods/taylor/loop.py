@@ -13,32 +13,8 @@ import numba
 import numpy as np
 
 from squealpipe.methods.compiled import inline, part
+from squealpipe.methods.taylor import layout
 from squealpipe.methods.taylor.lanes import call, compile_advance, view
-from squealpipe.methods.taylor.layout import (
-    CLOCK,
-    CORRECTION,
-    ENTERED,
-    EVENTS,
-    FIXED_INTEGERS,
-    FIXED_ROWS,
-    HIT,
-    JOB,
-    LATE,
-    LONGEST,
-    LOST,
-    MOST_STEPS,
-    NEXT_SAMPLE,
-    OUTCOME,
-    REGIME,
-    RUNNING,
-    STEP,
-    STEP_LIMIT,
-    STEPS,
-    T_END,
-    T_LATE,
-    TABLE,
-    Memory,
-)
 from squealpipe.methods.taylor.observation import (
     clear_extremes,
     count_turns,
@@ -56,12 +32,12 @@ _numba: Any = numba
 @part
 def _grow(t: Any, m: Any, lane: int, tangent_row: int) -> None:
     """Note the horizon when it is passed, and scale a perturbation back."""
-    job, size = m.integers[JOB, lane], log_norm(t, m, lane, tangent_row)
+    job, size = m.integers[layout.JOB, lane], log_norm(t, m, lane, tangent_row)
     if size == -math.inf:
         return
     growth = m.summary[job, 0] + size
     if math.isnan(m.summary[job, 1]) and growth > m.limits[job, 4]:
-        m.summary[job, 1] = m.rows[CLOCK, lane]
+        m.summary[job, 1] = m.rows[layout.CLOCK, lane]
     if not 1e-6 < math.exp(2.0 * size) < 1e6:
         for variable in range(t.n_states):
             m.rows[tangent_row + variable, lane] /= math.exp(size)
@@ -72,10 +48,10 @@ def _grow(t: Any, m: Any, lane: int, tangent_row: int) -> None:
 @part
 def _limit_growth(m: Any, lane: int) -> None:
     """The squared size of a perturbation at which the horizon is passed."""
-    job = m.integers[JOB, lane]
+    job = m.integers[layout.JOB, lane]
     left = m.limits[job, 4] - m.summary[job, 0]
     waits = math.isnan(m.summary[job, 1]) and left < 300.0
-    m.rows[LOST, lane] = math.exp(2.0 * left) if waits else math.inf
+    m.rows[layout.LOST, lane] = math.exp(2.0 * left) if waits else math.inf
 
 
 @inline
@@ -86,7 +62,7 @@ def _grow_all(t: Any, m: Any, tangent_row: int, busy: int) -> None:
         part = load(t.rows + (tangent_row + variable) * ROW) * splat(1.0 / m.sizes[variable])
         square = square + part * part
     usual = bits_below(splat(1e-6), square) & bits_below(square, splat(1e6))
-    bits = ~(usual & bits_below(square, load(t.rows + LOST * ROW))) & busy
+    bits = ~(usual & bits_below(square, load(t.rows + layout.LOST * ROW))) & busy
     while bits:
         lane = first_bit(bits)
         bits ^= 1 << lane
@@ -96,18 +72,19 @@ def _grow_all(t: Any, m: Any, tangent_row: int, busy: int) -> None:
 @part
 def _finish(t: Any, m: Any, c: Any, lane: int, tangent_row: int, first_extreme: int) -> None:
     """Write a job's results."""
-    rows, job = m.rows, m.integers[JOB, lane]
-    m.ends[job, 0], m.ends[job, 1] = m.integers[OUTCOME, lane], m.integers[REGIME, lane]
-    m.ends[job, 2], m.ends[job, 3] = int(rows[STEPS, lane]), m.integers[EVENTS, lane]
-    m.summary[job, 2] = rows[CLOCK, lane]
+    rows, job = m.rows, m.integers[layout.JOB, lane]
+    last = m.integers[layout.REGIME, lane]
+    m.ends[job, 0], m.ends[job, 1] = m.integers[layout.OUTCOME, lane], last
+    m.ends[job, 2], m.ends[job, 3] = int(rows[layout.STEPS, lane]), m.integers[layout.EVENTS, lane]
+    m.summary[job, 2] = rows[layout.CLOCK, lane]
     for variable in range(t.n_states):
         m.final[job, variable] = c[variable, 0, lane]
     for index in range(t.n_tracked):
         for each in range(2):
             found = rows[first_extreme + 2 * index + each, lane]
-            m.extremes[job, index, m.integers[LATE, lane], each] = found
+            m.extremes[job, index, m.integers[layout.LATE, lane], each] = found
     first_time = first_extreme + 2 * t.n_tracked
-    rows[first_time + m.integers[REGIME, lane], lane] += rows[CLOCK, lane] - rows[ENTERED, lane]
+    rows[first_time + last, lane] += rows[layout.CLOCK, lane] - rows[layout.ENTERED, lane]
     for regime in range(t.n_regimes):
         m.durations[job, regime] = rows[first_time + regime, lane]
     for point in range(t.n_points):
@@ -121,16 +98,17 @@ def _start(t: Any, m: Any, c: Any, lane: int, job: int, tangent_row: int, first:
     """Start a job in a lane."""
     rows, integers = m.rows, m.integers
     integers[:, lane] = 0
-    integers[JOB, lane], integers[OUTCOME, lane], integers[HIT, lane] = job, RUNNING, -1
-    for row in (CLOCK, CORRECTION, STEPS, STEP, ENTERED):
+    integers[layout.JOB, lane], integers[layout.OUTCOME, lane] = job, layout.RUNNING
+    integers[layout.HIT, lane] = -1
+    for row in (layout.CLOCK, layout.CORRECTION, layout.STEPS, layout.STEP, layout.ENTERED):
         rows[row, lane] = 0.0
-    rows[LONGEST, lane] = math.inf
-    rows[T_END, lane], rows[T_LATE, lane] = m.limits[job, 0], m.limits[job, 1]
-    rows[MOST_STEPS, lane] = m.limits[job, 2]
+    rows[layout.LONGEST, lane] = math.inf
+    rows[layout.T_END, lane], rows[layout.T_LATE, lane] = m.limits[job, 0], m.limits[job, 1]
+    rows[layout.MOST_STEPS, lane] = m.limits[job, 2]
     if m.limits[job, 1] <= 0.0:
-        rows[T_LATE, lane], integers[LATE, lane] = math.inf, 1
+        rows[layout.T_LATE, lane], integers[layout.LATE, lane] = math.inf, 1
     times = m.sample_times[job]
-    rows[NEXT_SAMPLE, lane] = times[0] if times.size else math.inf
+    rows[layout.NEXT_SAMPLE, lane] = times[0] if times.size else math.inf
     first_parameter = t.n_rows - t.n_constants - t.n_parameters
     for parameter in range(t.n_parameters):
         rows[first_parameter + parameter, lane] = m.parameters[job, parameter]
@@ -156,13 +134,15 @@ def _go_on(t: Any) -> None:
     """The end of each lane's step becomes the start of the next; its time is compensated."""
     at = t.rows
     for variable in range(t.n_variables):
-        store(t.series + variable * t.n_terms * ROW, load(at + (FIXED_ROWS + variable) * ROW))
-    store(at + STEPS * ROW, load(at + STEPS * ROW) + 1.0)
-    increment = load(at + STEP * ROW) + load(at + CORRECTION * ROW)
-    clock = load(at + CLOCK * ROW)
+        store(
+            t.series + variable * t.n_terms * ROW, load(at + (layout.FIXED_ROWS + variable) * ROW)
+        )
+    store(at + layout.STEPS * ROW, load(at + layout.STEPS * ROW) + 1.0)
+    increment = load(at + layout.STEP * ROW) + load(at + layout.CORRECTION * ROW)
+    clock = load(at + layout.CLOCK * ROW)
     time = clock + increment
-    store(at + CORRECTION * ROW, (clock - time) + increment)
-    store(at + CLOCK * ROW, time)
+    store(at + layout.CORRECTION * ROW, (clock - time) + increment)
+    store(at + layout.CLOCK * ROW, time)
 
 
 @inline
@@ -173,10 +153,10 @@ def _refill(
     while ended:
         lane = first_bit(ended)
         ended ^= 1 << lane
-        if m.integers[JOB, lane] >= 0:
+        if m.integers[layout.JOB, lane] >= 0:
             _finish(t, m, c, lane, tangent_row, first_extreme)
         busy &= ~(1 << lane)
-        m.integers[JOB, lane] = -1
+        m.integers[layout.JOB, lane] = -1
         if m.queue[0] < m.queue[1]:
             job = m.queue[0]
             m.queue[0] += m.queue[2]
@@ -188,14 +168,14 @@ def _refill(
 @inline
 def _ended(t: Any, m: Any, special: int, busy: int) -> int:
     """Lanes whose run has ended, among those that ended their step and those out of steps."""
-    spent = ~bits_below(load(t.rows + STEPS * ROW), load(t.rows + MOST_STEPS * ROW))
+    spent = ~bits_below(load(t.rows + layout.STEPS * ROW), load(t.rows + layout.MOST_STEPS * ROW))
     bits, ended = (special | spent) & busy, 0
     while bits:
         lane = first_bit(bits)
         bits ^= 1 << lane
-        if m.integers[OUTCOME, lane] == RUNNING and spent & (1 << lane):
-            m.integers[OUTCOME, lane] = STEP_LIMIT
-        if m.integers[OUTCOME, lane] != RUNNING:
+        if m.integers[layout.OUTCOME, lane] == layout.RUNNING and spent & (1 << lane):
+            m.integers[layout.OUTCOME, lane] = layout.STEP_LIMIT
+        if m.integers[layout.OUTCOME, lane] != layout.RUNNING:
             ended |= 1 << lane
     return ended
 
@@ -203,7 +183,7 @@ def _ended(t: Any, m: Any, special: int, busy: int) -> int:
 @inline
 def _rounds(t: Any, m: Any, c: Any) -> int:
     """Steps of all lanes until none is busy, or there were enough."""
-    tangent_row = FIXED_ROWS + t.n_variables
+    tangent_row = layout.FIXED_ROWS + t.n_variables
     first_extreme = tangent_row + t.n_states
     first_time = first_extreme + 2 * t.n_tracked
     first_parameter = t.n_rows - t.n_constants - t.n_parameters
@@ -211,18 +191,18 @@ def _rounds(t: Any, m: Any, c: Any) -> int:
     time_unit = first_parameter + t.n_parameters - 1
     busy, ended = 0, 0
     for lane in range(LANES):
-        busy |= (1 << lane) if m.integers[JOB, lane] >= 0 else 0
-        ended |= (1 << lane) if m.integers[OUTCOME, lane] != RUNNING else 0
+        busy |= (1 << lane) if m.integers[layout.JOB, lane] >= 0 else 0
+        ended |= (1 << lane) if m.integers[layout.OUTCOME, lane] != layout.RUNNING else 0
     for _ in range(t.n_rounds):
         busy = _refill(t, m, c, busy, ended, tangent_row, first_extreme)
         if not busy:
             return 0
         call(t.take_step, (t.series, parameters, t.inverses, t.n_terms))
         if t.tangent:
-            call(t.longest, (t.series, parameters, t.rows + LONGEST * ROW, t.n_terms))
+            call(t.longest, (t.series, parameters, t.rows + layout.LONGEST * ROW, t.n_terms))
         start_from_zero(t, m, c)
         special = take_step(t, m.active, m.sizes) & busy
-        due = reaches(t.rows, NEXT_SAMPLE) & busy if t.n_samples else 0
+        due = reaches(t.rows, layout.NEXT_SAMPLE) & busy if t.n_samples else 0
         bits = special
         while bits:
             lane = first_bit(bits)
@@ -235,11 +215,11 @@ def _rounds(t: Any, m: Any, c: Any) -> int:
         observe(t, m, c, first_extreme, busy)
         turned = count_turns(t, m, first_time + t.n_regimes, busy)
         if t.tangent:
-            step, at = t.rows + STEP * ROW, t.rows + tangent_row * ROW
+            step, at = t.rows + layout.STEP * ROW, t.rows + tangent_row * ROW
             call(t.perturb, (t.series, parameters, step, at, t.n_terms))
         _go_on(t)
         if t.n_variables > t.n_states:
-            clock = load(t.rows + CLOCK * ROW) + load(t.rows + CORRECTION * ROW)
+            clock = load(t.rows + layout.CLOCK * ROW) + load(t.rows + layout.CORRECTION * ROW)
             now = clock * load(t.rows + time_unit * ROW)
             store(t.series + t.n_states * t.n_terms * ROW, now)
         switch_all(t, m, c, special, tangent_row)
@@ -251,12 +231,12 @@ def _rounds(t: Any, m: Any, c: Any) -> int:
 
 def _advance(table: Any) -> int:
     """Some rounds over all lanes; returns how many are busy. The table: :data:`TABLE`."""
-    t = _numba.carray(table, (1,), TABLE)[0]
+    t = _numba.carray(table, (1,), layout.TABLE)[0]
     width = max(3 * t.n_surfaces, t.n_variables) + 2
     size = t.n_states
-    m = Memory(
+    m = layout.Memory(
         rows=view(t.rows, (t.n_rows, LANES), np.float64),
-        integers=view(t.integers, (FIXED_INTEGERS, LANES), np.int64),
+        integers=view(t.integers, (layout.FIXED_INTEGERS, LANES), np.int64),
         sizes=view(t.sizes, (size,), np.float64),
         tracked=view(t.tracked, (t.n_tracked, 2), np.int64),
         regimes=view(t.regimes, (t.n_regimes, t.n_constants), np.float64),

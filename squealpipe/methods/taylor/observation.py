@@ -4,21 +4,7 @@ import math
 from typing import Any
 
 from squealpipe.methods.compiled import inline, part
-from squealpipe.methods.taylor.layout import (
-    BY_TURNS,
-    CLOCK,
-    CORRECTION,
-    ENTERED,
-    FIXED_ROWS,
-    JOB,
-    LATE,
-    NEXT_SAMPLE,
-    OUTCOME,
-    REGIME,
-    SAMPLE,
-    STEP,
-    T_LATE,
-)
+from squealpipe.methods.taylor import layout
 from squealpipe.methods.taylor.roots import evaluate, evaluate_twice
 from squealpipe.methods.taylor.simd import (
     ROW,
@@ -98,7 +84,7 @@ def observe(t: Any, m: Any, c: Any, first_extreme: int, busy: int) -> None:
     turning points looked for.
     """
     at, terms = t.rows, t.n_terms
-    step, zero = load(at + STEP * ROW), splat(0.0)
+    step, zero = load(at + layout.STEP * ROW), splat(0.0)
     for index in range(t.n_tracked):
         variable = m.tracked[index, 0]
         series, r = t.series + variable * terms * ROW, first_extreme + 2 * index
@@ -126,7 +112,7 @@ def observe(t: Any, m: Any, c: Any, first_extreme: int, busy: int) -> None:
         while bits:
             lane = first_bit(bits)
             bits ^= 1 << lane
-            inner_low, inner_high = _extremes(c, variable, lane, m.rows[STEP, lane])
+            inner_low, inner_high = _extremes(c, variable, lane, m.rows[layout.STEP, lane])
             m.rows[r, lane] = min(m.rows[r, lane], inner_low)
             m.rows[r + 1, lane] = max(m.rows[r + 1, lane], inner_high)
 
@@ -137,11 +123,11 @@ def count_turns(t: Any, m: Any, first_turn: int, busy: int) -> int:
     at, zero, ended = t.rows, splat(0.0), 0
     for point in range(t.n_points):
         row = at + (first_turn + 3 * point) * ROW
-        left = bits_below(load(at + FIXED_ROWS * ROW), load(row))
+        left = bits_below(load(at + layout.FIXED_ROWS * ROW), load(row))
         crossed = (bits_below(load(t.series), load(row)) ^ left) & busy
         if not crossed:
             continue
-        y = load(at + (FIXED_ROWS + 1) * ROW) - load(row + ROW)
+        y = load(at + (layout.FIXED_ROWS + 1) * ROW) - load(row + ROW)
         same = ~(bits_below(zero, y) ^ left)
         while crossed:
             lane = first_bit(crossed)
@@ -151,8 +137,8 @@ def count_turns(t: Any, m: Any, first_turn: int, busy: int) -> int:
             least = math.inf
             for each in range(t.n_points):
                 least = min(least, abs(m.rows[first_turn + 3 * each + 2, lane]))
-            if 0.5 * least >= m.limits[m.integers[JOB, lane], 5]:
-                m.integers[OUTCOME, lane] = BY_TURNS
+            if 0.5 * least >= m.limits[m.integers[layout.JOB, lane], 5]:
+                m.integers[layout.OUTCOME, lane] = layout.BY_TURNS
                 ended |= 1 << lane
     return ended
 
@@ -160,30 +146,30 @@ def count_turns(t: Any, m: Any, first_turn: int, busy: int) -> int:
 @part
 def sample(t: Any, m: Any, c: Any, lane: int, first_time: int) -> None:
     """States, and sums, at the asked instants of one job that fall into this step."""
-    rows, job = m.rows, m.integers[JOB, lane]
-    following, times = m.integers[SAMPLE, lane], m.sample_times[job]
+    rows, job = m.rows, m.integers[layout.JOB, lane]
+    following, times = m.integers[layout.SAMPLE, lane], m.sample_times[job]
     while following < times.size:
-        offset = (times[following] - rows[CLOCK, lane]) - rows[CORRECTION, lane]
-        if offset > rows[STEP, lane]:
+        offset = (times[following] - rows[layout.CLOCK, lane]) - rows[layout.CORRECTION, lane]
+        if offset > rows[layout.STEP, lane]:
             break
         for variable in range(t.n_states):
             m.samples[job, following, variable] = evaluate(c, variable, lane, offset)
-        m.sample_regimes[job, following] = m.integers[REGIME, lane]
+        m.sample_regimes[job, following] = m.integers[layout.REGIME, lane]
         if t.n_sums:
             _sum(t, m, lane, m.sample_sums[job, following], first_time, times[following])
         following += 1
-    m.integers[SAMPLE, lane] = following
-    rows[NEXT_SAMPLE, lane] = times[following] if following < times.size else math.inf
+    m.integers[layout.SAMPLE, lane] = following
+    rows[layout.NEXT_SAMPLE, lane] = times[following] if following < times.size else math.inf
 
 
 @part
 def _sum(t: Any, m: Any, lane: int, sums: Any, first_time: int, time: float) -> None:
     """What has added up: growth (to the last step's end), times in regimes, half turns, events."""
-    job, rows = m.integers[JOB, lane], m.rows
+    job, rows = m.integers[layout.JOB, lane], m.rows
     sums[0] = m.summary[job, 0] + log_norm(t, m, lane, first_time - 2 * t.n_tracked - t.n_states)
     for regime in range(t.n_regimes):
         sums[1 + regime] = rows[first_time + regime, lane]
-    sums[1 + m.integers[REGIME, lane]] += time - rows[ENTERED, lane]
+    sums[1 + m.integers[layout.REGIME, lane]] += time - rows[layout.ENTERED, lane]
     place = 1 + t.n_regimes
     for point in range(t.n_points):
         sums[place + point] = rows[first_time + t.n_regimes + 3 * point + 2, lane]
@@ -212,11 +198,11 @@ def clear_extremes(m: Any, lane: int, index: int, first_extreme: int) -> None:
 @part
 def begin_late(t: Any, m: Any, lane: int, first_extreme: int) -> None:
     """From here on extremes are those of the late part."""
-    job = m.integers[JOB, lane]
+    job = m.integers[layout.JOB, lane]
     for index in range(t.n_tracked):
         for each in range(2):
             r = first_extreme + 2 * index + each
             m.extremes[job, index, 0, each] = m.rows[r, lane]
         clear_extremes(m, lane, index, first_extreme)
-    m.integers[LATE, lane] = 1
-    m.rows[T_LATE, lane] = math.inf
+    m.integers[layout.LATE, lane] = 1
+    m.rows[layout.T_LATE, lane] = math.inf

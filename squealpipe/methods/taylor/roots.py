@@ -37,7 +37,7 @@ def evaluate_twice(coefficients: Any, variable: int, lane: int, step: float) -> 
 
 
 @part
-def _largest_third(coefficients: Any, variable: int, lane: int, step: float) -> Any:
+def largest_third(coefficients: Any, variable: int, lane: int, step: float) -> Any:
     """A bound of the third derivative over the step."""
     bound = 0.0
     for k in range(coefficients.shape[1] - 1, 2, -1):
@@ -54,7 +54,7 @@ def first_root(
     A root at the start itself is where the state comes from; it does not count. ``known`` is the
     sign just after it where round-off hides it. Returns ``NO_ROOT`` where there is none.
     """
-    third = _largest_third(coefficients, variable, lane, step)
+    third = largest_third(coefficients, variable, lane, step)
     left, right = start, step
     p0, s0, b0 = evaluate_twice(coefficients, variable, lane, left)
     while True:

@@ -6,22 +6,8 @@ from typing import Any
 import numpy as np
 
 from squealpipe.methods.compiled import inline, part
-from squealpipe.methods.taylor.layout import (
-    CLOCK,
-    CONVERGED,
-    CORRECTION,
-    FIXED_ROWS,
-    HIT,
-    LATE_BEGINS,
-    LONGEST,
-    NOT_FINITE,
-    OUTCOME,
-    REGIME,
-    STEP,
-    T_END,
-    T_LATE,
-)
-from squealpipe.methods.taylor.roots import evaluate, evaluate_twice, first_crossing
+from squealpipe.methods.taylor import layout
+from squealpipe.methods.taylor.roots import evaluate, evaluate_twice, first_crossing, largest_third
 from squealpipe.methods.taylor.simd import (
     ROW,
     bits_below,
@@ -105,37 +91,37 @@ def _free(series: int, terms: int, step: Any) -> Any:
 @inline
 def reaches(rows: int, instant: int) -> Any:
     """Lanes whose step does not end before the instant in a row."""
-    left = load(rows + instant * ROW) - load(rows + CLOCK * ROW)
-    return ~bits_below(load(rows + STEP * ROW), left - load(rows + CORRECTION * ROW))
+    left = load(rows + instant * ROW) - load(rows + layout.CLOCK * ROW)
+    return ~bits_below(load(rows + layout.STEP * ROW), left - load(rows + layout.CORRECTION * ROW))
 
 
 @inline
 def take_step(t: Any, active: Any, sizes: Any) -> Any:
     """Ends of all lanes' steps; returns the lanes that need a look of their own."""
     terms, base, at = t.n_terms, t.series, t.rows
-    step = smaller(step_length(base, terms, t.n_states, sizes), load(at + LONGEST * ROW))
+    step = smaller(step_length(base, terms, t.n_states, sizes), load(at + layout.LONGEST * ROW))
     if t.n_variables > t.n_states:
         for each in range(t.n_surfaces + t.n_tracked - t.n_states):
             step = smaller(step, reach(base + (t.n_variables + each) * terms * ROW, terms))
-    store(at + STEP * ROW, step)
+    store(at + layout.STEP * ROW, step)
     lost = step
     for variable in range(t.n_variables):
         value = _at_end(base + variable * terms * ROW, terms, step)
-        store(at + (FIXED_ROWS + variable) * ROW, value)
+        store(at + (layout.FIXED_ROWS + variable) * ROW, value)
         lost = lost + value * 0.0
     plain = bits_below(magnitude(lost), splat(np.inf))
     for surface in range(t.n_surfaces):
         if active[surface]:
             series = base + (t.n_variables + surface) * terms * ROW
             plain &= _free(series, terms, step) | ~active[surface]
-    return ~plain | reaches(at, T_END) | reaches(at, T_LATE)
+    return ~plain | reaches(at, layout.T_END) | reaches(at, layout.T_LATE)
 
 
 @part
 def _first_switch(t: Any, m: Any, c: Any, lane: int, step: float) -> float:
     """When the first watched surface is crossed, whose switch goes into ``HIT``; or the step."""
     integers = m.integers
-    regime, bit = integers[REGIME, lane], 1 << lane
+    regime, bit = integers[layout.REGIME, lane], 1 << lane
     first, tie = step, step * 2.0**-44
     for surface in range(t.n_surfaces):
         falls, rises = m.falls[regime, surface], m.rises[regime, surface]
@@ -149,49 +135,61 @@ def _first_switch(t: Any, m: Any, c: Any, lane: int, step: float) -> float:
             continue
         _, slope, _ = evaluate_twice(c, t.n_variables + surface, lane, root)
         which = falls if rises < 0 or (falls >= 0 and slope < 0.0) else rises
-        earlier = root < first - tie or integers[HIT, lane] < 0
+        earlier = root < first - tie or integers[layout.HIT, lane] < 0
         # of switches at one instant the first by name goes first, whatever their order
-        if earlier or which < integers[HIT, lane]:
-            first, integers[HIT, lane] = min(root, first), which
+        if earlier or which < integers[layout.HIT, lane]:
+            first, integers[layout.HIT, lane] = min(root, first), which
     return first
+
+
+@part
+def _is_finite(t: Any, m: Any, c: Any, lane: int) -> bool:
+    """Whether a lane's step is, and the surfaces it watches; others are looked through for ever."""
+    total = m.rows[layout.STEP, lane]
+    for variable in range(t.n_variables):
+        total += 0.0 * m.rows[layout.FIXED_ROWS + variable, lane]
+    for surface in range(t.n_surfaces):
+        if m.active[surface] & (1 << lane):
+            third = largest_third(c, t.n_variables + surface, lane, m.rows[layout.STEP, lane])
+            total += 0.0 * third
+    return math.isfinite(total)
 
 
 @part
 def cut(t: Any, m: Any, c: Any, lane: int) -> None:
     """End a lane's step at the first crossing, at the late time or at the end of its run."""
     rows, integers = m.rows, m.integers
-    integers[HIT, lane] = -1
-    total = rows[STEP, lane]
-    for variable in range(t.n_variables):
-        total += 0.0 * rows[FIXED_ROWS + variable, lane]
-    if not math.isfinite(total):
-        rows[STEP, lane] = 0.0
-        integers[OUTCOME, lane] = NOT_FINITE
+    integers[layout.HIT, lane] = -1
+    if not _is_finite(t, m, c, lane):
+        rows[layout.STEP, lane] = 0.0
+        integers[layout.OUTCOME, lane] = layout.NOT_FINITE
         for variable in range(t.n_variables):  # of its series higher orders may be no numbers
-            rows[FIXED_ROWS + variable, lane] = c[variable, 0, lane]
+            rows[layout.FIXED_ROWS + variable, lane] = c[variable, 0, lane]
         return
-    done = rows[CLOCK, lane]
-    remaining = (rows[T_END, lane] - done) - rows[CORRECTION, lane]
-    step, ends = min(rows[STEP, lane], remaining), remaining <= rows[STEP, lane]
-    late = (rows[T_LATE, lane] - done) - rows[CORRECTION, lane]
+    done = rows[layout.CLOCK, lane]
+    remaining = (rows[layout.T_END, lane] - done) - rows[layout.CORRECTION, lane]
+    step, ends = min(rows[layout.STEP, lane], remaining), remaining <= rows[layout.STEP, lane]
+    late = (rows[layout.T_LATE, lane] - done) - rows[layout.CORRECTION, lane]
     turns_late = late <= step
     if turns_late:
         step, ends = late, ends and late >= remaining
     first = _first_switch(t, m, c, lane, step)
-    if integers[HIT, lane] >= 0:
+    if integers[layout.HIT, lane] >= 0:
         step, ends, turns_late = first, False, False
     if turns_late:
-        rows[T_LATE, lane] = math.inf
-    if step != rows[STEP, lane]:
-        rows[STEP, lane] = step
+        rows[layout.T_LATE, lane] = math.inf
+    if step != rows[layout.STEP, lane]:
+        rows[layout.STEP, lane] = step
         _set_end(t, m, c, lane)
     if turns_late:
-        integers[HIT, lane] = LATE_BEGINS
+        integers[layout.HIT, lane] = layout.LATE_BEGINS
     if ends:
-        integers[OUTCOME, lane] = CONVERGED
+        integers[layout.OUTCOME, lane] = layout.CONVERGED
 
 
 @part
 def _set_end(t: Any, m: Any, c: Any, lane: int) -> None:
     for variable in range(t.n_variables):
-        m.rows[FIXED_ROWS + variable, lane] = evaluate(c, variable, lane, m.rows[STEP, lane])
+        m.rows[layout.FIXED_ROWS + variable, lane] = evaluate(
+            c, variable, lane, m.rows[layout.STEP, lane]
+        )

@@ -4,27 +4,8 @@ import math
 from typing import Any
 
 from squealpipe.methods.compiled import inline, part
+from squealpipe.methods.taylor import layout
 from squealpipe.methods.taylor.lanes import call
-from squealpipe.methods.taylor.layout import (
-    ACCUMULATION,
-    BY_EVENT,
-    CHAINED,
-    CLOCK,
-    CORRECTION,
-    ENTERED,
-    EVENT_LIMIT,
-    EVENTS,
-    FIXED_ROWS,
-    HIT,
-    JOB,
-    LATE_BEGINS,
-    LOST_ERROR,
-    OUTCOME,
-    REGIME,
-    RUNNING,
-    STEP,
-    STOPPED,
-)
 from squealpipe.methods.taylor.observation import begin_late
 from squealpipe.methods.taylor.simd import ROW, first_bit
 
@@ -39,7 +20,7 @@ CHAIN = 64
 @part
 def enter_regime(t: Any, m: Any, c: Any, lane: int, regime: int, span: float) -> None:
     """Put a lane into a regime: its constants, which surfaces it watches, which start from zero."""
-    m.integers[REGIME, lane] = regime
+    m.integers[layout.REGIME, lane] = regime
     bit, keep = 1 << lane, ~(1 << lane)
     first = t.n_rows - t.n_constants
     for constant in range(t.n_constants):
@@ -53,7 +34,7 @@ def enter_regime(t: Any, m: Any, c: Any, lane: int, regime: int, span: float) ->
     stride = m.scratch.shape[1] * 8
     call(t.gauge, (t.scratch, t.scratch + stride, parameters, constants, t.scratch + 2 * stride))
     # where an event was located to the tolerance only, the rate that follows from it is no better
-    located = max(NOISE, LOST_ERROR * math.exp(-m.limits[m.integers[JOB, lane], 4]))
+    located = max(NOISE, layout.LOST_ERROR * math.exp(-m.limits[m.integers[layout.JOB, lane], 4]))
     for surface in range(t.n_surfaces):
         m.noise[surface, 0, lane] = NOISE * out[3 * surface + 1]
         m.noise[surface, 1, lane] = located * out[3 * surface + 2]
@@ -73,22 +54,22 @@ def enter_regime(t: Any, m: Any, c: Any, lane: int, regime: int, span: float) ->
 @part
 def _log(t: Any, m: Any, lane: int, kind: int, regime: int) -> int:
     """Count an event and, where there is room, log it; returns how many there were."""
-    integers, job, after = m.integers, m.integers[JOB, lane], m.scratch[3]
-    count = integers[EVENTS, lane]
+    integers, job, after = m.integers, m.integers[layout.JOB, lane], m.scratch[3]
+    count = integers[layout.EVENTS, lane]
     if count < t.n_logged:
-        m.event_times[job, count] = m.rows[CLOCK, lane] + m.rows[CORRECTION, lane]
+        m.event_times[job, count] = m.rows[layout.CLOCK, lane] + m.rows[layout.CORRECTION, lane]
         m.event_kinds[job, count], m.event_regimes[job, count] = kind, regime
         for variable in range(t.n_states):
             m.event_states[job, count, variable] = after[variable]
-    integers[EVENTS, lane] = count + 1
+    integers[layout.EVENTS, lane] = count + 1
     m.counts[job, kind] += 1
     before, peaks = m.scratch[0], m.peaks[job, kind]
     for variable in range(t.n_states):
         peaks[variable] = max(peaks[variable], abs(before[variable]))
     if math.isnan(m.firsts[job, kind]):
-        m.firsts[job, kind] = m.rows[CLOCK, lane]
+        m.firsts[job, kind] = m.rows[layout.CLOCK, lane]
         if kind == t.late_from:
-            begin_late(t, m, lane, FIXED_ROWS + t.n_variables + t.n_states)
+            begin_late(t, m, lane, layout.FIXED_ROWS + t.n_variables + t.n_states)
     return int(count + 1)
 
 
@@ -98,10 +79,10 @@ def _carry_over(t: Any, m: Any, lane: int, tangent_row: int, regime: int, parame
     d, out, stride = m.scratch[4], m.scratch[2], m.scratch.shape[1] * 8
     for variable in range(t.n_states):
         d[variable] = m.rows[tangent_row + variable, lane]
-    before = t.regimes + 8 * m.integers[REGIME, lane] * t.n_constants
+    before = t.regimes + 8 * m.integers[layout.REGIME, lane] * t.n_constants
     after = t.regimes + 8 * regime * t.n_constants
     z, y = t.scratch, t.scratch + 3 * stride
-    at, which = t.scratch + 4 * stride, m.integers[HIT, lane]
+    at, which = t.scratch + 4 * stride, m.integers[layout.HIT, lane]
     call(t.jump, (which, z, y, parameters, before, after, at, t.scratch + 2 * stride))
     for variable in range(t.n_states):
         m.rows[tangent_row + variable, lane] = out[variable]
@@ -110,12 +91,12 @@ def _carry_over(t: Any, m: Any, lane: int, tangent_row: int, regime: int, parame
 @part
 def _switch(t: Any, m: Any, c: Any, lane: int, tangent_row: int) -> None:
     """Carry out the switch that ended a lane's step."""
-    rows, integers, job = m.rows, m.integers, m.integers[JOB, lane]
-    which, before = integers[HIT, lane], integers[REGIME, lane]
+    rows, integers, job = m.rows, m.integers, m.integers[layout.JOB, lane]
+    which, before = integers[layout.HIT, lane], integers[layout.REGIME, lane]
     if which >= t.n_switches:
-        integers[OUTCOME, lane] = STOPPED + which - t.n_switches
+        integers[layout.OUTCOME, lane] = layout.STOPPED + which - t.n_switches
         return
-    span, clock = rows[STEP, lane], rows[CLOCK, lane]
+    span, clock = rows[layout.STEP, lane], rows[layout.CLOCK, lane]
     z, after, out = m.scratch[0], m.scratch[3], m.scratch[2]
     for variable in range(t.n_variables):
         z[variable] = c[variable, 0, lane]
@@ -132,20 +113,20 @@ def _switch(t: Any, m: Any, c: Any, lane: int, tangent_row: int) -> None:
         _carry_over(t, m, lane, tangent_row, regime, parameters)
     for variable in range(t.n_states):
         c[variable, 0, lane] = after[variable]
-    integers[CHAINED, lane] += 1
+    integers[layout.CHAINED, lane] += 1
     if span > 4.0 * 2.0**-52 * abs(clock):
-        integers[CHAINED, lane] = 0
+        integers[layout.CHAINED, lane] = 0
     count = _log(t, m, lane, kind, regime)
-    first_time = FIXED_ROWS + t.n_variables + t.n_states + 2 * t.n_tracked
-    rows[first_time + before, lane] += clock - rows[ENTERED, lane]
-    rows[ENTERED, lane] = clock
+    first_time = layout.FIXED_ROWS + t.n_variables + t.n_states + 2 * t.n_tracked
+    rows[first_time + before, lane] += clock - rows[layout.ENTERED, lane]
+    rows[layout.ENTERED, lane] = clock
     enter_regime(t, m, c, lane, regime, span)
     if kind == t.until:
-        integers[OUTCOME, lane] = BY_EVENT
-    elif integers[CHAINED, lane] >= CHAIN:
-        integers[OUTCOME, lane] = ACCUMULATION
+        integers[layout.OUTCOME, lane] = layout.BY_EVENT
+    elif integers[layout.CHAINED, lane] >= CHAIN:
+        integers[layout.OUTCOME, lane] = layout.ACCUMULATION
     elif count >= m.limits[job, 3]:
-        integers[OUTCOME, lane] = EVENT_LIMIT
+        integers[layout.OUTCOME, lane] = layout.EVENT_LIMIT
 
 
 @inline
@@ -167,11 +148,11 @@ def switch_all(t: Any, m: Any, c: Any, special: int, tangent_row: int) -> None:
     while special:
         lane = first_bit(special)
         special ^= 1 << lane
-        hit = m.integers[HIT, lane]
-        if hit == LATE_BEGINS:
+        hit = m.integers[layout.HIT, lane]
+        if hit == layout.LATE_BEGINS:
             begin_late(t, m, lane, tangent_row + t.n_states)
             # a surface may be crossed at this very instant
-            enter_regime(t, m, c, lane, m.integers[REGIME, lane], m.rows[STEP, lane])
-        elif hit >= 0 and m.integers[OUTCOME, lane] == RUNNING:
+            enter_regime(t, m, c, lane, m.integers[layout.REGIME, lane], m.rows[layout.STEP, lane])
+        elif hit >= 0 and m.integers[layout.OUTCOME, lane] == layout.RUNNING:
             _switch(t, m, c, lane, tangent_row)
-        m.integers[HIT, lane] = -1
+        m.integers[layout.HIT, lane] = -1
