@@ -24,7 +24,7 @@ LOOKS: dict[ChartLine, tuple[str, dict[str, Any]]] = {
     ChartLine.flutter: ("A3 flutters", {"color": style.BLUE, "linestyle": "--"}),
     ChartLine.divergence: ("A3 diverges", {"color": style.GREEN, "linestyle": ":"}),
     ChartLine.whirl: ("the whirl is born", {"color": style.RED, "linestyle": "-."}),
-    ChartLine.stick: ("its stick begins", {"color": style.ORANGE}),
+    ChartLine.stick: ("its stick begins", {"color": style.PURPLE}),
 }
 SEEN = 1e-3
 """Share of a chart below which a kind is not seen in print."""
