@@ -467,8 +467,12 @@ class System:
             for function, names, sign in checks:
                 arguments = [np.asarray(known[name]) for name in names]
                 (value,) = function(*arguments)
-                terms = sum(np.abs(each) for each in arguments)
-                fits &= np.asarray(sign * value >= 0.0 if sign else np.abs(value) <= 1e-15 * terms)
+                if sign:
+                    fits &= sign * value >= 0.0
+                else:
+                    fits &= np.abs(value) <= 1e-15 * sum(np.abs(each) for each in arguments)
+                if not fits.any():
+                    break
             chosen = np.where(fits, regime, chosen)
         if (chosen < 0).any():
             raise ValueError(
