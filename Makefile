@@ -64,7 +64,7 @@ env: $(STUDY)  ## what a study needs
 
 dev: $(DEV)  ## and what tests, checks and docs need
 
-# The last two steps compile the event loop (22 s) and the tracer of orbits (9 s) into the user's cache,
+# The last two steps compile the event loop (17 s) and the tracer of orbits (9 s) into the user's cache,
 # which several first jobs would otherwise do at once; and byte code of what jobs import, where an
 # environment (many containers') lets no job write it: 2 to 3 s in each.
 $(STUDY): requirements.lock pyproject.toml
