@@ -1,7 +1,7 @@
 """The option types that every command shares, and parameters taken from a study."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import Annotated, Any
@@ -10,7 +10,7 @@ from cyclopts import App, ArgumentCollection, Group, Parameter, Token
 
 from squealpipe.cli.console import SESSION
 from squealpipe.config.ranges import parse_angle, parse_number, parse_range
-from squealpipe.parameters import SYMBOLS, Parameters
+from squealpipe.parameters import SYMBOLS, TABLE, Parameters
 
 
 def _reader(read: Callable[[str], Any]) -> Callable[[Any, Sequence[Any]], Any]:
@@ -121,11 +121,8 @@ def by_name(argument: str) -> str:
 def parameters_from_study(_: App, __: tuple[str, ...], arguments: ArgumentCollection) -> None:
     """Give the parameters that were not typed the values of the study in ``--config``."""
     found = {argument.name: argument for argument in arguments}
-    physical = {
-        item.name: found[f"--{item.name.replace('_', '-')}"]
-        for item in fields(Parameters)
-        if f"--{item.name.replace('_', '-')}" in found
-    }
+    flags = {name: f"--{name.replace('_', '-')}" for name in TABLE}
+    physical = {name: found[flag] for name, flag in flags.items() if flag in found}
     SESSION.typed = {name for name, argument in physical.items() if argument.tokens}
     if not physical or "--config" not in found or not found["--config"].tokens:
         return

@@ -43,30 +43,22 @@ SESSION = _Session()
 @contextmanager
 def session(arguments: Sequence[str]) -> Iterator[list[str]]:
     """Apply -q and -v, which every command takes, and give the other arguments."""
-    kept: list[str] = []
-    found: set[str] = set()
-    for place, argument in enumerate(arguments):
-        if argument == "--":
-            kept.extend(arguments[place:])
-            break
-        if argument in SWITCHES:
-            found.add(SWITCHES[argument])
-        else:
-            kept.append(argument)
+    end = arguments.index("--") if "--" in arguments else len(arguments)
+    found = {SWITCHES[each] for each in arguments[:end] if each in SWITCHES}
+    kept = [each for each in arguments[:end] if each not in SWITCHES]
     SESSION.quiet = "quiet" in found
     SESSION.verbose = "verbose" in found or os.environ.get(TRACEBACK, "0") not in {"", "0"}
     SESSION.typed = set()
     with warnings.catch_warnings():
         if not SESSION.verbose and not sys.warnoptions:
             warnings.simplefilter("ignore")
-        yield kept
+        yield [*kept, *arguments[end:]]
 
 
-def say(*lines: str) -> None:
+def say(line: str) -> None:
     """Print what a user may want to know while a command works; nothing under -q."""
     if not SESSION.quiet:
-        for line in lines:
-            print(line)
+        print(line)
 
 
 def answer(*lines: str) -> None:

@@ -174,10 +174,8 @@ def disturbance(
         model=model, t_end=t_end, bound=bound, directions=directions, seed=seed, tol=tol,
         workers=workers,
     )  # fmt: skip
-    from squealpipe.schema import Outcome
-
     outcome, why = ending(found.outcome)
-    if outcome is not Outcome.converged:
+    if outcome != "converged":
         answer(f"no disturbance: {why}")
         return ANSWER_IS_NO
     answer(

@@ -59,7 +59,6 @@ def simulate(
     import numpy as np
 
     from squealpipe.methods.spectrum import FEWEST
-    from squealpipe.schema import Outcome
     from squealpipe.tasks.dynamics.summary import summarize, summary_lines
     from squealpipe.tasks.sampling import default_times, unresolved
 
@@ -73,7 +72,7 @@ def simulate(
         if missed := unresolved(brake.params, times):
             answer(f"note: {missed}")
     outcome, why = ending(run.outcome)
-    if outcome is Outcome.converged:
+    if outcome == "converged":
         return DONE
     answer(f"the run ended early: {why}")
     return ANSWER_IS_NO
@@ -143,10 +142,8 @@ def cycle(
     found = compute(
         "limit_cycle", brake, alpha1, alpha2, output=output, guess=guess, t_settle=t_settle
     )
-    from squealpipe.schema import Outcome
-
     outcome, why = ending(found.outcome)
-    if outcome not in {Outcome.converged, Outcome.family_member}:
+    if outcome not in {"converged", "family_member"}:
         answer(f"no periodic motion was found: {why}")
         return ANSWER_IS_NO
     answer(
@@ -157,7 +154,7 @@ def cycle(
         f"in contact for {float(found.contact_fraction):.1%} of it, in stick for "
         f"{float(found.stick_fraction):.1%}",
     )
-    if outcome is Outcome.family_member:
+    if outcome == "family_member":
         answer(f"note: {why}")
     return DONE
 

@@ -13,8 +13,6 @@ from squealpipe.cli.console import say, working
 if TYPE_CHECKING:
     import xarray as xr
 
-    from squealpipe.schema import Outcome
-
 DATA = (".nc", ".csv")
 TABLES = (".csv", ".mat", ".xlsx", ".parquet")
 PICTURES = (".png", ".svg", ".pdf")
@@ -95,9 +93,9 @@ def compute(
     return dataset
 
 
-def ending(outcome: xr.DataArray) -> tuple[Outcome, str]:
-    """An outcome, and the words for it with its remedy."""
+def ending(outcome: xr.DataArray) -> tuple[str, str]:
+    """The name of an outcome, and the words for it with its remedy."""
     from squealpipe.schema import Outcome
 
     found = Outcome(int(outcome))
-    return found, f"{found.name} ({found.remedy})"
+    return found.name, f"{found.name} ({found.remedy})"

@@ -66,12 +66,10 @@ def init(
 
     check_output(file, force=force, kinds=(".yaml", ".yml"), option="FILE")
     folder = results or f"results/{file.stem}"
-    paper = PAPER.read_text(encoding="utf-8")
-    text = (
-        OWN.format(file=file, results=folder)
-        if own
-        else overlay_text(paper, file=str(file), results=folder)
-    )
+    if own:
+        text = OWN.format(file=file, results=folder)
+    else:
+        text = overlay_text(PAPER.read_text(encoding="utf-8"), file=str(file), results=folder)
     file.parent.mkdir(parents=True, exist_ok=True)
     file.write_text(text, encoding="utf-8")
     read_study(PAPER, file)
@@ -93,9 +91,8 @@ def overlay_text(paper: str, *, file: str, results: str) -> str:
 
 def _commented(name: str, row: Row) -> str:
     default = "null" if DEFAULTS[name] is None else DEFAULTS[name]
-    return f"  # {name}: {default} # {row.meaning}" + (
-        f", {row.units}" if row.units not in {"", "1"} else ""
-    )
+    units = "" if row.units == "1" else f", {row.units}"
+    return f"  # {name}: {default} # {row.meaning}{units}"
 
 
 def run(*, config: Configs = None, quick: Switch = False, cores: Whole | None = None) -> int:
@@ -115,8 +112,7 @@ def run(*, config: Configs = None, quick: Switch = False, cores: Whole | None = 
     command, study = snakemake_command(config or [], quick=quick)
     started = time.perf_counter()
     quiet = ["--quiet", "all"] if SESSION.quiet else ["--quiet", "host", "rules"]
-    code = _to_its_end([*command, "--cores", str(cores or "all"), *quiet])
-    if code:
+    if _to_its_end([*command, "--cores", str(cores or "all"), *quiet]):
         print(f"squealpipe: the study in {study.results} is not complete", file=sys.stderr)
         return NOT_DONE
     say(f"done in {duration(time.perf_counter() - started)}: {study.results}/report/index.html")

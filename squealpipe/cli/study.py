@@ -6,7 +6,7 @@ from typing import Annotated
 from cyclopts import Parameter
 
 from squealpipe.cli.arguments import AsJson, Configs, Switch, Texts
-from squealpipe.cli.console import ANSWER_IS_NO, DONE, working
+from squealpipe.cli.console import ANSWER_IS_NO, DONE, answer, working
 from squealpipe.text import duration
 
 
@@ -81,8 +81,7 @@ def verify(name: str, /) -> int:
 
     with working("verify"):
         found = check(name)
-    for line in found.lines():
-        print(line)
+    answer(*found.lines())
     return DONE if found.intact else ANSWER_IS_NO
 
 

@@ -75,11 +75,7 @@ def _field_type(name: str, row: Row) -> Any:
             BeforeValidator(partial(row.check, name)),
             WithJsonSchema({"anyOf": [names, files, text]}),
         ]
-    kinds: dict[str, Any] = {
-        "finite": Number,
-        "positive": Positive,
-        "not negative": Annotated[float, Field(ge=0)],
-    }
+    kinds: dict[str, Any] = {"finite": Number, "positive": Positive, "not negative": NotNegative}
     return kinds[row.allowed] | None if row.optional else kinds[row.allowed]
 
 
@@ -126,7 +122,6 @@ class InferenceSection(Section):
 
 Settings = Annotated[tuple[Positive, ...], Field(min_length=1)]
 Harmonics = Annotated[int, Field(ge=1, le=512), WHOLE]
-Repeats = Annotated[int, Field(ge=1, le=100), WHOLE]
 
 
 class HarmonicComparison(Section):
@@ -137,7 +132,7 @@ class HarmonicComparison(Section):
         tuple[Annotated[int, Field(ge=1, le=256), WHOLE], ...], Field(min_length=1)
     ] = (1, 4, 16)
     sigmas: Settings = (10.0, 100.0, 1e3)
-    repeats: Repeats = 3
+    repeats: Annotated[int, Field(ge=1, le=100), WHOLE] = 3
 
 
 class BenchmarkComparison(Section):

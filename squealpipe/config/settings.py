@@ -6,6 +6,8 @@ Snakemake; :func:`read_study` does the same for the command line.
 
 import json
 from collections.abc import Iterator, Mapping, Sequence
+from functools import reduce
+from operator import getitem
 from pathlib import Path, PurePosixPath
 from typing import Annotated, Any, Literal, Self
 
@@ -75,12 +77,7 @@ class Study(Section):
             paths: dotted keys, for instance ``"parameters"`` or ``"linear.points"``.
         """
         whole = self.model_dump(mode="json")
-        part = {}
-        for path in sorted(paths):
-            value: Any = whole
-            for key in path.split("."):
-                value = value[key]
-            part[path] = value
+        part = {path: reduce(getitem, path.split("."), whole) for path in sorted(paths)}
         return json.loads(json.dumps(part, sort_keys=True))  # type: ignore[no-any-return]
 
     def changes_of(self, other: Self) -> list[tuple[str, Any, Any]]:
@@ -149,13 +146,12 @@ def laws_in(section: Any) -> Iterator[tuple[str, Any, Row]]:
 def files_of_laws(path: Path) -> list[Path]:
     """The files that a configuration names as laws, as it names them."""
     entries = [given for _, given, _ in laws_in(read_yaml(path).get("parameters"))]
-    named_in = [
-        file
+    return [
+        Path(file)
         for given in entries
         for file in (given.values() if isinstance(given, dict) else [given])
         if str(file).endswith((".csv", ".py"))
     ]
-    return [Path(file) for file in named_in]
 
 
 def check_results_folder(results: str) -> None:

@@ -72,8 +72,5 @@ def flat(tree: Mapping[str, Any], stem: str = "") -> dict[str, Any]:
     found: dict[str, Any] = {}
     for key, value in tree.items():
         path = f"{stem}.{key}" if stem else str(key)
-        if isinstance(value, Mapping):
-            found.update(flat(value, path))
-        else:
-            found[path] = value
+        found |= flat(value, path) if isinstance(value, Mapping) else {path: value}
     return found

@@ -133,14 +133,10 @@ class Sweep:
 
 def planned(config: Mapping[str, Any]) -> Sweep | SystemSweep:
     """The sweep of a configuration as :func:`squealpipe.config.ranges.sweep_config` makes it."""
+    given = {key: config[key] for key in ("task", "vary", "fixed")}
     if is_system(config["task"]):
-        return SystemSweep(task=config["task"], vary=config["vary"], fixed=config["fixed"])
-    return Sweep(
-        task=config["task"],
-        params=parameters_of(config),
-        vary=config["vary"],
-        fixed=config["fixed"],
-    )
+        return SystemSweep(**given)
+    return Sweep(**given, params=parameters_of(config))
 
 
 @checked

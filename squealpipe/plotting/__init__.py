@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from squealpipe.plotting.curves import draw_curves
-from squealpipe.plotting.cycles import draw_backbone, draw_branch, draw_cycle, draw_orbit
+from squealpipe.plotting.cycles import draw_backbone, draw_branch, draw_cycle
 from squealpipe.plotting.propensity import draw_shares
 from squealpipe.plotting.propensity import figure as propensity_figure
 from squealpipe.plotting.quantities import SHOWN, draw_quantity, mark_changed, shown
@@ -23,7 +23,7 @@ DRAWN: dict[str, Callable[[Axes, xr.Dataset], None]] = {
     "run_summary": draw_spectrum,
     "backbone": draw_backbone,
     "limit_cycle": draw_cycle,
-    "periodic_orbit": draw_orbit,
+    "periodic_orbit": draw_cycle,
     "cycle_branch": draw_branch,
     "doubled_branch": draw_backbone,
     "contact_boundary": draw_curves,

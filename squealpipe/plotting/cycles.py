@@ -45,27 +45,22 @@ def draw_backbone(axes: Axes, branch: xr.Dataset) -> None:
 
 
 def draw_cycle(axes: Axes, cycle: xr.Dataset) -> None:
-    """Path of the mass along a cycle, its regimes coloured; or why there is none."""
+    """Path of the mass along a cycle, its regimes coloured; or why there is none.
+
+    Of an orbit of A4 the colours say where it is in contact.
+    """
     axes.set(xlabel="x (m)", ylabel="y (m)")
     if say_why_empty(axes, cycle):
         return
-    draw_regimes(axes, cycle.x_path.values, cycle.y_path.values, cycle.regime_path)
-    style.preload_line(axes, parameter(cycle, "preload"))
-    axes.set(aspect="equal", adjustable="datalim")
-    axes.legend(loc="lower right", bbox_to_anchor=(1, 1), borderaxespad=0, ncols=2)
-
-
-def draw_orbit(axes: Axes, orbit: xr.Dataset) -> None:
-    """Path of the mass along an orbit of A4, red where contact is lost; or why there is none."""
-    axes.set(xlabel="x (m)", ylabel="y (m)")
-    if say_why_empty(axes, orbit):
-        return
-    x, y, preload = orbit.x_path.values, orbit.y_path.values, parameter(orbit, "preload")
-    for part, colour, words in (
-        (y > preload, style.RED, "separated"),
-        (y <= preload, style.BLUE, "contact"),
-    ):
-        axes.plot(x, np.where(joined(part), y, np.nan), color=colour, label=words)
+    x, y, preload = cycle.x_path.values, cycle.y_path.values, parameter(cycle, "preload")
+    if "regime_path" in cycle:
+        draw_regimes(axes, x, y, cycle.regime_path)
+    else:
+        for part, colour, words in (
+            (y > preload, style.RED, "separated"),
+            (y <= preload, style.BLUE, "contact"),
+        ):
+            axes.plot(x, np.where(joined(part), y, np.nan), color=colour, label=words)
     style.preload_line(axes, preload)
     axes.set(aspect="equal", adjustable="datalim")
     axes.legend(loc="lower right", bbox_to_anchor=(1, 1), borderaxespad=0, ncols=2)

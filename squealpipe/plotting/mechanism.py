@@ -107,11 +107,11 @@ def displaced_springs(
     """Zigzag points of both springs with the mass displaced to (x, y), in metres."""
     end1 = (lengths[0] * np.cos(alpha1), lengths[0] * np.sin(alpha1))
     end2 = (-lengths[1] * np.cos(alpha2), lengths[1] * np.sin(alpha2))
-    first, second = coil((x, y), end1, width=width), coil((x, y), end2, width=width)
+    springs = coil((x, y), end1, width=width), coil((x, y), end2, width=width)
     aside = apart(np.subtract(end1, (x, y)), np.subtract(end2, (x, y)), 2.1 * width)
-    first[1:-1] += aside[0]
-    second[1:-1] += aside[1]
-    return first, second
+    for path, shift in zip(springs, aside, strict=True):
+        path[1:-1] += shift
+    return springs
 
 
 def apart(first: np.ndarray, second: np.ndarray, distance: float) -> np.ndarray:

@@ -12,6 +12,7 @@ from matplotlib.axes import Axes
 from matplotlib.colors import BoundaryNorm, ListedColormap
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
+from matplotlib.patheffects import withStroke
 from matplotlib.ticker import ScalarFormatter
 
 from squealpipe.parameters import TABLE
@@ -22,17 +23,9 @@ COLUMN = 3.5
 PAGE = 7.0
 """Widths of one column and of a page, inches."""
 
-BLUE, ORANGE, GREEN, RED, PURPLE, GREY = (
-    "#0072B2",
-    "#E69F00",
-    "#009E73",
-    "#D55E00",
-    "#CC79A7",
-    "#7F7F7F",
-)
+PALETTE = ["#0072B2", "#E69F00", "#009E73", "#D55E00", "#CC79A7", "#7F7F7F"]
 """Okabe–Ito: distinct for colour-blind readers; lines also differ in dash or marker."""
-
-PALETTE = [BLUE, ORANGE, GREEN, RED, PURPLE, GREY]
+BLUE, ORANGE, GREEN, RED, PURPLE, GREY = PALETTE
 
 X_COLOUR, Y_COLOUR = ORANGE, BLUE
 """Displacements along the belt and away from it, everywhere."""
@@ -42,6 +35,8 @@ SMALL = 1e-3
 
 WHITE, LIGHT, BLACK = "#FFFFFF", "#BDBDBD", "#1A1A1A"
 """The paper's three tones."""
+HALO = [withStroke(linewidth=2, foreground="white")]
+"""Around words and marks on a map."""
 HATCH = "//////"
 GREEK, SUBSCRIPTS = {"alpha": "α", "mu": "μ", "sigma": "σ"}, str.maketrans("0123s", "₀₁₂₃ₛ")
 
@@ -138,21 +133,15 @@ def symbols(text: str) -> str:
     return as_people_write(text)
 
 
-def angle_map_axes(axes: Axes, upper: float = np.pi) -> None:
-    """A square map over both spring angles with π ticks and labels."""
-    angle_ticks(axes.xaxis, upper)
-    angle_ticks(axes.yaxis, upper)
-    axes.set(xlabel="α₁ (rad)", ylabel="α₂ (rad)", aspect="equal")
-    for side in ("top", "right"):
-        axes.spines[side].set_visible(True)
-
-
 def draw_map(axes: Axes, dataset: xr.Dataset | xr.DataArray, values: Any, **kwargs: Any) -> Any:
     """``pcolormesh`` of values over the dataset's angles: α1 on x, α2 on y; rasterized in SVG."""
     x, y = dataset.alpha1.values, dataset.alpha2.values
     mesh = axes.pcolormesh(x, y, np.asarray(values).T, shading="nearest", rasterized=True, **kwargs)
-    angle_map_axes(axes, float(x[-1]))
+    for axis in (axes.xaxis, axes.yaxis):
+        angle_ticks(axis, float(x[-1]))
+    axes.set(xlabel="α₁ (rad)", ylabel="α₂ (rad)", aspect="equal")
     axes.set(xlim=(x[0], x[-1]), ylim=(y[0], y[-1]))
+    axes.spines[["top", "right"]].set_visible(True)
     return mesh
 
 

@@ -364,13 +364,12 @@ def schema_of(dataset: xr.Dataset) -> DatasetSchema:
 
 def _described(variable: xr.DataArray) -> Variable:
     """The table entry that a variable's own attributes make."""
-    flags = meanings(variable) if "flag_values" in variable.attrs else None
     return Variable(
         str(variable.attrs.get("long_name", variable.name)),
         str(variable.attrs.get("units", "1")),
         tuple(map(str, variable.dims)),
         dtype="U" if variable.dtype.kind in "UO" else variable.dtype.str[1:],
-        flags=flags,
+        flags=meanings(variable) if "flag_values" in variable.attrs else None,
         nan_allowed=True,
     )
 

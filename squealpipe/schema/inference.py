@@ -17,8 +17,6 @@ STATEMENT = ("statement",)
 READING = ("reading",)
 JUDGED = ("sample", "reading")
 BY_READING = ("reading", "statement")
-CONSEQUENCE = ("consequence",)
-PREDICTED = ("reading", "consequence")
 
 
 class Holds(IntEnum):
@@ -104,7 +102,7 @@ PARAMETER_INFERENCE = DatasetSchema(
         "sample": Variable("number of the sample", dims=SAMPLE, dtype="i4"),
         "reading": text("reading of the sign of friction", *READING),
         "statement": text("id of the statement", *STATEMENT),
-        "consequence": text("id of a statement that was not a constraint", *CONSEQUENCE),
+        "consequence": text("id of a statement that was not a constraint", "consequence"),
     },
     variables={
         "kappa": Variable("contact stiffness k3/k", dims=SAMPLE),
@@ -139,7 +137,7 @@ PARAMETER_INFERENCE = DatasetSchema(
         "feasible_share": or_nan(
             "share of the feasible samples in which the consequence holds; NaN where "
             "feasible_count is 0",
-            dims=PREDICTED,
+            dims=("reading", "consequence"),
         ),
     },
 )

@@ -105,14 +105,8 @@ def plain(value: Any) -> Any:
 
 
 @functools.cache
-def _versions() -> tuple[str, str]:
-    found = {name: importlib.metadata.version(name) for name in LIBRARIES}
-    return importlib.metadata.version("squealpipe"), json.dumps(
-        found, sort_keys=True, separators=(",", ":")
-    )
-
-
-def versions() -> dict[str, str]:
+def versions() -> Mapping[str, str]:
     """Attributes with the version of this package and of the libraries that decide results."""
-    package, libraries = _versions()
-    return {"package_version": package, "libraries": libraries}
+    found = {name: importlib.metadata.version(name) for name in LIBRARIES}
+    libraries = json.dumps(found, sort_keys=True, separators=(",", ":"))
+    return {"package_version": importlib.metadata.version("squealpipe"), "libraries": libraries}

@@ -80,12 +80,8 @@ def derived(name: str) -> DatasetSchema | None:
 
 def ragged_dims(base: DatasetSchema) -> list[str]:
     """Dimensions of a task's dataset that may differ in length from run to run."""
-    used = {
-        dim
-        for entry in [*base.variables.values(), *base.coordinates.values()]
-        for dim in entry.dims
-    }
-    return [dim for dim in RAGGED if dim in used]
+    entries = [*base.variables.values(), *base.coordinates.values()]
+    return [dim for dim in RAGGED if any(dim in entry.dims for entry in entries)]
 
 
 def is_ragged(entry: Variable) -> bool:

@@ -149,8 +149,7 @@ def compare_datasets(name: str, a: xr.Dataset, b: xr.Dataset) -> DatasetDifferen
     for dim, how in schema.lists.items():
         first, second = (judged_length(each, dim, how) for each in (a, b))
         if first != second:
-            reason = f"{first} entries against {second}"
-            variables.append(_differs(f"number of {dim}", reason))
+            variables.append(_differs(f"number of {dim}", f"{first} entries against {second}"))
     try:
         a, b, notes = align(a, b, schema)
     except ValueError as error:

@@ -115,7 +115,7 @@ def _motions_and_shares(run: Run) -> dict[str, Any]:
         f"propensity_{name}": 100 * spread.share.sel(quantity=name)
         for name in map(str, spread.quantity.values)
     }
-    limited = (hammering.predictability_horizon < hammering.t_end).mean()
+    limited = hammering.predictability_horizon < hammering.t_end
     friction, beside = run["critical_friction_map"], run["a1_beside_a4"]
     charts = [run[f"friction_chart/{name}"] for name in ("F3", "F4")]
     shown = np.fmin(friction.critical_mu, friction.critical_mu_undamped) < LARGEST
@@ -123,7 +123,7 @@ def _motions_and_shares(run: Run) -> dict[str, Any]:
     return {
         **kinds,
         **shares,
-        "unpredictable": 100 * limited,
+        "unpredictable": 100 * limited.mean(),
         "shown_friction": LARGEST,
         "lowered": 100 * friction.destabilized.where(shown).mean(),
         "softest_kept": max(

@@ -103,8 +103,7 @@ def modes_couple(run: Run) -> Finding:
     """Cells that flutter with both frequencies equal."""
     stability = run["stability_map"]
     flutter = stability.regime_linear == LinearRegime.flutter
-    frequency = stability.frequency.transpose(..., "mode")
-    merged = flutter & merge(frequency.values)
+    merged = flutter & merge(stability.frequency.transpose(..., "mode").values)
     evidence = (
         f"{int(flutter.sum())} of {flutter.size} cells flutter ({100 * share(flutter):.2g} %); in "
         f"{int(merged.sum())} of them the two eigenvalues have merged into a pair of one frequency."

@@ -78,9 +78,7 @@ def contact_loss_matters(run: Run) -> Finding:
     """Median relative change of the largest displacement in scenes that lose contact."""
     table = run["assumptions"]
     lost = table.held.sel(level="A1", assumption="contact is kept").values == 0
-    changes = xr.concat(
-        [_relative_change(table[name]) for name in ("largest_y", "largest_x")], "extreme"
-    ).max("extreme")
+    changes = _relative_change(table[["largest_y", "largest_x"]].to_array()).max("variable")
     if not lost.any():
         return finding((0, ">", 0), "No scene loses contact.")
     changed = changes.values[lost]

@@ -82,14 +82,11 @@ def unstable_response_grows(run: Run) -> Finding:
     last = size.size - size.size // 5
     before, end = float(size[:last].max()), float(size[last:].max())
     saturates = end < SATURATED * before
-    evidence = (
-        f"|x| reaches {early:.3g} l_pre in the first half of the run to "
-        f"{until(run, scene(run, 'F3'))} and {late:.3g} l_pre in the second. Of a run to "
-        f"{until(run, longer)} it reaches {end:.3g} l_pre in the last fifth, {before:.3g} before."
-    )
     return finding(
         (late / early, ">", GROWTH_THRESHOLD),
-        evidence,
+        f"|x| reaches {early:.3g} l_pre in the first half of the run to "
+        f"{until(run, scene(run, 'F3'))} and {late:.3g} l_pre in the second. Of a run to "
+        f"{until(run, longer)} it reaches {end:.3g} l_pre in the last fifth, {before:.3g} before.",
         passed=Verdict.holds_only_as_printed if saturates else Verdict.holds,
     )
 

@@ -93,8 +93,7 @@ def vanishing_region_grows(run: Run) -> Finding:
 @rows.add("F9a", "where ω1 = 0, ω2 is largest", figure="fig09")
 def second_is_largest_where_first_vanishes(run: Run) -> Finding:
     """ω2 there, as a share of its largest value."""
-    separated = _state(run, "separated")
-    contact = _state(run, "contact")
+    separated, contact = _state(run, "separated"), _state(run, "contact")
     lines = is_multiple(angle_sum_over_pi(separated))
     second = separated.omega.sel(mode=2)
     on_lines = float(second.where(lines).min() / second.max())

@@ -27,11 +27,10 @@ def draw(beside: xr.Dataset) -> Figure:
     letters = iter("abcdefghijklmnopqrst")
     for row, scene in zip(axes, scenes, strict=True):
         part = beside.sel(scene=scene)
-        for panel, axis in zip(row, ("period", "order"), strict=True):
+        for panel, (axis, kind) in zip(row, KINDS.items(), strict=True):
             _draw(panel, part, axis)
-            style.panel_letter(
-                panel, next(letters), f"{scene_name(beside, str(scene))}: {KINDS[axis]}"
-            )
+            title = f"{scene_name(beside, str(scene))}: {kind}"
+            style.panel_letter(panel, next(letters), title)
         row[0].set_ylabel("y (m)")
         row[1].set_ylabel("amplitude (m)")
     axes[-1, 0].set_xlabel("time / period of A4")

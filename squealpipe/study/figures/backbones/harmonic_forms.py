@@ -27,9 +27,8 @@ def draw(forms: xr.Dataset) -> Figure:
     _frequencies(axes[0, 0], forms)
     _spread(axes[0, 1], forms)
     style.panel_letter(axes[0, 0], "a", "frequency found")
-    style.panel_letter(
-        axes[0, 1], "b", style.symbols(f"phase dependence, N_h = {int(forms.n_harmonics)}")
-    )
+    title = style.symbols(f"phase dependence, N_h = {int(forms.n_harmonics)}")
+    style.panel_letter(axes[0, 1], "b", title)
     return figure
 
 

@@ -22,12 +22,12 @@ ALT = "Two tables of coloured verdicts, methods in rows and problems in columns.
 
 _COLOURS = [style.WHITE, (style.BLUE, 0.25), style.ORANGE, style.RED]
 """The worse, the darker: greyscale tells them apart."""
-_SIGNS = {Reliability.right: "✓", Reliability.flagged: "!", Reliability.silently_wrong: "✗"}
-_WORDS = {
-    Reliability.right: "right",
-    Reliability.flagged: "wrong, but said so",
-    Reliability.silently_wrong: "silently wrong",
+_SIGNS = {
+    Reliability.right: "✓ right",
+    Reliability.flagged: "! wrong, but said so",
+    Reliability.silently_wrong: "✗ silently wrong",
 }
+"""Each verdict's sign, and what it means."""
 _ROW, _HEADS = 0.2, 1.2
 """Heights of a row, and of the names of the columns, inches."""
 
@@ -38,11 +38,9 @@ def draw(benchmark: xr.Dataset, atlas: xr.Dataset) -> Figure:
     figure, axes = style.new_figure(style.PAGE, sum(heights) + 0.3, nrows=2, height_ratios=heights)
     _draw_benchmark(axes[0, 0], benchmark.transpose("solver", "problem", "tol"))
     _draw_atlas(axes[1, 0], atlas.transpose("solver", "scene"))
-    for panel, letter, title in zip(
-        axes[:, 0], "ab", ("integrators with events", "frequencies and stability"), strict=True
-    ):
-        style.panel_letter(panel, letter, title)
-    tones = [(_COLOURS[verdict], f"{sign} {_WORDS[verdict]}") for verdict, sign in _SIGNS.items()]
+    style.panel_letter(axes[0, 0], "a", "integrators with events")
+    style.panel_letter(axes[1, 0], "b", "frequencies and stability")
+    tones = ((_COLOURS[verdict], words) for verdict, words in _SIGNS.items())
     keys = style.patches(tones, edgecolor="none")
     figure.legend(handles=keys, loc="outside upper right", ncols=3)
     return figure
@@ -68,7 +66,7 @@ def _draw_atlas(axes: Axes, found: xr.Dataset) -> None:
     verdict, error = found.verdict.values, found.error.values
     _paint(axes, verdict, verdict.shape[1])
     for row, column in np.argwhere(verdict > 0):
-        words = [_SIGNS[Reliability(int(verdict[row, column]))]]
+        words = [_SIGNS[Reliability(int(verdict[row, column]))][0]]
         if 0 < error[row, column] < np.inf:
             words.append(number(error[row, column], 1))
         text = "\N{THIN SPACE}".join(words)

@@ -54,8 +54,7 @@ def draw(ladder: xr.Dataset) -> Figure:
         present |= set(levels.ravel().tolist())
         style.draw_map(panel, ladder, levels, **colours)
         style.panel_letter(panel, letter, QUESTION_NAMES[question])
-    tones = [(colour_of(level), level.label) for level in Level if level in present]
-    keys = style.patches(tones)
+    keys = style.patches((colour_of(level), level.label) for level in Level if level in present)
     figure.legend(handles=keys, loc="outside upper center", ncols=min(len(keys), 4))
     foot(figure, ladder)
     return figure

@@ -53,7 +53,6 @@ def _medians(benchmark: xr.Dataset) -> xr.Dataset:
     fine["error"] = fine.error.clip(max=1.0)  # above, an answer says nothing
     found = fine.median("problem").stack(run=("solver", "tol"))
     ours = (found.solver == "squealpipe") & (found.tol == OUR_TOLERANCE)
-    method = found.solver.values.tolist()
     role = np.where(ours, Role.our_setting, Role.public)
     plain = found.drop_vars(["run", "solver", "tol"])
-    return plain.assign(method=("run", method), role=("run", role))
+    return plain.assign(method=("run", found.solver.values), role=("run", role))

@@ -32,9 +32,8 @@ def draw(hammering: xr.Dataset) -> Figure:
     low = np.nanmin(shown) if np.isfinite(shown).any() else 0.1 * t_end
     mesh = style.draw_map(axes[0, 0], hammering, shown, cmap="viridis_r", vmin=low, vmax=t_end)
     figure.colorbar(mesh, ax=axes[0, 0], label="predictability horizon (s)", shrink=0.85)
-    style.panel_letter(
-        axes[0, 0], "a", f"reached in {np.count_nonzero(horizon < t_end)} of {horizon.size}"
-    )
+    reached = np.count_nonzero(horizon < t_end)
+    style.panel_letter(axes[0, 0], "a", f"reached in {reached} of {horizon.size}")
     growth = hammering.lyapunov_exponent.values * t_end
     names = meanings(hammering.motion)
     panel = axes[0, 1]

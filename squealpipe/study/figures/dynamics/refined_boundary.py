@@ -47,8 +47,7 @@ def draw(refined: xr.Dataset, boundary: xr.Dataset) -> Figure:
     axes[0, 1].set(xlim=window[:2], ylim=window[2:])
     wrong, checked = int(refined.inherited_wrong), int(refined.inherited_checked)
     style.panel_letter(axes[0, 1], "b", f"magnified; {wrong} of {checked} others wrong")
-    key = style.patches(TONES.items())
-    figure.legend(handles=key, loc="outside lower center", ncols=4)
+    figure.legend(handles=style.patches(TONES.items()), loc="outside lower center", ncols=4)
     return figure
 
 
@@ -76,6 +75,5 @@ def _clustered(computed: xr.DataArray) -> xr.DataArray:
 
 
 def _map(axes: Axes, refined: xr.Dataset) -> None:
-    kept = refined.separates.values == 0
-    tones = np.where(kept, 1, 0) + 2 * (refined.computed.values != 0)
+    tones = (refined.separates.values == 0) + 2 * (refined.computed.values != 0)
     style.draw_map(axes, refined, tones, **style.category_colours([*TONES]))

@@ -9,10 +9,10 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.patheffects import withStroke
 
 from squealpipe.parameters import SCENES
 from squealpipe.plotting import style
+from squealpipe.plotting.cycles import key_entries
 from squealpipe.plotting.origin import scene_title, time_unit
 from squealpipe.schema.curves import ChartLine
 from squealpipe.study.figures.linear.fig07 import KINDS
@@ -28,7 +28,6 @@ LOOKS: dict[ChartLine, tuple[str, dict[str, Any]]] = {
 }
 SEEN = 1e-3
 """Share of a chart below which a kind is not seen in print."""
-HALO = [withStroke(linewidth=2, foreground="white")]
 ALT = "Charts over both angles and over κ and μ with lines, regions, and crosses at the scenes."
 
 
@@ -77,7 +76,7 @@ def draw(angles: xr.Dataset, scenes: Mapping[str, xr.Dataset]) -> Figure:
         panels[0].annotate(
             _title(name).rpartition(", ")[2], at, (-5 if left else 5, 5),
             textcoords="offset points", ha="right" if left else "left",
-            color=style.RED, path_effects=HALO,
+            color=style.RED, path_effects=style.HALO,
         )  # fmt: skip
     for panel, letter, name in zip(panels[1:], ascii_lowercase[1:], names, strict=False):
         _draw(panel, scenes[name])
@@ -85,15 +84,11 @@ def draw(angles: xr.Dataset, scenes: Mapping[str, xr.Dataset]) -> Figure:
         style.panel_letter(panel, letter, _title(name))
     for panel in panels[1 + len(names) :]:
         panel.remove()
-    handles = {
-        label: handle
-        for panel in panels[: 1 + len(names)]
-        for handle, label in zip(*panel.get_legend_handles_labels(), strict=True)
-    }
+    handles, _ = key_entries(panels[: 1 + len(names)])
     charts = [angles, *scenes.values()]
     shown = [max((_kinds(each) == k).mean() for each in charts) > SEEN for k in range(len(KINDS))]
     tones = style.patches(kind for kind, there in zip(KINDS, shown, strict=True) if there)
-    figure.legend(handles=[*tones, *handles.values()], loc="outside lower center", ncols=3)
+    figure.legend(handles=[*tones, *handles], loc="outside lower center", ncols=3)
     return figure
 
 
@@ -111,7 +106,7 @@ def _draw(panel: Axes, chart: xr.Dataset) -> None:
         if which.name not in chart.boundary.values:
             continue
         style.draw_lines(panel, (x[on], y[on]), chart.curve.values[on], label=label, **look)
-    look = {"color": style.RED, "ms": 7, "mew": 1.8, "path_effects": HALO}
+    look = {"color": style.RED, "ms": 7, "mew": 1.8, "path_effects": style.HALO}
     panel.plot(*chart.design.values.T, "x", label="scene", **look)
     panel.set(xlim=extent[:2], ylim=extent[2:], aspect="auto", box_aspect=1)
 

@@ -33,9 +33,8 @@ def draw(run: xr.Dataset, sizes: xr.Dataset) -> Figure:
     panel.axhline(0, color=style.GREY, linewidth=0.5)
     panel.set(xlabel="t (s)", ylabel="x (m)", xlim=(0, float(run.time[-1])))
     panel.legend(loc="lower right", bbox_to_anchor=(1, 0.98))
-    style.panel_letter(
-        panel, "a", f"x in time, max |x| = {number(float(np.abs(run.x).max()), 4)} m"
-    )
+    largest = number(float(np.abs(run.x).max()), 4)
+    style.panel_letter(panel, "a", f"x in time, max |x| = {largest} m")
     _sizes(axes[0, 1], sizes)
     return figure
 

@@ -5,9 +5,8 @@ from collections.abc import Mapping
 import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
-from matplotlib.patheffects import withStroke
 
-from squealpipe.plotting.style import BLUE, PAGE, new_figure
+from squealpipe.plotting.style import BLUE, HALO, PAGE, new_figure
 from squealpipe.study.figures.linear.fig07 import draw_kinds, key
 
 READS = ("validity_[bm]*", "own_scenes")
@@ -40,13 +39,7 @@ def draw(found: Mapping[str, xr.Dataset], scenes: xr.Dataset) -> Figure:
         panel.plot(*at, "x", color="white", markersize=10, markeredgewidth=4)
         panel.plot(*at, "x", color=BLUE, markersize=8, markeredgewidth=2)
         panel.annotate(
-            str(scene),
-            at,
-            (5, 5),
-            textcoords="offset points",
-            color=BLUE,
-            fontsize=8,
-            path_effects=[withStroke(linewidth=2, foreground="white")],
+            str(scene), at, (5, 5), textcoords="offset points", color=BLUE, path_effects=HALO
         )
     figure.legend(
         handles=[*key(), *panel.get_legend_handles_labels()[0]], loc="outside lower center", ncols=2

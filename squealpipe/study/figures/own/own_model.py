@@ -1,16 +1,17 @@
 """The model of each scene at its true angles and lengths, with its numbers."""
 
 from collections.abc import Mapping
+from string import ascii_lowercase
 from typing import Any
 
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.patches import Circle, FancyArrowPatch
+from matplotlib.patches import Circle
 
 from squealpipe.parameters import direction_of, law_in_words
-from squealpipe.plotting.mechanism import SPRING_COLOURS, displaced_springs
+from squealpipe.plotting.mechanism import SPRING_COLOURS, arrow, displaced_springs
 from squealpipe.plotting.origin import parameter
 from squealpipe.plotting.style import GREY, PAGE, RED, new_figure, panel_letter
 from squealpipe.text import number
@@ -31,9 +32,7 @@ def draw(runs: Mapping[str, xr.Dataset]) -> Figure:
     figure, axes = new_figure(PAGE, 2.6 * rows, nrows=rows, ncols=columns)
     for panel in axes.flat:
         panel.set_axis_off()
-    for letter, panel, (name, run) in zip(
-        "abcdefghijklmnopqrst", axes.flat, runs.items(), strict=False
-    ):
+    for letter, panel, (name, run) in zip(ascii_lowercase, axes.flat, runs.items(), strict=False):
         _draw(panel, run)
         panel_letter(panel, letter, name.removeprefix("own/"))
     return figure
@@ -55,16 +54,11 @@ def _draw(panel: Axes, run: xr.Dataset) -> None:
         )
         below: dict[str, Any] = {"ha": "center", "va": "top", "fontsize": 6}
         panel.text(0.0, (1.2 + 1.9 * index) * belt, words, color=colour, **below)
-    mass = Circle((0.0, 0.0), 0.05 * scale, facecolor="white", edgecolor="black", zorder=4)
-    panel.add_patch(mass)
+    panel.add_patch(Circle((0.0, 0.0), 0.05 * scale, fc="white", ec="black", zorder=4))
     panel.plot([-scale, scale], [belt, belt], color=GREY, linewidth=2.0)
     direction = direction_of(parameter(run, "belt_speed"))
-    panel.add_patch(
-        FancyArrowPatch(
-            (direction * 0.4 * scale, 2 * belt), (direction * 0.9 * scale, 2 * belt),
-            arrowstyle="-|>", mutation_scale=9, color=RED,
-        )
-    )  # fmt: skip
+    start, end = ((direction * share * scale, 2 * belt) for share in (0.4, 0.9))
+    arrow(panel, start, end, 9, RED)
     law = law_in_words(parameter(run, "friction_law")).partition(",")[0]
     own = law in {"table", "Python file"}
     friction = f"$μ$: {law}" if own else f"$μ$ = {number(parameter(run, 'mu'))}"

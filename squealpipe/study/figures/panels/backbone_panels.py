@@ -41,16 +41,11 @@ def draw_scenes(branches: Mapping[str, xr.Dataset], height: float) -> Figure:
         for panel, mode in zip(row, (1, 2), strict=True):
             exact, series = (branches[f"{scene}_mode{mode}{form}"] for form in ("", "_hbm"))
             draw_branch(panel, exact, series, parameter(exact, "preload"))
-            style.panel_letter(
-                panel, next(letters), f"{_angles(exact)}, vicinity of ω{'₁₂'[mode - 1]}"
-            )
+            angles = angle_pair(exact.attrs["alpha1"], exact.attrs["alpha2"])
+            style.panel_letter(panel, next(letters), f"{angles}, vicinity of ω{'₁₂'[mode - 1]}")
         row[0].set_ylabel("y, x (m)")
     figure.legend(*key_entries(axes.ravel()), loc="outside lower center", ncols=3)
     return figure
-
-
-def _angles(branch: xr.Dataset) -> str:
-    return angle_pair(branch.attrs["alpha1"], branch.attrs["alpha2"])
 
 
 def draw_branch(panel: Axes, exact: xr.Dataset, series: xr.Dataset, preload: float) -> None:
@@ -72,19 +67,15 @@ def draw_branch(panel: Axes, exact: xr.Dataset, series: xr.Dataset, preload: flo
             (overtakes, style.GREY, "-", "mass overtakes the belt"),
         ):
             if chosen.any():
-                drawn = np.where(joined(chosen), values, np.nan)
-                panel.plot(omega, drawn, dash, color=shade, linewidth=1.4, label=words)
+                line = np.where(joined(chosen), values, np.nan)
+                panel.plot(omega, line, dash, color=shade, linewidth=1.4, label=words)
         here, words = series.isel(point=shown), f"{label}, harmonic balance"
         panel.plot(here.omega, here[name], "x", ms=4.5, mew=0.9, color=colour, label=words)
-    _frame(panel, np.concatenate([omega, series.omega.values[shown]]))
-
-
-def _frame(panel: Axes, omega: np.ndarray) -> None:
-    span = max(float(np.ptp(omega)), 0.05 * float(omega.mean()))
-    middle = 0.5 * (float(omega.min()) + float(omega.max()))
-    panel.set_xlim(middle - 0.65 * span, middle + 0.65 * span)
-    panel.set_ylim(bottom=0)
-    panel.set_xlabel("ω (rad/s)")
+    drawn = np.concatenate([omega, series.omega.values[shown]])
+    span = max(float(np.ptp(drawn)), 0.05 * float(drawn.mean()))
+    middle = 0.5 * (float(drawn.min()) + float(drawn.max()))
+    limits = middle - 0.65 * span, middle + 0.65 * span
+    panel.set(xlabel="ω (rad/s)", xlim=limits, ylim=(0, None))
 
 
 def _evenly(series: xr.Dataset) -> np.ndarray:

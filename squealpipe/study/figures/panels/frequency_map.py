@@ -46,12 +46,8 @@ def draw_mode(frequencies: xr.Dataset, mode: int) -> Figure:
         outline(panel, frequencies, flutter.values)
         style.panel_letter(panel, letter, "in contact" if state == "contact" else state)
     draw_sums(axes[0, 1])
-    keys = axes[0, 1].get_lines()
-    figure.legend(
-        handles=[*(line for line in keys if not str(line.get_label()).startswith("_")), HATCH],
-        loc="outside lower center",
-        ncols=3,
-    )
+    lines, _ = axes[0, 1].get_legend_handles_labels()
+    figure.legend(handles=[*lines, HATCH], loc="outside lower center", ncols=3)
     figure.colorbar(mesh, ax=axes, label=f"ω{'₁₂'[mode - 1]} (rad/s)", shrink=0.8)  # type: ignore[arg-type]
     return figure
 

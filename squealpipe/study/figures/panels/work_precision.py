@@ -70,12 +70,8 @@ def draw_methods(
 def _pareto(error: np.ndarray, cost: np.ndarray) -> np.ndarray:
     """Indices of runs that no other beats in both, by ascending error."""
     order = np.lexsort((cost, error))
-    kept, least = [], np.inf
-    for index in order:
-        if cost[index] < least:
-            kept.append(index)
-            least = cost[index]
-    return np.array(kept, dtype=int)
+    least = np.minimum.accumulate(cost[order])
+    return order[np.diff(least, prepend=np.inf) < 0]
 
 
 def foot(figure: Figure, dataset: xr.Dataset) -> None:

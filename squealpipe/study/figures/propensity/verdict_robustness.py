@@ -48,6 +48,5 @@ def draw(reach: xr.Dataset) -> Figure:
     panel.xaxis.tick_top()
     panel.invert_yaxis()
     panel.tick_params(length=0)
-    for side in panel.spines.values():
-        side.set_visible(False)
+    panel.spines[:].set_visible(False)
     return figure
