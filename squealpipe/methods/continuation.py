@@ -211,14 +211,12 @@ class Continuation:
     def __iter__(self) -> Iterator[ContinuationState]:
         algorithm = PseudoArclength(self.settings)
         unit = self.direction / np.linalg.norm(self.direction)
-        state: ContinuationState | None = ContinuationState(
+        state = ContinuationState(
             self.start, unit, np.zeros_like(unit), self.settings.first_step, 0, 0.0
         )
-        while state is not None:
-            state = algorithm.advance(self.problem, state)
-            if state is not None:
-                state = self.adapt(state)
-                yield state
+        while (following := algorithm.advance(self.problem, state)) is not None:
+            state = self.adapt(following)
+            yield state
 
     def run(self, stop: Callable[[ContinuationState], bool]) -> ContinuationResult:
         """States up to and including the first that ``stop`` accepts."""

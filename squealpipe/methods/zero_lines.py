@@ -361,8 +361,7 @@ class ZeroLines:
             height = _cubic(t, slopes[k : k + 1])
             start, end = self.chords[k]
             inner = self.place[start] + t[:, None] * chord[k] + height[:, None] * left[k]
-            between[start, end] = inner
-            between[end, start] = inner[::-1]
+            between[start, end], between[end, start] = inner, inner[::-1]
         chords = self.chords if positive else self.chords[:, ::-1]
         place = np.concatenate([self.place, CORNERS])
         sign, number = (-1.0 if positive else 1.0), {(i, j): k for k, (i, j) in enumerate(chords)}
@@ -388,8 +387,7 @@ class ZeroLines:
         x, y = place[on].T
         around = np.select([y == 0.0, x == 1.0, y == 1.0], [x, 1.0 + y, 3.0 - x], 4.0 - y)
         on = on[np.lexsort((on < len(self.place), np.where(on == len(self.place), 0.0, around)))]
-        changes = np.cumsum(on < len(self.place))
-        has = changes % 2 == (self.positive != positive)
+        has = np.cumsum(on < len(self.place)) % 2 == (self.positive != positive)
         return np.asarray(np.stack([on, np.roll(on, -1)], axis=1)[has])
 
 

@@ -121,7 +121,6 @@ def integrate(
     """
     t, size = system.integrated, len(t_end)
     scale = system.time_scale
-    names = list(system.parameters)
     unit = np.broadcast_to(
         scale(Names("the system", values)) if callable(scale) else float(scale), (size,)
     ).astype(float)
@@ -132,9 +131,8 @@ def integrate(
     derive, given = system.derived
     known = {**values, TIME_UNIT: unit}
     derived = derive(*(known[name] for name in given))
-    columns = [*(values[name] for name in names), *derived, unit]
-    parameters = _table(size, columns)
-    initial = _table(size, [values[name] for name in system.states])
+    parameters = _table(size, *(values[name] for name in system.parameters), *derived, unit)
+    initial = _table(size, *(values[name] for name in system.states))
     regimes = regime
     if not isinstance(regimes, np.ndarray):
         regimes = system.first_regimes({TIME: np.zeros(size), **values}, size, regimes)
@@ -147,8 +145,7 @@ def integrate(
         for each in chosen
     ]
     lost = math.log(layout.LOST_ERROR / tol)
-    each = (t_end / unit, t_late / unit, most_steps, most_events, lost, most_turns)
-    limits = _table(size, each)
+    limits = _table(size, t_end / unit, t_late / unit, most_steps, most_events, lost, most_turns)
     samples = np.empty((1, 0)) if times is None else np.atleast_2d(times)
     sample_times = np.ascontiguousarray(samples / unit[:, None])
     n_samples = samples.shape[1]
@@ -269,12 +266,10 @@ def integrate(
     return arrays
 
 
-def _table(size: int, columns: Sequence[Any]) -> np.ndarray:
+def _table(size: int, *columns: Any) -> np.ndarray:
     """Columns side by side, each a number or an array (size,)."""
-    table = np.empty((size, len(columns)))
-    for place, column in enumerate(columns):
-        table[:, place] = column
-    return table
+    rows = [np.broadcast_to(column, size) for column in columns]
+    return np.array(rows, float).T.copy()
 
 
 @dataclass(frozen=True)
@@ -481,9 +476,7 @@ def outer_product(
     system: System, start: Mapping[str, Any] | None, parameters: Mapping[str, Any]
 ) -> Grid:
     """The grid of what a call gives as 1-D arrays, starts first."""
-    given = {
-        name: real_array(name, v) for name, v in call_values(system, start, parameters).items()
-    }
+    given = {n: real_array(n, v) for n, v in call_values(system, start, parameters).items()}
     for name, value in given.items():
         if value.ndim > 1:
             raise ValueError(f"{name} has shape {value.shape}: a number or a 1-D array is needed")

@@ -169,13 +169,8 @@ class Tracer:
 
     def samples(self, rng: np.random.Generator, size: int = 32) -> dict[str, Any]:
         """Random values of everything that an expression may hold."""
-        names = [
-            TIME,
-            TIME_UNIT,
-            *self.states,
-            *vars(self.p),
-            *(REGIME + c for c in self.constants),
-        ]
+        constants = [REGIME + c for c in self.constants]
+        names = [TIME, TIME_UNIT, *self.states, *vars(self.p), *constants]
         return {name: rng.uniform(0.3, 1.7, size) for name in names}
 
 

@@ -30,22 +30,17 @@ def contact_angles(cosine: Vector, threshold: float, grid: Vector, table: Vector
     gap = threshold - table @ cosine
     above = gap > 0.0
     edges = np.flatnonzero(above[1:] != above[:-1])
-    left, right = grid[edges], grid[edges + 1]
-    ends = gap[edges], gap[edges + 1]
+    found = np.stack([grid[edges], grid[edges + 1], gap[edges], gap[edges + 1]])
     dips = _hidden_dips(gap, above, grid)
     if dips.size:
         bottom = threshold - np.cos(np.outer(dips, np.arange(len(cosine)))) @ cosine
         after = np.searchsorted(grid, dips)
         deep = (bottom > 0.0) != above[after - 1]
         dips, bottom, after = dips[deep], bottom[deep], after[deep]
-        left = np.concatenate([left, grid[after - 1], dips])
-        right = np.concatenate([right, dips, grid[after]])
-        ends = (
-            np.concatenate([ends[0], gap[after - 1], bottom]),
-            np.concatenate([ends[1], bottom, gap[after]]),
-        )
-        sort = np.argsort(left)
-        left, right, ends = left[sort], right[sort], (ends[0][sort], ends[1][sort])
+        before = np.stack([grid[after - 1], dips, gap[after - 1], bottom])
+        beyond = np.stack([dips, grid[after], bottom, gap[after]])
+        found = np.concatenate([found, before, beyond], axis=1)
+        found = found[:, np.argsort(found[0])]
     order = np.arange(len(cosine))
     rate = order * cosine
 
@@ -53,7 +48,8 @@ def contact_angles(cosine: Vector, threshold: float, grid: Vector, table: Vector
         phase = np.outer(theta, order)
         return threshold - np.cos(phase) @ cosine, np.sin(phase) @ rate
 
-    return bracketed(gap_at, (left, right), ends, _LAST_STEP)
+    left, right, first, last = found
+    return bracketed(gap_at, (left, right), (first, last), _LAST_STEP)
 
 
 def _hidden_dips(gap: Vector, above: NDArray[np.bool_], grid: Vector) -> Vector:

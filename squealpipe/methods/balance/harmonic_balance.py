@@ -112,8 +112,7 @@ class CosineBalance:
 def cosines_of(samples: Vector) -> Vector:
     """Cosine coefficients of an even function from samples at θ = π j/n, j = 0 … n."""
     count = len(samples) - 1
-    even = np.concatenate([samples, samples[-2:0:-1]])
-    spectrum = np.fft.rfft(even, axis=0).real / (2 * count)
+    spectrum = np.fft.rfft(np.concatenate([samples, samples[-2:0:-1]]), axis=0).real / (2 * count)
     spectrum[1:-1] *= 2.0
     return np.asarray(spectrum)
 

@@ -146,9 +146,7 @@ class SampledBalance:
         count = 2 * self.n_harmonics + 1
         orders = np.arange(1, self.n_harmonics + 1)
         for offset, cosines in ((0, x), (count, y)):
-            kept = np.zeros(self.n_harmonics + 1)
-            shared = min(len(cosines), len(kept))
-            kept[:shared] = cosines[:shared]
+            kept = np.pad(cosines, (0, self.n_harmonics))[: self.n_harmonics + 1]
             eta[offset] = kept[0]
             eta[offset + 1 : offset + count : 2] = -kept[1:] * np.sin(orders * phase)
             eta[offset + 2 : offset + count : 2] = kept[1:] * np.cos(orders * phase)

@@ -153,7 +153,10 @@ def solve_constrained(
         scale = 1.0 + abs(point[0]) + abs(point[1])
         if not error < 1e6 * scale or (iteration > 3 and error > previous > 1e-12 * scale):
             break
-        _cross(jacobian[0], jacobian[1], tangent)
+        # across both gradients
+        tangent[0] = jacobian[0, 1] * jacobian[1, 2] - jacobian[0, 2] * jacobian[1, 1]
+        tangent[1] = jacobian[0, 2] * jacobian[1, 0] - jacobian[0, 0] * jacobian[1, 2]
+        tangent[2] = jacobian[0, 0] * jacobian[1, 1] - jacobian[0, 1] * jacobian[1, 0]
         stagnant = error <= 1e-12 * scale and (error >= 0.25 * previous or error == 0.0)
         if error < previous:
             best0, best1, best2 = point[0], point[1], point[2]
@@ -166,9 +169,7 @@ def solve_constrained(
                 count = shoot(rows, best0, best1, best2, segments, switches, final)
             return count, iteration, max(abs(final[2]), abs(final[3]))
         previous = error
-        determinant = (
-            constraint[0] * tangent[0] + constraint[1] * tangent[1] + constraint[2] * tangent[2]
-        )
+        determinant = dot(constraint, tangent)
         if determinant == 0.0:
             break
         # Cramer's rule for [J; c] dz = −[r; 0]: dz = c × (r0 J1 − r1 J0) / (c · (J0 × J1))
@@ -181,10 +182,3 @@ def solve_constrained(
         if not point[2] > 0.0:
             break
     return 0, _MAX_NEWTON, np.inf
-
-
-@compiled
-def _cross(left: Any, right: Any, out: Any) -> None:
-    out[0] = left[1] * right[2] - left[2] * right[1]
-    out[1] = left[2] * right[0] - left[0] * right[2]
-    out[2] = left[0] * right[1] - left[1] * right[0]

@@ -108,10 +108,8 @@ class Ensemble:
     """The growth is that at the end of the step before."""
     turns, log_growth = _turns("half_turns"), _column("summary", 0)
     """Counterclockwise positive; ln of the growth of a perturbation, 0 without ``tangent``."""
-    time, predictability_horizon = (
-        _column("summary", 2, time=True),
-        _column("summary", 1, time=True),
-    )
+    time = _column("summary", 2, time=True)
+    predictability_horizon = _column("summary", 1, time=True)
     """Time reached, and that at which an error of ``tol`` has grown to l_pre/1000 (NaN: not before
     the end), s."""
     steps, final_state = _column("ends", 2), _states("final")

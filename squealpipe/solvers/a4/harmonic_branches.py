@@ -166,7 +166,6 @@ def _judged(
     x, y, omega = balance.split(z)
     half_period = math.pi / omega
     start = np.array([x.sum(), y.sum(), half_period])
-    period = np.array([start[0], start[1], 2.0 * half_period])
     switches = balance.contact.angles(y) / omega
     values, _ = balance.evaluate(z)
     omega_exact, waveform_error = _distance(scene, balance, z, start, outcome)
@@ -180,7 +179,7 @@ def _judged(
         stability_index=index_from_switches(scene.system, switches, half_period, start[1]),
         omega_exact=omega_exact,
         waveform_error=waveform_error,
-        integration_error=_apart(scene, balance, z, period, 2.0 * _PHASES),
+        integration_error=_apart(scene, balance, z, start * [1.0, 1.0, 2.0], 2.0 * _PHASES),
     )
 
 
@@ -188,8 +187,7 @@ def _distance(
     scene: ScaledSystem, balance: CosineBalance, z: Vector, start: Vector, outcome: Outcome
 ) -> tuple[float, float]:
     """(ω, waveform distance) of the exact orbit of equal peak; NaN where none is near."""
-    omega = balance.split(z)[2]
-    point = start
+    omega, point = balance.split(z)[2], start
     if outcome == Outcome.converged:
         exact = solve_orbit(scene.system, start)
         if exact is None or abs(exact.omega - omega) > _NEAR_EXACT * omega:

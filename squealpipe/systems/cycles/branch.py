@@ -19,7 +19,7 @@ from scipy.interpolate import barycentric_interpolate
 
 from squealpipe.methods.continuation import ContinuationState
 from squealpipe.methods.progress import alone
-from squealpipe.schema import Outcome
+from squealpipe.schema import Outcome, flag_table
 from squealpipe.systems import runs
 from squealpipe.systems.cycles.admissible import MARGIN_ROUND_OFF, margins
 from squealpipe.systems.cycles.cycle import columns, describe_columns, find_cycle, outcome_of
@@ -76,9 +76,7 @@ class Point:
     @property
     def parameter(self) -> float:
         """Value of the followed parameter."""
-        if self.rest is not None:
-            return self.rest
-        return self.cycle.parts.values[self.cycle.map.flow.followed[-1]]
+        return float(self.cycle.followed[-1]) if self.rest is None else self.rest
 
 
 def sizes_of(shapes: list[Vector]) -> Vector:
@@ -258,7 +256,7 @@ class Follower:
         section = cycle.map.section
         if section is not None and float(section.normal @ reached.heading) <= 0.0:
             return True  # beyond a state of rest
-        if not self.low - MARGIN_ROUND_OFF <= self._at(reached) <= self.high + MARGIN_ROUND_OFF:
+        if not self.low - MARGIN_ROUND_OFF <= reached.followed[-1] <= self.high + MARGIN_ROUND_OFF:
             return True
         if state.step < _COARSE:
             return False
@@ -268,9 +266,6 @@ class Follower:
         finite = np.isfinite(one).all() and np.isfinite(other).all()
         small = finite and max(np.abs(one).max(), np.abs(other).max()) < 100.0
         return bool(small and multiplier_change(cycle, reached) > _CHANGE)
-
-    def _at(self, cycle: Cycle) -> float:
-        return cycle.parts.values[cycle.map.flow.followed[-1]]
 
     def _examined(
         self, state: ContinuationState, cycle: Cycle, following: ContinuationState, reached: Cycle
@@ -370,8 +365,7 @@ class Follower:
             return None
         guess = state.point + share * state.tangent
         guess[-1] = edge / unit
-        normal = np.zeros(len(guess))
-        normal[-1] = math.copysign(1.0, state.tangent[-1])
+        normal = math.copysign(1.0, state.tangent[-1]) * np.eye(len(guess))[-1]
         found = ALONG.solve(equations, guess, normal, state.step)
         if found is None or float(np.linalg.norm(found.point - guess)) > 0.3 * length:
             return None
@@ -387,9 +381,8 @@ def renewed(state: ContinuationState, cycle: Cycle) -> tuple[ContinuationState, 
     section = Section(cycle.parts.states[0], normal)
     tangent = state.tangent.copy()
     tangent[: len(normal)] -= normal * (normal @ tangent[: len(normal)])
-    made = replace(equations, section=section)
     state = replace(state, tangent=tangent / np.linalg.norm(tangent))
-    return state, replace(cycle, map=made)
+    return state, replace(cycle, map=replace(equations, section=section))
 
 
 @checked
@@ -453,8 +446,7 @@ def first_point(
     begin = cycle.parts.values[parameter]
     flow = Flow(cycle.map.flow.system, (parameter,), tied)
     equations, guess = cycle.followed_in(flow, np.array([max(abs(begin), abs(to))]))
-    normal = np.zeros(len(guess))
-    normal[-1] = math.copysign(1.0, to - begin)
+    normal = math.copysign(1.0, to - begin) * np.eye(len(guess))[-1]
     state = AT.solve(equations, guess, normal, STEPS.first_step)
     return None if state is None else (state, Cycle.at(equations, state.point))
 
@@ -527,9 +519,9 @@ def dataset(system: System, points: list[Point], end: int, parameter: str) -> xr
     values = points[0].cycle.parts.values if points else {}
     followed = np.array([point.parameter for point in points])
     found[parameter] = ("point", followed, runs.labels(f"{parameter} along the branch", "1"))
-    labels = {int(label): label.name for label in Label}
+    labels = [point.label for point in points]
     found["label"] = runs.flag(
-        "what is special about the point", "point", [p.label for p in points], labels
+        "what is special about the point", "point", labels, flag_table(Label)
     )
     found["events"] = (
         "point", [len(p.cycle.events) for p in points], runs.labels("events of the cycle", "1"),

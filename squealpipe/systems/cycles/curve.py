@@ -19,6 +19,7 @@ import numpy as np
 import xarray as xr
 
 from squealpipe.methods.continuation import ContinuationState, PseudoArclength
+from squealpipe.schema import flag_table
 from squealpipe.systems import runs
 from squealpipe.systems.cycles.admissible import MARGIN_ROUND_OFF, Kind, Margin, is_motion, margins
 from squealpipe.systems.cycles.branch import started
@@ -43,6 +44,7 @@ ENDS = ("point_limit", "end_of_range", "curve_lost", "multipliers_are_real")
 _NO_MARGIN = Margin(Kind.length, -1, FREE)
 RETURNS = {Label.fold: 0.0, Label.period_doubling: np.pi, Label.torus: np.nan}
 """By which angle a disturbance is turned in a period; NaN where it is an unknown."""
+GRAZINGS = {Label.fold: Meeting.fold_grazing, Label.period_doubling: Meeting.flip_grazing}
 
 
 Test = Callable[[Vector], float]
@@ -95,9 +97,8 @@ class Curve:
         """Take the borders, and the section of a cycle without events, from a point."""
         if self.map.section is not None:
             cycle = self.cycle(point)
-            state, heading = cycle.parts.states[0], cycle.heading
-            section = Section(state, heading / np.linalg.norm(heading))
-            self.map = replace(self.map, section=section)
+            normal = cycle.heading / np.linalg.norm(cycle.heading)
+            self.map = replace(self.map, section=Section(cycle.parts.states[0], normal))
         if self.label in RETURNS:
             jacobian = self.map.evaluate(self.known(point))[1]
             left, _, right = np.linalg.svd(self.returning(jacobian, self.factor(point)))
@@ -241,23 +242,20 @@ def _curve_of(cycle: Cycle, label: Label) -> tuple[Curve, Vector]:
         number if stays else FREE, own.which, 1.0 if falls else -1.0, event.before, event.before,
         kind,
     )  # fmt: skip
-    states = [cycle.states_at(np.array([cycle.clocks[leg] + turn.time]))[0][0]]
-    followed = np.array([parts.values[name] for name in equations.flow.followed])
-    start = parts.start
+    states, _ = cycle.states_at(np.array([cycle.clocks[leg] + turn.time]))
+    start, durations = parts.start, parts.durations
     if event.surface == FREE:
         # without events the section is the touch
         events: tuple[Event, ...] = (touch,)
-        durations, start, leg = parts.durations, start + turn.time, 0
+        start, leg = start + turn.time, 0
     else:
         events = (*equations.events[:leg], touch, *equations.events[leg:])
-        rest = parts.durations[leg] - turn.time
-        durations = np.concatenate(
-            [parts.durations[:leg], [turn.time, rest], parts.durations[leg + 1 :]]
-        )
-        states = [*parts.states[: leg + 1], states[0], *parts.states[leg + 1 :]]
+        states = np.insert(parts.states, leg + 1, states, axis=0)
+        durations = np.insert(durations, leg, turn.time)
+        durations[leg + 1] -= turn.time
     made = replace(equations, events=events, section=None)
     own = Margin(Kind.speed, leg, own.which)
-    return Curve(made, label, own), made.pack(np.array(states), durations, start, followed)
+    return Curve(made, label, own), made.pack(states, durations, start, cycle.followed)
 
 
 @dataclass(frozen=True)
@@ -395,10 +393,8 @@ class _Way:
             met = Meeting.end_of_leg
         elif label == Label.stick_onset:
             met = Meeting.stick_onset
-        elif label == Label.grazing and self.curve.label == Label.fold:
-            met = Meeting.fold_grazing
-        elif label == Label.grazing and self.curve.label == Label.period_doubling:
-            met = Meeting.flip_grazing
+        elif label == Label.grazing:
+            met = GRAZINGS.get(self.curve.label, met)
         system, event = cycle.map.flow.system, cycle.map.events[key.leg]
         watched = (system.traced.falls, system.traced.rises)
         number = event.switch
@@ -522,31 +518,23 @@ def follow_curve(
 def _dataset(
     system: System, label: str, points: list[Point], parameters: Sequence[str], ends: list[str]
 ) -> xr.Dataset:
-    found: dict[str, Any] = {
-        name: (
-            "point", np.array([p.cycle.parts.values[name] for p in points]),
-            runs.labels(f"{name} along the curve", "1"),
-        )
-        for name in parameters
-    }  # fmt: skip
-    period = np.array([point.cycle.period for point in points])
-    found["period"] = ("point", period, runs.labels("period", "s"))
-    found["events"] = (
-        "point", [len(p.cycle.events) for p in points], runs.labels("events of the cycle", "1"),
-    )  # fmt: skip
-    residual = np.array([point.residual for point in points])
-    text = "largest equation left over, without units"
-    found["residual"] = ("point", residual, runs.labels(text, "1"))
-    table = {int(each): each.name for each in Meeting}
-    codes = [int(point.label) for point in points]
-    found["label"] = runs.flag("what else happens at the point", "point", codes, table)
-    names = list(ENDS)
-    names += sorted(set(ends) - set(names))
+    found: dict[str, Any] = {}
+    cycles = [point.cycle for point in points]
+    for name in parameters:
+        values = [cycle.parts.values[name] for cycle in cycles]
+        found[name] = ("point", values, runs.labels(f"{name} along the curve", "1"))
+    periods, events = [cycle.period for cycle in cycles], [len(cycle.events) for cycle in cycles]
+    found["period"] = ("point", periods, runs.labels("period", "s"))
+    found["events"] = ("point", events, runs.labels("events of the cycle", "1"))
+    residuals, text = [p.residual for p in points], "largest equation left over, without units"
+    found["residual"] = ("point", residuals, runs.labels(text, "1"))
+    labels, text = [point.label for point in points], "what else happens at the point"
+    found["label"] = runs.flag(text, "point", labels, flag_table(Meeting))
+    names = [*ENDS, *sorted(set(ends) - set(ENDS))]
     found["outcome"] = runs.flag(
         "why the curve ended", "side", [names.index(end) for end in ends], dict(enumerate(names))
     )
-    values = points[0].cycle.parts.values
-    attributes = runs.attributes(system, "cycle curve", values, 1e-14)
+    attributes = runs.attributes(system, "cycle curve", cycles[0].parts.values, 1e-14)
     return xr.Dataset(
         found, attrs=attributes | {"curve": label, "parameters_followed": " ".join(parameters)}
     )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
+from itertools import islice
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -67,20 +68,18 @@ def sizes_at(flow: Flow, values: Mapping[str, float], state: Vector, regime: int
 
 def events_of(system: System, motion: Motion, count: int) -> tuple[Event, ...]:
     """The first events of a run, each with its switch."""
-    t, found = system.traced, []
+    t = system.traced
+    found: list[Event] = []
     for i in range(count):
         before, after, kind = (int(v) for v in (*motion.regimes[i : i + 2], motion.kinds[i]))
-        for table, sign in ((t.falls, 1.0), (t.rises, -1.0)):
-            for surface, switch in enumerate(table[before]):
-                if 0 <= switch < len(t.switches) and any(
-                    (regime, name) == (after, kind)
-                    for regime, _, name in t.switches[switch].targets
-                ):
-                    found.append(Event(int(switch), surface, sign, before, after, kind))
-                    break
-            else:
-                continue
-            break
+        fitting = (
+            Event(int(switch), surface, sign, before, after, kind)
+            for table, sign in ((t.falls, 1.0), (t.rises, -1.0))
+            for surface, switch in enumerate(table[before])
+            if 0 <= switch < len(t.switches)
+            and any((to, name) == (after, kind) for to, _, name in t.switches[switch].targets)
+        )
+        found += islice(fitting, 1)
     return tuple(found)
 
 
@@ -109,7 +108,7 @@ def guess_of(
         return None
     equations = EventMap(flow, (), values, scale, period, units, periods)
     if count == 0:
-        return _eventless(equations, state, int(motion.regimes[0]), period, followed)
+        return eventless(equations, state, int(motion.regimes[0]), period, followed)
     events = events_of(flow.system, motion, count)
     if len(events) < count:
         return None
@@ -120,7 +119,7 @@ def guess_of(
     return equations, equations.pack(motion.states[:count], durations, float(times[0]), followed)
 
 
-def _eventless(
+def eventless(
     equations: EventMap, state: Vector, regime: int, period: float, followed: Vector
 ) -> tuple[EventMap, Vector]:
     """Equations and guess of a cycle through a state that stays in one regime."""
@@ -164,7 +163,7 @@ def merged(cycle: Cycle, leg: int, count: int) -> tuple[EventMap, Vector]:
     if count >= equations.legs:
         state, _ = cycle.start()
         made, regime = replace(equations, values=parts.values), equations.events[leg].before
-        return _eventless(made, state, regime, cycle.period, cycle.followed)
+        return eventless(made, state, regime, cycle.period, cycle.followed)
     absorbed = [(leg + k) % equations.legs for k in range(1, count + 1)]
     keep = [i for i in range(equations.legs) if i not in absorbed]
     events, durations = list(equations.events), parts.durations.copy()
@@ -253,8 +252,7 @@ def _near(
         )  # fmt: skip
         if run.outcome or not np.isfinite(run.path).all():
             return None, run.outcome or Outcome.not_finite
-        every = np.concatenate([run.path, run.states])
-        scale = scale_of(np.array([every.min(axis=0), every.max(axis=0)]), flow.system.sizes)
+        scale = scale_of(np.concatenate([run.path, run.states]), flow.system.sizes)
         found = guess_of(flow, values, run, state, duration, periods=periods, scale=scale)
         point = None if found is None else found[0].solve(found[1])
         if found is None or point is None:
@@ -274,18 +272,15 @@ def _free(
     returns: int,
 ) -> tuple[Cycle | None, int]:  # fmt: skip
     """A cycle without forcing near a state; with ``returns`` to its section, if that is not 0."""
-    system = flow.system
     tried: list[float] = []
     for window in _WINDOWS:
         times = np.linspace(0.0, window * unit, _SAMPLES)
         run = follow(flow, values, state, times[-1], regime=regime, times=times)
         if run.outcome or not np.isfinite(run.path).all():
             return None, run.outcome or Outcome.not_finite
-        every = np.concatenate([run.path, run.states])
-        extremes = np.array([every.min(axis=0), every.max(axis=0)])
         if _rests(run.path[len(run.path) // 2 :], sizes_at(flow, values, state, regime or 0)):
             return None, Outcome.equilibrium
-        scale = scale_of(extremes, system.sizes)
+        scale = scale_of(np.concatenate([run.path, run.states]), flow.system.sizes)
         for count, period, distance in _returns(flow, values, run, times, state, scale):
             if distance > (_FAR if window == _WINDOWS[-1] else _NEAR):
                 break
@@ -368,9 +363,7 @@ def _returns(
     found: list[tuple[int, float, float]] = []
     if len(run.times):
         keys = np.column_stack([run.kinds, run.regimes[:-1], run.regimes[1:]])
-        for count in range(1, len(run.times)):
-            if (keys[count] != keys[0]).any():
-                continue
+        for count in (np.flatnonzero((keys[1:] == keys[0]).all(axis=1)) + 1).tolist():
             distance = float(np.abs((run.states[count] - run.states[0]) / scale).max())
             found.append((count, float(run.times[count] - run.times[0]), distance))
     else:
@@ -433,10 +426,7 @@ def given(
     system: System, start: Mapping[str, Any] | None, parameters: Mapping[str, Any]
 ) -> tuple[dict[str, float], Vector]:
     """Parameters and the start of a call, checked."""
-    found = {
-        name: runs.scalar(name, value)
-        for name, value in runs.call_values(system, start, parameters).items()
-    }
+    found = {n: runs.scalar(n, v) for n, v in runs.call_values(system, start, parameters).items()}
     if len(system.traced.variables) > system.traced.size and system.period is None:
         raise ValueError(f"{system.name} depends on the time but has no period; give `period`")
     return {n: found[n] for n in system.parameters}, np.array([found[n] for n in system.states])
@@ -505,19 +495,15 @@ def dataset(
 ) -> xr.Dataset:
     """A cycle, or the reason why there is none, as a dataset."""
     found = describe_columns(system, [columns(cycle, system)])
-    more = outcome > SETTLED_ON
-    found["periods"] = (
-        (), outcome - SETTLED_ON if more else periods,
-        {"long_name": "forcing periods, or returns to the section", "units": "1"},
-    )  # fmt: skip
+    number = outcome - SETTLED_ON if outcome > SETTLED_ON else periods
+    label = runs.labels("forcing periods, or returns to the section", "1")
+    found["periods"] = ((), number, label)
     times, order = np.empty(0), []
     instants, path, regime = np.empty(0), np.empty((0, len(system.states))), 0
     if cycle is not None:
-        events = [i for i, event in enumerate(cycle.map.events) if event.switch != FREE]
-        ends = cycle.clocks + cycle.parts.durations
-        times = np.array([(ends[i] - cycle.phase) % cycle.period for i in events])
-        order = [events[i] for i in np.argsort(times)]
-        times = np.sort(times)
+        ends = (cycle.clocks + cycle.parts.durations - cycle.phase) % cycle.period
+        order = [i for i in np.argsort(ends) if cycle.map.events[i].switch != FREE]
+        times = ends[order]
         instants = cycle.instants
         path, _ = cycle.states_at((cycle.phase + instants) % cycle.period)
         regime = cycle.start()[1]

@@ -324,9 +324,7 @@ class Cycle:
             trivial, matrix = turned[:1, 0], turned[1:, 1:]
         rest = np.linalg.eigvals(matrix).astype(np.complex128)
         # conjugates: positive imaginary part first
-        order = sorted(
-            range(len(rest)), key=lambda i: (-round(float(abs(rest[i])), 9), -rest[i].imag)
-        )
+        order = np.lexsort((-rest.imag, -np.abs(rest).round(9)))
         return np.concatenate([trivial.astype(np.complex128), rest[order]])
 
     @property
@@ -454,11 +452,11 @@ class Cycle:
         return made, made.pack(parts.states, parts.durations, parts.start, followed)
 
 
-def scale_of(extremes: Vector, sizes: Vector) -> Vector:
+def scale_of(path: Vector, sizes: Vector) -> Vector:
     """Units of the states: their extents in a motion, none far below that of the others.
 
     A state that hardly moves is known no better than the others.
     """
-    extent = (extremes[1] - extremes[0]) / sizes
-    largest = float(extent.max()) or float(np.abs(extremes / sizes).max()) or 1.0
+    extent = np.ptp(path, axis=0) / sizes
+    largest = float(extent.max()) or float(np.abs(path / sizes).max()) or 1.0
     return np.asarray(sizes * np.maximum(extent, _LEAST * largest))

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from squealpipe.methods.continuation import ContinuationState
-from squealpipe.systems.cycles.admissible import MARGIN_ROUND_OFF, Kind, Margin, margins
+from squealpipe.systems.cycles.admissible import MARGIN_ROUND_OFF, Kind, Margin, is_motion, margins
 from squealpipe.systems.cycles.cycle import follow, guess_of, merged, without_brief_legs
 from squealpipe.systems.cycles.event_map import Cycle, Event, EventMap
 from squealpipe.systems.cycles.flow import Vector
@@ -113,8 +113,7 @@ class Turn:
         self, equations: EventMap, guess: Vector
     ) -> tuple[ContinuationState, Cycle] | None:
         """A solution next to the change, and the direction in which it is a motion."""
-        values, _ = equations.evaluate(guess)
-        if not np.isfinite(values).all():
+        if not np.isfinite(equations.evaluate(guess)[0]).all():
             return None
         near = margins(Cycle.at(equations, guess))
         known = margins(self.there[1]).items()
@@ -123,11 +122,9 @@ class Turn:
         most = _WEAK * min(1.0, usual)
         weak = {k: v for k, v in near.items() if k.kind in kinds and v < most}
         algorithm = replace(ALONG, settings=replace(STEPS, max_iterations=12))
+        normal = np.eye(len(guess))[-1]
         if weak:
-            key = min(weak, key=lambda k: weak[k])
-            normal = _gradient(equations, guess, key)
-        else:
-            normal = np.eye(len(guess))[-1]
+            normal = _gradient(equations, guess, min(weak, key=lambda k: weak[k]))
         state = algorithm.solve(equations, guess, normal, STEPS.first_step)
         if state is None:
             return None
@@ -135,9 +132,7 @@ class Turn:
         if cycle.period <= 0.0 or abs(cycle.period - self.there[1].period) > 0.1 * cycle.period:
             return None
         if weak:
-            here = margins(cycle)
-            good = all(value >= -MARGIN_ROUND_OFF for value in here.values())
-            return (state, cycle) if good else None
+            return (state, cycle) if is_motion(cycle) else None
         ways = []
         for sign in (1.0, -1.0):
             trial = replace(state, tangent=sign * state.tangent, step=1e-5)

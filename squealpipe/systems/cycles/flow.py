@@ -252,23 +252,6 @@ class Flow:
             found[i, j] = value
         return found
 
-    def _crossing_function(self, switch: int, surface: int) -> Any:
-        """All numbers of a switch, of a surface alone (−1 as ``switch``), or of neither."""
-        if (switch, surface) not in self._functions:
-            t = self.system.traced
-            states = t.variables[: t.size]
-            each = t.switches[switch] if switch >= 0 else None
-            alone = t.surfaces[surface] if surface >= 0 else symbol(0.0)
-            root = each.surface if each else alone
-            after = [each.reset.get(i, z) if each else z for i, z in enumerate(states)]
-            targets = [c for _, c, _ in each.targets if c is not None] if each else []
-
-            by = [*states, *[self.time] * self.timed, *self.by]
-            rows = [[each, *(self.slope(each, b) for b in by)] for each in (root, *after)]
-            roots = [*chain(*rows), *t.rates[: t.size], *targets]
-            self._functions[switch, surface] = python_function(roots, self.arguments, np)
-        return self._functions[switch, surface]
-
     def crossing(
         self,
         values: Mapping[str, float],
@@ -278,9 +261,23 @@ class Flow:
         state: Vector,
         time: float,
     ) -> Crossing:
-        """A switch from one regime to another at a state."""
-        function = self._crossing_function(switch, surface)
-        flat = self._at(function, values, regimes[0], state, time)
+        """A switch from one regime to another at a state.
+
+        Of a surface alone with −1 as ``switch``; of neither with −1 as ``surface``, too.
+        """
+        if (switch, surface) not in self._functions:
+            t = self.system.traced
+            states = t.variables[: t.size]
+            each = t.switches[switch] if switch >= 0 else None
+            alone = t.surfaces[surface] if surface >= 0 else symbol(0.0)
+            roots = [each.surface if each else alone]
+            roots += [each.reset.get(i, z) if each else z for i, z in enumerate(states)]
+            targets = [c for _, c, _ in each.targets if c is not None] if each else []
+            by = [*states, *[self.time] * self.timed, *self.by]
+            sloped = [[root, *(self.slope(root, b) for b in by)] for root in roots]
+            every = [*chain(*sloped), *t.rates[: t.size], *targets]
+            self._functions[switch, surface] = python_function(every, self.arguments, np)
+        flat = self._at(self._functions[switch, surface], values, regimes[0], state, time)
         n, width = self.size, 1 + self.size + self.timed + len(self.by)
         # values, and slopes by states, the time and parameters: of the surface and what comes after
         rows, rest = flat[: (n + 1) * width].reshape(n + 1, width), flat[(n + 1) * width :]

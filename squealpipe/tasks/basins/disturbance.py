@@ -79,7 +79,6 @@ def smallest_disturbance(
     scene = Scene(params, alpha1, alpha2, model=model)
     sliding = steady_sliding(scene) if params.belt_speed != 0.0 else None
     numbers = np.unique(np.append(2 ** np.arange(3, directions.bit_length()), directions))
-    numbers = numbers[numbers <= directions]
     nothing: dict[str, Any] = {
         **blank(SMALLEST_DISTURBANCE, directions=numbers.size, improved=IMPROVED),
         "leads_to": goal,
@@ -126,9 +125,8 @@ def smallest_disturbance(
             initial_state=rest + scale * vectors,
             stop_at_first_separation=goal == LeadsTo.contact_lost, tracked=(),
         )  # fmt: skip
-        unfinished += int(
-            np.sum((run.outcome != Outcome.converged) & (run.outcome != Outcome.separated))
-        )
+        finished = np.isin(run.outcome, (Outcome.converged, Outcome.separated))
+        unfinished += int(np.sum(~finished))
         if goal == LeadsTo.contact_lost:
             return np.asarray(np.isfinite(run.first_separation_time))
         return whirls(run)

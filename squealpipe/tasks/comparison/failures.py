@@ -220,8 +220,7 @@ def _arc_length(scene: ScaledSystem, case: BranchCase, balance: CosineBalance) -
         return bool(balance.peak_row @ state.point >= case.y_peak)
 
     with np.errstate(all="ignore"):
-        branch = Continuation(balance, start, direction, settings, lambda state: state)
-        result = branch.run(reached)
+        result = Continuation(balance, start, direction, settings).run(reached)
     if not (result.states and reached(result.states[-1])):
         return Answer(math.nan, result.end.name)
     return _newton(scene, case, balance, result.states[-1].point)

@@ -98,13 +98,12 @@ def _methods(
         samples = int(2 ** math.ceil(math.log2(max(16 * most, 8 * min(sigma, 1000.0)))))
         smooth = partial(_cosines, scene, most, samples, sigma)
         yield "cosines, tanh", f"N_h {most}, N {samples}, sigma {sigma:g}", Role.ours, smooth
-    shooting = partial(_shooting, scene)
-    yield "exact orbit (shooting)", "with monodromy", Role.our_setting, shooting
+    name = "exact orbit (shooting)"
+    yield name, "with monodromy", Role.our_setting, partial(_shooting, scene)
     for count in (each for each in harmonics if each <= PAPER_HARMONICS):
         setting = f"N_h {count}, N {4 * count + 2}, sigma {PAPER_SIGMA:g}"
         for name, printed in ((CORRECTED, False), (PRINTED, True)):
-            method = partial(_paper, scene, count, as_printed=printed)
-            yield name, setting, Role.public, method
+            yield name, setting, Role.public, partial(_paper, scene, count, as_printed=printed)
 
 
 def _cosines(

@@ -10,11 +10,12 @@ import xarray as xr
 
 from squealpipe.laws.contact_laws import LINEAR
 from squealpipe.methods.zero_lines import Vector, ZeroLines, gathered, inside
-from squealpipe.parameters import HORIZON, TABLE, Parameters
+from squealpipe.parameters import HORIZON, Parameters
 from squealpipe.schema import Outcome, build
 from squealpipe.schema.curves import BOUNDARY_DISTANCE, CONTACT_BOUNDARY, VARIED, PointKind
 from squealpipe.schema.origin import recorded
 from squealpipe.solvers.a1.ensemble import Ensemble, run_ensemble
+from squealpipe.solvers.a1.scaling import PHYSICAL
 from squealpipe.text import suggestion
 from squealpipe.validation import Line, Number, Positive, Tolerance, Workers, one_of
 
@@ -48,9 +49,7 @@ class Square:
 
     def fields(self, places: Vector) -> dict[str, Any]:
         """Parameters of A1 by name, and both angles."""
-        fields: dict[str, Any] = {
-            name: getattr(self.params, name) for name in TABLE if TABLE[name].enters_a1
-        }
+        fields: dict[str, Any] = {name: getattr(self.params, name) for name in PHYSICAL}
         fields |= {**self.fixed, **dict(zip(self.names, self.values(places).T, strict=True))}
         if "kappa" in fields:
             fields["k3"] = fields.pop("kappa") * self.params.k1

@@ -120,8 +120,7 @@ def _value(params: Parameters, alpha1: float, alpha2: float, parameter: str) -> 
     values |= {"alpha1": alpha1, "alpha2": alpha2}
     if not is_finite_number(values.get(parameter)):
         known = ", ".join(name for name, value in values.items() if is_finite_number(value))
-        unread = parameter in TABLE and parameter not in values
-        why = " (A1 does not read it)" if unread else ""
+        why = " (A1 does not read it)" if parameter in {*TABLE} - {*values} else ""
         raise ValueError(f"parameter = {parameter!r}{why}: one of {known} is needed")
     return float(values[parameter])
 

@@ -79,19 +79,16 @@ def cycle_curve(
     else:
         raise ValueError("no cycle is found from start")
     scaled = {name: tuple(np.array(ends) / scene.units[name]) for name, ends in limits.items()}
-    points, ends = follow_curve(
-        cycle, Label[label], parameters, scaled, n_points, tied=scene.tied
-    )  # fmt: skip
+    points, ends = follow_curve(cycle, Label[label], parameters, scaled, n_points, scene.tied)
     values = {
         name: np.array([each.cycle.parts.values[name] for each in points]) * scene.units[name]
         for name in {*parameters, "alpha1", "alpha2"}
     }
-    periods = np.array([each.cycle.period for each in points])
     return build(
         CYCLE_CURVE,
         {
             **values,
-            "period": periods * scene.params.time_unit,
+            "period": [each.cycle.period * scene.params.time_unit for each in points],
             "residual": [each.residual for each in points],
             "label": [each.label for each in points],
             "events": [scene.count(each.cycle) for each in points],

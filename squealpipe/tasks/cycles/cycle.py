@@ -84,8 +84,7 @@ def _described(scene: Scene, cycle: Cycle) -> dict[str, Any]:
     units, clock = scene.state_units, scene.params.time_unit
     start = cycle.start()[0] * units
     times = cycle.instants
-    path, found = cycle.states_at((cycle.phase + times) % cycle.period)
-    path, regime_path = path * units, [scene.regimes[regime] for regime in found]
+    path, regimes = cycle.states_at((cycle.phase + times) % cycle.period)
     ends = (cycle.clocks + cycle.parts.durations - cycle.phase) % cycle.period
     order = [
         i
@@ -100,6 +99,6 @@ def _described(scene: Scene, cycle: Cycle) -> dict[str, Any]:
         **{f"event_{name}": states[:, i] for i, name in enumerate(STATE)},
         **{f"{name}_start": start[i] for i, name in enumerate(STATE)},
         "time": times * clock,
-        **{f"{name}_path": path[:, i] for i, name in enumerate(STATE)},
-        "regime_path": regime_path,
+        **{f"{name}_path": path[:, i] * units[i] for i, name in enumerate(STATE)},
+        "regime_path": [scene.regimes[regime] for regime in regimes],
     }

@@ -47,9 +47,8 @@ def settled_extremes(
     state = np.zeros((starts, 4))
     state[:, 0], state[:, 1] = distance * np.cos(direction), distance * np.sin(direction)
     angles = np.array(list(scenes.values()))
-    fields = {**params.as_dict(), "mu": mu[None, :, None]}
     run = run_ensemble(
-        fields,
+        {**params.as_dict(), "mu": mu[None, :, None]},
         angles[:, 0][:, None, None],
         angles[:, 1][:, None, None],
         t_end=t_end,

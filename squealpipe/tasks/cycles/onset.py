@@ -5,10 +5,11 @@ from dataclasses import replace
 import numpy as np
 from scipy.optimize import brentq
 
-from squealpipe.methods.continuation import ContinuationState, PseudoArclength
-from squealpipe.systems.cycles.event_map import FREE, Cycle, Event, EventMap, Section
-from squealpipe.systems.cycles.flow import Flow, Vector
-from squealpipe.systems.cycles.line import STEPS
+from squealpipe.methods.continuation import ContinuationState
+from squealpipe.systems.cycles.cycle import eventless
+from squealpipe.systems.cycles.event_map import Cycle, EventMap
+from squealpipe.systems.cycles.flow import Flow
+from squealpipe.systems.cycles.line import ALONG, STEPS
 from squealpipe.tasks.cycles.scene import Scene
 from squealpipe.tasks.cycles.sliding import steady_sliding
 
@@ -49,8 +50,16 @@ def find_onset(scene: Scene, begin: float, to: float) -> tuple[ContinuationState
     room = 1.0 - rest[1]
     size = np.array([1.0, 1.0, omega, omega]) * room
     state = rest + _FIRST_AMPLITUDE * room * shape
-    heading = flow.field(values, regime, state, 0.0) / size
-    return _of_amplitude(scene, values, state, (regime, heading, size, shape, omega))
+    name, period = str(scene.follow), 2.0 * np.pi / omega
+    followed = np.array([values[name]])
+    units = np.maximum(np.abs(followed), 1e-3)
+    equations = EventMap(Flow(scene.system, (name,), scene.tied), (), values, size, period, units)
+    equations, guess = eventless(equations, state, regime, period, followed)
+    # the cycle of that amplitude: its parameter is an unknown
+    direction = np.concatenate([shape / size, np.zeros(2)])
+    normal = direction / np.linalg.norm(direction)
+    first = ALONG.solve(equations, guess, normal, STEPS.first_step)
+    return None if first is None else (first, Cycle.at(equations, first.point))
 
 
 def at(scene: Scene, value: float) -> Scene:
@@ -61,24 +70,3 @@ def at(scene: Scene, value: float) -> Scene:
     if name == "alpha2":
         return replace(scene, alpha2=value)
     return replace(scene, params=scene.scaled.with_(**{name: value}))
-
-
-def _of_amplitude(
-    scene: Scene, values: dict[str, float], state: Vector, mode: tuple
-) -> tuple[ContinuationState, Cycle] | None:
-    """The cycle of a given amplitude; its parameter is an unknown."""
-    regime, heading, size, shape, omega = mode
-    name = str(scene.follow)
-    flow = Flow(scene.system, (name,), scene.tied)
-    event = Event(FREE, FREE, 1.0, regime, regime, FREE)
-    section = Section(state, heading / np.linalg.norm(heading))
-    equations = EventMap(
-        flow, (event,), values, size, 2.0 * np.pi / omega, np.array([max(abs(values[name]), 1e-3)]),
-        section=section,
-    )  # fmt: skip
-    guess = equations.pack(state[None], np.array([equations.time]), 0.0, np.array([values[name]]))
-    direction = np.concatenate([shape / size, np.zeros(2)])
-    found = PseudoArclength(STEPS, least_iterations=0, own_tangent=True).solve(
-        equations, guess, direction / np.linalg.norm(direction), 1e-3
-    )
-    return None if found is None else (found, Cycle.at(equations, found.point))

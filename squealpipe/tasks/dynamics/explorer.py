@@ -70,7 +70,7 @@ def explorer_data(
                     _branch(arrays, (cell, place), params, scene, mode)
 
     history, branch = (count * count, samples), (count * count, len(modes), branch_points)
-    arrays = run_shared(
+    found = run_shared(
         fill,
         {
             **dict.fromkeys(HISTORIES, (history, np.float32)),
@@ -82,18 +82,11 @@ def explorer_data(
         jobs=count * count,
         workers=workers,
     )
+    maps = {name: each.reshape(count, count, *each.shape[1:]) for name, each in found.items()}
+    fixed = ("preload", "length1", "length2", "belt_speed")
     return build(
         EXPLORER,
-        {
-            **{
-                name: array.reshape((count, count, *array.shape[1:]))
-                for name, array in arrays.items()
-            },
-            **{
-                name: getattr(params, name)
-                for name in ("preload", "length1", "length2", "belt_speed")
-            },
-        },
+        {**maps, **{name: getattr(params, name) for name in fixed}},
         {
             "alpha1": angles,
             "alpha2": angles,

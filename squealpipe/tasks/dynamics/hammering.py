@@ -80,10 +80,7 @@ def hammering_map(
     shape = run.outcome.shape
     cells = [angles.ravel() for angles in np.broadcast_arrays(rows[:, None], columns)]
     flat = SimpleNamespace(
-        **{
-            name: values.reshape(-1, *values.shape[len(shape) :])
-            for name, values in vars(run).items()
-        }
+        **{name: values.reshape(-1, *values.shape[2:]) for name, values in vars(run).items()}
     )
 
     def again(some: np.ndarray, room: int) -> Ensemble:

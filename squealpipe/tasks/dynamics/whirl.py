@@ -73,9 +73,8 @@ def whirl_sizes(
     motion = refine_labels(
         motion, run, lambda rows, room: runs(speeds[rows], log_events=room), t_end
     )
-    whirls = motion == MotionFlag.whirl
     p = params
-    fitted = whirls & (run.late_max_x > FAR * max(p.length1, p.length2))
+    fitted = (motion == MotionFlag.whirl) & (run.late_max_x > FAR * max(p.length1, p.length2))
     # of the one spring that both are together from afar
     length = (p.k1 * p.length1 + p.k2 * p.length2) / (p.k1 + p.k2)
     slope, offset, fit_range = np.nan, np.nan, [np.nan, np.nan]
@@ -94,7 +93,7 @@ def whirl_sizes(
             "fit_range": fit_range,
             "slope": slope,
             "offset": offset,
-            "energy_slope": np.sqrt(params.mass / (params.k1 + params.k2)),
+            "energy_slope": np.sqrt(p.mass / (p.k1 + p.k2)),
             "energy_offset": length * (1.0 + np.cos(scene.alpha1)),
             "t_end": t_end,
             "outcome": run.outcome,

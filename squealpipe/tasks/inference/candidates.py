@@ -48,8 +48,7 @@ class Candidates:
     def read(self, name: str) -> Self:
         """The same sets in one reading of the sign of friction."""
         reading = reading_of(name)
-        speed = reading.direction * self.fields["belt_speed"]
-        fields = {**self.fields, "belt_speed": speed}
+        fields = {**self.fields, "belt_speed": reading.direction * self.fields["belt_speed"]}
         return replace(self, fields=fields, model=reading.a1_model)
 
     def subset(self, rows: np.ndarray) -> Self:

@@ -106,8 +106,7 @@ def _modes_switched(candidates: Candidates) -> Margin:
     by_springs = np.maximum(np.abs(before.k12), np.abs(after.k12))
     coupling = np.maximum(by_springs, _coupling_by_dashpots(fields))
     isolated = coupling <= a2.FEW_ULPS * fields["k1"]
-    margin = np.where(isolated, np.minimum(first, second), -coupling)
-    return _closed(margin / fields["k1"])
+    return _closed(np.where(isolated, np.minimum(first, second), -coupling) / fields["k1"])
 
 
 def _keeps_contact(name: str) -> Check:

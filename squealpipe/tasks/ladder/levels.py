@@ -54,8 +54,8 @@ def contact_motion(params: Parameters, alpha1: Any, alpha2: Any) -> ModalMotion:
     a11, a12, a21, a22 = (
         value / params.mass for value in a4.contact_matrix(stiffness, params.k3, params.drag)
     )
-    first, second = a4.natural_frequencies_squared(invariants)
-    return modal_motion((a11, a12, a21, a22), (first, second), (x, y))
+    squared = a4.natural_frequencies_squared(invariants)
+    return modal_motion((a11, a12, a21, a22), squared, (x, y))
 
 
 def _in_contact(scenes: Scenes) -> Answers:

@@ -42,7 +42,7 @@ def dominant_frequency(samples: np.ndarray, times: np.ndarray) -> np.ndarray:
     window = np.hanning(samples.shape[-1])
     mean = samples.mean(axis=-1, keepdims=True)
     spectrum = np.abs(np.fft.rfft((samples - mean) * window, axis=-1))
-    top = np.clip(spectrum[..., 1:-1].argmax(axis=-1) + 1, 1, spectrum.shape[-1] - 2)
+    top = spectrum[..., 1:-1].argmax(axis=-1) + 1
     offset, _ = vertex(*neighbours(np.log(spectrum + 1e-300), top))
     bin_width = 2.0 * math.pi / (samples.shape[-1] * (times[1] - times[0]))
     found = (top + np.clip(offset, -0.5, 0.5)) * bin_width

@@ -42,7 +42,6 @@ def stability_boundaries(params: Parameters, *, points: int = 400) -> xr.Dataset
         segments += [
             (Boundary.no_coupling, along, turn - along) for turn in (np.pi / 2, 1.5 * np.pi)
         ]
-    count = points * len(segments)
     alpha1, alpha2 = (np.concatenate([segment[i] for segment in segments]) for i in (1, 2))
     return build(
         STABILITY_BOUNDARIES,
@@ -52,5 +51,5 @@ def stability_boundaries(params: Parameters, *, points: int = 400) -> xr.Dataset
             "boundary": np.repeat([segment[0] for segment in segments], points),
             "segment": np.repeat(np.arange(len(segments)), points),
         },
-        {"point": np.arange(count)},
+        {"point": np.arange(alpha1.size)},
     )

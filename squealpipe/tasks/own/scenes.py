@@ -112,14 +112,12 @@ def _run(
         params, *angles, **dict(zip(("x", "y", "vx", "vy"), start, strict=True)), t_end=t_end,
         tol=tol, workers=1,
     )  # fmt: skip
-    peaks = np.full(PEAKS, np.nan)
-    found = summary.dominant_frequency.values
-    peaks[: found.size] = found
+    peaks = summary.dominant_frequency.values
     return {
         **{name: float(summary[name]) for name in NUMBERS},
         "motion": meanings(kind.motion)[int(kind.motion)].replace("_", " "),
         "predictability_horizon": float(kind.predictability_horizon),
-        "dominant_frequency": peaks,
+        "dominant_frequency": np.pad(peaks, (0, PEAKS - peaks.size), constant_values=np.nan),
         "outcome": int(run.outcome),
     }
 

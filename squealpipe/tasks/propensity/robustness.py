@@ -25,8 +25,9 @@ STATIC = 2.0
 NEAR = (0.01, 0.1)
 """Largest distance of a start from rest, over l_pre (displacement) and l_pre √(k1/m) (velocity)."""
 
+COLUMNS = ("share", "share_low", "share_high", "judged", "outcome")
 Share = tuple[float, float, float, int, int]
-"""Share, its interval, number judged, outcome."""
+"""A value for each of :data:`COLUMNS`."""
 
 
 def variants(params: Parameters) -> Iterator[tuple[str, Parameters]]:
@@ -101,18 +102,8 @@ def verdict_robustness(
     if inferred is not None:
         rows.insert(1, _feasible(of_study(inferred), names))
         titles.insert(1, "feasible parameters")
-    share, low, high, judged, outcome = np.moveaxis(np.array(rows), -1, 0)
-    return build(
-        VERDICT_ROBUSTNESS,
-        {
-            "share": share,
-            "share_low": low,
-            "share_high": high,
-            "judged": judged,
-            "outcome": outcome,
-        },
-        {"variant": titles, "statement": names},
-    )
+    columns = dict(zip(COLUMNS, np.moveaxis(np.array(rows), -1, 0), strict=True))
+    return build(VERDICT_ROBUSTNESS, columns, {"variant": titles, "statement": names})
 
 
 def _margins(
