@@ -47,8 +47,7 @@ def write(make: Callable[[], xr.Dataset], output: Path, *, config: Mapping[str, 
     from squealpipe.store.tables import convert
 
     dataset = stamped(make, config=config)
-    beside = convert(dataset, output)[1:]
-    if beside:
+    if beside := convert(dataset, output)[1:]:
         say(f"other dimensions are in {', '.join(map(str, beside))}")
     return dataset
 

@@ -88,10 +88,9 @@ def read_values(name: str, given: object) -> list[float]:
     one = parse_angle if name in ANGLES else parse_number
     if isinstance(given, str):
         values = parse_range(given, one)
-    elif isinstance(given, Sequence):
-        values = [one(_as_text(item)) for item in given]
     else:
-        values = [one(_as_text(given))]
+        items = given if isinstance(given, Sequence) else [given]
+        values = [one(_as_text(item)) for item in items]
     if name not in WHOLE:
         return values
     broken = [value for value in values if not value.is_integer()]

@@ -39,8 +39,7 @@ def draw_backbone(axes: Axes, branch: xr.Dataset) -> None:
             markerfacecolor="white", markeredgecolor=colour, markersize=3,
         )  # fmt: skip
     style.preload_line(axes, parameter(branch, "preload"))
-    axes.set(xlabel="ω (rad/s)", ylabel="displacement (m)")
-    axes.set_ylim(bottom=0)
+    axes.set(xlabel="ω (rad/s)", ylabel="displacement (m)", ylim=(0, None))
     axes.legend(loc="lower right", bbox_to_anchor=(1, 1), ncols=2, borderaxespad=0)
 
 

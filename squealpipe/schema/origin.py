@@ -48,8 +48,7 @@ def recorded(
             dataset = task(*args, **kwargs)
             given = defaults | dict(zip(defaults, args, strict=False)) | kwargs
             # Grids are coordinates of the dataset; of a part of a map they would be the part's.
-            grids = dataset.coords
-            kept = {key: value for key, value in given.items() if key not in grids}
+            kept = {key: value for key, value in given.items() if key not in dataset.coords}
             dataset.attrs.update(origin(task.__name__, kept))
             return dataset
 

@@ -69,9 +69,8 @@ def unstable_yet_sliding(run: Run) -> tuple[xr.DataArray, xr.DataArray]:
 
 def coupling_is_negative(run: Run) -> xr.DataArray:
     """Cells with K12 < 0."""
-    return stiffness(run, "stiffness_xy") < -SAME_STIFFNESS * (
-        run.parameters.k1 + run.parameters.k2
-    )
+    largest = run.parameters.k1 + run.parameters.k2
+    return stiffness(run, "stiffness_xy") < -SAME_STIFFNESS * largest
 
 
 def order_turns_over(run: Run) -> xr.DataArray:

@@ -81,15 +81,13 @@ def contact_loss_matters(run: Run) -> Finding:
     changes = _relative_change(table[["largest_y", "largest_x"]].to_array()).max("variable")
     if not lost.any():
         return finding((0, ">", 0), "No scene loses contact.")
-    changed = changes.values[lost]
-    kept = changes.values[~lost]
-    names = table.scene.values[lost]
-    worst = int(np.argmax(changed))
+    changed, kept = changes.values[lost], changes.values[~lost]
+    worst = table.scene.values[lost][changed.argmax()]
     return finding(
         (float(np.median(changed)), ">", DIFFERENCE),
         f"Without contact loss the largest displacement changes by {100 * changed.min():.2g} to "
         f"{100 * changed.max():.3g} % in the {lost.sum()} scenes that lose contact (most in "
-        f"{names[worst]}), and by at most {100 * kept.max(initial=0.0):.1g} % in the others.",
+        f"{worst}), and by at most {100 * kept.max(initial=0.0):.1g} % in the others.",
     )
 
 

@@ -79,8 +79,8 @@ rows.add(
 def shift_is_added(run: Run) -> Finding:
     """Distance of the mean y from −y*, against its distance from y*."""
     preload = run.parameters.preload
-    static = float(cell(run["quasi_static_map"], 0.5, 1.0).y_static / preload)
     mean = float(scene(run, "F2a").y.mean() / preload)
+    static = float(cell(run["quasi_static_map"], 0.5, 1.0).y_static / preload)
     return finding(
         (abs(mean + static), "<", abs(mean - static)),
         f"With X + X* the motion would rest at y = {-static:.3g} l_pre, with X − X* at "

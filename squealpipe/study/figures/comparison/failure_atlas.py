@@ -76,9 +76,8 @@ def _draw_atlas(axes: Axes, found: xr.Dataset) -> None:
 
 
 def _paint(axes: Axes, verdict: np.ndarray, columns: int) -> None:
-    rows = len(verdict)
     axes.imshow(
-        verdict, aspect="auto", extent=(-0.5, columns - 0.5, rows - 0.5, -0.5),
+        verdict, aspect="auto", extent=(-0.5, columns - 0.5, len(verdict) - 0.5, -0.5),
         interpolation="nearest", **style.category_colours(_COLOURS),
     )  # fmt: skip
 
