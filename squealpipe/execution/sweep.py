@@ -171,14 +171,14 @@ def _runs(sweep: Sweep, workers: int | None) -> Iterator[xr.Dataset]:
         return
     others = set(active_children())
     with ProcessPoolExecutor(number, get_context("fork"), leave_interrupts_to_the_parent) as pool:
-        size = -(-len(points) // (16 * number))
         try:
-            yield from pool.map(partial(sweep.run, workers=1), points, chunksize=size)
+            # not by its map, which cancels runs to come: the pool's thread trips over those
+            runs = [pool.submit(sweep.run, point, workers=1) for point in points]
+            for run in runs:
+                yield run.result()
         except BaseException:
-            # without this the pool may see its processes end before it forgets the runs to come
-            pool.shutdown(wait=False, cancel_futures=True)
             for process in set(active_children()) - others:
-                process.terminate()
+                process.terminate()  # the pool is broken then and waits for no other run
             raise
 
 
