@@ -12,41 +12,32 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from squealpipe.execution.sweep import Sweep as Sweep
-    from squealpipe.execution.sweep import run_sweep as run_sweep
-    from squealpipe.parameters import SCENES as SCENES
-    from squealpipe.parameters import Parameters as Parameters
-    from squealpipe.parameters import Scene as Scene
-    from squealpipe.plotting import plot as plot
-    from squealpipe.schema import labels as labels
-    from squealpipe.store.netcdf import load as load
-    from squealpipe.store.netcdf import save as save
-    from squealpipe.store.results import open_results as open_results
-    from squealpipe.store.tables import convert as convert
-    from squealpipe.systems.system import Switch as Switch
-    from squealpipe.systems.system import System as System
-    from squealpipe.tasks.backbones.backbone import backbone as backbone
-    from squealpipe.tasks.backbones.orbit import periodic_orbit as periodic_orbit
-    from squealpipe.tasks.basins.basin import basin_map as basin_map
-    from squealpipe.tasks.basins.disturbance import smallest_disturbance as smallest_disturbance
-    from squealpipe.tasks.curves.chart import regime_chart as regime_chart
-    from squealpipe.tasks.curves.contact import boundary_distance as boundary_distance
-    from squealpipe.tasks.curves.contact import contact_boundary as contact_boundary
-    from squealpipe.tasks.cycles.branch import cycle_branch as cycle_branch
-    from squealpipe.tasks.cycles.curve import cycle_curve as cycle_curve
-    from squealpipe.tasks.cycles.cycle import limit_cycle as limit_cycle
-    from squealpipe.tasks.dynamics.hammering import hammering_map as hammering_map
-    from squealpipe.tasks.dynamics.refinement import refine_validity_map as refine_validity_map
-    from squealpipe.tasks.dynamics.runs import simulate as simulate
-    from squealpipe.tasks.dynamics.runs import validity_map as validity_map
-    from squealpipe.tasks.dynamics.summary import summarize as summarize
-    from squealpipe.tasks.inference.inference import infer_parameters as infer_parameters
-    from squealpipe.tasks.ladder.choice import choose_model as choose_model
-    from squealpipe.tasks.linear.critical import critical_friction_map as critical_friction_map
-    from squealpipe.tasks.linear.maps import natural_frequencies as natural_frequencies
-    from squealpipe.tasks.linear.maps import quasi_static_map as quasi_static_map
-    from squealpipe.tasks.linear.maps import stability_map as stability_map
-    from squealpipe.tasks.propensity.propensity import propensity as propensity
+    from squealpipe.execution.sweep import Sweep, run_sweep
+    from squealpipe.parameters import SCENES, Parameters, Scene
+    from squealpipe.plotting import plot
+    from squealpipe.schema import labels
+    from squealpipe.store.netcdf import load, save
+    from squealpipe.store.results import open_results
+    from squealpipe.store.tables import convert
+    from squealpipe.systems.system import Switch, System
+    from squealpipe.tasks.backbones.backbone import backbone
+    from squealpipe.tasks.backbones.orbit import periodic_orbit
+    from squealpipe.tasks.basins.basin import basin_map
+    from squealpipe.tasks.basins.disturbance import smallest_disturbance
+    from squealpipe.tasks.curves.chart import regime_chart
+    from squealpipe.tasks.curves.contact import boundary_distance, contact_boundary
+    from squealpipe.tasks.cycles.branch import cycle_branch
+    from squealpipe.tasks.cycles.curve import cycle_curve
+    from squealpipe.tasks.cycles.cycle import limit_cycle
+    from squealpipe.tasks.dynamics.hammering import hammering_map
+    from squealpipe.tasks.dynamics.refinement import refine_validity_map
+    from squealpipe.tasks.dynamics.runs import simulate, validity_map
+    from squealpipe.tasks.dynamics.summary import summarize
+    from squealpipe.tasks.inference.inference import infer_parameters
+    from squealpipe.tasks.ladder.choice import choose_model
+    from squealpipe.tasks.linear.critical import critical_friction_map
+    from squealpipe.tasks.linear.maps import natural_frequencies, quasi_static_map, stability_map
+    from squealpipe.tasks.propensity.propensity import propensity
 
 _HOME = {
     alias.name: str(node.module)
@@ -56,7 +47,43 @@ _HOME = {
 }
 """Public name → its module, read off the imports above, which only type checkers run."""
 
-__all__ = [*_HOME]  # noqa: PLE0604 (they are texts)
+__all__ = [
+    "SCENES",
+    "Parameters",
+    "Scene",
+    "Sweep",
+    "Switch",
+    "System",
+    "backbone",
+    "basin_map",
+    "boundary_distance",
+    "choose_model",
+    "contact_boundary",
+    "convert",
+    "critical_friction_map",
+    "cycle_branch",
+    "cycle_curve",
+    "hammering_map",
+    "infer_parameters",
+    "labels",
+    "limit_cycle",
+    "load",
+    "natural_frequencies",
+    "open_results",
+    "periodic_orbit",
+    "plot",
+    "propensity",
+    "quasi_static_map",
+    "refine_validity_map",
+    "regime_chart",
+    "run_sweep",
+    "save",
+    "simulate",
+    "smallest_disturbance",
+    "stability_map",
+    "summarize",
+    "validity_map",
+]
 
 
 def __getattr__(name: str) -> Any:
