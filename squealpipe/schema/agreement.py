@@ -43,12 +43,12 @@ class Listing:
 
     Attributes:
         kinds: variables that say what an entry is; only entries of one kind are matched.
-        position: variable along which an entry is matched with the nearest one; without it the
-            n-th entry of a kind is matched with the n-th.
-        filler: entries whose first kind is this lie where a method's steps happened to end. Only
-            those at the same position are matched, and their number is not a result.
+        position: variable along which an entry is matched with the nearest one, or the text whose
+            first value names it; without it the n-th entry of a kind is matched with the n-th.
+        fillers: entries whose first kind is one of these lie where a method's steps happened to
+            end. Only those at the same position are matched, and their number is not a result.
     """
 
     kinds: tuple[str, ...] = ()
     position: str = ""
-    filler: int | None = None
+    fillers: tuple[int, ...] = ()

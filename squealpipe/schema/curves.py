@@ -5,6 +5,7 @@ from enum import IntEnum
 from squealpipe.codes import LinearRegime
 from squealpipe.parameters import TABLE
 from squealpipe.schema import DatasetSchema, Variable, outcome, text
+from squealpipe.schema.agreement import Listing
 from squealpipe.schema.outcomes import Outcome
 
 
@@ -109,6 +110,8 @@ BOUNDARY_DISTANCE = DatasetSchema(
 REGIME_CHART = DatasetSchema(
     name="regime_chart",
     title="Lines over two parameters across which A3 is unstable or A1, from rest, loses contact",
+    lists={"point": Listing(kinds=("line", "curve"), position="parameter",
+                            fillers=(int(ChartLine.whirl), int(ChartLine.stick)))},
     coordinates={
         "point": Variable("point", dims=("point",), dtype="i4"),
         **PARAMETER,

@@ -99,7 +99,7 @@ def _followed() -> dict[str, Variable]:
 CYCLE_BRANCH = DatasetSchema(
     name="cycle_branch",
     title="A branch of periodic motions of model A1 in one parameter",
-    lists={"point": Listing(kinds=("label",), position="x_max", filler=int(Label.regular))},
+    lists={"point": Listing(kinds=("label",), position="x_max", fillers=(int(Label.regular),))},
     coordinates={
         "multiplier": MULTIPLIER,
         "point": Variable(dims=("point",), dtype="i4", long_name="point along the branch"),

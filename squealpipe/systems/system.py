@@ -467,10 +467,9 @@ class System:
             for function, names, sign in checks:
                 arguments = [np.asarray(known[name]) for name in names]
                 (value,) = function(*arguments)
-                if sign:
-                    fits &= sign * value >= 0.0
-                else:
-                    fits &= np.abs(value) <= 1e-15 * sum(np.abs(each) for each in arguments)
+                fits &= (
+                    sign * value >= 0.0 if sign else abs(value) <= 1e-15 * sum(map(abs, arguments))
+                )
                 if not fits.any():
                     break
             chosen = np.where(fits, regime, chosen)

@@ -51,18 +51,22 @@ def match(a: xr.Dataset, b: xr.Dataset, dim: str, how: Listing) -> tuple[list[np
         or [()] * each.sizes[dim]
         for each in (a, b)
     ]
-    if sizes[0] == sizes[1] and kinds[0] == kinds[1] and how.filler is None:
+    if sizes[0] == sizes[1] and kinds[0] == kinds[1] and not how.fillers:
         return [], ""
     pairs: list[tuple[int, int]] = []
     for kind in dict.fromkeys(kinds[0]):
         places = [np.flatnonzero([item == kind for item in side]) for side in kinds]
+        fills = kind[:1] and kind[0] in how.fillers
+        if not fills and len(places[0]) == len(places[1]):
+            pairs += zip(*(each.tolist() for each in places), strict=True)
+            continue
         left, right = (
             _positions(each, how, dim, at) for each, at in zip((a, b), places, strict=True)
         )
         pairs += [
             (int(places[0][i]), int(places[1][j]))
             for i, j in _nearest_of_each_other(left, right)
-            if kind[:1] != (how.filler,) or abs(left[i] - right[j]) <= SAME_PLACE * abs(left[i])
+            if not fills or abs(left[i] - right[j]) <= SAME_PLACE * abs(left[i])
         ]
     at = np.array(sorted(pairs), int).reshape(-1, 2)
     by = how.position or ("kind and order" if how.kinds else "order")
@@ -72,15 +76,18 @@ def match(a: xr.Dataset, b: xr.Dataset, dim: str, how: Listing) -> tuple[list[np
 
 def judged_length(dataset: xr.Dataset, dim: str, how: Listing) -> int | None:
     """Number of entries whose number is a result; None without the dimension."""
-    if dim not in dataset.sizes or how.filler is None:
+    if dim not in dataset.sizes or not how.fillers:
         return dataset.sizes.get(dim)
-    return int((dataset[how.kinds[0]].values != how.filler).sum())
+    return int((~dataset[how.kinds[0]].isin(how.fillers)).sum())
 
 
 def _positions(dataset: xr.Dataset, how: Listing, dim: str, places: np.ndarray) -> np.ndarray:
     if not how.position:
         return np.arange(len(places), dtype=float)
-    values = dataset[how.position].isel({dim: places}).values.astype(float)
+    along = dataset[how.position]
+    if along.dtype.kind in "OU":
+        along = dataset[str(along[0].item())]
+    values = along.isel({dim: places}).values.astype(float)
     return np.where(np.isfinite(values), values, np.inf)
 
 
