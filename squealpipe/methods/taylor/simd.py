@@ -2,10 +2,9 @@
 
 A compiled function loads a row of ``LANES`` contiguous doubles as one value, computes with it as
 with a float, and stores it; code of :mod:`squealpipe.methods.taylor.writing` may load its first
-``FEW``. LLVM maps each operation onto what the processor
-has (a row onto two AVX-512 or four AVX2 registers). All operations are exact to the last bit as
-IEEE 754 defines them and lanes never mix, so a result depends neither on the lane nor on the
-processor.
+``FEW``. LLVM maps each operation onto what the processor has (a row onto two AVX-512 or four AVX2
+registers). All operations are exact to the last bit as IEEE 754 defines them and lanes never mix,
+so a result depends neither on the lane nor on the processor.
 """
 
 import operator
@@ -175,10 +174,6 @@ store: Any = _intrinsic(types.void, (types.intp, lanes), _store)
 """Write a row to an address."""
 splat: Any = _intrinsic(lanes, (types.float64,), _splat)
 """The same number in each lane."""
-put: Any = _intrinsic(types.void, (types.intp, types.float64), _put)
-"""Write one double to an address."""
-number: Any = _intrinsic(types.float64, (types.intp,), _number)
-"""The one double at an address."""
 fma: Any = _intrinsic(lanes, (lanes, lanes, lanes), _called("fma"))
 """a b + c, rounded once."""
 magnitude: Any = _intrinsic(lanes, (lanes,), _called("fabs"))
