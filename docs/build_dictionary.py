@@ -4,7 +4,13 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from squealpipe.schema import ANGLE_CONVENTION, DatasetSchema, Variable, all_schemas, flag_table
+from squealpipe.schema import (
+    ANGLE_CONVENTION,
+    DatasetSchema,
+    Variable,
+    all_schemas,
+    flag_table,
+)
 
 TARGET = Path(__file__).with_name("datasets.md")
 HEAD = f"""\
@@ -31,7 +37,9 @@ def main() -> None:
 
 def page() -> str:
     """The text of the page."""
-    return HEAD + "".join(map(section, sorted(all_schemas().values(), key=lambda one: one.name)))
+    return HEAD + "".join(
+        map(section, sorted(all_schemas().values(), key=lambda one: one.name))
+    )
 
 
 def section(schema: DatasetSchema) -> str:
@@ -49,7 +57,11 @@ def row(name: str, entry: Variable) -> str:
     words = [cell(entry.long_name or name.replace("_", " "))]
     if entry.flags is not None:
         table = flag_table(entry.flags).items()
-        words.append(", ".join(f"{value} {meaning.replace('_', ' ')}" for value, meaning in table))
+        words.append(
+            ", ".join(
+                f"{value} {meaning.replace('_', ' ')}" for value, meaning in table
+            )
+        )
     words += ["may be NaN"] * entry.nan_allowed + ["optional"] * entry.optional
     words += ["differs from run to run"] * entry.volatile
     unit = "" if entry.flags is not None or entry.units == "1" else entry.units

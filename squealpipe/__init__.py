@@ -36,7 +36,11 @@ if TYPE_CHECKING:
     from squealpipe.tasks.inference.inference import infer_parameters
     from squealpipe.tasks.ladder.choice import choose_model
     from squealpipe.tasks.linear.critical import critical_friction_map
-    from squealpipe.tasks.linear.maps import natural_frequencies, quasi_static_map, stability_map
+    from squealpipe.tasks.linear.maps import (
+        natural_frequencies,
+        quasi_static_map,
+        stability_map,
+    )
     from squealpipe.tasks.propensity.propensity import propensity
 
 _HOME = {
@@ -92,7 +96,9 @@ def __getattr__(name: str) -> Any:
 
         return version("squealpipe")
     if name not in _HOME:
-        raise AttributeError(f"squealpipe has no {name!r}; it offers {', '.join(sorted(_HOME))}")
+        raise AttributeError(
+            f"squealpipe has no {name!r}; it offers {', '.join(sorted(_HOME))}"
+        )
     return getattr(importlib.import_module(_HOME[name]), name)
 
 

@@ -58,7 +58,9 @@ class Row:
             if why := self.laws.REFUSED.get(str(value)):
                 raise ValueError(f"{name} = {value!r}: {why}")
             near = suggestion(value, self.laws.LAWS)
-            raise ValueError(f"{name} = {brief(value)}: unknown; {near}, {self.laws.FILES}")
+            raise ValueError(
+                f"{name} = {brief(value)}: unknown; {near}, {self.laws.FILES}"
+            )
         if not is_finite_number(value):
             raise ValueError(f"{name} = {brief(value)}: a finite number is needed")
         number = float(value)  # type: ignore[arg-type]
@@ -100,13 +102,17 @@ def law_in_words(law: str) -> str:
     """The name of a law, the values of its table, or that it is a Python file."""
     if is_table(law):
         knots = zip(*knots_of(law), strict=True)
-        values = ", ".join(f"{number(value)} at {number(knot)}" for knot, value in knots)
+        values = ", ".join(
+            f"{number(value)} at {number(knot)}" for knot, value in knots
+        )
         return f"table, {law.split(maxsplit=1)[0]}: {values}"
     return law if law.isidentifier() else "Python file"
 
 
 def _row(default: Any, units: str, symbol: str, meaning: str, **further: Any) -> Any:
-    return field(default=default, metadata={"row": Row(units, symbol, meaning, **further)})
+    return field(
+        default=default, metadata={"row": Row(units, symbol, meaning, **further)}
+    )
 
 
 @dataclass(frozen=True, kw_only=True, repr=False)
@@ -129,9 +135,15 @@ class Parameters:
     k1: float = _row(1.0, "N m-1", "k_1", "stiffness of spring 1")
     k2: float = _row(1.0, "N m-1", "k_2", "stiffness of spring 2")
     k3: float = _row(0.65, "N m-1", "k_3", "stiffness of the contact spring")
-    mu: float = _row(0.3, "1", "mu", "sliding friction coefficient", allowed="not negative")
+    mu: float = _row(
+        0.3, "1", "mu", "sliding friction coefficient", allowed="not negative"
+    )
     belt_speed: float = _row(
-        100.0, "m s-1", "V", "speed of the belt, its sign the direction", allowed="finite"
+        100.0,
+        "m s-1",
+        "V",
+        "speed of the belt, its sign the direction",
+        allowed="finite",
     )
     preload: float = _row(1.0, "m", 'l_"pre"', "precompression of the contact spring")
     length1: float = _row(15.0, "m", "L_1", "free length of spring 1")
@@ -140,32 +152,63 @@ class Parameters:
         1e3, "m-1", "sigma", "regularizing factor of the paper's tanh", enters_a1=False
     )
     damping1: float = _row(
-        0.0, "N s m-1", "c_1", "dashpot along spring 1", allowed="not negative", extension=True
+        0.0,
+        "N s m-1",
+        "c_1",
+        "dashpot along spring 1",
+        allowed="not negative",
+        extension=True,
     )
     damping2: float = _row(
-        0.0, "N s m-1", "c_2", "dashpot along spring 2", allowed="not negative", extension=True
+        0.0,
+        "N s m-1",
+        "c_2",
+        "dashpot along spring 2",
+        allowed="not negative",
+        extension=True,
     )
     friction_law: str = _row(
-        COULOMB, "1", '"law"', f"friction law: {', '.join(LAWS)}, {friction_laws.FILES}",
-        allowed="law", laws=friction_laws, extension=True,
-    )  # fmt: skip
-    mu_static: float | None = _row(
-        None, "1", "mu_s", "static friction coefficient, that of sliding if none is given",
-        allowed="not negative", extension=True, optional=True,
-    )  # fmt: skip
-    friction_speed: float = _row(
-        1.0, "m s-1", "v_0", "speed over which friction falls towards that of sliding",
+        COULOMB,
+        "1",
+        '"law"',
+        f"friction law: {', '.join(LAWS)}, {friction_laws.FILES}",
+        allowed="law",
+        laws=friction_laws,
         extension=True,
-    )  # fmt: skip
+    )
+    mu_static: float | None = _row(
+        None,
+        "1",
+        "mu_s",
+        "static friction coefficient, that of sliding if none is given",
+        allowed="not negative",
+        extension=True,
+        optional=True,
+    )
+    friction_speed: float = _row(
+        1.0,
+        "m s-1",
+        "v_0",
+        "speed over which friction falls towards that of sliding",
+        extension=True,
+    )
     contact_law: str = _row(
-        LINEAR, "1", '"contact"',
+        LINEAR,
+        "1",
+        '"contact"',
         f"contact law: {', '.join(contact_laws.LAWS)}, {contact_laws.FILES}",
-        allowed="law", laws=contact_laws, extension=True,
-    )  # fmt: skip
+        allowed="law",
+        laws=contact_laws,
+        extension=True,
+    )
     damping3: float = _row(
-        0.0, "N s m-1", "c_3", "dashpot of the contact, of the contact law dashpot",
-        allowed="not negative", extension=True,
-    )  # fmt: skip
+        0.0,
+        "N s m-1",
+        "c_3",
+        "dashpot of the contact, of the contact law dashpot",
+        allowed="not negative",
+        extension=True,
+    )
 
     def __post_init__(self) -> None:
         for name, row in TABLE.items():
@@ -179,7 +222,10 @@ class Parameters:
         if is_table(self.friction_law):
             follow["mu"] = knots_of(self.friction_law)[1][-1]
         if is_table(self.contact_law):
-            follow["k3"] = contact_laws.preload_force(self.contact_law, self.preload) / self.preload
+            follow["k3"] = (
+                contact_laws.preload_force(self.contact_law, self.preload)
+                / self.preload
+            )
             contact_laws.relative(self.contact_law, self.preload)
         for name in self.in_laws:
             given = getattr(self, name)
@@ -265,7 +311,9 @@ class Parameters:
     def in_laws(self) -> tuple[str, ...]:
         """Parameters that the file of a law stands for."""
         laws = {name: row.laws for name, row in TABLE.items() if row.laws}
-        return tuple(each for name in laws for each in stood_for(getattr(self, name), laws[name]))
+        return tuple(
+            each for name in laws for each in stood_for(getattr(self, name), laws[name])
+        )
 
     def with_(self, **changes: Any) -> Self:
         """A copy with some fields changed, validated again."""
@@ -273,7 +321,9 @@ class Parameters:
             each: DEFAULTS[each]
             for name, row in TABLE.items()
             if row.laws
-            for each in stood_for(row.check(name, changes.get(name, getattr(self, name))), row.laws)
+            for each in stood_for(
+                row.check(name, changes.get(name, getattr(self, name))), row.laws
+            )
         }
         return replace(self, **{**follow, **changes})
 
@@ -341,11 +391,17 @@ class Scene:
         checked = {"alpha1": self.alpha1, "alpha2": self.alpha2, "t_end": self.t_end}
         for key, value in checked.items():
             if not is_finite_number(value):
-                raise ValueError(f"scene {self.name}: {key} = {value!r}: a finite number is needed")
+                raise ValueError(
+                    f"scene {self.name}: {key} = {value!r}: a finite number is needed"
+                )
             if key != "t_end" and abs(value) > FULL_TURN:
-                raise ValueError(f"scene {self.name}: {key} = {value!r}: {BEYOND_A_TURN}")
+                raise ValueError(
+                    f"scene {self.name}: {key} = {value!r}: {BEYOND_A_TURN}"
+                )
         if not self.t_end > 0:
-            raise ValueError(f"scene {self.name}: t_end = {self.t_end!r}: must be greater than 0")
+            raise ValueError(
+                f"scene {self.name}: t_end = {self.t_end!r}: must be greater than 0"
+            )
 
     @property
     def panel(self) -> str:
@@ -362,7 +418,12 @@ class Scene:
 
 SCENES: dict[str, Scene] = {
     name: Scene(
-        name=name, alpha1=a * math.pi, alpha2=b * math.pi, t_end=t, figure=n, statement=says
+        name=name,
+        alpha1=a * math.pi,
+        alpha2=b * math.pi,
+        t_end=t,
+        figure=n,
+        statement=says,
     )
     for name, a, b, t, n, says in (
         ("F2a", 0.5, 1.0, 50, 2, "contact is kept throughout"),

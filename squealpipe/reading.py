@@ -37,8 +37,12 @@ READINGS: dict[str, Reading] = {
         1,
         "along_minus_x",
     ),
-    "along_plus_x": Reading("friction drags along +x in all models", "A1", 1, "along_plus_x"),
-    "along_minus_x": Reading("friction drags along −x in all models", "A1", -1, "along_minus_x"),
+    "along_plus_x": Reading(
+        "friction drags along +x in all models", "A1", 1, "along_plus_x"
+    ),
+    "along_minus_x": Reading(
+        "friction drags along −x in all models", "A1", -1, "along_minus_x"
+    ),
 }
 
 

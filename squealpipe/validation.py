@@ -69,7 +69,11 @@ def _refusal(error: ValidationError, title: str, names: list[str]) -> Exception:
     place, *inside = first["loc"]
     name = names[place] if isinstance(place, int) and place < len(names) else place
     if "argument" in first["type"]:
-        near = f"; {suggestion(name, names)}" if first["type"].startswith("unexpected") else ""
+        near = (
+            f"; {suggestion(name, names)}"
+            if first["type"].startswith("unexpected")
+            else ""
+        )
         return TypeError(f"{title}: {name}: {first['msg'].lower()}{near}")
     where = "".join(f"[{step!r}]" for step in inside if step != "[key]")
     return ValueError(f"{name}{where} = {brief(first['input'])}: {in_words(first)}")
@@ -83,7 +87,9 @@ def real_array(name: str, values: Any, *, infinite: bool = False) -> np.ndarray:
             name and the first culprit.
     """
     # most often, and most runs
-    if isinstance(values, float) and abs(values) <= (math.inf if infinite else sys.float_info.max):
+    if isinstance(values, float) and abs(values) <= (
+        math.inf if infinite else sys.float_info.max
+    ):
         return np.array(values)
     try:
         return _reals(values, infinite=infinite)
@@ -99,11 +105,15 @@ def _reals(values: Any, *, infinite: bool = False) -> np.ndarray:
     except (ValueError, TypeError, OverflowError) as error:
         raise ValueError("rows of one length are needed") from error
     if array.dtype.kind not in "fiu":
-        raise ValueError(f"numbers are needed, not {KINDS.get(array.dtype.kind, 'objects')}")
+        raise ValueError(
+            f"numbers are needed, not {KINDS.get(array.dtype.kind, 'objects')}"
+        )
     array = array.astype(float)
     bad = np.isnan(array) if infinite else ~np.isfinite(array)
     if bad.any():
-        raise ValueError(f"finite numbers are needed, not {float(array[bad].flat[0])!r}")
+        raise ValueError(
+            f"finite numbers are needed, not {float(array[bad].flat[0])!r}"
+        )
     return array
 
 
@@ -124,7 +134,9 @@ def _whole(value: Any) -> int:
 
 def _mode(value: Any) -> int:
     if not is_whole_number(value) or value not in (1, 2):
-        raise ValueError("the whole number 1 or 2 is needed, by ascending frequency in contact")
+        raise ValueError(
+            "the whole number 1 or 2 is needed, by ascending frequency in contact"
+        )
     return int(value)
 
 
@@ -175,7 +187,9 @@ def _values(value: Any) -> Any:
 
 def _identifier(value: str) -> str:
     if not value.isidentifier() or keyword.iskeyword(value):
-        raise ValueError("letters, digits and _ are needed, as for a variable of Python")
+        raise ValueError(
+            "letters, digits and _ are needed, as for a variable of Python"
+        )
     return value
 
 

@@ -23,7 +23,9 @@ def open_page(address, *, width=1280, height=900, scheme="light", site="data:"):
     from playwright.sync_api import sync_playwright
 
     with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=chromium_path(), args=FLAGS)
+        browser = playwright.chromium.launch(
+            executable_path=chromium_path(), args=FLAGS
+        )
         page = browser.new_page(
             viewport={"width": width, "height": height},
             reduced_motion="reduce",
@@ -31,7 +33,10 @@ def open_page(address, *, width=1280, height=900, scheme="light", site="data:"):
         )
         faults: list[str] = []
         page.on("pageerror", lambda error: faults.append(f"error: {error}"))
-        page.on("console", lambda message: message.type == "error" and faults.append(message.text))
+        page.on(
+            "console",
+            lambda message: message.type == "error" and faults.append(message.text),
+        )
         page.on(
             "request",
             lambda request: (

@@ -14,7 +14,13 @@ from filelock import FileLock
 
 ROOT = Path(__file__).resolve().parents[1]
 NOT_COPIED = shutil.ignore_patterns(
-    ".git", ".venv*", ".snakemake", "__pycache__", ".*_cache", ".hypothesis", "*.egg-info"
+    ".git",
+    ".venv*",
+    ".snakemake",
+    "__pycache__",
+    ".*_cache",
+    ".hypothesis",
+    "*.egg-info",
 )
 
 
@@ -46,7 +52,12 @@ def pytest_collection_modifyitems(items):
     """The long files first, so that two processes end at about the same time."""
     long = ("references", "installation", "readme", "random_systems", "cycles")
     files = [f"test_{name}.py" for name in long]
-    items.sort(key=lambda item: ("workflow" not in item.path.parts, item.path.name not in files))
+    items.sort(
+        key=lambda item: (
+            "workflow" not in item.path.parts,
+            item.path.name not in files,
+        )
+    )
 
 
 @dataclass(frozen=True)
@@ -70,7 +81,9 @@ def tiny_study(tmp_path_factory, worker_id):
     Where ``SQUEALPIPE_TINY`` names a folder, it is kept there for the tiers that follow.
     """
     own = tmp_path_factory.getbasetemp()
-    shared = Path(os.environ.get("SQUEALPIPE_TINY", own if worker_id == "master" else own.parent))
+    shared = Path(
+        os.environ.get("SQUEALPIPE_TINY", own if worker_id == "master" else own.parent)
+    )
     shared.mkdir(exist_ok=True)
     original, done = shared / "study/squealpipe", shared / "study/done"
     with FileLock(shared / "study.lock"):

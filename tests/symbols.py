@@ -12,7 +12,18 @@ import sympy as sp
 from squealpipe.parameters import Parameters
 
 X, Y, ALPHA1, ALPHA2 = sp.symbols("x y alpha1 alpha2", real=True)
-NAMES = ("mass", "k1", "k2", "k3", "mu", "belt_speed", "preload", "length1", "length2", "sigma")
+NAMES = (
+    "mass",
+    "k1",
+    "k2",
+    "k3",
+    "mu",
+    "belt_speed",
+    "preload",
+    "length1",
+    "length2",
+    "sigma",
+)
 P = SimpleNamespace(**{name: sp.Symbol(name, positive=True) for name in NAMES})
 P.belt_speed = sp.Symbol("belt_speed", real=True)
 
@@ -25,7 +36,9 @@ def _stretch_energy(stiffness, length, end):
     return stiffness * (distance - length) ** 2 / 2
 
 
-SPRING_ENERGY = _stretch_energy(P.k1, P.length1, FIXED1) + _stretch_energy(P.k2, P.length2, FIXED2)
+SPRING_ENERGY = _stretch_energy(P.k1, P.length1, FIXED1) + _stretch_energy(
+    P.k2, P.length2, FIXED2
+)
 SPRING_FORCE = (-sp.diff(SPRING_ENERGY, X), -sp.diff(SPRING_ENERGY, Y))
 CONTACT_ENERGY = P.k3 * (P.preload - Y) ** 2 / 2
 CONTACT_FORCE = -sp.diff(CONTACT_ENERGY, Y)

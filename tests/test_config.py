@@ -38,7 +38,9 @@ def complaint(path):
 
 
 def test_every_mistake_is_told_at_once(written):
-    numbers = "{mass: -1, mu: heavy, k3: .nan, belt_speed: .inf, preload: true, lenght1: 5}"
+    numbers = (
+        "{mass: -1, mu: heavy, k3: .nan, belt_speed: .inf, preload: true, lenght1: 5}"
+    )
     more = "linear: {points: 61.5}\nmu: 0.4\ncolour: red\n"
     text = complaint(written(f"parameters: {numbers}\n{more}"))
     for expected in (
@@ -61,8 +63,14 @@ def test_every_mistake_is_told_at_once(written):
         ("- 1\n- 2", "must hold keys and values, not list"),
         ("a: [1, 2", "line 1 is not plain YAML: expected ',' or ']'"),
         ("a: 1\nb: b: c", "line 2 is not plain YAML"),
-        ("a:\n\t- b", "line 2 is not plain YAML: found character '\\t' that cannot start any"),
-        ("linear:\n  points: 2\n  points: 3", "line 3 is not plain YAML: key 'points' is a dupl"),
+        (
+            "a:\n\t- b",
+            "line 2 is not plain YAML: found character '\\t' that cannot start any",
+        ),
+        (
+            "linear:\n  points: 2\n  points: 3",
+            "line 3 is not plain YAML: key 'points' is a dupl",
+        ),
         ("parameters: 5", "parameters = 5: keys and values are needed"),
         ("parameters: {mass: [1, 2]}", "parameters.mass = (1, 2)"),
         ("parameters: {mass: null}", "parameters.mass = None"),
@@ -102,9 +110,15 @@ def test_missing_file_and_folder(tmp_path):
 
 
 def test_quick_study_differs_in_grids_and_horizons_only():
-    quick = flat(read_study(PAPER, ROOT / "workflow/config/quick.yaml").model_dump(mode="json"))
+    quick = flat(
+        read_study(PAPER, ROOT / "workflow/config/quick.yaml").model_dump(mode="json")
+    )
     paper = flat(Study().model_dump(mode="json"))
-    assert not [key for key in paper if key.startswith("parameters.") and quick[key] != paper[key]]
+    assert not [
+        key
+        for key in paper
+        if key.startswith("parameters.") and quick[key] != paper[key]
+    ]
 
 
 def test_overlay_keeps_what_it_does_not_name(written):
@@ -125,7 +139,8 @@ def test_overlay_keeps_what_it_does_not_name(written):
 )
 def test_one_meaning_has_one_slice(written, first, second):
     one, other = (
-        repr(read_study(written(text)).slice("linear", "parameters")) for text in (first, second)
+        repr(read_study(written(text)).slice("linear", "parameters"))
+        for text in (first, second)
     )
     assert one == other
 
@@ -147,7 +162,9 @@ def test_known_keys_reach_every_value():
     leaves = flat(Study().model_dump(mode="json"))
     unknown = {key for key in leaves if not {key, key.rpartition(".")[0]} & known}
     free = [key for key in known if "*" in key]  # sections by names of the user's
-    assert {key for key in unknown if not any(fnmatchcase(key, each) for each in free)} == set()
+    assert {
+        key for key in unknown if not any(fnmatchcase(key, each) for each in free)
+    } == set()
 
 
 SWEEP = """
@@ -176,7 +193,9 @@ def test_ways_to_write_a_sweep_have_one_meaning(written):
 def test_a_sweep_follows_the_parameters_that_it_does_not_name(written):
     text = SWEEP % ("[0.1]", "[2]", "0.3pi", "1")
     before = read_study(PAPER, written(text)).sweep("orbits")
-    after = read_study(PAPER, written(text + "parameters: {mu: 0.5, k3: 0.5}")).sweep("orbits")
+    after = read_study(PAPER, written(text + "parameters: {mu: 0.5, k3: 0.5}")).sweep(
+        "orbits"
+    )
     assert after["parameters"].pop("k3") == 0.5
     assert before["parameters"].pop("k3") == 0.65
     assert before == after
@@ -185,7 +204,10 @@ def test_a_sweep_follows_the_parameters_that_it_does_not_name(written):
 @pytest.mark.parametrize(
     ("section", "expected"),
     [
-        ("{vary: {mu: '0:0.6'}}", "vary = {'mu': '0:0.6'}: mu: '0:0.6' is not a range; write"),
+        (
+            "{vary: {mu: '0:0.6'}}",
+            "vary = {'mu': '0:0.6'}: mu: '0:0.6' is not a range; write",
+        ),
         ("{vary: {mu: heavy}}", "mu: 'heavy' is not a number; write for instance"),
         ("{vary: {mu: [1, x]}}", "mu: 'x' is not a number"),
         ("{vary: {}}", "sweeps.mine.vary = {}: 1 or more items are needed"),
@@ -201,7 +223,9 @@ def test_mistakes_in_a_sweep_are_named_with_their_remedy(written, section, expec
     assert "sweeps.mine.task" in text
 
 
-@pytest.mark.parametrize("text", ["", "# nothing yet\n", "parameters:\n", "parameters: {}\n"])
+@pytest.mark.parametrize(
+    "text", ["", "# nothing yet\n", "parameters:\n", "parameters: {}\n"]
+)
 def test_an_empty_overlay_changes_nothing(text, written, tmp_path):
     assert read_study(PAPER, written(text)) == read_study(PAPER) == Study()
     (tmp_path / "base.yaml").write_text("parameters: {mu: 0.2}\n")
@@ -210,13 +234,20 @@ def test_an_empty_overlay_changes_nothing(text, written, tmp_path):
 
 def test_a_folder_of_results_holds_nothing_else(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    for name in ("results/data", "results/quick/figures", "results/archive/first/data", "docs"):
+    for name in (
+        "results/data",
+        "results/quick/figures",
+        "results/archive/first/data",
+        "docs",
+    ):
         (tmp_path / name).mkdir(parents=True)
     (tmp_path / "docs/store.md").touch()
     (tmp_path / "results/archive/first/manifest.json").touch()
     for name in ("results", "results/new"):
         check_results_folder(name)
-    with pytest.raises(ConfigError, match=r"holds docs/store\.md, which is not a result"):
+    with pytest.raises(
+        ConfigError, match=r"holds docs/store\.md, which is not a result"
+    ):
         check_results_folder("docs")
     (tmp_path / "theirs/data").mkdir(parents=True)
     (tmp_path / "theirs/data/measured.csv").touch()

@@ -26,8 +26,19 @@ class Quiet(SimpleHTTPRequestHandler):
 @pytest.fixture(scope="module")
 def site(tmp_path_factory):
     folder = tmp_path_factory.mktemp("site")
-    command = [sys.executable, "-m", "mkdocs", "build", "--strict", "-q", "-d", str(folder)]
-    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
+    command = [
+        sys.executable,
+        "-m",
+        "mkdocs",
+        "build",
+        "--strict",
+        "-q",
+        "-d",
+        str(folder),
+    ]
+    done = subprocess.run(
+        command, cwd=ROOT, capture_output=True, text=True, check=False
+    )
     assert done.returncode == 0, done.stderr[-3000:]
     return folder
 
@@ -35,14 +46,18 @@ def site(tmp_path_factory):
 def test_signatures_are_shown_as_they_are_written():
     """What ``help`` and a notebook show: Angle, not the checks behind it."""
     called = {name: getattr(squealpipe, name) for name in squealpipe.__all__}
-    shown = {name: str(signature(each)) for name, each in called.items() if callable(each)}
+    shown = {
+        name: str(signature(each)) for name, each in called.items() if callable(each)
+    }
     assert [name for name, text in shown.items() if "Validator" in text] == []
 
 
 @pytest.mark.release
 def test_reference_holds_what_is_public(site):
     page = (site / "reference.html").read_text(encoding="utf-8")
-    assert [name for name in squealpipe.__all__ if f'id="squealpipe.{name}"' not in page] == []
+    assert [
+        name for name in squealpipe.__all__ if f'id="squealpipe.{name}"' not in page
+    ] == []
 
 
 @pytest.mark.release

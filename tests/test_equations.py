@@ -11,7 +11,11 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
 LETTERS = {1: "abc", 8: "abcd", 12: "abcdefg"} | dict.fromkeys((15, 22, 25, 28), "ab")
-PAPER = {f"{number}{letter}" for number in range(1, 37) for letter in LETTERS.get(number) or [""]}
+PAPER = {
+    f"{number}{letter}"
+    for number in range(1, 37)
+    for letter in LETTERS.get(number) or [""]
+}
 REFERENCE = re.compile(r"\bof Eqs?\. \(\d+[a-g]?\)(?:(?:, |–| and )\(\d+[a-g]?\))*")
 NUMBER = re.compile(r"\((\d+)([a-g]?)\)(?:–\((\d+)([a-g]?)\))?")
 
@@ -23,7 +27,9 @@ def numbers(text):
         if not last:
             found.add(first + letter)
         elif first == last:
-            found |= {first + chr(code) for code in range(ord(letter), ord(last_letter) + 1)}
+            found |= {
+                first + chr(code) for code in range(ord(letter), ord(last_letter) + 1)
+            }
         else:
             found |= {str(number) for number in range(int(first), int(last) + 1)}
     return found
@@ -41,7 +47,9 @@ def homes():
                 if not summary.startswith("Eq"):
                     continue
                 for number in numbers(REFERENCE.sub("", summary)):
-                    found[number].add(f"{path.relative_to(ROOT).as_posix()}: {node.name}")
+                    found[number].add(
+                        f"{path.relative_to(ROOT).as_posix()}: {node.name}"
+                    )
     return found
 
 
@@ -49,7 +57,9 @@ def table():
     """Equation → ``path: name`` as docs/equations.md has it."""
     found = defaultdict(set)
     for line in (ROOT / "docs/equations.md").read_text(encoding="utf-8").splitlines():
-        match = re.match(r"\| (\(.*?\)) \| .* \| `(squealpipe/\S+\.py)` `(\w+)` \|$", line)
+        match = re.match(
+            r"\| (\(.*?\)) \| .* \| `(squealpipe/\S+\.py)` `(\w+)` \|$", line
+        )
         if match:
             for number in numbers(match[1]):
                 found[number].add(f"{match[2]}: {match[3]}")
@@ -60,7 +70,9 @@ def test_every_equation_has_exactly_one_home():
     found = homes()
     assert set(found) <= PAPER, f"no such equation: {sorted(set(found) - PAPER)}"
     assert set(found) >= PAPER, f"no home: {sorted(PAPER - set(found))}"
-    several = {number: sorted(places) for number, places in found.items() if len(places) > 1}
+    several = {
+        number: sorted(places) for number, places in found.items() if len(places) > 1
+    }
     assert not several
 
 
@@ -69,4 +81,12 @@ def test_the_table_says_where_each_one_lives():
 
 
 def test_ranges_are_spelled_out():
-    assert numbers("(8a)–(8c), (31)–(33) and (4)") == {"8a", "8b", "8c", "31", "32", "33", "4"}
+    assert numbers("(8a)–(8c), (31)–(33) and (4)") == {
+        "8a",
+        "8b",
+        "8c",
+        "31",
+        "32",
+        "33",
+        "4",
+    }

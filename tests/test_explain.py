@@ -15,15 +15,34 @@ from squealpipe.execution.explain import (
 
 
 def job(rule, seconds, outputs=(), reasons=(), follows=()):
-    lists = {"outputs": list(outputs), "reasons": list(reasons), "follows": list(follows)}
+    lists = {
+        "outputs": list(outputs),
+        "reasons": list(reasons),
+        "follows": list(follows),
+    }
     return Job(rule=rule, seconds=seconds, **lists)
 
 
 def test_plan_names_figures_and_time():
     jobs = [
-        job("map_validity", 10.0, ["results/data/validity_map.nc"], ["parameters.mu: 0.3 → 0.4"]),
-        job("draw_linear", 2.0, [f"results/figures/fig07.{end}" for end in ("png", "svg")]),
-        job("draw_model", None, ["results/figures/fig01.png"], ["missing"], ["map_validity"]),
+        job(
+            "map_validity",
+            10.0,
+            ["results/data/validity_map.nc"],
+            ["parameters.mu: 0.3 → 0.4"],
+        ),
+        job(
+            "draw_linear",
+            2.0,
+            [f"results/figures/fig07.{end}" for end in ("png", "svg")],
+        ),
+        job(
+            "draw_model",
+            None,
+            ["results/figures/fig01.png"],
+            ["missing"],
+            ["map_validity"],
+        ),
     ]
     plan = Explanation(jobs=jobs, cores=2)
     assert plan.figures == ["fig01", "fig07"]
@@ -47,7 +66,8 @@ def test_times_come_from_snakemakes_records(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("text", "results"), [("", "results/quick"), ("results: results/mine\n", "results/mine-quick")]
+    ("text", "results"),
+    [("", "results/quick"), ("results: results/mine\n", "results/mine-quick")],
 )
 def test_a_quick_study_goes_beside_the_full_one(tmp_path, text, results):
     """Also where the overlay names a folder of its own."""

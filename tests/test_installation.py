@@ -33,7 +33,11 @@ assert run(["map", "stability", "--alpha1", "0:pi:3", "--alpha2", "0:pi:3"]) == 
 
 def run(*command, cwd):
     done = subprocess.run(
-        [str(word) for word in command], cwd=cwd, capture_output=True, text=True, check=False
+        [str(word) for word in command],
+        cwd=cwd,
+        capture_output=True,
+        text=True,
+        check=False,
     )
     assert done.returncode == 0, done.stdout[-2000:] + done.stderr[-4000:]
     return done.stdout
@@ -44,9 +48,13 @@ def test_the_library_and_its_commands_work_without_what_a_study_needs(tmp_path):
 
 
 def test_no_dependency_of_a_study_is_one_of_the_library():
-    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))[
+        "project"
+    ]
     core = {line.partition(">")[0].lower() for line in project["dependencies"]}
-    study = {line.partition(">")[0] for line in project["optional-dependencies"]["study"]}
+    study = {
+        line.partition(">")[0] for line in project["optional-dependencies"]["study"]
+    }
     assert study >= STUDY
     assert not core & study
 
@@ -64,10 +72,20 @@ def test_locks_name_no_index_and_agree(name):
 @pytest.mark.release
 def test_citation_is_valid():
     """By its validator, whose old libraries need an environment of their own."""
-    uvx = (Path(sys.executable).parent / "uv", "tool", "run", "cffconvert", "--validate")
+    uvx = (
+        Path(sys.executable).parent / "uv",
+        "tool",
+        "run",
+        "cffconvert",
+        "--validate",
+    )
     assert "valid" in run(*uvx, "-i", ROOT / "CITATION.cff", cwd=ROOT)
-    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
-    assert f"version: {project['version']}" in (ROOT / "CITATION.cff").read_text(encoding="utf-8")
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))[
+        "project"
+    ]
+    assert f"version: {project['version']}" in (ROOT / "CITATION.cff").read_text(
+        encoding="utf-8"
+    )
 
 
 PAD = """
@@ -91,12 +109,25 @@ parameters:
 @pytest.mark.release
 def test_wheel_in_a_bare_environment(checkout, tmp_path):
     """Sdist and wheel checked by twine; the core alone, then a study from an empty folder."""
-    uv, dist, bare = Path(sys.executable).parent / "uv", tmp_path / "dist", tmp_path / "bare"
+    uv, dist, bare = (
+        Path(sys.executable).parent / "uv",
+        tmp_path / "dist",
+        tmp_path / "bare",
+    )
     run(uv, "build", "-q", "-o", dist, checkout, cwd=tmp_path)
     sdist, wheel = sorted(dist.glob("*.*z")) + sorted(dist.glob("*.whl"))
     run(uv, "tool", "run", "twine", "check", "--strict", sdist, wheel, cwd=tmp_path)
     run(uv, "venv", "-q", "--python", sys.executable, bare, cwd=tmp_path)
-    install = (uv, "pip", "install", "-q", "--reinstall-package", "squealpipe", "--python", bare)
+    install = (
+        uv,
+        "pip",
+        "install",
+        "-q",
+        "--reinstall-package",
+        "squealpipe",
+        "--python",
+        bare,
+    )
     command, folder = bare / "bin/squealpipe", tmp_path / "empty"
     folder.mkdir()
     for path in (sdist, wheel):

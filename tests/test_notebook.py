@@ -11,7 +11,9 @@ NOTEBOOK = Path(__file__).resolve().parents[1] / "docs/example.ipynb"
 def printed(notebook):
     """Text that each cell printed."""
     return [
-        "".join(one.text for one in cell.get("outputs", []) if one.output_type == "stream")
+        "".join(
+            one.text for one in cell.get("outputs", []) if one.output_type == "stream"
+        )
         for cell in notebook.cells
     ]
 
@@ -20,7 +22,9 @@ def test_notebook_runs_and_prints_what_is_stored(tmp_path):
     stored = nbformat.read(NOTEBOOK, as_version=4)
     fresh = nbformat.read(NOTEBOOK, as_version=4)
     resources = {"metadata": {"path": str(tmp_path)}}
-    NotebookClient(fresh, timeout=300, kernel_name="python3", resources=resources).execute()
+    NotebookClient(
+        fresh, timeout=300, kernel_name="python3", resources=resources
+    ).execute()
     assert printed(fresh) == printed(stored)
     assert any(printed(stored))
 

@@ -39,7 +39,9 @@ def test_groups_do_not_depend_on_the_units(mass, stiffness, length):
         belt_speed=plain.belt_speed * speed,
     )  # fmt: skip
     for group in ("kappa", "length_ratio", "speed_ratio"):
-        assert math.isclose(getattr(scaled, group), getattr(plain, group), rel_tol=1e-14)
+        assert math.isclose(
+            getattr(scaled, group), getattr(plain, group), rel_tol=1e-14
+        )
 
 
 def test_scenes_are_those_of_the_paper():
@@ -51,7 +53,9 @@ def test_scenes_are_those_of_the_paper():
     assert set(SCENES) == set(printed)
     for name, over_pi in printed.items():
         scene = SCENES[name]
-        assert (scene.alpha1 / math.pi, scene.alpha2 / math.pi) == pytest.approx(over_pi, rel=1e-15)
+        assert (scene.alpha1 / math.pi, scene.alpha2 / math.pi) == pytest.approx(
+            over_pi, rel=1e-15
+        )
 
 
 def test_repr_can_be_read_back_and_tells_the_groups():
@@ -76,7 +80,10 @@ EXTENSIONS |= {"mu_static": 0.5, "friction_speed": 2.0}
         ({"mu_static": -0.1}, r"mu_static = -0\.1: must be 0 or greater"),
         ({"mu_static": 0.1}, r"mu_static = 0\.1: it must be 0\.3, the coefficient"),
         ({"friction_speed": 0.0}, r"friction_speed = 0\.0: must be greater than 0"),
-        ({"friction_speed": 5e-324}, r"friction_speed = 5e-324: must be 1e-300 or greater"),
+        (
+            {"friction_speed": 5e-324},
+            r"friction_speed = 5e-324: must be 1e-300 or greater",
+        ),
         ({"friction_law": "exponentail"}, r"did you mean 'exponential'\?"),
         ({"friction_law": 3}, "friction_law = 3: unknown"),
     ],
@@ -97,7 +104,9 @@ def test_extensions_are_written_down_only_where_they_are_used():
     assert Parameters(**params.as_dict()) == params
     assert set(params.as_dict()) == {*known, *EXTENSIONS}
     plain = parse_study({"parameters": {"mu": 0.25}})
-    spelled = parse_study({"parameters": {"mu": 0.25, **{n: DEFAULTS[n] for n in EXTENSIONS}}})
+    spelled = parse_study(
+        {"parameters": {"mu": 0.25, **{n: DEFAULTS[n] for n in EXTENSIONS}}}
+    )
     assert plain.slice("parameters") == spelled.slice("parameters")
     assert sorted(plain.slice("parameters")["parameters"]) == sorted(known)
     full = parse_study({"parameters": EXTENSIONS}).slice("parameters")

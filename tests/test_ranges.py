@@ -27,7 +27,9 @@ def test_angle_forms(text):
     assert parse_angle(text) == pytest.approx(FORMS[text] * math.pi, rel=1e-15)
 
 
-@pytest.mark.parametrize("text", ["", "abc", "pi/0", "1,2", "0.4pie", "nan", "inf", "1e999", "4 5"])
+@pytest.mark.parametrize(
+    "text", ["", "abc", "pi/0", "1,2", "0.4pie", "nan", "inf", "1e999", "4 5"]
+)
 def test_what_is_no_angle_is_refused_with_the_forms(text):
     with pytest.raises(ValueError, match=r"write 0\.4pi, 2pi/5, 72deg or radians"):
         parse_angle(text)
@@ -76,9 +78,13 @@ def test_ranges_and_lists():
         (read_fixed, "sigma", None, None),
     ],
 )
-def test_values_may_be_text_numbers_or_lists_and_keep_their_kind(read, name, given_, value):
+def test_values_may_be_text_numbers_or_lists_and_keep_their_kind(
+    read, name, given_, value
+):
     found = read(name, given_)
-    assert found == (pytest.approx(value, rel=1e-15) if isinstance(value, list) else value)
+    assert found == (
+        pytest.approx(value, rel=1e-15) if isinstance(value, list) else value
+    )
     assert type(found) is type(value)
     if isinstance(value, list):
         assert list(map(type, found)) == list(map(type, value))

@@ -22,7 +22,9 @@ from squealpipe.store.keys import stated_key
 ROOT = Path(__file__).resolve().parents[1]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 GUIDE = (ROOT / "docs/guide.md").read_text(encoding="utf-8")
-BLOCKS = re.findall(r"^```(bash|python)\n(.*?)^```", README + GUIDE, flags=re.MULTILINE | re.DOTALL)
+BLOCKS = re.findall(
+    r"^```(bash|python)\n(.*?)^```", README + GUIDE, flags=re.MULTILINE | re.DOTALL
+)
 STEPS = [
     (language, step)
     for language, block in BLOCKS
@@ -68,7 +70,9 @@ def run(step, language, place):
         "PYTHONPATH": str(place),
         "MPLBACKEND": "agg",
     }
-    command = [sys.executable, "-c", step] if language == "python" else ["bash", "-c", step]
+    command = (
+        [sys.executable, "-c", step] if language == "python" else ["bash", "-c", step]
+    )
     return subprocess.run(
         command, cwd=place, env=environment, capture_output=True, text=True, check=False,
         timeout=300,
@@ -76,11 +80,17 @@ def run(step, language, place):
 
 
 @pytest.mark.release
-@pytest.mark.parametrize(("language", "step"), STEPS, ids=[step[:60] for _, step in STEPS])
+@pytest.mark.parametrize(
+    ("language", "step"), STEPS, ids=[step[:60] for _, step in STEPS]
+)
 def test_step_works(study, language, step):
     command = step.partition("#")[0].strip() if language == "bash" else step
     done = run(planned(command) if language == "bash" else command, language, study)
-    allowed = ANSWERS.get(command.split()[1], {0}) if command.startswith("squealpipe") else {0}
+    allowed = (
+        ANSWERS.get(command.split()[1], {0})
+        if command.startswith("squealpipe")
+        else {0}
+    )
     assert done.returncode in allowed, done.stdout[-2000:] + done.stderr[-2000:]
     assert "Traceback" not in done.stderr
 

@@ -34,7 +34,11 @@ def test_answers_scale(name):
         size = np.abs(scaled[key].values[np.isfinite(scaled[key].values)])
         atol = 1e-7 * size.max(initial=1.0)
         np.testing.assert_allclose(
-            variable.values / unit, scaled[key].values, rtol=1e-6, atol=atol, err_msg=str(key)
+            variable.values / unit,
+            scaled[key].values,
+            rtol=1e-6,
+            atol=atol,
+            err_msg=str(key),
         )
 
 
@@ -47,7 +51,10 @@ def test_choices_scale(question):
 
 
 def typed(params):
-    return [f"--{name.replace('_', '-')}={value}" for name, value in params.as_dict().items()]
+    return [
+        f"--{name.replace('_', '-')}={value}"
+        for name, value in params.as_dict().items()
+    ]
 
 
 def test_simulate_prints_the_frequency_of_the_motion(capsys, tmp_path, monkeypatch):
@@ -56,7 +63,9 @@ def test_simulate_prints_the_frequency_of_the_motion(capsys, tmp_path, monkeypat
     command = ["simulate", "0.5pi", "pi", "--model", "A4", *typed(SI)]
     assert run([*command, "-q"]) == 0
     printed = capsys.readouterr().out.split("ω = ")[1]
-    assert float(printed.split()[0].rstrip(",")) == pytest.approx(np.sqrt(1.7e7 / 0.5), rel=0.02)
+    assert float(printed.split()[0].rstrip(",")) == pytest.approx(
+        np.sqrt(1.7e7 / 0.5), rel=0.02
+    )
     assert run([*command, "--t-end", "50", "--points", "2001", "-o", "far.nc"]) == 0
     assert "do not resolve oscillations of period" in capsys.readouterr().out
 

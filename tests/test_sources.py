@@ -62,8 +62,15 @@ def test_closure_is_transitive(tmp_path):
     script = tmp_path / "script.py"
     script.write_text("from squealpipe.tasks.linear.maps import stability_map\n")
     found = {path.relative_to(PACKAGE).as_posix() for path in closure(script)}
-    assert {"tasks/linear/maps.py", "models/a3.py", "laws/springs.py", "parameters.py"} <= found
-    assert not any(name.startswith(("figures", "report", "cli", "methods")) for name in found)
+    assert {
+        "tasks/linear/maps.py",
+        "models/a3.py",
+        "laws/springs.py",
+        "parameters.py",
+    } <= found
+    assert not any(
+        name.startswith(("figures", "report", "cli", "methods")) for name in found
+    )
 
 
 def test_every_closure_stays_in_the_package():
@@ -114,7 +121,9 @@ def test_key_changes_with_slice_inputs_and_files_that_the_slice_names(tmp_path):
 @pytest.mark.parametrize("end", ["a.svg", "a.png", "a.html", "a.json"])
 def test_figures_and_pages_end_with_their_key_and_any_change_is_noticed(tmp_path, end):
     path = tmp_path / end
-    path.write_bytes(b"content of a picture" if path.suffix != ".json" else b'{"a": {"b": 1}}\n')
+    path.write_bytes(
+        b"content of a picture" if path.suffix != ".json" else b'{"a": {"b": 1}}\n'
+    )
     assert key_behind(path) is None
     state_key(path, "0" * 16)
     assert key_behind(path) == f"{'0' * 16} {end}"

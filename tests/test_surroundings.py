@@ -13,7 +13,9 @@ NO_HOME = {**os.environ, "HOME": "/proc/none"}
 
 
 def run(command, **kwargs):
-    return subprocess.run(command, capture_output=True, text=True, check=False, **kwargs)
+    return subprocess.run(
+        command, capture_output=True, text=True, check=False, **kwargs
+    )
 
 
 def test_a_checkout_path_with_a_space_is_refused_with_the_reason(tmp_path):
@@ -28,7 +30,15 @@ def test_a_checkout_path_with_a_space_is_refused_with_the_reason(tmp_path):
 
 
 def test_commands_need_no_home(tmp_path):
-    command = [sys.executable, "-m", "squealpipe", "map", "stability", "--alpha1", "0:pi:3"]
+    command = [
+        sys.executable,
+        "-m",
+        "squealpipe",
+        "map",
+        "stability",
+        "--alpha1",
+        "0:pi:3",
+    ]
     done = run(command, cwd=tmp_path, env=NO_HOME)
     assert done.returncode == 0, done.stderr
     assert (tmp_path / "map.nc").is_file()
@@ -38,7 +48,9 @@ def test_make_gives_snakemake_a_cache_where_there_is_no_home(tmp_path):
     shutil.copy(ROOT / "Makefile", tmp_path / "Makefile")
     with (tmp_path / "Makefile").open("a", encoding="utf-8") as file:
         file.write("\nshow:\n\t@echo cache=$$XDG_CACHE_HOME\n")
-    shown = run(["make", "--no-print-directory", "show"], cwd=tmp_path, env=NO_HOME).stdout
+    shown = run(
+        ["make", "--no-print-directory", "show"], cwd=tmp_path, env=NO_HOME
+    ).stdout
     assert shown.startswith(f"cache={tmp_path}")
 
 

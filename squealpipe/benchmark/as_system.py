@@ -29,11 +29,13 @@ def system_of(problem: Problem) -> System:
         field=made(data["field"]),
         switches=[
             Switch(
-                s["name"], s["leaves"], made(s["when"]),
+                s["name"],
+                s["leaves"],
+                made(s["when"]),
                 [(regime, made(c) if c else None, kind) for regime, c, kind in s["to"]],
                 made(s["reset"]),
             )
             for s in data["switches"]
         ],
         start={**data["start"], "regime": problem.regime},
-    )  # fmt: skip
+    )

@@ -61,18 +61,32 @@ class Problem:
     """
 
     def __init__(
-        self, data: Mapping[str, Any], functions: Any = math, number: Callable[[Any], Any] = float
+        self,
+        data: Mapping[str, Any],
+        functions: Any = math,
+        number: Callable[[Any], Any] = float,
     ) -> None:
         self.data = data
-        self.name, self.group, self.purpose = data["name"], data["class"], data["purpose"]
+        self.name, self.group, self.purpose = (
+            data["name"],
+            data["class"],
+            data["purpose"],
+        )
         self.states, self.regime = list(data["start"]), data["regime"]
         self.start = [number(value) for value in data["start"].values()]
-        self.t_end, self.times = number(data["t_end"]), [number(t) for t in data["times"]]
-        self.parameters = {name: number(value) for name, value in data["parameters"].items()}
+        self.t_end, self.times = (
+            number(data["t_end"]),
+            [number(t) for t in data["times"]],
+        )
+        self.parameters = {
+            name: number(value) for name, value in data["parameters"].items()
+        }
         self.regimes: dict[str, dict[str, float]] = data["regimes"]
         self.derivative = data.get("derivative")
         self.calls, self.patience = 0, PATIENCE
-        self._names = {name: getattr(functions, name) for name in FUNCTIONS} | self.parameters
+        self._names = {
+            name: getattr(functions, name) for name in FUNCTIONS
+        } | self.parameters
         self.rates = list(data["field"].values())
         self.fields = self.per_regime(self.rates)
         self.switches = [self._transition(switch) for switch in data["switches"]]
@@ -92,7 +106,11 @@ class Problem:
         """A Python function (t, y) of one text, or of a list; constants may be texts, too."""
         body = texts if isinstance(texts, str) else f"[{', '.join(texts)}]"
         lines = [f"{', '.join(self.states)}, = y"]
-        lines += [f"{name} = {text}" for name, text in constants.items() if isinstance(text, str)]
+        lines += [
+            f"{name} = {text}"
+            for name, text in constants.items()
+            if isinstance(text, str)
+        ]
         source = "\n ".join(["def made(time, y):", *lines, f"return {body}"])
         scope = {**self._names, **constants}
         exec(source, scope)  # noqa: S102 (equations of this package)
@@ -100,7 +118,10 @@ class Problem:
 
     def per_regime(self, texts: Any) -> dict[str, Callable[[Any, Any], Any]]:
         """The same texts with the constants of each regime."""
-        return {name: self.function(texts, constants) for name, constants in self.regimes.items()}
+        return {
+            name: self.function(texts, constants)
+            for name, constants in self.regimes.items()
+        }
 
     def _transition(self, data: Mapping[str, Any]) -> Transition:
         leaves = tuple(data["leaves"])
@@ -121,7 +142,9 @@ class Problem:
                     return kind, target, after
             raise AssertionError(data["name"])
 
-        return Transition(data["name"], leaves, lambda t, y, regime: when[regime](t, y), fire)
+        return Transition(
+            data["name"], leaves, lambda t, y, regime: when[regime](t, y), fire
+        )
 
     def watched(self, regime: str) -> list[Transition]:
         """The switches that can fire in a regime."""
@@ -133,7 +156,9 @@ def all_data() -> list[dict[str, Any]]:
     text = (files("squealpipe.benchmark") / "problems.yaml").read_text("utf-8")
     entries = yaml.safe_load(text)
     named = {entry["name"]: entry for entry in entries}
-    shared = {name: {key: e[key] for key in SHARED if key in e} for name, e in named.items()}
+    shared = {
+        name: {key: e[key] for key in SHARED if key in e} for name, e in named.items()
+    }
     return [shared.get(entry.get("system"), {}) | entry for entry in entries]
 
 

@@ -44,9 +44,15 @@ class Score(NamedTuple):
     def words(self) -> str:
         """The score as text: the verdict, then what is wrong."""
         counts = {n: getattr(self, n) for n in ("missed", "spurious", "out_of_order")}
-        found = [f"{count} {name.replace('_', ' ')}" for name, count in counts.items() if count > 0]
+        found = [
+            f"{count} {name.replace('_', ' ')}"
+            for name, count in counts.items()
+            if count > 0
+        ]
         unanswered = np.isinf(self.error) and self.message
-        if self.verdict > Reliability.right and not (np.isnan(self.error) or unanswered):
+        if self.verdict > Reliability.right and not (
+            np.isnan(self.error) or unanswered
+        ):
             found.append(f"error {self.error:.1e}")
         found += [self.message] * bool(self.message)
         verdict = self.verdict.name.replace("_", " ")
@@ -54,7 +60,10 @@ class Score(NamedTuple):
 
 
 def score(
-    data: Mapping[str, Any], reference: Mapping[str, Any], answer: Sequence[Any], tol: float
+    data: Mapping[str, Any],
+    reference: Mapping[str, Any],
+    answer: Sequence[Any],
+    tol: float,
 ) -> Score:
     """Judge one answer.
 
@@ -80,7 +89,9 @@ def score(
         if len(times) != len(kinds):
             raise ValueError(f"{len(times)} times, but {len(kinds)} kinds of events")
         truth, growth = np.array(reference["times"]), np.array(reference["time_growth"])
-        mine = np.nan_to_num(np.array(times, float), nan=NEVER, posinf=NEVER, neginf=-NEVER)
+        mine = np.nan_to_num(
+            np.array(times, float), nan=NEVER, posinf=NEVER, neginf=-NEVER
+        )
         i, j = matched(reference, mine, kinds).T
         missed, spurious = len(truth) - len(i), len(mine) - len(j)
         swapped = out_of_order(j, truth[i], allowed * growth[i])
@@ -89,12 +100,18 @@ def score(
         errors = np.abs(mine[j] - truth[i]) / np.maximum(1.0, truth[i])
         time_error = errors.max(initial=0.0)
         error = (errors / growth[i]).max(initial=error, where=known[i])
-        order = out_of_order(j[known[i]], truth[i][known[i]], (allowed * growth)[i][known[i]])
+        order = out_of_order(
+            j[known[i]], truth[i][known[i]], (allowed * growth)[i][known[i]]
+        )
         wrong = known.sum() > known[i].sum() or order > 0 or (judged and spurious > 0)
     if slope is not None and data.get("derivative"):
-        error = max(error, largest([slope], [reference["derivative"]], reference["growth"]))
+        error = max(
+            error, largest([slope], [reference["derivative"]], reference["growth"])
+        )
     verdict = Reliability.right if error <= allowed and not wrong else unlike_right
-    return Score(verdict, missed, spurious, swapped, time_error, error, flag, evaluations)
+    return Score(
+        verdict, missed, spurious, swapped, time_error, error, flag, evaluations
+    )
 
 
 def largest(found: Sequence[float], truth: Sequence[float], growth: float) -> float:
@@ -102,10 +119,14 @@ def largest(found: Sequence[float], truth: Sequence[float], growth: float) -> fl
     a, b = np.array(found, float), np.array(truth, float)
     if a.shape != b.shape or not np.isfinite(a).all():
         return np.inf
-    return float(np.max(np.abs(a - b) / np.maximum(1.0, np.abs(b)), initial=0.0) / growth)
+    return float(
+        np.max(np.abs(a - b) / np.maximum(1.0, np.abs(b)), initial=0.0) / growth
+    )
 
 
-def matched(reference: Mapping[str, Any], times: np.ndarray, kinds: Sequence[str]) -> np.ndarray:
+def matched(
+    reference: Mapping[str, Any], times: np.ndarray, kinds: Sequence[str]
+) -> np.ndarray:
     """Pairs (event of the reference, event found) of one kind, nearest first."""
     pairs: list[tuple[int, int]] = []
     for kind in {*reference["kinds"]}:
@@ -166,7 +187,9 @@ def benchmark(
     """
     known = {data["name"]: data for data in all_data()}
     if unknown := [name for name in names if name not in known]:
-        raise ValueError(f"problem {unknown[0]!r} is unknown; one of {'; '.join(known)}")
+        raise ValueError(
+            f"problem {unknown[0]!r} is unknown; one of {'; '.join(known)}"
+        )
     if min(tolerances) <= 0.0:
         raise ValueError(f"tolerance {min(tolerances):g}: has to be above 0")
     if not solvers:
@@ -179,7 +202,9 @@ def benchmark(
         for name, solve in solvers.items():
             measure(data, solve, tolerances[0])  # compiles before any stopwatch runs
             found = [measure(data, solve, tol) for tol in tolerances]
-            cells[-1].append([each._replace(cpu_ratio=each.cpu_time / unit) for each in found])
+            cells[-1].append(
+                [each._replace(cpu_ratio=each.cpu_time / unit) for each in found]
+            )
             done(data["name"], name, cells[-1][-1])
     table = np.array(cells, dtype=object)
     columns = {name: table[..., i].tolist() for i, name in enumerate(Score._fields)}
@@ -191,12 +216,16 @@ def benchmark(
     groups = [data["class"] for data in chosen]
     role = [Role.ours if name == "squealpipe" else Role.public for name in solvers]
     columns |= {"group": groups, "role": role}
-    return build(BENCHMARK, columns, coordinates, {"benchmark_version": BENCHMARK_VERSION})
+    return build(
+        BENCHMARK, columns, coordinates, {"benchmark_version": BENCHMARK_VERSION}
+    )
 
 
 def verdicts(row: xr.Dataset) -> str:
     """Those of all solvers on one problem, as text."""
     return "; ".join(
         f"{solver}: {', '.join(Reliability(v).name.replace('_', ' ') for v in verdict)}"
-        for solver, verdict in zip(row.solver.values, row.verdict.values.tolist(), strict=True)
+        for solver, verdict in zip(
+            row.solver.values, row.verdict.values.tolist(), strict=True
+        )
     )

@@ -14,7 +14,14 @@ from squealpipe.cli import benchmark
 from squealpipe.cli.archives import deposit, find, list_runs
 from squealpipe.cli.arguments import by_name, parameters_from_study
 from squealpipe.cli.claims import claims
-from squealpipe.cli.console import DONE, INTERRUPTED, NOT_DONE, SESSION, TRACEBACK, session
+from squealpipe.cli.console import (
+    DONE,
+    INTERRUPTED,
+    NOT_DONE,
+    SESSION,
+    TRACEBACK,
+    session,
+)
 from squealpipe.cli.files import convert, plot
 from squealpipe.cli.maps import basin, disturbance, map_angles, propensity, refine
 from squealpipe.cli.models import choose, infer
@@ -100,7 +107,9 @@ def run(arguments: Sequence[str]) -> int:
                 return DONE
             raise
         except KeyboardInterrupt:
-            print("squealpipe: interrupted; run the same command again", file=sys.stderr)
+            print(
+                "squealpipe: interrupted; run the same command again", file=sys.stderr
+            )
             return INTERRUPTED
         except Exception as error:  # noqa: BLE001 (one line, not a trace)
             with contextlib.suppress(BrokenPipeError):  # nobody reads it

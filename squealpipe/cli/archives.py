@@ -30,13 +30,27 @@ def list_runs(*, json_: AsJson = False) -> int:
     found, paper = runs(), paper_configuration()
     if json_:
         print(
-            json.dumps([asdict(run) | {"changed": run.changed(paper)} for run in found], indent=1)
+            json.dumps(
+                [asdict(run) | {"changed": run.changed(paper)} for run in found],
+                indent=1,
+            )
         )
         return DONE
     if not found:
-        print("no archives and no results yet; run snakemake, then squealpipe archive NAME")
+        print(
+            "no archives and no results yet; run snakemake, then squealpipe archive NAME"
+        )
         return DONE
-    rows = [("name", "date", "commit", "MB", "files", "differs from the paper's configuration")]
+    rows = [
+        (
+            "name",
+            "date",
+            "commit",
+            "MB",
+            "files",
+            "differs from the paper's configuration",
+        )
+    ]
     rows += [
         (
             run.name,
@@ -101,6 +115,8 @@ def _warn(found: list[Run]) -> None:
 
 def _changes(changed: dict[str, Any]) -> str:
     physical = sorted(changed, key=lambda key: (not key.startswith("parameters."), key))
-    stated = [f"{key.removeprefix('parameters.')}={changed[key]}" for key in physical[:SHOWN]]
+    stated = [
+        f"{key.removeprefix('parameters.')}={changed[key]}" for key in physical[:SHOWN]
+    ]
     more = len(physical) - len(stated)
     return ", ".join([*stated, *([f"and {more} more"] if more else [])]) or "nothing"

@@ -31,7 +31,11 @@ _whole = _reader(_parse_whole)
 def _signed(read: Callable[[str], Any], metavar: str, **further: Any) -> Parameter:
     """One text, which may begin with a minus sign."""
     return Parameter(
-        converter=_reader(read), metavar=metavar, allow_leading_hyphen=True, n_tokens=1, **further
+        converter=_reader(read),
+        metavar=metavar,
+        allow_leading_hyphen=True,
+        n_tokens=1,
+        **further,
     )
 
 
@@ -40,7 +44,11 @@ Numbers = Annotated[list[float] | None, _signed(parse_range, "RANGE", negative="
 Whole = Annotated[int, Parameter(converter=_whole, metavar="INT", n_tokens=1)]
 Angle = Annotated[
     float,
-    _signed(parse_angle, "ANGLE", help="angle of this spring: 0.4pi, 2pi/5, 72deg or radians."),
+    _signed(
+        parse_angle,
+        "ANGLE",
+        help="angle of this spring: 0.4pi, 2pi/5, 72deg or radians.",
+    ),
 ]
 AngleRange = Annotated[
     list[float],
@@ -51,7 +59,8 @@ AngleRange = Annotated[
 ]  # fmt: skip
 Tolerance = Annotated[float, Parameter(help="tolerance of the integration.")]
 Workers = Annotated[
-    int | None, Parameter(converter=_whole, metavar="INT", help="processes; all cores by default.")
+    int | None,
+    Parameter(converter=_whole, metavar="INT", help="processes; all cores by default."),
 ]
 Configs = Annotated[list[Path] | None, Parameter(name=["--config", "-c"], negative="")]
 Output = Annotated[
@@ -77,7 +86,10 @@ class Brake:
     """The brake of a command."""
 
     config: Annotated[
-        Configs, Parameter(help="study whose parameters are used where none are typed; repeatable.")
+        Configs,
+        Parameter(
+            help="study whose parameters are used where none are typed; repeatable."
+        ),
     ] = None
     params: Annotated[
         Parameters, Parameter(name="*", group=Group("Physical parameters", sort_key=10))
@@ -118,7 +130,9 @@ def by_name(argument: str) -> str:
     return f"--{name.replace('_', '-')}{equals}{value}" if name else argument
 
 
-def parameters_from_study(_: App, __: tuple[str, ...], arguments: ArgumentCollection) -> None:
+def parameters_from_study(
+    _: App, __: tuple[str, ...], arguments: ArgumentCollection
+) -> None:
     """Give the parameters that were not typed the values of the study in ``--config``."""
     found = {argument.name: argument for argument in arguments}
     flags = {name: f"--{name.replace('_', '-')}" for name in TABLE}
@@ -133,4 +147,6 @@ def parameters_from_study(_: App, __: tuple[str, ...], arguments: ArgumentCollec
     for name, argument in physical.items():
         value = getattr(study, name)
         if name not in SESSION.typed and value is not None:
-            argument.append(Token(keyword=argument.name, value=str(value), source=", ".join(paths)))
+            argument.append(
+                Token(keyword=argument.name, value=str(value), source=", ".join(paths))
+            )

@@ -41,13 +41,21 @@ def run(
     tolerances = sorted({*(tolerance or TOLERANCES)}, reverse=True)
 
     def done(problem: str, name: str, scores: list[Score]) -> None:
-        found = "; ".join(f"{t:g} {s.words}" for t, s in zip(tolerances, scores, strict=True))
+        found = "; ".join(
+            f"{t:g} {s.words}" for t, s in zip(tolerances, scores, strict=True)
+        )
         print(f"{problem}: {f'{name}: ' * (len(solvers) > 1)}{found}", flush=True)
 
     found = write(
-        lambda: benchmark(solvers, names=problem or (), tolerances=tolerances, done=done),
+        lambda: benchmark(
+            solvers, names=problem or (), tolerances=tolerances, done=done
+        ),
         output,
-        config={"solvers": list(solvers), "problems": problem or [], "tolerances": tolerances},
+        config={
+            "solvers": list(solvers),
+            "problems": problem or [],
+            "tolerances": tolerances,
+        },
     )
     wrong = int((found.verdict == Reliability.silently_wrong).sum())
     print(f"{wrong} of {found.verdict.size} answers silently wrong; wrote {output}")
@@ -71,7 +79,9 @@ def compare(one: Path, other: Path, /) -> int:
     found, others = load(one), load(other)
     for path, each in ((one, found), (other, others)):
         if each.attrs["schema"] != "benchmark":
-            raise ValueError(f"{path} is a dataset {each.attrs['schema']!r}, not of the benchmark")
+            raise ValueError(
+                f"{path} is a dataset {each.attrs['schema']!r}, not of the benchmark"
+            )
     found, others = xr.align(found, others, exclude="solver")
     if not found.verdict.size:
         raise ValueError(f"{one} and {other} have no problem at the same tolerance")

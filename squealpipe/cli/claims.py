@@ -12,7 +12,9 @@ from squealpipe.cli.console import DONE
 MADE = Path("results/data/claims.nc")
 
 
-def claims(*ids: str, only: str | None = None, json_: AsJson = False, file: Path = MADE) -> int:
+def claims(
+    *ids: str, only: str | None = None, json_: AsJson = False, file: Path = MADE
+) -> int:
     """Print the paper's statements with their verdicts; those that are named, in full.
 
     With the shipped parameters, exit code 1 means that a verdict differs from the recorded one.
@@ -39,7 +41,9 @@ def claims(*ids: str, only: str | None = None, json_: AsJson = False, file: Path
     else:
         print(*map(_line, rows), sep="\n")
         if rows:
-            print(f"{len(rows)} statements; `squealpipe claims {rows[0]['id']}` shows one in full")
+            print(
+                f"{len(rows)} statements; `squealpipe claims {rows[0]['id']}` shows one in full"
+            )
         if changed := [row for row in rows if row["changes"]]:
             print("\nWith friction of one sign throughout these change:")
             for row in changed:
@@ -54,7 +58,9 @@ def _chosen(
     known = {row["id"].lower(): row for row in rows}
     for name in ids:
         if name.lower() not in known:
-            raise ValueError(f"no statement {name!r}; known: {', '.join(r['id'] for r in rows)}")
+            raise ValueError(
+                f"no statement {name!r}; known: {', '.join(r['id'] for r in rows)}"
+            )
     kept = [known[name.lower()] for name in ids] or list(rows)
     if only is None:
         return kept
@@ -63,7 +69,9 @@ def _chosen(
     exact = [verdict for verdict in verdicts if verdict == wanted]
     fitting = exact or [verdict for verdict in verdicts if verdict.startswith(wanted)]
     if not fitting:
-        raise ValueError(f"--only {only}: no statement has this verdict; {', '.join(verdicts)}")
+        raise ValueError(
+            f"--only {only}: no statement has this verdict; {', '.join(verdicts)}"
+        )
     return [row for row in kept if row["verdict"] in fitting]
 
 
@@ -83,7 +91,9 @@ def _details(row: Mapping[str, Any]) -> list[str]:
             f"{row['threshold']:.6g}{but}"
         )
     if row["feasible_share"] is not None:
-        lines.append(f"holds in {row['feasible_share']:.1%} of the feasible parameter sets")
+        lines.append(
+            f"holds in {row['feasible_share']:.1%} of the feasible parameter sets"
+        )
     lines.append(row["evidence"])
     if row["changes"]:
         lines.append(

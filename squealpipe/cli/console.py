@@ -47,7 +47,10 @@ def session(arguments: Sequence[str]) -> Iterator[list[str]]:
     found = {SWITCHES[each] for each in arguments[:end] if each in SWITCHES}
     kept = [each for each in arguments[:end] if each not in SWITCHES]
     SESSION.quiet = "quiet" in found
-    SESSION.verbose = "verbose" in found or os.environ.get(TRACEBACK, "0") not in {"", "0"}
+    SESSION.verbose = "verbose" in found or os.environ.get(TRACEBACK, "0") not in {
+        "",
+        "0",
+    }
     SESSION.typed = set()
     with warnings.catch_warnings():
         if not SESSION.verbose and not sys.warnoptions:

@@ -29,11 +29,18 @@ if TYPE_CHECKING:
     import xarray as xr
 
 Kind = Literal[
-    "validity", "hammering", "quasi-static", "stability", "critical-friction", "frequencies"
+    "validity",
+    "hammering",
+    "quasi-static",
+    "stability",
+    "critical-friction",
+    "frequencies",
 ]
 TIMED = ("validity", "hammering")
 """Maps that take a horizon."""
-DISTRIBUTIONS = "write for instance mu=uniform:0.1:0.9, k1=normal:1:0.05 or k3=lognormal:0.65:0.1"
+DISTRIBUTIONS = (
+    "write for instance mu=uniform:0.1:0.9, k1=normal:1:0.05 or k3=lognormal:0.65:0.1"
+)
 
 
 def map_angles(
@@ -56,9 +63,13 @@ def map_angles(
         t_end: horizon of validity and hammering maps, s; 200 √(mass/k1) by default.
     """
     if min(len(alpha1), len(alpha2)) < 2:
-        raise ValueError("a map needs 2 or more angles of each spring; write for instance 0:pi:31")
+        raise ValueError(
+            "a map needs 2 or more angles of each spring; write for instance 0:pi:31"
+        )
     t_end = HORIZON * brake.params.time_unit if t_end is None else t_end
-    name = {"frequencies": "natural_frequencies"}.get(kind, f"{kind.replace('-', '_')}_map")
+    name = {"frequencies": "natural_frequencies"}.get(
+        kind, f"{kind.replace('-', '_')}_map"
+    )
     options: dict[str, Any] = {"t_end": t_end, "tol": tol} if kind in TIMED else {}
     return _counted(compute(name, brake, alpha1, alpha2, output=output, **options))
 
@@ -84,9 +95,16 @@ def refine(
         t_end: end of each run, s; 200 √(mass/k1) by default.
     """
     found = compute(
-        "refine_validity_map", brake, output=output, resolution=resolution, coarse=coarse,
-        t_end=t_end, model=model, tol=tol, workers=workers,
-    )  # fmt: skip
+        "refine_validity_map",
+        brake,
+        output=output,
+        resolution=resolution,
+        coarse=coarse,
+        t_end=t_end,
+        model=model,
+        tol=tol,
+        workers=workers,
+    )
     (low, high), run = found.inherited_error_interval.values, int(found.computed.sum())
     wrong = f"; of the others {low:.2%} to {high:.2%} are wrong (95 %)"
     answer(
@@ -126,12 +144,23 @@ def basin(
     """
     given = {"x": x, "y": y, "vx": vx, "vy": vy}
     starts: dict[str, Any] = {
-        name: values[0] if len(values) == 1 else values for name, values in given.items() if values
+        name: values[0] if len(values) == 1 else values
+        for name, values in given.items()
+        if values
     }
     if sum(isinstance(each, list) for each in starts.values()) not in {1, 2}:
-        raise ValueError("give a range of one or two of x, y, vx, vy, like --vx -5:5:21")
-    options: dict[str, Any] = {"t_end": t_end, "t_late": t_late, "tol": tol, "workers": workers}
-    return _counted(compute("basin_map", brake, alpha1, alpha2, output=output, **starts, **options))
+        raise ValueError(
+            "give a range of one or two of x, y, vx, vy, like --vx -5:5:21"
+        )
+    options: dict[str, Any] = {
+        "t_end": t_end,
+        "t_late": t_late,
+        "tol": tol,
+        "workers": workers,
+    }
+    return _counted(
+        compute("basin_map", brake, alpha1, alpha2, output=output, **starts, **options)
+    )
 
 
 def _counted(found: xr.Dataset) -> int:
@@ -170,10 +199,20 @@ def disturbance(
         seed: of the directions.
     """
     found = compute(
-        "smallest_disturbance", brake, alpha1, alpha2, output=output, leads_to=leads_to,
-        model=model, t_end=t_end, bound=bound, directions=directions, seed=seed, tol=tol,
+        "smallest_disturbance",
+        brake,
+        alpha1,
+        alpha2,
+        output=output,
+        leads_to=leads_to,
+        model=model,
+        t_end=t_end,
+        bound=bound,
+        directions=directions,
+        seed=seed,
+        tol=tol,
         workers=workers,
-    )  # fmt: skip
+    )
     outcome, why = ending(found.outcome)
     if outcome != "converged":
         answer(f"no disturbance: {why}")
@@ -191,7 +230,9 @@ def propensity(
     alpha2: Angle,
     /,
     *,
-    distribution: Annotated[list[str], Parameter(metavar="NAME=KIND:LOW:HIGH", negative="")],
+    distribution: Annotated[
+        list[str], Parameter(metavar="NAME=KIND:LOW:HIGH", negative="")
+    ],
     samples: Whole = 1024,
     t_end: float | None = None,
     spring_correlation: float = 0.0,
@@ -219,13 +260,23 @@ def propensity(
         raise ValueError(f"{name} is both fixed and distributed; keep one")
     t_end = HORIZON * brake.params.time_unit if t_end is None else t_end
     found = compute(
-        "propensity", brake, alpha1, alpha2, output=output, distributions=distributions,
-        samples=samples, t_end=t_end, spring_correlation=spring_correlation, seed=seed,
-    )  # fmt: skip
+        "propensity",
+        brake,
+        alpha1,
+        alpha2,
+        output=output,
+        distributions=distributions,
+        samples=samples,
+        t_end=t_end,
+        spring_correlation=spring_correlation,
+        seed=seed,
+    )
     for name in found.quantity.values:
         one = found.sel(quantity=name)
         share, low, high = (float(one[f"share{end}"]) for end in ("", "_low", "_high"))
-        answer(f"{name.replace('_', ' '):<20} {share:8.2%}  (95 %: {low:.2%} to {high:.2%})")
+        answer(
+            f"{name.replace('_', ' '):<20} {share:8.2%}  (95 %: {low:.2%} to {high:.2%})"
+        )
     return DONE
 
 
@@ -236,7 +287,9 @@ def _distribution(text: str) -> tuple[str, dict[str, str | float]]:
     name, _, words = text.partition("=")
     name, parts = name.strip().replace("-", "_"), words.split(":")
     if len(parts) != 3 or parts[0] not in KINDS:
-        raise ValueError(f"--distribution {text!r} is not a distribution; {DISTRIBUTIONS}")
+        raise ValueError(
+            f"--distribution {text!r} is not a distribution; {DISTRIBUTIONS}"
+        )
     one = parse_angle if name in ANGLES else parse_number
     numbers = dict(zip(KINDS[parts[0]], map(one, parts[1:]), strict=True))
     return name, {"distribution": parts[0], **numbers}

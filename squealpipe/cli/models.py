@@ -18,7 +18,9 @@ from squealpipe.cli.arguments import (
 from squealpipe.cli.console import DONE, answer, working
 from squealpipe.cli.output import compute
 
-Question = Literal["contact_lost", "frequency", "peak_contact_force", "max_displacement"]
+Question = Literal[
+    "contact_lost", "frequency", "peak_contact_force", "max_displacement"
+]
 
 
 def choose(
@@ -43,9 +45,14 @@ def choose(
 
     with working("choose"):
         found = choose_model(brake.params, alpha1, alpha2, question, t_end=t_end)
-    value = f"{found.value:.6g}" if question != "contact_lost" else ("no", "yes")[int(found.value)]
+    value = (
+        f"{found.value:.6g}"
+        if question != "contact_lost"
+        else ("no", "yes")[int(found.value)]
+    )
     answer(
-        f"{question.replace('_', ' ')}: {value}", f"by {Level[found.model].label}: {found.reason}"
+        f"{question.replace('_', ' ')}: {value}",
+        f"by {Level[found.model].label}: {found.reason}",
     )
     return DONE
 
@@ -78,10 +85,21 @@ def infer(
         seed: of the sample.
     """
     found = compute(
-        "infer_parameters", brake, output=output, samples=samples, reading=reading, kappa=kappa,
-        mu=mu_range, length_ratio=length_ratio, speed_ratio=speed_ratio, seed=seed, tol=tol,
+        "infer_parameters",
+        brake,
+        output=output,
+        samples=samples,
+        reading=reading,
+        kappa=kappa,
+        mu=mu_range,
+        length_ratio=length_ratio,
+        speed_ratio=speed_ratio,
+        seed=seed,
+        tol=tol,
         workers=workers,
-    )  # fmt: skip
-    for name, count in zip(found.reading.values, found.feasible_count.values, strict=True):
+    )
+    for name, count in zip(
+        found.reading.values, found.feasible_count.values, strict=True
+    ):
         answer(f"{name}: {count} of {samples} sets meet every statement")
     return DONE

@@ -8,7 +8,16 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from cyclopts import Parameter
 
-from squealpipe.cli.arguments import DRAWN, Angle, Drawn, Numbers, Output, Switch, Tolerance, Whole
+from squealpipe.cli.arguments import (
+    DRAWN,
+    Angle,
+    Drawn,
+    Numbers,
+    Output,
+    Switch,
+    Tolerance,
+    Whole,
+)
 from squealpipe.cli.console import ANSWER_IS_NO, DONE, answer
 from squealpipe.cli.output import compute, ending
 from squealpipe.config.ranges import parse_range
@@ -17,7 +26,14 @@ if TYPE_CHECKING:
     import xarray as xr
 
 Model = Annotated[
-    Literal["A1", "A1-no-stick", "A1-no-separation", "A1-linear-springs", "A1-as-printed", "A4"],
+    Literal[
+        "A1",
+        "A1-no-stick",
+        "A1-no-separation",
+        "A1-linear-springs",
+        "A1-as-printed",
+        "A4",
+    ],
     Parameter(help="level of the model."),
 ]
 
@@ -51,7 +67,9 @@ def simulate(
         vy0: speed away from the belt at the start.
     """
     if points is not None and points < 16:
-        raise ValueError(f"--points {points} is too few to show a motion; give 16 or more")
+        raise ValueError(
+            f"--points {points} is too few to show a motion; give 16 or more"
+        )
     t_end = 50.0 * brake.params.time_unit if t_end is None else t_end
     if not 0 < t_end < float("inf"):
         raise ValueError(f"--t-end {t_end!r} must be greater than 0 and finite")
@@ -62,11 +80,23 @@ def simulate(
     from squealpipe.tasks.dynamics.summary import summarize, summary_lines
     from squealpipe.tasks.sampling import default_times, unresolved
 
-    times = np.linspace(0.0, t_end, points) if points else default_times(brake.params, t_end)
+    times = (
+        np.linspace(0.0, t_end, points)
+        if points
+        else default_times(brake.params, t_end)
+    )
     run = compute(
-        "simulate", brake, alpha1, alpha2, output=output, t_end=t_end, model=model, tol=tol,
-        times=times, initial_state=[x0, y0, vx0, vy0],
-    )  # fmt: skip
+        "simulate",
+        brake,
+        alpha1,
+        alpha2,
+        output=output,
+        t_end=t_end,
+        model=model,
+        tol=tol,
+        times=times,
+        initial_state=[x0, y0, vx0, vy0],
+    )
     if np.isfinite(run.x).sum() >= FEWEST:
         answer(*summary_lines(run, summarize(run)))
         if missed := unresolved(brake.params, times):
@@ -103,13 +133,22 @@ def backbone(
         n_harmonics: harmonics kept by harmonic balance.
     """
     branch = compute(
-        "backbone", brake, alpha1, alpha2, output=output, mode=mode, method=method,
-        y_peak_max=y_peak_max, x_amplitude_max=x_amplitude_max,
+        "backbone",
+        brake,
+        alpha1,
+        alpha2,
+        output=output,
+        mode=mode,
+        method=method,
+        y_peak_max=y_peak_max,
+        x_amplitude_max=x_amplitude_max,
         n_harmonics=n_harmonics if method == "hbm" else None,
-    )  # fmt: skip
+    )
     _, why = ending(branch.end)
     if not branch.sizes["point"]:
-        answer(f"mode {mode} has no periodic motions here: {why}; try other angles or parameters")
+        answer(
+            f"mode {mode} has no periodic motions here: {why}; try other angles or parameters"
+        )
         return ANSWER_IS_NO
     answer(
         f"mode {mode}: {branch.sizes['point']} points, ω from {float(branch.omega[0]):.6g} "
@@ -140,7 +179,13 @@ def cycle(
         t_settle: after which that run counts as settled, s; 2000 √(mass/min(k1, k2)) by default.
     """
     found = compute(
-        "limit_cycle", brake, alpha1, alpha2, output=output, guess=guess, t_settle=t_settle
+        "limit_cycle",
+        brake,
+        alpha1,
+        alpha2,
+        output=output,
+        guess=guess,
+        t_settle=t_settle,
     )
     outcome, why = ending(found.outcome)
     if outcome not in {"converged", "family_member"}:
@@ -188,9 +233,17 @@ def branch(
     """
     name = parameter.replace("-", "_")
     found = compute(
-        "cycle_branch", brake, alpha1, alpha2, output=output, parameter=name, to=to,
-        start=_start(start), n_points=n_points, doubled=doubled,
-    )  # fmt: skip
+        "cycle_branch",
+        brake,
+        alpha1,
+        alpha2,
+        output=output,
+        parameter=name,
+        to=to,
+        start=_start(start),
+        n_points=n_points,
+        doubled=doubled,
+    )
     _, why = ending(found.end)
     if not found.sizes["point"]:
         answer(f"no point of a branch was found: {why}")

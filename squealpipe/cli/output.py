@@ -28,7 +28,9 @@ def check_output(
     if path.exists() and not path.is_file():
         raise ValueError(f"{option} {path} is a folder, device or pipe, not a file")
     if path.exists() and not force:
-        raise ValueError(f"{option} {path} exists; add --force to overwrite it, or change the name")
+        raise ValueError(
+            f"{option} {path} exists; add --force to overwrite it, or change the name"
+        )
     if path.suffix in {".csv", ".parquet"} and not force:
         for other in sorted(path.parent.glob(f"{escape(path.stem)}.*{path.suffix}")):
             raise ValueError(
@@ -37,7 +39,9 @@ def check_output(
             )
 
 
-def write(make: Callable[[], xr.Dataset], output: Path, *, config: Mapping[str, Any]) -> xr.Dataset:
+def write(
+    make: Callable[[], xr.Dataset], output: Path, *, config: Mapping[str, Any]
+) -> xr.Dataset:
     """Make a dataset, write it as ``.nc`` or ``.csv`` with its provenance, and give it back."""
     from squealpipe.store import load, produce
 

@@ -69,7 +69,9 @@ def init(
     if own:
         text = OWN.format(file=file, results=folder)
     else:
-        text = overlay_text(PAPER.read_text(encoding="utf-8"), file=str(file), results=folder)
+        text = overlay_text(
+            PAPER.read_text(encoding="utf-8"), file=str(file), results=folder
+        )
     file.parent.mkdir(parents=True, exist_ok=True)
     file.write_text(text, encoding="utf-8")
     read_study(PAPER, file)
@@ -84,7 +86,9 @@ def overlay_text(paper: str, *, file: str, results: str) -> str:
         if line and not line.startswith((" ", "#")):
             live = line.startswith("parameters:")
         if not line and live:
-            lines += [_commented(name, row) for name, row in TABLE.items() if row.extension]
+            lines += [
+                _commented(name, row) for name, row in TABLE.items() if row.extension
+            ]
         lines.append(line if live or not line else f"# {line}")
     return HEAD.format(file=file, results=results) + "\n".join(lines) + "\n"
 
@@ -95,7 +99,9 @@ def _commented(name: str, row: Row) -> str:
     return f"  # {name}: {default} # {row.meaning}{units}"
 
 
-def run(*, config: Configs = None, quick: Switch = False, cores: Whole | None = None) -> int:
+def run(
+    *, config: Configs = None, quick: Switch = False, cores: Whole | None = None
+) -> int:
     """Compute a study, with Snakemake's account of the steps, and of what failed with its log.
 
     Stop it and run the same command again: it goes on where it was, rule by rule.
@@ -113,9 +119,13 @@ def run(*, config: Configs = None, quick: Switch = False, cores: Whole | None = 
     started = time.perf_counter()
     quiet = ["--quiet", "all"] if SESSION.quiet else ["--quiet", "host", "rules"]
     if _to_its_end([*command, "--cores", str(cores or "all"), *quiet]):
-        print(f"squealpipe: the study in {study.results} is not complete", file=sys.stderr)
+        print(
+            f"squealpipe: the study in {study.results} is not complete", file=sys.stderr
+        )
         return NOT_DONE
-    say(f"done in {duration(time.perf_counter() - started)}: {study.results}/report/index.html")
+    say(
+        f"done in {duration(time.perf_counter() - started)}: {study.results}/report/index.html"
+    )
     return DONE
 
 
@@ -129,7 +139,9 @@ def _caches() -> dict[str, str]:
 
 def _to_its_end(command: list[str]) -> int:
     """Run Snakemake; after Ctrl-C it ends its jobs and tidies up."""
-    with subprocess.Popen(command, env={**os.environ, **_caches()}, start_new_session=True) as made:
+    with subprocess.Popen(
+        command, env={**os.environ, **_caches()}, start_new_session=True
+    ) as made:
         try:
             return made.wait()
         except KeyboardInterrupt:

@@ -10,7 +10,9 @@ from squealpipe.cli.console import ANSWER_IS_NO, DONE, answer, working
 from squealpipe.text import duration
 
 
-def explain(*, config: Configs = None, quick: Switch = False, json_: AsJson = False) -> int:
+def explain(
+    *, config: Configs = None, quick: Switch = False, json_: AsJson = False
+) -> int:
     """State what `snakemake` would compute again, why, which figures change and how long it takes.
 
     Example: `squealpipe explain --config mine.yaml`
@@ -34,12 +36,16 @@ def explain(*, config: Configs = None, quick: Switch = False, json_: AsJson = Fa
     if not plan.jobs:
         print("nothing to do: every result is up to date")
         return DONE
-    grid = Table("rule", "why", "last took", title="will be computed", title_justify="left")
+    grid = Table(
+        "rule", "why", "last took", title="will be computed", title_justify="left"
+    )
     for job in plan.jobs:
         time = "never run" if job.seconds is None else duration(job.seconds)
         grid.add_row(job.rule, escape(job.why()), time)
     Console().print(grid)
-    print(f"figures that change: {', '.join(plan.figures) or 'none'}\n{plan.estimate()}")
+    print(
+        f"figures that change: {', '.join(plan.figures) or 'none'}\n{plan.estimate()}"
+    )
     return DONE
 
 
@@ -63,7 +69,9 @@ def archive(name: str, /, *, config: Configs = None, leave_out: Texts = None) ->
         # a configuration that was given whole may be the paper's own
         overlays = [path for path in config or [] if not path.samefile(PAPER)]
         plan = plan_of(overlays)
-        folder = freeze(name, keys=plan.keys, configs=[PAPER, *overlays], leave_out=leave_out or [])
+        folder = freeze(
+            name, keys=plan.keys, configs=[PAPER, *overlays], leave_out=leave_out or []
+        )
     size = sum(path.stat().st_size for path in folder.rglob("*") if path.is_file())
     print(f"froze the run in {folder} ({size / 1e6:.1f} MB)")
     return DONE

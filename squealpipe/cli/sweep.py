@@ -21,7 +21,9 @@ def sweep(
     vary: Annotated[list[str], Parameter(metavar="NAME=RANGE", negative="")],
     alpha1: Angle | None = None,
     alpha2: Angle | None = None,
-    option: Annotated[list[str] | None, Parameter(metavar="NAME=VALUE", negative="")] = None,
+    option: Annotated[
+        list[str] | None, Parameter(metavar="NAME=VALUE", negative="")
+    ] = None,
     workers: Workers = None,
     output: Output = Path("sweep.nc"),
     brake: Written = WRITTEN,
@@ -44,13 +46,18 @@ def sweep(
 
     varied = _pairs("--vary", vary)
     options = _pairs("--option", option or [])
-    angles = {name: v for name, v in (("alpha1", alpha1), ("alpha2", alpha2)) if v is not None}
+    angles = {
+        name: v for name, v in (("alpha1", alpha1), ("alpha2", alpha2)) if v is not None
+    }
     for name in sorted(set(varied) & (set(options) | set(angles) | SESSION.typed)):
         raise ValueError(f"{name} is both fixed and varied; keep one")
     settings = sweep_config(
         task=task,
         vary={name: read_values(name, text) for name, text in varied.items()},
-        fixed={**{name: read_fixed(name, value) for name, value in options.items()}, **angles},
+        fixed={
+            **{name: read_fixed(name, value) for name, value in options.items()},
+            **angles,
+        },
         parameters=brake.params.as_dict(),
     )
     plan = planned(settings)
@@ -58,7 +65,9 @@ def sweep(
     runs = prod(len(plan.vary[name]) for name in plan.names)
     say(f"{runs} runs of {task} over {', '.join(plan.names)}")
     with working(f"sweep of {task}"):
-        dataset = write(lambda: run_sweep(plan, workers=workers), output, config=settings)
+        dataset = write(
+            lambda: run_sweep(plan, workers=workers), output, config=settings
+        )
     answer(*outcome_lines(dataset, plan.names))
     say(f"wrote {output}")
     return DONE
@@ -70,10 +79,14 @@ def _pairs(flag: str, texts: Sequence[str]) -> dict[str, str]:
     for text in texts:
         name, equals, value = text.partition("=")
         if not (name and equals and value):
-            raise ValueError(f"{text!r} is not NAME=VALUE; write for instance mu=0:0.6:13")
+            raise ValueError(
+                f"{text!r} is not NAME=VALUE; write for instance mu=0:0.6:13"
+            )
         key = name.strip().replace("-", "_")
         key = SYMBOLS.get(key, key)
         if key in found:
-            raise ValueError(f"{flag} {key} is a duplicate; keep one, with all its values")
+            raise ValueError(
+                f"{flag} {key} is a duplicate; keep one, with all its values"
+            )
         found[key] = value
     return found

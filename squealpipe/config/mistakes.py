@@ -56,7 +56,9 @@ def _nearest(location: tuple[int | str, ...], model: type[BaseModel]) -> str:
     *above, wrong = [str(key) for key in location if not isinstance(key, int)]
     stem = ".".join(above)
     every = list(known_keys(model))
-    siblings = [path for path in every if fnmatch.fnmatchcase(stem, path.rpartition(".")[0])]
+    siblings = [
+        path for path in every if fnmatch.fnmatchcase(stem, path.rpartition(".")[0])
+    ]
     names = [path.rpartition(".")[2] for path in siblings]
     near = SYMBOLS.get(wrong) if SYMBOLS.get(wrong) in names else nearest(wrong, names)
     if near:

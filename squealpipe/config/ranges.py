@@ -31,7 +31,9 @@ def parse_angle(text: str) -> float:
     if value is None or not math.isfinite(value):
         raise ValueError(f"{text!r} is not a valid angle; {ANGLE_FORMS}")
     if abs(value) > FULL_TURN:
-        raise ValueError(f"{text.strip()}: {BEYOND_A_TURN}; degrees are written like 72deg")
+        raise ValueError(
+            f"{text.strip()}: {BEYOND_A_TURN}; degrees are written like 72deg"
+        )
     return value
 
 
@@ -64,7 +66,9 @@ def parse_range(text: str, one: Callable[[str], float] = parse_number) -> list[f
     parts = text.split(":")
     spacing = parts.pop() if len(parts) == 4 else "linear"
     if len(parts) != 3 or spacing not in {"linear", "log"} or not parts[2].isdigit():
-        raise ValueError(f"{text!r} is not a range; write first:last:count or first:last:count:log")
+        raise ValueError(
+            f"{text!r} is not a range; write first:last:count or first:last:count:log"
+        )
     first, last, count = one(parts[0]), one(parts[1]), int(parts[2])
     if not 2 <= count <= MOST_VALUES:
         raise ValueError(
@@ -107,7 +111,9 @@ def read_fixed(name: str, given: object) -> Any:
             None.
     """
     if not isinstance(given, str | int | float | Sequence | None):
-        raise ValueError(f"{given!r} is not a value; write a number, a word or a list of numbers")  # noqa: TRY004
+        raise ValueError(  # noqa: TRY004
+            f"{given!r} is not a value; write a number, a word or a list of numbers"
+        )
     if name in (*ANGLES, *NUMBERS) and given is not None:
         return (parse_angle if name in ANGLES else parse_number)(_as_text(given))
     if isinstance(given, str):
@@ -138,7 +144,9 @@ def sweep_config(
         parameters = {}
     return {
         "task": task,
-        "parameters": {name: value for name, value in parameters.items() if name not in named},
+        "parameters": {
+            name: value for name, value in parameters.items() if name not in named
+        },
         "vary": {name: list(values) for name, values in vary.items()},
         "fixed": dict(fixed),
     }

@@ -29,11 +29,15 @@ from squealpipe.parameters import DEFAULTS, TABLE, Parameters, Row, without_defa
 class Section(BaseModel):
     """A part of the configuration: unknown keys and text for numbers are mistakes."""
 
-    model_config = ConfigDict(extra="forbid", strict=True, frozen=True, allow_inf_nan=False)
+    model_config = ConfigDict(
+        extra="forbid", strict=True, frozen=True, allow_inf_nan=False
+    )
 
 
 WHOLE = BeforeValidator(
-    lambda value: int(value) if isinstance(value, float) and value.is_integer() else value
+    lambda value: (
+        int(value) if isinstance(value, float) and value.is_integer() else value
+    )
 )
 """181.0 is 181, so that rewriting it changes nothing."""
 Number = Annotated[float, Field(strict=True)]
@@ -75,7 +79,11 @@ def _field_type(name: str, row: Row) -> Any:
             BeforeValidator(partial(row.check, name)),
             WithJsonSchema({"anyOf": [names, files, text]}),
         ]
-    kinds: dict[str, Any] = {"finite": Number, "positive": Positive, "not negative": NotNegative}
+    kinds: dict[str, Any] = {
+        "finite": Number,
+        "positive": Positive,
+        "not negative": NotNegative,
+    }
     return kinds[row.allowed] | None if row.optional else kinds[row.allowed]
 
 
@@ -89,7 +97,10 @@ else:
         "ParametersSection",
         __base__=_ParametersBase,
         __doc__=_ParametersBase.__doc__,
-        **{name: (_field_type(name, row), DEFAULTS[name]) for name, row in TABLE.items()},
+        **{
+            name: (_field_type(name, row), DEFAULTS[name])
+            for name, row in TABLE.items()
+        },
     )
     ParametersSection.__annotations__ = {}  # the reference looks for them in the source
 
@@ -102,7 +113,9 @@ class LinearSection(Section):
 
 def _ascending(limits: tuple[float, float]) -> tuple[float, float]:
     if not limits[0] < limits[1]:
-        raise ValueError(f"the lower limit {limits[0]} must be below the upper one {limits[1]}")
+        raise ValueError(
+            f"the lower limit {limits[0]} must be below the upper one {limits[1]}"
+        )
     return limits
 
 
@@ -127,7 +140,13 @@ Harmonics = Annotated[int, Field(ge=1, le=512), WHOLE]
 class HarmonicComparison(Section):
     """Harmonic balance over N_h, N/(2 N_h) and σ l_pre."""
 
-    harmonics: Annotated[tuple[Harmonics, ...], Field(min_length=1)] = (4, 8, 16, 32, 64)
+    harmonics: Annotated[tuple[Harmonics, ...], Field(min_length=1)] = (
+        4,
+        8,
+        16,
+        32,
+        64,
+    )
     oversampling: Annotated[
         tuple[Annotated[int, Field(ge=1, le=256), WHOLE], ...], Field(min_length=1)
     ] = (1, 4, 16)
@@ -281,10 +300,15 @@ class OwnScene(Section):
     @field_validator("alpha1", "alpha2", mode="before")
     @classmethod
     def _as_people_write(cls, given: Any) -> Any:
-        return parse_angle(str(given)) if isinstance(given, str | int | float) else given
+        return (
+            parse_angle(str(given)) if isinstance(given, str | int | float) else given
+        )
 
 
-VALUES = {"type": ["string", "number", "array"], "items": {"type": ["string", "number"]}}
+VALUES = {
+    "type": ["string", "number", "array"],
+    "items": {"type": ["string", "number"]},
+}
 
 
 class SweepSection(Section):
@@ -294,7 +318,9 @@ class SweepSection(Section):
     vary: Annotated[
         dict[Name, list[float | int]],
         Field(min_length=1),
-        WithJsonSchema({"type": "object", "minProperties": 1, "additionalProperties": VALUES}),
+        WithJsonSchema(
+            {"type": "object", "minProperties": 1, "additionalProperties": VALUES}
+        ),
     ]
     fixed: dict[Name, float | int | str | bool | list[float | int] | None] = {}
 

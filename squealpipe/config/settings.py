@@ -23,7 +23,9 @@ from squealpipe.parameters import TABLE, Row
 from squealpipe.rerun.key import PARTS
 from squealpipe.rerun.sources import WORKFLOW
 
-KINDS = dict(zip(PARTS, ((".nc",), (".png", ".svg"), (".html", ".pdf", ".json")), strict=True))
+KINDS = dict(
+    zip(PARTS, ((".nc",), (".png", ".svg"), (".html", ".pdf", ".json")), strict=True)
+)
 """Endings of the files in each folder of results."""
 OTHERS = {"logs", "parts", "archive", "deposit"}
 
@@ -98,7 +100,9 @@ class Study(Section):
     def sweep(self, name: str) -> dict[str, Any]:
         """Configuration of one of the sweeps, with the parameters that it does not name itself."""
         parameters = self.parameters.model_dump(mode="json")
-        return sweep_config(**self.sweeps[name].model_dump(mode="json"), parameters=parameters)
+        return sweep_config(
+            **self.sweeps[name].model_dump(mode="json"), parameters=parameters
+        )
 
 
 def read_study(*paths: str | Path, changes: Mapping[str, Any] | None = None) -> Study:
@@ -131,7 +135,9 @@ def _read_laws(path: Path, content: dict[str, Any]) -> Iterator[str]:
             yield f"parameters.{name}: {error}"
             del section[name]
             continue
-        taken = ", ".join(other for other in stood_for(section[name], row.laws) if other in section)
+        taken = ", ".join(
+            other for other in stood_for(section[name], row.laws) if other in section
+        )
         if section[name] != given and taken:
             yield f"parameters.{name}: the file stands for {taken}; leave that out"
 
@@ -161,7 +167,9 @@ def check_results_folder(results: str) -> None:
     for part in (folder, *(path for path in below if path.is_symlink())):
         inside = [part.resolve(), *part.resolve().parents]
         if any((at / "manifest.json").is_file() for at in inside):
-            raise ConfigError([f"results = {results!r}: {part} leads into the archive {inside[0]}"])
+            raise ConfigError(
+                [f"results = {results!r}: {part} leads into the archive {inside[0]}"]
+            )
     for path in below:
         *above, name = path.relative_to(folder).parts
         hidden = any(part.startswith(".") for part in (*above, name))
@@ -169,14 +177,20 @@ def check_results_folder(results: str) -> None:
             continue
         if not any(path.suffix in KINDS.get(part, ()) for part in above):
             what = f"it holds {path}, which is not a result; a run needs a folder of its own"
-            raise ConfigError([f"results = {results!r}: {what}, for instance results/mine"])
+            raise ConfigError(
+                [f"results = {results!r}: {what}, for instance results/mine"]
+            )
 
 
 def parse_study(content: Mapping[str, Any], faults: Sequence[str] = ()) -> Study:
     """Validate a configuration mapping."""
     try:
         known = Study.model_fields  # a section without keys is the default one
-        given = {k: value for k, value in content.items() if value is not None or k not in known}
+        given = {
+            k: value
+            for k, value in content.items()
+            if value is not None or k not in known
+        }
         study = Study.model_validate(_plain(given))
     except ValidationError as error:
         raise ConfigError([*faults, *mistakes(error, Study)]) from error

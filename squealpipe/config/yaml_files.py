@@ -15,7 +15,9 @@ class _Loader(yaml.SafeLoader):
 
     yaml_implicit_resolvers = {}  # noqa: RUF012 (as the parent class has it)
 
-    def construct_mapping(self, node: yaml.MappingNode, deep: bool = False) -> dict[Any, Any]:
+    def construct_mapping(
+        self, node: yaml.MappingNode, deep: bool = False
+    ) -> dict[Any, Any]:
         seen = set()
         for key, _ in node.value:
             if key.value in seen:
@@ -43,15 +45,25 @@ for _kind, _form, _first in (
 def read_yaml(path: Path) -> dict[str, Any]:
     """Content of a file."""
     if not path.is_file():
-        raise FileNotFoundError(f"no configuration {path}; give a YAML file that exists")
+        raise FileNotFoundError(
+            f"no configuration {path}; give a YAML file that exists"
+        )
     try:
         content = yaml.load(path.read_text(encoding="utf-8"), _Loader)  # noqa: S506 (a safe one)
     except yaml.MarkedYAMLError as error:
-        line = "" if error.problem_mark is None else f", line {error.problem_mark.line + 1}"
+        line = (
+            ""
+            if error.problem_mark is None
+            else f", line {error.problem_mark.line + 1}"
+        )
         hint = "; indent with spaces" if "\\t" in str(error.problem) else ""
-        raise ConfigError([f"{path}{line} is not plain YAML: {error.problem}{hint}"]) from error
+        raise ConfigError(
+            [f"{path}{line} is not plain YAML: {error.problem}{hint}"]
+        ) from error
     except (yaml.YAMLError, ValueError) as error:
-        raise ConfigError([f"{path} is not plain YAML: {' '.join(str(error).split())}"]) from error
+        raise ConfigError(
+            [f"{path} is not plain YAML: {' '.join(str(error).split())}"]
+        ) from error
     if not isinstance(content, dict | None):
         kind = type(content).__name__
         raise ConfigError([f"{path} must hold keys and values, not {kind}"])
@@ -61,7 +73,9 @@ def read_yaml(path: Path) -> dict[str, Any]:
 def overlay(base: dict[str, Any], top: Mapping[str, Any]) -> None:
     """Lay one configuration over another, key by key, in place; an empty section adds none."""
     for key, value in top.items():
-        if isinstance(base.get(key), dict) and (value is None or isinstance(value, Mapping)):
+        if isinstance(base.get(key), dict) and (
+            value is None or isinstance(value, Mapping)
+        ):
             overlay(base[key], value or {})
         else:
             base[key] = value

@@ -12,7 +12,11 @@ from squealpipe.tasks.basins.disturbance import smallest_disturbance
 from squealpipe.tasks.dynamics.hammering import hammering_map
 from squealpipe.tasks.dynamics.runs import simulate, validity_map
 from squealpipe.tasks.linear.critical import critical_friction_map
-from squealpipe.tasks.linear.maps import natural_frequencies, quasi_static_map, stability_map
+from squealpipe.tasks.linear.maps import (
+    natural_frequencies,
+    quasi_static_map,
+    stability_map,
+)
 
 NEEDED = inspect.Parameter.empty
 ONE_PAIR = (simulate, periodic_orbit, backbone, smallest_disturbance)
@@ -21,7 +25,9 @@ MAPS = (
     *(critical_friction_map, natural_frequencies),
 )
 """Tasks that take arrays of angles."""
-TASKS: dict[str, Callable[..., xr.Dataset]] = {run.__name__: run for run in (*ONE_PAIR, *MAPS)}
+TASKS: dict[str, Callable[..., xr.Dataset]] = {
+    run.__name__: run for run in (*ONE_PAIR, *MAPS)
+}
 
 
 def options_of(task: str) -> dict[str, Any]:

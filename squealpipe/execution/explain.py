@@ -113,7 +113,9 @@ def explain(
             check=False,
         )
         if done.returncode:
-            raise WorkflowError(f"snakemake could not plan:\n{(done.stdout + done.stderr).strip()}")
+            raise WorkflowError(
+                f"snakemake could not plan:\n{(done.stdout + done.stderr).strip()}"
+            )
         planned: dict[str, dict[str, Any]] = json.load(plan)
     rows = [line.split("\t") for line in done.stdout.splitlines()[1:]]
     # rules that the report of a study of one's own does not need are left out
@@ -124,17 +126,29 @@ def explain(
     times = job_times(there)
     jobs = []
     for rule in dict.fromkeys(made[path]["rule"] for path in made if path in pending):
-        outputs = [path for path in made if path in pending and made[path]["rule"] == rule]
+        outputs = [
+            path for path in made if path in pending and made[path]["rule"] == rule
+        ]
         first = made[outputs[0]]
-        follows = sorted({made[path]["rule"] for path in first["inputs"] if path in pending})
+        follows = sorted(
+            {made[path]["rule"] for path in first["inputs"] if path in pending}
+        )
         missing = [path for path in outputs if not (there / path).exists()]
         changes = [what for path in outputs for what in _changes(there / path, first)]
-        reasons = [f"missing: {_some(missing)}"] if missing else list(dict.fromkeys(changes))
+        reasons = (
+            [f"missing: {_some(missing)}"] if missing else list(dict.fromkeys(changes))
+        )
         if not reasons and not follows:
             reasons = [_changed_code(there / outputs[0], first["sources"])]
         seconds = times.get(rule)
         jobs.append(
-            Job(rule=rule, outputs=outputs, reasons=reasons, follows=follows, seconds=seconds)
+            Job(
+                rule=rule,
+                outputs=outputs,
+                reasons=reasons,
+                follows=follows,
+                seconds=seconds,
+            )
         )
     return Explanation(jobs=jobs, keys={path: made[path]["key"] for path in made})
 
@@ -191,13 +205,17 @@ def _changes(path: Path, made: Mapping[str, Any]) -> list[str]:
         return [f"{path.name} is damaged"]
     new = flat(made["settings"])
     return [
-        f"{key}: {old.get(key, 'absent')} → {new[key]}" for key in new if old.get(key) != new[key]
+        f"{key}: {old.get(key, 'absent')} → {new[key]}"
+        for key in new
+        if old.get(key) != new[key]
     ]
 
 
 def _changed_code(output: Path, sources: list[str]) -> str:
     written = output.stat().st_mtime
-    newer = [Path(path).name for path in sources if Path(path).stat().st_mtime > written]
+    newer = [
+        Path(path).name for path in sources if Path(path).stat().st_mtime > written
+    ]
     return f"code changed{f', of {_some(newer)}' if newer else ''}"
 
 

@@ -19,11 +19,15 @@ def scattered_rows(rows: int, item: str) -> slice:
     """Rows of one part, "i-of-n", of a scattered map."""
     index, count = map(int, item.split("-of-"))
     if count > rows:
-        raise ValueError(f"{count} parts of {rows} rows: scatter into at most {rows} parts")
+        raise ValueError(
+            f"{count} parts of {rows} rows: scatter into at most {rows} parts"
+        )
     return slice(rows * (index - 1) // count, rows * index // count)
 
 
-def scattered_values(vary: Mapping[str, Sequence[float]], item: str) -> dict[str, Sequence[float]]:
+def scattered_values(
+    vary: Mapping[str, Sequence[float]], item: str
+) -> dict[str, Sequence[float]]:
     """What a part of a scattered sweep varies: all, with some of the values of the longest name."""
     cut = longest(vary)
     return {**vary, cut: vary[cut][scattered_rows(len(vary[cut]), item)]}
@@ -77,5 +81,9 @@ def _filled(part: xr.Dataset, sizes: Mapping[str, int]) -> xr.Dataset:
     variables = {}
     for name, variable in part.variables.items():
         shape = tuple(sizes.get(str(dim), size) for dim, size in variable.sizes.items())
-        variables[name] = (variable.dims, fill_up(variable.values, shape), variable.attrs)
+        variables[name] = (
+            variable.dims,
+            fill_up(variable.values, shape),
+            variable.attrs,
+        )
     return xr.Dataset(variables, attrs=part.attrs).set_coords([*part.coords])

@@ -68,7 +68,9 @@ class Sweep:
                 near = suggestion(name, varied)
                 raise ValueError(f"{name!r} cannot be varied for {self.task}; {near}")
             if not len(values) or len(set(values)) != len(values):
-                raise ValueError(f"{name} needs one or more values, each once, not {values!r}")
+                raise ValueError(
+                    f"{name} needs one or more values, each once, not {values!r}"
+                )
             for value in values:
                 self._with({name: value})
         for name in set(self.fixed) - {*ANGLES, *options, *PHYSICAL}:
@@ -170,7 +172,9 @@ def _runs(sweep: Sweep, workers: int | None) -> Iterator[xr.Dataset]:
         yield from map(partial(sweep.run, workers=workers), points)
         return
     others = set(active_children())
-    with ProcessPoolExecutor(number, get_context("fork"), leave_interrupts_to_the_parent) as pool:
+    with ProcessPoolExecutor(
+        number, get_context("fork"), leave_interrupts_to_the_parent
+    ) as pool:
         try:
             # not by its map, which cancels runs to come: the pool's thread trips over those
             runs = [pool.submit(sweep.run, point, workers=1) for point in points]
@@ -195,11 +199,15 @@ def _merge(sweep: Sweep, runs: Sequence[xr.Dataset]) -> xr.Dataset:
         arrays = [run[name].values for run in runs]
         if is_ragged(entry):  # shorter ones are filled up
             longest_run = tuple(np.max([array.shape for array in arrays], axis=0))
-            arrays = [fill_up(array.astype(entry.dtype), longest_run) for array in arrays]
+            arrays = [
+                fill_up(array.astype(entry.dtype), longest_run) for array in arrays
+            ]
         stacked = np.stack(arrays)
         data[name] = stacked.reshape(shape + stacked.shape[1:])
     for dim in ragged_dims(base):
-        data[f"{dim}_count"] = np.reshape([run.sizes.get(dim, 0) for run in runs], shape)
+        data[f"{dim}_count"] = np.reshape(
+            [run.sizes.get(dim, 0) for run in runs], shape
+        )
     return build(schema, data, coords, sweep.origin)
 
 
@@ -210,7 +218,9 @@ def _schema(task: str) -> str:
 def _common(name: str, arrays: Sequence[np.ndarray]) -> np.ndarray:
     """A coordinate that all runs share."""
     if any(not np.array_equal(array, arrays[0]) for array in arrays):
-        remedy = "; fix the option 'times', for instance 0:50:1001" if name == "time" else ""
+        remedy = (
+            "; fix the option 'times', for instance 0:50:1001" if name == "time" else ""
+        )
         raise ValueError(f"{name} differs from run to run{remedy}")
     return arrays[0]
 

@@ -28,12 +28,16 @@ def find_system(place: str) -> System:
     """The system of ``FILE.py:NAME``."""
     file, _, name = place.partition(":")
     if not Path(file).is_file():
-        raise ValueError(f"no file {file!r}; a system is named like impact.py:impact_oscillator")
+        raise ValueError(
+            f"no file {file!r}; a system is named like impact.py:impact_oscillator"
+        )
     defined = runpy.run_path(file)
     found = defined.get(name)
     if not isinstance(found, System):
         known = [key for key, value in defined.items() if isinstance(value, System)]
-        raise ValueError(f"{file} defines no system {name!r}; {suggestion(name, known)}")  # noqa: TRY004
+        raise ValueError(  # noqa: TRY004
+            f"{file} defines no system {name!r}; {suggestion(name, known)}"
+        )
     return found
 
 
@@ -60,9 +64,10 @@ class SystemSweep:
             raise ValueError(f"run = {way!r}: {suggestion(way, WAYS)}")
         known = [*(f"{name}0" for name in self.system.states), *self.system.parameters]
         options = [
-            name for name in inspect.signature(WAYS[way]).parameters
+            name
+            for name in inspect.signature(WAYS[way]).parameters
             if name not in ("system", "start", "parameters", "workers")
-        ]  # fmt: skip
+        ]
         for name in (*self.vary, *(set(self.fixed) - {"run", *options})):
             if name not in known:
                 near = suggestion(name, [*known, *options])
@@ -85,4 +90,6 @@ class SystemSweep:
         way = WAYS[given.pop("run", "ensemble")]
         states = self.system.states
         start = {name: given.pop(f"{name}0") for name in states if f"{name}0" in given}
-        return way(self.system, given.pop("t_end"), start=start, workers=workers, **given)
+        return way(
+            self.system, given.pop("t_end"), start=start, workers=workers, **given
+        )

@@ -16,7 +16,13 @@ from squealpipe.laws.springs import (
 
 
 def dashpot_force(
-    c: Scalar, x: Scalar, y: Scalar, vx: Scalar, vy: Scalar, x_fixed: Scalar, y_fixed: Scalar
+    c: Scalar,
+    x: Scalar,
+    y: Scalar,
+    vx: Scalar,
+    vy: Scalar,
+    x_fixed: Scalar,
+    y_fixed: Scalar,
 ) -> tuple[Scalar, Scalar]:
     """−c ḋ (r − r_f)/d with ḋ = (r − r_f)·ṙ/d, N: force of one dashpot; singular at d = 0."""
     rx, ry = x - x_fixed, y - y_fixed
@@ -40,7 +46,9 @@ def linear_damping(p: Any, g: Geometry) -> Stiffness:
     return inclined_pair(p.damping1, p.damping2, g)
 
 
-def linear_damping_force(vx: Scalar, vy: Scalar, p: Any, g: Geometry) -> tuple[Scalar, Scalar]:
+def linear_damping_force(
+    vx: Scalar, vy: Scalar, p: Any, g: Geometry
+) -> tuple[Scalar, Scalar]:
     """−C ṙ, N."""
     c11, c12, c22 = linear_damping(p, g)
     return -(c11 * vx + c12 * vy), -(c12 * vx + c22 * vy)

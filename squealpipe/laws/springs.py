@@ -116,6 +116,11 @@ def stiffness_determinant(p: Any, g: Geometry) -> Scalar:
     return pair_determinant(p.k1, p.k2, g.s1 * g.c2 + g.c1 * g.s2)
 
 
-def linear_elastic_force(x: Scalar, y: Scalar, stiffness: Stiffness) -> tuple[Scalar, Scalar]:
+def linear_elastic_force(
+    x: Scalar, y: Scalar, stiffness: Stiffness
+) -> tuple[Scalar, Scalar]:
     """Spring terms of Eqs. (18) and (19): −K r, N."""
-    return (-(stiffness.k11 * x + stiffness.k12 * y), -(stiffness.k12 * x + stiffness.k22 * y))
+    return (
+        -(stiffness.k11 * x + stiffness.k12 * y),
+        -(stiffness.k12 * x + stiffness.k22 * y),
+    )

@@ -32,13 +32,19 @@ class Pieces(NamedTuple):
         """The value at floats or arrays, or the rate; complex ones count by their real part."""
         import numpy as np
 
-        piece = np.maximum(np.searchsorted(self.starts, np.real(at), side="right") - 1, 0)
-        return polynomial(self.coefficients[piece].T, at - self.starts[piece], derivative)
+        piece = np.maximum(
+            np.searchsorted(self.starts, np.real(at), side="right") - 1, 0
+        )
+        return polynomial(
+            self.coefficients[piece].T, at - self.starts[piece], derivative
+        )
 
     def constants(self, prefix: str) -> list[dict[str, float]]:
         """Start, end and coefficients of each piece by name; the last ends nowhere."""
         ends = [*self.starts[1:], self.starts[-1]]
-        names = [f"{prefix}_{what}" for what in ("start", "end", "c0", "c1", "c2", "c3")]
+        names = [
+            f"{prefix}_{what}" for what in ("start", "end", "c0", "c1", "c2", "c3")
+        ]
         rows = zip(self.starts, ends, self.coefficients, strict=True)
         return [
             dict(zip(names, map(float, (start, end, *each)), strict=True))
@@ -54,7 +60,9 @@ def polynomial(coefficients: Any, distance: Any, derivative: bool = False) -> An
     return c0 + distance * (c1 + distance * (c2 + distance * c3))
 
 
-def read_table(path: str | PathLike[str], columns: tuple[str, str], between: str = "linear") -> str:
+def read_table(
+    path: str | PathLike[str], columns: tuple[str, str], between: str = "linear"
+) -> str:
     """The text of a table in a CSV file.
 
     Args:
@@ -71,13 +79,17 @@ def read_table(path: str | PathLike[str], columns: tuple[str, str], between: str
             columns = columns[0], names[1 - names.index(columns[0])]
         for name in columns:
             if name not in names:
-                raise ValueError(f"{path} has no column {name!r}; its columns: {', '.join(names)}")
+                raise ValueError(
+                    f"{path} has no column {name!r}; its columns: {', '.join(names)}"
+                )
         for row in rows:
             try:
                 pairs.append([float(row[name]) for name in columns])
             except (TypeError, ValueError):
                 given = ", ".join(str(row[name]) for name in columns)
-                raise ValueError(f"{path}, line {rows.line_num}: no numbers: {given}") from None
+                raise ValueError(
+                    f"{path}, line {rows.line_num}: no numbers: {given}"
+                ) from None
     if not pairs:
         raise ValueError(f"{path} has no rows below its header")
     return between + "".join(f" {knot!r}:{value!r}" for knot, value in pairs)
@@ -90,10 +102,14 @@ def knots_of(text: str) -> tuple[tuple[float, ...], tuple[float, ...]]:
         pairs = [tuple(map(float, pair.split(":"))) for pair in text.split()[1:]]
         knots, values = (tuple(each) for each in zip(*pairs, strict=True))
     except ValueError:
-        raise ValueError("a table is written like 'linear 0:0.5 0.1:0.4 1:0.3'") from None
+        raise ValueError(
+            "a table is written like 'linear 0:0.5 0.1:0.4 1:0.3'"
+        ) from None
     for number in (*knots, *values):
         if not (math.isfinite(number) and number >= 0):
-            raise ValueError(f"{number!r} in the table: finite numbers from 0 on are needed")
+            raise ValueError(
+                f"{number!r} in the table: finite numbers from 0 on are needed"
+            )
     for before, after in pairwise(knots):
         if not before < after:
             raise ValueError(
@@ -106,7 +122,9 @@ def knots_of(text: str) -> tuple[tuple[float, ...], tuple[float, ...]]:
 def scaled(text: str, knot: float, value: float) -> str:
     """The text of a table with knots and values in other units."""
     pairs = zip(*knots_of(text), strict=True)
-    return text.split(maxsplit=1)[0] + "".join(f" {k / knot!r}:{v / value!r}" for k, v in pairs)
+    return text.split(maxsplit=1)[0] + "".join(
+        f" {k / knot!r}:{v / value!r}" for k, v in pairs
+    )
 
 
 def functions_of(source: str) -> dict[str, Any]:
@@ -115,7 +133,9 @@ def functions_of(source: str) -> dict[str, Any]:
     try:
         exec(compile(source, "<law>", "exec"), found)  # noqa: S102 (the user's own file)
     except SyntaxError as error:
-        raise ValueError(f"line {error.lineno} of the law is not Python: {error.msg}") from error
+        raise ValueError(
+            f"line {error.lineno} of the law is not Python: {error.msg}"
+        ) from error
     return found
 
 
@@ -163,7 +183,9 @@ def named(given: Any, columns: tuple[str, str], folder: Path = Path()) -> Any:
         given: a name; the path of a CSV or Python file; or ``{"table": path, "between": "cubic"}``
             or ``{"python": path}``.
     """
-    if isinstance(given, PathLike) or (isinstance(given, str) and given.endswith((".csv", ".py"))):
+    if isinstance(given, PathLike) or (
+        isinstance(given, str) and given.endswith((".csv", ".py"))
+    ):
         given = {"python" if fspath(given).endswith(".py") else "table": fspath(given)}
     if not isinstance(given, Mapping):
         return given

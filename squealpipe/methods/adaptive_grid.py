@@ -44,12 +44,16 @@ def refine_grid(evaluate: Evaluate, resolution: int, coarse: int) -> RefinedGrid
             f"times a power of two, for instance resolution = {16 * (coarse - 1) + 1}"
         )
     rows, columns = (index.ravel() for index in np.indices((coarse, coarse)) * spacing)
-    labels, suspects, reserve = (found.reshape(coarse, coarse) for found in evaluate(rows, columns))
+    labels, suspects, reserve = (
+        found.reshape(coarse, coarse) for found in evaluate(rows, columns)
+    )
     computed = np.ones_like(suspects)
     while spacing > 1:
         spacing //= 2
         doubtful = _refined(suspects | _nearly_used_up(reserve), False)
-        labels = labels.repeat(2, 0).repeat(2, 1)[:-1, :-1]  # new points take those before them
+        labels = labels.repeat(2, 0).repeat(2, 1)[
+            :-1, :-1
+        ]  # new points take those before them
         computed = _refined(computed, False)
         suspects, reserve = _refined(suspects, False), _refined(reserve, np.nan)
         suspected_here = binary_dilation(doubtful, np.ones((3, 3)))
@@ -58,7 +62,9 @@ def refine_grid(evaluate: Evaluate, resolution: int, coarse: int) -> RefinedGrid
             if not rows.size:
                 break
             found = evaluate(rows * spacing, columns * spacing)
-            labels[rows, columns], suspects[rows, columns], reserve[rows, columns] = found
+            labels[rows, columns], suspects[rows, columns], reserve[rows, columns] = (
+                found
+            )
             computed[rows, columns] = True
     return RefinedGrid(labels, computed)
 

@@ -46,14 +46,18 @@ polynomial = _numba.njit(fastmath={"contract"}, **_PART)
 def kernel_sources() -> list[Path]:
     """This file and every module beside or below it that compiles kernels or their parts."""
     here = Path(__file__)
-    users = [path for path in sorted(here.parent.rglob("*.py")) if _MARK in path.read_bytes()]
+    users = [
+        path for path in sorted(here.parent.rglob("*.py")) if _MARK in path.read_bytes()
+    ]
     return [here, *(path for path in users if path != here)]
 
 
 @cache
 def _store() -> str:
     """Directory of the kernels that Python calls, by a digest of them all."""
-    return _folder("kernels", b"".join(source.read_bytes() for source in kernel_sources()))
+    return _folder(
+        "kernels", b"".join(source.read_bytes() for source in kernel_sources())
+    )
 
 
 def _folder(kind: str, content: bytes) -> str:
@@ -64,7 +68,9 @@ def _folder(kind: str, content: bytes) -> str:
     return f"{root}/{kind}-{hashlib.sha256(content).hexdigest()[:16]}"
 
 
-def _kept(compile_: Callable[..., Any], function: Callable[..., Any], folder: str) -> Any:
+def _kept(
+    compile_: Callable[..., Any], function: Callable[..., Any], folder: str
+) -> Any:
     """The function compiled and stored where the folder can be written; else without a store.
 
     numba stores under the path of a function's file, which differs from checkout to checkout: the

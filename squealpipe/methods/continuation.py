@@ -56,7 +56,9 @@ class ContinuationSettings:
                 f"tolerance = {self.tolerance!r}, least_cosine = {self.least_cosine!r}: "
                 "a positive tolerance and a cosine between 0 and 1 are needed"
             )
-        if not (0 < self.easy_iterations <= self.max_iterations and self.max_points > 0):
+        if not (
+            0 < self.easy_iterations <= self.max_iterations and self.max_points > 0
+        ):
             raise ValueError(
                 f"easy_iterations = {self.easy_iterations!r}, max_iterations = "
                 f"{self.max_iterations!r}, max_points = {self.max_points!r}: "
@@ -159,13 +161,21 @@ class PseudoArclength:
         if found is None:
             return None
         point, tangent, iterations, residual = found
-        return ContinuationState(point, tangent, np.zeros_like(point), step, iterations, residual)
+        return ContinuationState(
+            point, tangent, np.zeros_like(point), step, iterations, residual
+        )
 
-    def attempt(self, problem: Problem, state: ContinuationState) -> ContinuationState | None:
+    def attempt(
+        self, problem: Problem, state: ContinuationState
+    ) -> ContinuationState | None:
         """One step of the state's own length; None where it is not accepted."""
         settings = self.settings
         length = state.step * (1.0 + float(np.linalg.norm(state.point)))
-        guess = state.point + length * state.tangent + 0.5 * length * length * state.curvature
+        guess = (
+            state.point
+            + length * state.tangent
+            + 0.5 * length * length * state.curvature
+        )
         corrected = self.correct(problem, guess, state.tangent)
         if corrected is None:
             return None
@@ -176,7 +186,9 @@ class PseudoArclength:
         easy = iterations <= settings.easy_iterations
         following = min(state.step * (1.5 if easy else 1.0), settings.longest_step)
         curvature = (tangent - state.tangent) / length
-        return ContinuationState(point, tangent, curvature, following, iterations, residual)
+        return ContinuationState(
+            point, tangent, curvature, following, iterations, residual
+        )
 
     def advance(
         self,

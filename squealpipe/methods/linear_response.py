@@ -28,7 +28,10 @@ def response_from_rest(
     yield earlier
     for _ in range(steps):
         yield now
-        earlier, now = now, 2.0 * np.einsum("...ij,...j->...i", cosine, now) - earlier + push
+        earlier, now = (
+            now,
+            2.0 * np.einsum("...ij,...j->...i", cosine, now) - earlier + push,
+        )
 
 
 def _series(scaled: np.ndarray, step: float) -> tuple[np.ndarray, np.ndarray]:

@@ -50,8 +50,12 @@ class ModalMotion(NamedTuple):
         """(x, y) at the times, (…, n) each, m."""
         first, second = (np.cos(self.omega[..., mode, None] * times) for mode in (0, 1))
         return (
-            self.rest[..., :1] + self.x_mode[..., :1] * first + self.x_mode[..., 1:] * second,
-            self.rest[..., 1:] + self.y_mode[..., :1] * first + self.y_mode[..., 1:] * second,
+            self.rest[..., :1]
+            + self.x_mode[..., :1] * first
+            + self.x_mode[..., 1:] * second,
+            self.rest[..., 1:]
+            + self.y_mode[..., :1] * first
+            + self.y_mode[..., 1:] * second,
         )
 
 
@@ -72,7 +76,8 @@ def modal_motion(
     with np.errstate(divide="ignore", invalid="ignore"):
         oscillates = (first.imag == 0) & (first.real > 0) & (second.real > first.real)
         w1, w2 = (
-            np.where(oscillates, value.real, 1.0 + index) for index, value in enumerate(squared)
+            np.where(oscillates, value.real, 1.0 + index)
+            for index, value in enumerate(squared)
         )
         x_rest, y_rest = (np.where(oscillates, value, 0.0) for value in rest)
         # P1 = (A − λ2)/(λ1 − λ2), P2 = 1 − P1; the motion starts at −u* from its equilibrium

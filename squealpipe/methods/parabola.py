@@ -17,7 +17,9 @@ def vertex(before: Any, here: Any, after: Any) -> tuple[np.ndarray, np.ndarray]:
 def neighbours(samples: np.ndarray, at: np.ndarray) -> tuple[np.ndarray, ...]:
     """Of (…, n) samples the one before each index, that at it, and the one after."""
     places = at[..., None]
-    return tuple(np.take_along_axis(samples, places + k, axis=-1)[..., 0] for k in (-1, 0, 1))
+    return tuple(
+        np.take_along_axis(samples, places + k, axis=-1)[..., 0] for k in (-1, 0, 1)
+    )
 
 
 def largest(samples: np.ndarray) -> np.ndarray:

@@ -37,7 +37,11 @@ def available_cores() -> int:
 
 
 def run_shared(
-    work: Work, shapes: Mapping[str, tuple[tuple[int, ...], Any]], *, jobs: int, workers: int | None
+    work: Work,
+    shapes: Mapping[str, tuple[tuple[int, ...], Any]],
+    *,
+    jobs: int,
+    workers: int | None,
 ) -> dict[str, np.ndarray]:
     """Call ``work(arrays, first, stride)`` in several processes for interleaved jobs.
 
@@ -50,13 +54,19 @@ def run_shared(
     workers = min(workers, max(1, jobs))
     daemon = multiprocessing.current_process().daemon
     if workers == 1 or daemon or "fork" not in multiprocessing.get_all_start_methods():
-        arrays = {name: np.zeros(shape, dtype) for name, (shape, dtype) in shapes.items()}
+        arrays = {
+            name: np.zeros(shape, dtype) for name, (shape, dtype) in shapes.items()
+        }
         work(arrays, 0, 1)
         return arrays
-    arrays = {name: _shared_array(shape, dtype) for name, (shape, dtype) in shapes.items()}
+    arrays = {
+        name: _shared_array(shape, dtype) for name, (shape, dtype) in shapes.items()
+    }
     context = multiprocessing.get_context("fork")
     processes = [
-        context.Process(target=_in_child, args=(work, arrays, first, workers), daemon=True)
+        context.Process(
+            target=_in_child, args=(work, arrays, first, workers), daemon=True
+        )
         for first in range(1, workers)
     ]
     for process in processes:
@@ -82,7 +92,9 @@ def leave_interrupts_to_the_parent() -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)
 
 
-def _in_child(work: Work, arrays: dict[str, np.ndarray], first: int, stride: int) -> None:
+def _in_child(
+    work: Work, arrays: dict[str, np.ndarray], first: int, stride: int
+) -> None:
     leave_interrupts_to_the_parent()
     with shown(None):
         work(arrays, first, stride)
@@ -90,4 +102,6 @@ def _in_child(work: Work, arrays: dict[str, np.ndarray], first: int, stride: int
 
 def _shared_array(shape: tuple[int, ...], dtype: Any) -> np.ndarray:
     size = prod(shape) * np.dtype(dtype).itemsize
-    return np.frombuffer(mmap.mmap(-1, max(1, size)), dtype, count=prod(shape)).reshape(shape)
+    return np.frombuffer(mmap.mmap(-1, max(1, size)), dtype, count=prod(shape)).reshape(
+        shape
+    )

@@ -27,7 +27,9 @@ def repeats_after(times: np.ndarray, kinds: np.ndarray, tolerance: float) -> int
         return 0
     allowed = tolerance * intervals.mean()
     # the first interval alone leaves few lags to be checked in full
-    likely = (kinds[lags] == kinds[0]) & (np.abs(intervals[lags] - intervals[0]) <= allowed)
+    likely = (kinds[lags] == kinds[0]) & (
+        np.abs(intervals[lags] - intervals[0]) <= allowed
+    )
     for lag in lags[likely]:
         if (kinds[lag:] == kinds[:-lag]).all() and (
             np.abs(intervals[lag:] - intervals[:-lag]).max() <= allowed

@@ -55,7 +55,11 @@ class SearchResult(NamedTuple):
 
 
 def search(
-    happens: Happens, size: int, bound: float, count: int, generator: np.random.Generator
+    happens: Happens,
+    size: int,
+    bound: float,
+    count: int,
+    generator: np.random.Generator,
 ) -> SearchResult:
     """The smallest vector of Euclidean norm up to ``bound`` for which something happens."""
     unit = _normalized(generator.standard_normal((count, size)))
@@ -84,11 +88,15 @@ def _along(happens: Happens, unit: Array, bound: float) -> Array:
         if left.size:
             first[left[happens(level * unit[left])]] = level
     rows = np.flatnonzero(np.isfinite(first))
-    first[rows] = _bisect(happens, unit[rows], first[rows] - levels[0], first[rows], HALVINGS)
+    first[rows] = _bisect(
+        happens, unit[rows], first[rows] - levels[0], first[rows], HALVINGS
+    )
     return first
 
 
-def _bisect(happens: Happens, unit: Array, low: Array, high: Array, halvings: int) -> Array:
+def _bisect(
+    happens: Happens, unit: Array, low: Array, high: Array, halvings: int
+) -> Array:
     """The upper ends of intervals in which it does not happen below and happens above."""
     low, high = low.copy(), high.copy()
     for _ in range(halvings if len(unit) else 0):
@@ -112,7 +120,11 @@ def _improve(
         works = works.reshape(len(unit), TRIES)
         owner, which = np.nonzero(works & (np.cumsum(works, axis=1) <= FOLLOWED))
         found = _bisect(
-            happens, tried[owner, which], 0.5 * below[owner], below[owner], FINE * HALVINGS
+            happens,
+            tried[owner, which],
+            0.5 * below[owner],
+            below[owner],
+            FINE * HALVINGS,
         )
         for row in range(len(unit)):
             mine = np.flatnonzero(owner == row)

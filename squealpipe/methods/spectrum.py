@@ -34,7 +34,9 @@ def amplitude_spectrum(
     count = signal.shape[-1]
     window = 0.5 - 0.5 * np.cos(2.0 * np.pi * np.arange(count) / count)
     centred = signal - (signal * window).sum(-1, keepdims=True) / window.sum()
-    amplitude = np.abs(np.fft.rfft(centred * window, n=padding * count)) * 2.0 / window.sum()
+    amplitude = (
+        np.abs(np.fft.rfft(centred * window, n=padding * count)) * 2.0 / window.sum()
+    )
     frequency = 2.0 * np.pi * np.fft.rfftfreq(padding * count, step)
     return frequency.astype(np.float64), amplitude.astype(np.float64)
 
@@ -52,5 +54,7 @@ def highest_peaks(
     places = 1 + np.flatnonzero((middle > amplitude[:-2]) & (middle >= amplitude[2:]))
     places = places[amplitude[places] > 0.05 * amplitude.max(initial=0.0)]
     places = places[np.argsort(-amplitude[places], kind="stable")][:count]
-    shift, height = vertex(*(np.log(amplitude[places + k] + 1e-300) for k in (-1, 0, 1)))
+    shift, height = vertex(
+        *(np.log(amplitude[places + k] + 1e-300) for k in (-1, 0, 1))
+    )
     return frequency[places] + shift * (frequency[1] - frequency[0]), np.exp(height)

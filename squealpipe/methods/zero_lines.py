@@ -38,7 +38,9 @@ FLAT = 1e-6
 """Distance of a polygon from a line."""
 LONGEST = 30.0
 """Tongue beyond a chord, over it, that is looked for."""
-RUNGS = np.array([-3.0, -1.0, -0.3, -0.1, -0.03, -0.01, 0.0, 0.01, 0.03, 0.1, 0.3, 1.0, 3.0])
+RUNGS = np.array(
+    [-3.0, -1.0, -0.3, -0.1, -0.03, -0.01, 0.0, 0.01, 0.03, 0.1, 0.3, 1.0, 3.0]
+)
 """Distances from a chord, over its length, between which a zero is looked for."""
 FLATTISH, STEEPEST = 0.5, 3.0
 """Slope over a chord up to which a line is taken for a cubic; largest in the area beside it."""
@@ -91,10 +93,20 @@ class ZeroLines:
         off: float = 1e-8,
         residual: float = 1e-11,
     ) -> None:
-        self.value, self._mark, self.jump, self.off, self.most = value, mark, jump, off, residual
+        self.value, self._mark, self.jump, self.off, self.most = (
+            value,
+            mark,
+            jump,
+            off,
+            residual,
+        )
         self.place, self.slope = np.empty((0, 2)), np.empty((0, 2))
         self.residual, self.mark = np.empty(0), np.empty(0)
-        self.chords, self.error, self.unresolved = np.empty((0, 2), int), np.empty(0), 0.0
+        self.chords, self.error, self.unresolved = (
+            np.empty((0, 2), int),
+            np.empty(0),
+            0.0,
+        )
         self._trace(self._on_grid((coarse - 1) * finer + 1, coarse))
 
     def _on_grid(self, size: int, coarse: int) -> Indices:
@@ -128,15 +140,24 @@ class ZeroLines:
         self._add(start + found[0][:, None] * way, way, *found[1:])
         return self._joined(positive, *numbers)
 
-    def _joined(self, positive: NDArray[np.bool_], along: Indices, up: Indices) -> Indices:
+    def _joined(
+        self, positive: NDArray[np.bool_], along: Indices, up: Indices
+    ) -> Indices:
         """Chords across the cells, from where the sign falls along a cell's edge to its rise."""
-        corners = [positive[:-1, :-1], positive[1:, :-1], positive[1:, 1:], positive[:-1, 1:]]
+        corners = [
+            positive[:-1, :-1],
+            positive[1:, :-1],
+            positive[1:, 1:],
+            positive[:-1, 1:],
+        ]
         sides = np.stack([along[:, :-1], up[1:], along[:, 1:], up[:-1]], axis=-1)
         around = np.stack(corners, axis=-1)
         falls = around & ~np.roll(around, -1, axis=-1)
         rises = ~around & np.roll(around, -1, axis=-1)
         once = falls.sum(axis=-1) == 1
-        chords = [np.stack([sides[once][falls[once]], sides[once][rises[once]]], axis=1)]
+        chords = [
+            np.stack([sides[once][falls[once]], sides[once][rises[once]]], axis=1)
+        ]
         saddles = np.argwhere(falls.sum(axis=-1) == 2)
         if len(saddles):
             through = self.value((saddles + 0.5) / (len(positive) - 1)) > 0.0
@@ -161,7 +182,9 @@ class ZeroLines:
         step = np.where((way * (places - 0.5)).sum(axis=1) > 0.0, -STEP, STEP)
         return np.asarray((self.value(places + step[:, None] * way) - value) / step)
 
-    def _append(self, place: Vector, slope: Vector, residual: Vector, mark: Vector) -> Indices:
+    def _append(
+        self, place: Vector, slope: Vector, residual: Vector, mark: Vector
+    ) -> Indices:
         self.place = np.concatenate([self.place, place])
         self.slope = np.concatenate([self.slope, slope])
         self.residual = np.concatenate([self.residual, np.abs(residual)])
@@ -184,7 +207,11 @@ class ZeroLines:
             kinked = self._jumps(chords) | (error > self._bent(chords))
             self.marks(np.concatenate([chords[kinked].ravel(), middle[kinked]]))
             chords, error = _split(chords, middle), np.repeat(0.5 * error, 2)
-            length, jumps, bent = self._length(chords), self._jumps(chords), self._bent(chords)
+            length, jumps, bent = (
+                self._length(chords),
+                self._jumps(chords),
+                self._bent(chords),
+            )
             error = np.where(jumps, error, np.minimum(error, bent))
             # by chance the middle of a chord may be right where the rest is not
             going = ((np.maximum(error, 0.5 * bent) > self.off * length) | jumps) & (
@@ -194,8 +221,12 @@ class ZeroLines:
             around = chords[~going & jumps]
             place, none = self._meeting(around)[1], np.full((len(around), 2), np.nan)
             place = np.where(np.isnan(place), self.place[around].mean(axis=1), place)
-            corner = self._append(place, none, self.value(place), self.mark[around[:, 0]])
-            self._keep(_split(around, corner), np.repeat(0.5 * error[~going & jumps], 2))
+            corner = self._append(
+                place, none, self.value(place), self.mark[around[:, 0]]
+            )
+            self._keep(
+                _split(around, corner), np.repeat(0.5 * error[~going & jumps], 2)
+            )
             chords, error = chords[going], error[going]
         self.unresolved = max([self.unresolved, *self._length(chords)])
         self._keep(chords, error)
@@ -222,14 +253,18 @@ class ZeroLines:
         self.error = np.concatenate([self.error, error])
 
     def _length(self, chords: Indices) -> Vector:
-        return np.asarray(np.linalg.norm(np.diff(self.place[chords], axis=1)[:, 0], axis=1))
+        return np.asarray(
+            np.linalg.norm(np.diff(self.place[chords], axis=1)[:, 0], axis=1)
+        )
 
     def _slopes(self, chords: Indices) -> tuple[Vector, Vector, Vector]:
         """Chords as vectors, those to their left, and slopes of the lines at both ends."""
         chord = np.diff(self.place[chords], axis=1)
         left = np.stack([-chord[..., 1], chord[..., 0]], axis=-1)
         # the line goes where the slope is turned to, clockwise
-        forward, aside = ((self.slope[chords] * way).sum(axis=-1) for way in (left, -chord))
+        forward, aside = (
+            (self.slope[chords] * way).sum(axis=-1) for way in (left, -chord)
+        )
         with np.errstate(all="ignore"):
             slopes = np.clip(aside / np.maximum(forward, 0.0), -STEEPEST, STEEPEST)
         return chord[:, 0], left[:, 0], np.nan_to_num(slopes)
@@ -240,11 +275,16 @@ class ZeroLines:
         Returns:
             The share of its way from end to end, 0.5 where there is none, and the place, NaN there.
         """
-        chord, (first, last) = np.diff(self.place[chords], axis=1)[:, 0], self._tangents(chords)
+        chord, (first, last) = (
+            np.diff(self.place[chords], axis=1)[:, 0],
+            self._tangents(chords),
+        )
         with np.errstate(all="ignore"):
             along = _cross(chord, last) / _cross(first, last)
             back = _cross(first, chord) / _cross(first, last)
-            share = np.where((along > 0.0) & (back > 0.0), along / (along + back), np.nan)
+            share = np.where(
+                (along > 0.0) & (back > 0.0), along / (along + back), np.nan
+            )
         meeting = np.where(np.isnan(share), np.nan, along)[:, None] * first
         return np.nan_to_num(share, nan=0.5), self.place[chords[:, 0]] + meeting
 
@@ -278,9 +318,15 @@ class ZeroLines:
         side = np.sign((axis * left).sum(axis=1))
         tongue = steep & (long > 0.3 * length) & (long < LONGEST * length)
         axis = np.where(tongue[:, None], side[:, None] * axis, left)
-        height, reach = np.where(tongue, 0.7 * side, height), np.where(tongue, 1.0, reach)
+        height, reach = (
+            np.where(tongue, 0.7 * side, height),
+            np.where(tongue, 1.0, reach),
+        )
         doubt[steep] = length[steep] * np.fmax(length, long)[steep]
-        start, way = foot + (height + reach)[:, None] * axis, -2.0 * reach[:, None] * axis
+        start, way = (
+            foot + (height + reach)[:, None] * axis,
+            -2.0 * reach[:, None] * axis,
+        )
         rates = (self.slope[chords] * way[:, None]).sum(axis=2)
         rate = np.where(kinked, np.where(nearer, *rates.T), rates.mean(axis=1))
         share, *there = self._roots(start, way, np.full(len(at), 0.5), rate)
@@ -318,7 +364,11 @@ class ZeroLines:
         """
         low, high, now = np.zeros(len(start)), np.ones(len(start)), share.copy()
         found, last, slope = np.full((3, len(start)), np.nan)
-        old, before, left = now.copy(), np.full(len(start), np.nan), np.arange(len(start))
+        old, before, left = (
+            now.copy(),
+            np.full(len(start), np.nan),
+            np.arange(len(start)),
+        )
         size, rate = np.linalg.norm(way, axis=1), rate.copy()
         for iteration in range(60):
             if not left.size:
@@ -333,7 +383,10 @@ class ZeroLines:
             step = np.abs(at - old[left]) * size[left]
             old[left], before[left] = at, here
             enclosed = (
-                (new > low[left]) & (new < high[left]) & (iteration % 8 < 6) & (iteration < 20)
+                (new > low[left])
+                & (new < high[left])
+                & (iteration % 8 < 6)
+                & (iteration < 20)
             )
             now[left] = np.where(enclosed, new, 0.5 * (low[left] + high[left]))
             enclosed = (low[left] > 0.0) & (high[left] < 1.0)
@@ -360,20 +413,33 @@ class ZeroLines:
             t = np.arange(1, count[k]) / count[k]
             height = _cubic(t, slopes[k : k + 1])
             start, end = self.chords[k]
-            inner = self.place[start] + t[:, None] * chord[k] + height[:, None] * left[k]
+            inner = (
+                self.place[start] + t[:, None] * chord[k] + height[:, None] * left[k]
+            )
             between[start, end], between[end, start] = inner, inner[::-1]
         chords = self.chords if positive else self.chords[:, ::-1]
         place = np.concatenate([self.place, CORNERS])
-        sign, number = (-1.0 if positive else 1.0), {(i, j): k for k, (i, j) in enumerate(chords)}
+        sign, number = (
+            (-1.0 if positive else 1.0),
+            {(i, j): k for k, (i, j) in enumerate(chords)},
+        )
         found = []
         for chain in _chains(np.concatenate([chords, self._border(positive)])):
             pairs = list(pairwise(chain))
             on = [number[pair] for pair in pairs if pair in number]
             none = np.empty((0, 2))
-            line = [each for i, j in pairs for each in (place[[i]], between.get((i, j), none))]
+            line = [
+                each
+                for i, j in pairs
+                for each in (place[[i]], between.get((i, j), none))
+            ]
             x, y = place[chain].T
-            area = 0.5 * np.sum(x[:-1] * y[1:] - x[1:] * y[:-1]) + sign * bulge[on].sum()
-            found.append(Loop(np.concatenate(line), float(area), float(self.error[on].sum())))
+            area = (
+                0.5 * np.sum(x[:-1] * y[1:] - x[1:] * y[:-1]) + sign * bulge[on].sum()
+            )
+            found.append(
+                Loop(np.concatenate(line), float(area), float(self.error[on].sum()))
+            )
         return found
 
     def holds(self, x: Vector, y: Vector) -> np.ndarray:
@@ -385,8 +451,14 @@ class ZeroLines:
         place = np.concatenate([self.place, CORNERS])
         on = np.flatnonzero(np.isin(place, (0.0, 1.0)).any(axis=1))
         x, y = place[on].T
-        around = np.select([y == 0.0, x == 1.0, y == 1.0], [x, 1.0 + y, 3.0 - x], 4.0 - y)
-        on = on[np.lexsort((on < len(self.place), np.where(on == len(self.place), 0.0, around)))]
+        around = np.select(
+            [y == 0.0, x == 1.0, y == 1.0], [x, 1.0 + y, 3.0 - x], 4.0 - y
+        )
+        on = on[
+            np.lexsort(
+                (on < len(self.place), np.where(on == len(self.place), 0.0, around))
+            )
+        ]
         has = np.cumsum(on < len(self.place)) % 2 == (self.positive != positive)
         return np.asarray(np.stack([on, np.roll(on, -1)], axis=1)[has])
 
@@ -422,7 +494,10 @@ def inside(loops: Sequence[Vector], x: Vector, y: Vector) -> np.ndarray:
     odd = np.zeros((len(x), len(y)), bool)
     for line in loops:
         after = np.roll(line, -1, axis=0)
-        low, high = np.minimum(line[:, 0], after[:, 0]), np.maximum(line[:, 0], after[:, 0])
+        low, high = (
+            np.minimum(line[:, 0], after[:, 0]),
+            np.maximum(line[:, 0], after[:, 0]),
+        )
         first, last = np.searchsorted(x, low), np.searchsorted(x, high)
         which = np.repeat(np.arange(len(line)), last - first)
         column = np.arange(which.size) - np.repeat(
@@ -439,7 +514,9 @@ def inside(loops: Sequence[Vector], x: Vector, y: Vector) -> np.ndarray:
 
 def gathered(loops: Sequence[Loop]) -> list[list[int]]:
     """Indices of loops by region: the one around it, and those of its holes."""
-    outer = [i for i in np.argsort([loop.area for loop in loops]) if loops[i].area > 0.0]
+    outer = [
+        i for i in np.argsort([loop.area for loop in loops]) if loops[i].area > 0.0
+    ]
     low = np.array([loops[o].outline.min(axis=0) for o in outer]).reshape(-1, 2)
     high = np.array([loops[o].outline.max(axis=0) for o in outer]).reshape(-1, 2)
     regions = {i: [i] for i in outer}
@@ -449,7 +526,10 @@ def gathered(loops: Sequence[Loop]) -> list[list[int]]:
         place = loop.outline[:2].mean(axis=0)
         for k in np.flatnonzero(((low < place) & (place < high)).all(axis=1)):
             around = loops[outer[k]]
-            if around.area > -loop.area and inside([around.outline], *place[:, None])[0, 0]:
+            if (
+                around.area > -loop.area
+                and inside([around.outline], *place[:, None])[0, 0]
+            ):
                 regions[outer[k]].append(i)
                 break
     return list(regions.values())

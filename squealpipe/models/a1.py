@@ -77,11 +77,20 @@ def acceleration(
         long_springs: which of the springs take the form for long ones.
     """
     fx, fy = suspension_force(
-        x, y, vx, vy, p, g,
-        linear_springs=linear_springs, long_springs=long_springs, dashpots=dashpots,
-    )  # fmt: skip
+        x,
+        y,
+        vx,
+        vy,
+        p,
+        g,
+        linear_springs=linear_springs,
+        long_springs=long_springs,
+        dashpots=dashpots,
+    )
     normal = contact * normal_force(y, vy, p)
-    friction = slip_force(normal, direction, coefficient(direction * (p.belt_speed - vx), p))
+    friction = slip_force(
+        normal, direction, coefficient(direction * (p.belt_speed - vx), p)
+    )
     inverse_mass = p.mass**-1.0
     ax = (1.0 - stick) * inverse_mass * (fx + friction)
     return ax, inverse_mass * (fy + normal)

@@ -31,7 +31,9 @@ def groups(stiffness: Stiffness, k3: Any) -> Groups:
 
     Singular where K11 = 0, at α1 = α2 = π/2, for there τ = ω11 t stands still (E12).
     """
-    return Groups(stiffness.k12 / stiffness.k11, stiffness.k22 / stiffness.k11, k3 / stiffness.k11)
+    return Groups(
+        stiffness.k12 / stiffness.k11, stiffness.k22 / stiffness.k11, k3 / stiffness.k11
+    )
 
 
 def acceleration(x: Any, y: Any, ratios: Groups, mu: Any, load: Any) -> tuple[Any, Any]:
@@ -61,8 +63,12 @@ def eigenvalues(invariants: Spectrum) -> tuple[Any, Any]:
 
     Flutter gives both modes the same growth and frequency; divergence gives mode 1 s > 0.
     """
-    first, second = (np.sqrt(-squared) for squared in natural_frequencies_squared(invariants))
-    return abs(first.real) + 1j * abs(first.imag), abs(second.real) + 1j * abs(second.imag)
+    first, second = (
+        np.sqrt(-squared) for squared in natural_frequencies_squared(invariants)
+    )
+    return abs(first.real) + 1j * abs(first.imag), abs(second.real) + 1j * abs(
+        second.imag
+    )
 
 
 def regime(invariants: Spectrum) -> Any:
@@ -94,7 +100,11 @@ def static_state(
     contact_determinant = spring_determinant + k3 * (k11 - mu * k12)
     with np.errstate(divide="ignore", invalid="ignore"):
         scale = actuation / contact_determinant
-        return (scale * (mu * k22 - k12), scale * (k11 - mu * k12), scale * spring_determinant)
+        return (
+            scale * (mu * k22 - k12),
+            scale * (k11 - mu * k12),
+            scale * spring_determinant,
+        )
 
 
 def plane(p: Any, alpha1: Any, alpha2: Any) -> Any:
@@ -116,7 +126,9 @@ def angles_from_plane(z: Any, p: Any) -> tuple[np.ndarray, np.ndarray]:
     return np.mod(0.5 * doubled, np.pi), np.mod(-0.5 * np.angle(rest), np.pi)
 
 
-def circle_arcs(p: Any, centre: complex, radius: float, points: int) -> list[np.ndarray]:
+def circle_arcs(
+    p: Any, centre: complex, radius: float, points: int
+) -> list[np.ndarray]:
     """The parts of a circle in the plane of Z that the springs reach, each as points of Z.
 
     Points crowd towards the ends, where the angles vary like a square root.

@@ -11,10 +11,17 @@ import numpy as np
 
 from squealpipe.laws.contact import contact_force
 from squealpipe.laws.friction import dragging_force
-from squealpipe.laws.springs import Geometry, Stiffness, linear_elastic_force, linear_stiffness
+from squealpipe.laws.springs import (
+    Geometry,
+    Stiffness,
+    linear_elastic_force,
+    linear_stiffness,
+)
 
 
-def acceleration(x: Any, y: Any, p: Any, g: Geometry, *, contact: Any) -> tuple[Any, Any]:
+def acceleration(
+    x: Any, y: Any, p: Any, g: Geometry, *, contact: Any
+) -> tuple[Any, Any]:
     """Eqs. (18), (19): (ẍ, ÿ), m/s²; Eqs. (20), (21) in contact, (23), (24) separated."""
     fx, fy = linear_elastic_force(x, y, linear_stiffness(p, g))
     normal = contact * contact_force(y, p)
@@ -52,7 +59,8 @@ def spectrum(
     half_difference = 0.5 * (a11 - a22)
     return Spectrum(
         0.5 * (a11 + a22) / mass,
-        (spring_determinant + k3 * (stiffness.k11 - mu * stiffness.k12)) / (mass * mass),
+        (spring_determinant + k3 * (stiffness.k11 - mu * stiffness.k12))
+        / (mass * mass),
         (half_difference * half_difference + a12 * a21) / (mass * mass),
     )
 
@@ -85,7 +93,9 @@ def first_integral(stiffness: Stiffness, mu: Any) -> FirstIntegral:
     )
 
 
-def first_integral_value(x: Any, y: Any, vx: Any, vy: Any, p: Any, stiffness: Stiffness) -> Any:
+def first_integral_value(
+    x: Any, y: Any, vx: Any, vy: Any, p: Any, stiffness: Stiffness
+) -> Any:
     """H at a state, N J/m."""
     s11, s12, s22, g = first_integral(stiffness, p.drag)
     k11, k12, k22 = stiffness

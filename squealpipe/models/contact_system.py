@@ -35,7 +35,9 @@ class ContactSystem(NamedTuple):
     invariants: Spectrum
 
 
-def contact_system(p: Any, alpha1: Any, alpha2: Any, *, k3: Any = None) -> ContactSystem:
+def contact_system(
+    p: Any, alpha1: Any, alpha2: Any, *, k3: Any = None
+) -> ContactSystem:
     """The linear system at angles and parameters that broadcast against one another.
 
     Args:

@@ -56,7 +56,9 @@ def is_undamped(p: Any) -> bool:
     return not any(dashpots) and bool(slope(abs(p.belt_speed), p) == 0)
 
 
-def damped_system(p: Any, alpha1: Any, alpha2: Any, *, sigma: Any = None) -> DampedSystem:
+def damped_system(
+    p: Any, alpha1: Any, alpha2: Any, *, sigma: Any = None
+) -> DampedSystem:
     """The system at angles of any floating type, which decides the precision; NaN where friction
     depends on speed and there is no static contact force N0.
 
@@ -71,17 +73,24 @@ def damped_system(p: Any, alpha1: Any, alpha2: Any, *, sigma: Any = None) -> Dam
     c11, c12, c21, c22 = contact_matrix(damping, c3, p.drag)
     sine = sine_of_sum(alpha1, alpha2)
     damping_determinant = pair_determinant(p.damping1, p.damping2, sine)
-    damping_determinant = damping_determinant + c3 * (damping.k11 - p.drag * damping.k12)
+    damping_determinant = damping_determinant + c3 * (
+        damping.k11 - p.drag * damping.k12
+    )
     gradient = slope(abs(p.belt_speed), p)
     if gradient != 0:
         force = a3.static_state(
-            system.stiffness, system.spring_determinant,
-            k3=k3, mu=p.drag, actuation=a2.actuation(p, sigma),
-        )[2]  # fmt: skip
+            system.stiffness,
+            system.spring_determinant,
+            k3=k3,
+            mu=p.drag,
+            actuation=a2.actuation(p, sigma),
+        )[2]
         falling = np.where(np.isfinite(force), force, np.nan) * gradient
         c11, damping_determinant = c11 + falling, damping_determinant + falling * c22
     stiffness = system.stiffness
-    determinant = system.spring_determinant + k3 * (stiffness.k11 - p.drag * stiffness.k12)
+    determinant = system.spring_determinant + k3 * (
+        stiffness.k11 - p.drag * stiffness.k12
+    )
     mass = kind.type(p.mass)
     determinants = (determinant / mass, damping_determinant / mass)
     entries = np.broadcast_arrays(c11, c12, c21, c22, k11, k12, k21, k22, *determinants)
@@ -130,7 +139,9 @@ class Stability(NamedTuple):
 def stability(s: DampedSystem) -> Stability:
     """How small motions grow: flutter where the fastest growing pair is complex."""
     found = eigenvalues(s)
-    leading = np.take_along_axis(found, np.argmax(found.real, axis=-1)[..., None], axis=-1)[..., 0]
+    leading = np.take_along_axis(
+        found, np.argmax(found.real, axis=-1)[..., None], axis=-1
+    )[..., 0]
     unstable = leading.real > MARGINAL * np.abs(found).max(axis=-1)
     oscillates = np.abs(leading.imag) > np.sqrt(MARGINAL) * np.abs(leading)
     return Stability(
@@ -162,14 +173,18 @@ def critical_friction(
     stiffness, determinant, _ = contact_system(p, alpha1, alpha2)
     stiffness = _without_round_off(stiffness)
     g = geometry(alpha1, alpha2)
-    c11, c12, c22 = (entry / p.mass for entry in _without_round_off(linear_damping(p, g)))
+    c11, c12, c22 = (
+        entry / p.mass for entry in _without_round_off(linear_damping(p, g))
+    )
     undamped = _undamped_critical_friction(p, stiffness, determinant)
     k11, k12, k22 = (entry / p.mass for entry in stiffness)
     push = p.belt_direction * p.k3 / p.mass
     k22 = k22 + p.k3 / p.mass
     p1 = c11 + c22
     sine = sine_of_sum(alpha1, alpha2) / p.mass
-    product = 0.0 if vanishing else pair_determinant(p.damping1, p.damping2, sine)  # det C
+    product = (
+        0.0 if vanishing else pair_determinant(p.damping1, p.damping2, sine)
+    )  # det C
     p2 = k11 + k22 + product
     # p3 = a + b μ and p4 = d + e μ
     a, b = c11 * k22 + c22 * k11 - 2.0 * c12 * k12, -c12 * push
@@ -177,12 +192,18 @@ def critical_friction(
     e = -push * k12
     mode = 0.5 * np.arctan2(2.0 * k12, k11 - k22)
     along, across = (
-        (p.damping1 * (g.c1 * c + g.s1 * s) ** 2 + p.damping2 * (g.c2 * c - g.s2 * s) ** 2) / p.mass
+        (
+            p.damping1 * (g.c1 * c + g.s1 * s) ** 2
+            + p.damping2 * (g.c2 * c - g.s2 * s) ** 2
+        )
+        / p.mass
         for c, s in ((np.cos(mode), np.sin(mode)), (-np.sin(mode), np.cos(mode)))
     )
     left = p1 * product * a + along * across * ((k11 - k22) ** 2 + 4.0 * k12 * k12)
     flutter = _first_root(-b * b, p1 * p2 * b - 2.0 * a * b - p1 * p1 * e, left)
-    flutter = np.where((b == 0.0) & (e == 0.0), np.inf, flutter)  # friction couples nothing
+    flutter = np.where(
+        (b == 0.0) & (e == 0.0), np.inf, flutter
+    )  # friction couples nothing
     divergence = np.where(e < 0.0, -d / np.where(e < 0.0, e, 1.0), np.inf)
     damped = np.where(p1 > 0.0, np.minimum(flutter, divergence), undamped)
     return damped, undamped
@@ -207,7 +228,9 @@ def _undamped_critical_friction(p: Any, stiffness: Stiffness, determinant: Any) 
     k12 = p.belt_direction * k12
     gap = k11 - k22 - p.k3
     negative, positive = np.where(k12 < 0.0, k12, -1.0), np.where(k12 > 0.0, k12, 1.0)
-    flutter = np.where(k12 < 0.0, (-gap * gap / (4.0 * negative) - negative) / p.k3, np.inf)
+    flutter = np.where(
+        k12 < 0.0, (-gap * gap / (4.0 * negative) - negative) / p.k3, np.inf
+    )
     divergence = (determinant + p.k3 * k11) / (p.k3 * positive)
     return np.where(k12 > 0.0, divergence, flutter)
 
@@ -219,6 +242,8 @@ def _first_root(a: Any, b: Any, c: Any) -> Any:
         root = np.sqrt(np.maximum(b * b - 4.0 * a * c, 0.0))
         q = -0.5 * (b + np.where(b < 0.0, -root, root))
         zeros = np.stack([q / a, c / q])
-    zeros = np.where((b * b >= 4.0 * a * c) & np.isfinite(zeros) & (zeros > 0.0), zeros, np.inf)
+    zeros = np.where(
+        (b * b >= 4.0 * a * c) & np.isfinite(zeros) & (zeros > 0.0), zeros, np.inf
+    )
     at_once = (c < 0.0) | ((c == 0.0) & ((b < 0.0) | ((b == 0.0) & (a < 0.0))))
     return np.where(at_once, 0.0, zeros.min(axis=0))

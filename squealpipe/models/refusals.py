@@ -32,16 +32,25 @@ def refuse_extensions(params: Parameters, who: str, why: str) -> None:
     if wrong := extensions(params):
         found = ", ".join(f"{name} = {brief(getattr(params, name))}" for name in wrong)
         remedy = ", ".join(f"{name} = {DEFAULTS[name]!r}" for name in wrong)
-        raise ValueError(f"{found}: {who} cannot carry this ({why}); use model A1, or {remedy}")
+        raise ValueError(
+            f"{found}: {who} cannot carry this ({why}); use model A1, or {remedy}"
+        )
 
 
 def refuse_scales(params: Parameters) -> None:
     """Stop linear models whose characteristic polynomial leaves the range of a double."""
     mass, stiffest = params.mass, max(params.k1, params.k2, params.k3)
     friction = max(abs(params.drag), params.static_mu) * stiffest
-    limits = {name: (getattr(params, name), 1e-140, 1e140) for name in ("k1", "k2", "k3")}
-    limits |= {"mu": (friction, 0.0, 1e140), "preload": (params.preload * stiffest, 0.0, 1e140)}
-    limits |= {name: (getattr(params, name), 0.0, 1e70) for name in ("damping1", "damping2")}
+    limits = {
+        name: (getattr(params, name), 1e-140, 1e140) for name in ("k1", "k2", "k3")
+    }
+    limits |= {
+        "mu": (friction, 0.0, 1e140),
+        "preload": (params.preload * stiffest, 0.0, 1e140),
+    }
+    limits |= {
+        name: (getattr(params, name), 0.0, 1e70) for name in ("damping1", "damping2")
+    }
     for name, (value, least, most) in limits.items():
         if not least <= value / mass < most:
             raise ValueError(

@@ -47,7 +47,9 @@ FIGURES: dict[str, Callable[[xr.Dataset], Figure]] = {
 
 
 @checked
-def plot(dataset: xr.Dataset, ax: Axes | None = None, *, variable: str | None = None) -> Axes:
+def plot(
+    dataset: xr.Dataset, ax: Axes | None = None, *, variable: str | None = None
+) -> Axes:
     """Draw a dataset: a run, a map, a branch, a cycle, an ensemble; its schema says which.
 
     A picture that would be empty says why instead.

@@ -26,10 +26,14 @@ def draw_curves(axes: Axes, curves: xr.Dataset) -> None:
     number = next((curves[name] for name in NUMBERS if name in curves), one).values
     kind = next((curves[name] for name in KINDS if name in curves), one)
     words = meanings(kind) or {0: curves.attrs.get("curve", "boundary of kept contact")}
-    for colour, code in zip(style.PALETTE * len(words), np.unique(kind.values), strict=False):
+    for colour, code in zip(
+        style.PALETTE * len(words), np.unique(kind.values), strict=False
+    ):
         on = kind.values == code
         lines = (x.values[on], y.values[on])
-        style.draw_lines(axes, lines, number[on], color=colour, label=style.flag_words(words[code]))
+        style.draw_lines(
+            axes, lines, number[on], color=colour, label=style.flag_words(words[code])
+        )
     if "design" in curves:
         axes.plot(*curves.design.values.T, "x", color=style.RED, label="design")
     axes.set(xlabel=label(x), ylabel=label(y))

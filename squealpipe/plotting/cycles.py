@@ -35,9 +35,14 @@ def draw_backbone(axes: Axes, branch: xr.Dataset) -> None:
     ):
         axes.plot(branch.omega, values, color=colour, linestyle=dash, label=words)
         axes.plot(
-            branch.omega[unstable], values[unstable], linestyle="none", marker="o",
-            markerfacecolor="white", markeredgecolor=colour, markersize=3,
-        )  # fmt: skip
+            branch.omega[unstable],
+            values[unstable],
+            linestyle="none",
+            marker="o",
+            markerfacecolor="white",
+            markeredgecolor=colour,
+            markersize=3,
+        )
     style.preload_line(axes, parameter(branch, "preload"))
     axes.set(xlabel="ω (rad/s)", ylabel="displacement (m)", ylim=(0, None))
     axes.legend(loc="lower right", bbox_to_anchor=(1, 1), ncols=2, borderaxespad=0)
@@ -51,7 +56,11 @@ def draw_cycle(axes: Axes, cycle: xr.Dataset) -> None:
     axes.set(xlabel="x (m)", ylabel="y (m)")
     if say_why_empty(axes, cycle):
         return
-    x, y, preload = cycle.x_path.values, cycle.y_path.values, parameter(cycle, "preload")
+    x, y, preload = (
+        cycle.x_path.values,
+        cycle.y_path.values,
+        parameter(cycle, "preload"),
+    )
     if "regime_path" in cycle:
         draw_regimes(axes, x, y, cycle.regime_path)
     else:
@@ -65,14 +74,18 @@ def draw_cycle(axes: Axes, cycle: xr.Dataset) -> None:
     axes.legend(loc="lower right", bbox_to_anchor=(1, 1), borderaxespad=0, ncols=2)
 
 
-def draw_regimes(axes: Axes, x: np.ndarray, y: np.ndarray, regimes: xr.DataArray) -> None:
+def draw_regimes(
+    axes: Axes, x: np.ndarray, y: np.ndarray, regimes: xr.DataArray
+) -> None:
     """A line in the colours of its regimes."""
     flags = meanings(regimes)
     for value in np.unique(regimes.values):
         name = flags[int(value)]
         drawn = np.where(joined(regimes.values == value), y, np.nan)
         words = name.replace("_", ", ")
-        axes.plot(x, drawn, color=style.REGIME_COLOURS[name], linewidth=1.4, label=words)
+        axes.plot(
+            x, drawn, color=style.REGIME_COLOURS[name], linewidth=1.4, label=words
+        )
 
 
 def draw_branch(axes: Axes, branch: xr.Dataset) -> None:
@@ -80,10 +93,14 @@ def draw_branch(axes: Axes, branch: xr.Dataset) -> None:
     if say_why_empty(axes, branch):
         return
     followed = branch[branch.attrs["parameter"]]
-    state = next(name for name in map(str, branch.data_vars) if name.endswith("_max"))[:-4]
+    state = next(name for name in map(str, branch.data_vars) if name.endswith("_max"))[
+        :-4
+    ]
     trace_branch(axes, followed.values, largest(branch, state), branch)
     units = branch[f"{state}_max"].units
-    axes.set(xlabel=label(followed).replace(ALONG, ""), ylabel=f"largest |{state}| ({units})")
+    axes.set(
+        xlabel=label(followed).replace(ALONG, ""), ylabel=f"largest |{state}| ({units})"
+    )
     axes.legend(*key_entries([axes]))
 
 
@@ -93,7 +110,9 @@ def largest(branch: xr.Dataset, state: str) -> np.ndarray:
     return np.asarray(np.maximum(*ends))
 
 
-def trace_branch(axes: Axes, parameters: np.ndarray, sizes: np.ndarray, branch: xr.Dataset) -> None:
+def trace_branch(
+    axes: Axes, parameters: np.ndarray, sizes: np.ndarray, branch: xr.Dataset
+) -> None:
     """Draw one branch as lines of two looks, with its special points, all with labels."""
     if branch.sizes["point"] < 2:
         return
@@ -103,10 +122,14 @@ def trace_branch(axes: Axes, parameters: np.ndarray, sizes: np.ndarray, branch: 
     ends = np.flatnonzero(np.diff(steady)) + 1
     for piece in np.split(np.arange(len(steady)), ends):
         colour, dash, words = (
-            (style.BLUE, "-", "stable") if steady[piece[0]] else (style.ORANGE, "--", "unstable")
+            (style.BLUE, "-", "stable")
+            if steady[piece[0]]
+            else (style.ORANGE, "--", "unstable")
         )
         points = slice(piece[0], piece[-1] + 2)
-        axes.plot(parameters[points], sizes[points], dash, color=colour, lw=1.2, label=words)
+        axes.plot(
+            parameters[points], sizes[points], dash, color=colour, lw=1.2, label=words
+        )
     for value, name in meanings(branch.label).items():
         points = branch.label.values == value
         if name in MARKS and points.any():

@@ -13,7 +13,11 @@ SPRING_COLOURS = (BLUE, ORANGE)
 
 
 def coil(
-    start: tuple[float, float], end: tuple[float, float], *, turns: int = 7, width: float = 0.1
+    start: tuple[float, float],
+    end: tuple[float, float],
+    *,
+    turns: int = 7,
+    width: float = 0.1,
 ) -> np.ndarray:
     """Points (n, 2) of a zigzag spring between two points, with straight ends."""
     along = np.subtract(end, start)
@@ -23,12 +27,19 @@ def coil(
     position = np.concatenate([[0.0], np.linspace(0.2, 0.8, 2 * turns + 1), [1.0]])
     offset = np.zeros(position.size)
     offset[2:-2] = width * np.where(np.arange(position.size - 4) % 2, -1.0, 1.0)
-    points: np.ndarray = np.asarray(start) + position[:, None] * along + offset[:, None] * across
+    points: np.ndarray = (
+        np.asarray(start) + position[:, None] * along + offset[:, None] * across
+    )
     return points
 
 
 def draw_mechanism(
-    axes: Axes, alpha1: float, alpha2: float, *, labels: bool = False, direction: float = 1.0
+    axes: Axes,
+    alpha1: float,
+    alpha2: float,
+    *,
+    labels: bool = False,
+    direction: float = 1.0,
 ) -> None:
     """Draw an arrangement at its true angles; both springs have length 1, the mass radius 0.12.
 
@@ -46,14 +57,20 @@ def draw_mechanism(
     for towards, shift, colour in zip(directions, aside, SPRING_COLOURS, strict=True):
         path = coil(tuple(towards * radius), tuple(towards), width=0.07)
         path[1:-1] += shift
-        axes.plot(*path.T, color=colour, linewidth=line, solid_joinstyle="round", zorder=2)
+        axes.plot(
+            *path.T, color=colour, linewidth=line, solid_joinstyle="round", zorder=2
+        )
         axes.add_patch(Circle(tuple(towards), 0.04, color="black", zorder=3))
     contact = coil((0.0, -radius), (0.0, belt_top), turns=4, width=0.07)
     axes.plot(*contact.T, color=GREY, linewidth=line, zorder=1)
-    axes.add_patch(Circle((0.0, 0.0), radius, facecolor="white", edgecolor="black", zorder=4))
+    axes.add_patch(
+        Circle((0.0, 0.0), radius, facecolor="white", edgecolor="black", zorder=4)
+    )
     half = 1.25 if labels else 0.8
     look: dict[str, Any] = {"facecolor": "#E8E8E8", "hatch": "////" if labels else None}
-    axes.add_patch(Rectangle((-half, belt_top - 0.12), 2 * half, 0.12, lw=0.6, ec="black", **look))
+    axes.add_patch(
+        Rectangle((-half, belt_top - 0.12), 2 * half, 0.12, lw=0.6, ec="black", **look)
+    )
     start, end = ((direction * share * half, belt_top - 0.27) for share in (0.30, 0.85))
     arrow(axes, start, end, 11 if labels else 6, RED)
     if labels:
@@ -80,7 +97,9 @@ def _label(
     axes.plot([-0.62, 0.62], [0, 0], color=GREY, linewidth=0.6, linestyle=":")
     degrees = np.degrees(angles)
     for ends in ((0, degrees[0]), (180 - degrees[1], 180)):
-        axes.add_patch(Arc((0, 0), 2 * span, 2 * span, theta1=ends[0], theta2=ends[1], lw=0.8))
+        axes.add_patch(
+            Arc((0, 0), 2 * span, 2 * span, theta1=ends[0], theta2=ends[1], lw=0.8)
+        )
     for index, mid in ((1, angles[0] / 2), (2, np.pi - angles[1] / 2)):
         place = 1.3 * span * np.array([np.cos(mid), np.sin(mid)])
         axes.text(place[0], place[1], f"$\\alpha_{index}$", **text)
@@ -97,12 +116,21 @@ def _label(
 
 def arrow(axes: Axes, start: Any, end: Any, size: float, colour: str) -> None:
     """A full arrow head at ``end``."""
-    look: dict[str, Any] = {"arrowstyle": "-|>", "mutation_scale": size, "color": colour}
+    look: dict[str, Any] = {
+        "arrowstyle": "-|>",
+        "mutation_scale": size,
+        "color": colour,
+    }
     axes.add_patch(FancyArrowPatch(tuple(start), tuple(end), **look))
 
 
 def displaced_springs(
-    x: float, y: float, alpha1: float, alpha2: float, lengths: tuple[float, float], width: float
+    x: float,
+    y: float,
+    alpha1: float,
+    alpha2: float,
+    lengths: tuple[float, float],
+    width: float,
 ) -> tuple[np.ndarray, np.ndarray]:
     """Zigzag points of both springs with the mass displaced to (x, y), in metres."""
     end1 = (lengths[0] * np.cos(alpha1), lengths[0] * np.sin(alpha1))
@@ -117,7 +145,9 @@ def displaced_springs(
 def apart(first: np.ndarray, second: np.ndarray, distance: float) -> np.ndarray:
     """Sideways shifts of two springs that would hide one another, in rows; else zero."""
     lengths = np.hypot(*np.transpose([first, second]))
-    if not lengths.all() or not np.allclose(first / lengths[0], second / lengths[1], atol=1e-6):
+    if not lengths.all() or not np.allclose(
+        first / lengths[0], second / lengths[1], atol=1e-6
+    ):
         return np.zeros((2, 2))
     across = np.array([-first[1], first[0]]) / lengths[0]
     return np.array([0.5 * distance * across, -0.5 * distance * across])

@@ -17,7 +17,9 @@ def parameter(dataset: xr.Dataset, name: str) -> Any:
     if TABLE[name].extension:
         study = {name: DEFAULTS[name], **study}
     if name not in own | study:
-        raise ValueError(f"the dataset carries no parameter {name}; save it with its configuration")
+        raise ValueError(
+            f"the dataset carries no parameter {name}; save it with its configuration"
+        )
     value = (study | own)[name]
     return value if isinstance(value, str) else float(value)
 

@@ -22,16 +22,25 @@ def figure(spread: xr.Dataset) -> Figure:
     sizes.set(xlabel="sample size", xscale="log", ylim=(0, 1.02), ylabel="share")
     _ends(sizes, spread["size"].values)
     inputs = list(map(style.symbol, spread.input.values.tolist()))
-    shown = [i for i in range(len(names)) if np.isfinite(spread.total_order.values[i]).all()]
+    shown = [
+        i for i in range(len(names)) if np.isfinite(spread.total_order.values[i]).all()
+    ]
     width = 0.8 / max(len(shown), 1)
     for position, i in enumerate(shown):
         at = np.arange(len(inputs)) + (position - 0.5 * (len(shown) - 1)) * width
         total = spread.total_order.values[i]
-        limits = np.stack([spread.total_order_low.values[i], spread.total_order_high.values[i]])
+        limits = np.stack(
+            [spread.total_order_low.values[i], spread.total_order_high.values[i]]
+        )
         indices.bar(
-            at, total, width, yerr=np.abs(limits - total), color=COLOURS[i], ecolor=style.GREY,
+            at,
+            total,
+            width,
+            yerr=np.abs(limits - total),
+            color=COLOURS[i],
+            ecolor=style.GREY,
             label=names[i],
-        )  # fmt: skip
+        )
         indices.plot(at, spread.first_order.values[i], "k.", markersize=3)
     indices.set_xticks(np.arange(len(inputs)), inputs)
     indices.set(ylabel="Sobol index", xlim=(-0.5, len(inputs) - 0.5), ylim=(0, None))
@@ -43,10 +52,15 @@ def figure(spread: xr.Dataset) -> Figure:
         if np.isfinite(row).any():
             base = spread.index_samples.sel(quantity=row.quantity)
             widths.plot(base, row, ".-", color=colour)
-    widths.axhline(WIDEST, color=style.GREY, ls="--", lw=0.8, label="widest that is given")
+    widths.axhline(
+        WIDEST, color=style.GREY, ls="--", lw=0.8, label="widest that is given"
+    )
     widths.legend()
     widths.set(
-        xlabel="base sample", xscale="log", ylabel="half-width of total index", ylim=(0, None)
+        xlabel="base sample",
+        xscale="log",
+        ylabel="half-width of total index",
+        ylim=(0, None),
     )
     if not np.isfinite(spread.half_width_by_size).any():
         style.say_instead(widths, "too few of the sample differ")
@@ -54,7 +68,12 @@ def figure(spread: xr.Dataset) -> Figure:
     else:
         known = np.isfinite(spread.half_width_by_size)
         _ends(widths, spread.index_samples.where(known).values)
-    titles = ("propensity", "convergence of shares", "sensitivity", "convergence of indices")
+    titles = (
+        "propensity",
+        "convergence of shares",
+        "sensitivity",
+        "convergence of indices",
+    )
     for letter, panel, title in zip("abcd", axes.ravel(), titles, strict=True):
         style.panel_letter(panel, letter, title)
     return drawn
@@ -72,8 +91,17 @@ def draw_shares(axes: Axes, spread: xr.Dataset) -> None:
     names = [style.flag_words(name) for name in spread.quantity.values.tolist()]
     place = np.arange(len(names))
     share = spread.share.values
-    error = np.abs(np.stack([spread.share_low.values, spread.share_high.values]) - share)
-    axes.barh(place, share, xerr=error, color=COLOURS[: len(names)], ecolor=style.GREY, height=0.6)
+    error = np.abs(
+        np.stack([spread.share_low.values, spread.share_high.values]) - share
+    )
+    axes.barh(
+        place,
+        share,
+        xerr=error,
+        color=COLOURS[: len(names)],
+        ecolor=style.GREY,
+        height=0.6,
+    )
     axes.set_yticks(place, names)
     axes.invert_yaxis()
     axes.set(xlabel="share", xlim=(0, 1))

@@ -50,7 +50,9 @@ of what is left beyond two, the first.
 
 def shown(dataset: xr.Dataset) -> xr.DataArray | None:
     """The variable that the picture of a dataset, or of a sweep of such datasets, shows."""
-    schema = str(dataset.attrs.get("schema")).removeprefix("sweep of ").split(" over ")[0]
+    schema = (
+        str(dataset.attrs.get("schema")).removeprefix("sweep of ").split(" over ")[0]
+    )
     schema = "basin_map" if schema.startswith("basin_map") else schema
     if schema not in SHOWN:
         return None
@@ -65,9 +67,14 @@ def counts(dataset: xr.Dataset) -> list[str]:
     assert variable is not None, dataset.attrs  # noqa: S101 (maps of the command line are in SHOWN)
     if table := meanings(variable):
         codes, numbers = np.unique(variable.values, return_counts=True)
-        rows = [(n, style.flag_words(table[code])) for code, n in zip(codes, numbers, strict=True)]
+        rows = [
+            (n, style.flag_words(table[code]))
+            for code, n in zip(codes, numbers, strict=True)
+        ]
         if "motion_changed" in dataset:
-            rows.append((int(dataset.motion_changed.sum()), "another kind in the last quarter"))
+            rows.append(
+                (int(dataset.motion_changed.sum()), "another kind in the last quarter")
+            )
         return [f"{number} of {variable.size} cells: {words}" for number, words in rows]
     values = variable.values
     finite = np.isfinite(values)
@@ -95,7 +102,9 @@ def draw_quantity(axes: Axes, variable: xr.DataArray) -> None:
             "one or two dimensions of numbers can be drawn: choose with dataset.sel or isel"
         )
     x = variable[variable.dims[0]]
-    table = meanings(variable) or ({0: "no", 1: "yes"} if variable.dtype.kind == "b" else {})
+    table = meanings(variable) or (
+        {0: "no", 1: "yes"} if variable.dtype.kind == "b" else {}
+    )
     values, names = variable.values.astype(float), []
     if table:
         present, places = np.unique(variable.values, return_inverse=True)
@@ -104,7 +113,9 @@ def draw_quantity(axes: Axes, variable: xr.DataArray) -> None:
     if not np.isfinite(values).any():
         style.say_instead(axes, f"{_words(variable)}:\nno value anywhere")
         return
-    chosen = [f"{name} {at.item()}" for name, at in variable.coords.items() if not at.ndim]
+    chosen = [
+        f"{name} {at.item()}" for name, at in variable.coords.items() if not at.ndim
+    ]
     axes.set_title(", ".join(chosen), loc="left")
     axes.set_xlabel(label(x))
     by_name = x.dtype.kind in "OUT"
@@ -119,10 +130,14 @@ def draw_quantity(axes: Axes, variable: xr.DataArray) -> None:
     _draw_map(axes, variable, values, names)
 
 
-def _draw_map(axes: Axes, variable: xr.DataArray, values: np.ndarray, names: list[str]) -> None:
+def _draw_map(
+    axes: Axes, variable: xr.DataArray, values: np.ndarray, names: list[str]
+) -> None:
     x, y = (variable[dim] for dim in variable.dims)
     if names:
-        free = iter(style.PALETTE * len(names))  # for flags without a colour of their own
+        free = iter(
+            style.PALETTE * len(names)
+        )  # for flags without a colour of their own
         colours = [style.REGIME_COLOURS.get(name) or next(free) for name in names]
         scale = style.category_colours(colours)
     else:
@@ -132,10 +147,15 @@ def _draw_map(axes: Axes, variable: xr.DataArray, values: np.ndarray, names: lis
         mesh = style.draw_map(axes, variable, values, **scale)
     else:
         places = [
-            np.arange(each.size) if each.dtype.kind in "OUT" else each.values for each in (x, y)
+            np.arange(each.size) if each.dtype.kind in "OUT" else each.values
+            for each in (x, y)
         ]
-        mesh = axes.pcolormesh(*places, values.T, shading="nearest", rasterized=True, **scale)
-        for axis, each, place in zip((axes.xaxis, axes.yaxis), (x, y), places, strict=True):
+        mesh = axes.pcolormesh(
+            *places, values.T, shading="nearest", rasterized=True, **scale
+        )
+        for axis, each, place in zip(
+            (axes.xaxis, axes.yaxis), (x, y), places, strict=True
+        ):
             if each.dtype.kind in "OUT":
                 axis.set_ticks(place, list(map(str, each.values)))
         axes.set_ylabel(label(y))
@@ -147,11 +167,17 @@ def _draw_map(axes: Axes, variable: xr.DataArray, values: np.ndarray, names: lis
         return
     axes.set_title(fill(_words(variable), 32), loc="left")
     bar = figure.colorbar(mesh, ax=axes, ticks=range(len(names)), shrink=0.85)
-    bar.ax.set_yticklabels([style.flag_words(name).replace(" ", "\n", 1) for name in names])
+    bar.ax.set_yticklabels(
+        [style.flag_words(name).replace(" ", "\n", 1) for name in names]
+    )
 
 
 def _words(variable: xr.DataArray) -> str:
-    return str(variable.attrs.get("long_name", variable.name)).split(" (")[0].split("; ")[0]
+    return (
+        str(variable.attrs.get("long_name", variable.name))
+        .split(" (")[0]
+        .split("; ")[0]
+    )
 
 
 def label(variable: xr.DataArray) -> str:

@@ -48,9 +48,15 @@ def draw_force(axes: Axes, run: xr.Dataset) -> None:
     top = max(1.3, 1.1 * float(np.nanmax(force)))
     axes.plot(time, force, color=style.BLUE)
     axes.fill_between(
-        time, -0.05 * top, 0.0, where=run.regime.values == Regime.separated, color=style.RED,
-        linewidth=0, step="mid", label="separated",
-    )  # fmt: skip
+        time,
+        -0.05 * top,
+        0.0,
+        where=run.regime.values == Regime.separated,
+        color=style.RED,
+        linewidth=0,
+        step="mid",
+        label="separated",
+    )
     axes.axhline(0.0, color=style.GREY, linewidth=0.5)
     axes.set(xlim=(0.0, float(time[-1])), ylim=(-0.065 * top, top))
     axes.set(xlabel="t (s)", ylabel=FORCE)
@@ -63,7 +69,9 @@ def draw_displacements(axes: Axes, run: xr.Dataset) -> None:
     axes.plot(run.time, run.x, color=style.X_COLOUR, label="x")
     axes.plot(run.time, run.y, color=style.Y_COLOUR, linestyle="--", label="y")
     style.preload_line(axes, float(run.preload))
-    axes.set(xlabel="t (s)", ylabel="displacement (m)", xlim=(0, float(run.time_reached)))
+    axes.set(
+        xlabel="t (s)", ylabel="displacement (m)", xlim=(0, float(run.time_reached))
+    )
     axes.legend(loc="lower right", bbox_to_anchor=(1, 1), borderaxespad=0, ncols=2)
 
 
@@ -78,7 +86,9 @@ def draw_orbit(axes: Axes, run: xr.Dataset) -> None:
     lengths = (float(run.length1), float(run.length2))
     if max(lengths) < LARGEST_SPRINGS * np.hypot(*np.ptp(path, axis=1)):
         width = 0.05 * min(lengths)
-        springs = displaced_springs(x, y, float(run.alpha1), float(run.alpha2), lengths, width)
+        springs = displaced_springs(
+            x, y, float(run.alpha1), float(run.alpha2), lengths, width
+        )
         for spring, colour in zip(springs, SPRING_COLOURS, strict=True):
             axes.plot(*spring.T, color=colour, linewidth=0.9)
             axes.plot(*spring[-1], "s", color="black", markersize=3)
@@ -109,13 +119,17 @@ def draw_spectrum(axes: Axes, dataset: xr.Dataset) -> None:
         if not lasts(force):
             style.say_instead(axes, "no contact in\nthe second half")
             return
-        frequency, amplitude = amplitude_spectrum(force, float(steps[0]), padding=PADDING)
+        frequency, amplitude = amplitude_spectrum(
+            force, float(steps[0]), padding=PADDING
+        )
     loud = np.flatnonzero(amplitude > LOUD * amplitude.max(initial=0.0))
     if not loud.size:
         style.say_instead(axes, "the contact force does not oscillate")
         return
     axes.plot(frequency, amplitude, color=style.BLUE)
-    axes.plot(*highest_peaks(frequency, amplitude, 3), "v", color=style.RED, markersize=4)
+    axes.plot(
+        *highest_peaks(frequency, amplitude, 3), "v", color=style.RED, markersize=4
+    )
     axes.set(xlim=(0, 1.2 * frequency[loud[-1]]), ylim=(0, None))
     axes.set(xlabel="ω (rad/s)", ylabel=f"amplitude of {FORCE}")
 

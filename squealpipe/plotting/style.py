@@ -38,7 +38,10 @@ WHITE, LIGHT, BLACK = "#FFFFFF", "#BDBDBD", "#1A1A1A"
 HALO = [withStroke(linewidth=2, foreground="white")]
 """Around words and marks on a map."""
 HATCH = "//////"
-GREEK, SUBSCRIPTS = {"alpha": "α", "mu": "μ", "sigma": "σ"}, str.maketrans("0123s", "₀₁₂₃ₛ")
+GREEK, SUBSCRIPTS = (
+    {"alpha": "α", "mu": "μ", "sigma": "σ"},
+    str.maketrans("0123s", "₀₁₂₃ₛ"),
+)
 
 REGIME_COLOURS = {
     "slip_slower": BLUE,
@@ -133,10 +136,14 @@ def symbols(text: str) -> str:
     return as_people_write(text)
 
 
-def draw_map(axes: Axes, dataset: xr.Dataset | xr.DataArray, values: Any, **kwargs: Any) -> Any:
+def draw_map(
+    axes: Axes, dataset: xr.Dataset | xr.DataArray, values: Any, **kwargs: Any
+) -> Any:
     """``pcolormesh`` of values over the dataset's angles: α1 on x, α2 on y; rasterized in SVG."""
     x, y = dataset.alpha1.values, dataset.alpha2.values
-    mesh = axes.pcolormesh(x, y, np.asarray(values).T, shading="nearest", rasterized=True, **kwargs)
+    mesh = axes.pcolormesh(
+        x, y, np.asarray(values).T, shading="nearest", rasterized=True, **kwargs
+    )
     for axis in (axes.xaxis, axes.yaxis):
         angle_ticks(axis, float(x[-1]))
     axes.set(xlabel="α₁ (rad)", ylabel="α₂ (rad)", aspect="equal")
@@ -145,7 +152,9 @@ def draw_map(axes: Axes, dataset: xr.Dataset | xr.DataArray, values: Any, **kwar
     return mesh
 
 
-def draw_lines(axes: Axes, lines: Sequence[np.ndarray], curve: np.ndarray, **look: Any) -> None:
+def draw_lines(
+    axes: Axes, lines: Sequence[np.ndarray], curve: np.ndarray, **look: Any
+) -> None:
     """Lines, (x, y), with a gap wherever another curve begins."""
     ends = np.flatnonzero(np.diff(curve)) + 1
     axes.plot(*(np.insert(each, ends, np.nan) for each in lines), **look)
@@ -168,12 +177,19 @@ def patches(tones: Iterable[tuple[Any, str]], **look: Any) -> list[Patch]:
 def category_colours(colours: Sequence[Any]) -> dict[str, Any]:
     """``cmap`` and ``norm`` that paint the integers 0, 1, … with the given colours."""
     bounds = np.arange(len(colours) + 1) - 0.5
-    return {"cmap": ListedColormap(list(colours)), "norm": BoundaryNorm(bounds, len(colours))}
+    return {
+        "cmap": ListedColormap(list(colours)),
+        "norm": BoundaryNorm(bounds, len(colours)),
+    }
 
 
 def flag_words(name: str) -> str:
     """A flag's meaning as people write it."""
-    return name.replace("quasi_", "quasi-").replace("stick_slip", "stick–slip").replace("_", " ")
+    return (
+        name.replace("quasi_", "quasi-")
+        .replace("stick_slip", "stick–slip")
+        .replace("_", " ")
+    )
 
 
 def panel_letter(axes: Axes, letter: str, text: str = "") -> None:
@@ -183,7 +199,9 @@ def panel_letter(axes: Axes, letter: str, text: str = "") -> None:
 
 def say_instead(axes: Axes, text: str) -> None:
     """Write into a panel why it would be empty."""
-    axes.text(0.5, 0.5, text, transform=axes.transAxes, ha="center", va="center", wrap=True)
+    axes.text(
+        0.5, 0.5, text, transform=axes.transAxes, ha="center", va="center", wrap=True
+    )
     axes.set(xticks=[], yticks=[])
 
 
@@ -191,9 +209,15 @@ def preload_line(axes: Axes, preload: float) -> None:
     """A dotted line at l_pre, above which contact is lost, named at its right end."""
     axes.axhline(preload, color=GREY, linewidth=0.8, linestyle=":")
     axes.annotate(
-        r"$l_\mathrm{pre}$", (1, preload), xycoords=("axes fraction", "data"),
-        xytext=(2, 0), textcoords="offset points", va="center", color=GREY, fontsize=7,
-    )  # fmt: skip
+        r"$l_\mathrm{pre}$",
+        (1, preload),
+        xycoords=("axes fraction", "data"),
+        xytext=(2, 0),
+        textcoords="offset points",
+        va="center",
+        color=GREY,
+        fontsize=7,
+    )
 
 
 def shorten_small_ticks(figure: Figure) -> None:
@@ -219,6 +243,8 @@ def save_figure(figure: Figure, paths: Sequence[str | os.PathLike[str]]) -> None
         engine.execute(figure)
         figure.set_layout_engine(None)
     for path in map(Path, paths):
-        metadata = {"Date": None} if path.suffix == ".svg" else {"Software": "squealpipe"}
+        metadata = (
+            {"Date": None} if path.suffix == ".svg" else {"Software": "squealpipe"}
+        )
         with whole_file(path) as temporary:
             figure.savefig(temporary, metadata=metadata)

@@ -57,5 +57,7 @@ def draw_path(axes: Axes, cycle: xr.Dataset) -> None:
 
 
 def _states(dataset: xr.Dataset) -> list[str]:
-    rates = (name for name in json.loads(dataset.attrs["system"]) if name.endswith("/dt"))
+    rates = (
+        name for name in json.loads(dataset.attrs["system"]) if name.endswith("/dt")
+    )
     return [name.removeprefix("d").removesuffix("/dt") for name in rates]

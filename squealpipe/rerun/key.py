@@ -43,17 +43,23 @@ def canonical(config: Any) -> str:
 
 def digest(text: str | bytes) -> str:
     """Sixteen hexadecimal digits of SHA-256."""
-    return hashlib.sha256(text.encode() if isinstance(text, str) else text).hexdigest()[:16]
+    return hashlib.sha256(text.encode() if isinstance(text, str) else text).hexdigest()[
+        :16
+    ]
 
 
 def sources(*scripts: Path) -> list[Path]:
     """Scripts and modules whose code decides their results, with all that they import."""
-    found = dict.fromkeys([*scripts, *(path for each in scripts for path in closure(each))])
+    found = dict.fromkeys(
+        [*scripts, *(path for each in scripts for path in closure(each))]
+    )
     return [path for path in found if path.name not in WATCHERS]
 
 
 def rule_key(
-    part: Mapping[str, Any], code: Iterable[Path], inputs: Mapping[str, str] | None = None
+    part: Mapping[str, Any],
+    code: Iterable[Path],
+    inputs: Mapping[str, str] | None = None,
 ) -> str:
     """Digest of all that decides the results of a rule.
 
@@ -71,23 +77,31 @@ def rule_key(
     files = {name: digest(Path(name).read_bytes()) for name in _files_named_in(part)}
     # keys of a sweep in the order given, which is that of its dimensions
     return digest(
-        json.dumps(part, allow_nan=False) + canonical([modules, dict(inputs or {}), files])
+        json.dumps(part, allow_nan=False)
+        + canonical([modules, dict(inputs or {}), files])
     )
 
 
 def file_key(key: str, path: str | os.PathLike[str]) -> str:
     """The key that a file of a run states: that of its rule, and which of its results it is."""
     parts = Path(path).parts
-    place = max((i for i, part in enumerate(parts[:-1]) if part in PARTS), default=len(parts) - 1)
+    place = max(
+        (i for i, part in enumerate(parts[:-1]) if part in PARTS),
+        default=len(parts) - 1,
+    )
     return f"{key} {'/'.join(parts[place:])}"
 
 
 def refuse_edited(output: str | os.PathLike[str]) -> None:
     """Raise if a module that this process has loaded is younger than the workflow's reading."""
     started = float(os.environ.get(STARTED, "inf"))
-    files = {str(getattr(module, "__file__", "")) for module in list(sys.modules.values())}
+    files = {
+        str(getattr(module, "__file__", "")) for module in list(sys.modules.values())
+    }
     own = sorted(Path(file) for file in files if file.startswith(str(PACKAGE)))
-    edited = [path.name for path in own if not path.exists() or path.stat().st_mtime > started]
+    edited = [
+        path.name for path in own if not path.exists() or path.stat().st_mtime > started
+    ]
     if edited:
         raise RuntimeError(
             f"{output} is not written: {', '.join(edited)} changed while it was computed; "
@@ -104,14 +118,22 @@ def state_key(path: str | Path, key: str) -> None:
     if target.suffix == ".json":
         content = content.rstrip().removesuffix(b"}").rstrip()
     content += before + MARK
-    target.write_bytes(content + f"{file_key(key, path)} {digest(content)}".encode() + after)
+    target.write_bytes(
+        content + f"{file_key(key, path)} {digest(content)}".encode() + after
+    )
 
 
 def key_behind(path: str | Path) -> str | None:
     """The key that a file ends with; None if it states none, or was changed since."""
     content, mark, line = Path(path).read_bytes().rpartition(MARK)
-    found = re.fullmatch(rb'([0-9a-f]{16} [\w./-]+) ([0-9a-f]{16})(\n| -->\n|"\n}\n)', line)
-    return found[1].decode() if found and found[2].decode() == digest(content + mark) else None
+    found = re.fullmatch(
+        rb'([0-9a-f]{16} [\w./-]+) ([0-9a-f]{16})(\n| -->\n|"\n}\n)', line
+    )
+    return (
+        found[1].decode()
+        if found and found[2].decode() == digest(content + mark)
+        else None
+    )
 
 
 def _files_named_in(value: Any) -> Iterator[str]:

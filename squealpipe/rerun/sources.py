@@ -54,7 +54,9 @@ def read_source(path: Path) -> Source:
             names.add(node.module)
             names.update(f"{node.module}.{alias.name}" for alias in node.names)
     for node in nodes if path.parent != STATEMENTS else []:
-        if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef):
+        if isinstance(
+            node, ast.Module | ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef
+        ):
             first = node.body[0] if node.body else None
             if isinstance(first, ast.Expr) and isinstance(first.value, ast.Constant):
                 node.body.pop(0)

@@ -120,9 +120,12 @@ def flag_table(flags: Any) -> dict[int, str]:
 
 def in_words(table: Mapping[int, str]) -> str:
     """Flags for people: ``0: converged; 9: divergence (ω² < 0: there is no oscillation …)``."""
-    remedies = {item.name: item.remedy for item in Outcome if item is not Outcome.converged}
+    remedies = {
+        item.name: item.remedy for item in Outcome if item is not Outcome.converged
+    }
     return "; ".join(
-        f"{value}: {name.replace('_', ' ')}" + (f" ({remedies[name]})" if name in remedies else "")
+        f"{value}: {name.replace('_', ' ')}"
+        + (f" ({remedies[name]})" if name in remedies else "")
         for value, name in table.items()
     )
 
@@ -130,7 +133,9 @@ def in_words(table: Mapping[int, str]) -> str:
 def meanings(variable: xr.DataArray) -> dict[int, str]:
     """Value → meaning of a flag variable, from its attributes; empty for other variables."""
     names = str(variable.attrs.get("flag_meanings", "")).split()
-    values = np.atleast_1d(variable.attrs.get("flag_values", []))  # netCDF makes one a number
+    values = np.atleast_1d(
+        variable.attrs.get("flag_values", [])
+    )  # netCDF makes one a number
     return dict(zip(map(int, values), names, strict=True))
 
 
@@ -146,7 +151,9 @@ def labels(array: xr.DataArray) -> xr.DataArray:
     """
     table = meanings(array)
     if not table:
-        raise ValueError(f"array = {array.name!r}: a variable with flag_meanings is needed")
+        raise ValueError(
+            f"array = {array.name!r}: a variable with flag_meanings is needed"
+        )
     words = {value: name.replace("_", " ") for value, name in table.items()}
     named = np.vectorize(words.get, otypes=[object])(array.values).astype(str)
     return xr.DataArray(named, array.coords, array.dims, array.name)
@@ -210,7 +217,9 @@ ORBIT_ENDS = (
 def outcome(*dims: str, among: Iterable[Outcome] = Outcome) -> Variable:
     """The outcome variable over some dimensions, with the outcomes that it can have."""
     flags = {int(item): item.name for item in sorted(among)}
-    return Variable(dims=dims, flags=flags, long_name="why the values are what they are")
+    return Variable(
+        dims=dims, flags=flags, long_name="why the values are what they are"
+    )
 
 
 def or_nan(
@@ -249,10 +258,14 @@ def build(
         for name, values in given.items():
             entry = table[name]
             try:
-                array = np.array(values, None if entry.stored.kind in "US" else entry.stored)
+                array = np.array(
+                    values, None if entry.stored.kind in "US" else entry.stored
+                )
                 # ``fastpath`` leaves out the search for dates in arrays of numbers
                 plain = array.ndim == len(entry.dims) and array.dtype.kind in "fiub"
-                variables[name] = xr.Variable(entry.dims, array, entry.attributes(), fastpath=plain)
+                variables[name] = xr.Variable(
+                    entry.dims, array, entry.attributes(), fastpath=plain
+                )
             except (TypeError, ValueError, OverflowError) as error:
                 raise SchemaError(f"{schema.name}: {name}: {error}") from error
             arrays[name] = array
@@ -290,7 +303,8 @@ def validate(dataset: xr.Dataset, schema: DatasetSchema) -> None:
     faults = [
         f"{name} has dims {variable.dims}, {entry.dims} expected"
         for name, variable in dataset.variables.items()
-        if (entry := schema.lookup(str(name))) is not None and variable.dims != entry.dims
+        if (entry := schema.lookup(str(name))) is not None
+        and variable.dims != entry.dims
     ]
     _refuse_faults(schema, dataset.attrs, {**dataset.variables}, faults)
 
@@ -304,25 +318,35 @@ def _refuse_faults(
     """Raise for these faults and those of attributes and values, which are read where needed."""
     faults = list(faults)
     if attrs.get("schema") != schema.name:
-        faults.append(f"schema is {attrs.get('schema')!r}, {schema.name!r} was expected")
+        faults.append(
+            f"schema is {attrs.get('schema')!r}, {schema.name!r} was expected"
+        )
     version = attrs.get("schema_version")
     if version != schema.version:
-        faults.append(f"schema version is {version!r}, this package writes {schema.version}")
+        faults.append(
+            f"schema version is {version!r}, this package writes {schema.version}"
+        )
     for name, entry in (*schema.variables.items(), *schema.coordinates.items()):
         if name in arrays:
             faults += _faults_of_values(name, arrays[name], entry)
         elif not entry.optional:
             faults.append(f"{name} is missing")
-    unknown = sorted(arrays.keys() - schema.variables.keys() - schema.coordinates.keys())
+    unknown = sorted(
+        arrays.keys() - schema.variables.keys() - schema.coordinates.keys()
+    )
     faults.extend(f"{name} is not part of the schema" for name in unknown)
     if faults:
         raise SchemaError(f"{schema.name}: " + "; ".join(faults))
 
 
-def _faults_of_values(name: str, given: np.ndarray | xr.Variable, entry: Variable) -> list[str]:
+def _faults_of_values(
+    name: str, given: np.ndarray | xr.Variable, entry: Variable
+) -> list[str]:
     kind, stored = given.dtype.kind, entry.stored
     if stored.kind in "US":
-        return [] if kind in "USO" else [f"{name} has dtype {given.dtype}, text expected"]
+        return (
+            [] if kind in "USO" else [f"{name} has dtype {given.dtype}, text expected"]
+        )
     if kind != stored.kind:
         return [f"{name} has dtype {given.dtype}, {stored} expected"]
     if stored.kind == "f" and not entry.nan_allowed:
@@ -343,7 +367,9 @@ def find(name: str) -> DatasetSchema:
     schemas = all_schemas()
     if name in schemas:
         return schemas[name]
-    if (swept := importlib.import_module(f"{__name__}.sweep").derived(name)) is not None:
+    if (
+        swept := importlib.import_module(f"{__name__}.sweep").derived(name)
+    ) is not None:
         return swept  # type: ignore[no-any-return]
     raise SchemaError(f"no schema {name!r}; known: {', '.join(sorted(schemas))}")
 
@@ -356,9 +382,15 @@ def schema_of(dataset: xr.Dataset) -> DatasetSchema:
     return DatasetSchema(
         name=name,
         title=str(dataset.attrs.get("title")),
-        coordinates={str(key): _described(value) for key, value in dataset.coords.items()},
-        variables={str(key): _described(value) for key, value in dataset.data_vars.items()},
-        lists={"event": Listing(kinds=("event_kind",))} if "event_kind" in dataset else {},
+        coordinates={
+            str(key): _described(value) for key, value in dataset.coords.items()
+        },
+        variables={
+            str(key): _described(value) for key, value in dataset.data_vars.items()
+        },
+        lists={"event": Listing(kinds=("event_kind",))}
+        if "event_kind" in dataset
+        else {},
     )
 
 

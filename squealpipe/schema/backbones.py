@@ -34,11 +34,15 @@ def _orbit_variables(*dims: str) -> dict[str, Variable]:
         "x_at_peak": real("m", "x at the symmetric instant with the larger y"),
         "x_amplitude": real("m", "half of the peak-to-peak of x over a period"),
         "y_amplitude": real("m", "half of the peak-to-peak of y over a period"),
-        "largest_speed": real("m s-1", "largest speed of the mass along the belt, |x'|"),
+        "largest_speed": real(
+            "m s-1", "largest speed of the mass along the belt, |x'|"
+        ),
         "sliding_assumption": Variable(
             "whether x' stays below belt speed", dims=dims, flags=Assumption
         ),
-        "stability_index": real("1", "trace of the monodromy matrix minus 2", atol=1e-7),
+        "stability_index": real(
+            "1", "trace of the monodromy matrix minus 2", atol=1e-7
+        ),
         "outcome": outcome(*dims, among=ORBIT_ENDS),
     }
 
@@ -47,7 +51,9 @@ PERIODIC_ORBIT = DatasetSchema(
     name="periodic_orbit",
     title="An exact symmetric periodic motion of model A4",
     lists={"switch": Listing()},
-    coordinates={"switch": Variable("switch of contact, in order", dims=("switch",), dtype="i4")},
+    coordinates={
+        "switch": Variable("switch of contact, in order", dims=("switch",), dtype="i4")
+    },
     variables={
         **_orbit_variables(),
         "y_peak": Variable("y at the symmetric instant", "m"),
@@ -57,11 +63,18 @@ PERIODIC_ORBIT = DatasetSchema(
             "s",
             ("switch",),
         ),
-        "time": Variable("instant of a sample of the half period after the peak", "s", ("sample",)),
-        "x_path": Variable("displacement along the belt from the peak on", "m", ("sample",)),
-        "y_path": Variable("displacement away from the belt from the peak on", "m", ("sample",)),
+        "time": Variable(
+            "instant of a sample of the half period after the peak", "s", ("sample",)
+        ),
+        "x_path": Variable(
+            "displacement along the belt from the peak on", "m", ("sample",)
+        ),
+        "y_path": Variable(
+            "displacement away from the belt from the peak on", "m", ("sample",)
+        ),
         "residual": or_nan(
-            "largest velocity after half a period, over l_pre and the frequency unit", atol=1e-13
+            "largest velocity after half a period, over l_pre and the frequency unit",
+            atol=1e-13,
         ),
     },
 )
@@ -84,13 +97,21 @@ BACKBONE = DatasetSchema(
     },
     variables={
         **_orbit_variables("point"),
-        "y_peak": Variable("y at the symmetric instant with the larger y", "m", ("point",)),
-        "switches": Variable("switches of contact in half a period", dims=("point",), dtype="i4"),
+        "y_peak": Variable(
+            "y at the symmetric instant with the larger y", "m", ("point",)
+        ),
+        "switches": Variable(
+            "switches of contact in half a period", dims=("point",), dtype="i4"
+        ),
         "residual": or_nan(
             "residual of the method's equations, scaled", "1", ("point",), atol=1e-9
         ),
-        "x_cosine": Variable("cosine coefficients of x", "m", ("point", "harmonic"), optional=True),
-        "y_cosine": Variable("cosine coefficients of y", "m", ("point", "harmonic"), optional=True),
+        "x_cosine": Variable(
+            "cosine coefficients of x", "m", ("point", "harmonic"), optional=True
+        ),
+        "y_cosine": Variable(
+            "cosine coefficients of y", "m", ("point", "harmonic"), optional=True
+        ),
         "omega_exact": or_nan(
             "angular frequency of the exact orbit of equal y_peak",
             "rad s-1",
@@ -112,9 +133,15 @@ BACKBONE = DatasetSchema(
             optional=True,
             rtol=1e-4,
         ),
-        "special_kind": Variable("kind of special point", dims=("special",), flags=SpecialPoint),
-        "special_y_peak": Variable("y_peak at which it lies", "m", ("special",), rtol=1e-8),
-        "special_omega": Variable("angular frequency there", "rad s-1", ("special",), rtol=1e-8),
+        "special_kind": Variable(
+            "kind of special point", dims=("special",), flags=SpecialPoint
+        ),
+        "special_y_peak": Variable(
+            "y_peak at which it lies", "m", ("special",), rtol=1e-8
+        ),
+        "special_omega": Variable(
+            "angular frequency there", "rad s-1", ("special",), rtol=1e-8
+        ),
         "end": Variable("why the branch ends", flags=outcome(among=ORBIT_ENDS).flags),
     },
 )
@@ -124,12 +151,19 @@ DOUBLED_BRANCH = DatasetSchema(
     title="Periodic motions of model A4 of doubled period, from a period doubling on",
     coordinates={name: BACKBONE.coordinates[name] for name in ("point", "special")},
     variables={
-        **{name: entry for name, entry in BACKBONE.variables.items() if not entry.optional},
+        **{
+            name: entry
+            for name, entry in BACKBONE.variables.items()
+            if not entry.optional
+        },
         "end": Variable(
-            "why the branch ends", flags=outcome(among=(*ORBIT_ENDS, Outcome.no_doubling)).flags
+            "why the branch ends",
+            flags=outcome(among=(*ORBIT_ENDS, Outcome.no_doubling)).flags,
         ),
         "y_largest": Variable("largest y over a period", "m", ("point",)),
-        "first_integral": Variable("first integral H of model A4", "N J m-1", ("point",)),
+        "first_integral": Variable(
+            "first integral H of model A4", "N J m-1", ("point",)
+        ),
         "doubling_omega": or_nan(
             "angular frequency of the simple orbit at the doubling", "rad s-1"
         ),
@@ -160,16 +194,22 @@ HARMONIC_FORMS = DatasetSchema(
     },
     variables={
         "omega": _error("scene", "form", long_name="angular frequency that was found"),
-        "omega_exact": Variable("angular frequency of the exact orbit", "rad s-1", ("scene",)),
+        "omega_exact": Variable(
+            "angular frequency of the exact orbit", "rad s-1", ("scene",)
+        ),
         "rank_deficit": Variable(
             "columns minus rank of the Jacobian", dims=("scene", "form"), dtype="i4"
         ),
-        "outcome": outcome("scene", "form", among=(Outcome.converged, Outcome.no_convergence)),
+        "outcome": outcome(
+            "scene", "form", among=(Outcome.converged, Outcome.no_convergence)
+        ),
         "n_harmonics": Variable("harmonics N_h", dtype="i4"),
         "fourier_columns": Variable("columns of Gamma, 2 N_h + 1", dtype="i4"),
         "fourier_rank": Variable("rank of Gamma", dims=("samples",), dtype="i4"),
         "phase_spread_y": _error(
-            "samples", units="m", long_name="spread of the largest y over the phase of the start"
+            "samples",
+            units="m",
+            long_name="spread of the largest y over the phase of the start",
         ),
         "phase_spread_omega": _error(
             "samples", long_name="spread of omega over the phase of the start"
@@ -191,7 +231,9 @@ A1_BESIDE_A4 = DatasetSchema(
         "omega": Variable("angular frequency of A4", "rad s-1", ("scene",)),
         "y_a4": Variable("y of A4", "m", ("scene", "period")),
         "y_a1": or_nan("y of A1", "m", ("scene", "length_ratio", "period"), rtol=1e-6),
-        "spectrum_a4": Variable("amplitude spectrum of y, A4", "m", ("scene", "order"), rtol=1e-6),
+        "spectrum_a4": Variable(
+            "amplitude spectrum of y, A4", "m", ("scene", "order"), rtol=1e-6
+        ),
         "spectrum_a1": or_nan(
             "amplitude spectrum of y, A1",
             "m",

@@ -4,12 +4,20 @@ from dataclasses import replace
 from enum import IntEnum
 
 from squealpipe.codes import LinearRegime
-from squealpipe.schema import RUN_ENDS, DatasetSchema, Outcome, Variable, or_nan, outcome
+from squealpipe.schema import (
+    RUN_ENDS,
+    DatasetSchema,
+    Outcome,
+    Variable,
+    or_nan,
+    outcome,
+)
 from squealpipe.schema.dynamics.runs import IN_MAP, STATE, MotionFlag
 from squealpipe.schema.linear import ONE_PAIR
 
 STARTS = {
-    f"{name}0": Variable(f"{words} at the start", units) for name, (units, words) in STATE.items()
+    f"{name}0": Variable(f"{words} at the start", units)
+    for name, (units, words) in STATE.items()
 }
 
 
@@ -31,11 +39,19 @@ def basin_schema(swept: tuple[str, ...]) -> DatasetSchema:
                 **IN_MAP,
             ),
             "late_max_x": real("m", "largest |x| from t_late on"),
-            "late_max_vx": real("m s-1", "largest velocity along the belt, |x'|, from t_late on"),
-            "separates": Variable("whether contact is lost before t_end", dims=swept, dtype="bool"),
-            "first_separation_time": real("s", "first loss of contact (NaN: none before t_end)"),
+            "late_max_vx": real(
+                "m s-1", "largest velocity along the belt, |x'|, from t_late on"
+            ),
+            "separates": Variable(
+                "whether contact is lost before t_end", dims=swept, dtype="bool"
+            ),
+            "first_separation_time": real(
+                "s", "first loss of contact (NaN: none before t_end)"
+            ),
             "peak_contact_force": real("1", "largest contact force over k3 l_pre"),
-            "lyapunov_exponent": real("s-1", "rate of growth of a perturbation over the run"),
+            "lyapunov_exponent": real(
+                "s-1", "rate of growth of a perturbation over the run"
+            ),
             "predictability_horizon": or_nan(
                 "time at which an error of the tolerance has grown to l_pre/1000, or the end",
                 "s",
@@ -72,7 +88,9 @@ SMALLEST_DISTURBANCE = DatasetSchema(
     name="smallest_disturbance",
     title="Smallest disturbance of steady sliding that leads to contact loss, or to the whirl",
     coordinates={
-        "directions": Variable("number of random directions", dims=("directions",), dtype="i4"),
+        "directions": Variable(
+            "number of random directions", dims=("directions",), dtype="i4"
+        ),
         "improved": Variable(
             "rank of the direction that was improved", dims=("improved",), dtype="i4"
         ),
@@ -84,7 +102,9 @@ SMALLEST_DISTURBANCE = DatasetSchema(
         "growth_rate": or_nan("largest real part of small motions about it", "s-1"),
         "regime_linear": Variable("stability regime of model A3", flags=LinearRegime),
         "rest_distance": or_nan("norm of the start at rest at r = 0"),
-        "linear_distance": or_nan("smallest norm with which the linear motion loses contact"),
+        "linear_distance": or_nan(
+            "smallest norm with which the linear motion loses contact"
+        ),
         "distance": or_nan("smallest norm found, an upper bound", rtol=1e-6),
         **{
             f"{name}_disturbance": or_nan(f"its {words}", units, rtol=1e-4)
@@ -95,15 +115,21 @@ SMALLEST_DISTURBANCE = DatasetSchema(
                 ("vy", "m s-1", "velocity away from the belt"),
             )
         },
-        "distance_by_number": _distance("directions", "smallest norm along the first directions"),
-        "improved_distance": _distance("improved", "norm after the local search from a direction"),
+        "distance_by_number": _distance(
+            "directions", "smallest norm along the first directions"
+        ),
+        "improved_distance": _distance(
+            "improved", "norm after the local search from a direction"
+        ),
         "share_below": or_nan(
             "most of all directions that can have a smaller norm than those tried, 95 %"
         ),
         "reached": Variable(
             "number of directions along which it happens within the bound", dtype="i4"
         ),
-        "unfinished": Variable("number of runs that did not reach their end", dtype="i4"),
+        "unfinished": Variable(
+            "number of runs that did not reach their end", dtype="i4"
+        ),
         "outcome": outcome(
             among=(
                 Outcome.converged,

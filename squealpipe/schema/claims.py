@@ -52,8 +52,12 @@ CLAIMS = DatasetSchema(
         "statement": text("the statement in our words", "claim"),
         "section": text("where the paper says it", "claim"),
         "check": text("what is measured", "claim"),
-        "verdict": _flag("what the data say, over the inferred feasible set as well", Verdict),
-        "verdict_here": _flag("what the data say at the parameters of the run", Verdict),
+        "verdict": _flag(
+            "what the data say, over the inferred feasible set as well", Verdict
+        ),
+        "verdict_here": _flag(
+            "what the data say at the parameters of the run", Verdict
+        ),
         "recorded": _flag("verdict_here recorded for the shipped baseline", Verdict),
         "corrected_verdict": _flag(
             "verdict in the corrected physics, friction of one sign throughout; that of the "
@@ -61,9 +65,13 @@ CLAIMS = DatasetSchema(
             Verdict,
         ),
         "corrected_value": _number("measured value in the corrected physics"),
-        "corrected_evidence": text("one line of evidence there", "claim", volatile=True),
+        "corrected_evidence": text(
+            "one line of evidence there", "claim", volatile=True
+        ),
         "value": _number("measured value; NaN where nothing was measured"),
-        "relation": text("relation of value and threshold under which the check passes", "claim"),
+        "relation": text(
+            "relation of value and threshold under which the check passes", "claim"
+        ),
         "threshold": _number("threshold of the check; NaN as in value"),
         "feasible_share": _number(
             "share of the inferred feasible parameters in which the statement holds; NaN where it "
@@ -74,8 +82,12 @@ CLAIMS = DatasetSchema(
             dims=("claim",),
             dtype="i4",
         ),
-        "basis": _flag("whether the statement was fitted by the inference or is predicted", Basis),
-        "origin": _flag("the paper's own statement, or one of our list of its misprints", Origin),
+        "basis": _flag(
+            "whether the statement was fitted by the inference or is predicted", Basis
+        ),
+        "origin": _flag(
+            "the paper's own statement, or one of our list of its misprints", Origin
+        ),
         "evidence": text("one line of evidence", "claim", volatile=True),
         "dataset": text("datasets read, with their ids", "claim", volatile=True),
         "figure": text("picture that shows it", "claim"),

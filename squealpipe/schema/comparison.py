@@ -60,7 +60,9 @@ FAILURE_ATLAS = DatasetSchema(
         "solver": text("method (the name xarray keeps for itself)", "solver"),
     },
     variables={
-        "verdict": Variable("verdict on the answer", dims=SCENE_SOLVER, flags=Reliability),
+        "verdict": Variable(
+            "verdict on the answer", dims=SCENE_SOLVER, flags=Reliability
+        ),
         "error": Variable(
             "largest error of the answer; infinite where there is none",
             dims=SCENE_SOLVER,
@@ -80,9 +82,13 @@ FAILURE_ATLAS = DatasetSchema(
 
 _CELL = ("problem", "solver", "tol")
 _NEAR = RoundOff(
-    ComparedAs.most, "answers near a limit of the verdict are decided by round-off", share=0.03
+    ComparedAs.most,
+    "answers near a limit of the verdict are decided by round-off",
+    share=0.03,
 )
-_STEPS = RoundOff(ComparedAs.magnitude, "errors of adaptive steps follow round-off", floor=1e-9)
+_STEPS = RoundOff(
+    ComparedAs.magnitude, "errors of adaptive steps follow round-off", floor=1e-9
+)
 _COUNT = "; -1 where no events are reported or judged"
 
 BENCHMARK = DatasetSchema(

@@ -31,11 +31,16 @@ RATIOS = {"kappa": "k3/k1", "lambda_": "L1/l_pre, both lengths in their proporti
 VARIED = {
     "alpha1": Variable("angle of spring 1", "rad", ("point",), optional=True),
     "alpha2": Variable("angle of spring 2", "rad", ("point",), optional=True),
-    **{name: Variable(what, "1", ("point",), optional=True) for name, what in RATIOS.items()},
+    **{
+        name: Variable(what, "1", ("point",), optional=True)
+        for name, what in RATIOS.items()
+    },
     **{
         name: Variable(row.meaning, row.units, ("point",), optional=True)
         for name, row in TABLE.items()
-        if row.enters_a1 and row.allowed != "law" and name not in {"mass", "k1", "preload"}
+        if row.enters_a1
+        and row.allowed != "law"
+        and name not in {"mass", "k1", "preload"}
     },
 }
 """The two that vary are there."""
@@ -101,7 +106,9 @@ BOUNDARY_DISTANCE = DatasetSchema(
     variables={
         "design": Variable("value of the design", dims=("parameter",)),
         "kept": Variable("whether contact is kept there", dtype="bool"),
-        "distance": Variable("distance of the nearest point, in the units of both parameters"),
+        "distance": Variable(
+            "distance of the nearest point, in the units of both parameters"
+        ),
         "nearest": Variable("nearest point of the boundary", dims=("parameter",)),
         "outcome": outcome(among=(Outcome.converged, Outcome.not_computed)),
     },

@@ -40,7 +40,9 @@ def _cycle_variables(*dims: str) -> dict[str, Variable]:
         "y_max": real("m", "largest y over the period"),
         "contact_fraction": real("1", "share of the period in contact"),
         "stick_fraction": real("1", "share of the period in stick"),
-        "least_contact_force": real("N", "smallest contact force; 0 where contact is lost"),
+        "least_contact_force": real(
+            "N", "smallest contact force; 0 where contact is lost"
+        ),
         "stable": Variable(
             "whether small disturbances decay; no for a member of a family",
             dims=dims,
@@ -58,7 +60,9 @@ _PHASE = RoundOff(
     "where on a cycle its description starts follows from the way on which it was found",
 )
 
-MULTIPLIER = Variable(dims=("multiplier",), dtype="i4", long_name="number of the multiplier")
+MULTIPLIER = Variable(
+    dims=("multiplier",), dtype="i4", long_name="number of the multiplier"
+)
 
 LIMIT_CYCLE = DatasetSchema(
     name="limit_cycle",
@@ -66,7 +70,9 @@ LIMIT_CYCLE = DatasetSchema(
     coordinates={"multiplier": MULTIPLIER},
     variables={
         **_cycle_variables(),
-        "event_time": Variable(dims=("event",), units="s", long_name="instant of an event"),
+        "event_time": Variable(
+            dims=("event",), units="s", long_name="instant of an event"
+        ),
         "event_kind": Variable("kind of the event", dims=("event",), flags=Event),
         **{
             f"event_{name}": Variable(f"{words} at the event", units, ("event",))
@@ -81,7 +87,9 @@ LIMIT_CYCLE = DatasetSchema(
             f"{name}_path": Variable(f"{words} along the cycle", units, ("sample",))
             for name, (units, words) in STATE.items()
         },
-        "regime_path": Variable("regime along the cycle", dims=("sample",), flags=REGIMES),
+        "regime_path": Variable(
+            "regime along the cycle", dims=("sample",), flags=REGIMES
+        ),
         **ONE_PAIR,
     },
 )
@@ -91,7 +99,9 @@ def _followed() -> dict[str, Variable]:
     """Every quantity that a branch may be followed in, over the points."""
     table = {name: Parameters.units(name) for name in Parameters.__dataclass_fields__}
     return {
-        name: Variable(f"{name} along the branch", units, ("point",), optional=True, rtol=1e-7)
+        name: Variable(
+            f"{name} along the branch", units, ("point",), optional=True, rtol=1e-7
+        )
         for name, units in {**table, "alpha1": "rad", "alpha2": "rad"}.items()
     }
 
@@ -99,20 +109,30 @@ def _followed() -> dict[str, Variable]:
 CYCLE_BRANCH = DatasetSchema(
     name="cycle_branch",
     title="A branch of periodic motions of model A1 in one parameter",
-    lists={"point": Listing(kinds=("label",), position="x_max", fillers=(int(Label.regular),))},
+    lists={
+        "point": Listing(
+            kinds=("label",), position="x_max", fillers=(int(Label.regular),)
+        )
+    },
     coordinates={
         "multiplier": MULTIPLIER,
-        "point": Variable(dims=("point",), dtype="i4", long_name="point along the branch"),
+        "point": Variable(
+            dims=("point",), dtype="i4", long_name="point along the branch"
+        ),
     },
     variables={
         **_cycle_variables("point"),
-        "label": Variable("what is special about the point", dims=("point",), flags=Label),
+        "label": Variable(
+            "what is special about the point", dims=("point",), flags=Label
+        ),
         "events": Variable(
             "events per period",
             dims=("point",),
             dtype="i4",
             round_off=RoundOff(
-                ComparedAs.most, "where a contact is just touched, round-off decides", share=0.5
+                ComparedAs.most,
+                "where a contact is just touched, round-off decides",
+                share=0.5,
             ),
         ),
         **{
@@ -162,7 +182,10 @@ SETTLED_EXTREMES = DatasetSchema(
     },
     variables={
         "late_max_x": or_nan(
-            "largest |x| in the last fifth of the run", "m", ("scene", "mu", "start"), rtol=1e-5
+            "largest |x| in the last fifth of the run",
+            "m",
+            ("scene", "mu", "start"),
+            rtol=1e-5,
         ),
         "outcome": outcome("scene", "mu", "start"),
         "t_end": Variable(units="s", long_name="length of the runs"),

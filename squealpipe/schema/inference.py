@@ -102,7 +102,9 @@ PARAMETER_INFERENCE = DatasetSchema(
         "sample": Variable("number of the sample", dims=SAMPLE, dtype="i4"),
         "reading": text("reading of the sign of friction", *READING),
         "statement": text("id of the statement", *STATEMENT),
-        "consequence": text("id of a statement that was not a constraint", "consequence"),
+        "consequence": text(
+            "id of a statement that was not a constraint", "consequence"
+        ),
     },
     variables={
         "kappa": Variable("contact stiffness k3/k", dims=SAMPLE),
@@ -118,7 +120,9 @@ PARAMETER_INFERENCE = DatasetSchema(
         "outcome": outcome(
             *JUDGED, among=(Outcome.converged, Outcome.unresolved, Outcome.infeasible)
         ),
-        "feasible_count": Variable("number of feasible samples", dims=READING, dtype="i4"),
+        "feasible_count": Variable(
+            "number of feasible samples", dims=READING, dtype="i4"
+        ),
         "share": Variable("share of the samples that are feasible", dims=READING),
         "share_low": _limit("lower", "share", READING),
         "share_high": _limit("upper", "share", READING),
@@ -130,9 +134,14 @@ PARAMETER_INFERENCE = DatasetSchema(
         "baseline_mu": Variable("friction coefficient of the study"),
         "baseline_length_ratio": Variable("L1/l_pre of the study"),
         "baseline_speed_ratio": Variable("V/(l_pre √(k1/m)) of the study, signed"),
-        "baseline_reading": Variable("the study's reading", flags=dict(enumerate(READINGS))),
+        "baseline_reading": Variable(
+            "the study's reading", flags=dict(enumerate(READINGS))
+        ),
         "baseline_margin": Variable(
-            "margin at the parameters of the study", dims=BY_READING, rtol=1e-6, atol=1e-6
+            "margin at the parameters of the study",
+            dims=BY_READING,
+            rtol=1e-6,
+            atol=1e-6,
         ),
         "feasible_share": or_nan(
             "share of the feasible samples in which the consequence holds; NaN where "

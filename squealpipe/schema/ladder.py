@@ -87,16 +87,24 @@ MODEL_LADDER = DatasetSchema(
             dims=_CELL,
             flags=Level,
         ),
-        "chosen": Variable("level that choose_model takes for contact lost", dims=MAP, flags=Level),
-        "chosen_wrong": Variable("whether its answer is not A1's", dims=MAP, dtype="bool"),
+        "chosen": Variable(
+            "level that choose_model takes for contact lost", dims=MAP, flags=Level
+        ),
+        "chosen_wrong": Variable(
+            "whether its answer is not A1's", dims=MAP, dtype="bool"
+        ),
         "always_cpu_time": Variable(
-            "CPU time of A1 over the whole map, up to the first loss of contact", "s", volatile=True
+            "CPU time of A1 over the whole map, up to the first loss of contact",
+            "s",
+            volatile=True,
         ),
         "chosen_cpu_time": Variable(
             "CPU time of choose_model over the whole map", "s", volatile=True
         ),
         "belt_reached": Variable(
-            "whether the mass of A1 reaches belt speed in contact", dims=MAP, dtype="bool"
+            "whether the mass of A1 reaches belt speed in contact",
+            dims=MAP,
+            dtype="bool",
         ),
         "tolerance": Variable("error that is allowed"),
         "outcome": outcome(*MAP, among=(Outcome.converged,)),

@@ -5,7 +5,14 @@ from enum import IntEnum
 from typing import Any
 
 from squealpipe.codes import LinearRegime
-from squealpipe.schema import LINEAR_ENDS, DatasetSchema, Variable, or_nan, outcome, text
+from squealpipe.schema import (
+    LINEAR_ENDS,
+    DatasetSchema,
+    Variable,
+    or_nan,
+    outcome,
+    text,
+)
 from squealpipe.schema.agreement import Listing
 
 MAP = ("alpha1", "alpha2")
@@ -37,7 +44,9 @@ STABILITY_MAP = DatasetSchema(
     coordinates={**ANGLES, **MODES},
     variables={
         "growth_rate": or_nan("largest real part of the eigenvalues", "s-1", MAP),
-        "frequency": or_nan("imaginary part of the eigenvalues", "rad s-1", (*MAP, "mode")),
+        "frequency": or_nan(
+            "imaginary part of the eigenvalues", "rad s-1", (*MAP, "mode")
+        ),
         "regime_linear": REGIME_LINEAR,
         "outcome": outcome(*MAP, among=LINEAR_ENDS),
     },
@@ -56,7 +65,9 @@ CRITICAL_FRICTION_MAP = DatasetSchema(
         "critical_mu": _critical(""),
         "critical_mu_undamped": _critical(" without dashpots"),
         "critical_mu_vanishing": _critical(" as both dashpots vanish at their ratio"),
-        "destabilized": Variable("dashpots lower the critical friction", dims=MAP, dtype="bool"),
+        "destabilized": Variable(
+            "dashpots lower the critical friction", dims=MAP, dtype="bool"
+        ),
     },
 )
 
@@ -64,14 +75,18 @@ CRITICAL_DAMPING_MAP = DatasetSchema(
     name="critical_damping_map",
     title="Friction at which steady sliding loses its stability (model A3) over both dashpots",
     coordinates={
-        f"damping{i}": Variable(f"dashpot along spring {i}", "N s m-1", (f"damping{i}",))
+        f"damping{i}": Variable(
+            f"dashpot along spring {i}", "N s m-1", (f"damping{i}",)
+        )
         for i in (1, 2)
     },
     variables={
         "critical_mu": Variable("critical friction", dims=("damping1", "damping2")),
         "critical_mu_undamped": Variable("critical friction without dashpots"),
         "destabilized": Variable(
-            "dashpots lower the critical friction", dims=("damping1", "damping2"), dtype="bool"
+            "dashpots lower the critical friction",
+            dims=("damping1", "damping2"),
+            dtype="bool",
         ),
         **ONE_PAIR,
     },
@@ -87,13 +102,19 @@ QUASI_STATIC_MAP = DatasetSchema(
     title="Quasi-static sliding (model A2) and the linear static state over both spring angles",
     coordinates=ANGLES,
     variables={
-        "possible_as_printed": Variable("Eq. (11) as printed holds", dims=MAP, dtype="bool"),
-        "possible": Variable("reaction force of model A2 is positive", dims=MAP, dtype="bool"),
+        "possible_as_printed": Variable(
+            "Eq. (11) as printed holds", dims=MAP, dtype="bool"
+        ),
+        "possible": Variable(
+            "reaction force of model A2 is positive", dims=MAP, dtype="bool"
+        ),
         "reaction_force": or_nan("reaction force of model A2, y = 0", "N", MAP),
         "x_static": or_nan("x of the static state of Eq. (15)", "m", MAP),
         "y_static": or_nan("y of the static state of Eq. (15)", "m", MAP),
         "contact_force_static": or_nan(
-            "contact force of the static state of Eq. (15), negative where k3 pulls", "N", MAP
+            "contact force of the static state of Eq. (15), negative where k3 pulls",
+            "N",
+            MAP,
         ),
         "stiffness_x": _stiffness("K11"),
         "stiffness_xy": _stiffness("K12"),
@@ -105,9 +126,15 @@ QUASI_STATIC_MAP = DatasetSchema(
 NATURAL_FREQUENCIES = DatasetSchema(
     name="natural_frequencies",
     title="Natural frequencies of model A4, in contact and separated",
-    coordinates={**ANGLES, **MODES, "contact_state": text("state of the contact", "contact_state")},
+    coordinates={
+        **ANGLES,
+        **MODES,
+        "contact_state": text("state of the contact", "contact_state"),
+    },
     variables={
-        "omega": Variable("natural frequency", "rad s-1", (*MAP, "mode", "contact_state")),
+        "omega": Variable(
+            "natural frequency", "rad s-1", (*MAP, "mode", "contact_state")
+        ),
         "outcome": outcome(*MAP, "mode", "contact_state", among=LINEAR_ENDS),
     },
 )

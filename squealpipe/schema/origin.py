@@ -40,7 +40,9 @@ def recorded(
 
     def decorate(task: Callable[Given, xr.Dataset]) -> Callable[Given, xr.Dataset]:
         named = inspect.signature(task).parameters.values()
-        defaults = {each.name: each.default for each in named if each.kind != each.VAR_KEYWORD}
+        defaults = {
+            each.name: each.default for each in named if each.kind != each.VAR_KEYWORD
+        }
         _HOW[task.__name__] = model, method
 
         @functools.wraps(task)
@@ -48,7 +50,9 @@ def recorded(
             dataset = task(*args, **kwargs)
             given = defaults | dict(zip(defaults, args, strict=False)) | kwargs
             # Grids are coordinates of the dataset; of a part of a map they would be the part's.
-            kept = {key: value for key, value in given.items() if key not in dataset.coords}
+            kept = {
+                key: value for key, value in given.items() if key not in dataset.coords
+            }
             dataset.attrs.update(origin(task.__name__, kept))
             return dataset
 
@@ -75,7 +79,9 @@ def origin(name: str, arguments: Mapping[str, Any]) -> dict[str, Any]:
     stated["model"] = given.pop("model", model or stated.get("model", ""))
     stated["method"] = given.pop("method", method or stated.get("method", ""))
     stated["tolerance"] = given.pop("tol", stated.get("tolerance", "round-off"))
-    stated["arguments"] = json.dumps({key: plain(value) for key, value in given.items()})
+    stated["arguments"] = json.dumps(
+        {key: plain(value) for key, value in given.items()}
+    )
     return {**stated, **versions()}
 
 
@@ -87,7 +93,11 @@ def _as_json(parameters: Parameters) -> str:
 def plain(value: Any) -> Any:
     """A value as JSON takes it; of a long array only first, last and number of values."""
     if isinstance(value, xr.Dataset):
-        return {key: value.attrs[key] for key in ("curve", "parameters") if key in value.attrs}
+        return {
+            key: value.attrs[key]
+            for key in ("curve", "parameters")
+            if key in value.attrs
+        }
     if isinstance(value, Mapping):
         return {str(key): plain(item) for key, item in value.items()}
     if isinstance(value, list) and any(isinstance(item, xr.Dataset) for item in value):
@@ -97,7 +107,11 @@ def plain(value: Any) -> Any:
     array = np.asarray(value)
     if array.size > LONGEST:
         values = array.ravel()
-        return {"first": plain(values[0]), "last": plain(values[-1]), "number": array.size}
+        return {
+            "first": plain(values[0]),
+            "last": plain(values[-1]),
+            "number": array.size,
+        }
     if array.dtype.kind == "f":
         array = array.astype(float)  # JSON knows no longer ones
     return array.tolist() if array.dtype.kind in "biufU" else str(value)
@@ -108,4 +122,7 @@ def versions() -> Mapping[str, str]:
     """Attributes with the version of this package and of the libraries that decide results."""
     found = {name: importlib.metadata.version(name) for name in LIBRARIES}
     libraries = json.dumps(found, sort_keys=True, separators=(",", ":"))
-    return {"package_version": importlib.metadata.version("squealpipe"), "libraries": libraries}
+    return {
+        "package_version": importlib.metadata.version("squealpipe"),
+        "libraries": libraries,
+    }

@@ -12,16 +12,28 @@ class Outcome(IntEnum):
     converged = 0, "none needed"
     separated = 1, "none needed: contact was lost and the question is answered"
     not_computed = 2, "nothing was asked of it"
-    step_limit = 3, "too many steps: shorten t_end (cycles: t_settle; branches: y_peak_max)"
-    event_limit = 4, "events accumulate (Zeno-like chatter); shorten t_end (cycles: t_settle)"
-    singular_geometry = 5, "the mass met a pivot (d = 0), where the spring force is undefined"
+    step_limit = (
+        3,
+        "too many steps: shorten t_end (cycles: t_settle; branches: y_peak_max)",
+    )
+    event_limit = (
+        4,
+        "events accumulate (Zeno-like chatter); shorten t_end (cycles: t_settle)",
+    )
+    singular_geometry = (
+        5,
+        "the mass met a pivot (d = 0), where the spring force is undefined",
+    )
     not_finite = 6, "the state overflowed; check the parameters"
     singular_static_state = 7, "no static state: the stiffness matrix is singular there"
     complex_pair = 8, "flutter: the pair is complex, omega holds |Im s|"
     divergence = 9, "ω² < 0: there is no oscillation at this mode, omega is 0"
     rigid_mode = 10, "ω = 0: the springs leave one direction free"
     linear_mode = 11, "below contact loss: the orbit is the linear mode"
-    isolated_mode = 12, "the x mode is decoupled: y is constant and the branch is vertical"
+    isolated_mode = (
+        12,
+        "the x mode is decoupled: y is constant and the branch is vertical",
+    )
     no_convergence = 13, "Newton did not converge; try a smaller step or another start"
     order_changes = 14, "the order of the events changes, as `change` says"
     branch_lost = 15, "continuation could not go on; reduce its smallest step"
@@ -29,25 +41,49 @@ class Outcome(IntEnum):
     tongue_end = 17, "the branch closes on another one here"
     retraced = 18, "the branch turned back onto itself"
     grazing = 19, "contact is just touched: derivatives are one-sided"
-    beyond_horizon = 20, "chaotic beyond the predictability horizon: trust statistics only"
+    beyond_horizon = (
+        20,
+        "chaotic beyond the predictability horizon: trust statistics only",
+    )
     infeasible = 21, "the sample breaks a statement of the paper"
     unresolved = 22, "the check could not decide; refine the grid or the horizon"
     real_multipliers = 23, "a torus ends where its multipliers meet on the real axis"
     amplitude_reached = 24, "the asked amplitude was reached"
-    unconfirmed = 25, "no exact orbit is close to the series; more harmonics or method=exact"
-    other_branch = 26, "an exact orbit, not reached along the mode's branch; see backbone"
+    unconfirmed = (
+        25,
+        "no exact orbit is close to the series; more harmonics or method=exact",
+    )
+    other_branch = (
+        26,
+        "an exact orbit, not reached along the mode's branch; see backbone",
+    )
     equilibrium = 27, "at rest: no cycle from this start, or it has shrunk to a point"
     family_member = 28, "one of a family: without damping cycles are not isolated"
     no_doubling = 29, "no such period doubling on the branch; follow it further"
-    inherited = 30, "not run: the answer is a neighbour's; see `inherited_error_interval`"
+    inherited = (
+        30,
+        "not run: the answer is a neighbour's; see `inherited_error_interval`",
+    )
     not_reached = 31, "by no disturbance tried within the bound; raise bound or t_end"
     already_unstable = 32, "steady sliding is unstable: any disturbance grows"
-    no_sliding_state = 33, "no steady sliding in contact found from r = 0 (belt at rest or N* ≤ 0)"
+    no_sliding_state = (
+        33,
+        "no steady sliding in contact found from r = 0 (belt at rest or N* ≤ 0)",
+    )
     point_limit = 34, "the branch goes on: raise n_points"
-    returned = 35, "the branch came back to its first parameter value, on another motion"
+    returned = (
+        35,
+        "the branch came back to its first parameter value, on another motion",
+    )
     closed = 36, "the branch is a closed curve, followed once round"
-    tangency = 37, "a surface is just touched, or stick ends so: no motion like it follows"
-    accumulation = 38, "events accumulate at the time reached: end there, or add a regime of rest"
+    tangency = (
+        37,
+        "a surface is just touched, or stick ends so: no motion like it follows",
+    )
+    accumulation = (
+        38,
+        "events accumulate at the time reached: end there, or add a regime of rest",
+    )
 
     def __new__(cls, number: int, remedy: str = "") -> Self:
         """An outcome from its record."""

@@ -19,7 +19,8 @@ VERDICT_ROBUSTNESS = DatasetSchema(
     },
     variables={
         "share": or_nan(
-            "share of the runs in which the statement holds; 1 or 0 for a single one", dims=_CELL
+            "share of the runs in which the statement holds; 1 or 0 for a single one",
+            dims=_CELL,
         ),
         "share_low": or_nan("lower end of its 95 % interval", dims=_CELL),
         "share_high": or_nan("upper end of its 95 % interval", dims=_CELL),
@@ -38,18 +39,29 @@ PROPENSITY = DatasetSchema(
     coordinates={
         "quantity": text("what happens", *_QUANTITY),
         "input": text("uncertain parameter", "input"),
-        "size": Variable(dims=("size",), dtype="i4", long_name="size of a part of the sample"),
+        "size": Variable(
+            dims=("size",), dtype="i4", long_name="size of a part of the sample"
+        ),
     },
     variables={
-        "share": Variable(dims=_QUANTITY, long_name="share of the sample in which it happens"),
-        "share_low": Variable(dims=_QUANTITY, long_name="lower end of its 95 % interval"),
-        "share_high": Variable(dims=_QUANTITY, long_name="upper end of its 95 % interval"),
+        "share": Variable(
+            dims=_QUANTITY, long_name="share of the sample in which it happens"
+        ),
+        "share_low": Variable(
+            dims=_QUANTITY, long_name="lower end of its 95 % interval"
+        ),
+        "share_high": Variable(
+            dims=_QUANTITY, long_name="upper end of its 95 % interval"
+        ),
         "share_by_size": Variable(
             "the same share from a part of the sample", dims=("quantity", "size")
         ),
         **{
             f"{order}{end}": or_nan(f"Sobol index, {words}{of}", dims=_INPUT, rtol=1e-6)
-            for order, words in (("first_order", "first order"), ("total_order", "total"))
+            for order, words in (
+                ("first_order", "first order"),
+                ("total_order", "total"),
+            )
             for end, of in (
                 ("", ""),
                 ("_low", ", lower end of its 95 % interval"),
@@ -63,7 +75,10 @@ PROPENSITY = DatasetSchema(
             rtol=1e-6,
         ),
         "index_samples": Variable(
-            "base sample of the indices", dims=("quantity", "size"), dtype="i4", optional=True
+            "base sample of the indices",
+            dims=("quantity", "size"),
+            dtype="i4",
+            optional=True,
         ),
         "judged": Variable(dtype="i4", long_name="number of parameter sets"),
         "outcome": outcome(*_QUANTITY, among=(Outcome.converged, Outcome.unresolved)),

@@ -12,7 +12,14 @@ import numpy as np
 
 from squealpipe.config.ranges import NUMBERS
 from squealpipe.parameters import Parameters
-from squealpipe.schema import ABSENT, DatasetSchema, SchemaError, Variable, find, flag_table
+from squealpipe.schema import (
+    ABSENT,
+    DatasetSchema,
+    SchemaError,
+    Variable,
+    find,
+    flag_table,
+)
 
 RAGGED = ("event", "point", "switch", "sample", "harmonic")
 """Dimensions whose length may differ from run to run of a sweep."""

@@ -59,18 +59,26 @@ def archive(
         raise FileNotFoundError(f"no run in {run}; run snakemake first")
     patterns = [f"*{entry}" if entry.startswith(".") else entry for entry in leave_out]
     names = {path: path.removeprefix(f"{study.results}/") for path in keys}
-    kept = {path: key for path, key in keys.items() if not matches_any(names[path], patterns)}
+    kept = {
+        path: key
+        for path, key in keys.items()
+        if not matches_any(names[path], patterns)
+    }
     refuse_misfits(kept, base)
     try:
         target.parent.mkdir(parents=True, exist_ok=True)
-        with tempfile.TemporaryDirectory(dir=target.parent, prefix=f".{name}.") as folder:
+        with tempfile.TemporaryDirectory(
+            dir=target.parent, prefix=f".{name}."
+        ) as folder:
             draft = Path(folder) / name
             for path in kept:
                 copy = draft / names[path]
                 copy.parent.mkdir(parents=True, exist_ok=True)
                 shutil.copyfile(run / names[path], copy)
             environment = _copy_setting(config_files, study, base, draft)
-            frozen_at = datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds")
+            frozen_at = datetime.datetime.now(datetime.UTC).isoformat(
+                timespec="seconds"
+            )
             crate = describe(draft, name, frozen_at, environment, _sums(draft))
             (draft / METADATA).write_text(crate, encoding="utf-8")
             manifest = {
@@ -82,7 +90,9 @@ def archive(
                 "config": study.model_dump(mode="json"),
                 "files": _sums(draft),
             }
-            (draft / MANIFEST).write_text(json.dumps(manifest, indent=1) + "\n", encoding="utf-8")
+            (draft / MANIFEST).write_text(
+                json.dumps(manifest, indent=1) + "\n", encoding="utf-8"
+            )
             (draft / SEAL).write_text(seal_text(draft), encoding="utf-8")
             for file in regular_files(draft):
                 file.chmod(file.stat().st_mode & 0o444)
@@ -100,12 +110,17 @@ def archive(
 def _sums(draft: Path) -> dict[str, dict[str, Any]]:
     """Path of each file → its size and checksum."""
     return {
-        path.relative_to(draft).as_posix(): {"bytes": path.stat().st_size, "sha256": checksum(path)}
+        path.relative_to(draft).as_posix(): {
+            "bytes": path.stat().st_size,
+            "sha256": checksum(path),
+        }
         for path in regular_files(draft)
     }
 
 
-def _copy_setting(configs: list[Path], study: Study, base: Path, draft: Path) -> dict[str, Any]:
+def _copy_setting(
+    configs: list[Path], study: Study, base: Path, draft: Path
+) -> dict[str, Any]:
     """Configuration as written and as resolved, lock, and environment, which is returned."""
     folder = draft / "config"
     folder.mkdir(parents=True)
@@ -127,7 +142,8 @@ def _copy_setting(configs: list[Path], study: Study, base: Path, draft: Path) ->
         "machine": platform.machine(),
         "commit": commit(),
         "packages": {
-            item.metadata["Name"]: item.version for item in importlib.metadata.distributions()
+            item.metadata["Name"]: item.version
+            for item in importlib.metadata.distributions()
         },
     }
     text = json.dumps(environment, indent=1, sort_keys=True)

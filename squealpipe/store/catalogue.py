@@ -44,7 +44,8 @@ class Run:
         return {
             key: value
             for key, value in self.config.items()
-            if key != "results" and paper.get(key) != value  # which says where, not what
+            if key != "results"
+            and paper.get(key) != value  # which says where, not what
         }
 
 
@@ -75,7 +76,9 @@ def matching(expression: str, found: list[Run]) -> list[str]:
         hint = f"; did you mean {near!r}?" if near else ""
         raise ValueError(f"{expression!r}: {error}{hint}; {EXAMPLE}") from error
     if not isinstance(holds, pd.Series) or holds.dtype.kind != "b":
-        raise ValueError(f"{expression!r}: it is not a condition that is true or false; {EXAMPLE}")
+        raise ValueError(
+            f"{expression!r}: it is not a condition that is true or false; {EXAMPLE}"
+        )
     return [run.name for run, held in zip(known, holds, strict=False) if held]
 
 
@@ -86,7 +89,9 @@ def _row(config: dict[str, Any]) -> dict[str, Any]:
     if row["mu_static"] is None:
         row["mu_static"] = row["mu"]
     row |= {symbol: row[name] for symbol, name in SYMBOLS.items() if symbol not in row}
-    return row | {key: value for key, value in given.items() if "parameters." not in key}
+    return row | {
+        key: value for key, value in given.items() if "parameters." not in key
+    }
 
 
 def paper_configuration() -> dict[str, Any]:
@@ -120,9 +125,13 @@ def _results(place: Path, base: Path) -> Run:
             faults.append(str(error))
             continue
         part = json.loads(stated.get("config", "{}"))
-        found = flat({key: part[key] for key in part if key in Study.model_fields or "." in key})
+        found = flat(
+            {key: part[key] for key in part if key in Study.model_fields or "." in key}
+        )
         mixed = [key for key in found if config.get(key, found[key]) != found[key]]
-        faults += [f"{path}: {key} = {found[key]}, elsewhere {config[key]}" for key in mixed]
+        faults += [
+            f"{path}: {key} = {found[key]}, elsewhere {config[key]}" for key in mixed
+        ]
         config |= found
         commits.add(str(stated.get("commit", "")))
         dates.append(str(stated.get("history", "")).partition(" ")[0])

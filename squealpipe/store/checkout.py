@@ -15,9 +15,14 @@ def commit(root: Path = ROOT) -> str:
     Archives below ``results`` are not code: one that takes the place of another marks nothing.
     """
     package = "squealpipe/__init__.py"
-    if _git(root, "rev-parse", "--show-prefix") or _git(root, "ls-files", package) != package:
+    if (
+        _git(root, "rev-parse", "--show-prefix")
+        or _git(root, "ls-files", package) != package
+    ):
         return UNKNOWN
-    if not (root / "Snakefile").is_file():  # installed below a repository of someone else's
+    if not (
+        root / "Snakefile"
+    ).is_file():  # installed below a repository of someone else's
         return UNKNOWN
     found = _git(root, "describe", "--always", "--abbrev=12") or UNKNOWN
     changes = ("status", "--porcelain", "--untracked-files=no", "--", ".", ":!results")
@@ -27,7 +32,12 @@ def commit(root: Path = ROOT) -> str:
 def _git(root: Path, *arguments: str) -> str:
     try:
         done = subprocess.run(
-            ["git", *arguments], cwd=root, capture_output=True, text=True, check=True, timeout=10
+            ["git", *arguments],
+            cwd=root,
+            capture_output=True,
+            text=True,
+            check=True,
+            timeout=10,
         )
     except (OSError, subprocess.SubprocessError):
         return ""

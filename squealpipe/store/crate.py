@@ -13,7 +13,11 @@ TYPES = {".nc": "application/x-netcdf", ".yaml": "application/yaml"}
 
 
 def describe(
-    folder: Path, name: str, frozen_at: str, environment: Mapping[str, Any], sums: Mapping[str, Any]
+    folder: Path,
+    name: str,
+    frozen_at: str,
+    environment: Mapping[str, Any],
+    sums: Mapping[str, Any],
 ) -> str:
     """Text of ``ro-crate-metadata.json``.
 
@@ -45,13 +49,18 @@ def describe(
         about["encodingFormat"] = kind or "application/octet-stream"
         if path.endswith(".nc"):
             stated = attributes(folder / path)
-            about |= {"name": stated["title"], "identifier": stated.get("dataset_id", "")}
+            about |= {
+                "name": stated["title"],
+                "identifier": stated.get("dataset_id", ""),
+            }
         files[path] = crate.add_file(folder / path, path, properties=about)
     crate.add_action(
         crate.add(SoftwareApplication(crate, "#squealpipe", software)),
         "#run",
         object=[files[path] for path in files if path.startswith("config/")],
-        result=[files[path] for path in files if path.startswith(("data/", "figures/"))],
+        result=[
+            files[path] for path in files if path.startswith(("data/", "figures/"))
+        ],
         properties={"name": "snakemake run of the study", "endTime": frozen_at},
     )
     return json.dumps(crate.metadata.generate(), indent=1, sort_keys=True) + "\n"

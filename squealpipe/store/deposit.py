@@ -25,7 +25,9 @@ states whether you find the same.
 """
 
 
-def bundle(name: str | os.PathLike[str], *, output: str | os.PathLike[str] | None = None) -> Path:
+def bundle(
+    name: str | os.PathLike[str], *, output: str | os.PathLike[str] | None = None
+) -> Path:
     """Write ``results/deposit/NAME.zip``; it appears whole or not at all."""
     archive, citation = locate(name), Path("CITATION.cff")
     found = verify(archive)
@@ -36,7 +38,9 @@ def bundle(name: str | os.PathLike[str], *, output: str | os.PathLike[str] | Non
     target = Path(output) if output else Path(f"results/deposit/{archive.name}.zip")
     contents: dict[str, bytes | Path]
     contents = {"README.md": README.encode(), citation.name: citation.read_bytes()}
-    contents |= {f"run/{path.relative_to(archive)}": path for path in archive.rglob("*")}
+    contents |= {
+        f"run/{path.relative_to(archive)}": path for path in archive.rglob("*")
+    }
     contents |= {
         f"code/{path}": path
         for source in map(Path, SOURCES)
@@ -44,12 +48,17 @@ def bundle(name: str | os.PathLike[str], *, output: str | os.PathLike[str] | Non
         if "__pycache__" not in path.parts
     }
     try:
-        with whole_file(target) as draft, zipfile.ZipFile(draft, "w", zipfile.ZIP_DEFLATED) as file:
+        with (
+            whole_file(target) as draft,
+            zipfile.ZipFile(draft, "w", zipfile.ZIP_DEFLATED) as file,
+        ):
             for place, content in sorted(contents.items()):
                 if isinstance(content, bytes) or content.is_file():
                     # entries without a date: equal archives give equal bundles
                     entry = zipfile.ZipInfo(f"{archive.name}/{place}")
-                    data = content if isinstance(content, bytes) else content.read_bytes()
+                    data = (
+                        content if isinstance(content, bytes) else content.read_bytes()
+                    )
                     file.writestr(entry, data, zipfile.ZIP_DEFLATED)
     except OSError as error:
         raise StoreError(f"cannot write {target}: {error.strerror}") from error

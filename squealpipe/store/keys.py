@@ -32,7 +32,9 @@ def misfits(keys: Mapping[str, str], root: Path = Path()) -> list[str]:
             found.append(f"{path}: {error}")
         else:
             if stated is None:
-                found.append(f"{path}: changed, or does not state what it was made from")
+                found.append(
+                    f"{path}: changed, or does not state what it was made from"
+                )
             elif stated.partition(" ")[2] != key.partition(" ")[2]:
                 found.append(f"{path}: is a copy of {stated.partition(' ')[2]}")
             elif stated != key:

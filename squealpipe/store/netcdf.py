@@ -15,12 +15,25 @@ import xarray as xr
 from squealpipe.rerun.key import canonical
 from squealpipe.schema import SchemaError, schema_of, validate
 from squealpipe.store.checkout import commit
-from squealpipe.store.whole_files import StoreError, archive_around, checksum, whole_file
+from squealpipe.store.whole_files import (
+    StoreError,
+    archive_around,
+    checksum,
+    whole_file,
+)
 from squealpipe.validation import AnyPath, checked
 
 MARK = b"\n# squealpipe sha256 "
 
-DAMAGED = (OSError, RuntimeError, ValueError, LookupError, AttributeError, TypeError, MemoryError)
+DAMAGED = (
+    OSError,
+    RuntimeError,
+    ValueError,
+    LookupError,
+    AttributeError,
+    TypeError,
+    MemoryError,
+)
 """What netCDF-4 and Xarray raise on files with damaged bytes."""
 
 
@@ -39,12 +52,18 @@ def save(dataset: xr.Dataset, path: AnyPath) -> Path:
     target: Path = path
     validate(dataset, schema_of(dataset))
     if target.exists() and not target.is_file():
-        raise StoreError(f"{target} is not a regular file; choose another name to write to")
+        raise StoreError(
+            f"{target} is not a regular file; choose another name to write to"
+        )
     if (frozen := archive_around(target)) is not None:
-        raise StoreError(f"{target} is part of the archive {frozen}, which never changes")
+        raise StoreError(
+            f"{target} is part of the archive {frozen}, which never changes"
+        )
     made = {"commit": commit(), "history": made_now(), **dataset.attrs}
     dataset = dataset.assign_attrs({**made, "dataset_id": dataset_id(dataset)})
-    encoding: dict[str, dict[str, Any]] = {name: {} for name in map(str, dataset.variables)}
+    encoding: dict[str, dict[str, Any]] = {
+        name: {} for name in map(str, dataset.variables)
+    }
     for name, how in encoding.items():
         kind = dataset[name].dtype.kind
         if kind in "fiu":
@@ -54,10 +73,16 @@ def save(dataset: xr.Dataset, path: AnyPath) -> Path:
             how |= {"zlib": True, "complevel": 4, "shuffle": True}
     try:
         with whole_file(target) as temporary:
-            dataset.to_netcdf(temporary, engine="netcdf4", format="NETCDF4", encoding=encoding)
+            dataset.to_netcdf(
+                temporary, engine="netcdf4", format="NETCDF4", encoding=encoding
+            )
             with temporary.open("ab") as file:
                 file.write(MARK + checksum(temporary).encode() + b"\n")
-    except (OSError, RuntimeError, StoreError) as error:  # netCDF-4 reports a full disk as any
+    except (
+        OSError,
+        RuntimeError,
+        StoreError,
+    ) as error:  # netCDF-4 reports a full disk as any
         reason = getattr(error, "strerror", None) or error
         raise StoreError(
             f"cannot write {target}: {reason}; free space or fix permissions, "
@@ -83,7 +108,9 @@ def load(path: AnyPath, *, schema: str | None = None) -> xr.Dataset:
     dataset = read(source)
     found = str(dataset.attrs.get("schema"))
     if schema is not None and found != schema:
-        raise SchemaError(f"{source} holds {found!r}, {schema!r} was expected; pass the right file")
+        raise SchemaError(
+            f"{source} holds {found!r}, {schema!r} was expected; pass the right file"
+        )
     validate(dataset, schema_of(dataset))
     return dataset
 
@@ -92,7 +119,11 @@ def dataset_id(dataset: xr.Dataset) -> str:
     """Hash of what was computed: schema, configuration and all values that are not volatile."""
     schema = schema_of(dataset)
     total = hashlib.sha256()
-    total.update(canonical([schema.name, schema.version, dataset.attrs.get("config", "")]).encode())
+    total.update(
+        canonical(
+            [schema.name, schema.version, dataset.attrs.get("config", "")]
+        ).encode()
+    )
     for name in sorted(map(str, dataset.variables)):
         entry = schema.lookup(name)
         if entry is not None and entry.volatile:
@@ -100,7 +131,9 @@ def dataset_id(dataset: xr.Dataset) -> str:
         values = np.ascontiguousarray(dataset[name].values)
         total.update(f"{name}{values.shape}{values.dtype.kind}".encode())
         total.update(
-            repr(values.tolist()).encode() if values.dtype.kind in "UO" else values.tobytes()
+            repr(values.tolist()).encode()
+            if values.dtype.kind in "UO"
+            else values.tobytes()
         )
     return total.hexdigest()[:16]
 
@@ -115,7 +148,9 @@ def verified(path: str | os.PathLike[str]) -> Path:
     """The path of a dataset file whose bytes are those that were written, before HDF5 opens it."""
     source = Path(path)
     if not source.is_file():
-        raise FileNotFoundError(f"no dataset {source}; make it with snakemake, or check the path")
+        raise FileNotFoundError(
+            f"no dataset {source}; make it with snakemake, or check the path"
+        )
     content, mark, stated = source.read_bytes().rpartition(MARK)
     if not mark or stated != hashlib.sha256(content).hexdigest().encode() + b"\n":
         raise StoreError(
@@ -137,7 +172,9 @@ def read(path: str | os.PathLike[str]) -> xr.Dataset:
         with xr.open_dataset(source, engine="netcdf4", decode_times=False) as opened:
             memory = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
             if opened.nbytes > memory:
-                raise ValueError(f"it claims {opened.nbytes} bytes, more than this machine has")
+                raise ValueError(
+                    f"it claims {opened.nbytes} bytes, more than this machine has"
+                )
             dataset = opened.load()
     except DAMAGED as error:
         raise StoreError(

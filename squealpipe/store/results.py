@@ -16,7 +16,9 @@ from squealpipe.validation import AnyPath, checked
 
 
 @checked
-def open_results(name_or_path: AnyPath, *, root: str | os.PathLike[str] = ".") -> xr.DataTree:
+def open_results(
+    name_or_path: AnyPath, *, root: str | os.PathLike[str] = "."
+) -> xr.DataTree:
     """The datasets of a run as a tree: one node each, by their names below ``data/``.
 
     Every file is held against its checksum.
@@ -44,4 +46,6 @@ def refuse_copy(name: str, path: Path, stated: Mapping[str, Any]) -> None:
     """Raise if the attributes of a dataset state that it was made under another name."""
     made_as = str(stated.get("key", "")).partition(" ")[2]
     if made_as not in {"", f"data/{name}.nc"}:
-        raise StoreError(f"{path} is a copy of {made_as}; delete it and run snakemake again")
+        raise StoreError(
+            f"{path} is a copy of {made_as}; delete it and run snakemake again"
+        )

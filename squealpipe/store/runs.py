@@ -52,7 +52,9 @@ def read_manifest(folder: Path) -> dict[str, Any]:
     except (OSError, ValueError):
         return {}
     files = manifest.get("files") if isinstance(manifest, dict) else None
-    whole = isinstance(files, dict) and all(isinstance(entry, dict) for entry in files.values())
+    whole = isinstance(files, dict) and all(
+        isinstance(entry, dict) for entry in files.values()
+    )
     return manifest if whole else {}
 
 
@@ -99,19 +101,24 @@ def verify(
     if not files:
         return Verification(folder, 0, [f"changed: {MANIFEST} (damaged)"])
     listed = {path: files[path] for path in files if path.startswith(part)}
-    there = (path for path in folder.rglob("*") if path.is_symlink() or not path.is_dir())
+    there = (
+        path for path in folder.rglob("*") if path.is_symlink() or not path.is_dir()
+    )
     names = (path.relative_to(folder).as_posix() for path in there)
     present = {name for name in names if name.startswith(part)}
     found = [
         f"changed: {path}"
         for path in sorted(present & set(listed))
-        if (folder / path).is_symlink() or checksum(folder / path) != listed[path].get("sha256")
+        if (folder / path).is_symlink()
+        or checksum(folder / path) != listed[path].get("sha256")
     ]
     seal = folder / SEAL
     if not seal.is_file() or seal.read_bytes() != seal_text(folder).encode():
         found.append(f"changed: {MANIFEST}")
     found += [f"missing: {path}" for path in sorted(set(listed) - present)]
-    found += [f"extra: {path}" for path in sorted(present - set(listed) - {MANIFEST, SEAL})]
+    found += [
+        f"extra: {path}" for path in sorted(present - set(listed) - {MANIFEST, SEAL})
+    ]
     return Verification(folder, len(listed), found)
 
 
@@ -127,7 +134,9 @@ def dataset_files(place: Path) -> dict[str, Path]:
     """
     if place.is_file():
         return {place.stem: place}
-    if (place / MANIFEST).is_file() and not (frozen := verify(place, part="data/")).intact:
+    if (place / MANIFEST).is_file() and not (
+        frozen := verify(place, part="data/")
+    ).intact:
         raise StoreError("\n".join(frozen.lines()))
     base = place / "data" if (place / "data").is_dir() else place
     found = {
@@ -136,7 +145,9 @@ def dataset_files(place: Path) -> dict[str, Path]:
         if path.suffix == ".nc"
     }
     if not found:
-        raise ValueError(f"{place} holds no dataset (*.nc); run snakemake first, or check the path")
+        raise ValueError(
+            f"{place} holds no dataset (*.nc); run snakemake first, or check the path"
+        )
     return found
 
 

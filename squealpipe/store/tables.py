@@ -44,20 +44,26 @@ def convert(dataset: xr.Dataset, path: AnyPath) -> list[Path]:
         raise ValueError(f"{target}: end the name in {', '.join(NEEDS)}")
     needed = NEEDS[target.suffix]
     if needed is not None and find_spec(needed) is None:
-        raise ValueError(f"{target} needs {needed}; pip install 'squealpipe[export]', or {needed}")
+        raise ValueError(
+            f"{target} needs {needed}; pip install 'squealpipe[export]', or {needed}"
+        )
     if target.suffix == ".mat":
         return _write_matlab(dataset, target)
     if target.suffix == ".xlsx":
         return _write_sheets(dataset, target)
     files = []
     for place, (dims, frame) in enumerate(_tables(dataset).items()):
-        files.append(target.with_suffix(f".{'_'.join(dims)}{target.suffix}") if place else target)
+        files.append(
+            target.with_suffix(f".{'_'.join(dims)}{target.suffix}") if place else target
+        )
         with whole_file(files[-1]) as temporary:
             if target.suffix == ".csv":
                 _write_csv(dataset, frame, temporary, with_numbers=not place)
             else:
                 frame.attrs = _about(dataset)
-                frame.rename(columns=lambda name: _header(dataset, name)).to_parquet(temporary)
+                frame.rename(columns=lambda name: _header(dataset, name)).to_parquet(
+                    temporary
+                )
     return files
 
 
@@ -67,7 +73,9 @@ def _tables(dataset: xr.Dataset) -> dict[tuple[str, ...], pd.DataFrame]:
     for name, variable in dataset.data_vars.items():
         if variable.ndim:
             names.setdefault(tuple(map(str, variable.dims)), []).append(str(name))
-    biggest = sorted(names, key=lambda dims: -sum(dataset[name].size for name in names[dims]))
+    biggest = sorted(
+        names, key=lambda dims: -sum(dataset[name].size for name in names[dims])
+    )
     return {
         dims: xr.Dataset({name: _words(dataset[name]) for name in names[dims]})
         .to_dataframe(dim_order=list(dims))[names[dims]]
@@ -76,7 +84,9 @@ def _tables(dataset: xr.Dataset) -> dict[tuple[str, ...], pd.DataFrame]:
     }
 
 
-def _write_csv(dataset: xr.Dataset, frame: pd.DataFrame, path: Path, *, with_numbers: bool) -> None:
+def _write_csv(
+    dataset: xr.Dataset, frame: pd.DataFrame, path: Path, *, with_numbers: bool
+) -> None:
     columns = ", ".join(_header(dataset, name) for name in frame.columns)
     about = _about(dataset)
     head = [f"# {about.pop('title')}", f"# columns: {columns}"]
@@ -91,12 +101,17 @@ def _write_csv(dataset: xr.Dataset, frame: pd.DataFrame, path: Path, *, with_num
 def _write_sheets(dataset: xr.Dataset, path: Path) -> list[Path]:
     tables = _tables(dataset)
     about = {**_numbers(dataset), **_about(dataset)}
-    with whole_file(path) as temporary, pd.ExcelWriter(temporary, engine="openpyxl") as book:
+    with (
+        whole_file(path) as temporary,
+        pd.ExcelWriter(temporary, engine="openpyxl") as book,
+    ):
         for dims, frame in tables.items():
             frame.rename(columns=lambda name: _header(dataset, name)).to_excel(
                 book, sheet_name="_".join(dims)[:31], index=False
             )
-        pd.Series(about, name="value").to_excel(book, sheet_name="about", index_label="name")
+        pd.Series(about, name="value").to_excel(
+            book, sheet_name="about", index_label="name"
+        )
     return [path]
 
 
@@ -105,11 +120,15 @@ def _write_matlab(dataset: xr.Dataset, path: Path) -> list[Path]:
 
     variables = {str(name): variable for name, variable in dataset.variables.items()}
     content: dict[str, object] = {
-        name: variable.values.astype(object) if variable.dtype.kind in "UO" else variable.values
+        name: variable.values.astype(object)
+        if variable.dtype.kind in "UO"
+        else variable.values
         for name, variable in variables.items()
     }
     content["units"] = {
-        name: given.attrs["units"] for name, given in variables.items() if "units" in given.attrs
+        name: given.attrs["units"]
+        for name, given in variables.items()
+        if "units" in given.attrs
     }
     content["meanings"] = {
         name: ", ".join(f"{value}: {words}" for value, words in table.items())
@@ -118,7 +137,9 @@ def _write_matlab(dataset: xr.Dataset, path: Path) -> list[Path]:
     }
     content["attributes"] = _about(dataset)
     with whole_file(path) as temporary:
-        savemat(temporary, content, appendmat=False, long_field_names=True, oned_as="column")
+        savemat(
+            temporary, content, appendmat=False, long_field_names=True, oned_as="column"
+        )
     return [path]
 
 
@@ -132,7 +153,9 @@ def _numbers(dataset: xr.Dataset) -> dict[str, str]:
 
 
 def _about(dataset: xr.Dataset) -> dict[str, str]:
-    return {str(key): str(dataset.attrs[key]) for key in RECORDED if key in dataset.attrs}
+    return {
+        str(key): str(dataset.attrs[key]) for key in RECORDED if key in dataset.attrs
+    }
 
 
 def _words(variable: xr.DataArray) -> xr.DataArray:
@@ -140,7 +163,9 @@ def _words(variable: xr.DataArray) -> xr.DataArray:
     table = meanings(variable)
     if not table:
         return variable
-    words = np.array([table[code] for code in np.ravel(variable.values).tolist()], dtype=object)
+    words = np.array(
+        [table[code] for code in np.ravel(variable.values).tolist()], dtype=object
+    )
     return variable.copy(data=words.reshape(variable.shape))
 
 

@@ -16,7 +16,9 @@ class StoreError(ValueError):
 
 def archive_around(path: Path) -> Path | None:
     """The archive that a file is part of, if any."""
-    return next((at for at in path.resolve().parents if (at / MANIFEST).is_file()), None)
+    return next(
+        (at for at in path.resolve().parents if (at / MANIFEST).is_file()), None
+    )
 
 
 @contextmanager
@@ -24,7 +26,9 @@ def whole_file(path: Path) -> Iterator[Path]:
     """A new temporary file beside ``path`` that takes its place if the block ends without error."""
     path.parent.mkdir(parents=True, exist_ok=True)
     # opened with O_EXCL: no file or link that waits there is written to
-    handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.stem}.", suffix=path.suffix)
+    handle, name = tempfile.mkstemp(
+        dir=path.parent, prefix=f".{path.stem}.", suffix=path.suffix
+    )
     os.close(handle)
     temporary = Path(name)
     umask = os.umask(0)

@@ -66,9 +66,16 @@ def basin(
         values = {name: value[rows] for name, value in grid.values.items()}
         ends = np.full(values[system.states[0]].size, share * t_end)
         return runs.integrate(
-            system, values, ends, t_late=late * t_end, tol=tol, regime=grid.regime,
-            workers=workers, tracked=system.states, **options,
-        )  # fmt: skip
+            system,
+            values,
+            ends,
+            t_late=late * t_end,
+            tol=tol,
+            regime=grid.regime,
+            workers=workers,
+            tracked=system.states,
+            **options,
+        )
 
     whole = run(slice(None), late=0.75)
     third = run(slice(None), 0.75, 0.5)
@@ -89,13 +96,20 @@ def basin(
         with np.errstate(divide="ignore"):
             forcing = np.broadcast_to(np.asarray(system.period(names), float), size)
         if not (np.isfinite(forcing) & (forcing > 0.0)).all():
-            raise ValueError(f"{system.name}: the period of its forcing must be greater than 0")
-        kept = int(np.clip(0.5 * t_end / forcing.max(), 0, LEAST_REPEATS * MOST_PERIODS))
+            raise ValueError(
+                f"{system.name}: the period of its forcing must be greater than 0"
+            )
+        kept = int(
+            np.clip(0.5 * t_end / forcing.max(), 0, LEAST_REPEATS * MOST_PERIODS)
+        )
         times = t_end - forcing[moving, None] * np.arange(kept, -1, -1)
         states = run(moving, times=times)["samples"] / spans[moving, None]
         rounds = np.zeros(moving.size, int)
         for lag in range(kept // LEAST_REPEATS, 0, -1):
-            off = np.abs(states[:, lag:] - states[:, :-lag]).max(axis=2, initial=0.0) <= REPEATED
+            off = (
+                np.abs(states[:, lag:] - states[:, :-lag]).max(axis=2, initial=0.0)
+                <= REPEATED
+            )
             # at first the distance to a cycle may be less after several of its periods
             again = off.all(axis=1) | ((rounds > 0) & (rounds % lag == 0) & off[:, -1])
             rounds[again] = lag
@@ -121,18 +135,34 @@ def basin(
     numbers = _numbered(motion, whole["late_extremes"])
     found: dict[str, Any] = {
         "motion": runs.flag(
-            "what the motion has become", over, motion.reshape(shape), flag_table(Motion)
+            "what the motion has become",
+            over,
+            motion.reshape(shape),
+            flag_table(Motion),
         ),
-        "attractor": (over, numbers.reshape(shape), runs.labels("number of the attractor", "1")),
-        "period": (over, period.reshape(shape), runs.labels("period of the cycle", "s")),
+        "attractor": (
+            over,
+            numbers.reshape(shape),
+            runs.labels("number of the attractor", "1"),
+        ),
+        "period": (
+            over,
+            period.reshape(shape),
+            runs.labels("period of the cycle", "s"),
+        ),
         "outcome": runs.outcome(system, over, whole["ends"][:, 0].reshape(shape)),
     }
     for i, (name, unit) in enumerate(system.units.items()):
-        for which, word, values in (("min", "smallest", last_low), ("max", "largest", last_high)):
+        for which, word, values in (
+            ("min", "smallest", last_low),
+            ("max", "largest", last_high),
+        ):
             column = np.where(np.isfinite(values[:, i]), values[:, i], np.nan)
             label = runs.labels(f"{word} {name} in the last quarter", unit)
             found[f"{name}_{which}"] = (over, column.reshape(shape), label)
-    return xr.Dataset(found, grid.coordinates, runs.attributes(system, "basin", grid.fixed, tol))
+    return xr.Dataset(
+        found, grid.coordinates, runs.attributes(system, "basin", grid.fixed, tol)
+    )
 
 
 def _numbered(motion: np.ndarray, extremes: np.ndarray) -> np.ndarray:

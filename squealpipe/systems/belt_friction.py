@@ -84,7 +84,13 @@ leine_oscillator = belt_oscillator(
 )
 exponential_oscillator = belt_oscillator(
     "friction oscillator with an exponential law",
-    {"belt_speed": 1.5, "damping": 0.1, "mu": 0.5, "mu_static": 1.0, "friction_speed": 0.5},
+    {
+        "belt_speed": 1.5,
+        "damping": 0.1,
+        "mu": 0.5,
+        "mu_static": 1.0,
+        "friction_speed": 0.5,
+    },
     lambda speed, p: p.mu + (p.mu_static - p.mu) * exp(-speed / p.friction_speed),
     {"x": 2.0, "v": 0.0},
 )

@@ -65,7 +65,9 @@ def regimes_of(system: System) -> list[Regime]:
     ]
 
 
-def parameters_of_run(params: Parameters, alpha1: float, alpha2: float) -> dict[str, float]:
+def parameters_of_run(
+    params: Parameters, alpha1: float, alpha2: float
+) -> dict[str, float]:
     """What a run of :func:`brake` is given."""
     found = {name: getattr(params, name) for name in NUMBERS_OF_A1}
     return {**found, "alpha1": alpha1, "alpha2": alpha2}
@@ -100,9 +102,16 @@ def brake(  # noqa: C901 (one short function for each force and surface)
     def suspension(s: Any, p: Any, r: Any) -> tuple[Any, Any]:
         q, g = laws.of(p, r)
         return a1.suspension_force(
-            s.x, s.y, s.vx, s.vy, q, g,
-            linear_springs=rules.linear_springs, long_springs=long_springs, dashpots=damped,
-        )  # fmt: skip
+            s.x,
+            s.y,
+            s.vx,
+            s.vy,
+            q,
+            g,
+            linear_springs=rules.linear_springs,
+            long_springs=long_springs,
+            dashpots=damped,
+        )
 
     def pull(s: Any, p: Any, r: Any) -> Any:
         return suspension(s, p, r)[0]
@@ -119,10 +128,18 @@ def brake(  # noqa: C901 (one short function for each force and surface)
 
     def field(t: Any, s: Any, p: Any, r: Any) -> dict[str, Any]:
         ax, ay = a1.acceleration(
-            s.x, s.y, s.vx, s.vy, *laws.of(p, r),
-            contact=r.contact, direction=r.direction, stick=r.stick, dashpots=damped,
-            linear_springs=rules.linear_springs, long_springs=long_springs,
-        )  # fmt: skip
+            s.x,
+            s.y,
+            s.vx,
+            s.vy,
+            *laws.of(p, r),
+            contact=r.contact,
+            direction=r.direction,
+            stick=r.stick,
+            dashpots=damped,
+            linear_springs=rules.linear_springs,
+            long_springs=long_springs,
+        )
         return {"x": s.vx, "y": s.vy, "vx": ax, "vy": ay}
 
     def holds(t: Any, s: Any, p: Any, r: Any) -> Any:
@@ -133,7 +150,9 @@ def brake(  # noqa: C901 (one short function for each force and surface)
         def distance2(t: Any, s: Any, p: Any, r: Any) -> Any:
             ends = fixed_ends(*laws.of(p, r))
             x, y = s.x - ends[2 * spring], s.y - ends[2 * spring + 1]
-            return (x * x + y * y) * ((p.length1, p.length2)[spring]) ** -2.0 - PIVOT_REACH2
+            return (x * x + y * y) * (
+                (p.length1, p.length2)[spring]
+            ) ** -2.0 - PIVOT_REACH2
 
         return distance2
 
@@ -167,9 +186,13 @@ def brake(  # noqa: C901 (one short function for each force and surface)
 class _Laws:
     """Regimes and switches of a friction law and a contact law, one or several pieces each."""
 
-    def __init__(self, friction_law: str, contact_law: str, rules: Rules, *, one_mu: bool) -> None:
+    def __init__(
+        self, friction_law: str, contact_law: str, rules: Rules, *, one_mu: bool
+    ) -> None:
         if not rules.drags and (is_table(friction_law) or is_table(contact_law)):
-            raise ValueError("friction as printed takes no tables; give a law by its name")
+            raise ValueError(
+                "friction as printed takes no tables; give a law by its name"
+            )
         self.friction_law, self.contact_law = friction_law, contact_law
         self.rules, self.one_mu = rules, one_mu
         self.frictions: list[dict[str, float]] = [{}]
@@ -188,7 +211,9 @@ class _Laws:
         if not self.rules.drags:
             q.mu, q.static_mu = -q.mu, -q.static_mu
         if is_table(self.friction_law):
-            q.friction_law = friction_laws.Piece(r.mu_start, (r.mu_c0, r.mu_c1, r.mu_c2, r.mu_c3))
+            q.friction_law = friction_laws.Piece(
+                r.mu_start, (r.mu_c0, r.mu_c1, r.mu_c2, r.mu_c3)
+            )
         if is_table(self.contact_law):
             coefficients = (r.press_c0, r.press_c1, r.press_c2, r.press_c3)
             q.contact_law = contact_laws.Piece(r.press_start, coefficients)
@@ -203,7 +228,9 @@ class _Laws:
     def in_contact(self) -> Iterator[tuple[str, int, int]]:
         """Kind and pieces of each regime in contact."""
         for j in range(len(self.contacts)):
-            yield from ((kind, i, j) for i in range(len(self.frictions)) for kind in SLIP)
+            yield from (
+                (kind, i, j) for i in range(len(self.frictions)) for kind in SLIP
+            )
             if self.rules.sticks:
                 yield "stick", 0, j
 
@@ -213,8 +240,11 @@ class _Laws:
         for kind, i, j in self.in_contact():
             terms = {"direction": SLIP.get(kind, 0.0), "stick": float(kind == "stick")}
             found[self.name(kind, i, j)] = {
-                "contact": 1.0, **terms, **self.frictions[i], **self.contacts[j]
-            }  # fmt: skip
+                "contact": 1.0,
+                **terms,
+                **self.frictions[i],
+                **self.contacts[j],
+            }
         terms = {"contact": 0.0, "direction": 0.0, "stick": 0.0}
         for name in self.apart:
             found[name] = {**terms, **self.frictions[0], **self.contacts[0]}
@@ -236,11 +266,15 @@ class _Laws:
         def beyond(name: str, i: int) -> Any:
             def condition(t: Any, s: Any, p: Any, r: Any) -> Any:
                 lag = SLIP[name] * (p.belt_speed - s.vx * self.rules.reverses)
-                return lag - self.frictions[i]["mu_start"] * p.friction_speed if i else lag
+                return (
+                    lag - self.frictions[i]["mu_start"] * p.friction_speed if i else lag
+                )
 
             return condition
 
-        order = [(name, i) for name in SLIP for i in reversed(range(len(self.frictions)))]
+        order = [
+            (name, i) for name in SLIP for i in reversed(range(len(self.frictions)))
+        ]
         found = [(self.name(name, i, 0), beyond(name, i), kind) for name, i in order]
         sticks = [(self.name("stick", 0, 0), stays, kind)] * self.rules.sticks
         return [*sticks, *found[:-1], (found[-1][0], None, kind)]
@@ -267,14 +301,17 @@ class _Laws:
             Switch("clearance", "released", _negative(free), "separated"),
         ]
 
-    def belt_switches(self, on_belt: Any, holds: Any, limit: Any, pull: Any) -> Iterator[Switch]:
+    def belt_switches(
+        self, on_belt: Any, holds: Any, limit: Any, pull: Any
+    ) -> Iterator[Switch]:
         """Where the mass reaches belt speed, and where stick ends."""
         if not self.rules.reverses:
             return
         several = len(self.contacts) > 1
         for j in range(len(self.contacts)):
             slower, faster, stick = (
-                self.name(kind, 0, j) for kind in ("slip_slower", "slip_faster", "stick")
+                self.name(kind, 0, j)
+                for kind in ("slip_slower", "slip_faster", "stick")
             )
             tail = f"_{j + 1}" * several
             yield Switch(
@@ -314,21 +351,32 @@ class _Laws:
             return past
 
         def presses(end: str) -> Any:
-            return lambda t, s, p, r: p.preload - s.y - getattr(r, f"press_{end}") * p.preload
+            return lambda t, s, p, r: (
+                p.preload - s.y - getattr(r, f"press_{end}") * p.preload
+            )
 
         for kind, i, j in self.in_contact():
             here = self.name(kind, i, j)
             after = [(self.name(kind, i + 1, j), slides)] * (
                 kind in SLIP and i + 1 < len(self.frictions)
             )
-            after += [(self.name(kind, i, j + 1), presses)] * (j + 1 < len(self.contacts))
+            after += [(self.name(kind, i, j + 1), presses)] * (
+                j + 1 < len(self.contacts)
+            )
             for there, past in after:
                 yield Switch(
-                    f"{here} to {there}", here, _negative(past("end")), [(there, None, "knot")]
+                    f"{here} to {there}",
+                    here,
+                    _negative(past("end")),
+                    [(there, None, "knot")],
                 )
-                yield Switch(f"{there} to {here}", there, past("start"), [(here, None, "knot")])
+                yield Switch(
+                    f"{there} to {here}", there, past("start"), [(here, None, "knot")]
+                )
 
-    def starts(self, free: Any, rises: Any, on_belt: Any, limit: Any, pull: Any) -> list[Any]:
+    def starts(
+        self, free: Any, rises: Any, on_belt: Any, limit: Any, pull: Any
+    ) -> list[Any]:
         """In which regime a run starts: the first whose surfaces are all ≥ 0.
 
         Where the contact spring is just free the velocity decides, then the force. At belt speed it
@@ -343,7 +391,11 @@ class _Laws:
         for i, name in enumerate(self.apart):
             found += [(name, None)] if i else [(name, rises, free), (name, above)]
         if not self.rules.reverses:
-            return [*found, ("slip_slower", lambda t, s, p, r: p.belt_speed), "slip_faster"]
+            return [
+                *found,
+                ("slip_slower", lambda t, s, p, r: p.belt_speed),
+                "slip_faster",
+            ]
         regimes = [self.name(*each) for each in self.in_contact()]
         sticks = [name for name in regimes if name.startswith("stick")]
         slips = [name for name in regimes if name not in sticks]

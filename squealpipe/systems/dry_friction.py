@@ -33,11 +33,19 @@ dry_friction_oscillator = System(
             "reversal",
             leaves=("right", "left"),
             when=lambda t, s, p, r: r.direction * s.v,
-            to=[("stick", _holds, "stick"), ("left", lambda t, s, p, r: r.direction), "right"],
+            to=[
+                ("stick", _holds, "stick"),
+                ("left", lambda t, s, p, r: r.direction),
+                "right",
+            ],
             reset=lambda t, s, p, r: {"v": 0.0},
         ),
-        Switch("release_right", "stick", lambda t, s, p, r: 1.0 - _push(t, s, p), "right"),
-        Switch("release_left", "stick", lambda t, s, p, r: 1.0 + _push(t, s, p), "left"),
+        Switch(
+            "release_right", "stick", lambda t, s, p, r: 1.0 - _push(t, s, p), "right"
+        ),
+        Switch(
+            "release_left", "stick", lambda t, s, p, r: 1.0 + _push(t, s, p), "left"
+        ),
     ],
     start={"x": 0.0, "v": 0.0},
     starts_in=[

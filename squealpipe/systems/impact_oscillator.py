@@ -8,7 +8,13 @@ from squealpipe.systems.system import Switch, System
 impact_oscillator = System(
     "impact oscillator",
     states={"x": "m", "v": "m/s"},
-    parameters={"amplitude": 0.5, "omega": 1.9, "damping": 0.1, "gap": 1.0, "restitution": 0.8},
+    parameters={
+        "amplitude": 0.5,
+        "omega": 1.9,
+        "damping": 0.1,
+        "gap": 1.0,
+        "restitution": 0.8,
+    },
     regimes={"free": {}},
     field=lambda t, s, p, r: {
         "x": s.v,

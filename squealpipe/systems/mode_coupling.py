@@ -26,13 +26,22 @@ mode_coupling = System(
     "mode coupling with contact loss",
     states={"x": "m", "y": "m", "vx": "m/s", "vy": "m/s"},
     parameters={
-        "mu": 0.9, "k11": 2.0, "k12": -1.0, "k22": 2.0 / 3.0, "kc": 4.0 / 3.0, "approach": 1.0,
+        "mu": 0.9,
+        "k11": 2.0,
+        "k12": -1.0,
+        "k22": 2.0 / 3.0,
+        "kc": 4.0 / 3.0,
+        "approach": 1.0,
     },
     regimes={"contact": {"contact": 1.0}, "separated": {"contact": 0.0}},
     field=_field,
     switches=[
-        Switch("separation", "contact", lambda t, s, p, r: s.y + p.approach, to="separated"),
-        Switch("contact", "separated", lambda t, s, p, r: -s.y - p.approach, to="contact"),
+        Switch(
+            "separation", "contact", lambda t, s, p, r: s.y + p.approach, to="separated"
+        ),
+        Switch(
+            "contact", "separated", lambda t, s, p, r: -s.y - p.approach, to="contact"
+        ),
     ],
     start={"x": 1e-3, "y": 0.0, "vx": 0.0, "vy": 0.0},
-)  # fmt: skip
+)

@@ -9,7 +9,13 @@ from squealpipe.systems.system import Switch, System
 relief_valve = System(
     "pressure relief valve",
     states={"y1": "1", "y2": "1", "y3": "1"},
-    parameters={"kappa": 1.25, "beta": 20.0, "delta": 10.0, "q": 8.0, "restitution": 0.8},
+    parameters={
+        "kappa": 1.25,
+        "beta": 20.0,
+        "delta": 10.0,
+        "q": 8.0,
+        "restitution": 0.8,
+    },
     regimes={"open": {}},
     field=lambda t, s, p, r: {
         "y1": s.y2,

@@ -50,9 +50,14 @@ def _field(t: Any, s: Any, p: Any, r: Any) -> dict[str, Any]:
         total = [a + b for a, b in zip(total, parts, strict=True)]
     fx, fy, moment, power = total
     return {
-        "x": s.vx, "y": s.vy, "theta": s.spin, "work": power,
-        "vx": fx / p.mass, "vy": fy / p.mass, "spin": moment / p.inertia,
-    }  # fmt: skip
+        "x": s.vx,
+        "y": s.vy,
+        "theta": s.spin,
+        "work": power,
+        "vx": fx / p.mass,
+        "vy": fy / p.mass,
+        "spin": moment / p.inertia,
+    }
 
 
 def _switches(name: str, side: float, other: str) -> list[Switch]:
@@ -75,11 +80,25 @@ def _switches(name: str, side: float, other: str) -> list[Switch]:
 
 rigid_pad = System(
     "rigid pad on two springs",
-    states={"x": "m", "y": "m", "theta": "rad", "vx": "m/s", "vy": "m/s", "spin": "rad/s",
-            "work": "J"},
+    states={
+        "x": "m",
+        "y": "m",
+        "theta": "rad",
+        "vx": "m/s",
+        "vy": "m/s",
+        "spin": "rad/s",
+        "work": "J",
+    },
     parameters={
-        "mass": 1.0, "inertia": 0.5, "stiffness": 1.0, "free_length": 3.0, "half_length": 1.0,
-        "depth": 0.5, "contact_stiffness": 2.0, "preload": 1.0, "mu": 0.4,
+        "mass": 1.0,
+        "inertia": 0.5,
+        "stiffness": 1.0,
+        "free_length": 3.0,
+        "half_length": 1.0,
+        "depth": 0.5,
+        "contact_stiffness": 2.0,
+        "preload": 1.0,
+        "mu": 0.4,
     },
     regimes={
         "both": {"leading": 1.0, "trailing": 1.0},
@@ -88,7 +107,17 @@ rigid_pad = System(
         "neither": {"leading": 0.0, "trailing": 0.0},
     },
     field=_field,
-    switches=[*_switches("leading", LEADING, "trailing"),
-              *_switches("trailing", TRAILING, "leading")],
-    start={"x": 0.0, "y": 0.0, "theta": 0.0, "vx": 0.0, "vy": 0.0, "spin": 0.0, "work": 0.0},
-)  # fmt: skip
+    switches=[
+        *_switches("leading", LEADING, "trailing"),
+        *_switches("trailing", TRAILING, "leading"),
+    ],
+    start={
+        "x": 0.0,
+        "y": 0.0,
+        "theta": 0.0,
+        "vx": 0.0,
+        "vy": 0.0,
+        "spin": 0.0,
+        "work": 0.0,
+    },
+)

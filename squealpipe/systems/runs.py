@@ -43,9 +43,9 @@ SAMPLES_PER_STEP, MOST_SAMPLES = 4, 20_001
 MOST_STEPS, MOST_EVENTS = 1e7, 1e7
 
 
-_COMPILED: weakref.WeakKeyDictionary[Any, dict[tuple[bool, bool], lanes.CompiledSystem]] = (
-    weakref.WeakKeyDictionary()
-)
+_COMPILED: weakref.WeakKeyDictionary[
+    Any, dict[tuple[bool, bool], lanes.CompiledSystem]
+] = weakref.WeakKeyDictionary()
 
 
 def compiled(system: System, *, tangent: bool, few: bool) -> lanes.CompiledSystem:
@@ -61,12 +61,20 @@ def compiled(system: System, *, tangent: bool, few: bool) -> lanes.CompiledSyste
             explicit_time=len(t.variables) > t.size,
         )
         scalar = ScalarSource(
-            t.variables, t.rates, t.parameters, t.constants, t.surfaces, t.switches, t.size
+            t.variables,
+            t.rates,
+            t.parameters,
+            t.constants,
+            t.surfaces,
+            t.switches,
+            t.size,
         )
         sources = {"gauge": scalar.gauge(), "change": scalar.change()}
         if tangent:
             sources["jump"] = scalar.jump()
-        known[tangent, few] = lanes.compile_system(symbolic, sources, tangent=tangent, few=few)
+        known[tangent, few] = lanes.compile_system(
+            symbolic, sources, tangent=tangent, few=few
+        )
     return known[tangent, few]
 
 
@@ -127,11 +135,15 @@ def integrate(
     with np.errstate(over="ignore"):
         fits = (unit > 0.0) & (t_end / unit < math.inf)
     if not fits.all():
-        raise ValueError(f"{system.name}: time_scale = {unit.min()}: it is not a unit of time")
+        raise ValueError(
+            f"{system.name}: time_scale = {unit.min()}: it is not a unit of time"
+        )
     derive, given = system.derived
     known = {**values, TIME_UNIT: unit}
     derived = derive(*(known[name] for name in given))
-    parameters = _table(size, *(values[name] for name in system.parameters), *derived, unit)
+    parameters = _table(
+        size, *(values[name] for name in system.parameters), *derived, unit
+    )
     initial = _table(size, *(values[name] for name in system.states))
     regimes = regime
     if not isinstance(regimes, np.ndarray):
@@ -145,12 +157,18 @@ def integrate(
         for each in chosen
     ]
     lost = math.log(layout.LOST_ERROR / tol)
-    limits = _table(size, t_end / unit, t_late / unit, most_steps, most_events, lost, most_turns)
+    limits = _table(
+        size, t_end / unit, t_late / unit, most_steps, most_events, lost, most_turns
+    )
     samples = np.empty((1, 0)) if times is None else np.atleast_2d(times)
     sample_times = np.ascontiguousarray(samples / unit[:, None])
     n_samples = samples.shape[1]
     n_kinds, n_regimes = max(1, len(t.kinds)), len(system.regimes)
-    points = np.empty((size, 0, 2)) if around is None else np.ascontiguousarray(around, float)
+    points = (
+        np.empty((size, 0, 2))
+        if around is None
+        else np.ascontiguousarray(around, float)
+    )
     n_points = points.shape[1]
     n_sums = (1 + n_regimes + n_points + n_kinds) * sums
     shapes: dict[str, Any] = {
@@ -174,7 +192,9 @@ def integrate(
     code = compiled(system, tangent=tangent, few=size <= FEW)
     loop()
     terms = lanes.taylor_terms(tol)
-    n_rows = layout.FIXED_ROWS + len(t.variables) + t.size + 2 * len(watched) + n_regimes
+    n_rows = (
+        layout.FIXED_ROWS + len(t.variables) + t.size + 2 * len(watched) + n_regimes
+    )
     n_rows += 3 * n_points + len(t.parameters) + len(t.constants)
     width = max(3 * len(t.surfaces), len(t.variables)) + 2
 
@@ -236,9 +256,13 @@ def integrate(
         }
         # a view of nothing has no address
         held = {
-            k: v if v.size else np.zeros(1, v.dtype) for k, v in held.items() if k in layout.ARRAYS
+            k: v if v.size else np.zeros(1, v.dtype)
+            for k, v in held.items()
+            if k in layout.ARRAYS
         }
-        table = lanes.Workspace(layout.TABLE, held, {name: sizes[name] for name in layout.SIZES})
+        table = lanes.Workspace(
+            layout.TABLE, held, {name: sizes[name] for name in layout.SIZES}
+        )
         at = integers[layout.JOB], rows[layout.CLOCK], rows[layout.T_END], held["queue"]
         lanes.drive(loop(), table, lambda: lanes.share_of(*at))
         if integers[layout.JOB].max() >= 0 or held["queue"][0] < size:
@@ -248,8 +272,13 @@ def integrate(
             )
 
     arrays = run_shared(work, shapes, jobs=size, workers=workers)
-    arrays["early_extremes"], arrays["late_extremes"] = np.moveaxis(arrays["extremes"], 2, 0)
-    low, high = arrays["extremes"][..., 0].min(axis=2), arrays["extremes"][..., 1].max(axis=2)
+    arrays["early_extremes"], arrays["late_extremes"] = np.moveaxis(
+        arrays["extremes"], 2, 0
+    )
+    low, high = (
+        arrays["extremes"][..., 0].min(axis=2),
+        arrays["extremes"][..., 1].max(axis=2),
+    )
     arrays["extremes"] = np.stack([low, high], axis=-1)
     ends = np.cumsum([1, n_regimes, n_points])
     for name, part in zip(
@@ -311,22 +340,36 @@ def single_run(
     given = {name: np.array([value]) for name, value in values.items()}
     while True:
         raw = integrate(
-            system, given, np.array([t_end]), regime=regime, times=times, tol=tol, log_events=room,
+            system,
+            given,
+            np.array([t_end]),
+            regime=regime,
+            times=times,
+            tol=tol,
+            log_events=room,
             **options,
-        )  # fmt: skip
+        )
         _, _, steps, count = (int(value) for value in raw["ends"][0])
         if count <= room or not room:
             break
         room = count
     first = system.first_regimes({TIME: np.zeros(1), **given}, 1, regime)
     events = {
-        key: raw[f"event_{key}"][0, :count] for key in ("times", "kinds", "states", "regimes")
+        key: raw[f"event_{key}"][0, :count]
+        for key in ("times", "kinds", "states", "regimes")
     }
     return Motion(
-        np.append(first, events["regimes"]), events["times"], events["kinds"], events["states"],
-        raw["final"][0], raw["samples"][0], raw["sample_regimes"][0], int(raw["ends"][0, 0]),
-        float(raw["summary"][0, 2]), steps,
-    )  # fmt: skip
+        np.append(first, events["regimes"]),
+        events["times"],
+        events["kinds"],
+        events["states"],
+        raw["final"][0],
+        raw["samples"][0],
+        raw["sample_regimes"][0],
+        int(raw["ends"][0, 0]),
+        float(raw["summary"][0, 2]),
+        steps,
+    )
 
 
 @checked
@@ -355,13 +398,19 @@ def simulate(
         ``event_regime`` (entered), ``outcome``; ``<state>_by_<name>`` (at fixed instants) and
         ``event_time_by_<name>``. Instants that the run did not reach hold NaN.
     """
-    values = {n: scalar(n, v) for n, v in call_values(system, start, parameters).items()}
+    values = {
+        n: scalar(n, v) for n, v in call_values(system, start, parameters).items()
+    }
     regime = (start or {}).get("regime")
     if times is None:
         steps = single_run(system, values, t_end, regime=regime, tol=tol, room=0).steps
-        times = np.linspace(0.0, t_end, int(np.clip(SAMPLES_PER_STEP * steps, 2, MOST_SAMPLES)))
+        times = np.linspace(
+            0.0, t_end, int(np.clip(SAMPLES_PER_STEP * steps, 2, MOST_SAMPLES))
+        )
     elif times[0] < 0.0 or times[-1] > t_end or (np.diff(times) < 0.0).any():
-        raise ValueError(f"times = {brief(times)}: they must ascend from 0 to t_end = {t_end!r}")
+        raise ValueError(
+            f"times = {brief(times)}: they must ascend from 0 to t_end = {t_end!r}"
+        )
     run = single_run(system, values, t_end, regime=regime, times=times, tol=tol)
     kinds = dict(enumerate(system.traced.kinds))
     names = dict(enumerate(system.regimes))
@@ -414,18 +463,29 @@ def ensemble(
     shape, size = grid.shape, math.prod(grid.shape)
     late = 0.8 * t_end if t_late is None else t_late
     if late > t_end:
-        raise ValueError(f"t_late = {t_late!r}: a time up to t_end = {t_end!r} is needed")
+        raise ValueError(
+            f"t_late = {t_late!r}: a time up to t_end = {t_end!r} is needed"
+        )
     raw = integrate(
-        system, grid.values, np.full(size, t_end), t_late=late, tol=tol, tangent=horizon,
-        regime=grid.regime, workers=workers,
-    )  # fmt: skip
+        system,
+        grid.values,
+        np.full(size, t_end),
+        t_late=late,
+        tol=tol,
+        tangent=horizon,
+        regime=grid.regime,
+        workers=workers,
+    )
     over = tuple(grid.coordinates)
 
     def field(long_name: str, units: str, array: np.ndarray) -> Any:
         return over, array.reshape(shape), labels(long_name, units)
 
     found: dict[str, Any] = {}
-    units = {**system.units, **{name: unit for name, (unit, _) in system.outputs.items()}}
+    units = {
+        **system.units,
+        **{name: unit for name, (unit, _) in system.outputs.items()},
+    }
     for i, name in enumerate(system.states):
         found[name] = field(f"{name} at the end", units[name], raw["final"][:, i])
     for i, name in enumerate(units):
@@ -433,24 +493,38 @@ def ensemble(
             label = f"{('smallest', 'largest')[j]} {name}"
             found[name + which] = field(label, units[name], raw["extremes"][:, i, j])
             late_one = raw["late_extremes"][:, i, j]
-            reached = np.where(np.isfinite(late_one), late_one, np.nan)  # the outcome says why
-            found[f"late_{name}{which}"] = field(f"{label} from t_late on", units[name], reached)
+            reached = np.where(
+                np.isfinite(late_one), late_one, np.nan
+            )  # the outcome says why
+            found[f"late_{name}{which}"] = field(
+                f"{label} from t_late on", units[name], reached
+            )
     for i, name in enumerate(system.traced.kinds):
-        found[f"count_{name}"] = field(f"number of events {name}", "1", raw["counts"][:, i])
-        found[f"first_{name}"] = field(f"time of the first {name}", "s", raw["firsts"][:, i])
+        found[f"count_{name}"] = field(
+            f"number of events {name}", "1", raw["counts"][:, i]
+        )
+        found[f"first_{name}"] = field(
+            f"time of the first {name}", "s", raw["firsts"][:, i]
+        )
     for i, name in enumerate(system.regimes):
-        found[f"time_in_{name}"] = field(f"time in regime {name}", "s", raw["durations"][:, i])
+        found[f"time_in_{name}"] = field(
+            f"time in regime {name}", "s", raw["durations"][:, i]
+        )
     if horizon:
         with np.errstate(all="ignore"):  # NaN of a run that ended where it began
             rate = np.where(
-                raw["summary"][:, 2], raw["summary"][:, 0] / raw["summary"][:, 2], np.nan
+                raw["summary"][:, 2],
+                raw["summary"][:, 0] / raw["summary"][:, 2],
+                np.nan,
             )
         found["lyapunov_exponent"] = field("growth rate of a perturbation", "s-1", rate)
         found["predictability_horizon"] = field(
             "time at which an error of tol is lost", "s", raw["summary"][:, 1]
         )
     found["outcome"] = outcome(system, over, raw["ends"][:, 0].reshape(shape))
-    return xr.Dataset(found, grid.coordinates, attributes(system, "ensemble", grid.fixed, tol))
+    return xr.Dataset(
+        found, grid.coordinates, attributes(system, "ensemble", grid.fixed, tol)
+    )
 
 
 @dataclass(frozen=True)
@@ -476,10 +550,14 @@ def outer_product(
     system: System, start: Mapping[str, Any] | None, parameters: Mapping[str, Any]
 ) -> Grid:
     """The grid of what a call gives as 1-D arrays, starts first."""
-    given = {n: real_array(n, v) for n, v in call_values(system, start, parameters).items()}
+    given = {
+        n: real_array(n, v) for n, v in call_values(system, start, parameters).items()
+    }
     for name, value in given.items():
         if value.ndim > 1:
-            raise ValueError(f"{name} has shape {value.shape}: a number or a 1-D array is needed")
+            raise ValueError(
+                f"{name} has shape {value.shape}: a number or a 1-D array is needed"
+            )
     order = [name for name in start or {} if name != "regime"]
     swept = [name for name in (*order, *parameters) if given[name].ndim]
     shape = tuple(given[name].size for name in swept)
@@ -491,8 +569,10 @@ def outer_product(
     coordinates = {}
     for name in swept:
         at_start = name in system.units
-        label = labels(f"{name} at t = 0" if at_start else f"parameter {name}",
-                       system.units.get(name, "1"))  # fmt: skip
+        label = labels(
+            f"{name} at t = 0" if at_start else f"parameter {name}",
+            system.units.get(name, "1"),
+        )
         dim = f"{name}0" if at_start else name
         coordinates[dim] = (dim, given[name], label)
     return Grid(shape, values, coordinates, fixed, (start or {}).get("regime"))
@@ -515,7 +595,9 @@ def call_values(
     start.pop("regime", None)
     for name in start:
         if name not in system.units:
-            raise ValueError(f"start: {name!r} is unknown; {suggestion(str(name), system.units)}")
+            raise ValueError(
+                f"start: {name!r} is unknown; {suggestion(str(name), system.units)}"
+            )
     for name in parameters:
         system.check_parameter(name)
     states = {name: system.start[name] for name in system.units}
@@ -539,12 +621,16 @@ def flag(long_name: str, dims: Any, values: Any, table: Mapping[int, str]) -> An
 
 def outcome(system: System, dims: Any, values: Any) -> Any:
     """The flag variable that says how runs ended."""
-    table = flag_table(Outcome) | {layout.STOPPED + i: name for i, name in enumerate(system.stops)}
+    table = flag_table(Outcome) | {
+        layout.STOPPED + i: name for i, name in enumerate(system.stops)
+    }
     dims, values, attributes = flag("how the run ended", dims, values, table)
     return dims, values, attributes | {"comment": in_words(table)}
 
 
-def attributes(system: System, what: str, given: Mapping[str, float], tol: float) -> dict[str, Any]:
+def attributes(
+    system: System, what: str, given: Mapping[str, float], tol: float
+) -> dict[str, Any]:
     """What a dataset records of its system and its run."""
     return {
         "title": f"{system.name}: {what}",

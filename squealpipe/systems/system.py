@@ -10,27 +10,49 @@ from typing import Annotated, Any, cast
 import numpy as np
 import xarray as xr
 
-from squealpipe.methods.taylor.scalar import REGIME, SwitchSymbols, evaluate, numpy_function
-from squealpipe.methods.taylor.symbols import Symbol, derivative, in_order, parameter, symbol
+from squealpipe.methods.taylor.scalar import (
+    REGIME,
+    SwitchSymbols,
+    evaluate,
+    numpy_function,
+)
+from squealpipe.methods.taylor.symbols import (
+    Symbol,
+    derivative,
+    in_order,
+    parameter,
+    symbol,
+)
 from squealpipe.parameters import is_finite_number
 from squealpipe.schema import Outcome
 from squealpipe.systems import basin, runs
-from squealpipe.systems.trace import TIME, TIME_UNIT, Names, Traced, Tracer, check_progress
+from squealpipe.systems.trace import (
+    TIME,
+    TIME_UNIT,
+    Names,
+    Traced,
+    Tracer,
+    check_progress,
+)
 from squealpipe.text import suggestion
 from squealpipe.validation import Identifier, Number, Positive, Word, checked, needed
 
 Function = Callable[..., Any]
 Size = Annotated[
-    str | tuple[str, Positive], needed("a unit, or (unit, typical size greater than 0), is")
+    str | tuple[str, Positive],
+    needed("a unit, or (unit, typical size greater than 0), is"),
 ]
 Output = Annotated[tuple[str, Function], needed("(unit, function) is")]
-StartValue = Annotated[Number | str, needed("a finite number, or the name of a regime, is")]
+StartValue = Annotated[
+    Number | str, needed("a finite number, or the name of a regime, is")
+]
 Field = Annotated[
     Function | Mapping[str, Function], needed("a function, or one for each regime, is")
 ]
 Target = str | tuple[str, Function | None] | tuple[str, Function | None, Word]
 Targets = Annotated[
-    str | Sequence[Target], needed("a regime, or a list of (regime, condition) and a regime, is")
+    str | Sequence[Target],
+    needed("a regime, or a list of (regime, condition) and a regime, is"),
 ]
 Begin = str | tuple[str, Function | None] | tuple[str, Function | None, Function | None]
 Begins = Annotated[
@@ -39,12 +61,47 @@ Begins = Annotated[
 MOST_STATES, MOST_SURFACES, MOST_REGIMES = 24, 16, 256
 RESERVED = frozenset(
     (
-        *("t_end", "times", "start", "tol", "sensitivity", "t_late", "horizon", "workers", "guess"),
+        *(
+            "t_end",
+            "times",
+            "start",
+            "tol",
+            "sensitivity",
+            "t_late",
+            "horizon",
+            "workers",
+            "guess",
+        ),
         *("periods", "t_settle", "to", "n_points", "parameter", "parameters", "label"),
-        *("time", "event", "point", "run", "multiplier", "outcome", "regime", "period", "stable"),
+        *(
+            "time",
+            "event",
+            "point",
+            "run",
+            "multiplier",
+            "outcome",
+            "regime",
+            "period",
+            "stable",
+        ),
         *("residual", "event_time", "event_kind", "event_regime", "end_time"),
-        *("lyapunov_exponent", "predictability_horizon", "motion", "attractor", "self", "system"),
-        *("events", "end", "start_regime", "multiplier_real", "multiplier_imag", "sample", "side"),
+        *(
+            "lyapunov_exponent",
+            "predictability_horizon",
+            "motion",
+            "attractor",
+            "self",
+            "system",
+        ),
+        *(
+            "events",
+            "end",
+            "start_regime",
+            "multiplier_real",
+            "multiplier_imag",
+            "sample",
+            "side",
+        ),
     )
 )
 """Arguments of the methods, dimensions and variables of what they return."""
@@ -123,9 +180,12 @@ class System:
     ) -> None:
         self.name = name
         self.units = {
-            key: value if isinstance(value, str) else value[0] for key, value in states.items()
+            key: value if isinstance(value, str) else value[0]
+            for key, value in states.items()
         }
-        self.sizes = np.array([1.0 if isinstance(v, str) else float(v[1]) for v in states.values()])
+        self.sizes = np.array(
+            [1.0 if isinstance(v, str) else float(v[1]) for v in states.values()]
+        )
         self.parameters = dict(parameters)
         self.regimes, self.field = dict(regimes), field
         self.switches = tuple(sorted(switches, key=lambda each: each.name))
@@ -163,7 +223,9 @@ class System:
 
         return cycle_branch(self, parameter, to, **options)
 
-    def cycle_curve(self, label: str, parameters: Sequence[str], **options: Any) -> xr.Dataset:
+    def cycle_curve(
+        self, label: str, parameters: Sequence[str], **options: Any
+    ) -> xr.Dataset:
         """A curve in two parameters; see :func:`squealpipe.systems.cycles.curve.cycle_curve`."""
         from squealpipe.systems.cycles.curve import cycle_curve
 
@@ -179,9 +241,13 @@ class System:
         taken = RESERVED | self._results()
         self._check_free("state", self.units, taken)
         self._check_free("parameter", self.parameters, {*self.units, *taken})
-        self._check_free("output", self.outputs, {*self.units, *self.parameters, *taken})
+        self._check_free(
+            "output", self.outputs, {*self.units, *self.parameters, *taken}
+        )
         self._check_free("stop", self.stops, {outcome.name for outcome in Outcome})
-        if unknown := [name for name in self.start if name not in {*self.units, "regime"}]:
+        if unknown := [
+            name for name in self.start if name not in {*self.units, "regime"}
+        ]:
             raise ValueError(
                 f"start: {unknown[0]!r} is unknown; {suggestion(unknown[0], self.units)}"
             )
@@ -195,19 +261,27 @@ class System:
     def _results(self) -> set[str]:
         """Names of variables and dimensions that results form from the system's names."""
         ends = ("_min", "_max")
-        found = {f"{name}{end}" for name in (*self.units, *self.outputs) for end in ends}
+        found = {
+            f"{name}{end}" for name in (*self.units, *self.outputs) for end in ends
+        }
         found |= {f"late_{name}" for name in found}
-        found |= {f"{name}{end}" for name in self.units for end in ("0", "_start", "_path")}
+        found |= {
+            f"{name}{end}" for name in self.units for end in ("0", "_start", "_path")
+        }
         found |= {f"event_{name}" for name in self.units}
         found |= {f"time_in_{name}" for name in self.regimes}
         names = [each.name for each in self.switches]
-        return found | {f"{which}_{name}" for name in names for which in ("count", "first")}
+        return found | {
+            f"{which}_{name}" for name in names for which in ("count", "first")
+        }
 
     def check_regime(self, start: Mapping[str, Any]) -> None:
         """Refuse a start in a regime that there is not."""
         given = start.get("regime")
         if given is not None and not (isinstance(given, str) and given in self.regimes):
-            raise ValueError(f"start: regime {given!r}: {suggestion(str(given), self.regimes)}")
+            raise ValueError(
+                f"start: regime {given!r}: {suggestion(str(given), self.regimes)}"
+            )
 
     def check_parameter(self, name: str) -> None:
         """Refuse a parameter that there is not."""
@@ -236,7 +310,8 @@ class System:
             here = parameter(REGIME + _indicator(regime))
             rates = self._complete(what, found)
             total = [
-                a if b is symbol(0.0) else a + here * b for a, b in zip(total, rates, strict=True)
+                a if b is symbol(0.0) else a + here * b
+                for a, b in zip(total, rates, strict=True)
             ]
         return total
 
@@ -259,7 +334,9 @@ class System:
             for switch, left in zip(self.switches, leaves, strict=True)
         ]
         stops = [tracer.one(f"stop {name!r}", f) for name, f in self.stops.items()]
-        outputs = [tracer.one(f"output {name!r}", f) for name, (_, f) in self.outputs.items()]
+        outputs = [
+            tracer.one(f"output {name!r}", f) for name, (_, f) in self.outputs.items()
+        ]
         starts = [self._trace_start(tracer, each) for each in self.starts_in]
         if starts and starts[-1][1] is not None:
             raise ValueError("starts_in has no last resort: end it with a regime alone")
@@ -271,7 +348,9 @@ class System:
         if callable(self.time_scale) or self.time_scale != 1.0:
             rates = [rate * unit for rate in rates]
         surfaces, falls, rises = self._watch(tracer, switches, leaves, stops)
-        indicators = [_indicator(name) for name in self.regimes] * isinstance(self.field, Mapping)
+        indicators = [_indicator(name) for name in self.regimes] * isinstance(
+            self.field, Mapping
+        )
         table = [
             [float(self.regimes[name][c]) for c in tracer.constants]
             + [float(_indicator(name) == each) for each in indicators]
@@ -312,15 +391,23 @@ class System:
                 )
         given = [switch.to] if isinstance(switch.to, str) else list(switch.to)
         if not given or not (isinstance(given[-1], str) or given[-1][1] is None):
-            raise ValueError(f"{what}: `to` has no last resort; end it with a regime alone")
+            raise ValueError(
+                f"{what}: `to` has no last resort; end it with a regime alone"
+            )
         targets = []
         for entry in given:
             regime, condition, kind = (
-                (entry, None, switch.name) if isinstance(entry, str) else (*entry, switch.name)[:3]
+                (entry, None, switch.name)
+                if isinstance(entry, str)
+                else (*entry, switch.name)[:3]
             )
             if kind not in kinds:
                 kinds.append(kind)
-            symbols = None if condition is None else tracer.one(f"{what}: to {regime!r}", condition)
+            symbols = (
+                None
+                if condition is None
+                else tracer.one(f"{what}: to {regime!r}", condition)
+            )
             targets.append((tracer.regime(what, regime), symbols, kinds.index(kind)))
         reset = tracer.several(f"{what}: reset", switch.reset) if switch.reset else {}
         places = {self.states.index(name): value for name, value in reset.items()}
@@ -334,11 +421,15 @@ class System:
         names = [switch.leaves] if isinstance(switch.leaves, str) else switch.leaves
         return [tracer.regime(f"switch {switch.name!r}", name) for name in names]
 
-    def _trace_start(self, tracer: Tracer, entry: Any) -> tuple[int, Symbol | None, Symbol | None]:
+    def _trace_start(
+        self, tracer: Tracer, entry: Any
+    ) -> tuple[int, Symbol | None, Symbol | None]:
         if isinstance(entry, str):
             return tracer.regime("starts_in", entry), None, None
         regime, condition, equality = (*entry, None)[:3]
-        equal = None if equality is None else tracer.one(f"starts_in {regime!r}", equality)
+        equal = (
+            None if equality is None else tracer.one(f"starts_in {regime!r}", equality)
+        )
         if condition is not None:
             condition = tracer.one(f"starts_in {regime!r}", condition)
         return tracer.regime("starts_in", regime), condition, equal
@@ -361,16 +452,28 @@ class System:
             with np.errstate(all="ignore"):
                 (value,) = evaluate([surface], probe)
             mine = np.broadcast_to(value, 32)
-            same = [i for i, other in enumerate(prints) if np.allclose(mine, other, 1e-12, 0)]
-            opposite = [i for i, other in enumerate(prints) if np.allclose(-mine, other, 1e-12, 0)]
+            same = [
+                i
+                for i, other in enumerate(prints)
+                if np.allclose(mine, other, 1e-12, 0)
+            ]
+            opposite = [
+                i
+                for i, other in enumerate(prints)
+                if np.allclose(-mine, other, 1e-12, 0)
+            ]
             if not same + opposite:
                 same = [len(surfaces)]
                 surfaces.append(surface)
                 prints.append(mine)
             rises = int(not same)
-            watched += [(regime, (same + opposite)[0], rises, number) for regime in regimes]
+            watched += [
+                (regime, (same + opposite)[0], rises, number) for regime in regimes
+            ]
         if len(surfaces) > MOST_SURFACES:
-            raise ValueError(f"{len(surfaces)} surfaces; at most {MOST_SURFACES} can be watched")
+            raise ValueError(
+                f"{len(surfaces)} surfaces; at most {MOST_SURFACES} can be watched"
+            )
         table = np.full((2, len(self.regimes), len(surfaces)), -1, np.int64)
         for regime, index, rises, number in watched:
             if table[rises, regime, index] >= 0:
@@ -418,12 +521,18 @@ class System:
         for number, surface in enumerate(t.surfaces):
             # as those see it that watch it
             watched = (t.falls[:, number] >= 0) | (t.rises[:, number] >= 0)
-            slopes = at([derivative(surface, z) for z in t.variables], int(np.argmax(watched)))
-            found[:, number] = [np.abs((slopes * rate).sum(axis=0)).max() < 1e-14 for rate in rates]
+            slopes = at(
+                [derivative(surface, z) for z in t.variables], int(np.argmax(watched))
+            )
+            found[:, number] = [
+                np.abs((slopes * rate).sum(axis=0)).max() < 1e-14 for rate in rates
+            ]
         return found
 
     @cached_property
-    def _starts(self) -> list[tuple[int, dict[str, float], list[tuple[Any, list[str], float]]]]:
+    def _starts(
+        self,
+    ) -> list[tuple[int, dict[str, float], list[tuple[Any, list[str], float]]]]:
         """Regimes that a run may start in, their constants, and what is asked of the state.
 
         Each is a function, the names that it is given, and the sign that it must not have the
@@ -431,16 +540,25 @@ class System:
         """
         traced = self.traced
         found = []
-        entries = traced.starts or tuple((i, None, None) for i in range(len(self.regimes)))
+        entries = traced.starts or tuple(
+            (i, None, None) for i in range(len(self.regimes))
+        )
         for place, (regime, condition, equality) in enumerate(entries):
             asked = [] if equality is None else [(equality, 0.0)]
             if condition is not None:
                 asked.append((condition, 1.0))
             elif place != len(traced.starts) - 1:
-                for table, sign in ((traced.falls[regime], 1.0), (traced.rises[regime], -1.0)):
-                    watched = np.flatnonzero((table >= 0) & (table < len(self.switches)))
+                for table, sign in (
+                    (traced.falls[regime], 1.0),
+                    (traced.rises[regime], -1.0),
+                ):
+                    watched = np.flatnonzero(
+                        (table >= 0) & (table < len(self.switches))
+                    )
                     asked += [(traced.surfaces[index], sign) for index in watched]
-            constants = dict(zip(traced.constants, traced.regimes[regime].tolist(), strict=True))
+            constants = dict(
+                zip(traced.constants, traced.regimes[regime].tolist(), strict=True)
+            )
             checks = [(*numpy_function([root]), sign) for root, sign in asked]
             found.append((regime, constants, checks))
         return found
@@ -468,7 +586,9 @@ class System:
                 arguments = [np.asarray(known[name]) for name in names]
                 (value,) = function(*arguments)
                 fits &= (
-                    sign * value >= 0.0 if sign else abs(value) <= 1e-15 * sum(map(abs, arguments))
+                    sign * value >= 0.0
+                    if sign
+                    else abs(value) <= 1e-15 * sum(map(abs, arguments))
                 )
                 if not fits.any():
                     break

@@ -19,7 +19,11 @@ def describe(system: System) -> dict[str, str]:
         for name, rate in zip(system.states, traced.rates, strict=False)
     }
     for switch, symbols in zip(system.switches, traced.switches, strict=True):
-        leaves = switch.leaves if isinstance(switch.leaves, str) else ", ".join(switch.leaves)
+        leaves = (
+            switch.leaves
+            if isinstance(switch.leaves, str)
+            else ", ".join(switch.leaves)
+        )
         found[f"{switch.name} leaves {leaves} when"] = expression(symbols.surface)
         for regime, condition, kind in symbols.targets:
             name = system.states_of(regime)
@@ -31,7 +35,8 @@ def describe(system: System) -> dict[str, str]:
         found[name] = expression(output)
     for row, name in zip(traced.regimes, system.regimes, strict=True):
         values = (
-            f"{c.removeprefix(REGIME)}={v:g}" for c, v in zip(traced.constants, row, strict=True)
+            f"{c.removeprefix(REGIME)}={v:g}"
+            for c, v in zip(traced.constants, row, strict=True)
         )
         found[f"regime {name}"] = ", ".join(values)
     return found
@@ -43,7 +48,9 @@ def expression(node: Symbol) -> str:
         return str(node.arguments[0]).removeprefix(REGIME)
     if node.kind == "number":
         return f"{node.arguments[0]:.17g}"
-    inner = [expression(a) if isinstance(a, Symbol) else f"{a:g}" for a in node.arguments]
+    inner = [
+        expression(a) if isinstance(a, Symbol) else f"{a:g}" for a in node.arguments
+    ]
     if node.kind in FUNCTIONS:
         return f"{node.kind}({inner[0]})"
     if node.kind == "joined":

@@ -103,7 +103,10 @@ class Tracer:
     """Calls the functions of one system on symbols."""
 
     def __init__(
-        self, states: Sequence[str], parameters: Iterable[str], regimes: Mapping[str, Mapping]
+        self,
+        states: Sequence[str],
+        parameters: Iterable[str],
+        regimes: Mapping[str, Mapping],
     ) -> None:
         self.states = tuple(states)
         self.regimes = list(regimes)
@@ -119,25 +122,39 @@ class Tracer:
         self.s = Names("the state", dict(zip(self.states, state, strict=True)))
         self.p = Names("the system", {name: parameter(name) for name in parameters})
         self.constants = tuple(sorted(constants))
-        self.r = Names("a regime", {name: parameter(REGIME + name) for name in self.constants})
+        self.r = Names(
+            "a regime", {name: parameter(REGIME + name) for name in self.constants}
+        )
 
     def one(self, what: str, function: Callable[..., Any], r: Any = None) -> Symbol:
         """A scalar function of (t, s, p, r)."""
         return self._symbol(what, self._call(what, function, r))
 
-    def several(self, what: str, function: Callable[..., Any], r: Any = None) -> dict[str, Symbol]:
+    def several(
+        self, what: str, function: Callable[..., Any], r: Any = None
+    ) -> dict[str, Symbol]:
         """A function that gives a mapping of states."""
         found = self._call(what, function, r)
         if not isinstance(found, Mapping):
-            raise TypeError(f"{what} gives {type(found).__name__}; a dict of states is needed")
+            raise TypeError(
+                f"{what} gives {type(found).__name__}; a dict of states is needed"
+            )
         for name in found:
             if name not in self.states:
-                raise ValueError(f"{what} gives {name!r}; {suggestion(name, self.states)}")
-        return {name: self._symbol(f"{what}[{name!r}]", value) for name, value in found.items()}
+                raise ValueError(
+                    f"{what} gives {name!r}; {suggestion(name, self.states)}"
+                )
+        return {
+            name: self._symbol(f"{what}[{name!r}]", value)
+            for name, value in found.items()
+        }
 
     def numbers(self, regime: str) -> Names:
         """The constants of one regime as numbers."""
-        return Names("a regime", {key: float(value) for key, value in self.values[regime].items()})
+        return Names(
+            "a regime",
+            {key: float(value) for key, value in self.values[regime].items()},
+        )
 
     def _call(self, what: str, function: Callable[..., Any], r: Any) -> Any:
         try:
@@ -156,7 +173,9 @@ class Tracer:
             ) from None
         for node in in_order([found]):
             if node.kind == "number" and not np.isfinite(node.arguments[0]):
-                raise ValueError(f"{what} holds {node.arguments[0]}; finite numbers are needed")
+                raise ValueError(
+                    f"{what} holds {node.arguments[0]}; finite numbers are needed"
+                )
         return found
 
     def regime(self, what: str, name: Any) -> int:
@@ -175,7 +194,10 @@ class Tracer:
 
 
 def check_progress(
-    tracer: Tracer, traced: Traced, names: Sequence[str], leaves: Sequence[Sequence[int]]
+    tracer: Tracer,
+    traced: Traced,
+    names: Sequence[str],
+    leaves: Sequence[Sequence[int]],
 ) -> None:
     """Refuse a switch that would fire again at once, whatever the state.
 
@@ -204,11 +226,15 @@ def check_progress(
             for value, (regime, _, _) in zip(found[::-1], ways[::-1], strict=True):
                 regimes = np.where(value >= 0.0, regime, regimes)
             resets = evaluate(list(switch.reset.values()), values)
-            after = {tracer.states[p]: v for p, v in zip(switch.reset, resets, strict=True)}
+            after = {
+                tracer.states[p]: v for p, v in zip(switch.reset, resets, strict=True)
+            }
             after = values | after | held(regimes)
             later, new_rate = evaluate([switch.surface, symbol(slope)], after)
         rise = later - height
-        falling = np.asarray(rate < 0) & np.isfinite(np.asarray(rate) + np.asarray(new_rate))
+        falling = np.asarray(rate < 0) & np.isfinite(
+            np.asarray(rate) + np.asarray(new_rate)
+        )
         again = (rise < -1e-9) | ((np.abs(rise) <= 1e-9) & np.asarray(new_rate < 0))
         if falling.any() and (again & np.isin(regimes, left))[falling].all():
             raise ValueError(

@@ -39,9 +39,11 @@ class NormalForm:
     def angles(self, alpha1: Any, alpha2: Any) -> tuple[Any, Any]:
         """The angles of springs 1 and 2 of the normal form, rad."""
         first, second = (alpha2, alpha1) if self.swaps else (alpha1, alpha2)
-        return (math.pi - first, math.pi - second) if self.swaps != self.mirrored else (
-            first, second
-        )  # fmt: skip
+        return (
+            (math.pi - first, math.pi - second)
+            if self.swaps != self.mirrored
+            else (first, second)
+        )
 
     @property
     def sign(self) -> int:

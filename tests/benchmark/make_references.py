@@ -47,15 +47,21 @@ class LongDouble:
     """A problem by heyoka's Taylor series in long double."""
 
     def __init__(self, data):
-        functions = SimpleNamespace(**{name: getattr(heyoka, name) for name in FUNCTIONS})
-        symbols = Problem(data, functions, lambda v: heyoka.expression(np.longdouble(v)))
+        functions = SimpleNamespace(
+            **{name: getattr(heyoka, name) for name in FUNCTIONS}
+        )
+        symbols = Problem(
+            data, functions, lambda v: heyoka.expression(np.longdouble(v))
+        )
         self.problem = Problem(data, np, np.longdouble)
         self.problem.patience = NO_LIMIT
         y = [heyoka.expression(name) for name in symbols.states]
         self.runs = {}
         for regime in symbols.regimes:
             rates = symbols.field(heyoka.time, y, regime)
-            equations = [(a, heyoka.expression(b)) for a, b in zip(y, rates, strict=True)]
+            equations = [
+                (a, heyoka.expression(b)) for a, b in zip(y, rates, strict=True)
+            ]
             zeros = np.zeros(len(y), np.longdouble)
             self.runs[regime] = heyoka.taylor_adaptive(
                 equations, zeros, fp_type=np.longdouble, tol=TOLERANCE
@@ -64,7 +70,10 @@ class LongDouble:
     def __call__(self, t=0.0, y=None, regime="", t_end=None):
         """From a state, by default the start, to ``t_end``."""
         problem = self.problem
-        t, t_end = np.longdouble(t), problem.t_end if t_end is None else np.longdouble(t_end)
+        t, t_end = (
+            np.longdouble(t),
+            problem.t_end if t_end is None else np.longdouble(t_end),
+        )
         y = np.array(problem.start) if y is None else y
 
         def step(regime, t, y):
@@ -98,7 +107,9 @@ def extrapolated(field, t, y, h):
         row = [here]
         for k, previous in enumerate(rows[-1] if rows else [], start=1):
             ratio = mpmath.mpf(column) ** 2 / mpmath.mpf(column - k) ** 2 - 1
-            row.append([a + (a - b) / ratio for a, b in zip(row[-1], previous, strict=True)])
+            row.append(
+                [a + (a - b) / ratio for a, b in zip(row[-1], previous, strict=True)]
+            )
         rows.append(row)
     error = max(abs(a - b) for a, b in zip(rows[-1][-1], rows[-1][-2], strict=True))
     error /= max(map(abs, [mpmath.mpf(1), *y, *(h * rate for rate in first)]))
@@ -125,9 +136,15 @@ def extrapolation(data):
                 after, error, path = extrapolated(field, t, y, made)
             if error < STEP_ERROR / 10**7:
                 h = made * 2
-            return made, lambda s: extrapolated(field, t, y, s)[0] if s else y, [*path[:-1], after]
+            return (
+                made,
+                lambda s: extrapolated(field, t, y, s)[0] if s else y,
+                [*path[:-1], after],
+            )
 
-        return _motion(problem, step, mpmath.mpf(0), problem.start, problem.regime, problem.t_end)
+        return _motion(
+            problem, step, mpmath.mpf(0), problem.start, problem.regime, problem.t_end
+        )
 
 
 def _motion(problem, step, t, y, regime, t_end):
@@ -137,7 +154,8 @@ def _motion(problem, step, t, y, regime, t_end):
         h, flow, samples = step(regime, t, y)
         watched = problem.watched(regime)
         found = [
-            _first_root(_along(problem, switch, t, regime), h, flow, samples) for switch in watched
+            _first_root(_along(problem, switch, t, regime), h, flow, samples)
+            for switch in watched
         ]
         roots = [(root, i) for i, root in enumerate(found) if root is not None]
         span, which = min(roots, default=(h, -1))
@@ -166,7 +184,9 @@ def _first_root(surface, h, flow, samples):  # noqa: C901
     """The earliest fall of a surface through zero within a step, from its start; None: none."""
     part = h / (len(samples) - 1)
     values = [surface(k * part, y) for k, y in enumerate(samples)]
-    slopes = [(surface(k * part, y, NUDGE) - values[k]) / NUDGE for k, y in enumerate(samples)]
+    slopes = [
+        (surface(k * part, y, NUDGE) - values[k]) / NUDGE for k, y in enumerate(samples)
+    ]
     largest = max(map(abs, values))
     if largest == 0:
         return None
@@ -183,7 +203,11 @@ def _first_root(surface, h, flow, samples):  # noqa: C901
     for k in range(1, len(values)):
         low, high = (k - 1) * part, k * part
         if values[k] > 0 or at(high) > 0:
-            if slopes[k - 1] >= 0 or slopes[k] < 0 or min(values[k - 1 : k + 1]) > largest / 10:
+            if (
+                slopes[k - 1] >= 0
+                or slopes[k] < 0
+                or min(values[k - 1 : k + 1]) > largest / 10
+            ):
                 continue
             low, high = max(low - part, 0), min(high + part, h)
             high = _root(lambda s: -slope(s), low, high)
@@ -259,7 +283,9 @@ def growth_of(run, motion):
             if exponent <= -13:
                 change = np.abs(other.state - motion.state).max() / size
                 growth = max(growth, float(change))
-                times = np.abs(np.sort(other.times) - np.array(motion.times[place:])) / size
+                times = (
+                    np.abs(np.sort(other.times) - np.array(motion.times[place:])) / size
+                )
                 of_times[place:] = np.maximum(of_times[place:], times.astype(float))
         if alike < len(runs):
             break
@@ -273,8 +299,12 @@ def derivative(data, solve, number, step):
     total = number(0)
     for k, weight in ((1, number(3) / 4), (2, -number(3) / 20), (3, number(1) / 60)):
         times = [
-            solve({**data} | {"parameters": data["parameters"] | {name: value}}).times[event]
-            for value in (number(data["parameters"][name]) + s * k * step for s in (1, -1))
+            solve({**data} | {"parameters": data["parameters"] | {name: value}}).times[
+                event
+            ]
+            for value in (
+                number(data["parameters"][name]) + s * k * step for s in (1, -1)
+            )
         ]
         total += weight * (times[0] - times[1]) / step
     return total
@@ -287,7 +317,10 @@ def reference_of(data):
         return {}
     motion = run()
     growth, of_times, margin = growth_of(run, motion)
-    found = {"state": list(map(float, motion.state)), "times": list(map(float, motion.times))}
+    found = {
+        "state": list(map(float, motion.state)),
+        "times": list(map(float, motion.times)),
+    }
     found |= {"kinds": motion.kinds, "growth": growth, "time_growth": of_times}
     found["margin"] = 0.0 if "tie" in data else margin
     if "derivative" in data:  # a difference of long doubles has no 15 digits left
@@ -303,7 +336,9 @@ def disagreement(reference, motion):
     Raises:
         ValueError: the events are others.
     """
-    order = np.lexsort((np.array(motion.kinds), np.round(np.array(motion.times, float), 12)))
+    order = np.lexsort(
+        (np.array(motion.kinds), np.round(np.array(motion.times, float), 12))
+    )
     kinds = [motion.kinds[i] for i in order]
     mine = np.lexsort((reference["kinds"], np.round(reference["times"], 12)))
     if kinds != [reference["kinds"][i] for i in mine]:
@@ -322,7 +357,10 @@ def disagreement(reference, motion):
 
 def main():
     """Write ``references.json``."""
-    lines = [f"{json.dumps(data['name'])}: {json.dumps(reference_of(data))}" for data in all_data()]
+    lines = [
+        f"{json.dumps(data['name'])}: {json.dumps(reference_of(data))}"
+        for data in all_data()
+    ]
     FILE.write_text("{\n" + ",\n".join(lines) + "\n}\n", "utf-8")
 
 

@@ -61,7 +61,11 @@ def test_solvers_of_one_name_and_tolerance_zero_are_refused(mine, tmp_path, caps
 
 @pytest.mark.parametrize(
     ("solver", "message"),
-    [("nobody", "one of"), ("nowhere.py:solve", "no file"), ("{here}:other", "no function")],
+    [
+        ("nobody", "one of"),
+        ("nowhere.py:solve", "no file"),
+        ("{here}:other", "no function"),
+    ],
 )
 def test_unknown_solver_is_refused(solver, message, mine, tmp_path, capsys):
     name = solver.replace("{here}", mine.rpartition(":")[0])

@@ -12,8 +12,18 @@ BLOCKS = re.findall(r"^```python\n(.*?)^```", PAGE, flags=re.MULTILINE | re.DOTA
 def test_example_of_a_solver_runs(tmp_path, capsys):
     (tmp_path / "mine.py").write_text(BLOCKS[0])
     solver = f"{tmp_path / 'mine.py'}:solve"
-    some = ["--problem", "thermostat", "--problem", "light barrier", "--tolerance", "1e-8"]
-    assert run(["benchmark", "--solver", solver, *some, "-o", str(tmp_path / "mine.nc")]) == 1
+    some = [
+        "--problem",
+        "thermostat",
+        "--problem",
+        "light barrier",
+        "--tolerance",
+        "1e-8",
+    ]
+    assert (
+        run(["benchmark", "--solver", solver, *some, "-o", str(tmp_path / "mine.nc")])
+        == 1
+    )
     text = capsys.readouterr().out
     assert "light barrier: 1e-08 silently wrong (2 missed" in text
     assert "thermostat: 1e-08" in text

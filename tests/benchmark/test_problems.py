@@ -20,7 +20,11 @@ SYSTEMS = {
     "chaotic impacts": lambda: impact_oscillator, "A1: hammering": brake,
 }  # fmt: skip
 """Problem that has the equations → system; the other problems have equations of their own."""
-CASES = {data["name"]: data for data in all_data() if data.get("system", data["name"]) in SYSTEMS}
+CASES = {
+    data["name"]: data
+    for data in all_data()
+    if data.get("system", data["name"]) in SYSTEMS
+}
 
 
 def traced(data, system):
@@ -38,11 +42,15 @@ def traced(data, system):
             made["to"].append(
                 [system.states_of(regime), text(condition), system.traced.kinds[kind]]
             )
-        made["reset"] = {system.states[i]: text(value) for i, value in symbols.reset.items()}
+        made["reset"] = {
+            system.states[i]: text(value) for i, value in symbols.reset.items()
+        }
         switches.append(made)
     rates = zip(system.states, system.traced.rates, strict=False)
     field = {name: text(rate) for name, rate in rates}
-    return Problem({**data, "regimes": system.regimes, "field": field, "switches": switches})
+    return Problem(
+        {**data, "regimes": system.regimes, "field": field, "switches": switches}
+    )
 
 
 @pytest.mark.parametrize("name", CASES)
@@ -51,7 +59,9 @@ def test_equations_are_those_of_the_system(name):
     system = SYSTEMS[data.get("system", name)]()
     ours, theirs = Problem(data), traced(data, system)
     assert ours.regimes == theirs.regimes
-    if data["class"] != "simultaneous":  # that one starts on two surfaces, in a regime of its own
+    if (
+        data["class"] != "simultaneous"
+    ):  # that one starts on two surfaces, in a regime of its own
         given = {**system.parameters, **data["parameters"], **data["start"], TIME: 0.0}
         given = {key: np.array([value]) for key, value in given.items()}
         assert ours.regime == system.states_of(int(system.first_regimes(given, 1)[0]))
@@ -61,6 +71,8 @@ def test_equations_are_those_of_the_system(name):
         for mine, other in zip(ours.switches, theirs.switches, strict=True):
             assert (mine.name, mine.leaves) == (other.name, other.leaves)
             assert mine.when(t, y, regime) == pytest.approx(other.when(t, y, regime))
-            (*to, after), (*other_to, other_after) = (s.fire(t, y, regime) for s in (mine, other))
+            (*to, after), (*other_to, other_after) = (
+                s.fire(t, y, regime) for s in (mine, other)
+            )
             assert to == other_to
             assert after == pytest.approx(other_after)

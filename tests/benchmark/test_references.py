@@ -23,7 +23,9 @@ SLOW = {
 }  # fmt: skip
 
 
-CASES = [pytest.param(name, marks=[pytest.mark.release] * (name in SLOW)) for name in DATA]
+CASES = [
+    pytest.param(name, marks=[pytest.mark.release] * (name in SLOW)) for name in DATA
+]
 
 
 @pytest.mark.parametrize("name", CASES)
@@ -35,14 +37,17 @@ QUICK = {"two gates", "shaken table", "A1: grazing contact"}
 
 
 @pytest.mark.parametrize(
-    "name", [pytest.param(n, marks=[pytest.mark.release] * (n not in QUICK)) for n in DATA]
+    "name",
+    [pytest.param(n, marks=[pytest.mark.release] * (n not in QUICK)) for n in DATA],
 )
 def test_long_double_gives_what_is_shipped(name):
     """And where it is not slow, what some hundred displaced runs give."""
     found, shipped = LongDouble(DATA[name])(), references()[name]
     assert found.kinds == shipped["kinds"]
     digits = 1e-16 if name in QUICK else 1e-15
-    assert found.state.astype(float).tolist() == pytest.approx(shipped["state"], rel=digits)
+    assert found.state.astype(float).tolist() == pytest.approx(
+        shipped["state"], rel=digits
+    )
     if name in QUICK or name not in SLOW:
         found = reference_of(DATA[name])
         assert found["margin"] == shipped["margin"]
@@ -55,7 +60,9 @@ def test_derivative_by_both_ways():
     data = next(data for data in DATA.values() if "derivative" in data)
     step = np.longdouble(2.0**-11)
     found = derivative(data, lambda changed: LongDouble(changed)(), np.longdouble, step)
-    assert references()[data["name"]]["derivative"] == pytest.approx(float(found), rel=1e-14)
+    assert references()[data["name"]]["derivative"] == pytest.approx(
+        float(found), rel=1e-14
+    )
 
 
 def test_a_small_enough_displacement_leaves_the_events_what_they_are():
@@ -65,12 +72,22 @@ def test_a_small_enough_displacement_leaves_the_events_what_they_are():
 
 def test_closed_forms():
     ball = references()["bouncing ball"]["times"]
-    flights = [math.sqrt(2.0)] + [2.0 * math.sqrt(2.0) * 0.9**n for n in range(1, len(ball))]
-    assert ball == pytest.approx([math.fsum(flights[: n + 1]) for n in range(len(ball))], rel=1e-14)
+    flights = [math.sqrt(2.0)] + [
+        2.0 * math.sqrt(2.0) * 0.9**n for n in range(1, len(ball))
+    ]
+    assert ball == pytest.approx(
+        [math.fsum(flights[: n + 1]) for n in range(len(ball))], rel=1e-14
+    )
     for depth in ("0.001", "1e-06", "1e-09"):
         first, second, *_ = references()[f"tangency, depth {depth}"]["times"]
-        assert second - first == pytest.approx(2.0 * math.acos(1.0 - float(depth)), rel=1e-6)
+        assert second - first == pytest.approx(
+            2.0 * math.acos(1.0 - float(depth)), rel=1e-6
+        )
     warm, cold, *_ = references()["thermostat"]["times"]
-    assert (warm, cold) == pytest.approx((math.log(2.0), 2.0 * math.log(2.0)), rel=1e-15)
-    assert references()["light barrier"]["times"] == pytest.approx([1 - 0.02**0.5, 1 + 0.02**0.5])
+    assert (warm, cold) == pytest.approx(
+        (math.log(2.0), 2.0 * math.log(2.0)), rel=1e-15
+    )
+    assert references()["light barrier"]["times"] == pytest.approx(
+        [1 - 0.02**0.5, 1 + 0.02**0.5]
+    )
     assert references()["saved instants"]["times"] == [1.0, 3.0, 5.0]

@@ -23,20 +23,27 @@ def _scored(name, times, kinds, state, *more, tol=TOL):
 
 def _knowable():
     found = {n: r for n, r in references().items() if r}
-    return [n for n, r in found.items() if len(r["times"]) > 1 and r["margin"] >= 100 * TOL]
+    return [
+        n for n, r in found.items() if len(r["times"]) > 1 and r["margin"] >= 100 * TOL
+    ]
 
 
 def test_truth_is_right_everywhere():
     for name in references():
         if "unknowable" not in DATA[name]:
-            assert score(DATA[name], references()[name], _truth(name), 1e-12).words == "right", name
+            assert (
+                score(DATA[name], references()[name], _truth(name), 1e-12).words
+                == "right"
+            ), name
 
 
 def test_dropped_event_is_missed_and_one_too_many_spurious():
     for name in _knowable():
         times, kinds, state, _ = _truth(name)
         for i in range(len(times)):
-            found = _scored(name, times[:i] + times[i + 1 :], kinds[:i] + kinds[i + 1 :], state)
+            found = _scored(
+                name, times[:i] + times[i + 1 :], kinds[:i] + kinds[i + 1 :], state
+            )
             assert (found.missed, found.spurious) == (1, 0), (name, i)
             assert found.words.startswith("silently wrong (1 missed"), (name, i)
         found = _scored(name, [*times, times[-1] + 0.1], [*kinds, kinds[-1]], state)
@@ -47,10 +54,14 @@ def test_dropped_event_is_missed_and_one_too_many_spurious():
 def test_swapped_events_are_out_of_order():
     for name in _knowable():
         times, kinds, state, _ = _truth(name)
-        apart = np.diff(times) > 200 * TOL * np.array(references()[name]["time_growth"][1:])
+        apart = np.diff(times) > 200 * TOL * np.array(
+            references()[name]["time_growth"][1:]
+        )
         for i in np.flatnonzero(apart):
             order = [*range(i), i + 1, i, *range(i + 2, len(times))]
-            found = _scored(name, [times[j] for j in order], [kinds[j] for j in order], state)
+            found = _scored(
+                name, [times[j] for j in order], [kinds[j] for j in order], state
+            )
             assert "silently wrong (1 out of order" in found.words, (name, i)
 
 
@@ -58,8 +69,16 @@ def test_swapped_events_are_out_of_order():
     ("name", "kept", "words"),
     [
         # at 1e-6 the last impacts cannot be known, the first can
-        ("bouncing ball", lambda times: [times[1], times[0], *times[2:]], "1 out of order"),
-        ("chaotic impacts", lambda times: times[1:], "1 missed"),  # but not the last ones
+        (
+            "bouncing ball",
+            lambda times: [times[1], times[0], *times[2:]],
+            "1 out of order",
+        ),
+        (
+            "chaotic impacts",
+            lambda times: times[1:],
+            "1 missed",
+        ),  # but not the last ones
     ],
 )
 def test_known_events_are_judged_where_later_ones_are_not(name, kept, words):
@@ -91,9 +110,13 @@ def test_late_events_are_an_error():
 
 def test_flag_is_not_silence():
     times, kinds, state, _ = _truth("two gates")
-    assert _scored("two gates", times[1:], kinds[1:], state, "lost").words.startswith("flagged (1 ")
+    assert _scored("two gates", times[1:], kinds[1:], state, "lost").words.startswith(
+        "flagged (1 "
+    )
     assert _scored("chattering", [], [], []).verdict == Reliability.silently_wrong
-    assert _scored("chattering", [], [], [], "accumulation").verdict == Reliability.flagged
+    assert (
+        _scored("chattering", [], [], [], "accumulation").verdict == Reliability.flagged
+    )
 
 
 def test_simultaneous_events_have_no_order_and_others_are_out_of_it_by_their_kinds_alone():
@@ -107,15 +130,23 @@ def test_simultaneous_events_have_no_order_and_others_are_out_of_it_by_their_kin
 
 def test_list_is_not_judged_where_the_tolerance_cannot_know_it():
     *_, state, _ = _truth("tangency, depth 1e-09")
-    assert _scored("tangency, depth 1e-09", [], [], state, tol=1e-6).words == "right (4 missed)"
-    assert "silently wrong" in _scored("tangency, depth 1e-09", [], [], state, tol=1e-12).words
+    assert (
+        _scored("tangency, depth 1e-09", [], [], state, tol=1e-6).words
+        == "right (4 missed)"
+    )
+    assert (
+        "silently wrong"
+        in _scored("tangency, depth 1e-09", [], [], state, tol=1e-12).words
+    )
 
 
 def test_derivative_counts_where_it_is_given():
     name = "time of the third impact"
     times, kinds, state, _ = _truth(name)
     slope = references()[name]["derivative"]
-    assert solver("squealpipe")(Problem(DATA[name]), TOL)[5] == pytest.approx(slope, rel=1e-10)
+    assert solver("squealpipe")(Problem(DATA[name]), TOL)[5] == pytest.approx(
+        slope, rel=1e-10
+    )
     assert _scored(name, times, kinds, state, "", slope).words == "right"
     assert "error" in _scored(name, times, kinds, state, "", 1.01 * slope).words
 
@@ -126,7 +157,9 @@ def test_exception_and_endless_solver_are_flagged():
             problem.field(0.0, problem.start)
 
     assert "gave up" in measure(DATA["two gates"], endless, TOL).words
-    assert measure(DATA["two gates"], lambda *_: 1 / 0, TOL).words.startswith("flagged (Zero")
+    assert measure(DATA["two gates"], lambda *_: 1 / 0, TOL).words.startswith(
+        "flagged (Zero"
+    )
 
 
 @pytest.mark.parametrize("time", [np.nan, np.inf, -np.inf])
@@ -140,10 +173,19 @@ def test_event_time_that_is_no_number_is_an_error(time):
     ("change", "words"),
     [
         (lambda times, kinds, state, n: (times, kinds, state), "flagged (ValueError"),
-        (lambda times, kinds, state, n: (times, kinds[:1], state, n), "flagged (ValueError: 2 tim"),
-        (lambda times, kinds, state, n: (times, kinds, state, None), "flagged (TypeError"),
+        (
+            lambda times, kinds, state, n: (times, kinds[:1], state, n),
+            "flagged (ValueError: 2 tim",
+        ),
+        (
+            lambda times, kinds, state, n: (times, kinds, state, None),
+            "flagged (TypeError",
+        ),
         (lambda times, kinds, state, n: (times, kinds, state, n, None), "right"),
-        (lambda times, kinds, state, n: (times, kinds, [np.nan] * 2, n), "silently wrong (error"),
+        (
+            lambda times, kinds, state, n: (times, kinds, [np.nan] * 2, n),
+            "silently wrong (error",
+        ),
     ],
 )
 def test_malformed_answer_does_not_end_the_run(change, words):
@@ -156,9 +198,14 @@ def test_our_engine_is_never_silently_wrong():
     for name, data in DATA.items():
         for tol in (1e-6, 1e-8, 1e-12):
             found = measure(data, ours, tol)
-            assert found.verdict in {Reliability.right, Reliability.flagged}, (name, found.words)
+            assert found.verdict in {Reliability.right, Reliability.flagged}, (
+                name,
+                found.words,
+            )
             if "unknowable" in data or tol in {1e-8, 1e-12}:
-                assert (found.verdict == Reliability.right) == ("unknowable" not in data), name
+                assert (found.verdict == Reliability.right) == (
+                    "unknowable" not in data
+                ), name
 
 
 @pytest.mark.parametrize("tol", [1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12])
@@ -188,7 +235,9 @@ def test_shipped_solvers_get_an_easy_problem_right(name):
 
 
 def test_dataset_has_its_schema():
-    found = benchmark({"DOP853": solver("DOP853")}, names=["two gates"], tolerances=[1e-6, 1e-8])
+    found = benchmark(
+        {"DOP853": solver("DOP853")}, names=["two gates"], tolerances=[1e-6, 1e-8]
+    )
     assert found.verdict.dims == ("problem", "solver", "tol")
     assert found.attrs["benchmark_version"] == BENCHMARK_VERSION
     with pytest.raises(ValueError, match="unknown"):

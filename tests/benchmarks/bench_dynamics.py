@@ -45,10 +45,15 @@ def main():
     angles = np.linspace(0, np.pi, 24)
     pairs = np.random.default_rng(0).uniform(0, np.pi, (5, 2))
     public = statistics.median(
-        median(lambda pair=pair: simulate_scipy(BASELINE, *pair, t_end=200.0, tol=1e-12), repeats=1)
+        median(
+            lambda pair=pair: simulate_scipy(BASELINE, *pair, t_end=200.0, tol=1e-12),
+            repeats=1,
+        )
         for pair in pairs
     )
-    print("\nEnsembles, T = 200, 24 × 24 angles, all events and outputs, 1e-12, one core")
+    print(
+        "\nEnsembles, T = 200, 24 × 24 angles, all events and outputs, 1e-12, one core"
+    )
     print(f"  scipy DOP853 1e-12, 5 random pairs {1e6 * public:7.0f} µs a trajectory")
     for tangent in (False, True):
         seconds = median(
@@ -62,22 +67,34 @@ def main():
             f"  {label:30} {1e6 * each:7.1f} µs a trajectory, DOP853 over ours {public / each:.0f}"
         )
     angles = np.linspace(0, np.pi, 181)
-    for workers, kind, clock in ((1, "CPU", time.process_time), (None, "wall", time.perf_counter)):
+    for workers, kind, clock in (
+        (1, "CPU", time.process_time),
+        (None, "wall", time.perf_counter),
+    ):
         seconds = median(
-            lambda w=workers: validity_map(BASELINE, angles, angles, workers=w), clock=clock
+            lambda w=workers: validity_map(BASELINE, angles, angles, workers=w),
+            clock=clock,
         )
         print(f"  validity map 181 × 181, workers = {workers}: {seconds:.2f} s {kind}")
     cold = [
-        float(subprocess.run([sys.executable, "-c", COLD], capture_output=True, check=True).stdout)
+        float(
+            subprocess.run(
+                [sys.executable, "-c", COLD], capture_output=True, check=True
+            ).stdout
+        )
         for _ in range(3)
     ]
-    print(f"  the same from a cold process, imports included: {statistics.median(cold):.2f} s CPU")
+    print(
+        f"  the same from a cold process, imports included: {statistics.median(cold):.2f} s CPU"
+    )
     started = time.perf_counter()
     refined = refine_validity_map(BASELINE, resolution=1441, coarse=91)
     seconds = time.perf_counter() - started
     share = float(refined.computed.mean())
     memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
-    print(f"  refined map 1441 × 1441: {seconds:.2f} s, {share:.1%} of the runs, {memory:.0f} MiB")
+    print(
+        f"  refined map 1441 × 1441: {seconds:.2f} s, {share:.1%} of the runs, {memory:.0f} MiB"
+    )
 
 
 if __name__ == "__main__":

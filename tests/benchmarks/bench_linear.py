@@ -43,10 +43,14 @@ def main():
     print(f"{'numeric eigenvalues':24} {numeric:8.3f} s")
     for task in (quasi_static_map, stability_map, natural_frequencies):
         seconds = best(lambda task=task: task(PARAMS, ANGLES, ANGLES))
-        print(f"{task.__name__:24} {seconds:8.3f} s  {seconds / numeric:6.2f} of numeric")
+        print(
+            f"{task.__name__:24} {seconds:8.3f} s  {seconds / numeric:6.2f} of numeric"
+        )
     infer_parameters(PARAMS, samples=64)
     seconds = best(lambda: infer_parameters(PARAMS, samples=SAMPLES), repeats=1)
-    print(f"{'infer_parameters':24} {seconds:8.3f} s  {1e6 * seconds / SAMPLES:6.0f} µs a sample")
+    print(
+        f"{'infer_parameters':24} {seconds:8.3f} s  {1e6 * seconds / SAMPLES:6.0f} µs a sample"
+    )
 
 
 if __name__ == "__main__":

@@ -19,7 +19,10 @@ from squealpipe.tasks.dynamics.runs import validity_map
 
 
 def cpu_seconds():
-    used = [resource.getrusage(who) for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)]
+    used = [
+        resource.getrusage(who)
+        for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)
+    ]
     return sum(item.ru_utime + item.ru_stime for item in used)
 
 

@@ -13,7 +13,11 @@ from squealpipe.tasks.dynamics.hammering import hammering_map
 from squealpipe.tasks.dynamics.runs import simulate, validity_map
 from squealpipe.tasks.dynamics.whirl import transient_lifetimes
 from squealpipe.tasks.inference.inference import infer_parameters
-from squealpipe.tasks.linear.maps import natural_frequencies, quasi_static_map, stability_map
+from squealpipe.tasks.linear.maps import (
+    natural_frequencies,
+    quasi_static_map,
+    stability_map,
+)
 
 POINTS = 41
 """Multiples of π/40: holds 0.4π, 0.5π and π."""
@@ -41,7 +45,11 @@ def compute_evidence(params, reading="along_plus_x", *, beside=False):
         params, samples=24, reading=reading, kappa=(0.55, 0.7), mu=(0.28, 0.31),
         length_ratio=(8.0, 16.0), speed_ratio=(90.0, 110.0), workers=1,
     )  # fmt: skip
-    return found | of_one_sign(corrected(params, reading)) | of_a4(for_linear(params, reading))
+    return (
+        found
+        | of_one_sign(corrected(params, reading))
+        | of_a4(for_linear(params, reading))
+    )
 
 
 def of_the_paper(params, model):
@@ -60,12 +68,18 @@ def of_the_paper(params, model):
             params, angles, angles, t_end=25.0 * unit, model=model, workers=1
         ),
     }
-    runs = {name: (name, scene.t_end, model) for name, scene in SCENES.items() if scene.figure <= 5}
+    runs = {
+        name: (name, scene.t_end, model)
+        for name, scene in SCENES.items()
+        if scene.figure <= 5
+    }
     runs |= {f"{name}_long": (name, 3000.0, model) for name in ("F3", "F4")}
     runs["F2a_printed"] = ("F2a", 50.0, "A1-as-printed")
     for name, (scene, t_end, of_model) in runs.items():
         angles_of = SCENES[scene].alpha1, SCENES[scene].alpha2
-        found[f"simulate/{name}"] = simulate(params, *angles_of, t_end=t_end * unit, model=of_model)
+        found[f"simulate/{name}"] = simulate(
+            params, *angles_of, t_end=t_end * unit, model=of_model
+        )
     return found
 
 
@@ -75,8 +89,12 @@ def of_one_sign(params):
     angles = np.linspace(0.0, np.pi, POINTS)[::4]
     return {
         "assumptions": check_assumptions(params),
-        "transient": transient_lifetimes(params, samples=8, t_end=4000.0 * unit, workers=1),
-        "hammering_map": hammering_map(params, angles, angles, t_end=50.0 * unit, workers=1),
+        "transient": transient_lifetimes(
+            params, samples=8, t_end=4000.0 * unit, workers=1
+        ),
+        "hammering_map": hammering_map(
+            params, angles, angles, t_end=50.0 * unit, workers=1
+        ),
     }
 
 
@@ -84,7 +102,9 @@ def of_a4(params):
     """Periodic motions of A4."""
     scenes = {"F10": (0.5 * np.pi, np.pi, 2), "coupled": (0.3 * np.pi, 0.9 * np.pi, 2)}
     return {"harmonic_forms": compare_harmonic_forms(params, scenes)} | {
-        f"backbone/{name}_mode{mode}": backbone(params, scene.alpha1, scene.alpha2, mode=mode)
+        f"backbone/{name}_mode{mode}": backbone(
+            params, scene.alpha1, scene.alpha2, mode=mode
+        )
         for name, scene in SCENES.items()
         if scene.figure > 5
         for mode in (1, 2)

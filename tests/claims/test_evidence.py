@@ -31,8 +31,14 @@ def test_no_number_no_verdict():
         ("1.2e+09 cells", "1.2·10⁹ cells"),
         ("DOP853, tolerance 1e-08", "DOP853, tolerance 10⁻⁸"),
         ("K12 at 0.25 and -2.5e-07", "K12 at 0.25 and −2.5·10⁻⁷"),
-        ("x = -0.126 l_pre, (-1, -.5), from 3 to -4", "x = −0.126 l_pre, (−1, −.5), from 3 to −4"),
-        ("sets 2-4 of A1-no-stick, backbone/F10-1", "sets 2-4 of A1-no-stick, backbone/F10-1"),
+        (
+            "x = -0.126 l_pre, (-1, -.5), from 3 to -4",
+            "x = −0.126 l_pre, (−1, −.5), from 3 to −4",
+        ),
+        (
+            "sets 2-4 of A1-no-stick, backbone/F10-1",
+            "sets 2-4 of A1-no-stick, backbone/F10-1",
+        ),
     ],
 )
 def test_numbers_are_written_as_people_write(text, written):

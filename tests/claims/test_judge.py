@@ -29,7 +29,11 @@ def claims(evidence, baseline):
 
 
 def test_verdicts_at_the_baseline_are_those_recorded(claims):
-    assert [statement.id for statement in STATEMENTS] == CLAIMS == claims.claim.values.tolist()
+    assert (
+        [statement.id for statement in STATEMENTS]
+        == CLAIMS
+        == claims.claim.values.tolist()
+    )
     differing = claims.claim.values[(claims.verdict_here != claims.recorded).values]
     assert list(differing) == []
     assert np.isfinite(claims.value).all()
@@ -42,14 +46,22 @@ def test_rows_name_their_origin_and_the_datasets_that_were_read(claims):
     assert sum(row["origin"] == "paper" for row in table_.values()) == len(CLAIMS) - 12
     read = {name: row["dataset"].split("; ") for name, row in table_.items()}
     assert {one.split(" (")[0] for each in read.values() for one in each} == set(READ)
-    assert [one.split(" (")[0] for one in read["F5a"]] == ["simulate/F5a", "simulate/F5b"]
+    assert [one.split(" (")[0] for one in read["F5a"]] == [
+        "simulate/F5a",
+        "simulate/F5b",
+    ]
 
 
 @pytest.mark.parametrize(
     ("params", "reason"),
-    [(Parameters(), "not computed yet"), (Parameters(damping1=0.02), "cannot carry damping1")],
+    [
+        (Parameters(), "not computed yet"),
+        (Parameters(damping1=0.02), "cannot carry damping1"),
+    ],
 )
-def test_without_datasets_nothing_is_decided_and_the_reason_names_what_is_missing(params, reason):
+def test_without_datasets_nothing_is_decided_and_the_reason_names_what_is_missing(
+    params, reason
+):
     found = judge(params, {}, "as_printed")
     assert (found.verdict == Verdict.cannot_be_decided).all()
     assert all(reason in str(text) for text in found.evidence.values)
@@ -57,14 +69,23 @@ def test_without_datasets_nothing_is_decided_and_the_reason_names_what_is_missin
 
 def test_what_changes_where_the_sign_is_mended(claims, evidence, baseline):
     """F3 has a bound with one sign throughout, and Fig. 7 no black region."""
-    changed = {row["id"]: row["corrected_verdict"] for row in rows(claims) if row["changes"]}
+    changed = {
+        row["id"]: row["corrected_verdict"] for row in rows(claims) if row["changes"]
+    }
     assert changed == CHANGED
-    plain = {name: data for name, data in evidence.items() if not name.startswith("corrected/")}
+    plain = {
+        name: data
+        for name, data in evidence.items()
+        if not name.startswith("corrected/")
+    }
     assert not any(row["changes"] for row in rows(judge(baseline, plain, "as_printed")))
 
 
 def test_a_grid_without_the_cell_gives_a_reason(evidence, baseline):
-    coarse = {**evidence, "stability_map": evidence["stability_map"].isel(alpha1=slice(0, None, 3))}
+    coarse = {
+        **evidence,
+        "stability_map": evidence["stability_map"].isel(alpha1=slice(0, None, 3)),
+    }
     claims = judge(baseline, coarse, "as_printed").sel(claim="F6d")
     assert int(claims.verdict) == Verdict.cannot_be_decided
     assert "no cell (0.4π, 0.6π)" in str(claims.evidence.item())
@@ -88,7 +109,9 @@ def test_exit_code(tmp_path, evidence, parameters, change, code):
     assert set(found[0]) >= set(columns.split())
 
 
-def test_a_statement_that_divides_the_feasible_set_depends_on_the_parameters(evidence, baseline):
+def test_a_statement_that_divides_the_feasible_set_depends_on_the_parameters(
+    evidence, baseline
+):
     inference = evidence["parameter_inference"].copy(deep=True)
     inference.feasible_share[:, list(inference.consequence.values).index("S3")] = 0.7
     data = {**evidence, "parameter_inference": inference}
@@ -98,9 +121,13 @@ def test_a_statement_that_divides_the_feasible_set_depends_on_the_parameters(evi
     assert float(claims.feasible_share) == pytest.approx(0.7)
 
 
-def test_each_row_says_whether_it_was_fitted_or_is_predicted(claims, evidence, baseline):
+def test_each_row_says_whether_it_was_fitted_or_is_predicted(
+    claims, evidence, baseline
+):
     """What defined the feasible set is no evidence for it: only predictions get a share."""
-    constraints = [str(name) for name in evidence["parameter_inference"].statement.values]
+    constraints = [
+        str(name) for name in evidence["parameter_inference"].statement.values
+    ]
     # E10 is Fig. 7's black region, whose constraint has a name of its own
     constraints = [*(name for name in constraints if name in claims.claim), "E10"]
     fitted = claims.sel(claim=constraints)
@@ -112,7 +139,9 @@ def test_each_row_says_whether_it_was_fitted_or_is_predicted(claims, evidence, b
     assert set(shared.claim.values) == {"S3", "F6b", "F6c", "F8c", "C2", "E8"}
     size = int(of_study(evidence["parameter_inference"]).feasible_count)
     assert (shared.feasible_count == size).all()
-    alone = {name: data for name, data in evidence.items() if name != "parameter_inference"}
+    alone = {
+        name: data for name, data in evidence.items() if name != "parameter_inference"
+    }
     assert (judge(baseline, alone, "as_printed").basis == Basis.unknown).all()
 
 
@@ -125,7 +154,10 @@ def test_one_threshold_of_growth_for_the_figure_and_the_verdict(evidence, baseli
     for growth, black in ((1.9, 0), (2.0, 1)):
         changed = validity.response_growth.copy()
         changed.values[tuple(np.argwhere(kept)[0])] = growth
-        maps = {"stability_map": stable, "validity_map": validity.assign(response_growth=changed)}
+        maps = {
+            "stability_map": stable,
+            "validity_map": validity.assign(response_growth=changed),
+        }
         row = judge(baseline, {**evidence, **maps}, "as_printed").sel(claim="E10")
         assert float(row.value) == black
         caption = fig07.caption({"validity_map": maps["validity_map"]})

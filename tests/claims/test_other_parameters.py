@@ -15,18 +15,25 @@ LONG_RUNS = ("F3", "F4", "F9b")
 """Values of chaotic length or of ties between cells: verdicts are compared only."""
 
 
-def test_verdicts_and_dimensionless_values_do_not_depend_on_the_units(evidence, baseline):
+def test_verdicts_and_dimensionless_values_do_not_depend_on_the_units(
+    evidence, baseline
+):
     params = Parameters(
         mass=4.0, k1=100.0, k2=100.0, k3=65.0, mu=baseline.mu, preload=0.25, length1=3.75,
         length2=3.75, belt_speed=125.0, sigma=4000.0,
     )  # fmt: skip
     assert np.isclose(params.speed_ratio, baseline.speed_ratio)
     scaled = compute_evidence(params, "as_printed", beside=True)
-    first, second = judge(baseline, evidence, "as_printed"), judge(params, scaled, "as_printed")
+    first, second = (
+        judge(baseline, evidence, "as_printed"),
+        judge(params, scaled, "as_printed"),
+    )
     np.testing.assert_array_equal(first.corrected_verdict, second.corrected_verdict)
     np.testing.assert_array_equal(first.verdict_here, second.verdict_here)
     kept = ~np.isin(first.claim.values, LONG_RUNS)
-    np.testing.assert_allclose(first.value[kept], second.value[kept], rtol=1e-6, atol=1e-8)
+    np.testing.assert_allclose(
+        first.value[kept], second.value[kept], rtol=1e-6, atol=1e-8
+    )
 
 
 OTHERS = {
@@ -43,7 +50,9 @@ def test_evidence_states_its_data(params):
     data = compute_evidence(params)
     table = {row["id"]: row for row in rows(judge(params, data))}
     text = {name: row["evidence"] for name, row in table.items()}
-    assert not [name for name, words in text.items() if re.search(r"\b(nan|inf)\b", words)]
+    assert not [
+        name for name, words in text.items() if re.search(r"\b(nan|inf)\b", words)
+    ]
     assert all(row["value"] is not None for row in table.values())
     unstable = data["stability_map"].regime_linear.values > 0
     black = data["validity_boundary"].kept.values & unstable

@@ -46,7 +46,10 @@ TWO_FREQUENCIES = put("frequency", lambda d: d.frequency * (1.0 + 0.01 * (d.mode
 SHIFTED, FASTER = put("omega", lambda d: d.omega + 0.1), scaled("omega", 1.1)
 ONE_MODE = put("omega", lambda d: d.omega.where(d.mode == 1, d.omega.sel(mode=1)))
 SEPARATED = put("omega", lambda d: 0 * d.omega + d.omega.sel(contact_state="separated"))
-HALF = put("omega", lambda d: d.omega.where((d.mode != 1) | (d.contact_state != "separated"), 0.5))
+HALF = put(
+    "omega",
+    lambda d: d.omega.where((d.mode != 1) | (d.contact_state != "separated"), 0.5),
+)
 FLIPS = [
     ("T1", "assumptions", HELD, HOLDS),
     ("T1", "assumptions", put("held", lambda d: 0 * d.held), FAILS),
@@ -116,9 +119,13 @@ FLIPS = [
 
 
 @pytest.mark.parametrize(
-    ("claim", "dataset", "change", "verdict"), FLIPS, ids=[f"{flip[0]}-{flip[1]}" for flip in FLIPS]
+    ("claim", "dataset", "change", "verdict"),
+    FLIPS,
+    ids=[f"{flip[0]}-{flip[1]}" for flip in FLIPS],
 )
-def test_the_verdict_flips(claim, dataset, change, verdict, evidence, baseline, monkeypatch):
+def test_the_verdict_flips(
+    claim, dataset, change, verdict, evidence, baseline, monkeypatch
+):
     (statement,) = (statement for statement in STATEMENTS if statement.id == claim)
     assert verdict != statement.recorded
     monkeypatch.setattr(judging, "STATEMENTS", [statement])

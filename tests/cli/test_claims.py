@@ -70,7 +70,10 @@ def test_only_a_verdict(file, capsys):
     ("words", "message"),
     [
         (["XYZ"], "no statement 'XYZ'; known: T1"),
-        (["--only", "maybe"], "no statement has this verdict; cannot be decided, depends on"),
+        (
+            ["--only", "maybe"],
+            "no statement has this verdict; cannot be decided, depends on",
+        ),
     ],
 )
 def test_wrong_requests_say_what_there_is(words, message, file, capsys):

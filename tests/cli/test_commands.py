@@ -48,7 +48,10 @@ def test_version_and_help_without_numerics(capsys):
         (["sweep", "stability_map", "--vary", "mu"], "write for instance mu=0:0.6:13"),
         ([*SWEPT, "--vary", "mu=1,2", "--vary", "mu=3,4"], "--vary mu is a duplicate"),
         ([*DISTRIBUTED, "mu=uniform:0.1"], "mu=uniform:0.1:0.9"),
-        ([*DISTRIBUTED, "mu=uniform:0:1", "--mu", "0.3"], "mu is both fixed and distributed"),
+        (
+            [*DISTRIBUTED, "mu=uniform:0:1", "--mu", "0.3"],
+            "mu is both fixed and distributed",
+        ),
         ([*SWEPT, "--vary", "friction_law=coulomb,exponential"], "sweep once for each"),
         (["simulate", "1", "2", "3"], "too many arguments: 3"),
         (["simulate", "72", "108"], "72: more than a full turn; angles are in rad"),
@@ -63,7 +66,9 @@ def test_version_and_help_without_numerics(capsys):
         ),
     ],
 )
-def test_wrong_input_is_one_message_with_its_remedy(arguments, message, capsys, tmp_path):
+def test_wrong_input_is_one_message_with_its_remedy(
+    arguments, message, capsys, tmp_path
+):
     assert run(arguments) == 2
     told = capsys.readouterr().err
     assert told.startswith("squealpipe: ")
@@ -73,8 +78,22 @@ def test_wrong_input_is_one_message_with_its_remedy(arguments, message, capsys, 
 
 
 def test_propensity_writes_shares_and_a_picture(capsys):
-    spread = ["--distribution", "mu=uniform:0.1:0.9", "--distribution", "alpha2=normal:55deg:3deg"]
-    command = ["propensity", "0.07pi", "0.305pi", *spread, "--samples", "64", "--t-end", "20"]
+    spread = [
+        "--distribution",
+        "mu=uniform:0.1:0.9",
+        "--distribution",
+        "alpha2=normal:55deg:3deg",
+    ]
+    command = [
+        "propensity",
+        "0.07pi",
+        "0.305pi",
+        *spread,
+        "--samples",
+        "64",
+        "--t-end",
+        "20",
+    ]
     assert run([*command, "-o", "p.nc"]) == 0
     dataset = load("p.nc")
     assert dataset.input.values.tolist() == ["mu", "alpha2"]
@@ -83,7 +102,10 @@ def test_propensity_writes_shares_and_a_picture(capsys):
 
 
 def test_simulate_writes_a_run_and_a_picture_and_sums_it_up(capsys, tmp_path):
-    assert run(["simulate", "5pi/6", "150deg", "--t-end", "30", "-o", "a/hammering.nc"]) == 0
+    assert (
+        run(["simulate", "5pi/6", "150deg", "--t-end", "30", "-o", "a/hammering.nc"])
+        == 0
+    )
     out = capsys.readouterr().out
     dataset = load("a/hammering.nc")
     first = float(dataset.event_time[0])
@@ -97,8 +119,14 @@ def test_simulate_writes_a_run_and_a_picture_and_sums_it_up(capsys, tmp_path):
 @pytest.mark.parametrize(
     ("command", "words"),
     [
-        (["simulate", "0", "pi", "--x0", "15"], "singular_geometry (the mass met a pivot"),
-        (["cycle", "0.305pi", "0.07pi", "--damping1", "1", "--t-settle", "50"], "no periodic mot"),
+        (
+            ["simulate", "0", "pi", "--x0", "15"],
+            "singular_geometry (the mass met a pivot",
+        ),
+        (
+            ["cycle", "0.305pi", "0.07pi", "--damping1", "1", "--t-settle", "50"],
+            "no periodic mot",
+        ),
     ],
 )
 def test_what_finds_no_answer_says_why(command, words, capsys):
@@ -134,7 +162,18 @@ def test_sweep_writes_one_dataset(capsys):
 
 def test_compare_tells_equal_from_different_by_its_exit_code(capsys):
     for name, friction in (("a", "0.2"), ("b", "0.2"), ("c", "0.4")):
-        run(["map", "stability", "--alpha1", "0:pi:7", "--mu", friction, "-o", f"{name}.nc"])
+        run(
+            [
+                "map",
+                "stability",
+                "--alpha1",
+                "0:pi:7",
+                "--mu",
+                friction,
+                "-o",
+                f"{name}.nc",
+            ]
+        )
     assert run(["compare", "a.nc", "b.nc"]) == 0
     assert run(["compare", "a.nc", "c.nc"]) == 1
     out = capsys.readouterr().out
@@ -161,9 +200,13 @@ def test_cycle_and_branch_go_together(capsys):
     branch = load("branch.nc")
     assert float(branch.belt_speed[-1]) == pytest.approx(0.55, rel=1e-12)
     assert float(branch.period[0]) == pytest.approx(float(found.period), rel=1e-9)
-    state = ",".join(str(float(found[f"{name}_start"])) for name in ("x", "y", "vx", "vy"))
+    state = ",".join(
+        str(float(found[f"{name}_start"])) for name in ("x", "y", "vx", "vy")
+    )
     assert run(["cycle", *scene, "--guess", state, "-o", "again.nc"]) == 0
-    assert float(load("again.nc").period) == pytest.approx(float(found.period), rel=1e-9)
+    assert float(load("again.nc").period) == pytest.approx(
+        float(found.period), rel=1e-9
+    )
     assert Path("branch.png").stat().st_size > 1000
     assert plot(branch).get_xlabel() == "belt_speed (m/s)"
 
@@ -171,11 +214,23 @@ def test_cycle_and_branch_go_together(capsys):
 @pytest.mark.parametrize(
     ("command", "words"),
     [
-        (["basin", "1", "2", "--vx", "-3:3:3", "--vy", "0,1", "--t-end", "20"], "of 6 cells"),
-        (["disturbance", "0.75pi", "0.75pi", "--t-end", "20", "--directions", "8"], "found: 0."),
-        (["choose", "0.75pi", "0.75pi", "max_displacement", "--t-end", "20"], "displacement: 0."),
+        (
+            ["basin", "1", "2", "--vx", "-3:3:3", "--vy", "0,1", "--t-end", "20"],
+            "of 6 cells",
+        ),
+        (
+            ["disturbance", "0.75pi", "0.75pi", "--t-end", "20", "--directions", "8"],
+            "found: 0.",
+        ),
+        (
+            ["choose", "0.75pi", "0.75pi", "max_displacement", "--t-end", "20"],
+            "displacement: 0.",
+        ),
         (["infer", "--samples", "16", "--kappa", "0.64,0.66"], "of 16 sets meet every"),
-        (["refine", "--resolution", "17", "--coarse", "9", "--t-end", "5"], "of 289 cells"),
+        (
+            ["refine", "--resolution", "17", "--coarse", "9", "--t-end", "5"],
+            "of 289 cells",
+        ),
     ],
 )
 def test_every_ability_has_a_command(command, words, capsys):

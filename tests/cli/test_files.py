@@ -77,7 +77,16 @@ def test_csv_of_a_run_has_its_events_beside_it(tmp_path):
 
 
 def test_csv_of_a_sweep_has_the_longest_table_first(tmp_path, capsys):
-    swept = ["sweep", "simulate", "--vary", "mu=0.1,0.3", "--alpha1", "2", "--alpha2", "2.5"]
+    swept = [
+        "sweep",
+        "simulate",
+        "--vary",
+        "mu=0.1,0.3",
+        "--alpha1",
+        "2",
+        "--alpha2",
+        "2.5",
+    ]
     assert run([*swept, "--option", "t_end=2", "--workers", "1", "-o", "s.csv"]) == 0
     table = read("s.csv")
     assert list(table.columns[:3]) == ["mu", "time", "x"]
@@ -90,7 +99,9 @@ def test_parameters_come_from_a_study_unless_they_are_typed(tmp_path):
     (tmp_path / "soft.yaml").write_text("parameters: {k1: 2.0, k3: 0.6, mu: 0.1}\n")
     assert run(["map", "frequencies", "-c", "soft.yaml", "--k3", "3", "--alpha1", "1,2",
                 "--alpha2", "0.5,0.7", "-o", "f.nc"]) == 0  # fmt: skip
-    expected = natural_frequencies(Parameters(k1=2.0, k3=3.0, mu=0.1), [1.0, 2.0], [0.5, 0.7])
+    expected = natural_frequencies(
+        Parameters(k1=2.0, k3=3.0, mu=0.1), [1.0, 2.0], [0.5, 0.7]
+    )
     np.testing.assert_array_equal(load("f.nc").omega, expected.omega)
     state = ["--x0", "0.2", "--y0=-0.1", "--vx0", "0.3", "--vy0", "0.4"]
     assert run(["simulate", "2", "2.5", "--t-end", "5", "--points", "20", *state]) == 0
@@ -135,7 +146,9 @@ def test_unexpected_errors_are_one_line_and_a_traceback_on_request(capsys, monke
     assert "Traceback" in capsys.readouterr().err
 
 
-@pytest.mark.parametrize(("word", "stream", "code"), [("no", "stderr", 2), ("--help", "stdout", 0)])
+@pytest.mark.parametrize(
+    ("word", "stream", "code"), [("no", "stderr", 2), ("--help", "stdout", 0)]
+)
 def test_a_reader_that_goes_away_leaves_the_exit_code(word, stream, code):
     program = "from squealpipe.cli import main; main()"
     reader, writer = os.pipe()
@@ -158,7 +171,9 @@ def test_init_writes_an_overlay_of_the_paper_to_edit(tmp_path, capsys):
     body = text[text.index("\n\n") :]
     assert "  # damping1: 0.0 # " in text
     live = "\n".join(line.removeprefix("# ") for line in body.splitlines())
-    assert parse_study(yaml.safe_load(live)).slice("dynamics") == parse_study({}).slice("dynamics")
+    assert parse_study(yaml.safe_load(live)).slice("dynamics") == parse_study({}).slice(
+        "dynamics"
+    )
     assert "squealpipe run --config mine.yaml" in capsys.readouterr().out
 
 

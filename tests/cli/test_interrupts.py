@@ -48,7 +48,9 @@ def test_a_workflow_is_interrupted_and_waited_for(tmp_path):
         "except KeyboardInterrupt:\n    open(sys.argv[1], 'w').close()"
     )
     signal.setitimer(signal.ITIMER_REAL, 2.0)
-    before = signal.signal(signal.SIGALRM, lambda *_: signal.raise_signal(signal.SIGINT))
+    before = signal.signal(
+        signal.SIGALRM, lambda *_: signal.raise_signal(signal.SIGINT)
+    )
     try:
         with pytest.raises(KeyboardInterrupt):
             _to_its_end([sys.executable, "-c", code, str(tmp_path / "tidied")])

@@ -27,16 +27,38 @@ def test_simulate_works_where_the_terminal_is_ascii():
 
 def test_symbols_of_the_paper_are_understood_or_name_their_key(tmp_path, capsys):
     grid = ["--alpha1", "0:pi:2", "--alpha2", "0:pi:2"]
-    command = ["map", "stability", *grid, "--V", "-3", "--L1=7", "--m", "2", "-o", "m.nc"]
+    command = [
+        "map",
+        "stability",
+        *grid,
+        "--V",
+        "-3",
+        "--L1=7",
+        "--m",
+        "2",
+        "-o",
+        "m.nc",
+    ]
     assert run(command) == 0
     found = load("m.nc").attrs["parameters"]
     for part in ('"belt_speed": -3.0', '"length1": 7.0', '"mass": 2.0'):
         assert part in found
-    swept = ["sweep", "stability_map", "--vary", "L1=3,4", "--alpha1", "1", "--alpha2", "2"]
+    swept = [
+        "sweep",
+        "stability_map",
+        "--vary",
+        "L1=3,4",
+        "--alpha1",
+        "1",
+        "--alpha2",
+        "2",
+    ]
     assert run([*swept, "--workers", "1", "-o", "s.nc"]) == 0
     assert load("s.nc").length1.values.tolist() == [3.0, 4.0]
     (tmp_path / "mine.yaml").write_text("parameters: {V: 3}\n")
-    with pytest.raises(ConfigError, match=r"parameters\.V: unknown key; did you mean 'belt_speed'"):
+    with pytest.raises(
+        ConfigError, match=r"parameters\.V: unknown key; did you mean 'belt_speed'"
+    ):
         read_study(tmp_path / "mine.yaml")
     capsys.readouterr()
 
@@ -49,5 +71,7 @@ def test_labels_are_words():
     assert set(np.unique(words)) <= {"stable", "flutter", "divergence"}
     assert words.dims == found.regime_linear.dims
     assert words.values[0, 0] in str(words)
-    with pytest.raises(ValueError, match="array = 'growth_rate': a variable with flag_meanings"):
+    with pytest.raises(
+        ValueError, match="array = 'growth_rate': a variable with flag_meanings"
+    ):
         labels(found.growth_rate)

@@ -25,7 +25,12 @@ ANGLES = [0.0, 1.0, 2.0]
 
 def linear_sweep(**changes):
     vary = {"mu": [0.0, 0.4], "k3": [0.5, 0.75, 1.0], "alpha1": ANGLES}
-    plan = {"task": "stability_map", "params": FORMER, "vary": vary, "fixed": {"alpha2": 0.6}}
+    plan = {
+        "task": "stability_map",
+        "params": FORMER,
+        "vary": vary,
+        "fixed": {"alpha2": 0.6},
+    }
     return Sweep(**{**plan, **changes})
 
 
@@ -35,13 +40,17 @@ def test_map_task_gets_swept_names_as_leading_dimensions():
     for mu in (0.0, 0.4):
         for k3 in (0.5, 0.75, 1.0):
             alone = stability_map(FORMER.with_(mu=mu, k3=k3), ANGLES, [0.6])
-            np.testing.assert_array_equal(found.frequency.sel(mu=mu, k3=k3), alone.frequency)
+            np.testing.assert_array_equal(
+                found.frequency.sel(mu=mu, k3=k3), alone.frequency
+            )
     assert found.mu.attrs["units"] == "1"
     assert found.k3.attrs["units"] == "N m-1"
 
 
 def test_processes_and_fixed_parameters_give_the_same_bits():
-    assert run_sweep(linear_sweep(), workers=2).identical(run_sweep(linear_sweep(), workers=1))
+    assert run_sweep(linear_sweep(), workers=2).identical(
+        run_sweep(linear_sweep(), workers=1)
+    )
     found = run_sweep(linear_sweep(fixed={"alpha2": 0.6, "mass": 2.0}))
     assert found.identical(run_sweep(linear_sweep(params=FORMER.with_(mass=2.0))))
 
@@ -53,7 +62,9 @@ def test_angles_and_options_can_be_swept_and_ragged_runs_are_filled_up(tmp_path)
     found = load(save(run_sweep(plan), tmp_path / "sweep.nc"))
     assert found.x.dims == ("alpha1", "t_end", "time")
     for k, alpha1 in enumerate(plan.vary["alpha1"]):
-        alone = simulate(FORMER, alpha1, 5 * np.pi / 6, t_end=20.0, times=np.linspace(0, 20, 50))
+        alone = simulate(
+            FORMER, alpha1, 5 * np.pi / 6, t_end=20.0, times=np.linspace(0, 20, 50)
+        )
         count = int(found.event_count[k, 0])
         assert count == alone.sizes["event"]
         np.testing.assert_array_equal(found.event_time[k, 0, :count], alone.event_time)
@@ -71,7 +82,10 @@ def test_angles_and_options_can_be_swept_and_ragged_runs_are_filled_up(tmp_path)
         ({"vary": {"mu": []}}, "a 1-D array"),
         ({"vary": {"mu": [1, 1], "alpha1": [0]}}, "each once"),
         ({"vary": {"mu": [1]}}, "needs alpha1 once"),
-        ({"vary": {"mu": [1], "alpha1": [1]}, "fixed": {"alpha1": 0, "alpha2": 0}}, "alpha1 once"),
+        (
+            {"vary": {"mu": [1], "alpha1": [1]}, "fixed": {"alpha1": 0, "alpha2": 0}},
+            "alpha1 once",
+        ),
         ({"fixed": {"alpha2": 0, "depth": 3}}, "no option 'depth'"),
         ({"vary": {"alpha1": ANGLES}}, "vary a parameter too"),
         ({"task": "simulate"}, "simulate needs t_end once"),
@@ -85,7 +99,13 @@ def test_plans_that_cannot_work_are_refused(changes, message):
 
 
 def test_an_option_with_a_parameters_name_is_the_option():
-    fixed = {"alpha1": 0.94, "alpha2": 2.83, "mode": 1, "method": "hbm", "n_harmonics": 4}
+    fixed = {
+        "alpha1": 0.94,
+        "alpha2": 2.83,
+        "mode": 1,
+        "method": "hbm",
+        "n_harmonics": 4,
+    }
     plan = {"fixed": {**fixed, "y_peak_max": 1.2}, "vary": {"sigma": [3.0, 1000.0]}}
     found = run_sweep(Sweep(task="backbone", params=FORMER, **plan))
     assert not np.array_equal(found.omega[0], found.omega[1])
@@ -168,13 +188,17 @@ def test_parts_are_the_values_once_each_and_no_more_than_there_are():
 
 def test_runs_at_other_instants_are_not_put_on_one_axis():
     plan = {"vary": {"t_end": [5.0, 10.0]}, "fixed": {"alpha1": 1.6, "alpha2": 2.6}}
-    with pytest.raises(ValueError, match="time differs from run to run; fix the option 'times'"):
+    with pytest.raises(
+        ValueError, match="time differs from run to run; fix the option 'times'"
+    ):
         run_sweep(Sweep(task="simulate", params=FORMER, **plan))
 
 
 def test_the_sweeps_in_the_page_on_clusters_can_be_planned():
     page = Path(__file__).parents[2] / "docs/cluster.md"
-    (block,) = re.findall(r"```yaml\n(.*?)```", page.read_text(encoding="utf-8"), flags=re.DOTALL)
+    (block,) = re.findall(
+        r"```yaml\n(.*?)```", page.read_text(encoding="utf-8"), flags=re.DOTALL
+    )
     study = parse_study(yaml.safe_load(block))
     plans = {name: planned(study.sweep(name)) for name in study.sweeps}
     assert len(plans["orbits_over_friction"].points) == 52

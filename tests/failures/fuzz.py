@@ -61,7 +61,9 @@ def number(low, high, *, zero=False, extremes=True):
 
 
 def one_of(*values):
-    return Kind(lambda rng: rng.choice(values), ["", "x", None, 1.5, [], object(), "A1 "])
+    return Kind(
+        lambda rng: rng.choice(values), ["", "x", None, 1.5, [], object(), "A1 "]
+    )
 
 
 def whole(*values):
@@ -77,11 +79,14 @@ ANGLE = Kind(
     [*NO_NUMBER, 7.0, -90, 1e9],
 )
 ANGLES = Kind(
-    lambda rng: rng.choice([[rng.uniform(-6, 6) for _ in range(rng.choice([1, 2, 3]))], *LISTS]),
+    lambda rng: rng.choice(
+        [[rng.uniform(-6, 6) for _ in range(rng.choice([1, 2, 3]))], *LISTS]
+    ),
     NO_ANGLES,
 )
 TURNS = Kind(
-    lambda rng: rng.uniform(1, 9), ["1", True, np.bool_(True), 1j, math.nan, None, object(), b"1"]
+    lambda rng: rng.uniform(1, 9),
+    ["1", True, np.bool_(True), 1j, math.nan, None, object(), b"1"],
 )
 MANY = Kind(ANGLE.good, NO_ANGLES[2:17])
 HORIZON = number(0.05, 8.0)
@@ -89,24 +94,44 @@ MAYBE = Kind(HORIZON.good, [bad for bad in HORIZON.bad if bad is not None])
 LIMITED = number(0.05, 8.0, zero=True, extremes=False)
 FROM_NOW = number(0.05, 8.0, zero=True)
 LATER = Kind(FROM_NOW.good, [bad for bad in FROM_NOW.bad if bad is not None])
-TOL = Kind(lambda rng: 10.0 ** rng.uniform(-17, -3), [*NO_NUMBER, 0.0, -1e-6, 1.0, 1e-19, 1e-300])
-MODEL = one_of("A1", "A1-no-stick", "A1-no-separation", "A1-linear-springs", "A1-as-printed", "A4")
+TOL = Kind(
+    lambda rng: 10.0 ** rng.uniform(-17, -3),
+    [*NO_NUMBER, 0.0, -1e-6, 1.0, 1e-19, 1e-300],
+)
+MODEL = one_of(
+    "A1", "A1-no-stick", "A1-no-separation", "A1-linear-springs", "A1-as-printed", "A4"
+)
 STATE = Kind(
     lambda rng: [rng.uniform(-0.5, 0.5) for _ in range(4)],
-    [*NO_NUMBER, [0.0] * 3, [0.0] * 5, ["0"] * 4, [math.nan] * 4, [None] * 4, [True] * 4],
+    [
+        *NO_NUMBER,
+        [0.0] * 3,
+        [0.0] * 5,
+        ["0"] * 4,
+        [math.nan] * 4,
+        [None] * 4,
+        [True] * 4,
+    ],
 )
 OPTIONAL = [bad for bad in NO_NUMBER if bad is not None]
 SIGMA = Kind(lambda rng: rng.choice([None, 10.0, 1e3]), OPTIONAL)
 START = Kind(
-    lambda rng: rng.choice([0.0, rng.uniform(-0.5, 0.5), [rng.uniform(-0.5, 0.0), 0.3]]),
+    lambda rng: rng.choice(
+        [0.0, rng.uniform(-0.5, 0.5), [rng.uniform(-0.5, 0.0), 0.3]]
+    ),
     [bad for bad in NO_ANGLES[2:] if not isinstance(bad, np.ma.MaskedArray)],
 )
 ONE = Kind(lambda _: 1, [0, -1, 1.0, "1", True, 10**400])
-LEAST_ONE = Kind(lambda rng: rng.choice([1, 2, np.int64(3)]), [0, -1, 1.5, "1", True, [], 10**400])
-SEED = Kind(lambda rng: rng.randrange(10**6), [None, -1, 0.5, "1", True, [1], 10**400, object()])
+LEAST_ONE = Kind(
+    lambda rng: rng.choice([1, 2, np.int64(3)]), [0, -1, 1.5, "1", True, [], 10**400]
+)
+SEED = Kind(
+    lambda rng: rng.randrange(10**6), [None, -1, 0.5, "1", True, [1], 10**400, object()]
+)
 TRUTH = Kind(lambda rng: rng.random() < 0.5, [None, 0, 1.0, "yes", "", [], object()])
 PLACE = Kind(
-    lambda _: "no-such-folder/no-such-file.nc", [None, 1, 1.5, True, object(), [], {}, 1j, "\0"]
+    lambda _: "no-such-folder/no-such-file.nc",
+    [None, 1, 1.5, True, object(), [], {}, 1j, "\0"],
 )
 UNIFORM = {"distribution": "uniform", "low": 0.1, "high": 0.9}
 MAPPING = [None, 1, "mu", [], ["mu"], object(), {1: 2}, {"mu": None}, {"mu": "uniform"}]
@@ -118,14 +143,17 @@ PHYSICAL = {
         "not negative": number(0.01, 3.0, zero=True),
         "finite": Kind(lambda rng: rng.uniform(-5, 5), NO_NUMBER),
         "law": Kind(
-            lambda rng: rng.choice(list(LAWS)), ["", "columb", None, 3, True, [], object(), b"x"]
+            lambda rng: rng.choice(list(LAWS)),
+            ["", "columb", None, 3, True, [], object(), b"x"],
         ),
     }[row.allowed]
     for name, row in TABLE.items()
 }
 PHYSICAL["mu_static"] = Kind(lambda rng: rng.choice([None, 30.0]), OPTIONAL)
 WRITTEN = {
-    name: Kind(kind.good, [bad for bad in kind.bad if type(bad).__module__ == "builtins"])
+    name: Kind(
+        kind.good, [bad for bad in kind.bad if type(bad).__module__ == "builtins"]
+    )
     for name, kind in PHYSICAL.items()
 }
 """What a YAML file can hold."""
@@ -162,7 +190,19 @@ SYSTEM_STARTS = Kind(lambda rng: {"x": rng.uniform(-1.0, 0.9)}, NO_START)
 AMPLITUDE = {
     "amplitude": Kind(
         lambda rng: rng.choice([0, 0.5, np.float32(2.0), -1.0]),
-        ["1", b"1", None, True, 1j, math.nan, math.inf, 10**400, {}, object(), np.ones((2, 2))],
+        [
+            "1",
+            b"1",
+            None,
+            True,
+            1j,
+            math.nan,
+            math.inf,
+            10**400,
+            {},
+            object(),
+            np.ones((2, 2)),
+        ],
     )
 }
 
@@ -172,7 +212,11 @@ def pieces(known, **allowed):
     return {
         name: Kind(
             lambda _, good=value: good,
-            [each for each in NO_PIECES if not isinstance(each, allowed.get(name, set))],
+            [
+                each
+                for each in NO_PIECES
+                if not isinstance(each, allowed.get(name, set))
+            ],
         )
         for name, value in known.items()
     }
@@ -339,7 +383,15 @@ EXPENSIVE = {
     "System.cycle_curve",
 }  # fmt: skip
 """Always called with an argument that makes no sense."""
-NO_PARAMS = {"Parameters", "parse_study", "parse_range", "Scene", "load", "save", "open_results"}
+NO_PARAMS = {
+    "Parameters",
+    "parse_study",
+    "parse_range",
+    "Scene",
+    "load",
+    "save",
+    "open_results",
+}
 NO_PARAMS |= {name for name in CALLS if name.startswith(("System", "Switch"))}
 
 
@@ -373,7 +425,9 @@ def draw(rng):
     wrong: set[str] = set()
     if rng.random() < 0.5 or name in EXPENSIVE:
         candidates = [argument for argument in given if kinds[argument].bad]
-        for argument in rng.sample(candidates, min(len(candidates), rng.choice([1, 1, 2]))):
+        for argument in rng.sample(
+            candidates, min(len(candidates), rng.choice([1, 1, 2]))
+        ):
             given[argument] = rng.choice(kinds[argument].bad)
             wrong.add(argument)
     return name, given, wrong
@@ -390,7 +444,9 @@ def fault_of(name, given, wrong, params):
     except FileNotFoundError:
         return "" if "path" in given or "name_or_path" in given else "no path was given"
     except ValueError as error:
-        named = any(argument in str(error) for argument in ("param", "x = ", *given, *TABLE))
+        named = any(
+            argument in str(error) for argument in ("param", "x = ", *given, *TABLE)
+        )
         return "" if named or name == "parse_range" else f"names no argument: {error}"
     except Exception as error:  # noqa: BLE001  whatever it is, it is the finding
         return f"raw {type(error).__name__}: {error}"
@@ -404,7 +460,14 @@ def unearned(found):
     if "outcome" not in found:
         return ""
     converged = found.outcome == 0
-    for name in ("x_static", "growth_rate", "omega", "x", "max_displacement", "late_max_x"):
+    for name in (
+        "x_static",
+        "growth_rate",
+        "omega",
+        "x",
+        "max_displacement",
+        "late_max_x",
+    ):
         if name not in found or not set(found.outcome.dims) <= set(found[name].dims):
             continue
         if bool((np.isnan(found[name]) & converged).any()):
@@ -417,7 +480,9 @@ def warm_up():
     for law in LAWS:
         for model in ("A1", "A1-linear-springs"):
             for damping in (0.0, 0.1):
-                params = sp.Parameters(friction_law=law, mu_static=0.5, damping1=damping)
+                params = sp.Parameters(
+                    friction_law=law, mu_static=0.5, damping1=damping
+                )
                 sp.simulate(params, 1.0, 2.0, t_end=0.1, model=model)
     sp.hammering_map(sp.Parameters(), [1.0], [2.0], t_end=1.0, workers=1)
     for method in ("exact", "hbm"):

@@ -16,10 +16,14 @@ def test_maps_refuse_what_is_no_real_number(bad):
     """One function for all: random calls try each of them with such arrays."""
     for name in ("alpha1", "alpha2"):
         with pytest.raises(ValueError, match=rf"^{name} "):
-            stability_map(Parameters(), **{"alpha1": [0.3, 2.0], "alpha2": [0.3], name: bad})
+            stability_map(
+                Parameters(), **{"alpha1": [0.3, 2.0], "alpha2": [0.3], name: bad}
+            )
 
 
-@pytest.mark.parametrize("values", [[1, 2], np.float32([1, 2]), np.ma.masked_array([1.0, 2.0])])
+@pytest.mark.parametrize(
+    "values", [[1, 2], np.float32([1, 2]), np.ma.masked_array([1.0, 2.0])]
+)
 def test_gate_lets_numbers_through(values):
     assert real_array("x", values).tolist() == [1.0, 2.0]
     assert real_array("x", [math.inf, 2], infinite=True).tolist() == [math.inf, 2.0]
@@ -36,7 +40,9 @@ def test_gate_lets_numbers_through(values):
     ],
 )
 def test_run_of_too_many_time_units_is_refused_with_its_remedy(params, t_end):
-    with pytest.raises(ValueError, match=r"time units .* shorten t_end, or give mass and k1"):
+    with pytest.raises(
+        ValueError, match=r"time units .* shorten t_end, or give mass and k1"
+    ):
         simulate(params, 2.0, 2.6, t_end=t_end, times=[0.0])
 
 

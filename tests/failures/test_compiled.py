@@ -29,12 +29,16 @@ def test_exception_in_compiled_code_reaches_the_caller(monkeypatch, workers):
     failing = kernel_that_divides_by_zero()
     monkeypatch.setattr(runs, "loop", lambda: failing)
     with pytest.raises(RuntimeError, match="exception in compiled code"):
-        run_ensemble(Parameters(), np.linspace(1.0, 2.0, 4), 2.6, t_end=1.0, workers=workers)
+        run_ensemble(
+            Parameters(), np.linspace(1.0, 2.0, 4), 2.6, t_end=1.0, workers=workers
+        )
 
 
 @pytest.mark.parametrize("model", ["A1", "A4", "A1-linear-springs"])
 @pytest.mark.parametrize("length", ["length1", "length2"])
-@pytest.mark.parametrize("size", [1e-155, 1e-170])  # at the first, surfaces without a bound
+@pytest.mark.parametrize(
+    "size", [1e-155, 1e-170]
+)  # at the first, surfaces without a bound
 def test_vanishing_length_earns_no_success_without_states(model, length, size):
     away, params = (0.0, 0.4, 0.0, 0.0), Parameters(**{length: size})
     found = simulate(params, 0.0, 1.0, t_end=2.0, model=model, initial_state=away)

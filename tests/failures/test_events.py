@@ -23,13 +23,17 @@ FRICTION = FORMER.with_(k3=KAPPA, mu=MU, belt_speed=SPEED)
 
 
 def events(run):
-    return list(zip(run.event_kind.values.tolist(), run.event_time.values.tolist(), strict=True))
+    return list(
+        zip(run.event_kind.values.tolist(), run.event_time.values.tolist(), strict=True)
+    )
 
 
 def assert_events(run, expected, *, error=1e-12):
     found = events(run)[: len(expected)]
     assert [kind for kind, _ in found] == [kind for kind, _ in expected]
-    np.testing.assert_allclose([t for _, t in found], [t for _, t in expected], atol=error)
+    np.testing.assert_allclose(
+        [t for _, t in found], [t for _, t in expected], atol=error
+    )
 
 
 @pytest.mark.parametrize("kappa", [1.5, 3.0, 50.0, 1e4, 1e6])
@@ -63,7 +67,9 @@ def test_reversal_there_and_back():
     assert 0 < beyond < 2 * GRIP
     first = np.arcsin(SPEED / amplitude)
     second = first + 2 * np.arctan(beyond / SPEED)
-    run = simulate(FRICTION, t_end=4.0, initial_state=(GRIP - amplitude, REST, 0, 0), **IDENTITY)
+    run = simulate(
+        FRICTION, t_end=4.0, initial_state=(GRIP - amplitude, REST, 0, 0), **IDENTITY
+    )
     assert_events(run, [(REVERSAL, first), (STICK, second)])
 
 
@@ -127,7 +133,9 @@ def test_start_exactly_at_the_threshold_moving(vy, regime, first):
 
 def test_start_exactly_at_the_threshold_at_rest():
     """The springs pull down there: it is in contact, and comes back to the threshold."""
-    run = simulate(FORMER.with_(k3=KAPPA), t_end=4.0, initial_state=(0, 1.0, 0, 0), **IDENTITY)
+    run = simulate(
+        FORMER.with_(k3=KAPPA), t_end=4.0, initial_state=(0, 1.0, 0, 0), **IDENTITY
+    )
     assert run.regime[0] == Regime.slip_slower
     # N = 0 is grazed at the top of the free oscillation about y = κ/(1 + κ).
     np.testing.assert_allclose(

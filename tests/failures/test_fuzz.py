@@ -14,7 +14,9 @@ from tests.failures.fuzz import fuzz, warm_up
 )
 def test_random_calls(calls, seed):
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", RuntimeWarning)  # extremes overflow on their way to NaN
+        warnings.simplefilter(
+            "ignore", RuntimeWarning
+        )  # extremes overflow on their way to NaN
         verdict = fuzz(calls, seed)
     assert not verdict.faults, "\n\n".join(verdict.faults[:10])
     assert len(verdict.refused) == calls

@@ -21,7 +21,15 @@ def _branches(alpha1, alpha2, params=None, scene="F10", **limits):
     options = {"": {"method": "exact"}, "_hbm": {"method": "hbm", "n_harmonics": 8}}
     return {
         f"backbone/{scene}_mode{mode}{form}": stamped(
-            partial(backbone, params, alpha1 * PI, alpha2 * PI, mode=mode, **option, **limits),
+            partial(
+                backbone,
+                params,
+                alpha1 * PI,
+                alpha2 * PI,
+                mode=mode,
+                **option,
+                **limits,
+            ),
             config={"parameters": params.as_dict()},
         )
         for mode in (1, 2)
@@ -45,8 +53,12 @@ def test_contact_is_lost_at_the_line():
 
 def test_unstable_stretches_are_dotted_what_a4_does_not_cover_is_grey_and_a_reason_is_written():
     figure = coupled_backbones.draw(_branches(0.3, 0.9, y_peak_max=5.0), {})
-    dotted = [line for line in figure.axes[0].get_lines() if line.get_linestyle() == ":"]
-    assert any(np.isfinite(np.asarray(line.get_ydata(), float)).any() for line in dotted)
+    dotted = [
+        line for line in figure.axes[0].get_lines() if line.get_linestyle() == ":"
+    ]
+    assert any(
+        np.isfinite(np.asarray(line.get_ydata(), float)).any() for line in dotted
+    )
     figure = fig13.draw(_branches(5 / 6, 5 / 6, FORMER.with_(belt_speed=0.2)))
     assert "mass overtakes the belt" in figure.axes[0].get_legend_handles_labels()[1]
     figure = fig10_to_12.draw(_branches(0.4, 0.6))
@@ -55,7 +67,10 @@ def test_unstable_stretches_are_dotted_what_a4_does_not_cover_is_grey_and_a_reas
 
 def test_symbols_are_set_as_symbols():
     text = "N_h = 8, l_pre, tol 1e-08, DOP853, 1e-10"
-    assert symbols(text) == r"$N_\mathrm{h}$ = 8, $l_\mathrm{pre}$, tol 10⁻⁸, DOP853, 10⁻¹⁰"
+    assert (
+        symbols(text)
+        == r"$N_\mathrm{h}$ = 8, $l_\mathrm{pre}$, tol 10⁻⁸, DOP853, 10⁻¹⁰"
+    )
 
 
 def test_doubled_branches_are_drawn_at_twice_their_frequency():

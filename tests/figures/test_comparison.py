@@ -12,14 +12,18 @@ from squealpipe.study.figures.panels import work_precision
 def written(figure):
     figure.draw_without_rendering()
     return "\n".join(
-        text.get_text() for text in figure.findobj(lambda item: hasattr(item, "get_text"))
+        text.get_text()
+        for text in figure.findobj(lambda item: hasattr(item, "get_text"))
     )
 
 
 @pytest.fixture
 def benchmark():
     verdict = np.array([[[1, 1], [3, 3]], [[1, 1], [0, 2]]])
-    ones, axes = np.ones((2, 2, 2)), {"problem": ["two gates", "long run"], "tol": [1e-6, 1e-12]}
+    ones, axes = (
+        np.ones((2, 2, 2)),
+        {"problem": ["two gates", "long run"], "tol": [1e-6, 1e-12]},
+    )
     data = {
         "group": ["order", "chaos"], "role": [Role.ours, Role.public], "verdict": verdict,
         "missed": np.where(verdict == 3, 2, 0), "spurious": np.where(verdict == 2, 1, 0),
@@ -28,12 +32,21 @@ def benchmark():
         "cpu_ratio": ones, "message": np.full(ones.shape, ""),
     }  # fmt: skip
     attributes = {"platform": "a machine", "libraries": '{"scipy": "1.0"}'}
-    return build(BENCHMARK, data, {**axes, "solver": ["squealpipe", "theirs"]}, attributes)
+    return build(
+        BENCHMARK, data, {**axes, "solver": ["squealpipe", "theirs"]}, attributes
+    )
 
 
 def test_benchmark_chart_names_solvers_classes_and_machine(benchmark):
     text = written(work_precision_benchmark.draw(benchmark))
-    for expected in ("order", "chaos", "theirs", "our setting", "a machine", "scipy 1.0"):
+    for expected in (
+        "order",
+        "chaos",
+        "theirs",
+        "our setting",
+        "a machine",
+        "scipy 1.0",
+    ):
         assert expected in text
 
 
@@ -50,12 +63,17 @@ def test_atlas_prints_verdicts_and_counts(benchmark):
         "message": [[""] * 3, ["careful", "careful", ""], [""] * 3], "tolerance": [1e-3] * 3,
         "role": [Role.ours, Role.public, Role.ours],
     }  # fmt: skip
-    axes = {"scene": ["grazing", "chaos", "onset"], "solver": ["ours", "theirs", "closed form"]}
+    axes = {
+        "scene": ["grazing", "chaos", "onset"],
+        "solver": ["ours", "theirs", "closed form"],
+    }
     atlas = build(FAILURE_ATLAS, data, axes)
     figure = failure_atlas.draw(benchmark, atlas)
     text = written(figure)
     for sign, verdict in (("✗", Reliability.silently_wrong), ("✓", Reliability.right)):
-        assert text.count(f"{sign}\N{THIN SPACE}10⁻⁵") == int((atlas.verdict == verdict).sum())
+        assert text.count(f"{sign}\N{THIN SPACE}10⁻⁵") == int(
+            (atlas.verdict == verdict).sum()
+        )
     assert "✗ silently wrong" in text
     assert "−2" in text
     assert "+1" in text

@@ -25,7 +25,9 @@ def test_every_figure_of_the_report_can_be_drawn_from_what_it_declares(name):
 
 def test_no_module_is_left_without_a_place():
     declaring = {
-        path.stem for path in declared.FOLDER.glob("*/*.py") if "\nREADS = " in path.read_text()
+        path.stem
+        for path in declared.FOLDER.glob("*/*.py")
+        if "\nREADS = " in path.read_text()
     }
     assert declaring == {*FIGURES, *OWN}
 
@@ -41,7 +43,9 @@ def test_a_wildcard_stands_for_all_that_match_and_plain_names_keep_their_order()
 
 def test_what_is_missing_is_said():
     assert declared.datasets_of("fig02", NAMES[:3]) is None
-    with pytest.raises(ValueError, match="the figure fig02 reads the dataset simulate/F2d"):
+    with pytest.raises(
+        ValueError, match="the figure fig02 reads the dataset simulate/F2d"
+    ):
         declared.arguments("fig02", dict.fromkeys(NAMES[:3]))
     with pytest.raises(ValueError, match="has no READS"):
         declared.reads("work_precision")

@@ -43,13 +43,18 @@ def scene(name, params):
 def test_all_are_drawn_for_any_study(params, tmp_path):
     validity = dynamics.validity_map(params, ANGLES, ANGLES, t_end=50.0)
     hammering = hammering_task.hammering_map(params, ANGLES, ANGLES, t_end=20.0)
-    refined = refinement.refine_validity_map(params, resolution=61, coarse=16, t_end=50.0)
+    refined = refinement.refine_validity_map(
+        params, resolution=61, coarse=16, t_end=50.0
+    )
     sizes = whirl_task.whirl_sizes(params, [0.5, 5.0, 50.0], t_end=100.0)
     boundary = contact_boundary(params, ANGLES, ANGLES, t_end=10.0)
     distance = boundary_distance(boundary, {"alpha1": 0.3, "alpha2": 0.9})
     of_fig07 = {"validity_map": validity, "validity_boundary": boundary}
     of_fig07 |= {"validity_distance/F3": distance}
-    runs = {name: scene(name, params) for name in ("F2a", "F2b", "F2c", "F2d", "F3", "F4", "F5a")}
+    runs = {
+        name: scene(name, params)
+        for name in ("F2a", "F2b", "F2c", "F2d", "F3", "F4", "F5a")
+    }
     figures = {
         "fig02": fig02.draw(*list(runs.values())[:4]),
         "fig03": fig03.draw({"simulate/F3": runs["F3"]}), "fig04": fig04.draw(runs["F4"]),
@@ -71,9 +76,13 @@ def test_fig07_tones():
     grown.values[kept] = np.where(np.arange(kept.sum()) % 2, 3.0, 1.0)
     figure = fig07.draw({"validity_map": validity.assign(response_growth=grown)})
     tones = np.asarray(figure.axes[0].collections[0].get_array()).reshape(kept.shape).T
-    np.testing.assert_array_equal(tones == 3, kept & (validity.regime_linear.values > 0))
+    np.testing.assert_array_equal(
+        tones == 3, kept & (validity.regime_linear.values > 0)
+    )
     np.testing.assert_array_equal(tones < 2, ~kept)
-    assert (fig07.grows(validity.assign(response_growth=grown)) == (grown.values > 1.5)).all()
+    assert (
+        fig07.grows(validity.assign(response_growth=grown)) == (grown.values > 1.5)
+    ).all()
     both = fig07.draw({"corrected/validity_map": validity, "validity_map": validity})
     titles = [axes.get_title(loc="left") for axes in both.axes]
     assert "as printed" in titles[0]
@@ -92,7 +101,9 @@ def test_the_arrow_of_the_belt_points_where_it_runs():
     for direction in (1.0, -1.0):
         _, axes = new_figure(2.0, 2.0)
         draw_mechanism(axes[0, 0], 0.3 * np.pi, 0.2 * np.pi, direction=direction)
-        (arrow,) = (part for part in axes[0, 0].patches if isinstance(part, FancyArrowPatch))
+        (arrow,) = (
+            part for part in axes[0, 0].patches if isinstance(part, FancyArrowPatch)
+        )
         assert direction * arrow.get_path().vertices[:, 0].mean() > 0
 
 

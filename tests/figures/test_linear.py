@@ -5,7 +5,13 @@ import pytest
 import xarray as xr
 
 from squealpipe.parameters import SCENES
-from squealpipe.study.figures.linear import critical_friction, fig06, fig07, fig08, fig09
+from squealpipe.study.figures.linear import (
+    critical_friction,
+    fig06,
+    fig07,
+    fig08,
+    fig09,
+)
 from squealpipe.tasks.linear import boundaries as linear_boundaries
 from squealpipe.tasks.linear import critical
 from squealpipe.tasks.linear import maps as linear
@@ -27,7 +33,9 @@ def maps():
 
 def mesh_values(axes):
     """Values of a panel's map, indexed by (alpha1, alpha2)."""
-    return np.asarray(axes.collections[0].get_array()).reshape(ANGLES.size, ANGLES.size).T
+    return (
+        np.asarray(axes.collections[0].get_array()).reshape(ANGLES.size, ANGLES.size).T
+    )
 
 
 def test_fig06_tones_are_the_two_readings(maps):
@@ -50,7 +58,10 @@ def test_frequency_maps_show_both_states(maps, module, mode):
     for axes, state in zip(figure.axes[:2], ("contact", "separated"), strict=True):
         omega = maps["frequencies"].omega.sel(mode=mode, contact_state=state)
         np.testing.assert_array_equal(mesh_values(axes), omega)
-    assert figure.axes[0].collections[0].get_clim() == figure.axes[1].collections[0].get_clim()
+    assert (
+        figure.axes[0].collections[0].get_clim()
+        == figure.axes[1].collections[0].get_clim()
+    )
 
 
 def test_boundaries_are_drawn_inside_the_map(maps):
@@ -66,7 +77,9 @@ def test_boundaries_are_drawn_inside_the_map(maps):
 
 def test_comparison_counts_every_cell_once():
     cells = {"regime_linear": [0, 0, 1, 2], "separates": [False, True, True, False]}
-    validity = xr.Dataset({name: (("a", "b"), [values] * 2) for name, values in cells.items()})
+    validity = xr.Dataset(
+        {name: (("a", "b"), [values] * 2) for name, values in cells.items()}
+    )
     np.testing.assert_array_equal(fig07.kinds_of_cells(validity), [[2, 0, 1, 3]] * 2)
 
 
@@ -76,7 +89,11 @@ def test_round_off_of_a_critical_friction_is_not_drawn():
     dashpots = np.linspace(0.0, 0.1, 5)
     angles = np.linspace(0.0, np.pi, 5)
     figure = critical_friction.draw(
-        critical.critical_friction_map(pad.with_(damping1=0.02, damping2=0.01), angles, angles),
-        critical.critical_damping_map(pad, np.radians(35.0), np.radians(145.0), dashpots, dashpots),
+        critical.critical_friction_map(
+            pad.with_(damping1=0.02, damping2=0.01), angles, angles
+        ),
+        critical.critical_damping_map(
+            pad, np.radians(35.0), np.radians(145.0), dashpots, dashpots
+        ),
     )
     assert figure.axes[2].texts[0].get_text() == "1.43\nwith any dashpots"

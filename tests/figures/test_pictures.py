@@ -30,7 +30,9 @@ def test_fig01():
 @compared
 def test_schematics_of_the_papers_arrangements():
     figure, axes = new_figure(7.0, 1.6, ncols=4)
-    for axis, pair in zip(axes[0], ((0.5, 1), (1, 0.5), (0.75, 0.75), (0.4, 0.6)), strict=True):
+    for axis, pair in zip(
+        axes[0], ((0.5, 1), (1, 0.5), (0.75, 0.75), (0.4, 0.6)), strict=True
+    ):
         draw_mechanism(axis, pair[0] * np.pi, pair[1] * np.pi)
     return figure
 

@@ -23,7 +23,9 @@ ORBIT = (FORMER, 0.3 * np.pi, 0.9 * np.pi)
 def a1_curve():
     """Of the scene on a slow belt, where its cycle grazes."""
     slow = FORMER.with_(belt_speed=1.0)
-    branch = squealpipe.cycle_branch(slow, *SCENE, parameter="belt_speed", to=1.1, n_points=12)
+    branch = squealpipe.cycle_branch(
+        slow, *SCENE, parameter="belt_speed", to=1.1, n_points=12
+    )
     pair = "belt_speed", "mu"
     return squealpipe.cycle_curve(
         slow, *SCENE, label="grazing", parameters=pair, start=branch, n_points=5
@@ -40,12 +42,16 @@ DATASETS = {
     "hammering": lambda: squealpipe.hammering_map(FORMER, ANGLES, ANGLES, t_end=20.0),
     "backbone": lambda: squealpipe.backbone(*ORBIT, mode=1),
     "periodic orbit": lambda: squealpipe.periodic_orbit(*ORBIT, mode=1, y_peak=2.0),
-    "basin, one start": lambda: squealpipe.basin_map(FORMER, *SCENE, vx=STARTS, t_end=20.0),
+    "basin, one start": lambda: squealpipe.basin_map(
+        FORMER, *SCENE, vx=STARTS, t_end=20.0
+    ),
     "basin, two starts": lambda: squealpipe.basin_map(
         FORMER, *SCENE, vx=STARTS, vy=STARTS[1:], t_end=20.0
     ),
     "system run": lambda: impacts.simulate(30.0),
-    "system over one": lambda: impacts.ensemble(60.0, amplitude=np.linspace(0.5, 3.0, 40)),
+    "system over one": lambda: impacts.ensemble(
+        60.0, amplitude=np.linspace(0.5, 3.0, 40)
+    ),
     "system over two": lambda: impacts.ensemble(
         30.0, amplitude=np.linspace(0.5, 3.0, 9), omega=np.linspace(1.5, 2.5, 8)
     ),
@@ -55,7 +61,9 @@ DATASETS = {
     ),
     "cycle curve": a1_curve,
     "system curve": system_curve,
-    "system basin": lambda: mode_coupling.basin(60.0, start={"x": np.linspace(-2, 2, 6)}),
+    "system basin": lambda: mode_coupling.basin(
+        60.0, start={"x": np.linspace(-2, 2, 6)}
+    ),
 }
 
 

@@ -16,14 +16,18 @@ FORCE = symbols.function(symbols.CONTACT_FORCE)
 @pytest.mark.parametrize(("params", "state"), symbols.draws(10))
 def test_force_is_minus_the_slope_of_the_energy(params, state):
     y = state["y"]
-    assert contact.contact_force(y, params) == pytest.approx(float(FORCE(params, y=y)), rel=1e-14)
+    assert contact.contact_force(y, params) == pytest.approx(
+        float(FORCE(params, y=y)), rel=1e-14
+    )
 
 
 @pytest.mark.parametrize("y", [-1.0, 0.0, 0.99, 1.0, 1.01, 3.0])
 def test_regularized_force_is_the_printed_one(y):
     params, sigma = FORMER.with_(k3=0.7), 3.0
     printed = -0.5 * 0.7 * (y - 1.0) * (1.0 + math.tanh(sigma * (1.0 - y)))
-    assert contact.regularized_force(y, params, sigma) == pytest.approx(printed, rel=1e-14)
+    assert contact.regularized_force(y, params, sigma) == pytest.approx(
+        printed, rel=1e-14
+    )
 
 
 def test_regularized_force_tends_to_the_sharp_one_like_one_over_sigma():
@@ -41,7 +45,9 @@ def test_regularized_force_tends_to_the_sharp_one_like_one_over_sigma():
 @pytest.mark.parametrize("sigma", [0.5, 4.0, 30.0])
 def test_slope_of_the_regularized_force(y, sigma):
     with mpmath.workdps(40):
-        slope = mpmath.diff(lambda u: (1 - u) * (1 + mpmath.tanh(sigma * (1 - u))) * 0.75 / 2, y)
+        slope = mpmath.diff(
+            lambda u: (1 - u) * (1 + mpmath.tanh(sigma * (1 - u))) * 0.75 / 2, y
+        )
     stiffness = 0.75 * contact.smoothed_compression_slope(1.0 - y, sigma)
     assert stiffness == pytest.approx(-float(slope), rel=1e-12, abs=1e-13)
 

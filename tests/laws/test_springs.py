@@ -26,7 +26,9 @@ def test_force_and_stiffness_are_derivatives_of_the_energy(params, state):
     np.testing.assert_allclose(force, FORCE(params, **state), rtol=1e-12, atol=1e-13)
     k = springs.linear_stiffness(params, g)
     hessian, place = STIFFNESS(params, **state), (state["x"], state["y"])
-    np.testing.assert_allclose([[k.k11, k.k12], [k.k12, k.k22]], hessian, rtol=1e-13, atol=1e-13)
+    np.testing.assert_allclose(
+        [[k.k11, k.k12], [k.k12, k.k22]], hessian, rtol=1e-13, atol=1e-13
+    )
     linear = springs.linear_elastic_force(*place, k)
     np.testing.assert_allclose(linear, -hessian @ place, rtol=1e-12, atol=1e-13)
     determinant = springs.stiffness_determinant(params, g)
@@ -51,10 +53,16 @@ def test_force_approaches_the_linear_one_in_second_order():
 def test_springs_are_unloaded_at_the_start_and_rest_on_their_fixed_ends():
     params, state = DRAWS[2]
     g = geometry(state)
-    np.testing.assert_allclose(springs.elastic_force(0.0, 0.0, params, g), 0.0, atol=1e-14)
+    np.testing.assert_allclose(
+        springs.elastic_force(0.0, 0.0, params, g), 0.0, atol=1e-14
+    )
     x1, y1, x2, y2 = springs.fixed_ends(params, g)
-    assert springs.squared_distance(0.0, 0.0, x1, y1) == pytest.approx(params.length1**2)
-    assert springs.squared_distance(0.0, 0.0, x2, y2) == pytest.approx(params.length2**2)
+    assert springs.squared_distance(0.0, 0.0, x1, y1) == pytest.approx(
+        params.length1**2
+    )
+    assert springs.squared_distance(0.0, 0.0, x2, y2) == pytest.approx(
+        params.length2**2
+    )
     assert math.atan2(y1, x1) == pytest.approx(state["alpha1"])
     assert math.atan2(y2, -x2) == pytest.approx(state["alpha2"])
 
@@ -87,7 +95,10 @@ def _worst(form, length, near=None):
             c, s = float(cosine), float(sine)
         x, y = rng.uniform(-2, 2, 2)
         if near is not None:
-            x, y = length * (c + near * np.cos(around)), length * (s + near * np.sin(around))
+            x, y = (
+                length * (c + near * np.cos(around)),
+                length * (s + near * np.sin(around)),
+            )
         exact = _in_60_digits(length, x, y, cosine, sine)
         found = np.array(form(1.0, length, x, y, length * c, length * s))
         worst = max(worst, np.hypot(*(found - exact)) / max(1.0, np.hypot(*exact)))

@@ -22,7 +22,11 @@ def csv(tmp_path):
 
 def test_the_content_of_a_file_is_the_law(csv):
     params = Parameters(friction_law=csv)
-    assert params == Parameters(friction_law=str(csv)) == Parameters(friction_law={"table": csv})
+    assert (
+        params
+        == Parameters(friction_law=str(csv))
+        == Parameters(friction_law={"table": csv})
+    )
     assert params.friction_law == TEXT
     assert Parameters(**params.as_dict()) == params == eval(repr(params))  # noqa: S307
     assert (params.static_mu, params.mu) == (0.5, 0.3)
@@ -42,7 +46,9 @@ def test_values_between_and_beyond_the_knots():
     params = Parameters(friction_law=TEXT)
     expected = np.interp(speeds, [0.0, 0.1, 1.0], [0.5, 0.4, 0.3])
     np.testing.assert_allclose(coefficient(speeds, params), expected, rtol=1e-15)
-    np.testing.assert_allclose(slope(speeds[[1, 3, 5]], params), [-1.0, -1 / 9, 0.0], rtol=1e-14)
+    np.testing.assert_allclose(
+        slope(speeds[[1, 3, 5]], params), [-1.0, -1 / 9, 0.0], rtol=1e-14
+    )
     late = Parameters(friction_law="linear 0.2:0.4 1:0.3")
     assert coefficient(0.1, late) == late.static_mu == 0.4
 
@@ -54,9 +60,13 @@ def test_cubic_tables_are_monotone_and_smooth():
     left, right = slope(0.1 - 1e-12, params), slope(0.1 + 1e-12, params)
     assert left == pytest.approx(right, rel=1e-9)
     gap = 1e-5
-    numeric = (coefficient(speeds[1:] + gap, params) - coefficient(speeds[1:] - gap, params)) / 2e-5
+    numeric = (
+        coefficient(speeds[1:] + gap, params) - coefficient(speeds[1:] - gap, params)
+    ) / 2e-5
     inner = np.abs(speeds[1:] - 0.1) > 2 * gap
-    np.testing.assert_allclose(slope(speeds[1:], params)[inner], numeric[inner], atol=1e-8)
+    np.testing.assert_allclose(
+        slope(speeds[1:], params)[inner], numeric[inner], atol=1e-8
+    )
 
 
 @pytest.mark.parametrize(
@@ -78,9 +88,13 @@ def test_a_table_that_is_no_function_is_refused(tmp_path, text, message):
         Parameters(friction_law=path)
 
 
-@pytest.mark.parametrize("other", [{"mu": 0.2}, {"mu_static": 0.5}, {"friction_speed": 2.0}])
+@pytest.mark.parametrize(
+    "other", [{"mu": 0.2}, {"mu_static": 0.5}, {"friction_speed": 2.0}]
+)
 def test_what_the_table_stands_for_is_refused_beside_it(other):
-    with pytest.raises(ValueError, match=f"{next(iter(other))} = .*leave {next(iter(other))} out"):
+    with pytest.raises(
+        ValueError, match=f"{next(iter(other))} = .*leave {next(iter(other))} out"
+    ):
         Parameters(friction_law=TEXT, **other)
     with pytest.raises(ValueError, match="leave k3 out"):
         Parameters(contact_law="linear 0:0 1:2", k3=3.0)
@@ -89,7 +103,9 @@ def test_what_the_table_stands_for_is_refused_beside_it(other):
 def test_laws_that_cannot_be_carried_say_why():
     with pytest.raises(ValueError, match=r"no Taylor series at d = 0.*give a table"):
         Parameters(contact_law="hertz")
-    with pytest.raises(ValueError, match=r"damping3 = 1.0: contact_law = 'dashpot' alone"):
+    with pytest.raises(
+        ValueError, match=r"damping3 = 1.0: contact_law = 'dashpot' alone"
+    ):
         Parameters(damping3=1.0)
     with pytest.raises(ValueError, match="begins with compression 0 and force 0"):
         Parameters(contact_law="linear 1:1 2:3")
@@ -107,7 +123,9 @@ def test_a_law_in_python_needs_its_file_alone(tmp_path):
     params = Parameters(friction_law=path, mu=0.4)
     assert params.static_mu == pytest.approx(0.6, rel=1e-15)
     speeds = np.array([0.5, 2.0])
-    np.testing.assert_allclose(slope(speeds, params), -0.2 * np.exp(-speeds), rtol=1e-14)
+    np.testing.assert_allclose(
+        slope(speeds, params), -0.2 * np.exp(-speeds), rtol=1e-14
+    )
     path.unlink()
     assert Parameters(**params.as_dict()) == params
     path.write_text("def mu(speed):\n    return 0.3\n")
@@ -117,7 +135,9 @@ def test_a_law_in_python_needs_its_file_alone(tmp_path):
 
 def test_configurations_name_files_relative_to_themselves(tmp_path, csv):
     mine = tmp_path / "mine.yaml"
-    mine.write_text("parameters:\n  friction_law: {table: friction.csv, between: cubic}\n")
+    mine.write_text(
+        "parameters:\n  friction_law: {table: friction.csv, between: cubic}\n"
+    )
     part = read_study(mine).slice("parameters")
     assert part["parameters"]["friction_law"] == TEXT.replace("linear", "cubic")
     before = rule_key(part, [])

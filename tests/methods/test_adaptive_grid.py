@@ -13,7 +13,10 @@ def test_boundary_is_exact_to_the_cell():
     """A disc with a horn; no point is asked for twice."""
     x, y = ROWS, COLUMNS
     horn = (np.abs(x - 0.5) < 0.008 * (0.95 - y) / 0.15) & (y > 0.5)
-    shape, asked = ((x - 0.5) ** 2 + (y - 0.5) ** 2 < 0.09) | horn, np.zeros((SIZE, SIZE), int)
+    shape, asked = (
+        ((x - 0.5) ** 2 + (y - 0.5) ** 2 < 0.09) | horn,
+        np.zeros((SIZE, SIZE), int),
+    )
 
     def evaluate(rows, columns):
         asked[rows, columns] += 1
@@ -34,7 +37,10 @@ DEPTH = np.abs(ROWS - 0.512) + 0.5 * np.abs(COLUMNS - 0.43) - 0.01
 
 @pytest.mark.parametrize(
     ("lost", "warned", "reserve"),
-    [(ISLAND, NEAR, NONE), (DEPTH < 0.0, NO_WARNING, np.where(DEPTH < 0.0, np.nan, DEPTH))],
+    [
+        (ISLAND, NEAR, NONE),
+        (DEPTH < 0.0, NO_WARNING, np.where(DEPTH < 0.0, np.nan, DEPTH)),
+    ],
     ids=["beside suspects", "in the floor of a wide valley of the reserve"],
 )
 def test_thin_islands_are_found_where_something_points_to_them(lost, warned, reserve):
@@ -48,7 +54,9 @@ def test_thin_islands_are_found_where_something_points_to_them(lost, warned, res
     assert seeing.computed.mean() < 0.1
 
 
-@pytest.mark.parametrize(("resolution", "coarse"), [(1441, 90), (100, 10), (5, 1), (9, 9 * 2)])
+@pytest.mark.parametrize(
+    ("resolution", "coarse"), [(1441, 90), (100, 10), (5, 1), (9, 9 * 2)]
+)
 def test_grids_that_do_not_nest_are_refused(resolution, coarse):
     with pytest.raises(ValueError, match="power of two"):
         refine_grid(lambda r, c: (r > 0, c > 0, 1.0 * r), resolution, coarse)

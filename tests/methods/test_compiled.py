@@ -26,7 +26,9 @@ KNOWN = 1.23408516277258
 @pytest.fixture
 def copy(tmp_path):
     """A copy of the package without any compiled code."""
-    shutil.copytree(PACKAGE, tmp_path / "squealpipe", ignore=shutil.ignore_patterns("__pycache__"))
+    shutil.copytree(
+        PACKAGE, tmp_path / "squealpipe", ignore=shutil.ignore_patterns("__pycache__")
+    )
     return tmp_path
 
 
@@ -56,7 +58,9 @@ def test_every_kernel_file_is_part_of_the_digest():
 def test_processes_and_checkouts_share_one_store(copy, tmp_path):
     place = {"XDG_CACHE_HOME": str(tmp_path / "cache"), "NUMBA_CACHE_DIR": ""}
     together = [_run(copy, **place) for _ in range(2)]
-    assert [_omega(process) for process in together] == pytest.approx([KNOWN] * 2, abs=1.2e-14)
+    assert [_omega(process) for process in together] == pytest.approx(
+        [KNOWN] * 2, abs=1.2e-14
+    )
     stores = list((tmp_path / "cache/squealpipe").glob("kernels-*"))
     assert len(stores) == 1
     kept = {path.name for path in stores[0].rglob("*.nbc")}
@@ -70,7 +74,9 @@ def test_processes_and_checkouts_share_one_store(copy, tmp_path):
 
 def test_an_edit_of_any_kernel_opens_a_new_store(copy, monkeypatch):
     """numba itself would go by the file of the calling kernel alone."""
-    monkeypatch.setattr(compiled, "__file__", str(copy / "squealpipe/methods/compiled.py"))
+    monkeypatch.setattr(
+        compiled, "__file__", str(copy / "squealpipe/methods/compiled.py")
+    )
     before = compiled._store.__wrapped__()
     edited = copy / "squealpipe/methods/orbits/modal_flow.py"
     edited.write_text(edited.read_text("utf-8") + "\n# edited\n", "utf-8")
@@ -82,5 +88,7 @@ def test_without_any_place_to_write_kernels_are_compiled_in_memory(copy):
     """The place of the store is a file, which even root cannot write into."""
     blocked = copy / "blocked"
     blocked.write_text("", "utf-8")
-    found = _run(copy, HOME=str(blocked), XDG_CACHE_HOME=str(blocked), NUMBA_CACHE_DIR="")
+    found = _run(
+        copy, HOME=str(blocked), XDG_CACHE_HOME=str(blocked), NUMBA_CACHE_DIR=""
+    )
     assert _omega(found) == pytest.approx(KNOWN, abs=1.2e-14)

@@ -5,7 +5,11 @@ import math
 import numpy as np
 import pytest
 
-from squealpipe.methods.continuation import Continuation, ContinuationEnd, ContinuationSettings
+from squealpipe.methods.continuation import (
+    Continuation,
+    ContinuationEnd,
+    ContinuationSettings,
+)
 
 
 class Circle:
@@ -20,7 +24,9 @@ class Ended:
 
     def evaluate(self, z):
         value = z[1] - math.sqrt(1.0 - z[0]) if z[0] <= 1.0 else math.nan
-        return np.array([value]), np.array([[0.5 / math.sqrt(max(1.0 - z[0], 1e-12)), 1.0]])
+        return np.array([value]), np.array(
+            [[0.5 / math.sqrt(max(1.0 - z[0], 1e-12)), 1.0]]
+        )
 
 
 def test_a_circle_is_followed_through_its_folds():
@@ -29,7 +35,9 @@ def test_a_circle_is_followed_through_its_folds():
     points = np.array([state.point for state in result.states])
     np.testing.assert_allclose(np.hypot(*points.T), 1.0, atol=1e-11)
     assert result.end == ContinuationEnd.stopped
-    for state in result.states[1:]:  # whose tangents are those of the last Newton step but one
+    for state in result.states[
+        1:
+    ]:  # whose tangents are those of the last Newton step but one
         assert np.linalg.norm(state.tangent) == pytest.approx(1.0, abs=1e-14)
         assert abs(state.tangent @ state.point) < 1e-3
     assert points[:, 0].min() < -0.99
@@ -37,7 +45,9 @@ def test_a_circle_is_followed_through_its_folds():
 
 
 def test_the_end_of_a_curve_and_the_number_of_points_are_reported():
-    result = Continuation(Ended(), np.array([0.0, 1.0]), np.array([1.0, -0.5])).run(lambda _: False)
+    result = Continuation(Ended(), np.array([0.0, 1.0]), np.array([1.0, -0.5])).run(
+        lambda _: False
+    )
     assert result.end == ContinuationEnd.branch_lost
     settings, start = (
         ContinuationSettings(max_points=7),

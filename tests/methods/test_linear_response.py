@@ -33,10 +33,14 @@ def by_exponential(matrix):
 def test_agrees_with_the_matrix_exponential():
     """Many systems at once."""
     stack = np.array(list(MATRICES.values()))
-    found = np.array(list(response_from_rest(stack, np.tile(LOAD, (len(stack), 1)), STEP, STEPS)))
+    found = np.array(
+        list(response_from_rest(stack, np.tile(LOAD, (len(stack), 1)), STEP, STEPS))
+    )
     for motion, matrix in zip(found.transpose(1, 0, 2), stack, strict=True):
         expected = by_exponential(matrix)
-        np.testing.assert_allclose(motion, expected, rtol=0, atol=1e-11 * np.abs(expected).max())
+        np.testing.assert_allclose(
+            motion, expected, rtol=0, atol=1e-11 * np.abs(expected).max()
+        )
 
 
 def test_bounds_of_a_motion_hold_and_are_nearly_reached():
@@ -50,9 +54,13 @@ def test_bounds_of_a_motion_hold_and_are_nearly_reached():
     times = np.linspace(0.0, 5000.0, 200_001)
     x, y = (values[0] for values in found.positions(times))
     exact = list(response_from_rest(matrix, LOAD, times[1], 2000))
-    np.testing.assert_allclose(np.stack([x[:2001], y[:2001]], axis=-1), exact, atol=1e-9)
+    np.testing.assert_allclose(
+        np.stack([x[:2001], y[:2001]], axis=-1), exact, atol=1e-9
+    )
     assert y.max() <= found.highest()[0] <= y.max() + 1e-3
     assert np.hypot(x, y).max() <= found.farthest()[0] <= np.hypot(x, y).max() + 1e-3
     assert np.abs(np.gradient(x, times)).max() <= found.fastest()[0] + 1e-6
     for growing in ((1 - 0.1j, 1 + 0.1j), (-0.2 + 0j, 1 + 0j)):
-        assert not modal_motion(columns(matrix.ravel()), columns(growing), rest).oscillates[0]
+        assert not modal_motion(
+            columns(matrix.ravel()), columns(growing), rest
+        ).oscillates[0]

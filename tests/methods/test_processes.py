@@ -21,7 +21,9 @@ SHAPES = {"out": ((1000,), np.float64)}
     ("jobs", "workers"), [*((1000, n) for n in (1, 2, 3, 7, None)), (2, 5), (0, None)]
 )
 def test_every_job_is_done_once_for_any_number_of_workers(jobs, workers):
-    out = run_shared(_squares, {"out": ((jobs,), np.float64)}, jobs=jobs, workers=workers)["out"]
+    out = run_shared(
+        _squares, {"out": ((jobs,), np.float64)}, jobs=jobs, workers=workers
+    )["out"]
     np.testing.assert_array_equal(out, np.arange(jobs) ** 2)
     assert 1 <= available_cores() <= (os.cpu_count() or 1)
 

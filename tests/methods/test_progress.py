@@ -9,11 +9,22 @@ import sys
 import numpy as np
 import pytest
 
-from squealpipe import Parameters, backbone, basin_map, cycle_branch, limit_cycle, propensity
+from squealpipe import (
+    Parameters,
+    backbone,
+    basin_map,
+    cycle_branch,
+    limit_cycle,
+    propensity,
+)
 from squealpipe.methods.progress import alone, report, shown, with_progress
 
 STICK_SLIP = Parameters(
-    friction_law="exponential", mu_static=0.6, belt_speed=0.5, damping1=0.02, damping2=0.02
+    friction_law="exponential",
+    mu_static=0.6,
+    belt_speed=0.5,
+    damping1=0.02,
+    damping2=0.02,
 )
 AT = (0.1 * np.pi, 0.5 * np.pi)
 LONG = {
@@ -63,7 +74,9 @@ def test_a_terminal_gets_the_time_left_and_a_pipe_nothing(tmp_path):
     assert done.stderr == b""
     master, slave = pty.openpty()
     surroundings = {**os.environ, "TERM": "xterm", "COLUMNS": "100"}
-    with subprocess.Popen(COMMAND, cwd=tmp_path, stdout=slave, stderr=slave, env=surroundings):
+    with subprocess.Popen(
+        COMMAND, cwd=tmp_path, stdout=slave, stderr=slave, env=surroundings
+    ):
         os.close(slave)
         text = b""
         with contextlib.suppress(OSError):  # how the end of a terminal reads

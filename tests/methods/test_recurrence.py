@@ -26,5 +26,9 @@ def test_what_has_no_period_within_the_tolerance_does_not_repeat():
     times[7:] += 1e-4
     assert [repeats_after(times, kinds, tol) for tol in (1e-3, 1e-6)] == [2, 0]
     tones = index + 0.2 * np.sin(np.sqrt(2.0) * index)
-    for times, kinds in ((tones, 0 * index), sequence([1, 2, 4], [0, 1, 2], 3), ([], [])):
+    for times, kinds in (
+        (tones, 0 * index),
+        sequence([1, 2, 4], [0, 1, 2], 3),
+        ([], []),
+    ):
         assert repeats_after(np.asarray(times), np.asarray(kinds, int), 1e-6) == 0

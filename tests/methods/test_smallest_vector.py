@@ -24,7 +24,9 @@ def test_half_space_and_two_balls(size):
     near, far = 1.0 * normal, -1.5 * normal
 
     def in_a_ball(z):
-        return (np.linalg.norm(z - near, axis=1) < 0.4) | (np.linalg.norm(z - far, axis=1) < 0.8)
+        return (np.linalg.norm(z - near, axis=1) < 0.4) | (
+            np.linalg.norm(z - far, axis=1) < 0.8
+        )
 
     found = search(in_a_ball, size, 3.0, 256, np.random.default_rng(2))
     assert 0.6 <= np.linalg.norm(found.vector) < 0.6 * 1.002
@@ -51,5 +53,9 @@ def test_smallest_linear_vector_is_that_of_the_matrix_exponential():
     matrix[2:, :2] = -np.array([[1.2, 0.5], [-0.3, 2.3]])
     matrix[2:, 2:] = -np.diag([0.05, 0.2])
     row, level, t_end = np.array([0.3, 1.0, 0.0, 0.1]), 0.7, 9.0
-    longest = max(np.linalg.norm(row @ expm(matrix * t)) for t in np.linspace(0.0, t_end, 1001))
-    assert smallest_linear(matrix, row, level, t_end) == pytest.approx(level / longest, rel=1e-5)
+    longest = max(
+        np.linalg.norm(row @ expm(matrix * t)) for t in np.linspace(0.0, t_end, 1001)
+    )
+    assert smallest_linear(matrix, row, level, t_end) == pytest.approx(
+        level / longest, rel=1e-5
+    )

@@ -15,7 +15,9 @@ CONTACT_FORCE = symbols.function(symbols.CONTACT_FORCE)
 
 def acceleration(params, state, velocity=(0.3, -0.2), **regime):
     g = geometry(state["alpha1"], state["alpha2"])
-    return np.array(a1.acceleration(state["x"], state["y"], *velocity, params, g, **regime))
+    return np.array(
+        a1.acceleration(state["x"], state["y"], *velocity, params, g, **regime)
+    )
 
 
 @pytest.mark.parametrize(("params", "state"), DRAWS)

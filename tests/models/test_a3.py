@@ -43,9 +43,13 @@ def test_static_state_is_at_rest(params, state):
     stiffness, determinant = stiffness_of(params, state)
     for sigma in (None, params.sigma):
         k3, load = a2.contact_stiffness(params, sigma), a2.actuation(params, sigma)
-        x, y, force = a3.static_state(stiffness, determinant, k3=k3, mu=params.drag, actuation=load)
+        x, y, force = a3.static_state(
+            stiffness, determinant, k3=k3, mu=params.drag, actuation=load
+        )
         np.testing.assert_allclose(
-            a2.acceleration(x, y, params, stiffness, sigma), 0.0, atol=1e-11 * (1 + abs(x) + abs(y))
+            a2.acceleration(x, y, params, stiffness, sigma),
+            0.0,
+            atol=1e-11 * (1 + abs(x) + abs(y)),
         )
         assert force == pytest.approx(load - k3 * y, rel=1e-9, abs=1e-11 * (1 + abs(y)))
 
@@ -57,7 +61,9 @@ def test_the_plane_holds_the_stiffnesses_and_gives_the_angles_back(params, state
     z = a3.plane(params, state["alpha1"], state["alpha2"])
     expected = [(total + z.real) / 2, z.imag / 2, (total - z.real) / 2]
     np.testing.assert_allclose(stiffness, expected, atol=1e-14 * total)
-    assert determinant == pytest.approx((total**2 - abs(z) ** 2) / 4, abs=1e-13 * total**2)
+    assert determinant == pytest.approx(
+        (total**2 - abs(z) ** 2) / 4, abs=1e-13 * total**2
+    )
     alpha1, alpha2 = a3.angles_from_plane(z, params)
     np.testing.assert_allclose(a3.plane(params, alpha1, alpha2), z, atol=1e-12)
     distance = np.abs(alpha1 - state["alpha1"]) + np.abs(alpha2 - state["alpha2"])
@@ -67,7 +73,9 @@ def test_the_plane_holds_the_stiffnesses_and_gives_the_angles_back(params, state
 @pytest.mark.parametrize(("params", "state"), DRAWS)
 def test_circles_in_the_plane_decide_as_the_invariants_do(params, state):
     stiffness, determinant = stiffness_of(params, state)
-    invariants = spectrum(stiffness, determinant, k3=params.k3, mu=params.drag, mass=params.mass)
+    invariants = spectrum(
+        stiffness, determinant, k3=params.k3, mu=params.drag, mass=params.mass
+    )
     z = a3.plane(params, state["alpha1"], state["alpha2"])
     centre, radius = a3.flutter_circle(params, params.k3)
     assert (abs(z - centre) < radius) == (invariants.discriminant < 0)

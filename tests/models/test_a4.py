@@ -4,7 +4,12 @@ import numpy as np
 import pytest
 import sympy as sp
 
-from squealpipe.laws.springs import Stiffness, geometry, linear_stiffness, stiffness_determinant
+from squealpipe.laws.springs import (
+    Stiffness,
+    geometry,
+    linear_stiffness,
+    stiffness_determinant,
+)
 from squealpipe.models import a4
 from squealpipe.schema import Outcome
 from squealpipe.tasks.dynamics.runs import simulate
@@ -27,17 +32,23 @@ def test_accelerations(params, state, contact):
     g = geometry(state["alpha1"], state["alpha2"])
     found = a4.acceleration(state["x"], state["y"], params, g, contact=contact)
     normal = contact * CONTACT_FORCE(params, **state)
-    expected = (LINEAR_FORCE(params, **state) + normal * np.array([params.drag, 1.0])) / params.mass
+    expected = (
+        LINEAR_FORCE(params, **state) + normal * np.array([params.drag, 1.0])
+    ) / params.mass
     np.testing.assert_allclose(found, expected, rtol=1e-12, atol=1e-12)
 
 
 def test_spectrum_is_the_printed_one():
     """Half trace and discriminant of Eqs. (22a), (22b), identically."""
     determinant = K11 * K22 - K12**2
-    invariants = a4.spectrum(Stiffness(K11, K12, K22), determinant, k3=K3, mu=MU, mass=M)
+    invariants = a4.spectrum(
+        Stiffness(K11, K12, K22), determinant, k3=K3, mu=MU, mass=M
+    )
     assert sp.simplify(invariants.half_trace - (K11 + K22 + K3) / (2 * M)) == 0
     assert sp.simplify(invariants.discriminant - PRINTED_ROOT / (4 * M**2)) == 0
-    consistent = invariants.half_trace**2 - invariants.discriminant - invariants.determinant
+    consistent = (
+        invariants.half_trace**2 - invariants.discriminant - invariants.determinant
+    )
     assert sp.simplify(consistent) == 0
 
 
@@ -47,11 +58,18 @@ def test_frequencies_are_eigenvalues_of_the_stiffness(params, state, in_contact)
     g = geometry(state["alpha1"], state["alpha2"])
     stiffness = linear_stiffness(params, g)
     k3 = params.k3 if in_contact else 0.0
-    determinant, rest = stiffness_determinant(params, g), {"mu": params.mu, "mass": params.mass}
-    own = a4.natural_frequencies_squared(a4.spectrum(stiffness, determinant, k3=k3, **rest))
+    determinant, rest = (
+        stiffness_determinant(params, g),
+        {"mu": params.mu, "mass": params.mass},
+    )
+    own = a4.natural_frequencies_squared(
+        a4.spectrum(stiffness, determinant, k3=k3, **rest)
+    )
     matrix = np.reshape(a4.contact_matrix(stiffness, k3, params.mu), (2, 2))
     numeric = np.linalg.eigvals(matrix) / params.mass
-    own, numeric = (sorted(each, key=lambda w: w.real + 1e-9 * w.imag) for each in (own, numeric))
+    own, numeric = (
+        sorted(each, key=lambda w: w.real + 1e-9 * w.imag) for each in (own, numeric)
+    )
     np.testing.assert_allclose(own, numeric, rtol=1e-7, atol=1e-9)
 
 
@@ -72,7 +90,9 @@ def test_first_integral_changes_by_nothing_symbolically():
         force = -K * u + normal * sp.Matrix([MU, 1])
         rate = sum(
             sp.diff(energy, variable) * speed
-            for variable, speed in zip((x, y, vx, vy), (vx, vy, *(force / M)), strict=True)
+            for variable, speed in zip(
+                (x, y, vx, vy), (vx, vy, *(force / M)), strict=True
+            )
         )
         assert sp.simplify(rate) == 0
 

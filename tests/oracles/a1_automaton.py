@@ -49,7 +49,9 @@ class A1Automaton:
     sticks.
     """
 
-    def __init__(self, params, alpha1, alpha2, *, linear_springs=False, as_printed=False):
+    def __init__(
+        self, params, alpha1, alpha2, *, linear_springs=False, as_printed=False
+    ):
         self.params, self.as_printed = params, as_printed
         self.geometry = Geometry(*map(float, geometry(alpha1, alpha2)))
         dashpots = params.damping1 + params.damping2 > 0.0
@@ -66,7 +68,9 @@ class A1Automaton:
         part |= {"direction": sign * DIRECTION.get(regime, 0.0), **self.options}
 
         def f(_, z):
-            return *z[2:].tolist(), *acceleration(*z.tolist(), self.params, self.geometry, **part)
+            return *z[2:].tolist(), *acceleration(
+                *z.tolist(), self.params, self.geometry, **part
+            )
 
         return f
 
@@ -98,7 +102,9 @@ class A1Automaton:
     def pull(self, z, axis=0):
         """x-force of springs and dashpots, N."""
         return float(
-            suspension_force(*z.tolist(), self.params, self.geometry, **self.options)[axis]
+            suspension_force(*z.tolist(), self.params, self.geometry, **self.options)[
+                axis
+            ]
         )
 
     def start(self, z):
@@ -112,7 +118,9 @@ class A1Automaton:
         z = z.copy()
         if kind in {EventKind.separation, EventKind.contact}:
             z[1] = self.params.preload
-            return (Regime.separated if kind == EventKind.separation else self._sliding(z)), z
+            return (
+                Regime.separated if kind == EventKind.separation else self._sliding(z)
+            ), z
         z[2] = self.params.belt_speed
         return self._sliding(z, held=kind != EventKind.release), z
 
@@ -126,7 +134,9 @@ class A1Automaton:
             shift = round_off * max(1.0, self.params.preload)
             z[1] += shift if regime == Regime.separated else -shift
         if self.lag(z) == 0.0 and regime in {Regime.slip_slower, Regime.slip_faster}:
-            z[2] -= DIRECTION[regime] * round_off * max(1.0, abs(self.params.belt_speed))
+            z[2] -= (
+                DIRECTION[regime] * round_off * max(1.0, abs(self.params.belt_speed))
+            )
         return z
 
     def _sliding(self, z, *, held=True):

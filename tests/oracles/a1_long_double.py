@@ -24,9 +24,21 @@ exp.register(heyoka.expression, heyoka.exp)
 heyoka.set_logger_level_error()
 heyoka.llvm_state.set_diskcache_enabled(False)  # no file outside the project
 
-PARAMETERS = (*NUMBERS_OF_A1, *Geometry._fields, "contact", "direction", "stick", "slips")
+PARAMETERS = (
+    *NUMBERS_OF_A1,
+    *Geometry._fields,
+    "contact",
+    "direction",
+    "stick",
+    "slips",
+)
 """Names of the symbolic parameters, in order; the last four are those of a regime."""
-SURFACES = (EventKind.separation, EventKind.belt_speed, EventKind.release, EventKind.release)
+SURFACES = (
+    EventKind.separation,
+    EventKind.belt_speed,
+    EventKind.release,
+    EventKind.release,
+)
 ULP = 2.0**-62
 """A state on a surface is moved by this (times its scale), so that its root is not found again."""
 MOST_EVENTS = 100_000
@@ -57,9 +69,14 @@ def _integrator(law):
     )  # fmt: skip
 
 
-def simulate_reference(params, alpha1, alpha2, *, t_end, initial_state=(0.0, 0.0, 0.0, 0.0)):
+def simulate_reference(
+    params, alpha1, alpha2, *, t_end, initial_state=(0.0, 0.0, 0.0, 0.0)
+):
     """A1 from (x, y, ẋ, ẏ) at t = 0 to the horizon, s, through all events."""
-    a1, integrator = A1Automaton(params, alpha1, alpha2), _integrator(params.friction_law)
+    a1, integrator = (
+        A1Automaton(params, alpha1, alpha2),
+        _integrator(params.friction_law),
+    )
     numbers = [getattr(params, name) for name in NUMBERS_OF_A1]
     state = np.array(initial_state, dtype=np.longdouble)
     regime = a1.start(state)
@@ -69,8 +86,15 @@ def simulate_reference(params, alpha1, alpha2, *, t_end, initial_state=(0.0, 0.0
     integrator.time, last = np.longdouble(0), np.longdouble(t_end)
     while run.time < last:
         direction = DIRECTION.get(regime, 0.0)
-        of_regime = regime != Regime.separated, direction, regime == Regime.stick, direction**2
-        integrator.pars[:] = np.array([*numbers, *a1.geometry, *of_regime], np.longdouble)
+        of_regime = (
+            regime != Regime.separated,
+            direction,
+            regime == Regime.stick,
+            direction**2,
+        )
+        integrator.pars[:] = np.array(
+            [*numbers, *a1.geometry, *of_regime], np.longdouble
+        )
         integrator.state[:] = run.state
         integrator.reset_cooldowns()
         outcome = integrator.propagate_until(last)[0]
@@ -79,7 +103,9 @@ def simulate_reference(params, alpha1, alpha2, *, t_end, initial_state=(0.0, 0.0
             break
         surface = -outcome.value - 1
         if surface < 0 or len(run.event_times) >= MOST_EVENTS:
-            run.message = f"{outcome} after {len(run.event_times)} events at t = {run.time}"
+            run.message = (
+                f"{outcome} after {len(run.event_times)} events at t = {run.time}"
+            )
             break
         kind = SURFACES[surface]
         if kind == EventKind.separation and regime == Regime.separated:
@@ -90,11 +116,15 @@ def simulate_reference(params, alpha1, alpha2, *, t_end, initial_state=(0.0, 0.0
     return run
 
 
-def derivative_along(params, alpha1, alpha2, direction, *, t_end, initial_state, step=1e-9):
+def derivative_along(
+    params, alpha1, alpha2, direction, *, t_end, initial_state, step=1e-9
+):
     """Of the final state, by a central difference; None where the two runs differ in events."""
     shift = np.longdouble(step) * np.asarray(direction, np.longdouble)
     low, high = (
-        simulate_reference(params, alpha1, alpha2, t_end=t_end, initial_state=initial_state + each)
+        simulate_reference(
+            params, alpha1, alpha2, t_end=t_end, initial_state=initial_state + each
+        )
         for each in (-shift, shift)
     )
     same = low.regimes == high.regimes

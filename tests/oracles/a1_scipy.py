@@ -12,7 +12,9 @@ from tests.oracles.a1_automaton import A1Automaton, HybridRun
 EPS = float(np.finfo(float).eps)
 
 
-def simulate_scipy(params, *angles, t_end, tol=1e-10, initial_state=(0, 0, 0, 0), **options):
+def simulate_scipy(
+    params, *angles, t_end, tol=1e-10, initial_state=(0, 0, 0, 0), **options
+):
     """A1 from (x, y, ẋ, ẏ) by scipy's DOP853 with terminal events, to a tolerance."""
     a1 = A1Automaton(params, *angles, **options)
     state = np.asarray(initial_state, dtype=float)
@@ -29,7 +31,9 @@ def simulate_scipy(params, *angles, t_end, tol=1e-10, initial_state=(0, 0, 0, 0)
         run.message = "" if solution.status >= 0 else solution.message
         if solution.status < 1:
             break
-        kind = guards[next(i for i, found in enumerate(solution.t_events) if len(found))][0]
+        kind = guards[
+            next(i for i, found in enumerate(solution.t_events) if len(found))
+        ][0]
         regime, state = a1.switch(kind, run.state)
         run.state = a1.leave(regime, state, EPS)
         run.add(kind, regime)

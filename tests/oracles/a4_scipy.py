@@ -17,7 +17,11 @@ def a4_by_scipy(params, angles, orbit, times):
     def field(_, z, contact):
         fx, fy = linear_elastic_force(*z[:2], stiffness)
         normal = contact * params.k3 * (params.preload - z[1])
-        return [*z[2:], (fx + params.drag * normal) / params.mass, (fy + normal) / params.mass]
+        return [
+            *z[2:],
+            (fx + params.drag * normal) / params.mass,
+            (fy + normal) / params.mass,
+        ]
 
     def gap(_, z, __):
         return z[1] - params.preload

@@ -38,4 +38,7 @@ def first_order_matrix(p, alpha1, alpha2):
 def eigenvalues(p, alpha1, alpha2):
     """All four s, rounded to doubles."""
     with mp.workdps(60):
-        return [complex(s) for s in mp.eig(first_order_matrix(p, alpha1, alpha2), right=False)]
+        return [
+            complex(s)
+            for s in mp.eig(first_order_matrix(p, alpha1, alpha2), right=False)
+        ]

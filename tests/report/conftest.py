@@ -16,7 +16,11 @@ from squealpipe.study.report.build import write_document
 from squealpipe.study.report.content import Made, gather, picture_files
 from squealpipe.tasks.dynamics.assumptions import linear_pull_map
 from squealpipe.tasks.linear.boundaries import stability_boundaries
-from squealpipe.tasks.linear.maps import natural_frequencies, quasi_static_map, stability_map
+from squealpipe.tasks.linear.maps import (
+    natural_frequencies,
+    quasi_static_map,
+    stability_map,
+)
 
 POINTS = 21
 
@@ -47,7 +51,9 @@ def small_report(tmp_path_factory):
     datasets["claims"] = judge(parameters, datasets)
     made = {}
     for name, dataset in datasets.items():
-        path = save(stamped(lambda one=dataset: one, config={}), folder / f"data/{name}.nc")
+        path = save(
+            stamped(lambda one=dataset: one, config={}), folder / f"data/{name}.nc"
+        )
         made[name] = Made(path=path, rule=f"make_{name}")
     figures = {}
     for name in ("fig01", "fig06"):
@@ -63,6 +69,10 @@ def small_report(tmp_path_factory):
     supplement = page.with_name("supplement.html")
     behind = {**content, "made": None}
     write_document(
-        "supplement", behind, pictures, page=supplement, pdf=supplement.with_suffix(".pdf")
+        "supplement",
+        behind,
+        pictures,
+        page=supplement,
+        pdf=supplement.with_suffix(".pdf"),
     )
     return SmallReport(page, pdf, content, supplement, datasets, figures)

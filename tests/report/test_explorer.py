@@ -10,7 +10,13 @@ import pytest
 from squealpipe.cli import run
 from squealpipe.parameters import Parameters
 from squealpipe.store import load
-from squealpipe.study.report.explorer import blocks, in_script, payload, run_options, write_explorer
+from squealpipe.study.report.explorer import (
+    blocks,
+    in_script,
+    payload,
+    run_options,
+    write_explorer,
+)
 from squealpipe.study.report.explorer.layers import layers
 from squealpipe.tasks.dynamics.explorer import explorer_data
 from squealpipe.tasks.dynamics.hammering import hammering_map
@@ -36,7 +42,12 @@ in_browser = [
 @pytest.fixture(scope="module")
 def explorer():
     return explorer_data(
-        Parameters(), ANGLES, history_time=30.0, spectrum_time=60.0, samples=151, branch_points=8
+        Parameters(),
+        ANGLES,
+        history_time=30.0,
+        spectrum_time=60.0,
+        samples=151,
+        branch_points=8,
     )
 
 
@@ -71,7 +82,9 @@ def test_curves_survive_packing(explorer, shown):
     text = blocks(explorer, shown)["x"]
     count = explorer.sizes["time"]
     length = len(text) // explorer.outcome.size
-    records = [base64.b64decode(text[at : at + length]) for at in range(0, len(text), length)]
+    records = [
+        base64.b64decode(text[at : at + length]) for at in range(0, len(text), length)
+    ]
     heads = np.array([np.frombuffer(record[:8], "<f4") for record in records])
     numbers = np.array([np.frombuffer(record[8:], "<u2") for record in records])
     curves = numbers * heads[:, 1:] + heads[:, :1]
@@ -105,7 +118,9 @@ def test_page_survives_a_meaning_that_looks_like_markup(explorer, shown, tmp_pat
     assert not {"<", ">"} & set(text)
     assert json.loads(text) == {"meaning": "<!--<script>", "label": "</script>&amp;"}
     hostile = explorer.copy()
-    meanings = explorer.outcome.attrs["flag_meanings"].replace("converged", "<!--<script>")
+    meanings = explorer.outcome.attrs["flag_meanings"].replace(
+        "converged", "<!--<script>"
+    )
     hostile["outcome"].attrs = {**explorer.outcome.attrs, "flag_meanings": meanings}
     write_explorer(hostile, shown, tmp_path / "e.html")
     text = (tmp_path / "e.html").read_text(encoding="utf-8")
@@ -118,7 +133,9 @@ class TestInBrowser:
     pytestmark = in_browser
 
     def curve(self, page, panel, axis="y"):
-        return np.array(page.evaluate(f"Array.from({CURVE.format(panel, 0)}.{axis})"), float)
+        return np.array(
+            page.evaluate(f"Array.from({CURVE.format(panel, 0)}.{axis})"), float
+        )
 
     def test_first_pair_is_shown_and_matches_the_dataset(self, opened, explorer):
         np.testing.assert_allclose(
@@ -126,7 +143,10 @@ class TestInBrowser:
             explorer["normalized_contact_force"].values[5, 5],
             atol=5e-5,
         )
-        assert opened.inner_text("#command") == f"squealpipe simulate 5pi/6 5pi/6 {OPTIONS}"
+        assert (
+            opened.inner_text("#command")
+            == f"squealpipe simulate 5pi/6 5pi/6 {OPTIONS}"
+        )
         assert opened.get_attribute("nav a", "href") == "index.html"
         height = f"{CURVE.format('orbit', 5)}.y[0]"
         before = opened.evaluate(height)
@@ -138,16 +158,22 @@ class TestInBrowser:
             "document.getElementById('map').chart.pixel(Math.PI / 3, Math.PI / 2)"
         )
         opened.mouse.click(*box)
-        opened.wait_for_function("document.getElementById('alpha1-text').value === '= π/3'")
+        opened.wait_for_function(
+            "document.getElementById('alpha1-text').value === '= π/3'"
+        )
         for panel, name in (("force", "normalized_contact_force"), ("orbit", "y")):
             reference = explorer[name].values[2, 3]
             np.testing.assert_allclose(
-                self.curve(opened, panel), reference, atol=1e-4 * max(1, np.ptp(reference))
+                self.curve(opened, panel),
+                reference,
+                atol=1e-4 * max(1, np.ptp(reference)),
             )
         reference = explorer["force_spectrum"].values[2, 3]
         np.testing.assert_allclose(self.curve(opened, "spectrum"), reference, atol=1e-4)
         np.testing.assert_allclose(
-            self.curve(opened, "backbones", "x"), explorer["omega"].values[2, 3][0], rtol=1e-6
+            self.curve(opened, "backbones", "x"),
+            explorer["omega"].values[2, 3][0],
+            rtol=1e-6,
         )
 
     def test_arrow_keys_move_the_pair(self, opened):
@@ -158,7 +184,9 @@ class TestInBrowser:
         assert opened.inner_text("#alpha1-text") == "= 2π/3"
         assert opened.inner_text("#alpha2-text") == "= π/2"
 
-    def test_every_layer_can_be_chosen_and_tells_its_value_under_the_mouse(self, opened, shown):
+    def test_every_layer_can_be_chosen_and_tells_its_value_under_the_mouse(
+        self, opened, shown
+    ):
         def told(i, j, layer):
             x, y = opened.evaluate(
                 f"document.getElementById('map').chart.pixel({layer.map.alpha1.values[i]}, "
@@ -179,7 +207,9 @@ class TestInBrowser:
                     assert value == layer.meanings.get(layer.map.values[i, j], "none")
             assert re.fullmatch("α₁ = .*0|α₁ = π/14, α₂ = π/14", where)
         rows = opened.locator("#facts tr").all_inner_texts()
-        assert [row.split("\t")[0] for row in rows][:-1] == [one.label for one in shown.values()]
+        assert [row.split("\t")[0] for row in rows][:-1] == [
+            one.label for one in shown.values()
+        ]
 
     def test_the_map_has_the_colours_of_its_categories(self, opened, shown):
         layer = shown["motion"]
@@ -234,7 +264,9 @@ class TestInBrowser:
         for place, name in enumerate(names):
             opened.locator("#scenes button").nth(place).click()
             shown = [opened.inner_text(f"#alpha{k}-text") for k in (1, 2)]
-            assert name.endswith(": " + ", ".join(item.removeprefix("= ") for item in shown))
+            assert name.endswith(
+                ": " + ", ".join(item.removeprefix("= ") for item in shown)
+            )
 
     @pytest.mark.parametrize("scheme", ["light", "dark"])
     def test_text_stands_out_in_both_schemes(self, page_file, scheme):
@@ -244,19 +276,26 @@ class TestInBrowser:
                 "[getComputedStyle(document.querySelector('#force .xtick')).fill,"
                 " getComputedStyle(document.body).backgroundColor]"
             )
-            light = [sum(map(int, re.findall(r"\d+", value)[:3])) / 765 for value in (ink, paper)]
+            light = [
+                sum(map(int, re.findall(r"\d+", value)[:3])) / 765
+                for value in (ink, paper)
+            ]
             assert (light[0] < light[1]) == (scheme == "light")
             assert abs(light[0] - light[1]) > 0.6
             assert faults == []
 
-    def test_phone_width_needs_no_sideways_scroll_and_the_address_chooses_the_pair(self, page_file):
+    def test_phone_width_needs_no_sideways_scroll_and_the_address_chooses_the_pair(
+        self, page_file
+    ):
         address = f"{page_file.as_uri()}#0.5,1"
         with open_page(address, width=390, height=844) as (page, faults):
             page.wait_for_function("document.body.dataset.ready === 'true'")
             assert page.evaluate("document.documentElement.scrollWidth") <= 390
             for panel in ("map", "force", "orbit", "spectrum", "backbones"):
                 assert page.locator(f"#{panel}").bounding_box()["width"] > 300
-            assert page.inner_text("#command") == f"squealpipe simulate pi/2 pi {OPTIONS}"
+            assert (
+                page.inner_text("#command") == f"squealpipe simulate pi/2 pi {OPTIONS}"
+            )
             assert faults == []
 
 
@@ -267,7 +306,12 @@ def own_page(tmp_path_factory):
         mass=0.5, k1=1e7, k2=1e7, k3=7e6, belt_speed=2.0, preload=2e-5, length1=0.02,
         length2=0.02, friction_law="linear 0.0:0.48 1.0:0.36",
     )  # fmt: skip
-    times = {"history_time": 30.0, "spectrum_time": 60.0, "samples": 151, "branch_points": 8}
+    times = {
+        "history_time": 30.0,
+        "spectrum_time": 60.0,
+        "samples": 151,
+        "branch_points": 8,
+    }
     validity = validity_map(pad, ANGLES, ANGLES, t_end=50 * pad.time_unit)
     path = tmp_path_factory.mktemp("own") / "explorer.html"
     # half a turn further the spring comes from the other side, which the explorer's map has not

@@ -40,7 +40,10 @@ REST = {"x": 0.0, "y": 0.0, "vx": 0.0, "vy": 0.0}
 
 def scenes(speed):
     angles = {"alpha1": math.radians(30), "alpha2": math.radians(140), "t_end": 40.0}
-    return {"mine": {**angles, "start": {**REST, "vx": speed}}, "rest": {**angles, "start": REST}}
+    return {
+        "mine": {**angles, "start": {**REST, "vx": speed}},
+        "rest": {**angles, "start": REST},
+    }
 
 
 @pytest.fixture(scope="module")
@@ -59,7 +62,9 @@ def test_si_numbers_give_what_the_dimensionless_groups_give(found):
         ("first_separation_time", PAD.time_unit),
     ):
         # forces and displacements come from samples
-        np.testing.assert_allclose(found[name], same[name] * unit, rtol=2e-2, err_msg=name)
+        np.testing.assert_allclose(
+            found[name], same[name] * unit, rtol=2e-2, err_msg=name
+        )
     assert (found.motion == same.motion).all()
 
 
@@ -80,7 +85,9 @@ def test_distance_to_the_nearest_other_cell():
     assert at["lost_boundary"] == pytest.approx(20.0)
     assert at["unstable_boundary"] is None
     # half a turn further the springs come from the other side: another map
-    at = boundaries({"validity_map": validity}, "", math.radians(10), math.radians(10) + math.pi)
+    at = boundaries(
+        {"validity_map": validity}, "", math.radians(10), math.radians(10) + math.pi
+    )
     assert at["lost"] is at["lost_boundary"] is None
 
 
@@ -107,21 +114,33 @@ def test_report_has_pages_without_the_paper(found, tmp_path):
             PAD, 0.5, 2.4, distributions=centred(PAD, 0.5, 2.4), samples=64, t_end=end
         ),
         "angle_chart": regime_chart(
-            PAD, angles, angles, design={"alpha1": [0.5], "alpha2": [2.4]}, t_end=end / 10
+            PAD,
+            angles,
+            angles,
+            design={"alpha1": [0.5], "alpha2": [2.4]},
+            t_end=end / 10,
         ),
         "friction_chart/mine": regime_chart(
             PAD, 0.5, 2.4, kappa=angles[1:], mu=angles[1:] / 5, t_end=end / 10
         ),
-        **{f"own/{name}": simulate(PAD, *design.values(), t_end=end) for name in scenes(0.0)},
+        **{
+            f"own/{name}": simulate(PAD, *design.values(), t_end=end)
+            for name in scenes(0.0)
+        },
     }
     config = {"parameters": PAD.as_dict()}
     here = boundaries(datasets, "mine", *design.values())
-    other = boundaries({"validity_map": datasets["validity_map"]}, "mine", *design.values())
+    other = boundaries(
+        {"validity_map": datasets["validity_map"]}, "mine", *design.values()
+    )
     assert here["lost"] is other["lost"]
     assert abs(here["lost_boundary"] - other["lost_boundary"]) < 1.5 * here["cell"]
     made, figures = {}, {}
     for name, dataset in datasets.items():
-        path = save(stamped(lambda one=dataset: one, config=config), tmp_path / f"data/{name}.nc")
+        path = save(
+            stamped(lambda one=dataset: one, config=config),
+            tmp_path / f"data/{name}.nc",
+        )
         made[name] = Made(path=path, rule="some")
         datasets[name] = load(path)
     for name in ("own_model", "own_motion", "own_map", "propensity", "regime_charts"):
@@ -133,7 +152,9 @@ def test_report_has_pages_without_the_paper(found, tmp_path):
     pictures = picture_files(content, figures)
     write_document("study", content, pictures, page=page, pdf=tmp_path / "report.pdf")
     text = page.read_text(encoding="utf-8")
-    words = " ".join(re.sub(r"<style>.*?</style>|<[^>]+>", " ", text, flags=re.DOTALL).split())
+    words = " ".join(
+        re.sub(r"<style>.*?</style>|<[^>]+>", " ", text, flags=re.DOTALL).split()
+    )
     for absent in ("paper", "Fig.", "None", " nan"):
         assert absent not in words
     for present in (
@@ -153,13 +174,17 @@ def test_a_table_of_friction_stands_for_the_coefficient(found, tmp_path):
     assert "sliding friction coefficient" not in rows
     assert rows["friction law"]["value"] == "table, linear: 0.48 at 0, 0.36 at 1"
     assert rows["friction law"]["unit"] == "at m s⁻¹"
-    figure = draw("own_model", {"own/mine": simulate(pad, 0.5, 2.4, t_end=20 * pad.time_unit)})
+    figure = draw(
+        "own_model", {"own/mine": simulate(pad, 0.5, 2.4, t_end=20 * pad.time_unit)}
+    )
     (panel,) = figure.axes
     assert any("$μ$: table" in text.get_text() for text in panel.texts)
 
 
 def test_a_law_that_depends_on_speed_is_set_beside_its_value_at_belt_speed():
-    pad = replace(PAD, mu=Parameters().mu, friction_law="linear 0.0:0.48 1.0:0.36 3.0:0.3")
+    pad = replace(
+        PAD, mu=Parameters().mu, friction_law="linear 0.0:0.48 1.0:0.36 3.0:0.3"
+    )
     changed, _ = variants(pad, (0.0,) * 4)["friction as at belt speed, constant"]
     assert (changed.mu, changed.friction_law) == (pytest.approx(0.33), "coulomb")
     falling, _ = variants(PAD, (0.0,) * 4)["friction falls with speed"]
@@ -169,7 +194,9 @@ def test_a_law_that_depends_on_speed_is_set_beside_its_value_at_belt_speed():
 def test_a_study_without_the_paper_needs_a_scene():
     with pytest.raises(ConfigError, match=r"scenes: \{mine"):
         parse_study({"paper": False})
-    study = parse_study({"paper": False, "scenes": {"a": {"alpha1": "30deg", "alpha2": "0.75pi"}}})
+    study = parse_study(
+        {"paper": False, "scenes": {"a": {"alpha1": "30deg", "alpha2": "0.75pi"}}}
+    )
     assert study.scenes["a"].alpha1 == pytest.approx(math.pi / 6)
     with pytest.raises(ConfigError, match="alpha1"):
         parse_study({"scenes": {"a": {"alpha1": "thirty", "alpha2": 1.0}}})

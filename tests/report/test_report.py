@@ -68,7 +68,9 @@ class Page(HTMLParser):
 
 def prose(text):
     """The words of a page."""
-    return " ".join(re.sub(r"<style>.*?</style>|<[^>]+>", " ", text, flags=re.DOTALL).split())
+    return " ".join(
+        re.sub(r"<style>.*?</style>|<[^>]+>", " ", text, flags=re.DOTALL).split()
+    )
 
 
 @pytest.fixture(scope="module")
@@ -115,7 +117,9 @@ def test_every_picture_has_an_alt_text_and_stands_once(page, small_report):
 
 def test_every_statement_has_its_place(page, small_report):
     behind = Page(small_report.supplement.read_text(encoding="utf-8"))
-    assert {f"claim-{statement.id}" for statement in STATEMENTS} <= set(page.ids | behind.ids)
+    assert {f"claim-{statement.id}" for statement in STATEMENTS} <= set(
+        page.ids | behind.ids
+    )
 
 
 def test_after_an_edit_the_page_shows_changes_and_no_narrative(text, small_report):
@@ -136,12 +140,16 @@ def test_the_front_has_at_most_400_words():
     words = (TEMPLATES / "narrative.typ").read_text(encoding="utf-8")
     front = words[words.index("#let asked") : words.index("#let compared")]
     assert len(front.split()) <= 400
-    assert not re.search(r"\b[A-Z]\d+[a-z]?\b", re.sub(r"\bA[1-4]\b|n\(.*?\)", "", front))
+    assert not re.search(
+        r"\b[A-Z]\d+[a-z]?\b", re.sub(r"\bA[1-4]\b|n\(.*?\)", "", front)
+    )
 
 
 def test_formulas_are_mathml(page, text):
     assert page.tags["math"] > 10
-    assert "$" not in re.sub(r"<style>.*?</style>|data:image[^\"]*", "", text, flags=re.DOTALL)
+    assert "$" not in re.sub(
+        r"<style>.*?</style>|data:image[^\"]*", "", text, flags=re.DOTALL
+    )
 
 
 def test_equal_content_gives_equal_files(small_report, tmp_path):
@@ -171,8 +179,12 @@ def test_provenance_names_rule_id_and_checksum_of_every_dataset(small_report):
 
 def test_lineage_follows_files_from_rule_to_rule():
     rules = [
-        SimpleNamespace(name="make", input=["code.py", "r/data/a/b.nc"], output=["r/data/c.nc"]),
-        SimpleNamespace(name="draw", input=["r/data/c.nc", "code.py"], output=["r/figures/f.png"]),
+        SimpleNamespace(
+            name="make", input=["code.py", "r/data/a/b.nc"], output=["r/data/c.nc"]
+        ),
+        SimpleNamespace(
+            name="draw", input=["r/data/c.nc", "code.py"], output=["r/figures/f.png"]
+        ),
     ]
     expected = {"path": "r/data/c.nc", "rule": "make", "datasets": ["a/b"]}
     assert lineage(rules, "r/data/") == {"c": expected}
@@ -195,8 +207,15 @@ def test_page_in_a_browser(small_report, width):
             "[...document.querySelectorAll('math[display=block]')]"
             ".every(formula => formula.scrollWidth <= formula.clientWidth + 1)"
         )
-        assert page.evaluate("[...document.images].every(image => image.naturalWidth > 0)")
-        assert page.evaluate("document.querySelector('math').getBoundingClientRect().width") > 5
+        assert page.evaluate(
+            "[...document.images].every(image => image.naturalWidth > 0)"
+        )
+        assert (
+            page.evaluate(
+                "document.querySelector('math').getBoundingClientRect().width"
+            )
+            > 5
+        )
         assert faults == []
 
 
@@ -209,7 +228,9 @@ def test_paper_is_cited_as_in_the_citation_file():
     assert cited["title"] == PAPER["title"]
     assert (cited["journal"], cited["year"]) == (PAPER["journal"], PAPER["year"])
     for author in cited["authors"]:
-        assert f"{author['given-names']} {author['family-names']}" in str(PAPER["authors"])
+        assert f"{author['given-names']} {author['family-names']}" in str(
+            PAPER["authors"]
+        )
 
 
 @pytest.mark.parametrize("template", sorted(TEMPLATES.glob("*.typ")))

@@ -67,7 +67,11 @@ def test_built_dataset_is_labelled():
     ],
 )
 def test_faulty_data_are_refused(change, message):
-    data = {name: values for name, values in {**GOOD, **change}.items() if values is not None}
+    data = {
+        name: values
+        for name, values in {**GOOD, **change}.items()
+        if values is not None
+    }
     with pytest.raises(SchemaError, match=message):
         build(TABLE, data, T)
 
@@ -85,7 +89,12 @@ def test_all_faults_are_told_at_once():
     made["x"] = made.x.astype(int)
     with pytest.raises(SchemaError) as caught:
         validate(made.assign_attrs(schema_version=7), TABLE)
-    for part in ("version is 7", "gap is missing", "x has dtype int", "extra is not part of"):
+    for part in (
+        "version is 7",
+        "gap is missing",
+        "x has dtype int",
+        "extra is not part of",
+    ):
         assert part in str(caught.value)
 
 
@@ -131,5 +140,7 @@ def test_reading_a_dataset_loads_no_heavy_library():
         "import sys; from squealpipe.schema import all_schemas; all_schemas(); "
         "print(*{name.split('.')[0] for name in sys.modules} & {'scipy', 'heyoka', 'numba'})"
     )
-    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    run = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, check=True
+    )
     assert run.stdout.split() == []

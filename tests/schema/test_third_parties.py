@@ -39,7 +39,9 @@ def test_a_run_says_what_it_is(scene):
     assert run.attrs["license"] == "MIT"
     assert "Noise Control Engineering Journal, 2021" in run.attrs["references"]
     assert "-L2 cos alpha2" in run.attrs["comment"]
-    assert "3: step limit (too many steps: shorten t_end" in run.outcome.attrs["comment"]
+    assert (
+        "3: step limit (too many steps: shorten t_end" in run.outcome.attrs["comment"]
+    )
 
 
 def test_only_outcomes_that_can_be_are_listed(scene):
@@ -63,4 +65,6 @@ def test_an_outcome_that_cannot_be_is_refused(scene):
 
 def test_the_data_dictionary_is_current():
     module = runpy.run_path(str(ROOT / "docs/build_dictionary.py"))
-    assert module["TARGET"].read_text("utf-8") == module["page"](), "run `make dictionary`"
+    assert module["TARGET"].read_text("utf-8") == module["page"](), (
+        "run `make dictionary`"
+    )

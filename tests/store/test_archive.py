@@ -29,12 +29,18 @@ def replace(path, content):
 
 def test_archive_holds_result_and_what_made_it(run, frozen, keys_of):
     assert frozen == run / "results/archive/first"
-    names = {path.relative_to(frozen).as_posix() for path in frozen.rglob("*") if path.is_file()}
+    names = {
+        path.relative_to(frozen).as_posix()
+        for path in frozen.rglob("*")
+        if path.is_file()
+    }
     assert names >= {
         "data/stability_map.nc", "figures/fig06.png", "config/paper.yaml", "config/resolved.yaml",
         "environment.json", "manifest.json", "manifest.sha256", "ro-crate-metadata.json",
     }  # fmt: skip
-    both = (load(folder / "data/stability_map.nc") for folder in (frozen, run / "results"))
+    both = (
+        load(folder / "data/stability_map.nc") for folder in (frozen, run / "results")
+    )
     xr.testing.assert_identical(*both)
     assert verify("first", root=run).intact
     assert not list((run / "results/archive").glob(".*.tmp"))
@@ -43,7 +49,9 @@ def test_archive_holds_result_and_what_made_it(run, frozen, keys_of):
 def test_an_archive_holds_the_files_of_its_laws(run, keys_of):
     (run / "laws").mkdir()
     (run / "laws/friction.csv").write_text("speed,coefficient\n0,0.4\n1,0.3\n")
-    (run / "mine.yaml").write_text("parameters:\n  friction_law: {table: laws/friction.csv}\n")
+    (run / "mine.yaml").write_text(
+        "parameters:\n  friction_law: {table: laws/friction.csv}\n"
+    )
     configs = ("workflow/config/paper.yaml", "mine.yaml")
     frozen = archive("mine", keys=keys_of(run), root=run, configs=configs)
     shutil.rmtree(run / "laws")
@@ -139,7 +147,9 @@ def test_what_is_not_of_this_configuration_and_code_is_refused_by_name(
 
 def test_left_out_datasets_are_no_difference(run, keys_of):
     path = run / "results/data/stability_map.nc"
-    extra = produce(lambda: load(path), config={}, output=run / "results/data/simulate/F3.nc")
+    extra = produce(
+        lambda: load(path), config={}, output=run / "results/data/simulate/F3.nc"
+    )
     keys = {**keys_of(run), "results/data/simulate/F3.nc": "?"}
     frozen = archive("small", keys=keys, root=run, leave_out=["data/simulate/*"])
     assert extra.is_file()

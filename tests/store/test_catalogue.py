@@ -34,7 +34,10 @@ def told(capsys, *arguments):
         ("mu > 0.25 or not k3 == 0.65", ["first"]),
         ("0.2 < mu <= 0.25 and linear.points in [13, 31]", ["second", "results"]),
         ("length1 / l_pre == 15 and mu * 4 == 1", ["second", "results"]),
-        ("damping1 == 0 and mu_static < 0.3 and friction_law == 'coulomb'", ["second", "results"]),
+        (
+            "damping1 == 0 and mu_static < 0.3 and friction_law == 'coulomb'",
+            ["second", "results"],
+        ),
     ],
 )
 def test_find_prints_the_runs_that_match(memory, capsys, expression, names):
@@ -47,7 +50,8 @@ def test_find_tells_by_its_exit_code_that_there_is_none(memory, capsys):
 
 
 @pytest.mark.parametrize(
-    "expression", ["mu = 0.25", "mu", "1", "muu == 1", "mu < 'a'", "", "f'{mu}' == '0.3'"]
+    "expression",
+    ["mu = 0.25", "mu", "1", "muu == 1", "mu < 'a'", "", "f'{mu}' == '0.3'"],
 )
 def test_what_is_no_condition_is_one_message(memory, capsys, expression):
     assert command(["find", expression]) == 2
@@ -61,7 +65,11 @@ def test_list_tells_what_differs(memory, capsys):
     found = json.loads("\n".join(told(capsys, "list", "--json")[1]))
     assert [run["faults"] for run in found] == [[], [], []]
     assert found[0]["changed"] == {"linear.points": 13}
-    assert found[2]["config"] == {**found[2]["config"], "parameters.mu": 0.25, "linear.points": 13}
+    assert found[2]["config"] == {
+        **found[2]["config"],
+        "parameters.mu": 0.25,
+        "linear.points": 13,
+    }
 
 
 def test_unknown_names_get_the_nearest_one(memory, capsys):

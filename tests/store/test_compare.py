@@ -32,13 +32,23 @@ def dataset_file(run):
 def test_two_runs_of_one_configuration_are_equal(tmp_path, write_run):
     a, b = write_run(tmp_path / "a"), write_run(tmp_path / "b")
     found = compare(a / "results", b / "results")
-    assert (found.verdict, found.exit_code, found.parameters) == (Agreement.equal, 0, {})
-    assert json.loads(json.dumps(found.as_dict(), allow_nan=False))["verdict"] == "equal"
+    assert (found.verdict, found.exit_code, found.parameters) == (
+        Agreement.equal,
+        0,
+        {},
+    )
+    assert (
+        json.loads(json.dumps(found.as_dict(), allow_nan=False))["verdict"] == "equal"
+    )
 
 
 def test_archives_by_name_runs_and_files_can_be_mixed(run, dataset_file, keys_of):
     archive("one", keys=keys_of(run), root=run)
-    for a, b in [("one", run / "results"), ("one", run / "results/data"), (dataset_file,) * 2]:
+    for a, b in [
+        ("one", run / "results"),
+        ("one", run / "results/data"),
+        (dataset_file,) * 2,
+    ]:
         assert compare(a, b, root=run).exit_code == 0
 
 
@@ -56,10 +66,15 @@ def flipped(dataset):
     dataset.regime_linear.values.ravel()[np.flatnonzero(stable)[:4]] = 2
 
 
-def test_round_off_agrees_and_the_largest_difference_its_place_and_flags_are_told(dataset_file):
+def test_round_off_agrees_and_the_largest_difference_its_place_and_flags_are_told(
+    dataset_file,
+):
     found = compare(dataset_file, edited(dataset_file, shifted))
     assert (found.verdict, found.exit_code) == (Agreement.within_tolerance, 0)
-    for change, name, count in ((moved, "growth_rate", 2), (flipped, "regime_linear", 4)):
+    for change, name, count in (
+        (moved, "growth_rate", 2),
+        (flipped, "regime_linear", 4),
+    ):
         found = compare(dataset_file, edited(dataset_file, change))
         assert found.exit_code == 1
         entry = next(v for v in found.datasets[0].variables if v.name == name)
@@ -68,21 +83,28 @@ def test_round_off_agrees_and_the_largest_difference_its_place_and_flags_are_tol
             assert entry.flips == {"stable → divergence": 4}
             continue
         assert entry.largest_absolute == pytest.approx(0.25)
-        assert entry.where == pytest.approx({"alpha1": np.pi / 4, "alpha2": 7 * np.pi / 12})
+        assert entry.where == pytest.approx(
+            {"alpha1": np.pi / 4, "alpha2": 7 * np.pi / 12}
+        )
 
 
 def test_coarse_and_fine_grids_are_aligned(tmp_path, write_run):
     a, b = write_run(tmp_path / "a", points=13), write_run(tmp_path / "b", points=37)
     found = compare(a / "results", b / "results")
     assert found.exit_code == 0
-    assert found.datasets[0].notes[0] == "alpha1: compared on 13 shared points of 13 and 37"
+    assert (
+        found.datasets[0].notes[0]
+        == "alpha1: compared on 13 shared points of 13 and 37"
+    )
     assert found.parameters == {"linear.points": (13, 37)}
 
 
 def test_grids_without_common_points_are_refused(dataset_file):
     dataset = load(dataset_file)
     alpha1 = (dataset.alpha1 + 0.01).assign_attrs(dataset.alpha1.attrs)
-    path = save(dataset.assign_coords(alpha1=alpha1), dataset_file.with_name("moved.nc"))
+    path = save(
+        dataset.assign_coords(alpha1=alpha1), dataset_file.with_name("moved.nc")
+    )
     found = compare(dataset_file, path)
     assert found.exit_code == 2
     assert "the grids of alpha1 share 0 of 13 and 13 points" in found.datasets[0].reason
@@ -93,7 +115,9 @@ def test_missing_datasets_are_a_difference(tmp_path, write_run):
     shutil.copy(a / "results/data/stability_map.nc", a / "results/data/second.nc")
     found = compare(a / "results", b / "results")
     assert found.exit_code == 1
-    assert next(d for d in found.datasets if d.name == "second").reason.startswith("only in")
+    assert next(d for d in found.datasets if d.name == "second").reason.startswith(
+        "only in"
+    )
 
 
 def test_damaged_and_foreign_files_are_not_comparable(dataset_file, tmp_path):
@@ -101,12 +125,18 @@ def test_damaged_and_foreign_files_are_not_comparable(dataset_file, tmp_path):
     damaged.write_bytes(dataset_file.read_bytes()[:-2000])
     foreign = tmp_path / "foreign.nc"
     xr.Dataset({"x": ("t", [1.0])}).to_netcdf(foreign)
-    for other, reason in [(damaged, "changed or damaged"), (foreign, "another program wrote it")]:
+    for other, reason in [
+        (damaged, "changed or damaged"),
+        (foreign, "another program wrote it"),
+    ]:
         found = compare(dataset_file, other)
         assert found.exit_code == 2
         assert reason in found.datasets[0].reason
     assert compare(dataset_file, tmp_path / "nothing").exit_code == 2
-    assert "no archive, folder or file" in compare(dataset_file, tmp_path / "nothing").reason
+    assert (
+        "no archive, folder or file"
+        in compare(dataset_file, tmp_path / "nothing").reason
+    )
     empty = tmp_path / "empty"
     empty.mkdir()
     assert "holds no dataset" in compare(dataset_file, empty).reason
@@ -159,12 +189,17 @@ def test_text_and_lists_of_different_length():
 
 
 def test_volatile_variables_are_no_part_of_the_verdict(monkeypatch):
-    monkeypatch.setattr("squealpipe.store.comparison.compare.schema_of", lambda _: TABLE)
+    monkeypatch.setattr(
+        "squealpipe.store.comparison.compare.schema_of", lambda _: TABLE
+    )
     a = build(TABLE, {"x": [1.0, 2.0], "wall": 3.0}, {"t": [0.0, 1.0]})
     b = build(TABLE, {"x": [1.0, 2.0], "wall": 4.0}, {"t": [0.0, 1.0]})
     found = compare_datasets("probe", a, b)
     assert found.verdict == Agreement.equal
-    assert next(v for v in found.variables if v.name == "wall").verdict == Agreement.different
+    assert (
+        next(v for v in found.variables if v.name == "wall").verdict
+        == Agreement.different
+    )
     c = build(TABLE, {"x": [1.0, 2.0], "event": [1.0]}, {"t": [0.0, 1.0]})
     assert compare_datasets("probe", a, c).verdict == Agreement.different
 
@@ -196,7 +231,10 @@ def test_events_are_matched_by_order_and_kind():
     found = compare_datasets("run", runs[0], shorter)
     assert found.verdict == Agreement.different
     assert any("matched by kind and order" in note for note in found.notes)
-    times = [each.event_time.values[each.event_kind.values == 0] for each in (runs[0], shorter)]
+    times = [
+        each.event_time.values[each.event_kind.values == 0]
+        for each in (runs[0], shorter)
+    ]
     entry = next(v for v in found.variables if v.name == "event_time")
     shared = min(map(len, times))
     largest = np.abs(times[0][:shared] - times[1][:shared]).max()
@@ -249,11 +287,21 @@ def test_statements_that_changed_are_told_with_verdict_and_value(tmp_path):
     judged = {"a": ([0, 0, 2], [1, 2, np.nan]), "b": ([0, 2, 2], [1.1, 2, np.nan])}
     for place, (verdict, value) in judged.items():
         numbers = dict.fromkeys(("threshold", "feasible_share"), [1.0] * 3)
-        flags = dict.fromkeys(("recorded", "basis", "origin", "feasible_count"), [0] * 3)
+        flags = dict.fromkeys(
+            ("recorded", "basis", "origin", "feasible_count"), [0] * 3
+        )
         flags |= {"verdict": verdict, "verdict_here": verdict}
         flags |= {"corrected_verdict": verdict, "corrected_value": value}
-        data = {**text, **numbers, **flags, "value": value, "figure": ["fig02", "fig03", ""]}
-        save(build(CLAIMS, data, {"claim": claims}), tmp_path / place / "data/claims.nc")
+        data = {
+            **text,
+            **numbers,
+            **flags,
+            "value": value,
+            "figure": ["fig02", "fig03", ""],
+        }
+        save(
+            build(CLAIMS, data, {"claim": claims}), tmp_path / place / "data/claims.nc"
+        )
     found = compare(tmp_path / "a", tmp_path / "b").statements
     assert [change.claim for change in found] == ["B", "A"]
     assert [change.verdict_changed for change in found] == [True, False]

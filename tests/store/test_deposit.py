@@ -14,7 +14,13 @@ from squealpipe.store.runs import verify
 @pytest.fixture
 def checkout(run, keys_of, monkeypatch):
     """A checkout with one archive and what else a deposit needs."""
-    for name in ("CITATION.cff", "LICENSE", "Snakefile", "pyproject.toml", "requirements.lock"):
+    for name in (
+        "CITATION.cff",
+        "LICENSE",
+        "Snakefile",
+        "pyproject.toml",
+        "requirements.lock",
+    ):
         shutil.copy(ROOT / name, run / name)
     archive("first", keys=keys_of(run), root=run)
     monkeypatch.chdir(run)

@@ -105,7 +105,9 @@ def test_files_of_an_archive_are_never_replaced(dataset, path, tmp_path):
 
 
 def test_foreign_unknown_and_damaged_files_are_refused(tmp_path, dataset, path):
-    foreign, text, bad = (tmp_path / f"{name}.nc" for name in ("foreign", "text", "bad"))
+    foreign, text, bad = (
+        tmp_path / f"{name}.nc" for name in ("foreign", "text", "bad")
+    )
     xr.Dataset({"x": ("t", [1.0])}).to_netcdf(foreign)
     text.write_text("no dataset")
     for each in (foreign, text):
@@ -174,7 +176,9 @@ def no_space():
 def failing_rename():
     """The last step fails."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(Path, "replace", Mock(side_effect=OSError(errno.EIO, "Input/output error")))
+        patch.setattr(
+            Path, "replace", Mock(side_effect=OSError(errno.EIO, "Input/output error"))
+        )
         yield
 
 

@@ -14,8 +14,14 @@ from tests.calls import CALLS
 
 PARAMS = Parameters(mu=0.21, k1=1.3, belt_speed=-7.0)
 MADE_BY = {
-    ("A1", 1e-12): "simulate summarize validity_map refine_validity_map hammering_map basin_map",
-    ("A1", 1e-9): "contact_boundary boundary_distance regime_chart smallest_disturbance "
+    (
+        "A1",
+        1e-12,
+    ): "simulate summarize validity_map refine_validity_map hammering_map basin_map",
+    (
+        "A1",
+        1e-9,
+    ): "contact_boundary boundary_distance regime_chart smallest_disturbance "
     "infer_parameters",
     ("A1", "round-off"): "limit_cycle cycle_branch",
     ("A1, A3", 1e-9): "propensity",
@@ -23,7 +29,9 @@ MADE_BY = {
     ("A3", "round-off"): "stability_map critical_friction_map",
     ("A4", "round-off"): "natural_frequencies periodic_orbit backbone",
 }
-MODEL_AND_TOLERANCE = {name: made for made, names in MADE_BY.items() for name in names.split()}
+MODEL_AND_TOLERANCE = {
+    name: made for made, names in MADE_BY.items() for name in names.split()
+}
 
 
 @pytest.mark.parametrize("name", MODEL_AND_TOLERANCE)
@@ -39,16 +47,35 @@ def test_attributes_tell_what_made_it_and_survive_the_file(name, tmp_path):
         assert "numpy" in json.loads(dataset.attrs["libraries"])
     assert back.attrs["commit"] == commit()
     assert "squealpipe" in back.attrs["history"]
-    told = ("made_by", "parameters", "model", "method", "tolerance", "arguments", "libraries")
+    told = (
+        "made_by",
+        "parameters",
+        "model",
+        "method",
+        "tolerance",
+        "arguments",
+        "libraries",
+    )
     bare = made.drop_attrs(deep=False).assign_attrs(schema=made.attrs["schema"])
     assert not set(told) & set(bare.attrs)
     assert dataset_id(bare) == back.attrs["dataset_id"]
 
 
 def test_every_public_function_that_returns_a_dataset_is_covered():
-    other = {"SCENES", "Parameters", "Scene", "Sweep", "choose_model", "load", "save", "run_sweep"}
+    other = {
+        "SCENES",
+        "Parameters",
+        "Scene",
+        "Sweep",
+        "choose_model",
+        "load",
+        "save",
+        "run_sweep",
+    }
     other |= {"open_results", "labels", "System", "Switch", "convert", "plot"}
-    other.add("cycle_curve")  # needs a special point: see the curves of tests/tasks/cycles
+    other.add(
+        "cycle_curve"
+    )  # needs a special point: see the curves of tests/tasks/cycles
     assert set(squealpipe.__all__) - other == set(MODEL_AND_TOLERANCE)
 
 
@@ -66,7 +93,9 @@ def test_sweeps_tell_their_task_and_what_stays_fixed():
 
 def git(place, *arguments):
     who = ["-c", "user.name=a", "-c", "user.email=a@b.c"]
-    done = subprocess.run(["git", *who, *arguments], cwd=place, check=True, capture_output=True)
+    done = subprocess.run(
+        ["git", *who, *arguments], cwd=place, check=True, capture_output=True
+    )
     commit.cache_clear()
     return done.stdout.decode()
 
@@ -74,7 +103,11 @@ def git(place, *arguments):
 def test_commit_is_our_own_or_none(tmp_path):
     """Not that of a repository around the checkout; another archive in a checkout is no change."""
     inside = tmp_path / "theirs/squealpipe-copy"
-    for name in ("Snakefile", "squealpipe/__init__.py", "results/archive/a/manifest.json"):
+    for name in (
+        "Snakefile",
+        "squealpipe/__init__.py",
+        "results/archive/a/manifest.json",
+    ):
         (inside / name).parent.mkdir(parents=True, exist_ok=True)
         (inside / name).touch()
     for words in (["init"], ["add", "."], ["commit", "-m", "theirs"]):

@@ -19,7 +19,9 @@ def test_nodes_are_the_datasets_by_their_names(run, keys_of):
     made = load(folder / "stability_map.nc")
     keys = keys_of(run)
     for name in ("second", "deep/third"):
-        path = produce(lambda: made, config={}, output=folder / f"{name}.nc", key="0" * 16)
+        path = produce(
+            lambda: made, config={}, output=folder / f"{name}.nc", key="0" * 16
+        )
         keys[f"results/data/{name}.nc"] = file_key("0" * 16, path)
     archive("first", keys=keys, root=run)
     for tree in (open_results(run / "results"), open_results("first", root=run)):
@@ -32,13 +34,16 @@ def test_nodes_are_the_datasets_by_their_names(run, keys_of):
         whole = load(folder / "deep/third.nc")
         xr.testing.assert_identical(tree["deep/third"].to_dataset().load(), whole)
         np.testing.assert_array_equal(
-            tree["second"].growth_rate[3:5, ::2].values, whole.growth_rate.values[3:5, ::2]
+            tree["second"].growth_rate[3:5, ::2].values,
+            whole.growth_rate.values[3:5, ::2],
         )
 
 
 def test_an_unknown_run_is_told_with_those_that_there_are(tmp_path):
     (tmp_path / "results/archive/first").mkdir(parents=True)
-    with pytest.raises(FileNotFoundError, match=r"no archive, folder or file.*; archives: first$"):
+    with pytest.raises(
+        FileNotFoundError, match=r"no archive, folder or file.*; archives: first$"
+    ):
         open_results("nothing", root=tmp_path)
 
 
@@ -46,7 +51,9 @@ DAMAGES = {
     "cut": lambda whole, share: whole[: int(len(whole) * share)],
     "cut at the front": lambda whole, share: whole[int(len(whole) * share) + 1 :],
     "flipped": lambda whole, share: flipped(whole, int(len(whole) * share)),
-    "zeroed": lambda whole, share: whole[: (k := int(len(whole) * share))] + bytes(len(whole) - k),
+    "zeroed": lambda whole, share: (
+        whole[: (k := int(len(whole) * share))] + bytes(len(whole) - k)
+    ),
     "lengthened": lambda whole, share: whole + whole[: int(len(whole) * share) + 1],
 }
 
@@ -72,7 +79,11 @@ def test_files_that_were_swapped_are_refused(run, tmp_path):
     made = load(folder / "stability_map.nc")
     for name in ("first", "second"):
         produce(lambda: made, config={}, output=folder / f"{name}.nc", key="0" * 16)
-    assert set(open_results(run / "results").children) == {"first", "second", "stability_map"}
+    assert set(open_results(run / "results").children) == {
+        "first",
+        "second",
+        "stability_map",
+    }
     (folder / "first.nc").rename(tmp_path / "aside.nc")
     (folder / "second.nc").rename(folder / "first.nc")
     (tmp_path / "aside.nc").rename(folder / "second.nc")
@@ -108,5 +119,7 @@ def test_an_archive_of_the_first_release_is_read():
     assert verify(folder).intact
     for path in sorted((folder / "data").rglob("*.nc")):
         assert load(path).attrs["package_version"] == "1.0.0"
-    scene = open_results(folder)["own_scenes"].sel(scene="mine", variant="as configured")
+    scene = open_results(folder)["own_scenes"].sel(
+        scene="mine", variant="as configured"
+    )
     assert float(scene.impact_speed) == pytest.approx(0.05989646446372935, rel=1e-12)

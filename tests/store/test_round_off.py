@@ -18,7 +18,9 @@ def rounded(a, b, how, **entry):
     """Agreement on one variable whose digits round-off decides."""
     dims = ("group", "sample") if how.sample else ("t",)
     sides = [xr.Dataset({"x": (dims, np.asarray(side, float))}) for side in (a, b)]
-    return judge("x", *sides, Variable(dims=dims, nan_allowed=True, round_off=how, **entry))
+    return judge(
+        "x", *sides, Variable(dims=dims, nan_allowed=True, round_off=how, **entry)
+    )
 
 
 @pytest.mark.parametrize(
@@ -37,7 +39,9 @@ def rounded(a, b, how, **entry):
 )
 def test_errors_at_round_off_are_compared_as_magnitudes(a, b, same):
     for pair in ((a, b), (b, a)):
-        found = rounded([pair[0]], [pair[1]], RoundOff(ComparedAs.magnitude, "why", floor=1e-12))
+        found = rounded(
+            [pair[0]], [pair[1]], RoundOff(ComparedAs.magnitude, "why", floor=1e-12)
+        )
         assert (found.verdict < Agreement.different) is same
         assert found.compared_as == "order of magnitude"
 
@@ -56,7 +60,9 @@ def test_chaotic_lifetimes_are_compared_as_samples():
 
 
 def test_every_class_of_round_off_states_its_reason():
-    entries = [one for schema in all_schemas().values() for one in schema.variables.values()]
+    entries = [
+        one for schema in all_schemas().values() for one in schema.variables.values()
+    ]
     classed = [entry.round_off for entry in entries if entry.round_off is not None]
     assert len(classed) >= 10
     assert all(len(how.reason) > 40 for how in classed)
@@ -65,7 +71,10 @@ def test_every_class_of_round_off_states_its_reason():
 def test_runs_agree_to_the_digits_that_growth_leaves():
     """Fig. 4's run from a start that is off by the last digit, and by a thousand of them."""
     scene = SCENES["F4"]
-    place, given = (FORMER, scene.alpha1, scene.alpha2), {"t_end": 500.0, "growth": True}
+    place, given = (
+        (FORMER, scene.alpha1, scene.alpha2),
+        {"t_end": 500.0, "growth": True},
+    )
     starts = ((off, 0.0, 0.0, 0.0) for off in (0.0, 2e-16, 1e-12))
     runs = [simulate(*place, initial_state=start, **given) for start in starts]
     assert float(runs[0].growth) > 1e10
@@ -99,7 +108,9 @@ def test_points_that_steps_placed_elsewhere_are_no_difference_but_a_special_poin
     start = limit_cycle(damped, *scene)
     branch = cycle_branch(damped, *scene, parameter="mu", to=0.2, start=start)
     fewer = branch.drop_isel(point=2)
-    assert compare_datasets("branch", branch, fewer).verdict <= Agreement.within_tolerance
+    assert (
+        compare_datasets("branch", branch, fewer).verdict <= Agreement.within_tolerance
+    )
     for name, point, value, verdict in (
         ("x_max", 2, branch.x_max[2] * (1 + 1e-5), Agreement.equal),  # another point
         ("y_max", 2, branch.y_max[2] * (1 + 1e-5), Agreement.different),
@@ -108,7 +119,10 @@ def test_points_that_steps_placed_elsewhere_are_no_difference_but_a_special_poin
     ):
         other = branch.copy(deep=True)
         other[name][point] = value
-        assert compare_datasets("branch", branch, other).verdict == verdict, (name, point)
+        assert compare_datasets("branch", branch, other).verdict == verdict, (
+            name,
+            point,
+        )
 
 
 def test_a_share_of_cells_may_differ_where_branches_meet():

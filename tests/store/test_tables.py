@@ -25,8 +25,12 @@ def test_matlab_holds_arrays_units_and_the_meanings_of_flags(motion, tmp_path):
     assert "0: separation" in found["meanings"]["event_kind"]
 
 
-@pytest.mark.parametrize(("ending", "library"), [(".xlsx", "openpyxl"), (".parquet", "pyarrow")])
-def test_tables_have_units_in_their_header_and_flags_in_words(ending, library, motion, tmp_path):
+@pytest.mark.parametrize(
+    ("ending", "library"), [(".xlsx", "openpyxl"), (".parquet", "pyarrow")]
+)
+def test_tables_have_units_in_their_header_and_flags_in_words(
+    ending, library, motion, tmp_path
+):
     pytest.importorskip(library, reason="the extra export is not installed")
     files = convert(motion, tmp_path / f"run{ending}")
     if ending == ".xlsx":
@@ -43,7 +47,9 @@ def test_tables_have_units_in_their_header_and_flags_in_words(ending, library, m
 
 def test_a_missing_library_is_named(motion, tmp_path, monkeypatch):
     monkeypatch.setattr("squealpipe.store.tables.find_spec", lambda _: None)
-    with pytest.raises(ValueError, match=r"needs openpyxl; pip install 'squealpipe\[export\]'"):
+    with pytest.raises(
+        ValueError, match=r"needs openpyxl; pip install 'squealpipe\[export\]'"
+    ):
         convert(motion, tmp_path / "run.xlsx")
 
 
@@ -55,7 +61,9 @@ def test_an_unknown_ending_is_refused(motion, tmp_path):
 def test_command_draws_and_converts_a_system_of_ones_own(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     save(impact_oscillator.simulate(20.0), "results/data/own.nc")
-    assert command(["plot", "results/data/own.nc"]) == 0, "beside it nothing else may be"
+    assert command(["plot", "results/data/own.nc"]) == 0, (
+        "beside it nothing else may be"
+    )
     (tmp_path / "results/data/own.nc").rename("own.nc")
     assert command(["plot", "own.nc"]) == 2
     assert "own.png exists; add --force" in capsys.readouterr().err

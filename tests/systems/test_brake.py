@@ -11,7 +11,13 @@ from squealpipe.systems.brake import brake
 
 def test_the_late_part_may_begin_at_an_event():
     """The motion stays the same: the contact at that very instant was lost."""
-    given = {"k3": 0.75, "mu": 0.35, "static_mu": 0.35, "belt_speed": 0.4, "length1": 5.0}
+    given = {
+        "k3": 0.75,
+        "mu": 0.35,
+        "static_mu": 0.35,
+        "belt_speed": 0.4,
+        "length1": 5.0,
+    }
     given |= {"length2": 5.0, "alpha1": 0.9, "alpha2": 2.0}
     start = {"y": 1.5, "vy": 0.3}
     run = brake().simulate(12.0, start=start, **given)
@@ -22,7 +28,9 @@ def test_the_late_part_may_begin_at_an_event():
     assert float(late.first_contact) == float(run.event_time[0])
     for name in ("contact_force_max", "x", "y", "vx", "vy"):
         np.testing.assert_allclose(late[name], plain[name], rtol=1e-9)
-    np.testing.assert_allclose(late.late_contact_force_max, late.contact_force_max, rtol=1e-12)
+    np.testing.assert_allclose(
+        late.late_contact_force_max, late.contact_force_max, rtol=1e-12
+    )
 
 
 def test_friction_as_printed_takes_no_table():
@@ -40,5 +48,7 @@ def test_a_mass_at_belt_speed_that_nothing_holds_or_pulls_slides_below_it():
     assert printed.vx[1] < 3.0
     assert (printed.event_time > 0.0).all()
     at_belt["initial_state"] = (0.0, 0.5, 3.0, 0.0)
-    smooth = simulate(Parameters(mu=0.0, belt_speed=3.0), 1.0, 1.0, t_end=1.0, **at_belt)
+    smooth = simulate(
+        Parameters(mu=0.0, belt_speed=3.0), 1.0, 1.0, t_end=1.0, **at_belt
+    )
     assert (smooth.event_time > 0.0).all()

@@ -38,7 +38,9 @@ def trace(omega, amplitude, damping):
     flow = expm(np.array([[0.0, 1.0], [-1.0, -damping]]) * 2 * np.pi / omega)
     inverse = np.linalg.inv(np.eye(2) - flow)
     fixed = inverse @ ((np.eye(2) - flow) @ [GAP, 0.0]) / [1.0, omega]
-    by_speed = inverse @ (np.array([0.0, 1.0]) + flow @ [0.0, RESTITUTION]) / [1.0, omega]
+    by_speed = (
+        inverse @ (np.array([0.0, 1.0]) + flow @ [0.0, RESTITUTION]) / [1.0, omega]
+    )
     size = amplitude / np.hypot(1.0 - omega**2, damping * omega)
     square, cross = by_speed @ by_speed, fixed @ by_speed
     speed = (-cross + np.sqrt(cross**2 - square * (fixed @ fixed - size**2))) / square
@@ -77,7 +79,9 @@ def branch():
 
 
 def curve_of(label, start, **options):
-    return impact_oscillator.cycle_curve(label, ("omega", "amplitude"), start=start, **options)
+    return impact_oscillator.cycle_curve(
+        label, ("omega", "amplitude"), start=start, **options
+    )
 
 
 def corners(curve):
@@ -86,7 +90,9 @@ def corners(curve):
 
 
 def ends(curve):
-    return [curve.outcome.attrs["flag_meanings"].split()[i] for i in curve.outcome.values]
+    return [
+        curve.outcome.attrs["flag_meanings"].split()[i] for i in curve.outcome.values
+    ]
 
 
 def test_grazing_curve_and_where_folds_meet_it(branch):
@@ -130,21 +136,29 @@ def test_curve_of_tori():
     guess = {"x": -1.5, "v": 0.5}
     start = impact_oscillator.limit_cycle(omega=2.1, amplitude=4.5, guess=guess)
     start = impact_oscillator.cycle_branch("damping", -0.25, start=start)
-    curve = impact_oscillator.cycle_curve("torus", ("omega", "damping"), start=start, n_points=60)
+    curve = impact_oscillator.cycle_curve(
+        "torus", ("omega", "damping"), start=start, n_points=60
+    )
     omega, damping = curve.omega.values, curve.damping.values
     np.testing.assert_allclose(damping, omega / np.pi * np.log(RESTITUTION), rtol=1e-12)
     assert set(ends(curve)) == {"multipliers_are_real", "point_limit"}
     for meeting, angle in (("2", np.pi), ("3", 2 * np.pi / 3), ("4", np.pi / 2)):
         (at,) = np.flatnonzero(curve.label.values == Meeting[f"resonance_1_{meeting}"])
-        assert trace(omega[at], 4.5, damping[at]) == pytest.approx(2 * np.cos(angle), abs=1e-9)
+        assert trace(omega[at], 4.5, damping[at]) == pytest.approx(
+            2 * np.cos(angle), abs=1e-9
+        )
 
 
 def test_the_onset_of_stick_is_followed_in_belt_speed_and_damping():
     """Against the same onset found on branches in the speed alone, at other dampings."""
     system = exponential_oscillator
-    start = system.cycle_branch("belt_speed", 1.9, start=system.limit_cycle(belt_speed=1.25))
+    start = system.cycle_branch(
+        "belt_speed", 1.9, start=system.limit_cycle(belt_speed=1.25)
+    )
     pair = ("belt_speed", "damping")
-    curve = system.cycle_curve("stick_onset", pair, start=start, to={"damping": (0.08, 0.12)})
+    curve = system.cycle_curve(
+        "stick_onset", pair, start=start, to={"damping": (0.08, 0.12)}
+    )
     at = int(np.argmin(np.abs(curve.damping.values - 0.1)))
     assert float(curve.belt_speed[at]) == pytest.approx(1.83660097221, abs=2e-11)
     assert ends(curve) == ["end_of_range", "end_of_range"]
@@ -179,11 +193,16 @@ def test_folds_of_a_hardening_spring_are_born_in_the_cusp():
         return system.cycle_branch("omega", 1.0, start=system.limit_cycle(force=force))
 
     limits = {"omega": (1.0, 2.0), "force": (0.1, 0.5)}
-    curve = system.cycle_curve("fold", ("omega", "force"), start=branch_at(0.3), to=limits)
+    curve = system.cycle_curve(
+        "fold", ("omega", "force"), start=branch_at(0.3), to=limits
+    )
     (cusp,) = np.flatnonzero(curve.label.values == Meeting.cusp)
     force = float(curve.force[cusp])
     assert force == curve.force.values.min()
-    assert [int((branch_at(f * force).label == 1).sum()) for f in (0.98, 1.02)] == [0, 2]
+    assert [int((branch_at(f * force).label == 1).sum()) for f in (0.98, 1.02)] == [
+        0,
+        2,
+    ]
 
 
 @pytest.mark.parametrize(
@@ -199,6 +218,10 @@ def test_folds_of_a_hardening_spring_are_born_in_the_cusp():
     ],
 )
 def test_what_cannot_be_followed_is_refused(branch, given, message):
-    call = {"label": "fold", "parameters": ("omega", "amplitude"), "start": branch} | given
+    call = {
+        "label": "fold",
+        "parameters": ("omega", "amplitude"),
+        "start": branch,
+    } | given
     with pytest.raises(ValueError, match=message):
         impact_oscillator.cycle_curve(**call)

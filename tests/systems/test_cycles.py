@@ -30,16 +30,22 @@ def test_stick_slip_cycles_have_their_known_periods():
     assert float(cycle.period) == pytest.approx(12.001031295, abs=5e-10)
     kinds = np.array(cycle.event_kind.attrs["flag_meanings"].split())[cycle.event_kind]
     assert set(kinds) == {"slip", "stick"}
-    slip, stick = (float(cycle.event_time[list(kinds).index(k)]) for k in ("slip", "stick"))
+    slip, stick = (
+        float(cycle.event_time[list(kinds).index(k)]) for k in ("slip", "stick")
+    )
     assert (stick - slip) % float(cycle.period) == pytest.approx(4.295999525, abs=5e-10)
     for speed, period in ((1.25, 6.353748505), (0.5, 6.929871535)):
         cycle = exponential_oscillator.limit_cycle(belt_speed=speed)
         assert float(cycle.period) == pytest.approx(period, abs=5e-10)
         assert abs(float(cycle.multiplier_real[0]) - 1.0) < 1e-9
-        assert abs(float(cycle.multiplier_real[1])) < 1e-12, "stick forgets one direction"
+        assert abs(float(cycle.multiplier_real[1])) < 1e-12, (
+            "stick forgets one direction"
+        )
 
 
-@pytest.mark.parametrize(("speed", "amplitude"), [(1.25, 0.664228586), (1.55, 1.436881604)])
+@pytest.mark.parametrize(
+    ("speed", "amplitude"), [(1.25, 0.664228586), (1.55, 1.436881604)]
+)
 def test_the_unstable_cycle_has_its_known_amplitude(speed, amplitude):
     centre = 0.5 + 0.5 * np.exp(-2.0 * speed)
     guess = {"x": centre + amplitude - 1e-4, "v": 0.0}
@@ -63,7 +69,9 @@ def test_both_cycles_of_the_exponential_oscillator_vanish_where_they_meet():
     assert not branch.stable.values[at + 1 :][large[at + 1 :]].any()
     guess = {"x": 0.5 + 0.5 * np.exp(-2.5) + 0.664, "v": 0.0}
     unstable = exponential_oscillator.limit_cycle(belt_speed=1.25, guess=guess)
-    other = exponential_oscillator.cycle_branch("belt_speed", 1.9, start=unstable, n_points=30)
+    other = exponential_oscillator.cycle_branch(
+        "belt_speed", 1.9, start=unstable, n_points=30
+    )
     (corner,) = special(other, Label.stick_onset)
     assert corner == pytest.approx(V_STAR, abs=2e-11)
     assert other.events[-1] == 2
@@ -78,8 +86,12 @@ def test_branch_of_the_impact_oscillator_has_its_closed_form_points():
     assert special(branch, Label.fold) == pytest.approx(2.073204825805628, abs=1e-12)
     np.testing.assert_array_equal(branch.events[[0, -1]], [0, 1])
     touches = branch.label == Label.grazing
-    np.testing.assert_array_equal(branch.multiplier_real.isnull().all("multiplier"), touches)
-    np.testing.assert_array_equal(branch.stable[touches], branch.stable.shift(point=1)[touches])
+    np.testing.assert_array_equal(
+        branch.multiplier_real.isnull().all("multiplier"), touches
+    )
+    np.testing.assert_array_equal(
+        branch.stable[touches], branch.stable.shift(point=1)[touches]
+    )
     assert float(branch.amplitude[-1]) == 4.0
     assert branch.end == Outcome.converged
     middle = (branch.events == 1) & (branch.label == Label.regular)
@@ -87,7 +99,9 @@ def test_branch_of_the_impact_oscillator_has_its_closed_form_points():
 
 
 def test_flip_of_the_impact_oscillator():
-    start = impact_oscillator.limit_cycle(omega=2.1, amplitude=4.5, guess={"x": -1.5, "v": 0.5})
+    start = impact_oscillator.limit_cycle(
+        omega=2.1, amplitude=4.5, guess={"x": -1.5, "v": 0.5}
+    )
     assert start.sizes["event"] == 1
     branch = impact_oscillator.cycle_branch("amplitude", 2.5, start=start)
     flips = special(branch, Label.period_doubling)
@@ -98,7 +112,9 @@ def test_motion_without_stick_ends_where_closed_forms_say():
     start = dry_friction_oscillator.limit_cycle(omega=0.9)
     for to, expected in ((0.5, 0.722679194438), (1.5, 1.235747152322)):
         branch = dry_friction_oscillator.cycle_branch("omega", to, start=start)
-        assert special(branch, Label.stick_onset)[0] == pytest.approx(expected, abs=1e-12)
+        assert special(branch, Label.stick_onset)[0] == pytest.approx(
+            expected, abs=1e-12
+        )
 
 
 def test_the_cycle_of_the_relief_valve_shrinks_to_rest_at_its_hopf_point():
@@ -142,7 +158,9 @@ def test_a_settled_motion_of_more_periods_says_how_many():
 @pytest.mark.parametrize("amplitude", [3.5065, 3.508])
 def test_a_motion_that_settles_to_and_fro_is_one_of_the_shorter_period(amplitude):
     """Next to its flip at 3.50619 a multiplier of the one-impact cycle is just above −1."""
-    cycle = impact_oscillator.limit_cycle(omega=2.1, amplitude=amplitude, start={"x": 0.0})
+    cycle = impact_oscillator.limit_cycle(
+        omega=2.1, amplitude=amplitude, start={"x": 0.0}
+    )
     assert cycle.outcome == Outcome.converged
     assert float(cycle.period) == pytest.approx(2.0 * np.pi / 2.1, rel=1e-12)
     assert -1.0 < cycle.multiplier_real.min() < -0.85
@@ -166,7 +184,9 @@ def test_samples_of_a_cycle_resolve_its_impacts():
         period=lambda p: 2.0 * np.pi / p.omega,
     )  # fmt: skip
     cycle = next(
-        c for n in (1, 2, 3, 4, 5) if np.isfinite((c := stop.limit_cycle(periods=n)).period)
+        c
+        for n in (1, 2, 3, 4, 5)
+        if np.isfinite((c := stop.limit_cycle(periods=n)).period)
     )
     assert cycle.sizes["event"] >= 2
     deepest = float(cycle.x_path.max()) - 0.2
@@ -190,12 +210,17 @@ def compare_with_differences(seed):
     """Multipliers of one random system at some parameters; how many cycles there were."""
     system, rng, checked = random_system(seed), np.random.default_rng(seed), 0
     for _ in range(4):
-        values = {"drive": float(rng.uniform(0.2, 1.5)), "omega": float(rng.uniform(0.5, 3.0))}
+        values = {
+            "drive": float(rng.uniform(0.2, 1.5)),
+            "omega": float(rng.uniform(0.5, 3.0)),
+        }
         cycle = system.limit_cycle(**values)
         if cycle.outcome != Outcome.converged:
             continue
         state = np.array([float(cycle[f"{name}_start"]) for name in system.states])
-        regime = cycle.start_regime.attrs["flag_meanings"].split()[int(cycle.start_regime)]
+        regime = cycle.start_regime.attrs["flag_meanings"].split()[
+            int(cycle.start_regime)
+        ]
         after = stroboscopic_map(system, values, float(cycle.period))
         back, kinds = after(state, regime)
         np.testing.assert_allclose(back, state, atol=1e-9)
@@ -212,8 +237,12 @@ def compare_with_differences(seed):
             matrix[:, j] = (8.0 * (near - other) - (far - last)) / 12e-4
         else:
             expected = np.poly(np.linalg.eigvals(matrix))
-            ours = np.poly(cycle.multiplier_real.values + 1j * cycle.multiplier_imag.values)
-            np.testing.assert_allclose(ours, expected, atol=1e-6 * max(1.0, np.abs(expected).max()))
+            ours = np.poly(
+                cycle.multiplier_real.values + 1j * cycle.multiplier_imag.values
+            )
+            np.testing.assert_allclose(
+                ours, expected, atol=1e-6 * max(1.0, np.abs(expected).max())
+            )
             checked += 1
     return checked
 
@@ -249,16 +278,29 @@ def test_a_touch_after_which_the_motion_jumps_ends_a_branch():
 def test_no_label_of_a_random_branch_is_lost_between_dense_samples(seed, monkeypatch):
     """Labels are those of steps a tenth as long, and each change between those has one."""
     system, rng = random_system(seed), np.random.default_rng(seed)
-    values = {"drive": float(rng.uniform(0.2, 1.5)), "omega": float(rng.uniform(0.5, 3.0))}
+    values = {
+        "drive": float(rng.uniform(0.2, 1.5)),
+        "omega": float(rng.uniform(0.5, 3.0)),
+    }
     start = system.limit_cycle(**values)
     if start.outcome != Outcome.converged:
         pytest.skip("no cycle of one period")
     to = 1.2 * values["drive"]
     coarse = system.cycle_branch("drive", to, start=start)
-    monkeypatch.setattr(branch_module, "STEPS", replace(branch_module.STEPS, longest_step=0.005))
+    monkeypatch.setattr(
+        branch_module, "STEPS", replace(branch_module.STEPS, longest_step=0.005)
+    )
     dense = system.cycle_branch("drive", to, start=start, n_points=2000)
-    for label in (Label.fold, Label.period_doubling, Label.torus, Label.grazing, Label.stick_onset):
-        np.testing.assert_allclose(special(coarse, label), special(dense, label), atol=1e-10)
+    for label in (
+        Label.fold,
+        Label.period_doubling,
+        Label.torus,
+        Label.grazing,
+        Label.stick_onset,
+    ):
+        np.testing.assert_allclose(
+            special(coarse, label), special(dense, label), atol=1e-10
+        )
     multipliers = dense.multiplier_real.values + 1j * dense.multiplier_imag.values
     flips, labels = np.prod(multipliers + 1.0, axis=1).real, dense.label.values
     alike = (np.diff(dense.events) == 0) & (labels[:-1] == 0) & (labels[1:] == 0)
@@ -277,7 +319,9 @@ def test_no_label_of_a_random_branch_is_lost_between_dense_samples(seed, monkeyp
     ],
     ids=["stick", "impacts"],
 )  # fmt: skip
-def test_derivatives_through_events_are_those_of_differences(system, times, given, names):
+def test_derivatives_through_events_are_those_of_differences(
+    system, times, given, names
+):
     """By the belt's speed, to which the reset sets the velocity, by others, and by starts."""
     options = {"times": np.array(times)}
     run = system.simulate(times[-1], sensitivity=names, **options, **given)
@@ -287,8 +331,15 @@ def test_derivatives_through_events_are_those_of_differences(system, times, give
         for step in (1e-6, -1e-6):
             values, start = dict(given), dict(system.start)
             (start if name[:-1] in start else values)[name.removesuffix("0")] += step
-            end = system.simulate(times[-1], start=start, tol=1e-15, **options, **values)
+            end = system.simulate(
+                times[-1], start=start, tol=1e-15, **options, **values
+            )
             ends.append(np.concatenate([end.event_time, end.x[1:], end.v[1:]]))
         slopes = (ends[0] - ends[1]) / 2e-6
-        ours = [run[f"event_time_by_{name}"], *(run[f"{z}_by_{name}"][1:] for z in ("x", "v"))]
-        np.testing.assert_allclose(np.concatenate(ours), slopes, atol=2e-7 * np.abs(slopes).max())
+        ours = [
+            run[f"event_time_by_{name}"],
+            *(run[f"{z}_by_{name}"][1:] for z in ("x", "v")),
+        ]
+        np.testing.assert_allclose(
+            np.concatenate(ours), slopes, atol=2e-7 * np.abs(slopes).max()
+        )

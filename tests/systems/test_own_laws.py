@@ -36,7 +36,9 @@ def run(params, t_end, times, angles=ANGLES, **start):
     found = brake_of(params).simulate(
         t_end, times=times, start=start, **parameters_of_run(params, *angles)
     )
-    assert found.outcome.attrs["flag_meanings"].split()[int(found.outcome)] == "converged"
+    assert (
+        found.outcome.attrs["flag_meanings"].split()[int(found.outcome)] == "converged"
+    )
     return found
 
 
@@ -48,7 +50,9 @@ def reference(params, angles, times, start, friction, contact):
         x, y, vx, vy = np.array(z) * [unit, unit, unit / time, unit / time]
         fx, fy = elastic_force(x, y, params, g)
         n = contact(params.preload - y, -vy)
-        fx += n * np.sign(params.belt_speed - vx) * friction(abs(params.belt_speed - vx))
+        fx += (
+            n * np.sign(params.belt_speed - vx) * friction(abs(params.belt_speed - vx))
+        )
         scale = time * time / (params.mass * unit)
         return [z[2], z[3], fx * scale, (fy + n) * scale]
 
@@ -68,7 +72,9 @@ def compared(params, start, friction, contact, tol, angles=ANGLES):
     z0 = [start.get(name, 0.0) for name in ("x", "y", "vx", "vy")]
     other = reference(params, angles, times, z0, friction, contact)
     for name, values in zip(("x", "y", "vx", "vy"), other, strict=True):
-        assert np.abs(ours[name].values - values).max() < tol * np.abs(values).max(), name
+        assert np.abs(ours[name].values - values).max() < tol * np.abs(values).max(), (
+            name
+        )
     return ours
 
 
@@ -99,8 +105,12 @@ def balance(params, t_end, **start):
     closing = -inside.vy.values
     squeezed = params.preload - inside.y.values
     names = inside.regime.attrs["flag_meanings"].split()
-    touching = np.array([names[r] not in {"separated", "released"} for r in inside.regime.values])
-    force = np.where(touching, contact_law(params).force(squeezed, closing, params), 0.0)
+    touching = np.array(
+        [names[r] not in {"separated", "released"} for r in inside.regime.values]
+    )
+    force = np.where(
+        touching, contact_law(params).force(squeezed, closing, params), 0.0
+    )
     sticks = np.array([names[r].startswith("stick") for r in inside.regime.values])
     drag = coefficient(np.abs(lag), params) * force * np.sign(lag)
     pull = elastic_force(inside.x.values, inside.y.values, params, g)[0]
@@ -133,7 +143,11 @@ def test_a_table_of_contact_agrees_with_scipy_across_its_knots():
     knots, values = knots_of(SOFTENING)
 
     def force(d, _):
-        beyond = max(d - knots[-1], 0.0) * (values[-1] - values[-2]) / (knots[-1] - knots[-2])
+        beyond = (
+            max(d - knots[-1], 0.0)
+            * (values[-1] - values[-2])
+            / (knots[-1] - knots[-2])
+        )
         return np.interp(d, knots, values) + beyond
 
     found = compared(params, {"vy": -0.3}, lambda _: 0.4, force, 1e-8)

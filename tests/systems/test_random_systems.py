@@ -14,7 +14,9 @@ from squealpipe.systems.dry_friction import dry_friction_oscillator
 from squealpipe.systems.impact_oscillator import impact_oscillator
 
 T_END, MOST_EVENTS = 15.0, 60
-DRAWS = int(os.environ.get("SQUEALPIPE_DRAWS", "5"))  # of each structure, in the release tier
+DRAWS = int(
+    os.environ.get("SQUEALPIPE_DRAWS", "5")
+)  # of each structure, in the release tier
 
 
 def random_linear(rng, n):
@@ -42,7 +44,9 @@ def random_height(rng, names):
     normal, level = rng.normal(size=len(names)), 0.3 * float(rng.random())
 
     def height(t, s, p, r):
-        parts = (float(w) * getattr(s, name) for w, name in zip(normal, names, strict=True))
+        parts = (
+            float(w) * getattr(s, name) for w, name in zip(normal, names, strict=True)
+        )
         return sum(parts) + level
 
     return height
@@ -77,7 +81,9 @@ def patches(rng, names):
 
 def stick(rng, names):
     """Dry friction on s1, which sticks at 0 while it can, and an impact with a reset."""
-    rates = random_rates(names, random_linear(rng, len(names)), rng.normal(size=len(names)))
+    rates = random_rates(
+        names, random_linear(rng, len(names)), rng.normal(size=len(names))
+    )
     height, limit = random_height(rng, names), 0.3 + float(rng.random())
 
     def pull(t, s, p):
@@ -136,7 +142,9 @@ def independent_run(system, start, parameters, max_step):
 
     while t < T_END and len(found) < MOST_EVENTS:
         here = [
-            s for s in system.switches if regime in ([s.leaves], s.leaves)[type(s.leaves) is tuple]
+            s
+            for s in system.switches
+            if regime in ([s.leaves], s.leaves)[type(s.leaves) is tuple]
         ]
 
         r = SimpleNamespace(**system.regimes[regime])
@@ -183,7 +191,10 @@ def test_events_of_random_systems_are_those_of_dop853(seed, draws):
     rng = np.random.default_rng(100 + seed)
     for _ in range(draws):
         start = {name: float(rng.uniform(0.2, 1.0)) for name in system.states}
-        given = {"drive": float(rng.uniform(0.5, 2.0)), "omega": float(rng.uniform(0.5, 2.0))}
+        given = {
+            "drive": float(rng.uniform(0.5, 2.0)),
+            "omega": float(rng.uniform(0.5, 2.0)),
+        }
         run = system.simulate(T_END, start=start, **given)
         kinds = run.event_kind.attrs["flag_meanings"].split()
         mine = [kinds[int(k)] for k in run.event_kind]
@@ -196,7 +207,9 @@ def test_events_of_random_systems_are_those_of_dop853(seed, draws):
         for max_step in (0.2, 0.01, 0.001, 1e-4):
             events, z = independent_run(system, start, given, max_step)
             if accumulates:  # where it falls through the surface
-                events = [event for event in events if event[0] < float(run.end_time) - 1e-8]
+                events = [
+                    event for event in events if event[0] < float(run.end_time) - 1e-8
+                ]
             ends = accumulates or len(events) == MOST_EVENTS
             if mine[: len(events) if ends else None] == [kind for _, kind in events]:
                 break
@@ -208,7 +221,9 @@ def test_events_of_random_systems_are_those_of_dop853(seed, draws):
         times = run.event_time[: len(events)]
         np.testing.assert_allclose(times, [t for t, _ in events], atol=1e-8)
         if len(events) < MOST_EVENTS and not accumulates:
-            np.testing.assert_allclose([run[n][-1] for n in system.states], z, atol=1e-7)
+            np.testing.assert_allclose(
+                [run[n][-1] for n in system.states], z, atol=1e-7
+            )
 
 
 def test_stick_at_rest_is_left_once():
@@ -234,8 +249,12 @@ def test_growth_is_that_of_a_small_difference_through_impacts():
         impact_oscillator.ensemble(12.0, start={"x": s * step, "v": s * step}, **given)
         for s in (1.0, -1.0)
     ]
-    difference = np.hypot(float(ends[0].x - ends[1].x), float(ends[0].v - ends[1].v)) / 2e-7
-    assert np.exp(12.0 * float(base.lyapunov_exponent)) == pytest.approx(difference, rel=1e-5)
+    difference = (
+        np.hypot(float(ends[0].x - ends[1].x), float(ends[0].v - ends[1].v)) / 2e-7
+    )
+    assert np.exp(12.0 * float(base.lyapunov_exponent)) == pytest.approx(
+        difference, rel=1e-5
+    )
 
 
 def bounce(t, s, p, r):
@@ -266,17 +285,37 @@ def hit(when, leaves="free", to="free"):
 @pytest.mark.parametrize(
     ("change", "error", "message"),
     [
-        ({"field": lambda t, s, p, r: {"x": s.v}}, ValueError, "lacks the rate of the state 'v'"),
+        (
+            {"field": lambda t, s, p, r: {"x": s.v}},
+            ValueError,
+            "lacks the rate of the state 'v'",
+        ),
         (pull(lambda s: abs(s.x)), TypeError, "make each side a reg"),
         (pull(lambda s: -np.cos(s.x)), TypeError, "take squealpipe.functions"),
         (pull(lambda s: -s.y), AttributeError, "has no 'y'"),
-        (pull(lambda s: -1.0 if s.x == 0.0 else 0.0), TypeError, "make each side a reg"),
+        (
+            pull(lambda s: -1.0 if s.x == 0.0 else 0.0),
+            TypeError,
+            "make each side a reg",
+        ),
         ({"parameters": {"x0": 1.0}}, ValueError, "the name is taken"),
         ({"parameters": {"gap": 1.0, "x_max": 1.0}}, ValueError, "the name is taken"),
-        ({"parameters": {"gap": 1.0, "count_hit": 1.0}}, ValueError, "the name is taken"),
+        (
+            {"parameters": {"gap": 1.0, "count_hit": 1.0}},
+            ValueError,
+            "the name is taken",
+        ),
         ({"parameters": {"gap": 1.0, "self": 1.0}}, ValueError, "the name is taken"),
-        ({"outputs": {"x0": ("m", lambda t, s, p, r: s.x)}}, ValueError, "the name is taken"),
-        ({"stops": {"converged": lambda t, s, p, r: s.x}}, ValueError, "the name is taken"),
+        (
+            {"outputs": {"x0": ("m", lambda t, s, p, r: s.x)}},
+            ValueError,
+            "the name is taken",
+        ),
+        (
+            {"stops": {"converged": lambda t, s, p, r: s.x}},
+            ValueError,
+            "the name is taken",
+        ),
         ({"regimes": {"free": {"c": float("inf")}}}, ValueError, "'c'. = inf"),
         ({"regimes": {"a/b": {}}}, ValueError, "a name without /"),
         ({"parameters": {"1st gap": 1.0}}, ValueError, "letters, digits and _"),
@@ -291,11 +330,21 @@ def hit(when, leaves="free", to="free"):
             ValueError,
             "fire again at once",
         ),
-        ({"field": lambda t, s, p, r: {"x": s.v, "v": np.nan}}, ValueError, "finite numbers"),
-        ({"field": lambda t, s, p, r: {"x": s.v, "v": s.x(t - 1.0)}}, TypeError, "delays"),
+        (
+            {"field": lambda t, s, p, r: {"x": s.v, "v": np.nan}},
+            ValueError,
+            "finite numbers",
+        ),
+        (
+            {"field": lambda t, s, p, r: {"x": s.v, "v": s.x(t - 1.0)}},
+            TypeError,
+            "delays",
+        ),
     ],
 )
-def test_a_wrong_definition_is_refused_before_anything_is_compiled(change, error, message):
+def test_a_wrong_definition_is_refused_before_anything_is_compiled(
+    change, error, message
+):
     with pytest.raises(error, match=message):
         System("wrong", **{**GOOD, **change})
 
@@ -345,9 +394,13 @@ def test_a_guess_serves_a_forced_system_without_switches_and_excludes_a_start():
     def field(t, s, p, r):
         return {"x": s.v, "v": cos(np.pi * t) - 0.2 * s.v - s.x}
 
-    system = System("forced", **GOOD | {"switches": (), "field": field}, period=lambda _: 2.0)
+    system = System(
+        "forced", **GOOD | {"switches": (), "field": field}, period=lambda _: 2.0
+    )
     cycle = system.limit_cycle(guess={"x": 0.1})
-    assert float(cycle.x_max) == pytest.approx(1.0 / np.hypot(1.0 - np.pi**2, 0.2 * np.pi))
+    assert float(cycle.x_max) == pytest.approx(
+        1.0 / np.hypot(1.0 - np.pi**2, 0.2 * np.pi)
+    )
     with pytest.raises(ValueError, match="start, guess"):
         system.limit_cycle(start={}, guess={})
 
@@ -370,5 +423,9 @@ def test_a_run_starts_in_the_regime_that_it_is_given():
         field=lambda t, s, p, r: {"x": r.rate * s.x}, start={"x": 1.0},
     )  # fmt: skip
     for start, end in (({}, np.e), ({"regime": "decays"}, 1.0 / np.e)):
-        assert float(system.ensemble(1.0, start=start).x) == pytest.approx(end, rel=1e-14)
-        assert float(system.simulate(1.0, start=start).x[-1]) == pytest.approx(end, rel=1e-14)
+        assert float(system.ensemble(1.0, start=start).x) == pytest.approx(
+            end, rel=1e-14
+        )
+        assert float(system.simulate(1.0, start=start).x[-1]) == pytest.approx(
+            end, rel=1e-14
+        )

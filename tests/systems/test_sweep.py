@@ -52,7 +52,9 @@ def test_a_sweep_of_a_system_is_its_ensemble_whole_or_in_parts(task, run):
 )
 def test_what_cannot_be_run_is_refused_when_it_is_planned(task, change, message):
     given = config(change.pop("task", task), **change)
-    given["fixed"] = {name: value for name, value in given["fixed"].items() if value is not None}
+    given["fixed"] = {
+        name: value for name, value in given["fixed"].items() if value is not None
+    }
     with pytest.raises(ValueError, match=message):
         planned(given)
 
@@ -60,6 +62,8 @@ def test_what_cannot_be_run_is_refused_when_it_is_planned(task, change, message)
 def test_the_key_of_a_sweep_follows_the_file(task):
     keys = [rule_key(config(task), [])]
     file = Path("impact.py")
-    file.write_text(file.read_text(encoding="utf-8").replace("0.1", "0.2"), encoding="utf-8")
+    file.write_text(
+        file.read_text(encoding="utf-8").replace("0.1", "0.2"), encoding="utf-8"
+    )
     keys.append(rule_key(config(task), []))
     assert keys[0] != keys[1]

@@ -68,12 +68,19 @@ def test_the_forced_oscillator_meets_its_stop_from_the_grazing_amplitude_on(omeg
     grazing = np.sqrt(stiffness**2 + 0.01 * omega**2)
     for factor, hits in ((1.0 - 1e-9, False), (1.0 + 1e-9, True)):
         amplitude = grazing * factor
-        start = {"x": factor * stiffness / grazing, "v": factor * 0.1 * omega**2 / grazing}
-        run = impact_oscillator.ensemble(20.0, start=start, amplitude=amplitude, omega=omega)
+        start = {
+            "x": factor * stiffness / grazing,
+            "v": factor * 0.1 * omega**2 / grazing,
+        }
+        run = impact_oscillator.ensemble(
+            20.0, start=start, amplitude=amplitude, omega=omega
+        )
         assert (int(run.count_impact) > 0) == hits
 
 
-@pytest.mark.parametrize(("mu", "flutters"), [(0.7, False), (0.74, False), (0.76, True)])
+@pytest.mark.parametrize(
+    ("mu", "flutters"), [(0.7, False), (0.74, False), (0.76, True)]
+)
 def test_two_modes_flutter_from_the_published_friction_on(mu, flutters):
     """In contact the run is exp(At); the largest growth rate is Re s with s² = −2 ± √(1 − 4μ/3)."""
     matrix = np.zeros((4, 4))
@@ -85,7 +92,9 @@ def test_two_modes_flutter_from_the_published_friction_on(mu, flutters):
     found = [float(run[name][-1]) for name in mode_coupling.states]
     np.testing.assert_allclose(found, exact, rtol=1e-9, atol=1e-14)
     growth = np.linalg.eigvals(matrix).real.max()
-    assert growth == pytest.approx(np.sqrt(-2 + np.sqrt(1 - 4 / 3 * mu + 0j)).real, abs=1e-7)
+    assert growth == pytest.approx(
+        np.sqrt(-2 + np.sqrt(1 - 4 / 3 * mu + 0j)).real, abs=1e-7
+    )
     assert (growth > 1e-3) == flutters
 
 
@@ -113,12 +122,18 @@ def test_a_rigid_pad_lifts_and_lands_when_dop853_says():
 
     def rates(t, z):
         s = SimpleNamespace(**dict(zip(names, z, strict=True)))
-        leading, trailing = (float(approach(side, s, p) > 0.0) for side in (LEADING, TRAILING))
-        found = rigid_pad.field(t, s, p, SimpleNamespace(leading=leading, trailing=trailing))
+        leading, trailing = (
+            float(approach(side, s, p) > 0.0) for side in (LEADING, TRAILING)
+        )
+        found = rigid_pad.field(
+            t, s, p, SimpleNamespace(leading=leading, trailing=trailing)
+        )
         return [found[name] for name in names]
 
     def gap(side):
-        return lambda t, z: approach(side, SimpleNamespace(**dict(zip(names, z, strict=True))), p)
+        return lambda t, z: approach(
+            side, SimpleNamespace(**dict(zip(names, z, strict=True))), p
+        )
 
     start = [0.1 if name == "theta" else 0.0 for name in names]
     own = solve_ivp(
@@ -141,18 +156,26 @@ def test_the_basin_of_the_fixed_point_has_its_exact_share():
     start = {"x": midpoints(-2.0, 2.0, 40), "v": midpoints(0.0, 2.0, 20)}
     found = exponential_oscillator.basin(1500.0, start=start, belt_speed=1.55)
     assert set(np.unique(found.motion)) == {Motion.rest, Motion.cycle}
-    assert float((found.motion == Motion.rest).mean()) == pytest.approx(0.35659639, abs=0.01)
+    assert float((found.motion == Motion.rest).mean()) == pytest.approx(
+        0.35659639, abs=0.01
+    )
     assert set(np.unique(found.attractor)) == {0, 1}
 
 
 def test_a_forced_motion_is_a_cycle_of_so_many_periods_or_unsettled():
     """At ω = 2.1 the cycle of one impact is doubled below A = 3.506188447846."""
     amplitude = np.array([3.5, 3.51])
-    found = impact_oscillator.basin(4000.0, start={"x": 0.3}, omega=2.1, amplitude=amplitude)
-    np.testing.assert_allclose(found.period * 2.1 / (2.0 * np.pi), [2.0, 1.0], rtol=1e-12)
+    found = impact_oscillator.basin(
+        4000.0, start={"x": 0.3}, omega=2.1, amplitude=amplitude
+    )
+    np.testing.assert_allclose(
+        found.period * 2.1 / (2.0 * np.pi), [2.0, 1.0], rtol=1e-12
+    )
     # from −1 the motion is still so far from its cycle that three periods differ by less than one
     found = impact_oscillator.basin(500.0, start={"x": [-1.0, 0.0, 1.0]}, omega=1.4)
     np.testing.assert_allclose(found.period * 1.4 / (2.0 * np.pi), 1.0, rtol=1e-12)
-    early = impact_oscillator.basin(20.0, start={"x": 0.3}, omega=2.1, amplitude=amplitude)
+    early = impact_oscillator.basin(
+        20.0, start={"x": 0.3}, omega=2.1, amplitude=amplitude
+    )
     assert (early.motion == Motion.unsettled).all()
     assert np.isnan(early.period).all()

@@ -74,11 +74,18 @@ def energy_error(parameters, angles, t_end, panel, model="A1"):
     times = (start + 0.5 * width * (1 + NODES)).reshape(run.time.size, -1)
     weights = (0.5 * width * WEIGHTS).reshape(times.shape)
     seen = run_ensemble(parameters, *angles, t_end=run.time, times=times, model=model)
-    columns = {name: values[:, None] for name, values in parameters.items() if name != LAW}
+    columns = {
+        name: values[:, None] for name, values in parameters.items() if name != LAW
+    }
     if model == "A1-as-printed":
-        columns |= {name: -columns[name] for name in ("mu", "mu_static") if name in columns}
+        columns |= {
+            name: -columns[name] for name in ("mu", "mu_static") if name in columns
+        }
     wide = SimpleNamespace(
-        **columns, friction_law=law, contact_law="linear", static_mu=columns.get("mu_static")
+        **columns,
+        friction_law=law,
+        contact_law="linear",
+        static_mu=columns.get("mu_static"),
     )
     x, y, vx, vy = np.moveaxis(seen.samples, -1, 0)
     g, regime = geometry(*angles[:, :, None]), seen.sample_regimes
@@ -87,12 +94,21 @@ def energy_error(parameters, angles, t_end, panel, model="A1"):
     dx, dy = damping_force(x, y, vx, vy, wide, g)
     pull = suspension_force(x, y, vx, vy, wide, g, linear_springs=False)[0]
     direction = (regime == Regime.slip_slower) * 1.0 - (regime == Regime.slip_faster)
-    belt = vx, pull, contact * contact_force(y, wide), wide, direction, regime == Regime.stick
+    belt = (
+        vx,
+        pull,
+        contact * contact_force(y, wide),
+        wide,
+        direction,
+        regime == Regime.stick,
+    )
     power = dx * vx + dy * vy + friction_power(*belt[:5], belt[5] * 1.0)
     final = run.final_state.T
     end = mechanical_energy(*final, p, geometry(*angles), final[1] < p.preload)
     work = np.sum(power * weights, axis=1)
-    scale = np.maximum(np.abs(energy).max(axis=1), np.sum(np.abs(power) * weights, axis=1))
+    scale = np.maximum(
+        np.abs(energy).max(axis=1), np.sum(np.abs(power) * weights, axis=1)
+    )
     return np.abs(end - 0.5 * p.k3 * p.preload**2 - work) / scale, run.outcome
 
 
@@ -108,7 +124,9 @@ def ends_truthfully(outcome, parameters, angles):
     """At least 98 % converge; events accumulate only where round-off alone moves the mass along x:
     both springs vertical and the belt at rest."""
     assert np.mean(outcome == Outcome.converged) >= 0.98
-    vertical = (np.abs(np.cos(angles)) < 1e-12).all(axis=0) & (parameters["belt_speed"] == 0.0)
+    vertical = (np.abs(np.cos(angles)) < 1e-12).all(axis=0) & (
+        parameters["belt_speed"] == 0.0
+    )
     expected = {Outcome.converged, Outcome.singular_geometry}
     assert set(np.unique(outcome[~vertical])) <= expected
     assert set(np.unique(outcome[vertical])) <= expected | {Outcome.accumulation}
@@ -131,7 +149,9 @@ def check(count, seed, duration, law=None, model="A1"):
     for job in doubtful:
         # A near pass of a pivot needs a finer quadrature, which only these few runs get.
         some = part(parameters, [job])
-        worst[[job]], _ = energy_error(some, angles[:, [job]], duration * unit[[job]], 0.01, model)
+        worst[[job]], _ = energy_error(
+            some, angles[:, [job]], duration * unit[[job]], 0.01, model
+        )
     assert worst[outcome == Outcome.converged].max() <= 1e-9
     ends_truthfully(outcome, parameters, angles)
 
@@ -160,7 +180,9 @@ def test_random_runs_end_truthfully(count, seed):
     ends_truthfully(run.outcome, parameters, angles)
     singular = np.flatnonzero(run.outcome == Outcome.singular_geometry)
     for job in singular:
-        params = FORMER.with_(**{name: values[job] for name, values in parameters.items()})
+        params = FORMER.with_(
+            **{name: values[job] for name, values in parameters.items()}
+        )
         assert distance_to_pivot(run, job, params, angles[:, job]) < 0.02
 
 

@@ -67,11 +67,19 @@ def test_fast_belts_leave_the_sliding_state_alone():
     params = oscillator(1e6, 2.0, **BSTAB)
     rng = np.random.default_rng(3)
     starts = np.stack(
-        [rng.uniform(-2, 2, 20), np.full(20, STEADY), rng.uniform(0, 2, 20), np.zeros(20)], axis=-1
+        [
+            rng.uniform(-2, 2, 20),
+            np.full(20, STEADY),
+            rng.uniform(0, 2, 20),
+            np.zeros(20),
+        ],
+        axis=-1,
     )
     run = run_ensemble(params, *ANGLES, t_end=500.0, initial_state=starts)
     assert (run.outcome == Outcome.converged).all()
-    np.testing.assert_allclose(run.final_state[:, 0], 0.5 + 0.5 * math.exp(-4.0), atol=3e-6)
+    np.testing.assert_allclose(
+        run.final_state[:, 0], 0.5 + 0.5 * math.exp(-4.0), atol=3e-6
+    )
     np.testing.assert_allclose(run.final_state[:, 2], 0.0, atol=1e-6)
 
 
@@ -80,5 +88,7 @@ def test_the_sliding_state_of_the_oscillator_is_that_of_the_linear_model():
     for speed in (0.9, 1.1, 1.2, 1.5):
         found = stability_map(oscillator(1e6, speed, **BSTAB), ANGLES[:1], ANGLES[1:])
         expected = 0.5 * (-0.1 + math.exp(-2.0 * speed))
-        assert float(found.growth_rate.item()) == pytest.approx(max(expected, -0.05), abs=2e-6)
+        assert float(found.growth_rate.item()) == pytest.approx(
+            max(expected, -0.05), abs=2e-6
+        )
         assert (int(found.regime_linear.item()) == 1) == (expected > 0)

@@ -23,7 +23,10 @@ def _map(points, **options):
     [
         ({"tol": 1e-15}, 2694),
         ({"t_end": 100.0}, 2706),
-        *(pytest.param({"t_end": t}, 2694, marks=pytest.mark.release) for t in (400.0, 1600.0)),
+        *(
+            pytest.param({"t_end": t}, 2694, marks=pytest.mark.release)
+            for t in (400.0, 1600.0)
+        ),
     ],
     ids=str,
 )
@@ -76,19 +79,28 @@ def test_the_whirl_at_the_lowest_speed_sticks_and_is_chaotic_or_a_cycle():
 
 def test_transient_after_the_start_of_the_whirl_at_low_speed():
     scene = SCENES["F3"]
-    run = run_ensemble(BASELINE.with_(belt_speed=10.0), scene.alpha1, scene.alpha2, t_end=500.0)
+    run = run_ensemble(
+        BASELINE.with_(belt_speed=10.0), scene.alpha1, scene.alpha2, t_end=500.0
+    )
     assert run.early_max_x == pytest.approx(13.1, abs=0.05)
 
 
 def test_bounded_to_500_and_a_transient_beyond():
     scene = SCENES["F4"]
-    short = run_ensemble(BASELINE, scene.alpha1, scene.alpha2, t_end=500.0, t_late=200.0)
+    short = run_ensemble(
+        BASELINE, scene.alpha1, scene.alpha2, t_end=500.0, t_late=200.0
+    )
     assert 9.4 < short.early_max_x <= 9.55
     assert 9.4 < short.late_max_x <= 9.75
     starts = np.zeros((24, 4))
     starts[:, 0] = np.linspace(-1e-9, 1e-9, 24)
     long = run_ensemble(
-        BASELINE, scene.alpha1, scene.alpha2, t_end=9000.0, initial_state=starts, stop_at_turns=10
+        BASELINE,
+        scene.alpha1,
+        scene.alpha2,
+        t_end=9000.0,
+        initial_state=starts,
+        stop_at_turns=10,
     )
     left = long.outcome == Outcome.amplitude_reached
     assert left.mean() > 0.5
@@ -97,7 +109,9 @@ def test_bounded_to_500_and_a_transient_beyond():
 
 def test_slow_belt_never_lets_the_transient_end():
     left = [
-        transient_lifetimes(BASELINE.with_(belt_speed=speed), samples=6, t_end=20_000.0).lifetime
+        transient_lifetimes(
+            BASELINE.with_(belt_speed=speed), samples=6, t_end=20_000.0
+        ).lifetime
         for speed in (0.5, 3.0)
     ]
     assert not np.isfinite(left[0]).any()

@@ -16,7 +16,9 @@ def test_states_events_and_first_separations(speed, seed):
     """Random angles, t = 50: state ≤ 1e-9 outside chaos, first separation ≤ 1e-11."""
     params = FORMER.with_(belt_speed=speed)
     alpha1, alpha2 = np.random.default_rng(seed).uniform(0, np.pi, (2, 40))
-    run = run_ensemble(params, alpha1, alpha2, t_end=T_END, tangent=True, log_events=100)
+    run = run_ensemble(
+        params, alpha1, alpha2, t_end=T_END, tangent=True, log_events=100
+    )
     total = run.separations + run.contacts + run.sticks + run.slips + run.reversals
     for job in range(alpha1.size):
         exact = simulate_reference(params, alpha1[job], alpha2[job], t_end=T_END)
@@ -41,7 +43,9 @@ def test_reference_agrees_with_scipy_at_its_limit(angles, speed):
     assert found.message == ""
     assert found.event_kinds == public.event_kinds
     assert found.regimes == public.regimes
-    np.testing.assert_allclose(public.event_times, np.float64(found.event_times), atol=1e-9)
+    np.testing.assert_allclose(
+        public.event_times, np.float64(found.event_times), atol=1e-9
+    )
     np.testing.assert_allclose(public.state, np.float64(found.state), atol=1e-10)
 
 

@@ -21,7 +21,9 @@ ONSET = 0.75
 
 def published(mu):
     """Our parameters that give the published stiffness matrix."""
-    return Parameters(k1=2 / 3 * (2 - math.sqrt(3)), k2=2 / 3 * (2 + math.sqrt(3)), k3=4 / 3, mu=mu)
+    return Parameters(
+        k1=2 / 3 * (2 - math.sqrt(3)), k2=2 / 3 * (2 + math.sqrt(3)), k3=4 / 3, mu=mu
+    )
 
 
 def eigenvalues(mu):

@@ -5,7 +5,11 @@ import pytest
 
 from squealpipe.solvers.a1.ensemble import run_ensemble
 from squealpipe.tasks.backbones.orbit import periodic_orbit
-from squealpipe.tasks.linear.maps import natural_frequencies, quasi_static_map, stability_map
+from squealpipe.tasks.linear.maps import (
+    natural_frequencies,
+    quasi_static_map,
+    stability_map,
+)
 from tests.former import FORMER
 
 RNG = np.random.default_rng(5)
@@ -16,7 +20,14 @@ MODELS = ("A1", "A1-no-separation", "A1-linear-springs", "A4")
 
 def run(params, alpha1, alpha2, model="A1", **options):
     return run_ensemble(
-        params, alpha1, alpha2, t_end=12.0, model=model, times=TIMES, log_events=30, **options
+        params,
+        alpha1,
+        alpha2,
+        t_end=12.0,
+        model=model,
+        times=TIMES,
+        log_events=30,
+        **options,
     )
 
 
@@ -32,7 +43,9 @@ def test_mirror_images(model, speed):
     (π − α2, π − α1, V)."""
     belt, other = (FORMER.with_(belt_speed=sign * speed) for sign in (1, -1))
     first, mirrored = run(belt, ALPHA1, ALPHA2, model), [-1, 1, -1, 1]
-    assert_mirrored(first, run(belt, np.pi - ALPHA2, np.pi - ALPHA1, model), [1, 1, 1, 1])
+    assert_mirrored(
+        first, run(belt, np.pi - ALPHA2, np.pi - ALPHA1, model), [1, 1, 1, 1]
+    )
     assert_mirrored(first, run(other, ALPHA2, ALPHA1, model), mirrored)
     assert_mirrored(first, run(other, np.pi - ALPHA1, np.pi - ALPHA2, model), mirrored)
 
@@ -47,18 +60,24 @@ def test_linear_maps_mirror_with_the_belt():
         # The map of a reversed belt, its rows and columns from π down to 0.
         second = make(mirrored, np.pi - angles, np.pi - angles)
         # Eq. (11) as printed is taken literally: it knows no direction of the belt.
-        for name, values in first.drop_vars("possible_as_printed", errors="ignore").items():
+        for name, values in first.drop_vars(
+            "possible_as_printed", errors="ignore"
+        ).items():
             other = second[name].values
             if name in ("x_static", "stiffness_xy"):
                 other = -other
-            np.testing.assert_allclose(other, values.values, rtol=1e-9, atol=1e-9, err_msg=name)
+            np.testing.assert_allclose(
+                other, values.values, rtol=1e-9, atol=1e-9, err_msg=name
+            )
 
 
 @pytest.mark.parametrize("mode", [1, 2])
 def test_orbits_mirror_with_the_belt(mode):
     first = periodic_orbit(FORMER, 0.3 * np.pi, 0.9 * np.pi, mode=mode, y_peak=1.5)
     reversed_belt = FORMER.with_(belt_speed=-100.0)
-    second = periodic_orbit(reversed_belt, 0.7 * np.pi, 0.1 * np.pi, mode=mode, y_peak=1.5)
+    second = periodic_orbit(
+        reversed_belt, 0.7 * np.pi, 0.1 * np.pi, mode=mode, y_peak=1.5
+    )
     assert float(second.omega) == pytest.approx(float(first.omega), rel=1e-12)
     assert int(second.sliding_assumption) == int(first.sliding_assumption)
     np.testing.assert_allclose(second.x_at_peak, -first.x_at_peak, rtol=1e-9)

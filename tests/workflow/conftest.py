@@ -23,5 +23,7 @@ def study_copy(tiny_study, tmp_path_factory):
 def finished(study_copy, monkeypatch):
     """The same, explained by its own workflow and package."""
     monkeypatch.setenv("PYTHONPATH", str(study_copy))
-    monkeypatch.setattr("squealpipe.execution.explain.WORKFLOW", study_copy / "workflow")
+    monkeypatch.setattr(
+        "squealpipe.execution.explain.WORKFLOW", study_copy / "workflow"
+    )
     return study_copy

@@ -24,10 +24,14 @@ def ids(results):
     """Dataset → its id; figure → digest of its bytes."""
     data = results / "data"
     found = {
-        path.relative_to(data).with_suffix("").as_posix(): load(path).attrs["dataset_id"]
+        path.relative_to(data).with_suffix("").as_posix(): load(path).attrs[
+            "dataset_id"
+        ]
         for path in data.rglob("*.nc")
     }
-    return found, {path.name: checksum(path) for path in (results / "figures").iterdir()}
+    return found, {
+        path.name: checksum(path) for path in (results / "figures").iterdir()
+    }
 
 
 def test_an_edit_is_run_and_taken_back(study_copy, snakemake):
@@ -39,7 +43,9 @@ def test_an_edit_is_run_and_taken_back(study_copy, snakemake):
         done = snakemake(study_copy, "--configfile", TINY, *configs)
         assert done.returncode == 0, done.stderr[-4000:]
         rules = set(re.findall(r"^Job \d+: (\w+) → ", done.stderr, flags=re.MULTILINE))
-        return rules - {"all"}, {p.stem for p in before if p.stat().st_mtime_ns != before[p]}
+        return rules - {"all"}, {
+            p.stem for p in before if p.stat().st_mtime_ns != before[p]
+        }
 
     original, pictures = ids(results)
     (study_copy / "edit.yaml").write_text(EDIT)

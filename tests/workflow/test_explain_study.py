@@ -24,7 +24,9 @@ def test_changed_key_is_named_with_what_follows(finished, tmp_path):
     mine.write_text("linear: {points: 71}\n")
     plan = explain([finished / TINY, mine], directory=finished)
     jobs = {job.rule: job for job in plan.jobs}
-    assert [reason.partition(":")[0] for reason in jobs["map_linear"].reasons] == ["linear.points"]
+    assert [reason.partition(":")[0] for reason in jobs["map_linear"].reasons] == [
+        "linear.points"
+    ]
     assert "map_linear" in jobs["draw_linear"].follows
     assert "fig06" in plan.figures
     assert "fig02" not in plan.figures
@@ -33,7 +35,9 @@ def test_changed_key_is_named_with_what_follows(finished, tmp_path):
 
 
 @pytest.mark.parametrize("date", [None, 1e9])
-def test_changed_code_is_noticed_whatever_its_date_and_dates_or_other_words_are_not(finished, date):
+def test_changed_code_is_noticed_whatever_its_date_and_dates_or_other_words_are_not(
+    finished, date
+):
     path = finished / "squealpipe/study/figures/linear/fig06.py"
     text = path.read_text()
     path.write_text(text + "ANOTHER = 1\n")
@@ -45,10 +49,15 @@ def test_changed_code_is_noticed_whatever_its_date_and_dates_or_other_words_are_
         path.write_text(text)
     assert set(found) == {"draw_linear", "write_report"}
     assert ("fig06.py" in found["draw_linear"][0]) == (date is None)
-    for each in [*finished.glob("squealpipe/**/*.py"), *finished.glob("workflow/**/*.*")]:
+    for each in [
+        *finished.glob("squealpipe/**/*.py"),
+        *finished.glob("workflow/**/*.*"),
+    ]:
         each.touch()
     law = finished / "squealpipe/models/a1.py"
-    law.write_text('"""In other words."""\n# A remark.\n' + law.read_text().split('"""', 2)[2])
+    law.write_text(
+        '"""In other words."""\n# A remark.\n' + law.read_text().split('"""', 2)[2]
+    )
     assert reasons(finished) == {}
 
 
@@ -83,6 +92,8 @@ def test_missing_dataset_is_not_up_to_date(finished):
     path = finished / "results/tiny/data/whirl.nc"
     path.rename(finished / "aside.nc")
     try:
-        assert reasons(finished)["follow_whirl"] == ["missing: results/tiny/data/whirl.nc"]
+        assert reasons(finished)["follow_whirl"] == [
+            "missing: results/tiny/data/whirl.nc"
+        ]
     finally:
         (finished / "aside.nc").rename(path)

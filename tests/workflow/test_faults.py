@@ -73,14 +73,18 @@ def test_full_disk_is_told_and_the_next_run_completes(small, undisturbed):
         full = run(small)
         assert full.returncode != 0
         assert "free space or fix permissions" in full.stdout + full.stderr
-        assert not list(small.rglob("results/data/*.nc")), "of a file only the whole has its name"
+        assert not list(small.rglob("results/data/*.nc")), (
+            "of a file only the whole has its name"
+        )
         subprocess.run(["mount", "-o", "remount,size=64m", results], check=True)
         assert completed(small) == undisturbed
     finally:
         subprocess.run(["umount", "-l", results], check=True)
 
 
-def test_missing_permission_is_told_and_the_next_run_completes(small, undisturbed, read_only):
+def test_missing_permission_is_told_and_the_next_run_completes(
+    small, undisturbed, read_only
+):
     with read_only(small / "results"):
         refused = run(small)
     assert refused.returncode != 0

@@ -29,7 +29,9 @@ def test_only_the_rules_of_its_report_run_and_only_their_results_are_archived(tm
     words = ["--directory", str(tmp_path), "--configfile", str(path)]
     run = run_snakemake(ROOT, *words, "--dry-run", "--nocolor")
     wanted = run.stdout.partition("rule all:\n    input: ")[2].partition("\n")[0]
-    assert set(wanted.split(", ")) == set(plan.keys), "what is missing of it is made again"
+    assert set(wanted.split(", ")) == set(plan.keys), (
+        "what is missing of it is made again"
+    )
 
 
 STUDIES = {
@@ -50,14 +52,19 @@ def test_rules_that_cannot_carry_it_are_left_out_and_all_others_stay(tmp_path):
     def planned(text):
         (tmp_path / "mine.yaml").write_text(text)
         jobs = explain([ROOT / TINY, tmp_path / "mine.yaml"], directory=tmp_path).jobs
-        return {job.rule for job in jobs}, {path for job in jobs for path in job.outputs}
+        return {job.rule for job in jobs}, {
+            path for job in jobs for path in job.outputs
+        }
 
     paper, _ = planned("")
     for name, text in STUDIES.items():
         rules, made = planned(text)
         assert paper - rules == NOT_CARRIED, name
         assert rules < paper, name
-        assert {"results/tiny/data/stability_map.nc", "results/tiny/report/index.html"} <= made
+        assert {
+            "results/tiny/data/stability_map.nc",
+            "results/tiny/report/index.html",
+        } <= made
         assert "results/tiny/data/natural_frequencies.nc" not in made
 
 
@@ -71,6 +78,8 @@ def test_a_plan_can_be_made_from_any_folder(how, tmp_path):
     else:
         place, words = ROOT, ["--directory", str(tmp_path)]
         config = ["--configfile", TINY, str(tmp_path / "mine.yaml")]
-    done = run_snakemake(place, *words, *config, "--nocolor", "-n", "out/data/validity_map.nc")
+    done = run_snakemake(
+        place, *words, *config, "--nocolor", "-n", "out/data/validity_map.nc"
+    )
     assert done.returncode == 0, done.stderr[-2000:]
     assert "output: out/data/validity_map.nc" in done.stdout

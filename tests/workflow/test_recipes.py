@@ -22,7 +22,10 @@ FILES = {
     SYSTEM: "squealpipe/systems/pendulum.py",
 }
 LINES = {
-    ROW: ("squealpipe/parameters.py", "\n    def __post_init__(self) -> None:\n        for name"),
+    ROW: (
+        "squealpipe/parameters.py",
+        "\n    def __post_init__(self) -> None:\n        for name",
+    ),
     RECORD: ("squealpipe/schema/ladder.py", "    a1_short = ("),
     LAW_NAME: ("squealpipe/laws/friction_laws/__init__.py", None),
     FIGURE_NAME: ("squealpipe/study/report/sections.py", None),
@@ -48,12 +51,19 @@ def write_down(folder):
         before = path.read_text()
         if place is None:
             start = re.escape(re.match(r"\s*\S+ \S+|\s*\S+:", blocks[number]).group())
-            after, found = re.subn(rf"^{start}.*\n", blocks[number], before, flags=re.MULTILINE)
+            after, found = re.subn(
+                rf"^{start}.*\n", blocks[number], before, flags=re.MULTILINE
+            )
         else:
-            after, found = before.replace(place, blocks[number] + place), before.count(place)
+            after, found = (
+                before.replace(place, blocks[number] + place),
+                before.count(place),
+            )
         assert found == 1, name
         path.write_text(after)
-        moved = [line[:2] for line in difflib.ndiff(before.splitlines(), after.splitlines())]
+        moved = [
+            line[:2] for line in difflib.ndiff(before.splitlines(), after.splitlines())
+        ]
         changed[name] = (moved.count("+ "), moved.count("- "))
     return changed
 

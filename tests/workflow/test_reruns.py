@@ -52,8 +52,14 @@ def test_each_key_is_in_the_slices_of_exactly_those_rules_that_read_it(planned):
             f"# {FIX}\n" + yaml.safe_dump(listed, width=100)
         )
     stated = yaml.safe_load(STATED.read_text())
-    wrong = {key: (stated.get(key), listed[key]) for key in KEYS if stated.get(key) != listed[key]}
-    assert not wrong, f"(stated, found): {wrong}\nif that is meant, fix the file with: {FIX}"
+    wrong = {
+        key: (stated.get(key), listed[key])
+        for key in KEYS
+        if stated.get(key) != listed[key]
+    }
+    assert not wrong, (
+        f"(stated, found): {wrong}\nif that is meant, fix the file with: {FIX}"
+    )
 
 
 def test_no_key_is_idle_and_no_figure_is_drawn_from_a_number_of_the_physics():
@@ -104,5 +110,9 @@ def test_sources_hold_every_module_that_python_really_loads():
     run = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True)
     loaded = dict(map(json.loads, run.stdout.splitlines()))
     assert list(loaded) == scripts
-    missing = {name: {*map(Path, own)} - {*closure(Path(name))} for name, own in loaded.items()}
-    assert not any(missing.values()), f"loaded, but not among the sources of the rule: {missing}"
+    missing = {
+        name: {*map(Path, own)} - {*closure(Path(name))} for name, own in loaded.items()
+    }
+    assert not any(missing.values()), (
+        f"loaded, but not among the sources of the rule: {missing}"
+    )

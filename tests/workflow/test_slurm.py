@@ -26,7 +26,12 @@ pytestmark = pytest.mark.release
 SCRIPTS = Path(__file__).with_name("slurm")
 PROFILE = [
     *("--workflow-profile", "workflow/profiles/slurm", "--set-scatter", "maps=2"),
-    *("--slurm-status-command", "squeue", "--slurm-init-seconds-before-status-checks", "1"),
+    *(
+        "--slurm-status-command",
+        "squeue",
+        "--slurm-init-seconds-before-status-checks",
+        "1",
+    ),
     *("--seconds-between-status-checks", "1", "--latency-wait", "10", "--retries", "0"),
     *("--max-threads", "1", "--default-resources", "runtime=10", "mem_mb_per_cpu=500"),
 ]
@@ -61,14 +66,29 @@ SMALL_RULES = [
 TWO_PARTS = [
     *PROFILE,
     *("--set-scatter", "maps=2"),
-    *("--groups", *(f"{rule}=small" for rule in SMALL_RULES), "--group-components", "small=3"),
-    *("--slurm-init-seconds-before-status-checks", "4", "--seconds-between-status-checks", "4"),
+    *(
+        "--groups",
+        *(f"{rule}=small" for rule in SMALL_RULES),
+        "--group-components",
+        "small=3",
+    ),
+    *(
+        "--slurm-init-seconds-before-status-checks",
+        "4",
+        "--seconds-between-status-checks",
+        "4",
+    ),
 ]
 """A job takes about 8 CPU s to start here, so few parts, and three small rules to a job.
 
 Where nothing ended between two looks the plugin waits 10 s longer for the next.
 """
-SCATTERED = {"map_validity", "map_corrected_validity", "map_hammering", "run_sweep_orbits"}
+SCATTERED = {
+    "map_validity",
+    "map_corrected_validity",
+    "map_hammering",
+    "run_sweep_orbits",
+}
 JOINS = {
     "join_validity_map", "join_corrected_validity_map", "join_hammering_map", "join_sweep_orbits",
 }  # fmt: skip
@@ -94,7 +114,11 @@ def slurm():
     base.chmod(0o755)
     environment = {**os.environ, "SLURM_BASE": str(base)}
     started = subprocess.run(
-        [SCRIPTS / "up.sh"], env=environment, capture_output=True, text=True, check=False
+        [SCRIPTS / "up.sh"],
+        env=environment,
+        capture_output=True,
+        text=True,
+        check=False,
     )
     assert started.returncode == 0, started.stdout + started.stderr
     yield
@@ -103,7 +127,15 @@ def slurm():
 
 
 def command(*arguments, profile=PROFILE):
-    return [sys.executable, "-m", "snakemake", *arguments, *profile, "--configfile", "mine.yaml"]
+    return [
+        sys.executable,
+        "-m",
+        "snakemake",
+        *arguments,
+        *profile,
+        "--configfile",
+        "mine.yaml",
+    ]
 
 
 def environment(checkout):
@@ -128,7 +160,10 @@ def jobs(state=""):
     """Ids of jobs in the queue."""
     wanted = ["-t", state] if state else []
     answer = subprocess.run(
-        ["squeue", "-h", "-o", "%i", *wanted], capture_output=True, text=True, check=True
+        ["squeue", "-h", "-o", "%i", *wanted],
+        capture_output=True,
+        text=True,
+        check=True,
     )
     return answer.stdout.split()
 
@@ -184,7 +219,9 @@ def test_whole_study_equals_one_machine_bit_for_bit(cluster_checkout, tiny_study
     shutil.rmtree(results / "data/sweeps")  # in parts or whole: test_sweeps.py
     here = tiny_study.results
     assert compare(here, results).exit_code == 0
-    for path in (path.relative_to(results) for path in (results / "data").rglob("*.nc")):
+    for path in (
+        path.relative_to(results) for path in (results / "data").rglob("*.nc")
+    ):
         if path.stem not in LACKS_RANK:
             assert load(results / path).dataset_id == load(here / path).dataset_id, path
 

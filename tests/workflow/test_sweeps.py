@@ -33,7 +33,9 @@ def test_parts_equal_the_whole_and_the_command_line(checkout, snakemake, monkeyp
     (checkout / "parts.yaml").write_text(RAGGED + "results: results/parts\n")
     whole = snakemake(checkout, "sweeps", "--configfile", "whole.yaml")
     assert whole.returncode == 0, whole.stderr[-4000:]
-    parts = snakemake(checkout, "sweeps", "--configfile", "parts.yaml", "--set-scatter", "maps=3")
+    parts = snakemake(
+        checkout, "sweeps", "--configfile", "parts.yaml", "--set-scatter", "maps=3"
+    )
     assert parts.returncode == 0, parts.stderr[-4000:]
     monkeypatch.chdir(checkout)
     assert run([
@@ -41,9 +43,14 @@ def test_parts_equal_the_whole_and_the_command_line(checkout, snakemake, monkeyp
         "--alpha2", "5pi/6", "--option", "t_end=20", "-o", "runs.nc",
     ]) == 0  # fmt: skip
     for name in ("runs", "maps"):
-        found = [load(f"results/{place}data/sweeps/{name}.nc") for place in ("", "parts/")]
+        found = [
+            load(f"results/{place}data/sweeps/{name}.nc") for place in ("", "parts/")
+        ]
         assert len({dataset.attrs["dataset_id"] for dataset in found}) == 1
-    assert load("runs.nc").attrs["dataset_id"] == load("results/data/sweeps/runs.nc").dataset_id
+    assert (
+        load("runs.nc").attrs["dataset_id"]
+        == load("results/data/sweeps/runs.nc").dataset_id
+    )
 
 
 EDITS = {

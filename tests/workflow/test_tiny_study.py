@@ -15,11 +15,19 @@ from squealpipe.study.report.build import write_document
 from squealpipe.study.report.content import Made, gather, picture_files
 from squealpipe.study.report.sections import FIGURES
 
-PAPER_FIGURES = [*(f"fig{number:02d}" for number in range(1, 10)), "fig10_to_12", "fig13"]
+PAPER_FIGURES = [
+    *(f"fig{number:02d}" for number in range(1, 10)),
+    "fig10_to_12",
+    "fig13",
+]
 
 
-def test_every_figure_of_the_paper_is_drawn_in_two_forms_and_the_report_written(tiny_study):
-    for name in (f"{figure}.{suffix}" for figure in PAPER_FIGURES for suffix in ("png", "svg")):
+def test_every_figure_of_the_paper_is_drawn_in_two_forms_and_the_report_written(
+    tiny_study,
+):
+    for name in (
+        f"{figure}.{suffix}" for figure in PAPER_FIGURES for suffix in ("png", "svg")
+    ):
         assert (tiny_study.results / "figures" / name).stat().st_size > 2000
     for name in ("index", "supplement"):
         text = (tiny_study.results / f"report/{name}.html").read_text(encoding="utf-8")
@@ -47,7 +55,9 @@ def test_narrative_of_the_shipped_study_fits_its_datasets(tiny_study, tmp_path):
         for path in data.rglob("*.nc")
     }
     figures = {
-        name: Made(path=tiny_study.results / f"figures/{name}.png", rule="some", datasets=())
+        name: Made(
+            path=tiny_study.results / f"figures/{name}.png", rule="some", datasets=()
+        )
         for name in FIGURES
     }
     content = gather(datasets, figures, Parameters())
@@ -56,7 +66,10 @@ def test_narrative_of_the_shipped_study_fits_its_datasets(tiny_study, tmp_path):
     pictures = picture_files(content, figures)
     write_document("paper", content, pictures, page=page, pdf=tmp_path / "report.pdf")
     text = re.sub(
-        r"<style>.*?</style>|<[^>]+>", " ", page.read_text(encoding="utf-8"), flags=re.DOTALL
+        r"<style>.*?</style>|<[^>]+>",
+        " ",
+        page.read_text(encoding="utf-8"),
+        flags=re.DOTALL,
     )
     words = text.split()
     assert len(words) <= 5000

@@ -10,7 +10,10 @@ from typing import Any
 
 SOLVERS: dict[str, tuple[str, str, dict[str, Any]]] = {
     "squealpipe": ("squealpipe", "numba", {}),
-    **{name: ("scipy", "scipy", {"method": name}) for name in ("DOP853", "RK45", "LSODA", "Radau")},
+    **{
+        name: ("scipy", "scipy", {"method": name})
+        for name in ("DOP853", "RK45", "LSODA", "Radau")
+    },
     "heyoka": ("heyoka", "heyoka", {}),
     "CyRK": ("cyrk", "CyRK", {}),
     "SUNDIALS": ("sundials", "sksundae", {}),
@@ -34,7 +37,9 @@ def solver(name: str) -> Callable[..., Any] | None:
         return found[function]  # type: ignore[no-any-return]
     if name not in SOLVERS:
         known = "; ".join(SOLVERS)
-        raise ValueError(f"solver {name!r} is unknown; one of {known}; or FILE.py:FUNCTION")
+        raise ValueError(
+            f"solver {name!r} is unknown; one of {known}; or FILE.py:FUNCTION"
+        )
     module, needs, options = SOLVERS[name]
     if find_spec(needs) is None:
         return None

@@ -36,7 +36,12 @@ def solve(problem: Problem, tol: float) -> Any:
         if watched:
             asked.state_events, asked.handle_event = surfaces, stop
         solver = CVode(asked)
-        solver.discr, solver.rtol, solver.atol, solver.verbosity = "Adams", tol, tol, QUIET
+        solver.discr, solver.rtol, solver.atol, solver.verbosity = (
+            "Adams",
+            tol,
+            tol,
+            QUIET,
+        )
         if t < problem.t_end:
             ends = [*(each for each in problem.times if each > t), problem.t_end]
             solver.simulate(problem.t_end, 0, ends)

@@ -20,11 +20,17 @@ def solve(problem: Problem, tol: float) -> Any:
             rtol=tol,
             atol=tol,
             events=[switch.event(regime) for switch in watched],
-            t_eval=np.array([*(each for each in problem.times if each > t), problem.t_end]),
+            t_eval=np.array(
+                [*(each for each in problem.times if each > t), problem.t_end]
+            ),
         )
         if found.event_terminated:
             hit = found.event_terminate_index
-            return found.t_events[hit][-1], found.y_events[hit].reshape(len(y), -1)[:, -1], hit
+            return (
+                found.t_events[hit][-1],
+                found.y_events[hit].reshape(len(y), -1)[:, -1],
+                hit,
+            )
         if not found.success:
             raise RuntimeError(found.message)
         return problem.t_end, found.y[:, -1], None

@@ -23,15 +23,22 @@ def compiled(name: str, regime: str, tol: float) -> Any:
     """(t, y) → time and state at the stop, steps, and which event fired."""
     traced = Problem(next(data for data in all_data() if data["name"] == name), jnp)
     surfaces = [switch.when for switch in traced.watched(regime)]
-    conditions = [lambda t, y, *_, when=when, **__: when(t, y, regime) for when in surfaces]
+    conditions = [
+        lambda t, y, *_, when=when, **__: when(t, y, regime) for when in surfaces
+    ]
     event = diffrax.Event(conditions, optimistix.Newton(tol, tol), direction=False)
-    rates = diffrax.ODETerm(lambda t, y, _: jnp.array(traced.fields[regime](t, y), float))
+    rates = diffrax.ODETerm(
+        lambda t, y, _: jnp.array(traced.fields[regime](t, y), float)
+    )
     settings: dict[str, Any] = {
-        "stepsize_controller": diffrax.PIDController(rtol=tol, atol=tol), "max_steps": 2**14,
+        "stepsize_controller": diffrax.PIDController(rtol=tol, atol=tol),
+        "max_steps": 2**14,
         "event": event if conditions else None,
-    }  # fmt: skip
+    }
     end, method = traced.t_end, diffrax.Dopri8()
-    return jax.jit(lambda t, y: diffrax.diffeqsolve(rates, method, t, end, None, y, **settings))
+    return jax.jit(
+        lambda t, y: diffrax.diffeqsolve(rates, method, t, end, None, y, **settings)
+    )
 
 
 def solve(problem: Problem, tol: float) -> Any:

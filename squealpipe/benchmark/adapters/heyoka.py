@@ -20,15 +20,23 @@ def solve(problem: Problem, tol: float) -> Any:
     rates = symbols.function(problem.rates, constants)(hy.time, y)
     events = []
     for i, switch in enumerate(problem.data["switches"]):
-        watched = hy.par[len(names) + i]  # 1 where it can fire, else the surface is the constant 1
-        surface = watched * symbols.function(switch["when"], constants)(hy.time, y) + 1.0 - watched
+        watched = hy.par[
+            len(names) + i
+        ]  # 1 where it can fire, else the surface is the constant 1
+        surface = (
+            watched * symbols.function(switch["when"], constants)(hy.time, y)
+            + 1.0
+            - watched
+        )
         events.append(hy.t_event(surface, direction=hy.event_direction.negative))
     equations = [(a, hy.expression(b)) for a, b in zip(y, rates, strict=True)]
     integrator = hy.taylor_adaptive(equations, problem.start, tol=tol, t_events=events)
 
     def advance(problem: Problem, regime: str, watched: Any, t: float, y: Any) -> Any:
         can_fire = [float(switch in watched) for switch in problem.switches]
-        integrator.pars[:] = [problem.regimes[regime][name] for name in names] + can_fire
+        integrator.pars[:] = [
+            problem.regimes[regime][name] for name in names
+        ] + can_fire
         integrator.state[:] = y
         outcome, *_, steps = integrator.propagate_until(problem.t_end)[:4]
         problem.calls += steps * (integrator.order + 1)

@@ -19,10 +19,15 @@ def solve(problem: Problem, tol: float) -> Any:
     system = _KNOWN.setdefault(problem.name, system_of(problem))
     given = {**system.parameters, **problem.data["start"]}
     raw = integrate(
-        system, {name: np.array([value]) for name, value in given.items()},
-        np.array([problem.t_end]), times=np.array(problem.times), tol=tol,
-        tangent=True, log_events=MOST_EVENTS, workers=1,
-    )  # fmt: skip
+        system,
+        {name: np.array([value]) for name, value in given.items()},
+        np.array([problem.t_end]),
+        times=np.array(problem.times),
+        tol=tol,
+        tangent=True,
+        log_events=MOST_EVENTS,
+        workers=1,
+    )
     outcome, _, steps, count = raw["ends"][0].tolist()
     flag = "" if outcome == Outcome.converged else Outcome(outcome).name
     if np.isfinite(raw["summary"][0, 1]):

@@ -25,7 +25,9 @@ def solve(problem: Problem, tol: float) -> Any:
         surfaces.terminal = [True] * len(watched)  # type: ignore[attr-defined]
         surfaces.direction = [-1] * len(watched)  # type: ignore[attr-defined]
         events = {"eventsfn": surfaces, "num_events": len(watched)} if watched else {}
-        solver = CVODE(rates, method="Adams", rtol=tol, atol=tol, max_num_steps=100_000, **events)
+        solver = CVODE(
+            rates, method="Adams", rtol=tol, atol=tol, max_num_steps=100_000, **events
+        )
         ends = [t, *(each for each in problem.times if each > t), problem.t_end]
         found = solver.solve(np.array(ends), np.array(y, float))
         if found.status == 2:

@@ -20,9 +20,15 @@ def solve(problem: Problem, tol: float, sigma: float = 1e3) -> Any:
     problem.fields[problem.regime] = problem.function(problem.rates, constants)
     span = 0.0, problem.t_end
     found = solve_ivp(
-        lambda t, y: problem.field(t, y.tolist()),  # Python's numbers are several times faster
-        span, problem.start, method="LSODA", rtol=tol, atol=tol,
-    )  # fmt: skip
+        lambda t, y: problem.field(
+            t, y.tolist()
+        ),  # Python's numbers are several times faster
+        span,
+        problem.start,
+        method="LSODA",
+        rtol=tol,
+        atol=tol,
+    )
     if not found.success:
         raise RuntimeError(found.message)
     return None, None, found.y[:, -1], problem.calls

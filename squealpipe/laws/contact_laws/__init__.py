@@ -9,7 +9,14 @@ from types import ModuleType
 from typing import Any, Protocol, cast
 
 from squealpipe.laws.contact_laws import dashpot, linear  # noqa: F401
-from squealpipe.laws.tables import Pieces, is_table, knots_of, pieces_of, polynomial, scaled
+from squealpipe.laws.tables import (
+    Pieces,
+    is_table,
+    knots_of,
+    pieces_of,
+    polynomial,
+    scaled,
+)
 
 COLUMNS = ("compression", "force")
 """Of a table of contact: δ, m, and N, N."""

@@ -77,7 +77,9 @@ class Piece:
 
     def coefficient(self, speed: Any, p: Any) -> Any:
         """μ(w)."""
-        return polynomial(self.coefficients, speed * p.friction_speed**-1.0 - self.start)
+        return polynomial(
+            self.coefficients, speed * p.friction_speed**-1.0 - self.start
+        )
 
 
 @lru_cache(maxsize=64)
@@ -92,13 +94,18 @@ def _own(name: str) -> FrictionLaw | None:
         raise ValueError("the file has no function coefficient(speed, p)")
 
     def coefficient(speed: Any, p: Any) -> Any:
-        return found["coefficient"](speed * p.friction_speed**-1.0, SimpleNamespace(mu=p.mu))
+        return found["coefficient"](
+            speed * p.friction_speed**-1.0, SimpleNamespace(mu=p.mu)
+        )
 
     def slope(speed: Any, p: Any) -> Any:
         # a complex step is exact for a smooth law
         return coefficient(speed + 1e-30j, p).imag / 1e-30
 
-    return cast("FrictionLaw", SimpleNamespace(PARAMETERS=(), coefficient=coefficient, slope=slope))
+    return cast(
+        "FrictionLaw",
+        SimpleNamespace(PARAMETERS=(), coefficient=coefficient, slope=slope),
+    )
 
 
 def law_of(name: Any) -> FrictionLaw | None:

@@ -8,9 +8,14 @@ FALLING = True
 
 def coefficient(speed: Any, p: Any) -> Any:
     """μ(w) = μ + (μs − μ)/(1 + w/v0)."""
-    return p.mu + (p.static_mu - p.mu) * p.friction_speed * (p.friction_speed + speed) ** -1.0
+    return (
+        p.mu
+        + (p.static_mu - p.mu) * p.friction_speed * (p.friction_speed + speed) ** -1.0
+    )
 
 
 def slope(speed: Any, p: Any) -> Any:
     """dμ/dw = −(μs − μ) v0/(v0 + w)², s/m."""
-    return -((p.static_mu - p.mu) * p.friction_speed * (p.friction_speed + speed) ** -2.0)
+    return -(
+        (p.static_mu - p.mu) * p.friction_speed * (p.friction_speed + speed) ** -2.0
+    )

@@ -21,7 +21,9 @@ _LAST_STEP = 1e-9
 _SAMPLES_PER_HARMONIC = 8
 
 
-def contact_angles(cosine: Vector, threshold: float, grid: Vector, table: Vector) -> Vector:
+def contact_angles(
+    cosine: Vector, threshold: float, grid: Vector, table: Vector
+) -> Vector:
     """Zeros of threshold − y(θ) in (0, π), ascending, to machine precision.
 
     A touch that stays between two grid points is found from the parabola through its
@@ -85,7 +87,9 @@ class ClosedFormContact:
     @cached_property
     def grid(self) -> Vector:
         """Angles between which contact times are looked for."""
-        return np.linspace(0.0, math.pi, max(32, _SAMPLES_PER_HARMONIC * self.n_harmonics) + 1)
+        return np.linspace(
+            0.0, math.pi, max(32, _SAMPLES_PER_HARMONIC * self.n_harmonics) + 1
+        )
 
     @cached_property
     def _table(self) -> Vector:
@@ -111,12 +115,14 @@ class ClosedFormContact:
         multiple = np.arange(1, 2 * self.n_harmonics + 1)
         integral = np.empty(2 * self.n_harmonics + 1)
         integral[0] = (end - begin).sum()
-        integral[1:] = (np.sin(np.outer(multiple, end)) - np.sin(np.outer(multiple, begin))).sum(
-            axis=1
-        ) / multiple
+        integral[1:] = (
+            np.sin(np.outer(multiple, end)) - np.sin(np.outer(multiple, begin))
+        ).sum(axis=1) / multiple
         difference, total, weight = self._sums
         matrix = (0.5 * weight)[:, None] * (integral[difference] + integral[total])
-        gap = self.threshold * weight * integral[: self.n_harmonics + 1] - matrix @ cosine
+        gap = (
+            self.threshold * weight * integral[: self.n_harmonics + 1] - matrix @ cosine
+        )
         return gap, -matrix
 
 
@@ -141,8 +147,12 @@ class SampledContact:
         half = np.arange(self.n_time // 2 + 1)
         order = np.arange(self.n_harmonics + 1)
         table = np.cos(np.outer(2.0 * math.pi * half / self.n_time, order))
-        share = np.where((half == 0) | (2 * half == self.n_time), 1.0, 2.0) / self.n_time
-        return table, (table * share[:, None]).T * np.where(order == 0, 1.0, 2.0)[:, None]
+        share = (
+            np.where((half == 0) | (2 * half == self.n_time), 1.0, 2.0) / self.n_time
+        )
+        return table, (table * share[:, None]).T * np.where(order == 0, 1.0, 2.0)[
+            :, None
+        ]
 
     @cached_property
     def _locator(self) -> ClosedFormContact:
@@ -157,7 +167,10 @@ class SampledContact:
         table, weights = self._tables
         distance = self.threshold - table @ cosine
         if self.sigma is None:
-            compression, slope = np.maximum(distance, 0.0), (distance > 0.0).astype(float)
+            compression, slope = (
+                np.maximum(distance, 0.0),
+                (distance > 0.0).astype(float),
+            )
         else:
             compression = smoothed_compression(distance, self.sigma)
             slope = smoothed_compression_slope(distance, self.sigma)

@@ -35,7 +35,9 @@ def contact_of(
         return ClosedFormContact(n_harmonics, threshold)
     if n_time is None and sigma is not None:
         wanted = max(
-            _AUTOMATIC_SAMPLES * n_harmonics, _SAMPLES_PER_SMOOTHING_WIDTH * sigma * threshold, 256
+            _AUTOMATIC_SAMPLES * n_harmonics,
+            _SAMPLES_PER_SMOOTHING_WIDTH * sigma * threshold,
+            256,
         )
         n_time = 2 ** math.ceil(math.log2(min(wanted, 2**14)))
     return SampledContact(n_harmonics, threshold, int(n_time or 0), sigma)
@@ -101,18 +103,26 @@ class CosineBalance:
         alternating = (-1.0) ** np.arange(self.contact.n_harmonics + 1)
         return np.concatenate([alternating, alternating, [1.0]])
 
-    def solve(self, guess: Vector, row: Vector, value: float) -> tuple[Vector, float] | None:
+    def solve(
+        self, guess: Vector, row: Vector, value: float
+    ) -> tuple[Vector, float] | None:
         """Solution with row · z = value from a guess, and its residual; None without one."""
         start = guess + row * ((value - row @ guess) / (row @ row))
-        settings = ContinuationSettings(max_iterations=25, easy_iterations=1, tolerance=2e-13)
-        found = PseudoArclength(settings).correct(self, start, row / np.linalg.norm(row))
+        settings = ContinuationSettings(
+            max_iterations=25, easy_iterations=1, tolerance=2e-13
+        )
+        found = PseudoArclength(settings).correct(
+            self, start, row / np.linalg.norm(row)
+        )
         return None if found is None else (found[0], found[3])
 
 
 def cosines_of(samples: Vector) -> Vector:
     """Cosine coefficients of an even function from samples at θ = π j/n, j = 0 … n."""
     count = len(samples) - 1
-    spectrum = np.fft.rfft(np.concatenate([samples, samples[-2:0:-1]]), axis=0).real / (2 * count)
+    spectrum = np.fft.rfft(np.concatenate([samples, samples[-2:0:-1]]), axis=0).real / (
+        2 * count
+    )
     spectrum[1:-1] *= 2.0
     return np.asarray(spectrum)
 

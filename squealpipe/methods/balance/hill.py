@@ -14,22 +14,31 @@ import scipy.linalg
 from squealpipe.methods.orbits.piecewise_linear import PiecewiseLinearSystem
 
 
-def sampled_share_above(cosine: np.ndarray, threshold: float, n_time: int) -> np.ndarray:
+def sampled_share_above(
+    cosine: np.ndarray, threshold: float, n_time: int
+) -> np.ndarray:
     """Cosine means, 0 … 2 H, of the part of the period in which a cosine series lies above."""
     n_harmonics = len(cosine) - 1
     theta = 2.0 * math.pi * np.arange(n_time) / n_time
     above = np.cos(np.outer(theta, np.arange(n_harmonics + 1))) @ cosine > threshold
-    return np.asarray(above @ np.cos(np.outer(theta, np.arange(2 * n_harmonics + 1)))) / n_time
+    return (
+        np.asarray(above @ np.cos(np.outer(theta, np.arange(2 * n_harmonics + 1))))
+        / n_time
+    )
 
 
-def hill_multipliers(system: PiecewiseLinearSystem, share: np.ndarray, omega: float) -> np.ndarray:
+def hill_multipliers(
+    system: PiecewiseLinearSystem, share: np.ndarray, omega: float
+) -> np.ndarray:
     """The four Floquet multipliers of a symmetric motion."""
     below, above = np.array(system.below.matrix), np.array(system.above.matrix)
     coefficients = share[:, None, None] * (above - below)
     coefficients[0] += below
     n_harmonics = (len(share) - 1) // 2
     count = 2 * n_harmonics + 1
-    stiffness = np.block([[coefficients[abs(i - j)] for j in range(count)] for i in range(count)])
+    stiffness = np.block(
+        [[coefficients[abs(i - j)] for j in range(count)] for i in range(count)]
+    )
     rates = np.repeat(np.arange(-n_harmonics, n_harmonics + 1) * omega, 2)
     # (s + i n ω)² δu + A δu = 0
     companion = np.block(

@@ -140,7 +140,9 @@ class SampledBalance:
             converged=residual <= tolerance,
         )
 
-    def start_from_cosines(self, x: Vector, y: Vector, omega: float, phase: float = 0.0) -> Vector:
+    def start_from_cosines(
+        self, x: Vector, y: Vector, omega: float, phase: float = 0.0
+    ) -> Vector:
         """η of a motion given by cosines, shifted by a phase, rad."""
         eta = np.zeros(4 * self.n_harmonics + 3)
         count = 2 * self.n_harmonics + 1

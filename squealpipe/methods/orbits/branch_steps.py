@@ -15,7 +15,10 @@ import numpy as np
 
 from squealpipe.methods.compiled import compiled
 from squealpipe.methods.orbits import shooting
-from squealpipe.methods.orbits.shorter_orbits import about_to_meet, shorter_orbit_between
+from squealpipe.methods.orbits.shorter_orbits import (
+    about_to_meet,
+    shorter_orbit_between,
+)
 
 REACHED, RETURNED, TONGUE_END, BRANCH_LOST, STEP_LIMIT, DIVERGED, GOES_ON = range(7)
 """Why a trace ended: y_peak reached; back on the linear mode; the orbit is another one, run
@@ -27,7 +30,9 @@ STEP, SENSE, WORK, POINTS, FLIGHT, EXTENT = range(6)
 """Entries of ``pace``: step over 1 + |z|, sense of the tangent (0: not known yet), work done (in
 look-aheads of the flow), accepted steps; of the last point, the time in flight and the distance
 of both instants of rest (0: not known yet)."""
-LONGEST_STEP, LEAST_COSINE, STRICT, MOST_POINTS, LARGEST_X, LINEAR_X, LINEAR_SLOPE = range(7)
+LONGEST_STEP, LEAST_COSINE, STRICT, MOST_POINTS, LARGEST_X, LINEAR_X, LINEAR_SLOPE = (
+    range(7)
+)
 """Entries of ``control``: longest step, least cosine of a turn, whether the sense of the tangent
 must be kept, most points, and the bound of |x0| over that of the linear mode at equal y0."""
 
@@ -47,7 +52,13 @@ _WORK_PER_SHOT = 10.0
 
 @compiled
 def take_step(
-    rows: Any, motion: Any, pace: Any, control: Any, work: Any, segments: Any, switches: Any
+    rows: Any,
+    motion: Any,
+    pace: Any,
+    control: Any,
+    work: Any,
+    segments: Any,
+    switches: Any,
 ) -> tuple[float, int, int]:
     """One accepted step: ``motion`` (point and direction) moves on.
 
@@ -66,17 +77,22 @@ def take_step(
         legs, iterations, _ = shooting.solve_constrained(
             rows, trial, ahead, TRACE_TOLERANCE, segments, switches, final, tangent
         )
-        pace[WORK] += (iterations + 1) * (_WORK_PER_SHOT + shooting.fastest(rows) * here[2])
+        pace[WORK] += (iterations + 1) * (
+            _WORK_PER_SHOT + shooting.fastest(rows) * here[2]
+        )
         flight = time_in_flight(trial, segments, switches, legs)
         if legs > 0 and _close_by(rows, motion, pace, control, work, length, flight):
             cosine = shooting.dot(tangent, ahead)
             sense = 1.0 if cosine > 0.0 else -1.0
             meets = control[STRICT] != 0.0 and (
-                sense * pace[SENSE] < 0.0 or about_to_meet(rows, trial, segments, switches, legs)
+                sense * pace[SENSE] < 0.0
+                or about_to_meet(rows, trial, segments, switches, legs)
             )
             if not meets:
                 pace[SENSE], pace[FLIGHT] = sense, flight
-                pace[EXTENT] = np.sqrt((final[0] - trial[0]) ** 2 + (final[1] - trial[1]) ** 2)
+                pace[EXTENT] = np.sqrt(
+                    (final[0] - trial[0]) ** 2 + (final[1] - trial[1]) ** 2
+                )
                 for index in range(3):
                     here[index], ahead[index] = trial[index], sense * tangent[index]
                 if iterations <= _EASY_ITERATIONS:
@@ -109,7 +125,13 @@ def _length(rows: Any, motion: Any, pace: Any, control: Any) -> float:
 
 @compiled
 def _close_by(
-    rows: Any, motion: Any, pace: Any, control: Any, work: Any, length: float, flight: float
+    rows: Any,
+    motion: Any,
+    pace: Any,
+    control: Any,
+    work: Any,
+    length: float,
+    flight: float,
 ) -> bool:
     """Whether a trial point is near its prediction and the branch has turned by little."""
     here, ahead, trial, tangent = motion[0], motion[1], work[0], work[1]
@@ -117,7 +139,8 @@ def _close_by(
     for index in range(3):
         off += (trial[index] - here[index] - length * ahead[index]) ** 2
     if not (
-        abs(shooting.dot(tangent, ahead)) > control[LEAST_COSINE] and off < 0.09 * length * length
+        abs(shooting.dot(tangent, ahead)) > control[LEAST_COSINE]
+        and off < 0.09 * length * length
     ):
         return False
     change = shooting.fastest(rows) * abs(flight - pace[FLIGHT])
@@ -138,7 +161,10 @@ def time_in_flight(point: Any, segments: Any, switches: Any, legs: int) -> float
 @compiled
 def measure(rows: Any, point: Any, pace: Any) -> None:
     """Note time in flight and extent of the orbit at the start of a trace."""
-    segments, switches = np.empty((shooting.MAX_SEGMENTS, 9)), np.empty(shooting.MAX_SEGMENTS)
+    segments, switches = (
+        np.empty((shooting.MAX_SEGMENTS, 9)),
+        np.empty(shooting.MAX_SEGMENTS),
+    )
     final = np.empty(4)
     legs = shooting.shoot(rows, point[0], point[1], point[2], segments, switches, final)
     pace[FLIGHT] = time_in_flight(point, segments, switches, legs)
@@ -146,7 +172,9 @@ def measure(rows: Any, point: Any, pace: Any) -> None:
 
 
 @compiled
-def change_end(rows: Any, motion: Any, pace: Any, work: Any, segments: Any, legs: int) -> None:
+def change_end(
+    rows: Any, motion: Any, pace: Any, work: Any, segments: Any, legs: int
+) -> None:
     """Describe point and direction from the other instant of rest."""
     here, ahead, final, vector = motion[0], motion[1], work[2], np.zeros(4)
     vector[0], vector[1] = ahead[0], ahead[1]
@@ -161,6 +189,15 @@ def change_end(rows: Any, motion: Any, pace: Any, work: Any, segments: Any, legs
     for index in range(3):
         trial[index] = here[index]
     legs, _, _ = shooting.solve_constrained(
-        rows, trial, ahead, TRACE_TOLERANCE, segments, np.empty(shooting.MAX_SEGMENTS), end, tangent
+        rows,
+        trial,
+        ahead,
+        TRACE_TOLERANCE,
+        segments,
+        np.empty(shooting.MAX_SEGMENTS),
+        end,
+        tangent,
     )
-    pace[SENSE] = 0.0 if legs == 0 else (1.0 if shooting.dot(tangent, ahead) > 0.0 else -1.0)
+    pace[SENSE] = (
+        0.0 if legs == 0 else (1.0 if shooting.dot(tangent, ahead) > 0.0 else -1.0)
+    )

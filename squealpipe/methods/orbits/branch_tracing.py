@@ -44,18 +44,25 @@ def trace(
     Returns:
         (number of points kept, why it ended).
     """
-    pieces = 1 if spacing == 0.0 else int(np.ceil(control[steps.LONGEST_STEP] / spacing))
+    pieces = (
+        1 if spacing == 0.0 else int(np.ceil(control[steps.LONGEST_STEP] / spacing))
+    )
     count, work_before = 0, pace[steps.WORK]
     if pace[steps.EXTENT] == 0.0:
         steps.measure(rows, motion[0], pace)
     while count + pieces < len(table) or count == 0:
-        if pace[steps.POINTS] >= control[steps.MOST_POINTS] or pace[steps.WORK] > _MOST_WORK:
+        if (
+            pace[steps.POINTS] >= control[steps.MOST_POINTS]
+            or pace[steps.WORK] > _MOST_WORK
+        ):
             return count, steps.STEP_LIMIT
         if not shooting.fastest(rows) * motion[0, 2] < shooting.LONGEST_PHASE:
             return count, steps.STEP_LIMIT
         if pace[steps.WORK] > work_before + _WORK_PER_CALL:
             return count, steps.GOES_ON
-        kept, end = _stretch(rows, motion, pace, control, y_stop, spacing, table[count:], switches)
+        kept, end = _stretch(
+            rows, motion, pace, control, y_stop, spacing, table[count:], switches
+        )
         count += kept
         if end != steps.GOES_ON:
             return count, end
@@ -76,7 +83,9 @@ def _stretch(
     """One step of a trace with its recorded points: (points kept, why it ended)."""
     segments, work = np.empty((shooting.MAX_SEGMENTS, 9)), np.empty((3, 4))
     before, here, final, kept = motion.copy(), motion[0], work[2], 0
-    length, legs, end = steps.take_step(rows, motion, pace, control, work, segments, switches)
+    length, legs, end = steps.take_step(
+        rows, motion, pace, control, work, segments, switches
+    )
     if end != steps.GOES_ON:
         return 0, end
     pace[steps.POINTS] += 1
@@ -109,9 +118,14 @@ def _diverges(here: Any, control: Any) -> bool:
 
 @compiled
 def _record(
-    rows: Any, before: Any, length: float, spacing: float, table: Any, switches: Any,
+    rows: Any,
+    before: Any,
+    length: float,
+    spacing: float,
+    table: Any,
+    switches: Any,
     leave: int,
-) -> int:  # fmt: skip
+) -> int:
     """Keep polished points of a step at even distances, its end included unless ``leave`` is 1.
 
     Returns their number.
@@ -158,13 +172,25 @@ def _way_to_peak(
 
 
 @compiled
-def _on_step(rows: Any, before: Any, distance: float, point: Any, final: Any, tangent: Any) -> int:
+def _on_step(
+    rows: Any, before: Any, distance: float, point: Any, final: Any, tangent: Any
+) -> int:
     """The branch's point on the plane across a step at a distance; 0 where none is found."""
     for index in range(3):
         point[index] = before[0, index] + distance * before[1, index]
-    segments, switches = np.empty((shooting.MAX_SEGMENTS, 9)), np.empty(shooting.MAX_SEGMENTS)
+    segments, switches = (
+        np.empty((shooting.MAX_SEGMENTS, 9)),
+        np.empty(shooting.MAX_SEGMENTS),
+    )
     legs, _, _ = shooting.solve_constrained(
-        rows, point, before[1], steps.TRACE_TOLERANCE, segments, switches, final, tangent
+        rows,
+        point,
+        before[1],
+        steps.TRACE_TOLERANCE,
+        segments,
+        switches,
+        final,
+        tangent,
     )
     return int(legs)
 
@@ -224,7 +250,11 @@ def orbit_at(rows: Any, point: Any, out: Any, switches: Any) -> bool:
 @compiled
 def _orbit_across(rows: Any, point: Any, normal: Any, out: Any, switches: Any) -> bool:
     """As :func:`orbit_at`, on the plane through ``point`` across ``normal``."""
-    segments, final, tangent = np.empty((shooting.MAX_SEGMENTS, 9)), np.empty(4), np.empty(3)
+    segments, final, tangent = (
+        np.empty((shooting.MAX_SEGMENTS, 9)),
+        np.empty(4),
+        np.empty(3),
+    )
     count, _, residual = shooting.solve_constrained(
         rows, point, normal, 0.0, segments, switches, final, tangent
     )

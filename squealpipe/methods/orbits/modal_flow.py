@@ -46,16 +46,26 @@ def modal_coefficients(omega1: Any, omega2: Any, time: Any) -> Any:
     """
     mean, half = 0.5 * (omega1 + omega2), 0.5 * (omega2 - omega1)
     angle1, angle2 = 0.5 * time * omega1, 0.5 * time * omega2
-    sin1, cos1, sin2, cos2 = np.sin(angle1), np.cos(angle1), np.sin(angle2), np.cos(angle2)
+    sin1, cos1, sin2, cos2 = (
+        np.sin(angle1),
+        np.cos(angle1),
+        np.sin(angle2),
+        np.cos(angle2),
+    )
     sine_mean = _over(sin1 * cos2 + cos1 * sin2, mean, time)
-    sine1_half, sine2_half = _over(sin1, omega1, 0.5 * time), _over(sin2, omega2, 0.5 * time)
+    sine1_half, sine2_half = (
+        _over(sin1, omega1, 0.5 * time),
+        _over(sin2, omega2, 0.5 * time),
+    )
     sine1, sine2 = 2.0 * sine1_half * cos1, 2.0 * sine2_half * cos2
     rise1, rise2 = 2.0 * sine1_half * sine1_half, 2.0 * sine2_half * sine2_half
 
     if abs(half) < 0.5 * abs(mean):
         sine_half = _over(np.sin(half * time), half, time)
         cos_mean, cos_half = cos1 * cos2 - sin1 * sin2, cos1 * cos2 + sin1 * sin2
-        sine_beta = 0.5 * (cos_mean * sine_half - sine_mean * cos_half) / (omega1 * omega2)
+        sine_beta = (
+            0.5 * (cos_mean * sine_half - sine_mean * cos_half) / (omega1 * omega2)
+        )
     else:
         sine_half = _over(sin2 * cos1 - cos2 * sin1, half, time)
         sine_beta = 0.25 * (sine2 - sine1) / (mean * half)
@@ -86,11 +96,15 @@ def coefficients_at(row: Any, time: float) -> Any:
 @compiled
 def propagator(row: Any, time: float, out: Any) -> None:
     """Fill ``out`` with :func:`coefficients_at` a time."""
-    out[0], out[1], out[2], out[3], out[4], out[5], out[6], out[7] = coefficients_at(row, time)
+    out[0], out[1], out[2], out[3], out[4], out[5], out[6], out[7] = coefficients_at(
+        row, time
+    )
 
 
 @compiled
-def moved_tangent(row: Any, coefficients: Any, x: float, y: float, vx: float, vy: float) -> Any:
+def moved_tangent(
+    row: Any, coefficients: Any, x: float, y: float, vx: float, vy: float
+) -> Any:
     """A tangent vector (δx, δy, δvx, δvy) later."""
     bux, buy = row[1] * x + row[2] * y, row[3] * x - row[1] * y
     bvx, bvy = row[1] * vx + row[2] * vy, row[3] * vx - row[1] * vy
@@ -105,7 +119,9 @@ def moved_tangent(row: Any, coefficients: Any, x: float, y: float, vx: float, vy
 
 
 @compiled
-def moved_state(row: Any, coefficients: Any, x: float, y: float, vx: float, vy: float) -> Any:
+def moved_state(
+    row: Any, coefficients: Any, x: float, y: float, vx: float, vy: float
+) -> Any:
     """A state (x, y, vx, vy) later, load b included."""
     x, y, vx, vy = moved_tangent(row, coefficients, x, y, vx, vy)
     sa, sb, ga, gb = coefficients[2], coefficients[3], coefficients[6], coefficients[7]
@@ -152,7 +168,9 @@ def acceleration(row: Any, x: float, y: float) -> tuple[float, float]:
 
 
 @compiled
-def _jerk_bound(row: Any, ax: float, ay: float, vx: float, vy: float, step: float) -> float:
+def _jerk_bound(
+    row: Any, ax: float, ay: float, vx: float, vy: float, step: float
+) -> float:
     """Bound on |d³y/dt³| over the next ``step`` from the state at its start."""
     norm_b = abs(row[1]) + max(abs(row[2]), abs(row[3]))
     growth = 1.0 + 0.5 * norm_b * step * step
@@ -165,7 +183,9 @@ def _jerk_bound(row: Any, ax: float, ay: float, vx: float, vy: float, step: floa
 
 
 @compiled
-def _stays(distance: float, slope: float, curvature: float, jerk: float, step: float) -> bool:
+def _stays(
+    distance: float, slope: float, curvature: float, jerk: float, step: float
+) -> bool:
     """Whether Taylor's bound keeps the distance positive in (0, step]."""
     if slope >= 0.0 and 0.5 * curvature - jerk * step / 6.0 > 0.0:
         return True
@@ -218,7 +238,9 @@ def next_crossing(row: Any, origin: Any, sign: float, horizon: float) -> float:
     """
     x0, y0, vx0, vy0 = origin[0], origin[1], origin[2], origin[3]
     x, y, vx, vy = x0, y0, vx0, vy0
-    longest = _LONGEST_LOOK_AHEAD / max(np.sqrt(row[7] * row[7] + row[8] * row[8]), 1e-300)
+    longest = _LONGEST_LOOK_AHEAD / max(
+        np.sqrt(row[7] * row[7] + row[8] * row[8]), 1e-300
+    )
     time = 0.0
     for _ in range(_MOST_LOOKS):
         if not time < horizon:
@@ -233,7 +255,9 @@ def next_crossing(row: Any, origin: Any, sign: float, horizon: float) -> float:
             jerk = _jerk_bound(row, ax, ay, vx, vy, step)
             if _stays(distance, slope, curvature, jerk, step):
                 break
-            falls = max(slope, slope + curvature * step + 0.5 * jerk * step * step) < 0.0
+            falls = (
+                max(slope, slope + curvature * step + 0.5 * jerk * step * step) < 0.0
+            )
             if falls:
                 break
             step *= 0.5

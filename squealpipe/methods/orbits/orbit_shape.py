@@ -6,7 +6,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from squealpipe.methods.compiled import compiled
-from squealpipe.methods.orbits.modal_flow import acceleration, advance, copy_state, propagator
+from squealpipe.methods.orbits.modal_flow import (
+    acceleration,
+    advance,
+    copy_state,
+    propagator,
+)
 from squealpipe.methods.orbits.shooting import MAX_SEGMENTS, shoot
 
 _LOOKS = 12
@@ -92,7 +97,13 @@ def extremes(rows: Any, point: Any, out: Any) -> None:
 
 @compiled
 def _turn(
-    row: Any, start: Any, kind: int, before: float, after: float, first: float, scratch: Any
+    row: Any,
+    start: Any,
+    kind: int,
+    before: float,
+    after: float,
+    first: float,
+    scratch: Any,
 ) -> float:
     """Value at the turning point in (before, after), by safeguarded Newton on the slope.
 

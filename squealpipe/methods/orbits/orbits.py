@@ -115,7 +115,9 @@ class Orbit:
         return float(out[3])
 
 
-def solve_orbit(system: PiecewiseLinearSystem, guess: NDArray[np.float64]) -> Orbit | None:
+def solve_orbit(
+    system: PiecewiseLinearSystem, guess: NDArray[np.float64]
+) -> Orbit | None:
     """The orbit with the y0 of a guess (x0, y0, T/2), or None where Newton's method fails."""
     row, switches = np.empty(len(branch_tracing.COLUMNS)), np.empty(MAX_SEGMENTS)
     start = np.array(guess[:3], dtype=float)
@@ -125,14 +127,18 @@ def solve_orbit(system: PiecewiseLinearSystem, guess: NDArray[np.float64]) -> Or
 
 
 def orbit_across(
-    system: PiecewiseLinearSystem, guess: NDArray[np.float64], normal: NDArray[np.float64]
+    system: PiecewiseLinearSystem,
+    guess: NDArray[np.float64],
+    normal: NDArray[np.float64],
 ) -> Orbit | None:
     """The orbit on the plane through a guess across a normal, or None where Newton fails."""
     found = _on_chord(system, guess, np.asarray(normal, dtype=float), 0.0)
     return None if found is None else found.orbit
 
 
-def rest_jacobian(system: PiecewiseLinearSystem, point: NDArray[np.float64]) -> NDArray[np.float64]:
+def rest_jacobian(
+    system: PiecewiseLinearSystem, point: NDArray[np.float64]
+) -> NDArray[np.float64]:
     """(2, 3) derivatives of the velocities after half a period by (x0, y0, T/2)."""
     jacobian = np.empty((2, 3))
     work = np.empty((MAX_SEGMENTS, 9)), np.empty(MAX_SEGMENTS), np.empty(2)
@@ -184,12 +190,16 @@ def trace_branch(
         if spacing:
             report(lambda: motion[0, 1] / y_stop)
     if orbits:
-        orbits[-1] = replace(orbits[-1], switches=switches[: len(orbits[-1].switches)].copy())
+        orbits[-1] = replace(
+            orbits[-1], switches=switches[: len(orbits[-1].switches)].copy()
+        )
     return orbits, TraceEnd(end)
 
 
 def _orbit(row: NDArray[np.float64], switches: NDArray[np.float64]) -> Orbit:
-    return Orbit(row[:3].copy(), switches[: int(row[7])].copy(), float(row[5]), float(row[6]))
+    return Orbit(
+        row[:3].copy(), switches[: int(row[7])].copy(), float(row[5]), float(row[6])
+    )
 
 
 def special_points(
@@ -218,7 +228,9 @@ def special_points(
     return found
 
 
-def _same_rest(system: PiecewiseLinearSystem, first: Orbit, second: Orbit) -> NDArray[np.float64]:
+def _same_rest(
+    system: PiecewiseLinearSystem, first: Orbit, second: Orbit
+) -> NDArray[np.float64]:
     """The second orbit from the instant of rest that continues the first one's.
 
     Of the two instants of rest another may become the higher one between two orbits.
@@ -313,7 +325,11 @@ def _locate(
 
     try:
         share = brentq(
-            lambda share: at(share).measures[kind], first.share, last.share, xtol=1e-16, rtol=1e-15
+            lambda share: at(share).measures[kind],
+            first.share,
+            last.share,
+            xtol=1e-16,
+            rtol=1e-15,
         )
         return at(share).orbit
     except ArithmeticError:
@@ -332,15 +348,24 @@ def decoupled_half_period(system: PiecewiseLinearSystem, y_peak: float) -> float
     return fall / frequency + (math.pi - math.atan2(speed / stiff, offset)) / stiff
 
 
-def shape(system: PiecewiseLinearSystem, point: NDArray[np.float64]) -> tuple[float, float, float]:
+def shape(
+    system: PiecewiseLinearSystem, point: NDArray[np.float64]
+) -> tuple[float, float, float]:
     """(x amplitude, y amplitude, largest |vx|) over a period; amplitudes are half peak-to-peak."""
     out = np.empty(6)
     extremes(system.rows, np.ascontiguousarray(point[:3], dtype=float), out)
-    return 0.5 * (out[1] - out[0]), 0.5 * (out[3] - out[2]), float(np.abs(out[4:]).max())
+    return (
+        0.5 * (out[1] - out[0]),
+        0.5 * (out[3] - out[2]),
+        float(np.abs(out[4:]).max()),
+    )
 
 
 def index_from_switches(
-    system: PiecewiseLinearSystem, switches: NDArray[np.float64], half_period: float, y0: float
+    system: PiecewiseLinearSystem,
+    switches: NDArray[np.float64],
+    half_period: float,
+    y0: float,
 ) -> float:
     """Stability index of a motion that switches at given times of its half period.
 

@@ -27,7 +27,9 @@ class LinearState:
         """Rest position A⁻¹ b, m."""
         (a11, a12), (a21, a22) = self.matrix
         bx, by = self.load
-        return np.array([a22 * bx - a12 * by, a11 * by - a21 * bx]) / (a11 * a22 - a12 * a21)
+        return np.array([a22 * bx - a12 * by, a11 * by - a21 * bx]) / (
+            a11 * a22 - a12 * a21
+        )
 
     def row(self, threshold: float) -> list[float]:
         """State row of :mod:`squealpipe.methods.orbits.modal_flow`."""
@@ -54,7 +56,9 @@ class PiecewiseLinearSystem:
     @cached_property
     def rows(self) -> NDArray[np.float64]:
         """(2, 12) state rows for the compiled kernels."""
-        return np.array([self.below.row(self.threshold), self.above.row(self.threshold)])
+        return np.array(
+            [self.below.row(self.threshold), self.above.row(self.threshold)]
+        )
 
     @property
     def push(self) -> tuple[float, float]:

@@ -23,7 +23,9 @@ _MAX_NEWTON = 12
 @compiled
 def norm(vector: Any) -> float:
     """Euclidean norm of three components."""
-    return float(np.sqrt(vector[0] * vector[0] + vector[1] * vector[1] + vector[2] * vector[2]))
+    return float(
+        np.sqrt(vector[0] * vector[0] + vector[1] * vector[1] + vector[2] * vector[2])
+    )
 
 
 @compiled
@@ -40,7 +42,13 @@ def fastest(rows: Any) -> float:
 
 @compiled
 def shoot(
-    rows: Any, x0: float, y0: float, half_period: float, segments: Any, switches: Any, final: Any
+    rows: Any,
+    x0: float,
+    y0: float,
+    half_period: float,
+    segments: Any,
+    switches: Any,
+    final: Any,
 ) -> int:
     """Flow from rest at (x0, y0) over half a period.
 
@@ -58,7 +66,9 @@ def shoot(
     time = 0.0
     for count in range(MAX_SEGMENTS):
         row = rows[side]
-        crossing = modal_flow.next_crossing(row, final, 2.0 * side - 1.0, half_period - time)
+        crossing = modal_flow.next_crossing(
+            row, final, 2.0 * side - 1.0, half_period - time
+        )
         if crossing == modal_flow.GIVEN_UP:
             return 0
         duration = half_period - time if crossing < 0.0 else crossing
@@ -78,7 +88,9 @@ def shoot(
 def push(rows: Any, segments: Any, count: int, vector: Any) -> None:
     """Carry a tangent vector through the segments of a shot, in place."""
     for index in range(count):
-        modal_flow.apply(rows[int(segments[index, _COEFFICIENTS])], segments[index], vector)
+        modal_flow.apply(
+            rows[int(segments[index, _COEFFICIENTS])], segments[index], vector
+        )
 
 
 @compiled
@@ -91,14 +103,22 @@ def stability_index(rows: Any, segments: Any, count: int) -> float:
             vector[index] = 1.0 if index == column else 0.0
         push(rows, segments, count, vector)
         for index in range(count - 1, -1, -1):
-            modal_flow.apply(rows[int(segments[index, _COEFFICIENTS])], segments[index], vector)
+            modal_flow.apply(
+                rows[int(segments[index, _COEFFICIENTS])], segments[index], vector
+            )
         trace += vector[column]
     return trace - 2.0
 
 
 @compiled
 def rest_conditions(
-    rows: Any, point: Any, segments: Any, switches: Any, residual: Any, jacobian: Any, final: Any
+    rows: Any,
+    point: Any,
+    segments: Any,
+    switches: Any,
+    residual: Any,
+    jacobian: Any,
+    final: Any,
 ) -> int:
     """End velocities of a shot and their derivatives by (x0, y0, T/2).
 
@@ -146,12 +166,16 @@ def solve_constrained(
     previous = np.inf
     best0, best1, best2 = point[0], point[1], point[2]
     for iteration in range(_MAX_NEWTON):
-        count = rest_conditions(rows, point, segments, switches, residual, jacobian, final)
+        count = rest_conditions(
+            rows, point, segments, switches, residual, jacobian, final
+        )
         if count == 0:
             break
         error = max(abs(residual[0]), abs(residual[1]))
         scale = 1.0 + abs(point[0]) + abs(point[1])
-        if not error < 1e6 * scale or (iteration > 3 and error > previous > 1e-12 * scale):
+        if not error < 1e6 * scale or (
+            iteration > 3 and error > previous > 1e-12 * scale
+        ):
             break
         # across both gradients
         tangent[0] = jacobian[0, 1] * jacobian[1, 2] - jacobian[0, 2] * jacobian[1, 1]

@@ -6,7 +6,12 @@ import numpy as np
 
 from squealpipe.methods.compiled import compiled
 from squealpipe.methods.orbits.modal_flow import advance, propagator
-from squealpipe.methods.orbits.shooting import MAX_SEGMENTS, norm, shoot, stability_index
+from squealpipe.methods.orbits.shooting import (
+    MAX_SEGMENTS,
+    norm,
+    shoot,
+    stability_index,
+)
 
 _MOST_COVERS = 7
 _SAME_STATE, _NEARLY_SAME = 1e-8, 1e-3
@@ -18,7 +23,13 @@ where branches meet."""
 
 @compiled
 def _apart_after(
-    rows: Any, point: Any, segments: Any, switches: Any, legs: int, covers: int, apart: Any
+    rows: Any,
+    point: Any,
+    segments: Any,
+    switches: Any,
+    legs: int,
+    covers: int,
+    apart: Any,
 ) -> float:
     """How far the state after T/n is from the initial one; fills ``apart`` (4,)."""
     time, begin, leg, scratch = 2.0 * point[2] / covers, 0.0, 0, np.empty(8)
@@ -52,7 +63,9 @@ def shorter_orbit(
 
 
 @compiled
-def about_to_meet(rows: Any, point: Any, segments: Any, switches: Any, legs: int) -> bool:
+def about_to_meet(
+    rows: Any, point: Any, segments: Any, switches: Any, legs: int
+) -> bool:
     """Whether an orbit is a shorter one run through several times, or nearly and next to it.
 
     Where its branch meets that one's the stability index is 2.
@@ -67,9 +80,17 @@ def about_to_meet(rows: Any, point: Any, segments: Any, switches: Any, legs: int
 @compiled
 def times_run_through(rows: Any, point: Any) -> int:
     """As :func:`shorter_orbit`, for a point alone; 0 where the shot fails."""
-    segments, switches, final = np.empty((MAX_SEGMENTS, 9)), np.empty(MAX_SEGMENTS), np.empty(4)
+    segments, switches, final = (
+        np.empty((MAX_SEGMENTS, 9)),
+        np.empty(MAX_SEGMENTS),
+        np.empty(4),
+    )
     legs = shoot(rows, point[0], point[1], point[2], segments, switches, final)
-    return 0 if legs == 0 else shorter_orbit(rows, point, segments, switches, legs, _SAME_STATE)
+    return (
+        0
+        if legs == 0
+        else shorter_orbit(rows, point, segments, switches, legs, _SAME_STATE)
+    )
 
 
 @compiled
@@ -85,10 +106,14 @@ def shorter_orbit_between(
         return True
     before, after, final = np.empty(4), np.empty(4), np.empty(4)
     segments_here, switches_here = np.empty((MAX_SEGMENTS, 9)), np.empty(MAX_SEGMENTS)
-    legs_here = shoot(rows, here[0], here[1], here[2], segments_here, switches_here, final)
+    legs_here = shoot(
+        rows, here[0], here[1], here[2], segments_here, switches_here, final
+    )
     for covers in range(2, _MOST_COVERS + 1):
         size = _apart_after(rows, trial, segments, switches, legs, covers, after)
-        size *= _apart_after(rows, here, segments_here, switches_here, legs_here, covers, before)
+        size *= _apart_after(
+            rows, here, segments_here, switches_here, legs_here, covers, before
+        )
         product = 0.0
         for index in range(4):
             product += before[index] * after[index]

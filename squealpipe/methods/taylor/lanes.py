@@ -72,7 +72,10 @@ def compile_system(
     series, n_series = series_source(system)
     sources = {"series": series}
     if tangent:
-        sources |= {"perturb": perturbation_source(system), "longest": longest_source(system)}
+        sources |= {
+            "perturb": perturbation_source(system),
+            "longest": longest_source(system),
+        }
     width = simd.FEW if few else simd.LANES
     code = {name: compile_source(text, width) for name, text in sources.items()}
     code |= {name: compile_source(text) for name, text in further.items()}
@@ -121,7 +124,9 @@ class Workspace:
     ) -> None:
         for name, array in arrays.items():
             if not array.flags.c_contiguous or array.dtype.itemsize % 8:
-                raise ValueError(f"{name}: the workspace holds contiguous 8-byte fields only")
+                raise ValueError(
+                    f"{name}: the workspace holds contiguous 8-byte fields only"
+                )
         self.arrays = dict(arrays)
         at = {name: _address_of(array) for name, array in arrays.items()} | sizes
         self.table = np.array([tuple(at[name] for name in record.names or ())], record)
@@ -142,15 +147,21 @@ def _address_of(array: np.ndarray) -> int:
 
 def compile_advance(advance: Callable[..., Any]) -> Any:
     """A C function from ``advance(table) -> busy lanes``, stored under a digest of this folder."""
-    content = b"".join(path.read_bytes() for path in sorted(Path(__file__).parent.glob("*.py")))
+    content = b"".join(
+        path.read_bytes() for path in sorted(Path(__file__).parent.glob("*.py"))
+    )
     compiled = compiled_entry(advance, types.intp(types.voidptr), content)
-    function: Any = ctypes.CFUNCTYPE(ctypes.c_ssize_t, ctypes.c_void_p)(compiled.address)
+    function: Any = ctypes.CFUNCTYPE(ctypes.c_ssize_t, ctypes.c_void_p)(
+        compiled.address
+    )
     # The wrapper does not own the machine code.
     function.code = compiled
     return function
 
 
-def drive(advance: Any, workspace: Workspace, share: Callable[[], float] = lambda: 0.0) -> None:
+def drive(
+    advance: Any, workspace: Workspace, share: Callable[[], float] = lambda: 0.0
+) -> None:
     """Call ``advance``, which returns every ``ROUNDS`` steps, until it reports no lane busy.
 
     Between two calls an interrupt is heard, and ``share`` says how much of the work is done.
@@ -159,7 +170,9 @@ def drive(advance: Any, workspace: Workspace, share: Callable[[], float] = lambd
         report(share)
 
 
-def share_of(job: np.ndarray, clock: np.ndarray, t_end: np.ndarray, left: np.ndarray) -> float:
+def share_of(
+    job: np.ndarray, clock: np.ndarray, t_end: np.ndarray, left: np.ndarray
+) -> float:
     """How much of their jobs the lanes of a process have done.
 
     Args:
@@ -168,7 +181,9 @@ def share_of(job: np.ndarray, clock: np.ndarray, t_end: np.ndarray, left: np.nda
     """
     following, count, stride = left.tolist()
     busy = float((1.0 - clock / t_end)[job >= 0].sum())
-    return float(1.0 - (max(count - following, 0) / stride + busy) / max(count / stride, 1.0))
+    return float(
+        1.0 - (max(count - following, 0) / stride + busy) / max(count / stride, 1.0)
+    )
 
 
 def taylor_terms(tol: float) -> int:

@@ -8,7 +8,14 @@ LOST_ERROR = 1e-3
 """Error, in units of the states' sizes, from which a state says nothing about its run."""
 LATE_BEGINS = -2
 """What ends a step where the late part of a run begins."""
-RUNNING, CONVERGED, STEP_LIMIT, EVENT_LIMIT, NOT_FINITE, ACCUMULATION = -1, 0, 3, 4, 6, 38
+RUNNING, CONVERGED, STEP_LIMIT, EVENT_LIMIT, NOT_FINITE, ACCUMULATION = (
+    -1,
+    0,
+    3,
+    4,
+    6,
+    38,
+)
 """How a run ends, by the numbers of ``schema.Outcome``."""
 STOPPED = 100
 """A stop of the system's own is this plus its number."""

@@ -65,7 +65,11 @@ def _begin(t: Any, m: Any, lane: int, leg: int, unit: float) -> None:
 def _keep(t: Any, m: Any, lane: int, unit: float) -> bool:
     """Keep a lane's step and go to its end; returns whether that is the end of its leg."""
     leg = m.lanes[lane]
-    step, left, place = m.rows[0, lane], m.durations[leg] - m.clocks[lane], m.counts[leg]
+    step, left, place = (
+        m.rows[0, lane],
+        m.durations[leg] - m.clocks[lane],
+        m.counts[leg],
+    )
     ends = not abs(left) > step
     step = left if ends else math.copysign(step, left)
     m.counts[leg] = place + 1
@@ -166,7 +170,9 @@ def _multiply(slopes: Any, lengths: Any, states: Any, rates: Any) -> None:
 
 
 @compiled
-def transfer(slopes: Any, lengths: Any, leg: Any, up_to: Any, weights: Any, found: Any) -> None:
+def transfer(
+    slopes: Any, lengths: Any, leg: Any, up_to: Any, weights: Any, found: Any
+) -> None:
     """Derivatives along legs from their slopes at the nodes of each step, by collocation.
 
     Args:
@@ -177,7 +183,10 @@ def transfer(slopes: Any, lengths: Any, leg: Any, up_to: Any, weights: Any, foun
         found: (legs, columns, columns), identities at first; the last rows keep parameters.
     """
     n, columns, nodes, steps = slopes.shape
-    rates, states = np.zeros((nodes, n, columns, steps)), np.empty((nodes, n, columns, steps))
+    rates, states = (
+        np.zeros((nodes, n, columns, steps)),
+        np.empty((nodes, n, columns, steps)),
+    )
     for _ in range(_SWEEPS):
         _integrate(rates, up_to, states)
         _multiply(slopes, lengths, states, rates)

@@ -22,9 +22,21 @@ from squealpipe.methods.taylor.observation import (
     observe,
     sample,
 )
-from squealpipe.methods.taylor.simd import LANES, ROW, bits_below, first_bit, load, splat, store
+from squealpipe.methods.taylor.simd import (
+    LANES,
+    ROW,
+    bits_below,
+    first_bit,
+    load,
+    splat,
+    store,
+)
 from squealpipe.methods.taylor.step import cut, reaches, take_step
-from squealpipe.methods.taylor.switching import enter_regime, start_from_zero, switch_all
+from squealpipe.methods.taylor.switching import (
+    enter_regime,
+    start_from_zero,
+    switch_all,
+)
 
 _numba: Any = numba
 
@@ -59,7 +71,9 @@ def _grow_all(t: Any, m: Any, tangent_row: int, busy: int) -> None:
     """Look at perturbations that have grown or shrunk a thousandfold, or passed what is lost."""
     square = splat(0.0)
     for variable in range(t.n_states):
-        part = load(t.rows + (tangent_row + variable) * ROW) * splat(1.0 / m.sizes[variable])
+        part = load(t.rows + (tangent_row + variable) * ROW) * splat(
+            1.0 / m.sizes[variable]
+        )
         square = square + part * part
     usual = bits_below(splat(1e-6), square) & bits_below(square, splat(1e6))
     bits = ~(usual & bits_below(square, load(t.rows + layout.LOST * ROW))) & busy
@@ -70,12 +84,17 @@ def _grow_all(t: Any, m: Any, tangent_row: int, busy: int) -> None:
 
 
 @part
-def _finish(t: Any, m: Any, c: Any, lane: int, tangent_row: int, first_extreme: int) -> None:
+def _finish(
+    t: Any, m: Any, c: Any, lane: int, tangent_row: int, first_extreme: int
+) -> None:
     """Write a job's results."""
     rows, job = m.rows, m.integers[layout.JOB, lane]
     last = m.integers[layout.REGIME, lane]
     m.ends[job, 0], m.ends[job, 1] = m.integers[layout.OUTCOME, lane], last
-    m.ends[job, 2], m.ends[job, 3] = int(rows[layout.STEPS, lane]), m.integers[layout.EVENTS, lane]
+    m.ends[job, 2], m.ends[job, 3] = (
+        int(rows[layout.STEPS, lane]),
+        m.integers[layout.EVENTS, lane],
+    )
     m.summary[job, 2] = rows[layout.CLOCK, lane]
     for variable in range(t.n_states):
         m.final[job, variable] = c[variable, 0, lane]
@@ -84,7 +103,9 @@ def _finish(t: Any, m: Any, c: Any, lane: int, tangent_row: int, first_extreme: 
             found = rows[first_extreme + 2 * index + each, lane]
             m.extremes[job, index, m.integers[layout.LATE, lane], each] = found
     first_time = first_extreme + 2 * t.n_tracked
-    rows[first_time + last, lane] += rows[layout.CLOCK, lane] - rows[layout.ENTERED, lane]
+    rows[first_time + last, lane] += (
+        rows[layout.CLOCK, lane] - rows[layout.ENTERED, lane]
+    )
     for regime in range(t.n_regimes):
         m.durations[job, regime] = rows[first_time + regime, lane]
     for point in range(t.n_points):
@@ -94,16 +115,27 @@ def _finish(t: Any, m: Any, c: Any, lane: int, tangent_row: int, first_extreme: 
 
 
 @part
-def _start(t: Any, m: Any, c: Any, lane: int, job: int, tangent_row: int, first: int) -> None:
+def _start(
+    t: Any, m: Any, c: Any, lane: int, job: int, tangent_row: int, first: int
+) -> None:
     """Start a job in a lane."""
     rows, integers = m.rows, m.integers
     integers[:, lane] = 0
     integers[layout.JOB, lane], integers[layout.OUTCOME, lane] = job, layout.RUNNING
     integers[layout.HIT, lane] = -1
-    for row in (layout.CLOCK, layout.CORRECTION, layout.STEPS, layout.STEP, layout.ENTERED):
+    for row in (
+        layout.CLOCK,
+        layout.CORRECTION,
+        layout.STEPS,
+        layout.STEP,
+        layout.ENTERED,
+    ):
         rows[row, lane] = 0.0
     rows[layout.LONGEST, lane] = math.inf
-    rows[layout.T_END, lane], rows[layout.T_LATE, lane] = m.limits[job, 0], m.limits[job, 1]
+    rows[layout.T_END, lane], rows[layout.T_LATE, lane] = (
+        m.limits[job, 0],
+        m.limits[job, 1],
+    )
     rows[layout.MOST_STEPS, lane] = m.limits[job, 2]
     if m.limits[job, 1] <= 0.0:
         rows[layout.T_LATE, lane], integers[layout.LATE, lane] = math.inf, 1
@@ -122,7 +154,10 @@ def _start(t: Any, m: Any, c: Any, lane: int, job: int, tangent_row: int, first:
     rows[row : row + t.n_regimes, lane] = 0.0
     for point in range(t.n_points):
         row = first + 2 * t.n_tracked + t.n_regimes + 3 * point
-        rows[row, lane], rows[row + 1, lane] = m.points[job, point, 0], m.points[job, point, 1]
+        rows[row, lane], rows[row + 1, lane] = (
+            m.points[job, point, 0],
+            m.points[job, point, 1],
+        )
         rows[row + 2, lane] = 0.0
     m.summary[job, 0], m.summary[job, 1] = 0.0, math.nan
     _limit_growth(m, lane)
@@ -135,7 +170,8 @@ def _go_on(t: Any) -> None:
     at = t.rows
     for variable in range(t.n_variables):
         store(
-            t.series + variable * t.n_terms * ROW, load(at + (layout.FIXED_ROWS + variable) * ROW)
+            t.series + variable * t.n_terms * ROW,
+            load(at + (layout.FIXED_ROWS + variable) * ROW),
         )
     store(at + layout.STEPS * ROW, load(at + layout.STEPS * ROW) + 1.0)
     increment = load(at + layout.STEP * ROW) + load(at + layout.CORRECTION * ROW)
@@ -168,7 +204,9 @@ def _refill(
 @inline
 def _ended(t: Any, m: Any, special: int, busy: int) -> int:
     """Lanes whose run has ended, among those that ended their step and those out of steps."""
-    spent = ~bits_below(load(t.rows + layout.STEPS * ROW), load(t.rows + layout.MOST_STEPS * ROW))
+    spent = ~bits_below(
+        load(t.rows + layout.STEPS * ROW), load(t.rows + layout.MOST_STEPS * ROW)
+    )
     bits, ended = (special | spent) & busy, 0
     while bits:
         lane = first_bit(bits)
@@ -192,14 +230,19 @@ def _rounds(t: Any, m: Any, c: Any) -> int:
     busy, ended = 0, 0
     for lane in range(LANES):
         busy |= (1 << lane) if m.integers[layout.JOB, lane] >= 0 else 0
-        ended |= (1 << lane) if m.integers[layout.OUTCOME, lane] != layout.RUNNING else 0
+        ended |= (
+            (1 << lane) if m.integers[layout.OUTCOME, lane] != layout.RUNNING else 0
+        )
     for _ in range(t.n_rounds):
         busy = _refill(t, m, c, busy, ended, tangent_row, first_extreme)
         if not busy:
             return 0
         call(t.take_step, (t.series, parameters, t.inverses, t.n_terms))
         if t.tangent:
-            call(t.longest, (t.series, parameters, t.rows + layout.LONGEST * ROW, t.n_terms))
+            call(
+                t.longest,
+                (t.series, parameters, t.rows + layout.LONGEST * ROW, t.n_terms),
+            )
         start_from_zero(t, m, c)
         special = take_step(t, m.active, m.sizes) & busy
         due = reaches(t.rows, layout.NEXT_SAMPLE) & busy if t.n_samples else 0
@@ -219,7 +262,9 @@ def _rounds(t: Any, m: Any, c: Any) -> int:
             call(t.perturb, (t.series, parameters, step, at, t.n_terms))
         _go_on(t)
         if t.n_variables > t.n_states:
-            clock = load(t.rows + layout.CLOCK * ROW) + load(t.rows + layout.CORRECTION * ROW)
+            clock = load(t.rows + layout.CLOCK * ROW) + load(
+                t.rows + layout.CORRECTION * ROW
+            )
             now = clock * load(t.rows + time_unit * ROW)
             store(t.series + t.n_states * t.n_terms * ROW, now)
         switch_all(t, m, c, special, tangent_row)

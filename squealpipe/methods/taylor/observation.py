@@ -35,7 +35,10 @@ def _extremes(c: Any, index: int, lane: int, step: float) -> Any:
     _, after, last_bend = evaluate_twice(c, index, lane, step)
     if before * after > 0.0:
         # a rate that loses its sign in between crosses zero along its tangents
-        plain = before * (before + bend * step) > 0.0 and after * (after - last_bend * step) > 0.0
+        plain = (
+            before * (before + bend * step) > 0.0
+            and after * (after - last_bend * step) > 0.0
+        )
         if plain:
             return low, high
     else:
@@ -100,7 +103,9 @@ def observe(t: Any, m: Any, c: Any, first_extreme: int, busy: int) -> None:
         least, most = smaller(low, load(row)), larger(high, load(row + ROW))
         store(row, least)
         store(row + ROW, most)
-        bits = (bits_below(most, high + beyond) | bits_below(low - beyond, least)) & busy
+        bits = (
+            bits_below(most, high + beyond) | bits_below(low - beyond, least)
+        ) & busy
         # a rate that loses its sign in between crosses zero along its tangents
         onwards = first + load(series + 2 * ROW) * step * splat(2.0)
         back = last - half_bend * step * splat(2.0)
@@ -112,7 +117,9 @@ def observe(t: Any, m: Any, c: Any, first_extreme: int, busy: int) -> None:
         while bits:
             lane = first_bit(bits)
             bits ^= 1 << lane
-            inner_low, inner_high = _extremes(c, variable, lane, m.rows[layout.STEP, lane])
+            inner_low, inner_high = _extremes(
+                c, variable, lane, m.rows[layout.STEP, lane]
+            )
             m.rows[r, lane] = min(m.rows[r, lane], inner_low)
             m.rows[r + 1, lane] = max(m.rows[r + 1, lane], inner_high)
 
@@ -149,24 +156,32 @@ def sample(t: Any, m: Any, c: Any, lane: int, first_time: int) -> None:
     rows, job = m.rows, m.integers[layout.JOB, lane]
     following, times = m.integers[layout.SAMPLE, lane], m.sample_times[job]
     while following < times.size:
-        offset = (times[following] - rows[layout.CLOCK, lane]) - rows[layout.CORRECTION, lane]
+        offset = (times[following] - rows[layout.CLOCK, lane]) - rows[
+            layout.CORRECTION, lane
+        ]
         if offset > rows[layout.STEP, lane]:
             break
         for variable in range(t.n_states):
             m.samples[job, following, variable] = evaluate(c, variable, lane, offset)
         m.sample_regimes[job, following] = m.integers[layout.REGIME, lane]
         if t.n_sums:
-            _sum(t, m, lane, m.sample_sums[job, following], first_time, times[following])
+            _sum(
+                t, m, lane, m.sample_sums[job, following], first_time, times[following]
+            )
         following += 1
     m.integers[layout.SAMPLE, lane] = following
-    rows[layout.NEXT_SAMPLE, lane] = times[following] if following < times.size else math.inf
+    rows[layout.NEXT_SAMPLE, lane] = (
+        times[following] if following < times.size else math.inf
+    )
 
 
 @part
 def _sum(t: Any, m: Any, lane: int, sums: Any, first_time: int, time: float) -> None:
     """What has added up: growth (to the last step's end), times in regimes, half turns, events."""
     job, rows = m.integers[layout.JOB, lane], m.rows
-    sums[0] = m.summary[job, 0] + log_norm(t, m, lane, first_time - 2 * t.n_tracked - t.n_states)
+    sums[0] = m.summary[job, 0] + log_norm(
+        t, m, lane, first_time - 2 * t.n_tracked - t.n_states
+    )
     for regime in range(t.n_regimes):
         sums[1 + regime] = rows[first_time + regime, lane]
     sums[1 + m.integers[layout.REGIME, lane]] += time - rows[layout.ENTERED, lane]

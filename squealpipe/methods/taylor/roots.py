@@ -41,13 +41,20 @@ def largest_third(coefficients: Any, variable: int, lane: int, step: float) -> A
     """A bound of the third derivative over the step."""
     bound = 0.0
     for k in range(coefficients.shape[1] - 1, 2, -1):
-        bound = bound * step + k * (k - 1.0) * (k - 2.0) * abs(coefficients[variable, k, lane])
+        bound = bound * step + k * (k - 1.0) * (k - 2.0) * abs(
+            coefficients[variable, k, lane]
+        )
     return bound
 
 
 @part
 def first_root(
-    coefficients: Any, variable: int, lane: int, step: float, start: float = 0.0, known: float = 0.0
+    coefficients: Any,
+    variable: int,
+    lane: int,
+    step: float,
+    start: float = 0.0,
+    known: float = 0.0,
 ) -> Any:
     """The first t in (start, step] where the polynomial changes its sign or touches zero.
 
@@ -63,8 +70,17 @@ def first_root(
         side = p0 if p0 != 0.0 else (s0 if s0 != 0.0 else b0)
         if known != 0.0 and left == start:
             side = known
-        decided, root = _look(coefficients, variable, lane, left, right, side, third,
-                              (p0, s0, b0), (p1, s1, b1))  # fmt: skip
+        decided, root = _look(
+            coefficients,
+            variable,
+            lane,
+            left,
+            right,
+            side,
+            third,
+            (p0, s0, b0),
+            (p1, s1, b1),
+        )
         if decided or width < FINEST * step:
             if decided and root >= 0.0:
                 return root
@@ -78,9 +94,16 @@ def first_root(
 
 @part
 def _look(
-    coefficients: Any, variable: int, lane: int, left: float, right: float, side: float,
-    third: float, start: Any, end: Any,
-) -> Any:  # fmt: skip
+    coefficients: Any,
+    variable: int,
+    lane: int,
+    left: float,
+    right: float,
+    side: float,
+    third: float,
+    start: Any,
+    end: Any,
+) -> Any:
     """Whether an interval is decided, and its first root or ``NO_ROOT``."""
     p0, s0, b0 = start
     p1, s1, b1 = end
@@ -108,9 +131,14 @@ def _look(
 
 @part
 def _bracketed(
-    coefficients: Any, variable: int, lane: int, left: float, right: float, side: float,
+    coefficients: Any,
+    variable: int,
+    lane: int,
+    left: float,
+    right: float,
+    side: float,
     of_slope: bool = False,
-) -> Any:  # fmt: skip
+) -> Any:
     """The only root between a point on ``side`` of zero and one that is not, by Newton's method.
 
     A step out of the bracket, which shrinks each time, is replaced by its middle. Of the slope
@@ -139,9 +167,16 @@ def _bracketed(
 
 @part
 def first_crossing(
-    coefficients: Any, variable: int, lane: int, step: float, falls: bool, rises: bool,
-    fresh: bool, noise: float, drift: float = 0.0,
-) -> Any:  # fmt: skip
+    coefficients: Any,
+    variable: int,
+    lane: int,
+    step: float,
+    falls: bool,
+    rises: bool,
+    fresh: bool,
+    noise: float,
+    drift: float = 0.0,
+) -> Any:
     """The first t in [0, step] where the polynomial falls, or rises, through zero as is asked.
 
     One that starts from zero (``fresh``) has the side that it first takes by more than its noise,

@@ -11,7 +11,13 @@ from typing import Any
 import numpy as np
 
 from squealpipe.methods.taylor import simd
-from squealpipe.methods.taylor.symbols import FUNCTIONS, Symbol, derivative, in_order, symbol
+from squealpipe.methods.taylor.symbols import (
+    FUNCTIONS,
+    Symbol,
+    derivative,
+    in_order,
+    symbol,
+)
 
 REGIME = "regime "
 """Begins the names of parameters that are a regime's constants."""
@@ -47,7 +53,10 @@ class _Writer:
             return repr(node.arguments[0])
         if node.kind in {"variable", "parameter"}:
             return self.load(node)
-        given = [self.names[id(a)] if isinstance(a, Symbol) else repr(a) for a in node.arguments]
+        given = [
+            self.names[id(a)] if isinstance(a, Symbol) else repr(a)
+            for a in node.arguments
+        ]
         if node.kind in FUNCTIONS:
             return f"math.{node.kind}({given[0]})"
         if node.kind == "joined":
@@ -70,9 +79,8 @@ class _Writer:
             elif node.kind == "*":
                 code = " * ".join(inner)
             elif node.kind == "joined":
-                code = (
-                    f"{inner[0]} * {inner[1]} * {inner[2]} + {inner[3]} * {inner[4]} * {inner[5]}"
-                )
+                first, second = inner[:3], inner[3:]
+                code = f"{' * '.join(first)} + {' * '.join(second)}"
             elif node.kind in {"sin", "cos"}:  # of a long time an angle has lost digits
                 code = f"{inner[0]} + abs({value})"
             elif node.kind == "tanh":
@@ -131,7 +139,11 @@ class ScalarSource:
             for variable, each in zip(self.variables, self.rates, strict=True):
                 rate = rate + derivative(surface, variable) * each
             for place, code in enumerate(
-                (writer.value(surface), writer.scale(surface, size), writer.scale(rate, size))
+                (
+                    writer.value(surface),
+                    writer.scale(surface, size),
+                    writer.scale(rate, size),
+                )
             ):
                 writer.lines.append(f"put(out + {24 * index + 8 * place}, {code})")
         return _function("gauge(z, sizes, p, r, out)", writer.lines)
@@ -140,7 +152,10 @@ class ScalarSource:
         """``change(switch, z, p, r, out)``: next regime, kind of event, state after the reset."""
         head = self._writer("z")
         state = [head.value(each) for each in self.variables[: self.size]]
-        lines = [*head.lines, *(f"put(out + {16 + 8 * i}, {z})" for i, z in enumerate(state))]
+        lines = [
+            *head.lines,
+            *(f"put(out + {16 + 8 * i}, {z})" for i, z in enumerate(state)),
+        ]
         for index, switch in enumerate(self.switches):
             writer = self._writer("v")
             for place, symbols in switch.reset.items():
@@ -179,7 +194,9 @@ class ScalarSource:
             for i in range(size):
                 moved = self._slopes(writer, switch.reset.get(i, self.variables[i]))
                 terms = [
-                    f"{s} * (d{j} + {rates[j]} * tau)" if j < size else f"{s} * {rates[j]} * tau"
+                    f"{s} * (d{j} + {rates[j]} * tau)"
+                    if j < size
+                    else f"{s} * {rates[j]} * tau"
                     for j, s in moved
                 ]
                 total = " + ".join(terms) or "0.0"
@@ -207,13 +224,17 @@ def evaluate(roots: Sequence[Symbol], values: Mapping[str, Any]) -> tuple[Any, .
     return found
 
 
-def python_function(roots: Sequence[Symbol], arguments: Sequence[Symbol], module: Any) -> Any:
+def python_function(
+    roots: Sequence[Symbol], arguments: Sequence[Symbol], module: Any
+) -> Any:
     """The values of symbols as a function of some, with the functions of ``math`` or ``numpy``."""
     names = {id(each): f"a{index}" for index, each in enumerate(arguments)}
     writer = _Writer(lambda node: names[id(node)], "v")
     values = [writer.value(root) for root in roots]
     lines = [*writer.lines, f"return ({', '.join([*values, ''])})"]
-    source = f"def function({', '.join(names.values())}):\n" + "".join(f" {x}\n" for x in lines)
+    source = f"def function({', '.join(names.values())}):\n" + "".join(
+        f" {x}\n" for x in lines
+    )
     scope: dict[str, Any] = {"math": module}
     exec(source, scope)  # noqa: S102
     return scope["function"]

@@ -131,7 +131,11 @@ class _SeriesWriter:
     def _levels(self) -> dict[int, int]:
         level: dict[int, int] = {}
         for node in self.moving:
-            below = [level[id(a)] for a in node.arguments if isinstance(a, Symbol) and a.varies]
+            below = [
+                level[id(a)]
+                for a in node.arguments
+                if isinstance(a, Symbol) and a.varies
+            ]
             level[id(node)] = max(below, default=0) + _is_sum(node)
         return level
 
@@ -156,7 +160,10 @@ class _SeriesWriter:
         inner += self._outputs("r")
         body += [f" {line}" for line in inner]
         body += [f"r = (terms - 1) * {simd.ROW}", *self._last_events()]
-        head = ["def series(base, parameters, inverses, terms):", f" stride = terms * {simd.ROW}"]
+        head = [
+            "def series(base, parameters, inverses, terms):",
+            f" stride = terms * {simd.ROW}",
+        ]
         return "\n".join(head + [f" {line}" for line in body]) + "\n", self.count
 
     def _v(self, node: Symbol) -> str:
@@ -213,7 +220,9 @@ class _SeriesWriter:
 
     def _sums(self, nodes: list[Symbol]) -> Iterator[str]:
         """The sums over lower orders that nodes of one level need, a few in each loop."""
-        squares = [n for n in nodes if n.kind == "*" and n.arguments[0] is n.arguments[1]]
+        squares = [
+            n for n in nodes if n.kind == "*" and n.arguments[0] is n.arguments[1]
+        ]
         same: dict[str, list[Symbol]] = {}
         for node in squares:
             same.setdefault(self._s(node.arguments[0]), []).append(node)
@@ -226,7 +235,9 @@ class _SeriesWriter:
             pairs = [tuple(self._s(each) for each in node.arguments) for node in group]
             yield from self._full(group, pairs, "range(1, k)", "")
         for group in _groups([n for n in nodes if n.kind == "joined"]):
-            pairs = [(f"s{self.joined[_levers(n)]}", self._s(n.arguments[2])) for n in group]
+            pairs = [
+                (f"s{self.joined[_levers(n)]}", self._s(n.arguments[2])) for n in group
+            ]
             yield from self._full(group, pairs, "range(k)", "")
         for kind in ("**", *FUNCTIONS):
             for group in _groups([n for n in nodes if n.kind == kind]):
@@ -235,12 +246,18 @@ class _SeriesWriter:
     def _recurrence(self, kind: str, group: list[Symbol]) -> Iterator[str]:
         """Orders k of powers or of one function f(u), from u and from f or its partner."""
         inner = [self._s(n.arguments[0]) for n in group]
-        outer = [f"s{self.place[id(PARTNERS[kind](n) if kind in PARTNERS else n)]}" for n in group]
+        outer = [
+            f"s{self.place[id(PARTNERS[kind](n) if kind in PARTNERS else n)]}"
+            for n in group
+        ]
         pairs = list(
-            zip(outer, inner, strict=True) if kind == "log" else zip(inner, outer, strict=True)
+            zip(outer, inner, strict=True)
+            if kind == "log"
+            else zip(inner, outer, strict=True)
         )
         weights = [
-            f"{n.arguments[1] + 1.0!r} * j - k" if kind == "**" else "1.0 * j" for n in group
+            f"{n.arguments[1] + 1.0!r} * j - k" if kind == "**" else "1.0 * j"
+            for n in group
         ]
         orders = "range(1, k)" if kind in {"log", "tanh"} else "range(1, k + 1)"
         yield from self._full(group, pairs, orders, weights)
@@ -299,7 +316,9 @@ class _SeriesWriter:
                 yield f"store({place}, splat(0.0))"
                 continue
             for node in nodes:
-                yield from (line for line in self._later(node) if not line.startswith("store"))
+                yield from (
+                    line for line in self._later(node) if not line.startswith("store")
+                )
             yield f"store({place}, {self._v(event)})"
 
 
@@ -349,7 +368,11 @@ def longest_source(system: HybridSystem) -> str:
     sums = ["splat(1.0)"] * size
     for power in range(4):
         for i in range(size):
-            terms = [f"abs({at(n)}) * {sums[j]}" for (row, j), n in slopes.items() if row == i]
+            terms = [
+                f"abs({at(n)}) * {sums[j]}"
+                for (row, j), n in slopes.items()
+                if row == i
+            ]
             lines.append(f"r{i}_{power} = {' + '.join(terms) or 'splat(0.0)'}")
         sums = [f"r{i}_{power}" for i in range(size)]
     bound = functools.reduce(lambda a, b: f"larger({a}, {b})", sums)
@@ -368,11 +391,15 @@ def perturbation_source(system: HybridSystem) -> str:
     number = {id(node): index for index, node in enumerate(nodes)}
 
     def at(stage: int) -> Name:
-        return lambda n: f"v{number[id(n)]}_{stage}" if n.varies else f"c{number[id(n)]}"
+        return lambda n: (
+            f"v{number[id(n)]}_{stage}" if n.varies else f"c{number[id(n)]}"
+        )
 
     lines = [f"stride = terms * {simd.ROW}", "h = load(step)"]
     lines += [f"z{i} = load(tangent + {i * simd.ROW})" for i in range(size)]
-    lines += [f"{at(0)(n)} = {constant(system, n, at(0))}" for n in nodes if not n.varies]
+    lines += [
+        f"{at(0)(n)} = {constant(system, n, at(0))}" for n in nodes if not n.varies
+    ]
     used = [(n, system.variables.index(n)) for n in nodes if n.kind == "variable"]
     for stage, position in enumerate(GAUSS):
         lines.append(f"t = h * splat({position!r})")
@@ -398,7 +425,9 @@ def _collocation(
 
     def rate(i: int, stage: int) -> str:
         terms = [
-            f"w{j}_{stage}" if entry is symbol(1.0) else f"{at(stage)(entry)} * w{j}_{stage}"
+            f"w{j}_{stage}"
+            if entry is symbol(1.0)
+            else f"{at(stage)(entry)} * w{j}_{stage}"
             for (row, j), entry in slopes.items()
             if row == i
         ]
@@ -411,7 +440,9 @@ def _collocation(
             if sweep < SWEEPS:
                 for stage in stages:
                     row = zip(stages, GAUSS_MATRIX[stage], strict=True)
-                    total = " + ".join(f"k{i}_{s} * splat({weight!r})" for s, weight in row)
+                    total = " + ".join(
+                        f"k{i}_{s} * splat({weight!r})" for s, weight in row
+                    )
                     yield f"w{i}_{stage} = fma(h, {total}, z{i})"
     for i in range(size):
         row = zip(stages, GAUSS_WEIGHTS, strict=True)
@@ -470,4 +501,6 @@ def _with_partners(nodes: list[Symbol]) -> list[Symbol]:
 
 
 def _groups(values: list[Any]) -> Iterator[list[Any]]:
-    return (values[first : first + TOGETHER] for first in range(0, len(values), TOGETHER))
+    return (
+        values[first : first + TOGETHER] for first in range(0, len(values), TOGETHER)
+    )

@@ -56,7 +56,9 @@ class _Model(_PrimitiveModel):  # type: ignore[misc]
         super().__init__(manager, kind, doubles(LANES))
 
 
-def _intrinsic(result: Any, arguments: tuple[Any, ...], generate: Callable[..., Any]) -> Any:
+def _intrinsic(
+    result: Any, arguments: tuple[Any, ...], generate: Callable[..., Any]
+) -> Any:
     """A function of compiled code from ``generate(builder, *values) -> value``."""
 
     def typing(context: Any, *given: Any) -> Any:  # noqa: ARG001
@@ -118,15 +120,21 @@ def _called(name: str) -> Callable[..., Any]:
 
 def _tanh(builder: Any, value: Any) -> Any:
     kind = ir.FunctionType(value.type, [value.type])
-    return builder.call(_cgutils.get_or_insert_function(builder.module, kind, "tanh"), [value])
+    return builder.call(
+        _cgutils.get_or_insert_function(builder.module, kind, "tanh"), [value]
+    )
 
 
 def _bits_below(builder: Any, first: Any, second: Any) -> Any:
     below = builder.fcmp_ordered("<", first, second)
-    return builder.zext(builder.bitcast(below, ir.IntType(below.type.count)), ir.IntType(64))
+    return builder.zext(
+        builder.bitcast(below, ir.IntType(below.type.count)), ir.IntType(64)
+    )
 
 
-def _choose_below(builder: Any, first: Any, second: Any, then: Any, otherwise: Any) -> Any:
+def _choose_below(
+    builder: Any, first: Any, second: Any, then: Any, otherwise: Any
+) -> Any:
     return builder.select(builder.fcmp_ordered("<", first, second), then, otherwise)
 
 
@@ -212,7 +220,8 @@ def _operate(symbol: Any, instruction: str) -> None:
     """An operator between rows, and between a row and a number."""
     number_kind = types.float64
     cases = [
-        (lanes, *case) for case in ((lanes, lanes), (lanes, number_kind), (number_kind, lanes))
+        (lanes, *case)
+        for case in ((lanes, lanes), (lanes, number_kind), (number_kind, lanes))
     ]
 
     class Typing(ConcreteTemplate):  # type: ignore[misc]

@@ -7,7 +7,12 @@ import numpy as np
 
 from squealpipe.methods.compiled import inline, part
 from squealpipe.methods.taylor import layout
-from squealpipe.methods.taylor.roots import evaluate, evaluate_twice, first_crossing, largest_third
+from squealpipe.methods.taylor.roots import (
+    evaluate,
+    evaluate_twice,
+    first_crossing,
+    largest_third,
+)
 from squealpipe.methods.taylor.simd import (
     ROW,
     bits_below,
@@ -57,7 +62,9 @@ def reach(series: int, terms: int) -> Any:
             base = splat(NOTHING)
         for high in (terms - 3, terms - 2):
             last = magnitude(load(series + high * ROW))
-            power = rough_power(larger(base, tiny) / larger(last, tiny), splat(1.0 / (high - low)))
+            power = rough_power(
+                larger(base, tiny) / larger(last, tiny), splat(1.0 / (high - low))
+            )
             nearer = smaller(nearer, choose_below(tiny, last, power, splat(np.inf)))
         reach = larger(reach, nearer)
     return reach * math.exp(-2.0)
@@ -92,17 +99,23 @@ def _free(series: int, terms: int, step: Any) -> Any:
 def reaches(rows: int, instant: int) -> Any:
     """Lanes whose step does not end before the instant in a row."""
     left = load(rows + instant * ROW) - load(rows + layout.CLOCK * ROW)
-    return ~bits_below(load(rows + layout.STEP * ROW), left - load(rows + layout.CORRECTION * ROW))
+    return ~bits_below(
+        load(rows + layout.STEP * ROW), left - load(rows + layout.CORRECTION * ROW)
+    )
 
 
 @inline
 def take_step(t: Any, active: Any, sizes: Any) -> Any:
     """Ends of all lanes' steps; returns the lanes that need a look of their own."""
     terms, base, at = t.n_terms, t.series, t.rows
-    step = smaller(step_length(base, terms, t.n_states, sizes), load(at + layout.LONGEST * ROW))
+    step = smaller(
+        step_length(base, terms, t.n_states, sizes), load(at + layout.LONGEST * ROW)
+    )
     if t.n_variables > t.n_states:
         for each in range(t.n_surfaces + t.n_tracked - t.n_states):
-            step = smaller(step, reach(base + (t.n_variables + each) * terms * ROW, terms))
+            step = smaller(
+                step, reach(base + (t.n_variables + each) * terms * ROW, terms)
+            )
     store(at + layout.STEP * ROW, step)
     lost = step
     for variable in range(t.n_variables):
@@ -128,9 +141,16 @@ def _first_switch(t: Any, m: Any, c: Any, lane: int, step: float) -> float:
         if falls < 0 and rises < 0:
             continue
         root = first_crossing(
-            c, t.n_variables + surface, lane, step, falls >= 0, rises >= 0,
-            (m.fresh[surface] & bit) != 0, m.noise[surface, 0, lane], m.noise[surface, 1, lane],
-        )  # fmt: skip
+            c,
+            t.n_variables + surface,
+            lane,
+            step,
+            falls >= 0,
+            rises >= 0,
+            (m.fresh[surface] & bit) != 0,
+            m.noise[surface, 0, lane],
+            m.noise[surface, 1, lane],
+        )
         if root < 0.0 or root > first + tie:
             continue
         _, slope, _ = evaluate_twice(c, t.n_variables + surface, lane, root)
@@ -150,7 +170,9 @@ def _is_finite(t: Any, m: Any, c: Any, lane: int) -> bool:
         total += 0.0 * m.rows[layout.FIXED_ROWS + variable, lane]
     for surface in range(t.n_surfaces):
         if m.active[surface] & (1 << lane):
-            third = largest_third(c, t.n_variables + surface, lane, m.rows[layout.STEP, lane])
+            third = largest_third(
+                c, t.n_variables + surface, lane, m.rows[layout.STEP, lane]
+            )
             total += 0.0 * third
     return math.isfinite(total)
 
@@ -163,12 +185,17 @@ def cut(t: Any, m: Any, c: Any, lane: int) -> None:
     if not _is_finite(t, m, c, lane):
         rows[layout.STEP, lane] = 0.0
         integers[layout.OUTCOME, lane] = layout.NOT_FINITE
-        for variable in range(t.n_variables):  # of its series higher orders may be no numbers
+        for variable in range(
+            t.n_variables
+        ):  # of its series higher orders may be no numbers
             rows[layout.FIXED_ROWS + variable, lane] = c[variable, 0, lane]
         return
     done = rows[layout.CLOCK, lane]
     remaining = (rows[layout.T_END, lane] - done) - rows[layout.CORRECTION, lane]
-    step, ends = min(rows[layout.STEP, lane], remaining), remaining <= rows[layout.STEP, lane]
+    step, ends = (
+        min(rows[layout.STEP, lane], remaining),
+        remaining <= rows[layout.STEP, lane],
+    )
     late = (rows[layout.T_LATE, lane] - done) - rows[layout.CORRECTION, lane]
     turns_late = late <= step
     if turns_late:

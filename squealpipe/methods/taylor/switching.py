@@ -32,16 +32,24 @@ def enter_regime(t: Any, m: Any, c: Any, lane: int, regime: int, span: float) ->
     parameters = t.rows + (first - t.n_parameters) * ROW + 8 * lane
     constants = t.regimes + 8 * regime * t.n_constants
     stride = m.scratch.shape[1] * 8
-    call(t.gauge, (t.scratch, t.scratch + stride, parameters, constants, t.scratch + 2 * stride))
+    call(
+        t.gauge,
+        (t.scratch, t.scratch + stride, parameters, constants, t.scratch + 2 * stride),
+    )
     # where an event was located to the tolerance only, the rate that follows from it is no better
-    located = max(NOISE, layout.LOST_ERROR * math.exp(-m.limits[m.integers[layout.JOB, lane], 4]))
+    located = max(
+        NOISE, layout.LOST_ERROR * math.exp(-m.limits[m.integers[layout.JOB, lane], 4])
+    )
     for surface in range(t.n_surfaces):
         m.noise[surface, 0, lane] = NOISE * out[3 * surface + 1]
         m.noise[surface, 1, lane] = located * out[3 * surface + 2]
     # a state is known to round-off of its typical size, however small it has become
     for variable in range(t.n_states):
         sizes[variable] = max(sizes[variable], m.sizes[variable])
-    call(t.gauge, (t.scratch, t.scratch + stride, parameters, constants, t.scratch + 2 * stride))
+    call(
+        t.gauge,
+        (t.scratch, t.scratch + stride, parameters, constants, t.scratch + 2 * stride),
+    )
     for surface in range(t.n_surfaces):
         m.active[surface] &= keep
         m.fresh[surface] &= keep
@@ -57,7 +65,9 @@ def _log(t: Any, m: Any, lane: int, kind: int, regime: int) -> int:
     integers, job, after = m.integers, m.integers[layout.JOB, lane], m.scratch[3]
     count = integers[layout.EVENTS, lane]
     if count < t.n_logged:
-        m.event_times[job, count] = m.rows[layout.CLOCK, lane] + m.rows[layout.CORRECTION, lane]
+        m.event_times[job, count] = (
+            m.rows[layout.CLOCK, lane] + m.rows[layout.CORRECTION, lane]
+        )
         m.event_kinds[job, count], m.event_regimes[job, count] = kind, regime
         for variable in range(t.n_states):
             m.event_states[job, count, variable] = after[variable]
@@ -74,7 +84,9 @@ def _log(t: Any, m: Any, lane: int, kind: int, regime: int) -> int:
 
 
 @part
-def _carry_over(t: Any, m: Any, lane: int, tangent_row: int, regime: int, parameters: int) -> None:
+def _carry_over(
+    t: Any, m: Any, lane: int, tangent_row: int, regime: int, parameters: int
+) -> None:
     """A perturbation across the switch whose states before and after are in the scratch."""
     d, out, stride = m.scratch[4], m.scratch[2], m.scratch.shape[1] * 8
     for variable in range(t.n_states):
@@ -152,7 +164,14 @@ def switch_all(t: Any, m: Any, c: Any, special: int, tangent_row: int) -> None:
         if hit == layout.LATE_BEGINS:
             begin_late(t, m, lane, tangent_row + t.n_states)
             # a surface may be crossed at this very instant
-            enter_regime(t, m, c, lane, m.integers[layout.REGIME, lane], m.rows[layout.STEP, lane])
+            enter_regime(
+                t,
+                m,
+                c,
+                lane,
+                m.integers[layout.REGIME, lane],
+                m.rows[layout.STEP, lane],
+            )
         elif hit >= 0 and m.integers[layout.OUTCOME, lane] == layout.RUNNING:
             _switch(t, m, c, lane, tangent_row)
         m.integers[layout.HIT, lane] = -1

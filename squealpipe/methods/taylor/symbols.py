@@ -83,7 +83,9 @@ class Symbol:
             return symbol(1.0)
         if exponent == 1.0:
             return self
-        if exponent > 1.0 and exponent == int(exponent):  # a power's own recurrence divides by base
+        if exponent > 1.0 and exponent == int(
+            exponent
+        ):  # a power's own recurrence divides by base
             half = self ** (exponent // 2.0)
             return _multiply(half * half, self ** (exponent % 2.0))
         if self.kind == "number":
@@ -100,7 +102,9 @@ class Symbol:
             "sign and branches have no Taylor series; make each side a regime, with a switch"
         )
 
-    __abs__ = __bool__ = __float__ = __int__ = __lt__ = __le__ = __gt__ = __ge__ = _refuse
+    __abs__ = __bool__ = __float__ = __int__ = __lt__ = __le__ = __gt__ = __ge__ = (
+        _refuse
+    )
     __hash__ = object.__hash__
 
     def __eq__(self, other: object) -> bool:
@@ -109,7 +113,9 @@ class Symbol:
 
     def __call__(self, *_: Any) -> Any:
         """A value at another time is refused."""
-        raise TypeError("a function sees the present state alone: it cannot have delays")
+        raise TypeError(
+            "a function sees the present state alone: it cannot have delays"
+        )
 
     __round__ = __floor__ = __ceil__ = __mod__ = __floordiv__ = _refuse
 
@@ -260,7 +266,9 @@ def substituted(root: Symbol, given: dict[int, Symbol]) -> Symbol:
     made = dict(given)
     for node in in_order([root]):
         if id(node) not in made:
-            inner = [made[id(a)] if isinstance(a, Symbol) else a for a in node.arguments]
+            inner = [
+                made[id(a)] if isinstance(a, Symbol) else a for a in node.arguments
+            ]
             made[id(node)] = Symbol(node.kind, *inner)
     return made[id(root)]
 
@@ -276,7 +284,13 @@ def constant_parts(roots: Sequence[Symbol], skipped: str) -> list[Symbol]:
             node.kind == "parameter" and node.arguments[0].startswith(skipped)
         )
         fixed[id(node)] = own and all(inner)
-    uses = [a for n in nodes if not fixed[id(n)] for a in n.arguments if isinstance(a, Symbol)]
+    uses = [
+        a
+        for n in nodes
+        if not fixed[id(n)]
+        for a in n.arguments
+        if isinstance(a, Symbol)
+    ]
     for node in (*uses, *roots):
         if fixed[id(node)] and node.kind not in {"parameter", "number"}:
             found[id(node)] = node

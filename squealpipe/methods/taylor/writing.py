@@ -19,7 +19,13 @@ from squealpipe.methods.taylor import simd
 
 _cgutils: Any = cgutils
 _WORD, _DOUBLE = ir.IntType(64), ir.DoubleType()
-_INTEGERS = {ast.Add: "add", ast.Sub: "sub", ast.Mult: "mul", ast.FloorDiv: "sdiv", ast.Mod: "srem"}
+_INTEGERS = {
+    ast.Add: "add",
+    ast.Sub: "sub",
+    ast.Mult: "mul",
+    ast.FloorDiv: "sdiv",
+    ast.Mod: "srem",
+}
 """Those of integers that are not negative."""
 _DOUBLES = {ast.Add: "fadd", ast.Sub: "fsub", ast.Mult: "fmul", ast.Div: "fdiv"}
 _TESTS = {ast.Eq: "==", ast.NotEq: "!=", ast.GtE: ">="}
@@ -48,7 +54,9 @@ def compile_source(source: str, width: int = simd.LANES) -> Any:
     scope["body"] = intrinsic(scope["body"])
     call = f"def {definition.name}({listed}): body({listed})"
     exec(compile(call, __file__, "exec"), scope)  # noqa: S102
-    content = b"".join(Path(path or "").read_bytes() for path in (simd.__file__, __file__))
+    content = b"".join(
+        Path(path or "").read_bytes() for path in (simd.__file__, __file__)
+    )
     content += f"{source}{width}".encode()
     return compiled_entry(scope[definition.name], types.void(*words), content)
 
@@ -84,9 +92,13 @@ class _Writer:
                     self._run(each.body)
             else:
                 bounds = [self._value(bound) for bound in each.iter.args]
-                start, stop, step = ([_WORD(0)] * (len(bounds) == 1) + bounds + [_WORD(1)])[:3]
+                start, stop, step = (
+                    [_WORD(0)] * (len(bounds) == 1) + bounds + [_WORD(1)]
+                )[:3]
                 up = step.constant > 0
-                loop = _cgutils.for_range_slice(self.builder, start, stop, step, _WORD, inc=up)
+                loop = _cgutils.for_range_slice(
+                    self.builder, start, stop, step, _WORD, inc=up
+                )
                 with loop as (index, _):
                     self._assign(each.target.id, index)
                     self._run(each.body)
@@ -116,7 +128,9 @@ class _Writer:
             return self.builder.fneg(self._value(operand))
         if isinstance(node, ast.Call):
             function: Any = node.func
-            name = getattr(function, "id", None) or function.attr  # also of the module math
+            name = (
+                getattr(function, "id", None) or function.attr
+            )  # also of the module math
             return self.functions[name](self.builder, *map(self._value, node.args))
         operands = [self._value(node.left), self._value(node.right)]
         kinds = {each.type for each in operands}

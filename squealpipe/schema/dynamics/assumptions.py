@@ -1,6 +1,14 @@
 """Datasets on what the model levels take for granted (Table 1 and section 6 of the paper)."""
 
-from squealpipe.schema import RUN_ENDS, DatasetSchema, Outcome, Variable, or_nan, outcome, text
+from squealpipe.schema import (
+    RUN_ENDS,
+    DatasetSchema,
+    Outcome,
+    Variable,
+    or_nan,
+    outcome,
+    text,
+)
 from squealpipe.schema.linear import ANGLES, MAP
 
 YES_NO = {0: "no", 1: "yes"}
@@ -21,9 +29,13 @@ ASSUMPTIONS = DatasetSchema(
     },
     variables={
         "needed": Variable(
-            "whether the level makes the assumption", dims=("level", "assumption"), flags=YES_NO
+            "whether the level makes the assumption",
+            dims=("level", "assumption"),
+            flags=YES_NO,
         ),
-        "measure": or_nan("the number that decides", dims=(*TABLE, "assumption"), rtol=1e-6),
+        "measure": or_nan(
+            "the number that decides", dims=(*TABLE, "assumption"), rtol=1e-6
+        ),
         "limit": Variable("limit of the measure", dims=("assumption",)),
         "held": Variable(
             "whether the assumption held along the whole motion",

@@ -25,12 +25,18 @@ EXPLORER = DatasetSchema(
         **{name: replace(entry, optional=True) for name, entry in MODES.items()},
         "time": TIME,
         "frequency": FREQUENCY,
-        "point": Variable("point along the branch", dims=("point",), dtype="i4", optional=True),
+        "point": Variable(
+            "point along the branch", dims=("point",), dtype="i4", optional=True
+        ),
     },
     variables={
         **{
             name: replace(
-                SIMULATION.variables[name], dims=RUN, nan_allowed=False, round_off=None, **DRAWN
+                SIMULATION.variables[name],
+                dims=RUN,
+                nan_allowed=False,
+                round_off=None,
+                **DRAWN,
             )
             for name in HISTORIES
         },
@@ -44,7 +50,11 @@ EXPLORER = DatasetSchema(
         "outcome": outcome(*MAP, among=RUN_ENDS),
         **{
             name: replace(
-                BACKBONE.variables[name], dims=BRANCH, nan_allowed=True, optional=True, **DRAWN
+                BACKBONE.variables[name],
+                dims=BRANCH,
+                nan_allowed=True,
+                optional=True,
+                **DRAWN,
             )
             for name in ORBITS
         },

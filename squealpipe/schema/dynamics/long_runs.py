@@ -2,7 +2,14 @@
 
 from dataclasses import replace
 
-from squealpipe.schema import RUN_ENDS, DatasetSchema, Outcome, Variable, or_nan, outcome
+from squealpipe.schema import (
+    RUN_ENDS,
+    DatasetSchema,
+    Outcome,
+    Variable,
+    or_nan,
+    outcome,
+)
 from squealpipe.schema.agreement import ComparedAs, RoundOff
 from squealpipe.schema.dynamics.runs import MOTION, MOTION_CHANGED
 
@@ -19,21 +26,36 @@ WHIRL = DatasetSchema(
     coordinates={"belt_speed": Variable("belt speed V", "m s-1", ("belt_speed",))},
     variables={
         "amplitude": Variable(
-            "largest |x| in the last fifth of the run", "m", ("belt_speed",), round_off=_LONG_RUN
+            "largest |x| in the last fifth of the run",
+            "m",
+            ("belt_speed",),
+            round_off=_LONG_RUN,
         ),
         "stick_fraction": Variable(
-            "share of the time sticking to the belt", dims=("belt_speed",), round_off=_LONG_SAMPLE
+            "share of the time sticking to the belt",
+            dims=("belt_speed",),
+            round_off=_LONG_SAMPLE,
         ),
         "motion": replace(MOTION, dims=("belt_speed",), round_off=_LONG_SAMPLE),
-        "motion_changed": replace(MOTION_CHANGED, dims=("belt_speed",), round_off=_LONG_SAMPLE),
-        "fitted": Variable("whether the speed is in the fit", dims=("belt_speed",), dtype="bool"),
-        "slope": or_nan("fitted growth of the amplitude with |V| (NaN: too few whirl)", "s"),
+        "motion_changed": replace(
+            MOTION_CHANGED, dims=("belt_speed",), round_off=_LONG_SAMPLE
+        ),
+        "fitted": Variable(
+            "whether the speed is in the fit", dims=("belt_speed",), dtype="bool"
+        ),
+        "slope": or_nan(
+            "fitted growth of the amplitude with |V| (NaN: too few whirl)", "s"
+        ),
         "offset": or_nan("fitted amplitude at V = 0", "m"),
         "fit_range": or_nan(
             "speed of the slowest and of the fastest belt in the fit", "m s-1", ("end",)
         ),
-        "energy_slope": Variable("sqrt(m/(k1 + k2)): the slope if the top speed were V", "s"),
-        "energy_offset": Variable("far end of the unstretched springs: the offset if so", "m"),
+        "energy_slope": Variable(
+            "sqrt(m/(k1 + k2)): the slope if the top speed were V", "s"
+        ),
+        "energy_offset": Variable(
+            "far end of the unstretched springs: the offset if so", "m"
+        ),
         "t_end": Variable("end of each run", "s"),
         "outcome": outcome("belt_speed", among=(*RUN_ENDS, Outcome.amplitude_reached)),
     },
@@ -47,7 +69,9 @@ _CHAOTIC = RoundOff(ComparedAs.sample, _WHY_CHAOTIC, sample="sample")
 TRANSIENT = DatasetSchema(
     name="transient",
     title="How long the bounded motion at (0.2 pi, 0.8 pi) lasts",
-    coordinates={"sample": Variable("number of the perturbation", dims=("sample",), dtype="i4")},
+    coordinates={
+        "sample": Variable("number of the perturbation", dims=("sample",), dtype="i4")
+    },
     variables={
         "lifetime": or_nan(
             "time of the tenth net turn around both fixed ends (NaN: not before t_end)",
@@ -58,7 +82,8 @@ TRANSIENT = DatasetSchema(
         "belt_speed": Variable("belt speed V", "m s-1"),
         "t_end": Variable("end of each run", "s"),
         "outcome": replace(
-            outcome("sample", among=(*RUN_ENDS, Outcome.amplitude_reached)), round_off=_CHAOTIC
+            outcome("sample", among=(*RUN_ENDS, Outcome.amplitude_reached)),
+            round_off=_CHAOTIC,
         ),
     },
 )

@@ -5,7 +5,14 @@ from enum import IntEnum
 from typing import Any
 
 from squealpipe.codes import Event, Regime
-from squealpipe.schema import RUN_ENDS, DatasetSchema, Outcome, Variable, or_nan, outcome
+from squealpipe.schema import (
+    RUN_ENDS,
+    DatasetSchema,
+    Outcome,
+    Variable,
+    or_nan,
+    outcome,
+)
 from squealpipe.schema.agreement import ComparedAs, Listing, RoundOff
 from squealpipe.schema.linear import ANGLES, MAP, ONE_PAIR, REGIME_LINEAR
 
@@ -28,7 +35,9 @@ class MotionFlag(IntEnum):
     unsettled = 9
 
 
-_GROWN = RoundOff(ComparedAs.grown, "an error of the last digit grows along the run", by="growth")
+_GROWN = RoundOff(
+    ComparedAs.grown, "an error of the last digit grows along the run", by="growth"
+)
 _LOST = RoundOff(
     ComparedAs.beyond_horizon,
     "beyond its predictability horizon a run follows the last digits of its start, which differ "
@@ -48,11 +57,15 @@ STATE = {
 }
 """Unit of each state and words for it."""
 MOTION = Variable("kind of motion in the second half of the run", flags=MotionFlag)
-MOTION_CHANGED = Variable("whether the quarters of that half have other labels", dtype="bool")
+MOTION_CHANGED = Variable(
+    "whether the quarters of that half have other labels", dtype="bool"
+)
 RETURN_FORCE = or_nan(
     "largest contact force after the first return to the belt, over k3 l_pre (NaN: no return)"
 )
-IMPACT_SPEED = or_nan("largest speed towards the belt at a return to it (NaN: no return)", "m s-1")
+IMPACT_SPEED = or_nan(
+    "largest speed towards the belt at a return to it (NaN: no return)", "m s-1"
+)
 
 
 def _series(units: str, long_name: str) -> Variable:
@@ -75,7 +88,9 @@ SIMULATION = DatasetSchema(
         "normal_force": _series("N", "contact force"),
         "normalized_contact_force": _series("1", "contact force over k3 l_pre"),
         "regime": Variable("regime", dims=("time",), flags=REGIMES),
-        "event_time": Variable("instant of a regime change", "s", ("event",), round_off=_GROWN),
+        "event_time": Variable(
+            "instant of a regime change", "s", ("event",), round_off=_GROWN
+        ),
         "event_kind": Variable("kind of regime change", dims=("event",), flags=Event),
         **ONE_PAIR,
         "preload": Variable("precompression l_pre of the contact spring", "m"),
@@ -89,7 +104,8 @@ SIMULATION = DatasetSchema(
             "factor by which a small perturbation of the start has grown at the end",
             optional=True,
             round_off=RoundOff(
-                ComparedAs.magnitude, "at the end of a long run it is itself a result of errors"
+                ComparedAs.magnitude,
+                "at the end of a long run it is itself a result of errors",
             ),
         ),
         "outcome": outcome(among=RUN_ENDS),
@@ -140,7 +156,9 @@ VALIDITY_MAP = DatasetSchema(
         "first_separation_time": or_nan(
             "first loss of contact from rest (NaN: none before t_end)", "s", MAP
         ),
-        "separates": Variable("whether contact is lost before t_end", dims=MAP, dtype="bool"),
+        "separates": Variable(
+            "whether contact is lost before t_end", dims=MAP, dtype="bool"
+        ),
         "regime_linear": REGIME_LINEAR,
         "response_growth": or_nan(
             "largest |x| of the second half of a run over that of the first (NaN: separated)",
@@ -157,14 +175,20 @@ HAMMERING_MAP = DatasetSchema(
     title="Impacts, forces and kind of motion of model A1 over both spring angles",
     coordinates=ANGLES,
     variables={
-        "impact_rate": Variable("returns to the belt per unit of time", "s-1", MAP, **IN_MAP),
-        "separated_fraction": Variable("share of the time off the belt", dims=MAP, **IN_MAP),
+        "impact_rate": Variable(
+            "returns to the belt per unit of time", "s-1", MAP, **IN_MAP
+        ),
+        "separated_fraction": Variable(
+            "share of the time off the belt", dims=MAP, **IN_MAP
+        ),
         "peak_contact_force": Variable(
             "largest contact force over the preload k3 l_pre", dims=MAP, **IN_MAP
         ),
         "return_peak_contact_force": replace(RETURN_FORCE, dims=MAP, **IN_MAP),
         "impact_speed": replace(IMPACT_SPEED, dims=MAP, **IN_MAP),
-        "stick_fraction": Variable("share of the time sticking to the belt", dims=MAP, **IN_MAP),
+        "stick_fraction": Variable(
+            "share of the time sticking to the belt", dims=MAP, **IN_MAP
+        ),
         "max_displacement": Variable(
             "largest distance from the start position", "m", MAP, **IN_MAP
         ),
@@ -190,11 +214,17 @@ REFINED_VALIDITY_MAP = DatasetSchema(
     title="Where model A1 keeps contact, computed only where the answer changes",
     coordinates=ANGLES,
     variables={
-        "separates": Variable("whether contact is lost before t_end", dims=MAP, dtype="bool"),
-        "first_separation_time": or_nan(
-            "first loss of contact from rest (NaN: none before t_end, or not computed)", "s", MAP
+        "separates": Variable(
+            "whether contact is lost before t_end", dims=MAP, dtype="bool"
         ),
-        "computed": Variable("whether the cell was run, not inherited", dims=MAP, dtype="bool"),
+        "first_separation_time": or_nan(
+            "first loss of contact from rest (NaN: none before t_end, or not computed)",
+            "s",
+            MAP,
+        ),
+        "computed": Variable(
+            "whether the cell was run, not inherited", dims=MAP, dtype="bool"
+        ),
         "inherited_checked": Variable(
             "inherited cells of a random sample that were run", dtype="i8"
         ),
@@ -206,6 +236,8 @@ REFINED_VALIDITY_MAP = DatasetSchema(
             dims=("end",),
         ),
         "t_end": Variable("end of each run", "s"),
-        "outcome": outcome(*MAP, among=(*RUN_ENDS, Outcome.separated, Outcome.inherited)),
+        "outcome": outcome(
+            *MAP, among=(*RUN_ENDS, Outcome.separated, Outcome.inherited)
+        ),
     },
 )

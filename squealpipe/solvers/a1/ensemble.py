@@ -33,7 +33,9 @@ TRACKED = ("x", "vx", "contact_force", REACH)
 def _count(kind: Event, counts: str = "counts") -> Any:
     """Number of events of a kind."""
     return property(
-        lambda self: self._shaped(self._raw[counts][..., self._kinds[:-1] == kind].sum(axis=-1))
+        lambda self: self._shaped(
+            self._raw[counts][..., self._kinds[:-1] == kind].sum(axis=-1)
+        )
     )
 
 
@@ -53,7 +55,9 @@ def _states(name: str) -> Any:
     def states(self: Ensemble) -> np.ndarray:
         values, length, time = self._raw[name], self._jobs.length, self._jobs.time_unit
         units = np.array([length, length, length / time, length / time]).T
-        return self._shaped(values * units.reshape(len(units), *(1,) * (values.ndim - 2), 4))
+        return self._shaped(
+            values * units.reshape(len(units), *(1,) * (values.ndim - 2), 4)
+        )
 
     return property(states)
 
@@ -84,7 +88,11 @@ def _largest(name: str, part: str) -> Any:
 
     def size(self: Ensemble) -> np.ndarray:
         ends = np.abs(self._extremes(name, part)).max(axis=0)
-        unit = self._jobs.length if name == "x" else self._jobs.length / self._jobs.time_unit
+        unit = (
+            self._jobs.length
+            if name == "x"
+            else self._jobs.length / self._jobs.time_unit
+        )
         return self._shaped(np.where(np.isfinite(ends), ends, 0.0), unit)
 
     return property(size)
@@ -94,7 +102,11 @@ class Ensemble:
     """Results of an ensemble; arrays have the broadcast shape of its inputs, SI units."""
 
     separations, contacts = _count(Event.separation), _count(Event.contact)
-    sticks, slips, reversals = _count(Event.stick), _count(Event.slip), _count(Event.reversal)
+    sticks, slips, reversals = (
+        _count(Event.stick),
+        _count(Event.slip),
+        _count(Event.reversal),
+    )
     separated_time, stick_time = _spent(Regime.separated), _spent(Regime.stick)
     early_max_x = _largest("x", "early_")
     """Before ``t_late``; those that are late from there on."""
@@ -104,7 +116,10 @@ class Ensemble:
     sample_contacts = _count(Event.contact, "sample_counts")
     sample_separated_time = _spent(Regime.separated, "sample_durations")
     sample_stick_time = _spent(Regime.stick, "sample_durations")
-    sample_turns, sample_log_growth = _turns("sample_half_turns"), _column("sample_growth", 0)
+    sample_turns, sample_log_growth = (
+        _turns("sample_half_turns"),
+        _column("sample_growth", 0),
+    )
     """The growth is that at the end of the step before."""
     turns, log_growth = _turns("half_turns"), _column("summary", 0)
     """Counterclockwise positive; ln of the growth of a perturbation, 0 without ``tangent``."""
@@ -115,10 +130,15 @@ class Ensemble:
     steps, final_state = _column("ends", 2), _states("final")
     samples = _states("samples")
     """At ``times``; NaN past ``time``."""
-    event_times, event_states = _column("event_times", time=True), _states("event_states")
+    event_times, event_states = (
+        _column("event_times", time=True),
+        _states("event_states"),
+    )
     """The first ``log_events`` events, s, and the states after them; NaN after the last one."""
 
-    def __init__(self, jobs: Jobs, raw: dict[str, np.ndarray], tracked: Sequence[str]) -> None:
+    def __init__(
+        self, jobs: Jobs, raw: dict[str, np.ndarray], tracked: Sequence[str]
+    ) -> None:
         self._jobs, self._raw = jobs, raw
         self._tracked = [each.removeprefix(runs.LARGEST) for each in tracked]
         system = jobs.systems[0]
@@ -144,7 +164,9 @@ class Ensemble:
         codes = self._raw["ends"][:, 0]
         # a state that is lost next to a pivot is so by its doing
         away = self._raw["final"][:, None, :2] - self._raw["points"]
-        lengths = np.stack([self._jobs.values[name] for name in ("length1", "length2")], axis=-1)
+        lengths = np.stack(
+            [self._jobs.values[name] for name in ("length1", "length2")], axis=-1
+        )
         near = (np.linalg.norm(away, axis=-1) < NEAR_PIVOT * lengths).any(axis=1)
         lost = (codes >= STOPPED) | ((codes == Outcome.not_finite) & near)
         found = np.where(lost, Outcome.singular_geometry, codes)
@@ -158,7 +180,9 @@ class Ensemble:
     def first_separation_time(self) -> np.ndarray:
         """s, NaN where contact was never lost."""
         firsts = self._raw["firsts"][:, self._kinds[:-1] == Event.separation]
-        lost = np.where(self._raw["starts_apart"], 0.0, np.fmin.reduce(firsts, 1, initial=np.nan))
+        lost = np.where(
+            self._raw["starts_apart"], 0.0, np.fmin.reduce(firsts, 1, initial=np.nan)
+        )
         return self._shaped(lost, self._jobs.time_unit)
 
     @property
@@ -183,7 +207,9 @@ class Ensemble:
     @property
     def impact_speed(self) -> np.ndarray:
         """Largest |ẏ| at a return to the belt, m/s; NaN: none."""
-        fastest = self._raw["peaks"][:, self._kinds[:-1] == Event.contact, 3].max(axis=1, initial=0)
+        fastest = self._raw["peaks"][:, self._kinds[:-1] == Event.contact, 3].max(
+            axis=1, initial=0
+        )
         speed = np.where(self.contacts.reshape(-1) > 0, fastest, np.nan)
         return self._shaped(speed, self._jobs.length / self._jobs.time_unit)
 
@@ -196,7 +222,9 @@ class Ensemble:
     @property
     def max_vx(self) -> np.ndarray:
         """Largest ẋ, m/s."""
-        return self._shaped(self._extremes("vx")[1], self._jobs.length / self._jobs.time_unit)
+        return self._shaped(
+            self._extremes("vx")[1], self._jobs.length / self._jobs.time_unit
+        )
 
     @cached_property
     def events(self) -> np.ndarray:
@@ -239,7 +267,12 @@ def run_ensemble(
     """
     jobs = jobs_of(parameters, alpha1, alpha2, **options)
     return integrate(
-        jobs, tracked, sums=sums, tangent=tangent, log_events=log_events, workers=workers
+        jobs,
+        tracked,
+        sums=sums,
+        tangent=tangent,
+        log_events=log_events,
+        workers=workers,
     )
 
 
@@ -254,7 +287,10 @@ def integrate(
     _, raw = parts[0]
     if len(parts) > 1:
         size = len(jobs.t_end)
-        raw = {key: np.empty((size, *first.shape[1:]), first.dtype) for key, first in raw.items()}
+        raw = {
+            key: np.empty((size, *first.shape[1:]), first.dtype)
+            for key, first in raw.items()
+        }
         for rows, part in parts:
             for key, values in part.items():
                 raw[key][rows] = values
@@ -262,15 +298,24 @@ def integrate(
 
 
 def _run(
-    jobs: Jobs, system: System, rows: Any, tracked: Sequence[str], log_events: int, **options: Any
+    jobs: Jobs,
+    system: System,
+    rows: Any,
+    tracked: Sequence[str],
+    log_events: int,
+    **options: Any,
 ) -> dict[str, np.ndarray]:
     """Raw results of the runs of one system, one row each."""
     values = {name: each[rows] for name, each in jobs.values.items()}
     t_end, t_late = jobs.t_end[rows], jobs.t_late[rows]
     starts = system.first_regimes({TIME: np.zeros(len(t_end)), **values}, len(t_end))
-    apart = np.array([name in {"separated", "released"} for name in system.regimes])[starts]
+    apart = np.array([name in {"separated", "released"} for name in system.regimes])[
+        starts
+    ]
     g = geometry(values["alpha1"], values["alpha2"])
-    points = np.stack(fixed_ends(SimpleNamespace(**values), g), axis=-1).reshape(-1, 2, 2)
+    points = np.stack(fixed_ends(SimpleNamespace(**values), g), axis=-1).reshape(
+        -1, 2, 2
+    )
     until = "separation" if jobs.stop_at_first_separation else None
     most_steps, most_events = jobs.most
     room = log_events
@@ -294,7 +339,9 @@ def _run(
             **options,
         )
         raw |= {"starts_apart": apart, "points": points}
-        others = np.array([name not in Event.__members__ for name in system.traced.kinds])
+        others = np.array(
+            [name not in Event.__members__ for name in system.traced.kinds]
+        )
         if not log_events or not others.any():
             return raw
         # knots of a law's table are not events of A1
@@ -304,7 +351,9 @@ def _run(
         room = most
 
 
-def _without(others: np.ndarray, raw: dict[str, np.ndarray], room: int) -> dict[str, np.ndarray]:
+def _without(
+    others: np.ndarray, raw: dict[str, np.ndarray], room: int
+) -> dict[str, np.ndarray]:
     """The first logged events of each run without those of other kinds."""
     kinds = raw["event_kinds"]
     gone = (kinds < 0) | others[kinds]
@@ -315,7 +364,9 @@ def _without(others: np.ndarray, raw: dict[str, np.ndarray], room: int) -> dict[
         "event_kinds": np.where(gone, -1, np.take_along_axis(kinds, order, axis=1)),
         "event_times": np.where(gone, np.nan, np.take_along_axis(times, order, axis=1)),
         "event_states": np.where(
-            gone[..., None], np.nan, np.take_along_axis(states, order[..., None], axis=1)
+            gone[..., None],
+            np.nan,
+            np.take_along_axis(states, order[..., None], axis=1),
         ),
     }
 
@@ -331,7 +382,11 @@ def run_map(
     rows = max(1, BLOCK // alpha2.size)
     parts: dict[str, list[np.ndarray]] = {name: [] for name in wanted}
     for first in range(0, alpha1.size, rows):
-        run = run_ensemble(parameters, alpha1[first : first + rows, None], alpha2, **options)
+        run = run_ensemble(
+            parameters, alpha1[first : first + rows, None], alpha2, **options
+        )
         for name in wanted:
             parts[name].append(getattr(run, name))
-    return SimpleNamespace(**{name: np.concatenate(arrays) for name, arrays in parts.items()})
+    return SimpleNamespace(
+        **{name: np.concatenate(arrays) for name, arrays in parts.items()}
+    )

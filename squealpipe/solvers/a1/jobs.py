@@ -109,11 +109,15 @@ def jobs_of(
         "alpha1": real_array("alpha1", alpha1),
         "alpha2": real_array("alpha2", alpha2),
         "t_end": real_array("t_end", t_end),
-        "t_late": real_array("t_late", math.inf if late_from_return else t_late, infinite=True),
+        "t_late": real_array(
+            "t_late", math.inf if late_from_return else t_late, infinite=True
+        ),
     }
     state = real_array("initial_state", initial_state)
     if state.shape[-1:] != (4,):
-        raise ValueError(f"initial_state has shape {state.shape}: x, y, vx, vy are needed last")
+        raise ValueError(
+            f"initial_state has shape {state.shape}: x, y, vx, vy are needed last"
+        )
     if not (inputs["t_end"] >= 0).all():
         raise ValueError(f"t_end = {inputs['t_end'].min()!r}: must be 0 or greater")
     shapes = {array.shape for array in inputs.values()}
@@ -178,7 +182,9 @@ def _sample_times(
     array = real_array("times", times)
     if array.ndim == 0:
         raise ValueError("times must be a sequence of instants")
-    if array.size and not ((array[..., 1:] >= array[..., :-1]).all() and array.min() >= 0):
+    if array.size and not (
+        (array[..., 1:] >= array[..., :-1]).all() and array.min() >= 0
+    ):
         raise ValueError("times must ascend and start at 0 or later")
     rows = _broadcast(array, (*shape, array.shape[-1])).reshape(-1, array.shape[-1])
     if array.size and (rows[:, -1] > t_end).any():

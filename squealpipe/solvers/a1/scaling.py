@@ -50,13 +50,19 @@ def scaled_runs(parameters: Parameters | Mapping[str, Any], model: str) -> Scale
     friction, contact = laws = [
         parameters.get(name, DEFAULTS[name]) for name in ("friction_law", "contact_law")
     ]
-    if not all(isinstance(law, str) for law in laws) or (friction in LAWS and contact == LINEAR):
+    if not all(isinstance(law, str) for law in laws) or (
+        friction in LAWS and contact == LINEAR
+    ):
         return _scaled(_parameter_arrays(parameters), model)
     if is_table(contact) and np.ptp(parameters.get("preload", 0.0)):
-        raise ValueError("preload: under a table of contact it must be the same for all runs")
+        raise ValueError(
+            "preload: under a table of contact it must be the same for all runs"
+        )
     # the form of the system is that of the largest numbers: with dashpots if any run has one
     largest: dict[str, Any] = {
-        name: float(np.max(parameters[name])) for name in FORM if parameters.get(name) is not None
+        name: float(np.max(parameters[name]))
+        for name in FORM
+        if parameters.get(name) is not None
     }
     if friction in FALLING:
         largest |= {"mu": 0.0, "mu_static": 1.0}
@@ -68,7 +74,9 @@ def scaled_runs(parameters: Parameters | Mapping[str, Any], model: str) -> Scale
         numbers["mu_static"] = decisive.static_mu
     elif friction not in LAWS and parameters.get("mu_static") is None:
         mu = real_array("mu", parameters.get("mu", DEFAULTS["mu"]))
-        numbers["mu_static"] = coefficient(0.0, SimpleNamespace(**vars(decisive) | {"mu": mu}))
+        numbers["mu_static"] = coefficient(
+            0.0, SimpleNamespace(**vars(decisive) | {"mu": mu})
+        )
     if friction not in LAWS:
         numbers["friction_law"] = FALLING[0]
     given = _parameter_arrays({**parameters, **numbers, "contact_law": LINEAR})
@@ -100,7 +108,9 @@ def plain(parameters: Parameters) -> Parameters:
     """The numbers that a law of the user's own stands for, under laws that have formulas."""
     if not has_own_laws(parameters):
         return parameters
-    numbers = {name: getattr(parameters, name) for name in ("mu", "k3", "friction_speed")}
+    numbers = {
+        name: getattr(parameters, name) for name in ("mu", "k3", "friction_speed")
+    }
     return parameters.with_(
         **numbers,
         mu_static=parameters.static_mu,
@@ -110,7 +120,9 @@ def plain(parameters: Parameters) -> Parameters:
     )
 
 
-def _scaled(given: Mapping[str, np.ndarray], form: str | tuple[System, ...]) -> ScaledRuns:
+def _scaled(
+    given: Mapping[str, np.ndarray], form: str | tuple[System, ...]
+) -> ScaledRuns:
     """Of a model, or of a system that is known."""
     # Units of time that overflow are refused with the runs.
     with np.errstate(all="ignore"):
@@ -122,7 +134,9 @@ def _scaled(given: Mapping[str, np.ndarray], form: str | tuple[System, ...]) -> 
             + 0.0
             for name, of in NUMBERS_OF_A1.items()
         }
-        formulas = np.isin(given["friction_law"], list(LAWS)) & (given["contact_law"] == LINEAR)
+        formulas = np.isin(given["friction_law"], list(LAWS)) & (
+            given["contact_law"] == LINEAR
+        )
         if not formulas.all():
             raise ValueError(
                 "a table, a law in Python or a contact law must be the same for all runs"
@@ -148,11 +162,15 @@ def _systems(
     one_mu = numbers["static_mu"] == numbers["mu"]
     laws = np.where(one_mu & np.isin(laws, FALLING), COULOMB, laws)
     forms = np.broadcast_arrays(
-        laws, damped, one_mu & (laws == COULOMB),
+        laws,
+        damped,
+        one_mu & (laws == COULOMB),
         *(numbers[name] > springs.LONG for name in ("length1", "length2")),
-    )  # fmt: skip
-    code = sum(np.unique(each, return_inverse=True)[1].reshape(each.shape) * 8**i
-               for i, each in enumerate(forms))  # fmt: skip
+    )
+    code = sum(
+        np.unique(each, return_inverse=True)[1].reshape(each.shape) * 8**i
+        for i, each in enumerate(forms)
+    )
     if not code.size:
         return (brake(model=model, one_mu=True),), code
     _, first, which = np.unique(code, return_index=True, return_inverse=True)
@@ -160,10 +178,14 @@ def _systems(
     for at in first:
         law, damps, same, *long = (each.reshape(-1)[at].item() for each in forms)
         if model == "A4" and (law != COULOMB or damps or not same):
-            raise ValueError(f"model A4 carries no damping and Coulomb's law with one μ: {WHY_A4}")
+            raise ValueError(
+                f"model A4 carries no damping and Coulomb's law with one μ: {WHY_A4}"
+            )
         springs_long = (long[0], long[1])
         systems.append(
-            brake(law, damped=damps, model=model, one_mu=same, long_springs=springs_long)
+            brake(
+                law, damped=damps, model=model, one_mu=same, long_springs=springs_long
+            )
         )
     return tuple(systems), which.reshape(forms[0].shape)
 
@@ -176,7 +198,11 @@ def unit_value(unit: str, mass: np.ndarray, k1: np.ndarray, length: np.ndarray) 
     powers["m"] += powers["N"]
     bases = {"kg": mass, "N": k1, "m": length, "s": np.sqrt(mass / k1)}
     above, below = (
-        math.prod(bases[base] ** abs(power) for base, power in powers.items() if power * sign > 0)
+        math.prod(
+            bases[base] ** abs(power)
+            for base, power in powers.items()
+            if power * sign > 0
+        )
         for sign in (1, -1)
     )
     return above / below
@@ -186,14 +212,18 @@ def _parameter_arrays(parameters: Mapping[str, Any]) -> dict[str, np.ndarray]:
     """Checked arrays of all parameters of a run; ``mu_static`` of None becomes ``mu``."""
     for name in parameters:
         if name not in TABLE:
-            raise ValueError(f"unknown parameter {name!r}; {suggestion(name, PHYSICAL)}")
+            raise ValueError(
+                f"unknown parameter {name!r}; {suggestion(name, PHYSICAL)}"
+            )
     given = {name: parameters.get(name, DEFAULTS[name]) for name in PHYSICAL}
     if given["mu_static"] is None:
         given["mu_static"] = given["mu"]
     arrays = {name: _checked(name, values) for name, values in given.items()}
     weak = (arrays["friction_law"] == COULOMB) & (arrays["mu_static"] < arrays["mu"])
     if np.any(weak):
-        raise ValueError("mu_static is below mu with the Coulomb law: give mu or greater, or None")
+        raise ValueError(
+            "mu_static is below mu with the Coulomb law: give mu or greater, or None"
+        )
     return arrays
 
 

@@ -58,6 +58,10 @@ def doubled_branch_from(
             return orbits, TraceEnd.branch_lost
         orbits.append(found)
     away = orbits[-1].point - start
-    settings = replace(TraceSettings(), first_step=OFFSETS[-1], linear_x=abs(float(start[0])))
-    beyond, end = trace_branch(scene.system, orbits[-1].point, away, y_max, settings, _SPACING)
+    settings = replace(
+        TraceSettings(), first_step=OFFSETS[-1], linear_x=abs(float(start[0]))
+    )
+    beyond, end = trace_branch(
+        scene.system, orbits[-1].point, away, y_max, settings, _SPACING
+    )
     return orbits + beyond, end

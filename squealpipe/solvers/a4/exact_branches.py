@@ -4,7 +4,12 @@ import math
 
 import numpy as np
 
-from squealpipe.methods.orbits.orbits import Orbit, decoupled_half_period, solve_orbit, trace_branch
+from squealpipe.methods.orbits.orbits import (
+    Orbit,
+    decoupled_half_period,
+    solve_orbit,
+    trace_branch,
+)
 from squealpipe.schema import Outcome
 from squealpipe.solvers.a4.orbits import check_peak, grazing_start, linear_orbit
 from squealpipe.solvers.a4.system import ScaledSystem
@@ -18,7 +23,12 @@ _ISOLATED_POINTS = 24
 
 
 def exact_branch(
-    scene: ScaledSystem, mode: int, y_max: float, x_max: float, *, cross_poles: bool = False
+    scene: ScaledSystem,
+    mode: int,
+    y_max: float,
+    x_max: float,
+    *,
+    cross_poles: bool = False,
 ) -> tuple[list[Orbit], list[Outcome], Outcome]:
     """Orbits of a branch in scaled units, their outcomes, and why it ends."""
     orbits, outcomes, end = linear_part(scene, mode, y_max, x_max)
@@ -26,7 +36,9 @@ def exact_branch(
         return orbits, outcomes, end
     if scene.system.decoupled:
         steps, end = decoupled_steps(scene, y_max, cross_poles=cross_poles)
-        guesses = [np.array([scene.rest[0], peak, half_period]) for peak, half_period in steps]
+        guesses = [
+            np.array([scene.rest[0], peak, half_period]) for peak, half_period in steps
+        ]
         found = [solve_orbit(scene.system, guess) for guess in guesses]
         beyond = [orbit for orbit in found if orbit is not None]
     else:
@@ -54,7 +66,9 @@ def linear_part(
         return [], [], Outcome.pole
     check_peak(scene, "y_peak_max", y_max)
     peaks = np.linspace(scene.rest[1], min(1.0, y_max), LINEAR_POINTS + 1)[1:].tolist()
-    outcomes = [Outcome.grazing if peak == 1.0 else Outcome.linear_mode for peak in peaks]
+    outcomes = [
+        Outcome.grazing if peak == 1.0 else Outcome.linear_mode for peak in peaks
+    ]
     end = Outcome.amplitude_reached if y_max <= 1.0 else None
     return [linear_orbit(scene, mode, peak) for peak in peaks], outcomes, end
 
@@ -65,7 +79,9 @@ def isolated_orbits(scene: ScaledSystem, mode: int, x_max: float) -> list[Orbit]
     index = 2.0 * math.cos(2.0 * half_period * scene.omega(3 - mode))
     x_rest, y_rest = scene.rest
     return [
-        Orbit(np.array([x_rest + float(a), y_rest, half_period]), np.empty(0), index, 0.0)
+        Orbit(
+            np.array([x_rest + float(a), y_rest, half_period]), np.empty(0), index, 0.0
+        )
         for a in np.linspace(0.0, x_max, _ISOLATED_POINTS + 1)[1:]
     ]
 

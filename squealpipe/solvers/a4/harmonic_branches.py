@@ -72,17 +72,27 @@ def harmonic_branch(
     balance = CosineBalance(scene.system, contact_of(n_harmonics, 1.0, n_time, sigma))
     orbits, outcomes, end = linear_part(scene, mode, y_max, x_max)
     series = [linear_series(scene, mode, n_harmonics, orbit.point) for orbit in orbits]
-    points = [_judged(scene, balance, *each) for each in zip(series, outcomes, strict=True)]
+    points = [
+        _judged(scene, balance, *each) for each in zip(series, outcomes, strict=True)
+    ]
     if end is not None:
         return balance, points, end
     if scene.system.decoupled:
-        beyond, end = _decoupled_branch(scene, balance, series[-1], y_max, cross_poles=cross_poles)
+        beyond, end = _decoupled_branch(
+            scene, balance, series[-1], y_max, cross_poles=cross_poles
+        )
     else:
         beyond, end = _coupled_branch(scene, balance, mode, series[-1], y_max)
-    return balance, points + [_judged(scene, balance, z, Outcome.converged) for z in beyond], end
+    return (
+        balance,
+        points + [_judged(scene, balance, z, Outcome.converged) for z in beyond],
+        end,
+    )
 
 
-def linear_series(scene: ScaledSystem, mode: int, n_harmonics: int, point: Vector) -> Vector:
+def linear_series(
+    scene: ScaledSystem, mode: int, n_harmonics: int, point: Vector
+) -> Vector:
     """Unknowns of the linear mode that starts at rest at (x0, y0) of a point."""
     z = np.zeros(2 * n_harmonics + 3)
     z[0], z[n_harmonics + 1] = scene.rest
@@ -98,7 +108,9 @@ def _coupled_branch(
     seed, settings = grazing_start(scene, mode), ContinuationSettings()
     direction = np.zeros_like(start)
     direction[1], direction[balance.contact.n_harmonics + 2] = seed.direction[:2]
-    first = min(settings.first_step, 0.1 * seed.room / (1.0 + float(np.linalg.norm(start))))
+    first = min(
+        settings.first_step, 0.1 * seed.room / (1.0 + float(np.linalg.norm(start)))
+    )
     control = replace(settings, first_step=max(first, settings.shortest_step))
     ended = Outcome.converged
 
@@ -143,7 +155,12 @@ def _peak(balance: CosineBalance, z: Vector) -> float:
 
 
 def _decoupled_branch(
-    scene: ScaledSystem, balance: CosineBalance, start: Vector, y_max: float, *, cross_poles: bool
+    scene: ScaledSystem,
+    balance: CosineBalance,
+    start: Vector,
+    y_max: float,
+    *,
+    cross_poles: bool,
 ) -> tuple[list[Vector], Outcome]:
     """The y mode where K12 = 0, at given peaks, up to a pole of x."""
     found: list[Vector] = []
@@ -176,15 +193,23 @@ def _judged(
         residual=float(np.abs(values).max()),
         outcome=outcome,
         switches=switches,
-        stability_index=index_from_switches(scene.system, switches, half_period, start[1]),
+        stability_index=index_from_switches(
+            scene.system, switches, half_period, start[1]
+        ),
         omega_exact=omega_exact,
         waveform_error=waveform_error,
-        integration_error=_apart(scene, balance, z, start * [1.0, 1.0, 2.0], 2.0 * _PHASES),
+        integration_error=_apart(
+            scene, balance, z, start * [1.0, 1.0, 2.0], 2.0 * _PHASES
+        ),
     )
 
 
 def _distance(
-    scene: ScaledSystem, balance: CosineBalance, z: Vector, start: Vector, outcome: Outcome
+    scene: ScaledSystem,
+    balance: CosineBalance,
+    z: Vector,
+    start: Vector,
+    outcome: Outcome,
 ) -> tuple[float, float]:
     """(ω, waveform distance) of the exact orbit of equal peak; NaN where none is near."""
     omega, point = balance.split(z)[2], start

@@ -46,11 +46,15 @@ def find_orbit(
     if y_peak <= 1.0:
         return linear_orbit(scene, mode, y_peak), Outcome.linear_mode
     if scene.system.decoupled:
-        guess = np.array([scene.rest[0], y_peak, decoupled_half_period(scene.system, y_peak)])
+        guess = np.array(
+            [scene.rest[0], y_peak, decoupled_half_period(scene.system, y_peak)]
+        )
         found = solve_orbit(scene.system, guess)
         return found, Outcome.converged if found else Outcome.pole
     seed = grazing_start(scene, mode)
-    found, end = orbit_on_branch(scene.system, seed.point, seed.direction, y_peak, seed.settings())
+    found, end = orbit_on_branch(
+        scene.system, seed.point, seed.direction, y_peak, seed.settings()
+    )
     if across and end in _SHORT_OF_THE_PEAK:
         other = orbit_across(scene, mode, y_peak)
         if other is not None:
@@ -63,7 +67,9 @@ def orbit_across(scene: ScaledSystem, mode: int, y_peak: float) -> Orbit | None:
     """An orbit at a scaled peak by a trace that crosses the narrow resonances on its way."""
     seed = grazing_start(scene, mode)
     lenient = replace(seed.settings(), strict=False, max_points=_MOST_POINTS_ACROSS)
-    found, _ = orbit_on_branch(scene.system, seed.point, seed.direction, y_peak, lenient)
+    found, _ = orbit_on_branch(
+        scene.system, seed.point, seed.direction, y_peak, lenient
+    )
     return found if found is not None and is_primitive(scene.system, found) else None
 
 
@@ -71,7 +77,9 @@ def check_peak(scene: ScaledSystem, name: str, y_peak: float) -> None:
     """Raise ``ValueError`` if a scaled peak is not above the equilibrium."""
     if y_peak <= (rest := float(scene.rest[1])):
         peak, lowest = y_peak * scene.length, rest * scene.length
-        raise ValueError(f"{name} = {peak!r}: a motion peaks above its equilibrium, y = {lowest!r}")
+        raise ValueError(
+            f"{name} = {peak!r}: a motion peaks above its equilibrium, y = {lowest!r}"
+        )
 
 
 def linear_orbit(scene: ScaledSystem, mode: int, y_peak: float) -> Orbit:
@@ -113,8 +121,13 @@ def grazing_start(scene: ScaledSystem, mode: int) -> GrazingStart:
 
 
 SHAPE = (
-    "omega", "x_at_peak", "x_amplitude", "y_amplitude", "largest_speed", "sliding_assumption",
-)  # fmt: skip
+    "omega",
+    "x_at_peak",
+    "x_amplitude",
+    "y_amplitude",
+    "largest_speed",
+    "sliding_assumption",
+)
 """What :func:`orbit_values` gives."""
 
 

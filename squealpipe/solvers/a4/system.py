@@ -7,7 +7,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from squealpipe.laws import springs
-from squealpipe.methods.orbits.piecewise_linear import LinearState, PiecewiseLinearSystem
+from squealpipe.methods.orbits.piecewise_linear import (
+    LinearState,
+    PiecewiseLinearSystem,
+)
 from squealpipe.models import a2, a4
 from squealpipe.models.refusals import WHY_A4, refuse_extensions
 from squealpipe.parameters import Parameters
@@ -82,9 +85,13 @@ def scaled_system(params: Parameters, alpha1: float, alpha2: float) -> ScaledSys
     if a2.coupling_is_zero(stiffness):
         stiffness = springs.Stiffness(stiffness.k11, 0.0, stiffness.k22)
     determinant, drag = float(springs.stiffness_determinant(params, g)), params.drag
-    invariants = a4.spectrum(stiffness, determinant, k3=params.k3, mu=drag, mass=params.mass)
+    invariants = a4.spectrum(
+        stiffness, determinant, k3=params.k3, mu=drag, mass=params.mass
+    )
     unit = float(invariants.half_trace)
-    larger, smaller = (value / unit for value in a4.natural_frequencies_squared(invariants)[::-1])
+    larger, smaller = (
+        value / unit for value in a4.natural_frequencies_squared(invariants)[::-1]
+    )
 
     a11, a12, a21, a22 = (
         float(value) / (params.mass * unit)
@@ -93,7 +100,8 @@ def scaled_system(params: Parameters, alpha1: float, alpha2: float) -> ScaledSys
     push = params.k3 / (params.mass * unit)
     contact = LinearState(((a11, a12), (a21, a22)), (drag * push, push))
     separated = LinearState(
-        ((a11, a12 - drag * push), (a21, float(stiffness.k22) / (params.mass * unit))), (0.0, 0.0)
+        ((a11, a12 - drag * push), (a21, float(stiffness.k22) / (params.mass * unit))),
+        (0.0, 0.0),
     )
     system = PiecewiseLinearSystem(contact, separated, 1.0)
     contact_determinant = float(invariants.determinant) / unit**2

@@ -18,7 +18,13 @@ from squealpipe.store.comparison.matching import align, judged_length
 from squealpipe.store.comparison.statements import StatementChange, changed_statements
 from squealpipe.store.netcdf import load
 from squealpipe.store.provenance import VOLATILE_ATTRIBUTES
-from squealpipe.store.runs import LEFT_OUT, dataset_files, locate, matches_any, read_manifest
+from squealpipe.store.runs import (
+    LEFT_OUT,
+    dataset_files,
+    locate,
+    matches_any,
+    read_manifest,
+)
 
 PHYSICAL_KEY = re.compile(r"(parameters\.|alpha\d|mode\b|scene\b|vary\.|fixed\.)")
 """Configuration keys that say what is computed; the others say how, and on which grid."""
@@ -80,7 +86,9 @@ class Comparison:
     @property
     def exit_code(self) -> int:
         """0 equal or within tolerance, 1 different, 2 not comparable."""
-        return {Agreement.different: 1, Agreement.not_comparable: 2}.get(self.verdict, 0)
+        return {Agreement.different: 1, Agreement.not_comparable: 2}.get(
+            self.verdict, 0
+        )
 
     def as_dict(self) -> dict[str, Any]:
         """Plain values for JSON: no NaN, no infinity."""
@@ -89,7 +97,10 @@ class Comparison:
 
 
 def compare(
-    a: str | os.PathLike[str], b: str | os.PathLike[str], *, root: str | os.PathLike[str] = "."
+    a: str | os.PathLike[str],
+    b: str | os.PathLike[str],
+    *,
+    root: str | os.PathLike[str] = ".",
 ) -> Comparison:
     """Compare two archives, runs, folders or files, dataset by dataset.
 
@@ -98,7 +109,11 @@ def compare(
     try:
         places = locate(a, root), locate(b, root)
         left, right = (dataset_files(place) for place in places)
-        absent = [pattern for place in places for pattern in read_manifest(place).get(LEFT_OUT, [])]
+        absent = [
+            pattern
+            for place in places
+            for pattern in read_manifest(place).get(LEFT_OUT, [])
+        ]
     except (FileNotFoundError, ValueError) as error:
         return Comparison(a=str(a), b=str(b), reason=str(error))
     if len(left) == len(right) == 1 and (Path(a).is_file() or Path(b).is_file()):
@@ -107,11 +122,17 @@ def compare(
     environment: dict[str, tuple[Any, Any]] = {}
     datasets = []
     statements: list[StatementChange] = []
-    skipped = {name for name in set(left) ^ set(right) if matches_any(f"data/{name}.nc", absent)}
+    skipped = {
+        name
+        for name in set(left) ^ set(right)
+        if matches_any(f"data/{name}.nc", absent)
+    }
     for name in sorted((set(left) | set(right)) - skipped):
         if name not in left or name not in right:
             reason = f"only in {a if name in left else b}"
-            missing = DatasetDifference(name=name, verdict=Agreement.different, reason=reason)
+            missing = DatasetDifference(
+                name=name, verdict=Agreement.different, reason=reason
+            )
             datasets.append(missing)
             continue
         try:
@@ -124,7 +145,9 @@ def compare(
         datasets.append(compare_datasets(name, *pair))
         if pair[0].attrs["schema"] == pair[1].attrs["schema"] == CLAIMS.name:
             statements = changed_statements(*pair)
-    physical_first = sorted(parameters, key=lambda key: (not PHYSICAL_KEY.match(key), key))
+    physical_first = sorted(
+        parameters, key=lambda key: (not PHYSICAL_KEY.match(key), key)
+    )
     return Comparison(
         a=str(a),
         b=str(b),
@@ -149,20 +172,29 @@ def compare_datasets(name: str, a: xr.Dataset, b: xr.Dataset) -> DatasetDifferen
     for dim, how in schema.lists.items():
         first, second = (judged_length(each, dim, how) for each in (a, b))
         if first != second:
-            variables.append(_differs(f"number of {dim}", f"{first} entries against {second}"))
+            variables.append(
+                _differs(f"number of {dim}", f"{first} entries against {second}")
+            )
     try:
         a, b, notes = align(a, b, schema)
     except ValueError as error:
         return _refused(name, str(error))
     for variable in map(str, [*schema.coordinates, *schema.variables]):
-        entry, sides = schema.lookup(variable), [variable in each.variables for each in (a, b)]
+        entry, sides = (
+            schema.lookup(variable),
+            [variable in each.variables for each in (a, b)],
+        )
         if entry is not None and all(sides):
             variables.append(judge(variable, a, b, entry))
         elif any(sides):
-            variables.append(_differs(variable, f"only in the {'first' if sides[0] else 'second'}"))
+            variables.append(
+                _differs(variable, f"only in the {'first' if sides[0] else 'second'}")
+            )
     judged = [entry.verdict for entry in variables if not entry.volatile]
     verdict = max(judged, default=Agreement.equal)
-    return DatasetDifference(name=name, verdict=verdict, variables=variables, notes=notes)
+    return DatasetDifference(
+        name=name, verdict=verdict, variables=variables, notes=notes
+    )
 
 
 def _differs(name: str, reason: str) -> VariableDifference:
@@ -185,12 +217,16 @@ def _environment(dataset: xr.Dataset) -> dict[str, Any]:
     """Commit, platform and the versions of the libraries one by one."""
     shown = VOLATILE_ATTRIBUTES - {"history", "wall_time_s", "inputs", "libraries"}
     stated = {key: dataset.attrs[key] for key in shown if key in dataset.attrs}
-    return stated | flat({"libraries": json.loads(dataset.attrs.get("libraries", "{}"))})
+    return stated | flat(
+        {"libraries": json.loads(dataset.attrs.get("libraries", "{}"))}
+    )
 
 
 def _changes(a: dict[str, Any], b: dict[str, Any]) -> dict[str, tuple[Any, Any]]:
     return {
-        key: (a.get(key), b.get(key)) for key in sorted(set(a) | set(b)) if a.get(key) != b.get(key)
+        key: (a.get(key), b.get(key))
+        for key in sorted(set(a) | set(b))
+        if a.get(key) != b.get(key)
     }
 
 

@@ -59,30 +59,50 @@ class VariableDifference:
     @property
     def severity(self) -> tuple[int, float, float]:
         """Larger is worse: verdict, share of values that differ, largest relative difference."""
-        return self.verdict, self.differing / max(self.compared, 1), self.largest_relative
+        return (
+            self.verdict,
+            self.differing / max(self.compared, 1),
+            self.largest_relative,
+        )
 
 
-def judge(name: str, a: xr.Dataset, b: xr.Dataset, entry: Variable) -> VariableDifference:
+def judge(
+    name: str, a: xr.Dataset, b: xr.Dataset, entry: Variable
+) -> VariableDifference:
     """Compare one variable of two aligned datasets, as its line in the schema says."""
     how = entry.round_off
     if how is None or how.compared in (ComparedAs.magnitude, ComparedAs.sample):
         return difference(name, a[name], b[name], entry)
     entry = replace(entry, round_off=None)
     stated = how.by in a.variables and how.by in b.variables
-    if how.compared is ComparedAs.beyond_horizon and stated and a[name].dims == a[how.by].dims:
+    if (
+        how.compared is ComparedAs.beyond_horizon
+        and stated
+        and a[name].dims == a[how.by].dims
+    ):
         return _beyond_horizon(name, a, b, entry, how)
     if how.compared is ComparedAs.grown and stated:
-        size = max(float(np.abs(side[name]).max()) if side[name].size else 0.0 for side in (a, b))
+        size = max(
+            float(np.abs(side[name]).max()) if side[name].size else 0.0
+            for side in (a, b)
+        )
         growth = max(float(a[how.by]), float(b[how.by]), 1.0)
         entry = replace(entry, atol=entry.atol + UNIT * growth * size)
     found = difference(name, a[name], b[name], entry)
-    allowed = {ComparedAs.unjudged: 1.0, ComparedAs.most: how.share}.get(how.compared, 0.0)
-    if found.verdict == Agreement.different and found.differing <= allowed * found.compared:
+    allowed = {ComparedAs.unjudged: 1.0, ComparedAs.most: how.share}.get(
+        how.compared, 0.0
+    )
+    if (
+        found.verdict == Agreement.different
+        and found.differing <= allowed * found.compared
+    ):
         return replace(found, verdict=Agreement.within_tolerance, reason=how.reason)
     return found
 
 
-def difference(name: str, a: xr.DataArray, b: xr.DataArray, entry: Variable) -> VariableDifference:
+def difference(
+    name: str, a: xr.DataArray, b: xr.DataArray, entry: Variable
+) -> VariableDifference:
     """Compare one variable of two aligned datasets by its values."""
     if a.shape != b.shape:
         lengths = ", ".join(
@@ -108,8 +128,13 @@ def outside_tolerance(a: np.ndarray, b: np.ndarray, entry: Variable) -> np.ndarr
     if _discrete(a, entry):
         return np.asarray(a != b)
     with np.errstate(invalid="ignore", over="ignore"):
-        close = np.abs(a - b) <= entry.atol + entry.rtol * np.maximum(np.abs(a), np.abs(b))
-        if entry.round_off is not None and entry.round_off.compared is ComparedAs.magnitude:
+        close = np.abs(a - b) <= entry.atol + entry.rtol * np.maximum(
+            np.abs(a), np.abs(b)
+        )
+        if (
+            entry.round_off is not None
+            and entry.round_off.compared is ComparedAs.magnitude
+        ):
             sizes = [np.maximum(np.abs(side), entry.round_off.floor) for side in (a, b)]
             close |= np.maximum(*sizes) <= entry.round_off.factor * np.minimum(*sizes)
     return np.asarray(~(_same(a, b) | (close & np.isfinite(a) & np.isfinite(b))))
@@ -142,7 +167,9 @@ def _sampled(a: xr.DataArray, b: xr.DataArray, how: RoundOff) -> dict[str, Any]:
         return found | {"verdict": Agreement.equal}
     return found | {
         "verdict": Agreement.different if unlikely else Agreement.within_tolerance,
-        "where": _place(a.isel({how.sample: 0}), int(chances.argmin())) if chances.size else {},
+        "where": _place(a.isel({how.sample: 0}), int(chances.argmin()))
+        if chances.size
+        else {},
         "reason": f"{len(chances)} samples along {how.sample}, smallest chance that both are "
         f"of one distribution {chances.min(initial=1.0):.2g}",
     }
@@ -154,12 +181,18 @@ def _beyond_horizon(
     """Cells that are predictable on both sides one by one, the others as one sample."""
     lost = sum(side[how.by].values == Outcome.beyond_horizon for side in (a, b)) > 0
     left, right = a[name].values, b[name].values
-    found = difference(name, a[name], b[name].copy(data=np.where(lost, left, right)), entry)
-    samples = [np.nan_to_num(side[lost].astype(float), nan=np.inf) for side in (left, right)]
+    found = difference(
+        name, a[name], b[name].copy(data=np.where(lost, left, right)), entry
+    )
+    samples = [
+        np.nan_to_num(side[lost].astype(float), nan=np.inf) for side in (left, right)
+    ]
     if np.array_equal(*samples):
         return found
     chance = float(ks_2samp(*samples, method="asymp").pvalue)
-    verdict = Agreement.different if chance <= SMALLEST_CHANCE else Agreement.within_tolerance
+    verdict = (
+        Agreement.different if chance <= SMALLEST_CHANCE else Agreement.within_tolerance
+    )
     stated = (
         f"{int((samples[0] != samples[1]).sum())} of {lost.sum()} values beyond the predictability "
         f"horizon differ; chance that both are of one distribution {chance:.2g}"
@@ -178,7 +211,9 @@ def _flipped(a: xr.DataArray, b: xr.DataArray, entry: Variable) -> dict[str, Any
     words = {} if entry.flags is None else flag_table(entry.flags)
     flips = Counter(
         " → ".join(shortened(str(words.get(value, value)), LONGEST) for value in pair)
-        for pair in zip(a.values[differing].tolist(), b.values[differing].tolist(), strict=True)
+        for pair in zip(
+            a.values[differing].tolist(), b.values[differing].tolist(), strict=True
+        )
     )
     return {
         "verdict": Agreement.different if count else Agreement.equal,
@@ -192,7 +227,11 @@ def _flipped(a: xr.DataArray, b: xr.DataArray, entry: Variable) -> dict[str, Any
 def _continuous(a: xr.DataArray, b: xr.DataArray, entry: Variable) -> dict[str, Any]:
     left, right = a.values, b.values
     differing, same = outside_tolerance(left, right, entry), _same(left, right)
-    found: dict[str, Any] = {"compared": left.size, "rtol": entry.rtol, "atol": entry.atol}
+    found: dict[str, Any] = {
+        "compared": left.size,
+        "rtol": entry.rtol,
+        "atol": entry.atol,
+    }
     if entry.round_off is not None:
         found["compared_as"] = entry.round_off.compared.value
     if same.all():
@@ -202,9 +241,13 @@ def _continuous(a: xr.DataArray, b: xr.DataArray, entry: Variable) -> dict[str, 
     one_sided = ~np.isfinite(gap)
     gap[one_sided] = np.inf
     scale = np.maximum(np.abs(left), np.abs(right))
-    relative = np.divide(gap, scale, out=np.zeros_like(gap), where=np.isfinite(gap) & (scale > 0))
+    relative = np.divide(
+        gap, scale, out=np.zeros_like(gap), where=np.isfinite(gap) & (scale > 0)
+    )
     return found | {
-        "verdict": Agreement.different if differing.any() else Agreement.within_tolerance,
+        "verdict": Agreement.different
+        if differing.any()
+        else Agreement.within_tolerance,
         "differing": int(differing.sum()),
         "largest_absolute": float(gap.max(where=~one_sided, initial=0.0)),
         "largest_relative": float(relative.max()),
@@ -225,5 +268,7 @@ def _place(array: xr.DataArray, flat: int) -> dict[str, float | int | str]:
     place: dict[str, float | int | str] = {}
     for dim, index in zip(array.dims, np.unravel_index(flat, array.shape), strict=True):
         coordinate = array.coords.get(dim)
-        place[str(dim)] = int(index) if coordinate is None else coordinate.values[index].item()
+        place[str(dim)] = (
+            int(index) if coordinate is None else coordinate.values[index].item()
+        )
     return place

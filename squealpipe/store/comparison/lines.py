@@ -6,7 +6,11 @@ from typing import Any
 
 from squealpipe.schema.agreement import ComparedAs
 from squealpipe.store.comparison.compare import Comparison, DatasetDifference
-from squealpipe.store.comparison.differences import Agreement, VariableDifference, shortened
+from squealpipe.store.comparison.differences import (
+    Agreement,
+    VariableDifference,
+    shortened,
+)
 from squealpipe.store.comparison.statements import StatementChange
 
 WIDTH = 100
@@ -40,7 +44,10 @@ def lines(comparison: Comparison, *, every: bool = False) -> list[str]:
         stated += [heading, *(f"  {line}" for line in shown)] if shown else []
     if every:
         return stated
-    return [shortened(stated[0], 3 * WIDTH), *(shortened(line, WIDTH) for line in stated[1:])]
+    return [
+        shortened(stated[0], 3 * WIDTH),
+        *(shortened(line, WIDTH) for line in stated[1:]),
+    ]
 
 
 def statement_line(change: StatementChange) -> str:
@@ -65,7 +72,9 @@ def _dataset_lines(item: DatasetDifference, *, every: bool) -> Iterator[str]:
         )
     equal = [entry for entry in item.variables if entry not in item.differences]
     for entry in [*item.differences, *(equal if every else [])]:
-        verdict = "" if entry.verdict == Agreement.different else f"{words(entry.verdict)} "
+        verdict = (
+            "" if entry.verdict == Agreement.different else f"{words(entry.verdict)} "
+        )
         kind = "volatile " if entry.volatile else verdict
         at = f" at {where(entry)}" if entry.where else ""
         yield f"{item.name}.{entry.name}: {kind}{how_much(entry)}{at}"
@@ -79,10 +88,14 @@ def verdict_line(comparison: Comparison) -> str:
         verdict: sum(item.verdict == verdict for item in comparison.datasets)
         for verdict in Agreement
     }
-    stated = ", ".join(f"{words(verdict)} {count}" for verdict, count in counts.items() if count)
+    stated = ", ".join(
+        f"{words(verdict)} {count}" for verdict, count in counts.items() if count
+    )
     total = len(comparison.datasets)
     skipped = f"; left out of the archive: {', '.join(comparison.skipped)}"
-    line = f"{words(comparison.verdict)}: {total} dataset{'s' * (total != 1)} ({stated})"
+    line = (
+        f"{words(comparison.verdict)}: {total} dataset{'s' * (total != 1)} ({stated})"
+    )
     return line + skipped if comparison.skipped else line
 
 
@@ -106,7 +119,9 @@ def where(entry: VariableDifference) -> str:
 
 def how_much(entry: VariableDifference) -> str:
     """Size of the difference in words."""
-    if entry.reason and (not entry.compared or entry.compared_as == ComparedAs.sample.value):
+    if entry.reason and (
+        not entry.compared or entry.compared_as == ComparedAs.sample.value
+    ):
         return entry.reason
     if entry.flips:
         return f"{entry.differing} flipped: " + ", ".join(

@@ -37,13 +37,20 @@ def align(
             continue
         if at:
             a, b = a.isel({dim: at[0]}), b.isel({dim: at[1]})
-        if dim in lists and dim in a.coords and dim in b.coords and a[dim].dims == (dim,):
+        if (
+            dim in lists
+            and dim in a.coords
+            and dim in b.coords
+            and a[dim].dims == (dim,)
+        ):
             b = b.assign_coords({dim: a[dim].variable})
         notes += [note] if note else []
     return a, b, notes
 
 
-def match(a: xr.Dataset, b: xr.Dataset, dim: str, how: Listing) -> tuple[list[np.ndarray], str]:
+def match(
+    a: xr.Dataset, b: xr.Dataset, dim: str, how: Listing
+) -> tuple[list[np.ndarray], str]:
     """Places of entries of a list that mean the same, in the first one's order; and a note."""
     sizes = a.sizes[dim], b.sizes[dim]
     kinds = [
@@ -61,7 +68,8 @@ def match(a: xr.Dataset, b: xr.Dataset, dim: str, how: Listing) -> tuple[list[np
             pairs += zip(*(each.tolist() for each in places), strict=True)
             continue
         left, right = (
-            _positions(each, how, dim, at) for each, at in zip((a, b), places, strict=True)
+            _positions(each, how, dim, at)
+            for each, at in zip((a, b), places, strict=True)
         )
         pairs += [
             (int(places[0][i]), int(places[1][j]))
@@ -81,7 +89,9 @@ def judged_length(dataset: xr.Dataset, dim: str, how: Listing) -> int | None:
     return int((~dataset[how.kinds[0]].isin(how.fillers)).sum())
 
 
-def _positions(dataset: xr.Dataset, how: Listing, dim: str, places: np.ndarray) -> np.ndarray:
+def _positions(
+    dataset: xr.Dataset, how: Listing, dim: str, places: np.ndarray
+) -> np.ndarray:
     if not how.position:
         return np.arange(len(places), dtype=float)
     along = dataset[how.position]
@@ -91,7 +101,9 @@ def _positions(dataset: xr.Dataset, how: Listing, dim: str, places: np.ndarray) 
     return np.where(np.isfinite(values), values, np.inf)
 
 
-def _nearest_of_each_other(left: np.ndarray, right: np.ndarray) -> list[tuple[int, int]]:
+def _nearest_of_each_other(
+    left: np.ndarray, right: np.ndarray
+) -> list[tuple[int, int]]:
     if not left.size or not right.size:
         return []
     with np.errstate(invalid="ignore"):
@@ -101,7 +113,9 @@ def _nearest_of_each_other(left: np.ndarray, right: np.ndarray) -> list[tuple[in
     return [(int(i), int(j)) for i, j in enumerate(of_left) if of_right[j] == i]
 
 
-def on_shared_points(left: np.ndarray, right: np.ndarray, dim: str) -> tuple[list[np.ndarray], str]:
+def on_shared_points(
+    left: np.ndarray, right: np.ndarray, dim: str
+) -> tuple[list[np.ndarray], str]:
     """Places of the points that two one-dimensional grids have in common, and a note."""
     if np.array_equal(left, right):
         return [], ""

@@ -32,18 +32,24 @@ class StatementChange:
 def changed_statements(a: xr.Dataset, b: xr.Dataset) -> list[StatementChange]:
     """Statements whose verdict or value differs; changed verdicts first."""
     a, b = xr.align(a, b, join="outer", fill_value={"verdict": -1, "statement": ""})
-    beyond = outside_tolerance(a.value.values, b.value.values, CLAIMS.variables["value"])
+    beyond = outside_tolerance(
+        a.value.values, b.value.values, CLAIMS.variables["value"]
+    )
     found = []
     for i in range(a.sizes["claim"]):
         rows = a.isel(claim=i), b.isel(claim=i)
         codes = [int(row.verdict) for row in rows]
         if codes[0] != codes[1] or beyond[i]:
             words = ["" if code < 0 else Verdict(code).words for code in codes]
-            numbers = [value if math.isfinite(value := float(row.value)) else None for row in rows]
+            numbers = [
+                value if math.isfinite(value := float(row.value)) else None
+                for row in rows
+            ]
             found.append(
                 StatementChange(
                     claim=str(rows[0].claim.values),
-                    statement=str(rows[0].statement.values) or str(rows[1].statement.values),
+                    statement=str(rows[0].statement.values)
+                    or str(rows[1].statement.values),
                     verdicts=(words[0], words[1]),
                     values=(numbers[0], numbers[1]),
                 )

@@ -46,7 +46,9 @@ class Run(Mapping[str, xr.Dataset]):
             self.used.append(name)
         if name not in self._loaded:
             source = self.sources[name]
-            self._loaded[name] = source if isinstance(source, xr.Dataset) else load(source)
+            self._loaded[name] = (
+                source if isinstance(source, xr.Dataset) else load(source)
+            )
         return self._loaded[name]
 
     def __contains__(self, name: object) -> bool:
@@ -105,4 +107,6 @@ def finding(
     if np.isnan(value):
         raise MissingDataError(f"nothing to compare: {evidence}")
     verdict = passed if passes(*compared) and also else otherwise
-    return Finding(verdict, float(value), relation, float(threshold), as_people_write(evidence))
+    return Finding(
+        verdict, float(value), relation, float(threshold), as_people_write(evidence)
+    )

@@ -24,7 +24,9 @@ DECIDED = 0.1
 
 
 def judge(
-    parameters: Parameters, sources: Mapping[str, Path | xr.Dataset], reading: str = "along_plus_x"
+    parameters: Parameters,
+    sources: Mapping[str, Path | xr.Dataset],
+    reading: str = "along_plus_x",
 ) -> xr.Dataset:
     """The verdict on every statement, in the study's reading and in the corrected physics."""
     run = Run(for_linear(parameters, reading), sources)
@@ -33,12 +35,16 @@ def judge(
         for name, source in sources.items()
         if name.startswith(BESIDE)
     }
-    second = Run(corrected(parameters, reading), {**sources, **mended}) if mended else run
+    second = (
+        Run(corrected(parameters, reading), {**sources, **mended}) if mended else run
+    )
     rows = [_row(statement, run, second) for statement in STATEMENTS]
     names = [statement.id for statement in STATEMENTS]
     data = {key: np.array([row[key] for row in rows]) for key in rows[0]}
     shipped = parameters == Parameters() and reading == "as_printed"
-    return build(CLAIMS, data, {"claim": names}, {"shipped": int(shipped), "reading": reading})
+    return build(
+        CLAIMS, data, {"claim": names}, {"shipped": int(shipped), "reading": reading}
+    )
 
 
 def _row(statement: Statement, run: Run, second: Run) -> dict[str, Any]:
@@ -65,7 +71,10 @@ def _row(statement: Statement, run: Run, second: Run) -> dict[str, Any]:
         "feasible_count": count,
         "verdict": verdict,
         "verdict_here": here.verdict,
-        **{key: getattr(here, key) for key in ("value", "relation", "threshold", "evidence")},
+        **{
+            key: getattr(here, key)
+            for key in ("value", "relation", "threshold", "evidence")
+        },
         "dataset": datasets,
         "corrected_verdict": corrected_verdict,
         "corrected_value": mended.value,

@@ -11,7 +11,9 @@ SAME_STIFFNESS = 1e-12
 """Share of a stiffness below which a difference of stiffnesses counts as none."""
 
 
-def cell(dataset: xr.Dataset, alpha1_over_pi: float, alpha2_over_pi: float) -> xr.Dataset:
+def cell(
+    dataset: xr.Dataset, alpha1_over_pi: float, alpha2_over_pi: float
+) -> xr.Dataset:
     """The cell of a map at a pair of angles."""
     where = f"cell ({alpha1_over_pi:g}π, {alpha2_over_pi:g}π)"
     return _nearest(dataset, alpha1_over_pi * np.pi, alpha2_over_pi * np.pi, where)
@@ -19,16 +21,22 @@ def cell(dataset: xr.Dataset, alpha1_over_pi: float, alpha2_over_pi: float) -> x
 
 def on_grid_of(dataset: xr.Dataset, other: xr.Dataset) -> xr.Dataset:
     """The cells of a map that are also cells of another one."""
-    found = _nearest(dataset, other.alpha1, other.alpha2, f"cells of {other.attrs['schema']}")
+    found = _nearest(
+        dataset, other.alpha1, other.alpha2, f"cells of {other.attrs['schema']}"
+    )
     # angles that differ by round-off would be dropped where both maps are compared
     return found.assign_coords(alpha1=other.alpha1, alpha2=other.alpha2)
 
 
 def _nearest(dataset: xr.Dataset, alpha1: Any, alpha2: Any, what: str) -> xr.Dataset:
     try:
-        return dataset.sel(alpha1=alpha1, alpha2=alpha2, method="nearest", tolerance=1e-6 * np.pi)
+        return dataset.sel(
+            alpha1=alpha1, alpha2=alpha2, method="nearest", tolerance=1e-6 * np.pi
+        )
     except KeyError as error:
-        raise MissingDataError(f"the grid of {dataset.attrs['schema']} has no {what}") from error
+        raise MissingDataError(
+            f"the grid of {dataset.attrs['schema']} has no {what}"
+        ) from error
 
 
 def angle_sum_over_pi(dataset: xr.Dataset) -> xr.DataArray:
@@ -37,7 +45,9 @@ def angle_sum_over_pi(dataset: xr.Dataset) -> xr.DataArray:
     return total
 
 
-def is_multiple(values: xr.DataArray, of: float = 1.0, *, odd: bool = False) -> xr.DataArray:
+def is_multiple(
+    values: xr.DataArray, of: float = 1.0, *, odd: bool = False
+) -> xr.DataArray:
     """Where values are a whole (or odd) multiple, to a millionth."""
     ratio = values / of
     whole: xr.DataArray = abs(ratio - ratio.round()) < 1e-6
@@ -64,7 +74,9 @@ def unstable_cells(run: Run) -> xr.DataArray:
 def unstable_yet_sliding(run: Run) -> tuple[xr.DataArray, xr.DataArray]:
     """Unstable cells where sliding is possible: by Eq. (11) as printed, and by R_n > 0."""
     unstable, sliding = unstable_cells(run), run["quasi_static_map"]
-    return unstable & (sliding.possible_as_printed == 1), unstable & (sliding.possible == 1)
+    return unstable & (sliding.possible_as_printed == 1), unstable & (
+        sliding.possible == 1
+    )
 
 
 def coupling_is_negative(run: Run) -> xr.DataArray:

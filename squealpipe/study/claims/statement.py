@@ -51,7 +51,9 @@ class Rows(list[Statement]):
         """Decorator of a check; the arguments are those of :class:`Statement`."""
 
         def keep(check: Check) -> Check:
-            self.append(Statement(id=name, text=text, check=check, **{**self.common, **more}))
+            self.append(
+                Statement(id=name, text=text, check=check, **{**self.common, **more})
+            )
             return check
 
         return keep

@@ -36,9 +36,16 @@ READ = (
     "transient",
     "validity_boundary",
     "validity_map",
-    *(f"simulate/{name}" for name in ("F2a", "F2b", "F2c", "F2d", "F3", "F4", "F5a", "F5b")),
+    *(
+        f"simulate/{name}"
+        for name in ("F2a", "F2b", "F2c", "F2d", "F3", "F4", "F5a", "F5b")
+    ),
     *(f"simulate/{name}" for name in ("F3_long", "F4_long", PRINTED)),
-    *(f"backbone/{name}_mode{mode}" for name in ("F10", "F11", "F12", "F13") for mode in (1, 2)),
+    *(
+        f"backbone/{name}_mode{mode}"
+        for name in ("F10", "F11", "F12", "F13")
+        for mode in (1, 2)
+    ),
 )
 """Datasets that the checks read, as a test makes sure; those of the corrected physics are in a
 folder of their own."""

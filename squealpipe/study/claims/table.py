@@ -19,7 +19,10 @@ def rows(claims: xr.Dataset) -> list[dict[str, Any]]:
     """
     found = []
     for name in claims.claim.values.tolist():
-        row = {str(key): _plain(value) for key, value in claims.sel(claim=name).data_vars.items()}
+        row = {
+            str(key): _plain(value)
+            for key, value in claims.sel(claim=name).data_vars.items()
+        }
         fails = row["verdict_here"] == "fails" and row["value"] is not None
         found.append(
             {
@@ -27,7 +30,8 @@ def rows(claims: xr.Dataset) -> list[dict[str, Any]]:
                 **row,
                 "changes": row["corrected_verdict"] != row["verdict"],
                 "as_recorded": row["verdict_here"] == row["recorded"],
-                "unmet": fails and passes(row["value"], row["relation"], row["threshold"]),
+                "unmet": fails
+                and passes(row["value"], row["relation"], row["threshold"]),
             }
         )
     return found

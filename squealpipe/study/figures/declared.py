@@ -25,7 +25,9 @@ def find_module(name: str) -> Path:
     """The module of a figure."""
     found = list(FOLDER.glob(f"*/{name}.py"))
     if len(found) != 1:
-        raise ValueError(f"{len(found)} modules figures/<topic>/{name}.py; one is needed")
+        raise ValueError(
+            f"{len(found)} modules figures/<topic>/{name}.py; one is needed"
+        )
     return found[0]
 
 
@@ -36,9 +38,13 @@ def reads(name: str) -> tuple[str, ...]:
     for node in ast.parse(path.read_bytes()).body:
         if isinstance(node, ast.Assign) and ast.unparse(node.targets[0]) == "READS":
             found = ast.literal_eval(node.value)
-            if isinstance(found, tuple) and all(isinstance(entry, str) for entry in found):
+            if isinstance(found, tuple) and all(
+                isinstance(entry, str) for entry in found
+            ):
                 return found
-    raise ValueError(f"{path} has no READS; give the names of its datasets as a tuple of texts")
+    raise ValueError(
+        f"{path} has no READS; give the names of its datasets as a tuple of texts"
+    )
 
 
 def datasets_of(name: str, known: Iterable[str]) -> list[str] | None:
@@ -54,7 +60,9 @@ def arguments(name: str, datasets: Mapping[str, Item]) -> list[Item | dict[str, 
     for entry in reads(name):
         found = {match: datasets[match] for match in _matches(entry, datasets)}
         if not found:
-            raise ValueError(f"the figure {name} reads the dataset {entry}, which is not there")
+            raise ValueError(
+                f"the figure {name} reads the dataset {entry}, which is not there"
+            )
         given.append(found if WILDCARDS & set(entry) else found[entry])
     return given
 

@@ -25,7 +25,10 @@ SPACING_ACCENTS = {0x0307: "\u02d9", 0x0308: "\u00a8"}
 def _typeset(source: Path, target: Literal["html", "pdf"]) -> bytes:
     """The document in one format; the PDF with the fonts that come with Typst."""
     return typst.compile(
-        source, format=target, sys_inputs={"target": target}, ignore_system_fonts=target == "pdf"
+        source,
+        format=target,
+        sys_inputs={"target": target},
+        ignore_system_fonts=target == "pdf",
     )
 
 
@@ -59,7 +62,9 @@ def _source(
     with tempfile.TemporaryDirectory(prefix="squealpipe-report-") as folder:
         root = Path(folder) / "report"
         shutil.copytree(TEMPLATES, root)
-        (root / "data.json").write_text(json.dumps(content, allow_nan=False), encoding="utf-8")
+        (root / "data.json").write_text(
+            json.dumps(content, allow_nan=False), encoding="utf-8"
+        )
         for path, source in pictures.items():
             target = root / path
             target.parent.mkdir(exist_ok=True)
@@ -70,7 +75,9 @@ def _source(
 def _page(content: Mapping[str, Any], made: str) -> str:
     """Our own shell around the body and the mathematics style of Typst's page."""
     environment = Environment(undefined=StrictUndefined, autoescape=True)
-    shell = environment.from_string((TEMPLATES / "page.html.j2").read_text(encoding="utf-8"))
+    shell = environment.from_string(
+        (TEMPLATES / "page.html.j2").read_text(encoding="utf-8")
+    )
     body = _between(made, "<body>", "</body>").translate(SPACING_ACCENTS)
     return shell.render(
         title=content["title"],

@@ -80,13 +80,17 @@ def gather(
         "supplement": _sections(sections.SUPPLEMENT),
         "figures": pictures(sections.FIGURES, figures, run),
         "datasets": {name: link(made.path) for name, made in sorted(datasets.items())},
-        "links": [{"words": words, "to": link(to)} for words, to in (links or {}).items()],
+        "links": [
+            {"words": words, "to": link(to)} for words, to in (links or {}).items()
+        ],
         "statements": [row for row in claims if row["origin"] != Origin.misprints.name],
         "misprints": [row for row in claims if row["origin"] == Origin.misprints.name],
     }
 
 
-def provenance(datasets: Mapping[str, Made], figures: Mapping[str, Made]) -> dict[str, Any]:
+def provenance(
+    datasets: Mapping[str, Made], figures: Mapping[str, Made]
+) -> dict[str, Any]:
     """Rules, ids, checksums, times, configuration and environment of a run, for a file."""
     records: dict[str, dict[str, Any]] = {}
     configuration: dict[str, Any] = {}
@@ -123,15 +127,23 @@ def pictures(
     names: Sequence[str], figures: Mapping[str, Made], run: Mapping[str, Any]
 ) -> dict[str, Any]:
     """Name → what a page needs of each picture that the run has."""
-    return {name: _picture(name, figures[name], run) for name in names if name in figures}
+    return {
+        name: _picture(name, figures[name], run) for name in names if name in figures
+    }
 
 
-def picture_files(content: Mapping[str, Any], figures: Mapping[str, Made]) -> dict[str, Path]:
+def picture_files(
+    content: Mapping[str, Any], figures: Mapping[str, Made]
+) -> dict[str, Path]:
     """Path inside the report's source → PNG file, for each picture of the content."""
-    return {item["path"]: figures[name].path for name, item in content["figures"].items()}
+    return {
+        item["path"]: figures[name].path for name, item in content["figures"].items()
+    }
 
 
-def parameter_table(parameters: Parameters, *, of_a1: bool = False) -> list[dict[str, Any]]:
+def parameter_table(
+    parameters: Parameters, *, of_a1: bool = False
+) -> list[dict[str, Any]]:
     """Symbol, meaning, value and unit of each parameter, or of those that enter A1 alone.
 
     A parameter for which the file of a law stands has no row.
@@ -139,11 +151,15 @@ def parameter_table(parameters: Parameters, *, of_a1: bool = False) -> list[dict
     return [
         {
             "symbol": TABLE[name].symbol,
-            "meaning": TABLE[name].meaning.partition(":")[0] if law else TABLE[name].meaning,
+            "meaning": TABLE[name].meaning.partition(":")[0]
+            if law
+            else TABLE[name].meaning,
             "value": law_in_words(value) if law else value,
             "unit": law.TABLE_UNITS * law_in_words(value).startswith("table")
             if law
-            else re.sub(r"-\d", lambda found: found[0].translate(RAISED), TABLE[name].units),
+            else re.sub(
+                r"-\d", lambda found: found[0].translate(RAISED), TABLE[name].units
+            ),
         }
         for name, value in parameters.as_dict().items()
         for law in [TABLE[name].laws]
@@ -163,7 +179,9 @@ def title(name: str) -> str:
 def made_files(table: Mapping[str, Mapping[str, Any]]) -> dict[str, Made]:
     """``Made`` records from the plain table that :mod:`squealpipe.study.report.lineage` gives."""
     return {
-        name: Made(path=Path(row["path"]), rule=row["rule"], datasets=tuple(row["datasets"]))
+        name: Made(
+            path=Path(row["path"]), rule=row["rule"], datasets=tuple(row["datasets"])
+        )
         for name, row in table.items()
     }
 

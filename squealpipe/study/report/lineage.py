@@ -13,7 +13,11 @@ def lineage(rules: Iterable[Any], folder: str) -> dict[str, dict[str, Any]]:
     for rule in rules:
         read = sorted(set(_names(rule.input, folder)))
         for name in _names(rule.output, folder):
-            found[name] = {"path": f"{folder}{name}.nc", "rule": rule.name, "datasets": read}
+            found[name] = {
+                "path": f"{folder}{name}.nc",
+                "rule": rule.name,
+                "datasets": read,
+            }
     return found
 
 

@@ -19,7 +19,15 @@ def numbers(run: Run) -> dict[str, float | str]:
     """Name in ``templates/narrative.typ`` → number; percentages are between 0 and 100."""
     return {
         key: value.item() if isinstance(value, np.generic | xr.DataArray) else value
-        for part in (_verdicts, _inferred, _growth, _linear, _valid, _bounded, _motions_and_shares)
+        for part in (
+            _verdicts,
+            _inferred,
+            _growth,
+            _linear,
+            _valid,
+            _bounded,
+            _motions_and_shares,
+        )
         for key, value in part(run).items()
     }
 
@@ -50,7 +58,9 @@ def _inferred(run: Run) -> dict[str, Any]:
 
 def _growth(run: Run) -> dict[str, Any]:
     unit, preload = run.parameters.time_unit, run.parameters.preload
-    whirl = run["whirl"].sortby(abs(abs(run["whirl"].belt_speed) - abs(run.parameters.belt_speed)))
+    whirl = run["whirl"].sortby(
+        abs(abs(run["whirl"].belt_speed) - abs(run.parameters.belt_speed))
+    )
     short, long = run["simulate/F3"], run["simulate/F3_long"]
     return {
         "F3_size": abs(short.x).max() / preload,
@@ -59,7 +69,8 @@ def _growth(run: Run) -> dict[str, Any]:
         "whirl_slope": whirl.slope,
         "F3_long_size": abs(long.x).max() / preload,
         "F3_long_time": long.time[-1] / unit,
-        "one_sign_F3_long_size": abs(run["corrected/simulate/F3_long"].x).max() / preload,
+        "one_sign_F3_long_size": abs(run["corrected/simulate/F3_long"].x).max()
+        / preload,
     }
 
 
@@ -69,7 +80,10 @@ def _linear(run: Run) -> dict[str, Any]:
     beside, sliding = run["corrected/stability_map"], run["corrected/quasi_static_map"]
     printed = (beside.regime_linear > 0) & (sliding.possible_as_printed == 1)
     omega = run["natural_frequencies"].omega
-    falls = omega.sel(contact_state="separated") - omega.sel(contact_state="contact") < -NO_SHIFT
+    falls = (
+        omega.sel(contact_state="separated") - omega.sel(contact_state="contact")
+        < -NO_SHIFT
+    )
     return {
         "one_sign_sliding_printed": printed.sum(),
         **{f"omega{mode}_falls": 100 * falls.sel(mode=mode).mean() for mode in (1, 2)},
@@ -94,7 +108,10 @@ def _bounded(run: Run) -> dict[str, Any]:
     transient, unit = run["transient"], run.parameters.time_unit
     lifetimes = transient.lifetime.values
     ended = np.isfinite(lifetimes)
-    branches = {name: run[f"backbone/{name}_mode{i}"].omega for name, i in (("F10", 2), ("F13", 1))}
+    branches = {
+        name: run[f"backbone/{name}_mode{i}"].omega
+        for name, i in (("F10", 2), ("F13", 1))
+    }
     return {
         "F4_size": abs(run["simulate/F4"].x).max() / run.parameters.preload,
         "transient_runs": lifetimes.size,
@@ -132,5 +149,7 @@ def _motions_and_shares(run: Run) -> dict[str, Any]:
         "far_short": far[0],
         "far_long": far[-1],
         "growing_starts": 100
-        * run["verdict_robustness"].share.sel(statement="F3", variant="starts within 1 % of l_pre"),
+        * run["verdict_robustness"].share.sel(
+            statement="F3", variant="starts within 1 % of l_pre"
+        ),
     }

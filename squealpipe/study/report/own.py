@@ -11,7 +11,12 @@ from squealpipe.parameters import Parameters
 from squealpipe.schema.own import NUMBERS
 from squealpipe.study.claims.evidence import Run
 from squealpipe.study.figures.comparison.model_ladder import QUESTION_NAMES
-from squealpipe.study.report.content import Made, changed_rows, parameter_table, pictures
+from squealpipe.study.report.content import (
+    Made,
+    changed_rows,
+    parameter_table,
+    pictures,
+)
 from squealpipe.study.report.sections import OWN
 from squealpipe.text import number
 
@@ -40,7 +45,9 @@ def gather_own(
         "propensity_end": float(spread.t_end),
         "distributions": [
             {"name": name, "words": f"{given.pop('distribution')}, {_listed(given)}"}
-            for name, given in json.loads(spread.attrs["arguments"])["distributions"].items()
+            for name, given in json.loads(spread.attrs["arguments"])[
+                "distributions"
+            ].items()
         ],
         "shares": [
             {
@@ -59,10 +66,17 @@ def _scene(table: xr.Dataset, run: Run) -> dict[str, Any]:
     runs = [
         {
             "motion": str(here.motion.item()),
-            **{name: _finite(here[name]) for name in (*NUMBERS, "predictability_horizon")},
-            "frequencies": [value for value in here.dominant_frequency.values if value > 0],
+            **{
+                name: _finite(here[name])
+                for name in (*NUMBERS, "predictability_horizon")
+            },
+            "frequencies": [
+                value for value in here.dominant_frequency.values if value > 0
+            ],
         }
-        for here in (table.isel(variant=index) for index in range(table.sizes["variant"]))
+        for here in (
+            table.isel(variant=index) for index in range(table.sizes["variant"])
+        )
     ]
     return {
         "name": str(table.scene.item()),
@@ -76,7 +90,9 @@ def _scene(table: xr.Dataset, run: Run) -> dict[str, Any]:
             }
             for name in table.question.values
         ],
-        **boundaries(run, str(table.scene.item()), float(table.alpha1), float(table.alpha2)),
+        **boundaries(
+            run, str(table.scene.item()), float(table.alpha1), float(table.alpha2)
+        ),
     }
 
 
@@ -103,7 +119,9 @@ def boundaries(
         here = bool(cells[nearest])
         others = distance[cells != here]
         found[name] = here if inside else None
-        found[f"{name}_boundary"] = float(others.min()) if inside and others.size else None
+        found[f"{name}_boundary"] = (
+            float(others.min()) if inside and others.size else None
+        )
     found["lost_share"] = float(100 * validity.separates.mean())
     if "validity_boundary" in run:
         found["lost_share"] = 100 * (1.0 - float(run["validity_boundary"].kept_share))
@@ -111,7 +129,9 @@ def boundaries(
             measured = run[f"validity_distance/{scene}"]
             found["lost"] = not bool(measured.kept)
             found["lost_boundary"] = _finite(np.degrees(measured.distance))
-    found["cell"] = float(np.degrees(validity.alpha1.values[1] - validity.alpha1.values[0]))
+    found["cell"] = float(
+        np.degrees(validity.alpha1.values[1] - validity.alpha1.values[0])
+    )
     return found
 
 
@@ -127,7 +147,9 @@ def _leading(row: xr.Dataset) -> str:
 
 
 def _listed(numbers: Mapping[str, float]) -> str:
-    return ", ".join(f"{name.replace('_', ' ')} {number(n)}" for name, n in numbers.items())
+    return ", ".join(
+        f"{name.replace('_', ' ')} {number(n)}" for name, n in numbers.items()
+    )
 
 
 def _finite(value: Any) -> float | None:

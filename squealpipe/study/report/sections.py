@@ -20,8 +20,12 @@ COMPARED = {
     "fig04": Section("Fig. 4: limit cycle", ("fig04",)),
     "fig05": Section("Fig. 5: springs along the belt", ("fig05",)),
     "fig06": Section("Fig. 6: quasi-static sliding and linear stability", ("fig06",)),
-    "fig07": Section("Fig. 7: where the linear analysis is valid", ("fig07", "refined_boundary")),
-    "fig08": Section("Figs. 8 and 9: natural frequencies", ("fig08", "fig09", "frequency_shift")),
+    "fig07": Section(
+        "Fig. 7: where the linear analysis is valid", ("fig07", "refined_boundary")
+    ),
+    "fig08": Section(
+        "Figs. 8 and 9: natural frequencies", ("fig08", "fig09", "frequency_shift")
+    ),
     "fig10": Section("Figs. 10–12: three alike frequency responses", ("fig10_to_12",)),
     "fig13": Section("Fig. 13: modes switched", ("fig13",)),
 }
@@ -47,7 +51,8 @@ SUPPLEMENT = {
     "parameters": Section("How the parameters were inferred", ("parameter_inference",)),
     "harmonics": Section("Harmonic balance against exact orbits", ("harmonic_forms",)),
     "speed": Section(
-        "Speed against accuracy", ("work_precision_benchmark", "work_precision_frequencies")
+        "Speed against accuracy",
+        ("work_precision_benchmark", "work_precision_frequencies"),
     ),
     "failures": Section("Where methods fail", ("failure_atlas",)),
     "ladder": Section("No more model than a scene needs", ("model_ladder",)),
@@ -62,5 +67,12 @@ FIGURES = tuple(
 )
 """All figures, in order."""
 
-OWN = ("own_model", "own_motion", "own_map", "regime_charts", "propensity", "critical_friction")
+OWN = (
+    "own_model",
+    "own_motion",
+    "own_map",
+    "regime_charts",
+    "propensity",
+    "critical_friction",
+)
 """Figures of the report of a study of one's own."""

@@ -61,9 +61,13 @@ def margins(cycle: Cycle) -> dict[Margin, float]:
                 inside = [
                     sign * turn.value
                     for turn in path.turns[first + s]
-                    if turn.leg == leg and turn.is_minimum == (sign > 0) and turn.time > begin
+                    if turn.leg == leg
+                    and turn.is_minimum == (sign > 0)
+                    and turn.time > begin
                 ]
-                found[Margin(Kind.touch, leg, int(s))] = min(inside, default=np.inf) / size[s]
+                found[Margin(Kind.touch, leg, int(s))] = (
+                    min(inside, default=np.inf) / size[s]
+                )
                 ends = [] if fresh else [sign * bounds[s][0][leg]]
                 if s != event.surface:
                     ends.append(sign * bounds[s][1][leg])
@@ -86,7 +90,9 @@ def _conditions(cycle: Cycle, leg: int) -> dict[Margin, float]:
     event, found, number = cycle.map.events[leg], {}, 0
     if event.switch == FREE:
         return {}
-    for regime, condition, kind in cycle.map.flow.system.traced.switches[event.switch].targets:
+    for regime, condition, kind in cycle.map.flow.system.traced.switches[
+        event.switch
+    ].targets:
         chosen = (regime, kind) == (event.after, event.kind)
         if condition is not None:
             if condition.varies:

@@ -22,7 +22,12 @@ from squealpipe.methods.progress import alone
 from squealpipe.schema import Outcome, flag_table
 from squealpipe.systems import runs
 from squealpipe.systems.cycles.admissible import MARGIN_ROUND_OFF, margins
-from squealpipe.systems.cycles.cycle import columns, describe_columns, find_cycle, outcome_of
+from squealpipe.systems.cycles.cycle import (
+    columns,
+    describe_columns,
+    find_cycle,
+    outcome_of,
+)
 from squealpipe.systems.cycles.event_map import FREE, Cycle, EventMap, Section
 from squealpipe.systems.cycles.event_order import Turn, label_of, least_margin
 from squealpipe.systems.cycles.flow import Flow, Vector
@@ -159,8 +164,11 @@ class Follower:
         return max(min(way, 1.0), len(self.points) / self.most)
 
     def _is_at_end(self, parameter: float) -> bool:
-        return any(abs(parameter - edge) <= 1e-12 * max(abs(edge), 1e-300)
-                   for edge in (self.low, self.high) if math.isfinite(edge))  # fmt: skip
+        return any(
+            abs(parameter - edge) <= 1e-12 * max(abs(edge), 1e-300)
+            for edge in (self.low, self.high)
+            if math.isfinite(edge)
+        )
 
     def _add(self, point: Point) -> None:
         self.points.append(point)
@@ -191,7 +199,9 @@ class Follower:
 
     def _is_met(self, point: Point) -> bool:
         """Whether a fold is where the branch ends on a cycle of a part of the period."""
-        near = min(float(np.linalg.norm(point.cycle.after_part(n))) for n in (2, 3)) < _MET
+        near = (
+            min(float(np.linalg.norm(point.cycle.after_part(n))) for n in (2, 3)) < _MET
+        )
         return near and point.label == Label.fold
 
     def _reason(self) -> Outcome:
@@ -201,7 +211,11 @@ class Follower:
             return Outcome.equilibrium
         second = float(np.abs(cycle.nontrivial - 1.0).min(initial=1.0))
         parts = [float(np.linalg.norm(cycle.after_part(n))) for n in (2, 3)]
-        return Outcome.tongue_end if min(parts) < _MET and second < _MET else Outcome.branch_lost
+        return (
+            Outcome.tongue_end
+            if min(parts) < _MET and second < _MET
+            else Outcome.branch_lost
+        )
 
     def _has_shrunk(self, cycle: Cycle, share: float = _AT_REST) -> bool:
         """Whether a cycle without forcing is next to a state of rest."""
@@ -218,7 +232,9 @@ class Follower:
         sizes, last = sizes_of(self.shapes), self.points[-1].parameter
         fit = np.flatnonzero(sizes > 0.2 * _AT_REST * sizes.max())[-3:]
         shapes = []
-        for state, equations in ((self.points[i].state, self.points[i].cycle.map) for i in fit):
+        for state, equations in (
+            (self.points[i].state, self.points[i].cycle.map) for i in fit
+        ):
             found = AT.solve(equations, state.point, state.tangent, 0.0)
             if found is not None:
                 shapes.append(self._shape(Cycle.at(equations, found.point), found))
@@ -248,15 +264,26 @@ class Follower:
         return None
 
     def _strays(
-        self, state: ContinuationState, cycle: Cycle, following: ContinuationState, reached: Cycle
+        self,
+        state: ContinuationState,
+        cycle: Cycle,
+        following: ContinuationState,
+        reached: Cycle,
     ) -> bool:
         """Whether a step is too long to be sure of what lies in it."""
-        if reached.period <= 0.0 or float(following.tangent @ state.tangent) < STEPS.least_cosine:
+        if (
+            reached.period <= 0.0
+            or float(following.tangent @ state.tangent) < STEPS.least_cosine
+        ):
             return True
         section = cycle.map.section
         if section is not None and float(section.normal @ reached.heading) <= 0.0:
             return True  # beyond a state of rest
-        if not self.low - MARGIN_ROUND_OFF <= reached.followed[-1] <= self.high + MARGIN_ROUND_OFF:
+        if (
+            not self.low - MARGIN_ROUND_OFF
+            <= reached.followed[-1]
+            <= self.high + MARGIN_ROUND_OFF
+        ):
             return True
         if state.step < _COARSE:
             return False
@@ -268,11 +295,19 @@ class Follower:
         return bool(small and multiplier_change(cycle, reached) > _CHANGE)
 
     def _examined(
-        self, state: ContinuationState, cycle: Cycle, following: ContinuationState, reached: Cycle
+        self,
+        state: ContinuationState,
+        cycle: Cycle,
+        following: ContinuationState,
+        reached: Cycle,
     ) -> Step | None:
         """A step with what lies in it; None where that is not clear."""
         line = Line(
-            AT, cycle.map, (state, cycle), (following, reached), partial(Cycle.at, cycle.map)
+            AT,
+            cycle.map,
+            (state, cycle),
+            (following, reached),
+            partial(Cycle.at, cycle.map),
         )
         before, after = (least_margin(None, each) for each in (cycle, reached))
         last = 1.0 if after >= -MARGIN_ROUND_OFF else line.root(least_margin)
@@ -286,7 +321,9 @@ class Follower:
         if near and share is None and state.step > _COARSE:
             return None
         if share is not None:
-            special = [Point(*line.at(at), label) for at, label in found if at < share - _CLOSE]
+            special = [
+                Point(*line.at(at), label) for at, label in found if at < share - _CLOSE
+            ]
             there = line.at(share)
             return Step([*special, Point(*there)], *there, end=Outcome.tongue_end)
         special = [Point(*line.at(share), label) for share, label in found]
@@ -317,7 +354,9 @@ class Follower:
                     found.append((share, label))
         return sorted(found)
 
-    def _changed(self, line: Line, found: list[tuple[float, Label]], last: float) -> Step | None:
+    def _changed(
+        self, line: Line, found: list[tuple[float, Label]], last: float
+    ) -> Step | None:
         """A step to where the order of the events changes, and round that; None if unclear."""
         state, there = line.known[0.0][0], line.at(last)
         if self._has_shrunk(there[1]):
@@ -328,13 +367,17 @@ class Follower:
         special = [Point(*line.at(share), each) for share, each in found]
         special += [Point(*there, label)] if label or turned is None else []
         if turned is not None:
-            return Step(special, replace(turned[0], step=state.step), turned[1], shows=not label)
+            return Step(
+                special, replace(turned[0], step=state.step), turned[1], shows=not label
+            )
         # no change of the events that is understood: nearer, perhaps
         if state.step > 1e3 * STEPS.shortest_step:
             return None
         return Step(special, *there, end=Outcome.tangency if label else self._reason())
 
-    def _shorter(self, line: Line, cycle: Cycle, reached: Cycle) -> tuple[bool, float | None]:
+    def _shorter(
+        self, line: Line, cycle: Cycle, reached: Cycle
+    ) -> tuple[bool, float | None]:
         """Whether a cycle of a part of the period may lie in a step, and where it is met."""
         for parts in (2, 3):
             offset, later = cycle.after_part(parts), reached.after_part(parts)
@@ -344,15 +387,21 @@ class Follower:
                 return True, None
         return False, None
 
-    def _next_length(self, state: ContinuationState, following: ContinuationState) -> float:
+    def _next_length(
+        self, state: ContinuationState, following: ContinuationState
+    ) -> float:
         """The step after this one: longer, but not so that the branch turns by too much in it."""
         most = np.arccos(STEPS.least_cosine)
         turn = float(np.linalg.norm(following.tangent - state.tangent))
         growth = _GROWTH if following.iterations <= _EASY else 1.0
-        length = state.step * float(np.clip(_TURN * most / max(turn, 1e-300), 0.5, growth))
+        length = state.step * float(
+            np.clip(_TURN * most / max(turn, 1e-300), 0.5, growth)
+        )
         return min(length, STEPS.longest_step)
 
-    def _edge(self, equations: EventMap, state: ContinuationState) -> ContinuationState | None:
+    def _edge(
+        self, equations: EventMap, state: ContinuationState
+    ) -> ContinuationState | None:
         """The point at the end of the parameter's range, if the next step would leave it."""
         unit = float(equations.units[-1])
         length = state.step * (1.0 + float(np.linalg.norm(state.point)))
@@ -422,7 +471,9 @@ def started(system: System, start: xr.Dataset) -> Cycle:
 
     names = [f"{name}_start" for name in system.states]
     if not isinstance(start, xr.Dataset) or any(name not in start for name in names):
-        raise ValueError("start: a dataset of limit_cycle or one point of a branch is needed")
+        raise ValueError(
+            "start: a dataset of limit_cycle or one point of a branch is needed"
+        )
     if start[names[0]].ndim:
         raise ValueError("start has many points; give one, as start.isel(point=…)")
     values = {**system.parameters, **json.loads(start.attrs["parameters"])}
@@ -431,9 +482,13 @@ def started(system: System, start: xr.Dataset) -> Cycle:
     if not np.isfinite(state).all():
         raise ValueError("start holds no cycle")
     cycle, _ = find_cycle(
-        system, values, state, guess=True, periods=int(start["periods"]),
+        system,
+        values,
+        state,
+        guess=True,
+        periods=int(start["periods"]),
         regime=int(start["start_regime"]),
-    )  # fmt: skip
+    )
     if cycle is None:
         raise ValueError("no cycle is found from start")
     return cycle
@@ -464,7 +519,9 @@ def doubled_start(point: Point) -> tuple[ContinuationState, Cycle] | None:
         shifts.append(shift)
         moved = slopes[:, :n] @ shift
         hit = event.switch != FREE
-        delays.append(-float(crossing.height_by_state @ moved) / crossing.speed if hit else 0.0)
+        delays.append(
+            -float(crossing.height_by_state @ moved) / crossing.speed if hit else 0.0
+        )
         shift = crossing.saltation @ moved if hit else moved
     # a leg begins when the event before it comes, which is late by its own delay
     late = np.array([-delays[-1], *delays])
@@ -472,23 +529,35 @@ def doubled_start(point: Point) -> tuple[ContinuationState, Cycle] | None:
     for leg, begun in enumerate(late[:-1]):
         event = equations.events[leg]
         rate = equations.flow.field(
-            parts.values, event.before, parts.states[leg], parts.start + cycle.clocks[leg]
+            parts.values,
+            event.before,
+            parts.states[leg],
+            parts.start + cycle.clocks[leg],
         )
         starts.append(shifts[leg] + rate * begun)
-    twice = replace(equations, events=equations.events * 2, periods=2 * equations.periods)
+    twice = replace(
+        equations, events=equations.events * 2, periods=2 * equations.periods
+    )
     followed = cycle.followed
     base = twice.pack(
-        np.tile(parts.states, (2, 1)), np.tile(parts.durations, 2), parts.start, followed
+        np.tile(parts.states, (2, 1)),
+        np.tile(parts.durations, 2),
+        parts.start,
+        followed,
     )
     direction = twice.pack(
-        np.concatenate([starts, np.negative(starts)]), np.concatenate([lengths, -lengths]),
-        float(late[0]), 0.0 * followed,
-    )  # fmt: skip
+        np.concatenate([starts, np.negative(starts)]),
+        np.concatenate([lengths, -lengths]),
+        float(late[0]),
+        0.0 * followed,
+    )
     if twice.section is not None:
         direction[:n] -= twice.section.normal * (twice.section.normal @ direction[:n])
     direction /= np.linalg.norm(direction)
     for length in (1e-3, 3e-3, 1e-2):
-        state = ALONG.solve(twice, base + length * direction, direction, STEPS.first_step)
+        state = ALONG.solve(
+            twice, base + length * direction, direction, STEPS.first_step
+        )
         if state is not None:
             return state, Cycle.at(twice, state.point)
     return None
@@ -508,24 +577,35 @@ def in_rows(
         if point.label not in {Label.regular, Label.end}:
             row["stable"] = rows[max(i - 1, 0)]["stable"]
         if point.label in {Label.grazing, Label.stick_onset}:
-            row |= {name: row[name] * np.nan for name in ("multiplier_real", "multiplier_imag")}
+            row |= {
+                name: row[name] * np.nan
+                for name in ("multiplier_real", "multiplier_imag")
+            }
     return rows
 
 
-def dataset(system: System, points: list[Point], end: int, parameter: str) -> xr.Dataset:
+def dataset(
+    system: System, points: list[Point], end: int, parameter: str
+) -> xr.Dataset:
     """A branch as a dataset."""
     rows = in_rows(points, lambda cycle: columns(cycle, system))
     found: dict[str, Any] = describe_columns(system, rows, "point")
     values = points[0].cycle.parts.values if points else {}
     followed = np.array([point.parameter for point in points])
-    found[parameter] = ("point", followed, runs.labels(f"{parameter} along the branch", "1"))
+    found[parameter] = (
+        "point",
+        followed,
+        runs.labels(f"{parameter} along the branch", "1"),
+    )
     labels = [point.label for point in points]
     found["label"] = runs.flag(
         "what is special about the point", "point", labels, flag_table(Label)
     )
     found["events"] = (
-        "point", [len(p.cycle.events) for p in points], runs.labels("events of the cycle", "1"),
-    )  # fmt: skip
+        "point",
+        [len(p.cycle.events) for p in points],
+        runs.labels("events of the cycle", "1"),
+    )
     starts = [point.cycle.start() for point in points]
     for i, name in enumerate(system.states):
         first = np.array([state[i] for state, _ in starts])
@@ -533,7 +613,9 @@ def dataset(system: System, points: list[Point], end: int, parameter: str) -> xr
         found[f"{name}_start"] = ("point", first, label)
     names = dict(enumerate(system.regimes))
     regimes = [regime for _, regime in starts]
-    found["start_regime"] = runs.flag("regime at t = 0 of the cycle", "point", regimes, names)
+    found["start_regime"] = runs.flag(
+        "regime at t = 0 of the cycle", "point", regimes, names
+    )
     periods = points[0].cycle.map.periods or 1 if points else 1
     found["periods"] = ((), periods, runs.labels("forcing periods", "1"))
     found["outcome"] = outcome_of(system, "point", np.zeros(len(points), int))

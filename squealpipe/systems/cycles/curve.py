@@ -21,7 +21,13 @@ import xarray as xr
 from squealpipe.methods.continuation import ContinuationState, PseudoArclength
 from squealpipe.schema import flag_table
 from squealpipe.systems import runs
-from squealpipe.systems.cycles.admissible import MARGIN_ROUND_OFF, Kind, Margin, is_motion, margins
+from squealpipe.systems.cycles.admissible import (
+    MARGIN_ROUND_OFF,
+    Kind,
+    Margin,
+    is_motion,
+    margins,
+)
 from squealpipe.systems.cycles.branch import started
 from squealpipe.systems.cycles.event_map import FREE, Cycle, Event, EventMap, Section
 from squealpipe.systems.cycles.event_order import label_of, order_of, run_of
@@ -44,7 +50,10 @@ ENDS = ("point_limit", "end_of_range", "curve_lost", "multipliers_are_real")
 _NO_MARGIN = Margin(Kind.length, -1, FREE)
 RETURNS = {Label.fold: 0.0, Label.period_doubling: np.pi, Label.torus: np.nan}
 """By which angle a disturbance is turned in a period; NaN where it is an unknown."""
-GRAZINGS = {Label.fold: Meeting.fold_grazing, Label.period_doubling: Meeting.flip_grazing}
+GRAZINGS = {
+    Label.fold: Meeting.fold_grazing,
+    Label.period_doubling: Meeting.flip_grazing,
+}
 
 
 Test = Callable[[Vector], float]
@@ -86,7 +95,9 @@ class Curve:
     def factor(self, point: Vector) -> complex:
         """What multiplies a disturbance in a period."""
         angle = RETURNS[self.label]
-        return complex(np.exp(1j * point[-1])) if np.isnan(angle) else float(np.cos(angle))
+        return (
+            complex(np.exp(1j * point[-1])) if np.isnan(angle) else float(np.cos(angle))
+        )
 
     def determinant(self, point: Vector, factor: float) -> float:
         """Zero where a disturbance returns multiplied by the factor."""
@@ -111,9 +122,13 @@ class Curve:
         jacobian = np.pad(jacobian, ((0, 0), (0, more)))
         if not np.isfinite(jacobian).all() or not np.isfinite(values).all():
             nothing = np.full(1 + more, np.nan)
-            return np.append(values, nothing), np.vstack([jacobian, jacobian[: 1 + more]])
+            return np.append(values, nothing), np.vstack(
+                [jacobian, jacobian[: 1 + more]]
+            )
         singular = self.label in RETURNS
-        value, row = self._singular(point, jacobian) if singular else self._margin(point)
+        value, row = (
+            self._singular(point, jacobian) if singular else self._margin(point)
+        )
         return np.append(values, value), np.vstack([jacobian, row])
 
     def _null(self, jacobian: Vector, factor: complex) -> Iterator[Any]:
@@ -122,7 +137,9 @@ class Curve:
         matrix: Any = np.zeros((size + 1, size + 1), type(factor))
         matrix[:size, :size] = self.returning(jacobian, factor)
         matrix[:size, size], matrix[size, :size] = left, right
-        return (np.linalg.solve(each, np.eye(size + 1)[-1]) for each in (matrix, matrix.T))
+        return (
+            np.linalg.solve(each, np.eye(size + 1)[-1]) for each in (matrix, matrix.T)
+        )
 
     def _singular(self, point: Vector, jacobian: Vector) -> tuple[Any, Vector]:
         size, factor = self.map.size, self.factor(point)
@@ -137,7 +154,9 @@ class Curve:
         sine, cosine = np.sin(point[-1]), np.cos(point[-1])
         odd = row.imag / sine
         odd[-1] -= null[-1].imag * cosine / sine**2
-        return np.array([null[-1].real, null[-1].imag / sine]), np.array([row.real, odd])
+        return np.array([null[-1].real, null[-1].imag / sine]), np.array(
+            [row.real, odd]
+        )
 
     def _along(self, point: Vector, direction: Vector) -> Vector:
         """How the Jacobian changes along a direction of the cycle's unknowns."""
@@ -158,7 +177,9 @@ class Curve:
         time = parts.start + float(parts.durations[: leg + 1].sum())
         flow, n = equations.flow, equations.flow.size
         condition = self.own.which if self.own.kind == Kind.condition else None
-        value, *slopes = flow.quantity(parts.values, event, condition, parts.path.ends[leg], time)
+        value, *slopes = flow.quantity(
+            parts.values, event, condition, parts.path.ends[leg], time
+        )
         by_end, by_time = equations.by_unknowns(parts, leg)
         row = slopes[:n] @ by_end
         if flow.timed:
@@ -221,7 +242,11 @@ def _curve_of(cycle: Cycle, label: Label) -> tuple[Curve, Vector]:
         return Curve(equations, label), np.append(cycle.point, abs(np.angle(first)))
     if label in RETURNS:
         return Curve(equations, label), cycle.point
-    near = {k: abs(v) for k, v in margins(cycle).items() if abs(v) < _NEAR and k.kind != Kind.edge}
+    near = {
+        k: abs(v)
+        for k, v in margins(cycle).items()
+        if abs(v) < _NEAR and k.kind != Kind.edge
+    }
     near = {k: v for k, v in near.items() if label_of(cycle, {k: 0.0}) == label}
     if not near:
         raise ValueError(f"start: no condition of {label.name} just holds there")
@@ -230,7 +255,10 @@ def _curve_of(cycle: Cycle, label: Label) -> tuple[Curve, Vector]:
         return Curve(equations, label, own), cycle.point
     # the leg is cut where it touches: there the switch's event has no speed, if it stays there
     parts, leg, event = cycle.parts, own.leg, equations.events[own.leg]
-    first, traced = len(equations.flow.system.traced.variables), equations.flow.system.traced
+    first, traced = (
+        len(equations.flow.system.traced.variables),
+        equations.flow.system.traced,
+    )
     inside = [turn for turn in parts.path.turns[first + own.which] if turn.leg == leg]
     turn = min(inside, key=lambda each: abs(each.value))
     falls = traced.falls[event.before, own.which] >= 0
@@ -239,9 +267,13 @@ def _curve_of(cycle: Cycle, label: Label) -> tuple[Curve, Vector]:
     stays = len(targets) == 1 and targets[0][0] == event.before
     kind = targets[0][2] if stays else FREE
     touch = Event(
-        number if stays else FREE, own.which, 1.0 if falls else -1.0, event.before, event.before,
+        number if stays else FREE,
+        own.which,
+        1.0 if falls else -1.0,
+        event.before,
+        event.before,
         kind,
-    )  # fmt: skip
+    )
     states, _ = cycle.states_at(np.array([cycle.clocks[leg] + turn.time]))
     start, durations = parts.start, parts.durations
     if event.surface == FREE:
@@ -282,12 +314,17 @@ class _Way:
     def inside(self, point: Vector) -> float:
         """Distance from the limits, over the units, and of a torus from real multipliers."""
         equations = self.curve.map
-        values = dict(zip(equations.flow.followed, point[equations.size :], strict=False))
+        values = dict(
+            zip(equations.flow.followed, point[equations.size :], strict=False)
+        )
         units = dict(zip(equations.flow.followed, equations.units, strict=True))
         found = [
             side
             for name, (low, high) in self.limits.items()
-            for side in (values[name] - low / units[name], high / units[name] - values[name])
+            for side in (
+                values[name] - low / units[name],
+                high / units[name] - values[name],
+            )
         ]
         return float(min([*found, self._turns(point)]))
 
@@ -304,9 +341,12 @@ class _Way:
                 self.end = "curve_lost"
                 return
             line = Line(
-                self.algorithm, self.curve, (state, self._cycle(state)),
-                (following, self._cycle(following)), self.curve.cycle,
-            )  # fmt: skip
+                self.algorithm,
+                self.curve,
+                (state, self._cycle(state)),
+                (following, self._cycle(following)),
+                self.curve.cycle,
+            )
             found = self._met(line)
             end = self._end(line)
             for share in sorted(found):
@@ -314,7 +354,9 @@ class _Way:
                     yield self._point(line.at(share)[0], found[share])
             if end is not None:
                 changed = self._point(line.at(end[0])[0], end[1])
-                following = self._goes_on(line, end[0]) if end[2].startswith("order") else None
+                following = (
+                    self._goes_on(line, end[0]) if end[2].startswith("order") else None
+                )
                 if following is not None and end[1] == Meeting.end:
                     changed = replace(changed, label=Meeting.regular)
                 yield changed
@@ -332,7 +374,9 @@ class _Way:
             if test(first) * test(last) < 0.0:
                 share = line.root(partial(_at_point, test))
                 # with two states folds and period doublings meet a grazing at the same point
-                if share is not None and all(abs(share - other) > 1e-6 for other in found):
+                if share is not None and all(
+                    abs(share - other) > 1e-6 for other in found
+                ):
                     found[share] = label
         return found
 
@@ -349,14 +393,22 @@ class _Way:
                 continue
             self.curve = replace(old, map=found[0])
             angle = state.point[len(old.known(state.point)) :]
-            guess, normal = np.append(found[1], angle), np.zeros(len(found[1]) + len(angle))
+            guess, normal = (
+                np.append(found[1], angle),
+                np.zeros(len(found[1]) + len(angle)),
+            )
             size = found[0].size
             normal[size : size + 2] = state.tangent[old.map.size : old.map.size + 2]
             self.curve.renew(guess)
-            algorithm = replace(self.algorithm, settings=replace(PRECISE, max_iterations=20))
+            algorithm = replace(
+                self.algorithm, settings=replace(PRECISE, max_iterations=20)
+            )
             new = algorithm.solve(self.curve, guess, normal, STEPS.first_step)
             if new is not None:
-                moved = new.point[size : size + 2] - here[0].point[old.map.size : old.map.size + 2]
+                moved = (
+                    new.point[size : size + 2]
+                    - here[0].point[old.map.size : old.map.size + 2]
+                )
                 near = np.abs(moved).max() < _JUMP * line.reach + 10.0 * beyond
                 if near and self._is_cycle(new) and is_motion(self._cycle(new)):
                     return new
@@ -371,9 +423,15 @@ class _Way:
         ends, point = [], line.known[1.0][0].point
         if self.inside(point) <= 0.0:
             share = line.root(partial(_at_point, self.inside))
-            share, met, why = 1.0 if share is None else share, Meeting.end, "end_of_range"
+            share, met, why = (
+                1.0 if share is None else share,
+                Meeting.end,
+                "end_of_range",
+            )
             if self._turns(point) <= 0.0:
-                met = Meeting.resonance_1_1 if point[-1] < 1.0 else Meeting.resonance_1_2
+                met = (
+                    Meeting.resonance_1_1 if point[-1] < 1.0 else Meeting.resonance_1_2
+                )
                 why = "multipliers_are_real"
             ends.append((share, met, why))
         least, key = self.curve.least_margin(point)
@@ -381,7 +439,9 @@ class _Way:
             share = line.root(lambda there, _: self.curve.least_margin(there.point)[0])
             share = 0.0 if share is None else share
             state, cycle = line.at(share)
-            ends.append((share, *self._changed(cycle, self.curve.least_margin(state.point)[1])))
+            ends.append(
+                (share, *self._changed(cycle, self.curve.least_margin(state.point)[1]))
+            )
         return min(ends, default=None)
 
     def _changed(self, cycle: Cycle, key: Margin | None) -> tuple[Meeting, str]:
@@ -401,7 +461,9 @@ class _Way:
         if key.kind in {Kind.touch, Kind.edge}:
             number = int(max(table[event.before, key.which] for table in watched))
         names = [*(each.name for each in system.switches), *system.stops]
-        return met, f"order_changes_{key.kind.name}_of_{names[number]}".replace(" ", "_")
+        return met, f"order_changes_{key.kind.name}_of_{names[number]}".replace(
+            " ", "_"
+        )
 
     def _cycle(self, state: ContinuationState) -> Cycle:
         return self.curve.cycle(state.point)
@@ -414,7 +476,10 @@ LABELS = (*RETURNS, Label.grazing, Label.stick_onset)
 
 
 def check(
-    known: Iterable[str], label: str, parameters: Sequence[str], to: Mapping[str, Sequence[float]]
+    known: Iterable[str],
+    label: str,
+    parameters: Sequence[str],
+    to: Mapping[str, Sequence[float]],
 ) -> None:
     """Refuse a curve that there is not."""
     names = [each.name for each in LABELS]
@@ -424,18 +489,24 @@ def check(
         raise ValueError(f"parameters = {parameters!r}: two names are needed")
     for name in parameters:
         if name not in known:
-            raise ValueError(f"parameter {name!r} is unknown; {suggestion(name, known)}")
+            raise ValueError(
+                f"parameter {name!r} is unknown; {suggestion(name, known)}"
+            )
     for name, limits in to.items():
         if name not in parameters:
             raise ValueError(f"to: {name!r} is unknown; {suggestion(name, parameters)}")
         if limits[0] >= limits[1]:
-            raise ValueError(f"to: {name} = {limits!r}: two numbers that ascend are needed")
+            raise ValueError(
+                f"to: {name} = {limits!r}: two numbers that ascend are needed"
+            )
 
 
 def point_of(start: xr.Dataset, label: str) -> xr.Dataset:
     """The first point of a branch with a label, or the one that is given."""
     if "label" not in start:
-        raise ValueError("start: a branch of cycle_branch or one of its points is needed")
+        raise ValueError(
+            "start: a branch of cycle_branch or one of its points is needed"
+        )
     at = np.flatnonzero(np.atleast_1d(start["label"].values) == Label[label])
     if not len(at):
         raise ValueError(f"start has no point of {label}")
@@ -479,18 +550,25 @@ def cycle_curve(
 
 
 def follow_curve(
-    cycle: Cycle, label: Label, parameters: Sequence[str],
-    limits: Mapping[str, tuple[float, float]], n_points: int,
+    cycle: Cycle,
+    label: Label,
+    parameters: Sequence[str],
+    limits: Mapping[str, tuple[float, float]],
+    n_points: int,
     tied: Mapping[str, str] | None = None,
-) -> tuple[list[Point], list[str]]:  # fmt: skip
+) -> tuple[list[Point], list[str]]:
     """The points of a curve through a cycle, and why it ended at both sides."""
     units = np.array([max(abs(cycle.parts.values[name]), 1e-3) for name in parameters])
     flow = Flow(cycle.map.flow.system, tuple(parameters), tied)
     curve, guess = _curve_of(Cycle.at(*cycle.followed_in(flow, units)), label)
     curve.renew(guess)
-    algorithm = PseudoArclength(replace(PRECISE, max_iterations=20), 0, own_tangent=True)
+    algorithm = PseudoArclength(
+        replace(PRECISE, max_iterations=20), 0, own_tangent=True
+    )
     normals = np.eye(len(guess))[[curve.map.size + 1, curve.map.size]]
-    starts = (algorithm.solve(curve, guess, normal, STEPS.first_step) for normal in normals)
+    starts = (
+        algorithm.solve(curve, guess, normal, STEPS.first_step) for normal in normals
+    )
     first = next((found for found in starts if found is not None), None)
     if first is None:
         raise ValueError(f"start: no curve of {label.name} is found there")
@@ -516,25 +594,40 @@ def follow_curve(
 
 
 def _dataset(
-    system: System, label: str, points: list[Point], parameters: Sequence[str], ends: list[str]
+    system: System,
+    label: str,
+    points: list[Point],
+    parameters: Sequence[str],
+    ends: list[str],
 ) -> xr.Dataset:
     found: dict[str, Any] = {}
     cycles = [point.cycle for point in points]
     for name in parameters:
         values = [cycle.parts.values[name] for cycle in cycles]
         found[name] = ("point", values, runs.labels(f"{name} along the curve", "1"))
-    periods, events = [cycle.period for cycle in cycles], [len(cycle.events) for cycle in cycles]
+    periods, events = (
+        [cycle.period for cycle in cycles],
+        [len(cycle.events) for cycle in cycles],
+    )
     found["period"] = ("point", periods, runs.labels("period", "s"))
     found["events"] = ("point", events, runs.labels("events of the cycle", "1"))
-    residuals, text = [p.residual for p in points], "largest equation left over, without units"
+    residuals, text = (
+        [p.residual for p in points],
+        "largest equation left over, without units",
+    )
     found["residual"] = ("point", residuals, runs.labels(text, "1"))
     labels, text = [point.label for point in points], "what else happens at the point"
     found["label"] = runs.flag(text, "point", labels, flag_table(Meeting))
     names = [*ENDS, *sorted(set(ends) - set(ENDS))]
     found["outcome"] = runs.flag(
-        "why the curve ended", "side", [names.index(end) for end in ends], dict(enumerate(names))
+        "why the curve ended",
+        "side",
+        [names.index(end) for end in ends],
+        dict(enumerate(names)),
     )
     attributes = runs.attributes(system, "cycle curve", cycles[0].parts.values, 1e-14)
     return xr.Dataset(
-        found, attrs=attributes | {"curve": label, "parameters_followed": " ".join(parameters)}
+        found,
+        attrs=attributes
+        | {"curve": label, "parameters_followed": " ".join(parameters)},
     )

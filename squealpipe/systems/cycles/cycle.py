@@ -14,7 +14,14 @@ from squealpipe.methods.taylor.layout import STOPPED
 from squealpipe.schema import Outcome, flag_table, in_words
 from squealpipe.systems import runs
 from squealpipe.systems.cycles.admissible import is_motion
-from squealpipe.systems.cycles.event_map import FREE, Cycle, Event, EventMap, Section, scale_of
+from squealpipe.systems.cycles.event_map import (
+    FREE,
+    Cycle,
+    Event,
+    EventMap,
+    Section,
+    scale_of,
+)
 from squealpipe.systems.cycles.flow import Flow, Vector
 from squealpipe.systems.runs import Motion, single_run
 from squealpipe.validation import Natural, Positive, Values, checked
@@ -44,7 +51,11 @@ SETTLED_ON = 200
 
 
 def follow(
-    flow: Flow, values: Mapping[str, float], state: Vector, duration: float, **options: Any
+    flow: Flow,
+    values: Mapping[str, float],
+    state: Vector,
+    duration: float,
+    **options: Any,
 ) -> Motion:
     """Run a system from a state at t = 0 with all events."""
     system, regime = flow.system, options.pop("regime", None)
@@ -52,12 +63,19 @@ def follow(
     states = dict(zip(system.states, map(float, state), strict=True))
     with np.errstate(all="ignore"):
         return single_run(
-            system, {**values, **states}, duration, regime=named, tol=1e-13,
-            unit_sizes=sizes_at(flow, values, state, regime or 0), **options,
-        )  # fmt: skip
+            system,
+            {**values, **states},
+            duration,
+            regime=named,
+            tol=1e-13,
+            unit_sizes=sizes_at(flow, values, state, regime or 0),
+            **options,
+        )
 
 
-def sizes_at(flow: Flow, values: Mapping[str, float], state: Vector, regime: int) -> Vector:
+def sizes_at(
+    flow: Flow, values: Mapping[str, float], state: Vector, regime: int
+) -> Vector:
     """Sizes of the states in a motion that may be far smaller than the system's own sizes."""
     sizes, unit = flow.system.sizes, flow.unit(values)
     with np.errstate(all="ignore"):
@@ -71,13 +89,18 @@ def events_of(system: System, motion: Motion, count: int) -> tuple[Event, ...]:
     t = system.traced
     found: list[Event] = []
     for i in range(count):
-        before, after, kind = (int(v) for v in (*motion.regimes[i : i + 2], motion.kinds[i]))
+        before, after, kind = (
+            int(v) for v in (*motion.regimes[i : i + 2], motion.kinds[i])
+        )
         fitting = (
             Event(int(switch), surface, sign, before, after, kind)
             for table, sign in ((t.falls, 1.0), (t.rises, -1.0))
             for surface, switch in enumerate(table[before])
             if 0 <= switch < len(t.switches)
-            and any((to, name) == (after, kind) for to, _, name in t.switches[switch].targets)
+            and any(
+                (to, name) == (after, kind)
+                for to, _, name in t.switches[switch].targets
+            )
         )
         found += islice(fitting, 1)
     return tuple(found)
@@ -116,7 +139,9 @@ def guess_of(
     durations = np.append(np.diff(times), times[0] + period - times[-1])
     # legs begin after each event: the last ends at the first event
     equations = replace(equations, events=(*events[1:], events[0]))
-    return equations, equations.pack(motion.states[:count], durations, float(times[0]), followed)
+    return equations, equations.pack(
+        motion.states[:count], durations, float(times[0]), followed
+    )
 
 
 def eventless(
@@ -125,7 +150,9 @@ def eventless(
     """Equations and guess of a cycle through a state that stays in one regime."""
     section = None
     if not equations.periods:
-        heading = equations.flow.field(equations.values, regime, state, 0.0) / equations.scale
+        heading = (
+            equations.flow.field(equations.values, regime, state, 0.0) / equations.scale
+        )
         section = Section(state, heading / np.linalg.norm(heading))
     free = Event(FREE, FREE, 1.0, regime, regime, FREE)
     made = replace(equations, events=(free,), section=section)
@@ -162,7 +189,10 @@ def merged(cycle: Cycle, leg: int, count: int) -> tuple[EventMap, Vector]:
     equations, parts = cycle.map, cycle.parts
     if count >= equations.legs:
         state, _ = cycle.start()
-        made, regime = replace(equations, values=parts.values), equations.events[leg].before
+        made, regime = (
+            replace(equations, values=parts.values),
+            equations.events[leg].before,
+        )
         return eventless(made, state, regime, cycle.period, cycle.followed)
     absorbed = [(leg + k) % equations.legs for k in range(1, count + 1)]
     keep = [i for i in range(equations.legs) if i not in absorbed]
@@ -205,12 +235,19 @@ def find_cycle(
 
 
 def _forced(
-    flow: Flow, values: Mapping[str, float], state: Vector, guess: bool, periods: int,
-    t_settle: float | None, regime: int | None,
-) -> tuple[Cycle | None, int]:  # fmt: skip
+    flow: Flow,
+    values: Mapping[str, float],
+    state: Vector,
+    guess: bool,
+    periods: int,
+    t_settle: float | None,
+    regime: int | None,
+) -> tuple[Cycle | None, int]:
     forcing = flow.forcing(values)[0]
     if not 0.0 < forcing < np.inf:
-        raise ValueError(f"{flow.system.name}: the period of its forcing must be greater than 0")
+        raise ValueError(
+            f"{flow.system.name}: the period of its forcing must be greater than 0"
+        )
     if guess:
         return _near(flow, values, state, regime, periods)
     rounds = SETTLE if t_settle is None else max(1.0, np.ceil(t_settle / forcing))
@@ -241,19 +278,29 @@ def _forced(
 
 
 def _near(
-    flow: Flow, values: Mapping[str, float], state: Vector, regime: int | None, periods: int
+    flow: Flow,
+    values: Mapping[str, float],
+    state: Vector,
+    regime: int | None,
+    periods: int,
 ) -> tuple[Cycle | None, int]:
     """A cycle of some forcing periods near a state."""
     duration = periods * flow.forcing(values)[0]
     for _ in range(3):
         run = follow(
-            flow, values, state, duration, regime=regime,
+            flow,
+            values,
+            state,
+            duration,
+            regime=regime,
             times=np.linspace(0.0, duration, 200),
-        )  # fmt: skip
+        )
         if run.outcome or not np.isfinite(run.path).all():
             return None, run.outcome or Outcome.not_finite
         scale = scale_of(np.concatenate([run.path, run.states]), flow.system.sizes)
-        found = guess_of(flow, values, run, state, duration, periods=periods, scale=scale)
+        found = guess_of(
+            flow, values, run, state, duration, periods=periods, scale=scale
+        )
         point = None if found is None else found[0].solve(found[1])
         if found is None or point is None:
             # perhaps other events are those of the cycle: nearer to it once more
@@ -268,9 +315,13 @@ def _near(
 
 
 def _free(
-    flow: Flow, values: Mapping[str, float], state: Vector, regime: int | None, unit: float,
+    flow: Flow,
+    values: Mapping[str, float],
+    state: Vector,
+    regime: int | None,
+    unit: float,
     returns: int,
-) -> tuple[Cycle | None, int]:  # fmt: skip
+) -> tuple[Cycle | None, int]:
     """A cycle without forcing near a state; with ``returns`` to its section, if that is not 0."""
     tried: list[float] = []
     for window in _WINDOWS:
@@ -278,7 +329,9 @@ def _free(
         run = follow(flow, values, state, times[-1], regime=regime, times=times)
         if run.outcome or not np.isfinite(run.path).all():
             return None, run.outcome or Outcome.not_finite
-        if _rests(run.path[len(run.path) // 2 :], sizes_at(flow, values, state, regime or 0)):
+        if _rests(
+            run.path[len(run.path) // 2 :], sizes_at(flow, values, state, regime or 0)
+        ):
             return None, Outcome.equilibrium
         scale = scale_of(np.concatenate([run.path, run.states]), flow.system.sizes)
         for count, period, distance in _returns(flow, values, run, times, state, scale):
@@ -287,7 +340,9 @@ def _free(
             if any(abs(period - other) < 1e-3 * period for other in tried):
                 continue
             tried.append(period)
-            found = guess_of(flow, values, run, state, period, periods=0, count=count, scale=scale)
+            found = guess_of(
+                flow, values, run, state, period, periods=0, count=count, scale=scale
+            )
             cycle = None if found is None else solved(*found)
             if cycle is None or abs(cycle.period - period) > _FAR * period:
                 continue
@@ -299,7 +354,9 @@ def _free(
                 return None, SETTLED_ON + number
             return cycle, Outcome.converged
     # only now: a smooth cycle about a stable state of rest may seem to shrink between samples
-    shrinks = not len(run.times) and _comes_to_rest(flow, values, int(run.regimes[0]), run.path)
+    shrinks = not len(run.times) and _comes_to_rest(
+        flow, values, int(run.regimes[0]), run.path
+    )
     return None, Outcome.equilibrium if shrinks else Outcome.no_convergence
 
 
@@ -322,9 +379,13 @@ def once_round(cycle: Cycle) -> Cycle:
     return cycle
 
 
-def _comes_to_rest(flow: Flow, values: Mapping[str, float], regime: int, path: Vector) -> bool:
+def _comes_to_rest(
+    flow: Flow, values: Mapping[str, float], regime: int, path: Vector
+) -> bool:
     """Whether a motion in one regime shrinks towards a stable state of rest."""
-    first, second = (np.ptp(half, axis=0) for half in np.split(path[: len(path) // 2 * 2], 2))
+    first, second = (
+        np.ptp(half, axis=0) for half in np.split(path[: len(path) // 2 * 2], 2)
+    )
     place = middle = path[len(path) // 2 :].mean(axis=0)
     scale = np.maximum(np.abs(path).max(axis=0), 1e-300)
     with np.errstate(all="ignore"):
@@ -332,7 +393,10 @@ def _comes_to_rest(flow: Flow, values: Mapping[str, float], regime: int, path: V
             slopes = flow.jacobian(values, regime, place)[:, : flow.size]
             rate = flow.field(values, regime, place, 0.0)
             place = place - np.linalg.lstsq(slopes * scale, rate, rcond=None)[0] * scale
-    if not np.isfinite(place).all() or (np.abs(place - middle) > second + 1e-9 * scale).any():
+    if (
+        not np.isfinite(place).all()
+        or (np.abs(place - middle) > second + 1e-9 * scale).any()
+    ):
         return False
     rates = np.linalg.eigvals(flow.jacobian(values, regime, place)[:, : flow.size])
     decays = rates.real.max() < -1e-9 * np.abs(rates).max()
@@ -375,7 +439,9 @@ def _returns(
             distance = float(np.abs((there - state) / scale).max())
             found.append((0, float(times[at] + share * times[1]), distance))
     nearest = 3.0 * min((each[2] for each in found), default=0.0) + 1e-4
-    found.sort(key=lambda each: (each[2] >= nearest, each[1] if each[2] < nearest else each[2]))
+    found.sort(
+        key=lambda each: (each[2] >= nearest, each[1] if each[2] < nearest else each[2])
+    )
     yield from found[:_TRIES]
 
 
@@ -417,7 +483,12 @@ def limit_cycle(
     if start is not None and guess is not None:
         raise ValueError("start, guess: give one of them")
     cycle, outcome = find_cycle(
-        system, values, state, guess=guess is not None, periods=periods, t_settle=t_settle
+        system,
+        values,
+        state,
+        guess=guess is not None,
+        periods=periods,
+        t_settle=t_settle,
     )
     return dataset(system, cycle, outcome, values, periods)
 
@@ -426,10 +497,17 @@ def given(
     system: System, start: Mapping[str, Any] | None, parameters: Mapping[str, Any]
 ) -> tuple[dict[str, float], Vector]:
     """Parameters and the start of a call, checked."""
-    found = {n: runs.scalar(n, v) for n, v in runs.call_values(system, start, parameters).items()}
+    found = {
+        n: runs.scalar(n, v)
+        for n, v in runs.call_values(system, start, parameters).items()
+    }
     if len(system.traced.variables) > system.traced.size and system.period is None:
-        raise ValueError(f"{system.name} depends on the time but has no period; give `period`")
-    return {n: found[n] for n in system.parameters}, np.array([found[n] for n in system.states])
+        raise ValueError(
+            f"{system.name} depends on the time but has no period; give `period`"
+        )
+    return {n: found[n] for n in system.parameters}, np.array(
+        [found[n] for n in system.states]
+    )
 
 
 def columns(cycle: Cycle | None, system: System) -> dict[str, Any]:
@@ -439,13 +517,18 @@ def columns(cycle: Cycle | None, system: System) -> dict[str, Any]:
     if cycle is None:
         bare = {"period": np.nan, "residual": np.nan, "stable": 0}
         bare |= {f"{name}{end}": np.nan for name in names for end in ("_min", "_max")}
-        return bare | dict.fromkeys(("multiplier_real", "multiplier_imag"), np.full(n, np.nan))
+        return bare | dict.fromkeys(
+            ("multiplier_real", "multiplier_imag"), np.full(n, np.nan)
+        )
     found: dict[str, Any] = {"period": cycle.period, "residual": cycle.residual}
     for name, (low, high) in zip(names, cycle.extremes.T, strict=True):
         found |= {f"{name}_min": low, f"{name}_max": high}
     found["stable"] = int(cycle.is_stable)
     multipliers = cycle.multipliers
-    return found | {"multiplier_real": multipliers.real, "multiplier_imag": multipliers.imag}
+    return found | {
+        "multiplier_real": multipliers.real,
+        "multiplier_imag": multipliers.imag,
+    }
 
 
 def described(name: str, system: System) -> dict[str, str]:
@@ -454,18 +537,32 @@ def described(name: str, system: System) -> dict[str, str]:
     for end, word in (("_min", "smallest"), ("_max", "largest")):
         if name.endswith(end) and name.removesuffix(end) in units:
             short = name.removesuffix(end)
-            return {"long_name": f"{word} {short} over the period", "units": units[short]}
+            return {
+                "long_name": f"{word} {short} over the period",
+                "units": units[short],
+            }
     return {
         "period": {"long_name": "period", "units": "s"},
-        "residual": {"long_name": "largest equation left over, without units", "units": "1"},
-        "multiplier_real": {"long_name": "real part of the Floquet multipliers", "units": "1"},
-        "multiplier_imag": {"long_name": "imaginary part of the Floquet multipliers", "units": "1"},
+        "residual": {
+            "long_name": "largest equation left over, without units",
+            "units": "1",
+        },
+        "multiplier_real": {
+            "long_name": "real part of the Floquet multipliers",
+            "units": "1",
+        },
+        "multiplier_imag": {
+            "long_name": "imaginary part of the Floquet multipliers",
+            "units": "1",
+        },
     }[name]
 
 
 def outcome_of(system: System, dims: Any, values: Any) -> Any:
     """How a cycle was found, with the system's own stops and motions of more periods."""
-    table = flag_table(Outcome) | {STOPPED + i: name for i, name in enumerate(system.stops)}
+    table = flag_table(Outcome) | {
+        STOPPED + i: name for i, name in enumerate(system.stops)
+    }
     more = np.unique(np.asarray(values)[np.asarray(values) > SETTLED_ON])
     table |= {int(k): f"settled_on_{int(k) - SETTLED_ON}_periods" for k in more}
     dims, values, attributes = runs.flag("how the cycle was found", dims, values, table)
@@ -483,7 +580,9 @@ def describe_columns(
         values = stacked if dim else stacked[0]
         if name == "stable":
             table = {0: "no", 1: "yes"}
-            found[name] = runs.flag("whether small disturbances decay", over, values, table)
+            found[name] = runs.flag(
+                "whether small disturbances decay", over, values, table
+            )
         else:
             dims = (*over, "multiplier") if np.ndim(bare) else over
             found[name] = dims, values, described(name, system)
@@ -491,7 +590,11 @@ def describe_columns(
 
 
 def dataset(
-    system: System, cycle: Cycle | None, outcome: int, values: Mapping[str, float], periods: int
+    system: System,
+    cycle: Cycle | None,
+    outcome: int,
+    values: Mapping[str, float],
+    periods: int,
 ) -> xr.Dataset:
     """A cycle, or the reason why there is none, as a dataset."""
     found = describe_columns(system, [columns(cycle, system)])
@@ -512,15 +615,33 @@ def dataset(
     states = states.reshape(-1, len(system.states))
     kinds, names = dict(enumerate(system.traced.kinds)), dict(enumerate(system.regimes))
     found["event_time"] = ("event", times, runs.labels("time of the event", "s"))
-    found["event_kind"] = runs.flag("kind of the event", "event", [e.kind for e in chosen], kinds)
-    found["event_regime"] = runs.flag("regime entered", "event", [e.after for e in chosen], names)
+    found["event_kind"] = runs.flag(
+        "kind of the event", "event", [e.kind for e in chosen], kinds
+    )
+    found["event_regime"] = runs.flag(
+        "regime entered", "event", [e.after for e in chosen], names
+    )
     for i, name in enumerate(system.states):
         unit = system.units[name]
-        found[f"event_{name}"] = ("event", states[:, i], runs.labels(f"{name} after it", unit))
-        found[f"{name}_path"] = ("sample", path[:, i], runs.labels(f"{name} along the cycle", unit))
+        found[f"event_{name}"] = (
+            "event",
+            states[:, i],
+            runs.labels(f"{name} after it", unit),
+        )
+        found[f"{name}_path"] = (
+            "sample",
+            path[:, i],
+            runs.labels(f"{name} along the cycle", unit),
+        )
         first = path[0, i] if len(path) else np.nan
-        found[f"{name}_start"] = ((), first, runs.labels(f"{name} at t = 0 of the cycle", unit))
+        found[f"{name}_start"] = (
+            (),
+            first,
+            runs.labels(f"{name} at t = 0 of the cycle", unit),
+        )
     found["start_regime"] = runs.flag("regime at t = 0 of the cycle", (), regime, names)
     found["time"] = ("sample", instants, runs.labels("time", "s"))
     found["outcome"] = outcome_of(system, (), outcome)
-    return xr.Dataset(found, attrs=runs.attributes(system, "limit cycle", values, 1e-14))
+    return xr.Dataset(
+        found, attrs=runs.attributes(system, "limit cycle", values, 1e-14)
+    )

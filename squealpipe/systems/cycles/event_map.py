@@ -89,7 +89,9 @@ class EventMap:
     units: Vector
     periods: int = 0
     section: Section | None = None
-    _latest: dict[bytes, tuple[Parts, Vector, Vector]] = field(default_factory=dict, init=False)
+    _latest: dict[bytes, tuple[Parts, Vector, Vector]] = field(
+        default_factory=dict, init=False
+    )
 
     @property
     def legs(self) -> int:
@@ -101,7 +103,9 @@ class EventMap:
         """Number of equations, and of unknowns without parameters."""
         return self.legs * (self.flow.size + 1) + (self.periods > 0)
 
-    def pack(self, states: Vector, durations: Vector, start: float, followed: Vector) -> Vector:
+    def pack(
+        self, states: Vector, durations: Vector, start: float, followed: Vector
+    ) -> Vector:
         """The unknowns without units."""
         parts = [(states / self.scale).ravel(), durations / self.time]
         if self.periods:
@@ -148,9 +152,16 @@ class EventMap:
         slopes = self.flow.derivatives(values, path)
         crossings = tuple(
             self.flow.crossing(
-                values, event.switch, event.surface, (event.before, event.after), end, time
+                values,
+                event.switch,
+                event.surface,
+                (event.before, event.after),
+                end,
+                time,
             )
-            for event, end, time in zip(self.events, path.ends, starts + durations, strict=True)
+            for event, end, time in zip(
+                self.events, path.ends, starts + durations, strict=True
+            )
         )
         return Parts(states, durations, start, values, path, slopes, crossings)
 
@@ -160,12 +171,16 @@ class EventMap:
         for leg, crossing in enumerate(parts.crossings):
             here, following = slice(leg * n, leg * n + n), (leg + 1) % m
             by_end, by_time = self.by_unknowns(parts, leg)
-            rows = crossing.after_by_state @ by_end + np.outer(crossing.after_by_time, by_time)
+            rows = crossing.after_by_state @ by_end + np.outer(
+                crossing.after_by_time, by_time
+            )
             rows[:, size:] += crossing.after_by
             rows[:, following * n : following * n + n] -= np.eye(n)
             values[here] = (crossing.after - parts.states[following]) / self.scale
             jacobian[here] = rows / self.scale[:, None]
-            values[m * n + leg], jacobian[m * n + leg] = self._surface(parts, leg, by_end, by_time)
+            values[m * n + leg], jacobian[m * n + leg] = self._surface(
+                parts, leg, by_end, by_time
+            )
         for height, gradient in self.held(parts):
             values[:n] -= gradient * height
             jacobian[:n, :n] -= np.outer(gradient, gradient) / self.scale
@@ -250,7 +265,9 @@ class EventMap:
             if stagnates or residual < 1e-14:
                 break
             step = np.linalg.lstsq(jacobian[:, : self.size], -values, rcond=1e-10)[0]
-            z[: self.size] += step * min(1.0, 0.5 / max(float(np.abs(step).max()), 1e-300))
+            z[: self.size] += step * min(
+                1.0, 0.5 / max(float(np.abs(step).max()), 1e-300)
+            )
         return best if previous < 1e-9 else None
 
 
@@ -303,7 +320,9 @@ class Cycle:
                 with np.errstate(all="ignore"):
                     total = crossing.saltation @ total
         total = total * self.map.scale / self.map.scale[:, None]
-        for _, normal in self.map.held(self.parts):  # what leaves the surface is forgotten
+        for _, normal in self.map.held(
+            self.parts
+        ):  # what leaves the surface is forgotten
             total -= np.outer(total @ normal, normal)
         return np.asarray(total)
 
@@ -331,7 +350,9 @@ class Cycle:
     def heading(self) -> Vector:
         """Rate of the first state, over the scales and the period."""
         first = self.map.events[0].before
-        rate = self.map.flow.field(self.parts.values, first, self.parts.states[0], self.parts.start)
+        rate = self.map.flow.field(
+            self.parts.values, first, self.parts.states[0], self.parts.start
+        )
         return np.asarray(rate / self.map.scale * self.period)
 
     @property
@@ -363,7 +384,9 @@ class Cycle:
         n = self.map.flow.size
         scale = scale_of(self.extremes[:, :n], self.map.flow.system.sizes)
         ends = np.array([crossing.after for crossing in self.parts.crossings])
-        return float(np.abs((ends - np.roll(self.parts.states, -1, axis=0)) / scale).max())
+        return float(
+            np.abs((ends - np.roll(self.parts.states, -1, axis=0)) / scale).max()
+        )
 
     def after_part(self, parts: int) -> Vector:
         """How far a part of the period is from the one before, by means over twelfths."""
@@ -386,7 +409,9 @@ class Cycle:
         before = np.cumsum(whole, axis=0) - whole
         up_to = before[step] + np.einsum("tik,tk->ti", integrals[step], powers)
         scale = scale_of(self.extremes[:, :n], self.map.flow.system.sizes)
-        return np.asarray(np.diff(up_to, axis=0) * (12 * path.unit / self.period) / scale)
+        return np.asarray(
+            np.diff(up_to, axis=0) * (12 * path.unit / self.period) / scale
+        )
 
     @cached_property
     def step_begins(self) -> Vector:
@@ -408,7 +433,9 @@ class Cycle:
         path = self.parts.path
         step, orders = self._step_at(times), np.arange(path.series.shape[2])
         powers = ((times - self.step_begins[step]) / path.unit)[:, None] ** orders
-        states = np.einsum("tik,tk->ti", path.series[step, : self.map.flow.size], powers)
+        states = np.einsum(
+            "tik,tk->ti", path.series[step, : self.map.flow.size], powers
+        )
         return states, path.regimes[path.leg[step]]
 
     def start(self) -> tuple[Vector, int]:
@@ -424,7 +451,9 @@ class Cycle:
         holds = self.map.flow.system.holds
         lengths = [
             0.0 if holds[event.before].any() else duration
-            for event, duration in zip(self.map.events, self.parts.durations, strict=True)
+            for event, duration in zip(
+                self.map.events, self.parts.durations, strict=True
+            )
         ]
         longest = int(np.argmax(lengths))
         if self.map.events[longest].switch == FREE:
@@ -444,10 +473,17 @@ class Cycle:
 
     def followed_in(self, flow: Flow, units: Vector) -> tuple[EventMap, Vector]:
         """Its equations with other followed parameters, scaled by it, and its unknowns there."""
-        made, parts = replace(
-            self.map, flow=flow, values=self.parts.values, units=units, time=self.period,
-            scale=scale_of(self.extremes[:, : flow.size], flow.system.sizes),
-        ), self.parts  # fmt: skip
+        made, parts = (
+            replace(
+                self.map,
+                flow=flow,
+                values=self.parts.values,
+                units=units,
+                time=self.period,
+                scale=scale_of(self.extremes[:, : flow.size], flow.system.sizes),
+            ),
+            self.parts,
+        )
         followed = np.array([parts.values[name] for name in flow.followed])
         return made, made.pack(parts.states, parts.durations, parts.start, followed)
 

@@ -10,7 +10,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from squealpipe.methods.continuation import ContinuationState
-from squealpipe.systems.cycles.admissible import MARGIN_ROUND_OFF, Kind, Margin, is_motion, margins
+from squealpipe.systems.cycles.admissible import (
+    MARGIN_ROUND_OFF,
+    Kind,
+    Margin,
+    is_motion,
+    margins,
+)
 from squealpipe.systems.cycles.cycle import follow, guess_of, merged, without_brief_legs
 from squealpipe.systems.cycles.event_map import Cycle, Event, EventMap
 from squealpipe.systems.cycles.flow import Vector
@@ -33,11 +39,16 @@ def label_of(cycle: Cycle, zero: dict[Margin, float]) -> Label:
     for margin in zero:
         event = cycle.map.events[margin.leg]
         held = bool(system.holds[event.before].any())
-        watched = (t.falls[event.before, margin.which], t.rises[event.before, margin.which])
+        watched = (
+            t.falls[event.before, margin.which],
+            t.rises[event.before, margin.which],
+        )
         own = margin.kind in {Kind.condition, Kind.length}
         switch = event.switch if own else int(max(watched))
         crosses = margin.kind in {Kind.touch, Kind.speed}
-        if (held or crosses or margin.kind == Kind.condition) and _of_hold(system, switch):
+        if (held or crosses or margin.kind == Kind.condition) and _of_hold(
+            system, switch
+        ):
             return Label.stick_onset
         if crosses:
             found = Label.grazing
@@ -80,7 +91,9 @@ class Turn:
     def _jumps(self, cycle: Cycle) -> bool:
         """Whether a solution is not next to the change: a reset of the state may end the branch."""
         change = self.there[1]
-        moved = (cycle.extremes - change.extremes)[:, : len(change.map.scale)] / change.map.scale
+        moved = (cycle.extremes - change.extremes)[
+            :, : len(change.map.scale)
+        ] / change.map.scale
         return bool(np.abs(moved).max() > _JUMP)
 
     def _runs(self) -> Iterator[tuple[EventMap, Vector]]:
@@ -129,7 +142,10 @@ class Turn:
         if state is None:
             return None
         cycle = Cycle.at(equations, state.point)
-        if cycle.period <= 0.0 or abs(cycle.period - self.there[1].period) > 0.1 * cycle.period:
+        if (
+            cycle.period <= 0.0
+            or abs(cycle.period - self.there[1].period) > 0.1 * cycle.period
+        ):
             return None
         if weak:
             return (state, cycle) if is_motion(cycle) else None
@@ -163,9 +179,14 @@ def run_of(cycle: Cycle) -> tuple[EventMap, Vector] | None:
     if run.outcome or len(run.times) > 4 * equations.legs + 8:
         return None
     found = guess_of(
-        flow, parts.values, run, state, cycle.period, periods=equations.periods,
+        flow,
+        parts.values,
+        run,
+        state,
+        cycle.period,
+        periods=equations.periods,
         scale=equations.scale,
-    )  # fmt: skip
+    )
     if found is None:
         return None
     made = replace(found[0], time=equations.time, units=equations.units)

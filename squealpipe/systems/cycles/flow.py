@@ -17,7 +17,13 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from squealpipe.methods.taylor.lanes import INVERSES, Workspace, aligned, drive, taylor_terms
+from squealpipe.methods.taylor.lanes import (
+    INVERSES,
+    Workspace,
+    aligned,
+    drive,
+    taylor_terms,
+)
 from squealpipe.methods.taylor.legs import ARRAYS, SIZES, TABLE, run_legs, transfer
 from squealpipe.methods.taylor.scalar import python_function
 from squealpipe.methods.taylor.series import gauss
@@ -113,7 +119,9 @@ class Path:
             return (slopes * powers).sum(axis=1), (bends * powers[:, :-1]).sum(axis=1)
 
         ends = (_PLACES[left], _PLACES[left + 1])
-        place = bracketed(rate_at, ends, (first, last), 1e-6)  # the height is quadratic in it
+        place = bracketed(
+            rate_at, ends, (first, last), 1e-6
+        )  # the height is quadratic in it
         powers = np.vander(place, scaled.shape[2], increasing=True)
         height = (scaled[step, series] * powers).sum(axis=1)
         time = (self.offsets[step] + place * self.steps[step]) * self.unit
@@ -161,7 +169,9 @@ class Crossing:
     @property
     def jump(self) -> Vector:
         """Of a motion's later state by the time of the event."""
-        return np.asarray(self.after_by_state @ self.rate + self.after_by_time - self.rate_after)
+        return np.asarray(
+            self.after_by_state @ self.rate + self.after_by_time - self.rate_after
+        )
 
 
 class Flow:
@@ -172,9 +182,16 @@ class Flow:
     """
 
     def __init__(
-        self, system: System, followed: Sequence[str] = (), tied: Mapping[str, str] | None = None
+        self,
+        system: System,
+        followed: Sequence[str] = (),
+        tied: Mapping[str, str] | None = None,
     ) -> None:
-        self.system, self.followed, self.tied = system, tuple(followed), dict(tied or {})
+        self.system, self.followed, self.tied = (
+            system,
+            tuple(followed),
+            dict(tied or {}),
+        )
         t = system.traced
         self.size, self.timed = t.size, len(t.variables) > t.size
         self.by = [parameter(name) for name in followed]
@@ -184,14 +201,18 @@ class Flow:
         self._functions: dict[Any, Any] = {}
         self._room, self._legs = ROOM, 0
         directions = [*t.variables[: t.size], *self.by, *([self.time] * self.timed)]
-        entries = [(i, j, self.slope(rate, by))
-                   for i, rate in enumerate(t.rates[: t.size])
-                   for j, by in enumerate(directions)]  # fmt: skip
+        entries = [
+            (i, j, self.slope(rate, by))
+            for i, rate in enumerate(t.rates[: t.size])
+            for j, by in enumerate(directions)
+        ]
         self._entries = [
             e for e in entries if not (e[2].kind == "number" and not e[2].arguments[0])
         ]
         self._columns = len(directions)
-        self._slopes = python_function([e[2] for e in self._entries], self.arguments, np)
+        self._slopes = python_function(
+            [e[2] for e in self._entries], self.arguments, np
+        )
         self._field = python_function(t.rates[: t.size], self.arguments, np)
         names = [*system.parameters, TIME_UNIT]
         self._derived = python_function(
@@ -231,12 +252,19 @@ class Flow:
         found = self.period(*blank, *self.numbers(values, 0))
         return float(found[0]), np.array(found[1:], float)
 
-    def field(self, values: Mapping[str, float], regime: int, state: Vector, time: float) -> Vector:
+    def field(
+        self, values: Mapping[str, float], regime: int, state: Vector, time: float
+    ) -> Vector:
         """Rates of the states."""
         return self._at(self._field, values, regime, state, time)
 
     def _at(
-        self, function: Any, values: Mapping[str, float], regime: int, state: Vector, time: float
+        self,
+        function: Any,
+        values: Mapping[str, float],
+        regime: int,
+        state: Vector,
+        time: float,
     ) -> Vector:
         """What a function of :attr:`arguments` gives at a state."""
         at = [*state, *([np.float64(time)] * self.timed)]
@@ -276,11 +304,18 @@ class Flow:
             by = [*states, *[self.time] * self.timed, *self.by]
             sloped = [[root, *(self.slope(root, b) for b in by)] for root in roots]
             every = [*chain(*sloped), *t.rates[: t.size], *targets]
-            self._functions[switch, surface] = python_function(every, self.arguments, np)
-        flat = self._at(self._functions[switch, surface], values, regimes[0], state, time)
+            self._functions[switch, surface] = python_function(
+                every, self.arguments, np
+            )
+        flat = self._at(
+            self._functions[switch, surface], values, regimes[0], state, time
+        )
         n, width = self.size, 1 + self.size + self.timed + len(self.by)
         # values, and slopes by states, the time and parameters: of the surface and what comes after
-        rows, rest = flat[: (n + 1) * width].reshape(n + 1, width), flat[(n + 1) * width :]
+        rows, rest = (
+            flat[: (n + 1) * width].reshape(n + 1, width),
+            flat[(n + 1) * width :],
+        )
         after, last = rows[1:, 0], n + 1 + self.timed
         return Crossing(
             height=float(rows[0, 0]),
@@ -317,9 +352,18 @@ class Flow:
                 root = [c for _, c, _ in switch.targets if c is not None][condition]
             else:
                 surface = switch.surface if switch else t.surfaces[event.surface]
-                along = zip([*states, *by], [*t.rates[: t.size], *[1.0] * self.timed], strict=True)
-                root = sum((self.slope(surface, z) * rate for z, rate in along), symbol(0.0))
-            roots = [root, *(self.slope(root, each) for each in (*states, *by, *self.by))]
+                along = zip(
+                    [*states, *by],
+                    [*t.rates[: t.size], *[1.0] * self.timed],
+                    strict=True,
+                )
+                root = sum(
+                    (self.slope(surface, z) * rate for z, rate in along), symbol(0.0)
+                )
+            roots = [
+                root,
+                *(self.slope(root, each) for each in (*states, *by, *self.by)),
+            ]
             self._functions[key] = python_function(roots, self.arguments, np)
         return self._at(self._functions[key], values, event.before, state, time)
 
@@ -329,11 +373,18 @@ class Flow:
         kept = len(t.variables) + len(t.surfaces) + len(t.outputs)
         self._legs = legs
         sizes = {
-            "n_terms": terms, "n_legs": legs, "n_states": t.size,
-            "n_variables": len(t.variables), "n_kept": kept, "n_parameters": len(t.parameters),
-            "n_constants": constants, "n_regimes": len(t.regimes), "n_series": code.n_series,
-            "n_steps": self._room, "take_step": code.address("series"),
-        }  # fmt: skip
+            "n_terms": terms,
+            "n_legs": legs,
+            "n_states": t.size,
+            "n_variables": len(t.variables),
+            "n_kept": kept,
+            "n_parameters": len(t.parameters),
+            "n_constants": constants,
+            "n_regimes": len(t.regimes),
+            "n_series": code.n_series,
+            "n_steps": self._room,
+            "take_step": code.address("series"),
+        }
         arrays = {
             "rows": aligned(1 + len(t.parameters) + constants, LANES),
             "series": aligned(code.n_series, terms, LANES),
@@ -395,13 +446,22 @@ class Flow:
         first = np.searchsorted(leg, np.arange(len(states)))
         last = first + counts - 1
         orders = np.arange(series.shape[2])
-        ends = (series[last, : self.size] * steps[last, None, None] ** orders).sum(axis=2)
+        ends = (series[last, : self.size] * steps[last, None, None] ** orders).sum(
+            axis=2
+        )
         if endless:
             ends[:] = np.nan
         return Path(
-            leg, steps, total - total[first][leg], series, np.array(regimes), np.array(starts),
-            np.array(durations), ends, unit,
-        )  # fmt: skip
+            leg,
+            steps,
+            total - total[first][leg],
+            series,
+            np.array(regimes),
+            np.array(starts),
+            np.array(durations),
+            ends,
+            unit,
+        )
 
     def derivatives(self, values: Mapping[str, float], path: Path) -> Vector:
         """Of each leg's end by its start, followed parameters and the time: (legs, n, n + p)."""
@@ -412,7 +472,11 @@ class Flow:
             power = np.linalg.matrix_power(middle, 4).sum(axis=2).max(axis=1) ** 0.25
             lengths = np.repeat(path.steps, pieces) * path.unit / pieces
             with np.errstate(invalid="ignore"):
-                needed = pieces * float(np.nanmax(np.abs(lengths) * power, initial=0.0)) / LONGEST
+                needed = (
+                    pieces
+                    * float(np.nanmax(np.abs(lengths) * power, initial=0.0))
+                    / LONGEST
+                )
             if needed <= pieces or pieces >= most or not math.isfinite(needed):
                 break
             pieces = min(most, math.ceil(needed))
@@ -421,7 +485,9 @@ class Flow:
         transfer(slopes, lengths, np.repeat(path.leg, pieces), _UP_TO, _WEIGHTS, found)
         return found[:, : self.size]
 
-    def _slopes_along(self, values: Mapping[str, float], path: Path, pieces: int) -> Vector:
+    def _slopes_along(
+        self, values: Mapping[str, float], path: Path, pieces: int
+    ) -> Vector:
         """∂f/∂(states, parameters, time) at the nodes of each piece of each step.
 
         (states, columns, nodes, pieces)
@@ -430,7 +496,9 @@ class Flow:
         nodes = (np.arange(pieces) + _NODES[:, None]).ravel() / pieces
         variables = len(self.system.traced.variables)
         powers = nodes ** np.arange(path.series.shape[2])[:, None]
-        states = (path.scaled[:, :variables] @ powers).reshape(steps, variables, count, pieces)
+        states = (path.scaled[:, :variables] @ powers).reshape(
+            steps, variables, count, pieces
+        )
         flat = states.transpose(1, 2, 0, 3).reshape(variables, count, -1)
         regimes = np.repeat(path.regimes[path.leg], pieces)
         constants = self.system.traced.regimes[regimes].T

@@ -20,11 +20,16 @@ from squealpipe.systems.cycles.labels import Label
 # Round-off in the closing error is eps times the longest length over the cycle's: 3e-9 for
 # springs of 10⁶ and a cycle of one.
 STEPS = ContinuationSettings(
-    first_step=1e-3, shortest_step=1e-9, longest_step=0.05, tolerance=1e-11, stagnant=1e-8
+    first_step=1e-3,
+    shortest_step=1e-9,
+    longest_step=0.05,
+    tolerance=1e-11,
+    stagnant=1e-8,
 )
 PRECISE = replace(STEPS, tolerance=3e-14, max_iterations=10)
 ALONG, AT = (
-    PseudoArclength(steps, least_iterations=0, own_tangent=True) for steps in (STEPS, PRECISE)
+    PseudoArclength(steps, least_iterations=0, own_tangent=True)
+    for steps in (STEPS, PRECISE)
 )
 """Along a branch, and at a special point, which is located to round-off."""
 _ZERO = 1e-12
@@ -40,13 +45,17 @@ def flip(cycle: Cycle) -> float:
 def pairs(cycle: Cycle) -> float:
     """∏ (λi λj − 1) over pairs of multipliers: zero at a torus, and where real ones are inverse."""
     first, second = np.triu_indices(len(cycle.nontrivial), 1)
-    return float(np.real(np.prod(cycle.nontrivial[first] * cycle.nontrivial[second] - 1.0)))
+    return float(
+        np.real(np.prod(cycle.nontrivial[first] * cycle.nontrivial[second] - 1.0))
+    )
 
 
 def is_torus(cycle: Cycle) -> bool:
     """Whether, where :func:`pairs` is zero, a complex pair is on the unit circle."""
     rest = cycle.nontrivial
-    return bool(((np.abs(np.abs(rest) - 1.0) < 1e-6) & (np.abs(rest.imag) > 1e-9)).any())
+    return bool(
+        ((np.abs(np.abs(rest) - 1.0) < 1e-6) & (np.abs(rest.imag) > 1e-9)).any()
+    )
 
 
 TESTS: tuple[tuple[Label, Test], ...] = (
@@ -79,10 +88,13 @@ class Line:
     """A branch, or a curve, of one event map between two points of it, and a little beyond."""
 
     def __init__(
-        self, algorithm: PseudoArclength, equations: Problem,
-        first: tuple[ContinuationState, Cycle], last: tuple[ContinuationState, Cycle],
+        self,
+        algorithm: PseudoArclength,
+        equations: Problem,
+        first: tuple[ContinuationState, Cycle],
+        last: tuple[ContinuationState, Cycle],
         cycle_at: Callable[[Vector], Cycle],
-    ) -> None:  # fmt: skip
+    ) -> None:
         self.algorithm, self.equations, self.cycle_at = algorithm, equations, cycle_at
         self.known = {0.0: first, 1.0: last}
         self.normal = first[0].tangent

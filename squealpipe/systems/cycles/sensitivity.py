@@ -21,7 +21,11 @@ _TOGETHER = 64
 
 
 def sensitivities(
-    system: System, names: Sequence[str], values: Mapping[str, float], motion: Motion, times: Vector
+    system: System,
+    names: Sequence[str],
+    values: Mapping[str, float],
+    motion: Motion,
+    times: Vector,
 ) -> dict[str, Any]:
     """``<state>_by_<name>`` over ``time`` and ``event_time_by_<name>`` over ``event``.
 
@@ -36,7 +40,9 @@ def sensitivities(
     known = [*system.parameters, *starts]
     for name in names:
         if name not in known:
-            raise ValueError(f"sensitivity: {name!r} is unknown; {suggestion(name, known)}")
+            raise ValueError(
+                f"sensitivity: {name!r} is unknown; {suggestion(name, known)}"
+            )
     flow = Flow(system, [name for name in names if name in system.parameters])
     n, count = flow.size, len(motion.times)
     columns = [i for i, name in enumerate(names) if name in system.parameters]
@@ -58,9 +64,15 @@ def sensitivities(
     for first in range(0, len(stops), _TOGETHER):
         part = legs[first : first + _TOGETHER]
         begins = np.array([leg[0] for leg in part])
-        lengths = np.array([stop[0] for stop in stops[first : first + _TOGETHER]]) - begins
+        lengths = (
+            np.array([stop[0] for stop in stops[first : first + _TOGETHER]]) - begins
+        )
         path = flow.run(
-            values, np.array([leg[1] for leg in part]), [leg[2] for leg in part], begins, lengths
+            values,
+            np.array([leg[1] for leg in part]),
+            [leg[2] for leg in part],
+            begins,
+            lengths,
         )
         slopes = flow.derivatives(values, path)
         for leg, (time, sampled, i) in enumerate(stops[first : first + _TOGETHER]):
@@ -71,9 +83,13 @@ def sensitivities(
                 continue
             event = events[i]
             crossing = flow.crossing(
-                values, event.switch, event.surface, (event.before, event.after), path.ends[leg],
+                values,
+                event.switch,
+                event.surface,
+                (event.before, event.after),
+                path.ends[leg],
                 time,
-            )  # fmt: skip
+            )
             along = crossing.height_by_state @ total
             along[columns] += crossing.height_by
             delays[i] = -along / crossing.speed
@@ -86,6 +102,8 @@ def sensitivities(
                 f"derivative of {state} by {name}", f"{system.units[state]} / {name}"
             )
             found[f"{state}_by_{name}"] = ("time", by_time[:, k, j], label)
-        label = runs.labels(f"derivative of the time of the event by {name}", f"s / {name}")
+        label = runs.labels(
+            f"derivative of the time of the event by {name}", f"s / {name}"
+        )
         found[f"event_time_by_{name}"] = ("event", delays[:, j], label)
     return found

@@ -12,7 +12,11 @@ from annotated_types import Interval
 
 from squealpipe.codes import SpecialPoint
 from squealpipe.laws.friction import slides
-from squealpipe.methods.balance.harmonic_balance import CosineBalance, series_extremes, series_speed
+from squealpipe.methods.balance.harmonic_balance import (
+    CosineBalance,
+    series_extremes,
+    series_speed,
+)
 from squealpipe.methods.orbits.orbits import Orbit, special_points
 from squealpipe.parameters import SCENES, Parameters, brief
 from squealpipe.schema import Outcome, build
@@ -71,7 +75,11 @@ def backbone(
     attrs = {"alpha1": alpha1, "alpha2": alpha2, "mode": mode, "method": method}
     if method == "exact":
         orbits, outcomes, end = exact_branch(
-            scene, mode, y_max / scene.length, x_max / scene.length, cross_poles=cross_poles
+            scene,
+            mode,
+            y_max / scene.length,
+            x_max / scene.length,
+            cross_poles=cross_poles,
         )
         beyond = special_beyond_contact(scene, orbits, outcomes)
         variables = exact_variables(scene, params, orbits, outcomes, end)
@@ -94,12 +102,19 @@ def backbone(
     return _harmonic_dataset(scene, params, balance, points, end, attrs)
 
 
-def named_scenes(coupled: Mapping[str, Sequence[float]]) -> dict[str, tuple[float, float]]:
+def named_scenes(
+    coupled: Mapping[str, Sequence[float]],
+) -> dict[str, tuple[float, float]]:
     """Angles, rad, of the paper's Figs. 10–13 and of further scenes given over π."""
     paper = {
-        name: (scene.alpha1, scene.alpha2) for name, scene in SCENES.items() if scene.figure >= 10
+        name: (scene.alpha1, scene.alpha2)
+        for name, scene in SCENES.items()
+        if scene.figure >= 10
     }
-    return {**paper, **{name: (a * math.pi, b * math.pi) for name, (a, b) in coupled.items()}}
+    return {
+        **paper,
+        **{name: (a * math.pi, b * math.pi) for name, (a, b) in coupled.items()},
+    }
 
 
 def contact_losing_branches(
@@ -116,7 +131,9 @@ def contact_losing_branches(
 
 
 def with_orbits(
-    params: Parameters, branches: Mapping[str, tuple[float, float, int]], peaks: Sequence[float]
+    params: Parameters,
+    branches: Mapping[str, tuple[float, float, int]],
+    peaks: Sequence[float],
 ) -> tuple[dict[str, tuple[float, float, int]], str]:
     """Those branches that have an exact orbit at every peak, and why the others have none.
 
@@ -190,7 +207,11 @@ def _harmonic_dataset(
     x = np.array([entry[0] for entry in series]).reshape(-1, len(order)) * scene.length
     y = np.array([entry[1] for entry in series]).reshape(-1, len(order)) * scene.length
     omega = np.array([entry[2] for entry in series]) * scene.frequency
-    x_wave, y_wave, x_speed = series_extremes(x), series_extremes(y), series_speed(x) * omega
+    x_wave, y_wave, x_speed = (
+        series_extremes(x),
+        series_extremes(y),
+        series_speed(x) * omega,
+    )
     return build(
         BACKBONE,
         {
@@ -207,8 +228,10 @@ def _harmonic_dataset(
             "outcome": [point.outcome for point in points],
             "x_cosine": x,
             "y_cosine": y,
-            "omega_exact": np.array([point.omega_exact for point in points]) * scene.frequency,
-            "waveform_error": np.array([point.waveform_error for point in points]) * scene.length,
+            "omega_exact": np.array([point.omega_exact for point in points])
+            * scene.frequency,
+            "waveform_error": np.array([point.waveform_error for point in points])
+            * scene.length,
             "integration_error": np.array([point.integration_error for point in points])
             * scene.length,
             "end": end,
@@ -229,7 +252,9 @@ def special_beyond_contact(
     """Special points of an exact branch from grazing on."""
     pairs = zip(orbits, outcomes, strict=True)
     beyond = (Outcome.grazing, Outcome.converged)
-    return special_points(scene.system, [orbit for orbit, outcome in pairs if outcome in beyond])
+    return special_points(
+        scene.system, [orbit for orbit, outcome in pairs if outcome in beyond]
+    )
 
 
 def special_variables(
@@ -238,6 +263,8 @@ def special_variables(
     """What a dataset says of the special points of a branch."""
     return {
         "special_kind": [int(kind) for kind, _ in found],
-        "special_y_peak": np.array([orbit.point[1] for _, orbit in found]) * scene.length,
-        "special_omega": np.array([orbit.omega for _, orbit in found]) * scene.frequency,
+        "special_y_peak": np.array([orbit.point[1] for _, orbit in found])
+        * scene.length,
+        "special_omega": np.array([orbit.omega for _, orbit in found])
+        * scene.frequency,
     }

@@ -60,7 +60,9 @@ def doubled_branch(
     found = [orbit for kind, orbit in special if kind is SpecialPoint.period_doubling]
     attrs = {"alpha1": alpha1, "alpha2": alpha2, "mode": mode, "doubling": doubling}
     if len(found) < doubling:
-        return _dataset(scene, params, [], None, Outcome.no_doubling if simple else end, attrs)
+        return _dataset(
+            scene, params, [], None, Outcome.no_doubling if simple else end, attrs
+        )
     start = found[doubling - 1]
     orbits, why = doubled_branch_from(scene, start, peak)
     return _dataset(scene, params, orbits, start, Outcome[why.name], attrs)
@@ -75,7 +77,9 @@ def _dataset(
     attrs: dict[str, Any],
 ) -> xr.Dataset:
     special = special_points(scene.system, orbits[len(OFFSETS) :])
-    variables = exact_variables(scene, params, orbits, [Outcome.converged] * len(orbits), end)
+    variables = exact_variables(
+        scene, params, orbits, [Outcome.converged] * len(orbits), end
+    )
     stiffness = linear_stiffness(params, geometry(attrs["alpha1"], attrs["alpha2"]))
     rest = np.array([orbit.point[:2] for orbit in orbits]).reshape(-1, 2) * scene.length
     highest = [orbit.largest_y(scene.system) for orbit in orbits]

@@ -52,7 +52,9 @@ def exact_motion(
             f"alpha1 = {alpha1!r}, alpha2 = {alpha2!r}, mode = {mode!r}, peak = {peak!r}: no "
             f"orbit ({outcome.name}); choose another scene, mode or peak"
         )
-    states = sample(scene.system.rows, orbit.point, np.linspace(0.0, math.pi, _INTERVALS + 1))
+    states = sample(
+        scene.system.rows, orbit.point, np.linspace(0.0, math.pi, _INTERVALS + 1)
+    )
     return ExactMotion(scene, orbit, cosines_of(states[:, 0]), cosines_of(states[:, 1]))
 
 
@@ -70,10 +72,14 @@ def compare_harmonic_forms(params: Parameters, branches: Branches) -> xr.Dataset
     for motion in motions:
         system, omega = motion.scene.system, motion.orbit.omega
         balances = [
-            SampledBalance(system, N_HARMONICS, N_TIME, sigma, as_printed=form == Form.as_printed)
+            SampledBalance(
+                system, N_HARMONICS, N_TIME, sigma, as_printed=form == Form.as_printed
+            )
             for form in forms
         ]
-        solved.append([b.solve(b.start_from_cosines(motion.x, motion.y, omega)) for b in balances])
+        solved.append(
+            [b.solve(b.start_from_cosines(motion.x, motion.y, omega)) for b in balances]
+        )
     unit = np.array([motion.scene.frequency for motion in motions])
     counts = [2 * N_HARMONICS + extra for extra in (0, 1, 2)] + [4 * N_HARMONICS + 2]
     counts += [16 * N_HARMONICS, 64 * N_HARMONICS]
@@ -81,30 +87,39 @@ def compare_harmonic_forms(params: Parameters, branches: Branches) -> xr.Dataset
     return build(
         HARMONIC_FORMS,
         {
-            "omega": np.array([[s.omega for s in row] for row in solved]) * unit[:, None],
+            "omega": np.array([[s.omega for s in row] for row in solved])
+            * unit[:, None],
             "omega_exact": np.array([motion.orbit.omega for motion in motions]) * unit,
             "rank_deficit": [[s.rank_deficit for s in row] for row in solved],
             "outcome": [
-                [Outcome.converged if s.converged else Outcome.no_convergence for s in row]
+                [
+                    Outcome.converged if s.converged else Outcome.no_convergence
+                    for s in row
+                ]
                 for row in solved
             ],
             "n_harmonics": N_HARMONICS,
             "fourier_columns": 2 * N_HARMONICS + 1,
             "fourier_rank": [rank for _, _, rank in spreads],
             "phase_spread_y": np.array([y for y, _, _ in spreads]) * params.preload,
-            "phase_spread_omega": np.array([omega for _, omega, _ in spreads]) * unit[-1],
+            "phase_spread_omega": np.array([omega for _, omega, _ in spreads])
+            * unit[-1],
         },
         {"scene": list(branches), "form": list(forms), "samples": counts},
         {"spread_scene": list(branches)[-1]},
     )
 
 
-def _phase_spread(motion: ExactMotion, n_time: int, sigma: float) -> tuple[float, float, int]:
+def _phase_spread(
+    motion: ExactMotion, n_time: int, sigma: float
+) -> tuple[float, float, int]:
     """(spread of the largest y, spread of ω, rank of Γ) over the phase of the start."""
     balance = SampledBalance(motion.scene.system, N_HARMONICS, n_time, sigma)
     peaks, omegas = [], []
     for phase in 2.0 * math.pi * np.arange(_PHASES) / _PHASES:
-        start = balance.start_from_cosines(motion.x, motion.y, motion.orbit.omega, float(phase))
+        start = balance.start_from_cosines(
+            motion.x, motion.y, motion.orbit.omega, float(phase)
+        )
         solution = balance.solve(start)
         if solution.converged:
             peaks.append(balance.peak(solution))

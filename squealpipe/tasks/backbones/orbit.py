@@ -49,7 +49,10 @@ def periodic_orbit(
     check_length("y_peak", y_peak, params.preload)
     scene = scaled_system(params, alpha1, alpha2)
     found, outcome = find_orbit(scene, mode, y_peak / scene.length, across=True)
-    values: dict[str, Any] = {**blank(PERIODIC_ORBIT), "sliding_assumption": Assumption.holds}
+    values: dict[str, Any] = {
+        **blank(PERIODIC_ORBIT),
+        "sliding_assumption": Assumption.holds,
+    }
     switches, path = np.empty(0), np.empty((0, 4))
     if found is not None:
         values |= orbit_values(scene, params, found.point)

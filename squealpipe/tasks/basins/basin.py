@@ -57,22 +57,38 @@ def basin_map(
     """
     late = 0.8 * t_end if t_late is None else t_late
     if not late < t_end:
-        raise ValueError(f"t_late = {t_late!r}: 0 or a time before t_end = {t_end!r} is needed, s")
+        raise ValueError(
+            f"t_late = {t_late!r}: 0 or a time before t_end = {t_end!r} is needed, s"
+        )
     axes = dict(zip(STARTS, map(np.asarray, (x, y, vx, vy)), strict=True))
     shape = tuple(axis.size for axis in axes.values() if axis.ndim)
     grid = np.meshgrid(*(np.atleast_1d(axis) for axis in axes.values()), indexing="ij")
     starts = np.stack([part.ravel() for part in grid], axis=-1)
     blocks = [
-        _block(params, alpha1, alpha2, starts[at : at + RUNS_AT_ONCE], t_end, late, tol, workers)
+        _block(
+            params,
+            alpha1,
+            alpha2,
+            starts[at : at + RUNS_AT_ONCE],
+            t_end,
+            late,
+            tol,
+            workers,
+        )
         for at in with_progress(range(0, len(starts), RUNS_AT_ONCE))
     ]
     columns = {
-        name: np.concatenate([block[name] for block in blocks]).reshape(shape) for name in blocks[0]
+        name: np.concatenate([block[name] for block in blocks]).reshape(shape)
+        for name in blocks[0]
     }
     swept = {name: axis for name, axis in axes.items() if axis.ndim}
     fixed = {name: float(axis) for name, axis in axes.items() if not axis.ndim}
     angles = {"alpha1": alpha1, "alpha2": alpha2}
-    return build(basin_schema(tuple(swept)), {**columns, **fixed, **angles, "t_end": t_end}, swept)
+    return build(
+        basin_schema(tuple(swept)),
+        {**columns, **fixed, **angles, "t_end": t_end},
+        swept,
+    )
 
 
 def _block(
@@ -89,9 +105,15 @@ def _block(
 
     def runs(rows: Any, **options: Any) -> Ensemble:
         return run_ensemble(
-            params, alpha1, alpha2, **as_judged(t_end), initial_state=starts[rows], tol=tol,
-            workers=workers, **options,
-        )  # fmt: skip
+            params,
+            alpha1,
+            alpha2,
+            **as_judged(t_end),
+            initial_state=starts[rows],
+            tol=tol,
+            workers=workers,
+            **options,
+        )
 
     run = runs(slice(None), t_late=t_late)
     motion, changed = classify_motion(run, params)

@@ -8,7 +8,12 @@ import numpy as np
 import xarray as xr
 from annotated_types import Ge
 
-from squealpipe.methods.smallest_vector import IMPROVED, SearchResult, search, smallest_linear
+from squealpipe.methods.smallest_vector import (
+    IMPROVED,
+    SearchResult,
+    search,
+    smallest_linear,
+)
 from squealpipe.models.variants import VARIANT_RULES
 from squealpipe.parameters import Parameters
 from squealpipe.schema import Outcome, blank, build
@@ -20,7 +25,15 @@ from squealpipe.tasks.cycles.scene import Scene
 from squealpipe.tasks.cycles.sliding import steady_sliding
 from squealpipe.tasks.dynamics.motion import linear_time, whirls
 from squealpipe.tasks.linear.maps import stability_map
-from squealpipe.validation import Angle, Positive, Seed, Tolerance, Whole, Workers, one_of
+from squealpipe.validation import (
+    Angle,
+    Positive,
+    Seed,
+    Tolerance,
+    Whole,
+    Workers,
+    one_of,
+)
 
 T_END = 200.0
 """Default horizon, in units of √(2m/(k1 + k2))."""
@@ -78,7 +91,9 @@ def smallest_disturbance(
     largest = BOUNDS[goal] if bound is None else bound
     scene = Scene(params, alpha1, alpha2, model=model)
     sliding = steady_sliding(scene) if params.belt_speed != 0.0 else None
-    numbers = np.unique(np.append(2 ** np.arange(3, directions.bit_length()), directions))
+    numbers = np.unique(
+        np.append(2 ** np.arange(3, directions.bit_length()), directions)
+    )
     nothing: dict[str, Any] = {
         **blank(SMALLEST_DISTURBANCE, directions=numbers.size, improved=IMPROVED),
         "leads_to": goal,
@@ -91,7 +106,9 @@ def smallest_disturbance(
     coordinates = {"directions": numbers, "improved": np.arange(1, IMPROVED + 1)}
 
     def result(outcome: Outcome, **found: Any) -> xr.Dataset:
-        return build(SMALLEST_DISTURBANCE, {**nothing, **found, "outcome": outcome}, coordinates)
+        return build(
+            SMALLEST_DISTURBANCE, {**nothing, **found, "outcome": outcome}, coordinates
+        )
 
     if sliding is None:
         return result(Outcome.no_sliding_state)
@@ -121,10 +138,17 @@ def smallest_disturbance(
     def happens(vectors: np.ndarray) -> np.ndarray:
         nonlocal unfinished
         run = run_ensemble(
-            params, alpha1, alpha2, t_end=horizon, model=model, tol=tol, workers=workers,
+            params,
+            alpha1,
+            alpha2,
+            t_end=horizon,
+            model=model,
+            tol=tol,
+            workers=workers,
             initial_state=rest + scale * vectors,
-            stop_at_first_separation=goal == LeadsTo.contact_lost, tracked=(),
-        )  # fmt: skip
+            stop_at_first_separation=goal == LeadsTo.contact_lost,
+            tracked=(),
+        )
         finished = np.isin(run.outcome, (Outcome.converged, Outcome.separated))
         unfinished += int(np.sum(~finished))
         if goal == LeadsTo.contact_lost:
@@ -138,15 +162,22 @@ def smallest_disturbance(
     return result(outcome, **known, reached=reached, unfinished=unfinished)
 
 
-def _described(found: SearchResult, numbers: np.ndarray, scale: np.ndarray) -> dict[str, Any]:
+def _described(
+    found: SearchResult, numbers: np.ndarray, scale: np.ndarray
+) -> dict[str, Any]:
     """The variables of a search."""
     lowest = np.minimum.accumulate(found.radius)[numbers - 1]
     move = scale * found.vector
     return {
         "distance": float(np.linalg.norm(found.vector)),
-        **{f"{name}_disturbance": move[i] for i, name in enumerate(("x", "y", "vx", "vy"))},
+        **{
+            f"{name}_disturbance": move[i]
+            for i, name in enumerate(("x", "y", "vx", "vy"))
+        },
         "distance_by_number": np.where(np.isfinite(lowest), lowest, np.nan),
-        "improved_distance": np.where(np.isfinite(found.improved), found.improved, np.nan),
+        "improved_distance": np.where(
+            np.isfinite(found.improved), found.improved, np.nan
+        ),
         "share_below": 1.0 - (1.0 - CONFIDENCE) ** (1.0 / found.radius.size),
     }
 
@@ -156,7 +187,9 @@ def _check_goal(leads_to: str, model: str) -> None:
     if not rules.separates:
         raise ValueError(f"model = {model!r} never loses contact; use 'A1'")
     if not rules.drags:
-        raise ValueError(f"model = {model!r} has no steady sliding along the belt; use 'A1'")
+        raise ValueError(
+            f"model = {model!r} has no steady sliding along the belt; use 'A1'"
+        )
     if leads_to == LeadsTo.whirl.name and rules.linear_springs:
         raise ValueError(
             f"model = {model!r} has no whirl, for its springs do not turn; use 'A1', or "

@@ -30,7 +30,11 @@ from squealpipe.tasks.linear.maps import quasi_static_map
 BASE = Parameters(k3=0.75, mu=0.3, belt_speed=100.0, length1=5.0, length2=5.0)
 """Parameters at which the scenes are hard, whatever the study's are."""
 EXACT, BALANCE = "closed form, exact orbit", "closed-form balance"
-COLD, ARC, TANH = "cold Newton, sampled", "arc length, unchecked", "tanh balance, sampled"
+COLD, ARC, TANH = (
+    "cold Newton, sampled",
+    "arc length, unchecked",
+    "tanh balance, sampled",
+)
 HILL, NUMERIC = "Hill's method, sampled", "numpy.linalg"
 METHODS = (EXACT, BALANCE, COLD, ARC, TANH, CORRECTED, PRINTED, HILL, NUMERIC)
 """The columns; the first two are ours."""
@@ -70,7 +74,9 @@ class BranchCase(NamedTuple):
 CASES = (
     BranchCase("σ too small (balance)", 0.3, 0.9, 1, 3.0, sigma=10.0),
     BranchCase("σ too large (balance)", 0.3, 0.9, 1, 3.0, n_time=40, sigma=1e6),
-    BranchCase("aliasing, N ≈ 2N_h", 0.3, 0.9, 1, 3.0, n_time=2 * N_HARMONICS + 2, warm=True),
+    BranchCase(
+        "aliasing, N ≈ 2N_h", 0.3, 0.9, 1, 3.0, n_time=2 * N_HARMONICS + 2, warm=True
+    ),
     BranchCase("pole at ω_x/2", 0.97, 0.97, 1, 1.5),
     BranchCase("tongue end", 0.05, 0.85, 1, 3.0),
     BranchCase("tongue end, slow mode", 0.4, 0.55, 1, 3.0),
@@ -110,29 +116,46 @@ def judge_balances() -> xr.Dataset:
 
     Truths are exact orbits, closed forms, 128 harmonics or sixty digits.
     """
-    scenes = [_singular_static_state(), _flutter_onset(), *map(_branch, CASES), _period_doubling()]
+    scenes = [
+        _singular_static_state(),
+        _flutter_onset(),
+        *map(_branch, CASES),
+        _period_doubling(),
+    ]
     shape = len(scenes), len(METHODS)
-    verdict, error, message = np.zeros(shape), np.full(shape, np.nan), np.full(shape, "", "U64")
+    verdict, error, message = (
+        np.zeros(shape),
+        np.full(shape, np.nan),
+        np.full(shape, "", "U64"),
+    )
     for row, scene in enumerate(scenes):
         for name, ask in scene.answers.items():
             cell, answer = (row, METHODS.index(name)), ask()
-            verdict[cell], error[cell] = verdict_of(answer, scene.truth, scene.tolerance)
+            verdict[cell], error[cell] = verdict_of(
+                answer, scene.truth, scene.tolerance
+            )
             message[cell] = answer.flag[:64]
     return build(
         FAILURE_ATLAS,
         {
-            "verdict": verdict, "error": error, "message": message,
+            "verdict": verdict,
+            "error": error,
+            "message": message,
             "tolerance": [scene.tolerance for scene in scenes],
-            "role": [Role.ours if name in METHODS[:2] else Role.public for name in METHODS],
+            "role": [
+                Role.ours if name in METHODS[:2] else Role.public for name in METHODS
+            ],
         },
         {"scene": [scene.name for scene in scenes], "solver": METHODS},
-    )  # fmt: skip
+    )
 
 
 def _branch(case: BranchCase) -> HardScene:
     scene = scaled_system(BASE, *case.angles)
     exact, _ = find_orbit(scene, case.mode, case.y_peak)
-    balance = CosineBalance(scene.system, contact_of(N_HARMONICS, 1.0, case.n_time, case.sigma))
+    balance = CosineBalance(
+        scene.system, contact_of(N_HARMONICS, 1.0, case.n_time, case.sigma)
+    )
     start = linear_series(
         scene, case.mode, N_HARMONICS, linear_orbit(scene, case.mode, case.y_peak).point
     )
@@ -141,13 +164,17 @@ def _branch(case: BranchCase) -> HardScene:
     truth: np.ndarray | float = math.nan
     if exact:
         fine = CosineBalance(scene.system, contact_of(TRUTH_HARMONICS, 1.0, None, None))
-        truth = _newton(scene, case, fine, orbit_series(scene, exact, TRUTH_HARMONICS)).value
+        truth = _newton(
+            scene, case, fine, orbit_series(scene, exact, TRUTH_HARMONICS)
+        ).value
     answers: dict[str, Callable[[], Answer]] = {
         EXACT: lambda: _exact_orbit(case),
         BALANCE: lambda: _our_balance(case),
         CORRECTED: lambda: _paper(scene, case, start, exact, as_printed=False),
         PRINTED: lambda: _paper(scene, case, start, exact, as_printed=True),
-        COLD if case.sigma is None else TANH: lambda: _newton(scene, case, balance, start),
+        COLD if case.sigma is None else TANH: lambda: _newton(
+            scene, case, balance, start
+        ),
     }
     if case.sigma is None:
         answers[ARC] = lambda: _arc_length(scene, case, balance)
@@ -165,18 +192,30 @@ def _our_balance(case: BranchCase) -> Answer:
     if flag or not branch.sizes["point"]:
         return Answer(math.nan, flag)
     away = float(branch.waveform_error[-1])
-    flag = "" if away < FARTHEST * BASE.preload else f"{away:.2g} away from the exact orbit"
+    flag = (
+        ""
+        if away < FARTHEST * BASE.preload
+        else f"{away:.2g} away from the exact orbit"
+    )
     return Answer(float(branch.omega[-1]), flag)
 
 
 def _series(angles: tuple[float, float], mode: int, y_peak: float) -> xr.Dataset:
     return backbone(
-        BASE, *angles, mode=mode, y_peak_max=y_peak, method="hbm", n_harmonics=N_HARMONICS
+        BASE,
+        *angles,
+        mode=mode,
+        y_peak_max=y_peak,
+        method="hbm",
+        n_harmonics=N_HARMONICS,
     )
 
 
 def _newton(
-    scene: ScaledSystem, case: BranchCase, balance: CosineBalance, start: NDArray[np.float64]
+    scene: ScaledSystem,
+    case: BranchCase,
+    balance: CosineBalance,
+    start: NDArray[np.float64],
 ) -> Answer:
     with np.errstate(all="ignore"):
         found = balance.solve(start, balance.peak_row, case.y_peak)
@@ -186,17 +225,27 @@ def _newton(
 
 
 def _paper(
-    scene: ScaledSystem, case: BranchCase, z: NDArray[np.float64], exact: Orbit | None, *,
+    scene: ScaledSystem,
+    case: BranchCase,
+    z: NDArray[np.float64],
+    exact: Orbit | None,
+    *,
     as_printed: bool,
-) -> Answer:  # fmt: skip
+) -> Answer:
     """Newton on Eqs. (31)–(36), which prescribe neither peak nor phase.
 
     What is found is therefore compared with the exact orbit of its own peak, where there is one.
     """
     balance = SampledBalance(
-        scene.system, N_HARMONICS, case.n_time, case.sigma or PAPER_SIGMA, as_printed=as_printed
+        scene.system,
+        N_HARMONICS,
+        case.n_time,
+        case.sigma or PAPER_SIGMA,
+        as_printed=as_printed,
     )
-    start = balance.start_from_cosines(z[: N_HARMONICS + 1], z[N_HARMONICS + 1 : -1], float(z[-1]))
+    start = balance.start_from_cosines(
+        z[: N_HARMONICS + 1], z[N_HARMONICS + 1 : -1], float(z[-1])
+    )
     with np.errstate(all="ignore"):
         found = balance.solve(start, max_iterations=40)
     if not found.converged:
@@ -208,7 +257,9 @@ def _paper(
     return Answer(omega * scene.frequency)
 
 
-def _arc_length(scene: ScaledSystem, case: BranchCase, balance: CosineBalance) -> Answer:
+def _arc_length(
+    scene: ScaledSystem, case: BranchCase, balance: CosineBalance
+) -> Answer:
     """Arc-length continuation from the linear mode until the peak is met, nothing else checked."""
     orbit = linear_orbit(scene, case.mode, 1.0 - 1e-3)
     start = linear_series(scene, case.mode, N_HARMONICS, orbit.point)
@@ -244,11 +295,15 @@ def _period_doubling() -> HardScene:
 
     def series() -> Answer:
         branch = _series(angles, mode, y_peak)
-        return Answer(float(abs(float(branch.stability_index[-1])) > 2.0), _flag(branch.end))
+        return Answer(
+            float(abs(float(branch.stability_index[-1])) > 2.0), _flag(branch.end)
+        )
 
     def hill() -> Answer:
         guess = orbit_series(scene, exact, HILL_HARMONICS) if exact else None
-        found = None if guess is None else balance.solve(guess, balance.peak_row, y_peak)
+        found = (
+            None if guess is None else balance.solve(guess, balance.peak_row, y_peak)
+        )
         if found is None:
             return Answer(math.nan, NOT_CONVERGED)
         _, y, omega = balance.split(found[0])
@@ -279,7 +334,9 @@ def _singular_static_state() -> HardScene:
         except np.linalg.LinAlgError as error:
             return Answer(math.nan, str(error))
 
-    return HardScene("singular static state", math.nan, 1.0, {EXACT: ours, NUMERIC: numeric})
+    return HardScene(
+        "singular static state", math.nan, 1.0, {EXACT: ours, NUMERIC: numeric}
+    )
 
 
 def _flutter_onset() -> HardScene:

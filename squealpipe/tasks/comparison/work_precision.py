@@ -12,7 +12,11 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from squealpipe.methods.balance.harmonic_balance import CosineBalance, contact_of, cosines_of
+from squealpipe.methods.balance.harmonic_balance import (
+    CosineBalance,
+    contact_of,
+    cosines_of,
+)
 from squealpipe.methods.balance.sampled_balance import SampledBalance, SampledSolution
 from squealpipe.methods.orbits.orbit_shape import sample
 from squealpipe.methods.orbits.orbits import Orbit, solve_orbit
@@ -59,7 +63,9 @@ def work_precision(
         oversampling: N over 2 N_h; 1 is the fewest samples that keep the columns independent.
     """
     scene = scaled_system(params, *COUPLED_SCENE)
-    found = [[find_orbit(scene, MODE, peak - d)[0] for d in (0.0, _STEP)] for peak in PEAKS]
+    found = [
+        [find_orbit(scene, MODE, peak - d)[0] for d in (0.0, _STEP)] for peak in PEAKS
+    ]
     pairs = [(orbit, start) for orbit, start in found if orbit and start]
     rows = []
     for *names, method in _methods(scene, harmonics, sigmas, oversampling):
@@ -71,7 +77,9 @@ def work_precision(
             seconds.append(spent)
         fine = np.isfinite(errors)
         error = float(np.median(np.array(errors)[fine])) if fine.any() else math.nan
-        outcome = Outcome.converged if fine.any() and fine.all() else Outcome.no_convergence
+        outcome = (
+            Outcome.converged if fine.any() and fine.all() else Outcome.no_convergence
+        )
         rows.append((*names, error, statistics.median(seconds or [0.0]), outcome))
     columns = dict(zip(WORK_PRECISION.variables, zip(*rows, strict=True), strict=True))
     return build(WORK_PRECISION, columns, {"run": np.arange(len(rows))})
@@ -97,19 +105,33 @@ def _methods(
     for sigma in sigmas:
         samples = int(2 ** math.ceil(math.log2(max(16 * most, 8 * min(sigma, 1000.0)))))
         smooth = partial(_cosines, scene, most, samples, sigma)
-        yield "cosines, tanh", f"N_h {most}, N {samples}, sigma {sigma:g}", Role.ours, smooth
+        yield (
+            "cosines, tanh",
+            f"N_h {most}, N {samples}, sigma {sigma:g}",
+            Role.ours,
+            smooth,
+        )
     name = "exact orbit (shooting)"
     yield name, "with monodromy", Role.our_setting, partial(_shooting, scene)
     for count in (each for each in harmonics if each <= PAPER_HARMONICS):
         setting = f"N_h {count}, N {4 * count + 2}, sigma {PAPER_SIGMA:g}"
         for name, printed in ((CORRECTED, False), (PRINTED, True)):
-            yield name, setting, Role.public, partial(_paper, scene, count, as_printed=printed)
+            yield (
+                name,
+                setting,
+                Role.public,
+                partial(_paper, scene, count, as_printed=printed),
+            )
 
 
 def _cosines(
-    scene: ScaledSystem, count: int, samples: int | None, sigma: float | None, orbit: Orbit,
+    scene: ScaledSystem,
+    count: int,
+    samples: int | None,
+    sigma: float | None,
+    orbit: Orbit,
     start: Orbit,
-) -> Any:  # fmt: skip
+) -> Any:
     balance = CosineBalance(scene.system, contact_of(count, 1.0, samples, sigma))
     guess, peak = orbit_series(scene, start, count), float(orbit.point[1])
 
@@ -119,15 +141,21 @@ def _cosines(
     return partial(balance.solve, guess, balance.peak_row, peak), error_of
 
 
-def _paper(scene: ScaledSystem, count: int, _: Orbit, start: Orbit, *, as_printed: bool) -> Any:
+def _paper(
+    scene: ScaledSystem, count: int, _: Orbit, start: Orbit, *, as_printed: bool
+) -> Any:
     """The paper's balance; its peak is not prescribed: ω is judged by its own exact orbit."""
     z = orbit_series(scene, start, count)
-    balance = SampledBalance(scene.system, count, 4 * count + 2, PAPER_SIGMA, as_printed=as_printed)
+    balance = SampledBalance(
+        scene.system, count, 4 * count + 2, PAPER_SIGMA, as_printed=as_printed
+    )
     eta = balance.start_from_cosines(z[: count + 1], z[count + 1 : -1], float(z[-1]))
 
     def error_of(found: SampledSolution) -> float:
         own, _ = find_orbit(scene, MODE, max(balance.peak(found), 1.0 + 1e-6))
-        return abs(found.omega / own.omega - 1.0) if found.converged and own else math.nan
+        return (
+            abs(found.omega / own.omega - 1.0) if found.converged and own else math.nan
+        )
 
     return partial(balance.solve, eta, max_iterations=25), error_of
 
@@ -136,10 +164,14 @@ def _shooting(scene: ScaledSystem, orbit: Orbit, start: Orbit) -> Any:
     """Exact orbits themselves: their error is the velocity that is left after half a period."""
     guess = start.point.copy()
     guess[1] = orbit.point[1]
-    return partial(solve_orbit, scene.system, guess), lambda f: f.residual if f else math.nan
+    return partial(
+        solve_orbit, scene.system, guess
+    ), lambda f: f.residual if f else math.nan
 
 
-def orbit_series(scene: ScaledSystem, orbit: Orbit, n_harmonics: int) -> NDArray[np.float64]:
+def orbit_series(
+    scene: ScaledSystem, orbit: Orbit, n_harmonics: int
+) -> NDArray[np.float64]:
     """Unknowns of the cosine balance that describe an exact orbit."""
     theta = np.linspace(0.0, math.pi, _GUESS_SAMPLES + 1)
     cosines = cosines_of(sample(scene.system.rows, orbit.point, theta)[:, :2])

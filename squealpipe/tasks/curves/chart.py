@@ -73,7 +73,9 @@ def regime_chart(
         own = {"lambda_": params.length_ratio, "mu_static": params.static_mu}
         design = {name: own.get(name, getattr(params, name, None)) for name in axes}
     t_end = HORIZON * params.time_unit if t_end is None else t_end
-    square = Square(params, fixed, axes, {"t_end": t_end, "tol": tol, "workers": workers}, "A1")
+    square = Square(
+        params, fixed, axes, {"t_end": t_end, "tol": tol, "workers": workers}, "A1"
+    )
 
     def invariants(places: Vector) -> Any:
         p = with_drag(square.fields(places))
@@ -100,8 +102,12 @@ def regime_chart(
         ChartLine.contact_lost: contact,
     }
     centres = (np.arange(GRID) + 0.5) / GRID
-    cells = np.stack(np.meshgrid(centres, centres, indexing="ij"), axis=-1).reshape(-1, 2)
-    regime = np.broadcast_to(a3.regime(invariants(cells)), len(cells)).reshape(GRID, GRID)
+    cells = np.stack(np.meshgrid(centres, centres, indexing="ij"), axis=-1).reshape(
+        -1, 2
+    )
+    regime = np.broadcast_to(a3.regime(invariants(cells)), len(cells)).reshape(
+        GRID, GRID
+    )
     kept = contact.holds(centres, centres)
     regions = [
         (code, state, places[k - 1], size)
@@ -116,19 +122,29 @@ def regime_chart(
         for which, curves in onsets.items()
         if curves is not None
     }
-    cycles = [(which, _over(square, which.name, x), x) for which in asked for x in asked[which]]
+    cycles = [
+        (which, _over(square, which.name, x), x)
+        for which in asked
+        for x in asked[which]
+    ]
     data: dict[str, Any] = {}
     if design is not None:
         given = np.broadcast_arrays(*(design[name] for name in axes))
         places = np.atleast_2d(np.stack(given, axis=-1))
         limits = np.stack([square.low, square.low + square.width], axis=1)
         loops = {
-            which: [square.values(loop.outline) for loop in each.loops(positive=True, flat=FLAT)]
+            which: [
+                square.values(loop.outline)
+                for loop in each.loops(positive=True, flat=FLAT)
+            ]
             for which, each in lines.items()
         } | {which: [] for which in asked}
         for which, line, curve in cycles:
             loops[which].append(_smooth(line, square.width, curve.label.values))
-        far = [[nearest_on(each, at, limits)[1] for each in loops.values()] for at in places]
+        far = [
+            [nearest_on(each, at, limits)[1] for each in loops.values()]
+            for at in places
+        ]
         data = {"design": places, "distance": far}
     chains = [
         (which, square.values(each.place[chain]), each.residual[chain])
@@ -144,7 +160,9 @@ def regime_chart(
             **dict(zip(square.names, places.T, strict=True)),
             "line": np.repeat([int(which) for which, _, _ in chains], lengths),
             "curve": np.repeat(np.arange(len(chains)), lengths),
-            "residual": np.concatenate([np.empty(0), *(residual for *_, residual in chains)]),
+            "residual": np.concatenate(
+                [np.empty(0), *(residual for *_, residual in chains)]
+            ),
             "cell_regime": regime,
             "cell_kept": kept,
             "region_regime": [code for code, *_ in regions],
@@ -172,7 +190,9 @@ def _over(square: Square, name: str, curve: xr.Dataset) -> Vector:
     """A curve of cycles in the chart's parameters, (points, 2)."""
     names = ["k3" if each == "kappa" else each for each in square.names]
     if set(names) != set(curve.get("parameter", xr.DataArray([])).values):
-        raise ValueError(f"{name}: a dataset of cycle_curve in {' and '.join(names)} is needed")
+        raise ValueError(
+            f"{name}: a dataset of cycle_curve in {' and '.join(names)} is needed"
+        )
     units = np.where(np.array(square.names) == "kappa", square.params.k1, 1.0)
     return np.stack([curve[each].values for each in names], axis=1) / units
 
@@ -183,7 +203,9 @@ def _smooth(line: Vector, width: Vector, label: Vector) -> Vector:
     way = np.append(0.0, np.cumsum(np.maximum(steps, 1e-12)))
     found = [line[:1]]
     for i, j in pairwise(np.unique([0, *np.flatnonzero(label), len(line) - 1])):
-        at = np.interp(np.arange(0.0, j - i + 1e-9, 0.01), np.arange(j - i + 1), way[i : j + 1])
+        at = np.interp(
+            np.arange(0.0, j - i + 1e-9, 0.01), np.arange(j - i + 1), way[i : j + 1]
+        )
         found.append(CubicSpline(way[i : j + 1], line[i : j + 1])(at))
     there = np.concatenate(found)
     return np.concatenate([there, there[::-1]])

@@ -12,7 +12,12 @@ from squealpipe.laws.contact_laws import LINEAR
 from squealpipe.methods.zero_lines import Vector, ZeroLines, gathered, inside
 from squealpipe.parameters import HORIZON, Parameters
 from squealpipe.schema import Outcome, build
-from squealpipe.schema.curves import BOUNDARY_DISTANCE, CONTACT_BOUNDARY, VARIED, PointKind
+from squealpipe.schema.curves import (
+    BOUNDARY_DISTANCE,
+    CONTACT_BOUNDARY,
+    VARIED,
+    PointKind,
+)
 from squealpipe.schema.origin import recorded
 from squealpipe.solvers.a1.ensemble import Ensemble, run_ensemble
 from squealpipe.solvers.a1.scaling import PHYSICAL
@@ -50,12 +55,17 @@ class Square:
     def fields(self, places: Vector) -> dict[str, Any]:
         """Parameters of A1 by name, and both angles."""
         fields: dict[str, Any] = {name: getattr(self.params, name) for name in PHYSICAL}
-        fields |= {**self.fixed, **dict(zip(self.names, self.values(places).T, strict=True))}
+        fields |= {
+            **self.fixed,
+            **dict(zip(self.names, self.values(places).T, strict=True)),
+        }
         if "kappa" in fields:
             fields["k3"] = fields.pop("kappa") * self.params.k1
         if "lambda_" in fields:
             fields["length1"] = fields.pop("lambda_") * self.params.preload
-            fields["length2"] = fields["length1"] * self.params.length2 / self.params.length1
+            fields["length2"] = (
+                fields["length1"] * self.params.length2 / self.params.length1
+            )
         return fields
 
     def _run(self, places: Vector, model: str, **options: Any) -> Ensemble:
@@ -73,7 +83,9 @@ class Square:
         """When contact is lost next to the boundary, over √(m/k1)."""
         beside = places - BESIDE * slope / np.linalg.norm(slope, axis=1)[:, None]
         run = self._run(beside, self.model, stop_at_first_separation=True)
-        time = np.where(run.outcome == Outcome.separated, run.first_separation_time, run.time)
+        time = np.where(
+            run.outcome == Outcome.separated, run.first_separation_time, run.time
+        )
         return np.asarray(time / self.params.time_unit)
 
 
@@ -84,7 +96,9 @@ def two_axes(
     given = {"alpha1": np.asarray(alpha1), "alpha2": np.asarray(alpha2)}
     given |= {name: np.asarray(values) for name, values in ranges.items()}
     axes = {name: values for name, values in given.items() if values.ndim}
-    if len(axes) != 2 or any((np.diff(a) <= 0).any() or a.size < 3 for a in axes.values()):
+    if len(axes) != 2 or any(
+        (np.diff(a) <= 0).any() or a.size < 3 for a in axes.values()
+    ):
         raise ValueError(
             f"{', '.join(axes) or 'no argument'}: two arguments must be ascending arrays of three "
             "or more values, the others numbers"
@@ -92,9 +106,15 @@ def two_axes(
     for name in axes:
         if name not in VARIED:
             raise ValueError(f"{name!r} cannot vary; {suggestion(name, VARIED)}")
-    for ratio, same in (("kappa", "k3"), ("lambda_", "length1"), ("lambda_", "length2")):
+    for ratio, same in (
+        ("kappa", "k3"),
+        ("lambda_", "length1"),
+        ("lambda_", "length2"),
+    ):
         if {ratio, same} <= axes.keys():
-            raise ValueError(f"{ratio} sets {same}: let another parameter vary beside one of them")
+            raise ValueError(
+                f"{ratio} sets {same}: let another parameter vary beside one of them"
+            )
     fixed = {name: float(values) for name, values in given.items() if not values.ndim}
     if set(fixed) - {"alpha1", "alpha2"}:
         raise ValueError("what does not vary belongs into params")
@@ -105,11 +125,18 @@ def two_axes(
     return axes, fixed
 
 
-def contact_lines(square: Square, coarse: int, finest: int, **options: float) -> ZeroLines:
+def contact_lines(
+    square: Square, coarse: int, finest: int, **options: float
+) -> ZeroLines:
     """The boundary of kept contact, begun on a grid of at least ``finest`` cells per side."""
     finer = 2 ** max(0, int(np.ceil(np.log2(finest / (coarse - 1)))))
     return ZeroLines(
-        square.reserve, square.touch_time, coarse=coarse, finer=finer, jump=JUMP, **options
+        square.reserve,
+        square.touch_time,
+        coarse=coarse,
+        finer=finer,
+        jump=JUMP,
+        **options,
     )
 
 
@@ -154,19 +181,28 @@ def contact_boundary(
     """
     axes, fixed = two_axes(params, alpha1, alpha2, ranges)
     t_end = HORIZON * params.time_unit if t_end is None else t_end
-    options = {"t_end": t_end, "tol": tol, "workers": workers, "tracked": ("contact_force",)}
+    options = {
+        "t_end": t_end,
+        "tol": tol,
+        "workers": workers,
+        "tracked": ("contact_force",),
+    }
     square = Square(params, fixed, axes, options, model)
     coarse = max(each.size for each in axes.values())
     return _dataset(square, contact_lines(square, coarse, FINEST), axes)
 
 
-def nearest_on(loops: Sequence[Vector], place: Vector, limits: Vector) -> tuple[Vector, float]:
+def nearest_on(
+    loops: Sequence[Vector], place: Vector, limits: Vector
+) -> tuple[Vector, float]:
     """The point of closed lines next to a place, and its distance; infinite where there is none."""
     nearest, distance = place, np.inf
     for line in loops:
         after = np.roll(line, -1, axis=0)
         chord = after - line
-        share = ((place - line) * chord).sum(axis=1) / np.maximum((chord**2).sum(axis=1), 1e-300)
+        share = ((place - line) * chord).sum(axis=1) / np.maximum(
+            (chord**2).sum(axis=1), 1e-300
+        )
         foot = line + np.clip(share, 0.0, 1.0)[:, None] * chord
         far = np.linalg.norm(foot - place, axis=1)
         # what runs along the end of a range is not an arc
@@ -195,7 +231,9 @@ def boundary_distance(boundary: xr.Dataset, design: Mapping[str, Number]) -> xr.
         raise ValueError("boundary: a dataset of contact_boundary is needed")
     names = [str(name) for name in boundary.parameter.values]
     if set(design) != set(names):
-        raise ValueError(f"design = {dict(design)!r}: {names[0]} and {names[1]} are needed")
+        raise ValueError(
+            f"design = {dict(design)!r}: {names[0]} and {names[1]} are needed"
+        )
     place = np.array([design[name] for name in names])
     owner, vertices = boundary.outline_loop.values, boundary.outline.values
     loops = [vertices[owner == loop] for loop in np.unique(owner)]
@@ -207,16 +245,23 @@ def boundary_distance(boundary: xr.Dataset, design: Mapping[str, Number]) -> xr.
             "distance": distance,
             "nearest": nearest,
             "kept": inside(loops, place[:1], place[1:])[0, 0],
-            "outcome": Outcome.converged if np.isfinite(distance) else Outcome.not_computed,
+            "outcome": Outcome.converged
+            if np.isfinite(distance)
+            else Outcome.not_computed,
         },
         {"parameter": names},
     )
 
 
-def _dataset(square: Square, lines: ZeroLines, axes: Mapping[str, Vector]) -> xr.Dataset:
+def _dataset(
+    square: Square, lines: ZeroLines, axes: Mapping[str, Vector]
+) -> xr.Dataset:
     chains, coarse = lines.chains(), max(each.size for each in axes.values())
     # on the border itself either side would do
-    shares = [np.clip((a - a[0]) / (a[-1] - a[0]), BESIDE, 1.0 - BESIDE) for a in axes.values()]
+    shares = [
+        np.clip((a - a[0]) / (a[-1] - a[0]), BESIDE, 1.0 - BESIDE)
+        for a in axes.values()
+    ]
     at = np.array([point for chain in chains for point in chain], int)
     curve = np.repeat(np.arange(len(chains)), [len(chain) for chain in chains])
     corner = np.isnan(lines.slope[at, 0])
@@ -229,7 +274,9 @@ def _dataset(square: Square, lines: ZeroLines, axes: Mapping[str, Vector]) -> xr
         outlines += [square.values(loop.outline) for loop in loops] if kept else []
         for group in gathered(loops):
             area, error = (sum(loops[i][k] for i in group) for k in (1, 2))
-            regions.append((kept, area * np.prod(square.width), error * np.prod(square.width)))
+            regions.append(
+                (kept, area * np.prod(square.width), error * np.prod(square.width))
+            )
     kept, areas, errors = np.array(regions).T
     inside = kept.astype(bool)
     return build(
@@ -242,14 +289,18 @@ def _dataset(square: Square, lines: ZeroLines, axes: Mapping[str, Vector]) -> xr
             "touch_time": lines.marks(at) * square.params.time_unit,
             "residual": lines.residual[at],
             "corner": corner,
-            "kind": np.where(corner, PointKind.corner, np.where(border, PointKind.border, 0)),
+            "kind": np.where(
+                corner, PointKind.corner, np.where(border, PointKind.border, 0)
+            ),
             "region_kept": kept,
             "region_area": areas,
             "region_area_error": errors,
             "kept_share": areas[inside].sum() / areas.sum(),
             "kept_share_error": errors[inside].sum() / areas.sum(),
             "outline": np.concatenate([*outlines, np.empty((0, 2))]),
-            "outline_loop": np.repeat(np.arange(len(outlines)), [len(each) for each in outlines]),
+            "outline_loop": np.repeat(
+                np.arange(len(outlines)), [len(each) for each in outlines]
+            ),
             "range": np.stack([square.low, square.low + square.width], axis=1),
             "t_end": square.options["t_end"],
             "runs": square.runs,

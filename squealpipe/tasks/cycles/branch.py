@@ -15,7 +15,13 @@ from squealpipe.schema import Outcome, blank, build
 from squealpipe.schema.cycles import CYCLE_BRANCH, LIMIT_CYCLE
 from squealpipe.schema.origin import recorded
 from squealpipe.solvers.a1.jobs import STATE
-from squealpipe.systems.cycles.branch import Follower, Point, doubled_start, first_point, in_rows
+from squealpipe.systems.cycles.branch import (
+    Follower,
+    Point,
+    doubled_start,
+    first_point,
+    in_rows,
+)
 from squealpipe.systems.cycles.event_map import Cycle
 from squealpipe.systems.cycles.labels import Label
 from squealpipe.tasks.cycles.cycle import cycle_from
@@ -30,7 +36,9 @@ def _start(value: Any) -> Any:
     try:
         return state_of(value)
     except ValueError as error:
-        raise ValueError("a state (x, y, vx, vy), a dataset or 'onset' is needed") from error
+        raise ValueError(
+            "a state (x, y, vx, vy), a dataset or 'onset' is needed"
+        ) from error
 
 
 Start = Annotated[Any, BeforeValidator(_start)]
@@ -108,18 +116,26 @@ def cycle_branch(
         end = follower.run(*first)
     last = follower.points[-1]
     there = at(scene, last.parameter)
-    if end == Outcome.branch_lost and there.is_singular(last.cycle.parts.path.series[:, :2, 0]):
+    if end == Outcome.branch_lost and there.is_singular(
+        last.cycle.parts.path.series[:, :2, 0]
+    ):
         end = Outcome.singular_geometry
-    elif end == Outcome.converged and math.isclose(last.parameter, begin / scale, rel_tol=1e-11):
+    elif end == Outcome.converged and math.isclose(
+        last.parameter, begin / scale, rel_tol=1e-11
+    ):
         end = Outcome.returned
     return _dataset(scene, follower.points, end)
 
 
 def _value(params: Parameters, alpha1: float, alpha2: float, parameter: str) -> float:
-    values = {name: getattr(params, name) for name, row in TABLE.items() if row.enters_a1}
+    values = {
+        name: getattr(params, name) for name, row in TABLE.items() if row.enters_a1
+    }
     values |= {"alpha1": alpha1, "alpha2": alpha2}
     if not is_finite_number(values.get(parameter)):
-        known = ", ".join(name for name, value in values.items() if is_finite_number(value))
+        known = ", ".join(
+            name for name, value in values.items() if is_finite_number(value)
+        )
         why = " (A1 does not read it)" if parameter in {*TABLE} - {*values} else ""
         raise ValueError(f"parameter = {parameter!r}{why}: one of {known} is needed")
     return float(values[parameter])
@@ -132,7 +148,10 @@ def _first_cycle(scene: Scene, start: Any) -> tuple[Cycle | None, Outcome]:
                 f"start holds {', '.join(map(str, start.data_vars)) or 'nothing'}: a dataset of "
                 "limit_cycle is needed"
             )
-        if Outcome(int(start.outcome)) not in {Outcome.converged, Outcome.family_member}:
+        if Outcome(int(start.outcome)) not in {
+            Outcome.converged,
+            Outcome.family_member,
+        }:
             return None, Outcome(int(start.outcome))
         start = np.array([float(start[f"{name}_start"]) for name in STATE])
     return cycle_from(scene, start)
@@ -149,7 +168,9 @@ def _dataset(scene: Scene, points: list[Point], end: Outcome) -> xr.Dataset:
     followed = np.array([point.parameter for point in points]) * scene.units[parameter]
     fixed = {"alpha1": scene.alpha1, "alpha2": scene.alpha2}
     outcomes = [
-        Outcome.family_member if scene.is_family_member(point.cycle) else Outcome.converged
+        Outcome.family_member
+        if scene.is_family_member(point.cycle)
+        else Outcome.converged
         for point in points
     ]
     return build(

@@ -18,14 +18,26 @@ from squealpipe.tasks.cycles.cycle import cycle_from
 from squealpipe.tasks.cycles.scene import DASHPOTS, Scene
 from squealpipe.validation import Angle, Number, Several
 
-REASONS = dict(zip(ENDS, (Outcome.point_limit, Outcome.converged, Outcome.branch_lost,
-                          Outcome.real_multipliers), strict=True))  # fmt: skip
+REASONS = dict(
+    zip(
+        ENDS,
+        (
+            Outcome.point_limit,
+            Outcome.converged,
+            Outcome.branch_lost,
+            Outcome.real_multipliers,
+        ),
+        strict=True,
+    )
+)
 
 BESIDE = (0.0, -1e-9, 1e-9)
 """Where a cycle is looked for: at the very onset of stick, round-off decides how a run goes on."""
 
 
-@recorded(model="A1", method="pseudo-arclength continuation of the legs and one condition")
+@recorded(
+    model="A1", method="pseudo-arclength continuation of the legs and one condition"
+)
 def cycle_curve(
     params: Parameters,
     alpha1: Angle,
@@ -70,18 +82,31 @@ def cycle_curve(
         else:
             params = params.with_(**at)
         scene = Scene(
-            params, own["alpha1"], own["alpha2"], follow=dashpots[0] if dashpots else None
+            params,
+            own["alpha1"],
+            own["alpha2"],
+            follow=dashpots[0] if dashpots else None,
         )
-        check([name for name in scene.values if name in scene.units], label, parameters, limits)
+        check(
+            [name for name in scene.values if name in scene.units],
+            label,
+            parameters,
+            limits,
+        )
         cycle, _ = cycle_from(scene, [float(point[f"{name}_start"]) for name in STATE])
         if cycle is not None:
             break
     else:
         raise ValueError("no cycle is found from start")
-    scaled = {name: tuple(np.array(ends) / scene.units[name]) for name, ends in limits.items()}
-    points, ends = follow_curve(cycle, Label[label], parameters, scaled, n_points, scene.tied)
+    scaled = {
+        name: tuple(np.array(ends) / scene.units[name]) for name, ends in limits.items()
+    }
+    points, ends = follow_curve(
+        cycle, Label[label], parameters, scaled, n_points, scene.tied
+    )
     values = {
-        name: np.array([each.cycle.parts.values[name] for each in points]) * scene.units[name]
+        name: np.array([each.cycle.parts.values[name] for each in points])
+        * scene.units[name]
         for name in {*parameters, "alpha1", "alpha2"}
     }
     return build(

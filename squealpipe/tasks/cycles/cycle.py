@@ -51,7 +51,9 @@ def limit_cycle(
     """
     scene = Scene(params, alpha1, alpha2)
     cycle, outcome = cycle_from(scene, guess, t_settle)
-    found = blank(LIMIT_CYCLE, multiplier=4) if cycle is None else _described(scene, cycle)
+    found = (
+        blank(LIMIT_CYCLE, multiplier=4) if cycle is None else _described(scene, cycle)
+    )
     angles = {"alpha1": alpha1, "alpha2": alpha2}
     multiplier = {"multiplier": np.arange(1, 5)}
     return build(LIMIT_CYCLE, {**found, **angles, "outcome": outcome}, multiplier)
@@ -61,7 +63,9 @@ def cycle_from(
     scene: Scene, guess: Any = None, t_settle: float | None = None
 ) -> tuple[Cycle | None, Outcome]:
     """A cycle near a state, or from a run from rest (without a guess), and its outcome."""
-    state = np.zeros(4) if guess is None else np.asarray(guess, float) / scene.state_units
+    state = (
+        np.zeros(4) if guess is None else np.asarray(guess, float) / scene.state_units
+    )
     settle = T_SETTLE * scene.slow_time
     cycle, outcome = find_cycle(
         scene.system,
@@ -89,9 +93,12 @@ def _described(scene: Scene, cycle: Cycle) -> dict[str, Any]:
     order = [
         i
         for i in np.argsort(ends)
-        if cycle.map.events[i].switch != FREE and scene.kinds[cycle.map.events[i].kind] is not None
+        if cycle.map.events[i].switch != FREE
+        and scene.kinds[cycle.map.events[i].kind] is not None
     ]
-    states = np.array([cycle.parts.crossings[i].after for i in order]).reshape(-1, 4) * units
+    states = (
+        np.array([cycle.parts.crossings[i].after for i in order]).reshape(-1, 4) * units
+    )
     return {
         **scene.numbers(cycle),
         "event_time": ends[order] * clock,

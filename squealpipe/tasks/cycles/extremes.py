@@ -12,7 +12,14 @@ from squealpipe.schema import build
 from squealpipe.schema.cycles import SETTLED_EXTREMES
 from squealpipe.schema.origin import recorded
 from squealpipe.solvers.a1.ensemble import run_ensemble
-from squealpipe.validation import Natural, NotNegativeVector, Positive, Seed, Tolerance, Workers
+from squealpipe.validation import (
+    Natural,
+    NotNegativeVector,
+    Positive,
+    Seed,
+    Tolerance,
+    Workers,
+)
 
 AMPLITUDES = (0.01, 30.0)
 """Smallest and largest distance of a start from r = 0, over l_pre."""
@@ -45,7 +52,10 @@ def settled_extremes(
     direction = generator.uniform(0.0, 2.0 * np.pi, starts)
     distance[0] = 0.0
     state = np.zeros((starts, 4))
-    state[:, 0], state[:, 1] = distance * np.cos(direction), distance * np.sin(direction)
+    state[:, 0], state[:, 1] = (
+        distance * np.cos(direction),
+        distance * np.sin(direction),
+    )
     angles = np.array(list(scenes.values()))
     run = run_ensemble(
         {**params.as_dict(), "mu": mu[None, :, None]},

@@ -18,7 +18,9 @@ _FIRST_AMPLITUDE = 0.02
 """Of the first cycle, over the distance of the equilibrium from contact loss."""
 
 
-def find_onset(scene: Scene, begin: float, to: float) -> tuple[ContinuationState, Cycle] | None:
+def find_onset(
+    scene: Scene, begin: float, to: float
+) -> tuple[ContinuationState, Cycle] | None:
     """A small cycle on the branch born at the first Hopf point from ``begin`` towards ``to``.
 
     The values are in the scene's units; the tangent points to larger amplitude. None where steady
@@ -28,7 +30,11 @@ def find_onset(scene: Scene, begin: float, to: float) -> tuple[ContinuationState
 
     def growth(value: float) -> float:
         found = steady_sliding(at(scene, value), flow)
-        return np.nan if found is None else float(np.linalg.eigvals(found.jacobian).real.max())
+        return (
+            np.nan
+            if found is None
+            else float(np.linalg.eigvals(found.jacobian).real.max())
+        )
 
     grid = np.linspace(begin, to, _SCAN)
     rates = np.array([growth(float(value)) for value in grid])
@@ -36,7 +42,9 @@ def find_onset(scene: Scene, begin: float, to: float) -> tuple[ContinuationState
     if not len(crossing):
         return None
     low, high = grid[crossing[0]], grid[crossing[0] + 1]
-    onset = float(brentq(growth, low, high, xtol=1e-14 * max(abs(begin), abs(to)), rtol=1e-14))
+    onset = float(
+        brentq(growth, low, high, xtol=1e-14 * max(abs(begin), abs(to)), rtol=1e-14)
+    )
     found = steady_sliding(at(scene, onset), flow)
     if found is None:
         return None
@@ -53,7 +61,9 @@ def find_onset(scene: Scene, begin: float, to: float) -> tuple[ContinuationState
     name, period = str(scene.follow), 2.0 * np.pi / omega
     followed = np.array([values[name]])
     units = np.maximum(np.abs(followed), 1e-3)
-    equations = EventMap(Flow(scene.system, (name,), scene.tied), (), values, size, period, units)
+    equations = EventMap(
+        Flow(scene.system, (name,), scene.tied), (), values, size, period, units
+    )
     equations, guess = eventless(equations, state, regime, period, followed)
     # the cycle of that amplitude: its parameter is an unknown
     direction = np.concatenate([shape / size, np.zeros(2)])

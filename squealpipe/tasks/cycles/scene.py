@@ -43,8 +43,11 @@ class Scene:
         """Of each parameter and of what a cycle has."""
         p = self.params
         bases = (np.asarray(p.mass), np.asarray(p.k1), np.asarray(p.preload))
-        found = {name: float(unit_value(TABLE[name].units, *bases)) for name in PHYSICAL
-                 if TABLE[name].allowed != "law"}  # fmt: skip
+        found = {
+            name: float(unit_value(TABLE[name].units, *bases))
+            for name in PHYSICAL
+            if TABLE[name].allowed != "law"
+        }
         return {**found, "alpha1": 1.0, "alpha2": 1.0}
 
     @cached_property
@@ -58,7 +61,9 @@ class Scene:
         """The parameters in these units; of laws of the user's own the numbers alone."""
         p = plain(self.params)
         values = {name: getattr(p, name) for name in self.units if name in TABLE}
-        return p.with_(**{n: v if v is None else v / self.units[n] for n, v in values.items()})
+        return p.with_(
+            **{n: v if v is None else v / self.units[n] for n, v in values.items()}
+        )
 
     @cached_property
     def system(self) -> System:
@@ -66,7 +71,9 @@ class Scene:
         return brake(
             self.params.friction_law,
             damped=not is_undamped(self.params) or self.follow in DASHPOTS,
-            contact_law=contact_laws.relative(self.params.contact_law, self.params.preload),
+            contact_law=contact_laws.relative(
+                self.params.contact_law, self.params.preload
+            ),
             model=self.model,
         )
 
@@ -74,7 +81,9 @@ class Scene:
     def values(self) -> dict[str, float]:
         """What a run of the system is given."""
         damping3 = self.params.damping3 / self.units["damping3"]
-        return parameters_of_run(self.scaled, self.alpha1, self.alpha2) | {"damping3": damping3}
+        return parameters_of_run(self.scaled, self.alpha1, self.alpha2) | {
+            "damping3": damping3
+        }
 
     @cached_property
     def tied(self) -> dict[str, str]:

@@ -39,7 +39,10 @@ def steady_sliding(scene: Scene, flow: Flow | None = None) -> Sliding | None:
     for _ in range(_MOST_PIECES):
 
         def pull(place: Vector, regime: int = regime) -> Vector:
-            return flow.field(values, regime, np.array([*place, 0.0, 0.0]), 0.0)[2:] / force
+            return (
+                flow.field(values, regime, np.array([*place, 0.0, 0.0]), 0.0)[2:]
+                / force
+            )
 
         found = root(pull, state[:2], tol=1e-13)
         unbalanced = float(np.abs(pull(found.x)).max()) * force / scene.scaled.k3
@@ -55,4 +58,6 @@ def steady_sliding(scene: Scene, flow: Flow | None = None) -> Sliding | None:
 def _regime(scene: Scene, state: Vector) -> int:
     """The regime of the system at a state."""
     given = {name: np.array([value]) for name, value in zip(STATE, state, strict=True)}
-    return int(scene.system.first_regimes({**scene.values, **given, TIME: np.zeros(1)}, 1)[0])
+    return int(
+        scene.system.first_regimes({**scene.values, **given, TIME: np.zeros(1)}, 1)[0]
+    )

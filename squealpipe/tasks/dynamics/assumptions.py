@@ -37,8 +37,18 @@ BELOW = ("angles are constant", "springs are linear")
 NEEDS = {
     "A1": ("mass stays off the pivots",),
     "A1-no-separation": ("contact is kept", "mass stays off the pivots"),
-    "A2": ("contact is kept", "belt is faster", "angles are constant", "springs are linear"),
-    "A3": ("contact is kept", "belt is faster", "angles are constant", "springs are linear"),
+    "A2": (
+        "contact is kept",
+        "belt is faster",
+        "angles are constant",
+        "springs are linear",
+    ),
+    "A3": (
+        "contact is kept",
+        "belt is faster",
+        "angles are constant",
+        "springs are linear",
+    ),
     "A4": ("belt is faster", "angles are constant", "springs are linear"),
 }
 
@@ -85,7 +95,11 @@ def check_assumptions(params: Parameters, scenes: Iterable[Scene] = ()) -> xr.Da
             "t_end": [scene.t_end * params.time_unit for scene in chosen],
             "outcome": outcomes,
         },
-        {"level": list(LEVELS), "scene": [scene.name for scene in chosen], "assumption": names},
+        {
+            "level": list(LEVELS),
+            "scene": [scene.name for scene in chosen],
+            "assumption": names,
+        },
     )
 
 
@@ -100,7 +114,9 @@ def linear_pull_map(
     """
     refuse_extensions(params, "linear_pull_map", "Eqs. (6), (7) have neither")
     t_end = 50.0 * params.time_unit if t_end is None else t_end
-    stiffness = springs.linear_stiffness(params, springs.geometry(alpha1[:, None], alpha2[None, :]))
+    stiffness = springs.linear_stiffness(
+        params, springs.geometry(alpha1[:, None], alpha2[None, :])
+    )
     step, steps = _steps(params, t_end)
     lowest = np.full(stiffness.k11.shape, np.inf)
     pulling = np.zeros(lowest.shape)
@@ -129,13 +145,17 @@ def _motion(params: Parameters, scene: Scene, level: str) -> Motion:
         return _linear_motion(params, scene, t_end)
     run = simulate(params, scene.alpha1, scene.alpha2, t_end=t_end, model=level)
     reached = np.isfinite(run.x.values)
-    x, y, vx, force = (run[name].values[reached] for name in ("x", "y", "vx", "normal_force"))
+    x, y, vx, force = (
+        run[name].values[reached] for name in ("x", "y", "vx", "normal_force")
+    )
     return Motion(x, y, vx, force, int(run.outcome))
 
 
 def _sliding_state(params: Parameters, scene: Scene) -> Motion:
     """A2: one state, at y = 0, with the friction of its reaction force."""
-    stiffness = springs.linear_stiffness(params, springs.geometry(scene.alpha1, scene.alpha2))
+    stiffness = springs.linear_stiffness(
+        params, springs.geometry(scene.alpha1, scene.alpha2)
+    )
     reaction = float(a2.reaction_force(stiffness, params.drag, a2.actuation(params)))
     if np.isnan(reaction) or stiffness.k11 == 0:
         nothing = np.array([])
@@ -147,18 +167,24 @@ def _sliding_state(params: Parameters, scene: Scene) -> Motion:
 
 def _linear_motion(params: Parameters, scene: Scene, t_end: float) -> Motion:
     """A3 in time: Eqs. (6) and (7) from rest; velocities by central differences."""
-    stiffness = springs.linear_stiffness(params, springs.geometry(scene.alpha1, scene.alpha2))
+    stiffness = springs.linear_stiffness(
+        params, springs.geometry(scene.alpha1, scene.alpha2)
+    )
     step, steps = _steps(params, t_end)
     states = np.array(list(_linear_response(params, stiffness, step, steps)))
     x, y = states[:, 0], states[:, 1]
-    return Motion(x, y, np.gradient(x, step), contact_force(y, params), Outcome.converged)
+    return Motion(
+        x, y, np.gradient(x, step), contact_force(y, params), Outcome.converged
+    )
 
 
 def _linear_response(
     params: Parameters, stiffness: springs.Stiffness, step: float, steps: int
 ) -> Any:
     a11, a12, a21, a22 = contact_matrix(stiffness, params.k3, params.drag)
-    matrix = np.stack([np.stack([a11, a12], -1), np.stack([a21, a22], -1)], -2) / params.mass
+    matrix = (
+        np.stack([np.stack([a11, a12], -1), np.stack([a21, a22], -1)], -2) / params.mass
+    )
     actuation = a2.actuation(params) / params.mass
     load = np.broadcast_to([params.drag * actuation, actuation], matrix.shape[:-1])
     return response_from_rest(matrix, load, step, steps)
@@ -167,7 +193,9 @@ def _linear_response(
 def _steps(params: Parameters, t_end: float) -> tuple[float, int]:
     """Step length and number of steps up to t_end, short enough for the stiffest spring."""
     stiffest = max(1.0, (params.k2 + params.k3) / params.k1)
-    steps = int(np.ceil(STEPS_PER_TIME_UNIT * np.sqrt(stiffest) * t_end / params.time_unit))
+    steps = int(
+        np.ceil(STEPS_PER_TIME_UNIT * np.sqrt(stiffest) * t_end / params.time_unit)
+    )
     return t_end / steps, steps
 
 
@@ -177,15 +205,25 @@ def _measures(params: Parameters, scene: Scene, motion: Motion) -> list[float]:
     x1, y1, x2, y2 = springs.fixed_ends(params, g)
     exact = np.stack(springs.elastic_force(motion.x, motion.y, params, g))
     linear = np.stack(
-        springs.linear_elastic_force(motion.x, motion.y, springs.linear_stiffness(params, g))
+        springs.linear_elastic_force(
+            motion.x, motion.y, springs.linear_stiffness(params, g)
+        )
     )
     largest = np.hypot(*exact).max()
     turns, lengths = [], []
-    for x_fixed, y_fixed, length in ((x1, y1, params.length1), (x2, y2, params.length2)):
-        turn = np.arctan2(motion.y - y_fixed, motion.x - x_fixed) - np.arctan2(-y_fixed, -x_fixed)
+    for x_fixed, y_fixed, length in (
+        (x1, y1, params.length1),
+        (x2, y2, params.length2),
+    ):
+        turn = np.arctan2(motion.y - y_fixed, motion.x - x_fixed) - np.arctan2(
+            -y_fixed, -x_fixed
+        )
         turns.append(np.abs(np.angle(np.exp(1j * turn))).max())
         lengths.append(
-            np.sqrt(springs.squared_distance(motion.x, motion.y, x_fixed, y_fixed)).min() / length
+            np.sqrt(
+                springs.squared_distance(motion.x, motion.y, x_fixed, y_fixed)
+            ).min()
+            / length
         )
     belt = params.belt_speed
     return [

@@ -55,21 +55,30 @@ def explorer_data(
         round(spectrum_time * params.time_unit / step) + 1, dtype=float
     )
     frequency, _ = amplitude_spectrum(np.zeros(times.size), step)
-    lines = int(np.searchsorted(frequency * params.time_unit, HIGHEST_FREQUENCY, side="right"))
+    lines = int(
+        np.searchsorted(frequency * params.time_unit, HIGHEST_FREQUENCY, side="right")
+    )
     count, modes = angles.size, () if extensions(params) else MODES
 
     def fill(arrays: dict[str, NDArray[Any]], first: int, stride: int) -> None:
         for row in range(first, count, stride):
             cells = slice(row * count, (row + 1) * count)
-            motions = _motions(params, float(angles[row]), angles, times, samples, lines)
+            motions = _motions(
+                params, float(angles[row]), angles, times, samples, lines
+            )
             for name, values in motions.items():
                 arrays[name][cells] = values
-            for cell, alpha2 in enumerate(angles.tolist() if modes else (), row * count):
+            for cell, alpha2 in enumerate(
+                angles.tolist() if modes else (), row * count
+            ):
                 scene = scaled_system(params, float(angles[row]), alpha2)
                 for place, mode in enumerate(modes):
                     _branch(arrays, (cell, place), params, scene, mode)
 
-    history, branch = (count * count, samples), (count * count, len(modes), branch_points)
+    history, branch = (
+        (count * count, samples),
+        (count * count, len(modes), branch_points),
+    )
     found = run_shared(
         fill,
         {
@@ -82,7 +91,10 @@ def explorer_data(
         jobs=count * count,
         workers=workers,
     )
-    maps = {name: each.reshape(count, count, *each.shape[1:]) for name, each in found.items()}
+    maps = {
+        name: each.reshape(count, count, *each.shape[1:])
+        for name, each in found.items()
+    }
     fixed = ("preload", "length1", "length2", "belt_speed")
     return build(
         EXPLORER,
@@ -112,14 +124,25 @@ def _motions(
 ) -> dict[str, NDArray[Any]]:
     """Motions in one row of the grid, and spectra of their contact forces."""
     run = run_ensemble(
-        params, alpha1, alpha2, t_end=times[-1], times=times, tracked=(), tol=TOLERANCE, workers=1
+        params,
+        alpha1,
+        alpha2,
+        t_end=times[-1],
+        times=times,
+        tracked=(),
+        tol=TOLERANCE,
+        workers=1,
     )
     x, y, _, vy = np.moveaxis(run.samples, -1, 0)
-    normal = np.where(run.sample_regimes == Regime.separated, 0.0, normal_force(y, vy, params))
+    normal = np.where(
+        run.sample_regimes == Regime.separated, 0.0, normal_force(y, vy, params)
+    )
     force = normal / (params.k3 * params.preload)
     _, amplitude = amplitude_spectrum(force, float(times[1]))
     return {
-        **dict(zip(HISTORIES, (each[:, :samples] for each in (x, y, force)), strict=True)),
+        **dict(
+            zip(HISTORIES, (each[:, :samples] for each in (x, y, force)), strict=True)
+        ),
         "force_spectrum": amplitude[:, :lines],
         "outcome": run.outcome,
     }
@@ -138,7 +161,9 @@ def _branch(
     if points:
         chosen = np.round(np.linspace(0, points - 1, min(points, wanted))).astype(int)
         chosen = np.concatenate([chosen, np.full(wanted - chosen.size, points - 1)])
-        found = exact_variables(scene, params, [orbits[i] for i in chosen], outcomes, end)
+        found = exact_variables(
+            scene, params, [orbits[i] for i in chosen], outcomes, end
+        )
     for name in ORBITS:
         arrays[name][place] = found[name] if points else np.nan
     arrays["end"][place] = int(end)

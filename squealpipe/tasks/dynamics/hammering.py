@@ -80,14 +80,23 @@ def hammering_map(
     shape = run.outcome.shape
     cells = [angles.ravel() for angles in np.broadcast_arrays(rows[:, None], columns)]
     flat = SimpleNamespace(
-        **{name: values.reshape(-1, *values.shape[2:]) for name, values in vars(run).items()}
+        **{
+            name: values.reshape(-1, *values.shape[2:])
+            for name, values in vars(run).items()
+        }
     )
 
     def again(some: np.ndarray, room: int) -> Ensemble:
         return run_ensemble(
-            form.params, *(angles[some] for angles in cells), t_end=t_end, tol=tol, tangent=True,
-            tracked=(), log_events=room, workers=workers,
-        )  # fmt: skip
+            form.params,
+            *(angles[some] for angles in cells),
+            t_end=t_end,
+            tol=tol,
+            tangent=True,
+            tracked=(),
+            log_events=room,
+            workers=workers,
+        )
 
     kinds, changed = motion.classify_motion(flat, form.params)
     kinds = motion.refine_labels(kinds, flat, again, t_end)
@@ -110,5 +119,9 @@ def hammering_map(
         HAMMERING_MAP,
         {**{name: form.back(values) for name, values in maps.items()}, "t_end": t_end},
         {"alpha1": alpha1, "alpha2": alpha2},
-        {"regular_growth": float(motion.regular_growth(t_end / motion.linear_time(params)))},
+        {
+            "regular_growth": float(
+                motion.regular_growth(t_end / motion.linear_time(params))
+            )
+        },
     )

@@ -64,7 +64,9 @@ def regular_growth(time: Any) -> Any:
 def whirls(run: Ensemble | SimpleNamespace) -> np.ndarray:
     """Whether each run of an ensemble turns around both fixed ends, returns to the belt aside."""
     turns = np.abs(run.turns)
-    return np.asarray((turns >= LEAST_TURNS) & (turns > TURNS_PER_RETURN * run.contacts))
+    return np.asarray(
+        (turns >= LEAST_TURNS) & (turns > TURNS_PER_RETURN * run.contacts)
+    )
 
 
 def predictability(run: Ensemble | SimpleNamespace) -> dict[str, np.ndarray]:
@@ -77,13 +79,16 @@ def predictability(run: Ensemble | SimpleNamespace) -> dict[str, np.ndarray]:
     chaotic = (run.outcome == Outcome.converged) & np.isfinite(horizon)
     return {
         # A run that ended early is averaged over the time that it lasted.
-        "lyapunov_exponent": run.log_growth / np.maximum(run.time, np.finfo(float).tiny),
+        "lyapunov_exponent": run.log_growth
+        / np.maximum(run.time, np.finfo(float).tiny),
         "predictability_horizon": np.where(np.isnan(horizon), run.time, horizon),
         "outcome": np.where(chaotic, Outcome.beyond_horizon, run.outcome),
     }
 
 
-def classify_motion(run: Ensemble | SimpleNamespace, params: Any) -> tuple[Any, np.ndarray]:
+def classify_motion(
+    run: Ensemble | SimpleNamespace, params: Any
+) -> tuple[Any, np.ndarray]:
     """(``MotionFlag`` of each run of an ensemble, whether it still changes).
 
     Judged from the second half of each run; a label still changes where the two quarters of that
@@ -127,7 +132,9 @@ def _label(run: Any, params: Any, start: int, end: int) -> np.ndarray:
     rests = (np.maximum(moved, speeds) < AT_REST * length).all(axis=-1)
     kept = (during("separations") == 0) & (during("separated_time") == 0)
     turns = np.abs(during("turns"))
-    whirling = (turns >= share * LEAST_TURNS) & (turns > TURNS_PER_RETURN * during("contacts"))
+    whirling = (turns >= share * LEAST_TURNS) & (
+        turns > TURNS_PER_RETURN * during("contacts")
+    )
     return np.select(
         [
             run.outcome != Outcome.converged,
@@ -169,7 +176,10 @@ def regular_kind(times: np.ndarray, kinds: np.ndarray, t_end: float) -> MotionFl
     after, kinds, late = np.diff(times), kinds[:-1], late[:-1]
     for kind in np.unique(kinds):
         halves = after[(kinds == kind) & ~late], after[(kinds == kind) & late]
-        if min(map(len, halves)) < LEAST_COMPARED or _distance(*halves) > SAME_STATISTICS:
+        if (
+            min(map(len, halves)) < LEAST_COMPARED
+            or _distance(*halves) > SAME_STATISTICS
+        ):
             return MotionFlag.undetermined
     return MotionFlag.quasi_periodic_hammering
 
@@ -178,7 +188,8 @@ def _distance(first: np.ndarray, second: np.ndarray) -> float:
     """Largest difference of two samples' distributions (``ks_2samp`` takes 50 times as long)."""
     values = np.concatenate([first, second])
     shares = [
-        np.searchsorted(np.sort(each), values, side="right") / each.size for each in (first, second)
+        np.searchsorted(np.sort(each), values, side="right") / each.size
+        for each in (first, second)
     ]
     return float(np.abs(shares[0] - shares[1]).max())
 
@@ -195,7 +206,9 @@ def refine_labels(
         again: runs some of them again, by their rows, with so many events logged.
     """
     motion = motion.copy()
-    undetermined = (motion == MotionFlag.undetermined) & (run.outcome == Outcome.converged)
+    undetermined = (motion == MotionFlag.undetermined) & (
+        run.outcome == Outcome.converged
+    )
     for rows in in_blocks(np.flatnonzero(undetermined), run.events):
         logged = again(rows, int(run.events[rows].max()))
         motion[rows] = [

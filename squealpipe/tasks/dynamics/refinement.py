@@ -5,7 +5,12 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
-from squealpipe.methods.adaptive_grid import Evaluate, RefinedGrid, follow_boundaries, refine_grid
+from squealpipe.methods.adaptive_grid import (
+    Evaluate,
+    RefinedGrid,
+    follow_boundaries,
+    refine_grid,
+)
 from squealpipe.parameters import HORIZON, Parameters
 from squealpipe.schema import Outcome, build
 from squealpipe.schema.dynamics.runs import REFINED_VALIDITY_MAP
@@ -99,13 +104,17 @@ def refine_validity_map(
     )
 
 
-def _check_inherited(evaluate: Evaluate, grid: RefinedGrid, seed: int) -> tuple[int, int]:
+def _check_inherited(
+    evaluate: Evaluate, grid: RefinedGrid, seed: int
+) -> tuple[int, int]:
     """Run a sample of the inherited cells: (how many, how many were wrong); put those right."""
     inherited = np.flatnonzero(~grid.computed)
     if not inherited.size:
         return 0, 0
     size = min(SAMPLE, inherited.size)
-    chosen = inherited[np.random.default_rng(seed).choice(inherited.size, size, replace=False)]
+    chosen = inherited[
+        np.random.default_rng(seed).choice(inherited.size, size, replace=False)
+    ]
     rows, columns = np.unravel_index(np.sort(chosen), grid.labels.shape)
     lost, _, _ = evaluate(rows, columns)
     wrong = lost != grid.labels[rows, columns]

@@ -19,7 +19,15 @@ from squealpipe.solvers.a1.ensemble import PEAK, integrate, run_map
 from squealpipe.solvers.a1.jobs import Model, jobs_of
 from squealpipe.tasks.linear.maps import stability_map
 from squealpipe.tasks.sampling import default_times, unresolved
-from squealpipe.validation import Angle, Angles, NotNegative, State, Tolerance, Vector, Workers
+from squealpipe.validation import (
+    Angle,
+    Angles,
+    NotNegative,
+    State,
+    Tolerance,
+    Vector,
+    Workers,
+)
 
 FIRST_LOG = 256
 """Events kept at first; a run that has more is made again with room for all."""
@@ -158,7 +166,9 @@ def validity_map(
     )
     lost = run.outcome == Outcome.separated
     moves = run.early_max_x > 0
-    growth = np.where(moves, run.late_max_x, 1.0) / np.where(moves, run.early_max_x, 1.0)
+    growth = np.where(moves, run.late_max_x, 1.0) / np.where(
+        moves, run.early_max_x, 1.0
+    )
     return build(
         VALIDITY_MAP,
         {

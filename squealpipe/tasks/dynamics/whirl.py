@@ -74,7 +74,9 @@ def whirl_sizes(
         motion, run, lambda rows, room: runs(speeds[rows], log_events=room), t_end
     )
     p = params
-    fitted = (motion == MotionFlag.whirl) & (run.late_max_x > FAR * max(p.length1, p.length2))
+    fitted = (motion == MotionFlag.whirl) & (
+        run.late_max_x > FAR * max(p.length1, p.length2)
+    )
     # of the one spring that both are together from afar
     length = (p.k1 * p.length1 + p.k2 * p.length2) / (p.k1 + p.k2)
     slope, offset, fit_range = np.nan, np.nan, [np.nan, np.nan]

@@ -8,7 +8,11 @@ from squealpipe.parameters import HORIZON
 from squealpipe.schema import Outcome
 from squealpipe.solvers.a1.ensemble import run_ensemble
 from squealpipe.tasks.inference.candidates import Candidates
-from squealpipe.tasks.inference.unstable_cells import midpoints, springs_are_equal, unstable_cells
+from squealpipe.tasks.inference.unstable_cells import (
+    midpoints,
+    springs_are_equal,
+    unstable_cells,
+)
 
 VISIBLE = 0.95
 """Distance of the cells from the centre of the disc of flutter, in radii: a region that is thinner
@@ -19,7 +23,9 @@ ANGLES, CLEAR = (12, 24, 48), 0.6
 """Midpoints an axis of the maps of runs: finer while |share − ½| is below ``CLEAR`` spacings."""
 
 
-def separating_share(candidates: Candidates, *, angles: Sequence[int] = ANGLES) -> np.ndarray:
+def separating_share(
+    candidates: Candidates, *, angles: Sequence[int] = ANGLES
+) -> np.ndarray:
     """Share of the angle map on which A1, from rest, loses contact within ``HORIZON``.
 
     Midpoint rule; a parameter set goes on to the next number of ``angles`` while its share is
@@ -54,13 +60,22 @@ def keeping_share(candidates: Candidates) -> np.ndarray:
         cells = [(where.alpha1[::step], where.alpha2[::step]) for where in some]
         number = np.array([alpha1.size for alpha1, _ in cells], int)
         owner = np.repeat(np.arange(left.size), number)
-        alpha1, alpha2 = (np.concatenate([*(each[i] for each in cells), []]) for i in (0, 1))
-        kept = _outcome(candidates.subset(left[owner]), alpha1, alpha2) == Outcome.converged
-        share[left] = np.bincount(owner[kept], minlength=left.size) / np.maximum(number, 1)
+        alpha1, alpha2 = (
+            np.concatenate([*(each[i] for each in cells), []]) for i in (0, 1)
+        )
+        kept = (
+            _outcome(candidates.subset(left[owner]), alpha1, alpha2)
+            == Outcome.converged
+        )
+        share[left] = np.bincount(owner[kept], minlength=left.size) / np.maximum(
+            number, 1
+        )
     return share
 
 
-def _outcome(candidates: Candidates, alpha1: np.ndarray, alpha2: np.ndarray) -> np.ndarray:
+def _outcome(
+    candidates: Candidates, alpha1: np.ndarray, alpha2: np.ndarray
+) -> np.ndarray:
     """``separated`` where A1 loses contact from rest within ``HORIZON``, else how its run ended."""
     shape = np.broadcast_shapes(candidates.fields["mu"].shape, alpha1.shape)
     if 0 in shape:

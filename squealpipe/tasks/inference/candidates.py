@@ -48,12 +48,17 @@ class Candidates:
     def read(self, name: str) -> Self:
         """The same sets in one reading of the sign of friction."""
         reading = reading_of(name)
-        fields = {**self.fields, "belt_speed": reading.direction * self.fields["belt_speed"]}
+        fields = {
+            **self.fields,
+            "belt_speed": reading.direction * self.fields["belt_speed"],
+        }
         return replace(self, fields=fields, model=reading.a1_model)
 
     def subset(self, rows: np.ndarray) -> Self:
         """Some of the sets, which all start alike."""
-        return replace(self, fields={name: each[rows] for name, each in self.fields.items()})
+        return replace(
+            self, fields={name: each[rows] for name, each in self.fields.items()}
+        )
 
     @property
     def size(self) -> int:
@@ -89,7 +94,8 @@ class Candidates:
         then shows by how much contact is lost.
         """
         runs = {
-            name: self.run(SCENES[name], "-no-separation") for name in ("F2a", "F2b", "F2c", "F2d")
+            name: self.run(SCENES[name], "-no-separation")
+            for name in ("F2a", "F2b", "F2c", "F2d")
         }
         return {
             # where contact is lost, it does not matter how the run went on
@@ -111,7 +117,10 @@ class Candidates:
     @cached_property
     def sets(self) -> list[Parameters]:
         """The parameter sets one by one."""
-        rows = zip(*(np.asarray(values).tolist() for values in self.fields.values()), strict=True)
+        rows = zip(
+            *(np.asarray(values).tolist() for values in self.fields.values()),
+            strict=True,
+        )
         return [Parameters(**dict(zip(self.fields, row, strict=True))) for row in rows]
 
     @cached_property
@@ -132,7 +141,9 @@ class Candidates:
         return [unstable_cells(params) for params in self.sets]
 
 
-def sets_of(groups: dict[str, np.ndarray], *, tol: float, workers: int | None) -> Candidates:
+def sets_of(
+    groups: dict[str, np.ndarray], *, tol: float, workers: int | None
+) -> Candidates:
     """Candidates with equal springs, in units of m = k = l_pre = 1."""
     ones = np.ones(len(groups["mu"]))
     fields = {

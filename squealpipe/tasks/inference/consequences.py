@@ -21,7 +21,9 @@ def judge_consequences(candidates: Candidates) -> dict[str, np.ndarray]:
     """Whether each consequence holds at each parameter set: key → booleans."""
     pairs = zip(candidates.sets, candidates.unstable, strict=True)
     found = [_linear(params, cells) for params, cells in pairs]
-    return {key: np.array([verdict[key] for verdict in found], bool) for key in CONSEQUENCES}
+    return {
+        key: np.array([verdict[key] for verdict in found], bool) for key in CONSEQUENCES
+    }
 
 
 def _linear(params: Parameters, cells: Unstable) -> dict[str, bool]:

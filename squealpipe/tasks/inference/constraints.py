@@ -20,7 +20,14 @@ from squealpipe.models.damped import damped_system, is_undamped, stability
 from squealpipe.parameters import SCENES, Scene
 from squealpipe.schema import Outcome
 from squealpipe.schema.dynamics.runs import GROWTH_THRESHOLD
-from squealpipe.schema.inference import BOUND, JUMPS, LARGE_REGION, LITTLE, SAME_FORCE, Holds
+from squealpipe.schema.inference import (
+    BOUND,
+    JUMPS,
+    LARGE_REGION,
+    LITTLE,
+    SAME_FORCE,
+    Holds,
+)
 from squealpipe.tasks.inference.angle_maps import keeping_share, separating_share
 from squealpipe.tasks.inference.candidates import Candidates, Margin
 
@@ -75,7 +82,9 @@ def constrains(name: str, stage: Stage, criterion: str) -> Callable[[Check], Che
 def _linearly_stable(candidates: Candidates) -> Margin:
     stiffness, _, invariants = candidates.linear(SCENES["F3"])
     fields = candidates.fields
-    divergence = invariants.determinant * fields["mass"] ** 2 / (stiffness.k11 * fields["k3"])
+    divergence = (
+        invariants.determinant * fields["mass"] ** 2 / (stiffness.k11 * fields["k3"])
+    )
     flutter = invariants.discriminant / invariants.half_trace**2
     margin = np.minimum(divergence, np.where(flutter < 0, flutter, np.inf))
     scene = np.array([SCENES["F3"].alpha1]), np.array([SCENES["F3"].alpha2])
@@ -106,7 +115,9 @@ def _modes_switched(candidates: Candidates) -> Margin:
     by_springs = np.maximum(np.abs(before.k12), np.abs(after.k12))
     coupling = np.maximum(by_springs, _coupling_by_dashpots(fields))
     isolated = coupling <= a2.FEW_ULPS * fields["k1"]
-    return _closed(np.where(isolated, np.minimum(first, second), -coupling) / fields["k1"])
+    return _closed(
+        np.where(isolated, np.minimum(first, second), -coupling) / fields["k1"]
+    )
 
 
 def _keeps_contact(name: str) -> Check:
@@ -137,13 +148,19 @@ def _loses_contact(candidates: Candidates) -> Margin:
 def _alike(candidates: Candidates) -> Margin:
     runs = [candidates.contact[name] for name in ("F2a", "F2b", "F2c")]
     lowest = np.stack([np.maximum(run.margin, 0.0) for run in runs])
-    return Margin(LITTLE - np.ptp(lowest, axis=0), np.max([run.outcome for run in runs], axis=0))
+    return Margin(
+        LITTLE - np.ptp(lowest, axis=0), np.max([run.outcome for run in runs], axis=0)
+    )
 
 
-def _growth_and_size(candidates: Candidates, scene: Scene) -> tuple[Any, Any, np.ndarray]:
+def _growth_and_size(
+    candidates: Candidates, scene: Scene
+) -> tuple[Any, Any, np.ndarray]:
     """ln of late over early |x| and of |x| over 2L, and how the runs ended."""
     run = candidates.run(scene)
-    bound = BOUND * np.maximum(candidates.fields["length1"], candidates.fields["length2"])
+    bound = BOUND * np.maximum(
+        candidates.fields["length1"], candidates.fields["length2"]
+    )
     size = np.maximum(run.early_max_x, run.late_max_x) / bound
     return np.log(run.late_max_x / run.early_max_x), np.log(size), run.outcome
 
@@ -211,7 +228,9 @@ def _unstable_only_without_sliding(candidates: Candidates) -> Margin:
 
 
 @constrains(
-    "F7a", Stage.maps, "A1 separates in more than half of the angle map; margin share/½ − 1"
+    "F7a",
+    Stage.maps,
+    "A1 separates in more than half of the angle map; margin share/½ − 1",
 )
 def _separates_mostly(candidates: Candidates) -> Margin:
     return _closed(separating_share(candidates) / LARGE_REGION - 1.0)
@@ -232,7 +251,9 @@ def _coupling_by_dashpots(fields: Mapping[str, np.ndarray]) -> np.ndarray:
     """Largest |C12| √(k1/m) at the scenes of Figs. 12 and 13, N/m: as stiff as K12 at √(k1/m)."""
     p = SimpleNamespace(**{"damping1": 0.0, "damping2": 0.0, **fields})
     scenes = SCENES["F12"], SCENES["F13"]
-    c12 = [linear_damping(p, geometry(scene.alpha1, scene.alpha2)).k12 for scene in scenes]
+    c12 = [
+        linear_damping(p, geometry(scene.alpha1, scene.alpha2)).k12 for scene in scenes
+    ]
     return np.asarray(np.max(np.abs(c12), axis=0) * np.sqrt(p.k1 / p.mass))
 
 
@@ -240,9 +261,15 @@ def _closed(margin: np.ndarray) -> Margin:
     return Margin(margin, np.full(np.shape(margin), int(Outcome.converged), np.int8))
 
 
-def measure(candidates: Candidates, stages: Iterable[Stage] = Stage) -> dict[str, Margin]:
+def measure(
+    candidates: Candidates, stages: Iterable[Stage] = Stage
+) -> dict[str, Margin]:
     """The margin of every statement of some stages, for every candidate."""
-    return {each.name: each.check(candidates) for each in CONSTRAINTS if each.stage in stages}
+    return {
+        each.name: each.check(candidates)
+        for each in CONSTRAINTS
+        if each.stage in stages
+    }
 
 
 def verdicts(found: Margin) -> np.ndarray:
@@ -251,7 +278,9 @@ def verdicts(found: Margin) -> np.ndarray:
     return np.where(decided, found.margin > 0, int(Holds.undecided))
 
 
-def judge(candidates: Candidates, *, failures: int = 0) -> tuple[np.ndarray, np.ndarray]:
+def judge(
+    candidates: Candidates, *, failures: int = 0
+) -> tuple[np.ndarray, np.ndarray]:
     """Margins and verdicts (``Holds``), both (size, statement).
 
     A set that more than ``failures`` statements have refuted goes to no further stage: there its

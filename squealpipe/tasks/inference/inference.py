@@ -24,14 +24,18 @@ from squealpipe.tasks.inference.consequences import CONSEQUENCES, judge_conseque
 from squealpipe.tasks.inference.constraints import CONSTRAINTS, Stage, judge, measure
 from squealpipe.validation import Natural, Number, Seed, Tolerance, Workers
 
-Range = Annotated[tuple[Number, Number], Strict(strict=False)]  # a list of a configuration too
+Range = Annotated[
+    tuple[Number, Number], Strict(strict=False)
+]  # a list of a configuration too
 
 FULLY_JUDGED = 8
 """Every so many samples are judged until a second statement refutes them: by these it is known what
 a statement excludes alone, but for those on maps, which are judged together and last."""
 
 
-@recorded(model="A1", method="Taylor series with located events over quasi-random samples")
+@recorded(
+    model="A1", method="Taylor series with located events over quasi-random samples"
+)
 def infer_parameters(
     params: Parameters,
     *,
@@ -64,15 +68,22 @@ def infer_parameters(
     Raises:
         ValueError: an unknown reading; dashpots or a friction law that the paper does not have.
     """
-    refuse_extensions(params, "infer_parameters", "the paper's statements are of its own friction")
+    refuse_extensions(
+        params, "infer_parameters", "the paper's statements are of its own friction"
+    )
     reading_of(reading)
     ranges = {
         "kappa": kappa, "mu": mu, "length_ratio": length_ratio, "speed_ratio": speed_ratio
     }  # fmt: skip
     groups = _sample(samples, seed, ranges)
-    sets, own = sets_of(groups, tol=tol, workers=workers), Candidates.of(params, tol=tol)
+    sets, own = (
+        sets_of(groups, tol=tol, workers=workers),
+        Candidates.of(params, tol=tol),
+    )
     found = [_over_samples(sets.read(name)) for name in READINGS]
-    joined: dict[str, Any] = {name: np.stack([each[name] for each in found]) for name in found[0]}
+    joined: dict[str, Any] = {
+        name: np.stack([each[name] for each in found]) for name in found[0]
+    }
     for name in ("holds", "feasible", "outcome"):
         joined[name] = joined[name].swapaxes(0, 1)
     margins = [list(measure(own.read(name)).values()) for name in READINGS]
@@ -86,7 +97,9 @@ def infer_parameters(
             "baseline_length_ratio": params.length_ratio,
             "baseline_speed_ratio": params.speed_ratio,
             "baseline_reading": list(READINGS).index(reading),
-            "baseline_margin": [[float(each.margin[0]) for each in row] for row in margins],
+            "baseline_margin": [
+                [float(each.margin[0]) for each in row] for row in margins
+            ],
             "criterion": [constraint.criterion for constraint in CONSTRAINTS],
         },
         {
@@ -123,8 +136,12 @@ def _over_samples(sets: Candidates) -> dict[str, Any]:
         "share": count / sets.size,
         "share_low": low,
         "share_high": high,
-        "share_cut_alone": np.where(on_maps, alone.mean(axis=0), alone[shown].mean(axis=0)),
-        "feasible_share": np.array(held) / count if count else np.full(len(held), np.nan),
+        "share_cut_alone": np.where(
+            on_maps, alone.mean(axis=0), alone[shown].mean(axis=0)
+        ),
+        "feasible_share": np.array(held) / count
+        if count
+        else np.full(len(held), np.nan),
     }
 
 

@@ -120,7 +120,9 @@ def choose_models(
     if _has_rule(form.params, question):
         value[keeps_contact(form.params, alpha1, alpha2, t_end)] = 0.0
     level = np.where(np.isnan(value), Level.a1, Level.a3)
-    run_a1(value, form.params, alpha1, alpha2, question, t_end, tol=tol, workers=workers)
+    run_a1(
+        value, form.params, alpha1, alpha2, question, t_end, tol=tol, workers=workers
+    )
     return Choices(level, value, cpu_time() - started)
 
 
@@ -145,7 +147,9 @@ def keeps_contact(p: Any, alpha1: Any, alpha2: Any, t_end: Any) -> np.ndarray:
     error = reach / np.minimum(p.length1, p.length2) * ratio * ratio
     keeps = motion.oscillates & slides(motion.fastest(), p) & _in_range(p, t_end)
     keeps &= (np.abs(ratio[..., None] - [1.0, 2.0, 3.0]) > NEAREST_WHOLE).all(axis=-1)
-    clear = motion.highest() + FACTOR * error * reach < (1.0 - FLOOR) * np.asarray(p.preload)
+    clear = motion.highest() + FACTOR * error * reach < (1.0 - FLOOR) * np.asarray(
+        p.preload
+    )
     return np.asarray(keeps & (error < LARGEST_ERROR) & clear)
 
 
@@ -180,8 +184,13 @@ def run_a1(
         return
     times = sample_times(params, t_end)
     run = run_ensemble(
-        params, alpha1[open_], alpha2[open_], t_end=t_end, tol=tol,
+        params,
+        alpha1[open_],
+        alpha2[open_],
+        t_end=t_end,
+        tol=tol,
         times=times if question == "frequency" else None,
-        stop_at_first_separation=question == "contact_lost", workers=workers,
-    )  # fmt: skip
+        stop_at_first_separation=question == "contact_lost",
+        workers=workers,
+    )
     value[open_] = answer_of(run, question, times)

@@ -35,13 +35,17 @@ def model_ladder(
     refuse_extensions(params, "the model ladder", WHY)
     horizon = HORIZON * params.time_unit if t_end is None else t_end
     angles = (np.arange(points) + 0.5) * math.pi / points
-    alpha1, alpha2 = (grid.ravel() for grid in np.meshgrid(angles, angles, indexing="ij"))
+    alpha1, alpha2 = (
+        grid.ravel() for grid in np.meshgrid(angles, angles, indexing="ij")
+    )
     # V ≥ 0 from here on: the largest ẋ is the largest speed along the belt
     form = NormalForm.of(params)
     params, (alpha1, alpha2) = form.params, form.angles(alpha1, alpha2)
     scenes = Scenes(params, alpha1, alpha2, horizon, workers)
     short = 1e-3 * horizon
-    run_ensemble(params, alpha1[:1], alpha2[:1], t_end=short, workers=1)  # compile off the clock
+    run_ensemble(
+        params, alpha1[:1], alpha2[:1], t_end=short, workers=1
+    )  # compile off the clock
     found = {level: answer(level, scenes) for level in Level}
     truth = found[Level.a1].values
     reached = np.asarray(found[Level.a1].belt_reached, dtype=bool)
@@ -51,7 +55,9 @@ def model_ladder(
     valid[:, LEVELS.index(Level.a1_no_stick)] &= reached
     cheapest = (valid & (error <= tol)).argmax(axis=1)
     asked = params, alpha1, alpha2, "contact_lost"
-    started = cpu_time()  # as choose_model runs it: the answers to all questions at once cost more
+    started = (
+        cpu_time()
+    )  # as choose_model runs it: the answers to all questions at once cost more
     run_a1(np.full(alpha1.shape, np.nan), *asked, horizon, workers=workers)
     always = cpu_time() - started
     chosen = choose_models(*asked, t_end=horizon, workers=workers)

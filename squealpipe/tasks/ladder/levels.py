@@ -49,10 +49,15 @@ def contact_motion(params: Parameters, alpha1: Any, alpha2: Any) -> ModalMotion:
     alpha1, alpha2 = np.asarray(alpha1, float), np.asarray(alpha2, float)
     stiffness, determinant, invariants = contact_system(params, alpha1, alpha2)
     x, y, _ = a3.static_state(
-        stiffness, determinant, k3=params.k3, mu=params.drag, actuation=params.k3 * params.preload
+        stiffness,
+        determinant,
+        k3=params.k3,
+        mu=params.drag,
+        actuation=params.k3 * params.preload,
     )
     a11, a12, a21, a22 = (
-        value / params.mass for value in a4.contact_matrix(stiffness, params.k3, params.drag)
+        value / params.mass
+        for value in a4.contact_matrix(stiffness, params.k3, params.drag)
     )
     squared = a4.natural_frequencies_squared(invariants)
     return modal_motion((a11, a12, a21, a22), squared, (x, y))
@@ -67,7 +72,9 @@ def _in_contact(scenes: Scenes) -> Answers:
     motion = contact_motion(params, scenes.alpha1, scenes.alpha2)
     times = sample_times(params, scenes.horizon)
     x, y = motion.positions(times)
-    values = np.stack([answer_of_samples(x, y, name, params, times) for name in QUESTIONS])
+    values = np.stack(
+        [answer_of_samples(x, y, name, params, times) for name in QUESTIONS]
+    )
     slow = motion.oscillates & slides(motion.fastest(), params)
     stays = slow & (motion.highest() < params.preload)
     valid = np.stack([slow, *[stays] * (len(QUESTIONS) - 1)])

@@ -17,7 +17,9 @@ from squealpipe.validation import Angle, Angles, NotNegativeVector
 
 
 @recorded(model="A3", method="closed form")
-def critical_friction_map(params: Parameters, alpha1: Angles, alpha2: Angles) -> xr.Dataset:
+def critical_friction_map(
+    params: Parameters, alpha1: Angles, alpha2: Angles
+) -> xr.Dataset:
     """The friction at which steady sliding turns unstable: A3 and Coulomb, by Routh–Hurwitz.
 
     Args:

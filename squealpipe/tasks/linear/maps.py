@@ -16,7 +16,11 @@ from squealpipe.models.damped import damped_system, is_undamped, stability
 from squealpipe.models.refusals import WHY_A4, refuse_extensions, refuse_scales
 from squealpipe.parameters import NUMBERS_OF_A1, Parameters
 from squealpipe.schema import Outcome, build
-from squealpipe.schema.linear import NATURAL_FREQUENCIES, QUASI_STATIC_MAP, STABILITY_MAP
+from squealpipe.schema.linear import (
+    NATURAL_FREQUENCIES,
+    QUASI_STATIC_MAP,
+    STABILITY_MAP,
+)
 from squealpipe.schema.origin import recorded
 from squealpipe.validation import Angles, Positive
 
@@ -66,7 +70,9 @@ def quasi_static_map(
             "stiffness_xy": stiffness.k12,
             "stiffness_y": stiffness.k22,
             "outcome": np.where(
-                singular | np.isnan(reaction), Outcome.singular_static_state, Outcome.converged
+                singular | np.isnan(reaction),
+                Outcome.singular_static_state,
+                Outcome.converged,
             ),
         },
         {"alpha1": alpha1, "alpha2": alpha2},
@@ -95,11 +101,16 @@ def stability_map(
     """
     refuse_scales(params)
     if is_undamped(params):
-        invariants = _spectrum(params, alpha1, alpha2, a2.contact_stiffness(params, sigma))
+        invariants = _spectrum(
+            params, alpha1, alpha2, a2.contact_stiffness(params, sigma)
+        )
         s = np.stack(a3.eigenvalues(invariants), axis=-1)
         growth, frequency, regime = s.real.max(axis=-1), s.imag, a3.regime(invariants)
     else:
-        pair = alpha1.astype(np.longdouble)[:, None], alpha2.astype(np.longdouble)[None, :]
+        pair = (
+            alpha1.astype(np.longdouble)[:, None],
+            alpha2.astype(np.longdouble)[None, :],
+        )
         growth, frequency, regime = stability(damped_system(params, *pair, sigma=sigma))
     outcomes = np.array([Outcome.converged, Outcome.complex_pair, Outcome.divergence])
     return build(
@@ -108,14 +119,18 @@ def stability_map(
             "growth_rate": growth,
             "frequency": frequency,
             "regime_linear": regime,
-            "outcome": np.where(np.isnan(growth), Outcome.singular_static_state, outcomes[regime]),
+            "outcome": np.where(
+                np.isnan(growth), Outcome.singular_static_state, outcomes[regime]
+            ),
         },
         {"alpha1": alpha1, "alpha2": alpha2, "mode": [1, 2]},
     )
 
 
 @recorded(model="A4", method="closed form")
-def natural_frequencies(params: Parameters, alpha1: Angles, alpha2: Angles) -> xr.Dataset:
+def natural_frequencies(
+    params: Parameters, alpha1: Angles, alpha2: Angles
+) -> xr.Dataset:
     """Natural frequencies of model A4 in both of its states, Eqs. (22) and (25).
 
     Args:
@@ -139,7 +154,9 @@ def natural_frequencies(params: Parameters, alpha1: Angles, alpha2: Angles) -> x
         smallest = a2.FEW_ULPS**2 * np.abs(squares[1])
         for mode, square in enumerate(squares):
             rigid = np.abs(square) <= smallest
-            omega[..., mode, state] = np.where(rigid, 0.0, np.abs(np.sqrt(-square).imag))
+            omega[..., mode, state] = np.where(
+                rigid, 0.0, np.abs(np.sqrt(-square).imag)
+            )
             outcomes[..., mode, state] = np.select(
                 [rigid, square.imag != 0, square.real < 0],
                 [Outcome.rigid_mode, Outcome.complex_pair, Outcome.divergence],
@@ -157,7 +174,9 @@ def natural_frequencies(params: Parameters, alpha1: Angles, alpha2: Angles) -> x
     )
 
 
-def _spectrum(params: Parameters, alpha1: np.ndarray, alpha2: np.ndarray, k3: float) -> Spectrum:
+def _spectrum(
+    params: Parameters, alpha1: np.ndarray, alpha2: np.ndarray, k3: float
+) -> Spectrum:
     """Invariants over the map, each to full relative precision for the angles as given.
 
     Next to a boundary the discriminant or the determinant is a small difference of rounded
@@ -167,15 +186,23 @@ def _spectrum(params: Parameters, alpha1: np.ndarray, alpha2: np.ndarray, k3: fl
     system = contact_system(params, alpha1[:, None], alpha2[None, :], k3=k3)
     invariants = system.invariants
     small = CANCELLATION * invariants.half_trace**2
-    close = (np.abs(invariants.discriminant) < small) | (np.abs(invariants.determinant) < small)
+    close = (np.abs(invariants.discriminant) < small) | (
+        np.abs(invariants.determinant) < small
+    )
     if k3 == 0 or not close.any():
         return invariants
     rows, columns = np.nonzero(close)
     with mpmath.workdps(DIGITS):
-        p = SimpleNamespace(**{name: _precise(getattr(params, name)) for name in NUMBERS_OF_A1})
-        g = Geometry(*_precise_geometry(alpha1, rows), *_precise_geometry(alpha2, columns))
+        p = SimpleNamespace(
+            **{name: _precise(getattr(params, name)) for name in NUMBERS_OF_A1}
+        )
+        g = Geometry(
+            *_precise_geometry(alpha1, rows), *_precise_geometry(alpha2, columns)
+        )
         sine = np.where(
-            system.spring_determinant[close] == 0, mpmath.mpf(0), g.s1 * g.c2 + g.c1 * g.s2
+            system.spring_determinant[close] == 0,
+            mpmath.mpf(0),
+            g.s1 * g.c2 + g.c1 * g.s2,
         )
         precise = spectrum(
             linear_stiffness(p, g),
@@ -194,7 +221,9 @@ def _precise(value: float) -> np.ndarray:
     return np.array([mpmath.mpf(value)], dtype=object)
 
 
-def _precise_geometry(angles: np.ndarray, index: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _precise_geometry(
+    angles: np.ndarray, index: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
     """Cosines and sines of some of the angles as arrays of high-precision numbers."""
     needed, inverse = np.unique(index, return_inverse=True)
     pairs = [mpmath.cos_sin(mpmath.mpf(value)) for value in angles[needed].tolist()]

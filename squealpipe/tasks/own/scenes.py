@@ -26,14 +26,18 @@ PUSH = 0.5
 """Further velocity along y of the pushed start, over l_pre √(k1/m)."""
 
 
-def variants(params: Parameters, start: tuple[float, ...]) -> dict[str, tuple[Parameters, Any]]:
+def variants(
+    params: Parameters, start: tuple[float, ...]
+) -> dict[str, tuple[Parameters, Any]]:
     """What is changed → parameters and start."""
     unit = [np.sqrt(stiffness * params.mass) for stiffness in (params.k1, params.k2)]
     speed = params.preload / params.time_unit
     if params.friction_law == COULOMB:
         law = "friction falls with speed"
         static = max(STATIC * params.mu, params.static_mu)
-        changed = params.with_(friction_law=FALLING[0], mu_static=static, friction_speed=speed)
+        changed = params.with_(
+            friction_law=FALLING[0], mu_static=static, friction_speed=speed
+        )
     else:
         law = "friction as at belt speed, constant"
         given = {"mu": abs(params.drag), "mu_static": None, "friction_speed": 1.0}
@@ -92,7 +96,9 @@ def _scene(params: Parameters, scene: Mapping[str, Any], tol: float) -> dict[str
     ]
     return {
         **{name: np.array([run[name] for run in runs]) for name in runs[0]},
-        "model": np.array([_level(params, angles, start, name, t_end) for name in QUESTIONS]),
+        "model": np.array(
+            [_level(params, angles, start, name, t_end) for name in QUESTIONS]
+        ),
         "alpha1": angles[0],
         "alpha2": angles[1],
         "t_end": t_end,
@@ -109,15 +115,21 @@ def _run(
     run = simulate(params, *angles, t_end=t_end, tol=tol, initial_state=start)
     summary = summarize(run)
     kind = basin_map(
-        params, *angles, **dict(zip(("x", "y", "vx", "vy"), start, strict=True)), t_end=t_end,
-        tol=tol, workers=1,
-    )  # fmt: skip
+        params,
+        *angles,
+        **dict(zip(("x", "y", "vx", "vy"), start, strict=True)),
+        t_end=t_end,
+        tol=tol,
+        workers=1,
+    )
     peaks = summary.dominant_frequency.values
     return {
         **{name: float(summary[name]) for name in NUMBERS},
         "motion": meanings(kind.motion)[int(kind.motion)].replace("_", " "),
         "predictability_horizon": float(kind.predictability_horizon),
-        "dominant_frequency": np.pad(peaks, (0, PEAKS - peaks.size), constant_values=np.nan),
+        "dominant_frequency": np.pad(
+            peaks, (0, PEAKS - peaks.size), constant_values=np.nan
+        ),
         "outcome": int(run.outcome),
     }
 

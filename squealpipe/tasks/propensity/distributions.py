@@ -23,7 +23,9 @@ KINDS: dict[str, tuple[str, str]] = {
 def distribution(name: str, given: Mapping[str, Any]) -> Any:
     """A frozen scipy distribution of one parameter."""
     if not isinstance(name, str) or name not in (*ANGLES, *NUMBERS):
-        raise ValueError(f"{name}: no parameter or angle; {suggestion(name, (*ANGLES, *NUMBERS))}")
+        raise ValueError(
+            f"{name}: no parameter or angle; {suggestion(name, (*ANGLES, *NUMBERS))}"
+        )
     if not isinstance(given, Mapping):
         raise ValueError(  # noqa: TRY004
             f"{name} = {brief(given)}: a mapping is needed, such as "
@@ -31,13 +33,19 @@ def distribution(name: str, given: Mapping[str, Any]) -> Any:
         )
     kind = given.get("distribution")
     if not isinstance(kind, str) or kind not in KINDS:
-        raise ValueError(f"{name}: distribution = {kind!r}: one of {', '.join(KINDS)} is needed")
+        raise ValueError(
+            f"{name}: distribution = {kind!r}: one of {', '.join(KINDS)} is needed"
+        )
     first, second = KINDS[kind]
     if set(given) != {"distribution", first, second}:
-        raise ValueError(f"{name}: a {kind} distribution needs {first} and {second} alone")
+        raise ValueError(
+            f"{name}: a {kind} distribution needs {first} and {second} alone"
+        )
     for key in (first, second):
         if not is_finite_number(given[key]):
-            raise ValueError(f"{name}: {key} = {given[key]!r}: a finite number is needed")
+            raise ValueError(
+                f"{name}: {key} = {given[key]!r}: a finite number is needed"
+            )
     frozen = _frozen(name, kind, given[first], given[second])
     if name not in ANGLES:
         _check_support(name, kind, frozen)
@@ -50,7 +58,9 @@ def _frozen(name: str, kind: str, first: float, second: float) -> Any:
             raise ValueError(f"{name}: low = {first!r} must be below high = {second!r}")
         return stats.uniform(first, second - first)
     if not second > 0:
-        raise ValueError(f"{name}: {KINDS[kind][1]} = {second!r}: a number above 0 is needed")
+        raise ValueError(
+            f"{name}: {KINDS[kind][1]} = {second!r}: a number above 0 is needed"
+        )
     if kind == "normal":
         return stats.truncnorm(-TRUNCATION, TRUNCATION, loc=first, scale=second)
     if not first > 0:
@@ -73,9 +83,13 @@ def _check_support(name: str, kind: str, frozen: Any) -> None:
 
 def check_stick(params: Parameters, frozen: Mapping[str, Any]) -> None:
     """Stop distributions that let static friction be below that of sliding with Coulomb's law."""
-    if params.friction_law != COULOMB or ("mu_static" not in frozen and params.mu_static is None):
+    if params.friction_law != COULOMB or (
+        "mu_static" not in frozen and params.mu_static is None
+    ):
         return
-    least = frozen["mu_static"].support()[0] if "mu_static" in frozen else params.static_mu
+    least = (
+        frozen["mu_static"].support()[0] if "mu_static" in frozen else params.static_mu
+    )
     most = frozen["mu"].support()[1] if "mu" in frozen else params.mu
     if least < most:
         raise ValueError(
@@ -84,7 +98,9 @@ def check_stick(params: Parameters, frozen: Mapping[str, Any]) -> None:
         )
 
 
-def centred(params: Parameters, alpha1: float, alpha2: float) -> dict[str, dict[str, Any]]:
+def centred(
+    params: Parameters, alpha1: float, alpha2: float
+) -> dict[str, dict[str, Any]]:
     """Distributions around a study's own parameters, for those who configure none.
 
     Springs within 5 % and the contact spring within 10 % (standard deviation), friction between a
@@ -95,7 +111,11 @@ def centred(params: Parameters, alpha1: float, alpha2: float) -> dict[str, dict[
         "k1": {**normal, "mean": params.k1, "std": 0.05 * params.k1},
         "k2": {**normal, "mean": params.k2, "std": 0.05 * params.k2},
         "k3": {"distribution": "lognormal", "median": params.k3, "log_std": 0.1},
-        "mu": {"distribution": "uniform", "low": params.mu / 3, "high": 3 * params.mu or 0.1},
+        "mu": {
+            "distribution": "uniform",
+            "low": params.mu / 3,
+            "high": 3 * params.mu or 0.1,
+        },
         "alpha1": {**normal, "mean": alpha1, "std": 0.05},
         "alpha2": {**normal, "mean": alpha2, "std": 0.05},
     }

@@ -28,7 +28,15 @@ from squealpipe.solvers.a1.ensemble import REACH, run_ensemble
 from squealpipe.tasks.dynamics.motion import as_judged, classify_motion
 from squealpipe.tasks.propensity import sobol
 from squealpipe.tasks.propensity.distributions import check_stick, distribution
-from squealpipe.validation import Angle, Number, Positive, Seed, Tolerance, Whole, Workers
+from squealpipe.validation import (
+    Angle,
+    Number,
+    Positive,
+    Seed,
+    Tolerance,
+    Whole,
+    Workers,
+)
 
 QUANTITIES = ("flutter", "contact_loss", "irregular_hammering", "whirl")
 INDEX_FACTOR = np.array([[4], [1], [1], [1]])
@@ -74,22 +82,33 @@ def propensity(
         than 30 samples differ.
     """
     if samples & (samples - 1):
-        raise ValueError(f"samples = {samples!r}: a power of 2 of at least 64 is needed")
+        raise ValueError(
+            f"samples = {samples!r}: a power of 2 of at least 64 is needed"
+        )
     frozen = {name: distribution(name, given) for name, given in distributions.items()}
     for name in sorted(set(frozen) & set(params.in_laws)):
-        raise ValueError(f"distributions: a law's file stands for {name}, which cannot be spread")
+        raise ValueError(
+            f"distributions: a law's file stands for {name}, which cannot be spread"
+        )
     check_stick(params, frozen)
     names = list(frozen)
     if spring_correlation and not {"k1", "k2"} <= set(names):
-        raise ValueError("spring_correlation: distributions of k1 and k2 are needed for it")
+        raise ValueError(
+            "spring_correlation: distributions of k1 and k2 are needed for it"
+        )
     fixed = {**params.as_dict(), "alpha1": alpha1, "alpha2": alpha2}
     turns = with_progress(range(1 if spring_correlation else len(names) + 3))
 
     def judge(values: np.ndarray, *, runs: bool = True) -> np.ndarray:
         size = values.shape[-1]
         fields: dict[str, Any] = {
-            name: value if isinstance(value, str) or value is None else np.broadcast_to(value, size)
-            for name, value in {**fixed, **dict(zip(names, values, strict=True))}.items()
+            name: value
+            if isinstance(value, str) or value is None
+            else np.broadcast_to(value, size)
+            for name, value in {
+                **fixed,
+                **dict(zip(names, values, strict=True)),
+            }.items()
         }
         angles = fields.pop("alpha1"), fields.pop("alpha2")
         flutters = _flutters(fields, *angles)[None]
@@ -100,7 +119,9 @@ def propensity(
 
     points = sobol.scrambled(len(names), samples, seed)
     if spring_correlation:
-        points = _correlate(points, names.index("k1"), names.index("k2"), spring_correlation)
+        points = _correlate(
+            points, names.index("k1"), names.index("k2"), spring_correlation
+        )
     values = np.array([frozen[name].ppf(points[:, i]) for i, name in enumerate(names)])
     happens = judge(values)
     low, high = np.transpose([sobol.share_interval(each) for each in happens])
@@ -121,7 +142,9 @@ def propensity(
             "share": happens.mean(axis=1),
             "share_low": low,
             "share_high": high,
-            "share_by_size": np.stack([happens[:, :size].mean(axis=1) for size in sizes], axis=1),
+            "share_by_size": np.stack(
+                [happens[:, :size].mean(axis=1) for size in sizes], axis=1
+            ),
             **table,
             "index_samples": index_samples,
             "judged": samples,
@@ -135,7 +158,9 @@ def propensity(
     )
 
 
-def _correlate(points: np.ndarray, first: int, second: int, correlation: float) -> np.ndarray:
+def _correlate(
+    points: np.ndarray, first: int, second: int, correlation: float
+) -> np.ndarray:
     """Two columns of a uniform sample joined by a Gaussian copula."""
     normal = stats.norm.ppf(points[:, [first, second]])
     mixed = correlation * normal[:, 0] + np.sqrt(1.0 - correlation**2) * normal[:, 1]
@@ -154,7 +179,13 @@ def _events(
 ) -> np.ndarray:
     """Whether each quantity that needs a run occurs, (quantities − 1, size)."""
     run = run_ensemble(
-        fields, alpha1, alpha2, **as_judged(t_end), tol=tol, tracked=(REACH,), workers=workers
+        fields,
+        alpha1,
+        alpha2,
+        **as_judged(t_end),
+        tol=tol,
+        tracked=(REACH,),
+        workers=workers,
     )
     motion, _ = classify_motion(run, SimpleNamespace(**fields))
     return np.array(
@@ -166,21 +197,34 @@ def _events(
     )
 
 
-def _flutters(fields: Mapping[str, Any], alpha1: np.ndarray, alpha2: np.ndarray) -> np.ndarray:
+def _flutters(
+    fields: Mapping[str, Any], alpha1: np.ndarray, alpha2: np.ndarray
+) -> np.ndarray:
     p = with_drag(DEFAULTS | dict(fields))
-    damped = (p.damping1 != 0) | (p.damping2 != 0) | (slope(np.abs(p.belt_speed), p) != 0)
+    damped = (
+        (p.damping1 != 0) | (p.damping2 != 0) | (slope(np.abs(p.belt_speed), p) != 0)
+    )
     if p.contact_law == LINEAR and not np.any(damped):
         system = contact_system(p, alpha1, alpha2)
         return np.asarray(a3.regime(system.invariants) == LinearRegime.flutter)
     names = [name for name, value in fields.items() if isinstance(value, np.ndarray)]
-    fixed: dict[str, Any] = {name: value for name, value in fields.items() if name not in names}
+    fixed: dict[str, Any] = {
+        name: value for name, value in fields.items() if name not in names
+    }
     columns = np.array([fields[name] for name in names]).T.tolist()
-    return np.array([
-        stability(
-            damped_system(Parameters(**fixed, **dict(zip(names, row, strict=True))), first, second)
-        ).regime == LinearRegime.flutter
-        for row, first, second in zip(columns, alpha1, alpha2, strict=True)
-    ]).ravel()  # fmt: skip
+    return np.array(
+        [
+            stability(
+                damped_system(
+                    Parameters(**fixed, **dict(zip(names, row, strict=True))),
+                    first,
+                    second,
+                )
+            ).regime
+            == LinearRegime.flutter
+            for row, first, second in zip(columns, alpha1, alpha2, strict=True)
+        ]
+    ).ravel()
 
 
 def _indices(judged: Sequence[np.ndarray], parts: int) -> dict[str, np.ndarray]:
@@ -206,14 +250,31 @@ def _indices(judged: Sequence[np.ndarray], parts: int) -> dict[str, np.ndarray]:
             # beyond its interval below 0 an estimate is a failure of the sample, not an index
             failed = (half > WIDEST) | (value + half < 0.0)
             for order, name in enumerate(ORDERS):
-                for end, limit in (("", value), ("_low", value - half), ("_high", value + half)):
-                    found[name + end][row] = np.where(failed[order], np.nan, limit[order])
+                for end, limit in (
+                    ("", value),
+                    ("_low", value - half),
+                    ("_high", value + half),
+                ):
+                    found[name + end][row] = np.where(
+                        failed[order], np.nan, limit[order]
+                    )
     return {**found, "half_width_by_size": widest}
 
 
-def _judged_matrices(judge: Any, frozen: Mapping[str, Any], size: int, seed: int) -> np.ndarray:
+def _judged_matrices(
+    judge: Any, frozen: Mapping[str, Any], size: int, seed: int
+) -> np.ndarray:
     """What is judged at Saltelli's samples, (2 + inputs, quantities, size)."""
-    return np.stack([
-        judge(np.array([each.ppf(u) for each, u in zip(frozen.values(), matrix, strict=True)]))
-        for matrix in sobol.saltelli_matrices(len(frozen), size, seed)
-    ]).astype(float)  # fmt: skip
+    return np.stack(
+        [
+            judge(
+                np.array(
+                    [
+                        each.ppf(u)
+                        for each, u in zip(frozen.values(), matrix, strict=True)
+                    ]
+                )
+            )
+            for matrix in sobol.saltelli_matrices(len(frozen), size, seed)
+        ]
+    ).astype(float)

@@ -39,8 +39,14 @@ def variants(params: Parameters) -> Iterator[tuple[str, Parameters]]:
             f"damping ratio {100 * ratio:g} %",
             params.with_(damping1=ratio * unit[0], damping2=ratio * unit[1]),
         )
-    yield "damping 2 %, spring 1 only", params.with_(damping1=0.02 * unit[0], damping2=0.0)
-    yield "damping 2 %, spring 2 only", params.with_(damping1=0.0, damping2=0.02 * unit[1])
+    yield (
+        "damping 2 %, spring 1 only",
+        params.with_(damping1=0.02 * unit[0], damping2=0.0),
+    )
+    yield (
+        "damping 2 %, spring 2 only",
+        params.with_(damping1=0.0, damping2=0.02 * unit[1]),
+    )
     for law in ("exponential", "hyperbolic"):
         for speed in SPEEDS:
             yield (
@@ -53,7 +59,9 @@ def variants(params: Parameters) -> Iterator[tuple[str, Parameters]]:
             )
     for factor, words in ((2.0, "double"), (0.5, "half")):
         yield f"{words} κ", params.with_(k3=factor * params.k3)
-        lengths = {name: factor * getattr(params, name) for name in ("length1", "length2")}
+        lengths = {
+            name: factor * getattr(params, name) for name in ("length1", "length2")
+        }
         yield f"{words} λ", params.with_(**lengths)
 
 
@@ -88,11 +96,15 @@ def verdict_robustness(
     generator = np.random.default_rng(seed)
     speed = params.preload / params.time_unit
     for near in NEAR:
-        fields = {key: np.full(starts, value) for key, value in params.as_dict().items()}
+        fields = {
+            key: np.full(starts, value) for key, value in params.as_dict().items()
+        }
         size = near * np.array([params.preload, params.preload, speed, speed])
         state = generator.uniform(-1.0, 1.0, (starts, 4)) * size
         candidates = Candidates(fields, tol, workers, initial_state=state)
-        verdicts = _margins(candidates, set(Stage) - {Stage.maps})  # maps are of starts at rest
+        verdicts = _margins(
+            candidates, set(Stage) - {Stage.maps}
+        )  # maps are of starts at rest
         for constraint in CONSTRAINTS:
             if constraint.stage == Stage.linear:  # one setting however it starts
                 holds, judged = verdicts[constraint.name]
@@ -124,7 +136,9 @@ def _feasible(inferred: xr.Dataset, names: list[str]) -> list[Share]:
         if name not in inferred.consequence.values:
             rows.append(_share(None, None))
             continue
-        held = round(float(inferred.feasible_share.sel(consequence=name).fillna(0.0)) * count)
+        held = round(
+            float(inferred.feasible_share.sel(consequence=name).fillna(0.0)) * count
+        )
         rows.append(_share(np.arange(count) < held, np.ones(count, bool)))
     return rows
 

@@ -18,10 +18,12 @@ LEAST_EVENTS = 30
 
 def scrambled(inputs: int, size: int, seed: int) -> np.ndarray:
     """Points in the open unit cube, (size, inputs); equal parts are independent scramblings."""
-    points = np.concatenate([
-        stats.qmc.Sobol(inputs, rng=rng).random(size // REPLICATES)
-        for rng in np.random.default_rng(seed).spawn(REPLICATES)
-    ])  # fmt: skip
+    points = np.concatenate(
+        [
+            stats.qmc.Sobol(inputs, rng=rng).random(size // REPLICATES)
+            for rng in np.random.default_rng(seed).spawn(REPLICATES)
+        ]
+    )
     return np.asarray(np.clip(points, 1e-12, 1.0 - 1e-12))
 
 
@@ -70,10 +72,12 @@ def sobol_indices(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """
     first, second, *mixed = values - values[:2].mean()
     variance = 0.5 * (first**2 + second**2).mean(axis=-1)
-    parts = np.array([
-        [(second * (each - first)).mean(axis=-1) for each in mixed],
-        [0.5 * ((first - each) ** 2).mean(axis=-1) for each in mixed],
-    ])  # fmt: skip
+    parts = np.array(
+        [
+            [(second * (each - first)).mean(axis=-1) for each in mixed],
+            [0.5 * ((first - each) ** 2).mean(axis=-1) for each in mixed],
+        ]
+    )
     indices = parts.mean(axis=-1) / variance.mean()
     # an index is a ratio of means: its error to first order is that of this mean
     off = (parts - indices[..., None] * variance) / variance.mean()

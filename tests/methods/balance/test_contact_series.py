@@ -26,7 +26,9 @@ def _gap_coefficient(cosine, order):
         return max(1.0 - y, 0.0) * math.cos(order * theta)
 
     breaks = ClosedFormContact(len(cosine) - 1, 1.0).angles(cosine)
-    value = quad(integrand, 0, math.pi, points=breaks if len(breaks) else None, limit=400)[0]
+    value = quad(
+        integrand, 0, math.pi, points=breaks if len(breaks) else None, limit=400
+    )[0]
     return value * (1 if order == 0 else 2) / math.pi
 
 
@@ -65,6 +67,8 @@ def test_samples_converge_to_the_closed_form():
     cosine = SERIES["two flights"]
     exact, _ = ClosedFormContact(3, 1.0).gap(cosine)
     counts = 64, 256, 1024, 4096
-    errors = [np.abs(SampledContact(3, 1.0, n).gap(cosine)[0] - exact).max() for n in counts]
+    errors = [
+        np.abs(SampledContact(3, 1.0, n).gap(cosine)[0] - exact).max() for n in counts
+    ]
     rate = np.polyfit(np.log(counts), np.log(errors), 1)[0]
     assert rate < -1.7

@@ -55,7 +55,9 @@ def test_omega_converges_with_the_fourth_power_and_keeps_the_goals():
         worst[count] = np.max(errors, axis=0)
     assert worst[32][0] <= 1e-7
     assert (worst[64] <= [1e-8, 1e-10]).all()
-    rate = np.polyfit(np.log(list(worst)), np.log([value[0] for value in worst.values()]), 1)[0]
+    rate = np.polyfit(
+        np.log(list(worst)), np.log([value[0] for value in worst.values()]), 1
+    )[0]
     assert -4.8 < rate < -3.4
 
 
@@ -69,7 +71,9 @@ def test_smoothing_shifts_omega_by_a_power_of_sigma(peak, rate):
         balance = CosineBalance(scene.system, contact_of(32, 1.0, None, sigma))
         omegas.append(balance.solve(guess, balance.peak_row, peak)[0][-1])
     sharp, first, second = omegas
-    assert math.log10(abs(first - sharp) / abs(second - sharp)) == pytest.approx(rate, abs=0.1)
+    assert math.log10(abs(first - sharp) / abs(second - sharp)) == pytest.approx(
+        rate, abs=0.1
+    )
 
 
 def test_a_motion_described_from_its_other_end_solves_the_equations_too():

@@ -27,7 +27,9 @@ def share_above(contact_angles, n_harmonics):
     order = np.arange(1, 2 * n_harmonics + 1)
     share = np.empty(2 * n_harmonics + 1)
     share[0] = (end - begin).sum() / math.pi
-    share[1:] = (np.sin(np.outer(order, end)) - np.sin(np.outer(order, begin))).sum(axis=1)
+    share[1:] = (np.sin(np.outer(order, end)) - np.sin(np.outer(order, begin))).sum(
+        axis=1
+    )
     share[1:] /= math.pi * order
     return share
 
@@ -36,7 +38,9 @@ def solved(y_peak, n_harmonics):
     orbit, _ = find_orbit(SCENE, 1, y_peak)
     assert orbit is not None
     balance = CosineBalance(SCENE.system, contact_of(n_harmonics, 1.0, None, None))
-    found = balance.solve(orbit_series(SCENE, orbit, n_harmonics), balance.peak_row, y_peak)
+    found = balance.solve(
+        orbit_series(SCENE, orbit, n_harmonics), balance.peak_row, y_peak
+    )
     assert found is not None
     _, y, omega = balance.split(found[0])
     return balance, y, omega, orbit.stability_index
@@ -48,4 +52,6 @@ def test_closed_form_coefficients_give_the_true_doubling_multiplier(y_peak):
     share = share_above(balance.contact.angles(y), 16)
     largest = np.abs(hill_multipliers(SCENE.system, share, omega)).max()
     assert index < -2.0
-    assert largest == pytest.approx((-index + math.sqrt(index * index - 4.0)) / 2.0, abs=2e-3)
+    assert largest == pytest.approx(
+        (-index + math.sqrt(index * index - 4.0)) / 2.0, abs=2e-3
+    )

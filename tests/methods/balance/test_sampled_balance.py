@@ -33,7 +33,9 @@ def test_derivative_matrix_differentiates_the_fourier_matrix():
     order = np.arange(1, 5)
 
     def series(angle):
-        waves = np.stack([np.sin(np.outer(angle, order)), np.cos(np.outer(angle, order))], axis=2)
+        waves = np.stack(
+            [np.sin(np.outer(angle, order)), np.cos(np.outer(angle, order))], axis=2
+        )
         return coefficients[0] + waves.reshape(40, 8) @ coefficients[1:]
 
     slope = fourier_matrix(4, 40) @ derivative_matrix(4) @ coefficients
@@ -60,7 +62,9 @@ def test_without_a_phase_condition_the_answer_depends_on_the_phase():
     spreads = []
     for n_time in (18, 512):
         balance, started = _started(3.0, n_time)
-        found = [balance.solve(started(phase)) for phase in 2 * math.pi * np.arange(7) / 7]
+        found = [
+            balance.solve(started(phase)) for phase in 2 * math.pi * np.arange(7) / 7
+        ]
         assert all(solution.converged for solution in found)
         peaks = [balance.peak(solution) for solution in found]
         spreads.append(max(peaks) - min(peaks))

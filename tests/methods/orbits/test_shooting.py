@@ -12,7 +12,11 @@ from squealpipe.solvers.a4.system import scaled_system
 from tests.former import FORMER
 from tests.oracles.differences import assert_jacobian
 
-SCENES = [(0.3, 0.9, -0.9, 2.7, 4.9), (0.2, 0.7, -0.5, 3.2, 9.0), (0.5, 1.0, 0.1, 2.2, 2.6)]
+SCENES = [
+    (0.3, 0.9, -0.9, 2.7, 4.9),
+    (0.2, 0.7, -0.5, 3.2, 9.0),
+    (0.5, 1.0, 0.1, 2.2, 2.6),
+]
 
 
 def _conditions(rows, point):

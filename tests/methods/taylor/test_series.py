@@ -49,7 +49,9 @@ def test_power_series_in_closed_form():
     _, rows, _ = coefficients(rates, (1.0, 0.0, 1.0, 1.0))
     k = np.arange(1, TERMS)
     np.testing.assert_allclose(rows[0, :, 0], 1.0, rtol=1e-14)  # 1/(1 − t)
-    np.testing.assert_allclose(rows[1, 1:, 0], (-1.0) ** (k + 1) / k, rtol=1e-13)  # ln(1 + t)
+    np.testing.assert_allclose(
+        rows[1, 1:, 0], (-1.0) ** (k + 1) / k, rtol=1e-13
+    )  # ln(1 + t)
     binomial = np.cumprod(np.concatenate([[1.0], (0.5 - np.arange(TERMS - 1)) / k]))
     np.testing.assert_allclose(rows[2, :, 0], binomial, rtol=1e-13)  # √(1 + t)
     square = np.zeros(TERMS)
@@ -88,10 +90,14 @@ def test_two_centres_that_coincide_are_one():
     ax = -(pull * (x - a)) + -(pull * (x - a))
     ay = -(pull * y) - pull * y
     events = (x - a, z * z + w * w, distance2**0.5 + 2.0)
-    _, rows, _ = coefficients((z, w, ax, ay), (3.0, 0.0, 0.0, 1.0), events, [("a", 2.0)])
+    _, rows, _ = coefficients(
+        (z, w, ax, ay), (3.0, 0.0, 0.0, 1.0), events, [("a", 2.0)]
+    )
     cosine = np.array([np.cos(0.5 * np.pi * k) / factorial(k) for k in range(TERMS)])
     sine = np.array([np.sin(0.5 * np.pi * k) / factorial(k) for k in range(TERMS)])
-    np.testing.assert_allclose(rows[0, :, 0], cosine + 2.0 * (np.arange(TERMS) == 0), atol=2e-15)
+    np.testing.assert_allclose(
+        rows[0, :, 0], cosine + 2.0 * (np.arange(TERMS) == 0), atol=2e-15
+    )
     np.testing.assert_allclose(rows[1, :, 0], sine, atol=2e-15)
     np.testing.assert_allclose(rows[4, :, 0], cosine, atol=2e-15)
     constant = np.arange(TERMS) == 0
@@ -107,7 +113,11 @@ def test_a_perturbation_follows_the_variational_equation(step):
     length, tangent = aligned(LANES), aligned(2, LANES)
     length[:], tangent[0], tangent[1] = step, 0.7, -0.4
     FiveWords(compiled.address("perturb"))(
-        rows.ctypes.data, values.ctypes.data, length.ctypes.data, tangent.ctypes.data, TERMS
+        rows.ctypes.data,
+        values.ctypes.data,
+        length.ctypes.data,
+        tangent.ctypes.data,
+        TERMS,
     )
     exact = [0.7 / (1.0 + step) ** 2, -0.4 * (1.0 + step) + 0.7 * step]
     np.testing.assert_allclose(tangent[:, 0], exact, atol=2e-3 * step**4)

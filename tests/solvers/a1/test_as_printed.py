@@ -28,7 +28,13 @@ PAD = Parameters(
 def test_state_and_crossings_of_belt_speed(params, start, least):
     t_end = 12.0 * params.time_unit
     run = simulate(
-        params, 0.9, 2.0, t_end=t_end, model="A1-as-printed", initial_state=start, times=[t_end]
+        params,
+        0.9,
+        2.0,
+        t_end=t_end,
+        model="A1-as-printed",
+        initial_state=start,
+        times=[t_end],
     )
     given = {"t_end": t_end, "initial_state": start, "tol": 1e-14 * params.preload}
     exact = simulate_scipy(params, 0.9, 2.0, as_printed=True, **given)
@@ -44,11 +50,21 @@ def test_fig_3_grows_without_bound_and_fig_4_does_not():
     third, fourth = SCENES["F3"], SCENES["F4"]
     times = [500.0, 600.0, 1200.0, 1800.0, 3000.0]
     growing = run_ensemble(
-        PAPER, third.alpha1, third.alpha2, t_end=times, model="A1-as-printed", t_late=0.0
+        PAPER,
+        third.alpha1,
+        third.alpha2,
+        t_end=times,
+        model="A1-as-printed",
+        t_late=0.0,
     )
     np.testing.assert_allclose(growing.late_max_x, [48, 106, 555, 829, 1212], rtol=0.05)
     bounded = run_ensemble(
-        PAPER, fourth.alpha1, fourth.alpha2, t_end=500.0, model="A1-as-printed", t_late=0.0
+        PAPER,
+        fourth.alpha1,
+        fourth.alpha2,
+        t_end=500.0,
+        model="A1-as-printed",
+        t_late=0.0,
     )
     assert bounded.late_max_x == pytest.approx(27, rel=0.03)
 
@@ -56,7 +72,13 @@ def test_fig_3_grows_without_bound_and_fig_4_does_not():
 def test_it_is_a_belt_the_other_way_while_slower():
     scene = SCENES["F2d"]
     runs = [
-        simulate(PAPER.with_(belt_speed=speed), scene.alpha1, scene.alpha2, t_end=50.0, model=model)
+        simulate(
+            PAPER.with_(belt_speed=speed),
+            scene.alpha1,
+            scene.alpha2,
+            t_end=50.0,
+            model=model,
+        )
         for speed, model in ((100.0, "A1-as-printed"), (-100.0, "A1"))
     ]
     for name in ("x", "y", "normal_force"):

@@ -17,7 +17,10 @@ def random_cases(count, seed, **fixed):
     for _ in range(count):
         mass, k1, length = np.exp(rng.uniform(-3, 3, 3))
         unit = np.sqrt(mass / k1)
-        (c1, c2), mu = rng.choice([0.0, 0.02, 0.5], 2) * k1 * unit, rng.uniform(0.0, 0.6)
+        (c1, c2), mu = (
+            rng.choice([0.0, 0.02, 0.5], 2) * k1 * unit,
+            rng.uniform(0.0, 0.6),
+        )
         k2, k3 = k1 * rng.uniform(0.3, 3, 2)
         speed = rng.choice([-1, 1]) * rng.uniform(0.05, 1.0) * length / unit
         length1, length2 = length * rng.uniform(2, 8, 2)
@@ -27,7 +30,12 @@ def random_cases(count, seed, **fixed):
             friction_law=str(rng.choice(list(LAWS))), mu_static=mu + rng.uniform(0.0, 0.6),
             friction_speed=rng.uniform(0.05, 2.0) * length / unit,
         )  # fmt: skip
-        start = rng.uniform(-0.5, 0.5, 4) * [length, length, length / unit, length / unit]
+        start = rng.uniform(-0.5, 0.5, 4) * [
+            length,
+            length,
+            length / unit,
+            length / unit,
+        ]
         alpha1, alpha2 = rng.uniform(0, np.pi, 2)
         cases.append((params.with_(**fixed), alpha1, alpha2, tuple(start.tolist())))
     return cases
@@ -44,8 +52,12 @@ def test_runs_agree_with_long_double(law):
     seen: set[int] = set()
     for params, alpha1, alpha2, start in random_cases(12, seed=31, friction_law=law):
         t_end = 12.0 * params.time_unit
-        run = run_ensemble(params, alpha1, alpha2, t_end=t_end, initial_state=start, log_events=99)
-        exact = simulate_reference(params, alpha1, alpha2, t_end=t_end, initial_state=start)
+        run = run_ensemble(
+            params, alpha1, alpha2, t_end=t_end, initial_state=start, log_events=99
+        )
+        exact = simulate_reference(
+            params, alpha1, alpha2, t_end=t_end, initial_state=start
+        )
         assert exact.message == ""
         times = run.event_times[np.isfinite(run.event_times)]
         assert len(times) == len(exact.event_times)
@@ -68,7 +80,9 @@ def test_mixed_runs_equal_those_alone():
     whole = run_ensemble(mixed, 1.0, 2.2, t_end=20.0, log_events=20)
     assert whole.outcome.shape == (4,)
     for row in range(4):
-        one = {name: np.ravel(value)[row % np.size(value)] for name, value in mixed.items()}
+        one = {
+            name: np.ravel(value)[row % np.size(value)] for name, value in mixed.items()
+        }
         one["friction_law"] = str(one["friction_law"])
         alone = run_ensemble(one, 1.0, 2.2, t_end=20.0, log_events=20)
         for name, (values,) in alone._raw.items():
@@ -93,9 +107,15 @@ def test_growth_of_a_perturbation_is_that_of_a_nearby_run(law):
             )
             for side in (-1, 0, 1)
         )  # fmt: skip
-        if not low.event_kinds.tolist() == run.event_kinds.tolist() == high.event_kinds.tolist():
+        if (
+            not low.event_kinds.tolist()
+            == run.event_kinds.tolist()
+            == high.event_kinds.tolist()
+        ):
             continue
-        growth = np.linalg.norm((high.final_state - low.final_state) / scale) / (2 * step)
+        growth = np.linalg.norm((high.final_state - low.final_state) / scale) / (
+            2 * step
+        )
         if growth < 1e-6:
             continue
         assert run.log_growth == pytest.approx(np.log(growth), abs=2e-4)
@@ -110,7 +130,11 @@ def test_very_long_springs_keep_their_digits(length1, length2):
     """Against long double, whose own loss is 1e-12 at these lengths; it was 2e-8."""
     for params, alpha1, alpha2, _ in random_cases(4, seed=39, friction_law="coulomb"):
         plain = FORMER.with_(
-            k2=params.k2 / params.k1, mu=params.mu, belt_speed=0.7, length1=length1, length2=length2
+            k2=params.k2 / params.k1,
+            mu=params.mu,
+            belt_speed=0.7,
+            length1=length1,
+            length2=length2,
         )
         run = run_ensemble(plain, alpha1, alpha2, t_end=5.0, log_events=9)
         exact = simulate_reference(plain, alpha1, alpha2, t_end=5.0)

@@ -35,7 +35,9 @@ def _run(order=slice(None), *, tangent=True, **options):
 def assert_identical(first, second, rows=slice(None), but=()):
     assert first._raw.keys() == second._raw.keys()
     for name, values in first._raw.items():
-        assert name in but or values.tobytes() == second._raw[name][rows].tobytes(), name
+        assert name in but or values.tobytes() == second._raw[name][rows].tobytes(), (
+            name
+        )
 
 
 @pytest.fixture(scope="module")
@@ -49,7 +51,9 @@ def test_any_number_of_workers_and_order_gives_the_same_bits(reference, workers)
     assert_identical(_run(order, workers=workers), reference, order)
 
 
-@pytest.mark.parametrize("rows", [slice(0, 1), slice(1, 2), slice(SIZE - 1, SIZE), slice(7, 14)])
+@pytest.mark.parametrize(
+    "rows", [slice(0, 1), slice(1, 2), slice(SIZE - 1, SIZE), slice(7, 14)]
+)
 def test_runs_alone_or_in_blocks_give_the_same_bits(reference, rows):
     assert_identical(_run(rows, workers=1), reference, rows)
 
@@ -60,7 +64,9 @@ def test_few_lanes_give_the_same_bits(model, tangent):
     whole = _run(model=model, tangent=tangent, workers=1)
     for size in range(1, FEW + 2):  # one more than there are lanes takes all of them
         rows = slice(7 * size, 8 * size)
-        assert_identical(_run(rows, model=model, tangent=tangent, workers=1), whole, rows)
+        assert_identical(
+            _run(rows, model=model, tangent=tangent, workers=1), whole, rows
+        )
 
 
 def test_a_longer_horizon_continues_the_same_run():
@@ -74,7 +80,10 @@ def test_a_longer_horizon_continues_the_same_run():
 @pytest.mark.parametrize("model", ["A1", "A1-linear-springs", "A4"])
 def test_asked_instants_do_not_change_a_run(model):
     """Even one that glides along the surface of contact, held by round-off alone."""
-    angles = np.array([0.4, 1.0, 0.0, 1.0]) * np.pi, np.array([0.6, 1.0, 0.0, 1.0]) * np.pi
+    angles = (
+        np.array([0.4, 1.0, 0.0, 1.0]) * np.pi,
+        np.array([0.6, 1.0, 0.0, 1.0]) * np.pi,
+    )
     above = np.nextafter(1.0, 2.0)
     start = [[0, 0, 0, 0], [-0.2, above, -0.4, 0], [0.2, 1, -0.3, 0], [0, 0, 1, 0]]
     given = {"t_end": 40.0, "model": model, "initial_state": start, "log_events": 100}
@@ -87,7 +96,9 @@ def test_asked_instants_do_not_change_a_run(model):
 
 
 def test_results_have_the_shape_of_the_inputs():
-    run = run_ensemble(FORMER, np.zeros((3, 1)), np.zeros(4), t_end=1.0, times=[0.0, 1.0])
+    run = run_ensemble(
+        FORMER, np.zeros((3, 1)), np.zeros(4), t_end=1.0, times=[0.0, 1.0]
+    )
     assert run.outcome.shape == (3, 4)
     assert run.samples.shape == (3, 4, 2, 4)
     assert run_ensemble(FORMER, 1.0, 1.0, t_end=1.0).time.shape == ()
@@ -96,7 +107,9 @@ def test_results_have_the_shape_of_the_inputs():
 
 
 def test_t_end_zero_is_the_start():
-    run = run_ensemble(FORMER, 1.0, 1.0, t_end=0.0, initial_state=(0.1, 0.2, 0.3, 0.4), times=[0.0])
+    run = run_ensemble(
+        FORMER, 1.0, 1.0, t_end=0.0, initial_state=(0.1, 0.2, 0.3, 0.4), times=[0.0]
+    )
     assert run.outcome == Outcome.converged
     np.testing.assert_array_equal(run.final_state, [0.1, 0.2, 0.3, 0.4])
     np.testing.assert_array_equal(run.samples, [[0.1, 0.2, 0.3, 0.4]])
@@ -112,7 +125,9 @@ def test_stops_say_so():
     assert past.any()
     np.testing.assert_array_equal(np.isnan(first.samples).all(axis=-1), past)
     np.testing.assert_array_equal(first.sample_regimes == -1, past)
-    turned = run_ensemble(FORMER, 0.4 * np.pi, 0.6 * np.pi, t_end=600.0, stop_at_turns=5)
+    turned = run_ensemble(
+        FORMER, 0.4 * np.pi, 0.6 * np.pi, t_end=600.0, stop_at_turns=5
+    )
     assert turned.outcome == Outcome.amplitude_reached
     assert abs(turned.turns) == 5
 
@@ -133,7 +148,13 @@ def test_stops_say_so():
     ],
 )
 def test_refusals_name_the_argument(changes, message):
-    arguments = {"parameters": FORMER, "alpha1": 1.0, "alpha2": 1.0, "t_end": 10.0, **changes}
+    arguments = {
+        "parameters": FORMER,
+        "alpha1": 1.0,
+        "alpha2": 1.0,
+        "t_end": 10.0,
+        **changes,
+    }
     with pytest.raises(ValueError, match=message):
         run_ensemble(**arguments)
 

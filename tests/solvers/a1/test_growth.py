@@ -37,9 +37,13 @@ def runs():
     ranges = {"k2": (0.4, 2.5), "k3": (0.2, 4.0), "mu": (0.0, 0.8)}
     ranges |= dict.fromkeys(("length1", "length2"), (2.0, 30.0))
     values = {name: rng.uniform(*each, size) for name, each in ranges.items()}
-    values["belt_speed"] = rng.choice([-1.0, 1.0], size) * np.geomspace(0.1, 100.0, size)
+    values["belt_speed"] = rng.choice([-1.0, 1.0], size) * np.geomspace(
+        0.1, 100.0, size
+    )
     angles = np.concatenate([WORST_ANGLES, rng.uniform(0, np.pi, (2, size))], axis=1)
-    return {name: np.concatenate([WORST[name], more]) for name, more in values.items()}, angles
+    return {
+        name: np.concatenate([WORST[name], more]) for name, more in values.items()
+    }, angles
 
 
 def test_growth_is_that_of_the_variational_equations():
@@ -47,12 +51,16 @@ def test_growth_is_that_of_the_variational_equations():
     run = run_ensemble(parameters, *angles, t_end=T_END, tangent=True, workers=1)
     compared = 0
     for job in range(run.outcome.size):
-        params = FORMER.with_(**{name: float(values[job]) for name, values in parameters.items()})
+        params = FORMER.with_(
+            **{name: float(values[job]) for name, values in parameters.items()}
+        )
         scene = params, *angles[:, job]
         exact = simulate_reference(*scene, t_end=T_END)
         total = run.separations + run.contacts + run.sticks + run.slips + run.reversals
         assert run.events[job] == total[job] == len(exact.event_times)
-        end = derivative_along(*scene, HALVES, t_end=T_END, initial_state=np.zeros(4), step=1e-12)
+        end = derivative_along(
+            *scene, HALVES, t_end=T_END, initial_state=np.zeros(4), step=1e-12
+        )
         if end is not None and (growth := np.log(np.linalg.norm(end))) < 12.0:
             compared += 1
             assert run.log_growth[job] == pytest.approx(growth, abs=1e-4), job
@@ -70,11 +78,21 @@ def test_growth_of_a_motion_that_dies_down_through_events():
         "damping1": np.exp(rng.uniform(-3.5, -0.5, size)),
         "damping2": np.exp(rng.uniform(-3.5, -0.5, size)),
     }
-    angles, starts = rng.uniform(0.0, np.pi, (2, size)), rng.normal(scale=2.0, size=(size, 4))
-    run = run_ensemble(parameters, *angles, t_end=90.0, initial_state=starts, tangent=True)
+    angles, starts = (
+        rng.uniform(0.0, np.pi, (2, size)),
+        rng.normal(scale=2.0, size=(size, 4)),
+    )
+    run = run_ensemble(
+        parameters, *angles, t_end=90.0, initial_state=starts, tangent=True
+    )
     for job in np.flatnonzero((run.separations > 0) & (run.log_growth < 0.0)):
-        params = Parameters(**{name: float(values[job]) for name, values in parameters.items()})
-        scene, given = (params, *angles[:, job]), {"t_end": 15.0, "initial_state": starts[job]}
+        params = Parameters(
+            **{name: float(values[job]) for name, values in parameters.items()}
+        )
+        scene, given = (
+            (params, *angles[:, job]),
+            {"t_end": 15.0, "initial_state": starts[job]},
+        )
         direction, growth = HALVES, 0.0
         for _ in range(6):
             end = derivative_along(*scene, direction, **given)
@@ -122,7 +140,9 @@ def resting_runs(count, seed):
 
 def test_growth_of_a_motion_that_dies_out_is_that_of_the_linear_system():
     """It was exp(+224) for exp(-30): a perturbation has a rate of its own, where nothing moves."""
-    params, angles, starts, matrices, times, units = zip(*resting_runs(150, 41), strict=True)
+    params, angles, starts, matrices, times, units = zip(
+        *resting_runs(150, 41), strict=True
+    )
     run = run_ensemble(
         {name: [getattr(p, name) for p in params] for name in PHYSICAL}, *np.transpose(angles),
         t_end=np.array(times) * units, initial_state=np.array(starts), tangent=True,

@@ -18,10 +18,16 @@ def test_extrema_between_steps_are_as_exact_as_the_states():
     omega_x = np.sqrt(2.0) * np.cos(alpha)
     omega_y = np.sqrt(2.0 * np.sin(alpha) ** 2 + k3)
     rest = k3 / omega_y**2
-    amplitude_x, phase_x, phase_y = rng.uniform(0.1, 1.0, SIZE), *rng.uniform(0, 6.2, (2, SIZE))
+    amplitude_x, phase_x, phase_y = (
+        rng.uniform(0.1, 1.0, SIZE),
+        *rng.uniform(0, 6.2, (2, SIZE)),
+    )
     amplitude_y = 0.9 * (1.0 - rest)
     x, vx = amplitude_x * np.cos(phase_x), -amplitude_x * omega_x * np.sin(phase_x)
-    y, vy = rest + amplitude_y * np.cos(phase_y), -amplitude_y * omega_y * np.sin(phase_y)
+    y, vy = (
+        rest + amplitude_y * np.cos(phase_y),
+        -amplitude_y * omega_y * np.sin(phase_y),
+    )
     state = np.stack([x, y, vx, vy], axis=-1)
     t_end = PERIODS * 2 * np.pi / omega_x
     parameters = {"k1": 1.0, "k2": 1.0, "k3": k3, "mu": 0.0}
@@ -36,10 +42,14 @@ def test_extrema_between_steps_are_as_exact_as_the_states():
         "late_max_vx": amplitude_x * omega_x,
     }
     for name, value in exact.items():
-        np.testing.assert_allclose(getattr(run, name), value, rtol=0, atol=2e-11, err_msg=name)
+        np.testing.assert_allclose(
+            getattr(run, name), value, rtol=0, atol=2e-11, err_msg=name
+        )
     state[:, [0, 2]] = 0.0
     along_y = run_ensemble(parameters, alpha, alpha, initial_state=state, **options)
-    np.testing.assert_allclose(along_y.max_displacement, rest + amplitude_y, rtol=0, atol=2e-11)
+    np.testing.assert_allclose(
+        along_y.max_displacement, rest + amplitude_y, rtol=0, atol=2e-11
+    )
 
 
 FOUND_BY_SEARCH = [272, 415, 2339, 3283, 5660, 7001]
@@ -92,9 +102,16 @@ def test_forces_and_speeds_of_returns_and_sums_on_the_way():
         assert run.impact_speed[row] == np.abs(run.event_states[row, returns, 3]).max()
         after = times >= run.event_times[row, returns][0]
         largest = 1.0 - run.samples[row, after, 1].min()
-        np.testing.assert_allclose(run.return_peak_contact_force[row], largest, atol=1e-4)
+        np.testing.assert_allclose(
+            run.return_peak_contact_force[row], largest, atol=1e-4
+        )
         for at in (10_000, 30_000):
             before = run.event_times[row, returns] <= times[at]
             assert run.sample_contacts[row, at] == np.count_nonzero(before)
-        apart = np.mean(run.sample_regimes[row, :30_000] == Regime.separated) * times[30_000]
-        np.testing.assert_allclose(run.sample_separated_time[row, 30_000], apart, atol=0.1)
+        apart = (
+            np.mean(run.sample_regimes[row, :30_000] == Regime.separated)
+            * times[30_000]
+        )
+        np.testing.assert_allclose(
+            run.sample_separated_time[row, 30_000], apart, atol=0.1
+        )

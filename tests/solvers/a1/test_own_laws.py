@@ -11,7 +11,9 @@ from squealpipe.systems.brake import brake_of, parameters_of_run
 from tests.former import FORMER
 
 STEPWISE = ("steps", "sample_log_growth")
-STARTS = np.array([[0, 0, 0, 0], [0.5, 0, 1.0, 0], [0, 1.5, 0, 0.3], [-1.0, 0.2, 0.4, -1.0]])
+STARTS = np.array(
+    [[0, 0, 0, 0], [0.5, 0, 1.0, 0], [0, 1.5, 0, 0.3], [-1.0, 0.2, 0.4, -1.0]]
+)
 
 
 @pytest.mark.parametrize("damping", [0.0, 0.05])
@@ -25,10 +27,14 @@ def test_a_table_of_one_coefficient_gives_the_ensemble_of_coulombs_law(damping):
         "workers": 1,
     }  # fmt: skip
     ours, other = (run_ensemble(p, 0.9, 2.0, **given) for p in (table, plain))
-    for name in (each for each in vars(Ensemble) if each[0] != "_" and each not in STEPWISE):
+    for name in (
+        each for each in vars(Ensemble) if each[0] != "_" and each not in STEPWISE
+    ):
         mine, theirs = getattr(ours, name), getattr(other, name)
         np.testing.assert_allclose(mine, theirs, rtol=1e-8, atol=1e-8, err_msg=name)
-    assert all(count.sum() for count in (other.sticks, other.separations, other.contacts))
+    assert all(
+        count.sum() for count in (other.sticks, other.separations, other.contacts)
+    )
 
 
 DEFAULT_MU = Parameters().mu
@@ -45,7 +51,9 @@ def test_simulate_takes_the_parameters_of_a_pad_with_measured_laws():
     knots = np.array([0.0, 1e-5, 3e-5, 5e-5]), np.array([0.0, 20.0, 140.0, 300.0])
     expected = np.interp(pad.preload - run.y.values, *knots)
     apart = run.regime.values == 3
-    np.testing.assert_allclose(run.normal_force.values[~apart], expected[~apart], rtol=1e-12)
+    np.testing.assert_allclose(
+        run.normal_force.values[~apart], expected[~apart], rtol=1e-12
+    )
     assert Event.stick in run.event_kind.values
     start = float(run.normalized_contact_force[0])
     assert start == pytest.approx(1.0, rel=1e-15)
@@ -58,7 +66,9 @@ def test_a_table_in_si_units_is_carried_by_runs_side_by_side():
         friction_law="linear 0:0.52 0.05:0.47 0.2:0.41 1:0.36 5:0.34",
     )  # fmt: skip
     angles = np.linspace(0.1, 3.0, 4)
-    run = run_ensemble(pad, angles[:, None], angles, t_end=25.0 * pad.time_unit, workers=1)
+    run = run_ensemble(
+        pad, angles[:, None], angles, t_end=25.0 * pad.time_unit, workers=1
+    )
     assert (run.outcome == Outcome.converged).all()
     assert run.steps.max() < 100
 
@@ -93,15 +103,23 @@ def test_numbers_may_vary_under_laws_of_the_users_own(laws):
     many = run_ensemble(given, 0.9, 2.0, t_end=20.0, initial_state=start, workers=1)
     assert (many.outcome == Outcome.converged).all()
     for i in range(3):
-        own = {name: v[i] if isinstance(v, np.ndarray) else v for name, v in given.items()}
-        run = run_ensemble(Parameters(**own), 0.9, 2.0, t_end=20.0, initial_state=start, workers=1)
-        np.testing.assert_allclose(many.final_state[i], run.final_state, rtol=1e-9, atol=1e-12)
+        own = {
+            name: v[i] if isinstance(v, np.ndarray) else v for name, v in given.items()
+        }
+        run = run_ensemble(
+            Parameters(**own), 0.9, 2.0, t_end=20.0, initial_state=start, workers=1
+        )
+        np.testing.assert_allclose(
+            many.final_state[i], run.final_state, rtol=1e-9, atol=1e-12
+        )
         assert many.separations[i] == run.separations
 
 
 def test_under_a_table_of_contact_the_preload_is_one():
     with pytest.raises(ValueError, match="preload: under a table of contact"):
-        run_ensemble({"preload": [1.0, 1.1], "contact_law": CONTACT}, 0.9, 2.0, t_end=1.0)
+        run_ensemble(
+            {"preload": [1.0, 1.1], "contact_law": CONTACT}, 0.9, 2.0, t_end=1.0
+        )
 
 
 def test_a_law_in_python_reads_speeds_in_si_units():
@@ -112,10 +130,14 @@ def test_a_law_in_python_reads_speeds_in_si_units():
     )  # fmt: skip
     t_end = 30.0 * pad.time_unit
     times = np.linspace(0.0, t_end, 7)
-    run = simulate(pad, 1.0, 2.2, t_end=t_end, times=times, initial_state=(0, 0, 0.1, 0))
+    run = simulate(
+        pad, 1.0, 2.2, t_end=t_end, times=times, initial_state=(0, 0, 0.1, 0)
+    )
     whole = brake_of(pad).simulate(
         t_end, times=times, start={"vx": 0.1}, **parameters_of_run(pad, 1.0, 2.2)
     )
     np.testing.assert_allclose(run.x, whole.x, rtol=1e-8, atol=1e-12)
-    with pytest.raises(ValueError, match=r"friction_speed = 2\.0: the file of a law stands for it"):
+    with pytest.raises(
+        ValueError, match=r"friction_speed = 2\.0: the file of a law stands for it"
+    ):
         pad.with_(friction_speed=2.0)

@@ -37,11 +37,21 @@ def test_two_crossings_inside_a_step(exponent, phase):
     """y rises above l_pre by the depth alone: it leaves the belt and lands again."""
     depth = 10.0**exponent
     amplitude = 1.0 + depth - REST
-    state = (0.0, REST + amplitude * np.cos(-phase), 0.0, -amplitude * OMEGA * np.sin(-phase))
+    state = (
+        0.0,
+        REST + amplitude * np.cos(-phase),
+        0.0,
+        -amplitude * OMEGA * np.sin(-phase),
+    )
     t_top = phase / OMEGA
     # In flight y'' = −y: the mass is back after about 2 √(2 depth).
     flight = 2.0 * np.sqrt(2.0 * depth)
-    options = {"t_end": t_top + 2.0, "initial_state": state, "log_events": 4, **IDENTITY}
+    options = {
+        "t_end": t_top + 2.0,
+        "initial_state": state,
+        "log_events": 4,
+        **IDENTITY,
+    }
     run = run_ensemble(FRICTIONLESS, **options)
     if exponent == -14 and run.separations == 0:
         # As deep as the state's own round-off after a step.
@@ -50,16 +60,23 @@ def test_two_crossings_inside_a_step(exponent, phase):
     assert run.outcome == Outcome.converged
     assert run.event_kinds.tolist() == [Event.separation, Event.contact, -1, -1]
     assert abs(run.event_times[:2].mean() - t_top) < 0.3 * flight
-    assert run.event_times[1] - run.event_times[0] == pytest.approx(flight, rel=0.1 + 3e-15 / depth)
+    assert run.event_times[1] - run.event_times[0] == pytest.approx(
+        flight, rel=0.1 + 3e-15 / depth
+    )
     near = 10.0**-13 if exponent < -12 else depth
     missed = (0.0, REST + (1.0 - near - REST) * np.cos(phase), 0.0,
               (1.0 - near - REST) * OMEGA * np.sin(phase))  # fmt: skip
-    assert run_ensemble(FRICTIONLESS, **options | {"initial_state": missed}).separations == 0
+    assert (
+        run_ensemble(FRICTIONLESS, **options | {"initial_state": missed}).separations
+        == 0
+    )
 
 
 def test_an_event_at_the_end_and_at_an_asked_instant():
     params = FORMER.with_(k3=2.0)
-    time = float(run_ensemble(params, t_end=5.0, log_events=1, **IDENTITY).event_times[0])
+    time = float(
+        run_ensemble(params, t_end=5.0, log_events=1, **IDENTITY).event_times[0]
+    )
     before, after = np.nextafter(time, 0.0), np.nextafter(time, np.inf)
     counts = []
     for t_end in (before, time, after):
@@ -93,7 +110,9 @@ def test_an_approach_to_stick_in_ever_shorter_slips_moves_on(speed):
     rng = np.random.default_rng(8)
     starts = rng.uniform(-0.3, 0.3, (50, 4))
     params = FORMER.with_(k3=2.0, mu=0.6, belt_speed=speed)
-    run = run_ensemble(params, 1.2, 2.6, t_end=200.0, initial_state=starts, log_events=2000)
+    run = run_ensemble(
+        params, 1.2, 2.6, t_end=200.0, initial_state=starts, log_events=2000
+    )
     assert (run.outcome == Outcome.converged).all()
     assert (run.sticks > 0).all()
     assert (run.event_kinds[:, -1] == -1).all()
@@ -106,12 +125,16 @@ def test_the_derivative_of_an_event_time():
     """dt/dκ of the first separation, t = arccos(1 − (1 + κ)/κ)/√(1 + κ), through the event."""
     kappa, step = 2.0, 1e-4
     found = run_ensemble(
-        {"k3": kappa + step * np.array([-2.0, -1.0, 1.0, 2.0])}, t_end=5.0, log_events=1, **IDENTITY
+        {"k3": kappa + step * np.array([-2.0, -1.0, 1.0, 2.0])},
+        t_end=5.0,
+        log_events=1,
+        **IDENTITY,
     ).event_times[:, 0]
     slope = (found[0] - 8.0 * found[1] + 8.0 * found[2] - found[3]) / (12.0 * step)
     cosine, omega = -1.0 / kappa, np.sqrt(1.0 + kappa)
     exact = (
-        -(1.0 / kappa**2) / np.sqrt(1.0 - cosine**2) / omega - 0.5 * np.arccos(cosine) / omega**3
+        -(1.0 / kappa**2) / np.sqrt(1.0 - cosine**2) / omega
+        - 0.5 * np.arccos(cosine) / omega**3
     )
     assert slope == pytest.approx(exact, rel=1e-10)
 
@@ -148,11 +171,15 @@ def test_releases_are_where_long_double_has_them():
     found = run_ensemble(parameters, *angles, t_end=2.0, log_events=4)
     judged = 0
     for job in range(10):
-        params = FORMER.with_(**{name: float(values[job]) for name, values in parameters.items()})
+        params = FORMER.with_(
+            **{name: float(values[job]) for name, values in parameters.items()}
+        )
         exact = simulate_reference(params, *map(float, angles[:, job]), t_end=2.0)
         count = min(4, len(exact.event_times))
         np.testing.assert_allclose(
-            found.event_times[job, :count], np.float64(exact.event_times[:count]), atol=1e-7
+            found.event_times[job, :count],
+            np.float64(exact.event_times[:count]),
+            atol=1e-7,
         )
         judged += count
     assert judged >= 20

@@ -10,7 +10,11 @@ from squealpipe.parameters import Parameters
 from squealpipe.schema import Outcome
 from squealpipe.schema.backbones import Assumption
 from squealpipe.solvers.a4 import exact_branches
-from squealpipe.tasks.backbones.backbone import backbone, contact_losing_branches, with_orbits
+from squealpipe.tasks.backbones.backbone import (
+    backbone,
+    contact_losing_branches,
+    with_orbits,
+)
 from squealpipe.tasks.backbones.orbit import periodic_orbit
 from tests.former import FORMER
 
@@ -26,7 +30,9 @@ def test_period_doublings_are_located():
     """The index of single orbits, each found from cold, is −2 there and beyond it in between."""
     found = _branch(0.3, 0.9, 1, y_peak_max=7.0)
     doublings = found.special_kind.values == SpecialPoint.period_doubling
-    np.testing.assert_allclose(found.special_y_peak[doublings], [3.919, 5.820], atol=6e-4)
+    np.testing.assert_allclose(
+        found.special_y_peak[doublings], [3.919, 5.820], atol=6e-4
+    )
 
     def index(peak):
         orbit = periodic_orbit(BASE, 0.3 * PI, 0.9 * PI, mode=1, y_peak=float(peak))
@@ -38,13 +44,19 @@ def test_period_doublings_are_located():
 
 
 def test_a_period_doubling_just_above_grazing_is_found():
-    params = Parameters(k2=0.75237, k3=0.650825, mu=0.270188, length1=5, length2=5, belt_speed=100)
+    params = Parameters(
+        k2=0.75237, k3=0.650825, mu=0.270188, length1=5, length2=5, belt_speed=100
+    )
     found = backbone(params, 2.655067, 1.06432, mode=2, y_peak_max=6.0)
     assert found.special_kind.values.tolist() == [SpecialPoint.period_doubling]
     peak = float(found.special_y_peak[0])
     assert peak == pytest.approx(1.0073, abs=1e-4)
     at = [
-        float(periodic_orbit(params, 2.655067, 1.06432, mode=2, y_peak=near * peak).stability_index)
+        float(
+            periodic_orbit(
+                params, 2.655067, 1.06432, mode=2, y_peak=near * peak
+            ).stability_index
+        )
         for near in (0.999, 1.0, 1.001)
     ]
     assert at[0] > -2.0 > at[2]
@@ -54,7 +66,9 @@ def test_a_period_doubling_just_above_grazing_is_found():
 @pytest.mark.parametrize(
     "seed", [0, *(pytest.param(n, marks=pytest.mark.release) for n in (1, 2, 3))]
 )
-def test_special_points_of_random_branches_are_those_of_dense_samples(seed, monkeypatch):
+def test_special_points_of_random_branches_are_those_of_dense_samples(
+    seed, monkeypatch
+):
     """Each change of sign between 20 times as many orbits has its special point."""
     rng = np.random.default_rng(seed)
     compared = 0
@@ -68,7 +82,10 @@ def test_special_points_of_random_branches_are_those_of_dense_samples(seed, monk
             dense = backbone(params, *angles, mode=mode, y_peak_max=6.0)
         beyond = dense.outcome.isin([Outcome.grazing, Outcome.converged]).values
         index = dense.stability_index.values[beyond]
-        for kind, value in ((SpecialPoint.period_doubling, -2.0), (SpecialPoint.index_two, 2.0)):
+        for kind, value in (
+            (SpecialPoint.period_doubling, -2.0),
+            (SpecialPoint.index_two, 2.0),
+        ):
             off = index - value
             crossings = int((np.diff(np.sign(off[abs(off) > 1e-9])) != 0).sum())
             number = int((found.special_kind == kind).sum())
@@ -146,7 +163,10 @@ def test_scenes_without_backbone_are_empty_with_a_reason(method):
 
 
 def test_settings_of_harmonic_balance_out_of_range_are_named():
-    for name, wrong in (("n_time", {"n_harmonics": 8, "n_time": 16}), ("sigma", {"sigma": 0.0})):
+    for name, wrong in (
+        ("n_time", {"n_harmonics": 8, "n_time": 16}),
+        ("sigma", {"sigma": 0.0}),
+    ):
         with pytest.raises(ValueError, match=name):
             backbone(BASE, 1.0, 2.0, mode=1, method="hbm", **wrong)
 
@@ -161,7 +181,9 @@ def test_both_methods_judge_sliding_alike_for_either_belt_direction(speed, mode)
         holds = branch.sliding_assumption.values == Assumption.holds
         np.testing.assert_array_equal(holds, branch.largest_speed.values < abs(speed))
         clear = abs(branch.largest_speed.values - abs(speed)) > 0.01
-        held.append(np.interp(np.linspace(0.3, 2.9, 14), branch.y_peak[clear], holds[clear]))
+        held.append(
+            np.interp(np.linspace(0.3, 2.9, 14), branch.y_peak[clear], holds[clear])
+        )
     assert np.array_equal(held[0] > 0.5, held[1] > 0.5)
     assert held[0].all() == (abs(speed) == 100.0)
 
@@ -181,7 +203,9 @@ def test_branches_without_orbits_are_left_out_with_their_reason():
 
 @pytest.mark.parametrize(("alpha1", "alpha2"), [(0.4, 0.55), (0.3, 0.9), (0.2, 0.7)])
 @pytest.mark.parametrize("n_harmonics", [4, 16])
-def test_no_series_far_from_every_exact_orbit_is_called_converged(alpha1, alpha2, n_harmonics):
+def test_no_series_far_from_every_exact_orbit_is_called_converged(
+    alpha1, alpha2, n_harmonics
+):
     branch = _branch(alpha1, alpha2, 1, method="hbm", n_harmonics=n_harmonics)
     converged = branch.where(branch.outcome == Outcome.converged, drop=True)
     assert float(converged.waveform_error.max()) <= 0.05

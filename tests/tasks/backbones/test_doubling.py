@@ -42,12 +42,16 @@ def test_the_branch_starts_at_the_doubling(branch):
     peak = float(branch.y_largest[0])
     assert peak == pytest.approx(float(simple.special_y_peak[number]), rel=1e-12)
     assert peak == pytest.approx((3.919, 5.820)[number], abs=6e-4)
-    assert float(branch.doubling_omega) == pytest.approx(2.0 * float(branch.omega[0]), rel=1e-14)
+    assert float(branch.doubling_omega) == pytest.approx(
+        2.0 * float(branch.omega[0]), rel=1e-14
+    )
 
 
 def test_the_index_is_continuous_at_the_switch(branch):
     """It starts at (−2)² − 2 = 2 and leaves it with the square of the distance, as ω does."""
-    away = np.hypot(branch.x_at_peak - branch.x_at_peak[0], branch.y_peak - branch.y_peak[0])
+    away = np.hypot(
+        branch.x_at_peak - branch.x_at_peak[0], branch.y_peak - branch.y_peak[0]
+    )
     near = slice(2, 5)  # beyond round-off, before terms of higher order
     for values in (branch.stability_index, branch.omega):
         change = np.abs(values - values[0]).values
@@ -55,7 +59,10 @@ def test_the_index_is_continuous_at_the_switch(branch):
         assert slope == pytest.approx(2.0, abs=0.1)
     assert float(branch.stability_index[0]) == pytest.approx(2.0, abs=1e-12)
     # one side of the doubling of a stable orbit: stable if it leaves downwards
-    assert np.sign(float(branch.stability_index[4]) - 2.0) == (-1, 1)[branch.attrs["doubling"] - 1]
+    assert (
+        np.sign(float(branch.stability_index[4]) - 2.0)
+        == (-1, 1)[branch.attrs["doubling"] - 1]
+    )
 
 
 def test_orbits_close_after_the_doubled_period_and_not_before(branch):
@@ -66,7 +73,9 @@ def test_orbits_close_after_the_doubled_period_and_not_before(branch):
         growth = max(1.0, abs(float(orbit.stability_index)))
         assert np.abs(end - start).max() < 1e-10 * growth * scale
         assert np.abs(half - start).max() > 1e-3
-        energy = first_integral_value(*end, BASE, linear_stiffness(BASE, geometry(*SCENE)))
+        energy = first_integral_value(
+            *end, BASE, linear_stiffness(BASE, geometry(*SCENE))
+        )
         np.testing.assert_allclose(energy, orbit.first_integral, rtol=1e-11)
     assert float(branch.residual.max()) < 1e-12
 
@@ -89,9 +98,13 @@ def test_a_doubling_in_other_units_with_the_belt_the_other_way():
     angles = (PI - SCENE[0], PI - SCENE[1])
     branch = doubled_branch(OTHER, *angles, mode=1, y_peak_max=8.0 * OTHER.preload)
     assert branch.sizes["point"] > 10
-    at_doubling = periodic_orbit(OTHER, *angles, mode=1, y_peak=float(branch.y_largest[0]))
+    at_doubling = periodic_orbit(
+        OTHER, *angles, mode=1, y_peak=float(branch.y_largest[0])
+    )
     assert float(at_doubling.stability_index) == pytest.approx(-2.0, abs=1e-9)
-    start, _, end = _after_a_period(OTHER, angles, branch.isel(point=branch.sizes["point"] // 2))
+    start, _, end = _after_a_period(
+        OTHER, angles, branch.isel(point=branch.sizes["point"] // 2)
+    )
     assert np.abs(end - start).max() < 1e-10
 
 

@@ -10,7 +10,12 @@ import pytest
 
 from squealpipe.laws.springs import geometry, linear_stiffness
 from squealpipe.methods.orbits.orbit_shape import sample
-from squealpipe.methods.orbits.orbits import TraceEnd, is_primitive, orbit_on_branch, solve_orbit
+from squealpipe.methods.orbits.orbits import (
+    TraceEnd,
+    is_primitive,
+    orbit_on_branch,
+    solve_orbit,
+)
 from squealpipe.models.a4 import first_integral_value
 from squealpipe.schema import Outcome
 from squealpipe.solvers.a4.orbits import grazing_start
@@ -32,7 +37,11 @@ def _random_cells(count, seed):
     while found < count:
         k1, k2, k3 = random.uniform(0.3, 3.0, 3)
         params = FORMER.with_(
-            k1=k1, k2=k2, k3=k3, mu=random.uniform(0, 0.8), belt_speed=random.choice([-1, 1]) * 50.0
+            k1=k1,
+            k2=k2,
+            k3=k3,
+            mu=random.uniform(0, 0.8),
+            belt_speed=random.choice([-1, 1]) * 50.0,
         )
         angles = random.uniform(0.0, PI, 2)
         mode = int(random.integers(1, 3))
@@ -52,7 +61,9 @@ def test_an_orbit_beyond_the_end_of_its_branch_is_one_of_another_branch():
     assert float(single.omega) == pytest.approx(0.43278, abs=1e-5)
     assert float(single.residual) < 1e-13
     scene = scaled_system(BASE, *LEFT)
-    point = np.array([float(single.x_at_peak), 2.0, PI * scene.frequency / float(single.omega)])
+    point = np.array(
+        [float(single.x_at_peak), 2.0, PI * scene.frequency / float(single.omega)]
+    )
     orbit = solve_orbit(scene.system, point)
     assert is_primitive(scene.system, orbit)
     thrice = replace(orbit, point=orbit.point * [1.0, 1.0, 3.0])
@@ -80,10 +91,17 @@ def test_single_orbits_agree_with_branches_in_random_cells():
         for reach in (peak, 2.0 * peak):
             branch = backbone(params, *angles, mode=mode, y_peak_max=reach)
             arrives = float(branch.y_peak.max()) >= peak * (1.0 - 1e-12)
-            assert arrives == (outcome == Outcome.converged), (params, angles, mode, peak)
+            assert arrives == (outcome == Outcome.converged), (
+                params,
+                angles,
+                mode,
+                peak,
+            )
             if reach == peak and arrives:
                 assert int(branch.end) == Outcome.amplitude_reached
-                assert float(single.omega) == pytest.approx(float(branch.omega[-1]), rel=1e-11)
+                assert float(single.omega) == pytest.approx(
+                    float(branch.omega[-1]), rel=1e-11
+                )
     assert {Outcome.converged, Outcome.other_branch} <= ends
 
 
@@ -104,14 +122,22 @@ def test_steps_twenty_times_finer_follow_the_same_branches():
         if None not in orbits:
             assert orbits[0].omega == pytest.approx(orbits[1].omega, rel=1e-10)
         else:
-            assert not (TraceEnd.amplitude_reached in ends and set(ends) & set(sure)), (ends, peak)
+            assert not (TraceEnd.amplitude_reached in ends and set(ends) & set(sure)), (
+                ends,
+                peak,
+            )
 
 
 def test_the_first_integral_and_the_larger_peak_hold_along_a_tongue():
     """Both instants of rest of each point have one energy, and y_peak is the larger y."""
     branch = backbone(BASE, *LEFT, mode=1)
-    scene, stiffness = scaled_system(BASE, *LEFT), linear_stiffness(BASE, geometry(*LEFT))
-    points = np.stack([branch.x_at_peak, branch.y_peak, PI * scene.frequency / branch.omega])
+    scene, stiffness = (
+        scaled_system(BASE, *LEFT),
+        linear_stiffness(BASE, geometry(*LEFT)),
+    )
+    points = np.stack(
+        [branch.x_at_peak, branch.y_peak, PI * scene.frequency / branch.omega]
+    )
     for point in points.T:
         orbit = solve_orbit(scene.system, point)
         if orbit is None:
@@ -139,7 +165,9 @@ def test_extreme_ratios_end_soon_with_an_outcome(changes, angles, peak, mode):
     params = FORMER.with_(**changes)
     single = periodic_orbit(params, *angles, mode=mode, y_peak=peak)
     branch = backbone(params, *angles, mode=mode)
-    assert np.isfinite(float(single.omega)) == (int(single.outcome) == Outcome.converged)
+    assert np.isfinite(float(single.omega)) == (
+        int(single.outcome) == Outcome.converged
+    )
     assert Outcome(int(branch.end)) is not Outcome.not_computed
 
 

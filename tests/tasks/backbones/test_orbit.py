@@ -39,7 +39,9 @@ def test_known_orbits_are_found_from_cold(alpha1, alpha2, mode, y_peak, omega):
 
 
 @pytest.mark.parametrize(("alpha1", "alpha2", "mode", "y_peak", "omega"), KNOWN)
-def test_an_independent_integrator_closes_the_orbit(alpha1, alpha2, mode, y_peak, omega):
+def test_an_independent_integrator_closes_the_orbit(
+    alpha1, alpha2, mode, y_peak, omega
+):
     angles, found = (alpha1 * PI, alpha2 * PI), _orbit(alpha1, alpha2, mode, y_peak)
     end = 2 * PI / float(found.omega)
     z = a4_by_scipy(BASE, angles, found, end * np.linspace(0, 1, 4001))
@@ -65,7 +67,9 @@ def test_below_contact_loss_the_orbit_is_the_linear_mode():
 def test_a_decoupled_y_motion_tends_to_the_bilinear_oscillator():
     """1/ω = (1/ω_contact + 1/ω_free)/2 in the limit of large amplitudes, from above like 1/y."""
     limit = 2.0 / (1 / math.sqrt(1.75) + 1.0)
-    gaps = [float(_orbit(0.5, 1.0, 2, peak).omega) - limit for peak in (50.0, 100.0, 200.0)]
+    gaps = [
+        float(_orbit(0.5, 1.0, 2, peak).omega) - limit for peak in (50.0, 100.0, 200.0)
+    ]
     assert gaps[2] < 2e-3
     np.testing.assert_allclose(np.divide(gaps[:-1], gaps[1:]), 2.0, rtol=0.03)
 
@@ -106,7 +110,10 @@ def test_a_peak_below_the_equilibrium_is_refused():
 
 def test_a_slow_belt_breaks_the_assumption_and_says_so():
     assert int(_orbit(0.3, 0.9, 1, 3.0).sliding_assumption) == 1
-    assert int(_orbit(0.3, 0.9, 1, 3.0, FORMER.with_(belt_speed=0.2)).sliding_assumption) == 0
+    assert (
+        int(_orbit(0.3, 0.9, 1, 3.0, FORMER.with_(belt_speed=0.2)).sliding_assumption)
+        == 0
+    )
 
 
 NEAR_FIRST_REST = FORMER.with_(k1=0.975, k2=2.68, k3=0.318, mu=0.85)
@@ -119,7 +126,9 @@ NEAR_SECOND_REST = FORMER.with_(k1=2.27, k2=1.717, k3=1.82, mu=0.49)
         (NEAR_FIRST_REST, (0.0866, 2.3672, 1)),
         (NEAR_FIRST_REST, (1.1, 0.4, 1)),
         (NEAR_FIRST_REST, (2.6786, 1.8628, 2)),
-        pytest.param(NEAR_SECOND_REST, (1.5464, 1.8739, 1), id="before the second rest"),
+        pytest.param(
+            NEAR_SECOND_REST, (1.5464, 1.8739, 1), id="before the second rest"
+        ),
     ],
 )
 def test_extremes_are_those_of_an_integration(params, turn):

@@ -81,7 +81,9 @@ def test_late_extremes_begin_at_t_late():
     params = FORMER.with_(damping1=0.3, damping2=0.2, k2=1.3)
     starts = np.linspace(-0.5, 0.5, 6)
     for late in (7.3, 21.1):
-        found = basin_map(params, 1.1, 0.6, x=starts, t_end=50.0, t_late=late, workers=1)
+        found = basin_map(
+            params, 1.1, 0.6, x=starts, t_end=50.0, t_late=late, workers=1
+        )
         for start, largest in zip(starts, found.late_max_x.values, strict=True):
             run = simulate(
                 params, 1.1, 0.6, t_end=50.0, initial_state=(start, 0, 0, 0),

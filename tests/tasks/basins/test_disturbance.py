@@ -37,12 +37,16 @@ def random_case(direction):
 def contact_matrix(params, alpha1, alpha2):
     k11, k12, k22 = linear_stiffness(params, geometry(alpha1, alpha2))
     drag = math.copysign(params.mu, params.belt_speed)
-    return np.array([[k11, k12 + drag * params.k3], [k12, k22 + params.k3]]) / params.mass, drag
+    return np.array(
+        [[k11, k12 + drag * params.k3], [k12, k22 + params.k3]]
+    ) / params.mass, drag
 
 
 def steady_state(params, alpha1, alpha2):
     matrix, drag = contact_matrix(params, alpha1, alpha2)
-    return np.linalg.solve(matrix, np.array([drag, 1.0]) * params.k3 * params.preload / params.mass)
+    return np.linalg.solve(
+        matrix, np.array([drag, 1.0]) * params.k3 * params.preload / params.mass
+    )
 
 
 def shortest_by_modes(params, alpha1, alpha2, t_end):
@@ -65,13 +69,17 @@ def test_undamped_linear_sliding_has_a_closed_form(direction):
     for _ in range(2):
         params, alpha1, alpha2 = random_case(direction)
         t_end = 40.0 * linear_time(params)
-        found = smallest_disturbance(params, alpha1, alpha2, model="A4", t_end=t_end, workers=1)
+        found = smallest_disturbance(
+            params, alpha1, alpha2, model="A4", t_end=t_end, workers=1
+        )
         exact = shortest_by_modes(params, alpha1, alpha2, t_end)
         assert found.outcome == Outcome.converged
         assert float(found.linear_distance) == pytest.approx(exact, rel=1e-6)
         assert exact * (1 - 1e-6) < float(found.distance) < exact * 1.01
         rest = steady_state(params, alpha1, alpha2)
-        np.testing.assert_allclose([found.x_rest, found.y_rest], rest, rtol=1e-9, atol=1e-12)
+        np.testing.assert_allclose(
+            [found.x_rest, found.y_rest], rest, rtol=1e-9, atol=1e-12
+        )
         assert (np.diff(found.distance_by_number) <= 0).all()
 
 
@@ -83,18 +91,26 @@ def state_of(found, params, factor=1.0):
 
 @pytest.mark.parametrize("belt_speed", [60.0, -3.0])
 def test_what_is_found_loses_contact_and_random_smaller_ones_keep_it(belt_speed):
-    params = FORMER.with_(k2=1.3, length1=4.0, mass=2.0, preload=0.8, belt_speed=belt_speed)
+    params = FORMER.with_(
+        k2=1.3, length1=4.0, mass=2.0, preload=0.8, belt_speed=belt_speed
+    )
     angles = (2.4, 2.5) if belt_speed > 0 else (math.pi - 2.4, math.pi - 2.5)
     found = smallest_disturbance(params, *angles, t_end=60.0, workers=1)
     assert found.outcome == Outcome.converged
-    run = simulate(params, *angles, t_end=60.0, initial_state=state_of(found, params, 1.0 + 1e-5))
+    run = simulate(
+        params, *angles, t_end=60.0, initial_state=state_of(found, params, 1.0 + 1e-5)
+    )
     assert (run.event_kind.values == 0).any()
     size = 400
     z = np.random.default_rng(5).standard_normal((size, 4))
-    unit = params.preload * np.array([1.0, 1.0, 1 / linear_time(params), 1 / linear_time(params)])
+    unit = params.preload * np.array(
+        [1.0, 1.0, 1 / linear_time(params), 1 / linear_time(params)]
+    )
     z *= 0.97 * float(found.distance) / np.linalg.norm(z, axis=1, keepdims=True)
     rest = state_of(found, params, 0.0)
-    runs = run_ensemble(params, *angles, t_end=60.0, initial_state=rest + unit * z, workers=1)
+    runs = run_ensemble(
+        params, *angles, t_end=60.0, initial_state=rest + unit * z, workers=1
+    )
     assert np.isnan(runs.first_separation_time).all()
 
 
@@ -104,7 +120,9 @@ def test_the_search_is_that_of_the_mirrored_system():
     given, image = {"t_end": 60.0, "workers": 1}, params.with_(belt_speed=-5.0)
     one = smallest_disturbance(params, 2.3, 2.45, **given)
     other = smallest_disturbance(image, 2.45, 2.3, seed=2, **given)
-    assert float(one.linear_distance) == pytest.approx(float(other.linear_distance), rel=1e-9)
+    assert float(one.linear_distance) == pytest.approx(
+        float(other.linear_distance), rel=1e-9
+    )
     assert float(one.distance) == pytest.approx(float(other.distance), rel=0.01)
 
 
@@ -113,7 +131,9 @@ def test_whirl_is_reached_and_beyond_a_small_bound_not():
     given = {"leads_to": "whirl", "t_end": 60.0, "workers": 1}
     found = smallest_disturbance(*scene, directions=16, **given)
     assert found.outcome == Outcome.converged
-    run = run_ensemble(*scene, t_end=60.0, tol=1e-9, initial_state=state_of(found, FORMER))
+    run = run_ensemble(
+        *scene, t_end=60.0, tol=1e-9, initial_state=state_of(found, FORMER)
+    )
     assert abs(float(run.turns)) >= 3
     assert 0 < int(found.reached) <= 16
     none = smallest_disturbance(*scene, directions=8, bound=0.4, **given)
@@ -167,7 +187,9 @@ def test_steady_sliding_is_found_in_any_units():
         assert found is not None
         expected = steady_state(params, alpha1, alpha2)
         np.testing.assert_allclose(
-            found.state[:2] * params.preload, expected, atol=1e-3 * np.abs(expected).max()
+            found.state[:2] * params.preload,
+            expected,
+            atol=1e-3 * np.abs(expected).max(),
         )
 
 
@@ -175,7 +197,8 @@ def test_laws_of_the_same_forces_have_the_same_disturbance():
     """Friction and contact as tables of many pieces, or a contact dashpot of size zero."""
     law = FORMER.with_(mu=0.1, damping1=0.05, damping2=0.02, belt_speed=2.0)
     table = law.with_(
-        friction_law="linear 0.0:0.1 1.0:0.1 3.0:0.1", contact_law=f"linear 0.0:0.0 1.0:{law.k3}"
+        friction_law="linear 0.0:0.1 1.0:0.1 3.0:0.1",
+        contact_law=f"linear 0.0:0.0 1.0:{law.k3}",
     )
     expected, *others = (
         smallest_disturbance(p, 2.0, 1.9, directions=16, t_end=50.0, workers=1)
@@ -183,7 +206,9 @@ def test_laws_of_the_same_forces_have_the_same_disturbance():
     )
     for found in others:
         for name in ("x_rest", "y_rest", "growth_rate", "distance", "linear_distance"):
-            np.testing.assert_allclose(found[name], expected[name], rtol=1e-6, err_msg=name)
+            np.testing.assert_allclose(
+                found[name], expected[name], rtol=1e-6, err_msg=name
+            )
 
 
 def test_where_steady_sliding_lies_in_a_later_piece_of_the_contact_law():

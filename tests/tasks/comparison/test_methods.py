@@ -18,7 +18,9 @@ def atlas():
 def test_our_methods_are_never_silently_wrong(atlas):
     ours = atlas.role.values != Role.public
     silent = (atlas.verdict == Reliability.silently_wrong).values & ours
-    where = [(atlas.scene.values[i], atlas.solver.values[j]) for i, j in np.argwhere(silent)]
+    where = [
+        (atlas.scene.values[i], atlas.solver.values[j]) for i, j in np.argwhere(silent)
+    ]
     assert where == []
     asked = atlas.verdict != Reliability.not_applicable
     for columns in (ours, ~ours):
@@ -45,7 +47,9 @@ KNOWN = {
 
 
 @pytest.mark.parametrize("place", KNOWN)
-def test_public_methods_fail_silently_where_we_say_and_ours_say_where_nothing_is(atlas, place):
+def test_public_methods_fail_silently_where_we_say_and_ours_say_where_nothing_is(
+    atlas, place
+):
     cell = atlas.sel(scene=place[0], solver=place[1])
     assert cell.verdict == KNOWN[place]
     assert cell.message.item() or KNOWN[place] == WRONG
@@ -71,10 +75,14 @@ def test_verdicts_follow_from_errors_and_flags(value, flag, truth, expected):
 
 def test_harmonic_balance_converges_as_published():
     """ω falls about like N_h^-4 with closed-form integrals; the printed Eq. (34) is just wrong."""
-    found = work_precision(FORMER, harmonics=(8, 32), oversampling=(1,), sigmas=(10.0,), repeats=1)
+    found = work_precision(
+        FORMER, harmonics=(8, 32), oversampling=(1,), sigmas=(10.0,), repeats=1
+    )
     names = zip(found.method.values, found.setting.values, strict=True)
     errors = dict(zip(names, found.error.values, strict=True))
-    coarse, fine = (errors["cosines, closed-form contact", f"N_h {count}"] for count in (8, 32))
+    coarse, fine = (
+        errors["cosines, closed-form contact", f"N_h {count}"] for count in (8, 32)
+    )
     assert 3.3 < np.log(coarse / fine) / np.log(4.0) < 4.7
     assert fine < 1e-7
     assert errors["exact orbit (shooting)", "with monodromy"] < 1e-12

@@ -17,7 +17,10 @@ ANGLES = np.linspace(0.0, np.pi, 31)
 
 @pytest.fixture(scope="module")
 def chart():
-    design = {"alpha1": np.pi * np.array([0.305, 0.83]), "alpha2": np.pi * np.array([0.07, 0.83])}
+    design = {
+        "alpha1": np.pi * np.array([0.305, 0.83]),
+        "alpha2": np.pi * np.array([0.07, 0.83]),
+    }
     return squealpipe.regime_chart(PARAMS, ANGLES, ANGLES, design=design, t_end=15.0)
 
 
@@ -50,7 +53,9 @@ def test_distances_of_a_design(chart):
     """From points of the closed forms' lines, and from the boundary on a finer grid."""
     fine = np.linspace(0.0, np.pi, 61)
     boundary = squealpipe.contact_boundary(PARAMS, fine, fine, t_end=15.0)
-    for design, (*linear, contact) in zip(chart.design.values, chart.distance.values, strict=True):
+    for design, (*linear, contact) in zip(
+        chart.design.values, chart.distance.values, strict=True
+    ):
         at = dict(zip(("alpha1", "alpha2"), design, strict=True))
         finer = squealpipe.boundary_distance(boundary, at).distance
         assert contact == pytest.approx(float(finer), abs=5e-6)
@@ -70,12 +75,16 @@ def test_runs_a_millionth_beside_the_line_answer_otherwise(chart):
         for sign in (-1.0, 1.0):
             ends = chart.isel(point=[point - 1, point + 1])
             along = np.array([np.diff(ends.alpha1)[0], np.diff(ends.alpha2)[0]])
-            aside = sign * 1e-6 * np.pi * along[::-1] * [-1.0, 1.0] / np.linalg.norm(along)
+            aside = (
+                sign * 1e-6 * np.pi * along[::-1] * [-1.0, 1.0] / np.linalg.norm(along)
+            )
             here = chart.isel(point=[point])
             angles = here.alpha1.values + aside[0], here.alpha2.values + aside[1]
             run = squealpipe.validity_map(PARAMS, *angles, t_end=15.0)
             beside.append(bool(run.separates.item()))
-        assert beside == [True, False] or chart.curve[point - 1] != chart.curve[point + 1]
+        assert (
+            beside == [True, False] or chart.curve[point - 1] != chart.curve[point + 1]
+        )
 
 
 def test_parameters_under_their_own_names():
@@ -84,7 +93,9 @@ def test_parameters_under_their_own_names():
     angles = 0.4 * np.pi, 0.1 * np.pi
     chart = squealpipe.regime_chart(PARAMS, *angles, t_end=10.0, kappa=kappa, mu=mu)
     assert chart.design.values.tolist() == [[PARAMS.kappa, PARAMS.mu]]
-    assert int(chart.runs) < 0.01 * 1000**2  # a uniform grid that resolves as much as a thousandth
+    assert (
+        int(chart.runs) < 0.01 * 1000**2
+    )  # a uniform grid that resolves as much as a thousandth
     on = chart.line.values == ChartLine.flutter
     for k, m in zip(chart.kappa.values[on], chart.mu.values[on], strict=True):
         there = PARAMS.with_(k3=float(k), mu=float(m))
@@ -99,7 +110,11 @@ def test_parameters_under_their_own_names():
 def test_onset_of_the_whirl_and_of_its_stick():
     """Along the friction of the design the distances are those to the branch's special points."""
     params = PARAMS.with_(mu=0.15, belt_speed=-100.0, damping1=0.02, damping2=0.02)
-    angles, kappa, mu = (0.4 * np.pi, 0.6 * np.pi), np.linspace(0.6, 0.7, 5), np.linspace(0, 0.3, 5)
+    angles, kappa, mu = (
+        (0.4 * np.pi, 0.6 * np.pi),
+        np.linspace(0.6, 0.7, 5),
+        np.linspace(0, 0.3, 5),
+    )
     start = squealpipe.limit_cycle(params.with_(mu=0.3), *angles, t_settle=6000.0)
     scene = params.with_(mu=0.3), *angles
     branch = squealpipe.cycle_branch(*scene, parameter="mu", to=0.003, start=start)
@@ -120,10 +135,19 @@ def test_onset_of_the_whirl_and_of_its_stick():
     short = squealpipe.regime_chart(
         params, *angles, t_end=5.0, kappa=kappa, mu=mu, whirl=[], stick=[whirl, stick]
     )
-    assert short.distance[0, 3:].values.tolist() == [np.inf, min(chart.distance[0, 3:].values)]
+    assert short.distance[0, 3:].values.tolist() == [
+        np.inf,
+        min(chart.distance[0, 3:].values),
+    ]
     assert short.attrs["parameters"] == chart.attrs["parameters"]
     assert json.loads(short.attrs["parameters"])["mu"] == params.mu
     fold = float(branch.mu[branch.label == 1][0])
-    assert float(chart.distance[0, 3]) <= params.mu - fold < 1.05 * float(chart.distance[0, 3])
+    assert (
+        float(chart.distance[0, 3])
+        <= params.mu - fold
+        < 1.05 * float(chart.distance[0, 3])
+    )
     with pytest.raises(ValueError, match="in k3 and belt_speed is needed"):
-        squealpipe.regime_chart(params, *angles, kappa=kappa, belt_speed=mu + 1.0, whirl=whirl)
+        squealpipe.regime_chart(
+            params, *angles, kappa=kappa, belt_speed=mu + 1.0, whirl=whirl
+        )

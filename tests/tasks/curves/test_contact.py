@@ -40,8 +40,12 @@ def disagreement(boundary, uniform):
     kept = inside(loops, *axes)
     edge = [np.isclose(axis, axis[[0, -1]][:, None]).any(axis=0) for axis in axes]
     wrong = (kept != (uniform.separates.values == 0)) & ~(edge[0][:, None] | edge[1])
-    places = np.stack([axis[i] for axis, i in zip(axes, np.nonzero(wrong), strict=True)], axis=1)
-    return int(wrong.sum()), max((_distance(loops, place) for place in places), default=0.0)
+    places = np.stack(
+        [axis[i] for axis, i in zip(axes, np.nonzero(wrong), strict=True)], axis=1
+    )
+    return int(wrong.sum()), max(
+        (_distance(loops, place) for place in places), default=0.0
+    )
 
 
 def _distance(loops, place):
@@ -49,14 +53,17 @@ def _distance(loops, place):
     nearest = []
     for line in loops:
         chord = np.roll(line, -1, axis=0) - line
-        share = ((place - line) * chord).sum(axis=1) / np.maximum((chord**2).sum(axis=1), 1e-300)
+        share = ((place - line) * chord).sum(axis=1) / np.maximum(
+            (chord**2).sum(axis=1), 1e-300
+        )
         foot = line + np.clip(share, 0.0, 1.0)[:, None] * chord
         nearest.append(np.linalg.norm(foot - place, axis=1).min())
     return float(min(nearest))
 
 
 SLOW = [
-    pytest.param(name, marks=pytest.mark.release) for name in ("baseline", "a brake in SI units")
+    pytest.param(name, marks=pytest.mark.release)
+    for name in ("baseline", "a brake in SI units")
 ]
 
 
@@ -66,8 +73,12 @@ def test_the_curves_agree_with_a_uniform_map(name):
     params, model = SETS[name]
     t_end = 25.0 * params.time_unit
     coarse, fine = np.linspace(0.0, np.pi, 31), np.linspace(0.0, np.pi, 181)
-    boundary = squealpipe.contact_boundary(params, coarse, coarse, t_end=t_end, model=model)
-    sticks = name == "slow belt, sticking"  # there tongues are narrower than the finest grid
+    boundary = squealpipe.contact_boundary(
+        params, coarse, coarse, t_end=t_end, model=model
+    )
+    sticks = (
+        name == "slow belt, sticking"
+    )  # there tongues are narrower than the finest grid
     assert boundary.outcome == (Outcome.unresolved if sticks else Outcome.converged)
     assert np.median(boundary.residual) < 1e-12
     assert boundary.residual.max() < 1e-7
@@ -81,7 +92,9 @@ def test_the_curves_agree_with_a_uniform_map(name):
 def test_the_mirrored_regions_have_one_area():
     """(α1, α2) and (π − α2, π − α1) are one system: areas agree to the error that is stated."""
     angles = np.linspace(0.0, np.pi, 31)
-    found = squealpipe.contact_boundary(BASELINE, angles, angles, t_end=20.0, model="A1-as-printed")
+    found = squealpipe.contact_boundary(
+        BASELINE, angles, angles, t_end=20.0, model="A1-as-printed"
+    )
     lost = np.sort(found.region_area.values[~found.region_kept.values.astype(bool)])[:2]
     assert lost[1] - lost[0] < 2.0 * found.region_area_error.max()
     assert found.region_area_error.max() < 2e-7
@@ -91,12 +104,14 @@ def test_two_parameters_under_their_own_names():
     """In a case with a closed form: K diagonal and equal, y_max = 2κ/(1 + κ), so κ = 1."""
     kappa, mu = np.linspace(0.6, 1.4, 9), np.linspace(0.1, 0.5, 7)
     params = BASELINE.with_(length1=1e5, length2=1e5)
-    found = squealpipe.contact_boundary(params, np.pi / 2, np.pi, t_end=6.0, kappa=kappa, mu=mu)
+    found = squealpipe.contact_boundary(
+        params, np.pi / 2, np.pi, t_end=6.0, kappa=kappa, mu=mu
+    )
     assert found.outcome == 0
     assert np.abs(found.kappa - 1.0).max() < 1e-4  # springs of 10⁵ l_pre, nearly linear
-    assert found.region_area.values[found.region_kept.values == 1].sum() == pytest.approx(
-        0.16, 1e-3
-    )
+    assert found.region_area.values[
+        found.region_kept.values == 1
+    ].sum() == pytest.approx(0.16, 1e-3)
 
 
 def two_discs(place):
@@ -119,7 +134,9 @@ def test_a_lens_has_its_area_and_its_corners():
     assert abs(lens.area - exact) < lens.error < 1e-8
     assert outer.area + hole.area == pytest.approx(1.0 - lens.area, abs=1e-12)
     corners = lines.place[np.isnan(lines.slope[:, 0])]
-    assert np.sort(corners[:, 1]) == pytest.approx(0.5 + np.sqrt(0.08) * np.array([-1, 1]))
+    assert np.sort(corners[:, 1]) == pytest.approx(
+        0.5 + np.sqrt(0.08) * np.array([-1, 1])
+    )
     assert corners[:, 0] == pytest.approx([0.51, 0.51])
     # a corner may fall on the point before it
     before, corner = lines.chords[np.isnan(lines.slope[lines.chords[:, 1], 0])][0]
@@ -136,7 +153,9 @@ def test_what_cannot_vary_is_refused():
     ratios, boundary = angles + 0.5, xr.Dataset()
     for ratio, own in (("kappa", "k3"), ("lambda_", "length2")):
         with pytest.raises(ValueError, match=f"{ratio} sets {own}"):
-            squealpipe.contact_boundary(BASELINE, 1.0, 1.0, **{ratio: ratios, own: ratios})
+            squealpipe.contact_boundary(
+                BASELINE, 1.0, 1.0, **{ratio: ratios, own: ratios}
+            )
     with pytest.raises(ValueError, match="dataset of contact_boundary"):
         squealpipe.boundary_distance(boundary, {"kappa": 1.0, "mu": 0.1})
     with pytest.raises(ValueError, match="finite numbers"):

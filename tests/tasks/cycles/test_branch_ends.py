@@ -38,9 +38,16 @@ def located_crossings(branch, parameter):
         period, a1 = float(here.period), A1Automaton(*scene)
         run = simulate_reference(*scene, t_end=period, initial_state=start_of(here))
         places = zip(run.event_kinds, run.event_states, run.regimes[1:], strict=True)
-        passed = [z for kind, z, regime in places if (kind, regime != Regime.stick) == TURN]
-        spans = np.diff([0.0, *run.event_times, period])[np.equal(run.regimes, Regime.stick)]
-        assert min([abs(abs(a1.pull(z)) - a1.grip(z)) for z in passed] + spans.tolist()) < 1e-7
+        passed = [
+            z for kind, z, regime in places if (kind, regime != Regime.stick) == TURN
+        ]
+        spans = np.diff([0.0, *run.event_times, period])[
+            np.equal(run.regimes, Regime.stick)
+        ]
+        assert (
+            min([abs(abs(a1.pull(z)) - a1.grip(z)) for z in passed] + spans.tolist())
+            < 1e-7
+        )
         found.append(float(here[parameter]))
     return found
 
@@ -50,9 +57,13 @@ def test_stick_of_no_length_is_an_onset_of_stick(sticking):
     assert down.end == Outcome.converged
     np.testing.assert_allclose(located_crossings(down, "mu")[1], 0.17793611, atol=1e-8)
     assert float(down.stick_fraction[-1]) == 0.0
-    up = cycle_branch(STICKING, *PENDULUM, parameter="belt_speed", to=6.0, start=sticking)
+    up = cycle_branch(
+        STICKING, *PENDULUM, parameter="belt_speed", to=6.0, start=sticking
+    )
     assert up.end == Outcome.returned
-    np.testing.assert_allclose(located_crossings(up, "belt_speed"), [1.0303, 1.0409], atol=5e-5)
+    np.testing.assert_allclose(
+        located_crossings(up, "belt_speed"), [1.0303, 1.0409], atol=5e-5
+    )
     fold = int(np.flatnonzero(up.label == Label.fold)[0])
     multipliers = up.multiplier_real[fold].values
     assert abs(multipliers[0] - 1.0) < 1e-9
@@ -67,7 +78,9 @@ def test_branch_ends_on_the_cycle_of_half_the_period():
         mu_static=0.42515204931099404, friction_speed=0.7,
     )  # fmt: skip
     angles = (1.8416983400284646, 1.1767777127079984)
-    first = limit_cycle(params, *angles, guess=(-1.7125886, 9.9902116, 2.3424566, -0.1426892))
+    first = limit_cycle(
+        params, *angles, guess=(-1.7125886, 9.9902116, 2.3424566, -0.1426892)
+    )
     np.testing.assert_allclose(first.period, 31.6469, atol=1e-3)
     branch = cycle_branch(params, *angles, parameter="belt_speed", to=-1.0, start=first)
     assert branch.end == Outcome.tongue_end
@@ -75,7 +88,9 @@ def test_branch_ends_on_the_cycle_of_half_the_period():
     assert (branch.label == Label.stick_onset).sum() == 1
     last = branch.isel(point=-1)
     given = {"t_end": 0.5 * float(last.period), "initial_state": start_of(last)}
-    half = simulate_reference(params.with_(belt_speed=float(last.belt_speed)), *angles, **given)
+    half = simulate_reference(
+        params.with_(belt_speed=float(last.belt_speed)), *angles, **given
+    )
     assert np.abs(half.state - start_of(last)).max() < 0.02
     assert abs(last.multiplier_real[1] - 1.0) < 1e-3
     parameter = branch.belt_speed.values
@@ -101,7 +116,9 @@ def test_a_touch_of_stick_that_would_jump_ends_the_branch():
         place = branch.isel(point=point)
         faster = params.with_(belt_speed=float(place.belt_speed) + 1e-4)
         times = float(place.period) * np.arange(20.0, 24.0, 0.01)
-        run = simulate(faster, *angles, t_end=times[-1], times=times, initial_state=start_of(place))
+        run = simulate(
+            faster, *angles, t_end=times[-1], times=times, initial_state=start_of(place)
+        )
         jumps.append(abs(float(run.y.max() - place.y_max)))
     assert jumps[0] < 1e-3
     assert jumps[1] > 0.05
@@ -109,7 +126,12 @@ def test_a_touch_of_stick_that_would_jump_ends_the_branch():
 
 def test_every_end_has_its_label_and_reason(sticking):
     branch = cycle_branch(
-        STICKING, *PENDULUM, parameter="mu", to=0.02, start=sticking, n_points=np.int64(7)
+        STICKING,
+        *PENDULUM,
+        parameter="mu",
+        to=0.02,
+        start=sticking,
+        n_points=np.int64(7),
     )
     assert branch.end == Outcome.point_limit
     assert branch.sizes["point"] <= 7
@@ -119,7 +141,9 @@ def test_every_end_has_its_label_and_reason(sticking):
 
 def test_a_branch_ends_where_the_cycle_shrinks_to_rest():
     params = FORMER.with_(damping1=0.01, damping2=0.01, mu=0.0)
-    born = cycle_branch(params, 0.22, 0.96, parameter="mu", to=0.9, start="onset", n_points=12)
+    born = cycle_branch(
+        params, 0.22, 0.96, parameter="mu", to=0.9, start="onset", n_points=12
+    )
     large = born.isel(point=-1)
     back = cycle_branch(
         params.with_(mu=float(large.mu)), 0.22, 0.96, parameter="mu", to=0.0,
@@ -148,11 +172,18 @@ def test_a_hammering_cycle_shrinks_to_rest_at_the_edge_of_contact():
             (params.k1, params.length1, math.cos(angles[0]), math.sin(angles[0])),
             (params.k2, params.length2, -math.cos(alpha2), math.sin(alpha2)),
         )
-        arms = [np.array([x - length * c, params.preload - length * s]) for _, length, c, s in ends]
+        arms = [
+            np.array([x - length * c, params.preload - length * s])
+            for _, length, c, s in ends
+        ]
         pairs = zip(ends, arms, strict=True)
-        return sum(-k * (1 - length / np.hypot(*arm)) * arm for (k, length, *_), arm in pairs)
+        return sum(
+            -k * (1 - length / np.hypot(*arm)) * arm for (k, length, *_), arm in pairs
+        )
 
-    x, alpha2 = root(forces, [float(branch.x_max[-1]), float(branch.alpha2[-1])], tol=1e-13).x
+    x, alpha2 = root(
+        forces, [float(branch.x_max[-1]), float(branch.alpha2[-1])], tol=1e-13
+    ).x
     np.testing.assert_allclose(branch.alpha2[-1], alpha2, rtol=1e-4)
     np.testing.assert_allclose(branch.x_max[-1], x, rtol=1e-3)
     last = branch.isel(point=-1)
@@ -176,7 +207,10 @@ def test_a_run_too_long_to_settle_says_so():
 @pytest.mark.parametrize(
     ("guess", "outcome"),
     [
-        ((5.0 * math.cos(PENDULUM[0]), 5.0 * math.sin(PENDULUM[0]), 0, 0), "singular_geometry"),
+        (
+            (5.0 * math.cos(PENDULUM[0]), 5.0 * math.sin(PENDULUM[0]), 0, 0),
+            "singular_geometry",
+        ),
         ((1e200, 1.0, 1.0, 1.0), "not_finite"),
         ((0.0, 0.0, 1e100, 0.0), "not_finite"),
     ],

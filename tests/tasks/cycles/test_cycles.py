@@ -34,7 +34,9 @@ def test_stick_slip_cycle_of_a_published_oscillator(speed):
     """The error is that of the limit: it falls with the length of the springs."""
     errors = []
     for reach in (1e5, 1e6):
-        cycle = limit_cycle(oscillator(reach, speed, **BSTAB), *ANGLES, guess=(1.5, 0.25, speed, 0))
+        cycle = limit_cycle(
+            oscillator(reach, speed, **BSTAB), *ANGLES, guess=(1.5, 0.25, speed, 0)
+        )
         assert cycle.outcome == Outcome.converged
         assert cycle.stable == 1
         period = float(cycle.period)
@@ -65,7 +67,9 @@ def test_trivial_multiplier_and_differences_of_the_return_map(wanted):
         multipliers = cycle.multiplier_real.values + 1j * cycle.multiplier_imag.values
         # round-off grows by the strongest multiplier on the way round
         assert abs(multipliers[0] - 1.0) < max(1e-9, 1e-13 * np.abs(multipliers).max())
-        start = np.array([float(cycle[f"{name}_start"]) for name in ("x", "y", "vx", "vy")])
+        start = np.array(
+            [float(cycle[f"{name}_start"]) for name in ("x", "y", "vx", "vy")]
+        )
         given = {"t_end": float(cycle.period), "initial_state": start}
         # round-off of the difference counts in a weak cycle, its curvature in a strong one
         given["step"] = 1e-8 if np.abs(multipliers).max() < 100.0 else 1e-9
@@ -76,13 +80,17 @@ def test_trivial_multiplier_and_differences_of_the_return_map(wanted):
 
 def test_mirrored_system_has_the_mirrored_cycle():
     params = FORMER.with_(damping1=0.02, damping2=0.03, belt_speed=1.0, k2=1.1)
-    mirrored = params.with_(k1=1.1, k2=1.0, damping1=0.03, damping2=0.02, belt_speed=-1.0)
+    mirrored = params.with_(
+        k1=1.1, k2=1.0, damping1=0.03, damping2=0.02, belt_speed=-1.0
+    )
     mirrored = mirrored.with_(length1=params.length2, length2=params.length1)
     one = limit_cycle(params, 0.4 * math.pi, 0.6 * math.pi)
     other = limit_cycle(mirrored, 0.6 * math.pi, 0.4 * math.pi)
     assert one.outcome == other.outcome
     np.testing.assert_allclose(one.period, other.period, rtol=1e-9)
-    np.testing.assert_allclose([one.x_min, one.x_max], [-other.x_max, -other.x_min], rtol=1e-8)
+    np.testing.assert_allclose(
+        [one.x_min, one.x_max], [-other.x_max, -other.x_min], rtol=1e-8
+    )
     np.testing.assert_allclose(one.multiplier_real, other.multiplier_real, atol=1e-7)
 
 
@@ -122,7 +130,9 @@ def test_rest_is_rest_in_any_units_and_mirrored(settle):
     units |= dict.fromkeys(("k1", "k2", "k3"), time**-2)
     units |= dict.fromkeys(("preload", "length1", "length2"), length)
     units |= dict.fromkeys(("damping1", "damping2"), 1.0 / time)
-    other = REST.with_(**{name: unit * getattr(REST, name) for name, unit in units.items()})
+    other = REST.with_(
+        **{name: unit * getattr(REST, name) for name, unit in units.items()}
+    )
     a1, a2 = 0.8346, 1.5897
     for params, angles, unit in (
         (REST, (a1, a2), 1.0),
@@ -172,18 +182,24 @@ def test_branch_goes_round_a_fold_and_labels_it():
 
 
 def test_branch_is_born_at_the_flutter_onset_of_long_springs():
-    params = FORMER.with_(damping1=0.01, damping2=0.02, mu=0.0, length1=1e4, length2=1e4, k2=1.1)
+    params = FORMER.with_(
+        damping1=0.01, damping2=0.02, mu=0.0, length1=1e4, length2=1e4, k2=1.1
+    )
     angles = (0.22, 0.96)
 
     def growth(mu):
         k11, k12, k22 = linear_stiffness(params, geometry(*angles))
-        c11, c12, c22 = linear_stiffness(params.with_(k1=0.01, k2=0.02), geometry(*angles))
+        c11, c12, c22 = linear_stiffness(
+            params.with_(k1=0.01, k2=0.02), geometry(*angles)
+        )
         stiffness = np.array([[k11, k12 + mu * params.k3], [k12, k22 + params.k3]])
         damping = np.array([[c11, c12], [c12, c22]])
         matrix = np.block([[np.zeros((2, 2)), np.eye(2)], [-stiffness, -damping]])
         return np.linalg.eigvals(matrix).real.max()
 
-    branch = cycle_branch(params, *angles, parameter="mu", to=0.9, start="onset", n_points=3)
+    branch = cycle_branch(
+        params, *angles, parameter="mu", to=0.9, start="onset", n_points=3
+    )
     onset = brentq(growth, 0.05, 0.9)
     np.testing.assert_allclose(branch.mu[0], onset, rtol=1e-3)
 
@@ -210,7 +226,10 @@ def test_a_return_after_several_rounds_gives_the_least_period(rounds):
     once, _ = cycle_from(Scene(params, *angles), (1.5, 0.25, 1.25, 0.0))
     parts = once.parts
     several = replace(once.map, events=once.map.events * rounds)
-    states, durations = np.tile(parts.states, (rounds, 1)), np.tile(parts.durations, rounds)
+    states, durations = (
+        np.tile(parts.states, (rounds, 1)),
+        np.tile(parts.durations, rounds),
+    )
     point = several.pack(states, durations, 0.0, np.empty(0))
     cycle = once_round(Cycle.at(several, point))
     np.testing.assert_allclose(cycle.period, once.period, rtol=1e-9)

@@ -15,7 +15,11 @@ from tests.tasks.cycles.test_branch_ends import start_of
 
 STATE = ("x", "y", "vx", "vy")
 ONE_WAY = (FORMER.with_(damping1=0.02, damping2=0.02, belt_speed=1.0), 0.4, 0.6)
-OTHER_WAY = (FORMER.with_(k1=1.005, damping1=0.02, damping2=0.02, belt_speed=-1.0), 0.6, 0.4)
+OTHER_WAY = (
+    FORMER.with_(k1=1.005, damping1=0.02, damping2=0.02, belt_speed=-1.0),
+    0.6,
+    0.4,
+)
 
 
 @pytest.mark.parametrize(("params", "alpha1", "alpha2"), [ONE_WAY, OTHER_WAY])
@@ -32,12 +36,15 @@ def test_long_runs_jump_at_the_fold(params, alpha1, alpha2):
     for steps in (3.0, 2.0, 1.0, 0.5, -0.5, -1.0):
         mu = float(branch.mu[fold]) + steps * step
         late = np.linspace(t_end - 100.0, t_end, 4001)
-        run = simulate(params.with_(mu=mu), *angles, t_end=t_end, times=late, initial_state=state)
+        run = simulate(
+            params.with_(mu=mu), *angles, t_end=t_end, times=late, initial_state=state
+        )
         state = np.array([float(run[name][-1]) for name in STATE])
         extent = np.array([float(run.x.min()), float(run.x.max())])
         order = np.argsort(before.mu.values)
         known = [
-            np.interp(mu, before.mu[order], before[name][order]) for name in ("x_min", "x_max")
+            np.interp(mu, before.mu[order], before[name][order])
+            for name in ("x_min", "x_max")
         ]
         follows.append(bool(np.abs(extent - known).max() < 0.02))
     assert follows == [True] * 4 + [False] * 2
@@ -45,15 +52,24 @@ def test_long_runs_jump_at_the_fold(params, alpha1, alpha2):
 
 def turn_next_to_contact(params, angles, cycle):
     """The y of that turn of a cycle which is nearest to where contact begins."""
-    start, times = start_of(cycle), 1.2 * float(cycle.period) * np.linspace(0.0, 1.0, 2001)
-    y = simulate(params, *angles, t_end=times[-1], times=times, initial_state=start).y.values
+    start, times = (
+        start_of(cycle),
+        1.2 * float(cycle.period) * np.linspace(0.0, 1.0, 2001),
+    )
+    y = simulate(
+        params, *angles, t_end=times[-1], times=times, initial_state=start
+    ).y.values
     turns = 1 + np.flatnonzero(np.diff(y[1:]) * np.diff(y[:-1]) < 0.0)
     at = turns[np.abs(y[turns] - params.preload).argmin()]
 
     def state(time):
-        return simulate_reference(params, *angles, t_end=time, initial_state=start).state
+        return simulate_reference(
+            params, *angles, t_end=time, initial_state=start
+        ).state
 
-    return float(state(brentq(lambda time: float(state(time)[3]), *times[[at - 1, at + 1]]))[1])
+    return float(
+        state(brentq(lambda time: float(state(time)[3]), *times[[at - 1, at + 1]]))[1]
+    )
 
 
 def test_grazing_points_at_random_parameters_just_touch():
@@ -68,7 +84,9 @@ def test_grazing_points_at_random_parameters_just_touch():
             belt_speed=generator.uniform(20.0, 100.0),
         )  # fmt: skip
         angles = generator.uniform((0.15, 0.8), (0.3, 1.1))
-        branch = cycle_branch(params, *angles, parameter="mu", to=0.9, start="onset", n_points=60)
+        branch = cycle_branch(
+            params, *angles, parameter="mu", to=0.9, start="onset", n_points=60
+        )
         if branch.end == Outcome.no_convergence:
             assert branch.sizes["point"] == 0
             continue
@@ -85,18 +103,30 @@ def test_special_points_do_not_depend_on_units():
         k1=1.596, k2=0.391, k3=2.894, mu=0.336, belt_speed=-1.103, length1=5.49, length2=5.574,
         damping1=0.0045, damping2=0.071,
     ), np.array([1e-3, 1e-3, 1e-6, 1e-6])  # fmt: skip
-    scaled = {"mass": 1e3, "length1": 1e-3, "length2": 1e-3, "preload": 1e-3, "belt_speed": 1e-6}
-    scaled |= dict.fromkeys(("k1", "k2", "k3"), 1e-3) | dict.fromkeys(("damping1", "damping2"), 1.0)
+    scaled = {
+        "mass": 1e3,
+        "length1": 1e-3,
+        "length2": 1e-3,
+        "preload": 1e-3,
+        "belt_speed": 1e-6,
+    }
+    scaled |= dict.fromkeys(("k1", "k2", "k3"), 1e-3) | dict.fromkeys(
+        ("damping1", "damping2"), 1.0
+    )
     other = params.with_(
         **{name: factor * getattr(params, name) for name, factor in scaled.items()}
     )
     angles, guess = (1.823, 1.037), (-1.51915, 10.9181, 1.45042, -0.12146)
     branches = [
-        cycle_branch(given, *angles, parameter="alpha1", to=1.1, start=start, n_points=36)
+        cycle_branch(
+            given, *angles, parameter="alpha1", to=1.1, start=start, n_points=36
+        )
         for given, start in ((params, guess), (other, np.array(guess) * unit))
     ]
     special = [np.flatnonzero(branch.label > 0)[:-1] for branch in branches]
-    np.testing.assert_array_equal(*(b.label[at] for b, at in zip(branches, special, strict=True)))
+    np.testing.assert_array_equal(
+        *(b.label[at] for b, at in zip(branches, special, strict=True))
+    )
     assert (branches[0].label == Label.stick_onset).any()
     places = [b.alpha1[at] for b, at in zip(branches, special, strict=True)]
     np.testing.assert_allclose(*places, rtol=1e-9)
@@ -105,7 +135,11 @@ def test_special_points_do_not_depend_on_units():
                     n_points=20, to={"k3": (0.999 * given.k3, 1.001 * given.k3)})
         for given, b in zip((params, other), branches, strict=True)
     ]  # fmt: skip
-    for name, of in (("k3", scaled["k3"]), ("belt_speed", scaled["belt_speed"]), ("period", 1e3)):
+    for name, of in (
+        ("k3", scaled["k3"]),
+        ("belt_speed", scaled["belt_speed"]),
+        ("period", 1e3),
+    ):
         # points between the ends lie where the steps ended
         one, two = (curve[name].values[[0, -1]] for curve in curves)
         np.testing.assert_allclose(of * one, two, rtol=1e-8)
@@ -138,7 +172,9 @@ FLUTTER = (FORMER.with_(k3=0.65, mu=0.01, length1=15.0, length2=15.0, belt_speed
         (FLUTTER, "grazing", "alpha1", (0.93, 0.97), 0.7, "onset"),
     ],
 )
-def test_curves_end_where_branches_have_the_special_point(scene, label, other, ends, to, start):
+def test_curves_end_where_branches_have_the_special_point(
+    scene, label, other, ends, to, start
+):
     """At both limits of the other parameter, on branches in friction alone."""
     params, *angles = scene[0], scene[1] * math.pi, scene[2] * math.pi
 
@@ -159,7 +195,9 @@ def test_curves_end_where_branches_have_the_special_point(scene, label, other, e
         value = float(curve[other][end])
         assert value == pytest.approx(ends[int(value > np.mean(ends))], abs=1e-12)
         there = (params, value, angles[1])
-        branch = branch_at(*(there if other == "alpha1" else (params.with_(k3=value), *angles)))
+        branch = branch_at(
+            *(there if other == "alpha1" else (params.with_(k3=value), *angles))
+        )
         mu = branch.mu.values[branch.label.values == Label[label]][0]
         assert float(curve.mu[end]) == pytest.approx(float(mu), abs=1e-9)
 

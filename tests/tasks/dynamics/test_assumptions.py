@@ -4,7 +4,12 @@ import numpy as np
 import pytest
 
 from squealpipe.parameters import SCENES
-from squealpipe.tasks.dynamics.assumptions import LEVELS, NEEDS, check_assumptions, linear_pull_map
+from squealpipe.tasks.dynamics.assumptions import (
+    LEVELS,
+    NEEDS,
+    check_assumptions,
+    linear_pull_map,
+)
 from squealpipe.tasks.dynamics.runs import simulate
 from tests.former import FORMER
 
@@ -40,7 +45,9 @@ def test_turn_of_a_spring_is_that_of_the_motion(table):
     """At F5a both springs lie along x, so the largest turn follows from the highest point."""
     p, scene = FORMER, SCENES["F5a"]
     run = simulate(p, scene.alpha1, scene.alpha2, t_end=scene.t_end)
-    turns = [np.abs(np.arctan2(run.y, p.length1 + side * run.x)).max() for side in (-1, 1)]
+    turns = [
+        np.abs(np.arctan2(run.y, p.length1 + side * run.x)).max() for side in (-1, 1)
+    ]
     assert measure(table, "A1", "F5a", "angles are constant") == pytest.approx(
         float(max(turns)), rel=1e-9
     )
@@ -65,7 +72,9 @@ def test_each_level_needs_what_the_paper_lists(table):
 
 def test_linear_pull_map_is_the_closed_form_where_x_and_y_are_decoupled():
     kappa = FORMER.kappa
-    pull = linear_pull_map(FORMER, [0.5 * np.pi, np.pi], [0.5 * np.pi, np.pi], t_end=50.0)
+    pull = linear_pull_map(
+        FORMER, [0.5 * np.pi, np.pi], [0.5 * np.pi, np.pi], t_end=50.0
+    )
     lowest = pull.lowest_contact_force.values
     # Springs along x: y'' = k3 (l_pre − y)/m, so the force is l_pre k3 cos(√(k3/m) t).
     exact = [(1 - kappa) / (1 + kappa), (1 - kappa) / (1 + kappa), -1.0]

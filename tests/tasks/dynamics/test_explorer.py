@@ -10,7 +10,12 @@ from squealpipe.tasks.dynamics.runs import simulate
 from tests.former import FORMER
 
 ANGLES = np.array([0.5, 5 / 6, 1.0]) * np.pi
-OPTIONS = {"history_time": 20.0, "spectrum_time": 60.0, "samples": 101, "branch_points": 6}
+OPTIONS = {
+    "history_time": 20.0,
+    "spectrum_time": 60.0,
+    "samples": 101,
+    "branch_points": 6,
+}
 
 
 @pytest.fixture(scope="module")
@@ -19,7 +24,9 @@ def explorer():
 
 
 def test_motion_is_that_of_simulate(explorer):
-    alone = simulate(FORMER, ANGLES[1], ANGLES[2], t_end=20.0, times=np.linspace(0, 20, 101))
+    alone = simulate(
+        FORMER, ANGLES[1], ANGLES[2], t_end=20.0, times=np.linspace(0, 20, 101)
+    )
     for name in ("x", "y", "normalized_contact_force"):
         np.testing.assert_allclose(explorer[name][1, 2], alone[name], atol=1e-6)
 
@@ -34,7 +41,9 @@ def test_branches_run_from_first_to_last_point_of_the_backbone(explorer):
     for k, mode in enumerate((1, 2)):
         alone = backbone(FORMER, ANGLES[1], ANGLES[1], mode=mode)
         shown = explorer.isel(alpha1=1, alpha2=1, mode=k)
-        np.testing.assert_allclose(shown.omega[[0, -1]], alone.omega[[0, -1]], rtol=1e-6)
+        np.testing.assert_allclose(
+            shown.omega[[0, -1]], alone.omega[[0, -1]], rtol=1e-6
+        )
         assert int(shown.end) == int(alone.end)
 
 

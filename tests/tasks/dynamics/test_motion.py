@@ -14,7 +14,11 @@ from tests.former import FORMER
 
 BASELINE = FORMER
 FALLING = FORMER.with_(
-    belt_speed=0.1, friction_law="exponential", mu_static=0.6, friction_speed=0.2, damping1=0.1
+    belt_speed=0.1,
+    friction_law="exponential",
+    mu_static=0.6,
+    friction_speed=0.2,
+    damping1=0.1,
 )
 """Sticks again and again; with Coulomb's law the last stick ends early."""
 PERIODIC, TORUS = MotionFlag.periodic_hammering, MotionFlag.quasi_periodic_hammering
@@ -42,7 +46,9 @@ def test_labels_follow_from_the_events_of_a_single_run(mu):
     """The same rule applied to ``simulate``, whose runs carry no tangent vector."""
     params, angles = FORMER.with_(mu=mu), np.linspace(0.0, np.pi, 7)
     result = hammering_map(params, angles, angles, t_end=300.0)
-    regular = np.argwhere(np.isin(result.motion.values, REGULAR) & (result.outcome.values == 0))
+    regular = np.argwhere(
+        np.isin(result.motion.values, REGULAR) & (result.outcome.values == 0)
+    )
     assert len(regular) > 5
     for row, column in regular:
         run = simulate(params, angles[row], angles[column], t_end=300.0, times=[0.0])
@@ -75,7 +81,11 @@ def test_labels_of_damped_motion_say_what_it_has_become():
         if label in {MotionFlag.hammered_then_contact, MotionFlag.contact_kept}:
             assert (events.size > 0) == (label == MotionFlag.hammered_then_contact)
             assert not (events >= 500.0).any()
-    assert {MotionFlag.at_rest, MotionFlag.hammered_then_contact, MotionFlag.contact_kept} <= seen
+    assert {
+        MotionFlag.at_rest,
+        MotionFlag.hammered_then_contact,
+        MotionFlag.contact_kept,
+    } <= seen
 
 
 def si_parameters(rng, *, damped):
@@ -91,14 +101,21 @@ def si_parameters(rng, *, damped):
     )  # fmt: skip
 
 
-@pytest.mark.parametrize(("damped", "t_end", "least"), [(True, 500.0, 0), (False, 1000.0, 50)])
+@pytest.mark.parametrize(
+    ("damped", "t_end", "least"), [(True, 500.0, 0), (False, 1000.0, 50)]
+)
 def test_a_motion_on_a_torus_is_one_at_twice_the_time(damped, t_end, least):
     """Damped motion never is; without friction and dashpots a quarter of the cells is."""
     rng, found, kept = np.random.default_rng(7), 0, 0
     for _ in range(8):
-        params, angles = si_parameters(rng, damped=damped), rng.uniform(0.0, np.pi, (2, 6))
+        params, angles = (
+            si_parameters(rng, damped=damped),
+            rng.uniform(0.0, np.pi, (2, 6)),
+        )
         end = t_end * linear_time(params)
-        now, later = (hammering_map(params, *angles, t_end=each) for each in (end, 2 * end))
+        now, later = (
+            hammering_map(params, *angles, t_end=each) for each in (end, 2 * end)
+        )
         torus = now.motion == TORUS
         found += int(torus.sum())
         kept += int((later.motion.where(torus) == TORUS).sum())
@@ -144,8 +161,16 @@ def test_a_system_and_its_mirror_image_have_the_same_labels(seed, equal):
     t_end = 150.0 * linear_time(params)
     here = hammering_map(params, first, second, t_end=t_end)
     there = hammering_map(image, second, first, t_end=t_end)
-    for name in ("motion", "motion_changed", "impact_rate", "lyapunov_exponent", "outcome"):
-        np.testing.assert_array_equal(here[name].values, there[name].values.T, err_msg=name)
+    for name in (
+        "motion",
+        "motion_changed",
+        "impact_rate",
+        "lyapunov_exponent",
+        "outcome",
+    ):
+        np.testing.assert_array_equal(
+            here[name].values, there[name].values.T, err_msg=name
+        )
     np.testing.assert_array_equal(here.turns.values, -there.turns.values.T)
 
 
@@ -169,7 +194,9 @@ def test_the_distance_of_two_samples_is_that_of_scipy():
     rng = np.random.default_rng(4)
     for sizes in ((3, 3), (7, 40), (200, 150)):
         first, second = (rng.normal(size=size).round(1) for size in sizes)
-        assert _distance(first, second) == pytest.approx(ks_2samp(first, second).statistic)
+        assert _distance(first, second) == pytest.approx(
+            ks_2samp(first, second).statistic
+        )
 
 
 def test_a_map_of_runs_that_make_no_step_gives_their_reason():

@@ -12,14 +12,21 @@ from tests.former import FORMER
 OTHERS = {
     "baseline": FORMER,
     "unequal springs": FORMER.with_(k2=1.8, length2=12.0, mu=0.45, k3=0.5),
-    "reversed slow belt": FORMER.with_(k2=0.6, length1=8.0, belt_speed=-0.6, mu=0.2, k3=1.1),
-    "short springs": FORMER.with_(length1=2.6, length2=2.6, mu=0.35, k3=0.4, belt_speed=2.0),
+    "reversed slow belt": FORMER.with_(
+        k2=0.6, length1=8.0, belt_speed=-0.6, mu=0.2, k3=1.1
+    ),
+    "short springs": FORMER.with_(
+        length1=2.6, length2=2.6, mu=0.35, k3=0.4, belt_speed=2.0
+    ),
 }
 
 
 @pytest.mark.parametrize(
     ("points", "coarse", "t_end", "most"),
-    [(121, 16, 100.0, 0.35), pytest.param(241, 31, 200.0, 0.2, marks=pytest.mark.release)],
+    [
+        (121, 16, 100.0, 0.35),
+        pytest.param(241, 31, 200.0, 0.2, marks=pytest.mark.release),
+    ],
 )
 @pytest.mark.parametrize("params", OTHERS.values(), ids=OTHERS)
 def test_inherited_cells_are_as_wrong_as_measured(params, points, coarse, t_end, most):

@@ -22,13 +22,17 @@ def test_state_at_exactly_the_asked_instants():
     times = np.array([0.0, 0.1, 1 / 3, 7.0, 20.0])
     few = simulate(SLOW, 0.7, 2.0, t_end=20.0, times=times)
     np.testing.assert_array_equal(few.time, times)
-    many = simulate(SLOW, 0.7, 2.0, t_end=20.0, times=np.union1d(times, np.linspace(0, 20, 301)))
+    many = simulate(
+        SLOW, 0.7, 2.0, t_end=20.0, times=np.union1d(times, np.linspace(0, 20, 301))
+    )
     for name in ("x", "y", "vx", "vy", "normal_force", "regime"):
         np.testing.assert_array_equal(few[name], many[name].sel(time=times))
 
 
 def test_growth_of_a_run_that_overflows_is_not_a_number():
-    run = simulate(BASELINE, 1.0, 1.2, t_end=5.0, initial_state=(1e200, 0, 0, 0), growth=True)
+    run = simulate(
+        BASELINE, 1.0, 1.2, t_end=5.0, initial_state=(1e200, 0, 0, 0), growth=True
+    )
     assert run.outcome == Outcome.not_finite
     assert np.isnan(run.growth)
 
@@ -40,7 +44,11 @@ def test_force_and_regimes_agree():
     expected = np.where(free, 0.0, 0.75 * (1 - run.y))
     np.testing.assert_allclose(run.normal_force, expected, rtol=1e-12)
     sign = np.sign(0.3 - run.vx.values)
-    for regime, side in ((Regime.stick, 0), (Regime.slip_slower, 1), (Regime.slip_faster, -1)):
+    for regime, side in (
+        (Regime.stick, 0),
+        (Regime.slip_slower, 1),
+        (Regime.slip_faster, -1),
+    ):
         assert (sign[run.regime.values == regime] == side).all()
 
 
@@ -76,11 +84,15 @@ def test_validity_map_agrees_with_single_runs():
 def test_hammering_map_agrees_with_single_runs(tmp_path):
     result = hammering_map(SLOW, ANGLES, ANGLES, t_end=60.0)
     for i, j in ((0, 0), (3, 9), (6, 2), (12, 7)):
-        run = simulate(SLOW, ANGLES[i], ANGLES[j], t_end=60.0, times=np.linspace(0, 60, 20_001))
+        run = simulate(
+            SLOW, ANGLES[i], ANGLES[j], t_end=60.0, times=np.linspace(0, 60, 20_001)
+        )
         cell = result.isel(alpha1=i, alpha2=j)
         kinds = run.event_kind.values
         assert float(cell.impact_rate) == np.count_nonzero(kinds == 1) / 60.0
-        shares = [(run.regime == each).mean() for each in (Regime.separated, Regime.stick)]
+        shares = [
+            (run.regime == each).mean() for each in (Regime.separated, Regime.stick)
+        ]
         found = cell.separated_fraction, cell.stick_fraction
         np.testing.assert_allclose(found, shares, atol=2e-3)
         largest = run.normalized_contact_force.max(), np.hypot(run.x, run.y).max()
@@ -95,7 +107,9 @@ def test_horizon_follows_the_divergence_of_two_runs():
     tol, angles = 1e-10, (0.2 * np.pi, 0.8 * np.pi)
     times = np.linspace(0, 600, 6001)
     first = simulate(BASELINE, *angles, t_end=600.0, times=times)
-    second = simulate(BASELINE, *angles, t_end=600.0, times=times, initial_state=(tol, 0, 0, 0))
+    second = simulate(
+        BASELINE, *angles, t_end=600.0, times=times, initial_state=(tol, 0, 0, 0)
+    )
     apart = np.hypot(first.x - second.x, first.y - second.y)
     lost = float(times[np.argmax(apart.values > 1e-3)])
     result = hammering_map(BASELINE, [angles[0]], [angles[1]], t_end=600.0, tol=tol)
@@ -127,7 +141,9 @@ def test_fit_of_the_whirl_states_its_range():
 @pytest.mark.parametrize("speed", [20.0, -20.0])
 def test_energy_line_of_unequal_springs_is_that_of_their_potential(speed):
     """At which x along the line through r = 0 both springs hold the energy of a fast passage."""
-    params = FORMER.with_(mass=2.0, k1=0.6, k2=3.0, length1=2.0, length2=7.0, belt_speed=speed)
+    params = FORMER.with_(
+        mass=2.0, k1=0.6, k2=3.0, length1=2.0, length2=7.0, belt_speed=speed
+    )
     sizes = whirl_sizes(params, [20.0], t_end=1.0)
     fast, cosine = 1e5, np.cos(SCENES["F3"].alpha1)
 

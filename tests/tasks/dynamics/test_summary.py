@@ -21,8 +21,12 @@ def test_decoupled_y_motion_has_the_frequency_and_force_of_the_closed_form():
     kappa = FORMER.kappa
     motion = run(np.pi / 2, np.pi, model="A4")
     summary = summarize(motion)
-    assert float(summary.dominant_frequency[0]) == pytest.approx(np.sqrt(1 + kappa), abs=2e-4)
-    assert float(summary.dominant_amplitude[0]) == pytest.approx(kappa / (1 + kappa), rel=1e-3)
+    assert float(summary.dominant_frequency[0]) == pytest.approx(
+        np.sqrt(1 + kappa), abs=2e-4
+    )
+    assert float(summary.dominant_amplitude[0]) == pytest.approx(
+        kappa / (1 + kappa), rel=1e-3
+    )
     assert float(summary.peak_contact_force) == pytest.approx(1.0)
     assert float(summary.largest_y) == pytest.approx(2 * kappa / (1 + kappa), rel=1e-4)
     assert np.isnan(summary.first_separation_time)
@@ -40,7 +44,9 @@ def test_separation_is_that_of_the_events_and_of_the_samples():
     landing = motion.event_time.values[motion.event_kind.values == Event.contact][0]
     force = motion.normalized_contact_force.values[motion.time.values > landing].max()
     assert float(summary.return_peak_contact_force) == pytest.approx(force, abs=1e-3)
-    assert summary.peak_contact_force >= summary.return_peak_contact_force  # samples miss it
+    assert (
+        summary.peak_contact_force >= summary.return_peak_contact_force
+    )  # samples miss it
     words = "\n".join(summary_lines(motion, summary))
     assert "after a return" in words
     assert "separated " in words
@@ -61,7 +67,9 @@ def test_a_run_that_starts_in_the_air_is_separated_from_its_start():
     landing = float(motion.event_time[0])
     assert int(motion.event_kind[0]) == Event.contact
     sampled = float((motion.normalized_contact_force.values <= 0).mean())
-    assert float(summarize(motion).separated_fraction) == pytest.approx(sampled, abs=2e-3)
+    assert float(summarize(motion).separated_fraction) == pytest.approx(
+        sampled, abs=2e-3
+    )
     assert float(summarize(motion).separated_fraction) >= landing / 3.0
 
 

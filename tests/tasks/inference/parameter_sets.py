@@ -24,4 +24,6 @@ def random_sets(generator, count, *, equal):
 
 def fields_of(sets):
     names = set(Parameters().as_dict()) - {"sigma"}
-    return {name: np.array([params.as_dict()[name] for params in sets]) for name in names}
+    return {
+        name: np.array([params.as_dict()[name] for params in sets]) for name in names
+    }

@@ -17,9 +17,17 @@ from squealpipe.tasks.inference.angle_maps import (
 )
 from squealpipe.tasks.inference.candidates import Candidates
 from squealpipe.tasks.inference.consequences import judge_consequences
-from squealpipe.tasks.inference.constraints import Stage, _unstable_only_without_sliding, measure
+from squealpipe.tasks.inference.constraints import (
+    Stage,
+    _unstable_only_without_sliding,
+    measure,
+)
 from squealpipe.tasks.inference.unstable_cells import springs_are_equal
-from squealpipe.tasks.linear.maps import natural_frequencies, quasi_static_map, stability_map
+from squealpipe.tasks.linear.maps import (
+    natural_frequencies,
+    quasi_static_map,
+    stability_map,
+)
 from tests.former import FORMER
 from tests.tasks.inference.parameter_sets import random_sets
 
@@ -33,12 +41,18 @@ def linear(params):
 def judged(params):
     """And those on all angles."""
     found = measure(Candidates.of(params, tol=1e-9), [Stage.maps])
-    return linear(params) | {name: bool(each.margin[0] > 0) for name, each in found.items()}
+    return linear(params) | {
+        name: bool(each.margin[0] > 0) for name, each in found.items()
+    }
 
 
 def test_consequences_at_the_baseline():
     """What is known of the former baseline: F6b as printed only, Fig. 7 without black cells."""
-    assert [name for name, held in judged(FORMER).items() if not held] == ["F6b", "F8c", "F7_black"]
+    assert [name for name, held in judged(FORMER).items() if not held] == [
+        "F6b",
+        "F8c",
+        "F7_black",
+    ]
 
 
 def test_consequences_can_come_out_otherwise():
@@ -73,7 +87,9 @@ def test_exact_conditions_agree_with_fine_maps(equal):
             "F6b_printed": not ((regime > 0) & literally(params, sliding)).any(),
         }
         exact = linear(params)
-        exact["F6b_printed"] = bool(_unstable_only_without_sliding(candidates).margin[0] > 0)
+        exact["F6b_printed"] = bool(
+            _unstable_only_without_sliding(candidates).margin[0] > 0
+        )
         assert {key: exact[key] for key in found} == found, params
         frequencies = natural_frequencies(params, angles, angles).sel(mode=1)
         real = frequencies.outcome == Outcome.converged
@@ -122,13 +138,18 @@ def test_the_black_region_is_where_a_map_shows_it(likely):
 def test_the_separating_share_has_converged(likely):
     """Twice the resolution leaves the shares within a spacing's error, and F7a within one set."""
     coarse = separating_share(Candidates(likely, 1e-9))
-    fine = separating_share(Candidates(likely, 1e-9), angles=tuple(2 * number for number in ANGLES))
+    fine = separating_share(
+        Candidates(likely, 1e-9), angles=tuple(2 * number for number in ANGLES)
+    )
     assert np.abs(coarse - fine).max() < CLEAR / ANGLES[0]
     assert ((coarse > 0.5) != (fine > 0.5)).sum() <= 1
     few = {name: values[:3] for name, values in likely.items()}
     unequal = few | {"length2": few["length1"] * (1 + 1e-12)}
     np.testing.assert_array_equal(
-        *(separating_share(Candidates(each, 1e-9), angles=(12,)) for each in (few, unequal))
+        *(
+            separating_share(Candidates(each, 1e-9), angles=(12,))
+            for each in (few, unequal)
+        )
     )
 
 
@@ -147,22 +168,33 @@ def test_damped_settings_are_judged_by_the_damped_problem(beyond):
     for params in random_sets(np.random.default_rng(8), 3, equal=False):
         scale = np.sqrt(params.k1 * params.mass)
         damped = params.with_(
-            **{n: v * scale if n.startswith("damping") else v for n, v in beyond.items()}
+            **{
+                n: v * scale if n.startswith("damping") else v
+                for n, v in beyond.items()
+            }
         )
         regime = stability_map(damped, angles, angles).regime_linear.values
         sliding = quasi_static_map(damped, angles, angles)
         found = linear(damped)
-        if "damping2" in beyond:  # uneven damping makes flutter in which frequencies do not merge
+        if (
+            "damping2" in beyond
+        ):  # uneven damping makes flutter in which frequencies do not merge
             assert not found["S3"]
         assert found["F6b"] == (not ((regime > 0) & sliding.possible.values).any())
         scene = SCENES["F3"]
         f6d = measure(Candidates.of(damped, tol=1e-9))["F6d"].margin.item()
-        growth = stability_map(damped, [scene.alpha1], [scene.alpha2]).growth_rate.item()
+        growth = stability_map(
+            damped, [scene.alpha1], [scene.alpha2]
+        ).growth_rate.item()
         if abs(growth) * params.time_unit > 1e-12:
             assert f6d == pytest.approx(-growth * params.time_unit, rel=1e-12)
-        slow = params.with_(friction_law="exponential", mu_static=0.9, friction_speed=1e-3)
+        slow = params.with_(
+            friction_law="exponential", mu_static=0.9, friction_speed=1e-3
+        )
         fast = (each.with_(belt_speed=40.0) for each in (slow, params))
-        margins = {measure(Candidates.of(p, tol=1e-9))["F6d"].margin.item() for p in fast}
+        margins = {
+            measure(Candidates.of(p, tol=1e-9))["F6d"].margin.item() for p in fast
+        }
         assert len(margins) == 1  # friction falls by e^-40000 only
         changed += found != linear(params)
     assert changed
@@ -173,7 +205,9 @@ def test_unequal_dashpots_have_no_mirror_image(name):
     """Cells (α1, α2) and (π − α2, π − α1) then move differently: share against the whole map."""
     params = FORMER.with_(**{name: 0.1})
     axis = (np.arange(12) + 0.5) * (np.pi / 12)
-    whole = validity_map(params, axis, axis, t_end=200.0, tol=1e-9).separates.mean().item()
+    whole = (
+        validity_map(params, axis, axis, t_end=200.0, tol=1e-9).separates.mean().item()
+    )
     fields = {key: np.array([value]) for key, value in params.as_dict().items()}
     assert separating_share(Candidates(fields, 1e-9), angles=(12,)).item() == whole
     assert springs_are_equal(fields | {"damping1": 0.1, "damping2": 0.1})

@@ -54,7 +54,9 @@ def test_contact_with_long_springs_as_the_closed_form_says():
     kappa = np.array([0.3, 0.7, 0.99, 1.01, 1.3])
     verdicts = measure(long_springs(k3=kappa))
     for name in ("F2a", "F2b", "F2c"):
-        np.testing.assert_allclose(verdicts[name].margin, (1 - kappa) / (1 + kappa), atol=1e-4)
+        np.testing.assert_allclose(
+            verdicts[name].margin, (1 - kappa) / (1 + kappa), atol=1e-4
+        )
     kept, lost = measure(long_springs(k3=[0.51, 0.526], mu=0.3))["F2d"].margin
     assert kept < 0 < lost, "lost if and only if κ > 0.518 at 0.83π"
 
@@ -87,7 +89,10 @@ def test_unequal_dashpots_couple_the_x_mode():
     unequal = measure(Candidates.of(own.with_(damping1=0.4), tol=1e-12))["F13"]
     assert unequal.margin[0] == pytest.approx(-0.5 * 0.4 / math.sqrt(6.0), rel=1e-12)
     equal = own.with_(damping1=0.4, damping2=0.4)
-    margins = [measure(Candidates.of(each, tol=1e-12))["F13"].margin[0] for each in (own, equal)]
+    margins = [
+        measure(Candidates.of(each, tol=1e-12))["F13"].margin[0]
+        for each in (own, equal)
+    ]
     assert margins[0] == margins[1] > 0
 
 
@@ -97,7 +102,8 @@ def test_the_pulling_contact_loses_exactly_what_a1_loses():
     fields = {
         "k3": generator.uniform(0.3, 1.3, 200),
         "mu": generator.uniform(0.02, 0.8, 200),
-        "belt_speed": generator.choice([-1, 1], 200) * np.exp(generator.uniform(-2, 5, 200)),
+        "belt_speed": generator.choice([-1, 1], 200)
+        * np.exp(generator.uniform(-2, 5, 200)),
     }
     length = np.exp(generator.uniform(0.7, 4.6, 200))
     whole = {name: np.full(200, value) for name, value in FORMER.as_dict().items()}
@@ -105,7 +111,9 @@ def test_the_pulling_contact_loses_exactly_what_a1_loses():
     contact = Candidates(whole, 1e-9).contact
     for name in ("F2a", "F2d"):
         scene = SCENES[name]
-        run = run_ensemble(whole, scene.alpha1, scene.alpha2, t_end=scene.t_end, tol=1e-9)
+        run = run_ensemble(
+            whole, scene.alpha1, scene.alpha2, t_end=scene.t_end, tol=1e-9
+        )
         np.testing.assert_array_equal(contact[name].margin < 0, run.separations > 0)
 
 
@@ -121,7 +129,9 @@ def test_samples_cover_the_ranges_evenly(inference):
 def test_shares_follow_from_verdicts(inference, tmp_path):
     held = inference.holds.values == Holds.yes
     np.testing.assert_array_equal(inference.feasible, held.all(axis=2))
-    np.testing.assert_array_equal(inference.feasible_count, held.all(axis=2).sum(axis=0))
+    np.testing.assert_array_equal(
+        inference.feasible_count, held.all(axis=2).sum(axis=0)
+    )
     for i, count in enumerate(inference.feasible_count.values):
         low, high = wilson_interval(int(count), 256)
         assert (inference.share_low[i], inference.share_high[i]) == (low, high)
@@ -145,27 +155,39 @@ def test_what_a_statement_excludes_alone_is_known_however_late_it_comes():
     assert alone.sum() > 8
     np.testing.assert_array_equal(staged.sum(axis=1) == last, alone)
     np.testing.assert_array_equal(whole[alone], staged[alone])
-    np.testing.assert_array_equal((judge(sets)[1] == Holds.yes).all(axis=1), whole.all(axis=1))
+    np.testing.assert_array_equal(
+        (judge(sets)[1] == Holds.yes).all(axis=1), whole.all(axis=1)
+    )
 
 
 def test_wilsons_interval_as_in_closed_form():
     count, size, z = 7, 40, 1.959963984540054
     share = count / size
     middle = (share + z * z / (2 * size)) / (1 + z * z / size)
-    half = z * math.sqrt(share * (1 - share) / size + (z / (2 * size)) ** 2) / (1 + z * z / size)
-    assert wilson_interval(count, size) == pytest.approx((middle - half, middle + half), rel=1e-12)
+    half = (
+        z
+        * math.sqrt(share * (1 - share) / size + (z / (2 * size)) ** 2)
+        / (1 + z * z / size)
+    )
+    assert wilson_interval(count, size) == pytest.approx(
+        (middle - half, middle + half), rel=1e-12
+    )
     assert np.isnan(wilson_interval(0, 0)).all()
 
 
 def test_samples_and_maps_are_judged_alike():
     """F6d at random parameters, belt either way: stable exactly where ``stability_map`` is."""
     generator = np.random.default_rng(13)
-    sets = random_sets(generator, 150, equal=True) + random_sets(generator, 150, equal=False)
+    sets = random_sets(generator, 150, equal=True) + random_sets(
+        generator, 150, equal=False
+    )
     f6d = next(constraint for constraint in CONSTRAINTS if constraint.name == "F6d")
     margin = f6d.check(Candidates(fields_of(sets), 1e-9)).margin
     scene = SCENES["F3"]
     for params, value in zip(sets, margin, strict=True):
-        regime = stability_map(params, [scene.alpha1], [scene.alpha2]).regime_linear.item()
+        regime = stability_map(
+            params, [scene.alpha1], [scene.alpha2]
+        ).regime_linear.item()
         assert (value > 0) == (regime == 0), params
     assert 0.1 < (margin > 0).mean() < 0.9
 
@@ -183,7 +205,21 @@ def test_the_feasible_set_of_the_study():
 SIMPLE = {
     "kappa": np.arange(6, 27) / 20,
     "mu": (0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.35, 0.4, 0.5, 0.6, 0.7, 0.8),
-    "length_ratio": (2.0, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0, 12.0, 15.0, 20.0, 30.0, 50.0, 100.0),
+    "length_ratio": (
+        2.0,
+        3.0,
+        4.0,
+        5.0,
+        6.0,
+        8.0,
+        10.0,
+        12.0,
+        15.0,
+        20.0,
+        30.0,
+        50.0,
+        100.0,
+    ),
     "speed_ratio": (10.0, 20.0, 50.0, 100.0),
 }
 """Numbers that count as simple, of each group, within the ranges of the inference."""

@@ -76,7 +76,11 @@ def random_parameters(generator):
     def between(low, high):
         return float(np.exp(generator.uniform(np.log(low), np.log(high))))
 
-    mass, stiffness, length = between(1e-2, 1e2), between(1e-3, 1e6), between(1e-4, 10.0)
+    mass, stiffness, length = (
+        between(1e-2, 1e2),
+        between(1e-3, 1e6),
+        between(1e-4, 10.0),
+    )
     unit = np.sqrt(mass / stiffness)
     k2, free = between(0.2, 5.0), between(2.5, 1000.0)
     params = FORMER.with_(
@@ -94,7 +98,9 @@ def test_no_cheap_answer_is_wrong_at_random_parameters():
     for _ in range(30):
         params, horizon = random_parameters(generator)
         cells = generator.uniform(0.0, np.pi, (2, 40))
-        run = run_ensemble(params, *cells, t_end=horizon, stop_at_first_separation=True, workers=1)
+        run = run_ensemble(
+            params, *cells, t_end=horizon, stop_at_first_separation=True, workers=1
+        )
         found = choose_models(params, *cells, "contact_lost", t_end=horizon, workers=1)
         below = found.level != Level.a1
         assert not run.separations[below].any(), params
@@ -105,14 +111,30 @@ def test_no_cheap_answer_is_wrong_at_random_parameters():
 @pytest.mark.parametrize(
     ("numbers", "angles", "lost"),
     [
-        ((1, 0.211096048, 2.46336046, 2.46336046, 0.498394213, 100), (0.319312275, 0.756464583), 1),
+        (
+            (1, 0.211096048, 2.46336046, 2.46336046, 0.498394213, 100),
+            (0.319312275, 0.756464583),
+            1,
+        ),
         ((1, 0.584, 5.0, 5.0, 0.278, 0.76), (2.41584, 2.45621), 1),
         # next to ω2 = 2 ω1, lost at t = 202 though the first-order bound is 0.15 l_pre away
-        ((0.499677, 0.738770, 12.834454, 2.774537, 0.670673, 0.929555), (1.020085, 0.595731), 1),
+        (
+            (0.499677, 0.738770, 12.834454, 2.774537, 0.670673, 0.929555),
+            (1.020085, 0.595731),
+            1,
+        ),
         # found by a directed search: a far swing of a short spring loses contact at t = 28
-        ((0.201683, 0.507397, 16.158969, 3.034028, 0.637982, -162.089061), (1.547121, 0.252478), 1),
+        (
+            (0.201683, 0.507397, 16.158969, 3.034028, 0.637982, -162.089061),
+            (1.547121, 0.252478),
+            1,
+        ),
         # ω2 = 2.99 ω1: the distance passes its bound
-        ((3.164635, 1.997726, 4.215417, 8.311256, 0.552072, -18.657334), (2.735879, 1.519922), 0),
+        (
+            (3.164635, 1.997726, 4.215417, 8.311256, 0.552072, -18.657334),
+            (2.735879, 1.519922),
+            0,
+        ),
     ],
 )
 def test_cells_that_were_answered_wrongly_once(numbers, angles, lost):
@@ -120,7 +142,9 @@ def test_cells_that_were_answered_wrongly_once(numbers, angles, lost):
     params = FORMER.with_(**dict(zip(names, numbers, strict=True)))
     found = choose_model(params, *angles, "contact_lost", t_end=240.0)
     assert (
-        found.model == choose_model(params, *angles, "max_displacement", t_end=240.0).model == "a1"
+        found.model
+        == choose_model(params, *angles, "max_displacement", t_end=240.0).model
+        == "a1"
     )
     run = run_ensemble(params, *angles, t_end=240.0, workers=1)
     assert found.value == (run.separations > 0)

@@ -42,14 +42,18 @@ def test_every_point_lies_on_its_curve_which_is_continuous(params):
 
 
 @pytest.mark.parametrize("params", [BASELINE, UNEQUAL])
-@pytest.mark.parametrize(("kind", "regime"), [(Boundary.flutter, 1), (Boundary.divergence, 2)])
+@pytest.mark.parametrize(
+    ("kind", "regime"), [(Boundary.flutter, 1), (Boundary.divergence, 2)]
+)
 def test_the_regime_changes_across_the_curve(params, kind, regime):
     curves = stability_boundaries(params, points=41)
     chosen = curves.boundary.values == kind
     places = np.stack([curves.alpha1, curves.alpha2], axis=1)[chosen]
     for alpha1, alpha2 in places[::3]:
         near = 2e-3 * np.linspace(-1, 1, 9)
-        regimes = stability_map(params, alpha1 + near, alpha2 + near).regime_linear.values
+        regimes = stability_map(
+            params, alpha1 + near, alpha2 + near
+        ).regime_linear.values
         assert (regimes == regime).any()
         assert (regimes != regime).any()
 
@@ -64,10 +68,15 @@ def test_share_without_sliding_by_an_integral_along_one_angle(mu):
     """Equal springs: 1 + cos p cos q < μ cos p sin q, with p the sum and q the difference."""
 
     def part(p):
-        return math.acos(min(1.0, abs(1.0 / (math.cos(p) * math.hypot(1.0, mu))))) / math.pi**2
+        return (
+            math.acos(min(1.0, abs(1.0 / (math.cos(p) * math.hypot(1.0, mu)))))
+            / math.pi**2
+        )
 
     edge = math.acos(1.0 / math.hypot(1.0, mu))
-    exact = scipy.integrate.quad(part, math.pi - edge, math.pi + edge, points=[math.pi])[0]
+    exact = scipy.integrate.quad(
+        part, math.pi - edge, math.pi + edge, points=[math.pi]
+    )[0]
     found = ~quasi_static_map(BASELINE.with_(mu=mu), MIDPOINTS, MIDPOINTS).possible
     assert float(found.mean()) == pytest.approx(exact, rel=5e-3)
 

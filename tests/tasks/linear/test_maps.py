@@ -9,7 +9,11 @@ import scipy.linalg
 import scipy.optimize
 
 from squealpipe.schema import Outcome
-from squealpipe.tasks.linear.maps import natural_frequencies, quasi_static_map, stability_map
+from squealpipe.tasks.linear.maps import (
+    natural_frequencies,
+    quasi_static_map,
+    stability_map,
+)
 from tests import symbols
 from tests.former import FORMER
 from tests.oracles import sliding
@@ -23,7 +27,11 @@ SEED = 11
 def relative_error(params, alpha1, alpha2):
     cell = stability_map(params, [alpha1], [alpha2]).isel(alpha1=0, alpha2=0)
     growth, (low, high) = float(cell.growth_rate), cell.frequency.values
-    pairs = [growth, 1j * high] if cell.regime_linear == 2 else growth + 1j * np.array([low, high])
+    pairs = (
+        [growth, 1j * high]
+        if cell.regime_linear == 2
+        else growth + 1j * np.array([low, high])
+    )
     own = np.concatenate(
         [sign * np.array(each) for each in (pairs, np.conj(pairs)) for sign in (1, -1)]
     )
@@ -34,7 +42,9 @@ def relative_error(params, alpha1, alpha2):
 @pytest.mark.parametrize("params", [BASELINE, UNEQUAL, BASELINE.with_(mu=0.8, k3=1.3)])
 def test_eigenvalues_to_thirteen_digits(params):
     generator = np.random.default_rng(SEED)
-    worst = max(relative_error(params, *generator.uniform(0, np.pi, 2)) for _ in range(60))
+    worst = max(
+        relative_error(params, *generator.uniform(0, np.pi, 2)) for _ in range(60)
+    )
     assert worst < 1e-13
 
 
@@ -46,7 +56,9 @@ def onset(params, alpha2, low, high):
         return float(((m[0, 0] - m[1, 1]) / 2) ** 2 + m[0, 1] * m[1, 0])
 
     with mpmath.workdps(40):
-        return float(scipy.optimize.brentq(discriminant, low, high, xtol=1e-16, rtol=1e-15))
+        return float(
+            scipy.optimize.brentq(discriminant, low, high, xtol=1e-16, rtol=1e-15)
+        )
 
 
 @pytest.mark.parametrize("ulps", [-40, -3, -1, 0, 1, 3, 40])
@@ -74,7 +86,9 @@ def test_growth_rates_next_to_both_boundaries(distance):
         return float(m[0, 0] * m[1, 1] - m[0, 1] * m[1, 0])
 
     with mpmath.workdps(40):
-        divergence = scipy.optimize.brentq(determinant, 0.3 * math.pi, 0.45 * math.pi, xtol=1e-16)
+        divergence = scipy.optimize.brentq(
+            determinant, 0.3 * math.pi, 0.45 * math.pi, xtol=1e-16
+        )
     for alpha1, second in ((flutter, alpha2), (divergence + distance, 0.55 * math.pi)):
         exact = max(s.real for s in sliding.eigenvalues(BASELINE, alpha1, second))
         found = float(stability_map(BASELINE, [alpha1], [second]).growth_rate[0, 0])
@@ -100,7 +114,9 @@ def test_flutter_needs_negative_coupling_and_divergence_positive():
     params = UNEQUAL.with_(k1=0.9, mu=0.8)
     regime = stability_map(params, ANGLES, ANGLES).regime_linear.values
     first, second = np.meshgrid(ANGLES, ANGLES, indexing="ij")
-    coupling = symbols.function(symbols.STIFFNESS[0, 1])(params, alpha1=first, alpha2=second)
+    coupling = symbols.function(symbols.STIFFNESS[0, 1])(
+        params, alpha1=first, alpha2=second
+    )
     for kind, sign in ((1, -1), (2, 1)):
         assert (regime == kind).any()
         assert (sign * coupling[regime == kind] > 0).all()
@@ -118,14 +134,18 @@ def test_sigma_matters_only_where_the_contact_law_is_blunt():
 
 def test_static_state_at_the_edge_of_contact_and_where_there_is_none():
     """In the scene of Fig. 3, and where both springs are vertical."""
-    cell = quasi_static_map(BASELINE, [0.4 * math.pi], [0.6 * math.pi]).isel(alpha1=0, alpha2=0)
+    cell = quasi_static_map(BASELINE, [0.4 * math.pi], [0.6 * math.pi]).isel(
+        alpha1=0, alpha2=0
+    )
     assert cell.possible
     assert cell.possible_as_printed
     assert float(cell.y_static) == pytest.approx(BASELINE.preload, rel=1e-14)
     assert float(cell.x_static) == pytest.approx(-math.tan(0.4 * math.pi), rel=1e-13)
     assert float(cell.contact_force_static) == 0.0
 
-    cell = quasi_static_map(BASELINE, [math.pi / 2], [math.pi / 2]).isel(alpha1=0, alpha2=0)
+    cell = quasi_static_map(BASELINE, [math.pi / 2], [math.pi / 2]).isel(
+        alpha1=0, alpha2=0
+    )
     assert int(cell.outcome) == Outcome.singular_static_state
     assert np.isnan(cell.reaction_force)
     assert not cell.possible | cell.possible_as_printed
@@ -139,7 +159,9 @@ def test_frequencies_in_both_states():
     rigid = separated.outcome.sel(mode=1).values == Outcome.rigid_mode
     np.testing.assert_array_equal(rigid, (first + second) % 180 == 0)
     assert (separated.omega.sel(mode=1).values[rigid] == 0).all()
-    np.testing.assert_allclose(separated.omega.sel(mode=2).values[rigid], math.sqrt(2), rtol=1e-14)
+    np.testing.assert_allclose(
+        separated.omega.sel(mode=2).values[rigid], math.sqrt(2), rtol=1e-14
+    )
     half = np.isin(first + second, (90, 270))
     np.testing.assert_allclose(separated.omega.values[half], 1.0, rtol=1e-7)
     contact = result.sel(contact_state="contact")
@@ -150,7 +172,9 @@ def test_frequencies_in_both_states():
     assert (contact.outcome.sel(mode=1) == Outcome.divergence).sum() == 230
     assert (contact.outcome.sel(mode=2) == Outcome.divergence).sum() == 0
     real = contact.outcome.sel(mode=1).values == Outcome.converged
-    assert contact.omega.sel(mode=1).values[real].max() ** 2 == pytest.approx(1.375, abs=5e-3)
+    assert contact.omega.sel(mode=1).values[real].max() ** 2 == pytest.approx(
+        1.375, abs=5e-3
+    )
 
 
 @pytest.mark.parametrize("nearby", [1e-3, 1e-6, 1e-9, 1e-12])

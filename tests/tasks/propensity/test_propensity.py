@@ -10,7 +10,11 @@ from squealpipe.schema.inference import of_study, wilson_interval
 from squealpipe.tasks.inference.inference import infer_parameters
 from squealpipe.tasks.propensity import robustness
 from squealpipe.tasks.propensity.distributions import centred, distribution
-from squealpipe.tasks.propensity.propensity import _indices, _judged_matrices, propensity
+from squealpipe.tasks.propensity.propensity import (
+    _indices,
+    _judged_matrices,
+    propensity,
+)
 from squealpipe.tasks.propensity.robustness import _feasible, variants
 from tests.former import FORMER
 
@@ -60,7 +64,9 @@ def test_indices_are_those_of_a_product_and_too_wide_ones_are_not_given():
         np.testing.assert_allclose(found[key][0], exact, atol=0.02)
         assert (0.5 * (high - low) <= 0.02).all()
         assert (np.abs(found[key][0] - exact) <= high - low).all()
-        assert np.isnan(found[key][1:, :2]).all(), "too small a sample, or nothing that differs"
+        assert np.isnan(found[key][1:, :2]).all(), (
+            "too small a sample, or nothing that differs"
+        )
     widths = found["half_width_by_size"]
     assert (widths[0, 1:] < widths[0, :-1]).all()
     assert widths[1, -1] > 0.05
@@ -68,7 +74,10 @@ def test_indices_are_those_of_a_product_and_too_wide_ones_are_not_given():
 
 
 def test_correlated_springs_have_propensities_but_no_indices():
-    springs = {name: {"distribution": "normal", "mean": 1.0, "std": 0.05} for name in ("k1", "k2")}
+    springs = {
+        name: {"distribution": "normal", "mean": 1.0, "std": 0.05}
+        for name in ("k1", "k2")
+    }
     given = {"samples": 64, "t_end": 10.0, "spring_correlation": 0.9}
     spread = propensity(FORMER, *ANGLES, distributions=springs, **given)
     assert np.isfinite(spread.share).all()
@@ -78,18 +87,38 @@ def test_correlated_springs_have_propensities_but_no_indices():
 @pytest.mark.parametrize(
     ("name", "given", "words"),
     [
-        ("mu", {"distribution": "beta", "low": 0.0, "high": 1.0}, "distribution = 'beta'"),
-        ("my", {"distribution": "uniform", "low": 0.0, "high": 1.0}, "did you mean 'mu'"),
+        (
+            "mu",
+            {"distribution": "beta", "low": 0.0, "high": 1.0},
+            "distribution = 'beta'",
+        ),
+        (
+            "my",
+            {"distribution": "uniform", "low": 0.0, "high": 1.0},
+            "did you mean 'mu'",
+        ),
         ("mu", {"distribution": "uniform", "low": -0.1, "high": 1.0}, "reaches -0.1"),
         ("k1", {"distribution": "normal", "mean": 1.0, "std": 0.3}, "reaches -0.2"),
         ("k1", {"distribution": "normal", "mean": 1.0}, "needs mean and std"),
-        ("k1", {"distribution": "lognormal", "median": -1.0, "log_std": 0.1}, "median = -1.0"),
+        (
+            "k1",
+            {"distribution": "lognormal", "median": -1.0, "log_std": 0.1},
+            "median = -1.0",
+        ),
         ("k3", {"distribution": "uniform", "low": 1.0, "high": 1.0}, "must be below"),
-        ("k3", {"distribution": "normal", "mean": 1.0, "std": float("nan")}, "std = nan"),
+        (
+            "k3",
+            {"distribution": "normal", "mean": 1.0, "std": float("nan")},
+            "std = nan",
+        ),
         ("mu", 0.3, r"mu = 0\.3: a mapping is needed, such as .*'uniform'"),
         ("k1", stats.norm(1.0, 0.1), "k1 = .*: a mapping is needed"),
         ("k1", {"distribution": ["uniform"]}, "one of uniform, normal"),
-        (3, {"distribution": "uniform", "low": 0.0, "high": 1.0}, "3: no parameter or angle"),
+        (
+            3,
+            {"distribution": "uniform", "low": 0.0, "high": 1.0},
+            "3: no parameter or angle",
+        ),
     ],
 )
 def test_impossible_distributions_are_refused(name, given, words):
@@ -114,7 +143,9 @@ def test_what_a_table_stands_for_is_not_spread(tmp_path):
     table.write_text("speed,coefficient\n0,0.5\n1,0.4\n2,0.38\n")
     params = FORMER.with_(friction_law=str(table), belt_speed=1.5)
     assert set(centred(params, *ANGLES)) == {"k1", "k2", "k3", "alpha1", "alpha2"}
-    with pytest.raises(ValueError, match="a law's file stands for mu, which cannot be spread"):
+    with pytest.raises(
+        ValueError, match="a law's file stands for mu, which cannot be spread"
+    ):
         propensity(params, *ANGLES, distributions=FRICTION, samples=64, t_end=1.0)
 
 

@@ -49,13 +49,19 @@ def inside(u):
 
 def inside_indices():
     a, b = 0.6, 0.45
-    first = np.array([b * b * a * (1 - a), a * a * b * (1 - b), 0.0]) / (a * b * (1 - a * b))
+    first = np.array([b * b * a * (1 - a), a * a * b * (1 - b), 0.0]) / (
+        a * b * (1 - a * b)
+    )
     return np.array([first, [1.0 - first[1], 1.0 - first[0], 0.0]])
 
 
 @pytest.mark.parametrize(
     ("function", "exact"),
-    [(ishigami, ishigami_indices()), (g_function, g_indices()), (inside, inside_indices())],
+    [
+        (ishigami, ishigami_indices()),
+        (g_function, g_indices()),
+        (inside, inside_indices()),
+    ],
 )
 def test_intervals_hold_the_closed_form_as_often_as_they_claim(function, exact):
     """95 % both ways: intervals of independent points hold it always (99.5 to 100 %)."""
@@ -79,8 +85,12 @@ def test_intervals_of_shares_hold_them_as_often_as_they_claim(corner, most):
     """[u < corner] with two idle inputs; Wilson's intervals hold it always, and are wider."""
     ends = []
     for seed in range(200):
-        happens = (scrambled(len(corner) + 2, 1024, seed)[:, : len(corner)] < corner).all(axis=1)
-        ends.append((*share_interval(happens), *wilson_interval(int(happens.sum()), 1024)))
+        happens = (
+            scrambled(len(corner) + 2, 1024, seed)[:, : len(corner)] < corner
+        ).all(axis=1)
+        ends.append(
+            (*share_interval(happens), *wilson_interval(int(happens.sum()), 1024))
+        )
     low, high, wilson_low, wilson_high = np.transpose(ends)
     exact = np.prod(corner)
     assert 0.92 < np.mean((low < exact) & (exact < high)) <= most
@@ -94,5 +104,7 @@ def test_rare_shares_have_an_interval_of_some_width():
 def test_one_quantity_in_other_units_has_the_same_indices():
     values = np.array([ishigami(u) for u in saltelli_matrices(3, 256, 7)])
     values = values.reshape(5, REPLICATES, -1)
-    for one, other in zip(sobol_indices(values), sobol_indices(1e7 * values - 3e8), strict=True):
+    for one, other in zip(
+        sobol_indices(values), sobol_indices(1e7 * values - 3e8), strict=True
+    ):
         np.testing.assert_allclose(one, other, rtol=1e-9, atol=1e-12)

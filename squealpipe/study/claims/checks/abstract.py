@@ -41,7 +41,9 @@ def levels_have_assumptions(run: Run) -> Finding:
         f"{counts}. In A4, which takes the angles as constant to {float(turned.limit):g} rad, a "
         f"spring turns by {float(turned.measure.min()):.2g} to {float(turned.measure.max()):.2g} "
         "rad.",
-        otherwise=Verdict.holds_only_as_printed if whole["A1"] == scenes else Verdict.fails,
+        otherwise=Verdict.holds_only_as_printed
+        if whole["A1"] == scenes
+        else Verdict.fails,
     )
 
 
@@ -57,7 +59,9 @@ def hammering_occurs(run: Run) -> Finding:
     motion = scene(run, "F2d")
     returns = events(motion, Event.contact).size
     force = float(motion.return_peak_contact_force) if returns else 0.0
-    speed = float(motion.impact_speed) * run.parameters.time_unit / run.parameters.preload
+    speed = (
+        float(motion.impact_speed) * run.parameters.time_unit / run.parameters.preload
+    )
     hammering = run["hammering_map"]
     strikes = (hammering.impact_rate > 0).values
     forces = hammering.return_peak_contact_force.values[strikes]

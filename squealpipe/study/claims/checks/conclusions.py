@@ -36,7 +36,9 @@ def modes_switch_at_separation(run: Run) -> Finding:
         (share(switched), ">", 0),
         f"The order of the directions turns over in {100 * share(switched):.3g} % of the cells, "
         "those with 0 < K11 − K22 < k3; in the others it is the same in contact and separated.",
-        passed=Verdict.holds if bool(switched.all()) else Verdict.depends_on_the_parameters,
+        passed=Verdict.holds
+        if bool(switched.all())
+        else Verdict.depends_on_the_parameters,
     )
 
 
@@ -50,7 +52,10 @@ rows.add(
 
 
 @rows.add(
-    "C3", "time and frequency domain show the same trends", figure="fig10_to_12", section="7, 9"
+    "C3",
+    "time and frequency domain show the same trends",
+    figure="fig10_to_12",
+    section="7, 9",
 )
 def time_and_frequency_agree(run: Run) -> Finding:
     """Largest relative difference of the frequency in A1 from ω2 of A4."""
@@ -72,13 +77,17 @@ def time_and_frequency_agree(run: Run) -> Finding:
 
 
 @rows.add(
-    "C4", "the contact loss must not be left out (A1 against A1 without separation)", figure="fig02"
+    "C4",
+    "the contact loss must not be left out (A1 against A1 without separation)",
+    figure="fig02",
 )
 def contact_loss_matters(run: Run) -> Finding:
     """Median relative change of the largest displacement in scenes that lose contact."""
     table = run["assumptions"]
     lost = table.held.sel(level="A1", assumption="contact is kept").values == 0
-    changes = _relative_change(table[["largest_y", "largest_x"]].to_array()).max("variable")
+    changes = _relative_change(table[["largest_y", "largest_x"]].to_array()).max(
+        "variable"
+    )
     if not lost.any():
         return finding((0, ">", 0), "No scene loses contact.")
     changed, kept = changes.values[lost], changes.values[~lost]

@@ -18,7 +18,12 @@ NEARLY_THE_SAME = 0.01
 BENDS = 0.01
 """Relative drop of the frequency that is visible in the paper's figures."""
 
-USABLE = (Outcome.converged, Outcome.linear_mode, Outcome.isolated_mode, Outcome.grazing)
+USABLE = (
+    Outcome.converged,
+    Outcome.linear_mode,
+    Outcome.isolated_mode,
+    Outcome.grazing,
+)
 
 
 def branch(run: Run, scene: str, mode: int) -> xr.Dataset:
@@ -53,8 +58,14 @@ def same_as_first(scene: str) -> Check:
         reference, other = branch(run, "F10", 2), branch(run, scene, 2)
         linear = linear_omega(reference)
         difference = _largest_difference(reference, other, "omega") / linear
-        amplitude = _largest_difference(reference, other, "x_amplitude") / run.parameters.preload
-        first = abs(linear_omega(branch(run, scene, 1)) / linear_omega(branch(run, "F10", 1)) - 1)
+        amplitude = (
+            _largest_difference(reference, other, "x_amplitude")
+            / run.parameters.preload
+        )
+        first = abs(
+            linear_omega(branch(run, scene, 1)) / linear_omega(branch(run, "F10", 1))
+            - 1
+        )
         return finding(
             (max(difference, first), "≤", NEARLY_THE_SAME),
             f"Against (0.5π, π), ω1 differs by {first:.2g} of itself, ω2 along the branch by at "
@@ -132,5 +143,7 @@ def _largest_difference(reference: xr.Dataset, other: xr.Dataset, name: str) -> 
     """Largest difference at equal y_peak over the range that both branches reach."""
     top = min(float(reference.y_peak.max()), float(other.y_peak.max()))
     peaks = np.linspace(float(reference.y_peak[0]), top, 50)
-    curves = [np.interp(peaks, points.y_peak, points[name]) for points in (reference, other)]
+    curves = [
+        np.interp(peaks, points.y_peak, points[name]) for points in (reference, other)
+    ]
     return float(np.max(np.abs(curves[1] - curves[0])))

@@ -34,7 +34,11 @@ def contact_is_kept(name: str) -> Check:
     return check
 
 
-for name, angles in (("F2a", "(0.5π, π)"), ("F2b", "(π, 0.5π)"), ("F2c", "(0.75π, 0.75π)")):
+for name, angles in (
+    ("F2a", "(0.5π, π)"),
+    ("F2b", "(π, 0.5π)"),
+    ("F2c", "(0.75π, 0.75π)"),
+):
     rows.add(name, f"contact is kept throughout at {angles}")(contact_is_kept(name))
 
 
@@ -57,7 +61,10 @@ def responses_differ_little(run: Run) -> Finding:
     The paper gives no number for "a minimal difference". It may mean little against the preload,
     or less than what sets the first three responses apart from the fourth.
     """
-    forces = [scene(run, name).normalized_contact_force for name in ("F2a", "F2b", "F2c", "F2d")]
+    forces = [
+        scene(run, name).normalized_contact_force
+        for name in ("F2a", "F2b", "F2c", "F2d")
+    ]
     extremes = np.array([[float(force.min()), float(force.max())] for force in forces])
     spread = float(np.ptp(extremes[:3], axis=0).max())
     apart = float(np.abs(extremes[:3] - extremes[3]).max(axis=1).min())
@@ -119,14 +126,18 @@ def limit_cycle_is_bounded(run: Run) -> Finding:
         (largest, "<", BOUND),
         evidence,
         also=late < GROWTH_THRESHOLD * early,
-        passed=Verdict.holds_only_as_printed if ended or later >= BOUND else Verdict.holds,
+        passed=Verdict.holds_only_as_printed
+        if ended or later >= BOUND
+        else Verdict.holds,
     )
 
 
 @rows.add("F5a", "(π, π) and (0, 0) give identical contact forces", figure="fig05")
 def runs_are_identical(run: Run) -> Finding:
     """Largest difference of the contact forces, as a share of the preload."""
-    first, second = (scene(run, name).normalized_contact_force for name in ("F5a", "F5b"))
+    first, second = (
+        scene(run, name).normalized_contact_force for name in ("F5a", "F5b")
+    )
     difference = float(np.abs(first.values - second.values).max())
     return finding(
         (difference, "≤", SAME_FORCE),
@@ -135,7 +146,9 @@ def runs_are_identical(run: Run) -> Finding:
 
 
 @rows.add(
-    "F5b", "there the mass jumps again and again, for lack of vertical stiffness", figure="fig05"
+    "F5b",
+    "there the mass jumps again and again, for lack of vertical stiffness",
+    figure="fig05",
 )
 def mass_jumps(run: Run) -> Finding:
     """Number of flights."""

@@ -71,7 +71,9 @@ def stable_where_sliding(run: Run) -> Finding:
     printed, physical = (
         float(cells.sum() / max(int(allowed.sum()), 1))
         for cells, allowed in zip(
-            unstable_yet_sliding(run), (sliding.possible_as_printed, sliding.possible), strict=True
+            unstable_yet_sliding(run),
+            (sliding.possible_as_printed, sliding.possible),
+            strict=True,
         )
     )
     return finding(
@@ -85,7 +87,10 @@ def stable_where_sliding(run: Run) -> Finding:
 @rows.add("F6d", "(0.4π, 0.6π) is linearly stable although A1 is not")
 def linearly_stable_but_not(run: Run) -> Finding:
     """Growth rate of A3 there, times the time unit."""
-    rate = float(cell(run["stability_map"], 0.4, 0.6).growth_rate) * run.parameters.time_unit
+    rate = (
+        float(cell(run["stability_map"], 0.4, 0.6).growth_rate)
+        * run.parameters.time_unit
+    )
     early, late = halves(scene(run, "F3"))
     return finding(
         (rate, "≤", 1e-9),
@@ -106,7 +111,9 @@ def spring_pulls(run: Run) -> Finding:
     stable = on_grid_of(run["stability_map"], pull).regime_linear == 0
     pulls = pull.lowest_contact_force < 0
     if not pulls.any():
-        return finding((0, ">", 0), "From rest the linear model's k3 pulls in none of the cells.")
+        return finding(
+            (0, ">", 0), "From rest the linear model's k3 pulls in none of the cells."
+        )
     strongest = max(0.0, -float(pull.lowest_contact_force.where(stable).min()))
     fraction = float(pull.pulling_fraction.where(pulls).median())
     return finding(

@@ -6,7 +6,13 @@ import xarray as xr
 from squealpipe.schema import Outcome
 from squealpipe.schema.claims import Verdict
 from squealpipe.study.claims.evidence import Finding, MissingDataError, Run, finding
-from squealpipe.study.claims.maps import angle_sum_over_pi, cell, is_multiple, place, share
+from squealpipe.study.claims.maps import (
+    angle_sum_over_pi,
+    cell,
+    is_multiple,
+    place,
+    share,
+)
 from squealpipe.study.claims.statement import Rows
 
 rows = Rows("7", "fig08")
@@ -60,7 +66,10 @@ def first_vanishes_on_lines(run: Run) -> Finding:
 )
 def first_is_largest_on_lines(run: Run) -> Finding:
     """Excess of the largest ω1² over that on the lines, the larger of both contact states."""
-    state, unit = run["natural_frequencies"].sel(mode=1), run.parameters.k1 / run.parameters.mass
+    state, unit = (
+        run["natural_frequencies"].sel(mode=1),
+        run.parameters.k1 / run.parameters.mass,
+    )
     square = state.omega.where(state.outcome == Outcome.converged).fillna(0.0) ** 2
     lines = is_multiple(angle_sum_over_pi(state), 0.5, odd=True)
     over = ["alpha1", "alpha2"]
@@ -77,7 +86,9 @@ def first_is_largest_on_lines(run: Run) -> Finding:
         f"({first:.3g}π, {second:.3g}π), against "
         f"{float(line.sel(contact_state='contact')) / unit:.4g} k1/m on those lines. For even n "
         "ω1 = 0 there when separated.",
-        otherwise=Verdict.holds_only_as_printed if separated <= SAME_OMEGA else Verdict.fails,
+        otherwise=Verdict.holds_only_as_printed
+        if separated <= SAME_OMEGA
+        else Verdict.fails,
     )
 
 
@@ -115,7 +126,9 @@ def shifts_are_opposite(run: Run) -> Finding:
     unit = run.parameters.k1 / run.parameters.mass
     for name in ("contact", "separated"):
         state = _state(run, name)
-        real = (state.outcome != Outcome.complex_pair) & (state.outcome != Outcome.divergence)
+        real = (state.outcome != Outcome.complex_pair) & (
+            state.outcome != Outcome.divergence
+        )
         omega = state.omega.where(real.all("mode"))
         steps = [omega.diff(axis) for axis in ("alpha1", "alpha2")]
         products = np.concatenate(
@@ -134,7 +147,10 @@ def shifts_are_opposite(run: Run) -> Finding:
 
 
 @rows.add(
-    "F9c", "the region where ω2 is largest is larger when separated", figure="fig09", section="9"
+    "F9c",
+    "the region where ω2 is largest is larger when separated",
+    figure="fig09",
+    section="9",
 )
 def largest_region_grows(run: Run) -> Finding:
     """Ratio of the areas where ω2 is near its largest value, separated to contact."""
@@ -145,7 +161,9 @@ def largest_region_grows(run: Run) -> Finding:
 
 
 def _larger_when_separated(cells: xr.DataArray, what: str) -> Finding:
-    contact, separated = (share(cells.sel(contact_state=name)) for name in ("contact", "separated"))
+    contact, separated = (
+        share(cells.sel(contact_state=name)) for name in ("contact", "separated")
+    )
     return finding(
         (separated / max(contact, 1e-12), ">", 1.0),
         f"{what} of its largest value in {100 * contact:.3g} % of the map in contact and in "

@@ -9,7 +9,13 @@ from squealpipe.schema.dynamics.runs import GROWTH_THRESHOLD
 from squealpipe.study.claims.checks import figures_6_and_7, figures_8_and_9
 from squealpipe.study.claims.checks.motions import scene
 from squealpipe.study.claims.evidence import Finding, MissingDataError, Run, finding
-from squealpipe.study.claims.maps import cell, coupling_is_negative, on_grid_of, share, stiffness
+from squealpipe.study.claims.maps import (
+    cell,
+    coupling_is_negative,
+    on_grid_of,
+    share,
+    stiffness,
+)
 from squealpipe.study.claims.statement import Rows
 
 rows = Rows(figure="harmonic_forms", recorded=Verdict.fails)
@@ -34,7 +40,9 @@ PRINTED = "F2a_printed"
 def friction_drags_along(run: Run) -> Finding:
     """Mean x with the printed sign, in the direction of the static state, over l_pre."""
     printed = float(scene(run, PRINTED).x.mean() / run.parameters.preload)
-    static = float(cell(run["quasi_static_map"], 0.5, 1.0).x_static / run.parameters.preload)
+    static = float(
+        cell(run["quasi_static_map"], 0.5, 1.0).x_static / run.parameters.preload
+    )
     return finding(
         (printed * np.sign(static), ">", 0),
         f"At (0.5π, π) the mass rests on average at x = {printed:.3g} l_pre with the printed sign; "
@@ -42,7 +50,11 @@ def friction_drags_along(run: Run) -> Finding:
     )
 
 
-@rows.add("E2", "with K11·a + K12·b, Eq. (34) is the residual of Eq. (32)", section="7, Eq. (34)")
+@rows.add(
+    "E2",
+    "with K11·a + K12·b, Eq. (34) is the residual of Eq. (32)",
+    section="7, Eq. (34)",
+)
 def printed_residual_converges_right(run: Run) -> Finding:
     """Largest relative error of ω with the printed residual."""
     forms = run["harmonic_forms"]
@@ -121,7 +133,11 @@ def samples_suffice(run: Run) -> Finding:
     )
 
 
-@rows.add("E7", "Newton's method of Eq. (35) has a regular Jacobian", section="7, Eqs. (31)–(36)")
+@rows.add(
+    "E7",
+    "Newton's method of Eq. (35) has a regular Jacobian",
+    section="7, Eqs. (31)–(36)",
+)
 def jacobian_is_regular(run: Run) -> Finding:
     """Columns of the Jacobian minus its rank."""
     forms = run["harmonic_forms"]

@@ -39,5 +39,7 @@ def frequency(motion: xr.Dataset) -> float:
     if rising.size < 2:
         raise MissingDataError("the contact force completes no oscillation")
     share_of_step = (force.mean() - force[rising]) / (force[rising + 1] - force[rising])
-    instants = motion.time.values[rising] + share_of_step * np.diff(motion.time.values)[rising]
+    instants = (
+        motion.time.values[rising] + share_of_step * np.diff(motion.time.values)[rising]
+    )
     return float(2 * np.pi * (rising.size - 1) / (instants[-1] - instants[0]))

@@ -23,7 +23,9 @@ LOOKS = ((style.RED, "-"), (style.ORANGE, "--"), (style.GREEN, "-."), (style.BLU
 def draw(beside: xr.Dataset) -> Figure:
     """One row for each scene, from dataset ``a1_beside_a4``."""
     scenes = beside.scene.values
-    figure, axes = style.new_figure(style.PAGE, 0.5 + 1.7 * len(scenes), nrows=len(scenes), ncols=2)
+    figure, axes = style.new_figure(
+        style.PAGE, 0.5 + 1.7 * len(scenes), nrows=len(scenes), ncols=2
+    )
     letters = iter("abcdefghijklmnopqrst")
     for row, scene in zip(axes, scenes, strict=True):
         part = beside.sel(scene=scene)
@@ -42,8 +44,17 @@ def draw(beside: xr.Dataset) -> Figure:
 
 def _draw(panel: Axes, part: xr.Dataset, axis: str) -> None:
     kind = "y" if axis == "period" else "spectrum"
-    panel.plot(part[axis], part[f"{kind}_a4"], color=style.GREY, lw=2.6, alpha=0.6, label="A4")
-    for ratio, (colour, dash) in zip(part.length_ratio.values, cycle(LOOKS), strict=False):
-        one, label = part.sel(length_ratio=ratio), f"A1, L = {ratio:g} $l_\\mathrm{{pre}}$"
-        panel.plot(one[axis], one[f"{kind}_a1"], dash, color=colour, lw=0.9, label=label)
+    panel.plot(
+        part[axis], part[f"{kind}_a4"], color=style.GREY, lw=2.6, alpha=0.6, label="A4"
+    )
+    for ratio, (colour, dash) in zip(
+        part.length_ratio.values, cycle(LOOKS), strict=False
+    ):
+        one, label = (
+            part.sel(length_ratio=ratio),
+            f"A1, L = {ratio:g} $l_\\mathrm{{pre}}$",
+        )
+        panel.plot(
+            one[axis], one[f"{kind}_a1"], dash, color=colour, lw=0.9, label=label
+        )
     panel.set_xlim(0, float(np.ceil(part[axis].values[-1])))

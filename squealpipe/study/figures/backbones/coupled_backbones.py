@@ -10,7 +10,11 @@ from matplotlib.ticker import MaxNLocator
 
 from squealpipe.plotting.cycles import joined
 from squealpipe.plotting.style import BLACK, GREEN, PURPLE, Y_COLOUR
-from squealpipe.study.figures.panels.backbone_panels import KEY, STABLE_TO_ROUND_OFF, draw_scenes
+from squealpipe.study.figures.panels.backbone_panels import (
+    KEY,
+    STABLE_TO_ROUND_OFF,
+    draw_scenes,
+)
 
 READS = ("backbone/[a-z]*", "doubled_branch/*")
 CAPTION = (
@@ -24,7 +28,9 @@ SHOWN = 1.25
 """Largest y of a doubled branch shown, over that of the backbone."""
 
 
-def draw(branches: Mapping[str, xr.Dataset], doubled: Mapping[str, xr.Dataset]) -> Figure:
+def draw(
+    branches: Mapping[str, xr.Dataset], doubled: Mapping[str, xr.Dataset]
+) -> Figure:
     """One row for each scene; see ``parts.backbone_panels.draw_scenes``."""
     scenes = dict.fromkeys(
         name.removeprefix("backbone/").rsplit("_mode", 1)[0] for name in branches
@@ -32,7 +38,9 @@ def draw(branches: Mapping[str, xr.Dataset], doubled: Mapping[str, xr.Dataset]) 
     figure = draw_scenes(branches, 0.6 + 2.5 * len(scenes))
     for panel, scene in zip(figure.axes[::2], scenes, strict=True):
         leaving = [doubled.get(f"doubled_branch/{scene}_{number}") for number in (1, 2)]
-        found = [branch for branch in leaving if branch is not None and branch.sizes["point"]]
+        found = [
+            branch for branch in leaving if branch is not None and branch.sizes["point"]
+        ]
         if found:
             _draw_doubled(panel, branches[f"backbone/{scene}_mode1"], found)
     return figure
@@ -46,19 +54,36 @@ def _draw_doubled(panel: Axes, simple: xr.Dataset, doubled: list[xr.Dataset]) ->
         shown = branch.isel(point=branch.y_largest.values <= top)
         _line(inset, shown, shown.y_largest.values, 2, colour)
         at = float(branch.doubling_omega), float(branch.y_largest[0])
-        inset.plot(*at, "o", markersize=4, markerfacecolor="white", markeredgecolor=BLACK, zorder=3)
+        inset.plot(
+            *at,
+            "o",
+            markersize=4,
+            markerfacecolor="white",
+            markeredgecolor=BLACK,
+            zorder=3,
+        )
     limits = inset.get_xlim(), inset.get_ylim()
     _line(inset, simple, simple.y_peak.values, 1, Y_COLOUR)
-    inset.set(xlim=limits[0], ylim=(limits[1][0], min(limits[1][1], panel.get_ylim()[1])))
+    inset.set(
+        xlim=limits[0], ylim=(limits[1][0], min(limits[1][1], panel.get_ylim()[1]))
+    )
     inset.xaxis.set_major_locator(MaxNLocator(4))
     inset.tick_params(labelsize=5)
     panel.indicate_inset_zoom(inset, edgecolor=BLACK, alpha=0.4)
 
 
-def _line(inset: Axes, branch: xr.Dataset, y: np.ndarray, times: int, colour: str) -> None:
+def _line(
+    inset: Axes, branch: xr.Dataset, y: np.ndarray, times: int, colour: str
+) -> None:
     """A branch at ``times`` its frequency, dotted where unstable."""
     omega = times * branch.omega.values
     unstable = np.abs(branch.stability_index.values) > STABLE_TO_ROUND_OFF
     inset.plot(omega, np.where(unstable, np.nan, y), color=colour, linewidth=1.2)
     if unstable.any():
-        inset.plot(omega, np.where(joined(unstable), y, np.nan), ":", color=colour, linewidth=1.2)
+        inset.plot(
+            omega,
+            np.where(joined(unstable), y, np.nan),
+            ":",
+            color=colour,
+            linewidth=1.2,
+        )

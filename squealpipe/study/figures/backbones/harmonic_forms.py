@@ -34,27 +34,42 @@ def draw(forms: xr.Dataset) -> Figure:
 
 def _frequencies(panel: Axes, forms: xr.Dataset) -> None:
     places = np.arange(forms.sizes["scene"])
-    panel.plot(places, forms.omega_exact, "_", color=style.GREY, ms=22, mew=2, label="exact")
+    panel.plot(
+        places, forms.omega_exact, "_", color=style.GREY, ms=22, mew=2, label="exact"
+    )
     for form, colour, marker, name in (
         (Form.mended, style.BLUE, "x", "Eq. (34) corrected"),
         (Form.as_printed, style.RED, "o", "Eq. (34) as printed"),
     ):
         omega = forms.omega.sel(form=form).values
         panel.plot(places, omega, marker, mfc="none", color=colour, label=name)
-    names = [scene_name(forms, name).replace(", ", ",\n") for name in forms.scene.values.tolist()]
+    names = [
+        scene_name(forms, name).replace(", ", ",\n")
+        for name in forms.scene.values.tolist()
+    ]
     panel.set_xticks(places, names)
     panel.set(ylabel="ω (rad/s)", ylim=(-0.05, None))
     panel.margins(x=0.12)
-    panel.legend(loc="upper center", bbox_to_anchor=(0.5, -0.27), ncols=3, handlelength=3.2)
+    panel.legend(
+        loc="upper center", bbox_to_anchor=(0.5, -0.27), ncols=3, handlelength=3.2
+    )
 
 
 def _spread(panel: Axes, forms: xr.Dataset) -> None:
-    panel.plot(forms.samples, forms.phase_spread_y, marker="s", color=style.ORANGE, markersize=4)
+    panel.plot(
+        forms.samples,
+        forms.phase_spread_y,
+        marker="s",
+        color=style.ORANGE,
+        markersize=4,
+    )
     lacking = forms.phase_spread_y.where(forms.fourier_rank < forms.fourier_columns)
     look = {"ms": 9, "mfc": "none", "color": style.RED, "label": "Γ lacks full rank"}
     panel.loglog(forms.samples, lacking, "o", **look)
     panel.set(xlabel="samples $N$", ylabel="spread of the largest y (m)")
-    panel.set_xticks(forms.samples.values[[0, 3, 4, 5]], forms.samples.values[[0, 3, 4, 5]])
+    panel.set_xticks(
+        forms.samples.values[[0, 3, 4, 5]], forms.samples.values[[0, 3, 4, 5]]
+    )
     panel.xaxis.minorticks_off()
     if np.ptp(np.log10(panel.get_ylim())) > DECADES:
         panel.yaxis.minorticks_off()

@@ -35,7 +35,9 @@ _ROW, _HEADS = 0.2, 1.2
 def draw(benchmark: xr.Dataset, atlas: xr.Dataset) -> Figure:
     """Both tables, from datasets ``benchmark`` and ``failure_atlas``."""
     heights = [_ROW * each.sizes["solver"] + _HEADS for each in (benchmark, atlas)]
-    figure, axes = style.new_figure(style.PAGE, sum(heights) + 0.3, nrows=2, height_ratios=heights)
+    figure, axes = style.new_figure(
+        style.PAGE, sum(heights) + 0.3, nrows=2, height_ratios=heights
+    )
     _draw_benchmark(axes[0, 0], benchmark.transpose("solver", "problem", "tol"))
     _draw_atlas(axes[1, 0], atlas.transpose("solver", "scene"))
     style.panel_letter(axes[0, 0], "a", "integrators with events")
@@ -55,10 +57,17 @@ def _draw_benchmark(axes: Axes, found: xr.Dataset) -> None:
         worst = found[name].where(wrong, 0).max("tol").values
         for row, column in np.argwhere(worst > 0):
             axes.text(
-                column, row + shift, f"{sign}{worst[row, column]}", ha="center", va="center",
-                fontsize=5, color=style.BLACK,
-            )  # fmt: skip
-    silent = (found.verdict == Reliability.silently_wrong).sum(["problem", "tol"]).values
+                column,
+                row + shift,
+                f"{sign}{worst[row, column]}",
+                ha="center",
+                va="center",
+                fontsize=5,
+                color=style.BLACK,
+            )
+    silent = (
+        (found.verdict == Reliability.silently_wrong).sum(["problem", "tol"]).values
+    )
     _label(axes, found, found.problem.values.tolist(), silent)
 
 
@@ -70,16 +79,21 @@ def _draw_atlas(axes: Axes, found: xr.Dataset) -> None:
         if 0 < error[row, column] < np.inf:
             words.append(number(error[row, column], 1))
         text = "\N{THIN SPACE}".join(words)
-        axes.text(column, row, text, ha="center", va="center", fontsize=5, color=style.BLACK)
+        axes.text(
+            column, row, text, ha="center", va="center", fontsize=5, color=style.BLACK
+        )
     silent = (verdict == Reliability.silently_wrong).sum(axis=1)
     _label(axes, found, found.scene.values.tolist(), silent)
 
 
 def _paint(axes: Axes, verdict: np.ndarray, columns: int) -> None:
     axes.imshow(
-        verdict, aspect="auto", extent=(-0.5, columns - 0.5, len(verdict) - 0.5, -0.5),
-        interpolation="nearest", **style.category_colours(_COLOURS),
-    )  # fmt: skip
+        verdict,
+        aspect="auto",
+        extent=(-0.5, columns - 0.5, len(verdict) - 0.5, -0.5),
+        interpolation="nearest",
+        **style.category_colours(_COLOURS),
+    )
 
 
 def _label(axes: Axes, found: xr.Dataset, names: list[str], silent: np.ndarray) -> None:
@@ -89,9 +103,16 @@ def _label(axes: Axes, found: xr.Dataset, names: list[str], silent: np.ndarray) 
     axes.axvline(columns - 0.5, color=style.GREY, lw=0.8)
     texts = [*map(style.symbols, names), "silently wrong"]
     axes.set_xticks(
-        range(columns + 1), texts, rotation=40, ha="right", rotation_mode="anchor", fontsize=5.5
+        range(columns + 1),
+        texts,
+        rotation=40,
+        ha="right",
+        rotation_mode="anchor",
+        fontsize=5.5,
     )
-    axes.set_yticks(range(rows), [style.symbols(each) for each in found.solver.values.tolist()])
+    axes.set_yticks(
+        range(rows), [style.symbols(each) for each in found.solver.values.tolist()]
+    )
     for label, role in zip(axes.get_yticklabels(), found.role.values, strict=True):
         label.set_fontweight("bold" if role != Role.public else "normal")
     axes.set_xlim(-0.5, columns + 0.5)

@@ -14,7 +14,9 @@ MAPS = (
     "the belt is reached): (a) is contact lost, (b) dominant frequency of y, (c) peak contact "
     "force, (d) largest displacement, within the map's horizon."
 )
-ALT = "Four maps over both spring angles, coloured by the cheapest adequate model level."
+ALT = (
+    "Four maps over both spring angles, coloured by the cheapest adequate model level."
+)
 
 
 def caption(ladder: xr.Dataset) -> str:
@@ -54,7 +56,9 @@ def draw(ladder: xr.Dataset) -> Figure:
         present |= set(levels.ravel().tolist())
         style.draw_map(panel, ladder, levels, **colours)
         style.panel_letter(panel, letter, QUESTION_NAMES[question])
-    keys = style.patches((colour_of(level), level.label) for level in Level if level in present)
+    keys = style.patches(
+        (colour_of(level), level.label) for level in Level if level in present
+    )
     figure.legend(handles=keys, loc="outside upper center", ncols=min(len(keys), 4))
     foot(figure, ladder)
     return figure

@@ -28,7 +28,9 @@ def draw(benchmark: xr.Dataset) -> Figure:
     known = benchmark.error.notnull().any(["solver", "tol"]).values
     groups = list(dict.fromkeys(benchmark.group.values[known].tolist()))
     rows = -(-len(groups) // COLUMNS)
-    figure, axes = new_figure(PAGE, 1.6 * rows + 1.0, nrows=rows, ncols=COLUMNS, sharex=True)
+    figure, axes = new_figure(
+        PAGE, 1.6 * rows + 1.0, nrows=rows, ncols=COLUMNS, sharex=True
+    )
     methods = benchmark.solver.values.tolist()
     for index, panel in enumerate(axes.flat):
         if index >= len(groups):
@@ -41,7 +43,10 @@ def draw(benchmark: xr.Dataset) -> Figure:
     for panel in axes[-1]:
         panel.set_xlabel("error over growth")
     figure.legend(
-        *axes[0, 0].get_legend_handles_labels(), loc="outside upper center", ncols=5, fontsize=6.5
+        *axes[0, 0].get_legend_handles_labels(),
+        loc="outside upper center",
+        ncols=5,
+        fontsize=6.5,
     )
     foot(figure, benchmark)
     return figure

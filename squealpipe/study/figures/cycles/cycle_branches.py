@@ -11,7 +11,12 @@ from squealpipe.plotting import style
 from squealpipe.plotting.cycles import key_entries, largest, trace_branch
 from squealpipe.plotting.origin import angle_pair, parameter, scene_title
 
-READS = ("cycles/branch_F3_down", "cycles/branch_F3_up", "cycles/branch_flutter", "cycles/extremes")
+READS = (
+    "cycles/branch_F3_down",
+    "cycles/branch_F3_up",
+    "cycles/branch_flutter",
+    "cycles/extremes",
+)
 CAPTION = (
     "Limit cycles of the full model with dashpots over the friction coefficient: largest |x| of "
     "the cycle, one panel for each spring arrangement in which cycles or different ends of long "
@@ -24,27 +29,35 @@ AT_REST = 0.5
 """Range of late |x|, in l_pre, below which all long runs of a scene end alike."""
 
 
-def draw(down: xr.Dataset, up: xr.Dataset, flutter: xr.Dataset, extremes: xr.Dataset) -> Figure:
+def draw(
+    down: xr.Dataset, up: xr.Dataset, flutter: xr.Dataset, extremes: xr.Dataset
+) -> Figure:
     """A panel for each scene that moves at all."""
     unit = parameter(extremes, "preload")
     angles = json.loads(flutter.attrs["config"])["cycles"]["flutter"]
     onset = "flutter onset" if flutter.sizes["point"] else "no branch"
     panels = {
         "F3": (scene_title("F3"), (down, up)),
-        "flutter": (f"{angle_pair(*(angle * np.pi for angle in angles))}, {onset}", (flutter,)),
+        "flutter": (
+            f"{angle_pair(*(angle * np.pi for angle in angles))}, {onset}",
+            (flutter,),
+        ),
         "F2d": (scene_title("F2d"), ()),
     }
     sizes = {name: extremes.late_max_x.sel(scene=name).values / unit for name in panels}
     moving = [
         name
         for name, (_, branches) in panels.items()
-        if np.ptp(sizes[name]) > AT_REST or any(branch.sizes["point"] for branch in branches)
+        if np.ptp(sizes[name]) > AT_REST
+        or any(branch.sizes["point"] for branch in branches)
     ] or ["F3"]
     figure, axes = style.new_figure(style.PAGE, 3.1, ncols=len(moving))
     for letter, panel, name in zip("abc", axes[0], moving, strict=False):
         title, branches = panels[name]
         friction = np.broadcast_to(extremes.mu.values[:, None], sizes[name].shape)
-        runs = panel.plot(friction, sizes[name], ".", color=style.GREY, markersize=2.5, zorder=1)
+        runs = panel.plot(
+            friction, sizes[name], ".", color=style.GREY, markersize=2.5, zorder=1
+        )
         runs[0].set_label("long runs")
         for branch in branches:
             trace_branch(panel, branch.mu.values, largest(branch, "x") / unit, branch)
@@ -59,7 +72,9 @@ def draw(down: xr.Dataset, up: xr.Dataset, flutter: xr.Dataset, extremes: xr.Dat
 def _enlarge(panel: Axes, branches: tuple[xr.Dataset, ...], unit: float) -> None:
     """An inset of branches that would lie on the axis."""
     drawn = [branch for branch in branches if branch.sizes["point"] > 1]
-    top = max((float(np.abs(branch.x_max).max()) / unit for branch in drawn), default=0.0)
+    top = max(
+        (float(np.abs(branch.x_max).max()) / unit for branch in drawn), default=0.0
+    )
     if not 0.0 < top < 0.1 * panel.get_ylim()[1]:
         return
     inset = panel.inset_axes((0.12, 0.62, 0.45, 0.34))

@@ -28,7 +28,10 @@ def draw(cycle: xr.Dataset) -> Figure:
         draw_regimes(rate, cycle.time.values, cycle.vx_path.values, cycle.regime_path)
         height, speed = parameter(cycle, "preload"), parameter(cycle, "belt_speed")
         path.axhline(
-            height, color=style.GREY, lw=0.6, label=r"$l_\mathrm{pre}$: contact is lost above"
+            height,
+            color=style.GREY,
+            lw=0.6,
+            label=r"$l_\mathrm{pre}$: contact is lost above",
         )
         path.set(aspect="equal", adjustable="datalim")
         rate.axhline(speed, color=style.GREY, lw=0.6, ls="--", label="belt speed")

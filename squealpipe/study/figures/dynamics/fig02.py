@@ -20,7 +20,9 @@ ALT = "Four histories of the contact force with their springs; red strips mark l
 
 def draw(*runs: xr.Dataset) -> Figure:
     """Four panels in the order of the paper."""
-    figure, axes = style.new_figure(style.PAGE, 4.3, nrows=2, ncols=2, sharex=True, sharey=True)
+    figure, axes = style.new_figure(
+        style.PAGE, 4.3, nrows=2, ncols=2, sharex=True, sharey=True
+    )
     for panel, letter, run in zip(axes.flat, "abcd", runs, strict=True):
         draw_force(panel, run)
         angles = style.pi_label(float(run.alpha1)), style.pi_label(float(run.alpha2))
@@ -30,7 +32,9 @@ def draw(*runs: xr.Dataset) -> Figure:
     return figure
 
 
-def inset_mechanism(axes: Axes, run: xr.Dataset, place: tuple[float, float, float, float]) -> None:
+def inset_mechanism(
+    axes: Axes, run: xr.Dataset, place: tuple[float, float, float, float]
+) -> None:
     """The spring arrangement of a run with its belt, at a place in axes fractions."""
     inset = axes.inset_axes(place)
     direction = direction_of(parameter(run, "belt_speed"))

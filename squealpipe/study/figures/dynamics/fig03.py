@@ -18,7 +18,10 @@ CAPTION = (
 ALT = "Time histories of x and y with the springs, and below them x over a much longer time."
 WIDTH = 4.4
 """Inches: on page one it is beside Fig. 7, where the text of a wider one would be too small."""
-TITLES = {"x": "x, along the belt", "y": r"y, away from the belt (dotted: $l_\mathrm{pre}$)"}
+TITLES = {
+    "x": "x, along the belt",
+    "y": r"y, away from the belt (dotted: $l_\mathrm{pre}$)",
+}
 READINGS = (
     ("simulate/F3_long", style.X_COLOUR, "as printed"),
     ("corrected/simulate/F3_long", style.BLACK, "one sign"),
@@ -28,7 +31,9 @@ READINGS = (
 def draw(runs: Mapping[str, xr.Dataset]) -> Figure:
     """Two panels, and a third one where the study has long runs."""
     run = runs["simulate/F3"]
-    long = [(runs[name], colour, words) for name, colour, words in READINGS if name in runs]
+    long = [
+        (runs[name], colour, words) for name, colour, words in READINGS if name in runs
+    ]
     rows = 2 + bool(long)
     figure, axes = style.new_figure(WIDTH, 1.5 * rows, nrows=rows)
     for panel, letter, name, colour in zip(

@@ -24,13 +24,20 @@ def draw(run: xr.Dataset) -> Figure:
     panel = axes[0, 0]
     x, y = run.x.values, run.y.values
     points = np.stack([x, y], axis=-1)
-    pieces, time = list(np.stack([points[:-1], points[1:]], axis=1)), run.time.values[:-1]
-    orbit = LineCollection(pieces, cmap="viridis", array=time, linewidths=0.5, rasterized=True)
+    pieces, time = (
+        list(np.stack([points[:-1], points[1:]], axis=1)),
+        run.time.values[:-1],
+    )
+    orbit = LineCollection(
+        pieces, cmap="viridis", array=time, linewidths=0.5, rasterized=True
+    )
     panel.add_collection(orbit)
     _springs(panel, run, 0.0, 0.0, (LIGHT, LIGHT))
     _springs(panel, run, x[-1], y[-1], SPRING_COLOURS)
     label = r"$l_\mathrm{pre}$: contact is lost above"
-    panel.axhline(float(run.preload), color="black", linestyle=":", linewidth=0.8, label=label)
+    panel.axhline(
+        float(run.preload), color="black", linestyle=":", linewidth=0.8, label=label
+    )
     panel.set(xlabel="x (m)", ylabel="y (m)", aspect="equal")
     panel.autoscale_view()
     panel.legend(loc="lower right", bbox_to_anchor=(1, 1), borderaxespad=0)
@@ -38,12 +45,23 @@ def draw(run: xr.Dataset) -> Figure:
     return figure
 
 
-def _springs(axes: Axes, run: xr.Dataset, x: float, y: float, colours: tuple[str, str]) -> None:
+def _springs(
+    axes: Axes, run: xr.Dataset, x: float, y: float, colours: tuple[str, str]
+) -> None:
     """Both springs and the mass, displaced to (x, y)."""
     lengths = float(run.length1), float(run.length2)
     angles = float(run.alpha1), float(run.alpha2)
     width = 0.06 * min(lengths)
-    for path, colour in zip(displaced_springs(x, y, *angles, lengths, width), colours, strict=True):
+    for path, colour in zip(
+        displaced_springs(x, y, *angles, lengths, width), colours, strict=True
+    ):
         axes.plot(*path.T, color=colour, linewidth=1.0, zorder=3)
         axes.plot(*path[-1], "^", color=GREY, markersize=5, zorder=4)
-    axes.plot(x, y, "o", color=RED if colours == SPRING_COLOURS else LIGHT, markersize=7, zorder=5)
+    axes.plot(
+        x,
+        y,
+        "o",
+        color=RED if colours == SPRING_COLOURS else LIGHT,
+        markersize=7,
+        zorder=5,
+    )

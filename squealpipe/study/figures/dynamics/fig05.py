@@ -26,10 +26,17 @@ def draw(first: xr.Dataset, second: xr.Dataset) -> Figure:
     panel.get_lines()[0].set_label(f"α₁ = α₂ = {style.pi_label(float(first.alpha1))}")
     few = second.isel(time=slice(None, None, max(1, first.time.size // 125)))
     panel.plot(
-        few.time, few.normalized_contact_force, "o", color=style.ORANGE, mfc="none", ms=4,
+        few.time,
+        few.normalized_contact_force,
+        "o",
+        color=style.ORANGE,
+        mfc="none",
+        ms=4,
         label=f"α₁ = α₂ = {style.pi_label(float(second.alpha1))}",
-    )  # fmt: skip
-    difference = np.abs(first.normalized_contact_force - second.normalized_contact_force).max()
+    )
+    difference = np.abs(
+        first.normalized_contact_force - second.normalized_contact_force
+    ).max()
     panel.set_title(f"largest difference {number(float(difference), 2)}", loc="right")
     inset_mechanism(panel, first, (1.0, 0.3, 0.16, 0.7))
     figure.legend(loc="outside upper left", ncols=3)

@@ -19,14 +19,18 @@ CAPTION = (
     "unit of time. (c) Share of the time off the belt. (d) Largest contact force over the preload. "
     "The cross is the configuration of Fig. 3."
 )
-ALT = "Four maps over both angles: motion, impacts per time, time separated, peak force."
+ALT = (
+    "Four maps over both angles: motion, impacts per time, time separated, peak force."
+)
 
 
 def draw(hammering: xr.Dataset) -> Figure:
     """Four maps."""
     figure, axes = style.new_figure(style.PAGE, 6.2, nrows=2, ncols=2)
     plot(hammering, ax=axes[0, 0])
-    style.panel_letter(axes[0, 0], "a", f"motion to t = {number(float(hammering.t_end), 4)} s")
+    style.panel_letter(
+        axes[0, 0], "a", f"motion to t = {number(float(hammering.t_end), 4)} s"
+    )
     force = hammering.peak_contact_force
     scale = {"norm": LogNorm(1.0, max(2.0, float(force.max())))}
     quantities: list[tuple[str, str, xr.DataArray, dict[str, Any]]] = [
@@ -34,7 +38,9 @@ def draw(hammering: xr.Dataset) -> Figure:
         ("c", "share of time separated", hammering.separated_fraction, {"vmin": 0}),
         ("d", r"peak force over $k_3 l_\mathrm{pre}$", force, scale),
     ]
-    for panel, (letter, title, values, scale) in zip(axes.flat[1:], quantities, strict=True):
+    for panel, (letter, title, values, scale) in zip(
+        axes.flat[1:], quantities, strict=True
+    ):
         mesh = style.draw_map(panel, hammering, values, cmap="viridis", **scale)
         bar = figure.colorbar(mesh, ax=panel, shrink=0.85)
         if letter == "d":

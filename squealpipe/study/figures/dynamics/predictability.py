@@ -30,8 +30,12 @@ def draw(hammering: xr.Dataset) -> Figure:
     horizon = hammering.predictability_horizon.values
     shown = np.where(horizon < t_end, horizon, np.nan)
     low = np.nanmin(shown) if np.isfinite(shown).any() else 0.1 * t_end
-    mesh = style.draw_map(axes[0, 0], hammering, shown, cmap="viridis_r", vmin=low, vmax=t_end)
-    figure.colorbar(mesh, ax=axes[0, 0], label="predictability horizon (s)", shrink=0.85)
+    mesh = style.draw_map(
+        axes[0, 0], hammering, shown, cmap="viridis_r", vmin=low, vmax=t_end
+    )
+    figure.colorbar(
+        mesh, ax=axes[0, 0], label="predictability horizon (s)", shrink=0.85
+    )
     reached = np.count_nonzero(horizon < t_end)
     style.panel_letter(axes[0, 0], "a", f"reached in {reached} of {horizon.size}")
     growth = hammering.lyapunov_exponent.values * t_end
@@ -40,7 +44,13 @@ def draw(hammering: xr.Dataset) -> Figure:
     for code, dash in zip(np.unique(hammering.motion.values).tolist(), cycle(DASHES)):
         chosen = growth[hammering.motion.values == code]
         label = f"{style.flag_words(names[code])} ({chosen.size})"
-        panel.ecdf(chosen, color=style.REGIME_COLOURS[names[code]], ls=dash, lw=1.4, label=label)
+        panel.ecdf(
+            chosen,
+            color=style.REGIME_COLOURS[names[code]],
+            ls=dash,
+            lw=1.4,
+            label=label,
+        )
     regular = float(hammering.attrs["regular_growth"])
     panel.axvline(regular, color=style.GREY, ls="--", label="square of time")
     panel.set_xlabel(f"ln of the growth over t = {number(t_end, 4)} s")

@@ -35,7 +35,9 @@ def draw(refined: xr.Dataset, boundary: xr.Dataset) -> Figure:
     _map(axes[0, 0], refined.assign(computed=_clustered(refined.computed)))
     window = _intricate(refined)
     corner, sides = window[::2], (window[1] - window[0], window[3] - window[2])
-    axes[0, 0].add_patch(Rectangle(corner, *sides, fill=False, edgecolor=style.RED, linewidth=1.2))
+    axes[0, 0].add_patch(
+        Rectangle(corner, *sides, fill=False, edgecolor=style.RED, linewidth=1.2)
+    )
     size, run = refined.alpha1.size, 100 * float(refined.computed.mean())
     style.panel_letter(axes[0, 0], "a", f"{size} × {size}, {run:.1f} % run")
     part = refined.sel(alpha1=slice(*window[:2]), alpha2=slice(*window[2:]))
@@ -47,7 +49,9 @@ def draw(refined: xr.Dataset, boundary: xr.Dataset) -> Figure:
     axes[0, 1].set(xlim=window[:2], ylim=window[2:])
     wrong, checked = int(refined.inherited_wrong), int(refined.inherited_checked)
     style.panel_letter(axes[0, 1], "b", f"magnified; {wrong} of {checked} others wrong")
-    figure.legend(handles=style.patches(TONES.items()), loc="outside lower center", ncols=4)
+    figure.legend(
+        handles=style.patches(TONES.items()), loc="outside lower center", ncols=4
+    )
     return figure
 
 
@@ -71,7 +75,9 @@ def _intricate(refined: xr.Dataset) -> tuple[float, float, float, float]:
 def _clustered(computed: xr.DataArray) -> xr.DataArray:
     """Cells that were run beside another one: the lone points of the coarse grid make moiré."""
     ran = computed.values.astype(bool)
-    return computed.copy(data=ran & (uniform_filter(9.0 * ran, 3, mode="constant") > 1.5))
+    return computed.copy(
+        data=ran & (uniform_filter(9.0 * ran, 3, mode="constant") > 1.5)
+    )
 
 
 def _map(axes: Axes, refined: xr.Dataset) -> None:

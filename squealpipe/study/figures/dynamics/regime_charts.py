@@ -35,7 +35,9 @@ def caption(angles: xr.Dataset, scenes: Mapping[str, xr.Dataset]) -> str:
     """What the lines mean, and the distances of each scene."""
     horizon = number(float(angles.t_end) / time_unit(angles))
     charts = [angles, *scenes.values()]
-    known = [which for which in LOOKS if any(which.name in each.boundary for each in charts)]
+    known = [
+        which for which in LOOKS if any(which.name in each.boundary for each in charts)
+    ]
     distances = "; ".join(
         f"{_title(name)}: {_listed(known, angles, place, np.degrees(1.0))} deg; "
         f"{_listed(known, scenes[name], 0, 1.0)}"
@@ -74,11 +76,17 @@ def draw(angles: xr.Dataset, scenes: Mapping[str, xr.Dataset]) -> Figure:
     for name, at in zip(names, angles.design.values, strict=True):
         left = at[0] < float(angles.range[0].mean())
         panels[0].annotate(
-            _title(name).rpartition(", ")[2], at, (-5 if left else 5, 5),
-            textcoords="offset points", ha="right" if left else "left",
-            color=style.RED, path_effects=style.HALO,
-        )  # fmt: skip
-    for panel, letter, name in zip(panels[1:], ascii_lowercase[1:], names, strict=False):
+            _title(name).rpartition(", ")[2],
+            at,
+            (-5 if left else 5, 5),
+            textcoords="offset points",
+            ha="right" if left else "left",
+            color=style.RED,
+            path_effects=style.HALO,
+        )
+    for panel, letter, name in zip(
+        panels[1:], ascii_lowercase[1:], names, strict=False
+    ):
         _draw(panel, scenes[name])
         panel.set(xlabel="κ", ylabel="μ")
         style.panel_letter(panel, letter, _title(name))
@@ -86,8 +94,13 @@ def draw(angles: xr.Dataset, scenes: Mapping[str, xr.Dataset]) -> Figure:
         panel.remove()
     handles, _ = key_entries(panels[: 1 + len(names)])
     charts = [angles, *scenes.values()]
-    shown = [max((_kinds(each) == k).mean() for each in charts) > SEEN for k in range(len(KINDS))]
-    tones = style.patches(kind for kind, there in zip(KINDS, shown, strict=True) if there)
+    shown = [
+        max((_kinds(each) == k).mean() for each in charts) > SEEN
+        for k in range(len(KINDS))
+    ]
+    tones = style.patches(
+        kind for kind, there in zip(KINDS, shown, strict=True) if there
+    )
     figure.legend(handles=[*tones, *handles], loc="outside lower center", ncols=3)
     return figure
 
@@ -100,12 +113,16 @@ def _draw(panel: Axes, chart: xr.Dataset) -> None:
     x, y = (chart[str(name)].values for name in chart.parameter.values)
     tones = style.category_colours([tone for tone, _ in KINDS])
     extent = chart.range.values.ravel()
-    panel.imshow(_kinds(chart).T, origin="lower", extent=extent, interpolation="none", **tones)
+    panel.imshow(
+        _kinds(chart).T, origin="lower", extent=extent, interpolation="none", **tones
+    )
     for which, (label, look) in LOOKS.items():
         on = chart.line.values == which
         if which.name not in chart.boundary.values:
             continue
-        style.draw_lines(panel, (x[on], y[on]), chart.curve.values[on], label=label, **look)
+        style.draw_lines(
+            panel, (x[on], y[on]), chart.curve.values[on], label=label, **look
+        )
     look = {"color": style.RED, "ms": 7, "mew": 1.8, "path_effects": style.HALO}
     panel.plot(*chart.design.values.T, "x", label="scene", **look)
     panel.set(xlim=extent[:2], ylim=extent[2:], aspect="auto", box_aspect=1)
@@ -116,7 +133,11 @@ def _title(name: str) -> str:
     return scene_title(scene) if scene in SCENES else scene
 
 
-def _listed(known: Iterable[ChartLine], chart: xr.Dataset, place: int, unit: float) -> str:
-    by_line = dict(zip(chart.boundary.values, unit * chart.distance.values[place], strict=True))
+def _listed(
+    known: Iterable[ChartLine], chart: xr.Dataset, place: int, unit: float
+) -> str:
+    by_line = dict(
+        zip(chart.boundary.values, unit * chart.distance.values[place], strict=True)
+    )
     found = (by_line.get(which.name, np.inf) for which in known)
     return ", ".join(number(far, 3) if np.isfinite(far) else "none" for far in found)

@@ -29,7 +29,9 @@ def draw(run: xr.Dataset, sizes: xr.Dataset) -> Figure:
     panel = axes[0, 0]
     panel.plot(run.time, run.x, color=style.X_COLOUR, linewidth=0.25, rasterized=True)
     shown = SCENES["F3"].t_end * time_unit(run)
-    panel.axvspan(0, shown, color=style.GREY, alpha=0.25, linewidth=0, label="shown in Fig. 3")
+    panel.axvspan(
+        0, shown, color=style.GREY, alpha=0.25, linewidth=0, label="shown in Fig. 3"
+    )
     panel.axhline(0, color=style.GREY, linewidth=0.5)
     panel.set(xlabel="t (s)", ylabel="x (m)", xlim=(0, float(run.time[-1])))
     panel.legend(loc="lower right", bbox_to_anchor=(1, 0.98))
@@ -42,10 +44,14 @@ def draw(run: xr.Dataset, sizes: xr.Dataset) -> Figure:
 def _sizes(axes: Axes, sizes: xr.Dataset) -> None:
     speed = np.abs(sizes.belt_speed.values)
     kinds = [
-        (sizes.motion.values == k, "o" if name == "whirl" else "s", style.REGIME_COLOURS[name],
-         style.flag_words(name))
+        (
+            sizes.motion.values == k,
+            "o" if name == "whirl" else "s",
+            style.REGIME_COLOURS[name],
+            style.flag_words(name),
+        )
         for k, name in meanings(sizes.motion).items()
-    ]  # fmt: skip
+    ]
     changed = sizes.motion_changed.values == 1
     kinds.append((changed, "x", style.BLACK, "another kind in the last quarter"))
     for chosen, marker, colour, words in kinds:
@@ -57,11 +63,17 @@ def _sizes(axes: Axes, sizes: xr.Dataset) -> None:
     axes.loglog(line, energy, "--", color=style.GREY, label="energy at speed V")
     if np.isfinite(sizes.slope):
         fit = float(sizes.offset) + float(sizes.slope) * line
-        label = f"{number(float(sizes.offset))} m + {number(float(sizes.slope))} s · |V|"
+        label = (
+            f"{number(float(sizes.offset))} m + {number(float(sizes.slope))} s · |V|"
+        )
         low, high = sizes.fit_range.values
         inside = (line >= low) & (line <= high)
-        axes.loglog(line[inside], fit[inside], color=style.BLACK, linewidth=0.8, label=label)
-        axes.loglog(line[line <= low], fit[line <= low], ":", color=style.BLACK, linewidth=0.8)
+        axes.loglog(
+            line[inside], fit[inside], color=style.BLACK, linewidth=0.8, label=label
+        )
+        axes.loglog(
+            line[line <= low], fit[line <= low], ":", color=style.BLACK, linewidth=0.8
+        )
     axes.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
     for axis in (axes.xaxis, axes.yaxis):
         axis.set_major_formatter("{x:g}")

@@ -22,7 +22,13 @@ CAPTION = (
 ALT = "Three scatter plots of feasible parameters and two bar charts over the paper's statements."
 PANELS = (
     ("friction, stiffness", "kappa", "mu", "κ = k₃/k", "μ"),
-    ("stiffness, length", "length_ratio", "kappa", r"λ = $L/l_\mathrm{pre}$", "κ = k₃/k"),
+    (
+        "stiffness, length",
+        "length_ratio",
+        "kappa",
+        r"λ = $L/l_\mathrm{pre}$",
+        "κ = k₃/k",
+    ),
     (
         "belt speed, length",
         "length_ratio",
@@ -47,24 +53,34 @@ def draw(inference: xr.Dataset) -> Figure:
     figure.clear()
     grid = figure.add_gridspec(2, 1, height_ratios=(1.15, 1))
     upper, lower = figure.add_subfigure(grid[0]), figure.add_subfigure(grid[1])
-    for panel, letter, (title, *names) in zip(upper.subplots(1, 3), "abc", PANELS, strict=True):
+    for panel, letter, (title, *names) in zip(
+        upper.subplots(1, 3), "abc", PANELS, strict=True
+    ):
         _scatter(panel, inference, *names)
         style.panel_letter(panel, letter, title)
         if letter == "a":
             panel.axhline(1 / np.tan(0.4 * np.pi), color=style.GREY, ls="--", lw=0.8)
-    upper.legend(*panel.get_legend_handles_labels(), loc="outside lower center", ncols=3)
+    upper.legend(
+        *panel.get_legend_handles_labels(), loc="outside lower center", ncols=3
+    )
     shares, margins = lower.subplots(1, 2, sharey=True)
     places = np.arange(inference.sizes["statement"])
     for row, (label, colour, _) in enumerate(LOOKS):
         alone = 100 * inference.share_cut_alone.values[row]
-        shares.barh(places + 0.27 * (row - 1), alone, color=colour, height=0.25, label=label)
+        shares.barh(
+            places + 0.27 * (row - 1), alone, color=colour, height=0.25, label=label
+        )
     shares.set_yticks(places, map(in_words, inference.statement.values))
     shares.invert_yaxis()
     shares.set(xlabel="share of the samples, %")
-    lower.legend(*shares.get_legend_handles_labels(), loc="outside lower center", ncols=3)
+    lower.legend(
+        *shares.get_legend_handles_labels(), loc="outside lower center", ncols=3
+    )
     style.panel_letter(shares, "d", "excluded by one alone")
     values = np.maximum(of_study(inference).baseline_margin.values, -1.0)
-    bars = margins.barh(places, values, color=np.where(values > 0, style.GREEN, style.ORANGE))
+    bars = margins.barh(
+        places, values, color=np.where(values > 0, style.GREEN, style.ORANGE)
+    )
     margins.bar_label(bars, [number(value, 2) for value in values], padding=3, size=6)
     margins.axvline(0, color=style.BLACK, lw=0.6)
     margins.set(xlabel="margin at the study's parameters")
@@ -79,18 +95,28 @@ def _scatter(
         one = inference.isel(reading=row)
         chosen = one.feasible.values == 1
         panel.plot(
-            one[x].values[chosen], one[y].values[chosen], marker, ms=2.6, mew=0.5, mfc="none",
-            color=colour, label=f"{label} ({int(one.feasible_count)})",
-        )  # fmt: skip
+            one[x].values[chosen],
+            one[y].values[chosen],
+            marker,
+            ms=2.6,
+            mew=0.5,
+            mfc="none",
+            color=colour,
+            label=f"{label} ({int(one.feasible_count)})",
+        )
     own = [abs(float(inference[f"baseline_{name}"])) for name in (x, y)]
-    panel.plot(*own, "*", ms=9, mew=0.8, mfc="white", color=style.BLACK, label="this study")
+    panel.plot(
+        *own, "*", ms=9, mew=0.8, mfc="white", color=style.BLACK, label="this study"
+    )
     for name, axis, scale, limits in (
         (x, panel.xaxis, panel.set_xscale, panel.set_xlim),
         (y, panel.yaxis, panel.set_yscale, panel.set_ylim),
     ):
         if name in LOGARITHMIC:
             scale("log")
-            axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0) if name == x else (1.0,)))
+            axis.set_major_locator(
+                LogLocator(subs=(1.0, 2.0, 5.0) if name == x else (1.0,))
+            )
             axis.set_major_formatter("{x:g}")
             axis.set_minor_formatter(NullFormatter())
         values = inference[name].values

@@ -42,19 +42,32 @@ def draw(angles: xr.Dataset, dashpots: xr.Dataset) -> Figure:
     without, change, plane = axes[0]
     undamped, damped = angles.critical_mu_undamped.values, angles.critical_mu.values
     mesh = style.draw_map(
-        without, angles, np.minimum(undamped, 2 * LARGEST), cmap="viridis", vmin=0.0, vmax=LARGEST
+        without,
+        angles,
+        np.minimum(undamped, 2 * LARGEST),
+        cmap="viridis",
+        vmin=0.0,
+        vmax=LARGEST,
     )
-    figure.colorbar(mesh, ax=without, label="critical μ", extend="max", location="bottom")
+    figure.colorbar(
+        mesh, ax=without, label="critical μ", extend="max", location="bottom"
+    )
     shown = np.fmin(undamped, damped) < LARGEST
     moved = np.minimum(damped, LARGEST) - np.minimum(undamped, LARGEST)
     limit = float(np.percentile(abs(moved[shown]), 95)) if shown.any() else 0.0
     change.set_facecolor(style.LIGHT)
     mesh = style.draw_map(
-        change, angles, np.where(shown, moved, np.nan), cmap="RdBu", vmin=-limit or -1.0,
+        change,
+        angles,
+        np.where(shown, moved, np.nan),
+        cmap="RdBu",
+        vmin=-limit or -1.0,
         vmax=limit or 1.0,
-    )  # fmt: skip
+    )
     change.set_ylabel("")
-    figure.colorbar(mesh, ax=change, label="change of critical μ", extend="both", location="bottom")
+    figure.colorbar(
+        mesh, ax=change, label="change of critical μ", extend="both", location="bottom"
+    )
     plane.set(xlabel="dashpot c₁ (N s/m)", ylabel="dashpot c₂ (N s/m)", box_aspect=1)
     _draw_plane(figure, plane, dashpots)
     style.panel_letter(without, "a", "no dashpots")
@@ -76,10 +89,18 @@ def _draw_plane(figure: Figure, plane: Axes, dashpots: xr.Dataset) -> None:
         style.say_instead(plane, f"{number(high)}\nwith any dashpots")
         return
     mesh = plane.pcolormesh(
-        c1, c2, np.minimum(values, 10 * high).T, shading="nearest", rasterized=True, cmap="viridis",
-        vmin=low, vmax=high,
-    )  # fmt: skip
+        c1,
+        c2,
+        np.minimum(values, 10 * high).T,
+        shading="nearest",
+        rasterized=True,
+        cmap="viridis",
+        vmin=low,
+        vmax=high,
+    )
     level = float(dashpots.critical_mu_undamped)
     if values.min() < level < values.max():
-        plane.contour(c1, c2, values.T, levels=[level], colors=[style.BLACK], linewidths=1.0)
+        plane.contour(
+            c1, c2, values.T, levels=[level], colors=[style.BLACK], linewidths=1.0
+        )
     figure.colorbar(mesh, ax=plane, label="critical μ", extend="max", location="bottom")

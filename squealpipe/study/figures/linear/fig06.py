@@ -35,19 +35,25 @@ def caption(stability: xr.Dataset, _: xr.Dataset, __: xr.Dataset) -> str:
 CAPTION = caption
 
 
-def draw(stability: xr.Dataset, quasi_static: xr.Dataset, boundaries: xr.Dataset) -> Figure:
+def draw(
+    stability: xr.Dataset, quasi_static: xr.Dataset, boundaries: xr.Dataset
+) -> Figure:
     """The paper's three tones in both readings of Eq. (11)."""
     figure, axes = style.new_figure(style.PAGE, 3.95, ncols=2)
     readings = (
         ("Eq. (11) as printed", quasi_static.possible_as_printed, Boundary.no_coupling),
         ("reaction force positive", quasi_static.possible, None),
     )
-    for panel, letter, (title, possible, extra) in zip(axes[0], "ab", readings, strict=True):
+    for panel, letter, (title, possible, extra) in zip(
+        axes[0], "ab", readings, strict=True
+    ):
         tones = np.where(possible.values, 0, 1)
         tones[stability.regime_linear.values > 0] = 2
         style.draw_map(panel, stability, tones, **style.category_colours([*TONES]))
         curves = [Boundary.flutter, Boundary.divergence, Boundary.reaction_changes_sign]
-        draw_boundaries(panel, boundaries, curves if extra is None else [*curves, extra])
+        draw_boundaries(
+            panel, boundaries, curves if extra is None else [*curves, extra]
+        )
         mark_scene(panel, "F3")
         style.panel_letter(panel, letter, title)
     lines = axes[0, 0].get_legend_handles_labels()[0]

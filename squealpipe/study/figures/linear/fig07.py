@@ -34,10 +34,13 @@ def caption(found: Mapping[str, xr.Dataset]) -> str:
     """What the tones mean, with the numbers of cells."""
     maps = _maps(found)
     several = "; ".join(
-        f"({letter}) {TITLES[_kind(name)]}" for letter, name in zip("ab", maps, strict=False)
+        f"({letter}) {TITLES[_kind(name)]}"
+        for letter, name in zip("ab", maps, strict=False)
     )
     growing = _listed(np.count_nonzero(grows(validity)) for validity in maps.values())
-    lines = [_inside(found, _kind(name)) for name in maps if f"{_kind(name)}{LINES}" in found]
+    lines = [
+        _inside(found, _kind(name)) for name in maps if f"{_kind(name)}{LINES}" in found
+    ]
     return (
         f"Where the linear model A3 is valid{f': {several}' if len(maps) > 1 else ''}. White: A1, "
         "started at rest, loses contact although A3 is stable; orange: it does and A3 is unstable. "
@@ -52,7 +55,10 @@ def caption(found: Mapping[str, xr.Dataset]) -> str:
 def _inside(found: Mapping[str, xr.Dataset], kind: str) -> str:
     """What the boundary encloses, and how far the scene is from it."""
     boundary, scene = found[f"{kind}{LINES}"], found[f"{kind}{DISTANCE}"]
-    share, error = 100.0 * float(boundary.kept_share), 100.0 * float(boundary.kept_share_error)
+    share, error = (
+        100.0 * float(boundary.kept_share),
+        100.0 * float(boundary.kept_share_error),
+    )
     return f"{share:.2f} ± {error:.1g} % and {np.degrees(float(scene.distance)):.2g}°"
 
 
@@ -71,7 +77,9 @@ def grows(validity: xr.Dataset) -> np.ndarray:
     return np.asarray((validity.separates.values == 0) & (growth >= GROWTH_THRESHOLD))
 
 
-def draw_kinds(panel: Axes, validity: xr.Dataset, boundary: xr.Dataset | None = None) -> np.ndarray:
+def draw_kinds(
+    panel: Axes, validity: xr.Dataset, boundary: xr.Dataset | None = None
+) -> np.ndarray:
     """The four kinds of cells, orange ones hatched for reading in greyscale.
 
     With the boundary as curves it is drawn too, and contact is kept or lost by its side.
@@ -80,10 +88,16 @@ def draw_kinds(panel: Axes, validity: xr.Dataset, boundary: xr.Dataset | None = 
         lost = (~boundary.kept.values).astype("i1")
         validity = validity.assign(separates=(validity.separates.dims, lost))
         angles = boundary.alpha1.values, boundary.alpha2.values
-        look = {"color": style.BLUE, "linewidth": 0.5, "label": "boundary of kept contact"}
+        look = {
+            "color": style.BLUE,
+            "linewidth": 0.5,
+            "label": "boundary of kept contact",
+        }
         style.draw_lines(panel, angles, boundary.curve.values, **look)
     kinds = kinds_of_cells(validity)
-    style.draw_map(panel, validity, kinds, **style.category_colours([tone for tone, _ in KINDS]))
+    style.draw_map(
+        panel, validity, kinds, **style.category_colours([tone for tone, _ in KINDS])
+    )
     style.hatch(panel, validity, kinds == 1)
     return kinds
 
@@ -104,7 +118,9 @@ def draw(found: Mapping[str, xr.Dataset]) -> Figure:
     """
     maps = _maps(found)
     names = sorted(maps, key=len)
-    size = (5.6, 3.4) if len(names) > 1 else (4.3, 3.9)  # for text large enough on page one
+    size = (
+        (5.6, 3.4) if len(names) > 1 else (4.3, 3.9)
+    )  # for text large enough on page one
     figure, axes = style.new_figure(*size, ncols=len(names))
     counts = []
     for panel, letter, name in zip(axes[0], "ab", names, strict=False):

@@ -14,18 +14,28 @@ from squealpipe.schema.linear import Boundary
 
 LINES: dict[Boundary, tuple[str, dict[str, Any]]] = {
     Boundary.flutter: ("flutter boundary", {"color": BLUE, "linestyle": "-"}),
-    Boundary.divergence: ("divergence boundary", {"color": ORANGE, "linestyle": (0, (4, 1))}),
-    Boundary.reaction_changes_sign: ("K₁₁ = μK₁₂", {"color": GREEN, "linestyle": (0, (1, 1))}),
+    Boundary.divergence: (
+        "divergence boundary",
+        {"color": ORANGE, "linestyle": (0, (4, 1))},
+    ),
+    Boundary.reaction_changes_sign: (
+        "K₁₁ = μK₁₂",
+        {"color": GREEN, "linestyle": (0, (1, 1))},
+    ),
     Boundary.no_coupling: ("K₁₂ = 0", {"color": GREY, "linestyle": "-."}),
 }
 
 
-def draw_boundaries(axes: Axes, boundaries: xr.Dataset, kinds: Iterable[Boundary]) -> None:
+def draw_boundaries(
+    axes: Axes, boundaries: xr.Dataset, kinds: Iterable[Boundary]
+) -> None:
     """Exact curves over a map of 0 … π; curves that leave it come in again by periodicity."""
     alpha1, alpha2 = boundaries.alpha1.values, boundaries.alpha2.values
     for kind in kinds:
         label, look = LINES[kind]
-        for segment in np.unique(boundaries.segment.values[boundaries.boundary.values == kind]):
+        for segment in np.unique(
+            boundaries.segment.values[boundaries.boundary.values == kind]
+        ):
             chosen = boundaries.segment.values == segment
             for shift1, shift2 in np.ndindex(5, 5):
                 x = alpha1[chosen] + (shift1 - 2) * np.pi

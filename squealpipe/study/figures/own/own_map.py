@@ -15,7 +15,9 @@ ALT = "A map over both spring angles in white, orange, grey and black with cross
 
 def caption(found: Mapping[str, xr.Dataset], scenes: xr.Dataset) -> str:  # noqa: ARG001
     """What is shown, with the boundary where the study has it."""
-    lines = " Blue lines: boundary of kept contact." if "validity_boundary" in found else ""
+    lines = (
+        " Blue lines: boundary of kept contact." if "validity_boundary" in found else ""
+    )
     return (
         "Where the mass, started at rest, loses contact (white; orange where steady sliding is "
         "unstable too) and keeps it (grey; black where steady sliding is unstable), over both "
@@ -39,9 +41,16 @@ def draw(found: Mapping[str, xr.Dataset], scenes: xr.Dataset) -> Figure:
         panel.plot(*at, "x", color="white", markersize=10, markeredgewidth=4)
         panel.plot(*at, "x", color=BLUE, markersize=8, markeredgewidth=2)
         panel.annotate(
-            str(scene), at, (5, 5), textcoords="offset points", color=BLUE, path_effects=HALO
+            str(scene),
+            at,
+            (5, 5),
+            textcoords="offset points",
+            color=BLUE,
+            path_effects=HALO,
         )
     figure.legend(
-        handles=[*key(), *panel.get_legend_handles_labels()[0]], loc="outside lower center", ncols=2
+        handles=[*key(), *panel.get_legend_handles_labels()[0]],
+        loc="outside lower center",
+        ncols=2,
     )
     return figure

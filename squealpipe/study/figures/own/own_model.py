@@ -32,7 +32,9 @@ def draw(runs: Mapping[str, xr.Dataset]) -> Figure:
     figure, axes = new_figure(PAGE, 2.6 * rows, nrows=rows, ncols=columns)
     for panel in axes.flat:
         panel.set_axis_off()
-    for letter, panel, (name, run) in zip(ascii_lowercase, axes.flat, runs.items(), strict=False):
+    for letter, panel, (name, run) in zip(
+        ascii_lowercase, axes.flat, runs.items(), strict=False
+    ):
         _draw(panel, run)
         panel_letter(panel, letter, name.removeprefix("own/"))
     return figure
@@ -44,7 +46,9 @@ def _draw(panel: Axes, run: xr.Dataset) -> None:
     scale = max(lengths)
     springs = displaced_springs(0.0, 0.0, alpha1, alpha2, lengths, 0.03 * scale)
     belt = -0.07 * scale
-    for index, (path, colour) in enumerate(zip(springs, SPRING_COLOURS, strict=True), start=1):
+    for index, (path, colour) in enumerate(
+        zip(springs, SPRING_COLOURS, strict=True), start=1
+    ):
         panel.plot(*path.T, color=colour, linewidth=1.0)
         panel.add_patch(Circle(tuple(path[-1]), 0.02 * scale, color="black"))
         words = (
@@ -64,7 +68,9 @@ def _draw(panel: Axes, run: xr.Dataset) -> None:
     friction = f"$μ$: {law}" if own else f"$μ$ = {number(parameter(run, 'mu'))}"
     contact = law_in_words(parameter(run, "contact_law")).partition(",")[0]
     spring = (
-        "contact: table" if contact == "table" else f"$k_3$ = {number(parameter(run, 'k3'))} N/m"
+        "contact: table"
+        if contact == "table"
+        else f"$k_3$ = {number(parameter(run, 'k3'))} N/m"
     )
     words = (
         f"$m$ = {number(parameter(run, 'mass'))} kg, {spring}\n"
@@ -72,4 +78,8 @@ def _draw(panel: Axes, run: xr.Dataset) -> None:
         f"{friction}, $V$ = {number(parameter(run, 'belt_speed'))} m/s"
     )
     panel.text(0.0, 6.9 * belt, words, **below)
-    panel.set(xlim=(-1.2 * scale, 1.2 * scale), ylim=(-0.75 * scale, 1.1 * scale), aspect="equal")
+    panel.set(
+        xlim=(-1.2 * scale, 1.2 * scale),
+        ylim=(-0.75 * scale, 1.1 * scale),
+        aspect="equal",
+    )

@@ -24,7 +24,9 @@ EVENTS = 8
 
 def draw(runs: Mapping[str, xr.Dataset]) -> Figure:
     """Three panels for each scene, from datasets ``own/<scene>``."""
-    figure, axes = style.new_figure(style.PAGE, 0.3 + 1.8 * len(runs), nrows=len(runs), ncols=3)
+    figure, axes = style.new_figure(
+        style.PAGE, 0.3 + 1.8 * len(runs), nrows=len(runs), ncols=3
+    )
     letters = iter("abcdefghijklmnopqrstuvwxyz" * len(runs))
     for (history, path, spectrum), (name, run) in zip(axes, runs.items(), strict=True):
         shown = [SHOWN * float(run.time[-1]), *run.event_time.values[:EVENTS]]
@@ -33,7 +35,9 @@ def draw(runs: Mapping[str, xr.Dataset]) -> Figure:
         draw_spectrum(spectrum, run)
         for panel in (history, path, spectrum):
             panel.ticklabel_format(scilimits=(-3, 4), useMathText=True)
-        style.panel_letter(history, next(letters), f"{name.removeprefix('own/')}: force")
+        style.panel_letter(
+            history, next(letters), f"{name.removeprefix('own/')}: force"
+        )
         style.panel_letter(path, next(letters), "path")
         style.panel_letter(spectrum, next(letters), "spectrum")
     for panel in axes[:-1].flat:

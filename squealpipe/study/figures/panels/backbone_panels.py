@@ -23,7 +23,9 @@ KEY = (
     "dotted where unstable, grey where the mass overtakes the belt and A4 does not hold."
 )
 """What the marks mean, for captions."""
-SCENE_ALT = "Two panels of largest y and amplitude of x over frequency, one for each mode."
+SCENE_ALT = (
+    "Two panels of largest y and amplitude of x over frequency, one for each mode."
+)
 
 STABLE_TO_ROUND_OFF = 2.0 + 1e-6
 
@@ -39,19 +41,28 @@ def draw_scenes(branches: Mapping[str, xr.Dataset], height: float) -> Figure:
     letters = iter("abcdefghijklmnopqrst")
     for row, scene in zip(axes, scenes, strict=True):
         for panel, mode in zip(row, (1, 2), strict=True):
-            exact, series = (branches[f"{scene}_mode{mode}{form}"] for form in ("", "_hbm"))
+            exact, series = (
+                branches[f"{scene}_mode{mode}{form}"] for form in ("", "_hbm")
+            )
             draw_branch(panel, exact, series, parameter(exact, "preload"))
             angles = angle_pair(exact.attrs["alpha1"], exact.attrs["alpha2"])
-            style.panel_letter(panel, next(letters), f"{angles}, vicinity of ω{'₁₂'[mode - 1]}")
+            style.panel_letter(
+                panel, next(letters), f"{angles}, vicinity of ω{'₁₂'[mode - 1]}"
+            )
         row[0].set_ylabel("y, x (m)")
     figure.legend(*key_entries(axes.ravel()), loc="outside lower center", ncols=3)
     return figure
 
 
-def draw_branch(panel: Axes, exact: xr.Dataset, series: xr.Dataset, preload: float) -> None:
+def draw_branch(
+    panel: Axes, exact: xr.Dataset, series: xr.Dataset, preload: float
+) -> None:
     """One mode: lines for exact orbits beneath crosses for harmonic balance."""
     panel.axhline(
-        preload, color=style.BLACK, linewidth=0.8, label=r"$l_\mathrm{pre}$, contact is lost"
+        preload,
+        color=style.BLACK,
+        linewidth=0.8,
+        label=r"$l_\mathrm{pre}$, contact is lost",
     )
     if say_why_empty(panel, exact):
         return
@@ -70,7 +81,9 @@ def draw_branch(panel: Axes, exact: xr.Dataset, series: xr.Dataset, preload: flo
                 line = np.where(joined(chosen), values, np.nan)
                 panel.plot(omega, line, dash, color=shade, linewidth=1.4, label=words)
         here, words = series.isel(point=shown), f"{label}, harmonic balance"
-        panel.plot(here.omega, here[name], "x", ms=4.5, mew=0.9, color=colour, label=words)
+        panel.plot(
+            here.omega, here[name], "x", ms=4.5, mew=0.9, color=colour, label=words
+        )
     drawn = np.concatenate([omega, series.omega.values[shown]])
     span = max(float(np.ptp(drawn)), 0.05 * float(drawn.mean()))
     middle = 0.5 * (float(drawn.min()) + float(drawn.max()))

@@ -18,7 +18,9 @@ CAPTION = (
 """What the lines mean."""
 
 
-(HATCH,) = style.patches([(style.WHITE, "flutter: common frequency")], hatch=style.HATCH)
+(HATCH,) = style.patches(
+    [(style.WHITE, "flutter: common frequency")], hatch=style.HATCH
+)
 """Key to what :func:`outline` draws."""
 
 
@@ -28,20 +30,33 @@ def draw_mode(frequencies: xr.Dataset, mode: int) -> Figure:
     omega = frequencies.omega.sel(mode=mode)
     upper = float(omega.max())
     lower = 0.0 if mode == 1 else float(omega.min())
-    for panel, letter, state in zip(axes[0], "ab", ("contact", "separated"), strict=True):
+    for panel, letter, state in zip(
+        axes[0], "ab", ("contact", "separated"), strict=True
+    ):
         values = omega.sel(contact_state=state).values
         scale = {"cmap": "cividis", "vmin": lower, "vmax": upper}
         mesh = style.draw_map(panel, frequencies, values, **scale)
-        flutter = frequencies.outcome.sel(mode=mode, contact_state=state) == Outcome.complex_pair
+        flutter = (
+            frequencies.outcome.sel(mode=mode, contact_state=state)
+            == Outcome.complex_pair
+        )
         shown = np.where(flutter, np.nan, values)
         step = 0.2 if mode == 1 else 0.1
         levels = np.arange(lower + step, float(np.nanmax(shown)), step)
         dark = levels < 0.5 * (lower + upper)
         lines = isoline(  # to read in greyscale
-            panel, frequencies, shown, levels, np.where(dark, style.WHITE, style.BLACK), 0.5
+            panel,
+            frequencies,
+            shown,
+            levels,
+            np.where(dark, style.WHITE, style.BLACK),
+            0.5,
         )
         panel.clabel(
-            lines, fontsize=5.5, fmt="%.1f", manual=_on_diagonal(frequencies, shown, levels)
+            lines,
+            fontsize=5.5,
+            fmt="%.1f",
+            manual=_on_diagonal(frequencies, shown, levels),
         )
         outline(panel, frequencies, flutter.values)
         style.panel_letter(panel, letter, "in contact" if state == "contact" else state)
@@ -63,16 +78,26 @@ def _on_diagonal(
         for level in levels
         for index in np.flatnonzero(np.diff(along > level))
         if len(along) // 2 <= index < len(along) - 3
-        and np.isfinite(values[index - near : index + near, index - near : index + near]).all()
+        and np.isfinite(
+            values[index - near : index + near, index - near : index + near]
+        ).all()
     ]
 
 
 def draw_sums(axes: Axes) -> None:
     """The exact lines of the separated state: det K = 0, and smallest |Z| for any stiffnesses."""
     along = np.array([-np.pi, 2 * np.pi])
-    look: dict[str, Any] = {"color": style.BLACK, "lw": 1.1, "scalex": False, "scaley": False}
+    look: dict[str, Any] = {
+        "color": style.BLACK,
+        "lw": 1.1,
+        "scalex": False,
+        "scaley": False,
+    }
     halo = [withStroke(linewidth=2.2, foreground=style.WHITE)]
-    for odd, label, dash in ((0, "α₁ + α₂ = nπ", "--"), (1, "α₁ + α₂ = nπ/2, n odd", ":")):
+    for odd, label, dash in (
+        (0, "α₁ + α₂ = nπ", "--"),
+        (1, "α₁ + α₂ = nπ/2, n odd", ":"),
+    ):
         for number in range(odd, 5, 2):
             line = number * np.pi / 2 - along
             axes.plot(along, line, ls=dash, label=label, path_effects=halo, **look)
@@ -80,11 +105,21 @@ def draw_sums(axes: Axes) -> None:
 
 
 def isoline(
-    axes: Axes, dataset: xr.Dataset, values: Any, levels: Any, colour: Any, width: float = 0.7
+    axes: Axes,
+    dataset: xr.Dataset,
+    values: Any,
+    levels: Any,
+    colour: Any,
+    width: float = 0.7,
 ) -> Any:
     """Lines on which values (alpha1, alpha2) are those of ``levels``."""
-    angles, levels = (dataset.alpha1.values, dataset.alpha2.values), np.atleast_1d(levels)
-    return axes.contour(*angles, values.T, levels=levels, colors=colour, linewidths=width)
+    angles, levels = (
+        (dataset.alpha1.values, dataset.alpha2.values),
+        np.atleast_1d(levels),
+    )
+    return axes.contour(
+        *angles, values.T, levels=levels, colors=colour, linewidths=width
+    )
 
 
 def outline(axes: Axes, dataset: xr.Dataset, mask: np.ndarray) -> None:

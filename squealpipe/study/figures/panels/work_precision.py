@@ -16,7 +16,15 @@ MARKS = [
     (colour, marker, dash)
     for markers, dash in (("os^vDP*", "-"), ("x+<>dhp", ":"))
     for colour, marker in zip(
-        (style.BLACK, style.BLUE, style.GREEN, style.ORANGE, style.RED, style.PURPLE, style.GREY),
+        (
+            style.BLACK,
+            style.BLUE,
+            style.GREEN,
+            style.ORANGE,
+            style.RED,
+            style.PURPLE,
+            style.GREY,
+        ),
         markers,
         strict=True,
     )
@@ -44,21 +52,40 @@ def draw_methods(
         return
     front = _pareto(error[fine], values[fine])
     axes.step(
-        error[fine][front], values[fine][front], where="post", color=style.BLACK, lw=3.0,
-        alpha=0.15, zorder=1,
-    )  # fmt: skip
+        error[fine][front],
+        values[fine][front],
+        where="post",
+        color=style.BLACK,
+        lw=3.0,
+        alpha=0.15,
+        zorder=1,
+    )
     for method in dict.fromkeys(rows.method.values.tolist()):
         mine = fine & (rows.method.values == method)
         colour, marker, dash = MARKS[methods.index(method) % len(MARKS)]
         axes.plot(
-            error[mine], values[mine], dash, color=colour, marker=marker, ms=3.5,
-            lw=0.8, label=style.symbols(method), zorder=2,
-        )  # fmt: skip
+            error[mine],
+            values[mine],
+            dash,
+            color=colour,
+            marker=marker,
+            ms=3.5,
+            lw=0.8,
+            label=style.symbols(method),
+            zorder=2,
+        )
     ours = fine & (rows.role.values == Role.our_setting)
     axes.plot(
-        error[ours], values[ours], "o", ms=9, mfc="none", mec=style.RED, mew=1.0,
-        label="our setting", zorder=3,
-    )  # fmt: skip
+        error[ours],
+        values[ours],
+        "o",
+        ms=9,
+        mfc="none",
+        mec=style.RED,
+        mew=1.0,
+        label="our setting",
+        zorder=3,
+    )
     axes.set(xscale="log", yscale="log")
     axes.minorticks_off()
     if values[fine].max() < _FEW_DECADES * values[fine].min():

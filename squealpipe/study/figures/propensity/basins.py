@@ -22,15 +22,25 @@ def draw(kept: xr.Dataset, growing: xr.Dataset) -> Figure:
     names = str(kept.motion.attrs["flag_meanings"]).split()
     colours = [style.REGIME_COLOURS.get(name, style.WHITE) for name in names]
     titles = (scene_title("F2d"), scene_title("F3"))
-    for letter, panel, basin, title in zip("ab", axes[0], (kept, growing), titles, strict=True):
+    for letter, panel, basin, title in zip(
+        "ab", axes[0], (kept, growing), titles, strict=True
+    ):
         panel.pcolormesh(
-            basin.vx0, basin.vy0, basin.motion.values.T, shading="nearest", rasterized=True,
+            basin.vx0,
+            basin.vy0,
+            basin.motion.values.T,
+            shading="nearest",
+            rasterized=True,
             **style.category_colours(colours),
-        )  # fmt: skip
+        )
         shown |= set(basin.motion.values.ravel().tolist())
         panel.set(xlabel="velocity along the belt (m/s)", aspect="equal")
         style.panel_letter(panel, letter, title)
     axes[0, 0].set_ylabel("velocity away from the belt (m/s)")
-    handles = style.patches((colours[k], style.flag_words(names[k])) for k in sorted(shown))
-    figure.legend(handles=handles, loc="outside lower center", ncols=min(len(handles), 4))
+    handles = style.patches(
+        (colours[k], style.flag_words(names[k])) for k in sorted(shown)
+    )
+    figure.legend(
+        handles=handles, loc="outside lower center", ncols=min(len(handles), 4)
+    )
     return figure

@@ -30,7 +30,11 @@ def draw(found: Mapping[str, xr.Dataset]) -> Figure:
     marks = dict(zip(scenes, MARKS, strict=False))
     handles = {}
     for letter, panel, goal, title in zip(
-        "ab", axes[0], ("contact_lost", "whirl"), ("loss of contact", "whirl"), strict=True
+        "ab",
+        axes[0],
+        ("contact_lost", "whirl"),
+        ("loss of contact", "whirl"),
+        strict=True,
     ):
         number = next(iter(found.values())).directions.values
         for scene in scenes:
@@ -42,12 +46,16 @@ def draw(found: Mapping[str, xr.Dataset]) -> Figure:
                 number, one.distance_by_number, marker=marker, ms=3.5, color=colour
             )
             improved = one.improved_distance.values
-            panel.plot(np.full(improved.size, 1.6 * number[-1]), improved, "x", color=colour)
+            panel.plot(
+                np.full(improved.size, 1.6 * number[-1]), improved, "x", color=colour
+            )
             if np.isfinite(one.linear_distance):
                 panel.axhline(float(one.linear_distance), color=colour, ls="--", lw=0.7)
         panel.set(xlabel="random directions", xscale="log", ylim=(0, None))
         if panel.lines:
-            panel.set_xticks([*number, 1.6 * number[-1]], [*map(str, number), "local\nsearch"])
+            panel.set_xticks(
+                [*number, 1.6 * number[-1]], [*map(str, number), "local\nsearch"]
+            )
         else:
             style.say_instead(panel, "none found")
         panel.minorticks_off()

@@ -11,6 +11,8 @@ CAPTION = (
     "growing parts of the base sample; only below the dashed line an index is given. "
     "Colours as in (a)."
 )
-ALT = "Bars of shares, lines of shares over sample size, and bars of sensitivity indices."
+ALT = (
+    "Bars of shares, lines of shares over sample size, and bars of sensitivity indices."
+)
 
 __all__ = ["ALT", "CAPTION", "READS", "draw"]

@@ -28,7 +28,9 @@ def draw(reach: xr.Dataset) -> Figure:
     panel = axes[0, 0]
     panel.set_facecolor("#E8E8E8")
     colours = LinearSegmentedColormap.from_list("verdict", [RED, "#FFFFFF", BLUE])
-    panel.pcolormesh(share, cmap=colours, vmin=0.0, vmax=1.0, edgecolor="white", linewidth=1.5)
+    panel.pcolormesh(
+        share, cmap=colours, vmin=0.0, vmax=1.0, edgecolor="white", linewidth=1.5
+    )
     half = 0.5 * (reach.share_high - reach.share_low).values
     for row, column in np.argwhere(np.isfinite(share)):
         value = share[row, column]
@@ -38,11 +40,20 @@ def draw(reach: xr.Dataset) -> Figure:
             text += f"\n±{half[row, column]:.2f}"
         dark = abs(value - 0.5) > 0.3
         panel.text(
-            column + 0.5, row + 0.5, text, ha="center", va="center", linespacing=0.9,
-            fontsize=7 if single else 5, color="white" if dark else BLACK,
-        )  # fmt: skip
+            column + 0.5,
+            row + 0.5,
+            text,
+            ha="center",
+            va="center",
+            linespacing=0.9,
+            fontsize=7 if single else 5,
+            color="white" if dark else BLACK,
+        )
     names = list(map(in_words, reach.statement.values.tolist()))
-    rows = [name.replace("l_pre", r"$l_\mathrm{pre}$") for name in reach.variant.values.tolist()]
+    rows = [
+        name.replace("l_pre", r"$l_\mathrm{pre}$")
+        for name in reach.variant.values.tolist()
+    ]
     panel.set_xticks(np.arange(len(names)) + 0.5, names, rotation=90)
     panel.set_yticks(np.arange(len(share)) + 0.5, rows)
     panel.xaxis.tick_top()

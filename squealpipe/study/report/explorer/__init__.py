@@ -33,16 +33,24 @@ def write_explorer(
 ) -> None:
     """Write the page, whole or not at all."""
     papers = {
-        f"Fig {scene.figure}": {"alpha1": scene.alpha1, "alpha2": scene.alpha2, "near": 0.03}
+        f"Fig {scene.figure}": {
+            "alpha1": scene.alpha1,
+            "alpha2": scene.alpha2,
+            "near": 0.03,
+        }
         for scene in SCENES.values()
         if paper and scene.figure <= 5
     }
     with whole_file(Path(path)) as temporary:
-        temporary.write_text(page(explorer, layers, papers | dict(scenes or {})), encoding="utf-8")
+        temporary.write_text(
+            page(explorer, layers, papers | dict(scenes or {})), encoding="utf-8"
+        )
 
 
 def page(
-    explorer: xr.Dataset, layers: Mapping[str, Layer], scenes: Mapping[str, Mapping[str, Any]]
+    explorer: xr.Dataset,
+    layers: Mapping[str, Layer],
+    scenes: Mapping[str, Mapping[str, Any]],
 ) -> str:
     """The text of the page."""
     environment = Environment(undefined=StrictUndefined, autoescape=True)
@@ -62,7 +70,11 @@ def page(
 
 def in_script(content: Mapping[str, Any]) -> str:
     """JSON that no text in it can end or comment out, whatever the browser's parser is in."""
-    return json.dumps(content, allow_nan=False).replace("<", "\\u003c").replace(">", "\\u003e")
+    return (
+        json.dumps(content, allow_nan=False)
+        .replace("<", "\\u003c")
+        .replace(">", "\\u003e")
+    )
 
 
 def blocks(explorer: xr.Dataset, layers: Mapping[str, Layer]) -> dict[str, str]:
@@ -71,20 +83,26 @@ def blocks(explorer: xr.Dataset, layers: Mapping[str, Layer]) -> dict[str, str]:
         **{name: packed_curves(explorer[name].values) for name in HISTORIES},
         **{
             name: _records(
-                np.asarray(explorer[name].values, "<f4").reshape(explorer.outcome.size, -1)
+                np.asarray(explorer[name].values, "<f4").reshape(
+                    explorer.outcome.size, -1
+                )
             )
             for name in BRANCHES
             if name in explorer
         },
         **{
-            f"layer-{key}": _encode(layer.map.values.astype("i1" if layer.meanings else "<f4"))
+            f"layer-{key}": _encode(
+                layer.map.values.astype("i1" if layer.meanings else "<f4")
+            )
             for key, layer in layers.items()
         },
     }
 
 
 def payload(
-    explorer: xr.Dataset, layers: Mapping[str, Layer], scenes: Mapping[str, Mapping[str, Any]]
+    explorer: xr.Dataset,
+    layers: Mapping[str, Layer],
+    scenes: Mapping[str, Mapping[str, Any]],
 ) -> dict[str, Any]:
     """What the script needs at once, ready for JSON."""
     return {
@@ -98,7 +116,11 @@ def payload(
         "lengths": [float(explorer.length1), float(explorer.length2)],
         "layers": {key: _layer(layer) for key, layer in layers.items()},
         "scenes": [
-            {"name": name, "angles": [scene["alpha1"], scene["alpha2"]], "near": scene.get("near")}
+            {
+                "name": name,
+                "angles": [scene["alpha1"], scene["alpha2"]],
+                "near": scene.get("near"),
+            }
             for name, scene in scenes.items()
             if all(0.0 <= scene[angle] <= np.pi for angle in ("alpha1", "alpha2"))
         ],
@@ -111,12 +133,17 @@ def run_options(explorer: xr.Dataset) -> str:
     times = {"t_end": float(stated["run_t_end"]), "points": int(stated["run_points"])}
     options = times | json.loads(stated["parameters"])
     return " ".join(
-        f"--{key.replace('_', '-')} {quote(_plain(value))}" for key, value in options.items()
+        f"--{key.replace('_', '-')} {quote(_plain(value))}"
+        for key, value in options.items()
     )
 
 
 def _plain(value: object) -> str:
-    return repr(int(value)) if isinstance(value, float) and value.is_integer() else str(value)
+    return (
+        repr(int(value))
+        if isinstance(value, float) and value.is_integer()
+        else str(value)
+    )
 
 
 def _layer(layer: Layer) -> dict[str, Any]:
@@ -134,14 +161,20 @@ def _layer(layer: Layer) -> dict[str, Any]:
 def _colour_range(values: np.ndarray) -> list[float]:
     """All but the outermost hundredths: a few late cells must not take the colours of the rest."""
     finite = values[np.isfinite(values)]
-    return [float(limit) for limit in np.percentile(finite, [1, 99])] if finite.size else [0.0, 1.0]
+    return (
+        [float(limit) for limit in np.percentile(finite, [1, 99])]
+        if finite.size
+        else [0.0, 1.0]
+    )
 
 
 def _meanings(flag: xr.DataArray) -> dict[str, Any]:
     table = meanings(flag)
     return {
         "values": _encode(np.asarray(flag.values, "i1")),
-        "meanings": {key: table[key].replace("_", " ") for key in np.unique(flag.values).tolist()},
+        "meanings": {
+            key: table[key].replace("_", " ") for key in np.unique(flag.values).tolist()
+        },
     }
 
 

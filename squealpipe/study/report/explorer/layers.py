@@ -29,7 +29,10 @@ class Layer(NamedTuple):
 
 
 def _categories(
-    label: str, values: xr.DataArray, words: Mapping[int, str], colours: Mapping[int, str]
+    label: str,
+    values: xr.DataArray,
+    words: Mapping[int, str],
+    colours: Mapping[int, str],
 ) -> Layer:
     """A layer of categories, with those that occur."""
     present = [code for code in words if (values == code).any()]
@@ -41,7 +44,9 @@ def _regimes(label: str, flag: xr.DataArray) -> Layer:
     """A layer of a flag variable, in the colours that figures use."""
     table = meanings(flag)
     colours = {code: REGIME_COLOURS[name] for code, name in table.items()}
-    return _categories(label, flag, {k: flag_words(name) for k, name in table.items()}, colours)
+    return _categories(
+        label, flag, {k: flag_words(name) for k, name in table.items()}, colours
+    )
 
 
 def layers(
@@ -57,7 +62,9 @@ def layers(
     levels = {int(level): level.label for level in Level}
     colours = {int(level): colour_of(level) for level in Level}
     if hammering is not None:
-        motion = hammering.motion.where(hammering.motion_changed == 0, MotionFlag.unsettled)
+        motion = hammering.motion.where(
+            hammering.motion_changed == 0, MotionFlag.unsettled
+        )
         found["motion"] = _regimes("motion (A1)", motion)
     regime = (validity if stability is None else stability).regime_linear
     found["stability"] = _regimes("linear stability (A3)", regime)
@@ -68,7 +75,9 @@ def layers(
     )
     if hammering is not None:
         found |= {
-            "peak_force": Layer("peak contact force / (k₃ lₚᵣₑ)", hammering.peak_contact_force),
+            "peak_force": Layer(
+                "peak contact force / (k₃ lₚᵣₑ)", hammering.peak_contact_force
+            ),
             "impact_rate": Layer("impacts per time", hammering.impact_rate),
             "predictability": Layer(
                 "predictable until",
@@ -82,10 +91,14 @@ def layers(
         for state, words in (("contact", "in contact"), ("separated", "separated")):
             for mode in (1, 2):
                 chosen = frequencies.omega.sel(mode=mode, contact_state=state)
-                found[f"omega{mode}_{state}"] = Layer(f"ω{'₁₂'[mode - 1]} {words}", chosen)
+                found[f"omega{mode}_{state}"] = Layer(
+                    f"ω{'₁₂'[mode - 1]} {words}", chosen
+                )
     if ladder is not None:
         for question in ladder.question.values.tolist():
             cheapest = ladder.cheapest.sel(question=question)
             label = f"cheapest model: {question.replace('_', ' ')}"
-            found[f"cheapest_{question}"] = _categories(label, cheapest, levels, colours)
+            found[f"cheapest_{question}"] = _categories(
+                label, cheapest, levels, colours
+            )
     return found
