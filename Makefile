@@ -86,7 +86,7 @@ COMPILE = $(BIN)/uv pip compile pyproject.toml --universal --python-version 3.11
 
 lock: dev
 	$(COMPILE) --extra study -o requirements.lock
-	$(COMPILE) --extra study --extra dev --extra export --extra references --extra notebook --extra slurm -c requirements.lock -o requirements-dev.lock
+	$(COMPILE) --extra study --extra dev --extra export --extra fe --extra references --extra notebook --extra slurm -c requirements.lock -o requirements-dev.lock
 	$(COMPILE) --extra peers -c requirements-dev.lock -o requirements-peers.lock
 
 dictionary: dev  ## docs/datasets.md from the schemas
