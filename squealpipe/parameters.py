@@ -347,8 +347,24 @@ NUMBERS_OF_A1: dict[str, str] = {
 }
 """What laws and engine read → the parameter that it is, for all numbers that enter A1."""
 
-SYMBOLS = {re.sub(r"\W", "", row.symbol): name for name, row in TABLE.items()}
-SYMBOLS |= {symbol.replace("_", ""): name for symbol, name in SYMBOLS.items()}
+
+def _by_symbol() -> dict[str, str]:
+    """Symbol as it is typed, with and without its underscore → name of the parameter."""
+    names: dict[str, str] = {}
+    for name, row in TABLE.items():
+        typed = re.sub(r"\W", "", row.symbol)
+        for symbol in dict.fromkeys((typed, typed.replace("_", ""))):
+            taken = symbol if symbol in TABLE else names.get(symbol, name)
+            if taken != name:
+                raise ValueError(
+                    f"parameter {name}: its symbol {row.symbol!r} is typed {symbol}, which stands "
+                    f"for {taken}; choose another symbol"
+                )
+            names[symbol] = name
+    return names
+
+
+SYMBOLS = _by_symbol()
 """The paper's symbols (``V``, ``L1``) for parameters that have another name here."""
 
 DEFAULTS: dict[str, Any] = {item.name: item.default for item in fields(Parameters)}

@@ -46,7 +46,7 @@ LINEAR = "linear"
 LAWS = {
     name: cast("ContactLaw", module)
     for name, module in globals().items()
-    if isinstance(module, ModuleType)
+    if isinstance(module, ModuleType) and module.__package__ == __name__
 }
 """Contact laws by name."""
 

@@ -42,7 +42,7 @@ COULOMB = "coulomb"
 LAWS = {
     name: cast("FrictionLaw", module)
     for name, module in globals().items()
-    if isinstance(module, ModuleType)
+    if isinstance(module, ModuleType) and module.__package__ == __name__
 }
 """Friction laws by name."""
 FALLING = [name for name, law in LAWS.items() if getattr(law, "FALLING", False)]
