@@ -9,7 +9,9 @@ PEAK = 2.0
 job = Job(snakemake)
 settings = job.settings
 found = contact_losing_branches(settings["backbones.coupled"])
-chosen = {name: found[name] for name in found if not name.endswith("mode 2") or "F10" in name}
+chosen = {
+    name: found[name] for name in found if not name.endswith("mode 2") or "F10" in name
+}
 branches, left_out = with_orbits(job.params, chosen, [PEAK])
 job.make(
     lambda: a1_beside_a4(
@@ -17,5 +19,5 @@ job.make(
         branches,
         peak=PEAK,
         length_ratios=settings["backbones.length_ratios"],
-    ).assign_attrs(left_out=left_out),
+    ).assign_attrs(left_out=left_out)
 )

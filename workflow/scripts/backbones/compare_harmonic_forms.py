@@ -6,5 +6,9 @@ from squealpipe.tasks.backbones.harmonic_forms import compare_harmonic_forms
 
 job = Job(snakemake)
 settings, params = job.settings, job.params
-branches, left_out = with_orbits(params, contact_losing_branches(settings["backbones.coupled"]), [2.0])
-job.make(lambda: compare_harmonic_forms(params, branches).assign_attrs(left_out=left_out))
+branches, left_out = with_orbits(
+    params, contact_losing_branches(settings["backbones.coupled"]), [2.0]
+)
+job.make(
+    lambda: compare_harmonic_forms(params, branches).assign_attrs(left_out=left_out)
+)

@@ -12,7 +12,10 @@ for scene, over_pi in settings["backbones.coupled"].items():
     angles = [angle * math.pi for angle in over_pi]
     for doubling in (1, 2):
         job.make(
-            lambda: doubled_branch(params, *angles, mode=1, doubling=doubling, y_peak_max=limit),
+            lambda: doubled_branch(
+                params, *angles, mode=1, doubling=doubling, y_peak_max=limit
+            ),
             job.out[f"{scene}_{doubling}"],
-            scene=scene, doubling=doubling,
+            scene=scene,
+            doubling=doubling,
         )

@@ -19,5 +19,7 @@ for name, angles in named_scenes(settings["backbones.coupled"]).items():
             job.make(
                 lambda: backbone(params, *angles, mode=mode, **limits, **options),
                 job.out[f"{name}_mode{mode}{ending}"],
-                scene=name, mode=mode, **options,
+                scene=name,
+                mode=mode,
+                **options,
             )

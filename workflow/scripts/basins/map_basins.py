@@ -1,7 +1,6 @@
 """Basins of the scenes of Figs. 2(d) and 3 over the velocity at the start."""
 
 import numpy as np
-
 from squealpipe.execution.job import Job
 from squealpipe.parameters import SCENES
 from squealpipe.tasks.basins.basin import basin_map

@@ -2,8 +2,8 @@
 
 import os
 
-# threads cost small matrices more than they save, and make their times uncertain; Snakemake sets as many
-# as the rule has
+# threads cost small matrices more than they save, and make their times uncertain; Snakemake
+# sets as many as the rule has
 os.environ["OPENBLAS_NUM_THREADS"] = "1"
 
 from squealpipe.execution.job import Job

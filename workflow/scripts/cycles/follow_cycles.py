@@ -3,7 +3,6 @@
 import math
 
 import numpy as np
-
 from squealpipe.execution.job import Job
 from squealpipe.parameters import SCENES
 from squealpipe.store import load
@@ -30,7 +29,12 @@ first = load(out.limit_F3)
 for way, to in (("down", low), ("up", high)):
     job.make(
         lambda to=to: cycle_branch(
-            params, *scenes["F3"], parameter="mu", to=to, start=first, n_points=cycles["points"]
+            params,
+            *scenes["F3"],
+            parameter="mu",
+            to=to,
+            start=first,
+            n_points=cycles["points"],
         ),
         out[f"branch_F3_{way}"],
     )

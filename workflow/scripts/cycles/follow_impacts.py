@@ -3,10 +3,9 @@
 from squealpipe.execution.job import Job
 from squealpipe.systems.impact_oscillator import impact_oscillator
 
-
 job = Job(snakemake)
 job.make(
     lambda: impact_oscillator.cycle_branch(
         "omega", 0.55, start=impact_oscillator.limit_cycle(omega=2.0)
-    ),
+    )
 )

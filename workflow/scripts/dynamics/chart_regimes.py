@@ -5,9 +5,9 @@ of the branches of cycles: the whirl of Fig. 3, found from rest, leads to those 
 """
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
-
 from squealpipe.execution.job import Job
 from squealpipe.parameters import SCENES
 from squealpipe.schema import Outcome
@@ -28,9 +28,12 @@ settings, params = job.settings, job.params
 files = {Path(path).stem: path for path in job.out.friction}
 angles = {name: list(job.angles(name).values()) for name in files}
 alpha1, alpha2 = np.array(list(angles.values())).T
-ranges = [np.linspace(min(0.0, *each), max(np.pi, *each), COARSE) for each in (alpha1, alpha2)]
+ranges = [
+    np.linspace(min(0.0, *each), max(np.pi, *each), COARSE) for each in (alpha1, alpha2)
+]
 kappa, mu = (
-    np.linspace(SMALLEST, LARGEST, COARSE) * (value or 1.0) for value in (params.kappa, params.mu)
+    np.linspace(SMALLEST, LARGEST, COARSE) * (value or 1.0)
+    for value in (params.kappa, params.mu)
 )
 options = {
     "t_end": settings["dynamics.chart_horizon"] * params.time_unit,
@@ -43,13 +46,25 @@ damped = params.with_(damping1=damping, damping2=damping)
 
 def onsets(at, branches, limits):
     """The curves of folds and of beginning stick through the special points of branches."""
-    found = {"whirl": ("fold", []), "stick": ("stick_onset", [])}
+    found: dict[str, tuple[str, list]] = {
+        "whirl": ("fold", []),
+        "stick": ("stick_onset", []),
+    }
     for branch in branches:
         for label, curves in found.values():
-            for point in np.flatnonzero((branch.label == Label[label]) & (branch.stick_fraction < NO_STICK)):
+            for point in np.flatnonzero(
+                (branch.label == Label[label]) & (branch.stick_fraction < NO_STICK)
+            ):
                 start = branch.isel(point=point)
                 curves.append(
-                    cycle_curve(damped, *at, label=label, parameters=[*limits], start=start, to=limits)
+                    cycle_curve(
+                        damped,
+                        *at,
+                        label=label,
+                        parameters=[*limits],
+                        start=start,
+                        to=limits,
+                    )
                 )
     return {name: curves for name, (_, curves) in found.items()}
 
@@ -60,14 +75,19 @@ def around_friction(at, state):
     if cycle.outcome != Outcome.converged:
         return {}
     branch = cycle_branch(damped, *at, parameter="mu", to=mu[0], start=cycle)
-    limits = {"mu": (mu[0], mu[-1]), "k3": (kappa[0] * params.k1, kappa[-1] * params.k1)}
+    limits = {
+        "mu": (mu[0], mu[-1]),
+        "k3": (kappa[0] * params.k1, kappa[-1] * params.k1),
+    }
     return onsets(at, [branch], limits)
 
 
 def around_angles(at, state):
     """Over both angles, along the sides of their square."""
-    found = {"whirl": [], "stick": []}
-    limits = {f"alpha{i}": (each[0], each[-1]) for i, each in enumerate(ranges, start=1)}
+    found: dict[str, list] = {"whirl": [], "stick": []}
+    limits = {
+        f"alpha{i}": (each[0], each[-1]) for i, each in enumerate(ranges, start=1)
+    }
     low, high = limits["alpha1"]
     inner = INSIDE * (high - low)
     for side in (low + inner, high - inner):
@@ -76,7 +96,9 @@ def around_angles(at, state):
             return {}
         state_there = [float(across[name][-1]) for name in STATE]
         branches = [
-            cycle_branch(damped, side, at[1], parameter="alpha2", to=end, start=state_there)
+            cycle_branch(
+                damped, side, at[1], parameter="alpha2", to=end, start=state_there
+            )
             for end in limits["alpha2"]
         ]
         for name, curves in onsets((side, at[1]), branches, limits).items():
@@ -84,17 +106,26 @@ def around_angles(at, state):
     return found
 
 
-over_angles, over_friction = {}, dict.fromkeys(files, {})
+over_angles: dict[str, Any] = {}
+over_friction: dict[str, dict[str, Any]] = {name: {} for name in files}
 if damping:
     whirl_at = SCENES["F3"].alpha1, SCENES["F3"].alpha2
-    first = limit_cycle(damped, *whirl_at, t_settle=settings["cycles.settle"] * params.time_unit)
+    first = limit_cycle(
+        damped, *whirl_at, t_settle=settings["cycles.settle"] * params.time_unit
+    )
     if first.outcome == Outcome.converged:
         state = [float(first[name]) for name in STATE]
         over_angles = around_angles(whirl_at, state)
-        over_friction = {name: around_friction(at, state) for name, at in angles.items()}
+        over_friction = {
+            name: around_friction(at, state) for name, at in angles.items()
+        }
 job.make(
     lambda: regime_chart(
-        params, *ranges, design={"alpha1": alpha1, "alpha2": alpha2}, **over_angles, **options
+        params,
+        *ranges,
+        design={"alpha1": alpha1, "alpha2": alpha2},
+        **over_angles,
+        **options,
     ),
     job.out.angles,
 )

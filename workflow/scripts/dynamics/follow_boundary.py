@@ -3,7 +3,6 @@
 from pathlib import Path
 
 import numpy as np
-
 from squealpipe.execution.job import Job
 from squealpipe.tasks.curves.contact import boundary_distance, contact_boundary
 

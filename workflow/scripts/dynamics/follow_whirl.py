@@ -1,7 +1,6 @@
 """What becomes of the responses of Figs. 3 and 4 in the long run."""
 
 import numpy as np
-
 from squealpipe.execution.job import Job
 from squealpipe.parameters import SCENES
 from squealpipe.tasks.dynamics.runs import simulate
@@ -11,16 +10,19 @@ job = Job(snakemake)
 settings, out = job.settings, job.out
 params, scene = job.params, SCENES["F3"]
 tol, second = settings["dynamics.tol"], params.time_unit
-speeds = np.geomspace(*settings["dynamics.whirl_speeds"], settings["dynamics.whirl_count"])
+slowest, fastest = settings["dynamics.whirl_speeds"]
+speeds = np.geomspace(slowest, fastest, settings["dynamics.whirl_count"])
 t_end = 0.1 * settings["dynamics.whirl_horizon"] * second
 job.make(
-    lambda: simulate(params, scene.alpha1, scene.alpha2, t_end=t_end, tol=tol),
-    out.run,
+    lambda: simulate(params, scene.alpha1, scene.alpha2, t_end=t_end, tol=tol), out.run
 )
 job.make(
     lambda: whirl_sizes(
         params,
-        np.union1d(speeds * params.preload / second, [abs(params.belt_speed)] if params.belt_speed else []),
+        np.union1d(
+            speeds * params.preload / second,
+            [abs(params.belt_speed)] if params.belt_speed else [],
+        ),
         t_end=settings["dynamics.whirl_horizon"] * second,
         tol=tol,
     ),

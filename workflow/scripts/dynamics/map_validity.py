@@ -5,4 +5,6 @@ from squealpipe.execution.scatter import over_angles
 from squealpipe.tasks.dynamics.runs import validity_map
 
 job = Job(snakemake)
-job.make(lambda: validity_map(job.params, model=job.model, **over_angles(job, "validity")))
+job.make(
+    lambda: validity_map(job.params, model=job.model, **over_angles(job, "validity"))
+)

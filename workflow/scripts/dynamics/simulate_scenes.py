@@ -1,4 +1,4 @@
-"""Model A1 in the scenes of Figs. 2 to 5; Figs. 3 and 4 in the long run; Fig. 2(a) by Eq. (4) as printed."""
+"""Model A1 in the scenes of Figs. 2 to 5, two of them run long, one by Eq. (4) as printed."""
 
 from dataclasses import replace
 

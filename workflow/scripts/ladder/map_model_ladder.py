@@ -12,5 +12,5 @@ job.make(
         ladder["tolerance"],
         t_end=ladder["horizon"] * params.time_unit,
         workers=snakemake.threads,
-    ),
+    )
 )

@@ -3,7 +3,6 @@
 import math
 
 import numpy as np
-
 from squealpipe.execution.job import Job
 from squealpipe.models.refusals import extensions
 from squealpipe.parameters import DEFAULTS
@@ -15,17 +14,23 @@ params = job.params.with_(**{name: DEFAULTS[name] for name in extensions(job.par
 unit = math.sqrt(params.k1 * params.mass)
 damping1, damping2 = (unit * share for share in settings["robustness.critical_damping"])
 angles = np.linspace(0.0, math.pi, settings["linear.points"])
-dashpots = np.linspace(0.0, settings["robustness.critical_extent"] * unit, settings["robustness.critical_points"])
-if "scenes" in settings:  # of a study of one's own: the first, and its own dashpots if it has some
+dashpots = np.linspace(
+    0.0,
+    settings["robustness.critical_extent"] * unit,
+    settings["robustness.critical_points"],
+)
+if (
+    "scenes" in settings
+):  # of a study of one's own: the first, with its dashpots if it has any
     first = next(iter(settings["scenes"].values()))
-    scene = [first["alpha1"], first["alpha2"]]
+    alpha1, alpha2 = first["alpha1"], first["alpha2"]
     given = job.params.damping1, job.params.damping2
     damping1, damping2 = given if any(given) else (damping1, damping2)
 else:
-    scene = [math.pi * angle for angle in settings["robustness.scene"]]
+    alpha1, alpha2 = (math.pi * angle for angle in settings["robustness.scene"])
 damped = params.with_(damping1=damping1, damping2=damping2)
-for task, path in (
-    (lambda: critical_friction_map(damped, angles, angles), out.angles),
-    (lambda: critical_damping_map(params, *scene, dashpots, dashpots), out.dashpots),
-):
-    job.make(task, path)
+job.make(lambda: critical_friction_map(damped, angles, angles), out.angles)
+job.make(
+    lambda: critical_damping_map(params, alpha1, alpha2, dashpots, dashpots),
+    out.dashpots,
+)

@@ -18,5 +18,7 @@ produce(
         t_end=settings["robustness.horizon"] * params.time_unit,
         workers=snakemake.threads,
     ),
-    config=settings, key=snakemake.params.key, output=snakemake.output[0],
+    config=settings,
+    key=snakemake.params.key,
+    output=snakemake.output[0],
 )

@@ -21,9 +21,13 @@ for path in snakemake.output.runs:
             initial_state=start_of(scene),
             tol=settings["dynamics.tol"],
         ),
-        config={**settings, "scene": name}, key=key, output=path,
+        config={**settings, "scene": name},
+        key=key,
+        output=path,
     )
 produce(
     lambda: own_scenes(params, scenes, tol=settings["dynamics.tol"]),
-    config=settings, key=key, output=snakemake.output.scenes,
+    config=settings,
+    key=key,
+    output=snakemake.output.scenes,
 )

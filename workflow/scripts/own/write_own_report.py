@@ -18,6 +18,8 @@ content = gather_own(datasets, figures, parameters_of(params.settings), params.c
 pictures = picture_files(content, figures)
 write_document("study", content, pictures, page=Path(out.page), pdf=Path(out.pdf))
 with whole_file(Path(out.provenance)) as temporary:
-    temporary.write_text(json.dumps(provenance(datasets, figures), indent=1), encoding="utf-8")
+    temporary.write_text(
+        json.dumps(provenance(datasets, figures), indent=1), encoding="utf-8"
+    )
 for path in out:
     state_key(path, params.key)

@@ -18,5 +18,5 @@ job.make(
         spring_correlation=settings["robustness.spring_correlation"],
         t_end=settings["robustness.horizon"] * params.time_unit,
         workers=snakemake.threads,
-    ),
+    )
 )

@@ -1,7 +1,6 @@
 """Motions from rest, spectra and backbones on a grid of spring angles."""
 
 import numpy as np
-
 from squealpipe.execution.job import Job
 from squealpipe.tasks.dynamics.explorer import explorer_data
 

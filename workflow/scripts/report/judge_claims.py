@@ -1,13 +1,12 @@
 """The verdict on every statement of the paper."""
 
 from squealpipe.execution.job import Job
-from squealpipe.study.claims.judge import judge
 from squealpipe.parameters import parameters_of
+from squealpipe.study.claims.judge import judge
 
 job = Job(snakemake)
 settings, paths = job.settings, snakemake.input.datasets
 sources = dict(zip(snakemake.params.names, paths, strict=True))
 job.make(
-    lambda: judge(parameters_of(settings), sources, settings["reading"]),
-    inputs=paths,
+    lambda: judge(parameters_of(settings), sources, settings["reading"]), inputs=paths
 )

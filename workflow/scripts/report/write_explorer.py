@@ -1,9 +1,9 @@
 """The explorer page."""
 
-from squealpipe.study.report.explorer import write_explorer
-from squealpipe.study.report.explorer.layers import layers
 from squealpipe.rerun.key import state_key
 from squealpipe.store import load
+from squealpipe.study.report.explorer import write_explorer
+from squealpipe.study.report.explorer.layers import layers
 
 settings, maps = snakemake.params.settings, snakemake.params.maps
 write_explorer(

@@ -8,7 +8,12 @@ from squealpipe.rerun.key import state_key
 from squealpipe.store.keys import refuse_misfits
 from squealpipe.store.whole_files import whole_file
 from squealpipe.study.report.build import write_document
-from squealpipe.study.report.content import gather, made_files, picture_files, provenance
+from squealpipe.study.report.content import (
+    gather,
+    made_files,
+    picture_files,
+    provenance,
+)
 
 params, out = snakemake.params, snakemake.output
 refuse_misfits(params.expected)
@@ -26,9 +31,15 @@ supplement = {**content, "title": "Methods, accuracy and failures", "made": None
 content["made"] = Path(out.supplement).name
 write_document("paper", content, pictures, page=Path(out.page), pdf=Path(out.pdf))
 write_document(
-    "supplement", supplement, pictures, page=Path(out.supplement), pdf=Path(out.supplement_pdf)
+    "supplement",
+    supplement,
+    pictures,
+    page=Path(out.supplement),
+    pdf=Path(out.supplement_pdf),
 )
 with whole_file(Path(out.provenance)) as temporary:
-    temporary.write_text(json.dumps(provenance(datasets, figures), indent=1), encoding="utf-8")
+    temporary.write_text(
+        json.dumps(provenance(datasets, figures), indent=1), encoding="utf-8"
+    )
 for path in out:
     state_key(path, params.key)
