@@ -36,7 +36,9 @@ class Pieces(NamedTuple):
             np.searchsorted(self.starts, np.real(at), side="right") - 1, 0
         )
         return polynomial(
-            self.coefficients[piece].T, at - self.starts[piece], derivative
+            np.moveaxis(self.coefficients[piece], -1, 0),
+            at - self.starts[piece],
+            derivative,
         )
 
     def constants(self, prefix: str) -> list[dict[str, float]]:

@@ -1,5 +1,7 @@
 """One run: contact force, displacements, orbit and spectrum."""
 
+from functools import partial
+
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
@@ -10,26 +12,42 @@ from squealpipe.methods.spectrum import FEWEST, amplitude_spectrum, highest_peak
 from squealpipe.plotting import style
 from squealpipe.plotting.mechanism import SPRING_COLOURS, displaced_springs
 from squealpipe.schema import meanings
+from squealpipe.schema.dynamics.intervals import intervals
+
+Window = tuple[float, float]
+"""First and last instant that are shown, s."""
 
 FORCE = r"$N\,/\,(k_3\,l_\mathrm{pre})$"
 PADDING = 8
 """How much finer the spectrum's grid is than the resolution of the run."""
 LARGEST_SPRINGS = 5.0
 """Length of the springs over the extent of a path beside which they are drawn."""
+PERIODS, MANY = 12, 3.0
+"""Periods of a run's end that are shown beside all of it, and how many times longer it then is."""
+PIXEL = 0.8
+"""Line width, points: a pixel from 90 dots per inch on."""
+UNEVEN = 1e-6
+"""Difference of the steps between samples, over a step, from which they are not uniform."""
 LOUD = 0.01
 """Amplitude over the largest one above which the spectrum is drawn."""
 
 
 def figure(run: xr.Dataset) -> Figure:
-    """Four panels of one run."""
-    drawn, axes = style.new_figure(style.PAGE, 4.8, nrows=2, ncols=2)
-    panels = (
+    """Four panels of one run; of a long one six, two of which show its last periods."""
+    end = last_periods(run)
+    panels = [
         (draw_force, "contact force"),
         (draw_displacements, "displacements"),
         (draw_orbit, "path of the mass"),
         (draw_spectrum, "spectrum of the contact force"),
-    )
-    for letter, panel, (draw, title) in zip("abcd", axes.flat, panels, strict=True):
+    ]
+    if end is not None:
+        last = f"last {PERIODS} periods"
+        panels[1:1] = [(partial(draw_force, window=end), f"contact force, {last}")]
+        panels[3:3] = [(partial(draw_displacements, window=end), last)]
+    rows = len(panels) // 2
+    drawn, axes = style.new_figure(style.PAGE, 2.4 * rows, nrows=rows, ncols=2)
+    for letter, panel, (draw, title) in zip("abcdef", axes.flat, panels, strict=False):
         draw(panel, run)
         style.panel_letter(panel, letter, title)
     drawn.suptitle(
@@ -40,39 +58,75 @@ def figure(run: xr.Dataset) -> Figure:
     return drawn
 
 
-def draw_force(axes: Axes, run: xr.Dataset) -> None:
-    """Contact force over its preload, with strips below zero where contact is lost."""
+def last_periods(run: xr.Dataset) -> Window | None:
+    """The last :data:`PERIODS` periods of a run that has many more, s; None of a shorter one.
+
+    A period is that of the strongest line of y in the second half of the run.
+    """
+    reached = np.flatnonzero(np.isfinite(run.x.values))
+    late = reached[reached.size // 2 :]
+    if late.size < FEWEST:
+        return None
+    time, y = run.time.values[late], run.y.values[late]
+    steps = np.diff(time)
+    if np.ptp(steps) > UNEVEN * steps[0]:
+        return None
+    omega, _ = highest_peaks(
+        *amplitude_spectrum(y, float(steps[0]), padding=PADDING), 1
+    )
+    length = PERIODS * 2.0 * np.pi / omega[0] if omega.size else np.inf
+    end = float(time[-1])
+    return (end - length, end) if MANY * length < end else None
+
+
+def draw_force(axes: Axes, run: xr.Dataset, window: Window | None = None) -> None:
+    """Contact force over its preload, with strips below zero where contact is lost.
+
+    The strips are from event to event, and none is narrower than a pixel: the shortest loss of
+    contact is seen in the longest run.
+
+    Args:
+        window: first and last instant that are shown, s; by default all.
+    """
     if _too_short(axes, run):
         return
-    time, force = run.time.values, run.normalized_contact_force.values
+    shown = _shown(run, window)
+    time, force = shown.time.values, shown.normalized_contact_force.values
     top = max(1.3, 1.1 * float(np.nanmax(force)))
     axes.plot(time, force, color=style.BLUE)
-    axes.fill_between(
-        time,
-        -0.05 * top,
-        0.0,
-        where=run.regime.values == Regime.separated,
+    apart = np.clip(intervals(run, Regime.separated), time[0], time[-1])
+    apart = apart[apart[:, 1] > apart[:, 0]]
+    axes.broken_barh(
+        list(zip(apart[:, 0], np.diff(apart)[:, 0], strict=True)),
+        (-0.05 * top, 0.05 * top),
         color=style.RED,
-        linewidth=0,
-        step="mid",
+        linewidth=PIXEL,
+        antialiased=False,
         label="separated",
     )
     axes.axhline(0.0, color=style.GREY, linewidth=0.5)
-    axes.set(xlim=(0.0, float(time[-1])), ylim=(-0.065 * top, top))
+    limits = (float(time[0]), float(time[-1])) if window is None else window
+    axes.set(xlim=limits, ylim=(-0.065 * top, top))
     axes.set(xlabel="t (s)", ylabel=FORCE)
 
 
-def draw_displacements(axes: Axes, run: xr.Dataset) -> None:
-    """Both displacements over time."""
+def draw_displacements(
+    axes: Axes, run: xr.Dataset, window: Window | None = None
+) -> None:
+    """Both displacements over time, or within a window of it, s."""
     if _too_short(axes, run):
         return
-    axes.plot(run.time, run.x, color=style.X_COLOUR, label="x")
-    axes.plot(run.time, run.y, color=style.Y_COLOUR, linestyle="--", label="y")
+    shown = _shown(run, window)
+    axes.plot(shown.time, shown.x, color=style.X_COLOUR, label="x")
+    axes.plot(shown.time, shown.y, color=style.Y_COLOUR, linestyle="--", label="y")
     style.preload_line(axes, float(run.preload))
-    axes.set(
-        xlabel="t (s)", ylabel="displacement (m)", xlim=(0, float(run.time_reached))
-    )
+    limits = (0.0, float(run.time_reached)) if window is None else window
+    axes.set(xlabel="t (s)", ylabel="displacement (m)", xlim=limits)
     axes.legend(loc="lower right", bbox_to_anchor=(1, 1), borderaxespad=0, ncols=2)
+
+
+def _shown(run: xr.Dataset, window: Window | None) -> xr.Dataset:
+    return run if window is None else run.sel(time=slice(*window))
 
 
 def draw_orbit(axes: Axes, run: xr.Dataset) -> None:
@@ -112,7 +166,7 @@ def draw_spectrum(axes: Axes, dataset: xr.Dataset) -> None:
     else:
         kept = np.isfinite(dataset.x.values)
         steps = np.diff(dataset.time.values[kept])
-        if np.ptp(steps) > 1e-6 * steps[0]:
+        if np.ptp(steps) > UNEVEN * steps[0]:
             style.say_instead(axes, "no spectrum:\nthe samples are not uniform in time")
             return
         force = dataset.normalized_contact_force.values[kept]

@@ -3,10 +3,13 @@
 import matplotlib.pyplot as plt
 import numpy as np
 import pytest
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 import squealpipe
+from squealpipe.codes import Event, Regime
 from squealpipe.plotting import picture
 from squealpipe.plotting.quantities import counts
+from squealpipe.plotting.style import new_figure
 from squealpipe.systems.impact_oscillator import impact_oscillator
 from squealpipe.systems.mode_coupling import mode_coupling
 from tests.former import FORMER
@@ -90,3 +93,39 @@ def test_labels_that_still_change_are_marked():
     assert dots.get_xydata().tolist() == [[ANGLES[1], ANGLES[4]]]
     assert counts(dataset)[-1] == "1 of 49 cells: another kind in the last quarter"
     plt.close("all")
+
+
+def test_a_short_loss_of_contact_is_seen_in_a_long_run():
+    # one hop in 20,000 s, far narrower than a pixel and between two samples
+    damped = FORMER.with_(damping1=0.05, damping2=0.05)
+    hop = {"t_end": 2e4, "initial_state": (0.0, 0.0, 0.0, 0.56)}
+    run = squealpipe.simulate(damped, 0.5 * np.pi, np.pi, **hop)
+    assert list(run.event_kind.values) == [Event.separation, Event.contact]
+    assert not (run.regime == Regime.separated).any()
+    figure, axes = new_figure(5.0, 3.0)
+    squealpipe.plot(run, ax=axes[0, 0]).set_xlim(-2e4, 2e4)  # beside the axis
+    canvas = FigureCanvasAgg(figure)
+    canvas.draw()
+    pixels = np.asarray(canvas.buffer_rgba())[..., :3].astype(int)
+    red = np.array([0xD5, 0x5E, 0x00])
+    columns = (np.abs(pixels - red).sum(axis=-1) < 100).any(axis=0)
+    assert 1 <= columns.sum() <= 3
+    first = axes[0, 0].transData.transform((float(run.event_time[0]), 0.0))[0]
+    assert np.flatnonzero(columns)[0] == pytest.approx(first, abs=2)
+
+
+def test_a_long_run_shows_its_last_periods():
+    # K = diag(k, k): y oscillates with √(1 + κ)
+    kept = FORMER.with_(length1=1e3, length2=1e3)
+    short, long = (
+        squealpipe.simulate(kept, 0.5 * np.pi, np.pi, t_end=end)
+        for end in (30.0, 900.0)
+    )
+    assert len(picture(short).axes) == 4
+    panels = picture(long).axes
+    assert len(panels) == 6
+    period = 2.0 * np.pi / np.sqrt(1.0 + FORMER.kappa)
+    for panel in (panels[1], panels[3]):
+        first, last = panel.get_xlim()
+        assert last == pytest.approx(900.0, rel=1e-3)
+        assert last - first == pytest.approx(12 * period, rel=1e-2)

@@ -5,6 +5,7 @@ import pytest
 
 from squealpipe import Parameters
 from squealpipe.config.settings import ConfigError, read_study
+from squealpipe.laws import contact_laws
 from squealpipe.laws.friction_laws import coefficient, slope
 from squealpipe.models.refusals import refuse_extensions
 from squealpipe.rerun.key import rule_key
@@ -51,6 +52,21 @@ def test_values_between_and_beyond_the_knots():
     )
     late = Parameters(friction_law="linear 0.2:0.4 1:0.3")
     assert coefficient(0.1, late) == late.static_mu == 0.4
+
+
+@pytest.mark.parametrize("shape", [(3, 5), (4, 4), (2, 3, 4), (0, 4)])
+def test_arrays_of_any_shape_are_taken_number_by_number(shape):
+    at = np.random.default_rng(7).uniform(-0.2, 2.0, shape)
+    params = Parameters(friction_law=TEXT, contact_law="cubic 0:0 0.5:0.2 1:1 2:4")
+    force = contact_laws.law_of(params.contact_law).force
+    functions = (
+        lambda speed: coefficient(np.abs(speed), params),
+        lambda speed: slope(np.abs(speed), params),
+        lambda compression: force(compression, 0.0, params),
+    )
+    for function in functions:
+        one_by_one = [float(function(each)) for each in at.ravel().tolist()]
+        np.testing.assert_array_equal(function(at), np.reshape(one_by_one, shape))
 
 
 def test_cubic_tables_are_monotone_and_smooth():

@@ -8,6 +8,7 @@ import xarray as xr
 from squealpipe.codes import Event, Regime
 from squealpipe.methods.spectrum import FEWEST, amplitude_spectrum, highest_peaks, lasts
 from squealpipe.schema import build
+from squealpipe.schema.dynamics.intervals import intervals
 from squealpipe.schema.dynamics.runs import RUN_SUMMARY
 from squealpipe.schema.origin import recorded
 
@@ -41,8 +42,8 @@ def summarize(run: xr.Dataset) -> xr.Dataset:
     if np.ptp(steps) > 1e-6 * steps[0]:
         raise ValueError("the samples are not uniform in time; give uniform `times`")
     end = float(run.time_reached)
-    kinds, times = run.event_kind.values, run.event_time.values
-    separations = times[kinds == Event.separation]
+    apart, stuck = (intervals(run, each) for each in (Regime.separated, Regime.stick))
+    returns = np.count_nonzero(run.event_kind.values == Event.contact)
     force = run.normalized_contact_force.values[: time.size]
     frequency, amplitude = amplitude_spectrum(force, float(steps[0]), padding=PADDING)
     kept = PEAKS if lasts(force) else 0
@@ -50,10 +51,10 @@ def summarize(run: xr.Dataset) -> xr.Dataset:
     return build(
         RUN_SUMMARY,
         {
-            "first_separation_time": separations[0] if separations.size else np.nan,
-            "impact_rate": np.count_nonzero(kinds == Event.contact) / end,
-            "separated_fraction": _share(run, Event.separation, Regime.separated, end),
-            "stick_fraction": _share(run, Event.stick, Regime.stick, end),
+            "first_separation_time": apart[0, 0] if len(apart) else np.nan,
+            "impact_rate": returns / end,
+            "separated_fraction": np.diff(apart).sum() / end,
+            "stick_fraction": np.diff(stuck).sum() / end,
             "peak_contact_force": np.fmax(force.max(), run.return_peak_contact_force),
             "return_peak_contact_force": float(run.return_peak_contact_force),
             "impact_speed": float(run.impact_speed),
@@ -66,13 +67,6 @@ def summarize(run: xr.Dataset) -> xr.Dataset:
         },
         {"frequency": frequency, "peak": np.arange(1, peak_frequency.size + 1)},
     )
-
-
-def _share(run: xr.Dataset, begins: Event, regime: Regime, end: float) -> float:
-    """Share of the time in a regime, which an event of this kind begins and the next one ends."""
-    lengths = np.diff(run.event_time.values, prepend=0.0, append=end)
-    within = [int(run.regime[0]) == regime, *(run.event_kind.values == begins)]
-    return float(lengths[within].sum() / end)
 
 
 def summary_lines(run: xr.Dataset, summary: xr.Dataset) -> Iterator[str]:

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from squealpipe import Parameters, plot
+from squealpipe import Parameters, basin_map, plot
 from squealpipe.codes import Event
 from squealpipe.plotting.run import draw_spectrum
 from squealpipe.tasks.dynamics.runs import simulate
@@ -71,6 +71,19 @@ def test_a_run_that_starts_in_the_air_is_separated_from_its_start():
         sampled, abs=2e-3
     )
     assert float(summarize(motion).separated_fraction) >= landing / 3.0
+
+
+def test_a_start_off_the_belt_has_lost_contact_at_once_for_every_function():
+    start = dict(zip(("x", "y", "vx", "vy"), (0.0, 2.0, 0.3, 0.0), strict=True))
+    motion = run(0.4 * np.pi, 0.6 * np.pi, t_end=20.0, initial_state=[*start.values()])
+    summary = summarize(motion)
+    later = motion.event_time.values[motion.event_kind.values == Event.separation]
+    assert later[0] > 1.0
+    basin = basin_map(FORMER, 0.4 * np.pi, 0.6 * np.pi, **start, t_end=20.0)
+    assert float(summary.first_separation_time) == 0.0
+    assert float(basin.first_separation_time) == 0.0
+    words = "\n".join(summary_lines(motion, summary))
+    assert "first separation   t = 0 s" in words
 
 
 def test_a_force_that_ends_for_good_has_no_frequency():
