@@ -50,3 +50,15 @@ def test_branches_run_from_first_to_last_point_of_the_backbone(explorer):
 def test_a_pair_without_a_mode_says_why(explorer):
     assert np.isnan(explorer.omega[0, 0]).all()
     assert (explorer.end[0, 0] == Outcome.rigid_mode).all()
+
+
+def test_a_table_of_contact_is_explored():
+    # as many angles as samples, where a transposed array would have the same shape
+    stiffening = FORMER.with_(contact_law="cubic 0:0 0.5:0.2 1:0.75 2:4")
+    few = {**OPTIONS, "samples": len(ANGLES)}
+    found = explorer_data(stiffening, ANGLES, workers=1, **few)
+    times = found.time.values
+    alone = simulate(stiffening, ANGLES[1], ANGLES[2], t_end=20.0, times=times)
+    force = alone.normalized_contact_force.values
+    assert np.ptp(force) > 0.1
+    np.testing.assert_allclose(found.normalized_contact_force[1, 2], force, atol=1e-6)
