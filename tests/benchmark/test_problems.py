@@ -5,12 +5,12 @@ import pytest
 
 from squealpipe.benchmark.problems import Problem, all_data
 from squealpipe.methods.taylor.symbols import parameter, substituted, symbol
-from squealpipe.systems.belt_friction import leine_oscillator
-from squealpipe.systems.bouncing_ball import bouncing_ball
-from squealpipe.systems.brake import brake
-from squealpipe.systems.dry_friction import dry_friction_oscillator
-from squealpipe.systems.impact_oscillator import impact_oscillator
-from squealpipe.systems.relief_valve import relief_valve
+from squealpipe.systems.shipped.belt_friction import leine_oscillator
+from squealpipe.systems.shipped.bouncing_ball import bouncing_ball
+from squealpipe.systems.shipped.brake import brake
+from squealpipe.systems.shipped.dry_friction import dry_friction_oscillator
+from squealpipe.systems.shipped.impact_oscillator import impact_oscillator
+from squealpipe.systems.shipped.relief_valve import relief_valve
 from squealpipe.systems.text import expression
 from squealpipe.systems.trace import TIME, TIME_UNIT
 

@@ -10,8 +10,8 @@ from squealpipe.codes import Event, Regime
 from squealpipe.plotting import picture
 from squealpipe.plotting.quantities import counts
 from squealpipe.plotting.style import new_figure
-from squealpipe.systems.impact_oscillator import impact_oscillator
-from squealpipe.systems.mode_coupling import mode_coupling
+from squealpipe.systems.shipped.impact_oscillator import impact_oscillator
+from squealpipe.systems.shipped.mode_coupling import mode_coupling
 from tests.former import FORMER
 
 ANGLES = np.linspace(0.1, 3.0, 7)

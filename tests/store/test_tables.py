@@ -7,7 +7,7 @@ from scipy.io import loadmat
 
 from squealpipe import convert, save, simulate
 from squealpipe.cli import run as command
-from squealpipe.systems.impact_oscillator import impact_oscillator
+from squealpipe.systems.shipped.impact_oscillator import impact_oscillator
 from tests.former import FORMER
 
 

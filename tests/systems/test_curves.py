@@ -6,9 +6,9 @@ from scipy.linalg import expm
 
 from squealpipe import Switch, System
 from squealpipe.functions import cos
-from squealpipe.systems.belt_friction import exponential_oscillator
 from squealpipe.systems.cycles.curve import Meeting
-from squealpipe.systems.impact_oscillator import impact_oscillator
+from squealpipe.systems.shipped.belt_friction import exponential_oscillator
+from squealpipe.systems.shipped.impact_oscillator import impact_oscillator
 
 DAMPING, GAP, RESTITUTION = 0.1, 1.0, 0.8
 CORNERS = {0.998749217771909: 0.0999062060134404, 1.997498435543818: 2.996664812754339}

@@ -8,12 +8,15 @@ import pytest
 from squealpipe import Switch, System
 from squealpipe.functions import cos
 from squealpipe.schema import Outcome, meanings
-from squealpipe.systems.belt_friction import exponential_oscillator, leine_oscillator
 from squealpipe.systems.cycles import branch as branch_module
 from squealpipe.systems.cycles.labels import Label
-from squealpipe.systems.dry_friction import dry_friction_oscillator
-from squealpipe.systems.impact_oscillator import impact_oscillator
-from squealpipe.systems.relief_valve import relief_valve
+from squealpipe.systems.shipped.belt_friction import (
+    exponential_oscillator,
+    leine_oscillator,
+)
+from squealpipe.systems.shipped.dry_friction import dry_friction_oscillator
+from squealpipe.systems.shipped.impact_oscillator import impact_oscillator
+from squealpipe.systems.shipped.relief_valve import relief_valve
 from tests.systems.test_random_systems import random_system
 
 V_STAR = 1.83660097221

@@ -8,7 +8,7 @@ from squealpipe import Parameters
 from squealpipe.laws.contact import law as contact_law
 from squealpipe.laws.friction_laws import coefficient
 from squealpipe.laws.springs import elastic_force, geometry
-from squealpipe.systems.brake import brake_of, parameters_of_run
+from squealpipe.systems.shipped.brake import brake_of, parameters_of_run
 from tests.oracles.energy import elastic_energy
 
 ANGLES = (1.0, 2.2)

@@ -10,8 +10,8 @@ from scipy.integrate import solve_ivp
 from squealpipe import Switch, System
 from squealpipe.functions import cos
 from squealpipe.schema import Outcome
-from squealpipe.systems.dry_friction import dry_friction_oscillator
-from squealpipe.systems.impact_oscillator import impact_oscillator
+from squealpipe.systems.shipped.dry_friction import dry_friction_oscillator
+from squealpipe.systems.shipped.impact_oscillator import impact_oscillator
 
 T_END, MOST_EVENTS = 15.0, 60
 DRAWS = int(

@@ -9,9 +9,9 @@ import xarray as xr
 import squealpipe
 from squealpipe.store.comparison.compare import compare_datasets
 from squealpipe.store.comparison.differences import Agreement
-from squealpipe.systems.belt_friction import leine_oscillator
-from squealpipe.systems.impact_oscillator import impact_oscillator
-from squealpipe.systems.mode_coupling import mode_coupling
+from squealpipe.systems.shipped.belt_friction import leine_oscillator
+from squealpipe.systems.shipped.impact_oscillator import impact_oscillator
+from squealpipe.systems.shipped.mode_coupling import mode_coupling
 
 
 @pytest.mark.parametrize(

@@ -10,7 +10,7 @@ from squealpipe.config.ranges import sweep_config
 from squealpipe.execution.scatter import join
 from squealpipe.execution.sweep import planned, run_sweep
 from squealpipe.rerun.key import rule_key
-from squealpipe.systems import impact_oscillator
+from squealpipe.systems.shipped import impact_oscillator
 
 
 @pytest.fixture

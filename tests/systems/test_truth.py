@@ -12,11 +12,17 @@ from scipy.linalg import expm
 from squealpipe.functions import sqrt
 from squealpipe.schema import Outcome
 from squealpipe.systems.basin import Motion
-from squealpipe.systems.belt_friction import exponential_oscillator
-from squealpipe.systems.bouncing_ball import bouncing_ball
-from squealpipe.systems.impact_oscillator import impact_oscillator
-from squealpipe.systems.mode_coupling import mode_coupling
-from squealpipe.systems.rigid_pad import LEADING, TRAILING, approach, rigid_pad, spring
+from squealpipe.systems.shipped.belt_friction import exponential_oscillator
+from squealpipe.systems.shipped.bouncing_ball import bouncing_ball
+from squealpipe.systems.shipped.impact_oscillator import impact_oscillator
+from squealpipe.systems.shipped.mode_coupling import mode_coupling
+from squealpipe.systems.shipped.rigid_pad import (
+    LEADING,
+    TRAILING,
+    approach,
+    rigid_pad,
+    spring,
+)
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -179,3 +185,13 @@ def test_a_forced_motion_is_a_cycle_of_so_many_periods_or_unsettled():
     )
     assert (early.motion == Motion.unsettled).all()
     assert np.isnan(early.period).all()
+
+
+def test_systems_are_found_where_the_first_release_had_them():
+    from squealpipe.systems.impact_oscillator import impact_oscillator as former
+
+    from squealpipe.systems import impact_oscillator as module
+
+    assert former is module.impact_oscillator is impact_oscillator
+    with pytest.raises(ModuleNotFoundError, match="no_such_system"):
+        import squealpipe.systems.no_such_system  # noqa: F401

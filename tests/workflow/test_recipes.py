@@ -19,7 +19,7 @@ ROW, LAW, LAW_NAME, RECORD, FIGURE, FIGURE_NAME, SYSTEM = range(7)
 FILES = {
     LAW: "squealpipe/laws/friction_laws/rising.py",
     FIGURE: "squealpipe/study/figures/dynamics/impacts.py",
-    SYSTEM: "squealpipe/systems/pendulum.py",
+    SYSTEM: "squealpipe/systems/shipped/pendulum.py",
 }
 LINES = {
     ROW: (
@@ -178,7 +178,7 @@ for _ in range(12):
 PENDULUM = """
 # between impacts the energy is kept, at each it loses 1 − e² of what it was
 import numpy as np
-from squealpipe.systems.pendulum import pendulum
+from squealpipe.systems.shipped.pendulum import pendulum
 run = pendulum.simulate(12.0)
 energy = 0.5 * run.rate**2 + 9.81 * (1.0 - np.cos(run.angle))
 impacts = np.searchsorted(run.event_time, run.time, side="right")

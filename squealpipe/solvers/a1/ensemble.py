@@ -16,7 +16,7 @@ from squealpipe.parameters import Parameters
 from squealpipe.schema import Outcome
 from squealpipe.solvers.a1.jobs import Jobs, jobs_of
 from squealpipe.systems import runs
-from squealpipe.systems.brake import regimes_of
+from squealpipe.systems.shipped.brake import regimes_of
 from squealpipe.systems.system import System
 from squealpipe.systems.trace import TIME
 from squealpipe.validation import Seed, Workers, checked

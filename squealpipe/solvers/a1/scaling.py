@@ -15,7 +15,7 @@ from squealpipe.laws.friction_laws import COULOMB, FALLING, LAWS, coefficient
 from squealpipe.laws.tables import is_table
 from squealpipe.models.refusals import WHY_A4
 from squealpipe.parameters import DEFAULTS, NUMBERS_OF_A1, TABLE, Parameters
-from squealpipe.systems.brake import brake, brake_of, has_own_laws
+from squealpipe.systems.shipped.brake import brake, brake_of, has_own_laws
 from squealpipe.systems.system import System
 from squealpipe.text import suggestion
 from squealpipe.validation import real_array

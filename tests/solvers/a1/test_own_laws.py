@@ -7,7 +7,7 @@ from squealpipe import Parameters, simulate
 from squealpipe.codes import Event
 from squealpipe.schema import Outcome
 from squealpipe.solvers.a1.ensemble import Ensemble, run_ensemble
-from squealpipe.systems.brake import brake_of, parameters_of_run
+from squealpipe.systems.shipped.brake import brake_of, parameters_of_run
 from tests.former import FORMER
 
 STEPWISE = ("steps", "sample_log_growth")

@@ -1,7 +1,7 @@
 """Cycles of the impact oscillator of one forcing period, from above its resonance to below."""
 
 from squealpipe.execution.job import Job
-from squealpipe.systems.impact_oscillator import impact_oscillator
+from squealpipe.systems.shipped.impact_oscillator import impact_oscillator
 
 job = Job(snakemake)
 job.make(

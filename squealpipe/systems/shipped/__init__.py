@@ -1,0 +1,1 @@
+"""Systems that come with the package, each a file like a user's."""
