@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from squealpipe.store.results import open_results
     from squealpipe.store.tables import convert
     from squealpipe.systems.system import Switch, System
+    from squealpipe.tasks.assess.assess import assess
     from squealpipe.tasks.backbones.backbone import backbone
     from squealpipe.tasks.backbones.orbit import periodic_orbit
     from squealpipe.tasks.basins.basin import basin_map
@@ -58,6 +59,7 @@ __all__ = [
     "Sweep",
     "Switch",
     "System",
+    "assess",
     "backbone",
     "basin_map",
     "boundary_distance",

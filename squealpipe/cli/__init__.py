@@ -13,6 +13,7 @@ from cyclopts.exceptions import UnusedCliTokensError
 from squealpipe.cli import benchmark
 from squealpipe.cli.archives import deposit, find, list_runs
 from squealpipe.cli.arguments import by_name, parameters_from_study
+from squealpipe.cli.assess import assess
 from squealpipe.cli.claims import claims
 from squealpipe.cli.console import (
     DONE,
@@ -39,6 +40,7 @@ converged); 2 not done (wrong input, missing file, cannot compare); 130 interrup
 Every command takes -q (print answers and errors alone) and -v (tracebacks and warnings).
 """
 COMMANDS: dict[str, Callable[..., int]] = {
+    "assess": assess,
     "simulate": simulate,
     "map": map_angles,
     "backbone": backbone,

@@ -42,19 +42,24 @@ def _signed(read: Callable[[str], Any], metavar: str, **further: Any) -> Paramet
 Numbers = Annotated[list[float] | None, _signed(parse_range, "RANGE", negative="")]
 """A number, a list of them or first:last:count."""
 Whole = Annotated[int, Parameter(converter=_whole, metavar="INT", n_tokens=1)]
-Angle = Annotated[
-    float,
-    _signed(
-        parse_angle,
-        "ANGLE",
-        help="angle of this spring: 0.4pi, 2pi/5, 72deg or radians.",
-    ),
+
+
+def angle_of_spring(which: str) -> Parameter:
+    """One angle, and how it is counted."""
+    return _signed(
+        parse_angle, "ANGLE", help=f"{which}: 0.4pi, 2pi/5, 72deg or radians."
+    )
+
+
+Angle1 = Annotated[
+    float, angle_of_spring("angle of spring 1 to +x, the way a belt of V > 0 runs")
 ]
+Angle2 = Annotated[float, angle_of_spring("angle of spring 2 to −x")]
 AngleRange = Annotated[
     list[float],
     _signed(
         partial(parse_range, one=parse_angle), "RANGE", negative="", show_default="0:pi:61",
-        help="angles of this spring, first:last:count or a list.",
+        help="angles of this spring (alpha1 to +x, alpha2 to −x), first:last:count or a list.",
     ),
 ]  # fmt: skip
 Tolerance = Annotated[float, Parameter(help="tolerance of the integration.")]

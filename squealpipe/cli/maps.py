@@ -10,7 +10,8 @@ from cyclopts import Parameter
 from squealpipe.cli.arguments import (
     DRAWN,
     FULL_RANGE,
-    Angle,
+    Angle1,
+    Angle2,
     AngleRange,
     Drawn,
     Numbers,
@@ -115,8 +116,8 @@ def refine(
 
 
 def basin(
-    alpha1: Angle,
-    alpha2: Angle,
+    alpha1: Angle1,
+    alpha2: Angle2,
     /,
     *,
     x: Numbers = None,
@@ -172,8 +173,8 @@ def _counted(found: xr.Dataset) -> int:
 
 
 def disturbance(
-    alpha1: Angle,
-    alpha2: Angle,
+    alpha1: Angle1,
+    alpha2: Angle2,
     /,
     *,
     leads_to: Literal["contact_lost", "whirl"] = "contact_lost",
@@ -226,8 +227,8 @@ def disturbance(
 
 
 def propensity(
-    alpha1: Angle,
-    alpha2: Angle,
+    alpha1: Angle1,
+    alpha2: Angle2,
     /,
     *,
     distribution: Annotated[

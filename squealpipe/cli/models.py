@@ -6,7 +6,8 @@ from typing import Literal
 from squealpipe.cli.arguments import (
     BRAKE,
     WRITTEN,
-    Angle,
+    Angle1,
+    Angle2,
     Brake,
     Numbers,
     Output,
@@ -24,8 +25,8 @@ Question = Literal[
 
 
 def choose(
-    alpha1: Angle,
-    alpha2: Angle,
+    alpha1: Angle1,
+    alpha2: Angle2,
     question: Question,
     /,
     *,

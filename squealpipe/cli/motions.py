@@ -10,7 +10,8 @@ from cyclopts import Parameter
 
 from squealpipe.cli.arguments import (
     DRAWN,
-    Angle,
+    Angle1,
+    Angle2,
     Drawn,
     Numbers,
     Output,
@@ -39,8 +40,8 @@ Model = Annotated[
 
 
 def simulate(
-    alpha1: Angle,
-    alpha2: Angle,
+    alpha1: Angle1,
+    alpha2: Angle2,
     /,
     *,
     t_end: float | None = None,
@@ -109,8 +110,8 @@ def simulate(
 
 
 def backbone(
-    alpha1: Angle,
-    alpha2: Angle,
+    alpha1: Angle1,
+    alpha2: Angle2,
     /,
     *,
     mode: Literal[1, 2] = 1,
@@ -159,8 +160,8 @@ def backbone(
 
 
 def cycle(
-    alpha1: Angle,
-    alpha2: Angle,
+    alpha1: Angle1,
+    alpha2: Angle2,
     /,
     *,
     guess: Numbers = None,
@@ -205,8 +206,8 @@ def cycle(
 
 
 def branch(
-    alpha1: Angle,
-    alpha2: Angle,
+    alpha1: Angle1,
+    alpha2: Angle2,
     /,
     *,
     parameter: str,

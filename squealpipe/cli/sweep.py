@@ -7,7 +7,7 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
-from squealpipe.cli.arguments import WRITTEN, Angle, Output, Workers, Written
+from squealpipe.cli.arguments import WRITTEN, Angle1, Angle2, Output, Workers, Written
 from squealpipe.cli.console import DONE, SESSION, answer, say, working
 from squealpipe.cli.output import check_output, write
 from squealpipe.config.ranges import read_fixed, read_values, sweep_config
@@ -19,8 +19,8 @@ def sweep(
     /,
     *,
     vary: Annotated[list[str], Parameter(metavar="NAME=RANGE", negative="")],
-    alpha1: Angle | None = None,
-    alpha2: Angle | None = None,
+    alpha1: Angle1 | None = None,
+    alpha2: Angle2 | None = None,
     option: Annotated[
         list[str] | None, Parameter(metavar="NAME=VALUE", negative="")
     ] = None,
@@ -35,8 +35,8 @@ def sweep(
 
     Args:
         task: simulate, validity_map, hammering_map, quasi_static_map, stability_map,
-            critical_friction_map, natural_frequencies, periodic_orbit, backbone or
-            smallest_disturbance; or a system of your own as FILE.py:NAME.
+            critical_friction_map, natural_frequencies, periodic_orbit, backbone,
+            smallest_disturbance or assess; or a system of your own as FILE.py:NAME.
         vary: a parameter, angle or option, or a start of a system (x0), with its values:
             mu=0:0.6:13, alpha1=0:pi:31, belt_speed=0.1:100:7:log or k3=0.5,0.75; repeat for
             further dimensions.

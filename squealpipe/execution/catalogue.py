@@ -6,6 +6,7 @@ from typing import Any
 
 import xarray as xr
 
+from squealpipe.tasks.assess.assess import assess
 from squealpipe.tasks.backbones.backbone import backbone
 from squealpipe.tasks.backbones.orbit import periodic_orbit
 from squealpipe.tasks.basins.disturbance import smallest_disturbance
@@ -19,7 +20,7 @@ from squealpipe.tasks.linear.maps import (
 )
 
 NEEDED = inspect.Parameter.empty
-ONE_PAIR = (simulate, periodic_orbit, backbone, smallest_disturbance)
+ONE_PAIR = (simulate, periodic_orbit, backbone, smallest_disturbance, assess)
 MAPS = (
     *(validity_map, hammering_map, quasi_static_map, stability_map),
     *(critical_friction_map, natural_frequencies),

@@ -188,6 +188,7 @@ def _runs(sweep: Sweep, workers: int | None) -> Iterator[xr.Dataset]:
 
 def _merge(sweep: Sweep, runs: Sequence[xr.Dataset]) -> xr.Dataset:
     schema, base = sweep.schema, find(_schema(sweep.task))
+    runs = [_in_order(run, runs[0]) for run in runs]
     shape = tuple(len(sweep.vary[name]) for name in sweep.names)
     data, coords = {}, {name: np.asarray(sweep.vary[name]) for name in sweep.names}
     for name, entry in {**base.coordinates, **base.variables}.items():
@@ -213,6 +214,18 @@ def _merge(sweep: Sweep, runs: Sequence[xr.Dataset]) -> xr.Dataset:
 
 def _schema(task: str) -> str:
     return "simulation" if task == "simulate" else task
+
+
+def _in_order(run: xr.Dataset, first: xr.Dataset) -> xr.Dataset:
+    """A run with its words along each dimension in the order of the first one."""
+    for name, words in first.coords.items():
+        other = run[name].values
+        ours = words.values
+        if words.dtype.kind not in "UO" or np.array_equal(ours, other):
+            continue
+        if sorted(ours) == sorted(other):
+            run = run.sel({str(name): ours})
+    return run
 
 
 def _common(name: str, arrays: Sequence[np.ndarray]) -> np.ndarray:

@@ -6,6 +6,8 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from squealpipe.plotting.assess import draw_settled_orbit
+from squealpipe.plotting.assess import figure as assess_figure
 from squealpipe.plotting.curves import draw_curves
 from squealpipe.plotting.cycles import draw_backbone, draw_branch, draw_cycle
 from squealpipe.plotting.propensity import draw_shares
@@ -19,6 +21,7 @@ from squealpipe.schema import SYSTEM
 from squealpipe.validation import checked
 
 DRAWN: dict[str, Callable[[Axes, xr.Dataset], None]] = {
+    "assess": draw_settled_orbit,
     "simulation": draw_force,
     "run_summary": draw_spectrum,
     "backbone": draw_backbone,
@@ -40,6 +43,7 @@ DRAWN: dict[str, Callable[[Axes, xr.Dataset], None]] = {
 """Schema → what draws it; :data:`~squealpipe.plotting.quantities.SHOWN` has the others."""
 
 FIGURES: dict[str, Callable[[xr.Dataset], Figure]] = {
+    "assess": assess_figure,
     "simulation": run_figure,
     "propensity": propensity_figure,
 }

@@ -101,6 +101,25 @@ def test_propensity_writes_shares_and_a_picture(capsys):
     assert Path("p.png").stat().st_size > 0
 
 
+def test_assess_answers_in_ten_lines_and_says_by_its_exit_code_whether_it_is_quiet(
+    capsys, tmp_path
+):
+    pad = ["--mass", "0.45", "--k1", "1e7", "--k2", "1e7", "--k3", "7e6", "--preload",
+           "5.714e-4", "--belt-speed", "2", "--length1", "0.1", "--length2", "0.1",
+           "--damping1", "42.4", "--damping2", "42.4"]  # fmt: skip
+    assert run(["assess", "22deg", "46deg", *pad, "--mu", "0.4", "-o", "a.nc"]) == 1
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[0] == "wrote a.nc and a.png"
+    assert 5 <= len(lines[1:]) <= 11
+    assert lines[1].startswith("Hammers at 8")
+    assert "(flutter)" in lines[2]
+    assert any("angle alpha1: now 22°, quiet from" in line for line in lines)
+    assert load("a.nc").attrs["schema"] == "assess"
+    assert run(["assess", "22deg", "46deg", *pad, "--mu", "0.05"]) == 0
+    assert capsys.readouterr().out.startswith("Quiet: ")
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["a.nc", "a.png"]
+
+
 def test_simulate_writes_a_run_and_a_picture_and_sums_it_up(capsys, tmp_path):
     assert (
         run(["simulate", "5pi/6", "150deg", "--t-end", "30", "-o", "a/hammering.nc"])

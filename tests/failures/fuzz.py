@@ -291,6 +291,7 @@ CALLS: dict[str, tuple[float, Callable[..., Any], dict[str, Kind]]] = {
          "leads_to": one_of("contact_lost", "whirl"), "model": MODEL, "seed": SEED, "tol": TOL,
          "workers": ONE},
     ),
+    "assess": (0.2, sp.assess, {**SCENE, "tol": TOL}),
     "limit_cycle": (
         0.5, sp.limit_cycle,
         {**SCENE, "model": one_of("A1"), "t_settle": MAYBE,
@@ -380,6 +381,7 @@ class Findings(NamedTuple):
 
 EXPENSIVE = {
     "infer_parameters", "propensity", "smallest_disturbance", "limit_cycle", "cycle_branch",
+    "assess",
     "System.cycle_curve",
 }  # fmt: skip
 """Always called with an argument that makes no sense."""

@@ -22,7 +22,7 @@ MADE_BY = {
         "A1",
         1e-9,
     ): "contact_boundary boundary_distance regime_chart smallest_disturbance "
-    "infer_parameters",
+    "infer_parameters assess",
     ("A1", "round-off"): "limit_cycle cycle_branch",
     ("A1, A3", 1e-9): "propensity",
     ("A2", "round-off"): "quasi_static_map",

@@ -1,0 +1,48 @@
+"""``squealpipe assess``: the answer for one brake."""
+
+from __future__ import annotations
+
+from squealpipe.cli.arguments import (
+    DRAWN,
+    Angle1,
+    Angle2,
+    Drawn,
+    OutputElsewhere,
+    Tolerance,
+)
+from squealpipe.cli.console import ANSWER_IS_NO, DONE, answer, working
+from squealpipe.cli.output import compute
+
+
+def assess(
+    alpha1: Angle1,
+    alpha2: Angle2,
+    /,
+    *,
+    tol: Tolerance = 1e-12,
+    output: OutputElsewhere = None,
+    brake: Drawn = DRAWN,
+) -> int:
+    """Say whether a brake squeals or hammers, at which frequency, how loud, why, what stops it.
+
+    Exit code 0: quiet; 1: not. Angles are counted from the belt line, both upwards: alpha1 from +x,
+    the way the belt runs, alpha2 from −x; 0deg is along the belt, 90deg is straight above the mass.
+
+    Example: `squealpipe assess 22deg 46deg --config pad.yaml -o answer.nc`
+
+    Args:
+        output: also write the dataset (.nc or .csv), and a picture of the settled motion beside it.
+    """
+    from squealpipe.study.report.answer import lines
+
+    if output is not None:
+        found = compute("assess", brake, alpha1, alpha2, output=output, tol=tol)
+    elif brake.picture is not None:
+        raise ValueError("--picture is drawn beside a dataset; name that by --output")
+    else:
+        import squealpipe
+
+        with working("assess"):
+            found = squealpipe.assess(brake.params, alpha1, alpha2, tol=tol)
+    answer(*lines(found))
+    return DONE if int(found.verdict) == 0 else ANSWER_IS_NO

@@ -1,0 +1,129 @@
+"""The settled motion of an answer: orbit, contact force, and spectrum in Hz."""
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from squealpipe.plotting import style
+from squealpipe.plotting.cycles import joined
+from squealpipe.schema import meanings
+from squealpipe.schema.assess import Verdict
+from squealpipe.text import prefixed
+
+PICTURED = 6.0
+"""Multiples of the strongest line that the spectrum shows."""
+DIED = "the motion\ndies out"
+
+
+def figure(answer: xr.Dataset) -> Figure:
+    """Three panels."""
+    drawn, axes = style.new_figure(style.PAGE, 2.3, ncols=3)
+    draw_row(axes[0], answer)
+    return drawn
+
+
+def draw_row(panels: np.ndarray, answer: xr.Dataset) -> None:
+    """Orbit, force and spectrum of one answer into three panels."""
+    for letter, panel, draw, title in zip(
+        "abc",
+        panels,
+        (draw_settled_orbit, draw_settled_force, draw_settled_spectrum),
+        ("settled orbit", "contact force", "velocity spectrum"),
+        strict=True,
+    ):
+        draw(panel, answer)
+        style.panel_letter(panel, letter, title)
+
+
+def draw_settled_orbit(axes: Axes, answer: xr.Dataset) -> None:
+    """The path of the mass in the colours of its regimes."""
+    if _says_quiet(axes, answer):
+        return
+    x, y = answer.path_x.values, answer.path_y.values
+    top = float(np.nanmax(np.abs([x, y])))
+    unit, size = prefixed(top, "m")
+    flags = meanings(answer.path_regime)
+    for value in np.unique(answer.path_regime.values):
+        name = flags[int(value)]
+        if name not in style.REGIME_COLOURS:
+            continue
+        shown = np.where(joined(answer.path_regime.values == value), y, np.nan)
+        axes.plot(
+            x / size,
+            shown / size,
+            color=style.REGIME_COLOURS[name],
+            linewidth=0.7,
+            label=style.flag_words(name).replace("slip slower", "slip"),
+        )
+    limit = float(answer.preload)
+    if limit < 1.2 * float(np.nanmax(y)):
+        axes.axhline(limit / size, color=style.GREY, linewidth=0.8, linestyle=":")
+    axes.set(xlabel=f"along the belt, x ({unit})", ylabel=f"away from it, y ({unit})")
+    axes.set_aspect("equal", adjustable="datalim")
+    axes.legend(fontsize=6, loc="best", borderaxespad=0)
+
+
+def draw_settled_force(axes: Axes, answer: xr.Dataset) -> None:
+    """Contact force over the preload, red strips where contact is lost."""
+    if _says_quiet(axes, answer):
+        return
+    time = answer.path_time.values
+    unit, size = prefixed(float(time[-1]), "s")
+    time, force = time / size, answer.path_force.values
+    top = 1.15 * float(np.nanmax(force))
+    axes.plot(time, force, color=style.BLUE)
+    lost = meanings(answer.path_regime)
+    off = [code for code, name in lost.items() if name == "separated"]
+    axes.fill_between(
+        time,
+        -0.06 * top,
+        0.0,
+        where=np.isin(answer.path_regime.values, off),
+        color=style.RED,
+        linewidth=0.8,
+        step="mid",
+    )
+    axes.axhline(0.0, color=style.GREY, linewidth=0.5)
+    axes.set(
+        xlim=(float(time[0]), float(time[-1])),
+        ylim=(-0.065 * top, top),
+        xlabel=f"time ({unit})",
+        ylabel="contact force over preload",
+    )
+
+
+def draw_settled_spectrum(axes: Axes, answer: xr.Dataset) -> None:
+    """Amplitude of both velocities over the frequency, the strongest line marked."""
+    if _says_quiet(axes, answer):
+        return
+    strongest = float(answer.frequency)
+    unit, size = prefixed(PICTURED * strongest, "Hz")
+    frequency = answer.line_frequency.values
+    shown = frequency <= PICTURED * strongest
+    for name, colour, words in (
+        ("along", style.X_COLOUR, "along the belt"),
+        ("across", style.Y_COLOUR, "across it"),
+    ):
+        values = np.maximum(answer[f"velocity_spectrum_{name}"].values[shown], 1e-300)
+        axes.semilogy(frequency[shown] / size, values, color=colour, label=words)
+    top = float(answer.harmonic_velocity[0])
+    axes.plot(strongest / size, top, "v", color=style.RED, markersize=4)
+    axes.set(
+        ylim=(1e-4 * top, 5.0 * top),
+        xlim=(0.0, PICTURED * strongest / size),
+        xlabel=f"frequency ({unit})",
+        ylabel="velocity (m/s)",
+    )
+    axes.legend(fontsize=6, loc="upper right", borderaxespad=0)
+
+
+def _says_quiet(axes: Axes, answer: xr.Dataset) -> bool:
+    """Whether there is no motion to be drawn, which the panel then says."""
+    if int(answer.verdict) == Verdict.quiet:
+        style.say_instead(axes, DIED)
+        return True
+    if not np.isfinite(answer.path_x.values).all():
+        style.say_instead(axes, "the run ended early")
+        return True
+    return False

@@ -1,0 +1,261 @@
+"""The answer of a dataset ``assess`` in words that need no handbook."""
+
+import math
+from collections.abc import Iterator
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from squealpipe.schema.assess import Mechanism, Verdict
+from squealpipe.text import engineering, number
+
+NAMES = {
+    "mu": "friction",
+    "k3": "contact stiffness k3",
+    "k1": "stiffness of spring 1",
+    "k2": "stiffness of spring 2",
+    "alpha1": "angle alpha1",
+    "alpha2": "angle alpha2",
+    "damping": "damping ratio of both springs",
+    "preload": "preload (compression of the contact)",
+    "belt_speed": "belt speed",
+}
+"""Words for what is changed."""
+CHEAPEST = 3
+"""Cures that an answer names."""
+
+
+class CureWords(NamedTuple):
+    """One row of the table of cures."""
+
+    name: str
+    words: str
+    now: str
+    quiet_from: str
+    change: str
+    any_start: str
+    tried: str
+
+
+def verdict_of(answer: xr.Dataset, prefix: str = "") -> Verdict:
+    """The verdict of a start."""
+    return Verdict(int(answer[f"{prefix}verdict"]))
+
+
+def headline(answer: xr.Dataset, prefix: str = "") -> str:
+    """The verdict in one sentence."""
+
+    def value(name: str) -> float:
+        return float(answer[f"{prefix}{name}"])
+
+    verdict = verdict_of(answer, prefix)
+    if verdict is Verdict.quiet:
+        if not prefix and bool(answer.quiet_unless_struck):
+            return (
+                "Quiet unless struck: small motions die out, but a hard enough blow or a sudden "
+                "start leaves a vibration that lasts."
+            )
+        return "Quiet: the vibration dies out."
+    at = engineering(value("frequency"), "Hz")
+    force = number(value("peak_contact_force_over_preload"), 2)
+    lost = _share(value("separated_fraction"))
+    if verdict is Verdict.hammers:
+        return (
+            f"Hammers at {at}: contact is lost {lost} of the time, the peak force is {force} "
+            "times the preload."
+        )
+    if verdict is Verdict.squeals:
+        stuck = value("stick_fraction")
+        how = (
+            f"in stick–slip, sticking to the belt {_share(stuck)} of the time"
+            if stuck > 0
+            else "without sticking"
+        )
+        return f"Squeals at {at} {how}; contact is kept."
+    return (
+        f"Undetermined: after {engineering(value('settled_by'), 's')} the motion had not settled; "
+        f"at the end its strongest line was at {at}, contact lost {lost} of the time."
+    )
+
+
+def cause(answer: xr.Dataset) -> str:
+    """Why, in one sentence."""
+    rate = f"{number(float(answer.sliding_growth_rate))} per second"
+    modes = [float(f) for f in answer.mode_frequency.values if f > 0]
+    frequencies = " and ".join(engineering(f, "Hz") for f in modes)
+    mechanism = Mechanism(int(answer.mechanism))
+    if mechanism is Mechanism.falling_friction:
+        return (
+            f"Cause: friction that falls with speed feeds the vibration, which grows by {rate} "
+            f"at first; the modes are at {frequencies}."
+        )
+    if mechanism is Mechanism.flutter:
+        if len(modes) == 2 and abs(modes[1] - modes[0]) > 0.01 * modes[0]:
+            merged = f"the modes at {frequencies}"
+        else:
+            merged = f"two modes into one near {engineering(modes[0], 'Hz')}"
+        return (
+            f"Cause: friction couples {merged} (flutter), and the vibration grows by {rate} at "
+            "first."
+        )
+    if mechanism is Mechanism.divergence:
+        return (
+            "Cause: friction and contact push the mass away from steady sliding without "
+            f"oscillation (divergence), by {rate} at first."
+        )
+    if mechanism is Mechanism.no_sliding_state:
+        return "Cause: there is no steady sliding in contact; the answer is that of a sudden start."
+    if verdict_of(answer) is Verdict.quiet and not bool(answer.quiet_unless_struck):
+        least = -float(answer.sliding_growth_rate)
+        fades = (
+            f"small motions decay by {number(least)} per second"
+            if least > 0
+            else "small motions neither grow nor decay, for nothing damps them"
+        )
+        return f"Steady sliding is stable: {fades}; the modes are at {frequencies}."
+    return (
+        "Steady sliding is stable, but another motion exists beside it, which a push reaches; "
+        f"the modes are at {frequencies}."
+    )
+
+
+def level(answer: xr.Dataset) -> str:
+    """How loud, in one sentence."""
+    if verdict_of(answer) is Verdict.quiet:
+        return f"Level: none; the contact force is {_force(answer)}."
+    along, across = (
+        engineering(float(answer[f"velocity_rms_{way}"]), "m s-1")
+        for way in ("along", "across")
+    )
+    peak = engineering(float(answer.displacement_peak), "m")
+    return (
+        f"Level: {along} rms along the belt and {across} across it; displacement up to {peak}, "
+        f"contact force up to {_force(answer)}."
+    )
+
+
+def impacts(answer: xr.Dataset) -> str:
+    """Losses of contact, stick and harmonics, in one line."""
+    if verdict_of(answer) is Verdict.quiet:
+        return "Contact is kept."
+    parts = []
+    if float(answer.impact_rate) > 0:
+        parts.append(
+            f"{number(float(answer.impact_rate))} impacts per second at up to "
+            f"{engineering(float(answer.impact_speed), 'm s-1')}"
+        )
+    parts.append(f"sticking {_share(float(answer.stick_fraction))} of the time")
+    parts.append("repeats itself" if bool(answer.periodic) else "does not repeat")
+    resolution = engineering(float(answer.frequency_resolution), "Hz", 2)
+    parts.append(f"frequencies are resolved to {resolution}")
+    return "Motion: " + "; ".join(parts) + "."
+
+
+def sudden(answer: xr.Dataset) -> str:
+    """What the other start leads to."""
+    if Mechanism(int(answer.mechanism)) is Mechanism.no_sliding_state:
+        return "Pressed on suddenly: the same."
+    told = headline(answer, "sudden_")
+    return f"Pressed on suddenly: {told[0].lower()}{told[1:]}"
+
+
+def cures(answer: xr.Dataset) -> list[CureWords]:
+    """The table of cures, the smallest change first; without those that were not found."""
+    return [_words(answer.sel(cure=name)) for name in _found(answer)]
+
+
+def not_cures(answer: xr.Dataset) -> list[tuple[str, str]]:
+    """What was changed in vain, and the range that was searched."""
+    found = _found(answer)
+    return [
+        (NAMES[str(name)], _range(answer.sel(cure=name)))
+        for name in answer.cure.values
+        if str(name) not in found
+    ]
+
+
+def cure_line(cure: CureWords, quiet: bool) -> str:
+    """One cure in a line."""
+    word = "quiet up to" if quiet else "quiet from"
+    return f"{cure.words}: now {cure.now}, {word} {cure.quiet_from} ({cure.change})"
+
+
+def lines(answer: xr.Dataset) -> Iterator[str]:
+    """The answer in ten lines or fewer."""
+    quiet = verdict_of(answer) is Verdict.quiet
+    yield headline(answer)
+    yield cause(answer)
+    yield level(answer)
+    yield impacts(answer)
+    yield sudden(answer)
+    table = cures(answer)
+    if not table:
+        yield "No single change within the ranges searched alters the verdict."
+        return
+    yield (
+        "How far from noise, the smallest change first:"
+        if quiet
+        else "What stops it, the smallest change first:"
+    )
+    for cure in table[:CHEAPEST]:
+        yield f"  {cure_line(cure, quiet)}"
+    others = [cure.words for cure in table[CHEAPEST:]]
+    vain = [words for words, _ in not_cures(answer)]
+    told = [f"then {', '.join(others)}"] if others else []
+    told += [f"not {', '.join(vain)}"] if vain else []
+    if told:
+        yield f"  {'; '.join(told)}"
+
+
+def _found(answer: xr.Dataset) -> list[str]:
+    return [
+        str(name)
+        for name in answer.cure.values
+        if math.isfinite(float(answer.quiet_from.sel(cure=name)))
+    ]
+
+
+def _words(cure: xr.Dataset) -> CureWords:
+    name = str(cure.cure.item())
+    unit = str(cure.unit.item())
+    return CureWords(
+        name,
+        NAMES[name],
+        _value(name, float(cure.value), unit),
+        _value(name, float(cure.quiet_from), unit),
+        _change(name, float(cure.change)),
+        _value(name, float(cure.quiet_from_any_start), unit),
+        _range(cure),
+    )
+
+
+def _range(cure: xr.Dataset) -> str:
+    name, unit = str(cure.cure.item()), str(cure.unit.item())
+    low, high = (float(cure[end]) for end in ("lowest_tried", "highest_tried"))
+    return f"{_value(name, low, unit)} to {_value(name, high, unit)}"
+
+
+def _value(name: str, value: float, unit: str) -> str:
+    if not math.isfinite(value):
+        return "none"
+    if name.startswith("alpha"):
+        return f"{number(float(np.degrees(value)))}°"
+    if name == "damping":
+        return f"{number(100.0 * value)} %"
+    return engineering(value if abs(value) > 1e-8 or unit != "1" else 0.0, unit)
+
+
+def _change(name: str, change: float) -> str:
+    sign = "+" if change > 0 else "−"
+    unit = "°" if name.startswith("alpha") else " %"
+    return f"{sign}{number(abs(change), 2)}{unit}"
+
+
+def _share(share: float) -> str:
+    return f"{number(100.0 * share, 2)} %"
+
+
+def _force(answer: xr.Dataset) -> str:
+    newtons = engineering(float(answer.peak_contact_force), "N")
+    return f"{newtons}, {number(float(answer.peak_contact_force_over_preload))} times the preload"

@@ -1,0 +1,174 @@
+"""What a start settles to: windows of growing length, until two in succession agree.
+
+The horizon is no setting. Windows follow one another and grow to twice their length each time,
+until the kind of motion in two of them is the same and their statistics agree, or ``MOST`` periods
+have passed. Near an onset motions grow or decay slowly: a window that is too short to show this
+settles nothing.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from squealpipe.models.damped import is_undamped
+from squealpipe.schema.assess import Verdict
+from squealpipe.tasks.assess.sliding import Design, Sliding
+from squealpipe.tasks.assess.windows import Windows, run_windows
+
+PUSH = 0.01
+"""Push of steady sliding, over the static compression."""
+FIRST = 50.0
+"""Length of the first two windows, in periods."""
+MOST = 20_000.0
+"""Periods after which a motion that has not settled is undetermined."""
+AGREE = 0.03
+"""Largest difference of the statistics of two windows that agree: of rms velocities relatively,
+of shares of time absolutely."""
+FADED = 0.1
+"""Velocity, over that of the push, below which a motion has died out."""
+BELOW = 10.0
+"""Velocity, over that of the push, up to which the motion of an undamped brake is quiet."""
+SHOWN = 0.5
+"""Growth or decay within a window, in logarithm, from which it would be seen."""
+OFTEN = 2
+"""Losses of contact within a window from which contact is lost again and again."""
+
+
+@dataclass(frozen=True)
+class Start:
+    """A start of a design.
+
+    Attributes:
+        state: (4,), m and m/s.
+        sliding: steady sliding of the design, if there is any.
+        speed: largest speed of small motions of the size of the push, m/s; of an undamped brake
+            that of this start.
+    """
+
+    design: Design
+    state: np.ndarray
+    sliding: Sliding | None
+    speed: float
+
+    @property
+    def rate(self) -> float:
+        """Growth rate of small motions, 1/s; 0 where round-off decides, or there is no sliding."""
+        if self.sliding is None:
+            return 0.0
+        rate = self.sliding.growth_rate
+        return rate if abs(rate) > self.sliding.marginal else 0.0
+
+
+@dataclass(frozen=True)
+class Settled:
+    """What a start has settled to.
+
+    Attributes:
+        last: statistics of the last window.
+        time: time by which it had settled, s.
+    """
+
+    verdict: Verdict
+    last: Windows
+    time: float
+
+
+def pushed(design: Design, sliding: Sliding) -> Start:
+    """Steady sliding, pushed in the direction in which small motions grow fastest."""
+    size = PUSH * (design.params.preload - sliding.state[1])
+    speed = size * float(np.linalg.norm(sliding.push[2:]))
+    speed = max(speed, size * design.rate)
+    return Start(design, sliding.state + size * sliding.push, sliding, speed)
+
+
+def start_at(design: Design, sliding: Sliding | None, state: np.ndarray) -> Start:
+    """Another start."""
+    size, rest = design.params.preload, np.zeros(4)
+    if sliding is not None:
+        size, rest = design.params.preload - sliding.state[1], sliding.state
+    speed = PUSH * size * design.rate
+    if is_undamped(design.params):
+        away = np.hypot(*(state - rest)[:2]) * design.rate
+        speed = max(speed, float(np.hypot(away, np.hypot(*state[2:]))) / BELOW * 2.0)
+    return Start(design, np.asarray(state, float), sliding, speed)
+
+
+def settle(starts: Sequence[Start], *, tol: float, most: float = MOST) -> list[Settled]:
+    """Run each start until it has settled."""
+    found: dict[int, Settled] = {}
+    states = np.array([start.state for start in starts])
+    length = np.array([_first_window(start, most) for start in starts])
+    period = np.array([start.design.period for start in starts])
+    elapsed = np.zeros(len(starts))
+    before: dict[int, tuple[Windows, float]] = {}
+    while rows := [row for row in range(len(starts)) if row not in found]:
+        seconds = length[rows] * period[rows]
+        designs = [starts[row].design for row in rows]
+        windows = run_windows(designs, states[rows], seconds, tol=tol)
+        elapsed[rows] += length[rows]
+        for at, row in enumerate(rows):
+            now, start = windows.row(at), starts[row]
+            verdict = None
+            if row in before:
+                verdict = _judge(start, *before[row], now, float(seconds[at]))
+                length[row] *= 2.0
+            length[row] = min(length[row], most - elapsed[row])
+            if verdict is None and (elapsed[row] >= most or not now.finished):
+                verdict = Verdict.undetermined
+            if verdict is not None:
+                time = float(elapsed[row] * period[row])
+                found[row] = Settled(verdict, now, time)
+            before[row], states[row] = (now, float(seconds[at])), now.final
+    return [found[row] for row in range(len(starts))]
+
+
+def _first_window(start: Start, most: float) -> float:
+    """Periods of the first window: small motions grow to e^½ in it, or more."""
+    rate = abs(start.rate) * start.design.period
+    shown = SHOWN / rate if rate > 0 else 0.0
+    return float(np.clip(shown, FIRST, 0.25 * most))
+
+
+def _judge(
+    start: Start, before: Windows, span: float, now: Windows, seconds: float
+) -> Verdict | None:
+    """The verdict on two successive windows; None: they have not settled."""
+    if not now.finished:
+        return None
+    if (
+        not now.nonlinear
+        and start.rate <= 0.0
+        and now.peak_speed <= BELOW * start.speed
+    ):
+        if now.peak_speed < FADED * start.speed or start.rate == 0.0:
+            return Verdict.quiet
+        # half of what small motions decay from the middle of one window to that of the next
+        decay = 0.5 * start.rate * 0.5 * (span + seconds)
+        if not before.nonlinear and np.hypot(*now.rms) < np.hypot(*before.rms) * np.exp(
+            decay
+        ):
+            return Verdict.quiet
+    lost = [bool(each.separations >= OFTEN) for each in (before, now)]
+    if lost[0] != lost[1] or not _agree(before, now):
+        return None
+    if lost[1]:
+        return Verdict.hammers
+    if now.separations > 0 or now.separated > 0:
+        return None
+    if start.sliding is None and np.hypot(*now.rms) < FADED * start.speed:
+        return Verdict.quiet
+    shown = abs(start.rate) * seconds >= SHOWN or now.nonlinear
+    if not shown and start.rate != 0.0:
+        return None
+    return Verdict.squeals
+
+
+def _agree(before: Windows, now: Windows) -> bool:
+    """Whether the statistics of two windows agree."""
+    largest = np.hypot(*now.rms)
+    return bool(
+        np.abs(before.rms - now.rms).max() <= AGREE * largest
+        and abs(before.separated - now.separated) <= AGREE
+        and abs(before.stuck - now.stuck) <= AGREE
+    )

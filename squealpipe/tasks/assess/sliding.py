@@ -1,0 +1,195 @@
+"""Steady sliding of A1 and small motions about it, in SI units.
+
+The acceleration of A1 is evaluated at complex displacements: the imaginary part of the result
+over a tiny step is the exact derivative (Squire and Trapp, SIAM Review 40 (1998) 110–112), for
+every law and without a compiled system, so that thousands of designs cost a second.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, NamedTuple, Self
+
+import numpy as np
+
+from squealpipe.laws.contact import normal_force
+from squealpipe.laws.friction_laws import COULOMB
+from squealpipe.laws.springs import LONG, geometry
+from squealpipe.models import a1
+from squealpipe.parameters import Parameters
+from squealpipe.schema.assess import Mechanism
+
+MOST_STEPS = 40
+"""Newton steps."""
+BALANCE = 1e-11
+"""Force left over at an equilibrium, over that of the preload."""
+GROWS = 1e-7
+"""Growth rate, over the largest |s|, above which steady sliding is unstable; below it is the
+round-off of an undamped pair."""
+STEP = 1e-30
+"""Imaginary step, over a length or a speed of the system."""
+
+
+class Design(NamedTuple):
+    """A brake: parameters and angles (rad)."""
+
+    params: Parameters
+    alpha1: float
+    alpha2: float
+
+    @property
+    def rate(self) -> float:
+        """√((k1 + k2)/2m), rad/s, the unit of frequencies."""
+        p = self.params
+        return float(np.sqrt((p.k1 + p.k2) / (2.0 * p.mass)))
+
+    @property
+    def period(self) -> float:
+        """2π over :attr:`rate`, s."""
+        return 2.0 * np.pi / self.rate
+
+
+@dataclass(frozen=True)
+class Sliding:
+    """Steady sliding of a design in contact.
+
+    Attributes:
+        state: x, y, 0, 0, m.
+        force: contact force, N.
+        jacobian: (4, 4) derivative of the velocities and accelerations by the state.
+    """
+
+    design: Design
+    state: np.ndarray
+    force: float
+    jacobian: np.ndarray
+
+    @classmethod
+    def of(cls, design: Design) -> Self | None:
+        """The one that Newton's method leads to from r = 0; None where there is none."""
+        params = design.params
+        if params.belt_speed == 0.0:
+            return None
+        acceleration = _acceleration(design)
+        length, balance = params.preload, params.k3 * params.preload / params.mass
+        place = np.zeros(2)
+        for _ in range(MOST_STEPS):
+            state = [*place, 0.0, 0.0]
+            force = np.array(acceleration(state), dtype=complex).real
+            if not np.isfinite(force).all():
+                return None
+            if np.abs(force).max() < BALANCE * balance:
+                break
+            slopes = _derivatives(acceleration, state, length, 1.0)[:, :2]
+            try:
+                place = place - np.linalg.solve(slopes, force)
+            except np.linalg.LinAlgError:
+                return None
+            if not np.abs(place).max() < 1e3 * (params.length1 + params.length2):
+                return None
+        else:
+            return None
+        normal = float(normal_force(float(place[1]), 0.0, params))
+        if not (place[1] < length and normal > 0.0):
+            return None
+        rest = np.array([*place, 0.0, 0.0])
+        return cls(design, rest, normal, _jacobian(design, place))
+
+    @cached_property
+    def growth_rate(self) -> float:
+        """Largest real part of small motions, 1/s."""
+        return float(self._roots.real.max())
+
+    @cached_property
+    def is_unstable(self) -> bool:
+        """Whether small motions grow."""
+        return self.growth_rate > self.marginal
+
+    @cached_property
+    def marginal(self) -> float:
+        """Growth that is round-off, 1/s."""
+        return GROWS * float(np.abs(self._roots).max())
+
+    @cached_property
+    def mechanism(self) -> Mechanism:
+        """Why it is unstable."""
+        if not self.is_unstable:
+            return Mechanism.none
+        level = self.design._replace(params=_level(self.design.params))
+        roots = np.linalg.eigvals(_jacobian(level, self.state[:2]))
+        if roots.real.max() <= GROWS * np.abs(roots).max():
+            return Mechanism.falling_friction
+        leading = self._roots[np.argmax(self._roots.real)]
+        oscillates = abs(leading.imag) > np.sqrt(GROWS) * abs(leading)
+        return Mechanism.flutter if oscillates else Mechanism.divergence
+
+    @cached_property
+    def push(self) -> np.ndarray:
+        """Direction in which small motions grow fastest: displacement of size 1, and velocity.
+
+        Of several that grow alike, as without damping, the slowest.
+        """
+        values, vectors = np.linalg.eig(self.jacobian)
+        slack = 1e-9 * np.abs(values).max() + self.marginal
+        leading = np.flatnonzero(values.real >= values.real.max() - slack)
+        vector = vectors[:, leading[np.argmin(np.abs(values[leading]))]]
+        # the phase at which the mass is farthest out
+        square = complex((vector[:2] ** 2).sum())
+        vector = np.real(vector * np.exp(-0.5j * np.angle(square)))
+        sign = 1.0 if vector[np.argmax(np.abs(vector[:2]))] > 0 else -1.0
+        return np.asarray(sign * vector / np.linalg.norm(vector[:2]))
+
+    @cached_property
+    def _roots(self) -> np.ndarray:
+        return np.asarray(np.linalg.eigvals(self.jacobian))
+
+
+def _level(params: Parameters) -> Parameters:
+    """The same brake with the coefficient of belt speed at any speed."""
+    return params.with_(
+        friction_law=COULOMB, mu=abs(params.drag), mu_static=None, friction_speed=1.0
+    )
+
+
+def _acceleration(design: Design) -> Any:
+    """Acceleration of the mass that slides slower than the belt, m/s²."""
+    params, g = design.params, geometry(design.alpha1, design.alpha2)
+    long = tuple(
+        length > LONG * params.preload for length in (params.length1, params.length2)
+    )
+
+    def acceleration(state: Any) -> tuple[Any, Any]:
+        x, y, vx, vy = state
+        return a1.acceleration(
+            x,
+            y,
+            vx,
+            vy,
+            params,
+            g,
+            contact=1.0,
+            direction=params.belt_direction,
+            long_springs=(long[0], long[1]),
+        )
+
+    return acceleration
+
+
+def _derivatives(
+    acceleration: Any, state: Any, length: float, speed: float
+) -> np.ndarray:
+    """∂(ẍ, ÿ)/∂(x, y, ẋ, ẏ), (2, 4)."""
+    columns = []
+    for index, unit in enumerate((length, length, speed, speed)):
+        moved = [complex(value) for value in state]
+        moved[index] += 1j * STEP * unit
+        forces = [complex(force).imag for force in acceleration(moved)]
+        columns.append(np.array(forces) / (STEP * unit))
+    return np.stack(columns, axis=1)
+
+
+def _jacobian(design: Design, place: np.ndarray) -> np.ndarray:
+    speed = design.params.preload * design.rate
+    slopes = _derivatives(
+        _acceleration(design), [*place, 0.0, 0.0], design.params.preload, speed
+    )
+    return np.vstack([np.eye(4)[2:], slopes])

@@ -1,0 +1,126 @@
+"""Windows of runs of many designs at once, and the statistics of each."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from squealpipe.laws.tables import is_table
+from squealpipe.parameters import TABLE
+from squealpipe.schema import Outcome
+from squealpipe.solvers.a1.ensemble import PEAK, REACH, Ensemble, run_ensemble
+from squealpipe.tasks.assess.sliding import Design
+
+SAMPLES = 2048
+"""States of a window from which its mean squares are formed."""
+NUMBERS = tuple(
+    name
+    for name, row in TABLE.items()
+    if row.enters_a1 and row.allowed != "law" and name != "mu_static"
+)
+
+
+@dataclass(frozen=True)
+class Windows:
+    """Statistics of one window of each run, rows first.
+
+    Attributes:
+        final: state at the end, m and m/s.
+        rms: rms of both velocities, m/s.
+        peak_speed: largest speed of the samples, m/s.
+        separated, stuck: shares of the time.
+        separations, contacts: counts of losses of contact and returns.
+        nonlinear: whether contact was lost, or the mass stuck or reversed.
+        peak_force: largest contact force over k3 l_pre.
+        finished: whether the run reached the end of its window.
+    """
+
+    final: np.ndarray
+    rms: np.ndarray
+    peak_speed: np.ndarray
+    separated: np.ndarray
+    stuck: np.ndarray
+    separations: np.ndarray
+    contacts: np.ndarray
+    nonlinear: np.ndarray
+    peak_force: np.ndarray
+    impact_speed: np.ndarray
+    finished: np.ndarray
+
+    def row(self, index: int) -> "Windows":
+        """One run of it."""
+        return Windows(**{name: value[index] for name, value in vars(self).items()})
+
+
+def run_windows(
+    designs: Sequence[Design], starts: np.ndarray, lengths: np.ndarray, *, tol: float
+) -> Windows:
+    """Run each design from its start for its length of time.
+
+    Args:
+        starts: (runs, 4), m and m/s.
+        lengths: (runs,), s.
+    """
+    parts: dict[str, np.ndarray] = {}
+    for rows in _alike(designs):
+        run = _ensemble(
+            [designs[row] for row in rows], starts[rows], lengths[rows], tol
+        )
+        for name, values in vars(_statistics(run, lengths[rows])).items():
+            whole = parts.setdefault(
+                name, np.empty((len(designs), *values.shape[1:]), values.dtype)
+            )
+            whole[rows] = values
+    return Windows(**parts)
+
+
+def _alike(designs: Sequence[Design]) -> list[np.ndarray]:
+    """Rows that one ensemble can hold: those with the same laws."""
+    groups: dict[Any, list[int]] = {}
+    for row, (params, _, _) in enumerate(designs):
+        # a table of contact is rescaled by the preload
+        preload = params.preload if is_table(params.contact_law) else None
+        key = (params.friction_law, params.contact_law, preload)
+        groups.setdefault(key, []).append(row)
+    return [np.array(rows) for rows in groups.values()]
+
+
+def _ensemble(
+    designs: Sequence[Design], starts: np.ndarray, lengths: np.ndarray, tol: float
+) -> Ensemble:
+    params = [design.params for design in designs]
+    given: dict[str, Any] = {
+        name: np.array([getattr(each, name) for each in params]) for name in NUMBERS
+    }
+    given["mu_static"] = np.array([each.static_mu for each in params])
+    for name in ("friction_law", "contact_law"):
+        given[name] = getattr(params[0], name)
+    return run_ensemble(
+        given,
+        np.array([design.alpha1 for design in designs]),
+        np.array([design.alpha2 for design in designs]),
+        t_end=lengths,
+        times=lengths[:, None] * np.linspace(0.0, 1.0, SAMPLES + 1)[1:],
+        initial_state=starts,
+        tol=tol,
+        tracked=(PEAK, REACH),
+        workers=1,
+    )
+
+
+def _statistics(run: Ensemble, lengths: np.ndarray) -> Windows:
+    velocity = run.samples[..., 2:]
+    return Windows(
+        final=run.final_state,
+        rms=np.sqrt(np.nanmean(velocity**2, axis=1)),
+        peak_speed=np.sqrt(np.nanmax((velocity**2).sum(axis=-1), axis=1)),
+        separated=run.separated_time / lengths,
+        stuck=run.stick_time / lengths,
+        separations=run.separations,
+        contacts=run.contacts,
+        nonlinear=run.separations + run.sticks + run.reversals + run.contacts > 0,
+        peak_force=run.peak_contact_force,
+        impact_speed=run.impact_speed,
+        finished=run.outcome == Outcome.converged,
+    )

@@ -1,0 +1,192 @@
+"""The answer for a real pad, against scipy's DOP853 written from the definition alone."""
+
+import math
+
+import numpy as np
+import pytest
+
+from squealpipe import Parameters, Sweep, assess, load, run_sweep, save, stability_map
+from squealpipe.schema.assess import CURES, Mechanism, Verdict
+from squealpipe.tasks.assess.designs import cures_of
+from squealpipe.tasks.assess.settling import pushed, settle
+from squealpipe.tasks.assess.sliding import Design, Sliding
+from tests.oracles.pad import Pad, strongest_line
+
+NUMBERS = {
+    "mass": 0.45, "k1": 1e7, "k2": 1e7, "k3": 7e6, "preload": 5.714e-4, "mu": 0.37,
+    "mu_static": 0.55, "friction_speed": 1.7, "friction_law": "exponential", "belt_speed": 2.0,
+    "length1": 0.1, "length2": 0.1, "damping1": 42.4, "damping2": 42.4,
+}  # fmt: skip
+PAD = Parameters(**NUMBERS)
+HAMMER, SQUEAL = np.radians((22.0, 46.0)), np.radians((30.0, 60.0))
+
+
+@pytest.fixture(scope="module")
+def hammering():
+    return assess(PAD, *HAMMER)
+
+
+@pytest.fixture(scope="module")
+def squealing():
+    return assess(PAD, *SQUEAL)
+
+
+def test_a_pad_that_hammers(hammering):
+    truth = Pad(NUMBERS, *HAMMER).run((0, 0, 0, 0), 0.4, 0.2)
+    assert int(hammering.verdict) == int(hammering.sudden_verdict) == Verdict.hammers
+    assert int(hammering.mechanism) == Mechanism.flutter
+    line = strongest_line(truth.velocity[1], truth.step)
+    assert float(hammering.frequency) == pytest.approx(line, abs=1.0)
+    assert float(hammering.frequency) == pytest.approx(830.0, abs=2.0)
+    assert float(hammering.separated_fraction) == pytest.approx(
+        truth.separated, abs=3e-3
+    )
+    assert float(hammering.stick_fraction) == pytest.approx(truth.stuck, abs=1e-3)
+    rms = [float(hammering[f"velocity_rms_{way}"]) for way in ("along", "across")]
+    assert rms == pytest.approx(truth.velocity.std(axis=1), rel=5e-3)
+    assert float(hammering.peak_contact_force) == pytest.approx(
+        truth.peak_force, rel=5e-3
+    )
+    assert float(hammering.impact_rate) == pytest.approx(truth.losses / 0.2, rel=0.01)
+
+
+def test_a_pad_that_squeals_in_stick_slip(squealing):
+    truth = Pad(NUMBERS, *SQUEAL).run((0, 0, 0, 0), 0.3, 0.2)
+    assert int(squealing.verdict) == Verdict.squeals
+    assert int(squealing.mechanism) == Mechanism.falling_friction
+    line = strongest_line(truth.velocity[0], truth.step)
+    assert float(squealing.frequency) == pytest.approx(line, abs=0.5)
+    assert float(squealing.frequency) == pytest.approx(750.0, abs=2.0)
+    assert float(squealing.stick_fraction) == pytest.approx(truth.stuck, abs=2e-3)
+    assert float(squealing.velocity_rms_along) == pytest.approx(
+        truth.velocity[0].std(), rel=2e-3
+    )
+    assert bool(squealing.periodic)
+    assert float(squealing.impact_rate) == 0.0
+
+
+@pytest.mark.parametrize("cure", ["mu", "belt_speed"])
+def test_the_boundary_of_a_cure_has_noise_on_one_side_and_none_on_the_other(
+    squealing, cure
+):
+    """Where A1's linear motion decides, it is exact: a per cent on either side tells."""
+    row = squealing.sel(cure=cure)
+    away = math.copysign(1.0, float(row.quiet_from - row.value))
+    for side, quiet in ((1.01, True), (0.99, False)):
+        value = float(row.quiet_from) * side**away
+        changed = dict(NUMBERS)
+        if cure == "mu":
+            factor = value / NUMBERS["mu"]
+            changed |= {"mu": value, "mu_static": factor * NUMBERS["mu_static"]}
+        else:
+            changed[cure] = value
+        design = Design(Parameters(**changed), *SQUEAL)
+        start = pushed(design, Sliding.of(design)).state
+        size = np.hypot(*(start - Sliding.of(design).state)[:2])
+        run = Pad(changed, *SQUEAL).run(start, 0.4, 0.35, tol=1e-10)
+        late = np.abs(run.velocity[0]).max() / (
+            size * 2 * math.pi * float(squealing.frequency)
+        )
+        assert bool(late < 1.0) is quiet
+
+
+def test_cures_are_sorted_by_their_change_and_within_the_ranges_tried(hammering):
+    change = np.abs(hammering.change.values)
+    found = change[np.isfinite(change)]
+    assert set(map(str, hammering.cure.values)) == set(CURES)
+    assert (np.diff(found) >= 0).all()
+    assert np.isnan(change[found.size :]).all()
+    known = hammering.isel(cure=slice(found.size))
+    assert (known.quiet_from >= known.lowest_tried).all()
+    assert (known.quiet_from <= known.highest_tried).all()
+    # what is quiet from any start is quiet from a push, too
+    farther = np.abs(known.change_any_start) >= np.abs(known.change) - 1e-9
+    assert (farther | np.isnan(known.change_any_start)).all()
+
+
+def test_without_friction_it_is_quiet_and_the_margin_is_where_it_starts():
+    damped = PAD.with_(mu=0.05, mu_static=None, friction_law="coulomb")
+    quiet = assess(damped, *HAMMER)
+    assert int(quiet.verdict) == Verdict.quiet
+    assert int(quiet.mechanism) == Mechanism.none
+    assert float(quiet.velocity_rms_along) == 0.0
+    assert float(quiet.growth_rate) < 0.0
+    onset = float(quiet.quiet_from.sel(cure="mu"))
+    assert onset > 0.05
+    for mu, sign in ((onset * 1.02, 1.0), (onset * 0.98, -1.0)):
+        growth = stability_map(damped.with_(mu=mu), HAMMER[:1], HAMMER[1:]).growth_rate
+        assert growth.item() * sign > 0.0
+
+
+def test_growth_of_small_motions_is_that_of_a_run():
+    """The complex step against the engine: a push grows by exp(σ t)."""
+    design = Design(PAD.with_(belt_speed=6.0), *SQUEAL)
+    sliding = Sliding.of(design)
+    start = sliding.state + 1e-4 * PAD.preload * sliding.push
+    truth = Pad(NUMBERS | {"belt_speed": 6.0}, *SQUEAL)
+    early, late = (
+        np.sqrt((truth.run(start, end, end - 0.01, tol=1e-12).velocity ** 2).mean())
+        for end in (0.02, 0.07)
+    )
+    assert math.log(late / early) / 0.05 == pytest.approx(sliding.growth_rate, rel=5e-3)
+
+
+def test_a_belt_at_rest_has_no_steady_sliding():
+    still = assess(PAD.with_(belt_speed=0.0), *SQUEAL)
+    assert int(still.mechanism) == Mechanism.no_sliding_state
+    assert np.isnan(still.sliding_growth_rate)
+    assert int(still.verdict) == int(still.sudden_verdict) == Verdict.quiet
+
+
+def test_an_undamped_brake_is_quiet_where_a_push_stays_small():
+    brake = Parameters(mass=0.45, k1=1e7, k2=1e7, k3=7e6, preload=5.714e-4, mu=0.1,
+                       belt_speed=2.0, length1=0.1, length2=0.1)  # fmt: skip
+    design = Design(brake, math.radians(80), math.radians(20))
+    (settled,) = settle([pushed(design, Sliding.of(design))], tol=1e-12)
+    assert settled.verdict is Verdict.quiet
+
+
+@pytest.mark.parametrize("cure", list(CURES))
+def test_a_cure_at_the_present_value_changes_nothing(cure):
+    design = Design(PAD, *HAMMER)
+    found = cures_of(design)[cure]
+    same = found.apply(found.value)
+    assert (same.alpha1, same.alpha2) == (design.alpha1, design.alpha2)
+    assert np.allclose(
+        [getattr(same.params, name) for name in ("mu", "k1", "k3", "damping1")],
+        [getattr(PAD, name) for name in ("mu", "k1", "k3", "damping1")],
+    )
+
+
+def test_a_measured_table_gives_the_answer_of_its_law(squealing):
+    speeds = np.array([0.0, 0.2, 0.5, 0.8, 1.1, 1.4, 1.7, 2.0, 2.3, 2.8, 3.5, 5.0])
+    law = "cubic" + "".join(
+        f" {w!r}:{0.37 + 0.18 * math.exp(-w / 1.7)!r}" for w in speeds.tolist()
+    )
+    given = {k: v for k, v in NUMBERS.items() if k not in {"mu", "mu_static"}}
+    del given["friction_speed"]
+    table = assess(Parameters(**given | {"friction_law": law}), *SQUEAL)
+    assert float(table.frequency) == pytest.approx(float(squealing.frequency), rel=2e-3)
+    assert float(table.stick_fraction) == pytest.approx(
+        float(squealing.stick_fraction), abs=5e-3
+    )
+    for cure in ("k3", "belt_speed", "alpha2"):
+        assert float(table.change.sel(cure=cure)) == pytest.approx(
+            float(squealing.change.sel(cure=cure)), rel=0.1
+        )
+    ratio = float(table.quiet_from.sel(cure="mu") / table.value.sel(cure="mu"))
+    falls = squealing.sel(cure="mu")
+    assert ratio == pytest.approx(float(falls.quiet_from / falls.value), rel=0.1)
+
+
+def test_it_sweeps_and_survives_a_file(tmp_path):
+    sweep = Sweep(
+        task="assess",
+        params=PAD,
+        vary={"belt_speed": [2.0, 8.0]},
+        fixed={"alpha1": SQUEAL[0], "alpha2": SQUEAL[1], "tol": 1e-9},
+    )
+    made = load(save(run_sweep(sweep, workers=1), tmp_path / "swept.nc"))
+    assert made.verdict.values.tolist() == [Verdict.squeals, Verdict.quiet]
+    assert made.change.sel(cure="mu").dims == ("belt_speed",)
+    assert float(made.quiet_from.sel(cure="mu")[0]) < PAD.mu
