@@ -13,6 +13,9 @@ import pytest
 from filelock import FileLock
 
 ROOT = Path(__file__).resolve().parents[1]
+WATCH = ROOT / "tests/workflow/watch"
+READ = "SQUEALPIPE_READ"
+"""Environment variable of :data:`WATCH` with the folder for what it sees."""
 NOT_COPIED = shutil.ignore_patterns(
     ".git",
     ".venv*",
@@ -39,12 +42,12 @@ def copy_checkout(target):
     return target
 
 
-def run_snakemake(directory, *arguments):
+def run_snakemake(directory, *arguments, surroundings=None):
     """Run snakemake in a copy, with the package of that copy."""
+    env = {**os.environ, "PYTHONPATH": str(directory), **(surroundings or {})}
     return subprocess.run(
-        [sys.executable, "-m", "snakemake", *arguments], cwd=directory,
-        env={**os.environ, "PYTHONPATH": str(directory)}, capture_output=True, text=True,
-        check=False,
+        [sys.executable, "-m", "snakemake", *arguments], cwd=directory, env=env,
+        capture_output=True, text=True, check=False,
     )  # fmt: skip
 
 
@@ -62,10 +65,11 @@ def pytest_collection_modifyitems(items):
 
 @dataclass(frozen=True)
 class TinyStudy:
-    """A finished tiny study."""
+    """A finished tiny study; ``read`` has what each of its scripts read of the checkout."""
 
     checkout: Path
     results: Path
+    read: Path
 
 
 @pytest.fixture
@@ -89,14 +93,19 @@ def tiny_study(tmp_path_factory, worker_id):
     with FileLock(shared / "study.lock"):
         if not done.exists():
             shutil.rmtree(original, ignore_errors=True)
+            watching = {
+                "PYTHONPATH": f"{WATCH}{os.pathsep}{original}",
+                READ: str(shared / "read"),
+            }
             run = run_snakemake(
-                copy_checkout(original), "--configfile", "workflow/config/tiny.yaml"
-            )
+                copy_checkout(original), "--configfile", "workflow/config/tiny.yaml",
+                surroundings=watching,
+            )  # fmt: skip
             assert run.returncode == 0, run.stderr[-6000:]
             done.touch()
     copy = own / "tiny_study"
     subprocess.run(["cp", "-a", original, copy], check=True)  # keeps the dates
-    return TinyStudy(copy, copy / "results/tiny")
+    return TinyStudy(copy, copy / "results/tiny", shared / "read")
 
 
 @pytest.fixture(scope="session")

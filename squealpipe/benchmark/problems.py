@@ -9,6 +9,8 @@ from typing import Any, NamedTuple
 
 import yaml
 
+INPUT_FILES = ("problems.yaml", "references.json")
+"""Read below: every result that uses this module depends on them."""
 SHARED = ("regimes", "field", "switches", "smoothed", "stepping")
 """What makes a system; a problem may take them from an earlier one, its ``system``."""
 FUNCTIONS = ("cos", "sin", "exp", "log", "tanh")

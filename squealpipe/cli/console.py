@@ -6,7 +6,7 @@ import os
 import sys
 import warnings
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -30,11 +30,13 @@ class _Session:
         quiet: print answers and errors alone.
         verbose: print tracebacks and warnings.
         typed: physical parameters that stood on the command line.
+        held: what ends with the command: names that it keeps to write to.
     """
 
     quiet: bool = False
     verbose: bool = False
     typed: set[str] = field(default_factory=set)
+    held: ExitStack = field(default_factory=ExitStack)
 
 
 SESSION = _Session()
@@ -52,10 +54,18 @@ def session(arguments: Sequence[str]) -> Iterator[list[str]]:
         "0",
     }
     SESSION.typed = set()
-    with warnings.catch_warnings():
+    with warnings.catch_warnings(), ExitStack() as SESSION.held:
         if not SESSION.verbose and not sys.warnoptions:
             warnings.simplefilter("ignore")
-        yield [*kept, *arguments[end:]]
+        yield [*map(_from_home, kept), *arguments[end:]]
+
+
+def _from_home(argument: str) -> str:
+    """A path that begins with ``~``, which shells leave as it is in ``--output=~/run.nc``."""
+    flag, equals, value = argument.rpartition("=")
+    if not value.startswith("~") or (equals and not flag.startswith("-")):
+        return argument
+    return f"{flag}{equals}{os.path.expanduser(value)}"  # noqa: PTH111 (keeps what is no path)
 
 
 def say(line: str) -> None:

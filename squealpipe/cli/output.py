@@ -8,7 +8,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from squealpipe.cli.arguments import Drawn, Written
-from squealpipe.cli.console import say, working
+from squealpipe.cli.console import SESSION, say, working
+from squealpipe.cli.reservation import reserve
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -21,22 +22,31 @@ PICTURES = (".png", ".svg", ".pdf")
 def check_output(
     path: Path, *, force: bool, kinds: tuple[str, ...] = DATA, option: str = "--output"
 ) -> None:
-    """Refuse a name that cannot or must not be written, before anything is computed."""
+    """Refuse a name that cannot or must not be written, before anything is computed.
+
+    It is kept until the command ends: another command that is to write there is refused.
+    """
     if path.suffix not in kinds:
         endings = ", ".join(kinds[:-1]) + f" or {kinds[-1]}"
         raise ValueError(f"{option} {path}: end the name in {endings}")
-    if path.exists() and not path.is_file():
-        raise ValueError(f"{option} {path} is a folder, device or pipe, not a file")
-    if path.exists() and not force:
-        raise ValueError(
-            f"{option} {path} exists; add --force to overwrite it, or change the name"
-        )
+    if not force:
+        _refuse_existing(path, option)
+    reserve(path, SESSION.held, option)
+    if not force:  # another command may just have finished
+        _refuse_existing(path, option)
     if path.suffix in {".csv", ".parquet"} and not force:
         for other in sorted(path.parent.glob(f"{escape(path.stem)}.*{path.suffix}")):
             raise ValueError(
                 f"{option} {path} writes further tables beside it, and {other} exists; add --force "
                 "to overwrite it, or change the name"
             )
+
+
+def _refuse_existing(path: Path, option: str) -> None:
+    if path.is_file():
+        raise ValueError(
+            f"{option} {path} exists; add --force to overwrite it, or change the name"
+        )
 
 
 def write(
@@ -74,7 +84,7 @@ def compute(
 
     import squealpipe
     from squealpipe.schema.origin import plain
-    from squealpipe.store.netcdf import dataset_id
+    from squealpipe.store.identity import dataset_id
 
     given = {name: value for name, value in options.items() if value is not None}
     stated = dict(zip(("alpha1", "alpha2"), angles, strict=False)) | {

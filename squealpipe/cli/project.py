@@ -63,6 +63,7 @@ def init(
         own: a short study of scenes of your own in SI units instead, without the paper.
     """
     from squealpipe.config.settings import PAPER, read_study
+    from squealpipe.store.whole_files import whole_file
 
     check_output(file, force=force, kinds=(".yaml", ".yml"), option="FILE")
     folder = results or f"results/{file.stem}"
@@ -72,9 +73,9 @@ def init(
         text = overlay_text(
             PAPER.read_text(encoding="utf-8"), file=str(file), results=folder
         )
-    file.parent.mkdir(parents=True, exist_ok=True)
-    file.write_text(text, encoding="utf-8")
-    read_study(PAPER, file)
+    with whole_file(file) as draft:
+        draft.write_text(text, encoding="utf-8")
+        read_study(PAPER, draft)
     say(f"wrote {file}; edit it, then: squealpipe run --config {file}")
     return DONE
 

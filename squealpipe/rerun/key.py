@@ -15,7 +15,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
-from squealpipe.rerun.sources import PACKAGE, closure, read_source
+from squealpipe.rerun.sources import INPUT_FILES, PACKAGE, closure, read_source
 
 PARTS = ("data", "figures", "report")
 """Folders of a run that hold results."""
@@ -50,9 +50,14 @@ def digest(text: str | bytes) -> str:
 
 def sources(*scripts: Path) -> list[Path]:
     """Scripts and modules whose code decides their results, with all that they import."""
-    found = dict.fromkeys(
-        [*scripts, *(path for each in scripts for path in closure(each))]
-    )
+    packages = [
+        folder / "__init__.py"
+        for each in scripts
+        for folder in each.parents
+        if folder.is_relative_to(PACKAGE)
+    ]
+    imported = [path for each in scripts for path in closure(each)]
+    found = dict.fromkeys([*scripts, *packages, *imported])
     return [path for path in found if path.name not in WATCHERS]
 
 
@@ -95,12 +100,22 @@ def file_key(key: str, path: str | os.PathLike[str]) -> str:
 def refuse_edited(output: str | os.PathLike[str]) -> None:
     """Raise if a module that this process has loaded is younger than the workflow's reading."""
     started = float(os.environ.get(STARTED, "inf"))
-    files = {
-        str(getattr(module, "__file__", "")) for module in list(sys.modules.values())
-    }
-    own = sorted(Path(file) for file in files if file.startswith(str(PACKAGE)))
+    own: set[Path] = set()
+    for module in list(sys.modules.values()):
+        file = Path(str(getattr(module, "__file__", "")))
+        if file.is_relative_to(PACKAGE):
+            own |= {
+                file,
+                *(
+                    read
+                    for each in getattr(module, INPUT_FILES, ())
+                    for read in file.parent.glob(each)
+                ),
+            }
     edited = [
-        path.name for path in own if not path.exists() or path.stat().st_mtime > started
+        path.name
+        for path in sorted(own)
+        if not path.exists() or path.stat().st_mtime > started
     ]
     if edited:
         raise RuntimeError(

@@ -12,21 +12,25 @@ from typing import NamedTuple
 PACKAGE = Path(__file__).resolve().parents[1]
 STATEMENTS = PACKAGE / "study/claims/checks"
 """Docstrings here are results: the table of statements shows them."""
+INPUT_FILES = "INPUT_FILES"
+"""Constant in which a module names what it reads beside what it imports."""
 WORKFLOW = (PACKAGE / "workflow").resolve()
 """Rules, scripts and configurations: in a checkout a folder of its own, in a wheel within."""
 
 
 class Source(NamedTuple):
-    """What one file imports from the package, and the digest of its code."""
+    """What one file imports and reads from the package, and the digest of its code."""
 
     imports: frozenset[Path]
     code: str
 
 
 def closure(script: str | Path) -> list[Path]:
-    """Package modules that ``script`` imports, directly or not, sorted.
+    """Package modules that ``script`` imports, directly or not, and files that they read, sorted.
 
-    Imports below ``if TYPE_CHECKING`` do not count; imports inside functions do.
+    What no import statement shows, modules state beside it: ``INPUT_FILES`` has the patterns of
+    data files that a module reads and of modules that it imports by name. Imports below
+    ``if TYPE_CHECKING`` do not count; imports inside functions do.
     """
     found: set[Path] = set()
     waiting = [Path(script)]
@@ -42,8 +46,10 @@ def closure(script: str | Path) -> list[Path]:
 def read_source(path: Path) -> Source:
     """Imports of a file, and the digest of its syntax tree without comments and docstrings.
 
-    Docstrings of :data:`STATEMENTS` count.
+    Docstrings of :data:`STATEMENTS` count. A data file is taken as it is.
     """
+    if path.suffix != ".py":
+        return Source(frozenset(), hashlib.sha256(path.read_bytes()).hexdigest()[:16])
     tree = ast.parse(path.read_bytes())
     nodes = [tree, *_statements(tree.body)]
     names: set[str] = set()
@@ -61,7 +67,22 @@ def read_source(path: Path) -> Source:
             if isinstance(first, ast.Expr) and isinstance(first.value, ast.Constant):
                 node.body.pop(0)
     code = hashlib.sha256(ast.dump(tree).encode()).hexdigest()[:16]
-    return Source(frozenset(file for name in names for file in _files(name)), code)
+    imported = {file for name in names for file in _files(name)}
+    return Source(frozenset(imported | _input_files(path, tree)), code)
+
+
+def _input_files(path: Path, tree: ast.Module) -> set[Path]:
+    """Files beside a module of the package that its ``INPUT_FILES`` names."""
+    if not path.is_relative_to(PACKAGE):
+        return set()
+    for node in tree.body:
+        if isinstance(node, ast.Assign) and any(
+            isinstance(target, ast.Name) and target.id == INPUT_FILES
+            for target in node.targets
+        ):
+            patterns = ast.literal_eval(node.value)
+            return {file for each in patterns for file in path.parent.glob(each)}
+    return set()
 
 
 def _statements(body: Sequence[ast.AST]) -> Iterator[ast.AST]:

@@ -19,13 +19,12 @@ from squealpipe.store.crate import METADATA, describe
 from squealpipe.store.keys import refuse_misfits
 from squealpipe.store.runs import (
     LEFT_OUT,
-    SEAL,
     archive_folder,
     matches_any,
     regular_files,
     seal_text,
 )
-from squealpipe.store.whole_files import MANIFEST, StoreError, checksum, sync
+from squealpipe.store.whole_files import MANIFEST, SEAL, checksum, not_written, sync
 
 
 def archive(
@@ -100,10 +99,7 @@ def archive(
             draft.rename(target)
             sync(target.parent)
     except OSError as error:
-        raise StoreError(
-            f"cannot write {target}: {error.strerror or error}; free space or fix permissions, "
-            "then run the same command again"
-        ) from error
+        raise not_written(target, error) from error
     return target
 
 

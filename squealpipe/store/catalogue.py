@@ -14,8 +14,8 @@ from squealpipe.config.yaml_files import flat
 from squealpipe.parameters import DEFAULTS, SYMBOLS, TABLE
 from squealpipe.store.netcdf import attributes
 from squealpipe.store.results import refuse_copy
-from squealpipe.store.runs import ARCHIVES, dataset_files, read_manifest, verify
-from squealpipe.store.whole_files import MANIFEST
+from squealpipe.store.runs import dataset_files, read_manifest, verify
+from squealpipe.store.whole_files import ARCHIVES, MANIFEST
 from squealpipe.text import nearest
 
 EXAMPLE = "write for instance 'mu == 0.25 and L1 > 4'"

@@ -5,7 +5,7 @@ import zipfile
 from pathlib import Path
 
 from squealpipe.store.runs import locate, verify
-from squealpipe.store.whole_files import StoreError, whole_file
+from squealpipe.store.whole_files import whole_file
 
 SOURCES = (
     "squealpipe", "workflow", "Snakefile", "pyproject.toml", "requirements.lock", "LICENSE",
@@ -29,7 +29,7 @@ def bundle(
     name: str | os.PathLike[str], *, output: str | os.PathLike[str] | None = None
 ) -> Path:
     """Write ``results/deposit/NAME.zip``; it appears whole or not at all."""
-    archive, citation = locate(name), Path("CITATION.cff")
+    archive, citation = locate(name).resolve(), Path("CITATION.cff")
     found = verify(archive)
     if not found.intact:
         raise ValueError("\n".join(found.lines()))
@@ -47,19 +47,14 @@ def bundle(
         for path in [source, *source.rglob("*")]
         if "__pycache__" not in path.parts
     }
-    try:
-        with (
-            whole_file(target) as draft,
-            zipfile.ZipFile(draft, "w", zipfile.ZIP_DEFLATED) as file,
-        ):
-            for place, content in sorted(contents.items()):
-                if isinstance(content, bytes) or content.is_file():
-                    # entries without a date: equal archives give equal bundles
-                    entry = zipfile.ZipInfo(f"{archive.name}/{place}")
-                    data = (
-                        content if isinstance(content, bytes) else content.read_bytes()
-                    )
-                    file.writestr(entry, data, zipfile.ZIP_DEFLATED)
-    except OSError as error:
-        raise StoreError(f"cannot write {target}: {error.strerror}") from error
+    with (
+        whole_file(target) as draft,
+        zipfile.ZipFile(draft, "w", zipfile.ZIP_DEFLATED) as file,
+    ):
+        for place, content in sorted(contents.items()):
+            if isinstance(content, bytes) or content.is_file():
+                # entries without a date: equal archives give equal bundles
+                entry = zipfile.ZipInfo(f"{archive.name}/{place}")
+                data = content if isinstance(content, bytes) else content.read_bytes()
+                file.writestr(entry, data, zipfile.ZIP_DEFLATED)
     return target

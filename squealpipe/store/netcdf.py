@@ -5,6 +5,7 @@ from __future__ import annotations
 import datetime
 import hashlib
 import os
+import re
 from pathlib import Path
 from typing import Any
 
@@ -12,18 +13,22 @@ import netCDF4
 import numpy as np
 import xarray as xr
 
-from squealpipe.rerun.key import canonical
 from squealpipe.schema import SchemaError, schema_of, validate
 from squealpipe.store.checkout import commit
+from squealpipe.store.identity import dataset_id, without_foreign_key
 from squealpipe.store.whole_files import (
     StoreError,
-    archive_around,
     checksum,
+    not_written,
+    refuse_place,
     whole_file,
 )
 from squealpipe.validation import AnyPath, checked
 
 MARK = b"\n# squealpipe sha256 "
+
+ATTRIBUTE_NAME = re.compile(r"(?!_NC)[^\W\d][\w .@+-]{0,99}")
+STORED_NUMBERS = ("i1", "i2", "i4", "i8", "u1", "u2", "u4", "u8", "f4", "f8")
 
 DAMAGED = (
     OSError,
@@ -41,24 +46,20 @@ DAMAGED = (
 def save(dataset: xr.Dataset, path: AnyPath) -> Path:
     """Write a dataset atomically, with its id: temporary name, validation, fsync, rename.
 
-    Commit and date are added where the dataset does not state them yet. The last line of the file,
-    behind its NetCDF content, is the SHA-256 of all before it.
+    Commit and date are added where the dataset does not state them yet. A dataset that was edited
+    since a rule of the study made it loses the key of that rule, with a warning. The last line of
+    the file, behind its NetCDF content, is the SHA-256 of all before it.
 
     Raises:
         SchemaError: the dataset does not fit its schema; nothing is written.
-        StoreError: the folder cannot be written, or the path is a device or part of an archive;
-            an earlier file of that name is untouched.
+        StoreError: an attribute is neither text nor numbers, the folder cannot be written, or the
+            path is a device or part of an archive; an earlier file of that name is untouched.
     """
     target: Path = path
     validate(dataset, schema_of(dataset))
-    if target.exists() and not target.is_file():
-        raise StoreError(
-            f"{target} is not a regular file; choose another name to write to"
-        )
-    if (frozen := archive_around(target)) is not None:
-        raise StoreError(
-            f"{target} is part of the archive {frozen}, which never changes"
-        )
+    refuse_place(target)
+    refuse_odd_attributes(dataset)
+    dataset = without_foreign_key(dataset, made_now())
     made = {"commit": commit(), "history": made_now(), **dataset.attrs}
     dataset = dataset.assign_attrs({**made, "dataset_id": dataset_id(dataset)})
     encoding: dict[str, dict[str, Any]] = {
@@ -78,16 +79,8 @@ def save(dataset: xr.Dataset, path: AnyPath) -> Path:
             )
             with temporary.open("ab") as file:
                 file.write(MARK + checksum(temporary).encode() + b"\n")
-    except (
-        OSError,
-        RuntimeError,
-        StoreError,
-    ) as error:  # netCDF-4 reports a full disk as any
-        reason = getattr(error, "strerror", None) or error
-        raise StoreError(
-            f"cannot write {target}: {reason}; free space or fix permissions, "
-            "then run the same command again"
-        ) from error
+    except RuntimeError as error:  # as which netCDF-4 reports a full disk, too
+        raise not_written(target, error) from error
     return target
 
 
@@ -115,27 +108,33 @@ def load(path: AnyPath, *, schema: str | None = None) -> xr.Dataset:
     return dataset
 
 
-def dataset_id(dataset: xr.Dataset) -> str:
-    """Hash of what was computed: schema, configuration and all values that are not volatile."""
-    schema = schema_of(dataset)
-    total = hashlib.sha256()
-    total.update(
-        canonical(
-            [schema.name, schema.version, dataset.attrs.get("config", "")]
-        ).encode()
-    )
-    for name in sorted(map(str, dataset.variables)):
-        entry = schema.lookup(name)
-        if entry is not None and entry.volatile:
-            continue
-        values = np.ascontiguousarray(dataset[name].values)
-        total.update(f"{name}{values.shape}{values.dtype.kind}".encode())
-        total.update(
-            repr(values.tolist()).encode()
-            if values.dtype.kind in "UO"
-            else values.tobytes()
-        )
-    return total.hexdigest()[:16]
+def refuse_odd_attributes(dataset: xr.Dataset) -> None:
+    """Raise if an attribute is nothing that NetCDF holds, with text that can stand for it."""
+    places = {"dataset": dataset.attrs} | {
+        f"dataset[{str(name)!r}]": variable.attrs
+        for name, variable in dataset.variables.items()
+    }
+    for place, attrs in places.items():
+        for key, value in attrs.items():
+            if isinstance(key, str) and ATTRIBUTE_NAME.fullmatch(key):
+                if _is_text_or_numbers(value):
+                    continue
+                remedy = f"write {place}.attrs[{key!r}] = {str(value)!r}"
+            else:
+                remedy = "give it a name of letters, digits and _"
+            raise StoreError(
+                f"{place}.attrs[{key!r}] = {value!r} cannot be written: an attribute is a text, a "
+                f"number or a list of these; {remedy}, or delete it"
+            )
+
+
+def _is_text_or_numbers(value: Any) -> bool:
+    try:
+        values = np.asarray(value)
+    except ValueError:  # lists of different lengths
+        return False
+    stored = values.dtype.kind == "U" or values.dtype.str[1:] in STORED_NUMBERS
+    return stored and values.ndim < 2
 
 
 def attributes(path: str | os.PathLike[str]) -> dict[str, Any]:

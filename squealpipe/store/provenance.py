@@ -12,12 +12,8 @@ import xarray as xr
 from squealpipe.rerun.key import canonical, digest, file_key, refuse_edited
 from squealpipe.schema.origin import versions
 from squealpipe.store.checkout import commit
+from squealpipe.store.identity import with_key
 from squealpipe.store.netcdf import load, made_now, save
-
-VOLATILE_ATTRIBUTES = frozenset({
-    "history", "wall_time_s", "platform", "libraries", "package_version", "commit", "inputs", "key",
-})  # fmt: skip
-"""Global attributes that describe the run, not of the result."""
 
 
 def produce(
@@ -42,7 +38,7 @@ def produce(
     dataset = stamped(make, config=config, inputs=inputs)
     if key is not None:
         refuse_edited(output)
-        dataset = dataset.assign_attrs(key=file_key(key, output))
+        dataset = with_key(dataset, file_key(key, output))
     return save(dataset, output)
 
 

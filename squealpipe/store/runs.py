@@ -9,11 +9,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from squealpipe.store.whole_files import MANIFEST, StoreError, checksum
+from squealpipe.store.whole_files import ARCHIVES, MANIFEST, SEAL, StoreError, checksum
 
-ARCHIVES = Path("results/archive")
-SEAL = "manifest.sha256"
-"""Holds the checksum of the manifest, so that an edited manifest is noticed too."""
 NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,79}")
 LEFT_OUT = "left_out"
 """Entry of a manifest with the patterns of what the archive deliberately does not hold."""

@@ -1,4 +1,4 @@
-"""Files that appear whole or not at all."""
+"""Files that appear whole or not at all, and never where nothing may be written."""
 
 import hashlib
 import os
@@ -8,6 +8,9 @@ from contextlib import contextmanager
 from pathlib import Path
 
 MANIFEST = "manifest.json"
+SEAL = "manifest.sha256"
+"""Holds the checksum of the manifest, so that an edited manifest is noticed too."""
+ARCHIVES = Path("results/archive")
 
 
 class StoreError(ValueError):
@@ -15,32 +18,72 @@ class StoreError(ValueError):
 
 
 def archive_around(path: Path) -> Path | None:
-    """The archive that a file is part of, if any."""
-    return next(
-        (at for at in path.resolve().parents if (at / MANIFEST).is_file()), None
-    )
+    """The archive that a file is part of, or would be, if any."""
+    return next((at for at in path.resolve().parents if _is_archive(at)), None)
+
+
+def _is_archive(folder: Path) -> bool:
+    """Whether a folder is an archive, also one that was moved, or has lost its manifest."""
+    if folder.name.startswith("."):  # the draft of one
+        return False
+    in_place = folder.parent.parts[-2:] == ARCHIVES.parts
+    return (in_place and folder.is_dir()) or (folder / SEAL).is_file()
+
+
+def refuse_place(path: Path) -> None:
+    """Raise if a file must not be written there: the one gate of everything that writes."""
+    if path.exists() and not path.is_file():
+        raise StoreError(
+            f"{path} is not a regular file; choose another name to write to"
+        )
+    above = next((at for at in path.absolute().parents if at.exists()), path.parent)
+    if not above.is_dir():
+        raise StoreError(f"{path}: {above} is no folder; choose another name")
+    if (frozen := archive_around(path)) is not None:
+        raise StoreError(
+            f"{path} is part of the archive {frozen}, which never changes; choose a name outside "
+            "of it"
+        )
 
 
 @contextmanager
 def whole_file(path: Path) -> Iterator[Path]:
-    """A new temporary file beside ``path`` that takes its place if the block ends without error."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    # opened with O_EXCL: no file or link that waits there is written to
-    handle, name = tempfile.mkstemp(
-        dir=path.parent, prefix=f".{path.stem}.", suffix=path.suffix
-    )
-    os.close(handle)
-    temporary = Path(name)
-    umask = os.umask(0)
-    os.umask(umask)
-    temporary.chmod(0o666 & ~umask)
+    """A new temporary file beside ``path`` that takes its place if the block ends without error.
+
+    Raises:
+        StoreError: nothing may be written there, or it cannot be: the disk is full, say. What was
+            there stays.
+    """
+    refuse_place(path)
     try:
-        yield temporary
-        sync(temporary)
-        temporary.replace(path)
-        sync(path.parent)
-    finally:
-        temporary.unlink(missing_ok=True)
+        path.parent.mkdir(parents=True, exist_ok=True)
+        # opened with O_EXCL: no file or link that waits there is written to
+        handle, name = tempfile.mkstemp(
+            dir=path.parent, prefix=f".{path.stem[:100]}.", suffix=path.suffix
+        )
+        os.close(handle)
+        temporary = Path(name)
+        umask = os.umask(0)
+        os.umask(umask)
+        try:
+            temporary.chmod(0o666 & ~umask)
+            yield temporary
+            sync(temporary)
+            temporary.replace(path)
+            sync(path.parent)
+        finally:
+            temporary.unlink(missing_ok=True)
+    except OSError as error:
+        raise not_written(path, error) from error
+
+
+def not_written(path: Path, error: BaseException) -> StoreError:
+    """That a file could not be written, why, and what to do."""
+    reason = getattr(error, "strerror", None) or error
+    return StoreError(
+        f"cannot write {path}: {reason}; free space or fix permissions, "
+        "then run the same command again"
+    )
 
 
 def sync(path: Path) -> None:

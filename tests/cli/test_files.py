@@ -5,6 +5,7 @@ import os
 import signal
 import subprocess
 import sys
+import time
 import warnings
 from functools import partial
 
@@ -30,6 +31,36 @@ def test_existing_files_are_overwritten_by_force_only(capsys, tmp_path):
     assert (tmp_path / "a.nc").read_bytes() == first
     assert run([*STABILITY, "-o", "a.nc", "--mu", "0.9", "--force"]) == 0
     assert json.loads(load("a.nc").attrs["config"])["parameters"]["mu"] == 0.9
+
+
+def test_one_of_two_commands_that_write_to_one_name_is_refused_before_it_computes(
+    tmp_path, capsys
+):
+    words = [*STABILITY, "-o", "a.nc"]
+    long = ["simulate", "0.4pi", "0.6pi", "--t-end", "1e6", "-o", "a.nc"]
+    with subprocess.Popen(
+        [sys.executable, "-m", "squealpipe", *long], cwd=tmp_path, stderr=subprocess.DEVNULL
+    ) as other:  # fmt: skip
+        while not (tmp_path / ".a.nc.writing").exists():
+            time.sleep(0.1)
+        time.sleep(0.1)
+        assert run(words) == 2
+        assert "a.nc is being written by another command" in capsys.readouterr().err
+        assert run([*words, "--force"]) == 2
+        assert run([*STABILITY, "-o", "b.nc"]) == 0
+        other.kill()  # the name is free again, however its holder ended
+    assert run(words) == 0
+    assert sorted(entry.name for entry in tmp_path.iterdir() if entry.suffix == ".nc") == [
+        "a.nc", "b.nc",
+    ]  # fmt: skip
+    assert not list(tmp_path.glob(".*"))
+
+
+@pytest.mark.parametrize("words", [["-o", "~/x.nc"], ["--output=~/x.nc"]])
+def test_a_tilde_that_the_shell_left_is_the_home_folder(tmp_path, monkeypatch, words):
+    monkeypatch.setenv("HOME", str(tmp_path / "home"))
+    assert run([*STABILITY, *words]) == 0
+    assert load(tmp_path / "home/x.nc").sizes["alpha1"] == 5
 
 
 def test_tables_beside_a_csv_are_overwritten_by_force_only(capsys, tmp_path):

@@ -15,7 +15,7 @@ from squealpipe.execution.scatter import join, scattered_rows
 from squealpipe.execution.sweep import Sweep, planned, run_sweep
 from squealpipe.schema import find
 from squealpipe.store import load, save
-from squealpipe.store.netcdf import dataset_id
+from squealpipe.store.identity import dataset_id
 from squealpipe.tasks.dynamics.runs import simulate, validity_map
 from squealpipe.tasks.linear.maps import stability_map
 from tests.former import FORMER

@@ -7,6 +7,7 @@ import pytest
 import xarray as xr
 from rocrate.rocrate import ROCrate
 
+from squealpipe.cli import run as cli
 from squealpipe.config.settings import read_study
 from squealpipe.rerun.key import file_key
 from squealpipe.store import StoreError, load, produce, save
@@ -143,6 +144,51 @@ def test_what_is_not_of_this_configuration_and_code_is_refused_by_name(
         archive("second", keys=keys_of(run), root=run)
     assert not (run / "results/archive/second").exists()
     assert verify(archive("rest", keys=keys_of(run), root=run, leave_out=[name])).intact
+
+
+def test_a_dataset_that_was_edited_by_hand_is_not_frozen(run, keys_of):
+    path = run / "results/data/stability_map.nc"
+    edited = load(path)
+    edited["growth_rate"] = edited.growth_rate * 3
+    with pytest.warns(UserWarning, match="edited after its task made it"):
+        save(edited, path)
+    with pytest.raises(
+        StoreError, match=r"stability_map.nc: changed, or does not state"
+    ):
+        archive("second", keys=keys_of(run), root=run)
+
+
+@pytest.mark.parametrize("manifest", ["kept", "lost", "moved"])
+@pytest.mark.parametrize(
+    "command",
+    [
+        "init {0}/config/paper.yaml --force",
+        "init {0}/new.yaml",
+        "simulate 1 2 --t-end 1 -o {0}/x.csv",
+        "simulate 1 2 --t-end 1 -o run.nc --picture {0}/x.png",
+        "simulate 1 2 --t-end 1 -o {0}/new/x.nc",
+        "plot map.nc -o {0}/figures/fig06.png --force",
+        "convert map.nc -o {0}/map.csv",
+        "convert map.nc -o {0}/map.mat",
+        "deposit other -o {0}/x.zip",
+    ],
+)
+def test_no_command_writes_into_an_archive(
+    run, keys_of, monkeypatch, capsys, command, manifest
+):
+    monkeypatch.chdir(run)
+    at = archive("first", keys=keys_of(run), root=run)
+    archive("other", keys=keys_of(run), root=run)
+    Path("CITATION.cff").write_text("")
+    shutil.copy(run / "results/data/stability_map.nc", "map.nc")
+    if manifest == "lost":
+        (at / "manifest.sha256").unlink()
+    if manifest == "moved":
+        at = at.rename(run / "elsewhere")
+    before = sorted(at.rglob("*"))
+    assert cli(command.format(at).split()) == 2
+    assert f"is part of the archive {at}" in capsys.readouterr().err
+    assert sorted(at.rglob("*")) == before
 
 
 def test_left_out_datasets_are_no_difference(run, keys_of):

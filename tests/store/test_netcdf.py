@@ -1,8 +1,10 @@
 """A dataset file is whole and valid or absent; whatever is read was judged first."""
 
 import contextlib
+import datetime
 import errno
 import os
+import re
 import resource
 import signal
 from pathlib import Path
@@ -15,7 +17,8 @@ import xarray as xr
 
 from squealpipe.parameters import Parameters
 from squealpipe.schema import SchemaError
-from squealpipe.store import StoreError, load, save
+from squealpipe.store import StoreError, load, produce, save
+from squealpipe.store.keys import stated_key
 from squealpipe.store.netcdf import MARK
 from squealpipe.store.provenance import stamped
 from squealpipe.store.whole_files import checksum
@@ -69,6 +72,69 @@ def test_what_a_reader_sees_beside_the_values_is_covered_too(path):
         load(path)
 
 
+def values(dataset):
+    dataset["growth_rate"] = dataset.growth_rate * 3
+
+
+def parameters(dataset):
+    dataset.attrs["parameters"] = dataset.attrs["parameters"].replace("0.3", "0.4")
+
+
+def long_name(dataset):
+    dataset.growth_rate.attrs["long_name"] = "decay rate"
+
+
+@pytest.mark.parametrize("edit", [values, parameters, long_name])
+def test_an_edited_dataset_loses_its_key_and_says_so(tmp_path, dataset, edit):
+    path = produce(
+        lambda: dataset, config={}, output=tmp_path / "data/map.nc", key="0" * 16
+    )
+    assert stated_key(path) == f"{'0' * 16} data/map.nc"
+    again = save(load(path), path)  # what nobody edited keeps it
+    assert stated_key(again) == f"{'0' * 16} data/map.nc"
+    changed = load(path)
+    edit(changed)
+    with pytest.warns(UserWarning, match="edited after its task made it"):
+        save(changed, path)
+    assert stated_key(path) is None
+    assert "edited; what was data/map.nc" in load(path).history.splitlines()[0]
+
+
+def test_an_edited_dataset_without_a_digest_loses_its_key_too(tmp_path, dataset):
+    """Those of 1.0.0 have their id alone."""
+    path = produce(
+        lambda: dataset, config={}, output=tmp_path / "data/map.nc", key="0" * 16
+    )
+    old = load(path)
+    del old.attrs["key_content"]
+    assert stated_key(save(old, path)) == f"{'0' * 16} data/map.nc"
+    values(old)
+    with pytest.warns(UserWarning, match="edited after its task made it"):
+        assert stated_key(save(old, path)) is None
+
+
+@pytest.mark.parametrize(
+    "value",
+    [None, True, {"a": 1}, datetime.date(2026, 1, 1), [1, None], [[1], [1, 2]], 1j],
+)
+def test_an_attribute_that_no_file_holds_is_named_with_text_that_can_stand_for_it(
+    dataset, path, value
+):
+    with pytest.raises(
+        StoreError, match=r"attrs\['note'\] = .* cannot be written"
+    ) as told:
+        save(dataset.assign_attrs(note=value), path)
+    remedy = re.search(r"write (dataset.attrs.*), or delete it", str(told.value))[1]
+    exec(remedy, {"dataset": dataset})  # noqa: S102 (our own message, followed)
+    assert load(save(dataset, path)).attrs["note"] == str(value)
+
+
+@pytest.mark.parametrize("name", ["", 3, "a/b", "_NCProperties", "a" * 300])
+def test_an_attribute_with_a_name_that_no_file_holds_is_named(dataset, path, name):
+    with pytest.raises(StoreError, match="give it a name of letters"):
+        save(dataset.assign_attrs({name: "text"}), path)
+
+
 def test_ids_of_inputs_are_those_of_the_files_that_the_task_read(tmp_path):
     made = [stability_map(Parameters(mu=mu), [1.0], [2.0]) for mu in (0.1, 0.2)]
     path = save(made[0], tmp_path / "input.nc")
@@ -97,7 +163,7 @@ def test_what_is_no_regular_file_is_never_replaced(dataset, tmp_path, kind):
 
 
 def test_files_of_an_archive_are_never_replaced(dataset, path, tmp_path):
-    (tmp_path / "manifest.json").write_text("{}")
+    (tmp_path / "manifest.sha256").write_text("")
     before = path.read_bytes()
     with pytest.raises(StoreError, match="part of the archive"):
         save(dataset, path)

@@ -9,7 +9,7 @@ import pytest
 import squealpipe
 from squealpipe import Parameters, Sweep, load, run_sweep, save
 from squealpipe.store.checkout import commit
-from squealpipe.store.netcdf import dataset_id
+from squealpipe.store.identity import dataset_id
 from tests.calls import CALLS
 
 PARAMS = Parameters(mu=0.21, k1=1.3, belt_speed=-7.0)

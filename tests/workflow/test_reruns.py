@@ -8,6 +8,7 @@ import json
 import os
 import subprocess
 import sys
+from importlib.util import source_from_cache
 from pathlib import Path
 
 import pytest
@@ -15,7 +16,7 @@ import yaml
 
 from squealpipe.config.settings import Study
 from squealpipe.config.yaml_files import flat
-from squealpipe.rerun.key import PLAN
+from squealpipe.rerun.key import PLAN, WATCHERS
 from squealpipe.rerun.sources import PACKAGE, closure
 
 pytestmark = pytest.mark.release
@@ -88,31 +89,57 @@ def test_edited_sources_reach_what_imports_them(planned, module):
     assert not reads & fresh
 
 
-LOADED = """
-import ast, importlib, json, os, sys
-for name in ("numpy", "xarray", "scipy.optimize", "matplotlib.figure", "heyoka", "numba", "jinja2"):
-    importlib.import_module(name)
-for script in sys.argv[1:]:
-    if os.fork() == 0:
-        tree = ast.parse(open(script).read())
-        imports = [node for node in tree.body if isinstance(node, (ast.Import, ast.ImportFrom))]
-        exec(compile(ast.Module(imports, []), script, "exec"))
-        own = [m.__file__ for n, m in sys.modules.items() if n.split(".")[0] == "squealpipe"]
-        print(json.dumps([script, own]), flush=True)
-        os._exit(0)
-    assert os.wait()[1] == 0, script
-"""
+NO_INPUTS = ("results/", ".snakemake/", ".git/")
+"""What scripts read beside inputs: results and records of the workflow."""
 
 
-def test_sources_hold_every_module_that_python_really_loads():
-    scripts = sorted(map(str, (ROOT / "workflow/scripts").glob("*/*.py")))
-    command = [sys.executable, "-c", LOADED, *scripts]
-    run = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True)
-    loaded = dict(map(json.loads, run.stdout.splitlines()))
-    assert list(loaded) == scripts
-    missing = {
-        name: {*map(Path, own)} - {*closure(Path(name))} for name, own in loaded.items()
-    }
-    assert not any(missing.values()), (
-        f"loaded, but not among the sources of the rule: {missing}"
-    )
+def tables_and_watchers():
+    """Tables of datasets with what they import, all read to get one by name; what watches jobs.
+
+    The table of a dataset that a script reads is in the key of the rule that wrote it.
+    """
+    tables = [*(PACKAGE / "schema").rglob("*.py")]
+    imported = {path for table in tables for path in closure(table)}
+    watchers = [path for path in PACKAGE.rglob("*.py") if path.name in WATCHERS]
+    return {str(path.relative_to(ROOT)) for path in [*tables, *imported, *watchers]}
+
+
+def test_every_module_and_data_file_that_a_script_really_reads_is_an_input(
+    tiny_study, planned
+):
+    """The scripts of a whole study were watched while they ran (see the folder ``watch``)."""
+    allowed: dict[str, list[set[str]]] = {}
+    for row in planned:
+        files = {
+            os.path.relpath(path, ROOT) for path in [*row["sources"], *row["inputs"]]
+        }
+        script = next(path for path in files if path.startswith("workflow/scripts/"))
+        allowed.setdefault(Path(script).name, []).append(files)
+    logs = {log: log.name.partition(".")[2] for log in tiny_study.read.iterdir()}
+    assert {*logs.values()} == {*allowed}
+    assert not missing_inputs(logs, allowed)
+
+
+def missing_inputs(logs, allowed):
+    """Script → what it read and none of its rules has as an input."""
+    missing, beside = {}, tables_and_watchers()
+    for log, script in logs.items():
+        read = {
+            path
+            for line in log.read_text().splitlines()
+            if (path := _source_of(line)) and not path.startswith(NO_INPUTS)
+        }
+        assert read, script
+        unlisted = min((read - files for files in allowed[script]), key=len) - beside
+        if unlisted:
+            missing[script] = missing.get(script, set()) | unlisted
+    return missing
+
+
+def _source_of(opened):
+    """A data file, or the module whose byte code was loaded; code that was only read is none."""
+    if opened.endswith(".pyc"):
+        opened = source_from_cache(opened)
+    elif opened.endswith(".py"):
+        return ""
+    return opened if (ROOT / opened).is_file() else ""

@@ -8,6 +8,9 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
+INPUT_FILES = ("*.py",)
+"""Imported by name: every result that uses this module depends on them."""
+
 SOLVERS: dict[str, tuple[str, str, dict[str, Any]]] = {
     "squealpipe": ("squealpipe", "numba", {}),
     **{

@@ -16,8 +16,8 @@ from squealpipe.schema.claims import CLAIMS
 from squealpipe.store.comparison.differences import Agreement, VariableDifference, judge
 from squealpipe.store.comparison.matching import align, judged_length
 from squealpipe.store.comparison.statements import StatementChange, changed_statements
+from squealpipe.store.identity import VOLATILE_ATTRIBUTES
 from squealpipe.store.netcdf import load
-from squealpipe.store.provenance import VOLATILE_ATTRIBUTES
 from squealpipe.store.runs import (
     LEFT_OUT,
     dataset_files,
@@ -215,7 +215,8 @@ def configuration(dataset: xr.Dataset) -> dict[str, Any]:
 
 def _environment(dataset: xr.Dataset) -> dict[str, Any]:
     """Commit, platform and the versions of the libraries one by one."""
-    shown = VOLATILE_ATTRIBUTES - {"history", "wall_time_s", "inputs", "libraries"}
+    left_out = {"history", "wall_time_s", "inputs", "libraries", "key_content"}
+    shown = VOLATILE_ATTRIBUTES - left_out
     stated = {key: dataset.attrs[key] for key in shown if key in dataset.attrs}
     return stated | flat(
         {"libraries": json.loads(dataset.attrs.get("libraries", "{}"))}
