@@ -2,6 +2,8 @@
 
 import time
 from collections.abc import Callable, Mapping, Sequence
+from copy import deepcopy
+from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -10,11 +12,15 @@ from scipy.optimize import linear_sum_assignment
 
 from squealpipe.benchmark.adapters.scipy import solve as reference_solver
 from squealpipe.benchmark.problems import Problem, all_data, references
+from squealpipe.benchmark.worker import Worker
 from squealpipe.schema import build
 from squealpipe.schema.comparison import BENCHMARK, Reliability, Role
 
-BENCHMARK_VERSION = 2
-"""Goes up when problems are added; none is ever changed or removed."""
+BENCHMARK_VERSION = 3
+"""Goes up when problems are added, none of which is ever changed or removed, and when answers are
+judged otherwise: from 3 on, no events and no derivative are no answer where they are asked."""
+TIME_LIMIT = 120.0
+"""Wall time for one answer, s."""
 TOLERANCES = (1e-6, 1e-8, 1e-10, 1e-12)
 ALLOWED = 100.0
 """Error over growth, in tolerances, up to which an answer is right."""
@@ -49,10 +55,11 @@ class Score(NamedTuple):
             for name, count in counts.items()
             if count > 0
         ]
-        unanswered = np.isinf(self.error) and self.message
-        if self.verdict > Reliability.right and not (
-            np.isnan(self.error) or unanswered
-        ):
+        # beside a remark an error says something only if it is one that nothing was said of
+        said = self.message and (
+            self.verdict == Reliability.flagged or np.isinf(self.error)
+        )
+        if self.verdict > Reliability.right and not (np.isnan(self.error) or said):
             found.append(f"error {self.error:.1e}")
         found += [self.message] * bool(self.message)
         verdict = self.verdict.name.replace("_", " ")
@@ -82,6 +89,17 @@ def score(
     unlike_right = Reliability.flagged if flag else Reliability.silently_wrong
     if "unknowable" in data:
         return Score(unlike_right, message=flag, evaluations=evaluations)
+    size = np.shape(reference["state"])
+    if np.shape(state) != size and not flag:
+        raise ValueError(f"a state of shape {np.shape(state)}; {size} is needed")
+    remarks = [flag] * bool(flag)
+    if not np.isfinite(np.array([*(times or []), *state], float)).all():
+        remarks.append("NaN or infinite")
+    unanswered = []
+    if times is None and reference["times"]:
+        unanswered.append("reports no events")
+    if slope is None and data.get("derivative"):
+        unanswered.append("gives no derivative")
     error = largest(state, reference["state"], reference["growth"])
     missed = spurious = swapped = -1
     time_error, wrong, allowed = np.nan, False, ALLOWED * tol
@@ -108,9 +126,13 @@ def score(
         error = max(
             error, largest([slope], [reference["derivative"]], reference["growth"])
         )
-    verdict = Reliability.right if error <= allowed and not wrong else unlike_right
+    verdict = unlike_right
+    if error <= allowed and not wrong:
+        # what was not answered was not answered wrongly
+        verdict = Reliability.flagged if unanswered else Reliability.right
+    message = "; ".join([*remarks, *unanswered])
     return Score(
-        verdict, missed, spurious, swapped, time_error, error, flag, evaluations
+        verdict, missed, spurious, swapped, time_error, error, message, evaluations
     )
 
 
@@ -152,21 +174,42 @@ def spacing(times: np.ndarray) -> np.ndarray:
 
 
 def measure(data: Mapping[str, Any], solve: Callable[..., Any], tol: float) -> Score:
-    """Ask one solver one problem; an exception flags its answer."""
-    problem = Problem(data)
-    reference = references()[data["name"]]
+    """Ask one solver one problem; an exception, or an exit, flags its answer.
+
+    Calls of the field are counted here; a solver that makes its own functions tells their number.
+    """
+    problem = Problem(deepcopy(dict(data)))
     started = time.process_time()
     try:
         answer = solve(problem, tol)
         spent = time.process_time() - started
-        found = score(data, reference, answer, tol)
+        if problem.calls:
+            answer = (*answer[:3], problem.calls, *answer[4:])
+        found = score(data, references()[data["name"]], answer, tol)
     except NotImplementedError as refusal:
         return Score(Reliability.not_applicable, message=str(refusal)[:64])
-    except Exception as failure:  # noqa: BLE001 (whatever a solver raises is its flag)
+    except (Exception, SystemExit) as failure:  # noqa: BLE001 (whatever a solver raises)
         spent = time.process_time() - started
-        flag = f"{type(failure).__name__}: {failure}"
-        found = score(data, reference, (None, None, [], problem.calls, flag), tol)
+        found = failed(data, f"{type(failure).__name__}: {failure}", problem.calls)
+    if altered := _altered(problem, data):
+        remarks = [found.message] * bool(found.message)
+        found = found._replace(message="; ".join([*remarks, f"altered {altered}"]))
     return found._replace(cpu_time=spent, message=found.message[:64])
+
+
+def failed(data: Mapping[str, Any], flag: str, calls: int = 0) -> Score:
+    """The score of no answer, and of what was said instead."""
+    reference = references()[data["name"]]
+    found = score(data, reference, (None, None, [], calls, flag), 1.0)
+    return found._replace(message=flag[:64])
+
+
+def _altered(problem: Problem, data: Mapping[str, Any]) -> str:
+    """Names of what a solver has changed in the copy of the problem that it was given."""
+    fresh = Problem(data)
+    names = ("start", "parameters", "states", "regime", "t_end", "times", "data")
+    changed = [n for n in names if repr(getattr(problem, n)) != repr(getattr(fresh, n))]
+    return ", ".join(changed)
 
 
 def benchmark(
@@ -174,12 +217,14 @@ def benchmark(
     *,
     names: Sequence[str] = (),
     tolerances: Sequence[float] = TOLERANCES,
+    time_limit: float = TIME_LIMIT,
     done: Callable[[str, str, list[Score]], None] = lambda *_: None,
 ) -> xr.Dataset:
     """Dataset ``benchmark``: every solver on every problem at every tolerance.
 
     Args:
-        solvers: name → ``solve(problem, tol)``.
+        solvers: name → ``solve(problem, tol)``; each runs in a process of its own.
+        time_limit: s of wall time for one answer.
         done: called with problem, solver and its scores.
 
     Raises:
@@ -196,16 +241,39 @@ def benchmark(
         raise ValueError("no solver that is asked for is installed")
     chosen = [known[name] for name in names or known]
     cells: list[list[list[Score]]] = []
+    workers = {
+        name: Worker(partial(measure, solve=solve), time_limit)
+        for name, solve in solvers.items()
+    }
     for data in chosen:
         unit = measure(data, reference_solver, REFERENCE_TOLERANCE).cpu_time
         cells.append([])
-        for name, solve in solvers.items():
-            measure(data, solve, tolerances[0])  # compiles before any stopwatch runs
-            found = [measure(data, solve, tol) for tol in tolerances]
+        for name, worker in workers.items():
+            _ask(worker, data, tolerances[0])  # compiles before any stopwatch runs
+            found = [_ask(worker, data, tol) for tol in tolerances]
             cells[-1].append(
                 [each._replace(cpu_ratio=each.cpu_time / unit) for each in found]
             )
             done(data["name"], name, cells[-1][-1])
+    for worker in workers.values():
+        worker.close()
+    return dataset_of(chosen, list(solvers), tolerances, cells)
+
+
+def _ask(worker: Worker[Score], data: Mapping[str, Any], tol: float) -> Score:
+    try:
+        return worker.ask(data=data, tol=tol)
+    except (TimeoutError, EOFError) as failure:
+        return failed(data, str(failure))
+
+
+def dataset_of(
+    chosen: Sequence[Mapping[str, Any]],
+    solvers: Sequence[str],
+    tolerances: Sequence[float],
+    cells: Sequence[Sequence[Sequence[Score]]],
+) -> xr.Dataset:
+    """Dataset ``benchmark`` of scores over (problem, solver, tolerance)."""
     table = np.array(cells, dtype=object)
     columns = {name: table[..., i].tolist() for i, name in enumerate(Score._fields)}
     coordinates = {

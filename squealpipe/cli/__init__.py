@@ -90,6 +90,8 @@ def application() -> App:
     peers = App(name="benchmark", sort_key=len(COMMANDS), help_epilogue="")
     peers.default(benchmark.run)
     peers.command(benchmark.compare, name="compare")
+    peers.command(benchmark.problems, name="problems")
+    peers.command(benchmark.score, name="score")
     app.command(peers)
     app.register_install_completion_command()
     return app

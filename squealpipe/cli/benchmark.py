@@ -11,6 +11,8 @@ from squealpipe.cli.arguments import Force, Output, Texts
 from squealpipe.cli.console import ANSWER_IS_NO, DONE
 
 if TYPE_CHECKING:
+    import xarray as xr
+
     from squealpipe.benchmark.scoring import Score
 
 
@@ -19,6 +21,7 @@ def run(
     solver: Texts = None,
     problem: Texts = None,
     tolerance: Annotated[list[float] | None, Parameter(negative="")] = None,
+    time_limit: float | None = None,
     output: Output = Path("benchmark.nc"),
     force: Force = False,
 ) -> int:
@@ -30,11 +33,11 @@ def run(
         solver: a shipped one, or FILE.py:FUNCTION; all that are installed by default.
         problem: names of problems; all by default.
         tolerance: by default 1e-6, 1e-8, 1e-10 and 1e-12.
+        time_limit: s of wall time after which an answer is given up; 120 by default.
     """
     from squealpipe.benchmark.adapters import SOLVERS, installed
-    from squealpipe.benchmark.scoring import TOLERANCES, benchmark
+    from squealpipe.benchmark.scoring import TIME_LIMIT, TOLERANCES, benchmark
     from squealpipe.cli.output import check_output, write
-    from squealpipe.schema.comparison import Reliability
 
     check_output(output, force=force)
     solvers = installed(solver or SOLVERS)
@@ -48,7 +51,11 @@ def run(
 
     found = write(
         lambda: benchmark(
-            solvers, names=problem or (), tolerances=tolerances, done=done
+            solvers,
+            names=problem or (),
+            tolerances=tolerances,
+            time_limit=TIME_LIMIT if time_limit is None else time_limit,
+            done=done,
         ),
         output,
         config={
@@ -57,9 +64,51 @@ def run(
             "tolerances": tolerances,
         },
     )
+    return _verdict(found, output)
+
+
+def _verdict(found: xr.Dataset, output: Path) -> int:
+    from squealpipe.schema.comparison import Reliability
+
     wrong = int((found.verdict == Reliability.silently_wrong).sum())
     print(f"{wrong} of {found.verdict.size} answers silently wrong; wrote {output}")
     return ANSWER_IS_NO if wrong else DONE
+
+
+def problems(*, output: Output = Path("problems.json"), force: Force = False) -> int:
+    """Write all problems, with equations and references, as JSON for a solver in any language.
+
+    Example: `squealpipe benchmark problems -o problems.json`
+    """
+    from squealpipe.benchmark.answers import problems_as_json
+    from squealpipe.cli.output import check_output
+    from squealpipe.store.whole_files import whole_file
+
+    check_output(output, force=force, kinds=(".json",))
+    with whole_file(output) as temporary:
+        temporary.write_text(problems_as_json(), encoding="utf-8")
+    print(f"wrote {output}")
+    return DONE
+
+
+def score(
+    answers: Path, /, *, output: Output = Path("benchmark.nc"), force: Force = False
+) -> int:
+    """Score answers that a solver in any language wrote as JSON; exit code as of a run.
+
+    Example: `squealpipe benchmark score answers.json -o theirs.nc`
+
+    Args:
+        answers: the file; docs/benchmark.md has its form.
+    """
+    from squealpipe.benchmark.answers import score_answers
+    from squealpipe.cli.output import check_output, write
+
+    check_output(output, force=force)
+    found = write(
+        lambda: score_answers(answers), output, config={"answers": answers.name}
+    )
+    return _verdict(found, output)
 
 
 def compare(one: Path, other: Path, /) -> int:

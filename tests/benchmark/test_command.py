@@ -1,7 +1,12 @@
 """``squealpipe benchmark`` and ``squealpipe benchmark compare``."""
 
+import json
+import shutil
+import subprocess
+
 import pytest
 
+import squealpipe
 from squealpipe.cli import run
 
 MINE = """
@@ -71,3 +76,54 @@ def test_unknown_solver_is_refused(solver, message, mine, tmp_path, capsys):
     name = solver.replace("{here}", mine.rpartition(":")[0])
     assert run(["benchmark", "--solver", name, "-o", str(tmp_path / "x.nc")]) == 2
     assert message in capsys.readouterr().err
+
+
+ELSEWHERE = r"""
+BEGIN {
+  print "{\"solver\": \"closed form\", \"answers\": ["
+  v = 0; g = 1.0; r = 0.9; t = sqrt(2 / g); speed = g * t; n = 0
+  while (t < 26.0) {
+    times[n++] = t; speed *= r; start = t; t += 2 * speed / g
+  }
+  left = 26.0 - start
+  y = speed * left - g * left * left / 2; v = speed - g * left
+  printf "{\"problem\": \"bouncing ball\", \"tolerance\": 1e-8, \"times\": ["
+  for (i = 0; i < n; i++) printf "%s%.17g", (i ? ", " : ""), times[i]
+  printf "], \"kinds\": ["
+  for (i = 0; i < n; i++) printf "%s\"impact\"", (i ? ", " : "")
+  printf "], \"state\": [%.17g, %.17g], \"evaluations\": %d}\n]}\n", y, v, n
+}
+"""
+
+
+def test_answers_of_another_language_are_scored(tmp_path, capsys):
+    """The closed form of the bouncing ball, in awk."""
+    awk = shutil.which("awk")
+    if awk is None:
+        pytest.skip("no awk on this machine")
+    done = subprocess.run([awk, ELSEWHERE], capture_output=True, text=True, check=True)
+    answers, output = tmp_path / "answers.json", tmp_path / "theirs.nc"
+    answers.write_text(done.stdout)
+    assert run(["benchmark", "score", str(answers), "-o", str(output)]) == 0
+    found = squealpipe.load(output)
+    assert found.solver.values.tolist() == ["closed form"]
+    assert squealpipe.labels(found.verdict).values.tolist() == [[["right"]]]
+
+    table = json.loads(answers.read_text())
+    table["answers"][0]["times"].pop()
+    table["answers"][0]["kinds"].pop()
+    answers.write_text(json.dumps(table))
+    assert run(["benchmark", "score", str(answers), "-o", str(output), "--force"]) == 1
+    table["answers"][0]["knids"] = []
+    answers.write_text(json.dumps(table))
+    assert run(["benchmark", "score", str(answers), "-o", str(output), "--force"]) == 2
+    assert "'knids' is unknown" in capsys.readouterr().err
+
+
+def test_problems_are_written_for_any_language(tmp_path):
+    path = tmp_path / "problems.json"
+    assert run(["benchmark", "problems", "-o", str(path)]) == 0
+    problems = json.loads(path.read_text())["problems"]
+    assert len(problems) == 32
+    for problem in problems:
+        assert {"field", "switches", "start", "reference"} <= set(problem)

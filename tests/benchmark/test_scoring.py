@@ -1,5 +1,7 @@
 """The score names what a solver does wrong; the shipped solvers do what they are known to do."""
 
+import os
+
 import numpy as np
 import pytest
 
@@ -17,8 +19,11 @@ def _truth(name):
     return list(found["times"]), list(found["kinds"]), list(found["state"]), 1
 
 
-def _scored(name, times, kinds, state, *more, tol=TOL):
-    return score(DATA[name], references()[name], (times, kinds, state, 1, *more), tol)
+def _scored(name, times, kinds, state, flag="", slope=None, tol=TOL):
+    """Of an answer that gives the right derivative where none is given here."""
+    truth = references()[name]
+    slope = truth.get("derivative") if slope is None else slope
+    return score(DATA[name], truth, (times, kinds, state, 1, flag, slope), tol)
 
 
 def _knowable():
@@ -31,10 +36,8 @@ def _knowable():
 def test_truth_is_right_everywhere():
     for name in references():
         if "unknowable" not in DATA[name]:
-            assert (
-                score(DATA[name], references()[name], _truth(name), 1e-12).words
-                == "right"
-            ), name
+            times, kinds, state, _ = _truth(name)
+            assert _scored(name, times, kinds, state, tol=1e-12).words == "right", name
 
 
 def test_dropped_event_is_missed_and_one_too_many_spurious():
@@ -166,7 +169,8 @@ def test_exception_and_endless_solver_are_flagged():
 def test_event_time_that_is_no_number_is_an_error(time):
     times, kinds, *rest = _truth("two gates")
     found = measure(DATA["two gates"], lambda *_: ([times[0], time], kinds, *rest), TOL)
-    assert found.words.startswith("silently wrong (error")
+    assert found.words.startswith("silently wrong (")
+    assert "NaN or infinite" in found.words
 
 
 @pytest.mark.parametrize(
@@ -184,13 +188,93 @@ def test_event_time_that_is_no_number_is_an_error(time):
         (lambda times, kinds, state, n: (times, kinds, state, n, None), "right"),
         (
             lambda times, kinds, state, n: (times, kinds, [np.nan] * 2, n),
-            "silently wrong (error",
+            "silently wrong (NaN or infinite)",
+        ),
+        (
+            lambda times, kinds, state, n: (times, kinds, [*state, 0.0], n),
+            "flagged (ValueError: a state of shape (3,); (2,) is needed",
         ),
     ],
 )
 def test_malformed_answer_does_not_end_the_run(change, words):
     answer = change(*_truth("two gates"))
     assert measure(DATA["two gates"], lambda *_: answer, TOL).words.startswith(words)
+
+
+def test_what_is_not_answered_is_not_right():
+    *_, state, _ = _truth("two gates")
+    found = _scored("two gates", None, None, state)
+    assert found.words == "flagged (reports no events)"
+    assert _scored("two gates", None, None, [9.0, 9.0]).words.startswith("silently")
+    name = "time of the third impact"
+    found = score(DATA[name], references()[name], _truth(name), TOL)
+    assert found.words == "flagged (gives no derivative)"
+
+
+def test_a_plain_integrator_without_events_is_right_only_where_there_are_none():
+    def plain(problem, tol):
+        return None, None, references()[problem.name].get("state", []), 1
+
+    for name, data in DATA.items():
+        if "unknowable" not in data and references()[name]["times"]:
+            assert measure(data, plain, TOL).verdict != Reliability.right, name
+
+
+def test_calls_of_the_field_are_counted_here():
+    def modest(problem, tol):
+        for _ in range(7):
+            problem.field(0.0, problem.start)
+        return (*_truth("two gates")[:3], 1)
+
+    assert measure(DATA["two gates"], modest, TOL).evaluations == 7
+
+
+def test_an_altered_problem_is_named_and_alters_nothing_else():
+    def careless(problem, tol):
+        truth = _truth(problem.name)
+        problem.start[0] = 99.0
+        problem.data["switches"].clear()
+        references()[problem.name]["state"][0] = 99.0
+        return truth
+
+    for _ in range(2):
+        words = measure(DATA["two gates"], careless, TOL).words
+        assert words == "right (altered start, data)"
+
+
+def _loops(problem, tol):
+    while True:
+        pass
+
+
+def _exits(problem, tol):
+    raise SystemExit(3)
+
+
+def _dies(problem, tol):
+    os._exit(5)
+
+
+@pytest.mark.parametrize(
+    ("solve", "words"),
+    [
+        (_loops, "flagged (no answer within 1 s)"),
+        (_exits, "flagged (SystemExit: 3)"),
+        (_dies, "flagged (its process ended with exit code 5)"),
+    ],
+)
+def test_a_solver_that_never_answers_ends_its_own_run_only(solve, words):
+    said = []
+    found = benchmark(
+        {"mine": solve, "DOP853": solver("DOP853")},
+        names=["two gates", "light barrier"],
+        tolerances=[1e-8],
+        time_limit=1.0,
+        done=lambda problem, name, scores: said.append((problem, name, scores)),
+    )
+    mine = [scores[0].words for _, name, scores in said if name == "mine"]
+    assert mine == [words, words]
+    assert found.verdict.sel(problem="two gates", solver="DOP853") == Reliability.right
 
 
 def test_our_engine_is_never_silently_wrong():
