@@ -12,8 +12,17 @@ from typing import Any, Literal, Self
 from squealpipe.laws import contact_laws, friction_laws
 from squealpipe.laws.contact_laws import LINEAR
 from squealpipe.laws.friction_laws import COULOMB, LAWS, coefficient
-from squealpipe.laws.tables import is_table, knots_of, named, stood_for
+from squealpipe.laws.tables import is_table, knots_of, named
+from squealpipe.laws.tables import stood_for as stood_for_by_law
+from squealpipe.substitutes import (
+    STIFFNESS,
+    SUBSTITUTES,
+    check_together,
+    stands_for,
+    stood_for,
+)
 from squealpipe.text import number, suggestion
+from squealpipe.units import number_of
 
 FULL_TURN = 2 * math.pi * (1 + 1e-9)
 """Largest angle, rad; beyond it one meant degrees, or slipped."""
@@ -61,9 +70,13 @@ class Row:
             raise ValueError(
                 f"{name} = {brief(value)}: unknown; {near}, {self.laws.FILES}"
             )
-        if not is_finite_number(value):
+        try:
+            read = number_of(value, self.units, UNITS_OF_INPUTS)
+        except ValueError as error:
+            raise ValueError(f"{name} = {brief(value)}: {error}") from error
+        if not is_finite_number(read):
             raise ValueError(f"{name} = {brief(value)}: a finite number is needed")
-        number = float(value)  # type: ignore[arg-type]
+        number = float(read)
         if self.allowed == "positive" and not number > 0:
             raise ValueError(f"{name} = {value!r}: must be greater than 0")
         if self.allowed == "not negative" and not number >= 0:
@@ -312,8 +325,41 @@ class Parameters:
         """Parameters that the file of a law stands for."""
         laws = {name: row.laws for name, row in TABLE.items() if row.laws}
         return tuple(
-            each for name in laws for each in stood_for(getattr(self, name), laws[name])
+            each
+            for name in laws
+            for each in stood_for_by_law(getattr(self, name), laws[name])
         )
+
+    @classmethod
+    def of(cls, **inputs: Any) -> Self:
+        """Parameters from what an engineer knows, in SI or as texts with a unit.
+
+        Beside the fields it takes what stands for them: ``preload_force``, or ``pressure`` with
+        ``area``, for ``preload``; ``damping_ratio`` ζ for both dashpots, each c = 2 ζ √(k m) of
+        its spring; ``stiffness``, ``{"along": …, "across": …, "coupling": …}`` without the
+        contact, for the two equal springs that have it
+        (:func:`~squealpipe.substitutes.equal_springs` gives their angles).
+
+        Raises:
+            ValueError: names the input, its value and what is allowed.
+        """
+        check_together(list(inputs))
+        others = {name: inputs.pop(name) for name in list(inputs) if stands_for(name)}
+        for name in inputs.keys() - TABLE.keys():
+            near = suggestion(name, [*TABLE, *SUBSTITUTES, "stiffness"])
+            raise ValueError(f"{name}: no such parameter; {near}")
+
+        def parameter(name: str) -> Any:
+            return TABLE[name].check(name, inputs.get(name, DEFAULTS[name]))
+
+        return cls(**(inputs | stood_for(read_substitutes(others), parameter)))
+
+    @property
+    def preload_force(self) -> float:
+        """Force of the contact at rest, N."""
+        if is_table(self.contact_law):
+            return contact_laws.preload_force(self.contact_law, self.preload)
+        return self.k3 * self.preload
 
     def with_(self, **changes: Any) -> Self:
         """A copy with some fields changed, validated again."""
@@ -321,7 +367,7 @@ class Parameters:
             each: DEFAULTS[each]
             for name, row in TABLE.items()
             if row.laws
-            for each in stood_for(
+            for each in stood_for_by_law(
                 row.check(name, changes.get(name, getattr(self, name))), row.laws
             )
         }
@@ -339,6 +385,12 @@ class Parameters:
 
 TABLE: dict[str, Row] = {item.name: item.metadata["row"] for item in fields(Parameters)}
 """Name → row of each parameter, in order."""
+
+UNITS_OF_INPUTS = {
+    **{name: row.units for name, row in TABLE.items() if row.allowed != "law"},
+    **{name: other.units for name, other in SUBSTITUTES.items()},
+}
+"""Name → CF unit of every input of a brake that is one number."""
 
 NUMBERS_OF_A1: dict[str, str] = {
     "static_mu" if name == "mu_static" else name: name
@@ -373,6 +425,30 @@ Parameters.__doc__ = f"{Parameters.__doc__}\n    Attributes:\n" + "\n".join(
     f"        {name}: {row.meaning}{f', {row.units}' if row.units != '1' else ''}."
     for name, row in TABLE.items()
 )
+
+
+def read_substitutes(inputs: Mapping[str, Any]) -> dict[str, Any]:
+    """Inputs that stand for parameters, checked and in SI."""
+    rows = {
+        name: Row(other.units, "", other.meaning, allowed=other.allowed)
+        for name, other in SUBSTITUTES.items()
+    }
+    part = Row("N m-1", "", "stiffness by directions", allowed="finite")
+    values: dict[str, Any] = {}
+    for name, value in inputs.items():
+        if name != "stiffness":
+            values[name] = rows[name].check(name, value)
+            continue
+        if not isinstance(value, Mapping) or not {"along", "across"} <= set(value) <= {
+            *STIFFNESS
+        }:
+            raise ValueError(
+                f"stiffness = {brief(value)}: write {{along: …, across: …, coupling: …}}"
+            )
+        values[name] = {
+            key: part.check(f"stiffness.{key}", value[key]) for key in value
+        }
+    return values
 
 
 def without_defaults(values: Mapping[str, Any]) -> dict[str, Any]:

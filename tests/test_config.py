@@ -1,22 +1,28 @@
 """A configuration: every mistake at once, in words; one meaning, one canonical slice."""
 
 import math
+import typing
 from fnmatch import fnmatchcase
+from functools import reduce
+from operator import getitem
 from pathlib import Path
 
 import pytest
 import yaml
 
 from squealpipe.config.mistakes import known_keys
+from squealpipe.config.quantities import In, scales
+from squealpipe.config.sections import Section
 from squealpipe.config.settings import (
     ConfigError,
     Study,
     check_results_folder,
     json_schema,
+    parse_study,
     read_study,
 )
 from squealpipe.config.yaml_files import flat
-from squealpipe.parameters import Parameters, parameters_of
+from squealpipe.parameters import TABLE, Parameters, parameters_of
 
 ROOT = Path(__file__).resolve().parents[1]
 PAPER = ROOT / "workflow/config/paper.yaml"
@@ -261,3 +267,163 @@ def test_a_folder_of_results_holds_nothing_else(tmp_path, monkeypatch):
     for name in ("link", "link/data", "mine", "deep"):
         with pytest.raises(ConfigError, match="leads into the archive"):
             check_results_folder(name)
+
+
+IN_OTHER_UNITS = {
+    "kg": (1e3, "g"), "m": (1e6, "µm"), "s": (1e3, "ms"), "N": (1e-3, "kN"), "Pa": (1e-5, "bar"),
+    "m s-1": (3.6, "km/h"), "N m-1": (1e-6, "kN/mm"), "N s m-1": (1e-3, "N s/mm"),
+    "m2": (1e4, "cm^2"), "m-1": (1e-3, "1/mm"), "rad": (180 / math.pi, "deg"), "1": (100.0, "%"),
+}  # fmt: skip
+
+
+def marks(annotation):
+    """What is said about units anywhere in an annotation, one for each key."""
+    inner = [mark for part in typing.get_args(annotation) for mark in marks(part)]
+    return [
+        part for part in getattr(annotation, "__metadata__", ()) if isinstance(part, In)
+    ] + inner
+
+
+def keys_with_a_unit(model, stem=""):
+    for name, entry in model.model_fields.items():
+        found = [part for part in entry.metadata if isinstance(part, In)]
+        if found := found + marks(entry.annotation):
+            yield f"{stem}{name}", found[0]
+        if isinstance(entry.annotation, type) and issubclass(entry.annotation, Section):
+            yield from keys_with_a_unit(entry.annotation, f"{stem}{name}.")
+
+
+def test_every_key_takes_a_unit(written):
+    """A study written in other units throughout is the study in plain numbers."""
+    own = "parameters: {mass: 0.45, k1: 2e7, k3: 7e6, preload: 5.7e-4, damping1: 3.5}"
+    plain = read_study(PAPER, written(own))
+    params = Parameters(**plain.parameters.model_dump())
+    said, checked = plain.model_dump(mode="json"), 0
+    for key, mark in keys_with_a_unit(Study):
+        *above, name = key.split(".")
+        section = reduce(getitem, above, said)
+        if section.get(name) is None:
+            continue
+        factor, unit = IN_OTHER_UNITS[mark.units]
+        if mark.of_study:
+            factor *= scales(params)[mark.units]
+        factor *= math.pi if mark.units == "rad" else 1.0
+
+        def with_unit(value, factor=factor, unit=unit):
+            if isinstance(value, dict):
+                return {k: with_unit(v, factor, unit) for k, v in value.items()}
+            if isinstance(value, list):
+                return [with_unit(item, factor, unit) for item in value]
+            return f"{value * factor!r} {unit}"
+
+        section[name] = with_unit(section[name])
+        checked += 1
+    read = parse_study(said)
+    assert checked > 35
+    ours, theirs = (
+        flat(read.model_dump(mode="json")),
+        flat(plain.model_dump(mode="json")),
+    )
+    assert ours.keys() == theirs.keys()
+    for key, value in theirs.items():
+        assert ours[key] == (
+            value
+            if isinstance(value, str | bool | None)
+            or value == list(map(str, value if isinstance(value, list) else []))
+            else pytest.approx(value, rel=1e-14)
+        ), key
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        (
+            "parameters: {preload: 4 kN}",
+            (
+                "parameters.preload = '4 kN': that is a force; a length is needed, like 0.57 mm; a "
+                "force goes to preload_force"
+            ),
+        ),
+        (
+            "parameters: {preload_force: 4 mm}",
+            "parameters.preload_force = '4 mm': that is a length; a force is needed, like 4 kN",
+        ),
+        (
+            "parameters: {preload_force: 4, preload: 1}",
+            "preload_force stands for preload; keep",
+        ),
+        ("parameters: {preload_forse: 4}", "did you mean 'preload_force'?"),
+        ("parameters: {pressure: 4 bar}", "pressure needs area"),
+        (
+            "parameters: {stiffness: {along: 1, across: 1, coupling: 3}}",
+            "no two springs have",
+        ),
+        ("dynamics: {validity_horizon: 3 mm}", "that is a length; a time is needed"),
+        ("cycles: {flutter: [54 deg, 3 mm]}", "'3 mm' is not a valid angle"),
+        (
+            "robustness: {distributions: {k1: {distribution: normal, mean: 4 kN, std: 1}}}",
+            "that is a force; a stiffness is needed",
+        ),
+        (
+            "scenes: {mine: {alpha1: 30deg, alpha2: 1, start: {vx: 1 mm}}}",
+            "a speed is needed",
+        ),
+        ("linear: {points: 3 mm}", "linear.points = '3 mm'"),
+    ],
+)
+def test_a_wrong_dimension_says_what_was_expected(written, text, expected):
+    assert expected in complaint(written(text))
+
+
+def test_a_unit_is_the_same_run(written):
+    plain = read_study(
+        PAPER, written("parameters: {preload: 5.7e-4, mu: 0.45, k1: 1e7}")
+    )
+    text = read_study(
+        PAPER, written("parameters: {preload: 0.57 mm, mu: 45 %, k1: 10 kN/mm}")
+    )
+    assert repr(plain.slice("parameters")) == repr(text.slice("parameters"))
+
+
+PAD = """
+parameters:
+  mass: 450 g
+  k3: 7 kN/mm
+  stiffness: {along: 12 kN/mm, across: 8 kN/mm, coupling: 1 kN/mm}
+  preload_force: 4 kN
+  damping_ratio: 1 %
+scenes: {pad: {}, mine: {alpha1: 30deg, alpha2: 140deg, t_end: 20 ms}}
+"""
+
+
+def test_what_stands_for_parameters_replaces_those_below(written, tmp_path):
+    study = read_study(PAPER, written(PAD))
+    section = study.parameters
+    assert section.preload == pytest.approx(4e3 / 7e6, rel=1e-15)
+    assert section.k1 == section.k2 == 1e7
+    assert section.damping1 == pytest.approx(0.02 * math.sqrt(1e7 * 0.45), rel=1e-15)
+    assert study.slice("parameters")["parameters"].keys() < set(TABLE)
+    assert [line.partition(":")[0] for line in section.became()] == [
+        "stiffness along 12 kN/mm, across 8 kN/mm, coupling 1 kN/mm",
+        "damping_ratio = 0.01",
+        "preload_force = 4 kN",
+    ]
+    springs = section.stiffness.springs
+    assert (study.scenes["pad"].alpha1, study.scenes["pad"].alpha2) == springs[1:]
+    time_unit = math.sqrt(0.45 / 1e7)
+    assert study.scenes["mine"].t_end == pytest.approx(0.02 / time_unit, rel=1e-15)
+
+    def over(text):
+        (tmp_path / "over.yaml").write_text(f"parameters: {text}")
+        return read_study(
+            PAPER, tmp_path / "mine.yaml", tmp_path / "over.yaml"
+        ).parameters
+
+    assert over("{preload: 1 mm}").preload == 1e-3
+    assert over("{pressure: 10 bar, area: 10 cm^2}").preload == pytest.approx(1e3 / 7e6)
+    assert over("{mass: 900 g}").damping1 == pytest.approx(0.02 * math.sqrt(1e7 * 0.9))
+    with pytest.raises(
+        ConfigError, match=r"parameters\.damping2: is needed, for damping_ratio"
+    ):
+        over("{damping1: 3}")
+    assert over("{damping1: 3, damping2: 4}").damping2 == 4.0

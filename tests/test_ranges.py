@@ -93,7 +93,7 @@ def test_values_may_be_text_numbers_or_lists_and_keep_their_kind(
 @pytest.mark.parametrize(
     ("name", "given_", "part"),
     [
-        ("mu", "0.3pi", "not a number"),
+        ("mu", "0.3pi", "a number without a unit"),
         ("mu", True, "'True' is not a number"),
         ("mu", None, "not a number"),
         ("mu", [math.inf], "not a number"),

@@ -12,7 +12,7 @@ from cyclopts.exceptions import UnusedCliTokensError
 
 from squealpipe.cli import benchmark
 from squealpipe.cli.archives import deposit, find, list_runs
-from squealpipe.cli.arguments import by_name, parameters_from_study
+from squealpipe.cli.arguments import by_name
 from squealpipe.cli.assess import assess
 from squealpipe.cli.claims import claims
 from squealpipe.cli.console import (
@@ -24,6 +24,7 @@ from squealpipe.cli.console import (
     session,
 )
 from squealpipe.cli.files import convert, plot
+from squealpipe.cli.inputs import read_brake
 from squealpipe.cli.maps import basin, disturbance, map_angles, propensity, refine
 from squealpipe.cli.models import choose, infer
 from squealpipe.cli.motions import backbone, branch, cycle, simulate
@@ -79,7 +80,7 @@ def application() -> App:
         "study is `squealpipe run`.",
         help_format="markdown",
         version=lambda: metadata.version("squealpipe"),
-        config=[parameters_from_study],
+        config=[read_brake],
         exit_on_error=False,
         print_error=False,
         suppress_keyboard_interrupt=False,

@@ -6,11 +6,11 @@ from functools import partial
 from pathlib import Path
 from typing import Annotated, Any
 
-from cyclopts import App, ArgumentCollection, Group, Parameter, Token
+from cyclopts import Group, Parameter
 
-from squealpipe.cli.console import SESSION
-from squealpipe.config.ranges import parse_angle, parse_number, parse_range
-from squealpipe.parameters import SYMBOLS, TABLE, Parameters
+from squealpipe.config.ranges import parse_angle, parse_number, parse_range, reader
+from squealpipe.parameters import SYMBOLS, Parameters
+from squealpipe.substitutes import SUBSTITUTES
 
 
 def _reader(read: Callable[[str], Any]) -> Callable[[Any, Sequence[Any]], Any]:
@@ -62,6 +62,17 @@ AngleRange = Annotated[
         help="angles of this spring (alpha1 to +x, alpha2 to −x), first:last:count or a list.",
     ),
 ]  # fmt: skip
+Time = Annotated[float, _signed(partial(parse_number, units="s"), "TIME")]
+Length = Annotated[float, _signed(partial(parse_number, units="m"), "LENGTH")]
+Speed = Annotated[float, _signed(partial(parse_number, units="m s-1"), "SPEED")]
+Lengths = Annotated[
+    list[float] | None,
+    _signed(partial(parse_range, one=reader("x")), "RANGE", negative=""),
+]
+Speeds = Annotated[
+    list[float] | None,
+    _signed(partial(parse_range, one=reader("vx")), "RANGE", negative=""),
+]
 Tolerance = Annotated[float, Parameter(help="tolerance of the integration.")]
 Workers = Annotated[
     int | None,
@@ -85,6 +96,18 @@ Texts = Annotated[list[str] | None, Parameter(negative="")]
 BASELINE = Parameters()
 
 
+PHYSICAL = Group(
+    "Physical parameters", help="In SI, or with a unit like 0.57mm.", sort_key=10
+)
+INSTEAD = Group("Instead of parameters", help="With a unit, or in SI.", sort_key=11)
+
+
+def _instead(name: str) -> Any:
+    """An option that stands for parameters; ``inputs.py`` replaces it by these."""
+    meaning = SUBSTITUTES[name].meaning
+    return Parameter(group=INSTEAD, metavar="QUANTITY", help=f"{meaning}.")
+
+
 @Parameter(name="*")
 @dataclass(frozen=True, kw_only=True)
 class Brake:
@@ -97,8 +120,12 @@ class Brake:
         ),
     ] = None
     params: Annotated[
-        Parameters, Parameter(name="*", group=Group("Physical parameters", sort_key=10))
+        Parameters, Parameter(name="*", group=PHYSICAL, allow_leading_hyphen=True)
     ] = BASELINE
+    preload_force: Annotated[str | None, _instead("preload_force")] = None
+    pressure: Annotated[str | None, _instead("pressure")] = None
+    area: Annotated[str | None, _instead("area")] = None
+    damping_ratio: Annotated[str | None, _instead("damping_ratio")] = None
 
 
 @Parameter(name="*")
@@ -133,25 +160,3 @@ def by_name(argument: str) -> str:
     flag, equals, value = argument.partition("=")
     name = SYMBOLS.get(flag[2:]) if flag.startswith("--") else None
     return f"--{name.replace('_', '-')}{equals}{value}" if name else argument
-
-
-def parameters_from_study(
-    _: App, __: tuple[str, ...], arguments: ArgumentCollection
-) -> None:
-    """Give the parameters that were not typed the values of the study in ``--config``."""
-    found = {argument.name: argument for argument in arguments}
-    flags = {name: f"--{name.replace('_', '-')}" for name in TABLE}
-    physical = {name: found[flag] for name, flag in flags.items() if flag in found}
-    SESSION.typed = {name for name, argument in physical.items() if argument.tokens}
-    if not physical or "--config" not in found or not found["--config"].tokens:
-        return
-    from squealpipe.config.settings import read_study
-
-    paths = [token.value for token in found["--config"].tokens]
-    study = read_study(*paths).parameters
-    for name, argument in physical.items():
-        value = getattr(study, name)
-        if name not in SESSION.typed and value is not None:
-            argument.append(
-                Token(keyword=argument.name, value=str(value), source=", ".join(paths))
-            )

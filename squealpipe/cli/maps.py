@@ -14,8 +14,10 @@ from squealpipe.cli.arguments import (
     Angle2,
     AngleRange,
     Drawn,
-    Numbers,
+    Lengths,
     Output,
+    Speeds,
+    Time,
     Tolerance,
     Whole,
     Workers,
@@ -23,7 +25,7 @@ from squealpipe.cli.arguments import (
 from squealpipe.cli.console import ANSWER_IS_NO, DONE, SESSION, answer
 from squealpipe.cli.motions import Model
 from squealpipe.cli.output import compute, ending
-from squealpipe.config.ranges import ANGLES, parse_angle, parse_number
+from squealpipe.config.ranges import parse_number, reader
 from squealpipe.parameters import HORIZON
 
 if TYPE_CHECKING:
@@ -50,7 +52,7 @@ def map_angles(
     *,
     alpha1: AngleRange = FULL_RANGE,
     alpha2: AngleRange = FULL_RANGE,
-    t_end: float | None = None,
+    t_end: Time | None = None,
     tol: Tolerance = 1e-12,
     output: Output = Path("map.nc"),
     brake: Drawn = DRAWN,
@@ -79,7 +81,7 @@ def refine(
     *,
     resolution: Whole = 361,
     coarse: Whole = 46,
-    t_end: float | None = None,
+    t_end: Time | None = None,
     model: Model = "A1",
     tol: Tolerance = 1e-12,
     workers: Workers = None,
@@ -120,12 +122,12 @@ def basin(
     alpha2: Angle2,
     /,
     *,
-    x: Numbers = None,
-    y: Numbers = None,
-    vx: Numbers = None,
-    vy: Numbers = None,
-    t_end: float,
-    t_late: float | None = None,
+    x: Lengths = None,
+    y: Lengths = None,
+    vx: Speeds = None,
+    vy: Speeds = None,
+    t_end: Time,
+    t_late: Time | None = None,
     tol: Tolerance = 1e-12,
     workers: Workers = None,
     output: Output = Path("basin.nc"),
@@ -179,7 +181,7 @@ def disturbance(
     *,
     leads_to: Literal["contact_lost", "whirl"] = "contact_lost",
     model: Model = "A1",
-    t_end: float | None = None,
+    t_end: Time | None = None,
     bound: float | None = None,
     directions: Whole = 128,
     seed: Whole = 1,
@@ -235,7 +237,7 @@ def propensity(
         list[str], Parameter(metavar="NAME=KIND:LOW:HIGH", negative="")
     ],
     samples: Whole = 1024,
-    t_end: float | None = None,
+    t_end: Time | None = None,
     spring_correlation: float = 0.0,
     seed: Whole = 1,
     output: Output = Path("propensity.nc"),
@@ -291,6 +293,8 @@ def _distribution(text: str) -> tuple[str, dict[str, str | float]]:
         raise ValueError(
             f"--distribution {text!r} is not a distribution; {DISTRIBUTIONS}"
         )
-    one = parse_angle if name in ANGLES else parse_number
-    numbers = dict(zip(KINDS[parts[0]], map(one, parts[1:]), strict=True))
+    numbers = {
+        key: (parse_number if key == "log_std" else reader(name))(text)
+        for key, text in zip(KINDS[parts[0]], parts[1:], strict=True)
+    }
     return name, {"distribution": parts[0], **numbers}

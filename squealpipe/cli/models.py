@@ -11,6 +11,7 @@ from squealpipe.cli.arguments import (
     Brake,
     Numbers,
     Output,
+    Time,
     Tolerance,
     Whole,
     Workers,
@@ -30,7 +31,7 @@ def choose(
     question: Question,
     /,
     *,
-    t_end: float | None = None,
+    t_end: Time | None = None,
     brake: Brake = BRAKE,
 ) -> int:
     """Print the cheapest model that answers a question as A1 does, its answer and the reason.

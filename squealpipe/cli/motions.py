@@ -13,15 +13,18 @@ from squealpipe.cli.arguments import (
     Angle1,
     Angle2,
     Drawn,
+    Length,
     Numbers,
     Output,
+    Speed,
     Switch,
+    Time,
     Tolerance,
     Whole,
 )
 from squealpipe.cli.console import ANSWER_IS_NO, DONE, answer
 from squealpipe.cli.output import compute, ending
-from squealpipe.config.ranges import parse_range
+from squealpipe.config.ranges import parse_range, reader
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -44,14 +47,14 @@ def simulate(
     alpha2: Angle2,
     /,
     *,
-    t_end: float | None = None,
+    t_end: Time | None = None,
     model: Model = "A1",
     tol: Tolerance = 1e-12,
     points: Whole | None = None,
-    x0: float = 0.0,
-    y0: float = 0.0,
-    vx0: float = 0.0,
-    vy0: float = 0.0,
+    x0: Length = 0.0,
+    y0: Length = 0.0,
+    vx0: Speed = 0.0,
+    vy0: Speed = 0.0,
     output: Output = Path("run.nc"),
     brake: Drawn = DRAWN,
 ) -> int:
@@ -116,8 +119,8 @@ def backbone(
     *,
     mode: Literal[1, 2] = 1,
     method: Literal["exact", "hbm"] = "exact",
-    y_peak_max: float | None = None,
-    x_amplitude_max: float | None = None,
+    y_peak_max: Length | None = None,
+    x_amplitude_max: Length | None = None,
     n_harmonics: Whole = 16,
     output: Output = Path("backbone.nc"),
     brake: Drawn = DRAWN,
@@ -165,7 +168,7 @@ def cycle(
     /,
     *,
     guess: Numbers = None,
-    t_settle: float | None = None,
+    t_settle: Time | None = None,
     output: Output = Path("cycle.nc"),
     brake: Drawn = DRAWN,
 ) -> int:
@@ -211,7 +214,7 @@ def branch(
     /,
     *,
     parameter: str,
-    to: float,
+    to: str,
     start: str | None = None,
     n_points: Whole = 200,
     doubled: Switch = False,
@@ -225,7 +228,7 @@ def branch(
 
     Args:
         parameter: a physical parameter, alpha1 or alpha2.
-        to: value at which the branch ends; angles in rad.
+        to: value at which the branch ends, like the parameter on the command line.
         start: a file written by `squealpipe cycle`, a state x,y,vx,vy near the first cycle, or
             onset (the loss of stability of steady sliding); by default what a run from rest
             settles to.
@@ -240,7 +243,7 @@ def branch(
         alpha2,
         output=output,
         parameter=name,
-        to=to,
+        to=reader(name)(to),
         start=_start(start),
         n_points=n_points,
         doubled=doubled,

@@ -117,6 +117,8 @@ def run(
     from squealpipe.execution.explain import snakemake_command
 
     command, study = snakemake_command(config or [], quick=quick)
+    for line in study.parameters.became():
+        say(line)
     started = time.perf_counter()
     quiet = ["--quiet", "all"] if SESSION.quiet else ["--quiet", "host", "rules"]
     if _to_its_end([*command, "--cores", str(cores or "all"), *quiet]):

@@ -6,9 +6,11 @@ Both are read into one canonical form, so a sweep has one meaning wherever it st
 import math
 import re
 from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from typing import Any
 
-from squealpipe.parameters import BEYOND_A_TURN, FULL_TURN, TABLE
+from squealpipe.parameters import BEYOND_A_TURN, FULL_TURN, TABLE, UNITS_OF_INPUTS
+from squealpipe.units import UnitError, has_unit, in_si
 
 _NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
 _IN_PI = re.compile(rf"([+-]?)({_NUMBER})?\s*\*?\s*(?:pi|π)(?:/({_NUMBER}))?")
@@ -18,6 +20,13 @@ ANGLES = ("alpha1", "alpha2")
 PHYSICAL = tuple(TABLE)
 NUMBERS = tuple(name for name, row in TABLE.items() if row.allowed != "law")
 """Parameters that are numbers, so that they can be swept."""
+UNITS = UNITS_OF_INPUTS | {
+    **dict.fromkeys(("t_end", "t_late", "t_settle"), "s"),
+    **dict.fromkeys(("x", "y", "x0", "y0", "y_peak"), "m"),
+    **dict.fromkeys(("y_peak_max", "x_amplitude_max"), "m"),
+    **dict.fromkeys(("vx", "vy", "vx0", "vy0"), "m s-1"),
+}
+"""CF units of parameters and of the options of tasks, whose values may be texts with a unit."""
 WHOLE = ("mode",)
 """Options that are swept over whole numbers."""
 
@@ -48,8 +57,13 @@ def _angle_in(text: str) -> float | None:
     return math.radians(value) if match[2] in {"deg", "°"} else value
 
 
-def parse_number(text: str) -> float:
-    """A finite number."""
+def parse_number(text: str, units: str | None = None) -> float:
+    """A finite number, or a text with a unit where CF units are given."""
+    if units is not None and has_unit(text):
+        try:
+            return in_si(text, units, UNITS_OF_INPUTS)
+        except UnitError as error:
+            raise UnitError(f"{text!r}: {error}") from None
     try:
         value = float(text)
     except ValueError:
@@ -59,11 +73,23 @@ def parse_number(text: str) -> float:
     return value
 
 
+def reader(name: str) -> Callable[[str], float]:
+    """What reads a text as a value of a parameter, an angle or an option."""
+    if name in ANGLES:
+        return parse_angle
+    return partial(parse_number, units=UNITS.get(name))
+
+
 def parse_range(text: str, one: Callable[[str], float] = parse_number) -> list[float]:
     """Values from a list ``0.1,0.2``, a range ``0:pi:31`` or ``1:100:7:log``, ends included."""
+    parts = text.split(":" if ":" in text else ",")
+    ends = parts[:2] if ":" in text else parts
+    if one is not parse_angle and len({*map(has_unit, ends)}) > 1:
+        raise ValueError(
+            f"{text!r}: give each value its unit, and write decimals with a point"
+        )
     if ":" not in text:
-        return [one(part) for part in text.split(",")]
-    parts = text.split(":")
+        return [one(part) for part in parts]
     spacing = parts.pop() if len(parts) == 4 else "linear"
     if len(parts) != 3 or spacing not in {"linear", "log"} or not parts[2].isdigit():
         raise ValueError(
@@ -89,7 +115,7 @@ def read_values(name: str, given: object) -> list[float]:
             f"{name} cannot be varied, for its values are words; sweep once for each, with {name} "
             "fixed, over mu_static or friction_speed"
         )
-    one = parse_angle if name in ANGLES else parse_number
+    one = reader(name)
     if isinstance(given, str):
         values = parse_range(given, one)
     else:
@@ -115,10 +141,12 @@ def read_fixed(name: str, given: object) -> Any:
             f"{given!r} is not a value; write a number, a word or a list of numbers"
         )
     if name in (*ANGLES, *NUMBERS) and given is not None:
-        return (parse_angle if name in ANGLES else parse_number)(_as_text(given))
+        return reader(name)(_as_text(given))
     if isinstance(given, str):
         try:
-            values = parse_range(given)
+            values = parse_range(given, reader(name))
+        except UnitError:
+            raise
         except ValueError:
             return given
         given = values if len(values) > 1 else values[0]
@@ -127,6 +155,17 @@ def read_fixed(name: str, given: object) -> Any:
     if isinstance(given, float) and given.is_integer() and abs(given) < 2**53:
         return int(given)
     return given
+
+
+def read_distribution(name: str, numbers: Mapping[str, Any]) -> dict[str, Any]:
+    """A distribution whose numbers may be texts with the unit of its parameter or an angle."""
+    one = reader(name)
+    return {
+        key: one(value)
+        if isinstance(value, str) and key not in {"distribution", "log_std"}
+        else value
+        for key, value in numbers.items()
+    }
 
 
 def sweep_config(

@@ -21,9 +21,24 @@ from pydantic import (
     model_validator,
 )
 
-from squealpipe.config.ranges import parse_angle, read_fixed, read_values
+from squealpipe.config.quantities import In
+from squealpipe.config.ranges import (
+    parse_angle,
+    read_distribution,
+    read_fixed,
+    read_values,
+)
 from squealpipe.laws.tables import BETWEEN
 from squealpipe.parameters import DEFAULTS, TABLE, Parameters, Row, without_defaults
+from squealpipe.substitutes import (
+    SUBSTITUTES,
+    Springs,
+    became,
+    check_together,
+    equal_springs,
+    stands_for,
+    stood_for,
+)
 
 
 class Section(BaseModel):
@@ -44,16 +59,57 @@ Number = Annotated[float, Field(strict=True)]
 Positive = Annotated[float, Field(gt=0)]
 NotNegative = Annotated[float, Field(ge=0)]
 Points = Annotated[int, Field(ge=3, le=4001), WHOLE]
+Time = Annotated[Positive, In("s", of_study=True)]
+Length = Annotated[Positive, In("m", of_study=True)]
+Speed = Annotated[Positive, In("m s-1", of_study=True)]
+Ratio = Annotated[Positive, In("1")]
+
+
+Stiffness = Annotated[float, Field(), In("N m-1")]
+
+
+class StiffnessSection(Section):
+    """Stiffness along the belt, across it without the contact, and the coupling of both."""
+
+    along: Stiffness
+    across: Stiffness
+    coupling: Stiffness = 0.0
+
+    @property
+    def springs(self) -> Springs:
+        """The two equal springs that have it."""
+        return equal_springs(self.along, self.across, self.coupling)
 
 
 class _ParametersBase(Section):
-    """Physical parameters, in consistent units."""
+    """Physical parameters, in consistent units, or as texts with a unit."""
 
     @model_validator(mode="after")
     def _together(self) -> _ParametersBase:
-        """What the parameters demand of one another."""
+        """What stands for parameters is replaced, and what they demand of one another."""
+        if self.substitutes:
+            check_together(sorted({*self.model_fields_set, *self.substitutes}))
+            values = stood_for(self.substitutes, lambda name: getattr(self, name))
+            self.__dict__.update(values)  # frozen for others
         Parameters(**{name: getattr(self, name) for name in TABLE})
         return self
+
+    @property
+    def substitutes(self) -> dict[str, Any]:
+        """Inputs that stand for parameters, in SI."""
+        inputs = {
+            name: getattr(self, name)
+            for name in sorted(self.model_fields_set)
+            if stands_for(name) and getattr(self, name) is not None
+        }
+        return {
+            name: value.model_dump() if isinstance(value, StiffnessSection) else value
+            for name, value in inputs.items()
+        }
+
+    def became(self) -> list[str]:
+        """What each input that stands for parameters became, in words."""
+        return became(self.substitutes, lambda name: getattr(self, name))
 
     @model_serializer(mode="wrap")
     def _written(self, write: SerializerFunctionWrapHandler) -> dict[str, Any]:
@@ -79,18 +135,30 @@ def _field_type(name: str, row: Row) -> Any:
             BeforeValidator(partial(row.check, name)),
             WithJsonSchema({"anyOf": [names, files, text]}),
         ]
-    kinds: dict[str, Any] = {
-        "finite": Number,
-        "positive": Positive,
-        "not negative": NotNegative,
-    }
-    return kinds[row.allowed] | None if row.optional else kinds[row.allowed]
+    plain = KINDS[row.allowed] | None if row.optional else KINDS[row.allowed]
+    return Annotated[plain, In(row.units)]
+
+
+KINDS: dict[str, Any] = {
+    "finite": Number,
+    "positive": Positive,
+    "not negative": NotNegative,
+}
+_OTHERS: dict[str, Any] = {
+    name: (
+        Annotated[KINDS[other.allowed] | None, In(other.units)],
+        Field(None, exclude=True, description=other.meaning),
+    )
+    for name, other in SUBSTITUTES.items()
+}
 
 
 if TYPE_CHECKING:
 
     class ParametersSection(_ParametersBase):
         """Made from the table of parameters below."""
+
+        stiffness: StiffnessSection | None = None
 
 else:
     ParametersSection = create_model(
@@ -101,6 +169,8 @@ else:
             name: (_field_type(name, row), DEFAULTS[name])
             for name, row in TABLE.items()
         },
+        **_OTHERS,
+        stiffness=(StiffnessSection | None, Field(None, exclude=True)),
     )
     ParametersSection.__annotations__ = {}  # the reference looks for them in the source
 
@@ -119,7 +189,7 @@ def _ascending(limits: tuple[float, float]) -> tuple[float, float]:
     return limits
 
 
-Range = Annotated[tuple[Positive, Positive], AfterValidator(_ascending)]
+Range = Annotated[tuple[Ratio, Ratio], AfterValidator(_ascending)]
 
 
 class InferenceSection(Section):
@@ -133,7 +203,6 @@ class InferenceSection(Section):
     speed_ratio: Range = (0.1, 316.0)
 
 
-Settings = Annotated[tuple[Positive, ...], Field(min_length=1)]
 Harmonics = Annotated[int, Field(ge=1, le=512), WHOLE]
 
 
@@ -150,7 +219,9 @@ class HarmonicComparison(Section):
     oversampling: Annotated[
         tuple[Annotated[int, Field(ge=1, le=256), WHOLE], ...], Field(min_length=1)
     ] = (1, 4, 16)
-    sigmas: Settings = (10.0, 100.0, 1e3)
+    sigmas: Annotated[
+        tuple[Annotated[Positive, In("m-1", of_study=True)], ...], Field(min_length=1)
+    ] = (10.0, 100.0, 1e3)
     repeats: Annotated[int, Field(ge=1, le=100), WHOLE] = 3
 
 
@@ -171,7 +242,7 @@ class LadderComparison(Section):
 
     points: Annotated[int, Field(ge=3, le=361), WHOLE] = 46
     tolerance: Annotated[float, Field(gt=0, lt=1)] = 0.05
-    horizon: Positive = 200.0
+    horizon: Time = 200.0
 
 
 class ComparisonSection(Section):
@@ -186,21 +257,24 @@ class DynamicsSection(Section):
     """Nonlinear runs; times in √(m/k1), amplitudes in l_pre, speeds in l_pre √(k1/m)."""
 
     tol: Annotated[float, Field(gt=1e-18, lt=1e-2)] = 1e-12
-    validity_horizon: Positive = 200.0
+    validity_horizon: Time = 200.0
     validity_points: Points = 181
     refined_points: Points = 1441
     refined_coarse: Points = 91
-    chart_horizon: Positive = 25.0
-    hammering_horizon: Positive = 500.0
+    chart_horizon: Time = 25.0
+    hammering_horizon: Time = 500.0
     hammering_points: Points = 91
-    whirl_speeds: Range = (0.3, 300.0)
+    whirl_speeds: Annotated[tuple[Speed, Speed], AfterValidator(_ascending)] = (
+        0.3,
+        300.0,
+    )
     whirl_count: Annotated[int, Field(ge=2, le=1000), WHOLE] = 31
-    whirl_horizon: Positive = 10_000.0
+    whirl_horizon: Time = 10_000.0
     transient_samples: Annotated[int, Field(ge=2, le=100_000), WHOLE] = 400
-    transient_horizon: Positive = 20_000.0
+    transient_horizon: Time = 20_000.0
 
 
-Angle = Annotated[float, Field(ge=-2.0, le=2.0)]
+Angle = Annotated[float, Field(ge=-2.0, le=2.0), In("rad")]
 
 
 class BackbonesSection(Section):
@@ -210,10 +284,17 @@ class BackbonesSection(Section):
         "coupled": (0.3, 0.9),
         "slow": (0.2, 0.7),
     }
-    y_peak_max: Positive = 6.0
-    x_amplitude_max: Positive = 3.0
+    y_peak_max: Length = 6.0
+    x_amplitude_max: Length = 3.0
     n_harmonics: Harmonics = 32
-    length_ratios: Settings = (5.0, 15.0, 100.0)
+    length_ratios: Annotated[tuple[Length, ...], Field(min_length=1)] = (
+        5.0,
+        15.0,
+        100.0,
+    )
+
+
+DASHPOT = In("N s m-1", of_study=True)
 
 
 class CyclesSection(Section):
@@ -222,14 +303,14 @@ class CyclesSection(Section):
     ``damping`` is that of each dashpot over √(k1 m): twice the damping ratio of one spring.
     """
 
-    damping: Positive = 0.02
+    damping: Annotated[Positive, DASHPOT] = 0.02
     mu: Range = (0.01, 1.0)
     flutter: tuple[Angle, Angle] = (0.305, 0.07)
     points: Annotated[int, Field(ge=2, le=5000), WHOLE] = 150
-    settle: Positive = 6000.0
+    settle: Time = 6000.0
     extremes_mu: Annotated[int, Field(ge=2, le=1000), WHOLE] = 17
     extremes_starts: Annotated[int, Field(ge=1, le=1000), WHOLE] = 6
-    extremes_horizon: Positive = 2000.0
+    extremes_horizon: Time = 2000.0
 
 
 class Distribution(Section):
@@ -253,26 +334,41 @@ class RobustnessSection(Section):
 
     random_starts: Annotated[int, Field(ge=2, le=100_000), WHOLE] = 200
     basin_points: Annotated[int, Field(ge=2, le=2001), WHOLE] = 41
-    basin_extent: Positive = 12.0
-    basin_horizon: Positive = 300.0
+    basin_extent: Speed = 12.0
+    basin_horizon: Time = 300.0
     disturbance_directions: Annotated[int, Field(ge=8, le=100_000), WHOLE] = 64
-    disturbance_horizon: Positive = 100.0
-    critical_damping: tuple[NotNegative, NotNegative] = (0.02, 0.01)
+    disturbance_horizon: Time = 100.0
+    critical_damping: tuple[
+        Annotated[NotNegative, DASHPOT], Annotated[NotNegative, DASHPOT]
+    ] = (0.02, 0.01)
     critical_points: Points = 61
-    critical_extent: Positive = 0.1
+    critical_extent: Annotated[Positive, DASHPOT] = 0.1
     scene: tuple[Angle, Angle] = (0.305, 0.07)
     samples: Annotated[int, Field(ge=64, le=2**20), WHOLE] = 4096
-    horizon: Positive = 200.0
+    horizon: Time = 200.0
     spring_correlation: Annotated[float, Field(gt=-1, lt=1)] = 0.0
     distributions: Annotated[dict[str, Distribution], Field(min_length=1)] | None = None
+
+    @field_validator("distributions", mode="before")
+    @classmethod
+    def _with_units(cls, written: Any) -> Any:
+        """Numbers of each distribution in the units of its parameter."""
+        if not isinstance(written, Mapping):
+            return written
+        return {
+            name: read_distribution(name, numbers)
+            if isinstance(numbers, Mapping)
+            else numbers
+            for name, numbers in written.items()
+        }
 
 
 class ExplorerSection(Section):
     """The click grid of the explorer page; times in √(m/k1)."""
 
     points: Annotated[int, Field(ge=3, le=61), WHOLE] = 31
-    history_time: Positive = 60.0
-    spectrum_time: Positive = 180.0
+    history_time: Time = 60.0
+    spectrum_time: Time = 180.0
     samples: Annotated[int, Field(ge=16, le=2000), WHOLE] = 400
     branch_points: Annotated[int, Field(ge=2, le=200), WHOLE] = 24
 
@@ -283,19 +379,23 @@ Name = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]*$")]
 class Start(Section):
     """Displacements and velocities at the start, m and m/s."""
 
-    x: Number = 0.0
-    y: Number = 0.0
-    vx: Number = 0.0
-    vy: Number = 0.0
+    x: Annotated[Number, In("m")] = 0.0
+    y: Annotated[Number, In("m")] = 0.0
+    vx: Annotated[Number, In("m s-1")] = 0.0
+    vy: Annotated[Number, In("m s-1")] = 0.0
 
 
 class OwnScene(Section):
     """A scene of a study of one's own; angles like 30deg, 0.4pi or rad, t_end in √(m/k1)."""
 
+    model_config = ConfigDict(
+        # angles may follow from the stiffness of the parameters
+        json_schema_extra=lambda schema: schema.pop("required", None) and None
+    )
     alpha1: Annotated[Number, WithJsonSchema({"type": ["string", "number"]})]
     alpha2: Annotated[Number, WithJsonSchema({"type": ["string", "number"]})]
     start: Start = Start()
-    t_end: Positive = 200.0
+    t_end: Time = 200.0
 
     @field_validator("alpha1", "alpha2", mode="before")
     @classmethod

@@ -15,13 +15,15 @@ from pydantic import Field, ValidationError, field_validator, model_validator
 
 from squealpipe.config import sections
 from squealpipe.config.mistakes import ConfigError, mistakes
+from squealpipe.config.quantities import scales
 from squealpipe.config.ranges import sweep_config
 from squealpipe.config.sections import Name, Section
 from squealpipe.config.yaml_files import flat, overlay, read_yaml
 from squealpipe.laws.tables import named, stood_for
-from squealpipe.parameters import TABLE, Row
+from squealpipe.parameters import TABLE, Parameters, Row
 from squealpipe.rerun.key import PARTS
 from squealpipe.rerun.sources import WORKFLOW
+from squealpipe.substitutes import rivals, stands_for
 
 KINDS = dict(
     zip(PARTS, ((".nc",), (".png", ".svg"), (".html", ".pdf", ".json")), strict=True)
@@ -120,9 +122,31 @@ def read_study(*paths: str | Path, changes: Mapping[str, Any] | None = None) -> 
     for path in map(Path, paths):
         content = read_yaml(path)
         faults.extend(_read_laws(path, content))
-        overlay(merged, content)
-    overlay(merged, changes or {})
+        faults.extend(_lay_over(merged, content))
+    faults.extend(_lay_over(merged, changes or {}))
     return parse_study(merged, faults)
+
+
+def _lay_over(base: dict[str, Any], top: Mapping[str, Any]) -> Iterator[str]:
+    """Lay a configuration over another, in which what says the same in other words goes; faults.
+
+    A ``preload_force`` takes the place of the ``preload`` below it, and the other way round.
+    """
+    below, above = base.get("parameters"), top.get("parameters")
+    if isinstance(below, dict) and isinstance(above, Mapping):
+        for name in [name for name in below if name not in above]:
+            if not rivals(name, above):
+                continue
+            del below[name]
+            stated = {
+                target for other in above for target in (other, *stands_for(other))
+            }
+            for target in sorted({*stands_for(name)} - stated):
+                yield (
+                    f"parameters.{target}: is needed, for {name} of the configuration below "
+                    "stands for it and goes; write both, or change that"
+                )
+    overlay(base, top)
 
 
 def _read_laws(path: Path, content: dict[str, Any]) -> Iterator[str]:
@@ -191,12 +215,37 @@ def parse_study(content: Mapping[str, Any], faults: Sequence[str] = ()) -> Study
             for k, value in content.items()
             if value is not None or k not in known
         }
-        study = Study.model_validate(_plain(given))
+        plain = _plain(given)
+        study = Study.model_validate(plain, context=_complete(plain))
     except ValidationError as error:
         raise ConfigError([*faults, *mistakes(error, Study)]) from error
     if faults:
         raise ConfigError(faults)
     return study
+
+
+def _complete(content: dict[str, Any]) -> Mapping[str, float]:
+    """Give scenes without angles those of ``stiffness``; what the study's own units are.
+
+    Faulty parameters are told of by the validation of the whole.
+    """
+    try:
+        section = sections.ParametersSection.model_validate(
+            content.get("parameters", {})
+        )
+    except ValidationError:
+        return {}
+    if section.stiffness is not None and isinstance(content.get("scenes"), Mapping):
+        springs = section.stiffness.springs
+        angles = {"alpha1": springs.alpha1, "alpha2": springs.alpha2}
+        content["scenes"] = {
+            name: {**angles, **(scene or {})}
+            if isinstance(scene, Mapping | None)
+            and not angles.keys() & {*(scene or {})}
+            else scene
+            for name, scene in content["scenes"].items()
+        }
+    return scales(Parameters(**section.model_dump()))
 
 
 def _plain(value: Any) -> Any:

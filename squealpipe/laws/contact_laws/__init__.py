@@ -100,6 +100,39 @@ def preload_force(name: str, preload: float) -> float:
     return float(pieces_of(name, goes_on=True).value(preload))
 
 
+def preload_of(name: str, force: float, k3: float) -> float:
+    """The compression at which a law has a force, m: the first one of a table.
+
+    Raises:
+        ValueError: the table does not reach the force.
+    """
+    if not is_table(name):
+        return force / k3
+    pieces = pieces_of(name, goes_on=True)
+    last = len(pieces.starts) - 1
+    for piece, (start, row) in enumerate(zip(*pieces, strict=True)):
+        c0, slope = float(row[0]), float(row[1])
+        if piece == last:
+            if slope > 0:
+                return float(start) + (force - c0) / slope
+            break
+        width = float(pieces.starts[piece + 1] - start)
+        if polynomial(row, width) < force:
+            continue
+        if not row[2:].any():
+            return float(start) + (force - c0) / slope
+        from scipy.optimize import brentq
+
+        def lacking(at: float, row: Any = row) -> float:
+            return float(polynomial(row, at) - force)
+
+        at = brentq(lacking, 0.0, width, xtol=1e-16 * width, rtol=1e-15)
+        return float(start + at)
+    raise ValueError(
+        f"the table of contact does not reach {force:g} N: it ends at {c0:g} N without rising"
+    )
+
+
 def law_of(name: Any, preload: float = 1.0) -> ContactLaw | None:
     """The law of a name, None if there is none; a law itself is given back."""
     if not isinstance(name, str):

@@ -1,0 +1,222 @@
+"""Texts with a unit, like ``0.57 mm`` or ``7 kN/mm``, as numbers in SI.
+
+pint knows the units. It is imported where the first such text is met: that takes a second, which
+a study in plain numbers does not pay. Numbers are read and converted as decimals, so that
+``0.57 mm`` is the double that ``5.7e-4`` is, and names the same run.
+"""
+
+import re
+from collections.abc import Mapping
+from decimal import Decimal
+from functools import lru_cache
+from typing import Any
+
+QUANTITIES = {
+    "kg": ("a mass", "0.45 kg"),
+    "m": ("a length", "0.57 mm"),
+    "s": ("a time", "20 ms"),
+    "N": ("a force", "4 kN"),
+    "m s-1": ("a speed", "7.2 km/h"),
+    "N m-1": ("a stiffness", "7 kN/mm"),
+    "N s m-1": ("a damping constant", "42 N s/m"),
+    "Pa": ("a pressure", "10 bar"),
+    "m2": ("an area", "40 cm^2"),
+    "m-1": ("an inverse length", "1000 1/m"),
+    "rad": ("an angle", "22 deg"),
+    "1": ("a number without a unit, or in %", "30 %"),
+}
+"""CF unit → what it measures, and an example of how people write it."""
+RAISED = str.maketrans("0123456789", "⁰¹²³⁴⁵⁶⁷⁸⁹")
+SHOWN_IN: dict[str, tuple[tuple[float, str, float], ...]] = {
+    "m": ((1.0, "m", 0.1), (1e3, "mm", 1e-4), (1e6, "µm", 0.0)),
+    "s": ((1.0, "s", 1.0), (1e3, "ms", 0.0)),
+    "N": ((1e-3, "kN", 1e3), (1.0, "N", 0.0)),
+    "N m-1": ((1e-6, "kN/mm", 1e6), (1e-3, "N/mm", 1e4), (1.0, "N/m", 0.0)),
+    "m s-1": ((1.0, "m/s", 0.1), (1e3, "mm/s", 0.0)),
+    "Pa": ((1e-6, "MPa", 1e6), (1e-5, "bar", 1e4), (1.0, "Pa", 0.0)),
+    "m2": ((1.0, "m²", 0.1), (1e4, "cm²", 0.0)),
+    "Hz": ((1e-3, "kHz", 1e3), (1.0, "Hz", 0.0)),
+}
+"""CF unit → factor, unit as people write it, and the least value so written; largest first."""
+PLAIN = ("percent", "permille", "ppm", "dimensionless")
+"""Units of numbers without one; pint takes angles for such numbers too."""
+TURNS = ("degree", "radian", "gradian", "turn", "arcminute", "arcsecond", "milliradian")
+"""Units of angles, which pint takes for plain numbers."""
+SPELLINGS = (
+    "newton_second = newton * second = Ns",
+    "kilopond = kilogram_force = kp",
+    "kilometer_in_an_hour = kilometer / hour = kmh",
+)
+"""Units as engineers write them that pint does not know."""
+
+NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d{1,4})?"
+_QUANTITY = re.compile(
+    rf"({NUMBER})\s*((?:\b1\s*/\s*)?[^\d\s.,;:+#_-][^,;:#]*)", re.ASCII
+)
+_COMMA = re.compile(r"([+-]?\d*),(\d+)\s*(\D.*)?", re.ASCII)
+_BEYOND_A_NUMBER = re.compile(rf"\s*(?!{NUMBER}\s*$)[-+−]?\.?\d", re.ASCII)
+_POWER = re.compile(r"(?<=[^\W\d])(-?\d)")
+_LONGEST = 60
+"""Characters of the longest text that is read as a quantity."""
+
+
+class UnitError(ValueError):
+    """A text is no quantity of the kind that is needed; the message says what is."""
+
+
+def has_unit(text: object) -> bool:
+    """Whether something is a text of a number and something after it, as a unit is."""
+    return isinstance(text, str) and bool(_QUANTITY.fullmatch(_tidy(text)))
+
+
+def in_si(text: str, units: str, keys: Mapping[str, str] | None = None) -> float:
+    """The number of a text with a unit, in SI.
+
+    Args:
+        units: CF unit of the result, a key of :data:`QUANTITIES`.
+        keys: names and CF units of other inputs, to say which takes what was written.
+
+    Raises:
+        UnitError: it is no number with a unit, or one of another kind.
+    """
+    what, example = QUANTITIES[units]
+    tidy = _tidy(text)
+    if match := _COMMA.fullmatch(tidy):
+        raise UnitError(_without_comma(*match.groups("")))
+    match = _QUANTITY.fullmatch(tidy)
+    if match is None or len(tidy) > _LONGEST:
+        raise UnitError(f"{what} is needed, like {example}")
+    unit = _unit(match[2])
+    if unit is None:
+        raise UnitError(f"unknown unit {match[2]!r}; {what} is needed, like {example}")
+    if _cf_unit(unit, [units]) is None:
+        raise UnitError(_wrong_kind(unit, f"{what} is needed, like {example}", keys))
+    quantity = _registry().Quantity(Decimal(match[1]), unit)
+    return float(quantity.to(_pint_text(units)).magnitude)
+
+
+def number_of(value: Any, units: str, keys: Mapping[str, str] | None = None) -> Any:
+    """A number in SI from a text with a unit or a quantity of pint; else the value as it is.
+
+    Text that is a plain number, or does not begin with one, is left for the caller to refuse.
+    """
+    if isinstance(value, str):
+        return in_si(value, units, keys) if _BEYOND_A_NUMBER.match(value) else value
+    if hasattr(value, "magnitude") and hasattr(value, "dimensionality"):
+        return in_si(f"{float(value.magnitude)!r} {value.units:D}", units, keys)
+    return value
+
+
+def shown_in(largest: float, units: str) -> tuple[float, str]:
+    """Factor and unit in which people write values of a CF unit up to a largest one."""
+    choices = SHOWN_IN.get(units, ())
+    for factor, name, least in choices:
+        if abs(largest) >= least:
+            return factor, name
+    return 1.0, plain_unit(units)
+
+
+def plain_unit(units: str) -> str:
+    """A CF unit as people write it: m/s, N s/m, rad/s."""
+    if units == "1":
+        return ""
+    parts = re.findall(r"([A-Za-z]+)(-?\d+)?", units)
+    above = " ".join(
+        name + power.translate(RAISED)
+        for name, power in parts
+        if not power.startswith("-")
+    )
+    below = [
+        name + ("" if power == "-1" else power[1:].translate(RAISED))
+        for name, power in parts
+        if power.startswith("-")
+    ]
+    return "/".join([above or "1", *below])
+
+
+def with_unit(value: float, units: str, digits: int = 4) -> str:
+    """A value of a CF unit as people write it: 4 kN, 0.5714 mm."""
+    factor, name = shown_in(value, units)
+    return f"{value * factor:.{digits}g} {name}".rstrip()
+
+
+def _without_comma(head: str, tail: str, unit: str) -> str:
+    """What to write instead of a number with a comma."""
+    point = f"{head or 0}.{tail} {unit}".rstrip()
+    if len(tail) != 3 or head.lstrip("+-") in {"", "0"}:  # separates no thousands
+        return f"write a decimal point: {point}"
+    whole = f"{head}{tail} {unit}".rstrip()
+    return (
+        f"the comma is a decimal point or separates thousands; write {point} or {whole}"
+    )
+
+
+def _tidy(text: str) -> str:
+    """A text with the signs of typesetters replaced by those of a keyboard."""
+    for sign, plain in (
+        ("−", "-"),
+        ("·", "*"),
+        ("⋅", "*"),
+        ("×", "*"),
+        ("\u00a0", " "),
+    ):
+        text = text.replace(sign, plain)
+    return text.strip()
+
+
+@lru_cache(maxsize=1)
+def _registry() -> Any:
+    import pint
+
+    registry: Any = pint.UnitRegistry(non_int_type=Decimal)
+    for words in SPELLINGS:
+        registry.define(words)
+    return registry
+
+
+@lru_cache(maxsize=256)
+def _unit(text: str) -> Any:
+    """A unit of pint; None if it is none."""
+    import tokenize
+
+    from pint.errors import PintError
+
+    # the tokenizer and evaluator below pint fail in their own ways on what is no expression
+    failures = (PintError, ValueError, TypeError, AttributeError, AssertionError)
+    try:
+        return _registry().parse_units(_POWER.sub(r"**\1", text))  # m s-1, cm2
+    except (*failures, ArithmeticError, SyntaxError, tokenize.TokenError, LookupError):
+        return None
+
+
+def _pint_text(units: str) -> str:
+    """A CF unit as pint reads it."""
+    factors = re.findall(r"([A-Za-z]+)(-?\d+)?", units)
+    return "*".join(f"{name}**{power or 1}" for name, power in factors)
+
+
+def _cf_unit(unit: Any, candidates: Any) -> str | None:
+    """The first of some CF units that measures the same as a unit."""
+    for units in candidates:
+        if units in {"1", "rad"}:
+            if str(unit) in (PLAIN if units == "1" else TURNS):
+                return str(units)
+        elif (
+            unit.dimensionality
+            == _registry().parse_units(_pint_text(units)).dimensionality
+        ):
+            return str(units)
+    return None
+
+
+def _wrong_kind(unit: Any, needed: str, keys: Mapping[str, str] | None) -> str:
+    """What a unit measures, what is needed, and which inputs take what was written."""
+    kind = _cf_unit(unit, QUANTITIES)
+    is_kind = f"that is {QUANTITIES[kind][0]}" if kind else f"{unit} does not fit"
+    takers = [name for name, units in (keys or {}).items() if kind and units == kind]
+    elsewhere = (
+        f"; {QUANTITIES[kind][0]} goes to {' or '.join(takers)}"
+        if kind and takers
+        else ""
+    )
+    return f"{is_kind}; {needed}{elsewhere}"

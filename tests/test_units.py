@@ -1,0 +1,130 @@
+"""Numbers with a unit: exact, of the right kind, or refused with what to write."""
+
+import subprocess
+import sys
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from squealpipe.config.ranges import parse_range, read_fixed, read_values
+from squealpipe.parameters import UNITS_OF_INPUTS, Parameters
+from squealpipe.units import UnitError, in_si, plain_unit, with_unit
+
+ROUNDED_ONCE = {
+    ("0.57 mm", "m"): 5.7e-4,
+    ("7.2 km/h", "m s-1"): 2.0,
+    ("7.2kmh", "m s-1"): 2.0,
+    ("-7.2 km/h", "m s-1"): -2.0,
+    ("−7.2 km/h", "m s-1"): -2.0,
+    ("7 kN/mm", "N m-1"): 7e6,
+    ("7e3 N/mm", "N m-1"): 7e6,
+    ("40 lbf/in", "N m-1"): 40 * 4.4482216152605 / 0.0254,
+    ("42 N s/m", "N s m-1"): 42.0,
+    ("42 N·s/m", "N s m-1"): 42.0,
+    ("42 Ns/m", "N s m-1"): 42.0,
+    ("42 kg/s", "N s m-1"): 42.0,
+    ("0.042 N s mm-1", "N s m-1"): 42.0,
+    ("450 g", "kg"): 0.45,
+    ("10 bar", "Pa"): 1e6,
+    ("1 N/mm²", "Pa"): 1e6,
+    ("40 cm^2", "m2"): 4e-3,
+    ("40 cm2", "m2"): 4e-3,
+    ("3 kp", "N"): 3 * 9.80665,
+    ("30 %", "1"): 0.3,
+    (".5 µm", "m"): 5e-7,
+    ("12 1/mm", "m-1"): 12e3,
+    ("20ms", "s"): 0.02,
+}
+
+
+@pytest.mark.parametrize(("text", "units"), ROUNDED_ONCE)
+def test_a_text_is_the_number_that_it_says(text, units):
+    assert in_si(text, units) == ROUNDED_ONCE[text, units]
+
+
+@given(st.integers(1, 10**9), st.integers(-12, 3))
+def test_a_unit_does_not_change_the_double(digits, power):
+    """What is written in mm is the double of the same decimal in m, so that ids agree."""
+    assert in_si(f"{digits}e{power} mm", "m") == float(f"{digits}e{power - 3}")
+
+
+REFUSED = {
+    (
+        "4 kN",
+        "m",
+    ): "that is a force; a length is needed, like 0.57 mm; a force goes to preload_force",
+    ("3 furlong/s", "m"): "that is a speed; a length is needed",
+    ("3 K", "m"): "kelvin does not fit; a length is needed",
+    ("30 deg", "1"): "that is an angle; a number without a unit, or in %",
+    ("30", "m"): "a length is needed, like 0.57 mm",
+    ("3 smoot/", "m"): "unknown unit 'smoot/'; a length is needed",
+    ("3 __import__('os')", "m"): "a length is needed",
+    ("0,57 mm", "m"): "write a decimal point: 0.57 mm",
+    ("1,500 N", "N"): "write 1.500 N or 1500 N",
+    ("1.500,5 N", "N"): "a force is needed, like 4 kN",
+}
+
+
+@pytest.mark.parametrize(("text", "units"), REFUSED)
+def test_another_kind_or_an_ambiguous_number_is_refused_with_the_remedy(text, units):
+    with pytest.raises(UnitError) as caught:
+        in_si(text, units, UNITS_OF_INPUTS)
+    assert REFUSED[text, units] in str(caught.value)
+
+
+def test_parameters_take_texts_and_quantities_of_pint():
+    import pint
+
+    length = pint.UnitRegistry().Quantity(0.57, "mm")
+    written = Parameters(preload=length, belt_speed="7.2 km/h", mu="45 %")
+    assert written == Parameters(preload=5.7e-4, belt_speed=2.0, mu=0.45)
+    assert written.with_(k3="7 kN/mm").k3 == 7e6
+    with pytest.raises(
+        ValueError, match=r"preload = '4 kN': that is a force; .* preload_force"
+    ):
+        Parameters(preload="4 kN")
+    with pytest.raises(
+        ValueError, match=r"preload = '0\.57': a finite number is needed"
+    ):
+        Parameters(preload="0.57")
+
+
+def test_sweeps_take_units_and_no_decimal_comma_slips_through():
+    assert read_values("belt_speed", "3.6km/h:7.2km/h:2") == [1.0, 2.0]
+    assert read_values("preload", ["1 mm", 0.002]) == [1e-3, 2e-3]
+    assert read_fixed("t_end", "20 ms") == 0.02
+    for text in ("0,57 mm", "1:10 km/h:3"):
+        with pytest.raises(ValueError, match="unit"):
+            read_values("belt_speed", text)
+    with pytest.raises(ValueError, match="a time is needed"):
+        read_fixed("t_end", "20 mm")
+    assert parse_range("0,0.5") == [0.0, 0.5]
+
+
+def test_plain_numbers_do_not_wait_for_pint():
+    code = (
+        "import sys; import squealpipe; from squealpipe.parameters import Parameters\n"
+        "import squealpipe.config.settings as s; s.read_study(s.PAPER)\n"
+        "Parameters(mu=0.2); assert 'pint' not in sys.modules"
+    )
+    subprocess.run([sys.executable, "-c", code], check=True)
+
+
+def test_values_are_shown_as_people_write_them():
+    shown = {
+        (4000.0, "N"): "4 kN",
+        (5.714e-4, "m"): "0.5714 mm",
+        (3e-6, "m"): "3 µm",
+        (7e6, "N m-1"): "7 kN/mm",
+        (42.43, "N s m-1"): "42.43 N s/m",
+        (1e6, "Pa"): "1 MPa",
+        (0.3, "1"): "0.3",
+    }
+    assert {key: with_unit(*key) for key in shown} == shown
+    assert [plain_unit(units) for units in ("rad s-1", "m2", "s-1", "N m-1")] == [
+        "rad/s",
+        "m²",
+        "1/s",
+        "N/m",
+    ]
