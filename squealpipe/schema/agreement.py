@@ -46,7 +46,8 @@ class Listing:
         position: variable along which an entry is matched with the nearest one, or the text whose
             first value names it; without it the n-th entry of a kind is matched with the n-th.
         fillers: entries whose first kind is one of these lie where a method's steps happened to
-            end. Only those at the same position are matched, and their number is not a result.
+            end. Those at the same position are matched; another one must lie on the curve through
+            the points of the other side. Their number is not a result.
     """
 
     kinds: tuple[str, ...] = ()

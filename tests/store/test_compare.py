@@ -8,12 +8,13 @@ import pytest
 import xarray as xr
 
 from squealpipe import Parameters, Sweep, backbone, run_sweep, simulate
-from squealpipe.schema import DatasetSchema, Variable, build
+from squealpipe.schema import DatasetSchema, Variable, build, find
 from squealpipe.schema.claims import CLAIMS
 from squealpipe.store import load, save
 from squealpipe.store.archive import archive
 from squealpipe.store.comparison.compare import compare, compare_datasets
 from squealpipe.store.comparison.differences import Agreement, difference
+from squealpipe.store.comparison.lines import lines
 from squealpipe.store.comparison.matching import align
 
 
@@ -86,6 +87,86 @@ def test_round_off_agrees_and_the_largest_difference_its_place_and_flags_are_tol
         assert entry.where == pytest.approx(
             {"alpha1": np.pi / 4, "alpha2": 7 * np.pi / 12}
         )
+
+
+def ensemble(values, dims=("x0", "k"), **more):
+    """Final states of a system of one's own, whose dataset is its own table."""
+    coords = {"x0": [0.0, 1.0, 2.0], "k": [0.5, 0.75, 1.0]}
+    return xr.Dataset(
+        {"x": (dims, values, {"units": "m"}), **more},
+        coords,
+        {"schema": "system ensemble", "schema_version": 1, "title": "an ensemble"},
+    )
+
+
+def both_ways(a, b):
+    """The verdict, which is the same in both directions, and what was found in one of them."""
+    found, back = compare_datasets("one", a, b), compare_datasets("one", b, a)
+    assert found.verdict == back.verdict
+    assert (found.compared, found.values) == (back.compared, back.values)
+    return found.verdict, found
+
+
+def test_dimensions_are_aligned_by_name():
+    values = np.arange(9.0).reshape(3, 3)
+    a = ensemble(values)
+    assert both_ways(a, a.transpose("k", "x0"))[0] == Agreement.equal
+    assert both_ways(a, ensemble(values, ("k", "x0")))[0] == Agreement.different
+    assert both_ways(a, a.isel(k=[2, 0, 1]))[0] == Agreement.equal
+
+
+def test_what_one_side_alone_has_is_a_difference_in_both_directions():
+    a = ensemble(np.eye(3))
+    more = ensemble(np.eye(3), energy=("x0", [1.0, 2.0, 3.0]))
+    assert both_ways(a, more)[0] == Agreement.different
+    assert both_ways(a, a.drop_vars("k"))[0] == Agreement.different
+
+
+@pytest.mark.parametrize(
+    ("change", "verdict"),
+    [
+        (lambda d: d.assign(x=d.x.astype("f4")), Agreement.equal),
+        (lambda d: d.assign(x=d.x.astype(int)), Agreement.equal),
+        (lambda d: d.assign(x=d.x.astype(str)), Agreement.different),
+        (lambda d: d.assign(x=d.x.assign_attrs(units="mm")), Agreement.different),
+        (lambda d: d.assign(x=d.x.astype(int) + 1), Agreement.different),
+    ],
+)
+def test_types_and_units_are_judged_by_what_they_mean(change, verdict):
+    assert both_ways(ensemble(np.eye(3)), change(ensemble(np.eye(3))))[0] == verdict
+
+
+def test_a_kind_of_event_that_changed_is_a_difference():
+    run = simulate(Parameters(), 2.6, 2.6, t_end=30)
+    other = run.copy(deep=True)
+    other.event_kind[3] = 1 - int(other.event_kind[3])
+    assert both_ways(run, other)[0] == Agreement.different
+
+
+def test_a_chart_without_one_of_its_parameters_is_compared_all_the_same():
+    """The parameter along which its points are matched is named by a text."""
+    lines = {"line": [0, 0, 1], "curve": [0, 0, 1]}
+    chart = xr.Dataset(
+        {
+            name: ("point", values)
+            for name, values in (lines | {"mu": [1.0, 2, 3]}).items()
+        },
+        {"parameter": ["kappa", "mu"]},
+    )
+    fewer = chart.isel(point=[0, 2])
+    found = align(chart, fewer, find("regime_chart"))
+    assert found.alone["point"][0].tolist() == [1]
+
+
+def test_how_much_was_compared_is_said(tmp_path, write_run):
+    a, b = write_run(tmp_path / "a", points=3), write_run(tmp_path / "b", points=181)
+    found = compare(a / "results", b / "results")
+    told = "\n".join(lines(found))
+    assert (
+        f"{found.datasets[0].compared:,} of {found.datasets[0].values:,} values" in told
+    )
+    assert found.datasets[0].values > 181**2 > 1000 * 9 > found.datasets[0].compared / 2
+    assert "alpha1: compared on 3 shared points of 3 and 181" in told
 
 
 def test_coarse_and_fine_grids_are_aligned(tmp_path, write_run):
@@ -207,21 +288,20 @@ def test_volatile_variables_are_no_part_of_the_verdict(monkeypatch):
 def test_alignment_is_by_value_not_by_position():
     a = xr.Dataset({"x": ("t", [1.0, 2.0, 3.0])}, {"t": [0.0, 1.0, 2.0]})
     b = xr.Dataset({"x": ("t", [3.0, 1.0])}, {"t": [2.0 + 1e-12, 0.0]})
-    left, right, notes = align(a, b)
-    np.testing.assert_array_equal(left.x, [1.0, 3.0])
-    np.testing.assert_array_equal(right.x, [1.0, 3.0])
-    assert notes == ["t: compared on 2 shared points of 3 and 2"]
+    found = align(a, b)
+    np.testing.assert_array_equal(found.a.x, [1.0, 3.0])
+    np.testing.assert_array_equal(found.b.x, [1.0, 3.0])
+    assert found.notes == ["t: compared on 2 shared points of 3 and 2"]
     names = xr.Dataset({"x": ("s", [1, 2])}, {"s": ["F3", "F2a"]})
     others = xr.Dataset({"x": ("s", [2, 1])}, {"s": ["F2a", "F3"]})
-    left, right, _ = align(names, others)
-    np.testing.assert_array_equal(left.x, right.x)
+    found = align(names, others)
+    np.testing.assert_array_equal(found.a.x, found.b.x)
 
 
 def test_a_grid_may_hold_a_point_twice():
     grids = [0.0, 1.0, 2.0], [0.0, 1.0, 1.0, 2.0]
     both = (xr.Dataset({"x": ("t", grid)}, {"t": grid}) for grid in grids)
-    _, shared, _ = align(*both)
-    assert shared.x.values.tolist() == grids[0]
+    assert align(*both).b.x.values.tolist() == grids[0]
 
 
 def test_events_are_matched_by_order_and_kind():

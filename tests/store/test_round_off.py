@@ -102,6 +102,13 @@ def test_cells_beyond_the_horizon_are_one_sample_and_the_others_are_not():
     assert verdicts == {"one lost cell": Agreement.within_tolerance, **different}
 
 
+def places_of(branch, first):
+    """Special points and ends, and every other regular point from the first or second on."""
+    regular = np.flatnonzero((branch.label == Label.regular).values)
+    dropped = [at for at in regular[first::2] if 0 < at < branch.sizes["point"] - 1]
+    return np.setdiff1d(np.arange(branch.sizes["point"]), dropped)
+
+
 def test_points_that_steps_placed_elsewhere_are_no_difference_but_a_special_point_is():
     damped = FORMER.with_(damping1=0.02, damping2=0.02)
     scene = 0.4 * np.pi, 0.6 * np.pi
@@ -111,8 +118,18 @@ def test_points_that_steps_placed_elsewhere_are_no_difference_but_a_special_poin
     assert (
         compare_datasets("branch", branch, fewer).verdict <= Agreement.within_tolerance
     )
+    scaled, places = branch.copy(deep=True), (branch.label == Label.regular).values
+    assert places.sum() > 5
+    for name in ("x_max", "x_min", "y_max", "y_min"):
+        scaled[name][places] *= 1.5
+    for pair in ((branch, scaled), (scaled, branch)):
+        assert compare_datasets("branch", *pair).verdict == Agreement.different
+    # most of the points elsewhere on the same curve: every other one of each side
+    odd, even = (branch.isel(point=places_of(branch, first)) for first in (0, 1))
+    for pair in ((odd, even), (even, odd)):
+        assert compare_datasets("branch", *pair).verdict == Agreement.within_tolerance
     for name, point, value, verdict in (
-        ("x_max", 2, branch.x_max[2] * (1 + 1e-5), Agreement.equal),  # another point
+        ("x_max", 2, branch.x_max[2] * (1 + 1e-5), Agreement.different),
         ("y_max", 2, branch.y_max[2] * (1 + 1e-5), Agreement.different),
         ("y_max", -1, branch.y_max[-1] * (1 + 1e-5), Agreement.different),
         ("label", 2, Label.fold, Agreement.different),

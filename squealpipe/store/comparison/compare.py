@@ -11,10 +11,11 @@ from typing import Any
 import xarray as xr
 
 from squealpipe.config.yaml_files import flat
-from squealpipe.schema import schema_of
+from squealpipe.schema import DatasetSchema, Variable, meanings, schema_of
 from squealpipe.schema.claims import CLAIMS
+from squealpipe.store.comparison.curves import beside_the_curve
 from squealpipe.store.comparison.differences import Agreement, VariableDifference, judge
-from squealpipe.store.comparison.matching import align, judged_length
+from squealpipe.store.comparison.matching import Aligned, align, is_filler
 from squealpipe.store.comparison.statements import StatementChange, changed_statements
 from squealpipe.store.identity import VOLATILE_ATTRIBUTES
 from squealpipe.store.netcdf import load
@@ -32,12 +33,18 @@ PHYSICAL_KEY = re.compile(r"(parameters\.|alpha\d|mode\b|scene\b|vary\.|fixed\.)
 
 @dataclass(frozen=True, kw_only=True)
 class DatasetDifference:
-    """Comparison of one dataset; ``reason`` says why where it could not be compared."""
+    """Comparison of one dataset; ``reason`` says why where it could not be compared.
+
+    Attributes:
+        compared: values that both sides have, of ``values`` of the larger one.
+    """
 
     name: str
     verdict: Agreement
     variables: list[VariableDifference] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
+    compared: int = 0
+    values: int = 0
     reason: str = ""
 
     @property
@@ -167,34 +174,86 @@ def compare_datasets(name: str, a: xr.Dataset, b: xr.Dataset) -> DatasetDifferen
     kinds = (a.attrs["schema"], b.attrs["schema"])
     if kinds[0] != kinds[1]:
         return _refused(name, f"the schemas are {kinds[0]!r} and {kinds[1]!r}")
-    schema = schema_of(a)
-    variables = []
-    for dim, how in schema.lists.items():
-        first, second = (judged_length(each, dim, how) for each in (a, b))
-        if first != second:
-            variables.append(
-                _differs(f"number of {dim}", f"{first} entries against {second}")
-            )
+    schema, schema_of_b = schema_of(a), schema_of(b)
     try:
-        a, b, notes = align(a, b, schema)
+        aligned = align(a, b, schema)
     except ValueError as error:
         return _refused(name, str(error))
-    for variable in map(str, [*schema.coordinates, *schema.variables]):
-        entry, sides = (
-            schema.lookup(variable),
-            [variable in each.variables for each in (a, b)],
-        )
-        if entry is not None and all(sides):
-            variables.append(judge(variable, a, b, entry))
-        elif any(sides):
+    variables = _unmatched_entries(a, b, aligned, schema)
+    compared = values = 0
+    tables = (
+        *(schema.coordinates, schema_of_b.coordinates),
+        *(schema.variables, schema_of_b.variables),
+    )
+    for variable in dict.fromkeys(name for table in tables for name in table):
+        entry = schema.lookup(variable) or schema_of_b.lookup(variable)
+        sides = [variable in each.variables for each in (a, b)]
+        sizes = [each[variable].size for each in (a, b) if variable in each.variables]
+        if entry is None or not sizes:
+            continue
+        values += 0 if entry.volatile else max(sizes)
+        if all(sides):
+            found = _judged(variable, aligned, entry)
+            variables.append(found)
+            shared = aligned.a[variable].size
+            compared += 0 if entry.volatile or not found.compared else shared
+        else:
             variables.append(
                 _differs(variable, f"only in the {'first' if sides[0] else 'second'}")
             )
     judged = [entry.verdict for entry in variables if not entry.volatile]
-    verdict = max(judged, default=Agreement.equal)
     return DatasetDifference(
-        name=name, verdict=verdict, variables=variables, notes=notes
+        name=name,
+        verdict=max(judged, default=Agreement.equal),
+        variables=variables,
+        notes=aligned.notes,
+        compared=compared,
+        values=values,
     )
+
+
+def _judged(name: str, aligned: Aligned, entry: Variable) -> VariableDifference:
+    """One variable of both sides: its numbers, if these mean the same."""
+    pair = aligned.a[name], aligned.b[name]
+    if pair[0].dims != pair[1].dims:
+        return _differs(name, f"dimensions {pair[0].dims} against {pair[1].dims}")
+    for what, both in (
+        ("units", [each.attrs.get("units", "1") for each in pair]),
+        ("flags", [meanings(each) for each in pair]),
+        ("type", ["text" if each.dtype.kind in "UOS" else "number" for each in pair]),
+    ):
+        if both[0] != both[1]:
+            return _differs(name, f"{what} {both[0]} against {both[1]}")
+    return judge(name, aligned.a, aligned.b, entry)
+
+
+def _unmatched_entries(
+    a: xr.Dataset, b: xr.Dataset, aligned: Aligned, schema: DatasetSchema
+) -> list[VariableDifference]:
+    """What lists of results have on one side alone; fillers must lie on the other's curve."""
+    found = []
+    for dim, how in schema.lists.items():
+        if dim not in aligned.alone:
+            sizes = a.sizes.get(dim), b.sizes.get(dim)
+            if sizes[0] != sizes[1]:
+                reason = f"{sizes[0]} entries against {sizes[1]}"
+                found.append(_differs(f"number of {dim}", reason))
+            continue
+        alone, lengths, fillers = aligned.alone[dim], [], []
+        for each, places in zip((a, b), alone, strict=True):
+            fills = is_filler(each, how, dim)
+            lengths.append(each.sizes[dim] - int(fills.sum()))
+            fillers.append(places[fills[places]])
+        rest = [len(at) - len(fill) for at, fill in zip(alone, fillers, strict=True)]
+        if any(rest):
+            reason = (
+                f"{lengths[0]} entries against {lengths[1]}; "
+                f"{rest[0]} and {rest[1]} of these have no counterpart"
+            )
+            found.append(_differs(f"number of {dim}", reason))
+        if any(map(len, fillers)):
+            found += beside_the_curve(a, b, dim, how, schema, (fillers[0], fillers[1]))
+    return found
 
 
 def _differs(name: str, reason: str) -> VariableDifference:

@@ -116,7 +116,7 @@ def difference(
         }
     elif entry.round_off is not None and entry.round_off.compared is ComparedAs.sample:
         found = _sampled(a, b, entry.round_off)
-    elif _discrete(a.values, entry):
+    elif _discrete(a.values, b.values, entry):
         found = _flipped(a, b, entry)
     else:
         found = _continuous(a, b, entry)
@@ -125,7 +125,7 @@ def difference(
 
 def outside_tolerance(a: np.ndarray, b: np.ndarray, entry: Variable) -> np.ndarray:
     """Where two arrays differ by more than the schema allows; NaN equals NaN only."""
-    if _discrete(a, entry):
+    if _discrete(a, b, entry):
         return np.asarray(a != b)
     with np.errstate(invalid="ignore", over="ignore"):
         close = np.abs(a - b) <= entry.atol + entry.rtol * np.maximum(
@@ -140,8 +140,8 @@ def outside_tolerance(a: np.ndarray, b: np.ndarray, entry: Variable) -> np.ndarr
     return np.asarray(~(_same(a, b) | (close & np.isfinite(a) & np.isfinite(b))))
 
 
-def _discrete(values: np.ndarray, entry: Variable) -> bool:
-    return entry.flags is not None or values.dtype.kind not in "fc"
+def _discrete(a: np.ndarray, b: np.ndarray, entry: Variable) -> bool:
+    return entry.flags is not None or {a.dtype.kind, b.dtype.kind}.isdisjoint("fc")
 
 
 def _same(a: np.ndarray, b: np.ndarray) -> np.ndarray:
@@ -225,7 +225,9 @@ def _flipped(a: xr.DataArray, b: xr.DataArray, entry: Variable) -> dict[str, Any
 
 
 def _continuous(a: xr.DataArray, b: xr.DataArray, entry: Variable) -> dict[str, Any]:
-    left, right = a.values, b.values
+    left, right = (
+        np.asarray(side.values, np.result_type(side.dtype, float)) for side in (a, b)
+    )
     differing, same = outside_tolerance(left, right, entry), _same(left, right)
     found: dict[str, Any] = {
         "compared": left.size,

@@ -29,6 +29,14 @@ def lines(comparison: Comparison, *, every: bool = False) -> list[str]:
     parts = {
         "changed parameters": (6, _changes(comparison.parameters)),
         title: (5, [statement_line(change) for change in comparison.statements]),
+        "compared in part": (
+            4,
+            [
+                f"{item.name}: {note}"
+                for item in comparison.datasets
+                for note in item.notes
+            ],
+        ),
         "differences, worst first": (
             6,
             [line for item in worst for line in _dataset_lines(item, every=every)],
@@ -81,7 +89,7 @@ def _dataset_lines(item: DatasetDifference, *, every: bool) -> Iterator[str]:
 
 
 def verdict_line(comparison: Comparison) -> str:
-    """For instance ``different: 2 of 9 datasets (equal 6, within tolerance 1)``."""
+    """For instance ``different: 9 datasets (equal 8, different 1), 820 of 900 values compared``."""
     if comparison.reason:
         return f"not comparable: {comparison.reason}"
     counts = {
@@ -92,9 +100,12 @@ def verdict_line(comparison: Comparison) -> str:
         f"{words(verdict)} {count}" for verdict, count in counts.items() if count
     )
     total = len(comparison.datasets)
+    compared = sum(item.compared for item in comparison.datasets)
+    values = sum(item.values for item in comparison.datasets)
     skipped = f"; left out of the archive: {', '.join(comparison.skipped)}"
     line = (
-        f"{words(comparison.verdict)}: {total} dataset{'s' * (total != 1)} ({stated})"
+        f"{words(comparison.verdict)}: {total} dataset{'s' * (total != 1)} ({stated}), "
+        f"{compared:,} of {values:,} values compared"
     )
     return line + skipped if comparison.skipped else line
 

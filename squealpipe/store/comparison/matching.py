@@ -1,7 +1,8 @@
 """Two datasets brought onto what they share: grid points by value, entries of lists by meaning."""
 
+from dataclasses import dataclass
+
 import numpy as np
-import pandas as pd
 import xarray as xr
 
 from squealpipe.schema import DatasetSchema
@@ -14,15 +15,37 @@ ALIGNED = 1e-9
 """Grid points that differ by less, relative to the extent of the grid, are the same point."""
 
 
-def align(
-    a: xr.Dataset, b: xr.Dataset, schema: DatasetSchema | None = None
-) -> tuple[xr.Dataset, xr.Dataset, list[str]]:
-    """Both datasets on what they share, and notes on what was left out."""
-    notes = []
+@dataclass(frozen=True)
+class Aligned:
+    """Two datasets on what they share, with equal order of dimensions.
+
+    Attributes:
+        notes: what was left out.
+        alone: dimension that lists what was found → places of entries that no other one matches.
+    """
+
+    a: xr.Dataset
+    b: xr.Dataset
+    notes: list[str]
+    alone: dict[str, tuple[np.ndarray, np.ndarray]]
+
+
+def align(a: xr.Dataset, b: xr.Dataset, schema: DatasetSchema | None = None) -> Aligned:
+    """Both datasets on what they share: by the names of dimensions, and along these by values."""
+    notes, alone = [], {}
     lists = {} if schema is None else schema.lists
+    order = list(dict.fromkeys([*a.dims, *b.dims]))
+    a, b = (each.transpose(*order, missing_dims="ignore") for each in (a, b))
     for dim in sorted(map(str, set(a.dims) & set(b.dims))):
-        if dim in lists:
+        if dim in lists and all(
+            name in each.variables for name in lists[dim].kinds for each in (a, b)
+        ):
             at, note = match(a, b, dim, lists[dim])
+            if at:
+                alone[dim] = (
+                    np.setdiff1d(np.arange(a.sizes[dim]), at[0]),
+                    np.setdiff1d(np.arange(b.sizes[dim]), at[1]),
+                )
         elif all(each[dim].dims == (dim,) and dim in each.coords for each in (a, b)):
             at, note = on_shared_points(a[dim].values, b[dim].values, dim)
         elif dim in RAGGED and a.sizes[dim] != b.sizes[dim]:
@@ -45,7 +68,7 @@ def align(
         ):
             b = b.assign_coords({dim: a[dim].variable})
         notes += [note] if note else []
-    return a, b, notes
+    return Aligned(a, b, notes, alone)
 
 
 def match(
@@ -74,7 +97,8 @@ def match(
         pairs += [
             (int(places[0][i]), int(places[1][j]))
             for i, j in _nearest_of_each_other(left, right)
-            if not fills or abs(left[i] - right[j]) <= SAME_PLACE * abs(left[i])
+            if not fills
+            or abs(left[i] - right[j]) <= SAME_PLACE * max(abs(left[i]), abs(right[j]))
         ]
     at = np.array(sorted(pairs), int).reshape(-1, 2)
     by = how.position or ("kind and order" if how.kinds else "order")
@@ -82,21 +106,21 @@ def match(
     return [*at.T], note if max(sizes) > len(at) else ""
 
 
-def judged_length(dataset: xr.Dataset, dim: str, how: Listing) -> int | None:
-    """Number of entries whose number is a result; None without the dimension."""
-    if dim not in dataset.sizes or not how.fillers:
-        return dataset.sizes.get(dim)
-    return int((~dataset[how.kinds[0]].isin(how.fillers)).sum())
+def is_filler(dataset: xr.Dataset, how: Listing, dim: str) -> np.ndarray:
+    """Which entries of a list lie where a method's steps happened to end."""
+    if not how.fillers:
+        return np.zeros(dataset.sizes[dim], bool)
+    return np.isin(dataset[how.kinds[0]].values, how.fillers)
 
 
 def _positions(
     dataset: xr.Dataset, how: Listing, dim: str, places: np.ndarray
 ) -> np.ndarray:
-    if not how.position:
+    along = dataset.get(how.position) if how.position else None
+    if along is not None and along.dtype.kind in "OU":
+        along = dataset.get(str(along[0].item()))
+    if along is None:  # without the variable the n-th is matched with the n-th
         return np.arange(len(places), dtype=float)
-    along = dataset[how.position]
-    if along.dtype.kind in "OU":
-        along = dataset[str(along[0].item())]
     values = along.isel({dim: places}).values.astype(float)
     return np.where(np.isfinite(values), values, np.inf)
 
@@ -119,15 +143,7 @@ def on_shared_points(
     """Places of the points that two one-dimensional grids have in common, and a note."""
     if np.array_equal(left, right):
         return [], ""
-    if left.dtype.kind in "fiu" and right.dtype.kind in "fiu":
-        extent = max((np.ptp(side) for side in (left, right) if side.size), default=0.0)
-        left, right = left.astype(float), right.astype(float)
-        how = {"method": "nearest", "tolerance": ALIGNED * extent}
-    else:
-        how = {}
-    points, order = np.unique(right, return_index=True)  # a point may be there twice
-    nearest = pd.Index(points).get_indexer(left, **how)
-    at = [np.flatnonzero(nearest >= 0), order[nearest[nearest >= 0]]]
+    at = _pairs_of_points(left, right)
     shared, sizes = len(at[0]), (len(left), len(right))
     if shared < min(2, *sizes) or not shared:
         raise ValueError(
@@ -136,3 +152,26 @@ def on_shared_points(
         )
     note = f"{dim}: compared on {shared} shared points of {sizes[0]} and {sizes[1]}"
     return at, note if shared < max(sizes) else ""
+
+
+def _pairs_of_points(left: np.ndarray, right: np.ndarray) -> list[np.ndarray]:
+    """Places of equal points, each used once, in the order of the first grid."""
+    numbers = left.dtype.kind in "fiu" and right.dtype.kind in "fiu"
+    tolerance = 0.0
+    if numbers:
+        extent = max((np.ptp(side) for side in (left, right) if side.size), default=0.0)
+        tolerance = ALIGNED * float(extent)
+    else:
+        left, right = left.astype(str), right.astype(str)
+    orders = np.argsort(left, kind="stable"), np.argsort(right, kind="stable")
+    one, other, pairs = 0, 0, []
+    while one < len(left) and other < len(right):
+        x, y = left[orders[0][one]], right[orders[1][other]]
+        if x == y or (numbers and abs(float(x) - float(y)) <= tolerance):
+            pairs.append((orders[0][one], orders[1][other]))
+            one, other = one + 1, other + 1
+        elif x < y:
+            one += 1
+        else:
+            other += 1
+    return [*np.array(sorted(pairs), int).reshape(-1, 2).T]
