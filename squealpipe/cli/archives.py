@@ -18,7 +18,7 @@ SHOWN = 4
 
 
 def list_runs(*, json_: AsJson = False) -> int:
-    """List archives and folders of results: date, commit, size, whether intact, changed parameters.
+    """List archives and folders of results: date, commit, size, whether intact and finished, what differs.
 
     Example: `squealpipe list`
 
@@ -57,7 +57,7 @@ def list_runs(*, json_: AsJson = False) -> int:
             run.date[:16].replace("T", " "),
             run.commit[:20] or "–",
             f"{run.size / 1e6:.1f}",
-            "damaged" if run.faults else "intact",
+            "damaged" if run.faults else "intact" if run.finished else "unfinished",
             _changes(run.changed(paper)),
         )
         for run in found

@@ -23,7 +23,7 @@ def plot(
     Example: `squealpipe plot run.nc -o run.png`
 
     Args:
-        file: dataset that a command or `squealpipe.save` wrote.
+        file: dataset that a command or `squealpipe.save` wrote, or another program's .nc or .csv.
         output: picture to write (png, svg or pdf); by default FILE.png, here.
         variable: draw this variable instead of the usual picture.
     """
@@ -32,9 +32,9 @@ def plot(
 
     from squealpipe.plotting import picture
     from squealpipe.plotting.style import save_figure
-    from squealpipe.store import load
+    from squealpipe.store.foreign import load_any
 
-    save_figure(picture(load(file), variable), [target])
+    save_figure(picture(load_any(file), variable), [target])
     say(f"wrote {target}")
     return DONE
 
@@ -51,13 +51,13 @@ def convert(
     Example: `squealpipe convert run.nc -o run.mat`
 
     Args:
-        file: dataset that a command or `squealpipe.save` wrote.
+        file: dataset that a command or `squealpipe.save` wrote, or another program's .nc or .csv.
         output: file that ends in .csv, .mat, .xlsx or .parquet.
     """
     check_output(output, force=force, kinds=TABLES)
 
-    from squealpipe.store import load
+    from squealpipe.store.foreign import load_any
     from squealpipe.store.tables import convert as task
 
-    say(f"wrote {' and '.join(map(str, task(load(file), output)))}")
+    say(f"wrote {' and '.join(map(str, task(load_any(file), output)))}")
     return DONE

@@ -107,12 +107,26 @@ def _draw(axes: Axes, dataset: xr.Dataset, variable: str | None) -> None:
         if "motion_changed" in dataset and quantity.ndim == 2:
             mark_changed(axes, dataset)
         return
+    if variable is None and "schema" not in dataset.attrs:
+        variable = _first_drawable(dataset)
     if variable not in dataset:
         known = ", ".join(sorted([*DRAWN, *SHOWN]))
         raise ValueError(
-            f"{schema} has no picture of its own (there are those of {known}); name a variable "
+            f"{dataset.attrs.get('schema', 'the file')} has no picture of its own (there are those of {known}); name a variable "
             f"of it: {', '.join(map(str, dataset.data_vars))}"
             if variable is None
             else f"variable = {variable!r}: {schema} has {', '.join(map(str, dataset.data_vars))}"
         )
     draw_quantity(axes, dataset[variable])
+
+
+def _first_drawable(dataset: xr.Dataset) -> str | None:
+    """Of another program's file, the first variable of numbers over one or two dimensions."""
+    return next(
+        (
+            str(name)
+            for name, variable in dataset.data_vars.items()
+            if variable.ndim in (1, 2) and variable.dtype.kind in "biuf"
+        ),
+        None,
+    )

@@ -30,6 +30,7 @@ class Run:
         commit: of the code that froze or made it; empty if not stated.
         config: dotted key → value of what made it.
         faults: what is wrong with it, file by file; none: it is intact.
+        finished: whether the last of its results, the report, is there.
     """
 
     name: str
@@ -38,6 +39,7 @@ class Run:
     size: int
     config: dict[str, Any] = field(default_factory=dict)
     faults: list[str] = field(default_factory=list)
+    finished: bool = True
 
     def changed(self, paper: dict[str, Any]) -> dict[str, Any]:
         """Configuration keys whose values are not the paper's."""
@@ -142,4 +144,5 @@ def _results(place: Path, base: Path) -> Run:
         size=sum(path.stat().st_size for path in files.values() if path.is_file()),
         config=config,
         faults=faults,
+        finished=(place / "report/index.html").is_file(),
     )

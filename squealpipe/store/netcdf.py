@@ -154,7 +154,8 @@ def verified(path: str | os.PathLike[str]) -> Path:
     if not mark or stated != hashlib.sha256(content).hexdigest().encode() + b"\n":
         raise StoreError(
             f"{source} was changed or damaged since squealpipe wrote it, or another program wrote "
-            "it; delete it and run snakemake again"
+            "it; if a study made it, delete it and run snakemake again; a file of another program "
+            "can be drawn (squealpipe plot) and converted (squealpipe convert)"
         )
     return source
 

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from squealpipe.store.checkout import ROOT as CHECKOUT
 from squealpipe.store.whole_files import ARCHIVES, MANIFEST, SEAL, StoreError, checksum
 
 NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,79}")
@@ -71,19 +72,32 @@ def archive_folder(name: str, root: str | os.PathLike[str] = ".") -> Path:
 
 
 def locate(what: str | os.PathLike[str], root: str | os.PathLike[str] = ".") -> Path:
-    """The folder or file that is meant: a path that exists, or the name of an archive."""
+    """The folder or file that is meant: a path that exists, or the name of an archive.
+
+    Archives are those of ``root`` and those that came with the checkout of this package.
+    """
     path = Path(what)
     if path.exists():
         return path
     if NAME.fullmatch(str(what)):
-        archive = archive_folder(str(what), root)
-        if archive.is_dir():
-            return archive
-    folder = Path(root) / ARCHIVES
-    known = sorted(item.name for item in folder.glob("[!.]*") if item.is_dir())
+        for place in (root, CHECKOUT):
+            archive = archive_folder(str(what), place)
+            if archive.is_dir():
+                return archive
+    folders = [Path(place) / ARCHIVES for place in (root, CHECKOUT)]
+    known = sorted({
+        item.name
+        for folder in folders
+        for item in folder.glob("[!.]*")
+        if item.is_dir()
+    })  # fmt: skip
     raise FileNotFoundError(
         f"no archive, folder or file {str(what)!r}; "
-        + (f"archives: {', '.join(known)}" if known else "there are no archives yet")
+        + (
+            f"archives: {', '.join(known)}"
+            if known
+            else "there are no archives yet; reference comes with the repository of squealpipe"
+        )
     )
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from importlib.util import find_spec
 from pathlib import Path
 
@@ -10,6 +11,7 @@ import pandas as pd
 import xarray as xr
 
 from squealpipe.schema import meanings
+from squealpipe.store.matlab import write_matlab
 from squealpipe.store.whole_files import whole_file
 from squealpipe.validation import AnyPath, checked
 
@@ -17,6 +19,7 @@ NEEDS = {".csv": None, ".mat": None, ".xlsx": "openpyxl", ".parquet": "pyarrow"}
 """Form → the library of the extra ``export`` that writes it."""
 RECORDED = ("title", "config", "parameters", "system", "package_version", "commit")
 """Attributes of a dataset that go with its tables."""
+CONTROL = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f]")
 
 
 @checked
@@ -27,10 +30,11 @@ def convert(dataset: xr.Dataset, path: AnyPath) -> list[Path]:
     words. Variables over other dimensions go to further sheets or to files beside the first
     (``run.event.csv``). Units are in the header: in lines that begin with ``#`` of CSV, else with
     the names (``x [m]``). A MATLAB file holds the arrays as they are, flags as numbers, and the
-    structures ``units``, ``meanings`` and ``attributes``.
+    structures ``units``, ``meanings`` and ``attributes``; a name that MATLAB does not take is
+    changed (``_x`` to ``x_``, ``θ`` to ``u3b8``), and ``names`` has the original ones.
 
     Args:
-        dataset: any dataset of this package.
+        dataset: any dataset.
         path: file to write.
 
     Returns:
@@ -48,11 +52,14 @@ def convert(dataset: xr.Dataset, path: AnyPath) -> list[Path]:
             f"{target} needs {needed}; pip install 'squealpipe[export]', or {needed}"
         )
     if target.suffix == ".mat":
-        return _write_matlab(dataset, target)
+        with whole_file(target) as temporary:
+            write_matlab(dataset, _about(dataset), temporary)
+        return [target]
     if target.suffix == ".xlsx":
         return _write_sheets(dataset, target)
     files = []
-    for place, (dims, frame) in enumerate(_tables(dataset).items()):
+    tables = _tables(dataset) or {(): _table_of_numbers(dataset)}
+    for place, (dims, frame) in enumerate(tables.items()):
         files.append(
             target.with_suffix(f".{'_'.join(dims)}{target.suffix}") if place else target
         )
@@ -89,7 +96,7 @@ def _write_csv(
 ) -> None:
     columns = ", ".join(_header(dataset, name) for name in frame.columns)
     about = _about(dataset)
-    head = [f"# {about.pop('title')}", f"# columns: {columns}"]
+    head = [f"# {about.pop('title', path.stem)}", f"# columns: {columns}"]
     if with_numbers:
         head += [f"# {name} = {value}" for name, value in _numbers(dataset).items()]
     head += [f"# {key}: {' '.join(text.split())}" for key, text in about.items()]
@@ -105,42 +112,48 @@ def _write_sheets(dataset: xr.Dataset, path: Path) -> list[Path]:
         whole_file(path) as temporary,
         pd.ExcelWriter(temporary, engine="openpyxl") as book,
     ):
+        sheets: set[str] = set()
         for dims, frame in tables.items():
-            frame.rename(columns=lambda name: _header(dataset, name)).to_excel(
-                book, sheet_name="_".join(dims)[:31], index=False
-            )
-        pd.Series(about, name="value").to_excel(
+            sheet = _sheet_name("_".join(dims), sheets | {"about"})
+            sheets.add(sheet)
+            _plain_text(
+                frame.rename(columns=lambda name: _header(dataset, name))
+            ).to_excel(book, sheet_name=sheet, index=False)
+        _plain_text(pd.Series(about, name="value").to_frame()).to_excel(
             book, sheet_name="about", index_label="name"
         )
+        for sheet in book.book.worksheets:
+            for row in sheet.iter_rows():
+                for cell in row:
+                    if cell.data_type == "f":  # a text that begins with =, no formula
+                        cell.data_type = "s"
     return [path]
 
 
-def _write_matlab(dataset: xr.Dataset, path: Path) -> list[Path]:
-    from scipy.io import savemat
+def _plain_text(frame: pd.DataFrame) -> pd.DataFrame:
+    """The table without control characters in its texts, which no sheet takes."""
+    return frame.map(
+        lambda value: CONTROL.sub("?", value) if isinstance(value, str) else value
+    ).rename(columns=lambda name: CONTROL.sub("?", str(name)))
 
-    variables = {str(name): variable for name, variable in dataset.variables.items()}
-    content: dict[str, object] = {
-        name: variable.values.astype(object)
-        if variable.dtype.kind in "UO"
-        else variable.values
-        for name, variable in variables.items()
-    }
-    content["units"] = {
-        name: given.attrs["units"]
-        for name, given in variables.items()
-        if "units" in given.attrs
-    }
-    content["meanings"] = {
-        name: ", ".join(f"{value}: {words}" for value, words in table.items())
-        for name in variables
-        if (table := meanings(dataset[name]))
-    }
-    content["attributes"] = _about(dataset)
-    with whole_file(path) as temporary:
-        savemat(
-            temporary, content, appendmat=False, long_field_names=True, oned_as="column"
-        )
-    return [path]
+
+def _sheet_name(name: str, taken: set[str]) -> str:
+    """A name that Excel takes, and that no other sheet has: it compares without case."""
+    short = re.sub(r"[\[\]:*?/\\]", "_", name)[:31].strip("'") or "sheet"
+    number, free = 1, short
+    while free.lower() in {other.lower() for other in taken}:
+        number += 1
+        free = f"{short[: 30 - len(str(number))]}_{number}"
+    return free
+
+
+def _table_of_numbers(dataset: xr.Dataset) -> pd.DataFrame:
+    """The table of a dataset that has single numbers alone: one row."""
+    return pd.DataFrame({
+        str(name): [_words(variable).item()]
+        for name, variable in dataset.data_vars.items()
+        if not variable.ndim
+    })  # fmt: skip
 
 
 def _numbers(dataset: xr.Dataset) -> dict[str, str]:

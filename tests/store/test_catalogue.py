@@ -8,6 +8,7 @@ import pytest
 from squealpipe.cli import run as command
 from squealpipe.store import load, save
 from squealpipe.store.archive import archive
+from squealpipe.store.runs import locate
 
 
 @pytest.fixture
@@ -70,6 +71,23 @@ def test_list_tells_what_differs(memory, capsys):
         "parameters.mu": 0.25,
         "linear.points": 13,
     }
+
+
+def test_a_run_that_did_not_reach_its_report_is_unfinished(memory, capsys):
+    rows = {line.split()[0]: line for line in told(capsys, "list")[1]}
+    assert "unfinished" in rows["results"]
+    assert "intact" in rows["first"]
+    (memory / "results/report").mkdir()
+    (memory / "results/report/index.html").write_text("")
+    assert "intact" in told(capsys, "list")[1][-1]
+
+
+def test_archives_of_the_checkout_are_known_everywhere(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert locate("reference").is_absolute()
+    assert (locate("reference") / "manifest.json").is_file()
+    with pytest.raises(FileNotFoundError, match=r"archives: .*reference"):
+        locate("referense")
 
 
 def test_unknown_names_get_the_nearest_one(memory, capsys):

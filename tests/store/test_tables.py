@@ -1,8 +1,12 @@
 """Datasets for other programs, read back by the libraries that read them elsewhere."""
 
+import re
+from pathlib import Path
+
 import numpy as np
 import pandas as pd
 import pytest
+import xarray as xr
 from scipy.io import loadmat
 
 from squealpipe import convert, save, simulate
@@ -43,6 +47,94 @@ def test_tables_have_units_in_their_header_and_flags_in_words(
         assert "config" in table.attrs or "parameters" in table.attrs
     np.testing.assert_allclose(table["vx [m s-1]"], motion.vx, rtol=1e-15)
     assert events["event_kind"][0] == "separation"
+
+
+def odd():
+    """A system of a user's own, whose names are no MATLAB's or Excel's."""
+    names = [
+        "_x",
+        "x_",
+        "θ",
+        "a" * 70,
+        "a" * 71,
+        "units",
+        "meanings",
+        "attributes",
+        "end",
+        "1a",
+    ]
+    variables = {name: ("t", [number, 2.0]) for number, name in enumerate(names)}
+    return xr.Dataset(
+        variables | {"kind": ("t", ["=1+1", "a\x01b"])},
+        attrs={"title": '=HYPERLINK("http://x")', "system": "=1+1"},
+    )
+
+
+def test_matlab_gets_every_array_under_a_name_of_its_own(tmp_path):
+    convert(odd(), tmp_path / "odd.mat")
+    found = loadmat(tmp_path / "odd.mat", squeeze_me=True, simplify_cells=True)
+    short = {name: key for key, name in found["names"].items()}
+    for number, name in enumerate(map(str, odd().data_vars)):
+        assert re.fullmatch("[A-Za-z][A-Za-z0-9_]{0,62}", short[name])
+        if name != "kind":
+            assert found[short[name]].tolist() == [number, 2.0]
+    assert short["x_"] == "x_"
+    assert found["attributes"]["system"] == "=1+1"
+
+
+def test_texts_are_no_formulas_in_excel(tmp_path):
+    openpyxl = pytest.importorskip(
+        "openpyxl", reason="the extra export is not installed"
+    )
+    convert(odd(), tmp_path / "odd.xlsx")
+    book = openpyxl.load_workbook(tmp_path / "odd.xlsx")
+    cells = [cell for sheet in book for row in sheet.iter_rows() for cell in row]
+    assert {cell.data_type for cell in cells} <= {"s", "n"}
+    assert {"=1+1", "a?b", '=HYPERLINK("http://x")'} <= {cell.value for cell in cells}
+
+
+def test_sheets_with_long_names_do_not_take_each_others_place(tmp_path):
+    pytest.importorskip("openpyxl", reason="the extra export is not installed")
+    dims = ["a" * 40 + end for end in "xy"] + ["about", "b/c"]
+    dataset = xr.Dataset({f"v{i}": (dim, [float(i)]) for i, dim in enumerate(dims)})
+    convert(dataset, tmp_path / "long.xlsx")
+    sheets = pd.read_excel(tmp_path / "long.xlsx", sheet_name=None)
+    assert len(sheets) == 5
+    assert sorted(sheet.iloc[0, -1] for name, sheet in sheets.items() if name != "about") == [
+        0.0, 1.0, 2.0, 3.0,
+    ]  # fmt: skip
+
+
+@pytest.mark.parametrize("ending", ["csv", "xlsx", "mat", "parquet"])
+def test_single_numbers_alone_are_a_table_too(tmp_path, ending):
+    dataset = xr.Dataset({"force": ((), 3.5, {"units": "N"})})
+    if ending != "mat":
+        pytest.importorskip("openpyxl", reason="the extra export is not installed")
+    (file,) = convert(dataset, tmp_path / f"one.{ending}")
+    if ending == "csv":
+        assert pd.read_csv(file, comment="#").force.item() == 3.5
+    assert file.is_file()
+
+
+def test_files_of_other_programs_are_drawn_and_converted(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    xr.Dataset({"note": ("t", ["a", "b", "c"]), "x": ("t", [1.0, 2, 4])}).to_netcdf(
+        "mine.nc"
+    )
+    Path("mine.csv").write_text(
+        "# of an oscilloscope\ntime, volt\n0, 1\n0.5, 2\n1, 4\n"
+    )
+    Path("odd.nc").write_text("no NetCDF")
+    for file, values in (("mine.nc", "x"), ("mine.csv", "volt")):
+        assert command(["plot", file, "-o", f"{file}.png"]) == 0
+        assert command(["convert", file, "-o", f"{file}.mat"]) == 0
+        assert loadmat(f"{file}.mat", squeeze_me=True)[values].tolist() == [1, 2, 4]
+    assert command(["plot", "mine.csv", "--variable", "w", "-o", "w.png"]) == 2
+    assert command(["plot", "odd.nc"]) == 2
+    assert command(["convert", "odd.nc", "-o", "odd.csv"]) == 2
+    told = capsys.readouterr().err
+    assert "delete" not in told
+    assert told.count("odd.nc cannot be read as NetCDF") == 2
 
 
 def test_a_missing_library_is_named(motion, tmp_path, monkeypatch):

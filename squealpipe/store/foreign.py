@@ -1,0 +1,67 @@
+"""Files of other programs: NetCDF and CSV that are drawn and converted as far as they can be."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import pandas as pd
+import xarray as xr
+
+from squealpipe.store.netcdf import DAMAGED, MARK, load
+from squealpipe.store.whole_files import StoreError
+
+
+def load_any(path: str | os.PathLike[str]) -> xr.Dataset:
+    """A dataset of this package, checked, or the content of another program's NetCDF or CSV file.
+
+    Raises:
+        FileNotFoundError: no such file.
+        StoreError: it was damaged, or is neither.
+    """
+    source = Path(path)
+    if not source.is_file():
+        raise FileNotFoundError(f"no file {source}; check the path")
+    if source.suffix == ".csv":
+        return _table(source)
+    if MARK in source.read_bytes()[-200:]:
+        return load(source)
+    try:
+        with xr.open_dataset(source, engine="netcdf4", decode_times=False) as opened:
+            foreign = "dataset_id" not in opened.attrs
+            dataset = opened.load() if foreign else opened
+    except DAMAGED as error:
+        raise StoreError(
+            f"{source} cannot be read as NetCDF ({error}); a file that ends in .nc must be NetCDF, "
+            "one that ends in .csv a table of texts"
+        ) from error
+    if not foreign:  # ours, but without its last line
+        return load(source)
+    for variable in dataset.variables.values():
+        if variable.dtype == object:
+            variable.values = variable.values.astype(str)
+    return dataset
+
+
+def _table(path: Path) -> xr.Dataset:
+    """The columns of a table over its first one, or over its rows where that repeats values."""
+    try:
+        frame = pd.read_csv(path, comment="#", skipinitialspace=True)
+    except ValueError as error:  # as which pandas reports what is no table
+        raise StoreError(
+            f"{path} is no table of columns with a name in the first line ({error})"
+        ) from error
+    if frame.empty:
+        raise StoreError(f"{path} has no rows below its names")
+    frame.columns = [str(name).strip() for name in frame.columns]
+    first = frame.columns[0]
+    along = frame[first]
+    if len(frame.columns) > 1 and along.is_unique and along.dtype.kind in "fiu":
+        frame = frame.set_index(first)
+    else:
+        frame.index.name = "row"
+    dataset = xr.Dataset.from_dataframe(frame)
+    for variable in dataset.variables.values():
+        if variable.dtype == object:
+            variable.values = variable.values.astype(str)
+    return dataset
