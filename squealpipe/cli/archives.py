@@ -18,7 +18,7 @@ SHOWN = 4
 
 
 def list_runs(*, json_: AsJson = False) -> int:
-    """List archives and folders of results: date, commit, size, whether intact and finished, what differs.
+    """List archives and folders of results: date, commit, size, state, changed parameters.
 
     Example: `squealpipe list`
 

@@ -98,7 +98,7 @@ def picture(dataset: xr.Dataset, variable: str | None = None) -> Figure:
 
 
 def _draw(axes: Axes, dataset: xr.Dataset, variable: str | None) -> None:
-    schema = str(dataset.attrs.get("schema"))
+    schema = str(dataset.attrs.get("schema", "the file"))
     if variable is None and schema in DRAWN:
         DRAWN[schema](axes, dataset)
         return
@@ -112,7 +112,7 @@ def _draw(axes: Axes, dataset: xr.Dataset, variable: str | None) -> None:
     if variable not in dataset:
         known = ", ".join(sorted([*DRAWN, *SHOWN]))
         raise ValueError(
-            f"{dataset.attrs.get('schema', 'the file')} has no picture of its own (there are those of {known}); name a variable "
+            f"{schema} has no picture of its own (there are those of {known}); name a variable "
             f"of it: {', '.join(map(str, dataset.data_vars))}"
             if variable is None
             else f"variable = {variable!r}: {schema} has {', '.join(map(str, dataset.data_vars))}"
