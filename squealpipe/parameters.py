@@ -6,12 +6,11 @@ import reprlib
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, replace
 from numbers import Integral, Real
-from types import SimpleNamespace
 from typing import Any, Literal, Self
 
 from squealpipe.laws import contact_laws, friction_laws
 from squealpipe.laws.contact_laws import LINEAR
-from squealpipe.laws.friction_laws import COULOMB, LAWS, coefficient
+from squealpipe.laws.friction_laws import COULOMB, LAWS, coefficient, static_coefficient
 from squealpipe.laws.tables import is_table, knots_of, named
 from squealpipe.laws.tables import stood_for as stood_for_by_law
 from squealpipe.substitutes import (
@@ -289,12 +288,7 @@ class Parameters:
 
         Of a table, or a law of the user's own, the coefficient at speed 0.
         """
-        if self.mu_static is not None:
-            return self.mu_static
-        if self.friction_law in LAWS:
-            return self.mu
-        numbers = {name: getattr(self, name) for name in TABLE}
-        return float(coefficient(0.0, SimpleNamespace(**numbers, static_mu=self.mu)))
+        return float(static_coefficient(self))
 
     @property
     def drag(self) -> float:

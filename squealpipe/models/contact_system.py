@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from squealpipe.laws import springs
-from squealpipe.laws.friction_laws import coefficient
+from squealpipe.laws.friction_laws import coefficient, static_coefficient
 from squealpipe.models.a2 import FEW_ULPS
 from squealpipe.models.a4 import Spectrum, spectrum
 from squealpipe.parameters import direction_of
@@ -16,7 +16,7 @@ from squealpipe.parameters import direction_of
 def with_drag(fields: Mapping[str, Any]) -> SimpleNamespace:
     """Parameters, each of which may be an array, with μs and the drag that follow from them."""
     p = SimpleNamespace(**fields)
-    p.static_mu = p.mu if p.mu_static is None else p.mu_static
+    p.static_mu = static_coefficient(p)
     p.drag = direction_of(p.belt_speed) * coefficient(np.abs(p.belt_speed), p)
     return p
 

@@ -26,8 +26,10 @@ from squealpipe.models.contact_system import contact_system
 
 POLISHES = 3
 """Newton steps in long double that take double eigenvalues to its round-off."""
-MARGINAL = 1e-16
-"""Growth below this share of |s| is the round-off of a mode that is not damped."""
+MARGINAL = 1e3
+"""Growth below this share of |s|, in units of round-off, is that of a mode that is not damped."""
+CLEAR = 1e-10
+"""Routh–Hurwitz numbers above which the sign of none of them is that of round-off."""
 
 _EQUAL = 1e-12
 """Relative difference within which two critical frictions are one."""
@@ -50,10 +52,10 @@ class DampedSystem(NamedTuple):
     damping_determinant: Any
 
 
-def is_undamped(p: Any) -> bool:
-    """Whether C = 0, so that the closed form of A3 holds."""
-    dashpots = (p.damping1, p.damping2, p.damping3)
-    return not any(dashpots) and bool(slope(abs(p.belt_speed), p) == 0)
+def is_undamped(p: Any) -> Any:
+    """Whether C = 0, so that the closed form of A3 holds: of numbers, or of each of an array."""
+    dashpots = (p.damping1 == 0) & (p.damping2 == 0) & (p.damping3 == 0)
+    return dashpots & (slope(np.abs(p.belt_speed), p) == 0)
 
 
 def damped_system(
@@ -63,46 +65,52 @@ def damped_system(
     depends on speed and there is no static contact force N0.
 
     Args:
+        p: parameters, each of which may be an array that broadcasts against the angles.
         sigma: regularizing factor of the contact law, 1/m; None means the sharp law.
     """
-    kind = np.result_type(alpha1, alpha2)
-    k3 = kind.type(a2.contact_stiffness(p, sigma))
+    precision = np.result_type(alpha1, alpha2)
+    k3, c3, mass, gradient = (
+        np.asarray(value, precision)
+        for value in (
+            a2.contact_stiffness(p, sigma),
+            p.damping3,
+            p.mass,
+            slope(np.abs(p.belt_speed), p),
+        )
+    )
     system = contact_system(p, alpha1, alpha2, k3=k3)
-    k11, k12, k21, k22 = contact_matrix(system.stiffness, k3, p.drag)
-    damping, c3 = linear_damping(p, geometry(alpha1, alpha2)), kind.type(p.damping3)
+    stiffness = system.stiffness
+    k11, k12, k21, k22 = contact_matrix(stiffness, k3, p.drag)
+    damping = linear_damping(p, geometry(alpha1, alpha2))
     c11, c12, c21, c22 = contact_matrix(damping, c3, p.drag)
     sine = sine_of_sum(alpha1, alpha2)
-    damping_determinant = pair_determinant(p.damping1, p.damping2, sine)
-    damping_determinant = damping_determinant + c3 * (
-        damping.k11 - p.drag * damping.k12
-    )
-    gradient = slope(abs(p.belt_speed), p)
-    if gradient != 0:
+    damping_determinant = pair_determinant(
+        p.damping1, p.damping2, sine
+    ) + c3 * contact_part(damping, p.drag)
+    if (gradient != 0).any():
         force = a3.static_state(
-            system.stiffness,
+            stiffness,
             system.spring_determinant,
             k3=k3,
             mu=p.drag,
             actuation=a2.actuation(p, sigma),
         )[2]
         falling = np.where(np.isfinite(force), force, np.nan) * gradient
+        falling = np.where(gradient == 0, 0.0, falling)
         c11, damping_determinant = c11 + falling, damping_determinant + falling * c22
-    stiffness = system.stiffness
-    determinant = system.spring_determinant + k3 * (
-        stiffness.k11 - p.drag * stiffness.k12
-    )
-    mass = kind.type(p.mass)
+    determinant = system.spring_determinant + k3 * contact_part(stiffness, p.drag)
     determinants = (determinant / mass, damping_determinant / mass)
     entries = np.broadcast_arrays(c11, c12, c21, c22, k11, k12, k21, k22, *determinants)
     return DampedSystem._make(entry / mass for entry in entries)
 
 
-def eigenvalues(s: DampedSystem) -> np.ndarray:
-    """The four s of each cell, complex, 1/s, in a new last axis; imaginary parts descend.
+def contact_part(pair: Stiffness, mu: Any) -> Any:
+    """K11 − μ K12: by how much the determinant grows with the contact's share."""
+    return pair.k11 - mu * pair.k12
 
-    From the double companion matrix, polished on the polynomial in the system's precision, which
-    long double carries through coalescing pairs.
-    """
+
+def polynomial(s: DampedSystem) -> tuple[Any, list[Any]]:
+    """A unit of s, 1/s, and p1 to p4 in its powers."""
     p = (
         s.c11 + s.c22,
         s.k11 + s.k22 + s.damping_determinant,
@@ -110,13 +118,29 @@ def eigenvalues(s: DampedSystem) -> np.ndarray:
         s.determinant,
     )
     unit = np.sqrt(np.abs(s.k11) + np.abs(s.k22))
-    scaled = [np.asarray(c / unit**n) for n, c in enumerate(p, 1)]
+    return unit, [np.asarray(c / unit**n) for n, c in enumerate(p, 1)]
+
+
+def hurwitz(p: list[Any]) -> Any:
+    """p1 p2 p3 − p3² − p1² p4: 0 where a pair of eigenvalues is ±iω, or two are opposite."""
+    p1, p2, p3, p4 = p
+    return p1 * p2 * p3 - p3 * p3 - p1 * p1 * p4
+
+
+def eigenvalues(s: DampedSystem) -> np.ndarray:
+    """The four s of each cell, complex, 1/s, in a new last axis; imaginary parts descend.
+
+    From the double companion matrix, polished on the polynomial in the system's precision.
+    Long double carries the digits of a double through coalescing pairs; double is faster.
+    """
+    unit, scaled = polynomial(s)
     known = np.all([np.isfinite(c) for c in scaled], axis=0)
     clean = [np.where(known, c, 0.0) for c in scaled]
     matrix = np.zeros((*known.shape, 4, 4))
     matrix[..., 0, :] = -np.stack(clean, axis=-1).astype(float)
     matrix[..., [1, 2, 3], [0, 1, 2]] = 1.0
-    roots = np.linalg.eigvals(matrix).astype(np.clongdouble)
+    precision = np.result_type(*clean, np.complex64)
+    roots = np.linalg.eigvals(matrix).astype(precision)
     p1, p2, p3, p4 = (c[..., None] for c in clean)
     for _ in range(POLISHES):
         value = (((roots + p1) * roots + p2) * roots + p3) * roots + p4
@@ -142,8 +166,9 @@ def stability(s: DampedSystem) -> Stability:
     leading = np.take_along_axis(
         found, np.argmax(found.real, axis=-1)[..., None], axis=-1
     )[..., 0]
-    unstable = leading.real > MARGINAL * np.abs(found).max(axis=-1)
-    oscillates = np.abs(leading.imag) > np.sqrt(MARGINAL) * np.abs(leading)
+    marginal = MARGINAL * np.finfo(found.real.dtype).eps
+    unstable = leading.real > marginal * np.abs(found).max(axis=-1)
+    oscillates = np.abs(leading.imag) > np.sqrt(marginal) * np.abs(leading)
     return Stability(
         leading.real.astype(float),
         np.maximum(found.imag[..., 1::-1], 0.0).astype(float),
@@ -153,6 +178,21 @@ def stability(s: DampedSystem) -> Stability:
             LinearRegime.stable,
         ),
     )
+
+
+def regime(s: DampedSystem) -> np.ndarray:
+    """:class:`LinearRegime` of each cell, that of :func:`stability`; NaN counts as stable.
+
+    Eigenvalues are found where Routh–Hurwitz does not clearly decide.
+    """
+    _, p = polynomial(s)
+    decided = hurwitz(p) > CLEAR
+    for coefficient in p:
+        decided &= coefficient > CLEAR
+    left = DampedSystem._make(entry[~decided] for entry in s)
+    found = np.full(decided.shape, LinearRegime.stable)
+    found[~decided] = stability(left).regime
+    return found
 
 
 def critical_friction(

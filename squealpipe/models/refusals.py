@@ -1,8 +1,14 @@
 """Levels that carry the paper's laws alone: Coulomb's with one coefficient, a linear contact, no
-dashpots.
+dashpots; and parameters that a law does not read.
 """
 
-from squealpipe.laws.friction_laws import COULOMB, LAWS
+from collections.abc import Collection
+from types import SimpleNamespace
+
+import numpy as np
+
+from squealpipe.laws.friction_laws import COULOMB, FALLING, LAWS, coefficient
+from squealpipe.laws.tables import is_table
 from squealpipe.parameters import DEFAULTS, TABLE, Parameters, brief
 
 WHY_A4 = (
@@ -57,3 +63,39 @@ def refuse_scales(params: Parameters) -> None:
                 f"{name} = {getattr(params, name)!r} with mass = {mass!r}: over the mass it is "
                 f"{value / mass:.3g}, whose powers a number cannot hold; use other units"
             )
+
+
+def refuse_unread(params: Parameters, varied: Collection[str]) -> None:
+    """Stop a range of a parameter that no equation reads, or in whose place a law's file stands."""
+    for name in varied:
+        if why := _why_unread(params, "k3" if name == "kappa" else name, varied):
+            raise ValueError(
+                f"{name} cannot vary: {why}; leave it out, or give another law"
+            )
+
+
+def _why_unread(params: Parameters, name: str, varied: Collection[str]) -> str:
+    law, contact = params.friction_law, params.contact_law
+    if name in params.in_laws:
+        return "the file of a law stands for it"
+    if name == "preload" and is_table(contact):
+        return "a table of contact is read at one preload"
+    if name == "damping3" and contact != "dashpot":
+        return f"contact_law = {brief(contact)} does not read it"
+    if name == "friction_speed" and law in LAWS:
+        # from a static coefficient that is that of sliding nothing falls
+        static = params.mu_static
+        falls = "mu_static" in varied or (
+            static is not None and ("mu" in varied or static != params.mu)
+        )
+        if name not in LAWS[law].PARAMETERS or (law in FALLING and not falls):
+            return f"friction_law = {law!r} does not read it" + (
+                " without mu_static" * (law in FALLING)
+            )
+    if name == "mu" and law not in LAWS:
+        unknown = SimpleNamespace(**params.as_dict() | {"mu": np.nan})
+        unknown.friction_law, unknown.friction_speed = law, params.friction_speed
+        speeds = np.linspace(0.0, 2.0, 9) * max(abs(params.belt_speed), 1.0)
+        if np.isfinite([coefficient(speed, unknown) for speed in speeds]).all():
+            return "the law in Python does not read it"
+    return ""

@@ -123,3 +123,15 @@ def coefficient(speed: Any, p: Any) -> Any:
 def slope(speed: Any, p: Any) -> Any:
     """dμ/dw at a sliding speed w ≥ 0, s/m."""
     return cast("FrictionLaw", law_of(p.friction_law)).slope(speed, p)
+
+
+def static_coefficient(p: Any) -> Any:
+    """μs, which limits stick: ``p.mu_static``, where that is None the law's at speed 0.
+
+    A formula that falls to μ from a static coefficient that is none of its own is μ throughout.
+    """
+    if p.mu_static is not None:
+        return p.mu_static
+    if isinstance(p.friction_law, str) and p.friction_law in LAWS:
+        return p.mu
+    return coefficient(0.0, p)

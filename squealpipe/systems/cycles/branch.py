@@ -8,7 +8,7 @@ smooth piece where the first margin is zero, and the branch goes on with other e
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import TYPE_CHECKING, Any
@@ -495,11 +495,11 @@ def started(system: System, start: xr.Dataset) -> Cycle:
 
 
 def first_point(
-    cycle: Cycle, parameter: str, to: float, *, tied: Mapping[str, str] | None = None
+    cycle: Cycle, parameter: str, to: float
 ) -> tuple[ContinuationState, Cycle] | None:
     """A cycle as a point of its branch, with a tangent towards a value of the parameter."""
     begin = cycle.parts.values[parameter]
-    flow = Flow(cycle.map.flow.system, (parameter,), tied)
+    flow = Flow(cycle.map.flow.system, (parameter,))
     equations, guess = cycle.followed_in(flow, np.array([max(abs(begin), abs(to))]))
     normal = math.copysign(1.0, to - begin) * np.eye(len(guess))[-1]
     state = AT.solve(equations, guess, normal, STEPS.first_step)

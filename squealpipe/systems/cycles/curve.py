@@ -555,11 +555,10 @@ def follow_curve(
     parameters: Sequence[str],
     limits: Mapping[str, tuple[float, float]],
     n_points: int,
-    tied: Mapping[str, str] | None = None,
 ) -> tuple[list[Point], list[str]]:
     """The points of a curve through a cycle, and why it ended at both sides."""
     units = np.array([max(abs(cycle.parts.values[name]), 1e-3) for name in parameters])
-    flow = Flow(cycle.map.flow.system, tuple(parameters), tied)
+    flow = Flow(cycle.map.flow.system, tuple(parameters))
     curve, guess = _curve_of(Cycle.at(*cycle.followed_in(flow, units)), label)
     curve.renew(guess)
     algorithm = PseudoArclength(

@@ -120,8 +120,7 @@ class EventMap:
         start = float(z[m * (n + 1)] * self.time) if self.periods else 0.0
         followed = z[self.size :] * self.units
         found = dict(zip(self.flow.followed, map(float, followed), strict=True))
-        tied = {name: found[of] for name, of in self.flow.tied.items() if of in found}
-        return states, durations, start, {**self.values, **found, **tied}
+        return states, durations, start, {**self.values, **found}
 
     def parts(self, z: Vector) -> Parts:
         """The legs at some unknowns."""

@@ -28,7 +28,7 @@ from squealpipe.methods.taylor.legs import ARRAYS, SIZES, TABLE, run_legs, trans
 from squealpipe.methods.taylor.scalar import python_function
 from squealpipe.methods.taylor.series import gauss
 from squealpipe.methods.taylor.simd import FEW, LANES
-from squealpipe.methods.taylor.symbols import Symbol, derivative, parameter, symbol
+from squealpipe.methods.taylor.symbols import derivative, parameter, symbol
 from squealpipe.methods.zeros import bracketed
 from squealpipe.systems.runs import compiled
 from squealpipe.systems.trace import TIME_UNIT, Names
@@ -175,23 +175,10 @@ class Crossing:
 
 
 class Flow:
-    """A system's legs and switches as functions of states and parameters.
+    """A system's legs and switches as functions of states and parameters."""
 
-    Args:
-        tied: parameters that have the value of another one.
-    """
-
-    def __init__(
-        self,
-        system: System,
-        followed: Sequence[str] = (),
-        tied: Mapping[str, str] | None = None,
-    ) -> None:
-        self.system, self.followed, self.tied = (
-            system,
-            tuple(followed),
-            dict(tied or {}),
-        )
+    def __init__(self, system: System, followed: Sequence[str] = ()) -> None:
+        self.system, self.followed = system, tuple(followed)
         t = system.traced
         self.size, self.timed = t.size, len(t.variables) > t.size
         self.by = [parameter(name) for name in followed]
@@ -202,7 +189,7 @@ class Flow:
         self._room, self._legs = ROOM, 0
         directions = [*t.variables[: t.size], *self.by, *([self.time] * self.timed)]
         entries = [
-            (i, j, self.slope(rate, by))
+            (i, j, symbol(derivative(rate, by)))
             for i, rate in enumerate(t.rates[: t.size])
             for j, by in enumerate(directions)
         ]
@@ -220,19 +207,13 @@ class Flow:
         )
         self._known: tuple[Any, Vector] | None = None
 
-    def slope(self, root: Symbol, by: Any) -> Symbol:
-        """The derivative by a variable or a parameter, with those that are tied to it."""
-        names = [name for name, leader in self.tied.items() if by is parameter(leader)]
-        along = [derivative(root, each) for each in (by, *map(parameter, names))]
-        return sum(along[1:], start=symbol(along[0]))
-
     @cached_property
     def period(self) -> Any:
         """The forcing's period and its derivatives by the followed parameters, as a function."""
         names = {name: parameter(name) for name in self.system.parameters}
         given: Any = self.system.period
         root = symbol(given(Names("the system", names)))
-        roots = [root, *(self.slope(root, by) for by in self.by)]
+        roots = [root, *(symbol(derivative(root, by)) for by in self.by)]
         return python_function(roots, self.arguments, np)
 
     def numbers(self, values: Mapping[str, float], regime: int) -> list[Any]:
@@ -302,7 +283,9 @@ class Flow:
             roots += [each.reset.get(i, z) if each else z for i, z in enumerate(states)]
             targets = [c for _, c, _ in each.targets if c is not None] if each else []
             by = [*states, *[self.time] * self.timed, *self.by]
-            sloped = [[root, *(self.slope(root, b) for b in by)] for root in roots]
+            sloped = [
+                [root, *(symbol(derivative(root, b)) for b in by)] for root in roots
+            ]
             every = [*chain(*sloped), *t.rates[: t.size], *targets]
             self._functions[switch, surface] = python_function(
                 every, self.arguments, np
@@ -358,11 +341,12 @@ class Flow:
                     strict=True,
                 )
                 root = sum(
-                    (self.slope(surface, z) * rate for z, rate in along), symbol(0.0)
+                    (symbol(derivative(surface, z)) * rate for z, rate in along),
+                    symbol(0.0),
                 )
             roots = [
                 root,
-                *(self.slope(root, each) for each in (*states, *by, *self.by)),
+                *(symbol(derivative(root, each)) for each in (*states, *by, *self.by)),
             ]
             self._functions[key] = python_function(roots, self.arguments, np)
         return self._at(self._functions[key], values, event.before, state, time)

@@ -91,7 +91,8 @@ def brake(  # noqa: C901 (one short function for each force and surface)
         contact_law: its name, or a table over l_pre and the force there.
         model: a key of ``VARIANT_RULES``. Without stick, a run ends where the mass would stick, as
             an accumulation of events.
-        one_mu: ``mu`` holds the mass too; ``static_mu`` is not read.
+        one_mu: what holds the mass is the law's coefficient at speed 0, which changes with the
+            numbers that the law reads; ``static_mu`` is not read.
         long_springs: which springs are longer than ``springs.LONG`` preload lengths.
     """
     rules = VARIANT_RULES[model]
@@ -207,7 +208,8 @@ class _Laws:
         q = SimpleNamespace(**{name: getattr(p, name) for name in NUMBERS_OF_A1})
         q.friction_law, q.contact_law = self.friction_law, self.contact_law
         if self.one_mu:
-            q.static_mu = q.mu
+            q.mu_static = None
+            q.static_mu = friction_laws.static_coefficient(q)
         if not self.rules.drags:
             q.mu, q.static_mu = -q.mu, -q.static_mu
         if is_table(self.friction_law):

@@ -10,6 +10,7 @@ import xarray as xr
 from annotated_types import Ge
 from pydantic import BeforeValidator
 
+from squealpipe.models.refusals import refuse_unread
 from squealpipe.parameters import TABLE, Parameters, is_finite_number
 from squealpipe.schema import Outcome, blank, build
 from squealpipe.schema.cycles import CYCLE_BRANCH, LIMIT_CYCLE
@@ -25,8 +26,8 @@ from squealpipe.systems.cycles.branch import (
 from squealpipe.systems.cycles.event_map import Cycle
 from squealpipe.systems.cycles.labels import Label
 from squealpipe.tasks.cycles.cycle import cycle_from
-from squealpipe.tasks.cycles.onset import at, find_onset
-from squealpipe.tasks.cycles.scene import Scene
+from squealpipe.tasks.cycles.onset import find_onset
+from squealpipe.tasks.cycles.scene import IN_SYSTEM, Scene
 from squealpipe.validation import Angle, Number, Whole, state_of
 
 
@@ -102,7 +103,7 @@ def cycle_branch(
         cycle, outcome = _first_cycle(scene, start)
         first = None
         if cycle is not None:
-            first = first_point(cycle, parameter, to / scale, tied=scene.tied)
+            first = first_point(cycle, IN_SYSTEM[parameter], to / scale)
             outcome = Outcome.no_convergence
     if first is None:
         return _dataset(scene, [], outcome)
@@ -115,7 +116,7 @@ def cycle_branch(
         follower = Follower(low, high, n_points)
         end = follower.run(*first)
     last = follower.points[-1]
-    there = at(scene, last.parameter)
+    there = scene.at(last.parameter)
     if end == Outcome.branch_lost and there.is_singular(
         last.cycle.parts.path.series[:, :2, 0]
     ):
@@ -138,6 +139,7 @@ def _value(params: Parameters, alpha1: float, alpha2: float, parameter: str) -> 
         )
         why = " (A1 does not read it)" if parameter in {*TABLE} - {*values} else ""
         raise ValueError(f"parameter = {parameter!r}{why}: one of {known} is needed")
+    refuse_unread(params, [parameter])
     return float(values[parameter])
 
 

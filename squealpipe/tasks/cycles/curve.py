@@ -7,7 +7,8 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 import xarray as xr
 
-from squealpipe.parameters import Parameters
+from squealpipe.models.refusals import refuse_unread
+from squealpipe.parameters import NUMBERS_OF_A1, Parameters
 from squealpipe.schema import Outcome, build
 from squealpipe.schema.cycles import CYCLE_CURVE
 from squealpipe.schema.origin import recorded
@@ -15,7 +16,7 @@ from squealpipe.solvers.a1.jobs import STATE
 from squealpipe.systems.cycles.curve import ENDS, check, follow_curve, point_of
 from squealpipe.systems.cycles.labels import Label
 from squealpipe.tasks.cycles.cycle import cycle_from
-from squealpipe.tasks.cycles.scene import DASHPOTS, Scene
+from squealpipe.tasks.cycles.scene import DASHPOTS, IN_SYSTEM, Scene
 from squealpipe.validation import Angle, Number, Several
 
 REASONS = dict(
@@ -87,12 +88,16 @@ def cycle_curve(
             own["alpha2"],
             follow=dashpots[0] if dashpots else None,
         )
-        check(
-            [name for name in scene.values if name in scene.units],
-            label,
-            parameters,
-            limits,
-        )
+        known = [
+            *(
+                name
+                for name in NUMBERS_OF_A1.values()
+                if getattr(params, name) is not None
+            ),
+            *own,
+        ]
+        check(known, label, parameters, limits)
+        refuse_unread(params, parameters)
         cycle, _ = cycle_from(scene, [float(point[f"{name}_start"]) for name in STATE])
         if cycle is not None:
             break
@@ -102,10 +107,14 @@ def cycle_curve(
         name: tuple(np.array(ends) / scene.units[name]) for name, ends in limits.items()
     }
     points, ends = follow_curve(
-        cycle, Label[label], parameters, scaled, n_points, scene.tied
+        cycle,
+        Label[label],
+        [IN_SYSTEM[name] for name in parameters],
+        {IN_SYSTEM[name]: ends for name, ends in scaled.items()},
+        n_points,
     )
     values = {
-        name: np.array([each.cycle.parts.values[name] for each in points])
+        name: np.array([each.cycle.parts.values[IN_SYSTEM[name]] for each in points])
         * scene.units[name]
         for name in {*parameters, "alpha1", "alpha2"}
     }

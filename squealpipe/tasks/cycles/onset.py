@@ -1,7 +1,5 @@
 """Where steady sliding loses its stability and a branch of cycles is born."""
 
-from dataclasses import replace
-
 import numpy as np
 from scipy.optimize import brentq
 
@@ -10,7 +8,7 @@ from squealpipe.systems.cycles.cycle import eventless
 from squealpipe.systems.cycles.event_map import Cycle, EventMap
 from squealpipe.systems.cycles.flow import Flow
 from squealpipe.systems.cycles.line import ALONG, STEPS
-from squealpipe.tasks.cycles.scene import Scene
+from squealpipe.tasks.cycles.scene import IN_SYSTEM, Scene
 from squealpipe.tasks.cycles.sliding import steady_sliding
 
 _SCAN = 201
@@ -29,7 +27,7 @@ def find_onset(
     flow = Flow(scene.system)
 
     def growth(value: float) -> float:
-        found = steady_sliding(at(scene, value), flow)
+        found = steady_sliding(scene.at(value), flow)
         return (
             np.nan
             if found is None
@@ -45,10 +43,10 @@ def find_onset(
     onset = float(
         brentq(growth, low, high, xtol=1e-14 * max(abs(begin), abs(to)), rtol=1e-14)
     )
-    found = steady_sliding(at(scene, onset), flow)
+    found = steady_sliding(scene.at(onset), flow)
     if found is None:
         return None
-    rest, regime, values = found.state, found.regime, at(scene, onset).values
+    rest, regime, values = found.state, found.regime, scene.at(onset).values
     roots, vectors = np.linalg.eig(found.jacobian)
     mode = int(np.argmax(roots.real + (roots.imag > 0.0)))
     omega = float(roots[mode].imag)
@@ -58,25 +56,13 @@ def find_onset(
     room = 1.0 - rest[1]
     size = np.array([1.0, 1.0, omega, omega]) * room
     state = rest + _FIRST_AMPLITUDE * room * shape
-    name, period = str(scene.follow), 2.0 * np.pi / omega
+    name, period = IN_SYSTEM[str(scene.follow)], 2.0 * np.pi / omega
     followed = np.array([values[name]])
     units = np.maximum(np.abs(followed), 1e-3)
-    equations = EventMap(
-        Flow(scene.system, (name,), scene.tied), (), values, size, period, units
-    )
+    equations = EventMap(Flow(scene.system, (name,)), (), values, size, period, units)
     equations, guess = eventless(equations, state, regime, period, followed)
     # the cycle of that amplitude: its parameter is an unknown
     direction = np.concatenate([shape / size, np.zeros(2)])
     normal = direction / np.linalg.norm(direction)
     first = ALONG.solve(equations, guess, normal, STEPS.first_step)
     return None if first is None else (first, Cycle.at(equations, first.point))
-
-
-def at(scene: Scene, value: float) -> Scene:
-    """The scene at another value, in its units, of what is followed."""
-    name = str(scene.follow)
-    if name == "alpha1":
-        return replace(scene, alpha1=value)
-    if name == "alpha2":
-        return replace(scene, alpha2=value)
-    return replace(scene, params=scene.scaled.with_(**{name: value}))

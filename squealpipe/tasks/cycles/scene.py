@@ -1,16 +1,18 @@
 """A1 as a system of cycles: its parameters in units of m = k1 = l_pre = 1."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 
 from squealpipe.codes import Event, Regime
 from squealpipe.laws import contact_laws
+from squealpipe.laws.friction_laws import COULOMB, FALLING
 from squealpipe.laws.springs import fixed_ends, geometry
+from squealpipe.laws.tables import is_table
 from squealpipe.models.damped import is_undamped
-from squealpipe.parameters import TABLE, Parameters
+from squealpipe.parameters import NUMBERS_OF_A1, TABLE, Parameters
 from squealpipe.solvers.a1.ensemble import NEAR_PIVOT
 from squealpipe.solvers.a1.scaling import PHYSICAL, plain, unit_value
 from squealpipe.systems.cycles.event_map import Cycle
@@ -18,6 +20,10 @@ from squealpipe.systems.shipped.brake import brake, parameters_of_run, regimes_o
 from squealpipe.systems.system import System
 
 DASHPOTS = ("damping1", "damping2")
+IN_SYSTEM = {of: name for name, of in NUMBERS_OF_A1.items()} | {
+    angle: angle for angle in ("alpha1", "alpha2")
+}
+"""Parameter or angle → its name in the system."""
 FAMILY = 1e-6
 """A second multiplier this close to 1 belongs to a family of cycles."""
 
@@ -30,6 +36,7 @@ class Scene:
         alpha1, alpha2: angles, rad.
         follow: the parameter or angle that changes, if any.
         model: "A1" or one of its variants.
+        reference: parameters whose m, k1 and l_pre are the units, if not ``params``.
     """
 
     params: Parameters
@@ -37,11 +44,12 @@ class Scene:
     alpha2: float
     follow: str | None = None
     model: str = "A1"
+    reference: Parameters | None = None
 
     @cached_property
     def units(self) -> dict[str, float]:
         """Of each parameter and of what a cycle has."""
-        p = self.params
+        p = self.reference or self.params
         bases = (np.asarray(p.mass), np.asarray(p.k1), np.asarray(p.preload))
         found = {
             name: float(unit_value(TABLE[name].units, *bases))
@@ -50,10 +58,21 @@ class Scene:
         }
         return {**found, "alpha1": 1.0, "alpha2": 1.0}
 
+    def at(self, value: float) -> Self:
+        """The same at another value, in these units, of what is followed."""
+        name = str(self.follow)
+        if name == "alpha1":
+            return replace(self, alpha1=value)
+        if name == "alpha2":
+            return replace(self, alpha2=value)
+        moved = self.params.with_(**{name: value * self.units[name]})
+        return replace(self, params=moved, reference=self.reference or self.params)
+
     @cached_property
     def state_units(self) -> np.ndarray:
         """Of x, y, ẋ and ẏ."""
-        length, speed = self.params.preload, self.params.preload / self.params.time_unit
+        p = self.reference or self.params
+        length, speed = p.preload, p.preload / p.time_unit
         return np.array([length, length, speed, speed])
 
     @cached_property
@@ -67,9 +86,15 @@ class Scene:
 
     @cached_property
     def system(self) -> System:
-        """The brake with these laws."""
+        """The brake with these laws.
+
+        A static coefficient that is none of its own follows the law's numbers.
+        """
+        law = self.params.friction_law
+        one_mu = self.params.mu_static is None and not is_table(law)
         return brake(
-            self.params.friction_law,
+            COULOMB if one_mu and law in FALLING else law,
+            one_mu=one_mu,
             damped=not is_undamped(self.params) or self.follow in DASHPOTS,
             contact_law=contact_laws.relative(
                 self.params.contact_law, self.params.preload
@@ -84,11 +109,6 @@ class Scene:
         return parameters_of_run(self.scaled, self.alpha1, self.alpha2) | {
             "damping3": damping3
         }
-
-    @cached_property
-    def tied(self) -> dict[str, str]:
-        """A static coefficient that is none of its own changes with the sliding one."""
-        return {"static_mu": "mu"} if self.params.mu_static is None else {}
 
     @property
     def slow_time(self) -> float:

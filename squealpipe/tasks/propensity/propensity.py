@@ -13,12 +13,12 @@ from annotated_types import Ge, Interval, MinLen
 from scipy import stats
 
 from squealpipe.codes import LinearRegime
+from squealpipe.config.ranges import ANGLES
 from squealpipe.laws.contact_laws import LINEAR
-from squealpipe.laws.friction_laws import slope
 from squealpipe.methods.progress import with_progress
 from squealpipe.models import a3
 from squealpipe.models.contact_system import contact_system, with_drag
-from squealpipe.models.damped import damped_system, stability
+from squealpipe.models.damped import damped_system, is_undamped, regime
 from squealpipe.parameters import DEFAULTS, Parameters
 from squealpipe.schema import Outcome, build
 from squealpipe.schema.dynamics.runs import MotionFlag
@@ -101,21 +101,14 @@ def propensity(
 
     def judge(values: np.ndarray, *, runs: bool = True) -> np.ndarray:
         size = values.shape[-1]
-        fields: dict[str, Any] = {
-            name: value
-            if isinstance(value, str) or value is None
-            else np.broadcast_to(value, size)
-            for name, value in {
-                **fixed,
-                **dict(zip(names, values, strict=True)),
-            }.items()
-        }
-        angles = fields.pop("alpha1"), fields.pop("alpha2")
-        flutters = _flutters(fields, *angles)[None]
+        fields: dict[str, Any] = {**fixed, **dict(zip(names, values, strict=True))}
+        first, second = (np.broadcast_to(fields.pop(name), size) for name in ANGLES)
+        flutters = _flutters(fields, first, second)[None]
         if not runs:
             return flutters
         next(turns)
-        return np.concatenate([flutters, _events(fields, *angles, t_end, tol, workers)])
+        events = _events(fields, first, second, t_end, tol, workers)
+        return np.concatenate([flutters, events])
 
     points = sobol.scrambled(len(names), samples, seed)
     if spring_correlation:
@@ -201,30 +194,11 @@ def _flutters(
     fields: Mapping[str, Any], alpha1: np.ndarray, alpha2: np.ndarray
 ) -> np.ndarray:
     p = with_drag(DEFAULTS | dict(fields))
-    damped = (
-        (p.damping1 != 0) | (p.damping2 != 0) | (slope(np.abs(p.belt_speed), p) != 0)
-    )
-    if p.contact_law == LINEAR and not np.any(damped):
-        system = contact_system(p, alpha1, alpha2)
-        return np.asarray(a3.regime(system.invariants) == LinearRegime.flutter)
-    names = [name for name, value in fields.items() if isinstance(value, np.ndarray)]
-    fixed: dict[str, Any] = {
-        name: value for name, value in fields.items() if name not in names
-    }
-    columns = np.array([fields[name] for name in names]).T.tolist()
-    return np.array(
-        [
-            stability(
-                damped_system(
-                    Parameters(**fixed, **dict(zip(names, row, strict=True))),
-                    first,
-                    second,
-                )
-            ).regime
-            == LinearRegime.flutter
-            for row, first, second in zip(columns, alpha1, alpha2, strict=True)
-        ]
-    ).ravel()
+    if p.contact_law == LINEAR and np.all(is_undamped(p)):
+        regimes = a3.regime(contact_system(p, alpha1, alpha2).invariants)
+    else:
+        regimes = regime(damped_system(p, alpha1, alpha2))
+    return np.asarray(regimes == LinearRegime.flutter)
 
 
 def _indices(judged: Sequence[np.ndarray], parts: int) -> dict[str, np.ndarray]:

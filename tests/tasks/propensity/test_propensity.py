@@ -1,10 +1,13 @@
 """Propensities against closed forms; distributions and settings."""
 
+from time import process_time
+
 import numpy as np
 import pytest
 from scipy import stats
 
-from squealpipe import critical_friction_map
+from squealpipe import critical_friction_map, stability_map
+from squealpipe.codes import LinearRegime
 from squealpipe.schema import Outcome
 from squealpipe.schema.inference import of_study, wilson_interval
 from squealpipe.tasks.inference.inference import infer_parameters
@@ -16,6 +19,7 @@ from squealpipe.tasks.propensity.propensity import (
     propensity,
 )
 from squealpipe.tasks.propensity.robustness import _feasible, variants
+from squealpipe.tasks.propensity.sobol import scrambled
 from tests.former import FORMER
 
 ANGLES = (0.22, 0.96)
@@ -43,6 +47,57 @@ def test_share_of_flutter_is_that_of_the_frictions_above_onset(belt_speed):
     never = spread.sel(quantity="whirl")
     assert never.outcome == Outcome.unresolved
     assert np.isnan(never.total_order).all()
+
+
+LAW = """
+def coefficient(speed, p):
+    return p.mu*(1 + 0.5/(1 + speed**2*4))
+"""
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"damping1": 0.05, "damping2": 0.3},
+        {"friction_law": "exponential", "mu_static": 0.7, "belt_speed": 1.0},
+        {"friction_law": LAW, "belt_speed": -0.5, "damping1": 0.1},
+        {"contact_law": "dashpot", "damping3": 0.2},
+    ],
+)
+def test_the_share_of_flutter_is_that_of_the_maps_of_its_sample(change):
+    params = FORMER.with_(**change)
+    given = {
+        **FRICTION,
+        "alpha1": {"distribution": "uniform", "low": 0.0, "high": 3.0},
+        "alpha2": {"distribution": "uniform", "low": 0.0, "high": 3.0},
+    }
+    if params.mu_static:
+        given["mu"] = {"distribution": "uniform", "low": 0.1, "high": 0.7}
+    spread = propensity(params, *ANGLES, distributions=given, samples=64, t_end=1.0)
+    points = scrambled(3, 64, 1)
+    columns = [
+        distribution(name, each).ppf(points[:, i])
+        for i, (name, each) in enumerate(given.items())
+    ]
+    regimes = [
+        stability_map(params.with_(mu=mu), [first], [second]).regime_linear.item()
+        for mu, first, second in zip(*columns, strict=True)
+    ]
+    share = regimes.count(LinearRegime.flutter) / 64
+    assert 0.0 < share < 1.0
+    assert float(spread.share.sel(quantity="flutter")) == share
+
+
+def test_dashpots_cost_no_more_than_three_times_as_much():
+    given = {"distributions": FRICTION, "samples": 1024, "t_end": 1.0, "workers": 1}
+
+    def cost(params):
+        propensity(params, *ANGLES, **given | {"samples": 64})
+        before = process_time()
+        propensity(params, *ANGLES, **given)
+        return process_time() - before
+
+    assert cost(FORMER.with_(damping1=0.02, damping2=0.02)) < 3.0 * cost(FORMER)
 
 
 def test_indices_are_those_of_a_product_and_too_wide_ones_are_not_given():
