@@ -136,7 +136,9 @@ class ZeroLines:
         high, low = np.concatenate(up), np.concatenate(down)
         before, after = known[tuple(high.T)], known[tuple(low.T)]
         start, way = high / (size - 1), (low - high) / (size - 1)
-        found = self._roots(start, way, before / (before - after), after - before)
+        found = self._roots(
+            start, way, before / (before - after), after - before, between=True
+        )
         self._add(start + found[0][:, None] * way, way, *found[1:])
         return self._joined(positive, *numbers)
 
@@ -352,7 +354,13 @@ class ZeroLines:
         return start, way, np.where(found, share, np.nan), *there
 
     def _roots(
-        self, start: Vector, way: Vector, share: Vector, rate: Vector
+        self,
+        start: Vector,
+        way: Vector,
+        share: Vector,
+        rate: Vector,
+        *,
+        between: bool = False,
     ) -> tuple[Vector, Vector, Vector]:
         """Shares of lines at which the function is zero, and it and its rate there; NaN: none.
 
@@ -361,6 +369,7 @@ class ZeroLines:
         Args:
             start, way: lines from where it is positive to where it is not, (lines, 2).
             share, rate: guesses of the shares, and of the function's derivatives by them.
+            between: the signs at both ends differ, so that a zero may be at an end.
         """
         low, high, now = np.zeros(len(start)), np.ones(len(start)), share.copy()
         found, last, slope = np.full((3, len(start)), np.nan)
@@ -391,7 +400,7 @@ class ZeroLines:
             now[left] = np.where(enclosed, new, 0.5 * (low[left] + high[left]))
             enclosed = (low[left] > 0.0) & (high[left] < 1.0)
             closed = high[left] - low[left] < CLOSED
-            zero = (np.abs(here) <= self.most) | (closed & enclosed)
+            zero = (np.abs(here) <= self.most) | (closed & (enclosed | between))
             found[left[zero]], last[left[zero]] = at[zero], here[zero]
             good = zero & (step > SECANT[0]) & (step < SECANT[1])
             slope[left[good]] = secant[good]

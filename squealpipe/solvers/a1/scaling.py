@@ -62,7 +62,7 @@ def scaled_runs(parameters: Parameters | Mapping[str, Any], model: str) -> Scale
     largest: dict[str, Any] = {
         name: float(np.max(parameters[name]))
         for name in FORM
-        if parameters.get(name) is not None
+        if np.size(parameters.get(name, ()))
     }
     if friction in FALLING:
         largest |= {"mu": 0.0, "mu_static": 1.0}
@@ -80,6 +80,11 @@ def scaled_runs(parameters: Parameters | Mapping[str, Any], model: str) -> Scale
     if friction not in LAWS:
         numbers["friction_law"] = FALLING[0]
     given = _parameter_arrays({**parameters, **numbers, "contact_law": LINEAR})
+    onset = coefficient(0.0, SimpleNamespace(**vars(decisive) | {"mu": given["mu"]}))
+    if friction not in LAWS and np.any(given["mu_static"] < onset * (1.0 - 1e-12)):
+        raise ValueError(
+            "mu_static is below the law's coefficient at speed 0: leave it out"
+        )
     return _scaled(given, (_own_system(decisive, model),))
 
 
@@ -96,12 +101,14 @@ def _scaled_once(parameters: Parameters, model: str) -> ScaledRuns:
 
 
 def _own_system(parameters: Parameters, model: str) -> System:
-    if model != "A1":
-        raise ValueError(
-            f"model = {model!r}: a table, a law in Python or a contact law is carried by A1 "
-            "alone, not by its variants"
-        )
-    return brake_of(parameters)
+    if model == "A1" or (
+        model == "A1-no-separation" and parameters.contact_law == LINEAR
+    ):
+        return brake_of(parameters, model)
+    raise ValueError(
+        f"model = {model!r}: a table, a law in Python or a contact law is carried by A1 "
+        "alone, not by its variants"
+    )
 
 
 def plain(parameters: Parameters) -> Parameters:

@@ -34,14 +34,15 @@ FIRST = 1e150
 """Weight of what decides before anything else is asked."""
 
 
-def brake_of(params: Parameters) -> System:
-    """A1 with some parameters, whose numbers ``parameters_of_run`` gives."""
+def brake_of(params: Parameters, model: str = "A1") -> System:
+    """A1, or a variant, with some parameters, whose numbers ``parameters_of_run`` gives."""
     one_mu = params.friction_law in friction_laws.LAWS and params.static_mu == params.mu
     falls = params.friction_law in friction_laws.FALLING
     return brake(
         COULOMB if one_mu and falls else params.friction_law,
         damped=params.damping1 + params.damping2 > 0,
         contact_law=contact_laws.relative(params.contact_law, params.preload),
+        model=model,
         one_mu=one_mu,
         long_springs=(
             params.length1 > LONG * params.preload,

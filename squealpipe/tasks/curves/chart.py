@@ -11,14 +11,13 @@ import xarray as xr
 from scipy.interpolate import CubicSpline
 from scipy.ndimage import distance_transform_edt, label
 
-from squealpipe.methods.zero_lines import Vector, ZeroLines
-from squealpipe.models import a3
-from squealpipe.models.contact_system import contact_system, with_drag
+from squealpipe.methods.zero_lines import Vector
 from squealpipe.parameters import HORIZON, Parameters
 from squealpipe.schema import Outcome, build
 from squealpipe.schema.curves import REGIME_CHART, ChartLine
 from squealpipe.schema.origin import recorded
 from squealpipe.tasks.curves.contact import Square, contact_lines, nearest_on, two_axes
+from squealpipe.tasks.curves.stability import GRID, Regimes, centres
 from squealpipe.validation import Line, Positive, Tolerance, Workers
 
 FINEST, OFF, FLAT, RESIDUAL = (60, 120), 6e-7, 3e-7, 4e-8
@@ -27,8 +26,6 @@ FINEST, OFF, FLAT, RESIDUAL = (60, 120), 6e-7, 3e-7, 4e-8
 In the middle of a chord a line is off by about twice as much as on average. The second grid is
 taken where the first one cuts a tongue.
 """
-GRID = 241
-"""Cells per side by which regions are distinguished, and points on which closed forms are seen."""
 
 
 @recorded(model="A1", method="zeros of closed forms and of the lowest contact force")
@@ -47,8 +44,9 @@ def regime_chart(
 ) -> xr.Dataset:
     """The lines over two parameters across which A3 becomes unstable or A1 loses contact.
 
-    Flutter and divergence of the linear model A3 (undamped) are closed forms; contact is that of A1
-    from rest until t_end, as in :func:`contact_boundary`, whose two arrays are given likewise.
+    Flutter and divergence are the regimes of :func:`stability_map`, with dashpots and the slope of
+    friction where there are any; contact is that of A1 from rest until t_end, as in
+    :func:`contact_boundary`, whose two arrays are given likewise.
 
     Args:
         alpha1, alpha2: angles, rad.
@@ -61,7 +59,9 @@ def regime_chart(
         ranges: parameters that vary.
 
     Returns:
-        Dataset ``regime_chart`` over ``point`` and ``region``.
+        Dataset ``regime_chart`` over ``point`` and ``region``. A line that is right to about a cell
+        only has the outcome ``unresolved``, as next to places where the static force under falling
+        friction has no limit.
 
     Raises:
         ValueError: as :func:`contact_boundary`, or design or curves have other parameters.
@@ -77,43 +77,24 @@ def regime_chart(
         params, fixed, axes, {"t_end": t_end, "tol": tol, "workers": workers}, "A1"
     )
 
-    def invariants(places: Vector) -> Any:
-        p = with_drag(square.fields(places))
-        return contact_system(p, p.alpha1, p.alpha2).invariants
-
-    def closed(quantity: str) -> ZeroLines:
-        def value(places: Vector) -> Vector:
-            found = invariants(places)
-            scaled = getattr(found, quantity) / found.half_trace**2
-            return np.broadcast_to(scaled, len(places)).copy()
-
-        return ZeroLines(
-            value, lambda places, _: 0.0 * places[:, 0], coarse=GRID, finer=1, jump=1.0
-        )
-
+    regimes = Regimes(square)
     coarse = max(each.size for each in axes.values())
     for finest in FINEST:
         contact = contact_lines(square, coarse, finest, off=OFF, residual=RESIDUAL)
         if not contact.unresolved:
             break
-    lines = {
-        ChartLine.flutter: closed("discriminant"),
-        ChartLine.divergence: closed("determinant"),
-        ChartLine.contact_lost: contact,
-    }
-    centres = (np.arange(GRID) + 0.5) / GRID
-    cells = np.stack(np.meshgrid(centres, centres, indexing="ij"), axis=-1).reshape(
-        -1, 2
+    lines = {**regimes.lines(), ChartLine.contact_lost: contact}
+    cells = centres(GRID)
+    regime, beside = (
+        each(cells).reshape(GRID, GRID) for each in (regimes.at, regimes.beside)
     )
-    regime = np.broadcast_to(a3.regime(invariants(cells)), len(cells)).reshape(
-        GRID, GRID
-    )
-    kept = contact.holds(centres, centres)
+    middles = (np.arange(GRID) + 0.5) / GRID
+    kept = contact.holds(middles, middles)
     regions = [
         (code, state, places[k - 1], size)
-        for code in np.unique(regime)
+        for code in np.unique(beside)
         for state in (True, False)
-        for places, sizes in [_parts((regime == code) & (kept == state))]
+        for places, sizes in [_parts((beside == code) & (kept == state))]
         for k, size in enumerate(sizes, start=1)
     ]
     onsets = {ChartLine.whirl: whirl, ChartLine.stick: stick}

@@ -9,8 +9,10 @@ import numpy as np
 import xarray as xr
 
 from squealpipe.laws.contact_laws import LINEAR
+from squealpipe.laws.friction_laws import LAWS
 from squealpipe.methods.zero_lines import Vector, ZeroLines, gathered, inside
-from squealpipe.parameters import HORIZON, Parameters
+from squealpipe.models.refusals import refuse_unread
+from squealpipe.parameters import HORIZON, Parameters, brief
 from squealpipe.schema import Outcome, build
 from squealpipe.schema.curves import (
     BOUNDARY_DISTANCE,
@@ -90,7 +92,11 @@ class Square:
 
 
 def two_axes(
-    params: Parameters, alpha1: Any, alpha2: Any, ranges: Mapping[str, Any]
+    params: Parameters,
+    alpha1: Any,
+    alpha2: Any,
+    ranges: Mapping[str, Any],
+    model: str = "A1",
 ) -> tuple[dict[str, Vector], dict[str, float]]:
     """The two arguments that are arrays, and the angles that are not; others are refused."""
     given = {"alpha1": np.asarray(alpha1), "alpha2": np.asarray(alpha2)}
@@ -120,8 +126,15 @@ def two_axes(
         raise ValueError("what does not vary belongs into params")
     if params.contact_law != LINEAR:
         raise ValueError(
-            f"contact_law = {params.contact_law!r}: contact is followed with the linear law"
+            f"contact_law = {brief(params.contact_law)}: contact is followed with the linear law; "
+            f"use validity_map, or contact_law = {LINEAR!r}"
         )
+    if model != "A1" and params.friction_law not in LAWS:
+        raise ValueError(
+            f"friction_law = {brief(params.friction_law)}: friction as printed is that of a "
+            f"formula; use model A1, or one of {', '.join(LAWS)}"
+        )
+    refuse_unread(params, list(axes))
     return axes, fixed
 
 
@@ -177,9 +190,10 @@ def contact_boundary(
         Dataset ``contact_boundary`` over ``point`` and ``region``.
 
     Raises:
-        ValueError: not two arguments are ascending arrays, or a parameter cannot vary.
+        ValueError: not two arguments are ascending arrays, a parameter cannot vary or is read by no
+            law, or the contact law is not linear.
     """
-    axes, fixed = two_axes(params, alpha1, alpha2, ranges)
+    axes, fixed = two_axes(params, alpha1, alpha2, ranges, model)
     t_end = HORIZON * params.time_unit if t_end is None else t_end
     options = {
         "t_end": t_end,

@@ -89,13 +89,14 @@ def test_the_share_of_flutter_is_that_of_the_maps_of_its_sample(change):
 
 
 def test_dashpots_cost_no_more_than_three_times_as_much():
-    given = {"distributions": FRICTION, "samples": 1024, "t_end": 1.0, "workers": 1}
+    given = {"distributions": FRICTION, "samples": 1024, "t_end": 10.0, "workers": 1}
 
     def cost(params):
-        propensity(params, *ANGLES, **given | {"samples": 64})
-        before = process_time()
-        propensity(params, *ANGLES, **given)
-        return process_time() - before
+        times = [process_time()]
+        for _ in range(4):  # the first compiles
+            propensity(params, *ANGLES, **given)
+            times.append(process_time())
+        return np.diff(times)[1:].min()
 
     assert cost(FORMER.with_(damping1=0.02, damping2=0.02)) < 3.0 * cost(FORMER)
 
