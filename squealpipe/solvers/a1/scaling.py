@@ -80,11 +80,14 @@ def scaled_runs(parameters: Parameters | Mapping[str, Any], model: str) -> Scale
     if friction not in LAWS:
         numbers["friction_law"] = FALLING[0]
     given = _parameter_arrays({**parameters, **numbers, "contact_law": LINEAR})
-    onset = coefficient(0.0, SimpleNamespace(**vars(decisive) | {"mu": given["mu"]}))
-    if friction not in LAWS and np.any(given["mu_static"] < onset * (1.0 - 1e-12)):
-        raise ValueError(
-            "mu_static is below the law's coefficient at speed 0: leave it out"
+    if friction not in LAWS:
+        onset = coefficient(
+            0.0, SimpleNamespace(**vars(decisive) | {"mu": given["mu"]})
         )
+        if np.any(given["mu_static"] < onset * (1.0 - 1e-12)):
+            raise ValueError(
+                "mu_static is below the law's coefficient at speed 0: leave it out"
+            )
     return _scaled(given, (_own_system(decisive, model),))
 
 
