@@ -8,6 +8,11 @@ from squealpipe.methods.parabola import vertex
 FEWEST = 16
 """Samples from which a motion, and its spectrum, can be seen."""
 
+FEWEST_PERIODS, LINE_WIDTH, LOBES = 3.0, 2.0, 12.0
+"""Periods in a signal from which it oscillates; over 2π/T, half the main lobe of a Hann window, and
+where its side lobes have become small.
+"""
+
 
 def lasts(force: NDArray[np.float64]) -> bool:
     """Whether a contact force acts in the second half of its run, so that it has a spectrum.
@@ -58,3 +63,28 @@ def highest_peaks(
         *(np.log(amplitude[places + k] + 1e-300) for k in (-1, 0, 1))
     )
     return frequency[places] + shift * (frequency[1] - frequency[0]), np.exp(height)
+
+
+def strongest_lines(
+    frequency: NDArray[np.float64],
+    amplitude: NDArray[np.float64],
+    count: int,
+    resolution: float,
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """The peaks that are oscillations, as :func:`highest_peaks`, each line once.
+
+    Args:
+        resolution: 2π over the length of the signal. What has fewer than :data:`FEWEST_PERIODS`
+            periods in it is drift, and a peak within the width of a higher one is part of it.
+    """
+    fast = np.where(frequency >= FEWEST_PERIODS * resolution, amplitude, 0.0)
+    places, heights = highest_peaks(frequency, fast, len(frequency))
+    kept: list[int] = []
+    for i, place in enumerate(places):
+        # neither the cut through a drift's flank nor its side lobes are lines
+        lobe = place < LOBES * resolution and heights[i] < 0.1 * amplitude.max()
+        is_line = place > (FEWEST_PERIODS + 0.25) * resolution and not lobe
+        apart = all(abs(place - places[k]) > LINE_WIDTH * resolution for k in kept)
+        if is_line and apart and len(kept) < count:
+            kept.append(i)
+    return places[kept], heights[kept]

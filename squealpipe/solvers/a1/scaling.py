@@ -81,14 +81,17 @@ def scaled_runs(parameters: Parameters | Mapping[str, Any], model: str) -> Scale
         numbers["friction_law"] = FALLING[0]
     given = _parameter_arrays({**parameters, **numbers, "contact_law": LINEAR})
     if friction not in LAWS:
-        onset = coefficient(
-            0.0, SimpleNamespace(**vars(decisive) | {"mu": given["mu"]})
-        )
-        if np.any(given["mu_static"] < onset * (1.0 - 1e-12)):
-            raise ValueError(
-                "mu_static is below the law's coefficient at speed 0: leave it out"
-            )
+        _check_stick(decisive, given)
     return _scaled(given, (_own_system(decisive, model),))
+
+
+def _check_stick(decisive: Parameters, given: Mapping[str, np.ndarray]) -> None:
+    """Stop static coefficients below a law's own at speed 0."""
+    onset = coefficient(0.0, SimpleNamespace(**vars(decisive) | {"mu": given["mu"]}))
+    if np.any(given["mu_static"] < onset * (1.0 - 1e-12)):
+        raise ValueError(
+            "mu_static is below the law's coefficient at speed 0: leave it out"
+        )
 
 
 @lru_cache(maxsize=64)

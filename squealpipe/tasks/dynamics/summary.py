@@ -6,7 +6,12 @@ import numpy as np
 import xarray as xr
 
 from squealpipe.codes import Event, Regime
-from squealpipe.methods.spectrum import FEWEST, amplitude_spectrum, highest_peaks, lasts
+from squealpipe.methods.spectrum import (
+    FEWEST,
+    amplitude_spectrum,
+    lasts,
+    strongest_lines,
+)
 from squealpipe.schema import build
 from squealpipe.schema.dynamics.intervals import intervals
 from squealpipe.schema.dynamics.runs import RUN_SUMMARY
@@ -47,7 +52,9 @@ def summarize(run: xr.Dataset) -> xr.Dataset:
     force = run.normalized_contact_force.values[: time.size]
     frequency, amplitude = amplitude_spectrum(force, float(steps[0]), padding=PADDING)
     kept = PEAKS if lasts(force) else 0
-    peak_frequency, peak_amplitude = highest_peaks(frequency, amplitude, kept)
+    peak_frequency, peak_amplitude = strongest_lines(
+        frequency, amplitude, kept, PADDING * float(frequency[1])
+    )
     return build(
         RUN_SUMMARY,
         {

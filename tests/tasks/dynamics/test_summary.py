@@ -5,7 +5,9 @@ import pytest
 
 from squealpipe import Parameters, basin_map, plot
 from squealpipe.codes import Event
+from squealpipe.methods.spectrum import amplitude_spectrum, strongest_lines
 from squealpipe.plotting.run import draw_spectrum
+from squealpipe.schema import Outcome
 from squealpipe.tasks.dynamics.runs import simulate
 from squealpipe.tasks.dynamics.summary import summarize, summary_lines
 from tests.former import FORMER
@@ -97,3 +99,29 @@ def test_a_force_that_ends_for_good_has_no_frequency():
     ax = plot(motion)
     draw_spectrum(ax, motion)
     assert any("no contact in" in text.get_text() for text in ax.texts)
+
+
+@pytest.mark.parametrize("drift", [0.0, 5.0])
+def test_a_drift_is_no_line_and_no_line_comes_twice(drift):
+    # two lines, the stronger of which a slow change of amplitude splits, on a drift
+    time = np.linspace(0.0, 764.0, 40_001)
+    signal = (1.0 + 0.6 * np.cos(1.5 * 2 * np.pi * time / 764.0)) * np.cos(1.3 * time)
+    signal += 0.3 * np.cos(2.9 * time) + drift * np.cos(2 * np.pi * time / 764.0)
+    spectrum = amplitude_spectrum(signal, float(time[1]), padding=8)
+    found, _ = strongest_lines(*spectrum, 3, 2 * np.pi / 764.0)
+    assert found == pytest.approx([1.3, 2.9], abs=2e-3)
+
+
+def test_a_mass_that_reaches_belt_speed_without_stick_does_so_once():
+    motion = simulate(
+        FORMER.with_(belt_speed=0.1), np.pi * 0.1, np.pi * 0.5, t_end=9.0,
+        model="A1-no-stick",
+    )  # fmt: skip
+    assert int(motion.outcome) == Outcome.accumulation
+    assert motion.sizes["event"] == 1
+    assert int(motion.event_kind[0]) == Event.reversal
+    stuck = simulate(FORMER.with_(belt_speed=0.1), np.pi * 0.1, np.pi * 0.5, t_end=9.0)
+    assert int(stuck.event_kind[0]) == Event.stick
+    assert float(motion.event_time[0]) == pytest.approx(
+        float(stuck.event_time[0]), rel=1e-12
+    )
