@@ -8,7 +8,13 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from squealpipe.codes import Regime
-from squealpipe.methods.spectrum import FEWEST, amplitude_spectrum, highest_peaks, lasts
+from squealpipe.methods.spectrum import (
+    FEWEST,
+    amplitude_spectrum,
+    highest_peaks,
+    lasts,
+    strongest_lines,
+)
 from squealpipe.plotting import style
 from squealpipe.plotting.mechanism import SPRING_COLOURS, displaced_springs
 from squealpipe.schema import meanings
@@ -181,9 +187,8 @@ def draw_spectrum(axes: Axes, dataset: xr.Dataset) -> None:
         style.say_instead(axes, "the contact force does not oscillate")
         return
     axes.plot(frequency, amplitude, color=style.BLUE)
-    axes.plot(
-        *highest_peaks(frequency, amplitude, 3), "v", color=style.RED, markersize=4
-    )
+    lines = strongest_lines(frequency, amplitude, 3, PADDING * float(frequency[1]))
+    axes.plot(*lines, "v", color=style.RED, markersize=4)
     axes.set(xlim=(0, 1.2 * frequency[loud[-1]]), ylim=(0, None))
     axes.set(xlabel="ω (rad/s)", ylabel=f"amplitude of {FORCE}")
 
