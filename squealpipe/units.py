@@ -66,7 +66,13 @@ class UnitError(ValueError):
 
 def has_unit(text: object) -> bool:
     """Whether something is a text of a number and something after it, as a unit is."""
-    return isinstance(text, str) and bool(_QUANTITY.fullmatch(_tidy(text)))
+    if not isinstance(text, str):
+        return False
+    try:
+        float(text)  # 1e6: not the sixth power of an elementary charge
+    except ValueError:
+        return bool(_QUANTITY.fullmatch(_tidy(text)))
+    return False
 
 
 def in_si(text: str, units: str, keys: Mapping[str, str] | None = None) -> float:

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from squealpipe.config.ranges import parse_range, read_fixed, read_values
 from squealpipe.parameters import UNITS_OF_INPUTS, Parameters
-from squealpipe.units import UnitError, in_si, plain_unit, with_unit
+from squealpipe.units import UnitError, has_unit, in_si, plain_unit, with_unit
 
 ROUNDED_ONCE = {
     ("0.57 mm", "m"): 5.7e-4,
@@ -41,6 +41,11 @@ ROUNDED_ONCE = {
 @pytest.mark.parametrize(("text", "units"), ROUNDED_ONCE)
 def test_a_text_is_the_number_that_it_says(text, units):
     assert in_si(text, units) == ROUNDED_ONCE[text, units]
+
+
+@pytest.mark.parametrize("text", ["1e6", "1E6", "-2e-3", "3"])
+def test_a_number_has_no_unit(text):
+    assert not has_unit(text)
 
 
 @given(st.integers(1, 10**9), st.integers(-12, 3))

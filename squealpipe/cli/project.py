@@ -1,8 +1,6 @@
 """``squealpipe init`` and ``squealpipe run``: a study of one's own, begun and computed."""
 
 import os
-import signal
-import subprocess
 import sys
 import time
 from pathlib import Path
@@ -115,13 +113,26 @@ def run(
         cores: cores to use; all by default.
     """
     from squealpipe.execution.explain import snakemake_command
+    from squealpipe.execution.supervised import (
+        StoppedError,
+        remove_stale_lock,
+        run_to_its_end,
+    )
 
     command, study = snakemake_command(config or [], quick=quick)
     for line in study.parameters.became():
         say(line)
+    if removed := remove_stale_lock():
+        say(removed)
     started = time.perf_counter()
     quiet = ["--quiet", "all"] if SESSION.quiet else ["--quiet", "host", "rules"]
-    if _to_its_end([*command, "--cores", str(cores or "all"), *quiet]):
+    command += ["--cores", str(cores or "all"), *quiet]
+    try:
+        failed = run_to_its_end(command, {**os.environ, **_caches()})
+    except StoppedError as stop:
+        print(f"squealpipe: {stop}; run the same command again", file=sys.stderr)
+        return 128 + stop.number
+    if failed:
         print(
             f"squealpipe: the study in {study.results} is not complete", file=sys.stderr
         )
@@ -138,16 +149,3 @@ def _caches() -> dict[str, str]:
         return {}
     kept = str(Path(".snakemake/cache").resolve())
     return {"XDG_CACHE_HOME": kept, "MPLCONFIGDIR": f"{kept}/matplotlib", **os.environ}
-
-
-def _to_its_end(command: list[str]) -> int:
-    """Run Snakemake; after Ctrl-C it ends its jobs and tidies up."""
-    with subprocess.Popen(
-        command, env={**os.environ, **_caches()}, start_new_session=True
-    ) as made:
-        try:
-            return made.wait()
-        except KeyboardInterrupt:
-            os.killpg(made.pid, signal.SIGINT)
-            made.wait()
-            raise

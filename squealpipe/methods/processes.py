@@ -5,10 +5,12 @@ guard. Where forking is not possible (other systems, or inside a daemonic worker
 this process.
 """
 
+import ctypes
 import mmap
 import multiprocessing
 import os
 import signal
+import sys
 import time
 from collections.abc import Callable, Mapping
 from math import prod
@@ -19,6 +21,8 @@ import numpy as np
 from squealpipe.methods.progress import shown
 
 Work = Callable[[dict[str, np.ndarray], int, int], None]
+SIGNAL_AT_PARENTS_DEATH = 1
+"""PR_SET_PDEATHSIG of Linux's <sys/prctl.h>."""
 MINIMUM_JOBS = 64
 """Below this many jobs a process a fork costs more than it saves."""
 
@@ -88,8 +92,17 @@ def run_shared(
 
 
 def leave_interrupts_to_the_parent() -> None:
-    """In a worker process: Ctrl-C reaches the whole group, and the parent ends its workers."""
+    """In a worker process: Ctrl-C reaches the whole group, and the parent ends its workers.
+
+    If the parent is killed, the worker ends with it, where the system (Linux) can tell it.
+    """
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    signal.signal(signal.SIGTERM, signal.SIG_DFL)
+    if sys.platform == "linux":
+        parent = os.getppid()
+        ctypes.CDLL(None).prctl(SIGNAL_AT_PARENTS_DEATH, signal.SIGTERM)
+        if os.getppid() != parent:  # it died meanwhile
+            os._exit(1)
 
 
 def _in_child(

@@ -1,15 +1,18 @@
 """Ctrl-C: a command stops within two seconds, quietly, and leaves no file."""
 
+import json
 import os
 import signal
+import socket
 import subprocess
 import sys
 import time
 
+import psutil
 import pytest
 
 from squealpipe.cli.console import INTERRUPTED
-from squealpipe.cli.project import _to_its_end
+from squealpipe.execution.supervised import remove_stale_lock
 
 LONG = {
     "simulate": ["simulate", "0.4pi", "0.6pi", "--t-end", "1e6"],
@@ -42,18 +45,80 @@ def test_interrupt_stops_the_command_and_its_processes(name, tmp_path):
     assert not list(tmp_path.iterdir())
 
 
-def test_a_workflow_is_interrupted_and_waited_for(tmp_path):
-    code = (
-        "import sys, time\ntry:\n    time.sleep(99)\n"
-        "except KeyboardInterrupt:\n    open(sys.argv[1], 'w').close()"
-    )
-    signal.setitimer(signal.ITIMER_REAL, 2.0)
-    before = signal.signal(
-        signal.SIGALRM, lambda *_: signal.raise_signal(signal.SIGINT)
-    )
-    try:
-        with pytest.raises(KeyboardInterrupt):
-            _to_its_end([sys.executable, "-c", code, str(tmp_path / "tidied")])
-    finally:
-        signal.signal(signal.SIGALRM, before)
+HEAD = """
+import os, sys
+from squealpipe.execution.supervised import run_to_its_end
+run_to_its_end([sys.executable, "-c", sys.argv[1]], os.environ)
+"""
+JOB = """
+import os, signal, sys, time
+worker = os.fork()
+if not worker:
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    time.sleep(99)
+open("started", "w").write(f"{os.getpid()} {worker} ")
+try:
+    time.sleep(99)
+except KeyboardInterrupt:
+    open("tidied", "w").close()
+    os.kill(worker, signal.SIGTERM)
+"""
+
+
+@pytest.mark.parametrize("name", ["SIGINT", "SIGTERM", "SIGHUP", "SIGKILL"])
+def test_a_workflow_ends_with_its_head_however_that_ends(name, tmp_path):
+    with subprocess.Popen(
+        [sys.executable, "-c", HEAD, JOB], cwd=tmp_path, stderr=subprocess.DEVNULL
+    ) as head:
+        started = tmp_path / "started"
+        wait_until(lambda: started.exists() and started.read_text().endswith(" "))
+        head.send_signal(getattr(signal, name))
+        head.wait(timeout=30)
+    numbers = map(int, started.read_text().split())
+    wait_until(lambda: not any(map(lives, numbers)))
     assert (tmp_path / "tidied").exists()
+    assert bool(list(tmp_path.glob(".snakemake/squealpipe/*"))) is (name == "SIGKILL")
+
+
+def lives(number):
+    return psutil.pid_exists(number) and psutil.Process(number).status() != "zombie"
+
+
+def wait_until(holds, seconds=30):
+    until = time.monotonic() + seconds
+    while not holds():
+        assert time.monotonic() < until
+        time.sleep(0.1)
+
+
+def test_the_lock_of_a_killed_run_is_removed_and_said_so(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    lock = tmp_path / ".snakemake/locks/0.output.lock"
+    lock.parent.mkdir(parents=True)
+    lock.write_text("results/data/a.nc")
+    assert remove_stale_lock() == ""  # of a Snakemake that we know nothing of
+    holder = tmp_path / ".snakemake/squealpipe/1.json"
+    holder.parent.mkdir()
+    holder.write_text(json.dumps({"pid": 1, "host": "another"}))
+    assert remove_stale_lock() == ""
+    holder.write_text(json.dumps({"pid": 99, "host": socket.gethostname()}))
+    script = tmp_path / "snakemake"
+    script.write_text("import time; time.sleep(99)")
+    with subprocess.Popen([sys.executable, str(script)]) as living:
+        wait_until(lambda: psutil.Process(living.pid).cmdline()[1:] == [str(script)])
+        assert remove_stale_lock() == ""
+        living.kill()
+    assert "was killed (process 99)" in remove_stale_lock()
+    assert not lock.exists()
+    assert remove_stale_lock() == ""
+
+
+def test_workers_end_with_a_killed_sweep(tmp_path):
+    command = [sys.executable, "-m", "squealpipe", *LONG["sweep"]]
+    with subprocess.Popen(command, cwd=tmp_path, stderr=subprocess.DEVNULL) as sweep:
+        process = psutil.Process(sweep.pid)
+        wait_until(lambda: len(process.children()) >= 2, 60)
+        workers = [child.pid for child in process.children()]
+        time.sleep(1.0)
+        sweep.kill()
+    wait_until(lambda: not any(map(lives, workers)), 5)

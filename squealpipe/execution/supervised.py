@@ -1,0 +1,152 @@
+"""Snakemake as a child that never outlives the command that started it."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import signal
+import socket
+import subprocess
+import time
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager, suppress
+from pathlib import Path
+
+STOPS = (signal.SIGTERM, signal.SIGHUP)
+PATIENCE = 20.0
+"""Time that interrupted jobs have to tidy up before they are killed, s."""
+HOLDERS = Path(".snakemake/squealpipe")
+LOCKS = Path(".snakemake/locks")
+
+
+class StoppedError(BaseException):
+    """The command was asked to end by a signal."""
+
+    def __init__(self, number: int) -> None:
+        super().__init__(f"stopped by {signal.Signals(number).name}")
+        self.number = number
+
+
+def run_to_its_end(command: Sequence[str], env: Mapping[str, str]) -> int:
+    """Run Snakemake; it and its jobs end when this process is interrupted, stopped or killed.
+
+    Returns:
+        Its exit code.
+
+    Raises:
+        KeyboardInterrupt, StoppedError: a signal ended it; by then no process of it is left.
+    """
+    with _stops_raise(), _holder(), subprocess.Popen(
+        command, env=dict(env), start_new_session=True
+    ) as made:  # fmt: skip
+        done = _guard(made.pid)
+        try:
+            return made.wait()
+        except BaseException:
+            end_group(made.pid)
+            made.wait()
+            raise
+        finally:
+            os.write(done, b"done")
+            os.close(done)
+
+
+def remove_stale_lock(folder: Path = Path()) -> str:
+    """Remove Snakemake's lock of a run that is dead; what to say about it, empty: nothing.
+
+    A lock stays where a Snakemake works in the folder, or may do so on another machine.
+    """
+    locks, holders = folder / LOCKS, list((folder / HOLDERS).glob("*.json"))
+    if not locks.is_dir() or not any(locks.iterdir()) or not holders:
+        return ""
+    stated = [json.loads(path.read_text(encoding="utf-8")) for path in holders]
+    elsewhere = [each for each in stated if each["host"] != socket.gethostname()]
+    if elsewhere or _works_in(folder):
+        return ""
+    shutil.rmtree(locks)
+    for path in holders:
+        path.unlink(missing_ok=True)
+    numbers = ", ".join(str(each["pid"]) for each in stated)
+    return f"removed the lock of a run that was killed (process {numbers})"
+
+
+def _works_in(folder: Path) -> bool:
+    """Whether a Snakemake of this machine works in a folder."""
+    import psutil
+
+    for process in psutil.process_iter(["cmdline", "cwd"]):
+        about = process.info
+        if about["cwd"] and Path(about["cwd"]) == folder.resolve():
+            words = about["cmdline"] or []
+            if any(Path(word).name == "snakemake" for word in words):
+                return True
+    return False
+
+
+def end_group(number: int) -> None:
+    """Interrupt all processes of a group, and kill what is left after a while."""
+    until = time.monotonic() + PATIENCE
+    with suppress(ProcessLookupError):
+        os.killpg(number, signal.SIGINT)
+        while time.monotonic() < until and not _only_zombies(number):
+            time.sleep(0.1)
+        os.killpg(number, signal.SIGKILL)
+
+
+def _only_zombies(group: int) -> bool:
+    """Whether the processes of a group have all ended, one of them perhaps unread."""
+    import psutil
+
+    for process in psutil.process_iter(["status"]):
+        with suppress(OSError):
+            if (
+                os.getpgid(process.pid) == group
+                and process.info["status"] != psutil.STATUS_ZOMBIE
+            ):
+                return False
+    return True
+
+
+def _guard(group: int) -> int:
+    """Start a process that ends a group when this one dies; an end of a pipe calls it off."""
+    reader, writer = os.pipe()
+    if os.fork():
+        os.close(reader)
+        os.set_inheritable(writer, False)
+        return writer
+    try:  # in the guard: nothing but system calls and psutil
+        os.close(writer)
+        os.setsid()
+        for number in (signal.SIGINT, *STOPS):
+            signal.signal(number, signal.SIG_IGN)
+        if not os.read(reader, 4):
+            end_group(group)
+    finally:
+        os._exit(0)
+
+
+@contextmanager
+def _stops_raise() -> Iterator[None]:
+    def stop(number: int, _: object) -> None:
+        raise StoppedError(number)
+
+    before = {number: signal.signal(number, stop) for number in STOPS}
+    try:
+        yield
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
+
+
+@contextmanager
+def _holder() -> Iterator[None]:
+    """State beside Snakemake's lock who holds it, so that a later run sees whether it lives."""
+    path = HOLDERS / f"{os.getpid()}.json"
+    path.parent.mkdir(parents=True, exist_ok=True)
+    about = {"pid": os.getpid(), "host": socket.gethostname()}
+    path.write_text(json.dumps(about), encoding="utf-8")
+    try:
+        yield
+    finally:
+        path.unlink(missing_ok=True)
