@@ -76,6 +76,8 @@ def refuse_unread(params: Parameters, varied: Collection[str]) -> None:
 
 def _why_unread(params: Parameters, name: str, varied: Collection[str]) -> str:
     law, contact = params.friction_law, params.contact_law
+    if name in TABLE and not TABLE[name].enters_a1:
+        return "A1 does not read it"
     if name in params.in_laws:
         return "the file of a law stands for it"
     if name == "preload" and is_table(contact):

@@ -19,6 +19,7 @@ from squealpipe.methods.progress import with_progress
 from squealpipe.models import a3
 from squealpipe.models.contact_system import contact_system, with_drag
 from squealpipe.models.damped import damped_system, is_undamped, regime
+from squealpipe.models.refusals import refuse_unread
 from squealpipe.parameters import DEFAULTS, Parameters
 from squealpipe.schema import Outcome, build
 from squealpipe.schema.dynamics.runs import MotionFlag
@@ -90,6 +91,7 @@ def propensity(
         raise ValueError(
             f"distributions: a law's file stands for {name}, which cannot be spread"
         )
+    refuse_unread(params, list(frozen))
     check_stick(params, frozen)
     names = list(frozen)
     if spring_correlation and not {"k1", "k2"} <= set(names):

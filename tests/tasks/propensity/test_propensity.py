@@ -205,6 +205,13 @@ def test_what_a_table_stands_for_is_not_spread(tmp_path):
         propensity(params, *ANGLES, distributions=FRICTION, samples=64, t_end=1.0)
 
 
+@pytest.mark.parametrize("name", ["sigma", "friction_speed", "damping3"])
+def test_what_nothing_reads_is_not_spread(name):
+    given = {name: {"distribution": "uniform", "low": 0.5, "high": 2.0}}
+    with pytest.raises(ValueError, match=f"{name} cannot vary|{name}: the uniform"):
+        propensity(FORMER, *ANGLES, distributions=given, samples=64, t_end=1.0)
+
+
 def test_settings_differ_from_the_paper_one_at_a_time():
     params = FORMER.with_(k2=1.3, belt_speed=-2.0)
     found = dict(variants(params))
