@@ -20,26 +20,39 @@ results: {results}
 
 """
 OWN = """\
-# A study of scenes of your own: no paper, only what the mass does. Change the numbers, then
-#   squealpipe run --config {file}
+# A brake of your own: does it squeal or hammer, at how many hertz, why, and what stops it?
+# Change the numbers, then
+#   squealpipe assess 22deg 46deg --config {file}   the answer for one pair of angles, in seconds
+#   squealpipe run --config {file}                  the report of the scenes below, in minutes
 results: {results}
 paper: false
 
-scenes: # angles of the springs; start: displacements (m) and velocities (m/s), at rest if left out
-  mine: {{alpha1: 30deg, alpha2: 140deg, start: {{vx: 0.001}}}}
+# Angles of the springs that hold the pad, counted from the belt's line upwards:
+# alpha1 from +x, the way the belt runs, alpha2 from -x.
+#
+#    fixed end of spring 2  o               o  fixed end of spring 1
+#                            \\            /
+#                      alpha2 \\          / alpha1
+#               -x . . . . . . . (pad) . . . . . . . +x
+#              ======================================  belt, runs to the right -->
+scenes:
+  mine: {{alpha1: 22deg, alpha2: 46deg}}
 
-parameters: # SI units
-  mass: 0.5 # kg
-  k1: 1.0e+7 # N/m
+parameters: # SI units: a pad of 0.45 kg, pressed by k3 * preload = 4 kN
+  mass: 0.45 # kg
+  k1: 1.0e+7 # N/m, of spring 1
   k2: 1.0e+7
   k3: 7.0e+6 # of the contact; or measured, contact_law: {{table: contact.csv}}, of m and N
-  mu: 0.4 # or measured, friction_law: {{table: friction.csv}}, of speed (m/s) and coefficient
+  preload: 5.714e-4 # m, compression of the contact at rest
+  friction_law: exponential # or measured, friction_law: {{table: friction.csv}}, of m/s and mu
+  mu: 0.37 # friction at high sliding speed
+  mu_static: 0.55 # and at none
+  friction_speed: 1.7 # m/s, over which it falls
   belt_speed: 2.0 # m/s
-  preload: 2.0e-5 # m, so that the pad is pressed by k3 times it
-  length1: 0.02 # m
-  length2: 0.02
-  damping1: 0.0 # N s/m, along the springs
-  damping2: 0.0
+  length1: 0.1 # m, of spring 1
+  length2: 0.1
+  damping1: 42.4 # N s/m, along spring 1: 1 % of critical, 2 * 0.01 * sqrt(k1 * mass)
+  damping2: 42.4
 """
 
 

@@ -26,7 +26,11 @@ from squealpipe.rerun.sources import WORKFLOW
 from squealpipe.substitutes import rivals, stands_for
 
 KINDS = dict(
-    zip(PARTS, ((".nc",), (".png", ".svg"), (".html", ".pdf", ".json")), strict=True)
+    zip(
+        PARTS,
+        ((".nc",), (".png", ".svg"), (".html", ".pdf", ".json", ".xlsx")),
+        strict=True,
+    )
 )
 """Endings of the files in each folder of results."""
 OTHERS = {"logs", "parts", "archive", "deposit"}

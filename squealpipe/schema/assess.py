@@ -4,7 +4,7 @@ from enum import IntEnum
 
 from squealpipe.codes import Regime
 from squealpipe.schema import DatasetSchema, Outcome, Variable, or_nan, outcome, text
-from squealpipe.schema.linear import MODES, ONE_PAIR
+from squealpipe.schema.linear import ANGLES, MAP, MODES, ONE_PAIR
 
 SAMPLES = 800
 """Instants of the settled motion that a dataset keeps."""
@@ -152,6 +152,10 @@ ASSESS = DatasetSchema(
         "change_any_start": or_nan(
             "change from the present value to quiet_from_any_start", dims=("cure",), rtol=5e-2
         ),
+        "quiet_alpha1": or_nan(
+            "alpha1 of the nearest quiet pair of angles that was found", "rad", rtol=1e-2
+        ),
+        "quiet_alpha2": or_nan("alpha2 of that pair", "rad", rtol=1e-2),
         "lowest_tried": or_nan("lower end of the range that was searched", dims=("cure",)),
         "highest_tried": or_nan("upper end of that range", dims=("cure",)),
         **ONE_PAIR,
@@ -159,5 +163,41 @@ ASSESS = DatasetSchema(
         "outcome": outcome(
             among=(Outcome.converged, Outcome.unresolved, Outcome.no_sliding_state)
         ),
+    },
+)  # fmt: skip
+
+VERDICT_MAP = DatasetSchema(
+    name="verdict_map",
+    title="Whether a brake squeals or hammers, over both spring angles",
+    coordinates=ANGLES,
+    variables={
+        "verdict": Variable(
+            "what becomes of steady sliding, pushed", dims=MAP, flags=Verdict
+        ),
+        "mechanism": Variable(
+            "why steady sliding is unstable", dims=MAP, flags=Mechanism
+        ),
+        "sliding_growth_rate": or_nan(
+            "growth rate of small motions of A1 about its steady sliding", "s-1", MAP
+        ),
+        "outcome": outcome(
+            *MAP,
+            among=(Outcome.converged, Outcome.unresolved, Outcome.no_sliding_state),
+        ),
+    },
+)
+
+VERDICT_SHARES = DatasetSchema(
+    name="verdict_shares",
+    title="Shares of the verdicts over scattered parameters",
+    coordinates={"kind": text("verdict", "kind")},
+    variables={
+        "share": Variable("share of the sample", dims=("kind",), rtol=2e-2, atol=1e-2),
+        **{
+            f"share_{end}": Variable(f"{end} end of its 95 % interval", dims=("kind",), rtol=5e-2)
+            for end in ("low", "high")
+        },
+        "samples": Variable("brakes in the sample", dtype="i8"),
+        **ONE_PAIR,
     },
 )  # fmt: skip

@@ -6,8 +6,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-import xarray as xr
+from openpyxl import load_workbook
 
+from squealpipe import assess
 from squealpipe.cli import run
 from squealpipe.config.mistakes import ConfigError
 from squealpipe.config.settings import PAPER, parse_study, read_study
@@ -17,15 +18,16 @@ from squealpipe.store import load
 from squealpipe.store.netcdf import save
 from squealpipe.store.provenance import stamped
 from squealpipe.study.figures.declared import draw, reads
+from squealpipe.study.report import answer
 from squealpipe.study.report.build import write_document
 from squealpipe.study.report.content import Made, parameter_table, picture_files
-from squealpipe.study.report.own import boundaries, gather_own
-from squealpipe.tasks.curves.chart import regime_chart
-from squealpipe.tasks.curves.contact import boundary_distance, contact_boundary
-from squealpipe.tasks.dynamics.runs import simulate, validity_map
+from squealpipe.study.report.own import gather_own
+from squealpipe.study.report.tables import write_tables
+from squealpipe.tasks.assess.map import verdict_map
+from squealpipe.tasks.assess.shares import verdict_shares
+from squealpipe.tasks.dynamics.runs import simulate
 from squealpipe.tasks.own.scenes import own_scenes, variants
 from squealpipe.tasks.propensity.distributions import centred
-from squealpipe.tasks.propensity.propensity import propensity
 from tests.conftest import ROOT
 
 PAD = Parameters(
@@ -73,24 +75,6 @@ def test_a_start_from_rest_alone_asks_for_a_cheaper_level(found):
     assert set(found.model.sel(scene="rest").values.tolist()) - {""}
 
 
-def test_distance_to_the_nearest_other_cell():
-    angles = np.radians([0.0, 10.0, 20.0, 30.0])
-    lost = np.zeros((4, 4))
-    lost[3, 1] = 1
-    cells = {"separates": lost, "regime_linear": np.zeros((4, 4))}
-    cells = {name: (("alpha1", "alpha2"), values) for name, values in cells.items()}
-    validity = xr.Dataset(cells, {"alpha1": angles, "alpha2": angles})
-    at = boundaries({"validity_map": validity}, "", math.radians(10), math.radians(10))
-    assert at["lost"] is False
-    assert at["lost_boundary"] == pytest.approx(20.0)
-    assert at["unstable_boundary"] is None
-    # half a turn further the springs come from the other side: another map
-    at = boundaries(
-        {"validity_map": validity}, "", math.radians(10), math.radians(10) + math.pi
-    )
-    assert at["lost"] is at["lost_boundary"] is None
-
-
 def test_distributions_are_centred_on_the_study():
     given = centred(PAD, 0.5, 2.4)
     assert given["k1"]["mean"] == PAD.k1
@@ -99,73 +83,109 @@ def test_distributions_are_centred_on_the_study():
     assert given["alpha2"]["mean"] == 2.4
 
 
-def test_report_has_pages_without_the_paper(found, tmp_path):
-    angles = np.linspace(0.0, math.pi, 13)
-    end = 20 * PAD.time_unit
-    boundary = contact_boundary(PAD, angles, angles, t_end=end)
-    design = {f"alpha{i}": scenes(0.0)["mine"][f"alpha{i}"] for i in (1, 2)}
-    distance = boundary_distance(boundary, design)
+@pytest.fixture(scope="module")
+def answers():
+    mine = scenes(0.0)["mine"]
+    told = assess(PAD, mine["alpha1"], mine["alpha2"], tol=1e-9)
+    return dict.fromkeys(scenes(0.0), told)
+
+
+def made_of(found, answers, folder, **further):
+    """The datasets of a study, in files, and its pictures."""
+    angles = np.linspace(0.0, math.pi, 5)
     datasets = {
         "own_scenes": found,
-        "validity_map": validity_map(PAD, angles, angles, t_end=end),
-        "validity_boundary": boundary,
-        **{f"validity_distance/{name}": distance for name in scenes(0.0)},
-        "propensity": propensity(
-            PAD, 0.5, 2.4, distributions=centred(PAD, 0.5, 2.4), samples=64, t_end=end
-        ),
-        "angle_chart": regime_chart(
-            PAD,
-            angles,
-            angles,
-            design={"alpha1": [0.5], "alpha2": [2.4]},
-            t_end=end / 10,
-        ),
-        "friction_chart/mine": regime_chart(
-            PAD, 0.5, 2.4, kappa=angles[1:], mu=angles[1:] / 5, t_end=end / 10
-        ),
+        "verdict_map": verdict_map(PAD, angles, angles, workers=1),
+        **{f"assess/{name}": answer for name, answer in answers.items()},
         **{
-            f"own/{name}": simulate(PAD, *design.values(), t_end=end)
-            for name in scenes(0.0)
+            f"own/{name}": simulate(
+                PAD, each["alpha1"], each["alpha2"], t_end=20 * PAD.time_unit
+            )
+            for name, each in scenes(0.0).items()
         },
+        **further,
     }
-    config = {"parameters": PAD.as_dict()}
-    here = boundaries(datasets, "mine", *design.values())
-    other = boundaries(
-        {"validity_map": datasets["validity_map"]}, "mine", *design.values()
-    )
-    assert here["lost"] is other["lost"]
-    assert abs(here["lost_boundary"] - other["lost_boundary"]) < 1.5 * here["cell"]
     made, figures = {}, {}
     for name, dataset in datasets.items():
+        config = {"parameters": PAD.as_dict()}
         path = save(
-            stamped(lambda one=dataset: one, config=config),
-            tmp_path / f"data/{name}.nc",
+            stamped(lambda one=dataset: one, config=config), folder / f"data/{name}.nc"
         )
         made[name] = Made(path=path, rule="some")
         datasets[name] = load(path)
-    for name in ("own_model", "own_motion", "own_map", "propensity", "regime_charts"):
-        path = tmp_path / f"{name}.png"
+    for name in ("own_settled", "own_map", "own_model", "own_motion"):
+        path = folder / f"{name}.png"
         save_figure(draw(name, datasets), [path])
         figures[name] = Made(path=path, rule="some", datasets=reads(name))
-    content = gather_own(made, figures, PAD, [("dynamics.validity_points", 181, 13)])
-    page = tmp_path / "index.html"
-    pictures = picture_files(content, figures)
-    write_document("study", content, pictures, page=page, pdf=tmp_path / "report.pdf")
+    return made, figures
+
+
+def words_of(page):
     text = page.read_text(encoding="utf-8")
-    words = " ".join(
+    return " ".join(
         re.sub(r"<style>.*?</style>|<[^>]+>", " ", text, flags=re.DOTALL).split()
     )
-    for absent in ("paper", "Fig.", "None", " nan"):
+
+
+def test_report_begins_with_the_answer_and_has_no_paper(found, answers, tmp_path):
+    made, figures = made_of(found, answers, tmp_path)
+    content = gather_own(
+        made, figures, PAD, [("dynamics.hammering_points", 91, 5)], ["this part"]
+    )
+    page = tmp_path / "index.html"
+    write_document(
+        "study",
+        content,
+        picture_files(content, figures),
+        page=page,
+        pdf=tmp_path / "report.pdf",
+    )
+    words = words_of(page)
+    for absent in ("paper", "Fig.", "None", " nan", "rad/s", "κ"):
         assert absent not in words
-    for present in (
-        "pushed off the belt",
-        "mine",
-        "N m",
-        "Nearest angles",
-        "dynamics.validity_points 181 13",
-    ):
+    told = list(answer.lines(answers["mine"]))
+    for present in (*told[:3], "mine", "What changes it", "this part",
+                    "dynamics.hammering_points 91 5"):  # fmt: skip
         assert present in words
-    assert text.count("<img") == len(figures)
+    assert words.index(told[0]) < words.rindex("What changes it")
+    assert "With scattered parameters" not in words
+    assert page.read_text(encoding="utf-8").count("<img") == len(figures)
+
+
+def test_scatter_is_told_where_it_is_configured(found, answers, tmp_path):
+    spread = {"mu": {"distribution": "uniform", "low": 0.1, "high": 0.7}}
+    angles = [scenes(0.0)["mine"][name] for name in ("alpha1", "alpha2")]
+    shares = verdict_shares(PAD, *angles, distributions=spread, samples=16)
+    assert float(shares.share.sum()) == pytest.approx(1.0)
+    made, figures = made_of(found, answers, tmp_path, verdict_shares=shares)
+    scatter = gather_own(made, figures, PAD)["scatter"]
+    assert scatter["samples"] == 16
+    assert scatter["distributions"] == [
+        {"name": "mu", "words": "uniform, low 0.1, high 0.7"}
+    ]
+
+
+def test_tables_hold_the_numbers_of_the_answer(answers, tmp_path):
+    write_tables(answers, PAD, tmp_path / "tables.xlsx")
+    book = load_workbook(tmp_path / "tables.xlsx")
+    assert book.sheetnames[:3] == ["Answer", "What stops it", "Parameters"]
+    rows = {row[0].value: row[2].value for row in book["Answer"].iter_rows(min_row=2)}
+    told = answers["mine"]
+    long_name = told.velocity_rms_across.attrs["long_name"]
+    assert rows[long_name] == pytest.approx(float(told.velocity_rms_across))
+    assert rows["in words"] == answer.headline(told)
+    cures = [
+        (row[1].value, row[4].value)
+        for row in book["What stops it"].iter_rows(min_row=2)
+        if row[0].value == "mine"
+    ]
+    for words, value in cures:
+        name = next(key for key, each in answer.NAMES.items() if each == words)
+        expected = float(told.quiet_from.sel(cure=name))
+        assert (value is None) == math.isnan(expected)
+        if value is not None:
+            assert value == pytest.approx(expected)
+    assert book["Parameters"]["C2"].value == PAD.mass
 
 
 def test_a_table_of_friction_stands_for_the_coefficient(found, tmp_path):
@@ -209,3 +229,4 @@ def test_init_own_writes_a_study_that_is_valid(tmp_path):
     assert not study.paper
     assert list(study.scenes) == ["mine"]
     assert study.parameters.k3 == 7e6
+    assert study.parameters.friction_law == "exponential"

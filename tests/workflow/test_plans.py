@@ -12,12 +12,11 @@ results: results/own
 scenes: {mine: {alpha1: 30deg, alpha2: 140deg}}
 """
 RULES = {
-    "run_scenes", "map_validity", "follow_boundary", "chart_regimes", "compute_scene_propensity",
-    "map_critical_friction",
-    "draw_own", "draw_dynamics",
-    "draw_linear", "draw_propensity", "write_own_report", "compute_explorer",
+    "assess_scenes", "map_verdicts", "draw_own", "write_own_report", "compute_explorer",
     "write_explorer",
 }  # fmt: skip
+SCATTERED = {"share_verdicts", "compute_scene_propensity", "draw_propensity"}
+"""Rules of a study that configures distributions; none is assumed."""
 
 
 def test_only_the_rules_of_its_report_run_and_only_their_results_are_archived(tmp_path):
@@ -25,6 +24,11 @@ def test_only_the_rules_of_its_report_run_and_only_their_results_are_archived(tm
     path.write_text(OWN)
     plan = explain([path], directory=tmp_path)
     assert {job.rule for job in plan.jobs} == RULES
+    spread = "robustness: {distributions: {mu: {distribution: uniform, low: 0.1, high: 0.4}}}"
+    scattered = tmp_path / "scattered.yaml"
+    scattered.write_text(OWN + spread)
+    with_scatter = explain([scattered], directory=tmp_path)
+    assert {job.rule for job in with_scatter.jobs} == RULES | SCATTERED
     assert {made for job in plan.jobs for made in job.outputs} == set(plan.keys)
     words = ["--directory", str(tmp_path), "--configfile", str(path)]
     run = run_snakemake(ROOT, *words, "--dry-run", "--nocolor")

@@ -75,6 +75,9 @@ _given = parameters_of(STUDY.slice("parameters"))
 PAPERS_FRICTION = not extensions(_given)
 """Whether the levels that carry neither dashpots nor other laws of friction can be part of it."""
 
+LEFT_OUT = [] if PAPERS_FRICTION else ["backbones in the explorer", "models that are cheaper than A1"]
+"""What the report of a study of one's own names as left out."""
+
 if not PAPERS_FRICTION and workflow.is_main_process:
     beyond = {k: v for k, v in _given.as_dict().items() if k not in Parameters(mu=_given.mu).as_dict()}
     left_out = (
@@ -82,7 +85,7 @@ if not PAPERS_FRICTION and workflow.is_main_process:
         "model ladder, time stepping, exact boundaries of A3, and the inference from the paper's "
         "statements"
         if STUDY.paper
-        else "charts of regimes, backbones in the explorer, and models that are cheaper than A1"
+        else "backbones in the explorer, and models that are cheaper than A1"
     )
     print(
         "Left out, for they carry neither dashpots nor any laws but Coulomb's with one μ and a "

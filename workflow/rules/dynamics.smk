@@ -3,7 +3,7 @@
 from squealpipe.laws.contact_laws import LINEAR
 from squealpipe.parameters import SCENES
 
-PLACED = ["F3"] if STUDY.paper else sorted(STUDY.scenes)  # their distance from the boundary is measured
+PLACED = ["F3"]  # its distance from the boundary is measured
 IN_TIME = [scene for scene in SCENES.values() if scene.figure <= 5]
 
 
@@ -39,7 +39,7 @@ for folder, reading in SHOWN.items():
         script:
             "../scripts/dynamics/map_validity.py"
 
-    if _given.contact_law == LINEAR:
+    if STUDY.paper and _given.contact_law == LINEAR:
 
         rule:
             name:
@@ -48,7 +48,7 @@ for folder, reading in SHOWN.items():
                 boundary=data(f"{folder}validity_boundary"),
                 distances=[data(f"{folder}validity_distance/{name}") for name in PLACED],
             params:
-                settings=validity if STUDY.paper else validity | settings("scenes"),
+                settings=validity,
             threads: cores_for(1, enough=1)
             script:
                 "../scripts/dynamics/follow_boundary.py"
@@ -86,8 +86,8 @@ rule refine_validity:
         "../scripts/dynamics/refine_validity.py"
 
 
-if PAPERS_FRICTION:
-    CHARTED = ["F2d", "F3", "F4"] if STUDY.paper else sorted(STUDY.scenes)[:3]
+if STUDY.paper and PAPERS_FRICTION:
+    CHARTED = ["F2d", "F3", "F4"]
 
     rule chart_regimes:
         output:

@@ -3,28 +3,51 @@
 OWN = list(STUDY.scenes)
 
 
-rule run_scenes:
+rule assess_scenes:
     output:
+        answers=[data(f"assess/{name}") for name in OWN],
         runs=[data(f"own/{name}") for name in OWN],
         scenes=data("own_scenes"),
     params:
         settings=settings("parameters", "scenes", "dynamics.tol"),
     script:
-        "../scripts/own/run_scenes.py"
+        "../scripts/own/assess_scenes.py"
 
 
-rule compute_scene_propensity:
+rule map_verdicts:
     output:
-        data("propensity"),
+        data("verdict_map"),
     params:
-        settings=settings(
-            "parameters",
-            "scenes",
-            "robustness.samples",
-            "robustness.horizon",
-            "robustness.spring_correlation",
-            "robustness.distributions",
-        ),
-    threads: cores_for(STUDY.robustness.samples, enough=1000)
+        settings=settings("parameters", "dynamics.hammering_points"),
+    threads: cores_for(STUDY.dynamics.hammering_points**2, enough=900)
     script:
-        "../scripts/own/compute_scene_propensity.py"
+        "../scripts/own/map_verdicts.py"
+
+
+if STUDY.robustness.distributions:  # no scatter is assumed
+
+    rule share_verdicts:
+        output:
+            data("verdict_shares"),
+        params:
+            settings=settings(
+                "parameters", "scenes", "robustness.samples", "robustness.distributions"
+            ),
+        script:
+            "../scripts/own/share_verdicts.py"
+
+    rule compute_scene_propensity:
+        output:
+            data("propensity"),
+        params:
+            settings=settings(
+                "parameters",
+                "scenes",
+                "robustness.samples",
+                "robustness.horizon",
+                "robustness.spring_correlation",
+                "robustness.distributions",
+            ),
+        threads: cores_for(STUDY.robustness.samples, enough=1000)
+        script:
+            "../scripts/own/compute_scene_propensity.py"

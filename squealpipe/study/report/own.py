@@ -1,6 +1,7 @@
 """What the report of a study of one's own shows, as plain data."""
 
 import json
+import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -8,9 +9,9 @@ import numpy as np
 import xarray as xr
 
 from squealpipe.parameters import Parameters
-from squealpipe.schema.own import NUMBERS
+from squealpipe.schema.assess import Verdict
 from squealpipe.study.claims.evidence import Run
-from squealpipe.study.figures.comparison.model_ladder import QUESTION_NAMES
+from squealpipe.study.report import answer
 from squealpipe.study.report.content import (
     Made,
     changed_rows,
@@ -18,7 +19,7 @@ from squealpipe.study.report.content import (
     pictures,
 )
 from squealpipe.study.report.sections import OWN
-from squealpipe.text import number
+from squealpipe.text import engineering, number
 
 
 def gather_own(
@@ -26,131 +27,148 @@ def gather_own(
     figures: Mapping[str, Made],
     parameters: Parameters,
     changed: Sequence[tuple[str, Any, Any]] = (),
+    left_out: Sequence[str] = (),
 ) -> dict[str, Any]:
     """Content of ``templates/study.typ``.
 
     Args:
         changed: keys of grids and horizons that are not as shipped, with both values.
+        left_out: parts of the study that its laws cannot have, in words.
     """
     run = Run(parameters, {name: made.path for name, made in datasets.items()})
-    table, spread = run["own_scenes"], run["propensity"]
+    table = run["own_scenes"]
     return {
-        "title": "What the mass does: report of a study",
+        "title": "Does it squeal? Report of a brake",
         "changed": changed_rows(changed),
+        "left_out": list(left_out),
         "parameters": parameter_table(parameters, of_a1=True),
         "figures": pictures(OWN, figures, run),
-        "variants": [str(name) for name in table.variant.values],
-        "scenes": [_scene(table.sel(scene=name), run) for name in table.scene.values],
-        "propensity_scene": str(table.scene.values[0]),
-        "propensity_end": float(spread.t_end),
+        "scenes": [
+            scene(table.sel(scene=name), run[f"assess/{name}"])
+            for name in table.scene.values
+        ],
+        "scatter": _scatter(run),
+    }
+
+
+def scene(table: xr.Dataset, told: xr.Dataset) -> dict[str, Any]:
+    """The answer of one scene in words, and its tables."""
+    quiet = answer.verdict_of(told) is Verdict.quiet
+    cures = answer.cures(told)
+    return {
+        "name": str(table.scene.item()),
+        "angles": [number(float(np.degrees(told[f"alpha{i}"]))) for i in (1, 2)],
+        "verdict": answer.verdict_of(told).name,
+        "quiet": quiet,
+        "headline": answer.headline(told),
+        "cause": answer.cause(told),
+        "level": answer.level(told),
+        "sudden": answer.sudden(told),
+        "cheapest": [
+            answer.cure_line(cure, quiet) for cure in cures[: answer.CHEAPEST]
+        ],
+        "cures": [cure._asdict() for cure in cures],
+        "not_cures": [
+            {"words": words, "tried": tried} for words, tried in answer.not_cures(told)
+        ],
+        "nearest": _nearest(told),
+        "numbers": _numbers(told),
+        "start": _from_start(table),
+    }
+
+
+def _nearest(told: xr.Dataset) -> str | None:
+    """Where the nearest other verdict lies in the plane of both angles, in words."""
+    now = [math.degrees(float(told[f"alpha{i}"])) for i in (1, 2)]
+    there = [math.degrees(float(told[f"quiet_alpha{i}"])) for i in (1, 2)]
+    if not np.isfinite(there).all():
+        return None
+    moves = [b - a for a, b in zip(now, there, strict=True)]
+    away = number(math.hypot(*moves), 2)
+    how = " and ".join(
+        f"alpha{i} {'+' if move > 0 else '−'}{number(abs(move), 2)}°"
+        for i, move in enumerate(moves, start=1)
+        if abs(move) > 1e-3 * math.hypot(*moves)
+    )
+    return f"{away}° away, at {number(there[0])}°, {number(there[1])}° ({how})"
+
+
+def _numbers(told: xr.Dataset) -> list[dict[str, str]]:
+    """Quantity, value from steady sliding and value from a sudden start."""
+    rows = []
+    for name, unit, words in (
+        ("frequency", "Hz", "Strongest line of the velocity"),
+        ("velocity_rms_along", "m s-1", "Velocity along the belt, rms"),
+        ("velocity_rms_across", "m s-1", "Velocity across the belt, rms"),
+        ("displacement_peak", "m", "Largest distance from the mean position"),
+        ("peak_contact_force", "N", "Largest contact force"),
+        ("peak_contact_force_over_preload", "1", "The same over the preload"),
+        ("separated_fraction", "%", "Time without contact"),
+        ("stick_fraction", "%", "Time sticking to the belt"),
+        ("impact_rate", "s-1", "Impacts per second"),
+        ("impact_speed", "m s-1", "Fastest impact"),
+        ("settled_by", "s", "Settled by"),
+    ):
+        values = [float(told[f"{prefix}{name}"]) for prefix in ("", "sudden_")]
+        rows.append(
+            {
+                "words": words,
+                "pushed": _written(values[0], unit),
+                "sudden": _written(values[1], unit),
+            }
+        )
+    return rows
+
+
+def _written(value: float, unit: str) -> str:
+    if not math.isfinite(value):
+        return "–"
+    if unit == "%":
+        return f"{number(100.0 * value)} %"
+    return engineering(value, unit)
+
+
+def _from_start(table: xr.Dataset) -> dict[str, str]:
+    """What the run from the scene's own start does."""
+    run = table.isel(variant=0)
+    first = float(run.first_separation_time)
+    return {
+        "first_loss": engineering(first, "s") if math.isfinite(first) else "none",
+        "end": engineering(float(table.t_end), "s"),
+    }
+
+
+def _scatter(run: Run) -> dict[str, Any] | None:
+    """Shares of the verdicts over configured distributions; None where none are."""
+    if "verdict_shares" not in run:
+        return None
+    shares = run["verdict_shares"]
+    given = json.loads(shares.attrs["arguments"])["distributions"]
+    return {
+        "samples": int(shares.samples),
         "distributions": [
-            {"name": name, "words": f"{given.pop('distribution')}, {_listed(given)}"}
-            for name, given in json.loads(spread.attrs["arguments"])[
-                "distributions"
-            ].items()
+            {"name": name, "words": _distribution(each)} for name, each in given.items()
         ],
         "shares": [
             {
-                "what": str(name).replace("_", " "),
-                "share": float(spread.share.sel(quantity=name)),
-                "low": float(spread.share_low.sel(quantity=name)),
-                "high": float(spread.share_high.sel(quantity=name)),
-                "leading": _leading(spread.sel(quantity=name)),
+                "what": str(kind),
+                "share": _percent(shares.share.sel(kind=kind)),
+                "interval": f"{_percent(shares.share_low.sel(kind=kind))} to "
+                f"{_percent(shares.share_high.sel(kind=kind))}",
             }
-            for name in spread.quantity.values
+            for kind in shares.kind.values
         ],
     }
 
 
-def _scene(table: xr.Dataset, run: Run) -> dict[str, Any]:
-    runs = [
-        {
-            "motion": str(here.motion.item()),
-            **{
-                name: _finite(here[name])
-                for name in (*NUMBERS, "predictability_horizon")
-            },
-            "frequencies": [
-                value for value in here.dominant_frequency.values if value > 0
-            ],
-        }
-        for here in (
-            table.isel(variant=index) for index in range(table.sizes["variant"])
-        )
+def _distribution(given: Mapping[str, Any]) -> str:
+    numbers = [
+        f"{key.replace('_', ' ')} {number(value)}"
+        for key, value in given.items()
+        if key != "distribution"
     ]
-    return {
-        "name": str(table.scene.item()),
-        "angles": [float(np.degrees(table[name])) for name in ("alpha1", "alpha2")],
-        "t_end": float(table.t_end),
-        "runs": runs,
-        "models": [
-            {
-                "question": QUESTION_NAMES[str(name)],
-                "model": str(table.model.sel(question=name).item()),
-            }
-            for name in table.question.values
-        ],
-        **boundaries(
-            run, str(table.scene.item()), float(table.alpha1), float(table.alpha2)
-        ),
-    }
+    return ", ".join([str(given["distribution"]), *numbers])
 
 
-def boundaries(
-    run: Mapping[str, xr.Dataset], scene: str, alpha1: float, alpha2: float
-) -> dict[str, Any]:
-    """What the map says at a pair of angles, and how far the nearest cell is that says otherwise.
-
-    Of contact the boundary as curves says it, where the study has it. Distances are in degrees in
-    the plane of both angles; None: no such cell. Outside the map nothing is said: A1 moves
-    otherwise where a spring comes from the opposite side.
-    """
-    validity = run["validity_map"]
-    centres = [validity[name].values for name in ("alpha1", "alpha2")]
-    gaps = [grid - angle for grid, angle in zip(centres, (alpha1, alpha2), strict=True)]
-    distance = np.degrees(np.hypot(gaps[0][:, None], gaps[1][None, :]))
-    nearest = np.unravel_index(int(distance.argmin()), distance.shape)
-    inside = all(gap.min() <= 0.0 <= gap.max() for gap in gaps)
-    found: dict[str, Any] = {}
-    for name, cells in (
-        ("lost", validity.separates.values == 1),
-        ("unstable", validity.regime_linear.values > 0),
-    ):
-        here = bool(cells[nearest])
-        others = distance[cells != here]
-        found[name] = here if inside else None
-        found[f"{name}_boundary"] = (
-            float(others.min()) if inside and others.size else None
-        )
-    found["lost_share"] = float(100 * validity.separates.mean())
-    if "validity_boundary" in run:
-        found["lost_share"] = 100 * (1.0 - float(run["validity_boundary"].kept_share))
-        if inside:
-            measured = run[f"validity_distance/{scene}"]
-            found["lost"] = not bool(measured.kept)
-            found["lost_boundary"] = _finite(np.degrees(measured.distance))
-    found["cell"] = float(
-        np.degrees(validity.alpha1.values[1] - validity.alpha1.values[0])
-    )
-    return found
-
-
-def _leading(row: xr.Dataset) -> str:
-    """The parameter with the largest total index, or why there is none."""
-    if float(row.share) in {0.0, 1.0}:
-        return "the same in the whole sample"
-    total = row.total_order.values
-    if not np.isfinite(total).any():
-        return "not resolved by this sample"
-    best = int(np.nanargmax(total))
-    return f"{row.input.values[best]} ({total[best]:.2f})"
-
-
-def _listed(numbers: Mapping[str, float]) -> str:
-    return ", ".join(
-        f"{name.replace('_', ' ')} {number(n)}" for name, n in numbers.items()
-    )
-
-
-def _finite(value: Any) -> float | None:
-    return float(value) if np.isfinite(value) else None
+def _percent(share: xr.DataArray) -> str:
+    return f"{number(100.0 * float(share), 2)} %"

@@ -67,12 +67,5 @@ FIGURES = tuple(
 )
 """All figures, in order."""
 
-OWN = (
-    "own_model",
-    "own_motion",
-    "own_map",
-    "regime_charts",
-    "propensity",
-    "critical_friction",
-)
+OWN = ("own_settled", "own_map", "own_model", "own_motion", "propensity")
 """Figures of the report of a study of one's own."""

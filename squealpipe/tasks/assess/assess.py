@@ -11,7 +11,7 @@ from squealpipe.parameters import Parameters
 from squealpipe.schema import Outcome, build
 from squealpipe.schema.assess import ASSESS, CURES, Mechanism, Verdict
 from squealpipe.schema.origin import recorded
-from squealpipe.tasks.assess.cures import boundaries, strikes
+from squealpipe.tasks.assess.cures import boundaries, nearest_angles, strikes
 from squealpipe.tasks.assess.levels import levels
 from squealpipe.tasks.assess.settling import pushed, settle, start_at
 from squealpipe.tasks.assess.sliding import Design, Sliding
@@ -59,6 +59,7 @@ def assess(
     cures = boundaries(
         design, of_verdict.verdict, [each.last.final for each in others[:2]], tol=tol
     )
+    nearest = nearest_angles(design, of_verdict.verdict, tol=tol)
     outcome = Outcome.converged
     if of_verdict.verdict is Verdict.undetermined:
         outcome = Outcome.unresolved
@@ -84,6 +85,8 @@ def assess(
                     ("highest_tried", "highest"),
                 )
             },
+            "quiet_alpha1": nearest[0],
+            "quiet_alpha2": nearest[1],
             "unit": [CURES[name] for name in cures],
             "alpha1": alpha1,
             "alpha2": alpha2,

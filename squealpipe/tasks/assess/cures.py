@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from squealpipe.schema.assess import CURES, Verdict
-from squealpipe.tasks.assess.designs import Cure, cures_of
+from squealpipe.tasks.assess.designs import FARTHEST, STEP, Cure, cures_of
 from squealpipe.tasks.assess.settling import Start, pushed, settle, start_at
 from squealpipe.tasks.assess.sliding import Design, Sliding
 
@@ -24,6 +24,8 @@ LOCATED_ANY = 1e-2
 """The same, for the verdict from any start."""
 RUNGS = 8
 """Values beyond the linear boundary that are run at most."""
+RAYS = 24
+"""Directions in which the nearest quiet pair of angles is looked for."""
 HALVINGS = 50
 """Bisections of the linear boundary."""
 KICKS = ((0.0, 1.0), (-1.0, -0.5), (1.0, 2.0))
@@ -115,6 +117,42 @@ def boundaries(
             ),
         )
     )
+
+
+def nearest_angles(
+    design: Design, verdict: Verdict, *, tol: float
+) -> tuple[float, float]:
+    """The nearest pair of angles at which the verdict changes, along rays; NaN: none.
+
+    Along each ray it is located as a cure is; the nearest lies between two rays, a few per cent
+    nearer.
+    """
+    steps = STEP * np.arange(1, 1 + round(FARTHEST / STEP))
+    sides = []
+    for turn in np.linspace(0.0, 2.0 * math.pi, RAYS, endpoint=False):
+        along, across = math.cos(turn), math.sin(turn)
+
+        def apply(
+            distance: float, along: float = along, across: float = across
+        ) -> Design:
+            return design._replace(
+                alpha1=design.alpha1 + distance * along,
+                alpha2=design.alpha2 + distance * across,
+            )
+
+        cure = Cure(0.0, apply, np.zeros(0), steps)
+        sides.append(Side("alpha", cure, steps, 0.0))
+
+    def dies_out(designs: Sequence[Design]) -> list[bool]:
+        return _dies_out(designs, _pushed, tol)
+
+    found = _search(sides, verdict is Verdict.quiet, dies_out, LOCATED)
+    known = [side for side in found if not math.isnan(side.answer)]
+    if not known:
+        return math.nan, math.nan
+    best = min(known, key=lambda side: side.answer)
+    there = best.cure.apply(best.answer)
+    return there.alpha1, there.alpha2
 
 
 def _change(name: str, value: float, found: float) -> float:

@@ -19,7 +19,7 @@ MOST_DAMPING = 0.5
 """Largest damping ratio."""
 FARTHEST = math.radians(60.0)
 """Largest change of an angle."""
-RATIO, STEP = 1.08, math.radians(1.0)
+RATIO, STEP = 1.08, math.radians(2.0)
 """Factor, and angle, between values that are looked at first."""
 
 PLAIN = """\

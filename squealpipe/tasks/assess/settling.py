@@ -14,7 +14,7 @@ import numpy as np
 from squealpipe.models.damped import is_undamped
 from squealpipe.schema.assess import Verdict
 from squealpipe.tasks.assess.sliding import Design, Sliding
-from squealpipe.tasks.assess.windows import Windows, run_windows
+from squealpipe.tasks.assess.windows import SAMPLES, Windows, run_windows
 
 PUSH = 0.01
 """Push of steady sliding, over the static compression."""
@@ -94,8 +94,10 @@ def start_at(design: Design, sliding: Sliding | None, state: np.ndarray) -> Star
     return Start(design, np.asarray(state, float), sliding, speed)
 
 
-def settle(starts: Sequence[Start], *, tol: float, most: float = MOST) -> list[Settled]:
-    """Run each start until it has settled."""
+def settle(
+    starts: Sequence[Start], *, tol: float, most: float = MOST, samples: int = SAMPLES
+) -> list[Settled]:
+    """Run each start until it has settled, ``most`` periods at most."""
     found: dict[int, Settled] = {}
     states = np.array([start.state for start in starts])
     length = np.array([_first_window(start, most) for start in starts])
@@ -105,7 +107,7 @@ def settle(starts: Sequence[Start], *, tol: float, most: float = MOST) -> list[S
     while rows := [row for row in range(len(starts)) if row not in found]:
         seconds = length[rows] * period[rows]
         designs = [starts[row].design for row in rows]
-        windows = run_windows(designs, states[rows], seconds, tol=tol)
+        windows = run_windows(designs, states[rows], seconds, tol=tol, samples=samples)
         elapsed[rows] += length[rows]
         for at, row in enumerate(rows):
             now, start = windows.row(at), starts[row]

@@ -13,7 +13,7 @@ from squealpipe.solvers.a1.ensemble import PEAK, REACH, Ensemble, run_ensemble
 from squealpipe.tasks.assess.sliding import Design
 
 SAMPLES = 2048
-"""States of a window from which its mean squares are formed."""
+"""States of a window, if no other number is asked for."""
 NUMBERS = tuple(
     name
     for name, row in TABLE.items()
@@ -54,18 +54,24 @@ class Windows:
 
 
 def run_windows(
-    designs: Sequence[Design], starts: np.ndarray, lengths: np.ndarray, *, tol: float
+    designs: Sequence[Design],
+    starts: np.ndarray,
+    lengths: np.ndarray,
+    *,
+    tol: float,
+    samples: int = SAMPLES,
 ) -> Windows:
     """Run each design from its start for its length of time.
 
     Args:
         starts: (runs, 4), m and m/s.
         lengths: (runs,), s.
+        samples: states of each window from which its mean squares are formed.
     """
     parts: dict[str, np.ndarray] = {}
     for rows in _alike(designs):
         run = _ensemble(
-            [designs[row] for row in rows], starts[rows], lengths[rows], tol
+            [designs[row] for row in rows], starts[rows], lengths[rows], tol, samples
         )
         for name, values in vars(_statistics(run, lengths[rows])).items():
             whole = parts.setdefault(
@@ -87,7 +93,11 @@ def _alike(designs: Sequence[Design]) -> list[np.ndarray]:
 
 
 def _ensemble(
-    designs: Sequence[Design], starts: np.ndarray, lengths: np.ndarray, tol: float
+    designs: Sequence[Design],
+    starts: np.ndarray,
+    lengths: np.ndarray,
+    tol: float,
+    samples: int,
 ) -> Ensemble:
     params = [design.params for design in designs]
     given: dict[str, Any] = {
@@ -101,7 +111,7 @@ def _ensemble(
         np.array([design.alpha1 for design in designs]),
         np.array([design.alpha2 for design in designs]),
         t_end=lengths,
-        times=lengths[:, None] * np.linspace(0.0, 1.0, SAMPLES + 1)[1:],
+        times=lengths[:, None] * np.linspace(0.0, 1.0, samples + 1)[1:],
         initial_state=starts,
         tol=tol,
         tracked=(PEAK, REACH),

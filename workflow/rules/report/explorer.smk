@@ -5,7 +5,7 @@ rule compute_explorer:
     output:
         data("explorer"),
     params:
-        settings=settings("parameters", "explorer"),
+        settings=settings("parameters", "explorer", *([] if STUDY.paper else ["scenes"])),
     threads: cores_for(STUDY.explorer.points**2, enough=200)
     script:
         "../../scripts/report/compute_explorer.py"
@@ -14,9 +14,10 @@ rule compute_explorer:
 EXPLORER_PAGE = [
     from_root(f"squealpipe/study/report/explorer/{name}") for name in ("page.html.j2", "explorer.css", "chart.js", "explorer.js")
 ]
-EXPLORER_MAPS = {"validity": f"{BEYOND}validity_map"}
+EXPLORER_MAPS = {"verdicts": "verdict_map"}
 if STUDY.paper:
-    EXPLORER_MAPS |= {
+    EXPLORER_MAPS = {
+        "validity": f"{BEYOND}validity_map",
         "stability": f"{BEYOND}stability_map",
         "frequencies": f"{BEYOND}natural_frequencies",
         "hammering": "hammering_map",

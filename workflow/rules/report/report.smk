@@ -50,8 +50,8 @@ if STUDY.paper:
 
     TARGETS += rules.write_report.output
 else:
-    read = {"own_scenes", "validity_map", "propensity"}
-    own = {name: made for name, made in MADE.items() if name in read or name.startswith(("own/", "validity_distance/"))}
+    read = {"own_scenes", "verdict_map", "verdict_shares"}
+    own = {name: made for name, made in MADE.items() if name in read or name.startswith(("own/", "assess/"))}
     own |= {name: MADE[name] for drawn in DRAWN.values() for name in drawn["datasets"]}
 
     rule write_own_report:
@@ -63,9 +63,11 @@ else:
             page=f"{RESULTS}/report/index.html",
             pdf=f"{RESULTS}/report/report.pdf",
             provenance=f"{RESULTS}/report/provenance.json",
+            tables=f"{RESULTS}/report/tables.xlsx",
         params:
             modules=[from_root(declared.find_module(name)) for name in READ_BY],
             settings=settings("parameters"),
+            left_out=LEFT_OUT,
             made=own,
             drawn=DRAWN,
             changed=[row for row in STUDY.changes_of(SHIPPED) if row[0].startswith(("dynamics.", "robustness."))],

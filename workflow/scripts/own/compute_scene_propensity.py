@@ -2,7 +2,6 @@
 
 from squealpipe.parameters import parameters_of
 from squealpipe.store import produce
-from squealpipe.tasks.propensity.distributions import centred
 from squealpipe.tasks.propensity.propensity import propensity
 
 settings = snakemake.params.settings
@@ -12,7 +11,7 @@ produce(
     lambda: propensity(
         params,
         *angles,
-        distributions=settings["robustness.distributions"] or centred(params, *angles),
+        distributions=settings["robustness.distributions"],
         samples=settings["robustness.samples"],
         spring_correlation=settings["robustness.spring_correlation"],
         t_end=settings["robustness.horizon"] * params.time_unit,

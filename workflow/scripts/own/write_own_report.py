@@ -5,18 +5,31 @@ from pathlib import Path
 
 from squealpipe.parameters import parameters_of
 from squealpipe.rerun.key import state_key
+from squealpipe.store import load
 from squealpipe.store.keys import refuse_misfits
 from squealpipe.store.whole_files import whole_file
 from squealpipe.study.report.build import write_document
 from squealpipe.study.report.content import made_files, picture_files, provenance
 from squealpipe.study.report.own import gather_own
+from squealpipe.study.report.tables import write_tables
 
 params, out = snakemake.params, snakemake.output
 refuse_misfits(params.expected)
 datasets, figures = made_files(params.made), made_files(params.drawn)
-content = gather_own(datasets, figures, parameters_of(params.settings), params.changed)
+content = gather_own(
+    datasets, figures, parameters_of(params.settings), params.changed, params.left_out
+)
 pictures = picture_files(content, figures)
 write_document("study", content, pictures, page=Path(out.page), pdf=Path(out.pdf))
+write_tables(
+    {
+        name.removeprefix("assess/"): load(made.path)
+        for name, made in datasets.items()
+        if name.startswith("assess/")
+    },
+    parameters_of(params.settings),
+    Path(out.tables),
+)
 with whole_file(Path(out.provenance)) as temporary:
     temporary.write_text(
         json.dumps(provenance(datasets, figures), indent=1), encoding="utf-8"

@@ -7,4 +7,12 @@ from squealpipe.tasks.dynamics.explorer import explorer_data
 job = Job(snakemake)
 options = dict(job.settings["explorer"])
 angles = np.linspace(0.0, np.pi, options.pop("points"))
+# scenes of one's own keep their exact angles
+exact = [
+    scene[name]
+    for scene in job.settings.get("scenes", {}).values()
+    for name in ("alpha1", "alpha2")
+    if 0.0 <= scene[name] <= np.pi
+]
+angles = np.union1d(angles, exact)
 job.make(lambda: explorer_data(job.params, angles, **options))

@@ -1,4 +1,4 @@
-"""Where contact is lost and sliding is unstable around the scenes of a study."""
+"""Whether the brake squeals or hammers over both spring angles, and the nearest quiet ones."""
 
 from collections.abc import Mapping
 
@@ -6,51 +6,72 @@ import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
-from squealpipe.plotting.style import BLUE, HALO, PAGE, new_figure
-from squealpipe.study.figures.linear.fig07 import draw_kinds, key
+from squealpipe.plotting.style import (
+    BLACK,
+    BLUE,
+    HALO,
+    LIGHT,
+    ORANGE,
+    PAGE,
+    RED,
+    WHITE,
+    category_colours,
+    new_figure,
+    patches,
+)
+from squealpipe.schema.assess import Verdict
 
-READS = ("validity_[bm]*", "own_scenes")
-ALT = "A map over both spring angles in white, orange, grey and black with crosses at the scenes."
+READS = ("verdict_map", "assess/*")
+CAPTION = (
+    "What becomes of steady sliding after a small push, over both spring angles (in degrees; "
+    "alpha1 is counted from +x, the way the belt runs, alpha2 from −x). Crosses: the scenes whose "
+    "angles lie in the map; arrows lead from each to the nearest angles at which its verdict "
+    "changes between quiet and noise."
+)
+ALT = "A map over both spring angles in white, orange, red and grey with crosses and arrows."
+TONES = {
+    Verdict.quiet: (WHITE, "quiet"),
+    Verdict.squeals: (ORANGE, "squeals"),
+    Verdict.hammers: (RED, "hammers"),
+    Verdict.undetermined: (LIGHT, "undetermined"),
+}
 
 
-def caption(found: Mapping[str, xr.Dataset], scenes: xr.Dataset) -> str:  # noqa: ARG001
-    """What is shown, with the boundary where the study has it."""
-    lines = (
-        " Blue lines: boundary of kept contact." if "validity_boundary" in found else ""
-    )
-    return (
-        "Where the mass, started at rest, loses contact (white; orange where steady sliding is "
-        "unstable too) and keeps it (grey; black where steady sliding is unstable), over both "
-        f"spring angles.{lines} Crosses: the scenes whose angles lie in the map."
-    )
-
-
-CAPTION = caption
-
-
-def draw(found: Mapping[str, xr.Dataset], scenes: xr.Dataset) -> Figure:
-    """The map, with the boundary where the study has it, and the scenes."""
-    figure, axes = new_figure(0.7 * PAGE, 3.9)
+def draw(verdicts: xr.Dataset, answers: Mapping[str, xr.Dataset]) -> Figure:
+    """The map with the scenes."""
+    figure, axes = new_figure(0.62 * PAGE, 4.1)
     panel = axes[0, 0]
-    draw_kinds(panel, found["validity_map"], found.get("validity_boundary"))
-    for scene in scenes.scene.values:
-        here = scenes.sel(scene=scene)
-        at = float(here.alpha1), float(here.alpha2)
-        if not all(0.0 <= angle <= np.pi for angle in at):
+    degrees = [np.degrees(verdicts[name].values) for name in ("alpha1", "alpha2")]
+    panel.pcolormesh(
+        *degrees,
+        verdicts.verdict.values.T,
+        shading="nearest",
+        rasterized=True,
+        **category_colours([tone for tone, _ in TONES.values()]),
+    )
+    ends = [(axis[0], axis[-1]) for axis in degrees]
+    panel.set(
+        xlim=ends[0], ylim=ends[1], aspect="equal", xlabel="alpha1 (degrees)",
+        ylabel="alpha2 (degrees)", xticks=range(0, 181, 30), yticks=range(0, 181, 30),
+    )  # fmt: skip
+    panel.spines[["top", "right"]].set_visible(True)
+    for name, answer in answers.items():
+        at = [float(np.degrees(answer[key])) for key in ("alpha1", "alpha2")]
+        if not all(
+            low <= here <= high for here, (low, high) in zip(at, ends, strict=True)
+        ):
             continue
+        to = [float(np.degrees(answer[f"quiet_{key}"])) for key in ("alpha1", "alpha2")]
+        if np.isfinite(to).all():
+            look = {"arrowstyle": "-|>", "color": BLACK, "lw": 1.2, "shrinkA": 0}
+            panel.annotate("", to, at, arrowprops=look)
         panel.plot(*at, "x", color="white", markersize=10, markeredgewidth=4)
         panel.plot(*at, "x", color=BLUE, markersize=8, markeredgewidth=2)
         panel.annotate(
-            str(scene),
-            at,
-            (5, 5),
-            textcoords="offset points",
-            color=BLUE,
-            path_effects=HALO,
-        )
+            name.removeprefix("assess/"), at, (6, -10), textcoords="offset points",
+            color=BLUE, path_effects=HALO,
+        )  # fmt: skip
     figure.legend(
-        handles=[*key(), *panel.get_legend_handles_labels()[0]],
-        loc="outside lower center",
-        ncols=2,
+        handles=patches(TONES.values()), loc="outside lower center", ncols=len(TONES)
     )
     return figure

@@ -8,19 +8,20 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.patches import Circle
+from matplotlib.patches import Arc, Circle
 
 from squealpipe.parameters import direction_of, law_in_words
 from squealpipe.plotting.mechanism import SPRING_COLOURS, arrow, displaced_springs
 from squealpipe.plotting.origin import parameter
 from squealpipe.plotting.style import GREY, PAGE, RED, new_figure, panel_letter
-from squealpipe.text import number
+from squealpipe.text import engineering, number
 
 READS = ("own/*",)
 CAPTION = (
     "The model of each scene, springs drawn to scale at their angles. Blue: spring 1; orange: "
-    "spring 2; black dots: fixed ends; grey line: the belt, which runs along the red arrow; the "
-    "contact spring between mass and belt is too short to be seen at this scale."
+    "spring 2; black dots: fixed ends; arcs: α₁ is counted from +x, α₂ from −x; grey line: the "
+    "belt, which runs along the red arrow; the contact spring between mass and belt is too short "
+    "to be seen at this scale."
 )
 ALT = "A drawing of the mass on two inclined springs above the belt for each scene, with numbers."
 
@@ -52,12 +53,13 @@ def _draw(panel: Axes, run: xr.Dataset) -> None:
         panel.plot(*path.T, color=colour, linewidth=1.0)
         panel.add_patch(Circle(tuple(path[-1]), 0.02 * scale, color="black"))
         words = (
-            f"$k_{index}$ = {number(parameter(run, f'k{index}'))} N/m, "
-            f"$L_{index}$ = {number(lengths[index - 1])} m, "
+            f"$k_{index}$ = {engineering(parameter(run, f'k{index}'), 'N m-1')}, "
+            f"$L_{index}$ = {engineering(lengths[index - 1], 'm')}, "
             f"$α_{index}$ = {number(np.degrees((alpha1, alpha2)[index - 1]))}°"
         )
         below: dict[str, Any] = {"ha": "center", "va": "top", "fontsize": 6}
         panel.text(0.0, (1.2 + 1.9 * index) * belt, words, color=colour, **below)
+    _mark_angles(panel, (alpha1, alpha2), scale)
     panel.add_patch(Circle((0.0, 0.0), 0.05 * scale, fc="white", ec="black", zorder=4))
     panel.plot([-scale, scale], [belt, belt], color=GREY, linewidth=2.0)
     direction = direction_of(parameter(run, "belt_speed"))
@@ -70,12 +72,12 @@ def _draw(panel: Axes, run: xr.Dataset) -> None:
     spring = (
         "contact: table"
         if contact == "table"
-        else f"$k_3$ = {number(parameter(run, 'k3'))} N/m"
+        else f"$k_3$ = {engineering(parameter(run, 'k3'), 'N m-1')}"
     )
     words = (
         f"$m$ = {number(parameter(run, 'mass'))} kg, {spring}\n"
-        f"$l_\\mathrm{{pre}}$ = {number(parameter(run, 'preload'))} m, "
-        f"{friction}, $V$ = {number(parameter(run, 'belt_speed'))} m/s"
+        f"$l_\\mathrm{{pre}}$ = {engineering(parameter(run, 'preload'), 'm')}, "
+        f"{friction}, $V$ = {engineering(parameter(run, 'belt_speed'), 'm s-1')}"
     )
     panel.text(0.0, 6.9 * belt, words, **below)
     panel.set(
@@ -83,3 +85,29 @@ def _draw(panel: Axes, run: xr.Dataset) -> None:
         ylim=(-0.75 * scale, 1.1 * scale),
         aspect="equal",
     )
+
+
+def _mark_angles(panel: Axes, angles: tuple[float, float], scale: float) -> None:
+    """Arcs from +x to spring 1 and from −x to spring 2, with the line that they start from."""
+    panel.plot([-0.5 * scale, 0.5 * scale], [0, 0], color=GREY, lw=0.6, ls=":")
+    for index, (angle, colour) in enumerate(
+        zip(angles, SPRING_COLOURS, strict=True), start=1
+    ):
+        first, last = sorted((0.0, float(np.degrees(angle))))
+        ends = (first, last) if index == 1 else (180.0 - last, 180.0 - first)
+        size = 0.7 * scale
+        panel.add_patch(
+            Arc(
+                (0, 0), size, size, theta1=ends[0], theta2=ends[1], color=colour, lw=0.8
+            )
+        )
+        middle = np.radians(0.5 * (ends[0] + ends[1]))
+        panel.text(
+            0.44 * scale * np.cos(middle),
+            0.44 * scale * np.sin(middle),
+            f"$α_{index}$",
+            color=colour,
+            fontsize=7,
+            ha="center",
+            va="center",
+        )

@@ -49,13 +49,40 @@ def _regimes(label: str, flag: xr.DataArray) -> Layer:
     )
 
 
+def _of_verdicts(verdicts: xr.Dataset | None) -> dict[str, Layer]:
+    if verdicts is None:
+        return {}
+    growth = verdicts.sliding_growth_rate
+    return {
+        "verdict": _regimes("verdict", verdicts.verdict),
+        "growth": Layer("growth of small motions", growth, "blank: no steady sliding"),
+    }
+
+
+def _of_contact(
+    validity: xr.Dataset | None, stability: xr.Dataset | None
+) -> dict[str, Layer]:
+    found = {}
+    regimes = validity if stability is None else stability
+    if regimes is not None:
+        found["stability"] = _regimes("linear stability (A3)", regimes.regime_linear)
+    if validity is not None:
+        found["first_separation"] = Layer(
+            "first separation",
+            validity.first_separation_time,
+            "blank: contact is kept to the end of the run",
+        )
+    return found
+
+
 def layers(
     *,
-    validity: xr.Dataset,
+    validity: xr.Dataset | None = None,
     stability: xr.Dataset | None = None,
     frequencies: xr.Dataset | None = None,
     hammering: xr.Dataset | None = None,
     ladder: xr.Dataset | None = None,
+    verdicts: xr.Dataset | None = None,
 ) -> dict[str, Layer]:
     """All layers, in the order of the chooser; those of missing datasets are left out."""
     found = {}
@@ -66,13 +93,7 @@ def layers(
             hammering.motion_changed == 0, MotionFlag.unsettled
         )
         found["motion"] = _regimes("motion (A1)", motion)
-    regime = (validity if stability is None else stability).regime_linear
-    found["stability"] = _regimes("linear stability (A3)", regime)
-    found["first_separation"] = Layer(
-        "first separation",
-        validity.first_separation_time,
-        "blank: contact is kept to the end of the run",
-    )
+    found |= _of_verdicts(verdicts) | _of_contact(validity, stability)
     if hammering is not None:
         found |= {
             "peak_force": Layer(

@@ -1,14 +1,26 @@
-"""The scenes of a study of one's own: each as configured, and all with one thing changed."""
+"""The scenes of a study of one's own: the answer for each, and its run from its own start."""
 
 from pathlib import Path
 
 from squealpipe.parameters import parameters_of
 from squealpipe.store import produce
+from squealpipe.tasks.assess.assess import assess
 from squealpipe.tasks.dynamics.runs import simulate
 from squealpipe.tasks.own.scenes import own_scenes, start_of
 
 settings, key = snakemake.params.settings, snakemake.params.key
 params, scenes = parameters_of(settings), settings["scenes"]
+for path in snakemake.output.answers:
+    name = Path(path).stem
+    scene = scenes[name]
+    produce(
+        lambda: assess(
+            params, scene["alpha1"], scene["alpha2"], tol=settings["dynamics.tol"]
+        ),
+        config={**settings, "scene": name},
+        key=key,
+        output=path,
+    )
 for path in snakemake.output.runs:
     name = Path(path).stem
     scene = scenes[name]

@@ -1,0 +1,35 @@
+"""The settled motion of each scene: orbit, contact force, spectrum in Hz."""
+
+from collections.abc import Mapping
+
+import xarray as xr
+from matplotlib.figure import Figure
+
+from squealpipe.plotting import style
+from squealpipe.plotting.assess import (
+    draw_settled_force,
+    draw_settled_orbit,
+    draw_settled_spectrum,
+)
+
+READS = ("assess/*",)
+CAPTION = (
+    "The settled motion of each scene, one row for each. Left: path of the mass, coloured by what "
+    "it does; dotted: contact is lost above. Middle: contact force over the preload; red strips "
+    "below zero: contact is lost. Right: amplitude of the velocity over the frequency; the "
+    "triangle marks the strongest line."
+)
+ALT = "For each scene the path of the mass, the contact force over time, and a spectrum in hertz."
+
+
+def draw(answers: Mapping[str, xr.Dataset]) -> Figure:
+    """Three panels for each scene, from datasets ``assess/<scene>``."""
+    figure, axes = style.new_figure(
+        style.PAGE, 0.2 + 2.1 * len(answers), nrows=len(answers), ncols=3
+    )
+    for row, (name, answer) in zip(axes, answers.items(), strict=True):
+        draw_settled_orbit(row[0], answer)
+        draw_settled_force(row[1], answer)
+        draw_settled_spectrum(row[2], answer)
+        row[0].set_title(name.removeprefix("assess/"), loc="left", fontweight="bold")
+    return figure

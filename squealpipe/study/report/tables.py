@@ -1,0 +1,115 @@
+"""The tables of the report, and the spectra, as one Excel file."""
+
+from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from openpyxl import Workbook
+from openpyxl.styles import Font
+from openpyxl.utils import get_column_letter
+
+from squealpipe.parameters import TABLE, Parameters, law_in_words
+from squealpipe.schema import meanings
+from squealpipe.store.whole_files import whole_file
+from squealpipe.study.report import answer
+
+LONGEST_NAME = 31
+"""Characters of a sheet's name that Excel allows."""
+
+
+def write_tables(
+    answers: Mapping[str, xr.Dataset], parameters: Parameters, path: Path
+) -> None:
+    """Write one file with the sheets Answer, What stops it, Parameters, and a spectrum a scene."""
+    book = Workbook()
+    first = book.active
+    first.title = "Answer"
+    _fill(first, ["quantity", "unit", *answers], _scalars(answers))
+    _fill(
+        book.create_sheet("What stops it"),
+        ["scene", "changed alone", "unit", "now", "quiet from", "change (% or deg)",
+         "quiet from, any start", "lowest tried", "highest tried"],
+        _cures(answers),
+    )  # fmt: skip
+    _fill(
+        book.create_sheet("Parameters"),
+        ["parameter", "meaning", "value", "unit"],
+        (
+            [name, TABLE[name].meaning, _plain(name, value), TABLE[name].units]
+            for name, value in parameters.as_dict().items()
+        ),
+    )
+    for name, told in answers.items():
+        sheet = book.create_sheet(f"Spectrum {name}"[:LONGEST_NAME])
+        columns = {
+            "frequency (Hz)": told.line_frequency,
+            "velocity along (m/s)": told.velocity_spectrum_along,
+            "velocity across (m/s)": told.velocity_spectrum_across,
+            "contact force over preload": told.force_spectrum,
+        }
+        rows = np.stack([each.values for each in columns.values()], axis=1)
+        _fill(sheet, list(columns), rows[np.isfinite(rows).all(axis=1)].tolist())
+    with whole_file(path) as temporary:
+        book.save(temporary)
+
+
+def _fill(sheet: Any, head: Sequence[str], rows: Iterable[Sequence[Any]]) -> None:
+    sheet.append(list(head))
+    for cell in sheet[1]:
+        cell.font = Font(bold=True)
+    for row in rows:
+        sheet.append([_cell(value) for value in row])
+    sheet.freeze_panes = "A2"
+    for index in range(1, len(head) + 1):
+        sheet.column_dimensions[get_column_letter(index)].width = 24
+
+
+def _cell(value: Any) -> Any:
+    """A value as Excel takes it; nothing for NaN."""
+    if isinstance(value, float) and not np.isfinite(value):
+        return None
+    return value
+
+
+def _scalars(answers: Mapping[str, xr.Dataset]) -> Iterable[list[Any]]:
+    told = next(iter(answers.values()))
+    yield ["in words", "", *(answer.headline(each) for each in answers.values())]
+    yield ["cause", "", *(answer.cause(each) for each in answers.values())]
+    for name, variable in told.data_vars.items():
+        if variable.ndim:
+            continue
+        unit = str(variable.attrs.get("units", ""))
+        row = [str(variable.attrs.get("long_name", name)), unit]
+        for each in answers.values():
+            flags = meanings(each[name])
+            value = each[name].item()
+            row.append(flags[int(value)].replace("_", " ") if flags else value)
+        yield row
+
+
+def _cures(answers: Mapping[str, xr.Dataset]) -> Iterable[list[Any]]:
+    for scene, told in answers.items():
+        for name in told.cure.values:
+            row = told.sel(cure=name)
+            yield [
+                scene,
+                answer.NAMES[str(name)],
+                str(row.unit.item()),
+                *(
+                    float(row[key])
+                    for key in (
+                        "value",
+                        "quiet_from",
+                        "change",
+                        "quiet_from_any_start",
+                        "lowest_tried",
+                        "highest_tried",
+                    )
+                ),
+            ]
+
+
+def _plain(name: str, value: Any) -> Any:
+    return law_in_words(value) if TABLE[name].laws else value

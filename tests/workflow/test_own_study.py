@@ -1,0 +1,81 @@
+"""The whole study of one's own, with every law and option: its report has the answer."""
+
+import re
+
+import pytest
+import yaml
+
+from squealpipe import load
+from squealpipe.study.report import answer
+from tests.conftest import ROOT, run_snakemake
+
+pytestmark = pytest.mark.release
+
+PAD = {
+    "mass": 0.45, "k1": 1e7, "k2": 1e7, "k3": 7e6, "preload": 5.714e-4, "mu": 0.4,
+    "belt_speed": 2.0, "length1": 0.1, "length2": 0.1, "damping1": 42.4, "damping2": 42.4,
+}  # fmt: skip
+FALLING = {"mu": 0.37, "mu_static": 0.55, "friction_speed": 1.7}
+SPEEDS = (0, 0.1, 0.3, 0.5, 0.8, 1.1, 1.4, 1.7, 2, 2.5, 3.5, 5)
+TABLE = "speed,coefficient\n" + "".join(
+    f"{w},{0.55 - 0.12 * min(w, 2) / 2 - 0.02 * max(w - 2, 0)}\n" for w in SPEEDS
+)
+CONTACT = "compression,force\n0,0\n2e-4,1200\n5e-4,3400\n1e-3,7600\n"
+PYTHON = """
+from squealpipe.functions import exp
+
+def coefficient(speed, p):
+    return 0.37 + 0.18 * exp(-speed / 1.7)
+"""
+STUDIES = {
+    "coulomb": {},
+    "undamped": {"damping1": 0.0, "damping2": 0.0},
+    "static limit": {"mu_static": 0.6},
+    "exponential": {"friction_law": "exponential", **FALLING},
+    "hyperbolic": {"friction_law": "hyperbolic", **FALLING},
+    "friction table": {"friction_law": {"table": "friction.csv"}, "mu": None},
+    "cubic friction table": {
+        "friction_law": {"table": "friction.csv", "between": "cubic"}, "mu": None,
+    },
+    "friction in Python": {"friction_law": {"python": "friction.py"}, "mu": None},
+    "contact table": {"contact_law": {"table": "contact.csv"}, "k3": None},
+    "contact dashpot": {"contact_law": "dashpot", "damping3": 20.0},
+    "both tables": {
+        "friction_law": {"table": "friction.csv"}, "contact_law": {"table": "contact.csv"},
+        "mu": None, "k3": None,
+    },
+    "belt the other way": {"belt_speed": -2.0},
+    "belt at rest": {"belt_speed": 0.0},
+    "scaled units": {
+        "mass": 1.0, "k1": 1.0, "k2": 1.0, "k3": 0.7, "preload": 1.0, "length1": 175.0,
+        "length2": 175.0, "belt_speed": 0.75, "damping1": 0.02, "damping2": 0.02,
+    },
+}  # fmt: skip
+COARSE = {
+    "paper": False, "results": "results/mine",
+    "scenes": {"mine": {"alpha1": "22deg", "alpha2": "46deg", "start": {"vx": 1e-3}}},
+    "dynamics": {"hammering_points": 3}, "explorer": {"points": 3},
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", STUDIES)
+def test_the_report_has_the_answer(name, tmp_path):
+    (tmp_path / "friction.csv").write_text(TABLE)
+    (tmp_path / "contact.csv").write_text(CONTACT)
+    (tmp_path / "friction.py").write_text(PYTHON)
+    given = {k: v for k, v in (PAD | STUDIES[name]).items() if v is not None}
+    path = tmp_path / "mine.yaml"
+    path.write_text(yaml.safe_dump({**COARSE, "parameters": given}))
+    tiny = str(ROOT / "workflow/config/tiny.yaml")
+    words = ["--directory", str(tmp_path), "--configfile", tiny, str(path)]
+    done = run_snakemake(ROOT, *words, "--cores", "1", "--quiet", "all")
+    assert done.returncode == 0, done.stderr[-3000:]
+    results = tmp_path / "results/mine"
+    report = (results / "report/index.html").read_text(encoding="utf-8")
+    text = " ".join(re.sub(r"<[^>]+>", " ", report).split())
+    told = load(results / "data/assess/mine.nc")
+    for sentence in (answer.headline(told), answer.cause(told), answer.level(told)):
+        assert sentence in text
+    assert (" nan" in text or "None" in text) is False
+    for made in ("report.pdf", "tables.xlsx", "explorer.html"):
+        assert (results / "report" / made).stat().st_size > 1000

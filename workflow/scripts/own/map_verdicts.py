@@ -1,0 +1,9 @@
+"""The verdict over both spring angles."""
+
+import numpy as np
+from squealpipe.execution.job import Job
+from squealpipe.tasks.assess.map import verdict_map
+
+job = Job(snakemake)
+angles = np.linspace(0.0, np.pi, job.settings["dynamics.hammering_points"])
+job.make(lambda: verdict_map(job.params, angles, angles, workers=snakemake.threads))
