@@ -105,33 +105,3 @@ def suggestion(wrong: object, names: Iterable[str]) -> str:
         if near
         else f"choose from {', '.join(every) or 'none'}"
     )
-
-
-PREFIXED: dict[str, tuple[tuple[float, str, float], ...]] = {
-    "m": ((0.1, "m", 1.0), (1e-4, "mm", 1e-3), (1e-7, "µm", 1e-6), (0.0, "nm", 1e-9)),
-    "s": ((1.0, "s", 1.0), (1e-3, "ms", 1e-3), (0.0, "µs", 1e-6)),
-    "N": ((1e6, "MN", 1e6), (1e3, "kN", 1e3), (0.1, "N", 1.0), (0.0, "mN", 1e-3)),
-    "Hz": ((1e4, "kHz", 1e3), (0.0, "Hz", 1.0)),
-    "m s-1": ((0.1, "m/s", 1.0), (1e-4, "mm/s", 1e-3), (0.0, "µm/s", 1e-6)),
-    "N m-1": ((1e6, "kN/mm", 1e6), (1e4, "N/mm", 1e3), (0.0, "N/m", 1.0)),
-    "s-1": ((0.0, "1/s", 1.0),),
-}
-"""Unit → from which size on it is written with which prefix, and what that is of the plain one."""
-
-
-def engineering(value: float, unit: str, digits: int = 3) -> str:
-    """A number with the prefix that engineers give its unit: 0.00057 m is 0.57 mm."""
-    written, size = prefixed(value, unit)
-    return f"{number(value / size, digits)} {written}".rstrip()
-
-
-def prefixed(value: float, unit: str) -> tuple[str, float]:
-    """The unit that a number of this size is written in, and what it is of the plain one."""
-    if unit == "1":
-        return "", 1.0
-    steps = PREFIXED.get(unit, ((0.0, unit, 1.0),))
-    if not value:
-        return next((name, size) for _, name, size in steps if size == 1.0)
-    return next(
-        (name, size) for least, name, size in steps if abs(value) >= least * (1 - 1e-9)
-    )

@@ -9,7 +9,7 @@ from squealpipe.plotting import style
 from squealpipe.plotting.cycles import joined
 from squealpipe.schema import meanings
 from squealpipe.schema.assess import Verdict
-from squealpipe.text import prefixed
+from squealpipe.units import shown_in
 
 PICTURED = 6.0
 """Multiples of the strongest line that the spectrum shows."""
@@ -42,7 +42,7 @@ def draw_settled_orbit(axes: Axes, answer: xr.Dataset) -> None:
         return
     x, y = answer.path_x.values, answer.path_y.values
     top = float(np.nanmax(np.abs([x, y])))
-    unit, size = prefixed(top, "m")
+    factor, unit = shown_in(top, "m")
     flags = meanings(answer.path_regime)
     for value in np.unique(answer.path_regime.values):
         name = flags[int(value)]
@@ -50,15 +50,15 @@ def draw_settled_orbit(axes: Axes, answer: xr.Dataset) -> None:
             continue
         shown = np.where(joined(answer.path_regime.values == value), y, np.nan)
         axes.plot(
-            x / size,
-            shown / size,
+            factor * x,
+            factor * shown,
             color=style.REGIME_COLOURS[name],
             linewidth=0.7,
             label=style.flag_words(name).replace("slip slower", "slip"),
         )
     limit = float(answer.preload)
     if limit < 1.2 * float(np.nanmax(y)):
-        axes.axhline(limit / size, color=style.GREY, linewidth=0.8, linestyle=":")
+        axes.axhline(factor * limit, color=style.GREY, linewidth=0.8, linestyle=":")
     axes.set(xlabel=f"along the belt, x ({unit})", ylabel=f"away from it, y ({unit})")
     axes.set_aspect("equal", adjustable="datalim")
     axes.legend(fontsize=6, loc="best", borderaxespad=0)
@@ -69,8 +69,8 @@ def draw_settled_force(axes: Axes, answer: xr.Dataset) -> None:
     if _says_quiet(axes, answer):
         return
     time = answer.path_time.values
-    unit, size = prefixed(float(time[-1]), "s")
-    time, force = time / size, answer.path_force.values
+    factor, unit = shown_in(float(time[-1]), "s")
+    time, force = factor * time, answer.path_force.values
     top = 1.15 * float(np.nanmax(force))
     axes.plot(time, force, color=style.BLUE)
     lost = meanings(answer.path_regime)
@@ -98,7 +98,7 @@ def draw_settled_spectrum(axes: Axes, answer: xr.Dataset) -> None:
     if _says_quiet(axes, answer):
         return
     strongest = float(answer.frequency)
-    unit, size = prefixed(PICTURED * strongest, "Hz")
+    factor, unit = shown_in(strongest, "Hz")
     frequency = answer.line_frequency.values
     shown = frequency <= PICTURED * strongest
     for name, colour, words in (
@@ -106,12 +106,12 @@ def draw_settled_spectrum(axes: Axes, answer: xr.Dataset) -> None:
         ("across", style.Y_COLOUR, "across it"),
     ):
         values = np.maximum(answer[f"velocity_spectrum_{name}"].values[shown], 1e-300)
-        axes.semilogy(frequency[shown] / size, values, color=colour, label=words)
+        axes.semilogy(factor * frequency[shown], values, color=colour, label=words)
     top = float(answer.harmonic_velocity[0])
-    axes.plot(strongest / size, top, "v", color=style.RED, markersize=4)
+    axes.plot(factor * strongest, top, "v", color=style.RED, markersize=4)
     axes.set(
         ylim=(1e-4 * top, 5.0 * top),
-        xlim=(0.0, PICTURED * strongest / size),
+        xlim=(0.0, factor * PICTURED * strongest),
         xlabel=f"frequency ({unit})",
         ylabel="velocity (m/s)",
     )

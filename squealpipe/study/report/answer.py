@@ -8,7 +8,8 @@ import numpy as np
 import xarray as xr
 
 from squealpipe.schema.assess import Mechanism, Verdict
-from squealpipe.text import engineering, number
+from squealpipe.text import number
+from squealpipe.units import engineering
 
 NAMES = {
     "mu": "friction",

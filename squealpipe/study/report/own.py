@@ -19,7 +19,8 @@ from squealpipe.study.report.content import (
     pictures,
 )
 from squealpipe.study.report.sections import OWN
-from squealpipe.text import engineering, number
+from squealpipe.text import number
+from squealpipe.units import engineering
 
 
 def gather_own(

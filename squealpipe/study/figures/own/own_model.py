@@ -14,7 +14,8 @@ from squealpipe.parameters import direction_of, law_in_words
 from squealpipe.plotting.mechanism import SPRING_COLOURS, arrow, displaced_springs
 from squealpipe.plotting.origin import parameter
 from squealpipe.plotting.style import GREY, PAGE, RED, new_figure, panel_letter
-from squealpipe.text import engineering, number
+from squealpipe.text import number
+from squealpipe.units import engineering
 
 READS = ("own/*",)
 CAPTION = (
