@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import os
 import sys
+import time
 import warnings
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, field
 from typing import Any
@@ -19,6 +20,8 @@ INTERRUPTED = 130
 
 TRACEBACK = "SQUEALPIPE_TRACEBACK"
 """Environment variable that asks for tracebacks, as -v does."""
+LOG_EVERY = 30.0
+"""Time between two lines of progress in a log, s."""
 SWITCHES = {"-q": "quiet", "--quiet": "quiet", "-v": "verbose", "--verbose": "verbose"}
 
 
@@ -81,21 +84,48 @@ def answer(*lines: str) -> None:
 
 @contextmanager
 def working(what: str) -> Iterator[None]:
-    """A terminal sees that a command works, and how long it has and will; a pipe nothing."""
+    """Show elapsed and remaining time: on a terminal always, in a log by a line now and then."""
     from rich.console import Console
     from rich.progress import Progress, SpinnerColumn, TimeElapsedColumn
 
     from squealpipe.methods.progress import shown
 
     console = Console(stderr=True)
+    if not console.is_terminal:
+        with shown(None if SESSION.quiet else _lines_of_a_log(what)):
+            yield
+        return
     columns: tuple[Any, ...] = (
         SpinnerColumn(),
         *Progress.get_default_columns(),
         "after",
         TimeElapsedColumn(),
     )
-    off = SESSION.quiet or not console.is_terminal
-    with Progress(*columns, console=console, transient=True, disable=off) as progress:
+    with Progress(
+        *columns, console=console, transient=True, disable=SESSION.quiet
+    ) as progress:
         task = progress.add_task(what, total=None)
         with shown(lambda share: progress.update(task, completed=share, total=1.0)):
             yield
+
+
+def _lines_of_a_log(what: str) -> Callable[[float], None]:
+    """What writes a line on how much is done and how long the rest takes, twice a minute."""
+    from squealpipe.text import duration
+
+    started = told = time.monotonic()
+
+    def tell(share: float) -> None:
+        nonlocal told
+        now = time.monotonic()
+        if now - told < LOG_EVERY or not share:
+            return
+        told = now
+        left = (now - started) * (1 - share) / share
+        print(
+            f"{what}: {share:.0%} done, about {duration(left)} left",
+            file=sys.stderr,
+            flush=True,
+        )
+
+    return tell

@@ -1,5 +1,6 @@
 """``squealpipe sweep``: any task over ranges, to one dataset."""
 
+import inspect
 from collections.abc import Sequence
 from math import prod
 from pathlib import Path
@@ -42,7 +43,9 @@ def sweep(
             further dimensions.
         option: a further keyword of the task, for instance t_end=100; repeat for more.
     """
+    from squealpipe.execution.chunks import Chunks
     from squealpipe.execution.sweep import outcome_lines, planned, run_sweep
+    from squealpipe.rerun.key import rule_key, sources
 
     varied = _pairs("--vary", vary)
     options = _pairs("--option", option or [])
@@ -64,10 +67,17 @@ def sweep(
     check_output(output, force=brake.force)
     runs = prod(len(plan.vary[name]) for name in plan.names)
     say(f"{runs} runs of {task} over {', '.join(plan.names)}")
+    kept = Chunks(
+        output.with_name(f".{output.name}.runs"),
+        rule_key(settings, sources(Path(inspect.getfile(planned)))),
+    )
+    if done := kept.finished():
+        say(f"{done} of them are there from before")
     with working(f"sweep of {task}"):
         dataset = write(
-            lambda: run_sweep(plan, workers=workers), output, config=settings
+            lambda: run_sweep(plan, workers=workers, kept=kept), output, config=settings
         )
+    kept.remove()
     answer(*outcome_lines(dataset, plan.names))
     say(f"wrote {output}")
     return DONE

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import inspect
 import itertools
-from collections.abc import Iterator, Mapping, Sequence
-from concurrent.futures import ProcessPoolExecutor
+import time
+from collections import deque
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from concurrent.futures import Future, ProcessPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass, replace
-from functools import partial
 from multiprocessing import active_children, get_all_start_methods, get_context
 from typing import Any, Self
 
@@ -17,6 +19,7 @@ import xarray as xr
 
 from squealpipe.config.ranges import ANGLES, NUMBERS, PHYSICAL
 from squealpipe.execution.catalogue import MAPS, NEEDED, TASKS, options_of
+from squealpipe.execution.chunks import Chunks, Run
 from squealpipe.execution.scatter import scattered_values
 from squealpipe.execution.system_sweep import SystemSweep, is_system
 from squealpipe.methods.processes import available_cores, leave_interrupts_to_the_parent
@@ -25,8 +28,16 @@ from squealpipe.parameters import Parameters, parameters_of
 from squealpipe.schema import ABSENT, DatasetSchema, Outcome, build, find, meanings
 from squealpipe.schema.origin import origin
 from squealpipe.schema.sweep import OPTIONS, fill_up, is_ragged, ragged_dims, sweep_name
+from squealpipe.tasks.sampling import default_times
 from squealpipe.text import suggestion
 from squealpipe.validation import Line, Workers, checked
+
+EVERY = 5.0
+"""Time after which finished runs go to disk, s."""
+MOST = 2000
+"""Finished runs that are held in memory."""
+BATCH = 32
+"""Runs that a process gets at once, so that short ones are not lost in handing them over."""
 
 
 @checked
@@ -85,6 +96,7 @@ class Sweep:
             raise ValueError(
                 f"nothing to sweep: {self.task} maps both angles by itself; vary a parameter too"
             )
+        self._refuse_other_times()
 
     def _with(self, given: Mapping[str, Any]) -> tuple[Parameters, dict[str, Any]]:
         """The parameters with what is given of them, and the rest: angles and options."""
@@ -92,6 +104,23 @@ class Sweep:
         physical = {name for name in given if name in PHYSICAL and name not in options}
         params = self.params.with_(**{name: given[name] for name in physical})
         return params, {name: given[name] for name in given if name not in physical}
+
+    def _refuse_other_times(self) -> None:
+        """Raise if runs end at other times, before any is made; one name is changed at a time."""
+        if self.task != "simulate" or self.fixed.get("times") is not None:
+            return
+        points = [{name: values[0] for name, values in self.vary.items()}]
+        points += [
+            {**points[0], name: value}
+            for name, values in self.vary.items()
+            for value in values
+        ]
+        first = None
+        for point in points:
+            params, given = self._with({**self.fixed, **point})
+            times = default_times(params, given["t_end"])
+            first = times if first is None else first
+            _refuse_other("time", times, first)
 
     @property
     def names(self) -> list[str]:
@@ -142,13 +171,16 @@ def planned(config: Mapping[str, Any]) -> Sweep | SystemSweep:
 
 
 @checked
-def run_sweep(sweep: Sweep | SystemSweep, *, workers: Workers = None) -> xr.Dataset:
+def run_sweep(
+    sweep: Sweep | SystemSweep, *, workers: Workers = None, kept: Chunks | None = None
+) -> xr.Dataset:
     """Run a sweep.
 
     Args:
         sweep: what to run.
         workers: processes that share the runs, all cores by default. They are forked, so a script
             needs no main guard; where the system cannot fork, the runs stay here.
+        kept: where finished runs are kept on disk; those that are there are not made again.
 
     Returns:
         The task's variables with the swept names as leading dimensions. Runs that are shorter
@@ -157,59 +189,116 @@ def run_sweep(sweep: Sweep | SystemSweep, *, workers: Workers = None) -> xr.Data
     """
     if isinstance(sweep, SystemSweep):
         return sweep.run(workers)  # an ensemble shares its runs by itself
+    made: list[Run] = []
+    done, written = (kept.finished(), time.monotonic()) if kept else (0, 0.0)
+    total = len(sweep.points)
+    number = done
     with alone() as show:
-        runs = []
-        for run in _runs(sweep, workers):
-            runs.append(run)
-            show(len(runs) / len(sweep.points))
-    return _merge(sweep, runs)
+        try:
+            for number, run in enumerate(_runs(sweep, workers, done), done + 1):
+                made.append(run)
+                show(number / total)
+                if kept and (time.monotonic() - written > EVERY or len(made) >= MOST):
+                    kept.save(number - len(made), made)
+                    made, written = [], time.monotonic()
+        finally:
+            if kept and made:
+                kept.save(number - len(made), made)
+    if not kept:
+        return _merge(sweep, lambda: iter(made))
+    return _merge(sweep, kept.runs)
 
 
-def _runs(sweep: Sweep, workers: int | None) -> Iterator[xr.Dataset]:
-    points = sweep.points
+def _runs(sweep: Sweep, workers: int | None, first: int) -> Iterator[Run]:
+    """What the runs from one on gave, in order."""
+    points = sweep.points[first:]
     number = min(workers or available_cores(), len(points))
-    if number == 1 or "fork" not in get_all_start_methods():
-        yield from map(partial(sweep.run, workers=workers), points)
+    if number < 2 or "fork" not in get_all_start_methods():
+        for point in points:
+            yield _arrays(sweep, point, workers)
         return
     others = set(active_children())
+    batch = max(1, min(BATCH, len(points) // (8 * number)))
+    batches = (points[at : at + batch] for at in range(0, len(points), batch))
     with ProcessPoolExecutor(
         number, get_context("fork"), leave_interrupts_to_the_parent
     ) as pool:
         try:
-            # not by its map, which cancels runs to come: the pool's thread trips over those
-            runs = [pool.submit(sweep.run, point, workers=1) for point in points]
-            for run in runs:
-                yield run.result()
+            # not by its map, which cancels runs to come: the pool's thread trips over those;
+            # a few ahead, so that what waits to be read is bounded
+            ahead: deque[Future[list[Run]]] = deque()
+            for part in batches:
+                ahead.append(pool.submit(_batch, sweep, part))
+                if len(ahead) > 4 * number:
+                    yield from ahead.popleft().result()
+            while ahead:
+                yield from ahead.popleft().result()
+        except BrokenProcessPool as error:
+            raise RuntimeError(
+                "a worker process was killed, perhaps for want of memory; run the same command "
+                "again, with fewer --workers"
+            ) from error
         except BaseException:
             for process in set(active_children()) - others:
                 process.terminate()  # the pool is broken then and waits for no other run
             raise
 
 
-def _merge(sweep: Sweep, runs: Sequence[xr.Dataset]) -> xr.Dataset:
+def _batch(sweep: Sweep, points: Sequence[Sequence[float]]) -> list[Run]:
+    return [_arrays(sweep, point, 1) for point in points]
+
+
+def _arrays(sweep: Sweep, point: Sequence[float], workers: int | None) -> Run:
+    """A run as arrays, and its lengths along dimensions that differ from run to run."""
+    run = sweep.run(point, workers)
+    lengths = {
+        f"{dim}_count": np.asarray(run.sizes.get(dim, 0))
+        for dim in ragged_dims(find(_schema(sweep.task)))
+    }
+    return {
+        str(name): values.values for name, values in run.variables.items()
+    } | lengths
+
+
+def _merge(sweep: Sweep, runs: Callable[[], Iterator[Run]]) -> xr.Dataset:
+    """One dataset of all runs, which are read twice: for the longest of each, then for values."""
     schema, base = sweep.schema, find(_schema(sweep.task))
-    runs = [_in_order(run, runs[0]) for run in runs]
     shape = tuple(len(sweep.vary[name]) for name in sweep.names)
-    data, coords = {}, {name: np.asarray(sweep.vary[name]) for name in sweep.names}
-    for name, entry in {**base.coordinates, **base.variables}.items():
-        if name in sweep.names or name not in runs[0]:
-            continue
-        if name in schema.coordinates:
-            coords[name] = _common(name, [run[name].values for run in runs])
-            continue
-        arrays = [run[name].values for run in runs]
-        if is_ragged(entry):  # shorter ones are filled up
-            longest_run = tuple(np.max([array.shape for array in arrays], axis=0))
-            arrays = [
-                fill_up(array.astype(entry.dtype), longest_run) for array in arrays
-            ]
-        stacked = np.stack(arrays)
-        data[name] = stacked.reshape(shape + stacked.shape[1:])
-    for dim in ragged_dims(base):
-        data[f"{dim}_count"] = np.reshape(
-            [run.sizes.get(dim, 0) for run in runs], shape
-        )
-    return build(schema, data, coords, sweep.origin)
+    coords = {name: np.asarray(sweep.vary[name]) for name in sweep.names}
+    shapes: dict[str, tuple[int, ...]] = {}
+    types: dict[str, np.dtype] = {}
+    for run in runs():
+        for name, array in run.items():
+            longest_run = zip(array.shape, shapes.get(name, array.shape), strict=True)
+            shapes[name] = tuple(map(max, longest_run))
+            types[name] = np.result_type(types.get(name, array.dtype), array.dtype)
+    entries = {**base.coordinates, **base.variables}
+    stacked = [
+        name
+        for name in [*entries, *(f"{dim}_count" for dim in ragged_dims(base))]
+        if name in shapes and name not in sweep.names and name not in schema.coordinates
+    ]
+    data = {}
+    for name in stacked:
+        entry = entries.get(name)
+        stored = entry.stored if entry is not None and is_ragged(entry) else types[name]
+        kind = types[name] if stored.kind == "U" else stored
+        data[name] = np.empty((len(sweep.points), *shapes[name]), kind)
+    for number, run in enumerate(runs()):
+        for name, rows in data.items():
+            filled = run[name].astype(rows.dtype)
+            if name in entries and is_ragged(entries[name]):
+                filled = fill_up(filled, shapes[name])
+            if filled.shape != shapes[name]:
+                raise ValueError(f"{name} has another size in other runs")
+            rows[number] = filled
+        for name, array in run.items():
+            if name in schema.coordinates and name not in sweep.names:
+                _refuse_other(name, array, coords.setdefault(name, array))
+    whole = {
+        name: array.reshape(shape + array.shape[1:]) for name, array in data.items()
+    }
+    return build(schema, whole, coords, sweep.origin)
 
 
 def _schema(task: str) -> str:
@@ -228,14 +317,13 @@ def _in_order(run: xr.Dataset, first: xr.Dataset) -> xr.Dataset:
     return run
 
 
-def _common(name: str, arrays: Sequence[np.ndarray]) -> np.ndarray:
-    """A coordinate that all runs share."""
-    if any(not np.array_equal(array, arrays[0]) for array in arrays):
+def _refuse_other(name: str, array: np.ndarray, first: np.ndarray) -> None:
+    """Raise if a coordinate that all runs share is another one in this run."""
+    if not np.array_equal(array, first):
         remedy = (
             "; fix the option 'times', for instance 0:50:1001" if name == "time" else ""
         )
         raise ValueError(f"{name} differs from run to run{remedy}")
-    return arrays[0]
 
 
 def outcome_lines(dataset: xr.Dataset, names: list[str]) -> list[str]:

@@ -25,6 +25,26 @@ def test_simulate_works_where_the_terminal_is_ascii():
     assert "impacts" in done.stdout.decode("ascii")
 
 
+def test_a_log_has_the_time_that_is_left(capsys, monkeypatch):
+    monkeypatch.setattr("squealpipe.cli.console.LOG_EVERY", 0.0)
+    words = [
+        "sweep",
+        "stability_map",
+        "--vary",
+        "mu=0:1:5",
+        "--alpha1",
+        "1",
+        "--alpha2",
+        "2",
+    ]
+    assert run([*words, "--workers", "1", "-o", "s.nc"]) == 0
+    told = capsys.readouterr().err.splitlines()
+    assert told[1].startswith("sweep of stability_map: 40% done, about ")
+    assert told[1].endswith(" left")
+    assert run([*words, "--workers", "1", "-o", "t.nc", "-q"]) == 0
+    assert capsys.readouterr().err == ""
+
+
 def test_symbols_of_the_paper_are_understood_or_name_their_key(tmp_path, capsys):
     grid = ["--alpha1", "0:pi:2", "--alpha2", "0:pi:2"]
     command = [

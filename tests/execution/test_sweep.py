@@ -1,8 +1,11 @@
 """Sweeps against the task run point by point; ragged runs; sweeps and maps joined from parts."""
 
+import os
 import re
+import signal
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import numpy as np
@@ -11,6 +14,7 @@ import yaml
 
 from squealpipe.config.ranges import longest, parse_range
 from squealpipe.config.settings import parse_study
+from squealpipe.execution.chunks import Chunks
 from squealpipe.execution.scatter import join, scattered_rows
 from squealpipe.execution.sweep import Sweep, planned, run_sweep
 from squealpipe.schema import find
@@ -188,10 +192,101 @@ def test_parts_are_the_values_once_each_and_no_more_than_there_are():
 
 def test_runs_at_other_instants_are_not_put_on_one_axis():
     plan = {"vary": {"t_end": [5.0, 10.0]}, "fixed": {"alpha1": 1.6, "alpha2": 2.6}}
-    with pytest.raises(
+    with pytest.raises(  # before any run is made
         ValueError, match="time differs from run to run; fix the option 'times'"
     ):
-        run_sweep(Sweep(task="simulate", params=FORMER, **plan))
+        Sweep(task="simulate", params=FORMER, **plan)
+    Sweep(task="simulate", params=FORMER, vary={"mu": [0.1, 0.2]},
+          fixed={**plan["fixed"], "t_end": 5.0})  # fmt: skip
+
+
+RAGGED = {
+    "task": "periodic_orbit",
+    "params": FORMER,
+    "vary": {"y_peak": [1.1, 1.5, 2.0, 3.0], "mu": [0.1, 0.3]},
+    "fixed": {"mode": 1, "alpha1": 0.3 * np.pi, "alpha2": 0.9 * np.pi},
+}
+
+
+@pytest.mark.parametrize("finished", [0, 1, 3, 7, 8])
+def test_a_sweep_that_was_stopped_goes_on_where_it_was(tmp_path, monkeypatch, finished):
+    kept, plan = Chunks(tmp_path / ".runs", "0" * 16), Sweep(**RAGGED)
+    made, run = [], Sweep.run
+
+    def stopped(self, point, workers=None):
+        if len(made) == finished:
+            raise KeyboardInterrupt
+        made.append(point)
+        return run(self, point, workers)
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(Sweep, "run", stopped)
+        patch.setattr("squealpipe.execution.sweep.MOST", 2)
+        if finished < 8:
+            with pytest.raises(KeyboardInterrupt):
+                run_sweep(plan, workers=1, kept=kept)
+        else:
+            run_sweep(plan, workers=1, kept=kept)
+    assert kept.finished() == finished
+    monkeypatch.setattr(
+        Sweep, "run", lambda *given: made.append(given[1]) or run(*given)
+    )
+    resumed = run_sweep(plan, workers=1, kept=kept)
+    assert sorted(made) == sorted(plan.points)  # none was made twice
+    assert resumed.identical(run_sweep(plan, workers=1))
+    assert Chunks(tmp_path / ".runs", "1" * 16).finished() == 0  # of something else
+
+
+def test_a_damaged_chunk_is_made_again(tmp_path):
+    kept, plan = Chunks(tmp_path / ".runs", "0" * 16), Sweep(**RAGGED)
+    whole = run_sweep(plan, workers=1, kept=kept)
+    (chunk,) = kept.place.iterdir()
+    content = bytearray(chunk.read_bytes())
+    content[len(content) // 2] ^= 255
+    chunk.write_bytes(content)
+    assert kept.finished() == 0
+    assert run_sweep(plan, workers=2, kept=kept).identical(whole)
+
+
+def test_a_killed_worker_is_told_with_its_remedy(monkeypatch):
+    monkeypatch.setattr(
+        Sweep, "run", lambda *_, **__: os.kill(os.getpid(), signal.SIGKILL)
+    )
+    with pytest.raises(
+        RuntimeError, match="run the same command again, with fewer --workers"
+    ):
+        run_sweep(Sweep(**RAGGED), workers=2)
+
+
+def test_a_killed_command_goes_on_where_it_was(tmp_path):
+    """Its dataset is that of a command that nobody disturbed."""
+    words = [
+        *(
+            sys.executable,
+            "-m",
+            "squealpipe",
+            "sweep",
+            "hammering_map",
+            "--workers",
+            "2",
+        ),
+        *("--vary", "mu=0.1:0.6:60", "--alpha1", "5pi/6", "--alpha2", "5pi/6"),
+        *("--option", "t_end=2000", "-o"),
+    ]
+    with subprocess.Popen([*words, "a.nc"], cwd=tmp_path) as sweep:
+        until = time.monotonic() + 100
+        while not list(tmp_path.glob(".a.nc.runs/*/*.npz")) and sweep.poll() is None:
+            assert time.monotonic() < until
+            time.sleep(0.05)
+        sweep.kill()
+    killed = not (tmp_path / "a.nc").exists()
+    again = subprocess.run(
+        [*words, "a.nc"], cwd=tmp_path, check=True, capture_output=True
+    )
+    assert killed is (b"of them are there from before" in again.stdout)
+    subprocess.run([*words, "b.nc"], cwd=tmp_path, check=True, capture_output=True)
+    assert load(tmp_path / "a.nc").dataset_id == load(tmp_path / "b.nc").dataset_id
+    assert not list(tmp_path.glob(".*"))
 
 
 def test_the_sweeps_in_the_page_on_clusters_can_be_planned():
