@@ -19,6 +19,8 @@ if TYPE_CHECKING:
     from squealpipe.store.netcdf import load, save
     from squealpipe.store.results import open_results
     from squealpipe.store.tables import convert
+    from squealpipe.systems.structures.contact import Contact
+    from squealpipe.systems.structures.structure import Structure
     from squealpipe.systems.system import Switch, System
     from squealpipe.tasks.assess.assess import assess
     from squealpipe.tasks.backbones.backbone import backbone
@@ -54,8 +56,10 @@ _HOME = {
 
 __all__ = [
     "SCENES",
+    "Contact",
     "Parameters",
     "Scene",
+    "Structure",
     "Sweep",
     "Switch",
     "System",

@@ -1,0 +1,139 @@
+"""A contact of a structure with the belt: where it acts, how stiff it is and what presses it on."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from squealpipe.parameters import brief, is_finite_number, is_whole_number
+
+DEPENDENT = 1e-9
+"""Smallest singular value of unit directions that are independent."""
+
+
+@dataclass(frozen=True, eq=False)
+class Contact:
+    """A point, or any combination of degrees of freedom, that is pressed on the belt.
+
+    The normal force is N = preload − stiffness · nᵀq while that is positive, and acts along n;
+    friction acts along t, towards the belt's motion.
+
+    Args:
+        name: for events and outputs.
+        normal: n, {degree of freedom: coefficient}, counted from 0, or an array of all.
+        tangential: t, likewise.
+        stiffness: N/m, greater than 0.
+        preload: normal force where nᵀq = 0, N.
+        speed: the belt's speed here over ``belt_speed``, as a radius; negative where the belt
+            moves against t.
+
+    Raises:
+        ValueError: names the contact and the argument.
+    """
+
+    name: str
+    normal: Any
+    tangential: Any
+    stiffness: float
+    preload: float
+    speed: float = 1.0
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.name, str) or not self.name.isidentifier():
+            raise ValueError(
+                f"contact {brief(self.name)}: letters, digits and _ are needed for a name"
+            )
+        for key in ("stiffness", "preload", "speed"):
+            value = getattr(self, key)
+            if not is_finite_number(value):
+                raise self._refusal(key, value, "a finite number is needed")
+            object.__setattr__(self, key, float(value))
+        if not self.stiffness > 0:
+            raise self._refusal("stiffness", self.stiffness, "must be greater than 0")
+        if self.speed == 0:
+            raise self._refusal(
+                "speed", self.speed, "the belt must move here; leave the contact out"
+            )
+
+    def _refusal(self, key: str, value: object, why: str) -> ValueError:
+        return ValueError(f"contact {self.name}: {key} = {brief(value)}: {why}")
+
+    def direction(self, which: str, size: int) -> np.ndarray:
+        """``normal`` or ``tangential`` over all degrees of freedom, (n,).
+
+        Raises:
+            ValueError: a degree of freedom that does not exist, or no direction at all.
+        """
+        given = getattr(self, which)
+        if isinstance(given, Mapping):
+            vector = np.zeros(size)
+            for place, coefficient in given.items():
+                if not is_whole_number(place) or not 0 <= place < size:
+                    raise self._refusal(
+                        which, place, f"degrees of freedom are 0 to {size - 1}"
+                    )
+                if not is_finite_number(coefficient):
+                    raise self._refusal(which, coefficient, "a finite number is needed")
+                vector[int(place)] = float(coefficient)
+        else:
+            try:
+                vector = np.asarray(given, dtype=float)
+            except (TypeError, ValueError):
+                raise self._refusal(
+                    which,
+                    given,
+                    "{degree of freedom: coefficient} or an array is needed",
+                ) from None
+            if vector.shape != (size,) or not np.isfinite(vector).all():
+                raise self._refusal(
+                    which,
+                    given,
+                    f"{size} finite numbers are needed, one a degree of freedom",
+                )
+        if not vector.any():
+            raise self._refusal(which, given, "a coefficient other than 0 is needed")
+        return vector
+
+
+def directions(contacts: Sequence[Contact], size: int) -> tuple[np.ndarray, np.ndarray]:
+    """All normals and all tangentials, (n, contacts) each.
+
+    Raises:
+        ValueError: a name twice, or directions that depend on each other: stick forces of these
+            contacts could not be told apart.
+    """
+    names = [contact.name for contact in contacts]
+    for name in names:
+        if names.count(name) > 1:
+            raise ValueError(f"contacts: {name!r} is the name of two; rename one")
+    normal, tangential = (
+        np.array([each.direction(which, size) for each in contacts]).reshape(-1, size).T
+        for which in ("normal", "tangential")
+    )
+    for n, t, name in zip(normal.T, tangential.T, names, strict=True):
+        if _dependent(np.stack([n, t], axis=1)) is not None:
+            raise ValueError(f"contact {name}: normal and tangential are parallel")
+    if (share := _dependent(tangential)) is not None:
+        which = [
+            name for name, part in zip(names, share, strict=True) if abs(part) > 1e-6
+        ]
+        raise ValueError(
+            f"the tangential directions of {', '.join(which)} are dependent: one follows from the "
+            "others, and so their friction forces in stick are undetermined; merge these contacts"
+        )
+    return normal, tangential
+
+
+def _dependent(columns: np.ndarray) -> Any:
+    """The combination of unit columns that vanishes, None if they are independent."""
+    if not columns.size:
+        return None
+    _, sizes, rows = np.linalg.svd(
+        columns / np.linalg.norm(columns, axis=0), full_matrices=True
+    )
+    if columns.shape[1] <= columns.shape[0] and sizes[-1] > DEPENDENT:
+        return None
+    return rows[-1]

@@ -1,0 +1,204 @@
+"""A structure in a file: ``pad.yaml`` names matrices, contacts and numbers."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from os import PathLike
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import scipy.io
+import scipy.sparse as sp
+
+from squealpipe.config.yaml_files import read_yaml
+from squealpipe.laws.friction_laws import COLUMNS
+from squealpipe.laws.tables import named
+from squealpipe.parameters import brief, is_finite_number
+from squealpipe.systems.structures.contact_table import read_contacts
+from squealpipe.systems.structures.matrices import real_square
+from squealpipe.systems.structures.readers import Labelled, read_matrix
+from squealpipe.systems.structures.structure import Structure
+from squealpipe.systems.structures.units import SI, Scales, scales_of
+from squealpipe.text import suggestion
+
+MATRICES = ("mass", "stiffness", "damping")
+NUMBERS = ("mu", "belt_speed", "mu_static", "friction_speed")
+KEYS = (
+    *MATRICES,
+    *NUMBERS,
+    "contacts",
+    "modal_damping",
+    "friction_law",
+    "load",
+    "units",
+    "triangle",
+)
+TRIANGLES = ("mirror", "keep")
+
+
+def read(path: str | PathLike[str]) -> Structure:
+    """A structure from its file.
+
+    The file has the keys ``mass`` and ``stiffness``, and where needed ``damping``: names of matrix
+    files beside it, or ``{file: NAME, variable: NAME}``; ``contacts``, a table (CSV) with the
+    columns name, normal, tangential, stiffness, preload and optionally speed, where a direction is
+    ``12:1 40:-1``, degrees of freedom counted from 1, or ``31.2:1``, node and direction, where the
+    matrix file has them; ``mu``, ``belt_speed``, ``friction_law``, ``mu_static``,
+    ``friction_speed``, ``modal_damping`` and ``load`` (a file with one number a line, or 0) as of
+    :class:`Structure`; ``units`` (``m-kg-s``; all numbers of a file with ``mm-t-s`` are in mm, t, s
+    and N and become SI's; degrees of freedom must be displacements); ``triangle``: ``mirror`` where
+    a file has one triangle of a symmetric matrix, ``keep`` where it is meant as it is.
+
+    Args:
+        path: the YAML file; names in it are relative to its folder.
+
+    Raises:
+        FileNotFoundError: a file that does not exist.
+        ValueError: a key, value or file that is wrong; names it.
+    """
+    source = Path(path)
+    content = _content(source)
+    scales = scales_of(content["units"]) if "units" in content else SI
+    matrices, labels = _matrices(content, source.parent, scales)
+    arguments: dict[str, Any] = {**matrices}
+    if "contacts" in content:
+        table = source.parent / str(content["contacts"])
+        arguments["contacts"] = read_contacts(
+            table, labels, matrices["mass"].shape[0], scales
+        )
+    for name in NUMBERS:
+        if name in content:
+            arguments[name] = content[name]
+    for name in ("belt_speed", "friction_speed"):
+        if is_finite_number(arguments.get(name)):
+            arguments[name] = float(arguments[name]) * scales.speed
+    if "modal_damping" in content:
+        arguments["modal_damping"] = content["modal_damping"]
+    if "friction_law" in content:
+        arguments["friction_law"] = named(
+            content["friction_law"], COLUMNS, source.parent
+        )
+    if "load" in content:
+        arguments["load"] = _load(content["load"], source.parent, scales)
+    try:
+        return Structure(**arguments)
+    except ValueError as error:
+        raise ValueError(f"{source}: {error}") from error
+
+
+def _content(source: Path) -> dict[str, Any]:
+    content = read_yaml(source)
+    for key in content:
+        if key not in KEYS:
+            raise ValueError(
+                f"{source}: {key!r} is unknown; {suggestion(str(key), KEYS)}"
+            )
+    for key in ("mass", "stiffness"):
+        if key not in content:
+            raise ValueError(
+                f"{source} lacks {key}; name its matrix, like `{key}: {key[0].upper()}.mtx`"
+            )
+    return content
+
+
+def _matrices(
+    content: Mapping[str, Any], folder: Path, scales: Scales
+) -> tuple[dict[str, Any], list[str] | None]:
+    """Matrices in SI units, in one order, and the labels of their rows."""
+    triangle = content.get("triangle")
+    if triangle is not None and triangle not in TRIANGLES:
+        raise ValueError(
+            f"triangle = {triangle!r}: {suggestion(str(triangle), TRIANGLES)}"
+        )
+    read_in = {}
+    for key in MATRICES:
+        if key not in content:
+            continue
+        entry = content[key]
+        if isinstance(entry, Mapping):
+            if set(entry) - {"file", "variable"} or "file" not in entry:
+                raise ValueError(
+                    f"{key} = {dict(entry)!r}: file and variable are needed"
+                )
+            file, variable = entry["file"], entry.get("variable")
+        else:
+            file, variable = entry, None
+        path = folder / str(file)
+        one = read_matrix(path, key, variable)
+        whole = _completed(
+            real_square(f"{key}: {path}", one.matrix), path, one, triangle
+        )
+        read_in[key] = Labelled(whole, one.labels)
+    labels = next((each.labels for each in read_in.values() if each.labels), None)
+    return {
+        key: _in_order(key, each, labels) * getattr(scales, key)
+        for key, each in read_in.items()
+    }, labels
+
+
+def _completed(matrix: Any, path: Path, given: Labelled, triangle: str | None) -> Any:
+    """The matrix with both triangles.
+
+    Raises:
+        ValueError: only one is there, or only a part of the other, and nobody says what is meant.
+    """
+    off = matrix - sp.diags_array(matrix.diagonal())
+    off.eliminate_zeros()
+    pattern = off.astype(bool).astype(int)
+    single = pattern.nnz - pattern.multiply(pattern.T).nnz
+    if not single or triangle == "keep":
+        return matrix
+    if single == pattern.nnz and (given.halved or triangle == "mirror"):
+        return matrix + off.T
+    what = (
+        "no entry off the diagonal has"
+        if single == pattern.nnz
+        else f"{single} entries lack"
+    )
+    raise ValueError(
+        f"{path}: {what} one on the other side of the diagonal; if the file is whole, write "
+        "`triangle: mirror` where it holds one triangle of a symmetric matrix, `triangle: keep` "
+        "where it is meant as it is"
+    )
+
+
+def _in_order(key: str, given: Labelled, labels: list[str] | None) -> Any:
+    """The matrix with its rows in the order of these labels."""
+    if labels is None or given.labels is None or given.labels == labels:
+        size = given.matrix.shape[0]
+        if labels is not None and size != len(labels):
+            raise ValueError(f"{key} has {size} rows, but {len(labels)} are labelled")
+        return given.matrix
+    if len(set(labels)) < len(labels):
+        raise ValueError(f"{key}: a label is there twice")
+    place_of = {label: place for place, label in enumerate(labels)}
+    if unknown := [label for label in given.labels if label not in place_of]:
+        raise ValueError(
+            f"{key} has {unknown[0]} (node.direction), which the other matrix has not"
+        )
+    places = np.array([place_of[label] for label in given.labels])
+    entries = given.matrix.tocoo()
+    size = len(labels)
+    return sp.csr_array(
+        (entries.data, (places[entries.row], places[entries.col])), (size, size)
+    )
+
+
+def _load(given: Any, folder: Path, scales: Scales) -> Any:
+    if given == 0:
+        return 0.0
+    if not isinstance(given, str):
+        raise ValueError(f"load = {brief(given)}: the name of a file, or 0, is needed")  # noqa: TRY004
+    path = folder / given
+    if not path.is_file():
+        raise FileNotFoundError(f"load: no file {path}")
+    try:
+        if path.suffix == ".mtx":
+            entries = scipy.io.mmread(path)
+            entries = entries.toarray() if sp.issparse(entries) else entries
+        else:
+            entries = np.loadtxt(path)
+    except ValueError as error:
+        raise ValueError(f"load: {path}: {error}") from error
+    return np.asarray(entries, dtype=float).ravel() * scales.force

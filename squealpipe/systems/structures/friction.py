@@ -1,0 +1,76 @@
+"""The friction of all contacts of a structure, by the laws of :mod:`squealpipe.laws`."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from squealpipe.laws.friction_laws import LAWS, coefficient, slope
+from squealpipe.laws.tables import is_table
+from squealpipe.parameters import TABLE, is_finite_number
+
+
+@dataclass(frozen=True, kw_only=True)
+class Friction:
+    """Coefficient over sliding speed; fields as in ``Parameters``.
+
+    Attributes:
+        mu: the coefficient of the law, or with a table a factor of it.
+        mu_static: limit of stick; None: that of sliding at speed 0.
+    """
+
+    friction_law: str
+    mu: float
+    mu_static: float | None
+    friction_speed: float
+
+    def __post_init__(self) -> None:
+        for name in ("mu", "friction_law", "mu_static", "friction_speed"):
+            value = TABLE[name].check(name, getattr(self, name))
+            object.__setattr__(self, name, value)
+        if self.mu_static is not None:
+            if self.friction_law in LAWS:
+                onset = self.mu
+            else:
+                onset = self.factor * float(coefficient(0.0, self))
+            if self.mu_static < onset:
+                raise ValueError(
+                    f"mu_static = {self.mu_static!r}: it must be {onset!r}, the coefficient at "
+                    "speed 0, or greater"
+                )
+
+    @property
+    def factor(self) -> float:
+        """Of the law's coefficient: ``mu`` where the law is a table."""
+        return self.mu if is_table(self.friction_law) else 1.0
+
+    @property
+    def static_mu(self) -> float:
+        """Largest friction in stick over the normal force."""
+        if self.mu_static is not None:
+            return self.mu_static
+        if self.friction_law in LAWS:
+            return self.mu
+        return self.factor * float(coefficient(0.0, self))
+
+    def coefficient(self, speed: Any) -> Any:
+        """μ(w) at sliding speeds w ≥ 0, m/s."""
+        return self.factor * coefficient(speed, self)
+
+    def slope(self, speed: Any) -> Any:
+        """dμ/dw, s/m."""
+        return self.factor * slope(speed, self)
+
+
+def default_mu(friction_law: object) -> float:
+    """``mu`` where none is given: 1, a factor, with a table."""
+    law = TABLE["friction_law"].check("friction_law", friction_law)
+    return 1.0 if is_table(law) else 0.5
+
+
+def with_mu(friction: Friction, mu: object) -> Friction:
+    """The same law with another μ."""
+    if not is_finite_number(mu):
+        raise ValueError(f"mu = {mu!r}: a finite number is needed")
+    values = {key: getattr(friction, key) for key in friction.__dataclass_fields__}
+    return Friction(**{**values, "mu": mu})

@@ -1,0 +1,65 @@
+"""Real modes of a structure with closed contacts and without friction, (M, K + Σ kᵢ nᵢnᵢᵀ)."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+import scipy.linalg as la
+import scipy.sparse as sp
+from scipy.sparse.linalg import eigsh
+
+from squealpipe.systems.structures.pencil import DENSE
+
+if TYPE_CHECKING:
+    from squealpipe.systems.structures.structure import Structure
+
+FIRST = 40
+"""Modes computed at first where it is not known how many there are up to a frequency."""
+
+
+def modes_at_rest(
+    structure: Structure, number: int | None = None, omega_max: float | None = None
+) -> tuple[np.ndarray, np.ndarray]:
+    """The lowest modes: ω (k,), rad/s, ascending, and Φ (n, k) with ΦᵀMΦ = 1.
+
+    Args:
+        number: how many; None: all, or those up to ``omega_max``.
+        omega_max: rad/s.
+    """
+    size = structure.size
+    stiffness = structure.stiffness_at_rest
+    if size <= DENSE:
+        squares, modes = la.eigh(stiffness.toarray(), structure.mass.toarray())
+    else:
+        squares, modes = _lowest(stiffness, structure.mass, number, omega_max)
+    omega = np.sqrt(np.maximum(squares, 0.0))
+    if number is None:
+        number = size if omega_max is None else int((omega <= omega_max).sum())
+    # the largest part of each shape is positive: the same signs on every machine
+    peaks = modes[np.abs(modes).argmax(axis=0), np.arange(modes.shape[1])]
+    return omega[:number], (modes * np.sign(peaks))[:, :number]
+
+
+def _lowest(
+    stiffness: sp.csr_array,
+    mass: sp.csr_array,
+    number: int | None,
+    omega_max: float | None,
+) -> tuple[np.ndarray, np.ndarray]:
+    """By Lanczos about a point just below zero, where rigid bodies are no pole."""
+    shift = -1e-3 * float((np.abs(stiffness.diagonal()) / mass.diagonal()).min() or 1.0)
+    wanted = number or FIRST
+    start = np.random.default_rng(0).standard_normal(mass.shape[0])
+    while True:
+        wanted = min(wanted, mass.shape[0] - 1)
+        squares, modes = eigsh(
+            sp.csc_array(stiffness), wanted, sp.csc_array(mass), sigma=shift, v0=start
+        )
+        order = np.argsort(squares)
+        squares, modes = squares[order], modes[:, order]
+        if number is not None or squares[-1] > (omega_max or 0.0) ** 2:
+            return squares, modes
+        if wanted == mass.shape[0] - 1:
+            return squares, modes
+        wanted *= 2

@@ -1,0 +1,152 @@
+"""The modes of a structure along friction, each with a number that it keeps."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from squealpipe.methods.progress import with_progress
+from squealpipe.schema.structures import Onset
+from squealpipe.systems.structures.following import followed, successors
+from squealpipe.systems.structures.onset import onset
+from squealpipe.systems.structures.refinement import Eigenpair
+from squealpipe.systems.structures.sliding import NoSlidingError
+from squealpipe.systems.structures.spectrum import Solver, Spectrum
+
+MERGED = 0.5
+"""Two modes merge where their frequencies come nearer than this share of their first distance."""
+
+
+@dataclass(frozen=True)
+class Step:
+    """One friction on the way.
+
+    Attributes:
+        numbers: of the modes of the spectrum, (modes,).
+    """
+
+    spectrum: Spectrum
+    numbers: np.ndarray
+
+    def place(self, number: int) -> int | None:
+        """Where the mode of a number is; None if it is not here."""
+        places = np.flatnonzero(self.numbers == number)
+        return int(places[0]) if places.size else None
+
+    def pair(self, number: int) -> Eigenpair | None:
+        """The mode of a number."""
+        place = self.place(number)
+        return None if place is None else self.spectrum.pairs[place]
+
+
+@dataclass
+class Way:
+    """Modes along friction at one belt speed.
+
+    Attributes:
+        steps: by friction, those between the frictions asked for included.
+        reasons: why there is no steady sliding at some.
+    """
+
+    solver: Solver
+    steps: dict[float, Step] = field(default_factory=dict)
+    reasons: list[str] = field(default_factory=list)
+
+    def follow(self, frictions: list[float], after: Way | None) -> None:
+        """Number the modes at these frictions, ascending; the first as those of another way."""
+        last: float | None = None
+        for mu in with_progress(frictions):
+            try:
+                spectrum = self.solver.at(mu)
+            except NoSlidingError as error:
+                self.reasons.append(str(error))
+                continue
+            if last is None:
+                self.steps[mu] = Step(spectrum, self._first_numbers(spectrum, after))
+            else:
+                self._go(last, mu)
+            last = mu
+
+    def _first_numbers(self, spectrum: Spectrum, after: Way | None) -> np.ndarray:
+        if after is None or not after.steps:
+            return np.arange(len(spectrum.pairs))
+        before = next(iter(after.steps.values()))
+        places, _ = successors(before.spectrum, spectrum)
+        top = 1 + max(step.numbers.max(initial=-1) for step in after.steps.values())
+        return _carried(before.numbers, places, len(spectrum.pairs), top)
+
+    def _go(self, low: float, high: float) -> None:
+        start = self.steps[low]
+        for mu, places in followed(self.solver.at, low, high, self.solver.selected):
+            spectrum = self.solver.at(mu)
+            top = 1 + max(step.numbers.max(initial=-1) for step in self.steps.values())
+            numbers = _carried(start.numbers, places, len(spectrum.pairs), top)
+            self.steps[mu] = Step(spectrum, numbers)
+
+    def critical(self, number: int) -> tuple[float, Onset, int | None]:
+        """The friction at which growth of a mode leaves zero, why, and the mode it merges with."""
+        last: tuple[float, Eigenpair] | None = None
+        for mu, step in self.steps.items():
+            pair = step.pair(number)
+            if pair is None:
+                continue
+            twin = self._twin(step, number)
+            grows = pair.value.real > pair.error or twin is not None
+            if not grows:
+                last = mu, pair
+                continue
+            if last is None:
+                return np.nan, Onset.unstable_throughout, None
+            grown = pair if pair.value.real > 0 else step.pair(twin)  # type: ignore[arg-type]
+            assert grown is not None  # noqa: S101 (a twin is there)
+            located = onset(self.solver.pencil, last, (mu, grown))
+            if located is None:
+                return np.nan, Onset.not_followed, None
+            partner = self._nearest(step, number) if twin is None else twin
+            return located, Onset.located, partner
+        return np.nan, Onset.stable, None
+
+    def _twin(self, step: Step, number: int) -> int | None:
+        """The mode with the opposite growth and the same frequency, without damping."""
+        place = step.place(number)
+        if place is None or not step.spectrum.pencil.is_undamped:
+            return None
+        value, error = step.spectrum.values[place], step.spectrum.errors[place]
+        if abs(value.real) <= error or value.imag == 0:
+            return None
+        same = np.abs(step.spectrum.values + value.conjugate()) <= 2 * error
+        twins = step.numbers[same & (np.arange(len(same)) != place)]
+        return int(twins[0]) if twins.size else None
+
+    def _nearest(self, step: Step, number: int) -> int | None:
+        """The mode that came near by frequency, if one did."""
+        first = next(iter(self.steps.values()))
+        now = {
+            int(k): v.imag
+            for k, v in zip(step.numbers, step.spectrum.values, strict=True)
+        }
+        then = {
+            int(k): v.imag
+            for k, v in zip(first.numbers, first.spectrum.values, strict=True)
+        }
+        own = now.pop(number)
+        if own == 0 or number not in then:
+            return None
+        other = min(now, key=lambda each: abs(now[each] - own), default=None)
+        if other is None or other not in then:
+            return None
+        distance = abs(then[other] - then[number])
+        return other if abs(now[other] - own) < MERGED * distance else None
+
+
+def _carried(
+    numbers: np.ndarray, places: np.ndarray, size: int, top: int
+) -> np.ndarray:
+    """Numbers at the places that modes went to; new ones from ``top`` on elsewhere."""
+    carried = np.full(size, -1)
+    kept = places >= 0
+    carried[places[kept]] = numbers[kept]
+    new = carried < 0
+    carried[new] = top + np.arange(new.sum())
+    return carried

@@ -1,0 +1,139 @@
+"""Steady sliding of a structure, and the linear motion about it.
+
+With σᵢ = sgn(speedᵢ V) and μᵢ = μ(|speedᵢ V|) the state is that of
+K q = f + Σ (nᵢ + σᵢ μᵢ tᵢ) Nᵢ, Nᵢ = max(preloadᵢ − kᵢ nᵢᵀq, 0), and small motions about it have the
+pencil M s² + (C + Σ Nᵢ μᵢ′ tᵢtᵢᵀ) s + K + Σ kᵢ (nᵢ + σᵢ μᵢ tᵢ) nᵢᵀ, both sums over closed contacts.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import scipy.sparse as sp
+from scipy.sparse.linalg import splu
+
+from squealpipe.systems.structures.friction import with_mu
+from squealpipe.systems.structures.pencil import LowRank, Pencil
+
+if TYPE_CHECKING:
+    from squealpipe.systems.structures.structure import Structure
+
+SINGULAR = 1e-13
+"""Residual of the steady state, over the forces in it, beyond which the stiffness is singular."""
+
+
+class NoSlidingError(ValueError):
+    """There is no steady sliding."""
+
+
+@dataclass(frozen=True)
+class Sliding:
+    """Steady sliding.
+
+    Attributes:
+        displacement: q, (n,), m.
+        force: N of each contact, N; 0 where it is open.
+        closed: which contacts are closed.
+        drag: σ μ of each.
+        slope: μ′ of each, s/m.
+    """
+
+    displacement: np.ndarray
+    force: np.ndarray
+    closed: np.ndarray
+    drag: np.ndarray
+    slope: np.ndarray
+
+
+def steady_sliding(structure: Structure, mu: float, belt_speed: float) -> Sliding:
+    """The state in which all closed contacts slide along with the belt.
+
+    Raises:
+        NoSlidingError: a belt at rest; a structure that nothing holds; or contacts of which none
+            can be open or closed (as where friction jams).
+    """
+    friction = with_mu(structure.friction, mu)
+    speeds = structure.speeds * belt_speed
+    if belt_speed == 0 and structure.contacts:
+        raise NoSlidingError(
+            "belt_speed = 0: contacts slide only on a belt that moves; choose another"
+        )
+    sizes = np.abs(speeds)
+    drag = np.sign(speeds) * [float(friction.coefficient(size)) for size in sizes]
+    slope = np.array([float(friction.slope(size)) for size in sizes])
+    closed = np.ones(len(speeds), bool)
+    seen: set[bytes] = set()
+    # contacts change one at a time, the first in order: such pivoting ends or comes back
+    while closed.tobytes() not in seen:
+        seen.add(closed.tobytes())
+        displacement = _balance(structure, closed, drag)
+        reach = structure.preloads - structure.stiffnesses * (
+            structure.normals.T @ displacement
+        )
+        wrong = np.flatnonzero(closed != (reach > 0))
+        if not wrong.size:
+            force = np.where(closed, reach, 0.0)
+            return Sliding(displacement, force, closed, drag, slope)
+        closed[wrong[0]] = ~closed[wrong[0]]
+    names = [each.name for each in structure.contacts]
+    raise NoSlidingError(
+        f"no steady sliding at mu = {mu:g}, belt_speed = {belt_speed:g}: the contacts "
+        f"{', '.join(names)} can be neither open nor closed together; check preloads and load"
+    )
+
+
+def _balance(structure: Structure, closed: np.ndarray, drag: np.ndarray) -> np.ndarray:
+    """q of K q + Σ k (n + σ μ t) nᵀ q = f + Σ (n + σ μ t) preload over closed contacts."""
+    acting = _acting(structure, closed, drag)
+    matrix = structure.stiffness + _contact_stiffness(structure, closed, acting)
+    force = structure.load + acting @ (structure.preloads * closed)
+    if not force.any():
+        return np.zeros(structure.size)
+    try:
+        solution = splu(sp.csc_array(matrix)).solve(force)
+        missed = np.abs(matrix @ solution - force).max()
+        carried = (abs(matrix) @ np.abs(solution)).max()
+    except RuntimeError:  # the factor is exactly singular
+        missed, carried = np.inf, 1.0
+    if not missed <= 1e3 * SINGULAR * max(carried, np.abs(force).max()):
+        raise NoSlidingError(
+            "nothing holds the structure against its load: the stiffness is singular with "
+            f"{'all' if closed.all() else 'some'} contacts closed; add supports"
+        )
+    return np.asarray(solution)
+
+
+def _acting(structure: Structure, closed: np.ndarray, drag: np.ndarray) -> Any:
+    """n + σ μ t of closed contacts, 0 of open ones, (n, contacts)."""
+    return (structure.normals + structure.tangentials * drag) * closed
+
+
+def _contact_stiffness(
+    structure: Structure, closed: np.ndarray, acting: np.ndarray
+) -> Any:
+    """Σ k (n + σ μ t) nᵀ, sparse."""
+    normals = sp.csr_array(structure.normals * (structure.stiffnesses * closed))
+    return sp.csr_array(acting) @ normals.T
+
+
+def pencil_about(structure: Structure, state: Sliding, modal: LowRank | None) -> Pencil:
+    """The pencil of small motions about steady sliding, with the damping of single modes."""
+    acting = _acting(structure, state.closed, state.drag)
+    falling = state.force * state.slope
+    damping = sp.csr_array(structure.damping)
+    if falling.any():
+        tangential = sp.csr_array(structure.tangentials * falling)
+        damping = damping + tangential @ sp.csr_array(structure.tangentials).T
+    stiffness = structure.stiffness + _contact_stiffness(
+        structure, state.closed, acting
+    )
+    return Pencil(_tidy(structure.mass), _tidy(damping), _tidy(stiffness), modal)
+
+
+def _tidy(matrix: Any) -> sp.csr_array:
+    tidy = sp.csr_array(matrix, copy=True)
+    tidy.sum_duplicates()
+    tidy.eliminate_zeros()
+    return tidy

@@ -1,0 +1,159 @@
+"""Complex modes about one state of steady sliding, within limits of frequency or number."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from squealpipe.systems.structures import band, dense
+from squealpipe.systems.structures.modes import modes_at_rest
+from squealpipe.systems.structures.pencil import DENSE, LowRank, Pencil
+from squealpipe.systems.structures.refinement import Eigenpair
+from squealpipe.systems.structures.sliding import Sliding, pencil_about, steady_sliding
+
+if TYPE_CHECKING:
+    from squealpipe.systems.structures.structure import Structure
+
+BEYOND = 1.05
+"""The band of so many modes ends so far beyond the frequency that they reach without friction."""
+ALL = "complete: all eigenvalues by dense algebra"
+
+
+@dataclass(frozen=True)
+class Spectrum:
+    """Modes about one state.
+
+    Attributes:
+        pencil: of small motions.
+        pairs: its modes, by frequency.
+    """
+
+    mu: float
+    state: Sliding
+    pencil: Pencil
+    pairs: list[Eigenpair]
+
+    @cached_property
+    def values(self) -> np.ndarray:
+        """Eigenvalues s, (modes,)."""
+        return np.array([each.value for each in self.pairs], complex)
+
+    @cached_property
+    def shapes(self) -> np.ndarray:
+        """Right eigenvectors, (n, modes)."""
+        size = self.pencil.size
+        return np.array([each.right for each in self.pairs]).reshape(-1, size).T
+
+    @cached_property
+    def errors(self) -> np.ndarray:
+        """Of the eigenvalues, rad/s."""
+        return np.array([each.error for each in self.pairs])
+
+    @property
+    def growth_errors(self) -> np.ndarray:
+        """Of the growth rates, 1/s: none of an undamped mode that does not grow."""
+        still = (
+            self.pencil.is_undamped & (self.values.real == 0) & (self.values.imag > 0)
+        )
+        return np.where(still, 0.0, self.errors)
+
+    @property
+    def residuals(self) -> Any:
+        """‖Q(s) v‖ over the sum of the norms of its three terms."""
+        s, v, pencil = self.values, self.shapes, self.pencil
+        modal = 0.0 if pencil.modal is None else pencil.modal.product(v)
+        terms = (
+            pencil.mass @ v * s**2,
+            (pencil.damping @ v + modal) * s,
+            pencil.stiffness @ v,
+        )
+        size = sum(np.linalg.norm(term, axis=0) for term in terms)
+        missed = np.linalg.norm(terms[0] + terms[1] + terms[2], axis=0)
+        return missed / np.where(size > 0, size, 1.0)
+
+
+@dataclass(frozen=True)
+class Limits:
+    """What is asked for.
+
+    Attributes:
+        frequency_max: Hz.
+        n_modes: how many, by frequency.
+    """
+
+    frequency_max: float | None = None
+    n_modes: int | None = None
+
+
+@dataclass
+class Solver:
+    """Modes of one structure at any friction, one belt speed after another; remembers them."""
+
+    structure: Structure
+    limits: Limits
+    belt_speed: float
+    modal: LowRank | None = None
+    _known: dict[float, Spectrum] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        self.modal = self.structure.modal_damping_of(
+            None if self.is_dense else self.limits.n_modes, self._omega_max
+        )
+
+    @property
+    def is_dense(self) -> bool:
+        """Whether all eigenvalues are computed."""
+        return self.structure.size <= DENSE
+
+    @property
+    def _omega_max(self) -> float | None:
+        frequency = self.limits.frequency_max
+        return None if self.is_dense or frequency is None else 2 * np.pi * frequency
+
+    def pencil(self, mu: float) -> Pencil:
+        """Of small motions at this friction."""
+        state = steady_sliding(self.structure, mu, self.belt_speed)
+        return pencil_about(self.structure, state, self.modal)
+
+    def at(self, mu: float) -> Spectrum:
+        """All modes of a dense structure, those within the limits of a sparse one.
+
+        Raises:
+            NoSlidingError: there is no steady sliding.
+            IncompleteError: a band could not be shown to be complete.
+        """
+        if mu not in self._known:
+            state = steady_sliding(self.structure, mu, self.belt_speed)
+            pencil = pencil_about(self.structure, state, self.modal)
+            find: Callable[[Pencil], list[Eigenpair]]
+            find = dense.all_modes if self.is_dense else self._within
+            self._known[mu] = Spectrum(mu, state, pencil, find(pencil))
+        return self._known[mu]
+
+    def _within(self, pencil: Pencil) -> list[Eigenpair]:
+        omega, number = self._omega_max, self.limits.n_modes
+        if number is None:
+            assert omega is not None  # noqa: S101 (large structures have a limit)
+            return band.modes_in_band(pencil, omega)
+        lowest, _ = modes_at_rest(self.structure, number)
+        reach = BEYOND * lowest[-1]
+        while True:
+            top = reach if omega is None else min(reach, omega)
+            pairs = band.modes_in_band(pencil, top)
+            if len(pairs) >= number or top == omega:
+                return pairs[:number]
+            reach *= 1.3
+
+    def selected(self, spectrum: Spectrum) -> np.ndarray:
+        """Which modes are within the limits, (modes,)."""
+        frequency = spectrum.values.imag / (2 * np.pi)
+        chosen = np.ones(len(frequency), bool)
+        if self.limits.frequency_max is not None:
+            chosen &= frequency <= self.limits.frequency_max
+        if self.limits.n_modes is not None:
+            chosen &= np.cumsum(chosen) <= self.limits.n_modes
+        return chosen

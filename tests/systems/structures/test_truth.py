@@ -1,0 +1,336 @@
+"""Complex modes of structures against published numbers, closed forms and other eigensolvers."""
+
+import os
+from pathlib import Path
+
+import mpmath
+import numpy as np
+import pytest
+import scipy.io
+import scipy.sparse as sp
+from scipy.sparse.linalg import LinearOperator, eigs, splu
+
+from squealpipe import Contact, Structure
+from squealpipe.parameters import Parameters
+from squealpipe.schema.structures import Onset
+from squealpipe.structures import elastic_pad
+from squealpipe.tasks.linear.maps import stability_map
+
+DRAWS = int(os.environ.get("SQUEALPIPE_DRAWS", "10"))
+"""Random structures in a test; 200 were run once."""
+BRAKE = Path(
+    os.environ.get(
+        "SQUEALPIPE_BRAKE_MATRICES",
+        Path(__file__).resolve().parents[4] / "shared/data/brake_squeal",
+    )
+)
+
+
+def unstable(modes):
+    """Growth rates, 1/s, and frequencies, Hz, of the unstable modes."""
+    chosen = modes.unstable.values
+    return modes.growth_rate.values[chosen], modes.frequency.values[chosen]
+
+
+def hoffmann(mu, **further):
+    """Hoffmann et al. (2002): y pressed on the belt, so N = −y of what differs from sliding."""
+    contact = Contact(
+        "c", normal={1: -1.0}, tangential={0: 1.0}, stiffness=4 / 3, preload=1.0
+    )
+    stiffness = np.array([[2.0, -1.0], [-1.0, 2 / 3]])
+    return Structure(np.eye(2), stiffness, contacts=[contact], mu=mu, **further)
+
+
+def test_hoffmanns_modes_merge_at_three_quarters_of_friction_with_frequency_root_two():
+    modes = hoffmann(0.9, belt_speed=-1.0).complex_modes()
+    assert modes.critical_mu.values == pytest.approx([0.75, 0.75], abs=1e-10)
+    assert list(modes.merges_with.values) == [2, 1]
+    at_onset = hoffmann(0.75, belt_speed=-1.0).complex_modes()
+    # merged frequencies depend on round-off by its root
+    assert 2 * np.pi * at_onset.frequency.values == pytest.approx(
+        [2**0.5] * 2, abs=1e-7
+    )
+    assert not at_onset.unstable.any()
+    # a belt the other way does not couple the modes
+    assert not hoffmann(0.9, belt_speed=1.0).complex_modes().unstable.any()
+
+
+def test_the_mass_on_two_springs_has_the_stability_of_a3():
+    alpha1, alpha2 = 0.4, 1.9
+    p = Parameters(
+        mass=2.0, k1=3.0, k2=1.5, k3=0.8, mu=0.4, damping1=0.03, damping2=0.01
+    )
+    c1, s1, c2, s2 = np.cos(alpha1), np.sin(alpha1), np.cos(alpha2), np.sin(alpha2)
+
+    def pair(first, second):
+        one, other = np.array([c1, s1]), np.array([-c2, s2])
+        return first * np.outer(one, one) + second * np.outer(other, other)
+
+    contact = Contact(
+        "k3", normal={1: 1.0}, tangential={0: 1.0}, stiffness=p.k3, preload=p.k3
+    )
+    structure = Structure(
+        p.mass * np.eye(2), pair(p.k1, p.k2), pair(p.damping1, p.damping2),
+        contacts=[contact], mu=p.mu, belt_speed=p.belt_speed, load=0,
+    )  # fmt: skip
+    modes = structure.complex_modes()
+    a3 = stability_map(p, [alpha1], [alpha2])
+    assert modes.growth_rate.max() == pytest.approx(a3.growth_rate.item(), rel=1e-10)
+    assert 2 * np.pi * modes.frequency.values == pytest.approx(
+        a3.frequency.values.ravel(), rel=1e-10
+    )
+
+
+def test_the_elastic_pad_has_the_published_modes():
+    pad = elastic_pad()
+    assert pad.size == 350
+    modes = pad.complex_modes(frequency_max=60e3)
+    growth, frequency = unstable(modes)
+    assert growth == pytest.approx([2333.26, 3458.64], abs=0.005)
+    assert frequency == pytest.approx([9744.40, 41694.48], abs=0.005)
+    critical = modes.critical_mu.values[modes.unstable.values]
+    assert critical[0] == pytest.approx(0.370483, abs=5e-7)
+    less = pad.complex_modes(mu=0.3, frequency_max=60e3)
+    assert unstable(less)[0] == pytest.approx([1954.78], abs=0.005)
+    assert unstable(less)[1] == pytest.approx([41692.56], abs=0.005)
+    # one mode alone is at the critical friction: growth vanishes below and does not above
+    for share, grows in ((1 - 1e-9, 1), (1 + 1e-9, 2)):
+        near = pad.complex_modes(mu=[critical[0] * share], frequency_max=60e3)
+        assert int(near.unstable.sum()) == grows
+
+
+def test_a_reduced_pad_states_errors_that_are_true():
+    pad = elastic_pad()
+    reduced = pad.reduce(frequency_max=60e3)
+    assert reduced.record["n_modes"] == 11
+    assert pad.reduce(n_modes=24, frequency_max=60e3).record["growth_rate_error"] > 0.01
+    fourteen = pad.reduce(n_modes=14, frequency_max=60e3)
+    growth, frequency = unstable(fourteen.complex_modes(frequency_max=60e3))
+    assert growth == pytest.approx([2326.63, 3456.75], abs=0.01)
+    assert frequency == pytest.approx([9685.60, 41696.53], abs=0.01)
+    whole = unstable(pad.complex_modes(frequency_max=60e3))
+    assert fourteen.record["frequency_error"] == pytest.approx(
+        np.abs(frequency / whole[1] - 1).max(), rel=1e-6
+    )
+    assert fourteen.record["growth_rate_error"] == pytest.approx(
+        np.abs(growth / whole[0] - 1).max(), rel=1e-6
+    )
+    # amplitudes become displacements: the same static deformation under the mean of both loads
+    assert fourteen.modes.T @ pad.mass @ fourteen.modes == pytest.approx(
+        np.eye(14), abs=1e-10
+    )
+    assert fourteen.modes.T @ pad.normals == pytest.approx(fourteen.normals)
+
+
+def random_structure(generator):
+    """2 to 40 degrees of freedom with dashpots, gyroscopic, circulatory or falling parts."""
+    size = 2 + int(39 * generator.random() ** 3)  # most are small: 30 digits cost
+
+    def square():
+        return generator.standard_normal((size, size)) / np.sqrt(size)
+
+    def with_each(part):
+        return part if generator.random() < 0.5 else 0.0
+
+    mass, stiffness = square(), square()
+    mass = mass @ mass.T + 0.3 * np.eye(size)
+    stiffness = 10.0 * stiffness @ stiffness.T + with_each(np.eye(size))
+    gyroscopic, circulatory, dashpots = square(), square(), square()
+    damping = with_each(0.05 * dashpots @ dashpots.T) + with_each(
+        gyroscopic - gyroscopic.T
+    )
+    stiffness = stiffness + with_each(0.3 * (circulatory - circulatory.T))
+    contacts = [
+        Contact(
+            f"c{number}",
+            generator.standard_normal(size),
+            generator.standard_normal(size),
+            stiffness=generator.uniform(0.5, 5.0),
+            preload=generator.uniform(0.5, 2.0),
+            speed=generator.choice([-1.0, 0.5, 2.0]),
+        )
+        for number in range(int(generator.integers(0, size // 2 + 1)))
+    ]
+    law = "exponential" if generator.random() < 0.5 else "coulomb"
+    return Structure(
+        mass, stiffness, damping + np.zeros((size, size)), contacts=contacts,
+        mu=generator.uniform(0.1, 0.6), mu_static=0.8, friction_law=law, friction_speed=1.5,
+    )  # fmt: skip
+
+
+def precise_eigenvalues(structure, modes):
+    """Eigenvalues in 30 digits of the pencil as the issue prints it, real ones and Im s > 0."""
+    size = structure.size
+    with mpmath.workdps(30):
+        mass, damping, stiffness = (
+            mpmath.matrix(each.toarray().tolist())
+            for each in (structure.mass, structure.damping, structure.stiffness)
+        )
+        forces = modes.normal_force.values if structure.contacts else ()
+        for force, n, t, contact in zip(
+            forces,
+            structure.normals.T,
+            structure.tangentials.T,
+            structure.contacts,
+            strict=True,
+        ):
+            if force == 0:
+                continue
+            direction = mpmath.sign(contact.speed * structure.belt_speed)
+            speed = abs(mpmath.mpf(contact.speed) * structure.belt_speed)
+            mu, slope = mpmath.mpf(structure.mu), mpmath.mpf(0)
+            if structure.friction.friction_law == "exponential":
+                fall = (structure.friction.static_mu - mu) * mpmath.exp(-speed / 1.5)
+                mu, slope = mu + fall, -fall / 1.5
+            n, t = (mpmath.matrix(each.tolist()) for each in (n, t))
+            damping += mpmath.mpf(force) * slope * (t * t.T)
+            stiffness += contact.stiffness * ((n + direction * mu * t) * n.T)
+        inverse = mass**-1
+        linear = mpmath.zeros(2 * size)
+        for i in range(size):
+            linear[i, size + i] = 1
+        linear[size:, :size] = -inverse * stiffness
+        linear[size:, size:] = -inverse * damping
+        values = mpmath.eig(linear, left=False, right=False)
+        size = max(abs(value) for value in values)
+        return [v for v in values if v.imag > -(10**-20) * size]
+
+
+@pytest.mark.parametrize("seed", range(DRAWS))
+def test_random_structures_have_the_eigenvalues_of_30_digits(seed):
+    structure = random_structure(np.random.default_rng([46, seed]))
+    modes = structure.complex_modes()
+    ours = modes.growth_rate.values + 2j * np.pi * modes.frequency.values
+    truth = precise_eigenvalues(structure, modes)
+    # a real eigenvalue stands once in both, a pair with its upper half
+    truth = np.array([complex(value) for value in truth])
+    assert len(ours) == len(truth)
+    for value, error in zip(ours, modes.growth_rate_error.values, strict=True):
+        nearest = truth[np.abs(truth - value).argmin()]
+        assert abs(value.real - nearest.real) <= max(1e-6 * abs(nearest.real), 1e-8)
+        assert abs(value.imag - nearest.imag) <= 1e-8 * abs(value)
+        assert abs(value.real - nearest.real) <= 2 * error + 1e-14 * abs(value)
+    assert (modes.residual < 1e-12).all()
+
+
+needs_matrices = pytest.mark.skipif(
+    not (BRAKE / "BMLL00.mat").is_file(),
+    reason="matrices of BrakeSqueal0.1 are not there; SQUEALPIPE_BRAKE_MATRICES names their folder",
+)
+
+
+def brake(speed):
+    """M, C, K of BrakeSqueal0.1 at a speed, rad/s; the formula of its own code, not NLEVP's."""
+    files = [
+        "BMLL00",
+        "BDLL00",
+        "BYLL00",
+        "BDIWLL00",
+        "BHLL00",
+        "BKLL00",
+        "BKQLL00",
+        "BWLL00",
+    ]
+    parts = []
+    for name in files:
+        content = scipy.io.loadmat(BRAKE / f"{name}.mat", spmatrix=False)
+        parts.append(next(value for key, value in content.items() if key[0] != "_"))
+    mass, d1, dg, dr, d4, k1, kr, kg = map(sp.csc_array, parts)
+    damping = d1 + dg * speed + dr * (1 / speed - 1) + d4 / (3200 * np.pi)
+    return mass, damping, k1 + kr + kg * (speed**2 - 1)
+
+
+@needs_matrices
+def test_the_public_brake_has_its_unstable_modes():
+    mass, damping, stiffness = brake(4 * np.pi)
+    structure = Structure(mass, stiffness, damping)
+    growth, frequency = unstable(
+        structure.complex_modes(frequency_max=42000 / (2 * np.pi))
+    )
+    truth = {
+        4932.238867: 5.47417370,
+        5130.604865: 9.587160e-5,
+        17399.587753: 74.83064247,
+        26257.963487: 119.17648927,
+        36380.522879: 0.57378727,
+    }
+    assert 2 * np.pi * frequency == pytest.approx(list(truth), rel=1e-10)
+    assert growth == pytest.approx(list(truth.values()), rel=1e-7, abs=1e-9)
+
+
+@needs_matrices
+@pytest.mark.release
+@pytest.mark.parametrize("speed", [2.0, 4 * np.pi, 20.0, 50.0, 100.0])
+def test_the_public_brakes_modes_agree_with_another_linearization(speed):
+    """Arnoldi on the second companion form, another shift an eigenvalue, without refinement."""
+    mass, damping, stiffness = brake(speed)
+    modes = Structure(mass, stiffness, damping).complex_modes(
+        frequency_max=42000 / (2 * np.pi)
+    )
+    growth, frequency = unstable(modes)
+    size = mass.shape[0]
+    truth = {}
+    for center in 1j * np.arange(1000.0, 42500.0, 3000.0):
+        factors = splu(sp.csc_array(mass * center**2 + damping * center + stiffness))
+
+        def apply(x, center=center, factors=factors):
+            # x = (s M v + C v, v): (A − cB) y = B x of [[0, −K], [1, −C]], [[1, 0], [0, M]]
+            first, second = x[:size], x[size:]
+            v = -factors.solve(first + center * (mass @ second))
+            return np.concatenate([(-stiffness @ v - first) / center, v])
+
+        operator = LinearOperator((2 * size, 2 * size), apply, dtype=complex)
+        values = center + 1 / eigs(operator, k=12, tol=0, return_eigenvectors=False)
+        for value in values:
+            if value.real > 1e-7 and 0 < value.imag < 42000:
+                near = [
+                    known for known in truth if abs(known - value) < 1e-6 * abs(value)
+                ]
+                distance = abs(value - center)
+                for known in near:
+                    if truth[known] <= distance:
+                        break
+                    del truth[known]
+                else:
+                    truth[value] = distance
+    found = sorted(truth, key=lambda value: value.imag)
+    assert 2 * np.pi * frequency == pytest.approx([v.imag for v in found], rel=1e-8)
+    assert growth == pytest.approx([v.real for v in found], rel=1e-6, abs=1e-6)
+
+
+def test_growth_at_a_sparse_structures_band_is_that_of_dense_algebra():
+    pad = elastic_pad(elements=(60, 9), modal_damping=0.01)
+    assert pad.size > 1000
+    modes = pad.complex_modes(frequency_max=30e3, mu=[0.5])
+    # damping of the modes up to 30 kHz alone, as an (n, n) matrix
+    part = pad.modal_damping_of(None, 2 * np.pi * 30e3)
+    damping = part.columns @ np.diag(part.weights) @ part.columns.T
+    size = pad.size
+    acting = pad.normals + 0.5 * pad.tangentials
+    stiffness = pad.stiffness.toarray() + acting * pad.stiffnesses @ pad.normals.T
+    linear = np.zeros((2 * size, 2 * size))
+    unit = 1e5  # rad/s: both halves of the vector are of one size
+    linear[:size, size:] = unit * np.eye(size)
+    inverse = np.linalg.inv(pad.mass.toarray())
+    linear[size:, :size] = -inverse @ stiffness / unit
+    linear[size:, size:] = -inverse @ damping
+    truth = np.linalg.eigvals(linear)
+    top = 2 * np.pi * 30e3
+    truth = truth[
+        (truth.imag >= 0) & (truth.imag <= top) & (np.abs(truth.real) <= top / 4)
+    ]
+    truth = truth[np.argsort(truth.imag)]
+    assert 2 * np.pi * modes.frequency.values.ravel() == pytest.approx(
+        truth.imag, rel=1e-8
+    )
+    assert modes.growth_rate.values.ravel() == pytest.approx(
+        truth.real, rel=1e-4, abs=1e-2
+    )
+
+
+def test_friction_by_number_is_named_stable_located_or_unstable_throughout():
+    modes = hoffmann(0.5, belt_speed=-1.0).complex_modes(mu=[0.8, 0.9])
+    assert set(modes.onset.values) == {Onset.unstable_throughout}
+    modes = hoffmann(0.5, belt_speed=-1.0).complex_modes(mu=np.linspace(0, 0.7, 3))
+    assert set(modes.onset.values) == {Onset.stable}
+    assert np.isnan(modes.critical_mu).all()
